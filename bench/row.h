@@ -1,0 +1,31 @@
+/* row.h - one measured scene: what `tables` prints and the results file stores. */
+#ifndef BENCH_ROW_H
+#define BENCH_ROW_H
+
+#include "../lib/engine.h"
+
+typedef struct {
+    char paper[24], scene[64], engine[24], precision[12];
+    long triangles, particles, regions, instances;
+    int w, steps; /* steps in each repeat */
+    double epsilon, h, cell, damping;
+    int threads;
+    bool valid;
+    char reason[160];      /* why not valid */
+    double goal_error;     /* largest deviation of g from brute force, in cells */
+    double momentum_error; /* relative */
+    double goal_tolerance;
+    int repeats;
+    double *total;                    /* [repeats] seconds a step, not instrumented */
+    double (*stage)[SM_STAGES];       /* [repeats] seconds a step, instrumented, interleaved */
+    double stage_ms[SM_STAGES];       /* medians: share of the instrumented run x total */
+    double total_ms, total_low_ms, total_high_ms; /* median and quartiles */
+    double instruments_percent;       /* what the laps cost */
+    double ns_per_particle_step;
+    double voxelise_seconds, build_seconds;
+    long bytes;
+    double paper_total_ms, paper_stage_ms[SM_STAGES]; /* NaN: not given */
+    unsigned long long input_hash;    /* FNV-1a of the mesh's coordinates and indices */
+} BenchRow;
+
+#endif

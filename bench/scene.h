@@ -1,0 +1,68 @@
+/* scene.h - a scene as data: what to simulate, how, and what disturbs it.
+ *
+ * Scene files are libconfig; bench/scenes/ holds those that come with the program. */
+#ifndef BENCH_SCENE_H
+#define BENCH_SCENE_H
+
+#include "../lib/engine.h"
+
+enum { BENCH_NAME = 64, BENCH_PATH = 1024, BENCH_MAX = 64 };
+
+/* Particles whose rest position lies in a box, given in fractions of the mesh's bounding box
+ * (0..1 each axis), or in a sphere in mesh units. */
+typedef struct {
+    bool sphere;
+    double low[3], high[3];   /* box */
+    double centre[3], radius; /* sphere */
+} BenchSelect;
+
+/* A handle's motion; all zero: a pin. angle(t) = rate * t, or amplitude * sin(2 pi t / period). */
+typedef struct {
+    BenchSelect select;
+    double velocity[3];       /* m/s */
+    double axis[3], centre[3];
+    double rate;              /* rad/s */
+    double amplitude, period; /* rad, s; period 0: none */
+    double start, stop;       /* s; stop 0: for ever. After it the handle stays where it is */
+    bool release;             /* at `stop` let go instead */
+} BenchHandle;
+
+/* A force on the selected particles, N per particle, from start to stop. */
+typedef struct {
+    BenchSelect select;
+    double force[3];
+    double start, stop;
+} BenchForce;
+
+typedef struct {
+    char name[BENCH_NAME];
+    char title[160];
+    char paper[24], row[24];   /* the paper's table row that it regenerates; empty: none */
+    char mesh[BENCH_PATH];     /* "shape:penguin", or a path relative to the scene file */
+    char file[BENCH_PATH];     /* where the scene was read from; for messages */
+    char engine[24];
+    SmVoxelParams voxel;
+    SmEngineParams params;     /* mass, instance_pose: filled by the runner */
+    double density;            /* kg/m^3; 0: unit masses */
+    char vertex_mass[BENCH_PATH]; /* text file, a mass for every vertex; nearest vertex wins */
+    double epsilon;            /* octree only */
+    long instances;
+    double spacing;            /* between instances, in widths of the body */
+    int steps_per_frame;
+    int frames;
+    int handle_count, force_count, obstacle_count;
+    BenchHandle handle[BENCH_MAX];
+    BenchForce force[BENCH_MAX];
+    SmObstacle obstacle[BENCH_MAX];
+    double bend, twist, squash; /* initial deformation that starts it moving, 0: none */
+    double kick;                /* random initial velocity, cells per step, from the seed */
+} BenchScene;
+
+/* Reads a scene file, or finds a built-in scene by name. Errors name file and line. */
+SmCode bench_scene_read(const char *path, BenchScene *scene, SmError *error);
+SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *error);
+
+/* Built-in scene names, in order, NULL-terminated. */
+const char *const *bench_scene_names(void);
+
+#endif

@@ -1,0 +1,93 @@
+/* engine.h - what every engine offers: FastLSM, the octree, and the references.
+ *
+ * An engine owns the state of one body, or of many instances of one body that share its lattice.
+ * Particles are numbered canonically (voxel.h); instance k's particle p has number
+ * k * particle_count + p. Everything crosses this interface in double precision and mesh units,
+ * whatever the engine uses inside. create allocates, step never does, destroy frees. */
+#ifndef SM_ENGINE_H
+#define SM_ENGINE_H
+
+#include <stdbool.h>
+
+#include "boundary.h"
+#include "error.h"
+#include "stage.h"
+#include "voxel.h"
+
+typedef enum { SM_SUM_FAST, SM_SUM_BARS, SM_SUM_NAIVE } SmSummation;
+typedef enum { SM_POLAR_FAST, SM_POLAR_JACOBI } SmPolarMethod;
+
+typedef struct {
+    int w;               /* region half-width in cells, 1 or more */
+    double h;            /* time step, s */
+    double damping;      /* k in [0,1]; 0: none (fastlsm eq. 14) */
+    int damping_every;   /* run it every n-th step; 0 means 1 */
+    double gravity[3];   /* mesh units / s^2 */
+    double strain_limit; /* a link breaks beyond this times its rest length; 0: never */
+    SmSummation summation;
+    SmPolarMethod polar;
+    int threads;         /* 0: all cores */
+    const double *mass;  /* [particle_count] per body, kg, or NULL: 1 each */
+    long instances;      /* bodies that share the lattice; 0 means 1 */
+    const double (*instance_pose)[3][4]; /* [instances] rest to initial position, or NULL */
+} SmEngineParams;
+
+typedef struct {
+    long particles;       /* of all instances */
+    long regions;         /* unique regions of one instance */
+    long links;           /* one-ring neighbour pairs of one instance, unbroken */
+    long broken;          /* links broken so far */
+    long bytes;           /* memory held */
+    double build_seconds; /* time that create() took */
+    double jacobi_sweeps; /* mean sweeps per polar decomposition of the last step, Jacobi only */
+} SmCounts;
+
+typedef enum {
+    SM_REST,     /* x0 (with the instance's pose applied) */
+    SM_POSITION, /* x */
+    SM_VELOCITY, /* v */
+    SM_GOAL,     /* g of the last step */
+} SmField;
+
+typedef struct SmEngine SmEngine;
+
+/* One engine in one precision. */
+typedef struct {
+    const char *name;      /* "fastlsm", "octree", "brute" */
+    const char *precision; /* "single" or "double" */
+
+    /* Builds an engine at rest on `voxels` (copied; may be freed after). SM_INPUT when the body
+     * or the parameters are beyond what the engine does. */
+    SmCode (*create)(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
+                     SmError *error);
+    void (*destroy)(SmEngine *engine);
+
+    /* One time step. `laps` NULL: not instrumented, the form to time. Otherwise laps run through
+     * the step without gaps (the caller starts them), at some cost. */
+    void (*step)(SmEngine *engine, SmLaps *laps);
+
+    /* Goal positions of the present state only: no velocity or position changes. Fills SM_GOAL. */
+    void (*goals)(SmEngine *engine);
+
+    /* The field of every particle, canonical numbers; `values` is [particles][3]. SM_GOAL after
+     * step() may cost a recomputation-free copy only if the last call was goals(). */
+    void (*get)(SmEngine *engine, SmField field, double (*values)[3]);
+    void (*set)(SmEngine *engine, SmField field, const double (*values)[3]); /* POSITION, VELOCITY */
+
+    /* v += impulse / m on the particles named: external forces over one step. */
+    void (*push)(SmEngine *engine, long count, const long *particle, const double (*impulse)[3]);
+
+    /* Handles and obstacles, copied. Poses may change every step by calling it again with the same
+     * handles (cheap then). */
+    void (*bound)(SmEngine *engine, const SmBoundary *boundary);
+
+    /* Masses m_i of one body, kg; `mass` is [particle_count]. */
+    void (*masses)(SmEngine *engine, double *mass);
+
+    void (*count)(SmEngine *engine, SmCounts *counts);
+
+    /* Members of particle p's region in rising order. Returns how many; writes at most `room`. */
+    long (*region)(SmEngine *engine, long p, long *member, long room);
+} SmEngineType;
+
+#endif

@@ -1,0 +1,45 @@
+#include "error.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+SmCode sm_fail(SmError *error, SmCode code, const char *format, ...)
+{
+    if (!error) return code;
+    error->code = code;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->text, sizeof error->text, format, arguments);
+    va_end(arguments);
+    for (char *c = error->text; *c; c++)
+        if (*c == '\n' || *c == '\r') *c = ' ';
+    return code;
+}
+
+static void out_of_memory(size_t count, size_t size, const char *file, int line)
+{
+    fprintf(stderr, "shapebench: out of memory: %zu x %zu bytes wanted at %s:%d\n", count, size,
+            file, line);
+    exit(70);
+}
+
+void *sm_alloc_at(size_t count, size_t size, const char *file, int line)
+{
+    if (size && count > (SIZE_MAX - 64) / size) out_of_memory(count, size, file, line);
+    size_t bytes = (count * size + 63) / 64 * 64;
+    if (bytes == 0) bytes = 64;
+    void *memory = aligned_alloc(64, bytes);
+    if (!memory) out_of_memory(count, size, file, line);
+    return memset(memory, 0, bytes);
+}
+
+void *sm_realloc_at(void *pointer, size_t count, size_t size, const char *file, int line)
+{
+    if (size && count > SIZE_MAX / size) out_of_memory(count, size, file, line);
+    void *memory = realloc(pointer, count * size ? count * size : 1);
+    if (!memory) out_of_memory(count, size, file, line);
+    return memory;
+}

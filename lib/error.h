@@ -1,0 +1,38 @@
+/* error.h - how functions of this project fail.
+ *
+ * A function that can fail because of its input (a file, an option, a mesh) returns an SmCode and
+ * writes one line for a person into an SmError: the file, the place, the remedy. Misuse of a
+ * function asserts. Memory exhaustion ends the program with file and line. */
+#ifndef SM_ERROR_H
+#define SM_ERROR_H
+
+#include <stddef.h>
+
+/* The values are the program's exit codes. */
+typedef enum {
+    SM_OK = 0,
+    SM_INVALID = 1, /* a correctness check failed */
+    SM_USAGE = 2,   /* unknown option, value out of range */
+    SM_INPUT = 3,   /* a mesh, scene or result file cannot be used */
+    SM_OUTPUT = 4,  /* a file cannot be written: no permission, disk full */
+} SmCode;
+
+typedef struct {
+    SmCode code;
+    char text[512]; /* one line, no newline, no trailing full stop needed */
+} SmError;
+
+/* Writes the formatted line into `error` (which may be NULL) and returns `code`. */
+SmCode sm_fail(SmError *error, SmCode code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Zeroed memory, aligned to 64 bytes; ends the program with file and line when there is none.
+ * Free with free(). A size of 0 gives a valid pointer. */
+#define sm_alloc(count, size) sm_alloc_at((count), (size), __FILE__, __LINE__)
+void *sm_alloc_at(size_t count, size_t size, const char *file, int line);
+
+/* realloc() that ends the program when there is no memory; grown bytes are not zeroed. */
+#define sm_realloc(pointer, count, size) sm_realloc_at((pointer), (count), (size), __FILE__, __LINE__)
+void *sm_realloc_at(void *pointer, size_t count, size_t size, const char *file, int line);
+
+#endif

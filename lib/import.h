@@ -1,0 +1,21 @@
+/* import.h - mesh files, through Assimp's C API in a child process.
+ *
+ * The importer parses untrusted input in C++; here it runs in a forked child with limits on time
+ * and memory that hands triangles back through a pipe, so that a crash, a hang or a memory blow-up
+ * in it is one error line that names the file. */
+#ifndef SM_IMPORT_H
+#define SM_IMPORT_H
+
+#include "mesh.h"
+
+typedef struct {
+    double seconds;   /* wall-clock limit of the child; 0: 60 */
+    double megabytes; /* address space limit of the child; 0: 4096 */
+} SmImportLimits;
+
+/* Reads any format that Assimp reads. n-gons are triangulated, node transforms applied, equal
+ * positions merged, several components kept; points and lines are dropped. `limits` may be NULL.
+ * On SM_OK the caller frees `mesh` with sm_mesh_free(). Errors: SM_INPUT. */
+SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh, SmError *error);
+
+#endif

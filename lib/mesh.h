@@ -1,0 +1,47 @@
+/* mesh.h - closed or open triangle meshes.
+ *
+ * Lengths are the file's own units; nothing below this header scales them. */
+#ifndef SM_MESH_H
+#define SM_MESH_H
+
+#include <stdbool.h>
+
+#include "error.h"
+
+typedef struct {
+    long vertex_count, triangle_count;
+    double (*position)[3]; /* [vertex_count] */
+    int (*triangle)[3];    /* [triangle_count], counter-clockwise seen from outside */
+} SmMesh;
+
+typedef struct {
+    long triangles, vertices; /* after equal positions were merged */
+    long components;          /* connected through shared vertices */
+    long open_edges;          /* used by one triangle */
+    long nonmanifold_edges;   /* used by more than two */
+    long flipped_edges;       /* used by two triangles of opposite orientation */
+    long degenerate;          /* triangles of no area */
+    long duplicates;          /* triangles whose three corners another one has too */
+    bool watertight;          /* no open and no non-manifold edge */
+    double low[3], high[3];   /* bounding box */
+    double volume;            /* signed: negative for a mesh that is inside out */
+} SmMeshInfo;
+
+/* Frees the arrays and zeroes the struct; a zeroed mesh is allowed. */
+void sm_mesh_free(SmMesh *mesh);
+
+/* Merges vertices at equal positions, drops triangles that then repeat a vertex and vertices that
+ * no triangle uses. Keeps the order of what stays. O(vertices). */
+void sm_mesh_merge(SmMesh *mesh);
+
+/* Counts what `shapebench info` reports. O(triangles). */
+SmMeshInfo sm_mesh_info(const SmMesh *mesh);
+
+/* Checks what every later stage relies on: at least one triangle, indices in range, finite
+ * coordinates, an extent that is neither zero nor beyond 1e30. `name` is the file for the message. */
+SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error);
+
+/* Writes Wavefront OBJ, atomically (temporary name, then renamed). */
+SmCode sm_mesh_write_obj(const SmMesh *mesh, const char *path, SmError *error);
+
+#endif

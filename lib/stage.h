@@ -1,0 +1,39 @@
+/* stage.h - laps without gaps, so that a step's stages add up to the step.
+ *
+ * The stage names are Table 1's (fastlsm). */
+#ifndef SM_STAGE_H
+#define SM_STAGE_H
+
+typedef enum {
+    SM_FAST_SUM,       /* summation over regions, both directions */
+    SM_SHAPE_MATCHING, /* c_r, A_r, T_r, goal positions */
+    SM_POLAR,          /* polar decomposition of A_r */
+    SM_DAMPING,        /* region damping, its sums included */
+    SM_OTHER,          /* integration, boundaries, fracture, bookkeeping */
+    SM_STAGES
+} SmStage;
+
+typedef struct {
+    double seconds[SM_STAGES];
+    double last; /* time of the last lap, seconds */
+} SmLaps;
+
+/* "fast_sum", "shape_matching", "polar", "damping", "other". */
+const char *sm_stage_name(SmStage stage);
+
+/* Monotonic seconds (clock_gettime, served without a system call). */
+double sm_now(void);
+
+/* Zeroes the laps and starts the clock. */
+void sm_laps_start(SmLaps *laps);
+
+/* Gives the time since the last lap (or start) to `stage`. NULL laps: does nothing. */
+static inline void sm_lap(SmLaps *laps, SmStage stage)
+{
+    if (!laps) return;
+    double now = sm_now();
+    laps->seconds[stage] += now - laps->last;
+    laps->last = now;
+}
+
+#endif

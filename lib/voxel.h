@@ -1,0 +1,67 @@
+/* voxel.h - the conservative voxeliser that both engines share (fastlsm section 2, "Lattice
+ * construction").
+ *
+ * Material is a set of cubic cells of one size on a lattice. Particles sit at the vertices of
+ * material cells and are numbered canonically: lattice vertices in the order z, y, x with x
+ * fastest. Every engine, reference and result file uses that numbering. */
+#ifndef SM_VOXEL_H
+#define SM_VOXEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "mesh.h"
+
+typedef struct {
+    int size[3];       /* cells along x, y, z */
+    double origin[3];  /* corner of cell (0,0,0) */
+    double cell;       /* edge length of a cell, in the mesh's units */
+    int words;         /* 64-bit words in a row along x */
+    uint64_t *bits;    /* [size[2]][size[1]][words]; bit i & 63 of word i / 64 is cell i */
+    long cell_count;   /* material cells */
+    long particle_count; /* vertices of material cells */
+} SmVoxels;
+
+typedef enum { SM_SOLID, SM_SHELL } SmFill;
+
+typedef struct {
+    SmFill fill;
+    double cell;    /* edge length of a cell; used when particles is 0 */
+    long particles; /* wanted particle count, or 0 */
+} SmVoxelParams;
+
+/* Marks every cell that a triangle touches and, for SM_SOLID, fills the interior. With
+ * params->particles the cell size whose particle count is nearest is found and used.
+ * Linear in triangles and cells; takes bits/8 bytes. Errors (SM_INPUT): no inside for a solid,
+ * more than 2^31 cells in a box, or a cell size out of range; the line names `name`. */
+SmCode sm_voxelise(const SmMesh *mesh, const SmVoxelParams *params, const char *name,
+                   SmVoxels *voxels, SmError *error);
+
+/* An empty (no material) lattice of the given size; the caller sets cells and calls
+ * sm_voxels_count(). For tests and procedural blocks. */
+void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell);
+
+void sm_voxels_free(SmVoxels *voxels);
+
+/* Fills in cell_count and particle_count from bits. O(words). */
+void sm_voxels_count(SmVoxels *voxels);
+
+/* Lattice coordinates of every particle in canonical order; rest position of particle p is
+ * origin + cell * coordinate[p]. `coordinate` is [particle_count][3], the caller's. */
+void sm_voxels_particles(const SmVoxels *voxels, int (*coordinate)[3]);
+
+static inline bool sm_voxel_get(const SmVoxels *v, int i, int j, int k)
+{
+    if (i < 0 || j < 0 || k < 0 || i >= v->size[0] || j >= v->size[1] || k >= v->size[2])
+        return false;
+    size_t row = ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+    return v->bits[row + (size_t)(i >> 6)] >> (i & 63) & 1;
+}
+
+static inline void sm_voxel_set(SmVoxels *v, int i, int j, int k)
+{
+    size_t row = ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+    v->bits[row + (size_t)(i >> 6)] |= (uint64_t)1 << (i & 63);
+}
+
+#endif
