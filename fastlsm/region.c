@@ -1,0 +1,141 @@
+#include "region.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Bit set in `out` where the bits at and beside it along x are set in `in`. */
+static void erode_x(const uint64_t *in, uint64_t *out, int words)
+{
+    for (int i = 0; i < words; i++) {
+        uint64_t left = in[i] << 1 | (i ? in[i - 1] >> 63 : 0);
+        uint64_t right = in[i] >> 1 | (i + 1 < words ? in[i + 1] << 63 : 0);
+        out[i] = in[i] & left & right;
+    }
+}
+
+/* One erosion by the 3x3x3 box: along x into `scratch`, then the nine rows around each row. */
+static void erode(const LsmLattice *l, uint64_t *bitmap, uint64_t *scratch)
+{
+    int ny = l->size[1], nz = l->size[2], words = l->words;
+    for (long row = 0; row < (long)ny * nz; row++)
+        erode_x(bitmap + row * words, scratch + row * words, words);
+    for (int z = 0; z < nz; z++)
+        for (int y = 0; y < ny; y++) {
+            uint64_t *out = bitmap + ((long)z * ny + y) * words;
+            bool inside = y > 0 && z > 0 && y + 1 < ny && z + 1 < nz;
+            memset(out, inside ? 255 : 0, (size_t)words * sizeof *out);
+            for (int dz = -1; inside && dz <= 1; dz++)
+                for (int dy = -1; dy <= 1; dy++) {
+                    const uint64_t *in = scratch + ((long)(z + dz) * ny + y + dy) * words;
+                    for (int i = 0; i < words; i++) out[i] &= in[i];
+                }
+        }
+}
+
+void lsm_interior_build(const LsmLattice *l, int w, LsmInterior *interior)
+{
+    size_t words = (size_t)l->size[1] * (size_t)l->size[2] * (size_t)l->words;
+    interior->w = w;
+    interior->full = sm_alloc(words, sizeof(uint64_t));
+    interior->interior = sm_alloc(words, sizeof(uint64_t));
+    uint64_t *scratch = sm_alloc(words, sizeof(uint64_t));
+    for (long p = 0; p < l->count; p++)
+        if (l->link[p] == LSM_FULL) {
+            const int *c = l->coord[p];
+            interior->full[((size_t)c[2] * (size_t)l->size[1] + (size_t)c[1]) * (size_t)l->words +
+                           (size_t)(c[0] >> 6)] |= (uint64_t)1 << (c[0] & 63);
+        }
+    memcpy(interior->interior, interior->full, words * sizeof(uint64_t));
+    for (int step = 1; step < w; step++) erode(l, interior->interior, scratch);
+    free(scratch);
+}
+
+void lsm_interior_free(LsmInterior *interior)
+{
+    free(interior->full);
+    free(interior->interior);
+    memset(interior, 0, sizeof *interior);
+}
+
+/* Adds the ring of one particle at window place (a, b, c) to `next`. */
+static void add_ring(uint32_t link, int a, long row, int side, uint64_t *next)
+{
+    for (int ring = 0; ring < 9; ring++) {
+        uint64_t three = link >> (3 * ring) & 7;
+        next[row + (ring / 3 - 1) * side + ring % 3 - 1] |= three << (a - 1);
+    }
+}
+
+/* One breadth-first step from `front`, whose members lie within `reach` of the centre. Particles
+ * with a full ring spread word-parallel; the others link by link. */
+static void spread(const LsmLattice *l, const uint64_t *full, const int centre[3], int w, int reach,
+                   const uint64_t *front, uint64_t *next)
+{
+    int side = 2 * w + 1;
+    for (int c = -reach; c <= reach; c++)
+        for (int b = -reach; b <= reach; b++) {
+            long row = (long)(c + w) * side + b + w;
+            if (!front[row]) continue;
+            uint64_t whole =
+                front[row] & lsm_window(l, full, centre[0], centre[1] + b, centre[2] + c, w);
+            if (whole)
+                for (int ring = 0; ring < 9; ring++)
+                    next[row + (ring / 3 - 1) * side + ring % 3 - 1] |=
+                        whole << 1 | whole | whole >> 1;
+            for (uint64_t rest = front[row] & ~whole; rest; rest &= rest - 1) {
+                int a = __builtin_ctzll(rest);
+                long p = lsm_lattice_find(l, centre[0] + a - w, centre[1] + b, centre[2] + c);
+                add_ring(l->link[p], a, row, side, next);
+            }
+        }
+}
+
+int lsm_region_rows(const LsmLattice *l, const LsmInterior *interior, long r, uint64_t *rows)
+{
+    int w = interior->w, side = 2 * w + 1, area = side * side;
+    if (lsm_bit(l, interior->interior, l->coord[r])) {
+        for (int row = 0; row < area; row++) rows[row] = ((uint64_t)1 << side) - 1;
+        return side * area;
+    }
+    uint64_t front[LSM_MAX_SIDE * LSM_MAX_SIDE], next[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    memset(rows, 0, (size_t)area * sizeof *rows);
+    memset(front, 0, (size_t)area * sizeof *front);
+    front[w * side + w] = rows[w * side + w] = (uint64_t)1 << w;
+    for (int step = 0; step < w; step++) {
+        memset(next, 0, (size_t)area * sizeof *next);
+        spread(l, interior->full, l->coord[r], w, step, front, next);
+        for (int row = 0; row < area; row++) {
+            front[row] = next[row] & ~rows[row];
+            rows[row] |= next[row];
+        }
+    }
+    int count = 0;
+    for (int row = 0; row < area; row++) count += __builtin_popcountll(rows[row]);
+    return count;
+}
+
+static uint64_t mix(uint64_t h) /* the finaliser of MurmurHash3 */
+{
+    h ^= h >> 33;
+    h *= 0xff51afd7ed558ccdull;
+    h ^= h >> 33;
+    h *= 0xc4ceb9fe1a85ec53ull;
+    return h ^ h >> 33;
+}
+
+LsmKey lsm_region_key(const LsmLattice *l, int w, long r, const uint64_t *rows)
+{
+    const int *c = l->coord[r];
+    int side = 2 * w + 1;
+    LsmKey key = {0, 0};
+    for (int row = 0; row < side * side; row++) {
+        if (!rows[row]) continue;
+        int low = __builtin_ctzll(rows[row]);
+        uint64_t place = ((uint64_t)(c[2] + row / side) << 42) ^
+                         ((uint64_t)(c[1] + row % side) << 21) ^ (uint64_t)(c[0] + low);
+        uint64_t h = mix(mix(place) ^ rows[row] >> low);
+        key.low += h;
+        key.high += mix(h ^ 0x9e3779b97f4a7c15ull);
+    }
+    return key;
+}

@@ -1,0 +1,33 @@
+/* sets.h - region -> plate -> bar -> particle: the paper's region-specific sub-sums (fastlsm
+ * section 3.1, "Handling irregular regions").
+ *
+ * A bar holds the members of one region in one row along x, a plate the bars of one region in one
+ * plane z, a region its plates. Identical bars and plates are stored once. Every list has 2w+1
+ * places, one for each offset -w..w from the region's centre, so the offset is implied by the place
+ * and loops have a fixed length; an absent member is row 0, which always holds zero. Because
+ * membership is symmetric the same lists sum regions over a particle. */
+#ifndef LSM_SETS_H
+#define LSM_SETS_H
+
+#include "region.h"
+
+typedef struct {
+    int w, side;            /* side = 2w+1 */
+    long bar_count, plate_count, region_count; /* row 0 of bars and plates included */
+    int *bar;               /* [bar_count][side] 1 + particle slot */
+    int *plate;             /* [plate_count][side] bar rows */
+    int *region;            /* [region_count][side] plate rows */
+    int *region_particle;   /* [region_count] the particle at its centre, rising */
+    int planes;             /* lattice planes along z */
+    long *bar_plane;        /* [planes + 1] first bar of each plane (plane 0 starts at row 1) */
+    long *plate_plane;      /* [planes + 1] */
+    long *region_plane;     /* [planes + 1] */
+} LsmSets;
+
+/* Lists for the regions of the particles chosen (`wanted[p]` true), which are numbered by `slot`
+ * (slot[p] of particle p). O(wanted (2w+1)^2). */
+void lsm_sets_build(const LsmLattice *lattice, const LsmInterior *interior, const bool *wanted,
+                    const int *slot, LsmSets *sets);
+void lsm_sets_free(LsmSets *sets);
+
+#endif

@@ -1,0 +1,137 @@
+/* state.h - what a FastLSM body holds, in one precision.
+ *
+ * Inside, lengths are lattice cells from a movable origin and velocities are cells per step, so that
+ * the kernels see the same scales for every mesh. Particles live in slots; SM_LANES slots are a
+ * block, and a block's coordinates are stored as x[3][lanes]. Planes of the lattice are grouped
+ * into layers, the unit of the pipeline (pipeline.h).
+ *
+ * Sums come from two kernels. In list form (sets.h) a body's slots follow each other without holes
+ * and every region has its lists. In block form a block is SM_LANES lattice sites along x, sums are
+ * box sums over blocks, and only regions that a box sum gets wrong have lists. */
+#ifndef LSM_STATE_H
+#define LSM_STATE_H
+
+#include "../lib/engine.h"
+#include "../lib/lanes.h"
+#include "sets.h"
+
+typedef struct {
+    vec inverse_mass, offset[3]; /* 1 / M_r; c0_r - x0_r in cells */
+} RegionConst;
+
+typedef struct {
+    vec weight, inverse_count, live; /* m~_i = m_i / |R_i|; 1 / |R_i|; 1, or 0 for an empty slot */
+} ParticleConst;
+
+/* Widths of the rows of list sums, in values. Vectors are padded to four. */
+enum { ROW_P = 8, ROW_BAR = 12, ROW_PLATE = 12, ROW_T = 16, ROW_BAR_DOWN = 12, ROW_PLATE_DOWN = 8 };
+
+typedef struct {
+    real *p;          /* [slots + 2][ROW_P]          m~ x; damping: (omega, v_r - omega x c_r) */
+    real *bar;        /* [bars][ROW_BAR]             sums of p and of a p */
+    real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
+    real *transform;  /* [slots + 2][ROW_T]          (q_r, R z, R y, R x); damping: its 12 products */
+    real *bar_down;   /* [bars][ROW_BAR_DOWN]        adjoint */
+    real *plate_down; /* [plates][ROW_PLATE_DOWN] */
+} Rows;
+
+/* Row 0 of every array is zero (the absent member), slot s is row s + 1, and row slots + 1 takes
+ * what empty lanes write. */
+
+typedef enum { PASS_STEP, PASS_GOALS, PASS_CONSTANTS } Pass;
+
+typedef struct Blocks Blocks; /* box sums: blocks.h */
+
+typedef struct Lsm {
+    /* the body */
+    int w, side, threads;
+    SmEngineParams params;
+    double origin[3], cell; /* position = origin + cell * x */
+    LsmLattice lattice;
+    LsmInterior interior;
+    LsmSets sets;
+    double *mass;     /* [particles] */
+    int *members;     /* [particles] |R_i| */
+    int *slot;        /* [particles] */
+    int *particle;    /* [blocks * lanes], -1 for an empty slot */
+    long unique;      /* different regions */
+    double (*pose)[4];/* initial pose of the only instance, or NULL */
+
+    /* the state */
+    long blocks;
+    real *x, *v, *g;  /* [blocks][3][SM_LANES]; g only once goals() was called */
+    int *block_const; /* [blocks] */
+    ParticleConst *particle_const;
+    int *block_region; /* [blocks * lanes] row of sets.region that sums over this particle, or -1 */
+
+    /* regions, SM_LANES to a tile; in block form tile t is block t */
+    long tiles;
+    int *tile_region; /* [tiles * lanes] row of sets.region, or -1 */
+    int *tile_slot;   /* [tiles * lanes] slot of the region's centre, or -1 */
+    int *tile_const;  /* [tiles] */
+    RegionConst *region_const;
+    real *centre;     /* [tiles][3][lanes] c_r, kept for damping */
+    short *last;      /* [tiles][6][lanes] two columns of the last rotation, in 1/32767 */
+    float *stretch;   /* [tiles][9][lanes] eigenvectors for the warm-started Jacobi method, or NULL */
+    double *sweeps;   /* [layers] Jacobi sweeps of the last step */
+    long copies;      /* regions identical to another */
+    int (*copy)[2];   /* [copies] (slot of the copy, slot of the original) in list form */
+    long *layer_copy; /* [layers + 1] */
+
+    /* layers */
+    int layers, reach; /* regions of layer l need layers l - reach .. l + reach */
+    int *layer_plane;  /* [layers + 1] */
+    long *layer_block, *layer_tile; /* [layers + 1] */
+    int *thread_layer; /* [threads + 1] first layer of each thread */
+
+    Rows rows;
+    Blocks *box; /* NULL in list form */
+    Pass pass;
+    SmLaps *laps; /* of thread 0, or NULL */
+    long steps;
+    bool damp_now;
+
+    /* boundary */
+    SmBoundary boundary;
+    real gravity[3]; /* cells per step and step */
+    double (*held)[3]; /* positions of held particles before the step */
+    long broken;
+    double build_seconds;
+} Lsm;
+
+SM_INLINE void load3(const real *p, vec out[3])
+{
+    for (int d = 0; d < 3; d++) out[d] = lanes_load(p + d * SM_LANES);
+}
+
+SM_INLINE void store3(real *p, const vec in[3])
+{
+    for (int d = 0; d < 3; d++) lanes_store(p + d * SM_LANES, in[d]);
+}
+
+SM_INLINE vec4 load4(const real *p)
+{
+    vec4 v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+SM_INLINE vec8 load8(const real *p)
+{
+    vec8 v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+SM_INLINE vec16 load16(const real *p)
+{
+    vec16 v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+SM_INLINE void store4(real *p, vec4 v) { memcpy(p, &v, sizeof v); }
+SM_INLINE void store8(real *p, vec8 v) { memcpy(p, &v, sizeof v); }
+SM_INLINE void store16(real *p, vec16 v) { memcpy(p, &v, sizeof v); }
+
+#endif

@@ -1,0 +1,144 @@
+/* lanes.h - small operations on vectors of lanes (real.h), one body for both precisions. */
+#ifndef SM_LANES_H
+#define SM_LANES_H
+
+#include <math.h>
+#include <string.h>
+
+#include "real.h"
+
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+#include <immintrin.h>
+#endif
+
+#define SM_INLINE static inline __attribute__((always_inline))
+
+SM_INLINE vec lanes_load(const real *p) /* any alignment */
+{
+    vec v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+SM_INLINE void lanes_store(real *p, vec v)
+{
+    memcpy(p, &v, sizeof v);
+}
+
+SM_INLINE vec lanes_set(real value)
+{
+    return value - (vec){0};
+}
+
+SM_INLINE vec lanes_select(ivec mask, vec yes, vec no)
+{
+    return (vec)((mask & (ivec)yes) | (~mask & (ivec)no));
+}
+
+SM_INLINE vec lanes_and(vec v, ivec mask)
+{
+    return (vec)((ivec)v & mask);
+}
+
+SM_INLINE vec lanes_max(vec a, vec b)
+{
+    return lanes_select(a > b, a, b);
+}
+
+SM_INLINE vec lanes_abs(vec v)
+{
+#if SM_REAL_BITS == 32
+    return (vec)((ivec)v & 0x7fffffff);
+#else
+    return (vec)((ivec)v & 0x7fffffffffffffffll);
+#endif
+}
+
+SM_INLINE vec lanes_sqrt(vec v)
+{
+    vec root;
+    for (int i = 0; i < SM_LANES; i++) root[i] = SM_REAL_BITS == 32 ? (real)sqrtf((float)v[i]) : (real)sqrt((double)v[i]);
+    return root;
+}
+
+/* 1 / v and 1 / sqrt(v) to a relative error of 1e-4 or better. */
+SM_INLINE vec lanes_rough_inverse(vec v)
+{
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return (vec)_mm512_rcp14_ps((__m512)v);
+#else
+    return 1 / v;
+#endif
+}
+
+SM_INLINE vec lanes_rough_root(vec v) /* sqrt(v); v > 0 */
+{
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return v * (vec)_mm512_rsqrt14_ps((__m512)v);
+#else
+    return lanes_sqrt(v);
+#endif
+}
+
+/* 1 / v to about the last bit. */
+SM_INLINE vec lanes_inverse(vec v)
+{
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    vec rough = lanes_rough_inverse(v);
+    return rough + rough * (1 - v * rough);
+#else
+    return 1 / v;
+#endif
+}
+
+SM_INLINE int lanes_any(ivec mask)
+{
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return _mm512_test_epi32_mask((__m512i)mask, (__m512i)mask) != 0;
+#else
+    lane_int any = 0;
+    for (int i = 0; i < SM_LANES; i++) any |= mask[i];
+    return any != 0;
+#endif
+}
+
+#if SM_LANES == 16
+#define LANES_ZIP_LOW 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
+#define LANES_ZIP_HIGH 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31
+#else
+#define LANES_ZIP_LOW 0, 8, 1, 9, 2, 10, 3, 11
+#define LANES_ZIP_HIGH 4, 12, 5, 13, 6, 14, 7, 15
+#endif
+
+/* Transposes SM_LANES vectors by perfect shuffles: log2(lanes) rounds of zips. */
+SM_INLINE void lanes_transpose(vec m[SM_LANES])
+{
+    for (int round = 1; round < SM_LANES; round *= 2) {
+        vec out[SM_LANES];
+        for (int i = 0; i < SM_LANES / 2; i++) {
+            out[2 * i] = __builtin_shufflevector(m[i], m[i + SM_LANES / 2], LANES_ZIP_LOW);
+            out[2 * i + 1] = __builtin_shufflevector(m[i], m[i + SM_LANES / 2], LANES_ZIP_HIGH);
+        }
+        for (int i = 0; i < SM_LANES; i++) m[i] = out[i];
+    }
+}
+
+/* `field[f]` lane i = row[i][f], for SM_LANES rows of 16 values each. */
+SM_INLINE void lanes_from_rows(const real *const row[SM_LANES], vec field[16])
+{
+    for (int part = 0; part < 16; part += SM_LANES) {
+        for (int i = 0; i < SM_LANES; i++) field[part + i] = lanes_load(row[i] + part);
+        lanes_transpose(field + part);
+    }
+}
+
+/* The reverse; row i is written whole. Destroys `field`. */
+SM_INLINE void lanes_to_rows(vec field[16], real *const row[SM_LANES])
+{
+    for (int part = 0; part < 16; part += SM_LANES) {
+        lanes_transpose(field + part);
+        for (int i = 0; i < SM_LANES; i++) lanes_store(row[i] + part, field[part + i]);
+    }
+}
+
+#endif

@@ -1,0 +1,24 @@
+/* polar.h - polar decomposition A = R U of 3x3 matrices, R a proper rotation.
+ *
+ * Matrices are row-major. Every finite A has a result: R maximises tr(R^T A) among rotations, and
+ * where that is not unique (rank 1, zero, a reflection with two equal smallest stretches) it is
+ * the maximiser nearest to `last`, the rotation of the last step. */
+#ifndef SM_POLAR_H
+#define SM_POLAR_H
+
+/* One matrix, robustly: the eigenvector of the largest eigenvalue of Horn's 4x4 matrix (Horn 1987)
+ * by cyclic Jacobi. Eigenvalues closer than `tie` times the largest stretch count as equal. About
+ * 2 microseconds. */
+void sm_polar_robust(const double A[9], const double last[9], double tie, double R[9]);
+
+/* The paper's way (fastlsm section 4): cyclic Jacobi on V^T A^T A V, warm-started from the last
+ * step's eigenvectors `V` (updated; start with the identity), R = A U^-1. Falls back on
+ * sm_polar_robust() where U is singular or A reflects. Returns the sweeps it took. */
+double sm_polar_jacobi(const double A[9], double V[9], const double last[9], double R[9]);
+
+/* `count` matrices by the batched, vectorised kernel that the engines use (lib/polar_lanes.h), for
+ * tests and `shapebench kernels`. `last` may be NULL: the identity. Arrays are [count][9]. */
+void sm_polar_batch_f32(long count, const float *A, const float *last, float *R);
+void sm_polar_batch_f64(long count, const double *A, const double *last, double *R);
+
+#endif
