@@ -39,7 +39,7 @@ void *sm_alloc_at(size_t count, size_t size, const char *file, int line)
 void *sm_realloc_at(void *pointer, size_t count, size_t size, const char *file, int line)
 {
     if (size && count > SIZE_MAX / size) out_of_memory(count, size, file, line);
-    void *memory = realloc(pointer, count * size ? count * size : 1);
+    void *memory = realloc(pointer, count && size ? count * size : 1);
     if (!memory) out_of_memory(count, size, file, line);
     return memory;
 }
