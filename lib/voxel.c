@@ -1,0 +1,86 @@
+#include "voxel.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell)
+{
+    assert(nx > 0 && ny > 0 && nz > 0 && cell > 0);
+    int words = (nx - 1) / 64 + 1;
+    *voxels = (SmVoxels){.size = {nx, ny, nz}, .cell = cell, .words = words};
+    voxels->bits = sm_alloc((size_t)ny * (size_t)nz, (size_t)words * sizeof(uint64_t));
+}
+
+void sm_voxels_free(SmVoxels *voxels)
+{
+    free(voxels->bits);
+    memset(voxels, 0, sizeof *voxels);
+}
+
+/* The row of cells (j, k), or the row of no material outside the box. */
+static const uint64_t *row_of(const SmVoxels *v, int j, int k, const uint64_t *none)
+{
+    if (j < 0 || k < 0 || j >= v->size[1] || k >= v->size[2]) return none;
+    return v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+}
+
+/* The four rows of cells that touch the row of lattice vertices (j, k). */
+typedef struct {
+    const uint64_t *row[4];
+    uint64_t last; /* the last cell of the word before */
+} VertexRow;
+
+static VertexRow vertex_row(const SmVoxels *v, int j, int k, const uint64_t *none)
+{
+    return (VertexRow){{row_of(v, j - 1, k - 1, none), row_of(v, j, k - 1, none),
+                        row_of(v, j - 1, k, none), row_of(v, j, k, none)},
+                       0};
+}
+
+/* The vertices of word w, in rising order of w: cell i has vertices i and i + 1. A row of n words
+ * of cells has vertices in words 0..n. */
+static inline uint64_t vertex_word(VertexRow *r, int w, int words)
+{
+    uint64_t cells = 0;
+    if (w < words) cells = r->row[0][w] | r->row[1][w] | r->row[2][w] | r->row[3][w];
+    uint64_t vertices = cells | cells << 1 | r->last;
+    r->last = cells >> 63;
+    return vertices;
+}
+
+void sm_voxels_count(SmVoxels *voxels)
+{
+    uint64_t *none = sm_alloc((size_t)voxels->words, sizeof *none);
+    long cells = 0, particles = 0;
+    size_t words = (size_t)voxels->size[1] * (size_t)voxels->size[2] * (size_t)voxels->words;
+    for (size_t w = 0; w < words; w++) cells += __builtin_popcountll(voxels->bits[w]);
+    for (int k = 0; k <= voxels->size[2]; k++)
+        for (int j = 0; j <= voxels->size[1]; j++) {
+            VertexRow row = vertex_row(voxels, j, k, none);
+            for (int w = 0; w <= voxels->words; w++)
+                particles += __builtin_popcountll(vertex_word(&row, w, voxels->words));
+        }
+    free(none);
+    voxels->cell_count = cells;
+    voxels->particle_count = particles;
+}
+
+void sm_voxels_particles(const SmVoxels *voxels, int (*coordinate)[3])
+{
+    uint64_t *none = sm_alloc((size_t)voxels->words, sizeof *none);
+    long p = 0;
+    for (int k = 0; k <= voxels->size[2]; k++)
+        for (int j = 0; j <= voxels->size[1]; j++) {
+            VertexRow row = vertex_row(voxels, j, k, none);
+            for (int w = 0; w <= voxels->words; w++) {
+                uint64_t vertices = vertex_word(&row, w, voxels->words);
+                for (; vertices; vertices &= vertices - 1, p++) {
+                    coordinate[p][0] = w * 64 + __builtin_ctzll(vertices);
+                    coordinate[p][1] = j;
+                    coordinate[p][2] = k;
+                }
+            }
+        }
+    free(none);
+}
