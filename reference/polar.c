@@ -20,18 +20,11 @@ static void normalise(double a[3])
     for (int k = 0; k < 3; k++) a[k] /= length;
 }
 
-/* Turns two nearly orthonormal vectors into the rows of a rotation. Where the second is no guide
- * (zero, or along the first) the axis least along the first takes its place. */
+/* Makes the first two rows orthonormal to the last bit and the third their cross product. */
 static void complete_basis(double basis[3][3])
 {
     double *a = basis[0], *b = basis[1], *c = basis[2];
     normalise(a);
-    if (!(dot(b, b) - dot(a, b) * dot(a, b) > 0.25)) {
-        int least = 0;
-        for (int k = 1; k < 3; k++)
-            if (fabs(a[k]) < fabs(a[least])) least = k;
-        for (int k = 0; k < 3; k++) b[k] = k == least;
-    }
     for (int pass = 0; pass < 2; pass++) {
         double along = dot(a, b);
         for (int k = 0; k < 3; k++) b[k] -= along * a[k];
@@ -45,12 +38,14 @@ static void complete_basis(double basis[3][3])
  * det A goes to s[2]. s falls in magnitude. */
 static void proper_svd(const double A[9], double u[3][3], double v[3][3], double s[3])
 {
-    double U[9], V[9];
+    double U[9], V[9], work[3];
     memcpy(U, A, sizeof U);
     gsl_matrix_view left = gsl_matrix_view_array(U, 3, 3);
     gsl_matrix_view right = gsl_matrix_view_array(V, 3, 3);
     gsl_vector_view values = gsl_vector_view_array(s, 3);
-    gsl_linalg_SV_decomp_jacobi(&left.matrix, &right.matrix, &values.vector);
+    gsl_vector_view space = gsl_vector_view_array(work, 3);
+    /* Not gsl_linalg_SV_decomp_jacobi(): it aborts, unconverged, on some matrices of low rank. */
+    gsl_linalg_SV_decomp(&left.matrix, &right.matrix, &values.vector, &space.vector);
     for (int column = 0; column < 3; column++)
         for (int row = 0; row < 3; row++) {
             u[column][row] = U[3 * row + column];
@@ -59,7 +54,6 @@ static void proper_svd(const double A[9], double u[3][3], double v[3][3], double
     double last_u[3], last_v[3];
     memcpy(last_u, u[2], sizeof last_u);
     memcpy(last_v, v[2], sizeof last_v);
-    if (!(s[1] > noise * s[0])) memset(u[1], 0, sizeof u[1]); /* GSL's is rounding there */
     complete_basis(u);
     complete_basis(v);
     if (dot(u[2], last_u) * dot(v[2], last_v) < 0) s[2] = -s[2];
