@@ -2,39 +2,66 @@
  *
  * Regions by breadth-first search over one-ring links, sums by plain loops, the step exactly as
  * fastlsm eqs. 1-2, 9-14 print it. O(w^3) per particle. Only tests and the check of a measured
- * scene link it. */
+ * scene link it. Every result is gathered in a fixed order: any thread count gives the same bits.
+ * Arrays over particles or regions are [count] of the RefRegions given; lengths are mesh units. */
 #ifndef REF_BRUTE_H
 #define REF_BRUTE_H
 
 #include "../lib/engine.h"
+#include "link.h"
 
 /* Regions in CSR form: members of region r are member[start[r]] .. member[start[r + 1]], rising. */
 typedef struct {
     long count;
-    long *start;  /* [count + 1] */
+    long *start; /* [count + 1] */
     int *member;
 } RefRegions;
 
 /* Members of every region: particles reachable within w one-ring steps (fastlsm section 2). Two
  * particles are neighbours when they share a material cell. `broken` lists `broken_count` links
- * (pairs of particles) that no longer join neighbours. */
+ * (pairs of particles) that no longer join neighbours. The caller frees `regions`. */
 void ref_regions_build(const SmVoxels *voxels, int w, const int (*broken)[2], long broken_count,
                        RefRegions *regions);
 void ref_regions_free(RefRegions *regions);
 
+/* The same over a one-ring graph that the caller has already. */
+void ref_regions_reach(const RefLinks *links, int w, RefRegions *regions);
+
 /* How many different member sets there are ("unique regions"). */
 long ref_regions_unique(const RefRegions *regions);
 
+/* One region's shape matching. */
+typedef struct {
+    double M;     /* sum of m~ */
+    double c[3];  /* centre of mass, eq. 9 */
+    double c0[3]; /* at rest */
+    double A[9];  /* eq. 10, row-major */
+    double R[9];  /* its rotation */
+} RefMatch;
+
+/* M, c, c0 and A of every region (eqs. 9-10); R is left as it is. */
+void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const double *m,
+                    const double (*x)[3], RefMatch *match);
+
+/* R of every region from A by ref_polar(); on entry R holds the last rotation, for ties. */
+void ref_match_rotations(const RefRegions *regions, RefMatch *match);
+
+/* g_i, the regions' rigid motions of x0_i averaged over R_i (eq. 12). */
+void ref_match_goals(const RefRegions *regions, const RefMatch *match, const double (*x0)[3],
+                     const double (*x)[3], double (*g)[3]);
+
 /* g_i of fastlsm eqs. 9-12 for positions x; rest positions x0, masses m, all [count]. The polar
- * decomposition is ref_polar(). */
+ * decomposition is ref_polar(), ties resolved towards the identity. */
 void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m,
                const double (*x)[3], double (*g)[3]);
 
-/* u_i, the rigid velocity averaged over R_i (fastlsm eq. 14), for positions x, velocities v. */
+/* u_i, the rigid velocity averaged over R_i (fastlsm eq. 14), for positions x, velocities v.
+ * omega_r = pseudo-inverse(I_r) L_r: eigenvalues of I_r below 1e-10 of the largest count as 0. */
 void ref_rigid_velocity(const RefRegions *regions, const double *m, const double (*x)[3],
                         const double (*v)[3], double (*u)[3]);
 
-/* The whole as an engine named "brute" behind the common interface. */
+/* The whole as an engine named "brute" behind the common interface. The first step is damped, then
+ * every damping_every-th. A posed instance is matched to its posed rest shape. */
 extern const SmEngineType ref_brute_engine;
 
 #endif

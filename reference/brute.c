@@ -1,0 +1,289 @@
+#include "brute.h"
+
+#include <gsl/gsl_eigen.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "polar.h"
+
+static int compare_ints(const void *a, const void *b)
+{
+    int p = *(const int *)a, q = *(const int *)b;
+    return (p > q) - (p < q);
+}
+
+/* Breadth-first search from r over w rings. Writes what it reaches in the order found and returns
+ * how many; seen[p] == r + 1 marks particles found already. */
+static long reach(const RefLinks *links, int w, long r, long *seen, int *found)
+{
+    long begin = 0, end = 1;
+    found[0] = (int)r;
+    seen[r] = r + 1;
+    for (int ring = 0; ring < w && begin < end; ring++) {
+        long next = end;
+        for (long f = begin; f < end; f++) {
+            int p = found[f];
+            for (long l = links->start[p]; l < links->start[p + 1]; l++) {
+                int q = links->neighbour[l];
+                if (seen[q] == r + 1) continue;
+                seen[q] = r + 1;
+                found[next++] = q;
+            }
+        }
+        begin = end;
+        end = next;
+    }
+    return end;
+}
+
+/* Counts every region's members into start[r + 1] where `member` is NULL, else writes them. */
+static void reach_all(const RefLinks *links, int w, long *start, int *member)
+{
+#pragma omp parallel
+    {
+        long *seen = sm_alloc((size_t)links->count, sizeof *seen);
+        int *found = sm_alloc((size_t)links->count, sizeof *found);
+#pragma omp for schedule(dynamic, 64)
+        for (long r = 0; r < links->count; r++) {
+            long n = reach(links, w, r, seen, found);
+            if (!member) {
+                start[r + 1] = n;
+                continue;
+            }
+            qsort(found, (size_t)n, sizeof *found, compare_ints);
+            memcpy(member + start[r], found, (size_t)n * sizeof *found);
+        }
+        free(found);
+        free(seen);
+    }
+}
+
+void ref_regions_reach(const RefLinks *links, int w, RefRegions *regions)
+{
+    long count = links->count;
+    regions->count = count;
+    regions->start = sm_alloc((size_t)count + 1, sizeof *regions->start);
+    reach_all(links, w, regions->start, NULL);
+    for (long r = 0; r < count; r++) regions->start[r + 1] += regions->start[r];
+    regions->member = sm_alloc((size_t)regions->start[count], sizeof *regions->member);
+    reach_all(links, w, regions->start, regions->member);
+}
+
+void ref_regions_build(const SmVoxels *voxels, int w, const int (*broken)[2], long broken_count,
+                       RefRegions *regions)
+{
+    RefLinks links;
+    ref_links_build(voxels, broken, broken_count, &links);
+    ref_regions_reach(&links, w, regions);
+    ref_links_free(&links);
+}
+
+void ref_regions_free(RefRegions *regions)
+{
+    free(regions->start);
+    free(regions->member);
+    memset(regions, 0, sizeof *regions);
+}
+
+typedef struct {
+    uint64_t hash;
+    long size;
+    const int *member;
+} Set;
+
+/* Orders sets by hash; equal hashes by what they hold, so that a collision changes nothing. */
+static int compare_sets(const void *a, const void *b)
+{
+    const Set *p = a, *q = b;
+    if (p->hash != q->hash) return p->hash < q->hash ? -1 : 1;
+    if (p->size != q->size) return p->size < q->size ? -1 : 1;
+    return memcmp(p->member, q->member, (size_t)p->size * sizeof *p->member);
+}
+
+long ref_regions_unique(const RefRegions *regions)
+{
+    Set *set = sm_alloc((size_t)regions->count, sizeof *set);
+    for (long r = 0; r < regions->count; r++) {
+        const int *member = regions->member + regions->start[r];
+        set[r] = (Set){14695981039346656037u, regions->start[r + 1] - regions->start[r], member};
+        for (long n = 0; n < set[r].size; n++) /* FNV-1a, a member at a time */
+            set[r].hash = (set[r].hash ^ (uint64_t)member[n]) * 1099511628211u;
+    }
+    qsort(set, (size_t)regions->count, sizeof *set, compare_sets);
+    long unique = regions->count > 0;
+    for (long r = 1; r < regions->count; r++) unique += compare_sets(set + r - 1, set + r) != 0;
+    free(set);
+    return unique;
+}
+
+/* m~_i = m_i / |R_i| */
+static double modified_mass(const RefRegions *regions, const double *m, int i)
+{
+    return m[i] / (double)(regions->start[i + 1] - regions->start[i]);
+}
+
+/* (1/M_r) sum m~_i y_i over R_r, formed relative to y_r; returns M_r. */
+static double weighted_mean(const RefRegions *regions, const double *m, const double (*y)[3],
+                            long r, double mean[3])
+{
+    double M = 0, sum[3] = {0};
+    for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
+        int i = regions->member[n];
+        double mi = modified_mass(regions, m, i);
+        M += mi;
+        for (int a = 0; a < 3; a++) sum[a] += mi * (y[i][a] - y[r][a]);
+    }
+    for (int a = 0; a < 3; a++) mean[a] = y[r][a] + sum[a] / M;
+    return M;
+}
+
+void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const double *m,
+                    const double (*x)[3], RefMatch *match)
+{
+#pragma omp parallel for
+    for (long r = 0; r < regions->count; r++) {
+        RefMatch *t = match + r;
+        weighted_mean(regions, m, x0, r, t->c0);
+        t->M = weighted_mean(regions, m, x, r, t->c); /* eq. 9 */
+        memset(t->A, 0, sizeof t->A);
+        for (long n = regions->start[r]; n < regions->start[r + 1]; n++) { /* eq. 10 */
+            int i = regions->member[n];
+            double mi = modified_mass(regions, m, i);
+            for (int a = 0; a < 3; a++)
+                for (int b = 0; b < 3; b++)
+                    t->A[3 * a + b] += mi * (x[i][a] - t->c[a]) * (x0[i][b] - t->c0[b]);
+        }
+    }
+}
+
+void ref_match_rotations(const RefRegions *regions, RefMatch *match)
+{
+#pragma omp parallel for
+    for (long r = 0; r < regions->count; r++) {
+        double R[9];
+        ref_polar(match[r].A, match[r].R, R);
+        memcpy(match[r].R, R, sizeof R);
+    }
+}
+
+void ref_match_goals(const RefRegions *regions, const RefMatch *match, const double (*x0)[3],
+                     const double (*x)[3], double (*g)[3])
+{
+#pragma omp parallel for
+    for (long i = 0; i < regions->count; i++) {
+        double sum[3] = {0}; /* of T_r x0_i - x_i; the regions that hold i are R_i's members */
+        for (long n = regions->start[i]; n < regions->start[i + 1]; n++) {
+            const RefMatch *t = match + regions->member[n];
+            for (int a = 0; a < 3; a++) {
+                sum[a] += t->c[a] - x[i][a];
+                for (int b = 0; b < 3; b++) sum[a] += t->R[3 * a + b] * (x0[i][b] - t->c0[b]);
+            }
+        }
+        double size = (double)(regions->start[i + 1] - regions->start[i]);
+        for (int a = 0; a < 3; a++) g[i][a] = x[i][a] + sum[a] / size; /* eq. 12 */
+    }
+}
+
+void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m,
+               const double (*x)[3], double (*g)[3])
+{
+    RefMatch *match = sm_alloc((size_t)regions->count, sizeof *match);
+    for (long r = 0; r < regions->count; r++)
+        for (int a = 0; a < 3; a++) match[r].R[4 * a] = 1;
+    ref_match_sums(regions, x0, m, x, match);
+    ref_match_rotations(regions, match);
+    ref_match_goals(regions, match, x0, x, g);
+    free(match);
+}
+
+static void cross(const double a[3], const double b[3], double result[3])
+{
+    result[0] = a[1] * b[2] - a[2] * b[1];
+    result[1] = a[2] * b[0] - a[0] * b[2];
+    result[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* omega = pseudo-inverse(I) L for a symmetric positive semidefinite I. */
+static void solve_inertia(double I[9], const double L[3], double omega[3])
+{
+    double value[3], vector[9];
+    gsl_matrix_view matrix = gsl_matrix_view_array(I, 3, 3);
+    gsl_matrix_view vectors = gsl_matrix_view_array(vector, 3, 3);
+    gsl_vector_view values = gsl_vector_view_array(value, 3);
+    gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(3);
+    gsl_eigen_symmv(&matrix.matrix, &values.vector, &vectors.matrix, space);
+    gsl_eigen_symmv_free(space);
+
+    double largest = fmax(value[0], fmax(value[1], value[2]));
+    memset(omega, 0, 3 * sizeof *omega);
+    for (int e = 0; e < 3; e++) {
+        if (!(value[e] > 1e-10 * largest)) continue;
+        double along = (vector[e] * L[0] + vector[3 + e] * L[1] + vector[6 + e] * L[2]) / value[e];
+        for (int a = 0; a < 3; a++) omega[a] += along * vector[3 * a + e];
+    }
+}
+
+typedef struct {
+    double c[3], v[3], omega[3];
+} Motion;
+
+/* Largest distance along an axis from c in R_r: the unit that keeps I_r in range. */
+static double extent(const RefRegions *regions, const double (*x)[3], long r, const double c[3])
+{
+    double largest = 0;
+    for (long n = regions->start[r]; n < regions->start[r + 1]; n++)
+        for (int a = 0; a < 3; a++) largest = fmax(largest, fabs(x[regions->member[n]][a] - c[a]));
+    return largest;
+}
+
+/* v_r and omega_r of eq. 14 about c_r. X X^T with X = [d]x is |d|^2 1 - d d^T: positive
+ * semidefinite, so the signs of eq. 14 stand as printed. */
+static void rigid_motion(const RefRegions *regions, const double *m, const double (*x)[3],
+                         const double (*v)[3], long r, Motion *motion)
+{
+    double L[3] = {0}, I[9] = {0};
+    weighted_mean(regions, m, x, r, motion->c);
+    double M = weighted_mean(regions, m, v, r, motion->v);
+    double unit = extent(regions, x, r, motion->c);
+    memset(motion->omega, 0, sizeof motion->omega);
+    if (!(unit > 0 && isfinite(unit))) return; /* all in one point: nothing turns */
+    for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
+        int i = regions->member[n];
+        double share = modified_mass(regions, m, i) / M, d[3], dv[3], turn[3];
+        for (int a = 0; a < 3; a++) {
+            d[a] = (x[i][a] - motion->c[a]) / unit;
+            dv[a] = v[i][a] - motion->v[a];
+        }
+        cross(d, dv, turn);
+        double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        for (int a = 0; a < 3; a++) {
+            L[a] += share * turn[a];
+            for (int b = 0; b < 3; b++)
+                I[3 * a + b] += share * ((a == b ? square : 0) - d[a] * d[b]);
+        }
+    }
+    solve_inertia(I, L, motion->omega);
+    for (int a = 0; a < 3; a++) motion->omega[a] /= unit;
+}
+
+void ref_rigid_velocity(const RefRegions *regions, const double *m, const double (*x)[3],
+                        const double (*v)[3], double (*u)[3])
+{
+    Motion *motion = sm_alloc((size_t)regions->count, sizeof *motion);
+#pragma omp parallel for
+    for (long r = 0; r < regions->count; r++) rigid_motion(regions, m, x, v, r, motion + r);
+#pragma omp parallel for
+    for (long i = 0; i < regions->count; i++) {
+        double sum[3] = {0};
+        for (long n = regions->start[i]; n < regions->start[i + 1]; n++) {
+            const Motion *t = motion + regions->member[n];
+            double d[3] = {x[i][0] - t->c[0], x[i][1] - t->c[1], x[i][2] - t->c[2]}, turn[3];
+            cross(t->omega, d, turn);
+            for (int a = 0; a < 3; a++) sum[a] += t->v[a] + turn[a];
+        }
+        double size = (double)(regions->start[i + 1] - regions->start[i]);
+        for (int a = 0; a < 3; a++) u[i][a] = sum[a] / size;
+    }
+    free(motion);
+}

@@ -1,0 +1,383 @@
+/* The brute-force engine: every instance is a body of its own, every step the equations in turn. */
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "brute.h"
+#include "obstacle.h"
+
+typedef struct {
+    RefLinks links;
+    RefRegions regions;
+    RefMatch *match; /* R is the last step's */
+    double (*x0)[3], (*x)[3], (*v)[3], (*g)[3], (*u)[3];
+    int (*broken)[2];
+    long broken_count;
+} Body;
+
+struct SmEngine {
+    SmVoxels voxels;
+    SmEngineParams params; /* mass: our copy; instance_pose: not kept */
+    long count;            /* particles of one body */
+    double *mass;
+    Body *body; /* [params.instances] */
+    bool *held; /* [instances * count] */
+    int handle_count, obstacle_count;
+    SmHandle *handle; /* our copies */
+    SmObstacle *obstacle;
+    long steps;
+    double build_seconds;
+};
+
+#define CONST(array) ((const double(*)[3])(array))
+
+static void place(const double pose[3][4], const double from[3], double to[3])
+{
+    for (int a = 0; a < 3; a++)
+        to[a] = pose[a][0] * from[0] + pose[a][1] * from[1] + pose[a][2] * from[2] + pose[a][3];
+}
+
+static SmCode check_params(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
+{
+    if (voxels->particle_count < 1)
+        return sm_fail(error, SM_INPUT, "the body has no particles: choose a smaller cell");
+    if (params->w < 1)
+        return sm_fail(error, SM_INPUT, "w is %d: a region's half-width is 1 or more", params->w);
+    if (!(params->h > 0 && isfinite(params->h)))
+        return sm_fail(error, SM_INPUT, "h is %g: the time step is a positive number", params->h);
+    if (!(params->damping >= 0 && params->damping <= 1))
+        return sm_fail(error, SM_INPUT, "damping is %g: it is from 0 to 1", params->damping);
+    if (!(params->strain_limit >= 0))
+        return sm_fail(error, SM_INPUT, "strain_limit is %g: it is 0 (never) or more",
+                       params->strain_limit);
+    for (long p = 0; params->mass && p < voxels->particle_count; p++)
+        if (!(params->mass[p] > 0 && isfinite(params->mass[p])))
+            return sm_fail(error, SM_INPUT, "the mass of particle %ld is %g: it must be positive",
+                           p, params->mass[p]);
+    return SM_OK;
+}
+
+static void body_create(SmEngine *engine, const double (*rest)[3], const double pose[3][4],
+                        Body *body)
+{
+    size_t count = (size_t)engine->count;
+    body->x0 = sm_alloc(count, sizeof *body->x0);
+    body->x = sm_alloc(count, sizeof *body->x);
+    body->v = sm_alloc(count, sizeof *body->v);
+    body->g = sm_alloc(count, sizeof *body->g);
+    body->u = sm_alloc(count, sizeof *body->u);
+    body->match = sm_alloc(count, sizeof *body->match);
+    for (size_t p = 0; p < count; p++) {
+        place(pose, rest[p], body->x0[p]);
+        for (int a = 0; a < 3; a++) body->match[p].R[4 * a] = 1;
+    }
+    memcpy(body->x, body->x0, count * sizeof *body->x);
+    memcpy(body->g, body->x0, count * sizeof *body->g);
+    ref_links_build(&engine->voxels, NULL, 0, &body->links);
+    ref_regions_reach(&body->links, engine->params.w, &body->regions);
+}
+
+static void body_free(Body *body)
+{
+    ref_links_free(&body->links);
+    ref_regions_free(&body->regions);
+    free(body->match);
+    free(body->x0);
+    free(body->x);
+    free(body->v);
+    free(body->g);
+    free(body->u);
+    free(body->broken);
+}
+
+static double (*rest_positions(const SmVoxels *voxels))[3]
+{
+    size_t count = (size_t)voxels->particle_count;
+    int(*coordinate)[3] = sm_alloc(count, sizeof *coordinate);
+    double(*rest)[3] = sm_alloc(count, sizeof *rest);
+    sm_voxels_particles(voxels, coordinate);
+    for (size_t p = 0; p < count; p++)
+        for (int a = 0; a < 3; a++)
+            rest[p][a] = voxels->origin[a] + voxels->cell * coordinate[p][a];
+    free(coordinate);
+    return rest;
+}
+
+/* OpenMP's team for this engine's parameters; returns the caller's, to be put back. */
+static int take_threads(const SmEngine *engine)
+{
+    int before = omp_get_max_threads();
+    omp_set_num_threads(engine->params.threads > 0 ? engine->params.threads : omp_get_num_procs());
+    return before;
+}
+
+static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **result,
+                           SmError *error)
+{
+    static const double identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+    double start = sm_now();
+    SmCode code = check_params(voxels, params, error);
+    if (code != SM_OK) return code;
+    SmEngine *engine = sm_alloc(1, sizeof *engine);
+    engine->voxels = *voxels;
+    size_t words = (size_t)voxels->size[2] * (size_t)voxels->size[1] * (size_t)voxels->words;
+    engine->voxels.bits = sm_alloc(words, sizeof *voxels->bits);
+    memcpy(engine->voxels.bits, voxels->bits, words * sizeof *voxels->bits);
+    engine->params = *params;
+    engine->params.instance_pose = NULL;
+    if (params->instances < 1) engine->params.instances = 1;
+    if (params->damping_every < 1) engine->params.damping_every = 1;
+    engine->count = voxels->particle_count;
+    engine->mass = sm_alloc((size_t)engine->count, sizeof *engine->mass);
+    for (long p = 0; p < engine->count; p++) engine->mass[p] = params->mass ? params->mass[p] : 1;
+    engine->params.mass = engine->mass;
+    size_t bodies = (size_t)engine->params.instances;
+    engine->held = sm_alloc(bodies * (size_t)engine->count, sizeof *engine->held);
+    engine->body = sm_alloc(bodies, sizeof *engine->body);
+    int threads = take_threads(engine);
+    double(*rest)[3] = rest_positions(voxels);
+    for (size_t b = 0; b < bodies; b++)
+        body_create(engine, CONST(rest),
+                    params->instance_pose ? params->instance_pose[b] : identity, engine->body + b);
+    free(rest);
+    omp_set_num_threads(threads);
+    engine->build_seconds = sm_now() - start;
+    *result = engine;
+    return SM_OK;
+}
+
+static void boundary_free(SmEngine *engine)
+{
+    for (int n = 0; n < engine->handle_count; n++) free((void *)engine->handle[n].particle);
+    free(engine->handle);
+    free(engine->obstacle);
+}
+
+static void brute_destroy(SmEngine *engine)
+{
+    if (!engine) return;
+    for (long b = 0; b < engine->params.instances; b++) body_free(engine->body + b);
+    boundary_free(engine);
+    sm_voxels_free(&engine->voxels);
+    free(engine->mass);
+    free(engine->held);
+    free(engine->body);
+    free(engine);
+}
+
+static void match_body(const SmEngine *engine, Body *body, SmLaps *laps)
+{
+    ref_match_sums(&body->regions, CONST(body->x0), engine->mass, CONST(body->x), body->match);
+    sm_lap(laps, SM_FAST_SUM);
+    ref_match_rotations(&body->regions, body->match);
+    sm_lap(laps, SM_POLAR);
+    ref_match_goals(&body->regions, body->match, CONST(body->x0), CONST(body->x), body->g);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+}
+
+/* Eq. 1, then damping: v += k (u - v). */
+static void accelerate_body(const SmEngine *engine, Body *body, SmLaps *laps)
+{
+    const SmEngineParams *params = &engine->params;
+    for (long p = 0; p < engine->count; p++)
+        for (int a = 0; a < 3; a++)
+            body->v[p][a] +=
+                (body->g[p][a] - body->x[p][a]) / params->h + params->h * params->gravity[a];
+    sm_lap(laps, SM_OTHER);
+    if (!(params->damping > 0) || engine->steps % params->damping_every != 0) return;
+    ref_rigid_velocity(&body->regions, engine->mass, CONST(body->x), CONST(body->v), body->u);
+    for (long p = 0; p < engine->count; p++)
+        for (int a = 0; a < 3; a++)
+            body->v[p][a] += params->damping * (body->u[p][a] - body->v[p][a]);
+    sm_lap(laps, SM_DAMPING);
+}
+
+/* A held particle's velocity is the one that takes it to its target. */
+static void drive_handles(SmEngine *engine)
+{
+    for (int n = 0; n < engine->handle_count; n++)
+        for (long k = 0; k < engine->handle[n].count; k++) {
+            long number = engine->handle[n].particle[k], p = number % engine->count;
+            Body *body = engine->body + number / engine->count;
+            double target[3];
+            place((const double(*)[4])engine->handle[n].pose, body->x0[p], target);
+            for (int a = 0; a < 3; a++)
+                body->v[p][a] = (target[a] - body->x[p][a]) / engine->params.h;
+        }
+}
+
+/* Eq. 2, then obstacles in turn on what no handle holds. */
+static void move_body(const SmEngine *engine, long b)
+{
+    Body *body = engine->body + b;
+    for (long p = 0; p < engine->count; p++) {
+        for (int a = 0; a < 3; a++) body->x[p][a] += engine->params.h * body->v[p][a];
+        if (engine->held[b * engine->count + p]) continue;
+        for (int n = 0; n < engine->obstacle_count; n++)
+            ref_obstacle_push_out(engine->obstacle + n, body->x[p], body->v[p]);
+    }
+}
+
+static double distance(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+/* Breaks every link stretched beyond the strain limit (fastlsm section 4), then builds all regions
+ * anew. m~ follows by itself: it is formed from |R_i| in every sum. */
+static void fracture_body(const SmEngine *engine, Body *body)
+{
+    long before = body->broken_count;
+    for (int p = 0; p < engine->count; p++)
+        for (long l = body->links.start[p]; l < body->links.start[p + 1]; l++) {
+            int q = body->links.neighbour[l];
+            double rest = distance(body->x0[p], body->x0[q]);
+            if (q < p || !(distance(body->x[p], body->x[q]) > engine->params.strain_limit * rest))
+                continue;
+            body->broken =
+                sm_realloc(body->broken, (size_t)body->broken_count + 1, sizeof *body->broken);
+            body->broken[body->broken_count][0] = p;
+            body->broken[body->broken_count++][1] = q;
+        }
+    if (body->broken_count == before) return;
+    ref_links_free(&body->links);
+    ref_regions_free(&body->regions);
+    ref_links_build(&engine->voxels, (const int(*)[2])body->broken, body->broken_count,
+                    &body->links);
+    ref_regions_reach(&body->links, engine->params.w, &body->regions);
+}
+
+static void brute_step(SmEngine *engine, SmLaps *laps)
+{
+    int threads = take_threads(engine);
+    for (long b = 0; b < engine->params.instances; b++) {
+        match_body(engine, engine->body + b, laps);
+        accelerate_body(engine, engine->body + b, laps);
+    }
+    drive_handles(engine);
+    for (long b = 0; b < engine->params.instances; b++) {
+        move_body(engine, b);
+        if (engine->params.strain_limit > 0) fracture_body(engine, engine->body + b);
+    }
+    engine->steps++;
+    omp_set_num_threads(threads);
+    sm_lap(laps, SM_OTHER);
+}
+
+static void brute_goals(SmEngine *engine)
+{
+    int threads = take_threads(engine);
+    for (long b = 0; b < engine->params.instances; b++) match_body(engine, engine->body + b, NULL);
+    omp_set_num_threads(threads);
+}
+
+static double (*field_of(Body *body, SmField field))[3]
+{
+    switch (field) {
+    case SM_REST:
+        return body->x0;
+    case SM_POSITION:
+        return body->x;
+    case SM_VELOCITY:
+        return body->v;
+    case SM_GOAL:
+        return body->g;
+    }
+    return NULL;
+}
+
+static void brute_get(SmEngine *engine, SmField field, double (*values)[3])
+{
+    size_t count = (size_t)engine->count;
+    for (size_t b = 0; b < (size_t)engine->params.instances; b++)
+        memcpy(values + b * count, field_of(engine->body + b, field), count * sizeof *values);
+}
+
+static void brute_set(SmEngine *engine, SmField field, const double (*values)[3])
+{
+    size_t count = (size_t)engine->count;
+    for (size_t b = 0; b < (size_t)engine->params.instances; b++)
+        memcpy(field_of(engine->body + b, field), values + b * count, count * sizeof *values);
+}
+
+static void brute_push(SmEngine *engine, long count, const long *particle,
+                       const double (*impulse)[3])
+{
+    for (long n = 0; n < count; n++) {
+        long p = particle[n] % engine->count;
+        Body *body = engine->body + particle[n] / engine->count;
+        for (int a = 0; a < 3; a++) body->v[p][a] += impulse[n][a] / engine->mass[p];
+    }
+}
+
+static void brute_bound(SmEngine *engine, const SmBoundary *boundary)
+{
+    boundary_free(engine);
+    engine->handle_count = boundary->handle_count;
+    engine->obstacle_count = boundary->obstacle_count;
+    engine->handle = sm_alloc((size_t)boundary->handle_count, sizeof *engine->handle);
+    engine->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *engine->obstacle);
+    for (int n = 0; n < boundary->obstacle_count; n++) engine->obstacle[n] = boundary->obstacle[n];
+    memset(engine->held, 0, (size_t)(engine->params.instances * engine->count));
+    for (int n = 0; n < boundary->handle_count; n++) {
+        const SmHandle *from = boundary->handle + n;
+        long *particle = sm_alloc((size_t)from->count, sizeof *particle);
+        for (long k = 0; k < from->count; k++) {
+            particle[k] = from->particle[k];
+            engine->held[particle[k]] = true;
+        }
+        engine->handle[n] = *from;
+        engine->handle[n].particle = particle;
+    }
+}
+
+static void brute_masses(SmEngine *engine, double *mass)
+{
+    memcpy(mass, engine->mass, (size_t)engine->count * sizeof *mass);
+}
+
+static void brute_count(SmEngine *engine, SmCounts *counts)
+{
+    const Body *first = engine->body;
+    *counts = (SmCounts){.particles = engine->params.instances * engine->count,
+                         .regions = ref_regions_unique(&first->regions),
+                         .links = first->links.start[engine->count] / 2,
+                         .build_seconds = engine->build_seconds};
+    size_t bytes = sizeof *engine + (size_t)engine->count * sizeof *engine->mass;
+    for (long b = 0; b < engine->params.instances; b++) {
+        const Body *body = engine->body + b;
+        counts->broken += body->broken_count;
+        bytes += sizeof *body + (size_t)body->links.start[engine->count] * sizeof(int) +
+                 (size_t)body->regions.start[engine->count] * sizeof(int) +
+                 (size_t)body->broken_count * sizeof *body->broken +
+                 (size_t)engine->count *
+                     (2 * sizeof(long) + sizeof(RefMatch) + 5 * sizeof *body->x + sizeof(bool));
+    }
+    counts->bytes = (long)bytes;
+}
+
+static long brute_region(SmEngine *engine, long p, long *member, long room)
+{
+    long offset = p / engine->count * engine->count;
+    const RefRegions *regions = &engine->body[p / engine->count].regions;
+    long start = regions->start[p - offset], size = regions->start[p - offset + 1] - start;
+    for (long n = 0; n < size && n < room; n++) member[n] = offset + regions->member[start + n];
+    return size;
+}
+
+const SmEngineType ref_brute_engine = {
+    .name = "brute",
+    .precision = "double",
+    .create = brute_create,
+    .destroy = brute_destroy,
+    .step = brute_step,
+    .goals = brute_goals,
+    .get = brute_get,
+    .set = brute_set,
+    .push = brute_push,
+    .bound = brute_bound,
+    .masses = brute_masses,
+    .count = brute_count,
+    .region = brute_region,
+};

@@ -1,0 +1,116 @@
+#include "link.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { RING = 26 };
+
+typedef struct {
+    const SmVoxels *voxels;
+    const int (*coordinate)[3];
+    const int (*broken)[2]; /* sorted, lower number first */
+    long broken_count;
+} Lattice;
+
+static int compare_pairs(const void *a, const void *b)
+{
+    const int *p = a, *q = b;
+    if (p[0] != q[0]) return p[0] < q[0] ? -1 : 1;
+    return (p[1] > q[1]) - (p[1] < q[1]);
+}
+
+/* Canonical order: z, then y, then x. */
+static int compare_places(const void *a, const void *b)
+{
+    const int *p = a, *q = b;
+    for (int axis = 2; axis > 0; axis--)
+        if (p[axis] != q[axis]) return p[axis] < q[axis] ? -1 : 1;
+    return (p[0] > q[0]) - (p[0] < q[0]);
+}
+
+/* Does a material cell hold both the vertex at `place` and the one a step `d` (-1..1) away? */
+static bool share_cell(const SmVoxels *voxels, const int place[3], const int d[3])
+{
+    int low[3], high[3];
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = d[axis] > 0 ? place[axis] : place[axis] - 1;
+        high[axis] = d[axis] < 0 ? place[axis] - 1 : place[axis];
+    }
+    for (int k = low[2]; k <= high[2]; k++)
+        for (int j = low[1]; j <= high[1]; j++)
+            for (int i = low[0]; i <= high[0]; i++)
+                if (sm_voxel_get(voxels, i, j, k)) return true;
+    return false;
+}
+
+static bool is_broken(const Lattice *lattice, int p, int q)
+{
+    int pair[2] = {p < q ? p : q, p < q ? q : p};
+    return lattice->broken_count && bsearch(pair, lattice->broken, (size_t)lattice->broken_count,
+                                            sizeof pair, compare_pairs);
+}
+
+/* Writes the neighbours of p, rising, and returns how many. */
+static int one_ring(const Lattice *lattice, long p, int neighbour[RING])
+{
+    const int *place = lattice->coordinate[p];
+    size_t count = (size_t)lattice->voxels->particle_count;
+    int found = 0;
+    for (int n = 0; n < 27; n++) {
+        const int d[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+        if (n == 13 || !share_cell(lattice->voxels, place, d)) continue;
+        const int there[3] = {place[0] + d[0], place[1] + d[1], place[2] + d[2]};
+        const int(*at)[3] =
+            bsearch(there, lattice->coordinate, count, sizeof there, compare_places);
+        int q = (int)(at - lattice->coordinate);
+        if (!is_broken(lattice, (int)p, q)) neighbour[found++] = q;
+    }
+    return found;
+}
+
+static int (*sort_pairs(const int (*broken)[2], long count))[2]
+{
+    int(*sorted)[2] = sm_alloc((size_t)count, sizeof *sorted);
+    for (long b = 0; b < count; b++) {
+        bool ordered = broken[b][0] < broken[b][1];
+        sorted[b][0] = broken[b][!ordered];
+        sorted[b][1] = broken[b][ordered];
+    }
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_pairs);
+    return sorted;
+}
+
+void ref_links_build(const SmVoxels *voxels, const int (*broken)[2], long broken_count,
+                     RefLinks *links)
+{
+    long count = voxels->particle_count;
+    int(*coordinate)[3] = sm_alloc((size_t)count, sizeof *coordinate);
+    sm_voxels_particles(voxels, coordinate);
+    int(*sorted)[2] = sort_pairs(broken, broken_count);
+    Lattice lattice = {voxels, (const int(*)[3])coordinate, (const int(*)[2])sorted, broken_count};
+
+    links->count = count;
+    links->start = sm_alloc((size_t)count + 1, sizeof *links->start);
+#pragma omp parallel for
+    for (long p = 0; p < count; p++) {
+        int neighbour[RING];
+        links->start[p + 1] = one_ring(&lattice, p, neighbour);
+    }
+    for (long p = 0; p < count; p++) links->start[p + 1] += links->start[p];
+    links->neighbour = sm_alloc((size_t)links->start[count], sizeof *links->neighbour);
+#pragma omp parallel for
+    for (long p = 0; p < count; p++) {
+        int neighbour[RING];
+        int found = one_ring(&lattice, p, neighbour);
+        memcpy(links->neighbour + links->start[p], neighbour, (size_t)found * sizeof *neighbour);
+    }
+    free(sorted);
+    free(coordinate);
+}
+
+void ref_links_free(RefLinks *links)
+{
+    free(links->start);
+    free(links->neighbour);
+    memset(links, 0, sizeof *links);
+}

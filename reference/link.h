@@ -1,0 +1,23 @@
+/* link.h - the one-ring graph of a lattice (fastlsm section 2: N_i).
+ *
+ * Two particles are linked when they share a material cell; a broken link no longer joins them.
+ * Each particle's neighbours in rising order, itself left out. */
+#ifndef REF_LINK_H
+#define REF_LINK_H
+
+#include "../lib/voxel.h"
+
+/* Compressed rows: neighbours of p are neighbour[start[p]] .. neighbour[start[p + 1]]. */
+typedef struct {
+    long count;  /* particles */
+    long *start; /* [count + 1] */
+    int *neighbour;
+} RefLinks;
+
+/* Builds the graph without the `broken_count` pairs in `broken` (either order). The caller frees it
+ * with ref_links_free(). O(particles log particles), whatever the bounding box. */
+void ref_links_build(const SmVoxels *voxels, const int (*broken)[2], long broken_count,
+                     RefLinks *links);
+void ref_links_free(RefLinks *links);
+
+#endif
