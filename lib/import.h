@@ -10,12 +10,13 @@
 
 typedef struct {
     double seconds;   /* wall-clock limit of the child; 0: 60 */
-    double megabytes; /* address space limit of the child; 0: 4096 */
+    double megabytes; /* memory limit of the child; 0: 4096 (child.h says what counts) */
 } SmImportLimits;
 
-/* Reads any format that Assimp reads. n-gons are triangulated, node transforms applied, equal
- * positions merged, several components kept; points and lines are dropped. `limits` may be NULL.
- * On SM_OK the caller frees `mesh` with sm_mesh_free(). Errors: SM_INPUT. */
+/* Reads any format that Assimp reads. n-gons are triangulated, node transforms applied (a mirrored
+ * part keeps its outside), equal positions merged, several components kept; points and lines are
+ * dropped; skins and animations stay in their rest pose. `limits` may be NULL. On SM_OK the caller
+ * frees `mesh` with sm_mesh_free(). Errors: SM_INPUT. */
 SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh, SmError *error);
 
 #endif

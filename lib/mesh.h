@@ -21,7 +21,7 @@ typedef struct {
     long nonmanifold_edges;   /* used by more than two */
     long flipped_edges;       /* used by two triangles of opposite orientation */
     long degenerate;          /* triangles of no area */
-    long duplicates;          /* triangles whose three corners another one has too */
+    long duplicates;          /* triangles whose three corners an earlier one has too */
     bool watertight;          /* no open and no non-manifold edge */
     double low[3], high[3];   /* bounding box */
     double volume;            /* signed: negative for a mesh that is inside out */
@@ -30,18 +30,25 @@ typedef struct {
 /* Frees the arrays and zeroes the struct; a zeroed mesh is allowed. */
 void sm_mesh_free(SmMesh *mesh);
 
-/* Merges vertices at equal positions, drops triangles that then repeat a vertex and vertices that
- * no triangle uses. Keeps the order of what stays. O(vertices). */
+/* Merges vertices at equal positions (0 and -0 are equal), drops triangles that then repeat a
+ * vertex and vertices that no triangle uses. Keeps the order of what stays. The mesh must have
+ * passed sm_mesh_check(); afterwards it may have no triangle left. O(vertices).
+ * Where open edges remain, vertices on them within 1e-7 of the box's longest side of one another
+ * are merged too, but only if that closes every open edge and makes no non-manifold one: files
+ * whose writer rounded the same corner in two ways become closed, all others stay as they are. */
 void sm_mesh_merge(SmMesh *mesh);
 
-/* Counts what `shapebench info` reports. O(triangles). */
+/* Counts what `shapebench info` reports. A triangle has no area when its height is below 1e-14 of
+ * its longest edge. The mesh must have passed sm_mesh_check(). O(triangles). */
 SmMeshInfo sm_mesh_info(const SmMesh *mesh);
 
 /* Checks what every later stage relies on: at least one triangle, indices in range, finite
- * coordinates, an extent that is neither zero nor beyond 1e30. `name` is the file for the message. */
+ * coordinates, a longest side of the box between 1e-30 and 1e30. `name` is the file for the
+ * message. SM_INPUT. */
 SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error);
 
-/* Writes Wavefront OBJ, atomically (temporary name, then renamed). */
+/* Writes Wavefront OBJ with all digits, atomically (temporary name beside `path`, then renamed).
+ * SM_OUTPUT. */
 SmCode sm_mesh_write_obj(const SmMesh *mesh, const char *path, SmError *error);
 
 #endif

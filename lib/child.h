@@ -1,0 +1,45 @@
+/* child.h - untrusted work in a child process with limits on time and memory.
+ *
+ * The child writes its reply into a pipe and ends; the parent collects the reply and always reaps
+ * the child, whatever it does. Safe while other threads run: the child uses none of them. */
+#ifndef SM_CHILD_H
+#define SM_CHILD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct {
+    double seconds;   /* wall clock */
+    double megabytes; /* address space beyond the parent's own, and the reply's size. Sanitizer
+                         builds limit the reply only: their shadow memory is huge */
+} SmChildLimits;
+
+typedef enum {
+    SM_CHILD_REPLIED,   /* the child ended well; `reply` holds all that it wrote */
+    SM_CHILD_CRASHED,   /* by signal `signal`, or with exit status `status` when that is 0 */
+    SM_CHILD_TOO_LONG,  /* beyond the time limit; killed */
+    SM_CHILD_TOO_LARGE, /* beyond the memory limit */
+    SM_CHILD_FAILED,    /* no child or pipe could be made; `status` is errno */
+} SmChildEnd;
+
+typedef struct {
+    SmChildEnd end;
+    int signal, status;
+    unsigned char *reply; /* the caller frees it */
+    size_t size;
+} SmChildResult;
+
+/* What the child runs. It writes its reply with sm_child_write(), returns its exit status, 0 for
+ * success and SM_CHILD_NO_MEMORY for lack of memory, and must not call exit(). Its standard
+ * streams are /dev/null, its other descriptors closed, its signals at their defaults. */
+typedef int (*SmChildBody)(void *argument, int reply);
+
+enum { SM_CHILD_NO_MEMORY = 70 };
+
+/* Runs `body` in a child and waits for it, at most limits->seconds. */
+SmChildResult sm_child_run(SmChildBody body, void *argument, const SmChildLimits *limits);
+
+/* Writes all bytes to descriptor `reply`; false when the parent has gone. */
+bool sm_child_write(int reply, const void *bytes, size_t size);
+
+#endif

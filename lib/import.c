@@ -1,0 +1,79 @@
+#include "import.h"
+#include "child.h"
+#include "importer.h"
+#include "reply.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const double default_seconds = 60, default_megabytes = 4096;
+
+/* Suffixes of common point files, which Assimp does not know. */
+static bool is_point_format(const char *path)
+{
+    static const char *const suffix[] = {".xyz", ".pts", ".pcd", ".las", ".laz"};
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; dot && i < sizeof suffix / sizeof *suffix; i++)
+        if (strcasecmp(dot, suffix[i]) == 0) return true;
+    return false;
+}
+
+static SmCode check_file(const char *path, SmError *error)
+{
+    struct stat status;
+    if (stat(path, &status) != 0)
+        return sm_fail(error, SM_INPUT, "%s: %s", path,
+                       errno == ENOENT ? "no such file" : strerror(errno));
+    if (S_ISDIR(status.st_mode))
+        return sm_fail(error, SM_INPUT, "%s: is a directory; name a mesh file", path);
+    if (!S_ISREG(status.st_mode)) return sm_fail(error, SM_INPUT, "%s: not a regular file", path);
+    if (access(path, R_OK) != 0)
+        return sm_fail(error, SM_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+    if (status.st_size == 0) return sm_fail(error, SM_INPUT, "%s: the file is empty", path);
+    if (is_point_format(path))
+        return sm_fail(error, SM_INPUT, "%s: a point format holds only points, no triangles", path);
+    return SM_OK;
+}
+
+static SmCode fail_child(const SmChildResult *result, const SmChildLimits *limits, const char *path,
+                         SmError *error)
+{
+    switch (result->end) {
+    case SM_CHILD_TOO_LONG:
+        return sm_fail(error, SM_INPUT, "%s: reading it took longer than %g s", path,
+                       limits->seconds);
+    case SM_CHILD_TOO_LARGE:
+        return sm_fail(error, SM_INPUT, "%s: reading it took more than %g MB", path,
+                       limits->megabytes);
+    case SM_CHILD_FAILED:
+        return sm_fail(error, SM_INPUT, "%s: the importer could not be started: %s", path,
+                       strerror(result->status));
+    default:
+        break;
+    }
+    if (result->signal)
+        return sm_fail(error, SM_INPUT, "%s: the importer crashed on it (%s)", path,
+                       strsignal(result->signal));
+    return sm_fail(error, SM_INPUT, "%s: the importer gave up on it (status %d)", path,
+                   result->status);
+}
+
+SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh, SmError *error)
+{
+    SmChildLimits child = {default_seconds, default_megabytes};
+    if (limits && limits->seconds > 0) child.seconds = limits->seconds;
+    if (limits && limits->megabytes > 0) child.megabytes = limits->megabytes;
+    *mesh = (SmMesh){0};
+    SmCode code = check_file(path, error);
+    if (code != SM_OK) return code;
+    SmChildResult result = sm_child_run(sm_importer, (void *)path, &child);
+    code = result.end == SM_CHILD_REPLIED
+               ? sm_reply_read(result.reply, result.size, path, mesh, error)
+               : fail_child(&result, &child, path, error);
+    free(result.reply);
+    return code;
+}

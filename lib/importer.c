@@ -1,0 +1,202 @@
+#include "importer.h"
+#include "child.h"
+#include "polygon.h"
+#include "recentre.h"
+#include "reply.h"
+
+#include <assimp/cimport.h>
+#include <assimp/config.h>
+#include <assimp/scene.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    const struct aiScene *scene;
+    SmReplyHeader header;
+    double (*position)[3];
+    int (*triangle)[3];
+    double offset[3];
+} Import;
+
+typedef struct {
+    double row[3][4];
+} Transform;
+
+_Static_assert(sizeof(struct aiVector3D) == sizeof(float[3]), "Assimp in single precision");
+
+static Transform compose(const Transform *outer, const struct aiMatrix4x4 *inner)
+{
+    const double m[4][4] = {
+        {(double)inner->a1, (double)inner->a2, (double)inner->a3, (double)inner->a4},
+        {(double)inner->b1, (double)inner->b2, (double)inner->b3, (double)inner->b4},
+        {(double)inner->c1, (double)inner->c2, (double)inner->c3, (double)inner->c4},
+        {0, 0, 0, 1}};
+    Transform result = {0};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 4; k++) result.row[i][j] += outer->row[i][k] * m[k][j];
+    return result;
+}
+
+static bool mirrors(const Transform *t)
+{
+    const double(*r)[4] = t->row;
+    return r[0][0] * (r[1][1] * r[2][2] - r[1][2] * r[2][1]) -
+               r[0][1] * (r[1][0] * r[2][2] - r[1][2] * r[2][0]) +
+               r[0][2] * (r[1][0] * r[2][1] - r[1][1] * r[2][0]) <
+           0;
+}
+
+static void count_mesh(const struct aiMesh *mesh, SmReplyHeader *header)
+{
+    long triangles = 0;
+    for (unsigned f = 0; f < mesh->mNumFaces; f++)
+        if (mesh->mFaces[f].mNumIndices > 2) triangles += mesh->mFaces[f].mNumIndices - 2L;
+    header->triangle_count += triangles;
+    header->vertex_count += triangles ? mesh->mNumVertices : 0;
+    header->points += triangles ? 0 : mesh->mNumVertices;
+}
+
+/* Cuts `face` into triangles with the mesh's own vertex numbers. */
+static bool cut_face(const struct aiMesh *mesh, const struct aiFace *face, int (*triangle)[3])
+{
+    bool sound = face->mNumIndices <= INT_MAX;
+    for (unsigned c = 0; sound && c < face->mNumIndices; c++)
+        sound = face->mIndices[c] < mesh->mNumVertices;
+    if (!sound) { /* numbers that the parent will refuse */
+        for (unsigned t = 0; t < face->mNumIndices - 2; t++)
+            triangle[t][0] = triangle[t][1] = triangle[t][2] = -1;
+        return true;
+    }
+    if (face->mNumIndices > 3)
+        return sm_polygon_cut((const float(*)[3])mesh->mVertices, face->mIndices,
+                              (int)face->mNumIndices, triangle);
+    for (int c = 0; c < 3; c++) triangle[0][c] = (int)face->mIndices[c];
+    return true;
+}
+
+static bool copy_triangles(Import *import, const struct aiMesh *mesh, bool mirrored)
+{
+    SmReplyHeader *header = &import->header;
+    int first = (int)header->vertex_count;
+    for (unsigned f = 0; f < mesh->mNumFaces; f++) {
+        const struct aiFace *face = &mesh->mFaces[f];
+        if (face->mNumIndices < 3) continue;
+        int(*triangle)[3] = import->triangle + header->triangle_count;
+        if (!cut_face(mesh, face, triangle)) return false;
+        for (unsigned t = 0; t < face->mNumIndices - 2; t++) {
+            int last = triangle[t][2];
+            triangle[t][2] = triangle[t][mirrored ? 0 : 2];
+            triangle[t][0] = mirrored ? last : triangle[t][0];
+            for (int c = 0; c < 3; c++)
+                if (triangle[t][c] >= 0) triangle[t][c] += first;
+        }
+        header->triangle_count += face->mNumIndices - 2L;
+    }
+    return true;
+}
+
+static void copy_vertices(Import *import, const struct aiMesh *mesh, const Transform *transform)
+{
+    for (unsigned v = 0; v < mesh->mNumVertices; v++) {
+        const struct aiVector3D *p = &mesh->mVertices[v];
+        double *position = import->position[import->header.vertex_count++];
+        for (int a = 0; a < 3; a++) {
+            const double *r = transform->row[a];
+            position[a] = r[0] * (double)p->x + r[1] * (double)p->y + r[2] * (double)p->z + r[3] +
+                          import->offset[a];
+        }
+    }
+}
+
+/* Walks the node tree; counts while import->position is NULL, then copies. False: no memory. */
+static bool walk(Import *import, const struct aiNode *node, const Transform *outer)
+{
+    Transform transform = compose(outer, &node->mTransformation);
+    for (unsigned m = 0; m < node->mNumMeshes; m++) {
+        const struct aiMesh *mesh = import->scene->mMeshes[node->mMeshes[m]];
+        long triangles = import->header.triangle_count;
+        if (!import->position)
+            count_mesh(mesh, &import->header);
+        else if (!copy_triangles(import, mesh, mirrors(&transform)))
+            return false;
+        else if (import->header.triangle_count > triangles)
+            copy_vertices(import, mesh, &transform);
+    }
+    for (unsigned c = 0; c < node->mNumChildren; c++)
+        if (!walk(import, node->mChildren[c], &transform)) return false;
+    return true;
+}
+
+static int reply_text(int reply, const char *text)
+{
+    size_t length = strnlen(text, SM_REPLY_TEXT);
+    SmReplyHeader header = {.magic = SM_REPLY_MAGIC, .text_length = (uint32_t)length};
+    return !(sm_child_write(reply, &header, sizeof header) && sm_child_write(reply, text, length));
+}
+
+static int reply_mesh(int reply, Import *import)
+{
+    static const Transform identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    walk(import, import->scene->mRootNode, &identity);
+    SmReplyHeader header = import->header;
+    if (header.vertex_count > INT_MAX || header.triangle_count > INT_MAX)
+        return reply_text(reply, "more than 2147483647 vertices or triangles");
+    size_t vertices = (size_t)header.vertex_count, triangles = (size_t)header.triangle_count;
+    import->position = malloc((vertices + 1) * sizeof *import->position);
+    import->triangle = malloc((triangles + 1) * sizeof *import->triangle);
+    if (!import->position || !import->triangle) return SM_CHILD_NO_MEMORY;
+    import->header = (SmReplyHeader){0};
+    if (!walk(import, import->scene->mRootNode, &identity)) return SM_CHILD_NO_MEMORY;
+    header.magic = SM_REPLY_MAGIC;
+    return !(sm_child_write(reply, &header, sizeof header) &&
+             sm_child_write(reply, import->position, vertices * sizeof *import->position) &&
+             sm_child_write(reply, import->triangle, triangles * sizeof *import->triangle));
+}
+
+/* The whole file and a NUL, or NULL. */
+static char *read_text(const char *path, size_t *size)
+{
+    char *text = NULL;
+    FILE *file = fopen(path, "rb");
+    if (!file) return NULL;
+    if (fseek(file, 0, SEEK_END) == 0) {
+        long length = ftell(file);
+        rewind(file);
+        text = length < 0 ? NULL : malloc((size_t)length + 1);
+        if (text) {
+            *size = fread(text, 1, (size_t)length, file);
+            text[*size] = 0;
+        }
+    }
+    fclose(file);
+    return text;
+}
+
+static const struct aiScene *read_scene(const char *path, double offset[3])
+{
+    const char *dot = strrchr(path, '.'), *suffix = dot ? dot + 1 : "";
+    struct aiPropertyStore *properties = aiCreatePropertyStore();
+    aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
+    size_t size = 0, new_size = 0;
+    char *text = read_text(path, &size);
+    char *moved = text ? sm_recentre(text, size, suffix, &new_size, offset) : NULL;
+    free(text);
+    if (moved && new_size < UINT_MAX)
+        return aiImportFileFromMemoryWithProperties(moved, (unsigned)new_size, 0, suffix,
+                                                    properties);
+    offset[0] = offset[1] = offset[2] = 0;
+    return aiImportFileExWithProperties(path, 0, NULL, properties);
+}
+
+int sm_importer(void *path, int reply)
+{
+    Import import = {0};
+    import.scene = read_scene(path, import.offset);
+    if (import.scene && import.scene->mRootNode) return reply_mesh(reply, &import);
+    const char *reason = aiGetErrorString();
+    if (strstr(reason, "bad_alloc")) return SM_CHILD_NO_MEMORY;
+    return reply_text(reply, *reason ? reason : "the importer gives no reason");
+}

@@ -1,0 +1,359 @@
+#include "mesh.h"
+#include "edges.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const double rounding_gap = 1e-7; /* of the box's longest side */
+static const double no_height = 1e-14;   /* of a triangle's longest edge */
+
+void sm_mesh_free(SmMesh *mesh)
+{
+    free(mesh->position);
+    free(mesh->triangle);
+    *mesh = (SmMesh){0};
+}
+
+static void bounding_box(const SmMesh *mesh, double low[3], double high[3])
+{
+    for (int a = 0; a < 3; a++) {
+        low[a] = high[a] = mesh->vertex_count ? mesh->position[0][a] : 0;
+        for (long v = 1; v < mesh->vertex_count; v++) {
+            low[a] = fmin(low[a], mesh->position[v][a]);
+            high[a] = fmax(high[a], mesh->position[v][a]);
+        }
+    }
+}
+
+static double longest_side(const SmMesh *mesh, double low[3])
+{
+    double high[3];
+    bounding_box(mesh, low, high);
+    return fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
+}
+
+/* Union-find with the lowest member as the root of a set, so that results keep the order. */
+static int find_root(int *parent, int v)
+{
+    while (parent[v] != v) {
+        parent[v] = parent[parent[v]];
+        v = parent[v];
+    }
+    return v;
+}
+
+static void unite(int *parent, int a, int b)
+{
+    a = find_root(parent, a);
+    b = find_root(parent, b);
+    parent[a > b ? a : b] = a < b ? a : b;
+}
+
+static int *singletons(long count)
+{
+    int *parent = sm_alloc((size_t)count, sizeof *parent);
+    for (long v = 0; v < count; v++) parent[v] = (int)v;
+    return parent;
+}
+
+static uint64_t hash_words(const uint64_t word[3])
+{
+    uint64_t hash = 0x9e3779b97f4a7c15u;
+    for (int a = 0; a < 3; a++) {
+        hash = (hash ^ word[a]) * 0xff51afd7ed558ccdu;
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+static uint64_t table_mask(long entries)
+{
+    uint64_t size = 16;
+    while (size < 2 * (uint64_t)entries) size *= 2;
+    return size - 1;
+}
+
+/* Lets every vertex stand for the first one at its position. */
+static int *equal_positions(SmMesh *mesh)
+{
+    int *parent = singletons(mesh->vertex_count);
+    uint64_t mask = table_mask(mesh->vertex_count);
+    int *table = sm_alloc(mask + 1, sizeof *table); /* vertex + 1, or 0 */
+    for (long v = 0; v < mesh->vertex_count; v++) {
+        uint64_t word[3];
+        for (int a = 0; a < 3; a++) mesh->position[v][a] += 0.0; /* -0 becomes 0 */
+        memcpy(word, mesh->position[v], sizeof word);
+        uint64_t slot = hash_words(word) & mask;
+        for (; table[slot]; slot = (slot + 1) & mask)
+            if (!memcmp(mesh->position[table[slot] - 1], word, sizeof word)) break;
+        if (table[slot])
+            parent[v] = table[slot] - 1;
+        else
+            table[slot] = (int)v + 1;
+    }
+    free(table);
+    return parent;
+}
+
+/* Replaces vertices by their roots, then drops what sm_mesh_merge() says. */
+static void collapse(SmMesh *mesh, int *parent)
+{
+    int *number = sm_alloc((size_t)mesh->vertex_count, sizeof *number);
+    long triangles = 0, vertices = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        int corner[3];
+        for (int c = 0; c < 3; c++) corner[c] = find_root(parent, mesh->triangle[t][c]);
+        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+        for (int c = 0; c < 3; c++) number[corner[c]] = 1;
+        memcpy(mesh->triangle[triangles++], corner, sizeof corner);
+    }
+    for (long v = 0; v < mesh->vertex_count; v++) {
+        if (!number[v]) continue;
+        memmove(mesh->position[vertices], mesh->position[v], sizeof *mesh->position);
+        number[v] = (int)vertices++;
+    }
+    for (long t = 0; t < triangles; t++)
+        for (int c = 0; c < 3; c++) mesh->triangle[t][c] = number[mesh->triangle[t][c]];
+    free(number);
+    mesh->triangle_count = triangles;
+    mesh->vertex_count = vertices;
+    mesh->position = sm_realloc(mesh->position, (size_t)vertices, sizeof *mesh->position);
+    mesh->triangle = sm_realloc(mesh->triangle, (size_t)triangles, sizeof *mesh->triangle);
+}
+
+/* Boundary vertices hashed by grid cell, for neighbours nearer than a cell's side. */
+typedef struct {
+    const SmMesh *mesh;
+    double low[3], side;
+    uint64_t mask;
+    int *head, *next; /* vertex + 1, or 0: chains of one slot */
+} Grid;
+
+static uint64_t grid_slot(const Grid *grid, const double position[3], const int step[3])
+{
+    uint64_t word[3];
+    for (int a = 0; a < 3; a++)
+        word[a] = (uint64_t)((int64_t)((position[a] - grid->low[a]) / grid->side) + step[a]);
+    return hash_words(word) & grid->mask;
+}
+
+static void unite_near(const Grid *grid, int v, int *parent)
+{
+    enum { LONGEST_CHAIN = 64 }; /* bounds the cost where thousands crowd into one cell */
+    const double *p = grid->mesh->position[v];
+    for (int n = 0; n < 27; n++) {
+        int step[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+        int other = grid->head[grid_slot(grid, p, step)];
+        for (int k = 0; other && k < LONGEST_CHAIN; k++, other = grid->next[other - 1]) {
+            const double *q = grid->mesh->position[other - 1];
+            double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+            if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= grid->side * grid->side)
+                unite(parent, v, other - 1);
+        }
+    }
+}
+
+static int *near_positions(const SmMesh *mesh, const bool *boundary)
+{
+    int *parent = singletons(mesh->vertex_count);
+    Grid grid = {.mesh = mesh, .mask = table_mask(mesh->vertex_count)};
+    grid.side = rounding_gap * longest_side(mesh, grid.low);
+    grid.head = sm_alloc(grid.mask + 1, sizeof *grid.head);
+    grid.next = sm_alloc((size_t)mesh->vertex_count, sizeof *grid.next);
+    for (int v = 0; v < mesh->vertex_count; v++) {
+        if (!boundary[v]) continue;
+        unite_near(&grid, v, parent);
+        uint64_t slot = grid_slot(&grid, mesh->position[v], (int[3]){0, 0, 0});
+        grid.next[v] = grid.head[slot];
+        grid.head[slot] = v + 1;
+    }
+    free(grid.head);
+    free(grid.next);
+    return parent;
+}
+
+static SmMesh copy_mesh(const SmMesh *mesh)
+{
+    SmMesh copy = *mesh;
+    size_t vertices = (size_t)mesh->vertex_count, triangles = (size_t)mesh->triangle_count;
+    copy.position = sm_alloc(vertices, sizeof *copy.position);
+    copy.triangle = sm_alloc(triangles, sizeof *copy.triangle);
+    memcpy(copy.position, mesh->position, vertices * sizeof *copy.position);
+    memcpy(copy.triangle, mesh->triangle, triangles * sizeof *copy.triangle);
+    return copy;
+}
+
+static void close_rounding_gaps(SmMesh *mesh)
+{
+    if (!mesh->triangle_count) return;
+    bool *boundary = sm_alloc((size_t)mesh->vertex_count, sizeof *boundary);
+    SmEdgeCounts before = sm_edges_count(mesh, boundary);
+    if (before.open) {
+        SmMesh closed = copy_mesh(mesh);
+        int *parent = near_positions(mesh, boundary);
+        collapse(&closed, parent);
+        free(parent);
+        SmEdgeCounts after = sm_edges_count(&closed, NULL);
+        if (closed.triangle_count && !after.open && after.nonmanifold <= before.nonmanifold) {
+            SmMesh old = *mesh;
+            *mesh = closed;
+            closed = old;
+        }
+        sm_mesh_free(&closed);
+    }
+    free(boundary);
+}
+
+void sm_mesh_merge(SmMesh *mesh)
+{
+    int *parent = equal_positions(mesh);
+    collapse(mesh, parent);
+    free(parent);
+    close_rounding_gaps(mesh);
+}
+
+static long count_components(const SmMesh *mesh)
+{
+    int *parent = singletons(mesh->vertex_count);
+    bool *used = sm_alloc((size_t)mesh->vertex_count, sizeof *used);
+    long components = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        const int *corner = mesh->triangle[t];
+        unite(parent, corner[0], corner[1]);
+        unite(parent, corner[1], corner[2]);
+        used[corner[0]] = used[corner[1]] = used[corner[2]] = true;
+    }
+    for (long v = 0; v < mesh->vertex_count; v++) components += used[v] && parent[v] == v;
+    free(parent);
+    free(used);
+    return components;
+}
+
+static void cross(const double a[3], const double b[3], double result[3])
+{
+    result[0] = a[1] * b[2] - a[2] * b[1];
+    result[1] = a[2] * b[0] - a[0] * b[2];
+    result[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static bool is_degenerate(double edge[3][3])
+{
+    double normal[3];
+    cross(edge[0], edge[1], normal);
+    double longest =
+        fmax(dot(edge[0], edge[0]), fmax(dot(edge[1], edge[1]), dot(edge[2], edge[2])));
+    return sqrt(dot(normal, normal)) <= no_height * longest;
+}
+
+/* Volume about the box's centre, where a mesh far from the origin loses no digits. */
+static void measure_triangles(const SmMesh *mesh, SmMeshInfo *info)
+{
+    double six_volumes = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        double p[3][3], edge[3][3], normal[3];
+        for (int c = 0; c < 3; c++)
+            for (int a = 0; a < 3; a++)
+                p[c][a] = mesh->position[mesh->triangle[t][c]][a] -
+                          (0.5 * info->low[a] + 0.5 * info->high[a]);
+        for (int c = 0; c < 3; c++)
+            for (int a = 0; a < 3; a++) edge[c][a] = p[(c + 1) % 3][a] - p[c][a];
+        info->degenerate += is_degenerate(edge);
+        cross(p[1], p[2], normal);
+        six_volumes += dot(p[0], normal);
+    }
+    info->volume = six_volumes / 6;
+}
+
+SmMeshInfo sm_mesh_info(const SmMesh *mesh)
+{
+    SmMeshInfo info = {.triangles = mesh->triangle_count, .vertices = mesh->vertex_count};
+    SmEdgeCounts edges = sm_edges_count(mesh, NULL);
+    info.open_edges = edges.open;
+    info.nonmanifold_edges = edges.nonmanifold;
+    info.flipped_edges = edges.flipped;
+    info.watertight = mesh->triangle_count && !edges.open && !edges.nonmanifold;
+    info.components = count_components(mesh);
+    info.duplicates = sm_edges_duplicates(mesh);
+    bounding_box(mesh, info.low, info.high);
+    measure_triangles(mesh, &info);
+    return info;
+}
+
+SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error)
+{
+    if (mesh->triangle_count < 1) return sm_fail(error, SM_INPUT, "%s: no triangles", name);
+    if (mesh->vertex_count > INT_MAX)
+        return sm_fail(error, SM_INPUT, "%s: %ld vertices are more than %d", name,
+                       mesh->vertex_count, INT_MAX);
+    for (long v = 0; v < mesh->vertex_count; v++)
+        for (int a = 0; a < 3; a++)
+            if (!isfinite(mesh->position[v][a]))
+                return sm_fail(error, SM_INPUT, "%s: %c of vertex %ld is not a finite number", name,
+                               "xyz"[a], v + 1);
+    for (long t = 0; t < mesh->triangle_count; t++)
+        for (int c = 0; c < 3; c++)
+            if (mesh->triangle[t][c] < 0 || mesh->triangle[t][c] >= mesh->vertex_count)
+                return sm_fail(error, SM_INPUT, "%s: triangle %ld names vertex %ld of %ld", name,
+                               t + 1, mesh->triangle[t][c] + 1L, mesh->vertex_count);
+    double low[3], side = longest_side(mesh, low);
+    if (side == 0) return sm_fail(error, SM_INPUT, "%s: all vertices are at one point", name);
+    if (side < 1e-30 || side > 1e30)
+        return sm_fail(error, SM_INPUT, "%s: its size of %g is outside 1e-30 to 1e30; scale it",
+                       name, side);
+    return SM_OK;
+}
+
+/* Closes `file`; false when anything written to it so far was lost. */
+static bool finish_file(FILE *file)
+{
+    bool written = !ferror(file) && fflush(file) == 0 && fsync(fileno(file)) == 0;
+    int reason = errno;
+    if (fclose(file) != 0 && written) return false;
+    errno = reason;
+    return written;
+}
+
+static void print_obj(const SmMesh *mesh, FILE *file)
+{
+    for (long v = 0; v < mesh->vertex_count; v++) {
+        const double *p = mesh->position[v];
+        fprintf(file, "v %.17g %.17g %.17g\n", p[0], p[1], p[2]);
+    }
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        const int *corner = mesh->triangle[t];
+        fprintf(file, "f %ld %ld %ld\n", corner[0] + 1L, corner[1] + 1L, corner[2] + 1L);
+    }
+}
+
+SmCode sm_mesh_write_obj(const SmMesh *mesh, const char *path, SmError *error)
+{
+    char temporary[PATH_MAX];
+    struct stat status;
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
+        return sm_fail(error, SM_OUTPUT, "%s: not a regular file", path);
+    if (snprintf(temporary, sizeof temporary, "%s.XXXXXX.tmp", path) >= (int)sizeof temporary)
+        return sm_fail(error, SM_OUTPUT, "%s: name too long", path);
+    int descriptor = mkstemps(temporary, 4);
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
+    if (!file) return sm_fail(error, SM_OUTPUT, "%s: cannot create: %s", path, strerror(errno));
+    mode_t mask = umask(0);
+    umask(mask);
+    fchmod(descriptor, 0666 & ~mask);
+    print_obj(mesh, file);
+    if (finish_file(file) && rename(temporary, path) == 0) return SM_OK;
+    sm_fail(error, SM_OUTPUT, "%s: cannot write: %s", path, strerror(errno));
+    unlink(temporary);
+    return SM_OUTPUT;
+}
