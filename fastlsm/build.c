@@ -1,0 +1,273 @@
+#include "build.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "match.h"
+#include "pipeline.h"
+#include "step.h"
+
+enum { LAYER_BLOCKS = 24 }; /* of the list form: layers of about this size stay in the L2 cache */
+
+/* Groups planes into layers of at least LAYER_BLOCKS blocks and finds how far a region reaches. */
+static void build_layers(Lsm *lsm)
+{
+    int planes = lsm->lattice.size[2];
+    long *count = sm_alloc((size_t)planes, sizeof *count);
+    for (long p = 0; p < lsm->lattice.count; p++) count[lsm->lattice.coord[p][2]]++;
+    lsm->layer_plane = sm_alloc((size_t)planes + 1, sizeof(int));
+    lsm->layers = 0;
+    long held = 0;
+    for (int z = 0; z < planes; z++) {
+        held += count[z];
+        if (held >= LAYER_BLOCKS * SM_LANES || z == planes - 1) {
+            lsm->layer_plane[++lsm->layers] = z + 1;
+            held = 0;
+        }
+    }
+    free(count);
+    lsm->reach = 0;
+    for (int l = 0; l < lsm->layers; l++) {
+        int reach = 0; /* layers until w planes below this one's first are covered */
+        while (l - reach > 0 && lsm->layer_plane[l - reach] > lsm->layer_plane[l] - lsm->w) reach++;
+        lsm->reach = reach > lsm->reach ? reach : lsm->reach;
+    }
+    if (lsm->layers > 1 && lsm->reach == 0) lsm->reach = 1;
+}
+
+/* Particles in canonical order, each layer beginning a new block. */
+static void build_slots(Lsm *lsm)
+{
+    long n = lsm->lattice.count, slot = 0, p = 0;
+    lsm->slot = sm_alloc((size_t)n, sizeof(int));
+    lsm->layer_block = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
+    for (int l = 0; l < lsm->layers; l++) {
+        slot = (slot + SM_LANES - 1) / SM_LANES * SM_LANES;
+        lsm->layer_block[l] = slot / SM_LANES;
+        while (p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1]) lsm->slot[p++] = (int)slot++;
+    }
+    lsm->blocks = (slot + SM_LANES - 1) / SM_LANES;
+    lsm->layer_block[lsm->layers] = lsm->blocks;
+    lsm->particle = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
+    for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->particle[s] = -1;
+    for (p = 0; p < n; p++) lsm->particle[lsm->slot[p]] = (int)p;
+}
+
+typedef struct {
+    LsmKey key;
+    int region;
+} KeyedRegion;
+
+static int compare_keys(const void *a, const void *b)
+{
+    const KeyedRegion *x = a, *y = b;
+    if (x->key.high != y->key.high) return x->key.high < y->key.high ? -1 : 1;
+    if (x->key.low != y->key.low) return x->key.low < y->key.low ? -1 : 1;
+    return x->region - y->region;
+}
+
+/* original[p] = the lowest-numbered particle whose region holds the same particles; counts |R_i|
+ * and the unique regions. Only regions that are not whole cubes can have an equal. */
+static void find_unique(Lsm *lsm, int *original)
+{
+    const LsmLattice *l = &lsm->lattice;
+    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    KeyedRegion *keyed = sm_alloc((size_t)l->count, sizeof *keyed);
+    long count = 0;
+    for (long p = 0; p < l->count; p++) {
+        original[p] = (int)p;
+        if (lsm_bit(l, lsm->interior.interior, l->coord[p])) {
+            lsm->members[p] = lsm->side * lsm->side * lsm->side;
+            continue;
+        }
+        lsm->members[p] = lsm_region_rows(l, &lsm->interior, p, rows);
+        keyed[count++] = (KeyedRegion){lsm_region_key(l, lsm->w, p, rows), (int)p};
+    }
+    qsort(keyed, (size_t)count, sizeof *keyed, compare_keys);
+    lsm->unique = l->count;
+    for (long i = 1; i < count; i++)
+        if (keyed[i].key.low == keyed[i - 1].key.low && keyed[i].key.high == keyed[i - 1].key.high) {
+            original[keyed[i].region] = original[keyed[i - 1].region];
+            lsm->unique--;
+        }
+    free(keyed);
+}
+
+/* Tiles of unique regions, each layer beginning a new tile; copies go to a list of their own. */
+static void build_tiles(Lsm *lsm, const int *original)
+{
+    long n = lsm->lattice.count, room = (n / SM_LANES + lsm->layers + 1) * SM_LANES, at = 0;
+    lsm->tile_region = sm_alloc((size_t)room, sizeof(int));
+    lsm->tile_slot = sm_alloc((size_t)room, sizeof(int));
+    lsm->layer_tile = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
+    lsm->copy = sm_alloc((size_t)(n - lsm->unique), sizeof *lsm->copy);
+    lsm->layer_copy = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
+    for (long i = 0; i < room; i++) lsm->tile_region[i] = lsm->tile_slot[i] = -1;
+    long p = 0;
+    lsm->copies = 0;
+    for (int l = 0; l < lsm->layers; l++) {
+        at = (at + SM_LANES - 1) / SM_LANES * SM_LANES;
+        lsm->layer_tile[l] = at / SM_LANES;
+        lsm->layer_copy[l] = lsm->copies;
+        for (; p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1]; p++) {
+            bool same_layer = lsm->lattice.coord[original[p]][2] >= lsm->layer_plane[l];
+            if (original[p] != p && same_layer) {
+                lsm->copy[lsm->copies][0] = lsm->slot[p];
+                lsm->copy[lsm->copies++][1] = lsm->slot[original[p]];
+                continue;
+            }
+            lsm->tile_region[at] = (int)p;
+            lsm->tile_slot[at++] = lsm->slot[p];
+        }
+    }
+    lsm->layer_copy[lsm->layers] = lsm->copies;
+    lsm->tiles = (at + SM_LANES - 1) / SM_LANES;
+    lsm->layer_tile[lsm->layers] = lsm->tiles;
+}
+
+static void build_lists(Lsm *lsm)
+{
+    long n = lsm->lattice.count;
+    bool *wanted = sm_alloc((size_t)n, sizeof *wanted);
+    memset(wanted, 1, (size_t)n);
+    lsm_sets_build(&lsm->lattice, &lsm->interior, wanted, lsm->slot, &lsm->sets);
+    free(wanted);
+    lsm->block_region = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
+    for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->block_region[s] = lsm->particle[s];
+}
+
+static void build_rows(Lsm *lsm)
+{
+    size_t rows = (size_t)lsm->blocks * SM_LANES + 2, real_size = sizeof(real);
+    size_t bars = (size_t)lsm->sets.bar_count + 1, plates = (size_t)lsm->sets.plate_count + 1;
+    lsm->rows = (Rows){
+        .p = sm_alloc(rows * ROW_P, real_size),
+        .bar = sm_alloc(bars * ROW_BAR, real_size),
+        .plate = sm_alloc(plates * ROW_PLATE, real_size),
+        .transform = sm_alloc(rows * ROW_T, real_size),
+        .bar_down = sm_alloc(bars * ROW_BAR_DOWN, real_size),
+        .plate_down = sm_alloc(plates * ROW_PLATE_DOWN, real_size),
+    };
+}
+
+/* m~_i, 1/|R_i| of every block; then M_r and c0_r by the engine's own sums of m~ in place of m~ x. */
+static void build_constants(Lsm *lsm)
+{
+    lsm->block_const = sm_alloc((size_t)lsm->blocks, sizeof(int));
+    lsm->particle_const = sm_alloc((size_t)lsm->blocks, sizeof(ParticleConst));
+    for (long block = 0; block < lsm->blocks; block++) {
+        ParticleConst *k = &lsm->particle_const[block];
+        lsm->block_const[block] = (int)block;
+        for (int lane = 0; lane < SM_LANES; lane++) {
+            int p = lsm->particle[block * SM_LANES + lane];
+            if (p < 0) continue;
+            k->weight[lane] = (real)(lsm->mass[p] / lsm->members[p]);
+            k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
+            k->live[lane] = 1;
+        }
+    }
+    lsm->tile_const = sm_alloc((size_t)lsm->tiles, sizeof(int));
+    lsm->region_const = sm_alloc((size_t)lsm->tiles, sizeof(RegionConst));
+    for (long tile = 0; tile < lsm->tiles; tile++) lsm->tile_const[tile] = (int)tile;
+    lsm_constants(lsm);
+}
+
+static void build_memory(Lsm *lsm)
+{
+    size_t tiles = (size_t)lsm->tiles;
+    lsm->centre = sm_alloc(tiles * 3 * SM_LANES, sizeof(real));
+    lsm->last = sm_alloc(tiles * 6 * SM_LANES, sizeof(short));
+    vec identity[9];
+    for (int i = 0; i < 9; i++) identity[i] = lanes_set(i % 4 == 0);
+    for (long tile = 0; tile < lsm->tiles; tile++) last_store(lsm->last + tile * 6 * SM_LANES, identity);
+    lsm->sweeps = sm_alloc((size_t)lsm->layers, sizeof(double));
+    if (lsm->params.polar != SM_POLAR_JACOBI) return;
+    lsm->stretch = sm_alloc(tiles * 9 * SM_LANES, sizeof(float));
+    for (size_t i = 0; i < tiles * 9 * SM_LANES; i++) lsm->stretch[i] = i / SM_LANES % 9 % 4 == 0;
+}
+
+void lsm_build_regions(Lsm *lsm)
+{
+    long n = lsm->lattice.count;
+    int *original = sm_alloc((size_t)n, sizeof *original);
+    lsm_interior_build(&lsm->lattice, lsm->w, &lsm->interior);
+    find_unique(lsm, original);
+    build_tiles(lsm, original);
+    free(original);
+    build_lists(lsm);
+    build_rows(lsm);
+    build_memory(lsm);
+    lsm_pipeline_split(lsm);
+    build_constants(lsm);
+}
+
+static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
+{
+    if (voxels->particle_count < 1)
+        return sm_fail(error, SM_INPUT, "the body has no material: nothing to simulate");
+    if (params->w < 1 || params->w > LSM_MAX_W)
+        return sm_fail(error, SM_INPUT, "region half-width w = %d: must be 1 to %d", params->w, LSM_MAX_W);
+    if (voxels->particle_count > 500000000)
+        return sm_fail(error, SM_INPUT, "%ld particles: at most 500 million; use larger cells",
+                       voxels->particle_count);
+    if (!(params->h > 0) || !(params->damping >= 0) || !(params->damping <= 1))
+        return sm_fail(error, SM_INPUT, "time step %g must be above 0 and damping %g in 0..1", params->h,
+                       params->damping);
+    return SM_OK;
+}
+
+SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **out, SmError *error)
+{
+    SmCode code = check(voxels, params, error);
+    if (code) return code;
+    double start = sm_now();
+    Lsm *lsm = sm_alloc(1, sizeof *lsm);
+    lsm->params = *params;
+    lsm->w = params->w;
+    lsm->side = 2 * params->w + 1;
+    lsm->cell = voxels->cell;
+    lsm_lattice_build(voxels, &lsm->lattice);
+    long n = lsm->lattice.count;
+    lsm->mass = sm_alloc((size_t)n, sizeof(double));
+    for (long p = 0; p < n; p++) lsm->mass[p] = params->mass ? params->mass[p] : 1;
+    lsm->members = sm_alloc((size_t)n, sizeof(int));
+    build_layers(lsm);
+    build_slots(lsm);
+    lsm->x = sm_alloc((size_t)lsm->blocks * 3 * SM_LANES, sizeof(real));
+    lsm->v = sm_alloc((size_t)lsm->blocks * 3 * SM_LANES, sizeof(real));
+    lsm_build_regions(lsm);
+    lsm->build_seconds = sm_now() - start;
+    *out = lsm;
+    return SM_OK;
+}
+
+static void free_rows(Rows *rows)
+{
+    free(rows->p);
+    free(rows->bar);
+    free(rows->plate);
+    free(rows->transform);
+    free(rows->bar_down);
+    free(rows->plate_down);
+}
+
+static void free_regions(Lsm *lsm)
+{
+    lsm_interior_free(&lsm->interior);
+    lsm_sets_free(&lsm->sets);
+    free_rows(&lsm->rows);
+    void *all[] = {lsm->tile_region, lsm->tile_slot, lsm->layer_tile, lsm->copy, lsm->layer_copy,
+                   lsm->block_region, lsm->block_const, lsm->particle_const, lsm->tile_const,
+                   lsm->region_const, lsm->centre, lsm->last, lsm->sweeps, lsm->stretch};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+}
+
+void lsm_free(Lsm *lsm)
+{
+    free_regions(lsm);
+    lsm_lattice_free(&lsm->lattice);
+    void *all[] = {lsm->mass, lsm->members, lsm->slot, lsm->particle, lsm->x, lsm->v, lsm->g,
+                   lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->held};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    free(lsm);
+}

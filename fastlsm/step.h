@@ -1,0 +1,16 @@
+/* step.h - the passes of a step (fastlsm.c). */
+#ifndef LSM_STEP_H
+#define LSM_STEP_H
+
+#include "state.h"
+
+#define lsm_constants SM_NAME(lsm_constants)
+#define lsm_damp SM_NAME(lsm_damp)
+
+/* Fills region_const: M_r and c0_r. */
+void lsm_constants(Lsm *lsm);
+
+/* Region damping (fastlsm eq. 14), then x += v. Needs `centre` of this step's shape matching. */
+void lsm_damp(Lsm *lsm);
+
+#endif

@@ -1,0 +1,334 @@
+/* Holds the engine to its brute-force twin and to the invariants of shape matching. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../reference/brute.h"
+#include "fastlsm.h"
+#include "random_bodies.h"
+
+static const SmEngineType *const engines[2] = {&fastlsm_engine_f32, &fastlsm_engine_f64};
+
+/* Largest deviations of goal positions allowed, in cells: what `shapebench tables` allows a row in
+ * single precision (coordinates of 30 cells carry 2e-6, a region 12 cells across turns that into
+ * several times as much at its ends), and the same multiple of epsilon in double. */
+static const double tolerance[2] = {5e-5, 1e-11};
+
+typedef struct {
+    SmVoxels voxels;
+    long n;
+    double (*x0)[3], (*x)[3], (*v)[3], (*a)[3], (*b)[3], *m;
+} Body;
+
+static double (*triples(long n))[3]
+{
+    return sm_alloc((size_t)n, sizeof(double[3]));
+}
+
+static void body_arrays(Body *body)
+{
+    long n = body->n = body->voxels.particle_count;
+    int(*coord)[3] = sm_alloc((size_t)n, sizeof *coord);
+    body->x0 = triples(n);
+    body->x = triples(n);
+    body->v = triples(n);
+    body->a = triples(n);
+    body->b = triples(n);
+    body->m = sm_alloc((size_t)n, sizeof(double));
+    sm_voxels_particles(&body->voxels, coord);
+    for (long p = 0; p < n; p++) {
+        body->m[p] = 1;
+        for (int d = 0; d < 3; d++)
+            body->x0[p][d] = body->voxels.origin[d] + body->voxels.cell * coord[p][d];
+    }
+    free(coord);
+}
+
+static void body_random(unsigned *seed, int kind, int most, Body *body)
+{
+    random_body(seed, kind, most, &body->voxels);
+    body_arrays(body);
+    if (random_int(seed, 2))
+        for (long p = 0; p < body->n; p++) body->m[p] = 0.5 + random_unit(seed);
+    random_deformation(seed, body->voxels.cell, 0.3, body->n, (const double(*)[3])body->x0, body->x);
+    for (long p = 0; p < body->n; p++)
+        for (int d = 0; d < 3; d++) body->v[p][d] = body->voxels.cell * (random_unit(seed) - 0.5);
+}
+
+static void body_free(Body *body)
+{
+    free(body->x0);
+    free(body->x);
+    free(body->v);
+    free(body->a);
+    free(body->b);
+    free(body->m);
+    sm_voxels_free(&body->voxels);
+}
+
+static SmEngine *create(const SmEngineType *type, const Body *body, SmEngineParams params)
+{
+    SmEngine *engine;
+    SmError error = {0};
+    params.mass = body->m;
+    if (type->create(&body->voxels, &params, &engine, &error)) fail_msg("%s", error.text);
+    type->set(engine, SM_POSITION, (const double(*)[3])body->x);
+    type->set(engine, SM_VELOCITY, (const double(*)[3])body->v);
+    return engine;
+}
+
+/* Largest difference of two fields, in cells. */
+static double difference(const Body *body, const double (*a)[3], const double (*b)[3])
+{
+    double worst = 0;
+    for (long p = 0; p < body->n; p++)
+        for (int d = 0; d < 3; d++) {
+            double e = fabs(a[p][d] - b[p][d]) / body->voxels.cell;
+            if (!(e <= worst)) worst = e; /* a NaN stays */
+        }
+    return worst;
+}
+
+static void check_goals(int precision, SmSummation summation, int w, Body *body)
+{
+    SmEngineParams params = {.w = w, .h = 0.01, .summation = summation, .threads = 1};
+    SmEngine *engine = create(engines[precision], body, params);
+    RefRegions regions;
+    ref_regions_build(&body->voxels, w, NULL, 0, &regions);
+    /* the reference starts from the positions as the engine's precision holds them */
+    engines[precision]->get(engine, SM_POSITION, body->x);
+    engines[precision]->goals(engine);
+    engines[precision]->get(engine, SM_GOAL, body->a);
+    ref_goals(&regions, (const double(*)[3])body->x0, body->m, (const double(*)[3])body->x, body->b);
+    double worst = difference(body, (const double(*)[3])body->a, (const double(*)[3])body->b);
+    if (!(worst <= tolerance[precision]))
+        fail_msg("%s, w %d, %dx%dx%d cells, %ld particles: goals differ by %g cells",
+                 engines[precision]->precision, w, body->voxels.size[0], body->voxels.size[1],
+                 body->voxels.size[2], body->n, worst);
+    SmCounts counts;
+    engines[precision]->count(engine, &counts);
+    assert_int_equal(counts.regions, ref_regions_unique(&regions));
+    assert_int_equal(counts.particles, body->n);
+    ref_regions_free(&regions);
+    engines[precision]->destroy(engine);
+}
+
+static void test_goals(void **state)
+{
+    (void)state;
+    unsigned seed = 1;
+    for (int trial = 0; trial < 360; trial++) {
+        Body body;
+        int w = 1 + trial % 6;
+        body_random(&seed, trial / 6 % 6, w > 3 ? 12 : 20, &body);
+        check_goals(trial / 36 % 2, (SmSummation)(trial % 3), w, &body);
+        body_free(&body);
+    }
+}
+
+/* Every member list against breadth-first search. */
+static void test_regions(void **state)
+{
+    (void)state;
+    unsigned seed = 2;
+    for (int trial = 0; trial < 60; trial++) {
+        Body body;
+        int w = 1 + trial % 6;
+        body_random(&seed, trial % 6, 10, &body);
+        SmEngineParams params = {.w = w, .h = 0.01};
+        SmEngine *engine = create(&fastlsm_engine_f32, &body, params);
+        RefRegions regions;
+        ref_regions_build(&body.voxels, w, NULL, 0, &regions);
+        long *member = sm_alloc((size_t)body.n, sizeof *member);
+        for (long p = 0; p < body.n; p++) {
+            long count = fastlsm_engine_f32.region(engine, p, member, body.n);
+            assert_int_equal(count, regions.start[p + 1] - regions.start[p]);
+            for (long i = 0; i < count; i++)
+                assert_int_equal(member[i], regions.member[regions.start[p] + i]);
+        }
+        free(member);
+        ref_regions_free(&regions);
+        fastlsm_engine_f32.destroy(engine);
+        body_free(&body);
+    }
+}
+
+/* Whole steps, damping and gravity included, beside the brute-force engine. */
+static void test_steps(void **state)
+{
+    (void)state;
+    unsigned seed = 3;
+    for (int trial = 0; trial < 72; trial++) {
+        Body body;
+        int precision = trial % 2;
+        body_random(&seed, trial % 6, 9, &body);
+        SmEngineParams params = {.w = 1 + trial / 6 % 3, .h = 0.01, .damping = 0.3,
+                                 .damping_every = 1 + trial / 2 % 2, .gravity = {0, -9.81, 1}};
+        SmEngine *fast = create(engines[precision], &body, params);
+        engines[precision]->get(fast, SM_POSITION, body.x);
+        engines[precision]->get(fast, SM_VELOCITY, body.v);
+        SmEngine *slow = create(&ref_brute_engine, &body, params);
+        for (int step = 0; step < 3; step++) {
+            engines[precision]->step(fast, NULL);
+            ref_brute_engine.step(slow, NULL);
+        }
+        engines[precision]->get(fast, SM_POSITION, body.a);
+        ref_brute_engine.get(slow, SM_POSITION, body.b);
+        double worst = difference(&body, (const double(*)[3])body.a, (const double(*)[3])body.b);
+        /* three steps of a noisy start: a lone cell's 8 particles may turn by eps / gap */
+        if (!(worst <= (precision ? 1e-9 : 1e-3)))
+            fail_msg("%s trial %d: positions differ by %g cells", engines[precision]->precision, trial, worst);
+        engines[precision]->destroy(fast);
+        ref_brute_engine.destroy(slow);
+        body_free(&body);
+    }
+}
+
+static void momentum(const Body *body, const double (*x)[3], const double (*v)[3], double p[3], double l[3])
+{
+    for (int d = 0; d < 3; d++) p[d] = l[d] = 0;
+    for (long i = 0; i < body->n; i++)
+        for (int d = 0; d < 3; d++) {
+            int e = (d + 1) % 3, f = (d + 2) % 3;
+            p[d] += body->m[i] * v[i][d];
+            l[d] += body->m[i] * (x[i][e] * v[i][f] - x[i][f] * v[i][e]);
+        }
+}
+
+static void test_momentum(void **state)
+{
+    (void)state;
+    unsigned seed = 4;
+    for (int trial = 0; trial < 24; trial++) {
+        Body body;
+        int precision = trial % 2;
+        body_random(&seed, trial % 6, 8, &body);
+        /* damping conserves both only per region; eq. 14 with equal weights conserves the linear one */
+        SmEngineParams params = {.w = 1 + trial % 3, .h = 0.01};
+        SmEngine *engine = create(engines[precision], &body, params);
+        double p[2][3], l[2][3], scale = 0;
+        for (int when = 0; when < 2; when++) {
+            engines[precision]->get(engine, SM_POSITION, body.a);
+            engines[precision]->get(engine, SM_VELOCITY, body.b);
+            momentum(&body, (const double(*)[3])body.a, (const double(*)[3])body.b, p[when], l[when]);
+            for (int step = 0; when == 0 && step < 20; step++) engines[precision]->step(engine, NULL);
+        }
+        double reach = 1 + body.voxels.cell * 20;
+        for (long i = 0; i < body.n; i++) scale += body.m[i] * body.voxels.cell / 0.01;
+        for (int d = 0; d < 3; d++) {
+            double limit = precision ? 1e-12 : 5e-5; /* of one cell per step, over 20 steps */
+            double dp = fabs(p[1][d] - p[0][d]) / scale, dl = fabs(l[1][d] - l[0][d]) / (scale * reach);
+            if (!(dp < limit && dl < limit)) fail_msg("%s, trial %d: linear %g, angular %g", engines[precision]->precision, trial, dp, dl);
+        }
+        engines[precision]->destroy(engine);
+        body_free(&body);
+    }
+}
+
+/* A rigidly moving body is left alone, and so is a resting one. */
+static void test_rigid(void **state)
+{
+    (void)state;
+    unsigned seed = 5;
+    for (int trial = 0; trial < 24; trial++) {
+        Body body;
+        int precision = trial % 2;
+        body_random(&seed, trial % 6, 8, &body);
+        double c = cos(0.7), s = sin(0.7), turn = 0.05;
+        for (long p = 0; p < body.n; p++) {
+            double *x0 = body.x0[p];
+            double r[3] = {c * x0[0] - s * x0[1], s * x0[0] + c * x0[1], x0[2]};
+            for (int d = 0; d < 3; d++) body.x[p][d] = r[d] + 3;
+            body.v[p][0] = trial < 12 ? 0 : -turn * r[1];
+            body.v[p][1] = trial < 12 ? 0 : turn * r[0];
+            body.v[p][2] = trial < 12 ? 0 : 0.3;
+        }
+        SmEngineParams params = {.w = 1 + trial % 4, .h = 0.01, .damping = 0.5};
+        SmEngine *engine = create(engines[precision], &body, params);
+        engines[precision]->step(engine, NULL);
+        engines[precision]->get(engine, SM_VELOCITY, body.a);
+        /* in cells per second: (g - x) / h magnifies rounding a hundredfold */
+        double worst = difference(&body, (const double(*)[3])body.a, (const double(*)[3])body.v);
+        if (!(worst < (precision ? 1e-8 : 5e-3))) fail_msg("trial %d: %g", trial, worst);
+        engines[precision]->destroy(engine);
+        body_free(&body);
+    }
+}
+
+/* Crushed flat, inverted, blown up, or all in one point: it comes back to rest, never a NaN. */
+static void test_recovery(void **state)
+{
+    (void)state;
+    const double crush[5][3] = {{1, 1, 0}, {-1, 1, 1}, {1000, 1000, 1000}, {0, 0, 0}, {1, 0, 0}};
+    for (int trial = 0; trial < 20; trial++) {
+        Body body;
+        int precision = trial % 2;
+        unsigned seed = 6;
+        body_random(&seed, 5, 6, &body);
+        for (long p = 0; p < body.n; p++)
+            for (int d = 0; d < 3; d++) {
+                body.v[p][d] = 0;
+                body.x[p][d] = body.x0[p][d] * crush[trial / 4][d] +
+                               1e-3 * body.voxels.cell * (random_unit(&seed) - 0.5);
+            }
+        SmEngineParams params = {.w = 1 + trial / 2 % 2, .h = 0.01, .damping = 0.2};
+        SmEngine *engine = create(engines[precision], &body, params);
+        for (int step = 0; step < 3000; step++) {
+            engines[precision]->step(engine, NULL);
+            if (step % 100) continue;
+            engines[precision]->get(engine, SM_POSITION, body.a);
+            for (long p = 0; p < body.n; p++)
+                for (int d = 0; d < 3; d++) assert_true(isfinite(body.a[p][d]));
+        }
+        /* at rest: goals and positions agree */
+        engines[precision]->goals(engine);
+        engines[precision]->get(engine, SM_GOAL, body.a);
+        engines[precision]->get(engine, SM_POSITION, body.b);
+        double worst = difference(&body, (const double(*)[3])body.a, (const double(*)[3])body.b);
+        if (!(worst < 1e-3)) fail_msg("trial %d: still %g cells from rest", trial, worst);
+        engines[precision]->destroy(engine);
+        body_free(&body);
+    }
+}
+
+static void test_threads(void **state)
+{
+    (void)state;
+    for (int trial = 0; trial < 6; trial++) {
+        unsigned seed = 7;
+        Body body;
+        sm_voxels_init(&body.voxels, 24 + 7 * (trial % 3), 17, 40, 0.5);
+        for (int k = 0; k < 40; k++)
+            for (int j = 0; j < 17; j++)
+                for (int i = 0; i < body.voxels.size[0]; i++)
+                    if (trial < 3 || random_unit(&seed) < 0.8) sm_voxel_set(&body.voxels, i, j, k);
+        sm_voxels_count(&body.voxels);
+        body_arrays(&body);
+        random_deformation(&seed, 0.5, 0.2, body.n, (const double(*)[3])body.x0, body.x);
+        for (int threads = 1; threads <= 5; threads += 2) {
+            SmEngineParams params = {.w = 1 + trial % 3, .h = 0.01, .damping = 0.3, .threads = threads};
+            SmEngine *engine = create(&fastlsm_engine_f32, &body, params);
+            for (int step = 0; step < 4; step++) fastlsm_engine_f32.step(engine, NULL);
+            fastlsm_engine_f32.get(engine, SM_POSITION, threads == 1 ? body.a : body.b);
+            if (threads > 1) assert_memory_equal(body.a, body.b, (size_t)body.n * sizeof(double[3]));
+            fastlsm_engine_f32.destroy(engine);
+        }
+        body_free(&body);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_goals),    cmocka_unit_test(test_regions), cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_momentum), cmocka_unit_test(test_rigid),   cmocka_unit_test(test_recovery),
+        cmocka_unit_test(test_threads),
+    };
+    return cmocka_run_group_tests_name("fastlsm", tests, NULL, NULL);
+}
