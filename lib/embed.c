@@ -84,7 +84,9 @@ static void find_cell(const SmVoxels *voxels, const double q[3], int cell[3])
     for (int a = 0; a < 3; a++) middle[a] = (int)fmin(fmax(floor(q[a]), 0), voxels->size[a] - 1);
     memcpy(cell, middle, sizeof middle);
     if (sm_voxel_get(voxels, cell[0], cell[1], cell[2])) return;
-    int largest = voxels->size[0] + voxels->size[1] + voxels->size[2], reach = 1;
+    int largest = voxels->size[0] > voxels->size[1] ? voxels->size[0] : voxels->size[1];
+    if (voxels->size[2] > largest) largest = voxels->size[2];
+    int reach = 1;
     while (!nearest_within(voxels, q, middle, reach, cell) && reach < largest)
         reach = reach < largest / 2 ? 2 * reach : largest;
     /* A cell on a side may be nearer than one found in a corner of the range. */
