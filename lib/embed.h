@@ -5,21 +5,26 @@
 #include "mesh.h"
 #include "voxel.h"
 
+/* Weights are taken of position differences from corner 0, so that their rounding is relative to
+ * the cell's size and not to the distance from the origin. */
 typedef struct {
     long vertex_count;
-    int (*corner)[8];        /* particles of each vertex's cell */
-    float (*weight)[8];      /* phi_i(X), trilinear, eq. 15 */
-    float (*tangent_u)[8];   /* U . grad phi_i, eq. 17 */
-    float (*tangent_v)[8];
+    int (*corner)[8];      /* particles of each vertex's cell, x fastest, then y, then z */
+    float (*weight)[8];    /* phi_i(X), trilinear, eq. 15 */
+    float (*tangent_u)[8]; /* cell * U . grad phi_i, eq. 17; zero without a rest normal */
+    float (*tangent_v)[8]; /* the same of V; U x V is the rest normal */
 } SmEmbedding;
 
 /* Ties every vertex of `mesh` to the material cell that holds it (the nearest one for a vertex
- * outside by rounding). Normals of the rest surface are area weighted. O(vertices). */
+ * outside: by rounding, usually; its weights then extrapolate). Normals of the rest surface are
+ * area weighted. `voxels` must have a material cell. Frees nothing and keeps neither argument.
+ * O(vertices log cells-in-a-row), but O(box) for a vertex more than a cell away from material. */
 void sm_embed_create(const SmMesh *mesh, const SmVoxels *voxels, SmEmbedding *embedding);
 void sm_embed_free(SmEmbedding *embedding);
 
 /* Deformed vertex positions (and unit normals, unless NULL) from particle positions x.
- * A normal whose tangents are parallel comes out zero, never NaN. */
+ * A normal whose tangents are parallel comes out zero, never NaN (while x is finite and within
+ * 1e60). Threads share the vertices; any number of them gives the same bits. */
 void sm_embed_apply(const SmEmbedding *embedding, const double (*x)[3], double (*position)[3],
                     double (*normal)[3]);
 

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
-static const double far = 8; /* times the longest side of the box */
+static const double far_away = 8; /* times the longest side of the box */
 
 typedef enum { OBJ, STL, PLY, OFF } Format;
 
@@ -130,10 +130,10 @@ static bool find_offset(const char *text, size_t size, Format format, double off
     double side = 0, distance = 0;
     for (int a = 0; a < 3; a++) {
         side = fmax(side, high[a] - low[a]);
-        offset[a] = round(0.5 * low[a] + 0.5 * high[a]);
+        offset[a] = 0.5 * low[a] + 0.5 * high[a];
         distance = fmax(distance, fabs(offset[a]));
     }
-    return low[0] <= high[0] && distance > far * side && isfinite(distance);
+    return low[0] <= high[0] && distance > far_away * side && isfinite(distance);
 }
 
 static bool known_format(const char *text, const char *suffix, Format *format)

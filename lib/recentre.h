@@ -1,8 +1,9 @@
 /* recentre.h - keeps the digits of meshes far from the origin.
  *
- * Debian's Assimp holds coordinates in single precision, 24 bits: 0.03 at 447,600 and 0.5 at 5e6,
- * which tears or folds a city block in a national grid. The remedy is to shift the numbers in the
- * file's text towards the origin before Assimp sees them and to shift the result back in double
+ * Debian's Assimp holds coordinates in single precision, 24 bits: steps of 0.03 at 447,600 and of
+ * 0.5 at 5e6. Of shared/meshes/bad_huge_coordinates_city.obj (84,800, 447,600; 524 wide) that fuses
+ * 18 of 14,760 vertices, drops 31 triangles and flattens 90. The remedy is to move the numbers in
+ * the file's text to the origin before Assimp sees them and to move the result back in double
  * precision; what remains is 1e-7 of the mesh's own size. Done for OBJ, ASCII STL, ASCII PLY and
  * OFF. Binary STL and glTF hold single precision themselves; binary PLY in doubles, COLLADA and
  * rarer formats do lose digits. */

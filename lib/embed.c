@@ -1,0 +1,252 @@
+#include "embed.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Particles by lattice row (y, z), in which they rise with x: numbers without a box-sized table. */
+typedef struct {
+    const SmVoxels *voxels;
+    int (*coordinate)[3]; /* [particle_count] */
+    int *row;             /* [(size[2] + 1) * (size[1] + 1) + 1], first particle of each row */
+} Index;
+
+static size_t row_of(const SmVoxels *voxels, int j, int k)
+{
+    return (size_t)k * ((size_t)voxels->size[1] + 1) + (size_t)j;
+}
+
+static Index make_index(const SmVoxels *voxels)
+{
+    Index index = {.voxels = voxels};
+    size_t rows = row_of(voxels, 0, voxels->size[2] + 1);
+    index.coordinate = sm_alloc((size_t)voxels->particle_count, sizeof *index.coordinate);
+    index.row = sm_alloc(rows + 1, sizeof *index.row);
+    sm_voxels_particles(voxels, index.coordinate);
+    for (long p = 0; p < voxels->particle_count; p++)
+        index.row[row_of(voxels, index.coordinate[p][1], index.coordinate[p][2]) + 1]++;
+    for (size_t r = 0; r < rows; r++) index.row[r + 1] += index.row[r];
+    return index;
+}
+
+/* The particle at lattice vertex (i, j, k), which exists. */
+static int particle_at(const Index *index, int i, int j, int k)
+{
+    size_t row = row_of(index->voxels, j, k);
+    int low = index->row[row], high = index->row[row + 1];
+    while (high - low > 1) {
+        int middle = low + (high - low) / 2;
+        if (index->coordinate[middle][0] <= i)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Squared distance, in cells, from lattice position q to the cell. */
+static double cell_distance(const double q[3], const int cell[3])
+{
+    double sum = 0;
+    for (int a = 0; a < 3; a++) {
+        double d = fmax(fmax(cell[a] - q[a], q[a] - cell[a] - 1), 0);
+        sum += d * d;
+    }
+    return sum;
+}
+
+/* Nearest material cell among those at most `reach` from `middle`; false: none. */
+static bool nearest_within(const SmVoxels *voxels, const double q[3], const int middle[3],
+                           int reach, int nearest[3])
+{
+    double best = DBL_MAX;
+    int low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+        low[a] = middle[a] - reach > 0 ? middle[a] - reach : 0;
+        high[a] = middle[a] < voxels->size[a] - 1 - reach ? middle[a] + reach : voxels->size[a] - 1;
+    }
+    for (int k = low[2]; k <= high[2]; k++)
+        for (int j = low[1]; j <= high[1]; j++)
+            for (int i = low[0]; i <= high[0]; i++) {
+                int cell[3] = {i, j, k};
+                if (!sm_voxel_get(voxels, i, j, k) || cell_distance(q, cell) >= best) continue;
+                best = cell_distance(q, cell);
+                memcpy(nearest, cell, sizeof cell);
+            }
+    return best < DBL_MAX;
+}
+
+static void find_cell(const SmVoxels *voxels, const double q[3], int cell[3])
+{
+    int middle[3];
+    for (int a = 0; a < 3; a++) middle[a] = (int)fmin(fmax(floor(q[a]), 0), voxels->size[a] - 1);
+    memcpy(cell, middle, sizeof middle);
+    if (sm_voxel_get(voxels, cell[0], cell[1], cell[2])) return;
+    int largest = voxels->size[0] > voxels->size[1] ? voxels->size[0] : voxels->size[1];
+    if (voxels->size[2] > largest) largest = voxels->size[2];
+    int reach = 1;
+    while (!nearest_within(voxels, q, middle, reach, cell) && reach < largest)
+        reach = reach < largest / 2 ? 2 * reach : largest;
+    /* A cell on a side may be nearer than one found in a corner of the range. */
+    if (reach > 1)
+        nearest_within(voxels, q, middle, reach < largest / 2 ? 2 * reach : largest, cell);
+}
+
+static void cross(const double a[3], const double b[3], double result[3])
+{
+    result[0] = a[1] * b[2] - a[2] * b[1];
+    result[1] = a[2] * b[0] - a[0] * b[2];
+    result[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Makes `vector` a unit vector and returns true, or zero and false. */
+static bool normalize(double vector[3])
+{
+    double length = sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
+    bool usable = length > 0 && isfinite(length);
+    for (int a = 0; a < 3; a++) vector[a] = usable ? vector[a] / length : 0;
+    return usable;
+}
+
+/* Area-weighted vertex normals; lengths are in cells, whatever the mesh's unit. */
+static double (*rest_normals(const SmMesh *mesh, double cell))[3]
+{
+    double(*normal)[3] = sm_alloc((size_t)mesh->vertex_count, sizeof *normal);
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        const int *corner = mesh->triangle[t];
+        double u[3], v[3], n[3];
+        for (int a = 0; a < 3; a++) {
+            double origin = mesh->position[corner[0]][a];
+            u[a] = (mesh->position[corner[1]][a] - origin) / cell;
+            v[a] = (mesh->position[corner[2]][a] - origin) / cell;
+        }
+        cross(u, v, n);
+        for (int c = 0; c < 3; c++)
+            for (int a = 0; a < 3; a++) normal[corner[c]][a] += n[a];
+    }
+    return normal;
+}
+
+/* U and V with U x V = N, orthonormal; zero when N is. */
+static void tangents(const double sum[3], double u[3], double v[3])
+{
+    double n[3] = {sum[0], sum[1], sum[2]}, axis[3] = {0};
+    bool usable = normalize(n);
+    int least = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
+    if (fabs(n[2]) < fabs(n[least])) least = 2;
+    axis[least] = usable;
+    cross(axis, n, u);
+    normalize(u);
+    cross(n, u, v);
+}
+
+/* Eqs. 15 and 17 at local coordinates s of the cell. */
+static void weigh(const double s[3], const double u[3], const double v[3], float weight[8],
+                  float tangent_u[8], float tangent_v[8])
+{
+    for (int i = 0; i < 8; i++) {
+        double factor[3], slope[3], gradient[3];
+        for (int a = 0; a < 3; a++) {
+            bool high = i >> a & 1;
+            factor[a] = high ? s[a] : 1 - s[a];
+            slope[a] = high ? 1 : -1;
+        }
+        for (int a = 0; a < 3; a++)
+            gradient[a] = slope[a] * factor[(a + 1) % 3] * factor[(a + 2) % 3];
+        weight[i] = (float)(factor[0] * factor[1] * factor[2]);
+        tangent_u[i] = (float)(u[0] * gradient[0] + u[1] * gradient[1] + u[2] * gradient[2]);
+        tangent_v[i] = (float)(v[0] * gradient[0] + v[1] * gradient[1] + v[2] * gradient[2]);
+    }
+}
+
+static void embed_vertex(const Index *index, const double position[3], const double normal[3],
+                         SmEmbedding *embedding, long vertex)
+{
+    const SmVoxels *voxels = index->voxels;
+    double q[3], s[3], u[3], v[3];
+    int cell[3];
+    for (int a = 0; a < 3; a++) q[a] = (position[a] - voxels->origin[a]) / voxels->cell;
+    find_cell(voxels, q, cell);
+    for (int a = 0; a < 3; a++) s[a] = q[a] - cell[a];
+    for (int i = 0; i < 8; i += 2) { /* neighbours along x have neighbouring numbers */
+        int particle = particle_at(index, cell[0], cell[1] + (i >> 1 & 1), cell[2] + (i >> 2));
+        embedding->corner[vertex][i] = particle;
+        embedding->corner[vertex][i + 1] = particle + 1;
+    }
+    tangents(normal, u, v);
+    weigh(s, u, v, embedding->weight[vertex], embedding->tangent_u[vertex],
+          embedding->tangent_v[vertex]);
+}
+
+void sm_embed_create(const SmMesh *mesh, const SmVoxels *voxels, SmEmbedding *embedding)
+{
+    assert(voxels->cell_count > 0);
+    size_t count = (size_t)mesh->vertex_count;
+    *embedding = (SmEmbedding){.vertex_count = mesh->vertex_count};
+    embedding->corner = sm_alloc(count, sizeof *embedding->corner);
+    embedding->weight = sm_alloc(count, sizeof *embedding->weight);
+    embedding->tangent_u = sm_alloc(count, sizeof *embedding->tangent_u);
+    embedding->tangent_v = sm_alloc(count, sizeof *embedding->tangent_v);
+    Index index = make_index(voxels);
+    double(*normal)[3] = rest_normals(mesh, voxels->cell);
+#pragma omp parallel for schedule(static)
+    for (long v = 0; v < mesh->vertex_count; v++)
+        embed_vertex(&index, mesh->position[v], normal[v], embedding, v);
+    free(normal);
+    free(index.coordinate);
+    free(index.row);
+}
+
+void sm_embed_free(SmEmbedding *embedding)
+{
+    free(embedding->corner);
+    free(embedding->weight);
+    free(embedding->tangent_u);
+    free(embedding->tangent_v);
+    *embedding = (SmEmbedding){0};
+}
+
+/* Sum of w_i (x_i - x_0). */
+static inline void blend(const float weight[8], const double difference[3][8], double sum[3])
+{
+    for (int a = 0; a < 3; a++) {
+        double total = 0;
+        for (int i = 1; i < 8; i++) total += (double)weight[i] * difference[a][i];
+        sum[a] = total;
+    }
+}
+
+static void deformed_normal(const double u_sum[3], const double v_sum[3], double normal[3])
+{
+    static const double parallel = 1e-12; /* sine of the angle between the tangents */
+    double u[3] = {u_sum[0], u_sum[1], u_sum[2]}, v[3] = {v_sum[0], v_sum[1], v_sum[2]};
+    bool usable = normalize(u);
+    usable = normalize(v) && usable;
+    cross(u, v, normal);
+    double squared = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+    if (usable && squared > parallel * parallel)
+        normalize(normal);
+    else
+        normal[0] = normal[1] = normal[2] = 0;
+}
+
+void sm_embed_apply(const SmEmbedding *embedding, const double (*x)[3], double (*position)[3],
+                    double (*normal)[3])
+{
+#pragma omp parallel for schedule(static)
+    for (long v = 0; v < embedding->vertex_count; v++) {
+        const int *corner = embedding->corner[v];
+        const double *first = x[corner[0]];
+        double difference[3][8], sum[3], u[3], w[3];
+        for (int i = 0; i < 8; i++)
+            for (int a = 0; a < 3; a++) difference[a][i] = x[corner[i]][a] - first[a];
+        blend(embedding->weight[v], difference, sum);
+        for (int a = 0; a < 3; a++) position[v][a] = first[a] + sum[a];
+        if (!normal) continue;
+        blend(embedding->tangent_u[v], difference, u);
+        blend(embedding->tangent_v[v], difference, w);
+        deformed_normal(u, w, normal[v]);
+    }
+}
