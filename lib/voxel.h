@@ -66,8 +66,8 @@ typedef struct {
  * The mesh's equal positions must have been merged (sm_mesh_merge()). O(triangles + cells / 64) a
  * lattice; at most 7 times bits/8 bytes for a moment. On success the caller frees `voxels`.
  * `report` may be NULL. Errors (SM_INPUT), on which `voxels` is zeroed: what sm_mesh_check() says;
- * most edges open and no inside for a solid; a lattice of more than 2^31 cells or 512 MiB; a cell
- * size or particle count out of range. The line begins with `name`. */
+ * loose triangles without an inside for a solid; a lattice of more than 2^31 cells or 512 MiB; a
+ * cell size or particle count out of range. The line begins with `name`. */
 SmCode sm_voxelise_report(const SmMesh *mesh, const SmVoxelParams *params, const char *name,
                           SmVoxels *voxels, SmVoxelReport *report, SmError *error);
 

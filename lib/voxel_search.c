@@ -91,17 +91,18 @@ static SmCode search_cell(Search *s, SmError *error)
 }
 
 /* Where the count jumps with the cell size, other positions of the lattice have counts between:
- * first half a cell along some axes, then anywhere (the R3 sequence of Roberts, 2018, whose points
+ * first half a cell along some axes, then anywhere (the R4 sequence of Roberts, 2018, whose points
  * spread evenly) with a cell size between those to either side. */
 static SmCode search_shift(Search *s, SmError *error)
 {
-    const double golden[4] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703, 0.4503};
+    const double step[4] = {0.8566748838545029, 0.733891856627126, 0.6287067210378087,
+                            0.5385972572236101};
     double least = s->many.cell && isfinite(s->many.count) ? s->many.cell : s->best.cell;
     double most = s->few.cell ? s->few.cell : s->best.cell, centred = s->best.cell;
     for (int i = 1; i <= SHIFTS && miss(s) * 100 > s->wanted; i++) {
-        double shift[3], part = fmod(i * golden[3], 1);
+        double shift[3], part = fmod(i * step[3], 1);
         double cell = i < 8 ? centred : least * pow(most / least, 1.5 * part - 0.25);
-        for (int d = 0; d < 3; d++) shift[d] = i < 8 ? (i >> d & 1) * 0.5 : fmod(i * golden[d], 1);
+        for (int d = 0; d < 3; d++) shift[d] = i < 8 ? (i >> d & 1) * 0.5 : fmod(i * step[d], 1);
         if (!sm_voxeliser_fits(s->voxeliser, cell)) continue;
         SmCode code = try_lattice(s, cell, shift, error);
         if (code) return code;

@@ -115,7 +115,7 @@ static long cells_of(const SmVoxels *voxels)
 }
 
 /* Fills the inside. Returns false when there cannot be one: no axis has rays that leave again, and
- * most triangles have an open edge to each side. */
+ * most triangles share no edge with another. */
 static bool fill_inside(SmVoxeliser *v, SmVoxels *voxels, SmVoxelReport *report)
 {
     sm_voxel_flood(voxels);
@@ -124,7 +124,7 @@ static bool fill_inside(SmVoxeliser *v, SmVoxels *voxels, SmVoxelReport *report)
     report->inside = SM_INSIDE_CLOSED;
     if (v->closed) return true;
     int axes = sm_voxel_vote(v->mesh, (const double(*)[3])v->point, voxels);
-    if (axes == 0 && sm_mesh_info(v->mesh).open_edges * 2 > v->mesh->triangle_count * 3)
+    if (axes == 0 && sm_mesh_info(v->mesh).open_edges * 2 > v->mesh->triangle_count * 5)
         return false;
     sm_voxel_flood(voxels);
     report->vote_cells = cells_of(voxels) - flooded;
@@ -155,8 +155,8 @@ SmCode sm_voxeliser_build(SmVoxeliser *v, double cell, const double shift[3], Sm
     if (v->fill == SM_SOLID && !fill_inside(v, voxels, report)) {
         sm_voxels_free(voxels);
         return sm_fail(error, SM_INPUT,
-                       "%s: no inside to fill: most edges are open and no view of the mesh is "
-                       "closed; simulate it as a shell",
+                       "%s: no inside to fill: its triangles are loose (most share no edge with "
+                       "another); simulate it as a shell",
                        v->name);
     }
     sm_voxels_count(voxels);
