@@ -1,0 +1,13 @@
+/* voxel_search.h - the cell size that gives a wanted number of particles. */
+#ifndef SM_VOXEL_SEARCH_H
+#define SM_VOXEL_SEARCH_H
+
+#include "voxelise.h"
+
+/* Makes the lattice whose particle count is nearest to `wanted` among those tried: at most 12 cell
+ * sizes, then, while it is more than a hundredth off, 47 lattices moved by a part of a cell. Fills
+ * `voxels` and `report`. Deterministic. Errors as sm_voxelise(). */
+SmCode sm_voxel_search(SmVoxeliser *voxeliser, long wanted, SmVoxels *voxels, SmVoxelReport *report,
+                       SmError *error);
+
+#endif
