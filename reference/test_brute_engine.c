@@ -390,7 +390,7 @@ static void bad_parameters_are_refused(void **state)
     (void)state;
     double negative[8] = {1, 1, 1, -1, 1, 1, 1, 1};
     const SmEngineParams good = {.w = 1, .h = 0.1};
-    SmEngineParams bad[8] = {good, good, good, good, good, good, good, good};
+    SmEngineParams bad[9] = {good, good, good, good, good, good, good, good, good};
     bad[0].w = 0;
     bad[1].h = 0;
     bad[2].h = NAN;
@@ -399,13 +399,14 @@ static void bad_parameters_are_refused(void **state)
     bad[5].strain_limit = NAN;
     bad[6].mass = negative;
     bad[7].h = INFINITY;
+    bad[8].gravity[1] = NAN;
     SmVoxels voxels = block(1, 1, 1), empty;
     sm_voxels_init(&empty, 2, 2, 2, 1.0);
     sm_voxels_count(&empty);
-    for (int n = 0; n < 9; n++) {
+    for (int n = 0; n < 10; n++) {
         SmError error = {0};
         SmEngine *engine = NULL;
-        SmCode code = n < 8 ? type->create(&voxels, bad + n, &engine, &error)
+        SmCode code = n < 9 ? type->create(&voxels, bad + n, &engine, &error)
                             : type->create(&empty, &good, &engine, &error);
         assert_int_equal(code, SM_INPUT);
         assert_true(strlen(error.text) > 20);
