@@ -1,4 +1,5 @@
 /* The brute-force engine: every instance is a body of its own, every step the equations in turn. */
+#include <assert.h>
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -51,6 +52,9 @@ static SmCode check_params(const SmVoxels *voxels, const SmEngineParams *params,
     if (!(params->strain_limit >= 0))
         return sm_fail(error, SM_INPUT, "strain_limit is %g: it is 0 (never) or more",
                        params->strain_limit);
+    for (int a = 0; a < 3; a++)
+        if (!isfinite(params->gravity[a]))
+            return sm_fail(error, SM_INPUT, "gravity is not finite: give three numbers");
     for (long p = 0; params->mass && p < voxels->particle_count; p++)
         if (!(params->mass[p] > 0 && isfinite(params->mass[p])))
             return sm_fail(error, SM_INPUT, "the mass of particle %ld is %g: it must be positive",
@@ -305,6 +309,7 @@ static void brute_push(SmEngine *engine, long count, const long *particle,
                        const double (*impulse)[3])
 {
     for (long n = 0; n < count; n++) {
+        assert(particle[n] >= 0 && particle[n] < engine->params.instances * engine->count);
         long p = particle[n] % engine->count;
         Body *body = engine->body + particle[n] / engine->count;
         for (int a = 0; a < 3; a++) body->v[p][a] += impulse[n][a] / engine->mass[p];
@@ -325,6 +330,7 @@ static void brute_bound(SmEngine *engine, const SmBoundary *boundary)
         long *particle = sm_alloc((size_t)from->count, sizeof *particle);
         for (long k = 0; k < from->count; k++) {
             particle[k] = from->particle[k];
+            assert(particle[k] >= 0 && particle[k] < engine->params.instances * engine->count);
             engine->held[particle[k]] = true;
         }
         engine->handle[n] = *from;

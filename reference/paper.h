@@ -1,4 +1,6 @@
-/* paper.h - what the papers print, from the data file reference/papers.cfg. */
+/* paper.h - what the papers print, from the data file reference/papers.cfg.
+ *
+ * The file is compiled in; it says which status means what. */
 #ifndef REF_PAPER_H
 #define REF_PAPER_H
 
@@ -13,16 +15,32 @@ typedef struct {
 
 /* A row of a paper's table. */
 typedef struct {
-    char paper[24], scene[24];
+    char paper[24], scene[24]; /* "fastlsm", "statue-solid" */
+    char title[40];            /* as the paper calls it: "Buddha (solid)" */
     RefValue triangles, particles, regions, w;
     RefValue stage_ms[SM_STAGES], stage_percent[SM_STAGES], total_ms;
     char note[200];
 } RefPaperRow;
+
+/* A number that a paper states outside its tables. */
+typedef struct {
+    char paper[24], name[24]; /* "fastlsm", "warm-polar" */
+    RefValue value;
+    char unit[32], place[32]; /* "ns/decomposition", "section 4" */
+    char note[200];
+} RefPaperClaim;
 
 /* Rows in the paper's order; `count` receives how many. Read once from the data compiled in. */
 const RefPaperRow *ref_paper_rows(int *count);
 
 /* The row of `paper` ("fastlsm") for `scene` ("penguin"), or NULL. */
 const RefPaperRow *ref_paper_find(const char *paper, const char *scene);
+
+/* All claims, in the file's order; one of them by name, or NULL. */
+const RefPaperClaim *ref_paper_claims(int *count);
+const RefPaperClaim *ref_paper_claim(const char *paper, const char *name);
+
+/* "quoted", "derived", "damaged", "second-hand". */
+const char *ref_status_name(RefStatus status);
 
 #endif

@@ -397,6 +397,33 @@ static void rigid_velocity_conserves_momentum(void **state)
     }
 }
 
+/* A rod along x, `thickness` across, that turns as a whole: about its own axis, too, for as long as
+ * I_r's least eigenvalue (thickness^2 of the largest) is above the threshold. */
+static void thin_bodies_turn_too(void **state)
+{
+    (void)state;
+    static const double thickness[] = {1e-1, 1e-3, 1e-7, 0};
+    uint64_t seed = 29;
+    for (int n = 0; n < 4; n++) {
+        Body body = body_create(&seed, 9);
+        bool spins = thickness[n] > 1e-5;
+        const double omega[3] = {spins ? 2 : 0, 1, -3}, spin[3] = {spins ? 0 : 5, 0, 0};
+        double(*all)[3] = sm_alloc((size_t)body.count, sizeof *all);
+        for (long p = 0; p < body.count; p++) {
+            body.x[p][0] = body.x0[p][0];
+            for (int a = 1; a < 3; a++) body.x[p][a] = thickness[n] * body.x0[p][a];
+            memset(body.v[p], 0, sizeof body.v[p]);
+            add_cross(omega, body.x[p], 1, body.v[p]);
+            memcpy(all[p], body.v[p], sizeof all[p]);
+            add_cross(spin, body.x[p], 1, all[p]); /* too thin to be felt */
+        }
+        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(all), body.g);
+        assert_near(CONST(body.g), CONST(body.v), body.count, spins ? 1e-9 : 1e-5);
+        free(all);
+        body_free(&body);
+    }
+}
+
 /* Crushed to a plane, a line, a point, or turned inside out; far away; huge: all stay finite. */
 static void crushed_bodies_stay_finite(void **state)
 {
@@ -432,6 +459,7 @@ int main(void)
         cmocka_unit_test(goals_conserve_momentum),
         cmocka_unit_test(rigid_velocity_of_rigid_motion_is_itself),
         cmocka_unit_test(rigid_velocity_conserves_momentum),
+        cmocka_unit_test(thin_bodies_turn_too),
         cmocka_unit_test(crushed_bodies_stay_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

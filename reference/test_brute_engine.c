@@ -276,7 +276,7 @@ static void instances_are_independent(void **state)
 static void stretched_links_break(void **state)
 {
     (void)state;
-    const SmEngineParams params = {.w = 2, .h = 0.01, .strain_limit = 1.5, .instances = 2};
+    const SmEngineParams params = {.w = 1, .h = 0.01, .strain_limit = 1.5, .instances = 2};
     SmEngine *engine = create(4, 1, 1, &params);
     SmCounts before, after;
     type->count(engine, &before);
@@ -284,7 +284,7 @@ static void stretched_links_break(void **state)
     assert_int_equal(before.links, 5 * 6 + 4 * 16);
     double(*x)[3] = field(engine, SM_POSITION);
     for (long p = 0; p < 20; p++)
-        if (p % 5 > 2) x[p][0] += 50; /* far enough for one step's pull to leave it torn */
+        if (p % 5 > 2) x[p][0] += 3 + 0.3 * (double)(p / 5); /* some links break, some hold */
     type->set(engine, SM_POSITION, CONST(x));
     double(*rest)[3] = field(engine, SM_REST);
     type->step(engine, NULL);
@@ -302,14 +302,14 @@ static void stretched_links_break(void **state)
             broken[count++][1] = q;
         }
     type->count(engine, &after);
-    assert_true(count >= 16);
+    assert_true(count > 0 && count < 94);
     assert_int_equal(after.broken, count);
     assert_int_equal(after.links, before.links - count);
 
     SmVoxels voxels = block(4, 1, 1);
     RefRegions expected, whole;
-    ref_regions_build(&voxels, 2, (const int(*)[2])broken, count, &expected);
-    ref_regions_build(&voxels, 2, NULL, 0, &whole);
+    ref_regions_build(&voxels, 1, (const int(*)[2])broken, count, &expected);
+    ref_regions_build(&voxels, 1, NULL, 0, &whole);
     assert_int_equal(after.regions, ref_regions_unique(&expected));
     for (long p = 0; p < 40; p++) {
         const RefRegions *regions = p < 20 ? &expected : &whole;
@@ -390,7 +390,7 @@ static void bad_parameters_are_refused(void **state)
     (void)state;
     double negative[8] = {1, 1, 1, -1, 1, 1, 1, 1};
     const SmEngineParams good = {.w = 1, .h = 0.1};
-    SmEngineParams bad[8] = {good, good, good, good, good, good, good, good};
+    SmEngineParams bad[9] = {good, good, good, good, good, good, good, good, good};
     bad[0].w = 0;
     bad[1].h = 0;
     bad[2].h = NAN;
@@ -399,13 +399,14 @@ static void bad_parameters_are_refused(void **state)
     bad[5].strain_limit = NAN;
     bad[6].mass = negative;
     bad[7].h = INFINITY;
+    bad[8].gravity[1] = NAN;
     SmVoxels voxels = block(1, 1, 1), empty;
     sm_voxels_init(&empty, 2, 2, 2, 1.0);
     sm_voxels_count(&empty);
-    for (int n = 0; n < 9; n++) {
+    for (int n = 0; n < 10; n++) {
         SmError error = {0};
         SmEngine *engine = NULL;
-        SmCode code = n < 8 ? type->create(&voxels, bad + n, &engine, &error)
+        SmCode code = n < 9 ? type->create(&voxels, bad + n, &engine, &error)
                             : type->create(&empty, &good, &engine, &error);
         assert_int_equal(code, SM_INPUT);
         assert_true(strlen(error.text) > 20);

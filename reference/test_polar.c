@@ -170,43 +170,49 @@ static void a_rotation_is_its_own(void **state)
     }
 }
 
-/* Where many rotations are as good, no other of them is nearer to `last`. Other `last`s, near and
- * far, steer to the others. */
-static void assert_nearest(const double A[9], const double last[9])
+/* The rotations that are as good as any for A = U diag(s) V^T: U P V^T with P a turn in the plane
+ * of the last two columns, or, where all |s| are equal, any reflection times diag(1, 1, -1). */
+static void another_best(const double s[3], const double U[9], const double V[9], double Q[9])
 {
-    double R[9];
-    ref_polar(A, last, R);
-    assert_rotation(R);
-    assert_best(A, R);
-    double best = trace_of_product(R, A), nearness = trace_of_product(R, last);
-    for (int trial = 0; trial < 400; trial++) {
-        double other[9], Q[9];
-        random_rotation(other);
-        if (trial % 2) {
-            const double axis[3] = {uniform(), uniform(), uniform()};
-            turn(axis, 0.05 * uniform(), Q);
-            multiply(Q, last, other);
-        }
-        ref_polar(A, other, Q);
-        assert_true(fabs(trace_of_product(Q, A) - best) < 1e-13);
-        assert_true(trace_of_product(Q, last) <= nearness + 1e-13);
+    double P[9], T[9], UP[9];
+    const double x_axis[3] = {1, 0, 0};
+    if (s[0] + s[2] > 0) {
+        turn(x_axis, 6.3 * uniform(), P);
+    } else {
+        double n[3] = {uniform(), uniform(), uniform()};
+        double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        for (int k = 0; k < 9; k++)
+            P[k] = ((k % 4 == 0) - 2 * n[k / 3] * n[k % 3] / square) * (k % 3 == 2 ? -1 : 1);
     }
+    multiply(U, P, UP);
+    transpose(V, T);
+    multiply(UP, T, Q);
 }
 
 static void ties_go_to_the_last_rotation(void **state)
 {
     (void)state;
     static const double tied[][3] = {{2, 0, 0}, {1, 0.5, -0.5}, {1, 1, -1}, {3, 1e-17, 1e-18}};
-    for (size_t n = 0; n < sizeof tied / sizeof *tied; n++)
-        for (int trial = 0; trial < 100; trial++) {
-            double A[9], last[9], R[9], again[9];
-            random_matrix(tied[n][0], tied[n][1], tied[n][2], A);
-            random_rotation(last);
-            assert_nearest(A, last);
-            ref_polar(A, last, R); /* and stays there */
-            ref_polar(A, R, again);
-            for (int k = 0; k < 9; k++) assert_true(fabs(R[k] - again[k]) < 1e-14);
+    for (int trial = 0; trial < 400; trial++) {
+        const double *s = tied[trial % 4];
+        double U[9], V[9], T[9], US[9], A[9], last[9], R[9], again[9];
+        random_rotation(U);
+        random_rotation(V);
+        random_rotation(last);
+        for (int n = 0; n < 9; n++) US[n] = U[n] * s[n % 3];
+        transpose(V, T);
+        multiply(US, T, A);
+        check(A, last);
+        ref_polar(A, last, R);
+        for (int other = 0; other < 300; other++) {
+            double Q[9];
+            another_best(s, U, V, Q);
+            assert_true(fabs(trace_of_product(Q, A) - trace_of_product(R, A)) < 1e-13);
+            assert_true(trace_of_product(Q, last) <= trace_of_product(R, last) + 1e-13);
         }
+        ref_polar(A, R, again); /* and stays there */
+        for (int k = 0; k < 9; k++) assert_true(fabs(R[k] - again[k]) < 1e-14);
+    }
 }
 
 static void rank_two_is_no_tie(void **state)

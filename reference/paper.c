@@ -1,0 +1,143 @@
+#include "paper.h"
+
+#include <libconfig.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <threads.h>
+
+#include "../lib/error.h"
+
+extern const char ref_papers_text[]; /* papers.cmake makes it of papers.cfg */
+
+static struct {
+    int row_count, claim_count;
+    RefPaperRow *row;
+    RefPaperClaim *claim;
+} data;
+static once_flag once = ONCE_FLAG_INIT;
+
+const char *ref_status_name(RefStatus status)
+{
+    static const char *const names[] = {"quoted", "derived", "damaged", "second-hand"};
+    return names[status];
+}
+
+/* The data file is part of the program: a fault in it is the program's. */
+static void fault(const char *what, int line)
+{
+    fprintf(stderr, "shapebench: reference/papers.cfg, line %d: %s\n", line, what);
+    abort();
+}
+
+static RefStatus status_of(const config_setting_t *pair)
+{
+    const char *name = config_setting_get_string_elem(pair, 1);
+    for (RefStatus s = REF_QUOTED; name && s <= REF_SECOND_HAND; s++)
+        if (strcmp(name, ref_status_name(s)) == 0) return s;
+    fault("a status is quoted, derived, damaged or second-hand", config_setting_source_line(pair));
+    return REF_DAMAGED;
+}
+
+static RefValue value_of(const config_setting_t *group, const char *name)
+{
+    const config_setting_t *pair = group ? config_setting_get_member(group, name) : NULL;
+    if (!pair) return (RefValue){NAN, REF_QUOTED};
+    const config_setting_t *number = config_setting_get_elem(pair, 0);
+    if (config_setting_length(pair) != 2 || !number || !config_setting_is_number(number))
+        fault("a value is a number and its status", config_setting_source_line(pair));
+    return (RefValue){config_setting_get_float(number), status_of(pair)};
+}
+
+static void text_of(const config_setting_t *group, const char *name, char *text, size_t room)
+{
+    const char *value = NULL;
+    if (!config_setting_lookup_string(group, name, &value) || strlen(value) >= room)
+        fault("a text is missing or too long", config_setting_source_line(group));
+    else
+        memcpy(text, value, strlen(value) + 1);
+}
+
+static void read_row(const config_setting_t *from, RefPaperRow *row)
+{
+    text_of(from, "paper", row->paper, sizeof row->paper);
+    text_of(from, "scene", row->scene, sizeof row->scene);
+    text_of(from, "title", row->title, sizeof row->title);
+    text_of(from, "note", row->note, sizeof row->note);
+    row->triangles = value_of(from, "triangles");
+    row->particles = value_of(from, "particles");
+    row->regions = value_of(from, "regions");
+    row->w = value_of(from, "w");
+    row->total_ms = value_of(from, "total_ms");
+    const config_setting_t *ms = config_setting_get_member(from, "stage_ms");
+    const config_setting_t *percent = config_setting_get_member(from, "stage_percent");
+    for (int s = 0; s < SM_STAGES; s++) {
+        row->stage_ms[s] = value_of(ms, sm_stage_name((SmStage)s));
+        row->stage_percent[s] = value_of(percent, sm_stage_name((SmStage)s));
+    }
+}
+
+static void read_claim(const config_setting_t *from, RefPaperClaim *claim)
+{
+    text_of(from, "paper", claim->paper, sizeof claim->paper);
+    text_of(from, "name", claim->name, sizeof claim->name);
+    text_of(from, "unit", claim->unit, sizeof claim->unit);
+    text_of(from, "place", claim->place, sizeof claim->place);
+    text_of(from, "note", claim->note, sizeof claim->note);
+    claim->value = value_of(from, "value");
+}
+
+static void read_all(void)
+{
+    config_t config;
+    config_init(&config);
+    config_set_auto_convert(&config, CONFIG_TRUE); /* 150 is a number, too */
+    if (!config_read_string(&config, ref_papers_text))
+        fault(config_error_text(&config), config_error_line(&config));
+    const config_setting_t *rows = config_lookup(&config, "rows");
+    const config_setting_t *claims = config_lookup(&config, "claims");
+    if (!rows || !claims) fault("rows and claims are wanted", 1);
+    data.row_count = config_setting_length(rows);
+    data.claim_count = config_setting_length(claims);
+    data.row = sm_alloc((size_t)data.row_count, sizeof *data.row);
+    data.claim = sm_alloc((size_t)data.claim_count, sizeof *data.claim);
+    for (int n = 0; n < data.row_count; n++)
+        read_row(config_setting_get_elem(rows, (unsigned)n), data.row + n);
+    for (int n = 0; n < data.claim_count; n++)
+        read_claim(config_setting_get_elem(claims, (unsigned)n), data.claim + n);
+    config_destroy(&config);
+}
+
+const RefPaperRow *ref_paper_rows(int *count)
+{
+    call_once(&once, read_all);
+    *count = data.row_count;
+    return data.row;
+}
+
+const RefPaperRow *ref_paper_find(const char *paper, const char *scene)
+{
+    int count;
+    const RefPaperRow *row = ref_paper_rows(&count);
+    for (int n = 0; n < count; n++)
+        if (strcmp(row[n].paper, paper) == 0 && strcmp(row[n].scene, scene) == 0) return row + n;
+    return NULL;
+}
+
+const RefPaperClaim *ref_paper_claims(int *count)
+{
+    call_once(&once, read_all);
+    *count = data.claim_count;
+    return data.claim;
+}
+
+const RefPaperClaim *ref_paper_claim(const char *paper, const char *name)
+{
+    int count;
+    const RefPaperClaim *claim = ref_paper_claims(&count);
+    for (int n = 0; n < count; n++)
+        if (strcmp(claim[n].paper, paper) == 0 && strcmp(claim[n].name, name) == 0)
+            return claim + n;
+    return NULL;
+}

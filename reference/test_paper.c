@@ -1,0 +1,108 @@
+/* The papers' values hang together: derived ones follow from quoted ones. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "paper.h"
+
+static void table_1_has_its_rows(void **state)
+{
+    (void)state;
+    static const char *const scenes[] = {"penguin", "statue-solid", "statue-shell", "infant"};
+    static const double totals[] = {0.28, 167.83, 48.47, 4.99};
+    static const double regions[] = {130, 57626, 19959, 2506};
+    int count;
+    const RefPaperRow *row = ref_paper_rows(&count);
+    assert_true(count >= 4);
+    for (int n = 0; n < 4; n++) {
+        assert_string_equal(row[n].paper, "fastlsm");
+        assert_string_equal(row[n].scene, scenes[n]);
+        assert_ptr_equal(ref_paper_find("fastlsm", scenes[n]), row + n);
+        assert_true(row[n].total_ms.value == totals[n]);
+        assert_true(row[n].regions.value == regions[n]);
+        assert_true(row[n].regions.value <= row[n].particles.value);
+        assert_int_equal(row[n].total_ms.status, REF_QUOTED);
+    }
+    assert_null(ref_paper_find("fastlsm", "teapot"));
+    assert_null(ref_paper_find("octopus", "penguin"));
+}
+
+/* Milliseconds and percents agree to a unit of the last printed digit, or are marked damaged. */
+static void stages_add_up(void **state)
+{
+    (void)state;
+    int count;
+    const RefPaperRow *row = ref_paper_rows(&count);
+    for (int n = 0; n < count; n++, row++) {
+        double ms = 0, percent = 0, total = row->total_ms.value;
+        bool damaged = false;
+        for (int s = 0; s < SM_STAGES; s++) {
+            assert_int_equal(isnan(row->stage_ms[s].value), isnan(row->stage_percent[s].value));
+            if (isnan(row->stage_ms[s].value)) continue;
+            ms += row->stage_ms[s].value;
+            percent += row->stage_percent[s].value;
+            double printed = row->stage_percent[s].value * total / 100;
+            bool agree = fabs(row->stage_ms[s].value - printed) <= 0.01 * total + 0.005;
+            if (s == SM_OTHER) continue;
+            assert_int_equal(agree, row->stage_ms[s].status != REF_DAMAGED);
+            damaged = damaged || !agree;
+        }
+        assert_true(percent == 100);
+        assert_int_equal(row->stage_ms[SM_OTHER].status, REF_DERIVED);
+        if (!damaged) assert_true(fabs(ms - total) < 1e-9);
+    }
+    const RefPaperRow *infant = ref_paper_find("fastlsm", "infant");
+    assert_int_equal(infant->stage_ms[SM_SHAPE_MATCHING].status, REF_DAMAGED);
+    assert_true(isnan(ref_paper_find("fastlsm", "penguin")->stage_ms[SM_DAMPING].value));
+}
+
+static void costs_per_particle_follow_from_the_table(void **state)
+{
+    (void)state;
+    static const char *const pairs[][2] = {{"penguin", "penguin-particle"},
+                                           {"statue-solid", "solid-particle"},
+                                           {"statue-shell", "shell-particle"},
+                                           {"infant", "infant-particle"}};
+    for (int n = 0; n < 4; n++) {
+        const RefPaperRow *row = ref_paper_find("fastlsm", pairs[n][0]);
+        const RefPaperClaim *claim = ref_paper_claim("fastlsm", pairs[n][1]);
+        assert_non_null(claim);
+        assert_int_equal(claim->value.status, REF_DERIVED);
+        assert_true(fabs(row->total_ms.value * 1e6 / row->particles.value - claim->value.value) <=
+                    0.5);
+    }
+}
+
+static void claims_are_complete(void **state)
+{
+    (void)state;
+    int count, kinds[4] = {0};
+    const RefPaperClaim *claim = ref_paper_claims(&count);
+    for (int n = 0; n < count; n++) {
+        assert_true(isfinite(claim[n].value.value) && claim[n].value.value > 0);
+        assert_true(claim[n].unit[0] && claim[n].place[0] && claim[n].note[0]);
+        assert_ptr_equal(ref_paper_claim(claim[n].paper, claim[n].name), claim + n);
+        kinds[claim[n].value.status]++;
+    }
+    assert_true(kinds[REF_QUOTED] && kinds[REF_DERIVED] && kinds[REF_SECOND_HAND]);
+    assert_true(ref_paper_claim("fastlsm", "warm-polar")->value.value == 450);
+    assert_string_equal(ref_status_name(REF_SECOND_HAND), "second-hand");
+    assert_null(ref_paper_claim("fastlsm", "nothing"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(table_1_has_its_rows),
+        cmocka_unit_test(stages_add_up),
+        cmocka_unit_test(costs_per_particle_follow_from_the_table),
+        cmocka_unit_test(claims_are_complete),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
