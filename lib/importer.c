@@ -195,7 +195,12 @@ int sm_importer(void *path, int reply)
 {
     Import import = {0};
     import.scene = read_scene(path, import.offset);
-    if (import.scene && import.scene->mRootNode) return reply_mesh(reply, &import);
+    if (import.scene && import.scene->mRootNode) {
+        int status = reply_mesh(reply, &import);
+        free(import.position);
+        free(import.triangle);
+        return status;
+    }
     const char *reason = aiGetErrorString();
     if (strstr(reason, "bad_alloc")) return SM_CHILD_NO_MEMORY;
     return reply_text(reply, *reason ? reason : "the importer gives no reason");

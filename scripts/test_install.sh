@@ -6,7 +6,8 @@
 set -eu
 prefix=$(mktemp -d)
 trap 'rm -rf -- "$prefix"' EXIT
-cmake --install "$1" --prefix "$prefix" >"$prefix/log" || { cat "$prefix/log"; exit 1; }
+build=${1:?BUILD_FOLDER missing}
+cmake --install "$build" --prefix "$prefix" >"$prefix/log" || { cat "$prefix/log"; exit 1; }
 libdir=$(dirname -- "$(find "$prefix" -name libshapebench.a)")
 export PKG_CONFIG_PATH=$libdir/pkgconfig
 cat >"$prefix/program.c" <<'PROGRAM'
