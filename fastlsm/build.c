@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "blocks.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
@@ -125,15 +126,38 @@ static void build_tiles(Lsm *lsm, const int *original)
     lsm->layer_tile[lsm->layers] = lsm->tiles;
 }
 
+/* Block form: tiles are blocks. */
+static void tile_blocks(Lsm *lsm)
+{
+    size_t lanes = (size_t)lsm->blocks * SM_LANES;
+    lsm->tiles = lsm->blocks;
+    lsm->tile_slot = sm_alloc(lanes, sizeof(int));
+    for (size_t s = 0; s < lanes; s++) lsm->tile_slot[s] = lsm->particle[s] < 0 ? -1 : (int)s;
+    lsm->layer_tile = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
+    memcpy(lsm->layer_tile, lsm->layer_block, ((size_t)lsm->layers + 1) * sizeof(long));
+    lsm->copies = 0;
+    lsm->layer_copy = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
+}
+
+/* Lists for every region, or in block form for those that box sums get wrong. */
 static void build_lists(Lsm *lsm)
 {
     long n = lsm->lattice.count;
+    Blocks *box = lsm->box;
     bool *wanted = sm_alloc((size_t)n, sizeof *wanted);
     memset(wanted, 1, (size_t)n);
+    if (box) lsm_blocks_irregular(lsm, wanted);
     lsm_sets_build(&lsm->lattice, &lsm->interior, wanted, lsm->slot, &lsm->sets);
     free(wanted);
     lsm->block_region = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
-    for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->block_region[s] = lsm->particle[s];
+    for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->block_region[s] = -1;
+    for (long region = 0; region < lsm->sets.region_count; region++) {
+        int slot = lsm->slot[lsm->sets.region_particle[region]];
+        lsm->block_region[slot] = (int)region;
+        if (box) box->mixed[slot / SM_LANES] = true;
+    }
+    for (long i = lsm->side; box && i < lsm->sets.bar_count * lsm->side; i++)
+        if (lsm->sets.bar[i]) box->listed[(lsm->sets.bar[i] - 1) / SM_LANES] = true;
 }
 
 static void build_rows(Lsm *lsm)
@@ -150,11 +174,40 @@ static void build_rows(Lsm *lsm)
     };
 }
 
+/* Stores equal records once, so that the constants of a solid's inside stay in cache: moves the
+ * different ones to the front and points `index` at them. */
+static void share_records(void *records, size_t size, long count, int *index)
+{
+    char *record = records;
+    uint64_t mask = 63;
+    while (mask < (uint64_t)count * 2) mask = mask * 2 + 1;
+    int *table = sm_alloc(mask + 1, sizeof *table); /* record number + 1 */
+    long kept = 0;
+    for (long i = 0; i < count; i++) {
+        uint64_t hash = 0, word;
+        for (size_t at = 0; at < size; at += sizeof word) {
+            memcpy(&word, record + (size_t)i * size + at, sizeof word);
+            hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
+            hash ^= hash >> 29;
+        }
+        uint64_t at = hash & mask;
+        while (table[at] && memcmp(record + (size_t)(table[at] - 1) * size, record + (size_t)i * size, size))
+            at = (at + 1) & mask;
+        if (!table[at]) {
+            memmove(record + (size_t)kept * size, record + (size_t)i * size, size);
+            table[at] = (int)++kept;
+        }
+        index[i] = table[at] - 1;
+    }
+    free(table);
+}
+
 /* m~_i, 1/|R_i| of every block; then M_r and c0_r by the engine's own sums of m~ in place of m~ x. */
 static void build_constants(Lsm *lsm)
 {
-    lsm->block_const = sm_alloc((size_t)lsm->blocks, sizeof(int));
-    lsm->particle_const = sm_alloc((size_t)lsm->blocks, sizeof(ParticleConst));
+    lsm->block_const = sm_alloc((size_t)lsm->blocks + 1, sizeof(int)); /* one for the empty block */
+    lsm->particle_const = sm_alloc((size_t)lsm->blocks + 1, sizeof(ParticleConst));
+    lsm->block_const[lsm->blocks] = (int)lsm->blocks;
     for (long block = 0; block < lsm->blocks; block++) {
         ParticleConst *k = &lsm->particle_const[block];
         lsm->block_const[block] = (int)block;
@@ -170,6 +223,8 @@ static void build_constants(Lsm *lsm)
     lsm->region_const = sm_alloc((size_t)lsm->tiles, sizeof(RegionConst));
     for (long tile = 0; tile < lsm->tiles; tile++) lsm->tile_const[tile] = (int)tile;
     lsm_constants(lsm);
+    share_records(lsm->particle_const, sizeof(ParticleConst), lsm->blocks + 1, lsm->block_const);
+    share_records(lsm->region_const, sizeof(RegionConst), lsm->tiles, lsm->tile_const);
 }
 
 static void build_memory(Lsm *lsm)
@@ -192,12 +247,14 @@ void lsm_build_regions(Lsm *lsm)
     int *original = sm_alloc((size_t)n, sizeof *original);
     lsm_interior_build(&lsm->lattice, lsm->w, &lsm->interior);
     find_unique(lsm, original);
-    build_tiles(lsm, original);
+    if (lsm->box) tile_blocks(lsm);
+    else build_tiles(lsm, original);
     free(original);
     build_lists(lsm);
     build_rows(lsm);
     build_memory(lsm);
     lsm_pipeline_split(lsm);
+    if (lsm->box) lsm_blocks_share(lsm);
     build_constants(lsm);
 }
 
@@ -231,9 +288,13 @@ SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **out
     lsm->mass = sm_alloc((size_t)n, sizeof(double));
     for (long p = 0; p < n; p++) lsm->mass[p] = params->mass ? params->mass[p] : 1;
     lsm->members = sm_alloc((size_t)n, sizeof(int));
-    build_layers(lsm);
-    build_slots(lsm);
-    lsm->x = sm_alloc((size_t)lsm->blocks * 3 * SM_LANES, sizeof(real));
+    if (params->layout == SM_LAYOUT_BLOCKS && params->w <= SM_LANES && params->summation != SM_SUM_NAIVE) {
+        lsm_blocks_build(lsm);
+    } else {
+        build_layers(lsm);
+        build_slots(lsm);
+    }
+    lsm->x = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->v = sm_alloc((size_t)lsm->blocks * 3 * SM_LANES, sizeof(real));
     lsm_build_regions(lsm);
     lsm->build_seconds = sm_now() - start;
@@ -265,6 +326,7 @@ static void free_regions(Lsm *lsm)
 void lsm_free(Lsm *lsm)
 {
     free_regions(lsm);
+    lsm_blocks_free(lsm->box);
     lsm_lattice_free(&lsm->lattice);
     void *all[] = {lsm->mass, lsm->members, lsm->slot, lsm->particle, lsm->x, lsm->v, lsm->g,
                    lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->held};

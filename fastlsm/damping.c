@@ -1,34 +1,20 @@
 /* damping.c - region damping (fastlsm eq. 14): each region's rigid velocity, averaged over the
  * regions of a particle, pulls the particle's velocity towards it. */
+#include "blocks.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
 #include "summation.h"
 
-/* The twelve values that are summed: m~ v, m~ x X v, and the upper half of m~ x x^T. */
-SM_INLINE void products(vec weight, const vec x[3], const vec v[3], vec out[12])
-{
-    vec p[3];
-    for (int d = 0; d < 3; d++) {
-        p[d] = weight * x[d];
-        out[d] = weight * v[d];
-    }
-    for (int d = 0; d < 3; d++) {
-        int e = (d + 1) % 3, f = (d + 2) % 3;
-        out[3 + d] = p[e] * v[f] - p[f] * v[e];
-        out[6 + d] = p[d] * x[d];
-        out[9 + d] = p[e] * x[f];
-    }
-}
-
 static void weigh(Lsm *lsm, int layer)
 {
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
+        if (lsm->box && !lsm->box->listed[block]) continue;
         vec x[3], v[3], field[16] = {{0}};
         real *row[SM_LANES];
         load3(lsm->x + block * 3 * SM_LANES, x);
         load3(lsm->v + block * 3 * SM_LANES, v);
-        products(lsm->particle_const[lsm->block_const[block]].weight, x, v, field);
+        damping_products(lsm->particle_const[lsm->block_const[block]].weight, x, v, field);
         for (int lane = 0; lane < SM_LANES; lane++)
             row[lane] = lsm->rows.transform + (block * SM_LANES + lane + 1) * ROW_T;
         lanes_to_rows(field, row);
@@ -86,35 +72,62 @@ SM_INLINE void rigid_velocity(const vec F[12], const vec c[3], vec inverse_mass,
     }
 }
 
-static void solve_tile(Lsm *lsm, long tile)
+/* Rows of a tile's rigid velocities, for the lists. */
+static void store_velocities(Lsm *lsm, long tile, const vec out[6])
 {
-    real sums[SM_LANES][16] = {{0}};
+    real tile_rows[SM_LANES][16];
     real *row[SM_LANES];
-    const real *read[SM_LANES];
-    vec field[16], c[3], out[6];
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        int region = lsm->tile_region[tile * SM_LANES + lane];
-        if (region >= 0) lsm_region_plain(lsm, region, true, sums[lane]);
-        row[lane] = sums[lane];
-        read[lane] = sums[lane];
-    }
-    lanes_from_rows(read, field);
-    load3(lsm->centre + tile * 3 * SM_LANES, c);
-    rigid_velocity(field, c, lsm->region_const[lsm->tile_const[tile]].inverse_mass, out);
+    vec field[16];
+    for (int lane = 0; lane < SM_LANES; lane++) row[lane] = tile_rows[lane];
     for (int i = 0; i < 16; i++)
         field[i] = i % 4 == 3 || i > 7 ? lanes_set(0) : out[i / 4 * 3 + i % 4];
     lanes_to_rows(field, row);
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
-        if (slot >= 0) store8(lsm->rows.p + (slot + 1) * (long)ROW_P, load8(sums[lane]));
+        if (slot >= 0) store8(lsm->rows.p + (slot + 1) * (long)ROW_P, load8(tile_rows[lane]));
     }
+}
+
+static void solve_tile(Lsm *lsm, long tile)
+{
+    real sums[SM_LANES][16] = {{0}};
+    const real *row[SM_LANES];
+    vec field[16], c[3], out[6];
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        int region = lsm->tile_region[tile * SM_LANES + lane];
+        if (region >= 0) lsm_region_plain(lsm, region, true, sums[lane]);
+        row[lane] = sums[lane];
+    }
+    lanes_from_rows(row, field);
+    load3(lsm->centre + tile * 3 * SM_LANES, c);
+    rigid_velocity(field, c, lsm->region_const[lsm->tile_const[tile]].inverse_mass, out);
+    store_velocities(lsm, tile, out);
+}
+
+static void solve_block(Lsm *lsm, int layer, long block, const vec *sum, vec *out, SmLaps *laps)
+{
+    (void)layer, (void)laps;
+    vec F[12], c[3];
+    for (int i = 0; i < 12; i++) F[i] = sum[i];
+    for (int lane = 0; lane < SM_LANES && lsm->box->mixed[block]; lane++) {
+        int region = lsm->block_region[block * SM_LANES + lane];
+        if (region < 0) continue;
+        real row[16];
+        lsm_region_plain(lsm, region, true, row);
+        for (int i = 0; i < 12; i++) F[i][lane] = row[i];
+    }
+    load3(lsm->centre + block * 3 * SM_LANES, c);
+    rigid_velocity(F, c, lsm->region_const[lsm->tile_const[block]].inverse_mass, out);
+    for (int i = 0; i < 6; i++) out[i] = lanes_and(out[i], lsm->box->site[block]);
+    if (lsm->box->listed[block]) store_velocities(lsm, block, out);
 }
 
 static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    (void)thread;
-    for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
-        solve_tile(lsm, tile);
+    if (lsm->box) lsm_blocks_up(lsm, layer, thread, true, solve_block, laps);
+    else
+        for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
+            solve_tile(lsm, tile);
     for (long i = lsm->layer_copy[layer]; i < lsm->layer_copy[layer + 1]; i++)
         store8(lsm->rows.p + (lsm->copy[i][0] + 1) * (long)ROW_P,
                load8(lsm->rows.p + (lsm->copy[i][1] + 1) * (long)ROW_P));
@@ -146,16 +159,15 @@ static void slow(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
-        real sums[6][SM_LANES] __attribute__((aligned(64))) = {{0}};
-        vec sum[6];
-        for (int lane = 0; lane < SM_LANES; lane++) {
+        vec sum[6] = {{0}};
+        if (lsm->box) lsm_blocks_down(lsm, layer, block, true, sum);
+        for (int lane = 0; lane < SM_LANES && (!lsm->box || lsm->box->mixed[block]); lane++) {
             int region = lsm->block_region[block * SM_LANES + lane];
             if (region < 0) continue;
             real row[16];
             lsm_region_plain(lsm, region, false, row);
-            for (int i = 0; i < 6; i++) sums[i][lane] = row[i / 3 * 4 + i % 3];
+            for (int i = 0; i < 6; i++) sum[i][lane] = row[i / 3 * 4 + i % 3];
         }
-        for (int i = 0; i < 6; i++) sum[i] = lanes_load(sums[i]);
         slow_down(lsm, block, sum);
     }
     sm_lap(laps, SM_DAMPING);

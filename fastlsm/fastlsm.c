@@ -12,6 +12,7 @@
 
 #include <stdlib.h>
 
+#include "blocks.h"
 #include "build.h"
 #include "match.h"
 #include "pipeline.h"
@@ -22,6 +23,7 @@
 static void weigh(Lsm *lsm, int layer)
 {
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
+        if (lsm->box && !lsm->box->listed[block]) continue;
         const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
         vec x[3] = {lanes_set(1), lanes_set(1), lanes_set(1)}, padded[16] = {{0}};
         real tile[SM_LANES][16];
@@ -115,34 +117,74 @@ static void copy_transforms(Lsm *lsm, int layer)
     }
 }
 
-static void match_tile(Lsm *lsm, int layer, long tile, SmLaps *laps)
+/* c_r, A_r, R_r, q_r of a tile from its sums; false when only constants were wanted. */
+static bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q[3], vec R[9], SmLaps *laps)
 {
-    vec S[12], c[3], A[9], R[9], q[3];
-    region_sums(lsm, tile, S);
-    sm_lap(laps, SM_FAST_SUM);
+    vec c[3], A[9];
     if (lsm->pass == PASS_CONSTANTS) {
         keep_constants(lsm, tile, S);
-        return;
+        return false;
     }
     const RegionConst *k = &lsm->region_const[lsm->tile_const[tile]];
     match_moments(S, k, c, A);
-    store3(lsm->centre + tile * 3 * SM_LANES, c);
+    if (lsm->damp_now) store3(lsm->centre + tile * 3 * SM_LANES, c);
     sm_lap(laps, SM_SHAPE_MATCHING);
     rotate(lsm, layer, tile, A, R);
     sm_lap(laps, SM_POLAR);
     match_centre(c, R, k, q);
-    store_transforms(lsm, tile, q, R);
+    return true;
+}
+
+/* List form: a tile of regions. */
+static void match_tile(Lsm *lsm, int layer, long tile, SmLaps *laps)
+{
+    vec S[12], R[9], q[3];
+    region_sums(lsm, tile, S);
+    sm_lap(laps, SM_FAST_SUM);
+    if (match_sums(lsm, layer, tile, S, q, R, laps)) store_transforms(lsm, tile, q, R);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+}
+
+/* The lanes of a block that lists sum replace its box sums. */
+static void replace_sums(const Lsm *lsm, long block, vec S[12])
+{
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        int region = lsm->block_region[block * SM_LANES + lane];
+        if (region < 0) continue;
+        real row[16];
+        lsm_region_up(lsm, region, row);
+        for (int i = 0; i < 12; i++) S[i][lane] = row[i / 3 * 4 + i % 3];
+    }
+}
+
+/* Block form: the regions centred in a block. */
+static void match_block(Lsm *lsm, int layer, long block, const vec *sum, vec *out, SmLaps *laps)
+{
+    vec S[12], R[9], q[3];
+    for (int i = 0; i < 12; i++) S[i] = sum[i];
+    if (lsm->box->mixed[block]) replace_sums(lsm, block, S);
+    sm_lap(laps, SM_FAST_SUM);
+    if (!match_sums(lsm, layer, block, S, q, R, laps)) return;
+    if (lsm->box->listed[block]) store_transforms(lsm, block, q, R);
+    ivec site = lsm->box->site[block];
+    for (int i = 0; i < 3; i++) { /* empty lanes bring nothing down */
+        out[i] = lanes_and(q[i], site);
+        out[3 + i] = lanes_and(R[i * 3 + 2], site);
+        out[6 + i] = lanes_and(R[i * 3 + 1], site);
+        out[9 + i] = lanes_and(R[i * 3], site);
+    }
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
 
 static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    (void)thread;
     lsm->sweeps[layer] = 0;
-    for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
-        match_tile(lsm, layer, tile, laps);
+    if (lsm->box) lsm_blocks_up(lsm, layer, thread, false, match_block, laps);
+    else
+        for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
+            match_tile(lsm, layer, tile, laps);
     if (lsm->pass == PASS_CONSTANTS) return;
-    copy_transforms(lsm, layer);
+    if (!lsm->box) copy_transforms(lsm, layer);
     sm_lap(laps, SM_SHAPE_MATCHING);
     if (lsm->params.summation != SM_SUM_NAIVE) {
         lsm_bars_down(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
@@ -151,10 +193,15 @@ static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
     sm_lap(laps, SM_FAST_SUM);
 }
 
-/* |R_i| g_i of a block's particles, in lanes. */
-static void particle_sums(const Lsm *lsm, long block, vec sum[3])
+/* |R_i| g_i of a block's particles, in lanes: box sums, then the lanes that lists sum. */
+static void particle_sums(const Lsm *lsm, int layer, long block, vec sum[3])
 {
     real sums[3][SM_LANES] __attribute__((aligned(64))) = {{0}};
+    if (lsm->box) {
+        lsm_blocks_down(lsm, layer, block, false, sum);
+        if (!lsm->box->mixed[block]) return;
+        store3(sums[0], sum);
+    }
     for (int lane = 0; lane < SM_LANES; lane++) {
         int region = lsm->block_region[block * SM_LANES + lane];
         if (region < 0) continue;
@@ -162,7 +209,7 @@ static void particle_sums(const Lsm *lsm, long block, vec sum[3])
         lsm_particle_down(lsm, region, row);
         for (int d = 0; d < 3; d++) sums[d][lane] = row[d];
     }
-    for (int d = 0; d < 3; d++) sum[d] = lanes_load(sums[d]);
+    load3(sums[0], sum);
 }
 
 /* Eqs. 1 and 2 in cells and steps: v += g - x + gravity; x += v, unless damping does that later. */
@@ -190,7 +237,7 @@ static void move(Lsm *lsm, int layer, int thread, SmLaps *laps)
     if (lsm->pass == PASS_CONSTANTS) return;
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         vec sum[3];
-        particle_sums(lsm, block, sum);
+        particle_sums(lsm, layer, block, sum);
         sm_lap(laps, SM_FAST_SUM);
         integrate(lsm, block, sum);
         sm_lap(laps, SM_OTHER);

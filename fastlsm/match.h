@@ -100,4 +100,20 @@ SM_INLINE void polar_fast_lanes(const vec A[9], const int *slot, short *last, ve
     last_store(last, R);
 }
 
+/* What damping sums: m~ v, m~ x X v, and the upper half of m~ x x^T (eq. 14). */
+SM_INLINE void damping_products(vec weight, const vec x[3], const vec v[3], vec out[12])
+{
+    vec p[3];
+    for (int d = 0; d < 3; d++) {
+        p[d] = weight * x[d];
+        out[d] = weight * v[d];
+    }
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        out[3 + d] = p[e] * v[f] - p[f] * v[e];
+        out[6 + d] = p[d] * x[d];
+        out[9 + d] = p[e] * x[f];
+    }
+}
+
 #endif

@@ -95,9 +95,9 @@ static double difference(const Body *body, const double (*a)[3], const double (*
     return worst;
 }
 
-static void check_goals(int precision, SmSummation summation, int w, Body *body)
+static void check_goals(int precision, SmSummation summation, SmLayout layout, int w, Body *body)
 {
-    SmEngineParams params = {.w = w, .h = 0.01, .summation = summation, .threads = 1};
+    SmEngineParams params = {.w = w, .h = 0.01, .summation = summation, .layout = layout, .threads = 1};
     SmEngine *engine = create(engines[precision], body, params);
     RefRegions regions;
     ref_regions_build(&body->voxels, w, NULL, 0, &regions);
@@ -108,8 +108,8 @@ static void check_goals(int precision, SmSummation summation, int w, Body *body)
     ref_goals(&regions, (const double(*)[3])body->x0, body->m, (const double(*)[3])body->x, body->b);
     double worst = difference(body, (const double(*)[3])body->a, (const double(*)[3])body->b);
     if (!(worst <= tolerance[precision]))
-        fail_msg("%s, w %d, %dx%dx%d cells, %ld particles: goals differ by %g cells",
-                 engines[precision]->precision, w, body->voxels.size[0], body->voxels.size[1],
+        fail_msg("%s, layout %d, w %d, %dx%dx%d cells, %ld particles: goals differ by %g cells",
+                 engines[precision]->precision, (int)layout, w, body->voxels.size[0], body->voxels.size[1],
                  body->voxels.size[2], body->n, worst);
     SmCounts counts;
     engines[precision]->count(engine, &counts);
@@ -127,7 +127,7 @@ static void test_goals(void **state)
         Body body;
         int w = 1 + trial % 6;
         body_random(&seed, trial / 6 % 6, w > 3 ? 12 : 20, &body);
-        check_goals(trial / 36 % 2, (SmSummation)(trial % 3), w, &body);
+        check_goals(trial / 36 % 2, (SmSummation)(trial % 3), (SmLayout)(1 + trial / 3 % 2), w, &body);
         body_free(&body);
     }
 }
@@ -169,7 +169,7 @@ static void test_steps(void **state)
         int precision = trial % 2;
         body_random(&seed, trial % 6, 9, &body);
         SmEngineParams params = {.w = 1 + trial / 6 % 3, .h = 0.01, .damping = 0.3,
-                                 .damping_every = 1 + trial / 2 % 2, .gravity = {0, -9.81, 1}};
+                                 .damping_every = 1 + trial / 2 % 2, .layout = (SmLayout)(1 + trial / 18 % 2), .gravity = {0, -9.81, 1}};
         SmEngine *fast = create(engines[precision], &body, params);
         engines[precision]->get(fast, SM_POSITION, body.x);
         engines[precision]->get(fast, SM_VELOCITY, body.v);
@@ -210,7 +210,7 @@ static void test_momentum(void **state)
         int precision = trial % 2;
         body_random(&seed, trial % 6, 8, &body);
         /* damping conserves both only per region; eq. 14 with equal weights conserves the linear one */
-        SmEngineParams params = {.w = 1 + trial % 3, .h = 0.01};
+        SmEngineParams params = {.w = 1 + trial % 3, .h = 0.01, .layout = (SmLayout)(1 + trial / 12)};
         SmEngine *engine = create(engines[precision], &body, params);
         double p[2][3], l[2][3], scale = 0;
         for (int when = 0; when < 2; when++) {
@@ -249,7 +249,7 @@ static void test_rigid(void **state)
             body.v[p][1] = trial < 12 ? 0 : turn * r[0];
             body.v[p][2] = trial < 12 ? 0 : 0.3;
         }
-        SmEngineParams params = {.w = 1 + trial % 4, .h = 0.01, .damping = 0.5};
+        SmEngineParams params = {.w = 1 + trial % 4, .h = 0.01, .damping = 0.5, .layout = (SmLayout)(1 + trial / 2 % 2)};
         SmEngine *engine = create(engines[precision], &body, params);
         engines[precision]->step(engine, NULL);
         engines[precision]->get(engine, SM_VELOCITY, body.a);
@@ -277,7 +277,7 @@ static void test_recovery(void **state)
                 body.x[p][d] = body.x0[p][d] * crush[trial / 4][d] +
                                1e-3 * body.voxels.cell * (random_unit(&seed) - 0.5);
             }
-        SmEngineParams params = {.w = 1 + trial / 2 % 2, .h = 0.01, .damping = 0.2};
+        SmEngineParams params = {.w = 1 + trial / 2 % 2, .h = 0.01, .damping = 0.2, .layout = (SmLayout)(1 + trial / 2 % 2)};
         SmEngine *engine = create(engines[precision], &body, params);
         for (int step = 0; step < 3000; step++) {
             engines[precision]->step(engine, NULL);
@@ -312,7 +312,7 @@ static void test_threads(void **state)
         body_arrays(&body);
         random_deformation(&seed, 0.5, 0.2, body.n, (const double(*)[3])body.x0, body.x);
         for (int threads = 1; threads <= 5; threads += 2) {
-            SmEngineParams params = {.w = 1 + trial % 3, .h = 0.01, .damping = 0.3, .threads = threads};
+            SmEngineParams params = {.w = 1 + trial % 3, .h = 0.01, .damping = 0.3, .threads = threads, .layout = (SmLayout)(1 + trial % 2)};
             SmEngine *engine = create(&fastlsm_engine_f32, &body, params);
             for (int step = 0; step < 4; step++) fastlsm_engine_f32.step(engine, NULL);
             fastlsm_engine_f32.get(engine, SM_POSITION, threads == 1 ? body.a : body.b);

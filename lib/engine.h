@@ -17,6 +17,9 @@
 typedef enum { SM_SUM_FAST, SM_SUM_BARS, SM_SUM_NAIVE } SmSummation;
 typedef enum { SM_POLAR_FAST, SM_POLAR_JACOBI } SmPolarMethod;
 
+/* How an engine lays its sums out: lists for any shape, blocks of lanes for solid ones. */
+typedef enum { SM_LAYOUT_AUTO, SM_LAYOUT_LISTS, SM_LAYOUT_BLOCKS } SmLayout;
+
 typedef struct {
     int w;               /* region half-width in cells, 1 or more */
     double h;            /* time step, s */
@@ -26,6 +29,7 @@ typedef struct {
     double strain_limit; /* a link breaks beyond this times its rest length; 0: never */
     SmSummation summation;
     SmPolarMethod polar;
+    SmLayout layout;     /* AUTO picks the faster one; results agree to rounding */
     int threads;         /* 0: all cores */
     const double *mass;  /* [particle_count] per body, kg, or NULL: 1 each */
     long instances;      /* bodies that share the lattice; 0 means 1 */

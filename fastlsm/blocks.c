@@ -1,0 +1,277 @@
+#include "blocks.h"
+#include "match.h"
+
+#include <string.h>
+
+/* One kernel body serves shape matching and damping: F is how many values arrive at a stage. With
+ * `moment`, a stage up appends sum o * (first three) for offset o, and a stage down takes
+ * sum o * (last three) off the first three. */
+enum { UP = 12, MOST = 12 };
+
+/* Scratch of a thread, rows of a plane. Rings hold rows y - w .. y + w; their rows lie block by
+ * block, [width][F][lanes]. `line` and `solved` lie value by value, [F][(width + 2) lanes], with an
+ * empty block at each end, because the x stages read at every lane offset. */
+typedef struct {
+    long pitch; /* (width + 2) * lanes */
+    int side;
+    real *above; /* [side] rows after the z stage up */
+    real *line;  /* the row after the y stage up */
+    real *solved;/* the row after `solve` */
+    real *below; /* [side] rows after the x stage down */
+} Scratch;
+
+static Scratch scratch_of(const Lsm *lsm, int thread)
+{
+    Scratch s = {.pitch = (lsm->box->width + 2) * (long)SM_LANES, .side = lsm->side};
+    s.above = lsm->box->scratch[thread];
+    s.line = s.above + s.side * s.pitch * MOST;
+    s.solved = s.line + s.pitch * MOST;
+    s.below = s.solved + s.pitch * MOST;
+    return s;
+}
+
+SM_INLINE real *ring_row(const Scratch *s, real *ring, int y)
+{
+    return ring + ((y + s->side) % s->side) * s->pitch * MOST;
+}
+
+/* m~ x of a block, or the products that damping sums: what the z stage up takes. */
+SM_INLINE void source(const Lsm *lsm, long block, bool damping, vec out[MOST])
+{
+    vec x[3], v[3], weight = lsm->particle_const[lsm->block_const[block]].weight;
+    load3(lsm->x + block * 3 * SM_LANES, x);
+    if (lsm->pass == PASS_CONSTANTS) x[0] = x[1] = x[2] = lanes_set(1);
+    if (!damping) {
+        for (int d = 0; d < 3; d++) out[d] = weight * x[d];
+        return;
+    }
+    load3(lsm->v + block * 3 * SM_LANES, v);
+    damping_products(weight, x, v, out);
+}
+
+/* Stage up along z for one block. */
+SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool damping, real *out)
+{
+    int F = damping ? 12 : 3;
+    const int *along = lsm->box->along_z + block * (2 * w + 1);
+    vec sum[MOST], moment[3], p[MOST];
+    source(lsm, along[0], damping, p);
+    for (int f = 0; f < F; f++) sum[f] = p[f];
+    for (int d = 0; d < 3; d++) moment[d] = -(real)w * p[d];
+    for (int c = 1; c <= 2 * w; c++) {
+        source(lsm, along[c], damping, p);
+        for (int f = 0; f < F; f++) sum[f] += p[f];
+        if (!damping && c != w)
+            for (int d = 0; d < 3; d++) moment[d] += (real)(c - w) * p[d];
+    }
+    for (int f = 0; f < F; f++) lanes_store(out + f * SM_LANES, sum[f]);
+    if (!damping)
+        for (int d = 0; d < 3; d++) lanes_store(out + (F + d) * SM_LANES, moment[d]);
+}
+
+/* sum over 2w+1 places of F values `stride` apart; place c starts at in[c]. Moments of values
+ * `first` .. `first` + 2 go to `moment`. */
+SM_INLINE void window_sum(const real *const *in, long stride, int w, int F, int first, vec *sum, vec *moment)
+{
+    for (int f = 0; f < F; f++) {
+        vec value = lanes_load(in[0] + f * stride);
+        sum[f] = value;
+        if (first >= 0 && f >= first && f < first + 3) moment[f - first] = -(real)w * value;
+    }
+    for (int c = 1; c <= 2 * w; c++)
+        for (int f = 0; f < F; f++) {
+            vec value = lanes_load(in[c] + f * stride);
+            sum[f] += value;
+            if (first >= 0 && f >= first && f < first + 3 && c != w)
+                moment[f - first] += (real)(c - w) * value;
+        }
+}
+
+/* Row y of the z stage up: absent blocks and rows hold zero. */
+SM_INLINE void row_z_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, int w, bool damping)
+{
+    int F = damping ? 12 : 6;
+    real *ring = ring_row(s, s->above, y);
+    int next = row ? row->first : 0, last = row ? row->first + row->count : 0;
+    for (int column = 0; column < lsm->box->width; column++) {
+        real *out = ring + column * (long)MOST * SM_LANES;
+        if (next >= last || lsm->box->column[next] != column) {
+            memset(out, 0, (size_t)F * SM_LANES * sizeof(real));
+            continue;
+        }
+        stage_z_up(lsm, next, w, damping, out);
+        if (w == 1 && !lsm->box->whole[next]) /* masked: sums pass through particles only */
+            for (int f = 0; f < F; f++)
+                lanes_store(out + f * SM_LANES, lanes_and(lanes_load(out + f * SM_LANES), lsm->box->site[next]));
+        next++;
+    }
+}
+
+/* Row y of the y stage up, into `line`. */
+SM_INLINE void row_y_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int w, bool damping)
+{
+    int F = damping ? 12 : 6, out_F = damping ? 12 : 9;
+    const real *in[LSM_MAX_SIDE];
+    for (int b = 0; b < 2 * w + 1; b++) in[b] = ring_row(s, s->above, row->y + b - w);
+    int next = row->first, last = row->first + row->count;
+    for (int column = 0; column < lsm->box->width; column++) {
+        real *out = s->line + (column + 1) * (long)SM_LANES;
+        vec sum[MOST + 3];
+        bool absent = next >= last || lsm->box->column[next] != column;
+        if (absent) {
+            for (int f = 0; f < out_F; f++) lanes_store(out + f * s->pitch, lanes_set(0));
+        } else {
+            const real *at[LSM_MAX_SIDE];
+            for (int b = 0; b < 2 * w + 1; b++) at[b] = in[b] + column * (long)MOST * SM_LANES;
+            window_sum(at, SM_LANES, w, F, damping ? -1 : 0, sum, sum + F);
+            if (w == 1 && !lsm->box->whole[next])
+                for (int f = 0; f < out_F; f++) sum[f] = lanes_and(sum[f], lsm->box->site[next]);
+            for (int f = 0; f < out_F; f++) lanes_store(out + f * s->pitch, sum[f]);
+            next++;
+        }
+    }
+}
+
+/* The x stage up and `solve`, into `solved`. */
+SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, const BlockRow *row, int layer, int w, bool damping,
+                         BlockSolve *solve, SmLaps *laps)
+{
+    int F = damping ? 12 : 9, out_F = damping ? 6 : 12;
+    int next = row->first, last = row->first + row->count;
+    for (int column = 0; column < lsm->box->width; column++) {
+        real *out = s->solved + (column + 1) * (long)SM_LANES;
+        vec sum[MOST + 3], result[MOST];
+        if (next >= last || lsm->box->column[next] != column) {
+            for (int f = 0; f < out_F; f++) lanes_store(out + f * s->pitch, lanes_set(0));
+            continue;
+        }
+        const real *at[LSM_MAX_SIDE];
+        for (int a = 0; a < 2 * w + 1; a++) at[a] = s->line + (column + 1) * (long)SM_LANES + a - w;
+        window_sum(at, s->pitch, w, F, damping ? -1 : 0, sum, sum + F);
+        sm_lap(laps, damping ? SM_DAMPING : SM_FAST_SUM);
+        solve(lsm, layer, next, sum, result, laps);
+        for (int f = 0; f < out_F; f++) lanes_store(out + f * s->pitch, result[f]);
+        next++;
+    }
+}
+
+/* Takes the moment off the first three sums and leaves the last three out. */
+SM_INLINE void finish_down(vec *sum, const vec *moment, bool damping)
+{
+    if (damping) return;
+    for (int d = 0; d < 3; d++) sum[d] -= moment[d];
+}
+
+/* Row y of the x stage down, into the ring `below`. */
+SM_INLINE void row_x_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, int w, bool damping)
+{
+    int F = damping ? 6 : 12, out_F = damping ? 6 : 9;
+    real *ring = ring_row(s, s->below, y);
+    int next = row ? row->first : 0, last = row ? row->first + row->count : 0;
+    for (int column = 0; column < lsm->box->width; column++) {
+        real *out = ring + column * (long)MOST * SM_LANES;
+        if (next >= last || lsm->box->column[next] != column) {
+            memset(out, 0, (size_t)out_F * SM_LANES * sizeof(real));
+            continue;
+        }
+        const real *at[LSM_MAX_SIDE];
+        vec sum[MOST], moment[3];
+        for (int a = 0; a < 2 * w + 1; a++) at[a] = s->solved + (column + 1) * (long)SM_LANES + a - w;
+        window_sum(at, s->pitch, w, F, damping ? -1 : 9, sum, moment);
+        finish_down(sum, moment, damping);
+        if (w == 1 && !lsm->box->whole[next])
+            for (int f = 0; f < out_F; f++) sum[f] = lanes_and(sum[f], lsm->box->site[next]);
+        for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, sum[f]);
+        next++;
+    }
+}
+
+/* Row y of the y stage down, into the plane's store. */
+SM_INLINE void row_y_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int plane, int w, bool damping)
+{
+    int F = damping ? 6 : 9;
+    const real *in[LSM_MAX_SIDE];
+    for (int b = 0; b < 2 * w + 1; b++) in[b] = ring_row(s, s->below, row->y + b - w);
+    for (int block = row->first; block < row->first + row->count; block++) {
+        real *out = lsm->box->down[plane] + (block - lsm->layer_block[plane]) * 6 * SM_LANES;
+        const real *at[LSM_MAX_SIDE];
+        vec sum[MOST], moment[3];
+        for (int b = 0; b < 2 * w + 1; b++) at[b] = in[b] + lsm->box->column[block] * (long)MOST * SM_LANES;
+        window_sum(at, SM_LANES, w, F, damping ? -1 : 6, sum, moment);
+        finish_down(sum, moment, damping);
+        if (w == 1 && !lsm->box->whole[block])
+            for (int f = 0; f < 6; f++) sum[f] = lanes_and(sum[f], lsm->box->site[block]);
+        for (int f = 0; f < 6; f++) lanes_store(out + f * SM_LANES, sum[f]);
+    }
+}
+
+/* The row of a plane at y, or NULL; `row` walks along with rising y. */
+static const BlockRow *row_at(const Lsm *lsm, int plane, int *row, int y)
+{
+    const Blocks *box = lsm->box;
+    while (*row < box->plane_row[plane + 1] && box->row[*row].y < y) ++*row;
+    return *row < box->plane_row[plane + 1] && box->row[*row].y == y ? &box->row[*row] : NULL;
+}
+
+/* A plane's rows as a pipeline: row y goes up along z when row y - w is solved, and comes down along
+ * y when row y + w is. */
+SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, BlockSolve *solve, SmLaps *laps)
+{
+    Blocks *box = lsm->box;
+    if (box->plane_row[plane] == box->plane_row[plane + 1]) return;
+    Scratch s = scratch_of(lsm, thread);
+    int first = box->row[box->plane_row[plane]].y, last = box->row[box->plane_row[plane + 1] - 1].y;
+    int walk[3] = {box->plane_row[plane], box->plane_row[plane], box->plane_row[plane]};
+    SmStage stage = damping ? SM_DAMPING : SM_FAST_SUM;
+    for (int b = 1; b <= 2 * w; b++) { /* rows before the first */
+        row_z_up(lsm, &s, NULL, first - b, w, damping);
+        row_x_down(lsm, &s, NULL, first - b, w, damping);
+    }
+    for (int y = first; y <= last + 2 * w; y++) {
+        row_z_up(lsm, &s, row_at(lsm, plane, &walk[0], y), y, w, damping);
+        const BlockRow *row = row_at(lsm, plane, &walk[1], y - w);
+        if (row) {
+            row_y_up(lsm, &s, row, w, damping);
+            sm_lap(laps, stage);
+            row_solve(lsm, &s, row, plane, w, damping, solve, laps);
+        }
+        row_x_down(lsm, &s, row, y - w, w, damping);
+        row = row_at(lsm, plane, &walk[2], y - 2 * w);
+        if (row) row_y_down(lsm, &s, row, plane, w, damping);
+        sm_lap(laps, stage);
+    }
+}
+
+void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve, SmLaps *laps)
+{
+    switch (lsm->w * 2 + damping) { /* constants for the usual widths */
+    case 2: plane_pass(lsm, plane, thread, 1, false, solve, laps); break;
+    case 3: plane_pass(lsm, plane, thread, 1, true, solve, laps); break;
+    case 4: plane_pass(lsm, plane, thread, 2, false, solve, laps); break;
+    case 5: plane_pass(lsm, plane, thread, 2, true, solve, laps); break;
+    default: 
+        if (damping) plane_pass(lsm, plane, thread, lsm->w, true, solve, laps);
+        else plane_pass(lsm, plane, thread, lsm->w, false, solve, laps);
+    }
+}
+
+SM_INLINE void stage_z_down(const Lsm *lsm, int plane, long block, int w, bool damping, vec *sum)
+{
+    int F = damping ? 6 : 3;
+    const int *along = lsm->box->along_z + block * (2 * w + 1);
+    for (int f = 0; f < F; f++) sum[f] = lanes_set(0);
+    for (int c = 0; c <= 2 * w; c++) {
+        if (along[c] == lsm->blocks) continue;
+        int z = plane + c - w;
+        const real *in = lsm->box->down[z] + (along[c] - lsm->layer_block[z]) * 6 * SM_LANES;
+        for (int f = 0; f < F; f++) sum[f] += lanes_load(in + f * SM_LANES);
+        if (!damping && c != w)
+            for (int d = 0; d < 3; d++) sum[d] -= (real)(c - w) * lanes_load(in + (3 + d) * SM_LANES);
+    }
+}
+
+void lsm_blocks_down(const Lsm *lsm, int plane, long block, bool damping, vec *sum)
+{
+    if (damping) stage_z_down(lsm, plane, block, lsm->w, true, sum);
+    else stage_z_down(lsm, plane, block, lsm->w, false, sum);
+}
