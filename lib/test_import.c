@@ -350,6 +350,23 @@ static void test_parent_ignores_children(void **state)
     assert_int_equal(info.triangles, 4);
 }
 
+/* Children forked by many threads at once neither hold up nor disturb one another. */
+static void test_parallel_imports(void **state)
+{
+    (void)state;
+    const char *path = write_text("a.off", tetrahedron_off);
+    int before = open_descriptors(), good = 0;
+#pragma omp parallel for num_threads(4) reduction(+ : good)
+    for (int i = 0; i < 16; i++) {
+        SmMesh mesh;
+        good += sm_import(path, NULL, &mesh, NULL) == SM_OK && mesh.triangle_count == 4;
+        sm_mesh_free(&mesh);
+    }
+    assert_int_equal(good, 16);
+    assert_int_equal(open_descriptors(), before);
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
+}
+
 static void test_broken_replies(void **state)
 {
     (void)state;
@@ -440,6 +457,7 @@ int main(void)
         cmocka_unit_test(test_child_without_memory),
         cmocka_unit_test(test_import_limits),
         cmocka_unit_test(test_parent_ignores_children),
+        cmocka_unit_test(test_parallel_imports),
         cmocka_unit_test(test_broken_replies),
         cmocka_unit_test(test_shared_meshes),
     };
