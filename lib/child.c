@@ -16,18 +16,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED 1
-#endif
-#ifndef SANITIZED
-#define SANITIZED 0
-#endif
-
 static const double megabyte = 1024.0 * 1024.0;
 
 static void limit(int resource, double value)
@@ -79,7 +67,7 @@ static void child(SmChildBody body, void *argument, const SmChildLimits *limits,
     close_others(reply);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, ceil(limits->seconds) + 1);
-    if (!SANITIZED) limit(RLIMIT_AS, inherited + limits->megabytes * megabyte);
+    if (SM_CHILD_LIMITS_MEMORY) limit(RLIMIT_AS, inherited + limits->megabytes * megabyte);
     _exit(body(argument, reply));
 }
 

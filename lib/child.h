@@ -8,10 +8,23 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* Sanitizers map terabytes of shadow memory, which no limit on the address space survives. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SM_CHILD_LIMITS_MEMORY 0
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) ||                         \
+    __has_feature(memory_sanitizer)
+#define SM_CHILD_LIMITS_MEMORY 0
+#endif
+#endif
+#ifndef SM_CHILD_LIMITS_MEMORY
+#define SM_CHILD_LIMITS_MEMORY 1
+#endif
+
 typedef struct {
     double seconds;   /* wall clock */
-    double megabytes; /* address space beyond the parent's own, and the reply's size. Sanitizer
-                         builds limit the reply only: their shadow memory is huge */
+    double megabytes; /* address space beyond the parent's own (not where
+                         SM_CHILD_LIMITS_MEMORY is 0), and the reply's size */
 } SmChildLimits;
 
 typedef enum {

@@ -101,6 +101,11 @@ static void cross(const double a[3], const double b[3], double result[3])
     result[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /* Makes `vector` a unit vector and returns true, or zero and false. */
 static bool normalize(double vector[3])
 {
@@ -208,28 +213,22 @@ void sm_embed_free(SmEmbedding *embedding)
     *embedding = (SmEmbedding){0};
 }
 
-/* Sum of w_i (x_i - x_0). */
-static inline void blend(const float weight[8], const double difference[3][8], double sum[3])
+/* Sum of w_i (x_i - x_0). The fourth lane pads a position to a vector register. */
+static inline void blend(const float weight[8], const double difference[8][4], double sum[4])
 {
-    for (int a = 0; a < 3; a++) {
-        double total = 0;
-        for (int i = 1; i < 8; i++) total += (double)weight[i] * difference[a][i];
-        sum[a] = total;
-    }
+    for (int a = 0; a < 4; a++) sum[a] = 0;
+    for (int i = 1; i < 8; i++)
+        for (int a = 0; a < 4; a++) sum[a] += (double)weight[i] * difference[i][a];
 }
 
-static void deformed_normal(const double u_sum[3], const double v_sum[3], double normal[3])
+static void deformed_normal(const double u[3], const double v[3], double normal[3])
 {
     static const double parallel = 1e-12; /* sine of the angle between the tangents */
-    double u[3] = {u_sum[0], u_sum[1], u_sum[2]}, v[3] = {v_sum[0], v_sum[1], v_sum[2]};
-    bool usable = normalize(u);
-    usable = normalize(v) && usable;
-    cross(u, v, normal);
-    double squared = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-    if (usable && squared > parallel * parallel)
-        normalize(normal);
-    else
-        normal[0] = normal[1] = normal[2] = 0;
+    double n[3];
+    cross(u, v, n);
+    double squared = dot(n, n), least = parallel * parallel * dot(u, u) * dot(v, v);
+    double scale = squared > least && isfinite(squared) ? 1 / sqrt(squared) : 0;
+    for (int a = 0; a < 3; a++) normal[a] = scale > 0 ? n[a] * scale : 0;
 }
 
 void sm_embed_apply(const SmEmbedding *embedding, const double (*x)[3], double (*position)[3],
@@ -239,9 +238,9 @@ void sm_embed_apply(const SmEmbedding *embedding, const double (*x)[3], double (
     for (long v = 0; v < embedding->vertex_count; v++) {
         const int *corner = embedding->corner[v];
         const double *first = x[corner[0]];
-        double difference[3][8], sum[3], u[3], w[3];
-        for (int i = 0; i < 8; i++)
-            for (int a = 0; a < 3; a++) difference[a][i] = x[corner[i]][a] - first[a];
+        double difference[8][4] = {{0}}, sum[4], u[4], w[4];
+        for (int i = 1; i < 8; i++)
+            for (int a = 0; a < 3; a++) difference[i][a] = x[corner[i]][a] - first[a];
         blend(embedding->weight[v], difference, sum);
         for (int a = 0; a < 3; a++) position[v][a] = first[a] + sum[a];
         if (!normal) continue;

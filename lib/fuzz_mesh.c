@@ -1,7 +1,10 @@
-/* The mesh path behind the importer: a child's reply of any bytes, then merge, check and counts.
+/* The mesh path around the importer: text moved to the origin, polygons cut, a child's reply of any
+ * bytes read, then merge, check and counts.
  * With SHAPEBENCH_FUZZ_SUFFIX set (say ".obj") the bytes are a mesh file instead and go through the
  * importer's process too. */
 #include "import.h"
+#include "polygon.h"
+#include "recentre.h"
 #include "reply.h"
 
 #include <stdio.h>
@@ -55,6 +58,41 @@ static SmCode read_shaped(const unsigned char *data, size_t size, SmMesh *mesh)
     return code;
 }
 
+/* Any text in any of the formats; the copy must still be a text of that format. */
+static void recentre(const unsigned char *data, size_t size)
+{
+    static const char *const suffix[] = {"obj", "stl", "PLY", "off"};
+    char *text = sm_alloc(size + 1, 1);
+    memcpy(text, data, size);
+    for (int f = 0; f < 4; f++) {
+        double offset[3];
+        size_t new_size = 0;
+        char *copy = sm_recentre(text, size, suffix[f], &new_size, offset);
+        expect(!copy || strlen(copy) == new_size, "the moved text has another length");
+        free(copy);
+    }
+    free(text);
+}
+
+/* A polygon with a corner per three bytes: every corner must be in some triangle. */
+static void cut(const unsigned char *data, size_t size)
+{
+    enum { MOST = 100 };
+    float position[MOST][3];
+    unsigned corner[MOST];
+    int triangle[MOST][3], count = (int)(size / 3 < MOST ? size / 3 : MOST);
+    bool used[MOST] = {false};
+    if (count < 3) return;
+    for (int i = 0; i < count; i++) {
+        corner[i] = (unsigned)i;
+        for (int a = 0; a < 3; a++) position[i][a] = (float)(data[3 * i + a] % 16);
+    }
+    expect(sm_polygon_cut((const float(*)[3])position, corner, count, triangle), "no memory");
+    for (int t = 0; t < count - 2; t++)
+        for (int c = 0; c < 3; c++) used[triangle[t][c]] = true;
+    for (int i = 0; i < count; i++) expect(used[i], "a corner is lost");
+}
+
 static SmCode import_bytes(const unsigned char *data, size_t size, const char *suffix, SmMesh *mesh)
 {
     char path[64];
@@ -75,6 +113,8 @@ int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size)
         sm_mesh_free(&mesh);
         return 0;
     }
+    recentre(data, size);
+    cut(data, size);
     SmError error;
     if (sm_reply_read(data, size, "fuzz", &mesh, &error) == SM_OK) inspect(&mesh);
     sm_mesh_free(&mesh);
