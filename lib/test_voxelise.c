@@ -1,4 +1,4 @@
-/* From triangles to cells: against separating axes, against known volumes, and on bad meshes. */
+/* From meshes to lattices: known volumes, bad meshes, wanted counts, limits. */
 #include "voxel.h"
 
 #include <dirent.h>
@@ -16,7 +16,6 @@
 
 #include "import.h"
 #include "stage.h"
-#include "voxel_flood.h"
 
 #ifdef __SANITIZE_ADDRESS__
 #define PEAK_MEGABYTES 1000 /* freed memory is quarantined */
@@ -143,135 +142,6 @@ static void assert_same(const SmVoxels *a, const SmVoxels *b)
     assert_int_equal(a->particle_count, b->particle_count);
 }
 
-/* Separating axes: whether the triangle meets the cube at `low` of edge `edge`. */
-static bool meets(double p[3][3], const double low[3], double edge)
-{
-    double corner[3][3], axis[13][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (int c = 0; c < 3; c++)
-        for (int d = 0; d < 3; d++) corner[c][d] = p[c][d] - low[d] - edge / 2;
-    double side[3][3];
-    for (int c = 0; c < 3; c++)
-        for (int d = 0; d < 3; d++) side[c][d] = corner[(c + 1) % 3][d] - corner[c][d];
-    for (int d = 0; d < 3; d++) {
-        int e = (d + 1) % 3, f = (d + 2) % 3;
-        axis[3][d] = side[0][e] * side[1][f] - side[0][f] * side[1][e];
-        for (int c = 0; c < 3; c++) {
-            axis[4 + 3 * c + d][e] = -side[c][f];
-            axis[4 + 3 * c + d][f] = side[c][e];
-        }
-    }
-    for (int a = 0; a < 13; a++) {
-        double low_dot = INFINITY, high_dot = -INFINITY, reach = 0;
-        for (int d = 0; d < 3; d++) reach += fabs(axis[a][d]) * edge / 2;
-        for (int c = 0; c < 3; c++) {
-            double dot = 0;
-            for (int d = 0; d < 3; d++) dot += axis[a][d] * corner[c][d];
-            low_dot = fmin(low_dot, dot);
-            high_dot = fmax(high_dot, dot);
-        }
-        if (low_dot > reach || high_dot < -reach) return false;
-    }
-    return true;
-}
-
-/* Every cell met with a margin to spare is set; every cell missed by a margin is not. */
-static void check_surface(const SmMesh *m, const SmVoxels *v)
-{
-    const double margin = 4e-6;
-    for (int k = 0; k < v->size[2]; k++)
-        for (int j = 0; j < v->size[1]; j++)
-            for (int i = 0; i < v->size[0]; i++) {
-                bool surely = false, perhaps = false;
-                double inner[3] = {i + margin, j + margin, k + margin};
-                double outer[3] = {i - margin, j - margin, k - margin};
-                for (long t = 0; t < m->triangle_count; t++) {
-                    double p[3][3];
-                    for (int c = 0; c < 3; c++)
-                        for (int d = 0; d < 3; d++)
-                            p[c][d] = (m->position[m->triangle[t][c]][d] - v->origin[d]) / v->cell;
-                    surely |= meets(p, inner, 1 - 2 * margin);
-                    perhaps |= meets(p, outer, 1 + 2 * margin);
-                }
-                bool set = sm_voxel_get(v, i, j, k);
-                if (surely) assert_true(set);
-                if (!perhaps) assert_false(set);
-            }
-}
-
-static void random_triangles_mark_what_separating_axes_say(void **state)
-{
-    (void)state;
-    for (int trial = 0; trial < 600; trial++) {
-        int triangles = 1 + (int)(draw() % 4);
-        SmMesh m = new_mesh(3L * triangles, triangles);
-        double scale = trial % 3 == 0 ? 1.5 : 9, far = trial % 5 == 0 ? 5e6 : 0;
-        for (int i = 0; i < 3 * triangles; i++) {
-            for (int d = 0; d < 3; d++) {
-                m.position[i][d] = far + uniform(0, d == trial % 4 ? scale / 3 : scale);
-                if (trial % 4 == 0) m.position[i][d] = round(m.position[i][d]);
-            }
-            m.triangle[i / 3][i % 3] = i;
-        }
-        if (trial % 11 == 0) memcpy(m.position[1], m.position[0], sizeof m.position[0]);
-        m.position[2][0] += 1;
-        SmVoxels v = made(&m, SM_SHELL, trial % 2 ? 0.37 : 1, NULL);
-        check_surface(&m, &v);
-        sm_voxels_free(&v);
-        sm_mesh_free(&m);
-    }
-}
-
-/* One cell at a time: what a flood fill is. */
-static void plain_flood(const SmVoxels *v, SmVoxels *result)
-{
-    int nx = v->size[0] + 2, ny = v->size[1] + 2, nz = v->size[2] + 2, count = 0;
-    bool *seen = sm_alloc((size_t)nx * (size_t)ny * (size_t)nz, sizeof *seen);
-    int *stack = sm_alloc((size_t)nx * (size_t)ny * (size_t)nz, sizeof *stack);
-    seen[0] = true;
-    stack[count++] = 0;
-    while (count) {
-        int at = stack[--count], x = at % nx, y = at / nx % ny, z = at / nx / ny;
-        for (int s = 0; s < 6; s++) {
-            int step = s % 2 ? 1 : -1, i = x + (s / 2 == 0) * step, j = y + (s / 2 == 1) * step;
-            int k = z + (s / 2 == 2) * step, to = (k * ny + j) * nx + i;
-            if (i < 0 || j < 0 || k < 0 || i >= nx || j >= ny || k >= nz || seen[to]) continue;
-            if (sm_voxel_get(v, i - 1, j - 1, k - 1)) continue;
-            seen[to] = true;
-            stack[count++] = to;
-        }
-    }
-    for (int k = 0; k < v->size[2]; k++)
-        for (int j = 0; j < v->size[1]; j++)
-            for (int i = 0; i < v->size[0]; i++)
-                if (!seen[((k + 1) * ny + j + 1) * nx + i + 1]) sm_voxel_set(result, i, j, k);
-    free(seen);
-    free(stack);
-}
-
-static void flood_fills_like_a_flood_of_single_cells(void **state)
-{
-    (void)state;
-    const int widths[] = {1, 3, 20, 63, 64, 65, 128, 130};
-    for (int trial = 0; trial < 240; trial++) {
-        int nx = widths[trial % 8], ny = 1 + (int)(draw() % 14), nz = 1 + (int)(draw() % 14);
-        SmVoxels v, plain;
-        sm_voxels_init(&v, nx, ny, nz, 1);
-        sm_voxels_init(&plain, nx, ny, nz, 1);
-        uint32_t percent = 20 + draw() % 60;
-        for (int k = 0; k < nz; k++)
-            for (int j = 0; j < ny; j++)
-                for (int i = 0; i < nx; i++)
-                    if (draw() % 100 < percent) sm_voxel_set(&v, i, j, k);
-        plain_flood(&v, &plain);
-        sm_voxel_flood(&v);
-        sm_voxels_count(&v);
-        sm_voxels_count(&plain);
-        assert_same(&v, &plain);
-        sm_voxels_free(&v);
-        sm_voxels_free(&plain);
-    }
-}
-
 /* How far cell (i, j, k)'s centre is from the world's origin. */
 static double centre_distance(const SmVoxels *v, int i, int j, int k)
 {
@@ -353,7 +223,7 @@ static void wide_holes_are_bridged(void **state)
     (void)state;
     /* Without its first rings of triangles the ball is open above z = cos(pi / 6). */
     int rings = 60, steps = 90, gone = 10;
-    SmMesh m = ball(1, rings, steps, 0), open = ball(1, rings, steps, 0);
+    SmMesh open = ball(1, rings, steps, 0);
     long first = (2L * gone - 1) * steps;
     open.triangle_count -= first;
     memmove(open.triangle, open.triangle + first,
@@ -370,7 +240,6 @@ static void wide_holes_are_bridged(void **state)
                 if (r > 1 + 0.05 * sqrt(3) / 2) assert_false(sm_voxel_get(&v, i, j, k));
             }
     sm_voxels_free(&v);
-    sm_mesh_free(&m);
     sm_mesh_free(&open);
 }
 
@@ -618,8 +487,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_hundred_million_cells_fit), /* first: it measures the peak memory */
-        cmocka_unit_test(random_triangles_mark_what_separating_axes_say),
-        cmocka_unit_test(flood_fills_like_a_flood_of_single_cells),
         cmocka_unit_test(a_ball_is_filled_and_no_more),
         cmocka_unit_test(bad_balls_are_the_same_solid),
         cmocka_unit_test(wide_holes_are_bridged),

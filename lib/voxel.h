@@ -61,13 +61,14 @@ typedef struct {
  *
  * With params->particles the cell size is searched whose particle count is nearest: by bracketing,
  * at most 12 lattices, and where the count jumps (few particles, flat faces) at most 47 more with
- * the lattice moved by a part of a cell.
+ * the lattice moved by a part of a cell; of at most 2^32 cells together.
  *
  * The mesh's equal positions must have been merged (sm_mesh_merge()). O(triangles + cells / 64) a
  * lattice; at most 7 times bits/8 bytes for a moment. On success the caller frees `voxels`.
  * `report` may be NULL. Errors (SM_INPUT), on which `voxels` is zeroed: what sm_mesh_check() says;
  * loose triangles without an inside for a solid; a lattice of more than 2^31 cells or 512 MiB; a
- * cell size or particle count out of range. The line begins with `name`. */
+ * cell size or particle count out of range, or one beyond those 2^32 cells. The line begins with
+ * `name`. */
 SmCode sm_voxelise_report(const SmMesh *mesh, const SmVoxelParams *params, const char *name,
                           SmVoxels *voxels, SmVoxelReport *report, SmError *error);
 

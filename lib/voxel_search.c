@@ -5,6 +5,7 @@
 
 #define CELL_SIZES 12
 #define SHIFTS     47
+#define WORDS      67108864.0 /* of all lattices: some seconds */
 
 typedef struct {
     double cell; /* 0: none yet */
@@ -18,9 +19,19 @@ typedef struct {
     SmVoxelReport report; /* of the best */
     Sample few, many;     /* nearest samples to either side */
     Sample last;
+    double words; /* that more lattices may have together */
     bool limited; /* a cell size was beyond the limits */
     int tried;
 } Search;
+
+/* Whether a lattice of this cell size is within the limits, and within those of the search. */
+static bool affordable(Search *s, double cell)
+{
+    double words = sm_voxeliser_words(s->voxeliser, cell);
+    if (!(words <= s->words)) return false;
+    s->words -= words;
+    return true;
+}
 
 static long miss(const Search *s)
 {
@@ -74,7 +85,7 @@ static SmCode search_cell(Search *s, SmError *error)
     double cell = s->voxeliser->longest / 24;
     bool was_many = false, same = false;
     for (int i = 0; i < CELL_SIZES; i++) {
-        if (!sm_voxeliser_fits(s->voxeliser, cell)) {
+        if (!affordable(s, cell)) {
             s->limited = true;
             same = narrow(s, (Sample){cell, INFINITY}, &was_many);
         } else {
@@ -103,7 +114,7 @@ static SmCode search_shift(Search *s, SmError *error)
         double shift[3], part = fmod(i * step[3], 1);
         double cell = i < 8 ? centred : least * pow(most / least, 1.5 * part - 0.25);
         for (int d = 0; d < 3; d++) shift[d] = i < 8 ? (i >> d & 1) * 0.5 : fmod(i * step[d], 1);
-        if (!sm_voxeliser_fits(s->voxeliser, cell)) continue;
+        if (!affordable(s, cell)) continue;
         SmCode code = try_lattice(s, cell, shift, error);
         if (code) return code;
     }
@@ -113,14 +124,15 @@ static SmCode search_shift(Search *s, SmError *error)
 SmCode sm_voxel_search(SmVoxeliser *voxeliser, long wanted, SmVoxels *voxels, SmVoxelReport *report,
                        SmError *error)
 {
-    Search s = {.voxeliser = voxeliser, .wanted = wanted};
+    Search s = {.voxeliser = voxeliser, .wanted = wanted, .words = WORDS};
     SmCode code = search_cell(&s, error);
     if (!code) code = search_shift(&s, error);
     if (!code && s.limited && miss(&s) * 50 > wanted)
-        code = sm_fail(error, SM_INPUT,
-                       "%s: %ld particles need a lattice of more than 2^31 cells; "
-                       "%ld are the most that were reached: ask for fewer",
-                       voxeliser->name, wanted, s.best.particle_count);
+        code =
+            sm_fail(error, SM_INPUT,
+                    "%s: %ld particles need too large a lattice (most of its box would be empty); "
+                    "%ld were reached: ask for fewer",
+                    voxeliser->name, wanted, s.best.particle_count);
     if (code) {
         sm_voxels_free(&s.best);
         return code;

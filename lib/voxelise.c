@@ -100,10 +100,11 @@ static bool place(const SmVoxeliser *v, double cell, const double shift[3], Plac
     return cells <= 2147483648.0 && padded <= 4294967296.0;
 }
 
-bool sm_voxeliser_fits(const SmVoxeliser *v, double cell)
+double sm_voxeliser_words(const SmVoxeliser *v, double cell)
 {
     Placement at;
-    return place(v, cell, (double[3]){0.5, 0.5, 0.5}, &at);
+    if (!place(v, cell, (double[3]){0.5, 0.5, 0.5}, &at)) return INFINITY;
+    return ceil(at.size[0] / 64.0) * at.size[1] * at.size[2];
 }
 
 static long cells_of(const SmVoxels *voxels)

@@ -19,8 +19,9 @@ SmCode sm_voxeliser_init(SmVoxeliser *voxeliser, const SmMesh *mesh, SmFill fill
                          SmError *error);
 void sm_voxeliser_free(SmVoxeliser *voxeliser);
 
-/* Whether a lattice of this cell size is within the limits of sm_voxelise(). */
-bool sm_voxeliser_fits(const SmVoxeliser *voxeliser, double cell);
+/* 64-bit words of a lattice of this cell size, moved by half a cell; INFINITY beyond the limits of
+ * sm_voxelise(). */
+double sm_voxeliser_words(const SmVoxeliser *voxeliser, double cell);
 
 /* Makes a lattice, its box moved by `shift` of a cell (0..1 along each axis) from the centred one;
  * fills all of `report` but its number of voxelisations. Errors as sm_voxelise(). */
