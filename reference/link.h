@@ -7,6 +7,9 @@
 
 #include "../lib/voxel.h"
 
+/* Bodies of no more particles are not worth waking threads for. */
+enum { REF_SERIAL = 500 };
+
 /* Compressed rows: neighbours of p are neighbour[start[p]] .. neighbour[start[p + 1]]. */
 typedef struct {
     long count;  /* particles */
