@@ -99,7 +99,7 @@ static SmCode import_bytes(const unsigned char *data, size_t size, const char *s
     snprintf(path, sizeof path, "/tmp/fuzz_mesh_%ld%s", (long)getpid(), suffix);
     FILE *file = fopen(path, "wb");
     expect(file && fwrite(data, 1, size, file) == size && fclose(file) == 0, "cannot write /tmp");
-    SmCode code = sm_import(path, &(SmImportLimits){.seconds = 5, .megabytes = 1024}, mesh, NULL);
+    SmCode code = sm_import(path, &(SmImportLimits){.seconds = 0.5, .megabytes = 1024}, mesh, NULL);
     unlink(path);
     return code;
 }
