@@ -295,7 +295,7 @@ SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **out
         build_slots(lsm);
     }
     lsm->x = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
-    lsm->v = sm_alloc((size_t)lsm->blocks * 3 * SM_LANES, sizeof(real));
+    lsm->v = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm_build_regions(lsm);
     lsm->build_seconds = sm_now() - start;
     *out = lsm;

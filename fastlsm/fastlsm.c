@@ -161,7 +161,7 @@ static void replace_sums(const Lsm *lsm, long block, vec S[12])
 static void match_block(Lsm *lsm, int layer, long block, const vec *sum, vec *out, SmLaps *laps)
 {
     vec S[12], R[9], q[3];
-    for (int i = 0; i < 12; i++) S[i] = sum[i];
+    for (int i = 0; i < 12; i++) S[i] = sum[(4 - i / 3) % 4 * 3 + i % 3]; /* from (C, Cz, Cy, Cx) */
     if (lsm->box->mixed[block]) replace_sums(lsm, block, S);
     sm_lap(laps, SM_FAST_SUM);
     if (!match_sums(lsm, layer, block, S, q, R, laps)) return;
