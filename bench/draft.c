@@ -11,7 +11,8 @@
 
 enum { SLOTS = 16 };
 
-/* Read by a signal handler: a name is complete before its flag is set. */
+/* Read by a signal handler of the one thread that writes: a name is complete before its flag is
+ * set. */
 static char listed[SLOTS][BENCH_DRAFT_PATH];
 static volatile sig_atomic_t in_use[SLOTS];
 

@@ -16,6 +16,7 @@ enum { MOST_REPEATS = 1000000 }; /* more than anyone waits for: a damaged file *
 
 static const BenchField row_fields[] = {
     FIELD(BENCH_TEXT, paper),
+    FIELD(BENCH_TEXT, paper_row),
     FIELD(BENCH_TEXT, scene),
     FIELD(BENCH_TEXT, engine),
     FIELD(BENCH_TEXT, precision),

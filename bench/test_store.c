@@ -16,7 +16,7 @@
 
 #include "store.h"
 
-enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 576 };
+enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 600 };
 
 static char folder[] = "/tmp/test_store_XXXXXX";
 
@@ -84,6 +84,7 @@ static void fill_row(BenchRow *row, int seed)
                       .paper_total_ms = 0.281,
                       .input_hash = 0xcbf29ce484222325ULL};
     strcpy(row->paper, "fastlsm");
+    strcpy(row->paper_row, "penguin");
     snprintf(row->scene, sizeof row->scene, "penguin \"%d\" \xc3\xa9", seed);
     strcpy(row->engine, "fastlsm");
     strcpy(row->precision, "single");
