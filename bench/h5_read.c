@@ -1,0 +1,126 @@
+#include "h5.h"
+
+#include <string.h>
+
+static bool same_class(hid_t type, BenchKind kind)
+{
+    H5T_class_t class = H5Tget_class(type);
+    if (kind == BENCH_TEXT) return class == H5T_STRING && H5Tis_variable_str(type) <= 0;
+    return class == (kind == BENCH_DOUBLE ? H5T_FLOAT : H5T_INTEGER);
+}
+
+/* Opens an attribute of the right kind and number of elements; its type goes to `type`. */
+static hid_t open_attribute(BenchH5 *h5, hid_t object, const char *name, BenchKind kind, int count)
+{
+    if (h5->failed) return -1;
+    if (H5Aexists(object, name) <= 0) {
+        bench_h5_fail(h5, "attribute '%s' is missing", name);
+        return -1;
+    }
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    hid_t type = attribute < 0 ? -1 : H5Aget_type(attribute);
+    hid_t space = attribute < 0 ? -1 : H5Aget_space(attribute);
+    if (type < 0 || space < 0 || !same_class(type, kind) ||
+        H5Sget_simple_extent_npoints(space) != count)
+        bench_h5_fail(h5, "attribute '%s' has the wrong type or size", name);
+    if (type >= 0) H5Tclose(type);
+    if (space >= 0) H5Sclose(space);
+    return attribute;
+}
+
+void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size, char *text)
+{
+    hid_t attribute = open_attribute(h5, object, name, BENCH_TEXT, 1);
+    if (!h5->failed) {
+        hid_t stored = H5Aget_type(attribute), type = H5Tcopy(stored);
+        H5Tset_size(type, size);
+        H5Tset_strpad(type, H5T_STR_NULLTERM);
+        if (H5Tget_size(stored) > size || H5Aread(attribute, type, text) < 0)
+            bench_h5_fail(h5, "attribute '%s' cannot be read or is too long", name);
+        text[size - 1] = '\0';
+        H5Tclose(type);
+        H5Tclose(stored);
+    }
+    if (attribute >= 0) H5Aclose(attribute);
+}
+
+static hid_t memory_type(BenchKind kind, size_t *unit)
+{
+    switch (kind) {
+    case BENCH_INT:
+        *unit = sizeof(int);
+        return H5T_NATIVE_INT;
+    case BENCH_LONG:
+        *unit = sizeof(long);
+        return H5T_NATIVE_LONG;
+    case BENCH_BOOL:
+        *unit = sizeof(bool);
+        return H5T_NATIVE_UINT8;
+    case BENCH_HASH:
+        *unit = sizeof(unsigned long long);
+        return H5T_NATIVE_ULLONG;
+    default:
+        *unit = sizeof(double);
+        return H5T_NATIVE_DOUBLE;
+    }
+}
+
+static void read_numbers(BenchH5 *h5, hid_t object, const BenchField *field, void *value)
+{
+    size_t unit;
+    hid_t type = memory_type(field->kind, &unit);
+    hid_t attribute =
+        open_attribute(h5, object, field->name, field->kind, (int)(field->size / unit));
+    if (!h5->failed && H5Aread(attribute, type, value) < 0)
+        bench_h5_fail(h5, "attribute '%s' cannot be read", field->name);
+    if (!h5->failed && field->kind == BENCH_BOOL) {
+        unsigned char *flag = value; /* any other byte is no bool */
+        *flag = *flag != 0;
+    }
+    if (attribute >= 0) H5Aclose(attribute);
+}
+
+void bench_h5_read_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
+                          void *record)
+{
+    for (int i = 0; i < count && !h5->failed; i++) {
+        char *value = (char *)record + fields[i].offset;
+        if (fields[i].kind == BENCH_TEXT)
+            bench_h5_read_text(h5, object, fields[i].name, fields[i].size, value);
+        else
+            read_numbers(h5, object, &fields[i], value);
+    }
+}
+
+hid_t bench_h5_find_group(BenchH5 *h5, hid_t parent, const char *name)
+{
+    if (h5->failed) return -1;
+    hid_t group = H5Gopen2(parent, name, H5P_DEFAULT);
+    if (group < 0) bench_h5_fail(h5, "group '%s' is missing", name);
+    return group;
+}
+
+hid_t bench_h5_find_dataset(BenchH5 *h5, hid_t parent, const char *name, int rank,
+                            const hsize_t *size)
+{
+    if (h5->failed) return -1;
+    hid_t dataset = H5Dopen2(parent, name, H5P_DEFAULT);
+    if (dataset < 0) {
+        bench_h5_fail(h5, "dataset '%s' is missing", name);
+        return -1;
+    }
+    hid_t space = H5Dget_space(dataset);
+    hsize_t stored[H5S_MAX_RANK] = {0};
+    bool same = H5Sget_simple_extent_dims(space, stored, NULL) == rank;
+    for (int axis = 0; same && axis < rank; axis++) same = stored[axis] == size[axis];
+    if (!same) bench_h5_fail(h5, "dataset '%s' has the wrong size", name);
+    H5Sclose(space);
+    return dataset;
+}
+
+void bench_h5_read(BenchH5 *h5, hid_t dataset, hid_t type, void *values)
+{
+    if (h5->failed) return;
+    if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+        bench_h5_fail(h5, "a dataset cannot be read");
+}

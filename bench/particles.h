@@ -1,0 +1,20 @@
+/* particles.h - the group /particles of a trajectory: all that a step can be recomputed from. */
+#ifndef BENCH_PARTICLES_H
+#define BENCH_PARTICLES_H
+
+#include "trajectory.h"
+
+typedef struct {
+    hid_t step, x, v, g; /* growing datasets */
+    long count;          /* particles of all instances */
+} BenchParticles;
+
+/* Writes lattice, masses, parameters and boundary, and makes the datasets that grow. */
+void bench_particles_begin(BenchH5 *h5, const BenchTrajectoryParams *params,
+                           BenchParticles *particles);
+
+/* Appends a record; `g` NULL is stored as NaN. */
+void bench_particles_record(BenchH5 *h5, const BenchParticles *particles, long step,
+                            const double (*x)[3], const double (*v)[3], const double (*g)[3]);
+
+#endif

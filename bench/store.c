@@ -1,0 +1,205 @@
+#include "store.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "draft.h"
+
+#define FIELD(kind, member) BENCH_FIELD(BenchRow, kind, member)
+#define COUNT(array)        ((int)(sizeof(array) / sizeof((array)[0])))
+
+static const char file_kind[] = "shapebench results";
+enum { MOST_REPEATS = 1000000 }; /* more than anyone waits for: a damaged file */
+
+static const BenchField row_fields[] = {
+    FIELD(BENCH_TEXT, paper),
+    FIELD(BENCH_TEXT, paper_row),
+    FIELD(BENCH_TEXT, scene),
+    FIELD(BENCH_TEXT, engine),
+    FIELD(BENCH_TEXT, precision),
+    FIELD(BENCH_LONG, triangles),
+    FIELD(BENCH_LONG, particles),
+    FIELD(BENCH_LONG, regions),
+    FIELD(BENCH_LONG, instances),
+    FIELD(BENCH_INT, w),
+    FIELD(BENCH_INT, steps),
+    FIELD(BENCH_DOUBLE, epsilon),
+    FIELD(BENCH_DOUBLE, h),
+    FIELD(BENCH_DOUBLE, cell),
+    FIELD(BENCH_DOUBLE, damping),
+    FIELD(BENCH_INT, threads),
+    FIELD(BENCH_BOOL, valid),
+    FIELD(BENCH_TEXT, reason),
+    FIELD(BENCH_DOUBLE, goal_error),
+    FIELD(BENCH_DOUBLE, momentum_error),
+    FIELD(BENCH_DOUBLE, goal_tolerance),
+    FIELD(BENCH_INT, repeats),
+    FIELD(BENCH_DOUBLE, stage_ms),
+    FIELD(BENCH_DOUBLE, total_ms),
+    FIELD(BENCH_DOUBLE, total_low_ms),
+    FIELD(BENCH_DOUBLE, total_high_ms),
+    FIELD(BENCH_DOUBLE, instruments_percent),
+    FIELD(BENCH_DOUBLE, ns_per_particle_step),
+    FIELD(BENCH_DOUBLE, voxelise_seconds),
+    FIELD(BENCH_DOUBLE, build_seconds),
+    FIELD(BENCH_LONG, bytes),
+    FIELD(BENCH_DOUBLE, paper_total_ms),
+    FIELD(BENCH_DOUBLE, paper_stage_ms),
+    FIELD(BENCH_HASH, input_hash),
+};
+
+/* "fast_sum shape_matching ...": the columns of `stage`, in order. */
+static void stage_names(size_t size, char *names)
+{
+    size_t used = 0;
+    for (int stage = 0; stage < SM_STAGES; stage++)
+        used += (size_t)snprintf(names + used, size - used, "%s%s", stage ? " " : "",
+                                 sm_stage_name((SmStage)stage));
+}
+
+static void write_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
+{
+    char name[16], stages[128];
+    snprintf(name, sizeof name, "%03d", index);
+    stage_names(sizeof stages, stages);
+    hid_t group = bench_h5_group(h5, parent, name);
+    bench_h5_fields(h5, group, row_fields, COUNT(row_fields), row);
+    bench_h5_text(h5, group, "stages", stages);
+    hsize_t size[] = {(hsize_t)row->repeats, SM_STAGES};
+    bench_h5_dataset(h5, group, "total", H5T_IEEE_F64LE, 1, size, row->total);
+    bench_h5_dataset(h5, group, "stage", H5T_IEEE_F64LE, 2, size, row->stage);
+    if (group >= 0) H5Gclose(group);
+}
+
+static void write_file(BenchH5 *h5, const BenchRow *rows, int count, const BenchMachine *machine)
+{
+    int schema = BENCH_STORE_SCHEMA, machine_count;
+    const BenchField *machine_fields = bench_machine_fields(&machine_count);
+    bench_h5_text(h5, h5->file, "kind", file_kind);
+    bench_h5_numbers(h5, h5->file, "schema", H5T_STD_I32LE, 0, &schema);
+    bench_h5_numbers(h5, h5->file, "rows", H5T_STD_I32LE, 0, &count);
+    hid_t group = bench_h5_group(h5, h5->file, "machine");
+    bench_h5_fields(h5, group, machine_fields, machine_count, machine);
+    group = bench_h5_group(h5, h5->file, "rows");
+    for (int i = 0; i < count; i++) write_row(h5, group, i, &rows[i]);
+}
+
+SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
+                        const BenchMachine *machine, SmError *error)
+{
+    BenchDraft draft;
+    SmCode code = bench_draft_begin(path, &draft, error);
+    if (code != SM_OK) return code;
+    BenchH5 h5;
+    bench_h5_create(&h5, draft.tmp);
+    write_file(&h5, rows, count, machine);
+    if (bench_h5_close(&h5)) return bench_draft_commit(&draft, error);
+    bench_draft_discard(&draft);
+    return bench_draft_fail(path, h5.number, h5.message, error);
+}
+
+static void read_samples(BenchH5 *h5, hid_t group, BenchRow *row)
+{
+    char expected[128], stages[128];
+    stage_names(sizeof expected, expected);
+    bench_h5_read_text(h5, group, "stages", sizeof stages, stages);
+    if (!h5->failed && strcmp(stages, expected) != 0)
+        bench_h5_fail(h5, "its stages are '%s', not '%s'", stages, expected);
+    if (!h5->failed && (row->repeats < 0 || row->repeats > MOST_REPEATS))
+        bench_h5_fail(h5, "repeats is %d", row->repeats);
+    hsize_t size[] = {(hsize_t)row->repeats, SM_STAGES};
+    hid_t total = bench_h5_find_dataset(h5, group, "total", 1, size);
+    hid_t stage = bench_h5_find_dataset(h5, group, "stage", 2, size);
+    if (h5->failed) return;
+    row->total = sm_alloc((size_t)row->repeats, sizeof *row->total);
+    row->stage = sm_alloc((size_t)row->repeats, sizeof *row->stage);
+    bench_h5_read(h5, total, H5T_NATIVE_DOUBLE, row->total);
+    bench_h5_read(h5, stage, H5T_NATIVE_DOUBLE, row->stage);
+}
+
+/* Reads row `index`; a failure's message is preceded by the row. */
+static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
+{
+    char name[16];
+    snprintf(name, sizeof name, "%03d", index);
+    hid_t group = bench_h5_find_group(h5, parent, name);
+    bench_h5_read_fields(h5, group, row_fields, COUNT(row_fields), row);
+    read_samples(h5, group, row);
+    if (h5->failed) {
+        char message[sizeof h5->message];
+        snprintf(message, sizeof message, "row %s: %.200s", name, h5->message);
+        memcpy(h5->message, message, sizeof message);
+    }
+}
+
+/* True when the file says that it is ours and of our schema. */
+static void check_kind(BenchH5 *h5)
+{
+    char kind[64] = "";
+    int schema = 0;
+    const BenchField field = {"schema", BENCH_INT, 0, sizeof schema};
+    bench_h5_read_text(h5, h5->file, "kind", sizeof kind, kind);
+    if (h5->failed || strcmp(kind, file_kind) != 0) {
+        snprintf(h5->message, sizeof h5->message, "it is HDF5, but not a shapebench results file");
+        h5->failed = true;
+    }
+    bench_h5_read_fields(h5, h5->file, &field, 1, &schema);
+    if (!h5->failed && schema < BENCH_STORE_SCHEMA)
+        bench_h5_fail(h5, "its schema is %d and this program reads %d; measure again", schema,
+                      BENCH_STORE_SCHEMA);
+    if (!h5->failed && schema > BENCH_STORE_SCHEMA)
+        bench_h5_fail(h5, "its schema is %d and this program reads %d; use a newer shapebench",
+                      schema, BENCH_STORE_SCHEMA);
+}
+
+static void read_file(BenchH5 *h5, BenchRow **rows, int *count, BenchMachine *machine)
+{
+    check_kind(h5);
+    int stored = 0, machine_count;
+    const BenchField field = {"rows", BENCH_INT, 0, sizeof stored};
+    const BenchField *machine_fields = bench_machine_fields(&machine_count);
+    bench_h5_read_fields(h5, h5->file, &field, 1, &stored);
+    hid_t group = bench_h5_find_group(h5, h5->file, "machine");
+    bench_h5_read_fields(h5, group, machine_fields, machine_count, machine);
+    group = bench_h5_find_group(h5, h5->file, "rows");
+    H5G_info_t info;
+    if (!h5->failed && (H5Gget_info(group, &info) < 0 || (hsize_t)stored != info.nlinks))
+        bench_h5_fail(h5, "it holds another number of rows than the %d it states", stored);
+    if (h5->failed) return;
+    *rows = sm_alloc((size_t)stored, sizeof **rows);
+    *count = stored;
+    for (int i = 0; i < stored && !h5->failed; i++) read_row(h5, group, i, &(*rows)[i]);
+}
+
+SmCode bench_load_rows(const char *path, BenchRow **rows, int *count, BenchMachine *machine,
+                       SmError *error)
+{
+    *rows = NULL;
+    *count = 0;
+    memset(machine, 0, sizeof *machine);
+    if (access(path, R_OK) != 0)
+        return sm_fail(error, SM_INPUT, "cannot read %.300s: %s", path, strerror(errno));
+    BenchH5 h5;
+    bench_h5_open(&h5, path);
+    if (h5.file < 0)
+        return sm_fail(error, SM_INPUT, "cannot read %.200s: not an HDF5 file, or cut off (%.200s)",
+                       path, h5.message);
+    read_file(&h5, rows, count, machine);
+    if (bench_h5_close(&h5)) return SM_OK;
+    bench_rows_free(*rows, *count);
+    *rows = NULL;
+    *count = 0;
+    return sm_fail(error, SM_INPUT, "cannot use %.200s: %.250s", path, h5.message);
+}
+
+void bench_rows_free(BenchRow *rows, int count)
+{
+    for (int i = 0; i < count; i++) {
+        free(rows[i].total);
+        free(rows[i].stage);
+    }
+    free(rows);
+}

@@ -1,0 +1,247 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../reference/brute.h"
+#include "trajectory.h"
+
+/* Steps of the brute-force engine in C, recomputed from the file alone by scripts/check_step.py. */
+
+enum { STEPS = 3, NEXT = STEPS + 1 };
+
+static char folder[] = "/tmp/test_particles_XXXXXX";
+static char path[64];
+
+static int make_folder(void **state)
+{
+    (void)state;
+    if (!mkdtemp(folder)) return -1;
+    snprintf(path, sizeof path, "%s/steps.h5", folder);
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command);
+}
+
+/* An L one cell thick: regions are no boxes. */
+static void make_lattice(SmVoxels *voxels)
+{
+    sm_voxels_init(voxels, 4, 3, 1, 0.25);
+    voxels->origin[0] = 10;
+    voxels->origin[2] = -3;
+    for (int i = 0; i < 4; i++) sm_voxel_set(voxels, i, 0, 0);
+    for (int j = 0; j < 3; j++) sm_voxel_set(voxels, 0, j, 0);
+    sm_voxels_count(voxels);
+}
+
+/* Uniform in -1..1, the same every time. */
+static double noise(unsigned *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (double)(*seed >> 8) / (1 << 23) - 1;
+}
+
+static void disturb(const SmEngineType *type, SmEngine *engine, long count, double cell)
+{
+    unsigned seed = 7;
+    double(*field)[3] = sm_alloc((size_t)count, sizeof *field);
+    type->get(engine, SM_POSITION, field);
+    for (long p = 0; p < count; p++)
+        for (int a = 0; a < 3; a++) field[p][a] += 0.2 * cell * noise(&seed);
+    type->set(engine, SM_POSITION, (const double(*)[3])field);
+    for (long p = 0; p < count; p++)
+        for (int a = 0; a < 3; a++) field[p][a] = 3 * cell * noise(&seed);
+    type->set(engine, SM_VELOCITY, (const double(*)[3])field);
+    free(field);
+}
+
+/* Records STEPS steps of the engine and the state after them. */
+static void record(const BenchTrajectoryParams *params, long count)
+{
+    const SmEngineType *type = &ref_brute_engine;
+    SmEngine *engine;
+    BenchTrajectory *trajectory;
+    SmError error = {0};
+    double(*x)[3] = sm_alloc((size_t)count, sizeof *x),
+    (*v)[3] = sm_alloc((size_t)count, sizeof *v);
+    double(*g)[3] = sm_alloc((size_t)count, sizeof *g);
+    assert_int_equal(type->create(params->voxels, params->params, &engine, &error), SM_OK);
+    if (params->boundary) type->bound(engine, params->boundary);
+    disturb(type, engine, count, params->voxels->cell);
+    if (bench_trajectory_open(params, &trajectory, &error) != SM_OK) fail_msg("%s", error.text);
+    for (long step = 0; step <= STEPS; step++) {
+        type->get(engine, SM_POSITION, x);
+        type->get(engine, SM_VELOCITY, v);
+        if (step < STEPS) type->step(engine, NULL);
+        type->get(engine, SM_GOAL, g);
+        assert_int_equal(bench_trajectory_step(trajectory, step, (const double(*)[3])x,
+                                               (const double(*)[3])v,
+                                               step < STEPS ? (const double(*)[3])g : NULL, &error),
+                         SM_OK);
+    }
+    if (bench_trajectory_close(trajectory, &error) != SM_OK) fail_msg("%s", error.text);
+    type->destroy(engine);
+    free(x);
+    free(v);
+    free(g);
+}
+
+/* Records the L with the given parameters; writes the file at `path`. */
+static void record_lattice(SmEngineParams *engine, const SmBoundary *boundary, bool masses)
+{
+    static BenchMachine machine;
+    SmVoxels voxels;
+    const SmMesh none = {0};
+    make_lattice(&voxels);
+    double *mass = sm_alloc((size_t)voxels.particle_count, sizeof *mass);
+    for (long p = 0; p < voxels.particle_count; p++) mass[p] = 1 + 0.5 * (double)(p % 5);
+    if (masses) engine->mass = mass;
+    bench_machine_read(0, NULL, 1, &machine);
+    BenchTrajectoryParams params = {.path = path,
+                                    .surface = &none,
+                                    .machine = &machine,
+                                    .scene = "L",
+                                    .record_particles = true,
+                                    .voxels = &voxels,
+                                    .params = engine,
+                                    .mass = engine->mass,
+                                    .engine = "brute",
+                                    .precision = "double",
+                                    .boundary = boundary};
+    record(&params, voxels.particle_count * (engine->instances ? engine->instances : 1));
+    free(mass);
+    sm_voxels_free(&voxels);
+}
+
+/* The script's exit code on the file; skips the test where Python or h5py is missing. */
+static int check_file(void)
+{
+    char command[256];
+    if (system("/usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null") != 0) {
+        print_message("[  NOTE    ] no /usr/bin/python3 with h5py and numpy: not recomputed\n");
+        skip();
+    }
+    fflush(NULL);
+    snprintf(command, sizeof command, "/usr/bin/python3 '%s/scripts/check_step.py' %s", SOURCE_DIR,
+             path);
+    int status = system(command);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static void free_body(void **state)
+{
+    (void)state;
+    SmEngineParams params = {.w = 1, .h = 0.01, .gravity = {0, -9.81, 0}, .threads = 1};
+    record_lattice(&params, NULL, false);
+    assert_int_equal(check_file(), 0);
+}
+
+static void damped_masses_and_instances(void **state)
+{
+    (void)state;
+    static const double pose[2][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
+                                         {{0, -1, 0, 5}, {1, 0, 0, 0}, {0, 0, 1, 2}}};
+    SmEngineParams params = {.w = 2,
+                             .h = 0.02,
+                             .damping = 0.4,
+                             .damping_every = 2,
+                             .instances = 2,
+                             .instance_pose = pose,
+                             .threads = 1};
+    record_lattice(&params, NULL, true);
+    assert_int_equal(check_file(), 0);
+}
+
+static void held_and_obstructed(void **state)
+{
+    (void)state;
+    static const long particle[] = {0, 1, 2};
+    const SmHandle pin = {3, particle, {{1, 0, 0, 0.01}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    const SmObstacle plane = {SM_PLANE, {0, 0.2, 0}, {0, 1, 0}, 0, 0.5};
+    const SmBoundary boundary = {1, &pin, 1, &plane};
+    SmEngineParams params = {
+        .w = 1, .h = 0.01, .damping = 0.5, .gravity = {0, -9.81, 0}, .threads = 1};
+    record_lattice(&params, &boundary, true);
+    assert_int_equal(check_file(), 0);
+}
+
+/* Adds `amount` to one number of a dataset of vectors of every particle and record. */
+static void corrupt(const char *name, int record_number, double amount)
+{
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset);
+    hsize_t point[] = {(hsize_t)record_number, 5, 1}, one = 1;
+    H5Sselect_elements(space, H5S_SELECT_SET, 1, point);
+    hid_t single = H5Screate_simple(1, &one, NULL);
+    double value = NAN;
+    assert_true(H5Dread(dataset, H5T_NATIVE_DOUBLE, single, space, H5P_DEFAULT, &value) >= 0);
+    value += amount;
+    assert_true(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, single, space, H5P_DEFAULT, &value) >= 0);
+    H5Sclose(single);
+    H5Sclose(space);
+    H5Dclose(dataset);
+    H5Fclose(file);
+}
+
+static void corrupted(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        int record;
+        double amount;
+    } change[] = {{"particles/g", 1, 1e-8},
+                  {"particles/x", NEXT - 1, 1e-8},
+                  {"particles/v", NEXT - 1, 1e-6},
+                  {"particles/x", 0, 1e-6},
+                  {"particles/g", 0, INFINITY}};
+    SmEngineParams params = {.w = 1, .h = 0.01, .damping = 0.1, .threads = 1};
+    for (size_t i = 0; i < sizeof change / sizeof change[0]; i++) {
+        record_lattice(&params, NULL, false);
+        corrupt(change[i].name, change[i].record, change[i].amount);
+        assert_int_equal(check_file(), 1);
+    }
+}
+
+static void broken_links_are_not_checked(void **state)
+{
+    (void)state;
+    SmEngineParams params = {.w = 1, .h = 0.01, .strain_limit = 1.01, .threads = 1};
+    record_lattice(&params, NULL, false);
+    assert_int_equal(check_file(), 2);
+    params.strain_limit = 5;
+    record_lattice(&params, NULL, false);
+    assert_int_equal(check_file(), 0);
+}
+
+static void no_trajectory(void **state)
+{
+    (void)state;
+    FILE *file = fopen(path, "w");
+    fputs("no HDF5\n", file);
+    fclose(file);
+    assert_int_equal(check_file(), 3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(free_body),           cmocka_unit_test(damped_masses_and_instances),
+        cmocka_unit_test(held_and_obstructed), cmocka_unit_test(corrupted),
+        cmocka_unit_test(no_trajectory),       cmocka_unit_test(broken_links_are_not_checked),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,340 @@
+#define _GNU_SOURCE
+#include <dirent.h>
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "draft.h"
+#include "trajectory.h"
+
+enum { FRAMES = 5, SIDE = 12, POINTS = SIDE * SIDE, TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1) };
+
+static char folder[] = "/tmp/test_trajectory_XXXXXX";
+
+static int make_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command);
+}
+
+static const char *path_in(const char *name)
+{
+    static char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+/* How many entries of the test's folder end in `end`. */
+static int entries(const char *end)
+{
+    DIR *all = opendir(folder);
+    int count = 0;
+    for (struct dirent *entry; (entry = readdir(all));) {
+        size_t length = strlen(entry->d_name);
+        if (entry->d_name[0] == '.') continue;
+        count += length >= strlen(end) && !strcmp(entry->d_name + length - strlen(end), end);
+    }
+    closedir(all);
+    return count;
+}
+
+/* A sheet of squares, `offset` away from the origin. */
+static void make_sheet(double offset, SmMesh *mesh)
+{
+    *mesh = (SmMesh){.vertex_count = POINTS, .triangle_count = TRIANGLES};
+    mesh->position = sm_alloc(POINTS, sizeof *mesh->position);
+    mesh->triangle = sm_alloc(TRIANGLES, sizeof *mesh->triangle);
+    int t = 0;
+    for (int j = 0; j < SIDE; j++)
+        for (int i = 0; i < SIDE; i++) {
+            int p = j * SIDE + i;
+            mesh->position[p][0] = offset + i;
+            mesh->position[p][1] = offset + j;
+            mesh->position[p][2] = offset;
+            if (i + 1 == SIDE || j + 1 == SIDE) continue;
+            const int corner[2][3] = {{p, p + 1, p + SIDE}, {p + 1, p + SIDE + 1, p + SIDE}};
+            memcpy(mesh->triangle[t++], corner[0], sizeof corner[0]);
+            memcpy(mesh->triangle[t++], corner[1], sizeof corner[1]);
+        }
+}
+
+/* Coordinate `axis` of point p in frame f: the rest position swung by a known function. */
+static double moved(const SmMesh *sheet, int frame, int p, int axis)
+{
+    return sheet->position[p][axis] + 0.25 * frame * ((p * 3 + axis) % 17);
+}
+
+static SmCode write_frames(BenchTrajectory *trajectory, const SmMesh *sheet, int frames,
+                           SmError *error)
+{
+    static double point[POINTS][3];
+    SmCode code = SM_OK;
+    for (int f = 0; f < frames && code == SM_OK; f++) {
+        for (int p = 0; p < POINTS; p++)
+            for (int a = 0; a < 3; a++) point[p][a] = moved(sheet, f, p, a);
+        code = bench_trajectory_frame(trajectory, 0.5 * f, (const double(*)[3])point, error);
+    }
+    return code;
+}
+
+static BenchTrajectoryParams sheet_params(const char *path, const SmMesh *sheet)
+{
+    static BenchMachine machine;
+    bench_machine_read(0, NULL, 1, &machine);
+    return (BenchTrajectoryParams){
+        .path = path, .surface = sheet, .machine = &machine, .scene = "a <sheet> & \"\x01\xff\""};
+}
+
+static SmCode write_sheet(const char *path, double offset, int frames, SmError *error)
+{
+    SmMesh sheet;
+    make_sheet(offset, &sheet);
+    BenchTrajectoryParams params = sheet_params(path, &sheet);
+    BenchTrajectory *trajectory;
+    SmCode code = bench_trajectory_open(&params, &trajectory, error);
+    if (code == SM_OK) {
+        code = write_frames(trajectory, &sheet, frames, error);
+        if (code == SM_OK)
+            code = bench_trajectory_close(trajectory, error);
+        else
+            bench_trajectory_abandon(trajectory);
+    }
+    sm_mesh_free(&sheet);
+    return code;
+}
+
+static bool have_python(const char *module)
+{
+    char command[128];
+    snprintf(command, sizeof command, "/usr/bin/python3 -c 'import %s' 2>/dev/null", module);
+    return system(command) == 0;
+}
+
+static void read_longs(hid_t file, const char *name, int count, long *values)
+{
+    BenchH5 h5 = {.file = file};
+    hsize_t size[] = {(hsize_t)count, 1};
+    int rank = strstr(name, "CellOffsets") || strstr(name, "ConnectivityIdOffsets") ? 2 : 1;
+    hid_t dataset = bench_h5_find_dataset(&h5, file, name, rank, size);
+    bench_h5_read(&h5, dataset, H5T_NATIVE_LONG, values);
+    if (h5.failed) fail_msg("%s", h5.message);
+    H5Dclose(dataset);
+}
+
+static void check_points(hid_t file, const SmMesh *sheet, size_t bytes)
+{
+    static double point[FRAMES][POINTS][3];
+    BenchH5 h5 = {.file = file};
+    hsize_t size[] = {FRAMES * POINTS, 3};
+    hid_t dataset = bench_h5_find_dataset(&h5, file, "VTKHDF/Points", 2, size);
+    bench_h5_read(&h5, dataset, H5T_NATIVE_DOUBLE, point);
+    if (h5.failed) fail_msg("%s", h5.message);
+    hid_t type = H5Dget_type(dataset);
+    assert_int_equal(H5Tget_size(type), bytes);
+    H5Tclose(type);
+    H5Dclose(dataset);
+    /* The test's coordinates are multiples of 1/4 and exact in either precision. */
+    for (int f = 0; f < FRAMES; f++)
+        for (int p = 0; p < POINTS; p++)
+            for (int a = 0; a < 3; a++) assert_true(point[f][p][a] == moved(sheet, f, p, a));
+}
+
+static void frames_round_trip(void **state)
+{
+    (void)state;
+    for (int far = 0; far < 2; far++) {
+        const char *path = path_in("sheet.vtkhdf");
+        SmError error = {0};
+        SmMesh sheet;
+        make_sheet(far ? 5e6 : 0, &sheet);
+        if (write_sheet(path, far ? 5e6 : 0, FRAMES, &error) != SM_OK) fail_msg("%s", error.text);
+        assert_int_equal(entries(""), 2);
+        hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+        check_points(file, &sheet, far ? 8 : 4);
+        long one[FRAMES], offset[FRAMES], ends[TRIANGLES + 1], corner[3 * TRIANGLES];
+        read_longs(file, "VTKHDF/NumberOfPoints", 1, one);
+        assert_int_equal(one[0], POINTS);
+        read_longs(file, "VTKHDF/Offsets", TRIANGLES + 1, ends);
+        read_longs(file, "VTKHDF/Connectivity", 3 * TRIANGLES, corner);
+        assert_int_equal(ends[TRIANGLES], 3 * TRIANGLES);
+        for (int i = 0; i < 3 * TRIANGLES; i++)
+            assert_int_equal(corner[i], sheet.triangle[i / 3][i % 3]);
+        read_longs(file, "VTKHDF/Steps/PointOffsets", FRAMES, offset);
+        read_longs(file, "VTKHDF/Steps/CellOffsets", FRAMES, one);
+        for (int f = 0; f < FRAMES; f++) {
+            assert_int_equal(offset[f], f * POINTS);
+            assert_int_equal(one[f], 0);
+        }
+        H5Fclose(file);
+        sm_mesh_free(&sheet);
+    }
+}
+
+/* The sidecar is well-formed with a scene's name and a file's name of odd characters. */
+static void sidecar_is_xml(void **state)
+{
+    (void)state;
+    if (!have_python("xml.etree.ElementTree")) {
+        print_message("[  NOTE    ] no /usr/bin/python3: sidecar not parsed\n");
+        skip();
+    }
+    char path[256], command[1024];
+    snprintf(path, sizeof path, "%s", path_in("odd & <name> \xc3\xa9 \".vtkhdf"));
+    SmError error = {0};
+    if (write_sheet(path, 0, FRAMES, &error) != SM_OK) fail_msg("%s", error.text);
+    snprintf(command, sizeof command,
+             "/usr/bin/python3 -c 'import sys, os, xml.etree.ElementTree as E\n"
+             "p = sys.argv[1]; r = E.parse(p + \".xdmf\").getroot()\n"
+             "c = r.find(\"Domain/Grid\"); assert c.get(\"Name\").startswith(\"a <sheet> & \")\n"
+             "assert len(c.findall(\"Grid\")) == %d\n"
+             "n = {i.text.split(\":\")[0] for i in r.iter(\"DataItem\") "
+             "if i.get(\"Format\") == \"HDF\"}\n"
+             "assert n == {os.path.basename(p)}, n' '%s'",
+             FRAMES, path);
+    assert_int_equal(system(command), 0);
+}
+
+static void bad_targets(void **state)
+{
+    (void)state;
+    SmError error = {0};
+    int before = entries("");
+    assert_int_equal(write_sheet(path_in("missing/a.h5"), 0, 1, &error), SM_OUTPUT);
+    assert_non_null(strstr(error.text, "create the folder"));
+    assert_int_equal(write_sheet(folder, 0, 1, &error), SM_OUTPUT);
+    assert_int_equal(write_sheet(path_in("a:b.h5"), 0, 1, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "a:b.h5"));
+    assert_int_equal(entries(""), before);
+}
+
+/* A sidecar that cannot be written takes the trajectory with it. */
+static void blocked_sidecar(void **state)
+{
+    (void)state;
+    char command[300];
+    snprintf(command, sizeof command, "mkdir %s", path_in("b.h5.xdmf"));
+    assert_int_equal(system(command), 0);
+    SmError error = {0};
+    assert_int_equal(write_sheet(path_in("b.h5"), 0, 1, &error), SM_OUTPUT);
+    assert_non_null(strstr(error.text, "b.h5.xdmf"));
+    assert_int_not_equal(access(path_in("b.h5"), F_OK), 0);
+    assert_int_equal(entries(".tmp"), 0);
+    assert_int_equal(rmdir(path_in("b.h5.xdmf")), 0);
+}
+
+static void abandoned(void **state)
+{
+    (void)state;
+    SmMesh sheet;
+    make_sheet(0, &sheet);
+    BenchTrajectoryParams params = sheet_params(path_in("gone.h5"), &sheet);
+    BenchTrajectory *trajectory;
+    int before = entries("");
+    assert_int_equal(bench_trajectory_open(&params, &trajectory, NULL), SM_OK);
+    assert_int_equal(write_frames(trajectory, &sheet, FRAMES, NULL), SM_OK);
+    assert_int_equal(entries(""), before + 1);
+    bench_trajectory_abandon(trajectory);
+    bench_trajectory_abandon(NULL);
+    assert_int_equal(entries(""), before);
+    sm_mesh_free(&sheet);
+}
+
+static void remove_and_die(int number)
+{
+    bench_drafts_remove();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+/* Writes for ever in a child until `number` ends it, which is sent once a draft is there. */
+static void write_until(int number)
+{
+    fflush(NULL);
+    pid_t child = fork();
+    if (child == 0) {
+        if (number != SIGKILL) signal(number, remove_and_die);
+        write_sheet(path_in("killed.h5"), 0, 1 << 30, NULL);
+        _exit(0);
+    }
+    for (int wait = 0; wait < 1000 && entries(".tmp") == 0; wait++) usleep(1000);
+    usleep(20000);
+    kill(child, number);
+    int status;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == number);
+    assert_int_not_equal(access(path_in("killed.h5"), F_OK), 0);
+    assert_int_not_equal(access(path_in("killed.h5.xdmf"), F_OK), 0);
+}
+
+static void killed_writer(void **state)
+{
+    (void)state;
+    char command[300];
+    write_until(SIGTERM);
+    assert_int_equal(entries(".tmp"), 0);
+    write_until(SIGKILL); /* nothing can tidy up after this one */
+    assert_int_equal(entries(".tmp"), 1);
+    snprintf(command, sizeof command, "rm %s/*.tmp", folder);
+    assert_int_equal(system(command), 0);
+}
+
+/* A size limit on files stands in for a full disk. HDF5 itself is closed too, as at the
+ * program's end, and must not print. */
+static void write_with_limit(long limit)
+{
+    fflush(NULL);
+    pid_t child = fork();
+    if (child == 0) {
+        struct rlimit bound = {(rlim_t)limit, RLIM_INFINITY};
+        SmError error = {0};
+        signal(SIGXFSZ, SIG_IGN);
+        if (!freopen(path_in("stderr"), "w", stderr)) _exit(5);
+        setrlimit(RLIMIT_FSIZE, &bound);
+        SmCode code = write_sheet(path_in("full.h5"), 0, 200, &error);
+        if (code != SM_OUTPUT) _exit(2);
+        if (!strstr(error.text, "size limit")) _exit(3);
+        H5close();
+        _exit(ftell(stderr) > 0 ? 4 : 0);
+    }
+    int status;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+    assert_int_equal(unlink(path_in("stderr")), 0);
+}
+
+static void full_disk(void **state)
+{
+    (void)state;
+    int before = entries("");
+    for (long limit = 0; limit < 300000; limit = 2 * limit + 700) write_with_limit(limit);
+    assert_int_equal(entries(""), before);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_round_trip), cmocka_unit_test(sidecar_is_xml),
+        cmocka_unit_test(bad_targets),       cmocka_unit_test(blocked_sidecar),
+        cmocka_unit_test(abandoned),         cmocka_unit_test(killed_writer),
+        cmocka_unit_test(full_disk),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

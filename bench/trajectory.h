@@ -1,0 +1,52 @@
+/* trajectory.h - a moving surface in VTKHDF, with an XDMF sidecar; on request the particles too.
+ *
+ * Layout, and what opens it: results/README.md. The file grows frame by frame under a draft's name
+ * (draft.h); a program that ends early leaves no trajectory, and one that is told to stop removes
+ * the draft with bench_drafts_remove(). */
+#ifndef BENCH_TRAJECTORY_H
+#define BENCH_TRAJECTORY_H
+
+#include "../lib/engine.h"
+#include "machine.h"
+
+typedef struct BenchTrajectory BenchTrajectory;
+
+typedef struct {
+    const char *path;      /* "out.vtkhdf"; the sidecar is path + ".xdmf" */
+    const SmMesh *surface; /* topology of the points written each frame; rest positions */
+    const BenchMachine *machine;
+    const char *scene;     /* name; any bytes */
+    bool record_particles; /* all below is for this, and else unused */
+    const SmVoxels *voxels;
+    const SmEngineParams *params;
+    const double *mass; /* [particle_count] kg; NULL: 1 each */
+    const char *engine; /* SmEngineType's name and precision; NULL: "unknown" */
+    const char *precision;
+    const SmBoundary *boundary; /* NULL: a free body */
+} BenchTrajectoryParams;
+
+/* `params` and all it points to may go after the call. SM_OUTPUT when the
+ * file cannot be made; SM_USAGE when its name holds a colon, which XDMF cannot refer to. */
+SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajectory **trajectory,
+                             SmError *error);
+
+/* One frame: time in s, surface points [vertex_count][3] in mesh units. On SM_OUTPUT from this and
+ * the next function the draft is removed; what is left is to call abandon. */
+SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const double (*point)[3],
+                              SmError *error);
+
+/* One recorded step (record_particles): number of the step, counted from 0; x and v before it,
+ * with pushes applied; the goals in it. All [instances * particle_count][3]. After the last step of
+ * a stretch, call it once more with the state after that step, the next number and `g` NULL, so
+ * that the step's outcome is in the file. */
+SmCode bench_trajectory_step(BenchTrajectory *trajectory, long step, const double (*x)[3],
+                             const double (*v)[3], const double (*g)[3], SmError *error);
+
+/* Completes, syncs and renames file and sidecar, and frees `trajectory`, also on failure; then no
+ * draft is left. */
+SmCode bench_trajectory_close(BenchTrajectory *trajectory, SmError *error);
+
+/* Throws the unfinished file away and frees `trajectory`, which may be NULL. */
+void bench_trajectory_abandon(BenchTrajectory *trajectory);
+
+#endif

@@ -1,0 +1,18 @@
+/* xdmf.h - the text file that tells older readers how to read a trajectory's HDF5. */
+#ifndef BENCH_XDMF_H
+#define BENCH_XDMF_H
+
+#include "draft.h"
+
+typedef struct {
+    const char *data;  /* path of the HDF5 file; named without its folder, beside which it lies */
+    const char *scene; /* any bytes; what XML cannot hold becomes '?' */
+    long points, triangles, frames;
+    int point_bytes;    /* 4 or 8 for a coordinate */
+    const double *time; /* [frames] s */
+} BenchXdmf;
+
+/* Writes into a draft that has begun; the caller commits or discards it. SM_OUTPUT. */
+SmCode bench_xdmf_write(const BenchXdmf *xdmf, const BenchDraft *draft, SmError *error);
+
+#endif
