@@ -5,7 +5,8 @@
 #include "../lib/engine.h"
 
 typedef struct {
-    char paper[24], scene[64], engine[24], precision[12];
+    char paper[24], paper_row[24]; /* row of the paper set beside it; empty: none */
+    char scene[64], engine[24], precision[12];
     long triangles, particles, regions, instances;
     int w, steps; /* steps in each repeat */
     double epsilon, h, cell, damping;
