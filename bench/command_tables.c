@@ -124,7 +124,7 @@ static SmCode choose_scenes(Options *options, SmError *error)
     int count;
     const RefPaperRow *rows = ref_paper_rows(&count);
     for (int i = 0; i < count && options->scenes < SCENES; i++) {
-        if (strcmp(rows[i].paper, options->paper)) continue;
+        if (strcmp(rows[i].paper, options->paper) != 0) continue;
         const char *name = scene_of_row(&rows[i]);
         if (name) options->scene[options->scenes++] = name;
     }

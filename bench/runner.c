@@ -144,8 +144,8 @@ static SmCode make_forces(BenchRunner *runner, SmError *error)
     const BenchBody *body = runner->body;
     size_t forces = (size_t)scene->force_count;
     runner->push_count = sm_alloc(forces, sizeof *runner->push_count);
-    runner->push_particle = sm_alloc(forces, sizeof *runner->push_particle);
-    runner->push_impulse = sm_alloc(forces, sizeof *runner->push_impulse);
+    runner->push_particle = sm_alloc(forces, sizeof(long *));
+    runner->push_impulse = sm_alloc(forces, sizeof(double(*)[3]));
     for (int i = 0; i < scene->force_count; i++) {
         long *chosen;
         long count = select_particles(&scene->force[i].select, body, &chosen);
