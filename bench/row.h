@@ -17,16 +17,16 @@ typedef struct {
     double momentum_error; /* relative */
     double goal_tolerance;
     int repeats;
-    double *total;                    /* [repeats] seconds a step, not instrumented */
-    double (*stage)[SM_STAGES];       /* [repeats] seconds a step, instrumented, interleaved */
-    double stage_ms[SM_STAGES];       /* medians: share of the instrumented run x total */
+    double *total;              /* [repeats] seconds a step, not instrumented */
+    double (*stage)[SM_STAGES]; /* [repeats] seconds a step, instrumented, interleaved */
+    double stage_ms[SM_STAGES]; /* medians: share of the instrumented run x total */
     double total_ms, total_low_ms, total_high_ms; /* median and quartiles */
-    double instruments_percent;       /* what the laps cost */
+    double instruments_percent;                   /* what the laps cost */
     double ns_per_particle_step;
     double voxelise_seconds, build_seconds;
     long bytes;
     double paper_total_ms, paper_stage_ms[SM_STAGES]; /* NaN: not given */
-    unsigned long long input_hash;    /* FNV-1a of the mesh's coordinates and indices */
+    unsigned long long input_hash; /* FNV-1a of the mesh's coordinates and indices */
 } BenchRow;
 
 #endif

@@ -1,6 +1,7 @@
 /* scene.h - a scene as data: what to simulate, how, and what disturbs it.
  *
- * Scene files are libconfig; bench/scenes/ holds those that come with the program. */
+ * Scene files are libconfig; bench/scenes/ holds those that come with the program, and
+ * bench/scenes/penguin.cfg explains every setting. Lengths are in the mesh's units. */
 #ifndef BENCH_SCENE_H
 #define BENCH_SCENE_H
 
@@ -19,7 +20,7 @@ typedef struct {
 /* A handle's motion; all zero: a pin. angle(t) = rate * t, or amplitude * sin(2 pi t / period). */
 typedef struct {
     BenchSelect select;
-    double velocity[3];       /* m/s */
+    double velocity[3]; /* m/s */
     double axis[3], centre[3];
     double rate;              /* rad/s */
     double amplitude, period; /* rad, s; period 0: none */
@@ -37,17 +38,17 @@ typedef struct {
 typedef struct {
     char name[BENCH_NAME];
     char title[160];
-    char paper[24], row[24];   /* the paper's table row that it regenerates; empty: none */
-    char mesh[BENCH_PATH];     /* "shape:penguin", or a path relative to the scene file */
-    char file[BENCH_PATH];     /* where the scene was read from; for messages */
+    char paper[24], row[24]; /* the paper's table row that it regenerates; empty: none */
+    char mesh[BENCH_PATH];   /* "shape:penguin", or a path relative to the scene file */
+    char file[BENCH_PATH];   /* where the scene was read from; for messages */
     char engine[24];
     SmVoxelParams voxel;
-    SmEngineParams params;     /* mass, instance_pose: filled by the runner */
-    double density;            /* kg/m^3; 0: unit masses */
+    SmEngineParams params;        /* mass, instance_pose: filled by the runner */
+    double density;               /* kg/m^3; 0: unit masses */
     char vertex_mass[BENCH_PATH]; /* text file, a mass for every vertex; nearest vertex wins */
-    double epsilon;            /* octree only */
+    double epsilon;               /* octree only */
     long instances;
-    double spacing;            /* between instances, in widths of the body */
+    double spacing; /* between instances, in widths of the body */
     int steps_per_frame;
     int frames;
     int handle_count, force_count, obstacle_count;
@@ -57,6 +58,18 @@ typedef struct {
     double bend, twist, squash; /* initial deformation that starts it moving, 0: none */
     double kick;                /* random initial velocity, cells per step, from the seed */
 } BenchScene;
+
+/* The defaults of everything that a scene file may leave out; no mesh. */
+void bench_scene_init(BenchScene *scene);
+
+/* Parses `size` bytes of a scene file's text. `file` is for messages and names the scene
+ * ("dir/penguin.cfg": "penguin"). Paths in the text stay as they are. Errors: SM_INPUT, with file
+ * and line; `scene` is then untouched. */
+SmCode bench_scene_parse(const char *text, size_t size, const char *file, BenchScene *scene,
+                         SmError *error);
+
+/* Text of a built-in scene's file (and its size, unless NULL), or NULL. */
+const char *bench_scene_text(const char *name, size_t *size);
 
 /* Reads a scene file, or finds a built-in scene by name. Errors name file and line. */
 SmCode bench_scene_read(const char *path, BenchScene *scene, SmError *error);

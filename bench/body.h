@@ -1,0 +1,37 @@
+/* body.h - a scene's body: its mesh, lattice, masses and where its instances stand. */
+#ifndef BENCH_BODY_H
+#define BENCH_BODY_H
+
+#include "scene.h"
+
+typedef struct {
+    SmMesh mesh;
+    SmVoxels voxels;
+    double low[3], high[3]; /* the mesh's bounding box */
+    double (*x0)[3];        /* [voxels.particle_count] rest positions, instance pose not applied */
+    double *mass;           /* [voxels.particle_count] kg; NULL: 1 each */
+    long instances;
+    double (*pose)[3][4];    /* [instances] rest to initial position: translations */
+    double voxelise_seconds; /* wall clock */
+    unsigned long long hash; /* FNV-1a of the mesh's coordinates and indices */
+} BenchBody;
+
+/* Reads a mesh: "shape:NAME" or a mesh file. */
+SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error);
+
+/* Reads the scene's mesh; or, unless NULL, the mesh file `substitute` in its place: scaled evenly
+ * to the same largest extent, standing on the same height, centred on the same vertical axis, so
+ * that the scene's handles, obstacles and forces fit it. */
+SmCode bench_mesh_of_scene(const BenchScene *scene, const char *substitute, SmMesh *result,
+                           SmError *error);
+
+/* The scene that `shapebench run MESH` uses for a mesh alone: solid, about 2,000 particles, w 2,
+ * dropped from half its height onto a ground plane. Mesh units are unknown, so gravity is 9.81
+ * body heights per second squared: a body 70 units tall falls as one of 1 m does. */
+void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene);
+
+/* Voxelises, and fills in the rest. Takes `mesh` over, also when it fails. */
+SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error);
+void bench_body_free(BenchBody *body);
+
+#endif

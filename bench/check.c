@@ -1,0 +1,104 @@
+#include "check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+double bench_check_members(const BenchBody *body, int w)
+{
+    double side = 2.0 * w + 1, count = (double)body->voxels.particle_count;
+    return count * fmin(side * side * side, count);
+}
+
+void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
+{
+    long count = body->voxels.particle_count;
+    *check = (BenchCheck){.body = body};
+    ref_regions_build(&body->voxels, w, NULL, 0, &check->regions);
+    check->unique = ref_regions_unique(&check->regions);
+    check->mass = sm_alloc((size_t)count, sizeof *check->mass);
+    for (long p = 0; p < count; p++) check->mass[p] = body->mass ? body->mass[p] : 1;
+}
+
+void bench_check_free(BenchCheck *check)
+{
+    ref_regions_free(&check->regions);
+    free(check->mass);
+    *check = (BenchCheck){0};
+}
+
+static bool all_finite(const double (*value)[3], long count)
+{
+    double sum = 0; /* 0 times anything that is not finite is NaN */
+    for (long i = 0; i < count; i++) sum += 0 * value[i][0] + 0 * value[i][1] + 0 * value[i][2];
+    return sum == 0;
+}
+
+/* Largest distance of two goals, in cells. */
+static double goal_error(const double (*g)[3], const double (*exact)[3], long count, double cell)
+{
+    double largest = 0;
+    for (long p = 0; p < count; p++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++) square += (g[p][d] - exact[p][d]) * (g[p][d] - exact[p][d]);
+        largest = fmax(largest, square);
+    }
+    return sqrt(largest) / cell;
+}
+
+static double momentum_error(const double (*x)[3], const double (*g)[3], const double *m,
+                             long count)
+{
+    double mass = 0, centre[3] = {0}, drift[3] = {0}, spread = 0;
+    for (long p = 0; p < count; p++) {
+        mass += m[p];
+        for (int d = 0; d < 3; d++) {
+            centre[d] += m[p] * x[p][d];
+            drift[d] += m[p] * (g[p][d] - x[p][d]);
+        }
+    }
+    for (long p = 0; p < count; p++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++) square += pow(x[p][d] - centre[d] / mass, 2);
+        spread += m[p] * sqrt(square);
+    }
+    double length = sqrt(drift[0] * drift[0] + drift[1] * drift[1] + drift[2] * drift[2]);
+    return spread > 0 ? length / spread : length;
+}
+
+BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *type,
+                                 SmEngine *engine)
+{
+    long count = check->body->voxels.particle_count, all = count * check->body->instances;
+    double(*x)[3] = sm_alloc((size_t)all, sizeof *x);
+    double(*v)[3] = sm_alloc((size_t)all, sizeof *v);
+    double(*g)[3] = sm_alloc((size_t)all, sizeof *g);
+    double(*exact)[3] = sm_alloc((size_t)count, sizeof *exact);
+    type->goals(engine);
+    type->get(engine, SM_POSITION, x);
+    type->get(engine, SM_VELOCITY, v);
+    type->get(engine, SM_GOAL, g);
+    BenchDeviation result = {.finite = all_finite((const double(*)[3])x, all) &&
+                                       all_finite((const double(*)[3])v, all) &&
+                                       all_finite((const double(*)[3])g, all)};
+    if (!result.finite) result.goal_error = result.momentum_error = INFINITY;
+    for (long first = 0; first < all && result.finite; first += count) {
+        const double(*at)[3] = (const double(*)[3])(x + first);
+        const double(*goal)[3] = (const double(*)[3])(g + first);
+        ref_goals(&check->regions, (const double(*)[3])check->body->x0, check->mass, at, exact);
+        double error = goal_error(goal, (const double(*)[3])exact, count, check->body->voxels.cell);
+        double drift = momentum_error(at, goal, check->mass, count);
+        result.goal_error = fmax(result.goal_error, error);
+        result.momentum_error = fmax(result.momentum_error, drift);
+    }
+    free(x);
+    free(v);
+    free(g);
+    free(exact);
+    return result;
+}
+
+double bench_check_tolerance(const char *precision)
+{
+    return strcmp(precision, "double") ? 5e-5 : 1e-10;
+}

@@ -1,0 +1,188 @@
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "../lib/voxel.h"
+#include "body.h"
+#include "command.h"
+#include "option.h"
+
+enum { KEY_FORMAT = 0x2000, KEY_PARTICLES, FILES = 256 };
+
+typedef struct {
+    BenchCommon common;
+    const char *mesh[FILES];
+    int count;
+    long particles;
+    int json;
+} Options;
+
+/* What is said of one mesh. */
+typedef struct {
+    SmMeshInfo mesh;
+    bool solid; /* can be simulated as a solid */
+    char verdict[512];
+    long particles, cells;
+    double cell;
+} Facts;
+
+static const char *const formats[] = {"text", "json", NULL};
+
+static const struct argp_option option_list[] = {
+    {"format", KEY_FORMAT, "FORMAT", 0, "text or json (default: text)", 1},
+    {"particles", KEY_PARTICLES, "N", 0,
+     "Particle count of the lattice that is tried (default: 2000)", 1},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        *options = (Options){.particles = 2000};
+        bench_options_init(state, &options->common);
+        return 0;
+    case KEY_FORMAT:
+        options->json = bench_option_choice(state, "--format", text, formats);
+        return 0;
+    case KEY_PARTICLES:
+        options->particles = bench_option_long(state, "--particles", text, 8, 1000000000);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (options->count == FILES) bench_usage(state, "at most %d meshes", FILES);
+        options->mesh[options->count++] = text;
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->count) bench_usage(state, "which MESH?");
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const char help[] =
+    "Say what is in mesh files (OBJ, PLY, STL, OFF, glTF and what else Assimp reads, or "
+    "shape:NAME): triangles, vertices, components, edges that are open, shared by more than two "
+    "triangles or flipped, bounding box, volume, and whether it can be simulated as a solid.\v"
+    "With several meshes each gets its say; the exit code is that of the last one that cannot be "
+    "read. --format json prints one array with an object for every mesh.\n" BENCH_EXIT_CODES;
+
+static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
+static const struct argp argp = {option_list, parse, "MESH...", help, children, NULL, NULL};
+
+static SmCode look(const char *name, long particles, Facts *facts, SmError *error)
+{
+    SmMesh mesh;
+    memset(facts, 0, sizeof *facts);
+    SmCode code = bench_mesh_load(name, &mesh, error);
+    if (code) return code;
+    facts->mesh = sm_mesh_info(&mesh);
+    SmVoxels voxels;
+    SmVoxelReport report;
+    SmError why;
+    SmVoxelParams params = {.fill = SM_SOLID, .particles = particles};
+    facts->solid = !sm_voxelise_report(&mesh, &params, name, &voxels, &report, &why);
+    if (facts->solid) {
+        snprintf(facts->verdict, sizeof facts->verdict, "%s", sm_voxel_verdict(&report));
+        facts->particles = voxels.particle_count;
+        facts->cells = voxels.cell_count;
+        facts->cell = voxels.cell;
+        sm_voxels_free(&voxels);
+    } else {
+        const char *text = why.text;
+        size_t length = strlen(name);
+        if (!strncmp(text, name, length) && !strncmp(text + length, ": ", 2)) text += length + 2;
+        snprintf(facts->verdict, sizeof facts->verdict, "%s", text);
+    }
+    sm_mesh_free(&mesh);
+    return SM_OK;
+}
+
+static void print_text(const char *name, const Facts *facts)
+{
+    const SmMeshInfo *m = &facts->mesh;
+    printf("%s\n", name);
+    printf("  triangles     %ld\n", m->triangles);
+    printf("  vertices      %ld\n", m->vertices);
+    printf("  components    %ld\n", m->components);
+    printf("  watertight    %s", m->watertight ? "yes\n" : "no: ");
+    if (!m->watertight)
+        printf("%ld open edges, %ld edges of more than two triangles\n", m->open_edges,
+               m->nonmanifold_edges);
+    if (m->flipped_edges || m->degenerate || m->duplicates)
+        printf("  irregular     %ld flipped edges, %ld triangles without area, %ld duplicates\n",
+               m->flipped_edges, m->degenerate, m->duplicates);
+    printf("  bounding box  %.9g %.9g %.9g  to  %.9g %.9g %.9g\n", m->low[0], m->low[1], m->low[2],
+           m->high[0], m->high[1], m->high[2]);
+    printf("  size          %.6g x %.6g x %.6g\n", m->high[0] - m->low[0], m->high[1] - m->low[1],
+           m->high[2] - m->low[2]);
+    printf("  volume        %.6g%s\n", m->volume, m->volume < 0 ? " (inside out)" : "");
+    printf("  solid         %s: %s\n", facts->solid ? "yes" : "no", facts->verdict);
+    if (facts->solid)
+        printf("  lattice       %ld particles, %ld cells of %.6g\n", facts->particles, facts->cells,
+               facts->cell);
+}
+
+static json_t *vector(const double v[3])
+{
+    return json_pack("[f,f,f]", v[0], v[1], v[2]);
+}
+
+static json_t *to_json(const char *name, const Facts *facts)
+{
+    const SmMeshInfo *m = &facts->mesh;
+    json_t *text = json_string(name);
+    json_t *object = json_object();
+    json_object_set_new(object, "mesh", text ? text : json_string("(name is no UTF-8)"));
+    const struct {
+        const char *name;
+        long value;
+    } counts[] = {{"triangles", m->triangles},
+                  {"vertices", m->vertices},
+                  {"components", m->components},
+                  {"open_edges", m->open_edges},
+                  {"nonmanifold_edges", m->nonmanifold_edges},
+                  {"flipped_edges", m->flipped_edges},
+                  {"degenerate", m->degenerate},
+                  {"duplicates", m->duplicates},
+                  {"particles", facts->particles},
+                  {"cells", facts->cells}};
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
+        json_object_set_new(object, counts[i].name, json_integer(counts[i].value));
+    json_object_set_new(object, "watertight", json_boolean(m->watertight));
+    json_object_set_new(object, "low", vector(m->low));
+    json_object_set_new(object, "high", vector(m->high));
+    json_object_set_new(object, "volume", json_real(m->volume));
+    json_object_set_new(object, "solid", json_boolean(facts->solid));
+    json_object_set_new(object, "verdict", json_string(facts->verdict));
+    json_object_set_new(object, "cell", json_real(facts->cell));
+    return object;
+}
+
+int bench_command_info(int argc, char **argv)
+{
+    Options options;
+    bench_options_parse(&argp, argc, argv, &options);
+    SmCode code = SM_OK;
+    json_t *list = json_array();
+    for (int i = 0; i < options.count; i++) {
+        Facts facts;
+        SmError error;
+        SmCode failed = look(options.mesh[i], options.particles, &facts, &error);
+        if (failed) {
+            fprintf(stderr, "%s: %s\n", argv[0], error.text);
+            code = failed;
+        } else if (options.json) {
+            json_array_append_new(list, to_json(options.mesh[i], &facts));
+        } else {
+            print_text(options.mesh[i], &facts);
+        }
+    }
+    if (options.json) {
+        json_dumpf(list, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+        putchar('\n');
+    }
+    json_decref(list);
+    return (int)code;
+}

@@ -1,0 +1,393 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "command.h"
+#include "draft.h"
+#include "option.h"
+#include "progress.h"
+#include "recording.h"
+#include "substitute.h"
+
+enum {
+    KEY_ENGINE = 0x2000,
+    KEY_W,
+    KEY_PARTICLES,
+    KEY_CELL,
+    KEY_SHELL,
+    KEY_PRECISION,
+    KEY_DAMPING,
+    KEY_H,
+    KEY_FRAMES,
+    KEY_STEPS,
+    KEY_GRAVITY,
+    KEY_SUMMATION,
+    KEY_POLAR,
+    KEY_STRAIN,
+    KEY_MESH,
+    KEY_RECORD,
+    KEY_NO_OUTPUT
+};
+
+/* Options that were given replace the scene's settings; those that were not are below zero. */
+typedef struct {
+    BenchCommon common;
+    const char *scene, *engine, *precision, *output;
+    bool shell, record, no_output, has_gravity;
+    int w, frames, steps, summation, polar;
+    long particles;
+    double cell, damping, h, strain_limit, gravity[3];
+    BenchSubstitutes substitutes;
+} Options;
+
+static const char *const precisions[] = {"single", "double", NULL};
+static const char *const summations[] = {"fast", "bars", "naive", NULL};
+static const char *const polars[] = {"fast", "jacobi", NULL};
+static const char *const records[] = {"particles", NULL};
+
+static const struct argp_option option_list[] = {
+    {0, 0, 0, 0, "What replaces the scene's settings:", 1},
+    {"engine", KEY_ENGINE, "NAME", 0, "fastlsm or brute", 1},
+    {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
+    {"w", KEY_W, "N", 0, "Region half-width in cells, 1 to 64", 1},
+    {"particles", KEY_PARTICLES, "N", 0, "Wanted particle count", 1},
+    {"cell", KEY_CELL, "SIZE", 0, "Edge of a cell, in the mesh's units", 1},
+    {"shell", KEY_SHELL, 0, 0, "Surface cells only, not the interior", 1},
+    {"damping", KEY_DAMPING, "K", 0, "Region damping, 0 to 1", 1},
+    {"h", KEY_H, "S", 0, "Time step, seconds", 1},
+    {"gravity", KEY_GRAVITY, "X,Y,Z", 0, "Mesh units per second squared", 1},
+    {"strain-limit", KEY_STRAIN, "S", 0, "Links break beyond this times their length; 0: never", 1},
+    {"summation", KEY_SUMMATION, "HOW", 0, "fast, bars or naive", 1},
+    {"polar", KEY_POLAR, "HOW", 0, "fast or jacobi", 1},
+    {"mesh", KEY_MESH, "NAME=FILE", 0, BENCH_MESH_HELP, 1},
+    {0, 0, 0, 0, "What is written:", 2},
+    {"frames", KEY_FRAMES, "N", 0, "Frames after the first", 2},
+    {"steps", KEY_STEPS, "N", 0, "Steps in a frame", 2},
+    {"output", 'o', "FILE.vtkhdf", 0, "Trajectory (default: SCENE.vtkhdf in this folder)", 2},
+    {"no-output", KEY_NO_OUTPUT, 0, 0, "Write no trajectory", 2},
+    {"record", KEY_RECORD, "particles", 0,
+     "Also store the lattice, and every step's particle positions, velocities and goals", 2},
+    {0},
+};
+
+static error_t parse_engine(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case KEY_ENGINE:
+        options->engine = text;
+        return 0;
+    case KEY_PRECISION:
+        options->precision =
+            precisions[bench_option_choice(state, "--precision", text, precisions)];
+        return 0;
+    case KEY_W:
+        options->w = (int)bench_option_long(state, "--w", text, 1, 64);
+        return 0;
+    case KEY_DAMPING:
+        options->damping = bench_option_real(state, "--damping", text, 0, 1);
+        return 0;
+    case KEY_H:
+        options->h = bench_option_real(state, "--h", text, 1e-9, 10);
+        return 0;
+    case KEY_GRAVITY:
+        bench_option_vector(state, "--gravity", text, options->gravity);
+        options->has_gravity = true;
+        return 0;
+    case KEY_STRAIN:
+        options->strain_limit = bench_option_real(state, "--strain-limit", text, 0, 1e6);
+        return 0;
+    case KEY_SUMMATION:
+        options->summation = bench_option_choice(state, "--summation", text, summations);
+        return 0;
+    case KEY_POLAR:
+        options->polar = bench_option_choice(state, "--polar", text, polars);
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static error_t parse_lattice(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case KEY_PARTICLES:
+        options->particles = bench_option_long(state, "--particles", text, 8, 1000000000);
+        return 0;
+    case KEY_CELL:
+        options->cell = bench_option_real(state, "--cell", text, 1e-30, 1e30);
+        return 0;
+    case KEY_SHELL:
+        options->shell = true;
+        return 0;
+    case KEY_MESH:
+        bench_substitute_add(state, text, &options->substitutes);
+        return 0;
+    }
+    return parse_engine(key, text, state);
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        *options = (Options){
+            .frames = -1, .summation = -1, .polar = -1, .damping = -1, .strain_limit = -1};
+        bench_options_init(state, &options->common);
+        return 0;
+    case KEY_FRAMES:
+        options->frames = (int)bench_option_long(state, "--frames", text, 0, 10000000);
+        return 0;
+    case KEY_STEPS:
+        options->steps = (int)bench_option_long(state, "--steps", text, 1, 1000000);
+        return 0;
+    case 'o':
+        options->output = text;
+        return 0;
+    case KEY_NO_OUTPUT:
+        options->no_output = true;
+        return 0;
+    case KEY_RECORD:
+        bench_option_choice(state, "--record", text, records);
+        options->record = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (options->scene) bench_usage(state, "one scene or mesh only, not also '%s'", text);
+        options->scene = text;
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->scene) bench_usage(state, "which scene or mesh?");
+        if (options->particles && options->cell > 0)
+            bench_usage(state, "either --particles or --cell");
+        if (options->no_output && (options->output || options->record))
+            bench_usage(state, "--no-output goes with neither --output nor --record");
+        return 0;
+    }
+    return parse_lattice(key, text, state);
+}
+
+static const char help[] =
+    "Simulate a scene and write the motion of its surface: a built-in scene (shapebench scenes), a "
+    "scene file NAME.cfg, or a mesh file.\v"
+    "A mesh alone becomes a solid of about 2,000 particles, w 2, damping 0.1, that drops from half "
+    "its height onto a ground plane. Its units are unknown, so gravity is 9.81 heights of the body "
+    "per second squared: a body 70 units tall falls like one of 1 m.\n"
+    "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf) for ParaView; it appears "
+    "whole or not at all. The deviation printed is the largest distance of a goal position from "
+    "double-precision brute force in the last state.\n" BENCH_EXIT_CODES;
+
+static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
+static const struct argp argp = {option_list, parse, "SCENE|FILE.cfg|MESH", help, children,
+                                 NULL,        NULL};
+
+static void apply_options(const Options *options, BenchScene *scene)
+{
+    SmEngineParams *params = &scene->params;
+    if (options->engine) snprintf(scene->engine, sizeof scene->engine, "%.23s", options->engine);
+    if (options->w) params->w = options->w;
+    if (options->h > 0) params->h = options->h;
+    if (options->damping >= 0) params->damping = options->damping;
+    if (options->strain_limit >= 0) params->strain_limit = options->strain_limit;
+    if (options->summation >= 0) params->summation = (SmSummation)options->summation;
+    if (options->polar >= 0) params->polar = (SmPolarMethod)options->polar;
+    if (options->has_gravity) memcpy(params->gravity, options->gravity, sizeof params->gravity);
+    if (options->shell) scene->voxel.fill = SM_SHELL;
+    if (options->particles)
+        scene->voxel = (SmVoxelParams){scene->voxel.fill, 0, options->particles};
+    if (options->cell > 0) scene->voxel = (SmVoxelParams){scene->voxel.fill, options->cell, 0};
+    if (options->frames >= 0) scene->frames = options->frames;
+    if (options->steps) scene->steps_per_frame = options->steps;
+}
+
+/* A scene's name or file; anything else is a mesh. */
+static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmError *error)
+{
+    const char *name = options->scene;
+    size_t length = strlen(name);
+    bool file = length > 4 && !strcmp(name + length - 4, ".cfg");
+    bool other = strchr(name, '.') || strchr(name, '/') || !strncmp(name, "shape:", 6);
+    if (file || !other) {
+        SmCode code = bench_scene_find(name, scene, error);
+        if (code) return code;
+        const char *substitute = bench_substitute_find(&options->substitutes, scene->name);
+        return bench_mesh_of_scene(scene, substitute, mesh, error);
+    }
+    if (length >= BENCH_PATH)
+        return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", name);
+    SmCode code = bench_mesh_load(name, mesh, error);
+    if (!code) bench_scene_drop(mesh, name, scene);
+    return code;
+}
+
+/* What the frames came to. */
+typedef struct {
+    long steps;
+    double seconds; /* in steps alone */
+    bool finite;
+} Outcome;
+
+static SmCode run_step(BenchRunner *runner, BenchRecording *recording, bool record,
+                       Outcome *outcome, SmError *error)
+{
+    bench_runner_prepare(runner);
+    if (record) {
+        SmCode code = bench_recording_step(recording, outcome->steps, true, error);
+        if (code) return code;
+    }
+    double start = sm_now();
+    bench_runner_advance(runner, NULL);
+    outcome->seconds += sm_now() - start;
+    outcome->steps++;
+    return SM_OK;
+}
+
+static bool state_finite(const BenchRunner *runner)
+{
+    double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x), sum = 0;
+    runner->type->get(runner->engine, SM_POSITION, x);
+    for (long i = 0; i < runner->particles; i++) sum += 0 * (x[i][0] + x[i][1] + x[i][2]);
+    free(x);
+    return sum == 0;
+}
+
+/* Runs all frames; stops early when no longer finite. `recording` may be NULL. */
+static SmCode run_frames(BenchRunner *runner, BenchRecording *recording, const Options *options,
+                         Outcome *outcome, SmError *error)
+{
+    const BenchScene *scene = runner->scene;
+    BenchProgress progress;
+    bench_progress_start(&progress, options->common.quiet);
+    *outcome = (Outcome){.finite = true};
+    SmCode code = recording ? bench_recording_frame(recording, error) : SM_OK;
+    for (int f = 0; f < scene->frames && !code && outcome->finite; f++) {
+        for (int s = 0; s < scene->steps_per_frame && !code; s++)
+            code = run_step(runner, recording, options->record, outcome, error);
+        if (code) break;
+        outcome->finite = state_finite(runner);
+        if (recording && outcome->finite) code = bench_recording_frame(recording, error);
+        bench_progress_show(&progress, scene->name, (f + 1.0) / scene->frames);
+    }
+    if (!code && options->record && outcome->finite)
+        code = bench_recording_step(recording, outcome->steps, false, error);
+    bench_progress_stop(&progress);
+    return code;
+}
+
+static void print_deviation(const BenchRunner *runner, const SmCounts *counts)
+{
+    static const double most_members = 1e8;
+    int w = runner->scene->params.w;
+    if (counts->broken) {
+        printf("deviation: not checked: %ld links are broken\n", counts->broken);
+        return;
+    }
+    if (bench_check_members(runner->body, w) > most_members) {
+        printf("deviation: not checked: brute force would take too much memory\n");
+        return;
+    }
+    BenchCheck check;
+    bench_check_create(runner->body, w, &check);
+    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
+    bench_check_free(&check);
+    printf("deviation: goals within %.3g cells of brute force, momentum kept to %.2g\n",
+           found.goal_error, found.momentum_error);
+}
+
+static void print_summary(const BenchRunner *runner, const Outcome *outcome)
+{
+    SmCounts counts;
+    runner->type->count(runner->engine, &counts);
+    double steps = (double)(outcome->steps > 0 ? outcome->steps : 1);
+    printf("%s: %s, %s precision: %ld particles, %ld unique regions, w %d, cell %.6g\n",
+           runner->scene->name, runner->type->name, runner->type->precision, counts.particles,
+           counts.regions, runner->scene->params.w, runner->body->voxels.cell);
+    printf("%ld steps of %g s: %.4g ms a step, %.4g ns per particle and step\n", outcome->steps,
+           runner->scene->params.h, 1e3 * outcome->seconds / steps,
+           1e9 * outcome->seconds / steps / (double)counts.particles);
+    if (outcome->finite) print_deviation(runner, &counts);
+}
+
+static void output_path(const Options *options, const BenchScene *scene, char path[BENCH_PATH])
+{
+    char stem[BENCH_NAME];
+    snprintf(stem, sizeof stem, "%s",
+             strncmp(scene->name, "shape:", 6) ? scene->name : scene->name + 6);
+    char *dot = strrchr(stem, '.');
+    if (dot && dot != stem) *dot = '\0';
+    if (options->output)
+        snprintf(path, BENCH_PATH, "%s", options->output);
+    else
+        snprintf(path, BENCH_PATH, "%s.vtkhdf", stem);
+}
+
+/* Runs the scene on an engine that is ready, and writes what was asked for. */
+static SmCode record(const Options *options, BenchRunner *runner, const BenchMachine *machine,
+                     SmError *error)
+{
+    BenchRecording recording;
+    BenchRecording *recorder = options->no_output ? NULL : &recording;
+    char path[BENCH_PATH];
+    output_path(options, runner->scene, path);
+    SmCode code = SM_OK;
+    if (recorder)
+        code = bench_recording_open(runner, path, options->record, machine, recorder, error);
+    if (code) return code;
+    Outcome outcome;
+    code = run_frames(runner, recorder, options, &outcome, error);
+    if (code || !outcome.finite) {
+        if (recorder) bench_recording_abandon(recorder);
+        if (code) return code;
+        print_summary(runner, &outcome);
+        return sm_fail(error, SM_INVALID, "%s is INVALID: positions are not finite after step %ld",
+                       runner->scene->name, outcome.steps);
+    }
+    if (recorder) code = bench_recording_close(recorder, error);
+    if (code) return code;
+    print_summary(runner, &outcome);
+    if (recorder && !options->common.quiet)
+        printf("wrote %s and %s.xdmf: %d frames\n", path, path, runner->scene->frames + 1);
+    return SM_OK;
+}
+
+static SmCode run(const Options *options, const BenchMachine *machine, SmError *error)
+{
+    BenchScene scene;
+    const SmEngineType *type;
+    SmMesh mesh;
+    BenchBody body;
+    BenchRunner runner;
+    SmCode code = load(options, &scene, &mesh, error);
+    if (code) return code;
+    apply_options(options, &scene);
+    code = bench_engine_find(options->engine ? options->engine : scene.engine, options->precision,
+                             &type, error);
+    if (code) {
+        sm_mesh_free(&mesh);
+        return code;
+    }
+    code = bench_body_create(&scene, &mesh, &body, error);
+    if (code) return code;
+    code = bench_runner_create(&scene, &body, type, options->common.threads, &runner, error);
+    if (!code) {
+        bench_runner_disturb(&runner, options->common.seed);
+        code = record(options, &runner, machine, error);
+        bench_runner_free(&runner);
+    }
+    bench_body_free(&body);
+    return code;
+}
+
+int bench_command_run(int argc, char **argv)
+{
+    Options options;
+    SmError error;
+    BenchMachine machine;
+    bench_options_parse(&argp, argc, argv, &options);
+    bench_machine_read(argc, argv, options.common.threads, &machine);
+    SmCode code = run(&options, &machine, &error);
+    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    return (int)code;
+}

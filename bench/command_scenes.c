@@ -1,0 +1,114 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "../lib/shape.h"
+#include "body.h"
+#include "command.h"
+#include "option.h"
+
+enum { KEY_WRITE = 0x2000 };
+
+typedef struct {
+    BenchCommon common;
+    const char *name;  /* scene to print, or shape to write */
+    const char *write; /* mesh file to write */
+} Options;
+
+static const struct argp_option option_list[] = {
+    {"write-mesh", KEY_WRITE, "FILE.obj", 0,
+     "Write the mesh of the scene or shape NAME instead, as Wavefront OBJ", 1},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        *options = (Options){0};
+        bench_options_init(state, &options->common);
+        return 0;
+    case KEY_WRITE:
+        options->write = text;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (options->name) bench_usage(state, "one NAME only, not also '%s'", text);
+        options->name = text;
+        return 0;
+    case ARGP_KEY_END:
+        if (options->write && !options->name) bench_usage(state, "--write-mesh: which shape?");
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const char help[] =
+    "List the built-in scenes and shapes; with NAME, print that scene's file, which explains its "
+    "settings and can be copied, edited and run:\n"
+    "  shapebench scenes penguin > my.cfg\n"
+    "  shapebench run my.cfg\v" BENCH_EXIT_CODES;
+
+static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
+static const struct argp argp = {option_list, parse, "[NAME]", help, children, NULL, NULL};
+
+static SmCode list(SmError *error)
+{
+    puts("Scenes:");
+    for (const char *const *name = bench_scene_names(); *name; name++) {
+        BenchScene scene;
+        SmCode code = bench_scene_find(*name, &scene, error);
+        if (code) return code;
+        printf("  %-16s %s\n", *name, scene.title);
+    }
+    int count;
+    const SmShape *shape = sm_shapes(&count);
+    puts("\nShapes (mesh = \"shape:NAME\" in a scene file; --write-mesh exports one):");
+    for (int i = 0; i < count; i++)
+        printf("  %-16s %s (%ld triangles)\n", shape[i].name, shape[i].description,
+               shape[i].triangles);
+    return SM_OK;
+}
+
+static SmCode print_scene(const char *name, SmError *error)
+{
+    size_t size;
+    const char *text = bench_scene_text(name, &size);
+    if (!text)
+        return sm_fail(error, SM_USAGE,
+                       "'%.100s' is not a built-in scene; 'shapebench scenes' lists them", name);
+    fwrite(text, 1, size, stdout);
+    return SM_OK;
+}
+
+static SmCode write_mesh(const char *name, const char *path, SmError *error)
+{
+    SmMesh mesh;
+    BenchScene scene;
+    SmCode code = SM_OK;
+    if (bench_scene_text(name, NULL)) {
+        code = bench_scene_find(name, &scene, error);
+        if (!code) code = bench_mesh_load(scene.mesh, &mesh, error);
+    } else {
+        code = sm_shape_mesh(name, &mesh, error);
+    }
+    if (code) return code;
+    code = sm_mesh_write_obj(&mesh, path, error);
+    sm_mesh_free(&mesh);
+    return code;
+}
+
+int bench_command_scenes(int argc, char **argv)
+{
+    Options options;
+    bench_options_parse(&argp, argc, argv, &options);
+    SmError error;
+    SmCode code;
+    if (options.write)
+        code = write_mesh(options.name, options.write, &error);
+    else if (options.name)
+        code = print_scene(options.name, &error);
+    else
+        code = list(&error);
+    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    return (int)code;
+}

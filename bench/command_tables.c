@@ -1,0 +1,202 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../reference/paper.h"
+#include "command.h"
+#include "measure.h"
+#include "option.h"
+#include "runner.h"
+#include "store.h"
+#include "substitute.h"
+#include "table.h"
+
+enum {
+    KEY_PAPER = 0x2000,
+    KEY_SCENE,
+    KEY_ENGINE,
+    KEY_PRECISION,
+    KEY_FORMAT,
+    KEY_REPEATS,
+    KEY_BLOCK,
+    KEY_MESH,
+    SCENES = 64
+};
+
+typedef struct {
+    BenchCommon common;
+    const char *paper, *engine, *precision, *output;
+    const char *scene[SCENES];
+    int scenes, repeats;
+    double block;
+    BenchFormat format;
+    BenchSubstitutes substitutes;
+} Options;
+
+static const char *const precisions[] = {"single", "double", NULL};
+
+static const struct argp_option option_list[] = {
+    {"paper", KEY_PAPER, "NAME", 0, "The paper whose table to regenerate (default: fastlsm)", 1},
+    {"scene", KEY_SCENE, "NAME|FILE", 0, "Measure this scene only; may be repeated", 1},
+    {"engine", KEY_ENGINE, "NAME", 0, "fastlsm or brute (default: as the scene says)", 1},
+    {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
+    {"mesh", KEY_MESH, "NAME=FILE", 0, BENCH_MESH_HELP, 1},
+    {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
+    {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 20)", 2},
+    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex or json (default: text)", 3},
+    {"output", 'o', "FILE.h5", 0,
+     "Also store every sample, counts, validity and provenance in HDF5 (default: nothing stored)",
+     3},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        *options = (Options){.paper = "fastlsm", .repeats = 15, .block = 20};
+        bench_options_init(state, &options->common);
+        return 0;
+    case KEY_PAPER:
+        options->paper = text;
+        return 0;
+    case KEY_SCENE:
+        if (options->scenes == SCENES) bench_usage(state, "--scene: at most %d", SCENES);
+        options->scene[options->scenes++] = text;
+        return 0;
+    case KEY_ENGINE:
+        options->engine = text;
+        return 0;
+    case KEY_PRECISION:
+        options->precision =
+            precisions[bench_option_choice(state, "--precision", text, precisions)];
+        return 0;
+    case KEY_MESH:
+        bench_substitute_add(state, text, &options->substitutes);
+        return 0;
+    case KEY_REPEATS:
+        options->repeats = (int)bench_option_long(state, "--repeats", text, 1, 10000);
+        return 0;
+    case KEY_BLOCK:
+        options->block = bench_option_real(state, "--block", text, 0.001, 60000);
+        return 0;
+    case KEY_FORMAT:
+        options->format =
+            (BenchFormat)bench_option_choice(state, "--format", text, bench_format_names);
+        return 0;
+    case 'o':
+        options->output = text;
+        return 0;
+    case ARGP_KEY_ARG:
+        bench_usage(state, "what is '%s'? Scenes are named with --scene", text);
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const char help[] =
+    "Measure the scenes of a paper's table and set the paper's values beside them. Every scene is "
+    "first checked on the very state that is timed: goal positions against double-precision brute "
+    "force (at most 5e-5 of a cell off in single, 1e-10 in double precision), linear momentum "
+    "(sum m g = sum m x to 1e-6 of sum m |x - centroid|), counts, and that everything is finite. "
+    "A row that fails has INVALID in place of its times.\v"
+    "Times are medians over the repeats; the total is timed without clocks inside the step, stages "
+    "are the shares of a run with clocks, interleaved. 'ratio' and 'faster' are the paper's total "
+    "divided by the measured one.\n" BENCH_EXIT_CODES;
+
+static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
+static const struct argp argp = {option_list, parse, NULL, help, children, NULL, NULL};
+
+/* The built-in scene that regenerates this row, or NULL. */
+static const char *scene_of_row(const RefPaperRow *row)
+{
+    for (const char *const *name = bench_scene_names(); *name; name++) {
+        BenchScene scene;
+        if (bench_scene_find(*name, &scene, NULL)) continue;
+        if (!strcmp(scene.paper, row->paper) && !strcmp(scene.row, row->scene)) return *name;
+    }
+    return NULL;
+}
+
+/* Fills in the scenes of the paper's table. */
+static SmCode choose_scenes(Options *options, SmError *error)
+{
+    int count;
+    const RefPaperRow *rows = ref_paper_rows(&count);
+    for (int i = 0; i < count && options->scenes < SCENES; i++) {
+        if (strcmp(rows[i].paper, options->paper) != 0) continue;
+        const char *name = scene_of_row(&rows[i]);
+        if (name) options->scene[options->scenes++] = name;
+    }
+    if (options->scenes) return SM_OK;
+    return sm_fail(error, SM_USAGE, "--paper: no table of '%.40s'; there is: fastlsm",
+                   options->paper);
+}
+
+static SmCode measure_scene(const Options *options, const char *name, BenchProgress *progress,
+                            BenchRow *row, SmError *error)
+{
+    BenchScene scene;
+    const SmEngineType *type;
+    SmCode code = bench_scene_find(name, &scene, error);
+    if (code) return code;
+    code = bench_engine_find(options->engine ? options->engine : scene.engine, options->precision,
+                             &type, error);
+    if (code) return code;
+    SmMesh mesh;
+    BenchBody body;
+    const char *substitute = bench_substitute_find(&options->substitutes, scene.name);
+    bench_progress_show(progress, scene.name, 0);
+    code = bench_mesh_of_scene(&scene, substitute, &mesh, error);
+    if (!code) code = bench_body_create(&scene, &mesh, &body, error);
+    if (code) return code;
+    BenchMeasureParams params = {.repeats = options->repeats,
+                                 .block_seconds = options->block / 1e3,
+                                 .threads = options->common.threads,
+                                 .seed = options->common.seed,
+                                 .progress = progress};
+    code = bench_measure(&scene, &body, type, &params, row, error);
+    bench_body_free(&body);
+    return code;
+}
+
+static SmCode measure_all(const Options *options, BenchRow *rows, SmError *error)
+{
+    BenchProgress progress;
+    bench_progress_start(&progress, options->common.quiet);
+    SmCode code = SM_OK;
+    for (int i = 0; i < options->scenes && !code; i++)
+        code = measure_scene(options, options->scene[i], &progress, &rows[i], error);
+    bench_progress_stop(&progress);
+    return code;
+}
+
+static SmCode verdict(const BenchRow *rows, int count, SmError *error)
+{
+    for (int i = 0; i < count; i++)
+        if (!rows[i].valid)
+            return sm_fail(error, SM_INVALID, "%s is INVALID: %s", rows[i].scene, rows[i].reason);
+    return SM_OK;
+}
+
+int bench_command_tables(int argc, char **argv)
+{
+    Options options;
+    SmError error;
+    bench_options_parse(&argp, argc, argv, &options);
+    SmCode code = options.scenes ? SM_OK : choose_scenes(&options, &error);
+    BenchRow *rows = sm_alloc(SCENES, sizeof *rows);
+    if (!code) code = measure_all(&options, rows, &error);
+    if (!code) {
+        BenchMachine machine;
+        bench_machine_read(argc, argv, options.common.threads, &machine);
+        bench_table_write(stdout, options.format, rows, options.scenes, &machine);
+        if (options.output)
+            code = bench_store_rows(options.output, rows, options.scenes, &machine, &error);
+        if (!code) code = verdict(rows, options.scenes, &error);
+    }
+    for (int i = 0; i < options.scenes; i++) bench_row_free(&rows[i]);
+    free(rows);
+    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    return (int)code;
+}

@@ -1,0 +1,32 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "../fastlsm/fastlsm.h"
+#include "../reference/brute.h"
+#include "runner.h"
+
+static const SmEngineType *const engines[] = {
+    &fastlsm_engine_f32,
+    &fastlsm_engine_f64,
+    &ref_brute_engine,
+};
+enum { ENGINES = sizeof engines / sizeof engines[0] };
+
+SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
+                         SmError *error)
+{
+    char known[256] = "";
+    for (int i = 0; i < ENGINES; i++) {
+        const SmEngineType *e = engines[i];
+        if (!strcmp(e->name, name) && (!precision || !strcmp(e->precision, precision))) {
+            *type = e;
+            return SM_OK;
+        }
+        size_t used = strlen(known);
+        snprintf(known + used, sizeof known - used, "%s%s (%s)", used ? ", " : "", e->name,
+                 e->precision);
+    }
+    return sm_fail(error, SM_USAGE, "no engine '%.32s'%s%s%s; there are: %s", name,
+                   precision ? " in " : "", precision ? precision : "",
+                   precision ? " precision" : "", known);
+}

@@ -1,0 +1,106 @@
+/* shapebench: dispatch to the commands; see command.h. */
+#include <argp.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../lib/error.h"
+#include "command.h"
+#include "draft.h"
+
+static const BenchCommand commands[] = {
+    {"tables", "measure a paper's table: every stage, checked, the paper's values beside",
+     bench_command_tables},
+    {"run", "simulate a scene or a mesh and write its motion", bench_command_run},
+    {"info", "say what is in a mesh, and whether it can be simulated", bench_command_info},
+    {"scenes", "list the built-in scenes, or print one to copy and edit", bench_command_scenes},
+};
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+static const char help_start[] =
+    "Reference implementation and benchmark harness for shape-matching deformation.\n"
+    "With no command: tables.\v"
+    "Commands (each has its own --help):\n";
+
+static const char help_end[] = "\n" BENCH_EXIT_CODES;
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    (void)text;
+    if (key == ARGP_KEY_INIT) state->err_stream = NULL; /* see bench_options_init() */
+    return key == ARGP_KEY_INIT ? 0 : ARGP_ERR_UNKNOWN;
+}
+
+/* Help text with the commands' list in it, for argp. */
+static void write_help(char *help, size_t room)
+{
+    size_t used = (size_t)snprintf(help, room, "%s", help_start);
+    for (int i = 0; i < COMMANDS && used < room; i++)
+        used += (size_t)snprintf(help + used, room - used, "  %-8s %s\n", commands[i].name,
+                                 commands[i].summary);
+    if (used < room) snprintf(help + used, room - used, "%s", help_end);
+}
+
+static int run_command(const BenchCommand *command, int argc, char **argv)
+{
+    char name[64];
+    snprintf(name, sizeof name, "shapebench %s", command->name);
+    argv[0] = name;
+    int code = command->run(argc, argv);
+    if (fflush(stdout) || ferror(stdout)) {
+        fprintf(stderr, "%s: standard output cannot be written: is the disk full?\n", name);
+        return code ? code : SM_OUTPUT;
+    }
+    return code;
+}
+
+static const BenchCommand *find_command(const char *name)
+{
+    for (int i = 0; i < COMMANDS; i++)
+        if (!strcmp(commands[i].name, name)) return &commands[i];
+    return NULL;
+}
+
+/* Ends the program with no file half written. */
+static void interrupt(int number)
+{
+    static const char text[] = "\nshapebench: interrupted: no file was written\n";
+    bench_drafts_remove();
+    ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
+    (void)written;
+    _exit(128 + number);
+}
+
+static void catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = interrupt};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+int main(int argc, char **argv)
+{
+    char help[2048];
+    write_help(help, sizeof help);
+    const struct argp argp = {NULL, parse, "[COMMAND [OPTION...]]", help, NULL, NULL, NULL};
+    char program[] = "shapebench";
+    char *none[] = {program, NULL};
+    if (argc < 1) argv = none, argc = 1;
+    argv[0] = program;
+    argp_err_exit_status = SM_USAGE;
+    catch_signals();
+
+    int first = argc;
+    if (argp_parse(&argp, argc, argv, ARGP_IN_ORDER, &first, NULL)) return SM_USAGE;
+    const char *name = first < argc ? argv[first] : "tables";
+    const BenchCommand *command = find_command(name);
+    if (!command) {
+        fprintf(stderr, "shapebench: unknown command '%s'; see 'shapebench --help'\n", name);
+        return SM_USAGE;
+    }
+    if (first >= argc) return run_command(command, 1, none);
+    return run_command(command, argc - first, argv + first);
+}

@@ -1,0 +1,222 @@
+#include "measure.h"
+
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../reference/paper.h"
+#include "check.h"
+#include "runner.h"
+
+/* The state that every timed segment starts from. */
+typedef struct {
+    BenchRunner runner;
+    double (*x)[3], (*v)[3]; /* [runner.particles] */
+    double time;
+    int steps;    /* in a segment */
+    int segments; /* in a block */
+} Trial;
+
+static void save(Trial *trial)
+{
+    BenchRunner *runner = &trial->runner;
+    trial->x = sm_alloc((size_t)runner->particles, sizeof *trial->x);
+    trial->v = sm_alloc((size_t)runner->particles, sizeof *trial->v);
+    runner->type->get(runner->engine, SM_POSITION, trial->x);
+    runner->type->get(runner->engine, SM_VELOCITY, trial->v);
+    trial->time = runner->time;
+}
+
+static void restore(Trial *trial)
+{
+    BenchRunner *runner = &trial->runner;
+    runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])trial->x);
+    runner->type->set(runner->engine, SM_VELOCITY, (const double(*)[3])trial->v);
+    runner->time = trial->time;
+}
+
+/* Runs a segment's steps; seconds that they took. Adds to `stage` unless NULL. */
+static double run_segment(Trial *trial, int steps, double stage[SM_STAGES])
+{
+    restore(trial);
+    bench_runner_step(&trial->runner, NULL);
+    SmLaps laps;
+    double start = sm_now();
+    if (stage) sm_laps_start(&laps);
+    for (int i = 0; i < steps; i++) bench_runner_step(&trial->runner, stage ? &laps : NULL);
+    double seconds = sm_now() - start;
+    for (int s = 0; stage && s < SM_STAGES; s++) stage[s] += laps.seconds[s];
+    return seconds;
+}
+
+/* Seconds a step of one block; fills stage seconds a step unless NULL. */
+static double run_block(Trial *trial, double stage[SM_STAGES])
+{
+    double seconds = 0, steps = (double)trial->steps * trial->segments;
+    for (int i = 0; i < trial->segments; i++) seconds += run_segment(trial, trial->steps, stage);
+    for (int s = 0; stage && s < SM_STAGES; s++) stage[s] /= steps;
+    return seconds / steps;
+}
+
+/* Warms up and finds how many steps and segments fill a block. */
+static void size_blocks(Trial *trial, double block_seconds)
+{
+    double step = run_segment(trial, 1, NULL);
+    for (int i = 0; i < 3; i++) step = fmin(step, run_segment(trial, 2, NULL) / 2);
+    double wanted = fmin(fmax(ceil(block_seconds / step), 1), 1e7);
+    trial->steps = (int)fmin(wanted, BENCH_SEGMENT_STEPS);
+    trial->segments = (int)ceil(wanted / trial->steps);
+    run_block(trial, NULL);
+}
+
+static void name_row(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                     BenchRow *row)
+{
+    *row = (BenchRow){.triangles = body->mesh.triangle_count,
+                      .instances = body->instances,
+                      .w = scene->params.w,
+                      .epsilon = scene->epsilon,
+                      .h = scene->params.h,
+                      .cell = body->voxels.cell,
+                      .damping = scene->params.damping,
+                      .voxelise_seconds = body->voxelise_seconds,
+                      .input_hash = body->hash,
+                      .goal_tolerance = bench_check_tolerance(type->precision)};
+    snprintf(row->paper, sizeof row->paper, "%s", scene->paper);
+    snprintf(row->paper_row, sizeof row->paper_row, "%s", scene->row);
+    snprintf(row->scene, sizeof row->scene, "%s", scene->name);
+    snprintf(row->engine, sizeof row->engine, "%s", type->name);
+    snprintf(row->precision, sizeof row->precision, "%s", type->precision);
+    const RefPaperRow *paper = scene->row[0] ? ref_paper_find(scene->paper, scene->row) : NULL;
+    row->paper_total_ms = paper ? paper->total_ms.value : NAN;
+    for (int s = 0; s < SM_STAGES; s++)
+        row->paper_stage_ms[s] = paper ? paper->stage_ms[s].value : NAN;
+}
+
+static void invalidate(BenchRow *row, const char *format, double value, double limit)
+{
+    if (row->valid) snprintf(row->reason, sizeof row->reason, format, value, limit);
+    row->valid = false;
+}
+
+static void check_state(const BenchCheck *check, const BenchRunner *runner, BenchRow *row)
+{
+    BenchDeviation found = bench_check_state(check, runner->type, runner->engine);
+    row->goal_error = fmax(row->goal_error, found.goal_error);
+    row->momentum_error = fmax(row->momentum_error, found.momentum_error);
+    if (!found.finite)
+        invalidate(row, "positions, velocities or goals are not finite", 0, 0);
+    else if (!(found.goal_error <= row->goal_tolerance))
+        invalidate(row, "goals are %.3g cells from brute force; at most %g allowed",
+                   found.goal_error, row->goal_tolerance);
+    else if (!(found.momentum_error <= BENCH_MOMENTUM_TOLERANCE))
+        invalidate(row, "linear momentum is off by %.3g; at most %g allowed", found.momentum_error,
+                   BENCH_MOMENTUM_TOLERANCE);
+}
+
+static void check_counts(const BenchCheck *check, const BenchRunner *runner, BenchRow *row)
+{
+    SmCounts counts;
+    runner->type->count(runner->engine, &counts);
+    row->particles = counts.particles;
+    row->regions = counts.regions;
+    row->bytes = counts.bytes;
+    row->build_seconds = counts.build_seconds;
+    if (counts.particles != runner->particles)
+        invalidate(row, "the engine has %.0f particles, the lattice %.0f", (double)counts.particles,
+                   (double)runner->particles);
+    if (counts.broken == 0 && counts.regions != check->unique)
+        invalidate(row, "the engine has %.0f unique regions, brute force %.0f",
+                   (double)counts.regions, (double)check->unique);
+}
+
+static double median(const double *value, int count, double *sorted)
+{
+    memcpy(sorted, value, (size_t)count * sizeof *value);
+    gsl_sort(sorted, 1, (size_t)count);
+    return gsl_stats_quantile_from_sorted_data(sorted, 1, (size_t)count, 0.5);
+}
+
+/* Medians, quartiles and shares from the repeats' samples. */
+static void summarise(BenchRow *row)
+{
+    size_t count = (size_t)row->repeats;
+    double *sorted = sm_alloc(count, sizeof *sorted), *sample = sm_alloc(count, sizeof *sample);
+    double share[SM_STAGES], all = 0;
+    for (int s = 0; s < SM_STAGES; s++) {
+        for (size_t r = 0; r < count; r++) {
+            double sum = 0;
+            for (int t = 0; t < SM_STAGES; t++) sum += row->stage[r][t];
+            sample[r] = sum > 0 ? row->stage[r][s] / sum : 0;
+        }
+        all += share[s] = median(sample, row->repeats, sorted);
+    }
+    for (size_t r = 0; r < count; r++) {
+        sample[r] = 0;
+        for (int s = 0; s < SM_STAGES; s++) sample[r] += row->stage[r][s];
+        sample[r] /= row->total[r];
+    }
+    row->instruments_percent = 100 * (median(sample, row->repeats, sorted) - 1);
+    row->total_ms = 1e3 * median(row->total, row->repeats, sorted);
+    row->total_low_ms = 1e3 * gsl_stats_quantile_from_sorted_data(sorted, 1, count, 0.25);
+    row->total_high_ms = 1e3 * gsl_stats_quantile_from_sorted_data(sorted, 1, count, 0.75);
+    for (int s = 0; s < SM_STAGES; s++)
+        row->stage_ms[s] = all > 0 ? row->total_ms * share[s] / all : 0;
+    row->ns_per_particle_step = 1e6 * row->total_ms / (double)row->particles;
+    free(sorted);
+    free(sample);
+}
+
+static void time_blocks(Trial *trial, const BenchMeasureParams *params, BenchRow *row)
+{
+    size_blocks(trial, params->block_seconds > 0 ? params->block_seconds : 0.02);
+    row->repeats = params->repeats > 0 ? params->repeats : 15;
+    row->steps = trial->steps * trial->segments;
+    row->total = sm_alloc((size_t)row->repeats, sizeof *row->total);
+    row->stage = sm_alloc((size_t)row->repeats, sizeof *row->stage);
+    for (int r = 0; r < row->repeats; r++) {
+        if (r % 2) run_block(trial, row->stage[r]);
+        row->total[r] = run_block(trial, NULL);
+        if (r % 2 == 0) run_block(trial, row->stage[r]);
+        if (params->progress)
+            bench_progress_show(params->progress, row->scene, (r + 1.0) / row->repeats);
+    }
+    summarise(row);
+}
+
+SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                     const BenchMeasureParams *params, BenchRow *row, SmError *error)
+{
+    Trial trial = {0};
+    BenchRunner *runner = &trial.runner;
+    SmCode code = bench_runner_create(scene, body, type, params->threads, runner, error);
+    if (code) return code;
+    name_row(scene, body, type, row);
+    row->threads = params->threads;
+    row->valid = true;
+    if (params->progress) bench_progress_show(params->progress, row->scene, 0);
+    BenchCheck check;
+    bench_check_create(body, scene->params.w, &check);
+    check_counts(&check, runner, row);
+    bench_runner_disturb(runner, params->seed);
+    for (int i = 0; i < BENCH_SETTLE_STEPS; i++) bench_runner_step(runner, NULL);
+    check_state(&check, runner, row);
+    save(&trial);
+    time_blocks(&trial, params, row);
+    check_state(&check, runner, row);
+    bench_check_free(&check);
+    bench_runner_free(runner);
+    free(trial.x);
+    free(trial.v);
+    return SM_OK;
+}
+
+void bench_row_free(BenchRow *row)
+{
+    free(row->total);
+    free(row->stage);
+    *row = (BenchRow){0};
+}

@@ -1,0 +1,34 @@
+/* measure.h - one scene, one engine: checked against brute force, then timed, then checked again.
+ *
+ * How. The scene's disturbance is applied and a few steps run; that state is the start of every
+ * timed segment, so that all repeats do the same work on a body in motion. The check compares the
+ * goal positions there, and again where the last segment ended. Then after a warm-up come
+ * `repeats` repeats of two blocks, one plain and one with laps, in turn first. A block is as many
+ * segments as fill block_seconds; a segment restores the start state and runs one step untimed,
+ * and then times up to BENCH_SEGMENT_STEPS steps. The total is that of the plain blocks; stage
+ * times are the shares of the blocks with laps, times the total. */
+#ifndef BENCH_MEASURE_H
+#define BENCH_MEASURE_H
+
+#include "body.h"
+#include "progress.h"
+#include "row.h"
+
+enum { BENCH_SEGMENT_STEPS = 64, BENCH_SETTLE_STEPS = 8 };
+
+typedef struct {
+    int repeats;          /* 0: 15 */
+    double block_seconds; /* 0: 0.02 */
+    int threads;
+    unsigned long seed;
+    BenchProgress *progress; /* or NULL */
+} BenchMeasureParams;
+
+/* Measures the scene's body on the engine. A failed check is no error: the row says why it is not
+ * valid. Errors are those of creating the engine. The caller frees the row. */
+SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                     const BenchMeasureParams *params, BenchRow *row, SmError *error);
+
+void bench_row_free(BenchRow *row);
+
+#endif

@@ -1,0 +1,114 @@
+#include "option.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "provenance.h"
+
+const char *argp_program_version = "shapebench " SHAPEBENCH_VERSION;
+
+enum { KEY_THREADS = 0x1000, KEY_SEED, KEY_QUIET };
+
+static const struct argp_option common_options[] = {
+    {"threads", KEY_THREADS, "N", 0, "Threads; 0: all cores (default: 1)", 90},
+    {"seed", KEY_SEED, "N", 0, "Seed of everything random (default: 1)", 90},
+    {"quiet", KEY_QUIET, 0, 0, "No progress and no remarks on standard error", 90},
+    {0},
+};
+
+static error_t parse_common(int key, char *text, struct argp_state *state)
+{
+    BenchCommon *common = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        *common = (BenchCommon){.threads = 1, .seed = 1};
+        return 0;
+    case KEY_THREADS:
+        common->threads = (int)bench_option_long(state, "--threads", text, 0, 1024);
+        return 0;
+    case KEY_SEED:
+        common->seed = (unsigned long)bench_option_long(state, "--seed", text, 0, 2147483647);
+        return 0;
+    case KEY_QUIET:
+        common->quiet = true;
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+const struct argp bench_common_argp = {common_options, parse_common, 0, 0, 0, 0, 0};
+
+void bench_options_init(struct argp_state *state, BenchCommon *common)
+{
+    /* getopt's own line for an unknown option is the whole message: no second "Try ..." line. */
+    state->err_stream = NULL;
+    state->child_inputs[0] = common;
+}
+
+void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input)
+{
+    if (argp_parse(argp, argc, argv, 0, NULL, input)) exit(SM_USAGE);
+}
+
+void bench_usage(const struct argp_state *state, const char *format, ...)
+{
+    SmError error;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error.text, sizeof error.text, format, arguments);
+    va_end(arguments);
+    for (char *c = error.text; *c; c++)
+        if (*c == '\n' || *c == '\r') *c = ' ';
+    fprintf(stderr, "%s: %s; see '%s --help'\n", state->name, error.text, state->name);
+    exit(SM_USAGE);
+}
+
+long bench_option_long(const struct argp_state *state, const char *name, const char *text, long low,
+                       long high)
+{
+    char *end;
+    errno = 0;
+    long value = strtol(text, &end, 10);
+    if (errno || end == text || *end || value < low || value > high)
+        bench_usage(state, "%s: '%s' is not a whole number from %ld to %ld", name, text, low, high);
+    return value;
+}
+
+double bench_option_real(const struct argp_state *state, const char *name, const char *text,
+                         double low, double high)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end || !(value >= low && value <= high))
+        bench_usage(state, "%s: '%s' is not a number from %g to %g", name, text, low, high);
+    return value;
+}
+
+void bench_option_vector(const struct argp_state *state, const char *name, const char *text,
+                         double value[3])
+{
+    const char *place = text;
+    for (int d = 0; d < 3; d++) {
+        char *end;
+        value[d] = strtod(place, &end);
+        bool good = end != place && isfinite(value[d]) && *end == (d < 2 ? ',' : '\0');
+        if (!good) bench_usage(state, "%s: '%s' is not three numbers x,y,z", name, text);
+        place = end + 1;
+    }
+}
+
+int bench_option_choice(const struct argp_state *state, const char *name, const char *text,
+                        const char *const *choices)
+{
+    char list[256] = "";
+    for (int i = 0; choices[i]; i++) {
+        if (!strcmp(text, choices[i])) return i;
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", choices[i]);
+    }
+    bench_usage(state, "%s: '%s' is not one of %s", name, text, list);
+}

@@ -1,0 +1,38 @@
+/* recording.h - a running scene into a trajectory file: its surface, and on request its particles.
+ */
+#ifndef BENCH_RECORDING_H
+#define BENCH_RECORDING_H
+
+#include "../lib/embed.h"
+#include "machine.h"
+#include "runner.h"
+#include "trajectory.h"
+
+typedef struct {
+    const BenchRunner *runner;        /* the caller's, kept */
+    SmMesh surface;                   /* of all instances */
+    SmEmbedding embedding;            /* of one */
+    double (*x)[3], (*v)[3], (*g)[3]; /* [runner->particles] */
+    BenchTrajectory *trajectory;
+    bool particles;
+} BenchRecording;
+
+/* Opens the file. Errors: those of bench_trajectory_open(). */
+SmCode bench_recording_open(const BenchRunner *runner, const char *path, bool particles,
+                            const BenchMachine *machine, BenchRecording *recording, SmError *error);
+
+/* Writes the surface as it is now. */
+SmCode bench_recording_frame(BenchRecording *recording, SmError *error);
+
+/* Records the particles between bench_runner_prepare() and bench_runner_advance() of step `step`;
+ * `before` false: after it, without goals. Computes the goals. */
+SmCode bench_recording_step(BenchRecording *recording, long step, bool before, SmError *error);
+
+/* Are all positions finite? The positions are those of the last frame. */
+bool bench_recording_finite(const BenchRecording *recording);
+
+/* Completes the file, or throws it away, and frees all. */
+SmCode bench_recording_close(BenchRecording *recording, SmError *error);
+void bench_recording_abandon(BenchRecording *recording);
+
+#endif

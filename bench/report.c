@@ -1,0 +1,244 @@
+#include "report.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "../reference/paper.h"
+
+enum { FIELDS = 13, FIELD_TEXT = 96 };
+enum {
+    SCENE,
+    PARTICLES,
+    REGIONS,
+    W,
+    STAGES,
+    TOTAL = STAGES + SM_STAGES,
+    PER_STEP,
+    FASTER,
+    VERDICT
+};
+
+static const char *const headings[FIELDS] = {
+    "scene", "particles", "regions", "w",        "fast sum",         "shape matching",
+    "polar", "damping",   "other",   "total ms", "ns/particle/step", "faster",
+    "check",
+};
+
+typedef struct {
+    char field[FIELDS][FIELD_TEXT];
+} Line;
+
+/* Three significant digits without an exponent: "167.8", "1.97", "0.0075"; "-" for NaN. */
+static void number_text(double value, char text[FIELD_TEXT])
+{
+    int digits = value > 0 ? 2 - (int)floor(log10(value)) : 0;
+    if (!isfinite(value))
+        strcpy(text, "-");
+    else
+        snprintf(text, FIELD_TEXT, "%.*f", digits < 0 ? 0 : digits > 9 ? 9 : digits, value);
+}
+
+static void stage_text(double ms, double percent, char text[FIELD_TEXT])
+{
+    char number[FIELD_TEXT];
+    number_text(ms, number);
+    if (isfinite(percent))
+        snprintf(text, FIELD_TEXT, "%.40s (%2.0f%%)", number, percent);
+    else
+        snprintf(text, FIELD_TEXT, "%.40s", number);
+}
+
+static void measured_line(const BenchRow *row, Line *line)
+{
+    memset(line, 0, sizeof *line);
+    snprintf(line->field[SCENE], FIELD_TEXT, "%s", row->scene);
+    snprintf(line->field[PARTICLES], FIELD_TEXT, "%ld", row->particles);
+    snprintf(line->field[REGIONS], FIELD_TEXT, "%ld", row->regions);
+    snprintf(line->field[W], FIELD_TEXT, "%d", row->w);
+    strcpy(line->field[VERDICT], row->valid ? "VALID" : "INVALID");
+    for (int f = STAGES; f < VERDICT && !row->valid; f++) strcpy(line->field[f], "INVALID");
+    if (!row->valid) return;
+    for (int s = 0; s < SM_STAGES; s++)
+        stage_text(row->stage_ms[s], 100 * row->stage_ms[s] / row->total_ms,
+                   line->field[STAGES + s]);
+    if (!(row->damping > 0)) strcpy(line->field[STAGES + SM_DAMPING], "-");
+    number_text(row->total_ms, line->field[TOTAL]);
+    number_text(row->ns_per_particle_step, line->field[PER_STEP]);
+    if (!isfinite(row->paper_total_ms)) return;
+    number_text(row->paper_total_ms / row->total_ms, line->field[FASTER]);
+    strcat(line->field[FASTER], "x");
+}
+
+static void count_text(RefValue value, char text[FIELD_TEXT])
+{
+    if (isfinite(value.value)) snprintf(text, FIELD_TEXT, "%.0f", value.value);
+}
+
+/* The paper's values, "?" behind a damaged or misprinted one; false where there are none. */
+static bool paper_line(const BenchRow *row, Line *line)
+{
+    const RefPaperRow *paper = row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
+    memset(line, 0, sizeof *line);
+    if (!paper) return false;
+    strcpy(line->field[SCENE], "  paper");
+    count_text(paper->particles, line->field[PARTICLES]);
+    count_text(paper->regions, line->field[REGIONS]);
+    count_text(paper->w, line->field[W]);
+    for (int s = 0; s < SM_STAGES; s++) {
+        stage_text(paper->stage_ms[s].value, paper->stage_percent[s].value,
+                   line->field[STAGES + s]);
+        if (paper->stage_ms[s].status == REF_DAMAGED) strcat(line->field[STAGES + s], "?");
+    }
+    number_text(paper->total_ms.value, line->field[TOTAL]);
+    number_text(1e6 * paper->total_ms.value / paper->particles.value, line->field[PER_STEP]);
+    return true;
+}
+
+/* How far the counts are from the paper's. */
+static bool difference_line(const BenchRow *row, Line *line)
+{
+    const RefPaperRow *paper = row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
+    memset(line, 0, sizeof *line);
+    if (!paper) return false;
+    strcpy(line->field[SCENE], "  difference");
+    double particles = 100 * ((double)row->particles / paper->particles.value - 1);
+    double regions = 100 * ((double)row->regions / paper->regions.value - 1);
+    if (isfinite(particles)) snprintf(line->field[PARTICLES], FIELD_TEXT, "%+.1f%%", particles);
+    if (isfinite(regions)) snprintf(line->field[REGIONS], FIELD_TEXT, "%+.1f%%", regions);
+    return true;
+}
+
+static void widen(const Line *line, int width[FIELDS])
+{
+    for (int f = 0; f < FIELDS; f++) {
+        int length = (int)strlen(line->field[f]);
+        if (length > width[f]) width[f] = length;
+    }
+}
+
+static void print_line(FILE *file, const Line *line, const int width[FIELDS])
+{
+    char text[FIELDS * (FIELD_TEXT + 2) + 1];
+    int used = 0;
+    for (int f = 0; f < FIELDS; f++) {
+        int pad = f == SCENE || f == VERDICT ? -width[f] : width[f];
+        used += snprintf(text + used, sizeof text - (size_t)used, "%s%*s", f ? "  " : "", pad,
+                         line->field[f]);
+    }
+    while (used > 0 && text[used - 1] == ' ') text[--used] = '\0';
+    fprintf(file, "%s\n", text);
+}
+
+static void print_check(FILE *file, const BenchRow *row)
+{
+    fprintf(file, "  %s, %s in %s precision: %s: ", row->scene, row->engine, row->precision,
+            row->valid ? "VALID" : "INVALID");
+    if (!row->valid) {
+        fprintf(file, "%s\n", row->reason);
+        return;
+    }
+    fprintf(file,
+            "goals within %.2g cells of brute force (allowed %.0e),\n    momentum kept to %.1g; "
+            "quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost %.1f%%;\n    "
+            "voxelised in %.3g ms, built in %.3g ms, %.4g bytes a particle\n",
+            row->goal_error, row->goal_tolerance, row->momentum_error, row->total_low_ms,
+            row->total_high_ms, row->repeats, row->steps, row->instruments_percent,
+            1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,
+            (double)row->bytes / (double)row->particles);
+}
+
+static void print_notes(FILE *file, const BenchRow *rows, int count)
+{
+    for (int r = 0; r < count; r++) {
+        const RefPaperRow *paper =
+            rows[r].paper[0] ? ref_paper_find(rows[r].paper, rows[r].paper_row) : NULL;
+        if (paper && paper->note[0]) fprintf(file, "  %s, paper: %s\n", rows[r].scene, paper->note);
+    }
+}
+
+void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine)
+{
+    Line heading, line;
+    int width[FIELDS] = {0};
+    for (int f = 0; f < FIELDS; f++) snprintf(heading.field[f], FIELD_TEXT, "%s", headings[f]);
+    widen(&heading, width);
+    for (int r = 0; r < count; r++) {
+        measured_line(&rows[r], &line);
+        widen(&line, width);
+        if (paper_line(&rows[r], &line)) widen(&line, width);
+        if (difference_line(&rows[r], &line)) widen(&line, width);
+    }
+    fprintf(file, "Times of one step, median, on %s, %d thread%s.\n\n", machine->cpu,
+            machine->threads, machine->threads == 1 ? "" : "s");
+    print_line(file, &heading, width);
+    for (int r = 0; r < count; r++) {
+        measured_line(&rows[r], &line);
+        print_line(file, &line, width);
+        if (paper_line(&rows[r], &line)) print_line(file, &line, width);
+        if (difference_line(&rows[r], &line)) print_line(file, &line, width);
+    }
+    fputc('\n', file);
+    for (int r = 0; r < count; r++) print_check(file, &rows[r]);
+    print_notes(file, rows, count);
+}
+
+void bench_report_markdown(FILE *file, const BenchRow *rows, int count)
+{
+    for (int f = 0; f < FIELDS; f++) fprintf(file, "| %s ", headings[f]);
+    fputs("|\n", file);
+    for (int f = 0; f < FIELDS; f++) fputs(f == SCENE || f == VERDICT ? "| --- " : "| ---: ", file);
+    fputs("|\n", file);
+    for (int r = 0; r < 2 * count; r++) {
+        Line line;
+        const BenchRow *row = &rows[r / 2];
+        if (r % 2 == 0)
+            measured_line(row, &line);
+        else if (!paper_line(row, &line))
+            continue;
+        for (int f = 0; f < FIELDS; f++) {
+            fputs("| ", file);
+            for (const char *c = line.field[f] + strspn(line.field[f], " "); *c; c++)
+                fprintf(file, *c == '|' ? "\\%c" : "%c", *c);
+            fputc(' ', file);
+        }
+        fputs("|\n", file);
+    }
+}
+
+static void latex_text(FILE *file, const char *text)
+{
+    for (const char *c = text + strspn(text, " "); *c; c++) {
+        if (*c == '\\')
+            fputs("\\textbackslash{}", file);
+        else if (*c == '~' || *c == '^')
+            fprintf(file, "\\%c{}", *c);
+        else if (strchr("&%$#_{}", *c))
+            fprintf(file, "\\%c", *c);
+        else
+            fputc(*c, file);
+    }
+}
+
+static void latex_line(FILE *file, const char (*field)[FIELD_TEXT])
+{
+    for (int f = 0; f < FIELDS; f++) {
+        if (f) fputs(" & ", file);
+        latex_text(file, field[f]);
+    }
+    fputs(" \\\\\n", file);
+}
+
+void bench_report_latex(FILE *file, const BenchRow *rows, int count)
+{
+    Line line;
+    for (int f = 0; f < FIELDS; f++) snprintf(line.field[f], FIELD_TEXT, "%s", headings[f]);
+    fputs("\\begin{tabular}{lrrrrrrrrrrrl}\n\\hline\n", file);
+    latex_line(file, (const char(*)[FIELD_TEXT])line.field);
+    fputs("\\hline\n", file);
+    for (int r = 0; r < count; r++) {
+        measured_line(&rows[r], &line);
+        latex_line(file, (const char(*)[FIELD_TEXT])line.field);
+        if (paper_line(&rows[r], &line)) latex_line(file, (const char(*)[FIELD_TEXT])line.field);
+    }
+    fputs("\\hline\n\\end{tabular}\n", file);
+}

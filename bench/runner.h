@@ -1,0 +1,56 @@
+/* runner.h - a scene in motion: an engine, and what holds, pushes and disturbs its body. */
+#ifndef BENCH_RUNNER_H
+#define BENCH_RUNNER_H
+
+#include "body.h"
+
+typedef struct {
+    const SmEngineType *type;
+    SmEngine *engine;
+    const BenchScene *scene; /* the caller's, kept */
+    const BenchBody *body;   /* the caller's, kept */
+    long particles;          /* of all instances */
+    double time;             /* s since the start */
+    int held; /* handles bound: one for every scene handle and instance, no empty ones */
+    SmHandle *handle;
+    int *handle_source;    /* [held] the scene's handle */
+    long *handle_instance; /* [held] */
+    SmHandle *bound;       /* [bound_count] those that still hold, as handed to the engine */
+    int bound_count;
+    long *push_count; /* [scene->force_count] particles pushed, of all instances */
+    long **push_particle;
+    double (**push_impulse)[3];
+} BenchRunner;
+
+/* The engine of this name in "single" or "double" precision; NULL precision: the first that the
+ * engine has. SM_USAGE lists what there is. */
+SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
+                         SmError *error);
+
+/* Engine parameters of the scene and body. */
+SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *body, int threads);
+
+/* Builds the engine at rest, with handles and obstacles. A selection without particles is an
+ * error (SM_INPUT). */
+SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                           int threads, BenchRunner *runner, SmError *error);
+void bench_runner_free(BenchRunner *runner);
+
+/* Sets the scene's initial deformation and velocities (bend, twist, squash, kick). */
+void bench_runner_disturb(BenchRunner *runner, unsigned long seed);
+
+/* What is bound to the engine now: handles that still hold, at their poses, and obstacles. Valid
+ * until the next step. */
+SmBoundary bench_runner_boundary(const BenchRunner *runner);
+
+/* Moves the handles to where they are at the step's end and applies the forces: what comes before
+ * engine->step(). */
+void bench_runner_prepare(BenchRunner *runner);
+
+/* The step itself, after bench_runner_prepare(). */
+void bench_runner_advance(BenchRunner *runner, SmLaps *laps);
+
+/* Both. */
+void bench_runner_step(BenchRunner *runner, SmLaps *laps);
+
+#endif

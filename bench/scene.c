@@ -1,0 +1,327 @@
+#include "scene.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "builtin.h"
+#include "setting.h"
+
+enum { SCENE_BYTES = 1 << 20, BUILTIN_MAX = 64 };
+
+/* What a file says, before the four kinds of obstacle become one array. */
+typedef struct {
+    BenchScene scene;
+    SmObstacle plane[BENCH_MAX], ball[BENCH_MAX], box[BENCH_MAX], capsule[BENCH_MAX];
+    int planes, balls, boxes, capsules;
+} SceneFile;
+
+#define FAR 1e12 /* a length, speed or force beyond this is a mistake */
+
+#define ITEM(name, kind, offset, low, high)                                                        \
+    {                                                                                              \
+        name, kind, offset, low, high, NULL, NULL, 0, 0                                            \
+    }
+#define WORDS(name, offset, words)                                                                 \
+    {                                                                                              \
+        name, BENCH_CHOICE, offset, 0, 0, words, NULL, 0, 0                                        \
+    }
+#define SELECT(type)                                                                               \
+    ITEM("box_low", BENCH_VECTOR, offsetof(type, select.low), -FAR, FAR),                          \
+        ITEM("box_high", BENCH_VECTOR, offsetof(type, select.high), -FAR, FAR),                    \
+        ITEM("sphere_centre", BENCH_VECTOR, offsetof(type, select.centre), -FAR, FAR),             \
+        ITEM("sphere_radius", BENCH_REAL, offsetof(type, select.radius), 0, FAR)
+
+static const BenchSetting handle_table[] = {
+    SELECT(BenchHandle),
+    ITEM("velocity", BENCH_VECTOR, offsetof(BenchHandle, velocity), -FAR, FAR),
+    ITEM("axis", BENCH_VECTOR, offsetof(BenchHandle, axis), -FAR, FAR),
+    ITEM("centre", BENCH_VECTOR, offsetof(BenchHandle, centre), -FAR, FAR),
+    ITEM("rate", BENCH_REAL, offsetof(BenchHandle, rate), -1e4, 1e4),
+    ITEM("amplitude", BENCH_REAL, offsetof(BenchHandle, amplitude), -1e4, 1e4),
+    ITEM("period", BENCH_REAL, offsetof(BenchHandle, period), 0, 1e6),
+    ITEM("start", BENCH_REAL, offsetof(BenchHandle, start), 0, 1e6),
+    ITEM("stop", BENCH_REAL, offsetof(BenchHandle, stop), 0, 1e6),
+    ITEM("release", BENCH_BOOL, offsetof(BenchHandle, release), 0, 0),
+    {0},
+};
+
+static const BenchSetting force_table[] = {
+    SELECT(BenchForce),
+    ITEM("force", BENCH_VECTOR, offsetof(BenchForce, force), -FAR, FAR),
+    ITEM("start", BENCH_REAL, offsetof(BenchForce, start), 0, 1e6),
+    ITEM("stop", BENCH_REAL, offsetof(BenchForce, stop), 0, 1e6),
+    {0},
+};
+
+#define CORNER(name, member) ITEM(name, BENCH_VECTOR, offsetof(SmObstacle, member), -FAR, FAR)
+#define RADIUS               ITEM("radius", BENCH_REAL, offsetof(SmObstacle, radius), 0, FAR)
+#define FRICTION             ITEM("friction", BENCH_REAL, offsetof(SmObstacle, friction), 0, 1)
+
+static const BenchSetting plane_table[] = {CORNER("point", a), CORNER("normal", b), FRICTION, {0}};
+static const BenchSetting ball_table[] = {CORNER("centre", a), RADIUS, FRICTION, {0}};
+static const BenchSetting box_table[] = {CORNER("low", a), CORNER("high", b), FRICTION, {0}};
+static const BenchSetting capsule_table[] = {
+    CORNER("from", a), CORNER("to", b), RADIUS, FRICTION, {0}};
+
+#define AT(member) offsetof(SceneFile, scene.member)
+#define LIST(name, items, count, type, table)                                                      \
+    {                                                                                              \
+        name, BENCH_LIST, offsetof(SceneFile, items), 0, BENCH_MAX, NULL, table, sizeof(type),     \
+            offsetof(SceneFile, count)                                                             \
+    }
+
+static const BenchSetting scene_table[] = {
+    ITEM("title", BENCH_TEXT, AT(title), 0, sizeof((BenchScene *)0)->title),
+    ITEM("paper", BENCH_TEXT, AT(paper), 0, sizeof((BenchScene *)0)->paper),
+    ITEM("row", BENCH_TEXT, AT(row), 0, sizeof((BenchScene *)0)->row),
+    ITEM("mesh", BENCH_TEXT, AT(mesh), 0, BENCH_PATH),
+    WORDS("fill", AT(voxel.fill), "solid|shell"),
+    ITEM("particles", BENCH_LONG, AT(voxel.particles), 8, 1e9),
+    ITEM("cell", BENCH_REAL, AT(voxel.cell), 1e-30, 1e30),
+    ITEM("engine", BENCH_TEXT, AT(engine), 0, sizeof((BenchScene *)0)->engine),
+    ITEM("w", BENCH_INT, AT(params.w), 1, 64),
+    ITEM("h", BENCH_REAL, AT(params.h), 1e-9, 10),
+    ITEM("damping", BENCH_REAL, AT(params.damping), 0, 1),
+    ITEM("damping_every", BENCH_INT, AT(params.damping_every), 1, 1000000),
+    ITEM("gravity", BENCH_VECTOR, AT(params.gravity), -FAR, FAR),
+    ITEM("strain_limit", BENCH_REAL, AT(params.strain_limit), 0, 1e6),
+    WORDS("summation", AT(params.summation), "fast|bars|naive"),
+    WORDS("polar", AT(params.polar), "fast|jacobi"),
+    ITEM("epsilon", BENCH_REAL, AT(epsilon), 0, 1e6),
+    ITEM("density", BENCH_REAL, AT(density), 0, FAR),
+    ITEM("vertex_mass", BENCH_TEXT, AT(vertex_mass), 0, BENCH_PATH),
+    ITEM("instances", BENCH_LONG, AT(instances), 1, 1000000),
+    ITEM("spacing", BENCH_REAL, AT(spacing), 0, 1e6),
+    ITEM("steps_per_frame", BENCH_INT, AT(steps_per_frame), 1, 1000000),
+    ITEM("frames", BENCH_INT, AT(frames), 0, 10000000),
+    ITEM("bend", BENCH_REAL, AT(bend), -100, 100),
+    ITEM("twist", BENCH_REAL, AT(twist), -100, 100),
+    ITEM("squash", BENCH_REAL, AT(squash), -10, 10),
+    ITEM("kick", BENCH_REAL, AT(kick), 0, 100),
+    LIST("handles", scene.handle, scene.handle_count, BenchHandle, handle_table),
+    LIST("forces", scene.force, scene.force_count, BenchForce, force_table),
+    LIST("planes", plane, planes, SmObstacle, plane_table),
+    LIST("spheres", ball, balls, SmObstacle, ball_table),
+    LIST("boxes", box, boxes, SmObstacle, box_table),
+    LIST("capsules", capsule, capsules, SmObstacle, capsule_table),
+    {0},
+};
+
+void bench_scene_init(BenchScene *scene)
+{
+    memset(scene, 0, sizeof *scene);
+    strcpy(scene->engine, "fastlsm");
+    scene->params.w = 2;
+    scene->params.h = 0.01;
+    scene->params.damping_every = 1;
+    scene->instances = 1;
+    scene->spacing = 1.5;
+    scene->steps_per_frame = 4;
+    scene->frames = 100;
+}
+
+static SmCode add_obstacles(BenchScene *scene, const SmObstacle *items, int count,
+                            SmObstacleKind kind, SmError *error)
+{
+    if (scene->obstacle_count + count > BENCH_MAX)
+        return sm_fail(error, SM_INPUT, "%s: more than %d planes, spheres, boxes and capsules",
+                       scene->file, BENCH_MAX);
+    for (int i = 0; i < count; i++) {
+        SmObstacle *obstacle = &scene->obstacle[scene->obstacle_count++];
+        *obstacle = items[i];
+        obstacle->kind = kind;
+        if (kind != SM_PLANE) continue;
+        double *n = obstacle->b, length = hypot(hypot(n[0], n[1]), n[2]);
+        if (!(length > 0))
+            return sm_fail(error, SM_INPUT, "%s: plane %d needs a 'normal' that is not zero",
+                           scene->file, i + 1);
+        for (int d = 0; d < 3; d++) n[d] /= length;
+    }
+    return SM_OK;
+}
+
+static SmCode check_selection(BenchSelect *select, const char *what, int number,
+                              const BenchScene *scene, SmError *error)
+{
+    select->sphere = select->radius > 0;
+    if (select->sphere) return SM_OK;
+    for (int d = 0; d < 3; d++)
+        if (!(select->high[d] > select->low[d]))
+            return sm_fail(error, SM_INPUT,
+                           "%s: %s %d selects nothing: it needs 'box_low' below 'box_high', or "
+                           "'sphere_centre' and 'sphere_radius'",
+                           scene->file, what, number);
+    return SM_OK;
+}
+
+static SmCode check(SceneFile *read, SmError *error)
+{
+    BenchScene *scene = &read->scene;
+    if (!scene->mesh[0])
+        return sm_fail(error, SM_INPUT, "%s: no 'mesh': give \"shape:NAME\" or a mesh file's path",
+                       scene->file);
+    if ((scene->voxel.particles > 0) == (scene->voxel.cell > 0))
+        return sm_fail(error, SM_INPUT, "%s: give either 'particles' or 'cell'", scene->file);
+    SmCode code = SM_OK;
+    for (int i = 0; i < scene->handle_count && !code; i++) {
+        BenchHandle *handle = &scene->handle[i];
+        code = check_selection(&handle->select, "handle", i + 1, scene, error);
+        double length = hypot(hypot(handle->axis[0], handle->axis[1]), handle->axis[2]);
+        bool turns = handle->rate != 0 || (handle->amplitude != 0 && handle->period > 0);
+        if (!code && turns && !(length > 0))
+            code = sm_fail(error, SM_INPUT, "%s: handle %d turns but has no 'axis'", scene->file,
+                           i + 1);
+        for (int d = 0; d < 3 && length > 0; d++) handle->axis[d] /= length;
+    }
+    for (int i = 0; i < scene->force_count && !code; i++)
+        code = check_selection(&scene->force[i].select, "force", i + 1, scene, error);
+    if (!code) code = add_obstacles(scene, read->plane, read->planes, SM_PLANE, error);
+    if (!code) code = add_obstacles(scene, read->ball, read->balls, SM_SPHERE, error);
+    if (!code) code = add_obstacles(scene, read->box, read->boxes, SM_BOX, error);
+    if (!code) code = add_obstacles(scene, read->capsule, read->capsules, SM_CAPSULE, error);
+    return code;
+}
+
+/* libconfig would open other files for @include, and would stop at a zero byte. */
+static SmCode check_text(const char *text, size_t size, const char *file, SmError *error)
+{
+    if (size > SCENE_BYTES)
+        return sm_fail(error, SM_INPUT, "%s: not a scene file: over %d bytes", file, SCENE_BYTES);
+    int line = 1;
+    for (size_t i = 0; i < size; i++) {
+        if (text[i] == '\0')
+            return sm_fail(error, SM_INPUT, "%s:%d: not a scene file: a zero byte", file, line);
+        if (text[i] == '@' && size - i >= 8 && !memcmp(text + i, "@include", 8))
+            return sm_fail(error, SM_INPUT, "%s:%d: '@include' is not supported: copy the text in",
+                           file, line);
+        line += text[i] == '\n';
+    }
+    return SM_OK;
+}
+
+/* "dir/penguin.cfg" names the scene "penguin". */
+static void name_scene(BenchScene *scene, const char *file)
+{
+    const char *slash = strrchr(file, '/');
+    snprintf(scene->file, sizeof scene->file, "%s", file);
+    snprintf(scene->name, sizeof scene->name, "%.*s", BENCH_NAME - 1, slash ? slash + 1 : file);
+    char *dot = strrchr(scene->name, '.');
+    if (dot && dot != scene->name) *dot = '\0';
+}
+
+static SmCode not_parsed(const config_t *config, const char *file, SmError *error)
+{
+    const char *text = config_error_text(config);
+    const char *remedy = strstr(text, "mismatched")
+                             ? "write all numbers of a [ ] with a decimal point, or use ( )"
+                             : "settings look like: name = value;";
+    return sm_fail(error, SM_INPUT, "%s:%d: %s; %s", file, config_error_line(config), text, remedy);
+}
+
+SmCode bench_scene_parse(const char *text, size_t size, const char *file, BenchScene *scene,
+                         SmError *error)
+{
+    SmCode code = check_text(text, size, file, error);
+    if (code) return code;
+    char *copy = sm_alloc(size + 1, 1);
+    memcpy(copy, text, size);
+    SceneFile *read = sm_alloc(1, sizeof *read);
+    bench_scene_init(&read->scene);
+    name_scene(&read->scene, file);
+    config_t config;
+    config_init(&config);
+    if (config_read_string(&config, copy))
+        code = bench_settings_read(config_root_setting(&config), scene_table, read, file, error);
+    else
+        code = not_parsed(&config, file, error);
+    config_destroy(&config);
+    if (!code) code = check(read, error);
+    if (!code) *scene = read->scene;
+    free(read);
+    free(copy);
+    return code;
+}
+
+/* The file's text, at most a byte more than a scene may have; NULL and `error` on failure. */
+static char *read_all(const char *path, size_t *size, SmError *error)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        sm_fail(error, SM_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+        return NULL;
+    }
+    char *text = sm_alloc(SCENE_BYTES + 1, 1);
+    *size = fread(text, 1, SCENE_BYTES + 1, file);
+    if (ferror(file)) {
+        sm_fail(error, SM_INPUT, "%s: cannot be read: %s", path, strerror(errno));
+        free(text);
+        text = NULL;
+    }
+    fclose(file);
+    return text;
+}
+
+/* A mesh or mass path in a scene file is relative to that file. */
+static SmCode resolve(char path[BENCH_PATH], const char *file, SmError *error)
+{
+    const char *slash = strrchr(file, '/');
+    if (!slash || !path[0] || path[0] == '/' || !strncmp(path, "shape:", 6)) return SM_OK;
+    char joined[2 * BENCH_PATH];
+    snprintf(joined, sizeof joined, "%.*s/%s", (int)(slash - file), file, path);
+    if (strlen(joined) >= BENCH_PATH)
+        return sm_fail(error, SM_INPUT, "%s: the path '%.100s' is too long", file, path);
+    strcpy(path, joined);
+    return SM_OK;
+}
+
+SmCode bench_scene_read(const char *path, BenchScene *scene, SmError *error)
+{
+    size_t size = 0;
+    if (strlen(path) >= BENCH_PATH)
+        return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", path);
+    char *text = read_all(path, &size, error);
+    if (!text) return SM_INPUT;
+    SmCode code = bench_scene_parse(text, size, path, scene, error);
+    free(text);
+    if (!code) code = resolve(scene->mesh, path, error);
+    if (!code) code = resolve(scene->vertex_mass, path, error);
+    return code;
+}
+
+const char *bench_scene_text(const char *name, size_t *size)
+{
+    for (const BenchBuiltin *scene = bench_builtin; scene->name; scene++)
+        if (!strcmp(scene->name, name)) {
+            if (size) *size = scene->size;
+            return scene->text;
+        }
+    return NULL;
+}
+
+SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *error)
+{
+    size_t size, length = strlen(name_or_path);
+    const char *text = bench_scene_text(name_or_path, &size);
+    if (text) {
+        char file[BENCH_NAME + 8];
+        snprintf(file, sizeof file, "%s.cfg", name_or_path);
+        return bench_scene_parse(text, size, file, scene, error);
+    }
+    bool path =
+        strchr(name_or_path, '/') || (length > 4 && !strcmp(name_or_path + length - 4, ".cfg"));
+    if (path) return bench_scene_read(name_or_path, scene, error);
+    return sm_fail(error, SM_USAGE,
+                   "'%.100s' is neither a built-in scene (list them with 'shapebench scenes') nor "
+                   "a scene file NAME.cfg",
+                   name_or_path);
+}
+
+const char *const *bench_scene_names(void)
+{
+    static const char *names[BUILTIN_MAX + 1];
+    for (int i = 0; i < BUILTIN_MAX && bench_builtin[i].name; i++) names[i] = bench_builtin[i].name;
+    return names;
+}

@@ -1,0 +1,187 @@
+#include "table.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "report.h"
+
+const char *const bench_format_names[] = {"text", "markdown", "csv", "latex", "json", NULL};
+
+enum { COLUMNS = 17 };
+
+static const char *const column_names[COLUMNS] = {
+    "paper",
+    "scene",
+    "engine",
+    "particles",
+    "regions",
+    "w",
+    "epsilon",
+    "fast_sum_ms",
+    "shape_matching_ms",
+    "polar_ms",
+    "damping_ms",
+    "other_ms",
+    "total_ms",
+    "ns_per_particle_step",
+    "paper_total_ms",
+    "ratio",
+    "valid",
+};
+
+/* A value of one of three kinds: text, a whole number, or a number. */
+typedef struct {
+    const char *text;
+    long whole;
+    double number;                                  /* NaN: not given */
+    enum { TEXT, WHOLE, NUMBER, TIME, VALID } kind; /* TIME: not for invalid rows */
+} Cell;
+
+static void fill_cells(const BenchRow *row, Cell cell[COLUMNS])
+{
+    Cell *c = cell;
+    *c++ = (Cell){.kind = TEXT, .text = row->paper};
+    *c++ = (Cell){.kind = TEXT, .text = row->scene};
+    *c++ = (Cell){.kind = TEXT, .text = row->engine};
+    *c++ = (Cell){.kind = WHOLE, .whole = row->particles};
+    *c++ = (Cell){.kind = WHOLE, .whole = row->regions};
+    *c++ = (Cell){.kind = WHOLE, .whole = row->w};
+    *c++ = (Cell){.kind = NUMBER, .number = row->epsilon};
+    for (int s = 0; s < SM_STAGES; s++) *c++ = (Cell){.kind = TIME, .number = row->stage_ms[s]};
+    *c++ = (Cell){.kind = TIME, .number = row->total_ms};
+    *c++ = (Cell){.kind = TIME, .number = row->ns_per_particle_step};
+    *c++ = (Cell){.kind = NUMBER, .number = row->paper_total_ms};
+    *c++ = (Cell){.kind = TIME, .number = row->paper_total_ms / row->total_ms};
+    *c++ = (Cell){.kind = VALID, .whole = row->valid};
+}
+
+/* Quoted where it must be, with quotes doubled. */
+static void csv_text(FILE *file, const char *text)
+{
+    if (!text[strcspn(text, ",\"\r\n")]) {
+        fputs(text, file);
+        return;
+    }
+    fputc('"', file);
+    for (; *text; text++) {
+        if (*text == '"') fputc('"', file);
+        fputc(*text, file);
+    }
+    fputc('"', file);
+}
+
+static void csv_cell(FILE *file, const Cell *cell, bool valid)
+{
+    if (cell->kind == TEXT)
+        csv_text(file, cell->text);
+    else if (cell->kind == WHOLE)
+        fprintf(file, "%ld", cell->whole);
+    else if (cell->kind == VALID || (cell->kind == TIME && !valid))
+        fputs(valid ? "VALID" : "INVALID", file);
+    else if (isfinite(cell->number))
+        fprintf(file, "%.9g", cell->number);
+}
+
+static void write_csv(FILE *file, const BenchRow *rows, int count)
+{
+    for (int c = 0; c < COLUMNS; c++) fprintf(file, "%s%s", c ? "," : "", column_names[c]);
+    fputc('\n', file);
+    for (int r = 0; r < count; r++) {
+        Cell cell[COLUMNS];
+        fill_cells(&rows[r], cell);
+        for (int c = 0; c < COLUMNS; c++) {
+            if (c) fputc(',', file);
+            csv_cell(file, &cell[c], rows[r].valid);
+        }
+        fputc('\n', file);
+    }
+}
+
+/* A string that may hold bytes that are no UTF-8 (a command line): those become '?'. */
+static json_t *json_text(const char *text)
+{
+    json_t *value = json_string(text);
+    if (value) return value;
+    char copy[1024];
+    size_t i = 0;
+    for (; text[i] && i < sizeof copy - 1; i++)
+        copy[i] = (unsigned char)text[i] < 128 ? text[i] : '?';
+    copy[i] = '\0';
+    return json_string(copy);
+}
+
+static json_t *json_cell(const Cell *cell, bool valid)
+{
+    if (cell->kind == TEXT) return json_text(cell->text);
+    if (cell->kind == WHOLE) return json_integer(cell->whole);
+    if (cell->kind == VALID) return json_boolean(valid);
+    if ((cell->kind == TIME && !valid) || !isfinite(cell->number)) return json_null();
+    return json_real(cell->number);
+}
+
+static json_t *json_environment(const BenchMachine *machine)
+{
+    const struct {
+        const char *name, *text;
+    } strings[] = {
+        {"version", machine->version},   {"git_commit", machine->git_commit},
+        {"compiler", machine->compiler}, {"flags", machine->flags},
+        {"cpu", machine->cpu},           {"governor", machine->governor},
+        {"kernel", machine->kernel},     {"libraries", machine->libraries},
+        {"hostname", machine->hostname}, {"utc", machine->utc},
+        {"command", machine->command},
+    };
+    json_t *object = json_object();
+    for (size_t i = 0; i < sizeof strings / sizeof strings[0]; i++)
+        json_object_set_new(object, strings[i].name, json_text(strings[i].text));
+    json_object_set_new(object, "git_dirty", json_boolean(machine->git_dirty));
+    json_object_set_new(object, "l1_bytes", json_integer(machine->l1_bytes));
+    json_object_set_new(object, "l2_bytes", json_integer(machine->l2_bytes));
+    json_object_set_new(object, "l3_bytes", json_integer(machine->l3_bytes));
+    json_object_set_new(object, "cores", json_integer(machine->cores));
+    json_object_set_new(object, "threads", json_integer(machine->threads));
+    return object;
+}
+
+static void write_json(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine)
+{
+    json_t *list = json_array();
+    for (int r = 0; r < count; r++) {
+        Cell cell[COLUMNS];
+        fill_cells(&rows[r], cell);
+        json_t *object = json_object();
+        for (int c = 0; c < COLUMNS; c++)
+            json_object_set_new(object, column_names[c], json_cell(&cell[c], rows[r].valid));
+        json_array_append_new(list, object);
+    }
+    json_t *root = json_object();
+    json_object_set_new(root, "rows", list);
+    json_object_set_new(root, "environment", json_environment(machine));
+    json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    fputc('\n', file);
+    json_decref(root);
+}
+
+void bench_table_write(FILE *file, BenchFormat format, const BenchRow *rows, int count,
+                       const BenchMachine *machine)
+{
+    switch (format) {
+    case BENCH_AS_TEXT:
+        bench_report_text(file, rows, count, machine);
+        break;
+    case BENCH_AS_MARKDOWN:
+        bench_report_markdown(file, rows, count);
+        break;
+    case BENCH_AS_LATEX:
+        bench_report_latex(file, rows, count);
+        break;
+    case BENCH_AS_CSV:
+        write_csv(file, rows, count);
+        break;
+    case BENCH_AS_JSON:
+        write_json(file, rows, count, machine);
+        break;
+    }
+}

@@ -1,0 +1,264 @@
+/* The program as a user runs it: exit codes, single lines, files. */
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+static char folder[] = "/tmp/test_command_XXXXXX";
+
+typedef struct {
+    int code; /* exit code, or 1000 + signal */
+    char out[65536], err[4096];
+} Result;
+
+static void slurp(const char *name, char *text, size_t room)
+{
+    FILE *file = fopen(name, "r");
+    size_t size = file ? fread(text, 1, room - 1, file) : 0;
+    text[size] = '\0';
+    if (file) fclose(file);
+}
+
+/* Runs "shapebench ARGUMENTS" by a shell in the test's folder. */
+static void run(const char *arguments, Result *result)
+{
+    char command[2048];
+    snprintf(command, sizeof command, "cd %s && '%s/shapebench' %s >out 2>err", folder, BINARY_DIR,
+             arguments);
+    int status = system(command);
+    result->code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    char path[64];
+    snprintf(path, sizeof path, "%s/out", folder);
+    slurp(path, result->out, sizeof result->out);
+    snprintf(path, sizeof path, "%s/err", folder);
+    slurp(path, result->err, sizeof result->err);
+}
+
+static bool there(const char *name)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return access(path, F_OK) == 0;
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    if (!mkdtemp(folder)) return -1;
+    char path[64];
+    snprintf(path, sizeof path, "%s/bad.cfg", folder);
+    FILE *file = fopen(path, "w");
+    fputs("mesh = \"shape:block\";\nparticles = 64;\ndamping_k = 1;\n", file);
+    fclose(file);
+    snprintf(path, sizeof path, "%s/tiny.cfg", folder);
+    file = fopen(path, "w");
+    fputs("mesh = \"shape:block\"; particles = 64; w = 1; engine = \"brute\"; bend = 0.3;\n"
+          "frames = 3; steps_per_frame = 2;\n",
+          file);
+    fclose(file);
+    snprintf(path, sizeof path, "%s/noise.obj", folder);
+    file = fopen(path, "w");
+    fputs("no mesh at all\n", file);
+    fclose(file);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    char command[64];
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    return system(command);
+}
+
+static void mistakes_are_one_line_and_an_exit_code(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *arguments;
+        int code;
+        const char *wanted;
+    } cases[] = {
+        {"--frobnicate", 2, "frobnicate"},
+        {"frobnicate", 2, "unknown command 'frobnicate'"},
+        {"run", 2, "which scene or mesh?"},
+        {"run tiny.cfg --frobnicate", 2, "frobnicate"},
+        {"run tiny.cfg --w 0", 2, "--w: '0' is not a whole number from 1 to 64"},
+        {"run tiny.cfg --w 2x", 2, "--w: '2x'"},
+        {"run tiny.cfg --damping 1.5", 2, "--damping: '1.5' is not a number from 0 to 1"},
+        {"run tiny.cfg --damping nan", 2, "--damping: 'nan'"},
+        {"run tiny.cfg --gravity 1,2", 2, "--gravity: '1,2' is not three numbers x,y,z"},
+        {"run tiny.cfg --summation slow", 2, "not one of fast, bars, naive"},
+        {"run tiny.cfg --w", 2, "requires an argument"},
+        {"run tiny.cfg tiny.cfg", 2, "one scene or mesh only"},
+        {"run tiny.cfg --particles 100 --cell 0.1", 2, "either --particles or --cell"},
+        {"run tiny.cfg --engine warp", 2, "no engine 'warp'; there are: "},
+        {"run no-such-scene", 2, "shapebench scenes"},
+        {"run bad.cfg", 3, "bad.cfg:3: unknown setting 'damping_k'; known: "},
+        {"run missing.cfg", 3, "missing.cfg: cannot be opened"},
+        {"run missing.obj", 3, "missing.obj"},
+        {"run noise.obj", 3, "noise.obj"},
+        {"run tiny.cfg -o no/such/folder.vtkhdf", 4, "no/such/folder.vtkhdf"},
+        {"run tiny.cfg --mesh penguin", 2, "--mesh: 'penguin' is not NAME=FILE"},
+        {"run tiny.cfg --mesh x=y", 2, "'x' is not a built-in scene"},
+        {"info", 2, "which MESH?"},
+        {"info missing.obj", 3, "missing.obj"},
+        {"info --format xml a.obj", 2, "'xml' is not one of text, json"},
+        {"scenes no-such", 2, "'no-such' is not a built-in scene"},
+        {"scenes --write-mesh a.obj", 2, "which shape?"},
+        {"scenes penguin --write-mesh /no/such/a.obj", 4, "/no/such/a.obj"},
+        {"tables --repeats 0", 2, "--repeats: '0'"},
+        {"tables --paper unknown", 2, "no table of 'unknown'"},
+        {"tables --format pdf", 2, "'pdf' is not one of text, markdown, csv, latex, json"},
+        {"tables penguin", 2, "what is 'penguin'?"},
+        {"tables --threads -1", 2, "--threads: '-1'"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        Result result;
+        run(cases[i].arguments, &result);
+        char *newline = strchr(result.err, '\n');
+        bool one_line = newline && !newline[1];
+        if (result.code != cases[i].code || !one_line || !strstr(result.err, cases[i].wanted))
+            fail_msg("shapebench %s: exit code %d (wanted %d), standard error:\n%s",
+                     cases[i].arguments, result.code, cases[i].code, result.err);
+        assert_memory_equal(result.err, "shapebench", 10);
+        assert_string_equal(result.out, "");
+    }
+}
+
+static void help_is_everywhere(void **state)
+{
+    (void)state;
+    static const char *const commands[] = {"", "run", "tables", "info", "scenes"};
+    for (int i = 0; i < 5; i++) {
+        char arguments[64];
+        Result result;
+        snprintf(arguments, sizeof arguments, "%s --help", commands[i]);
+        run(arguments, &result);
+        assert_int_equal(result.code, 0);
+        assert_string_equal(result.err, "");
+        assert_non_null(strstr(result.out, "Usage: shapebench"));
+        assert_non_null(strstr(result.out, "Exit codes: 0 done;"));
+        if (i) assert_non_null(strstr(result.out, "--threads"));
+    }
+    Result result;
+    run("--version", &result);
+    assert_int_equal(result.code, 0);
+    assert_memory_equal(result.out, "shapebench ", 11);
+}
+
+static void a_scene_can_be_copied_and_run(void **state)
+{
+    (void)state;
+    Result result;
+    run("scenes", &result);
+    assert_non_null(strstr(result.out, "penguin"));
+    run("scenes block", &result);
+    assert_int_equal(result.code, 0);
+    char path[64];
+    snprintf(path, sizeof path, "%s/mine.cfg", folder);
+    FILE *file = fopen(path, "w");
+    fputs(result.out, file);
+    fclose(file);
+    run("run mine.cfg --engine brute --particles 64 --frames 2", &result);
+    if (result.code) fail_msg("%s", result.err);
+    assert_string_equal(result.err, ""); /* no progress where there is no terminal */
+    assert_non_null(strstr(result.out, "mine: brute, double precision: 64 particles"));
+    assert_non_null(strstr(result.out, "deviation: goals within"));
+    assert_true(there("mine.vtkhdf") && there("mine.vtkhdf.xdmf"));
+}
+
+static void a_mesh_alone_can_be_run(void **state)
+{
+    (void)state;
+    Result result;
+    run("scenes block --write-mesh block.obj", &result);
+    assert_int_equal(result.code, 0);
+    run("info block.obj --format json", &result);
+    assert_int_equal(result.code, 0);
+    json_t *list = json_loads(result.out, 0, NULL);
+    json_t *mesh = json_array_get(list, 0);
+    assert_true(json_is_true(json_object_get(mesh, "watertight")));
+    assert_true(json_is_true(json_object_get(mesh, "solid")));
+    assert_int_equal(json_integer_value(json_object_get(mesh, "open_edges")), 0);
+    json_decref(list);
+    run("info block.obj missing.obj", &result);
+    assert_int_equal(result.code, 3);
+    assert_non_null(strstr(result.out, "watertight    yes"));
+    assert_non_null(strstr(result.out, "solid         yes"));
+    run("run block.obj --engine brute --particles 100 --w 1 --frames 2 -o out.vtkhdf", &result);
+    if (result.code) fail_msg("%s", result.err);
+    assert_true(there("out.vtkhdf"));
+    run("run block.obj --engine brute --particles 100 --frames 1 --no-output", &result);
+    assert_int_equal(result.code, 0);
+    assert_false(there("block.vtkhdf"));
+}
+
+static void tables_measure_a_scene(void **state)
+{
+    (void)state;
+    Result result;
+    run("tables --scene tiny.cfg --repeats 3 --block 1 --format csv -o rows.h5", &result);
+    if (result.code) fail_msg("%s", result.err);
+    assert_string_equal(result.err, "");
+    assert_memory_equal(result.out, "paper,scene,engine,particles,", 29);
+    assert_non_null(strstr(result.out, "\n,tiny,brute,64,"));
+    assert_non_null(strstr(result.out, ",VALID\n"));
+    assert_true(there("rows.h5"));
+}
+
+static void a_full_disk_is_an_error(void **state)
+{
+    (void)state;
+    char command[512];
+    snprintf(command, sizeof command, "'%s/shapebench' scenes penguin >/dev/full 2>%s/err",
+             BINARY_DIR, folder);
+    int status = system(command);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 4);
+}
+
+/* Interrupted in mid-run, the program leaves no file of its own. */
+static void an_interrupt_leaves_nothing(void **state)
+{
+    (void)state;
+    pid_t child = fork();
+    if (child == 0) {
+        if (chdir(folder) || !freopen("err", "w", stderr)) _exit(99);
+        execl(BINARY_DIR "/shapebench", "shapebench", "run", "tiny.cfg", "--frames", "10000000",
+              "-o", "long.vtkhdf", (char *)NULL);
+        _exit(99);
+    }
+    usleep(400000);
+    kill(child, SIGINT);
+    int status;
+    waitpid(child, &status, 0);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
+    char command[96];
+    snprintf(command, sizeof command, "ls %s | grep -q long", folder);
+    assert_int_not_equal(system(command), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mistakes_are_one_line_and_an_exit_code),
+        cmocka_unit_test(help_is_everywhere),
+        cmocka_unit_test(a_scene_can_be_copied_and_run),
+        cmocka_unit_test(a_mesh_alone_can_be_run),
+        cmocka_unit_test(tables_measure_a_scene),
+        cmocka_unit_test(a_full_disk_is_an_error),
+        cmocka_unit_test(an_interrupt_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,118 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../reference/brute.h"
+#include "measure.h"
+#include "runner.h"
+
+static const char text[] = "mesh = \"shape:block\"; particles = 64; w = 1; damping = 0.2;\n"
+                           "bend = 0.5; twist = 0.5; kick = 0.05;";
+
+static SmCode measure(const SmEngineType *type, BenchRow *row)
+{
+    BenchScene scene;
+    SmMesh mesh;
+    BenchBody body;
+    SmError error;
+    if (bench_scene_parse(text, strlen(text), "tiny.cfg", &scene, &error))
+        fail_msg("%s", error.text);
+    if (bench_mesh_of_scene(&scene, NULL, &mesh, &error)) fail_msg("%s", error.text);
+    if (bench_body_create(&scene, &mesh, &body, &error)) fail_msg("%s", error.text);
+    BenchMeasureParams params = {.repeats = 5, .block_seconds = 0.002, .threads = 1, .seed = 3};
+    SmCode code = bench_measure(&scene, &body, type, &params, row, &error);
+    bench_body_free(&body);
+    return code;
+}
+
+static void a_right_engine_is_valid_and_timed(void **state)
+{
+    (void)state;
+    BenchRow row;
+    assert_int_equal(measure(&ref_brute_engine, &row), SM_OK);
+    if (!row.valid) fail_msg("%s", row.reason);
+    assert_int_equal(row.particles, 64);
+    assert_int_equal(row.repeats, 5);
+    assert_true(row.goal_error <= 1e-10 && row.momentum_error <= 1e-12);
+    assert_true(row.total_low_ms > 0 && row.total_low_ms <= row.total_ms);
+    assert_true(row.total_ms <= row.total_high_ms);
+    double sum = 0;
+    for (int s = 0; s < SM_STAGES; s++) sum += row.stage_ms[s];
+    assert_true(fabs(sum - row.total_ms) <= 1e-9 * row.total_ms); /* stages add up to the step */
+    assert_true(row.stage_ms[SM_POLAR] > 0 && row.stage_ms[SM_DAMPING] > 0);
+    assert_true(fabs(row.ns_per_particle_step - 1e6 * row.total_ms / 64) <
+                1e-6 * row.total_ms * 1e6);
+    for (int r = 0; r < row.repeats; r++) assert_true(row.total[r] > 0);
+    bench_row_free(&row);
+}
+
+/* The brute engine with a goal that is off: what `wrong` does to it. */
+static enum { SHIFT_ALL, SHIFT_ONE, POISON } wrong;
+static SmEngine *watched;
+
+static void wrong_get(SmEngine *engine, SmField field, double (*values)[3])
+{
+    ref_brute_engine.get(engine, field, values);
+    if (field != SM_GOAL) return;
+    SmCounts counts;
+    ref_brute_engine.count(engine, &counts);
+    watched = engine;
+    double cell = 0.2 / 3;
+    for (long i = 0; i < counts.particles && wrong == SHIFT_ALL; i++) values[i][0] += 1e-3 * cell;
+    if (wrong == SHIFT_ONE) values[11][1] += 1e-3 * cell;
+    if (wrong == POISON) values[11][2] = NAN;
+}
+
+static void a_wrong_engine_is_invalid(void **state)
+{
+    (void)state;
+    SmEngineType type = ref_brute_engine;
+    type.get = wrong_get;
+    static const char *const reasons[] = {"cells from brute force", "cells from brute force",
+                                          "not finite"};
+    for (int w = SHIFT_ALL; w <= POISON; w++) {
+        BenchRow row;
+        wrong = w;
+        watched = NULL;
+        assert_int_equal(measure(&type, &row), SM_OK);
+        assert_non_null(watched);
+        assert_false(row.valid);
+        if (!strstr(row.reason, reasons[w])) fail_msg("%s", row.reason);
+        if (wrong != POISON) assert_true(row.goal_error > 5e-4 && row.goal_error < 2e-3);
+        bench_row_free(&row);
+    }
+}
+
+static void wrong_count(SmEngine *engine, SmCounts *counts)
+{
+    ref_brute_engine.count(engine, counts);
+    counts->regions -= 1;
+}
+
+static void a_wrong_count_of_regions_is_invalid(void **state)
+{
+    (void)state;
+    SmEngineType type = ref_brute_engine;
+    type.count = wrong_count;
+    BenchRow row;
+    assert_int_equal(measure(&type, &row), SM_OK);
+    assert_false(row.valid);
+    assert_non_null(strstr(row.reason, "unique regions"));
+    bench_row_free(&row);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_right_engine_is_valid_and_timed),
+        cmocka_unit_test(a_wrong_engine_is_invalid),
+        cmocka_unit_test(a_wrong_count_of_regions_is_invalid),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,176 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+#include "table.h"
+
+static const char header[] =
+    "paper,scene,engine,particles,regions,w,epsilon,fast_sum_ms,shape_matching_ms,polar_ms,"
+    "damping_ms,other_ms,total_ms,ns_per_particle_step,paper_total_ms,ratio,valid\n";
+
+/* A valid row of the paper's penguin and an invalid one without a paper. */
+static void make_rows(BenchRow rows[2])
+{
+    memset(rows, 0, 2 * sizeof *rows);
+    rows[0] = (BenchRow){.particles = 150,
+                         .regions = 130,
+                         .w = 2,
+                         .valid = true,
+                         .total_ms = 0.014,
+                         .total_low_ms = 0.013,
+                         .total_high_ms = 0.015,
+                         .repeats = 15,
+                         .steps = 64,
+                         .ns_per_particle_step = 93.25,
+                         .paper_total_ms = 0.28,
+                         .stage_ms = {0.002, 0.003, 0.004, 0.0, 0.005},
+                         .goal_tolerance = 5e-5};
+    strcpy(rows[0].paper, "fastlsm");
+    strcpy(rows[0].paper_row, "penguin");
+    strcpy(rows[0].scene, "penguin");
+    rows[1] = rows[0];
+    rows[1].valid = false;
+    rows[1].total_ms = 777.125; /* must not be seen anywhere */
+    for (int s = 0; s < SM_STAGES; s++) rows[1].stage_ms[s] = 777.125;
+    rows[1].ns_per_particle_step = 777.125;
+    rows[1].paper_total_ms = NAN;
+    rows[1].paper[0] = rows[1].paper_row[0] = '\0';
+    strcpy(rows[1].scene, "a_b,\"c\"&50%|x");
+    strcpy(rows[1].reason, "goals are off");
+    for (int r = 0; r < 2; r++) strcpy(rows[r].engine, "fastlsm");
+}
+
+static char *print(BenchFormat format)
+{
+    BenchRow rows[2];
+    BenchMachine machine = {.threads = 1, .cores = 2};
+    strcpy(machine.cpu, "Test CPU");
+    strcpy(machine.command, "run \xff");
+    make_rows(rows);
+    char *text;
+    size_t size;
+    FILE *file = open_memstream(&text, &size);
+    bench_table_write(file, format, rows, 2, &machine);
+    fclose(file);
+    return text;
+}
+
+static void csv_is_the_stable_interface(void **state)
+{
+    (void)state;
+    char *text = print(BENCH_AS_CSV);
+    char wanted[1024];
+    snprintf(wanted, sizeof wanted, "%s%s%s", header,
+             "fastlsm,penguin,fastlsm,150,130,2,0,0.002,0.003,0.004,0,0.005,0.014,93.25,0.28,20,"
+             "VALID\n",
+             ",\"a_b,\"\"c\"\"&50%|x\",fastlsm,150,130,2,0,INVALID,INVALID,INVALID,INVALID,INVALID,"
+             "INVALID,INVALID,,INVALID,INVALID\n");
+    assert_string_equal(text, wanted);
+    free(text);
+}
+
+static void json_has_the_same_columns(void **state)
+{
+    (void)state;
+    char *text = print(BENCH_AS_JSON);
+    json_t *root = json_loads(text, 0, NULL);
+    assert_non_null(root);
+    json_t *rows = json_object_get(root, "rows"),
+           *environment = json_object_get(root, "environment");
+    assert_int_equal(json_object_size(root), 2);
+    assert_int_equal(json_array_size(rows), 2);
+    char names[1024] = "";
+    const char *name;
+    json_t *value;
+    json_object_foreach(json_array_get(rows, 0), name, value) snprintf(
+        names + strlen(names), sizeof names - strlen(names), "%s%s", names[0] ? "," : "", name);
+    strcat(names, "\n");
+    assert_string_equal(names, header);
+    json_t *good = json_array_get(rows, 0), *bad = json_array_get(rows, 1);
+    assert_true(json_is_true(json_object_get(good, "valid")));
+    assert_true(json_is_false(json_object_get(bad, "valid")));
+    assert_true(fabs(json_real_value(json_object_get(good, "ratio")) - 20) < 1e-9);
+    static const char *const times[] = {
+        "fast_sum_ms", "shape_matching_ms",    "polar_ms", "damping_ms",    "other_ms",
+        "total_ms",    "ns_per_particle_step", "ratio",    "paper_total_ms"};
+    for (int i = 0; i < 9; i++) assert_true(json_is_null(json_object_get(bad, times[i])));
+    assert_string_equal(json_string_value(json_object_get(environment, "cpu")), "Test CPU");
+    assert_string_equal(json_string_value(json_object_get(environment, "command")), "run ?");
+    json_decref(root);
+    free(text);
+}
+
+static void an_invalid_row_never_shows_a_time(void **state)
+{
+    (void)state;
+    for (BenchFormat format = BENCH_AS_TEXT; format <= BENCH_AS_JSON; format++) {
+        char *text = print(format);
+        assert_null(strstr(text, "777"));
+        if (format != BENCH_AS_JSON) assert_non_null(strstr(text, "INVALID"));
+        free(text);
+    }
+}
+
+static void text_sets_the_paper_beside_the_measured(void **state)
+{
+    (void)state;
+    char *text = print(BENCH_AS_TEXT);
+    static const char *const wanted[] = {"penguin",
+                                         "  paper",
+                                         "0.00200 (14%)",
+                                         "0.0140",
+                                         "20.0x",
+                                         "93.2",
+                                         "0.280",
+                                         "1867",
+                                         "  difference",
+                                         "+0.0%",
+                                         "VALID: goals within",
+                                         "INVALID: goals are off"};
+    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++)
+        if (!strstr(text, wanted[i])) fail_msg("no \"%s\" in:\n%s", wanted[i], text);
+    /* Aligned: every measured line's verdict starts at the heading's column. */
+    char *heading = strstr(text, "scene ");
+    long column = strstr(heading, "check") - heading;
+    char *line = strstr(text, "\npenguin ") + 1;
+    assert_memory_equal(line + column, "VALID\n", 6);
+    free(text);
+}
+
+static void markdown_and_latex_escape(void **state)
+{
+    (void)state;
+    char *text = print(BENCH_AS_MARKDOWN);
+    assert_non_null(strstr(text, "| a_b,\"c\"&50%\\|x | 150 |"));
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
+        int bars = 0;
+        for (char *c = line; *c; c++) bars += *c == '|' && (c == line || c[-1] != '\\');
+        assert_int_equal(bars, 14);
+    }
+    free(text);
+    text = print(BENCH_AS_LATEX);
+    assert_non_null(strstr(text, "\na\\_b,\"c\"\\&50\\%|x & 150 & 130 & 2 & INVALID &"));
+    assert_non_null(strstr(text, "0.00200 (14\\%)"));
+    assert_non_null(strstr(text, "\\end{tabular}"));
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(csv_is_the_stable_interface),
+        cmocka_unit_test(json_has_the_same_columns),
+        cmocka_unit_test(an_invalid_row_never_shows_a_time),
+        cmocka_unit_test(text_sets_the_paper_beside_the_measured),
+        cmocka_unit_test(markdown_and_latex_escape),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
