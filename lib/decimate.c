@@ -197,7 +197,7 @@ static bool moves_well(const Collapse *c, int u, int v, const double x[3])
         double old = sqrt(dot(before, before)), new = sqrt(dot(after, after));
         double flat = 0.05 * dot(side, side); /* a sliver's normal says nothing */
         if (old > flat && dot(before, after) < 0.2 * old * new) return false;
-        if (new < flat && new < old) return false;
+        if (new < flat &&new < old) return false;
     }
     return true;
 }
@@ -225,8 +225,10 @@ static void merge(Collapse *c, int u, int v, const double x[3])
                 continue;
             }
             t[corner % 3] = u;
-            if (tail < 0) joined = corner;
-            else c->next[tail] = corner;
+            if (tail < 0)
+                joined = corner;
+            else
+                c->next[tail] = corner;
             tail = corner;
         }
     }

@@ -44,14 +44,21 @@ void sm_implicit_free(SmImplicit *implicit)
     memset(implicit, 0, sizeof *implicit);
 }
 
-static double length2(double a, double b) { return sqrt(a * a + b * b); }
+static double length2(double a, double b)
+{
+    return sqrt(a * a + b * b);
+}
 
-static double length3(double a, double b, double c) { return sqrt(a * a + b * b + c * c); }
+static double length3(double a, double b, double c)
+{
+    return sqrt(a * a + b * b + c * c);
+}
 
 /* Signed distance to an ellipse (n = 2) or ellipsoid (n = 3) with radii r: the nearest point is
  * r_i^2 q_i / (t + r_i^2) for the largest root t of sum (r_i q_i / (t + r_i^2))^2 = 1 (D. Eberly,
- * "Distance from a point to an ellipse"). That function is convex and falls, so Newton's method from
- * the left never passes the root. Planes of symmetry, where it may have no root, are kept off. */
+ * "Distance from a point to an ellipse"). That function is convex and falls, so Newton's method
+ * from the left never passes the root. Planes of symmetry, where it may have no root, are kept off.
+ */
 static double ellipsoid(int n, const double *p, const double *r)
 {
     double q[3], t = -HUGE_VAL, inside = -1, d2 = 0;

@@ -21,15 +21,15 @@ typedef enum {
 
 typedef struct {
     SmPrimitiveKind kind;
-    int cut;           /* 1: taken away instead of added */
-    double blend;      /* rounding of the seam, length */
+    int cut;      /* 1: taken away instead of added */
+    double blend; /* rounding of the seam, length */
     double centre[3];
-    double tip[3];     /* SM_CONE only */
+    double tip[3]; /* SM_CONE only */
     double size[3];
-    int chain;         /* neighbours of one chain other than 0 are joined sharply, then blended once;
-                          they share blend and cut */
-    double rounding;   /* of the edges of bricks and drums */
-    double bend[2];    /* SM_PETAL: along x and along z, 1/length */
+    int chain;       /* neighbours of one chain other than 0 are joined sharply, then blended once;
+                        they share blend and cut */
+    double rounding; /* of the edges of bricks and drums */
+    double bend[2];  /* SM_PETAL: along x and along z, 1/length */
     double axis[3][3]; /* rows: the local axes x, y, z */
 } SmPrimitive;
 

@@ -19,9 +19,9 @@ typedef struct {
     const SmImplicit *implicit;
     double low[3], cell;
     int n[3];
-    float *value;    /* [nodes], 0: not sampled, far from the surface */
-    int *vertex;     /* [nodes] first vertex on the edges that the node owns */
-    uint16_t *mask;  /* [nodes] which of those cross the surface */
+    float *value;   /* [nodes], 0: not sampled, far from the surface */
+    int *vertex;    /* [nodes] first vertex on the edges that the node owns */
+    uint16_t *mask; /* [nodes] which of those cross the surface */
     Leaf *leaf;
     int leaf_count, leaf_room;
     int *pool, pool_count, pool_room;
@@ -199,7 +199,7 @@ static int edge_vertex(const Lattice *g, long node, int e)
 /* A tetrahedron: nodes 0 and 1 are cube centres, 2 and 3 corners, right-handed. */
 typedef struct {
     long node[4];
-    int ring_axis;  /* edge 2-3 is owned by node 2 or, if ring_back, by node 3 */
+    int ring_axis; /* edge 2-3 is owned by node 2 or, if ring_back, by node 3 */
     int ring_back;
     int centre_axis;
     int diagonal[2][2]; /* number of the edge from centre 0, 1 to corner 2, 3 */
@@ -227,10 +227,10 @@ static double gap(const SmMesh *mesh, int a, int b)
 }
 
 /* Even orders of a tetrahedron's nodes with the inside ones (bits of the index) first. */
-static const int inside_first[16][4] = {
-    {0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 3, 2}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 3, 1},
-    {1, 2, 0, 3}, {0, 1, 2, 3}, {3, 0, 2, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 3, 1, 2},
-    {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 3, 2, 0}, {0, 1, 2, 3}};
+static const int inside_first[16][4] = {{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 3, 2}, {0, 1, 2, 3},
+                                        {2, 0, 1, 3}, {0, 2, 3, 1}, {1, 2, 0, 3}, {0, 1, 2, 3},
+                                        {3, 0, 2, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 3, 1, 2},
+                                        {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 3, 2, 0}, {0, 1, 2, 3}};
 
 static void march(const Lattice *g, const Tetrahedron *t, SmMesh *mesh)
 {

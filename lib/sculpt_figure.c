@@ -16,8 +16,8 @@ static void penguin_face(SmImplicit *solid)
 {
     sm_sculpt_eggs(solid, (SmPoint){0.075, 0.835, 0.120}, (SmPoint){0.082, 0.100, 0.080}, 0.03);
     sm_sculpt_eggs(solid, (SmPoint){0.066, 0.855, 0.188}, (SmPoint){0.040, 0.052, 0.024}, 0.006);
-    SmPrimitive rim = sm_primitive(SM_RING, 0.004, (double[]){0.066, 0.855, 0.196},
-                                   (double[]){0.044, 0.006, 0});
+    SmPrimitive rim =
+        sm_primitive(SM_RING, 0.004, (double[]){0.066, 0.855, 0.196}, (double[]){0.044, 0.006, 0});
     rim.cut = 1;
     sm_primitive_turn(&rim, 0, 1.45);
     sm_sculpt_pair(solid, &rim);
@@ -81,7 +81,8 @@ static void infant_head(SmImplicit *solid)
                    0.0028, 0.0028, 0.003, 1);
     for (int side = -1; side <= 1; side += 2) /* closed lids */
         sm_sculpt_tube(solid, 3,
-                       (SmPoint[]){{side * 0.020, 0.481, 0.096}, {side * 0.038, 0.4765, 0.0985},
+                       (SmPoint[]){{side * 0.020, 0.481, 0.096},
+                                   {side * 0.038, 0.4765, 0.0985},
                                    {side * 0.056, 0.482, 0.089}},
                        0.0022, 0.0022, 0.002, 1);
     SmPrimitive ear = sm_primitive(SM_ELLIPSOID, 0.006, (double[]){0.103, 0.468, 0.0},
@@ -92,13 +93,17 @@ static void infant_head(SmImplicit *solid)
                        (double[]){0.006, 0.013, 0.008});
     ear.cut = 1;
     sm_sculpt_pair(solid, &ear);
-    sm_sculpt_tube(solid, 4, (SmPoint[]){{0, 0.593, 0.02}, {0.012, 0.606, 0.035}, {0.005, 0.607, 0.055}, {-0.012, 0.597, 0.052}},
-                   0.010, 0.005, 0.006, 0); /* curl */
+    sm_sculpt_tube(
+        solid, 4,
+        (SmPoint[]){
+            {0, 0.593, 0.02}, {0.012, 0.606, 0.035}, {0.005, 0.607, 0.055}, {-0.012, 0.597, 0.052}},
+        0.010, 0.005, 0.006, 0); /* curl */
 }
 
 static void infant_arms(SmImplicit *solid)
 {
-    SmPoint shoulder = {0.072, 0.362, -0.002}, elbow = {0.142, 0.312, 0.004}, wrist = {0.2, 0.292, 0.034};
+    SmPoint shoulder = {0.072, 0.362, -0.002}, elbow = {0.142, 0.312, 0.004},
+            wrist = {0.2, 0.292, 0.034};
     sm_sculpt_limbs(solid, shoulder, elbow, 0.035, 0.030, 0.025);
     sm_sculpt_limbs(solid, elbow, wrist, 0.031, 0.020, 0.006);
     sm_sculpt_eggs(solid, (SmPoint){0.222, 0.286, 0.045}, (SmPoint){0.024, 0.014, 0.022}, 0.008);
@@ -133,14 +138,15 @@ void sm_sculpt_infant(SmImplicit *solid)
     sm_sculpt_egg(solid, (SmPoint){0, 0.265, 0.014}, (SmPoint){0.086, 0.085, 0.076}, 0.05);
     sm_sculpt_limb(solid, (SmPoint){0, 0.37, 0}, (SmPoint){0, 0.42, 0}, 0.042, 0.040, 0.02);
     infant_head(solid);
-    sm_sculpt_egg(solid, (SmPoint){0, 0.195, 0.0}, (SmPoint){0.098, 0.058, 0.082}, 0.006); /* nappy */
+    sm_sculpt_egg(solid, (SmPoint){0, 0.195, 0.0}, (SmPoint){0.098, 0.058, 0.082},
+                  0.006); /* nappy */
     sm_sculpt_eggs(solid, (SmPoint){0.036, 0.19, -0.045}, (SmPoint){0.05, 0.048, 0.05}, 0.015);
     SmPrimitive navel = sm_primitive(SM_ELLIPSOID, 0.008, (double[]){0, 0.272, 0.092},
                                      (double[]){0.006, 0.006, 0.008});
     navel.cut = 1;
     sm_implicit_add(solid, &navel);
-    SmPrimitive band = sm_primitive(SM_RING, 0.006, (double[]){0, 0.236, 0.008},
-                                    (double[]){0.083, 0.0075, 0});
+    SmPrimitive band =
+        sm_primitive(SM_RING, 0.006, (double[]){0, 0.236, 0.008}, (double[]){0.083, 0.0075, 0});
     sm_implicit_add(solid, &band);
     infant_arms(solid);
     infant_legs(solid);

@@ -22,8 +22,8 @@ static void finger(SmImplicit *solid, SmPoint root, double length, double spread
 
 void sm_sculpt_hand(SmImplicit *solid)
 {
-    SmPrimitive palm = sm_primitive(SM_BRICK, 0, (double[]){0.001, 0.078, 0},
-                                    (double[]){0.041, 0.041, 0.0125});
+    SmPrimitive palm =
+        sm_primitive(SM_BRICK, 0, (double[]){0.001, 0.078, 0}, (double[]){0.041, 0.041, 0.0125});
     palm.rounding = 0.012;
     sm_implicit_add(solid, &palm);
     SmPrimitive wrist = sm_primitive(SM_BRICK, 0.025, (double[]){0.0, 0.025, -0.001},
@@ -66,16 +66,17 @@ void sm_sculpt_liver(SmImplicit *solid)
     sm_primitive_turn(&left, 2, -0.08);
     sm_implicit_add(solid, &left);
     /* The flat underside looks down, back and to the small lobe: it leaves a wedge. */
-    SmPrimitive under = sm_primitive(SM_BRICK, 0.008, (double[]){0.064, -0.196, -0.064},
-                                     (double[]){0.3, 0.2, 0.3});
+    SmPrimitive under =
+        sm_primitive(SM_BRICK, 0.008, (double[]){0.064, -0.196, -0.064}, (double[]){0.3, 0.2, 0.3});
     under.cut = 1;
     sm_primitive_turn(&under, 0, 0.478);
     sm_primitive_turn(&under, 2, 0.442);
     sm_implicit_add(solid, &under);
     /* The groove of the ligament between the lobes, to a notch in the lower border. */
-    static const SmPoint ligament[3] = {{0.016, 0.07, 0.2}, {0.019, 0.035, 0.2}, {0.016, -0.02, 0.2}};
+    static const SmPoint ligament[3] = {
+        {0.016, 0.07, 0.2}, {0.019, 0.035, 0.2}, {0.016, -0.02, 0.2}};
     int base = solid->count;
     sm_sculpt_relief(solid, base, 3, ligament, (SmPoint){0, 0, -0.2}, 0.004, 0.008, 1);
-    sm_sculpt_limb(solid, (SmPoint){-0.034, -0.066, 0.036}, (SmPoint){-0.010, -0.022, 0.012}, 0.0125,
-                   0.008, 0.004); /* gall bladder */
+    sm_sculpt_limb(solid, (SmPoint){-0.034, -0.066, 0.036}, (SmPoint){-0.010, -0.022, 0.012},
+                   0.0125, 0.008, 0.004); /* gall bladder */
 }
