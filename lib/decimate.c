@@ -182,8 +182,20 @@ static bool linked_well(const Collapse *c, int u, int v)
     return common == 2;
 }
 
-/* Whether the triangles of u that stay (those without v) keep their sides when u moves to x. */
-static bool moves_well(const Collapse *c, int u, int v, const double x[3])
+/* Adds the area vectors of the triangles around v to `sum`. */
+static void add_normal(const Collapse *c, int v, double sum[3])
+{
+    for (int corner = c->head[v]; corner >= 0; corner = c->next[corner]) {
+        const int *t = c->mesh->triangle[corner / 3];
+        double n[3];
+        area_vector(c->mesh->position[t[0]], c->mesh->position[t[1]], c->mesh->position[t[2]], n);
+        for (int i = 0; i < 3; i++) sum[i] += n[i];
+    }
+}
+
+/* Whether the triangles of u that stay (those without v) keep their sides when u moves to x. A
+ * sliver's own normal says nothing: it has to fall in with `normal`, that of the neighbourhood. */
+static bool moves_well(const Collapse *c, int u, int v, const double x[3], const double normal[3])
 {
     const SmMesh *m = c->mesh;
     for (int corner = c->head[u]; corner >= 0; corner = c->next[corner]) {
@@ -195,11 +207,29 @@ static bool moves_well(const Collapse *c, int u, int v, const double x[3])
         area_vector(x, m->position[a], m->position[b], after);
         subtract(m->position[a], m->position[b], side);
         double old = sqrt(dot(before, before)), new = sqrt(dot(after, after));
-        double flat = 0.05 * dot(side, side); /* a sliver's normal says nothing */
-        if (old > flat && dot(before, after) < 0.2 * old * new) return false;
-        if (new < flat &&new < old) return false;
+        double flat = 0.05 * dot(side, side);
+        const double *reference = old > flat ? before : normal;
+        if (dot(reference, after) < 0.2 * sqrt(dot(reference, reference)) * new) return false;
+        if (new < flat &&new <= old) return false;
     }
     return true;
+}
+
+/* Finds a place for the merged vertex that turns no triangle over: the best one, the middle, or an
+ * end. */
+static bool place_merged(const Collapse *c, int u, int v, double x[3])
+{
+    const double *p = c->mesh->position[u], *q = c->mesh->position[v];
+    double normal[3] = {0, 0, 0};
+    add_normal(c, u, normal);
+    add_normal(c, v, normal);
+    collapse_point(c, u, v, x);
+    for (int attempt = 0; attempt < 4; attempt++) {
+        if (moves_well(c, u, v, x, normal) && moves_well(c, v, u, x, normal)) return true;
+        for (int i = 0; i < 3; i++)
+            x[i] = attempt == 0 ? 0.5 * (p[i] + q[i]) : attempt == 1 ? p[i] : q[i];
+    }
+    return false;
 }
 
 static void merge(Collapse *c, int u, int v, const double x[3])
@@ -247,9 +277,7 @@ static void collapse_until(Collapse *c, long live, long wanted)
         Candidate e = heap_pop(c);
         double x[3];
         if (c->version[e.u] != e.u_version || c->version[e.v] != e.v_version) continue;
-        if (!linked_well(c, e.u, e.v)) continue;
-        collapse_point(c, e.u, e.v, x);
-        if (!moves_well(c, e.u, e.v, x) || !moves_well(c, e.v, e.u, x)) continue;
+        if (!linked_well(c, e.u, e.v) || !place_merged(c, e.u, e.v, x)) continue;
         merge(c, e.u, e.v, x);
         live -= 2;
         int ring[RING], count = neighbours(c, e.u, ring);
