@@ -75,7 +75,6 @@ static void infant_head(SmImplicit *solid)
     sm_sculpt_eggs(solid, (SmPoint){0.037, 0.484, 0.083}, (SmPoint){0.019, 0.016, 0.016}, 0.003);
     sm_sculpt_egg(solid, (SmPoint){0, 0.462, 0.103}, (SmPoint){0.013, 0.012, 0.014}, 0.008);
     sm_sculpt_eggs(solid, (SmPoint){0.01, 0.459, 0.101}, (SmPoint){0.007, 0.006, 0.008}, 0.004);
-    sm_sculpt_egg(solid, (SmPoint){0, 0.4365, 0.092}, (SmPoint){0.021, 0.012, 0.012}, 0.012);
     sm_sculpt_tube(solid, 3,
                    (SmPoint[]){{0.021, 0.4395, 0.098}, {0, 0.4345, 0.107}, {-0.021, 0.4395, 0.098}},
                    0.0028, 0.0028, 0.003, 1);

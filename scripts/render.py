@@ -10,7 +10,6 @@ import sys
 
 
 def fail(text, code):
-    sys.exit_code = code
     print(f"render.py: {text}", file=sys.stderr)
     sys.exit(code)
 
@@ -68,6 +67,8 @@ def read_trajectory(path, frame):
             if not -len(offsets) <= frame < len(offsets):
                 fail(f"{path}: has {len(offsets)} frames, no frame {frame}", 2)
             first, count = int(offsets[frame]), int(root["NumberOfPoints"][0])
+        elif frame not in (0, -1):
+            fail(f"{path}: has one frame, no frame {frame}", 2)
         corners = cells["Connectivity"][: int(cells["NumberOfConnectivityIds"][0])]
         if len(corners) % 3:
             fail(f"{path}: its cells are not all triangles", 3)
@@ -77,6 +78,7 @@ def read_trajectory(path, frame):
 def read(path, frame):
     import vtk
 
+    vtk.vtkObject.GlobalWarningDisplayOff()
     if not os.path.isfile(path):
         fail(f"{path}: no such file", 3)
     ending = os.path.splitext(path)[1].lower()
@@ -91,9 +93,14 @@ def read(path, frame):
     reader = readers[ending]()
     reader.SetFileName(path)
     reader.Update()
-    if reader.GetOutput().GetNumberOfPoints() == 0:
-        fail(f"{path}: holds no mesh", 3)
-    return reader.GetOutput()
+    triangles = vtk.vtkTriangleFilter()
+    triangles.SetInputConnection(reader.GetOutputPort())
+    triangles.PassLinesOff()
+    triangles.PassVertsOff()
+    triangles.Update()
+    if triangles.GetOutput().GetNumberOfPolys() == 0:
+        fail(f"{path}: holds no faces", 3)
+    return triangles.GetOutput()
 
 
 def surface_actor(data, edges):
@@ -185,7 +192,7 @@ def occlusion(renderer, span):
     pass_ = vtk.vtkSSAOPass()
     pass_.SetRadius(0.06 * span)
     pass_.SetBias(0.01 * span)
-    pass_.SetKernelSize(96)
+    pass_.SetKernelSize(64)
     pass_.BlurOn()
     pass_.SetDelegatePass(vtk.vtkRenderStepsPass())
     renderer.SetPass(pass_)
