@@ -1,0 +1,275 @@
+#!/usr/bin/python3
+"""Pictures of meshes and trajectories: OBJ, PLY, STL, and the VTKHDF files that `shapebench run` writes.
+
+Needs Debian's python3-vtk9, python3-h5py and, on a machine without a display, xvfb."""
+
+import argparse
+import os
+import shutil
+import sys
+
+
+def fail(text, code):
+    print(f"render.py: {text}", file=sys.stderr)
+    sys.exit(code)
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("file", nargs="+", help="several files are shown side by side, with names")
+    parser.add_argument("-o", "--output", default="render.png", help="PNG to write (%(default)s)")
+    parser.add_argument("--view", choices=["front", "side", "back", "three-quarter"], default="three-quarter")
+    parser.add_argument("--size", default="640x640", metavar="WxH", help="of each panel (%(default)s)")
+    parser.add_argument("--frame", type=int, default=-1, metavar="N", help="of a trajectory; negative: from the end")
+    parser.add_argument("--columns", type=int, default=4, help="panels in a row, at most (%(default)s)")
+    parser.add_argument("--edges", action="store_true", help="show the triangles")
+    parser.add_argument("--no-names", action="store_true", help="leave the file names out")
+    return parser.parse_args()
+
+
+def with_display():
+    """VTK draws through OpenGL, which wants an X server: lend it a virtual one."""
+    if os.environ.get("DISPLAY"):
+        return
+    if not shutil.which("xvfb-run"):
+        fail("no display and no xvfb-run: apt-get install xvfb xauth", 3)
+    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 64x64x24", sys.executable] + sys.argv)
+
+
+def polydata(points, triangles):
+    import numpy
+    import vtk
+    from vtk.util import numpy_support
+
+    cells = numpy.empty((len(triangles), 4), dtype=numpy.int64)
+    cells[:, 0] = 3
+    cells[:, 1:] = triangles
+    array = vtk.vtkCellArray()
+    array.SetCells(len(triangles), numpy_support.numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
+    data = vtk.vtkPolyData()
+    data.SetPoints(vtk.vtkPoints())
+    data.GetPoints().SetData(numpy_support.numpy_to_vtk(numpy.ascontiguousarray(points), deep=True))
+    data.SetPolys(array)
+    return data
+
+
+def read_trajectory(path, frame):
+    """One frame of a VTKHDF file, UnstructuredGrid or PolyData, with or without steps."""
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        root = file["VTKHDF"]
+        kind = root.attrs["Type"].decode() if isinstance(root.attrs["Type"], bytes) else root.attrs["Type"]
+        cells = root["Polygons"] if kind == "PolyData" else root
+        first, count = 0, len(root["Points"])
+        if "Steps" in root:
+            offsets = root["Steps/PointOffsets"][()].ravel()
+            if not -len(offsets) <= frame < len(offsets):
+                fail(f"{path}: has {len(offsets)} frames, no frame {frame}", 2)
+            first, count = int(offsets[frame]), int(root["NumberOfPoints"][0])
+        elif frame not in (0, -1):
+            fail(f"{path}: has one frame, no frame {frame}", 2)
+        corners = cells["Connectivity"][: int(cells["NumberOfConnectivityIds"][0])]
+        if len(corners) % 3:
+            fail(f"{path}: its cells are not all triangles", 3)
+        return polydata(root["Points"][first : first + count], corners.reshape(-1, 3))
+
+
+def read(path, frame):
+    import vtk
+
+    vtk.vtkObject.GlobalWarningDisplayOff()
+    if not os.path.isfile(path):
+        fail(f"{path}: no such file", 3)
+    ending = os.path.splitext(path)[1].lower()
+    if ending in (".vtkhdf", ".h5", ".hdf5", ".hdf"):
+        try:
+            return read_trajectory(path, frame)
+        except (KeyError, OSError) as error:
+            fail(f"{path}: not a VTKHDF trajectory: {error}", 3)
+    readers = {".obj": vtk.vtkOBJReader, ".ply": vtk.vtkPLYReader, ".stl": vtk.vtkSTLReader}
+    if ending not in readers:
+        fail(f"{path}: reads .obj, .ply, .stl and .vtkhdf or .h5, not {ending or 'files without an ending'}", 3)
+    reader = readers[ending]()
+    reader.SetFileName(path)
+    reader.Update()
+    triangles = vtk.vtkTriangleFilter()
+    triangles.SetInputConnection(reader.GetOutputPort())
+    triangles.PassLinesOff()
+    triangles.PassVertsOff()
+    triangles.Update()
+    if triangles.GetOutput().GetNumberOfPolys() == 0:
+        fail(f"{path}: holds no faces", 3)
+    return triangles.GetOutput()
+
+
+def surface_actor(data, edges):
+    import vtk
+
+    normals = vtk.vtkPolyDataNormals()
+    normals.SetInputData(data)
+    normals.SetFeatureAngle(50)
+    normals.SplittingOn()
+    normals.ConsistencyOff()
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputConnection(normals.GetOutputPort())
+    mapper.ScalarVisibilityOff()
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.SetColor(0.55, 0.72, 0.90)
+    look.SetAmbient(0.16)
+    look.SetDiffuse(0.85)
+    look.SetSpecular(0.18)
+    look.SetSpecularPower(25)
+    if edges:
+        look.EdgeVisibilityOn()
+        look.SetEdgeColor(0.12, 0.18, 0.25)
+    return actor
+
+
+def ground_actor(bounds, span):
+    """A large disc under the mesh that takes its shadow."""
+    import vtk
+
+    disc = vtk.vtkRegularPolygonSource()
+    disc.SetNumberOfSides(96)
+    disc.SetRadius(4 * span)
+    disc.SetNormal(0, 1, 0)
+    disc.SetCenter((bounds[0] + bounds[1]) / 2, bounds[2] - 0.002 * span, (bounds[4] + bounds[5]) / 2)
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputConnection(disc.GetOutputPort())
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.SetColor(0.97, 0.97, 0.98)
+    look.SetAmbient(1.0)
+    look.SetDiffuse(0.0)  # its own colour but for the contact shadow
+    return actor
+
+
+def light(renderer, centre, span, direction, strength):
+    import vtk
+
+    lamp = vtk.vtkLight()
+    lamp.SetLightTypeToSceneLight()
+    lamp.SetFocalPoint(*centre)
+    lamp.SetPosition(*[c + 6 * span * d for c, d in zip(centre, direction)])
+    lamp.SetIntensity(strength)
+    renderer.AddLight(lamp)
+
+
+def stage(renderer, data, view):
+    """Camera and lights: key from the upper left of the camera, fill from its right."""
+    import math
+
+    bounds = data.GetBounds()
+    centre = [(bounds[i] + bounds[i + 1]) / 2 for i in (0, 2, 4)]
+    span = math.dist(bounds[::2], bounds[1::2])
+    turn = {"front": 0.0, "side": 90.0, "back": 180.0, "three-quarter": 35.0}[view]
+    a, rise = math.radians(turn), math.radians(12)
+
+    def around(angle, up):
+        return (math.sin(a + angle) * math.cos(up), math.sin(up), math.cos(a + angle) * math.cos(up))
+
+    camera = renderer.GetActiveCamera()
+    camera.SetFocalPoint(*centre)
+    camera.SetPosition(*[c + 5 * span * d for c, d in zip(centre, around(0, rise))])
+    camera.SetViewUp(0, 1, 0)
+    camera.SetViewAngle(2 * math.degrees(math.atan(0.53 / 5)))
+    renderer.AddActor(ground_actor(bounds, span))
+    light(renderer, centre, span, around(-0.7, 0.85), 0.85)
+    light(renderer, centre, span, around(0.9, 0.35), 0.32)
+    light(renderer, centre, span, around(0, 0.1), 0.16)
+    renderer.ResetCameraClippingRange()
+    return span
+
+
+def occlusion(renderer, span):
+    """Darkens folds and contacts (screen-space ambient occlusion)."""
+    import vtk
+
+    pass_ = vtk.vtkSSAOPass()
+    pass_.SetRadius(0.06 * span)
+    pass_.SetBias(0.01 * span)
+    pass_.SetKernelSize(64)
+    pass_.BlurOn()
+    pass_.SetDelegatePass(vtk.vtkRenderStepsPass())
+    renderer.SetPass(pass_)
+
+
+def panel(data, options, size):
+    """An image of one mesh, drawn at twice the size and averaged."""
+    import numpy
+    import vtk
+    from vtk.util import numpy_support
+
+    renderer = vtk.vtkRenderer()
+    renderer.SetBackground(0.97, 0.97, 0.98)
+    renderer.AutomaticLightCreationOff()
+    renderer.AddActor(surface_actor(data, options.edges))
+    occlusion(renderer, stage(renderer, data, options.view))
+    window = vtk.vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(0)
+    window.SetSize(2 * size[0], 2 * size[1])
+    window.AddRenderer(renderer)
+    window.Render()
+    grab = vtk.vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.SetInputBufferTypeToRGB()
+    grab.ReadFrontBufferOff()
+    grab.Update()
+    flat = numpy_support.vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())
+    image = flat.reshape(2 * size[1], 2 * size[0], 3)[::-1].astype(numpy.float32)
+    return image.reshape(size[1], 2, size[0], 2, 3).mean(axis=(1, 3)) / 255
+
+
+def write_sheet(panels, names, columns, output):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    height, width = panels[0].shape[:2]
+    columns = min(columns, len(panels))
+    rows = -(-len(panels) // columns)
+    label = 34 if names else 0
+    figure = pyplot.figure(figsize=(columns * width / 100, rows * (height + label) / 100), dpi=100,
+                           facecolor=(0.97, 0.97, 0.98))
+    for i, image in enumerate(panels):
+        row, column = divmod(i, columns)
+        bottom = 1 - (row * (height + label) + height) / (rows * (height + label))
+        axes = figure.add_axes((column / columns, bottom, 1 / columns, height / (rows * (height + label))))
+        axes.imshow(image, aspect="auto", interpolation="nearest")
+        axes.set_axis_off()
+        if names:
+            axes.set_title(names[i], y=-0.5 * label / height, va="center", fontsize=15, color="0.25", pad=0)
+    temporary = output + ".tmp"
+    try:
+        figure.savefig(temporary, format="png")
+        os.replace(temporary, output)
+    except OSError as error:
+        fail(f"{output}: cannot be written: {error.strerror}", 4)
+
+
+def main():
+    options = parse()
+    try:
+        size = tuple(int(part) for part in options.size.split("x"))
+        assert len(size) == 2 and 16 <= min(size) and max(size) <= 4096
+    except (ValueError, AssertionError):
+        fail(f"--size {options.size}: wants WxH, each 16 to 4096", 2)
+    with_display()
+    try:
+        import h5py, matplotlib, numpy, vtk  # noqa: F401
+    except ImportError as error:
+        fail(f"{error}: apt-get install python3-vtk9 python3-h5py python3-matplotlib", 3)
+    panels = [panel(read(path, options.frame), options, size) for path in options.file]
+    names = [os.path.splitext(os.path.basename(path))[0] for path in options.file]
+    show = len(names) > 1 and not options.no_names
+    write_sheet(panels, names if show else None, max(1, options.columns), options.output)
+
+
+if __name__ == "__main__":
+    main()
