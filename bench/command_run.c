@@ -68,7 +68,9 @@ static const struct argp_option option_list[] = {
     {"output", 'o', "FILE.vtkhdf", 0, "Trajectory (default: SCENE.vtkhdf in this folder)", 2},
     {"no-output", KEY_NO_OUTPUT, 0, 0, "Write no trajectory", 2},
     {"record", KEY_RECORD, "particles", 0,
-     "Also store the lattice, and every step's particle positions, velocities and goals", 2},
+     "Also store the lattice, and every step's particle positions, velocities and goals: 72 "
+     "bytes a particle and step",
+     2},
     {0},
 };
 

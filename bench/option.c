@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <omp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,6 +30,7 @@ static error_t parse_common(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_THREADS:
         common->threads = (int)bench_option_long(state, "--threads", text, 0, 1024);
+        if (!common->threads) common->threads = omp_get_num_procs();
         return 0;
     case KEY_SEED:
         common->seed = (unsigned long)bench_option_long(state, "--seed", text, 0, 2147483647);

@@ -12,7 +12,7 @@
 
 /* Options that every command has; the input of bench_common_argp. */
 typedef struct {
-    int threads; /* 0: all cores */
+    int threads; /* 1 or more */
     unsigned long seed;
     bool quiet;
 } BenchCommon;

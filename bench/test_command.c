@@ -216,6 +216,12 @@ static void tables_measure_a_scene(void **state)
     assert_non_null(strstr(result.out, "\n,tiny,brute,64,"));
     assert_non_null(strstr(result.out, ",VALID\n"));
     assert_true(there("rows.h5"));
+    run("tables --scene tiny.cfg --repeats 1 --block 1 --threads 0 --format json", &result);
+    json_t *root = json_loads(result.out, 0, NULL);
+    assert_non_null(root);
+    json_t *environment = json_object_get(root, "environment");
+    assert_true(json_integer_value(json_object_get(environment, "threads")) >= 1);
+    json_decref(root);
 }
 
 static void a_full_disk_is_an_error(void **state)
