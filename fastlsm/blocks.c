@@ -1,5 +1,6 @@
 #include "blocks.h"
 #include "match.h"
+#include "window.h"
 
 #include <string.h>
 
@@ -14,10 +15,10 @@ enum { UP = 12, MOST = 12 };
 typedef struct {
     long pitch; /* (width + 2) * lanes */
     int side;
-    real *above; /* [side] rows after the z stage up */
-    real *line;  /* the row after the y stage up */
-    real *solved;/* the row after `solve` */
-    real *below; /* [side] rows after the x stage down */
+    real *above;  /* [side] rows after the z stage up */
+    real *line;   /* the row after the y stage up */
+    real *solved; /* the row after `solve` */
+    real *below;  /* [side] rows after the x stage down */
 } Scratch;
 
 static Scratch scratch_of(const Lsm *lsm, int thread)
@@ -69,24 +70,6 @@ SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool damping, real 
         for (int d = 0; d < 3; d++) lanes_store(out + (F + d) * SM_LANES, moment[d]);
 }
 
-/* sum over 2w+1 places of F values `stride` apart; place c starts at in[c]. Moments of values
- * `first` .. `first` + 2 go to `moment`. */
-SM_INLINE void window_sum(const real *const *in, long stride, int w, int F, int first, vec *sum, vec *moment)
-{
-    for (int f = 0; f < F; f++) {
-        vec value = lanes_load(in[0] + f * stride);
-        sum[f] = value;
-        if (first >= 0 && f >= first && f < first + 3) moment[f - first] = -(real)w * value;
-    }
-    for (int c = 1; c <= 2 * w; c++)
-        for (int f = 0; f < F; f++) {
-            vec value = lanes_load(in[c] + f * stride);
-            sum[f] += value;
-            if (first >= 0 && f >= first && f < first + 3 && c != w)
-                moment[f - first] += (real)(c - w) * value;
-        }
-}
-
 /* Row y of the z stage up: absent blocks and rows hold zero. */
 SM_INLINE void row_z_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, int w, bool damping)
 {
@@ -102,7 +85,8 @@ SM_INLINE void row_z_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, 
         stage_z_up(lsm, next, w, damping, out);
         if (w == 1 && !lsm->box->whole[next]) /* masked: sums pass through particles only */
             for (int f = 0; f < F; f++)
-                lanes_store(out + f * SM_LANES, lanes_and(lanes_load(out + f * SM_LANES), lsm->box->site[next]));
+                lanes_store(out + f * SM_LANES,
+                            lanes_and(lanes_load(out + f * SM_LANES), lsm->box->site[next]));
         next++;
     }
 }
@@ -133,8 +117,8 @@ SM_INLINE void row_y_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int w, 
 }
 
 /* The x stage up and `solve`, into `solved`. */
-SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, const BlockRow *row, int layer, int w, bool damping,
-                         BlockSolve *solve, SmLaps *laps)
+SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, const BlockRow *row, int layer, int w,
+                         bool damping, BlockSolve *solve, SmLaps *laps)
 {
     int F = damping ? 12 : 9, out_F = damping ? 6 : 12;
     int next = row->first, last = row->first + row->count;
@@ -155,15 +139,9 @@ SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, const BlockRow *row, int la
     }
 }
 
-/* Takes the moment off the first three sums and leaves the last three out. */
-SM_INLINE void finish_down(vec *sum, const vec *moment, bool damping)
-{
-    if (damping) return;
-    for (int d = 0; d < 3; d++) sum[d] -= moment[d];
-}
-
 /* Row y of the x stage down, into the ring `below`. */
-SM_INLINE void row_x_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, int w, bool damping)
+SM_INLINE void row_x_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, int w,
+                          bool damping)
 {
     int F = damping ? 6 : 12, out_F = damping ? 6 : 9;
     real *ring = ring_row(s, s->below, y);
@@ -176,7 +154,8 @@ SM_INLINE void row_x_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int y
         }
         const real *at[LSM_MAX_SIDE];
         vec sum[MOST], moment[3];
-        for (int a = 0; a < 2 * w + 1; a++) at[a] = s->solved + (column + 1) * (long)SM_LANES + a - w;
+        for (int a = 0; a < 2 * w + 1; a++)
+            at[a] = s->solved + (column + 1) * (long)SM_LANES + a - w;
         window_sum(at, s->pitch, w, F, damping ? -1 : 9, sum, moment);
         finish_down(sum, moment, damping);
         if (w == 1 && !lsm->box->whole[next])
@@ -187,7 +166,8 @@ SM_INLINE void row_x_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int y
 }
 
 /* Row y of the y stage down, into the plane's store. */
-SM_INLINE void row_y_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int plane, int w, bool damping)
+SM_INLINE void row_y_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int plane, int w,
+                          bool damping)
 {
     int F = damping ? 6 : 9;
     const real *in[LSM_MAX_SIDE];
@@ -196,7 +176,8 @@ SM_INLINE void row_y_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int p
         real *out = lsm->box->down[plane] + (block - lsm->layer_block[plane]) * 6 * SM_LANES;
         const real *at[LSM_MAX_SIDE];
         vec sum[MOST], moment[3];
-        for (int b = 0; b < 2 * w + 1; b++) at[b] = in[b] + lsm->box->column[block] * (long)MOST * SM_LANES;
+        for (int b = 0; b < 2 * w + 1; b++)
+            at[b] = in[b] + lsm->box->column[block] * (long)MOST * SM_LANES;
         window_sum(at, SM_LANES, w, F, damping ? -1 : 6, sum, moment);
         finish_down(sum, moment, damping);
         if (w == 1 && !lsm->box->whole[block])
@@ -213,9 +194,10 @@ static const BlockRow *row_at(const Lsm *lsm, int plane, int *row, int y)
     return *row < box->plane_row[plane + 1] && box->row[*row].y == y ? &box->row[*row] : NULL;
 }
 
-/* A plane's rows as a pipeline: row y goes up along z when row y - w is solved, and comes down along
- * y when row y + w is. */
-SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, BlockSolve *solve, SmLaps *laps)
+/* A plane's rows as a pipeline: row y goes up along z when row y - w is solved, and comes down
+ * along y when row y + w is. */
+SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, BlockSolve *solve,
+                          SmLaps *laps)
 {
     Blocks *box = lsm->box;
     if (box->plane_row[plane] == box->plane_row[plane + 1]) return;
@@ -245,13 +227,23 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, 
 void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve, SmLaps *laps)
 {
     switch (lsm->w * 2 + damping) { /* constants for the usual widths */
-    case 2: plane_pass(lsm, plane, thread, 1, false, solve, laps); break;
-    case 3: plane_pass(lsm, plane, thread, 1, true, solve, laps); break;
-    case 4: plane_pass(lsm, plane, thread, 2, false, solve, laps); break;
-    case 5: plane_pass(lsm, plane, thread, 2, true, solve, laps); break;
-    default: 
-        if (damping) plane_pass(lsm, plane, thread, lsm->w, true, solve, laps);
-        else plane_pass(lsm, plane, thread, lsm->w, false, solve, laps);
+    case 2:
+        plane_pass(lsm, plane, thread, 1, false, solve, laps);
+        break;
+    case 3:
+        plane_pass(lsm, plane, thread, 1, true, solve, laps);
+        break;
+    case 4:
+        plane_pass(lsm, plane, thread, 2, false, solve, laps);
+        break;
+    case 5:
+        plane_pass(lsm, plane, thread, 2, true, solve, laps);
+        break;
+    default:
+        if (damping)
+            plane_pass(lsm, plane, thread, lsm->w, true, solve, laps);
+        else
+            plane_pass(lsm, plane, thread, lsm->w, false, solve, laps);
     }
 }
 
@@ -266,12 +258,15 @@ SM_INLINE void stage_z_down(const Lsm *lsm, int plane, long block, int w, bool d
         const real *in = lsm->box->down[z] + (along[c] - lsm->layer_block[z]) * 6 * SM_LANES;
         for (int f = 0; f < F; f++) sum[f] += lanes_load(in + f * SM_LANES);
         if (!damping && c != w)
-            for (int d = 0; d < 3; d++) sum[d] -= (real)(c - w) * lanes_load(in + (3 + d) * SM_LANES);
+            for (int d = 0; d < 3; d++)
+                sum[d] -= (real)(c - w) * lanes_load(in + (3 + d) * SM_LANES);
     }
 }
 
 void lsm_blocks_down(const Lsm *lsm, int plane, long block, bool damping, vec *sum)
 {
-    if (damping) stage_z_down(lsm, plane, block, lsm->w, true, sum);
-    else stage_z_down(lsm, plane, block, lsm->w, false, sum);
+    if (damping)
+        stage_z_down(lsm, plane, block, lsm->w, true, sum);
+    else
+        stage_z_down(lsm, plane, block, lsm->w, false, sum);
 }

@@ -1,21 +1,22 @@
 /* blocks.h - sums over regions in block form: box sums over SM_LANES lattice sites at a time.
  *
  * The moment chain of summation.h, but bars, plates and cubes are taken over every site of the box
- * around a region's centre: first along z, then y, then x on the way up, and back in the order x, y,
- * z on the way down, so that all but the last stage happens within a plane, in rows that stay in the
- * L1 cache. Empty sites hold zero. A region whose box sum is not its exact sum (a gap, a corner, a
- * broken link within its box) is summed by its lists instead, lane by lane. */
+ * around a region's centre: first along z, then y, then x on the way up, and back in the order x,
+ * y, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
+ * the L1 cache. Empty sites hold zero. A region whose box sum is not its exact sum (a gap, a
+ * corner, a broken link within its box) is summed by its lists instead, lane by lane. */
 #ifndef LSM_BLOCKS_H
 #define LSM_BLOCKS_H
 
 #include "state.h"
 
-#define lsm_blocks_build SM_NAME(lsm_blocks_build)
+#define lsm_blocks_build     SM_NAME(lsm_blocks_build)
 #define lsm_blocks_irregular SM_NAME(lsm_blocks_irregular)
-#define lsm_blocks_share SM_NAME(lsm_blocks_share)
-#define lsm_blocks_free SM_NAME(lsm_blocks_free)
-#define lsm_blocks_up SM_NAME(lsm_blocks_up)
-#define lsm_blocks_down SM_NAME(lsm_blocks_down)
+#define lsm_blocks_share     SM_NAME(lsm_blocks_share)
+#define lsm_blocks_free      SM_NAME(lsm_blocks_free)
+#define lsm_blocks_bytes     SM_NAME(lsm_blocks_bytes)
+#define lsm_blocks_up        SM_NAME(lsm_blocks_up)
+#define lsm_blocks_down      SM_NAME(lsm_blocks_down)
 
 /* A row of blocks along x. */
 typedef struct {
@@ -24,20 +25,21 @@ typedef struct {
 } BlockRow;
 
 struct Blocks {
-    int width;          /* blocks across the lattice's box along x */
-    int *column;        /* [blocks] position along x, in blocks */
-    int *plane_row;     /* [planes + 1] first row of each plane */
+    int width;      /* blocks across the lattice's box along x */
+    int *column;    /* [blocks] position along x, in blocks */
+    int *plane_row; /* [planes + 1] first row of each plane */
     BlockRow *row;
-    int *along_z;       /* [blocks][side] the block at the same place in planes z - w .. z + w; the
-                           empty block (number `blocks`) where there is none */
-    ivec *site;         /* [blocks + 1] lanes that hold a particle */
-    bool *whole;        /* [blocks] all lanes do */
-    bool *listed;       /* [blocks] lists read this block: rows of it are needed */
-    bool *mixed;        /* [blocks] lists sum some of its lanes */
-    real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until part 2 */
+    int *along_z; /* [blocks][side] the block at the same place in planes z - w .. z + w; the
+                     empty block (number `blocks`) where there is none */
+    ivec *site;   /* [blocks + 1] lanes that hold a particle */
+    bool *whole;  /* [blocks] all lanes do */
+    bool *listed; /* [blocks] lists read this block: rows of it are needed */
+    bool *mixed;  /* [blocks] lists sum some of its lanes */
+    real **down;  /* [planes] where a plane's (Q, Rz) sums are kept until part 2 */
     real *down_memory;
     int threads;
-    real **scratch;     /* [threads] rows of one plane */
+    long shared_bytes;
+    real **scratch; /* [threads] rows of one plane */
 };
 
 /* What a pass does with the 12 sums of a block's regions; it gives back 12 values to bring down
@@ -54,6 +56,8 @@ long lsm_blocks_irregular(const Lsm *lsm, bool *wanted);
 void lsm_blocks_share(Lsm *lsm);
 
 void lsm_blocks_free(Blocks *box);
+
+long lsm_blocks_bytes(const Lsm *lsm);
 
 /* Part 1 of a pass for one plane: sums up, `solve` at every block, sums down along x and y. */
 void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve, SmLaps *laps);

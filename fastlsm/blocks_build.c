@@ -64,8 +64,10 @@ static int block_at(const Lsm *lsm, const Blocks *box, int column, int y, int z)
     int low = box->plane_row[z], high = box->plane_row[z + 1];
     while (low < high) {
         int middle = (low + high) / 2;
-        if (box->row[middle].y < y) low = middle + 1;
-        else high = middle;
+        if (box->row[middle].y < y)
+            low = middle + 1;
+        else
+            high = middle;
     }
     if (low == box->plane_row[z + 1] || box->row[low].y != y) return (int)lsm->blocks;
     for (int i = 0; i < box->row[low].count; i++)
@@ -116,13 +118,15 @@ void lsm_blocks_build(Lsm *lsm)
 static uint64_t *site_bitmap(const Lsm *lsm)
 {
     const LsmLattice *l = &lsm->lattice;
-    uint64_t *bits = sm_alloc((size_t)l->size[1] * (size_t)l->size[2] * (size_t)l->words, sizeof *bits);
+    uint64_t *bits =
+        sm_alloc((size_t)l->size[1] * (size_t)l->size[2] * (size_t)l->words, sizeof *bits);
     const uint64_t lanes = ((uint64_t)1 << SM_LANES) - 1;
     for (int z = 0; z < l->size[2]; z++)
         for (int row = lsm->box->plane_row[z]; row < lsm->box->plane_row[z + 1]; row++)
             for (int i = 0; i < lsm->box->row[row].count; i++) {
                 int x = lsm->box->column[lsm->box->row[row].first + i] * SM_LANES;
-                size_t at = ((size_t)z * (size_t)l->size[1] + (size_t)lsm->box->row[row].y) * (size_t)l->words;
+                size_t at = ((size_t)z * (size_t)l->size[1] + (size_t)lsm->box->row[row].y) *
+                            (size_t)l->words;
                 bits[at + (size_t)(x >> 6)] |= lanes << (x & 63);
             }
     return bits;
@@ -182,8 +186,8 @@ static void free_shared(Blocks *box)
 }
 
 /* A plane's store is free for another plane once part 2 has passed w planes on: in the middle of a
- * thread's share planes take turns; near its ends, where part 2 waits for the other thread, each has
- * its own. */
+ * thread's share planes take turns; near its ends, where part 2 waits for the other thread, each
+ * has its own. */
 void lsm_blocks_share(Lsm *lsm)
 {
     Blocks *box = lsm->box;
@@ -208,10 +212,22 @@ void lsm_blocks_share(Lsm *lsm)
     }
     box->down = sm_alloc((size_t)planes, sizeof *box->down);
     box->down_memory = sm_alloc((size_t)stores * (size_t)most * 6 * SM_LANES, sizeof(real));
-    for (int z = 0; z < planes; z++) box->down[z] = box->down_memory + store[z] * most * 6 * SM_LANES;
+    for (int z = 0; z < planes; z++)
+        box->down[z] = box->down_memory + store[z] * most * 6 * SM_LANES;
     free(store);
     box->scratch = sm_alloc((size_t)lsm->threads, sizeof *box->scratch);
-    for (int t = 0; t < lsm->threads; t++) box->scratch[t] = sm_alloc(scratch_size(lsm), sizeof(real));
+    for (int t = 0; t < lsm->threads; t++)
+        box->scratch[t] = sm_alloc(scratch_size(lsm), sizeof(real));
+    box->shared_bytes = (stores * most * 6 * SM_LANES + lsm->threads * (long)scratch_size(lsm)) *
+                        (long)sizeof(real);
+}
+
+long lsm_blocks_bytes(const Lsm *lsm)
+{
+    long a_block =
+        (1 + lsm->side) * (long)sizeof(int) + (long)sizeof(ivec) + 3 * (long)sizeof(bool);
+    long rows = lsm->box->plane_row[lsm->layers] * (long)sizeof(BlockRow);
+    return lsm->blocks * a_block + rows + lsm->box->shared_bytes;
 }
 
 void lsm_blocks_free(Blocks *box)

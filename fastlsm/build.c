@@ -45,7 +45,8 @@ static void build_slots(Lsm *lsm)
     for (int l = 0; l < lsm->layers; l++) {
         slot = (slot + SM_LANES - 1) / SM_LANES * SM_LANES;
         lsm->layer_block[l] = slot / SM_LANES;
-        while (p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1]) lsm->slot[p++] = (int)slot++;
+        while (p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1])
+            lsm->slot[p++] = (int)slot++;
     }
     lsm->blocks = (slot + SM_LANES - 1) / SM_LANES;
     lsm->layer_block[lsm->layers] = lsm->blocks;
@@ -87,7 +88,8 @@ static void find_unique(Lsm *lsm, int *original)
     qsort(keyed, (size_t)count, sizeof *keyed, compare_keys);
     lsm->unique = l->count;
     for (long i = 1; i < count; i++)
-        if (keyed[i].key.low == keyed[i - 1].key.low && keyed[i].key.high == keyed[i - 1].key.high) {
+        if (keyed[i].key.low == keyed[i - 1].key.low &&
+            keyed[i].key.high == keyed[i - 1].key.high) {
             original[keyed[i].region] = original[keyed[i - 1].region];
             lsm->unique--;
         }
@@ -146,7 +148,11 @@ static void build_lists(Lsm *lsm)
     Blocks *box = lsm->box;
     bool *wanted = sm_alloc((size_t)n, sizeof *wanted);
     memset(wanted, 1, (size_t)n);
-    if (box) lsm_blocks_irregular(lsm, wanted);
+    if (box) {
+        lsm_blocks_irregular(lsm, wanted);
+        memset(box->mixed, 0, (size_t)lsm->blocks * sizeof(bool));
+        memset(box->listed, 0, (size_t)lsm->blocks * sizeof(bool));
+    }
     lsm_sets_build(&lsm->lattice, &lsm->interior, wanted, lsm->slot, &lsm->sets);
     free(wanted);
     lsm->block_region = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
@@ -176,7 +182,7 @@ static void build_rows(Lsm *lsm)
 
 /* Stores equal records once, so that the constants of a solid's inside stay in cache: moves the
  * different ones to the front and points `index` at them. */
-static void share_records(void *records, size_t size, long count, int *index)
+static void *share_records(void *records, size_t size, long count, int *index, long *bytes)
 {
     char *record = records;
     uint64_t mask = 63;
@@ -191,7 +197,8 @@ static void share_records(void *records, size_t size, long count, int *index)
             hash ^= hash >> 29;
         }
         uint64_t at = hash & mask;
-        while (table[at] && memcmp(record + (size_t)(table[at] - 1) * size, record + (size_t)i * size, size))
+        while (table[at] &&
+               memcmp(record + (size_t)(table[at] - 1) * size, record + (size_t)i * size, size))
             at = (at + 1) & mask;
         if (!table[at]) {
             memmove(record + (size_t)kept * size, record + (size_t)i * size, size);
@@ -200,9 +207,15 @@ static void share_records(void *records, size_t size, long count, int *index)
         index[i] = table[at] - 1;
     }
     free(table);
+    *bytes += kept * (long)size;
+    void *fitted = sm_alloc((size_t)kept, size);
+    memcpy(fitted, records, (size_t)kept * size);
+    free(records);
+    return fitted;
 }
 
-/* m~_i, 1/|R_i| of every block; then M_r and c0_r by the engine's own sums of m~ in place of m~ x. */
+/* m~_i, 1/|R_i| of every block; then M_r and c0_r by the engine's own sums of m~ in place of m~ x.
+ */
 static void build_constants(Lsm *lsm)
 {
     lsm->block_const = sm_alloc((size_t)lsm->blocks + 1, sizeof(int)); /* one for the empty block */
@@ -223,8 +236,11 @@ static void build_constants(Lsm *lsm)
     lsm->region_const = sm_alloc((size_t)lsm->tiles, sizeof(RegionConst));
     for (long tile = 0; tile < lsm->tiles; tile++) lsm->tile_const[tile] = (int)tile;
     lsm_constants(lsm);
-    share_records(lsm->particle_const, sizeof(ParticleConst), lsm->blocks + 1, lsm->block_const);
-    share_records(lsm->region_const, sizeof(RegionConst), lsm->tiles, lsm->tile_const);
+    lsm->const_bytes = 0;
+    lsm->particle_const = share_records(lsm->particle_const, sizeof(ParticleConst), lsm->blocks + 1,
+                                        lsm->block_const, &lsm->const_bytes);
+    lsm->region_const = share_records(lsm->region_const, sizeof(RegionConst), lsm->tiles,
+                                      lsm->tile_const, &lsm->const_bytes);
 }
 
 static void build_memory(Lsm *lsm)
@@ -234,21 +250,24 @@ static void build_memory(Lsm *lsm)
     lsm->last = sm_alloc(tiles * 6 * SM_LANES, sizeof(short));
     vec identity[9];
     for (int i = 0; i < 9; i++) identity[i] = lanes_set(i % 4 == 0);
-    for (long tile = 0; tile < lsm->tiles; tile++) last_store(lsm->last + tile * 6 * SM_LANES, identity);
+    for (long tile = 0; tile < lsm->tiles; tile++)
+        last_store(lsm->last + tile * 6 * SM_LANES, identity);
     lsm->sweeps = sm_alloc((size_t)lsm->layers, sizeof(double));
     if (lsm->params.polar != SM_POLAR_JACOBI) return;
     lsm->stretch = sm_alloc(tiles * 9 * SM_LANES, sizeof(float));
     for (size_t i = 0; i < tiles * 9 * SM_LANES; i++) lsm->stretch[i] = i / SM_LANES % 9 % 4 == 0;
 }
 
-void lsm_build_regions(Lsm *lsm)
+static void build_regions(Lsm *lsm)
 {
     long n = lsm->lattice.count;
     int *original = sm_alloc((size_t)n, sizeof *original);
     lsm_interior_build(&lsm->lattice, lsm->w, &lsm->interior);
     find_unique(lsm, original);
-    if (lsm->box) tile_blocks(lsm);
-    else build_tiles(lsm, original);
+    if (lsm->box)
+        tile_blocks(lsm);
+    else
+        build_tiles(lsm, original);
     free(original);
     build_lists(lsm);
     build_rows(lsm);
@@ -263,13 +282,14 @@ static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmErro
     if (voxels->particle_count < 1)
         return sm_fail(error, SM_INPUT, "the body has no material: nothing to simulate");
     if (params->w < 1 || params->w > LSM_MAX_W)
-        return sm_fail(error, SM_INPUT, "region half-width w = %d: must be 1 to %d", params->w, LSM_MAX_W);
+        return sm_fail(error, SM_INPUT, "region half-width w = %d: must be 1 to %d", params->w,
+                       LSM_MAX_W);
     if (voxels->particle_count > 500000000)
         return sm_fail(error, SM_INPUT, "%ld particles: at most 500 million; use larger cells",
                        voxels->particle_count);
     if (!(params->h > 0) || !(params->damping >= 0) || !(params->damping <= 1))
-        return sm_fail(error, SM_INPUT, "time step %g must be above 0 and damping %g in 0..1", params->h,
-                       params->damping);
+        return sm_fail(error, SM_INPUT, "time step %g must be above 0 and damping %g in 0..1",
+                       params->h, params->damping);
     return SM_OK;
 }
 
@@ -277,7 +297,6 @@ SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **out
 {
     SmCode code = check(voxels, params, error);
     if (code) return code;
-    double start = sm_now();
     Lsm *lsm = sm_alloc(1, sizeof *lsm);
     lsm->params = *params;
     lsm->w = params->w;
@@ -288,7 +307,8 @@ SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **out
     lsm->mass = sm_alloc((size_t)n, sizeof(double));
     for (long p = 0; p < n; p++) lsm->mass[p] = params->mass ? params->mass[p] : 1;
     lsm->members = sm_alloc((size_t)n, sizeof(int));
-    if (params->layout == SM_LAYOUT_BLOCKS && params->w <= SM_LANES && params->summation != SM_SUM_NAIVE) {
+    if (params->layout == SM_LAYOUT_BLOCKS && params->w <= SM_LANES &&
+        params->summation != SM_SUM_NAIVE) {
         lsm_blocks_build(lsm);
     } else {
         build_layers(lsm);
@@ -296,8 +316,7 @@ SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **out
     }
     lsm->x = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->v = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
-    lsm_build_regions(lsm);
-    lsm->build_seconds = sm_now() - start;
+    build_regions(lsm);
     *out = lsm;
     return SM_OK;
 }
@@ -317,10 +336,56 @@ static void free_regions(Lsm *lsm)
     lsm_interior_free(&lsm->interior);
     lsm_sets_free(&lsm->sets);
     free_rows(&lsm->rows);
-    void *all[] = {lsm->tile_region, lsm->tile_slot, lsm->layer_tile, lsm->copy, lsm->layer_copy,
-                   lsm->block_region, lsm->block_const, lsm->particle_const, lsm->tile_const,
-                   lsm->region_const, lsm->centre, lsm->last, lsm->sweeps, lsm->stretch};
+    void *all[] = {lsm->tile_region, lsm->tile_slot,    lsm->layer_tile,  lsm->copy,
+                   lsm->layer_copy,  lsm->block_region, lsm->block_const, lsm->particle_const,
+                   lsm->tile_const,  lsm->region_const, lsm->centre,      lsm->last,
+                   lsm->sweeps,      lsm->stretch};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+}
+
+/* The last rotation of every region, by the slot of its centre. */
+static short (*save_last(const Lsm *lsm))[6]
+{
+    short(*last)[6] = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof *last);
+    for (long s = 0; s < lsm->tiles * SM_LANES; s++)
+        for (int i = 0; i < 6 && lsm->tile_slot[s] >= 0; i++)
+            last[lsm->tile_slot[s]][i] =
+                lsm->last[(s / SM_LANES * 6 + i) * SM_LANES + s % SM_LANES];
+    for (long c = 0; c < lsm->copies; c++)
+        memcpy(last[lsm->copy[c][0]], last[lsm->copy[c][1]], sizeof *last);
+    return last;
+}
+
+void lsm_rebuild_regions(Lsm *lsm)
+{
+    short(*last)[6] = save_last(lsm);
+    free_regions(lsm);
+    build_regions(lsm);
+    for (long s = 0; s < lsm->tiles * SM_LANES; s++)
+        for (int i = 0; i < 6 && lsm->tile_slot[s] >= 0; i++)
+            lsm->last[(s / SM_LANES * 6 + i) * SM_LANES + s % SM_LANES] =
+                last[lsm->tile_slot[s]][i];
+    free(last);
+}
+
+long lsm_bytes(const Lsm *lsm)
+{
+    const LsmLattice *l = &lsm->lattice;
+    const LsmSets *sets = &lsm->sets;
+    long words = (long)l->size[1] * l->size[2] * l->words, lanes = lsm->blocks * SM_LANES,
+         real_size = sizeof(real);
+    long bytes = words * 28 + l->count * (long)(sizeof *l->coord + sizeof *l->link +
+                                                sizeof(double) + 2 * sizeof(int));
+    bytes += lanes * (9 * real_size + 2 * (long)sizeof(int)); /* x v g, slots */
+    bytes +=
+        lsm->tiles * SM_LANES * (3 * real_size + 6 * (long)sizeof(short) + 2 * (long)sizeof(int));
+    bytes += lsm->const_bytes;
+    bytes +=
+        (sets->bar_count + sets->plate_count + sets->region_count) * sets->side * (long)sizeof(int);
+    bytes += lanes * (ROW_P + ROW_T) * real_size +
+             sets->bar_count * (ROW_BAR + ROW_BAR_DOWN) * real_size +
+             sets->plate_count * (ROW_PLATE + ROW_PLATE_DOWN) * real_size;
+    return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0);
 }
 
 void lsm_free(Lsm *lsm)
@@ -328,8 +393,9 @@ void lsm_free(Lsm *lsm)
     free_regions(lsm);
     lsm_blocks_free(lsm->box);
     lsm_lattice_free(&lsm->lattice);
-    void *all[] = {lsm->mass, lsm->members, lsm->slot, lsm->particle, lsm->x, lsm->v, lsm->g,
-                   lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->held};
+    void *all[] = {
+        lsm->mass, lsm->members,     lsm->slot,        lsm->particle,     lsm->x,       lsm->v,
+        lsm->g,    lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->obstacle};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     free(lsm);
 }

@@ -1,20 +1,19 @@
 /* fastlsm.c - one step of fast lattice shape matching (Rivers and James 2007), top to bottom.
  *
- *     sums over regions   C_r, and moments about the region's centre     fast summation, section 3.1
- *     per region          c_r, A_r, polar decomposition, transform T_r   eqs. 9-11
- *     sums over particles g_i = (1/|R_i|) sum of T_r x0_i                eq. 12
- *     per particle        v, damping, x                                  eqs. 1, 14, 2
+ *     sums over regions   C_r, and moments about the region's centre     fast summation,
+ * section 3.1 per region          c_r, A_r, polar decomposition, transform T_r   eqs. 9-11 sums
+ * over particles g_i = (1/|R_i|) sum of T_r x0_i                eq. 12 per particle        v,
+ * damping, x                                  eqs. 1, 14, 2
  *
  * A step runs through the layers of the lattice as a pipeline (pipeline.h): part 0 makes bars and
  * plates, part 1 finishes the region sums, matches, and makes the adjoint's bars and plates, part 2
  * finishes goal positions and integrates. */
 #include "fastlsm.h"
 
-#include <stdlib.h>
-
 #include "blocks.h"
 #include "build.h"
 #include "match.h"
+#include "obstacle.h"
 #include "pipeline.h"
 #include "step.h"
 #include "summation.h"
@@ -98,7 +97,8 @@ static void store_transforms(Lsm *lsm, long tile, const vec q[3], const vec R[9]
     }
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
-        row[lane] = lsm->rows.transform + (slot < 0 ? lsm->blocks * SM_LANES + 1 : slot + 1) * ROW_T;
+        row[lane] =
+            lsm->rows.transform + (slot < 0 ? lsm->blocks * SM_LANES + 1 : slot + 1) * ROW_T;
     }
     lanes_to_rows(padded, row);
 }
@@ -108,7 +108,8 @@ static void copy_transforms(Lsm *lsm, int layer)
 {
     for (long i = lsm->layer_copy[layer]; i < lsm->layer_copy[layer + 1]; i++) {
         int to = lsm->copy[i][0], from = lsm->copy[i][1];
-        const int *a = lsm->lattice.coord[lsm->particle[to]], *b = lsm->lattice.coord[lsm->particle[from]];
+        const int *a = lsm->lattice.coord[lsm->particle[to]],
+                  *b = lsm->lattice.coord[lsm->particle[from]];
         real *out = lsm->rows.transform + (to + 1) * (long)ROW_T;
         const real *in = lsm->rows.transform + (from + 1) * (long)ROW_T;
         store16(out, load16(in));
@@ -118,7 +119,8 @@ static void copy_transforms(Lsm *lsm, int layer)
 }
 
 /* c_r, A_r, R_r, q_r of a tile from its sums; false when only constants were wanted. */
-static bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q[3], vec R[9], SmLaps *laps)
+static bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q[3], vec R[9],
+                       SmLaps *laps)
 {
     vec c[3], A[9];
     if (lsm->pass == PASS_CONSTANTS) {
@@ -179,7 +181,8 @@ static void match_block(Lsm *lsm, int layer, long block, const vec *sum, vec *ou
 static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     lsm->sweeps[layer] = 0;
-    if (lsm->box) lsm_blocks_up(lsm, layer, thread, false, match_block, laps);
+    if (lsm->box)
+        lsm_blocks_up(lsm, layer, thread, false, match_block, laps);
     else
         for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
             match_tile(lsm, layer, tile, laps);
@@ -228,6 +231,10 @@ static void integrate(Lsm *lsm, long block, const vec sum[3])
     store3(lsm->v + block * 3 * SM_LANES, v);
     if (lsm->damp_now) return;
     for (int d = 0; d < 3; d++) x[d] += v[d];
+    if (lsm->obstacle_count) {
+        obstacles_push(lsm, x, v);
+        store3(lsm->v + block * 3 * SM_LANES, v);
+    }
     store3(lsm->x + block * 3 * SM_LANES, x);
 }
 
@@ -246,13 +253,20 @@ static void move(Lsm *lsm, int layer, int thread, SmLaps *laps)
 
 static LsmPart *const shape_matching[3] = {bars_and_plates, match, move};
 
+void lsm_goals(Lsm *lsm)
+{
+    lsm->laps = NULL;
+    lsm->pass = PASS_GOALS;
+    lsm_pipeline(lsm, shape_matching);
+}
+
 void lsm_constants(Lsm *lsm)
 {
     lsm->pass = PASS_CONSTANTS;
     lsm_pipeline(lsm, shape_matching);
 }
 
-static void lsm_step(Lsm *lsm, SmLaps *laps)
+void lsm_step(Lsm *lsm, SmLaps *laps)
 {
     int every = lsm->params.damping_every > 0 ? lsm->params.damping_every : 1;
     lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;
@@ -263,153 +277,3 @@ static void lsm_step(Lsm *lsm, SmLaps *laps)
     lsm->steps++;
     sm_lap(laps, SM_OTHER);
 }
-
-/* engine.h's slots */
-
-static void set_rest(Lsm *lsm)
-{
-    for (long s = 0; s < lsm->blocks * SM_LANES; s++) {
-        int p = lsm->particle[s];
-        for (int d = 0; d < 3 && p >= 0; d++)
-            lsm->x[(s / SM_LANES * 3 + d) * SM_LANES + s % SM_LANES] =
-                (real)(lsm->lattice.coord[p][d] - lsm->lattice.size[d] / 2);
-    }
-    for (int d = 0; d < 3; d++)
-        lsm->origin[d] = lsm->lattice.origin[d] + lsm->cell * (lsm->lattice.size[d] / 2);
-}
-
-static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
-                            SmError *error)
-{
-    Lsm *lsm;
-    SmCode code = lsm_build(voxels, params, &lsm, error);
-    if (code) return code;
-    set_rest(lsm);
-    for (int d = 0; d < 3; d++) lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
-    *engine = (SmEngine *)lsm;
-    return SM_OK;
-}
-
-static void engine_destroy(SmEngine *engine)
-{
-    lsm_free((Lsm *)engine);
-}
-
-static void engine_step(SmEngine *engine, SmLaps *laps)
-{
-    lsm_step((Lsm *)engine, laps);
-}
-
-static void engine_goals(SmEngine *engine)
-{
-    Lsm *lsm = (Lsm *)engine;
-    if (!lsm->g) lsm->g = sm_alloc((size_t)lsm->blocks * 3 * SM_LANES, sizeof(real));
-    lsm->laps = NULL;
-    lsm->pass = PASS_GOALS;
-    lsm_pipeline(lsm, shape_matching);
-}
-
-static void engine_get(SmEngine *engine, SmField field, double (*values)[3])
-{
-    Lsm *lsm = (Lsm *)engine;
-    const real *from = field == SM_VELOCITY ? lsm->v : field == SM_GOAL ? lsm->g : lsm->x;
-    for (long p = 0; p < lsm->lattice.count; p++)
-        for (int d = 0; d < 3; d++) {
-            long s = lsm->slot[p], at = (s / SM_LANES * 3 + d) * SM_LANES + s % SM_LANES;
-            if (field == SM_REST) values[p][d] = lsm->lattice.origin[d] + lsm->cell * lsm->lattice.coord[p][d];
-            else if (field == SM_VELOCITY) values[p][d] = (double)from[at] * lsm->cell / lsm->params.h;
-            else values[p][d] = lsm->origin[d] + lsm->cell * (double)from[at];
-        }
-}
-
-/* Single precision resolves positions best near zero: the origin goes to the body's middle. */
-static void centre_on(Lsm *lsm, const double (*position)[3])
-{
-    for (int d = 0; d < 3; d++) {
-        double sum = 0;
-        for (long p = 0; p < lsm->lattice.count; p++) sum += position[p][d];
-        lsm->origin[d] = sum / (double)lsm->lattice.count;
-    }
-}
-
-static void engine_set(SmEngine *engine, SmField field, const double (*values)[3])
-{
-    Lsm *lsm = (Lsm *)engine;
-    if (field == SM_POSITION) centre_on(lsm, values);
-    real *to = field == SM_VELOCITY ? lsm->v : lsm->x;
-    for (long p = 0; p < lsm->lattice.count; p++)
-        for (int d = 0; d < 3; d++) {
-            long s = lsm->slot[p], at = (s / SM_LANES * 3 + d) * SM_LANES + s % SM_LANES;
-            to[at] = (real)(field == SM_VELOCITY ? values[p][d] * lsm->params.h / lsm->cell
-                                                 : (values[p][d] - lsm->origin[d]) / lsm->cell);
-        }
-}
-
-static void engine_push(SmEngine *engine, long count, const long *particle, const double (*impulse)[3])
-{
-    Lsm *lsm = (Lsm *)engine;
-    for (long i = 0; i < count; i++)
-        for (int d = 0; d < 3; d++) {
-            long s = lsm->slot[particle[i]], at = (s / SM_LANES * 3 + d) * SM_LANES + s % SM_LANES;
-            lsm->v[at] += (real)(impulse[i][d] / lsm->mass[particle[i]] * lsm->params.h / lsm->cell);
-        }
-}
-
-static void engine_masses(SmEngine *engine, double *mass)
-{
-    Lsm *lsm = (Lsm *)engine;
-    for (long p = 0; p < lsm->lattice.count; p++) mass[p] = lsm->mass[p];
-}
-
-static void engine_count(SmEngine *engine, SmCounts *counts)
-{
-    Lsm *lsm = (Lsm *)engine;
-    double sweeps = 0;
-    for (int l = 0; l < lsm->layers; l++) sweeps += lsm->sweeps[l];
-    *counts = (SmCounts){
-        .particles = lsm->lattice.count,
-        .regions = lsm->unique,
-        .links = lsm_lattice_links(&lsm->lattice),
-        .broken = lsm->broken,
-        .build_seconds = lsm->build_seconds,
-        .jacobi_sweeps = sweeps / (double)(lsm->lattice.count - lsm->copies),
-    };
-}
-
-static long engine_region(SmEngine *engine, long p, long *member, long room)
-{
-    Lsm *lsm = (Lsm *)engine;
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    long count = 0;
-    lsm_region_rows(&lsm->lattice, &lsm->interior, p, rows);
-    for (int row = 0; row < lsm->side * lsm->side; row++)
-        for (uint64_t rest = rows[row]; rest; rest &= rest - 1, count++) {
-            if (count >= room) continue;
-            const int *c = lsm->lattice.coord[p];
-            member[count] = lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + __builtin_ctzll(rest),
-                                             c[1] - lsm->w + row % lsm->side,
-                                             c[2] - lsm->w + row / lsm->side);
-        }
-    return count;
-}
-
-static void engine_bound(SmEngine *engine, const SmBoundary *boundary)
-{
-    ((Lsm *)engine)->boundary = *boundary;
-}
-
-const SmEngineType SM_NAME(fastlsm_engine) = {
-    .name = "fastlsm",
-    .precision = SM_REAL_BITS == 32 ? "single" : "double",
-    .create = engine_create,
-    .destroy = engine_destroy,
-    .step = engine_step,
-    .goals = engine_goals,
-    .get = engine_get,
-    .set = engine_set,
-    .push = engine_push,
-    .bound = engine_bound,
-    .masses = engine_masses,
-    .count = engine_count,
-    .region = engine_region,
-};

@@ -28,7 +28,8 @@ static long vertex_row(const SmVoxels *v, int y, int z, int words, uint64_t *row
     for (int corner = 0; corner < 4; corner++) {
         int j = y - (corner & 1), k = z - (corner >> 1);
         if (j < 0 || k < 0 || j >= v->size[1] || k >= v->size[2]) continue;
-        const uint64_t *cells = v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+        const uint64_t *cells =
+            v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
         for (int i = 0; i < words; i++) {
             uint64_t here = i < v->words ? cells[i] : 0, before = i > 0 ? cells[i - 1] : 0;
             row[i] |= here | here << 1 | before >> 63;

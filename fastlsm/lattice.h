@@ -18,13 +18,13 @@ enum {
 };
 
 typedef struct {
-    long count;        /* particles */
-    int size[3];       /* lattice vertices along x, y, z */
-    int words;         /* words in a row along x */
-    uint64_t *bits;    /* [size[2]][size[1]][words], bit set: there is a particle */
-    uint32_t *rank;    /* particles before each word */
-    int (*coord)[3];   /* [count] lattice coordinates */
-    uint32_t *link;    /* [count] bit (dz+1)*9 + (dy+1)*3 + (dx+1): linked to that neighbour */
+    long count;      /* particles */
+    int size[3];     /* lattice vertices along x, y, z */
+    int words;       /* words in a row along x */
+    uint64_t *bits;  /* [size[2]][size[1]][words], bit set: there is a particle */
+    uint32_t *rank;  /* particles before each word */
+    int (*coord)[3]; /* [count] lattice coordinates */
+    uint32_t *link;  /* [count] bit (dz+1)*9 + (dy+1)*3 + (dx+1): linked to that neighbour */
     double origin[3], cell;
 } LsmLattice;
 
@@ -41,9 +41,9 @@ void lsm_lattice_break(LsmLattice *lattice, long p, int bit);
 /* Word-parallel access: is there a particle at (x, y, z)? Its number, or -1. */
 static inline long lsm_lattice_find(const LsmLattice *l, int x, int y, int z)
 {
-    if (x < 0 || y < 0 || z < 0 || x >= l->size[0] || y >= l->size[1] || z >= l->size[2])
-        return -1;
-    size_t word = ((size_t)z * (size_t)l->size[1] + (size_t)y) * (size_t)l->words + (size_t)(x >> 6);
+    if (x < 0 || y < 0 || z < 0 || x >= l->size[0] || y >= l->size[1] || z >= l->size[2]) return -1;
+    size_t word =
+        ((size_t)z * (size_t)l->size[1] + (size_t)y) * (size_t)l->words + (size_t)(x >> 6);
     uint64_t bits = l->bits[word], bit = (uint64_t)1 << (x & 63);
     if (!(bits & bit)) return -1;
     return (long)l->rank[word] + __builtin_popcountll(bits & (bit - 1));

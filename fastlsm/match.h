@@ -1,4 +1,5 @@
-/* match.h - from region sums to region transforms, SM_LANES regions at once (fastlsm section 3.2). */
+/* match.h - from region sums to region transforms, SM_LANES regions at once (fastlsm section 3.2).
+ */
 #ifndef LSM_MATCH_H
 #define LSM_MATCH_H
 
@@ -53,12 +54,13 @@ SM_INLINE void match_moments(const vec S[12], const RegionConst *k, vec c[3], ve
 SM_INLINE void match_centre(const vec c[3], const vec R[9], const RegionConst *k, vec q[3])
 {
     for (int i = 0; i < 3; i++)
-        q[i] = c[i] - R[i * 3] * k->offset[0] - R[i * 3 + 1] * k->offset[1] - R[i * 3 + 2] * k->offset[2];
+        q[i] = c[i] - R[i * 3] * k->offset[0] - R[i * 3 + 1] * k->offset[1] -
+               R[i * 3 + 2] * k->offset[2];
 }
 
 /* Jacobi, lane by lane, as the paper does it. Returns the sweeps, summed over live lanes. */
-static __attribute__((noinline, unused)) double polar_jacobi_lanes(const vec A[9], const int *slot, short *last,
-                                                                   float *stretch, vec R[9])
+static __attribute__((noinline, unused)) double
+polar_jacobi_lanes(const vec A[9], const int *slot, short *last, float *stretch, vec R[9])
 {
     vec before[9];
     double sweeps = 0;
@@ -83,7 +85,8 @@ static __attribute__((noinline, unused)) double polar_jacobi_lanes(const vec A[9
     return sweeps;
 }
 
-/* R_r by the fast method, near the last rotation where it is not unique. `live` lanes only matter. */
+/* R_r by the fast method, near the last rotation where it is not unique. `live` lanes only matter.
+ */
 SM_INLINE void polar_fast_lanes(const vec A[9], const int *slot, short *last, vec R[9])
 {
     ivec tie = polar_quartic(A, R);

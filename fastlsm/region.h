@@ -23,7 +23,8 @@ void lsm_interior_free(LsmInterior *interior);
 
 static inline bool lsm_bit(const LsmLattice *l, const uint64_t *bitmap, const int c[3])
 {
-    size_t word = ((size_t)c[2] * (size_t)l->size[1] + (size_t)c[1]) * (size_t)l->words + (size_t)(c[0] >> 6);
+    size_t word =
+        ((size_t)c[2] * (size_t)l->size[1] + (size_t)c[1]) * (size_t)l->words + (size_t)(c[0] >> 6);
     return bitmap[word] >> (c[0] & 63) & 1;
 }
 

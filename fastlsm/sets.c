@@ -5,7 +5,7 @@
 
 /* A growing array of rows of ints, with a hash over their contents to store equal rows once. */
 typedef struct {
-    int width;      /* ints in a row: `side` places and two of key */
+    int width; /* ints in a row: `side` places and two of key */
     long count, room;
     int *row;       /* [room][width] */
     uint32_t *slot; /* [mask + 1] open addressing: row number, 0 for free */
@@ -85,8 +85,10 @@ static int add_bar(Builder *b, int x, int y, int z, uint64_t bits)
     int last = __builtin_ctzll(bits);
     for (uint64_t rest = bits; rest; rest &= rest - 1) {
         int a = __builtin_ctzll(rest);
-        if (a != last + 1 && a != last) p = lsm_lattice_find(b->lattice, x - b->w + a, y, z);
-        else p += a - last; /* particles of a run along x are numbered in a row */
+        if (a != last + 1 && a != last)
+            p = lsm_lattice_find(b->lattice, x - b->w + a, y, z);
+        else
+            p += a - last; /* particles of a run along x are numbered in a row */
         row[a] = b->slot[p] + 1;
         last = a;
     }
@@ -134,7 +136,8 @@ static void renumber_rows(int *row, long count, const int *number)
     for (long i = 0; i < count; i++) row[i] = number[row[i]];
 }
 
-static void build_regions(Builder *b, const LsmInterior *interior, const bool *wanted, LsmSets *sets)
+static void build_regions(Builder *b, const LsmInterior *interior, const bool *wanted,
+                          LsmSets *sets)
 {
     const LsmLattice *l = b->lattice;
     uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];

@@ -12,16 +12,16 @@
 #include "region.h"
 
 typedef struct {
-    int w, side;            /* side = 2w+1 */
+    int w, side;                               /* side = 2w+1 */
     long bar_count, plate_count, region_count; /* row 0 of bars and plates included */
-    int *bar;               /* [bar_count][side] 1 + particle slot */
-    int *plate;             /* [plate_count][side] bar rows */
-    int *region;            /* [region_count][side] plate rows */
-    int *region_particle;   /* [region_count] the particle at its centre, rising */
-    int planes;             /* lattice planes along z */
-    long *bar_plane;        /* [planes + 1] first bar of each plane (plane 0 starts at row 1) */
-    long *plate_plane;      /* [planes + 1] */
-    long *region_plane;     /* [planes + 1] */
+    int *bar;                                  /* [bar_count][side] 1 + particle slot */
+    int *plate;                                /* [plate_count][side] bar rows */
+    int *region;                               /* [region_count][side] plate rows */
+    int *region_particle; /* [region_count] the particle at its centre, rising */
+    int planes;           /* lattice planes along z */
+    long *bar_plane;      /* [planes + 1] first bar of each plane (plane 0 starts at row 1) */
+    long *plate_plane;    /* [planes + 1] */
+    long *region_plane;   /* [planes + 1] */
 } LsmSets;
 
 /* Lists for the regions of the particles chosen (`wanted[p]` true), which are numbered by `slot`

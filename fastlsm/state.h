@@ -1,8 +1,8 @@
 /* state.h - what a FastLSM body holds, in one precision.
  *
- * Inside, lengths are lattice cells from a movable origin and velocities are cells per step, so that
- * the kernels see the same scales for every mesh. Particles live in slots; SM_LANES slots are a
- * block, and a block's coordinates are stored as x[3][lanes]. Planes of the lattice are grouped
+ * Inside, lengths are lattice cells from a movable origin and velocities are cells per step, so
+ * that the kernels see the same scales for every mesh. Particles live in slots; SM_LANES slots are
+ * a block, and a block's coordinates are stored as x[3][lanes]. Planes of the lattice are grouped
  * into layers, the unit of the pipeline (pipeline.h).
  *
  * Sums come from two kernels. In list form (sets.h) a body's slots follow each other without holes
@@ -27,11 +27,12 @@ typedef struct {
 enum { ROW_P = 8, ROW_BAR = 12, ROW_PLATE = 12, ROW_T = 16, ROW_BAR_DOWN = 12, ROW_PLATE_DOWN = 8 };
 
 typedef struct {
-    real *p;          /* [slots + 2][ROW_P]          m~ x; damping: (omega, v_r - omega x c_r) */
-    real *bar;        /* [bars][ROW_BAR]             sums of p and of a p */
-    real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
-    real *transform;  /* [slots + 2][ROW_T]          (q_r, R z, R y, R x); damping: its 12 products */
-    real *bar_down;   /* [bars][ROW_BAR_DOWN]        adjoint */
+    real *p;     /* [slots + 2][ROW_P]          m~ x; damping: (omega, v_r - omega x c_r) */
+    real *bar;   /* [bars][ROW_BAR]             sums of p and of a p */
+    real *plate; /* [plates][ROW_PLATE]         .. and of b p */
+    real
+        *transform; /* [slots + 2][ROW_T]          (q_r, R z, R y, R x); damping: its 12 products */
+    real *bar_down; /* [bars][ROW_BAR_DOWN]        adjoint */
     real *plate_down; /* [plates][ROW_PLATE_DOWN] */
 } Rows;
 
@@ -39,6 +40,12 @@ typedef struct {
  * what empty lanes write. */
 
 typedef enum { PASS_STEP, PASS_GOALS, PASS_CONSTANTS } Pass;
+
+/* A static obstacle in cells from the home origin. */
+typedef struct {
+    SmObstacleKind kind;
+    real a[3], b[3], radius, friction;
+} Obstacle;
 
 typedef struct Blocks Blocks; /* box sums: blocks.h */
 
@@ -50,12 +57,11 @@ typedef struct Lsm {
     LsmLattice lattice;
     LsmInterior interior;
     LsmSets sets;
-    double *mass;     /* [particles] */
-    int *members;     /* [particles] |R_i| */
-    int *slot;        /* [particles] */
-    int *particle;    /* [blocks * lanes], -1 for an empty slot */
-    long unique;      /* different regions */
-    double (*pose)[4];/* initial pose of the only instance, or NULL */
+    double *mass;  /* [particles] */
+    int *members;  /* [particles] |R_i| */
+    int *slot;     /* [particles] */
+    int *particle; /* [blocks * lanes], -1 for an empty slot */
+    long unique;   /* different regions */
 
     /* the state */
     long blocks;
@@ -70,19 +76,19 @@ typedef struct Lsm {
     int *tile_slot;   /* [tiles * lanes] slot of the region's centre, or -1 */
     int *tile_const;  /* [tiles] */
     RegionConst *region_const;
-    real *centre;     /* [tiles][3][lanes] c_r, kept for damping */
-    short *last;      /* [tiles][6][lanes] two columns of the last rotation, in 1/32767 */
-    float *stretch;   /* [tiles][9][lanes] eigenvectors for the warm-started Jacobi method, or NULL */
-    double *sweeps;   /* [layers] Jacobi sweeps of the last step */
-    long copies;      /* regions identical to another */
-    int (*copy)[2];   /* [copies] (slot of the copy, slot of the original) in list form */
+    real *centre;   /* [tiles][3][lanes] c_r, kept for damping */
+    short *last;    /* [tiles][6][lanes] two columns of the last rotation, in 1/32767 */
+    float *stretch; /* [tiles][9][lanes] eigenvectors for the warm-started Jacobi method, or NULL */
+    double *sweeps; /* [layers] Jacobi sweeps of the last step */
+    long copies;    /* regions identical to another */
+    int (*copy)[2]; /* [copies] (slot of the copy, slot of the original) in list form */
     long *layer_copy; /* [layers + 1] */
 
     /* layers */
-    int layers, reach; /* regions of layer l need layers l - reach .. l + reach */
-    int *layer_plane;  /* [layers + 1] */
+    int layers, reach;              /* regions of layer l need layers l - reach .. l + reach */
+    int *layer_plane;               /* [layers + 1] */
     long *layer_block, *layer_tile; /* [layers + 1] */
-    int *thread_layer; /* [threads + 1] first layer of each thread */
+    int *thread_layer;              /* [threads + 1] first layer of each thread */
 
     Rows rows;
     Blocks *box; /* NULL in list form */
@@ -91,12 +97,12 @@ typedef struct Lsm {
     long steps;
     bool damp_now;
 
-    /* boundary */
-    SmBoundary boundary;
     real gravity[3]; /* cells per step and step */
-    double (*held)[3]; /* positions of held particles before the step */
-    long broken;
-    double build_seconds;
+    int obstacle_count;
+    Obstacle *obstacle;
+    vec shift[3]; /* (origin - home) / cell: from x to obstacle coordinates */
+    double home[3];
+    long broken, const_bytes;
 } Lsm;
 
 SM_INLINE void load3(const real *p, vec out[3])
@@ -130,8 +136,17 @@ SM_INLINE vec16 load16(const real *p)
     return v;
 }
 
-SM_INLINE void store4(real *p, vec4 v) { memcpy(p, &v, sizeof v); }
-SM_INLINE void store8(real *p, vec8 v) { memcpy(p, &v, sizeof v); }
-SM_INLINE void store16(real *p, vec16 v) { memcpy(p, &v, sizeof v); }
+SM_INLINE void store4(real *p, vec4 v)
+{
+    memcpy(p, &v, sizeof v);
+}
+SM_INLINE void store8(real *p, vec8 v)
+{
+    memcpy(p, &v, sizeof v);
+}
+SM_INLINE void store16(real *p, vec16 v)
+{
+    memcpy(p, &v, sizeof v);
+}
 
 #endif

@@ -3,10 +3,18 @@
 /* Each kernel is one body in which `side` is a constant for the usual widths. */
 #define FOR_SIDE(side, call)                                                                       \
     switch (side) {                                                                                \
-    case 3: call(3); break;                                                                        \
-    case 5: call(5); break;                                                                        \
-    case 7: call(7); break;                                                                        \
-    default: call(side); break;                                                                    \
+    case 3:                                                                                        \
+        call(3);                                                                                   \
+        break;                                                                                     \
+    case 5:                                                                                        \
+        call(5);                                                                                   \
+        break;                                                                                     \
+    case 7:                                                                                        \
+        call(7);                                                                                   \
+        break;                                                                                     \
+    default:                                                                                       \
+        call(side);                                                                                \
+        break;                                                                                     \
     }
 
 SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
@@ -26,8 +34,7 @@ SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
     }
 }
 
-void lsm_bars_up(const Lsm *lsm, int first, int last)
-{
+void lsm_bars_up(const Lsm *lsm, int first, int last){
 #define CALL(side) bars_up(lsm, lsm->sets.bar_plane[first], lsm->sets.bar_plane[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
@@ -51,8 +58,7 @@ SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
     }
 }
 
-void lsm_plates_up(const Lsm *lsm, int first, int last)
-{
+void lsm_plates_up(const Lsm *lsm, int first, int last){
 #define CALL(side) plates_up(lsm, lsm->sets.plate_plane[first], lsm->sets.plate_plane[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
@@ -82,7 +88,8 @@ static void region_up_naive(const Lsm *lsm, int region, real out[16])
     vec4 C = {0}, X = {0}, Y = {0}, Z = {0};
     for (int c = -w; c <= w; c++)
         for (int b = -w; b <= w; b++) {
-            const int *id = lsm->sets.bar + (long)lsm->sets.plate[(long)plates[c + w] * side + b + w] * side;
+            const int *id =
+                lsm->sets.bar + (long)lsm->sets.plate[(long)plates[c + w] * side + b + w] * side;
             for (int a = -w; a <= w; a++) {
                 vec4 p = load4(lsm->rows.p + (long)id[a + w] * ROW_P);
                 C += p;
@@ -127,8 +134,7 @@ SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
     }
 }
 
-void lsm_bars_down(const Lsm *lsm, int first, int last)
-{
+void lsm_bars_down(const Lsm *lsm, int first, int last){
 #define CALL(side) bars_down(lsm, lsm->sets.bar_plane[first], lsm->sets.bar_plane[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
@@ -151,8 +157,7 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
     }
 }
 
-void lsm_plates_down(const Lsm *lsm, int first, int last)
-{
+void lsm_plates_down(const Lsm *lsm, int first, int last){
 #define CALL(side) plates_down(lsm, lsm->sets.plate_plane[first], lsm->sets.plate_plane[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
@@ -176,10 +181,12 @@ static void particle_down_naive(const Lsm *lsm, int region, real out[4])
     vec4 sum = {0};
     for (int c = -w; c <= w; c++)
         for (int b = -w; b <= w; b++) {
-            const int *id = lsm->sets.bar + (long)lsm->sets.plate[(long)plates[c + w] * side + b + w] * side;
+            const int *id =
+                lsm->sets.bar + (long)lsm->sets.plate[(long)plates[c + w] * side + b + w] * side;
             for (int a = -w; a <= w; a++) {
                 const real *T = lsm->rows.transform + (long)id[a + w] * ROW_T;
-                sum += load4(T) - (real)a * load4(T + 12) - (real)b * load4(T + 8) - (real)c * load4(T + 4);
+                sum += load4(T) - (real)a * load4(T + 12) - (real)b * load4(T + 8) -
+                       (real)c * load4(T + 4);
             }
         }
     store4(out, sum);
@@ -213,8 +220,10 @@ void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up)
         const int *id = lsm->sets.bar + bar * lsm->side;
         real *out = up ? rows->bar + bar * ROW_BAR : rows->bar_down + bar * ROW_BAR_DOWN;
 #define CALL(side)                                                                                 \
-    if (up) plain(id, side, 3, rows->transform, ROW_T, out);                                       \
-    else plain(id, side, 2, rows->p, ROW_P, out)
+    if (up)                                                                                        \
+        plain(id, side, 3, rows->transform, ROW_T, out);                                           \
+    else                                                                                           \
+        plain(id, side, 2, rows->p, ROW_P, out)
         FOR_SIDE(lsm->side, CALL)
 #undef CALL
     }
@@ -225,10 +234,13 @@ void lsm_plates_plain(const Lsm *lsm, int first, int last, bool up)
     const Rows *rows = &lsm->rows;
     for (long plate = lsm->sets.plate_plane[first]; plate < lsm->sets.plate_plane[last]; plate++) {
         const int *id = lsm->sets.plate + plate * lsm->side;
-        real *out = up ? rows->plate + plate * ROW_PLATE : rows->plate_down + plate * ROW_PLATE_DOWN;
+        real *out =
+            up ? rows->plate + plate * ROW_PLATE : rows->plate_down + plate * ROW_PLATE_DOWN;
 #define CALL(side)                                                                                 \
-    if (up) plain(id, side, 3, rows->bar, ROW_BAR, out);                                           \
-    else plain(id, side, 2, rows->bar_down, ROW_BAR_DOWN, out)
+    if (up)                                                                                        \
+        plain(id, side, 3, rows->bar, ROW_BAR, out);                                               \
+    else                                                                                           \
+        plain(id, side, 2, rows->bar_down, ROW_BAR_DOWN, out)
         FOR_SIDE(lsm->side, CALL)
 #undef CALL
     }
@@ -239,8 +251,10 @@ void lsm_region_plain(const Lsm *lsm, int region, bool up, real out[16])
     const Rows *rows = &lsm->rows;
     const int *id = lsm->sets.region + (long)region * lsm->side;
 #define CALL(side)                                                                                 \
-    if (up) plain(id, side, 3, rows->plate, ROW_PLATE, out);                                       \
-    else plain(id, side, 2, rows->plate_down, ROW_PLATE_DOWN, out)
+    if (up)                                                                                        \
+        plain(id, side, 3, rows->plate, ROW_PLATE, out);                                           \
+    else                                                                                           \
+        plain(id, side, 2, rows->plate_down, ROW_PLATE_DOWN, out)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }

@@ -13,15 +13,15 @@
 
 #include "state.h"
 
-#define lsm_bars_up SM_NAME(lsm_bars_up)
-#define lsm_plates_up SM_NAME(lsm_plates_up)
-#define lsm_region_up SM_NAME(lsm_region_up)
-#define lsm_bars_down SM_NAME(lsm_bars_down)
-#define lsm_plates_down SM_NAME(lsm_plates_down)
+#define lsm_bars_up       SM_NAME(lsm_bars_up)
+#define lsm_plates_up     SM_NAME(lsm_plates_up)
+#define lsm_region_up     SM_NAME(lsm_region_up)
+#define lsm_bars_down     SM_NAME(lsm_bars_down)
+#define lsm_plates_down   SM_NAME(lsm_plates_down)
 #define lsm_particle_down SM_NAME(lsm_particle_down)
-#define lsm_bars_plain SM_NAME(lsm_bars_plain)
-#define lsm_plates_plain SM_NAME(lsm_plates_plain)
-#define lsm_region_plain SM_NAME(lsm_region_plain)
+#define lsm_bars_plain    SM_NAME(lsm_bars_plain)
+#define lsm_plates_plain  SM_NAME(lsm_plates_plain)
+#define lsm_region_plain  SM_NAME(lsm_region_plain)
 
 /* Bars and plates of the planes first .. last-1 from rows.p; then row `region` of the lists:
  * out = (C, Cx, Cy, Cz), each padded to four. */

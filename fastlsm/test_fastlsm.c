@@ -9,95 +9,17 @@
 
 #include <cmocka.h>
 
-#include "../reference/brute.h"
-#include "fastlsm.h"
-#include "random_bodies.h"
-
-static const SmEngineType *const engines[2] = {&fastlsm_engine_f32, &fastlsm_engine_f64};
+#include "test_body.h"
 
 /* Largest deviations of goal positions allowed, in cells: what `shapebench tables` allows a row in
  * single precision (coordinates of 30 cells carry 2e-6, a region 12 cells across turns that into
  * several times as much at its ends), and the same multiple of epsilon in double. */
 static const double tolerance[2] = {5e-5, 1e-11};
 
-typedef struct {
-    SmVoxels voxels;
-    long n;
-    double (*x0)[3], (*x)[3], (*v)[3], (*a)[3], (*b)[3], *m;
-} Body;
-
-static double (*triples(long n))[3]
-{
-    return sm_alloc((size_t)n, sizeof(double[3]));
-}
-
-static void body_arrays(Body *body)
-{
-    long n = body->n = body->voxels.particle_count;
-    int(*coord)[3] = sm_alloc((size_t)n, sizeof *coord);
-    body->x0 = triples(n);
-    body->x = triples(n);
-    body->v = triples(n);
-    body->a = triples(n);
-    body->b = triples(n);
-    body->m = sm_alloc((size_t)n, sizeof(double));
-    sm_voxels_particles(&body->voxels, coord);
-    for (long p = 0; p < n; p++) {
-        body->m[p] = 1;
-        for (int d = 0; d < 3; d++)
-            body->x0[p][d] = body->voxels.origin[d] + body->voxels.cell * coord[p][d];
-    }
-    free(coord);
-}
-
-static void body_random(unsigned *seed, int kind, int most, Body *body)
-{
-    random_body(seed, kind, most, &body->voxels);
-    body_arrays(body);
-    if (random_int(seed, 2))
-        for (long p = 0; p < body->n; p++) body->m[p] = 0.5 + random_unit(seed);
-    random_deformation(seed, body->voxels.cell, 0.3, body->n, (const double(*)[3])body->x0, body->x);
-    for (long p = 0; p < body->n; p++)
-        for (int d = 0; d < 3; d++) body->v[p][d] = body->voxels.cell * (random_unit(seed) - 0.5);
-}
-
-static void body_free(Body *body)
-{
-    free(body->x0);
-    free(body->x);
-    free(body->v);
-    free(body->a);
-    free(body->b);
-    free(body->m);
-    sm_voxels_free(&body->voxels);
-}
-
-static SmEngine *create(const SmEngineType *type, const Body *body, SmEngineParams params)
-{
-    SmEngine *engine;
-    SmError error = {0};
-    params.mass = body->m;
-    if (type->create(&body->voxels, &params, &engine, &error)) fail_msg("%s", error.text);
-    type->set(engine, SM_POSITION, (const double(*)[3])body->x);
-    type->set(engine, SM_VELOCITY, (const double(*)[3])body->v);
-    return engine;
-}
-
-/* Largest difference of two fields, in cells. */
-static double difference(const Body *body, const double (*a)[3], const double (*b)[3])
-{
-    double worst = 0;
-    for (long p = 0; p < body->n; p++)
-        for (int d = 0; d < 3; d++) {
-            double e = fabs(a[p][d] - b[p][d]) / body->voxels.cell;
-            if (!(e <= worst)) worst = e; /* a NaN stays */
-        }
-    return worst;
-}
-
 static void check_goals(int precision, SmSummation summation, SmLayout layout, int w, Body *body)
 {
-    SmEngineParams params = {.w = w, .h = 0.01, .summation = summation, .layout = layout, .threads = 1};
+    SmEngineParams params = {
+        .w = w, .h = 0.01, .summation = summation, .layout = layout, .threads = 1};
     SmEngine *engine = create(engines[precision], body, params);
     RefRegions regions;
     ref_regions_build(&body->voxels, w, NULL, 0, &regions);
@@ -105,12 +27,13 @@ static void check_goals(int precision, SmSummation summation, SmLayout layout, i
     engines[precision]->get(engine, SM_POSITION, body->x);
     engines[precision]->goals(engine);
     engines[precision]->get(engine, SM_GOAL, body->a);
-    ref_goals(&regions, (const double(*)[3])body->x0, body->m, (const double(*)[3])body->x, body->b);
+    ref_goals(&regions, (const double(*)[3])body->x0, body->m, (const double(*)[3])body->x,
+              body->b);
     double worst = difference(body, (const double(*)[3])body->a, (const double(*)[3])body->b);
     if (!(worst <= tolerance[precision]))
         fail_msg("%s, layout %d, w %d, %dx%dx%d cells, %ld particles: goals differ by %g cells",
-                 engines[precision]->precision, (int)layout, w, body->voxels.size[0], body->voxels.size[1],
-                 body->voxels.size[2], body->n, worst);
+                 engines[precision]->precision, (int)layout, w, body->voxels.size[0],
+                 body->voxels.size[1], body->voxels.size[2], body->n, worst);
     SmCounts counts;
     engines[precision]->count(engine, &counts);
     assert_int_equal(counts.regions, ref_regions_unique(&regions));
@@ -127,7 +50,8 @@ static void test_goals(void **state)
         Body body;
         int w = 1 + trial % 6;
         body_random(&seed, trial / 6 % 6, w > 3 ? 12 : 20, &body);
-        check_goals(trial / 36 % 2, (SmSummation)(trial % 3), (SmLayout)(1 + trial / 3 % 2), w, &body);
+        check_goals(trial / 36 % 2, (SmSummation)(trial % 3), (SmLayout)(1 + trial / 3 % 2), w,
+                    &body);
         body_free(&body);
     }
 }
@@ -168,8 +92,12 @@ static void test_steps(void **state)
         Body body;
         int precision = trial % 2;
         body_random(&seed, trial % 6, 9, &body);
-        SmEngineParams params = {.w = 1 + trial / 6 % 3, .h = 0.01, .damping = 0.3,
-                                 .damping_every = 1 + trial / 2 % 2, .layout = (SmLayout)(1 + trial / 18 % 2), .gravity = {0, -9.81, 1}};
+        SmEngineParams params = {.w = 1 + trial / 6 % 3,
+                                 .h = 0.01,
+                                 .damping = 0.3,
+                                 .damping_every = 1 + trial / 2 % 2,
+                                 .layout = (SmLayout)(1 + trial / 18 % 2),
+                                 .gravity = {0, -9.81, 1}};
         SmEngine *fast = create(engines[precision], &body, params);
         engines[precision]->get(fast, SM_POSITION, body.x);
         engines[precision]->get(fast, SM_VELOCITY, body.v);
@@ -183,14 +111,16 @@ static void test_steps(void **state)
         double worst = difference(&body, (const double(*)[3])body.a, (const double(*)[3])body.b);
         /* three steps of a noisy start: a lone cell's 8 particles may turn by eps / gap */
         if (!(worst <= (precision ? 1e-9 : 1e-3)))
-            fail_msg("%s trial %d: positions differ by %g cells", engines[precision]->precision, trial, worst);
+            fail_msg("%s trial %d: positions differ by %g cells", engines[precision]->precision,
+                     trial, worst);
         engines[precision]->destroy(fast);
         ref_brute_engine.destroy(slow);
         body_free(&body);
     }
 }
 
-static void momentum(const Body *body, const double (*x)[3], const double (*v)[3], double p[3], double l[3])
+static void momentum(const Body *body, const double (*x)[3], const double (*v)[3], double p[3],
+                     double l[3])
 {
     for (int d = 0; d < 3; d++) p[d] = l[d] = 0;
     for (long i = 0; i < body->n; i++)
@@ -209,22 +139,29 @@ static void test_momentum(void **state)
         Body body;
         int precision = trial % 2;
         body_random(&seed, trial % 6, 8, &body);
-        /* damping conserves both only per region; eq. 14 with equal weights conserves the linear one */
-        SmEngineParams params = {.w = 1 + trial % 3, .h = 0.01, .layout = (SmLayout)(1 + trial / 12)};
+        /* damping conserves both only per region; eq. 14 with equal weights conserves the linear
+         * one */
+        SmEngineParams params = {
+            .w = 1 + trial % 3, .h = 0.01, .layout = (SmLayout)(1 + trial / 12)};
         SmEngine *engine = create(engines[precision], &body, params);
         double p[2][3], l[2][3], scale = 0;
         for (int when = 0; when < 2; when++) {
             engines[precision]->get(engine, SM_POSITION, body.a);
             engines[precision]->get(engine, SM_VELOCITY, body.b);
-            momentum(&body, (const double(*)[3])body.a, (const double(*)[3])body.b, p[when], l[when]);
-            for (int step = 0; when == 0 && step < 20; step++) engines[precision]->step(engine, NULL);
+            momentum(&body, (const double(*)[3])body.a, (const double(*)[3])body.b, p[when],
+                     l[when]);
+            for (int step = 0; when == 0 && step < 20; step++)
+                engines[precision]->step(engine, NULL);
         }
         double reach = 1 + body.voxels.cell * 20;
         for (long i = 0; i < body.n; i++) scale += body.m[i] * body.voxels.cell / 0.01;
         for (int d = 0; d < 3; d++) {
             double limit = precision ? 1e-12 : 5e-5; /* of one cell per step, over 20 steps */
-            double dp = fabs(p[1][d] - p[0][d]) / scale, dl = fabs(l[1][d] - l[0][d]) / (scale * reach);
-            if (!(dp < limit && dl < limit)) fail_msg("%s, trial %d: linear %g, angular %g", engines[precision]->precision, trial, dp, dl);
+            double dp = fabs(p[1][d] - p[0][d]) / scale,
+                   dl = fabs(l[1][d] - l[0][d]) / (scale * reach);
+            if (!(dp < limit && dl < limit))
+                fail_msg("%s, trial %d: linear %g, angular %g", engines[precision]->precision,
+                         trial, dp, dl);
         }
         engines[precision]->destroy(engine);
         body_free(&body);
@@ -249,7 +186,8 @@ static void test_rigid(void **state)
             body.v[p][1] = trial < 12 ? 0 : turn * r[0];
             body.v[p][2] = trial < 12 ? 0 : 0.3;
         }
-        SmEngineParams params = {.w = 1 + trial % 4, .h = 0.01, .damping = 0.5, .layout = (SmLayout)(1 + trial / 2 % 2)};
+        SmEngineParams params = {
+            .w = 1 + trial % 4, .h = 0.01, .damping = 0.5, .layout = (SmLayout)(1 + trial / 2 % 2)};
         SmEngine *engine = create(engines[precision], &body, params);
         engines[precision]->step(engine, NULL);
         engines[precision]->get(engine, SM_VELOCITY, body.a);
@@ -277,7 +215,10 @@ static void test_recovery(void **state)
                 body.x[p][d] = body.x0[p][d] * crush[trial / 4][d] +
                                1e-3 * body.voxels.cell * (random_unit(&seed) - 0.5);
             }
-        SmEngineParams params = {.w = 1 + trial / 2 % 2, .h = 0.01, .damping = 0.2, .layout = (SmLayout)(1 + trial / 2 % 2)};
+        SmEngineParams params = {.w = 1 + trial / 2 % 2,
+                                 .h = 0.01,
+                                 .damping = 0.2,
+                                 .layout = (SmLayout)(1 + trial / 2 % 2)};
         SmEngine *engine = create(engines[precision], &body, params);
         for (int step = 0; step < 3000; step++) {
             engines[precision]->step(engine, NULL);
@@ -312,11 +253,16 @@ static void test_threads(void **state)
         body_arrays(&body);
         random_deformation(&seed, 0.5, 0.2, body.n, (const double(*)[3])body.x0, body.x);
         for (int threads = 1; threads <= 5; threads += 2) {
-            SmEngineParams params = {.w = 1 + trial % 3, .h = 0.01, .damping = 0.3, .threads = threads, .layout = (SmLayout)(1 + trial % 2)};
+            SmEngineParams params = {.w = 1 + trial % 3,
+                                     .h = 0.01,
+                                     .damping = 0.3,
+                                     .threads = threads,
+                                     .layout = (SmLayout)(1 + trial % 2)};
             SmEngine *engine = create(&fastlsm_engine_f32, &body, params);
             for (int step = 0; step < 4; step++) fastlsm_engine_f32.step(engine, NULL);
             fastlsm_engine_f32.get(engine, SM_POSITION, threads == 1 ? body.a : body.b);
-            if (threads > 1) assert_memory_equal(body.a, body.b, (size_t)body.n * sizeof(double[3]));
+            if (threads > 1)
+                assert_memory_equal(body.a, body.b, (size_t)body.n * sizeof(double[3]));
             fastlsm_engine_f32.destroy(engine);
         }
         body_free(&body);
@@ -326,8 +272,9 @@ static void test_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_goals),    cmocka_unit_test(test_regions), cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_momentum), cmocka_unit_test(test_rigid),   cmocka_unit_test(test_recovery),
+        cmocka_unit_test(test_goals),   cmocka_unit_test(test_regions),
+        cmocka_unit_test(test_steps),   cmocka_unit_test(test_momentum),
+        cmocka_unit_test(test_rigid),   cmocka_unit_test(test_recovery),
         cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests_name("fastlsm", tests, NULL, NULL);

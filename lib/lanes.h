@@ -57,7 +57,8 @@ SM_INLINE vec lanes_abs(vec v)
 SM_INLINE vec lanes_sqrt(vec v)
 {
     vec root;
-    for (int i = 0; i < SM_LANES; i++) root[i] = SM_REAL_BITS == 32 ? (real)sqrtf((float)v[i]) : (real)sqrt((double)v[i]);
+    for (int i = 0; i < SM_LANES; i++)
+        root[i] = SM_REAL_BITS == 32 ? (real)sqrtf((float)v[i]) : (real)sqrt((double)v[i]);
     return root;
 }
 
@@ -103,10 +104,10 @@ SM_INLINE int lanes_any(ivec mask)
 }
 
 #if SM_LANES == 16
-#define LANES_ZIP_LOW 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
+#define LANES_ZIP_LOW  0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
 #define LANES_ZIP_HIGH 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31
 #else
-#define LANES_ZIP_LOW 0, 8, 1, 9, 2, 10, 3, 11
+#define LANES_ZIP_LOW  0, 8, 1, 9, 2, 10, 3, 11
 #define LANES_ZIP_HIGH 4, 12, 5, 13, 6, 14, 7, 15
 #endif
 

@@ -65,10 +65,10 @@ static void from_quaternion(const double q[4], double R[9])
 static void horn_matrix(const double A[9], double K[16])
 {
     double xx = A[0], yy = A[4], zz = A[8];
-    double k[16] = {xx + yy + zz,  A[7] - A[5],  A[2] - A[6],   A[3] - A[1],
-                    A[7] - A[5],   xx - yy - zz, A[1] + A[3],   A[2] + A[6],
-                    A[2] - A[6],   A[1] + A[3],  -xx + yy - zz, A[5] + A[7],
-                    A[3] - A[1],   A[2] + A[6],  A[5] + A[7],   -xx - yy + zz};
+    double k[16] = {xx + yy + zz, A[7] - A[5],  A[2] - A[6],   A[3] - A[1],
+                    A[7] - A[5],  xx - yy - zz, A[1] + A[3],   A[2] + A[6],
+                    A[2] - A[6],  A[1] + A[3],  -xx + yy - zz, A[5] + A[7],
+                    A[3] - A[1],  A[2] + A[6],  A[5] + A[7],   -xx - yy + zz};
     memcpy(K, k, sizeof k);
 }
 
@@ -85,8 +85,8 @@ static void to_quaternion(const double R[9], double q[4])
 }
 
 /* The unit vector nearest to `last` in the span of the eigenvectors of near-largest eigenvalue. */
-static void nearest_in_span(const double K[16], const double V[16], const double last[4], double tie,
-                            double q[4])
+static void nearest_in_span(const double K[16], const double V[16], const double last[4],
+                            double tie, double q[4])
 {
     int best = 0;
     for (int i = 1; i < 4; i++)
@@ -131,7 +131,8 @@ static void multiply(const double A[9], const double B[9], int transposed, doubl
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             double sum = 0;
-            for (int k = 0; k < 3; k++) sum += (transposed ? A[k * 3 + i] : A[i * 3 + k]) * B[k * 3 + j];
+            for (int k = 0; k < 3; k++)
+                sum += (transposed ? A[k * 3 + i] : A[i * 3 + k]) * B[k * 3 + j];
             out[i * 3 + j] = sum;
         }
 }
@@ -159,6 +160,7 @@ double sm_polar_jacobi(const double A[9], double V[9], const double last[9], dou
     for (int i = 0; i < 9; i++) AV[i] /= sqrt(S[4 * (i % 3)]);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            R[i * 3 + j] = AV[i * 3] * V[j * 3] + AV[i * 3 + 1] * V[j * 3 + 1] + AV[i * 3 + 2] * V[j * 3 + 2];
+            R[i * 3 + j] =
+                AV[i * 3] * V[j * 3] + AV[i * 3 + 1] * V[j * 3 + 1] + AV[i * 3 + 2] * V[j * 3 + 2];
     return sweeps;
 }

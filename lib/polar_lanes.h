@@ -70,7 +70,8 @@ SM_INLINE ivec polar_quartic(const vec A[9], vec R[9])
 }
 
 /* Redoes the lanes of `tie` one by one, keeping near the last rotation. */
-static __attribute__((noinline)) void polar_mend(const vec A[9], ivec tie, const vec last[9], vec R[9])
+static __attribute__((noinline)) void polar_mend(const vec A[9], ivec tie, const vec last[9],
+                                                 vec R[9])
 {
     for (int lane = 0; lane < SM_LANES; lane++) {
         if (!tie[lane]) continue;

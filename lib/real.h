@@ -13,14 +13,14 @@
 typedef float real;
 typedef int lane_int;
 #define SM_NAME(name) name##_f32
-#define SM_LANES 16
-#define SM_EPSILON 1.1920929e-7f
+#define SM_LANES      16
+#define SM_EPSILON    1.1920929e-7f
 #else
 typedef double real;
 typedef long long lane_int;
 #define SM_NAME(name) name##_f64
-#define SM_LANES 8
-#define SM_EPSILON 2.220446049250313e-16
+#define SM_LANES      8
+#define SM_EPSILON    2.220446049250313e-16
 #endif
 
 typedef real vec __attribute__((vector_size(SM_LANES * sizeof(real))));

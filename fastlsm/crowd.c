@@ -1,0 +1,346 @@
+#include "crowd.h"
+
+#include <omp.h>
+#include <stdlib.h>
+
+#include "match.h"
+#include "obstacle.h"
+#include "rigid.h"
+#include "window.h"
+
+/* Vectors in a row of each kind. Rows keep their width whatever a pass stores in them, so that row
+ * 0 stays zero. */
+enum { L = SM_LANES, P = 6, BAR = 12, PLATE = 12, TRANSFORM = 12, BAR_DOWN = 9, PLATE_DOWN = 6 };
+
+/* Rows of one group, [row][values][lanes]; row 0 of each is zero. */
+typedef struct {
+    real *p, *bar, *plate, *transform, *bar_down, *plate_down, *centre;
+} GroupRows;
+
+static size_t rows_size(const Crowd *crowd, GroupRows *rows, real *memory)
+{
+    const LsmSets *sets = &crowd->lsm->sets;
+    size_t n = (size_t)crowd->lsm->lattice.count + 1, bars = (size_t)sets->bar_count,
+           plates = (size_t)sets->plate_count, at = 0;
+    const size_t counts[7] = {n * P,           bars * BAR,          plates * PLATE, n * TRANSFORM,
+                              bars * BAR_DOWN, plates * PLATE_DOWN, n * 3};
+    real **part[7] = {&rows->p,        &rows->bar,        &rows->plate, &rows->transform,
+                      &rows->bar_down, &rows->plate_down, &rows->centre};
+    for (int i = 0; i < 7; i++) {
+        if (memory) *part[i] = memory + at;
+        at += counts[i] * L;
+    }
+    return at;
+}
+
+Crowd *crowd_build(const Lsm *lsm, long bodies)
+{
+    Crowd *crowd = sm_alloc(1, sizeof *crowd);
+    size_t n = (size_t)lsm->lattice.count;
+    crowd->lsm = lsm;
+    crowd->bodies = bodies;
+    crowd->groups = (bodies + L - 1) / L;
+    size_t lanes = (size_t)crowd->groups * n * L;
+    crowd->x = sm_alloc(lanes * 3, sizeof(real));
+    crowd->v = sm_alloc(lanes * 3, sizeof(real));
+    crowd->g = sm_alloc(lanes * 3, sizeof(real));
+    crowd->last = sm_alloc(lanes * 6, sizeof(short));
+    crowd->origin = sm_alloc((size_t)crowd->groups * L, sizeof *crowd->origin);
+    crowd->weight = sm_alloc(n, sizeof(real));
+    crowd->inverse_count = sm_alloc(n, sizeof(real));
+    crowd->region = sm_alloc(n, sizeof *crowd->region);
+    crowd->original = sm_alloc(n, sizeof(int));
+    for (size_t p = 0; p < n; p++) {
+        crowd->weight[p] = (real)(lsm->mass[p] / lsm->members[p]);
+        crowd->inverse_count[p] = (real)(1.0 / lsm->members[p]);
+        crowd->original[p] = (int)p;
+    }
+    for (long i = 0; i < lsm->copies; i++)
+        crowd->original[lsm->particle[lsm->copy[i][0]]] = lsm->particle[lsm->copy[i][1]];
+    for (long s = 0; s < lsm->tiles * L; s++) {
+        if (lsm->tile_slot[s] < 0) continue;
+        const RegionConst *k = &lsm->region_const[lsm->tile_const[s / L]];
+        real *region = crowd->region[lsm->particle[lsm->tile_slot[s]]];
+        region[0] = k->inverse_mass[s % L];
+        for (int d = 0; d < 3; d++) region[1 + d] = k->offset[d][s % L];
+    }
+    int threads = lsm->params.threads > 0 ? lsm->params.threads : omp_get_max_threads();
+    crowd->threads = threads > crowd->groups ? (int)crowd->groups : threads;
+    crowd->scratch = sm_alloc((size_t)crowd->threads, sizeof *crowd->scratch);
+    GroupRows rows;
+    for (int t = 0; t < crowd->threads; t++)
+        crowd->scratch[t] = sm_alloc(rows_size(crowd, &rows, NULL), sizeof(real));
+    return crowd;
+}
+
+long crowd_bytes(const Crowd *crowd)
+{
+    GroupRows rows;
+    size_t n = (size_t)crowd->lsm->lattice.count, lanes = (size_t)crowd->groups * L;
+    size_t state = lanes * n * (9 * sizeof(real) + 6 * sizeof(short));
+    size_t scratch = (size_t)crowd->threads * rows_size(crowd, &rows, NULL) * sizeof(real);
+    return (long)(state + scratch + n * (6 * sizeof(real) + sizeof(int)) +
+                  lanes * sizeof(double[3]));
+}
+
+void crowd_free(Crowd *crowd)
+{
+    if (!crowd) return;
+    for (int t = 0; t < crowd->threads; t++) free(crowd->scratch[t]);
+    void *all[] = {crowd->x,
+                   crowd->v,
+                   crowd->g,
+                   crowd->last,
+                   crowd->origin,
+                   crowd->weight,
+                   crowd->inverse_count,
+                   crowd->region,
+                   crowd->original,
+                   crowd->scratch,
+                   crowd};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+}
+
+/* One list level: out[row] = window sum over in[list[row]], F values in and out_F out. `first` is
+ * where the moments are taken (window.h), or -1; `down` takes them off instead of keeping them. */
+SM_INLINE void level(const int *list, long from, long to, int side, const real *in, int pitch,
+                     int F, real *out, int out_pitch, int out_F, int first, bool down)
+{
+    for (long row = from; row < to; row++) {
+        const real *at[LSM_MAX_SIDE];
+        vec sum[15];
+        for (int i = side - 1; i > 0; i--) at[i] = in + (long)list[row * side + i] * pitch * L;
+        at[0] = in + (long)list[row * side] * pitch * L;
+        window_sum(at, L, side / 2, F, first, sum, sum + F);
+        finish_down(sum, sum + F, !down);
+        for (int f = 0; f < out_F; f++) lanes_store(out + (row * out_pitch + f) * L, sum[f]);
+    }
+}
+
+SM_INLINE void group_sums(const Crowd *crowd, const GroupRows *r, int side, bool damping, bool down)
+{
+    const LsmSets *s = &crowd->lsm->sets;
+    if (!damping && !down) {
+        level(s->bar, 1, s->bar_count, side, r->p, P, 3, r->bar, BAR, 6, 0, false);
+        level(s->plate, 1, s->plate_count, side, r->bar, BAR, 6, r->plate, PLATE, 9, 0, false);
+    } else if (!damping) {
+        level(s->bar, 1, s->bar_count, side, r->transform, TRANSFORM, 12, r->bar_down, BAR_DOWN, 9,
+              9, true);
+        level(s->plate, 1, s->plate_count, side, r->bar_down, BAR_DOWN, 9, r->plate_down,
+              PLATE_DOWN, 6, 6, true);
+    } else if (!down) {
+        level(s->bar, 1, s->bar_count, side, r->transform, TRANSFORM, 12, r->bar, BAR, 12, -1,
+              false);
+        level(s->plate, 1, s->plate_count, side, r->bar, BAR, 12, r->plate, PLATE, 12, -1, false);
+    } else {
+        level(s->bar, 1, s->bar_count, side, r->p, P, 6, r->bar_down, BAR_DOWN, 6, -1, false);
+        level(s->plate, 1, s->plate_count, side, r->bar_down, BAR_DOWN, 6, r->plate_down,
+              PLATE_DOWN, 6, -1, false);
+    }
+}
+
+static void sums(const Crowd *crowd, const GroupRows *r, bool damping, bool down)
+{
+    switch (crowd->lsm->side) {
+    case 3:
+        group_sums(crowd, r, 3, damping, down);
+        break;
+    case 5:
+        group_sums(crowd, r, 5, damping, down);
+        break;
+    default:
+        group_sums(crowd, r, crowd->lsm->side, damping, down);
+        break;
+    }
+}
+
+/* The last level up (12 sums of region p) or down (3 or 6 sums of particle p). */
+SM_INLINE void last_level(const Crowd *crowd, const real *in, int pitch, long p, int F, int first,
+                          vec sum[15])
+{
+    int side = crowd->lsm->side;
+    const int *id = crowd->lsm->sets.region + p * side;
+    const real *at[LSM_MAX_SIDE];
+    for (int i = side - 1; i > 0; i--) at[i] = in + (long)id[i] * pitch * L;
+    at[0] = in + (long)id[0] * pitch * L;
+    window_sum(at, L, side / 2, F, first, sum, sum + F);
+}
+
+static void match_region(Crowd *crowd, long group, const GroupRows *r, long p, SmLaps *laps)
+{
+    const Lsm *lsm = crowd->lsm;
+    static const int all_live[L] = {0};
+    vec S[15], c[3], A[9], R[9], q[3];
+    RegionConst k = {.inverse_mass = lanes_set(crowd->region[p][0])};
+    for (int d = 0; d < 3; d++) k.offset[d] = lanes_set(crowd->region[p][1 + d]);
+    last_level(crowd, r->plate, PLATE, p, 9, 0, S);
+    sm_lap(laps, SM_FAST_SUM);
+    match_moments(S, &k, c, A);
+    store3(r->centre + p * 3 * L, c);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+    polar_fast_lanes(A, all_live, crowd->last + (group * lsm->lattice.count + p) * 6 * L, R);
+    sm_lap(laps, SM_POLAR);
+    match_centre(c, R, &k, q);
+    real *T = r->transform + (p + 1) * 12 * L;
+    for (int i = 0; i < 3; i++) {
+        lanes_store(T + i * L, q[i]);
+        for (int d = 0; d < 3; d++) lanes_store(T + (3 + 3 * (2 - d) + i) * L, R[i * 3 + d]);
+    }
+    sm_lap(laps, SM_SHAPE_MATCHING);
+}
+
+/* A region that equals another takes its rotation, and its centre from there. */
+static void copy_region(const Crowd *crowd, const GroupRows *r, long p)
+{
+    const LsmLattice *l = &crowd->lsm->lattice;
+    long from = crowd->original[p];
+    const real *in = r->transform + (from + 1) * 12 * L;
+    real *out = r->transform + (p + 1) * 12 * L;
+    for (int f = 3; f < 12; f++) lanes_store(out + f * L, lanes_load(in + f * L));
+    for (int i = 0; i < 3; i++) {
+        vec q = lanes_load(in + i * L);
+        for (int d = 0; d < 3; d++)
+            q += (real)(l->coord[p][d] - l->coord[from][d]) *
+                 lanes_load(in + (3 + 3 * (2 - d) + i) * L);
+        lanes_store(out + i * L, q);
+    }
+}
+
+static void match_group(Crowd *crowd, long group, const GroupRows *r, SmLaps *laps)
+{
+    long n = crowd->lsm->lattice.count;
+    const real *x = crowd->x + group * n * 3 * L;
+    for (long p = 0; p < n; p++)
+        for (int d = 0; d < 3; d++)
+            lanes_store(r->p + ((p + 1) * P + d) * L,
+                        crowd->weight[p] * lanes_load(x + (p * 3 + d) * L));
+    sums(crowd, r, false, false);
+    sm_lap(laps, SM_FAST_SUM);
+    for (long p = 0; p < n; p++)
+        if (crowd->original[p] == p) match_region(crowd, group, r, p, laps);
+    for (long p = 0; p < n; p++)
+        if (crowd->original[p] != p) copy_region(crowd, r, p);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+    sums(crowd, r, false, true);
+    sm_lap(laps, SM_FAST_SUM);
+}
+
+/* Eqs. 1 and 2 for one group; with `goals` only g. */
+static void move_group(Crowd *crowd, long group, const GroupRows *r, bool goals, bool damp,
+                       const vec shift[3])
+{
+    const Lsm *lsm = crowd->lsm;
+    long n = lsm->lattice.count;
+    for (long p = 0; p < n; p++) {
+        long at = (group * n + p) * 3 * L;
+        vec sum[15], x[3], v[3];
+        last_level(crowd, r->plate_down, PLATE_DOWN, p, 6, 3, sum);
+        finish_down(sum, sum + 6, false);
+        for (int d = 0; d < 3; d++) sum[d] *= crowd->inverse_count[p];
+        if (goals) {
+            store3(crowd->g + at, sum);
+            continue;
+        }
+        load3(crowd->x + at, x);
+        load3(crowd->v + at, v);
+        for (int d = 0; d < 3; d++) v[d] += sum[d] - x[d] + lsm->gravity[d];
+        if (!damp) {
+            for (int d = 0; d < 3; d++) x[d] += v[d];
+            obstacles_push_at(lsm->obstacle, lsm->obstacle_count, shift, x, v);
+            store3(crowd->x + at, x);
+        }
+        store3(crowd->v + at, v);
+    }
+}
+
+/* Eq. 14, then x += v. */
+static void damp_group(Crowd *crowd, long group, const GroupRows *r, const vec shift[3])
+{
+    const Lsm *lsm = crowd->lsm;
+    long n = lsm->lattice.count;
+    vec x[3], v[3], F[15], c[3];
+    for (long p = 0; p < n; p++) {
+        load3(crowd->x + (group * n + p) * 3 * L, x);
+        load3(crowd->v + (group * n + p) * 3 * L, v);
+        damping_products(lanes_set(crowd->weight[p]), x, v, F);
+        for (int f = 0; f < 12; f++) lanes_store(r->transform + ((p + 1) * 12 + f) * L, F[f]);
+    }
+    sums(crowd, r, true, false);
+    for (long p = 0; p < n; p++) {
+        long from = crowd->original[p];
+        vec out[6];
+        last_level(crowd, r->plate, PLATE, from, 12, -1, F);
+        load3(r->centre + from * 3 * L, c);
+        rigid_velocity(F, c, lanes_set(crowd->region[from][0]), out);
+        for (int f = 0; f < 6; f++) lanes_store(r->p + ((p + 1) * P + f) * L, out[f]);
+    }
+    sums(crowd, r, true, true);
+    for (long p = 0; p < n; p++) {
+        long at = (group * n + p) * 3 * L;
+        load3(crowd->x + at, x);
+        load3(crowd->v + at, v);
+        last_level(crowd, r->plate_down, PLATE_DOWN, p, 6, -1, F);
+        pull(F, lanes_set(crowd->inverse_count[p]), (real)lsm->params.damping, x, v);
+        for (int d = 0; d < 3; d++) x[d] += v[d];
+        obstacles_push_at(lsm->obstacle, lsm->obstacle_count, shift, x, v);
+        store3(crowd->x + at, x);
+        store3(crowd->v + at, v);
+    }
+}
+
+static void run_group(Crowd *crowd, long group, int thread, bool goals, SmLaps *laps)
+{
+    const Lsm *lsm = crowd->lsm;
+    GroupRows rows;
+    vec shift[3];
+    rows_size(crowd, &rows, crowd->scratch[thread]);
+    for (int lane = 0; lane < L; lane++)
+        for (int d = 0; d < 3; d++)
+            shift[d][lane] =
+                (real)((crowd->origin[group * L + lane][d] - lsm->home[d]) / lsm->cell);
+    match_group(crowd, group, &rows, laps);
+    bool damp = lsm->damp_now && !goals;
+    move_group(crowd, group, &rows, goals, damp, shift);
+    sm_lap(laps, SM_FAST_SUM);
+    if (damp) damp_group(crowd, group, &rows, shift);
+    sm_lap(laps, damp ? SM_DAMPING : SM_OTHER);
+}
+
+static void run(Crowd *crowd, bool goals, SmLaps *laps)
+{
+#pragma omp parallel for schedule(static) num_threads(crowd->threads) if (crowd->threads > 1)
+    for (int t = 0; t < crowd->threads; t++)
+        for (long group = t; group < crowd->groups; group += crowd->threads)
+            run_group(crowd, group, t, goals, t ? NULL : laps);
+}
+
+void crowd_step(Crowd *crowd, SmLaps *laps)
+{
+    run(crowd, false, laps);
+}
+
+void crowd_goals(Crowd *crowd)
+{
+    run(crowd, true, NULL);
+}
+
+void crowd_recentre(Crowd *crowd)
+{
+    long n = crowd->lsm->lattice.count;
+    for (long group = 0; group < crowd->groups; group++) {
+        vec middle[3] = {{0}};
+        for (long p = 0; p < n; p++)
+            for (int d = 0; d < 3; d++)
+                middle[d] += lanes_load(crowd->x + ((group * n + p) * 3 + d) * L);
+        for (int d = 0; d < 3; d++)
+            for (int lane = 0; lane < L; lane++) {
+                middle[d][lane] = (real)rint((double)middle[d][lane] / (double)n);
+                crowd->origin[group * L + lane][d] += (double)middle[d][lane] * crowd->lsm->cell;
+            }
+        for (long p = 0; p < n; p++)
+            for (int d = 0; d < 3; d++) {
+                real *x = crowd->x + ((group * n + p) * 3 + d) * L;
+                lanes_store(x, lanes_load(x) - middle[d]);
+            }
+    }
+}

@@ -1,0 +1,399 @@
+/* engine.c - FastLSM behind engine.h: one body, or many that share a lattice. */
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "build.h"
+#include "crowd.h"
+#include "fastlsm.h"
+#include "fracture.h"
+#include "match.h"
+#include "step.h"
+
+enum { RECENTRE_STEPS = 16 };
+
+struct SmEngine {
+    Lsm *lsm;
+    Crowd *crowd; /* NULL: one body */
+    long count;   /* particles of one body */
+    long bodies;
+    double (*pose)[3][4]; /* [bodies] */
+    int handle_count;
+    SmHandle *handle;    /* our copies */
+    double (*target)[3]; /* [held particles] where they go in this step, then where they were */
+    double build_seconds;
+};
+
+static void place(const double pose[3][4], const double from[3], double to[3])
+{
+    for (int a = 0; a < 3; a++)
+        to[a] = pose[a][0] * from[0] + pose[a][1] * from[1] + pose[a][2] * from[2] + pose[a][3];
+}
+
+static void rest_position(const SmEngine *e, long number, double x0[3])
+{
+    const LsmLattice *l = &e->lsm->lattice;
+    double rest[3];
+    for (int d = 0; d < 3; d++) rest[d] = l->origin[d] + l->cell * l->coord[number % e->count][d];
+    place((const double(*)[4])e->pose[number / e->count], rest, x0);
+}
+
+/* Where component d of a particle is in x, v or g, and the origin that goes with it. */
+static long index_of(const SmEngine *e, long number, int d, const double **origin)
+{
+    if (e->crowd) {
+        long body = number / e->count, p = number % e->count, group = body / SM_LANES;
+        *origin = e->crowd->origin[body];
+        return ((group * e->count + p) * 3 + d) * SM_LANES + body % SM_LANES;
+    }
+    long slot = e->lsm->slot[number];
+    *origin = e->lsm->origin;
+    return (slot / SM_LANES * 3 + d) * SM_LANES + slot % SM_LANES;
+}
+
+static real *field_of(const SmEngine *e, SmField field)
+{
+    real *const x = e->crowd ? e->crowd->x : e->lsm->x,
+                *const v = e->crowd ? e->crowd->v : e->lsm->v,
+                *const g = e->crowd ? e->crowd->g : e->lsm->g;
+    return field == SM_VELOCITY ? v : field == SM_GOAL ? g : x;
+}
+
+static void engine_get(SmEngine *e, SmField field, double (*values)[3])
+{
+    const real *from = field_of(e, field);
+    double to_velocity = e->lsm->cell / e->lsm->params.h;
+    for (long number = 0; number < e->bodies * e->count; number++) {
+        if (field == SM_REST) rest_position(e, number, values[number]);
+        for (int d = 0; d < 3 && field != SM_REST; d++) {
+            const double *origin;
+            double value = (double)from[index_of(e, number, d, &origin)];
+            values[number][d] =
+                field == SM_VELOCITY ? value * to_velocity : origin[d] + value * e->lsm->cell;
+        }
+    }
+}
+
+/* Single precision resolves positions best near zero: each body's origin goes to its middle. */
+static void centre_on(SmEngine *e, const double (*position)[3])
+{
+    for (long body = 0; body < e->bodies; body++)
+        for (int d = 0; d < 3; d++) {
+            double sum = 0;
+            for (long p = 0; p < e->count; p++) sum += position[body * e->count + p][d];
+            double middle = sum / (double)e->count;
+            if (e->crowd)
+                e->crowd->origin[body][d] = middle;
+            else
+                e->lsm->origin[d] = middle;
+        }
+}
+
+static void shift_obstacles(Lsm *lsm)
+{
+    for (int d = 0; d < 3; d++)
+        lsm->shift[d] = lanes_set((real)((lsm->origin[d] - lsm->home[d]) / lsm->cell));
+}
+
+static void engine_set(SmEngine *e, SmField field, const double (*values)[3])
+{
+    assert(field == SM_POSITION || field == SM_VELOCITY);
+    if (field == SM_POSITION) centre_on(e, values);
+    if (field == SM_POSITION) shift_obstacles(e->lsm);
+    real *to = field_of(e, field);
+    double from_velocity = e->lsm->params.h / e->lsm->cell;
+    for (long number = 0; number < e->bodies * e->count; number++)
+        for (int d = 0; d < 3; d++) {
+            const double *origin;
+            long at = index_of(e, number, d, &origin);
+            to[at] = (real)(field == SM_VELOCITY ? values[number][d] * from_velocity
+                                                 : (values[number][d] - origin[d]) / e->lsm->cell);
+        }
+}
+
+/* Where an instance's pose turns it, a tie goes to the rotation of the pose. */
+static void turn_last(SmEngine *e, long body)
+{
+    short *last = e->crowd ? e->crowd->last : e->lsm->last;
+    vec R[9];
+    for (int i = 0; i < 9; i++) R[i] = lanes_set((real)e->pose[body][i / 3][i % 3]);
+    short turned[6 * SM_LANES];
+    last_store(turned, R);
+    long tiles = e->crowd ? e->count : e->lsm->tiles,
+         first = e->crowd ? body / SM_LANES * e->count : 0;
+    for (long tile = first; tile < first + tiles; tile++)
+        for (int i = 0; i < 6 * SM_LANES; i++)
+            if (!e->crowd || i % SM_LANES == body % SM_LANES)
+                last[tile * 6 * SM_LANES + i] = turned[i];
+}
+
+/* Lanes without a body copy the first one's rest shape, so that they stay finite and do nothing. */
+static void fill_empty_lanes(SmEngine *e)
+{
+    long lanes = e->crowd->groups * SM_LANES;
+    for (long body = e->bodies; body < lanes; body++)
+        for (long p = 0; p < e->count; p++)
+            for (int d = 0; d < 3; d++) {
+                long at = ((body / SM_LANES * e->count + p) * 3 + d) * SM_LANES + body % SM_LANES;
+                e->crowd->x[at] = (real)(e->lsm->lattice.coord[p][d] - e->lsm->lattice.size[d] / 2);
+            }
+}
+
+static void start_at_rest(SmEngine *e)
+{
+    double(*rest)[3] = sm_alloc((size_t)(e->bodies * e->count), sizeof *rest);
+    engine_get(e, SM_REST, rest);
+    for (int d = 0; d < 3; d++) e->lsm->home[d] = rest[0][d];
+    engine_set(e, SM_POSITION, (const double(*)[3])rest);
+    free(rest);
+    for (long body = 0; body < e->bodies; body++) turn_last(e, body);
+    if (e->crowd) fill_empty_lanes(e);
+}
+
+static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
+                            SmError *error)
+{
+    static const double identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+    double start = sm_now();
+    SmEngine *e = sm_alloc(1, sizeof *e);
+    SmEngineParams own = *params;
+    e->bodies = params->instances > 1 ? params->instances : 1;
+    if (e->bodies > 1) own.layout = SM_LAYOUT_LISTS; /* crowd.h runs the lists */
+    if (e->bodies > 1 && params->strain_limit > 0) {
+        free(e);
+        return sm_fail(error, SM_INPUT,
+                       "strain_limit: instances share one lattice and cannot break; "
+                       "use one instance, or strain_limit 0");
+    }
+    SmCode code = lsm_build(voxels, &own, &e->lsm, error);
+    if (code) {
+        free(e);
+        return code;
+    }
+    Lsm *lsm = e->lsm;
+    e->count = lsm->lattice.count;
+    e->pose = sm_alloc((size_t)e->bodies, sizeof *e->pose);
+    for (long body = 0; body < e->bodies; body++)
+        memcpy(e->pose[body], params->instance_pose ? params->instance_pose[body] : identity,
+               sizeof *e->pose);
+    if (e->bodies > 1)
+        e->crowd = crowd_build(lsm, e->bodies);
+    else
+        lsm->g = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
+    for (int d = 0; d < 3; d++)
+        lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
+    lsm->params.mass = NULL;
+    lsm->params.instance_pose = NULL;
+    start_at_rest(e);
+    e->build_seconds = sm_now() - start;
+    *engine = e;
+    return SM_OK;
+}
+
+static void free_handles(SmEngine *e)
+{
+    for (int i = 0; i < e->handle_count; i++) free((void *)(uintptr_t)e->handle[i].particle);
+    free(e->handle);
+    free(e->target);
+}
+
+static void engine_destroy(SmEngine *e)
+{
+    if (!e) return;
+    free_handles(e);
+    crowd_free(e->crowd);
+    lsm_free(e->lsm);
+    free(e->pose);
+    free(e);
+}
+
+/* Keeps where the held particles are before the step. */
+static void note_held(SmEngine *e)
+{
+    long at = 0;
+    const real *x = field_of(e, SM_POSITION);
+    for (int i = 0; i < e->handle_count; i++)
+        for (long k = 0; k < e->handle[i].count; k++, at++)
+            for (int d = 0; d < 3; d++) {
+                const double *origin;
+                double value = (double)x[index_of(e, e->handle[i].particle[k], d, &origin)];
+                e->target[at][d] = origin[d] + value * e->lsm->cell;
+            }
+}
+
+/* A held particle goes where its handle takes it, whatever the step made of it. */
+static void move_held(SmEngine *e)
+{
+    long at = 0;
+    real *x = field_of(e, SM_POSITION), *v = field_of(e, SM_VELOCITY);
+    for (int i = 0; i < e->handle_count; i++)
+        for (long k = 0; k < e->handle[i].count; k++, at++) {
+            double x0[3], to[3];
+            rest_position(e, e->handle[i].particle[k], x0);
+            place((const double(*)[4])e->handle[i].pose, x0, to);
+            for (int d = 0; d < 3; d++) {
+                const double *origin;
+                long index = index_of(e, e->handle[i].particle[k], d, &origin);
+                x[index] = (real)((to[d] - origin[d]) / e->lsm->cell);
+                v[index] = (real)((to[d] - e->target[at][d]) / e->lsm->cell);
+            }
+        }
+}
+
+static void engine_step(SmEngine *e, SmLaps *laps)
+{
+    Lsm *lsm = e->lsm;
+    note_held(e);
+    if (e->crowd) {
+        int every = lsm->params.damping_every > 0 ? lsm->params.damping_every : 1;
+        lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;
+        crowd_step(e->crowd, laps);
+        lsm->steps++;
+    } else {
+        lsm_step(lsm, laps);
+    }
+    move_held(e);
+    if (lsm->params.strain_limit > 0) lsm_fracture(lsm);
+    if (lsm->steps % RECENTRE_STEPS == 0) {
+        if (e->crowd)
+            crowd_recentre(e->crowd);
+        else if (lsm_recentre(lsm))
+            shift_obstacles(lsm);
+    }
+    sm_lap(laps, SM_OTHER);
+}
+
+static void engine_goals(SmEngine *e)
+{
+    if (e->crowd)
+        crowd_goals(e->crowd);
+    else
+        lsm_goals(e->lsm);
+}
+
+static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])
+{
+    real *v = field_of(e, SM_VELOCITY);
+    for (long i = 0; i < count; i++) {
+        assert(particle[i] >= 0 && particle[i] < e->bodies * e->count);
+        double scale = e->lsm->params.h / (e->lsm->cell * e->lsm->mass[particle[i] % e->count]);
+        for (int d = 0; d < 3; d++) {
+            const double *origin;
+            v[index_of(e, particle[i], d, &origin)] += (real)(impulse[i][d] * scale);
+        }
+    }
+}
+
+static bool same_handles(const SmEngine *e, const SmBoundary *boundary)
+{
+    if (e->handle_count != boundary->handle_count) return false;
+    for (int i = 0; i < e->handle_count; i++)
+        if (e->handle[i].count != boundary->handle[i].count ||
+            memcmp(e->handle[i].particle, boundary->handle[i].particle,
+                   (size_t)e->handle[i].count * sizeof(long)))
+            return false;
+    return true;
+}
+
+static void copy_handles(SmEngine *e, const SmBoundary *boundary)
+{
+    free_handles(e);
+    long held = 0;
+    e->handle_count = boundary->handle_count;
+    e->handle = sm_alloc((size_t)e->handle_count, sizeof *e->handle);
+    for (int i = 0; i < e->handle_count; i++) {
+        const SmHandle *from = &boundary->handle[i];
+        long *particle = sm_alloc((size_t)from->count, sizeof *particle);
+        for (long k = 0; k < from->count; k++) {
+            assert(from->particle[k] >= 0 && from->particle[k] < e->bodies * e->count);
+            particle[k] = from->particle[k];
+        }
+        e->handle[i].count = from->count;
+        e->handle[i].particle = particle;
+        held += from->count;
+    }
+    e->target = sm_alloc((size_t)held, sizeof *e->target);
+}
+
+static void copy_obstacles(Lsm *lsm, const SmBoundary *boundary)
+{
+    free(lsm->obstacle);
+    lsm->obstacle_count = boundary->obstacle_count;
+    lsm->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *lsm->obstacle);
+    for (int i = 0; i < boundary->obstacle_count; i++) {
+        const SmObstacle *from = &boundary->obstacle[i];
+        Obstacle *to = &lsm->obstacle[i];
+        *to = (Obstacle){.kind = from->kind,
+                         .radius = (real)(from->radius / lsm->cell),
+                         .friction = (real)from->friction};
+        for (int d = 0; d < 3; d++) {
+            to->a[d] = (real)((from->a[d] - lsm->home[d]) / lsm->cell);
+            to->b[d] = from->kind == SM_PLANE ? (real)from->b[d]
+                                              : (real)((from->b[d] - lsm->home[d]) / lsm->cell);
+        }
+    }
+    shift_obstacles(lsm);
+}
+
+static void engine_bound(SmEngine *e, const SmBoundary *boundary)
+{
+    if (!same_handles(e, boundary)) copy_handles(e, boundary);
+    for (int i = 0; i < e->handle_count; i++)
+        memcpy(e->handle[i].pose, boundary->handle[i].pose, sizeof e->handle[i].pose);
+    copy_obstacles(e->lsm, boundary);
+}
+
+static void engine_masses(SmEngine *e, double *mass)
+{
+    memcpy(mass, e->lsm->mass, (size_t)e->count * sizeof *mass);
+}
+
+static void engine_count(SmEngine *e, SmCounts *counts)
+{
+    const Lsm *lsm = e->lsm;
+    double sweeps = 0;
+    for (int l = 0; l < lsm->layers; l++) sweeps += lsm->sweeps[l];
+    *counts = (SmCounts){
+        .particles = e->bodies * e->count,
+        .regions = lsm->unique,
+        .links = lsm_lattice_links(&lsm->lattice),
+        .broken = lsm->broken,
+        .bytes = lsm_bytes(lsm) + (e->crowd ? crowd_bytes(e->crowd) : 0),
+        .build_seconds = e->build_seconds,
+        .jacobi_sweeps = sweeps / (double)(e->count - lsm->copies),
+    };
+}
+
+static long engine_region(SmEngine *e, long number, long *member, long room)
+{
+    const Lsm *lsm = e->lsm;
+    const int *c = lsm->lattice.coord[number % e->count];
+    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    long count = 0, first = number / e->count * e->count;
+    lsm_region_rows(&lsm->lattice, &lsm->interior, number % e->count, rows);
+    for (int row = 0; row < lsm->side * lsm->side; row++)
+        for (uint64_t rest = rows[row]; rest; rest &= rest - 1, count++) {
+            if (count >= room) continue;
+            member[count] =
+                first + lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + __builtin_ctzll(rest),
+                                         c[1] - lsm->w + row % lsm->side,
+                                         c[2] - lsm->w + row / lsm->side);
+        }
+    return count;
+}
+
+const SmEngineType SM_NAME(fastlsm_engine) = {
+    .name = "fastlsm",
+    .precision = SM_REAL_BITS == 32 ? "single" : "double",
+    .create = engine_create,
+    .destroy = engine_destroy,
+    .step = engine_step,
+    .goals = engine_goals,
+    .get = engine_get,
+    .set = engine_set,
+    .push = engine_push,
+    .bound = engine_bound,
+    .masses = engine_masses,
+    .count = engine_count,
+    .region = engine_region,
+};

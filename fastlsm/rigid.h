@@ -1,0 +1,61 @@
+/* rigid.h - the rigid velocity of regions from their sums, SM_LANES at once (fastlsm eq. 14). */
+#ifndef LSM_RIGID_H
+#define LSM_RIGID_H
+
+#include "state.h"
+
+/* omega = I^-1 L of a tile by the adjugate. I is the inertia tr(S) - S of the spread
+ * S = sum m~ x x^T - M c c^T. A region on a line has no inertia about it: there (and where I is
+ * below what its sums resolve) the inverse is damped towards zero, as a pseudo-inverse would. */
+SM_INLINE void angular_velocity(const vec S[6], const vec L[3], vec size, vec omega[3])
+{
+    vec trace = S[0] + S[1] + S[2];
+    vec floor = (real)1e-3 * trace + 64 * SM_EPSILON * size + (real)1e-30;
+    vec xx = S[1] + S[2], yy = S[2] + S[0], zz = S[0] + S[1];
+    /* twice the smallest inertia of a planar or solid spread is at least tr S: only lines are
+     * lifted */
+    xx += lanes_max(floor - xx, lanes_set(0));
+    yy += lanes_max(floor - yy, lanes_set(0));
+    zz += lanes_max(floor - zz, lanes_set(0));
+    vec yz = -S[3], zx = -S[4], xy = -S[5];
+    vec Cxx = yy * zz - yz * yz, Cyy = zz * xx - zx * zx, Czz = xx * yy - xy * xy;
+    vec Cxy = yz * zx - xy * zz, Cyz = zx * xy - yz * xx, Czx = xy * yz - zx * yy;
+    vec determinant = xx * Cxx + xy * Cxy + zx * Czx;
+    vec least = (real)1e-4 * xx * yy * zz;
+    vec inverse = 1 / lanes_max(determinant, least);
+    omega[0] = (Cxx * L[0] + Cxy * L[1] + Czx * L[2]) * inverse;
+    omega[1] = (Cxy * L[0] + Cyy * L[1] + Cyz * L[2]) * inverse;
+    omega[2] = (Czx * L[0] + Cyz * L[1] + Czz * L[2]) * inverse;
+}
+
+/* From a tile's sums to (omega, v_r - omega x c_r). */
+SM_INLINE void rigid_velocity(const vec F[12], const vec c[3], vec inverse_mass, vec out[6])
+{
+    vec S[6], L[3], size = lanes_set(0);
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        vec Mc_e = inverse_mass * F[e], Mc_f = inverse_mass * F[f]; /* v_r */
+        L[d] = inverse_mass * F[3 + d] - (c[e] * Mc_f - c[f] * Mc_e);
+        S[d] = inverse_mass * F[6 + d] - c[d] * c[d];
+        S[3 + d] = inverse_mass * F[9 + d] - c[e] * c[f];
+        size += c[d] * c[d];
+    }
+    angular_velocity(S, L, size, out);
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        out[3 + d] = inverse_mass * F[d] - (out[e] * c[f] - out[f] * c[e]);
+    }
+}
+
+/* v += k (u - v) with u = (1/|R_i|) sum of omega x x_i + (v_r - omega x c_r); `sum` holds the two
+ * sums over the regions of the particles at x. */
+SM_INLINE void pull(const vec sum[6], vec inverse_count, real k, const vec x[3], vec v[3])
+{
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        vec u = inverse_count * (sum[e] * x[f] - sum[f] * x[e] + sum[3 + d]);
+        v[d] += k * (u - v[d]);
+    }
+}
+
+#endif

@@ -1,0 +1,229 @@
+/* What happens around the step - handles, obstacles, pushes, instances, fracture, long journeys -
+ * beside the brute-force engine. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "test_body.h"
+
+/* Both engines from the same state, `steps` steps; the largest difference in cells. */
+static double race(int precision, Body *body, SmEngineParams params, const SmBoundary *boundary,
+                   int steps)
+{
+    const SmEngineType *type = engines[precision];
+    long n = body->n * (params.instances > 1 ? params.instances : 1);
+    double(*a)[3] = triples(n), (*b)[3] = triples(n), (*v)[3] = triples(n), worst = 0;
+    SmEngine *fast, *slow;
+    SmError error;
+    params.mass = body->m;
+    assert_int_equal(type->create(&body->voxels, &params, &fast, &error), SM_OK);
+    assert_int_equal(ref_brute_engine.create(&body->voxels, &params, &slow, &error), SM_OK);
+    unsigned seed = 11;
+    type->get(fast, SM_REST, a);
+    for (long p = 0; p < n; p++)
+        for (int d = 0; d < 3; d++) a[p][d] += 0.1 * body->voxels.cell * (random_unit(&seed) - 0.5);
+    type->set(fast, SM_POSITION, (const double(*)[3])a);
+    type->get(fast, SM_POSITION, a);
+    ref_brute_engine.set(slow, SM_POSITION, (const double(*)[3])a);
+    if (boundary) type->bound(fast, boundary);
+    if (boundary) ref_brute_engine.bound(slow, boundary);
+    for (int step = 0; step < steps; step++) {
+        long pushed[2] = {0, n - 1};
+        double impulse[2][3] = {{0.1, 0, 0}, {0, -0.2, 0.1}};
+        type->push(fast, 2, pushed, (const double(*)[3])impulse);
+        ref_brute_engine.push(slow, 2, pushed, (const double(*)[3])impulse);
+        type->step(fast, NULL);
+        ref_brute_engine.step(slow, NULL);
+    }
+    type->get(fast, SM_POSITION, a);
+    ref_brute_engine.get(slow, SM_POSITION, b);
+    type->get(fast, SM_VELOCITY, v);
+    for (long p = 0; p < n; p++)
+        for (int d = 0; d < 3; d++) {
+            assert_true(isfinite(v[p][d]));
+            worst = fmax(worst, fabs(a[p][d] - b[p][d]) / body->voxels.cell);
+        }
+    SmCounts counts[2];
+    type->count(fast, &counts[0]);
+    ref_brute_engine.count(slow, &counts[1]);
+    assert_int_equal(counts[0].particles, counts[1].particles);
+    assert_int_equal(counts[0].regions, counts[1].regions);
+    assert_int_equal(counts[0].links, counts[1].links);
+    assert_int_equal(counts[0].broken, counts[1].broken);
+    assert_true(counts[0].bytes > 0);
+    type->destroy(fast);
+    ref_brute_engine.destroy(slow);
+    free(a);
+    free(b);
+    free(v);
+    return worst;
+}
+
+static void block(Body *body, int x, int y, int z)
+{
+    memset(body, 0, sizeof *body);
+    sm_voxels_init(&body->voxels, x, y, z, 0.5);
+    for (int k = 0; k < z; k++)
+        for (int j = 0; j < y; j++)
+            for (int i = 0; i < x; i++)
+                if (i + j + k != 3) sm_voxel_set(&body->voxels, i, j, k);
+    sm_voxels_count(&body->voxels);
+    body_arrays(body);
+}
+
+static const double limit[2] = {2e-3, 1e-9}; /* tens of steps magnify single precision's rounding */
+
+static void test_handles(void **state)
+{
+    (void)state;
+    for (int precision = 0; precision < 2; precision++)
+        for (int layout = 1; layout <= 2; layout++) {
+            Body body;
+            block(&body, 9, 4, 3);
+            long left[3] = {0, 10, 20}, right[2] = {9, 19};
+            SmHandle handle[2] = {
+                {.count = 3, .particle = left, .pose = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
+                {.count = 2,
+                 .particle = right,
+                 .pose = {{0.8, -0.6, 0, 1}, {0.6, 0.8, 0, 0}, {0, 0, 1, 0}}}};
+            SmBoundary boundary = {.handle_count = 2, .handle = handle};
+            SmEngineParams params = {.w = 2,
+                                     .h = 0.01,
+                                     .damping = 0.1,
+                                     .gravity = {0, -9.81, 0},
+                                     .layout = (SmLayout)layout};
+            assert_true(race(precision, &body, params, &boundary, 25) < limit[precision]);
+            body_free(&body);
+        }
+}
+
+static void test_obstacles(void **state)
+{
+    (void)state;
+    const SmObstacle obstacle[4] = {
+        {.kind = SM_PLANE, .a = {0, -0.1, 0}, .b = {0, 1, 0}, .friction = 0.3},
+        {.kind = SM_SPHERE, .a = {1, 0.3, 1}, .radius = 0.7, .friction = 0.1},
+        {.kind = SM_BOX, .a = {3, -1, -1}, .b = {3.4, 0.4, 9}},
+        {.kind = SM_CAPSULE, .a = {0, 0.2, 0}, .b = {5, 0.2, 0}, .radius = 0.3, .friction = 1},
+    };
+    for (int precision = 0; precision < 2; precision++)
+        for (int n = 0; n < 4; n++) {
+            Body body;
+            block(&body, 9, 4, 3);
+            SmBoundary boundary = {.obstacle_count = 1, .obstacle = &obstacle[n]};
+            SmEngineParams params = {
+                .w = 1, .h = 0.01, .damping = n % 2 ? 0.2 : 0, .gravity = {0, -9.81, 0}};
+            double worst = race(precision, &body, params, &boundary, 12);
+            if (!(worst < 2 * limit[precision])) fail_msg("obstacle %d: %g cells", n, worst);
+            body_free(&body);
+        }
+}
+
+static void test_instances(void **state)
+{
+    (void)state;
+    double pose[19][3][4];
+    for (int i = 0; i < 19; i++) {
+        double c = cos(i), s = sin(i),
+               p[3][4] = {{c, -s, 0, 9.0 * i}, {s, c, 0, -i}, {0, 0, 1, 100}};
+        memcpy(pose[i], p, sizeof p);
+    }
+    const SmObstacle ground = {.kind = SM_PLANE, .a = {0, 1, 0}, .b = {0, 1, 0}};
+    SmBoundary boundary = {.obstacle_count = 1, .obstacle = &ground};
+    for (int trial = 0; trial < 12; trial++) {
+        Body body;
+        block(&body, 4, 5, 3);
+        SmEngineParams params = {.w = 1 + trial / 2 % 3,
+                                 .h = 0.01,
+                                 .damping = trial / 6 * 0.2,
+                                 .gravity = {0, -9.81, 0},
+                                 .instances = 19,
+                                 .instance_pose = (const double(*)[3][4])pose,
+                                 .threads = 1 + trial % 2};
+        double worst = race(trial % 2, &body, params, &boundary, 20);
+        if (!(worst < limit[trial % 2])) fail_msg("trial %d: %g cells", trial, worst);
+        body_free(&body);
+    }
+}
+
+/* Breaking while it runs equals the reference, which builds all regions anew. */
+static void test_fracture(void **state)
+{
+    (void)state;
+    for (int trial = 0; trial < 8; trial++) {
+        Body body;
+        block(&body, 12, 4, 3);
+        long left[2] = {0, 13}, right[2] = {12, 25};
+        SmHandle handle[2] = {
+            {.count = 2, .particle = left, .pose = {{1, 0, 0, -0.3}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
+            {.count = 2, .particle = right, .pose = {{1, 0, 0, 0.4}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
+        SmBoundary boundary = {.handle_count = 2, .handle = handle};
+        SmEngineParams params = {.w = 1 + trial / 4,
+                                 .h = 0.01,
+                                 .damping = 0.1,
+                                 .strain_limit = 1.25,
+                                 .layout = (SmLayout)(1 + trial / 2 % 2)};
+        int precision = trial % 2;
+        double worst = race(precision, &body, params, &boundary, 10);
+        if (!(worst < 5 * limit[precision])) fail_msg("trial %d: %g cells", trial, worst);
+        body_free(&body);
+    }
+}
+
+/* Falling 10,000 cells far, goals stay as exact as at home. */
+static void test_journey(void **state)
+{
+    (void)state;
+    Body body;
+    block(&body, 9, 4, 3);
+    SmEngineParams params = {.w = 2, .h = 0.01, .gravity = {0, -981, 0}};
+    SmEngine *engine = create(&fastlsm_engine_f32, &body, params);
+    RefRegions regions;
+    ref_regions_build(&body.voxels, 2, NULL, 0, &regions);
+    for (int step = 0; step < 320; step++) fastlsm_engine_f32.step(engine, NULL);
+    fastlsm_engine_f32.get(engine, SM_POSITION, body.x);
+    assert_true(body.x[0][1] < -4000);
+    fastlsm_engine_f32.goals(engine);
+    fastlsm_engine_f32.get(engine, SM_GOAL, body.a);
+    ref_goals(&regions, (const double(*)[3])body.x0, body.m, (const double(*)[3])body.x, body.b);
+    assert_true(difference(&body, (const double(*)[3])body.a, (const double(*)[3])body.b) < 5e-5);
+    ref_regions_free(&regions);
+    fastlsm_engine_f32.destroy(engine);
+    body_free(&body);
+}
+
+static void test_bad_parameters(void **state)
+{
+    (void)state;
+    Body body;
+    block(&body, 2, 2, 2);
+    const SmEngineParams bad[] = {{.w = 0, .h = 0.01},
+                                  {.w = 99, .h = 0.01},
+                                  {.w = 1, .h = 0},
+                                  {.w = 1, .h = NAN},
+                                  {.w = 1, .h = 0.01, .damping = 2},
+                                  {.w = 1, .h = 0.01, .instances = 2, .strain_limit = 2}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        SmEngine *engine;
+        SmError error = {0};
+        assert_int_equal(fastlsm_engine_f32.create(&body.voxels, &bad[i], &engine, &error),
+                         SM_INPUT);
+        assert_true(strlen(error.text) > 10);
+    }
+    body_free(&body);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_handles),   cmocka_unit_test(test_obstacles),
+        cmocka_unit_test(test_instances), cmocka_unit_test(test_fracture),
+        cmocka_unit_test(test_journey),   cmocka_unit_test(test_bad_parameters),
+    };
+    return cmocka_run_group_tests_name("fastlsm_engine", tests, NULL, NULL);
+}

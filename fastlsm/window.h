@@ -1,0 +1,33 @@
+/* window.h - one stage of the moment chain (summation.h) over lanes: a sum over 2w+1 places. */
+#ifndef LSM_WINDOW_H
+#define LSM_WINDOW_H
+
+#include "state.h"
+
+/* sum over 2w+1 places of F values `stride` apart; place c starts at in[c]. Moments of values
+ * `first` .. `first` + 2 go to `moment`. */
+SM_INLINE void window_sum(const real *const *in, long stride, int w, int F, int first, vec *sum,
+                          vec *moment)
+{
+    for (int f = 0; f < F; f++) {
+        vec value = lanes_load(in[0] + f * stride);
+        sum[f] = value;
+        if (first >= 0 && f >= first && f < first + 3) moment[f - first] = -(real)w * value;
+    }
+    for (int c = 1; c <= 2 * w; c++)
+        for (int f = 0; f < F; f++) {
+            vec value = lanes_load(in[c] + f * stride);
+            sum[f] += value;
+            if (first >= 0 && f >= first && f < first + 3 && c != w)
+                moment[f - first] += (real)(c - w) * value;
+        }
+}
+
+/* Takes the moment off the first three sums and leaves the last three out. */
+SM_INLINE void finish_down(vec *sum, const vec *moment, bool damping)
+{
+    if (damping) return;
+    for (int d = 0; d < 3; d++) sum[d] -= moment[d];
+}
+
+#endif
