@@ -9,11 +9,12 @@
  * sum o * (last three) off the first three. */
 enum { UP = 12, MOST = 12 };
 
-/* Scratch of a thread, rows of a plane. Rings hold rows y - w .. y + w; their rows lie block by
- * block, [width][F][lanes]. `line` and `solved` lie value by value, [F][(width + 2) lanes], with an
- * empty block at each end, because the x stages read at every lane offset. */
+/* Scratch of a thread, rows of a plane, block by block: [width + 2][MOST][lanes], with an empty block
+ * at each end for the x stages. Rings hold rows y - w .. y + w. */
+enum { BLOCK = MOST * SM_LANES };
+
 typedef struct {
-    long pitch; /* (width + 2) * lanes */
+    long pitch; /* (width + 2) blocks */
     int side;
     real *above;  /* [side] rows after the z stage up */
     real *line;   /* the row after the y stage up */
@@ -23,17 +24,17 @@ typedef struct {
 
 static Scratch scratch_of(const Lsm *lsm, int thread)
 {
-    Scratch s = {.pitch = (lsm->box->width + 2) * (long)SM_LANES, .side = lsm->side};
-    s.above = lsm->box->scratch[thread];
-    s.line = s.above + s.side * s.pitch * MOST;
-    s.solved = s.line + s.pitch * MOST;
-    s.below = s.solved + s.pitch * MOST;
+    Scratch s = {.pitch = (lsm->box->width + 2) * (long)BLOCK, .side = lsm->side};
+    s.above = lsm->box->scratch[thread] + BLOCK;
+    s.line = s.above + s.side * s.pitch;
+    s.solved = s.line + s.pitch;
+    s.below = s.solved + s.pitch;
     return s;
 }
 
 SM_INLINE real *ring_row(const Scratch *s, real *ring, int y)
 {
-    return ring + ((y + s->side) % s->side) * s->pitch * MOST;
+    return ring + ((y + s->side) % s->side) * s->pitch;
 }
 
 /* m~ x of a block, or the products that damping sums: what the z stage up takes. */
@@ -77,7 +78,7 @@ SM_INLINE void row_z_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, 
     real *ring = ring_row(s, s->above, y);
     int next = row ? row->first : 0, last = row ? row->first + row->count : 0;
     for (int column = 0; column < lsm->box->width; column++) {
-        real *out = ring + column * (long)MOST * SM_LANES;
+        real *out = ring + column * (long)BLOCK;
         if (next >= last || lsm->box->column[next] != column) {
             memset(out, 0, (size_t)F * SM_LANES * sizeof(real));
             continue;
@@ -99,18 +100,18 @@ SM_INLINE void row_y_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int w, 
     for (int b = 0; b < 2 * w + 1; b++) in[b] = ring_row(s, s->above, row->y + b - w);
     int next = row->first, last = row->first + row->count;
     for (int column = 0; column < lsm->box->width; column++) {
-        real *out = s->line + (column + 1) * (long)SM_LANES;
+        real *out = s->line + column * (long)BLOCK;
         vec sum[MOST + 3];
         bool absent = next >= last || lsm->box->column[next] != column;
         if (absent) {
-            for (int f = 0; f < out_F; f++) lanes_store(out + f * s->pitch, lanes_set(0));
+            for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, lanes_set(0));
         } else {
             const real *at[LSM_MAX_SIDE];
-            for (int b = 0; b < 2 * w + 1; b++) at[b] = in[b] + column * (long)MOST * SM_LANES;
+            for (int b = 0; b < 2 * w + 1; b++) at[b] = in[b] + column * (long)BLOCK;
             window_sum(at, SM_LANES, w, F, damping ? -1 : 0, sum, sum + F);
             if (w == 1 && !lsm->box->whole[next])
                 for (int f = 0; f < out_F; f++) sum[f] = lanes_and(sum[f], lsm->box->site[next]);
-            for (int f = 0; f < out_F; f++) lanes_store(out + f * s->pitch, sum[f]);
+            for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, sum[f]);
             next++;
         }
     }
@@ -123,18 +124,16 @@ SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, const BlockRow *row, int la
     int F = damping ? 12 : 9, out_F = damping ? 6 : 12;
     int next = row->first, last = row->first + row->count;
     for (int column = 0; column < lsm->box->width; column++) {
-        real *out = s->solved + (column + 1) * (long)SM_LANES;
+        real *out = s->solved + column * (long)BLOCK;
         vec sum[MOST + 3], result[MOST];
         if (next >= last || lsm->box->column[next] != column) {
-            for (int f = 0; f < out_F; f++) lanes_store(out + f * s->pitch, lanes_set(0));
+            for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, lanes_set(0));
             continue;
         }
-        const real *at[LSM_MAX_SIDE];
-        for (int a = 0; a < 2 * w + 1; a++) at[a] = s->line + (column + 1) * (long)SM_LANES + a - w;
-        window_sum(at, s->pitch, w, F, damping ? -1 : 0, sum, sum + F);
+        window_sum_x(s->line + column * (long)BLOCK, BLOCK, w, F, damping ? -1 : 0, sum, sum + F);
         sm_lap(laps, damping ? SM_DAMPING : SM_FAST_SUM);
         solve(lsm, layer, next, sum, result, laps);
-        for (int f = 0; f < out_F; f++) lanes_store(out + f * s->pitch, result[f]);
+        for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, result[f]);
         next++;
     }
 }
@@ -147,16 +146,13 @@ SM_INLINE void row_x_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int y
     real *ring = ring_row(s, s->below, y);
     int next = row ? row->first : 0, last = row ? row->first + row->count : 0;
     for (int column = 0; column < lsm->box->width; column++) {
-        real *out = ring + column * (long)MOST * SM_LANES;
+        real *out = ring + column * (long)BLOCK;
         if (next >= last || lsm->box->column[next] != column) {
             memset(out, 0, (size_t)out_F * SM_LANES * sizeof(real));
             continue;
         }
-        const real *at[LSM_MAX_SIDE];
         vec sum[MOST], moment[3];
-        for (int a = 0; a < 2 * w + 1; a++)
-            at[a] = s->solved + (column + 1) * (long)SM_LANES + a - w;
-        window_sum(at, s->pitch, w, F, damping ? -1 : 9, sum, moment);
+        window_sum_x(s->solved + column * (long)BLOCK, BLOCK, w, F, damping ? -1 : 9, sum, moment);
         finish_down(sum, moment, damping);
         if (w == 1 && !lsm->box->whole[next])
             for (int f = 0; f < out_F; f++) sum[f] = lanes_and(sum[f], lsm->box->site[next]);
@@ -177,7 +173,7 @@ SM_INLINE void row_y_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int p
         const real *at[LSM_MAX_SIDE];
         vec sum[MOST], moment[3];
         for (int b = 0; b < 2 * w + 1; b++)
-            at[b] = in[b] + lsm->box->column[block] * (long)MOST * SM_LANES;
+            at[b] = in[b] + lsm->box->column[block] * (long)BLOCK;
         window_sum(at, SM_LANES, w, F, damping ? -1 : 6, sum, moment);
         finish_down(sum, moment, damping);
         if (w == 1 && !lsm->box->whole[block])
@@ -194,16 +190,16 @@ static const BlockRow *row_at(const Lsm *lsm, int plane, int *row, int y)
     return *row < box->plane_row[plane + 1] && box->row[*row].y == y ? &box->row[*row] : NULL;
 }
 
-/* A plane's rows as a pipeline: row y goes up along z when row y - w is solved, and comes down
- * along y when row y + w is. */
+/* A plane's rows as a pipeline: row y goes up along z when row y - w is solved, and row y - 2w comes
+ * down along y. */
 SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, BlockSolve *solve,
                           SmLaps *laps)
 {
     Blocks *box = lsm->box;
     if (box->plane_row[plane] == box->plane_row[plane + 1]) return;
     Scratch s = scratch_of(lsm, thread);
-    int first = box->row[box->plane_row[plane]].y, last = box->row[box->plane_row[plane + 1] - 1].y;
-    int walk[3] = {box->plane_row[plane], box->plane_row[plane], box->plane_row[plane]};
+    int begin = box->plane_row[plane], first = box->row[begin].y;
+    int last = box->row[box->plane_row[plane + 1] - 1].y, walk[3] = {begin, begin, begin};
     SmStage stage = damping ? SM_DAMPING : SM_FAST_SUM;
     for (int b = 1; b <= 2 * w; b++) { /* rows before the first */
         row_z_up(lsm, &s, NULL, first - b, w, damping);

@@ -174,7 +174,7 @@ long lsm_blocks_irregular(const Lsm *lsm, bool *wanted)
 static size_t scratch_size(const Lsm *lsm)
 {
     size_t width = (size_t)lsm->box->width + 2, side = (size_t)lsm->side;
-    return width * SM_LANES * (2 * side * 12 + 24) + SM_LANES;
+    return width * SM_LANES * (2 * side + 2) * 12;
 }
 
 static void free_shared(Blocks *box)

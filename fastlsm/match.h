@@ -14,7 +14,9 @@ SM_INLINE void last_store(short *last, const vec R[9])
 {
     for (int i = 0; i < 3; i++)
         for (int column = 0; column < 2; column++) {
-            short_vec packed = __builtin_convertvector(R[i * 3 + column] * 32767, short_vec);
+            /* by way of whole lanes: compilers convert straight to short one by one */
+            ivec whole = __builtin_convertvector(R[i * 3 + column] * 32767, ivec);
+            short_vec packed = __builtin_convertvector(whole, short_vec);
             memcpy(last + (column * 3 + i) * SM_LANES, &packed, sizeof packed);
         }
 }

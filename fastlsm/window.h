@@ -23,6 +23,24 @@ SM_INLINE void window_sum(const real *const *in, long stride, int w, int F, int 
         }
 }
 
+/* The same along x: offsets are lanes of the block at `in` and of its neighbours on either side, `next`
+ * values away. o = SM_LANES takes a whole neighbour. */
+SM_INLINE void window_sum_x(const real *in, long next, int w, int F, int first, vec *sum, vec *moment)
+{
+    for (int f = 0; f < F; f++) {
+        const real *value = in + f * SM_LANES;
+        vec before = lanes_load(value - next), here = lanes_load(value), after = lanes_load(value + next);
+        bool weighted = first >= 0 && f >= first && f < first + 3;
+        sum[f] = here;
+        if (weighted) moment[f - first] = lanes_set(0);
+        for (int o = 1; o <= w; o++) {
+            vec left = lanes_slide(before, here, SM_LANES - o), right = lanes_slide(here, after, o);
+            sum[f] += left + right;
+            if (weighted) moment[f - first] += (real)o * (right - left);
+        }
+    }
+}
+
 /* Takes the moment off the first three sums and leaves the last three out. */
 SM_INLINE void finish_down(vec *sum, const vec *moment, bool damping)
 {

@@ -7,7 +7,7 @@
 
 #include "real.h"
 
-#if defined(__AVX512F__) && SM_REAL_BITS == 32
+#ifdef __AVX512F__
 #include <immintrin.h>
 #endif
 
@@ -42,7 +42,13 @@ SM_INLINE vec lanes_and(vec v, ivec mask)
 
 SM_INLINE vec lanes_max(vec a, vec b)
 {
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return (vec)_mm512_max_ps((__m512)a, (__m512)b);
+#elif defined(__AVX512F__)
+    return (vec)_mm512_max_pd((__m512d)a, (__m512d)b);
+#else
     return lanes_select(a > b, a, b);
+#endif
 }
 
 SM_INLINE vec lanes_abs(vec v)
@@ -100,6 +106,23 @@ SM_INLINE int lanes_any(ivec mask)
     lane_int any = 0;
     for (int i = 0; i < SM_LANES; i++) any |= mask[i];
     return any != 0;
+#endif
+}
+
+/* Lanes o .. o + SM_LANES - 1 of the two vectors low, high laid end to end; 0 <= o <= SM_LANES. */
+SM_INLINE vec lanes_slide(vec low, vec high, int o)
+{
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    const __m512i lane = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+    return (vec)_mm512_permutex2var_ps((__m512)low, _mm512_add_epi32(lane, _mm512_set1_epi32(o)), (__m512)high);
+#elif defined(__AVX512F__)
+    const __m512i lane = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
+    return (vec)_mm512_permutex2var_pd((__m512d)low, _mm512_add_epi64(lane, _mm512_set1_epi64(o)), (__m512d)high);
+#else
+    real both[2 * SM_LANES];
+    lanes_store(both, low);
+    lanes_store(both + SM_LANES, high);
+    return lanes_load(both + o);
 #endif
 }
 

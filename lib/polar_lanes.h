@@ -31,42 +31,43 @@ SM_INLINE vec polar_norm(const vec A[9])
     return even + odd + A[8] * A[8];
 }
 
-/* tr U by Newton from above: (s1+s2+s3)^2 = I + 2 (s1 s2 + ..) <= I + 2 sqrt(3 II). A rough
- * reciprocal does: the iteration mends it. It is quadratic, so a small change is the last. */
+/* tr U by Halley's iteration from above: (s1+s2+s3)^2 = I + 2 (s1 s2 + ..) <= I + 2 sqrt(3 II), with
+ * equality where all stretches agree. Convergence is cubic, so a small change is the last one, and
+ * rough reciprocals do: the iteration mends them. */
 SM_INLINE vec polar_trace(vec I, vec II, vec J)
 {
-    const real enough = SM_REAL_BITS == 32 ? (real)1e-4 : (real)1e-9;
-    vec l = lanes_rough_root(I + 2 * lanes_rough_root(3 * II + SM_EPSILON)) * (real)1.0001;
+    const real enough = SM_REAL_BITS == 32 ? (real)1e-3 : (real)1e-6;
+    vec l = lanes_rough_root(I + 2 * lanes_rough_root(3 * II + SM_EPSILON));
     vec constant = I * I - 4 * II, J8 = 8 * J;
-    for (int step = 0; step < 24; step++) {
+    for (int step = 0; step < 16; step++) {
         vec square = l * l;
         vec f = (square * (square - 2 * I) + constant) - J8 * l;
-        vec slope = 4 * l * (square - I) - J8;
-        vec change = f * lanes_rough_inverse(lanes_max(slope, lanes_set((real)1e-6)));
+        vec slope = 4 * l * (square - I) - J8, curve = 6 * square - 2 * I;
+        vec change = f * slope * lanes_rough_inverse(lanes_max(slope * slope - f * curve, lanes_set((real)1e-12)));
         l -= change;
         if (!lanes_any(lanes_abs(change) > enough * l)) break;
     }
     return l;
 }
 
-/* R of SM_LANES matrices. Returns the lanes (all bits set) that are near a tie and were left
- * undefined. Any scale: A is first divided by its largest entry. */
+/* R of SM_LANES matrices. Returns the lanes (all bits set) that are near a tie, or of a scale whose
+ * square leaves the range, and were left undefined. A is first divided by about |A|. */
 SM_INLINE ivec polar_quartic(const vec A[9], vec R[9])
 {
-    vec scale = lanes_abs(A[0]);
-    for (int i = 1; i < 9; i++) scale = lanes_max(scale, lanes_abs(A[i]));
-    vec inverse = lanes_rough_inverse(scale), B[9], C[9], D[9];
+    vec square = polar_norm(A);
+    vec inverse = lanes_rough_inverse(lanes_rough_root(square)), B[9], C[9], D[9];
     for (int i = 0; i < 9; i++) B[i] = A[i] * inverse;
     polar_cofactor(B, C);
-    vec I = polar_norm(B), II = polar_norm(C), J = B[0] * C[0] + B[1] * C[1] + B[2] * C[2];
+    vec I = square * inverse * inverse, II = polar_norm(C);
+    vec J = B[0] * C[0] + B[1] * C[1] + B[2] * C[2];
     vec l = polar_trace(I, II, J), i2 = (real)0.5 * (l * l - I);
     vec over_l = lanes_inverse(l), below = l * i2 - J, over = lanes_inverse(below);
     for (int i = 0; i < 9; i++) D[i] = B[i] + C[i] * over_l;
     polar_cofactor(D, R);
     vec first = l * over, second = (i2 - J * over_l) * over;
     for (int i = 0; i < 9; i++) R[i] = first * R[i] + second * B[i];
-    /* written so that a NaN counts as a tie; 1e-30 keeps 1/scale and the cofactors normal */
-    return ~((below > (real)0.03 * l * l * l) & (scale > (real)1e-30) & (scale < (real)1e30));
+    /* written so that a NaN counts as a tie */
+    return ~((below > (real)0.03 * l * l * l) & (square > (real)1e-30) & (square < (real)1e30));
 }
 
 /* Redoes the lanes of `tie` one by one, keeping near the last rotation. */
