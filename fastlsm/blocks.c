@@ -125,15 +125,14 @@ SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, const BlockRow *row, int la
     int next = row->first, last = row->first + row->count;
     for (int column = 0; column < lsm->box->width; column++) {
         real *out = s->solved + column * (long)BLOCK;
-        vec sum[MOST + 3], result[MOST];
+        vec sum[MOST + 3];
         if (next >= last || lsm->box->column[next] != column) {
             for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, lanes_set(0));
             continue;
         }
         window_sum_x(s->line + column * (long)BLOCK, BLOCK, w, F, damping ? -1 : 0, sum, sum + F);
         sm_lap(laps, damping ? SM_DAMPING : SM_FAST_SUM);
-        solve(lsm, layer, next, sum, result, laps);
-        for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, result[f]);
+        solve(lsm, layer, next, sum, (vec *)out, laps);
         next++;
     }
 }

@@ -44,7 +44,7 @@ struct Blocks {
 
 /* What a pass does with the 12 sums of a block's regions; it gives back 12 values to bring down
  * (shape matching: q, Rz, Ry, Rx) or 6 (damping: omega, v_r - omega x c_r). */
-typedef void BlockSolve(Lsm *lsm, int layer, long block, const vec *sum, vec *out, SmLaps *laps);
+typedef void BlockSolve(Lsm *lsm, int layer, long block, vec *sum, vec *out, SmLaps *laps);
 
 /* Blocks, rows and neighbours of the lattice; sets lsm->blocks, slot, particle, layers. */
 void lsm_blocks_build(Lsm *lsm);

@@ -277,7 +277,7 @@ static void build_regions(Lsm *lsm)
     build_constants(lsm);
 }
 
-static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
+SmCode lsm_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
 {
     if (voxels->particle_count < 1)
         return sm_fail(error, SM_INPUT, "the body has no material: nothing to simulate");
@@ -293,10 +293,8 @@ static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmErro
     return SM_OK;
 }
 
-SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **out, SmError *error)
+Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
 {
-    SmCode code = check(voxels, params, error);
-    if (code) return code;
     Lsm *lsm = sm_alloc(1, sizeof *lsm);
     lsm->params = *params;
     lsm->w = params->w;
@@ -307,8 +305,7 @@ SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **out
     lsm->mass = sm_alloc((size_t)n, sizeof(double));
     for (long p = 0; p < n; p++) lsm->mass[p] = params->mass ? params->mass[p] : 1;
     lsm->members = sm_alloc((size_t)n, sizeof(int));
-    if (params->layout == SM_LAYOUT_BLOCKS && params->w <= SM_LANES &&
-        params->summation != SM_SUM_NAIVE) {
+    if (params->layout == SM_LAYOUT_BLOCKS) {
         lsm_blocks_build(lsm);
     } else {
         build_layers(lsm);
@@ -317,8 +314,9 @@ SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **out
     lsm->x = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->v = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     build_regions(lsm);
-    *out = lsm;
-    return SM_OK;
+    lsm->params.mass = NULL; /* the caller's, as is what follows */
+    lsm->params.instance_pose = NULL;
+    return lsm;
 }
 
 static void free_rows(Rows *rows)

@@ -4,14 +4,18 @@
 
 #include "state.h"
 
+#define lsm_check           SM_NAME(lsm_check)
 #define lsm_build           SM_NAME(lsm_build)
 #define lsm_rebuild_regions SM_NAME(lsm_rebuild_regions)
 #define lsm_bytes           SM_NAME(lsm_bytes)
 #define lsm_free            SM_NAME(lsm_free)
 
 /* Lattice, regions, slots, lists and constants of a body; the state is zero, for the caller to set.
- * Linear in particles at fixed w. */
-SmCode lsm_build(const SmVoxels *voxels, const SmEngineParams *params, Lsm **lsm, SmError *error);
+ * Linear in particles at fixed w. params->layout is LISTS or BLOCKS, as lsm_turn_choose() resolved it. */
+Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params);
+
+/* Whether a body and its parameters can be built; SM_INPUT says what is wrong. */
+SmCode lsm_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error);
 
 /* Everything that follows from the lattice's links, anew; positions, velocities and last rotations
  * stay. */

@@ -173,7 +173,12 @@ static void match_region(Crowd *crowd, long group, const GroupRows *r, long p, S
     vec S[15], c[3], A[9], R[9], q[3];
     RegionConst k = {.inverse_mass = lanes_set(crowd->region[p][0])};
     for (int d = 0; d < 3; d++) k.offset[d] = lanes_set(crowd->region[p][1 + d]);
-    last_level(crowd, r->plate, PLATE, p, 9, 0, S);
+    last_level(crowd, r->plate, PLATE, p, 9, 0, S); /* (C, Cx, Cy, Cz) */
+    for (int i = 0; i < 3; i++) {
+        vec x_moment = S[3 + i];
+        S[3 + i] = S[9 + i];
+        S[9 + i] = x_moment;
+    }
     sm_lap(laps, SM_FAST_SUM);
     match_moments(S, &k, c, A);
     store3(r->centre + p * 3 * L, c);

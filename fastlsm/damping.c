@@ -64,11 +64,10 @@ static void solve_tile(Lsm *lsm, long tile)
     store_velocities(lsm, tile, out);
 }
 
-static void solve_block(Lsm *lsm, int layer, long block, const vec *sum, vec *out, SmLaps *laps)
+static void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, SmLaps *laps)
 {
     (void)layer, (void)laps;
-    vec F[12], c[3];
-    for (int i = 0; i < 12; i++) F[i] = sum[i];
+    vec c[3];
     for (int lane = 0; lane < SM_LANES && lsm->box->mixed[block]; lane++) {
         int region = lsm->block_region[block * SM_LANES + lane];
         if (region < 0) continue;

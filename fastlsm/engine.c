@@ -9,6 +9,7 @@
 #include "fracture.h"
 #include "match.h"
 #include "step.h"
+#include "turn.h"
 
 enum { RECENTRE_STEPS = 16 };
 
@@ -17,6 +18,8 @@ struct SmEngine {
     Crowd *crowd; /* NULL: one body */
     long count;   /* particles of one body */
     long bodies;
+    int turn;      /* turn.h */
+    int *inner;    /* [count] particle numbers in the lattice as turned */
     double (*pose)[3][4]; /* [bodies] */
     int handle_count;
     SmHandle *handle;    /* our copies */
@@ -34,7 +37,8 @@ static void rest_position(const SmEngine *e, long number, double x0[3])
 {
     const LsmLattice *l = &e->lsm->lattice;
     double rest[3];
-    for (int d = 0; d < 3; d++) rest[d] = l->origin[d] + l->cell * l->coord[number % e->count][d];
+    for (int d = 0; d < 3; d++)
+        rest[(d + e->turn) % 3] = l->origin[d] + l->cell * l->coord[e->inner[number % e->count]][d];
     place((const double(*)[4])e->pose[number / e->count], rest, x0);
 }
 
@@ -42,11 +46,11 @@ static void rest_position(const SmEngine *e, long number, double x0[3])
 static long index_of(const SmEngine *e, long number, int d, const double **origin)
 {
     if (e->crowd) {
-        long body = number / e->count, p = number % e->count, group = body / SM_LANES;
+        long body = number / e->count, p = e->inner[number % e->count], group = body / SM_LANES;
         *origin = e->crowd->origin[body];
         return ((group * e->count + p) * 3 + d) * SM_LANES + body % SM_LANES;
     }
-    long slot = e->lsm->slot[number];
+    long slot = e->lsm->slot[e->inner[number]];
     *origin = e->lsm->origin;
     return (slot / SM_LANES * 3 + d) * SM_LANES + slot % SM_LANES;
 }
@@ -116,7 +120,7 @@ static void turn_last(SmEngine *e, long body)
 {
     short *last = e->crowd ? e->crowd->last : e->lsm->last;
     vec R[9];
-    for (int i = 0; i < 9; i++) R[i] = lanes_set((real)e->pose[body][i / 3][i % 3]);
+    for (int i = 0; i < 9; i++) R[i] = lanes_set((real)e->pose[body][i / 3][(i % 3 + e->turn) % 3]);
     short turned[6 * SM_LANES];
     last_store(turned, R);
     long tiles = e->crowd ? e->count : e->lsm->tiles,
@@ -150,40 +154,47 @@ static void start_at_rest(SmEngine *e)
     if (e->crowd) fill_empty_lanes(e);
 }
 
+/* The body in the turned lattice, with masses in its numbering. */
+static void build_turned(SmEngine *e, const SmVoxels *voxels, const SmEngineParams *params)
+{
+    SmEngineParams own = *params;
+    SmVoxels turned;
+    double *mass = NULL;
+    own.layout = lsm_turn_choose(voxels, params, SM_LANES, &e->turn);
+    lsm_turn_voxels(voxels, e->turn, &turned);
+    e->inner = sm_alloc((size_t)voxels->particle_count, sizeof(int));
+    lsm_turn_numbers(voxels, e->turn, &turned, e->inner);
+    if (params->mass) {
+        own.mass = mass = sm_alloc((size_t)voxels->particle_count, sizeof(double));
+        for (long p = 0; p < voxels->particle_count; p++) mass[e->inner[p]] = params->mass[p];
+    }
+    e->lsm = lsm_build(&turned, &own);
+    sm_voxels_free(&turned);
+    free(mass);
+}
+
 static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
                             SmError *error)
 {
     static const double identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     double start = sm_now();
+    if (params->instances > 1 && params->strain_limit > 0)
+        return sm_fail(error, SM_INPUT, "strain_limit: instances share one lattice and cannot break; "
+                                        "use one instance, or strain_limit 0");
+    SmCode code = lsm_check(voxels, params, error);
+    if (code) return code;
     SmEngine *e = sm_alloc(1, sizeof *e);
-    SmEngineParams own = *params;
     e->bodies = params->instances > 1 ? params->instances : 1;
-    if (e->bodies > 1) own.layout = SM_LAYOUT_LISTS; /* crowd.h runs the lists */
-    if (e->bodies > 1 && params->strain_limit > 0) {
-        free(e);
-        return sm_fail(error, SM_INPUT,
-                       "strain_limit: instances share one lattice and cannot break; "
-                       "use one instance, or strain_limit 0");
-    }
-    SmCode code = lsm_build(voxels, &own, &e->lsm, error);
-    if (code) {
-        free(e);
-        return code;
-    }
+    e->count = voxels->particle_count;
+    build_turned(e, voxels, params);
     Lsm *lsm = e->lsm;
-    e->count = lsm->lattice.count;
     e->pose = sm_alloc((size_t)e->bodies, sizeof *e->pose);
     for (long body = 0; body < e->bodies; body++)
-        memcpy(e->pose[body], params->instance_pose ? params->instance_pose[body] : identity,
-               sizeof *e->pose);
-    if (e->bodies > 1)
-        e->crowd = crowd_build(lsm, e->bodies);
-    else
-        lsm->g = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
+        memcpy(e->pose[body], params->instance_pose ? params->instance_pose[body] : identity, sizeof *e->pose);
+    if (e->bodies > 1) e->crowd = crowd_build(lsm, e->bodies);
+    else lsm->g = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     for (int d = 0; d < 3; d++)
         lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
-    lsm->params.mass = NULL;
-    lsm->params.instance_pose = NULL;
     start_at_rest(e);
     e->build_seconds = sm_now() - start;
     *engine = e;
@@ -203,6 +214,7 @@ static void engine_destroy(SmEngine *e)
     free_handles(e);
     crowd_free(e->crowd);
     lsm_free(e->lsm);
+    free(e->inner);
     free(e->pose);
     free(e);
 }
@@ -276,7 +288,7 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     real *v = field_of(e, SM_VELOCITY);
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->bodies * e->count);
-        double scale = e->lsm->params.h / (e->lsm->cell * e->lsm->mass[particle[i] % e->count]);
+        double scale = e->lsm->params.h / (e->lsm->cell * e->lsm->mass[e->inner[particle[i] % e->count]]);
         for (int d = 0; d < 3; d++) {
             const double *origin;
             v[index_of(e, particle[i], d, &origin)] += (real)(impulse[i][d] * scale);
@@ -345,7 +357,7 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 
 static void engine_masses(SmEngine *e, double *mass)
 {
-    memcpy(mass, e->lsm->mass, (size_t)e->count * sizeof *mass);
+    for (long p = 0; p < e->count; p++) mass[p] = e->lsm->mass[e->inner[p]];
 }
 
 static void engine_count(SmEngine *e, SmCounts *counts)
@@ -364,21 +376,31 @@ static void engine_count(SmEngine *e, SmCounts *counts)
     };
 }
 
+static int compare_numbers(const void *a, const void *b)
+{
+    const long *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
 static long engine_region(SmEngine *e, long number, long *member, long room)
 {
     const Lsm *lsm = e->lsm;
-    const int *c = lsm->lattice.coord[number % e->count];
+    long centre = e->inner[number % e->count], first = number / e->count * e->count, count = 0;
+    const int *c = lsm->lattice.coord[centre];
     uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    long count = 0, first = number / e->count * e->count;
-    lsm_region_rows(&lsm->lattice, &lsm->interior, number % e->count, rows);
+    long most = lsm_region_rows(&lsm->lattice, &lsm->interior, centre, rows);
+    int *outer = sm_alloc((size_t)e->count, sizeof(int));
+    long *all = sm_alloc((size_t)most, sizeof(long));
+    for (long p = 0; p < e->count; p++) outer[e->inner[p]] = (int)p;
     for (int row = 0; row < lsm->side * lsm->side; row++)
-        for (uint64_t rest = rows[row]; rest; rest &= rest - 1, count++) {
-            if (count >= room) continue;
-            member[count] =
-                first + lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + __builtin_ctzll(rest),
-                                         c[1] - lsm->w + row % lsm->side,
-                                         c[2] - lsm->w + row / lsm->side);
-        }
+        for (uint64_t rest = rows[row]; rest; rest &= rest - 1)
+            all[count++] = first + outer[lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + __builtin_ctzll(rest),
+                                                          c[1] - lsm->w + row % lsm->side,
+                                                          c[2] - lsm->w + row / lsm->side)];
+    qsort(all, (size_t)count, sizeof *all, compare_numbers);
+    memcpy(member, all, (size_t)(count < room ? count : room) * sizeof *all);
+    free(outer);
+    free(all);
     return count;
 }
 

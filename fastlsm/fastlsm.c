@@ -59,7 +59,7 @@ static void region_sums(const Lsm *lsm, long tile, vec S[12])
         row[lane] = sums[lane];
     }
     lanes_from_rows(row, padded);
-    for (int i = 0; i < 12; i++) S[i] = padded[i / 3 * 4 + i % 3];
+    for (int i = 0; i < 12; i++) S[i] = padded[(4 - i / 3) % 4 * 4 + i % 3]; /* from (C, Cx, Cy, Cz) */
 }
 
 static void keep_constants(Lsm *lsm, long tile, const vec S[12])
@@ -67,11 +67,11 @@ static void keep_constants(Lsm *lsm, long tile, const vec S[12])
     RegionConst *k = &lsm->region_const[lsm->tile_const[tile]];
     ivec live = S[0] > 0;
     k->inverse_mass = lanes_and(1 / lanes_select(live, S[0], lanes_set(1)), live);
-    for (int d = 0; d < 3; d++) k->offset[d] = S[3 + 3 * d] * k->inverse_mass;
+    for (int d = 0; d < 3; d++) k->offset[d] = S[9 - 3 * d] * k->inverse_mass;
 }
 
 /* Rotation of each region of a tile. */
-static void rotate(Lsm *lsm, int layer, long tile, const vec A[9], vec R[9])
+SM_INLINE void rotate(Lsm *lsm, int layer, long tile, const vec A[9], vec R[9])
 {
     const int *slot = lsm->tile_slot + tile * SM_LANES;
     short *last = lsm->last + tile * 6 * SM_LANES;
@@ -119,7 +119,7 @@ static void copy_transforms(Lsm *lsm, int layer)
 }
 
 /* c_r, A_r, R_r, q_r of a tile from its sums; false when only constants were wanted. */
-static bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q[3], vec R[9],
+SM_INLINE bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q[3], vec R[9],
                        SmLaps *laps)
 {
     vec c[3], A[9];
@@ -155,15 +155,14 @@ static void replace_sums(const Lsm *lsm, long block, vec S[12])
         if (region < 0) continue;
         real row[16];
         lsm_region_up(lsm, region, row);
-        for (int i = 0; i < 12; i++) S[i][lane] = row[i / 3 * 4 + i % 3];
+        for (int i = 0; i < 12; i++) S[i][lane] = row[(4 - i / 3) % 4 * 4 + i % 3];
     }
 }
 
 /* Block form: the regions centred in a block. */
-static void match_block(Lsm *lsm, int layer, long block, const vec *sum, vec *out, SmLaps *laps)
+static void match_block(Lsm *lsm, int layer, long block, vec *S, vec *out, SmLaps *laps)
 {
-    vec S[12], R[9], q[3];
-    for (int i = 0; i < 12; i++) S[i] = sum[(4 - i / 3) % 4 * 3 + i % 3]; /* from (C, Cz, Cy, Cx) */
+    vec R[9], q[3];
     if (lsm->box->mixed[block]) replace_sums(lsm, block, S);
     sm_lap(laps, SM_FAST_SUM);
     if (!match_sums(lsm, layer, block, S, q, R, laps)) return;
@@ -171,9 +170,7 @@ static void match_block(Lsm *lsm, int layer, long block, const vec *sum, vec *ou
     ivec site = lsm->box->site[block];
     for (int i = 0; i < 3; i++) { /* empty lanes bring nothing down */
         out[i] = lanes_and(q[i], site);
-        out[3 + i] = lanes_and(R[i * 3 + 2], site);
-        out[6 + i] = lanes_and(R[i * 3 + 1], site);
-        out[9 + i] = lanes_and(R[i * 3], site);
+        for (int d = 0; d < 3; d++) out[9 - 3 * d + i] = lanes_and(R[i * 3 + d], site);
     }
     sm_lap(laps, SM_SHAPE_MATCHING);
 }

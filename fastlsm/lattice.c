@@ -51,10 +51,8 @@ static int cells_at(const SmVoxels *v, int x, int y, int z)
     return set;
 }
 
-void lsm_lattice_build(const SmVoxels *voxels, LsmLattice *l)
+void lsm_lattice_sites(const SmVoxels *voxels, LsmLattice *l)
 {
-    uint32_t table[256];
-    link_table(table);
     memset(l, 0, sizeof *l);
     for (int d = 0; d < 3; d++) {
         l->size[d] = voxels->size[d] + 1;
@@ -75,6 +73,13 @@ void lsm_lattice_build(const SmVoxels *voxels, LsmLattice *l)
             before += __builtin_popcountll(l->bits[first + (size_t)i]);
         }
     }
+}
+
+void lsm_lattice_build(const SmVoxels *voxels, LsmLattice *l)
+{
+    uint32_t table[256];
+    link_table(table);
+    lsm_lattice_sites(voxels, l);
     l->coord = sm_alloc((size_t)l->count, sizeof *l->coord);
     l->link = sm_alloc((size_t)l->count, sizeof *l->link);
     sm_voxels_particles(voxels, l->coord);

@@ -30,6 +30,9 @@ typedef struct {
 
 /* Two particles are linked when they share a material cell. O(words + particles). */
 void lsm_lattice_build(const SmVoxels *voxels, LsmLattice *lattice);
+
+/* Only the bitmap and its ranks: enough to find numbers. */
+void lsm_lattice_sites(const SmVoxels *voxels, LsmLattice *lattice);
 void lsm_lattice_free(LsmLattice *lattice);
 
 /* Unbroken links: pairs of one-ring neighbours. */

@@ -42,13 +42,13 @@ SM_INLINE void last_load(const short *last, vec R[9])
     }
 }
 
-/* c_r (eq. 9) and A_r (eq. 11) from the sums S = (C, Cx, Cy, Cz) about the region's lattice centre:
+/* c_r (eq. 9) and A_r (eq. 11) from the sums S = (C, Cz, Cy, Cx) about the region's lattice centre:
  * column d of A is C_d - C offset_d, which is sum m~ x (x0 - c0)^T. */
 SM_INLINE void match_moments(const vec S[12], const RegionConst *k, vec c[3], vec A[9])
 {
     for (int i = 0; i < 3; i++) {
         c[i] = S[i] * k->inverse_mass;
-        for (int d = 0; d < 3; d++) A[i * 3 + d] = S[3 + d * 3 + i] - S[i] * k->offset[d];
+        for (int d = 0; d < 3; d++) A[i * 3 + d] = S[9 - d * 3 + i] - S[i] * k->offset[d];
     }
 }
 

@@ -117,36 +117,30 @@ SM_INLINE void store3(real *p, const vec in[3])
 
 SM_INLINE vec4 load4(const real *p)
 {
-    vec4 v;
-    memcpy(&v, p, sizeof v);
-    return v;
+    return *(const vec4_loose *)p;
 }
 
 SM_INLINE vec8 load8(const real *p)
 {
-    vec8 v;
-    memcpy(&v, p, sizeof v);
-    return v;
+    return *(const vec8_loose *)p;
 }
 
 SM_INLINE vec16 load16(const real *p)
 {
-    vec16 v;
-    memcpy(&v, p, sizeof v);
-    return v;
+    return *(const vec16_loose *)p;
 }
 
 SM_INLINE void store4(real *p, vec4 v)
 {
-    memcpy(p, &v, sizeof v);
+    *(vec4_loose *)p = v;
 }
 SM_INLINE void store8(real *p, vec8 v)
 {
-    memcpy(p, &v, sizeof v);
+    *(vec8_loose *)p = v;
 }
 SM_INLINE void store16(real *p, vec16 v)
 {
-    memcpy(p, &v, sizeof v);
+    *(vec16_loose *)p = v;
 }
 
 #endif

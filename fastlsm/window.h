@@ -31,10 +31,12 @@ SM_INLINE void window_sum_x(const real *in, long next, int w, int F, int first, 
         const real *value = in + f * SM_LANES;
         vec before = lanes_load(value - next), here = lanes_load(value), after = lanes_load(value + next);
         bool weighted = first >= 0 && f >= first && f < first + 3;
-        sum[f] = here;
-        if (weighted) moment[f - first] = lanes_set(0);
-        for (int o = 1; o <= w; o++) {
-            vec left = lanes_slide(before, here, SM_LANES - o), right = lanes_slide(here, after, o);
+        vec left = lanes_slide(before, here, SM_LANES - 1), right = lanes_slide(here, after, 1);
+        sum[f] = here + (left + right);
+        if (weighted) moment[f - first] = right - left;
+        for (int o = 2; o <= w; o++) {
+            left = lanes_slide(before, here, SM_LANES - o);
+            right = lanes_slide(here, after, o);
             sum[f] += left + right;
             if (weighted) moment[f - first] += (real)o * (right - left);
         }

@@ -15,14 +15,12 @@
 
 SM_INLINE vec lanes_load(const real *p) /* any alignment */
 {
-    vec v;
-    memcpy(&v, p, sizeof v);
-    return v;
+    return *(const vec_loose *)p;
 }
 
 SM_INLINE void lanes_store(real *p, vec v)
 {
-    memcpy(p, &v, sizeof v);
+    *(vec_loose *)p = v;
 }
 
 SM_INLINE vec lanes_set(real value)
@@ -113,6 +111,10 @@ SM_INLINE int lanes_any(ivec mask)
 SM_INLINE vec lanes_slide(vec low, vec high, int o)
 {
 #if defined(__AVX512F__) && SM_REAL_BITS == 32
+    if (__builtin_constant_p(o) && o == 1) return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 1);
+    if (__builtin_constant_p(o) && o == 2) return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 2);
+    if (__builtin_constant_p(o) && o == 14) return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 14);
+    if (__builtin_constant_p(o) && o == 15) return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 15);
     const __m512i lane = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
     return (vec)_mm512_permutex2var_ps((__m512)low, _mm512_add_epi32(lane, _mm512_set1_epi32(o)), (__m512)high);
 #elif defined(__AVX512F__)
