@@ -9,8 +9,8 @@
  * sum o * (last three) off the first three. */
 enum { UP = 12, MOST = 12 };
 
-/* Scratch of a thread, rows of a plane, block by block: [width + 2][MOST][lanes], with an empty block
- * at each end for the x stages. Rings hold rows y - w .. y + w. */
+/* Scratch of a thread, rows of a plane, block by block: [width + 2][MOST][lanes], with an empty
+ * block at each end for the x stages. Rings hold rows y - w .. y + w. */
 enum { BLOCK = MOST * SM_LANES };
 
 typedef struct {
@@ -171,8 +171,7 @@ SM_INLINE void row_y_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int p
         real *out = lsm->box->down[plane] + (block - lsm->layer_block[plane]) * 6 * SM_LANES;
         const real *at[LSM_MAX_SIDE];
         vec sum[MOST], moment[3];
-        for (int b = 0; b < 2 * w + 1; b++)
-            at[b] = in[b] + lsm->box->column[block] * (long)BLOCK;
+        for (int b = 0; b < 2 * w + 1; b++) at[b] = in[b] + lsm->box->column[block] * (long)BLOCK;
         window_sum(at, SM_LANES, w, F, damping ? -1 : 6, sum, moment);
         finish_down(sum, moment, damping);
         if (w == 1 && !lsm->box->whole[block])
@@ -189,8 +188,8 @@ static const BlockRow *row_at(const Lsm *lsm, int plane, int *row, int y)
     return *row < box->plane_row[plane + 1] && box->row[*row].y == y ? &box->row[*row] : NULL;
 }
 
-/* A plane's rows as a pipeline: row y goes up along z when row y - w is solved, and row y - 2w comes
- * down along y. */
+/* A plane's rows as a pipeline: row y goes up along z when row y - w is solved, and row y - 2w
+ * comes down along y. */
 SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, BlockSolve *solve,
                           SmLaps *laps)
 {

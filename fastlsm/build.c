@@ -175,8 +175,9 @@ static void build_rows(Lsm *lsm)
         .bar = sm_alloc(bars * ROW_BAR, real_size),
         .plate = sm_alloc(plates * ROW_PLATE, real_size),
         .transform = sm_alloc(rows * ROW_T, real_size),
-        .bar_down = sm_alloc(bars * ROW_BAR_DOWN, real_size),
+        .bar_down = sm_alloc(bars * ROW_BAR, real_size),
         .plate_down = sm_alloc(plates * ROW_PLATE_DOWN, real_size),
+        .rigid = lsm->params.damping > 0 ? sm_alloc(rows * ROW_RIGID, real_size) : NULL,
     };
 }
 
@@ -327,6 +328,7 @@ static void free_rows(Rows *rows)
     free(rows->transform);
     free(rows->bar_down);
     free(rows->plate_down);
+    free(rows->rigid);
 }
 
 static void free_regions(Lsm *lsm)
@@ -380,8 +382,8 @@ long lsm_bytes(const Lsm *lsm)
     bytes += lsm->const_bytes;
     bytes +=
         (sets->bar_count + sets->plate_count + sets->region_count) * sets->side * (long)sizeof(int);
-    bytes += lanes * (ROW_P + ROW_T) * real_size +
-             sets->bar_count * (ROW_BAR + ROW_BAR_DOWN) * real_size +
+    bytes += lanes * (ROW_P + ROW_T + (lsm->rows.rigid ? ROW_RIGID : 0)) * real_size +
+             sets->bar_count * 2 * ROW_BAR * real_size +
              sets->plate_count * (ROW_PLATE + ROW_PLATE_DOWN) * real_size;
     return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0);
 }

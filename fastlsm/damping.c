@@ -35,29 +35,23 @@ static void sums_up(Lsm *lsm, int layer, int thread, SmLaps *laps)
 /* Rows of a tile's rigid velocities, for the lists. */
 static void store_velocities(Lsm *lsm, long tile, const vec out[6])
 {
-    real tile_rows[SM_LANES][16];
-    real *row[SM_LANES];
-    vec field[16];
-    for (int lane = 0; lane < SM_LANES; lane++) row[lane] = tile_rows[lane];
-    for (int i = 0; i < 16; i++)
-        field[i] = i % 4 == 3 || i > 7 ? lanes_set(0) : out[i / 4 * 3 + i % 4];
-    lanes_to_rows(field, row);
+    vec field[8] = {out[0], out[1], out[2], lanes_set(0), out[3], out[4], out[5], lanes_set(0)};
+    lanes_interleave(field, 8);
+    const real *row = (const real *)field;
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
-        if (slot >= 0) store8(lsm->rows.p + (slot + 1) * (long)ROW_P, load8(tile_rows[lane]));
+        if (slot >= 0)
+            store8(lsm->rows.rigid + (slot + 1) * (long)ROW_RIGID, load8(row + lane * ROW_RIGID));
     }
 }
 
 static void solve_tile(Lsm *lsm, long tile)
 {
-    real sums[SM_LANES][16] = {{0}};
+    vec16 sums[SM_LANES] = {{0}};
     const real *row[SM_LANES];
     vec field[16], c[3], out[6];
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        int region = lsm->tile_region[tile * SM_LANES + lane];
-        if (region >= 0) lsm_region_plain(lsm, region, true, sums[lane]);
-        row[lane] = sums[lane];
-    }
+    lsm_regions_plain(lsm, lsm->tile_region + tile * SM_LANES, sums);
+    for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&sums[lane];
     lanes_from_rows(row, field);
     load3(lsm->centre + tile * 3 * SM_LANES, c);
     rigid_velocity(field, c, lsm->region_const[lsm->tile_const[tile]].inverse_mass, out);
@@ -68,12 +62,12 @@ static void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, SmLap
 {
     (void)layer, (void)laps;
     vec c[3];
-    for (int lane = 0; lane < SM_LANES && lsm->box->mixed[block]; lane++) {
-        int region = lsm->block_region[block * SM_LANES + lane];
-        if (region < 0) continue;
-        real row[16];
-        lsm_region_plain(lsm, region, true, row);
-        for (int i = 0; i < 12; i++) F[i][lane] = row[i];
+    if (lsm->box->mixed[block]) {
+        const int *region = lsm->block_region + block * SM_LANES;
+        vec16 sums[SM_LANES];
+        lsm_regions_plain(lsm, region, sums);
+        for (int lane = 0; lane < SM_LANES; lane++)
+            for (int i = 0; i < 12 && region[lane] >= 0; i++) F[i][lane] = sums[lane][i];
     }
     load3(lsm->centre + block * 3 * SM_LANES, c);
     rigid_velocity(F, c, lsm->region_const[lsm->tile_const[block]].inverse_mass, out);
@@ -89,8 +83,8 @@ static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
         for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
             solve_tile(lsm, tile);
     for (long i = lsm->layer_copy[layer]; i < lsm->layer_copy[layer + 1]; i++)
-        store8(lsm->rows.p + (lsm->copy[i][0] + 1) * (long)ROW_P,
-               load8(lsm->rows.p + (lsm->copy[i][1] + 1) * (long)ROW_P));
+        store8(lsm->rows.rigid + (lsm->copy[i][0] + 1) * (long)ROW_RIGID,
+               load8(lsm->rows.rigid + (lsm->copy[i][1] + 1) * (long)ROW_RIGID));
     lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
     lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
     sm_lap(laps, SM_DAMPING);
@@ -113,15 +107,11 @@ static void slow(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
-        vec sum[6] = {{0}};
+        real sums[6][SM_LANES] __attribute__((aligned(64))) = {{0}};
+        vec *sum = (vec *)sums;
         if (lsm->box) lsm_blocks_down(lsm, layer, block, true, sum);
-        for (int lane = 0; lane < SM_LANES && (!lsm->box || lsm->box->mixed[block]); lane++) {
-            int region = lsm->block_region[block * SM_LANES + lane];
-            if (region < 0) continue;
-            real row[16];
-            lsm_region_plain(lsm, region, false, row);
-            for (int i = 0; i < 6; i++) sum[i][lane] = row[i / 3 * 4 + i % 3];
-        }
+        if (!lsm->box || lsm->box->mixed[block])
+            lsm_particles_plain(lsm, lsm->block_region + block * SM_LANES, sums);
         slow_down(lsm, block, sum);
     }
     sm_lap(laps, SM_DAMPING);

@@ -18,8 +18,8 @@ struct SmEngine {
     Crowd *crowd; /* NULL: one body */
     long count;   /* particles of one body */
     long bodies;
-    int turn;      /* turn.h */
-    int *inner;    /* [count] particle numbers in the lattice as turned */
+    int turn;             /* turn.h */
+    int *inner;           /* [count] particle numbers in the lattice as turned */
     double (*pose)[3][4]; /* [bodies] */
     int handle_count;
     SmHandle *handle;    /* our copies */
@@ -179,8 +179,9 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     static const double identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     double start = sm_now();
     if (params->instances > 1 && params->strain_limit > 0)
-        return sm_fail(error, SM_INPUT, "strain_limit: instances share one lattice and cannot break; "
-                                        "use one instance, or strain_limit 0");
+        return sm_fail(error, SM_INPUT,
+                       "strain_limit: instances share one lattice and cannot break; "
+                       "use one instance, or strain_limit 0");
     SmCode code = lsm_check(voxels, params, error);
     if (code) return code;
     SmEngine *e = sm_alloc(1, sizeof *e);
@@ -190,9 +191,12 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     Lsm *lsm = e->lsm;
     e->pose = sm_alloc((size_t)e->bodies, sizeof *e->pose);
     for (long body = 0; body < e->bodies; body++)
-        memcpy(e->pose[body], params->instance_pose ? params->instance_pose[body] : identity, sizeof *e->pose);
-    if (e->bodies > 1) e->crowd = crowd_build(lsm, e->bodies);
-    else lsm->g = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
+        memcpy(e->pose[body], params->instance_pose ? params->instance_pose[body] : identity,
+               sizeof *e->pose);
+    if (e->bodies > 1)
+        e->crowd = crowd_build(lsm, e->bodies);
+    else
+        lsm->g = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     for (int d = 0; d < 3; d++)
         lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
     start_at_rest(e);
@@ -288,7 +292,8 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     real *v = field_of(e, SM_VELOCITY);
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->bodies * e->count);
-        double scale = e->lsm->params.h / (e->lsm->cell * e->lsm->mass[e->inner[particle[i] % e->count]]);
+        double scale =
+            e->lsm->params.h / (e->lsm->cell * e->lsm->mass[e->inner[particle[i] % e->count]]);
         for (int d = 0; d < 3; d++) {
             const double *origin;
             v[index_of(e, particle[i], d, &origin)] += (real)(impulse[i][d] * scale);
@@ -394,9 +399,10 @@ static long engine_region(SmEngine *e, long number, long *member, long room)
     for (long p = 0; p < e->count; p++) outer[e->inner[p]] = (int)p;
     for (int row = 0; row < lsm->side * lsm->side; row++)
         for (uint64_t rest = rows[row]; rest; rest &= rest - 1)
-            all[count++] = first + outer[lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + __builtin_ctzll(rest),
-                                                          c[1] - lsm->w + row % lsm->side,
-                                                          c[2] - lsm->w + row / lsm->side)];
+            all[count++] =
+                first + outer[lsm_lattice_find(&lsm->lattice, c[0] - lsm->w + __builtin_ctzll(rest),
+                                               c[1] - lsm->w + row % lsm->side,
+                                               c[2] - lsm->w + row / lsm->side)];
     qsort(all, (size_t)count, sizeof *all, compare_numbers);
     memcpy(member, all, (size_t)(count < room ? count : room) * sizeof *all);
     free(outer);

@@ -23,16 +23,13 @@ static void weigh(Lsm *lsm, int layer)
 {
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         if (lsm->box && !lsm->box->listed[block]) continue;
-        const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
-        vec x[3] = {lanes_set(1), lanes_set(1), lanes_set(1)}, padded[16] = {{0}};
-        real tile[SM_LANES][16];
-        real *row[SM_LANES];
-        if (lsm->pass != PASS_CONSTANTS) load3(lsm->x + block * 3 * SM_LANES, x);
-        for (int d = 0; d < 3; d++) padded[d] = x[d] * k->weight;
-        for (int lane = 0; lane < SM_LANES; lane++) row[lane] = tile[lane];
-        lanes_to_rows(padded, row);
-        for (int lane = 0; lane < SM_LANES; lane++)
-            store4(lsm->rows.p + (block * SM_LANES + lane + 1) * ROW_P, load4(tile[lane]));
+        vec weight = lsm->particle_const[lsm->block_const[block]].weight;
+        vec p[4] = {lanes_set(1), lanes_set(1), lanes_set(1), lanes_set(0)};
+        if (lsm->pass != PASS_CONSTANTS) load3(lsm->x + block * 3 * SM_LANES, p);
+        for (int d = 0; d < 3; d++) p[d] *= weight;
+        lanes_interleave(p, 4);
+        real *row = lsm->rows.p + (block * SM_LANES + 1) * ROW_P;
+        for (int i = 0; i < 4; i++) lanes_store(row + i * SM_LANES, p[i]);
     }
 }
 
@@ -47,19 +44,16 @@ static void bars_and_plates(Lsm *lsm, int layer, int thread, SmLaps *laps)
     sm_lap(laps, SM_FAST_SUM);
 }
 
-/* The twelve sums of a tile's regions, in lanes. */
+/* The twelve sums of a tile's regions, in lanes and in the order (C, Cz, Cy, Cx). */
 static void region_sums(const Lsm *lsm, long tile, vec S[12])
 {
-    real sums[SM_LANES][16] = {{0}};
+    vec16 sums[SM_LANES] = {{0}};
     const real *row[SM_LANES];
     vec padded[16];
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        int region = lsm->tile_region[tile * SM_LANES + lane];
-        if (region >= 0) lsm_region_up(lsm, region, sums[lane]);
-        row[lane] = sums[lane];
-    }
+    lsm_regions_up(lsm, lsm->tile_region + tile * SM_LANES, sums);
+    for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&sums[lane];
     lanes_from_rows(row, padded);
-    for (int i = 0; i < 12; i++) S[i] = padded[(4 - i / 3) % 4 * 4 + i % 3]; /* from (C, Cx, Cy, Cz) */
+    for (int i = 0; i < 12; i++) S[i] = padded[(4 - i / 3) % 4 * 4 + i % 3];
 }
 
 static void keep_constants(Lsm *lsm, long tile, const vec S[12])
@@ -120,7 +114,7 @@ static void copy_transforms(Lsm *lsm, int layer)
 
 /* c_r, A_r, R_r, q_r of a tile from its sums; false when only constants were wanted. */
 SM_INLINE bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q[3], vec R[9],
-                       SmLaps *laps)
+                          SmLaps *laps)
 {
     vec c[3], A[9];
     if (lsm->pass == PASS_CONSTANTS) {
@@ -150,13 +144,12 @@ static void match_tile(Lsm *lsm, int layer, long tile, SmLaps *laps)
 /* The lanes of a block that lists sum replace its box sums. */
 static void replace_sums(const Lsm *lsm, long block, vec S[12])
 {
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        int region = lsm->block_region[block * SM_LANES + lane];
-        if (region < 0) continue;
-        real row[16];
-        lsm_region_up(lsm, region, row);
-        for (int i = 0; i < 12; i++) S[i][lane] = row[(4 - i / 3) % 4 * 4 + i % 3];
-    }
+    const int *region = lsm->block_region + block * SM_LANES;
+    vec16 sums[SM_LANES];
+    lsm_regions_up(lsm, region, sums);
+    for (int lane = 0; lane < SM_LANES; lane++)
+        for (int i = 0; i < 12 && region[lane] >= 0; i++)
+            S[i][lane] = sums[lane][(4 - i / 3) % 4 * 4 + i % 3];
 }
 
 /* Block form: the regions centred in a block. */
@@ -202,13 +195,7 @@ static void particle_sums(const Lsm *lsm, int layer, long block, vec sum[3])
         if (!lsm->box->mixed[block]) return;
         store3(sums[0], sum);
     }
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        int region = lsm->block_region[block * SM_LANES + lane];
-        if (region < 0) continue;
-        real row[4];
-        lsm_particle_down(lsm, region, row);
-        for (int d = 0; d < 3; d++) sums[d][lane] = row[d];
-    }
+    lsm_particles_down(lsm, lsm->block_region + block * SM_LANES, sums);
     load3(sums[0], sum);
 }
 

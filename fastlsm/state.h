@@ -23,18 +23,22 @@ typedef struct {
     vec weight, inverse_count, live; /* m~_i = m_i / |R_i|; 1 / |R_i|; 1, or 0 for an empty slot */
 } ParticleConst;
 
-/* Widths of the rows of list sums, in values. Vectors are padded to four. */
-enum { ROW_P = 8, ROW_BAR = 12, ROW_PLATE = 12, ROW_T = 16, ROW_BAR_DOWN = 12, ROW_PLATE_DOWN = 8 };
+/* Widths of the rows of list sums, in values. Vectors are padded to four, rows to whole cache lines
+ * where they are read whole. */
+enum { ROW_P = 4, ROW_BAR = 16, ROW_PLATE = 16, ROW_T = 16, ROW_PLATE_DOWN = 8, ROW_RIGID = 8 };
 
 typedef struct {
-    real *p;     /* [slots + 2][ROW_P]          m~ x; damping: (omega, v_r - omega x c_r) */
-    real *bar;   /* [bars][ROW_BAR]             sums of p and of a p */
-    real *plate; /* [plates][ROW_PLATE]         .. and of b p */
-    real
-        *transform; /* [slots + 2][ROW_T]          (q_r, R z, R y, R x); damping: its 12 products */
-    real *bar_down; /* [bars][ROW_BAR_DOWN]        adjoint */
-    real *plate_down; /* [plates][ROW_PLATE_DOWN] */
+    real *p;          /* [slots + 2][ROW_P]          m~ x */
+    real *bar;        /* [bars][ROW_BAR]             sums of p and of a p */
+    real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
+    real *transform;  /* [slots + 2][ROW_T]          (q_r, R z, R y, R x) */
+    real *bar_down;   /* [bars][ROW_BAR]             adjoint: (Q, R z, R y) */
+    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z) */
+    real *rigid; /* [slots + 2][ROW_RIGID]      (omega, v_r - omega x c_r); NULL without damping */
 } Rows;
+
+/* Damping keeps its products in `transform`, sums them up through `bar` and `plate`, and brings
+ * rigid velocities down through `bar_down` and `plate_down`. */
 
 /* Row 0 of every array is zero (the absent member), slot s is row s + 1, and row slots + 1 takes
  * what empty lanes write. */

@@ -17,6 +17,17 @@
         break;                                                                                     \
     }
 
+/* `v` in the first or last four lanes of sixteen, zero elsewhere. */
+SM_INLINE vec16 widen_first(vec4 v)
+{
+    return __builtin_shufflevector(v, (vec4){0}, 0, 1, 2, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4);
+}
+
+SM_INLINE vec16 widen_last(vec4 v)
+{
+    return __builtin_shufflevector(v, (vec4){0}, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 0, 1, 2, 3);
+}
+
 SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
 {
     const real *p = lsm->rows.p;
@@ -29,8 +40,7 @@ SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
             moment += (real)(i - side / 2) * member;
         }
         real *out = lsm->rows.bar + bar * ROW_BAR;
-        store4(out, sum);
-        store4(out + 4, moment);
+        store8(out, __builtin_shufflevector(sum, moment, 0, 1, 2, 3, 4, 5, 6, 7));
     }
 }
 
@@ -64,24 +74,22 @@ void lsm_plates_up(const Lsm *lsm, int first, int last){
 #undef CALL
 }
 
-SM_INLINE void region_up(const Lsm *lsm, int region, int side, real out[16])
+/* The last four of a plate's row are never written: they stay zero. */
+SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
 {
     const int *id = lsm->sets.region + (long)region * side;
-    vec8 sum = {0};
-    vec4 third = {0}, moment = {0};
+    vec16 sum = {0};
+    vec4 moment = {0};
     for (int i = 0; i < side; i++) {
         const real *member = lsm->rows.plate + (long)id[i] * ROW_PLATE;
-        sum += load8(member);
-        third += load4(member + 8);
+        sum += load16(member);
         moment += (real)(i - side / 2) * load4(member);
     }
-    store8(out, sum);
-    store4(out + 8, third);
-    store4(out + 12, moment);
+    return sum + widen_last(moment);
 }
 
 /* Without reuse, member by member: the O(w^3) form. */
-static void region_up_naive(const Lsm *lsm, int region, real out[16])
+static vec16 region_up_naive(const Lsm *lsm, int region)
 {
     int side = lsm->side, w = lsm->w;
     const int *plates = lsm->sets.region + (long)region * side;
@@ -98,24 +106,31 @@ static void region_up_naive(const Lsm *lsm, int region, real out[16])
                 Z += (real)c * p;
             }
         }
-    store4(out, C);
-    store4(out + 4, X);
-    store4(out + 8, Y);
-    store4(out + 12, Z);
+    vec8 low = __builtin_shufflevector(C, X, 0, 1, 2, 3, 4, 5, 6, 7);
+    vec8 high = __builtin_shufflevector(Y, Z, 0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
-void lsm_region_up(const Lsm *lsm, int region, real out[16])
+SM_INLINE void regions_up(const Lsm *lsm, const int *region, vec16 *out, int side)
+{
+    for (int lane = 0; lane < SM_LANES; lane++)
+        if (region[lane] >= 0) out[lane] = region_up(lsm, region[lane], side);
+}
+
+void lsm_regions_up(const Lsm *lsm, const int *region, vec16 *out)
 {
     if (lsm->params.summation == SM_SUM_NAIVE) {
-        region_up_naive(lsm, region, out);
+        for (int lane = 0; lane < SM_LANES; lane++)
+            if (region[lane] >= 0) out[lane] = region_up_naive(lsm, region[lane]);
         return;
     }
-#define CALL(side) region_up(lsm, region, side, out)
+#define CALL(side) regions_up(lsm, region, out, side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
 
-/* A transform's row is (q, Rz, Ry, Rx): each pass uses the last vector up. */
+/* A transform's row is (q, Rz, Ry, Rx): each pass uses the last vector up. What a pass leaves in
+ * the last vector is not read again. */
 SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
 {
     for (long bar = first; bar < last; bar++) {
@@ -127,10 +142,7 @@ SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
             sum += load16(member);
             moment += (real)(i - side / 2) * load4(member + 12);
         }
-        real *out = lsm->rows.bar_down + bar * ROW_BAR_DOWN, all[16];
-        store16(all, sum);
-        store4(out, load4(all) - moment);
-        store8(out + 4, load8(all + 4));
+        store16(lsm->rows.bar_down + bar * ROW_BAR, sum - widen_first(moment));
     }
 }
 
@@ -144,16 +156,14 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
 {
     for (long plate = first; plate < last; plate++) {
         const int *id = lsm->sets.plate + plate * side;
-        vec4 sum = {0}, z = {0}, moment = {0};
+        vec4 sum = {0}, z = {0};
         for (int i = 0; i < side; i++) {
-            const real *member = lsm->rows.bar_down + (long)id[i] * ROW_BAR_DOWN;
-            sum += load4(member);
+            const real *member = lsm->rows.bar_down + (long)id[i] * ROW_BAR;
+            sum += load4(member) - (real)(i - side / 2) * load4(member + 8);
             z += load4(member + 4);
-            moment += (real)(i - side / 2) * load4(member + 8);
         }
         real *out = lsm->rows.plate_down + plate * ROW_PLATE_DOWN;
-        store4(out, sum - moment);
-        store4(out + 4, z);
+        store8(out, __builtin_shufflevector(sum, z, 0, 1, 2, 3, 4, 5, 6, 7));
     }
 }
 
@@ -163,7 +173,7 @@ void lsm_plates_down(const Lsm *lsm, int first, int last){
 #undef CALL
 }
 
-SM_INLINE void particle_down(const Lsm *lsm, int region, int side, real out[4])
+SM_INLINE vec4 particle_down(const Lsm *lsm, int region, int side)
 {
     const int *id = lsm->sets.region + (long)region * side;
     vec4 sum = {0};
@@ -171,10 +181,10 @@ SM_INLINE void particle_down(const Lsm *lsm, int region, int side, real out[4])
         const real *member = lsm->rows.plate_down + (long)id[i] * ROW_PLATE_DOWN;
         sum += load4(member) - (real)(i - side / 2) * load4(member + 4);
     }
-    store4(out, sum);
+    return sum;
 }
 
-static void particle_down_naive(const Lsm *lsm, int region, real out[4])
+static vec4 particle_down_naive(const Lsm *lsm, int region)
 {
     int side = lsm->side, w = lsm->w;
     const int *plates = lsm->sets.region + (long)region * side;
@@ -189,72 +199,106 @@ static void particle_down_naive(const Lsm *lsm, int region, real out[4])
                        (real)c * load4(T + 4);
             }
         }
-    store4(out, sum);
+    return sum;
 }
 
-void lsm_particle_down(const Lsm *lsm, int region, real out[4])
+SM_INLINE void particles_down(const Lsm *lsm, const int *region, real out[3][SM_LANES], int side)
 {
-    if (lsm->params.summation == SM_SUM_NAIVE) {
-        particle_down_naive(lsm, region, out);
-        return;
+    bool naive = lsm->params.summation == SM_SUM_NAIVE;
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        if (region[lane] < 0) continue;
+        vec4 sum =
+            naive ? particle_down_naive(lsm, region[lane]) : particle_down(lsm, region[lane], side);
+        for (int d = 0; d < 3; d++) out[d][lane] = sum[d];
     }
-#define CALL(side) particle_down(lsm, region, side, out)
+}
+
+void lsm_particles_down(const Lsm *lsm, const int *region, real out[3][SM_LANES]){
+#define CALL(side) particles_down(lsm, region, out, side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
 
-/* out[row] = sum of the rows that `list` names; `parts` vectors of four each. */
-SM_INLINE void plain(const int *list, int side, int parts, const real *in, int in_width, real *out)
+SM_INLINE void plain_up(const int *list, long first, long last, int side, const real *in, real *out)
 {
-    vec4 sum[4] = {{0}, {0}, {0}, {0}};
-    for (int i = 0; i < side; i++)
-        for (int part = 0; part < parts; part++)
-            sum[part] += load4(in + (long)list[i] * in_width + 4 * part);
-    for (int part = 0; part < parts; part++) store4(out + 4 * part, sum[part]);
+    for (long row = first; row < last; row++) {
+        vec16 sum = {0};
+        for (int i = 0; i < side; i++) sum += load16(in + (long)list[row * side + i] * 16);
+        store16(out + row * 16, sum);
+    }
+}
+
+SM_INLINE void plain_down(const int *list, long first, long last, int side, const real *in,
+                          int in_width, real *out, int out_width)
+{
+    for (long row = first; row < last; row++) {
+        vec8 sum = {0};
+        for (int i = 0; i < side; i++) sum += load8(in + (long)list[row * side + i] * in_width);
+        store8(out + row * out_width, sum);
+    }
 }
 
 void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up)
 {
     const Rows *rows = &lsm->rows;
-    for (long bar = lsm->sets.bar_plane[first]; bar < lsm->sets.bar_plane[last]; bar++) {
-        const int *id = lsm->sets.bar + bar * lsm->side;
-        real *out = up ? rows->bar + bar * ROW_BAR : rows->bar_down + bar * ROW_BAR_DOWN;
+    const int *list = lsm->sets.bar;
+    long from = lsm->sets.bar_plane[first], to = lsm->sets.bar_plane[last];
 #define CALL(side)                                                                                 \
     if (up)                                                                                        \
-        plain(id, side, 3, rows->transform, ROW_T, out);                                           \
+        plain_up(list, from, to, side, rows->transform, rows->bar);                                \
     else                                                                                           \
-        plain(id, side, 2, rows->p, ROW_P, out)
-        FOR_SIDE(lsm->side, CALL)
+        plain_down(list, from, to, side, rows->rigid, ROW_RIGID, rows->bar_down, ROW_BAR)
+    FOR_SIDE(lsm->side, CALL)
 #undef CALL
-    }
 }
 
+/* The last four values stay zero on the way up, as region_up() wants to find them. */
 void lsm_plates_plain(const Lsm *lsm, int first, int last, bool up)
 {
     const Rows *rows = &lsm->rows;
-    for (long plate = lsm->sets.plate_plane[first]; plate < lsm->sets.plate_plane[last]; plate++) {
-        const int *id = lsm->sets.plate + plate * lsm->side;
-        real *out =
-            up ? rows->plate + plate * ROW_PLATE : rows->plate_down + plate * ROW_PLATE_DOWN;
+    const int *list = lsm->sets.plate;
+    long from = lsm->sets.plate_plane[first], to = lsm->sets.plate_plane[last];
 #define CALL(side)                                                                                 \
     if (up)                                                                                        \
-        plain(id, side, 3, rows->bar, ROW_BAR, out);                                               \
+        plain_up(list, from, to, side, rows->bar, rows->plate);                                    \
     else                                                                                           \
-        plain(id, side, 2, rows->bar_down, ROW_BAR_DOWN, out)
-        FOR_SIDE(lsm->side, CALL)
+        plain_down(list, from, to, side, rows->bar_down, ROW_BAR, rows->plate_down, ROW_PLATE_DOWN)
+    FOR_SIDE(lsm->side, CALL)
 #undef CALL
+}
+
+SM_INLINE void regions_plain(const Lsm *lsm, const int *region, vec16 *out, int side)
+{
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        if (region[lane] < 0) continue;
+        const int *id = lsm->sets.region + (long)region[lane] * side;
+        vec16 sum = {0};
+        for (int i = 0; i < side; i++) sum += load16(lsm->rows.plate + (long)id[i] * ROW_PLATE);
+        out[lane] = sum;
     }
 }
 
-void lsm_region_plain(const Lsm *lsm, int region, bool up, real out[16])
+void lsm_regions_plain(const Lsm *lsm, const int *region, vec16 *out){
+#define CALL(side) regions_plain(lsm, region, out, side)
+    FOR_SIDE(lsm->side, CALL)
+#undef CALL
+}
+
+SM_INLINE void particles_plain(const Lsm *lsm, const int *region, real out[6][SM_LANES], int side)
 {
-    const Rows *rows = &lsm->rows;
-    const int *id = lsm->sets.region + (long)region * lsm->side;
-#define CALL(side)                                                                                 \
-    if (up)                                                                                        \
-        plain(id, side, 3, rows->plate, ROW_PLATE, out);                                           \
-    else                                                                                           \
-        plain(id, side, 2, rows->plate_down, ROW_PLATE_DOWN, out)
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        if (region[lane] < 0) continue;
+        const int *id = lsm->sets.region + (long)region[lane] * side;
+        vec8 sum = {0};
+        for (int i = 0; i < side; i++)
+            sum += load8(lsm->rows.plate_down + (long)id[i] * ROW_PLATE_DOWN);
+        for (int i = 0; i < 6; i++) out[i][lane] = sum[i / 3 * 4 + i % 3];
+    }
+}
+
+void lsm_particles_plain(const Lsm *lsm, const int *region, real out[6][SM_LANES])
+{
+#define CALL(side) particles_plain(lsm, region, out, side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }

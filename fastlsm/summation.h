@@ -13,31 +13,35 @@
 
 #include "state.h"
 
-#define lsm_bars_up       SM_NAME(lsm_bars_up)
-#define lsm_plates_up     SM_NAME(lsm_plates_up)
-#define lsm_region_up     SM_NAME(lsm_region_up)
-#define lsm_bars_down     SM_NAME(lsm_bars_down)
-#define lsm_plates_down   SM_NAME(lsm_plates_down)
-#define lsm_particle_down SM_NAME(lsm_particle_down)
-#define lsm_bars_plain    SM_NAME(lsm_bars_plain)
-#define lsm_plates_plain  SM_NAME(lsm_plates_plain)
-#define lsm_region_plain  SM_NAME(lsm_region_plain)
+#define lsm_bars_up         SM_NAME(lsm_bars_up)
+#define lsm_plates_up       SM_NAME(lsm_plates_up)
+#define lsm_regions_up      SM_NAME(lsm_regions_up)
+#define lsm_bars_down       SM_NAME(lsm_bars_down)
+#define lsm_plates_down     SM_NAME(lsm_plates_down)
+#define lsm_particles_down  SM_NAME(lsm_particles_down)
+#define lsm_bars_plain      SM_NAME(lsm_bars_plain)
+#define lsm_plates_plain    SM_NAME(lsm_plates_plain)
+#define lsm_regions_plain   SM_NAME(lsm_regions_plain)
+#define lsm_particles_plain SM_NAME(lsm_particles_plain)
 
-/* Bars and plates of the planes first .. last-1 from rows.p; then row `region` of the lists:
- * out = (C, Cx, Cy, Cz), each padded to four. */
+/* Bars and plates of the planes first .. last-1, from rows.p. */
 void lsm_bars_up(const Lsm *lsm, int first, int last);
 void lsm_plates_up(const Lsm *lsm, int first, int last);
-void lsm_region_up(const Lsm *lsm, int region, real out[16]);
 
-/* The adjoint, from rows.transform: out = |R_i| g_i. */
+/* The last stage for the rows region[lane] of the lists, SM_LANES of them (-1: none, its row is
+ * left alone): out[lane] = (C, Cx, Cy, Cz), each padded to four. */
+void lsm_regions_up(const Lsm *lsm, const int *region, vec16 *out);
+
+/* The adjoint, from rows.transform: out[d][lane] = component d of |R_i| g_i. */
 void lsm_bars_down(const Lsm *lsm, int first, int last);
 void lsm_plates_down(const Lsm *lsm, int first, int last);
-void lsm_particle_down(const Lsm *lsm, int region, real out[4]);
+void lsm_particles_down(const Lsm *lsm, const int *region, real out[3][SM_LANES]);
 
-/* Plain sums of rows without moments, for damping: `up` sums 12 values of rows.transform through
- * bar and plate, else 8 values of rows.p through bar_down and plate_down. */
+/* Plain sums without moments, for damping: `up` sums 12 values of rows.transform through bar and
+ * plate; else 8 values of rows.rigid go through bar_down and plate_down. */
 void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up);
 void lsm_plates_plain(const Lsm *lsm, int first, int last, bool up);
-void lsm_region_plain(const Lsm *lsm, int region, bool up, real out[16]);
+void lsm_regions_plain(const Lsm *lsm, const int *region, vec16 *out);
+void lsm_particles_plain(const Lsm *lsm, const int *region, real out[6][SM_LANES]);
 
 #endif

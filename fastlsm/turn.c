@@ -13,7 +13,8 @@ void lsm_turn_voxels(const SmVoxels *v, int turn, SmVoxels *turned)
     for (int d = 0; d < 3; d++) turned->origin[d] = v->origin[(d + turn) % 3];
     for (int k = 0; k < v->size[2]; k++)
         for (int j = 0; j < v->size[1]; j++) {
-            const uint64_t *row = v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+            const uint64_t *row =
+                v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
             for (int word = 0; word < v->words; word++)
                 for (uint64_t rest = row[word]; rest; rest &= rest - 1) {
                     int at[3] = {word * 64 + __builtin_ctzll(rest), j, k};
@@ -31,7 +32,8 @@ void lsm_turn_numbers(const SmVoxels *v, int turn, const SmVoxels *turned, int *
     sm_voxels_particles(v, coord);
     lsm_lattice_sites(turned, &lattice);
     for (long p = 0; p < v->particle_count; p++)
-        inner[p] = (int)lsm_lattice_find(&lattice, coord[p][turn], coord[p][(turn + 1) % 3], coord[p][(turn + 2) % 3]);
+        inner[p] = (int)lsm_lattice_find(&lattice, coord[p][turn], coord[p][(turn + 1) % 3],
+                                         coord[p][(turn + 2) % 3]);
     lsm_lattice_free(&lattice);
     free(coord);
 }
@@ -42,7 +44,8 @@ static long count_groups(const SmVoxels *v, int lanes)
     long rows = (long)v->size[1] * v->size[2] * v->words, groups = 0;
     const uint64_t group = ((uint64_t)1 << lanes) - 1;
     for (long word = 0; word < rows; word++)
-        for (int shift = 0; shift < 64; shift += lanes) groups += (v->bits[word] >> shift & group) != 0;
+        for (int shift = 0; shift < 64; shift += lanes)
+            groups += (v->bits[word] >> shift & group) != 0;
     return groups;
 }
 

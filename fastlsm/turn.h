@@ -15,7 +15,9 @@ void lsm_turn_voxels(const SmVoxels *voxels, int turn, SmVoxels *turned);
 /* inner[p] = number in the turned lattice of particle p, [particle_count]. O(particles). */
 void lsm_turn_numbers(const SmVoxels *voxels, int turn, const SmVoxels *turned, int *inner);
 
-/* The layout to use for `params` (AUTO resolved) and the turn that suits it. `lanes` is SM_LANES. */
-SmLayout lsm_turn_choose(const SmVoxels *voxels, const SmEngineParams *params, int lanes, int *turn);
+/* The layout to use for `params` (AUTO resolved) and the turn that suits it. `lanes` is SM_LANES.
+ */
+SmLayout lsm_turn_choose(const SmVoxels *voxels, const SmEngineParams *params, int lanes,
+                         int *turn);
 
 #endif

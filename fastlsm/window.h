@@ -23,13 +23,15 @@ SM_INLINE void window_sum(const real *const *in, long stride, int w, int F, int 
         }
 }
 
-/* The same along x: offsets are lanes of the block at `in` and of its neighbours on either side, `next`
- * values away. o = SM_LANES takes a whole neighbour. */
-SM_INLINE void window_sum_x(const real *in, long next, int w, int F, int first, vec *sum, vec *moment)
+/* The same along x: offsets are lanes of the block at `in` and of its neighbours on either side,
+ * `next` values away. o = SM_LANES takes a whole neighbour. */
+SM_INLINE void window_sum_x(const real *in, long next, int w, int F, int first, vec *sum,
+                            vec *moment)
 {
     for (int f = 0; f < F; f++) {
         const real *value = in + f * SM_LANES;
-        vec before = lanes_load(value - next), here = lanes_load(value), after = lanes_load(value + next);
+        vec before = lanes_load(value - next), here = lanes_load(value),
+            after = lanes_load(value + next);
         bool weighted = first >= 0 && f >= first && f < first + 3;
         vec left = lanes_slide(before, here, SM_LANES - 1), right = lanes_slide(here, after, 1);
         sum[f] = here + (left + right);

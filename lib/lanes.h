@@ -111,15 +111,21 @@ SM_INLINE int lanes_any(ivec mask)
 SM_INLINE vec lanes_slide(vec low, vec high, int o)
 {
 #if defined(__AVX512F__) && SM_REAL_BITS == 32
-    if (__builtin_constant_p(o) && o == 1) return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 1);
-    if (__builtin_constant_p(o) && o == 2) return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 2);
-    if (__builtin_constant_p(o) && o == 14) return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 14);
-    if (__builtin_constant_p(o) && o == 15) return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 15);
+    if (__builtin_constant_p(o) && o == 1)
+        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 1);
+    if (__builtin_constant_p(o) && o == 2)
+        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 2);
+    if (__builtin_constant_p(o) && o == 14)
+        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 14);
+    if (__builtin_constant_p(o) && o == 15)
+        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 15);
     const __m512i lane = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
-    return (vec)_mm512_permutex2var_ps((__m512)low, _mm512_add_epi32(lane, _mm512_set1_epi32(o)), (__m512)high);
+    return (vec)_mm512_permutex2var_ps((__m512)low, _mm512_add_epi32(lane, _mm512_set1_epi32(o)),
+                                       (__m512)high);
 #elif defined(__AVX512F__)
     const __m512i lane = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
-    return (vec)_mm512_permutex2var_pd((__m512d)low, _mm512_add_epi64(lane, _mm512_set1_epi64(o)), (__m512d)high);
+    return (vec)_mm512_permutex2var_pd((__m512d)low, _mm512_add_epi64(lane, _mm512_set1_epi64(o)),
+                                       (__m512d)high);
 #else
     real both[2 * SM_LANES];
     lanes_store(both, low);
@@ -136,16 +142,18 @@ SM_INLINE vec lanes_slide(vec low, vec high, int o)
 #define LANES_ZIP_HIGH 4, 12, 5, 13, 6, 14, 7, 15
 #endif
 
-/* Transposes SM_LANES vectors by perfect shuffles: log2(lanes) rounds of zips. */
-SM_INLINE void lanes_transpose(vec m[SM_LANES])
+/* From `n` vectors, a power of two, to the rows of their lanes: afterwards the vectors, laid end to
+ * end, hold lane 0 of all, then lane 1 of all, and so on. Perfect shuffles: log2(n) rounds of zips.
+ * With n = SM_LANES this is a transpose. */
+SM_INLINE void lanes_interleave(vec *m, int n)
 {
-    for (int round = 1; round < SM_LANES; round *= 2) {
-        vec out[SM_LANES];
-        for (int i = 0; i < SM_LANES / 2; i++) {
-            out[2 * i] = __builtin_shufflevector(m[i], m[i + SM_LANES / 2], LANES_ZIP_LOW);
-            out[2 * i + 1] = __builtin_shufflevector(m[i], m[i + SM_LANES / 2], LANES_ZIP_HIGH);
+    for (int round = 1; round < n; round *= 2) {
+        vec out[16];
+        for (int i = 0; i < n / 2; i++) {
+            out[2 * i] = __builtin_shufflevector(m[i], m[i + n / 2], LANES_ZIP_LOW);
+            out[2 * i + 1] = __builtin_shufflevector(m[i], m[i + n / 2], LANES_ZIP_HIGH);
         }
-        for (int i = 0; i < SM_LANES; i++) m[i] = out[i];
+        for (int i = 0; i < n; i++) m[i] = out[i];
     }
 }
 
@@ -154,7 +162,7 @@ SM_INLINE void lanes_from_rows(const real *const row[SM_LANES], vec field[16])
 {
     for (int part = 0; part < 16; part += SM_LANES) {
         for (int i = 0; i < SM_LANES; i++) field[part + i] = lanes_load(row[i] + part);
-        lanes_transpose(field + part);
+        lanes_interleave(field + part, SM_LANES);
     }
 }
 
@@ -162,7 +170,7 @@ SM_INLINE void lanes_from_rows(const real *const row[SM_LANES], vec field[16])
 SM_INLINE void lanes_to_rows(vec field[16], real *const row[SM_LANES])
 {
     for (int part = 0; part < 16; part += SM_LANES) {
-        lanes_transpose(field + part);
+        lanes_interleave(field + part, SM_LANES);
         for (int i = 0; i < SM_LANES; i++) lanes_store(row[i] + part, field[part + i]);
     }
 }

@@ -31,9 +31,9 @@ SM_INLINE vec polar_norm(const vec A[9])
     return even + odd + A[8] * A[8];
 }
 
-/* tr U by Halley's iteration from above: (s1+s2+s3)^2 = I + 2 (s1 s2 + ..) <= I + 2 sqrt(3 II), with
- * equality where all stretches agree. Convergence is cubic, so a small change is the last one, and
- * rough reciprocals do: the iteration mends them. */
+/* tr U by Halley's iteration from above: (s1+s2+s3)^2 = I + 2 (s1 s2 + ..) <= I + 2 sqrt(3 II),
+ * with equality where all stretches agree. Convergence is cubic, so a small change is the last one,
+ * and rough reciprocals do: the iteration mends them. */
 SM_INLINE vec polar_trace(vec I, vec II, vec J)
 {
     const real enough = SM_REAL_BITS == 32 ? (real)1e-3 : (real)1e-6;
@@ -43,7 +43,9 @@ SM_INLINE vec polar_trace(vec I, vec II, vec J)
         vec square = l * l;
         vec f = (square * (square - 2 * I) + constant) - J8 * l;
         vec slope = 4 * l * (square - I) - J8, curve = 6 * square - 2 * I;
-        vec change = f * slope * lanes_rough_inverse(lanes_max(slope * slope - f * curve, lanes_set((real)1e-12)));
+        vec change =
+            f * slope *
+            lanes_rough_inverse(lanes_max(slope * slope - f * curve, lanes_set((real)1e-12)));
         l -= change;
         if (!lanes_any(lanes_abs(change) > enough * l)) break;
     }
