@@ -20,9 +20,10 @@ typedef enum { SM_PLANE, SM_SPHERE, SM_BOX, SM_CAPSULE } SmObstacleKind;
 /* A static obstacle; material stays outside. */
 typedef struct {
     SmObstacleKind kind;
-    double a[3];   /* plane: a point; sphere: centre; box: low corner; capsule: one end */
-    double b[3];   /* plane: unit normal towards the free side; box: high corner; capsule: other end */
-    double radius; /* sphere, capsule */
+    double a[3]; /* plane: a point; sphere: centre; box: low corner; capsule: one end */
+    double
+        b[3]; /* plane: unit normal towards the free side; box: high corner; capsule: other end */
+    double radius;   /* sphere, capsule */
     double friction; /* share of the tangential velocity lost on contact, 0..1 */
 } SmObstacle;
 

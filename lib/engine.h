@@ -29,10 +29,10 @@ typedef struct {
     double strain_limit; /* a link breaks beyond this times its rest length; 0: never */
     SmSummation summation;
     SmPolarMethod polar;
-    SmLayout layout;     /* AUTO picks the faster one; results agree to rounding */
-    int threads;         /* 0: all cores */
-    const double *mass;  /* [particle_count] per body, kg, or NULL: 1 each */
-    long instances;      /* bodies that share the lattice; 0 means 1 */
+    SmLayout layout;                     /* AUTO picks the faster one; results agree to rounding */
+    int threads;                         /* 0: all cores */
+    const double *mass;                  /* [particle_count] per body, kg, or NULL: 1 each */
+    long instances;                      /* bodies that share the lattice; 0 means 1 */
     const double (*instance_pose)[3][4]; /* [instances] rest to initial position, or NULL */
 } SmEngineParams;
 
@@ -76,7 +76,8 @@ typedef struct {
     /* The field of every particle, canonical numbers; `values` is [particles][3]. SM_GOAL after
      * step() may cost a recomputation-free copy only if the last call was goals(). */
     void (*get)(SmEngine *engine, SmField field, double (*values)[3]);
-    void (*set)(SmEngine *engine, SmField field, const double (*values)[3]); /* POSITION, VELOCITY */
+    void (*set)(SmEngine *engine, SmField field,
+                const double (*values)[3]); /* POSITION, VELOCITY */
 
     /* v += impulse / m on the particles named: external forces over one step. */
     void (*push)(SmEngine *engine, long count, const long *particle, const double (*impulse)[3]);

@@ -32,7 +32,8 @@ SmCode sm_fail(SmError *error, SmCode code, const char *format, ...)
 void *sm_alloc_at(size_t count, size_t size, const char *file, int line);
 
 /* realloc() that ends the program when there is no memory; grown bytes are not zeroed. */
-#define sm_realloc(pointer, count, size) sm_realloc_at((pointer), (count), (size), __FILE__, __LINE__)
+#define sm_realloc(pointer, count, size)                                                           \
+    sm_realloc_at((pointer), (count), (size), __FILE__, __LINE__)
 void *sm_realloc_at(void *pointer, size_t count, size_t size, const char *file, int line);
 
 #endif
