@@ -15,7 +15,8 @@ typedef enum {
 
 typedef struct {
     double seconds[SM_STAGES];
-    double last; /* time of the last lap, seconds */
+    long count[SM_STAGES]; /* laps: each reads the clock, which takes time of its own */
+    double last;           /* time of the last lap, seconds */
 } SmLaps;
 
 /* "fast_sum", "shape_matching", "polar", "damping", "other". */
@@ -33,6 +34,7 @@ static inline void sm_lap(SmLaps *laps, SmStage stage)
     if (!laps) return;
     double now = sm_now();
     laps->seconds[stage] += now - laps->last;
+    laps->count[stage]++;
     laps->last = now;
 }
 

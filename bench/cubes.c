@@ -1,0 +1,208 @@
+#include "cubes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "check.h"
+
+/* A sample runs for at least so many seconds, but never more than so many steps. */
+static const double sample_seconds = 0.004;
+enum { MOST_STEPS = 64 };
+static const double brute_members = 5e7;
+
+static double noise(unsigned *seed)
+{
+    return rand_r(seed) / (double)RAND_MAX - 0.5;
+}
+
+/* Rest positions in, start state out. */
+static void disturb(BenchCube *cube, double h, unsigned seed)
+{
+    double last = cube->side > 1 ? cube->side - 1 : 1; /* cells are 1 wide */
+    for (long p = 0; p < cube->particles; p++) {
+        double *x = cube->x[p], s[3], turn, swing;
+        for (int d = 0; d < 3; d++) s[d] = x[d] / last - 0.5;
+        turn = 0.6 * s[1];
+        swing = 0.08 * sin(5 * s[1]) + 0.05 * s[2] * s[2];
+        x[0] = last * (cos(turn) * s[0] - sin(turn) * s[2] + swing);
+        x[1] = last * s[1] * (0.9 + 0.15 * s[0]);
+        x[2] = last * (sin(turn) * s[0] + cos(turn) * s[2]);
+        for (int d = 0; d < 3; d++) {
+            x[d] += 0.05 * noise(&seed);
+            cube->v[p][d] = 0.01 * noise(&seed) / h;
+        }
+    }
+}
+
+static void restore(BenchCube *cube)
+{
+    cube->type->set(cube->engine, SM_POSITION, (const double(*)[3])cube->x);
+    cube->type->set(cube->engine, SM_VELOCITY, (const double(*)[3])cube->v);
+}
+
+static void invalidate(BenchCube *cube, const char *what, double value, double limit)
+{
+    cube->valid = false;
+    snprintf(cube->reason, sizeof cube->reason, "%s %.3g; at most %g allowed", what, value, limit);
+}
+
+static void check_brute(BenchCube *cube, const BenchBody *body)
+{
+    BenchCheck check;
+    bench_check_create(body, cube->w, &check);
+    BenchDeviation found = bench_check_state(&check, cube->type, cube->engine);
+    bench_check_free(&check);
+    double limit = bench_check_tolerance(cube->type->precision);
+    if (!(found.goal_error <= limit))
+        invalidate(cube, "goals differ from brute force, in cells, by", found.goal_error, limit);
+    else if (!(found.momentum_error <= BENCH_MOMENTUM_TOLERANCE))
+        invalidate(cube, "linear momentum is off by", found.momentum_error,
+                   BENCH_MOMENTUM_TOLERANCE);
+}
+
+/* Unit masses: sum g = sum x, relative to sum |x - centre|. Not finite: NaN, and so not valid. */
+static void check_momentum(BenchCube *cube)
+{
+    double(*g)[3] = sm_alloc((size_t)cube->particles, sizeof *g);
+    double drift[3] = {0}, centre[3] = {0}, spread = 0;
+    cube->type->goals(cube->engine);
+    cube->type->get(cube->engine, SM_GOAL, g);
+    for (long p = 0; p < cube->particles; p++)
+        for (int d = 0; d < 3; d++) {
+            drift[d] += g[p][d] - cube->x[p][d];
+            centre[d] += cube->x[p][d] / (double)cube->particles;
+        }
+    for (long p = 0; p < cube->particles; p++)
+        spread += hypot(hypot(cube->x[p][0] - centre[0], cube->x[p][1] - centre[1]),
+                        cube->x[p][2] - centre[2]);
+    free(g);
+    double error = hypot(hypot(drift[0], drift[1]), drift[2]) / spread;
+    if (!(error <= BENCH_MOMENTUM_TOLERANCE))
+        invalidate(cube, "linear momentum is off by", error, BENCH_MOMENTUM_TOLERANCE);
+}
+
+SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParams *params,
+                         unsigned long seed, BenchCube *cube, SmError *error)
+{
+    BenchBody body = {.instances = 1};
+    *cube = (BenchCube){.type = type, .side = side, .w = params->w, .valid = true};
+    sm_voxels_init(&body.voxels, side - 1, side - 1, side - 1, 1);
+    for (int k = 0; k < side - 1; k++)
+        for (int j = 0; j < side - 1; j++)
+            for (int i = 0; i < side - 1; i++) sm_voxel_set(&body.voxels, i, j, k);
+    sm_voxels_count(&body.voxels);
+    cube->particles = body.voxels.particle_count;
+    SmCode code = type->create(&body.voxels, params, &cube->engine, error);
+    if (code) {
+        sm_voxels_free(&body.voxels);
+        *cube = (BenchCube){0};
+        return code;
+    }
+    cube->x = sm_alloc((size_t)cube->particles, sizeof *cube->x);
+    cube->v = sm_alloc((size_t)cube->particles, sizeof *cube->v);
+    type->get(cube->engine, SM_REST, cube->x);
+    cube->brute = bench_check_members(&body, cube->w) <= brute_members;
+    if (cube->brute) {
+        body.x0 = sm_alloc((size_t)cube->particles, sizeof *body.x0);
+        type->get(cube->engine, SM_REST, body.x0);
+    }
+    disturb(cube, params->h, (unsigned)seed);
+    restore(cube);
+    if (cube->brute)
+        check_brute(cube, &body);
+    else
+        check_momentum(cube);
+    bench_body_free(&body);
+    return SM_OK;
+}
+
+void bench_cube_free(BenchCube *cube)
+{
+    if (cube->engine) cube->type->destroy(cube->engine);
+    free(cube->x);
+    free(cube->v);
+    free(cube->total);
+    free(cube->stage);
+    *cube = (BenchCube){0};
+}
+
+/* Seconds a step; with `stage`, instrumented. The first step, which fills caches, is not timed. */
+static double sample(BenchCube *cube, int steps, double stage[SM_STAGES])
+{
+    SmLaps laps;
+    restore(cube);
+    cube->type->step(cube->engine, NULL);
+    double start = sm_now();
+    if (stage) sm_laps_start(&laps);
+    for (int i = 0; i < steps; i++) cube->type->step(cube->engine, stage ? &laps : NULL);
+    double seconds = sm_now() - start;
+    for (int s = 0; stage && s < SM_STAGES; s++) {
+        stage[s] = laps.seconds[s] / steps;
+        cube->laps[s] = laps.count[s] / steps;
+    }
+    return seconds / steps;
+}
+
+static void check_end(BenchCube *cube)
+{
+    double(*x)[3] = sm_alloc((size_t)cube->particles, sizeof *x), sum = 0;
+    cube->type->get(cube->engine, SM_POSITION, x);
+    for (long p = 0; p < cube->particles; p++) /* 0 times what is not finite is NaN */
+        sum += 0 * x[p][0] + 0 * x[p][1] + 0 * x[p][2];
+    free(x);
+    if (sum == 0) return;
+    cube->valid = false;
+    snprintf(cube->reason, sizeof cube->reason, "positions are not finite after the steps");
+}
+
+/* Seconds that reading the clock takes at best: what a lap adds to its stage, at least. */
+static double clock_seconds(void)
+{
+    enum { READS = 256, TRIES = 64 };
+    double best = INFINITY;
+    for (int t = 0; t < TRIES; t++) {
+        double start = sm_now(), now = start;
+        for (int i = 0; i < READS; i++) now = sm_now();
+        best = fmin(best, (now - start) / READS);
+    }
+    return best;
+}
+
+void bench_cubes_time(BenchCube *cubes, int count, int repeats, bool stages)
+{
+    for (BenchCube *c = cubes; c < cubes + count; c++) {
+        if (!c->valid) continue;
+        c->repeats = repeats;
+        c->total = sm_alloc((size_t)repeats, sizeof *c->total);
+        if (stages) c->stage = sm_alloc((size_t)repeats, sizeof *c->stage);
+        double step = fmin(sample(c, 1, NULL), sample(c, 1, NULL)); /* also warms up */
+        c->clock = stages ? clock_seconds() : 0;
+        c->steps = (int)fmin(fmax(ceil(sample_seconds / step), 1), MOST_STEPS);
+    }
+    for (int r = 0; r < repeats; r++)
+        for (int i = 0; i < count; i++) {
+            BenchCube *c = &cubes[(r + i) % count]; /* no cube is always first */
+            if (!c->valid) continue;
+            c->total[r] = sample(c, c->steps, NULL);
+            if (stages) sample(c, c->steps, c->stage[r]);
+        }
+    for (BenchCube *c = cubes; c < cubes + count; c++) {
+        if (!c->valid) continue;
+        SmCounts counts;
+        c->type->count(c->engine, &counts);
+        c->sweeps = counts.jacobi_sweeps;
+        check_end(c);
+    }
+}
+
+double bench_cube_ns(const BenchCube *cube, int r)
+{
+    return 1e9 * cube->total[r] / (double)cube->particles;
+}
+
+double bench_cube_stage_ns(const BenchCube *cube, SmStage stage, int r)
+{
+    double seconds = cube->stage[r][stage] - cube->clock * (double)cube->laps[stage];
+    return 1e9 * fmax(seconds, 0) / (double)cube->particles;
+}

@@ -1,0 +1,29 @@
+/* kernel_table.h - ceilings and timed kernels as a table, for people and for programs.
+ *
+ * An invalid row has no times in any format: INVALID stands there, null in JSON. */
+#ifndef BENCH_KERNEL_TABLE_H
+#define BENCH_KERNEL_TABLE_H
+
+#include <stdio.h>
+
+#include "kernels.h"
+
+typedef enum {
+    BENCH_KERNELS_TEXT,
+    BENCH_KERNELS_MARKDOWN,
+    BENCH_KERNELS_CSV,
+    BENCH_KERNELS_JSON
+} BenchKernelFormat;
+
+/* "text", "markdown", "csv", "json", NULL: in the order of BenchKernelFormat. */
+extern const char *const bench_kernel_formats[];
+
+/* Stable: CSV has the kernels only, a header line first, columns
+ *     kernel, group, precision, threads, w, item, items, ns, ns_low, ns_high, floor_ns, bound,
+ *     share_percent, at_most_ns, ratio, ratio_to, ratio_wanted, verdict, valid, note
+ * and what is not given is empty. JSON is {"ceilings": [..], "kernels": [{column: value}],
+ * "environment": {..}}. */
+void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernel *rows, int count,
+                         const BenchCeilings *ceilings, const BenchMachine *machine);
+
+#endif
