@@ -17,15 +17,24 @@
         break;                                                                                     \
     }
 
-/* `v` in the first or last four lanes of sixteen, zero elsewhere. */
+/* `v` in the first or last four lanes of sixteen, zero elsewhere; the compiler would go through
+ * memory, and stall there. */
 SM_INLINE vec16 widen_first(vec4 v)
 {
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return (vec16)_mm512_zextps128_ps512((__m128)v);
+#else
     return __builtin_shufflevector(v, (vec4){0}, 0, 1, 2, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4);
+#endif
 }
 
 SM_INLINE vec16 widen_last(vec4 v)
 {
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return (vec16)_mm512_maskz_broadcast_f32x4(0xf000, (__m128)v);
+#else
     return __builtin_shufflevector(v, (vec4){0}, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 0, 1, 2, 3);
+#endif
 }
 
 SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
