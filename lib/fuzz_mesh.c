@@ -3,6 +3,7 @@
  * With SHAPEBENCH_FUZZ_SUFFIX set (say ".obj") the bytes are a mesh file instead and go through the
  * importer's process too. */
 #include "import.h"
+#include "ply.h"
 #include "polygon.h"
 #include "recentre.h"
 #include "reply.h"
@@ -58,8 +59,8 @@ static SmCode read_shaped(const unsigned char *data, size_t size, SmMesh *mesh)
     return code;
 }
 
-/* Any text in any of the formats; the copy must still be a text of that format. */
-static void recentre(const unsigned char *data, size_t size)
+/* Any text in any of the formats; the copies must still be texts of about that length. */
+static void rewrite(const unsigned char *data, size_t size)
 {
     static const char *const suffix[] = {"obj", "stl", "PLY", "off"};
     char *text = sm_alloc(size + 1, 1);
@@ -71,6 +72,10 @@ static void recentre(const unsigned char *data, size_t size)
         expect(!copy || strlen(copy) == new_size, "the moved text has another length");
         free(copy);
     }
+    size_t new_size = 0;
+    char *copy = sm_ply_vertices_first(text, size, &new_size);
+    expect(!copy || new_size <= size + 1, "reordering adds more than the last newline");
+    free(copy);
     free(text);
 }
 
@@ -113,7 +118,7 @@ int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size)
         sm_mesh_free(&mesh);
         return 0;
     }
-    recentre(data, size);
+    rewrite(data, size);
     cut(data, size);
     SmError error;
     if (sm_reply_read(data, size, "fuzz", &mesh, &error) == SM_OK) inspect(&mesh);

@@ -4,13 +4,15 @@
 #include "reply.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const double default_seconds = 60, default_megabytes = 4096;
+static const double default_seconds = 20, default_seconds_per_megabyte = 1;
+static const double default_megabytes = 4096;
 
 /* Suffixes of common point files, which Assimp does not know. */
 static bool is_point_format(const char *path)
@@ -22,7 +24,8 @@ static bool is_point_format(const char *path)
     return false;
 }
 
-static SmCode check_file(const char *path, SmError *error)
+/* Says also how many bytes the file has. */
+static SmCode check_file(const char *path, double *bytes, SmError *error)
 {
     struct stat status;
     if (stat(path, &status) != 0)
@@ -36,6 +39,7 @@ static SmCode check_file(const char *path, SmError *error)
     if (status.st_size == 0) return sm_fail(error, SM_INPUT, "%s: the file is empty", path);
     if (is_point_format(path))
         return sm_fail(error, SM_INPUT, "%s: a point format holds only points, no triangles", path);
+    *bytes = (double)status.st_size;
     return SM_OK;
 }
 
@@ -44,8 +48,10 @@ static SmCode fail_child(const SmChildResult *result, const SmChildLimits *limit
 {
     switch (result->end) {
     case SM_CHILD_TOO_LONG:
-        return sm_fail(error, SM_INPUT, "%s: reading it took longer than %g s", path,
-                       limits->seconds);
+        return sm_fail(error, SM_INPUT,
+                       "%s: reading it took longer than %g s: it may be "
+                       "damaged; save it anew as OBJ, PLY or STL",
+                       path, limits->seconds);
     case SM_CHILD_TOO_LARGE:
         return sm_fail(error, SM_INPUT, "%s: reading it took more than %g MB", path,
                        limits->megabytes);
@@ -64,12 +70,14 @@ static SmCode fail_child(const SmChildResult *result, const SmChildLimits *limit
 
 SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh, SmError *error)
 {
-    SmChildLimits child = {default_seconds, default_megabytes};
+    double bytes = 0;
+    *mesh = (SmMesh){0};
+    SmCode code = check_file(path, &bytes, error);
+    if (code != SM_OK) return code;
+    SmChildLimits child = {rint(default_seconds + default_seconds_per_megabyte * bytes / 1e6),
+                           default_megabytes};
     if (limits && limits->seconds > 0) child.seconds = limits->seconds;
     if (limits && limits->megabytes > 0) child.megabytes = limits->megabytes;
-    *mesh = (SmMesh){0};
-    SmCode code = check_file(path, error);
-    if (code != SM_OK) return code;
     SmChildResult result = sm_child_run(sm_importer, (void *)path, &child);
     code = result.end == SM_CHILD_REPLIED
                ? sm_reply_read(result.reply, result.size, path, mesh, error)

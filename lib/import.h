@@ -9,7 +9,7 @@
 #include "mesh.h"
 
 typedef struct {
-    double seconds;   /* wall-clock limit of the child; 0: 60 */
+    double seconds;   /* wall-clock limit of the child; 0: 20, and one for each MB of the file */
     double megabytes; /* memory limit of the child; 0: 4096 (child.h says what counts) */
 } SmImportLimits;
 

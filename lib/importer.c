@@ -1,5 +1,6 @@
 #include "importer.h"
 #include "child.h"
+#include "ply.h"
 #include "polygon.h"
 #include "recentre.h"
 #include "reply.h"
@@ -11,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 typedef struct {
     const struct aiScene *scene;
@@ -175,18 +177,35 @@ static char *read_text(const char *path, size_t *size)
     return text;
 }
 
+/* The file's bytes where Assimp needs other ones (ply.h, recentre.h), or NULL. */
+static char *rewritten(const char *path, const char *suffix, size_t *size, double offset[3])
+{
+    size_t new_size = 0;
+    char *text = read_text(path, size);
+    char *ordered = NULL, *moved = NULL;
+    if (text && strcasecmp(suffix, "ply") == 0)
+        ordered = sm_ply_vertices_first(text, *size, &new_size);
+    if (ordered) {
+        free(text);
+        text = ordered;
+        *size = new_size;
+    }
+    if (text) moved = sm_recentre(text, *size, suffix, &new_size, offset);
+    if (moved || !ordered) free(text);
+    if (moved) *size = new_size;
+    if (!moved) offset[0] = offset[1] = offset[2] = 0;
+    return moved ? moved : ordered;
+}
+
 static const struct aiScene *read_scene(const char *path, double offset[3])
 {
     const char *dot = strrchr(path, '.'), *suffix = dot ? dot + 1 : "";
     struct aiPropertyStore *properties = aiCreatePropertyStore();
     aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
-    size_t size = 0, new_size = 0;
-    char *text = read_text(path, &size);
-    char *moved = text ? sm_recentre(text, size, suffix, &new_size, offset) : NULL;
-    free(text);
-    if (moved && new_size < UINT_MAX)
-        return aiImportFileFromMemoryWithProperties(moved, (unsigned)new_size, 0, suffix,
-                                                    properties);
+    size_t size = 0;
+    char *text = rewritten(path, suffix, &size, offset);
+    if (text && size < UINT_MAX)
+        return aiImportFileFromMemoryWithProperties(text, (unsigned)size, 0, suffix, properties);
     offset[0] = offset[1] = offset[2] = 0;
     return aiImportFileExWithProperties(path, 0, NULL, properties);
 }

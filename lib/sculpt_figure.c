@@ -22,11 +22,11 @@ static void penguin_face(SmImplicit *solid)
     sm_primitive_turn(&rim, 0, 1.45);
     sm_sculpt_pair(solid, &rim);
     sm_sculpt_eggs(solid, (SmPoint){0.060, 0.852, 0.208}, (SmPoint){0.019, 0.026, 0.014}, 0.003);
-    sm_sculpt_limb(solid, (SmPoint){0, 0.780, 0.18}, (SmPoint){0, 0.772, 0.365}, 0.058, 0.014,
+    sm_sculpt_limb(solid, (SmPoint){0, 0.780, 0.18}, (SmPoint){0, 0.772, 0.395}, 0.058, 0.014,
                    0.012);
     sm_sculpt_egg(solid, (SmPoint){0, 0.750, 0.20}, (SmPoint){0.072, 0.028, 0.085}, 0.008);
     sm_sculpt_tube(solid, 3,
-                   (SmPoint[]){{0.085, 0.765, 0.20}, {0, 0.755, 0.345}, {-0.085, 0.765, 0.20}},
+                   (SmPoint[]){{0.085, 0.765, 0.20}, {0, 0.755, 0.375}, {-0.085, 0.765, 0.20}},
                    0.006, 0.006, 0.006, 1);
     for (int i = -1; i <= 1; i++) /* tuft */
         sm_sculpt_limb(solid, (SmPoint){0, 0.975, 0.0},
@@ -49,7 +49,7 @@ static void penguin_belly(SmImplicit *solid)
 void sm_sculpt_penguin(SmImplicit *solid)
 {
     SmPrimitive flipper = sm_primitive(SM_ELLIPSOID, 0.06, (double[]){0.352, 0.45, 0},
-                                       (double[]){0.042, 0.235, 0.105});
+                                       (double[]){0.042, 0.22, 0.105});
     sm_sculpt_egg(solid, (SmPoint){0, 0.37, 0}, (SmPoint){0.30, 0.35, 0.265}, 0);
     sm_sculpt_egg(solid, (SmPoint){0, 0.80, 0.01}, (SmPoint){0.205, 0.195, 0.19}, 0.14);
     penguin_belly(solid);

@@ -269,6 +269,18 @@ static void beads(SmImplicit *solid, int base)
     }
 }
 
+/* Hollow from below, as a cast statue is. The shell of a flat underside would be level and one cell
+ * thick, so that a particle and the one above it had the same region; FastLSM's shell has no such
+ * pairs (Table 1: 19,959 regions of as many particles). */
+static void hollow(SmImplicit *solid)
+{
+    SmPrimitive cavity =
+        sm_primitive(SM_CONE, 0.01, (double[]){0, -0.10, 0}, (double[]){0.36, 0.05, 0});
+    cavity.tip[1] = 0.50;
+    cavity.cut = 1;
+    sm_implicit_add(solid, &cavity);
+}
+
 void sm_sculpt_statue(SmImplicit *solid)
 {
     body(solid);
@@ -286,4 +298,5 @@ void sm_sculpt_statue(SmImplicit *solid)
     ears(solid);
     ingot(solid);
     beads(solid, skin);
+    hollow(solid);
 }

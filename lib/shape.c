@@ -34,7 +34,7 @@ static const SmShape shapes[SHAPES] = {
 };
 
 static const Recipe recipes[SHAPES] = {
-    {sm_sculpt_penguin, 0.020, {0}, 0, 1, 1.0}, {sm_sculpt_statue, 0.0138, {0}, 0, 1, 1.98},
+    {sm_sculpt_penguin, 0.020, {0}, 0, 1, 1.0}, {sm_sculpt_statue, 0.0152, {0}, 0, 1, 1.98},
     {sm_sculpt_infant, 0.0085, {0}, 0, 1, 0.6}, {sm_sculpt_hand, 0.0028, {0}, 0, 1, 0.19},
     {sm_sculpt_liver, 0.0060, {0}, 0, 0, 0.22}, {sm_sculpt_flower, 0.0034, {0}, 0, 1, 0.4},
     {NULL, 0, {8, 8, 8}, 0.025, 1, 0.2},        {NULL, 0, {32, 4, 4}, 0.025, 0, 0.8},

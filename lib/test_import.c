@@ -402,6 +402,7 @@ static void test_shared_meshes(void **state)
         {"armadillo.obj", 29170, 1, 0, 0, 0, 0},
         {"tray_plate.STL", 4520, 1, 0, 0, 0, 0},
         {"liver_female_layered.glb", 93303, 9, 709, 2, 0, 0},
+        {"bunny_duplicates.ply", 5766, 1, 0, 0, 0, 0},
         {"bunny_zipper_res2_nonmanifold.ply", 16301, 1, 123, 150, 0, 87},
         {"bad_huge_coordinates_city.obj", 28619, 1, 950, 42, 0, 8},
         {"bad_rounding_gaps.STL", 3476, 1, 0, 0, 0, 0},

@@ -1,0 +1,152 @@
+#define _GNU_SOURCE
+#include "ply.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ELEMENTS = 16, PROPERTIES = 32 };
+
+typedef struct {
+    const char *lines, *lines_end; /* in the header */
+    const char *data, *data_end;
+    long count;
+    int properties;
+    int list[PROPERTIES]; /* bytes of a list's length; 0: not a list */
+    int size[PROPERTIES]; /* bytes of a value */
+} Element;
+
+typedef struct {
+    Element element[ELEMENTS];
+    int count, vertices; /* elements, and which of them holds the vertices: -1 none */
+    bool ascii, big_endian;
+} Ply;
+
+static int size_of(const char *type)
+{
+    static const char *const names[4] = {" char uchar int8 uint8 ", " short ushort int16 uint16 ",
+                                         " int uint int32 uint32 float float32 ",
+                                         " double float64 "};
+    char word[20];
+    snprintf(word, sizeof word, " %s ", type);
+    for (int s = 0; s < 4; s++)
+        if (strstr(names[s], word)) return 1 << s;
+    return 0;
+}
+
+static bool add_property(Ply *ply, const char *line)
+{
+    char length[16], type[16];
+    if (ply->count == 0) return false;
+    Element *e = &ply->element[ply->count - 1];
+    if (e->properties == PROPERTIES) return false;
+    bool list = sscanf(line, "property list %15s %15s", length, type) == 2;
+    if (!list && sscanf(line, "property %15s", type) != 1) return false;
+    e->list[e->properties] = list ? size_of(length) : 0;
+    e->size[e->properties] = size_of(type);
+    bool known = e->size[e->properties] && (!list || e->list[e->properties]);
+    e->properties++;
+    return known;
+}
+
+static bool add_element(Ply *ply, const char *line)
+{
+    char name[16];
+    long count;
+    if (ply->count == ELEMENTS || sscanf(line, "element %15s %ld", name, &count) != 2) return false;
+    if (strcmp(name, "vertex") == 0 && ply->vertices < 0) ply->vertices = ply->count;
+    ply->element[ply->count++] = (Element){.count = count};
+    return count >= 0;
+}
+
+/* Returns where the data begin, or NULL. */
+static const char *read_header(const char *text, const char *end, Ply *ply)
+{
+    const char *newline;
+    *ply = (Ply){.vertices = -1};
+    for (const char *at = text; (newline = memchr(at, '\n', (size_t)(end - at)));
+         at = newline + 1) {
+        char line[128];
+        int before = ply->count;
+        snprintf(line, sizeof line, "%.*s", (int)(newline - at < 127 ? newline - at : 127), at);
+        if (at == text && strncmp(line, "ply", 3) != 0) return NULL;
+        if (strncmp(line, "end_header", 10) == 0) return newline + 1;
+        if (strncmp(line, "format", 6) == 0) {
+            ply->ascii = strstr(line, "ascii");
+            ply->big_endian = strstr(line, "big_endian");
+        }
+        if (strncmp(line, "element", 7) == 0 && !add_element(ply, line)) return NULL;
+        if (strncmp(line, "property", 8) == 0 && !add_property(ply, line)) return NULL;
+        if (ply->count > before) ply->element[before].lines = at;
+        if (ply->count) ply->element[ply->count - 1].lines_end = newline + 1;
+    }
+    return NULL;
+}
+
+/* What follows one vertex, face or whatever it is; NULL when the file ends before. */
+static const char *skip_one(const Ply *ply, const Element *e, const char *at, const char *end)
+{
+    if (ply->ascii) {
+        const char *newline = memchr(at, '\n', (size_t)(end - at));
+        return newline ? newline + 1 : at < end ? end : NULL;
+    }
+    for (int p = 0; p < e->properties; p++) {
+        size_t values = e->list[p] ? 0 : 1;
+        if (end - at < e->list[p]) return NULL;
+        for (int b = 0; b < e->list[p]; b++)
+            values = values << 8 | (unsigned char)at[ply->big_endian ? b : e->list[p] - 1 - b];
+        at += e->list[p];
+        if (values > (size_t)(end - at) / (size_t)e->size[p]) return NULL;
+        at += values * (size_t)e->size[p];
+    }
+    return at;
+}
+
+static bool find_data(Ply *ply, const char *at, const char *end)
+{
+    for (int i = 0; i < ply->count; i++) {
+        Element *e = &ply->element[i];
+        e->data = at;
+        if (e->properties == 0) return false;
+        for (long n = 0; n < e->count; n++)
+            if (!(at = skip_one(ply, e, at, end))) return false;
+        e->data_end = at;
+    }
+    return true;
+}
+
+static void write_data(const Ply *ply, const Element *e, FILE *copy)
+{
+    size_t size = (size_t)(e->data_end - e->data);
+    fwrite(e->data, 1, size, copy);
+    if (ply->ascii && size && e->data_end[-1] != '\n') fputc('\n', copy);
+}
+
+static void write_copy(const Ply *ply, const char *text, const char *data, FILE *copy)
+{
+    const Element *vertices = &ply->element[ply->vertices], *last = &ply->element[ply->count - 1];
+    fwrite(text, 1, (size_t)(ply->element[0].lines - text), copy);
+    fwrite(vertices->lines, 1, (size_t)(vertices->lines_end - vertices->lines), copy);
+    for (const Element *e = ply->element; e <= last; e++)
+        if (e != vertices) fwrite(e->lines, 1, (size_t)(e->lines_end - e->lines), copy);
+    fwrite(last->lines_end, 1, (size_t)(data - last->lines_end), copy);
+    write_data(ply, vertices, copy);
+    for (const Element *e = ply->element; e <= last; e++)
+        if (e != vertices) write_data(ply, e, copy);
+}
+
+char *sm_ply_vertices_first(const char *text, size_t size, size_t *new_size)
+{
+    Ply ply;
+    const char *data = read_header(text, text + size, &ply);
+    char *copy = NULL;
+    if (!data || ply.vertices < 1 || !find_data(&ply, data, text + size)) return NULL;
+    FILE *file = open_memstream(&copy, new_size);
+    if (!file) return NULL;
+    write_copy(&ply, text, data, file);
+    bool failed = ferror(file);
+    if (fclose(file) == 0 && !failed) return copy;
+    free(copy);
+    return NULL;
+}
