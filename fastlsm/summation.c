@@ -97,7 +97,8 @@ SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
     return sum + widen_last(moment);
 }
 
-/* Without reuse, member by member: the O(w^3) form. */
+/* Without reuse, member by member: the O(w^3) form. Rows are summed on their own first, so that
+ * single precision adds numbers of like size. */
 static vec16 region_up_naive(const Lsm *lsm, int region)
 {
     int side = lsm->side, w = lsm->w;
@@ -107,13 +108,18 @@ static vec16 region_up_naive(const Lsm *lsm, int region)
         for (int b = -w; b <= w; b++) {
             const int *id =
                 lsm->sets.bar + (long)lsm->sets.plate[(long)plates[c + w] * side + b + w] * side;
+            vec4 sum[4] = {{0}, {0}, {0}, {0}};
             for (int a = -w; a <= w; a++) {
                 vec4 p = load4(lsm->rows.p + (long)id[a + w] * ROW_P);
-                C += p;
-                X += (real)a * p;
-                Y += (real)b * p;
-                Z += (real)c * p;
+                sum[0] += p;
+                sum[1] += (real)a * p;
+                sum[2] += (real)b * p;
+                sum[3] += (real)c * p;
             }
+            C += sum[0];
+            X += sum[1];
+            Y += sum[2];
+            Z += sum[3];
         }
     vec8 low = __builtin_shufflevector(C, X, 0, 1, 2, 3, 4, 5, 6, 7);
     vec8 high = __builtin_shufflevector(Y, Z, 0, 1, 2, 3, 4, 5, 6, 7);
@@ -202,11 +208,13 @@ static vec4 particle_down_naive(const Lsm *lsm, int region)
         for (int b = -w; b <= w; b++) {
             const int *id =
                 lsm->sets.bar + (long)lsm->sets.plate[(long)plates[c + w] * side + b + w] * side;
+            vec4 row = {0};
             for (int a = -w; a <= w; a++) {
                 const real *T = lsm->rows.transform + (long)id[a + w] * ROW_T;
-                sum += load4(T) - (real)a * load4(T + 12) - (real)b * load4(T + 8) -
+                row += load4(T) - (real)a * load4(T + 12) - (real)b * load4(T + 8) -
                        (real)c * load4(T + 4);
             }
+            sum += row;
         }
     return sum;
 }
