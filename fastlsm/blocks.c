@@ -2,6 +2,7 @@
 #include "match.h"
 #include "window.h"
 
+#include <limits.h>
 #include <string.h>
 
 /* One kernel body serves shape matching and damping: F is how many values arrive at a stage. With
@@ -10,31 +11,67 @@
 enum { UP = 12, MOST = 12 };
 
 /* Scratch of a thread, rows of a plane, block by block: [width + 2][MOST][lanes], with an empty
- * block at each end for the x stages. Rings hold rows y - w .. y + w. */
+ * block at each end for the x stages. Rings hold rows y - w - 1 .. y + w. */
 enum { BLOCK = MOST * SM_LANES };
 
 typedef struct {
-    long pitch; /* (width + 2) blocks */
-    int side;
-    real *above;  /* [side] rows after the z stage up */
-    real *line;   /* the row after the y stage up */
-    real *solved; /* the row after `solve` */
-    real *below;  /* [side] rows after the x stage down */
+    long pitch;      /* (width + 2) blocks */
+    int ring;        /* rows in a ring */
+    bool running;    /* y stages move a window instead of summing it anew */
+    real *above;     /* [ring] rows after the z stage up */
+    real *line;      /* the row after the y stage up */
+    real *solved;    /* the row after `solve` */
+    real *below;     /* [ring] rows after the x stage down */
+    real *window[2]; /* up, down: each column's window of the y stage */
+    int *row[2];     /* the row it is at */
 } Scratch;
 
 static Scratch scratch_of(const Lsm *lsm, int thread)
 {
-    Scratch s = {.pitch = (lsm->box->width + 2) * (long)BLOCK, .side = lsm->side};
+    int width = lsm->box->width;
+    Scratch s = {.pitch = (width + 2) * (long)BLOCK, .ring = lsm->side + 1};
+    s.running = lsm->w > 2 && lsm->params.summation == SM_SUM_FAST;
     s.above = lsm->box->scratch[thread] + BLOCK;
-    s.line = s.above + s.side * s.pitch;
+    s.line = s.above + s.ring * s.pitch;
     s.solved = s.line + s.pitch;
     s.below = s.solved + s.pitch;
+    s.window[0] = s.below + s.ring * s.pitch;
+    s.window[1] = s.window[0] + s.pitch;
+    s.row[0] = lsm->box->window_row[thread];
+    s.row[1] = s.row[0] + width;
+    for (int i = 0; i < 2 * width; i++) s.row[0][i] = INT_MIN;
     return s;
 }
 
 SM_INLINE real *ring_row(const Scratch *s, real *ring, int y)
 {
-    return ring + ((y + s->side) % s->side) * s->pitch;
+    return ring + ((y + s->ring) % s->ring) * s->pitch;
+}
+
+/* A window that has moved this far is summed anew, or rounding would add up. */
+enum { RESTART = 16 };
+
+/* One block of a y stage: the window around row y of `ring`, moved on from row y - 1 where that is
+ * known. `F` values come in; moments of three of them, from `first` on, follow in sum[F ..]. */
+SM_INLINE void stage_y(const Scratch *s, int way, real *ring, int y, int column, int w, int F,
+                       int first, vec *sum)
+{
+    long at = column * (long)BLOCK;
+    vec *kept = (vec *)(s->window[way] + at);
+    int values = first < 0 ? F : F + 3;
+    if (s->running && s->row[way][column] == y - 1 && y % RESTART) {
+        for (int f = 0; f < values; f++) sum[f] = kept[f];
+        window_move(ring_row(s, ring, y - w - 1) + at, ring_row(s, ring, y + w) + at, SM_LANES, w,
+                    F, first, sum, sum + F);
+    } else {
+        const real *in[LSM_MAX_SIDE];
+        for (int b = 2 * w; b > 0; b--) in[b] = ring_row(s, ring, y + b - w) + at;
+        in[0] = ring_row(s, ring, y - w) + at;
+        window_sum(in, SM_LANES, w, F, first, sum, sum + F);
+    }
+    if (!s->running) return;
+    for (int f = 0; f < values; f++) kept[f] = sum[f];
+    s->row[way][column] = y;
 }
 
 /* m~ x of a block, or the products that damping sums: what the z stage up takes. */
@@ -96,24 +133,19 @@ SM_INLINE void row_z_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, 
 SM_INLINE void row_y_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int w, bool damping)
 {
     int F = damping ? 12 : 6, out_F = damping ? 12 : 9;
-    const real *in[LSM_MAX_SIDE];
-    for (int b = 0; b < 2 * w + 1; b++) in[b] = ring_row(s, s->above, row->y + b - w);
     int next = row->first, last = row->first + row->count;
     for (int column = 0; column < lsm->box->width; column++) {
         real *out = s->line + column * (long)BLOCK;
         vec sum[MOST + 3];
-        bool absent = next >= last || lsm->box->column[next] != column;
-        if (absent) {
+        if (next >= last || lsm->box->column[next] != column) {
             for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, lanes_set(0));
-        } else {
-            const real *at[LSM_MAX_SIDE];
-            for (int b = 0; b < 2 * w + 1; b++) at[b] = in[b] + column * (long)BLOCK;
-            window_sum(at, SM_LANES, w, F, damping ? -1 : 0, sum, sum + F);
-            if (w == 1 && !lsm->box->whole[next])
-                for (int f = 0; f < out_F; f++) sum[f] = lanes_and(sum[f], lsm->box->site[next]);
-            for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, sum[f]);
-            next++;
+            continue;
         }
+        stage_y(s, 0, s->above, row->y, column, w, F, damping ? -1 : 0, sum);
+        if (w == 1 && !lsm->box->whole[next])
+            for (int f = 0; f < out_F; f++) sum[f] = lanes_and(sum[f], lsm->box->site[next]);
+        for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, sum[f]);
+        next++;
     }
 }
 
@@ -165,15 +197,11 @@ SM_INLINE void row_y_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int p
                           bool damping)
 {
     int F = damping ? 6 : 9;
-    const real *in[LSM_MAX_SIDE];
-    for (int b = 0; b < 2 * w + 1; b++) in[b] = ring_row(s, s->below, row->y + b - w);
     for (int block = row->first; block < row->first + row->count; block++) {
         real *out = lsm->box->down[plane] + (block - lsm->layer_block[plane]) * 6 * SM_LANES;
-        const real *at[LSM_MAX_SIDE];
-        vec sum[MOST], moment[3];
-        for (int b = 0; b < 2 * w + 1; b++) at[b] = in[b] + lsm->box->column[block] * (long)BLOCK;
-        window_sum(at, SM_LANES, w, F, damping ? -1 : 6, sum, moment);
-        finish_down(sum, moment, damping);
+        vec sum[MOST + 3];
+        stage_y(s, 1, s->below, row->y, lsm->box->column[block], w, F, damping ? -1 : 6, sum);
+        finish_down(sum, sum + F, damping);
         if (w == 1 && !lsm->box->whole[block])
             for (int f = 0; f < 6; f++) sum[f] = lanes_and(sum[f], lsm->box->site[block]);
         for (int f = 0; f < 6; f++) lanes_store(out + f * SM_LANES, sum[f]);
@@ -220,25 +248,27 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, 
 
 void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve, SmLaps *laps)
 {
-    switch (lsm->w * 2 + damping) { /* constants for the usual widths */
+#define WIDTH(w)                                                                                   \
+    if (damping)                                                                                   \
+        plane_pass(lsm, plane, thread, w, true, solve, laps);                                      \
+    else                                                                                           \
+        plane_pass(lsm, plane, thread, w, false, solve, laps);                                     \
+    break
+    switch (lsm->w) { /* constants for the usual widths */
+    case 1:
+        WIDTH(1);
     case 2:
-        plane_pass(lsm, plane, thread, 1, false, solve, laps);
-        break;
+        WIDTH(2);
     case 3:
-        plane_pass(lsm, plane, thread, 1, true, solve, laps);
-        break;
+        WIDTH(3);
     case 4:
-        plane_pass(lsm, plane, thread, 2, false, solve, laps);
-        break;
+        WIDTH(4);
     case 5:
-        plane_pass(lsm, plane, thread, 2, true, solve, laps);
-        break;
+        WIDTH(5);
     default:
-        if (damping)
-            plane_pass(lsm, plane, thread, lsm->w, true, solve, laps);
-        else
-            plane_pass(lsm, plane, thread, lsm->w, false, solve, laps);
+        WIDTH(lsm->w);
     }
+#undef WIDTH
 }
 
 SM_INLINE void stage_z_down(const Lsm *lsm, int plane, long block, int w, bool damping, vec *sum)
@@ -259,8 +289,21 @@ SM_INLINE void stage_z_down(const Lsm *lsm, int plane, long block, int w, bool d
 
 void lsm_blocks_down(const Lsm *lsm, int plane, long block, bool damping, vec *sum)
 {
-    if (damping)
-        stage_z_down(lsm, plane, block, lsm->w, true, sum);
-    else
-        stage_z_down(lsm, plane, block, lsm->w, false, sum);
+#define WIDTH(w)                                                                                   \
+    if (damping)                                                                                   \
+        stage_z_down(lsm, plane, block, w, true, sum);                                             \
+    else                                                                                           \
+        stage_z_down(lsm, plane, block, w, false, sum);                                            \
+    break
+    switch (lsm->w) {
+    case 1:
+        WIDTH(1);
+    case 2:
+        WIDTH(2);
+    case 5:
+        WIDTH(5);
+    default:
+        WIDTH(lsm->w);
+    }
+#undef WIDTH
 }

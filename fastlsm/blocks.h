@@ -39,7 +39,8 @@ struct Blocks {
     real *down_memory;
     int threads;
     long shared_bytes;
-    real **scratch; /* [threads] rows of one plane */
+    real **scratch;   /* [threads] rows of one plane */
+    int **window_row; /* [threads][2 width] rows that y windows are at */
 };
 
 /* What a pass does with the 12 sums of a block's regions; it gives back 12 values to bring down

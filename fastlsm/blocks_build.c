@@ -174,13 +174,17 @@ long lsm_blocks_irregular(const Lsm *lsm, bool *wanted)
 static size_t scratch_size(const Lsm *lsm)
 {
     size_t width = (size_t)lsm->box->width + 2, side = (size_t)lsm->side;
-    return width * SM_LANES * (2 * side + 2) * 12;
+    return width * SM_LANES * (2 * side + 6) * 12;
 }
 
 static void free_shared(Blocks *box)
 {
-    for (int t = 0; t < box->threads; t++) free(box->scratch[t]);
+    for (int t = 0; t < box->threads; t++) {
+        free(box->scratch[t]);
+        free(box->window_row[t]);
+    }
     free(box->scratch);
+    free(box->window_row);
     free(box->down);
     free(box->down_memory);
 }
@@ -216,8 +220,11 @@ void lsm_blocks_share(Lsm *lsm)
         box->down[z] = box->down_memory + store[z] * most * 6 * SM_LANES;
     free(store);
     box->scratch = sm_alloc((size_t)lsm->threads, sizeof *box->scratch);
-    for (int t = 0; t < lsm->threads; t++)
+    box->window_row = sm_alloc((size_t)lsm->threads, sizeof *box->window_row);
+    for (int t = 0; t < lsm->threads; t++) {
         box->scratch[t] = sm_alloc(scratch_size(lsm), sizeof(real));
+        box->window_row[t] = sm_alloc(2 * (size_t)box->width, sizeof(int));
+    }
     box->shared_bytes = (stores * most * 6 * SM_LANES + lsm->threads * (long)scratch_size(lsm)) *
                         (long)sizeof(real);
 }

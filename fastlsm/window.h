@@ -23,6 +23,20 @@ SM_INLINE void window_sum(const real *const *in, long stride, int w, int F, int 
         }
 }
 
+/* The same when the window moves on by one place: `sum` and `moment` hold the window before,
+ * `leave` is the place that drops out of it and `enter` the one that joins. Moved by one, offsets
+ * fall by one: M' = M - S + (w+1) leave + w enter,   S' = S - leave + enter. */
+SM_INLINE void window_move(const real *leave, const real *enter, long stride, int w, int F,
+                           int first, vec *sum, vec *moment)
+{
+    for (int f = 0; f < F; f++) {
+        vec old = lanes_load(leave + f * stride), new = lanes_load(enter + f * stride);
+        if (first >= 0 && f >= first && f < first + 3)
+            moment[f - first] += ((real)(w + 1) * old - sum[f]) + (real)w * new;
+        sum[f] += new - old;
+    }
+}
+
 /* The same along x: offsets are lanes of the block at `in` and of its neighbours on either side,
  * `next` values away. o = SM_LANES takes a whole neighbour. */
 SM_INLINE void window_sum_x(const real *in, long next, int w, int F, int first, vec *sum,

@@ -107,25 +107,77 @@ SM_INLINE int lanes_any(ivec mask)
 #endif
 }
 
-/* Lanes o .. o + SM_LANES - 1 of the two vectors low, high laid end to end; 0 <= o <= SM_LANES. */
+#ifdef __AVX512F__
+#if SM_REAL_BITS == 32
+#define LANES_ALIGN(o)                                                                             \
+    case o:                                                                                        \
+        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, o);
+#else
+#define LANES_ALIGN(o)                                                                             \
+    case o:                                                                                        \
+        return (vec)_mm512_alignr_epi64((__m512i)high, (__m512i)low, o);
+#endif
+#endif
+
+/* Lanes o .. o + SM_LANES - 1 of the two vectors low, high laid end to end; 0 <= o <= SM_LANES. One
+ * instruction where o is a constant. */
 SM_INLINE vec lanes_slide(vec low, vec high, int o)
 {
-#if defined(__AVX512F__) && SM_REAL_BITS == 32
-    if (__builtin_constant_p(o) && o == 1)
-        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 1);
-    if (__builtin_constant_p(o) && o == 2)
-        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 2);
-    if (__builtin_constant_p(o) && o == 14)
-        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 14);
-    if (__builtin_constant_p(o) && o == 15)
-        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, 15);
-    const __m512i lane = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
-    return (vec)_mm512_permutex2var_ps((__m512)low, _mm512_add_epi32(lane, _mm512_set1_epi32(o)),
-                                       (__m512)high);
-#elif defined(__AVX512F__)
-    const __m512i lane = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
-    return (vec)_mm512_permutex2var_pd((__m512d)low, _mm512_add_epi64(lane, _mm512_set1_epi64(o)),
-                                       (__m512d)high);
+#ifdef __AVX512F__
+    if (__builtin_constant_p(o)) {
+        switch (o) {
+            LANES_ALIGN(1)
+            LANES_ALIGN(2) LANES_ALIGN(3) LANES_ALIGN(4) LANES_ALIGN(5) LANES_ALIGN(6)
+                LANES_ALIGN(7)
+#if SM_LANES == 16
+                    LANES_ALIGN(8) LANES_ALIGN(9) LANES_ALIGN(10) LANES_ALIGN(11) LANES_ALIGN(12)
+                        LANES_ALIGN(13) LANES_ALIGN(14) LANES_ALIGN(15)
+#endif
+        }
+    }
+    static const lane_int lane[2 * SM_LANES] = {
+        0,
+        1,
+        2,
+        3,
+        4,
+        5,
+        6,
+        7,
+        8,
+        9,
+        10,
+        11,
+        12,
+        13,
+        14,
+        15,
+#if SM_LANES == 16
+        16,
+        17,
+        18,
+        19,
+        20,
+        21,
+        22,
+        23,
+        24,
+        25,
+        26,
+        27,
+        28,
+        29,
+        30,
+        31
+#endif
+    };
+    __m512i from = _mm512_loadu_si512(lane + (o < SM_LANES ? o : 0));
+    if (o == SM_LANES) return high;
+#if SM_REAL_BITS == 32
+    return (vec)_mm512_permutex2var_ps((__m512)low, from, (__m512)high);
+#else
+    return (vec)_mm512_permutex2var_pd((__m512d)low, from, (__m512d)high);
+#endif
 #else
     real both[2 * SM_LANES];
     lanes_store(both, low);
