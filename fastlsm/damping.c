@@ -45,14 +45,20 @@ static void store_velocities(Lsm *lsm, long tile, const vec out[6])
     }
 }
 
-static void solve_tile(Lsm *lsm, long tile)
+/* The list sums of SM_LANES regions, in lanes. */
+static void region_sums(const Lsm *lsm, const int *region, vec field[16])
 {
     vec16 sums[SM_LANES] = {{0}};
     const real *row[SM_LANES];
-    vec field[16], c[3], out[6];
-    lsm_regions_plain(lsm, lsm->tile_region + tile * SM_LANES, sums);
+    lsm_regions_plain(lsm, region, sums);
     for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&sums[lane];
     lanes_from_rows(row, field);
+}
+
+static void solve_tile(Lsm *lsm, long tile)
+{
+    vec field[16], c[3], out[6];
+    region_sums(lsm, lsm->tile_region + tile * SM_LANES, field);
     load3(lsm->centre + tile * 3 * SM_LANES, c);
     rigid_velocity(field, c, lsm->region_const[lsm->tile_const[tile]].inverse_mass, out);
     store_velocities(lsm, tile, out);
@@ -64,10 +70,10 @@ static void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, SmLap
     vec c[3];
     if (lsm->box->mixed[block]) {
         const int *region = lsm->block_region + block * SM_LANES;
-        vec16 sums[SM_LANES];
-        lsm_regions_plain(lsm, region, sums);
-        for (int lane = 0; lane < SM_LANES; lane++)
-            for (int i = 0; i < 12 && region[lane] >= 0; i++) F[i][lane] = sums[lane][i];
+        vec listed[16];
+        region_sums(lsm, region, listed);
+        ivec lanes = listed_lanes(region);
+        for (int i = 0; i < 12; i++) F[i] = lanes_select(lanes, listed[i], F[i]);
     }
     load3(lsm->centre + block * 3 * SM_LANES, c);
     rigid_velocity(F, c, lsm->region_const[lsm->tile_const[block]].inverse_mass, out);

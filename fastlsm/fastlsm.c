@@ -44,13 +44,13 @@ static void bars_and_plates(Lsm *lsm, int layer, int thread, SmLaps *laps)
     sm_lap(laps, SM_FAST_SUM);
 }
 
-/* The twelve sums of a tile's regions, in lanes and in the order (C, Cz, Cy, Cx). */
-static void region_sums(const Lsm *lsm, long tile, vec S[12])
+/* The list sums of SM_LANES regions, in lanes and in the order (C, Cz, Cy, Cx). */
+static void region_sums(const Lsm *lsm, const int *region, vec S[12])
 {
     vec16 sums[SM_LANES] = {{0}};
     const real *row[SM_LANES];
     vec padded[16];
-    lsm_regions_up(lsm, lsm->tile_region + tile * SM_LANES, sums);
+    lsm_regions_up(lsm, region, sums);
     for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&sums[lane];
     lanes_from_rows(row, padded);
     for (int i = 0; i < 12; i++) S[i] = padded[(4 - i / 3) % 4 * 4 + i % 3];
@@ -135,7 +135,7 @@ SM_INLINE bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q
 static void match_tile(Lsm *lsm, int layer, long tile, SmLaps *laps)
 {
     vec S[12], R[9], q[3];
-    region_sums(lsm, tile, S);
+    region_sums(lsm, lsm->tile_region + tile * SM_LANES, S);
     sm_lap(laps, SM_FAST_SUM);
     if (match_sums(lsm, layer, tile, S, q, R, laps)) store_transforms(lsm, tile, q, R);
     sm_lap(laps, SM_SHAPE_MATCHING);
@@ -145,11 +145,10 @@ static void match_tile(Lsm *lsm, int layer, long tile, SmLaps *laps)
 static void replace_sums(const Lsm *lsm, long block, vec S[12])
 {
     const int *region = lsm->block_region + block * SM_LANES;
-    vec16 sums[SM_LANES];
-    lsm_regions_up(lsm, region, sums);
-    for (int lane = 0; lane < SM_LANES; lane++)
-        for (int i = 0; i < 12 && region[lane] >= 0; i++)
-            S[i][lane] = sums[lane][(4 - i / 3) % 4 * 4 + i % 3];
+    vec listed[12];
+    region_sums(lsm, region, listed);
+    ivec lanes = listed_lanes(region);
+    for (int i = 0; i < 12; i++) S[i] = lanes_select(lanes, listed[i], S[i]);
 }
 
 /* Block form: the regions centred in a block. */

@@ -109,6 +109,13 @@ typedef struct Lsm {
     long broken, const_bytes;
 } Lsm;
 
+/* The lanes with a list row. */
+SM_INLINE ivec listed_lanes(const int *region)
+{
+    typedef int narrow __attribute__((vector_size(SM_LANES * sizeof(int)), aligned(sizeof(int))));
+    return __builtin_convertvector(*(const narrow *)region, ivec) >= 0;
+}
+
 SM_INLINE void load3(const real *p, vec out[3])
 {
     for (int d = 0; d < 3; d++) out[d] = lanes_load(p + d * SM_LANES);

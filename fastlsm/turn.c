@@ -67,7 +67,7 @@ static double best_fill(const SmVoxels *v, int lanes, int *turn)
 SmLayout lsm_turn_choose(const SmVoxels *v, const SmEngineParams *params, int lanes, int *turn)
 {
     /* measured: below this fill the lists are faster (shapebench kernels shows both) */
-    const double worth = 0.6;
+    const double worth = 0.85;
     bool may = params->w <= lanes && params->summation != SM_SUM_NAIVE && params->instances <= 1;
     *turn = 0;
     double fill = may && params->layout != SM_LAYOUT_LISTS ? best_fill(v, lanes, turn) : 0;
