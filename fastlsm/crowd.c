@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "match.h"
-#include "obstacle.h"
 #include "rigid.h"
 #include "window.h"
 
@@ -248,10 +247,9 @@ static void move_group(Crowd *crowd, long group, const GroupRows *r, bool goals,
         }
         load3(crowd->x + at, x);
         load3(crowd->v + at, v);
-        for (int d = 0; d < 3; d++) v[d] += sum[d] - x[d] + lsm->gravity[d];
+        integrate_velocity(sum, x, lsm->gravity, lanes_set(1), v);
         if (!damp) {
-            for (int d = 0; d < 3; d++) x[d] += v[d];
-            obstacles_push_at(lsm->obstacle, lsm->obstacle_count, shift, x, v);
+            integrate_position(lsm->obstacle, lsm->obstacle_count, shift, x, v);
             store3(crowd->x + at, x);
         }
         store3(crowd->v + at, v);
@@ -286,8 +284,7 @@ static void damp_group(Crowd *crowd, long group, const GroupRows *r, const vec s
         load3(crowd->v + at, v);
         last_level(crowd, r->plate_down, PLATE_DOWN, p, 6, -1, F);
         pull(F, lanes_set(crowd->inverse_count[p]), (real)lsm->params.damping, x, v);
-        for (int d = 0; d < 3; d++) x[d] += v[d];
-        obstacles_push_at(lsm->obstacle, lsm->obstacle_count, shift, x, v);
+        integrate_position(lsm->obstacle, lsm->obstacle_count, shift, x, v);
         store3(crowd->x + at, x);
         store3(crowd->v + at, v);
     }

@@ -2,7 +2,6 @@
  * regions of a particle, pulls the particle's velocity towards it. */
 #include "blocks.h"
 #include "match.h"
-#include "obstacle.h"
 #include "pipeline.h"
 #include "rigid.h"
 #include "step.h"
@@ -103,8 +102,7 @@ SM_INLINE void slow_down(Lsm *lsm, long block, const vec sum[6])
     load3(lsm->x + block * 3 * SM_LANES, x);
     load3(lsm->v + block * 3 * SM_LANES, v);
     pull(sum, k->inverse_count, (real)lsm->params.damping, x, v);
-    for (int d = 0; d < 3; d++) x[d] += v[d];
-    if (lsm->obstacle_count) obstacles_push(lsm, x, v);
+    integrate_position(lsm->obstacle, lsm->obstacle_count, lsm->shift, x, v);
     store3(lsm->v + block * 3 * SM_LANES, v);
     store3(lsm->x + block * 3 * SM_LANES, x);
 }

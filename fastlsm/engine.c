@@ -182,6 +182,11 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
         return sm_fail(error, SM_INPUT,
                        "strain_limit: instances share one lattice and cannot break; "
                        "use one instance, or strain_limit 0");
+    if (params->instances > 1 &&
+        (params->summation == SM_SUM_NAIVE || params->polar == SM_POLAR_JACOBI))
+        return sm_fail(error, SM_INPUT,
+                       "instances are summed by bars and plates and matched by the fast "
+                       "polar method only; use one instance, or the defaults");
     SmCode code = lsm_check(voxels, params, error);
     if (code) return code;
     SmEngine *e = sm_alloc(1, sizeof *e);
@@ -337,18 +342,8 @@ static void copy_obstacles(Lsm *lsm, const SmBoundary *boundary)
     free(lsm->obstacle);
     lsm->obstacle_count = boundary->obstacle_count;
     lsm->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *lsm->obstacle);
-    for (int i = 0; i < boundary->obstacle_count; i++) {
-        const SmObstacle *from = &boundary->obstacle[i];
-        Obstacle *to = &lsm->obstacle[i];
-        *to = (Obstacle){.kind = from->kind,
-                         .radius = (real)(from->radius / lsm->cell),
-                         .friction = (real)from->friction};
-        for (int d = 0; d < 3; d++) {
-            to->a[d] = (real)((from->a[d] - lsm->home[d]) / lsm->cell);
-            to->b[d] = from->kind == SM_PLANE ? (real)from->b[d]
-                                              : (real)((from->b[d] - lsm->home[d]) / lsm->cell);
-        }
-    }
+    for (int i = 0; i < boundary->obstacle_count; i++)
+        lsm->obstacle[i] = obstacle_in_cells(&boundary->obstacle[i], lsm->home, lsm->cell);
     shift_obstacles(lsm);
 }
 

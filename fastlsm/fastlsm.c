@@ -13,7 +13,6 @@
 #include "blocks.h"
 #include "build.h"
 #include "match.h"
-#include "obstacle.h"
 #include "pipeline.h"
 #include "step.h"
 #include "summation.h"
@@ -210,15 +209,12 @@ static void integrate(Lsm *lsm, long block, const vec sum[3])
     }
     load3(lsm->x + block * 3 * SM_LANES, x);
     load3(lsm->v + block * 3 * SM_LANES, v);
-    for (int d = 0; d < 3; d++) v[d] += (g[d] - x[d]) + lsm->gravity[d] * k->live;
-    store3(lsm->v + block * 3 * SM_LANES, v);
-    if (lsm->damp_now) return;
-    for (int d = 0; d < 3; d++) x[d] += v[d];
-    if (lsm->obstacle_count) {
-        obstacles_push(lsm, x, v);
-        store3(lsm->v + block * 3 * SM_LANES, v);
+    integrate_velocity(g, x, lsm->gravity, k->live, v);
+    if (!lsm->damp_now) {
+        integrate_position(lsm->obstacle, lsm->obstacle_count, lsm->shift, x, v);
+        store3(lsm->x + block * 3 * SM_LANES, x);
     }
-    store3(lsm->x + block * 3 * SM_LANES, x);
+    store3(lsm->v + block * 3 * SM_LANES, v);
 }
 
 static void move(Lsm *lsm, int layer, int thread, SmLaps *laps)

@@ -12,6 +12,7 @@
 #define LSM_STATE_H
 
 #include "../lib/engine.h"
+#include "../lib/integrate.h"
 #include "../lib/lanes.h"
 #include "sets.h"
 
@@ -44,12 +45,6 @@ typedef struct {
  * what empty lanes write. */
 
 typedef enum { PASS_STEP, PASS_GOALS, PASS_CONSTANTS } Pass;
-
-/* A static obstacle in cells from the home origin. */
-typedef struct {
-    SmObstacleKind kind;
-    real a[3], b[3], radius, friction;
-} Obstacle;
 
 typedef struct Blocks Blocks; /* box sums: blocks.h */
 

@@ -134,7 +134,8 @@ SM_INLINE vec lanes_slide(vec low, vec high, int o)
         switch (o) {
             LANES_ALIGN(1)
             LANES_ALIGN(2)
-            LANES_ALIGN(3) LANES_ALIGN(4) LANES_ALIGN(5) LANES_ALIGN(6) LANES_ALIGN(7)
+            LANES_ALIGN(3)
+            LANES_ALIGN(4) LANES_ALIGN(5) LANES_ALIGN(6) LANES_ALIGN(7)
 #if SM_LANES == 16
                 LANES_ALIGN(8) LANES_ALIGN(9) LANES_ALIGN(10) LANES_ALIGN(11) LANES_ALIGN(12)
                     LANES_ALIGN(13) LANES_ALIGN(14) LANES_ALIGN(15)

@@ -2,10 +2,30 @@
  *
  * A particle inside goes to the nearest point of the surface, loses the velocity that leads inwards
  * and the share `friction` of the tangential one. Twin: reference/obstacle.c. */
-#ifndef LSM_OBSTACLE_H
-#define LSM_OBSTACLE_H
+#ifndef SM_OBSTACLE_H
+#define SM_OBSTACLE_H
 
-#include "state.h"
+#include "boundary.h"
+#include "lanes.h"
+
+/* A static obstacle in an engine's own units: lattice cells from its home origin. */
+typedef struct {
+    SmObstacleKind kind;
+    real a[3], b[3], radius, friction;
+} Obstacle;
+
+/* From mesh units. */
+SM_INLINE Obstacle obstacle_in_cells(const SmObstacle *from, const double home[3], double cell)
+{
+    Obstacle to = {.kind = from->kind,
+                   .radius = (real)(from->radius / cell),
+                   .friction = (real)from->friction};
+    for (int d = 0; d < 3; d++) {
+        to.a[d] = (real)((from->a[d] - home[d]) / cell);
+        to.b[d] = from->kind == SM_PLANE ? (real)from->b[d] : (real)((from->b[d] - home[d]) / cell);
+    }
+    return to;
+}
 
 SM_INLINE vec lanes_dot(const vec a[3], const vec b[3])
 {
@@ -97,8 +117,8 @@ SM_INLINE vec obstacle_depth(const Obstacle *o, const vec x[3], vec normal[3])
 }
 
 /* All obstacles in turn on the particles at x + shift. */
-SM_INLINE void obstacles_push_at(const Obstacle *obstacle, int count, const vec shift[3], vec x[3],
-                                 vec v[3])
+SM_INLINE void obstacles_push(const Obstacle *obstacle, int count, const vec shift[3], vec x[3],
+                              vec v[3])
 {
     for (int n = 0; n < count; n++) {
         vec at[3], normal[3];
@@ -114,11 +134,6 @@ SM_INLINE void obstacles_push_at(const Obstacle *obstacle, int count, const vec 
             x[i] = lanes_select(inside, x[i] + depth * normal[i], x[i]);
         }
     }
-}
-
-SM_INLINE void obstacles_push(const Lsm *lsm, vec x[3], vec v[3])
-{
-    obstacles_push_at(lsm->obstacle, lsm->obstacle_count, lsm->shift, x, v);
 }
 
 #endif
