@@ -15,8 +15,6 @@
 #define lsm_blocks_share     SM_NAME(lsm_blocks_share)
 #define lsm_blocks_free      SM_NAME(lsm_blocks_free)
 #define lsm_blocks_bytes     SM_NAME(lsm_blocks_bytes)
-#define lsm_blocks_up        SM_NAME(lsm_blocks_up)
-#define lsm_blocks_down      SM_NAME(lsm_blocks_down)
 
 /* A row of blocks along x. */
 typedef struct {
@@ -59,11 +57,5 @@ void lsm_blocks_share(Lsm *lsm);
 void lsm_blocks_free(Blocks *box);
 
 long lsm_blocks_bytes(const Lsm *lsm);
-
-/* Part 1 of a pass for one plane: sums up, `solve` at every block, sums down along x and y. */
-void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve, SmLaps *laps);
-
-/* The last stage down, along z, for one block of `plane`: 3 or 6 values. */
-void lsm_blocks_down(const Lsm *lsm, int plane, long block, bool damping, vec *sum);
 
 #endif

@@ -1,6 +1,6 @@
 /* damping.c - region damping (fastlsm eq. 14): each region's rigid velocity, averaged over the
  * regions of a particle, pulls the particle's velocity towards it. */
-#include "blocks.h"
+#include "blocks_pass.h"
 #include "match.h"
 #include "pipeline.h"
 #include "rigid.h"
@@ -63,7 +63,7 @@ static void solve_tile(Lsm *lsm, long tile)
     store_velocities(lsm, tile, out);
 }
 
-static void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, SmLaps *laps)
+SM_INLINE void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, SmLaps *laps)
 {
     (void)layer, (void)laps;
     vec c[3];

@@ -10,7 +10,7 @@
  * finishes goal positions and integrates. */
 #include "fastlsm.h"
 
-#include "blocks.h"
+#include "blocks_pass.h"
 #include "build.h"
 #include "match.h"
 #include "pipeline.h"
@@ -151,7 +151,7 @@ static void replace_sums(const Lsm *lsm, long block, vec S[12])
 }
 
 /* Block form: the regions centred in a block. */
-static void match_block(Lsm *lsm, int layer, long block, vec *S, vec *out, SmLaps *laps)
+SM_INLINE void match_block(Lsm *lsm, int layer, long block, vec *S, vec *out, SmLaps *laps)
 {
     vec R[9], q[3];
     if (lsm->box->mixed[block]) replace_sums(lsm, block, S);

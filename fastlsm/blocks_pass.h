@@ -1,3 +1,8 @@
+/* blocks_pass.h - the stages of a block pass (blocks.h), inline, so that the compiler can put a pass's
+ * own work, `solve`, between the stages up and the stages down. */
+#ifndef LSM_BLOCKS_PASS_H
+#define LSM_BLOCKS_PASS_H
+
 #include "blocks.h"
 #include "match.h"
 #include "window.h"
@@ -246,7 +251,8 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, 
     }
 }
 
-void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve, SmLaps *laps)
+/* Part 1 of a pass for one plane: sums up, `solve` at every block, sums down along x and y. */
+SM_INLINE void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve, SmLaps *laps)
 {
 #define WIDTH(w)                                                                                   \
     if (damping)                                                                                   \
@@ -287,7 +293,8 @@ SM_INLINE void stage_z_down(const Lsm *lsm, int plane, long block, int w, bool d
     }
 }
 
-void lsm_blocks_down(const Lsm *lsm, int plane, long block, bool damping, vec *sum)
+/* The last stage down, along z, for one block of `plane`: 3 or 6 values. */
+SM_INLINE void lsm_blocks_down(const Lsm *lsm, int plane, long block, bool damping, vec *sum)
 {
 #define WIDTH(w)                                                                                   \
     if (damping)                                                                                   \
@@ -307,3 +314,5 @@ void lsm_blocks_down(const Lsm *lsm, int plane, long block, bool damping, vec *s
     }
 #undef WIDTH
 }
+
+#endif
