@@ -1,5 +1,5 @@
-/* blocks_pass.h - the stages of a block pass (blocks.h), inline, so that the compiler can put a pass's
- * own work, `solve`, between the stages up and the stages down. */
+/* blocks_pass.h - the stages of a block pass (blocks.h), inline, so that the compiler can put a
+ * pass's own work, `solve`, between the stages up and the stages down. */
 #ifndef LSM_BLOCKS_PASS_H
 #define LSM_BLOCKS_PASS_H
 
@@ -252,7 +252,8 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, 
 }
 
 /* Part 1 of a pass for one plane: sums up, `solve` at every block, sums down along x and y. */
-SM_INLINE void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve, SmLaps *laps)
+SM_INLINE void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve,
+                             SmLaps *laps)
 {
 #define WIDTH(w)                                                                                   \
     if (damping)                                                                                   \

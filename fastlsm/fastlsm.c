@@ -58,9 +58,15 @@ static void region_sums(const Lsm *lsm, const int *region, vec S[12])
 static void keep_constants(Lsm *lsm, long tile, const vec S[12])
 {
     RegionConst *k = &lsm->region_const[lsm->tile_const[tile]];
-    ivec live = S[0] > 0;
+    ivec live = S[0] > 0, off = {0};
     k->inverse_mass = lanes_and(1 / lanes_select(live, S[0], lanes_set(1)), live);
-    for (int d = 0; d < 3; d++) k->offset[d] = S[9 - 3 * d] * k->inverse_mass;
+    for (int d = 0; d < 3; d++) {
+        vec offset = S[9 - 3 * d] * k->inverse_mass;
+        ivec real_offset = lanes_abs(offset) > 8 * SM_EPSILON; /* the rest is rounding */
+        k->offset[d] = lanes_and(offset, real_offset);
+        off |= real_offset;
+    }
+    k->centred = (ivec){0} - !lanes_any(off);
 }
 
 /* Rotation of each region of a tile. */
@@ -158,11 +164,12 @@ SM_INLINE void match_block(Lsm *lsm, int layer, long block, vec *S, vec *out, Sm
     sm_lap(laps, SM_FAST_SUM);
     if (!match_sums(lsm, layer, block, S, q, R, laps)) return;
     if (lsm->box->listed[block]) store_transforms(lsm, block, q, R);
-    ivec site = lsm->box->site[block];
-    for (int i = 0; i < 3; i++) { /* empty lanes bring nothing down */
-        out[i] = lanes_and(q[i], site);
-        for (int d = 0; d < 3; d++) out[9 - 3 * d + i] = lanes_and(R[i * 3 + d], site);
+    for (int i = 0; i < 3; i++) {
+        out[i] = q[i];
+        for (int d = 0; d < 3; d++) out[9 - 3 * d + i] = R[i * 3 + d];
     }
+    for (int i = 0; i < 12 && !lsm->box->whole[block]; i++) /* empty lanes bring nothing down */
+        out[i] = lanes_and(out[i], lsm->box->site[block]);
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
 

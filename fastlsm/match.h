@@ -48,16 +48,20 @@ SM_INLINE void match_moments(const vec S[12], const RegionConst *k, vec c[3], ve
 {
     for (int i = 0; i < 3; i++) {
         c[i] = S[i] * k->inverse_mass;
-        for (int d = 0; d < 3; d++) A[i * 3 + d] = S[9 - d * 3 + i] - S[i] * k->offset[d];
+        for (int d = 0; d < 3; d++) A[i * 3 + d] = S[9 - d * 3 + i];
     }
+    if (k->centred[0]) return;
+    for (int i = 0; i < 3; i++)
+        for (int d = 0; d < 3; d++) A[i * 3 + d] -= S[i] * k->offset[d];
 }
 
 /* The position that region r gives its own centre: q_r = c_r + R_r (x0_r - c0_r). */
 SM_INLINE void match_centre(const vec c[3], const vec R[9], const RegionConst *k, vec q[3])
 {
+    for (int i = 0; i < 3; i++) q[i] = c[i];
+    if (k->centred[0]) return;
     for (int i = 0; i < 3; i++)
-        q[i] = c[i] - R[i * 3] * k->offset[0] - R[i * 3 + 1] * k->offset[1] -
-               R[i * 3 + 2] * k->offset[2];
+        for (int d = 0; d < 3; d++) q[i] -= R[i * 3 + d] * k->offset[d];
 }
 
 /* Jacobi, lane by lane, as the paper does it. Returns the sweeps, summed over live lanes. */

@@ -18,6 +18,7 @@
 
 typedef struct {
     vec inverse_mass, offset[3]; /* 1 / M_r; c0_r - x0_r in cells */
+    ivec centred;                /* all bits: no lane has an offset, as deep inside a solid */
 } RegionConst;
 
 typedef struct {
