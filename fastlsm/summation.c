@@ -37,6 +37,11 @@ SM_INLINE vec16 widen_last(vec4 v)
 #endif
 }
 
+SM_INLINE vec4 first_four(vec16 v)
+{
+    return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+}
+
 SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
 {
     const real *p = lsm->rows.p;
@@ -68,8 +73,9 @@ SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
         vec4 moment = {0};
         for (int i = 0; i < side; i++) {
             const real *member = bar + (long)id[i] * ROW_BAR;
-            sum += load8(member);
-            moment += (real)(i - side / 2) * load4(member);
+            vec8 value = load8(member);
+            sum += value;
+            moment += (real)(i - side / 2) * __builtin_shufflevector(value, value, 0, 1, 2, 3);
         }
         real *out = lsm->rows.plate + plate * ROW_PLATE;
         store8(out, sum);
@@ -90,9 +96,9 @@ SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
     vec16 sum = {0};
     vec4 moment = {0};
     for (int i = 0; i < side; i++) {
-        const real *member = lsm->rows.plate + (long)id[i] * ROW_PLATE;
-        sum += load16(member);
-        moment += (real)(i - side / 2) * load4(member);
+        vec16 member = load16(lsm->rows.plate + (long)id[i] * ROW_PLATE);
+        sum += member;
+        moment += (real)(i - side / 2) * first_four(member);
     }
     return sum + widen_last(moment);
 }
@@ -171,14 +177,15 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
 {
     for (long plate = first; plate < last; plate++) {
         const int *id = lsm->sets.plate + plate * side;
-        vec4 sum = {0}, z = {0};
+        vec8 sum = {0};
+        vec4 moment = {0};
         for (int i = 0; i < side; i++) {
             const real *member = lsm->rows.bar_down + (long)id[i] * ROW_BAR;
-            sum += load4(member) - (real)(i - side / 2) * load4(member + 8);
-            z += load4(member + 4);
+            sum += load8(member);
+            moment += (real)(i - side / 2) * load4(member + 8);
         }
-        real *out = lsm->rows.plate_down + plate * ROW_PLATE_DOWN;
-        store8(out, __builtin_shufflevector(sum, z, 0, 1, 2, 3, 4, 5, 6, 7));
+        store8(lsm->rows.plate_down + plate * ROW_PLATE_DOWN,
+               sum - __builtin_shufflevector(moment, (vec4){0}, 0, 1, 2, 3, 4, 4, 4, 4));
     }
 }
 
