@@ -16,6 +16,7 @@ enum {
     KEY_SCENE,
     KEY_ENGINE,
     KEY_PRECISION,
+    KEY_LAYOUT,
     KEY_FORMAT,
     KEY_REPEATS,
     KEY_BLOCK,
@@ -27,7 +28,7 @@ typedef struct {
     BenchCommon common;
     const char *paper, *engine, *precision, *output;
     const char *scene[SCENES];
-    int scenes, repeats;
+    int scenes, repeats, layout; /* layout below 0: as the scene says */
     double block;
     BenchFormat format;
     BenchSubstitutes substitutes;
@@ -40,6 +41,7 @@ static const struct argp_option option_list[] = {
     {"scene", KEY_SCENE, "NAME|FILE", 0, "Measure this scene only; may be repeated", 1},
     {"engine", KEY_ENGINE, "NAME", 0, "fastlsm or brute (default: as the scene says)", 1},
     {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
+    {"layout", KEY_LAYOUT, "HOW", 0, BENCH_LAYOUT_HELP " (default: as the scene says)", 1},
     {"mesh", KEY_MESH, "NAME=FILE", 0, BENCH_MESH_HELP, 1},
     {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
     {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 20)", 2},
@@ -55,7 +57,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     Options *options = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
-        *options = (Options){.paper = "fastlsm", .repeats = 15, .block = 20};
+        *options = (Options){.paper = "fastlsm", .repeats = 15, .block = 20, .layout = -1};
         bench_options_init(state, &options->common);
         return 0;
     case KEY_PAPER:
@@ -71,6 +73,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_PRECISION:
         options->precision =
             precisions[bench_option_choice(state, "--precision", text, precisions)];
+        return 0;
+    case KEY_LAYOUT:
+        options->layout = bench_option_choice(state, "--layout", text, bench_layouts);
         return 0;
     case KEY_MESH:
         bench_substitute_add(state, text, &options->substitutes);
@@ -143,6 +148,7 @@ static SmCode measure_scene(const Options *options, const char *name, BenchProgr
     code = bench_engine_find(options->engine ? options->engine : scene.engine, options->precision,
                              &type, error);
     if (code) return code;
+    if (options->layout >= 0) scene.params.layout = (SmLayout)options->layout;
     SmMesh mesh;
     BenchBody body;
     const char *substitute = bench_substitute_find(&options->substitutes, scene.name);
