@@ -4,6 +4,7 @@
 
 #include "../reference/paper.h"
 #include "command.h"
+#include "draft.h"
 #include "measure.h"
 #include "option.h"
 #include "runner.h"
@@ -185,6 +186,15 @@ static SmCode verdict(const BenchRow *rows, int count, SmError *error)
     return SM_OK;
 }
 
+/* Now rather than after a minute of measuring. */
+static SmCode check_output(const char *path, SmError *error)
+{
+    BenchDraft draft;
+    SmCode code = path ? bench_draft_begin(path, &draft, error) : SM_OK;
+    if (path && !code) bench_draft_discard(&draft);
+    return code;
+}
+
 int bench_command_tables(int argc, char **argv)
 {
     Options options;
@@ -192,6 +202,7 @@ int bench_command_tables(int argc, char **argv)
     bench_options_parse(&argp, argc, argv, &options);
     SmCode code = options.scenes ? SM_OK : choose_scenes(&options, &error);
     BenchRow *rows = sm_alloc(SCENES, sizeof *rows);
+    if (!code) code = check_output(options.output, &error);
     if (!code) code = measure_all(&options, rows, &error);
     if (!code) {
         BenchMachine machine;
