@@ -99,9 +99,16 @@ static SmCode look(const char *name, long particles, Facts *facts, SmError *erro
     return SM_OK;
 }
 
+static double box_volume(const SmMeshInfo *m)
+{
+    return (m->high[0] - m->low[0]) * (m->high[1] - m->low[1]) * (m->high[2] - m->low[2]);
+}
+
 static void print_text(const char *name, const Facts *facts)
 {
     const SmMeshInfo *m = &facts->mesh;
+    double volume =
+        fabs(m->volume) > 1e-12 * box_volume(m) ? m->volume : 0; /* not rounding's sign */
     printf("%s\n", name);
     printf("  triangles     %ld\n", m->triangles);
     printf("  vertices      %ld\n", m->vertices);
@@ -117,7 +124,7 @@ static void print_text(const char *name, const Facts *facts)
            m->high[0], m->high[1], m->high[2]);
     printf("  size          %.6g x %.6g x %.6g\n", m->high[0] - m->low[0], m->high[1] - m->low[1],
            m->high[2] - m->low[2]);
-    printf("  volume        %.6g%s\n", m->volume, m->volume < 0 ? " (inside out)" : "");
+    printf("  volume        %.6g%s\n", volume, volume < 0 ? " (inside out)" : "");
     printf("  solid         %s: %s\n", facts->solid ? "yes" : "no", facts->verdict);
     if (facts->solid)
         printf("  lattice       %ld particles, %ld cells of %.6g\n", facts->particles, facts->cells,

@@ -28,14 +28,13 @@ typedef struct {
 } Options;
 
 static const char *const precisions[] = {"single", "double", NULL};
-static const char *const layouts[] = {"auto", "lists", "blocks", NULL};
 
 static const struct argp_option option_list[] = {
     {"only", KEY_ONLY, "NAME", 0, "Time this kernel or group only; may be repeated (see --list)",
      1},
     {"list", KEY_LIST, 0, 0, "Print the names of all kernels and their groups, and end", 1},
     {"precision", KEY_PRECISION, "P", 0, "single or double (default: single)", 1},
-    {"layout", KEY_LAYOUT, "L", 0, "How the engine lays sums out: auto, lists or blocks", 1},
+    {"layout", KEY_LAYOUT, "L", 0, BENCH_LAYOUT_HELP, 1},
     {"scaling", KEY_SCALING, 0, 0, "Also the cube of 10^7 particles, which takes about 4 GB", 1},
     {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 9)", 2},
     {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv or json (default: text)", 3},
@@ -69,7 +68,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
             (BenchPrecision)bench_option_choice(state, "--precision", text, precisions);
         return 0;
     case KEY_LAYOUT:
-        options->layout = (SmLayout)bench_option_choice(state, "--layout", text, layouts);
+        options->layout = (SmLayout)bench_option_choice(state, "--layout", text, bench_layouts);
         return 0;
     case KEY_SCALING:
         options->scaling = true;

@@ -25,6 +25,7 @@ enum {
     KEY_GRAVITY,
     KEY_SUMMATION,
     KEY_POLAR,
+    KEY_LAYOUT,
     KEY_STRAIN,
     KEY_MESH,
     KEY_RECORD,
@@ -36,7 +37,7 @@ typedef struct {
     BenchCommon common;
     const char *scene, *engine, *precision, *output;
     bool shell, record, no_output, has_gravity;
-    int w, frames, steps, summation, polar;
+    int w, frames, steps, summation, polar, layout;
     long particles;
     double cell, damping, h, strain_limit, gravity[3];
     BenchSubstitutes substitutes;
@@ -51,7 +52,7 @@ static const struct argp_option option_list[] = {
     {0, 0, 0, 0, "What replaces the scene's settings:", 1},
     {"engine", KEY_ENGINE, "NAME", 0, "fastlsm or brute", 1},
     {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
-    {"w", KEY_W, "N", 0, "Region half-width in cells, 1 to 64", 1},
+    {"w", KEY_W, "N", 0, "Region half-width in cells, 1 to 64 (fastlsm: to 31)", 1},
     {"particles", KEY_PARTICLES, "N", 0, "Wanted particle count", 1},
     {"cell", KEY_CELL, "SIZE", 0, "Edge of a cell, in the mesh's units", 1},
     {"shell", KEY_SHELL, 0, 0, "Surface cells only, not the interior", 1},
@@ -61,6 +62,7 @@ static const struct argp_option option_list[] = {
     {"strain-limit", KEY_STRAIN, "S", 0, "Links break beyond this times their length; 0: never", 1},
     {"summation", KEY_SUMMATION, "HOW", 0, "fast, bars or naive", 1},
     {"polar", KEY_POLAR, "HOW", 0, "fast or jacobi", 1},
+    {"layout", KEY_LAYOUT, "HOW", 0, BENCH_LAYOUT_HELP, 1},
     {"mesh", KEY_MESH, "NAME=FILE", 0, BENCH_MESH_HELP, 1},
     {0, 0, 0, 0, "What is written:", 2},
     {"frames", KEY_FRAMES, "N", 0, "Frames after the first", 2},
@@ -107,6 +109,9 @@ static error_t parse_engine(int key, char *text, struct argp_state *state)
     case KEY_POLAR:
         options->polar = bench_option_choice(state, "--polar", text, polars);
         return 0;
+    case KEY_LAYOUT:
+        options->layout = bench_option_choice(state, "--layout", text, bench_layouts);
+        return 0;
     }
     return ARGP_ERR_UNKNOWN;
 }
@@ -136,8 +141,12 @@ static error_t parse(int key, char *text, struct argp_state *state)
     Options *options = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
-        *options = (Options){
-            .frames = -1, .summation = -1, .polar = -1, .damping = -1, .strain_limit = -1};
+        *options = (Options){.frames = -1,
+                             .summation = -1,
+                             .polar = -1,
+                             .layout = -1,
+                             .damping = -1,
+                             .strain_limit = -1};
         bench_options_init(state, &options->common);
         return 0;
     case KEY_FRAMES:
@@ -195,6 +204,7 @@ static void apply_options(const Options *options, BenchScene *scene)
     if (options->strain_limit >= 0) params->strain_limit = options->strain_limit;
     if (options->summation >= 0) params->summation = (SmSummation)options->summation;
     if (options->polar >= 0) params->polar = (SmPolarMethod)options->polar;
+    if (options->layout >= 0) params->layout = (SmLayout)options->layout;
     if (options->has_gravity) memcpy(params->gravity, options->gravity, sizeof params->gravity);
     if (options->shell) scene->voxel.fill = SM_SHELL;
     if (options->particles)
@@ -294,8 +304,12 @@ static void print_deviation(const BenchRunner *runner, const SmCounts *counts)
     bench_check_create(runner->body, w, &check);
     BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
     bench_check_free(&check);
+    double allowed = bench_check_tolerance(runner->type->precision);
     printf("deviation: goals within %.3g cells of brute force, momentum kept to %.2g\n",
            found.goal_error, found.momentum_error);
+    if (!(found.goal_error <= allowed))
+        printf("deviation: beyond the %g cells that 'tables' allows: does the body fly off?\n",
+               allowed);
 }
 
 static void print_summary(const BenchRunner *runner, const Outcome *outcome)
@@ -325,6 +339,20 @@ static void output_path(const Options *options, const BenchScene *scene, char pa
         snprintf(path, BENCH_PATH, "%s.vtkhdf", stem);
 }
 
+/* Before a long wait for a file that fills a disk. */
+static void warn_of_size(const Options *options, const BenchRecording *recording, const char *path)
+{
+    static const double much = 200e6;
+    double bytes = bench_recording_bytes(recording);
+    if (bytes <= much || options->common.quiet) return;
+    fprintf(stderr,
+            "shapebench run: %s will take about %.*f %s; --frames N writes fewer than its %d "
+            "frames%s\n",
+            path, bytes < 1e9 ? 0 : 1, bytes < 1e9 ? bytes / 1e6 : bytes / 1e9,
+            bytes < 1e9 ? "MB" : "GB", recording->runner->scene->frames + 1,
+            options->record ? ", --steps N records fewer steps in each" : "");
+}
+
 /* Runs the scene on an engine that is ready, and writes what was asked for. */
 static SmCode record(const Options *options, BenchRunner *runner, const BenchMachine *machine,
                      SmError *error)
@@ -337,6 +365,7 @@ static SmCode record(const Options *options, BenchRunner *runner, const BenchMac
     if (recorder)
         code = bench_recording_open(runner, path, options->record, machine, recorder, error);
     if (code) return code;
+    if (recorder) warn_of_size(options, recorder, path);
     Outcome outcome;
     code = run_frames(runner, recorder, options, &outcome, error);
     if (code || !outcome.finite) {
@@ -350,7 +379,8 @@ static SmCode record(const Options *options, BenchRunner *runner, const BenchMac
     if (code) return code;
     print_summary(runner, &outcome);
     if (recorder && !options->common.quiet)
-        printf("wrote %s and %s.xdmf: %d frames\n", path, path, runner->scene->frames + 1);
+        printf("wrote %s and %s.xdmf: %d frame%s\n", path, path, runner->scene->frames + 1,
+               runner->scene->frames ? "s" : "");
     return SM_OK;
 }
 

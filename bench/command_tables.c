@@ -4,6 +4,7 @@
 
 #include "../reference/paper.h"
 #include "command.h"
+#include "draft.h"
 #include "measure.h"
 #include "option.h"
 #include "runner.h"
@@ -16,6 +17,7 @@ enum {
     KEY_SCENE,
     KEY_ENGINE,
     KEY_PRECISION,
+    KEY_LAYOUT,
     KEY_FORMAT,
     KEY_REPEATS,
     KEY_BLOCK,
@@ -27,7 +29,7 @@ typedef struct {
     BenchCommon common;
     const char *paper, *engine, *precision, *output;
     const char *scene[SCENES];
-    int scenes, repeats;
+    int scenes, repeats, layout; /* layout below 0: as the scene says */
     double block;
     BenchFormat format;
     BenchSubstitutes substitutes;
@@ -40,6 +42,7 @@ static const struct argp_option option_list[] = {
     {"scene", KEY_SCENE, "NAME|FILE", 0, "Measure this scene only; may be repeated", 1},
     {"engine", KEY_ENGINE, "NAME", 0, "fastlsm or brute (default: as the scene says)", 1},
     {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
+    {"layout", KEY_LAYOUT, "HOW", 0, BENCH_LAYOUT_HELP " (default: as the scene says)", 1},
     {"mesh", KEY_MESH, "NAME=FILE", 0, BENCH_MESH_HELP, 1},
     {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
     {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 20)", 2},
@@ -55,7 +58,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     Options *options = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
-        *options = (Options){.paper = "fastlsm", .repeats = 15, .block = 20};
+        *options = (Options){.paper = "fastlsm", .repeats = 15, .block = 20, .layout = -1};
         bench_options_init(state, &options->common);
         return 0;
     case KEY_PAPER:
@@ -71,6 +74,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_PRECISION:
         options->precision =
             precisions[bench_option_choice(state, "--precision", text, precisions)];
+        return 0;
+    case KEY_LAYOUT:
+        options->layout = bench_option_choice(state, "--layout", text, bench_layouts);
         return 0;
     case KEY_MESH:
         bench_substitute_add(state, text, &options->substitutes);
@@ -143,6 +149,7 @@ static SmCode measure_scene(const Options *options, const char *name, BenchProgr
     code = bench_engine_find(options->engine ? options->engine : scene.engine, options->precision,
                              &type, error);
     if (code) return code;
+    if (options->layout >= 0) scene.params.layout = (SmLayout)options->layout;
     SmMesh mesh;
     BenchBody body;
     const char *substitute = bench_substitute_find(&options->substitutes, scene.name);
@@ -179,6 +186,15 @@ static SmCode verdict(const BenchRow *rows, int count, SmError *error)
     return SM_OK;
 }
 
+/* Now rather than after a minute of measuring. */
+static SmCode check_output(const char *path, SmError *error)
+{
+    BenchDraft draft;
+    SmCode code = path ? bench_draft_begin(path, &draft, error) : SM_OK;
+    if (path && !code) bench_draft_discard(&draft);
+    return code;
+}
+
 int bench_command_tables(int argc, char **argv)
 {
     Options options;
@@ -186,6 +202,7 @@ int bench_command_tables(int argc, char **argv)
     bench_options_parse(&argp, argc, argv, &options);
     SmCode code = options.scenes ? SM_OK : choose_scenes(&options, &error);
     BenchRow *rows = sm_alloc(SCENES, sizeof *rows);
+    if (!code) code = check_output(options.output, &error);
     if (!code) code = measure_all(&options, rows, &error);
     if (!code) {
         BenchMachine machine;

@@ -42,6 +42,8 @@ static error_t parse_common(int key, char *text, struct argp_state *state)
     return ARGP_ERR_UNKNOWN;
 }
 
+const char *const bench_layouts[] = {"auto", "lists", "blocks", NULL};
+
 const struct argp bench_common_argp = {common_options, parse_common, 0, 0, 0, 0, 0};
 
 void bench_options_init(struct argp_state *state, BenchCommon *common)
@@ -112,5 +114,5 @@ int bench_option_choice(const struct argp_state *state, const char *name, const 
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", choices[i]);
     }
-    bench_usage(state, "%s: '%s' is not one of %s", name, text, list);
+    bench_usage(state, "%s: '%s' is not %s%s", name, text, choices[1] ? "one of " : "", list);
 }

@@ -19,6 +19,10 @@ typedef struct {
 
 extern const struct argp bench_common_argp;
 
+/* --layout: words in SmLayout's order, and the help of commands that run a scene. */
+extern const char *const bench_layouts[];
+#define BENCH_LAYOUT_HELP "Fastlsm's sums: auto, lists, or blocks where it can"
+
 /* argp_parse() for a command: `argp` has bench_common_argp as its first child, `input` begins
  * with a BenchCommon. Usage errors end the program: one line, exit code 2. argv[0] is the program
  * and command ("shapebench run"). */

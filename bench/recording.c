@@ -66,6 +66,16 @@ SmCode bench_recording_open(const BenchRunner *runner, const char *path, bool pa
     return code;
 }
 
+double bench_recording_bytes(const BenchRecording *recording)
+{
+    const BenchScene *scene = recording->runner->scene;
+    double frames = scene->frames + 1.0, steps = (double)scene->frames * scene->steps_per_frame + 1;
+    double state = (sizeof *recording->x + sizeof *recording->v + sizeof *recording->g) *
+                   (double)recording->runner->particles;
+    return bench_trajectory_bytes(recording->trajectory, frames) +
+           (recording->particles ? steps * state : 0);
+}
+
 SmCode bench_recording_frame(BenchRecording *recording, SmError *error)
 {
     const BenchRunner *runner = recording->runner;

@@ -21,6 +21,9 @@ typedef struct {
 SmCode bench_recording_open(const BenchRunner *runner, const char *path, bool particles,
                             const BenchMachine *machine, BenchRecording *recording, SmError *error);
 
+/* About what the file will take with all of the scene's frames in it. */
+double bench_recording_bytes(const BenchRecording *recording);
+
 /* Writes the surface as it is now. */
 SmCode bench_recording_frame(BenchRecording *recording, SmError *error);
 

@@ -182,6 +182,15 @@ void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchM
     print_notes(file, rows, count);
 }
 
+/* Without the blanks that align the text table: at the start and after a bracket. */
+static void tight_text(const char *padded, char text[FIELD_TEXT])
+{
+    size_t used = 0;
+    for (const char *c = padded; *c; c++)
+        if (*c != ' ' || (used && text[used - 1] != '(')) text[used++] = *c;
+    text[used] = '\0';
+}
+
 void bench_report_markdown(FILE *file, const BenchRow *rows, int count)
 {
     for (int f = 0; f < FIELDS; f++) fprintf(file, "| %s ", headings[f]);
@@ -196,18 +205,21 @@ void bench_report_markdown(FILE *file, const BenchRow *rows, int count)
         else if (!paper_line(row, &line))
             continue;
         for (int f = 0; f < FIELDS; f++) {
+            char text[FIELD_TEXT];
+            tight_text(line.field[f], text);
             fputs("| ", file);
-            for (const char *c = line.field[f] + strspn(line.field[f], " "); *c; c++)
-                fprintf(file, *c == '|' ? "\\%c" : "%c", *c);
+            for (const char *c = text; *c; c++) fprintf(file, *c == '|' ? "\\%c" : "%c", *c);
             fputc(' ', file);
         }
         fputs("|\n", file);
     }
 }
 
-static void latex_text(FILE *file, const char *text)
+static void latex_text(FILE *file, const char *padded)
 {
-    for (const char *c = text + strspn(text, " "); *c; c++) {
+    char text[FIELD_TEXT];
+    tight_text(padded, text);
+    for (const char *c = text; *c; c++) {
         if (*c == '\\')
             fputs("\\textbackslash{}", file);
         else if (*c == '~' || *c == '^')

@@ -90,6 +90,7 @@ static const BenchSetting scene_table[] = {
     ITEM("strain_limit", BENCH_REAL, AT(params.strain_limit), 0, 1e6),
     WORDS("summation", AT(params.summation), "fast|bars|naive"),
     WORDS("polar", AT(params.polar), "fast|jacobi"),
+    WORDS("layout", AT(params.layout), "auto|lists|blocks"),
     ITEM("epsilon", BENCH_REAL, AT(epsilon), 0, 1e6),
     ITEM("density", BENCH_REAL, AT(density), 0, FAR),
     ITEM("vertex_mass", BENCH_TEXT, AT(vertex_mass), 0, BENCH_PATH),

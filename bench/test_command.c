@@ -100,6 +100,8 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run tiny.cfg --damping nan", 2, "--damping: 'nan'"},
         {"run tiny.cfg --gravity 1,2", 2, "--gravity: '1,2' is not three numbers x,y,z"},
         {"run tiny.cfg --summation slow", 2, "not one of fast, bars, naive"},
+        {"run tiny.cfg --layout round", 2, "'round' is not one of auto, lists, blocks"},
+        {"run tiny.cfg --record film", 2, "--record: 'film' is not particles"},
         {"run tiny.cfg --w", 2, "requires an argument"},
         {"run tiny.cfg tiny.cfg", 2, "one scene or mesh only"},
         {"run tiny.cfg --particles 100 --cell 0.1", 2, "either --particles or --cell"},
@@ -122,6 +124,8 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"tables --paper unknown", 2, "no table of 'unknown'"},
         {"tables --format pdf", 2, "'pdf' is not one of text, markdown, csv, latex, json"},
         {"tables penguin", 2, "what is 'penguin'?"},
+        {"tables --layout round", 2, "--layout: 'round'"},
+        {"tables -o no/such/rows.h5", 4, "no/such/rows.h5"},
         {"tables --threads -1", 2, "--threads: '-1'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -234,8 +238,8 @@ static void a_full_disk_is_an_error(void **state)
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 4);
 }
 
-/* Interrupted in mid-run, the program leaves no file of its own. */
-static void an_interrupt_leaves_nothing(void **state)
+/* Told beforehand that its file would be huge; interrupted in mid-run, it leaves none. */
+static void a_huge_file_is_announced_and_an_interrupt_leaves_nothing(void **state)
 {
     (void)state;
     pid_t child = fork();
@@ -250,7 +254,10 @@ static void an_interrupt_leaves_nothing(void **state)
     int status;
     waitpid(child, &status, 0);
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
-    char command[96];
+    char path[64], said[4096], command[96];
+    snprintf(path, sizeof path, "%s/err", folder);
+    slurp(path, said, sizeof said);
+    assert_non_null(strstr(said, "long.vtkhdf will take about 46.3 GB; --frames N writes fewer"));
     snprintf(command, sizeof command, "ls %s | grep -q long", folder);
     assert_int_not_equal(system(command), 0);
 }
@@ -264,7 +271,7 @@ int main(void)
         cmocka_unit_test(a_mesh_alone_can_be_run),
         cmocka_unit_test(tables_measure_a_scene),
         cmocka_unit_test(a_full_disk_is_an_error),
-        cmocka_unit_test(an_interrupt_leaves_nothing),
+        cmocka_unit_test(a_huge_file_is_announced_and_an_interrupt_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -147,6 +147,13 @@ SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajector
     return SM_OK;
 }
 
+double bench_trajectory_bytes(const BenchTrajectory *trajectory, double frames)
+{
+    double point = 3 * (trajectory->single ? sizeof(float) : sizeof(double));
+    double triangle = 4 * sizeof(long) + 1; /* corners, offset, type */
+    return frames * point * (double)trajectory->points + triangle * (double)trajectory->triangles;
+}
+
 SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const double (*point)[3],
                               SmError *error)
 {

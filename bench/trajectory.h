@@ -30,6 +30,9 @@ typedef struct {
 SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajectory **trajectory,
                              SmError *error);
 
+/* About what the file takes with so many frames and no particles. */
+double bench_trajectory_bytes(const BenchTrajectory *trajectory, double frames);
+
 /* One frame: time in s, surface points [vertex_count][3] in mesh units. On SM_OUTPUT from this and
  * the next function the draft is removed; what is left is to call abandon. */
 SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const double (*point)[3],

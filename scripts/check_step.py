@@ -135,11 +135,16 @@ def main():
         print(__doc__)
         sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)
     try:
+        open(sys.argv[1], "rb").close()
         with h5py.File(sys.argv[1], "r") as file:
+            if "particles" not in file:
+                print(f"{sys.argv[1]}: holds no particles: write it with --record particles", file=sys.stderr)
+                sys.exit(3)
             worst, compared = check(file["particles"])
             precision = file["particles"].attrs["precision"]
     except (OSError, KeyError) as error:
-        print(f"{sys.argv[1]}: not a trajectory with particles ({error})", file=sys.stderr)
+        reason = getattr(error, "strerror", None) or "not a trajectory with particles"
+        print(f"{sys.argv[1]}: {reason}", file=sys.stderr)
         sys.exit(3)
     precision = precision.decode() if isinstance(precision, bytes) else precision
     tolerance = TOLERANCE.get(precision, TOLERANCE["single"])

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Pictures of meshes and trajectories: OBJ, PLY, STL, and the VTKHDF files that `shapebench run` writes.
 
-Needs Debian's python3-vtk9, python3-h5py and, on a machine without a display, xvfb."""
+Needs what `scripts/setup pictures` installs: Debian's python3-vtk9, python3-h5py, python3-matplotlib and,
+for a machine without a display, xvfb, xauth and libgl1-mesa-dri."""
 
 import argparse
 import os
@@ -31,8 +32,9 @@ def with_display():
     """VTK draws through OpenGL, which wants an X server: lend it a virtual one."""
     if os.environ.get("DISPLAY"):
         return
-    if not shutil.which("xvfb-run"):
-        fail("no display and no xvfb-run: apt-get install xvfb xauth", 3)
+    missing = [tool for tool in ("xvfb-run", "xauth") if not shutil.which(tool)]
+    if missing:
+        fail(f"no display and no {' and no '.join(missing)}: apt-get install xvfb xauth libgl1-mesa-dri", 3)
     os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 64x64x24", sys.executable] + sys.argv)
 
 
@@ -264,7 +266,7 @@ def main():
     try:
         import h5py, matplotlib, numpy, vtk  # noqa: F401
     except ImportError as error:
-        fail(f"{error}: apt-get install python3-vtk9 python3-h5py python3-matplotlib", 3)
+        fail(f"{error} (for {sys.executable}): apt-get install python3-vtk9 python3-h5py python3-matplotlib", 3)
     panels = [panel(read(path, options.frame), options, size) for path in options.file]
     names = [os.path.splitext(os.path.basename(path))[0] for path in options.file]
     show = len(names) > 1 and not options.no_names
