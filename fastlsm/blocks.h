@@ -12,6 +12,7 @@
 
 #define lsm_blocks_build     SM_NAME(lsm_blocks_build)
 #define lsm_blocks_irregular SM_NAME(lsm_blocks_irregular)
+#define lsm_blocks_regular   SM_NAME(lsm_blocks_regular)
 #define lsm_blocks_share     SM_NAME(lsm_blocks_share)
 #define lsm_blocks_free      SM_NAME(lsm_blocks_free)
 #define lsm_blocks_bytes     SM_NAME(lsm_blocks_bytes)
@@ -27,13 +28,14 @@ struct Blocks {
     int *column;    /* [blocks] position along x, in blocks */
     int *plane_row; /* [planes + 1] first row of each plane */
     BlockRow *row;
-    int *along_z; /* [blocks][side] the block at the same place in planes z - w .. z + w; the
-                     empty block (number `blocks`) where there is none */
-    ivec *site;   /* [blocks + 1] lanes that hold a particle */
-    bool *whole;  /* [blocks] all lanes do */
-    bool *listed; /* [blocks] lists read this block: rows of it are needed */
-    bool *mixed;  /* [blocks] lists sum some of its lanes */
-    real **down;  /* [planes] where a plane's (Q, Rz) sums are kept until part 2 */
+    int *along_z;       /* [blocks][side] the block at the same place in planes z - w .. z + w; the
+                           empty block (number `blocks`) where there is none */
+    uint64_t *passable; /* bitmap of the sites whose sums other sites' sums pass through */
+    ivec *site;         /* [blocks + 1] lanes that hold a particle */
+    bool *whole;        /* [blocks] all lanes do */
+    bool *listed;       /* [blocks] lists read this block: rows of it are needed */
+    bool *mixed;        /* [blocks] lists sum some of its lanes */
+    real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until part 2 */
     real *down_memory;
     int threads;
     long shared_bytes;
@@ -50,6 +52,9 @@ void lsm_blocks_build(Lsm *lsm);
 
 /* wanted[p] = the box sum of p is not its region's sum, up or down. Returns how many. */
 long lsm_blocks_irregular(const Lsm *lsm, bool *wanted);
+
+/* Is the box sum of particle p, whose members are `rows` (region.h), its region's sum? O(w^2). */
+bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows);
 
 /* Scratch and plane stores for lsm->threads threads. */
 void lsm_blocks_share(Lsm *lsm);

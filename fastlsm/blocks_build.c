@@ -1,4 +1,5 @@
 #include <stdlib.h>
+#include <string.h>
 
 #include "blocks.h"
 
@@ -88,6 +89,26 @@ static void find_neighbours(Lsm *lsm, Blocks *box)
                 }
 }
 
+/* A bitmap of what sums along z and y may pass through: sites whose blocks exist, but at w = 1
+ * particles only (`masked` in blocks.c). */
+static uint64_t *passable_sites(const Lsm *lsm)
+{
+    const LsmLattice *l = &lsm->lattice;
+    size_t words = (size_t)l->size[1] * (size_t)l->size[2] * (size_t)l->words;
+    uint64_t *bits = sm_alloc(words, sizeof *bits);
+    if (lsm->w == 1) return memcpy(bits, l->bits, words * sizeof *bits);
+    const uint64_t lanes = ((uint64_t)1 << SM_LANES) - 1;
+    for (int z = 0; z < l->size[2]; z++)
+        for (int row = lsm->box->plane_row[z]; row < lsm->box->plane_row[z + 1]; row++)
+            for (int i = 0; i < lsm->box->row[row].count; i++) {
+                int x = lsm->box->column[lsm->box->row[row].first + i] * SM_LANES;
+                size_t at = ((size_t)z * (size_t)l->size[1] + (size_t)lsm->box->row[row].y) *
+                            (size_t)l->words;
+                bits[at + (size_t)(x >> 6)] |= lanes << (x & 63);
+            }
+    return bits;
+}
+
 void lsm_blocks_build(Lsm *lsm)
 {
     const LsmLattice *l = &lsm->lattice;
@@ -112,33 +133,17 @@ void lsm_blocks_build(Lsm *lsm)
     for (int z = 0; z <= planes; z++) lsm->layer_plane[z] = z;
     add_rows(lsm, box);
     find_neighbours(lsm, box);
+    box->passable = passable_sites(lsm);
 }
 
-/* A bitmap of the sites whose blocks exist: what sums along z and y may pass through. */
-static uint64_t *site_bitmap(const Lsm *lsm)
+/* Up, a member passes through (x_i, y_i, z_r) and (x_i, y_r, z_r); down, region r passes through
+ * (x_i, y_r, z_r) and (x_i, y_i, z_r). Sites between must be summed at all. */
+bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
 {
     const LsmLattice *l = &lsm->lattice;
-    uint64_t *bits =
-        sm_alloc((size_t)l->size[1] * (size_t)l->size[2] * (size_t)l->words, sizeof *bits);
-    const uint64_t lanes = ((uint64_t)1 << SM_LANES) - 1;
-    for (int z = 0; z < l->size[2]; z++)
-        for (int row = lsm->box->plane_row[z]; row < lsm->box->plane_row[z + 1]; row++)
-            for (int i = 0; i < lsm->box->row[row].count; i++) {
-                int x = lsm->box->column[lsm->box->row[row].first + i] * SM_LANES;
-                size_t at = ((size_t)z * (size_t)l->size[1] + (size_t)lsm->box->row[row].y) *
-                            (size_t)l->words;
-                bits[at + (size_t)(x >> 6)] |= lanes << (x & 63);
-            }
-    return bits;
-}
-
-/* Does the box sum at particle p take exactly the members `rows`? Up, a member passes through
- * (x_i, y_i, z_r) and (x_i, y_r, z_r); down, region r passes through (x_i, y_r, z_r) and
- * (x_i, y_i, z_r). Sites between must be summed at all. */
-static bool regular(const LsmLattice *l, const uint64_t *site, int w, long p, const uint64_t *rows)
-{
+    const uint64_t *site = lsm->box->passable;
     const int *at = l->coord[p];
-    int side = 2 * w + 1;
+    int w = lsm->w, side = lsm->side;
     uint64_t middle = lsm_window(l, site, at[0], at[1], at[2], w);
     for (int row = 0; row < side * side; row++) {
         int b = row % side - w, c = row / side - w;
@@ -155,18 +160,14 @@ long lsm_blocks_irregular(const Lsm *lsm, bool *wanted)
 {
     const LsmLattice *l = &lsm->lattice;
     uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    /* at w = 1 sums pass through particles only: see `masked` in blocks.c */
-    uint64_t *blocks = lsm->w > 1 ? site_bitmap(lsm) : NULL;
-    const uint64_t *site = blocks ? blocks : l->bits;
     long count = 0;
     for (long p = 0; p < l->count; p++) {
         wanted[p] = false;
         if (lsm_bit(l, lsm->interior.interior, l->coord[p])) continue;
         lsm_region_rows(l, &lsm->interior, p, rows);
-        wanted[p] = !regular(l, site, lsm->w, p, rows);
+        wanted[p] = !lsm_blocks_regular(lsm, p, rows);
         count += wanted[p];
     }
-    free(blocks);
     return count;
 }
 
@@ -234,6 +235,8 @@ long lsm_blocks_bytes(const Lsm *lsm)
     long a_block =
         (1 + lsm->side) * (long)sizeof(int) + (long)sizeof(ivec) + 3 * (long)sizeof(bool);
     long rows = lsm->box->plane_row[lsm->layers] * (long)sizeof(BlockRow);
+    const LsmLattice *l = &lsm->lattice;
+    rows += (long)l->size[1] * l->size[2] * l->words * (long)sizeof(uint64_t);
     return lsm->blocks * a_block + rows + lsm->box->shared_bytes;
 }
 
@@ -246,6 +249,7 @@ void lsm_blocks_free(Blocks *box)
     free(box->row);
     free(box->along_z);
     free(box->site);
+    free(box->passable);
     free(box->whole);
     free(box->listed);
     free(box->mixed);

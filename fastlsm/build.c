@@ -8,6 +8,7 @@
 #include "pipeline.h"
 #include "step.h"
 
+enum { SPARE_LISTS = 16 };  /* rows to spare in a layer, in sides: a few broken links' worth */
 enum { LAYER_BLOCKS = 24 }; /* of the list form: layers of about this size stay in the L2 cache */
 
 /* Groups planes into layers of at least LAYER_BLOCKS blocks and finds how far a region reaches. */
@@ -96,6 +97,15 @@ static void find_unique(Lsm *lsm, int *original)
     free(keyed);
 }
 
+long lsm_unique(Lsm *lsm)
+{
+    if (lsm->unique >= 0) return lsm->unique;
+    int *original = sm_alloc((size_t)lsm->lattice.count, sizeof *original);
+    find_unique(lsm, original);
+    free(original);
+    return lsm->unique;
+}
+
 /* Tiles of unique regions, each layer beginning a new tile; copies go to a list of their own. */
 static void build_tiles(Lsm *lsm, const int *original)
 {
@@ -155,6 +165,10 @@ static void build_lists(Lsm *lsm)
     }
     lsm_sets_build(&lsm->lattice, &lsm->interior, wanted, lsm->slot, &lsm->sets);
     free(wanted);
+    if (lsm->params.strain_limit > 0) {
+        lsm->ledger = sm_alloc(1, sizeof *lsm->ledger);
+        lsm_ledger_open(&lsm->sets, lsm->layers, lsm->layer_plane, lsm->spare, lsm->ledger);
+    }
     lsm->block_region = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
     for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->block_region[s] = -1;
     for (long region = 0; region < lsm->sets.region_count; region++) {
@@ -183,7 +197,7 @@ static void build_rows(Lsm *lsm)
 
 /* Stores equal records once, so that the constants of a solid's inside stay in cache: moves the
  * different ones to the front and points `index` at them. */
-static void *share_records(void *records, size_t size, long count, int *index, long *bytes)
+static void *share_records(void *records, size_t size, long count, int *index, Records *shared)
 {
     char *record = records;
     uint64_t mask = 63;
@@ -208,7 +222,7 @@ static void *share_records(void *records, size_t size, long count, int *index, l
         index[i] = table[at] - 1;
     }
     free(table);
-    *bytes += kept * (long)size;
+    *shared = (Records){kept, kept, kept};
     void *fitted = sm_alloc((size_t)kept, size);
     memcpy(fitted, records, (size_t)kept * size);
     free(records);
@@ -237,11 +251,10 @@ static void build_constants(Lsm *lsm)
     lsm->region_const = sm_alloc((size_t)lsm->tiles, sizeof(RegionConst));
     for (long tile = 0; tile < lsm->tiles; tile++) lsm->tile_const[tile] = (int)tile;
     lsm_constants(lsm);
-    lsm->const_bytes = 0;
     lsm->particle_const = share_records(lsm->particle_const, sizeof(ParticleConst), lsm->blocks + 1,
-                                        lsm->block_const, &lsm->const_bytes);
+                                        lsm->block_const, &lsm->particle_records);
     lsm->region_const = share_records(lsm->region_const, sizeof(RegionConst), lsm->tiles,
-                                      lsm->tile_const, &lsm->const_bytes);
+                                      lsm->tile_const, &lsm->region_records);
 }
 
 static void build_memory(Lsm *lsm)
@@ -265,6 +278,8 @@ static void build_regions(Lsm *lsm)
     int *original = sm_alloc((size_t)n, sizeof *original);
     lsm_interior_build(&lsm->lattice, lsm->w, &lsm->interior);
     find_unique(lsm, original);
+    for (long p = 0; p < n && lsm->params.strain_limit > 0; p++)
+        original[p] = (int)p; /* equal regions may part: each has its own tile lane */
     if (lsm->box)
         tile_blocks(lsm);
     else
@@ -306,6 +321,8 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     lsm->mass = sm_alloc((size_t)n, sizeof(double));
     for (long p = 0; p < n; p++) lsm->mass[p] = params->mass ? params->mass[p] : 1;
     lsm->members = sm_alloc((size_t)n, sizeof(int));
+    if (params->strain_limit > 0) lsm->mark = sm_alloc((size_t)n, 1);
+    lsm->spare = SPARE_LISTS * lsm->side;
     if (params->layout == SM_LAYOUT_BLOCKS) {
         lsm_blocks_build(lsm);
     } else {
@@ -335,6 +352,8 @@ static void free_regions(Lsm *lsm)
 {
     lsm_interior_free(&lsm->interior);
     lsm_sets_free(&lsm->sets);
+    if (lsm->ledger) lsm_ledger_free(lsm->ledger);
+    free(lsm->ledger);
     free_rows(&lsm->rows);
     void *all[] = {lsm->tile_region, lsm->tile_slot,    lsm->layer_tile,  lsm->copy,
                    lsm->layer_copy,  lsm->block_region, lsm->block_const, lsm->particle_const,
@@ -379,9 +398,11 @@ long lsm_bytes(const Lsm *lsm)
     bytes += lanes * (9 * real_size + 2 * (long)sizeof(int)); /* x v g, slots */
     bytes +=
         lsm->tiles * SM_LANES * (3 * real_size + 6 * (long)sizeof(short) + 2 * (long)sizeof(int));
-    bytes += lsm->const_bytes;
+    bytes += lsm->particle_records.room * (long)sizeof(ParticleConst) +
+             lsm->region_records.room * (long)sizeof(RegionConst);
+    bytes += lsm->ledger ? lsm->ledger->bytes + l->count : 0;
     bytes +=
-        (sets->bar_count + sets->plate_count + sets->region_count) * sets->side * (long)sizeof(int);
+        (sets->bar_count + sets->plate_count + sets->region_room) * sets->side * (long)sizeof(int);
     bytes += lanes * (ROW_P + ROW_T + (lsm->rows.rigid ? ROW_RIGID : 0)) * real_size +
              sets->bar_count * 2 * ROW_BAR * real_size +
              sets->plate_count * (ROW_PLATE + ROW_PLATE_DOWN) * real_size;
@@ -394,8 +415,8 @@ void lsm_free(Lsm *lsm)
     lsm_blocks_free(lsm->box);
     lsm_lattice_free(&lsm->lattice);
     void *all[] = {
-        lsm->mass, lsm->members,     lsm->slot,        lsm->particle,     lsm->x,       lsm->v,
-        lsm->g,    lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->obstacle};
+        lsm->mass, lsm->members,     lsm->slot,        lsm->particle,     lsm->x,        lsm->v,
+        lsm->g,    lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->obstacle, lsm->mark};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     free(lsm);
 }

@@ -7,6 +7,7 @@
 #define lsm_check           SM_NAME(lsm_check)
 #define lsm_build           SM_NAME(lsm_build)
 #define lsm_rebuild_regions SM_NAME(lsm_rebuild_regions)
+#define lsm_unique          SM_NAME(lsm_unique)
 #define lsm_bytes           SM_NAME(lsm_bytes)
 #define lsm_free            SM_NAME(lsm_free)
 
@@ -21,6 +22,9 @@ SmCode lsm_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *
 /* Everything that follows from the lattice's links, anew; positions, velocities and last rotations
  * stay. */
 void lsm_rebuild_regions(Lsm *lsm);
+
+/* Different regions. O(w^3) for each particle when regions have changed since it was asked. */
+long lsm_unique(Lsm *lsm);
 
 /* Memory held. */
 long lsm_bytes(const Lsm *lsm);

@@ -367,7 +367,7 @@ static void engine_count(SmEngine *e, SmCounts *counts)
     for (int l = 0; l < lsm->layers; l++) sweeps += lsm->sweeps[l];
     *counts = (SmCounts){
         .particles = e->bodies * e->count,
-        .regions = lsm->unique,
+        .regions = lsm_unique(e->lsm),
         .links = lsm_lattice_links(&lsm->lattice),
         .broken = lsm->broken,
         .bytes = lsm_bytes(lsm) + (e->crowd ? crowd_bytes(e->crowd) : 0),

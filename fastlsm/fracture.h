@@ -4,11 +4,25 @@
 
 #include "state.h"
 
+#define lsm_break    SM_NAME(lsm_break)
 #define lsm_fracture SM_NAME(lsm_fracture)
 #define lsm_recentre SM_NAME(lsm_recentre)
 
-/* Breaks every link longer than strain_limit times its rest length (fastlsm section 4) and brings
- * regions, lists and constants up to date. Allocates when something broke. */
+/* The link of a particle to its neighbour at ring offset `bit` (lattice.h). */
+typedef struct {
+    int particle, bit;
+} LsmLink;
+
+/* Breaks links and brings regions, lists and constants up to date, as lsm_rebuild_regions() would
+ * but by work in proportion to what changes: for each link, O(w^3) regions are looked at, and those
+ * that lost members are listed anew. Now and then a layer runs out of rows and everything is
+ * rebuilt; rows to spare double then, so that happens a few times in a body's life. The body must
+ * have a strain limit. Returns the work: how many regions it searched, for members or for their
+ * centres of mass. Allocates. */
+long lsm_break(Lsm *lsm, long count, const LsmLink *link);
+
+/* Breaks every link longer than strain_limit times its rest length (fastlsm section 4). Allocates
+ * when something broke. */
 void lsm_fracture(Lsm *lsm);
 
 /* Moves the origin to the body's middle, by whole cells, once it has drifted: single precision

@@ -12,7 +12,7 @@ typedef struct {
     uint64_t mask;
 } Pool;
 
-static uint64_t hash(const int *row, int width)
+uint64_t lsm_sets_hash(const int *row, int width)
 {
     uint64_t h = 1469598103934665603ull;
     for (int i = 0; i < width; i++) {
@@ -28,7 +28,7 @@ static void pool_rehash(Pool *pool, uint64_t mask)
     pool->mask = mask;
     pool->slot = sm_alloc(mask + 1, sizeof *pool->slot);
     for (long r = 1; r < pool->count; r++) {
-        uint64_t at = hash(pool->row + r * pool->width, pool->width) & mask;
+        uint64_t at = lsm_sets_hash(pool->row + r * pool->width, pool->width) & mask;
         while (pool->slot[at]) at = (at + 1) & mask;
         pool->slot[at] = (uint32_t)r;
     }
@@ -54,7 +54,7 @@ static void pool_free(Pool *pool)
 static int pool_add(Pool *pool, const int *row)
 {
     size_t bytes = (size_t)pool->width * sizeof(int);
-    uint64_t at = hash(row, pool->width) & pool->mask;
+    uint64_t at = lsm_sets_hash(row, pool->width) & pool->mask;
     for (; pool->slot[at]; at = (at + 1) & pool->mask)
         if (!memcmp(pool->row + (long)pool->slot[at] * pool->width, row, bytes))
             return (int)pool->slot[at];
@@ -76,22 +76,29 @@ typedef struct {
     Pool bars, plates;
 } Builder;
 
-/* The bar of centre column x in row (y, z) with these members, or 0 when it has none. */
-static int add_bar(Builder *b, int x, int y, int z, uint64_t bits)
+void lsm_sets_bar(const LsmLattice *l, const int *slot, int w, int x, int y, int z, uint64_t bits,
+                  int *row)
 {
-    if (!bits) return 0;
-    int row[LSM_MAX_SIDE + 2] = {0};
-    long p = lsm_lattice_find(b->lattice, x - b->w + __builtin_ctzll(bits), y, z);
+    memset(row, 0, (size_t)(2 * w + 1) * sizeof *row);
     int last = __builtin_ctzll(bits);
+    long p = lsm_lattice_find(l, x - w + last, y, z);
     for (uint64_t rest = bits; rest; rest &= rest - 1) {
         int a = __builtin_ctzll(rest);
         if (a != last + 1 && a != last)
-            p = lsm_lattice_find(b->lattice, x - b->w + a, y, z);
+            p = lsm_lattice_find(l, x - w + a, y, z);
         else
             p += a - last; /* particles of a run along x are numbered in a row */
-        row[a] = b->slot[p] + 1;
+        row[a] = slot[p] + 1;
         last = a;
     }
+}
+
+/* The same, stored; 0 when it has no members. */
+static int add_bar(Builder *b, int x, int y, int z, uint64_t bits)
+{
+    int row[LSM_MAX_SIDE + 2];
+    if (!bits) return 0;
+    lsm_sets_bar(b->lattice, b->slot, b->w, x, y, z, bits, row);
     row[b->side] = x;
     row[b->side + 1] = z;
     return pool_add(&b->bars, row);
@@ -149,11 +156,13 @@ static void build_regions(Builder *b, const LsmInterior *interior, const bool *w
         for (int i = 0; i < b->side; i++)
             region[i] = add_plate(b, c[0], c[1], c[2] + i - b->w, rows + i * b->side);
         sets->region_particle[sets->region_count++] = (int)p;
-        sets->region_plane[c[2] + 1] = sets->region_count;
     }
-    for (int z = 0; z < sets->planes; z++) /* planes without a region */
-        if (sets->region_plane[z + 1] < sets->region_plane[z])
-            sets->region_plane[z + 1] = sets->region_plane[z];
+}
+
+static long *copy_planes(const long *plane, int planes)
+{
+    long *copy = sm_alloc((size_t)planes + 1, sizeof *copy);
+    return memcpy(copy, plane, ((size_t)planes + 1) * sizeof *copy);
 }
 
 void lsm_sets_build(const LsmLattice *l, const LsmInterior *interior, const bool *wanted,
@@ -162,10 +171,9 @@ void lsm_sets_build(const LsmLattice *l, const LsmInterior *interior, const bool
     long count = 0;
     for (long p = 0; p < l->count; p++) count += wanted[p];
     int w = interior->w, side = 2 * w + 1;
-    *sets = (LsmSets){.w = w, .side = side, .planes = l->size[2]};
+    *sets = (LsmSets){.w = w, .side = side, .region_room = count, .planes = l->size[2]};
     sets->region = sm_alloc((size_t)count * (size_t)side, sizeof(int));
     sets->region_particle = sm_alloc((size_t)count, sizeof(int));
-    sets->region_plane = sm_alloc((size_t)sets->planes + 1, sizeof(long));
     Builder b = {.lattice = l, .slot = slot, .w = w, .side = side};
     pool_init(&b.bars, side + 2, 2 * count);
     pool_init(&b.plates, side + 2, 2 * count);
@@ -174,6 +182,8 @@ void lsm_sets_build(const LsmLattice *l, const LsmInterior *interior, const bool
     int *bar_number, *plate_number;
     sets->bar = sort_by_plane(&b.bars, side, sets->planes, &sets->bar_plane, &bar_number);
     sets->plate = sort_by_plane(&b.plates, side, sets->planes, &sets->plate_plane, &plate_number);
+    sets->bar_end = copy_planes(sets->bar_plane, sets->planes);
+    sets->plate_end = copy_planes(sets->plate_plane, sets->planes);
     sets->bar_count = b.bars.count;
     sets->plate_count = b.plates.count;
     renumber_rows(sets->plate, sets->plate_count * side, bar_number);
@@ -192,6 +202,7 @@ void lsm_sets_free(LsmSets *sets)
     free(sets->region_particle);
     free(sets->bar_plane);
     free(sets->plate_plane);
-    free(sets->region_plane);
+    free(sets->bar_end);
+    free(sets->plate_end);
     memset(sets, 0, sizeof *sets);
 }

@@ -17,11 +17,14 @@ typedef struct {
     int *bar;                                  /* [bar_count][side] 1 + particle slot */
     int *plate;                                /* [plate_count][side] bar rows */
     int *region;                               /* [region_count][side] plate rows */
-    int *region_particle; /* [region_count] the particle at its centre, rising */
+    int *region_particle; /* [region_count] the particle at its centre, rising at first */
+    long region_room;     /* rows that `region` and `region_particle` have room for */
     int planes;           /* lattice planes along z */
     long *bar_plane;      /* [planes + 1] first bar of each plane (plane 0 starts at row 1) */
     long *plate_plane;    /* [planes + 1] */
-    long *region_plane;   /* [planes + 1] */
+    long *bar_end;        /* [planes + 1] bars of plane z end before bar_end[z + 1]; what follows up
+                             to bar_plane[z + 1] is spare (ledger.h) */
+    long *plate_end;      /* [planes + 1] */
 } LsmSets;
 
 /* Lists for the regions of the particles chosen (`wanted[p]` true), which are numbered by `slot`
@@ -29,5 +32,11 @@ typedef struct {
 void lsm_sets_build(const LsmLattice *lattice, const LsmInterior *interior, const bool *wanted,
                     const int *slot, LsmSets *sets);
 void lsm_sets_free(LsmSets *sets);
+
+/* The bar of centre column x in row (y, z) whose members are `bits` (not 0): [2w+1] places. */
+void lsm_sets_bar(const LsmLattice *lattice, const int *slot, int w, int x, int y, int z,
+                  uint64_t bits, int *row);
+
+uint64_t lsm_sets_hash(const int *row, int width);
 
 #endif

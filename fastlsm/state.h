@@ -14,7 +14,7 @@
 #include "../lib/engine.h"
 #include "../lib/integrate.h"
 #include "../lib/lanes.h"
-#include "sets.h"
+#include "ledger.h"
 
 typedef struct {
     vec inverse_mass, offset[3]; /* 1 / M_r; c0_r - x0_r in cells */
@@ -24,6 +24,12 @@ typedef struct {
 typedef struct {
     vec weight, inverse_count, live; /* m~_i = m_i / |R_i|; 1 / |R_i|; 1, or 0 for an empty slot */
 } ParticleConst;
+
+/* How many constant records there are. Equal ones are stored once; those from `shared` on belong to
+ * one block or tile each, whose regions have changed. */
+typedef struct {
+    long shared, count, room;
+} Records;
 
 /* Widths of the rows of list sums, in values. Vectors are padded to four, rows to whole cache lines
  * where they are read whole. */
@@ -57,11 +63,14 @@ typedef struct Lsm {
     LsmLattice lattice;
     LsmInterior interior;
     LsmSets sets;
-    double *mass;  /* [particles] */
-    int *members;  /* [particles] |R_i| */
-    int *slot;     /* [particles] */
-    int *particle; /* [blocks * lanes], -1 for an empty slot */
-    long unique;   /* different regions */
+    LsmLedger *ledger; /* NULL for a body that cannot break */
+    long spare;        /* rows that its layers have left at least */
+    char *mark;        /* [particles] zero between breaks, or NULL */
+    double *mass;      /* [particles] */
+    int *members;      /* [particles] |R_i| */
+    int *slot;         /* [particles] */
+    int *particle;     /* [blocks * lanes], -1 for an empty slot */
+    long unique;       /* different regions, or -1: ask lsm_unique() */
 
     /* the state */
     long blocks;
@@ -70,7 +79,8 @@ typedef struct Lsm {
     ParticleConst *particle_const;
     int *block_region; /* [blocks * lanes] row of sets.region that sums over this particle, or -1 */
 
-    /* regions, SM_LANES to a tile; in block form tile t is block t */
+    /* regions, SM_LANES to a tile; in block form, and in a body that can break, tile t is block t
+     */
     long tiles;
     int *tile_region; /* [tiles * lanes] row of sets.region, or -1 */
     int *tile_slot;   /* [tiles * lanes] slot of the region's centre, or -1 */
@@ -102,7 +112,8 @@ typedef struct Lsm {
     Obstacle *obstacle;
     vec shift[3]; /* (origin - home) / cell: from x to obstacle coordinates */
     double home[3];
-    long broken, const_bytes;
+    long broken;
+    Records particle_records, region_records;
 } Lsm;
 
 /* The lanes with a list row. */

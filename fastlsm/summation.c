@@ -59,7 +59,7 @@ SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
 }
 
 void lsm_bars_up(const Lsm *lsm, int first, int last){
-#define CALL(side) bars_up(lsm, lsm->sets.bar_plane[first], lsm->sets.bar_plane[last], side)
+#define CALL(side) bars_up(lsm, lsm->sets.bar_plane[first], lsm->sets.bar_end[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
@@ -84,7 +84,7 @@ SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
 }
 
 void lsm_plates_up(const Lsm *lsm, int first, int last){
-#define CALL(side) plates_up(lsm, lsm->sets.plate_plane[first], lsm->sets.plate_plane[last], side)
+#define CALL(side) plates_up(lsm, lsm->sets.plate_plane[first], lsm->sets.plate_end[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
@@ -168,7 +168,7 @@ SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
 }
 
 void lsm_bars_down(const Lsm *lsm, int first, int last){
-#define CALL(side) bars_down(lsm, lsm->sets.bar_plane[first], lsm->sets.bar_plane[last], side)
+#define CALL(side) bars_down(lsm, lsm->sets.bar_plane[first], lsm->sets.bar_end[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
@@ -190,7 +190,7 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
 }
 
 void lsm_plates_down(const Lsm *lsm, int first, int last){
-#define CALL(side) plates_down(lsm, lsm->sets.plate_plane[first], lsm->sets.plate_plane[last], side)
+#define CALL(side) plates_down(lsm, lsm->sets.plate_plane[first], lsm->sets.plate_end[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
@@ -266,7 +266,7 @@ void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up)
 {
     const Rows *rows = &lsm->rows;
     const int *list = lsm->sets.bar;
-    long from = lsm->sets.bar_plane[first], to = lsm->sets.bar_plane[last];
+    long from = lsm->sets.bar_plane[first], to = lsm->sets.bar_end[last];
 #define CALL(side)                                                                                 \
     if (up)                                                                                        \
         plain_up(list, from, to, side, rows->transform, rows->bar);                                \
@@ -281,7 +281,7 @@ void lsm_plates_plain(const Lsm *lsm, int first, int last, bool up)
 {
     const Rows *rows = &lsm->rows;
     const int *list = lsm->sets.plate;
-    long from = lsm->sets.plate_plane[first], to = lsm->sets.plate_plane[last];
+    long from = lsm->sets.plate_plane[first], to = lsm->sets.plate_end[last];
 #define CALL(side)                                                                                 \
     if (up)                                                                                        \
         plain_up(list, from, to, side, rows->bar, rows->plate);                                    \
