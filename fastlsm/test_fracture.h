@@ -317,12 +317,48 @@ static void test_crumble(void **state)
     }
 }
 
+/* After a cut two threads give the bits of one. */
+static void test_threads(void **state)
+{
+    (void)state;
+    for (int layout = SM_LAYOUT_LISTS; layout <= SM_LAYOUT_BLOCKS; layout++) {
+        Body body;
+        Lsm *lsm[2];
+        Breaks breaks = {0};
+        full_box(19, &body);
+        for (int i = 0; i < 2; i++) {
+            lsm[i] = breakable(&body, 2, (SmLayout)layout, 0.2);
+            lsm[i]->params.threads = i + 1;
+            lsm_rebuild_regions(lsm[i]);
+            assert_int_equal(lsm[i]->threads, i + 1);
+        }
+        for (long p = 0; p < body.n; p++)
+            if (lsm[0]->lattice.coord[p][2] == 9)
+                for (int bit = 18; bit < LSM_RING; bit++)
+                    add_break(&breaks, &lsm[0]->lattice, p, bit);
+        unsigned seed = 2;
+        random_deformation(&seed, 1, 0.2, body.n, (const double(*)[3])body.x0, body.x);
+        for (int i = 0; i < 2; i++) {
+            lsm_break(lsm[i], breaks.count, breaks.link);
+            set_state(lsm[i], &body);
+            for (int step = 0; step < 3; step++) lsm_step(lsm[i], NULL);
+        }
+        assert_memory_equal(lsm[0]->x, lsm[1]->x,
+                            (size_t)lsm[0]->blocks * 3 * SM_LANES * sizeof(real));
+        breaks_free(&breaks);
+        lsm_free(lsm[0]);
+        lsm_free(lsm[1]);
+        body_free(&body);
+    }
+}
+
 static int test_all(const char *name)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_equal_to_rebuild),
         cmocka_unit_test(test_local),
         cmocka_unit_test(test_crumble),
+        cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests_name(name, tests, NULL, NULL);
 }
