@@ -68,8 +68,11 @@ SM_INLINE ivec polar_quartic(const vec A[9], vec R[9])
     polar_cofactor(D, R);
     vec first = l * over, second = (i2 - J * over_l) * over;
     for (int i = 0; i < 9; i++) R[i] = first * R[i] + second * B[i];
-    /* written so that a NaN counts as a tie */
-    return ~((below > (real)0.03 * l * l * l) & (square > (real)1e-30) & (square < (real)1e30));
+    /* The iteration is lost where three roots meet; what it leaves then is no rotation. Written so
+     * that a NaN counts as a tie. */
+    ivec rotation = lanes_abs(polar_norm(R) - 3) < (real)1e-3;
+    return ~(rotation & (below > (real)0.03 * l * l * l) & (square > (real)1e-30) &
+             (square < (real)1e30));
 }
 
 /* Redoes the lanes of `tie` one by one, keeping near the last rotation. */
