@@ -189,9 +189,7 @@ static void build_rows(Lsm *lsm)
         .bar = sm_alloc(bars * ROW_BAR, real_size),
         .plate = sm_alloc(plates * ROW_PLATE, real_size),
         .transform = sm_alloc(rows * ROW_T, real_size),
-        .bar_down = sm_alloc(bars * ROW_BAR, real_size),
         .plate_down = sm_alloc(plates * ROW_PLATE_DOWN, real_size),
-        .rigid = lsm->params.damping > 0 ? sm_alloc(rows * ROW_RIGID, real_size) : NULL,
     };
 }
 
@@ -343,9 +341,7 @@ static void free_rows(Rows *rows)
     free(rows->bar);
     free(rows->plate);
     free(rows->transform);
-    free(rows->bar_down);
     free(rows->plate_down);
-    free(rows->rigid);
 }
 
 static void free_regions(Lsm *lsm)
@@ -395,7 +391,7 @@ long lsm_bytes(const Lsm *lsm)
          real_size = sizeof(real);
     long bytes = words * 28 + l->count * (long)(sizeof *l->coord + sizeof *l->link +
                                                 sizeof(double) + 2 * sizeof(int));
-    bytes += lanes * (9 * real_size + 2 * (long)sizeof(int)); /* x v g, slots */
+    bytes += lanes * ((lsm->g ? 9 : 6) * real_size + 2 * (long)sizeof(int)); /* x v g, slots */
     bytes +=
         lsm->tiles * SM_LANES * (3 * real_size + 6 * (long)sizeof(short) + 2 * (long)sizeof(int));
     bytes += lsm->particle_records.room * (long)sizeof(ParticleConst) +
@@ -403,9 +399,9 @@ long lsm_bytes(const Lsm *lsm)
     bytes += lsm->ledger ? lsm->ledger->bytes + l->count : 0;
     bytes +=
         (sets->bar_count + sets->plate_count + sets->region_room) * sets->side * (long)sizeof(int);
-    bytes += lanes * (ROW_P + ROW_T + (lsm->rows.rigid ? ROW_RIGID : 0)) * real_size +
-             sets->bar_count * 2 * ROW_BAR * real_size +
-             sets->plate_count * (ROW_PLATE + ROW_PLATE_DOWN) * real_size;
+    bytes += (lanes * (ROW_P + ROW_T) + sets->bar_count * ROW_BAR +
+              sets->plate_count * (ROW_PLATE + ROW_PLATE_DOWN)) *
+             real_size;
     return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0);
 }
 

@@ -40,7 +40,7 @@ static void store_velocities(Lsm *lsm, long tile, const vec out[6])
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
         if (slot >= 0)
-            store8(lsm->rows.rigid + (slot + 1) * (long)ROW_RIGID, load8(row + lane * ROW_RIGID));
+            store8(lsm->rows.transform + (slot + 1) * (long)ROW_T, load8(row + lane * 8));
     }
 }
 
@@ -88,8 +88,8 @@ static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
         for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
             solve_tile(lsm, tile);
     for (long i = lsm->layer_copy[layer]; i < lsm->layer_copy[layer + 1]; i++)
-        store8(lsm->rows.rigid + (lsm->copy[i][0] + 1) * (long)ROW_RIGID,
-               load8(lsm->rows.rigid + (lsm->copy[i][1] + 1) * (long)ROW_RIGID));
+        store8(lsm->rows.transform + (lsm->copy[i][0] + 1) * (long)ROW_T,
+               load8(lsm->rows.transform + (lsm->copy[i][1] + 1) * (long)ROW_T));
     lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
     lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
     sm_lap(laps, SM_DAMPING);

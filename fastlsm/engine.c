@@ -63,8 +63,17 @@ static real *field_of(const SmEngine *e, SmField field)
     return field == SM_VELOCITY ? v : field == SM_GOAL ? g : x;
 }
 
+static void engine_goals(SmEngine *e)
+{
+    if (e->crowd)
+        crowd_goals(e->crowd);
+    else
+        lsm_goals(e->lsm);
+}
+
 static void engine_get(SmEngine *e, SmField field, double (*values)[3])
 {
+    if (field == SM_GOAL && !field_of(e, field)) engine_goals(e);
     const real *from = field_of(e, field);
     double to_velocity = e->lsm->cell / e->lsm->params.h;
     for (long number = 0; number < e->bodies * e->count; number++) {
@@ -282,14 +291,6 @@ static void engine_step(SmEngine *e, SmLaps *laps)
             shift_obstacles(lsm);
     }
     sm_lap(laps, SM_OTHER);
-}
-
-static void engine_goals(SmEngine *e)
-{
-    if (e->crowd)
-        crowd_goals(e->crowd);
-    else
-        lsm_goals(e->lsm);
 }
 
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])

@@ -58,15 +58,13 @@ static void region_sums(const Lsm *lsm, const int *region, vec S[12])
 static void keep_constants(Lsm *lsm, long tile, const vec S[12])
 {
     RegionConst *k = &lsm->region_const[lsm->tile_const[tile]];
-    ivec live = S[0] > 0, off = {0};
+    ivec live = S[0] > 0;
     k->inverse_mass = lanes_and(1 / lanes_select(live, S[0], lanes_set(1)), live);
     for (int d = 0; d < 3; d++) {
         vec offset = S[9 - 3 * d] * k->inverse_mass;
-        ivec real_offset = lanes_abs(offset) > 8 * SM_EPSILON; /* the rest is rounding */
-        k->offset[d] = lanes_and(offset, real_offset);
-        off |= real_offset;
+        k->offset[d] =
+            lanes_and(offset, lanes_abs(offset) > 8 * SM_EPSILON); /* the rest is rounding */
     }
-    k->centred = (ivec){0} - !lanes_any(off);
 }
 
 /* Rotation of each region of a tile. */

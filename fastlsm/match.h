@@ -42,6 +42,12 @@ SM_INLINE void last_load(const short *last, vec R[9])
     }
 }
 
+/* Deep inside a solid regions are centred on their particle: nothing is offset. */
+SM_INLINE bool match_is_centred(const RegionConst *k)
+{
+    return !lanes_any((ivec)k->offset[0] | (ivec)k->offset[1] | (ivec)k->offset[2]);
+}
+
 /* c_r (eq. 9) and A_r (eq. 11) from the sums S = (C, Cz, Cy, Cx) about the region's lattice centre:
  * column d of A is C_d - C offset_d, which is sum m~ x (x0 - c0)^T. */
 SM_INLINE void match_moments(const vec S[12], const RegionConst *k, vec c[3], vec A[9])
@@ -50,7 +56,7 @@ SM_INLINE void match_moments(const vec S[12], const RegionConst *k, vec c[3], ve
         c[i] = S[i] * k->inverse_mass;
         for (int d = 0; d < 3; d++) A[i * 3 + d] = S[9 - d * 3 + i];
     }
-    if (k->centred[0]) return;
+    if (match_is_centred(k)) return;
     for (int i = 0; i < 3; i++)
         for (int d = 0; d < 3; d++) A[i * 3 + d] -= S[i] * k->offset[d];
 }
@@ -59,7 +65,7 @@ SM_INLINE void match_moments(const vec S[12], const RegionConst *k, vec c[3], ve
 SM_INLINE void match_centre(const vec c[3], const vec R[9], const RegionConst *k, vec q[3])
 {
     for (int i = 0; i < 3; i++) q[i] = c[i];
-    if (k->centred[0]) return;
+    if (match_is_centred(k)) return;
     for (int i = 0; i < 3; i++)
         for (int d = 0; d < 3; d++) q[i] -= R[i * 3 + d] * k->offset[d];
 }

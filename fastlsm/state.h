@@ -18,7 +18,6 @@
 
 typedef struct {
     vec inverse_mass, offset[3]; /* 1 / M_r; c0_r - x0_r in cells */
-    ivec centred;                /* all bits: no lane has an offset, as deep inside a solid */
 } RegionConst;
 
 typedef struct {
@@ -33,20 +32,19 @@ typedef struct {
 
 /* Widths of the rows of list sums, in values. Vectors are padded to four, rows to whole cache lines
  * where they are read whole. */
-enum { ROW_P = 4, ROW_BAR = 16, ROW_PLATE = 16, ROW_T = 16, ROW_PLATE_DOWN = 8, ROW_RIGID = 8 };
+enum { ROW_P = 4, ROW_BAR = 16, ROW_PLATE = 16, ROW_T = 16, ROW_PLATE_DOWN = 8 };
 
 typedef struct {
     real *p;          /* [slots + 2][ROW_P]          m~ x */
-    real *bar;        /* [bars][ROW_BAR]             sums of p and of a p */
+    real *bar;        /* [bars][ROW_BAR]             sums of p and of a p; then the adjoint's
+                                                     (Q, R z, R y), as the plates are done with it */
     real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
     real *transform;  /* [slots + 2][ROW_T]          (q_r, R z, R y, R x) */
-    real *bar_down;   /* [bars][ROW_BAR]             adjoint: (Q, R z, R y) */
     real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z) */
-    real *rigid; /* [slots + 2][ROW_RIGID]      (omega, v_r - omega x c_r); NULL without damping */
 } Rows;
 
-/* Damping keeps its products in `transform`, sums them up through `bar` and `plate`, and brings
- * rigid velocities down through `bar_down` and `plate_down`. */
+/* Damping keeps its products in `transform`, and then (omega, v_r - omega x c_r) in their place; it
+ * sums through the same bars and plates. */
 
 /* Row 0 of every array is zero (the absent member), slot s is row s + 1, and row slots + 1 takes
  * what empty lanes write. */

@@ -163,7 +163,7 @@ SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
             sum += load16(member);
             moment += (real)(i - side / 2) * load4(member + 12);
         }
-        store16(lsm->rows.bar_down + bar * ROW_BAR, sum - widen_first(moment));
+        store16(lsm->rows.bar + bar * ROW_BAR, sum - widen_first(moment));
     }
 }
 
@@ -180,7 +180,7 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
         vec8 sum = {0};
         vec4 moment = {0};
         for (int i = 0; i < side; i++) {
-            const real *member = lsm->rows.bar_down + (long)id[i] * ROW_BAR;
+            const real *member = lsm->rows.bar + (long)id[i] * ROW_BAR;
             sum += load8(member);
             moment += (real)(i - side / 2) * load4(member + 8);
         }
@@ -271,7 +271,7 @@ void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up)
     if (up)                                                                                        \
         plain_up(list, from, to, side, rows->transform, rows->bar);                                \
     else                                                                                           \
-        plain_down(list, from, to, side, rows->rigid, ROW_RIGID, rows->bar_down, ROW_BAR)
+        plain_down(list, from, to, side, rows->transform, ROW_T, rows->bar, ROW_BAR)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
@@ -286,7 +286,7 @@ void lsm_plates_plain(const Lsm *lsm, int first, int last, bool up)
     if (up)                                                                                        \
         plain_up(list, from, to, side, rows->bar, rows->plate);                                    \
     else                                                                                           \
-        plain_down(list, from, to, side, rows->bar_down, ROW_BAR, rows->plate_down, ROW_PLATE_DOWN)
+        plain_down(list, from, to, side, rows->bar, ROW_BAR, rows->plate_down, ROW_PLATE_DOWN)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }

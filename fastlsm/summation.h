@@ -38,7 +38,7 @@ void lsm_plates_down(const Lsm *lsm, int first, int last);
 void lsm_particles_down(const Lsm *lsm, const int *region, real out[3][SM_LANES]);
 
 /* Plain sums without moments, for damping: `up` sums 12 values of rows.transform through bar and
- * plate; else 8 values of rows.rigid go through bar_down and plate_down. */
+ * plate; else 8 values of it go down through bar and plate_down. */
 void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up);
 void lsm_plates_plain(const Lsm *lsm, int first, int last, bool up);
 void lsm_regions_plain(const Lsm *lsm, const int *region, vec16 *out);
