@@ -215,7 +215,7 @@ const char *sm_voxel_verdict(const SmVoxelReport *report)
     bool thin = (report->flood_cells + report->vote_cells) * 50 < report->shell_cells;
     switch (report->inside) {
     case SM_INSIDE_CLOSED:
-        return thin ? "closed, with little or no inside at this cell size" : "closed";
+        return thin ? "no open edges, but little or no inside at this cell size" : "no open edges";
     case SM_INSIDE_TIGHT:
         return thin ? "open, with little inside: a sheet one cell thick"
                     : "open, but its holes are narrower than a cell";
