@@ -113,17 +113,25 @@ SM_INLINE int lanes_any(ivec mask)
 #endif
 }
 
+/* The cases of lanes_slide(), whose offset must be written out. */
+/* clang-format off */
 #ifdef __AVX512F__
-#if SM_REAL_BITS == 32
-#define LANES_ALIGN(o)                                                                             \
-    case o:                                                                                        \
-        return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, o);
+static const lane_int lanes_count[32] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
+                                         16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
+#if SM_LANES == 16
+#define LANES_ALIGN(o) case o: return (vec)_mm512_alignr_epi32((__m512i)high, (__m512i)low, o)
+#define LANES_ALIGN_REST \
+    LANES_ALIGN(8); LANES_ALIGN(9); LANES_ALIGN(10); LANES_ALIGN(11); \
+    LANES_ALIGN(12); LANES_ALIGN(13); LANES_ALIGN(14); LANES_ALIGN(15)
 #else
-#define LANES_ALIGN(o)                                                                             \
-    case o:                                                                                        \
-        return (vec)_mm512_alignr_epi64((__m512i)high, (__m512i)low, o);
+#define LANES_ALIGN(o) case o: return (vec)_mm512_alignr_epi64((__m512i)high, (__m512i)low, o)
+#define LANES_ALIGN_REST
 #endif
+#define LANES_ALIGN_ALL \
+    LANES_ALIGN(1); LANES_ALIGN(2); LANES_ALIGN(3); LANES_ALIGN(4); \
+    LANES_ALIGN(5); LANES_ALIGN(6); LANES_ALIGN(7); LANES_ALIGN_REST
 #endif
+/* clang-format on */
 
 /* Lanes o .. o + SM_LANES - 1 of the two vectors low, high laid end to end; 0 <= o <= SM_LANES. One
  * instruction where o is a constant. */
@@ -132,60 +140,15 @@ SM_INLINE vec lanes_slide(vec low, vec high, int o)
 #ifdef __AVX512F__
     if (__builtin_constant_p(o)) {
         switch (o) {
-            LANES_ALIGN(1)
-            LANES_ALIGN(2)
-            LANES_ALIGN(3)
-            LANES_ALIGN(4)
-            LANES_ALIGN(5)
-            LANES_ALIGN(6) LANES_ALIGN(7)
-#if SM_LANES == 16
-                LANES_ALIGN(8) LANES_ALIGN(9) LANES_ALIGN(10) LANES_ALIGN(11) LANES_ALIGN(12)
-                    LANES_ALIGN(13) LANES_ALIGN(14) LANES_ALIGN(15)
-#endif
+            LANES_ALIGN_ALL;
         }
     }
-    static const lane_int lane[2 * SM_LANES] = {
-        0,
-        1,
-        2,
-        3,
-        4,
-        5,
-        6,
-        7,
-        8,
-        9,
-        10,
-        11,
-        12,
-        13,
-        14,
-        15,
-#if SM_LANES == 16
-        16,
-        17,
-        18,
-        19,
-        20,
-        21,
-        22,
-        23,
-        24,
-        25,
-        26,
-        27,
-        28,
-        29,
-        30,
-        31
-#endif
-    };
-    __m512i from = _mm512_loadu_si512(lane + (o < SM_LANES ? o : 0));
     if (o == SM_LANES) return high;
+    __m512i index = _mm512_loadu_si512(lanes_count + o);
 #if SM_REAL_BITS == 32
-    return (vec)_mm512_permutex2var_ps((__m512)low, from, (__m512)high);
+    return (vec)_mm512_permutex2var_ps((__m512)low, index, (__m512)high);
 #else
-    return (vec)_mm512_permutex2var_pd((__m512d)low, from, (__m512d)high);
+    return (vec)_mm512_permutex2var_pd((__m512d)low, index, (__m512d)high);
 #endif
 #else
     real both[2 * SM_LANES];
