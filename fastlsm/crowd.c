@@ -116,7 +116,7 @@ SM_INLINE void level(const int *list, long from, long to, int side, const real *
     }
 }
 
-SM_INLINE void group_sums(const Crowd *crowd, const GroupRows *r, int side, bool damping, bool down)
+SM_INLINE void sums(const Crowd *crowd, const GroupRows *r, int side, bool damping, bool down)
 {
     const LsmSets *s = &crowd->lsm->sets;
     if (!damping && !down) {
@@ -138,26 +138,10 @@ SM_INLINE void group_sums(const Crowd *crowd, const GroupRows *r, int side, bool
     }
 }
 
-static void sums(const Crowd *crowd, const GroupRows *r, bool damping, bool down)
-{
-    switch (crowd->lsm->side) {
-    case 3:
-        group_sums(crowd, r, 3, damping, down);
-        break;
-    case 5:
-        group_sums(crowd, r, 5, damping, down);
-        break;
-    default:
-        group_sums(crowd, r, crowd->lsm->side, damping, down);
-        break;
-    }
-}
-
 /* The last level up (12 sums of region p) or down (3 or 6 sums of particle p). */
-SM_INLINE void last_level(const Crowd *crowd, const real *in, int pitch, long p, int F, int first,
-                          vec sum[15])
+SM_INLINE void last_level(const Crowd *crowd, int side, const real *in, int pitch, long p, int F,
+                          int first, vec sum[15])
 {
-    int side = crowd->lsm->side;
     const int *id = crowd->lsm->sets.region + p * side;
     const real *at[LSM_MAX_SIDE];
     for (int i = side - 1; i > 0; i--) at[i] = in + (long)id[i] * pitch * L;
@@ -165,14 +149,15 @@ SM_INLINE void last_level(const Crowd *crowd, const real *in, int pitch, long p,
     window_sum(at, L, side / 2, F, first, sum, sum + F);
 }
 
-static void match_region(Crowd *crowd, long group, const GroupRows *r, long p, SmLaps *laps)
+SM_INLINE void match_region(Crowd *crowd, int side, long group, const GroupRows *r, long p,
+                            SmLaps *laps)
 {
     const Lsm *lsm = crowd->lsm;
     static const int all_live[L] = {0};
     vec S[15], c[3], A[9], R[9], q[3];
     RegionConst k = {.inverse_mass = lanes_set(crowd->region[p][0])};
     for (int d = 0; d < 3; d++) k.offset[d] = lanes_set(crowd->region[p][1 + d]);
-    last_level(crowd, r->plate, PLATE, p, 9, 0, S); /* (C, Cx, Cy, Cz) */
+    last_level(crowd, side, r->plate, PLATE, p, 9, 0, S); /* (C, Cx, Cy, Cz) */
     for (int i = 0; i < 3; i++) {
         vec x_moment = S[3 + i];
         S[3 + i] = S[9 + i];
@@ -210,7 +195,7 @@ static void copy_region(const Crowd *crowd, const GroupRows *r, long p)
     }
 }
 
-static void match_group(Crowd *crowd, long group, const GroupRows *r, SmLaps *laps)
+SM_INLINE void match_group(Crowd *crowd, int side, long group, const GroupRows *r, SmLaps *laps)
 {
     long n = crowd->lsm->lattice.count;
     const real *x = crowd->x + group * n * 3 * L;
@@ -218,27 +203,27 @@ static void match_group(Crowd *crowd, long group, const GroupRows *r, SmLaps *la
         for (int d = 0; d < 3; d++)
             lanes_store(r->p + ((p + 1) * P + d) * L,
                         crowd->weight[p] * lanes_load(x + (p * 3 + d) * L));
-    sums(crowd, r, false, false);
+    sums(crowd, r, side, false, false);
     sm_lap(laps, SM_FAST_SUM);
     for (long p = 0; p < n; p++)
-        if (crowd->original[p] == p) match_region(crowd, group, r, p, laps);
+        if (crowd->original[p] == p) match_region(crowd, side, group, r, p, laps);
     for (long p = 0; p < n; p++)
         if (crowd->original[p] != p) copy_region(crowd, r, p);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    sums(crowd, r, false, true);
+    sums(crowd, r, side, false, true);
     sm_lap(laps, SM_FAST_SUM);
 }
 
 /* Eqs. 1 and 2 for one group; with `goals` only g. */
-static void move_group(Crowd *crowd, long group, const GroupRows *r, bool goals, bool damp,
-                       const vec shift[3])
+SM_INLINE void move_group(Crowd *crowd, int side, long group, const GroupRows *r, bool goals,
+                          bool damp, const vec shift[3])
 {
     const Lsm *lsm = crowd->lsm;
     long n = lsm->lattice.count;
     for (long p = 0; p < n; p++) {
         long at = (group * n + p) * 3 * L;
         vec sum[15], x[3], v[3];
-        last_level(crowd, r->plate_down, PLATE_DOWN, p, 6, 3, sum);
+        last_level(crowd, side, r->plate_down, PLATE_DOWN, p, 6, 3, sum);
         finish_down(sum, sum + 6, false);
         for (int d = 0; d < 3; d++) sum[d] *= crowd->inverse_count[p];
         if (goals) {
@@ -257,7 +242,8 @@ static void move_group(Crowd *crowd, long group, const GroupRows *r, bool goals,
 }
 
 /* Eq. 14, then x += v. */
-static void damp_group(Crowd *crowd, long group, const GroupRows *r, const vec shift[3])
+SM_INLINE void damp_group(Crowd *crowd, int side, long group, const GroupRows *r,
+                          const vec shift[3])
 {
     const Lsm *lsm = crowd->lsm;
     long n = lsm->lattice.count;
@@ -268,21 +254,21 @@ static void damp_group(Crowd *crowd, long group, const GroupRows *r, const vec s
         damping_products(lanes_set(crowd->weight[p]), x, v, F);
         for (int f = 0; f < 12; f++) lanes_store(r->transform + ((p + 1) * 12 + f) * L, F[f]);
     }
-    sums(crowd, r, true, false);
+    sums(crowd, r, side, true, false);
     for (long p = 0; p < n; p++) {
         long from = crowd->original[p];
         vec out[6];
-        last_level(crowd, r->plate, PLATE, from, 12, -1, F);
+        last_level(crowd, side, r->plate, PLATE, from, 12, -1, F);
         load3(r->centre + from * 3 * L, c);
         rigid_velocity(F, c, lanes_set(crowd->region[from][0]), out);
         for (int f = 0; f < 6; f++) lanes_store(r->p + ((p + 1) * P + f) * L, out[f]);
     }
-    sums(crowd, r, true, true);
+    sums(crowd, r, side, true, true);
     for (long p = 0; p < n; p++) {
         long at = (group * n + p) * 3 * L;
         load3(crowd->x + at, x);
         load3(crowd->v + at, v);
-        last_level(crowd, r->plate_down, PLATE_DOWN, p, 6, -1, F);
+        last_level(crowd, side, r->plate_down, PLATE_DOWN, p, 6, -1, F);
         pull(F, lanes_set(crowd->inverse_count[p]), (real)lsm->params.damping, x, v);
         integrate_position(lsm->obstacle, lsm->obstacle_count, shift, x, v);
         store3(crowd->x + at, x);
@@ -290,7 +276,8 @@ static void damp_group(Crowd *crowd, long group, const GroupRows *r, const vec s
     }
 }
 
-static void run_group(Crowd *crowd, long group, int thread, bool goals, SmLaps *laps)
+SM_INLINE void run_group_of(Crowd *crowd, int side, long group, int thread, bool goals,
+                            SmLaps *laps)
 {
     const Lsm *lsm = crowd->lsm;
     GroupRows rows;
@@ -300,12 +287,27 @@ static void run_group(Crowd *crowd, long group, int thread, bool goals, SmLaps *
         for (int d = 0; d < 3; d++)
             shift[d][lane] =
                 (real)((crowd->origin[group * L + lane][d] - lsm->home[d]) / lsm->cell);
-    match_group(crowd, group, &rows, laps);
+    match_group(crowd, side, group, &rows, laps);
     bool damp = lsm->damp_now && !goals;
-    move_group(crowd, group, &rows, goals, damp, shift);
+    move_group(crowd, side, group, &rows, goals, damp, shift);
     sm_lap(laps, SM_FAST_SUM);
-    if (damp) damp_group(crowd, group, &rows, shift);
+    if (damp) damp_group(crowd, side, group, &rows, shift);
     sm_lap(laps, damp ? SM_DAMPING : SM_OTHER);
+}
+
+static void run_group(Crowd *crowd, long group, int thread, bool goals, SmLaps *laps)
+{
+    switch (crowd->lsm->side) { /* constants for the usual widths */
+    case 3:
+        run_group_of(crowd, 3, group, thread, goals, laps);
+        break;
+    case 5:
+        run_group_of(crowd, 5, group, thread, goals, laps);
+        break;
+    default:
+        run_group_of(crowd, crowd->lsm->side, group, thread, goals, laps);
+        break;
+    }
 }
 
 static void run(Crowd *crowd, bool goals, SmLaps *laps)
