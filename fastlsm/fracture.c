@@ -74,7 +74,7 @@ static void note_end(Change *change, long p)
         low[d] = l->coord[p][d] > reach ? l->coord[p][d] - reach : 0;
         high[d] = l->coord[p][d] + reach < l->size[d] ? l->coord[p][d] + reach : l->size[d] - 1;
     }
-    clear_bit(l, interior->full, l->coord[p][0], l->coord[p][1], l->coord[p][2]);
+    clear_bit(l, interior->complete, l->coord[p][0], l->coord[p][1], l->coord[p][2]);
     for (int z = low[2]; z <= high[2]; z++)
         for (int y = low[1]; y <= high[1]; y++)
             for (int x = low[0]; x <= high[0]; x++) {

@@ -32,27 +32,40 @@ static void erode(const LsmLattice *l, uint64_t *bitmap, uint64_t *scratch)
         }
 }
 
+/* Particles there are in the ring around `c`, itself included. */
+static int ring_count(const LsmLattice *l, const int c[3])
+{
+    int count = 0;
+    for (int row = 0; row < 9; row++)
+        count += __builtin_popcountll(
+            lsm_window(l, l->bits, c[0], c[1] + row % 3 - 1, c[2] + row / 3 - 1, 1));
+    return count;
+}
+
 void lsm_interior_build(const LsmLattice *l, int w, LsmInterior *interior)
 {
     size_t words = (size_t)l->size[1] * (size_t)l->size[2] * (size_t)l->words;
     interior->w = w;
-    interior->full = sm_alloc(words, sizeof(uint64_t));
+    interior->complete = sm_alloc(words, sizeof(uint64_t));
     interior->interior = sm_alloc(words, sizeof(uint64_t));
     uint64_t *scratch = sm_alloc(words, sizeof(uint64_t));
-    for (long p = 0; p < l->count; p++)
-        if (l->link[p] == LSM_FULL) {
-            const int *c = l->coord[p];
-            interior->full[((size_t)c[2] * (size_t)l->size[1] + (size_t)c[1]) * (size_t)l->words +
-                           (size_t)(c[0] >> 6)] |= (uint64_t)1 << (c[0] & 63);
-        }
-    memcpy(interior->interior, interior->full, words * sizeof(uint64_t));
+    for (long p = 0; p < l->count; p++) {
+        const int *c = l->coord[p];
+        bool full = l->link[p] == LSM_FULL;
+        size_t word = ((size_t)c[2] * (size_t)l->size[1] + (size_t)c[1]) * (size_t)l->words +
+                      (size_t)(c[0] >> 6);
+        uint64_t bit = (uint64_t)1 << (c[0] & 63);
+        if (full) interior->interior[word] |= bit;
+        if (full || __builtin_popcount(l->link[p]) == ring_count(l, c))
+            interior->complete[word] |= bit;
+    }
     for (int step = 1; step < w; step++) erode(l, interior->interior, scratch);
     free(scratch);
 }
 
 void lsm_interior_free(LsmInterior *interior)
 {
-    free(interior->full);
+    free(interior->complete);
     free(interior->interior);
     memset(interior, 0, sizeof *interior);
 }
@@ -67,9 +80,10 @@ static void add_ring(uint32_t link, int a, long row, int side, uint64_t *next)
 }
 
 /* One breadth-first step from `front`, whose members lie within `reach` of the centre. Particles
- * with a full ring spread word-parallel; the others link by link. */
-static void spread(const LsmLattice *l, const uint64_t *full, const int centre[3], int w, int reach,
-                   const uint64_t *front, uint64_t *next)
+ * linked to all of their ring spread word-parallel, also to where there is no particle; the others
+ * link by link. */
+static void spread(const LsmLattice *l, const uint64_t *complete, const int centre[3], int w,
+                   int reach, const uint64_t *front, uint64_t *next)
 {
     int side = 2 * w + 1;
     for (int c = -reach; c <= reach; c++)
@@ -77,7 +91,7 @@ static void spread(const LsmLattice *l, const uint64_t *full, const int centre[3
             long row = (long)(c + w) * side + b + w;
             if (!front[row]) continue;
             uint64_t whole =
-                front[row] & lsm_window(l, full, centre[0], centre[1] + b, centre[2] + c, w);
+                front[row] & lsm_window(l, complete, centre[0], centre[1] + b, centre[2] + c, w);
             if (whole)
                 for (int ring = 0; ring < 9; ring++)
                     next[row + (ring / 3 - 1) * side + ring % 3 - 1] |=
@@ -90,26 +104,65 @@ static void spread(const LsmLattice *l, const uint64_t *full, const int centre[3
         }
 }
 
-int lsm_region_rows(const LsmLattice *l, const LsmInterior *interior, long r, uint64_t *rows)
+/* Is the material of the window one box without a broken or missing link? Then all of it is within
+ * reach: this is the usual case at the faces, edges and corners of a solid. */
+static bool one_box(const LsmLattice *l, const LsmInterior *interior, const int centre[3],
+                    const uint64_t *material)
+{
+    int w = interior->w, side = 2 * w + 1, low[2] = {side, side}, high[2] = {-1, -1}, filled = 0;
+    uint64_t run = material[w * side + w], ends = run & -run;
+    if (run & (run + ends)) return false; /* more than one run */
+    for (int row = 0; row < side * side; row++) {
+        if (!material[row]) continue;
+        int at[2] = {row % side, row / side};
+        if (material[row] != run) return false;
+        if (lsm_window(l, interior->complete, centre[0], centre[1] + at[0] - w,
+                       centre[2] + at[1] - w, w) != run)
+            return false;
+        for (int d = 0; d < 2; d++) {
+            low[d] = at[d] < low[d] ? at[d] : low[d];
+            high[d] = at[d] > high[d] ? at[d] : high[d];
+        }
+        filled++;
+    }
+    return filled == (high[0] - low[0] + 1) * (high[1] - low[1] + 1);
+}
+
+static void search(const LsmLattice *l, const LsmInterior *interior, const int centre[3],
+                   const uint64_t *material, uint64_t *rows)
 {
     int w = interior->w, side = 2 * w + 1, area = side * side;
-    if (lsm_bit(l, interior->interior, l->coord[r])) {
-        for (int row = 0; row < area; row++) rows[row] = ((uint64_t)1 << side) - 1;
-        return side * area;
-    }
     uint64_t front[LSM_MAX_SIDE * LSM_MAX_SIDE], next[LSM_MAX_SIDE * LSM_MAX_SIDE];
     memset(rows, 0, (size_t)area * sizeof *rows);
     memset(front, 0, (size_t)area * sizeof *front);
     front[w * side + w] = rows[w * side + w] = (uint64_t)1 << w;
     for (int step = 0; step < w; step++) {
         memset(next, 0, (size_t)area * sizeof *next);
-        spread(l, interior->full, l->coord[r], w, step, front, next);
+        spread(l, interior->complete, centre, w, step, front, next);
         for (int row = 0; row < area; row++) {
-            front[row] = next[row] & ~rows[row];
-            rows[row] |= next[row];
+            front[row] = next[row] & material[row] & ~rows[row];
+            rows[row] |= front[row];
         }
     }
-    int count = 0;
+}
+
+int lsm_region_rows(const LsmLattice *l, const LsmInterior *interior, long r, uint64_t *rows)
+{
+    int w = interior->w, side = 2 * w + 1, area = side * side, count = 0;
+    const int *centre = l->coord[r];
+    if (lsm_bit(l, interior->interior, centre)) {
+        for (int row = 0; row < area; row++) rows[row] = ((uint64_t)1 << side) - 1;
+        return side * area;
+    }
+    uint64_t material[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    memset(material, 0, (size_t)area * sizeof *material);
+    for (int row = 0; row < area; row++)
+        material[row] = lsm_window(l, l->bits, centre[0], centre[1] + row % side - w,
+                                   centre[2] + row / side - w, w);
+    if (one_box(l, interior, centre, material))
+        memcpy(rows, material, (size_t)area * sizeof *rows);
+    else
+        search(l, interior, centre, material, rows);
     for (int row = 0; row < area; row++) count += __builtin_popcountll(rows[row]);
     return count;
 }

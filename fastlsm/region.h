@@ -13,7 +13,7 @@ enum { LSM_MAX_W = 31, LSM_MAX_SIDE = 2 * LSM_MAX_W + 1 };
 /* Bitmaps in the lattice's layout, rebuilt when links break. */
 typedef struct {
     int w;
-    uint64_t *full;     /* particles linked to all of their ring */
+    uint64_t *complete; /* particles linked to every particle of their ring */
     uint64_t *interior; /* particles whose region is the whole cube of side 2w+1 */
 } LsmInterior;
 
