@@ -188,7 +188,8 @@ static const char help[] =
     "per second squared: a body 70 units tall falls like one of 1 m.\n"
     "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf) for ParaView; it appears "
     "whole or not at all. The deviation printed is the largest distance of a goal position from "
-    "double-precision brute force in the last state.\n" BENCH_EXIT_CODES;
+    "double-precision brute force in the last state; beyond the tolerance of 'tables' the run is "
+    "INVALID (exit code 1), its trajectory kept.\n" BENCH_EXIT_CODES;
 
 static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
 static const struct argp argp = {option_list, parse, "SCENE|FILE.cfg|MESH", help, children,
@@ -288,17 +289,18 @@ static SmCode run_frames(BenchRunner *runner, BenchRecording *recording, const O
     return code;
 }
 
-static void print_deviation(const BenchRunner *runner, const SmCounts *counts)
+/* Prints the last state's deviation from brute force; false: beyond the tolerance. */
+static bool print_deviation(const BenchRunner *runner, const SmCounts *counts)
 {
     static const double most_members = 1e8;
     int w = runner->scene->params.w;
     if (counts->broken) {
         printf("deviation: not checked: %ld links are broken\n", counts->broken);
-        return;
+        return true;
     }
     if (bench_check_members(runner->body, w) > most_members) {
         printf("deviation: not checked: brute force would take too much memory\n");
-        return;
+        return true;
     }
     BenchCheck check;
     bench_check_create(runner->body, w, &check);
@@ -307,12 +309,15 @@ static void print_deviation(const BenchRunner *runner, const SmCounts *counts)
     double allowed = bench_check_tolerance(runner->type->precision);
     printf("deviation: goals within %.3g cells of brute force, momentum kept to %.2g\n",
            found.goal_error, found.momentum_error);
-    if (!(found.goal_error <= allowed))
-        printf("deviation: beyond the %g cells that 'tables' allows: does the body fly off?\n",
-               allowed);
+    if (found.goal_error <= allowed) return true;
+    printf("deviation: beyond the %g cells that 'tables' allows: does the body fly off?\n",
+           allowed);
+    return false;
 }
 
-static void print_summary(const BenchRunner *runner, const Outcome *outcome)
+/* Says what was run, how exact it ended and how long it took; false, and no time, when it ended
+ * with goals beyond the tolerance or positions that are not finite. */
+static bool print_summary(const BenchRunner *runner, const Outcome *outcome)
 {
     SmCounts counts;
     runner->type->count(runner->engine, &counts);
@@ -320,10 +325,14 @@ static void print_summary(const BenchRunner *runner, const Outcome *outcome)
     printf("%s: %s, %s precision: %ld particles, %ld unique regions, w %d, cell %.6g\n",
            runner->scene->name, runner->type->name, runner->type->precision, counts.particles,
            counts.regions, runner->scene->params.w, runner->body->voxels.cell);
-    printf("%ld steps of %g s: %.4g ms a step, %.4g ns per particle and step\n", outcome->steps,
-           runner->scene->params.h, 1e3 * outcome->seconds / steps,
-           1e9 * outcome->seconds / steps / (double)counts.particles);
-    if (outcome->finite) print_deviation(runner, &counts);
+    bool valid = outcome->finite && print_deviation(runner, &counts);
+    printf("%ld steps of %g s: ", outcome->steps, runner->scene->params.h);
+    if (valid)
+        printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * outcome->seconds / steps,
+               1e9 * outcome->seconds / steps / (double)counts.particles);
+    else
+        printf("INVALID\n");
+    return valid;
 }
 
 static void output_path(const Options *options, const BenchScene *scene, char path[BENCH_PATH])
@@ -377,11 +386,15 @@ static SmCode record(const Options *options, BenchRunner *runner, const BenchMac
     }
     if (recorder) code = bench_recording_close(recorder, error);
     if (code) return code;
-    print_summary(runner, &outcome);
+    bool valid = print_summary(runner, &outcome);
     if (recorder && !options->common.quiet)
         printf("wrote %s and %s.xdmf: %d frame%s\n", path, path, runner->scene->frames + 1,
                runner->scene->frames ? "s" : "");
-    return SM_OK;
+    if (valid) return SM_OK;
+    return sm_fail(error, SM_INVALID,
+                   "%s is INVALID: its last goals are not those of brute force; try "
+                   "--precision double or a smaller --h",
+                   runner->scene->name);
 }
 
 static SmCode run(const Options *options, const BenchMachine *machine, SmError *error)

@@ -293,18 +293,27 @@ static void build_regions(Lsm *lsm)
 
 SmCode lsm_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
 {
-    if (voxels->particle_count < 1)
-        return sm_fail(error, SM_INPUT, "the body has no material: nothing to simulate");
-    if (params->w < 1 || params->w > LSM_MAX_W)
+    SmCode code = sm_engine_check(voxels, params, error);
+    if (code) return code;
+    if (params->w > LSM_MAX_W)
         return sm_fail(error, SM_INPUT, "region half-width w = %d: must be 1 to %d", params->w,
                        LSM_MAX_W);
     if (voxels->particle_count > 500000000)
         return sm_fail(error, SM_INPUT, "%ld particles: at most 500 million; use larger cells",
                        voxels->particle_count);
-    if (!(params->h > 0) || !(params->damping >= 0) || !(params->damping <= 1))
-        return sm_fail(error, SM_INPUT, "time step %g must be above 0 and damping %g in 0..1",
-                       params->h, params->damping);
     return SM_OK;
+}
+
+/* Masses in units of their mean: goals and damping do not depend on the unit, and single precision
+ * then sees the same scales for a grain and for a mountain. */
+static void take_masses(Lsm *lsm, const double *mass)
+{
+    long n = lsm->lattice.count;
+    lsm->mass = sm_alloc((size_t)n, sizeof(double));
+    lsm->mass_unit = 0;
+    for (long p = 0; p < n; p++) lsm->mass_unit += (mass ? mass[p] : 1) / (double)n;
+    if (!mass) lsm->mass_unit = 1;
+    for (long p = 0; p < n; p++) lsm->mass[p] = mass ? mass[p] / lsm->mass_unit : 1;
 }
 
 Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
@@ -316,8 +325,7 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     lsm->cell = voxels->cell;
     lsm_lattice_build(voxels, &lsm->lattice);
     long n = lsm->lattice.count;
-    lsm->mass = sm_alloc((size_t)n, sizeof(double));
-    for (long p = 0; p < n; p++) lsm->mass[p] = params->mass ? params->mass[p] : 1;
+    take_masses(lsm, params->mass);
     lsm->members = sm_alloc((size_t)n, sizeof(int));
     if (params->strain_limit > 0) lsm->mark = sm_alloc((size_t)n, 1);
     lsm->spare = SPARE_LISTS * lsm->side;

@@ -293,13 +293,17 @@ static void engine_step(SmEngine *e, SmLaps *laps)
     sm_lap(laps, SM_OTHER);
 }
 
+static double mass_of(const SmEngine *e, long number)
+{
+    return e->lsm->mass_unit * e->lsm->mass[e->inner[number % e->count]];
+}
+
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])
 {
     real *v = field_of(e, SM_VELOCITY);
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->bodies * e->count);
-        double scale =
-            e->lsm->params.h / (e->lsm->cell * e->lsm->mass[e->inner[particle[i] % e->count]]);
+        double scale = e->lsm->params.h / (e->lsm->cell * mass_of(e, particle[i]));
         for (int d = 0; d < 3; d++) {
             const double *origin;
             v[index_of(e, particle[i], d, &origin)] += (real)(impulse[i][d] * scale);
@@ -358,7 +362,7 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 
 static void engine_masses(SmEngine *e, double *mass)
 {
-    for (long p = 0; p < e->count; p++) mass[p] = e->lsm->mass[e->inner[p]];
+    for (long p = 0; p < e->count; p++) mass[p] = mass_of(e, p);
 }
 
 static void engine_count(SmEngine *e, SmCounts *counts)

@@ -64,11 +64,12 @@ typedef struct Lsm {
     LsmLedger *ledger; /* NULL for a body that cannot break */
     long spare;        /* rows that its layers have left at least */
     char *mark;        /* [particles] zero between breaks, or NULL */
-    double *mass;      /* [particles] */
-    int *members;      /* [particles] |R_i| */
-    int *slot;         /* [particles] */
-    int *particle;     /* [blocks * lanes], -1 for an empty slot */
-    long unique;       /* different regions, or -1: ask lsm_unique() */
+    double *mass;      /* [particles] in units of mass_unit kg, their mean */
+    double mass_unit;
+    int *members;  /* [particles] |R_i| */
+    int *slot;     /* [particles] */
+    int *particle; /* [blocks * lanes], -1 for an empty slot */
+    long unique;   /* different regions, or -1: ask lsm_unique() */
 
     /* the state */
     long blocks;

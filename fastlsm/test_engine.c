@@ -202,12 +202,17 @@ static void test_bad_parameters(void **state)
     (void)state;
     Body body;
     block(&body, 2, 2, 2);
+    const double nothing[27] = {0};
     const SmEngineParams bad[] = {{.w = 0, .h = 0.01},
                                   {.w = 99, .h = 0.01},
                                   {.w = 1, .h = 0},
                                   {.w = 1, .h = NAN},
                                   {.w = 1, .h = 0.01, .damping = 2},
-                                  {.w = 1, .h = 0.01, .instances = 2, .strain_limit = 2}};
+                                  {.w = 1, .h = 0.01, .instances = 2, .strain_limit = 2},
+                                  {.w = 1, .h = 0.01, .instances = 2, .polar = SM_POLAR_JACOBI},
+                                  {.w = 1, .h = 0.01, .strain_limit = -1},
+                                  {.w = 1, .h = 0.01, .gravity = {0, INFINITY, 0}},
+                                  {.w = 1, .h = 0.01, .mass = nothing}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         SmEngine *engine;
         SmError error = {0};
@@ -218,12 +223,43 @@ static void test_bad_parameters(void **state)
     body_free(&body);
 }
 
+/* The unit of mass changes nothing: neither a grain nor a mountain leaves the fast path's range. */
+static void test_mass_unit(void **state)
+{
+    (void)state;
+    const double unit[3] = {1e-25, 1, 1e25};
+    for (int trial = 0; trial < 6; trial++) {
+        Body body;
+        block(&body, 6, 4, 3);
+        for (long p = 0; p < body.n; p++) body.m[p] = unit[trial / 2] * (1 + (double)(p % 3));
+        random_deformation(&(unsigned){9}, body.voxels.cell, 0.3, body.n,
+                           (const double(*)[3])body.x0, body.x);
+        SmEngineParams params = {.w = 1, .h = 0.01, .damping = 0.2};
+        SmEngine *fast = create(engines[trial % 2], &body, params);
+        engines[trial % 2]->get(fast, SM_POSITION, body.x);
+        SmEngine *slow = create(&ref_brute_engine, &body, params);
+        engines[trial % 2]->step(fast, NULL);
+        ref_brute_engine.step(slow, NULL);
+        engines[trial % 2]->get(fast, SM_POSITION, body.a);
+        ref_brute_engine.get(slow, SM_POSITION, body.b);
+        double worst = difference(&body, (const double(*)[3])body.a, (const double(*)[3])body.b);
+        if (!(worst < (trial % 2 ? 1e-11 : 1e-4)))
+            fail_msg("unit %g: %g cells", unit[trial / 2], worst);
+        engines[trial % 2]->masses(fast, body.m);
+        assert_true(fabs(body.m[1] / unit[trial / 2] - 2) < 1e-12);
+        engines[trial % 2]->destroy(fast);
+        ref_brute_engine.destroy(slow);
+        body_free(&body);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_handles),   cmocka_unit_test(test_obstacles),
         cmocka_unit_test(test_instances), cmocka_unit_test(test_fracture),
         cmocka_unit_test(test_journey),   cmocka_unit_test(test_bad_parameters),
+        cmocka_unit_test(test_mass_unit),
     };
     return cmocka_run_group_tests_name("fastlsm_engine", tests, NULL, NULL);
 }

@@ -53,6 +53,10 @@ typedef enum {
     SM_GOAL,     /* g of the last step */
 } SmField;
 
+/* What every engine asks of a body and its parameters: particles, w, h, damping, strain limit,
+ * gravity and masses in range. SM_INPUT says what is wrong and what to give. O(particles). */
+SmCode sm_engine_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error);
+
 typedef struct SmEngine SmEngine;
 
 /* One engine in one precision. */

@@ -39,29 +39,6 @@ static void place(const double pose[3][4], const double from[3], double to[3])
         to[a] = pose[a][0] * from[0] + pose[a][1] * from[1] + pose[a][2] * from[2] + pose[a][3];
 }
 
-static SmCode check_params(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
-{
-    if (voxels->particle_count < 1)
-        return sm_fail(error, SM_INPUT, "the body has no particles: choose a smaller cell");
-    if (params->w < 1)
-        return sm_fail(error, SM_INPUT, "w is %d: a region's half-width is 1 or more", params->w);
-    if (!(params->h > 0 && isfinite(params->h)))
-        return sm_fail(error, SM_INPUT, "h is %g: the time step is a positive number", params->h);
-    if (!(params->damping >= 0 && params->damping <= 1))
-        return sm_fail(error, SM_INPUT, "damping is %g: it is from 0 to 1", params->damping);
-    if (!(params->strain_limit >= 0))
-        return sm_fail(error, SM_INPUT, "strain_limit is %g: it is 0 (never) or more",
-                       params->strain_limit);
-    for (int a = 0; a < 3; a++)
-        if (!isfinite(params->gravity[a]))
-            return sm_fail(error, SM_INPUT, "gravity is not finite: give three numbers");
-    for (long p = 0; params->mass && p < voxels->particle_count; p++)
-        if (!(params->mass[p] > 0 && isfinite(params->mass[p])))
-            return sm_fail(error, SM_INPUT, "the mass of particle %ld is %g: it must be positive",
-                           p, params->mass[p]);
-    return SM_OK;
-}
-
 static void body_create(SmEngine *engine, const double (*rest)[3], const double pose[3][4],
                         Body *body)
 {
@@ -121,7 +98,7 @@ static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params,
 {
     static const double identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     double start = sm_now();
-    SmCode code = check_params(voxels, params, error);
+    SmCode code = sm_engine_check(voxels, params, error);
     if (code != SM_OK) return code;
     SmEngine *engine = sm_alloc(1, sizeof *engine);
     engine->voxels = *voxels;
