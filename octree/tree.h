@@ -13,7 +13,7 @@
 
 #include "../lib/voxel.h"
 
-enum { OCT_MAX_LEVELS = 12 };
+enum { OCT_MAX_LEVELS = 12, OCT_MAX_WIDE = 1 << 20, OCT_MAX_CELLS = 1 << 25 };
 
 typedef struct {
     int levels;    /* of splitting there can be; a finest cell has level `levels` */
@@ -30,10 +30,42 @@ typedef struct {
     int *node;               /* [leaves] rising */
 } OctTree;
 
+/* The whole tree: every cell with material is split down to the finest cells. `corner` may be any
+ * corner of the base lattice; the tree stores the one of these corners that is nearest below voxel
+ * (0,0,0). O(levels * (cells + words)). Errors (SM_INPUT), on which `tree` is zeroed: levels beyond
+ * 1..OCT_MAX_LEVELS, no material, more than OCT_MAX_CELLS material cells or OCT_MAX_WIDE finest
+ * cells along an axis. The caller frees. */
+SmCode oct_tree_build(const SmVoxels *voxels, int levels, const int corner[3], OctTree *tree,
+                      SmError *error);
+
+/* The part of `whole` (any tree) whose inner cells are those with split[node] set and all their
+ * ancestors set too; what is marked below a cell that is not counts for nothing. The caller
+ * frees. O(nodes of whole). */
+void oct_tree_prune(const OctTree *whole, const unsigned char *split, OctTree *tree);
+
 void oct_tree_free(OctTree *tree);
 
-/* The leaf that holds finest cell (i,j,k), as a tree node, or -1 if the cell is not material or
- * outside. O(levels). */
+/* Memory of the tree. */
+size_t oct_tree_bytes(const OctTree *tree);
+
+/* The tree node of level `level`, or the leaf above it, that holds finest cell (i,j,k), or -1 if
+ * there is none. The voxels say whether the finest cell itself is material: a coarser leaf holds
+ * cells that are not. O(levels + log roots). */
+int oct_tree_at(const OctTree *tree, int level, int i, int j, int k);
+
+/* The leaf that holds finest cell (i,j,k), as a tree node, or -1. */
 int oct_tree_find(const OctTree *tree, int i, int j, int k);
+
+/* Level of a node. O(1). */
+static inline int oct_tree_level(const OctTree *tree, int node)
+{
+    return tree->levels + 1 - __builtin_ctz((unsigned)tree->size[node]);
+}
+
+/* Lowest corner of a node's cell along axis d, in finest cells. */
+static inline int oct_tree_low(const OctTree *tree, int node, int d)
+{
+    return (tree->centre[node][d] - tree->size[node] / 2) / 2;
+}
 
 #endif

@@ -1,0 +1,35 @@
+/* random_trees.h - irregular octrees for tests; same seed, same tree. */
+#ifndef OCT_RANDOM_TREES_H
+#define OCT_RANDOM_TREES_H
+
+#include "../fastlsm/random_bodies.h"
+#include "tree.h"
+
+#include <stdlib.h>
+
+/* Every inner cell of `whole` is split with this probability. The caller frees. */
+static inline void random_splits(unsigned *seed, const OctTree *whole, double probability,
+                                 OctTree *tree)
+{
+    unsigned char *split = sm_alloc((size_t)whole->nodes, 1);
+    for (long n = 0; n < whole->nodes; n++) split[n] = random_unit(seed) < probability;
+    oct_tree_prune(whole, split, tree);
+    free(split);
+}
+
+/* A random body (the kinds of random_body()) of at most `most` finest cells along an axis, the base
+ * lattice anywhere, 1 to 4 levels, random splits: of every cell at the most (regular sampling at
+ * the finest level), of none at the least. The caller frees both. */
+static inline void random_tree(unsigned *seed, int kind, int most, SmVoxels *voxels, OctTree *tree)
+{
+    random_body(seed, kind, most, voxels);
+    int levels = 1 + random_int(seed, 4);
+    const int corner[3] = {random_int(seed, 40) - 20, random_int(seed, 40) - 20,
+                           random_int(seed, 40) - 20};
+    OctTree whole;
+    if (oct_tree_build(voxels, levels, corner, &whole, NULL)) abort();
+    random_splits(seed, &whole, random_int(seed, 5) / 4.0, tree);
+    oct_tree_free(&whole);
+}
+
+#endif
