@@ -170,7 +170,7 @@ static void join_level(OctTree *tree, int level)
     }
 }
 
-static SmCode check(const SmVoxels *voxels, int levels, SmError *error)
+SmCode oct_tree_check(const SmVoxels *voxels, int levels, SmError *error)
 {
     if (levels < 1 || levels > OCT_MAX_LEVELS)
         return sm_fail(error, SM_INPUT, "octree: levels = %d, but they can be 1 to %d", levels,
@@ -195,7 +195,7 @@ SmCode oct_tree_build(const SmVoxels *voxels, int levels, const int corner[3], O
                       SmError *error)
 {
     *tree = (OctTree){.levels = levels};
-    SmCode code = check(voxels, levels, error);
+    SmCode code = oct_tree_check(voxels, levels, error);
     if (code) {
         *tree = (OctTree){0};
         return code;

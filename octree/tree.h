@@ -30,11 +30,14 @@ typedef struct {
     int *node;               /* [leaves] rising */
 } OctTree;
 
+/* Whether there can be a tree. Errors (SM_INPUT): levels beyond 1..OCT_MAX_LEVELS, no material,
+ * more than OCT_MAX_CELLS material cells or OCT_MAX_WIDE finest cells along an axis. */
+SmCode oct_tree_check(const SmVoxels *voxels, int levels, SmError *error);
+
 /* The whole tree: every cell with material is split down to the finest cells. `corner` may be any
  * corner of the base lattice; the tree stores the one of these corners that is nearest below voxel
- * (0,0,0). O(levels * (cells + words)). Errors (SM_INPUT), on which `tree` is zeroed: levels beyond
- * 1..OCT_MAX_LEVELS, no material, more than OCT_MAX_CELLS material cells or OCT_MAX_WIDE finest
- * cells along an axis. The caller frees. */
+ * (0,0,0). O(levels * (cells + words)). Errors: oct_tree_check()'s, on which `tree` is zeroed. The
+ * caller frees. */
 SmCode oct_tree_build(const SmVoxels *voxels, int levels, const int corner[3], OctTree *tree,
                       SmError *error);
 
