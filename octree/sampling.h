@@ -57,11 +57,11 @@ typedef struct {
 } OctSampleReport;
 
 /* Makes the tree. The caller frees it. `report` may be NULL. O(nodes of the whole tree * log), some
- * 150 ns and 250 bytes for a moment per finest cell, and with `bases` and `nodes` that time again
- * for every place tried, at most 64 and fewer if there are more than OCT_PLACE_CELLS / 64 cells.
- * Errors (SM_INPUT), on which `tree` is zeroed: what oct_tree_build() says; a criterion's level
- * beyond 0..levels; a box or ball that is not finite, empty, or meets no material; wanted numbers
- * below 0; too many criteria. */
+ * 150 ns and 100 bytes for a moment per finest cell of a solid, and with `bases` and `nodes` that
+ * time again for every place tried, at most 64 and fewer if there are more than OCT_PLACE_CELLS /
+ * 64 cells. Errors (SM_INPUT), on which `tree` is zeroed: what oct_tree_build() says; a criterion's
+ * level beyond 0..levels; a box or ball that is not finite, empty, or meets no material; wanted
+ * numbers below 0; too many criteria. */
 SmCode oct_sampling_tree(const OctSampling *sampling, const SmVoxels *voxels, OctTree *tree,
                          OctSampleReport *report, SmError *error);
 

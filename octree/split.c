@@ -11,12 +11,13 @@ static bool before(const OctQueue *q, int a, int b)
     return a < b;
 }
 
+static OctQueue queue(const OctTree *tree, const long *weight, size_t room)
+{
+    return (OctQueue){.tree = tree, .weight = weight, .cell = sm_alloc(room, sizeof(int))};
+}
+
 static void push(OctQueue *q, int cell)
 {
-    if (q->count == q->room) {
-        q->room = 2 * q->room + 64;
-        q->cell = sm_realloc(q->cell, (size_t)q->room, sizeof *q->cell);
-    }
     long at = q->count++;
     for (; at > 0 && before(q, cell, q->cell[(at - 1) / 2]); at = (at - 1) / 2)
         q->cell[at] = q->cell[(at - 1) / 2];
@@ -109,7 +110,6 @@ static void consider(OctSplitter *s, int node)
     const OctSampling *sampling = s->sampling;
     int level = oct_tree_level(s->whole, node);
     if (level == s->whole->levels) return;
-    if (s->wants_others) push(&s->others, node);
     for (int c = 0; c < sampling->criteria_count && !s->asked[node]; c++)
         if (level < sampling->criteria[c].level && asks(s, &sampling->criteria[c], node))
             ask(s, node);
@@ -181,11 +181,10 @@ bool oct_split_needed(OctSplitter *splitter)
 bool oct_split_other(OctSplitter *splitter)
 {
     OctSplitter *s = splitter;
-    if (!s->wants_others) {
-        s->wants_others = true;
+    if (!s->wants_others) /* parents come before their children */
         for (int n = 0; n < s->whole->level_first[s->whole->levels]; n++)
-            if (oct_split_exists(s, n) && !s->split[n]) push(&s->others, n);
-    }
+            if (!s->split[n]) push(&s->others, n);
+    s->wants_others = true;
     return split_next(s, &s->others);
 }
 
@@ -201,17 +200,17 @@ void oct_split_undo(OctSplitter *splitter, long splits)
 void oct_splitter_init(OctSplitter *splitter, const OctSampling *sampling, const SmVoxels *voxels,
                        const OctTree *whole)
 {
-    size_t nodes = (size_t)whole->nodes;
+    size_t nodes = (size_t)whole->nodes, inner = (size_t)whole->level_first[whole->levels];
     OctSplitter *s = splitter;
     *s = (OctSplitter){.sampling = sampling, .voxels = voxels, .whole = whole};
     oct_parts_build(whole, &s->parts);
     s->surface = count_surface(whole, voxels);
     s->split = sm_alloc(nodes, 1);
     s->asked = sm_alloc(nodes, 1);
-    s->order = sm_alloc((size_t)whole->level_first[whole->levels], sizeof *s->order);
+    s->order = sm_alloc(inner, sizeof *s->order);
     s->leaves = whole->roots;
-    s->needed = (OctQueue){.tree = whole, .weight = whole->material};
-    s->others = (OctQueue){.tree = whole, .weight = s->surface};
+    s->needed = queue(whole, whole->material, inner);
+    s->others = queue(whole, s->surface, inner);
     for (int n = 0; n < whole->roots; n++) consider(s, n);
 }
 

@@ -10,8 +10,8 @@
 typedef struct {
     const OctTree *tree;
     const long *weight; /* [tree nodes] */
-    int *cell;
-    long count, room;
+    int *cell;          /* room for every inner cell: none is put in twice */
+    long count;
 } OctQueue;
 
 typedef struct {
@@ -23,7 +23,7 @@ typedef struct {
     unsigned char *split, *asked; /* [whole nodes] is it split; has a criterion asked for it */
     int *order;                   /* the splits in the order made */
     long splits, leaves, balance_splits;
-    OctQueue needed, others; /* asked for and not split; all others, once they are wanted */
+    OctQueue needed, others; /* asked for; all that were not split when others were wanted */
     bool wants_others;
 } OctSplitter;
 

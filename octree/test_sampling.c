@@ -296,6 +296,14 @@ static void wanted_counts_are_reached(void **state)
         assert_true(labs(t.leaves - s.nodes) <= 3 || (t.leaves == t.roots && t.roots > s.nodes));
         oct_tree_free(&t);
 
+        long wanted = s.nodes;
+        s.nodes = v.cell_count + trial; /* more than there can be */
+        assert_int_equal(oct_sampling_tree(&s, &v, &t, &r, NULL), SM_OK);
+        assert_int_equal(t.leaves, v.cell_count);
+        assert_int_equal(r.wanted_nodes, s.nodes);
+        oct_tree_free(&t);
+
+        s.nodes = wanted;
         s.criteria[s.criteria_count++] = (OctCriterion){.kind = OCT_FEATURES, .level = s.levels};
         s.balance = trial % 2;
         assert_int_equal(oct_sampling_tree(&s, &v, &t, &r, NULL), SM_OK);
