@@ -10,16 +10,27 @@ typedef struct {
     long *first; /* [leaves + 1] */
     int *to;     /* [first[leaves]] rising within a leaf */
     int *length; /* max-norm length between the centres, half finest cells, 1 or more */
-    int longest;
+    int longest; /* 0 without any edge */
 } OctGraph;
 
 /* Two leaves that touch (face, edge or corner) are joined where a material finest cell of one
- * touches a material finest cell of the other. Leaves i, j whose centres are within the larger of
- * their sizes in the max norm are neighbours if j can be reached from i over joined leaves that
- * meet the box spanned by the two centres: material that does not connect there is not connected,
- * wherever the centres lie. */
-SmCode oct_graph_build(const OctTree *tree, const SmVoxels *voxels, OctGraph *graph,
-                       SmError *error);
+ * touches a material finest cell of the other (touch.h). Leaves i, j whose centres are within the
+ * larger of their sizes in the max norm are neighbours if j can be reached from i over joined
+ * leaves whose cells meet the box spanned by the two centres (both with their boundaries): material
+ * that does not connect there is not connected, wherever the centres lie.
+ *
+ * So joined leaves are always neighbours, and leaves that touch without being joined are where the
+ * material connects around the corner between them. A leaf's own components of material are one:
+ * splitting is for the sampling to decide.
+ *
+ * `tree` must be a tree over `voxels`. The caller frees. The result does not depend on the number
+ * of threads. O(leaves) while sizes nearby differ by a bounded factor; a leaf that is r times
+ * larger than those around it has O(r^3) neighbours, each found in O(1) in the bulk and at worst
+ * by a search of their box at a concave place. */
+void oct_graph_build(const OctTree *tree, const SmVoxels *voxels, OctGraph *graph);
 void oct_graph_free(OctGraph *graph);
+
+/* Memory of the graph. */
+size_t oct_graph_bytes(const OctGraph *graph);
 
 #endif

@@ -1,0 +1,56 @@
+#include "lists.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void oct_lists_init(OctLists *lists, long leaves)
+{
+    *lists = (OctLists){.leaves = leaves, .blocks = (leaves + OCT_BLOCK - 1) / OCT_BLOCK};
+    lists->count = sm_alloc((size_t)leaves, sizeof *lists->count);
+    lists->start = sm_alloc((size_t)leaves, sizeof *lists->start);
+    lists->block = sm_alloc((size_t)lists->blocks, sizeof *lists->block);
+}
+
+void oct_lists_free(OctLists *lists)
+{
+    for (long b = 0; b < lists->blocks; b++) free(lists->block[b].item);
+    free(lists->count);
+    free(lists->start);
+    free(lists->block);
+    memset(lists, 0, sizeof *lists);
+}
+
+void oct_lists_add(OctLists *lists, long leaf, const int *item, long count)
+{
+    struct OctBlock *block = lists->block + leaf / OCT_BLOCK;
+    if (block->used + count > block->room) {
+        block->room = 2 * (block->used + count) + 256;
+        block->item = sm_realloc(block->item, (size_t)block->room, sizeof *block->item);
+    }
+    if (lists->count[leaf] == 0) lists->start[leaf] = block->used;
+    if (count > 0) memcpy(block->item + block->used, item, (size_t)count * sizeof *item);
+    block->used += count;
+    lists->count[leaf] += (int)count;
+}
+
+int *oct_lists_item(const OctLists *lists, long leaf)
+{
+    int *item = lists->block[leaf / OCT_BLOCK].item;
+    return item ? item + lists->start[leaf] : NULL;
+}
+
+void oct_lists_pack(OctLists *lists, long **first, int **item)
+{
+    *first = sm_alloc((size_t)lists->leaves + 1, sizeof **first);
+    for (long l = 0; l < lists->leaves; l++) (*first)[l + 1] = (*first)[l] + lists->count[l];
+    *item = sm_alloc((size_t)(*first)[lists->leaves], sizeof **item);
+    for (long b = 0; b < lists->blocks; b++) {
+        for (long l = oct_lists_from(lists, b); l < oct_lists_to(lists, b); l++)
+            if (lists->count[l] > 0)
+                memcpy(*item + (*first)[l], oct_lists_item(lists, l),
+                       (size_t)lists->count[l] * sizeof **item);
+        free(lists->block[b].item);
+        lists->block[b] = (struct OctBlock){0};
+    }
+    oct_lists_free(lists);
+}
