@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lists.h"
+
 int *oct_interval_below(const OctTree *tree)
 {
     int *below = sm_alloc((size_t)tree->nodes, sizeof *below);
@@ -74,12 +76,6 @@ static void find_intervals(OctIntervals *s)
                   s->interval[n].leaves);
 }
 
-static int compare_ints(const void *a, const void *b)
-{
-    int p = *(const int *)a, q = *(const int *)b;
-    return (p > q) - (p < q);
-}
-
 /* Queues the roots that were touched or reached, rising. */
 static long queue_roots(OctIntervals *s)
 {
@@ -90,7 +86,7 @@ static long queue_roots(OctIntervals *s)
         int node = t->node[s->reach.reached[n]];
         if (node < t->roots) s->queue[count++] = node;
     }
-    qsort(s->queue, (size_t)count, sizeof *s->queue, compare_ints);
+    qsort(s->queue, (size_t)count, sizeof *s->queue, oct_lists_compare);
     return count;
 }
 

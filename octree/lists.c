@@ -39,13 +39,19 @@ int *oct_lists_item(const OctLists *lists, long leaf)
     return item ? item + lists->start[leaf] : NULL;
 }
 
+int oct_lists_compare(const void *a, const void *b)
+{
+    int p = *(const int *)a, q = *(const int *)b;
+    return (p > q) - (p < q);
+}
+
 void oct_lists_pack(OctLists *lists, long **first, int **item)
 {
     *first = sm_alloc((size_t)lists->leaves + 1, sizeof **first);
     for (long l = 0; l < lists->leaves; l++) (*first)[l + 1] = (*first)[l] + lists->count[l];
     *item = sm_alloc((size_t)(*first)[lists->leaves], sizeof **item);
     for (long b = 0; b < lists->blocks; b++) {
-        for (long l = oct_lists_from(lists, b); l < oct_lists_to(lists, b); l++)
+        for (long l = oct_lists_from(b); l < oct_lists_to(lists, b); l++)
             if (lists->count[l] > 0)
                 memcpy(*item + (*first)[l], oct_lists_item(lists, l),
                        (size_t)lists->count[l] * sizeof **item);

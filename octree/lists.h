@@ -23,9 +23,8 @@ void oct_lists_init(OctLists *lists, long leaves);
 void oct_lists_free(OctLists *lists);
 
 /* Leaves of a block: from .. to - 1. */
-static inline long oct_lists_from(const OctLists *lists, long block)
+static inline long oct_lists_from(long block)
 {
-    (void)lists;
     return block * OCT_BLOCK;
 }
 
@@ -40,6 +39,9 @@ void oct_lists_add(OctLists *lists, long leaf, const int *item, long count);
 
 /* The list of a leaf; NULL if its whole block is empty. */
 int *oct_lists_item(const OctLists *lists, long leaf);
+
+/* Rising order of ints, for qsort(). */
+int oct_lists_compare(const void *a, const void *b);
 
 /* Moves all lists into one array `item`, list l from first[l] to first[l + 1] - 1, and frees
  * `lists`. The caller frees both arrays. */

@@ -8,7 +8,7 @@
 #include "interval.h"
 #include "lists.h"
 
-enum { SERIAL = 200 }; /* trees of fewer leaves are not worth waking threads for */
+enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
 
 typedef struct {
     const OctTree *tree;
@@ -57,7 +57,7 @@ static void find_regions(const Build *b, OctLists *doubtful)
         oct_interval_init(&s, b->tree, b->graph, b->below);
 #pragma omp for schedule(dynamic)
         for (long block = 0; block < member.blocks; block++)
-            for (long i = oct_lists_from(&member, block); i < oct_lists_to(&member, block); i++)
+            for (long i = oct_lists_from(block); i < oct_lists_to(&member, block); i++)
                 find_region(b, &s, i, &member, doubtful);
         oct_interval_free(&s);
     }
@@ -148,12 +148,6 @@ static void put(Merge *m, int node)
     }
 }
 
-static int compare_ints(const void *a, const void *b)
-{
-    int p = *(const int *)a, q = *(const int *)b;
-    return (p > q) - (p < q);
-}
-
 /* Leaves on the list, rising, what has no parent there; clears `in`. */
 static void finish(Merge *m)
 {
@@ -170,7 +164,7 @@ static void finish(Merge *m)
         if (parent >= 0) m->in[parent] = 0;
     }
     m->count = kept;
-    qsort(m->list, (size_t)kept, sizeof *m->list, compare_ints);
+    qsort(m->list, (size_t)kept, sizeof *m->list, oct_lists_compare);
 }
 
 /* Region j with what is added to it, into `member`. */
@@ -200,7 +194,7 @@ static void merge_regions(const Build *b, const Added *added)
         Merge m = {.tree = b->tree, .in = sm_alloc((size_t)b->tree->nodes, 1)};
 #pragma omp for schedule(dynamic)
         for (long block = 0; block < member.blocks; block++)
-            for (long j = oct_lists_from(&member, block); j < oct_lists_to(&member, block); j++)
+            for (long j = oct_lists_from(block); j < oct_lists_to(&member, block); j++)
                 merge_region(b, &m, added, j, &member);
         free(m.in);
         free(m.list);
@@ -215,7 +209,7 @@ static void make_symmetric(const Build *b, OctLists *doubtful)
     Added added;
 #pragma omp parallel for schedule(dynamic) if (b->tree->leaves > SERIAL)
     for (long block = 0; block < doubtful->blocks; block++)
-        for (long i = oct_lists_from(doubtful, block); i < oct_lists_to(doubtful, block); i++)
+        for (long i = oct_lists_from(block); i < oct_lists_to(doubtful, block); i++)
             keep_missing(b, i, oct_lists_item(doubtful, i), doubtful->count + i);
     turn_round(b, doubtful, &added);
     if (added.first[b->tree->leaves] > 0) merge_regions(b, &added);

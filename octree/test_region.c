@@ -227,18 +227,22 @@ static void regions_are_equal_for_any_number_of_threads(void **state)
     (void)state;
     unsigned seed = 8;
     int before = omp_get_max_threads();
-    for (int trial = 0; trial < 30; trial++) {
+    for (int trial = 0; trial < 4; trial++) {
         SmVoxels v;
-        OctTree t;
+        OctTree whole, t;
         OctGraph g;
         OctRegions one, many;
-        do {
-            random_tree(&seed, trial % 3, 20, &v, &t);
-            if (t.leaves > 250) break;
-            oct_tree_free(&t);
-            sm_voxels_free(&v);
-        } while (true);
-        int *w = random_widths(&seed, trial, t.leaves);
+        sm_voxels_init(&v, 24, 16, 16, 1.0);
+        for (int k = 0; k < 16; k++)
+            for (int j = 0; j < 16; j++)
+                for (int i = 0; i < 24; i++)
+                    if (random_unit(&seed) < 0.9) sm_voxel_set(&v, i, j, k);
+        sm_voxels_count(&v);
+        assert_int_equal(oct_tree_build(&v, 3, (int[3]){trial, 0, 0}, &whole, NULL), SM_OK);
+        random_splits(&seed, &whole, 0.9, &t);
+        assert_true(t.leaves > 2000);
+        int *w = sm_alloc((size_t)t.leaves, sizeof *w);
+        for (long l = 0; l < t.leaves; l++) w[l] = random_int(&seed, 7);
         oct_graph_build(&t, &v, &g);
         omp_set_num_threads(1);
         oct_regions_build(&t, &g, w, 0.5, &one, NULL);
@@ -255,6 +259,7 @@ static void regions_are_equal_for_any_number_of_threads(void **state)
         oct_regions_free(&many);
         oct_graph_free(&g);
         oct_tree_free(&t);
+        oct_tree_free(&whole);
         sm_voxels_free(&v);
     }
 }
