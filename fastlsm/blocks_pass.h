@@ -4,6 +4,7 @@
 #define LSM_BLOCKS_PASS_H
 
 #include "blocks.h"
+#include "../lib/rigid_lanes.h"
 #include "match.h"
 #include "window.h"
 

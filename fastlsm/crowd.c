@@ -3,8 +3,8 @@
 #include <omp.h>
 #include <stdlib.h>
 
+#include "../lib/rigid_lanes.h"
 #include "match.h"
-#include "rigid.h"
 #include "window.h"
 
 /* Vectors in a row of each kind. Rows keep their width whatever a pass stores in them, so that row

@@ -3,7 +3,6 @@
 #include "blocks_pass.h"
 #include "match.h"
 #include "pipeline.h"
-#include "rigid.h"
 #include "step.h"
 #include "summation.h"
 

@@ -3,44 +3,8 @@
 #ifndef LSM_MATCH_H
 #define LSM_MATCH_H
 
-#include "../lib/polar_lanes.h"
+#include "../lib/rotate_lanes.h"
 #include "state.h"
-
-typedef short short_vec __attribute__((vector_size(SM_LANES * sizeof(short))));
-
-/* The last rotation of a tile's regions is kept as its first two columns in 1/32767: it only says
- * which of several equally good rotations is nearest. */
-SM_INLINE void last_store(short *last, const vec R[9])
-{
-    for (int i = 0; i < 3; i++)
-        for (int column = 0; column < 2; column++) {
-            /* by way of whole lanes: compilers convert straight to short one by one */
-            ivec whole = __builtin_convertvector(R[i * 3 + column] * 32767, ivec);
-            short_vec packed = __builtin_convertvector(whole, short_vec);
-            memcpy(last + (column * 3 + i) * SM_LANES, &packed, sizeof packed);
-        }
-}
-
-SM_INLINE void last_load(const short *last, vec R[9])
-{
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        double x[3], y[3], xx = 0, xy = 0, yy = 0;
-        for (int i = 0; i < 3; i++) {
-            x[i] = last[i * SM_LANES + lane];
-            y[i] = last[(3 + i) * SM_LANES + lane];
-            xx += x[i] * x[i];
-            xy += x[i] * y[i];
-        }
-        for (int i = 0; i < 3; i++) y[i] -= x[i] * xy / xx;
-        for (int i = 0; i < 3; i++) yy += y[i] * y[i];
-        for (int i = 0; i < 3; i++) {
-            int j = (i + 1) % 3, k = (i + 2) % 3;
-            R[i * 3][lane] = (real)(x[i] / sqrt(xx));
-            R[i * 3 + 1][lane] = (real)(y[i] / sqrt(yy));
-            R[i * 3 + 2][lane] = (real)((x[j] * y[k] - x[k] * y[j]) / sqrt(xx * yy));
-        }
-    }
-}
 
 /* Deep inside a solid regions are centred on their particle: nothing is offset. */
 SM_INLINE bool match_is_centred(const RegionConst *k)
@@ -95,40 +59,6 @@ polar_jacobi_lanes(const vec A[9], const int *slot, short *last, float *stretch,
         }
     }
     return sweeps;
-}
-
-/* R_r by the fast method, near the last rotation where it is not unique. `live` lanes only matter.
- */
-SM_INLINE void polar_fast_lanes(const vec A[9], const int *slot, short *last, vec R[9])
-{
-    ivec tie = polar_quartic(A, R);
-    if (__builtin_expect(lanes_any(tie), 0)) {
-        vec before[9];
-        last_load(last, before);
-        for (int lane = 0; lane < SM_LANES; lane++) {
-            if (slot[lane] >= 0) continue;
-            tie[lane] = 0; /* an empty lane needs no rotation, only a finite one */
-            for (int i = 0; i < 9; i++) R[i][lane] = i % 4 == 0;
-        }
-        polar_mend(A, tie, before, R);
-    }
-    last_store(last, R);
-}
-
-/* What damping sums: m~ v, m~ x X v, and the upper half of m~ x x^T (eq. 14). */
-SM_INLINE void damping_products(vec weight, const vec x[3], const vec v[3], vec out[12])
-{
-    vec p[3];
-    for (int d = 0; d < 3; d++) {
-        p[d] = weight * x[d];
-        out[d] = weight * v[d];
-    }
-    for (int d = 0; d < 3; d++) {
-        int e = (d + 1) % 3, f = (d + 2) % 3;
-        out[3 + d] = p[e] * v[f] - p[f] * v[e];
-        out[6 + d] = p[d] * x[d];
-        out[9 + d] = p[e] * x[f];
-    }
 }
 
 #endif

@@ -122,42 +122,4 @@ SM_INLINE ivec listed_lanes(const int *region)
     return __builtin_convertvector(*(const narrow *)region, ivec) >= 0;
 }
 
-SM_INLINE void load3(const real *p, vec out[3])
-{
-    for (int d = 0; d < 3; d++) out[d] = lanes_load(p + d * SM_LANES);
-}
-
-SM_INLINE void store3(real *p, const vec in[3])
-{
-    for (int d = 0; d < 3; d++) lanes_store(p + d * SM_LANES, in[d]);
-}
-
-SM_INLINE vec4 load4(const real *p)
-{
-    return *(const vec4_loose *)p;
-}
-
-SM_INLINE vec8 load8(const real *p)
-{
-    return *(const vec8_loose *)p;
-}
-
-SM_INLINE vec16 load16(const real *p)
-{
-    return *(const vec16_loose *)p;
-}
-
-SM_INLINE void store4(real *p, vec4 v)
-{
-    *(vec4_loose *)p = v;
-}
-SM_INLINE void store8(real *p, vec8 v)
-{
-    *(vec8_loose *)p = v;
-}
-SM_INLINE void store16(real *p, vec16 v)
-{
-    *(vec16_loose *)p = v;
-}
-
 #endif

@@ -23,6 +23,45 @@ SM_INLINE void lanes_store(real *p, vec v)
     *(vec_loose *)p = v;
 }
 
+/* Coordinates of a block of particles, stored x[3][lanes]; short rows. Any alignment. */
+SM_INLINE void load3(const real *p, vec out[3])
+{
+    for (int d = 0; d < 3; d++) out[d] = lanes_load(p + d * SM_LANES);
+}
+
+SM_INLINE void store3(real *p, const vec in[3])
+{
+    for (int d = 0; d < 3; d++) lanes_store(p + d * SM_LANES, in[d]);
+}
+
+SM_INLINE vec4 load4(const real *p)
+{
+    return *(const vec4_loose *)p;
+}
+
+SM_INLINE vec8 load8(const real *p)
+{
+    return *(const vec8_loose *)p;
+}
+
+SM_INLINE vec16 load16(const real *p)
+{
+    return *(const vec16_loose *)p;
+}
+
+SM_INLINE void store4(real *p, vec4 v)
+{
+    *(vec4_loose *)p = v;
+}
+SM_INLINE void store8(real *p, vec8 v)
+{
+    *(vec8_loose *)p = v;
+}
+SM_INLINE void store16(real *p, vec16 v)
+{
+    *(vec16_loose *)p = v;
+}
+
 SM_INLINE vec lanes_set(real value)
 {
     return value - (vec){0};
@@ -161,9 +200,13 @@ SM_INLINE vec lanes_slide(vec low, vec high, int o)
 #if SM_LANES == 16
 #define LANES_ZIP_LOW  0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
 #define LANES_ZIP_HIGH 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31
+#define LANES_EVEN     0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
+#define LANES_ODD      1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
 #else
 #define LANES_ZIP_LOW  0, 8, 1, 9, 2, 10, 3, 11
 #define LANES_ZIP_HIGH 4, 12, 5, 13, 6, 14, 7, 15
+#define LANES_EVEN     0, 2, 4, 6, 8, 10, 12, 14
+#define LANES_ODD      1, 3, 5, 7, 9, 11, 13, 15
 #endif
 
 /* From `n` vectors, a power of two, to the rows of their lanes: afterwards the vectors, laid end to
@@ -176,6 +219,20 @@ SM_INLINE void lanes_interleave(vec *m, int n)
         for (int i = 0; i < n / 2; i++) {
             out[2 * i] = __builtin_shufflevector(m[i], m[i + n / 2], LANES_ZIP_LOW);
             out[2 * i + 1] = __builtin_shufflevector(m[i], m[i + n / 2], LANES_ZIP_HIGH);
+        }
+        for (int i = 0; i < n; i++) m[i] = out[i];
+    }
+}
+
+/* The reverse of lanes_interleave(): from the rows of lanes to a vector for each of their values.
+ */
+SM_INLINE void lanes_separate(vec *m, int n)
+{
+    for (int round = 1; round < n; round *= 2) {
+        vec out[16];
+        for (int i = 0; i < n / 2; i++) {
+            out[i] = __builtin_shufflevector(m[2 * i], m[2 * i + 1], LANES_EVEN);
+            out[i + n / 2] = __builtin_shufflevector(m[2 * i], m[2 * i + 1], LANES_ODD);
         }
         for (int i = 0; i < n; i++) m[i] = out[i];
     }

@@ -1,31 +1,45 @@
-/* rigid.h - the rigid velocity of regions from their sums, SM_LANES at once (fastlsm eq. 14). */
-#ifndef LSM_RIGID_H
-#define LSM_RIGID_H
+/* rigid_lanes.h - the rigid velocity of regions from their sums, SM_LANES at once (fastlsm eq. 14).
+ */
+#ifndef SM_RIGID_LANES_H
+#define SM_RIGID_LANES_H
 
-#include "state.h"
+#include "lanes.h"
 
-/* omega = I^-1 L of a tile by the adjugate. I is the inertia tr(S) - S of the spread
- * S = sum m~ x x^T - M c c^T. A region on a line has no inertia about it: there (and where I is
- * below what its sums resolve) the inverse is damped towards zero, as a pseudo-inverse would. */
+/* What damping sums: m~ v, m~ x X v, and the upper half of m~ x x^T (eq. 14). */
+SM_INLINE void damping_products(vec weight, const vec x[3], const vec v[3], vec out[12])
+{
+    vec p[3];
+    for (int d = 0; d < 3; d++) {
+        p[d] = weight * x[d];
+        out[d] = weight * v[d];
+    }
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        out[3 + d] = p[e] * v[f] - p[f] * v[e];
+        out[6 + d] = p[d] * x[d];
+        out[9 + d] = p[e] * x[f];
+    }
+}
+
+/* omega = I^-1 L by the adjugate. I is the inertia tr(S) - S of the spread
+ * S = sum m~ x x^T - M c c^T. A region on a line has no inertia about it: there, and where the
+ * least inertia is below what the sums resolve, I + S = tr(S) takes its place, which is the same
+ * for all that a line can turn. */
 SM_INLINE void angular_velocity(const vec S[6], const vec L[3], vec size, vec omega[3])
 {
-    vec trace = S[0] + S[1] + S[2];
-    vec floor = (real)1e-3 * trace + 64 * SM_EPSILON * size + (real)1e-30;
+    const real thinnest = SM_REAL_BITS == 32 ? (real)1e-5 : (real)1e-10;
+    vec trace = S[0] + S[1] + S[2], noise = 64 * SM_EPSILON * size + (real)1e-30;
     vec xx = S[1] + S[2], yy = S[2] + S[0], zz = S[0] + S[1];
-    /* twice the smallest inertia of a planar or solid spread is at least tr S: only lines are
-     * lifted */
-    xx += lanes_max(floor - xx, lanes_set(0));
-    yy += lanes_max(floor - yy, lanes_set(0));
-    zz += lanes_max(floor - zz, lanes_set(0));
     vec yz = -S[3], zx = -S[4], xy = -S[5];
     vec Cxx = yy * zz - yz * yz, Cyy = zz * xx - zx * zx, Czz = xx * yy - xy * xy;
     vec Cxy = yz * zx - xy * zz, Cyz = zx * xy - yz * xx, Czx = xy * yz - zx * yy;
     vec determinant = xx * Cxx + xy * Cxy + zx * Czx;
-    vec least = (real)1e-4 * xx * yy * zz;
-    vec inverse = 1 / lanes_max(determinant, least);
-    omega[0] = (Cxx * L[0] + Cxy * L[1] + Czx * L[2]) * inverse;
-    omega[1] = (Cxy * L[0] + Cyy * L[1] + Cyz * L[2]) * inverse;
-    omega[2] = (Czx * L[0] + Cyz * L[1] + Czz * L[2]) * inverse;
+    /* the least inertia is one to three times determinant / tr C */
+    ivec solid = determinant > (thinnest * trace + noise) * (Cxx + Cyy + Czz);
+    vec inverse = 1 / lanes_select(solid, determinant, lanes_max(trace, noise));
+    omega[0] = lanes_select(solid, Cxx * L[0] + Cxy * L[1] + Czx * L[2], L[0]) * inverse;
+    omega[1] = lanes_select(solid, Cxy * L[0] + Cyy * L[1] + Cyz * L[2], L[1]) * inverse;
+    omega[2] = lanes_select(solid, Czx * L[0] + Cyz * L[1] + Czz * L[2], L[2]) * inverse;
 }
 
 /* From a tile's sums to (omega, v_r - omega x c_r). */
