@@ -204,8 +204,7 @@ static void cross(const double a[3], const double b[3], double result[3])
     result[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* omega = pseudo-inverse(I) L for a symmetric positive semidefinite I. */
-static void solve_inertia(double I[9], const double L[3], double omega[3])
+void ref_solve_inertia(double I[9], const double L[3], double omega[3])
 {
     double value[3], vector[9];
     gsl_matrix_view matrix = gsl_matrix_view_array(I, 3, 3);
@@ -263,7 +262,7 @@ static void rigid_motion(const RefRegions *regions, const double *m, const doubl
                 I[3 * a + b] += share * ((a == b ? square : 0) - d[a] * d[b]);
         }
     }
-    solve_inertia(I, L, motion->omega);
+    ref_solve_inertia(I, L, motion->omega);
     for (int a = 0; a < 3; a++) motion->omega[a] /= unit;
 }
 

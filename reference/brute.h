@@ -60,6 +60,10 @@ void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m
 void ref_rigid_velocity(const RefRegions *regions, const double *m, const double (*x)[3],
                         const double (*v)[3], double (*u)[3]);
 
+/* omega = pseudo-inverse(I) L for a symmetric positive semidefinite I (destroyed), by the same
+ * rule. */
+void ref_solve_inertia(double I[9], const double L[3], double omega[3]);
+
 /* The whole as an engine named "brute" behind the common interface. The first step is damped, then
  * every damping_every-th. A posed instance is matched to its posed rest shape. */
 extern const SmEngineType ref_brute_engine;

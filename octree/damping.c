@@ -1,0 +1,146 @@
+/* damping.c - region damping by HF: each region's rigid velocity, averaged over the regions of a
+ * node, pulls the node's velocity towards it (fastlsm eq. 14). */
+#include "../lib/rigid_lanes.h"
+#include "octree.h"
+#include "sum.h"
+
+static void weigh(OctTask *task, long first, long last)
+{
+    const Oct *oct = task->oct;
+    for (long block = first; block < last; block++) {
+        const OctConst *k = &oct->block[block];
+        vec x[3], v[3], product[12], field[16];
+        real *row[SM_LANES];
+        load3(task->body->x + block * 3 * SM_LANES, x);
+        load3(task->body->v + block * 3 * SM_LANES, v);
+        damping_products(k->weight, x, v, product);
+        for (int i = 0; i < 12; i++) field[i / 3 * 4 + i % 3] = product[i];
+        field[3] = lanes_set(0);
+        for (int d = 0; d < 3; d++) field[7 + 4 * d] = k->centre[d];
+        for (int lane = 0; lane < SM_LANES; lane++)
+            row[lane] = task->rows->transform + (long)oct->row[block * SM_LANES + lane] * OCT_ROW;
+        lanes_to_rows(field, row);
+    }
+    sm_lap(task->laps, SM_DAMPING);
+}
+
+static void sums_up(OctTask *task, long first, long last)
+{
+    const Oct *oct = task->oct;
+    for (long i = first; i < last; i++) {
+        long node = oct->inner[i];
+        const real *child = task->rows->transform + (long)oct->child[node] * OCT_ROW;
+        Row sum = {0};
+        for (int c = 0; c < oct->children[node]; c++)
+            sum = row_add(sum, row_load(child + c * OCT_ROW));
+        row_keep(task->rows->transform + node * OCT_ROW, sum);
+    }
+}
+
+SM_INLINE Row list_sum(const OctTask *task, long t)
+{
+    const OctBreadth *lists = &task->oct->lists;
+    Row sum = {0};
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at++)
+        sum = row_add(sum, row_load(task->rows->transform + (long)lists->row[at] * OCT_ROW));
+    return sum;
+}
+
+static void sums_down(OctTask *task, long first, long last)
+{
+    for (long k = first; k < last; k++)
+        row_keep(task->rows->transform + (task->oct->nodes + k) * OCT_ROW, list_sum(task, k));
+}
+
+/* omega and v - omega x c of every region, times m_r. */
+static void solve(OctTask *task, long first, long last)
+{
+    const Oct *oct = task->oct;
+    for (long block = first; block < last; block++) {
+        const OctConst *k = &oct->block[block];
+        real sums[SM_LANES][OCT_ROW] __attribute__((aligned(64)));
+        const real *row[SM_LANES];
+        vec padded[16], F[12], c[3], out[6];
+        for (int lane = 0; lane < SM_LANES; lane++) {
+            row_store(sums[lane], list_sum(task, oct->lists.carriers + block * SM_LANES + lane));
+            row[lane] = sums[lane];
+        }
+        lanes_from_rows(row, padded);
+        for (int i = 0; i < 12; i++) F[i] = padded[i / 3 * 4 + i % 3];
+        load3(task->rows->centre + block * 3 * SM_LANES, c);
+        rigid_velocity(F, c, k->inverse_mass, out);
+        vec field[8] = {k->mass * out[0], k->mass * out[1], k->mass * out[2], lanes_set(0),
+                        k->mass * out[3], k->mass * out[4], k->mass * out[5], lanes_set(0)};
+        lanes_interleave(field, 8);
+        for (int lane = 0; lane < SM_LANES; lane++)
+            store8(task->rows->velocity +
+                       (long)oct->row[block * SM_LANES + lane] * OCT_ROW_VELOCITY,
+                   load8((const real *)field + lane * OCT_ROW_VELOCITY));
+    }
+    sm_lap(task->laps, SM_DAMPING);
+}
+
+static void velocities_up(OctTask *task, long first, long last)
+{
+    const Oct *oct = task->oct;
+    real *velocity = task->rows->velocity;
+    for (long i = first; i < last; i++) {
+        long node = oct->inner[i];
+        const real *child = velocity + (long)oct->child[node] * OCT_ROW_VELOCITY;
+        vec8 sum = {0};
+        for (int c = 0; c < oct->children[node]; c++) sum += load8(child + c * OCT_ROW_VELOCITY);
+        store8(velocity + node * OCT_ROW_VELOCITY, sum);
+    }
+}
+
+SM_INLINE vec8 list_velocity(const OctBreadth *lists, const real *velocity, long t)
+{
+    vec8 sum = {0};
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at++)
+        sum += load8(velocity + (long)lists->row[at] * OCT_ROW_VELOCITY);
+    return sum;
+}
+
+static void velocities_down(OctTask *task, long first, long last)
+{
+    const OctBreadth *lists = oct_goal_breadth(task->oct);
+    real *velocity = task->rows->velocity;
+    for (long k = first; k < last; k++)
+        store8(velocity + (lists->nodes + k) * OCT_ROW_VELOCITY, list_velocity(lists, velocity, k));
+}
+
+static void slow(OctTask *task, long first, long last)
+{
+    const Oct *oct = task->oct;
+    const OctBreadth *lists = oct_goal_breadth(oct);
+    vec shift[3];
+    for (int d = 0; d < 3; d++) shift[d] = lanes_set((real)task->body->origin[d]);
+    for (long block = first; block < last; block++) {
+        long at = block * 3 * SM_LANES;
+        vec x[3], v[3], field[8], sum[6];
+        for (int lane = 0; lane < SM_LANES; lane++)
+            store8((real *)field + lane * OCT_ROW_VELOCITY,
+                   list_velocity(lists, task->rows->velocity,
+                                 lists->carriers + block * SM_LANES + lane));
+        lanes_separate(field, 8);
+        for (int i = 0; i < 6; i++) sum[i] = field[i / 3 * 4 + i % 3];
+        load3(task->body->x + at, x);
+        load3(task->body->v + at, v);
+        pull(sum, oct->block[block].inverse_reach, (real)oct->params.damping, x, v);
+        integrate_position(oct->obstacle, oct->obstacle_count, shift, x, v);
+        store3(task->body->v + at, v);
+        store3(task->body->x + at, x);
+    }
+    sm_lap(task->laps, SM_DAMPING);
+}
+
+void oct_damp(OctTask *task)
+{
+    oct_each_block(task, weigh);
+    oct_climb(task, sums_up);
+    oct_descend(task, &task->oct->lists, sums_down);
+    oct_each_block(task, solve);
+    oct_climb(task, velocities_up);
+    oct_descend(task, oct_goal_breadth(task->oct), velocities_down);
+    oct_each_block(task, slow);
+}

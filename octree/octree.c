@@ -1,0 +1,283 @@
+/* octree.c - one step of octree shape matching (octree section 4), top to bottom.
+ *
+ *     depth      every inner node sums the moments of its children             octree section 4.3
+ *     breadth    every region sums its summation nodes                         eqs. 6, 7
+ *     match      c_r, A_r, polar decomposition, transform m_r T_r
+ *     depth      every inner node sums the transforms of its children
+ *     breadth    every simulation node sums over the regions that contain it   eq. 8
+ *     move       v, damping, x                                                 fastlsm eqs. 1, 14,
+ * 2
+ *
+ * A breadth goes by breadth.h: first the carriers, from the roots down, then the leaves. With the
+ * lists transposed the second is the adjoint of the first. */
+#include "octree.h"
+
+#include <omp.h>
+
+#include "plastic.h"
+#include "sum.h"
+
+/* m~ x of the simulation nodes; a node has no moments about itself. */
+static void weigh(OctTask *task, long first, long last)
+{
+    const Oct *oct = task->oct;
+    for (long block = first; block < last; block++) {
+        vec p[4];
+        load3(task->body->x + block * 3 * SM_LANES, p);
+        for (int d = 0; d < 3; d++) p[d] *= oct->block[block].weight;
+        p[3] = lanes_set(0);
+        lanes_interleave(p, 4);
+        const int *row = oct->row + block * SM_LANES;
+        for (int lane = 0; lane < SM_LANES; lane++)
+            store4(task->rows->moment + (long)row[lane] * OCT_ROW,
+                   load4((const real *)p + 4 * lane));
+    }
+    sm_lap(task->laps, SM_FAST_SUM);
+}
+
+static void moments_up(OctTask *task, long first, long last)
+{
+    const Oct *oct = task->oct;
+    for (long i = first; i < last; i++) {
+        long node = oct->inner[i];
+        real *to = task->rows->moment + node * OCT_ROW;
+        const real *from = task->rows->moment + (long)oct->child[node] * OCT_ROW;
+        Row centre = row_pads(row_load(to)), sum = {0}, moved = {0};
+        for (int c = 0; c < oct->children[node]; c++)
+            row_add_moments(from + c * OCT_ROW, &centre, &sum, &moved);
+        row_keep(to, row_add(sum, moved));
+    }
+    sm_lap(task->laps, SM_FAST_SUM);
+}
+
+/* The sum of list t about the centre of row `to`. */
+SM_INLINE Row list_moments(const OctTask *task, long t, long to)
+{
+    const OctBreadth *lists = &task->oct->lists;
+    const real *moment = task->rows->moment;
+    Row centre = row_pads(row_load(moment + to * OCT_ROW)), sum = {0}, moved = {0};
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at++)
+        row_add_moments(moment + (long)lists->row[at] * OCT_ROW, &centre, &sum, &moved);
+    return row_add(sum, moved);
+}
+
+static void moments_down(OctTask *task, long first, long last)
+{
+    for (long k = first; k < last; k++) {
+        long row = task->oct->nodes + k;
+        row_keep(task->rows->moment + row * OCT_ROW, list_moments(task, k, row));
+    }
+    sm_lap(task->laps, SM_FAST_SUM);
+}
+
+/* The sums of a block's regions, in lanes. */
+SM_INLINE void region_sums(const OctTask *task, long block, vec S[16])
+{
+    const Oct *oct = task->oct;
+    real sums[SM_LANES][OCT_ROW] __attribute__((aligned(64)));
+    const real *row[SM_LANES];
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        long slot = block * SM_LANES + lane;
+        row_store(sums[lane], list_moments(task, oct->lists.carriers + slot, oct->row[slot]));
+        row[lane] = sums[lane];
+    }
+    lanes_from_rows(row, S);
+}
+
+/* c_r (eq. 6) and A_r = sum m~ x (x0 - c0_r)^T (eq. 7) from the sums about the regions' nodes. */
+SM_INLINE void centre_moments(const vec S[16], const OctConst *k, vec c[3], vec A[9])
+{
+    for (int i = 0; i < 3; i++) {
+        c[i] = S[i] * k->inverse_mass;
+        for (int d = 0; d < 3; d++) A[i * 3 + d] = S[4 + 4 * d + i] - S[i] * k->offset[d];
+    }
+}
+
+/* m_r T_r as rows: the place that the region gives its node, and the linear part F. */
+SM_INLINE void store_transforms(const OctTask *task, long block, const vec c[3], const vec F[9])
+{
+    const OctConst *k = &task->oct->block[block];
+    vec field[16];
+    real *row[SM_LANES];
+    for (int i = 0; i < 3; i++) {
+        vec q = c[i];
+        for (int d = 0; d < 3; d++) q -= F[i * 3 + d] * k->offset[d];
+        field[i] = k->mass * q;
+        for (int d = 0; d < 3; d++) field[4 + 4 * d + i] = k->mass * F[i * 3 + d];
+        field[7 + 4 * i] = k->centre[i];
+    }
+    field[3] = lanes_set(0);
+    for (int lane = 0; lane < SM_LANES; lane++)
+        row[lane] = task->rows->transform + (long)task->oct->row[block * SM_LANES + lane] * OCT_ROW;
+    lanes_to_rows(field, row);
+}
+
+static void match(OctTask *task, long first, long last)
+{
+    static const int live[SM_LANES] = {0};
+    OctState *body = task->body;
+    for (long block = first; block < last; block++) {
+        vec S[16], c[3], A[9], R[9], F[9];
+        const OctConst *k = &task->oct->block[block];
+        region_sums(task, block, S);
+        sm_lap(task->laps, SM_FAST_SUM);
+        centre_moments(S, k, c, A);
+        if (task->oct->damp_now) store3(task->rows->centre + block * 3 * SM_LANES, c);
+        if (body->plastic) plastic_moments(body->plastic + block * 9 * SM_LANES, A);
+        sm_lap(task->laps, SM_SHAPE_MATCHING);
+        polar_fast_lanes(A, live, body->last + block * 6 * SM_LANES, R);
+        sm_lap(task->laps, SM_POLAR);
+        if (body->plastic) plastic_block(task, block, A, R, F);
+        store_transforms(task, block, c, body->plastic ? F : R);
+        sm_lap(task->laps, SM_SHAPE_MATCHING);
+    }
+}
+
+/* A row of a sum of transforms: the values summed over the quarters, the linear part. */
+SM_INLINE void keep_transform(real *to, Row linear, const Row *value)
+{
+    vec4 sum = {0};
+    real quarter[OCT_ROW] __attribute__((aligned(64)));
+    row_store(quarter, *value);
+    for (int i = 0; i < 4; i++) sum += load4(quarter + 4 * i);
+    row_keep(to, linear);
+    sum[3] = 0;
+    store4(to, sum);
+}
+
+static void transforms_up(OctTask *task, long first, long last)
+{
+    const Oct *oct = task->oct;
+    for (long i = first; i < last; i++) {
+        long node = oct->inner[i];
+        real *to = task->rows->transform + node * OCT_ROW;
+        const real *child = task->rows->transform + (long)oct->child[node] * OCT_ROW;
+        Row from = row_from(row_pads(row_load(to))), linear = {0}, value = {0};
+        for (int c = 0; c < oct->children[node]; c++) {
+            Row row = row_load(child + c * OCT_ROW);
+            row_add_values(row, &from, &value);
+            linear = row_add(linear, row);
+        }
+        keep_transform(to, linear, &value);
+    }
+    sm_lap(task->laps, SM_FAST_SUM);
+}
+
+static void transforms_down(OctTask *task, long first, long last)
+{
+    const OctBreadth *lists = oct_goal_breadth(task->oct);
+    const real *transform = task->rows->transform;
+    for (long k = first; k < last; k++) {
+        real *to = task->rows->transform + (lists->nodes + k) * OCT_ROW;
+        Row from = row_from(row_pads(row_load(to))), linear = {0}, value = {0};
+        for (long at = lists->first[k]; at < lists->first[k + 1]; at++) {
+            Row row = row_load(transform + (long)lists->row[at] * OCT_ROW);
+            row_add_values(row, &from, &value);
+            linear = row_add(linear, row);
+        }
+        keep_transform(to, linear, &value);
+    }
+    sm_lap(task->laps, SM_FAST_SUM);
+}
+
+/* M_i g_i of a block's nodes. */
+SM_INLINE void goal_sums(const OctTask *task, long block, vec sum[3])
+{
+    const Oct *oct = task->oct;
+    const OctBreadth *lists = oct_goal_breadth(oct);
+    const real *transform = task->rows->transform;
+    real values[SM_LANES][OCT_ROW] __attribute__((aligned(64)));
+    const real *row[SM_LANES];
+    vec field[16];
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        long slot = block * SM_LANES + lane, t = lists->carriers + slot;
+        Row from = row_from(row_pads(row_load(transform + (long)oct->row[slot] * OCT_ROW)));
+        Row value = {0};
+        for (long at = lists->first[t]; at < lists->first[t + 1]; at++)
+            row_add_values(row_load(transform + (long)lists->row[at] * OCT_ROW), &from, &value);
+        row_store(values[lane], value);
+        row[lane] = values[lane];
+    }
+    lanes_from_rows(row, field);
+    for (int i = 0; i < 3; i++) sum[i] = (field[i] + field[4 + i]) + (field[8 + i] + field[12 + i]);
+}
+
+/* Eqs. 1 and 2 (fastlsm); x waits where damping follows. */
+static void move(OctTask *task, long first, long last)
+{
+    const Oct *oct = task->oct;
+    OctState *body = task->body;
+    vec shift[3];
+    for (int d = 0; d < 3; d++) shift[d] = lanes_set((real)body->origin[d]);
+    for (long block = first; block < last; block++) {
+        long at = block * 3 * SM_LANES;
+        vec g[3], x[3], v[3];
+        goal_sums(task, block, g);
+        sm_lap(task->laps, SM_FAST_SUM);
+        for (int d = 0; d < 3; d++) g[d] *= oct->block[block].inverse_reach;
+        if (task->goals) {
+            store3(body->g + at, g);
+            continue;
+        }
+        load3(body->x + at, x);
+        load3(body->v + at, v);
+        integrate_velocity(g, x, oct->gravity, lanes_set(1), v);
+        if (!oct->damp_now) {
+            integrate_position(oct->obstacle, oct->obstacle_count, shift, x, v);
+            store3(body->x + at, x);
+        }
+        store3(body->v + at, v);
+        sm_lap(task->laps, SM_OTHER);
+    }
+}
+
+static void step_body(OctTask *task)
+{
+    oct_each_block(task, weigh);
+    oct_climb(task, moments_up);
+    oct_descend(task, &task->oct->lists, moments_down);
+    oct_each_block(task, match);
+    oct_climb(task, transforms_up);
+    oct_descend(task, oct_goal_breadth(task->oct), transforms_down);
+    oct_each_block(task, move);
+    if (task->oct->damp_now && !task->goals) oct_damp(task);
+}
+
+/* One body is shared by all threads; of several, each thread steps some. */
+static void step_all(Oct *oct, bool goals, SmLaps *laps)
+{
+    if (oct->instances > 1) {
+#pragma omp parallel for schedule(static) num_threads(oct->workers) if (oct->workers > 1)
+        for (int w = 0; w < oct->workers; w++)
+            for (long i = w; i < oct->instances; i += oct->workers)
+                step_body(&(OctTask){.oct = oct,
+                                     .body = &oct->body[i],
+                                     .rows = &oct->rows[w],
+                                     .team = 1,
+                                     .goals = goals,
+                                     .laps = w ? NULL : laps});
+        return;
+    }
+#pragma omp parallel num_threads(oct->threads) if (oct->threads > 1)
+    step_body(&(OctTask){.oct = oct,
+                         .body = oct->body,
+                         .rows = oct->rows,
+                         .me = omp_get_thread_num(),
+                         .team = omp_get_num_threads(),
+                         .goals = goals,
+                         .laps = omp_get_thread_num() ? NULL : laps});
+}
+
+void oct_goals(Oct *oct)
+{
+    step_all(oct, true, NULL);
+}
+
+void oct_step(Oct *oct, SmLaps *laps)
+{
+    int every = oct->params.damping_every > 0 ? oct->params.damping_every : 1;
+    oct->damp_now = oct->params.damping > 0 && oct->steps % every == 0;
+    step_all(oct, false, laps);
+    oct->steps++;
+    sm_lap(laps, SM_OTHER);
+}

@@ -1,0 +1,47 @@
+/* octree.h - octree shape matching (Steinemann, Otaduy and Gross 2008): bodies that share a tree,
+ * its regions and its constants, and the step. */
+#ifndef OCT_OCTREE_H
+#define OCT_OCTREE_H
+
+#include "state.h"
+
+#define oct_build    SM_NAME(oct_build)
+#define oct_free     SM_NAME(oct_free)
+#define oct_bytes    SM_NAME(oct_bytes)
+#define oct_step     SM_NAME(oct_step)
+#define oct_goals    SM_NAME(oct_goals)
+#define oct_damp     SM_NAME(oct_damp)
+#define oct_recentre SM_NAME(oct_recentre)
+#define oct_place    SM_NAME(oct_place)
+
+/* Bodies at rest, all in one place: simulation nodes at their cells' centres, counted in finest
+ * cells from the corner of voxel (0,0,0). `mass` is [leaves] kg, positive, finite. Tree and regions
+ * may be freed after. O(nodes + entries of the regions). */
+Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mass,
+               const OctParams *params);
+void oct_free(Oct *oct);
+long oct_bytes(const Oct *oct);
+
+/* One time step of every body: matching, eq. 1, damping, eq. 2, obstacles. Laps are those of the
+ * first thread. */
+void oct_step(Oct *oct, SmLaps *laps);
+
+/* Goal positions of the present state into `g`, nothing else changes. */
+void oct_goals(Oct *oct);
+
+/* Region damping of one body (fastlsm eq. 14 by HF), then x += v; part of the step. */
+void oct_damp(OctTask *task);
+
+/* Moves each body's origin to its middle by whole cells: single precision is best near zero. */
+void oct_recentre(Oct *oct);
+
+/* Puts every node of a body: `x` is [leaves][3], finest cells. The origin goes to the middle. */
+void oct_place(Oct *oct, long body, const double (*x)[3]);
+
+/* Where component d of simulation node `leaf` is in x, v and g of a body. */
+static inline long oct_index(long leaf, int d)
+{
+    return (leaf / SM_LANES * 3 + d) * SM_LANES + leaf % SM_LANES;
+}
+
+#endif

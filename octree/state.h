@@ -1,0 +1,111 @@
+/* state.h - what the octree engine holds, in one precision.
+ *
+ * Inside, lengths are finest cells from a movable origin and velocities are finest cells per step.
+ * Simulation nodes live in slots, slot = leaf number; SM_LANES slots are a block, and a block's
+ * coordinates are stored as x[3][lanes]. The slots beyond the last leaf repeat its lists and
+ * constants, so that no lane is a special case; what they sum goes to a spare row. Region r is that
+ * of simulation node r. */
+#ifndef OCT_STATE_H
+#define OCT_STATE_H
+
+#include "../lib/engine.h"
+#include "../lib/integrate.h"
+#include "../lib/lanes.h"
+#include "weights.h"
+
+/* Goal positions: the sum over the regions that contain a node. */
+typedef enum {
+    OCT_HIERARCHICAL, /* HF over the node's own region: right where regions are symmetric (eq. 8) */
+    OCT_ADJOINT,      /* the transpose of the region sums: right for any regions */
+} OctGoalForm;
+
+typedef struct {
+    OctWeighting weighting;
+    OctGoalForm form;
+    double damping; /* k in [0,1]; 0: none */
+    int damping_every;
+    double gravity[3]; /* finest cells per step and step */
+    double yield;      /* |S - I| from which a region deforms for good; plasticity only if creep */
+    double creep;      /* share of it that stays in each step: h times the creep rate; 0: elastic */
+    double most;       /* largest |S_r - I| */
+    int threads;       /* 0: all cores */
+    long instances;    /* bodies that share the structure; 0 means 1 */
+} OctParams;
+
+/* Constants of a block. */
+typedef struct {
+    vec weight, inverse_reach;   /* of the simulation nodes: m~_i; 1 / M_i */
+    vec mass;                    /* m_r */
+    vec inverse_mass, offset[3]; /* of the regions: 1 / M'_r; c0_r - x0_r */
+    vec centre[3];               /* x0, finest cells from the tree's first node */
+} OctConst;
+
+/* A row holds what a tree node sums: four quarters of three values each and a fourth, `pad`.
+ *     moments      sum m~ x            ; of m~ x (x0 - centre)^T the columns x, y, z
+ *     transforms   value at the centre ; linear part, columns x, y, z
+ *     damping      twelve sums
+ * The pads of quarters 1 to 3 hold the node's centre, x, y, z; that of quarter 0 is 0. */
+enum { OCT_ROW = 16, OCT_ROW_VELOCITY = 8 };
+
+/* Sums of one body while it is stepped. Row numbers are those of breadth.h; the last row is the
+ * spare one. */
+typedef struct {
+    real *moment;    /* [rows][OCT_ROW] */
+    real *transform; /* [rows][OCT_ROW] transforms, then what damping sums */
+    real *velocity;  /* [rows][OCT_ROW_VELOCITY] rigid velocities: omega, 0, v - omega x c, 0 */
+    real *centre;    /* [blocks][3][lanes] c_r, kept for damping */
+} OctRows;
+
+/* One body. */
+typedef struct {
+    double origin[3]; /* finest cells: where it is, is origin + x */
+    real *x, *v, *g;  /* [blocks][3][lanes] */
+    short *last;      /* [blocks][6][lanes] the regions' last rotations (rotate_lanes.h) */
+    real *plastic;    /* [blocks][9][lanes] S_r, or NULL for an elastic body */
+    real *inverse;    /* [blocks][9][lanes] Aqq_r, or NULL */
+} OctState;
+
+typedef struct {
+    OctParams params;
+    long leaves, nodes, blocks, row_count, inners;
+    int levels, threads;
+    double mass_unit;
+    OctBreadth lists, goal_lists; /* goal_lists.first is NULL where the same lists serve */
+    int *inner;                   /* [inners] tree nodes with children, rising */
+    long *level_first;            /* [levels + 2] first inner node of every level */
+    int *child;                   /* [nodes] */
+    unsigned char *children;      /* [nodes] */
+    int *row;        /* [blocks * lanes] row of a slot; the spare one beyond the leaves */
+    OctConst *block; /* [blocks] */
+    real *spread;    /* [blocks][6][lanes] rest moments of the regions, or NULL */
+    long *share;     /* [threads + 1] first block of each thread */
+
+    int workers;   /* bodies that are stepped at the same time */
+    OctRows *rows; /* [workers] */
+    long instances;
+    OctState *body; /* [instances] */
+    bool damp_now;
+    long steps;
+    real gravity[3];
+    int obstacle_count;
+    Obstacle *obstacle; /* in finest cells from where origins count */
+} Oct;
+
+/* One thread's part in a pass over one body. */
+typedef struct {
+    Oct *oct;
+    OctState *body;
+    OctRows *rows;
+    int me, team;
+    bool goals;   /* goal positions only */
+    bool alone;   /* the first thread has worked alone since all have met */
+    SmLaps *laps; /* of the first thread of an instrumented step, or NULL */
+} OctTask;
+
+/* The lists that goal positions and damping sum over. */
+static inline const OctBreadth *oct_goal_breadth(const Oct *oct)
+{
+    return oct->goal_lists.first ? &oct->goal_lists : &oct->lists;
+}
+
+#endif

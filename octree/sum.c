@@ -1,0 +1,52 @@
+#include "sum.h"
+
+/* Levels of fewer rows are left to the first thread, one after the other: sharing them costs more
+ * than it spares. */
+enum { ROWS_WORTH_SHARING = 256 };
+
+/* Before the team shares work again, and after it has. */
+static void wait_for_all(OctTask *task)
+{
+    task->alone = false;
+    if (task->team == 1) return;
+#pragma omp barrier
+}
+
+void oct_each_block(OctTask *task, OctPart *part)
+{
+    const Oct *oct = task->oct;
+    if (task->alone) wait_for_all(task);
+    /* loops, in case the runtime grants fewer threads than there are shares */
+    for (int share = task->me; share < oct->threads; share += task->team)
+        part(task, oct->share[share], oct->share[share + 1]);
+    wait_for_all(task);
+}
+
+static void run_level(OctTask *task, OctPart *part, long first, long last)
+{
+    if (last - first < ROWS_WORTH_SHARING) {
+        if (first == last) return;
+        if (task->me == 0) part(task, first, last);
+        task->alone = true;
+        return;
+    }
+    if (task->alone) wait_for_all(task);
+    int shares = task->oct->threads;
+    for (int share = task->me; share < shares; share += task->team)
+        part(task, first + (last - first) * share / shares,
+             first + (last - first) * (share + 1) / shares);
+    wait_for_all(task);
+}
+
+void oct_climb(OctTask *task, OctPart *part)
+{
+    const long *first = task->oct->level_first;
+    for (int level = task->oct->levels; level >= 0; level--)
+        run_level(task, part, first[level], first[level + 1]);
+}
+
+void oct_descend(OctTask *task, const OctBreadth *lists, OctPart *part)
+{
+    for (int level = 0; level <= lists->levels; level++)
+        run_level(task, part, lists->level_first[level], lists->level_first[level + 1]);
+}

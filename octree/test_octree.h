@@ -1,0 +1,515 @@
+/* test_octree.h - holds the octree engine to its twins and to the invariants of shape matching, in
+ * the precision that the including file has chosen. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../fastlsm/fastlsm.h"
+#include "test_octree_body.h"
+
+#define SINGLE (SM_REAL_BITS == 32)
+
+/* Largest deviation of goal positions, in finest cells. */
+static const double tolerance = SINGLE ? 5e-5 : 1e-10;
+
+static void check_goals(Body *body, OctParams params, int trial)
+{
+    Oct *oct = create(body, params);
+    RefOctree twin;
+    adopt(oct, body);
+    ref_octree_init(&body->tree, &body->regions, body->m, params.weighting == OCT_PLAIN, &twin);
+    oct_goals(oct);
+    get(oct, 0, oct->body->g, true, body->a);
+    ref_octree_goals(&twin, (const double(*)[3])body->x, false, body->b);
+    double worst = difference(body->n, (const double(*)[3])body->a, (const double(*)[3])body->b);
+    if (!(worst <= tolerance))
+        fail_msg("trial %d, weighting %d, form %d, %ld nodes: goals differ by %g cells", trial,
+                 (int)params.weighting, (int)params.form, body->n, worst);
+    ref_octree_free(&twin);
+    oct_free(oct);
+}
+
+static void test_goals(void **state)
+{
+    (void)state;
+    unsigned seed = 1;
+    for (int trial = 0; trial < 240; trial++) {
+        Body body;
+        body_random(&seed, trial % 6, 14, false, &body);
+        check_goals(&body,
+                    (OctParams){.weighting = (OctWeighting)(trial / 6 % 2),
+                                .form = (OctGoalForm)(trial / 12 % 2),
+                                .threads = 1},
+                    trial);
+        body_free(&body);
+    }
+}
+
+/* The adjoint sums over the regions that contain a node even where these are not its own. */
+static void test_asymmetric(void **state)
+{
+    (void)state;
+    unsigned seed = 2;
+    for (int trial = 0; trial < 24; trial++) {
+        Body body;
+        body_random(&seed, trial % 6, 8, true, &body);
+        check_goals(&body, (OctParams){.form = OCT_ADJOINT, .threads = 1}, trial);
+        body_free(&body);
+    }
+}
+
+/* How often list t, with its carriers' lists, holds each leaf. */
+static void count_leaves(const OctTree *tree, const OctBreadth *lists, long t, int *count)
+{
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at++) {
+        long row = lists->row[at];
+        if (row >= lists->nodes) {
+            count_leaves(tree, lists, row - lists->nodes, count);
+            continue;
+        }
+        for (long leaf = 0; leaf < tree->leaves; leaf++) {
+            int n = tree->node[leaf];
+            while (n > row) n = tree->parent[n];
+            count[leaf] += n == row;
+        }
+    }
+}
+
+/* Every list against the explicit leaves of its region, and transposed against the regions that
+ * contain a leaf. */
+static void test_lists(void **state)
+{
+    (void)state;
+    unsigned seed = 3;
+    for (int trial = 0; trial < 24; trial++) {
+        Body body;
+        RefOctree twin;
+        OctBreadth lists, transposed;
+        body_random(&seed, trial % 6, 6, trial % 2, &body);
+        ref_octree_init(&body.tree, &body.regions, body.m, false, &twin);
+        oct_breadth_build(&body.tree, &body.regions, &lists);
+        oct_breadth_transpose(&body.tree, &lists, &transposed);
+        size_t n = (size_t)body.n;
+        int *in = sm_alloc(n * n, sizeof(int)), *got = sm_alloc(2 * n, sizeof(int));
+        for (size_t r = 0; r < n; r++)
+            for (long k = twin.regions.start[r]; k < twin.regions.start[r + 1]; k++)
+                in[r * n + (size_t)twin.regions.member[k]]++;
+        for (size_t r = 0; r < n; r++) {
+            memset(got, 0, 2 * n * sizeof(int));
+            count_leaves(&body.tree, &lists, lists.carriers + (long)r, got);
+            count_leaves(&body.tree, &transposed, transposed.carriers + (long)r, got + n);
+            for (size_t i = 0; i < n; i++) {
+                assert_int_equal(got[i], in[r * n + i]);
+                assert_int_equal(got[n + i], in[i * n + r]);
+            }
+        }
+        assert_true(oct_breadth_entries(&lists) <= body.regions.first[n]);
+        free(in);
+        free(got);
+        oct_breadth_free(&lists);
+        oct_breadth_free(&transposed);
+        ref_octree_free(&twin);
+        body_free(&body);
+    }
+}
+
+/* One step of the twin: eqs. 1, 14 and 2 of fastlsm in cells and steps. */
+static void twin_step(RefOctree *twin, const OctParams *params, bool damp, Body *body)
+{
+    ref_octree_goals(twin, (const double(*)[3])body->x, true, body->a);
+    for (long i = 0; i < body->n; i++)
+        for (int d = 0; d < 3; d++)
+            body->v[i][d] += body->a[i][d] - body->x[i][d] + params->gravity[d];
+    if (damp)
+        ref_octree_rigid_velocity(twin, (const double(*)[3])body->x, (const double(*)[3])body->v,
+                                  body->a);
+    for (long i = 0; i < body->n; i++)
+        for (int d = 0; d < 3; d++) {
+            if (damp) body->v[i][d] += params->damping * (body->a[i][d] - body->v[i][d]);
+            body->x[i][d] += body->v[i][d];
+        }
+}
+
+static void test_steps(void **state)
+{
+    (void)state;
+    unsigned seed = 4;
+    for (int trial = 0; trial < 48; trial++) {
+        Body body;
+        body_random(&seed, trial % 6, 9, false, &body);
+        OctParams params = {.weighting = (OctWeighting)(trial / 6 % 2),
+                            .form = (OctGoalForm)(trial / 12 % 2),
+                            .damping = 0.3,
+                            .damping_every = 1 + trial % 2,
+                            .gravity = {0, -0.01, 0.002},
+                            .threads = 1};
+        if (trial >= 24) {
+            params.creep = 0.05;
+            params.yield = 0.1;
+            params.most = 0.4;
+        }
+        Oct *oct = create(&body, params);
+        RefOctree twin;
+        adopt(oct, &body);
+        ref_octree_init(&body.tree, &body.regions, body.m, params.weighting == OCT_PLAIN, &twin);
+        twin.creep = params.creep;
+        twin.yield = params.yield;
+        twin.most = params.most;
+        for (int step = 0; step < 3; step++) {
+            oct_step(oct, NULL);
+            twin_step(&twin, &params, step % params.damping_every == 0, &body);
+        }
+        get_x(oct, body.b);
+        double worst = difference(body.n, (const double(*)[3])body.b, (const double(*)[3])body.x);
+        if (!(worst <= (SINGLE ? 1e-3 : 1e-8)))
+            fail_msg("trial %d, %ld nodes: positions differ by %g cells", trial, body.n, worst);
+        ref_octree_free(&twin);
+        oct_free(oct);
+        body_free(&body);
+    }
+}
+
+/* Linear and angular momentum about the origin, in kg finest cells (squared) per step. */
+static void momentum(const Body *body, const double (*x)[3], const double (*v)[3], double p[3],
+                     double l[3])
+{
+    for (int d = 0; d < 3; d++) p[d] = l[d] = 0;
+    for (long i = 0; i < body->n; i++)
+        for (int d = 0; d < 3; d++) {
+            int e = (d + 1) % 3, f = (d + 2) % 3;
+            p[d] += body->m[i] * v[i][d];
+            l[d] += body->m[i] * (x[i][e] * v[i][f] - x[i][f] * v[i][e]);
+        }
+}
+
+static void test_momentum(void **state)
+{
+    (void)state;
+    unsigned seed = 5;
+    for (int trial = 0; trial < 24; trial++) {
+        Body body;
+        body_random(&seed, trial % 6, 10, false, &body);
+        OctParams params = {.damping = trial % 2 ? 0.3 : 0, .threads = 1};
+        Oct *oct = create(&body, params);
+        double p[2][3], l[2][3], mass = 0, reach = 1;
+        for (int when = 0; when < 2; when++) {
+            for (int step = 0; when == 1 && step < 10; step++) oct_step(oct, NULL);
+            /* about the middle, as far as single precision can hold places */
+            get(oct, 0, oct->body->x, false, body.a);
+            get(oct, 0, oct->body->v, false, body.b);
+            momentum(&body, (const double(*)[3])body.a, (const double(*)[3])body.b, p[when],
+                     l[when]);
+        }
+        for (long i = 0; i < body.n; i++) {
+            mass += body.m[i];
+            for (int d = 0; d < 3; d++) reach = fmax(reach, fabs(body.a[i][d]));
+        }
+        for (int d = 0; d < 3; d++) { /* of one cell per step */
+            double limit = SINGLE ? 1e-6 : 1e-12;
+            double dp = fabs(p[1][d] - p[0][d]) / mass / 10,
+                   dl = fabs(l[1][d] - l[0][d]) / (mass * reach) / 10;
+            if (!(dp < limit && dl < limit))
+                fail_msg("trial %d: linear %g, angular %g", trial, dp, dl);
+        }
+        oct_free(oct);
+        body_free(&body);
+    }
+}
+
+/* A rigidly moving body is left alone, and so is a resting one. */
+static void test_rigid(void **state)
+{
+    (void)state;
+    unsigned seed = 6;
+    for (int trial = 0; trial < 24; trial++) {
+        Body body;
+        body_random(&seed, trial % 6, 10, false, &body);
+        double c = cos(0.7), s = sin(0.7), turn = trial < 12 ? 0 : 0.0005;
+        for (long i = 0; i < body.n; i++) {
+            const int *centre = body.tree.centre[body.tree.node[i]];
+            double x0 = 0.5 * centre[0], y0 = 0.5 * centre[1];
+            body.x[i][0] = c * x0 - s * y0 + 3;
+            body.x[i][1] = s * x0 + c * y0;
+            body.x[i][2] = 0.5 * centre[2] - 7;
+            body.v[i][0] = -turn * body.x[i][1];
+            body.v[i][1] = turn * (body.x[i][0] - 3);
+            body.v[i][2] = trial < 12 ? 0 : 0.003;
+        }
+        OctParams params = {.damping = 0.5,
+                            .weighting = (OctWeighting)(trial % 2),
+                            .creep = trial % 4 == 3 ? 0.1 : 0,
+                            .yield = 0.05,
+                            .most = 1,
+                            .threads = 1};
+        Oct *oct = create(&body, params);
+        adopt(oct, &body);
+        oct_step(oct, NULL);
+        get(oct, 0, oct->body->v, false, body.a);
+        double worst = difference(body.n, (const double(*)[3])body.a, (const double(*)[3])body.v);
+        if (!(worst < (SINGLE ? 5e-5 : 1e-10))) fail_msg("trial %d: %g", trial, worst);
+        oct_free(oct);
+        body_free(&body);
+    }
+}
+
+/* A full block of `side` finest cells, of two levels; a share of the cells split. */
+static void block_body(unsigned *seed, int side, double split, Body *body)
+{
+    const int corner[3] = {0, 0, 0};
+    OctTree whole;
+    sm_voxels_init(&body->voxels, side, side, side, 1);
+    for (int k = 0; k < side; k++)
+        for (int j = 0; j < side; j++)
+            for (int i = 0; i < side; i++) sm_voxel_set(&body->voxels, i, j, k);
+    sm_voxels_count(&body->voxels);
+    assert_int_equal(oct_tree_build(&body->voxels, 2, corner, &whole, NULL), SM_OK);
+    random_splits(seed, &whole, split, &body->tree);
+    oct_tree_free(&whole);
+    max_norm_regions(&body->tree, 9, 0.5, &body->regions);
+    body_arrays(seed, body);
+}
+
+/* Crushed flat, inverted, blown up, or all in one point: it comes back to rest, never a NaN. */
+static void test_recovery(void **state)
+{
+    (void)state;
+    const double crush[5][3] = {{1, 1, 0}, {-1, 1, 1}, {1000, 1000, 1000}, {0, 0, 0}, {1, 0, 0}};
+    for (int trial = 0; trial < 15; trial++) {
+        Body body;
+        unsigned seed = 7;
+        block_body(&seed, 8, 0.6, &body);
+        for (long i = 0; i < body.n; i++)
+            for (int d = 0; d < 3; d++) {
+                double x0 = 0.5 * body.tree.centre[body.tree.node[i]][d];
+                body.v[i][d] = 0;
+                body.x[i][d] = x0 * crush[trial / 3][d] + 1e-3 * (random_unit(&seed) - 0.5);
+            }
+        OctParams params = {.damping = 0.2, .weighting = (OctWeighting)(trial % 3 == 1)};
+        if (trial % 3 == 2) params.creep = 0.01, params.yield = 0.5, params.most = 0.5;
+        Oct *oct = create(&body, params);
+        for (int step = 0; step < 3000; step++) {
+            oct_step(oct, NULL);
+            if (step % 16 == 0) oct_recentre(oct);
+            if (step % 100) continue;
+            get_x(oct, body.a);
+            for (long i = 0; i < body.n; i++)
+                for (int d = 0; d < 3; d++) assert_true(isfinite(body.a[i][d]));
+        }
+        oct_goals(oct); /* at rest goals and positions agree */
+        get(oct, 0, oct->body->g, true, body.a);
+        get_x(oct, body.b);
+        double worst = difference(body.n, (const double(*)[3])body.a, (const double(*)[3])body.b);
+        if (!(worst < 1e-3)) fail_msg("trial %d: still %g cells from rest", trial, worst);
+        oct_free(oct);
+        body_free(&body);
+    }
+}
+
+static void test_threads(void **state)
+{
+    (void)state;
+    for (int trial = 0; trial < 4; trial++) {
+        Body body;
+        unsigned seed = 8;
+        block_body(&seed, 24, 0.9, &body);
+        for (int threads = 1; threads <= 5; threads += 2) {
+            OctParams params = {.damping = 0.3,
+                                .form = (OctGoalForm)(trial % 2),
+                                .creep = trial > 1 ? 0.1 : 0,
+                                .yield = 0.05,
+                                .most = 0.5,
+                                .threads = threads};
+            Oct *oct = create(&body, params);
+            assert_int_equal(oct->threads, threads);
+            for (int step = 0; step < 4; step++) oct_step(oct, NULL);
+            get_x(oct, threads == 1 ? body.a : body.b);
+            if (threads > 1)
+                assert_memory_equal(body.a, body.b, (size_t)body.n * sizeof(double[3]));
+            oct_free(oct);
+        }
+        body_free(&body);
+    }
+}
+
+/* Each of several bodies moves as it would alone. */
+static void test_instances(void **state)
+{
+    (void)state;
+    Body body;
+    unsigned seed = 9;
+    block_body(&seed, 8, 0.6, &body);
+    OctParams params = {.damping = 0.1, .threads = 3, .instances = 5}, alone = {.damping = 0.1};
+    Oct *all = create(&body, params);
+    for (long k = 0; k < 5; k++) {
+        real *v = all->body[k].v;
+        for (long i = 0; i < body.n; i++) v[oct_index(i, 0)] += (real)(0.01 * (double)k);
+    }
+    for (int step = 0; step < 20; step++) oct_step(all, NULL);
+    for (long k = 0; k < 5; k++) {
+        Oct *one = create(&body, alone);
+        for (long i = 0; i < body.n; i++) one->body->v[oct_index(i, 0)] += (real)(0.01 * (double)k);
+        for (int step = 0; step < 20; step++) oct_step(one, NULL);
+        get(all, k, all->body[k].x, true, body.a);
+        get_x(one, body.b);
+        assert_memory_equal(body.a, body.b, (size_t)body.n * sizeof(double[3]));
+        oct_free(one);
+    }
+    oct_free(all);
+    body_free(&body);
+}
+
+/* How much lower the block is than at rest, relative to its height, after having been held at half
+ * of it and left alone. */
+static double dent(double creep, double *volume)
+{
+    Body body;
+    unsigned seed = 10;
+    block_body(&seed, 8, 1, &body);
+    for (long i = 0; i < body.n; i++)
+        for (int d = 0; d < 3; d++) {
+            double x0 = 0.5 * body.tree.centre[body.tree.node[i]][d];
+            body.x[i][d] = d == 1 ? 0.5 * x0 : x0;
+            body.v[i][d] = 0;
+        }
+    OctParams params = {.damping = 0.2, .creep = creep, .yield = 0.1, .most = 1};
+    Oct *oct = create(&body, params);
+    for (int step = 0; step < 600; step++) {
+        oct_step(oct, NULL);
+        if (step >= 20) continue;
+        oct_place(oct, 0, (const double(*)[3])body.x);
+        memset(oct->body->v, 0, (size_t)oct->blocks * 3 * SM_LANES * sizeof(real));
+    }
+    get_x(oct, body.a);
+    double low = INFINITY, high = -INFINITY, rest_low = INFINITY, rest_high = -INFINITY;
+    for (long i = 0; i < body.n; i++) {
+        double y0 = 0.5 * body.tree.centre[body.tree.node[i]][1];
+        low = fmin(low, body.a[i][1]);
+        high = fmax(high, body.a[i][1]);
+        rest_low = fmin(rest_low, y0);
+        rest_high = fmax(rest_high, y0);
+    }
+    *volume = 0; /* largest |det S - 1| */
+    for (long i = 0; i < body.n && creep > 0; i++) {
+        double S[9];
+        for (int e = 0; e < 9; e++)
+            S[e] = (double)oct->body->plastic[(i / SM_LANES * 9 + e) * SM_LANES + i % SM_LANES];
+        double det = S[0] * (S[4] * S[8] - S[5] * S[7]) - S[1] * (S[3] * S[8] - S[5] * S[6]) +
+                     S[2] * (S[3] * S[7] - S[4] * S[6]);
+        *volume = fmax(*volume, fabs(det - 1));
+    }
+    oct_free(oct);
+    body_free(&body);
+    return 1 - (high - low) / (rest_high - rest_low);
+}
+
+static void test_plastic(void **state)
+{
+    (void)state;
+    double volume, elastic = dent(0, &volume), plastic = dent(0.1, &volume);
+    if (!(fabs(elastic) < 1e-3)) fail_msg("an elastic block keeps a dent of %g", elastic);
+    if (!(plastic > 0.1)) fail_msg("a plastic block keeps a dent of %g only", plastic);
+    if (!(volume < (SINGLE ? 1e-5 : 1e-12))) fail_msg("volume off by %g", volume);
+}
+
+/* The tree whose leaves are the particles of a FastLSM body, with its regions. */
+static void lattice_body(unsigned *seed, const SmVoxels *cells, SmEngine *engine,
+                         const SmEngineType *type, Body *body)
+{
+    const int corner[3] = {random_int(seed, 9), random_int(seed, 9), random_int(seed, 9)};
+    long n = cells->particle_count, at = 0;
+    int(*coord)[3] = sm_alloc((size_t)n, sizeof *coord);
+    long *member = sm_alloc((size_t)n, sizeof *member),
+         *particle = sm_alloc((size_t)n, sizeof(long));
+    sm_voxels_particles(cells, coord);
+    sm_voxels_init(&body->voxels, cells->size[0] + 1, cells->size[1] + 1, cells->size[2] + 1, 1);
+    for (long p = 0; p < n; p++) sm_voxel_set(&body->voxels, coord[p][0], coord[p][1], coord[p][2]);
+    sm_voxels_count(&body->voxels);
+    assert_int_equal(oct_tree_build(&body->voxels, 3, corner, &body->tree, NULL), SM_OK);
+    assert_int_equal(body->tree.leaves, n);
+    int *node = sm_alloc((size_t)n, sizeof(int));
+    for (long p = 0; p < n; p++) {
+        node[p] = oct_tree_find(&body->tree, coord[p][0], coord[p][1], coord[p][2]);
+        particle[body->tree.leaf[node[p]]] = p;
+    }
+    OctRegions *r = &body->regions;
+    *r = (OctRegions){.leaves = n,
+                      .first = sm_alloc((size_t)n + 1, sizeof(long)),
+                      .member = sm_alloc((size_t)(n * n), sizeof(int))};
+    for (long leaf = 0; leaf < n; leaf++) {
+        long count = type->region(engine, particle[leaf], member, n);
+        for (long k = 0; k < count; k++) r->member[at++] = node[member[k]];
+        qsort(r->member + r->first[leaf], (size_t)count, sizeof(int), compare_members);
+        r->first[leaf + 1] = at;
+        if (count > r->most) r->most = count;
+    }
+    body_arrays(seed, body);
+    double(*x)[3] = triples(n);
+    type->get(engine, SM_POSITION, x);
+    for (long p = 0; p < n; p++) {
+        body->m[body->tree.leaf[node[p]]] = 1;
+        for (int d = 0; d < 3; d++) body->x[body->tree.leaf[node[p]]][d] = x[p][d];
+    }
+    type->goals(engine);
+    type->get(engine, SM_GOAL, x);
+    for (long p = 0; p < n; p++)
+        for (int d = 0; d < 3; d++) body->b[body->tree.leaf[node[p]]][d] = x[p][d];
+    free(x);
+    free(node);
+    free(particle);
+    free(member);
+    free(coord);
+}
+
+/* The octree and FastLSM engines give the same goal positions: same nodes, same regions, equal
+ * masses. */
+static void test_fastlsm(void **state)
+{
+    (void)state;
+    const SmEngineType *type = SINGLE ? &fastlsm_engine_f32 : &fastlsm_engine_f64;
+    unsigned seed = 11;
+    for (int trial = 0; trial < 36; trial++) {
+        SmVoxels cells;
+        SmEngine *engine;
+        Body body;
+        random_body(&seed, trial % 6, 8, &cells);
+        cells.cell = 1;
+        for (int d = 0; d < 3; d++) cells.origin[d] = 0;
+        SmEngineParams lattice = {.w = 1 + trial / 6 % 3, .h = 0.01, .threads = 1};
+        assert_int_equal(type->create(&cells, &lattice, &engine, NULL), SM_OK);
+        double(*x0)[3] = triples(cells.particle_count), (*x)[3] = triples(cells.particle_count);
+        type->get(engine, SM_REST, x0);
+        random_deformation(&seed, 1, 0.3, cells.particle_count, (const double(*)[3])x0, x);
+        type->set(engine, SM_POSITION, (const double(*)[3])x);
+        lattice_body(&seed, &cells, engine, type, &body);
+        Oct *oct = create(&body, (OctParams){.form = (OctGoalForm)(trial % 2), .threads = 1});
+        oct_goals(oct);
+        get(oct, 0, oct->body->g, true, body.a);
+        double worst = difference(body.n, (const double(*)[3])body.a, (const double(*)[3])body.b);
+        if (!(worst <= tolerance)) fail_msg("trial %d: the engines differ by %g", trial, worst);
+        oct_free(oct);
+        body_free(&body);
+        free(x0);
+        free(x);
+        type->destroy(engine);
+        sm_voxels_free(&cells);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_goals),     cmocka_unit_test(test_asymmetric),
+        cmocka_unit_test(test_lists),     cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_momentum),  cmocka_unit_test(test_rigid),
+        cmocka_unit_test(test_recovery),  cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_instances), cmocka_unit_test(test_plastic),
+        cmocka_unit_test(test_fastlsm),
+    };
+    return cmocka_run_group_tests_name("octree", tests, NULL, NULL);
+}

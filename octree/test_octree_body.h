@@ -1,0 +1,151 @@
+/* test_octree_body.h - a random body in one precision and its twin. Include after cmocka. */
+#ifndef OCT_TEST_OCTREE_BODY_H
+#define OCT_TEST_OCTREE_BODY_H
+
+#include "../reference/octree_goals.h"
+#include "octree.h"
+#include "random_regions.h"
+#include "random_trees.h"
+
+typedef struct {
+    SmVoxels voxels;
+    OctTree tree;
+    OctRegions regions;
+    long n;
+    double (*x)[3], (*v)[3], (*a)[3], (*b)[3], *m;
+} Body;
+
+static inline double (*triples(long n))[3]
+{
+    return sm_alloc((size_t)n, sizeof(double[3]));
+}
+
+/* Explicit leaves: j in R_i where the max norm is at most the larger w, and everywhere else by
+ * chance; with `asymmetric` not always i in R_j. */
+static inline void explicit_regions(unsigned *seed, const OctTree *tree, bool asymmetric,
+                                    OctRegions *regions)
+{
+    long n = tree->leaves;
+    int *w = sm_alloc((size_t)n, sizeof(int)), base = 2 + random_int(seed, 12);
+    char *in = sm_alloc((size_t)(n * n), 1);
+    for (long i = 0; i < n; i++) w[i] = base + random_int(seed, 6);
+    for (long i = 0; i < n; i++)
+        for (long j = 0; j <= i; j++) {
+            int d = 0;
+            for (int a = 0; a < 3; a++) {
+                int gap = abs(tree->centre[tree->node[i]][a] - tree->centre[tree->node[j]][a]);
+                if (gap > d) d = gap;
+            }
+            bool near = d <= (w[i] > w[j] ? w[i] : w[j]);
+            in[i * n + j] = in[j * n + i] = (char)near;
+            if (asymmetric && i != j && random_int(seed, 20) == 0) in[i * n + j] = !near;
+        }
+    regions->leaves = n;
+    regions->first = sm_alloc((size_t)n + 1, sizeof(long));
+    regions->member = sm_alloc((size_t)(n * n), sizeof(int));
+    regions->most = 0;
+    long at = 0;
+    for (long i = 0; i < n; i++) {
+        for (long j = 0; j < n; j++)
+            if (in[i * n + j]) regions->member[at++] = tree->node[j];
+        regions->first[i + 1] = at;
+        if (at - regions->first[i] > regions->most) regions->most = at - regions->first[i];
+    }
+    regions->mean = (double)at / (double)n;
+    free(w);
+    free(in);
+}
+
+static inline void body_arrays(unsigned *seed, Body *body)
+{
+    long n = body->n = body->tree.leaves;
+    double(*x0)[3] = triples(n);
+    body->x = triples(n);
+    body->v = triples(n);
+    body->a = triples(n);
+    body->b = triples(n);
+    body->m = sm_alloc((size_t)n, sizeof(double));
+    bool painted = random_int(seed, 2);
+    for (long i = 0; i < n; i++) {
+        int node = body->tree.node[i];
+        body->m[i] = painted ? 0.5 + random_unit(seed) : (double)body->tree.material[node];
+        for (int d = 0; d < 3; d++) {
+            x0[i][d] = 0.5 * body->tree.centre[node][d];
+            body->v[i][d] = 0.1 * (random_unit(seed) - 0.5);
+        }
+    }
+    random_deformation(seed, 1, 0.3, n, (const double(*)[3])x0, body->x);
+    free(x0);
+}
+
+/* Regions by interval or, with a chance, explicit. */
+static inline void body_random(unsigned *seed, int kind, int most, bool asymmetric, Body *body)
+{
+    random_tree(seed, kind, most, &body->voxels, &body->tree);
+    if (asymmetric || random_int(seed, 3) == 0)
+        explicit_regions(seed, &body->tree, asymmetric, &body->regions);
+    else
+        max_norm_regions(&body->tree, 2 + random_int(seed, 16), random_int(seed, 4) / 4.0,
+                         &body->regions);
+    body_arrays(seed, body);
+}
+
+static inline void body_free(Body *body)
+{
+    free(body->x);
+    free(body->v);
+    free(body->a);
+    free(body->b);
+    free(body->m);
+    free(body->regions.first);
+    free(body->regions.member);
+    oct_tree_free(&body->tree);
+    sm_voxels_free(&body->voxels);
+}
+
+/* A block of cells in one precision's state, in finest cells. */
+static inline void get(const Oct *oct, long instance, const real *field, bool place,
+                       double (*values)[3])
+{
+    for (long i = 0; i < oct->leaves; i++)
+        for (int d = 0; d < 3; d++)
+            values[i][d] =
+                (double)field[oct_index(i, d)] + (place ? oct->body[instance].origin[d] : 0);
+}
+
+static inline void get_x(const Oct *oct, double (*values)[3])
+{
+    get(oct, 0, oct->body->x, true, values);
+}
+
+/* An engine with the body's positions and velocities. */
+static inline Oct *create(const Body *body, OctParams params)
+{
+    Oct *oct = oct_build(&body->tree, &body->regions, body->m, &params);
+    for (long k = 0; k < oct->instances; k++) {
+        oct_place(oct, k, (const double(*)[3])body->x);
+        for (long i = 0; i < body->n; i++)
+            for (int d = 0; d < 3; d++) oct->body[k].v[oct_index(i, d)] = (real)body->v[i][d];
+    }
+    return oct;
+}
+
+/* The body's positions and velocities as the engine's precision holds them. */
+static inline void adopt(const Oct *oct, Body *body)
+{
+    get_x(oct, body->x);
+    get(oct, 0, oct->body->v, false, body->v);
+}
+
+static inline double difference(long n, const double (*a)[3], const double (*b)[3])
+{
+    double worst = 0;
+    for (long i = 0; i < n; i++)
+        for (int d = 0; d < 3; d++) {
+            double e = fabs(a[i][d] - b[i][d]);
+            if (!(e <= worst)) worst = e; /* a NaN stays */
+        }
+    return worst;
+}
+
+#endif

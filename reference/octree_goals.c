@@ -1,0 +1,241 @@
+#include "octree_goals.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "polar.h"
+
+/* Appends the leaves below a tree node; returns how many there are then. */
+static long append_leaves(const OctTree *tree, long node, int *member, long count)
+{
+    if (tree->child[node] < 0) {
+        if (member) member[count] = tree->leaf[node];
+        return count + 1;
+    }
+    for (int i = 0; i < tree->children[node]; i++)
+        count = append_leaves(tree, tree->child[node] + i, member, count);
+    return count;
+}
+
+static long explicit_leaves(const OctTree *tree, const OctRegions *regions, long *start,
+                            int *member)
+{
+    long count = 0;
+    for (long r = 0; r < regions->leaves; r++) {
+        start[r] = count;
+        for (long n = regions->first[r]; n < regions->first[r + 1]; n++)
+            count = append_leaves(tree, regions->member[n], member, count);
+    }
+    start[regions->leaves] = count;
+    return count;
+}
+
+void ref_octree_init(const OctTree *tree, const OctRegions *regions, const double *m, bool plain,
+                     RefOctree *body)
+{
+    size_t n = (size_t)tree->leaves;
+    memset(body, 0, sizeof *body);
+    RefRegions *r = &body->regions;
+    r->count = tree->leaves;
+    r->start = sm_alloc(n + 1, sizeof *r->start);
+    r->member = sm_alloc((size_t)explicit_leaves(tree, regions, r->start, NULL), sizeof(int));
+    explicit_leaves(tree, regions, r->start, r->member);
+    body->x0 = sm_alloc(n, sizeof *body->x0);
+    body->m = sm_alloc(n, sizeof *body->m);
+    body->weight = sm_alloc(n, sizeof *body->weight);
+    body->reach = sm_alloc(n, sizeof *body->reach);
+    body->R = sm_alloc(n, sizeof *body->R);
+    body->S = sm_alloc(n, sizeof *body->S);
+    for (long i = 0; i < r->count; i++) {
+        body->m[i] = m[i];
+        for (int a = 0; a < 3; a++) {
+            body->x0[i][a] = 0.5 * tree->centre[tree->node[i]][a];
+            body->R[i][4 * a] = body->S[i][4 * a] = 1;
+        }
+        for (long k = r->start[i]; k < r->start[i + 1]; k++) body->reach[r->member[k]] += m[i];
+    }
+    for (size_t i = 0; i < n; i++) body->weight[i] = plain ? m[i] : m[i] / body->reach[i];
+}
+
+void ref_octree_free(RefOctree *body)
+{
+    ref_regions_free(&body->regions);
+    free(body->x0);
+    free(body->m);
+    free(body->weight);
+    free(body->reach);
+    free(body->R);
+    free(body->S);
+}
+
+/* The weighted mean of y over region r, formed relative to y_r; returns the weights' sum. */
+static double region_mean(const RefOctree *body, const double (*y)[3], long r, double mean[3])
+{
+    double M = 0, sum[3] = {0};
+    for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
+        int i = body->regions.member[n];
+        M += body->weight[i];
+        for (int a = 0; a < 3; a++) sum[a] += body->weight[i] * (y[i][a] - y[r][a]);
+    }
+    for (int a = 0; a < 3; a++) mean[a] = y[r][a] + sum[a] / M;
+    return M;
+}
+
+static void multiply(const double A[9], const double B[9], double C[9])
+{
+    double product[9] = {0};
+    for (int i = 0; i < 9; i++)
+        for (int k = 0; k < 3; k++) product[i] += A[i / 3 * 3 + k] * B[k * 3 + i % 3];
+    memcpy(C, product, sizeof product);
+}
+
+static void transpose(const double A[9], double T[9])
+{
+    for (int i = 0; i < 9; i++) T[i] = A[i % 3 * 3 + i / 3];
+}
+
+static double determinant(const double A[9])
+{
+    return A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
+           A[2] * (A[3] * A[7] - A[4] * A[6]);
+}
+
+/* False where A is singular for a solid of its size. */
+static bool invert(const double A[9], double inverse[9])
+{
+    double d = determinant(A), third = (A[0] + A[4] + A[8]) / 3;
+    if (!(d > 1e-6 * third * third * third)) return false;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+            inverse[j * 3 + i] =
+                (A[i1 * 3 + j1] * A[i2 * 3 + j2] - A[i1 * 3 + j2] * A[i2 * 3 + j1]) / d;
+        }
+    return true;
+}
+
+/* One region's shape matching. */
+typedef struct {
+    double c[3], c0[3], A[9], B[9]; /* B: sum of weight (x0 - c0)(x0 - c0)^T */
+} Match;
+
+static void match_region(const RefOctree *body, const double (*x)[3], long r, Match *t)
+{
+    double St[9];
+    memset(t, 0, sizeof *t);
+    region_mean(body, (const double(*)[3])body->x0, r, t->c0);
+    region_mean(body, x, r, t->c);
+    for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
+        int i = body->regions.member[n];
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++) {
+                double to = body->weight[i] * (body->x0[i][b] - t->c0[b]);
+                t->A[3 * a + b] += (x[i][a] - t->c[a]) * to;
+                t->B[3 * a + b] += (body->x0[i][a] - t->c0[a]) * to;
+            }
+    }
+    transpose(body->S[r], St);
+    multiply(t->A, St, t->A);
+    ref_polar(t->A, body->R[r], body->R[r]);
+}
+
+static void flow_region(RefOctree *body, long r, const Match *t)
+{
+    double St[9], Rt[9], Q[9], inverse[9], E[9], S[9], size = 0, strain = 0;
+    transpose(body->S[r], St);
+    multiply(body->S[r], t->B, Q);
+    multiply(Q, St, Q);
+    if (!invert(Q, inverse)) return;
+    transpose(body->R[r], Rt);
+    multiply(Rt, t->A, E);
+    multiply(E, inverse, E);
+    for (int i = 0; i < 9; i++) {
+        E[i] -= i % 4 == 0;
+        strain += E[i] * E[i];
+    }
+    if (!(sqrt(strain) > body->yield)) return;
+    multiply(E, body->S[r], S);
+    for (int i = 0; i < 9; i++) {
+        S[i] = body->S[r][i] + body->creep * S[i] - (i % 4 == 0);
+        size += S[i] * S[i];
+    }
+    for (int i = 0; i < 9; i++) S[i] = S[i] * fmin(1, body->most / sqrt(size)) + (i % 4 == 0);
+    double volume = determinant(S);
+    if (!(volume > 0.05 && volume < 20)) return; /* no longer a shape */
+    for (int i = 0; i < 9; i++) body->S[r][i] = S[i] / cbrt(volume);
+}
+
+void ref_octree_goals(RefOctree *body, const double (*x)[3], bool flow, double (*g)[3])
+{
+    const RefRegions *regions = &body->regions;
+    memset(g, 0, (size_t)regions->count * sizeof *g);
+    for (long r = 0; r < regions->count; r++) {
+        Match t;
+        double F[9];
+        match_region(body, x, r, &t);
+        multiply(body->R[r], body->S[r], F);
+        for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
+            int i = regions->member[n];
+            for (int a = 0; a < 3; a++) {
+                double to = t.c[a] - x[i][a];
+                for (int b = 0; b < 3; b++) to += F[3 * a + b] * (body->x0[i][b] - t.c0[b]);
+                g[i][a] += body->m[r] * to;
+            }
+        }
+        if (flow && body->creep > 0) flow_region(body, r, &t);
+    }
+    for (long i = 0; i < regions->count; i++)
+        for (int a = 0; a < 3; a++) g[i][a] = x[i][a] + g[i][a] / body->reach[i];
+}
+
+static void cross(const double a[3], const double b[3], double result[3])
+{
+    result[0] = a[1] * b[2] - a[2] * b[1];
+    result[1] = a[2] * b[0] - a[0] * b[2];
+    result[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* v_r and omega_r about c_r (fastlsm eq. 14). */
+static void rigid_motion(const RefOctree *body, const double (*x)[3], const double (*v)[3], long r,
+                         double c[3], double mean[3], double omega[3])
+{
+    double L[3] = {0}, I[9] = {0};
+    region_mean(body, x, r, c);
+    region_mean(body, v, r, mean);
+    for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
+        int i = body->regions.member[n];
+        double d[3], dv[3], turn[3], square = 0;
+        for (int a = 0; a < 3; a++) {
+            d[a] = x[i][a] - c[a];
+            dv[a] = v[i][a] - mean[a];
+            square += d[a] * d[a];
+        }
+        cross(d, dv, turn);
+        for (int a = 0; a < 3; a++) {
+            L[a] += body->weight[i] * turn[a];
+            for (int b = 0; b < 3; b++)
+                I[3 * a + b] += body->weight[i] * ((a == b ? square : 0) - d[a] * d[b]);
+        }
+    }
+    ref_solve_inertia(I, L, omega);
+}
+
+void ref_octree_rigid_velocity(const RefOctree *body, const double (*x)[3], const double (*v)[3],
+                               double (*u)[3])
+{
+    const RefRegions *regions = &body->regions;
+    memset(u, 0, (size_t)regions->count * sizeof *u);
+    for (long r = 0; r < regions->count; r++) {
+        double c[3], mean[3], omega[3];
+        rigid_motion(body, x, v, r, c, mean, omega);
+        for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
+            int i = regions->member[n];
+            double d[3] = {x[i][0] - c[0], x[i][1] - c[1], x[i][2] - c[2]}, turn[3];
+            cross(omega, d, turn);
+            for (int a = 0; a < 3; a++) u[i][a] += body->m[r] * (mean[a] + turn[a]);
+        }
+    }
+    for (long i = 0; i < regions->count; i++)
+        for (int a = 0; a < 3; a++) u[i][a] /= body->reach[i];
+}
