@@ -3,8 +3,8 @@
 #ifndef LSM_BLOCKS_PASS_H
 #define LSM_BLOCKS_PASS_H
 
-#include "blocks.h"
 #include "../lib/rigid_lanes.h"
+#include "blocks.h"
 #include "match.h"
 #include "window.h"
 
