@@ -99,10 +99,16 @@ SM_INLINE vec lanes_abs(vec v)
 
 SM_INLINE vec lanes_sqrt(vec v)
 {
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return (vec)_mm512_sqrt_ps((__m512)v);
+#elif defined(__AVX512F__)
+    return (vec)_mm512_sqrt_pd((__m512d)v);
+#else
     vec root;
     for (int i = 0; i < SM_LANES; i++)
         root[i] = SM_REAL_BITS == 32 ? (real)sqrtf((float)v[i]) : (real)sqrt((double)v[i]);
     return root;
+#endif
 }
 
 /* 1 / v to a relative error of 1e-4 in single and 1e-8 in double precision, or better. */

@@ -19,24 +19,29 @@ SM_INLINE void last_store(short *last, const vec R[9])
         }
 }
 
+/* The rotations, orthonormal to rounding. */
 SM_INLINE void last_load(const short *last, vec R[9])
 {
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        double x[3], y[3], xx = 0, xy = 0, yy = 0;
-        for (int i = 0; i < 3; i++) {
-            x[i] = last[i * SM_LANES + lane];
-            y[i] = last[(3 + i) * SM_LANES + lane];
-            xx += x[i] * x[i];
-            xy += x[i] * y[i];
-        }
-        for (int i = 0; i < 3; i++) y[i] -= x[i] * xy / xx;
-        for (int i = 0; i < 3; i++) yy += y[i] * y[i];
-        for (int i = 0; i < 3; i++) {
-            int j = (i + 1) % 3, k = (i + 2) % 3;
-            R[i * 3][lane] = (real)(x[i] / sqrt(xx));
-            R[i * 3 + 1][lane] = (real)(y[i] / sqrt(yy));
-            R[i * 3 + 2][lane] = (real)((x[j] * y[k] - x[k] * y[j]) / sqrt(xx * yy));
-        }
+    vec column[2][3], along = lanes_set(0);
+    for (int i = 0; i < 6; i++) {
+        short_vec packed;
+        memcpy(&packed, last + i * SM_LANES, sizeof packed);
+        column[i / 3][i % 3] =
+            __builtin_convertvector(__builtin_convertvector(packed, ivec), vec) / 32767;
+    }
+    for (int c = 0; c < 2; c++) {
+        vec square = lanes_set(0);
+        for (int i = 0; i < 3; i++) column[c][i] -= (real)c * along * column[0][i];
+        for (int i = 0; i < 3; i++) square += column[c][i] * column[c][i];
+        vec inverse = 1 / lanes_sqrt(square);
+        for (int i = 0; i < 3; i++) column[c][i] *= inverse;
+        for (int i = 0; i < 3; i++) along += column[0][i] * column[1][i];
+    }
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        R[i * 3] = column[0][i];
+        R[i * 3 + 1] = column[1][i];
+        R[i * 3 + 2] = column[0][j] * column[1][k] - column[0][k] * column[1][j];
     }
 }
 

@@ -56,6 +56,25 @@ static void fill_blocks(const OctTree *tree, const OctWeights *w, Oct *oct)
     }
 }
 
+static void find_thin(const OctWeights *w, Oct *oct)
+{
+    oct->thin_of = sm_alloc((size_t)oct->blocks, sizeof(int));
+    for (long block = 0; block < oct->blocks; block++) {
+        bool any = false;
+        for (long slot = block * SM_LANES; slot < (block + 1) * SM_LANES; slot++)
+            any |= w->thin[slot < oct->leaves ? slot : oct->leaves - 1];
+        oct->thin_of[block] = any ? (int)oct->thin_count++ : -1;
+    }
+    oct->thin = sm_alloc((size_t)oct->thin_count, sizeof(OctThin));
+    for (long slot = 0; slot < oct->blocks * SM_LANES; slot++) {
+        long leaf = slot < oct->leaves ? slot : oct->leaves - 1, lane = slot % SM_LANES;
+        if (!w->thin[leaf]) continue;
+        OctThin *thin = &oct->thin[oct->thin_of[slot / SM_LANES]];
+        thin->lanes[lane] = -1;
+        for (int d = 0; d < 3; d++) thin->axis[d][lane] = (real)w->axis[leaf][d];
+    }
+}
+
 /* Shares the blocks among threads by what their lists hold. */
 static void share_blocks(Oct *oct)
 {
@@ -162,6 +181,7 @@ Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mas
     oct_weights_build(tree, &oct->lists, mass, params->weighting, &weights);
     oct->mass_unit = weights.mass_unit;
     fill_blocks(tree, &weights, oct);
+    find_thin(&weights, oct);
     oct_weights_free(&weights);
     share_blocks(oct);
     oct->rows = sm_alloc((size_t)oct->workers, sizeof *oct->rows);
@@ -188,9 +208,9 @@ void oct_free(Oct *oct)
     }
     oct_breadth_free(&oct->lists);
     oct_breadth_free(&oct->goal_lists);
-    void *all[] = {oct->inner, oct->level_first, oct->child,   oct->children,
-                   oct->row,   oct->block,       oct->share,   oct->spread,
-                   oct->rows,  oct->body,        oct->obstacle};
+    void *all[] = {oct->thin,     oct->thin_of, oct->inner,   oct->level_first, oct->child,
+                   oct->children, oct->row,     oct->block,   oct->share,       oct->spread,
+                   oct->rows,     oct->body,    oct->obstacle};
     for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
     free(oct);
 }
@@ -200,7 +220,8 @@ long oct_bytes(const Oct *oct)
     size_t lanes = (size_t)oct->blocks * SM_LANES, nodes = (size_t)oct->nodes;
     size_t structure = oct_breadth_bytes(&oct->lists) + nodes * (sizeof(int) + 1) +
                        (size_t)oct->inners * sizeof(int) + lanes * sizeof(int) +
-                       (size_t)oct->blocks * sizeof(OctConst);
+                       (size_t)oct->blocks * (sizeof(OctConst) + sizeof(int)) +
+                       (size_t)oct->thin_count * sizeof(OctThin);
     if (oct->goal_lists.first) structure += oct_breadth_bytes(&oct->goal_lists);
     size_t rows =
         ((size_t)oct->row_count * (2 * OCT_ROW + OCT_ROW_VELOCITY) + lanes * 3) * sizeof(real);

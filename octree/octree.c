@@ -16,6 +16,7 @@
 
 #include "plastic.h"
 #include "sum.h"
+#include "thin.h"
 
 /* m~ x of the simulation nodes; a node has no moments about itself. */
 static void weigh(OctTask *task, long first, long last)
@@ -115,17 +116,20 @@ SM_INLINE void store_transforms(const OctTask *task, long block, const vec c[3],
 static void match(OctTask *task, long first, long last)
 {
     static const int live[SM_LANES] = {0};
+    const Oct *oct = task->oct;
     OctState *body = task->body;
     for (long block = first; block < last; block++) {
         vec S[16], c[3], A[9], R[9], F[9];
-        const OctConst *k = &task->oct->block[block];
+        const OctConst *k = &oct->block[block];
         region_sums(task, block, S);
         sm_lap(task->laps, SM_FAST_SUM);
         centre_moments(S, k, c, A);
-        if (task->oct->damp_now) store3(task->rows->centre + block * 3 * SM_LANES, c);
+        if (oct->damp_now) store3(task->rows->centre + block * 3 * SM_LANES, c);
         if (body->plastic) plastic_moments(body->plastic + block * 9 * SM_LANES, A);
         sm_lap(task->laps, SM_SHAPE_MATCHING);
-        polar_fast_lanes(A, live, body->last + block * 6 * SM_LANES, R);
+        short *before = body->last + block * 6 * SM_LANES;
+        if (oct->thin_of[block] >= 0) thin_rotations(&oct->thin[oct->thin_of[block]], before, A);
+        polar_fast_lanes(A, live, before, R);
         sm_lap(task->laps, SM_POLAR);
         if (body->plastic) plastic_block(task, block, A, R, F);
         store_transforms(task, block, c, body->plastic ? F : R);

@@ -40,6 +40,12 @@ typedef struct {
     vec centre[3];               /* x0, finest cells from the tree's first node */
 } OctConst;
 
+/* The thin regions of a block (thin.h). */
+typedef struct {
+    ivec lanes;
+    vec axis[3];
+} OctThin;
+
 /* A row holds what a tree node sums: four quarters of three values each and a fourth, `pad`.
  *     moments      sum m~ x            ; of m~ x (x0 - centre)^T the columns x, y, z
  *     transforms   value at the centre ; linear part, columns x, y, z
@@ -77,6 +83,9 @@ typedef struct {
     unsigned char *children;      /* [nodes] */
     int *row;        /* [blocks * lanes] row of a slot; the spare one beyond the leaves */
     OctConst *block; /* [blocks] */
+    long thin_count; /* blocks that have thin regions */
+    int *thin_of;    /* [blocks] which of them, or -1 */
+    OctThin *thin;   /* [thin_count] */
     real *spread;    /* [blocks][6][lanes] rest moments of the regions, or NULL */
     long *share;     /* [threads + 1] first block of each thread */
 

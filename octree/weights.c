@@ -1,5 +1,6 @@
 #include "weights.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,6 +75,25 @@ static double (*list_moments(const OctTree *tree, const OctBreadth *lists,
     return row;
 }
 
+/* Is all of the spread along one axis? Lengths of nothing are those below 1e-4 finest cells. */
+static bool find_axis(const double spread[6], double mass, double axis[3])
+{
+    double trace = spread[0] + spread[1] + spread[2], minors = 0;
+    int largest = 0;
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        minors += spread[e] * spread[f] - spread[3 + d] * spread[3 + d];
+        if (spread[d] > spread[largest]) largest = d;
+    }
+    if (trace <= 1e-8 * mass) return true;
+    if (minors > 1e-9 * trace * trace) return false;
+    for (int d = 0; d < 3; d++) { /* the column of the largest */
+        double entry = d == largest ? spread[d] : spread[3 + (3 - d - largest)];
+        axis[d] = entry / sqrt(spread[largest] * trace);
+    }
+    return true;
+}
+
 static void sum_regions(const OctTree *tree, const OctBreadth *lists, OctWeights *w)
 {
     double(*row)[MOMENTS] = list_moments(tree, lists, w->weight);
@@ -86,6 +106,7 @@ static void sum_regions(const OctTree *tree, const OctBreadth *lists, OctWeights
             w->spread[leaf][d] = sum[4 + d] - sum[1 + d] * w->offset[leaf][d];
             w->spread[leaf][3 + d] = sum[7 + d] - sum[1 + e] * w->offset[leaf][f];
         }
+        w->thin[leaf] = find_axis(w->spread[leaf], sum[0], w->axis[leaf]);
     }
     free(row);
 }
@@ -100,6 +121,8 @@ void oct_weights_build(const OctTree *tree, const OctBreadth *lists, const doubl
     w->region_mass = sm_alloc(n, sizeof(double));
     w->offset = sm_alloc(n, sizeof *w->offset);
     w->spread = sm_alloc(n, sizeof *w->spread);
+    w->thin = sm_alloc(n, sizeof *w->thin);
+    w->axis = sm_alloc(n, sizeof *w->axis);
     w->mass_unit = 0;
     for (size_t i = 0; i < n; i++) w->mass_unit += mass[i] / (double)n;
     for (size_t i = 0; i < n; i++) w->mass[i] = mass[i] / w->mass_unit;
@@ -111,7 +134,8 @@ void oct_weights_build(const OctTree *tree, const OctBreadth *lists, const doubl
 
 void oct_weights_free(OctWeights *w)
 {
-    void *all[] = {w->mass, w->weight, w->reach, w->region_mass, w->offset, w->spread};
+    void *all[] = {w->mass,   w->weight, w->reach, w->region_mass,
+                   w->offset, w->spread, w->thin,  w->axis};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     memset(w, 0, sizeof *w);
 }

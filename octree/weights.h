@@ -17,6 +17,8 @@ typedef struct {
     double *reach;       /* [leaves] M_i: sum of m_r over the regions r that contain i (eq. 8) */
     double *region_mass; /* [leaves] sum of the weights in region r */
     double (*offset)[3]; /* [leaves] c0_r - x0_r */
+    bool *thin;          /* [leaves] the region's nodes lie on a line, or it has but one */
+    double (*axis)[3];   /* [leaves] of thin regions the line's direction, or 0; else 0 */
     double (*spread)[6]; /* [leaves] sum of weight (x0 - c0_r)(x0 - c0_r)^T: xx yy zz yz zx xy */
 } OctWeights;
 
