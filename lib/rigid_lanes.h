@@ -28,7 +28,7 @@ SM_INLINE void damping_products(vec weight, const vec x[3], const vec v[3], vec 
 SM_INLINE void angular_velocity(const vec S[6], const vec L[3], vec size, vec omega[3])
 {
     const real thinnest = SM_REAL_BITS == 32 ? (real)1e-5 : (real)1e-10;
-    vec trace = S[0] + S[1] + S[2], noise = 64 * SM_EPSILON * size + (real)1e-30;
+    vec trace = S[0] + S[1] + S[2], noise = 8 * SM_EPSILON * size + (real)1e-30;
     vec xx = S[1] + S[2], yy = S[2] + S[0], zz = S[0] + S[1];
     vec yz = -S[3], zx = -S[4], xy = -S[5];
     vec Cxx = yy * zz - yz * yz, Cyy = zz * xx - zx * zx, Czz = xx * yy - xy * xy;

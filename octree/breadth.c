@@ -100,11 +100,14 @@ static void share_sets(const OctTree *tree, const Sets *full, Sets *own)
 static long pack_list(OctBreadth *lists, long t, long at, int above, const Sets *own, long node)
 {
     lists->first[t] = at;
-    if (above >= 0) lists->row[at++] = (int)(lists->nodes + above);
+    if (above >= 0) lists->row[at++] = (int)oct_carrier_row(lists, above);
     if (own->count[node])
         memcpy(lists->row + at, own->member + own->first[node],
                (size_t)own->count[node] * sizeof(int));
-    return at + own->count[node];
+    at += own->count[node];
+    if (t < lists->carriers + lists->leaves) lists->entries += at - lists->first[t];
+    while ((at - lists->first[t]) % OCT_PAIR) lists->row[at++] = (int)lists->nodes;
+    return at;
 }
 
 static void find_carriers(const OctTree *tree, const Sets *own, OctBreadth *lists)
@@ -127,7 +130,7 @@ static void pack(const OctTree *tree, const Sets *own, OctBreadth *lists)
     int *above = sm_alloc((size_t)tree->nodes, sizeof(int)); /* carrier above a node, or -1 */
     long slots = oct_slots(tree->leaves), at = 0, next = 0;
     lists->first = sm_alloc((size_t)(lists->carriers + slots) + 1, sizeof(long));
-    lists->row = sm_alloc((size_t)(own->used + lists->carriers + slots) +
+    lists->row = sm_alloc((size_t)(own->used + OCT_PAIR * (lists->carriers + slots)) +
                               OCT_SLOTS * (size_t)own->count[tree->node[tree->leaves - 1]],
                           sizeof(int));
     for (long n = 0; n < tree->nodes; n++) {

@@ -1,21 +1,23 @@
 /* breadth.h - the lists of the breadth of HF: which rows a sum over a region adds up: summation
  * nodes, compressed.
  *
- * A row is what a tree node sums (state.h); row j < nodes is that of tree node j, row nodes + k
- * that of carrier k. A carrier is an inner node whose leaves' regions have summation nodes in
- * common: these are summed once, about the carrier's centre, and every list below it begins with
- * the carrier's row. Exact: every list, its carriers' lists included, holds every leaf of the
- * region once. */
+ * A row is what a tree node sums (state.h); row j < nodes is that of tree node j, row `nodes` stays
+ * zero, and row nodes + 1 + k is that of carrier k. A carrier is an inner node whose leaves'
+ * regions have summation nodes in common: these are summed once, about the carrier's centre, and
+ * every list below it begins with the carrier's row. Exact: every list, its carriers' lists
+ * included, holds every leaf of the region once. */
 #ifndef OCT_BREADTH_H
 #define OCT_BREADTH_H
 
 #include "region.h"
 
-/* Lists are padded to this many leaves; the padding repeats the last leaf's list. */
-enum { OCT_SLOTS = 16 };
+/* There are lists for a multiple of OCT_SLOTS leaves; those beyond the last repeat its list. Lists
+ * are filled up with the zero row to a multiple of OCT_PAIR entries. */
+enum { OCT_SLOTS = 16, OCT_PAIR = 2 };
 
 typedef struct {
     long nodes, leaves, carriers;
+    long entries; /* of the leaves' and carriers' lists, zero rows not counted */
     int levels;
     int *carrier;      /* [carriers] tree node, rising: its carriers come before it */
     long *level_first; /* [levels + 2] first carrier of every tree level */
@@ -39,10 +41,10 @@ void oct_breadth_transpose(const OctTree *tree, const OctBreadth *lists, OctBrea
 void oct_breadth_free(OctBreadth *lists);
 size_t oct_breadth_bytes(const OctBreadth *lists);
 
-/* Entries to add for one sum over every region. */
-static inline long oct_breadth_entries(const OctBreadth *lists)
+/* The row of carrier k. */
+static inline long oct_carrier_row(const OctBreadth *lists, long k)
 {
-    return lists->first[lists->carriers + lists->leaves];
+    return lists->nodes + 1 + k;
 }
 
 #endif

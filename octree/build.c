@@ -113,7 +113,7 @@ static void make_rows(const OctTree *tree, const Oct *oct, OctRows *rows)
     for (int a = 0; a < 2; a++) {
         for (long n = 0; n < oct->nodes; n++) set_pads(tree, n, array[a] + n * OCT_ROW);
         for (long k = 0; k < lists[a]->carriers; k++)
-            set_pads(tree, lists[a]->carrier[k], array[a] + (oct->nodes + k) * OCT_ROW);
+            set_pads(tree, lists[a]->carrier[k], array[a] + oct_carrier_row(lists[a], k) * OCT_ROW);
         set_pads(tree, tree->node[oct->leaves - 1], array[a] + (oct->row_count - 1) * OCT_ROW);
     }
 }
@@ -177,7 +177,7 @@ Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mas
         oct_breadth_transpose(tree, &oct->lists, &oct->goal_lists);
         if (oct->goal_lists.carriers > carriers) carriers = oct->goal_lists.carriers;
     }
-    oct->row_count = oct->nodes + carriers + 1;
+    oct->row_count = oct->nodes + 1 + carriers + 1; /* the zero row, the spare one */
     oct_weights_build(tree, &oct->lists, mass, params->weighting, &weights);
     oct->mass_unit = weights.mass_unit;
     fill_blocks(tree, &weights, oct);

@@ -40,16 +40,19 @@ static void sums_up(OctTask *task, long first, long last)
 SM_INLINE Row list_sum(const OctTask *task, long t)
 {
     const OctBreadth *lists = &task->oct->lists;
-    Row sum = {0};
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at++)
-        sum = row_add(sum, row_load(task->rows->transform + (long)lists->row[at] * OCT_ROW));
-    return sum;
+    Row sum[OCT_PAIR] = {{{{0}}}};
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_PAIR)
+        for (int i = 0; i < OCT_PAIR; i++)
+            sum[i] = row_add(sum[i],
+                             row_load(task->rows->transform + (long)lists->row[at + i] * OCT_ROW));
+    return row_add(sum[0], sum[1]);
 }
 
 static void sums_down(OctTask *task, long first, long last)
 {
     for (long k = first; k < last; k++)
-        row_keep(task->rows->transform + (task->oct->nodes + k) * OCT_ROW, list_sum(task, k));
+        row_keep(task->rows->transform + oct_carrier_row(&task->oct->lists, k) * OCT_ROW,
+                 list_sum(task, k));
 }
 
 /* omega and v - omega x c of every region, times m_r. */
@@ -95,10 +98,11 @@ static void velocities_up(OctTask *task, long first, long last)
 
 SM_INLINE vec8 list_velocity(const OctBreadth *lists, const real *velocity, long t)
 {
-    vec8 sum = {0};
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at++)
-        sum += load8(velocity + (long)lists->row[at] * OCT_ROW_VELOCITY);
-    return sum;
+    vec8 sum[OCT_PAIR] = {{0}};
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_PAIR)
+        for (int i = 0; i < OCT_PAIR; i++)
+            sum[i] += load8(velocity + (long)lists->row[at + i] * OCT_ROW_VELOCITY);
+    return sum[0] + sum[1];
 }
 
 static void velocities_down(OctTask *task, long first, long last)
@@ -106,7 +110,8 @@ static void velocities_down(OctTask *task, long first, long last)
     const OctBreadth *lists = oct_goal_breadth(task->oct);
     real *velocity = task->rows->velocity;
     for (long k = first; k < last; k++)
-        store8(velocity + (lists->nodes + k) * OCT_ROW_VELOCITY, list_velocity(lists, velocity, k));
+        store8(velocity + oct_carrier_row(lists, k) * OCT_ROW_VELOCITY,
+               list_velocity(lists, velocity, k));
 }
 
 static void slow(OctTask *task, long first, long last)

@@ -56,16 +56,19 @@ SM_INLINE Row list_moments(const OctTask *task, long t, long to)
 {
     const OctBreadth *lists = &task->oct->lists;
     const real *moment = task->rows->moment;
-    Row centre = row_pads(row_load(moment + to * OCT_ROW)), sum = {0}, moved = {0};
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at++)
-        row_add_moments(moment + (long)lists->row[at] * OCT_ROW, &centre, &sum, &moved);
-    return row_add(sum, moved);
+    Row centre = row_pads(row_load(moment + to * OCT_ROW));
+    Row sum[OCT_PAIR] = {{{{0}}}}, moved[OCT_PAIR] = {{{{0}}}};
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_PAIR)
+        for (int i = 0; i < OCT_PAIR; i++)
+            row_add_moments(moment + (long)lists->row[at + i] * OCT_ROW, &centre, &sum[i],
+                            &moved[i]);
+    return row_add(row_add(sum[0], moved[0]), row_add(sum[1], moved[1]));
 }
 
 static void moments_down(OctTask *task, long first, long last)
 {
     for (long k = first; k < last; k++) {
-        long row = task->oct->nodes + k;
+        long row = oct_carrier_row(&task->oct->lists, k);
         row_keep(task->rows->moment + row * OCT_ROW, list_moments(task, k, row));
     }
     sm_lap(task->laps, SM_FAST_SUM);
@@ -172,7 +175,7 @@ static void transforms_down(OctTask *task, long first, long last)
     const OctBreadth *lists = oct_goal_breadth(task->oct);
     const real *transform = task->rows->transform;
     for (long k = first; k < last; k++) {
-        real *to = task->rows->transform + (lists->nodes + k) * OCT_ROW;
+        real *to = task->rows->transform + oct_carrier_row(lists, k) * OCT_ROW;
         Row from = row_from(row_pads(row_load(to))), linear = {0}, value = {0};
         for (long at = lists->first[k]; at < lists->first[k + 1]; at++) {
             Row row = row_load(transform + (long)lists->row[at] * OCT_ROW);
@@ -196,10 +199,12 @@ SM_INLINE void goal_sums(const OctTask *task, long block, vec sum[3])
     for (int lane = 0; lane < SM_LANES; lane++) {
         long slot = block * SM_LANES + lane, t = lists->carriers + slot;
         Row from = row_from(row_pads(row_load(transform + (long)oct->row[slot] * OCT_ROW)));
-        Row value = {0};
-        for (long at = lists->first[t]; at < lists->first[t + 1]; at++)
-            row_add_values(row_load(transform + (long)lists->row[at] * OCT_ROW), &from, &value);
-        row_store(values[lane], value);
+        Row value[OCT_PAIR] = {{{{0}}}};
+        for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_PAIR)
+            for (int i = 0; i < OCT_PAIR; i++)
+                row_add_values(row_load(transform + (long)lists->row[at + i] * OCT_ROW), &from,
+                               &value[i]);
+        row_store(values[lane], row_add(value[0], value[1]));
         row[lane] = values[lane];
     }
     lanes_from_rows(row, field);

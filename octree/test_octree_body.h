@@ -40,10 +40,9 @@ static inline void explicit_regions(unsigned *seed, const OctTree *tree, bool as
             in[i * n + j] = in[j * n + i] = (char)near;
             if (asymmetric && i != j && random_int(seed, 20) == 0) in[i * n + j] = !near;
         }
-    regions->leaves = n;
-    regions->first = sm_alloc((size_t)n + 1, sizeof(long));
-    regions->member = sm_alloc((size_t)(n * n), sizeof(int));
-    regions->most = 0;
+    *regions = (OctRegions){.leaves = n,
+                            .first = sm_alloc((size_t)n + 1, sizeof(long)),
+                            .member = sm_alloc((size_t)(n * n), sizeof(int))};
     long at = 0;
     for (long i = 0; i < n; i++) {
         for (long j = 0; j < n; j++)
@@ -78,12 +77,28 @@ static inline void body_arrays(unsigned *seed, Body *body)
     free(x0);
 }
 
-/* Regions by interval or, with a chance, explicit. */
+/* The engine's own regions: intervals of distances in the graph, a width for every node. */
+static inline void interval_regions(unsigned *seed, const Body *body, OctRegions *regions)
+{
+    OctGraph graph;
+    int *w = sm_alloc((size_t)body->tree.leaves, sizeof(int)), base = 1 + random_int(seed, 12);
+    for (long i = 0; i < body->tree.leaves; i++) w[i] = base + random_int(seed, 6);
+    oct_graph_build(&body->tree, &body->voxels, &graph);
+    if (oct_regions_build(&body->tree, &graph, w, random_int(seed, 4) / 4.0, regions, NULL))
+        abort();
+    oct_graph_free(&graph);
+    free(w);
+}
+
+/* Regions by intervals of distances or of places or, with a chance, explicit. */
 static inline void body_random(unsigned *seed, int kind, int most, bool asymmetric, Body *body)
 {
     random_tree(seed, kind, most, &body->voxels, &body->tree);
-    if (asymmetric || random_int(seed, 3) == 0)
+    int form = asymmetric ? 0 : random_int(seed, 4);
+    if (form == 0)
         explicit_regions(seed, &body->tree, asymmetric, &body->regions);
+    else if (form > 1)
+        interval_regions(seed, body, &body->regions);
     else
         max_norm_regions(&body->tree, 2 + random_int(seed, 16), random_int(seed, 4) / 4.0,
                          &body->regions);
@@ -97,8 +112,7 @@ static inline void body_free(Body *body)
     free(body->a);
     free(body->b);
     free(body->m);
-    free(body->regions.first);
-    free(body->regions.member);
+    oct_regions_free(&body->regions);
     oct_tree_free(&body->tree);
     sm_voxels_free(&body->voxels);
 }

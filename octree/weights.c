@@ -55,7 +55,7 @@ static double (*list_moments(const OctTree *tree, const OctBreadth *lists,
                              const double *weight))[MOMENTS]
 {
     long nodes = tree->nodes, count = lists->carriers + lists->leaves;
-    double(*row)[MOMENTS] = sm_alloc((size_t)(nodes + count), sizeof *row);
+    double(*row)[MOMENTS] = sm_alloc((size_t)(nodes + 1 + count), sizeof *row);
     double shift[3];
     for (long n = nodes - 1; n >= 0; n--) {
         if (tree->leaf[n] >= 0) row[n][0] = weight[tree->leaf[n]];
@@ -68,8 +68,10 @@ static double (*list_moments(const OctTree *tree, const OctBreadth *lists,
         long node = t < lists->carriers ? lists->carrier[t] : tree->node[t - lists->carriers];
         for (long at = lists->first[t]; at < lists->first[t + 1]; at++) {
             long from = lists->row[at];
-            shift_between(tree, from < nodes ? from : lists->carrier[from - nodes], node, shift);
-            add_moments(row[from], shift, row[nodes + t]);
+            if (from == nodes) continue; /* the zero row */
+            shift_between(tree, from < nodes ? from : lists->carrier[from - nodes - 1], node,
+                          shift);
+            add_moments(row[from], shift, row[nodes + 1 + t]);
         }
     }
     return row;
@@ -98,7 +100,7 @@ static void sum_regions(const OctTree *tree, const OctBreadth *lists, OctWeights
 {
     double(*row)[MOMENTS] = list_moments(tree, lists, w->weight);
     for (long leaf = 0; leaf < tree->leaves; leaf++) {
-        const double *sum = row[lists->nodes + lists->carriers + leaf];
+        const double *sum = row[lists->nodes + 1 + lists->carriers + leaf];
         w->region_mass[leaf] = sum[0];
         for (int d = 0; d < 3; d++) w->offset[leaf][d] = sum[1 + d] / sum[0];
         for (int d = 0; d < 3; d++) {
