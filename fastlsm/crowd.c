@@ -50,8 +50,9 @@ Crowd *crowd_build(const Lsm *lsm, long bodies)
     crowd->region = sm_alloc(n, sizeof *crowd->region);
     crowd->original = sm_alloc(n, sizeof(int));
     for (size_t p = 0; p < n; p++) {
-        crowd->weight[p] = (real)(lsm->mass[p] / lsm->members[p]);
-        crowd->inverse_count[p] = (real)(1.0 / lsm->members[p]);
+        const ParticleConst *k = &lsm->particle_const[lsm->block_const[lsm->slot[p] / L]];
+        crowd->weight[p] = k->weight[lsm->slot[p] % L];
+        crowd->inverse_count[p] = k->inverse_count[lsm->slot[p] % L];
         crowd->original[p] = (int)p;
     }
     for (long i = 0; i < lsm->copies; i++)

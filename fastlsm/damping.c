@@ -57,7 +57,9 @@ static void region_sums(const Lsm *lsm, const int *region, vec field[16])
 static void solve_tile(Lsm *lsm, long tile)
 {
     vec field[16], c[3], out[6];
-    region_sums(lsm, lsm->tile_region + tile * SM_LANES, field);
+    int region[SM_LANES];
+    tile_regions(lsm, tile, region);
+    region_sums(lsm, region, field);
     load3(lsm->centre + tile * 3 * SM_LANES, c);
     rigid_velocity(field, c, lsm->region_const[lsm->tile_const[tile]].inverse_mass, out);
     store_velocities(lsm, tile, out);

@@ -138,7 +138,9 @@ SM_INLINE bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q
 static void match_tile(Lsm *lsm, int layer, long tile, SmLaps *laps)
 {
     vec S[12], R[9], q[3];
-    region_sums(lsm, lsm->tile_region + tile * SM_LANES, S);
+    int region[SM_LANES];
+    tile_regions(lsm, tile, region);
+    region_sums(lsm, region, S);
     sm_lap(laps, SM_FAST_SUM);
     if (match_sums(lsm, layer, tile, S, q, R, laps)) store_transforms(lsm, tile, q, R);
     sm_lap(laps, SM_SHAPE_MATCHING);
@@ -214,7 +216,8 @@ static void integrate(Lsm *lsm, long block, const vec sum[3])
     }
     load3(lsm->x + block * 3 * SM_LANES, x);
     load3(lsm->v + block * 3 * SM_LANES, v);
-    integrate_velocity(g, x, lsm->gravity, k->live, v);
+    vec live = lanes_select(k->inverse_count > 0, lanes_set(1), lanes_set(0));
+    integrate_velocity(g, x, lsm->gravity, live, v);
     if (!lsm->damp_now) {
         integrate_position(lsm->obstacle, lsm->obstacle_count, lsm->shift, x, v);
         store3(lsm->x + block * 3 * SM_LANES, x);
@@ -240,6 +243,8 @@ static LsmPart *const shape_matching[3] = {bars_and_plates, match, move};
 void lsm_goals(Lsm *lsm)
 {
     lsm->laps = NULL;
+    lsm->damp_now = false; /* keep no centres: goals take their room */
+    lsm->g = lsm->centre;
     lsm->pass = PASS_GOALS;
     lsm_pipeline(lsm, shape_matching);
 }
@@ -254,6 +259,7 @@ void lsm_step(Lsm *lsm, SmLaps *laps)
 {
     int every = lsm->params.damping_every > 0 ? lsm->params.damping_every : 1;
     lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;
+    if (lsm->damp_now) lsm->g = NULL;
     lsm->laps = laps;
     lsm->pass = PASS_STEP;
     lsm_pipeline(lsm, shape_matching);

@@ -21,7 +21,7 @@ typedef struct {
 } RegionConst;
 
 typedef struct {
-    vec weight, inverse_count, live; /* m~_i = m_i / |R_i|; 1 / |R_i|; 1, or 0 for an empty slot */
+    vec weight, inverse_count; /* m~_i = m_i / |R_i|; 1 / |R_i|; 0 for an empty slot */
 } ParticleConst;
 
 /* How many constant records there are. Equal ones are stored once; those from `shared` on belong to
@@ -64,28 +64,29 @@ typedef struct Lsm {
     LsmLedger *ledger; /* NULL for a body that cannot break */
     long spare;        /* rows that its layers have left at least */
     char *mark;        /* [particles] zero between breaks, or NULL */
-    double *mass;      /* [particles] in units of mass_unit kg, their mean */
+    double *mass;      /* [particles] in units of mass_unit kg, their mean; NULL: all are 1 */
     double mass_unit;
-    int *members;  /* [particles] |R_i| */
+    int *members;  /* [particles] |R_i|, kept in a body that can break */
     int *slot;     /* [particles] */
     int *particle; /* [blocks * lanes], -1 for an empty slot */
     long unique;   /* different regions, or -1: ask lsm_unique() */
 
     /* the state */
     long blocks;
-    real *x, *v, *g;  /* [blocks][3][SM_LANES]; g only once goals() was called */
+    real *x, *v;      /* [blocks][3][SM_LANES] */
+    real *g;          /* the same, in the memory of `centre`; NULL when no goals are held */
     int *block_const; /* [blocks] */
     ParticleConst *particle_const;
-    int *block_region; /* [blocks * lanes] row of sets.region that sums over this particle, or -1 */
+    int *block_region; /* [blocks * lanes] row of sets.region that sums over this particle, or -1;
+                          in list form row p is particle p's, so this is `particle` */
 
     /* regions, SM_LANES to a tile; in block form, and in a body that can break, tile t is block t
      */
     long tiles;
-    int *tile_region; /* [tiles * lanes] row of sets.region, or -1 */
-    int *tile_slot;   /* [tiles * lanes] slot of the region's centre, or -1 */
-    int *tile_const;  /* [tiles] */
+    int *tile_slot;  /* [tiles * lanes] slot of the region's centre, or -1 */
+    int *tile_const; /* [tiles] */
     RegionConst *region_const;
-    real *centre;   /* [tiles][3][lanes] c_r, kept for damping */
+    real *centre;   /* [tiles][3][lanes] c_r, kept for damping; room for g */
     short *last;    /* [tiles][6][lanes] two columns of the last rotation, in 1/32767 */
     float *stretch; /* [tiles][9][lanes] eigenvectors for the warm-started Jacobi method, or NULL */
     double *sweeps; /* [layers] Jacobi sweeps of the last step */
@@ -115,11 +116,25 @@ typedef struct Lsm {
     Records particle_records, region_records;
 } Lsm;
 
+/* In units of mass_unit. */
+static inline double mass_of(const Lsm *lsm, long p)
+{
+    return lsm->mass ? lsm->mass[p] : 1;
+}
+
 /* The lanes with a list row. */
 SM_INLINE ivec listed_lanes(const int *region)
 {
     typedef int narrow __attribute__((vector_size(SM_LANES * sizeof(int)), aligned(sizeof(int))));
     return __builtin_convertvector(*(const narrow *)region, ivec) >= 0;
+}
+
+/* List form: the rows of sets.region of a tile. */
+SM_INLINE void tile_regions(const Lsm *lsm, long tile, int region[SM_LANES])
+{
+    const int *slot = lsm->tile_slot + tile * SM_LANES;
+    for (int lane = 0; lane < SM_LANES; lane++)
+        region[lane] = slot[lane] < 0 ? -1 : lsm->particle[slot[lane]];
 }
 
 SM_INLINE void load3(const real *p, vec out[3])
