@@ -122,11 +122,12 @@ static void find_regions(Lsm *lsm, int *original, bool *listed)
     Keys keys = {sm_alloc((size_t)l->count, sizeof *keys.keyed), 0};
     LsmSetsBuilder *lists = lsm_sets_open(l, lsm->slot, lsm->w);
     for (long p = 0; p < l->count; p++) {
-        bool whole = lsm_bit(l, lsm->interior.interior, l->coord[p]);
+        bool whole = lsm_bit(l, lsm->interior.interior, l->coord[p]), simple = true;
         lsm->members[p] = lsm->side * lsm->side * lsm->side;
-        if (!whole || !lsm->box) lsm->members[p] = lsm_region_rows(l, &lsm->interior, p, rows);
+        if (!whole || !lsm->box)
+            lsm->members[p] = lsm_region_find(l, &lsm->interior, p, rows, &simple);
         if (!whole) add_key(lsm, &keys, p, rows);
-        listed[p] = !lsm->box || (!whole && !lsm_blocks_regular(lsm, p, rows));
+        listed[p] = !lsm->box || (!simple && !lsm_blocks_regular(lsm, p, rows));
         if (listed[p]) lsm_sets_add(lists, p, rows);
     }
     lsm->unique = collapse(&keys, l->count, original);

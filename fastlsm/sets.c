@@ -73,8 +73,10 @@ struct LsmSetsBuilder {
     int w, side;
     uint64_t full; /* all bits of a bar */
     Pool bars, plates;
-    int *full_bar, *full_plate; /* [particles] the whole bar or plate around it, 0: not met yet */
-    int *region;                /* [region_room][side] */
+    int *full_plate;       /* [particles] the whole plate around it, 0: not met yet */
+    int *recent_bar;       /* [particles] the last bar around it: neighbours mostly share it */
+    uint64_t *recent_bits; /* [particles] its members, 0: none yet */
+    int *region;           /* [region_room][side] */
     long region_count, region_room;
 };
 
@@ -98,16 +100,17 @@ void lsm_sets_bar(const LsmLattice *l, const int *slot, int w, int x, int y, int
 /* The same, stored; 0 when it has no members. */
 static int add_bar(LsmSetsBuilder *b, int x, int y, int z, uint64_t bits)
 {
-    int row[LSM_MAX_SIDE + 2], *full = NULL;
+    int row[LSM_MAX_SIDE + 2];
     if (!bits) return 0;
-    if (bits == b->full) full = &b->full_bar[lsm_lattice_find(b->lattice, x, y, z)];
-    if (full && *full) return *full;
+    long centre = lsm_lattice_find(b->lattice, x, y, z);
+    if (centre >= 0 && b->recent_bits[centre] == bits) return b->recent_bar[centre];
     lsm_sets_bar(b->lattice, b->slot, b->w, x, y, z, bits, row);
     row[b->side] = x;
     row[b->side + 1] = z;
     int r = pool_add(&b->bars, row);
-    if (full) *full = r;
-    return r;
+    if (centre < 0) return r;
+    b->recent_bits[centre] = bits;
+    return b->recent_bar[centre] = r;
 }
 
 /* The plate of centre (x, y) in plane z. Its bars' keys tell centres apart along x; the place of a
@@ -169,7 +172,8 @@ LsmSetsBuilder *lsm_sets_open(const LsmLattice *l, const int *slot, int w)
     LsmSetsBuilder *b = sm_alloc(1, sizeof *b);
     *b = (LsmSetsBuilder){.lattice = l, .slot = slot, .w = w, .side = 2 * w + 1};
     b->full = ((uint64_t)1 << b->side) - 1;
-    b->full_bar = sm_alloc((size_t)l->count, sizeof(int));
+    b->recent_bar = sm_alloc((size_t)l->count, sizeof(int));
+    b->recent_bits = sm_alloc((size_t)l->count, sizeof(uint64_t));
     b->full_plate = sm_alloc((size_t)l->count, sizeof(int));
     pool_init(&b->bars, b->side + 2);
     pool_init(&b->plates, b->side + 2);
@@ -210,7 +214,8 @@ void lsm_sets_close(LsmSetsBuilder *b, LsmSets *sets)
     renumber_rows(sets->region, sets->region_count * side, plate_number);
     free(bar_number);
     free(plate_number);
-    free(b->full_bar);
+    free(b->recent_bar);
+    free(b->recent_bits);
     free(b->full_plate);
     free(b);
 }
