@@ -4,16 +4,19 @@
 #include <string.h>
 
 #include "blocks.h"
+#include "chain_sums.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
 
 enum { SPARE_LISTS = 16 };  /* rows to spare in a layer, in sides: a few broken links' worth */
+enum { LAYER_PLANES = 8 };  /* that a chain along z runs through */
 enum { LAYER_BLOCKS = 24 }; /* of the list form: layers of about this size stay in the L2 cache */
 
 /* Groups planes into layers of at least LAYER_BLOCKS blocks and finds how far a region reaches. */
 static void build_layers(Lsm *lsm)
 {
+    int least = lsm->chained ? LAYER_PLANES : 1;
     int planes = lsm->lattice.size[2];
     long *count = sm_alloc((size_t)planes, sizeof *count);
     for (long p = 0; p < lsm->lattice.count; p++) count[lsm->lattice.coord[p][2]]++;
@@ -22,7 +25,8 @@ static void build_layers(Lsm *lsm)
     long held = 0;
     for (int z = 0; z < planes; z++) {
         held += count[z];
-        if (held >= LAYER_BLOCKS * SM_LANES || z == planes - 1) {
+        bool high = z + 1 - lsm->layer_plane[lsm->layers] >= least;
+        if ((held >= LAYER_BLOCKS * SM_LANES && high) || z == planes - 1) {
             lsm->layer_plane[++lsm->layers] = z + 1;
             held = 0;
         }
@@ -210,7 +214,8 @@ static void build_rows(Lsm *lsm)
         .bar = sm_alloc(bars * ROW_BAR, real_size),
         .plate = sm_alloc(plates * ROW_PLATE, real_size),
         .transform = sm_alloc(rows * ROW_T, real_size),
-        .plate_down = sm_alloc(plates * ROW_PLATE_DOWN, real_size),
+        .plate_down =
+            sm_alloc(plates * (size_t)(lsm->chained ? ROW_PLATE_CHAIN : ROW_PLATE_DOWN), real_size),
     };
 }
 
@@ -313,6 +318,7 @@ static void build_regions(Lsm *lsm)
     lsm_pipeline_split(lsm);
     if (lsm->box) lsm_blocks_share(lsm);
     build_constants(lsm);
+    if (lsm->chained) lsm_chain_open(lsm);
     if (lsm->params.strain_limit > 0) return;
     free(lsm->members);
     lsm->members = NULL;
@@ -359,6 +365,7 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     if (params->layout == SM_LAYOUT_BLOCKS) {
         lsm_blocks_build(lsm);
     } else {
+        lsm->chained = lsm_chained(lsm);
         build_layers(lsm);
         build_slots(lsm);
     }
@@ -385,6 +392,9 @@ static void free_regions(Lsm *lsm)
     lsm_sets_free(&lsm->sets);
     if (lsm->ledger) lsm_ledger_free(lsm->ledger);
     free(lsm->ledger);
+    if (lsm->chains) lsm_chains_free(lsm->chains);
+    free(lsm->chains);
+    free(lsm->chain_factor);
     free_rows(&lsm->rows);
     if (lsm->box) free(lsm->block_region);
     void *all[] = {lsm->tile_slot,    lsm->layer_tile,  lsm->copy,           lsm->layer_copy,
@@ -434,10 +444,11 @@ long lsm_bytes(const Lsm *lsm)
     bytes += lsm->particle_records.room * (long)sizeof(ParticleConst) +
              lsm->region_records.room * (long)sizeof(RegionConst);
     bytes += lsm->ledger ? lsm->ledger->bytes + l->count : 0;
-    bytes +=
-        (sets->bar_count + sets->plate_count + sets->region_room) * sets->side * (long)sizeof(int);
+    bytes += lsm->chains ? lsm_chains_bytes(lsm->chains)
+                         : (sets->bar_count + sets->plate_count + sets->region_room) * sets->side *
+                               (long)sizeof(int);
     bytes += (lanes * (ROW_P + ROW_T) + sets->bar_count * ROW_BAR +
-              sets->plate_count * (ROW_PLATE + ROW_PLATE_DOWN)) *
+              sets->plate_count * (ROW_PLATE + (lsm->chained ? ROW_PLATE_CHAIN : ROW_PLATE_DOWN))) *
              real_size;
     return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0);
 }

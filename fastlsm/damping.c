@@ -1,6 +1,7 @@
 /* damping.c - region damping (fastlsm eq. 14): each region's rigid velocity, averaged over the
  * regions of a particle, pulls the particle's velocity towards it. */
 #include "blocks_pass.h"
+#include "chain_sums.h"
 #include "match.h"
 #include "pipeline.h"
 #include "rigid.h"
@@ -26,8 +27,12 @@ static void sums_up(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     weigh(lsm, layer);
-    lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
-    lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
+    if (lsm->chains) {
+        lsm_chain_sets_up(lsm, layer, true);
+    } else {
+        lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
+        lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
+    }
     sm_lap(laps, SM_DAMPING);
 }
 
@@ -57,9 +62,15 @@ static void region_sums(const Lsm *lsm, const int *region, vec field[16])
 static void solve_tile(Lsm *lsm, long tile)
 {
     vec field[16], c[3], out[6];
-    int region[SM_LANES];
-    tile_regions(lsm, tile, region);
-    region_sums(lsm, region, field);
+    if (lsm->chains) {
+        const real *row[SM_LANES];
+        tile_rows(lsm, tile, row);
+        lanes_from_rows(row, field);
+    } else {
+        int region[SM_LANES];
+        tile_regions(lsm, tile, region);
+        region_sums(lsm, region, field);
+    }
     load3(lsm->centre + tile * 3 * SM_LANES, c);
     rigid_velocity(field, c, lsm->region_const[lsm->tile_const[tile]].inverse_mass, out);
     store_velocities(lsm, tile, out);
@@ -84,6 +95,7 @@ SM_INLINE void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, Sm
 
 static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
+    if (lsm->chains) lsm_chain_regions_up(lsm, layer, true);
     if (lsm->box)
         lsm_blocks_up(lsm, layer, thread, true, solve_block, laps);
     else
@@ -92,8 +104,12 @@ static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
     for (long i = lsm->layer_copy[layer]; i < lsm->layer_copy[layer + 1]; i++)
         store8(lsm->rows.transform + (lsm->copy[i][0] + 1) * (long)ROW_T,
                load8(lsm->rows.transform + (lsm->copy[i][1] + 1) * (long)ROW_T));
-    lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
-    lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
+    if (lsm->chains) {
+        lsm_chain_sets_down(lsm, layer, true);
+    } else {
+        lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
+        lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
+    }
     sm_lap(laps, SM_DAMPING);
 }
 
@@ -112,11 +128,14 @@ SM_INLINE void slow_down(Lsm *lsm, long block, const vec sum[6])
 static void slow(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
+    if (lsm->chains) lsm_chain_particles(lsm, layer, true);
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         real sums[6][SM_LANES] __attribute__((aligned(64))) = {{0}};
         vec *sum = (vec *)sums;
         if (lsm->box) lsm_blocks_down(lsm, layer, block, true, sum);
-        if (!lsm->box || lsm->box->mixed[block])
+        if (lsm->chains)
+            slot_values(lsm, block, 6, sums);
+        else if (!lsm->box || lsm->box->mixed[block])
             lsm_particles_plain(lsm, lsm->block_region + block * SM_LANES, sums);
         slow_down(lsm, block, sum);
     }

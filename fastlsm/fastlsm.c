@@ -12,6 +12,7 @@
 
 #include "blocks_pass.h"
 #include "build.h"
+#include "chain_sums.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
@@ -36,7 +37,9 @@ static void bars_and_plates(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     weigh(lsm, layer);
-    if (lsm->params.summation != SM_SUM_NAIVE) {
+    if (lsm->chains) {
+        lsm_chain_sets_up(lsm, layer, false);
+    } else if (lsm->params.summation != SM_SUM_NAIVE) {
         lsm_bars_up(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
         lsm_plates_up(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
     }
@@ -134,13 +137,27 @@ SM_INLINE bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q
     return true;
 }
 
+/* The same from the rows of a tile's chained sums. */
+static void chained_sums(const Lsm *lsm, long tile, vec S[12])
+{
+    vec padded[16];
+    const real *row[SM_LANES];
+    tile_rows(lsm, tile, row);
+    lanes_from_rows(row, padded);
+    for (int i = 0; i < 12; i++) S[i] = padded[(4 - i / 3) % 4 * 4 + i % 3];
+}
+
 /* List form: a tile of regions. */
 static void match_tile(Lsm *lsm, int layer, long tile, SmLaps *laps)
 {
     vec S[12], R[9], q[3];
-    int region[SM_LANES];
-    tile_regions(lsm, tile, region);
-    region_sums(lsm, region, S);
+    if (lsm->chains) {
+        chained_sums(lsm, tile, S);
+    } else {
+        int region[SM_LANES];
+        tile_regions(lsm, tile, region);
+        region_sums(lsm, region, S);
+    }
     sm_lap(laps, SM_FAST_SUM);
     if (match_sums(lsm, layer, tile, S, q, R, laps)) store_transforms(lsm, tile, q, R);
     sm_lap(laps, SM_SHAPE_MATCHING);
@@ -176,6 +193,7 @@ SM_INLINE void match_block(Lsm *lsm, int layer, long block, vec *S, vec *out, Sm
 static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     lsm->sweeps[layer] = 0;
+    if (lsm->chains) lsm_chain_regions_up(lsm, layer, false);
     if (lsm->box)
         lsm_blocks_up(lsm, layer, thread, false, match_block, laps);
     else
@@ -184,7 +202,9 @@ static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
     if (lsm->pass == PASS_CONSTANTS) return;
     if (!lsm->box) copy_transforms(lsm, layer);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    if (lsm->params.summation != SM_SUM_NAIVE) {
+    if (lsm->chains) {
+        lsm_chain_sets_down(lsm, layer, false);
+    } else if (lsm->params.summation != SM_SUM_NAIVE) {
         lsm_bars_down(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
         lsm_plates_down(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
     }
@@ -200,7 +220,10 @@ static void particle_sums(const Lsm *lsm, int layer, long block, vec sum[3])
         if (!lsm->box->mixed[block]) return;
         store3(sums[0], sum);
     }
-    lsm_particles_down(lsm, lsm->block_region + block * SM_LANES, sums);
+    if (lsm->chains)
+        slot_values(lsm, block, 3, sums);
+    else
+        lsm_particles_down(lsm, lsm->block_region + block * SM_LANES, sums);
     load3(sums[0], sum);
 }
 
@@ -229,6 +252,7 @@ static void move(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     if (lsm->pass == PASS_CONSTANTS) return;
+    if (lsm->chains) lsm_chain_particles(lsm, layer, false);
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         vec sum[3];
         particle_sums(lsm, layer, block, sum);

@@ -127,27 +127,34 @@ static int add_plate(LsmSetsBuilder *b, int x, int y, int z, const uint64_t *row
     if (all == b->full) full = &b->full_plate[lsm_lattice_find(b->lattice, x, y, z)];
     if (full && *full) return *full;
     for (int i = 0; i < b->side; i++) row[i] = add_bar(b, x, y + i - b->w, z, rows[i]);
+    row[b->side] = y;
     row[b->side + 1] = z;
     int r = pool_add(&b->plates, row);
     if (full) *full = r;
     return r;
 }
 
-/* Sorts a pool's rows by plane, keeping their order within a plane. Writes the lists without keys,
- * the first row of each plane, and each old row's new number. */
-static int *sort_by_plane(const Pool *pool, int side, int planes, long **first, int **renumber)
+/* Sorts a pool's rows by plane and, within it, by their other key (0 .. keys - 1): a row comes
+ * after those of the neighbour before it (chain.h). Writes the lists without keys, the first row of
+ * each plane, and each old row's new number. */
+static int *sort_rows(const Pool *pool, int side, int planes, int keys, long **first,
+                      int **renumber)
 {
+    size_t cells = (size_t)planes * (size_t)keys;
     long *start = sm_alloc((size_t)planes + 1, sizeof *start);
+    int *next = sm_alloc(cells + 1, sizeof *next);
     int *number = sm_alloc((size_t)pool->count, sizeof *number);
     int *out = sm_alloc((size_t)pool->count * (size_t)side, sizeof *out);
-    for (long r = 1; r < pool->count; r++) start[pool->row[r * pool->width + side + 1] + 1]++;
-    start[0] = 1;
-    for (int z = 0; z < planes; z++) start[z + 1] += start[z];
-    long *next = sm_alloc((size_t)planes + 1, sizeof *next);
-    memcpy(next, start, ((size_t)planes + 1) * sizeof *next);
     for (long r = 1; r < pool->count; r++) {
-        const int *row = pool->row + r * pool->width;
-        number[r] = (int)next[row[side + 1]]++;
+        const int *key = pool->row + r * pool->width + side;
+        next[(size_t)key[1] * (size_t)keys + (size_t)key[0] + 1]++;
+    }
+    next[0] = 1;
+    for (size_t cell = 0; cell < cells; cell++) next[cell + 1] += next[cell];
+    for (int z = 0; z <= planes; z++) start[z] = next[(size_t)z * (size_t)keys];
+    for (long r = 1; r < pool->count; r++) {
+        const int *row = pool->row + r * pool->width, *key = row + side;
+        number[r] = next[(size_t)key[1] * (size_t)keys + (size_t)key[0]]++;
         memcpy(out + (long)number[r] * side, row, (size_t)side * sizeof(int));
     }
     free(next);
@@ -202,9 +209,10 @@ void lsm_sets_close(LsmSetsBuilder *b, LsmSets *sets)
                       .region_count = b->region_count,
                       .region_room = b->region_count,
                       .planes = planes};
-    sets->bar = sort_by_plane(&b->bars, side, planes, &sets->bar_plane, &bar_number);
+    const int *size = b->lattice->size;
+    sets->bar = sort_rows(&b->bars, side, planes, size[0], &sets->bar_plane, &bar_number);
     pool_free(&b->bars);
-    sets->plate = sort_by_plane(&b->plates, side, planes, &sets->plate_plane, &plate_number);
+    sets->plate = sort_rows(&b->plates, side, planes, size[1], &sets->plate_plane, &plate_number);
     pool_free(&b->plates);
     sets->bar_end = copy_planes(sets->bar_plane, planes);
     sets->plate_end = copy_planes(sets->plate_plane, planes);
