@@ -1,5 +1,6 @@
 #include "chain.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,6 +45,7 @@ static void add_term(LsmTerm *term, int *count, int row, int place, bool leaves)
 static int list_terms(int side, const int *row, const int *base, int moved, LsmTerm *term)
 {
     int count = 0;
+    assert(row);
     if (base && moved) add_term(term, &count, base[0], -1, true);
     for (int i = 0; i < side; i++) {
         int before = base && i + moved < side ? base[i + moved] : 0;

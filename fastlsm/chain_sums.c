@@ -14,38 +14,18 @@ typedef struct {
     int from, to;
 } Level;
 
-/* The first `vectors` fours of a row, zero after; the compiler would go through memory, and stall
- * there. */
-SM_INLINE vec16 load_part(const real *p, int vectors)
+/* `v` as the first or second half of eight values, zero elsewhere. */
+SM_INLINE vec8 half(vec4 v, int second)
 {
-#if defined(__AVX512F__) && SM_REAL_BITS == 32
-    return vectors == 4   ? load16(p)
-           : vectors == 2 ? (vec16)_mm512_zextps256_ps512(_mm256_loadu_ps(p))
-                          : (vec16)_mm512_zextps128_ps512(_mm_loadu_ps(p));
-#else
-    vec16 out = {0};
-    for (int i = 0; i < 4 * vectors; i++) out[i] = p[i];
-    return out;
-#endif
+    return second ? __builtin_shufflevector(v, (vec4){0}, 4, 4, 4, 4, 0, 1, 2, 3)
+                  : __builtin_shufflevector(v, (vec4){0}, 0, 1, 2, 3, 4, 4, 4, 4);
 }
 
-/* `v` as vector `to` of sixteen values, zero elsewhere. */
-SM_INLINE vec16 place_part(vec4 v, int to)
+/* One row of a chain, in two halves, into `out`: its base, moved on, and its terms. */
+SM_INLINE void chain_row(const Lsm *lsm, const LsmChain *chain, long row, Level level, real *out)
 {
-#if defined(__AVX512F__) && SM_REAL_BITS == 32
-    return (vec16)_mm512_maskz_broadcast_f32x4((__mmask16)(0xf << 4 * to), (__m128)v);
-#else
-    vec16 out = {0};
-    for (int i = 0; i < 4; i++) out[4 * to + i] = v[i];
-    return out;
-#endif
-}
-
-/* One row of a chain: its base, moved on, and its terms. `base` is the base's sum. */
-SM_INLINE vec16 chain_row(const Lsm *lsm, const LsmChain *chain, long row, const real *base,
-                          Level level)
-{
-    vec16 sum = {0};
+    const real *base = level.out + (long)(chain->base[row] / 2) * WIDTH;
+    vec8 sum[2] = {{0}, {0}};
     vec4 moment = {0};
     if (level.moments != NONE)
         moment -= (real)(chain->base[row] & 1) * load4(base + 4 * level.from);
@@ -55,22 +35,23 @@ SM_INLINE vec16 chain_row(const Lsm *lsm, const LsmChain *chain, long row, const
         for (int i = 0; i < 2; i++, term++) {
             const real *member = level.in + (long)term->row * level.in_width,
                        *factor = lsm->chain_factor[term->factor];
-            sum += factor[0] * load_part(member, level.vectors);
+            sum[0] += factor[0] * (level.vectors == 1 ? half(load4(member), 0) : load8(member));
+            if (level.vectors == 4) sum[1] += factor[0] * load8(member + 8);
             if (level.moments != NONE) moment += factor[1] * load4(member + 4 * level.from);
         }
     } while (term < end);
-    if (level.moments == UP) sum += place_part(moment, level.to);
-    if (level.moments == DOWN) sum -= place_part(moment, level.to);
-    return load16(base) + sum; /* what is large last: it is rounded once */
+    if (level.moments == UP) sum[level.to / 2] += half(moment, level.to % 2);
+    if (level.moments == DOWN) sum[level.to / 2] -= half(moment, level.to % 2);
+    /* what is large last: it is rounded once */
+    store8(out, load8(base) + sum[0]);
+    store8(out + 8, load8(base + 8) + sum[1]);
 }
 
 /* Bars or plates `first` .. `last` - 1. */
 SM_INLINE void chain_rows(const Lsm *lsm, const LsmChain *chain, long first, long last, Level level)
 {
     for (long row = first; row < last; row++)
-        store16(
-            level.out + row * WIDTH,
-            chain_row(lsm, chain, row, level.out + (long)(chain->base[row] / 2) * WIDTH, level));
+        chain_row(lsm, chain, row, level, level.out + row * WIDTH);
 }
 
 /* Regions around, or sums over, the particles of a layer. */
@@ -79,10 +60,7 @@ SM_INLINE void chain_slots(const Lsm *lsm, int layer, Level level)
     const LsmChain *chain = &lsm->chains->region;
     for (long slot = lsm->layer_block[layer] * SM_LANES;
          slot < lsm->layer_block[layer + 1] * SM_LANES && lsm->particle[slot] >= 0; slot++) {
-        long row = lsm->particle[slot] + 1;
-        store16(
-            level.out + (slot + 1) * WIDTH,
-            chain_row(lsm, chain, row, level.out + (long)(chain->base[row] / 2) * WIDTH, level));
+        chain_row(lsm, chain, lsm->particle[slot] + 1, level, level.out + (slot + 1) * WIDTH);
     }
 }
 
