@@ -12,11 +12,13 @@ static void weigh(Lsm *lsm, int layer)
 {
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         if (lsm->box && !lsm->box->listed[block]) continue;
-        vec x[3], v[3], field[16] = {{0}};
+        vec part[4], field[16] = {{0}};
         real *row[SM_LANES];
-        load3(lsm->x + block * 3 * SM_LANES, x);
-        load3(lsm->v + block * 3 * SM_LANES, v);
-        damping_products(lsm->particle_const[lsm->block_const[block]].weight, x, v, field);
+        for (int d = 0; d < 3; d++) {
+            damping_products(lsm->particle_const[lsm->block_const[block]].weight,
+                             lsm->x + block * 3 * SM_LANES, lsm->v + block * 3 * SM_LANES, d, part);
+            for (int k = 0; k < 4; k++) field[3 * k + d] = part[k];
+        }
         for (int lane = 0; lane < SM_LANES; lane++)
             row[lane] = lsm->rows.transform + (block * SM_LANES + lane + 1) * ROW_T;
         lanes_to_rows(field, row);
@@ -37,7 +39,7 @@ static void sums_up(Lsm *lsm, int layer, int thread, SmLaps *laps)
 }
 
 /* Rows of a tile's rigid velocities, for the lists. */
-static void store_velocities(Lsm *lsm, long tile, const vec out[6])
+static void store_velocities(const Lsm *lsm, long tile, const vec out[6])
 {
     vec field[8] = {out[0], out[1], out[2], lanes_set(0), out[3], out[4], out[5], lanes_set(0)};
     lanes_interleave(field, 8);
@@ -76,9 +78,8 @@ static void solve_tile(Lsm *lsm, long tile)
     store_velocities(lsm, tile, out);
 }
 
-SM_INLINE void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, SmLaps *laps)
+SM_INLINE void solve_block(const Lsm *lsm, long block, vec *F, vec *out)
 {
-    (void)layer, (void)laps;
     vec c[3];
     if (lsm->box->mixed[block]) {
         const int *region = lsm->block_region + block * SM_LANES;
@@ -93,11 +94,18 @@ SM_INLINE void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, Sm
     if (lsm->box->listed[block]) store_velocities(lsm, block, out);
 }
 
+SM_INLINE void solve_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*F)[12],
+                            vec (*out)[12], SmLaps *laps)
+{
+    (void)layer, (void)laps;
+    for (int k = 0; k < blocks; k++) solve_block(lsm, block + k, F[k], out[k]);
+}
+
 static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     if (lsm->chains) lsm_chain_regions_up(lsm, layer, true);
     if (lsm->box)
-        lsm_blocks_up(lsm, layer, thread, true, solve_block, laps);
+        lsm_blocks_up(lsm, layer, thread, true, solve_blocks, laps);
     else
         for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
             solve_tile(lsm, tile);

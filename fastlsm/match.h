@@ -7,6 +7,8 @@
 #include "state.h"
 
 typedef short short_vec __attribute__((vector_size(SM_LANES * sizeof(short))));
+typedef short short_loose
+    __attribute__((vector_size(SM_LANES * sizeof(short)), aligned(sizeof(short))));
 
 /* The last rotation of a tile's regions is kept as its first two columns in 1/32767: it only says
  * which of several equally good rotations is nearest. */
@@ -17,7 +19,7 @@ SM_INLINE void last_store(short *last, const vec R[9])
             /* by way of whole lanes: compilers convert straight to short one by one */
             ivec whole = __builtin_convertvector(R[i * 3 + column] * 32767, ivec);
             short_vec packed = __builtin_convertvector(whole, short_vec);
-            memcpy(last + (column * 3 + i) * SM_LANES, &packed, sizeof packed);
+            *(short_loose *)(last + (column * 3 + i) * SM_LANES) = packed;
         }
 }
 
@@ -97,38 +99,44 @@ polar_jacobi_lanes(const vec A[9], const int *slot, short *last, float *stretch,
     return sweeps;
 }
 
-/* R_r by the fast method, near the last rotation where it is not unique. `live` lanes only matter.
- */
-SM_INLINE void polar_fast_lanes(const vec A[9], const int *slot, short *last, vec R[9])
+/* The lanes of one tile that the fast method has left out. */
+static __attribute__((noinline)) void polar_ties(const vec A[9], ivec tie, const int *slot,
+                                                 const short *last, vec R[9])
 {
-    ivec tie = polar_quartic(A, R);
-    if (__builtin_expect(lanes_any(tie), 0)) {
-        vec before[9];
-        last_load(last, before);
-        for (int lane = 0; lane < SM_LANES; lane++) {
-            if (slot[lane] >= 0) continue;
-            tie[lane] = 0; /* an empty lane needs no rotation, only a finite one */
-            for (int i = 0; i < 9; i++) R[i][lane] = i % 4 == 0;
-        }
-        polar_mend(A, tie, before, R);
+    vec before[9];
+    last_load(last, before);
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        if (slot[lane] >= 0) continue;
+        tie[lane] = 0; /* an empty lane needs no rotation, only a finite one */
+        for (int i = 0; i < 9; i++) R[i][lane] = i % 4 == 0;
     }
-    last_store(last, R);
+    polar_mend(A, tie, before, R);
 }
 
-/* What damping sums: m~ v, m~ x X v, and the upper half of m~ x x^T (eq. 14). */
-SM_INLINE void damping_products(vec weight, const vec x[3], const vec v[3], vec out[12])
+/* R_r of one or two tiles that follow each other by the fast method, near the last rotation where
+ * it is not unique. Lanes without a slot do not matter. */
+SM_INLINE void polar_fast_lanes(int tiles, const vec (*A)[9], const int *slot, short *last,
+                                vec (*R)[9])
 {
-    vec p[3];
-    for (int d = 0; d < 3; d++) {
-        p[d] = weight * x[d];
-        out[d] = weight * v[d];
-    }
-    for (int d = 0; d < 3; d++) {
-        int e = (d + 1) % 3, f = (d + 2) % 3;
-        out[3 + d] = p[e] * v[f] - p[f] * v[e];
-        out[6 + d] = p[d] * x[d];
-        out[9 + d] = p[e] * x[f];
-    }
+    ivec tie[2];
+    polar_quartic(tiles, A, R, tie);
+    for (int t = 0; t < tiles; t++)
+        if (__builtin_expect(lanes_any(tie[t]), 0))
+            polar_ties(A[t], tie[t], slot + t * SM_LANES, last + t * 6 * SM_LANES, R[t]);
+    for (int t = 0; t < tiles; t++) last_store(last + t * 6 * SM_LANES, R[t]);
+}
+
+/* What damping sums: m~ v, m~ x X v, and the upper half of m~ x x^T (eq. 14); value d of each. `x`
+ * and `v` are [3][SM_LANES]. */
+SM_INLINE void damping_products(vec weight, const real *x, const real *v, int d, vec out[4])
+{
+    int e = (d + 1) % 3, f = (d + 2) % 3;
+    vec p_e = weight * lanes_load(x + e * SM_LANES), x_f = lanes_load(x + f * SM_LANES);
+    vec v_e = lanes_load(v + e * SM_LANES), v_f = lanes_load(v + f * SM_LANES);
+    out[0] = weight * lanes_load(v + d * SM_LANES);
+    out[1] = p_e * v_f - weight * x_f * v_e;
+    out[2] = weight * (lanes_load(x + d * SM_LANES) * lanes_load(x + d * SM_LANES));
+    out[3] = p_e * x_f;
 }
 
 #endif
