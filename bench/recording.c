@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "nearest.h"
+
 /* The body's surface once for every instance. */
 static void repeat_surface(const BenchBody *body, SmMesh *surface)
 {
@@ -28,10 +30,28 @@ static void release(BenchRecording *recording)
 {
     sm_mesh_free(&recording->surface);
     sm_embed_free(&recording->embedding);
+    free(recording->nearest);
     free(recording->x);
     free(recording->v);
     free(recording->g);
     *recording = (BenchRecording){0};
+}
+
+/* Every vertex follows a lattice's cell, or an octree's node. */
+static void attach_surface(BenchRecording *recording)
+{
+    const BenchRunner *runner = recording->runner;
+    const SmMesh *mesh = &runner->body->mesh;
+    if (strcmp(runner->type->name, "octree") != 0) {
+        sm_embed_create(mesh, &runner->body->voxels, &recording->embedding);
+        return;
+    }
+    BenchNearest nodes;
+    bench_nearest_create((const double(*)[3])runner->x0, runner->count, &nodes);
+    recording->nearest = sm_alloc((size_t)mesh->vertex_count, sizeof *recording->nearest);
+    for (long i = 0; i < mesh->vertex_count; i++)
+        recording->nearest[i] = bench_nearest_find(&nodes, mesh->position[i]);
+    bench_nearest_free(&nodes);
 }
 
 SmCode bench_recording_open(const BenchRunner *runner, const char *path, bool particles,
@@ -41,9 +61,13 @@ SmCode bench_recording_open(const BenchRunner *runner, const char *path, bool pa
     if ((double)body->instances * (double)body->mesh.vertex_count > 2e9)
         return sm_fail(error, SM_INPUT, "%s: the surfaces of %ld instances have too many vertices",
                        runner->scene->file, body->instances);
+    if (particles && !strcmp(runner->type->name, "octree"))
+        return sm_fail(
+            error, SM_USAGE,
+            "--record particles stores a lattice, and the octree has none: leave it out");
     *recording = (BenchRecording){.runner = runner, .particles = particles};
     repeat_surface(body, &recording->surface);
-    sm_embed_create(&body->mesh, &body->voxels, &recording->embedding);
+    attach_surface(recording);
     size_t count = (size_t)runner->particles;
     recording->x = sm_alloc(count, sizeof *recording->x);
     recording->v = sm_alloc(count, sizeof *recording->v);
@@ -76,15 +100,29 @@ double bench_recording_bytes(const BenchRecording *recording)
            (recording->particles ? steps * state : 0);
 }
 
+static void follow_nodes(const BenchRecording *recording, const double (*x)[3], double (*point)[3])
+{
+    const BenchRunner *runner = recording->runner;
+    for (long i = 0; i < runner->body->mesh.vertex_count; i++)
+        for (int d = 0; d < 3; d++) {
+            long n = recording->nearest[i];
+            point[i][d] = runner->body->mesh.position[i][d] + x[n][d] - runner->x0[n][d];
+        }
+}
+
 SmCode bench_recording_frame(BenchRecording *recording, SmError *error)
 {
     const BenchRunner *runner = recording->runner;
     const BenchBody *body = runner->body;
     runner->type->get(runner->engine, SM_POSITION, recording->x);
-    for (long k = 0; k < body->instances; k++)
-        sm_embed_apply(&recording->embedding,
-                       (const double(*)[3])(recording->x + k * body->voxels.particle_count),
-                       recording->surface.position + k * body->mesh.vertex_count, NULL);
+    for (long k = 0; k < body->instances; k++) {
+        const double(*x)[3] = (const double(*)[3])(recording->x + k * runner->count);
+        double(*point)[3] = recording->surface.position + k * body->mesh.vertex_count;
+        if (recording->nearest)
+            follow_nodes(recording, x, point);
+        else
+            sm_embed_apply(&recording->embedding, x, point, NULL);
+    }
     return bench_trajectory_frame(recording->trajectory, runner->time,
                                   (const double(*)[3])recording->surface.position, error);
 }

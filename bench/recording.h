@@ -11,13 +11,15 @@
 typedef struct {
     const BenchRunner *runner;        /* the caller's, kept */
     SmMesh surface;                   /* of all instances */
-    SmEmbedding embedding;            /* of one */
+    SmEmbedding embedding;            /* of one, in a lattice engine's particles */
+    long *nearest;                    /* [vertices of one] node of an octree engine, or NULL */
     double (*x)[3], (*v)[3], (*g)[3]; /* [runner->particles] */
     BenchTrajectory *trajectory;
     bool particles;
 } BenchRecording;
 
-/* Opens the file. Errors: those of bench_trajectory_open(). */
+/* Opens the file. Errors: those of bench_trajectory_open(); SM_USAGE for `particles` of an octree,
+ * which has none of a lattice. */
 SmCode bench_recording_open(const BenchRunner *runner, const char *path, bool particles,
                             const BenchMachine *machine, BenchRecording *recording, SmError *error);
 

@@ -10,6 +10,8 @@ typedef struct {
     const BenchScene *scene; /* the caller's, kept */
     const BenchBody *body;   /* the caller's, kept */
     long particles;          /* of all instances */
+    long count;              /* of one */
+    double (*x0)[3];         /* [count] rest positions, instance pose not applied */
     double time;             /* s since the start */
     int held; /* handles bound: one for every scene handle and instance, no empty ones */
     SmHandle *handle;
