@@ -106,7 +106,7 @@ static long pack_list(OctBreadth *lists, long t, long at, int above, const Sets 
                (size_t)own->count[node] * sizeof(int));
     at += own->count[node];
     if (t < lists->carriers + lists->leaves) lists->entries += at - lists->first[t];
-    while ((at - lists->first[t]) % OCT_PAIR) lists->row[at++] = (int)lists->nodes;
+    while ((at - lists->first[t]) % OCT_GROUP) lists->row[at++] = (int)lists->nodes;
     return at;
 }
 
@@ -130,7 +130,7 @@ static void pack(const OctTree *tree, const Sets *own, OctBreadth *lists)
     int *above = sm_alloc((size_t)tree->nodes, sizeof(int)); /* carrier above a node, or -1 */
     long slots = oct_slots(tree->leaves), at = 0, next = 0;
     lists->first = sm_alloc((size_t)(lists->carriers + slots) + 1, sizeof(long));
-    lists->row = sm_alloc((size_t)(own->used + OCT_PAIR * (lists->carriers + slots)) +
+    lists->row = sm_alloc((size_t)(own->used + OCT_GROUP * (lists->carriers + slots)) +
                               OCT_SLOTS * (size_t)own->count[tree->node[tree->leaves - 1]],
                           sizeof(int));
     for (long n = 0; n < tree->nodes; n++) {

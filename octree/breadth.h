@@ -12,8 +12,8 @@
 #include "region.h"
 
 /* There are lists for a multiple of OCT_SLOTS leaves; those beyond the last repeat its list. Lists
- * are filled up with the zero row to a multiple of OCT_PAIR entries. */
-enum { OCT_SLOTS = 16, OCT_PAIR = 2 };
+ * are filled up with the zero row to a multiple of OCT_GROUP entries. */
+enum { OCT_SLOTS = 16, OCT_GROUP = 2 };
 
 typedef struct {
     long nodes, leaves, carriers;

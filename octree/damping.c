@@ -40,12 +40,12 @@ static void sums_up(OctTask *task, long first, long last)
 SM_INLINE Row list_sum(const OctTask *task, long t)
 {
     const OctBreadth *lists = &task->oct->lists;
-    Row sum[OCT_PAIR] = {{{{0}}}};
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_PAIR)
-        for (int i = 0; i < OCT_PAIR; i++)
+    Row sum[OCT_GROUP] = {{{{0}}}};
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_GROUP)
+        for (int i = 0; i < OCT_GROUP; i++)
             sum[i] = row_add(sum[i],
                              row_load(task->rows->transform + (long)lists->row[at + i] * OCT_ROW));
-    return row_add(sum[0], sum[1]);
+    return row_total(sum);
 }
 
 static void sums_down(OctTask *task, long first, long last)
@@ -98,11 +98,12 @@ static void velocities_up(OctTask *task, long first, long last)
 
 SM_INLINE vec8 list_velocity(const OctBreadth *lists, const real *velocity, long t)
 {
-    vec8 sum[OCT_PAIR] = {{0}};
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_PAIR)
-        for (int i = 0; i < OCT_PAIR; i++)
+    vec8 sum[OCT_GROUP] = {{0}};
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_GROUP)
+        for (int i = 0; i < OCT_GROUP; i++)
             sum[i] += load8(velocity + (long)lists->row[at + i] * OCT_ROW_VELOCITY);
-    return sum[0] + sum[1];
+    for (int i = 1; i < OCT_GROUP; i++) sum[0] += sum[i];
+    return sum[0];
 }
 
 static void velocities_down(OctTask *task, long first, long last)

@@ -1,12 +1,11 @@
 /* octree.c - one step of octree shape matching (octree section 4), top to bottom.
  *
- *     depth      every inner node sums the moments of its children             octree section 4.3
- *     breadth    every region sums its summation nodes                         eqs. 6, 7
+ *     depth      every inner node sums the moments of its children
+ *     breadth    every region sums its summation nodes (octree eqs. 6, 7)
  *     match      c_r, A_r, polar decomposition, transform m_r T_r
  *     depth      every inner node sums the transforms of its children
- *     breadth    every simulation node sums over the regions that contain it   eq. 8
- *     move       v, damping, x                                                 fastlsm eqs. 1, 14,
- * 2
+ *     breadth    every simulation node sums over the regions that contain it (octree eq. 8)
+ *     move       v, damping, x (fastlsm eqs. 1, 14, 2)
  *
  * A breadth goes by breadth.h: first the carriers, from the roots down, then the leaves. With the
  * lists transposed the second is the adjoint of the first. */
@@ -57,12 +56,12 @@ SM_INLINE Row list_moments(const OctTask *task, long t, long to)
     const OctBreadth *lists = &task->oct->lists;
     const real *moment = task->rows->moment;
     Row centre = row_pads(row_load(moment + to * OCT_ROW));
-    Row sum[OCT_PAIR] = {{{{0}}}}, moved[OCT_PAIR] = {{{{0}}}};
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_PAIR)
-        for (int i = 0; i < OCT_PAIR; i++)
+    Row sum[OCT_GROUP] = {{{{0}}}}, moved[OCT_GROUP] = {{{{0}}}};
+    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_GROUP)
+        for (int i = 0; i < OCT_GROUP; i++)
             row_add_moments(moment + (long)lists->row[at + i] * OCT_ROW, &centre, &sum[i],
                             &moved[i]);
-    return row_add(row_add(sum[0], moved[0]), row_add(sum[1], moved[1]));
+    return row_add(row_total(sum), row_total(moved));
 }
 
 static void moments_down(OctTask *task, long first, long last)
@@ -199,12 +198,12 @@ SM_INLINE void goal_sums(const OctTask *task, long block, vec sum[3])
     for (int lane = 0; lane < SM_LANES; lane++) {
         long slot = block * SM_LANES + lane, t = lists->carriers + slot;
         Row from = row_from(row_pads(row_load(transform + (long)oct->row[slot] * OCT_ROW)));
-        Row value[OCT_PAIR] = {{{{0}}}};
-        for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_PAIR)
-            for (int i = 0; i < OCT_PAIR; i++)
+        Row value[OCT_GROUP] = {{{{0}}}};
+        for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_GROUP)
+            for (int i = 0; i < OCT_GROUP; i++)
                 row_add_values(row_load(transform + (long)lists->row[at + i] * OCT_ROW), &from,
                                &value[i]);
-        row_store(values[lane], row_add(value[0], value[1]));
+        row_store(values[lane], row_total(value));
         row[lane] = values[lane];
     }
     lanes_from_rows(row, field);

@@ -106,6 +106,15 @@ SM_INLINE Row row_add(Row a, Row b)
     return a;
 }
 
+/* The sum of what a loop over a list kept apart, so that its additions need not wait for each
+ * other. */
+SM_INLINE Row row_total(const Row part[OCT_GROUP])
+{
+    Row sum = part[0];
+    for (int i = 1; i < OCT_GROUP; i++) sum = row_add(sum, part[i]);
+    return sum;
+}
+
 /* Stores a sum at p, whose pads stay. */
 SM_INLINE void row_keep(real *p, Row sum)
 {

@@ -2,6 +2,7 @@
 #ifndef OCT_TEST_OCTREE_BODY_H
 #define OCT_TEST_OCTREE_BODY_H
 
+#include "../lib/engine.h"
 #include "../reference/octree_goals.h"
 #include "octree.h"
 #include "random_regions.h"
@@ -160,6 +161,55 @@ static inline double difference(long n, const double (*a)[3], const double (*b)[
             if (!(e <= worst)) worst = e; /* a NaN stays */
         }
     return worst;
+}
+
+/* The tree whose leaves are the particles of a FastLSM body, with its regions. */
+static inline void lattice_body(unsigned *seed, const SmVoxels *cells, SmEngine *engine,
+                                const SmEngineType *type, Body *body)
+{
+    const int corner[3] = {random_int(seed, 9), random_int(seed, 9), random_int(seed, 9)};
+    long n = cells->particle_count, at = 0;
+    int(*coord)[3] = sm_alloc((size_t)n, sizeof *coord);
+    long *member = sm_alloc((size_t)n, sizeof *member),
+         *particle = sm_alloc((size_t)n, sizeof(long));
+    sm_voxels_particles(cells, coord);
+    sm_voxels_init(&body->voxels, cells->size[0] + 1, cells->size[1] + 1, cells->size[2] + 1, 1);
+    for (long p = 0; p < n; p++) sm_voxel_set(&body->voxels, coord[p][0], coord[p][1], coord[p][2]);
+    sm_voxels_count(&body->voxels);
+    assert_int_equal(oct_tree_build(&body->voxels, 3, corner, &body->tree, NULL), SM_OK);
+    assert_int_equal(body->tree.leaves, n);
+    int *node = sm_alloc((size_t)n, sizeof(int));
+    for (long p = 0; p < n; p++) {
+        node[p] = oct_tree_find(&body->tree, coord[p][0], coord[p][1], coord[p][2]);
+        particle[body->tree.leaf[node[p]]] = p;
+    }
+    OctRegions *r = &body->regions;
+    *r = (OctRegions){.leaves = n,
+                      .first = sm_alloc((size_t)n + 1, sizeof(long)),
+                      .member = sm_alloc((size_t)(n * n), sizeof(int))};
+    for (long leaf = 0; leaf < n; leaf++) {
+        long count = type->region(engine, particle[leaf], member, n);
+        for (long k = 0; k < count; k++) r->member[at++] = node[member[k]];
+        qsort(r->member + r->first[leaf], (size_t)count, sizeof(int), compare_members);
+        r->first[leaf + 1] = at;
+        if (count > r->most) r->most = count;
+    }
+    body_arrays(seed, body);
+    double(*x)[3] = triples(n);
+    type->get(engine, SM_POSITION, x);
+    for (long p = 0; p < n; p++) {
+        body->m[body->tree.leaf[node[p]]] = 1;
+        for (int d = 0; d < 3; d++) body->x[body->tree.leaf[node[p]]][d] = x[p][d];
+    }
+    type->goals(engine);
+    type->get(engine, SM_GOAL, x);
+    for (long p = 0; p < n; p++)
+        for (int d = 0; d < 3; d++) body->b[body->tree.leaf[node[p]]][d] = x[p][d];
+    free(x);
+    free(node);
+    free(particle);
+    free(member);
+    free(coord);
 }
 
 #endif
