@@ -7,11 +7,8 @@
 #include "runner.h"
 
 static const SmEngineType *const engines[] = {
-    &fastlsm_engine_f32,
-    &fastlsm_engine_f64,
-    &octree_engine_f32,
-    &octree_engine_f64,
-    &ref_brute_engine,
+    &fastlsm_engine_f32, &fastlsm_engine_f64, &octree_engine_f32,
+    &octree_engine_f64,  &ref_brute_engine,
 };
 enum { ENGINES = sizeof engines / sizeof engines[0] };
 

@@ -78,7 +78,7 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
     *row = (BenchRow){.triangles = body->mesh.triangle_count,
                       .instances = body->instances,
                       .w = scene->params.w,
-                      .epsilon = scene->epsilon,
+                      .epsilon = scene->octree.epsilon,
                       .h = scene->params.h,
                       .cell = body->voxels.cell,
                       .damping = scene->params.damping,
@@ -125,9 +125,10 @@ static void check_counts(const BenchCheck *check, const BenchRunner *runner, Ben
     row->regions = counts.regions;
     row->bytes = counts.bytes;
     row->build_seconds = counts.build_seconds;
-    if (counts.particles != runner->particles)
-        invalidate(row, "the engine has %.0f particles, the lattice %.0f", (double)counts.particles,
-                   (double)runner->particles);
+    long particles = check->count * check->body->instances;
+    if (counts.particles != particles)
+        invalidate(row, "the engine has %.0f particles, its twin %.0f", (double)counts.particles,
+                   (double)particles);
     if (counts.broken == 0 && counts.regions != check->unique)
         invalidate(row, "the engine has %.0f unique regions, brute force %.0f",
                    (double)counts.regions, (double)check->unique);
@@ -199,7 +200,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
     row->valid = true;
     if (params->progress) bench_progress_show(params->progress, row->scene, 0);
     BenchCheck check;
-    bench_check_create(body, scene->params.w, &check);
+    bench_check_begin(scene, body, type, runner->engine, &check);
     check_counts(&check, runner, row);
     bench_runner_disturb(runner, params->seed);
     for (int i = 0; i < BENCH_SETTLE_STEPS; i++) bench_runner_step(runner, NULL);

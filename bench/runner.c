@@ -9,6 +9,7 @@ SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *bod
 {
     SmEngineParams params = scene->params;
     params.threads = threads;
+    params.octree = &scene->octree;
     params.mass = body->mass;
     params.instances = body->instances;
     params.instance_pose = (const double(*)[3][4])body->pose;

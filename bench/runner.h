@@ -29,7 +29,7 @@ typedef struct {
 SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
                          SmError *error);
 
-/* Engine parameters of the scene and body. */
+/* Engine parameters of the scene and body, which they point into. */
 SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *body, int threads);
 
 /* Builds the engine at rest, with handles and obstacles. A selection without particles is an

@@ -93,8 +93,8 @@ static void errors_name_file_line_and_remedy(void **state)
         {BODY "w = 1;\nw = 2;", "dir/my.cfg:4: "},
         {BODY "@include \"/dev/zero\"", "dir/my.cfg:3: '@include' is not supported"},
         {"particles = 100;", "dir/my.cfg: no 'mesh'"},
-        {"mesh = \"a.obj\";", "dir/my.cfg: give either 'particles' or 'cell'"},
-        {BODY "cell = 0.1;", "dir/my.cfg: give either 'particles' or 'cell'"},
+        {"mesh = \"a.obj\";", "dir/my.cfg: give one of 'particles', 'cell' and 'cells'"},
+        {BODY "cell = 0.1;", "dir/my.cfg: give one of 'particles', 'cell' and 'cells'"},
         {"", "dir/my.cfg: no 'mesh'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -1,8 +1,8 @@
 /* blocks.h - sums over regions in block form: box sums over SM_LANES lattice sites at a time.
  *
  * The moment chain of summation.h, but bars, plates and cubes are taken over every site of the box
- * around a region's centre: first along z, then y, then x on the way up, and back in the order x,
- * y, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
+ * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
+ * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
  * the L1 cache. Empty sites hold zero. A region whose box sum is not its exact sum (a gap, a
  * corner, a broken link within its box) is summed by its lists instead, lane by lane. */
 #ifndef LSM_BLOCKS_H
@@ -10,24 +10,22 @@
 
 #include "state.h"
 
-#define lsm_blocks_build     SM_NAME(lsm_blocks_build)
-#define lsm_blocks_irregular SM_NAME(lsm_blocks_irregular)
-#define lsm_blocks_regular   SM_NAME(lsm_blocks_regular)
-#define lsm_blocks_share     SM_NAME(lsm_blocks_share)
-#define lsm_blocks_free      SM_NAME(lsm_blocks_free)
-#define lsm_blocks_bytes     SM_NAME(lsm_blocks_bytes)
+#define lsm_blocks_build   SM_NAME(lsm_blocks_build)
+#define lsm_blocks_regular SM_NAME(lsm_blocks_regular)
+#define lsm_blocks_share   SM_NAME(lsm_blocks_share)
+#define lsm_blocks_free    SM_NAME(lsm_blocks_free)
+#define lsm_blocks_bytes   SM_NAME(lsm_blocks_bytes)
 
-/* A row of blocks along x. */
+/* Blocks that touch along x. A row may have several runs. */
 typedef struct {
-    int y;
-    int first, count; /* blocks, rising in x */
-} BlockRow;
+    int y, column; /* of the first block; columns are in blocks */
+    int first, count;
+} BlockRun;
 
 struct Blocks {
     int width;      /* blocks across the lattice's box along x */
-    int *column;    /* [blocks] position along x, in blocks */
-    int *plane_row; /* [planes + 1] first row of each plane */
-    BlockRow *row;
+    int *plane_run; /* [planes + 1] first run of each plane; runs rise in y, then x */
+    BlockRun *run;
     int *along_z;       /* [blocks][side] the block at the same place in planes z - w .. z + w; the
                            empty block (number `blocks`) where there is none */
     uint64_t *passable; /* bitmap of the sites whose sums other sites' sums pass through */
@@ -43,15 +41,14 @@ struct Blocks {
     int **window_row; /* [threads][2 width] rows that y windows are at */
 };
 
-/* What a pass does with the 12 sums of a block's regions; it gives back 12 values to bring down
- * (shape matching: q, Rz, Ry, Rx) or 6 (damping: omega, v_r - omega x c_r). */
-typedef void BlockSolve(Lsm *lsm, int layer, long block, vec *sum, vec *out, SmLaps *laps);
+/* What a pass does with the 12 sums of one or two blocks' regions, the second's after the first's;
+ * it gives back 12 values each to bring down (shape matching: q, Rz, Ry, Rx) or 6 (damping: omega,
+ * v_r - omega x c_r). */
+typedef void BlockSolve(Lsm *lsm, int layer, long block, int blocks, vec (*sum)[12], vec (*out)[12],
+                        SmLaps *laps);
 
 /* Blocks, rows and neighbours of the lattice; sets lsm->blocks, slot, particle, layers. */
 void lsm_blocks_build(Lsm *lsm);
-
-/* wanted[p] = the box sum of p is not its region's sum, up or down. Returns how many. */
-long lsm_blocks_irregular(const Lsm *lsm, bool *wanted);
 
 /* Is the box sum of particle p, whose members are `rows` (region.h), its region's sum? O(w^2). */
 bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows);

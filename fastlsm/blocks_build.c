@@ -14,79 +14,87 @@ static bool occupied(const LsmLattice *l, int column, int y, int z)
 static void add_block(Lsm *lsm, Blocks *box, int column, int y, int z)
 {
     long block = lsm->blocks++;
-    box->column[block] = column;
+    box->whole[block] = true;
     for (int lane = 0; lane < SM_LANES; lane++) {
         long p = lsm_lattice_find(&lsm->lattice, column * SM_LANES + lane, y, z);
         lsm->particle[block * SM_LANES + lane] = (int)p;
         box->site[block][lane] = p >= 0 ? -1 : 0;
-        if (p >= 0) lsm->slot[p] = (int)(block * SM_LANES + lane);
+        if (p >= 0)
+            lsm->slot[p] = (int)(block * SM_LANES + lane);
+        else
+            box->whole[block] = false;
     }
-    box->whole[block] = true;
-    for (int lane = 0; lane < SM_LANES; lane++)
-        if (!box->site[block][lane]) box->whole[block] = false;
 }
 
-/* How many blocks and rows the lattice has: every word of the bitmap is a few blocks. */
-static void count_blocks(const LsmLattice *l, long *blocks, long *rows)
+/* How many blocks the lattice has: every word of the bitmap is a few. */
+static long count_blocks(const LsmLattice *l)
 {
     const uint64_t lanes = ((uint64_t)1 << SM_LANES) - 1;
-    *blocks = *rows = 0;
-    for (long row = 0; row < (long)l->size[1] * l->size[2]; row++) {
-        long before = *blocks;
-        for (int word = 0; word < l->words; word++)
-            for (uint64_t bits = l->bits[row * l->words + word]; bits; bits >>= SM_LANES)
-                *blocks += (bits & lanes) != 0;
-        *rows += *blocks > before;
+    long blocks = 0;
+    for (long word = 0; word < (long)l->size[1] * l->size[2] * l->words; word++)
+        for (uint64_t bits = l->bits[word]; bits; bits >>= SM_LANES) blocks += (bits & lanes) != 0;
+    return blocks;
+}
+
+static void add_row(Lsm *lsm, Blocks *box, int y, int z, int *runs)
+{
+    BlockRun *run = NULL;
+    for (int column = 0; column < box->width; column++) {
+        if (!occupied(&lsm->lattice, column, y, z)) {
+            run = NULL;
+            continue;
+        }
+        if (!run) {
+            run = &box->run[(*runs)++];
+            *run = (BlockRun){y, column, (int)lsm->blocks, 0};
+        }
+        run->count++;
+        add_block(lsm, box, column, y, z);
     }
 }
 
 static void add_rows(Lsm *lsm, Blocks *box)
 {
-    int rows = 0;
+    int runs = 0;
     for (int z = 0; z < lsm->lattice.size[2]; z++) {
-        box->plane_row[z] = rows;
+        box->plane_run[z] = runs;
         lsm->layer_block[z] = lsm->blocks;
-        for (int y = 0; y < lsm->lattice.size[1]; y++) {
-            int first = (int)lsm->blocks;
-            for (int column = 0; column < box->width; column++)
-                if (occupied(&lsm->lattice, column, y, z)) add_block(lsm, box, column, y, z);
-            if (lsm->blocks > first)
-                box->row[rows++] = (BlockRow){y, first, (int)lsm->blocks - first};
-        }
+        for (int y = 0; y < lsm->lattice.size[1]; y++) add_row(lsm, box, y, z, &runs);
     }
-    box->plane_row[lsm->lattice.size[2]] = rows;
+    box->plane_run[lsm->lattice.size[2]] = runs;
     lsm->layer_block[lsm->lattice.size[2]] = lsm->blocks;
+    box->run = sm_realloc(box->run, (size_t)runs, sizeof(BlockRun));
 }
 
-/* The block of `column` in row y of plane z, or the empty block. */
+/* The block of `column` in row y of plane z, or the empty block: in the last run that does not
+ * begin after it. */
 static int block_at(const Lsm *lsm, const Blocks *box, int column, int y, int z)
 {
     if (z < 0 || z >= lsm->lattice.size[2]) return (int)lsm->blocks;
-    int low = box->plane_row[z], high = box->plane_row[z + 1];
+    int low = box->plane_run[z], high = box->plane_run[z + 1];
     while (low < high) {
         int middle = (low + high) / 2;
-        if (box->row[middle].y < y)
+        const BlockRun *run = &box->run[middle];
+        if (run->y < y || (run->y == y && run->column <= column))
             low = middle + 1;
         else
             high = middle;
     }
-    if (low == box->plane_row[z + 1] || box->row[low].y != y) return (int)lsm->blocks;
-    for (int i = 0; i < box->row[low].count; i++)
-        if (box->column[box->row[low].first + i] == column) return box->row[low].first + i;
-    return (int)lsm->blocks;
+    if (low == box->plane_run[z]) return (int)lsm->blocks;
+    const BlockRun *run = &box->run[low - 1];
+    int i = column - run->column;
+    return run->y == y && i < run->count ? run->first + i : (int)lsm->blocks;
 }
 
 static void find_neighbours(Lsm *lsm, Blocks *box)
 {
     box->along_z = sm_alloc((size_t)lsm->blocks * (size_t)lsm->side, sizeof(int));
+    int *along = box->along_z;
     for (int z = 0; z < lsm->lattice.size[2]; z++)
-        for (int row = box->plane_row[z]; row < box->plane_row[z + 1]; row++)
-            for (int i = 0; i < box->row[row].count; i++)
-                for (int c = 0; c < lsm->side; c++) {
-                    int block = box->row[row].first + i;
-                    box->along_z[(long)block * lsm->side + c] =
-                        block_at(lsm, box, box->column[block], box->row[row].y, z + c - lsm->w);
-                }
+        for (int r = box->plane_run[z]; r < box->plane_run[z + 1]; r++)
+            for (int i = 0; i < box->run[r].count; i++)
+                for (int c = -lsm->w; c <= lsm->w; c++)
+                    *along++ = block_at(lsm, box, box->run[r].column + i, box->run[r].y, z + c);
 }
 
 /* A bitmap of what sums along z and y may pass through: sites whose blocks exist, but at w = 1
@@ -99,13 +107,13 @@ static uint64_t *passable_sites(const Lsm *lsm)
     if (lsm->w == 1) return memcpy(bits, l->bits, words * sizeof *bits);
     const uint64_t lanes = ((uint64_t)1 << SM_LANES) - 1;
     for (int z = 0; z < l->size[2]; z++)
-        for (int row = lsm->box->plane_row[z]; row < lsm->box->plane_row[z + 1]; row++)
-            for (int i = 0; i < lsm->box->row[row].count; i++) {
-                int x = lsm->box->column[lsm->box->row[row].first + i] * SM_LANES;
-                size_t at = ((size_t)z * (size_t)l->size[1] + (size_t)lsm->box->row[row].y) *
-                            (size_t)l->words;
+        for (int r = lsm->box->plane_run[z]; r < lsm->box->plane_run[z + 1]; r++) {
+            const BlockRun *run = &lsm->box->run[r];
+            size_t at = ((size_t)z * (size_t)l->size[1] + (size_t)run->y) * (size_t)l->words;
+            for (int x = run->column * SM_LANES; x < (run->column + run->count) * SM_LANES;
+                 x += SM_LANES)
                 bits[at + (size_t)(x >> 6)] |= lanes << (x & 63);
-            }
+        }
     return bits;
 }
 
@@ -114,12 +122,10 @@ void lsm_blocks_build(Lsm *lsm)
     const LsmLattice *l = &lsm->lattice;
     Blocks *box = lsm->box = sm_alloc(1, sizeof *box);
     int planes = l->size[2];
-    long blocks, rows;
-    count_blocks(l, &blocks, &rows);
+    long blocks = count_blocks(l);
     box->width = (l->size[0] + SM_LANES - 1) / SM_LANES;
-    box->column = sm_alloc((size_t)blocks, sizeof(int));
-    box->plane_row = sm_alloc((size_t)planes + 1, sizeof(int));
-    box->row = sm_alloc((size_t)rows, sizeof(BlockRow));
+    box->plane_run = sm_alloc((size_t)planes + 1, sizeof(int));
+    box->run = sm_alloc((size_t)blocks, sizeof(BlockRun));
     box->site = sm_alloc((size_t)blocks + 1, sizeof(ivec));
     box->whole = sm_alloc((size_t)blocks, sizeof(bool));
     box->listed = sm_alloc((size_t)blocks, sizeof(bool));
@@ -136,46 +142,36 @@ void lsm_blocks_build(Lsm *lsm)
     box->passable = passable_sites(lsm);
 }
 
-/* Up, a member passes through (x_i, y_i, z_r) and (x_i, y_r, z_r); down, region r passes through
- * (x_i, y_r, z_r) and (x_i, y_i, z_r). Sites between must be summed at all. */
+/* The sites of a window's row that sums from or to its centre pass through: all of it, if at all.
+ */
+static uint64_t way(const Lsm *lsm, const int *at, int b, int c)
+{
+    uint64_t row =
+        lsm_window(&lsm->lattice, lsm->box->passable, at[0], at[1] + b, at[2] + c, lsm->w);
+    return row >> lsm->w & 1 ? row : 0;
+}
+
+/* Up, member i passes through (x_i, y_i, z_r) and (x_r, y_i, z_r); down, region r passes through
+ * (x_r, y_i, z_r) and (x_i, y_i, z_r). Sites between must be summed at all. */
 bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
 {
     const LsmLattice *l = &lsm->lattice;
-    const uint64_t *site = lsm->box->passable;
     const int *at = l->coord[p];
     int w = lsm->w, side = lsm->side;
-    uint64_t middle = lsm_window(l, site, at[0], at[1], at[2], w);
     for (int row = 0; row < side * side; row++) {
         int b = row % side - w, c = row / side - w;
         uint64_t box = lsm_window(l, l->bits, at[0], at[1] + b, at[2] + c, w);
-        uint64_t up = box & lsm_window(l, site, at[0], at[1] + b, at[2], w) & middle;
-        bool through = lsm_window(l, site, at[0], at[1] + b, at[2] + c, w) >> w & 1 &&
-                       lsm_window(l, site, at[0], at[1], at[2] + c, w) >> w & 1;
-        if (up != rows[row] || (through ? box : 0) != rows[row]) return false;
+        if ((box & way(lsm, at, b, 0)) != rows[row]) return false;
+        if ((box & way(lsm, at, 0, c)) != rows[row]) return false;
     }
     return true;
-}
-
-long lsm_blocks_irregular(const Lsm *lsm, bool *wanted)
-{
-    const LsmLattice *l = &lsm->lattice;
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    long count = 0;
-    for (long p = 0; p < l->count; p++) {
-        wanted[p] = false;
-        if (lsm_bit(l, lsm->interior.interior, l->coord[p])) continue;
-        lsm_region_rows(l, &lsm->interior, p, rows);
-        wanted[p] = !lsm_blocks_regular(lsm, p, rows);
-        count += wanted[p];
-    }
-    return count;
 }
 
 /* Reals of scratch that one thread needs: see blocks.c. */
 static size_t scratch_size(const Lsm *lsm)
 {
-    size_t width = (size_t)lsm->box->width + 2, side = (size_t)lsm->side;
-    return width * SM_LANES * (2 * side + 6) * 12;
+    size_t width = (size_t)lsm->box->width, side = (size_t)lsm->side;
+    return width * SM_LANES * (2 * (side + 1) * 12 + 2 * 16);
 }
 
 static void free_shared(Blocks *box)
@@ -232,9 +228,8 @@ void lsm_blocks_share(Lsm *lsm)
 
 long lsm_blocks_bytes(const Lsm *lsm)
 {
-    long a_block =
-        (1 + lsm->side) * (long)sizeof(int) + (long)sizeof(ivec) + 3 * (long)sizeof(bool);
-    long rows = lsm->box->plane_row[lsm->layers] * (long)sizeof(BlockRow);
+    long a_block = lsm->side * (long)sizeof(int) + (long)sizeof(ivec) + 3 * (long)sizeof(bool);
+    long rows = lsm->box->plane_run[lsm->layers] * (long)sizeof(BlockRun);
     const LsmLattice *l = &lsm->lattice;
     rows += (long)l->size[1] * l->size[2] * l->words * (long)sizeof(uint64_t);
     return lsm->blocks * a_block + rows + lsm->box->shared_bytes;
@@ -244,9 +239,8 @@ void lsm_blocks_free(Blocks *box)
 {
     if (!box) return;
     free_shared(box);
-    free(box->column);
-    free(box->plane_row);
-    free(box->row);
+    free(box->plane_run);
+    free(box->run);
     free(box->along_z);
     free(box->site);
     free(box->passable);

@@ -11,244 +11,318 @@
 #include <limits.h>
 #include <string.h>
 
-/* One kernel body serves shape matching and damping: F is how many values arrive at a stage. With
- * `moment`, a stage up appends sum o * (first three) for offset o, and a stage down takes
- * sum o * (last three) off the first three. */
-enum { UP = 12, MOST = 12 };
+/* One body serves shape matching and damping. Values are numbered 3 k + d, d = 0..2 for x, y, z:
+ * up, k counts (P, Pz, Px, Py) and down (Q, Rz, Rx, Ry) in the order in which the chain's stages
+ * add and use them; damping sums four plain triples up and two down. */
+enum { BLOCK = 12 * SM_LANES, WINDOW = 16 * SM_LANES };
 
-/* Scratch of a thread, rows of a plane, block by block: [width + 2][MOST][lanes], with an empty
- * block at each end for the x stages. Rings hold rows y - w - 1 .. y + w. */
-enum { BLOCK = MOST * SM_LANES };
-
+/* Scratch of a thread. Rings hold the last 2 w + 2 rows of a plane, each [width][BLOCK]. */
 typedef struct {
-    long pitch;      /* (width + 2) blocks */
+    long pitch;      /* values in a row */
     int ring;        /* rows in a ring */
     bool running;    /* y stages move a window instead of summing it anew */
-    real *above;     /* [ring] rows after the z stage up */
-    real *line;      /* the row after the y stage up */
-    real *solved;    /* the row after `solve` */
-    real *below;     /* [ring] rows after the x stage down */
-    real *window[2]; /* up, down: each column's window of the y stage */
+    real *above;     /* [ring] rows after the stages up along z and x */
+    real *below;     /* [ring] rows after `solve` */
+    real *window[2]; /* up, down: each column's window of the y stage: 12 sums, 3 moments */
     int *row[2];     /* the row it is at */
 } Scratch;
 
 static Scratch scratch_of(const Lsm *lsm, int thread)
 {
     int width = lsm->box->width;
-    Scratch s = {.pitch = (width + 2) * (long)BLOCK, .ring = lsm->side + 1};
+    Scratch s = {.pitch = width * (long)BLOCK, .ring = lsm->side + 1};
     s.running = lsm->w > 2 && lsm->params.summation == SM_SUM_FAST;
-    s.above = lsm->box->scratch[thread] + BLOCK;
-    s.line = s.above + s.ring * s.pitch;
-    s.solved = s.line + s.pitch;
-    s.below = s.solved + s.pitch;
+    s.above = lsm->box->scratch[thread];
+    s.below = s.above + s.ring * s.pitch;
     s.window[0] = s.below + s.ring * s.pitch;
-    s.window[1] = s.window[0] + s.pitch;
+    s.window[1] = s.window[0] + width * (long)WINDOW;
     s.row[0] = lsm->box->window_row[thread];
     s.row[1] = s.row[0] + width;
     for (int i = 0; i < 2 * width; i++) s.row[0][i] = INT_MIN;
     return s;
 }
 
-SM_INLINE real *ring_row(const Scratch *s, real *ring, int y)
-{
-    return ring + ((y + s->ring) % s->ring) * s->pitch;
-}
-
 /* A window that has moved this far is summed anew, or rounding would add up. */
 enum { RESTART = 16 };
 
-/* One block of a y stage: the window around row y of `ring`, moved on from row y - 1 where that is
- * known. `F` values come in; moments of three of them, from `first` on, follow in sum[F ..]. */
-SM_INLINE void stage_y(const Scratch *s, int way, real *ring, int y, int column, int w, int F,
-                       int first, vec *sum)
+/* Are the windows of all columns of a run one row behind it? */
+SM_INLINE bool can_move(const Scratch *s, int way, const BlockRun *run)
 {
-    long at = column * (long)BLOCK;
-    vec *kept = (vec *)(s->window[way] + at);
-    int values = first < 0 ? F : F + 3;
-    if (s->running && s->row[way][column] == y - 1 && y % RESTART) {
-        for (int f = 0; f < values; f++) sum[f] = kept[f];
-        window_move(ring_row(s, ring, y - w - 1) + at, ring_row(s, ring, y + w) + at, SM_LANES, w,
-                    F, first, sum, sum + F);
-    } else {
-        const real *in[LSM_MAX_SIDE];
-        for (int b = 2 * w; b > 0; b--) in[b] = ring_row(s, ring, y + b - w) + at;
-        in[0] = ring_row(s, ring, y - w) + at;
-        window_sum(in, SM_LANES, w, F, first, sum, sum + F);
-    }
-    if (!s->running) return;
-    for (int f = 0; f < values; f++) kept[f] = sum[f];
-    s->row[way][column] = y;
+    if (!s->running || run->y % RESTART == 0) return false;
+    for (int i = 0; i < run->count; i++)
+        if (s->row[way][run->column + i] != run->y - 1) return false;
+    return true;
 }
 
-/* m~ x of a block, or the products that damping sums: what the z stage up takes. */
-SM_INLINE void source(const Lsm *lsm, long block, bool damping, vec out[MOST])
+SM_INLINE void has_moved(const Scratch *s, int way, const BlockRun *run)
 {
-    vec x[3], v[3], weight = lsm->particle_const[lsm->block_const[block]].weight;
-    load3(lsm->x + block * 3 * SM_LANES, x);
-    if (lsm->pass == PASS_CONSTANTS) x[0] = x[1] = x[2] = lanes_set(1);
-    if (!damping) {
-        for (int d = 0; d < 3; d++) out[d] = weight * x[d];
+    for (int i = 0; i < run->count && s->running; i++) s->row[way][run->column + i] = run->y;
+}
+
+/* Where the y stage of a row reads: rows y - w - 1 .. y + w of a ring, and the windows. */
+typedef struct {
+    const real *row[LSM_MAX_SIDE + 1];
+    real *window;
+    bool running;
+} Around;
+
+/* `slot` of the ring holds row y + w. */
+SM_INLINE Around rows_around(const Scratch *s, int way, int slot, int w)
+{
+    Around around = {.window = s->window[way], .running = s->running};
+    for (int b = 0; b < 2 * w + 2; b++) {
+        slot = slot + 1 == s->ring ? 0 : slot + 1;
+        around.row[b] = (way ? s->below : s->above) + slot * s->pitch;
+    }
+    return around;
+}
+
+/* Value f of the y stage at a column, and its moment unless that is number -1. */
+SM_INLINE vec window_y(const Around *in, long column, int w, bool moving, int f, int number,
+                       vec *moment)
+{
+    long at = column * (long)BLOCK + f * SM_LANES;
+    real *kept = in->window + column * (long)WINDOW;
+    real *sum_kept = kept + f * SM_LANES, *moment_kept = kept + (12 + number) * SM_LANES;
+    vec sum;
+    if (moving) {
+        sum = lanes_load(sum_kept);
+        if (number >= 0) *moment = lanes_load(moment_kept);
+        window_move(lanes_load(in->row[0] + at), lanes_load(in->row[2 * w + 1] + at), w, &sum,
+                    number >= 0 ? moment : NULL);
+    } else {
+        window_sum(in->row + 1, at, w, &sum, number >= 0 ? moment : NULL);
+    }
+    if (w > 2 && in->running) {
+        lanes_store(sum_kept, sum);
+        if (number >= 0) lanes_store(moment_kept, *moment);
+    }
+    return sum;
+}
+
+/* Where sums pass through particles only, those of other sites are dropped (blocks.h). */
+SM_INLINE vec through(const Lsm *lsm, long block, int w, vec sum)
+{
+    return w > 1 ? sum : lanes_and(sum, lsm->box->site[block]);
+}
+
+/* What the z stage up sums of a block: value d of m~ x, or of damping's four triples. */
+SM_INLINE void source(const Lsm *lsm, long block, bool damping, int d, vec out[4])
+{
+    vec weight = lsm->particle_const[lsm->block_const[block]].weight;
+    const real *x = lsm->x + block * 3 * SM_LANES;
+    if (damping) {
+        damping_products(weight, x, lsm->v + block * 3 * SM_LANES, d, out);
         return;
     }
-    load3(lsm->v + block * 3 * SM_LANES, v);
-    damping_products(weight, x, v, out);
+    out[0] = lsm->pass == PASS_CONSTANTS ? weight : weight * lanes_load(x + d * SM_LANES);
 }
 
-/* Stage up along z for one block. */
-SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool damping, real *out)
+/* The stage up along z for values 3 k + d of a block: 1 -> 2 of them, of damping 4. */
+SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool damping, int d, vec sum[4])
 {
-    int F = damping ? 12 : 3;
     const int *along = lsm->box->along_z + block * (2 * w + 1);
-    vec sum[MOST], moment[3], p[MOST];
-    source(lsm, along[0], damping, p);
-    for (int f = 0; f < F; f++) sum[f] = p[f];
-    for (int d = 0; d < 3; d++) moment[d] = -(real)w * p[d];
-    for (int c = 1; c <= 2 * w; c++) {
-        source(lsm, along[c], damping, p);
-        for (int f = 0; f < F; f++) sum[f] += p[f];
-        if (!damping && c != w)
-            for (int d = 0; d < 3; d++) moment[d] += (real)(c - w) * p[d];
+    vec p[4];
+    source(lsm, along[w], damping, d, sum);
+    if (!damping) sum[1] = lanes_set(0);
+    for (int c = 0; c <= 2 * w; c++) {
+        if (c == w) continue;
+        source(lsm, along[c], damping, d, p);
+        for (int k = 0; k < (damping ? 4 : 1); k++) sum[k] += p[k];
+        if (!damping) sum[1] += (real)(c - w) * p[0];
     }
-    for (int f = 0; f < F; f++) lanes_store(out + f * SM_LANES, sum[f]);
-    if (!damping)
-        for (int d = 0; d < 3; d++) lanes_store(out + (F + d) * SM_LANES, moment[d]);
+    for (int k = 0; k < (damping ? 4 : 2); k++) sum[k] = through(lsm, block, w, sum[k]);
 }
 
-/* Row y of the z stage up: absent blocks and rows hold zero. */
-SM_INLINE void row_z_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, int w, bool damping)
+/* The stages up along z and x for values 3 k + d of a run, d = first .. first + parts - 1, into a
+ * row of the ring `above`: 1 -> 2 -> 3 values of each d. */
+SM_INLINE void run_up(const Lsm *lsm, const BlockRun *run, int w, bool damping, int first,
+                      int parts, real *row)
 {
-    int F = damping ? 12 : 6;
-    real *ring = ring_row(s, s->above, y);
-    int next = row ? row->first : 0, last = row ? row->first + row->count : 0;
-    for (int column = 0; column < lsm->box->width; column++) {
-        real *out = ring + column * (long)BLOCK;
-        if (next >= last || lsm->box->column[next] != column) {
-            memset(out, 0, (size_t)F * SM_LANES * sizeof(real));
-            continue;
+    int n = damping ? 4 : 2, last = run->first + run->count - 1;
+    real *out = row + run->column * (long)BLOCK + first * SM_LANES;
+    vec before[3][4], here[3][4], after[3][4], moment = lanes_set(0);
+    for (int d = 0; d < parts; d++) {
+        stage_z_up(lsm, run->first, w, damping, first + d, here[d]);
+        for (int k = 0; k < n; k++) before[d][k] = after[d][k] = lanes_set(0);
+    }
+    for (int block = run->first; block <= last; block++, out += BLOCK) {
+        for (int d = 0; d < parts; d++) {
+            if (block < last)
+                stage_z_up(lsm, block + 1, w, damping, first + d, after[d]);
+            else
+                for (int k = 0; k < n; k++) after[d][k] = lanes_set(0);
+            for (int k = 0; k < n; k++) {
+                vec sum = window_sum_x(before[d][k], here[d][k], after[d][k], w,
+                                       k || damping ? NULL : &moment);
+                lanes_store(out + (3 * k + d) * SM_LANES, through(lsm, block, w, sum));
+                before[d][k] = here[d][k];
+                here[d][k] = after[d][k];
+            }
+            if (!damping) lanes_store(out + (6 + d) * SM_LANES, through(lsm, block, w, moment));
         }
-        stage_z_up(lsm, next, w, damping, out);
-        if (w == 1 && !lsm->box->whole[next]) /* masked: sums pass through particles only */
-            for (int f = 0; f < F; f++)
-                lanes_store(out + f * SM_LANES,
-                            lanes_and(lanes_load(out + f * SM_LANES), lsm->box->site[next]));
-        next++;
     }
 }
 
-/* Row y of the y stage up, into `line`. */
-SM_INLINE void row_y_up(Lsm *lsm, const Scratch *s, const BlockRow *row, int w, bool damping)
+/* The runs of a row of a plane. */
+typedef struct {
+    const BlockRun *run;
+    int runs, blocks;
+} Row;
+
+/* Rows have zeros where they have no blocks. */
+SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, Row at, int slot, int w, bool damping)
 {
-    int F = damping ? 12 : 6, out_F = damping ? 12 : 9;
-    int next = row->first, last = row->first + row->count;
-    for (int column = 0; column < lsm->box->width; column++) {
-        real *out = s->line + column * (long)BLOCK;
-        vec sum[MOST + 3];
-        if (next >= last || lsm->box->column[next] != column) {
-            for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, lanes_set(0));
-            continue;
-        }
-        stage_y(s, 0, s->above, row->y, column, w, F, damping ? -1 : 0, sum);
-        if (w == 1 && !lsm->box->whole[next])
-            for (int f = 0; f < out_F; f++) sum[f] = lanes_and(sum[f], lsm->box->site[next]);
-        for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, sum[f]);
-        next++;
+    real *row = s->above + slot * s->pitch;
+    if (at.blocks < lsm->box->width) memset(row, 0, (size_t)s->pitch * sizeof(real));
+    for (int i = 0; i < at.runs; i++) {
+        if (damping) /* in turn: all at once would not fit into registers */
+            for (int d = 0; d < 3; d++) run_up(lsm, at.run + i, w, true, d, 1, row);
+        else
+            run_up(lsm, at.run + i, w, false, 0, 3, row);
     }
 }
 
-/* The x stage up and `solve`, into `solved`. */
-SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, const BlockRow *row, int layer, int w,
+/* The stage up along y, 9 -> 12 values, and `solve` for one or two blocks of a row, into the ring
+ * `below`. `solve` has its moments in the order z, y, x. */
+SM_INLINE void solve_some(Lsm *lsm, const Around *in, const BlockRun *run, int i, int blocks,
+                          int layer, int w, bool damping, bool moving, real *row, BlockSolve *solve,
+                          SmLaps *laps)
+{
+    vec sum[2][12], out[2][12];
+    for (int k = 0; k < blocks; k++)
+        for (int f = 0; f < (damping ? 12 : 9); f++) {
+            int to = damping || f < 6 ? f : f + 3, number = damping || f > 2 ? -1 : f;
+            sum[k][to] =
+                window_y(in, run->column + i + k, w, moving, f, number, &sum[k][6 + f % 3]);
+        }
+    sm_lap(laps, damping ? SM_DAMPING : SM_FAST_SUM);
+    solve(lsm, layer, run->first + i, blocks, sum, out, laps);
+    for (int k = 0; k < blocks; k++)
+        for (int f = 0; f < (damping ? 6 : 12); f++) {
+            int from = damping || f < 6 ? f : f < 9 ? f + 3 : f - 3;
+            lanes_store(row + (run->column + i + k) * (long)BLOCK + f * SM_LANES, out[k][from]);
+        }
+}
+
+SM_INLINE void run_solve(Lsm *lsm, const Around *in, const BlockRun *run, int layer, int w,
+                         bool damping, bool moving, real *row, BlockSolve *solve, SmLaps *laps)
+{
+    int i = 0;
+    for (; i + 1 < run->count; i += 2)
+        solve_some(lsm, in, run, i, 2, layer, w, damping, moving, row, solve, laps);
+    if (i < run->count) solve_some(lsm, in, run, i, 1, layer, w, damping, moving, row, solve, laps);
+}
+
+/* The stage up along y and `solve` for the row whose row y + w is in slot `newest` of the ring
+ * `above`, into `slot` of the ring `below`. */
+SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, Row at, int newest, int slot, int layer, int w,
                          bool damping, BlockSolve *solve, SmLaps *laps)
 {
-    int F = damping ? 12 : 9, out_F = damping ? 6 : 12;
-    int next = row->first, last = row->first + row->count;
-    for (int column = 0; column < lsm->box->width; column++) {
-        real *out = s->solved + column * (long)BLOCK;
-        vec sum[MOST + 3];
-        if (next >= last || lsm->box->column[next] != column) {
-            for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, lanes_set(0));
-            continue;
-        }
-        window_sum_x(s->line + column * (long)BLOCK, BLOCK, w, F, damping ? -1 : 0, sum, sum + F);
-        sm_lap(laps, damping ? SM_DAMPING : SM_FAST_SUM);
-        solve(lsm, layer, next, sum, (vec *)out, laps);
-        next++;
+    real *row = s->below + slot * s->pitch;
+    Around in = rows_around(s, 0, newest, w);
+    if (at.blocks < lsm->box->width) memset(row, 0, (size_t)s->pitch * sizeof(real));
+    for (int i = 0; i < at.runs; i++) {
+        if (w > 2 && can_move(s, 0, at.run + i))
+            run_solve(lsm, &in, at.run + i, layer, w, damping, true, row, solve, laps);
+        else
+            run_solve(lsm, &in, at.run + i, layer, w, damping, false, row, solve, laps);
+        if (w > 2) has_moved(s, 0, at.run + i);
     }
 }
 
-/* Row y of the x stage down, into the ring `below`. */
-SM_INLINE void row_x_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int y, int w,
-                          bool damping)
+/* The stage down along y for values 3 k + d of a block: 4 -> 3 of them, of damping 2. */
+SM_INLINE void stage_y_down(const Lsm *lsm, const Around *in, const BlockRun *run, int i, int w,
+                            bool damping, bool moving, int d, vec out[3])
 {
-    int F = damping ? 6 : 12, out_F = damping ? 6 : 9;
-    real *ring = ring_row(s, s->below, y);
-    int next = row ? row->first : 0, last = row ? row->first + row->count : 0;
-    for (int column = 0; column < lsm->box->width; column++) {
-        real *out = ring + column * (long)BLOCK;
-        if (next >= last || lsm->box->column[next] != column) {
-            memset(out, 0, (size_t)out_F * SM_LANES * sizeof(real));
-            continue;
-        }
-        vec sum[MOST], moment[3];
-        window_sum_x(s->solved + column * (long)BLOCK, BLOCK, w, F, damping ? -1 : 9, sum, moment);
-        finish_down(sum, moment, damping);
-        if (w == 1 && !lsm->box->whole[next])
-            for (int f = 0; f < out_F; f++) sum[f] = lanes_and(sum[f], lsm->box->site[next]);
-        for (int f = 0; f < out_F; f++) lanes_store(out + f * SM_LANES, sum[f]);
-        next++;
+    vec moment = lanes_set(0);
+    for (int k = 0; k < (damping ? 2 : 3); k++)
+        out[k] = window_y(in, run->column + i, w, moving, 3 * k + d, -1, NULL);
+    if (!damping) {
+        window_y(in, run->column + i, w, moving, 9 + d, d, &moment);
+        out[0] -= moment;
     }
+    for (int k = 0; k < (damping ? 2 : 3); k++) out[k] = through(lsm, run->first + i, w, out[k]);
 }
 
-/* Row y of the y stage down, into the plane's store. */
-SM_INLINE void row_y_down(Lsm *lsm, const Scratch *s, const BlockRow *row, int plane, int w,
-                          bool damping)
+/* The stages down along y and x for values 3 k + d of a run: 4 -> 3 -> 2 of them, into the plane's
+ * store. */
+SM_INLINE void run_down(const Lsm *lsm, const Around *in, const BlockRun *run, int w, bool damping,
+                        bool moving, int d, real *out)
 {
-    int F = damping ? 6 : 9;
-    for (int block = row->first; block < row->first + row->count; block++) {
-        real *out = lsm->box->down[plane] + (block - lsm->layer_block[plane]) * 6 * SM_LANES;
-        vec sum[MOST + 3];
-        stage_y(s, 1, s->below, row->y, lsm->box->column[block], w, F, damping ? -1 : 6, sum);
-        finish_down(sum, sum + F, damping);
-        if (w == 1 && !lsm->box->whole[block])
-            for (int f = 0; f < 6; f++) sum[f] = lanes_and(sum[f], lsm->box->site[block]);
-        for (int f = 0; f < 6; f++) lanes_store(out + f * SM_LANES, sum[f]);
+    int n = damping ? 2 : 3;
+    vec before[3], here[3], after[3], sum[3], moment = lanes_set(0);
+    for (int k = 0; k < n; k++) before[k] = lanes_set(0);
+    stage_y_down(lsm, in, run, 0, w, damping, moving, d, here);
+    for (int i = 0; i < run->count; i++, out += 6 * SM_LANES) {
+        for (int k = 0; k < n; k++) after[k] = lanes_set(0);
+        if (i + 1 < run->count) stage_y_down(lsm, in, run, i + 1, w, damping, moving, d, after);
+        for (int k = 0; k < n; k++) {
+            sum[k] = window_sum_x(before[k], here[k], after[k], w, k == 2 ? &moment : NULL);
+            before[k] = here[k];
+            here[k] = after[k];
+        }
+        if (!damping) sum[0] -= moment;
+        for (int k = 0; k < 2; k++)
+            lanes_store(out + (3 * k + d) * SM_LANES, through(lsm, run->first + i, w, sum[k]));
     }
 }
 
-/* The row of a plane at y, or NULL; `row` walks along with rising y. */
-static const BlockRow *row_at(const Lsm *lsm, int plane, int *row, int y)
+/* The stages down along y and x for the row whose row y + w is in slot `newest` of `below`. */
+SM_INLINE void row_down(const Lsm *lsm, const Scratch *s, Row at, int newest, int plane, int w,
+                        bool damping)
+{
+    Around in = rows_around(s, 1, newest, w);
+    for (int i = 0; i < at.runs; i++) {
+        const BlockRun *run = at.run + i;
+        real *out = lsm->box->down[plane] + (run->first - lsm->layer_block[plane]) * 6 * SM_LANES;
+        bool moving = w > 2 && can_move(s, 1, run);
+        for (int d = 0; d < 3; d++) {
+            if (w > 2 && moving)
+                run_down(lsm, &in, run, w, damping, true, d, out);
+            else
+                run_down(lsm, &in, run, w, damping, false, d, out);
+        }
+        if (w > 2) has_moved(s, 1, run);
+    }
+}
+
+/* The row of a plane at y; `run` walks along with rising y. */
+static Row row_at(const Lsm *lsm, int plane, int *run, int y)
 {
     const Blocks *box = lsm->box;
-    while (*row < box->plane_row[plane + 1] && box->row[*row].y < y) ++*row;
-    return *row < box->plane_row[plane + 1] && box->row[*row].y == y ? &box->row[*row] : NULL;
+    int end = box->plane_run[plane + 1];
+    while (*run < end && box->run[*run].y < y) ++*run;
+    Row row = {box->run + *run, 0, 0};
+    for (int i = *run; i < end && box->run[i].y == y; i++) {
+        row.runs++;
+        row.blocks += box->run[i].count;
+    }
+    return row;
 }
 
-/* A plane's rows as a pipeline: row y goes up along z when row y - w is solved, and row y - 2w
- * comes down along y. */
+/* A plane's rows as a pipeline: row y goes up along z and x when row y - w is solved, and row
+ * y - 2w comes down along y and x. */
 SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, BlockSolve *solve,
                           SmLaps *laps)
 {
-    Blocks *box = lsm->box;
-    if (box->plane_row[plane] == box->plane_row[plane + 1]) return;
+    const Blocks *box = lsm->box;
+    int begin = box->plane_run[plane], end = box->plane_run[plane + 1];
+    if (begin == end) return;
     Scratch s = scratch_of(lsm, thread);
-    int begin = box->plane_row[plane], first = box->row[begin].y;
-    int last = box->row[box->plane_row[plane + 1] - 1].y, walk[3] = {begin, begin, begin};
+    int first = box->run[begin].y, last = box->run[end - 1].y, walk[3] = {begin, begin, begin};
     SmStage stage = damping ? SM_DAMPING : SM_FAST_SUM;
-    for (int b = 1; b <= 2 * w; b++) { /* rows before the first */
-        row_z_up(lsm, &s, NULL, first - b, w, damping);
-        row_x_down(lsm, &s, NULL, first - b, w, damping);
-    }
-    for (int y = first; y <= last + 2 * w; y++) {
-        row_z_up(lsm, &s, row_at(lsm, plane, &walk[0], y), y, w, damping);
-        const BlockRow *row = row_at(lsm, plane, &walk[1], y - w);
-        if (row) {
-            row_y_up(lsm, &s, row, w, damping);
-            sm_lap(laps, stage);
-            row_solve(lsm, &s, row, plane, w, damping, solve, laps);
-        }
-        row_x_down(lsm, &s, row, y - w, w, damping);
-        row = row_at(lsm, plane, &walk[2], y - 2 * w);
-        if (row) row_y_down(lsm, &s, row, plane, w, damping);
+    memset(s.above + (s.ring - w) * s.pitch, 0,
+           (size_t)(w * s.pitch) * sizeof(real)); /* above `first` */
+    for (int y = first, slot = 0; y <= last + 2 * w; y++) {
+        int behind = slot < w ? slot - w + s.ring : slot - w; /* of row y - w */
+        row_up(lsm, &s, row_at(lsm, plane, &walk[0], y), slot, w, damping);
         sm_lap(laps, stage);
+        row_solve(lsm, &s, row_at(lsm, plane, &walk[1], y - w), slot, behind, plane, w, damping,
+                  solve, laps);
+        row_down(lsm, &s, row_at(lsm, plane, &walk[2], y - 2 * w), behind, plane, w, damping);
+        sm_lap(laps, stage);
+        slot = slot + 1 == s.ring ? 0 : slot + 1;
     }
 }
 

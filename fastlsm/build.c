@@ -4,16 +4,19 @@
 #include <string.h>
 
 #include "blocks.h"
+#include "chain_sums.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
 
 enum { SPARE_LISTS = 16 };  /* rows to spare in a layer, in sides: a few broken links' worth */
+enum { LAYER_PLANES = 8 };  /* that a chain along z runs through */
 enum { LAYER_BLOCKS = 24 }; /* of the list form: layers of about this size stay in the L2 cache */
 
 /* Groups planes into layers of at least LAYER_BLOCKS blocks and finds how far a region reaches. */
 static void build_layers(Lsm *lsm)
 {
+    int least = lsm->chained ? LAYER_PLANES : 1;
     int planes = lsm->lattice.size[2];
     long *count = sm_alloc((size_t)planes, sizeof *count);
     for (long p = 0; p < lsm->lattice.count; p++) count[lsm->lattice.coord[p][2]]++;
@@ -22,7 +25,8 @@ static void build_layers(Lsm *lsm)
     long held = 0;
     for (int z = 0; z < planes; z++) {
         held += count[z];
-        if (held >= LAYER_BLOCKS * SM_LANES || z == planes - 1) {
+        bool high = z + 1 - lsm->layer_plane[lsm->layers] >= least;
+        if ((held >= LAYER_BLOCKS * SM_LANES && high) || z == planes - 1) {
             lsm->layer_plane[++lsm->layers] = z + 1;
             held = 0;
         }
@@ -69,53 +73,80 @@ static int compare_keys(const void *a, const void *b)
     return x->region - y->region;
 }
 
-/* original[p] = the lowest-numbered particle whose region holds the same particles; counts |R_i|
- * and the unique regions. Only regions that are not whole cubes can have an equal. */
-static void find_unique(Lsm *lsm, int *original)
+/* Keys of the regions that may have an equal: those that are not whole cubes. */
+typedef struct {
+    KeyedRegion *keyed; /* [particles] */
+    long count;
+} Keys;
+
+static void add_key(const Lsm *lsm, Keys *keys, long p, const uint64_t *rows)
 {
-    const LsmLattice *l = &lsm->lattice;
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    KeyedRegion *keyed = sm_alloc((size_t)l->count, sizeof *keyed);
-    long count = 0;
-    for (long p = 0; p < l->count; p++) {
-        original[p] = (int)p;
-        if (lsm_bit(l, lsm->interior.interior, l->coord[p])) {
-            lsm->members[p] = lsm->side * lsm->side * lsm->side;
-            continue;
-        }
-        lsm->members[p] = lsm_region_rows(l, &lsm->interior, p, rows);
-        keyed[count++] = (KeyedRegion){lsm_region_key(l, lsm->w, p, rows), (int)p};
-    }
-    qsort(keyed, (size_t)count, sizeof *keyed, compare_keys);
-    lsm->unique = l->count;
-    for (long i = 1; i < count; i++)
+    keys->keyed[keys->count++] =
+        (KeyedRegion){lsm_region_key(&lsm->lattice, lsm->w, p, rows), (int)p};
+}
+
+/* Counts the unique regions; original[p] (unless NULL) = the lowest-numbered particle whose region
+ * holds the same particles. Frees the keys. */
+static long collapse(Keys *keys, long particles, int *original)
+{
+    KeyedRegion *keyed = keys->keyed;
+    qsort(keyed, (size_t)keys->count, sizeof *keyed, compare_keys);
+    long unique = particles;
+    for (long p = 0; p < particles && original; p++) original[p] = (int)p;
+    for (long i = 1; i < keys->count; i++)
         if (keyed[i].key.low == keyed[i - 1].key.low &&
             keyed[i].key.high == keyed[i - 1].key.high) {
-            original[keyed[i].region] = original[keyed[i - 1].region];
-            lsm->unique--;
+            if (original) original[keyed[i].region] = original[keyed[i - 1].region];
+            unique--;
         }
     free(keyed);
+    return unique;
 }
 
 long lsm_unique(Lsm *lsm)
 {
+    const LsmLattice *l = &lsm->lattice;
+    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
     if (lsm->unique >= 0) return lsm->unique;
-    int *original = sm_alloc((size_t)lsm->lattice.count, sizeof *original);
-    find_unique(lsm, original);
-    free(original);
-    return lsm->unique;
+    Keys keys = {sm_alloc((size_t)l->count, sizeof *keys.keyed), 0};
+    for (long p = 0; p < l->count; p++) {
+        if (lsm_bit(l, lsm->interior.interior, l->coord[p])) continue;
+        lsm_region_rows(l, &lsm->interior, p, rows);
+        add_key(lsm, &keys, p, rows);
+    }
+    return lsm->unique = collapse(&keys, l->count, NULL);
+}
+
+/* Finds every region, once: counts its members, lists it, or in block form only those that box sums
+ * get wrong, and finds its original. listed[p]: it has lists. */
+static void find_regions(Lsm *lsm, int *original, bool *listed)
+{
+    const LsmLattice *l = &lsm->lattice;
+    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    Keys keys = {sm_alloc((size_t)l->count, sizeof *keys.keyed), 0};
+    LsmSetsBuilder *lists = lsm_sets_open(l, lsm->slot, lsm->w);
+    for (long p = 0; p < l->count; p++) {
+        bool whole = lsm_bit(l, lsm->interior.interior, l->coord[p]), simple = true;
+        lsm->members[p] = lsm->side * lsm->side * lsm->side;
+        if (!whole || !lsm->box)
+            lsm->members[p] = lsm_region_find(l, &lsm->interior, p, rows, &simple);
+        if (!whole) add_key(lsm, &keys, p, rows);
+        listed[p] = !lsm->box || (!simple && !lsm_blocks_regular(lsm, p, rows));
+        if (listed[p]) lsm_sets_add(lists, p, rows);
+    }
+    lsm->unique = collapse(&keys, l->count, original);
+    lsm_sets_close(lists, &lsm->sets);
 }
 
 /* Tiles of unique regions, each layer beginning a new tile; copies go to a list of their own. */
 static void build_tiles(Lsm *lsm, const int *original)
 {
     long n = lsm->lattice.count, room = (n / SM_LANES + lsm->layers + 1) * SM_LANES, at = 0;
-    lsm->tile_region = sm_alloc((size_t)room, sizeof(int));
     lsm->tile_slot = sm_alloc((size_t)room, sizeof(int));
     lsm->layer_tile = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
     lsm->copy = sm_alloc((size_t)(n - lsm->unique), sizeof *lsm->copy);
     lsm->layer_copy = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
-    for (long i = 0; i < room; i++) lsm->tile_region[i] = lsm->tile_slot[i] = -1;
+    for (long i = 0; i < room; i++) lsm->tile_slot[i] = -1;
     long p = 0;
     lsm->copies = 0;
     for (int l = 0; l < lsm->layers; l++) {
@@ -129,7 +160,6 @@ static void build_tiles(Lsm *lsm, const int *original)
                 lsm->copy[lsm->copies++][1] = lsm->slot[original[p]];
                 continue;
             }
-            lsm->tile_region[at] = (int)p;
             lsm->tile_slot[at++] = lsm->slot[p];
         }
     }
@@ -151,32 +181,27 @@ static void tile_blocks(Lsm *lsm)
     lsm->layer_copy = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
 }
 
-/* Lists for every region, or in block form for those that box sums get wrong. */
-static void build_lists(Lsm *lsm)
+/* Room for the lists to change in a body that can break, and who is summed by which. */
+static void place_lists(Lsm *lsm, const bool *listed)
 {
-    long n = lsm->lattice.count;
+    long n = lsm->lattice.count, region = 0;
     Blocks *box = lsm->box;
-    bool *wanted = sm_alloc((size_t)n, sizeof *wanted);
-    memset(wanted, 1, (size_t)n);
-    if (box) {
-        lsm_blocks_irregular(lsm, wanted);
-        memset(box->mixed, 0, (size_t)lsm->blocks * sizeof(bool));
-        memset(box->listed, 0, (size_t)lsm->blocks * sizeof(bool));
-    }
-    lsm_sets_build(&lsm->lattice, &lsm->interior, wanted, lsm->slot, &lsm->sets);
-    free(wanted);
     if (lsm->params.strain_limit > 0) {
         lsm->ledger = sm_alloc(1, sizeof *lsm->ledger);
         lsm_ledger_open(&lsm->sets, lsm->layers, lsm->layer_plane, lsm->spare, lsm->ledger);
     }
+    lsm->block_region = lsm->particle;
+    if (!box) return;
     lsm->block_region = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
     for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->block_region[s] = -1;
-    for (long region = 0; region < lsm->sets.region_count; region++) {
-        int slot = lsm->slot[lsm->sets.region_particle[region]];
-        lsm->block_region[slot] = (int)region;
-        if (box) box->mixed[slot / SM_LANES] = true;
+    memset(box->mixed, 0, (size_t)lsm->blocks * sizeof(bool));
+    memset(box->listed, 0, (size_t)lsm->blocks * sizeof(bool));
+    for (long p = 0; p < n; p++) {
+        if (!listed[p]) continue;
+        lsm->block_region[lsm->slot[p]] = (int)region++;
+        box->mixed[lsm->slot[p] / SM_LANES] = true;
     }
-    for (long i = lsm->side; box && i < lsm->sets.bar_count * lsm->side; i++)
+    for (long i = lsm->side; i < lsm->sets.bar_count * lsm->side; i++)
         if (lsm->sets.bar[i]) box->listed[(lsm->sets.bar[i] - 1) / SM_LANES] = true;
 }
 
@@ -189,7 +214,8 @@ static void build_rows(Lsm *lsm)
         .bar = sm_alloc(bars * ROW_BAR, real_size),
         .plate = sm_alloc(plates * ROW_PLATE, real_size),
         .transform = sm_alloc(rows * ROW_T, real_size),
-        .plate_down = sm_alloc(plates * ROW_PLATE_DOWN, real_size),
+        .plate_down =
+            sm_alloc(plates * (size_t)(lsm->chained ? ROW_PLATE_CHAIN : ROW_PLATE_DOWN), real_size),
     };
 }
 
@@ -240,9 +266,8 @@ static void build_constants(Lsm *lsm)
         for (int lane = 0; lane < SM_LANES; lane++) {
             int p = lsm->particle[block * SM_LANES + lane];
             if (p < 0) continue;
-            k->weight[lane] = (real)(lsm->mass[p] / lsm->members[p]);
+            k->weight[lane] = (real)(mass_of(lsm, p) / lsm->members[p]);
             k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
-            k->live[lane] = 1;
         }
     }
     lsm->tile_const = sm_alloc((size_t)lsm->tiles, sizeof(int));
@@ -258,7 +283,8 @@ static void build_constants(Lsm *lsm)
 static void build_memory(Lsm *lsm)
 {
     size_t tiles = (size_t)lsm->tiles;
-    lsm->centre = sm_alloc(tiles * 3 * SM_LANES, sizeof(real));
+    lsm->centre = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
+    lsm->g = NULL;
     lsm->last = sm_alloc(tiles * 6 * SM_LANES, sizeof(short));
     vec identity[9];
     for (int i = 0; i < 9; i++) identity[i] = lanes_set(i % 4 == 0);
@@ -274,21 +300,28 @@ static void build_regions(Lsm *lsm)
 {
     long n = lsm->lattice.count;
     int *original = sm_alloc((size_t)n, sizeof *original);
+    bool *listed = sm_alloc((size_t)n, sizeof *listed);
+    lsm->members = sm_alloc((size_t)n, sizeof(int));
     lsm_interior_build(&lsm->lattice, lsm->w, &lsm->interior);
-    find_unique(lsm, original);
+    find_regions(lsm, original, listed);
     for (long p = 0; p < n && lsm->params.strain_limit > 0; p++)
         original[p] = (int)p; /* equal regions may part: each has its own tile lane */
     if (lsm->box)
         tile_blocks(lsm);
     else
         build_tiles(lsm, original);
+    place_lists(lsm, listed);
     free(original);
-    build_lists(lsm);
+    free(listed);
     build_rows(lsm);
     build_memory(lsm);
     lsm_pipeline_split(lsm);
     if (lsm->box) lsm_blocks_share(lsm);
     build_constants(lsm);
+    if (lsm->chained) lsm_chain_open(lsm);
+    if (lsm->params.strain_limit > 0) return;
+    free(lsm->members);
+    lsm->members = NULL;
 }
 
 SmCode lsm_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
@@ -309,11 +342,12 @@ SmCode lsm_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *
 static void take_masses(Lsm *lsm, const double *mass)
 {
     long n = lsm->lattice.count;
+    lsm->mass_unit = 1;
+    if (!mass) return;
     lsm->mass = sm_alloc((size_t)n, sizeof(double));
     lsm->mass_unit = 0;
-    for (long p = 0; p < n; p++) lsm->mass_unit += (mass ? mass[p] : 1) / (double)n;
-    if (!mass) lsm->mass_unit = 1;
-    for (long p = 0; p < n; p++) lsm->mass[p] = mass ? mass[p] / lsm->mass_unit : 1;
+    for (long p = 0; p < n; p++) lsm->mass_unit += mass[p] / (double)n;
+    for (long p = 0; p < n; p++) lsm->mass[p] = mass[p] / lsm->mass_unit;
 }
 
 Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
@@ -326,12 +360,12 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     lsm_lattice_build(voxels, &lsm->lattice);
     long n = lsm->lattice.count;
     take_masses(lsm, params->mass);
-    lsm->members = sm_alloc((size_t)n, sizeof(int));
     if (params->strain_limit > 0) lsm->mark = sm_alloc((size_t)n, 1);
     lsm->spare = SPARE_LISTS * lsm->side;
     if (params->layout == SM_LAYOUT_BLOCKS) {
         lsm_blocks_build(lsm);
     } else {
+        lsm->chained = lsm_chained(lsm);
         build_layers(lsm);
         build_slots(lsm);
     }
@@ -358,11 +392,15 @@ static void free_regions(Lsm *lsm)
     lsm_sets_free(&lsm->sets);
     if (lsm->ledger) lsm_ledger_free(lsm->ledger);
     free(lsm->ledger);
+    if (lsm->chains) lsm_chains_free(lsm->chains);
+    free(lsm->chains);
+    free(lsm->chain_factor);
     free_rows(&lsm->rows);
-    void *all[] = {lsm->tile_region, lsm->tile_slot,    lsm->layer_tile,  lsm->copy,
-                   lsm->layer_copy,  lsm->block_region, lsm->block_const, lsm->particle_const,
-                   lsm->tile_const,  lsm->region_const, lsm->centre,      lsm->last,
-                   lsm->sweeps,      lsm->stretch};
+    if (lsm->box) free(lsm->block_region);
+    void *all[] = {lsm->tile_slot,    lsm->layer_tile,  lsm->copy,           lsm->layer_copy,
+                   lsm->members,      lsm->block_const, lsm->particle_const, lsm->tile_const,
+                   lsm->region_const, lsm->centre,      lsm->last,           lsm->sweeps,
+                   lsm->stretch};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
@@ -397,18 +435,20 @@ long lsm_bytes(const Lsm *lsm)
     const LsmSets *sets = &lsm->sets;
     long words = (long)l->size[1] * l->size[2] * l->words, lanes = lsm->blocks * SM_LANES,
          real_size = sizeof(real);
-    long bytes = words * 28 + l->count * (long)(sizeof *l->coord + sizeof *l->link +
-                                                sizeof(double) + 2 * sizeof(int));
-    bytes += lanes * ((lsm->g ? 9 : 6) * real_size + 2 * (long)sizeof(int)); /* x v g, slots */
-    bytes +=
-        lsm->tiles * SM_LANES * (3 * real_size + 6 * (long)sizeof(short) + 2 * (long)sizeof(int));
+    long bytes = words * 28 + l->count * (long)(sizeof *l->coord + sizeof *l->link + sizeof(int));
+    bytes += l->count * (long)((lsm->mass ? sizeof(double) : 0) + (lsm->members ? sizeof(int) : 0));
+    bytes += lanes * (9 * real_size + (lsm->box ? 2 : 1) * (long)sizeof(int)); /* x, v, centre */
+    bytes += lsm->tiles * SM_LANES * (long)(6 * sizeof(short) + sizeof(int));
+    bytes += lsm->stretch ? lsm->tiles * SM_LANES * 9 * (long)sizeof(float) : 0;
+    bytes += (lsm->blocks + lsm->tiles) * (long)sizeof(int) + lsm->copies * (long)sizeof *lsm->copy;
     bytes += lsm->particle_records.room * (long)sizeof(ParticleConst) +
              lsm->region_records.room * (long)sizeof(RegionConst);
     bytes += lsm->ledger ? lsm->ledger->bytes + l->count : 0;
-    bytes +=
-        (sets->bar_count + sets->plate_count + sets->region_room) * sets->side * (long)sizeof(int);
+    bytes += lsm->chains ? lsm_chains_bytes(lsm->chains)
+                         : (sets->bar_count + sets->plate_count + sets->region_room) * sets->side *
+                               (long)sizeof(int);
     bytes += (lanes * (ROW_P + ROW_T) + sets->bar_count * ROW_BAR +
-              sets->plate_count * (ROW_PLATE + ROW_PLATE_DOWN)) *
+              sets->plate_count * (ROW_PLATE + (lsm->chained ? ROW_PLATE_CHAIN : ROW_PLATE_DOWN))) *
              real_size;
     return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0);
 }
@@ -418,9 +458,8 @@ void lsm_free(Lsm *lsm)
     free_regions(lsm);
     lsm_blocks_free(lsm->box);
     lsm_lattice_free(&lsm->lattice);
-    void *all[] = {
-        lsm->mass, lsm->members,     lsm->slot,        lsm->particle,     lsm->x,        lsm->v,
-        lsm->g,    lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->obstacle, lsm->mark};
+    void *all[] = {lsm->mass,        lsm->slot,        lsm->particle,     lsm->x,        lsm->v,
+                   lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->obstacle, lsm->mark};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     free(lsm);
 }

@@ -50,8 +50,9 @@ Crowd *crowd_build(const Lsm *lsm, long bodies)
     crowd->region = sm_alloc(n, sizeof *crowd->region);
     crowd->original = sm_alloc(n, sizeof(int));
     for (size_t p = 0; p < n; p++) {
-        crowd->weight[p] = (real)(lsm->mass[p] / lsm->members[p]);
-        crowd->inverse_count[p] = (real)(1.0 / lsm->members[p]);
+        const ParticleConst *k = &lsm->particle_const[lsm->block_const[lsm->slot[p] / L]];
+        crowd->weight[p] = k->weight[lsm->slot[p] % L];
+        crowd->inverse_count[p] = k->inverse_count[lsm->slot[p] % L];
         crowd->original[p] = (int)p;
     }
     for (long i = 0; i < lsm->copies; i++)
@@ -100,6 +101,16 @@ void crowd_free(Crowd *crowd)
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
+/* F window sums over the rows at[0 ..]; moments of three of them, from `first` on unless that is
+ * -1, follow in sum[F ..]. */
+SM_INLINE void row_sums(const real *const *at, int side, int F, int first, vec *sum)
+{
+    for (int f = 0; f < F; f++) {
+        bool weighted = first >= 0 && f >= first && f < first + 3;
+        window_sum(at, f * L, side / 2, &sum[f], weighted ? &sum[F + f - first] : NULL);
+    }
+}
+
 /* One list level: out[row] = window sum over in[list[row]], F values in and out_F out. `first` is
  * where the moments are taken (window.h), or -1; `down` takes them off instead of keeping them. */
 SM_INLINE void level(const int *list, long from, long to, int side, const real *in, int pitch,
@@ -110,8 +121,8 @@ SM_INLINE void level(const int *list, long from, long to, int side, const real *
         vec sum[15];
         for (int i = side - 1; i > 0; i--) at[i] = in + (long)list[row * side + i] * pitch * L;
         at[0] = in + (long)list[row * side] * pitch * L;
-        window_sum(at, L, side / 2, F, first, sum, sum + F);
-        finish_down(sum, sum + F, !down);
+        row_sums(at, side, F, first, sum);
+        for (int d = 0; d < 3 && down; d++) sum[d] -= sum[F + d];
         for (int f = 0; f < out_F; f++) lanes_store(out + (row * out_pitch + f) * L, sum[f]);
     }
 }
@@ -146,7 +157,7 @@ SM_INLINE void last_level(const Crowd *crowd, int side, const real *in, int pitc
     const real *at[LSM_MAX_SIDE];
     for (int i = side - 1; i > 0; i--) at[i] = in + (long)id[i] * pitch * L;
     at[0] = in + (long)id[0] * pitch * L;
-    window_sum(at, L, side / 2, F, first, sum, sum + F);
+    row_sums(at, side, F, first, sum);
 }
 
 SM_INLINE void match_region(Crowd *crowd, int side, long group, const GroupRows *r, long p,
@@ -167,7 +178,8 @@ SM_INLINE void match_region(Crowd *crowd, int side, long group, const GroupRows 
     match_moments(S, &k, c, A);
     store3(r->centre + p * 3 * L, c);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    polar_fast_lanes(A, all_live, crowd->last + (group * lsm->lattice.count + p) * 6 * L, R);
+    polar_fast_lanes(1, (const vec(*)[9]) & A, all_live,
+                     crowd->last + (group * lsm->lattice.count + p) * 6 * L, &R);
     sm_lap(laps, SM_POLAR);
     match_centre(c, R, &k, q);
     real *T = r->transform + (p + 1) * 12 * L;
@@ -224,8 +236,7 @@ SM_INLINE void move_group(Crowd *crowd, int side, long group, const GroupRows *r
         long at = (group * n + p) * 3 * L;
         vec sum[15], x[3], v[3];
         last_level(crowd, side, r->plate_down, PLATE_DOWN, p, 6, 3, sum);
-        finish_down(sum, sum + 6, false);
-        for (int d = 0; d < 3; d++) sum[d] *= crowd->inverse_count[p];
+        for (int d = 0; d < 3; d++) sum[d] = (sum[d] - sum[6 + d]) * crowd->inverse_count[p];
         if (goals) {
             store3(crowd->g + at, sum);
             continue;
@@ -249,10 +260,12 @@ SM_INLINE void damp_group(Crowd *crowd, int side, long group, const GroupRows *r
     long n = lsm->lattice.count;
     vec x[3], v[3], F[15], c[3];
     for (long p = 0; p < n; p++) {
-        load3(crowd->x + (group * n + p) * 3 * L, x);
-        load3(crowd->v + (group * n + p) * 3 * L, v);
-        damping_products(lanes_set(crowd->weight[p]), x, v, F);
-        for (int f = 0; f < 12; f++) lanes_store(r->transform + ((p + 1) * 12 + f) * L, F[f]);
+        long at = (group * n + p) * 3 * L;
+        for (int d = 0; d < 3; d++) {
+            damping_products(lanes_set(crowd->weight[p]), crowd->x + at, crowd->v + at, d, F);
+            for (int k = 0; k < 4; k++)
+                lanes_store(r->transform + ((p + 1) * 12 + 3 * k + d) * L, F[k]);
+        }
     }
     sums(crowd, r, side, true, false);
     for (long p = 0; p < n; p++) {

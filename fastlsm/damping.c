@@ -1,6 +1,7 @@
 /* damping.c - region damping (fastlsm eq. 14): each region's rigid velocity, averaged over the
  * regions of a particle, pulls the particle's velocity towards it. */
 #include "blocks_pass.h"
+#include "chain_sums.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
@@ -10,11 +11,13 @@ static void weigh(Lsm *lsm, int layer)
 {
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         if (lsm->box && !lsm->box->listed[block]) continue;
-        vec x[3], v[3], field[16] = {{0}};
+        vec part[4], field[16] = {{0}};
         real *row[SM_LANES];
-        load3(lsm->x + block * 3 * SM_LANES, x);
-        load3(lsm->v + block * 3 * SM_LANES, v);
-        damping_products(lsm->particle_const[lsm->block_const[block]].weight, x, v, field);
+        for (int d = 0; d < 3; d++) {
+            damping_products(lsm->particle_const[lsm->block_const[block]].weight,
+                             lsm->x + block * 3 * SM_LANES, lsm->v + block * 3 * SM_LANES, d, part);
+            for (int k = 0; k < 4; k++) field[3 * k + d] = part[k];
+        }
         for (int lane = 0; lane < SM_LANES; lane++)
             row[lane] = lsm->rows.transform + (block * SM_LANES + lane + 1) * ROW_T;
         lanes_to_rows(field, row);
@@ -25,13 +28,17 @@ static void sums_up(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     weigh(lsm, layer);
-    lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
-    lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
+    if (lsm->chains) {
+        lsm_chain_sets_up(lsm, layer, true);
+    } else {
+        lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
+        lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
+    }
     sm_lap(laps, SM_DAMPING);
 }
 
 /* Rows of a tile's rigid velocities, for the lists. */
-static void store_velocities(Lsm *lsm, long tile, const vec out[6])
+static void store_velocities(const Lsm *lsm, long tile, const vec out[6])
 {
     vec field[8] = {out[0], out[1], out[2], lanes_set(0), out[3], out[4], out[5], lanes_set(0)};
     lanes_interleave(field, 8);
@@ -56,15 +63,22 @@ static void region_sums(const Lsm *lsm, const int *region, vec field[16])
 static void solve_tile(Lsm *lsm, long tile)
 {
     vec field[16], c[3], out[6];
-    region_sums(lsm, lsm->tile_region + tile * SM_LANES, field);
+    if (lsm->chains) {
+        const real *row[SM_LANES];
+        tile_rows(lsm, tile, row);
+        lanes_from_rows(row, field);
+    } else {
+        int region[SM_LANES];
+        tile_regions(lsm, tile, region);
+        region_sums(lsm, region, field);
+    }
     load3(lsm->centre + tile * 3 * SM_LANES, c);
     rigid_velocity(field, c, lsm->region_const[lsm->tile_const[tile]].inverse_mass, out);
     store_velocities(lsm, tile, out);
 }
 
-SM_INLINE void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, SmLaps *laps)
+SM_INLINE void solve_block(const Lsm *lsm, long block, vec *F, vec *out)
 {
-    (void)layer, (void)laps;
     vec c[3];
     if (lsm->box->mixed[block]) {
         const int *region = lsm->block_region + block * SM_LANES;
@@ -79,18 +93,30 @@ SM_INLINE void solve_block(Lsm *lsm, int layer, long block, vec *F, vec *out, Sm
     if (lsm->box->listed[block]) store_velocities(lsm, block, out);
 }
 
+SM_INLINE void solve_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*F)[12],
+                            vec (*out)[12], SmLaps *laps)
+{
+    (void)layer, (void)laps;
+    for (int k = 0; k < blocks; k++) solve_block(lsm, block + k, F[k], out[k]);
+}
+
 static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
+    if (lsm->chains) lsm_chain_regions_up(lsm, layer, true);
     if (lsm->box)
-        lsm_blocks_up(lsm, layer, thread, true, solve_block, laps);
+        lsm_blocks_up(lsm, layer, thread, true, solve_blocks, laps);
     else
         for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
             solve_tile(lsm, tile);
     for (long i = lsm->layer_copy[layer]; i < lsm->layer_copy[layer + 1]; i++)
         store8(lsm->rows.transform + (lsm->copy[i][0] + 1) * (long)ROW_T,
                load8(lsm->rows.transform + (lsm->copy[i][1] + 1) * (long)ROW_T));
-    lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
-    lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
+    if (lsm->chains) {
+        lsm_chain_sets_down(lsm, layer, true);
+    } else {
+        lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
+        lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
+    }
     sm_lap(laps, SM_DAMPING);
 }
 
@@ -109,11 +135,14 @@ SM_INLINE void slow_down(Lsm *lsm, long block, const vec sum[6])
 static void slow(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
+    if (lsm->chains) lsm_chain_particles(lsm, layer, true);
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         real sums[6][SM_LANES] __attribute__((aligned(64))) = {{0}};
         vec *sum = (vec *)sums;
         if (lsm->box) lsm_blocks_down(lsm, layer, block, true, sum);
-        if (!lsm->box || lsm->box->mixed[block])
+        if (lsm->chains)
+            slot_values(lsm, block, 6, sums);
+        else if (!lsm->box || lsm->box->mixed[block])
             lsm_particles_plain(lsm, lsm->block_region + block * SM_LANES, sums);
         slow_down(lsm, block, sum);
     }

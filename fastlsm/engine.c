@@ -207,10 +207,7 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     for (long body = 0; body < e->bodies; body++)
         memcpy(e->pose[body], params->instance_pose ? params->instance_pose[body] : identity,
                sizeof *e->pose);
-    if (e->bodies > 1)
-        e->crowd = crowd_build(lsm, e->bodies);
-    else
-        lsm->g = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
+    if (e->bodies > 1) e->crowd = crowd_build(lsm, e->bodies);
     for (int d = 0; d < 3; d++)
         lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
     start_at_rest(e);
@@ -293,9 +290,9 @@ static void engine_step(SmEngine *e, SmLaps *laps)
     sm_lap(laps, SM_OTHER);
 }
 
-static double mass_of(const SmEngine *e, long number)
+static double kilograms(const SmEngine *e, long number)
 {
-    return e->lsm->mass_unit * e->lsm->mass[e->inner[number % e->count]];
+    return e->lsm->mass_unit * mass_of(e->lsm, e->inner[number % e->count]);
 }
 
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])
@@ -303,7 +300,7 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     real *v = field_of(e, SM_VELOCITY);
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->bodies * e->count);
-        double scale = e->lsm->params.h / (e->lsm->cell * mass_of(e, particle[i]));
+        double scale = e->lsm->params.h / (e->lsm->cell * kilograms(e, particle[i]));
         for (int d = 0; d < 3; d++) {
             const double *origin;
             v[index_of(e, particle[i], d, &origin)] += (real)(impulse[i][d] * scale);
@@ -362,7 +359,7 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 
 static void engine_masses(SmEngine *e, double *mass)
 {
-    for (long p = 0; p < e->count; p++) mass[p] = mass_of(e, p);
+    for (long p = 0; p < e->count; p++) mass[p] = kilograms(e, p);
 }
 
 static void engine_count(SmEngine *e, SmCounts *counts)

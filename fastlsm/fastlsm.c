@@ -12,6 +12,7 @@
 
 #include "blocks_pass.h"
 #include "build.h"
+#include "chain_sums.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
@@ -36,7 +37,9 @@ static void bars_and_plates(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     weigh(lsm, layer);
-    if (lsm->params.summation != SM_SUM_NAIVE) {
+    if (lsm->chains) {
+        lsm_chain_sets_up(lsm, layer, false);
+    } else if (lsm->params.summation != SM_SUM_NAIVE) {
         lsm_bars_up(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
         lsm_plates_up(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
     }
@@ -67,17 +70,20 @@ static void keep_constants(Lsm *lsm, long tile, const vec S[12])
     }
 }
 
-/* Rotation of each region of a tile. */
-SM_INLINE void rotate(Lsm *lsm, int layer, long tile, const vec A[9], vec R[9])
+/* Rotation of each region of one or two tiles that follow each other. */
+SM_INLINE void rotate(Lsm *lsm, int layer, long tile, int tiles, const vec (*A)[9], vec (*R)[9])
 {
-    const int *slot = lsm->tile_slot + tile * SM_LANES;
-    short *last = lsm->last + tile * 6 * SM_LANES;
     if (lsm->params.polar == SM_POLAR_FAST) {
-        polar_fast_lanes(A, slot, last, R);
+        polar_fast_lanes(tiles, A, lsm->tile_slot + tile * SM_LANES,
+                         lsm->last + tile * 6 * SM_LANES, R);
         return;
     }
-    lsm->sweeps[layer] += polar_jacobi_lanes(A, slot, last, lsm->stretch + tile * 9 * SM_LANES, R);
-    last_store(last, R);
+    for (int t = 0; t < tiles; t++, tile++) {
+        short *last = lsm->last + tile * 6 * SM_LANES;
+        lsm->sweeps[layer] += polar_jacobi_lanes(A[t], lsm->tile_slot + tile * SM_LANES, last,
+                                                 lsm->stretch + tile * 9 * SM_LANES, R[t]);
+        last_store(last, R[t]);
+    }
 }
 
 /* Scatters a tile's transforms as rows (q, Rz, Ry, Rx). */
@@ -115,32 +121,56 @@ static void copy_transforms(Lsm *lsm, int layer)
     }
 }
 
-/* c_r, A_r, R_r, q_r of a tile from its sums; false when only constants were wanted. */
-SM_INLINE bool match_sums(Lsm *lsm, int layer, long tile, const vec S[12], vec q[3], vec R[9],
-                          SmLaps *laps)
+/* c_r, A_r, R_r, q_r of one or two tiles from their sums; false when only constants were wanted. */
+SM_INLINE bool match_sums(Lsm *lsm, int layer, long tile, int tiles, const vec (*S)[12],
+                          vec (*q)[3], vec (*R)[9], SmLaps *laps)
 {
-    vec c[3], A[9];
+    vec c[2][3], A[2][9];
     if (lsm->pass == PASS_CONSTANTS) {
-        keep_constants(lsm, tile, S);
+        for (int t = 0; t < tiles; t++) keep_constants(lsm, tile + t, S[t]);
         return false;
     }
-    const RegionConst *k = &lsm->region_const[lsm->tile_const[tile]];
-    match_moments(S, k, c, A);
-    if (lsm->damp_now) store3(lsm->centre + tile * 3 * SM_LANES, c);
+    for (int t = 0; t < tiles; t++) {
+        match_moments(S[t], &lsm->region_const[lsm->tile_const[tile + t]], c[t], A[t]);
+        if (lsm->damp_now) store3(lsm->centre + (tile + t) * 3 * SM_LANES, c[t]);
+    }
     sm_lap(laps, SM_SHAPE_MATCHING);
-    rotate(lsm, layer, tile, A, R);
+    rotate(lsm, layer, tile, tiles, (const vec(*)[9])A, R);
     sm_lap(laps, SM_POLAR);
-    match_centre(c, R, k, q);
+    for (int t = 0; t < tiles; t++)
+        match_centre(c[t], R[t], &lsm->region_const[lsm->tile_const[tile + t]], q[t]);
     return true;
 }
 
-/* List form: a tile of regions. */
-static void match_tile(Lsm *lsm, int layer, long tile, SmLaps *laps)
+/* The same from the rows of a tile's chained sums. */
+static void chained_sums(const Lsm *lsm, long tile, vec S[12])
 {
-    vec S[12], R[9], q[3];
-    region_sums(lsm, lsm->tile_region + tile * SM_LANES, S);
+    vec padded[16];
+    const real *row[SM_LANES];
+    tile_rows(lsm, tile, row);
+    lanes_from_rows(row, padded);
+    for (int i = 0; i < 12; i++) S[i] = padded[(4 - i / 3) % 4 * 4 + i % 3];
+}
+
+static void tile_sums(const Lsm *lsm, long tile, vec S[12])
+{
+    if (lsm->chains) {
+        chained_sums(lsm, tile, S);
+        return;
+    }
+    int region[SM_LANES];
+    tile_regions(lsm, tile, region);
+    region_sums(lsm, region, S);
+}
+
+/* List form: one or two tiles of regions. */
+SM_INLINE void match_tiles(Lsm *lsm, int layer, long tile, int tiles, SmLaps *laps)
+{
+    vec S[2][12], R[2][9], q[2][3];
+    for (int t = 0; t < tiles; t++) tile_sums(lsm, tile + t, S[t]);
     sm_lap(laps, SM_FAST_SUM);
-    if (match_sums(lsm, layer, tile, S, q, R, laps)) store_transforms(lsm, tile, q, R);
+    if (match_sums(lsm, layer, tile, tiles, (const vec(*)[12])S, q, R, laps))
+        for (int t = 0; t < tiles; t++) store_transforms(lsm, tile + t, q[t], R[t]);
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
 
@@ -154,56 +184,83 @@ static void replace_sums(const Lsm *lsm, long block, vec S[12])
     for (int i = 0; i < 12; i++) S[i] = lanes_select(lanes, listed[i], S[i]);
 }
 
-/* Block form: the regions centred in a block. */
-SM_INLINE void match_block(Lsm *lsm, int layer, long block, vec *S, vec *out, SmLaps *laps)
+/* Block form: the regions centred in one or two blocks that follow each other. */
+SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S)[12],
+                            vec (*out)[12], SmLaps *laps)
 {
-    vec R[9], q[3];
-    if (lsm->box->mixed[block]) replace_sums(lsm, block, S);
+    const Blocks *box = lsm->box;
+    vec R[2][9], q[2][3];
+    for (int k = 0; k < blocks; k++)
+        if (box->mixed[block + k]) replace_sums(lsm, block + k, S[k]);
     sm_lap(laps, SM_FAST_SUM);
-    if (!match_sums(lsm, layer, block, S, q, R, laps)) return;
-    if (lsm->box->listed[block]) store_transforms(lsm, block, q, R);
-    for (int i = 0; i < 3; i++) {
-        out[i] = q[i];
-        for (int d = 0; d < 3; d++) out[9 - 3 * d + i] = R[i * 3 + d];
+    bool matched = match_sums(lsm, layer, block, blocks, (const vec(*)[12])S, q, R, laps);
+    for (int k = 0; k < blocks; k++) {
+        if (!matched) {
+            for (int f = 0; f < 12; f++) out[k][f] = lanes_set(0);
+            continue;
+        }
+        if (box->listed[block + k]) store_transforms(lsm, block + k, q[k], R[k]);
+        for (int i = 0; i < 3; i++) {
+            out[k][i] = q[k][i];
+            for (int d = 0; d < 3; d++) out[k][9 - 3 * d + i] = R[k][i * 3 + d];
+        }
+        for (int i = 0; i < 12 && !box->whole[block + k]; i++) /* empty lanes bring nothing down */
+            out[k][i] = lanes_and(out[k][i], box->site[block + k]);
     }
-    for (int i = 0; i < 12 && !lsm->box->whole[block]; i++) /* empty lanes bring nothing down */
-        out[i] = lanes_and(out[i], lsm->box->site[block]);
     sm_lap(laps, SM_SHAPE_MATCHING);
+}
+
+static void match_layer(Lsm *lsm, int layer, SmLaps *laps)
+{
+    long tile = lsm->layer_tile[layer], end = lsm->layer_tile[layer + 1];
+    for (; tile + 1 < end; tile += 2) match_tiles(lsm, layer, tile, 2, laps);
+    if (tile < end) match_tiles(lsm, layer, tile, 1, laps);
 }
 
 static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     lsm->sweeps[layer] = 0;
+    if (lsm->chains) lsm_chain_regions_up(lsm, layer, false);
     if (lsm->box)
-        lsm_blocks_up(lsm, layer, thread, false, match_block, laps);
+        lsm_blocks_up(lsm, layer, thread, false, match_blocks, laps);
     else
-        for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
-            match_tile(lsm, layer, tile, laps);
+        match_layer(lsm, layer, laps);
     if (lsm->pass == PASS_CONSTANTS) return;
     if (!lsm->box) copy_transforms(lsm, layer);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    if (lsm->params.summation != SM_SUM_NAIVE) {
+    if (lsm->chains) {
+        lsm_chain_sets_down(lsm, layer, false);
+    } else if (lsm->params.summation != SM_SUM_NAIVE) {
         lsm_bars_down(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
         lsm_plates_down(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
     }
     sm_lap(laps, SM_FAST_SUM);
 }
 
-/* |R_i| g_i of a block's particles, in lanes: box sums, then the lanes that lists sum. */
-static void particle_sums(const Lsm *lsm, int layer, long block, vec sum[3])
+/* The lanes of a block that lists sum, added to its |R_i| g_i. */
+static __attribute__((noinline)) void add_listed(const Lsm *lsm, long block, vec sum[3])
 {
-    real sums[3][SM_LANES] __attribute__((aligned(64))) = {{0}};
-    if (lsm->box) {
-        lsm_blocks_down(lsm, layer, block, false, sum);
-        if (!lsm->box->mixed[block]) return;
-        store3(sums[0], sum);
-    }
-    lsm_particles_down(lsm, lsm->block_region + block * SM_LANES, sums);
+    real sums[3][SM_LANES] __attribute__((aligned(64)));
+    store3(sums[0], sum);
+    if (lsm->chains)
+        slot_values(lsm, block, 3, sums);
+    else
+        lsm_particles_down(lsm, lsm->block_region + block * SM_LANES, sums);
     load3(sums[0], sum);
 }
 
+/* |R_i| g_i of a block's particles, in lanes. */
+SM_INLINE void particle_sums(const Lsm *lsm, int layer, long block, vec sum[3])
+{
+    if (lsm->box)
+        lsm_blocks_down(lsm, layer, block, false, sum);
+    else
+        sum[0] = sum[1] = sum[2] = lanes_set(0);
+    if (!lsm->box || lsm->box->mixed[block]) add_listed(lsm, block, sum);
+}
+
 /* Eqs. 1 and 2 in cells and steps: v += g - x + gravity; x += v, unless damping does that later. */
-static void integrate(Lsm *lsm, long block, const vec sum[3])
+SM_INLINE void integrate(Lsm *lsm, long block, const vec sum[3])
 {
     const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
     vec x[3], v[3], g[3];
@@ -214,7 +271,8 @@ static void integrate(Lsm *lsm, long block, const vec sum[3])
     }
     load3(lsm->x + block * 3 * SM_LANES, x);
     load3(lsm->v + block * 3 * SM_LANES, v);
-    integrate_velocity(g, x, lsm->gravity, k->live, v);
+    vec live = lanes_select(k->inverse_count > 0, lanes_set(1), lanes_set(0));
+    integrate_velocity(g, x, lsm->gravity, live, v);
     if (!lsm->damp_now) {
         integrate_position(lsm->obstacle, lsm->obstacle_count, lsm->shift, x, v);
         store3(lsm->x + block * 3 * SM_LANES, x);
@@ -226,6 +284,7 @@ static void move(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     if (lsm->pass == PASS_CONSTANTS) return;
+    if (lsm->chains) lsm_chain_particles(lsm, layer, false);
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         vec sum[3];
         particle_sums(lsm, layer, block, sum);
@@ -240,6 +299,8 @@ static LsmPart *const shape_matching[3] = {bars_and_plates, match, move};
 void lsm_goals(Lsm *lsm)
 {
     lsm->laps = NULL;
+    lsm->damp_now = false; /* keep no centres: goals take their room */
+    lsm->g = lsm->centre;
     lsm->pass = PASS_GOALS;
     lsm_pipeline(lsm, shape_matching);
 }
@@ -254,6 +315,7 @@ void lsm_step(Lsm *lsm, SmLaps *laps)
 {
     int every = lsm->params.damping_every > 0 ? lsm->params.damping_every : 1;
     lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;
+    if (lsm->damp_now) lsm->g = NULL;
     lsm->laps = laps;
     lsm->pass = PASS_STEP;
     lsm_pipeline(lsm, shape_matching);

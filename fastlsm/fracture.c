@@ -97,18 +97,16 @@ static int list_members(const Lsm *lsm, long p, const uint64_t *rows, int *membe
 }
 
 /* Makes room for one more region that has lists: block form only. */
-static int add_region(Lsm *lsm, long p)
+static int add_region(Lsm *lsm)
 {
     LsmSets *sets = &lsm->sets;
     long region = sets->region_count++;
     if (sets->region_count > sets->region_room) {
         sets->region_room = 2 * sets->region_count + 64;
-        size_t room = (size_t)sets->region_room;
-        sets->region = sm_realloc(sets->region, room * (size_t)sets->side, sizeof(int));
-        sets->region_particle = sm_realloc(sets->region_particle, room, sizeof(int));
+        sets->region =
+            sm_realloc(sets->region, (size_t)(sets->region_room * sets->side), sizeof(int));
     }
     memset(sets->region + region * sets->side, 0, (size_t)sets->side * sizeof(int));
-    sets->region_particle[region] = (int)p;
     return (int)region;
 }
 
@@ -118,7 +116,7 @@ static bool revise_lists(Lsm *lsm, long p, const uint64_t *rows, int count, cons
     int slot = lsm->slot[p], *region = &lsm->block_region[slot];
     if (*region < 0) {
         if (lsm_blocks_regular(lsm, p, rows)) return true;
-        *region = add_region(lsm, p);
+        *region = add_region(lsm);
         lsm->box->mixed[slot / SM_LANES] = true;
     }
     for (int i = 0; i < count && lsm->box; i++)
@@ -151,7 +149,7 @@ static void revise_particle(Lsm *lsm, long p)
     lsm->particle_const = own_record(lsm->particle_const, sizeof(ParticleConst),
                                      &lsm->particle_records, &lsm->block_const[block]);
     ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
-    k->weight[lane] = (real)(lsm->mass[p] / lsm->members[p]);
+    k->weight[lane] = (real)(mass_of(lsm, p) / lsm->members[p]);
     k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
 }
 

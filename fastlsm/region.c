@@ -146,10 +146,12 @@ static void search(const LsmLattice *l, const LsmInterior *interior, const int c
     }
 }
 
-int lsm_region_rows(const LsmLattice *l, const LsmInterior *interior, long r, uint64_t *rows)
+int lsm_region_find(const LsmLattice *l, const LsmInterior *interior, long r, uint64_t *rows,
+                    bool *simple)
 {
     int w = interior->w, side = 2 * w + 1, area = side * side, count = 0;
     const int *centre = l->coord[r];
+    *simple = true;
     if (lsm_bit(l, interior->interior, centre)) {
         for (int row = 0; row < area; row++) rows[row] = ((uint64_t)1 << side) - 1;
         return side * area;
@@ -159,12 +161,19 @@ int lsm_region_rows(const LsmLattice *l, const LsmInterior *interior, long r, ui
     for (int row = 0; row < area; row++)
         material[row] = lsm_window(l, l->bits, centre[0], centre[1] + row % side - w,
                                    centre[2] + row / side - w, w);
-    if (one_box(l, interior, centre, material))
+    *simple = one_box(l, interior, centre, material);
+    if (*simple)
         memcpy(rows, material, (size_t)area * sizeof *rows);
     else
         search(l, interior, centre, material, rows);
     for (int row = 0; row < area; row++) count += __builtin_popcountll(rows[row]);
     return count;
+}
+
+int lsm_region_rows(const LsmLattice *l, const LsmInterior *interior, long r, uint64_t *rows)
+{
+    bool simple;
+    return lsm_region_find(l, interior, r, rows, &simple);
 }
 
 static uint64_t mix(uint64_t h) /* the finaliser of MurmurHash3 */
@@ -181,12 +190,15 @@ LsmKey lsm_region_key(const LsmLattice *l, int w, long r, const uint64_t *rows)
     const int *c = l->coord[r];
     int side = 2 * w + 1;
     LsmKey key = {0, 0};
-    for (int row = 0; row < side * side; row++) {
+    for (int row = 0, next; row < side * side; row = next) {
+        next = row + 1;
         if (!rows[row]) continue;
+        while (next % side && rows[next] == rows[row]) next++; /* equal rows along y go together */
         int low = __builtin_ctzll(rows[row]);
         uint64_t place = ((uint64_t)(c[2] + row / side) << 42) ^
                          ((uint64_t)(c[1] + row % side) << 21) ^ (uint64_t)(c[0] + low);
         uint64_t h = mix(mix(place) ^ rows[row] >> low);
+        h = mix(h + (uint64_t)(next - row));
         key.low += h;
         key.high += mix(h ^ 0x9e3779b97f4a7c15ull);
     }

@@ -32,6 +32,10 @@ static inline bool lsm_bit(const LsmLattice *l, const uint64_t *bitmap, const in
  * members it has. O(w^2) for an interior particle, O(w^3) else. */
 int lsm_region_rows(const LsmLattice *lattice, const LsmInterior *interior, long r, uint64_t *rows);
 
+/* The same. `simple`: all material of the window is in reach and fills a box. */
+int lsm_region_find(const LsmLattice *lattice, const LsmInterior *interior, long r, uint64_t *rows,
+                    bool *simple);
+
 /* 128 bits that two regions share exactly when they hold the same particles (but for a chance of
  * about 1e-20): the key to collapse unique regions. */
 typedef struct {

@@ -35,13 +35,11 @@ static void pool_rehash(Pool *pool, uint64_t mask)
 }
 
 /* Row 0 is all zeros: the absent member. */
-static void pool_init(Pool *pool, int width, long guess)
+static void pool_init(Pool *pool, int width)
 {
-    *pool = (Pool){.width = width, .count = 1, .room = guess + 16};
+    *pool = (Pool){.width = width, .count = 1, .room = 1024};
     pool->row = sm_alloc((size_t)pool->room * (size_t)width, sizeof(int));
-    uint64_t mask = 63;
-    while (mask < (uint64_t)guess * 2) mask = mask * 2 + 1;
-    pool_rehash(pool, mask);
+    pool_rehash(pool, 2047);
 }
 
 static void pool_free(Pool *pool)
@@ -69,12 +67,18 @@ static int pool_add(Pool *pool, const int *row)
     return (int)r;
 }
 
-typedef struct {
+struct LsmSetsBuilder {
     const LsmLattice *lattice;
     const int *slot;
     int w, side;
+    uint64_t full; /* all bits of a bar */
     Pool bars, plates;
-} Builder;
+    int *full_plate;       /* [particles] the whole plate around it, 0: not met yet */
+    int *recent_bar;       /* [particles] the last bar around it: neighbours mostly share it */
+    uint64_t *recent_bits; /* [particles] its members, 0: none yet */
+    int *region;           /* [region_room][side] */
+    long region_count, region_room;
+};
 
 void lsm_sets_bar(const LsmLattice *l, const int *slot, int w, int x, int y, int z, uint64_t bits,
                   int *row)
@@ -94,42 +98,63 @@ void lsm_sets_bar(const LsmLattice *l, const int *slot, int w, int x, int y, int
 }
 
 /* The same, stored; 0 when it has no members. */
-static int add_bar(Builder *b, int x, int y, int z, uint64_t bits)
+static int add_bar(LsmSetsBuilder *b, int x, int y, int z, uint64_t bits)
 {
     int row[LSM_MAX_SIDE + 2];
     if (!bits) return 0;
+    long centre = lsm_lattice_find(b->lattice, x, y, z);
+    if (centre >= 0 && b->recent_bits[centre] == bits) return b->recent_bar[centre];
     lsm_sets_bar(b->lattice, b->slot, b->w, x, y, z, bits, row);
     row[b->side] = x;
     row[b->side + 1] = z;
-    return pool_add(&b->bars, row);
+    int r = pool_add(&b->bars, row);
+    if (centre < 0) return r;
+    b->recent_bits[centre] = bits;
+    return b->recent_bar[centre] = r;
 }
 
 /* The plate of centre (x, y) in plane z. Its bars' keys tell centres apart along x; the place of a
  * bar tells them apart along y. */
-static int add_plate(Builder *b, int x, int y, int z, const uint64_t *rows)
+static int add_plate(LsmSetsBuilder *b, int x, int y, int z, const uint64_t *rows)
 {
-    int row[LSM_MAX_SIDE + 2] = {0}, any = 0;
-    for (int i = 0; i < b->side; i++) any |= row[i] = add_bar(b, x, y + i - b->w, z, rows[i]);
+    int row[LSM_MAX_SIDE + 2] = {0}, *full = NULL;
+    uint64_t any = 0, all = b->full;
+    for (int i = 0; i < b->side; i++) {
+        any |= rows[i];
+        all &= rows[i];
+    }
     if (!any) return 0;
+    if (all == b->full) full = &b->full_plate[lsm_lattice_find(b->lattice, x, y, z)];
+    if (full && *full) return *full;
+    for (int i = 0; i < b->side; i++) row[i] = add_bar(b, x, y + i - b->w, z, rows[i]);
+    row[b->side] = y;
     row[b->side + 1] = z;
-    return pool_add(&b->plates, row);
+    int r = pool_add(&b->plates, row);
+    if (full) *full = r;
+    return r;
 }
 
-/* Sorts a pool's rows by plane, keeping their order within a plane. Writes the lists without keys,
- * the first row of each plane, and each old row's new number. */
-static int *sort_by_plane(const Pool *pool, int side, int planes, long **first, int **renumber)
+/* Sorts a pool's rows by plane and, within it, by their other key (0 .. keys - 1): a row comes
+ * after those of the neighbour before it (chain.h). Writes the lists without keys, the first row of
+ * each plane, and each old row's new number. */
+static int *sort_rows(const Pool *pool, int side, int planes, int keys, long **first,
+                      int **renumber)
 {
+    size_t cells = (size_t)planes * (size_t)keys;
     long *start = sm_alloc((size_t)planes + 1, sizeof *start);
+    int *next = sm_alloc(cells + 1, sizeof *next);
     int *number = sm_alloc((size_t)pool->count, sizeof *number);
     int *out = sm_alloc((size_t)pool->count * (size_t)side, sizeof *out);
-    for (long r = 1; r < pool->count; r++) start[pool->row[r * pool->width + side + 1] + 1]++;
-    start[0] = 1;
-    for (int z = 0; z < planes; z++) start[z + 1] += start[z];
-    long *next = sm_alloc((size_t)planes + 1, sizeof *next);
-    memcpy(next, start, ((size_t)planes + 1) * sizeof *next);
     for (long r = 1; r < pool->count; r++) {
-        const int *row = pool->row + r * pool->width;
-        number[r] = (int)next[row[side + 1]]++;
+        const int *key = pool->row + r * pool->width + side;
+        next[(size_t)key[1] * (size_t)keys + (size_t)key[0] + 1]++;
+    }
+    next[0] = 1;
+    for (size_t cell = 0; cell < cells; cell++) next[cell + 1] += next[cell];
+    for (int z = 0; z <= planes; z++) start[z] = next[(size_t)z * (size_t)keys];
+    for (long r = 1; r < pool->count; r++) {
+        const int *row = pool->row + r * pool->width, *key = row + side;
+        number[r] = next[(size_t)key[1] * (size_t)keys + (size_t)key[0]]++;
         memcpy(out + (long)number[r] * side, row, (size_t)side * sizeof(int));
     }
     free(next);
@@ -143,55 +168,64 @@ static void renumber_rows(int *row, long count, const int *number)
     for (long i = 0; i < count; i++) row[i] = number[row[i]];
 }
 
-static void build_regions(Builder *b, const LsmInterior *interior, const bool *wanted,
-                          LsmSets *sets)
-{
-    const LsmLattice *l = b->lattice;
-    uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
-    for (long p = 0; p < l->count; p++) {
-        if (!wanted[p]) continue;
-        lsm_region_rows(l, interior, p, rows);
-        const int *c = l->coord[p];
-        int *region = sets->region + sets->region_count * b->side;
-        for (int i = 0; i < b->side; i++)
-            region[i] = add_plate(b, c[0], c[1], c[2] + i - b->w, rows + i * b->side);
-        sets->region_particle[sets->region_count++] = (int)p;
-    }
-}
-
 static long *copy_planes(const long *plane, int planes)
 {
     long *copy = sm_alloc((size_t)planes + 1, sizeof *copy);
     return memcpy(copy, plane, ((size_t)planes + 1) * sizeof *copy);
 }
 
-void lsm_sets_build(const LsmLattice *l, const LsmInterior *interior, const bool *wanted,
-                    const int *slot, LsmSets *sets)
+LsmSetsBuilder *lsm_sets_open(const LsmLattice *l, const int *slot, int w)
 {
-    long count = 0;
-    for (long p = 0; p < l->count; p++) count += wanted[p];
-    int w = interior->w, side = 2 * w + 1;
-    *sets = (LsmSets){.w = w, .side = side, .region_room = count, .planes = l->size[2]};
-    sets->region = sm_alloc((size_t)count * (size_t)side, sizeof(int));
-    sets->region_particle = sm_alloc((size_t)count, sizeof(int));
-    Builder b = {.lattice = l, .slot = slot, .w = w, .side = side};
-    pool_init(&b.bars, side + 2, 2 * count);
-    pool_init(&b.plates, side + 2, 2 * count);
-    build_regions(&b, interior, wanted, sets);
+    LsmSetsBuilder *b = sm_alloc(1, sizeof *b);
+    *b = (LsmSetsBuilder){.lattice = l, .slot = slot, .w = w, .side = 2 * w + 1};
+    b->full = ((uint64_t)1 << b->side) - 1;
+    b->recent_bar = sm_alloc((size_t)l->count, sizeof(int));
+    b->recent_bits = sm_alloc((size_t)l->count, sizeof(uint64_t));
+    b->full_plate = sm_alloc((size_t)l->count, sizeof(int));
+    pool_init(&b->bars, b->side + 2);
+    pool_init(&b->plates, b->side + 2);
+    return b;
+}
 
-    int *bar_number, *plate_number;
-    sets->bar = sort_by_plane(&b.bars, side, sets->planes, &sets->bar_plane, &bar_number);
-    sets->plate = sort_by_plane(&b.plates, side, sets->planes, &sets->plate_plane, &plate_number);
-    sets->bar_end = copy_planes(sets->bar_plane, sets->planes);
-    sets->plate_end = copy_planes(sets->plate_plane, sets->planes);
-    sets->bar_count = b.bars.count;
-    sets->plate_count = b.plates.count;
+void lsm_sets_add(LsmSetsBuilder *b, long p, const uint64_t *rows)
+{
+    if (b->region_count == b->region_room) {
+        b->region_room = 2 * b->region_room + 64;
+        b->region = sm_realloc(b->region, (size_t)(b->region_room * b->side), sizeof(int));
+    }
+    const int *c = b->lattice->coord[p];
+    int *region = b->region + b->region_count++ * b->side;
+    for (int i = 0; i < b->side; i++)
+        region[i] = add_plate(b, c[0], c[1], c[2] + i - b->w, rows + i * b->side);
+}
+
+void lsm_sets_close(LsmSetsBuilder *b, LsmSets *sets)
+{
+    int side = b->side, planes = b->lattice->size[2], *bar_number, *plate_number;
+    *sets = (LsmSets){.w = b->w,
+                      .side = side,
+                      .bar_count = b->bars.count,
+                      .plate_count = b->plates.count,
+                      .region_count = b->region_count,
+                      .region_room = b->region_count,
+                      .planes = planes};
+    const int *size = b->lattice->size;
+    sets->bar = sort_rows(&b->bars, side, planes, size[0], &sets->bar_plane, &bar_number);
+    pool_free(&b->bars);
+    sets->plate = sort_rows(&b->plates, side, planes, size[1], &sets->plate_plane, &plate_number);
+    pool_free(&b->plates);
+    sets->bar_end = copy_planes(sets->bar_plane, planes);
+    sets->plate_end = copy_planes(sets->plate_plane, planes);
+    size_t places = (size_t)(b->region_count * side);
+    sets->region = sm_realloc(b->region, places ? places : 1, sizeof(int));
     renumber_rows(sets->plate, sets->plate_count * side, bar_number);
     renumber_rows(sets->region, sets->region_count * side, plate_number);
     free(bar_number);
     free(plate_number);
-    pool_free(&b.bars);
-    pool_free(&b.plates);
+    free(b->recent_bar);
+    free(b->recent_bits);
+    free(b->full_plate);
+    free(b);
 }
 
 void lsm_sets_free(LsmSets *sets)
@@ -199,7 +233,6 @@ void lsm_sets_free(LsmSets *sets)
     free(sets->bar);
     free(sets->plate);
     free(sets->region);
-    free(sets->region_particle);
     free(sets->bar_plane);
     free(sets->plate_plane);
     free(sets->bar_end);

@@ -17,20 +17,26 @@ typedef struct {
     int *bar;                                  /* [bar_count][side] 1 + particle slot */
     int *plate;                                /* [plate_count][side] bar rows */
     int *region;                               /* [region_count][side] plate rows */
-    int *region_particle; /* [region_count] the particle at its centre, rising at first */
-    long region_room;     /* rows that `region` and `region_particle` have room for */
-    int planes;           /* lattice planes along z */
-    long *bar_plane;      /* [planes + 1] first bar of each plane (plane 0 starts at row 1) */
-    long *plate_plane;    /* [planes + 1] */
-    long *bar_end;        /* [planes + 1] bars of plane z end before bar_end[z + 1]; what follows up
-                             to bar_plane[z + 1] is spare (ledger.h) */
-    long *plate_end;      /* [planes + 1] */
+    long region_room;                          /* rows that `region` has room for */
+    int planes;                                /* lattice planes along z */
+    long *bar_plane;   /* [planes + 1] first bar of each plane (plane 0 starts at row 1) */
+    long *plate_plane; /* [planes + 1] */
+    long *bar_end;     /* [planes + 1] bars of plane z end before bar_end[z + 1]; what follows up
+                          to bar_plane[z + 1] is spare (ledger.h) */
+    long *plate_end;   /* [planes + 1] */
 } LsmSets;
 
-/* Lists for the regions of the particles chosen (`wanted[p]` true), which are numbered by `slot`
- * (slot[p] of particle p). O(wanted (2w+1)^2). */
-void lsm_sets_build(const LsmLattice *lattice, const LsmInterior *interior, const bool *wanted,
-                    const int *slot, LsmSets *sets);
+typedef struct LsmSetsBuilder LsmSetsBuilder;
+
+/* To build lists of particles, which are numbered by `slot` (slot[p] of particle p): open, add
+ * regions in rising order, close, which fills `sets` and frees the builder. What the builder was
+ * given must stay as it is meanwhile. */
+LsmSetsBuilder *lsm_sets_open(const LsmLattice *lattice, const int *slot, int w);
+
+/* Lists the members `rows` (region.h) of particle p as the next row of the regions. O(w^2) for a
+ * whole cube, O(w^2 + members) else. */
+void lsm_sets_add(LsmSetsBuilder *builder, long p, const uint64_t *rows);
+void lsm_sets_close(LsmSetsBuilder *builder, LsmSets *sets);
 void lsm_sets_free(LsmSets *sets);
 
 /* The bar of centre column x in row (y, z) whose members are `bits` (not 0): [2w+1] places. */

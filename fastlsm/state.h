@@ -14,6 +14,7 @@
 #include "../lib/engine.h"
 #include "../lib/integrate.h"
 #include "../lib/lanes.h"
+#include "chain.h"
 #include "ledger.h"
 
 typedef struct {
@@ -21,7 +22,7 @@ typedef struct {
 } RegionConst;
 
 typedef struct {
-    vec weight, inverse_count, live; /* m~_i = m_i / |R_i|; 1 / |R_i|; 1, or 0 for an empty slot */
+    vec weight, inverse_count; /* m~_i = m_i / |R_i|; 1 / |R_i|; 0 for an empty slot */
 } ParticleConst;
 
 /* How many constant records there are. Equal ones are stored once; those from `shared` on belong to
@@ -32,7 +33,14 @@ typedef struct {
 
 /* Widths of the rows of list sums, in values. Vectors are padded to four, rows to whole cache lines
  * where they are read whole. */
-enum { ROW_P = 4, ROW_BAR = 16, ROW_PLATE = 16, ROW_T = 16, ROW_PLATE_DOWN = 8 };
+enum {
+    ROW_P = 4,
+    ROW_BAR = 16,
+    ROW_PLATE = 16,
+    ROW_T = 16,
+    ROW_PLATE_DOWN = 8,
+    ROW_PLATE_CHAIN = 16
+};
 
 typedef struct {
     real *p;          /* [slots + 2][ROW_P]          m~ x */
@@ -40,7 +48,8 @@ typedef struct {
                                                      (Q, R z, R y), as the plates are done with it */
     real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
     real *transform;  /* [slots + 2][ROW_T]          (q_r, R z, R y, R x) */
-    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z) */
+    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z); in a chain [ROW_PLATE_CHAIN],
+                                                     with R y for the rows made from it */
 } Rows;
 
 /* Damping keeps its products in `transform`, and then (omega, v_r - omega x c_r) in their place; it
@@ -62,30 +71,35 @@ typedef struct Lsm {
     LsmInterior interior;
     LsmSets sets;
     LsmLedger *ledger; /* NULL for a body that cannot break */
-    long spare;        /* rows that its layers have left at least */
-    char *mark;        /* [particles] zero between breaks, or NULL */
-    double *mass;      /* [particles] in units of mass_unit kg, their mean */
+    bool chained;      /* sums run over chains once they are there */
+    LsmChains *chains; /* in place of the lists of `sets`, or NULL; a region's base is a row of
+                          rows.transform */
+    real (*chain_factor)[2]; /* [LSM_FACTORS] */
+    long spare;              /* rows that its layers have left at least */
+    char *mark;              /* [particles] zero between breaks, or NULL */
+    double *mass;            /* [particles] in units of mass_unit kg, their mean; NULL: all are 1 */
     double mass_unit;
-    int *members;  /* [particles] |R_i| */
+    int *members;  /* [particles] |R_i|, kept in a body that can break */
     int *slot;     /* [particles] */
     int *particle; /* [blocks * lanes], -1 for an empty slot */
     long unique;   /* different regions, or -1: ask lsm_unique() */
 
     /* the state */
     long blocks;
-    real *x, *v, *g;  /* [blocks][3][SM_LANES]; g only once goals() was called */
+    real *x, *v;      /* [blocks][3][SM_LANES] */
+    real *g;          /* the same, in the memory of `centre`; NULL when no goals are held */
     int *block_const; /* [blocks] */
     ParticleConst *particle_const;
-    int *block_region; /* [blocks * lanes] row of sets.region that sums over this particle, or -1 */
+    int *block_region; /* [blocks * lanes] row of sets.region that sums over this particle, or -1;
+                          in list form row p is particle p's, so this is `particle` */
 
     /* regions, SM_LANES to a tile; in block form, and in a body that can break, tile t is block t
      */
     long tiles;
-    int *tile_region; /* [tiles * lanes] row of sets.region, or -1 */
-    int *tile_slot;   /* [tiles * lanes] slot of the region's centre, or -1 */
-    int *tile_const;  /* [tiles] */
+    int *tile_slot;  /* [tiles * lanes] slot of the region's centre, or -1 */
+    int *tile_const; /* [tiles] */
     RegionConst *region_const;
-    real *centre;   /* [tiles][3][lanes] c_r, kept for damping */
+    real *centre;   /* [tiles][3][lanes] c_r, kept for damping; room for g */
     short *last;    /* [tiles][6][lanes] two columns of the last rotation, in 1/32767 */
     float *stretch; /* [tiles][9][lanes] eigenvectors for the warm-started Jacobi method, or NULL */
     double *sweeps; /* [layers] Jacobi sweeps of the last step */
@@ -115,11 +129,41 @@ typedef struct Lsm {
     Records particle_records, region_records;
 } Lsm;
 
+/* In units of mass_unit. */
+static inline double mass_of(const Lsm *lsm, long p)
+{
+    return lsm->mass ? lsm->mass[p] : 1;
+}
+
 /* The lanes with a list row. */
 SM_INLINE ivec listed_lanes(const int *region)
 {
     typedef int narrow __attribute__((vector_size(SM_LANES * sizeof(int)), aligned(sizeof(int))));
     return __builtin_convertvector(*(const narrow *)region, ivec) >= 0;
+}
+
+/* List form: the rows of sets.region of a tile. */
+SM_INLINE void tile_regions(const Lsm *lsm, long tile, int region[SM_LANES])
+{
+    const int *slot = lsm->tile_slot + tile * SM_LANES;
+    for (int lane = 0; lane < SM_LANES; lane++)
+        region[lane] = slot[lane] < 0 ? -1 : lsm->particle[slot[lane]];
+}
+
+/* Chains: the rows of rows.transform that belong to a tile's regions. */
+SM_INLINE void tile_rows(const Lsm *lsm, long tile, const real *row[SM_LANES])
+{
+    const int *slot = lsm->tile_slot + tile * SM_LANES;
+    for (int lane = 0; lane < SM_LANES; lane++)
+        row[lane] = lsm->rows.transform + (slot[lane] + 1) * (long)ROW_T;
+}
+
+/* The first three values of each four in a block's rows of rows.transform, `count` in all. */
+SM_INLINE void slot_values(const Lsm *lsm, long block, int count, real (*out)[SM_LANES])
+{
+    const real *row = lsm->rows.transform + (block * SM_LANES + 1) * ROW_T;
+    for (int lane = 0; lane < SM_LANES; lane++)
+        for (int i = 0; i < count; i++) out[i][lane] = row[lane * ROW_T + i / 3 * 4 + i % 3];
 }
 
 #endif

@@ -56,6 +56,35 @@ static void test_goals(void **state)
     }
 }
 
+/* Wide regions in list form, whose sums run over chains: random shapes; bodies of several layers; a
+ * particle so heavy that its rounding must not stay behind in a sum. */
+static void test_wide_lists(void **state)
+{
+    (void)state;
+    unsigned seed = 8;
+    for (int trial = 0; trial < 60; trial++) {
+        Body body;
+        body_random(&seed, trial % 6, trial < 50 ? 14 : 6, &body);
+        if (trial % 5 == 4) body.m[random_int(&seed, (int)body.n)] = 100;
+        check_goals(trial / 6 % 2, SM_SUM_FAST, SM_LAYOUT_LISTS, 4 + trial % 5, &body);
+        body_free(&body);
+    }
+    for (int trial = 0; trial < 8; trial++) {
+        Body body;
+        sm_voxels_init(&body.voxels, trial < 4 ? 7 : 64, 9, trial < 4 ? 128 : 5, 0.5);
+        for (int k = 0; k < body.voxels.size[2]; k++)
+            for (int j = 0; j < 9; j++)
+                for (int i = 0; i < body.voxels.size[0]; i++)
+                    if (random_unit(&seed) < (trial % 2 ? 0.8 : 1))
+                        sm_voxel_set(&body.voxels, i, j, k);
+        sm_voxels_count(&body.voxels);
+        body_arrays(&body);
+        random_deformation(&seed, 0.5, 0.3, body.n, (const double(*)[3])body.x0, body.x);
+        check_goals(trial / 2 % 2, SM_SUM_FAST, SM_LAYOUT_LISTS, 4 + trial % 3, &body);
+        body_free(&body);
+    }
+}
+
 /* Every member list against breadth-first search. */
 static void test_regions(void **state)
 {
@@ -92,7 +121,7 @@ static void test_steps(void **state)
         Body body;
         int precision = trial % 2;
         body_random(&seed, trial % 6, 9, &body);
-        SmEngineParams params = {.w = 1 + trial / 6 % 3,
+        SmEngineParams params = {.w = 1 + trial / 6 % 3 + (trial / 36 ? 3 : 0),
                                  .h = 0.01,
                                  .damping = 0.3,
                                  .damping_every = 1 + trial / 2 % 2,
@@ -241,7 +270,7 @@ static void test_recovery(void **state)
 static void test_threads(void **state)
 {
     (void)state;
-    for (int trial = 0; trial < 6; trial++) {
+    for (int trial = 0; trial < 8; trial++) {
         unsigned seed = 7;
         Body body;
         sm_voxels_init(&body.voxels, 24 + 7 * (trial % 3), 17, 40, 0.5);
@@ -253,7 +282,7 @@ static void test_threads(void **state)
         body_arrays(&body);
         random_deformation(&seed, 0.5, 0.2, body.n, (const double(*)[3])body.x0, body.x);
         for (int threads = 1; threads <= 5; threads += 2) {
-            SmEngineParams params = {.w = 1 + trial % 3,
+            SmEngineParams params = {.w = trial < 6 ? 1 + trial % 3 : 4,
                                      .h = 0.01,
                                      .damping = 0.3,
                                      .threads = threads,
@@ -272,10 +301,10 @@ static void test_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_goals),   cmocka_unit_test(test_regions),
-        cmocka_unit_test(test_steps),   cmocka_unit_test(test_momentum),
-        cmocka_unit_test(test_rigid),   cmocka_unit_test(test_recovery),
-        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_goals),    cmocka_unit_test(test_wide_lists),
+        cmocka_unit_test(test_regions),  cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_momentum), cmocka_unit_test(test_rigid),
+        cmocka_unit_test(test_recovery), cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests_name("fastlsm", tests, NULL, NULL);
 }

@@ -21,9 +21,7 @@ static Lsm *breakable(const Body *body, int w, SmLayout layout, double damping)
                                    .layout = layout,
                                    .mass = body->m,
                                    .threads = 1};
-    Lsm *lsm = lsm_build(&body->voxels, &params);
-    lsm->g = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
-    return lsm;
+    return lsm_build(&body->voxels, &params);
 }
 
 static size_t index_of(const Lsm *lsm, long p, int d)

@@ -5,20 +5,17 @@
 
 #include "lanes.h"
 
-/* What damping sums: m~ v, m~ x X v, and the upper half of m~ x x^T (eq. 14). */
-SM_INLINE void damping_products(vec weight, const vec x[3], const vec v[3], vec out[12])
+/* What damping sums: m~ v, m~ x X v, and the upper half of m~ x x^T (eq. 14); value d of each. `x`
+ * and `v` are [3][SM_LANES]. */
+SM_INLINE void damping_products(vec weight, const real *x, const real *v, int d, vec out[4])
 {
-    vec p[3];
-    for (int d = 0; d < 3; d++) {
-        p[d] = weight * x[d];
-        out[d] = weight * v[d];
-    }
-    for (int d = 0; d < 3; d++) {
-        int e = (d + 1) % 3, f = (d + 2) % 3;
-        out[3 + d] = p[e] * v[f] - p[f] * v[e];
-        out[6 + d] = p[d] * x[d];
-        out[9 + d] = p[e] * x[f];
-    }
+    int e = (d + 1) % 3, f = (d + 2) % 3;
+    vec p_e = weight * lanes_load(x + e * SM_LANES), x_f = lanes_load(x + f * SM_LANES);
+    vec v_e = lanes_load(v + e * SM_LANES), v_f = lanes_load(v + f * SM_LANES);
+    out[0] = weight * lanes_load(v + d * SM_LANES);
+    out[1] = p_e * v_f - weight * x_f * v_e;
+    out[2] = weight * (lanes_load(x + d * SM_LANES) * lanes_load(x + d * SM_LANES));
+    out[3] = p_e * x_f;
 }
 
 /* omega = I^-1 L by the adjugate. I is the inertia tr(S) - S of the spread

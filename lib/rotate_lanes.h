@@ -5,6 +5,8 @@
 #include "polar_lanes.h"
 
 typedef short short_vec __attribute__((vector_size(SM_LANES * sizeof(short))));
+typedef short short_loose
+    __attribute__((vector_size(SM_LANES * sizeof(short)), aligned(sizeof(short))));
 
 /* The last rotation of a tile of regions is kept as its first two columns in 1/32767: it only says
  * which of several equally good rotations is nearest. */
@@ -15,7 +17,7 @@ SM_INLINE void last_store(short *last, const vec R[9])
             /* by way of whole lanes: compilers convert straight to short one by one */
             ivec whole = __builtin_convertvector(R[i * 3 + column] * 32767, ivec);
             short_vec packed = __builtin_convertvector(whole, short_vec);
-            memcpy(last + (column * 3 + i) * SM_LANES, &packed, sizeof packed);
+            *(short_loose *)(last + (column * 3 + i) * SM_LANES) = packed;
         }
 }
 
@@ -24,8 +26,7 @@ SM_INLINE void last_load(const short *last, vec R[9])
 {
     vec column[2][3], along = lanes_set(0);
     for (int i = 0; i < 6; i++) {
-        short_vec packed;
-        memcpy(&packed, last + i * SM_LANES, sizeof packed);
+        short_vec packed = *(const short_loose *)(last + i * SM_LANES);
         column[i / 3][i % 3] =
             __builtin_convertvector(__builtin_convertvector(packed, ivec), vec) / 32767;
     }
@@ -45,22 +46,31 @@ SM_INLINE void last_load(const short *last, vec R[9])
     }
 }
 
-/* Rotations of A by the fast method, near the last ones where they are not unique; updates `last`.
- * Lanes whose slot is negative hold no region. */
-SM_INLINE void polar_fast_lanes(const vec A[9], const int *slot, short *last, vec R[9])
+/* The lanes of one tile that the fast method has left out. */
+static __attribute__((noinline)) void polar_ties(const vec A[9], ivec tie, const int *slot,
+                                                 const short *last, vec R[9])
 {
-    ivec tie = polar_quartic(A, R);
-    if (__builtin_expect(lanes_any(tie), 0)) {
-        vec before[9];
-        last_load(last, before);
-        for (int lane = 0; lane < SM_LANES; lane++) {
-            if (slot[lane] >= 0) continue;
-            tie[lane] = 0; /* an empty lane needs no rotation, only a finite one */
-            for (int i = 0; i < 9; i++) R[i][lane] = i % 4 == 0;
-        }
-        polar_mend(A, tie, before, R);
+    vec before[9];
+    last_load(last, before);
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        if (slot[lane] >= 0) continue;
+        tie[lane] = 0; /* an empty lane needs no rotation, only a finite one */
+        for (int i = 0; i < 9; i++) R[i][lane] = i % 4 == 0;
     }
-    last_store(last, R);
+    polar_mend(A, tie, before, R);
+}
+
+/* Rotations of one or two tiles that follow each other by the fast method, near the last ones where
+ * they are not unique; updates `last`. Lanes whose slot is negative hold no region. */
+SM_INLINE void polar_fast_lanes(int tiles, const vec (*A)[9], const int *slot, short *last,
+                                vec (*R)[9])
+{
+    ivec tie[2];
+    polar_quartic(tiles, A, R, tie);
+    for (int t = 0; t < tiles; t++)
+        if (__builtin_expect(lanes_any(tie[t]), 0))
+            polar_ties(A[t], tie[t], slot + t * SM_LANES, last + t * 6 * SM_LANES, R[t]);
+    for (int t = 0; t < tiles; t++) last_store(last + t * 6 * SM_LANES, R[t]);
 }
 
 #endif

@@ -9,12 +9,13 @@ static void weigh(OctTask *task, long first, long last)
     const Oct *oct = task->oct;
     for (long block = first; block < last; block++) {
         const OctConst *k = &oct->block[block];
-        vec x[3], v[3], product[12], field[16];
+        vec product[4], field[16];
         real *row[SM_LANES];
-        load3(task->body->x + block * 3 * SM_LANES, x);
-        load3(task->body->v + block * 3 * SM_LANES, v);
-        damping_products(k->weight, x, v, product);
-        for (int i = 0; i < 12; i++) field[i / 3 * 4 + i % 3] = product[i];
+        for (int d = 0; d < 3; d++) {
+            damping_products(k->weight, task->body->x + block * 3 * SM_LANES,
+                             task->body->v + block * 3 * SM_LANES, d, product);
+            for (int i = 0; i < 4; i++) field[4 * i + d] = product[i];
+        }
         field[3] = lanes_set(0);
         for (int d = 0; d < 3; d++) field[7 + 4 * d] = k->centre[d];
         for (int lane = 0; lane < SM_LANES; lane++)

@@ -34,6 +34,8 @@ struct OctOptions {
                            * a criterion's level 0: the deepest */
     double epsilon;       /* 0 or more */
     OctWidth width;
+    double summation_nodes; /* 0; or as many are wanted per region on average: `width` is not used,
+                             * and the number of edges is searched that gives nearest to them */
     OctLocalWidth local[OCT_MAX_WIDTHS]; /* the last one that holds a leaf's centre counts */
     int local_count;
     OctWeighting weighting;

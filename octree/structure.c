@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "width.h"
+
 /* Levels of splitting with which base cells are at most an eighth of the longest side. */
 static int default_levels(const SmVoxels *voxels)
 {
@@ -22,27 +24,10 @@ static void complete_sampling(const SmVoxels *voxels, OctSampling *sampling)
         if (sampling->criteria[i].level == 0) sampling->criteria[i].level = sampling->levels;
 }
 
-static bool good_width(const OctWidth *width)
-{
-    return width->cells >= 0 && width->cells <= 1e6 && width->edges >= 0 && width->edges <= 1e6;
-}
-
 static SmCode check_options(const OctOptions *o, SmError *error)
 {
     if (!(o->epsilon >= 0 && o->epsilon <= 1e6))
         return sm_fail(error, SM_INPUT, "epsilon is %g: it is 0 or more", o->epsilon);
-    if (!good_width(&o->width))
-        return sm_fail(error, SM_INPUT,
-                       "octree: a width of %g cells and %g edges: both are from 0 to 1e6",
-                       o->width.cells, o->width.edges);
-    if (o->local_count < 0 || o->local_count > OCT_MAX_WIDTHS)
-        return sm_fail(error, SM_INPUT, "octree: %d widths: at most %d can be given",
-                       o->local_count, OCT_MAX_WIDTHS);
-    for (int i = 0; i < o->local_count; i++)
-        if (!good_width(&o->local[i].width))
-            return sm_fail(error, SM_INPUT,
-                           "octree: width %d is %g cells and %g edges: both are from 0 to 1e6",
-                           i + 1, o->local[i].width.cells, o->local[i].width.edges);
     bool flows = o->yield >= 0 && o->creep >= 0 && o->most >= 0 && isfinite(o->yield) &&
                  isfinite(o->creep) && isfinite(o->most);
     if (!flows)
@@ -58,51 +43,6 @@ void oct_structure_centre(const OctStructure *structure, long leaf, double centr
     for (int d = 0; d < 3; d++)
         centre[d] =
             structure->origin[d] + 0.5 * structure->cell * tree->centre[tree->node[leaf]][d];
-}
-
-static bool holds(const OctLocalWidth *local, const double centre[3])
-{
-    double square = 0;
-    bool inside = true;
-    for (int d = 0; d < 3; d++) {
-        square += pow(centre[d] - local->centre[d], 2);
-        inside &= centre[d] >= local->low[d] && centre[d] <= local->high[d];
-    }
-    return local->radius > 0 ? square <= local->radius * local->radius : inside;
-}
-
-/* Half finest cells of a leaf that is `size` of them wide. */
-static int width_of(const OctWidth *width, int size)
-{
-    static const double slack = 1e-9; /* 0.1 * 30 is 3 */
-    bool given = width->cells > 0 || width->edges > 0;
-    double edges = given ? width->edges : 1;
-    double w = floor(2 * width->cells + edges * size + slack);
-    return (int)fmin(w, 1 << 28);
-}
-
-static SmCode find_widths(const OctOptions *options, OctStructure *s, SmError *error)
-{
-    s->w = sm_alloc((size_t)s->tree.leaves, sizeof *s->w);
-    long held[OCT_MAX_WIDTHS] = {0};
-    for (long leaf = 0; leaf < s->tree.leaves; leaf++) {
-        const OctWidth *width = &options->width;
-        double centre[3];
-        oct_structure_centre(s, leaf, centre);
-        for (int i = 0; i < options->local_count; i++)
-            if (holds(&options->local[i], centre)) {
-                width = &options->local[i].width;
-                held[i]++;
-            }
-        s->w[leaf] = width_of(width, s->tree.size[s->tree.node[leaf]]);
-    }
-    for (int i = 0; i < options->local_count; i++)
-        if (!held[i])
-            return sm_fail(error, SM_INPUT,
-                           "octree: no node's centre lies in the box or sphere of width %d: "
-                           "enlarge it",
-                           i + 1);
-    return SM_OK;
 }
 
 /* A vertex's mass in equal parts to the leaves of the material cells around it. */
@@ -136,14 +76,16 @@ SmCode oct_structure_build(const SmVoxels *voxels, const OctOptions *options, co
     OctSampling sampling = options->sampling;
     complete_sampling(voxels, &sampling);
     SmCode code = check_options(options, error);
+    if (!code) code = oct_width_check(options, error);
     if (!code)
         code = oct_sampling_tree(&sampling, voxels, &structure->tree, &structure->report, error);
-    if (!code) code = find_widths(options, structure, error);
     if (!code) {
         oct_graph_build(&structure->tree, voxels, &structure->graph);
+        code = oct_width_find(options, structure, error);
+    }
+    if (!code)
         code = oct_regions_build(&structure->tree, &structure->graph, structure->w,
                                  options->epsilon, &structure->regions, error);
-    }
     if (!code)
         find_masses(voxels, mass, structure);
     else
@@ -166,6 +108,31 @@ size_t oct_structure_bytes(const OctStructure *structure)
     return oct_tree_bytes(&structure->tree) + oct_graph_bytes(&structure->graph) +
            oct_regions_bytes(&structure->regions) +
            (size_t)structure->tree.leaves * (sizeof *structure->w + sizeof *structure->mass);
+}
+
+static int group_of(int *next, int i)
+{
+    while (next[i] != i) i = next[i] = next[next[i]];
+    return i;
+}
+
+long oct_structure_parts(const OctStructure *structure)
+{
+    long leaves = structure->tree.leaves, parts = leaves;
+    int *next = sm_alloc((size_t)leaves, sizeof *next);
+    int *leaf = sm_alloc((size_t)leaves, sizeof *leaf);
+    for (int i = 0; i < leaves; i++) next[i] = i;
+    for (int i = 0; i < leaves; i++) {
+        oct_regions_leaves(&structure->tree, &structure->regions, i, leaf);
+        for (int k = 0; k < structure->regions.size[i]; k++) {
+            int a = group_of(next, i), b = group_of(next, leaf[k]);
+            parts -= a != b;
+            next[a] = b;
+        }
+    }
+    free(next);
+    free(leaf);
+    return parts;
 }
 
 /* The structure is the first member of every octree engine. */

@@ -10,6 +10,7 @@ struct OctStructure {
     OctTree tree;
     OctGraph graph;
     OctRegions regions;
+    OctWidth width;         /* as given or found; where no local one holds */
     int *w;                 /* [leaves] half finest cells */
     double *mass;           /* [leaves] kg */
     double origin[3], cell; /* of the voxels, in mesh units */
@@ -24,6 +25,10 @@ SmCode oct_structure_build(const SmVoxels *voxels, const OctOptions *options, co
                            OctStructure *structure, SmError *error);
 void oct_structure_free(OctStructure *structure);
 size_t oct_structure_bytes(const OctStructure *structure);
+
+/* Groups of nodes that no region holds together: 1 for a body that holds together. O(members of
+ * all regions). */
+long oct_structure_parts(const OctStructure *structure);
 
 /* Centre of a leaf in mesh units. */
 void oct_structure_centre(const OctStructure *structure, long leaf, double centre[3]);

@@ -21,17 +21,17 @@ static const double tolerance = SINGLE ? 5e-5 : 1e-10;
 static void check_goals(Body *body, OctParams params, int trial)
 {
     Oct *oct = create(body, params);
-    RefOctree twin;
+    RefTreeBody twin;
     adopt(oct, body);
-    ref_octree_init(&body->tree, &body->regions, body->m, params.weighting == OCT_PLAIN, &twin);
+    ref_tree_init(&body->tree, &body->regions, body->m, params.weighting == OCT_PLAIN, &twin);
     oct_goals(oct);
     get(oct, 0, oct->body->g, true, body->a);
-    ref_octree_goals(&twin, (const double(*)[3])body->x, false, body->b);
+    ref_tree_goals(&twin, (const double(*)[3])body->x, false, body->b);
     double worst = difference(body->n, (const double(*)[3])body->a, (const double(*)[3])body->b);
     if (!(worst <= tolerance))
         fail_msg("trial %d, weighting %d, form %d, %ld nodes: goals differ by %g cells", trial,
                  (int)params.weighting, (int)params.form, body->n, worst);
-    ref_octree_free(&twin);
+    ref_tree_free(&twin);
     oct_free(oct);
 }
 
@@ -87,10 +87,10 @@ static void test_lists(void **state)
     unsigned seed = 3;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
-        RefOctree twin;
+        RefTreeBody twin;
         OctBreadth lists, transposed;
         body_random(&seed, trial % 6, 6, trial % 2, &body);
-        ref_octree_init(&body.tree, &body.regions, body.m, false, &twin);
+        ref_tree_init(&body.tree, &body.regions, body.m, false, &twin);
         oct_breadth_build(&body.tree, &body.regions, &lists);
         oct_breadth_transpose(&body.tree, &lists, &transposed);
         size_t n = (size_t)body.n;
@@ -112,21 +112,21 @@ static void test_lists(void **state)
         free(got);
         oct_breadth_free(&lists);
         oct_breadth_free(&transposed);
-        ref_octree_free(&twin);
+        ref_tree_free(&twin);
         body_free(&body);
     }
 }
 
 /* One step of the twin: eqs. 1, 14 and 2 of fastlsm in cells and steps. */
-static void twin_step(RefOctree *twin, const OctParams *params, bool damp, Body *body)
+static void twin_step(RefTreeBody *twin, const OctParams *params, bool damp, Body *body)
 {
-    ref_octree_goals(twin, (const double(*)[3])body->x, true, body->a);
+    ref_tree_goals(twin, (const double(*)[3])body->x, true, body->a);
     for (long i = 0; i < body->n; i++)
         for (int d = 0; d < 3; d++)
             body->v[i][d] += body->a[i][d] - body->x[i][d] + params->gravity[d];
     if (damp)
-        ref_octree_rigid_velocity(twin, (const double(*)[3])body->x, (const double(*)[3])body->v,
-                                  body->a);
+        ref_tree_rigid_velocity(twin, (const double(*)[3])body->x, (const double(*)[3])body->v,
+                                body->a);
     for (long i = 0; i < body->n; i++)
         for (int d = 0; d < 3; d++) {
             if (damp) body->v[i][d] += params->damping * (body->a[i][d] - body->v[i][d]);
@@ -153,9 +153,9 @@ static void test_steps(void **state)
             params.most = 0.4;
         }
         Oct *oct = create(&body, params);
-        RefOctree twin;
+        RefTreeBody twin;
         adopt(oct, &body);
-        ref_octree_init(&body.tree, &body.regions, body.m, params.weighting == OCT_PLAIN, &twin);
+        ref_tree_init(&body.tree, &body.regions, body.m, params.weighting == OCT_PLAIN, &twin);
         twin.creep = params.creep;
         twin.yield = params.yield;
         twin.most = params.most;
@@ -167,7 +167,7 @@ static void test_steps(void **state)
         double worst = difference(body.n, (const double(*)[3])body.b, (const double(*)[3])body.x);
         if (!(worst <= (SINGLE ? 1e-3 : 1e-8)))
             fail_msg("trial %d, %ld nodes: positions differ by %g cells", trial, body.n, worst);
-        ref_octree_free(&twin);
+        ref_tree_free(&twin);
         oct_free(oct);
         body_free(&body);
     }

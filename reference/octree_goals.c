@@ -31,8 +31,8 @@ static long explicit_leaves(const OctTree *tree, const OctRegions *regions, long
     return count;
 }
 
-void ref_octree_init(const OctTree *tree, const OctRegions *regions, const double *m, bool plain,
-                     RefOctree *body)
+void ref_tree_init(const OctTree *tree, const OctRegions *regions, const double *m, bool plain,
+                   RefTreeBody *body)
 {
     size_t n = (size_t)tree->leaves;
     memset(body, 0, sizeof *body);
@@ -58,7 +58,7 @@ void ref_octree_init(const OctTree *tree, const OctRegions *regions, const doubl
     for (size_t i = 0; i < n; i++) body->weight[i] = plain ? m[i] : m[i] / body->reach[i];
 }
 
-void ref_octree_free(RefOctree *body)
+void ref_tree_free(RefTreeBody *body)
 {
     ref_regions_free(&body->regions);
     free(body->x0);
@@ -70,7 +70,7 @@ void ref_octree_free(RefOctree *body)
 }
 
 /* The weighted mean of y over region r, formed relative to y_r; returns the weights' sum. */
-static double region_mean(const RefOctree *body, const double (*y)[3], long r, double mean[3])
+static double region_mean(const RefTreeBody *body, const double (*y)[3], long r, double mean[3])
 {
     double M = 0, sum[3] = {0};
     for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
@@ -120,7 +120,7 @@ typedef struct {
     double c[3], c0[3], A[9], B[9]; /* B: sum of weight (x0 - c0)(x0 - c0)^T */
 } Match;
 
-static void match_region(const RefOctree *body, const double (*x)[3], long r, Match *t)
+static void match_region(const RefTreeBody *body, const double (*x)[3], long r, Match *t)
 {
     double St[9];
     memset(t, 0, sizeof *t);
@@ -140,7 +140,7 @@ static void match_region(const RefOctree *body, const double (*x)[3], long r, Ma
     ref_polar(t->A, body->R[r], body->R[r]);
 }
 
-static void flow_region(RefOctree *body, long r, const Match *t)
+static void flow_region(RefTreeBody *body, long r, const Match *t)
 {
     double St[9], Rt[9], Q[9], inverse[9], E[9], S[9], size = 0, strain = 0;
     transpose(body->S[r], St);
@@ -166,7 +166,7 @@ static void flow_region(RefOctree *body, long r, const Match *t)
     for (int i = 0; i < 9; i++) body->S[r][i] = S[i] / cbrt(volume);
 }
 
-void ref_octree_goals(RefOctree *body, const double (*x)[3], bool flow, double (*g)[3])
+void ref_tree_goals(RefTreeBody *body, const double (*x)[3], bool flow, double (*g)[3])
 {
     const RefRegions *regions = &body->regions;
     memset(g, 0, (size_t)regions->count * sizeof *g);
@@ -197,8 +197,8 @@ static void cross(const double a[3], const double b[3], double result[3])
 }
 
 /* v_r and omega_r about c_r (fastlsm eq. 14). */
-static void rigid_motion(const RefOctree *body, const double (*x)[3], const double (*v)[3], long r,
-                         double c[3], double mean[3], double omega[3])
+static void rigid_motion(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
+                         long r, double c[3], double mean[3], double omega[3])
 {
     double L[3] = {0}, I[9] = {0};
     region_mean(body, x, r, c);
@@ -221,8 +221,8 @@ static void rigid_motion(const RefOctree *body, const double (*x)[3], const doub
     ref_solve_inertia(I, L, omega);
 }
 
-void ref_octree_rigid_velocity(const RefOctree *body, const double (*x)[3], const double (*v)[3],
-                               double (*u)[3])
+void ref_tree_rigid_velocity(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
+                             double (*u)[3])
 {
     const RefRegions *regions = &body->regions;
     memset(u, 0, (size_t)regions->count * sizeof *u);

@@ -17,21 +17,21 @@ typedef struct {
     double (*R)[9];            /* last rotations, for ties; the identity at first */
     double (*S)[9];            /* plastic states; the identity at first */
     double yield, creep, most; /* creep: share of the strain that stays in each step; 0: elastic */
-} RefOctree;
+} RefTreeBody;
 
 /* Positions in finest cells from the corner of voxel (0,0,0); elastic. The caller frees. */
-void ref_octree_init(const OctTree *tree, const OctRegions *regions, const double *m, bool plain,
-                     RefOctree *body);
-void ref_octree_free(RefOctree *body);
+void ref_tree_init(const OctTree *tree, const OctRegions *regions, const double *m, bool plain,
+                   RefTreeBody *body);
+void ref_tree_free(RefTreeBody *body);
 
 /* g_i = (1/M_i) sum of m_r (R_r S_r (x0_i - c0_r) + c_r) over the regions r that contain i (eq. 8);
  * R_r is the rotation of A_r = sum weight (x - c_r) (S_r (x0 - c0_r))^T (eqs. 6, 7, 9). Keeps R.
  * With `flow` every region then keeps what yields: with E = R^T A_r Aqq_r (eq. 10), where
  * |E - I| > yield, S <- (I + creep (E - I)) S, at most `most` from I, of volume 1. */
-void ref_octree_goals(RefOctree *body, const double (*x)[3], bool flow, double (*g)[3]);
+void ref_tree_goals(RefTreeBody *body, const double (*x)[3], bool flow, double (*g)[3]);
 
 /* u_i = (1/M_i) sum of m_r (v_r + omega_r x (x_i - c_r)) over the regions that contain i. */
-void ref_octree_rigid_velocity(const RefOctree *body, const double (*x)[3], const double (*v)[3],
-                               double (*u)[3]);
+void ref_tree_rigid_velocity(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
+                             double (*u)[3]);
 
 #endif
