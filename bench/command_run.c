@@ -40,8 +40,8 @@ enum {
 typedef struct {
     BenchCommon common;
     const char *scene, *engine, *precision, *output, *w;
-    bool shell, record, no_output, has_gravity;
-    int frames, steps, summation, polar, layout, levels;
+    bool shell, no_output, has_gravity;
+    int frames, steps, summation, polar, layout, levels, record;
     long particles, nodes;
     double cell, damping, epsilon, h, strain_limit, gravity[3];
     BenchSubstitutes substitutes;
@@ -50,7 +50,7 @@ typedef struct {
 static const char *const precisions[] = {"single", "double", NULL};
 static const char *const summations[] = {"fast", "bars", "naive", NULL};
 static const char *const polars[] = {"fast", "jacobi", NULL};
-static const char *const records[] = {"particles", NULL};
+static const char *const records[] = {"particles", "nodes", NULL}; /* BenchRecord from 1 */
 
 static const struct argp_option option_list[] = {
     {0, 0, 0, 0, "What replaces the scene's settings:", 1},
@@ -80,9 +80,10 @@ static const struct argp_option option_list[] = {
     {"steps", KEY_STEPS, "N", 0, "Steps in a frame", 2},
     {"output", 'o', "FILE.vtkhdf", 0, "Trajectory (default: SCENE.vtkhdf in this folder)", 2},
     {"no-output", KEY_NO_OUTPUT, 0, 0, "Write no trajectory", 2},
-    {"record", KEY_RECORD, "particles", 0,
-     "Also store the lattice, and every step's particle positions, velocities and goals: 72 "
-     "bytes a particle and step",
+    {"record", KEY_RECORD, "WHAT", 0,
+     "particles: also store the lattice, and every step's particle positions, velocities and "
+     "goals, 72 bytes a particle and step; nodes: the same of an octree, with its tree, edges and "
+     "regions",
      2},
     {0},
 };
@@ -183,8 +184,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         options->no_output = true;
         return 0;
     case KEY_RECORD:
-        bench_option_choice(state, "--record", text, records);
-        options->record = true;
+        options->record = 1 + bench_option_choice(state, "--record", text, records);
         return 0;
     case ARGP_KEY_ARG:
         if (options->scene) bench_usage(state, "one scene or mesh only, not also '%s'", text);
@@ -461,7 +461,8 @@ static SmCode record(const Options *options, BenchRunner *runner, const BenchMac
     output_path(options, runner->scene, path);
     SmCode code = SM_OK;
     if (recorder)
-        code = bench_recording_open(runner, path, options->record, machine, recorder, error);
+        code = bench_recording_open(runner, path, (BenchRecord)options->record, machine, recorder,
+                                    error);
     if (code) return code;
     if (recorder) warn_of_size(options, recorder, path);
     Outcome outcome;

@@ -101,7 +101,7 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run tiny.cfg --gravity 1,2", 2, "--gravity: '1,2' is not three numbers x,y,z"},
         {"run tiny.cfg --summation slow", 2, "not one of fast, bars, naive"},
         {"run tiny.cfg --layout round", 2, "'round' is not one of auto, lists, blocks"},
-        {"run tiny.cfg --record film", 2, "--record: 'film' is not particles"},
+        {"run tiny.cfg --record film", 2, "--record: 'film' is not particles},
         {"run tiny.cfg --w", 2, "requires an argument"},
         {"run tiny.cfg tiny.cfg", 2, "one scene or mesh only"},
         {"run tiny.cfg --particles 100 --cell 0.1", 2, "either --particles or --cell"},
