@@ -42,8 +42,8 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
                           .plain = scene->octree.weighting == OCT_PLAIN};
     check->mass = sm_alloc((size_t)check->count, sizeof *check->mass);
     memcpy(check->mass, structure->mass, (size_t)check->count * sizeof *check->mass);
-    ref_octree_init(&structure->tree, &structure->regions, structure->mass, check->plain,
-                    &check->octree);
+    ref_tree_init(&structure->tree, &structure->regions, structure->mass, check->plain,
+                  &check->octree);
 }
 
 void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
@@ -59,7 +59,7 @@ void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
 void bench_check_free(BenchCheck *check)
 {
     if (check->hierarchical)
-        ref_octree_free(&check->octree);
+        ref_tree_free(&check->octree);
     else
         ref_regions_free(&check->regions);
     free(check->mass);
@@ -113,7 +113,7 @@ static void exact_goals(const BenchCheck *check, const double (*x)[3], double (*
         ref_goals(&check->regions, (const double(*)[3])body->x0, check->mass, x, exact);
         return;
     }
-    RefOctree twin = check->octree;
+    RefTreeBody twin = check->octree;
     double(*at)[3] = sm_alloc((size_t)check->count, sizeof *at), cell = body->voxels.cell;
     twin.R = sm_alloc((size_t)check->count, sizeof *twin.R);
     for (long i = 0; i < check->count; i++)
@@ -121,7 +121,7 @@ static void exact_goals(const BenchCheck *check, const double (*x)[3], double (*
             at[i][d] = (x[i][d] - body->voxels.origin[d]) / cell;
             twin.R[i][4 * d] = 1;
         }
-    ref_octree_goals(&twin, (const double(*)[3])at, false, exact);
+    ref_tree_goals(&twin, (const double(*)[3])at, false, exact);
     for (long i = 0; i < check->count; i++)
         for (int d = 0; d < 3; d++) exact[i][d] = body->voxels.origin[d] + cell * exact[i][d];
     free(at);

@@ -15,7 +15,7 @@ typedef struct {
     bool hierarchical;     /* an octree's */
     bool plain;            /* its weighting, which does not keep momentum */
     RefRegions regions;    /* of a lattice */
-    RefOctree octree;
+    RefTreeBody octree;
 } BenchCheck;
 
 typedef struct {

@@ -3,14 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../octree/structure.h"
-#include "check.h"
 #include "command.h"
 #include "draft.h"
 #include "option.h"
 #include "progress.h"
 #include "recording.h"
 #include "substitute.h"
+#include "summary.h"
 
 enum {
     KEY_ENGINE = 0x2000,
@@ -295,15 +294,8 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
     return SM_OK;
 }
 
-/* What the frames came to. */
-typedef struct {
-    long steps;
-    double seconds; /* in steps alone */
-    bool finite;
-} Outcome;
-
 static SmCode run_step(BenchRunner *runner, BenchRecording *recording, bool record,
-                       Outcome *outcome, SmError *error)
+                       BenchOutcome *outcome, SmError *error)
 {
     bench_runner_prepare(runner);
     if (record) {
@@ -328,12 +320,12 @@ static bool state_finite(const BenchRunner *runner)
 
 /* Runs all frames; stops early when no longer finite. `recording` may be NULL. */
 static SmCode run_frames(BenchRunner *runner, BenchRecording *recording, const Options *options,
-                         Outcome *outcome, SmError *error)
+                         BenchOutcome *outcome, SmError *error)
 {
     const BenchScene *scene = runner->scene;
     BenchProgress progress;
     bench_progress_start(&progress, options->common.quiet);
-    *outcome = (Outcome){.finite = true};
+    *outcome = (BenchOutcome){.finite = true};
     SmCode code = recording ? bench_recording_frame(recording, error) : SM_OK;
     for (int f = 0; f < scene->frames && !code && outcome->finite; f++) {
         for (int s = 0; s < scene->steps_per_frame && !code; s++)
@@ -347,81 +339,6 @@ static SmCode run_frames(BenchRunner *runner, BenchRecording *recording, const O
         code = bench_recording_step(recording, outcome->steps, false, error);
     bench_progress_stop(&progress);
     return code;
-}
-
-/* Prints the last state's deviation from brute force; false: beyond the tolerance. */
-static bool print_deviation(const BenchRunner *runner, const SmCounts *counts)
-{
-    static const double most_members = 1e8;
-    const BenchScene *scene = runner->scene;
-    if (counts->broken) {
-        printf("deviation: not checked: %ld links are broken\n", counts->broken);
-        return true;
-    }
-    if (scene->octree.creep > 0 && !strcmp(runner->type->name, "octree")) {
-        printf("deviation: not checked: a plastic body's rest shapes change\n");
-        return true;
-    }
-    if (bench_check_room(scene, runner->body, runner->type, runner->engine) > most_members) {
-        printf("deviation: not checked: brute force would take too much memory\n");
-        return true;
-    }
-    BenchCheck check;
-    bench_check_begin(scene, runner->body, runner->type, runner->engine, &check);
-    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
-    bench_check_free(&check);
-    double allowed = bench_check_tolerance(runner->type->precision);
-    printf("deviation: goals within %.3g cells of brute force, momentum kept to %.2g\n",
-           found.goal_error, found.momentum_error);
-    if (found.goal_error <= allowed) return true;
-    printf("deviation: beyond the %g cells that 'tables' allows: does the body fly off?\n",
-           allowed);
-    return false;
-}
-
-/* What the octree is: nodes beside those wanted, regions. */
-static void print_octree(const BenchRunner *runner)
-{
-    const OctStructure *s = oct_engine_structure(runner->engine);
-    const OctSampleReport *report = &s->report;
-    printf("%s: octree, %s precision: %ld nodes", runner->scene->name, runner->type->precision,
-           report->nodes);
-    if (report->wanted_nodes && report->wanted_nodes != report->nodes)
-        printf(" (nearest to the %ld wanted)", report->wanted_nodes);
-    printf(" from %ld base cells, %ld finest cells of %.6g\n", report->bases,
-           runner->body->voxels.cell_count, s->cell);
-    char width[BENCH_WIDTH_TEXT];
-    bench_width_text(&s->width, width);
-    printf("regions: w = %s, epsilon %g: %.3g summation nodes on average, %ld at most\n", width,
-           runner->scene->octree.epsilon, s->regions.mean, s->regions.most);
-}
-
-static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
-{
-    printf("%s: %s, %s precision: %ld particles, %ld unique regions, w %d, cell %.6g\n",
-           runner->scene->name, runner->type->name, runner->type->precision, counts->particles,
-           counts->regions, runner->scene->params.w, runner->body->voxels.cell);
-}
-
-/* Says what was run, how exact it ended and how long it took; false, and no time, when it ended
- * with goals beyond the tolerance or positions that are not finite. */
-static bool print_summary(const BenchRunner *runner, const Outcome *outcome)
-{
-    SmCounts counts;
-    runner->type->count(runner->engine, &counts);
-    double steps = (double)(outcome->steps > 0 ? outcome->steps : 1);
-    if (is_octree(runner->scene))
-        print_octree(runner);
-    else
-        print_lattice(runner, &counts);
-    bool valid = outcome->finite && print_deviation(runner, &counts);
-    printf("%ld steps of %g s: ", outcome->steps, runner->scene->params.h);
-    if (valid)
-        printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * outcome->seconds / steps,
-               1e9 * outcome->seconds / steps / (double)counts.particles);
-    else
-        printf("INVALID\n");
-    return valid;
 }
 
 static void output_path(const Options *options, const BenchScene *scene, char path[BENCH_PATH])
@@ -465,18 +382,18 @@ static SmCode record(const Options *options, BenchRunner *runner, const BenchMac
                                     error);
     if (code) return code;
     if (recorder) warn_of_size(options, recorder, path);
-    Outcome outcome;
+    BenchOutcome outcome;
     code = run_frames(runner, recorder, options, &outcome, error);
     if (code || !outcome.finite) {
         if (recorder) bench_recording_abandon(recorder);
         if (code) return code;
-        print_summary(runner, &outcome);
+        bench_summary_print(runner, &outcome);
         return sm_fail(error, SM_INVALID, "%s is INVALID: positions are not finite after step %ld",
                        runner->scene->name, outcome.steps);
     }
     if (recorder) code = bench_recording_close(recorder, error);
     if (code) return code;
-    bool valid = print_summary(runner, &outcome);
+    bool valid = bench_summary_print(runner, &outcome);
     if (recorder && !options->common.quiet)
         printf("wrote %s and %s.xdmf: %d frame%s\n", path, path, runner->scene->frames + 1,
                runner->scene->frames ? "s" : "");
