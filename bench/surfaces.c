@@ -195,7 +195,7 @@ SmCode bench_surface_time(int threads, int repeats, BenchSurface *surface, SmErr
     surface->triangles = statue.mesh.triangle_count;
     surface->vertices = statue.mesh.vertex_count;
     surface->particles = statue.voxels.particle_count;
-    surface->nodes = statue.carried.gradients.leaves;
+    surface->nodes = statue.carried.gradients.count;
     surface->nodes_blended =
         (double)statue.carried.first[surface->vertices] / (double)surface->vertices;
     int before = omp_get_max_threads();

@@ -12,7 +12,7 @@ typedef enum { BENCH_VOXELISE, BENCH_EMBED, BENCH_CARRY, BENCH_SURFACE_KERNELS }
 
 typedef struct {
     long triangles, vertices, particles;
-    long nodes;           /* of the octree */
+    long nodes;           /* of the octree that move the surface */
     double nodes_blended; /* a vertex, on average */
     struct BenchSurfaceTime {
         bool wanted; /* set by the caller */

@@ -23,12 +23,12 @@ typedef struct {
 /* From leaf k to leaf j in half finest cells; returns the neighbour's weight. */
 static double offset(const OctTree *tree, long k, int j, double d[3])
 {
-    double square = 0, size = tree->size[tree->node[j]];
+    double square = 0;
     for (int a = 0; a < 3; a++) {
         d[a] = tree->centre[tree->node[j]][a] - tree->centre[tree->node[k]][a];
         square += d[a] * d[a];
     }
-    return size * size / square;
+    return 1 / square;
 }
 
 static void find_moments(const OctTree *tree, long k, const int *leaf, long count, Moments *m)
@@ -57,21 +57,18 @@ static int *reach_out(const OctTree *tree, OctReach *reach, long k, int most, lo
     return reach->reached + 1;
 }
 
-/* The neighbours that leaf k is fitted to, into its list. */
-static void choose(const OctTree *tree, const OctGraph *graph, OctReach *reach, long k,
+/* The neighbours that leaf k is fitted to, into list n. */
+static void choose(const OctTree *tree, const OctGraph *graph, OctReach *reach, long k, long n,
                    OctLists *lists)
 {
     long first = graph->first[k], count = graph->first[k + 1] - first;
     const int *leaf = graph->to + first;
     Moments m;
     find_moments(tree, k, leaf, count, &m);
-    int size = tree->size[tree->node[k]], farthest = size;
-    for (long e = first; e < graph->first[k + 1]; e++)
-        if (graph->length[e] > farthest) farthest = graph->length[e];
     if (m.span < 3) {
         long more;
         Moments wider;
-        int most = 2 * farthest;
+        int size = tree->size[tree->node[k]], most = 2 * size;
         const int *found = reach_out(tree, reach, k, most, &more, &wider);
         long before = 0;
         while (wider.span < 2 && more > before && most < FAR_EDGES * size) {
@@ -84,24 +81,24 @@ static void choose(const OctTree *tree, const OctGraph *graph, OctReach *reach, 
             count = more;
         }
     }
-    oct_lists_add(lists, k, leaf, count);
+    oct_lists_add(lists, n, leaf, count);
 }
 
 static void choose_all(const OctTree *tree, const OctGraph *graph, OctGradients *g)
 {
     OctLists lists;
-    oct_lists_init(&lists, tree->leaves);
+    oct_lists_init(&lists, g->count);
 #pragma omp parallel
     {
         OctReach reach;
         oct_reach_init(&reach, graph);
 #pragma omp for schedule(dynamic)
         for (long block = 0; block < lists.blocks; block++)
-            for (long k = oct_lists_from(block); k < oct_lists_to(&lists, block); k++)
-                choose(tree, graph, &reach, k, &lists);
+            for (long n = oct_lists_from(block); n < oct_lists_to(&lists, block); n++)
+                choose(tree, graph, &reach, g->leaf[n], n, &lists);
         oct_reach_free(&reach);
     }
-    oct_lists_pack(&lists, &g->first, &g->leaf);
+    oct_lists_pack(&lists, &g->first, &g->neighbour);
 }
 
 /* sum over the directions, spanned or not, of value^power v v^T. */
@@ -116,58 +113,67 @@ static void compose(const Moments *m, bool spanned, double power, double M[9])
     }
 }
 
-/* Shares of leaf k's neighbours; those of flat leaves come without the inverse. */
-static void share_out(const OctTree *tree, double cell, long k, OctGradients *g)
+static void neighbour_moments(const OctTree *tree, const OctGradients *g, long n, Moments *m)
+{
+    find_moments(tree, g->leaf[n], g->neighbour + g->first[n], g->first[n + 1] - g->first[n], m);
+}
+
+/* Shares of the neighbours in list n; those of flat leaves come without the inverse. */
+static void share_out(const OctTree *tree, double cell, long n, OctGradients *g)
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     Moments m;
     double inverse[9], d[3];
-    long first = g->first[k];
-    find_moments(tree, k, g->leaf + first, g->first[k + 1] - first, &m);
-    g->span[k] = (unsigned char)m.span;
+    neighbour_moments(tree, g, n, &m);
+    g->span[g->leaf[n]] = (unsigned char)m.span;
     compose(&m, true, -1, inverse);
     const double *apply = m.span == 3 ? inverse : identity;
-    for (long n = first; n < g->first[k + 1]; n++) {
-        double scale = offset(tree, k, g->leaf[n], d) / m.trace * 2 / cell;
+    for (long e = g->first[n]; e < g->first[n + 1]; e++) {
+        double scale = offset(tree, g->leaf[n], g->neighbour[e], d) / m.trace * 2 / cell;
         for (int a = 0; a < 3; a++)
-            g->share[n][a] =
+            g->share[e][a] =
                 scale * (apply[3 * a] * d[0] + apply[3 * a + 1] * d[1] + apply[3 * a + 2] * d[2]);
     }
 }
 
 static void list_flats(const OctTree *tree, OctGradients *g)
 {
-    for (long k = 0; k < g->leaves; k++) g->flats += g->span[k] < 3;
+    for (long n = 0; n < g->count; n++) g->flats += g->span[g->leaf[n]] < 3;
     g->flat = sm_alloc((size_t)g->flats, sizeof *g->flat);
     OctFlat *flat = g->flat;
-    for (long k = 0; k < g->leaves; k++) {
-        if (g->span[k] == 3) continue;
+    for (long n = 0; n < g->count; n++) {
+        if (g->span[g->leaf[n]] == 3) continue;
         Moments m;
-        find_moments(tree, k, g->leaf + g->first[k], g->first[k + 1] - g->first[k], &m);
-        flat->leaf = (int)k;
+        neighbour_moments(tree, g, n, &m);
+        flat->leaf = g->leaf[n];
         compose(&m, true, -1, flat->inverse);
         compose(&m, false, 0, flat->beyond);
         flat++;
     }
 }
 
-void oct_gradients_build(const OctTree *tree, const OctGraph *graph, double cell,
-                         OctGradients *gradients)
+void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsigned char *wanted,
+                         double cell, OctGradients *gradients)
 {
     OctGradients *g = gradients;
     *g = (OctGradients){.leaves = tree->leaves};
+    for (long k = 0; k < g->leaves; k++) g->count += wanted[k];
+    g->leaf = sm_alloc((size_t)g->count, sizeof *g->leaf);
+    for (long k = 0, n = 0; k < g->leaves; k++)
+        if (wanted[k]) g->leaf[n++] = (int)k;
     choose_all(tree, graph, g);
-    g->share = sm_alloc((size_t)g->first[g->leaves], sizeof *g->share);
+    g->share = sm_alloc((size_t)g->first[g->count], sizeof *g->share);
     g->span = sm_alloc((size_t)g->leaves, 1);
 #pragma omp parallel for schedule(static)
-    for (long k = 0; k < g->leaves; k++) share_out(tree, cell, k, g);
+    for (long n = 0; n < g->count; n++) share_out(tree, cell, n, g);
     list_flats(tree, g);
 }
 
 void oct_gradients_free(OctGradients *gradients)
 {
-    free(gradients->first);
     free(gradients->leaf);
+    free(gradients->first);
+    free(gradients->neighbour);
     free(gradients->share);
     free(gradients->span);
     free(gradients->flat);
@@ -200,14 +206,15 @@ void oct_gradients_find(const OctGradients *gradients, const double (*x)[3], dou
 #pragma omp parallel
     {
 #pragma omp for schedule(static)
-        for (long k = 0; k < g->leaves; k++) {
+        for (long n = 0; n < g->count; n++) {
+            const double *own = x[g->leaf[n]];
             double sum[9] = {0};
-            for (long n = g->first[k]; n < g->first[k + 1]; n++)
+            for (long e = g->first[n]; e < g->first[n + 1]; e++)
                 for (int a = 0; a < 3; a++) {
-                    double moved = x[g->leaf[n]][a] - x[k][a];
-                    for (int b = 0; b < 3; b++) sum[3 * a + b] += moved * g->share[n][b];
+                    double moved = x[g->neighbour[e]][a] - own[a];
+                    for (int b = 0; b < 3; b++) sum[3 * a + b] += moved * g->share[e][b];
                 }
-            memcpy(F[k], sum, sizeof sum);
+            memcpy(F[g->leaf[n]], sum, sizeof sum);
         }
 #pragma omp for schedule(static)
         for (long n = 0; n < g->flats; n += CHUNK)

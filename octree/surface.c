@@ -93,7 +93,6 @@ void oct_surface_build(const SmMesh *mesh, const SmVoxels *voxels, const OctTree
 {
     Carrier c = {voxels, tree, graph};
     *surface = (OctSurface){.vertices = mesh->vertex_count};
-    oct_gradients_build(tree, graph, voxels->cell, &surface->gradients);
     copy_rest(mesh, &c, surface);
     OctLists lists;
     oct_lists_init(&lists, surface->vertices);
@@ -102,6 +101,10 @@ void oct_surface_build(const SmMesh *mesh, const SmVoxels *voxels, const OctTree
         for (long v = oct_lists_from(block); v < oct_lists_to(&lists, block); v++)
             choose(&c, surface->rest[v], v, &lists);
     oct_lists_pack(&lists, &surface->first, &surface->leaf);
+    unsigned char *wanted = sm_alloc((size_t)tree->leaves, 1);
+    for (long n = 0; n < surface->first[surface->vertices]; n++) wanted[surface->leaf[n]] = 1;
+    oct_gradients_build(tree, graph, wanted, voxels->cell, &surface->gradients);
+    free(wanted);
     surface->weight = sm_alloc((size_t)surface->first[surface->vertices], sizeof *surface->weight);
 #pragma omp parallel for schedule(static)
     for (long v = 0; v < surface->vertices; v++) share_out(&c, v, surface);
@@ -124,8 +127,9 @@ size_t oct_surface_bytes(const OctSurface *s)
 {
     const OctGradients *g = &s->gradients;
     size_t leaves = (size_t)g->leaves, vertices = (size_t)s->vertices;
-    return leaves * (sizeof *s->centre + sizeof *s->F + sizeof *g->first + sizeof *g->span) +
-           (size_t)g->first[leaves] * (sizeof *g->leaf + sizeof *g->share) +
+    return leaves * (sizeof *s->centre + sizeof *s->F + sizeof *g->span) +
+           (size_t)g->count * (sizeof *g->leaf + sizeof *g->first) +
+           (size_t)g->first[g->count] * (sizeof *g->neighbour + sizeof *g->share) +
            (size_t)g->flats * sizeof *g->flat +
            vertices * (sizeof *s->rest + sizeof *s->normal + sizeof *s->first) +
            (size_t)s->first[vertices] * (sizeof *s->leaf + sizeof *s->weight);

@@ -26,7 +26,7 @@ typedef struct {
     long *first;         /* [vertices + 1] of a vertex's nodes; the first is the leaf it is in */
     int *leaf;
     float *weight;  /* w_k; that of the first is what is missing to 1 and not stored: 0 */
-    double (*F)[9]; /* [leaves] of the last oct_surface_move() */
+    double (*F)[9]; /* [leaves] of those that move a vertex, by the last oct_surface_move() */
 } OctSurface;
 
 /* Ties every vertex of `mesh` to the leaf that holds it, or to the nearest material if none does
