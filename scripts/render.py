@@ -275,7 +275,10 @@ def fill(renderer, path, options):
     """What there is to see: the surface, an octree's cells, or both."""
     surface = read(path, options.frame)
     if options.cells:
-        cells, levels = read_cells(path, options.frame)
+        try:
+            cells, levels = read_cells(path, options.frame)
+        except (KeyError, OSError):
+            fail(f"{path}: not a trajectory with an octree's nodes, which --cells draws", 3)
         renderer.AddActor(cells_actor(cells, levels, options.cells == "wire"))
     if options.cells != "boxes":
         actor = surface_actor(surface, options.edges)
