@@ -7,9 +7,10 @@ Everything comes from the group /particles or /nodes of FILE (results/README.md)
 by breadth-first search over the cells, goals by fastlsm eqs. 9-12; an octree's distances by Dijkstra
 over the visibility edges, regions by the intervals of octree section 4.2 and symmetry, goals by octree
 eqs. 6-8, leaf by leaf; the step by fastlsm eqs. 1-2 and 14. An octree's stored summation nodes must be
-those regions' largest cells. Prints the largest deviations in finest cells; velocities count as what they move in a step, and are compared after the last
-step only, because the others hold the next step's pushes already. Particles that follow a handle
-or end within a thousandth of a cell of an obstacle are compared in their goals only.
+those regions' largest cells. Prints the largest deviations in (finest) cells; velocities count as what
+they move in a step, and are compared after the last step only, because the others hold the next step's
+pushes already. Particles that follow a handle or end within a thousandth of a cell of an obstacle are
+compared in their goals only.
 Exit code: 0 all within tolerance, 1 not, 2 nothing can be compared, 3 the file cannot be used."""
 import heapq
 import sys

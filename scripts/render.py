@@ -142,7 +142,8 @@ def read_cells(path, frame):
     points = [at[:, None, :] + numpy.einsum("nab,nc,kb->nka", turns(rest, at, edge), size[:, None] * 0.97, corner)
               for at in x]
     count = len(rest) * len(x)
-    data = polydata(numpy.concatenate(points).reshape(-1, 3), (8 * numpy.arange(count)[:, None, None] + side).reshape(-1, 4))
+    faces = (8 * numpy.arange(count)[:, None, None] + side).reshape(-1, 4)
+    data = polydata(numpy.concatenate(points).reshape(-1, 3), faces)
     data.GetCellData().SetScalars(numpy_support.numpy_to_vtk(numpy.repeat(numpy.tile(level, len(x)), 6), deep=True))
     return data, levels
 
