@@ -81,6 +81,12 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene)
     scene->obstacle[0].a[1] = low[1] - height / 2;
 }
 
+void bench_scene_sample(BenchScene *scene)
+{
+    scene->voxel.particles = 35000;
+    scene->octree.epsilon = 0.5;
+}
+
 static void stand_instances(const BenchScene *scene, BenchBody *body)
 {
     body->instances = scene->instances;
@@ -170,6 +176,31 @@ static unsigned long long hash_bytes(unsigned long long hash, const void *data, 
     return hash;
 }
 
+static double log_off(const SmVoxels *voxels, long cells)
+{
+    return fabs(log((double)voxels->cell_count / (double)cells));
+}
+
+/* The lattice whose material cells are nearest to as many as wanted, of a few whose wanted
+ * particles approach them. */
+static SmCode voxelise_cells(const BenchScene *scene, const SmMesh *mesh, SmVoxels *voxels,
+                             SmError *error)
+{
+    SmVoxelParams params = {scene->voxel.fill, 0, scene->cells > 8 ? scene->cells : 8};
+    SmCode code = sm_voxelise(mesh, &params, scene->mesh, voxels, error);
+    for (int i = 0; i < 4 && !code && log_off(voxels, scene->cells) > 0.002; i++) {
+        SmVoxels next;
+        double share = (double)scene->cells / (double)voxels->cell_count;
+        params.particles = (long)rint(fmax((double)voxels->particle_count * share, 8));
+        if (sm_voxelise(mesh, &params, scene->mesh, &next, NULL)) break;
+        bool nearer = log_off(&next, scene->cells) < log_off(voxels, scene->cells);
+        sm_voxels_free(nearer ? voxels : &next);
+        if (!nearer) break;
+        *voxels = next;
+    }
+    return code;
+}
+
 SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error)
 {
     *body = (BenchBody){.mesh = *mesh, .hash = 0xcbf29ce484222325ULL};
@@ -180,7 +211,9 @@ SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body,
     body->hash =
         hash_bytes(body->hash, m->triangle, (size_t)m->triangle_count * sizeof *m->triangle);
     double start = sm_now();
-    SmCode code = sm_voxelise(m, &scene->voxel, scene->mesh, &body->voxels, error);
+    SmCode code = scene->cells > 0
+                      ? voxelise_cells(scene, m, &body->voxels, error)
+                      : sm_voxelise(m, &scene->voxel, scene->mesh, &body->voxels, error);
     body->voxelise_seconds = sm_now() - start;
     if (!code) {
         stand_instances(scene, body);

@@ -1,15 +1,21 @@
-/* check.h - is an engine's present state's goal right? Held to brute force in double precision. */
+/* check.h - is an engine's present state's goal right? Held to brute force in double precision:
+ * lattice engines to reference/brute.h, the octree to reference/octree_goals.h. */
 #ifndef BENCH_CHECK_H
 #define BENCH_CHECK_H
 
 #include "../reference/brute.h"
+#include "../reference/octree_goals.h"
 #include "body.h"
 
 typedef struct {
     const BenchBody *body; /* the caller's, kept */
-    RefRegions regions;
-    long unique;  /* different regions */
-    double *mass; /* [particle_count] */
+    long count;            /* particles that one body should have */
+    long unique;           /* different regions; of an octree all */
+    double *mass;          /* [count] */
+    bool hierarchical;     /* an octree's */
+    bool plain;            /* its weighting, which does not keep momentum */
+    RefRegions regions;    /* of a lattice */
+    RefTreeBody octree;
 } BenchCheck;
 
 typedef struct {
@@ -23,11 +29,21 @@ typedef struct {
 /* Region members that a check of this body would hold in memory, at most; 4 bytes each. */
 double bench_check_members(const BenchBody *body, int w);
 
-/* Builds the reference's regions: O(particles (2w+1)^3) time and memory. */
+/* The same of an engine on the scene's body, which for an octree is asked. */
+double bench_check_room(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                        const SmEngine *engine);
+
+/* Builds the reference's regions for a lattice engine: O(particles (2w+1)^3) time and memory. */
 void bench_check_create(const BenchBody *body, int w, BenchCheck *check);
+
+/* For any engine on the scene's body. The octree's regions are those of the engine, leaf by leaf
+ * (reference/octree_regions.h is their twin, in tests). */
+void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                       const SmEngine *engine, BenchCheck *check);
 void bench_check_free(BenchCheck *check);
 
-/* Calls engine->goals() and compares; the state does not change. */
+/* Calls engine->goals() and compares; the state does not change. Not for a plastic octree, whose
+ * rest shapes change. */
 BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *type,
                                  SmEngine *engine);
 

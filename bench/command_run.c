@@ -3,17 +3,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "check.h"
 #include "command.h"
 #include "draft.h"
 #include "option.h"
 #include "progress.h"
 #include "recording.h"
 #include "substitute.h"
+#include "summary.h"
 
 enum {
     KEY_ENGINE = 0x2000,
     KEY_W,
+    KEY_EPSILON,
+    KEY_LEVELS,
+    KEY_NODES,
     KEY_PARTICLES,
     KEY_CELL,
     KEY_SHELL,
@@ -35,24 +38,31 @@ enum {
 /* Options that were given replace the scene's settings; those that were not are below zero. */
 typedef struct {
     BenchCommon common;
-    const char *scene, *engine, *precision, *output;
-    bool shell, record, no_output, has_gravity;
-    int w, frames, steps, summation, polar, layout;
-    long particles;
-    double cell, damping, h, strain_limit, gravity[3];
+    const char *scene, *engine, *precision, *output, *w;
+    bool shell, no_output, has_gravity;
+    int frames, steps, summation, polar, layout, levels, record;
+    long particles, nodes;
+    double cell, damping, epsilon, h, strain_limit, gravity[3];
     BenchSubstitutes substitutes;
 } Options;
 
 static const char *const precisions[] = {"single", "double", NULL};
 static const char *const summations[] = {"fast", "bars", "naive", NULL};
 static const char *const polars[] = {"fast", "jacobi", NULL};
-static const char *const records[] = {"particles", NULL};
+static const char *const records[] = {"particles", "nodes", NULL}; /* BenchRecord from 1 */
 
 static const struct argp_option option_list[] = {
     {0, 0, 0, 0, "What replaces the scene's settings:", 1},
-    {"engine", KEY_ENGINE, "NAME", 0, "fastlsm or brute", 1},
+    {"engine", KEY_ENGINE, "NAME", 0, "fastlsm, octree or brute", 1},
     {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
-    {"w", KEY_W, "N", 0, "Region half-width in cells, 1 to 64 (fastlsm: to 31)", 1},
+    {"w", KEY_W, "W", 0,
+     "Region half-width in cells, 1 to 64 (fastlsm: to 31); octree: any width in finest cells "
+     "(default: each node's own edge)",
+     1},
+    {"epsilon", KEY_EPSILON, "E", 0,
+     "Octree: regions may be wider by this share (default for a mesh: 0.5)", 1},
+    {"levels", KEY_LEVELS, "N", 0, "Octree: a base cell is 2^N finest cells wide, 1 to 12", 1},
+    {"nodes", KEY_NODES, "N", 0, "Octree: wanted simulation nodes", 1},
     {"particles", KEY_PARTICLES, "N", 0, "Wanted particle count", 1},
     {"cell", KEY_CELL, "SIZE", 0, "Edge of a cell, in the mesh's units", 1},
     {"shell", KEY_SHELL, 0, 0, "Surface cells only, not the interior", 1},
@@ -69,9 +79,10 @@ static const struct argp_option option_list[] = {
     {"steps", KEY_STEPS, "N", 0, "Steps in a frame", 2},
     {"output", 'o', "FILE.vtkhdf", 0, "Trajectory (default: SCENE.vtkhdf in this folder)", 2},
     {"no-output", KEY_NO_OUTPUT, 0, 0, "Write no trajectory", 2},
-    {"record", KEY_RECORD, "particles", 0,
-     "Also store the lattice, and every step's particle positions, velocities and goals: 72 "
-     "bytes a particle and step",
+    {"record", KEY_RECORD, "WHAT", 0,
+     "particles: also store the lattice, and every step's particle positions, velocities and "
+     "goals, 72 bytes a particle and step; nodes: the same of an octree, with its tree, edges and "
+     "regions",
      2},
     {0},
 };
@@ -88,7 +99,7 @@ static error_t parse_engine(int key, char *text, struct argp_state *state)
             precisions[bench_option_choice(state, "--precision", text, precisions)];
         return 0;
     case KEY_W:
-        options->w = (int)bench_option_long(state, "--w", text, 1, 64);
+        options->w = text;
         return 0;
     case KEY_DAMPING:
         options->damping = bench_option_real(state, "--damping", text, 0, 1);
@@ -129,6 +140,15 @@ static error_t parse_lattice(int key, char *text, struct argp_state *state)
     case KEY_SHELL:
         options->shell = true;
         return 0;
+    case KEY_EPSILON:
+        options->epsilon = bench_option_real(state, "--epsilon", text, 0, 1e6);
+        return 0;
+    case KEY_LEVELS:
+        options->levels = (int)bench_option_long(state, "--levels", text, 1, OCT_MAX_LEVELS);
+        return 0;
+    case KEY_NODES:
+        options->nodes = bench_option_long(state, "--nodes", text, 1, 1000000000);
+        return 0;
     case KEY_MESH:
         bench_substitute_add(state, text, &options->substitutes);
         return 0;
@@ -146,6 +166,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
                              .polar = -1,
                              .layout = -1,
                              .damping = -1,
+                             .epsilon = -1,
                              .strain_limit = -1};
         bench_options_init(state, &options->common);
         return 0;
@@ -162,8 +183,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         options->no_output = true;
         return 0;
     case KEY_RECORD:
-        bench_option_choice(state, "--record", text, records);
-        options->record = true;
+        options->record = 1 + bench_option_choice(state, "--record", text, records);
         return 0;
     case ARGP_KEY_ARG:
         if (options->scene) bench_usage(state, "one scene or mesh only, not also '%s'", text);
@@ -184,7 +204,8 @@ static const char help[] =
     "Simulate a scene and write the motion of its surface: a built-in scene (shapebench scenes), a "
     "scene file NAME.cfg, or a mesh file.\v"
     "A mesh alone becomes a solid of about 2,000 particles, w 2, damping 0.1, that drops from half "
-    "its height onto a ground plane. Its units are unknown, so gravity is 9.81 heights of the body "
+    "its height onto a ground plane; with --engine octree a lattice of about 35,000, sampled by "
+    "features at epsilon 0.5. Its units are unknown, so gravity is 9.81 heights of the body "
     "per second squared: a body 70 units tall falls like one of 1 m.\n"
     "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf) for ParaView; it appears "
     "whole or not at all. The deviation printed is the largest distance of a goal position from "
@@ -199,7 +220,6 @@ static void apply_options(const Options *options, BenchScene *scene)
 {
     SmEngineParams *params = &scene->params;
     if (options->engine) snprintf(scene->engine, sizeof scene->engine, "%.23s", options->engine);
-    if (options->w) params->w = options->w;
     if (options->h > 0) params->h = options->h;
     if (options->damping >= 0) params->damping = options->damping;
     if (options->strain_limit >= 0) params->strain_limit = options->strain_limit;
@@ -208,11 +228,48 @@ static void apply_options(const Options *options, BenchScene *scene)
     if (options->layout >= 0) params->layout = (SmLayout)options->layout;
     if (options->has_gravity) memcpy(params->gravity, options->gravity, sizeof params->gravity);
     if (options->shell) scene->voxel.fill = SM_SHELL;
+    if (options->particles || options->cell > 0) scene->cells = 0;
     if (options->particles)
         scene->voxel = (SmVoxelParams){scene->voxel.fill, 0, options->particles};
     if (options->cell > 0) scene->voxel = (SmVoxelParams){scene->voxel.fill, options->cell, 0};
     if (options->frames >= 0) scene->frames = options->frames;
     if (options->steps) scene->steps_per_frame = options->steps;
+}
+
+static bool is_octree(const BenchScene *scene)
+{
+    return !strcmp(scene->engine, "octree");
+}
+
+/* A lattice's w is a whole number, an octree's is not; the octree's options are its own. */
+static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *error)
+{
+    OctOptions *octree = &scene->octree;
+    if (!is_octree(scene) && (options->epsilon >= 0 || options->levels || options->nodes))
+        return sm_fail(error, SM_USAGE,
+                       "--epsilon, --levels and --nodes are the octree's: add --engine octree");
+    if (options->epsilon >= 0) octree->epsilon = options->epsilon;
+    if (options->levels) {
+        octree->sampling.levels = options->levels;
+        for (int i = 0; i < octree->sampling.criteria_count; i++)
+            octree->sampling.criteria[i].level = 0; /* the deepest */
+    }
+    if (options->nodes) octree->sampling.nodes = options->nodes;
+    if (!options->w) return SM_OK;
+    char *end;
+    double w = strtod(options->w, &end), low = is_octree(scene) ? 0 : 1,
+           high = is_octree(scene) ? 1e6 : 64;
+    bool good = end != options->w && !*end && w >= low && w <= high && w > 0;
+    if (!good || (!is_octree(scene) && w != floor(w)))
+        return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a %s", options->w,
+                       is_octree(scene) ? "number above 0, to 1e6" : "whole number from 1 to 64");
+    if (is_octree(scene)) {
+        octree->width = (OctWidth){.cells = w};
+        octree->summation_nodes = 0;
+    } else {
+        scene->params.w = (int)w;
+    }
+    return SM_OK;
 }
 
 /* A scene's name or file; anything else is a mesh. */
@@ -231,19 +288,14 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
     if (length >= BENCH_PATH)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", name);
     SmCode code = bench_mesh_load(name, mesh, error);
-    if (!code) bench_scene_drop(mesh, name, scene);
-    return code;
+    if (code) return code;
+    bench_scene_drop(mesh, name, scene);
+    if (options->engine && !strcmp(options->engine, "octree")) bench_scene_sample(scene);
+    return SM_OK;
 }
 
-/* What the frames came to. */
-typedef struct {
-    long steps;
-    double seconds; /* in steps alone */
-    bool finite;
-} Outcome;
-
 static SmCode run_step(BenchRunner *runner, BenchRecording *recording, bool record,
-                       Outcome *outcome, SmError *error)
+                       BenchOutcome *outcome, SmError *error)
 {
     bench_runner_prepare(runner);
     if (record) {
@@ -268,12 +320,12 @@ static bool state_finite(const BenchRunner *runner)
 
 /* Runs all frames; stops early when no longer finite. `recording` may be NULL. */
 static SmCode run_frames(BenchRunner *runner, BenchRecording *recording, const Options *options,
-                         Outcome *outcome, SmError *error)
+                         BenchOutcome *outcome, SmError *error)
 {
     const BenchScene *scene = runner->scene;
     BenchProgress progress;
     bench_progress_start(&progress, options->common.quiet);
-    *outcome = (Outcome){.finite = true};
+    *outcome = (BenchOutcome){.finite = true};
     SmCode code = recording ? bench_recording_frame(recording, error) : SM_OK;
     for (int f = 0; f < scene->frames && !code && outcome->finite; f++) {
         for (int s = 0; s < scene->steps_per_frame && !code; s++)
@@ -287,52 +339,6 @@ static SmCode run_frames(BenchRunner *runner, BenchRecording *recording, const O
         code = bench_recording_step(recording, outcome->steps, false, error);
     bench_progress_stop(&progress);
     return code;
-}
-
-/* Prints the last state's deviation from brute force; false: beyond the tolerance. */
-static bool print_deviation(const BenchRunner *runner, const SmCounts *counts)
-{
-    static const double most_members = 1e8;
-    int w = runner->scene->params.w;
-    if (counts->broken) {
-        printf("deviation: not checked: %ld links are broken\n", counts->broken);
-        return true;
-    }
-    if (bench_check_members(runner->body, w) > most_members) {
-        printf("deviation: not checked: brute force would take too much memory\n");
-        return true;
-    }
-    BenchCheck check;
-    bench_check_create(runner->body, w, &check);
-    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
-    bench_check_free(&check);
-    double allowed = bench_check_tolerance(runner->type->precision);
-    printf("deviation: goals within %.3g cells of brute force, momentum kept to %.2g\n",
-           found.goal_error, found.momentum_error);
-    if (found.goal_error <= allowed) return true;
-    printf("deviation: beyond the %g cells that 'tables' allows: does the body fly off?\n",
-           allowed);
-    return false;
-}
-
-/* Says what was run, how exact it ended and how long it took; false, and no time, when it ended
- * with goals beyond the tolerance or positions that are not finite. */
-static bool print_summary(const BenchRunner *runner, const Outcome *outcome)
-{
-    SmCounts counts;
-    runner->type->count(runner->engine, &counts);
-    double steps = (double)(outcome->steps > 0 ? outcome->steps : 1);
-    printf("%s: %s, %s precision: %ld particles, %ld unique regions, w %d, cell %.6g\n",
-           runner->scene->name, runner->type->name, runner->type->precision, counts.particles,
-           counts.regions, runner->scene->params.w, runner->body->voxels.cell);
-    bool valid = outcome->finite && print_deviation(runner, &counts);
-    printf("%ld steps of %g s: ", outcome->steps, runner->scene->params.h);
-    if (valid)
-        printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * outcome->seconds / steps,
-               1e9 * outcome->seconds / steps / (double)counts.particles);
-    else
-        printf("INVALID\n");
-    return valid;
 }
 
 static void output_path(const Options *options, const BenchScene *scene, char path[BENCH_PATH])
@@ -372,21 +378,22 @@ static SmCode record(const Options *options, BenchRunner *runner, const BenchMac
     output_path(options, runner->scene, path);
     SmCode code = SM_OK;
     if (recorder)
-        code = bench_recording_open(runner, path, options->record, machine, recorder, error);
+        code = bench_recording_open(runner, path, (BenchRecord)options->record, machine, recorder,
+                                    error);
     if (code) return code;
     if (recorder) warn_of_size(options, recorder, path);
-    Outcome outcome;
+    BenchOutcome outcome;
     code = run_frames(runner, recorder, options, &outcome, error);
     if (code || !outcome.finite) {
         if (recorder) bench_recording_abandon(recorder);
         if (code) return code;
-        print_summary(runner, &outcome);
+        bench_summary_print(runner, &outcome);
         return sm_fail(error, SM_INVALID, "%s is INVALID: positions are not finite after step %ld",
                        runner->scene->name, outcome.steps);
     }
     if (recorder) code = bench_recording_close(recorder, error);
     if (code) return code;
-    bool valid = print_summary(runner, &outcome);
+    bool valid = bench_summary_print(runner, &outcome);
     if (recorder && !options->common.quiet)
         printf("wrote %s and %s.xdmf: %d frame%s\n", path, path, runner->scene->frames + 1,
                runner->scene->frames ? "s" : "");
@@ -407,8 +414,8 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     SmCode code = load(options, &scene, &mesh, error);
     if (code) return code;
     apply_options(options, &scene);
-    code = bench_engine_find(options->engine ? options->engine : scene.engine, options->precision,
-                             &type, error);
+    code = apply_octree(options, &scene, error);
+    if (!code) code = bench_engine_find(scene.engine, options->precision, &type, error);
     if (code) {
         sm_mesh_free(&mesh);
         return code;

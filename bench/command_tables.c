@@ -29,6 +29,7 @@ typedef struct {
     BenchCommon common;
     const char *paper, *engine, *precision, *output;
     const char *scene[SCENES];
+    const char *stem[SCENES];    /* the name that stood for this scene and others, or NULL */
     int scenes, repeats, layout; /* layout below 0: as the scene says */
     double block;
     BenchFormat format;
@@ -38,9 +39,11 @@ typedef struct {
 static const char *const precisions[] = {"single", "double", NULL};
 
 static const struct argp_option option_list[] = {
-    {"paper", KEY_PAPER, "NAME", 0, "The paper whose table to regenerate (default: fastlsm)", 1},
-    {"scene", KEY_SCENE, "NAME|FILE", 0, "Measure this scene only; may be repeated", 1},
-    {"engine", KEY_ENGINE, "NAME", 0, "fastlsm or brute (default: as the scene says)", 1},
+    {"paper", KEY_PAPER, "NAME", 0,
+     "The paper whose table to regenerate: fastlsm (default), octree", 1},
+    {"scene", KEY_SCENE, "NAME|FILE", 0,
+     "Measure this scene only, or the paper's scenes NAME-...; may be repeated", 1},
+    {"engine", KEY_ENGINE, "NAME", 0, "fastlsm, octree or brute (default: as the scene says)", 1},
     {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
     {"layout", KEY_LAYOUT, "HOW", 0, BENCH_LAYOUT_HELP " (default: as the scene says)", 1},
     {"mesh", KEY_MESH, "NAME=FILE", 0, BENCH_MESH_HELP, 1},
@@ -103,45 +106,83 @@ static error_t parse(int key, char *text, struct argp_state *state)
 static const char help[] =
     "Measure the scenes of a paper's table and set the paper's values beside them. Every scene is "
     "first checked on the very state that is timed: goal positions against double-precision brute "
-    "force (at most 5e-5 of a cell off in single, 1e-10 in double precision), linear momentum "
+    "force, the octree's against sums over its regions' leaves (at most 5e-5 of a cell off in "
+    "single, 1e-10 in double precision), linear momentum "
     "(sum m g = sum m x to 1e-6 of sum m |x - centroid|), counts, and that everything is finite. "
     "A row that fails has INVALID in place of its times.\v"
     "Times are medians over the repeats; the total is timed without clocks inside the step, stages "
     "are the shares of a run with clocks, interleaved. 'ratio' and 'faster' are the paper's total "
-    "divided by the measured one.\n" BENCH_EXIT_CODES;
+    "divided by the measured one, 'speed-up' the time of the table's first lattice row by the "
+    "row's.\n" BENCH_EXIT_CODES;
 
 static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
 static const struct argp argp = {option_list, parse, NULL, help, children, NULL, NULL};
 
-/* The built-in scene that regenerates this row, or NULL. */
-static const char *scene_of_row(const RefPaperRow *row)
+/* Is it a built-in scene of the paper's for `row`, or, with NULL, for none, and does its name begin
+ * with `stem` and a dash, unless that is NULL? */
+static bool belongs(const char *name, const char *paper, const char *row, const char *stem)
 {
-    for (const char *const *name = bench_scene_names(); *name; name++) {
-        BenchScene scene;
-        if (bench_scene_find(*name, &scene, NULL)) continue;
-        if (!strcmp(scene.paper, row->paper) && !strcmp(scene.row, row->scene)) return *name;
-    }
-    return NULL;
+    BenchScene scene;
+    size_t length = stem ? strlen(stem) : 0;
+    if (stem && (strncmp(name, stem, length) != 0 || name[length] != '-')) return false;
+    if (bench_scene_find(name, &scene, NULL) || strcmp(scene.paper, paper) != 0) return false;
+    return row ? !strcmp(scene.row, row) : !scene.row[0];
 }
 
-/* Fills in the scenes of the paper's table. */
-static SmCode choose_scenes(Options *options, SmError *error)
+static void add_scene(Options *options, const char *name, const char *stem)
+{
+    if (options->scenes == SCENES) return;
+    options->stem[options->scenes] = stem;
+    options->scene[options->scenes++] = name;
+}
+
+/* The scenes of the paper's table whose names begin with `stem` and a dash, or all: in the order of
+ * its rows, behind each those that only we have. */
+static void add_scenes(Options *options, const char *stem)
 {
     int count;
     const RefPaperRow *rows = ref_paper_rows(&count);
-    for (int i = 0; i < count && options->scenes < SCENES; i++) {
+    for (int i = 0; i < count; i++) {
         if (strcmp(rows[i].paper, options->paper) != 0) continue;
-        const char *name = scene_of_row(&rows[i]);
-        if (name) options->scene[options->scenes++] = name;
+        for (const char *const *name = bench_scene_names(); *name; name++) {
+            if (!belongs(*name, options->paper, rows[i].scene, stem)) continue;
+            add_scene(options, *name, stem);
+            for (const char *const *more = bench_scene_names(); *more; more++)
+                if (belongs(*more, options->paper, NULL, *name)) add_scene(options, *more, stem);
+        }
     }
+}
+
+/* Fills in the scenes of the paper's table, or those that a name given stands for. */
+static SmCode choose_scenes(Options *options, SmError *error)
+{
+    const char *given[SCENES];
+    int count = options->scenes;
+    memcpy(given, options->scene, sizeof given);
+    options->scenes = 0;
+    for (int i = 0; i < count; i++) {
+        int before = options->scenes;
+        add_scenes(options, given[i]);
+        bool exact = false;
+        for (const char *const *name = bench_scene_names(); *name; name++) {
+            BenchScene scene;
+            exact |= !strcmp(*name, given[i]) && !bench_scene_find(*name, &scene, NULL) &&
+                     !strcmp(scene.paper, options->paper);
+        }
+        if (options->scenes > before && !exact) continue;
+        options->scenes = before;
+        add_scene(options, given[i], NULL);
+    }
+    if (!count) add_scenes(options, NULL);
     if (options->scenes) return SM_OK;
-    return sm_fail(error, SM_USAGE, "--paper: no table of '%.40s'; there is: fastlsm",
+    return sm_fail(error, SM_USAGE, "--paper: no table of '%.40s'; there are: fastlsm, octree",
                    options->paper);
 }
 
-static SmCode measure_scene(const Options *options, const char *name, BenchProgress *progress,
+static SmCode measure_scene(const Options *options, int number, BenchProgress *progress,
                             BenchRow *row, SmError *error)
 {
+    const char *name = options->scene[number], *stem = options->stem[number];
     BenchScene scene;
     const SmEngineType *type;
     SmCode code = bench_scene_find(name, &scene, error);
@@ -153,6 +194,7 @@ static SmCode measure_scene(const Options *options, const char *name, BenchProgr
     SmMesh mesh;
     BenchBody body;
     const char *substitute = bench_substitute_find(&options->substitutes, scene.name);
+    if (!substitute && stem) substitute = bench_substitute_find(&options->substitutes, stem);
     bench_progress_show(progress, scene.name, 0);
     code = bench_mesh_of_scene(&scene, substitute, &mesh, error);
     if (!code) code = bench_body_create(&scene, &mesh, &body, error);
@@ -167,14 +209,27 @@ static SmCode measure_scene(const Options *options, const char *name, BenchProgr
     return code;
 }
 
+/* Speed-ups over the octree paper's lattice. */
+static void compare_rows(BenchRow *rows, int count)
+{
+    const BenchRow *lattice = NULL;
+    for (int i = count - 1; i >= 0; i--)
+        if (!strcmp(rows[i].paper, "octree") && !strcmp(rows[i].engine, "fastlsm") && rows[i].valid)
+            lattice = &rows[i];
+    for (int i = 0; i < count && lattice; i++)
+        if (!strcmp(rows[i].paper, "octree"))
+            rows[i].speedup = lattice->total_ms / rows[i].total_ms;
+}
+
 static SmCode measure_all(const Options *options, BenchRow *rows, SmError *error)
 {
     BenchProgress progress;
     bench_progress_start(&progress, options->common.quiet);
     SmCode code = SM_OK;
     for (int i = 0; i < options->scenes && !code; i++)
-        code = measure_scene(options, options->scene[i], &progress, &rows[i], error);
+        code = measure_scene(options, i, &progress, &rows[i], error);
     bench_progress_stop(&progress);
+    if (!code) compare_rows(rows, options->scenes);
     return code;
 }
 
@@ -200,7 +255,7 @@ int bench_command_tables(int argc, char **argv)
     Options options;
     SmError error;
     bench_options_parse(&argp, argc, argv, &options);
-    SmCode code = options.scenes ? SM_OK : choose_scenes(&options, &error);
+    SmCode code = choose_scenes(&options, &error);
     BenchRow *rows = sm_alloc(SCENES, sizeof *rows);
     if (!code) code = check_output(options.output, &error);
     if (!code) code = measure_all(&options, rows, &error);

@@ -2,13 +2,13 @@
 #include <string.h>
 
 #include "../fastlsm/fastlsm.h"
+#include "../octree/engine.h"
 #include "../reference/brute.h"
 #include "runner.h"
 
 static const SmEngineType *const engines[] = {
-    &fastlsm_engine_f32,
-    &fastlsm_engine_f64,
-    &ref_brute_engine,
+    &fastlsm_engine_f32, &fastlsm_engine_f64, &octree_engine_f32,
+    &octree_engine_f64,  &ref_brute_engine,
 };
 enum { ENGINES = sizeof engines / sizeof engines[0] };
 

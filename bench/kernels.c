@@ -12,7 +12,7 @@
 #include "spread.h"
 #include "surfaces.h"
 
-typedef enum { CUBE, POLAR, VOXELISER, EMBEDDING, SCENE } Kind;
+typedef enum { CUBE, POLAR, SURFACE, SCENE } Kind;
 enum { WHOLE_STEP = SM_STAGES, SET_MOST = 8 };
 
 /* A kernel that can be asked for. Neighbours of equal `set` are timed in turn. */
@@ -29,6 +29,7 @@ typedef struct {
     bool doubled; /* in double precision, beside single */
     bool large;   /* only by name or with --scaling */
     BenchPolar method;
+    BenchSurfaceKernel surface;
     double at_most;   /* ns an item on one core in single precision; 0: no limit */
     const char *base; /* the kernel of the set that `ratio` refers to */
     double wanted;
@@ -60,8 +61,9 @@ static const Spec specs[] = {
     {"polar-robust", "polar", POLAR, .set = 10, .method = BENCH_POLAR_ROBUST},
     {"damping", "damping", CUBE, 11, 64, 1, .damping = 0.1, .stage = SM_DAMPING},
     {"integration", "integration", CUBE, 11, 64, 1, .stage = SM_OTHER},
-    {"voxeliser", "voxeliser", VOXELISER, .set = 12},
-    {"embedding", "embedding", EMBEDDING, .set = 12},
+    {"voxeliser", "voxeliser", SURFACE, .set = 12, .surface = BENCH_VOXELISE},
+    {"embedding", "embedding", SURFACE, .set = 12, .surface = BENCH_EMBED},
+    {"octree-surface", "embedding", SURFACE, .set = 12, .surface = BENCH_CARRY},
     {STEP_OF("cube32-w1", "cases", 20, 32, 1), .at_most = 8},
     {STEP_OF("cube64-w1", "cases", 21, 64, 1), .at_most = 8},
     {STEP_OF("cube64-w1-2threads", "cases", 21, 64, 1), .threads = 2, .base = speed_up_of,
@@ -325,44 +327,55 @@ static void run_polar(Run *run, int first, int last)
     for (int p = 0; p < BENCH_POLARS; p++) free(result[p].ns);
 }
 
+/* The floor of a surface's kernel, and what there is to say about it. */
+static void judge_surface(const Run *run, BenchSurfaceKernel kernel, const BenchSurface *surface,
+                          BenchKernel *row)
+{
+    double vertices = (double)surface->vertices, particles = (double)surface->particles;
+    double nodes = (double)surface->nodes, mesh = 24 * vertices + 12 * (double)surface->triangles;
+    switch (kernel) {
+    case BENCH_EMBED:
+        set_floor(run, row, bench_work_embed(particles / vertices),
+                  176 * vertices + 24 * particles);
+        strcpy(row->note, "positions and normals");
+        break;
+    case BENCH_CARRY:
+        set_floor(run, row, bench_work_carry(surface->nodes_blended, nodes / vertices),
+                  (104 + 8 * surface->nodes_blended) * vertices + 120 * nodes);
+        snprintf(row->note, sizeof row->note, "positions and normals, %ld nodes, %.2g a vertex",
+                 surface->nodes, surface->nodes_blended);
+        break;
+    default:
+        set_floor(run, row, bench_work_voxelise(vertices / (double)surface->triangles), mesh);
+        snprintf(row->note, sizeof row->note, "%.3g million triangles/s", 1e3 / row->ns);
+    }
+}
+
 static void report_surface(Run *run, const Spec *spec, const BenchSurface *surface)
 {
-    bool voxels = spec->kind == VOXELISER;
+    bool voxels = spec->surface == BENCH_VOXELISE;
+    const struct BenchSurfaceTime *kernel = &surface->kernel[spec->surface];
     BenchKernel *row = add_row(run, spec, voxels ? "triangle" : "vertex",
                                voxels ? surface->triangles : surface->vertices);
     strcpy(row->precision, "double");
     if (voxels) row->threads = 1;
-    if (!(voxels ? surface->voxelise_valid : surface->embed_valid)) {
-        snprintf(row->reason, sizeof row->reason, "%s",
-                 voxels ? surface->voxelise_reason : surface->embed_reason);
+    if (!kernel->valid) {
+        snprintf(row->reason, sizeof row->reason, "%s", kernel->reason);
         return;
     }
-    set_times(row, voxels ? surface->voxelise_ns : surface->embed_ns, run->params->repeats);
-    double vertices = (double)surface->vertices, particles = (double)surface->particles;
-    double mesh = 24 * vertices + 12 * (double)surface->triangles;
-    if (voxels) {
-        set_floor(run, row, bench_work_voxelise(vertices / (double)surface->triangles), mesh);
-        snprintf(row->note, sizeof row->note, "%.3g million triangles/s", 1e3 / row->ns);
-    } else {
-        set_floor(run, row, bench_work_embed(particles / vertices),
-                  176 * vertices + 24 * particles);
-        strcpy(row->note, "positions and normals");
-    }
+    set_times(row, kernel->ns, run->params->repeats);
+    judge_surface(run, spec->surface, surface, row);
 }
 
 static SmCode run_surface(Run *run, int first, int last, SmError *error)
 {
     BenchSurface surface = {0};
-    for (int i = first; i < last; i++) {
-        bool wanted = chosen(run->params, &specs[i]);
-        surface.voxelise |= wanted && specs[i].kind == VOXELISER;
-        surface.embed |= wanted && specs[i].kind == EMBEDDING;
-    }
+    for (int i = first; i < last; i++)
+        surface.kernel[specs[i].surface].wanted = chosen(run->params, &specs[i]);
     SmCode code = bench_surface_time(run->params->threads, run->params->repeats, &surface, error);
     for (int i = first; i < last && !code; i++)
         if (chosen(run->params, &specs[i])) report_surface(run, &specs[i], &surface);
-    free(surface.voxelise_ns);
-    free(surface.embed_ns);
+    for (int k = 0; k < BENCH_SURFACE_KERNELS; k++) free(surface.kernel[k].ns);
     return code;
 }
 
@@ -436,8 +449,7 @@ SmCode bench_kernels_run(const BenchKernelParams *params, const BenchCeilings *c
         case POLAR:
             run_polar(&run, first, last);
             break;
-        case VOXELISER:
-        case EMBEDDING:
+        case SURFACE:
             code = run_surface(&run, first, last, error);
             break;
         case SCENE:

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../octree/structure.h"
 #include "../reference/paper.h"
 #include "check.h"
 #include "runner.h"
@@ -77,8 +78,7 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
 {
     *row = (BenchRow){.triangles = body->mesh.triangle_count,
                       .instances = body->instances,
-                      .w = scene->params.w,
-                      .epsilon = scene->epsilon,
+                      .epsilon = scene->octree.epsilon,
                       .h = scene->params.h,
                       .cell = body->voxels.cell,
                       .damping = scene->params.damping,
@@ -90,6 +90,7 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
     snprintf(row->scene, sizeof row->scene, "%s", scene->name);
     snprintf(row->engine, sizeof row->engine, "%s", type->name);
     snprintf(row->precision, sizeof row->precision, "%s", type->precision);
+    if (strcmp(type->name, "octree") != 0) row->w = scene->params.w;
     const RefPaperRow *paper = scene->row[0] ? ref_paper_find(scene->paper, scene->row) : NULL;
     row->paper_total_ms = paper ? paper->total_ms.value : NAN;
     for (int s = 0; s < SM_STAGES; s++)
@@ -125,12 +126,29 @@ static void check_counts(const BenchCheck *check, const BenchRunner *runner, Ben
     row->regions = counts.regions;
     row->bytes = counts.bytes;
     row->build_seconds = counts.build_seconds;
-    if (counts.particles != runner->particles)
-        invalidate(row, "the engine has %.0f particles, the lattice %.0f", (double)counts.particles,
-                   (double)runner->particles);
+    long particles = check->count * check->body->instances;
+    if (counts.particles != particles)
+        invalidate(row, "the engine has %.0f particles, its twin %.0f", (double)counts.particles,
+                   (double)particles);
     if (counts.broken == 0 && counts.regions != check->unique)
         invalidate(row, "the engine has %.0f unique regions, brute force %.0f",
                    (double)counts.regions, (double)check->unique);
+}
+
+/* What an octree's row says beyond a lattice's. */
+static void describe_octree(const BenchRunner *runner, BenchRow *row)
+{
+    row->summation_nodes = row->width_cells = row->width_edges = NAN;
+    if (strcmp(runner->type->name, "octree") != 0) return;
+    const OctStructure *s = oct_engine_structure(runner->engine);
+    row->summation_nodes = s->regions.mean;
+    row->most_summation = s->regions.most;
+    row->width_cells = s->width.cells;
+    row->width_edges = s->width.edges;
+    row->wanted_summation = runner->scene->octree.summation_nodes;
+    row->bases = s->report.bases;
+    row->cells = runner->body->voxels.cell_count;
+    row->parts = oct_structure_parts(s);
 }
 
 static double median(const double *value, int count, double *sorted)
@@ -165,6 +183,7 @@ static void summarise(BenchRow *row)
     row->total_high_ms = 1e3 * gsl_stats_quantile_from_sorted_data(sorted, 1, count, 0.75);
     for (int s = 0; s < SM_STAGES; s++)
         row->stage_ms[s] = all > 0 ? row->total_ms * share[s] / all : 0;
+    row->fps = 1e3 / row->total_ms;
     row->ns_per_particle_step = 1e6 * row->total_ms / (double)row->particles;
     free(sorted);
     free(sample);
@@ -192,15 +211,22 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
 {
     Trial trial = {0};
     BenchRunner *runner = &trial.runner;
+    if (scene->octree.creep > 0 && !strcmp(type->name, "octree"))
+        return sm_fail(error, SM_INPUT,
+                       "%s: a plastic body's rest shapes change, so that its goals cannot be "
+                       "checked: set octree.creep to 0",
+                       scene->file);
     SmCode code = bench_runner_create(scene, body, type, params->threads, runner, error);
     if (code) return code;
     name_row(scene, body, type, row);
     row->threads = params->threads;
+    row->speedup = NAN;
     row->valid = true;
     if (params->progress) bench_progress_show(params->progress, row->scene, 0);
     BenchCheck check;
-    bench_check_create(body, scene->params.w, &check);
+    bench_check_begin(scene, body, type, runner->engine, &check);
     check_counts(&check, runner, row);
+    describe_octree(runner, row);
     bench_runner_disturb(runner, params->seed);
     for (int i = 0; i < BENCH_SETTLE_STEPS; i++) bench_runner_step(runner, NULL);
     check_state(&check, runner, row);

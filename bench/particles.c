@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "nodes.h"
+
 static long instance_count(const SmEngineParams *params)
 {
     return params->instances > 0 ? params->instances : 1;
@@ -45,25 +47,34 @@ static void write_particles(BenchH5 *h5, hid_t group, const SmVoxels *voxels, co
     free(unit);
 }
 
-static void write_parameters(BenchH5 *h5, hid_t group, const BenchTrajectoryParams *all)
+/* The lattice itself, and what is asked of it alone. */
+static void write_lattice(BenchH5 *h5, hid_t group, const BenchTrajectoryParams *all)
 {
-    const SmEngineParams *params = all->params;
     static const BenchField lattice[] = {
         BENCH_FIELD(SmVoxels, BENCH_INT, size),
         BENCH_FIELD(SmVoxels, BENCH_DOUBLE, origin),
         BENCH_FIELD(SmVoxels, BENCH_DOUBLE, cell),
     };
-    static const BenchField step[] = {
+    static const BenchField own[] = {
         BENCH_FIELD(SmEngineParams, BENCH_INT, w),
+        BENCH_FIELD(SmEngineParams, BENCH_DOUBLE, strain_limit),
+    };
+    bench_h5_fields(h5, group, lattice, 3, all->voxels);
+    bench_h5_fields(h5, group, own, 2, all->params);
+    write_cells(h5, group, all->voxels);
+    write_particles(h5, group, all->voxels, all->mass);
+}
+
+static void write_parameters(BenchH5 *h5, hid_t group, const BenchTrajectoryParams *all)
+{
+    static const BenchField step[] = {
         BENCH_FIELD(SmEngineParams, BENCH_DOUBLE, h),
         BENCH_FIELD(SmEngineParams, BENCH_DOUBLE, damping),
         BENCH_FIELD(SmEngineParams, BENCH_INT, damping_every),
         BENCH_FIELD(SmEngineParams, BENCH_DOUBLE, gravity),
-        BENCH_FIELD(SmEngineParams, BENCH_DOUBLE, strain_limit),
     };
-    bench_h5_fields(h5, group, lattice, 3, all->voxels);
-    bench_h5_fields(h5, group, step, 6, params);
-    long instances = instance_count(params);
+    bench_h5_fields(h5, group, step, 4, all->params);
+    long instances = instance_count(all->params);
     bench_h5_numbers(h5, group, "instances", H5T_STD_I64LE, 0, &instances);
     bench_h5_text(h5, group, "engine", all->engine ? all->engine : "unknown");
     bench_h5_text(h5, group, "precision", all->precision ? all->precision : "unknown");
@@ -94,11 +105,15 @@ static void write_boundary(BenchH5 *h5, hid_t group, const SmBoundary *boundary,
 void bench_particles_begin(BenchH5 *h5, const BenchTrajectoryParams *params,
                            BenchParticles *particles)
 {
-    particles->count = instance_count(params->params) * params->voxels->particle_count;
-    hid_t group = bench_h5_group(h5, h5->file, "particles");
+    bool nodes = params->record == BENCH_RECORD_NODES;
+    long count = nodes ? params->structure->tree.leaves : params->voxels->particle_count;
+    particles->count = instance_count(params->params) * count;
+    hid_t group = bench_h5_group(h5, h5->file, nodes ? "nodes" : "particles");
     write_parameters(h5, group, params);
-    write_cells(h5, group, params->voxels);
-    write_particles(h5, group, params->voxels, params->mass);
+    if (nodes)
+        bench_nodes_write(h5, group, params);
+    else
+        write_lattice(h5, group, params);
     write_boundary(h5, group, params->boundary, particles->count);
     hsize_t size[] = {0, (hsize_t)particles->count, 3};
     particles->step = bench_h5_growing(h5, group, "step", H5T_STD_I64LE, 1, size);

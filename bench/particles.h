@@ -1,4 +1,5 @@
-/* particles.h - the group /particles of a trajectory: all that a step can be recomputed from. */
+/* particles.h - the group /particles or /nodes of a trajectory: all that a step can be recomputed
+ * from. */
 #ifndef BENCH_PARTICLES_H
 #define BENCH_PARTICLES_H
 
@@ -6,10 +7,11 @@
 
 typedef struct {
     hid_t step, x, v, g; /* growing datasets */
-    long count;          /* particles of all instances */
+    long count;          /* particles or nodes of all instances */
 } BenchParticles;
 
-/* Writes lattice, masses, parameters and boundary, and makes the datasets that grow. */
+/* Writes lattice or octree (nodes.h), masses, parameters and boundary, and makes the datasets that
+ * grow. */
 void bench_particles_begin(BenchH5 *h5, const BenchTrajectoryParams *params,
                            BenchParticles *particles);
 

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../octree/structure.h"
+
 /* The body's surface once for every instance. */
 static void repeat_surface(const BenchBody *body, SmMesh *surface)
 {
@@ -28,40 +30,77 @@ static void release(BenchRecording *recording)
 {
     sm_mesh_free(&recording->surface);
     sm_embed_free(&recording->embedding);
+    oct_surface_free(&recording->carried);
     free(recording->x);
     free(recording->v);
     free(recording->g);
     *recording = (BenchRecording){0};
 }
 
-SmCode bench_recording_open(const BenchRunner *runner, const char *path, bool particles,
-                            const BenchMachine *machine, BenchRecording *recording, SmError *error)
+static bool is_octree(const BenchRunner *runner)
+{
+    return !strcmp(runner->type->name, "octree");
+}
+
+static void attach_surface(BenchRecording *recording)
+{
+    const BenchRunner *runner = recording->runner;
+    const BenchBody *body = runner->body;
+    if (!is_octree(runner)) {
+        sm_embed_create(&body->mesh, &body->voxels, &recording->embedding);
+        return;
+    }
+    const OctStructure *s = oct_engine_structure(runner->engine);
+    oct_surface_build(&body->mesh, &body->voxels, &s->tree, &s->graph, &recording->carried);
+}
+
+static SmCode check(const BenchRunner *runner, BenchRecord record, SmError *error)
 {
     const BenchBody *body = runner->body;
     if ((double)body->instances * (double)body->mesh.vertex_count > 2e9)
         return sm_fail(error, SM_INPUT, "%s: the surfaces of %ld instances have too many vertices",
                        runner->scene->file, body->instances);
-    *recording = (BenchRecording){.runner = runner, .particles = particles};
+    if (record == BENCH_RECORD_PARTICLES && is_octree(runner))
+        return sm_fail(error, SM_USAGE,
+                       "--record particles stores a lattice, and the octree has none: give "
+                       "--record nodes");
+    if (record == BENCH_RECORD_NODES && !is_octree(runner))
+        return sm_fail(error, SM_USAGE,
+                       "--record nodes stores an octree, and %s has none: give --record particles, "
+                       "or --engine octree",
+                       runner->type->name);
+    return SM_OK;
+}
+
+SmCode bench_recording_open(const BenchRunner *runner, const char *path, BenchRecord record,
+                            const BenchMachine *machine, BenchRecording *recording, SmError *error)
+{
+    const BenchBody *body = runner->body;
+    SmCode code = check(runner, record, error);
+    if (code) return code;
+    *recording = (BenchRecording){.runner = runner, .record = record};
     repeat_surface(body, &recording->surface);
-    sm_embed_create(&body->mesh, &body->voxels, &recording->embedding);
+    attach_surface(recording);
     size_t count = (size_t)runner->particles;
     recording->x = sm_alloc(count, sizeof *recording->x);
     recording->v = sm_alloc(count, sizeof *recording->v);
     recording->g = sm_alloc(count, sizeof *recording->g);
     SmEngineParams params = bench_engine_params(runner->scene, body, machine->threads);
     SmBoundary boundary = bench_runner_boundary(runner);
-    BenchTrajectoryParams wanted = {.path = path,
-                                    .surface = &recording->surface,
-                                    .machine = machine,
-                                    .scene = runner->scene->name,
-                                    .record_particles = particles,
-                                    .voxels = &body->voxels,
-                                    .params = &params,
-                                    .mass = body->mass,
-                                    .engine = runner->type->name,
-                                    .precision = runner->type->precision,
-                                    .boundary = &boundary};
-    SmCode code = bench_trajectory_open(&wanted, &recording->trajectory, error);
+    BenchTrajectoryParams wanted = {
+        .path = path,
+        .surface = &recording->surface,
+        .machine = machine,
+        .scene = runner->scene->name,
+        .record = record,
+        .voxels = &body->voxels,
+        .structure = is_octree(runner) ? oct_engine_structure(runner->engine) : NULL,
+        .params = &params,
+        .mass = body->mass,
+        .engine = runner->type->name,
+        .precision = runner->type->precision,
+        .boundary = &boundary};
+    code = bench_trajectory_open(&wanted, &recording->trajectory, error);
     if (code) release(recording);
     return code;
 }
@@ -73,7 +112,7 @@ double bench_recording_bytes(const BenchRecording *recording)
     double state = (sizeof *recording->x + sizeof *recording->v + sizeof *recording->g) *
                    (double)recording->runner->particles;
     return bench_trajectory_bytes(recording->trajectory, frames) +
-           (recording->particles ? steps * state : 0);
+           (recording->record ? steps * state : 0);
 }
 
 SmCode bench_recording_frame(BenchRecording *recording, SmError *error)
@@ -81,10 +120,14 @@ SmCode bench_recording_frame(BenchRecording *recording, SmError *error)
     const BenchRunner *runner = recording->runner;
     const BenchBody *body = runner->body;
     runner->type->get(runner->engine, SM_POSITION, recording->x);
-    for (long k = 0; k < body->instances; k++)
-        sm_embed_apply(&recording->embedding,
-                       (const double(*)[3])(recording->x + k * body->voxels.particle_count),
-                       recording->surface.position + k * body->mesh.vertex_count, NULL);
+    for (long k = 0; k < body->instances; k++) {
+        const double(*x)[3] = (const double(*)[3])(recording->x + k * runner->count);
+        double(*point)[3] = recording->surface.position + k * body->mesh.vertex_count;
+        if (is_octree(runner))
+            oct_surface_move(&recording->carried, x, point, NULL);
+        else
+            sm_embed_apply(&recording->embedding, x, point, NULL);
+    }
     return bench_trajectory_frame(recording->trajectory, runner->time,
                                   (const double(*)[3])recording->surface.position, error);
 }

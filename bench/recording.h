@@ -1,9 +1,10 @@
-/* recording.h - a running scene into a trajectory file: its surface, and on request its particles.
- */
+/* recording.h - a running scene into a trajectory file: its surface, and on request its particles
+ * or nodes. */
 #ifndef BENCH_RECORDING_H
 #define BENCH_RECORDING_H
 
 #include "../lib/embed.h"
+#include "../octree/surface.h"
 #include "machine.h"
 #include "runner.h"
 #include "trajectory.h"
@@ -11,14 +12,16 @@
 typedef struct {
     const BenchRunner *runner;        /* the caller's, kept */
     SmMesh surface;                   /* of all instances */
-    SmEmbedding embedding;            /* of one */
+    SmEmbedding embedding;            /* of one, in a lattice engine's particles */
+    OctSurface carried;               /* or of one, by an octree engine's nodes */
     double (*x)[3], (*v)[3], (*g)[3]; /* [runner->particles] */
     BenchTrajectory *trajectory;
-    bool particles;
+    BenchRecord record;
 } BenchRecording;
 
-/* Opens the file. Errors: those of bench_trajectory_open(). */
-SmCode bench_recording_open(const BenchRunner *runner, const char *path, bool particles,
+/* Opens the file. Errors: those of bench_trajectory_open(); SM_USAGE for particles of an octree and
+ * for nodes of a lattice. */
+SmCode bench_recording_open(const BenchRunner *runner, const char *path, BenchRecord record,
                             const BenchMachine *machine, BenchRecording *recording, SmError *error);
 
 /* About what the file will take with all of the scene's frames in it. */
@@ -27,8 +30,8 @@ double bench_recording_bytes(const BenchRecording *recording);
 /* Writes the surface as it is now. */
 SmCode bench_recording_frame(BenchRecording *recording, SmError *error);
 
-/* Records the particles between bench_runner_prepare() and bench_runner_advance() of step `step`;
- * `before` false: after it, without goals. Computes the goals. */
+/* Records particles or nodes between bench_runner_prepare() and bench_runner_advance() of step
+ * `step`; `before` false: after it, without goals. Computes the goals. */
 SmCode bench_recording_step(BenchRecording *recording, long step, bool before, SmError *error);
 
 /* Are all positions finite? The positions are those of the last frame. */

@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "../reference/paper.h"
+#include "scene.h"
 
-enum { FIELDS = 13, FIELD_TEXT = 96 };
+enum { FIELDS = 16, FIELD_TEXT = 96 };
 enum {
     SCENE,
     PARTICLES,
@@ -15,18 +16,34 @@ enum {
     TOTAL = STAGES + SM_STAGES,
     PER_STEP,
     FASTER,
+    RATE, /* this and the next two only in a table with an octree's row */
+    SPEEDUP,
+    SUMS,
     VERDICT
 };
 
 static const char *const headings[FIELDS] = {
-    "scene", "particles", "regions", "w",        "fast sum",         "shape matching",
-    "polar", "damping",   "other",   "total ms", "ns/particle/step", "faster",
-    "check",
+    "scene",    "particles", "regions",     "w",        "fast sum",         "shape matching",
+    "polar",    "damping",   "other",       "total ms", "ns/particle/step", "faster",
+    "frames/s", "speed-up",  "sums/region", "check",
 };
 
 typedef struct {
     char field[FIELDS][FIELD_TEXT];
 } Line;
+
+static bool of_octree(const BenchRow *row)
+{
+    return !strcmp(row->paper, "octree") || !strcmp(row->engine, "octree");
+}
+
+/* Which fields the table has. */
+static void choose_fields(const BenchRow *rows, int count, bool shown[FIELDS])
+{
+    bool octree = false;
+    for (int r = 0; r < count; r++) octree |= of_octree(&rows[r]);
+    for (int f = 0; f < FIELDS; f++) shown[f] = octree || f < RATE || f > SUMS;
+}
 
 /* Three significant digits without an exponent: "167.8", "1.97", "0.0075"; "-" for NaN. */
 static void number_text(double value, char text[FIELD_TEXT])
@@ -54,9 +71,10 @@ static void measured_line(const BenchRow *row, Line *line)
     snprintf(line->field[SCENE], FIELD_TEXT, "%s", row->scene);
     snprintf(line->field[PARTICLES], FIELD_TEXT, "%ld", row->particles);
     snprintf(line->field[REGIONS], FIELD_TEXT, "%ld", row->regions);
-    snprintf(line->field[W], FIELD_TEXT, "%d", row->w);
+    snprintf(line->field[W], FIELD_TEXT, row->w ? "%d" : "-", row->w);
+    number_text(of_octree(row) ? row->summation_nodes : NAN, line->field[SUMS]);
     strcpy(line->field[VERDICT], row->valid ? "VALID" : "INVALID");
-    for (int f = STAGES; f < VERDICT && !row->valid; f++) strcpy(line->field[f], "INVALID");
+    for (int f = STAGES; f < SUMS && !row->valid; f++) strcpy(line->field[f], "INVALID");
     if (!row->valid) return;
     for (int s = 0; s < SM_STAGES; s++)
         stage_text(row->stage_ms[s], 100 * row->stage_ms[s] / row->total_ms,
@@ -64,6 +82,8 @@ static void measured_line(const BenchRow *row, Line *line)
     if (!(row->damping > 0)) strcpy(line->field[STAGES + SM_DAMPING], "-");
     number_text(row->total_ms, line->field[TOTAL]);
     number_text(row->ns_per_particle_step, line->field[PER_STEP]);
+    number_text(row->fps, line->field[RATE]);
+    number_text(row->speedup, line->field[SPEEDUP]);
     if (!isfinite(row->paper_total_ms)) return;
     number_text(row->paper_total_ms / row->total_ms, line->field[FASTER]);
     strcat(line->field[FASTER], "x");
@@ -74,7 +94,8 @@ static void count_text(RefValue value, char text[FIELD_TEXT])
     if (isfinite(value.value)) snprintf(text, FIELD_TEXT, "%.0f", value.value);
 }
 
-/* The paper's values, "?" behind a damaged or misprinted one; false where there are none. */
+/* The paper's values, "?" behind a damaged or misprinted one, "*" behind a second-hand rate; false
+ * where there are none. */
 static bool paper_line(const BenchRow *row, Line *line)
 {
     const RefPaperRow *paper = row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
@@ -91,6 +112,10 @@ static bool paper_line(const BenchRow *row, Line *line)
     }
     number_text(paper->total_ms.value, line->field[TOTAL]);
     number_text(1e6 * paper->total_ms.value / paper->particles.value, line->field[PER_STEP]);
+    number_text(paper->fps.value, line->field[RATE]);
+    number_text(paper->speedup.value, line->field[SPEEDUP]);
+    number_text(paper->summation_nodes.value, line->field[SUMS]);
+    if (paper->fps.status == REF_SECOND_HAND) strcat(line->field[RATE], "*");
     return true;
 }
 
@@ -116,11 +141,13 @@ static void widen(const Line *line, int width[FIELDS])
     }
 }
 
-static void print_line(FILE *file, const Line *line, const int width[FIELDS])
+static void print_line(FILE *file, const Line *line, const int width[FIELDS],
+                       const bool shown[FIELDS])
 {
     char text[FIELDS * (FIELD_TEXT + 2) + 1];
     int used = 0;
     for (int f = 0; f < FIELDS; f++) {
+        if (!shown[f]) continue;
         int pad = f == SCENE || f == VERDICT ? -width[f] : width[f];
         used += snprintf(text + used, sizeof text - (size_t)used, "%s%*s", f ? "  " : "", pad,
                          line->field[f]);
@@ -147,6 +174,41 @@ static void print_check(FILE *file, const BenchRow *row)
             (double)row->bytes / (double)row->particles);
 }
 
+/* What an octree's row is made of. */
+static void print_octree(FILE *file, const BenchRow *row)
+{
+    char width[BENCH_WIDTH_TEXT];
+    bench_width_text(&(OctWidth){row->width_cells, row->width_edges}, width);
+    fprintf(file, "    %ld nodes from %ld base cells, %ld finest cells; w = %s", row->particles,
+            row->bases, row->cells, width);
+    if (row->wanted_summation > 0)
+        fprintf(file, ", found for %.3g summation nodes a region", row->wanted_summation);
+    fprintf(file, ";\n    epsilon %g: %.3g summation nodes a region on average, %ld at most; ",
+            row->epsilon, row->summation_nodes, row->most_summation);
+    if (row->parts == 1)
+        fputs("regions hold the body together\n", file);
+    else
+        fprintf(file, "the body falls into %ld parts that no region joins\n", row->parts);
+}
+
+/* The adaptive octree's speed-ups beside the paper's 88, which is over a lattice without low-level
+ * optimisation: over that of ours, too. */
+static void print_speedups(FILE *file, const BenchRow *rows, int count)
+{
+    const BenchRow *sampled = NULL;
+    for (int r = 0; r < count; r++)
+        if (!strcmp(rows[r].paper_row, "hand-sampled") && rows[r].valid) sampled = &rows[r];
+    const RefPaperClaim *claim = ref_paper_claim("octree", "hand-speedup");
+    for (int r = 0; r < count && sampled; r++)
+        if (!strcmp(rows[r].engine, "fastlsm") && of_octree(&rows[r]) && rows[r].valid)
+            fprintf(file, "  %s is %.3g times as fast as %s%s\n", sampled->scene,
+                    rows[r].total_ms / sampled->total_ms, rows[r].scene,
+                    strcmp(rows[r].paper_row, "hand-lattice-plain") ? "" : " (paper: 88 times)");
+    if (sampled)
+        fprintf(file, "  paper, %s: %s; %s\n", claim->place, claim->note,
+                ref_paper_claim("octree", "hand-third")->note);
+}
+
 static void print_notes(FILE *file, const BenchRow *rows, int count)
 {
     for (int r = 0; r < count; r++) {
@@ -160,6 +222,8 @@ void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchM
 {
     Line heading, line;
     int width[FIELDS] = {0};
+    bool shown[FIELDS];
+    choose_fields(rows, count, shown);
     for (int f = 0; f < FIELDS; f++) snprintf(heading.field[f], FIELD_TEXT, "%s", headings[f]);
     widen(&heading, width);
     for (int r = 0; r < count; r++) {
@@ -170,15 +234,19 @@ void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchM
     }
     fprintf(file, "Times of one step, median, on %s, %d thread%s.\n\n", machine->cpu,
             machine->threads, machine->threads == 1 ? "" : "s");
-    print_line(file, &heading, width);
+    print_line(file, &heading, width, shown);
     for (int r = 0; r < count; r++) {
         measured_line(&rows[r], &line);
-        print_line(file, &line, width);
-        if (paper_line(&rows[r], &line)) print_line(file, &line, width);
-        if (difference_line(&rows[r], &line)) print_line(file, &line, width);
+        print_line(file, &line, width, shown);
+        if (paper_line(&rows[r], &line)) print_line(file, &line, width, shown);
+        if (difference_line(&rows[r], &line)) print_line(file, &line, width, shown);
     }
     fputc('\n', file);
-    for (int r = 0; r < count; r++) print_check(file, &rows[r]);
+    for (int r = 0; r < count; r++) {
+        print_check(file, &rows[r]);
+        if (!strcmp(rows[r].engine, "octree")) print_octree(file, &rows[r]);
+    }
+    print_speedups(file, rows, count);
     print_notes(file, rows, count);
 }
 
@@ -193,9 +261,13 @@ static void tight_text(const char *padded, char text[FIELD_TEXT])
 
 void bench_report_markdown(FILE *file, const BenchRow *rows, int count)
 {
-    for (int f = 0; f < FIELDS; f++) fprintf(file, "| %s ", headings[f]);
+    bool shown[FIELDS];
+    choose_fields(rows, count, shown);
+    for (int f = 0; f < FIELDS; f++)
+        if (shown[f]) fprintf(file, "| %s ", headings[f]);
     fputs("|\n", file);
-    for (int f = 0; f < FIELDS; f++) fputs(f == SCENE || f == VERDICT ? "| --- " : "| ---: ", file);
+    for (int f = 0; f < FIELDS; f++)
+        if (shown[f]) fputs(f == SCENE || f == VERDICT ? "| --- " : "| ---: ", file);
     fputs("|\n", file);
     for (int r = 0; r < 2 * count; r++) {
         Line line;
@@ -206,6 +278,7 @@ void bench_report_markdown(FILE *file, const BenchRow *rows, int count)
             continue;
         for (int f = 0; f < FIELDS; f++) {
             char text[FIELD_TEXT];
+            if (!shown[f]) continue;
             tight_text(line.field[f], text);
             fputs("| ", file);
             for (const char *c = text; *c; c++) fprintf(file, *c == '|' ? "\\%c" : "%c", *c);
@@ -231,9 +304,10 @@ static void latex_text(FILE *file, const char *padded)
     }
 }
 
-static void latex_line(FILE *file, const char (*field)[FIELD_TEXT])
+static void latex_line(FILE *file, const char (*field)[FIELD_TEXT], const bool shown[FIELDS])
 {
     for (int f = 0; f < FIELDS; f++) {
+        if (!shown[f]) continue;
         if (f) fputs(" & ", file);
         latex_text(file, field[f]);
     }
@@ -244,13 +318,18 @@ void bench_report_latex(FILE *file, const BenchRow *rows, int count)
 {
     Line line;
     for (int f = 0; f < FIELDS; f++) snprintf(line.field[f], FIELD_TEXT, "%s", headings[f]);
-    fputs("\\begin{tabular}{lrrrrrrrrrrrl}\n\\hline\n", file);
-    latex_line(file, (const char(*)[FIELD_TEXT])line.field);
+    bool shown[FIELDS];
+    choose_fields(rows, count, shown);
+    fputs(shown[RATE] ? "\\begin{tabular}{lrrrrrrrrrrrrrrl}\n\\hline\n"
+                      : "\\begin{tabular}{lrrrrrrrrrrrl}\n\\hline\n",
+          file);
+    latex_line(file, (const char(*)[FIELD_TEXT])line.field, shown);
     fputs("\\hline\n", file);
     for (int r = 0; r < count; r++) {
         measured_line(&rows[r], &line);
-        latex_line(file, (const char(*)[FIELD_TEXT])line.field);
-        if (paper_line(&rows[r], &line)) latex_line(file, (const char(*)[FIELD_TEXT])line.field);
+        latex_line(file, (const char(*)[FIELD_TEXT])line.field, shown);
+        if (paper_line(&rows[r], &line))
+            latex_line(file, (const char(*)[FIELD_TEXT])line.field, shown);
     }
     fputs("\\hline\n\\end{tabular}\n", file);
 }

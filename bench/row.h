@@ -8,7 +8,7 @@ typedef struct {
     char paper[24], paper_row[24]; /* row of the paper set beside it; empty: none */
     char scene[64], engine[24], precision[12];
     long triangles, particles, regions, instances;
-    int w, steps; /* steps in each repeat */
+    int w, steps; /* half-width, 0 of an octree; steps in each repeat */
     double epsilon, h, cell, damping;
     int threads;
     bool valid;
@@ -25,6 +25,13 @@ typedef struct {
     double ns_per_particle_step;
     double voxelise_seconds, build_seconds;
     long bytes;
+    double fps, speedup;     /* steps a second; over the table's first lattice, or NaN */
+    double summation_nodes;  /* mean per region; NaN of a lattice, as are the next two */
+    double width_cells;      /* of an octree's regions: w is that and this times */
+    double width_edges;      /* the node's own edge, */
+    double wanted_summation; /* found for as many summation nodes; 0: given */
+    long most_summation, bases, cells, parts; /* most per region; base cells; finest cells; groups
+                                               * of nodes that no region holds together */
     double paper_total_ms, paper_stage_ms[SM_STAGES]; /* NaN: not given */
     unsigned long long input_hash; /* FNV-1a of the mesh's coordinates and indices */
 } BenchRow;

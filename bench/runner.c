@@ -9,6 +9,7 @@ SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *bod
 {
     SmEngineParams params = scene->params;
     params.threads = threads;
+    params.octree = &scene->octree;
     params.mass = body->mass;
     params.instances = body->instances;
     params.instance_pose = (const double(*)[3][4])body->pose;
@@ -16,9 +17,11 @@ SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *bod
 }
 
 /* Particles of one body that are selected: their numbers, rising; the caller frees them. */
-static long select_particles(const BenchSelect *select, const BenchBody *body, long **particle)
+static long select_particles(const BenchSelect *select, const BenchRunner *runner, long **particle)
 {
-    long count = 0, all = body->voxels.particle_count;
+    const BenchBody *body = runner->body;
+    const double(*x0)[3] = (const double(*)[3])runner->x0;
+    long count = 0, all = runner->count;
     *particle = sm_alloc((size_t)all, sizeof **particle);
     double slack = 1e-9; /* of the bounding box, for selections that end at its faces */
     for (long p = 0; p < all; p++) {
@@ -26,11 +29,11 @@ static long select_particles(const BenchSelect *select, const BenchBody *body, l
         double square = 0;
         for (int d = 0; d < 3; d++) {
             double extent = body->high[d] - body->low[d];
-            double share = extent > 0 ? (body->x0[p][d] - body->low[d]) / extent : 0.5;
+            double share = extent > 0 ? (x0[p][d] - body->low[d]) / extent : 0.5;
             /* Lattice vertices stand out of the box by up to a cell: they count as on its face. */
             share = fmin(fmax(share, 0), 1);
             inside &= share >= select->low[d] - slack && share <= select->high[d] + slack;
-            double away = body->x0[p][d] - select->centre[d];
+            double away = x0[p][d] - select->centre[d];
             square += away * away;
         }
         if (select->sphere) inside = square <= select->radius * select->radius;
@@ -123,11 +126,10 @@ static SmCode make_handles(BenchRunner *runner, SmError *error)
     runner->handle_instance = sm_alloc(room, sizeof *runner->handle_instance);
     for (int i = 0; i < scene->handle_count; i++) {
         long *chosen;
-        long count = select_particles(&scene->handle[i].select, body, &chosen);
+        long count = select_particles(&scene->handle[i].select, runner, &chosen);
         for (long k = 0; k < body->instances && count; k++) {
             long *particle = sm_alloc((size_t)count, sizeof *particle);
-            for (long p = 0; p < count; p++)
-                particle[p] = k * body->voxels.particle_count + chosen[p];
+            for (long p = 0; p < count; p++) particle[p] = k * runner->count + chosen[p];
             runner->handle_source[runner->held] = i;
             runner->handle_instance[runner->held] = k;
             runner->handle[runner->held++] = (SmHandle){.count = count, .particle = particle};
@@ -148,14 +150,13 @@ static SmCode make_forces(BenchRunner *runner, SmError *error)
     runner->push_impulse = sm_alloc(forces, sizeof(double(*)[3]));
     for (int i = 0; i < scene->force_count; i++) {
         long *chosen;
-        long count = select_particles(&scene->force[i].select, body, &chosen);
+        long count = select_particles(&scene->force[i].select, runner, &chosen);
         long all = count * body->instances;
         runner->push_count[i] = all;
         runner->push_particle[i] = sm_alloc((size_t)all, sizeof(long));
         runner->push_impulse[i] = sm_alloc((size_t)all, sizeof(double[3]));
         for (long n = 0; n < all; n++) {
-            runner->push_particle[i][n] =
-                n / count * body->voxels.particle_count + chosen[n % count];
+            runner->push_particle[i][n] = n / count * runner->count + chosen[n % count];
             for (int d = 0; d < 3; d++)
                 runner->push_impulse[i][n][d] = scene->force[i].force[d] * scene->params.h;
         }
@@ -165,17 +166,31 @@ static SmCode make_forces(BenchRunner *runner, SmError *error)
     return SM_OK;
 }
 
+/* How many particles the engine has, and where they rest. */
+static void find_particles(BenchRunner *runner)
+{
+    const BenchBody *body = runner->body;
+    SmCounts counts;
+    runner->type->count(runner->engine, &counts);
+    runner->particles = counts.particles;
+    runner->count = counts.particles / body->instances;
+    runner->x0 = sm_alloc((size_t)counts.particles, sizeof *runner->x0);
+    runner->type->get(runner->engine, SM_REST, runner->x0);
+    for (long p = 0; p < runner->count; p++)
+        for (int d = 0; d < 3; d++) runner->x0[p][d] -= body->pose[0][d][3];
+}
+
 SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                            int threads, BenchRunner *runner, SmError *error)
 {
     *runner = (BenchRunner){.type = type, .scene = scene, .body = body};
-    runner->particles = body->voxels.particle_count * body->instances;
     SmEngineParams params = bench_engine_params(scene, body, threads);
     SmCode code = type->create(&body->voxels, &params, &runner->engine, error);
     if (code) {
         runner->engine = NULL;
         return code;
     }
+    find_particles(runner);
     code = make_handles(runner, error);
     if (!code) code = make_forces(runner, error);
     if (code)
@@ -193,6 +208,7 @@ void bench_runner_free(BenchRunner *runner)
         free(runner->push_particle[i]);
         free(runner->push_impulse[i]);
     }
+    free(runner->x0);
     free(runner->handle);
     free(runner->bound);
     free(runner->handle_source);
@@ -233,12 +249,12 @@ void bench_runner_disturb(BenchRunner *runner, unsigned long seed)
 {
     const BenchScene *scene = runner->scene;
     const BenchBody *body = runner->body;
-    long count = body->voxels.particle_count;
+    long count = runner->count;
     double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x);
     double(*v)[3] = sm_alloc((size_t)runner->particles, sizeof *v);
     double speed = scene->kick * body->voxels.cell / scene->params.h;
     for (long n = 0; n < runner->particles; n++) {
-        deform(scene, body, body->x0[n % count], x[n]);
+        deform(scene, body, runner->x0[n % count], x[n]);
         for (int d = 0; d < 3; d++) {
             x[n][d] += body->pose[n / count][d][3];
             v[n][d] = speed * noise(((uint64_t)seed << 40) + 3 * (uint64_t)n + (uint64_t)d);

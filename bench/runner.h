@@ -10,6 +10,8 @@ typedef struct {
     const BenchScene *scene; /* the caller's, kept */
     const BenchBody *body;   /* the caller's, kept */
     long particles;          /* of all instances */
+    long count;              /* of one */
+    double (*x0)[3];         /* [count] rest positions, instance pose not applied */
     double time;             /* s since the start */
     int held; /* handles bound: one for every scene handle and instance, no empty ones */
     SmHandle *handle;
@@ -27,7 +29,7 @@ typedef struct {
 SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
                          SmError *error);
 
-/* Engine parameters of the scene and body. */
+/* Engine parameters of the scene and body, which they point into. */
 SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *body, int threads);
 
 /* Builds the engine at rest, with handles and obstacles. A selection without particles is an

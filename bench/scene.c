@@ -66,6 +66,51 @@ static const BenchSetting box_table[] = {CORNER("low", a), CORNER("high", b), FR
 static const BenchSetting capsule_table[] = {
     CORNER("from", a), CORNER("to", b), RADIUS, FRICTION, {0}};
 
+static const BenchSetting criterion_table[] = {
+    WORDS("kind", offsetof(OctCriterion, kind), "uniform|features|surface|box|sphere"),
+    ITEM("level", BENCH_INT, offsetof(OctCriterion, level), 1, OCT_MAX_LEVELS),
+    ITEM("low", BENCH_VECTOR, offsetof(OctCriterion, low), -FAR, FAR),
+    ITEM("high", BENCH_VECTOR, offsetof(OctCriterion, high), -FAR, FAR),
+    ITEM("centre", BENCH_VECTOR, offsetof(OctCriterion, centre), -FAR, FAR),
+    ITEM("radius", BENCH_REAL, offsetof(OctCriterion, radius), 0, FAR),
+    {0},
+};
+
+static const BenchSetting width_table[] = {
+    ITEM("w", BENCH_REAL, offsetof(OctLocalWidth, width.cells), 0, 1e6),
+    ITEM("edges", BENCH_REAL, offsetof(OctLocalWidth, width.edges), 0, 1e6),
+    ITEM("low", BENCH_VECTOR, offsetof(OctLocalWidth, low), -FAR, FAR),
+    ITEM("high", BENCH_VECTOR, offsetof(OctLocalWidth, high), -FAR, FAR),
+    ITEM("centre", BENCH_VECTOR, offsetof(OctLocalWidth, centre), -FAR, FAR),
+    ITEM("radius", BENCH_REAL, offsetof(OctLocalWidth, radius), 0, FAR),
+    {0},
+};
+
+#define OCT_LIST(name, items, most, count, type, table)                                            \
+    {                                                                                              \
+        name, BENCH_LIST, offsetof(OctOptions, items), 0, most, NULL, table, sizeof(type),         \
+            offsetof(OctOptions, count)                                                            \
+    }
+
+static const BenchSetting octree_table[] = {
+    ITEM("levels", BENCH_INT, offsetof(OctOptions, sampling.levels), 1, OCT_MAX_LEVELS),
+    ITEM("bases", BENCH_LONG, offsetof(OctOptions, sampling.bases), 0, 1e9),
+    ITEM("nodes", BENCH_LONG, offsetof(OctOptions, sampling.nodes), 0, 1e9),
+    ITEM("balance", BENCH_BOOL, offsetof(OctOptions, sampling.balance), 0, 0),
+    OCT_LIST("criteria", sampling.criteria, OCT_MAX_CRITERIA, sampling.criteria_count, OctCriterion,
+             criterion_table),
+    ITEM("w", BENCH_REAL, offsetof(OctOptions, width.cells), 0, 1e6),
+    ITEM("edges", BENCH_REAL, offsetof(OctOptions, width.edges), 0, 1e6),
+    ITEM("summation_nodes", BENCH_REAL, offsetof(OctOptions, summation_nodes), 0, 1e6),
+    OCT_LIST("widths", local, OCT_MAX_WIDTHS, local_count, OctLocalWidth, width_table),
+    WORDS("weighting", offsetof(OctOptions, weighting), "conserving|plain"),
+    WORDS("goals", offsetof(OctOptions, form), "gather|adjoint"),
+    ITEM("yield", BENCH_REAL, offsetof(OctOptions, yield), 0, 1e6),
+    ITEM("creep", BENCH_REAL, offsetof(OctOptions, creep), 0, 1e6),
+    ITEM("most", BENCH_REAL, offsetof(OctOptions, most), 0, 1e6),
+    {0},
+};
+
 #define AT(member) offsetof(SceneFile, scene.member)
 #define LIST(name, items, count, type, table)                                                      \
     {                                                                                              \
@@ -81,6 +126,7 @@ static const BenchSetting scene_table[] = {
     WORDS("fill", AT(voxel.fill), "solid|shell"),
     ITEM("particles", BENCH_LONG, AT(voxel.particles), 8, 1e9),
     ITEM("cell", BENCH_REAL, AT(voxel.cell), 1e-30, 1e30),
+    ITEM("cells", BENCH_LONG, AT(cells), 1, 1e9),
     ITEM("engine", BENCH_TEXT, AT(engine), 0, sizeof((BenchScene *)0)->engine),
     ITEM("w", BENCH_INT, AT(params.w), 1, 64),
     ITEM("h", BENCH_REAL, AT(params.h), 1e-9, 10),
@@ -91,7 +137,8 @@ static const BenchSetting scene_table[] = {
     WORDS("summation", AT(params.summation), "fast|bars|naive"),
     WORDS("polar", AT(params.polar), "fast|jacobi"),
     WORDS("layout", AT(params.layout), "auto|lists|blocks"),
-    ITEM("epsilon", BENCH_REAL, AT(epsilon), 0, 1e6),
+    ITEM("epsilon", BENCH_REAL, AT(octree.epsilon), 0, 1e6),
+    {"octree", BENCH_GROUP, AT(octree), 0, 0, NULL, octree_table, 0, 0},
     ITEM("density", BENCH_REAL, AT(density), 0, FAR),
     ITEM("vertex_mass", BENCH_TEXT, AT(vertex_mass), 0, BENCH_PATH),
     ITEM("instances", BENCH_LONG, AT(instances), 1, 1000000),
@@ -164,8 +211,9 @@ static SmCode check(SceneFile *read, SmError *error)
     if (!scene->mesh[0])
         return sm_fail(error, SM_INPUT, "%s: no 'mesh': give \"shape:NAME\" or a mesh file's path",
                        scene->file);
-    if ((scene->voxel.particles > 0) == (scene->voxel.cell > 0))
-        return sm_fail(error, SM_INPUT, "%s: give either 'particles' or 'cell'", scene->file);
+    if ((scene->voxel.particles > 0) + (scene->voxel.cell > 0) + (scene->cells > 0) != 1)
+        return sm_fail(error, SM_INPUT, "%s: give one of 'particles', 'cell' and 'cells'",
+                       scene->file);
     SmCode code = SM_OK;
     for (int i = 0; i < scene->handle_count && !code; i++) {
         BenchHandle *handle = &scene->handle[i];
@@ -325,4 +373,15 @@ const char *const *bench_scene_names(void)
     static const char *names[BUILTIN_MAX + 1];
     for (int i = 0; i < BUILTIN_MAX && bench_builtin[i].name; i++) names[i] = bench_builtin[i].name;
     return names;
+}
+
+void bench_width_text(const OctWidth *width, char text[BENCH_WIDTH_TEXT])
+{
+    int used = 0;
+    if (width->cells > 0 || !(width->edges > 0))
+        used = snprintf(text, BENCH_WIDTH_TEXT, "%.6g cells%s", width->cells,
+                        width->edges > 0 ? " + " : "");
+    if (width->edges > 0)
+        snprintf(text + used, BENCH_WIDTH_TEXT - (size_t)used, "%.6g x the node's edge",
+                 width->edges);
 }

@@ -5,7 +5,7 @@
 #ifndef BENCH_SCENE_H
 #define BENCH_SCENE_H
 
-#include "../lib/engine.h"
+#include "../octree/engine.h"
 
 enum { BENCH_NAME = 64, BENCH_PATH = 1024, BENCH_MAX = 64 };
 
@@ -43,10 +43,11 @@ typedef struct {
     char file[BENCH_PATH];   /* where the scene was read from; for messages */
     char engine[24];
     SmVoxelParams voxel;
-    SmEngineParams params;        /* mass, instance_pose: filled by the runner */
+    long cells;                   /* wanted material cells, or 0: as `voxel` says */
+    SmEngineParams params;        /* mass, instance_pose, octree: filled by the runner */
     double density;               /* kg/m^3; 0: unit masses */
     char vertex_mass[BENCH_PATH]; /* text file, a mass for every vertex; nearest vertex wins */
-    double epsilon;               /* octree only */
+    OctOptions octree;            /* octree only */
     long instances;
     double spacing; /* between instances, in widths of the body */
     int steps_per_frame;
@@ -74,6 +75,11 @@ const char *bench_scene_text(const char *name, size_t *size);
 /* Reads a scene file, or finds a built-in scene by name. Errors name file and line. */
 SmCode bench_scene_read(const char *path, BenchScene *scene, SmError *error);
 SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *error);
+
+enum { BENCH_WIDTH_TEXT = 64 };
+
+/* "2.5 cells", "0.75 x the node's edge", or their sum. */
+void bench_width_text(const OctWidth *width, char text[BENCH_WIDTH_TEXT]);
 
 /* Built-in scene names, in order, NULL-terminated. */
 const char *const *bench_scene_names(void);

@@ -10,14 +10,18 @@
 #include "../lib/shape.h"
 #include "../lib/stage.h"
 #include "../lib/voxel.h"
+#include "../octree/sampling.h"
+#include "../octree/surface.h"
 
-enum { PARTICLES = 57626, EMBED_ROUNDS = 2 };
+enum { PARTICLES = 57626, DEFORM_ROUNDS = 2 };
 
 typedef struct {
     SmMesh mesh;
     SmVoxels voxels;
     SmEmbedding embedding;
+    OctSurface carried;
     double (*x)[3];                      /* [particle_count] the lattice, turned */
+    double (*node)[3];                   /* [nodes] the octree, turned */
     double (*position)[3], (*normal)[3]; /* [vertex_count] */
 } Statue;
 
@@ -49,9 +53,10 @@ static void check_voxels(const Statue *statue, BenchSurface *surface)
     }
     for (long v = 0; v < mesh->vertex_count; v++)
         outside += !in_material(&statue->voxels, mesh->position[v]);
-    surface->voxelise_valid = outside == 0;
+    struct BenchSurfaceTime *kernel = &surface->kernel[BENCH_VOXELISE];
+    kernel->valid = outside == 0;
     if (outside)
-        snprintf(surface->voxelise_reason, sizeof surface->voxelise_reason,
+        snprintf(kernel->reason, sizeof kernel->reason,
                  "%ld points of the surface lie outside the material", outside);
 }
 
@@ -61,11 +66,22 @@ static void turn(const double from[3], double to[3])
     for (int d = 0; d < 3; d++) to[d] = from[(d + 1) % 3] + d;
 }
 
-static void check_embedding(Statue *statue, BenchSurface *surface)
+static void deform(Statue *statue, BenchSurfaceKernel kernel)
+{
+    if (kernel == BENCH_EMBED)
+        sm_embed_apply(&statue->embedding, (const double(*)[3])statue->x, statue->position,
+                       statue->normal);
+    else
+        oct_surface_move(&statue->carried, (const double(*)[3])statue->node, statue->position,
+                         statue->normal);
+}
+
+/* Have the vertices turned with what carries them? */
+static void check_turned(Statue *statue, BenchSurfaceKernel which, BenchSurface *surface)
 {
     double largest = 0, cell = statue->voxels.cell;
-    sm_embed_apply(&statue->embedding, (const double(*)[3])statue->x, statue->position,
-                   statue->normal);
+    struct BenchSurfaceTime *kernel = &surface->kernel[which];
+    deform(statue, which);
     for (long v = 0; v < statue->mesh.vertex_count; v++) {
         double wanted[3];
         turn(statue->mesh.position[v], wanted);
@@ -74,10 +90,28 @@ static void check_embedding(Statue *statue, BenchSurface *surface)
             largest = off <= largest ? largest : off;
         }
     }
-    surface->embed_valid = largest <= 1e-4 * cell;
-    if (!surface->embed_valid)
-        snprintf(surface->embed_reason, sizeof surface->embed_reason,
+    kernel->valid = largest <= 1e-4 * cell;
+    if (!kernel->valid)
+        snprintf(kernel->reason, sizeof kernel->reason,
                  "vertices are off by %.3g cells; at most 1e-4 allowed", largest / cell);
+}
+
+static SmCode make_octree(Statue *statue, SmError *error)
+{
+    OctSampling sampling = {.levels = 4, .criteria_count = 1};
+    sampling.criteria[0] = (OctCriterion){.kind = OCT_FEATURES, .level = 4};
+    OctTree tree;
+    OctGraph graph;
+    SmCode code = oct_sampling_tree(&sampling, &statue->voxels, &tree, NULL, error);
+    if (code) return code;
+    oct_graph_build(&tree, &statue->voxels, &graph);
+    oct_surface_build(&statue->mesh, &statue->voxels, &tree, &graph, &statue->carried);
+    statue->node = sm_alloc((size_t)tree.leaves, sizeof *statue->node);
+    for (long leaf = 0; leaf < tree.leaves; leaf++)
+        turn(statue->carried.centre[leaf], statue->node[leaf]);
+    oct_graph_free(&graph);
+    oct_tree_free(&tree);
+    return SM_OK;
 }
 
 static SmCode make_statue(Statue *statue, SmError *error)
@@ -101,7 +135,7 @@ static SmCode make_statue(Statue *statue, SmError *error)
     }
     free(at);
     sm_embed_create(&statue->mesh, &statue->voxels, &statue->embedding);
-    return SM_OK;
+    return make_octree(statue, error);
 }
 
 static void free_statue(Statue *statue)
@@ -109,6 +143,8 @@ static void free_statue(Statue *statue)
     sm_mesh_free(&statue->mesh);
     sm_voxels_free(&statue->voxels);
     sm_embed_free(&statue->embedding);
+    oct_surface_free(&statue->carried);
+    free(statue->node);
     free(statue->x);
     free(statue->position);
     free(statue->normal);
@@ -124,21 +160,28 @@ static double voxelise_once(const Statue *statue, BenchSurface *surface)
     SmCode code = sm_voxelise(&statue->mesh, &params, "statue", &voxels, &error);
     double seconds = sm_now() - start;
     if (code) {
-        surface->voxelise_valid = false;
-        snprintf(surface->voxelise_reason, sizeof surface->voxelise_reason, "%.100s", error.text);
+        struct BenchSurfaceTime *kernel = &surface->kernel[BENCH_VOXELISE];
+        kernel->valid = false;
+        snprintf(kernel->reason, sizeof kernel->reason, "%.100s", error.text);
         return 0;
     }
     sm_voxels_free(&voxels);
     return seconds;
 }
 
-static double embed_once(Statue *statue)
+static double deform_once(Statue *statue, BenchSurfaceKernel kernel)
 {
     double start = sm_now();
-    for (int i = 0; i < EMBED_ROUNDS; i++)
-        sm_embed_apply(&statue->embedding, (const double(*)[3])statue->x, statue->position,
-                       statue->normal);
-    return (sm_now() - start) / EMBED_ROUNDS;
+    for (int i = 0; i < DEFORM_ROUNDS; i++) deform(statue, kernel);
+    return (sm_now() - start) / DEFORM_ROUNDS;
+}
+
+/* Nanoseconds an item of one run of a kernel. */
+static double time_once(Statue *statue, BenchSurfaceKernel kernel, BenchSurface *surface)
+{
+    if (kernel == BENCH_VOXELISE)
+        return 1e9 * voxelise_once(statue, surface) / (double)surface->triangles;
+    return 1e9 * deform_once(statue, kernel) / (double)surface->vertices;
 }
 
 SmCode bench_surface_time(int threads, int repeats, BenchSurface *surface, SmError *error)
@@ -152,19 +195,23 @@ SmCode bench_surface_time(int threads, int repeats, BenchSurface *surface, SmErr
     surface->triangles = statue.mesh.triangle_count;
     surface->vertices = statue.mesh.vertex_count;
     surface->particles = statue.voxels.particle_count;
-    surface->voxelise_ns = sm_alloc((size_t)repeats, sizeof(double));
-    surface->embed_ns = sm_alloc((size_t)repeats, sizeof(double));
+    surface->nodes = statue.carried.gradients.count;
+    surface->nodes_blended =
+        (double)statue.carried.first[surface->vertices] / (double)surface->vertices;
     int before = omp_get_max_threads();
-    omp_set_num_threads(threads); /* the embedding takes OpenMP's number */
-    if (surface->voxelise) check_voxels(&statue, surface);
-    if (surface->embed) check_embedding(&statue, surface);
-    for (int r = 0; r < repeats; r++) {
-        if (surface->voxelise && surface->voxelise_valid)
-            surface->voxelise_ns[r] =
-                1e9 * voxelise_once(&statue, surface) / (double)surface->triangles;
-        if (surface->embed && surface->embed_valid)
-            surface->embed_ns[r] = 1e9 * embed_once(&statue) / (double)surface->vertices;
+    omp_set_num_threads(threads); /* what deforms takes OpenMP's number */
+    for (int k = 0; k < BENCH_SURFACE_KERNELS; k++) {
+        surface->kernel[k].ns = sm_alloc((size_t)repeats, sizeof(double));
+        if (!surface->kernel[k].wanted) continue;
+        if (k == BENCH_VOXELISE)
+            check_voxels(&statue, surface);
+        else
+            check_turned(&statue, (BenchSurfaceKernel)k, surface);
     }
+    for (int r = 0; r < repeats; r++)
+        for (int k = 0; k < BENCH_SURFACE_KERNELS; k++)
+            if (surface->kernel[k].wanted && surface->kernel[k].valid)
+                surface->kernel[k].ns[r] = time_once(&statue, (BenchSurfaceKernel)k, surface);
     omp_set_num_threads(before);
     free_statue(&statue);
     return SM_OK;

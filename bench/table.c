@@ -9,7 +9,7 @@
 
 const char *const bench_format_names[] = {"text", "markdown", "csv", "latex", "json", NULL};
 
-enum { COLUMNS = 17 };
+enum { COLUMNS = 20 };
 
 static const char *const column_names[COLUMNS] = {
     "paper",
@@ -29,6 +29,9 @@ static const char *const column_names[COLUMNS] = {
     "paper_total_ms",
     "ratio",
     "valid",
+    "fps",
+    "speedup",
+    "summation_nodes",
 };
 
 /* A value of one of three kinds: text, a whole number, or a number. */
@@ -55,6 +58,9 @@ static void fill_cells(const BenchRow *row, Cell cell[COLUMNS])
     *c++ = (Cell){.kind = NUMBER, .number = row->paper_total_ms};
     *c++ = (Cell){.kind = TIME, .number = row->paper_total_ms / row->total_ms};
     *c++ = (Cell){.kind = VALID, .whole = row->valid};
+    *c++ = (Cell){.kind = TIME, .number = row->fps};
+    *c++ = (Cell){.kind = TIME, .number = row->speedup};
+    *c++ = (Cell){.kind = NUMBER, .number = row->summation_nodes};
 }
 
 /* Quoted where it must be, with quotes doubled. */

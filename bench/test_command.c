@@ -71,6 +71,18 @@ static int set_up(void **state)
     file = fopen(path, "w");
     fputs("no mesh at all\n", file);
     fclose(file);
+    snprintf(path, sizeof path, "%s/lattice.cfg", folder);
+    file = fopen(path, "w");
+    fputs("paper = \"octree\"; mesh = \"shape:block\"; particles = 500; w = 1; bend = 0.3;\n",
+          file);
+    fclose(file);
+    snprintf(path, sizeof path, "%s/tree.cfg", folder);
+    file = fopen(path, "w");
+    fputs("paper = \"octree\"; row = \"hand-sampled\"; mesh = \"shape:block\"; cells = 343;\n"
+          "engine = \"octree\"; bend = 0.3; kick = 0.01; epsilon = 0.5;\n"
+          "octree = { levels = 2; nodes = 120; summation_nodes = 9.0; };\n",
+          file);
+    fclose(file);
     return 0;
 }
 
@@ -101,11 +113,22 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run tiny.cfg --gravity 1,2", 2, "--gravity: '1,2' is not three numbers x,y,z"},
         {"run tiny.cfg --summation slow", 2, "not one of fast, bars, naive"},
         {"run tiny.cfg --layout round", 2, "'round' is not one of auto, lists, blocks"},
-        {"run tiny.cfg --record film", 2, "--record: 'film' is not particles"},
+        {"run tiny.cfg --record film", 2, "--record: 'film' is not one of particles, nodes"},
         {"run tiny.cfg --w", 2, "requires an argument"},
         {"run tiny.cfg tiny.cfg", 2, "one scene or mesh only"},
         {"run tiny.cfg --particles 100 --cell 0.1", 2, "either --particles or --cell"},
         {"run tiny.cfg --engine warp", 2, "no engine 'warp'; there are: "},
+        {"run tiny.cfg --epsilon 0.5", 2, "are the octree's: add --engine octree"},
+        {"run tiny.cfg --levels 2 --nodes 9", 2, "are the octree's: add --engine octree"},
+        {"run tiny.cfg --engine octree --levels 13", 2, "--levels: '13'"},
+        {"run tiny.cfg --engine octree --epsilon -1", 2, "--epsilon: '-1'"},
+        {"run tiny.cfg --engine octree --nodes 0", 2, "--nodes: '0'"},
+        {"run tiny.cfg --engine octree --w wide", 2, "--w: 'wide' is not a number above 0"},
+        {"run tiny.cfg --engine octree --w 0", 2, "--w: '0' is not a number above 0"},
+        {"run tiny.cfg --engine octree --summation naive", 3, "the octree has its own"},
+        {"run tiny.cfg --engine octree --strain-limit 2", 3, "strain_limit: the octree's"},
+        {"run tiny.cfg --engine octree --record particles", 2, "stores a lattice"},
+        {"run tiny.cfg --record nodes", 2, "--record nodes stores an octree"},
         {"run no-such-scene", 2, "shapebench scenes"},
         {"run bad.cfg", 3, "bad.cfg:3: unknown setting 'damping_k'; known: "},
         {"run missing.cfg", 3, "missing.cfg: cannot be opened"},
@@ -218,7 +241,7 @@ static void tables_measure_a_scene(void **state)
     assert_string_equal(result.err, "");
     assert_memory_equal(result.out, "paper,scene,engine,particles,", 29);
     assert_non_null(strstr(result.out, "\n,tiny,brute,64,"));
-    assert_non_null(strstr(result.out, ",VALID\n"));
+    assert_non_null(strstr(result.out, ",VALID,"));
     assert_true(there("rows.h5"));
     run("tables --scene tiny.cfg --repeats 1 --block 1 --threads 0 --format json", &result);
     json_t *root = json_loads(result.out, 0, NULL);
@@ -226,6 +249,62 @@ static void tables_measure_a_scene(void **state)
     json_t *environment = json_object_get(root, "environment");
     assert_true(json_integer_value(json_object_get(environment, "threads")) >= 1);
     json_decref(root);
+}
+
+/* An octree's options, and its mesh alone: what was made is said. */
+static void an_octree_can_be_run(void **state)
+{
+    (void)state;
+    Result result;
+    run("scenes block --write-mesh block.obj", &result);
+    run("run block.obj --engine octree --epsilon 0.5 --particles 500 --levels 2 --nodes 120 "
+        "--w 2.5 --frames 2 --steps 2 -o tree.vtkhdf",
+        &result);
+    if (result.code) fail_msg("%s", result.err);
+    static const char *const wanted[] = {"block.obj: octree, single precision: ",
+                                         " nodes",
+                                         " base cells, 343 finest cells of ",
+                                         "regions: w = 2.5 cells, epsilon 0.5: ",
+                                         "deviation: goals within ",
+                                         "4 steps of 0.01 s: "};
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+        if (!strstr(result.out, wanted[i])) fail_msg("no '%s' in %s", wanted[i], result.out);
+    assert_true(there("tree.vtkhdf") && there("tree.vtkhdf.xdmf"));
+    run("run block.obj --engine octree --particles 200 --precision double --frames 1 --no-output",
+        &result);
+    if (result.code) fail_msg("%s", result.err);
+    assert_non_null(strstr(result.out, "w = 1 x the node's edge, epsilon 0.5"));
+    run("run tiny.cfg --engine octree --frames 1 --no-output", &result);
+    if (result.code) fail_msg("%s", result.err);
+}
+
+/* Its table: speed-ups over the lattice, summation nodes, both held to their twins. */
+static void tables_set_the_octree_beside_the_lattice(void **state)
+{
+    (void)state;
+    Result result;
+    run("tables --paper octree --scene lattice.cfg --scene tree.cfg --repeats 2 --block 1 "
+        "--format json",
+        &result);
+    if (result.code) fail_msg("%s", result.err);
+    json_t *root = json_loads(result.out, 0, NULL), *rows = json_object_get(root, "rows");
+    assert_int_equal(json_array_size(rows), 2);
+    double total[2];
+    for (int r = 0; r < 2; r++) {
+        json_t *row = json_array_get(rows, (size_t)r);
+        total[r] = json_real_value(json_object_get(row, "total_ms"));
+        double fps = json_real_value(json_object_get(row, "fps")),
+               speedup = json_real_value(json_object_get(row, "speedup"));
+        assert_true(fps * total[r] > 999.99 && fps * total[r] < 1000.01);
+        assert_true(speedup * total[r] > 0.9999 * total[0]);
+        assert_true(speedup * total[r] < 1.0001 * total[0]);
+        assert_true(json_is_null(json_object_get(row, "summation_nodes")) == (r == 0));
+        assert_true(json_is_true(json_object_get(row, "valid")));
+    }
+    json_decref(root);
+    run("tables --paper octree --scene tree.cfg --repeats 1 --block 1", &result);
+    assert_non_null(strstr(result.out, "found for 9 summation nodes a region"));
+    assert_non_null(strstr(result.out, "88.0")); /* the paper's */
 }
 
 static void a_full_disk_is_an_error(void **state)
@@ -270,6 +349,8 @@ int main(void)
         cmocka_unit_test(a_scene_can_be_copied_and_run),
         cmocka_unit_test(a_mesh_alone_can_be_run),
         cmocka_unit_test(tables_measure_a_scene),
+        cmocka_unit_test(an_octree_can_be_run),
+        cmocka_unit_test(tables_set_the_octree_beside_the_lattice),
         cmocka_unit_test(a_full_disk_is_an_error),
         cmocka_unit_test(a_huge_file_is_announced_and_an_interrupt_leaves_nothing),
     };

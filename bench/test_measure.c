@@ -107,12 +107,55 @@ static void a_wrong_count_of_regions_is_invalid(void **state)
     bench_row_free(&row);
 }
 
+/* The octree's nodes are held to their own twin, in either precision. */
+static void an_octree_is_valid_and_described(void **state)
+{
+    (void)state;
+    const SmEngineType *const types[] = {&octree_engine_f32, &octree_engine_f64};
+    for (int t = 0; t < 2; t++) {
+        BenchRow row;
+        assert_int_equal(measure(types[t], &row), SM_OK);
+        if (!row.valid) fail_msg("%s", row.reason);
+        assert_int_equal(row.cells, 27);
+        assert_int_equal(row.particles, row.regions);
+        assert_int_equal(row.parts, 1);
+        assert_int_equal(row.w, 0);
+        assert_true(row.bases >= 1 && row.bases <= row.particles);
+        assert_true(row.width_edges == 1 && row.width_cells == 0);
+        assert_true(row.summation_nodes >= 1 && row.summation_nodes <= (double)row.most_summation);
+        assert_true(fabs(row.fps * row.total_ms - 1000) < 1e-6);
+        assert_true(row.goal_error <= (t ? 1e-10 : 5e-5));
+        bench_row_free(&row);
+    }
+}
+
+static void wrong_octree_get(SmEngine *engine, SmField field, double (*values)[3])
+{
+    octree_engine_f64.get(engine, field, values);
+    if (field == SM_GOAL) values[0][0] += 1e-3 * 0.2 / 3;
+}
+
+static void a_wrong_octree_is_invalid(void **state)
+{
+    (void)state;
+    SmEngineType type = octree_engine_f64;
+    type.get = wrong_octree_get;
+    BenchRow row;
+    assert_int_equal(measure(&type, &row), SM_OK);
+    assert_false(row.valid);
+    assert_non_null(strstr(row.reason, "cells from brute force"));
+    assert_true(row.goal_error > 5e-4 && row.goal_error < 2e-3);
+    bench_row_free(&row);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_right_engine_is_valid_and_timed),
         cmocka_unit_test(a_wrong_engine_is_invalid),
         cmocka_unit_test(a_wrong_count_of_regions_is_invalid),
+        cmocka_unit_test(an_octree_is_valid_and_described),
+        cmocka_unit_test(a_wrong_octree_is_invalid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

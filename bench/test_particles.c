@@ -9,10 +9,12 @@
 
 #include <cmocka.h>
 
+#include "../fastlsm/random_bodies.h"
 #include "../reference/brute.h"
 #include "trajectory.h"
 
-/* Steps of the brute-force engine in C, recomputed from the file alone by scripts/check_step.py. */
+/* Steps of the brute-force engine and of the octree in C, recomputed from the file alone by
+ * scripts/check_step.py. */
 
 enum { STEPS = 3, NEXT = STEPS + 1 };
 
@@ -68,24 +70,31 @@ static void disturb(const SmEngineType *type, SmEngine *engine, long count, doub
 }
 
 /* Records STEPS steps of the engine and the state after them. */
-static void record(const BenchTrajectoryParams *params, long count)
+static void record(const SmEngineType *type, BenchTrajectoryParams *params)
 {
-    const SmEngineType *type = &ref_brute_engine;
     SmEngine *engine;
     BenchTrajectory *trajectory;
     SmError error = {0};
+    SmCounts counts;
+    if (type->create(params->voxels, params->params, &engine, &error) != SM_OK)
+        fail_msg("%s", error.text);
+    if (params->record == BENCH_RECORD_NODES) params->structure = oct_engine_structure(engine);
+    params->engine = type->name;
+    params->precision = type->precision;
+    type->count(engine, &counts);
+    long count = counts.particles;
     double(*x)[3] = sm_alloc((size_t)count, sizeof *x),
     (*v)[3] = sm_alloc((size_t)count, sizeof *v);
     double(*g)[3] = sm_alloc((size_t)count, sizeof *g);
-    assert_int_equal(type->create(params->voxels, params->params, &engine, &error), SM_OK);
     if (params->boundary) type->bound(engine, params->boundary);
     disturb(type, engine, count, params->voxels->cell);
     if (bench_trajectory_open(params, &trajectory, &error) != SM_OK) fail_msg("%s", error.text);
     for (long step = 0; step <= STEPS; step++) {
         type->get(engine, SM_POSITION, x);
         type->get(engine, SM_VELOCITY, v);
-        if (step < STEPS) type->step(engine, NULL);
+        type->goals(engine);
         type->get(engine, SM_GOAL, g);
+        if (step < STEPS) type->step(engine, NULL);
         assert_int_equal(bench_trajectory_step(trajectory, step, (const double(*)[3])x,
                                                (const double(*)[3])v,
                                                step < STEPS ? (const double(*)[3])g : NULL, &error),
@@ -113,14 +122,12 @@ static void record_lattice(SmEngineParams *engine, const SmBoundary *boundary, b
                                     .surface = &none,
                                     .machine = &machine,
                                     .scene = "L",
-                                    .record_particles = true,
+                                    .record = BENCH_RECORD_PARTICLES,
                                     .voxels = &voxels,
                                     .params = engine,
                                     .mass = engine->mass,
-                                    .engine = "brute",
-                                    .precision = "double",
                                     .boundary = boundary};
-    record(&params, voxels.particle_count * (engine->instances ? engine->instances : 1));
+    record(&ref_brute_engine, &params);
     free(mass);
     sm_voxels_free(&voxels);
 }
@@ -176,6 +183,119 @@ static void held_and_obstructed(void **state)
         .w = 1, .h = 0.01, .damping = 0.5, .gravity = {0, -9.81, 0}, .threads = 1};
     record_lattice(&params, &boundary, true);
     assert_int_equal(check_file(), 0);
+}
+
+/* Features and a fine corner; each node's own width and, in half of the body, a wider one. */
+static void choose_octree(const SmVoxels *voxels, OctOptions *options)
+{
+    options->epsilon = 0.5;
+    options->sampling = (OctSampling){.levels = 2, .criteria_count = 2};
+    options->sampling.criteria[0] = (OctCriterion){.kind = OCT_FEATURES};
+    options->sampling.criteria[1] = (OctCriterion){.kind = OCT_SPHERE, .radius = 6 * voxels->cell};
+    options->local_count = 1;
+    options->local[0] = (OctLocalWidth){.width = {.cells = 3, .edges = 1}};
+    for (int d = 0; d < 3; d++) {
+        options->sampling.criteria[1].centre[d] = voxels->origin[d];
+        options->local[0].low[d] = voxels->origin[d] - 4 * voxels->cell;
+        options->local[0].high[d] =
+            voxels->origin[d] + (d ? 20 : 0.5 * voxels->size[0]) * voxels->cell;
+    }
+}
+
+/* Records a body of kind `kind` (random_bodies.h) in an octree engine. */
+static void record_octree(const SmEngineType *type, int kind, SmEngineParams *engine,
+                          OctOptions *options, const SmBoundary *boundary)
+{
+    static BenchMachine machine;
+    SmVoxels voxels;
+    const SmMesh none = {0};
+    unsigned seed = 5;
+    random_body(&seed, kind, 12, &voxels);
+    choose_octree(&voxels, options);
+    engine->octree = options;
+    bench_machine_read(0, NULL, 1, &machine);
+    BenchTrajectoryParams params = {.path = path,
+                                    .surface = &none,
+                                    .machine = &machine,
+                                    .scene = "octree",
+                                    .record = BENCH_RECORD_NODES,
+                                    .voxels = &voxels,
+                                    .params = engine,
+                                    .boundary = boundary};
+    record(type, &params);
+    sm_voxels_free(&voxels);
+}
+
+static void octrees(void **state)
+{
+    (void)state;
+    static const double pose[2][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
+                                         {{0, -1, 0, 5}, {1, 0, 0, 0}, {0, 0, 1, 2}}};
+    OctOptions options = {0};
+    for (int kind = 1; kind < 5; kind++) {
+        SmEngineParams params = {.h = 0.01,
+                                 .damping = 0.3,
+                                 .damping_every = 1 + kind % 2,
+                                 .gravity = {0, -9.81, 0},
+                                 .instances = 2,
+                                 .instance_pose = pose,
+                                 .threads = 1};
+        options.weighting = kind % 2 ? OCT_PLAIN : OCT_CONSERVING;
+        options.form = kind % 3 ? OCT_HIERARCHICAL : OCT_ADJOINT;
+        record_octree(&octree_engine_f64, kind, &params, &options, NULL);
+        assert_int_equal(check_file(), 0);
+    }
+}
+
+static void octree_held_in_single_precision(void **state)
+{
+    (void)state;
+    static const long particle[] = {0, 1, 2};
+    const SmHandle pin = {3, particle, {{1, 0, 0, 0.01}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    const SmObstacle plane = {SM_PLANE, {0, 0.2, 0}, {0, 1, 0}, 0, 0.5};
+    const SmBoundary boundary = {1, &pin, 1, &plane};
+    OctOptions options = {0};
+    SmEngineParams params = {.h = 0.01, .damping = 0.2, .threads = 1};
+    record_octree(&octree_engine_f32, 2, &params, &options, &boundary);
+    assert_int_equal(check_file(), 0);
+}
+
+/* Adds `amount` to one whole number of a list. */
+static void corrupt_whole(const char *name, hsize_t at, int amount)
+{
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset);
+    hsize_t one = 1;
+    hid_t single = H5Screate_simple(1, &one, NULL);
+    int value = 0;
+    H5Sselect_elements(space, H5S_SELECT_SET, 1, &at);
+    assert_true(H5Dread(dataset, H5T_NATIVE_INT, single, space, H5P_DEFAULT, &value) >= 0);
+    value += amount;
+    assert_true(H5Dwrite(dataset, H5T_NATIVE_INT, single, space, H5P_DEFAULT, &value) >= 0);
+    H5Sclose(single);
+    H5Sclose(space);
+    H5Dclose(dataset);
+    H5Fclose(file);
+}
+
+/* Regions that are not those of their widths, distances and tree. */
+static void octree_corrupted(void **state)
+{
+    (void)state;
+    OctOptions options = {0};
+    SmEngineParams params = {.h = 0.01, .threads = 1};
+    static const struct {
+        const char *name;
+        int amount;
+    } change[] = {{"nodes/w", 40}, {"nodes/length", 1000}, {"nodes/summation", 1}};
+    for (size_t i = 0; i < sizeof change / sizeof change[0]; i++) {
+        record_octree(&octree_engine_f64, 2, &params, &options, NULL);
+        corrupt_whole(change[i].name, 0, change[i].amount);
+        assert_int_equal(check_file(), 1);
+    }
+    options.creep = 1;
+    record_octree(&octree_engine_f64, 2, &params, &options, NULL);
+    assert_int_equal(check_file(), 2);
 }
 
 /* Adds `amount` to one number of a dataset of vectors of every particle and record. */
@@ -239,9 +359,15 @@ static void no_trajectory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(free_body),           cmocka_unit_test(damped_masses_and_instances),
-        cmocka_unit_test(held_and_obstructed), cmocka_unit_test(corrupted),
-        cmocka_unit_test(no_trajectory),       cmocka_unit_test(broken_links_are_not_checked),
+        cmocka_unit_test(free_body),
+        cmocka_unit_test(damped_masses_and_instances),
+        cmocka_unit_test(held_and_obstructed),
+        cmocka_unit_test(corrupted),
+        cmocka_unit_test(no_trajectory),
+        cmocka_unit_test(broken_links_are_not_checked),
+        cmocka_unit_test(octrees),
+        cmocka_unit_test(octree_held_in_single_precision),
+        cmocka_unit_test(octree_corrupted),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

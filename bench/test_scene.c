@@ -57,6 +57,41 @@ static void reads_every_kind_of_setting(void **state)
     assert_true(scene.params.strain_limit == 0 && scene.kick == 0);
 }
 
+static void an_octree_has_a_group_of_settings(void **state)
+{
+    (void)state;
+    BenchScene scene;
+    SmError error;
+    const char *text =
+        "mesh = \"a.obj\"; cells = 3000; engine = \"octree\"; epsilon = 0.5;\n"
+        "octree = { levels = 3; bases = 28; nodes = 661; balance = true;\n"
+        "  criteria = ( { kind = \"surface\"; level = 2; },\n"
+        "               { kind = \"sphere\"; centre = (1, 2, 3); radius = 0.5; },\n"
+        "               { kind = \"box\"; low = (0, 0, 0); high = (1, 1, 1); } );\n"
+        "  w = 2.5; edges = 0.75; summation_nodes = 6;\n"
+        "  widths = ( { low = (0, 0, 0); high = (1, 1, 2); edges = 3; },\n"
+        "             { centre = (0, 0, 1); radius = 0.1; w = 1.5; } );\n"
+        "  weighting = \"plain\"; goals = \"adjoint\"; yield = 0.1; creep = 5; most = 0.8; };";
+    if (parse(text, &scene, &error)) fail_msg("%s", error.text);
+    const OctOptions *o = &scene.octree;
+    assert_int_equal(scene.cells, 3000);
+    assert_true(o->epsilon == 0.5 && o->sampling.levels == 3 && o->sampling.bases == 28);
+    assert_true(o->sampling.nodes == 661 && o->sampling.balance);
+    assert_int_equal(o->sampling.criteria_count, 3);
+    assert_int_equal(o->sampling.criteria[0].kind, OCT_SURFACE);
+    assert_int_equal(o->sampling.criteria[0].level, 2);
+    assert_int_equal(o->sampling.criteria[1].kind, OCT_SPHERE);
+    assert_true(o->sampling.criteria[1].centre[2] == 3 && o->sampling.criteria[1].radius == 0.5);
+    assert_int_equal(o->sampling.criteria[2].kind, OCT_BOX);
+    assert_true(o->width.cells == 2.5 && o->width.edges == 0.75 && o->summation_nodes == 6);
+    assert_int_equal(o->local_count, 2);
+    assert_true(o->local[0].width.edges == 3 && o->local[0].high[2] == 2);
+    assert_true(o->local[1].width.cells == 1.5 && o->local[1].radius == 0.1);
+    assert_int_equal(o->weighting, OCT_PLAIN);
+    assert_int_equal(o->form, OCT_ADJOINT);
+    assert_true(o->yield == 0.1 && o->creep == 5 && o->most == 0.8);
+}
+
 static void errors_name_file_line_and_remedy(void **state)
 {
     (void)state;
@@ -93,8 +128,16 @@ static void errors_name_file_line_and_remedy(void **state)
         {BODY "w = 1;\nw = 2;", "dir/my.cfg:4: "},
         {BODY "@include \"/dev/zero\"", "dir/my.cfg:3: '@include' is not supported"},
         {"particles = 100;", "dir/my.cfg: no 'mesh'"},
-        {"mesh = \"a.obj\";", "dir/my.cfg: give either 'particles' or 'cell'"},
-        {BODY "cell = 0.1;", "dir/my.cfg: give either 'particles' or 'cell'"},
+        {"mesh = \"a.obj\";", "dir/my.cfg: give one of 'particles', 'cell' and 'cells'"},
+        {BODY "cell = 0.1;", "dir/my.cfg: give one of 'particles', 'cell' and 'cells'"},
+        {BODY "cells = 100;", "dir/my.cfg: give one of 'particles', 'cell' and 'cells'"},
+        {BODY "octree = 3;", "dir/my.cfg:3: 'octree' must be a group"},
+        {BODY "octree = { level = 3; };", "dir/my.cfg:3: unknown setting 'level'; known: levels"},
+        {BODY "octree = {\n levels = 13; };", "dir/my.cfg:4: 'levels' must be a whole number"},
+        {BODY "octree = { w = -1; };", "'w' must be a number from 0"},
+        {BODY "octree = { goals = \"sum\"; };", "'goals' must be one of \"gather|adjoint\""},
+        {BODY "octree = { criteria = ( { kind = \"corner\"; } ); };", "'kind' must be one of"},
+        {BODY "octree = { criteria = ( { kind = \"box\"; low = 1; } ); };", "'low' must be three"},
         {"", "dir/my.cfg: no 'mesh'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -209,6 +252,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_every_kind_of_setting),
+        cmocka_unit_test(an_octree_has_a_group_of_settings),
         cmocka_unit_test(errors_name_file_line_and_remedy),
         cmocka_unit_test(refuses_zero_bytes_and_huge_files),
         cmocka_unit_test(too_many_obstacles_are_an_error),

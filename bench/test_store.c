@@ -16,7 +16,7 @@
 
 #include "store.h"
 
-enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 600 };
+enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 680 };
 
 static char folder[] = "/tmp/test_store_XXXXXX";
 
@@ -81,6 +81,16 @@ static void fill_row(BenchRow *row, int seed)
                       .voxelise_seconds = 0.002,
                       .build_seconds = 0.003,
                       .bytes = 123456789012,
+                      .fps = 3571.4,
+                      .speedup = 88,
+                      .summation_nodes = 6.2,
+                      .width_cells = 0.5,
+                      .width_edges = 0.75,
+                      .wanted_summation = 6,
+                      .most_summation = 32,
+                      .bases = 28,
+                      .cells = 29358,
+                      .parts = 4,
                       .paper_total_ms = 0.281,
                       .input_hash = 0xcbf29ce484222325ULL};
     strcpy(row->paper, "fastlsm");

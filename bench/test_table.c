@@ -14,7 +14,8 @@
 
 static const char header[] =
     "paper,scene,engine,particles,regions,w,epsilon,fast_sum_ms,shape_matching_ms,polar_ms,"
-    "damping_ms,other_ms,total_ms,ns_per_particle_step,paper_total_ms,ratio,valid\n";
+    "damping_ms,other_ms,total_ms,ns_per_particle_step,paper_total_ms,ratio,valid,fps,"
+    "speedup,summation_nodes\n";
 
 /* A valid row of the paper's penguin and an invalid one without a paper. */
 static void make_rows(BenchRow rows[2])
@@ -30,6 +31,9 @@ static void make_rows(BenchRow rows[2])
                          .repeats = 15,
                          .steps = 64,
                          .ns_per_particle_step = 93.25,
+                         .fps = 1e3 / 0.014,
+                         .speedup = NAN,
+                         .summation_nodes = NAN,
                          .paper_total_ms = 0.28,
                          .stage_ms = {0.002, 0.003, 0.004, 0.0, 0.005},
                          .goal_tolerance = 5e-5};
@@ -40,7 +44,7 @@ static void make_rows(BenchRow rows[2])
     rows[1].valid = false;
     rows[1].total_ms = 777.125; /* must not be seen anywhere */
     for (int s = 0; s < SM_STAGES; s++) rows[1].stage_ms[s] = 777.125;
-    rows[1].ns_per_particle_step = 777.125;
+    rows[1].ns_per_particle_step = rows[1].fps = rows[1].speedup = 777.125;
     rows[1].paper_total_ms = NAN;
     rows[1].paper[0] = rows[1].paper_row[0] = '\0';
     strcpy(rows[1].scene, "a_b,\"c\"&50%|x");
@@ -70,9 +74,9 @@ static void csv_is_the_stable_interface(void **state)
     char wanted[1024];
     snprintf(wanted, sizeof wanted, "%s%s%s", header,
              "fastlsm,penguin,fastlsm,150,130,2,0,0.002,0.003,0.004,0,0.005,0.014,93.25,0.28,20,"
-             "VALID\n",
+             "VALID,71428.5714,,\n",
              ",\"a_b,\"\"c\"\"&50%|x\",fastlsm,150,130,2,0,INVALID,INVALID,INVALID,INVALID,INVALID,"
-             "INVALID,INVALID,,INVALID,INVALID\n");
+             "INVALID,INVALID,,INVALID,INVALID,INVALID,INVALID,\n");
     assert_string_equal(text, wanted);
     free(text);
 }
@@ -99,9 +103,10 @@ static void json_has_the_same_columns(void **state)
     assert_true(json_is_false(json_object_get(bad, "valid")));
     assert_true(fabs(json_real_value(json_object_get(good, "ratio")) - 20) < 1e-9);
     static const char *const times[] = {
-        "fast_sum_ms", "shape_matching_ms",    "polar_ms", "damping_ms",    "other_ms",
-        "total_ms",    "ns_per_particle_step", "ratio",    "paper_total_ms"};
-    for (int i = 0; i < 9; i++) assert_true(json_is_null(json_object_get(bad, times[i])));
+        "fast_sum_ms", "shape_matching_ms",    "polar_ms", "damping_ms",     "other_ms",
+        "total_ms",    "ns_per_particle_step", "ratio",    "paper_total_ms", "fps",
+        "speedup",     "summation_nodes"};
+    for (int i = 0; i < 12; i++) assert_true(json_is_null(json_object_get(bad, times[i])));
     assert_string_equal(json_string_value(json_object_get(environment, "cpu")), "Test CPU");
     assert_string_equal(json_string_value(json_object_get(environment, "command")), "run ?");
     json_decref(root);
@@ -163,6 +168,54 @@ static void markdown_and_latex_escape(void **state)
     free(text);
 }
 
+/* A table with an octree's row has its columns, and says of what it is made. */
+static void an_octree_has_columns_of_its_own(void **state)
+{
+    (void)state;
+    BenchRow row = {.particles = 662,
+                    .regions = 662,
+                    .bases = 28,
+                    .cells = 29358,
+                    .epsilon = 0.5,
+                    .width_edges = 0.75,
+                    .wanted_summation = 6,
+                    .summation_nodes = 6.23,
+                    .most_summation = 32,
+                    .parts = 4,
+                    .valid = true,
+                    .total_ms = 0.05,
+                    .fps = 20000,
+                    .speedup = 99.5,
+                    .paper_total_ms = 4.505,
+                    .damping = 0.1};
+    strcpy(row.paper, "octree");
+    strcpy(row.paper_row, "hand-sampled");
+    strcpy(row.scene, "hand-sampled");
+    strcpy(row.engine, "octree");
+    BenchMachine machine = {.threads = 1};
+    static const char *const wanted[] = {
+        "speed-up",
+        "20000",
+        "99.5",
+        "6.23",
+        "88.0",
+        "6.00",
+        "662 nodes from 28 base cells, 29358 finest cells; w = 0.75 x the node's edge, found for 6",
+        "falls into 4 parts"};
+    for (int valid = 1; valid >= 0; valid--) {
+        char *text;
+        size_t size;
+        FILE *file = open_memstream(&text, &size);
+        row.valid = valid;
+        bench_table_write(file, BENCH_AS_TEXT, &row, 1, &machine);
+        fclose(file);
+        for (size_t i = 0; i < sizeof wanted / sizeof *wanted && valid; i++)
+            if (!strstr(text, wanted[i])) fail_msg("no \"%s\" in:\n%s", wanted[i], text);
+        if (!valid) assert_null(strstr(text, "99.5"));
+        free(text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -171,6 +224,7 @@ int main(void)
         cmocka_unit_test(an_invalid_row_never_shows_a_time),
         cmocka_unit_test(text_sets_the_paper_beside_the_measured),
         cmocka_unit_test(markdown_and_latex_escape),
+        cmocka_unit_test(an_octree_has_columns_of_its_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

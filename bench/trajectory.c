@@ -96,7 +96,7 @@ static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryPa
     hsize_t size[] = {0, 3};
     trajectory->dataset = bench_h5_growing(
         h5, group, "Points", trajectory->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, 2, size);
-    if (params->record_particles) bench_particles_begin(h5, params, &trajectory->particles);
+    if (params->record) bench_particles_begin(h5, params, &trajectory->particles);
 }
 
 /* Ends the writing: the draft goes, the cause is told. */

@@ -1,4 +1,5 @@
-/* trajectory.h - a moving surface in VTKHDF, with an XDMF sidecar; on request the particles too.
+/* trajectory.h - a moving surface in VTKHDF, with an XDMF sidecar; on request particles or nodes
+ * too.
  *
  * Layout, and what opens it: results/README.md. The file grows frame by frame under a draft's name
  * (draft.h); a program that ends early leaves no trajectory, and one that is told to stop removes
@@ -6,21 +7,25 @@
 #ifndef BENCH_TRAJECTORY_H
 #define BENCH_TRAJECTORY_H
 
-#include "../lib/engine.h"
+#include "../octree/structure.h"
 #include "machine.h"
 
 typedef struct BenchTrajectory BenchTrajectory;
+
+/* What is recorded beside the surface: nothing, a lattice's particles or an octree's nodes. */
+typedef enum { BENCH_RECORD_SURFACE, BENCH_RECORD_PARTICLES, BENCH_RECORD_NODES } BenchRecord;
 
 typedef struct {
     const char *path;      /* "out.vtkhdf"; the sidecar is path + ".xdmf" */
     const SmMesh *surface; /* topology of the points written each frame; rest positions */
     const BenchMachine *machine;
-    const char *scene;     /* name; any bytes */
-    bool record_particles; /* all below is for this, and else unused */
+    const char *scene;  /* name; any bytes */
+    BenchRecord record; /* all below is for particles or nodes, and else unused */
     const SmVoxels *voxels;
-    const SmEngineParams *params;
-    const double *mass; /* [particle_count] kg; NULL: 1 each */
-    const char *engine; /* SmEngineType's name and precision; NULL: "unknown" */
+    const OctStructure *structure; /* of nodes only */
+    const SmEngineParams *params;  /* with `octree`, of nodes */
+    const double *mass;            /* [particle_count] kg of a lattice; NULL: 1 each */
+    const char *engine;            /* SmEngineType's name and precision; NULL: "unknown" */
     const char *precision;
     const SmBoundary *boundary; /* NULL: a free body */
 } BenchTrajectoryParams;
@@ -38,10 +43,10 @@ double bench_trajectory_bytes(const BenchTrajectory *trajectory, double frames);
 SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const double (*point)[3],
                               SmError *error);
 
-/* One recorded step (record_particles): number of the step, counted from 0; x and v before it,
- * with pushes applied; the goals in it. All [instances * particle_count][3]. After the last step of
- * a stretch, call it once more with the state after that step, the next number and `g` NULL, so
- * that the step's outcome is in the file. */
+/* One step of particles or nodes: number of the step, counted from 0; x and v before it,
+ * with pushes applied; the goals in it. All [instances * particles or nodes of one][3]. After the
+ * last step of a stretch, call it once more with the state after that step, the next number and `g`
+ * NULL, so that the step's outcome is in the file. */
 SmCode bench_trajectory_step(BenchTrajectory *trajectory, long step, const double (*x)[3],
                              const double (*v)[3], const double (*g)[3], SmError *error);
 

@@ -122,6 +122,16 @@ BenchWork bench_work_embed(double particles_per_vertex)
                        .far_bytes = 32 + 96 + 48 + 24 * particles_per_vertex};
 }
 
+BenchWork bench_work_carry(double blended, double nodes_per_vertex)
+{
+    /* Each node blended: 3 differences, 9 multiply-adds, and 3 and 9 values blended by difference;
+     * a normal 9 cofactors of 3, 9 multiply-adds, a root. Reads 8 bytes and the node's F, x and
+     * centre; rest position and normal, writes both; a node's gradient must be written at least. */
+    return (BenchWork){.flops = (3 + 18 + 3 * 12) * blended + 27 + 18 + 10,
+                       .near_bytes = (8 + 72 + 24 + 24) * blended + 96,
+                       .far_bytes = 8 * blended + 8 + 96 + 120 * nodes_per_vertex};
+}
+
 double bench_state_bytes(BenchPrecision precision)
 {
     return 6 * (precision == BENCH_F32 ? 4 : 8) + 12;

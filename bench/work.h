@@ -31,6 +31,8 @@ BenchWork bench_work_integrate(void);
 BenchWork bench_work_step(SmSummation summation, int w, int side, bool damping); /* all of a step */
 BenchWork bench_work_voxelise(double vertices_per_triangle);
 BenchWork bench_work_embed(double particles_per_vertex);
+/* A vertex by octree/surface.h from so many nodes, and the gradients of `nodes_per_vertex`. */
+BenchWork bench_work_carry(double blended, double nodes_per_vertex);
 
 /* Bytes of state a particle that a step streams: x, v, and the last rotation. */
 double bench_state_bytes(BenchPrecision precision);

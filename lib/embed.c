@@ -1,10 +1,11 @@
 #include "embed.h"
 
 #include <assert.h>
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "nearest_cell.h"
 
 /* Particles by lattice row (y, z), in which they rise with x: numbers without a box-sized table. */
 typedef struct {
@@ -46,54 +47,6 @@ static int particle_at(const Index *index, int i, int j, int k)
     return low;
 }
 
-/* Squared distance, in cells, from lattice position q to the cell. */
-static double cell_distance(const double q[3], const int cell[3])
-{
-    double sum = 0;
-    for (int a = 0; a < 3; a++) {
-        double d = fmax(fmax(cell[a] - q[a], q[a] - cell[a] - 1), 0);
-        sum += d * d;
-    }
-    return sum;
-}
-
-/* Nearest material cell among those at most `reach` from `middle`; false: none. */
-static bool nearest_within(const SmVoxels *voxels, const double q[3], const int middle[3],
-                           int reach, int nearest[3])
-{
-    double best = DBL_MAX;
-    int low[3], high[3];
-    for (int a = 0; a < 3; a++) {
-        low[a] = middle[a] - reach > 0 ? middle[a] - reach : 0;
-        high[a] = middle[a] < voxels->size[a] - 1 - reach ? middle[a] + reach : voxels->size[a] - 1;
-    }
-    for (int k = low[2]; k <= high[2]; k++)
-        for (int j = low[1]; j <= high[1]; j++)
-            for (int i = low[0]; i <= high[0]; i++) {
-                int cell[3] = {i, j, k};
-                if (!sm_voxel_get(voxels, i, j, k) || cell_distance(q, cell) >= best) continue;
-                best = cell_distance(q, cell);
-                memcpy(nearest, cell, sizeof cell);
-            }
-    return best < DBL_MAX;
-}
-
-static void find_cell(const SmVoxels *voxels, const double q[3], int cell[3])
-{
-    int middle[3];
-    for (int a = 0; a < 3; a++) middle[a] = (int)fmin(fmax(floor(q[a]), 0), voxels->size[a] - 1);
-    memcpy(cell, middle, sizeof middle);
-    if (sm_voxel_get(voxels, cell[0], cell[1], cell[2])) return;
-    int largest = voxels->size[0] > voxels->size[1] ? voxels->size[0] : voxels->size[1];
-    if (voxels->size[2] > largest) largest = voxels->size[2];
-    int reach = 1;
-    while (!nearest_within(voxels, q, middle, reach, cell) && reach < largest)
-        reach = reach < largest / 2 ? 2 * reach : largest;
-    /* A cell on a side may be nearer than one found in a corner of the range. */
-    if (reach > 1)
-        nearest_within(voxels, q, middle, reach < largest / 2 ? 2 * reach : largest, cell);
-}
-
 static void cross(const double a[3], const double b[3], double result[3])
 {
     result[0] = a[1] * b[2] - a[2] * b[1];
@@ -113,25 +66,6 @@ static bool normalize(double vector[3])
     bool usable = length > 0 && isfinite(length);
     for (int a = 0; a < 3; a++) vector[a] = usable ? vector[a] / length : 0;
     return usable;
-}
-
-/* Area-weighted vertex normals; lengths are in cells, whatever the mesh's unit. */
-static double (*rest_normals(const SmMesh *mesh, double cell))[3]
-{
-    double(*normal)[3] = sm_alloc((size_t)mesh->vertex_count, sizeof *normal);
-    for (long t = 0; t < mesh->triangle_count; t++) {
-        const int *corner = mesh->triangle[t];
-        double u[3], v[3], n[3];
-        for (int a = 0; a < 3; a++) {
-            double origin = mesh->position[corner[0]][a];
-            u[a] = (mesh->position[corner[1]][a] - origin) / cell;
-            v[a] = (mesh->position[corner[2]][a] - origin) / cell;
-        }
-        cross(u, v, n);
-        for (int c = 0; c < 3; c++)
-            for (int a = 0; a < 3; a++) normal[corner[c]][a] += n[a];
-    }
-    return normal;
 }
 
 /* U and V with U x V = N, orthonormal; zero when N is. */
@@ -173,7 +107,7 @@ static void embed_vertex(const Index *index, const double position[3], const dou
     double q[3], s[3], u[3], v[3];
     int cell[3];
     for (int a = 0; a < 3; a++) q[a] = (position[a] - voxels->origin[a]) / voxels->cell;
-    find_cell(voxels, q, cell);
+    sm_nearest_cell(voxels, q, cell);
     for (int a = 0; a < 3; a++) s[a] = q[a] - cell[a];
     for (int i = 0; i < 8; i += 2) { /* neighbours along x have neighbouring numbers */
         int particle = particle_at(index, cell[0], cell[1] + (i >> 1 & 1), cell[2] + (i >> 2));
@@ -195,7 +129,7 @@ void sm_embed_create(const SmMesh *mesh, const SmVoxels *voxels, SmEmbedding *em
     embedding->tangent_u = sm_alloc(count, sizeof *embedding->tangent_u);
     embedding->tangent_v = sm_alloc(count, sizeof *embedding->tangent_v);
     Index index = make_index(voxels);
-    double(*normal)[3] = rest_normals(mesh, voxels->cell);
+    double(*normal)[3] = sm_mesh_normals(mesh, voxels->cell);
 #pragma omp parallel for schedule(static)
     for (long v = 0; v < mesh->vertex_count; v++)
         embed_vertex(&index, mesh->position[v], normal[v], embedding, v);

@@ -1,9 +1,11 @@
 /* engine.h - what every engine offers: FastLSM, the octree, and the references.
  *
  * An engine owns the state of one body, or of many instances of one body that share its lattice.
- * Particles are numbered canonically (voxel.h); instance k's particle p has number
- * k * particle_count + p. Everything crosses this interface in double precision and mesh units,
- * whatever the engine uses inside. create allocates, step never does, destroy frees. */
+ * What its particles are is the engine's: those of lattice engines are the lattice's vertices,
+ * numbered canonically (voxel.h), the octree's are its simulation nodes. count() says how many
+ * there are, SM_REST where; instance k's particle p has number k * (particles / instances) + p.
+ * Everything crosses this interface in double precision and mesh units, whatever the engine uses
+ * inside. create allocates, step never does, destroy frees. */
 #ifndef SM_ENGINE_H
 #define SM_ENGINE_H
 
@@ -20,8 +22,10 @@ typedef enum { SM_POLAR_FAST, SM_POLAR_JACOBI } SmPolarMethod;
 /* How an engine lays its sums out: lists for any shape, blocks of lanes for solid ones. */
 typedef enum { SM_LAYOUT_AUTO, SM_LAYOUT_LISTS, SM_LAYOUT_BLOCKS } SmLayout;
 
+typedef struct OctOptions OctOptions; /* octree/engine.h */
+
 typedef struct {
-    int w;               /* region half-width in cells, 1 or more */
+    int w;               /* region half-width in cells, 1 or more; not the octree's */
     double h;            /* time step, s */
     double damping;      /* k in [0,1]; 0: none (fastlsm eq. 14) */
     int damping_every;   /* run it every n-th step; 0 means 1 */
@@ -31,19 +35,22 @@ typedef struct {
     SmPolarMethod polar;
     SmLayout layout;                     /* AUTO picks the faster one; results agree to rounding */
     int threads;                         /* 0: all cores */
-    const double *mass;                  /* [particle_count] per body, kg, or NULL: 1 each */
+    const double *mass;                  /* of the lattice's vertices, [voxels->particle_count] kg;
+                                          * or NULL: 1 each, of the octree 1 a finest cell */
     long instances;                      /* bodies that share the lattice; 0 means 1 */
     const double (*instance_pose)[3][4]; /* [instances] rest to initial position, or NULL */
+    const OctOptions *octree;            /* of the octree only; NULL: its defaults */
 } SmEngineParams;
 
 typedef struct {
-    long particles;       /* of all instances */
-    long regions;         /* unique regions of one instance */
-    long links;           /* one-ring neighbour pairs of one instance, unbroken */
-    long broken;          /* links broken so far */
-    long bytes;           /* memory held */
-    double build_seconds; /* time that create() took */
-    double jacobi_sweeps; /* mean sweeps per polar decomposition of the last step, Jacobi only */
+    long particles;         /* of all instances */
+    long regions;           /* unique regions of one instance */
+    long links;             /* one-ring neighbour pairs of one instance, unbroken */
+    long broken;            /* links broken so far */
+    long bytes;             /* memory held */
+    double build_seconds;   /* time that create() took */
+    double jacobi_sweeps;   /* mean sweeps per polar decomposition of the last step, Jacobi only */
+    double summation_nodes; /* mean per region; octree only */
 } SmCounts;
 
 typedef enum {
@@ -77,7 +84,7 @@ typedef struct {
     /* Goal positions of the present state only: no velocity or position changes. Fills SM_GOAL. */
     void (*goals)(SmEngine *engine);
 
-    /* The field of every particle, canonical numbers; `values` is [particles][3]. SM_GOAL after
+    /* The field of every particle; `values` is [particles][3]. SM_GOAL after
      * step() may cost a recomputation-free copy only if the last call was goals(). */
     void (*get)(SmEngine *engine, SmField field, double (*values)[3]);
     void (*set)(SmEngine *engine, SmField field,
@@ -90,7 +97,7 @@ typedef struct {
      * handles (cheap then). */
     void (*bound)(SmEngine *engine, const SmBoundary *boundary);
 
-    /* Masses m_i of one body, kg; `mass` is [particle_count]. */
+    /* Masses m_i of one body's particles, kg; `mass` is [particles / instances]. */
     void (*masses)(SmEngine *engine, double *mass);
 
     void (*count)(SmEngine *engine, SmCounts *counts);

@@ -357,3 +357,21 @@ SmCode sm_mesh_write_obj(const SmMesh *mesh, const char *path, SmError *error)
     unlink(temporary);
     return SM_OUTPUT;
 }
+
+double (*sm_mesh_normals(const SmMesh *mesh, double unit))[3]
+{
+    double(*normal)[3] = sm_alloc((size_t)mesh->vertex_count, sizeof *normal);
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        const int *corner = mesh->triangle[t];
+        double u[3], v[3], n[3];
+        for (int a = 0; a < 3; a++) {
+            double origin = mesh->position[corner[0]][a];
+            u[a] = (mesh->position[corner[1]][a] - origin) / unit;
+            v[a] = (mesh->position[corner[2]][a] - origin) / unit;
+        }
+        cross(u, v, n);
+        for (int c = 0; c < 3; c++)
+            for (int a = 0; a < 3; a++) normal[corner[c]][a] += n[a];
+    }
+    return normal;
+}

@@ -47,6 +47,10 @@ SmMeshInfo sm_mesh_info(const SmMesh *mesh);
  * message. SM_INPUT. */
 SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error);
 
+/* Area-weighted vertex normals, not of unit length, [vertex_count][3]; the caller frees them. Areas
+ * are in `unit` squared: give a length of the mesh's scale, so that nothing overflows. */
+double (*sm_mesh_normals(const SmMesh *mesh, double unit))[3];
+
 /* Writes Wavefront OBJ with all digits, atomically (temporary name beside `path`, then renamed).
  * SM_OUTPUT. */
 SmCode sm_mesh_write_obj(const SmMesh *mesh, const char *path, SmError *error);

@@ -28,8 +28,7 @@ static void jacobi_rotate(int n, double *S, double *V, int p, int q)
     }
 }
 
-/* Diagonalises S by cyclic sweeps, rotating V along; returns the sweeps, whole or part of one. */
-static double jacobi(int n, double *S, double *V, double tolerance)
+double sm_jacobi(int n, double *S, double *V, double tolerance)
 {
     int pairs = n * (n - 1) / 2, done = 0;
     for (int sweep = 0; sweep < 30; sweep++) {
@@ -77,7 +76,7 @@ static void to_quaternion(const double R[9], double q[4])
     double K[16], V[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     horn_matrix(R, K);
     for (int i = 0; i < 4; i++) K[5 * i] += 4; /* K + 4 is positive: relative tolerances hold */
-    jacobi(4, K, V, 1e-15);
+    sm_jacobi(4, K, V, 1e-15);
     int best = 0;
     for (int i = 1; i < 4; i++)
         if (K[5 * i] > K[5 * best]) best = i;
@@ -118,7 +117,7 @@ void sm_polar_robust(const double A[9], const double last[9], double tie, double
     for (int i = 0; i < 9; i++) B[i] = A[i] / scale;
     horn_matrix(B, K);
     for (int i = 0; i < 4; i++) K[5 * i] += 8; /* |K| <= 3 sqrt(3): positive definite */
-    jacobi(4, K, V, 1e-16);
+    sm_jacobi(4, K, V, 1e-16);
     double q[4], q_last[4];
     to_quaternion(last, q_last);
     nearest_in_span(K, V, q_last, tie, q);
@@ -150,7 +149,7 @@ double sm_polar_jacobi(const double A[9], double V[9], const double last[9], dou
     for (int i = 0; i < 9; i++) B[i] = scale > 0 ? A[i] / scale : 0;
     multiply(B, V, 0, AV);
     multiply(AV, AV, 1, S); /* V^T A^T A V */
-    double sweeps = jacobi(3, S, V, 1e-6);
+    double sweeps = sm_jacobi(3, S, V, 1e-6);
     double low = fmin(S[0], fmin(S[4], S[8])), high = fmax(S[0], fmax(S[4], S[8]));
     if (!(low > 1e-8 * high) || determinant(B) <= 0) {
         sm_polar_robust(A, last, 1e-12, R);

@@ -16,6 +16,11 @@ void sm_polar_robust(const double A[9], const double last[9], double tie, double
  * sm_polar_robust() where U is singular or A reflects. Returns the sweeps it took. */
 double sm_polar_jacobi(const double A[9], double V[9], const double last[9], double R[9]);
 
+/* Diagonalises the symmetric n x n matrix S, in place, by cyclic sweeps until every element off the
+ * diagonal is below `tolerance` of its two diagonal ones' geometric mean; rotates the columns of V
+ * along (start with the identity: eigenvectors). Returns the sweeps, whole or part of one. */
+double sm_jacobi(int n, double *S, double *V, double tolerance);
+
 /* `count` matrices by the batched, vectorised kernel that the engines use (lib/polar_lanes.h), for
  * tests and `shapebench kernels`. `last` may be NULL: the identity. Arrays are [count][9]. */
 void sm_polar_batch_f32(long count, const float *A, const float *last, float *R);

@@ -13,12 +13,6 @@
 #include "../lib/lanes.h"
 #include "weights.h"
 
-/* Goal positions: the sum over the regions that contain a node. */
-typedef enum {
-    OCT_HIERARCHICAL, /* HF over the node's own region: right where regions are symmetric (eq. 8) */
-    OCT_ADJOINT,      /* the transpose of the region sums: right for any regions */
-} OctGoalForm;
-
 typedef struct {
     OctWeighting weighting;
     OctGoalForm form;

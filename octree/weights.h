@@ -9,6 +9,12 @@ typedef enum {
     OCT_PLAIN,      /* m_i, as octree eqs. 6 and 7 print it */
 } OctWeighting;
 
+/* Goal positions: the sum over the regions that contain a node. */
+typedef enum {
+    OCT_HIERARCHICAL, /* HF over the node's own region: right where regions are symmetric (eq. 8) */
+    OCT_ADJOINT,      /* the transpose of the region sums: right for any regions */
+} OctGoalForm;
+
 /* Lengths in finest cells. Of simulation node i and region r, which share a number. */
 typedef struct {
     double mass_unit;    /* kg: the mean mass */

@@ -70,6 +70,10 @@ static void read_row(const config_setting_t *from, RefPaperRow *row)
     row->regions = value_of(from, "regions");
     row->w = value_of(from, "w");
     row->total_ms = value_of(from, "total_ms");
+    row->fps = value_of(from, "fps");
+    row->speedup = value_of(from, "speedup");
+    row->bases = value_of(from, "bases");
+    row->summation_nodes = value_of(from, "summation_nodes");
     const config_setting_t *ms = config_setting_get_member(from, "stage_ms");
     const config_setting_t *percent = config_setting_get_member(from, "stage_percent");
     for (int s = 0; s < SM_STAGES; s++) {

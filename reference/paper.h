@@ -19,6 +19,7 @@ typedef struct {
     char title[40];            /* as the paper calls it: "Buddha (solid)" */
     RefValue triangles, particles, regions, w;
     RefValue stage_ms[SM_STAGES], stage_percent[SM_STAGES], total_ms;
+    RefValue fps, speedup, bases, summation_nodes; /* octree's; summation nodes per region, mean */
     char note[200];
 } RefPaperRow;
 

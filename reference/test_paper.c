@@ -53,6 +53,7 @@ static void stages_add_up(void **state)
             assert_int_equal(agree, row->stage_ms[s].status != REF_DAMAGED);
             damaged = damaged || !agree;
         }
+        if (percent == 0) continue; /* no stages given */
         assert_true(percent == 100);
         assert_int_equal(row->stage_ms[SM_OTHER].status, REF_DERIVED);
         if (!damaged) assert_true(fabs(ms - total) < 1e-9);
@@ -79,6 +80,25 @@ static void costs_per_particle_follow_from_the_table(void **state)
     }
 }
 
+/* Milliseconds are those of the frames per second, and so are the speed-ups. */
+static void the_hand_has_its_rows(void **state)
+{
+    (void)state;
+    static const char *const scenes[] = {"hand-lattice", "hand-lattice-plain", "hand-regular",
+                                         "hand-sampled"};
+    double plain = ref_paper_find("octree", "hand-lattice-plain")->fps.value;
+    for (int n = 0; n < 4; n++) {
+        const RefPaperRow *row = ref_paper_find("octree", scenes[n]);
+        assert_true(fabs(row->fps.value * row->total_ms.value - 1000) < 0.5);
+        if (!isnan(row->speedup.value))
+            assert_true(fabs(row->fps.value / plain - row->speedup.value) <= 1);
+        assert_true(isnan(row->summation_nodes.value) == (n < 3));
+    }
+    assert_int_equal(ref_paper_find("octree", "hand-regular")->fps.status, REF_SECOND_HAND);
+    assert_true(ref_paper_claim("fastlsm", "hand-rate")->value.value ==
+                ref_paper_find("octree", "hand-lattice")->fps.value);
+}
+
 static void claims_are_complete(void **state)
 {
     (void)state;
@@ -102,6 +122,7 @@ int main(void)
         cmocka_unit_test(table_1_has_its_rows),
         cmocka_unit_test(stages_add_up),
         cmocka_unit_test(costs_per_particle_follow_from_the_table),
+        cmocka_unit_test(the_hand_has_its_rows),
         cmocka_unit_test(claims_are_complete),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,14 +1,18 @@
 #!/usr/bin/python3
 """Recompute the recorded steps of a trajectory by brute force and compare.
 
-Usage: check_step.py FILE      (a file of `shapebench run --record particles`)
+Usage: check_step.py FILE      (a file of `shapebench run --record particles` or `--record nodes`)
 
-Everything comes from the group /particles of FILE (results/README.md): regions by breadth-first
-search over the cells, goals by fastlsm eqs. 9-12, the step by eqs. 1-2 and 14. Prints the largest
-deviations in cells; velocities count as what they move in a step, and are compared after the last
-step only, because the others hold the next step's pushes already. Particles that follow a handle
-or end within a thousandth of a cell of an obstacle are compared in their goals only.
+Everything comes from the group /particles or /nodes of FILE (results/README.md): a lattice's regions
+by breadth-first search over the cells, goals by fastlsm eqs. 9-12; an octree's distances by Dijkstra
+over the visibility edges, regions by the intervals of octree section 4.2 and symmetry, goals by octree
+eqs. 6-8, leaf by leaf; the step by fastlsm eqs. 1-2 and 14. An octree's stored summation nodes must be
+those regions' largest cells. Prints the largest deviations in (finest) cells; velocities count as what
+they move in a step, and are compared after the last step only, because the others hold the next step's
+pushes already. Particles that follow a handle or end within a thousandth of a cell of an obstacle are
+compared in their goals only.
 Exit code: 0 all within tolerance, 1 not, 2 nothing can be compared, 3 the file cannot be used."""
+import heapq
 import sys
 
 import h5py
@@ -40,33 +44,149 @@ def regions(near, w):
     return members
 
 
-def goals(members, mass, rest, x):
-    """Eqs. 9-12, every region about its own centres of mass."""
-    g = np.zeros_like(x)
-    for r in members:
-        m = mass[r][:, None]
+class Lattice:
+    """Regions, masses and what may break of the group /particles."""
+
+    def __init__(self, group):
+        self.mass = group["mass"][:]
+        near = links(group["cells"][:], group["coordinate"][:])
+        self.members = regions(near, group.attrs["w"])
+        self.share = np.ones(len(near))  # what a region counts in sums over regions
+        self.weight = self.mass / total(self.members, self.share)[:, 0]  # modified mass m~
+        self.pairs = np.array([(p, q) for p in range(len(near)) for q in near[p] if q > p])
+        self.limit, self.rest = group.attrs["strain_limit"], group["rest"][:]
+
+    def unknown(self, x, begins):
+        """Why a state is not to be recomputed, or nothing."""
+        stretch = np.linalg.norm(x[self.pairs[:, 0]] - x[self.pairs[:, 1]], axis=1) / \
+            np.linalg.norm(self.rest[self.pairs[:, 0]] - self.rest[self.pairs[:, 1]], axis=1)
+        if self.limit > 0 and (not begins or stretch.max() > self.limit):
+            return "links may have broken: their regions are not in the file"
+        return None
+
+
+class Tree:
+    """Regions and masses of the group /nodes, from its edges; compares the stored summation nodes."""
+
+    def __init__(self, group):
+        self.mass, self.node, self.rest = group["mass"][:], group["node"][:], group["rest"][:]
+        self.parent, self.plastic = group["tree/parent"][:].tolist(), group.attrs["creep"] > 0
+        self.children = [[] for _ in self.parent]
+        for child, parent in enumerate(self.parent):
+            if parent >= 0:
+                self.children[parent].append(child)
+        self.below = [0] * len(self.parent)  # leaves; parents come before their children
+        for n in reversed(range(len(self.parent))):
+            self.below[n] = sum(self.below[c] for c in self.children[n]) if self.children[n] else 1
+        self.edges = [[] for _ in self.node]
+        for (i, j), length in zip(group["edge"][:].tolist(), group["length"][:].tolist()):
+            self.edges[i].append((j, length))
+            self.edges[j].append((i, length))
+        self.number = group["tree/leaf"][:].tolist()
+        inside = self.regions(group["w"][:].tolist(), group.attrs["epsilon"])
+        first, stored = group["region_first"][:], group["summation"][:]
+        for i, leaves in enumerate(inside):
+            if sorted(self.largest(leaves)) != stored[first[i]:first[i + 1]].tolist():
+                print(f"the summation nodes of region {i} are not those of its intervals", file=sys.stderr)
+                sys.exit(1)
+        print(f"{len(inside)} regions, {len(stored) / len(inside):.3g} summation nodes each, recomputed")
+        self.members = [np.array(sorted(leaves)) for leaves in inside]
+        self.share = self.mass  # eq. 8: regions count by m_r
+        plain = text(group.attrs["weighting"]) == "plain"
+        self.weight = self.mass if plain else self.mass / total(self.members, self.share)[:, 0]
+
+    def distances(self, source, most):
+        """Dijkstra."""
+        found, queue = {}, [(0, source)]
+        while queue:
+            d, leaf = heapq.heappop(queue)
+            if leaf not in found:
+                found[leaf] = d
+                for to, length in self.edges[leaf]:
+                    if to not in found and d + length <= most:
+                        heapq.heappush(queue, (d + length, to))
+        return found
+
+    def leaves(self, node):
+        """Leaf numbers below a tree node."""
+        return [leaf for c in self.children[node] for leaf in self.leaves(c)] or [self.number[node]]
+
+    def interval(self, i, w, most):
+        """The leaves of region i before symmetry."""
+        spans = {}  # tree node: least and greatest distance, leaves reached
+        for leaf, d in self.distances(i, most).items():
+            node = int(self.node[leaf])
+            while node >= 0:
+                low, high, count = spans.get(node, (d, d, 0))
+                spans[node] = min(low, d), max(high, d), count + 1
+                node = self.parent[node]
+        inside, open_ = set(), [n for n in spans if self.parent[n] < 0]
+        while open_:
+            node = open_.pop()
+            low, high, count = spans.get(node, (np.inf, np.inf, 0))
+            if low > w:
+                continue
+            if count == self.below[node] and high <= most:
+                inside.update(self.leaves(node))
+            else:
+                open_ += self.children[node]
+        return inside
+
+    def regions(self, w, epsilon):
+        """Leaves of every region: j is in R_i if the intervals of one of them put the other in."""
+        inside = [self.interval(i, w[i], w[i] + int(np.floor(epsilon * w[i]))) for i in range(len(w))]
+        for i, leaves in enumerate(inside):
+            for j in list(leaves):
+                inside[j].add(i)
+        return inside
+
+    def largest(self, leaves):
+        """The largest cells all of whose leaves are given."""
+        counts = {}
+        for leaf in leaves:
+            node = int(self.node[leaf])
+            while node >= 0:
+                counts[node] = counts.get(node, 0) + 1
+                node = self.parent[node]
+        whole = {n for n, count in counts.items() if count == self.below[n]}
+        return [n for n in whole if self.parent[n] not in whole]
+
+    def unknown(self, x, begins):
+        return "the body is plastic: its regions' rest shapes are not in the file" if self.plastic else None
+
+
+def text(value):
+    return value.decode() if isinstance(value, bytes) else value
+
+
+def goals(body, x):
+    """fastlsm eqs. 9-12, octree eqs. 6-8; every region about its own centres of mass."""
+    g, rest = np.zeros_like(x), body.rest
+    for r, share in zip(body.members, body.share):
+        m = body.weight[r][:, None]
         c0, c = (m * rest[r]).sum(0) / m.sum(), (m * x[r]).sum(0) / m.sum()
         u, _, vt = np.linalg.svd((m * (x[r] - c)).T @ (rest[r] - c0))
         rotation = u @ np.diag([1, 1, np.linalg.det(u @ vt)]) @ vt
-        g[r] += c + (rest[r] - c0) @ rotation.T
-    return g / sizes(members)
+        g[r] += share * (c + (rest[r] - c0) @ rotation.T)
+    return g / total(body.members, body.share)
 
 
-def sizes(members):
-    return np.array([len(r) for r in members])[:, None]  # "r in R_i" is "i in R_r": |R_i|
+def total(members, share):
+    """What the regions that contain each particle count: "r in R_i" is "i in R_r"."""
+    return np.array([share[r].sum() for r in members])[:, None]
 
 
-def rigid_velocity(members, mass, x, v):
+def rigid_velocity(body, x, v):
     """u_i of eq. 14."""
-    total = np.zeros_like(v)
-    for r in members:
-        m = mass[r][:, None]
+    sum_ = np.zeros_like(v)
+    for r, share in zip(body.members, body.share):
+        m = body.weight[r][:, None]
         c, vr = (m * x[r]).sum(0) / m.sum(), (m * v[r]).sum(0) / m.sum()
         arm = x[r] - c
         inertia = (m * arm**2).sum() * np.eye(3) - (m * arm).T @ arm
         turn = np.linalg.pinv(inertia, 1e-9, hermitian=True) @ np.cross(arm, m * (v[r] - vr)).sum(0)
-        total[r] += vr + np.cross(turn, arm)
-    return total / sizes(members)
+        sum_[r] += share * (vr + np.cross(turn, arm))
+    return sum_ / total(body.members, body.share)
 
 
 def free(x, held, obstacles, margin):
@@ -87,15 +207,11 @@ def free(x, held, obstacles, margin):
     return ~touched
 
 
-def check(group):
+def check(group, body):
     """Returns the largest deviation of each kind and how many steps were compared."""
-    a, mass, rest = group.attrs, group["mass"][:], group["rest"][:]
-    near = links(group["cells"][:], group["coordinate"][:])
-    members = regions(near, a["w"])
-    weight = mass / sizes(members)[:, 0]  # modified mass m~
-    step, held = group["step"][:], group["held"][:].reshape(-1, len(mass))
+    a, count = group.attrs, len(body.mass)
+    step, held = group["step"][:], group["held"][:].reshape(-1, count)
     h, every, cell = a["h"], max(1, a["damping_every"]), a["cell"]
-    pairs = np.array([(p, q) for p in range(len(near)) for q in near[p] if q > p])
     worst, compared = {"g": 0.0, "x": 0.0, "v": 0.0}, 0
 
     def note(kind, deviation):
@@ -105,23 +221,22 @@ def check(group):
     for s in range(len(step)):
         last = s + 1 == len(step) or step[s + 1] != step[s] + 1
         for b, alone in enumerate(held):
-            own = slice(b * len(mass), (b + 1) * len(mass))
+            own = slice(b * count, (b + 1) * count)
             x, v, recorded = (group[name][s, own] for name in "xvg")
-            stretch = np.linalg.norm(x[pairs[:, 0]] - x[pairs[:, 1]], axis=1) / \
-                np.linalg.norm(rest[pairs[:, 0]] - rest[pairs[:, 1]], axis=1)
-            if a["strain_limit"] > 0 and (step[0] > 0 or stretch.max() > a["strain_limit"]):
-                print("links may have broken: their regions are not in the file", file=sys.stderr)
+            why = body.unknown(x, step[0] == 0)
+            if why:
+                print(why, file=sys.stderr)
                 sys.exit(2)
             if np.isnan(recorded).all():
                 continue
-            g = goals(members, weight, rest, x)
+            g = goals(body, x)
             note("g", g - recorded)
             compared += 1
             if last:
                 continue
             v = v + (g - x) / h + h * a["gravity"]
             if a["damping"] > 0 and step[s] % every == 0:
-                v += a["damping"] * (rigid_velocity(members, weight, x, v) - v)
+                v += a["damping"] * (rigid_velocity(body, x, v) - v)
             x = x + h * v
             open_ = free(x, alone, group["obstacles"][:], 1e-3 * cell)
             note("x", (x - group["x"][s + 1, own])[open_])
@@ -137,16 +252,18 @@ def main():
     try:
         open(sys.argv[1], "rb").close()
         with h5py.File(sys.argv[1], "r") as file:
-            if "particles" not in file:
-                print(f"{sys.argv[1]}: holds no particles: write it with --record particles", file=sys.stderr)
+            kind = next((name for name in ("particles", "nodes") if name in file), None)
+            if not kind:
+                print(f"{sys.argv[1]}: holds no particles and no nodes: write it with --record particles, "
+                      "of an octree --record nodes", file=sys.stderr)
                 sys.exit(3)
-            worst, compared = check(file["particles"])
-            precision = file["particles"].attrs["precision"]
+            group = file[kind]
+            worst, compared = check(group, Lattice(group) if kind == "particles" else Tree(group))
+            precision = text(group.attrs["precision"])
     except (OSError, KeyError) as error:
-        reason = getattr(error, "strerror", None) or "not a trajectory with particles"
+        reason = getattr(error, "strerror", None) or "not a trajectory with particles or nodes"
         print(f"{sys.argv[1]}: {reason}", file=sys.stderr)
         sys.exit(3)
-    precision = precision.decode() if isinstance(precision, bytes) else precision
     tolerance = TOLERANCE.get(precision, TOLERANCE["single"])
     print(", ".join(f"{kind} {value:.2e}" for kind, value in worst.items()),
           f"cells at most apart in {compared} steps; tolerance {tolerance:g} ({precision})")

@@ -23,6 +23,8 @@ def parse():
     parser.add_argument("--size", default="640x640", metavar="WxH", help="of each panel (%(default)s)")
     parser.add_argument("--frame", type=int, default=-1, metavar="N", help="of a trajectory; negative: from the end")
     parser.add_argument("--columns", type=int, default=4, help="panels in a row, at most (%(default)s)")
+    parser.add_argument("--cells", choices=["boxes", "wire"], help="draw the leaf cells of an octree, coloured by "
+                        "size, of files recorded with --record nodes: as boxes, or as wires in the surface")
     parser.add_argument("--edges", action="store_true", help="show the triangles")
     parser.add_argument("--no-names", action="store_true", help="leave the file names out")
     return parser.parse_args()
@@ -38,16 +40,17 @@ def with_display():
     os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 64x64x24", sys.executable] + sys.argv)
 
 
-def polydata(points, triangles):
+def polydata(points, faces):
+    """A mesh of faces that have equally many corners."""
     import numpy
     import vtk
     from vtk.util import numpy_support
 
-    cells = numpy.empty((len(triangles), 4), dtype=numpy.int64)
-    cells[:, 0] = 3
-    cells[:, 1:] = triangles
+    cells = numpy.empty((len(faces), faces.shape[1] + 1), dtype=numpy.int64)
+    cells[:, 0] = faces.shape[1]
+    cells[:, 1:] = faces
     array = vtk.vtkCellArray()
-    array.SetCells(len(triangles), numpy_support.numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
+    array.SetCells(len(faces), numpy_support.numpy_to_vtkIdTypeArray(cells.ravel(), deep=True))
     data = vtk.vtkPolyData()
     data.SetPoints(vtk.vtkPoints())
     data.GetPoints().SetData(numpy_support.numpy_to_vtk(numpy.ascontiguousarray(points), deep=True))
@@ -103,6 +106,75 @@ def read(path, frame):
     if triangles.GetOutput().GetNumberOfPolys() == 0:
         fail(f"{path}: holds no faces", 3)
     return triangles.GetOutput()
+
+
+def turns(rest, x, edge):
+    """How each node's neighbours have turned about it."""
+    import numpy
+
+    moments = numpy.zeros((len(rest), 3, 3))
+    for a, b in (edge.T, edge.T[::-1]):
+        before, now = rest[b] - rest[a], x[b] - x[a]
+        numpy.add.at(moments, a, now[:, :, None] * before[:, None, :] / (before**2).sum(1)[:, None, None])
+    u, _, vt = numpy.linalg.svd(moments)
+    u[:, :, 2] *= numpy.linalg.det(u @ vt)[:, None]
+    return u @ vt
+
+
+def read_cells(path, frame):
+    """The leaf cells at a frame, moved and turned with their nodes; each of their faces has the level."""
+    import h5py
+    import numpy
+    from vtk.util import numpy_support
+
+    corner = numpy.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)]) - 0.5
+    side = numpy.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
+    with h5py.File(path, "r") as file:
+        if "nodes" not in file:
+            fail(f"{path}: holds no octree: write it with shapebench run --engine octree --record nodes", 3)
+        nodes, times = file["nodes"], file["VTKHDF/Steps/Values"][()].ravel()
+        rest, edge, size = nodes["rest"][()], nodes["edge"][()], nodes["size"][()]
+        record = numpy.abs(nodes["step"][()] * nodes.attrs["h"] - times[frame]).argmin()
+        x = nodes["x"][record].reshape(-1, len(rest), 3)
+        levels, cell = int(nodes.attrs["levels"]), nodes.attrs["cell"]
+    level = levels - numpy.rint(numpy.log2(size / cell)).astype(int)
+    print(f"{path}: " + ", ".join(f"{(level == n).sum()} leaves of level {n}" for n in range(levels + 1)))
+    points = [at[:, None, :] + numpy.einsum("nab,nc,kb->nka", turns(rest, at, edge), size[:, None] * 0.97, corner)
+              for at in x]
+    count = len(rest) * len(x)
+    faces = (8 * numpy.arange(count)[:, None, None] + side).reshape(-1, 4)
+    data = polydata(numpy.concatenate(points).reshape(-1, 3), faces)
+    data.GetCellData().SetScalars(numpy_support.numpy_to_vtk(numpy.repeat(numpy.tile(level, len(x)), 6), deep=True))
+    return data, levels
+
+
+def cells_actor(data, levels, wire):
+    """Coarse cells blue, fine ones red."""
+    import colorsys
+
+    import vtk
+
+    colours = vtk.vtkLookupTable()
+    colours.SetNumberOfTableValues(levels + 1)
+    for n in range(levels + 1):
+        colours.SetTableValue(n, *colorsys.hsv_to_rgb(0.62 * (1 - n / max(1, levels)), 0.55, 0.95), 1)
+    mapper = vtk.vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    mapper.SetLookupTable(colours)
+    mapper.SetScalarRange(-0.5, levels + 0.5)
+    mapper.SetScalarModeToUseCellData()
+    actor = vtk.vtkActor()
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.SetAmbient(0.3 if not wire else 1)
+    look.SetDiffuse(0.8 if not wire else 0)
+    if wire:
+        look.SetRepresentationToWireframe()
+        look.SetLineWidth(2)
+    else:
+        look.EdgeVisibilityOn()
+        look.SetEdgeColor(0.12, 0.18, 0.25)
+    return actor
 
 
 def surface_actor(data, edges):
@@ -200,8 +272,27 @@ def occlusion(renderer, span):
     renderer.SetPass(pass_)
 
 
-def panel(data, options, size):
-    """An image of one mesh, drawn at twice the size and averaged."""
+def fill(renderer, path, options):
+    """What there is to see: the surface, an octree's cells, or both."""
+    surface = read(path, options.frame)
+    if options.cells:
+        try:
+            cells, levels = read_cells(path, options.frame)
+        except (KeyError, OSError):
+            fail(f"{path}: not a trajectory with an octree's nodes, which --cells draws", 3)
+        renderer.AddActor(cells_actor(cells, levels, options.cells == "wire"))
+    if options.cells != "boxes":
+        actor = surface_actor(surface, options.edges)
+        renderer.AddActor(actor)
+        if options.cells:
+            actor.GetProperty().SetOpacity(0.35)
+    span = stage(renderer, cells if options.cells == "boxes" else surface, options.view)
+    if options.cells != "wire":  # it cannot look through the surface
+        occlusion(renderer, span)
+
+
+def panel(path, options, size):
+    """An image of one file, drawn at twice the size and averaged."""
     import numpy
     import vtk
     from vtk.util import numpy_support
@@ -209,8 +300,7 @@ def panel(data, options, size):
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(0.97, 0.97, 0.98)
     renderer.AutomaticLightCreationOff()
-    renderer.AddActor(surface_actor(data, options.edges))
-    occlusion(renderer, stage(renderer, data, options.view))
+    fill(renderer, path, options)
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
@@ -267,7 +357,7 @@ def main():
         import h5py, matplotlib, numpy, vtk  # noqa: F401
     except ImportError as error:
         fail(f"{error} (for {sys.executable}): apt-get install python3-vtk9 python3-h5py python3-matplotlib", 3)
-    panels = [panel(read(path, options.frame), options, size) for path in options.file]
+    panels = [panel(path, options, size) for path in options.file]
     names = [os.path.splitext(os.path.basename(path))[0] for path in options.file]
     show = len(names) > 1 and not options.no_names
     write_sheet(panels, names if show else None, max(1, options.columns), options.output)

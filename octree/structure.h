@@ -1,0 +1,36 @@
+/* structure.h - what the bodies of an octree engine share: tree, visibility graph, widths, regions
+ * and masses, made of voxels by options. */
+#ifndef OCT_STRUCTURE_H
+#define OCT_STRUCTURE_H
+
+#include "engine.h"
+#include "region.h"
+
+struct OctStructure {
+    OctTree tree;
+    OctGraph graph;
+    OctRegions regions;
+    OctWidth width;         /* as given or found; where no local one holds */
+    int *w;                 /* [leaves] half finest cells */
+    double *mass;           /* [leaves] kg */
+    double origin[3], cell; /* of the voxels, in mesh units */
+    OctSampleReport report;
+};
+
+/* `mass` is that of the lattice's vertices (engine.h): each gives equal parts of it to the material
+ * cells around it, and a leaf weighs what its cells do; NULL: 1 a cell. Errors (SM_INPUT), on which
+ * `structure` is zeroed: those of oct_sampling_tree(), and options out of range. The caller
+ * frees. */
+SmCode oct_structure_build(const SmVoxels *voxels, const OctOptions *options, const double *mass,
+                           OctStructure *structure, SmError *error);
+void oct_structure_free(OctStructure *structure);
+size_t oct_structure_bytes(const OctStructure *structure);
+
+/* Groups of nodes that no region holds together: 1 for a body that holds together. O(members of
+ * all regions). */
+long oct_structure_parts(const OctStructure *structure);
+
+/* Centre of a leaf in mesh units. */
+void oct_structure_centre(const OctStructure *structure, long leaf, double centre[3]);
+
+#endif

@@ -1,0 +1,477 @@
+/* The octree behind the common interface, in both precisions: units, handles, obstacles, pushes,
+ * instances, masses, widths; what it refuses. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../reference/octree_goals.h"
+#include "random_trees.h"
+#include "structure.h"
+
+static const SmEngineType *const engines[2] = {&octree_engine_f32, &octree_engine_f64};
+static const double limit[2] = {5e-5, 1e-10}; /* finest cells */
+
+static double (*triples(long n))[3]
+{
+    return sm_alloc((size_t)n, sizeof(double[3]));
+}
+
+/* A U of cells of edge 0.5 somewhere: two arms above a bar. */
+static void make_voxels(SmVoxels *voxels)
+{
+    sm_voxels_init(voxels, 12, 10, 4, 0.5);
+    for (int d = 0; d < 3; d++) voxels->origin[d] = 3 - 2 * d;
+    for (int k = 0; k < 4; k++)
+        for (int j = 0; j < 10; j++)
+            for (int i = 0; i < 12; i++)
+                if (j < 4 || i < 5 || i > 5) sm_voxel_set(voxels, i, j, k);
+    sm_voxels_count(voxels);
+}
+
+static SmEngineParams usual(const OctOptions *options)
+{
+    return (SmEngineParams){.h = 0.01, .threads = 1, .octree = options};
+}
+
+static SmEngine *make(int precision, const SmVoxels *voxels, const SmEngineParams *params,
+                      SmCounts *counts)
+{
+    SmEngine *engine;
+    SmError error;
+    if (engines[precision]->create(voxels, params, &engine, &error)) fail_msg("%s", error.text);
+    engines[precision]->count(engine, counts);
+    return engine;
+}
+
+/* The state moved at random by a tenth of a cell. */
+static void shake(const SmEngineType *type, SmEngine *engine, long n, double (*x)[3])
+{
+    unsigned seed = 5;
+    type->get(engine, SM_REST, x);
+    for (long i = 0; i < n; i++)
+        for (int d = 0; d < 3; d++) x[i][d] += 0.1 * (random_unit(&seed) - 0.5);
+    type->set(engine, SM_POSITION, (const double(*)[3])x);
+    type->get(engine, SM_POSITION, x);
+}
+
+static double difference(long n, const double (*a)[3], const double (*b)[3])
+{
+    double worst = 0;
+    for (long i = 0; i < n; i++)
+        for (int d = 0; d < 3; d++) worst = fmax(worst, fabs(a[i][d] - b[i][d]));
+    return worst;
+}
+
+static void goals_are_the_twins(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    for (int trial = 0; trial < 8; trial++) {
+        int precision = trial % 2;
+        const SmEngineType *type = engines[precision];
+        OctOptions options = {.epsilon = 0.5,
+                              .sampling = {.levels = 2, .nodes = 90},
+                              .weighting = trial / 2 % 2 ? OCT_PLAIN : OCT_CONSERVING,
+                              .form = trial / 4 ? OCT_ADJOINT : OCT_HIERARCHICAL};
+        SmEngineParams params = usual(&options);
+        SmCounts counts;
+        SmEngine *engine = make(precision, &voxels, &params, &counts);
+        const OctStructure *s = oct_engine_structure(engine);
+        RefTreeBody twin;
+        long n = counts.particles;
+        double(*x)[3] = triples(n), (*g)[3] = triples(n), (*exact)[3] = triples(n);
+        assert_int_equal(n, s->tree.leaves);
+        assert_true(counts.summation_nodes == s->regions.mean && counts.bytes > 0);
+        shake(type, engine, n, x);
+        type->goals(engine);
+        type->get(engine, SM_GOAL, g);
+        ref_tree_init(&s->tree, &s->regions, s->mass, options.weighting == OCT_PLAIN, &twin);
+        for (long i = 0; i < n; i++)
+            for (int d = 0; d < 3; d++) x[i][d] = (x[i][d] - voxels.origin[d]) / voxels.cell;
+        ref_tree_goals(&twin, (const double(*)[3])x, false, exact);
+        for (long i = 0; i < n; i++)
+            for (int d = 0; d < 3; d++) g[i][d] = (g[i][d] - voxels.origin[d]) / voxels.cell;
+        assert_true(difference(n, (const double(*)[3])g, (const double(*)[3])exact) <
+                    limit[precision]);
+        ref_tree_free(&twin);
+        free(x);
+        free(g);
+        free(exact);
+        type->destroy(engine);
+    }
+    sm_voxels_free(&voxels);
+}
+
+static void regions_are_the_leaves_and_symmetric(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    OctOptions options = {.epsilon = 0.5, .sampling = {.levels = 2, .nodes = 90}};
+    SmEngineParams params = usual(&options);
+    params.instances = 2;
+    SmCounts counts;
+    SmEngine *engine = make(1, &voxels, &params, &counts);
+    long n = counts.particles / 2, few[2];
+    char *in = sm_alloc((size_t)(n * n), 1);
+    long *member = sm_alloc((size_t)n, sizeof *member);
+    for (long i = 0; i < n; i++) {
+        long count = octree_engine_f64.region(engine, n + i, member, n);
+        assert_int_equal(count, octree_engine_f64.region(engine, i, few, 2));
+        for (long k = 0; k < count; k++) {
+            assert_true(member[k] >= n && member[k] < 2 * n);
+            assert_true(k == 0 || member[k] > member[k - 1]);
+            if (k < 2) assert_int_equal(few[k], member[k] - n);
+            in[i * n + member[k] - n] = 1;
+        }
+    }
+    for (long i = 0; i < n; i++)
+        for (long j = 0; j <= i; j++) assert_int_equal(in[i * n + j], in[j * n + i]);
+    free(in);
+    free(member);
+    octree_engine_f64.destroy(engine);
+    sm_voxels_free(&voxels);
+}
+
+/* Held nodes are where their handle puts them, with the velocity of getting there. */
+static void handles_hold(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    for (int precision = 0; precision < 2; precision++) {
+        const SmEngineType *type = engines[precision];
+        SmEngineParams params = usual(NULL);
+        params.gravity[1] = -9.81;
+        SmCounts counts;
+        SmEngine *engine = make(precision, &voxels, &params, &counts);
+        long n = counts.particles, held[3] = {0, 3, n - 1};
+        double(*x0)[3] = triples(n), (*x)[3] = triples(n), (*v)[3] = triples(n);
+        SmHandle handle = {.count = 3,
+                           .particle = held,
+                           .pose = {{0.8, -0.6, 0, 1}, {0.6, 0.8, 0, 0}, {0, 0, 1, 0}}};
+        SmBoundary boundary = {.handle_count = 1, .handle = &handle};
+        type->get(engine, SM_REST, x0);
+        type->bound(engine, &boundary);
+        for (int step = 0; step < 20; step++) {
+            handle.pose[2][3] = 0.01 * step;
+            type->bound(engine, &boundary);
+            type->step(engine, NULL);
+        }
+        type->get(engine, SM_POSITION, x);
+        type->get(engine, SM_VELOCITY, v);
+        for (int k = 0; k < 3; k++) {
+            const double *from = x0[held[k]], *at = x[held[k]];
+            double unit = precision ? 1e-12 : 1e-5;
+            assert_true(fabs(at[0] - (0.8 * from[0] - 0.6 * from[1] + 1)) < unit);
+            assert_true(fabs(at[1] - (0.6 * from[0] + 0.8 * from[1])) < unit);
+            assert_true(fabs(at[2] - (from[2] + 0.19)) < unit);
+            assert_true(fabs(v[held[k]][2] - 1) < 100 * unit); /* 0.01 in a step of 0.01 s */
+        }
+        free(x0);
+        free(x);
+        free(v);
+        type->destroy(engine);
+    }
+    sm_voxels_free(&voxels);
+}
+
+/* A body that falls a long way does not go through the ground. */
+static void obstacles_stop(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    const SmObstacle ground = {.kind = SM_PLANE, .a = {0, -60, 0}, .b = {0, 1, 0}, .friction = 0.5};
+    SmBoundary boundary = {.obstacle_count = 1, .obstacle = &ground};
+    for (int precision = 0; precision < 2; precision++) {
+        const SmEngineType *type = engines[precision];
+        SmEngineParams params = usual(NULL);
+        params.gravity[1] = -9.81;
+        params.damping = 0.2;
+        SmCounts counts;
+        SmEngine *engine = make(precision, &voxels, &params, &counts);
+        double(*x)[3] = triples(counts.particles), least = INFINITY;
+        type->bound(engine, &boundary);
+        for (int step = 0; step < 500; step++) {
+            type->step(engine, NULL);
+            type->get(engine, SM_POSITION, x);
+            for (long i = 0; i < counts.particles; i++) least = fmin(least, x[i][1]);
+        }
+        assert_true(least > -60 - 1e-3);
+        assert_true(least < -59);
+        free(x);
+        type->destroy(engine);
+    }
+    sm_voxels_free(&voxels);
+}
+
+/* Impulses are momentum, whatever the node weighs, and a step keeps it. */
+static void pushes_are_momentum(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    for (int precision = 0; precision < 2; precision++) {
+        const SmEngineType *type = engines[precision];
+        OctOptions options = {.epsilon = 0.5, .sampling = {.levels = 2, .nodes = 90}};
+        SmEngineParams params = usual(&options);
+        params.damping = 0.1;
+        SmCounts counts;
+        SmEngine *engine = make(precision, &voxels, &params, &counts);
+        long n = counts.particles, pushed[2] = {1, n - 2};
+        const double impulse[2][3] = {{3, 0, -1}, {0, 2, 0}}, wanted[3] = {3, 2, -1};
+        double(*v)[3] = triples(n), *m = sm_alloc((size_t)n, sizeof *m), mass = 0;
+        type->masses(engine, m);
+        type->push(engine, 2, pushed, impulse);
+        for (int step = 0; step < 5; step++) {
+            type->get(engine, SM_VELOCITY, v);
+            for (int d = 0; d < 3; d++) {
+                double sum = 0; /* the whole body at a cell per step has 2e4 */
+                for (long i = 0; i < n; i++) sum += m[i] * v[i][d];
+                if (!(fabs(sum - wanted[d]) < (precision ? 1e-9 : 0.02)))
+                    fail_msg("precision %d, step %d: %g, not %g", precision, step, sum, wanted[d]);
+            }
+            type->step(engine, NULL);
+        }
+        for (long i = 0; i < n; i++) mass += m[i];
+        assert_true(mass == (double)voxels.cell_count); /* 1 a cell */
+        free(v);
+        free(m);
+        type->destroy(engine);
+    }
+    sm_voxels_free(&voxels);
+}
+
+/* Masses of the lattice's vertices come down to the leaves, none lost. */
+static void masses_come_from_the_vertices(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    size_t count = (size_t)voxels.particle_count;
+    double *vertex = sm_alloc(count, sizeof *vertex), all = 0, left = 0, sum = 0;
+    int(*at)[3] = sm_alloc(count, sizeof *at);
+    sm_voxels_particles(&voxels, at);
+    for (size_t p = 0; p < count; p++) all += vertex[p] = at[p][0] < 6 ? 1 : 9;
+    SmEngineParams params = usual(NULL);
+    params.mass = vertex;
+    SmCounts counts;
+    SmEngine *engine = make(1, &voxels, &params, &counts);
+    long n = counts.particles;
+    double *m = sm_alloc((size_t)n, sizeof *m), (*x0)[3] = triples(n);
+    octree_engine_f64.masses(engine, m);
+    octree_engine_f64.get(engine, SM_REST, x0);
+    for (long i = 0; i < n; i++) {
+        sum += m[i];
+        if (x0[i][0] < 6) left += m[i];
+    }
+    assert_true(fabs(sum - all) < 1e-9 * all);
+    assert_true(left < 0.25 * all && left > 0.05 * all);
+    free(vertex);
+    free(at);
+    free(m);
+    free(x0);
+    octree_engine_f64.destroy(engine);
+    sm_voxels_free(&voxels);
+}
+
+/* Turned and moved instances rest where their poses put them, and stay there. */
+static void instances_rest_in_their_poses(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    double pose[5][3][4];
+    for (int i = 0; i < 5; i++) {
+        double c = cos(i), s = sin(i),
+               p[3][4] = {{c, -s, 0, 9.0 * i}, {s, c, 0, -i}, {0, 0, 1, 50}};
+        memcpy(pose[i], p, sizeof p);
+    }
+    for (int precision = 0; precision < 2; precision++) {
+        const SmEngineType *type = engines[precision];
+        OctOptions options = {.epsilon = 0.5};
+        SmEngineParams params = usual(&options);
+        params.instances = 5;
+        params.instance_pose = (const double(*)[3][4])pose;
+        params.damping = 0.1;
+        SmCounts counts;
+        SmEngine *engine = make(precision, &voxels, &params, &counts);
+        long n = counts.particles, one = n / 5;
+        double(*x0)[3] = triples(n), (*x)[3] = triples(n);
+        type->get(engine, SM_REST, x0);
+        for (int step = 0; step < 40; step++) type->step(engine, NULL);
+        type->get(engine, SM_POSITION, x);
+        assert_true(difference(n, (const double(*)[3])x0, (const double(*)[3])x) <
+                    (precision ? 1e-9 : 1e-3));
+        for (int i = 1; i < 5; i++)
+            for (int d = 0; d < 3; d++) {
+                double wanted = pose[i][d][3];
+                for (int e = 0; e < 3; e++) {
+                    /* instance 0's pose moves by 50 along z alone */
+                    wanted += pose[i][d][e] * (x0[0][e] - (e == 2 ? 50 : 0));
+                }
+                assert_true(fabs(x0[i * one][d] - wanted) < 1e-9);
+            }
+        free(x0);
+        free(x);
+        type->destroy(engine);
+    }
+    sm_voxels_free(&voxels);
+}
+
+/* Wide regions on one arm, narrow ones on the other: the same pull bends them differently. */
+static double tip_moved(const SmVoxels *voxels, const OctOptions *options, double x_tip)
+{
+    SmEngineParams params = usual(options);
+    params.damping = 0.3;
+    SmCounts counts;
+    SmEngine *engine = make(1, voxels, &params, &counts);
+    long n = counts.particles, *held = sm_alloc((size_t)n, sizeof *held), tip = 0;
+    double(*x0)[3] = triples(n), (*x)[3] = triples(n), best = INFINITY;
+    octree_engine_f64.get(engine, SM_REST, x0);
+    SmHandle handle = {.pose = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    for (long i = 0; i < n; i++) {
+        if (x0[i][1] < 2) held[handle.count++] = i;
+        double off = fabs(x0[i][0] - x_tip) + fabs(x0[i][1] - 5.75) + fabs(x0[i][2]);
+        if (off < best) best = off, tip = i;
+    }
+    handle.particle = held;
+    SmBoundary boundary = {.handle_count = 1, .handle = &handle};
+    octree_engine_f64.bound(engine, &boundary);
+    double impulse[1][3] = {{0, 0, 5}};
+    for (int step = 0; step < 60; step++) {
+        octree_engine_f64.push(engine, 1, &tip, (const double(*)[3])impulse);
+        octree_engine_f64.step(engine, NULL);
+    }
+    octree_engine_f64.get(engine, SM_POSITION, x);
+    double moved = x[tip][2] - x0[tip][2];
+    free(held);
+    free(x0);
+    free(x);
+    octree_engine_f64.destroy(engine);
+    return moved;
+}
+
+static void wide_regions_are_stiff(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    OctOptions options = {
+        .sampling = {.levels = 1, .criteria = {{.kind = OCT_UNIFORM}}, .criteria_count = 1},
+        .width = {.cells = 1},
+        .local = {{.width = {.cells = 4}, .low = {3, 0, -9}, .high = {5.6, 9, 9}}},
+        .local_count = 1};
+    double stiff = tip_moved(&voxels, &options, 3.25), soft = tip_moved(&voxels, &options, 8.75);
+    if (!(stiff > 0 && soft > 3 * stiff)) fail_msg("stiff arm %g, soft arm %g", stiff, soft);
+    sm_voxels_free(&voxels);
+}
+
+static void a_width_is_found_for_summation_nodes(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    OctOptions options = {
+        .epsilon = 0.5, .summation_nodes = 8, .sampling = {.levels = 2, .nodes = 90}};
+    SmEngineParams params = usual(&options);
+    SmCounts counts;
+    SmEngine *engine = make(1, &voxels, &params, &counts);
+    double edges = oct_engine_structure(engine)->width.edges, found = counts.summation_nodes;
+    octree_engine_f64.destroy(engine);
+    assert_true(edges > 0 && fabs(found - 8) < 3);
+    options.summation_nodes = 0; /* no other sixteenth of an edge comes nearer */
+    for (int step = 1; step <= 64; step++) {
+        options.width.edges = step / 16.0;
+        engine = make(1, &voxels, &params, &counts);
+        assert_true(fabs(counts.summation_nodes - 8) >= fabs(found - 8));
+        octree_engine_f64.destroy(engine);
+    }
+    sm_voxels_free(&voxels);
+}
+
+/* Regions of single nodes hold nothing together. */
+static void parts_are_counted(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    OctOptions options = {.width = {.cells = 0.5}, .sampling = {.levels = 2, .nodes = 90}};
+    SmEngineParams params = usual(&options);
+    for (int whole = 0; whole < 2; whole++) {
+        SmCounts counts;
+        if (whole) options.width = (OctWidth){0, 0};
+        SmEngine *engine = make(0, &voxels, &params, &counts);
+        assert_int_equal(oct_structure_parts(oct_engine_structure(engine)),
+                         whole ? 1 : counts.particles);
+        octree_engine_f32.destroy(engine);
+    }
+    sm_voxels_free(&voxels);
+}
+
+static void refuses_what_it_does_not_do(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    const double masses[1] = {-1};
+    const struct {
+        OctOptions options;
+        SmEngineParams params;
+        const char *wanted;
+    } cases[] = {
+        {{.epsilon = 0}, {.h = 0.01, .strain_limit = 1.5}, "strain_limit: the octree's material"},
+        {{.epsilon = 0}, {.h = 0.01, .summation = SM_SUM_NAIVE}, "summation and polar"},
+        {{.epsilon = 0}, {.h = 0.01, .polar = SM_POLAR_JACOBI}, "summation and polar"},
+        {{.epsilon = 0}, {.h = 0}, "h is 0"},
+        {{.epsilon = 0}, {.h = 0.01, .damping = 2}, "damping is 2"},
+        {{.epsilon = 0}, {.h = 0.01, .mass = masses}, "the mass of particle 0 is -1"},
+        {{.epsilon = -1}, {.h = 0.01}, "epsilon is -1"},
+        {{.epsilon = NAN}, {.h = 0.01}, "epsilon is"},
+        {{.width = {.cells = -1}}, {.h = 0.01}, "width of -1 cells"},
+        {{.width = {.edges = INFINITY}}, {.h = 0.01}, "width of 0 cells and inf edges"},
+        {{.local = {{.width = {NAN, 0}}}, .local_count = 1}, {.h = 0.01}, "width 1 is nan"},
+        {{.local = {{.radius = 0.01}}, .local_count = 1}, {.h = 0.01}, "no node's centre lies in"},
+        {{.local_count = OCT_MAX_WIDTHS + 1}, {.h = 0.01}, "17 widths: at most 16"},
+        {{.summation_nodes = -2}, {.h = 0.01}, "-2 summation nodes wanted"},
+        {{.creep = -1}, {.h = 0.01}, "plasticity of yield 0, creep -1"},
+        {{.sampling = {.levels = 99}}, {.h = 0.01}, "99"},
+        {{.sampling = {.nodes = -5}}, {.h = 0.01}, "-5"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        SmEngineParams params = cases[i].params;
+        SmEngine *engine;
+        SmError error = {0};
+        params.octree = &cases[i].options;
+        assert_int_equal(octree_engine_f32.create(&voxels, &params, &engine, &error), SM_INPUT);
+        if (!strstr(error.text, cases[i].wanted))
+            fail_msg("wanted \"%s\", got \"%s\"", cases[i].wanted, error.text);
+    }
+    sm_voxels_free(&voxels);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(goals_are_the_twins),
+        cmocka_unit_test(regions_are_the_leaves_and_symmetric),
+        cmocka_unit_test(handles_hold),
+        cmocka_unit_test(obstacles_stop),
+        cmocka_unit_test(pushes_are_momentum),
+        cmocka_unit_test(masses_come_from_the_vertices),
+        cmocka_unit_test(instances_rest_in_their_poses),
+        cmocka_unit_test(wide_regions_are_stiff),
+        cmocka_unit_test(a_width_is_found_for_summation_nodes),
+        cmocka_unit_test(parts_are_counted),
+        cmocka_unit_test(refuses_what_it_does_not_do),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
