@@ -156,19 +156,6 @@ static void check_end(BenchCube *cube)
     snprintf(cube->reason, sizeof cube->reason, "positions are not finite after the steps");
 }
 
-/* Seconds that reading the clock takes at best: what a lap adds to its stage, at least. */
-static double clock_seconds(void)
-{
-    enum { READS = 256, TRIES = 64 };
-    double best = INFINITY;
-    for (int t = 0; t < TRIES; t++) {
-        double start = sm_now(), now = start;
-        for (int i = 0; i < READS; i++) now = sm_now();
-        best = fmin(best, (now - start) / READS);
-    }
-    return best;
-}
-
 void bench_cubes_time(BenchCube *cubes, int count, int repeats, bool stages)
 {
     for (BenchCube *c = cubes; c < cubes + count; c++) {
@@ -177,7 +164,7 @@ void bench_cubes_time(BenchCube *cubes, int count, int repeats, bool stages)
         c->total = sm_alloc((size_t)repeats, sizeof *c->total);
         if (stages) c->stage = sm_alloc((size_t)repeats, sizeof *c->stage);
         double step = fmin(sample(c, 1, NULL), sample(c, 1, NULL)); /* also warms up */
-        c->clock = stages ? clock_seconds() : 0;
+        c->clock = stages ? sm_lap_seconds() : 0;
         c->steps = (int)fmin(fmax(ceil(sample_seconds / step), 1), MOST_STEPS);
     }
     for (int r = 0; r < repeats; r++)

@@ -307,8 +307,8 @@ static void write_text(FILE *file, const BenchKernel *rows, int count,
     print_rates(file, &ceilings->one);
     if (ceilings->all.threads > 1) print_rates(file, &ceilings->all);
     fputs(
-        "\nTimes in ns, medians; those of steps are per particle and step. The floor is the least "
-        "time that the\nceilings allow, with what sets it; the share is floor / time.\n\n",
+        "\nTimes in ns, medians; those of steps in each step. The floor is the least time that the "
+        "ceilings\nallow, with what sets it; the share is floor / time.\n\n",
         file);
     print_line(file, &heading, width);
     for (int r = 0; r < count; r++) {

@@ -7,10 +7,12 @@
 
 #include "../fastlsm/fastlsm.h"
 #include "cubes.h"
+#include "kernel_run.h"
 #include "matrices.h"
 #include "measure.h"
 #include "spread.h"
 #include "surfaces.h"
+#include "tree_kernels.h"
 
 typedef enum { CUBE, POLAR, SURFACE, SCENE } Kind;
 enum { WHOLE_STEP = SM_STAGES, SET_MOST = 8 };
@@ -86,36 +88,28 @@ static const Spec specs[] = {
 };
 enum { SPECS = sizeof specs / sizeof specs[0] };
 
-typedef struct {
-    const BenchKernelParams *params;
-    const BenchCeilings *ceilings;
-    BenchKernel *rows;
-    int *count;
-} Run;
+typedef BenchKernelRun Run;
 
 const char *bench_kernel_name(int index, const char **group)
 {
-    if (index < 0 || index >= SPECS) return NULL;
+    if (index >= SPECS) return bench_tree_kernel_name(index - SPECS, group);
+    if (index < 0) return NULL;
     if (group) *group = specs[index].group;
     return specs[index].name;
 }
 
 bool bench_kernel_known(const char *name)
 {
-    for (int i = 0; i < SPECS; i++)
-        if (!strcmp(name, specs[i].name) || !strcmp(name, specs[i].group)) return true;
+    const char *known, *group;
+    for (int i = 0; (known = bench_kernel_name(i, &group)); i++)
+        if (!strcmp(name, known) || !strcmp(name, group)) return true;
     return false;
 }
 
 static bool chosen(const BenchKernelParams *params, const Spec *spec)
 {
     if (spec->doubled && params->precision == BENCH_F64) return false; /* cube64-w1 is it */
-    bool group = !params->only[0];
-    for (const char *const *only = params->only; *only; only++) {
-        if (!strcmp(*only, spec->name)) return true;
-        group = group || !strcmp(*only, spec->group);
-    }
-    return group && (!spec->large || params->scaling);
+    return bench_kernel_chosen(params, spec->name, spec->group, spec->large);
 }
 
 static int threads_of(const Run *run, const Spec *spec)
@@ -130,33 +124,13 @@ static BenchPrecision precision_of(const Run *run, const Spec *spec)
 
 static BenchKernel *add_row(Run *run, const Spec *spec, const char *item, long items)
 {
-    BenchKernel *row = &run->rows[(*run->count)++];
-    *row = (BenchKernel){.w = spec->w, .threads = threads_of(run, spec), .items = items};
-    row->ns = row->low = row->high = row->floor_ns = row->at_most = row->ratio = row->wanted = NAN;
-    snprintf(row->kernel, sizeof row->kernel, "%s", spec->name);
-    snprintf(row->group, sizeof row->group, "%s", spec->group);
-    snprintf(row->item, sizeof row->item, "%s", item);
     bool doubles = precision_of(run, spec) == BENCH_F64;
+    BenchKernel *row = bench_kernel_add(run, spec->name, spec->group, item, items);
+    row->w = spec->w;
+    row->threads = threads_of(run, spec);
     snprintf(row->precision, sizeof row->precision, "%s", doubles ? "double" : "single");
     if (spec->at_most > 0 && row->threads == 1 && !doubles) row->at_most = spec->at_most;
     return row;
-}
-
-static void set_times(BenchKernel *row, const double *ns, int repeats)
-{
-    BenchSpread spread = bench_spread(ns, repeats);
-    row->valid = true;
-    row->ns = spread.median;
-    row->low = spread.low;
-    row->high = spread.high;
-}
-
-static void set_floor(const Run *run, BenchKernel *row, BenchWork work, double footprint)
-{
-    const char *bound;
-    BenchPrecision precision = strcmp(row->precision, "double") ? BENCH_F32 : BENCH_F64;
-    row->floor_ns = bench_floor(run->ceilings, &work, precision, row->threads, footprint, &bound);
-    snprintf(row->bound, sizeof row->bound, "%s", bound);
 }
 
 /* ---- steps of cubes */
@@ -221,10 +195,10 @@ static void report_cube(Run *run, const Spec *spec, const BenchCube *cube)
     for (int r = 0; r < cube->repeats; r++)
         ns[r] = spec->stage == WHOLE_STEP ? bench_cube_ns(cube, r)
                                           : bench_cube_stage_ns(cube, (SmStage)spec->stage, r);
-    set_times(row, ns, cube->repeats);
+    bench_kernel_times(row, ns, cube->repeats);
     free(ns);
     double state = bench_state_bytes(precision_of(run, spec)) * (double)cube->particles;
-    set_floor(run, row, work_of(spec), state);
+    bench_kernel_floor(run, row, work_of(spec), state);
     BenchLevel level = bench_level_of(run->ceilings, state, row->threads);
     note_cube(cube, bench_level_name(level), state, row);
 }
@@ -307,8 +281,8 @@ static void report_polar(Run *run, const Spec *spec, const BenchPolarResult *res
                  result->limit);
         return;
     }
-    set_times(row, result->ns, run->params->repeats);
-    set_floor(run, row, polar_work(spec->method, result->sweeps), 1e5);
+    bench_kernel_times(row, result->ns, run->params->repeats);
+    bench_kernel_floor(run, row, polar_work(spec->method, result->sweeps), 1e5);
     if (spec->method == BENCH_POLAR_COLD || spec->method == BENCH_POLAR_WARM)
         snprintf(row->note, sizeof row->note, "%.2f sweeps a matrix; paper: %s", result->sweeps,
                  spec->method == BENCH_POLAR_COLD ? "1.9" : "0.4");
@@ -335,18 +309,19 @@ static void judge_surface(const Run *run, BenchSurfaceKernel kernel, const Bench
     double nodes = (double)surface->nodes, mesh = 24 * vertices + 12 * (double)surface->triangles;
     switch (kernel) {
     case BENCH_EMBED:
-        set_floor(run, row, bench_work_embed(particles / vertices),
-                  176 * vertices + 24 * particles);
+        bench_kernel_floor(run, row, bench_work_embed(particles / vertices),
+                           176 * vertices + 24 * particles);
         strcpy(row->note, "positions and normals");
         break;
     case BENCH_CARRY:
-        set_floor(run, row, bench_work_carry(surface->nodes_blended, nodes / vertices),
-                  (104 + 8 * surface->nodes_blended) * vertices + 120 * nodes);
+        bench_kernel_floor(run, row, bench_work_carry(surface->nodes_blended, nodes / vertices),
+                           (104 + 8 * surface->nodes_blended) * vertices + 120 * nodes);
         snprintf(row->note, sizeof row->note, "positions and normals, %ld nodes, %.2g a vertex",
                  surface->nodes, surface->nodes_blended);
         break;
     default:
-        set_floor(run, row, bench_work_voxelise(vertices / (double)surface->triangles), mesh);
+        bench_kernel_floor(run, row, bench_work_voxelise(vertices / (double)surface->triangles),
+                           mesh);
         snprintf(row->note, sizeof row->note, "%.3g million triangles/s", 1e3 / row->ns);
     }
 }
@@ -363,7 +338,7 @@ static void report_surface(Run *run, const Spec *spec, const BenchSurface *surfa
         snprintf(row->reason, sizeof row->reason, "%s", kernel->reason);
         return;
     }
-    set_times(row, kernel->ns, run->params->repeats);
+    bench_kernel_times(row, kernel->ns, run->params->repeats);
     judge_surface(run, spec->surface, surface, row);
 }
 
@@ -392,8 +367,9 @@ static void report_scene(Run *run, const Spec *spec, const BenchScene *scene, co
     row->high = scale * found->total_high_ms;
     double state = bench_state_bytes(run->params->precision) * (double)found->particles;
     int side = (int)cbrt((double)found->particles / (double)found->instances) + 1;
-    set_floor(run, row,
-              bench_work_step(scene->params.summation, found->w, side, found->damping > 0), state);
+    bench_kernel_floor(run, row,
+                       bench_work_step(scene->params.summation, found->w, side, found->damping > 0),
+                       state);
     int used = snprintf(row->note, sizeof row->note, "%svoxelised %.3g ms, built %.3g ms",
                         found->damping > 0 ? "damping; " : "", 1e3 * found->voxelise_seconds,
                         1e3 * found->build_seconds);
@@ -457,7 +433,7 @@ SmCode bench_kernels_run(const BenchKernelParams *params, const BenchCeilings *c
             break;
         }
     }
-    return code;
+    return code ? code : bench_tree_kernels_run(&run, error);
 }
 
 const char *bench_kernel_verdict(const BenchKernel *row)

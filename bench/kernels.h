@@ -34,7 +34,7 @@ typedef struct {
     BenchProgress *progress;
 } BenchKernelParams;
 
-enum { BENCH_KERNELS_MOST = 64 };
+enum { BENCH_KERNELS_MOST = 96 };
 
 /* Is this the name of a kernel or group? */
 bool bench_kernel_known(const char *name);

@@ -86,7 +86,7 @@ BenchWork bench_work_integrate(void)
     return (BenchWork){.flops = 15, .near_values = 12, .far_values = 6};
 }
 
-static BenchWork together(BenchWork a, BenchWork b)
+BenchWork bench_work_together(BenchWork a, BenchWork b)
 {
     return (BenchWork){a.flops + b.flops, a.near_values + b.near_values,
                        a.near_bytes + b.near_bytes, a.far_values + b.far_values,
@@ -99,9 +99,9 @@ BenchWork bench_work_step(SmSummation summation, int w, int side, bool damping)
     polar.near_values = 0; /* matrices come and go in registers */
     polar.far_bytes = 24;  /* the last rotation, 12 bytes, read and written */
     polar.far_values = 6;  /* x, which the sums read and integration writes */
-    BenchWork step = together(bench_work_sums(summation, w, side), bench_work_match());
-    step = together(together(step, polar), bench_work_integrate());
-    return damping ? together(step, bench_work_damping()) : step;
+    BenchWork step = bench_work_together(bench_work_sums(summation, w, side), bench_work_match());
+    step = bench_work_together(bench_work_together(step, polar), bench_work_integrate());
+    return damping ? bench_work_together(step, bench_work_damping()) : step;
 }
 
 BenchWork bench_work_voxelise(double vertices_per_triangle)

@@ -34,6 +34,9 @@ BenchWork bench_work_embed(double particles_per_vertex);
 /* A vertex by octree/surface.h from so many nodes, and the gradients of `nodes_per_vertex`. */
 BenchWork bench_work_carry(double blended, double nodes_per_vertex);
 
+/* Both works. */
+BenchWork bench_work_together(BenchWork a, BenchWork b);
+
 /* Bytes of state a particle that a step streams: x, v, and the last rotation. */
 double bench_state_bytes(BenchPrecision precision);
 

@@ -25,6 +25,9 @@ const char *sm_stage_name(SmStage stage);
 /* Monotonic seconds (clock_gettime, served without a system call). */
 double sm_now(void);
 
+/* Seconds that reading the clock takes at best: what a lap adds to its stage, at least. */
+double sm_lap_seconds(void);
+
 /* Zeroes the laps and starts the clock. */
 void sm_laps_start(SmLaps *laps);
 

@@ -11,6 +11,7 @@
  * lists transposed the second is the adjoint of the first. */
 #include "octree.h"
 
+#include <assert.h>
 #include <omp.h>
 
 #include "plastic.h"
@@ -239,20 +240,31 @@ static void move(OctTask *task, long first, long last)
     }
 }
 
+/* Laps go on in those of the next part. */
+static void next_part(OctTask *task)
+{
+    if (!task->laps || !task->apart) return;
+    task->laps[1].last = task->laps->last;
+    task->laps++;
+}
+
 static void step_body(OctTask *task)
 {
     oct_each_block(task, weigh);
     oct_climb(task, moments_up);
+    next_part(task);
     oct_descend(task, &task->oct->lists, moments_down);
     oct_each_block(task, match);
+    next_part(task);
     oct_climb(task, transforms_up);
+    next_part(task);
     oct_descend(task, oct_goal_breadth(task->oct), transforms_down);
     oct_each_block(task, move);
     if (task->oct->damp_now && !task->goals) oct_damp(task);
 }
 
 /* One body is shared by all threads; of several, each thread steps some. */
-static void step_all(Oct *oct, bool goals, SmLaps *laps)
+static void step_all(Oct *oct, bool goals, SmLaps *laps, bool apart)
 {
     if (oct->instances > 1) {
 #pragma omp parallel for schedule(static) num_threads(oct->workers) if (oct->workers > 1)
@@ -263,7 +275,8 @@ static void step_all(Oct *oct, bool goals, SmLaps *laps)
                                      .rows = &oct->rows[w],
                                      .team = 1,
                                      .goals = goals,
-                                     .laps = w ? NULL : laps});
+                                     .laps = w ? NULL : laps,
+                                     .apart = apart});
         return;
     }
 #pragma omp parallel num_threads(oct->threads) if (oct->threads > 1)
@@ -273,19 +286,31 @@ static void step_all(Oct *oct, bool goals, SmLaps *laps)
                          .me = omp_get_thread_num(),
                          .team = omp_get_num_threads(),
                          .goals = goals,
-                         .laps = omp_get_thread_num() ? NULL : laps});
+                         .laps = omp_get_thread_num() ? NULL : laps,
+                         .apart = apart});
 }
 
 void oct_goals(Oct *oct)
 {
-    step_all(oct, true, NULL);
+    step_all(oct, true, NULL, false);
+}
+
+static void step(Oct *oct, SmLaps *laps, bool apart)
+{
+    int every = oct->params.damping_every > 0 ? oct->params.damping_every : 1;
+    oct->damp_now = oct->params.damping > 0 && oct->steps % every == 0;
+    step_all(oct, false, laps, apart);
+    oct->steps++;
+    sm_lap(apart ? laps + OCT_PARTS - 1 : laps, SM_OTHER);
 }
 
 void oct_step(Oct *oct, SmLaps *laps)
 {
-    int every = oct->params.damping_every > 0 ? oct->params.damping_every : 1;
-    oct->damp_now = oct->params.damping > 0 && oct->steps % every == 0;
-    step_all(oct, false, laps);
-    oct->steps++;
-    sm_lap(laps, SM_OTHER);
+    step(oct, laps, false);
+}
+
+void oct_step_parts(Oct *oct, SmLaps laps[OCT_PARTS])
+{
+    assert(oct->instances == 1);
+    step(oct, laps, true);
 }

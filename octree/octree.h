@@ -5,14 +5,15 @@
 
 #include "state.h"
 
-#define oct_build    SM_NAME(oct_build)
-#define oct_free     SM_NAME(oct_free)
-#define oct_bytes    SM_NAME(oct_bytes)
-#define oct_step     SM_NAME(oct_step)
-#define oct_goals    SM_NAME(oct_goals)
-#define oct_damp     SM_NAME(oct_damp)
-#define oct_recentre SM_NAME(oct_recentre)
-#define oct_place    SM_NAME(oct_place)
+#define oct_build      SM_NAME(oct_build)
+#define oct_free       SM_NAME(oct_free)
+#define oct_bytes      SM_NAME(oct_bytes)
+#define oct_step       SM_NAME(oct_step)
+#define oct_step_parts SM_NAME(oct_step_parts)
+#define oct_goals      SM_NAME(oct_goals)
+#define oct_damp       SM_NAME(oct_damp)
+#define oct_recentre   SM_NAME(oct_recentre)
+#define oct_place      SM_NAME(oct_place)
 
 /* Bodies at rest, all in one place: simulation nodes at their cells' centres, counted in finest
  * cells from the corner of voxel (0,0,0). `mass` is [leaves] kg, positive, finite. Tree and regions
@@ -25,6 +26,10 @@ long oct_bytes(const Oct *oct);
 /* One time step of every body: matching, eq. 1, damping, eq. 2, obstacles. Laps are those of the
  * first thread. */
 void oct_step(Oct *oct, SmLaps *laps);
+
+/* The same with laps of each part of the step apart, for one body alone; the caller starts those of
+ * the first. */
+void oct_step_parts(Oct *oct, SmLaps laps[OCT_PARTS]);
 
 /* Goal positions of the present state into `g`, nothing else changes. */
 void oct_goals(Oct *oct);

@@ -94,6 +94,15 @@ typedef struct {
     Obstacle *obstacle; /* in finest cells from where origins count */
 } Oct;
 
+/* Parts of a step, in order. */
+typedef enum {
+    OCT_MOMENTS_DEPTH,      /* tree nodes' moments */
+    OCT_MOMENTS_BREADTH,    /* regions' moments; matching */
+    OCT_TRANSFORMS_DEPTH,   /* tree nodes' transforms */
+    OCT_TRANSFORMS_BREADTH, /* goal positions; motion and damping */
+    OCT_PARTS
+} OctStepPart;
+
 /* One thread's part in a pass over one body. */
 typedef struct {
     Oct *oct;
@@ -103,6 +112,7 @@ typedef struct {
     bool goals;   /* goal positions only */
     bool alone;   /* the first thread has worked alone since all have met */
     SmLaps *laps; /* of the first thread of an instrumented step, or NULL */
+    bool apart;   /* there are laps for every part of the step, those of the next one follow */
 } OctTask;
 
 /* The lists that goal positions and damping sum over. */
