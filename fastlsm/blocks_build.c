@@ -60,11 +60,16 @@ static void add_rows(Lsm *lsm, Blocks *box)
     for (int z = 0; z < lsm->lattice.size[2]; z++) {
         box->plane_run[z] = runs;
         lsm->layer_block[z] = lsm->blocks;
-        for (int y = 0; y < lsm->lattice.size[1]; y++) add_row(lsm, box, y, z, &runs);
+        for (int y = 0; y < lsm->lattice.size[1]; y++) {
+            box->row_run[z * (long)lsm->lattice.size[1] + y] = runs;
+            add_row(lsm, box, y, z, &runs);
+        }
     }
     box->plane_run[lsm->lattice.size[2]] = runs;
     lsm->layer_block[lsm->lattice.size[2]] = lsm->blocks;
-    box->run = sm_realloc(box->run, (size_t)runs, sizeof(BlockRun));
+    box->row_run[lsm->lattice.size[1] * (long)lsm->lattice.size[2]] = runs;
+    box->run = sm_realloc(box->run, (size_t)runs + 1, sizeof(BlockRun));
+    box->run[runs] = (BlockRun){.first = (int)lsm->blocks};
 }
 
 /* The block of `column` in row y of plane z, or the empty block: in the last run that does not
@@ -151,14 +156,15 @@ void lsm_blocks_build(Lsm *lsm)
     long blocks = count_blocks(l);
     box->width = (l->size[0] + SM_LANES - 1) / SM_LANES;
     box->plane_run = sm_alloc((size_t)planes + 1, sizeof(int));
-    box->run = sm_alloc((size_t)blocks, sizeof(BlockRun));
+    box->row_run = sm_alloc((size_t)l->size[1] * (size_t)planes + 1, sizeof(int));
+    box->run = sm_alloc((size_t)blocks + 1, sizeof(BlockRun));
     box->site = sm_alloc((size_t)blocks + 1, sizeof(ivec));
     box->whole = sm_alloc((size_t)blocks, sizeof(bool));
     box->listed = sm_alloc((size_t)blocks, sizeof(bool));
     box->mixed = sm_alloc((size_t)blocks, sizeof(bool));
     lsm->layers = planes;
     /* a window that moves from plane z - 1 to z also reads what it leaves, plane z - 1 - w */
-    box->running = lsm->w > 2 && lsm->params.summation == SM_SUM_FAST;
+    box->running = lsm->w >= RUNNING && lsm->params.summation == SM_SUM_FAST;
     lsm->reach = box->running ? lsm->w + 1 : lsm->w;
     lsm->chapter = box->running ? RESTART : 1;
     lsm->layer_plane = sm_alloc((size_t)planes + 1, sizeof(int));
@@ -270,7 +276,7 @@ long lsm_blocks_bytes(const Lsm *lsm)
         (lsm->side + 1) * (long)sizeof(int) + (long)sizeof(ivec) + 3 * (long)sizeof(bool);
     long rows = lsm->box->plane_run[lsm->layers] * (long)sizeof(BlockRun);
     const LsmLattice *l = &lsm->lattice;
-    rows += (long)l->size[1] * l->size[2] * l->words * (long)sizeof(uint64_t);
+    rows += (long)l->size[1] * l->size[2] * (l->words * (long)sizeof(uint64_t) + (long)sizeof(int));
     return lsm->blocks * a_block + rows + lsm->box->shared_bytes;
 }
 
@@ -279,6 +285,7 @@ void lsm_blocks_free(Blocks *box)
     if (!box) return;
     free_shared(box);
     free(box->plane_run);
+    free(box->row_run);
     free(box->run);
     free(box->place);
     free(box->along_z);

@@ -68,7 +68,7 @@ SM_INLINE vec window_y(const Around *in, long column, int w, bool moving, int f,
     } else {
         window_sum(in->row + 1, at, w, &sum, moment);
     }
-    if (w > 2 && in->running) {
+    if (w >= RUNNING && in->running) {
         lanes_store(kept, sum);
         if (moment) lanes_store(kept_moment, *moment);
     }
@@ -90,7 +90,7 @@ SM_INLINE vec window_y_less(const Around *in, long column, int w, bool moving, i
     } else {
         window_less(in->row + 1, at, weighed, w, &sum, &rest);
     }
-    if (w > 2 && in->running) {
+    if (w >= RUNNING && in->running) {
         lanes_store(in->window + at, sum);
         lanes_store(in->window + weighed, rest);
     }
@@ -156,7 +156,7 @@ SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool damping, bool 
         move_z_up(lsm, block, w, damping, d, kept, sum);
     else
         sum_z_up(lsm, block, w, damping, d, sum);
-    for (int k = 0; k < n && w > 2 && lsm->box->running; k++)
+    for (int k = 0; k < n && w >= RUNNING && lsm->box->running; k++)
         lanes_store(kept + (3 * k + d) * SM_LANES, sum[k]);
     for (int k = 0; k < n; k++) sum[k] = through(lsm, block, w, sum[k]);
 }
@@ -196,8 +196,19 @@ SM_INLINE void run_up(const Lsm *lsm, const BlockRun *run, int w, bool damping, 
 /* The runs of a row of a plane. */
 typedef struct {
     const BlockRun *run;
-    int runs, blocks;
+    int runs;
+    bool full; /* blocks all the way */
 } Row;
+
+SM_INLINE Row row_at(const Lsm *lsm, int plane, int y)
+{
+    const Blocks *box = lsm->box;
+    if (y < 0 || y >= lsm->lattice.size[1]) return (Row){NULL, 0, false};
+    const int *first = box->row_run + plane * (long)lsm->lattice.size[1] + y;
+    const BlockRun *run = box->run + first[0];
+    int runs = first[1] - first[0];
+    return (Row){run, runs, run[runs].first - run->first == box->width};
+}
 
 SM_INLINE void run_up_all(const Lsm *lsm, const BlockRun *run, int w, bool damping, bool moving,
                           real *kept, real *row)
@@ -212,11 +223,11 @@ SM_INLINE void run_up_all(const Lsm *lsm, const BlockRun *run, int w, bool dampi
 SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, Row at, int slot, int w, bool damping)
 {
     real *row = s->above + slot * s->pitch;
-    if (at.blocks < lsm->box->width) memset(row, 0, (size_t)s->pitch * sizeof(real));
+    if (!at.full) memset(row, 0, (size_t)s->pitch * sizeof(real));
     for (int i = 0; i < at.runs; i++) {
         const BlockRun *run = at.run + i;
-        real *kept = w > 2 ? s->plane + run->y * s->pitch : NULL;
-        if (w > 2 && run->moves_z)
+        real *kept = w >= RUNNING ? s->plane + run->y * s->pitch : NULL;
+        if (w >= RUNNING && run->moves_z)
             run_up_all(lsm, run, w, damping, true, kept, row);
         else
             run_up_all(lsm, run, w, damping, false, kept, row);
@@ -261,9 +272,9 @@ SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, Row at, int newest, int slo
 {
     real *row = s->below + slot * s->pitch;
     Around in = rows_around(lsm, s, 0, newest, w);
-    if (at.blocks < lsm->box->width) memset(row, 0, (size_t)s->pitch * sizeof(real));
+    if (!at.full) memset(row, 0, (size_t)s->pitch * sizeof(real));
     for (int i = 0; i < at.runs; i++) {
-        if (w > 2 && at.run[i].moves_y)
+        if (w >= RUNNING && at.run[i].moves_y)
             run_solve(lsm, &in, at.run + i, layer, w, damping, true, row, solve, laps);
         else
             run_solve(lsm, &in, at.run + i, layer, w, damping, false, row, solve, laps);
@@ -314,26 +325,12 @@ SM_INLINE void row_down(const Lsm *lsm, const Scratch *s, Row at, int newest, in
         const BlockRun *run = at.run + i;
         real *out = lsm->box->down[plane] + (run->first - lsm->layer_block[plane]) * BLOCK_DOWN;
         for (int d = 0; d < 3; d++) {
-            if (w > 2 && run->moves_y)
+            if (w >= RUNNING && run->moves_y)
                 run_down(lsm, &in, run, w, damping, true, d, out);
             else
                 run_down(lsm, &in, run, w, damping, false, d, out);
         }
     }
-}
-
-/* The row of a plane at y; `run` walks along with rising y. */
-static Row row_at(const Lsm *lsm, int plane, int *run, int y)
-{
-    const Blocks *box = lsm->box;
-    int end = box->plane_run[plane + 1];
-    while (*run < end && box->run[*run].y < y) ++*run;
-    Row row = {box->run + *run, 0, 0};
-    for (int i = *run; i < end && box->run[i].y == y; i++) {
-        row.runs++;
-        row.blocks += box->run[i].count;
-    }
-    return row;
 }
 
 /* A plane's rows as a pipeline: row y goes up along z and x when row y - w is solved, and row
@@ -345,17 +342,16 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, 
     int begin = box->plane_run[plane], end = box->plane_run[plane + 1];
     if (begin == end) return;
     Scratch s = scratch_of(lsm, thread);
-    int first = box->run[begin].y, last = box->run[end - 1].y, walk[3] = {begin, begin, begin};
+    int first = box->run[begin].y, last = box->run[end - 1].y;
     SmStage stage = damping ? SM_DAMPING : SM_FAST_SUM;
     memset(s.above + (s.ring - w) * s.pitch, 0,
            (size_t)(w * s.pitch) * sizeof(real)); /* above `first` */
     for (int y = first, slot = 0; y <= last + 2 * w; y++) {
         int behind = slot < w ? slot - w + s.ring : slot - w; /* of row y - w */
-        row_up(lsm, &s, row_at(lsm, plane, &walk[0], y), slot, w, damping);
+        row_up(lsm, &s, row_at(lsm, plane, y), slot, w, damping);
         sm_lap(laps, stage);
-        row_solve(lsm, &s, row_at(lsm, plane, &walk[1], y - w), slot, behind, plane, w, damping,
-                  solve, laps);
-        row_down(lsm, &s, row_at(lsm, plane, &walk[2], y - 2 * w), behind, plane, w, damping);
+        row_solve(lsm, &s, row_at(lsm, plane, y - w), slot, behind, plane, w, damping, solve, laps);
+        row_down(lsm, &s, row_at(lsm, plane, y - 2 * w), behind, plane, w, damping);
         sm_lap(laps, stage);
         slot = slot + 1 == s.ring ? 0 : slot + 1;
     }
@@ -403,7 +399,7 @@ SM_INLINE void sum_z_down(const Lsm *lsm, int plane, long block, int w, bool dam
         const real *in = down_at(lsm, plane + c - w, along[c]);
         if (!in) continue;
         for (int f = 0; f < 6; f++) {
-            if (f < 3 || damping || w > 2) sum[f] += lanes_load(in + f * SM_LANES);
+            if (f < 3 || damping || w >= RUNNING) sum[f] += lanes_load(in + f * SM_LANES);
             if (f >= 3 && !damping && c != w)
                 sum[f - 3] -= (real)(c - w) * lanes_load(in + f * SM_LANES);
         }
@@ -434,7 +430,7 @@ SM_INLINE void move_z_down(const Lsm *lsm, int plane, long block, int w, bool da
 SM_INLINE void stage_z_down(const Lsm *lsm, int plane, long block, bool moving, int thread, int w,
                             bool damping, vec sum[6])
 {
-    if (w <= 2 || !lsm->box->running) {
+    if (w < RUNNING || !lsm->box->running) {
         sum_z_down(lsm, plane, block, w, damping, sum);
         return;
     }
