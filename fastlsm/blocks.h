@@ -3,8 +3,10 @@
  * The moment chain of summation.h, but bars, plates and cubes are taken over every site of the box
  * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
  * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
- * the L1 cache. Empty sites hold zero. A region whose box sum is not its exact sum (a gap, a
- * corner, a broken link within its box) is summed by its lists instead, lane by lane. */
+ * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
+ * summed anew at every RESTART-th row and plane, or rounding would add up. Empty sites hold zero. A
+ * region whose box sum is not its exact sum (a gap, a corner, a broken link within its box) is
+ * summed by its lists instead, lane by lane. */
 #ifndef LSM_BLOCKS_H
 #define LSM_BLOCKS_H
 
@@ -16,16 +18,22 @@
 #define lsm_blocks_free    SM_NAME(lsm_blocks_free)
 #define lsm_blocks_bytes   SM_NAME(lsm_blocks_bytes)
 
+enum { RUNNING = 3, RESTART = 8 };
+
 /* Blocks that touch along x. A row may have several runs. */
 typedef struct {
     int y, column; /* of the first block; columns are in blocks */
     int first, count;
+    bool moves_y, moves_z; /* windows of its blocks move on from the row or plane before */
 } BlockRun;
 
 struct Blocks {
-    int width;      /* blocks across the lattice's box along x */
-    int *plane_run; /* [planes + 1] first run of each plane; runs rise in y, then x */
-    BlockRun *run;
+    int width;          /* blocks across the lattice's box along x */
+    bool running;       /* sums along y and z are windows that move: O(1) */
+    int *plane_run;     /* [planes + 1] first run of each plane; runs rise in y, then x */
+    int *row_run;       /* [planes * rows + 1] the same of each row */
+    BlockRun *run;      /* and one more, where the blocks end */
+    int *place;         /* [blocks] the same in every plane: y * width + column */
     int *along_z;       /* [blocks][side] the block at the same place in planes z - w .. z + w; the
                            empty block (number `blocks`) where there is none */
     uint64_t *passable; /* bitmap of the sites whose sums other sites' sums pass through */
@@ -37,8 +45,9 @@ struct Blocks {
     real *down_memory;
     int threads;
     long shared_bytes;
-    real **scratch;   /* [threads] rows of one plane */
-    int **window_row; /* [threads][2 width] rows that y windows are at */
+    real **scratch; /* [threads] rows of one plane, and windows */
+    real **window;  /* [threads] up, down: the z windows of a plane's places, [12] and [6] blocks
+                       each; none unless `running` */
 };
 
 /* What a pass does with the 12 sums of one or two blocks' regions, the second's after the first's;

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "blocks.h"
+#include "pipeline.h"
 
 /* Any particle at the lanes of block `column` of row (y, z)? */
 static bool occupied(const LsmLattice *l, int column, int y, int z)
@@ -46,7 +47,7 @@ static void add_row(Lsm *lsm, Blocks *box, int y, int z, int *runs)
         }
         if (!run) {
             run = &box->run[(*runs)++];
-            *run = (BlockRun){y, column, (int)lsm->blocks, 0};
+            *run = (BlockRun){.y = y, .column = column, .first = (int)lsm->blocks};
         }
         run->count++;
         add_block(lsm, box, column, y, z);
@@ -59,11 +60,16 @@ static void add_rows(Lsm *lsm, Blocks *box)
     for (int z = 0; z < lsm->lattice.size[2]; z++) {
         box->plane_run[z] = runs;
         lsm->layer_block[z] = lsm->blocks;
-        for (int y = 0; y < lsm->lattice.size[1]; y++) add_row(lsm, box, y, z, &runs);
+        for (int y = 0; y < lsm->lattice.size[1]; y++) {
+            box->row_run[z * (long)lsm->lattice.size[1] + y] = runs;
+            add_row(lsm, box, y, z, &runs);
+        }
     }
     box->plane_run[lsm->lattice.size[2]] = runs;
     lsm->layer_block[lsm->lattice.size[2]] = lsm->blocks;
-    box->run = sm_realloc(box->run, (size_t)runs, sizeof(BlockRun));
+    box->row_run[lsm->lattice.size[1] * (long)lsm->lattice.size[2]] = runs;
+    box->run = sm_realloc(box->run, (size_t)runs + 1, sizeof(BlockRun));
+    box->run[runs] = (BlockRun){.first = (int)lsm->blocks};
 }
 
 /* The block of `column` in row y of plane z, or the empty block: in the last run that does not
@@ -97,6 +103,31 @@ static void find_neighbours(Lsm *lsm, Blocks *box)
                     *along++ = block_at(lsm, box, box->run[r].column + i, box->run[r].y, z + c);
 }
 
+/* Do all blocks of a run have one in the row (or plane) before, whose windows they go on from? */
+static void find_moves(const Lsm *lsm, Blocks *box)
+{
+    for (int z = 0; z < lsm->lattice.size[2]; z++)
+        for (int r = box->plane_run[z]; r < box->plane_run[z + 1]; r++) {
+            BlockRun *run = &box->run[r];
+            run->moves_y = box->running && run->y % RESTART;
+            run->moves_z = box->running && z % RESTART;
+            for (int column = run->column; column < run->column + run->count; column++) {
+                if (block_at(lsm, box, column, run->y - 1, z) == lsm->blocks) run->moves_y = false;
+                if (block_at(lsm, box, column, run->y, z - 1) == lsm->blocks) run->moves_z = false;
+            }
+        }
+}
+
+static void find_places(const Lsm *lsm, Blocks *box)
+{
+    box->place = sm_alloc((size_t)lsm->blocks, sizeof(int));
+    for (int r = 0; r < box->plane_run[lsm->lattice.size[2]]; r++) {
+        const BlockRun *run = &box->run[r];
+        for (int i = 0; i < run->count; i++)
+            box->place[run->first + i] = run->y * box->width + run->column + i;
+    }
+}
+
 /* A bitmap of what sums along z and y may pass through: sites whose blocks exist, but at w = 1
  * particles only (`masked` in blocks.c). */
 static uint64_t *passable_sites(const Lsm *lsm)
@@ -125,13 +156,17 @@ void lsm_blocks_build(Lsm *lsm)
     long blocks = count_blocks(l);
     box->width = (l->size[0] + SM_LANES - 1) / SM_LANES;
     box->plane_run = sm_alloc((size_t)planes + 1, sizeof(int));
-    box->run = sm_alloc((size_t)blocks, sizeof(BlockRun));
+    box->row_run = sm_alloc((size_t)l->size[1] * (size_t)planes + 1, sizeof(int));
+    box->run = sm_alloc((size_t)blocks + 1, sizeof(BlockRun));
     box->site = sm_alloc((size_t)blocks + 1, sizeof(ivec));
     box->whole = sm_alloc((size_t)blocks, sizeof(bool));
     box->listed = sm_alloc((size_t)blocks, sizeof(bool));
     box->mixed = sm_alloc((size_t)blocks, sizeof(bool));
     lsm->layers = planes;
-    lsm->reach = lsm->w;
+    /* a window that moves from plane z - 1 to z also reads what it leaves, plane z - 1 - w */
+    box->running = lsm->w >= RUNNING && lsm->params.summation == SM_SUM_FAST;
+    lsm->reach = box->running ? lsm->w + 1 : lsm->w;
+    lsm->chapter = box->running ? RESTART : 1;
     lsm->layer_plane = sm_alloc((size_t)planes + 1, sizeof(int));
     lsm->layer_block = sm_alloc((size_t)planes + 1, sizeof(long));
     lsm->slot = sm_alloc((size_t)l->count, sizeof(int));
@@ -139,6 +174,8 @@ void lsm_blocks_build(Lsm *lsm)
     for (int z = 0; z <= planes; z++) lsm->layer_plane[z] = z;
     add_rows(lsm, box);
     find_neighbours(lsm, box);
+    find_moves(lsm, box);
+    find_places(lsm, box);
     box->passable = passable_sites(lsm);
 }
 
@@ -171,28 +208,35 @@ bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
 static size_t scratch_size(const Lsm *lsm)
 {
     size_t width = (size_t)lsm->box->width, side = (size_t)lsm->side;
-    return width * SM_LANES * (2 * (side + 1) * 12 + 2 * 16);
+    return width * SM_LANES * (2 * (side + 1) * 12 + 2 * 12);
+}
+
+/* Reals of one thread's z windows, up and down. */
+static size_t window_size(const Lsm *lsm)
+{
+    size_t places = (size_t)lsm->box->width * (size_t)lsm->lattice.size[1];
+    return lsm->box->running ? places * SM_LANES * (12 + 6) : 0;
 }
 
 static void free_shared(Blocks *box)
 {
     for (int t = 0; t < box->threads; t++) {
         free(box->scratch[t]);
-        free(box->window_row[t]);
+        free(box->window[t]);
     }
     free(box->scratch);
-    free(box->window_row);
+    free(box->window);
     free(box->down);
     free(box->down_memory);
 }
 
-/* A plane's store is free for another plane once part 2 has passed w planes on: in the middle of a
- * thread's share planes take turns; near its ends, where part 2 waits for the other thread, each
- * has its own. */
+/* A plane's store is free for another plane once part 2 has passed `reach` planes on: in the middle
+ * of a thread's share planes take turns; near its ends, where part 2 waits for the other thread,
+ * each has its own. */
 void lsm_blocks_share(Lsm *lsm)
 {
     Blocks *box = lsm->box;
-    int planes = lsm->layers, side = lsm->side;
+    int planes = lsm->layers, turns = 2 * lsm->reach + 1;
     long most = 0, stores = 0;
     free_shared(box);
     box->threads = lsm->threads;
@@ -202,14 +246,14 @@ void lsm_blocks_share(Lsm *lsm)
         most = blocks > most ? blocks : most;
     }
     for (int t = 0; t < lsm->threads; t++) {
-        int first = lsm->thread_layer[t], last = lsm->thread_layer[t + 1];
+        int begin, end;
+        lsm_pipeline_own(lsm, 2, t, &begin, &end);
+        if (begin > 0) begin += lsm->reach;
+        if (end < planes) end -= lsm->reach;
         long ring = stores;
-        stores += side;
-        for (int z = first; z < last; z++) {
-            bool shared = (t > 0 && z < first + 3 * lsm->w) ||
-                          (t + 1 < lsm->threads && z >= last - 3 * lsm->w);
-            store[z] = (int)(shared ? stores++ : ring + z % side);
-        }
+        stores += turns;
+        for (int z = lsm->thread_layer[t]; z < lsm->thread_layer[t + 1]; z++)
+            store[z] = (int)(z < begin || z >= end ? stores++ : ring + z % turns);
     }
     box->down = sm_alloc((size_t)planes, sizeof *box->down);
     box->down_memory = sm_alloc((size_t)stores * (size_t)most * 6 * SM_LANES, sizeof(real));
@@ -217,21 +261,22 @@ void lsm_blocks_share(Lsm *lsm)
         box->down[z] = box->down_memory + store[z] * most * 6 * SM_LANES;
     free(store);
     box->scratch = sm_alloc((size_t)lsm->threads, sizeof *box->scratch);
-    box->window_row = sm_alloc((size_t)lsm->threads, sizeof *box->window_row);
+    box->window = sm_alloc((size_t)lsm->threads, sizeof *box->window);
     for (int t = 0; t < lsm->threads; t++) {
         box->scratch[t] = sm_alloc(scratch_size(lsm), sizeof(real));
-        box->window_row[t] = sm_alloc(2 * (size_t)box->width, sizeof(int));
+        box->window[t] = sm_alloc(window_size(lsm), sizeof(real));
     }
-    box->shared_bytes = (stores * most * 6 * SM_LANES + lsm->threads * (long)scratch_size(lsm)) *
-                        (long)sizeof(real);
+    long own = (long)(scratch_size(lsm) + window_size(lsm));
+    box->shared_bytes = (stores * most * 6 * SM_LANES + lsm->threads * own) * (long)sizeof(real);
 }
 
 long lsm_blocks_bytes(const Lsm *lsm)
 {
-    long a_block = lsm->side * (long)sizeof(int) + (long)sizeof(ivec) + 3 * (long)sizeof(bool);
+    long a_block =
+        (lsm->side + 1) * (long)sizeof(int) + (long)sizeof(ivec) + 3 * (long)sizeof(bool);
     long rows = lsm->box->plane_run[lsm->layers] * (long)sizeof(BlockRun);
     const LsmLattice *l = &lsm->lattice;
-    rows += (long)l->size[1] * l->size[2] * l->words * (long)sizeof(uint64_t);
+    rows += (long)l->size[1] * l->size[2] * (l->words * (long)sizeof(uint64_t) + (long)sizeof(int));
     return lsm->blocks * a_block + rows + lsm->box->shared_bytes;
 }
 
@@ -240,7 +285,9 @@ void lsm_blocks_free(Blocks *box)
     if (!box) return;
     free_shared(box);
     free(box->plane_run);
+    free(box->row_run);
     free(box->run);
+    free(box->place);
     free(box->along_z);
     free(box->site);
     free(box->passable);

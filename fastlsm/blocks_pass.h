@@ -8,55 +8,33 @@
 #include "match.h"
 #include "window.h"
 
-#include <limits.h>
 #include <string.h>
 
 /* One body serves shape matching and damping. Values are numbered 3 k + d, d = 0..2 for x, y, z:
  * up, k counts (P, Pz, Px, Py) and down (Q, Rz, Rx, Ry) in the order in which the chain's stages
  * add and use them; damping sums four plain triples up and two down. */
-enum { BLOCK = 12 * SM_LANES, WINDOW = 16 * SM_LANES };
+enum { BLOCK = 12 * SM_LANES, BLOCK_DOWN = 6 * SM_LANES };
 
 /* Scratch of a thread. Rings hold the last 2 w + 2 rows of a plane, each [width][BLOCK]. */
 typedef struct {
     long pitch;      /* values in a row */
     int ring;        /* rows in a ring */
-    bool running;    /* y stages move a window instead of summing it anew */
     real *above;     /* [ring] rows after the stages up along z and x */
     real *below;     /* [ring] rows after `solve` */
-    real *window[2]; /* up, down: each column's window of the y stage: 12 sums, 3 moments */
-    int *row[2];     /* the row it is at */
+    real *window[2]; /* up, down: each column's window of the y stage, [BLOCK] */
+    real *plane;     /* up: each place's window of the z stage, [BLOCK] */
 } Scratch;
 
 static Scratch scratch_of(const Lsm *lsm, int thread)
 {
     int width = lsm->box->width;
     Scratch s = {.pitch = width * (long)BLOCK, .ring = lsm->side + 1};
-    s.running = lsm->w > 2 && lsm->params.summation == SM_SUM_FAST;
     s.above = lsm->box->scratch[thread];
     s.below = s.above + s.ring * s.pitch;
     s.window[0] = s.below + s.ring * s.pitch;
-    s.window[1] = s.window[0] + width * (long)WINDOW;
-    s.row[0] = lsm->box->window_row[thread];
-    s.row[1] = s.row[0] + width;
-    for (int i = 0; i < 2 * width; i++) s.row[0][i] = INT_MIN;
+    s.window[1] = s.window[0] + s.pitch;
+    s.plane = lsm->box->window[thread];
     return s;
-}
-
-/* A window that has moved this far is summed anew, or rounding would add up. */
-enum { RESTART = 16 };
-
-/* Are the windows of all columns of a run one row behind it? */
-SM_INLINE bool can_move(const Scratch *s, int way, const BlockRun *run)
-{
-    if (!s->running || run->y % RESTART == 0) return false;
-    for (int i = 0; i < run->count; i++)
-        if (s->row[way][run->column + i] != run->y - 1) return false;
-    return true;
-}
-
-SM_INLINE void has_moved(const Scratch *s, int way, const BlockRun *run)
-{
-    for (int i = 0; i < run->count && s->running; i++) s->row[way][run->column + i] = run->y;
 }
 
 /* Where the y stage of a row reads: rows y - w - 1 .. y + w of a ring, and the windows. */
@@ -67,9 +45,9 @@ typedef struct {
 } Around;
 
 /* `slot` of the ring holds row y + w. */
-SM_INLINE Around rows_around(const Scratch *s, int way, int slot, int w)
+SM_INLINE Around rows_around(const Lsm *lsm, const Scratch *s, int way, int slot, int w)
 {
-    Around around = {.window = s->window[way], .running = s->running};
+    Around around = {.window = s->window[way], .running = lsm->box->running};
     for (int b = 0; b < 2 * w + 2; b++) {
         slot = slot + 1 == s->ring ? 0 : slot + 1;
         around.row[b] = (way ? s->below : s->above) + slot * s->pitch;
@@ -77,25 +55,45 @@ SM_INLINE Around rows_around(const Scratch *s, int way, int slot, int w)
     return around;
 }
 
-/* Value f of the y stage at a column, and its moment unless that is number -1. */
-SM_INLINE vec window_y(const Around *in, long column, int w, bool moving, int f, int number,
-                       vec *moment)
+/* Value f of the y stage at a column, and its moment, number m, unless that is NULL. */
+SM_INLINE vec window_y(const Around *in, long column, int w, bool moving, int f, int m, vec *moment)
 {
-    long at = column * (long)BLOCK + f * SM_LANES;
-    real *kept = in->window + column * (long)WINDOW;
-    real *sum_kept = kept + f * SM_LANES, *moment_kept = kept + (12 + number) * SM_LANES;
+    long at = column * BLOCK + f * SM_LANES;
+    real *kept = in->window + at, *kept_moment = in->window + column * BLOCK + m * SM_LANES;
     vec sum;
     if (moving) {
-        sum = lanes_load(sum_kept);
-        if (number >= 0) *moment = lanes_load(moment_kept);
+        sum = lanes_load(kept);
+        if (moment) *moment = lanes_load(kept_moment);
         window_move(lanes_load(in->row[0] + at), lanes_load(in->row[2 * w + 1] + at), w, &sum,
-                    number >= 0 ? moment : NULL);
+                    moment);
     } else {
-        window_sum(in->row + 1, at, w, &sum, number >= 0 ? moment : NULL);
+        window_sum(in->row + 1, at, w, &sum, moment);
     }
-    if (w > 2 && in->running) {
-        lanes_store(sum_kept, sum);
-        if (number >= 0) lanes_store(moment_kept, *moment);
+    if (w >= RUNNING && in->running) {
+        lanes_store(kept, sum);
+        if (moment) lanes_store(kept_moment, *moment);
+    }
+    return sum;
+}
+
+/* Its adjoint: value f at a column less the moment of value m. */
+SM_INLINE vec window_y_less(const Around *in, long column, int w, bool moving, int f, int m)
+{
+    long at = column * BLOCK + f * SM_LANES, weighed = column * BLOCK + m * SM_LANES;
+    vec sum, rest;
+    if (moving) {
+        const real *leave = in->row[0], *enter = in->row[2 * w + 1];
+        vec out[2] = {lanes_load(leave + at), lanes_load(leave + weighed)};
+        vec join[2] = {lanes_load(enter + at), lanes_load(enter + weighed)};
+        sum = lanes_load(in->window + at);
+        rest = lanes_load(in->window + weighed);
+        window_less_move(out, join, w, &sum, &rest);
+    } else {
+        window_less(in->row + 1, at, weighed, w, &sum, &rest);
+    }
+    if (w >= RUNNING && in->running) {
+        lanes_store(in->window + at, sum);
+        lanes_store(in->window + weighed, rest);
     }
     return sum;
 }
@@ -118,8 +116,24 @@ SM_INLINE void source(const Lsm *lsm, long block, bool damping, int d, vec out[4
     out[0] = lsm->pass == PASS_CONSTANTS ? weight : weight * lanes_load(x + d * SM_LANES);
 }
 
-/* The stage up along z for values 3 k + d of a block: 1 -> 2 of them, of damping 4. */
-SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool damping, int d, vec sum[4])
+/* The window of the z stage up of a block, from the one in `kept` of the block in the plane before.
+ */
+SM_INLINE void move_z_up(const Lsm *lsm, long block, int w, bool damping, int d, const real *kept,
+                         vec sum[4])
+{
+    const int *along = lsm->box->along_z + block * (2 * w + 1);
+    const int *along_before = lsm->box->along_z + along[w - 1] * (long)(2 * w + 1);
+    vec leave[4], enter[4];
+    source(lsm, along_before[0], damping, d, leave);
+    source(lsm, along[2 * w], damping, d, enter);
+    for (int k = 0; k < (damping ? 4 : 2); k++) sum[k] = lanes_load(kept + (3 * k + d) * SM_LANES);
+    if (damping)
+        for (int k = 0; k < 4; k++) window_move(leave[k], enter[k], w, &sum[k], NULL);
+    else
+        window_move(leave[0], enter[0], w, &sum[0], &sum[1]);
+}
+
+SM_INLINE void sum_z_up(const Lsm *lsm, long block, int w, bool damping, int d, vec sum[4])
 {
     const int *along = lsm->box->along_z + block * (2 * w + 1);
     vec p[4];
@@ -131,25 +145,41 @@ SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool damping, int d
         for (int k = 0; k < (damping ? 4 : 1); k++) sum[k] += p[k];
         if (!damping) sum[1] += (real)(c - w) * p[0];
     }
-    for (int k = 0; k < (damping ? 4 : 2); k++) sum[k] = through(lsm, block, w, sum[k]);
+}
+
+/* The stage up along z for values 3 k + d of a block: 1 -> 2 of them, of damping 4. `kept` is its
+ * place's window. */
+SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool damping, bool moving, int d,
+                          real *kept, vec sum[4])
+{
+    int n = damping ? 4 : 2;
+    if (moving)
+        move_z_up(lsm, block, w, damping, d, kept, sum);
+    else
+        sum_z_up(lsm, block, w, damping, d, sum);
+    for (int k = 0; k < n && w >= RUNNING && lsm->box->running; k++)
+        lanes_store(kept + (3 * k + d) * SM_LANES, sum[k]);
+    for (int k = 0; k < n; k++) sum[k] = through(lsm, block, w, sum[k]);
 }
 
 /* The stages up along z and x for values 3 k + d of a run, d = first .. first + parts - 1, into a
- * row of the ring `above`: 1 -> 2 -> 3 values of each d. */
-SM_INLINE void run_up(const Lsm *lsm, const BlockRun *run, int w, bool damping, int first,
-                      int parts, real *row)
+ * row of the ring `above`: 1 -> 2 -> 3 values of each d. `kept` are the windows of its row. */
+SM_INLINE void run_up(const Lsm *lsm, const BlockRun *run, int w, bool damping, bool moving,
+                      int first, int parts, real *kept, real *row)
 {
     int n = damping ? 4 : 2, last = run->first + run->count - 1;
     real *out = row + run->column * (long)BLOCK + first * SM_LANES;
+    kept += run->column * (long)BLOCK;
     vec before[3][4], here[3][4], after[3][4], moment = lanes_set(0);
     for (int d = 0; d < parts; d++) {
-        stage_z_up(lsm, run->first, w, damping, first + d, here[d]);
+        stage_z_up(lsm, run->first, w, damping, moving, first + d, kept, here[d]);
         for (int k = 0; k < n; k++) before[d][k] = after[d][k] = lanes_set(0);
     }
     for (int block = run->first; block <= last; block++, out += BLOCK) {
+        kept += BLOCK;
         for (int d = 0; d < parts; d++) {
             if (block < last)
-                stage_z_up(lsm, block + 1, w, damping, first + d, after[d]);
+                stage_z_up(lsm, block + 1, w, damping, moving, first + d, kept, after[d]);
             else
                 for (int k = 0; k < n; k++) after[d][k] = lanes_set(0);
             for (int k = 0; k < n; k++) {
@@ -167,19 +197,41 @@ SM_INLINE void run_up(const Lsm *lsm, const BlockRun *run, int w, bool damping, 
 /* The runs of a row of a plane. */
 typedef struct {
     const BlockRun *run;
-    int runs, blocks;
+    int runs;
+    bool full; /* blocks all the way */
 } Row;
+
+SM_INLINE Row row_at(const Lsm *lsm, int plane, int y)
+{
+    const Blocks *box = lsm->box;
+    if (y < 0 || y >= lsm->lattice.size[1]) return (Row){NULL, 0, false};
+    const int *first = box->row_run + plane * (long)lsm->lattice.size[1] + y;
+    const BlockRun *run = box->run + first[0];
+    int runs = first[1] - first[0];
+    return (Row){run, runs, run[runs].first - run->first == box->width};
+}
+
+SM_INLINE void run_up_all(const Lsm *lsm, const BlockRun *run, int w, bool damping, bool moving,
+                          real *kept, real *row)
+{
+    if (damping) /* in turn: all at once would not fit into registers */
+        for (int d = 0; d < 3; d++) run_up(lsm, run, w, true, moving, d, 1, kept, row);
+    else
+        run_up(lsm, run, w, false, moving, 0, 3, kept, row);
+}
 
 /* Rows have zeros where they have no blocks. */
 SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, Row at, int slot, int w, bool damping)
 {
     real *row = s->above + slot * s->pitch;
-    if (at.blocks < lsm->box->width) memset(row, 0, (size_t)s->pitch * sizeof(real));
+    if (!at.full) memset(row, 0, (size_t)s->pitch * sizeof(real));
     for (int i = 0; i < at.runs; i++) {
-        if (damping) /* in turn: all at once would not fit into registers */
-            for (int d = 0; d < 3; d++) run_up(lsm, at.run + i, w, true, d, 1, row);
+        const BlockRun *run = at.run + i;
+        real *kept = w >= RUNNING ? s->plane + run->y * s->pitch : NULL;
+        if (w >= RUNNING && run->moves_z)
+            run_up_all(lsm, run, w, damping, true, kept, row);
         else
-            run_up(lsm, at.run + i, w, false, 0, 3, row);
+            run_up_all(lsm, run, w, damping, false, kept, row);
     }
 }
 
@@ -192,9 +244,9 @@ SM_INLINE void solve_some(Lsm *lsm, const Around *in, const BlockRun *run, int i
     vec sum[2][12], out[2][12];
     for (int k = 0; k < blocks; k++)
         for (int f = 0; f < (damping ? 12 : 9); f++) {
-            int to = damping || f < 6 ? f : f + 3, number = damping || f > 2 ? -1 : f;
-            sum[k][to] =
-                window_y(in, run->column + i + k, w, moving, f, number, &sum[k][6 + f % 3]);
+            int to = damping || f < 6 ? f : f + 3;
+            vec *moment = damping || f > 2 ? NULL : &sum[k][6 + f];
+            sum[k][to] = window_y(in, run->column + i + k, w, moving, f, 9 + f, moment);
         }
     sm_lap(laps, damping ? SM_DAMPING : SM_FAST_SUM);
     solve(lsm, layer, run->first + i, blocks, sum, out, laps);
@@ -220,14 +272,13 @@ SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, Row at, int newest, int slo
                          bool damping, BlockSolve *solve, SmLaps *laps)
 {
     real *row = s->below + slot * s->pitch;
-    Around in = rows_around(s, 0, newest, w);
-    if (at.blocks < lsm->box->width) memset(row, 0, (size_t)s->pitch * sizeof(real));
+    Around in = rows_around(lsm, s, 0, newest, w);
+    if (!at.full) memset(row, 0, (size_t)s->pitch * sizeof(real));
     for (int i = 0; i < at.runs; i++) {
-        if (w > 2 && can_move(s, 0, at.run + i))
+        if (w >= RUNNING && at.run[i].moves_y)
             run_solve(lsm, &in, at.run + i, layer, w, damping, true, row, solve, laps);
         else
             run_solve(lsm, &in, at.run + i, layer, w, damping, false, row, solve, laps);
-        if (w > 2) has_moved(s, 0, at.run + i);
     }
 }
 
@@ -235,14 +286,12 @@ SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, Row at, int newest, int slo
 SM_INLINE void stage_y_down(const Lsm *lsm, const Around *in, const BlockRun *run, int i, int w,
                             bool damping, bool moving, int d, vec out[3])
 {
-    vec moment = lanes_set(0);
-    for (int k = 0; k < (damping ? 2 : 3); k++)
-        out[k] = window_y(in, run->column + i, w, moving, 3 * k + d, -1, NULL);
-    if (!damping) {
-        window_y(in, run->column + i, w, moving, 9 + d, d, &moment);
-        out[0] -= moment;
-    }
-    for (int k = 0; k < (damping ? 2 : 3); k++) out[k] = through(lsm, run->first + i, w, out[k]);
+    int n = damping ? 2 : 3;
+    long column = run->column + i;
+    out[0] = damping ? window_y(in, column, w, moving, d, 0, NULL)
+                     : window_y_less(in, column, w, moving, d, 9 + d);
+    for (int k = 1; k < n; k++) out[k] = window_y(in, column, w, moving, 3 * k + d, 0, NULL);
+    for (int k = 0; k < n; k++) out[k] = through(lsm, run->first + i, w, out[k]);
 }
 
 /* The stages down along y and x for values 3 k + d of a run: 4 -> 3 -> 2 of them, into the plane's
@@ -254,7 +303,7 @@ SM_INLINE void run_down(const Lsm *lsm, const Around *in, const BlockRun *run, i
     vec before[3], here[3], after[3], sum[3], moment = lanes_set(0);
     for (int k = 0; k < n; k++) before[k] = lanes_set(0);
     stage_y_down(lsm, in, run, 0, w, damping, moving, d, here);
-    for (int i = 0; i < run->count; i++, out += 6 * SM_LANES) {
+    for (int i = 0; i < run->count; i++, out += BLOCK_DOWN) {
         for (int k = 0; k < n; k++) after[k] = lanes_set(0);
         if (i + 1 < run->count) stage_y_down(lsm, in, run, i + 1, w, damping, moving, d, after);
         for (int k = 0; k < n; k++) {
@@ -272,33 +321,17 @@ SM_INLINE void run_down(const Lsm *lsm, const Around *in, const BlockRun *run, i
 SM_INLINE void row_down(const Lsm *lsm, const Scratch *s, Row at, int newest, int plane, int w,
                         bool damping)
 {
-    Around in = rows_around(s, 1, newest, w);
+    Around in = rows_around(lsm, s, 1, newest, w);
     for (int i = 0; i < at.runs; i++) {
         const BlockRun *run = at.run + i;
-        real *out = lsm->box->down[plane] + (run->first - lsm->layer_block[plane]) * 6 * SM_LANES;
-        bool moving = w > 2 && can_move(s, 1, run);
+        real *out = lsm->box->down[plane] + (run->first - lsm->layer_block[plane]) * BLOCK_DOWN;
         for (int d = 0; d < 3; d++) {
-            if (w > 2 && moving)
+            if (w >= RUNNING && run->moves_y)
                 run_down(lsm, &in, run, w, damping, true, d, out);
             else
                 run_down(lsm, &in, run, w, damping, false, d, out);
         }
-        if (w > 2) has_moved(s, 1, run);
     }
-}
-
-/* The row of a plane at y; `run` walks along with rising y. */
-static Row row_at(const Lsm *lsm, int plane, int *run, int y)
-{
-    const Blocks *box = lsm->box;
-    int end = box->plane_run[plane + 1];
-    while (*run < end && box->run[*run].y < y) ++*run;
-    Row row = {box->run + *run, 0, 0};
-    for (int i = *run; i < end && box->run[i].y == y; i++) {
-        row.runs++;
-        row.blocks += box->run[i].count;
-    }
-    return row;
 }
 
 /* A plane's rows as a pipeline: row y goes up along z and x when row y - w is solved, and row
@@ -310,17 +343,16 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, 
     int begin = box->plane_run[plane], end = box->plane_run[plane + 1];
     if (begin == end) return;
     Scratch s = scratch_of(lsm, thread);
-    int first = box->run[begin].y, last = box->run[end - 1].y, walk[3] = {begin, begin, begin};
+    int first = box->run[begin].y, last = box->run[end - 1].y;
     SmStage stage = damping ? SM_DAMPING : SM_FAST_SUM;
     memset(s.above + (s.ring - w) * s.pitch, 0,
            (size_t)(w * s.pitch) * sizeof(real)); /* above `first` */
     for (int y = first, slot = 0; y <= last + 2 * w; y++) {
         int behind = slot < w ? slot - w + s.ring : slot - w; /* of row y - w */
-        row_up(lsm, &s, row_at(lsm, plane, &walk[0], y), slot, w, damping);
+        row_up(lsm, &s, row_at(lsm, plane, y), slot, w, damping);
         sm_lap(laps, stage);
-        row_solve(lsm, &s, row_at(lsm, plane, &walk[1], y - w), slot, behind, plane, w, damping,
-                  solve, laps);
-        row_down(lsm, &s, row_at(lsm, plane, &walk[2], y - 2 * w), behind, plane, w, damping);
+        row_solve(lsm, &s, row_at(lsm, plane, y - w), slot, behind, plane, w, damping, solve, laps);
+        row_down(lsm, &s, row_at(lsm, plane, y - 2 * w), behind, plane, w, damping);
         sm_lap(laps, stage);
         slot = slot + 1 == s.ring ? 0 : slot + 1;
     }
@@ -353,42 +385,98 @@ SM_INLINE void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, Bloc
 #undef WIDTH
 }
 
-SM_INLINE void stage_z_down(const Lsm *lsm, int plane, long block, int w, bool damping, vec *sum)
+/* Where part 1 has left a block's sums down along y and x; NULL for the empty block. */
+SM_INLINE const real *down_at(const Lsm *lsm, int plane, int block)
 {
-    int F = damping ? 6 : 3;
+    if (block == lsm->blocks) return NULL;
+    return lsm->box->down[plane] + (block - lsm->layer_block[plane]) * BLOCK_DOWN;
+}
+
+SM_INLINE void sum_z_down(const Lsm *lsm, int plane, long block, int w, bool damping, vec sum[6])
+{
     const int *along = lsm->box->along_z + block * (2 * w + 1);
-    for (int f = 0; f < F; f++) sum[f] = lanes_set(0);
+    for (int f = 0; f < 6; f++) sum[f] = lanes_set(0);
     for (int c = 0; c <= 2 * w; c++) {
-        if (along[c] == lsm->blocks) continue;
-        int z = plane + c - w;
-        const real *in = lsm->box->down[z] + (along[c] - lsm->layer_block[z]) * 6 * SM_LANES;
-        for (int f = 0; f < F; f++) sum[f] += lanes_load(in + f * SM_LANES);
-        if (!damping && c != w)
-            for (int d = 0; d < 3; d++)
-                sum[d] -= (real)(c - w) * lanes_load(in + (3 + d) * SM_LANES);
+        const real *in = down_at(lsm, plane + c - w, along[c]);
+        if (!in) continue;
+        for (int f = 0; f < 6; f++) {
+            if (f < 3 || damping || w >= RUNNING) sum[f] += lanes_load(in + f * SM_LANES);
+            if (f >= 3 && !damping && c != w)
+                sum[f - 3] -= (real)(c - w) * lanes_load(in + f * SM_LANES);
+        }
+    }
+}
+
+/* The same from the window of the block in the plane before. */
+SM_INLINE void move_z_down(const Lsm *lsm, int plane, long block, int w, bool damping, vec sum[6])
+{
+    const int *along = lsm->box->along_z + block * (2 * w + 1);
+    const int *along_before = lsm->box->along_z + along[w - 1] * (long)(2 * w + 1);
+    const real *leave = down_at(lsm, plane - w - 1, along_before[0]);
+    const real *enter = down_at(lsm, plane + w, along[2 * w]);
+    for (int d = 0; d < 3; d++) {
+        vec out[2] = {{0}}, join[2] = {{0}};
+        for (int k = 0; k < 2; k++) {
+            if (leave) out[k] = lanes_load(leave + (3 * k + d) * SM_LANES);
+            if (enter) join[k] = lanes_load(enter + (3 * k + d) * SM_LANES);
+        }
+        if (damping)
+            for (int k = 0; k < 2; k++) window_move(out[k], join[k], w, &sum[3 * k + d], NULL);
+        else
+            window_less_move(out, join, w, &sum[d], &sum[3 + d]);
     }
 }
 
 /* The last stage down, along z, for one block of `plane`: 3 or 6 values. */
-SM_INLINE void lsm_blocks_down(const Lsm *lsm, int plane, long block, bool damping, vec *sum)
+SM_INLINE void stage_z_down(const Lsm *lsm, int plane, long block, bool moving, int thread, int w,
+                            bool damping, vec sum[6])
 {
-#define WIDTH(w)                                                                                   \
-    if (damping)                                                                                   \
-        stage_z_down(lsm, plane, block, w, true, sum);                                             \
-    else                                                                                           \
-        stage_z_down(lsm, plane, block, w, false, sum);                                            \
-    break
+    if (w < RUNNING || !lsm->box->running) {
+        sum_z_down(lsm, plane, block, w, damping, sum);
+        return;
+    }
+    real *kept = lsm->box->window[thread] + lsm->box->width * (long)lsm->lattice.size[1] * BLOCK +
+                 lsm->box->place[block] * (long)BLOCK_DOWN;
+    if (moving) {
+        for (int f = 0; f < 6; f++) sum[f] = lanes_load(kept + f * SM_LANES);
+        move_z_down(lsm, plane, block, w, damping, sum);
+    } else {
+        sum_z_down(lsm, plane, block, w, damping, sum);
+    }
+    for (int f = 0; f < 6; f++) lanes_store(kept + f * SM_LANES, sum[f]);
+}
+
+/* What a pass does at the end with a block's 3 or 6 sums. */
+typedef void BlockEnd(Lsm *lsm, long block, vec sum[6], SmLaps *laps);
+
+SM_INLINE void plane_down(Lsm *lsm, int plane, int thread, int w, bool damping, BlockEnd *end,
+                          SmLaps *laps)
+{
+    const Blocks *box = lsm->box;
+    for (int r = box->plane_run[plane]; r < box->plane_run[plane + 1]; r++) {
+        const BlockRun *run = &box->run[r];
+        for (long block = run->first; block < run->first + run->count; block++) {
+            vec sum[6];
+            stage_z_down(lsm, plane, block, run->moves_z, thread, w, damping, sum);
+            end(lsm, block, sum, laps);
+        }
+    }
+}
+
+/* Part 2 of a pass for one plane: the last stage down, along z, and what the pass ends with. */
+SM_INLINE void lsm_blocks_down(Lsm *lsm, int plane, int thread, bool damping, BlockEnd *end,
+                               SmLaps *laps)
+{
     switch (lsm->w) {
     case 1:
-        WIDTH(1);
+        plane_down(lsm, plane, thread, 1, damping, end, laps);
+        break;
     case 2:
-        WIDTH(2);
-    case 5:
-        WIDTH(5);
+        plane_down(lsm, plane, thread, 2, damping, end, laps);
+        break;
     default:
-        WIDTH(lsm->w);
+        plane_down(lsm, plane, thread, lsm->w, damping, end, laps);
     }
-#undef WIDTH
 }
 
 #endif

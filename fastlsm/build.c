@@ -33,6 +33,7 @@ static void build_layers(Lsm *lsm)
     }
     free(count);
     lsm->reach = 0;
+    lsm->chapter = 1;
     for (int l = 0; l < lsm->layers; l++) {
         int reach = 0; /* layers until w planes below this one's first are covered */
         while (l - reach > 0 && lsm->layer_plane[l - reach] > lsm->layer_plane[l] - lsm->w) reach++;

@@ -132,20 +132,34 @@ SM_INLINE void slow_down(Lsm *lsm, long block, const vec sum[6])
     store3(lsm->x + block * 3 * SM_LANES, x);
 }
 
+/* What lists sum, added to a block's sums. */
+static __attribute__((noinline)) void add_listed(const Lsm *lsm, long block, vec sum[6])
+{
+    real sums[6][SM_LANES] __attribute__((aligned(64)));
+    for (int f = 0; f < 6; f++) lanes_store(sums[f], sum[f]);
+    if (lsm->chains)
+        slot_values(lsm, block, 6, sums);
+    else
+        lsm_particles_plain(lsm, lsm->block_region + block * SM_LANES, sums);
+    for (int f = 0; f < 6; f++) sum[f] = lanes_load(sums[f]);
+}
+
+SM_INLINE void slow_block(Lsm *lsm, long block, vec sum[6], SmLaps *laps)
+{
+    (void)laps;
+    if (!lsm->box || lsm->box->mixed[block]) add_listed(lsm, block, sum);
+    slow_down(lsm, block, sum);
+}
+
 static void slow(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    (void)thread;
     if (lsm->chains) lsm_chain_particles(lsm, layer, true);
-    for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
-        real sums[6][SM_LANES] __attribute__((aligned(64))) = {{0}};
-        vec *sum = (vec *)sums;
-        if (lsm->box) lsm_blocks_down(lsm, layer, block, true, sum);
-        if (lsm->chains)
-            slot_values(lsm, block, 6, sums);
-        else if (!lsm->box || lsm->box->mixed[block])
-            lsm_particles_plain(lsm, lsm->block_region + block * SM_LANES, sums);
-        slow_down(lsm, block, sum);
+    for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1] && !lsm->box;
+         block++) {
+        vec sum[6] = {{0}};
+        slow_block(lsm, block, sum, laps);
     }
+    if (lsm->box) lsm_blocks_down(lsm, layer, thread, true, slow_block, laps);
     sm_lap(laps, SM_DAMPING);
 }
 

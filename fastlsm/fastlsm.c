@@ -249,16 +249,6 @@ static __attribute__((noinline)) void add_listed(const Lsm *lsm, long block, vec
     load3(sums[0], sum);
 }
 
-/* |R_i| g_i of a block's particles, in lanes. */
-SM_INLINE void particle_sums(const Lsm *lsm, int layer, long block, vec sum[3])
-{
-    if (lsm->box)
-        lsm_blocks_down(lsm, layer, block, false, sum);
-    else
-        sum[0] = sum[1] = sum[2] = lanes_set(0);
-    if (!lsm->box || lsm->box->mixed[block]) add_listed(lsm, block, sum);
-}
-
 /* Eqs. 1 and 2 in cells and steps: v += g - x + gravity; x += v, unless damping does that later. */
 SM_INLINE void integrate(Lsm *lsm, long block, const vec sum[3])
 {
@@ -280,17 +270,26 @@ SM_INLINE void integrate(Lsm *lsm, long block, const vec sum[3])
     store3(lsm->v + block * 3 * SM_LANES, v);
 }
 
+/* A block's particles from |R_i| g_i, to which the lists may have more to add. */
+SM_INLINE void move_block(Lsm *lsm, long block, vec sum[6], SmLaps *laps)
+{
+    if (!lsm->box || lsm->box->mixed[block]) add_listed(lsm, block, sum);
+    sm_lap(laps, SM_FAST_SUM);
+    integrate(lsm, block, sum);
+    sm_lap(laps, SM_OTHER);
+}
+
 static void move(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    (void)thread;
     if (lsm->pass == PASS_CONSTANTS) return;
     if (lsm->chains) lsm_chain_particles(lsm, layer, false);
+    if (lsm->box) {
+        lsm_blocks_down(lsm, layer, thread, false, move_block, laps);
+        return;
+    }
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
-        vec sum[3];
-        particle_sums(lsm, layer, block, sum);
-        sm_lap(laps, SM_FAST_SUM);
-        integrate(lsm, block, sum);
-        sm_lap(laps, SM_OTHER);
+        vec sum[6] = {{0}};
+        move_block(lsm, block, sum, laps);
     }
 }
 

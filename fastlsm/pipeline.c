@@ -5,6 +5,12 @@
 
 enum { BLOCKS_WORTH_A_THREAD = 128 };
 
+/* The first layer of a chapter, not before `layer`. */
+static int chapter_from(const Lsm *lsm, int layer)
+{
+    return (layer + lsm->chapter - 1) / lsm->chapter * lsm->chapter;
+}
+
 void lsm_pipeline_split(Lsm *lsm)
 {
     int threads = lsm->params.threads > 0 ? lsm->params.threads : omp_get_max_threads();
@@ -17,35 +23,43 @@ void lsm_pipeline_split(Lsm *lsm)
     int layer = 0;
     for (int t = 1; t < threads; t++) {
         while (layer < lsm->layers && lsm->layer_block[layer] * threads < lsm->blocks * t) layer++;
-        lsm->thread_layer[t] = layer;
+        int chapter = chapter_from(lsm, layer - lsm->chapter / 2);
+        lsm->thread_layer[t] = chapter < lsm->layers ? chapter : lsm->layers;
     }
     lsm->thread_layer[threads] = lsm->layers;
 }
 
-/* Do all layers within `span` of layer l belong to the thread that owns first .. last - 1? */
-static bool own(const Lsm *lsm, int l, int span, int first, int last)
+void lsm_pipeline_own(const Lsm *lsm, int part, int thread, int *begin, int *end)
 {
-    return (l - span >= first || first == 0) && (l + span < last || last == lsm->layers);
+    *begin = lsm->thread_layer[thread];
+    *end = lsm->thread_layer[thread + 1];
+    bool before = *begin > 0, after = *end < lsm->layers;
+    for (int i = 0; i < part; i++) {
+        if (before) *begin = chapter_from(lsm, *begin + lsm->reach);
+        if (after) *end -= lsm->reach;
+    }
 }
 
 static void run_own(Lsm *lsm, LsmPart *const part[3], int thread, SmLaps *laps)
 {
-    int first = lsm->thread_layer[thread], last = lsm->thread_layer[thread + 1], reach = lsm->reach;
-    for (int l = first; l < last + 2 * reach; l++) {
-        if (l < last) part[0](lsm, l, thread, laps);
-        int one = l - reach, two = l - 2 * reach;
-        if (one >= first && one < last && own(lsm, one, reach, first, last))
-            part[1](lsm, one, thread, laps);
-        if (two >= first && two < last && own(lsm, two, 2 * reach, first, last))
-            part[2](lsm, two, thread, laps);
-    }
+    int first = lsm->thread_layer[thread], last = lsm->thread_layer[thread + 1];
+    int begin[3], end[3];
+    for (int i = 0; i < 3; i++) lsm_pipeline_own(lsm, i, thread, &begin[i], &end[i]);
+    for (int l = first; l < last + 2 * lsm->reach; l++)
+        for (int i = 0; i < 3; i++) {
+            int layer = l - i * lsm->reach;
+            if (layer >= begin[i] && layer < end[i]) part[i](lsm, layer, thread, laps);
+        }
 }
 
-static void run_shared(Lsm *lsm, LsmPart *run, int span, int thread, SmLaps *laps)
+/* What is left: first the layers at the end of the share, which go on from its own. */
+static void run_shared(Lsm *lsm, LsmPart *const part[3], int i, int thread, SmLaps *laps)
 {
-    int first = lsm->thread_layer[thread], last = lsm->thread_layer[thread + 1];
-    for (int l = first; l < last; l++)
-        if (!own(lsm, l, span, first, last)) run(lsm, l, thread, laps);
+    int first = lsm->thread_layer[thread], last = lsm->thread_layer[thread + 1], begin, end;
+    lsm_pipeline_own(lsm, i, thread, &begin, &end);
+    if (end <= begin) begin = end = last;
+    for (int l = end; l < last; l++) part[i](lsm, l, thread, laps);
+    for (int l = first; l < begin; l++) part[i](lsm, l, thread, laps);
 }
 
 void lsm_pipeline(Lsm *lsm, LsmPart *const part[3])
@@ -61,9 +75,9 @@ void lsm_pipeline(Lsm *lsm, LsmPart *const part[3])
         for (int t = me; t < lsm->threads; t += team) run_own(lsm, part, t, t ? NULL : lsm->laps);
 #pragma omp barrier
         for (int t = me; t < lsm->threads; t += team)
-            run_shared(lsm, part[1], lsm->reach, t, t ? NULL : lsm->laps);
+            run_shared(lsm, part, 1, t, t ? NULL : lsm->laps);
 #pragma omp barrier
         for (int t = me; t < lsm->threads; t += team)
-            run_shared(lsm, part[2], 2 * lsm->reach, t, t ? NULL : lsm->laps);
+            run_shared(lsm, part, 2, t, t ? NULL : lsm->laps);
     }
 }

@@ -4,7 +4,11 @@
  * 2 needs part 1 of the same span, and may overwrite what part 0 and 1 read of layer l. A thread
  * owns consecutive layers and runs the parts as a software pipeline, so that what one part wrote is
  * still in cache when the next reads it; what depends on another thread's layers waits behind a
- * barrier. No part's result depends on who runs it or when, so any thread count gives the same
+ * barrier.
+ *
+ * A part may go on from what the same thread left at the layer before, except at layers that are
+ * multiples of lsm->chapter: the layers from one of these to the next are run in turn by one
+ * thread. So no part's result depends on who runs it or when, and any thread count gives the same
  * bits. */
 #ifndef LSM_PIPELINE_H
 #define LSM_PIPELINE_H
@@ -12,12 +16,17 @@
 #include "state.h"
 
 #define lsm_pipeline       SM_NAME(lsm_pipeline)
+#define lsm_pipeline_own   SM_NAME(lsm_pipeline_own)
 #define lsm_pipeline_split SM_NAME(lsm_pipeline_split)
 
 /* `laps` is NULL but for the first thread of an instrumented run. */
 typedef void LsmPart(Lsm *lsm, int layer, int thread, SmLaps *laps);
 
 void lsm_pipeline(Lsm *lsm, LsmPart *const part[3]);
+
+/* The layers begin .. end - 1 of a thread's share whose part `part` waits for no other thread; none
+ * if end <= begin. */
+void lsm_pipeline_own(const Lsm *lsm, int part, int thread, int *begin, int *end);
 
 /* Shares the layers among threads by their blocks: fills thread_layer, may lower `threads`. */
 void lsm_pipeline_split(Lsm *lsm);

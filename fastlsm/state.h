@@ -109,6 +109,7 @@ typedef struct Lsm {
 
     /* layers */
     int layers, reach;              /* regions of layer l need layers l - reach .. l + reach */
+    int chapter;                    /* layers that one thread runs in turn: pipeline.h */
     int *layer_plane;               /* [layers + 1] */
     long *layer_block, *layer_tile; /* [layers + 1] */
     int *thread_layer;              /* [threads + 1] first layer of each thread */

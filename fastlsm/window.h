@@ -26,6 +26,22 @@ SM_INLINE void window_move(vec leave, vec enter, int w, vec *sum, vec *moment)
     *sum += enter - leave;
 }
 
+/* The adjoint of a sum and its moment: the values less c - w times what they weigh, place c at
+ * in[c] + at and in[c] + weighed. `rest` is the sum of the latter, which a move needs. */
+SM_INLINE void window_less(const real *const *in, long at, long weighed, int w, vec *sum, vec *rest)
+{
+    vec moment = lanes_set(0);
+    window_sum(in, at, w, sum, NULL);
+    window_sum(in, weighed, w, rest, &moment);
+    *sum -= moment;
+}
+
+SM_INLINE void window_less_move(const vec leave[2], const vec enter[2], int w, vec *sum, vec *rest)
+{
+    *sum += *rest + ((enter[0] - (real)w * enter[1]) - (leave[0] + (real)(w + 1) * leave[1]));
+    *rest += enter[1] - leave[1];
+}
+
 /* The sum along x: offsets are lanes of the block `here` and of its neighbours on either side.
  * o = SM_LANES takes a whole neighbour. */
 SM_INLINE vec window_sum_x(vec before, vec here, vec after, int w, vec *moment)
