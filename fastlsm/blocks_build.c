@@ -66,10 +66,10 @@ static void add_rows(Lsm *lsm, Blocks *box)
     box->run = sm_realloc(box->run, (size_t)runs, sizeof(BlockRun));
 }
 
-/* The block of `column` in row y of plane z, or the empty block: in the last run that does not
- * begin after it. */
-static int block_at(const Lsm *lsm, const Blocks *box, int column, int y, int z)
+/* In the last run that does not begin after it. */
+int lsm_blocks_at(const Lsm *lsm, int column, int y, int z)
 {
+    const Blocks *box = lsm->box;
     if (z < 0 || z >= lsm->lattice.size[2]) return (int)lsm->blocks;
     int low = box->plane_run[z], high = box->plane_run[z + 1];
     while (low < high) {
@@ -94,7 +94,7 @@ static void find_neighbours(Lsm *lsm, Blocks *box)
         for (int r = box->plane_run[z]; r < box->plane_run[z + 1]; r++)
             for (int i = 0; i < box->run[r].count; i++)
                 for (int c = -lsm->w; c <= lsm->w; c++)
-                    *along++ = block_at(lsm, box, box->run[r].column + i, box->run[r].y, z + c);
+                    *along++ = lsm_blocks_at(lsm, box->run[r].column + i, box->run[r].y, z + c);
 }
 
 /* A bitmap of what sums along z and y may pass through: sites whose blocks exist, but at w = 1
@@ -153,7 +153,7 @@ static uint64_t way(const Lsm *lsm, const int *at, int b, int c)
 
 /* Up, member i passes through (x_i, y_i, z_r) and (x_r, y_i, z_r); down, region r passes through
  * (x_r, y_i, z_r) and (x_i, y_i, z_r). Sites between must be summed at all. */
-bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
+void lsm_blocks_taken(const Lsm *lsm, long p, uint64_t *up, uint64_t *down)
 {
     const LsmLattice *l = &lsm->lattice;
     const int *at = l->coord[p];
@@ -161,10 +161,17 @@ bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
     for (int row = 0; row < side * side; row++) {
         int b = row % side - w, c = row / side - w;
         uint64_t box = lsm_window(l, l->bits, at[0], at[1] + b, at[2] + c, w);
-        if ((box & way(lsm, at, b, 0)) != rows[row]) return false;
-        if ((box & way(lsm, at, 0, c)) != rows[row]) return false;
+        up[row] = box & way(lsm, at, b, 0);
+        down[row] = box & way(lsm, at, 0, c);
     }
-    return true;
+}
+
+bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
+{
+    size_t size = (size_t)(lsm->side * lsm->side) * sizeof *rows;
+    uint64_t up[LSM_MAX_SIDE * LSM_MAX_SIDE], down[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    lsm_blocks_taken(lsm, p, up, down);
+    return !memcmp(up, rows, size) && !memcmp(down, rows, size);
 }
 
 /* Reals of scratch that one thread needs: see blocks.c. */

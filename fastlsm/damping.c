@@ -2,6 +2,7 @@
  * regions of a particle, pulls the particle's velocity towards it. */
 #include "blocks_pass.h"
 #include "chain_sums.h"
+#include "correct.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
@@ -80,7 +81,9 @@ static void solve_tile(Lsm *lsm, long tile)
 SM_INLINE void solve_block(const Lsm *lsm, long block, vec *F, vec *out)
 {
     vec c[3];
-    if (lsm->box->mixed[block]) {
+    if (lsm->corrections) {
+        correct_products(lsm, block, F);
+    } else if (lsm->box->mixed[block]) {
         const int *region = lsm->block_region + block * SM_LANES;
         vec listed[16];
         region_sums(lsm, region, listed);
@@ -91,6 +94,7 @@ SM_INLINE void solve_block(const Lsm *lsm, long block, vec *F, vec *out)
     rigid_velocity(F, c, lsm->region_const[lsm->tile_const[block]].inverse_mass, out);
     for (int i = 0; i < 6; i++) out[i] = lanes_and(out[i], lsm->box->site[block]);
     if (lsm->box->listed[block]) store_velocities(lsm, block, out);
+    keep_solved(lsm, block, 6, out);
 }
 
 SM_INLINE void solve_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*F)[12],
@@ -140,7 +144,9 @@ static void slow(Lsm *lsm, int layer, int thread, SmLaps *laps)
         real sums[6][SM_LANES] __attribute__((aligned(64))) = {{0}};
         vec *sum = (vec *)sums;
         if (lsm->box) lsm_blocks_down(lsm, layer, block, true, sum);
-        if (lsm->chains)
+        if (lsm->corrections)
+            correct_particles(lsm, block, true, sum);
+        else if (lsm->chains)
             slot_values(lsm, block, 6, sums);
         else if (!lsm->box || lsm->box->mixed[block])
             lsm_particles_plain(lsm, lsm->block_region + block * SM_LANES, sums);

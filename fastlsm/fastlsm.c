@@ -13,6 +13,7 @@
 #include "blocks_pass.h"
 #include "build.h"
 #include "chain_sums.h"
+#include "correct.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
@@ -191,7 +192,10 @@ SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S
     const Blocks *box = lsm->box;
     vec R[2][9], q[2][3];
     for (int k = 0; k < blocks; k++)
-        if (box->mixed[block + k]) replace_sums(lsm, block + k, S[k]);
+        if (lsm->corrections)
+            correct_regions(lsm, block + k, S[k]);
+        else if (box->mixed[block + k])
+            replace_sums(lsm, block + k, S[k]);
     sm_lap(laps, SM_FAST_SUM);
     bool matched = match_sums(lsm, layer, block, blocks, (const vec(*)[12])S, q, R, laps);
     for (int k = 0; k < blocks; k++) {
@@ -206,6 +210,7 @@ SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S
         }
         for (int i = 0; i < 12 && !box->whole[block + k]; i++) /* empty lanes bring nothing down */
             out[k][i] = lanes_and(out[k][i], box->site[block + k]);
+        keep_solved(lsm, block + k, 12, out[k]);
     }
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
@@ -256,7 +261,10 @@ SM_INLINE void particle_sums(const Lsm *lsm, int layer, long block, vec sum[3])
         lsm_blocks_down(lsm, layer, block, false, sum);
     else
         sum[0] = sum[1] = sum[2] = lanes_set(0);
-    if (!lsm->box || lsm->box->mixed[block]) add_listed(lsm, block, sum);
+    if (lsm->corrections)
+        correct_particles(lsm, block, false, sum);
+    else if (!lsm->box || lsm->box->mixed[block])
+        add_listed(lsm, block, sum);
 }
 
 /* Eqs. 1 and 2 in cells and steps: v += g - x + gravity; x += v, unless damping does that later. */
