@@ -185,17 +185,29 @@ static void replace_sums(const Lsm *lsm, long block, vec S[12])
     for (int i = 0; i < 12; i++) S[i] = lanes_select(lanes, listed[i], S[i]);
 }
 
+/* Empty lanes hold the sums of a unit matrix: the quickest to rotate, and their constants are zero.
+ */
+SM_INLINE void empty_sums(ivec site, vec S[12])
+{
+    for (int i = 0; i < 12; i++) {
+        bool diagonal = i == 5 || i == 7 || i == 9;
+        S[i] = diagonal ? lanes_select(site, S[i], lanes_set(1)) : lanes_and(S[i], site);
+    }
+}
+
 /* Block form: the regions centred in one or two blocks that follow each other. */
 SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S)[12],
                             vec (*out)[12], SmLaps *laps)
 {
     const Blocks *box = lsm->box;
     vec R[2][9], q[2][3];
-    for (int k = 0; k < blocks; k++)
+    for (int k = 0; k < blocks; k++) {
         if (lsm->corrections)
             correct_regions(lsm, block + k, S[k]);
         else if (box->mixed[block + k])
             replace_sums(lsm, block + k, S[k]);
+        if (!box->whole[block + k]) empty_sums(box->site[block + k], S[k]);
+    }
     sm_lap(laps, SM_FAST_SUM);
     bool matched = match_sums(lsm, layer, block, blocks, (const vec(*)[12])S, q, R, laps);
     for (int k = 0; k < blocks; k++) {
