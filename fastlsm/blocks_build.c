@@ -72,10 +72,10 @@ static void add_rows(Lsm *lsm, Blocks *box)
     box->run[runs] = (BlockRun){.first = (int)lsm->blocks};
 }
 
-/* The block of `column` in row y of plane z, or the empty block: in the last run that does not
- * begin after it. */
-static int block_at(const Lsm *lsm, const Blocks *box, int column, int y, int z)
+/* In the last run that does not begin after it. */
+int lsm_blocks_at(const Lsm *lsm, int column, int y, int z)
 {
+    const Blocks *box = lsm->box;
     if (z < 0 || z >= lsm->lattice.size[2]) return (int)lsm->blocks;
     int low = box->plane_run[z], high = box->plane_run[z + 1];
     while (low < high) {
@@ -100,7 +100,7 @@ static void find_neighbours(Lsm *lsm, Blocks *box)
         for (int r = box->plane_run[z]; r < box->plane_run[z + 1]; r++)
             for (int i = 0; i < box->run[r].count; i++)
                 for (int c = -lsm->w; c <= lsm->w; c++)
-                    *along++ = block_at(lsm, box, box->run[r].column + i, box->run[r].y, z + c);
+                    *along++ = lsm_blocks_at(lsm, box->run[r].column + i, box->run[r].y, z + c);
 }
 
 /* Do all blocks of a run have one in the row (or plane) before, whose windows they go on from? */
@@ -112,8 +112,8 @@ static void find_moves(const Lsm *lsm, Blocks *box)
             run->moves_y = box->running && run->y % RESTART;
             run->moves_z = box->running && z % RESTART;
             for (int column = run->column; column < run->column + run->count; column++) {
-                if (block_at(lsm, box, column, run->y - 1, z) == lsm->blocks) run->moves_y = false;
-                if (block_at(lsm, box, column, run->y, z - 1) == lsm->blocks) run->moves_z = false;
+                if (lsm_blocks_at(lsm, column, run->y - 1, z) == lsm->blocks) run->moves_y = false;
+                if (lsm_blocks_at(lsm, column, run->y, z - 1) == lsm->blocks) run->moves_z = false;
             }
         }
 }
@@ -190,7 +190,7 @@ static uint64_t way(const Lsm *lsm, const int *at, int b, int c)
 
 /* Up, member i passes through (x_i, y_i, z_r) and (x_r, y_i, z_r); down, region r passes through
  * (x_r, y_i, z_r) and (x_i, y_i, z_r). Sites between must be summed at all. */
-bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
+void lsm_blocks_taken(const Lsm *lsm, long p, uint64_t *up, uint64_t *down)
 {
     const LsmLattice *l = &lsm->lattice;
     const int *at = l->coord[p];
@@ -198,10 +198,17 @@ bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
     for (int row = 0; row < side * side; row++) {
         int b = row % side - w, c = row / side - w;
         uint64_t box = lsm_window(l, l->bits, at[0], at[1] + b, at[2] + c, w);
-        if ((box & way(lsm, at, b, 0)) != rows[row]) return false;
-        if ((box & way(lsm, at, 0, c)) != rows[row]) return false;
+        up[row] = box & way(lsm, at, b, 0);
+        down[row] = box & way(lsm, at, 0, c);
     }
-    return true;
+}
+
+bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
+{
+    size_t size = (size_t)(lsm->side * lsm->side) * sizeof *rows;
+    uint64_t up[LSM_MAX_SIDE * LSM_MAX_SIDE], down[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    lsm_blocks_taken(lsm, p, up, down);
+    return !memcmp(up, rows, size) && !memcmp(down, rows, size);
 }
 
 /* Reals of scratch that one thread needs: see blocks.c. */

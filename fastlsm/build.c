@@ -5,6 +5,7 @@
 
 #include "blocks.h"
 #include "chain_sums.h"
+#include "corrections.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
@@ -118,25 +119,35 @@ long lsm_unique(Lsm *lsm)
     return lsm->unique = collapse(&keys, l->count, NULL);
 }
 
-/* Finds every region, once: counts its members, lists it, or in block form only those that box sums
- * get wrong, and finds its original. listed[p]: it has lists. */
+/* In block form, what box sums get wrong is corrected; in a body that can break, whose regions
+ * change one by one, it is listed. */
+static bool corrected(const Lsm *lsm)
+{
+    return lsm->box && !(lsm->params.strain_limit > 0);
+}
+
+/* Finds every region, once: counts its members, lists or corrects it, in block form only where box
+ * sums get it wrong, and finds its original. listed[p]: it has lists. */
 static void find_regions(Lsm *lsm, int *original, bool *listed)
 {
     const LsmLattice *l = &lsm->lattice;
     uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
     Keys keys = {sm_alloc((size_t)l->count, sizeof *keys.keyed), 0};
     LsmSetsBuilder *lists = lsm_sets_open(l, lsm->slot, lsm->w);
+    CorrectionsBuilder *corrections = corrected(lsm) ? lsm_corrections_open(lsm) : NULL;
     for (long p = 0; p < l->count; p++) {
         bool whole = lsm_bit(l, lsm->interior.interior, l->coord[p]), simple = true;
         lsm->members[p] = lsm->side * lsm->side * lsm->side;
         if (!whole || !lsm->box)
             lsm->members[p] = lsm_region_find(l, &lsm->interior, p, rows, &simple);
         if (!whole) add_key(lsm, &keys, p, rows);
-        listed[p] = !lsm->box || (!simple && !lsm_blocks_regular(lsm, p, rows));
+        if (corrections && !simple) lsm_corrections_add(corrections, p, rows);
+        listed[p] = !corrections && (!lsm->box || (!simple && !lsm_blocks_regular(lsm, p, rows)));
         if (listed[p]) lsm_sets_add(lists, p, rows);
     }
     lsm->unique = collapse(&keys, l->count, original);
     lsm_sets_close(lists, &lsm->sets);
+    if (corrections) lsm_corrections_close(corrections, lsm);
 }
 
 /* Tiles of unique regions, each layer beginning a new tile; copies go to a list of their own. */
@@ -206,9 +217,15 @@ static void place_lists(Lsm *lsm, const bool *listed)
         if (lsm->sets.bar[i]) box->listed[(lsm->sets.bar[i] - 1) / SM_LANES] = true;
 }
 
+/* Slots that have rows. */
+static size_t row_slots(const Lsm *lsm)
+{
+    return lsm->corrections ? 0 : (size_t)lsm->blocks * SM_LANES;
+}
+
 static void build_rows(Lsm *lsm)
 {
-    size_t rows = (size_t)lsm->blocks * SM_LANES + 2, real_size = sizeof(real);
+    size_t rows = row_slots(lsm) + 2, real_size = sizeof(real);
     size_t bars = (size_t)lsm->sets.bar_count + 1, plates = (size_t)lsm->sets.plate_count + 1;
     lsm->rows = (Rows){
         .p = sm_alloc(rows * ROW_P, real_size),
@@ -396,6 +413,7 @@ static void free_regions(Lsm *lsm)
     if (lsm->chains) lsm_chains_free(lsm->chains);
     free(lsm->chains);
     free(lsm->chain_factor);
+    lsm_corrections_free(lsm->corrections);
     free_rows(&lsm->rows);
     if (lsm->box) free(lsm->block_region);
     void *all[] = {lsm->tile_slot,    lsm->layer_tile,  lsm->copy,           lsm->layer_copy,
@@ -448,10 +466,10 @@ long lsm_bytes(const Lsm *lsm)
     bytes += lsm->chains ? lsm_chains_bytes(lsm->chains)
                          : (sets->bar_count + sets->plate_count + sets->region_room) * sets->side *
                                (long)sizeof(int);
-    bytes += (lanes * (ROW_P + ROW_T) + sets->bar_count * ROW_BAR +
+    bytes += ((long)row_slots(lsm) * (ROW_P + ROW_T) + sets->bar_count * ROW_BAR +
               sets->plate_count * (ROW_PLATE + (lsm->chained ? ROW_PLATE_CHAIN : ROW_PLATE_DOWN))) *
              real_size;
-    return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0);
+    return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0) + lsm_corrections_bytes(lsm);
 }
 
 void lsm_free(Lsm *lsm)

@@ -2,6 +2,7 @@
  * regions of a particle, pulls the particle's velocity towards it. */
 #include "blocks_pass.h"
 #include "chain_sums.h"
+#include "correct.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
@@ -80,7 +81,9 @@ static void solve_tile(Lsm *lsm, long tile)
 SM_INLINE void solve_block(const Lsm *lsm, long block, vec *F, vec *out)
 {
     vec c[3];
-    if (lsm->box->mixed[block]) {
+    if (lsm->corrections) {
+        correct_products(lsm, block, F);
+    } else if (lsm->box->mixed[block]) {
         const int *region = lsm->block_region + block * SM_LANES;
         vec listed[16];
         region_sums(lsm, region, listed);
@@ -91,6 +94,7 @@ SM_INLINE void solve_block(const Lsm *lsm, long block, vec *F, vec *out)
     rigid_velocity(F, c, lsm->region_const[lsm->tile_const[block]].inverse_mass, out);
     for (int i = 0; i < 6; i++) out[i] = lanes_and(out[i], lsm->box->site[block]);
     if (lsm->box->listed[block]) store_velocities(lsm, block, out);
+    keep_solved(lsm, block, 6, out);
 }
 
 SM_INLINE void solve_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*F)[12],
@@ -147,7 +151,10 @@ static __attribute__((noinline)) void add_listed(const Lsm *lsm, long block, vec
 SM_INLINE void slow_block(Lsm *lsm, long block, vec sum[6], SmLaps *laps)
 {
     (void)laps;
-    if (!lsm->box || lsm->box->mixed[block]) add_listed(lsm, block, sum);
+    if (lsm->corrections)
+        correct_particles(lsm, block, true, sum);
+    else if (!lsm->box || lsm->box->mixed[block])
+        add_listed(lsm, block, sum);
     slow_down(lsm, block, sum);
 }
 

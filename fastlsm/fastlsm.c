@@ -13,6 +13,7 @@
 #include "blocks_pass.h"
 #include "build.h"
 #include "chain_sums.h"
+#include "correct.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
@@ -184,14 +185,29 @@ static void replace_sums(const Lsm *lsm, long block, vec S[12])
     for (int i = 0; i < 12; i++) S[i] = lanes_select(lanes, listed[i], S[i]);
 }
 
+/* Empty lanes hold the sums of a unit matrix: the quickest to rotate, and their constants are zero.
+ */
+SM_INLINE void empty_sums(ivec site, vec S[12])
+{
+    for (int i = 0; i < 12; i++) {
+        bool diagonal = i == 5 || i == 7 || i == 9;
+        S[i] = diagonal ? lanes_select(site, S[i], lanes_set(1)) : lanes_and(S[i], site);
+    }
+}
+
 /* Block form: the regions centred in one or two blocks that follow each other. */
 SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S)[12],
                             vec (*out)[12], SmLaps *laps)
 {
     const Blocks *box = lsm->box;
     vec R[2][9], q[2][3];
-    for (int k = 0; k < blocks; k++)
-        if (box->mixed[block + k]) replace_sums(lsm, block + k, S[k]);
+    for (int k = 0; k < blocks; k++) {
+        if (lsm->corrections)
+            correct_regions(lsm, block + k, S[k]);
+        else if (box->mixed[block + k])
+            replace_sums(lsm, block + k, S[k]);
+        if (!box->whole[block + k]) empty_sums(box->site[block + k], S[k]);
+    }
     sm_lap(laps, SM_FAST_SUM);
     bool matched = match_sums(lsm, layer, block, blocks, (const vec(*)[12])S, q, R, laps);
     for (int k = 0; k < blocks; k++) {
@@ -206,6 +222,7 @@ SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S
         }
         for (int i = 0; i < 12 && !box->whole[block + k]; i++) /* empty lanes bring nothing down */
             out[k][i] = lanes_and(out[k][i], box->site[block + k]);
+        keep_solved(lsm, block + k, 12, out[k]);
     }
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
@@ -273,7 +290,10 @@ SM_INLINE void integrate(Lsm *lsm, long block, const vec sum[3])
 /* A block's particles from |R_i| g_i, to which the lists may have more to add. */
 SM_INLINE void move_block(Lsm *lsm, long block, vec sum[6], SmLaps *laps)
 {
-    if (!lsm->box || lsm->box->mixed[block]) add_listed(lsm, block, sum);
+    if (lsm->corrections)
+        correct_particles(lsm, block, false, sum);
+    else if (!lsm->box || lsm->box->mixed[block])
+        add_listed(lsm, block, sum);
     sm_lap(laps, SM_FAST_SUM);
     integrate(lsm, block, sum);
     sm_lap(laps, SM_OTHER);

@@ -60,7 +60,8 @@ typedef struct {
 
 typedef enum { PASS_STEP, PASS_GOALS, PASS_CONSTANTS } Pass;
 
-typedef struct Blocks Blocks; /* box sums: blocks.h */
+typedef struct Blocks Blocks;           /* box sums: blocks.h */
+typedef struct Corrections Corrections; /* of box sums: corrections.h */
 
 typedef struct Lsm {
     /* the body */
@@ -115,7 +116,8 @@ typedef struct Lsm {
     int *thread_layer;              /* [threads + 1] first layer of each thread */
 
     Rows rows;
-    Blocks *box; /* NULL in list form */
+    Blocks *box;              /* NULL in list form */
+    Corrections *corrections; /* in block form in place of lists, but for a body that can break */
     Pass pass;
     SmLaps *laps; /* of thread 0, or NULL */
     long steps;

@@ -64,14 +64,22 @@ static double best_fill(const SmVoxels *v, int lanes, int *turn)
     return best;
 }
 
+/* The fill from which blocks are faster than lists, as measured (shapebench kernels shows both): a
+ * large body's lists are beyond the L2 cache, and at w = 1 block form needs few corrections. */
+static double fill_worth(const SmVoxels *v, const SmEngineParams *params)
+{
+    const long large = 30000;
+    bool lists_are_slow = v->particle_count >= large && params->w == 1;
+    return lists_are_slow && !(params->strain_limit > 0) ? 0.6 : 0.85;
+}
+
 SmLayout lsm_turn_choose(const SmVoxels *v, const SmEngineParams *params, int lanes, int *turn)
 {
-    /* measured: below this fill the lists are faster (shapebench kernels shows both) */
-    const double worth = 0.85;
     bool may = params->w <= lanes && params->summation != SM_SUM_NAIVE && params->instances <= 1;
     *turn = 0;
     double fill = may && params->layout != SM_LAYOUT_LISTS ? best_fill(v, lanes, turn) : 0;
-    if (may && (params->layout == SM_LAYOUT_BLOCKS || fill > worth)) return SM_LAYOUT_BLOCKS;
+    if (may && (params->layout == SM_LAYOUT_BLOCKS || fill > fill_worth(v, params)))
+        return SM_LAYOUT_BLOCKS;
     for (int t = 0; t < 3; t++) /* lists: z, the pipeline's axis, is the longest */
         if (v->size[(t + 2) % 3] > v->size[(*turn + 2) % 3]) *turn = t;
     return SM_LAYOUT_LISTS;

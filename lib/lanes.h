@@ -203,6 +203,23 @@ SM_INLINE vec lanes_slide(vec low, vec high, int o)
 #endif
 }
 
+/* Lane i of the result is lane i + shift (modulo SM_LANES) of v where bit i of `lanes` is set, else
+ * zero; 0 <= shift < SM_LANES. */
+SM_INLINE vec lanes_pick(vec v, int shift, unsigned lanes)
+{
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return (vec)_mm512_maskz_permutexvar_ps((__mmask16)lanes,
+                                            _mm512_loadu_si512(lanes_count + shift), (__m512)v);
+#elif defined(__AVX512F__)
+    return (vec)_mm512_maskz_permutexvar_pd((__mmask8)lanes,
+                                            _mm512_loadu_si512(lanes_count + shift), (__m512d)v);
+#else
+    vec picked;
+    for (int i = 0; i < SM_LANES; i++) picked[i] = lanes >> i & 1 ? v[(i + shift) % SM_LANES] : 0;
+    return picked;
+#endif
+}
+
 #if SM_LANES == 16
 #define LANES_ZIP_LOW  0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23
 #define LANES_ZIP_HIGH 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31

@@ -1,0 +1,88 @@
+/* correct.h - applies corrections (corrections.h) to a block's sums. */
+#ifndef LSM_CORRECT_H
+#define LSM_CORRECT_H
+
+#include "corrections.h"
+
+/* A block's corrections one way. */
+typedef struct {
+    const Correction *at, *end;
+} Span;
+
+SM_INLINE void clear_lanes(unsigned lanes, int values, vec *sum)
+{
+    for (int i = 0; i < values && lanes; i++) sum[i] = lanes_pick(sum[i], 0, ~lanes);
+}
+
+SM_INLINE Span corrections_of(const CorrectionList *list, long block)
+{
+    return (Span){list->of + list->first[block], list->of + list->first[block + 1]};
+}
+
+/* The sums up of a block's regions, in the order (C, Cz, Cy, Cx). */
+static __attribute__((noinline, unused)) void correct_regions(const Lsm *lsm, long block,
+                                                              vec sums[12])
+{
+    Span span = corrections_of(&lsm->corrections->up, block);
+    if (span.at == span.end) return;
+    vec sum[12];
+    memcpy(sum, sums, sizeof sum);
+    clear_lanes(lsm->corrections->up.clear[block], 12, sum);
+    for (const Correction *at = span.at; at < span.end; at++) {
+        const real *x = lsm->x + at->source * 3L * SM_LANES;
+        vec weight = at->sign * lsm->particle_const[lsm->block_const[at->source]].weight;
+        for (int d = 0; d < 3; d++) {
+            vec p = lsm->pass == PASS_CONSTANTS ? weight : weight * lanes_load(x + d * SM_LANES);
+            p = lanes_pick(p, at->shift, at->lanes);
+            sum[d] += p;
+            for (int k = 0; k < 3; k++) sum[3 * k + 3 + d] += at->offset[2 - k] * p;
+        }
+    }
+    memcpy(sums, sum, sizeof sum);
+}
+
+/* Damping's four triples of sums up. */
+static __attribute__((noinline, unused)) void correct_products(const Lsm *lsm, long block,
+                                                               vec sums[12])
+{
+    Span span = corrections_of(&lsm->corrections->up, block);
+    if (span.at == span.end) return;
+    vec sum[12];
+    memcpy(sum, sums, sizeof sum);
+    clear_lanes(lsm->corrections->up.clear[block], 12, sum);
+    for (const Correction *at = span.at; at < span.end; at++) {
+        const real *from_x = lsm->x + at->source * 3L * SM_LANES,
+                   *from_v = lsm->v + at->source * 3L * SM_LANES;
+        vec x[3], v[3], product[4];
+        vec weight = at->sign * lsm->particle_const[lsm->block_const[at->source]].weight;
+        weight = lanes_pick(weight, at->shift, at->lanes);
+        for (int d = 0; d < 3; d++) {
+            x[d] = lanes_pick(lanes_load(from_x + d * SM_LANES), at->shift, at->lanes);
+            v[d] = lanes_pick(lanes_load(from_v + d * SM_LANES), at->shift, at->lanes);
+        }
+        for (int d = 0; d < 3; d++) {
+            damping_products(weight, (const real *)x, (const real *)v, d, product);
+            for (int k = 0; k < 4; k++) sum[3 * k + d] += product[k];
+        }
+    }
+    memcpy(sums, sum, sizeof sum);
+}
+
+/* The sums down of a block's particles: of transforms at the particles, or of `values` plain ones.
+ */
+SM_INLINE void correct_particles(const Lsm *lsm, long block, bool plain, vec *sum)
+{
+    Span span = corrections_of(&lsm->corrections->down, block);
+    clear_lanes(lsm->corrections->down.clear[block], plain ? 6 : 3, sum);
+    for (const Correction *at = span.at; at < span.end; at++) {
+        const real *T = lsm->corrections->kept + at->source * 12L * SM_LANES;
+        for (int f = 0; f < (plain ? 6 : 3); f++) {
+            vec value = lanes_load(T + f * SM_LANES);
+            for (int k = 0; k < 3 && !plain; k++)
+                value -= at->offset[2 - k] * lanes_load(T + (3 * k + 3 + f) * SM_LANES);
+            sum[f] += lanes_pick(at->sign * value, at->shift, at->lanes);
+        }
+    }
+}
+
+#endif
