@@ -249,7 +249,7 @@ static double pinky_over_thumb(Run *run)
 {
     make_body(run);
     start(run);
-    steps(run, 500, 0.98);
+    steps(run, 300, 0.96);
     double pinky = pushed(run, 0), thumb = pushed(run, 1);
     print_message("pinky %.2f mm, thumb %.2f mm\n", 1e3 * pinky, 1e3 * thumb);
     end(run);
