@@ -32,7 +32,9 @@ SM_INLINE void angular_velocity(const vec S[6], const vec L[3], vec size, vec om
     vec Cxy = yz * zx - xy * zz, Cyz = zx * xy - yz * xx, Czx = xy * yz - zx * yy;
     vec determinant = xx * Cxx + xy * Cxy + zx * Czx;
     /* the least inertia is one to three times determinant / tr C */
-    ivec solid = determinant > (thinnest * trace + noise) * (Cxx + Cyy + Czz);
+    vec least = (thinnest * trace + noise) * (Cxx + Cyy + Czz);
+    /* tr C of a lone particle is rounding, and may be negative */
+    ivec solid = determinant > lanes_max(least, lanes_set((real)1e-30));
     vec inverse = 1 / lanes_select(solid, determinant, lanes_max(trace, noise));
     omega[0] = lanes_select(solid, Cxx * L[0] + Cxy * L[1] + Czx * L[2], L[0]) * inverse;
     omega[1] = lanes_select(solid, Cxy * L[0] + Cyy * L[1] + Cyz * L[2], L[1]) * inverse;
