@@ -369,6 +369,7 @@ SM_INLINE void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, Bloc
         plane_pass(lsm, plane, thread, w, false, solve, laps);                                     \
     break
     switch (lsm->w) { /* constants for the usual widths */
+#ifdef __AVX512F__    /* elsewhere a vector is many instructions, and compiling takes too long */
     case 1:
         WIDTH(1);
     case 2:
@@ -379,6 +380,7 @@ SM_INLINE void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, Bloc
         WIDTH(4);
     case 5:
         WIDTH(5);
+#endif
     default:
         WIDTH(lsm->w);
     }

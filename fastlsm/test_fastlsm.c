@@ -50,8 +50,8 @@ static void test_goals(void **state)
         Body body;
         int w = 1 + trial % 6;
         body_random(&seed, trial / 6 % 6, w > 3 ? 12 : 20, &body);
-        check_goals(trial / 36 % 2, (SmSummation)(trial % 3), (SmLayout)(1 + trial / 3 % 2), w,
-                    &body);
+        check_goals(trial / 36 % 2, (SmSummation)((trial + trial / 6) % 3),
+                    (SmLayout)(1 + trial / 18 % 2), w, &body);
         body_free(&body);
     }
 }
