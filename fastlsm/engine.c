@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/handles.h"
 #include "build.h"
 #include "crowd.h"
 #include "fastlsm.h"
@@ -21,17 +22,9 @@ struct SmEngine {
     int turn;             /* turn.h */
     int *inner;           /* [count] particle numbers in the lattice as turned */
     double (*pose)[3][4]; /* [bodies] */
-    int handle_count;
-    SmHandle *handle;    /* our copies */
-    double (*target)[3]; /* [held particles] where they go in this step, then where they were */
+    SmHandles handles;
     double build_seconds;
 };
-
-static void place(const double pose[3][4], const double from[3], double to[3])
-{
-    for (int a = 0; a < 3; a++)
-        to[a] = pose[a][0] * from[0] + pose[a][1] * from[1] + pose[a][2] * from[2] + pose[a][3];
-}
 
 static void rest_position(const SmEngine *e, long number, double x0[3])
 {
@@ -39,7 +32,7 @@ static void rest_position(const SmEngine *e, long number, double x0[3])
     double rest[3];
     for (int d = 0; d < 3; d++)
         rest[(d + e->turn) % 3] = l->origin[d] + l->cell * l->coord[e->inner[number % e->count]][d];
-    place((const double(*)[4])e->pose[number / e->count], rest, x0);
+    sm_pose_apply((const double(*)[4])e->pose[number / e->count], rest, x0);
 }
 
 /* Where component d of a particle is in x, v or g, and the origin that goes with it. */
@@ -216,17 +209,10 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     return SM_OK;
 }
 
-static void free_handles(SmEngine *e)
-{
-    for (int i = 0; i < e->handle_count; i++) free((void *)(uintptr_t)e->handle[i].particle);
-    free(e->handle);
-    free(e->target);
-}
-
 static void engine_destroy(SmEngine *e)
 {
     if (!e) return;
-    free_handles(e);
+    sm_handles_free(&e->handles);
     crowd_free(e->crowd);
     lsm_free(e->lsm);
     free(e->inner);
@@ -239,12 +225,12 @@ static void note_held(SmEngine *e)
 {
     long at = 0;
     const real *x = field_of(e, SM_POSITION);
-    for (int i = 0; i < e->handle_count; i++)
-        for (long k = 0; k < e->handle[i].count; k++, at++)
+    for (int i = 0; i < e->handles.count; i++)
+        for (long k = 0; k < e->handles.handle[i].count; k++, at++)
             for (int d = 0; d < 3; d++) {
                 const double *origin;
-                double value = (double)x[index_of(e, e->handle[i].particle[k], d, &origin)];
-                e->target[at][d] = origin[d] + value * e->lsm->cell;
+                double value = (double)x[index_of(e, e->handles.handle[i].particle[k], d, &origin)];
+                e->handles.before[at][d] = origin[d] + value * e->lsm->cell;
             }
 }
 
@@ -253,16 +239,16 @@ static void move_held(SmEngine *e)
 {
     long at = 0;
     real *x = field_of(e, SM_POSITION), *v = field_of(e, SM_VELOCITY);
-    for (int i = 0; i < e->handle_count; i++)
-        for (long k = 0; k < e->handle[i].count; k++, at++) {
+    for (int i = 0; i < e->handles.count; i++)
+        for (long k = 0; k < e->handles.handle[i].count; k++, at++) {
             double x0[3], to[3];
-            rest_position(e, e->handle[i].particle[k], x0);
-            place((const double(*)[4])e->handle[i].pose, x0, to);
+            rest_position(e, e->handles.handle[i].particle[k], x0);
+            sm_pose_apply((const double(*)[4])e->handles.handle[i].pose, x0, to);
             for (int d = 0; d < 3; d++) {
                 const double *origin;
-                long index = index_of(e, e->handle[i].particle[k], d, &origin);
+                long index = index_of(e, e->handles.handle[i].particle[k], d, &origin);
                 x[index] = (real)((to[d] - origin[d]) / e->lsm->cell);
-                v[index] = (real)((to[d] - e->target[at][d]) / e->lsm->cell);
+                v[index] = (real)((to[d] - e->handles.before[at][d]) / e->lsm->cell);
             }
         }
 }
@@ -308,37 +294,6 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     }
 }
 
-static bool same_handles(const SmEngine *e, const SmBoundary *boundary)
-{
-    if (e->handle_count != boundary->handle_count) return false;
-    for (int i = 0; i < e->handle_count; i++)
-        if (e->handle[i].count != boundary->handle[i].count ||
-            memcmp(e->handle[i].particle, boundary->handle[i].particle,
-                   (size_t)e->handle[i].count * sizeof(long)))
-            return false;
-    return true;
-}
-
-static void copy_handles(SmEngine *e, const SmBoundary *boundary)
-{
-    free_handles(e);
-    long held = 0;
-    e->handle_count = boundary->handle_count;
-    e->handle = sm_alloc((size_t)e->handle_count, sizeof *e->handle);
-    for (int i = 0; i < e->handle_count; i++) {
-        const SmHandle *from = &boundary->handle[i];
-        long *particle = sm_alloc((size_t)from->count, sizeof *particle);
-        for (long k = 0; k < from->count; k++) {
-            assert(from->particle[k] >= 0 && from->particle[k] < e->bodies * e->count);
-            particle[k] = from->particle[k];
-        }
-        e->handle[i].count = from->count;
-        e->handle[i].particle = particle;
-        held += from->count;
-    }
-    e->target = sm_alloc((size_t)held, sizeof *e->target);
-}
-
 static void copy_obstacles(Lsm *lsm, const SmBoundary *boundary)
 {
     free(lsm->obstacle);
@@ -351,9 +306,7 @@ static void copy_obstacles(Lsm *lsm, const SmBoundary *boundary)
 
 static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
-    if (!same_handles(e, boundary)) copy_handles(e, boundary);
-    for (int i = 0; i < e->handle_count; i++)
-        memcpy(e->handle[i].pose, boundary->handle[i].pose, sizeof e->handle[i].pose);
+    sm_handles_set(&e->handles, boundary, e->bodies * e->count);
     copy_obstacles(e->lsm, boundary);
 }
 

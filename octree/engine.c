@@ -2,10 +2,10 @@
 #include "engine.h"
 
 #include <assert.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/handles.h"
 #include "../lib/rotate_lanes.h"
 #include "octree.h"
 #include "structure.h"
@@ -18,24 +18,16 @@ struct SmEngine {
     long count; /* nodes of one body */
     double h;
     double (*pose)[3][4]; /* [instances] */
-    int handle_count;
-    SmHandle *handle;    /* our copies */
-    double (*target)[3]; /* [held nodes] where they were before the step, finest cells */
+    SmHandles handles;
     double build_seconds;
     bool goals; /* g is that of the present state */
 };
-
-static void place(const double pose[3][4], const double from[3], double to[3])
-{
-    for (int a = 0; a < 3; a++)
-        to[a] = pose[a][0] * from[0] + pose[a][1] * from[1] + pose[a][2] * from[2] + pose[a][3];
-}
 
 static void rest_position(const SmEngine *e, long number, double x0[3])
 {
     double rest[3];
     oct_structure_centre(&e->structure, number % e->count, rest);
-    place((const double(*)[4])e->pose[number / e->count], rest, x0);
+    sm_pose_apply((const double(*)[4])e->pose[number / e->count], rest, x0);
 }
 
 static OctState *body_of(const SmEngine *e, long number)
@@ -186,17 +178,10 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     return SM_OK;
 }
 
-static void free_handles(SmEngine *e)
-{
-    for (int i = 0; i < e->handle_count; i++) free((void *)(uintptr_t)e->handle[i].particle);
-    free(e->handle);
-    free(e->target);
-}
-
 static void engine_destroy(SmEngine *e)
 {
     if (!e) return;
-    free_handles(e);
+    sm_handles_free(&e->handles);
     oct_free(e->oct);
     oct_structure_free(&e->structure);
     free(e->pose);
@@ -207,12 +192,12 @@ static void engine_destroy(SmEngine *e)
 static void note_held(SmEngine *e)
 {
     long at = 0;
-    for (int i = 0; i < e->handle_count; i++)
-        for (long k = 0; k < e->handle[i].count; k++, at++) {
-            long number = e->handle[i].particle[k];
+    for (int i = 0; i < e->handles.count; i++)
+        for (long k = 0; k < e->handles.handle[i].count; k++, at++) {
+            long number = e->handles.handle[i].particle[k];
             const OctState *body = body_of(e, number);
             for (int d = 0; d < 3; d++)
-                e->target[at][d] =
+                e->handles.before[at][d] =
                     body->origin[d] + (double)body->x[oct_index(number % e->count, d)];
         }
 }
@@ -221,18 +206,18 @@ static void note_held(SmEngine *e)
 static void move_held(SmEngine *e)
 {
     long at = 0;
-    for (int i = 0; i < e->handle_count; i++)
-        for (long k = 0; k < e->handle[i].count; k++, at++) {
-            long number = e->handle[i].particle[k];
+    for (int i = 0; i < e->handles.count; i++)
+        for (long k = 0; k < e->handles.handle[i].count; k++, at++) {
+            long number = e->handles.handle[i].particle[k];
             OctState *body = body_of(e, number);
             double x0[3], to[3];
             rest_position(e, number, x0);
-            place((const double(*)[4])e->handle[i].pose, x0, to);
+            sm_pose_apply((const double(*)[4])e->handles.handle[i].pose, x0, to);
             for (int d = 0; d < 3; d++) {
                 long index = oct_index(number % e->count, d);
                 double x = to_cells(e, to[d], d);
                 body->x[index] = (real)(x - body->origin[d]);
-                body->v[index] = (real)(x - e->target[at][d]);
+                body->v[index] = (real)(x - e->handles.before[at][d]);
             }
         }
 }
@@ -258,43 +243,10 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     }
 }
 
-static bool same_handles(const SmEngine *e, const SmBoundary *boundary)
-{
-    if (e->handle_count != boundary->handle_count) return false;
-    for (int i = 0; i < e->handle_count; i++)
-        if (e->handle[i].count != boundary->handle[i].count ||
-            memcmp(e->handle[i].particle, boundary->handle[i].particle,
-                   (size_t)e->handle[i].count * sizeof(long)) != 0)
-            return false;
-    return true;
-}
-
-static void copy_handles(SmEngine *e, const SmBoundary *boundary)
-{
-    free_handles(e);
-    long held = 0;
-    e->handle_count = boundary->handle_count;
-    e->handle = sm_alloc((size_t)e->handle_count, sizeof *e->handle);
-    for (int i = 0; i < e->handle_count; i++) {
-        const SmHandle *from = &boundary->handle[i];
-        long *particle = sm_alloc((size_t)from->count, sizeof *particle);
-        for (long k = 0; k < from->count; k++) {
-            assert(from->particle[k] >= 0 && from->particle[k] < e->oct->instances * e->count);
-            particle[k] = from->particle[k];
-        }
-        e->handle[i].count = from->count;
-        e->handle[i].particle = particle;
-        held += from->count;
-    }
-    e->target = sm_alloc((size_t)held, sizeof *e->target);
-}
-
 static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
     Oct *oct = e->oct;
-    if (!same_handles(e, boundary)) copy_handles(e, boundary);
-    for (int i = 0; i < e->handle_count; i++)
-        memcpy(e->handle[i].pose, boundary->handle[i].pose, sizeof e->handle[i].pose);
+    sm_handles_set(&e->handles, boundary, e->oct->instances * e->count);
     free(oct->obstacle);
     oct->obstacle_count = boundary->obstacle_count;
     oct->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *oct->obstacle);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/handles.h"
 #include "brute.h"
 #include "obstacle.h"
 
@@ -24,20 +25,14 @@ struct SmEngine {
     double *mass;
     Body *body; /* [params.instances] */
     bool *held; /* [instances * count] */
-    int handle_count, obstacle_count;
-    SmHandle *handle; /* our copies */
+    SmHandles handles;
+    int obstacle_count;
     SmObstacle *obstacle;
     long steps;
     double build_seconds;
 };
 
 #define CONST(array) ((const double(*)[3])(array))
-
-static void place(const double pose[3][4], const double from[3], double to[3])
-{
-    for (int a = 0; a < 3; a++)
-        to[a] = pose[a][0] * from[0] + pose[a][1] * from[1] + pose[a][2] * from[2] + pose[a][3];
-}
 
 static void body_create(SmEngine *engine, const double (*rest)[3], const double pose[3][4],
                         Body *body)
@@ -50,7 +45,7 @@ static void body_create(SmEngine *engine, const double (*rest)[3], const double 
     body->u = sm_alloc(count, sizeof *body->u);
     body->match = sm_alloc(count, sizeof *body->match);
     for (size_t p = 0; p < count; p++) {
-        place(pose, rest[p], body->x0[p]);
+        sm_pose_apply(pose, rest[p], body->x0[p]);
         for (int a = 0; a < 3; a++) body->match[p].R[4 * a] = 1;
     }
     memcpy(body->x, body->x0, count * sizeof *body->x);
@@ -130,8 +125,7 @@ static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params,
 
 static void boundary_free(SmEngine *engine)
 {
-    for (int n = 0; n < engine->handle_count; n++) free((void *)engine->handle[n].particle);
-    free(engine->handle);
+    sm_handles_free(&engine->handles);
     free(engine->obstacle);
 }
 
@@ -177,12 +171,12 @@ static void accelerate_body(const SmEngine *engine, Body *body, SmLaps *laps)
 /* A held particle's velocity is the one that takes it to its target. */
 static void drive_handles(SmEngine *engine)
 {
-    for (int n = 0; n < engine->handle_count; n++)
-        for (long k = 0; k < engine->handle[n].count; k++) {
-            long number = engine->handle[n].particle[k], p = number % engine->count;
+    for (int n = 0; n < engine->handles.count; n++)
+        for (long k = 0; k < engine->handles.handle[n].count; k++) {
+            long number = engine->handles.handle[n].particle[k], p = number % engine->count;
             Body *body = engine->body + number / engine->count;
             double target[3];
-            place((const double(*)[4])engine->handle[n].pose, body->x0[p], target);
+            sm_pose_apply((const double(*)[4])engine->handles.handle[n].pose, body->x0[p], target);
             for (int a = 0; a < 3; a++)
                 body->v[p][a] = (target[a] - body->x[p][a]) / engine->params.h;
         }
@@ -295,24 +289,17 @@ static void brute_push(SmEngine *engine, long count, const long *particle,
 
 static void brute_bound(SmEngine *engine, const SmBoundary *boundary)
 {
-    boundary_free(engine);
-    engine->handle_count = boundary->handle_count;
+    long particles = engine->params.instances * engine->count;
+    sm_handles_set(&engine->handles, boundary, particles);
+    memset(engine->held, 0, (size_t)particles);
+    for (int n = 0; n < engine->handles.count; n++) {
+        const SmHandle *handle = engine->handles.handle + n;
+        for (long k = 0; k < handle->count; k++) engine->held[handle->particle[k]] = true;
+    }
+    free(engine->obstacle);
     engine->obstacle_count = boundary->obstacle_count;
-    engine->handle = sm_alloc((size_t)boundary->handle_count, sizeof *engine->handle);
     engine->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *engine->obstacle);
     for (int n = 0; n < boundary->obstacle_count; n++) engine->obstacle[n] = boundary->obstacle[n];
-    memset(engine->held, 0, (size_t)(engine->params.instances * engine->count));
-    for (int n = 0; n < boundary->handle_count; n++) {
-        const SmHandle *from = boundary->handle + n;
-        long *particle = sm_alloc((size_t)from->count, sizeof *particle);
-        for (long k = 0; k < from->count; k++) {
-            particle[k] = from->particle[k];
-            assert(particle[k] >= 0 && particle[k] < engine->params.instances * engine->count);
-            engine->held[particle[k]] = true;
-        }
-        engine->handle[n] = *from;
-        engine->handle[n].particle = particle;
-    }
 }
 
 static void brute_masses(SmEngine *engine, double *mass)
