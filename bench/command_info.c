@@ -40,10 +40,6 @@ static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        *options = (Options){.particles = 2000};
-        bench_options_init(state, &options->common);
-        return 0;
     case KEY_FORMAT:
         options->json = bench_option_choice(state, "--format", text, formats);
         return 0;
@@ -68,8 +64,7 @@ static const char help[] =
     "With several meshes each gets its say; the exit code is that of the last one that cannot be "
     "read. --format json prints one array with an object for every mesh.\n" BENCH_EXIT_CODES;
 
-static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
-static const struct argp argp = {option_list, parse, "MESH...", help, children, NULL, NULL};
+static const struct argp argp = {option_list, parse, "MESH...", help, NULL, NULL, NULL};
 
 static SmCode look(const char *name, long particles, Facts *facts, SmError *error)
 {
@@ -169,8 +164,8 @@ static json_t *to_json(const char *name, const Facts *facts)
 
 int bench_command_info(int argc, char **argv)
 {
-    Options options;
-    bench_options_parse(&argp, argc, argv, &options);
+    Options options = {.particles = 2000};
+    bench_options_parse(&argp, argc, argv, &options, &options.common);
     SmCode code = SM_OK;
     json_t *list = json_array();
     for (int i = 0; i < options.count; i++) {

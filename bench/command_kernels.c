@@ -27,8 +27,6 @@ typedef struct {
     bool scaling, list;
 } Options;
 
-static const char *const precisions[] = {"single", "double", NULL};
-
 static const struct argp_option option_list[] = {
     {"only", KEY_ONLY, "NAME", 0, "Time this kernel or group only; may be repeated (see --list)",
      1},
@@ -56,10 +54,6 @@ static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        *options = (Options){.repeats = 9};
-        bench_options_init(state, &options->common);
-        return 0;
     case KEY_ONLY:
         add_only(state, options, text);
         return 0;
@@ -68,7 +62,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_PRECISION:
         options->precision =
-            (BenchPrecision)bench_option_choice(state, "--precision", text, precisions);
+            (BenchPrecision)bench_option_choice(state, "--precision", text, bench_precisions);
         return 0;
     case KEY_LAYOUT:
         options->layout = (SmLayout)bench_option_choice(state, "--layout", text, bench_layouts);
@@ -101,8 +95,7 @@ static const char help[] =
     "in turn, sample by sample. A stage of a step comes from a run with clocks inside, less the "
     "time that reading them takes. One thread unless --threads says otherwise.\n" BENCH_EXIT_CODES;
 
-static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
-static const struct argp argp = {option_list, parse, NULL, help, children, NULL, NULL};
+static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
 
 static void list_kernels(void)
 {
@@ -150,10 +143,10 @@ static SmCode measure(const Options *options, BenchMachine *machine, SmError *er
 
 int bench_command_kernels(int argc, char **argv)
 {
-    Options options;
+    Options options = {.repeats = 9};
     BenchMachine machine;
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options);
+    bench_options_parse(&argp, argc, argv, &options, &options.common);
     if (options.list) {
         list_kernels();
         return SM_OK;

@@ -46,7 +46,6 @@ typedef struct {
     BenchSubstitutes substitutes;
 } Options;
 
-static const char *const precisions[] = {"single", "double", NULL};
 static const char *const summations[] = {"fast", "bars", "naive", NULL};
 static const char *const polars[] = {"fast", "jacobi", NULL};
 static const char *const records[] = {"particles", "nodes", NULL}; /* BenchRecord from 1 */
@@ -96,7 +95,7 @@ static error_t parse_engine(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_PRECISION:
         options->precision =
-            precisions[bench_option_choice(state, "--precision", text, precisions)];
+            bench_precisions[bench_option_choice(state, "--precision", text, bench_precisions)];
         return 0;
     case KEY_W:
         options->w = text;
@@ -160,16 +159,6 @@ static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        *options = (Options){.frames = -1,
-                             .summation = -1,
-                             .polar = -1,
-                             .layout = -1,
-                             .damping = -1,
-                             .epsilon = -1,
-                             .strain_limit = -1};
-        bench_options_init(state, &options->common);
-        return 0;
     case KEY_FRAMES:
         options->frames = (int)bench_option_long(state, "--frames", text, 0, 10000000);
         return 0;
@@ -212,9 +201,7 @@ static const char help[] =
     "double-precision brute force in the last state; beyond the tolerance of 'tables' the run is "
     "INVALID (exit code 1), its trajectory kept.\n" BENCH_EXIT_CODES;
 
-static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
-static const struct argp argp = {option_list, parse, "SCENE|FILE.cfg|MESH", help, children,
-                                 NULL,        NULL};
+static const struct argp argp = {option_list, parse, "SCENE|FILE.cfg|MESH", help, NULL, NULL, NULL};
 
 static void apply_options(const Options *options, BenchScene *scene)
 {
@@ -434,10 +421,16 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
 
 int bench_command_run(int argc, char **argv)
 {
-    Options options;
+    Options options = {.frames = -1,
+                       .summation = -1,
+                       .polar = -1,
+                       .layout = -1,
+                       .damping = -1,
+                       .epsilon = -1,
+                       .strain_limit = -1};
     SmError error;
     BenchMachine machine;
-    bench_options_parse(&argp, argc, argv, &options);
+    bench_options_parse(&argp, argc, argv, &options, &options.common);
     bench_machine_read(argc, argv, options.common.threads, &machine);
     SmCode code = run(&options, &machine, &error);
     if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);

@@ -24,10 +24,6 @@ static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        *options = (Options){0};
-        bench_options_init(state, &options->common);
-        return 0;
     case KEY_WRITE:
         options->write = text;
         return 0;
@@ -48,8 +44,7 @@ static const char help[] =
     "  shapebench scenes penguin > my.cfg\n"
     "  shapebench run my.cfg\v" BENCH_EXIT_CODES;
 
-static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
-static const struct argp argp = {option_list, parse, "[NAME]", help, children, NULL, NULL};
+static const struct argp argp = {option_list, parse, "[NAME]", help, NULL, NULL, NULL};
 
 static SmCode list(SmError *error)
 {
@@ -99,8 +94,8 @@ static SmCode write_mesh(const char *name, const char *path, SmError *error)
 
 int bench_command_scenes(int argc, char **argv)
 {
-    Options options;
-    bench_options_parse(&argp, argc, argv, &options);
+    Options options = {0};
+    bench_options_parse(&argp, argc, argv, &options, &options.common);
     SmError error;
     SmCode code;
     if (options.write)

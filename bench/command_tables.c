@@ -36,8 +36,6 @@ typedef struct {
     BenchSubstitutes substitutes;
 } Options;
 
-static const char *const precisions[] = {"single", "double", NULL};
-
 static const struct argp_option option_list[] = {
     {"paper", KEY_PAPER, "NAME", 0,
      "The paper whose table to regenerate: fastlsm (default), octree", 1},
@@ -60,10 +58,6 @@ static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        *options = (Options){.paper = "fastlsm", .repeats = 15, .block = 20, .layout = -1};
-        bench_options_init(state, &options->common);
-        return 0;
     case KEY_PAPER:
         options->paper = text;
         return 0;
@@ -76,7 +70,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_PRECISION:
         options->precision =
-            precisions[bench_option_choice(state, "--precision", text, precisions)];
+            bench_precisions[bench_option_choice(state, "--precision", text, bench_precisions)];
         return 0;
     case KEY_LAYOUT:
         options->layout = bench_option_choice(state, "--layout", text, bench_layouts);
@@ -115,8 +109,7 @@ static const char help[] =
     "divided by the measured one, 'speed-up' the time of the table's first lattice row by the "
     "row's.\n" BENCH_EXIT_CODES;
 
-static const struct argp_child children[] = {{&bench_common_argp, 0, "Common options:", 90}, {0}};
-static const struct argp argp = {option_list, parse, NULL, help, children, NULL, NULL};
+static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
 
 /* Is it a built-in scene of the paper's for `row`, or, with NULL, for none, and does its name begin
  * with `stem` and a dash, unless that is NULL? */
@@ -252,9 +245,9 @@ static SmCode check_output(const char *path, SmError *error)
 
 int bench_command_tables(int argc, char **argv)
 {
-    Options options;
+    Options options = {.paper = "fastlsm", .repeats = 15, .block = 20, .layout = -1};
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options);
+    bench_options_parse(&argp, argc, argv, &options, &options.common);
     SmCode code = choose_scenes(&options, &error);
     BenchRow *rows = sm_alloc(SCENES, sizeof *rows);
     if (!code) code = check_output(options.output, &error);

@@ -30,7 +30,7 @@ static const char help_end[] = "\n" BENCH_EXIT_CODES;
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     (void)text;
-    if (key == ARGP_KEY_INIT) state->err_stream = NULL; /* see bench_options_init() */
+    if (key == ARGP_KEY_INIT) state->err_stream = NULL; /* see bench_options_parse() */
     return key == ARGP_KEY_INIT ? 0 : ARGP_ERR_UNKNOWN;
 }
 

@@ -25,9 +25,6 @@ static error_t parse_common(int key, char *text, struct argp_state *state)
 {
     BenchCommon *common = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        *common = (BenchCommon){.threads = 1, .seed = 1};
-        return 0;
     case KEY_THREADS:
         common->threads = (int)bench_option_long(state, "--threads", text, 0, 1024);
         if (!common->threads) common->threads = omp_get_num_procs();
@@ -42,20 +39,32 @@ static error_t parse_common(int key, char *text, struct argp_state *state)
     return ARGP_ERR_UNKNOWN;
 }
 
+const char *const bench_precisions[] = {"single", "double", NULL};
 const char *const bench_layouts[] = {"auto", "lists", "blocks", NULL};
 
-const struct argp bench_common_argp = {common_options, parse_common, 0, 0, 0, 0, 0};
+static const struct argp common_argp = {common_options, parse_common, 0, 0, 0, 0, 0};
 
-void bench_options_init(struct argp_state *state, BenchCommon *common)
+/* Above a command's own parser and the common one: hands each its input. */
+static error_t parse_both(int key, char *text, struct argp_state *state)
 {
+    (void)text;
+    if (key != ARGP_KEY_INIT) return ARGP_ERR_UNKNOWN;
+    void *const *inputs = state->input;
     /* getopt's own line for an unknown option is the whole message: no second "Try ..." line. */
     state->err_stream = NULL;
-    state->child_inputs[0] = common;
+    for (int i = 0; i < 2; i++) state->child_inputs[i] = inputs[i];
+    return 0;
 }
 
-void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input)
+void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input,
+                         BenchCommon *common)
 {
-    if (argp_parse(argp, argc, argv, 0, NULL, input)) exit(SM_USAGE);
+    const struct argp_child children[] = {
+        {argp, 0, NULL, 0}, {&common_argp, 0, "Common options:", 90}, {0}};
+    const struct argp both = {NULL, parse_both, NULL, NULL, children, NULL, NULL};
+    void *inputs[] = {input, common};
+    *common = (BenchCommon){.threads = 1, .seed = 1};
+    if (argp_parse(&both, argc, argv, 0, NULL, inputs)) exit(SM_USAGE);
 }
 
 void bench_usage(const struct argp_state *state, const char *format, ...)

@@ -10,26 +10,23 @@
 
 #include "../lib/error.h"
 
-/* Options that every command has; the input of bench_common_argp. */
+/* Options that every command has. */
 typedef struct {
     int threads; /* 1 or more */
     unsigned long seed;
     bool quiet;
 } BenchCommon;
 
-extern const struct argp bench_common_argp;
-
-/* --layout: words in SmLayout's order, and the help of commands that run a scene. */
+/* Choices of --precision, and of --layout in SmLayout's order with its help. */
+extern const char *const bench_precisions[];
 extern const char *const bench_layouts[];
 #define BENCH_LAYOUT_HELP "Fastlsm's sums: auto, lists, or blocks where it can"
 
-/* argp_parse() for a command: `argp` has bench_common_argp as its first child, `input` begins
- * with a BenchCommon. Usage errors end the program: one line, exit code 2. argv[0] is the program
- * and command ("shapebench run"). */
-void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input);
-
-/* Call for ARGP_KEY_INIT in a command's parser: hands the BenchCommon on to the child parser. */
-void bench_options_init(struct argp_state *state, BenchCommon *common);
+/* argp_parse() for a command: its own options `argp` into `input`, whose defaults are set, and
+ * beside them those that every command has. Usage errors end the program: one line, exit code 2.
+ * argv[0] is the program and command ("shapebench run"). */
+void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input,
+                         BenchCommon *common);
 
 /* Prints "program command: line" and ends the program with exit code 2. */
 void bench_usage(const struct argp_state *state, const char *format, ...)
