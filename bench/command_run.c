@@ -6,21 +6,19 @@
 #include "command.h"
 #include "draft.h"
 #include "option.h"
+#include "override.h"
 #include "progress.h"
 #include "recording.h"
-#include "substitute.h"
 #include "summary.h"
 
 enum {
-    KEY_ENGINE = 0x2000,
-    KEY_W,
+    KEY_W = 0x2000,
     KEY_EPSILON,
     KEY_LEVELS,
     KEY_NODES,
     KEY_PARTICLES,
     KEY_CELL,
     KEY_SHELL,
-    KEY_PRECISION,
     KEY_DAMPING,
     KEY_H,
     KEY_FRAMES,
@@ -28,9 +26,7 @@ enum {
     KEY_GRAVITY,
     KEY_SUMMATION,
     KEY_POLAR,
-    KEY_LAYOUT,
     KEY_STRAIN,
-    KEY_MESH,
     KEY_RECORD,
     KEY_NO_OUTPUT
 };
@@ -38,12 +34,12 @@ enum {
 /* Options that were given replace the scene's settings; those that were not are below zero. */
 typedef struct {
     BenchCommon common;
-    const char *scene, *engine, *precision, *output, *w;
+    BenchOverride chosen;
+    const char *scene, *output, *w;
     bool shell, no_output, has_gravity;
-    int frames, steps, summation, polar, layout, levels, record;
+    int frames, steps, summation, polar, levels, record;
     long particles, nodes;
     double cell, damping, epsilon, h, strain_limit, gravity[3];
-    BenchSubstitutes substitutes;
 } Options;
 
 static const char *const summations[] = {"fast", "bars", "naive", NULL};
@@ -52,8 +48,6 @@ static const char *const records[] = {"particles", "nodes", NULL}; /* BenchRecor
 
 static const struct argp_option option_list[] = {
     {0, 0, 0, 0, "What replaces the scene's settings:", 1},
-    {"engine", KEY_ENGINE, "NAME", 0, "fastlsm, octree or brute", 1},
-    {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
     {"w", KEY_W, "W", 0,
      "Region half-width in cells, 1 to 64 (fastlsm: to 31); octree: any width in finest cells "
      "(default: each node's own edge)",
@@ -71,8 +65,6 @@ static const struct argp_option option_list[] = {
     {"strain-limit", KEY_STRAIN, "S", 0, "Links break beyond this times their length; 0: never", 1},
     {"summation", KEY_SUMMATION, "HOW", 0, "fast, bars or naive", 1},
     {"polar", KEY_POLAR, "HOW", 0, "fast or jacobi", 1},
-    {"layout", KEY_LAYOUT, "HOW", 0, BENCH_LAYOUT_HELP, 1},
-    {"mesh", KEY_MESH, "NAME=FILE", 0, BENCH_MESH_HELP, 1},
     {0, 0, 0, 0, "What is written:", 2},
     {"frames", KEY_FRAMES, "N", 0, "Frames after the first", 2},
     {"steps", KEY_STEPS, "N", 0, "Steps in a frame", 2},
@@ -90,13 +82,6 @@ static error_t parse_engine(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     switch (key) {
-    case KEY_ENGINE:
-        options->engine = text;
-        return 0;
-    case KEY_PRECISION:
-        options->precision =
-            bench_precisions[bench_option_choice(state, "--precision", text, bench_precisions)];
-        return 0;
     case KEY_W:
         options->w = text;
         return 0;
@@ -118,9 +103,6 @@ static error_t parse_engine(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_POLAR:
         options->polar = bench_option_choice(state, "--polar", text, polars);
-        return 0;
-    case KEY_LAYOUT:
-        options->layout = bench_option_choice(state, "--layout", text, bench_layouts);
         return 0;
     }
     return ARGP_ERR_UNKNOWN;
@@ -148,9 +130,6 @@ static error_t parse_lattice(int key, char *text, struct argp_state *state)
     case KEY_NODES:
         options->nodes = bench_option_long(state, "--nodes", text, 1, 1000000000);
         return 0;
-    case KEY_MESH:
-        bench_substitute_add(state, text, &options->substitutes);
-        return 0;
     }
     return parse_engine(key, text, state);
 }
@@ -159,6 +138,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &options->chosen;
+        return 0;
     case KEY_FRAMES:
         options->frames = (int)bench_option_long(state, "--frames", text, 0, 10000000);
         return 0;
@@ -201,18 +183,20 @@ static const char help[] =
     "double-precision brute force in the last state; beyond the tolerance of 'tables' the run is "
     "INVALID (exit code 1), its trajectory kept.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {option_list, parse, "SCENE|FILE.cfg|MESH", help, NULL, NULL, NULL};
+static const struct argp argp = {
+    option_list, parse, "SCENE|FILE.cfg|MESH", help, bench_override_children, NULL, NULL};
 
 static void apply_options(const Options *options, BenchScene *scene)
 {
     SmEngineParams *params = &scene->params;
-    if (options->engine) snprintf(scene->engine, sizeof scene->engine, "%.23s", options->engine);
+    const BenchOverride *chosen = &options->chosen;
+    if (chosen->engine) snprintf(scene->engine, sizeof scene->engine, "%.23s", chosen->engine);
     if (options->h > 0) params->h = options->h;
     if (options->damping >= 0) params->damping = options->damping;
     if (options->strain_limit >= 0) params->strain_limit = options->strain_limit;
     if (options->summation >= 0) params->summation = (SmSummation)options->summation;
     if (options->polar >= 0) params->polar = (SmPolarMethod)options->polar;
-    if (options->layout >= 0) params->layout = (SmLayout)options->layout;
+    if (chosen->layout >= 0) params->layout = (SmLayout)chosen->layout;
     if (options->has_gravity) memcpy(params->gravity, options->gravity, sizeof params->gravity);
     if (options->shell) scene->voxel.fill = SM_SHELL;
     if (options->particles || options->cell > 0) scene->cells = 0;
@@ -269,7 +253,7 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
     if (file || !other) {
         SmCode code = bench_scene_find(name, scene, error);
         if (code) return code;
-        const char *substitute = bench_substitute_find(&options->substitutes, scene->name);
+        const char *substitute = bench_substitute_find(&options->chosen.substitutes, scene->name);
         return bench_mesh_of_scene(scene, substitute, mesh, error);
     }
     if (length >= BENCH_PATH)
@@ -277,7 +261,8 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
     SmCode code = bench_mesh_load(name, mesh, error);
     if (code) return code;
     bench_scene_drop(mesh, name, scene);
-    if (options->engine && !strcmp(options->engine, "octree")) bench_scene_sample(scene);
+    if (options->chosen.engine && !strcmp(options->chosen.engine, "octree"))
+        bench_scene_sample(scene);
     return SM_OK;
 }
 
@@ -402,7 +387,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     if (code) return code;
     apply_options(options, &scene);
     code = apply_octree(options, &scene, error);
-    if (!code) code = bench_engine_find(scene.engine, options->precision, &type, error);
+    if (!code) code = bench_engine_find(scene.engine, options->chosen.precision, &type, error);
     if (code) {
         sm_mesh_free(&mesh);
         return code;
@@ -424,7 +409,6 @@ int bench_command_run(int argc, char **argv)
     Options options = {.frames = -1,
                        .summation = -1,
                        .polar = -1,
-                       .layout = -1,
                        .damping = -1,
                        .epsilon = -1,
                        .strain_limit = -1};

@@ -7,33 +7,22 @@
 #include "draft.h"
 #include "measure.h"
 #include "option.h"
+#include "override.h"
 #include "runner.h"
 #include "store.h"
-#include "substitute.h"
 #include "table.h"
 
-enum {
-    KEY_PAPER = 0x2000,
-    KEY_SCENE,
-    KEY_ENGINE,
-    KEY_PRECISION,
-    KEY_LAYOUT,
-    KEY_FORMAT,
-    KEY_REPEATS,
-    KEY_BLOCK,
-    KEY_MESH,
-    SCENES = 64
-};
+enum { KEY_PAPER = 0x2000, KEY_SCENE, KEY_FORMAT, KEY_REPEATS, KEY_BLOCK, SCENES = 64 };
 
 typedef struct {
     BenchCommon common;
-    const char *paper, *engine, *precision, *output;
+    BenchOverride chosen;
+    const char *paper, *output;
     const char *scene[SCENES];
-    const char *stem[SCENES];    /* the name that stood for this scene and others, or NULL */
-    int scenes, repeats, layout; /* layout below 0: as the scene says */
+    const char *stem[SCENES]; /* the name that stood for this scene and others, or NULL */
+    int scenes, repeats;
     double block;
     BenchFormat format;
-    BenchSubstitutes substitutes;
 } Options;
 
 static const struct argp_option option_list[] = {
@@ -41,10 +30,6 @@ static const struct argp_option option_list[] = {
      "The paper whose table to regenerate: fastlsm (default), octree", 1},
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Measure this scene only, or the paper's scenes NAME-...; may be repeated", 1},
-    {"engine", KEY_ENGINE, "NAME", 0, "fastlsm, octree or brute (default: as the scene says)", 1},
-    {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
-    {"layout", KEY_LAYOUT, "HOW", 0, BENCH_LAYOUT_HELP " (default: as the scene says)", 1},
-    {"mesh", KEY_MESH, "NAME=FILE", 0, BENCH_MESH_HELP, 1},
     {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
     {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 20)", 2},
     {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex or json (default: text)", 3},
@@ -58,25 +43,15 @@ static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &options->chosen;
+        return 0;
     case KEY_PAPER:
         options->paper = text;
         return 0;
     case KEY_SCENE:
         if (options->scenes == SCENES) bench_usage(state, "--scene: at most %d", SCENES);
         options->scene[options->scenes++] = text;
-        return 0;
-    case KEY_ENGINE:
-        options->engine = text;
-        return 0;
-    case KEY_PRECISION:
-        options->precision =
-            bench_precisions[bench_option_choice(state, "--precision", text, bench_precisions)];
-        return 0;
-    case KEY_LAYOUT:
-        options->layout = bench_option_choice(state, "--layout", text, bench_layouts);
-        return 0;
-    case KEY_MESH:
-        bench_substitute_add(state, text, &options->substitutes);
         return 0;
     case KEY_REPEATS:
         options->repeats = (int)bench_option_long(state, "--repeats", text, 1, 10000);
@@ -109,7 +84,8 @@ static const char help[] =
     "divided by the measured one, 'speed-up' the time of the table's first lattice row by the "
     "row's.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
+static const struct argp argp = {option_list, parse, NULL, help, bench_override_children,
+                                 NULL,        NULL};
 
 /* Is it a built-in scene of the paper's for `row`, or, with NULL, for none, and does its name begin
  * with `stem` and a dash, unless that is NULL? */
@@ -175,19 +151,20 @@ static SmCode choose_scenes(Options *options, SmError *error)
 static SmCode measure_scene(const Options *options, int number, BenchProgress *progress,
                             BenchRow *row, SmError *error)
 {
+    const BenchOverride *chosen = &options->chosen;
     const char *name = options->scene[number], *stem = options->stem[number];
     BenchScene scene;
     const SmEngineType *type;
     SmCode code = bench_scene_find(name, &scene, error);
     if (code) return code;
-    code = bench_engine_find(options->engine ? options->engine : scene.engine, options->precision,
+    code = bench_engine_find(chosen->engine ? chosen->engine : scene.engine, chosen->precision,
                              &type, error);
     if (code) return code;
-    if (options->layout >= 0) scene.params.layout = (SmLayout)options->layout;
+    if (chosen->layout >= 0) scene.params.layout = (SmLayout)chosen->layout;
     SmMesh mesh;
     BenchBody body;
-    const char *substitute = bench_substitute_find(&options->substitutes, scene.name);
-    if (!substitute && stem) substitute = bench_substitute_find(&options->substitutes, stem);
+    const char *substitute = bench_substitute_find(&chosen->substitutes, scene.name);
+    if (!substitute && stem) substitute = bench_substitute_find(&chosen->substitutes, stem);
     bench_progress_show(progress, scene.name, 0);
     code = bench_mesh_of_scene(&scene, substitute, &mesh, error);
     if (!code) code = bench_body_create(&scene, &mesh, &body, error);
@@ -245,7 +222,7 @@ static SmCode check_output(const char *path, SmError *error)
 
 int bench_command_tables(int argc, char **argv)
 {
-    Options options = {.paper = "fastlsm", .repeats = 15, .block = 20, .layout = -1};
+    Options options = {.paper = "fastlsm", .repeats = 15, .block = 20};
     SmError error;
     bench_options_parse(&argp, argc, argv, &options, &options.common);
     SmCode code = choose_scenes(&options, &error);

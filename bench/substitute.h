@@ -14,9 +14,6 @@ typedef struct {
     const char *file[BENCH_SUBSTITUTES];
 } BenchSubstitutes;
 
-#define BENCH_MESH_HELP                                                                            \
-    "Use the mesh FILE in the place of scene NAME's, scaled and moved to its size and place"
-
 /* Adds the option's value "NAME=FILE"; anything else, or a NAME that is no built-in scene, ends
  * the program with exit code 2. */
 void bench_substitute_add(const struct argp_state *state, char *text, BenchSubstitutes *list);
