@@ -100,7 +100,7 @@ static double deviation(const Motion *motion, BenchPolar method, int frame)
         for (int i = 0; i < 9; i++) {
             double found = single ? (double)motion->single_R[m][i] : motion->R[m][i];
             double off = fabs(found - exact[i]);
-            largest = off <= largest ? largest : off; /* a NaN stays */
+            if (!(off <= largest)) largest = isfinite(off) ? off : INFINITY;
         }
     }
     return largest;
