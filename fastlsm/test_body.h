@@ -2,6 +2,7 @@
 #ifndef LSM_TEST_BODY_H
 #define LSM_TEST_BODY_H
 
+#include "../lib/test_fields.h"
 #include "../reference/brute.h"
 #include "fastlsm.h"
 #include "random_bodies.h"
@@ -13,11 +14,6 @@ typedef struct {
     long n;
     double (*x0)[3], (*x)[3], (*v)[3], (*a)[3], (*b)[3], *m;
 } Body;
-
-static inline double (*triples(long n))[3]
-{
-    return sm_alloc((size_t)n, sizeof(double[3]));
-}
 
 static inline void body_arrays(Body *body)
 {
@@ -75,13 +71,7 @@ static inline SmEngine *create(const SmEngineType *type, const Body *body, SmEng
 /* Largest difference of two fields, in cells. */
 static inline double difference(const Body *body, const double (*a)[3], const double (*b)[3])
 {
-    double worst = 0;
-    for (long p = 0; p < body->n; p++)
-        for (int d = 0; d < 3; d++) {
-            double e = fabs(a[p][d] - b[p][d]) / body->voxels.cell;
-            if (!(e <= worst)) worst = e; /* a NaN stays */
-        }
-    return worst;
+    return field_difference(body->n, a, b) / body->voxels.cell;
 }
 
 #endif

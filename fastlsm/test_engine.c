@@ -17,7 +17,7 @@ static double race(int precision, Body *body, SmEngineParams params, const SmBou
 {
     const SmEngineType *type = engines[precision];
     long n = body->n * (params.instances > 1 ? params.instances : 1);
-    double(*a)[3] = triples(n), (*b)[3] = triples(n), (*v)[3] = triples(n), worst = 0;
+    double(*a)[3] = triples(n), (*b)[3] = triples(n), (*v)[3] = triples(n);
     SmEngine *fast, *slow;
     SmError error;
     params.mass = body->m;
@@ -44,10 +44,8 @@ static double race(int precision, Body *body, SmEngineParams params, const SmBou
     ref_brute_engine.get(slow, SM_POSITION, b);
     type->get(fast, SM_VELOCITY, v);
     for (long p = 0; p < n; p++)
-        for (int d = 0; d < 3; d++) {
-            assert_true(isfinite(v[p][d]));
-            worst = fmax(worst, fabs(a[p][d] - b[p][d]) / body->voxels.cell);
-        }
+        for (int d = 0; d < 3; d++) assert_true(isfinite(v[p][d]));
+    double worst = field_difference(n, (const double(*)[3])a, (const double(*)[3])b);
     SmCounts counts[2];
     type->count(fast, &counts[0]);
     ref_brute_engine.count(slow, &counts[1]);
@@ -61,7 +59,7 @@ static double race(int precision, Body *body, SmEngineParams params, const SmBou
     free(a);
     free(b);
     free(v);
-    return worst;
+    return worst / body->voxels.cell;
 }
 
 static void block(Body *body, int x, int y, int z)

@@ -148,18 +148,6 @@ static void test_steps(void **state)
     }
 }
 
-static void momentum(const Body *body, const double (*x)[3], const double (*v)[3], double p[3],
-                     double l[3])
-{
-    for (int d = 0; d < 3; d++) p[d] = l[d] = 0;
-    for (long i = 0; i < body->n; i++)
-        for (int d = 0; d < 3; d++) {
-            int e = (d + 1) % 3, f = (d + 2) % 3;
-            p[d] += body->m[i] * v[i][d];
-            l[d] += body->m[i] * (x[i][e] * v[i][f] - x[i][f] * v[i][e]);
-        }
-}
-
 static void test_momentum(void **state)
 {
     (void)state;
@@ -177,8 +165,8 @@ static void test_momentum(void **state)
         for (int when = 0; when < 2; when++) {
             engines[precision]->get(engine, SM_POSITION, body.a);
             engines[precision]->get(engine, SM_VELOCITY, body.b);
-            momentum(&body, (const double(*)[3])body.a, (const double(*)[3])body.b, p[when],
-                     l[when]);
+            field_momenta(body.n, body.m, (const double(*)[3])body.a, (const double(*)[3])body.b,
+                          p[when], l[when]);
             for (int step = 0; when == 0 && step < 20; step++)
                 engines[precision]->step(engine, NULL);
         }

@@ -10,17 +10,13 @@
 
 #include <cmocka.h>
 
+#include "../lib/test_fields.h"
 #include "../reference/octree_goals.h"
 #include "random_trees.h"
 #include "structure.h"
 
 static const SmEngineType *const engines[2] = {&octree_engine_f32, &octree_engine_f64};
 static const double limit[2] = {5e-5, 1e-10}; /* finest cells */
-
-static double (*triples(long n))[3]
-{
-    return sm_alloc((size_t)n, sizeof(double[3]));
-}
 
 /* A U of cells of edge 0.5 somewhere: two arms above a bar. */
 static void make_voxels(SmVoxels *voxels)
@@ -60,14 +56,6 @@ static void shake(const SmEngineType *type, SmEngine *engine, long n, double (*x
     type->get(engine, SM_POSITION, x);
 }
 
-static double difference(long n, const double (*a)[3], const double (*b)[3])
-{
-    double worst = 0;
-    for (long i = 0; i < n; i++)
-        for (int d = 0; d < 3; d++) worst = fmax(worst, fabs(a[i][d] - b[i][d]));
-    return worst;
-}
-
 static void goals_are_the_twins(void **state)
 {
     (void)state;
@@ -98,7 +86,7 @@ static void goals_are_the_twins(void **state)
         ref_tree_goals(&twin, (const double(*)[3])x, false, exact);
         for (long i = 0; i < n; i++)
             for (int d = 0; d < 3; d++) g[i][d] = (g[i][d] - voxels.origin[d]) / voxels.cell;
-        assert_true(difference(n, (const double(*)[3])g, (const double(*)[3])exact) <
+        assert_true(field_difference(n, (const double(*)[3])g, (const double(*)[3])exact) <
                     limit[precision]);
         ref_tree_free(&twin);
         free(x);
@@ -309,7 +297,7 @@ static void instances_rest_in_their_poses(void **state)
         type->get(engine, SM_REST, x0);
         for (int step = 0; step < 40; step++) type->step(engine, NULL);
         type->get(engine, SM_POSITION, x);
-        assert_true(difference(n, (const double(*)[3])x0, (const double(*)[3])x) <
+        assert_true(field_difference(n, (const double(*)[3])x0, (const double(*)[3])x) <
                     (precision ? 1e-9 : 1e-3));
         for (int i = 1; i < 5; i++)
             for (int d = 0; d < 3; d++) {

@@ -27,7 +27,8 @@ static void check_goals(Body *body, OctParams params, int trial)
     oct_goals(oct);
     get(oct, 0, oct->body->g, true, body->a);
     ref_tree_goals(&twin, (const double(*)[3])body->x, false, body->b);
-    double worst = difference(body->n, (const double(*)[3])body->a, (const double(*)[3])body->b);
+    double worst =
+        field_difference(body->n, (const double(*)[3])body->a, (const double(*)[3])body->b);
     if (!(worst <= tolerance))
         fail_msg("trial %d, weighting %d, form %d, %ld nodes: goals differ by %g cells", trial,
                  (int)params.weighting, (int)params.form, body->n, worst);
@@ -164,26 +165,14 @@ static void test_steps(void **state)
             twin_step(&twin, &params, step % params.damping_every == 0, &body);
         }
         get_x(oct, body.b);
-        double worst = difference(body.n, (const double(*)[3])body.b, (const double(*)[3])body.x);
+        double worst =
+            field_difference(body.n, (const double(*)[3])body.b, (const double(*)[3])body.x);
         if (!(worst <= (SINGLE ? 1e-3 : 1e-8)))
             fail_msg("trial %d, %ld nodes: positions differ by %g cells", trial, body.n, worst);
         ref_tree_free(&twin);
         oct_free(oct);
         body_free(&body);
     }
-}
-
-/* Linear and angular momentum about the origin, in kg finest cells (squared) per step. */
-static void momentum(const Body *body, const double (*x)[3], const double (*v)[3], double p[3],
-                     double l[3])
-{
-    for (int d = 0; d < 3; d++) p[d] = l[d] = 0;
-    for (long i = 0; i < body->n; i++)
-        for (int d = 0; d < 3; d++) {
-            int e = (d + 1) % 3, f = (d + 2) % 3;
-            p[d] += body->m[i] * v[i][d];
-            l[d] += body->m[i] * (x[i][e] * v[i][f] - x[i][f] * v[i][e]);
-        }
 }
 
 static void test_momentum(void **state)
@@ -201,8 +190,8 @@ static void test_momentum(void **state)
             /* about the middle, as far as single precision can hold places */
             get(oct, 0, oct->body->x, false, body.a);
             get(oct, 0, oct->body->v, false, body.b);
-            momentum(&body, (const double(*)[3])body.a, (const double(*)[3])body.b, p[when],
-                     l[when]);
+            field_momenta(body.n, body.m, (const double(*)[3])body.a, (const double(*)[3])body.b,
+                          p[when], l[when]);
         }
         for (long i = 0; i < body.n; i++) {
             mass += body.m[i];
@@ -249,7 +238,8 @@ static void test_rigid(void **state)
         adopt(oct, &body);
         oct_step(oct, NULL);
         get(oct, 0, oct->body->v, false, body.a);
-        double worst = difference(body.n, (const double(*)[3])body.a, (const double(*)[3])body.v);
+        double worst =
+            field_difference(body.n, (const double(*)[3])body.a, (const double(*)[3])body.v);
         if (!(worst < (SINGLE ? 5e-5 : 1e-10))) fail_msg("trial %d: %g", trial, worst);
         oct_free(oct);
         body_free(&body);
@@ -302,7 +292,8 @@ static void test_recovery(void **state)
         oct_goals(oct); /* at rest goals and positions agree */
         get(oct, 0, oct->body->g, true, body.a);
         get_x(oct, body.b);
-        double worst = difference(body.n, (const double(*)[3])body.a, (const double(*)[3])body.b);
+        double worst =
+            field_difference(body.n, (const double(*)[3])body.a, (const double(*)[3])body.b);
         /* rounding at 1000 times the size leaves a spin that damping keeps: goals lag behind it */
         if (!(worst < 5e-3)) fail_msg("trial %d: still %g cells from rest", trial, worst);
         oct_free(oct);
@@ -440,7 +431,8 @@ static void test_fastlsm(void **state)
         Oct *oct = create(&body, (OctParams){.form = (OctGoalForm)(trial % 2), .threads = 1});
         oct_goals(oct);
         get(oct, 0, oct->body->g, true, body.a);
-        double worst = difference(body.n, (const double(*)[3])body.a, (const double(*)[3])body.b);
+        double worst =
+            field_difference(body.n, (const double(*)[3])body.a, (const double(*)[3])body.b);
         if (!(worst <= tolerance)) fail_msg("trial %d: the engines differ by %g", trial, worst);
         oct_free(oct);
         body_free(&body);

@@ -3,6 +3,7 @@
 #define OCT_TEST_OCTREE_BODY_H
 
 #include "../lib/engine.h"
+#include "../lib/test_fields.h"
 #include "../reference/octree_goals.h"
 #include "octree.h"
 #include "random_regions.h"
@@ -15,11 +16,6 @@ typedef struct {
     long n;
     double (*x)[3], (*v)[3], (*a)[3], (*b)[3], *m;
 } Body;
-
-static inline double (*triples(long n))[3]
-{
-    return sm_alloc((size_t)n, sizeof(double[3]));
-}
 
 /* Explicit leaves: j in R_i where the max norm is at most the larger w, and everywhere else by
  * chance; with `asymmetric` not always i in R_j. */
@@ -150,17 +146,6 @@ static inline void adopt(const Oct *oct, Body *body)
 {
     get_x(oct, body->x);
     get(oct, 0, oct->body->v, false, body->v);
-}
-
-static inline double difference(long n, const double (*a)[3], const double (*b)[3])
-{
-    double worst = 0;
-    for (long i = 0; i < n; i++)
-        for (int d = 0; d < 3; d++) {
-            double e = fabs(a[i][d] - b[i][d]);
-            if (!(e <= worst)) worst = e; /* a NaN stays */
-        }
-    return worst;
 }
 
 /* The tree whose leaves are the particles of a FastLSM body, with its regions. */

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "../lib/test_fields.h"
 #include "brute.h"
 
 #define CONST(array) ((const double(*)[3])(array))
@@ -96,14 +97,7 @@ static void a_body_falls_as_one(void **state)
 static void momenta(SmEngine *engine, const double *m, double linear[3], double angular[3])
 {
     double(*x)[3] = field(engine, SM_POSITION), (*v)[3] = field(engine, SM_VELOCITY);
-    memset(linear, 0, 3 * sizeof *linear);
-    memset(angular, 0, 3 * sizeof *angular);
-    for (long p = 0; p < particles(engine); p++)
-        for (int a = 0; a < 3; a++) {
-            int b = (a + 1) % 3, c = (a + 2) % 3;
-            linear[a] += m[p] * v[p][a];
-            angular[a] += m[p] * (x[p][b] * v[p][c] - x[p][c] * v[p][b]);
-        }
+    field_momenta(particles(engine), m, CONST(x), CONST(v), linear, angular);
     free(x);
     free(v);
 }

@@ -1,0 +1,40 @@
+/* test_fields.h - fields of particles in the tests of engines: [n][3], in any unit. */
+#ifndef SM_TEST_FIELDS_H
+#define SM_TEST_FIELDS_H
+
+#include <math.h>
+
+#include "error.h"
+
+/* The caller frees the array, which is zero. */
+static inline double (*triples(long n))[3]
+{
+    return sm_alloc((size_t)n, sizeof(double[3]));
+}
+
+/* Largest difference of a component; infinite where one is not finite. */
+static inline double field_difference(long n, const double (*a)[3], const double (*b)[3])
+{
+    double worst = 0;
+    for (long p = 0; p < n; p++)
+        for (int d = 0; d < 3; d++) {
+            double e = fabs(a[p][d] - b[p][d]);
+            if (!(e <= worst)) worst = isfinite(e) ? e : INFINITY;
+        }
+    return worst;
+}
+
+/* Linear and angular momentum about the origin, of masses m at x with velocities v. */
+static inline void field_momenta(long n, const double *m, const double (*x)[3],
+                                 const double (*v)[3], double linear[3], double angular[3])
+{
+    for (int d = 0; d < 3; d++) linear[d] = angular[d] = 0;
+    for (long p = 0; p < n; p++)
+        for (int d = 0; d < 3; d++) {
+            int e = (d + 1) % 3, f = (d + 2) % 3;
+            linear[d] += m[p] * v[p][d];
+            angular[d] += m[p] * (x[p][e] * v[p][f] - x[p][f] * v[p][e]);
+        }
+}
+
+#endif
