@@ -87,11 +87,7 @@ SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParam
 {
     BenchBody body = {.instances = 1};
     *cube = (BenchCube){.type = type, .side = side, .w = params->w, .valid = true};
-    sm_voxels_init(&body.voxels, side - 1, side - 1, side - 1, 1);
-    for (int k = 0; k < side - 1; k++)
-        for (int j = 0; j < side - 1; j++)
-            for (int i = 0; i < side - 1; i++) sm_voxel_set(&body.voxels, i, j, k);
-    sm_voxels_count(&body.voxels);
+    sm_voxels_block(&body.voxels, side - 1, side - 1, side - 1, 1);
     cube->particles = body.voxels.particle_count;
     SmCode code = type->create(&body.voxels, params, &cube->engine, error);
     if (code) {

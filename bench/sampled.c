@@ -58,11 +58,7 @@ SmCode bench_sampled_cube(int side, BenchSampled *body, SmError *error)
                                         .criteria_count = 1},
                            .edges = 1,
                            .epsilon = 0.5};
-    sm_voxels_init(&body->voxels, side, side, side, 1);
-    for (int k = 0; k < side; k++)
-        for (int j = 0; j < side; j++)
-            for (int i = 0; i < side; i++) sm_voxel_set(&body->voxels, i, j, k);
-    sm_voxels_count(&body->voxels);
+    sm_voxels_block(&body->voxels, side, side, side, 1);
     return sample(body, error);
 }
 

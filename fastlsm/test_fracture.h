@@ -244,11 +244,7 @@ static void test_equal_to_rebuild(void **state)
 static void full_box(int cells, Body *body)
 {
     memset(body, 0, sizeof *body);
-    sm_voxels_init(&body->voxels, cells, cells, cells, 1);
-    for (int k = 0; k < cells; k++)
-        for (int j = 0; j < cells; j++)
-            for (int i = 0; i < cells; i++) sm_voxel_set(&body->voxels, i, j, k);
-    sm_voxels_count(&body->voxels);
+    sm_voxels_block(&body->voxels, cells, cells, cells, 1);
     body_arrays(body);
 }
 

@@ -12,6 +12,15 @@ void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell)
     voxels->bits = sm_alloc((size_t)ny * (size_t)nz, (size_t)words * sizeof(uint64_t));
 }
 
+void sm_voxels_block(SmVoxels *voxels, int nx, int ny, int nz, double cell)
+{
+    sm_voxels_init(voxels, nx, ny, nz, cell);
+    for (int k = 0; k < nz; k++)
+        for (int j = 0; j < ny; j++)
+            for (int i = 0; i < nx; i++) sm_voxel_set(voxels, i, j, k);
+    sm_voxels_count(voxels);
+}
+
 void sm_voxels_free(SmVoxels *voxels)
 {
     free(voxels->bits);

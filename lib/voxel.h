@@ -84,6 +84,9 @@ const char *sm_voxel_verdict(const SmVoxelReport *report);
  * sm_voxels_count(). For tests and procedural blocks. */
 void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell);
 
+/* The same with material in every cell, counted. */
+void sm_voxels_block(SmVoxels *voxels, int nx, int ny, int nz, double cell);
+
 void sm_voxels_free(SmVoxels *voxels);
 
 /* Fills in cell_count and particle_count from bits. O(words). */

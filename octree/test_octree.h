@@ -251,11 +251,7 @@ static void block_body(unsigned *seed, int side, double split, Body *body)
 {
     const int corner[3] = {0, 0, 0};
     OctTree whole;
-    sm_voxels_init(&body->voxels, side, side, side, 1);
-    for (int k = 0; k < side; k++)
-        for (int j = 0; j < side; j++)
-            for (int i = 0; i < side; i++) sm_voxel_set(&body->voxels, i, j, k);
-    sm_voxels_count(&body->voxels);
+    sm_voxels_block(&body->voxels, side, side, side, 1);
     assert_int_equal(oct_tree_build(&body->voxels, 2, corner, &whole, NULL), SM_OK);
     random_splits(seed, &whole, split, &body->tree);
     oct_tree_free(&whole);

@@ -138,9 +138,7 @@ static void random_regions_are_as_defined(void **state)
 /* Eight finest cells in a row below one root: leaf l is cell l, pairs and fours are above them. */
 static void row_of_eight(SmVoxels *v, OctTree *t, OctGraph *g)
 {
-    sm_voxels_init(v, 8, 1, 1, 1.0);
-    for (int i = 0; i < 8; i++) sm_voxel_set(v, i, 0, 0);
-    sm_voxels_count(v);
+    sm_voxels_block(v, 8, 1, 1, 1.0);
     assert_int_equal(oct_tree_build(v, 3, (int[3]){0, 0, 0}, t, NULL), SM_OK);
     oct_graph_build(t, v, g);
 }

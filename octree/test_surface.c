@@ -200,9 +200,7 @@ static void weights_of_a_lattice_are_the_kernel(void **state)
     unsigned seed = 3;
     Body body;
     OctTree whole;
-    sm_voxels_init(&body.voxels, 16, 16, 16, 1);
-    for (int i = 0; i < 4096; i++) sm_voxel_set(&body.voxels, i % 16, i / 16 % 16, i / 256);
-    sm_voxels_count(&body.voxels);
+    sm_voxels_block(&body.voxels, 16, 16, 16, 1);
     assert_int_equal(oct_tree_build(&body.voxels, 2, (int[3]){0}, &whole, NULL), SM_OK);
     unsigned char *split = sm_alloc((size_t)whole.nodes, 1);
     memset(split, 1, (size_t)whole.level_first[1]);
@@ -331,9 +329,7 @@ static void continuous_across_leaves_of_all_sizes(void **state)
         Body body;
         OctTree whole;
         unsigned random = seed;
-        sm_voxels_init(&body.voxels, 16, 16, 16, 0.5);
-        for (int i = 0; i < 4096; i++) sm_voxel_set(&body.voxels, i % 16, i / 16 % 16, i / 256);
-        sm_voxels_count(&body.voxels);
+        sm_voxels_block(&body.voxels, 16, 16, 16, 0.5);
         assert_int_equal(oct_tree_build(&body.voxels, 3, (int[3]){0}, &whole, NULL), SM_OK);
         random_splits(&random, &whole, 0.6, &body.tree);
         oct_tree_free(&whole);
@@ -381,9 +377,7 @@ static void few_nodes(void **state)
     for (int cells = 1; cells <= 5; cells += 4) {
         Body body;
         unsigned seed = 7;
-        sm_voxels_init(&body.voxels, cells, 1, 1, 2);
-        for (int i = 0; i < cells; i++) sm_voxel_set(&body.voxels, i, 0, 0);
-        sm_voxels_count(&body.voxels);
+        sm_voxels_block(&body.voxels, cells, 1, 1, 2);
         assert_int_equal(oct_tree_build(&body.voxels, 1, (int[3]){0}, &body.tree, NULL), SM_OK);
         oct_graph_build(&body.tree, &body.voxels, &body.graph);
         scatter(&seed, &body.voxels, 50, &body.mesh);

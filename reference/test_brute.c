@@ -23,17 +23,6 @@ static SmVoxels picture(int nx, int ny, int nz, const char *cells)
     return voxels;
 }
 
-static SmVoxels block(int nx, int ny, int nz)
-{
-    SmVoxels voxels;
-    sm_voxels_init(&voxels, nx, ny, nz, 1.0);
-    for (int k = 0; k < nz; k++)
-        for (int j = 0; j < ny; j++)
-            for (int i = 0; i < nx; i++) sm_voxel_set(&voxels, i, j, k);
-    sm_voxels_count(&voxels);
-    return voxels;
-}
-
 static double uniform(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
@@ -87,7 +76,8 @@ static int clipped(int at, int cells, int w)
 static void full_block_has_clipped_cubes(void **state)
 {
     (void)state;
-    SmVoxels voxels = block(4, 3, 5);
+    SmVoxels voxels;
+    sm_voxels_block(&voxels, 4, 3, 5, 1.0);
     int(*c)[3] = sm_alloc((size_t)voxels.particle_count, sizeof *c);
     sm_voxels_particles(&voxels, c);
     for (int w = 1; w <= 6; w++) {
@@ -110,7 +100,8 @@ static void full_block_has_clipped_cubes(void **state)
 static void unique_regions_of_a_block(void **state)
 {
     (void)state;
-    SmVoxels voxels = block(4, 2, 2);
+    SmVoxels voxels;
+    sm_voxels_block(&voxels, 4, 2, 2, 1.0);
     static const long along[] = {5, 5, 3, 1}, across[] = {3, 1, 1, 1};
     for (int w = 1; w <= 4; w++) {
         RefRegions regions;
@@ -192,7 +183,8 @@ static void u_shape_goes_round(void **state)
 static void broken_links_part_neighbours(void **state)
 {
     (void)state;
-    SmVoxels bar = block(3, 1, 1);
+    SmVoxels bar;
+    sm_voxels_block(&bar, 3, 1, 1, 1.0);
     int(*broken)[2] = sm_alloc(16, sizeof *broken);
     int count = 0;
     for (int a = 0; a < 4; a++) /* all 16 links across the middle cell, either way round */

@@ -22,20 +22,10 @@ static double uniform(uint64_t *state)
     return (double)(*state >> 11) * 0x1p-53 - 0.5;
 }
 
-static SmVoxels block(int nx, int ny, int nz)
-{
-    SmVoxels voxels;
-    sm_voxels_init(&voxels, nx, ny, nz, 1.0);
-    for (int k = 0; k < nz; k++)
-        for (int j = 0; j < ny; j++)
-            for (int i = 0; i < nx; i++) sm_voxel_set(&voxels, i, j, k);
-    sm_voxels_count(&voxels);
-    return voxels;
-}
-
 static SmEngine *create(int nx, int ny, int nz, const SmEngineParams *params)
 {
-    SmVoxels voxels = block(nx, ny, nz);
+    SmVoxels voxels;
+    sm_voxels_block(&voxels, nx, ny, nz, 1.0);
     SmEngine *engine = NULL;
     SmError error;
     assert_int_equal(type->create(&voxels, params, &engine, &error), SM_OK);
@@ -300,7 +290,8 @@ static void stretched_links_break(void **state)
     assert_int_equal(after.broken, count);
     assert_int_equal(after.links, before.links - count);
 
-    SmVoxels voxels = block(4, 1, 1);
+    SmVoxels voxels;
+    sm_voxels_block(&voxels, 4, 1, 1, 1.0);
     RefRegions expected, whole;
     ref_regions_build(&voxels, 1, (const int(*)[2])broken, count, &expected);
     ref_regions_build(&voxels, 1, NULL, 0, &whole);
@@ -333,7 +324,8 @@ static void goals_change_nothing_else(void **state)
     double(*g)[3] = field(engine, SM_GOAL), (*x0)[3] = field(engine, SM_REST), expected[48][3];
     assert_memory_equal(x, x_after, 48 * sizeof *x);
     assert_memory_equal(v, v_after, 48 * sizeof *v);
-    SmVoxels voxels = block(3, 3, 2);
+    SmVoxels voxels;
+    sm_voxels_block(&voxels, 3, 3, 2, 1.0);
     RefRegions regions;
     double m[48];
     for (int p = 0; p < 48; p++) m[p] = 1;
@@ -394,7 +386,8 @@ static void bad_parameters_are_refused(void **state)
     bad[6].mass = negative;
     bad[7].h = INFINITY;
     bad[8].gravity[1] = NAN;
-    SmVoxels voxels = block(1, 1, 1), empty;
+    SmVoxels voxels, empty;
+    sm_voxels_block(&voxels, 1, 1, 1, 1.0);
     sm_voxels_init(&empty, 2, 2, 2, 1.0);
     sm_voxels_count(&empty);
     for (int n = 0; n < 10; n++) {
