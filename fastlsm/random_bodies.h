@@ -46,6 +46,18 @@ static inline void random_body(unsigned *seed, int kind, int most, SmVoxels *v)
     sm_voxels_count(v);
 }
 
+/* A block of `size` cells of which each is there with probability `fill`. */
+static inline void random_block(unsigned *seed, const int size[3], double cell, double fill,
+                                SmVoxels *v)
+{
+    sm_voxels_init(v, size[0], size[1], size[2], cell);
+    for (int k = 0; k < size[2]; k++)
+        for (int j = 0; j < size[1]; j++)
+            for (int i = 0; i < size[0]; i++)
+                if (fill >= 1 || random_unit(seed) < fill) sm_voxel_set(v, i, j, k);
+    sm_voxels_count(v);
+}
+
 /* x = A x0 + t + noise, with A near a rotation about a random axis; `noise` in cells. */
 static inline void random_deformation(unsigned *seed, double cell, double noise, long count,
                                       const double (*x0)[3], double (*x)[3])

@@ -71,13 +71,8 @@ static void test_wide_lists(void **state)
     }
     for (int trial = 0; trial < 8; trial++) {
         Body body;
-        sm_voxels_init(&body.voxels, trial < 4 ? 7 : 64, 9, trial < 4 ? 128 : 5, 0.5);
-        for (int k = 0; k < body.voxels.size[2]; k++)
-            for (int j = 0; j < 9; j++)
-                for (int i = 0; i < body.voxels.size[0]; i++)
-                    if (random_unit(&seed) < (trial % 2 ? 0.8 : 1))
-                        sm_voxel_set(&body.voxels, i, j, k);
-        sm_voxels_count(&body.voxels);
+        const int size[3] = {trial < 4 ? 7 : 64, 9, trial < 4 ? 128 : 5};
+        random_block(&seed, size, 0.5, trial % 2 ? 0.8 : 1, &body.voxels);
         body_arrays(&body);
         random_deformation(&seed, 0.5, 0.3, body.n, (const double(*)[3])body.x0, body.x);
         check_goals(trial / 2 % 2, SM_SUM_FAST, SM_LAYOUT_LISTS, 4 + trial % 3, &body);
@@ -276,15 +271,10 @@ static void test_threads(void **state)
         unsigned seed = 7;
         Body body;
         bool wide = trial >= 8, solid = wide ? trial % 4 : trial < 3;
-        int planes = wide ? 53 + 9 * (trial % 3) : 40;
+        const int size[3] = {24 + 7 * (trial % 3), wide ? 11 : 17,
+                             wide ? 53 + 9 * (trial % 3) : 40};
         int w = wide ? trial - 5 : trial < 6 ? 1 + trial % 3 : 4;
-        sm_voxels_init(&body.voxels, 24 + 7 * (trial % 3), wide ? 11 : 17, planes, 0.5);
-        for (int k = 0; k < planes; k++)
-            for (int j = 0; j < body.voxels.size[1]; j++)
-                for (int i = 0; i < body.voxels.size[0]; i++)
-                    if (solid || random_unit(&seed) < 0.95 - 0.15 * !wide)
-                        sm_voxel_set(&body.voxels, i, j, k);
-        sm_voxels_count(&body.voxels);
+        random_block(&seed, size, 0.5, solid ? 1 : wide ? 0.95 : 0.8, &body.voxels);
         body_arrays(&body);
         random_deformation(&seed, 0.5, 0.2, body.n, (const double(*)[3])body.x0, body.x);
         check_threads(&body, w, wide ? SM_LAYOUT_BLOCKS : (SmLayout)(1 + trial % 2), wide ? 8 : 5);

@@ -17,6 +17,16 @@ static inline void random_splits(unsigned *seed, const OctTree *whole, double pr
     free(split);
 }
 
+/* The tree of `voxels` with random splits. The caller frees it. */
+static inline void random_split_tree(unsigned *seed, const SmVoxels *voxels, int levels,
+                                     const int corner[3], double probability, OctTree *tree)
+{
+    OctTree whole;
+    if (oct_tree_build(voxels, levels, corner, &whole, NULL)) abort();
+    random_splits(seed, &whole, probability, tree);
+    oct_tree_free(&whole);
+}
+
 /* A random body (the kinds of random_body()) of at most `most` finest cells along an axis, the base
  * lattice anywhere, 1 to 4 levels, random splits: of every cell at the most (regular sampling at
  * the finest level), of none at the least. The caller frees both. */
@@ -26,10 +36,20 @@ static inline void random_tree(unsigned *seed, int kind, int most, SmVoxels *vox
     int levels = 1 + random_int(seed, 4);
     const int corner[3] = {random_int(seed, 40) - 20, random_int(seed, 40) - 20,
                            random_int(seed, 40) - 20};
-    OctTree whole;
-    if (oct_tree_build(voxels, levels, corner, &whole, NULL)) abort();
-    random_splits(seed, &whole, random_int(seed, 5) / 4.0, tree);
-    oct_tree_free(&whole);
+    random_split_tree(seed, voxels, levels, corner, random_int(seed, 5) / 4.0, tree);
+}
+
+/* A random tree of at most `leaves` leaves: large leaves beside small ones, gaps, loose parts. Of
+ * another kind and size every `trial`. The caller frees both. */
+static inline void random_small_tree(unsigned *seed, int trial, long leaves, SmVoxels *voxels,
+                                     OctTree *tree)
+{
+    for (;;) {
+        random_tree(seed, trial % 6, 4 + trial % 11, voxels, tree);
+        if (tree->leaves <= leaves) return;
+        oct_tree_free(tree);
+        sm_voxels_free(voxels);
+    }
 }
 
 #endif

@@ -15,17 +15,6 @@
 
 enum { TRIALS = 600, LEAVES = 160 };
 
-/* A random tree of at most LEAVES leaves: large leaves beside small ones, gaps, loose parts. */
-static void small_tree(unsigned *seed, int trial, SmVoxels *v, OctTree *t)
-{
-    for (;;) {
-        random_tree(seed, trial % 6, 4 + trial % 11, v, t);
-        if (t->leaves <= LEAVES) return;
-        oct_tree_free(t);
-        sm_voxels_free(v);
-    }
-}
-
 static void check_graph(const OctGraph *g, const RefOctree *ref)
 {
     int longest = 0;
@@ -80,7 +69,7 @@ static void random_graphs_are_as_defined_and_distances_as_dijkstra_s(void **stat
         OctTree t;
         OctGraph g;
         RefOctree ref;
-        small_tree(&seed, trial, &v, &t);
+        random_small_tree(&seed, trial, LEAVES, &v, &t);
         oct_graph_build(&t, &v, &g);
         ref_octree_build(&t, &v, &ref);
         check_graph(&g, &ref);
@@ -215,7 +204,7 @@ static void bodies_apart_are_never_joined(void **state)
     int apart = 0;
     for (int trial = 0; trial < 300; trial++) {
         SmVoxels v;
-        OctTree whole, t;
+        OctTree t;
         OctGraph g;
         int at = 3 + random_int(&seed, 6);
         sm_voxels_init(&v, WIDE, HIGH, HIGH, 1.0);
@@ -224,8 +213,7 @@ static void bodies_apart_are_never_joined(void **state)
                 for (int i = 0; i < WIDE; i++)
                     if (side_of(at, i, j, k) && random_unit(&seed) < 0.9) sm_voxel_set(&v, i, j, k);
         sm_voxels_count(&v);
-        assert_int_equal(oct_tree_build(&v, 3, (int[3]){trial % 8, 0, 0}, &whole, NULL), SM_OK);
-        random_splits(&seed, &whole, 0.95, &t);
+        random_split_tree(&seed, &v, 3, (int[3]){trial % 8, 0, 0}, 0.95, &t);
         oct_graph_build(&t, &v, &g);
         int *side = sm_alloc((size_t)t.leaves, sizeof *side);
         if (find_sides(&v, &t, at, side)) {
@@ -237,7 +225,6 @@ static void bodies_apart_are_never_joined(void **state)
         free(side);
         oct_graph_free(&g);
         oct_tree_free(&t);
-        oct_tree_free(&whole);
         sm_voxels_free(&v);
     }
     assert_true(apart > 20);
@@ -269,16 +256,10 @@ static void graphs_are_equal_for_any_number_of_threads(void **state)
     unsigned seed = 6;
     int before = omp_get_max_threads();
     SmVoxels v;
-    OctTree whole, t;
+    OctTree t;
     OctGraph one, many;
-    sm_voxels_init(&v, 40, 20, 20, 1.0);
-    for (int k = 0; k < 20; k++)
-        for (int j = 0; j < 20; j++)
-            for (int i = 0; i < 40; i++)
-                if (random_unit(&seed) < 0.5) sm_voxel_set(&v, i, j, k);
-    sm_voxels_count(&v);
-    assert_int_equal(oct_tree_build(&v, 4, (int[3]){0, 0, 0}, &whole, NULL), SM_OK);
-    random_splits(&seed, &whole, 0.9, &t);
+    random_block(&seed, (int[3]){40, 20, 20}, 1, 0.5, &v);
+    random_split_tree(&seed, &v, 4, (int[3]){0}, 0.9, &t);
     assert_true(t.leaves > 2000);
     omp_set_num_threads(1);
     oct_graph_build(&t, &v, &one);
@@ -294,7 +275,6 @@ static void graphs_are_equal_for_any_number_of_threads(void **state)
     oct_graph_free(&one);
     oct_graph_free(&many);
     oct_tree_free(&t);
-    oct_tree_free(&whole);
     sm_voxels_free(&v);
 }
 

@@ -249,12 +249,8 @@ static void test_rigid(void **state)
 /* A full block of `side` finest cells, of two levels; a share of the cells split. */
 static void block_body(unsigned *seed, int side, double split, Body *body)
 {
-    const int corner[3] = {0, 0, 0};
-    OctTree whole;
     sm_voxels_block(&body->voxels, side, side, side, 1);
-    assert_int_equal(oct_tree_build(&body->voxels, 2, corner, &whole, NULL), SM_OK);
-    random_splits(seed, &whole, split, &body->tree);
-    oct_tree_free(&whole);
+    random_split_tree(seed, &body->voxels, 2, (int[3]){0}, split, &body->tree);
     max_norm_regions(&body->tree, 9, 0.5, &body->regions);
     body_arrays(seed, body);
 }

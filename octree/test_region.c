@@ -19,17 +19,6 @@ enum { TRIALS = 600, LEAVES = 130 };
 
 static const double epsilons[] = {0, 0.25, 0.5, 1, 2};
 
-/* A random tree of at most LEAVES leaves: large leaves beside small ones, gaps, loose parts. */
-static void small_tree(unsigned *seed, int trial, SmVoxels *v, OctTree *t)
-{
-    for (;;) {
-        random_tree(seed, trial % 6, 4 + trial % 11, v, t);
-        if (t->leaves <= LEAVES) return;
-        oct_tree_free(t);
-        sm_voxels_free(v);
-    }
-}
-
 /* One width for all, a width for each, or most at 0 and few wide. */
 static int *random_widths(unsigned *seed, int trial, long leaves)
 {
@@ -128,7 +117,7 @@ static void random_regions_are_as_defined(void **state)
     for (int trial = 0; trial < TRIALS; trial++) {
         SmVoxels v;
         OctTree t;
-        small_tree(&seed, trial, &v, &t);
+        random_small_tree(&seed, trial, LEAVES, &v, &t);
         check_trial(&seed, trial, &v, &t);
         oct_tree_free(&t);
         sm_voxels_free(&v);
@@ -227,17 +216,11 @@ static void regions_are_equal_for_any_number_of_threads(void **state)
     int before = omp_get_max_threads();
     for (int trial = 0; trial < 4; trial++) {
         SmVoxels v;
-        OctTree whole, t;
+        OctTree t;
         OctGraph g;
         OctRegions one, many;
-        sm_voxels_init(&v, 24, 16, 16, 1.0);
-        for (int k = 0; k < 16; k++)
-            for (int j = 0; j < 16; j++)
-                for (int i = 0; i < 24; i++)
-                    if (random_unit(&seed) < 0.9) sm_voxel_set(&v, i, j, k);
-        sm_voxels_count(&v);
-        assert_int_equal(oct_tree_build(&v, 3, (int[3]){trial, 0, 0}, &whole, NULL), SM_OK);
-        random_splits(&seed, &whole, 0.9, &t);
+        random_block(&seed, (int[3]){24, 16, 16}, 1, 0.9, &v);
+        random_split_tree(&seed, &v, 3, (int[3]){trial, 0, 0}, 0.9, &t);
         assert_true(t.leaves > 2000);
         int *w = sm_alloc((size_t)t.leaves, sizeof *w);
         for (long l = 0; l < t.leaves; l++) w[l] = random_int(&seed, 7);
@@ -257,7 +240,6 @@ static void regions_are_equal_for_any_number_of_threads(void **state)
         oct_regions_free(&many);
         oct_graph_free(&g);
         oct_tree_free(&t);
-        oct_tree_free(&whole);
         sm_voxels_free(&v);
     }
 }

@@ -327,12 +327,9 @@ static void continuous_across_leaves_of_all_sizes(void **state)
     (void)state;
     for (unsigned seed = 1; seed <= 3; seed++) {
         Body body;
-        OctTree whole;
         unsigned random = seed;
         sm_voxels_block(&body.voxels, 16, 16, 16, 0.5);
-        assert_int_equal(oct_tree_build(&body.voxels, 3, (int[3]){0}, &whole, NULL), SM_OK);
-        random_splits(&random, &whole, 0.6, &body.tree);
-        oct_tree_free(&whole);
+        random_split_tree(&random, &body.voxels, 3, (int[3]){0}, 0.6, &body.tree);
         oct_graph_build(&body.tree, &body.voxels, &body.graph);
         scatter(&random, &body.voxels, 1, &body.mesh);
         attach(&body);
