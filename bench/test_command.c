@@ -15,16 +15,17 @@
 #include <cmocka.h>
 #include <jansson.h>
 
-static char folder[] = "/tmp/test_command_XXXXXX";
+#include "../lib/test_folder.h"
 
 typedef struct {
     int code; /* exit code, or 1000 + signal */
     char out[65536], err[4096];
 } Result;
 
+/* The text of a file in the test's folder. */
 static void slurp(const char *name, char *text, size_t room)
 {
-    FILE *file = fopen(name, "r");
+    FILE *file = fopen(path_in(name), "r");
     size_t size = file ? fread(text, 1, room - 1, file) : 0;
     text[size] = '\0';
     if (file) fclose(file);
@@ -38,60 +39,30 @@ static void run(const char *arguments, Result *result)
              arguments);
     int status = system(command);
     result->code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-    char path[64];
-    snprintf(path, sizeof path, "%s/out", folder);
-    slurp(path, result->out, sizeof result->out);
-    snprintf(path, sizeof path, "%s/err", folder);
-    slurp(path, result->err, sizeof result->err);
+    slurp("out", result->out, sizeof result->out);
+    slurp("err", result->err, sizeof result->err);
 }
 
 static bool there(const char *name)
 {
-    char path[128];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return access(path, F_OK) == 0;
+    return access(path_in(name), F_OK) == 0;
 }
 
 static int set_up(void **state)
 {
-    (void)state;
-    if (!mkdtemp(folder)) return -1;
-    char path[64];
-    snprintf(path, sizeof path, "%s/bad.cfg", folder);
-    FILE *file = fopen(path, "w");
-    fputs("mesh = \"shape:block\";\nparticles = 64;\ndamping_k = 1;\n", file);
-    fclose(file);
-    snprintf(path, sizeof path, "%s/tiny.cfg", folder);
-    file = fopen(path, "w");
-    fputs("mesh = \"shape:block\"; particles = 64; w = 1; engine = \"brute\"; bend = 0.3;\n"
-          "frames = 3; steps_per_frame = 2;\n",
-          file);
-    fclose(file);
-    snprintf(path, sizeof path, "%s/noise.obj", folder);
-    file = fopen(path, "w");
-    fputs("no mesh at all\n", file);
-    fclose(file);
-    snprintf(path, sizeof path, "%s/lattice.cfg", folder);
-    file = fopen(path, "w");
-    fputs("paper = \"octree\"; mesh = \"shape:block\"; particles = 500; w = 1; bend = 0.3;\n",
-          file);
-    fclose(file);
-    snprintf(path, sizeof path, "%s/tree.cfg", folder);
-    file = fopen(path, "w");
-    fputs("paper = \"octree\"; row = \"hand-sampled\"; mesh = \"shape:block\"; cells = 343;\n"
-          "engine = \"octree\"; bend = 0.3; kick = 0.01; epsilon = 0.5;\n"
-          "octree = { levels = 2; nodes = 120; summation_nodes = 9.0; };\n",
-          file);
-    fclose(file);
+    if (make_folder(state)) return -1;
+    write_text("bad.cfg", "mesh = \"shape:block\";\nparticles = 64;\ndamping_k = 1;\n");
+    write_text("tiny.cfg",
+               "mesh = \"shape:block\"; particles = 64; w = 1; engine = \"brute\"; bend = 0.3;\n"
+               "frames = 3; steps_per_frame = 2;\n");
+    write_text("noise.obj", "no mesh at all\n");
+    write_text("lattice.cfg",
+               "paper = \"octree\"; mesh = \"shape:block\"; particles = 500; w = 1; bend = 0.3;\n");
+    write_text("tree.cfg",
+               "paper = \"octree\"; row = \"hand-sampled\"; mesh = \"shape:block\"; cells = 343;\n"
+               "engine = \"octree\"; bend = 0.3; kick = 0.01; epsilon = 0.5;\n"
+               "octree = { levels = 2; nodes = 120; summation_nodes = 9.0; };\n");
     return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    char command[64];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    return system(command);
 }
 
 static void mistakes_are_one_line_and_an_exit_code(void **state)
@@ -193,11 +164,7 @@ static void a_scene_can_be_copied_and_run(void **state)
     assert_non_null(strstr(result.out, "penguin"));
     run("scenes block", &result);
     assert_int_equal(result.code, 0);
-    char path[64];
-    snprintf(path, sizeof path, "%s/mine.cfg", folder);
-    FILE *file = fopen(path, "w");
-    fputs(result.out, file);
-    fclose(file);
+    write_text("mine.cfg", result.out);
     run("run mine.cfg --engine brute --particles 64 --frames 2", &result);
     if (result.code) fail_msg("%s", result.err);
     assert_string_equal(result.err, ""); /* no progress where there is no terminal */
@@ -333,9 +300,8 @@ static void a_huge_file_is_announced_and_an_interrupt_leaves_nothing(void **stat
     int status;
     waitpid(child, &status, 0);
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
-    char path[64], said[4096], command[96];
-    snprintf(path, sizeof path, "%s/err", folder);
-    slurp(path, said, sizeof said);
+    char said[4096], command[96];
+    slurp("err", said, sizeof said);
     assert_non_null(strstr(said, "long.vtkhdf will take about 46.3 GB; --frames N writes fewer"));
     snprintf(command, sizeof command, "ls %s | grep -q long", folder);
     assert_int_not_equal(system(command), 0);
@@ -354,5 +320,5 @@ int main(void)
         cmocka_unit_test(a_full_disk_is_an_error),
         cmocka_unit_test(a_huge_file_is_announced_and_an_interrupt_leaves_nothing),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "../fastlsm/random_bodies.h"
+#include "../lib/test_folder.h"
 #include "../reference/brute.h"
 #include "trajectory.h"
 
@@ -18,23 +19,13 @@
 
 enum { STEPS = 3, NEXT = STEPS + 1 };
 
-static char folder[] = "/tmp/test_particles_XXXXXX";
-static char path[64];
+static const char *path; /* no other is asked of path_in() */
 
-static int make_folder(void **state)
+static int make_file_name(void **state)
 {
-    (void)state;
-    if (!mkdtemp(folder)) return -1;
-    snprintf(path, sizeof path, "%s/steps.h5", folder);
+    if (make_folder(state)) return -1;
+    path = path_in("steps.h5");
     return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return system(command);
 }
 
 /* An L one cell thick: regions are no boxes. */
@@ -350,9 +341,7 @@ static void broken_links_are_not_checked(void **state)
 static void no_trajectory(void **state)
 {
     (void)state;
-    FILE *file = fopen(path, "w");
-    fputs("no HDF5\n", file);
-    fclose(file);
+    write_text("steps.h5", "no HDF5\n");
     assert_int_equal(check_file(), 3);
 }
 
@@ -369,5 +358,5 @@ int main(void)
         cmocka_unit_test(octree_held_in_single_precision),
         cmocka_unit_test(octree_corrupted),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_file_name, remove_folder);
 }

@@ -14,42 +14,10 @@
 
 #include <cmocka.h>
 
+#include "../lib/test_folder.h"
 #include "store.h"
 
 enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 680 };
-
-static char folder[] = "/tmp/test_store_XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return system(command);
-}
-
-static void path_in(const char *name, char path[128])
-{
-    snprintf(path, 128, "%s/%s", folder, name);
-}
-
-/* How many entries the test's folder has. */
-static int entries(void)
-{
-    char command[128];
-    int count = -1;
-    snprintf(command, sizeof command, "ls -A %s | wc -l", folder);
-    FILE *pipe = popen(command, "r");
-    assert_int_equal(fscanf(pipe, "%d", &count), 1);
-    pclose(pipe);
-    return count;
-}
 
 /* A field new in row.h is to be stored (store.c), described (results/README.md) and filled here. */
 _Static_assert(sizeof(BenchRow) == ROW_BYTES, "row.h has changed: see above");
@@ -148,15 +116,14 @@ static void write_file(const char *path)
 static void round_trip(void **state)
 {
     (void)state;
-    char path[128];
-    path_in("rows.h5", path);
+    const char *path = path_in("rows.h5");
     BenchRow *rows, expected[ROWS];
     BenchMachine machine, now;
     SmError error = {0};
     int count;
     write_file(path);
     write_file(path); /* replaces */
-    assert_int_equal(entries(), 1);
+    assert_int_equal(entries(""), 1);
     if (bench_load_rows(path, &rows, &count, &machine, &error) != SM_OK) fail_msg("%s", error.text);
     assert_int_equal(count, ROWS);
     fill_rows(expected, &now);
@@ -174,8 +141,7 @@ static void round_trip(void **state)
 static void no_rows(void **state)
 {
     (void)state;
-    char path[128];
-    path_in("none.h5", path);
+    const char *path = path_in("none.h5");
     BenchRow *rows;
     BenchMachine machine;
     SmError error = {0};
@@ -232,12 +198,9 @@ static void refuses(const char *path, const char *words)
 static void foreign_files(void **state)
 {
     (void)state;
-    char path[128];
-    path_in("foreign.h5", path);
+    const char *path = path_in("foreign.h5");
     refuses(path, "No such file");
-    FILE *file = fopen(path, "w");
-    fputs("this is no HDF5\n", file);
-    fclose(file);
+    write_text("foreign.h5", "this is no HDF5\n");
     refuses(path, "not an HDF5 file");
     hid_t other = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     H5Fclose(other);
@@ -249,8 +212,7 @@ static void foreign_files(void **state)
 static void truncated_file(void **state)
 {
     (void)state;
-    char path[128];
-    path_in("cut.h5", path);
+    const char *path = path_in("cut.h5");
     struct stat status;
     for (int eighth = 7; eighth >= 0; eighth--) {
         write_file(path);
@@ -264,8 +226,7 @@ static void truncated_file(void **state)
 /* Changes a good file by `change` and expects the refusal. */
 static void refuses_changed(void (*change)(hid_t file), const char *words)
 {
-    char path[128];
-    path_in("changed.h5", path);
+    const char *path = path_in("changed.h5");
     write_file(path);
     hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
     change(file);
@@ -355,12 +316,12 @@ static void cannot_store(const char *path, const char *words)
     BenchRow rows[ROWS];
     BenchMachine machine;
     SmError error = {0};
-    int before = entries();
+    int before = entries("");
     fill_rows(rows, &machine);
     assert_int_equal(bench_store_rows(path, rows, ROWS, &machine, &error), SM_OUTPUT);
     assert_non_null(strstr(error.text, path));
     if (!strstr(error.text, words)) fail_msg("'%s' does not say '%s'", error.text, words);
-    assert_int_equal(entries(), before);
+    assert_int_equal(entries(""), before);
     for (int i = 0; i < ROWS; i++) {
         free(rows[i].total);
         free(rows[i].stage);
@@ -370,8 +331,7 @@ static void cannot_store(const char *path, const char *words)
 static void unwritable_targets(void **state)
 {
     (void)state;
-    char path[128];
-    path_in("missing/rows.h5", path);
+    const char *path = path_in("missing/rows.h5");
     cannot_store(path, "create the folder");
     cannot_store("/dev/null", "not a regular file");
     cannot_store(folder, "not a regular file");
@@ -394,8 +354,7 @@ static void in_child(void (*body)(void))
 
 static void store_in_locked_folder(void)
 {
-    char path[128];
-    path_in("locked/rows.h5", path);
+    const char *path = path_in("locked/rows.h5");
     BenchMachine machine;
     SmError error = {0};
     bench_machine_read(0, NULL, 1, &machine);
@@ -407,8 +366,7 @@ static void store_in_locked_folder(void)
 static void locked_folder(void **state)
 {
     (void)state;
-    char path[128];
-    path_in("locked", path);
+    const char *path = path_in("locked");
     assert_int_equal(chmod(folder, 0755), 0);
     assert_int_equal(mkdir(path, 0555), 0);
     in_child(store_in_locked_folder);
@@ -418,8 +376,7 @@ static void locked_folder(void **state)
 /* A size limit on files stands in for a full disk: the write fails at the same places. */
 static void store_with_limits(void)
 {
-    char path[128];
-    path_in("full.h5", path);
+    const char *path = path_in("full.h5");
     BenchRow rows[ROWS];
     BenchMachine machine;
     fill_rows(rows, &machine);
@@ -443,13 +400,12 @@ static void store_with_limits(void)
 static void full_disk(void **state)
 {
     (void)state;
-    char path[128];
-    path_in("full.h5", path);
+    const char *path = path_in("full.h5");
     in_child(store_with_limits);
     BenchRow *rows;
     BenchMachine machine;
     int count;
-    assert_int_equal(entries(), 1); /* the last one, and no drafts */
+    assert_int_equal(entries(""), 1); /* the last one, and no drafts */
     assert_int_equal(bench_load_rows(path, &rows, &count, &machine, NULL), SM_OK);
     assert_int_equal(count, ROWS);
     bench_rows_free(rows, count);

@@ -1,5 +1,4 @@
 #define _GNU_SOURCE
-#include <dirent.h>
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -13,47 +12,11 @@
 
 #include <cmocka.h>
 
+#include "../lib/test_folder.h"
 #include "draft.h"
 #include "trajectory.h"
 
 enum { FRAMES = 5, SIDE = 12, POINTS = SIDE * SIDE, TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1) };
-
-static char folder[] = "/tmp/test_trajectory_XXXXXX";
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return system(command);
-}
-
-static const char *path_in(const char *name)
-{
-    static char path[256];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
-/* How many entries of the test's folder end in `end`. */
-static int entries(const char *end)
-{
-    DIR *all = opendir(folder);
-    int count = 0;
-    for (struct dirent *entry; (entry = readdir(all));) {
-        size_t length = strlen(entry->d_name);
-        if (entry->d_name[0] == '.') continue;
-        count += length >= strlen(end) && !strcmp(entry->d_name + length - strlen(end), end);
-    }
-    closedir(all);
-    return count;
-}
 
 /* A sheet of squares, `offset` away from the origin. */
 static void make_sheet(double offset, SmMesh *mesh)

@@ -20,34 +20,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "test_folder.h"
+
 /* cmocka's assert_float_equal() compares in single precision. */
 static void assert_near(double value, double expected, double tolerance)
 {
     if (!(fabs(value - expected) <= tolerance)) fail_msg("%.17g is not %.17g", value, expected);
-}
-
-static char folder[] = "/tmp/sm_import_XXXXXX";
-
-static const char *file_path(const char *name)
-{
-    static char path[512];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
-static const char *write_file(const char *name, const void *bytes, size_t size)
-{
-    const char *path = file_path(name);
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size, file), size);
-    fclose(file);
-    return path;
-}
-
-static const char *write_text(const char *name, const char *text)
-{
-    return write_file(name, text, strlen(text));
 }
 
 static SmMeshInfo import_info(const char *path)
@@ -178,7 +156,7 @@ static void test_node_transforms(void **state)
 static void test_unusable_files(void **state)
 {
     (void)state;
-    expect_error(file_path("missing.obj"), NULL, "no such file");
+    expect_error(path_in("missing.obj"), NULL, "no such file");
     expect_error(folder, NULL, "is a directory");
     expect_error("/dev/null", NULL, "not a regular file");
     expect_error(write_text("empty.obj", ""), NULL, "empty");
@@ -204,7 +182,7 @@ static void test_truncated(void **state)
 {
     (void)state;
     for (size_t length = 1; length < sizeof tetrahedron_off; length += 6) {
-        const char *path = write_file("cut.off", tetrahedron_off, length);
+        const char *path = write_bytes("cut.off", tetrahedron_off, length);
         SmMesh mesh;
         SmError error = {0};
         SmCode code = sm_import(path, NULL, &mesh, &error);
@@ -328,14 +306,14 @@ static void test_child_without_memory(void **state)
 static void test_import_limits(void **state)
 {
     (void)state;
-    FILE *file = fopen(file_path("long.obj"), "w");
+    FILE *file = fopen(path_in("long.obj"), "w");
     assert_non_null(file);
     for (int i = 0; i < 200000; i++) fprintf(file, "v %d 0 1\n", i);
     fprintf(file, "f 1 2 3\n");
     fclose(file);
-    expect_error(file_path("long.obj"), &(SmImportLimits){0.001, 0}, "longer than 0.001 s");
+    expect_error(path_in("long.obj"), &(SmImportLimits){0.001, 0}, "longer than 0.001 s");
     if (SM_CHILD_LIMITS_MEMORY)
-        expect_error(file_path("long.obj"), &(SmImportLimits){0, 2}, "more than 2 MB");
+        expect_error(path_in("long.obj"), &(SmImportLimits){0, 2}, "more than 2 MB");
 }
 
 static void test_parent_ignores_children(void **state)
@@ -423,22 +401,6 @@ static void test_shared_meshes(void **state)
         assert_int_equal(info.flipped_edges, expected[i].flipped);
         assert_int_equal(info.duplicates, expected[i].duplicates);
     }
-}
-
-static int make_folder(void **state)
-{
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    DIR *listing = opendir(folder);
-    for (struct dirent *entry; listing && (entry = readdir(listing));)
-        if (entry->d_name[0] != '.') unlink(file_path(entry->d_name));
-    if (listing) closedir(listing);
-    return rmdir(folder);
 }
 
 int main(void)
