@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "vector.h"
+
 enum { RING = 64 }; /* most neighbours that a vertex may get */
 
 /* x' A x + 2 b' x + c with symmetric A (xx, xy, xz, yy, yz, zz). */
@@ -33,11 +35,6 @@ static void subtract(const double a[3], const double b[3], double result[3])
     for (int i = 0; i < 3; i++) result[i] = a[i] - b[i];
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Twice the area vector of a triangle. */
 static void area_vector(const double p[3], const double q[3], const double r[3], double n[3])
 {
@@ -58,7 +55,7 @@ static void quadric_add(Quadric *q, const Quadric *other)
 /* weight * (n . (x - p))^2 */
 static void quadric_add_plane(Quadric *q, double weight, const double n[3], const double p[3])
 {
-    double d = -dot(n, p);
+    double d = -sm_dot(n, p);
     Quadric plane = {{n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]},
                      {d * n[0], d * n[1], d * n[2]},
                      d * d};
@@ -72,14 +69,15 @@ static void quadric_add_point(Quadric *q, double weight, const double p[3])
 {
     q->a[0] += weight, q->a[3] += weight, q->a[5] += weight;
     for (int i = 0; i < 3; i++) q->b[i] -= weight * p[i];
-    q->c += weight * dot(p, p);
+    q->c += weight * sm_dot(p, p);
 }
 
 static double quadric_at(const Quadric *q, const double x[3])
 {
     const double *a = q->a;
     return a[0] * x[0] * x[0] + a[3] * x[1] * x[1] + a[5] * x[2] * x[2] +
-           2 * (a[1] * x[0] * x[1] + a[2] * x[0] * x[2] + a[4] * x[1] * x[2] + dot(q->b, x)) + q->c;
+           2 * (a[1] * x[0] * x[1] + a[2] * x[0] * x[2] + a[4] * x[1] * x[2] + sm_dot(q->b, x)) +
+           q->c;
 }
 
 /* The minimiser, by Cramer's rule; `fallback` when the system is singular. */
@@ -206,10 +204,10 @@ static bool moves_well(const Collapse *c, int u, int v, const double x[3], const
         area_vector(m->position[u], m->position[a], m->position[b], before);
         area_vector(x, m->position[a], m->position[b], after);
         subtract(m->position[a], m->position[b], side);
-        double old = sqrt(dot(before, before)), new = sqrt(dot(after, after));
-        double flat = 0.05 * dot(side, side);
+        double old = sqrt(sm_dot(before, before)), new = sqrt(sm_dot(after, after));
+        double flat = 0.05 * sm_dot(side, side);
         const double *reference = old > flat ? before : normal;
-        if (dot(reference, after) < 0.2 * sqrt(dot(reference, reference)) * new) return false;
+        if (sm_dot(reference, after) < 0.2 * sqrt(sm_dot(reference, reference)) * new) return false;
         if (new < flat &&new <= old) return false;
     }
     return true;
@@ -296,7 +294,7 @@ static void prepare(Collapse *c)
         const int *corner = m->triangle[t];
         double n[3];
         area_vector(m->position[corner[0]], m->position[corner[1]], m->position[corner[2]], n);
-        double area = sqrt(dot(n, n));
+        double area = sqrt(sm_dot(n, n));
         for (int i = 0; i < 3 && area > 0; i++) n[i] /= area;
         for (int k = 0; k < 3; k++) {
             Quadric *q = &c->quadric[corner[k]];

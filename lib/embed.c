@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "nearest_cell.h"
+#include "vector.h"
 
 /* Particles by lattice row (y, z), in which they rise with x: numbers without a box-sized table. */
 typedef struct {
@@ -47,38 +48,17 @@ static int particle_at(const Index *index, int i, int j, int k)
     return low;
 }
 
-static void cross(const double a[3], const double b[3], double result[3])
-{
-    result[0] = a[1] * b[2] - a[2] * b[1];
-    result[1] = a[2] * b[0] - a[0] * b[2];
-    result[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Makes `vector` a unit vector and returns true, or zero and false. */
-static bool normalize(double vector[3])
-{
-    double length = sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
-    bool usable = length > 0 && isfinite(length);
-    for (int a = 0; a < 3; a++) vector[a] = usable ? vector[a] / length : 0;
-    return usable;
-}
-
 /* U and V with U x V = N, orthonormal; zero when N is. */
 static void tangents(const double sum[3], double u[3], double v[3])
 {
     double n[3] = {sum[0], sum[1], sum[2]}, axis[3] = {0};
-    bool usable = normalize(n);
+    bool usable = sm_normalize(n);
     int least = fabs(n[0]) < fabs(n[1]) ? 0 : 1;
     if (fabs(n[2]) < fabs(n[least])) least = 2;
     axis[least] = usable;
-    cross(axis, n, u);
-    normalize(u);
-    cross(n, u, v);
+    sm_cross(axis, n, u);
+    sm_normalize(u);
+    sm_cross(n, u, v);
 }
 
 /* Eqs. 15 and 17 at local coordinates s of the cell. */
@@ -159,8 +139,8 @@ static void deformed_normal(const double u[3], const double v[3], double normal[
 {
     static const double parallel = 1e-12; /* sine of the angle between the tangents */
     double n[3];
-    cross(u, v, n);
-    double squared = dot(n, n), least = parallel * parallel * dot(u, u) * dot(v, v);
+    sm_cross(u, v, n);
+    double squared = sm_dot(n, n), least = parallel * parallel * sm_dot(u, u) * sm_dot(v, v);
     double scale = squared > least && isfinite(squared) ? 1 / sqrt(squared) : 0;
     for (int a = 0; a < 3; a++) normal[a] = scale > 0 ? n[a] * scale : 0;
 }

@@ -1,5 +1,6 @@
 #include "mesh.h"
 #include "edges.h"
+#include "vector.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -236,25 +237,13 @@ static long count_components(const SmMesh *mesh)
     return components;
 }
 
-static void cross(const double a[3], const double b[3], double result[3])
-{
-    result[0] = a[1] * b[2] - a[2] * b[1];
-    result[1] = a[2] * b[0] - a[0] * b[2];
-    result[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static bool is_degenerate(double edge[3][3])
 {
     double normal[3];
-    cross(edge[0], edge[1], normal);
+    sm_cross(edge[0], edge[1], normal);
     double longest =
-        fmax(dot(edge[0], edge[0]), fmax(dot(edge[1], edge[1]), dot(edge[2], edge[2])));
-    return sqrt(dot(normal, normal)) <= no_height * longest;
+        fmax(sm_dot(edge[0], edge[0]), fmax(sm_dot(edge[1], edge[1]), sm_dot(edge[2], edge[2])));
+    return sqrt(sm_dot(normal, normal)) <= no_height * longest;
 }
 
 /* Volume about the box's centre, where a mesh far from the origin loses no digits. */
@@ -270,8 +259,8 @@ static void measure_triangles(const SmMesh *mesh, SmMeshInfo *info)
         for (int c = 0; c < 3; c++)
             for (int a = 0; a < 3; a++) edge[c][a] = p[(c + 1) % 3][a] - p[c][a];
         info->degenerate += is_degenerate(edge);
-        cross(p[1], p[2], normal);
-        six_volumes += dot(p[0], normal);
+        sm_cross(p[1], p[2], normal);
+        six_volumes += sm_dot(p[0], normal);
     }
     info->volume = six_volumes / 6;
 }
@@ -369,7 +358,7 @@ double (*sm_mesh_normals(const SmMesh *mesh, double unit))[3]
             u[a] = (mesh->position[corner[1]][a] - origin) / unit;
             v[a] = (mesh->position[corner[2]][a] - origin) / unit;
         }
-        cross(u, v, n);
+        sm_cross(u, v, n);
         for (int c = 0; c < 3; c++)
             for (int a = 0; a < 3; a++) normal[corner[c]][a] += n[a];
     }

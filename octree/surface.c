@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../lib/nearest_cell.h"
+#include "../lib/vector.h"
 #include "lists.h"
 
 /* What a surface is tied to. */
@@ -59,19 +60,6 @@ static void share_out(const Carrier *c, long vertex, OctSurface *s)
         s->weight[n] = (float)(weigh(c->tree, s->leaf[n], q) / sum);
 }
 
-static double norm(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/* Makes a vector one of unit length, or 0 where it is that already or not finite. */
-static void normalize(double v[3])
-{
-    double length = norm(v);
-    bool usable = length > 0 && isfinite(length);
-    for (int d = 0; d < 3; d++) v[d] = usable ? v[d] / length : 0;
-}
-
 static void copy_rest(const SmMesh *mesh, const Carrier *c, OctSurface *s)
 {
     s->normal = sm_mesh_normals(mesh, c->voxels->cell);
@@ -80,7 +68,7 @@ static void copy_rest(const SmMesh *mesh, const Carrier *c, OctSurface *s)
     s->F = sm_alloc((size_t)c->tree->leaves, sizeof *s->F);
     for (long v = 0; v < s->vertices; v++) {
         memcpy(s->rest[v], mesh->position[v], sizeof s->rest[v]);
-        normalize(s->normal[v]);
+        sm_normalize(s->normal[v]);
     }
     for (long k = 0; k < c->tree->leaves; k++)
         for (int d = 0; d < 3; d++)
@@ -177,8 +165,9 @@ static inline void turn_normal(const OctSurface *s, long v, double normal[3])
             normal[a] += (G[p + e] * G[q + f] - G[p + f] * G[q + e]) * s->normal[v][b];
         }
     }
-    if (!(norm(normal) > collapsed * largest * largest)) memset(normal, 0, 3 * sizeof *normal);
-    normalize(normal);
+    if (!(sqrt(sm_dot(normal, normal)) > collapsed * largest * largest))
+        memset(normal, 0, 3 * sizeof *normal);
+    sm_normalize(normal);
 }
 
 void oct_surface_move(OctSurface *surface, const double (*x)[3], double (*position)[3],

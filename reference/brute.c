@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/vector.h"
 #include "polar.h"
 
 static int compare_ints(const void *a, const void *b)
@@ -197,13 +198,6 @@ void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m
     free(match);
 }
 
-static void cross(const double a[3], const double b[3], double result[3])
-{
-    result[0] = a[1] * b[2] - a[2] * b[1];
-    result[1] = a[2] * b[0] - a[0] * b[2];
-    result[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 void ref_solve_inertia(double I[9], const double L[3], double omega[3])
 {
     double value[3], vector[9];
@@ -254,7 +248,7 @@ static void rigid_motion(const RefRegions *regions, const double *m, const doubl
             d[a] = (x[i][a] - motion->c[a]) / unit;
             dv[a] = v[i][a] - motion->v[a];
         }
-        cross(d, dv, turn);
+        sm_cross(d, dv, turn);
         double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         for (int a = 0; a < 3; a++) {
             L[a] += share * turn[a];
@@ -278,7 +272,7 @@ void ref_rigid_velocity(const RefRegions *regions, const double *m, const double
         for (long n = regions->start[i]; n < regions->start[i + 1]; n++) {
             const Motion *t = motion + regions->member[n];
             double d[3] = {x[i][0] - t->c[0], x[i][1] - t->c[1], x[i][2] - t->c[2]}, turn[3];
-            cross(t->omega, d, turn);
+            sm_cross(t->omega, d, turn);
             for (int a = 0; a < 3; a++) sum[a] += t->v[a] + turn[a];
         }
         double size = (double)(regions->start[i + 1] - regions->start[i]);

@@ -3,17 +3,14 @@
 #include <math.h>
 #include <string.h>
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+#include "../lib/vector.h"
 
 /* Depth of x below the plane through a with free side n. */
 static double plane_depth(const SmObstacle *plane, const double x[3], double normal[3])
 {
     memcpy(normal, plane->b, 3 * sizeof *normal);
     const double d[3] = {x[0] - plane->a[0], x[1] - plane->a[1], x[2] - plane->a[2]};
-    return -dot(d, normal);
+    return -sm_dot(d, normal);
 }
 
 /* Depth of x in the ball about `centre`; `spare` is the way out at the centre. */
@@ -46,9 +43,9 @@ static void across(const double d[3], double normal[3])
     int least = 0;
     for (int a = 1; a < 3; a++)
         if (fabs(d[a]) < fabs(d[least])) least = a;
-    double square = dot(d, d), length;
+    double square = sm_dot(d, d), length;
     for (int a = 0; a < 3; a++) normal[a] = (a == least) - d[a] * d[least] / square;
-    length = sqrt(dot(normal, normal));
+    length = sqrt(sm_dot(normal, normal));
     for (int a = 0; a < 3; a++) normal[a] /= length;
 }
 
@@ -57,8 +54,8 @@ static double capsule_depth(const SmObstacle *capsule, const double x[3], double
     const double *a = capsule->a, *b = capsule->b;
     const double axis[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const double d[3] = {x[0] - a[0], x[1] - a[1], x[2] - a[2]};
-    double square = dot(axis, axis), spare[3] = {0, 1, 0};
-    double along = square > 0 ? fmin(fmax(dot(d, axis) / square, 0), 1) : 0;
+    double square = sm_dot(axis, axis), spare[3] = {0, 1, 0};
+    double along = square > 0 ? fmin(fmax(sm_dot(d, axis) / square, 0), 1) : 0;
     if (square > 0) across(axis, spare);
     const double nearest[3] = {a[0] + along * axis[0], a[1] + along * axis[1],
                                a[2] + along * axis[2]};
@@ -86,7 +83,7 @@ bool ref_obstacle_push_out(const SmObstacle *obstacle, double x[3], double v[3])
     double normal[3];
     double depth = depth_of(obstacle, x, normal);
     if (!(depth > 0)) return false;
-    double outwards = dot(v, normal), kept = fmax(outwards, 0);
+    double outwards = sm_dot(v, normal), kept = fmax(outwards, 0);
     for (int a = 0; a < 3; a++) {
         x[a] += depth * normal[a];
         v[a] = kept * normal[a] + (1 - obstacle->friction) * (v[a] - outwards * normal[a]);

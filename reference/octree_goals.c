@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/vector.h"
 #include "polar.h"
 
 /* Appends the leaves below a tree node; returns how many there are then. */
@@ -189,13 +190,6 @@ void ref_tree_goals(RefTreeBody *body, const double (*x)[3], bool flow, double (
         for (int a = 0; a < 3; a++) g[i][a] = x[i][a] + g[i][a] / body->reach[i];
 }
 
-static void cross(const double a[3], const double b[3], double result[3])
-{
-    result[0] = a[1] * b[2] - a[2] * b[1];
-    result[1] = a[2] * b[0] - a[0] * b[2];
-    result[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* v_r and omega_r about c_r (fastlsm eq. 14). */
 static void rigid_motion(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
                          long r, double c[3], double mean[3], double omega[3])
@@ -211,7 +205,7 @@ static void rigid_motion(const RefTreeBody *body, const double (*x)[3], const do
             dv[a] = v[i][a] - mean[a];
             square += d[a] * d[a];
         }
-        cross(d, dv, turn);
+        sm_cross(d, dv, turn);
         for (int a = 0; a < 3; a++) {
             L[a] += body->weight[i] * turn[a];
             for (int b = 0; b < 3; b++)
@@ -232,7 +226,7 @@ void ref_tree_rigid_velocity(const RefTreeBody *body, const double (*x)[3], cons
         for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
             int i = regions->member[n];
             double d[3] = {x[i][0] - c[0], x[i][1] - c[1], x[i][2] - c[2]}, turn[3];
-            cross(omega, d, turn);
+            sm_cross(omega, d, turn);
             for (int a = 0; a < 3; a++) u[i][a] += body->m[r] * (mean[a] + turn[a]);
         }
     }

@@ -6,17 +6,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "../lib/vector.h"
+
 /* Below this share of the largest, a singular value or a sum of two is rounding. */
 static const double noise = 32 * DBL_EPSILON;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void normalise(double a[3])
 {
-    double length = sqrt(dot(a, a));
+    double length = sqrt(sm_dot(a, a));
     for (int k = 0; k < 3; k++) a[k] /= length;
 }
 
@@ -26,7 +23,7 @@ static void complete_basis(double basis[3][3])
     double *a = basis[0], *b = basis[1], *c = basis[2];
     normalise(a);
     for (int pass = 0; pass < 2; pass++) {
-        double along = dot(a, b);
+        double along = sm_dot(a, b);
         for (int k = 0; k < 3; k++) b[k] -= along * a[k];
         normalise(b);
     }
@@ -56,7 +53,7 @@ static void proper_svd(const double A[9], double u[3][3], double v[3][3], double
     memcpy(last_v, v[2], sizeof last_v);
     complete_basis(u);
     complete_basis(v);
-    if (dot(u[2], last_u) * dot(v[2], last_v) < 0) s[2] = -s[2];
+    if (sm_dot(u[2], last_u) * sm_dot(v[2], last_v) < 0) s[2] = -s[2];
 }
 
 /* N = U^T last V */
@@ -65,7 +62,7 @@ static void in_bases(double u[3][3], double v[3][3], const double last[9], doubl
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) {
             N[a][b] = 0;
-            for (int row = 0; row < 3; row++) N[a][b] += u[a][row] * dot(last + 3 * row, v[b]);
+            for (int row = 0; row < 3; row++) N[a][b] += u[a][row] * sm_dot(last + 3 * row, v[b]);
         }
 }
 
