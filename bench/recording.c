@@ -11,10 +11,7 @@ static void repeat_surface(const BenchBody *body, SmMesh *surface)
 {
     const SmMesh *mesh = &body->mesh;
     long n = body->instances, vertices = mesh->vertex_count, triangles = mesh->triangle_count;
-    surface->vertex_count = n * vertices;
-    surface->triangle_count = n * triangles;
-    surface->position = sm_alloc((size_t)surface->vertex_count, sizeof *surface->position);
-    surface->triangle = sm_alloc((size_t)surface->triangle_count, sizeof *surface->triangle);
+    *surface = sm_mesh_new(n * vertices, n * triangles);
     for (long k = 0; k < n; k++) {
         for (long i = 0; i < vertices; i++)
             for (int d = 0; d < 3; d++)

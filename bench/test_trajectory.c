@@ -21,9 +21,7 @@ enum { FRAMES = 5, SIDE = 12, POINTS = SIDE * SIDE, TRIANGLES = 2 * (SIDE - 1) *
 /* A sheet of squares, `offset` away from the origin. */
 static void make_sheet(double offset, SmMesh *mesh)
 {
-    *mesh = (SmMesh){.vertex_count = POINTS, .triangle_count = TRIANGLES};
-    mesh->position = sm_alloc(POINTS, sizeof *mesh->position);
-    mesh->triangle = sm_alloc(TRIANGLES, sizeof *mesh->triangle);
+    *mesh = sm_mesh_new(POINTS, TRIANGLES);
     int t = 0;
     for (int j = 0; j < SIDE; j++)
         for (int i = 0; i < SIDE; i++) {

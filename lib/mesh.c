@@ -15,6 +15,14 @@
 static const double rounding_gap = 1e-7; /* of the box's longest side */
 static const double no_height = 1e-14;   /* of a triangle's longest edge */
 
+SmMesh sm_mesh_new(long vertices, long triangles)
+{
+    SmMesh mesh = {.vertex_count = vertices, .triangle_count = triangles};
+    mesh.position = sm_alloc((size_t)vertices, sizeof *mesh.position);
+    mesh.triangle = sm_alloc((size_t)triangles, sizeof *mesh.triangle);
+    return mesh;
+}
+
 void sm_mesh_free(SmMesh *mesh)
 {
     free(mesh->position);
@@ -182,12 +190,9 @@ static int *near_positions(const SmMesh *mesh, const bool *boundary)
 
 static SmMesh copy_mesh(const SmMesh *mesh)
 {
-    SmMesh copy = *mesh;
-    size_t vertices = (size_t)mesh->vertex_count, triangles = (size_t)mesh->triangle_count;
-    copy.position = sm_alloc(vertices, sizeof *copy.position);
-    copy.triangle = sm_alloc(triangles, sizeof *copy.triangle);
-    memcpy(copy.position, mesh->position, vertices * sizeof *copy.position);
-    memcpy(copy.triangle, mesh->triangle, triangles * sizeof *copy.triangle);
+    SmMesh copy = sm_mesh_new(mesh->vertex_count, mesh->triangle_count);
+    memcpy(copy.position, mesh->position, (size_t)mesh->vertex_count * sizeof *copy.position);
+    memcpy(copy.triangle, mesh->triangle, (size_t)mesh->triangle_count * sizeof *copy.triangle);
     return copy;
 }
 

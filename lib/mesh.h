@@ -27,6 +27,9 @@ typedef struct {
     double volume;            /* signed: negative for a mesh that is inside out */
 } SmMeshInfo;
 
+/* A mesh of zeros, for the caller to fill in and to free. */
+SmMesh sm_mesh_new(long vertices, long triangles);
+
 /* Frees the arrays and zeroes the struct; a zeroed mesh is allowed. */
 void sm_mesh_free(SmMesh *mesh);
 

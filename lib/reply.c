@@ -28,10 +28,8 @@ static SmCode fail_without_triangles(const SmReplyHeader *header, const char *pa
 
 static SmMesh copy_arrays(const SmReplyHeader *header, const unsigned char *bytes)
 {
-    SmMesh mesh = {.vertex_count = header->vertex_count, .triangle_count = header->triangle_count};
+    SmMesh mesh = sm_mesh_new(header->vertex_count, header->triangle_count);
     size_t vertices = (size_t)mesh.vertex_count, triangles = (size_t)mesh.triangle_count;
-    mesh.position = sm_alloc(vertices, sizeof *mesh.position);
-    mesh.triangle = sm_alloc(triangles, sizeof *mesh.triangle);
     memcpy(mesh.position, bytes, vertices * sizeof *mesh.position);
     memcpy(mesh.triangle, bytes + vertices * sizeof *mesh.position,
            triangles * sizeof *mesh.triangle);

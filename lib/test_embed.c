@@ -30,9 +30,7 @@ static SmVoxels block(double offset)
 /* A sphere of radius 0.7 about the block's middle, outside counter-clockwise. */
 static SmMesh sphere(const SmVoxels *voxels)
 {
-    SmMesh mesh = {.vertex_count = RINGS * SPOKES, .triangle_count = 0};
-    mesh.position = sm_alloc(RINGS * SPOKES, sizeof *mesh.position);
-    mesh.triangle = sm_alloc(2 * RINGS * SPOKES, sizeof *mesh.triangle);
+    SmMesh mesh = sm_mesh_new(RINGS * SPOKES, 2L * (RINGS - 1) * SPOKES);
     for (int v = 0; v < RINGS * SPOKES; v++) {
         double polar = M_PI * (v / SPOKES + 0.5) / RINGS, around = 2 * M_PI * (v % SPOKES) / SPOKES;
         double p[3] = {sin(polar) * cos(around), sin(polar) * sin(around), cos(polar)};
@@ -41,8 +39,7 @@ static SmMesh sphere(const SmVoxels *voxels)
     for (int v = 0; v < (RINGS - 1) * SPOKES; v++) {
         int right = v % SPOKES == SPOKES - 1 ? v + 1 - SPOKES : v + 1;
         int corner[2][3] = {{v, v + SPOKES, right}, {right, v + SPOKES, right + SPOKES}};
-        memcpy(mesh.triangle[mesh.triangle_count], corner, sizeof corner);
-        mesh.triangle_count += 2;
+        memcpy(mesh.triangle[2 * v], corner, sizeof corner);
     }
     return mesh;
 }

@@ -28,9 +28,7 @@ static const int cube_triangle[12][3] = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6,
 /* A unit cube whose 36 triangle corners are vertices of their own, as in an STL file. */
 static SmMesh loose_cube(void)
 {
-    SmMesh mesh = {.vertex_count = 36, .triangle_count = 12};
-    mesh.position = sm_alloc(36, sizeof *mesh.position);
-    mesh.triangle = sm_alloc(12, sizeof *mesh.triangle);
+    SmMesh mesh = sm_mesh_new(36, 12);
     for (int i = 0; i < 36; i++) {
         memcpy(mesh.position[i], cube_corner[cube_triangle[i / 3][i % 3]], sizeof *mesh.position);
         mesh.triangle[i / 3][i % 3] = i;
@@ -139,9 +137,7 @@ static void test_merge_closes_rounding_gaps(void **state)
 static void test_components_and_degenerate(void **state)
 {
     (void)state;
-    SmMesh mesh = {.vertex_count = 9, .triangle_count = 3};
-    mesh.position = sm_alloc(9, sizeof *mesh.position);
-    mesh.triangle = sm_alloc(3, sizeof *mesh.triangle);
+    SmMesh mesh = sm_mesh_new(9, 3);
     for (int v = 0; v < 9; v++) {
         mesh.position[v][0] = 10 * (v / 3) + v % 3;
         mesh.position[v][1] = v < 6 ? v % 2 : 0; /* the last triangle is a line */
@@ -170,9 +166,7 @@ static void test_fan_is_cheap(void **state)
 {
     (void)state;
     enum { N = 20000 };
-    SmMesh mesh = {.vertex_count = N + 1, .triangle_count = N};
-    mesh.position = sm_alloc(N + 1, sizeof *mesh.position);
-    mesh.triangle = sm_alloc(N, sizeof *mesh.triangle);
+    SmMesh mesh = sm_mesh_new(N + 1, N);
     for (int i = 0; i < N; i++) {
         mesh.position[i + 1][0] = cos(2 * M_PI * i / N);
         mesh.position[i + 1][1] = sin(2 * M_PI * i / N);

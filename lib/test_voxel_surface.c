@@ -23,14 +23,6 @@ static double uniform(double low, double high)
     return low + (high - low) * draw() / 16777216.0;
 }
 
-static SmMesh new_mesh(long vertices, long triangles)
-{
-    SmMesh m = {.vertex_count = vertices, .triangle_count = triangles};
-    m.position = sm_alloc((size_t)vertices, sizeof *m.position);
-    m.triangle = sm_alloc((size_t)triangles, sizeof *m.triangle);
-    return m;
-}
-
 /* Separating axes: whether the triangle meets the cube at `low` of edge `edge`. */
 static bool meets(double p[3][3], const double low[3], double edge)
 {
@@ -91,7 +83,7 @@ static void random_triangles_mark_what_separating_axes_say(void **state)
     (void)state;
     for (int trial = 0; trial < 600; trial++) {
         int triangles = 1 + (int)(draw() % 4);
-        SmMesh m = new_mesh(3L * triangles, triangles);
+        SmMesh m = sm_mesh_new(3L * triangles, triangles);
         double scale = trial % 3 == 0 ? 1.5 : 9, far = trial % 5 == 0 ? 5e6 : 0;
         for (int i = 0; i < 3 * triangles; i++) {
             for (int d = 0; d < 3; d++) {

@@ -36,14 +36,6 @@ static double uniform(double low, double high)
     return low + (high - low) * draw() / 16777216.0;
 }
 
-static SmMesh new_mesh(long vertices, long triangles)
-{
-    SmMesh m = {.vertex_count = vertices, .triangle_count = triangles};
-    m.position = sm_alloc((size_t)vertices, sizeof *m.position);
-    m.triangle = sm_alloc((size_t)triangles, sizeof *m.triangle);
-    return m;
-}
-
 /* The vertex at ring i of `rings`, step j of `steps`; rings 0 and `rings` are the poles. */
 static int ring_vertex(int i, int j, int rings, int steps)
 {
@@ -56,7 +48,7 @@ static int ring_vertex(int i, int j, int rings, int steps)
  * it a potato. Triangles begin at the upper pole. */
 static SmMesh ball(double radius, int rings, int steps, double lumps)
 {
-    SmMesh m = new_mesh(2 + (long)(rings - 1) * steps, 2L * (rings - 1) * steps);
+    SmMesh m = sm_mesh_new(2 + (long)(rings - 1) * steps, 2L * (rings - 1) * steps);
     for (int i = 0; i <= rings; i++)
         for (int j = 0; j < steps; j++) {
             double a = M_PI * i / rings, b = 2 * M_PI * j / steps;
@@ -81,7 +73,7 @@ static SmMesh ball(double radius, int rings, int steps, double lumps)
 
 static SmMesh torus(double big, double small, int rings, int steps)
 {
-    SmMesh m = new_mesh((long)rings * steps, 2L * rings * steps);
+    SmMesh m = sm_mesh_new((long)rings * steps, 2L * rings * steps);
     for (int i = 0; i < rings; i++)
         for (int j = 0; j < steps; j++) {
             double a = 2 * M_PI * i / rings, b = 2 * M_PI * j / steps, r = big + small * cos(b);
@@ -100,7 +92,7 @@ static SmMesh box(double x0, double y0, double z0, double x1, double y1, double 
     static const int side[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
                                     {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
                                     {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    SmMesh m = new_mesh(8, 12);
+    SmMesh m = sm_mesh_new(8, 12);
     for (int i = 0; i < 8; i++) {
         m.position[i][0] = i & 1 ? x1 : x0;
         m.position[i][1] = i & 2 ? y1 : y0;
@@ -113,7 +105,8 @@ static SmMesh box(double x0, double y0, double z0, double x1, double y1, double 
 /* Adds the triangles of `b`, turned over or not, to `a`. */
 static void join(SmMesh *a, const SmMesh *b, bool turn)
 {
-    SmMesh m = new_mesh(a->vertex_count + b->vertex_count, a->triangle_count + b->triangle_count);
+    SmMesh m =
+        sm_mesh_new(a->vertex_count + b->vertex_count, a->triangle_count + b->triangle_count);
     memcpy(m.position, a->position, (size_t)a->vertex_count * sizeof *m.position);
     memcpy(m.position + a->vertex_count, b->position, (size_t)b->vertex_count * sizeof *m.position);
     memcpy(m.triangle, a->triangle, (size_t)a->triangle_count * sizeof *m.triangle);
@@ -272,7 +265,7 @@ static void a_flat_square_is_one_cell_thick(void **state)
 {
     (void)state;
     for (int axis = 0; axis < 3; axis++) {
-        SmMesh m = new_mesh(4, 2);
+        SmMesh m = sm_mesh_new(4, 2);
         for (int i = 0; i < 4; i++) {
             m.position[i][(axis + 1) % 3] = i & 1 ? 7 : -3;
             m.position[i][(axis + 2) % 3] = i & 2 ? 7 : -3;
@@ -310,7 +303,7 @@ static void a_torus_keeps_its_hole(void **state)
 
 static SmMesh soup(int triangles)
 {
-    SmMesh m = new_mesh(3L * triangles, triangles);
+    SmMesh m = sm_mesh_new(3L * triangles, triangles);
     for (int i = 0; i < 3 * triangles; i++) {
         for (int d = 0; d < 3; d++) m.position[i][d] = uniform(0, 1);
         m.triangle[i / 3][i % 3] = i;
