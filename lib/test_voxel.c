@@ -8,13 +8,7 @@
 
 #include <cmocka.h>
 
-static uint32_t seed = 1;
-
-static uint32_t draw(void)
-{
-    seed = seed * 1664525u + 1013904223u;
-    return seed >> 8;
-}
+#include "test_draw.h"
 
 static bool is_vertex(const SmVoxels *v, int i, int j, int k)
 {

@@ -8,13 +8,7 @@
 
 #include <cmocka.h>
 
-static uint32_t seed = 1;
-
-static uint32_t draw(void)
-{
-    seed = seed * 1664525u + 1013904223u;
-    return seed >> 8;
-}
+#include "test_draw.h"
 
 /* One cell at a time: what a flood fill is. */
 static void plain_flood(const SmVoxels *v, SmVoxels *result)

@@ -10,18 +10,7 @@
 
 #include <cmocka.h>
 
-static uint32_t seed = 1;
-
-static uint32_t draw(void)
-{
-    seed = seed * 1664525u + 1013904223u;
-    return seed >> 8;
-}
-
-static double uniform(double low, double high)
-{
-    return low + (high - low) * draw() / 16777216.0;
-}
+#include "test_draw.h"
 
 /* Separating axes: whether the triangle meets the cube at `low` of edge `edge`. */
 static bool meets(double p[3][3], const double low[3], double edge)

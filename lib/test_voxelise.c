@@ -16,25 +16,13 @@
 
 #include "import.h"
 #include "stage.h"
+#include "test_draw.h"
 
 #ifdef __SANITIZE_ADDRESS__
 #define PEAK_MEGABYTES 1000 /* freed memory is quarantined */
 #else
 #define PEAK_MEGABYTES 200
 #endif
-
-static uint32_t seed = 1;
-
-static uint32_t draw(void)
-{
-    seed = seed * 1664525u + 1013904223u;
-    return seed >> 8;
-}
-
-static double uniform(double low, double high)
-{
-    return low + (high - low) * draw() / 16777216.0;
-}
 
 /* The vertex at ring i of `rings`, step j of `steps`; rings 0 and `rings` are the poles. */
 static int ring_vertex(int i, int j, int rings, int steps)
