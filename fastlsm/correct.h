@@ -19,9 +19,36 @@ SM_INLINE Span corrections_of(const CorrectionList *list, long block)
     return (Span){list->of + list->first[block], list->of + list->first[block + 1]};
 }
 
-/* The sums up of a block's regions, in the order (C, Cz, Cy, Cx). */
-static __attribute__((noinline, unused)) void correct_regions(const Lsm *lsm, long block,
-                                                              vec sums[12])
+/* One correction of the sums up of a block's regions, in the order (C, Cz, Cy, Cx). */
+SM_INLINE void correct_region(const Lsm *lsm, const Correction *at, vec weight, vec *sum)
+{
+    const real *x = lsm->x + at->source * 3L * SM_LANES;
+    for (int d = 0; d < 3; d++) {
+        vec p = lsm->pass == PASS_CONSTANTS ? weight : weight * lanes_load(x + d * SM_LANES);
+        p = lanes_pick(p, at->shift, at->lanes);
+        sum[d] += p;
+        for (int k = 0; k < 3; k++) sum[3 * k + 3 + d] += at->offset[2 - k] * p;
+    }
+}
+
+/* One of damping's four triples of sums up. */
+SM_INLINE void correct_product(const Lsm *lsm, const Correction *at, vec weight, vec *sum)
+{
+    const real *from_x = lsm->x + at->source * 3L * SM_LANES,
+               *from_v = lsm->v + at->source * 3L * SM_LANES;
+    vec x[3], v[3], product[4];
+    weight = lanes_pick(weight, at->shift, at->lanes);
+    for (int d = 0; d < 3; d++) {
+        x[d] = lanes_pick(lanes_load(from_x + d * SM_LANES), at->shift, at->lanes);
+        v[d] = lanes_pick(lanes_load(from_v + d * SM_LANES), at->shift, at->lanes);
+    }
+    for (int d = 0; d < 3; d++) {
+        damping_products(weight, (const real *)x, (const real *)v, d, product);
+        for (int k = 0; k < 4; k++) sum[3 * k + d] += product[k];
+    }
+}
+
+SM_INLINE void correct_up(const Lsm *lsm, long block, bool products, vec sums[12])
 {
     Span span = corrections_of(&lsm->corrections->up, block);
     if (span.at == span.end) return;
@@ -29,43 +56,25 @@ static __attribute__((noinline, unused)) void correct_regions(const Lsm *lsm, lo
     memcpy(sum, sums, sizeof sum);
     clear_lanes(lsm->corrections->up.clear[block], 12, sum);
     for (const Correction *at = span.at; at < span.end; at++) {
-        const real *x = lsm->x + at->source * 3L * SM_LANES;
         vec weight = at->sign * lsm->particle_const[lsm->block_const[at->source]].weight;
-        for (int d = 0; d < 3; d++) {
-            vec p = lsm->pass == PASS_CONSTANTS ? weight : weight * lanes_load(x + d * SM_LANES);
-            p = lanes_pick(p, at->shift, at->lanes);
-            sum[d] += p;
-            for (int k = 0; k < 3; k++) sum[3 * k + 3 + d] += at->offset[2 - k] * p;
-        }
+        if (products)
+            correct_product(lsm, at, weight, sum);
+        else
+            correct_region(lsm, at, weight, sum);
     }
     memcpy(sums, sum, sizeof sum);
 }
 
-/* Damping's four triples of sums up. */
+static __attribute__((noinline, unused)) void correct_regions(const Lsm *lsm, long block,
+                                                              vec sums[12])
+{
+    correct_up(lsm, block, false, sums);
+}
+
 static __attribute__((noinline, unused)) void correct_products(const Lsm *lsm, long block,
                                                                vec sums[12])
 {
-    Span span = corrections_of(&lsm->corrections->up, block);
-    if (span.at == span.end) return;
-    vec sum[12];
-    memcpy(sum, sums, sizeof sum);
-    clear_lanes(lsm->corrections->up.clear[block], 12, sum);
-    for (const Correction *at = span.at; at < span.end; at++) {
-        const real *from_x = lsm->x + at->source * 3L * SM_LANES,
-                   *from_v = lsm->v + at->source * 3L * SM_LANES;
-        vec x[3], v[3], product[4];
-        vec weight = at->sign * lsm->particle_const[lsm->block_const[at->source]].weight;
-        weight = lanes_pick(weight, at->shift, at->lanes);
-        for (int d = 0; d < 3; d++) {
-            x[d] = lanes_pick(lanes_load(from_x + d * SM_LANES), at->shift, at->lanes);
-            v[d] = lanes_pick(lanes_load(from_v + d * SM_LANES), at->shift, at->lanes);
-        }
-        for (int d = 0; d < 3; d++) {
-            damping_products(weight, (const real *)x, (const real *)v, d, product);
-            for (int k = 0; k < 4; k++) sum[3 * k + d] += product[k];
-        }
-    }
-    memcpy(sums, sum, sizeof sum);
+    correct_up(lsm, block, true, sums);
 }
 
 /* The sums down of a block's particles: of transforms at the particles, or of `values` plain ones.
