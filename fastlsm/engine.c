@@ -178,7 +178,6 @@ static void build_turned(SmEngine *e, const SmVoxels *voxels, const SmEnginePara
 static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
                             SmError *error)
 {
-    static const double identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     double start = sm_now();
     if (params->instances > 1 && params->strain_limit > 0)
         return sm_fail(error, SM_INPUT,
@@ -197,9 +196,7 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     build_turned(e, voxels, params);
     Lsm *lsm = e->lsm;
     e->pose = sm_alloc((size_t)e->bodies, sizeof *e->pose);
-    for (long body = 0; body < e->bodies; body++)
-        memcpy(e->pose[body], params->instance_pose ? params->instance_pose[body] : identity,
-               sizeof *e->pose);
+    for (long body = 0; body < e->bodies; body++) sm_engine_pose(params, body, e->pose[body]);
     if (e->bodies > 1) e->crowd = crowd_build(lsm, e->bodies);
     for (int d = 0; d < 3; d++)
         lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);

@@ -1,6 +1,7 @@
 #include "engine.h"
 
 #include <math.h>
+#include <string.h>
 
 SmCode sm_engine_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
 {
@@ -23,4 +24,11 @@ SmCode sm_engine_check(const SmVoxels *voxels, const SmEngineParams *params, SmE
             return sm_fail(error, SM_INPUT, "the mass of particle %ld is %g: it must be positive",
                            p, params->mass[p]);
     return SM_OK;
+}
+
+void sm_engine_pose(const SmEngineParams *params, long instance, double pose[3][4])
+{
+    static const double identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+    memcpy(pose, params->instance_pose ? params->instance_pose[instance] : identity,
+           sizeof identity);
 }

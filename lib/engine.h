@@ -64,6 +64,9 @@ typedef enum {
  * gravity and masses in range. SM_INPUT says what is wrong and what to give. O(particles). */
 SmCode sm_engine_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error);
 
+/* Where an instance starts: its pose, or the identity where none are given. */
+void sm_engine_pose(const SmEngineParams *params, long instance, double pose[3][4]);
+
 typedef struct SmEngine SmEngine;
 
 /* One engine in one precision. */

@@ -109,12 +109,9 @@ static void turn_last(SmEngine *e, long body)
 
 static void start_at_rest(SmEngine *e, const SmEngineParams *params)
 {
-    static const double identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     long bodies = e->oct->instances;
     e->pose = sm_alloc((size_t)bodies, sizeof *e->pose);
-    for (long i = 0; i < bodies; i++)
-        memcpy(e->pose[i], params->instance_pose ? params->instance_pose[i] : identity,
-               sizeof *e->pose);
+    for (long i = 0; i < bodies; i++) sm_engine_pose(params, i, e->pose[i]);
     double(*rest)[3] = sm_alloc((size_t)(bodies * e->count), sizeof *rest);
     engine_get(e, SM_REST, rest);
     set_positions(e, (const double(*)[3])rest);

@@ -91,7 +91,6 @@ static int take_threads(const SmEngine *engine)
 static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **result,
                            SmError *error)
 {
-    static const double identity[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     double start = sm_now();
     SmCode code = sm_engine_check(voxels, params, error);
     if (code != SM_OK) return code;
@@ -113,9 +112,11 @@ static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params,
     engine->body = sm_alloc(bodies, sizeof *engine->body);
     int threads = take_threads(engine);
     double(*rest)[3] = rest_positions(voxels);
-    for (size_t b = 0; b < bodies; b++)
-        body_create(engine, CONST(rest),
-                    params->instance_pose ? params->instance_pose[b] : identity, engine->body + b);
+    for (size_t b = 0; b < bodies; b++) {
+        double pose[3][4];
+        sm_engine_pose(params, (long)b, pose);
+        body_create(engine, CONST(rest), (const double(*)[4])pose, engine->body + b);
+    }
     free(rest);
     omp_set_num_threads(threads);
     engine->build_seconds = sm_now() - start;
