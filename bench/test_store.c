@@ -100,17 +100,23 @@ static void fill_rows(BenchRow *rows, BenchMachine *machine)
     bench_machine_read(6, arguments, 2, machine);
 }
 
-static void write_file(const char *path)
+static SmCode store_file(const char *path, SmError *error)
 {
     BenchRow rows[ROWS];
     BenchMachine machine;
-    SmError error = {0};
     fill_rows(rows, &machine);
-    if (bench_store_rows(path, rows, ROWS, &machine, &error) != SM_OK) fail_msg("%s", error.text);
+    SmCode code = bench_store_rows(path, rows, ROWS, &machine, error);
     for (int i = 0; i < ROWS; i++) {
         free(rows[i].total);
         free(rows[i].stage);
     }
+    return code;
+}
+
+static void write_file(const char *path)
+{
+    SmError error = {0};
+    if (store_file(path, &error) != SM_OK) fail_msg("%s", error.text);
 }
 
 static void round_trip(void **state)
@@ -313,19 +319,12 @@ static void damaged_files(void **state)
 /* Storing at `path` fails with `words` and leaves nothing. */
 static void cannot_store(const char *path, const char *words)
 {
-    BenchRow rows[ROWS];
-    BenchMachine machine;
     SmError error = {0};
     int before = entries("");
-    fill_rows(rows, &machine);
-    assert_int_equal(bench_store_rows(path, rows, ROWS, &machine, &error), SM_OUTPUT);
+    assert_int_equal(store_file(path, &error), SM_OUTPUT);
     assert_non_null(strstr(error.text, path));
     if (!strstr(error.text, words)) fail_msg("'%s' does not say '%s'", error.text, words);
     assert_int_equal(entries(""), before);
-    for (int i = 0; i < ROWS; i++) {
-        free(rows[i].total);
-        free(rows[i].stage);
-    }
 }
 
 static void unwritable_targets(void **state)
@@ -377,24 +376,20 @@ static void locked_folder(void **state)
 static void store_with_limits(void)
 {
     const char *path = path_in("full.h5");
-    BenchRow rows[ROWS];
-    BenchMachine machine;
-    fill_rows(rows, &machine);
     signal(SIGXFSZ, SIG_IGN);
     struct stat status;
-    if (bench_store_rows(path, rows, ROWS, &machine, NULL) != SM_OK || stat(path, &status) != 0)
-        _exit(4);
+    if (store_file(path, NULL) != SM_OK || stat(path, &status) != 0) _exit(4);
     unlink(path);
     for (rlim_t limit = 0; limit < (rlim_t)status.st_size; limit += 512) {
         struct rlimit bound = {limit, RLIM_INFINITY};
         SmError error = {0};
         setrlimit(RLIMIT_FSIZE, &bound);
-        if (bench_store_rows(path, rows, ROWS, &machine, &error) != SM_OUTPUT) _exit(2);
+        if (store_file(path, &error) != SM_OUTPUT) _exit(2);
         if (!strstr(error.text, "size limit")) _exit(3);
     }
     struct rlimit none = {RLIM_INFINITY, RLIM_INFINITY};
     setrlimit(RLIMIT_FSIZE, &none);
-    if (bench_store_rows(path, rows, ROWS, &machine, NULL) != SM_OK) _exit(5);
+    if (store_file(path, NULL) != SM_OK) _exit(5);
 }
 
 static void full_disk(void **state)
