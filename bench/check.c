@@ -149,7 +149,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
         const double(*goal)[3] = (const double(*)[3])(g + first);
         exact_goals(check, at, exact);
         double error = goal_error(goal, (const double(*)[3])exact, count, check->body->voxels.cell);
-        double drift = check->plain ? 0 : momentum_error(at, goal, check->mass, count);
+        double drift = momentum_error(at, goal, check->mass, count);
         result.goal_error = fmax(result.goal_error, error);
         result.momentum_error = fmax(result.momentum_error, drift);
     }

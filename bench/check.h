@@ -13,7 +13,7 @@ typedef struct {
     long unique;           /* different regions; of an octree all */
     double *mass;          /* [count] */
     bool hierarchical;     /* an octree's */
-    bool plain;            /* its weighting, which does not keep momentum */
+    bool plain;            /* its weighting: momentum is measured, but need not be kept */
     RefRegions regions;    /* of a lattice */
     RefTreeBody octree;
 } BenchCheck;
@@ -22,8 +22,8 @@ typedef struct {
     bool finite; /* positions, velocities and goals */
     double
         goal_error; /* largest |g - brute force| over particles, in cells; infinite if not finite */
-    double
-        momentum_error; /* |sum m g - sum m x| / sum m |x - centroid|, largest of all instances */
+    double momentum_error; /* |sum m g - sum m x| / sum m |x - centroid|, largest of all instances;
+                            * with plain weighting, too */
 } BenchDeviation;
 
 /* Region members that a check of this body would hold in memory, at most; 4 bytes each. */

@@ -48,6 +48,7 @@ static void write_leaves(BenchH5 *h5, hid_t group, const OctStructure *s)
     bench_h5_dataset(h5, group, "size", H5T_IEEE_F64LE, 1, size, edge);
     bench_h5_dataset(h5, group, "mass", H5T_IEEE_F64LE, 1, size, s->mass);
     bench_h5_dataset(h5, group, "w", H5T_STD_I32LE, 1, size, s->w);
+    bench_h5_dataset(h5, group, "reached", H5T_STD_I32LE, 1, size, s->regions.width);
     free(rest);
     free(edge);
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "../reference/paper.h"
-#include "scene.h"
+#include "tree_row.h"
 
 enum { FIELDS = 16, FIELD_TEXT = 96 };
 enum {
@@ -165,30 +165,46 @@ static void print_check(FILE *file, const BenchRow *row)
         return;
     }
     fprintf(file,
-            "goals within %.2g cells of brute force (allowed %.0e),\n    momentum kept to %.1g; "
+            "goals within %.2g cells of brute force (allowed %.0e),\n    momentum %s %.1g; "
             "quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost %.1f%%;\n    "
             "voxelised in %.3g ms, built in %.3g ms, %.4g bytes a particle\n",
-            row->goal_error, row->goal_tolerance, row->momentum_error, row->total_low_ms,
-            row->total_high_ms, row->repeats, row->steps, row->instruments_percent,
-            1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,
+            row->goal_error, row->goal_tolerance,
+            row->plain ? "not kept by plain weighting, off by" : "kept to", row->momentum_error,
+            row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
+            row->instruments_percent, 1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,
             (double)row->bytes / (double)row->particles);
+}
+
+/* The step's time as the octree paper groups it. */
+static void print_groups(FILE *file, const BenchRow *row)
+{
+    const RefPaperClaim *third = ref_paper_claim("octree", "hand-third");
+    double percent = 100 / row->total_ms;
+    fprintf(file,
+            "    summation and matching %.0f%%, polar %.0f%%, damping %.0f%%, other %.0f%% (paper, "
+            "regular sampling: %.0f/%.0f/%.0f)\n",
+            percent * (row->stage_ms[SM_FAST_SUM] + row->stage_ms[SM_SHAPE_MATCHING]),
+            percent * row->stage_ms[SM_POLAR], percent * row->stage_ms[SM_DAMPING],
+            percent * row->stage_ms[SM_OTHER], third->value.value, third->value.value,
+            third->value.value);
 }
 
 /* What an octree's row is made of. */
 static void print_octree(FILE *file, const BenchRow *row)
 {
-    char width[BENCH_WIDTH_TEXT];
-    bench_width_text(&(OctWidth){row->width_cells, row->width_edges}, width);
-    fprintf(file, "    %ld nodes from %ld base cells, %ld finest cells; w = %s", row->particles,
-            row->bases, row->cells, width);
-    if (row->wanted_summation > 0)
-        fprintf(file, ", found for %.3g summation nodes a region", row->wanted_summation);
-    fprintf(file, ";\n    epsilon %g: %.3g summation nodes a region on average, %ld at most; ",
-            row->epsilon, row->summation_nodes, row->most_summation);
-    if (row->parts == 1)
-        fputs("regions hold the body together\n", file);
-    else
-        fprintf(file, "the body falls into %ld parts that no region joins\n", row->parts);
+    const RefPaperRow *paper = row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
+    fputs("    ", file);
+    bench_tree_row_nodes(file, row);
+    if (paper && isfinite(paper->bases.value))
+        fprintf(file, "; paper: %.0f from %.0f", paper->particles.value, paper->bases.value);
+    fputs(";\n    ", file);
+    bench_tree_row_widths(file, row);
+    fputs(";\n    ", file);
+    bench_tree_row_regions(file, row);
+    fputs(";\n    the body ", file);
+    bench_tree_row_body(file, row);
+    fputc('\n', file);
+    if (row->valid) print_groups(file, row);
 }
 
 /* The adaptive octree's speed-ups beside the paper's 88, which is over a lattice without low-level

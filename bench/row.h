@@ -14,7 +14,7 @@ typedef struct {
     bool valid;
     char reason[160];      /* why not valid */
     double goal_error;     /* largest deviation of g from brute force, in cells */
-    double momentum_error; /* relative */
+    double momentum_error; /* relative; no ground for invalidity where `plain` */
     double goal_tolerance;
     int repeats;
     double *total;              /* [repeats] seconds a step, not instrumented */
@@ -25,13 +25,19 @@ typedef struct {
     double ns_per_particle_step;
     double voxelise_seconds, build_seconds;
     long bytes;
-    double fps, speedup;     /* steps a second; over the table's first lattice, or NaN */
-    double summation_nodes;  /* mean per region; NaN of a lattice, as are the next two */
-    double width_cells;      /* of an octree's regions: w is that and this times */
-    double width_edges;      /* the node's own edge, */
-    double wanted_summation; /* found for as many summation nodes; 0: given */
+    double fps, speedup;          /* steps a second; over the table's first lattice, or NaN */
+    double summation_nodes;       /* mean per region; NaN of a lattice, as are the next two */
+    double width_cells;           /* of an octree's regions: w is that and this times */
+    double width_edges;           /* the node's own edge, */
+    double wanted_summation;      /* found for as many summation nodes; 0: given */
+    double reached, most_reached; /* largest distance of a leaf in a region, finest cells: mean and
+                                   * most of all regions */
     long most_summation, bases, cells, parts; /* most per region; base cells; finest cells; groups
                                                * of nodes that no region holds together */
+    long wanted_nodes, wanted_bases;          /* 0: not given */
+    long local_nodes;                         /* whose regions have a width of their own place */
+    long welded_cells, welded_pairs; /* nodes, and pairs, that weld what does not connect there */
+    bool plain;                      /* plain weighting, which does not keep momentum */
     double paper_total_ms, paper_stage_ms[SM_STAGES]; /* NaN: not given */
     unsigned long long input_hash; /* FNV-1a of the mesh's coordinates and indices */
 } BenchRow;

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "../octree/structure.h"
 #include "check.h"
+#include "tree_row.h"
 
 /* Prints the last state's deviation from brute force; false: beyond the tolerance. */
 static bool print_deviation(const BenchRunner *runner, const SmCounts *counts)
@@ -26,31 +26,31 @@ static bool print_deviation(const BenchRunner *runner, const SmCounts *counts)
     BenchCheck check;
     bench_check_begin(scene, runner->body, runner->type, runner->engine, &check);
     BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
-    bench_check_free(&check);
     double allowed = bench_check_tolerance(runner->type->precision);
-    printf("deviation: goals within %.3g cells of brute force, momentum kept to %.2g\n",
-           found.goal_error, found.momentum_error);
+    printf("deviation: goals within %.3g cells of brute force, momentum %s %.2g\n",
+           found.goal_error, check.plain ? "not kept by plain weighting, off by" : "kept to",
+           found.momentum_error);
+    bench_check_free(&check);
     if (found.goal_error <= allowed) return true;
     printf("deviation: beyond the %g cells that 'tables' allows: does the body fly off?\n",
            allowed);
     return false;
 }
 
-/* What the octree is: nodes beside those wanted, regions. */
+/* What the octree is: nodes beside those wanted, regions, and what holds together. */
 static void print_octree(const BenchRunner *runner)
 {
-    const OctStructure *s = oct_engine_structure(runner->engine);
-    const OctSampleReport *report = &s->report;
-    printf("%s: octree, %s precision: %ld nodes", runner->scene->name, runner->type->precision,
-           report->nodes);
-    if (report->wanted_nodes && report->wanted_nodes != report->nodes)
-        printf(" (nearest to the %ld wanted)", report->wanted_nodes);
-    printf(" from %ld base cells, %ld finest cells of %.6g\n", report->bases,
-           runner->body->voxels.cell_count, s->cell);
-    char width[BENCH_WIDTH_TEXT];
-    bench_width_text(&s->width, width);
-    printf("regions: w = %s, epsilon %g: %.3g summation nodes on average, %ld at most\n", width,
-           runner->scene->octree.epsilon, s->regions.mean, s->regions.most);
+    BenchRow row = {0};
+    bench_tree_row_fill(runner, &row);
+    printf("%s: octree, %s precision: ", runner->scene->name, runner->type->precision);
+    bench_tree_row_nodes(stdout, &row);
+    printf(" of %.6g\nregions: ", runner->body->voxels.cell);
+    bench_tree_row_widths(stdout, &row);
+    fputs(": ", stdout);
+    bench_tree_row_regions(stdout, &row);
+    fputs("\nthe body ", stdout);
+    bench_tree_row_body(stdout, &row);
+    putchar('\n');
 }
 
 static void print_lattice(const BenchRunner *runner, const SmCounts *counts)

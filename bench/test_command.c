@@ -58,6 +58,11 @@ static int set_up(void **state)
     write_text("noise.obj", "no mesh at all\n");
     write_text("lattice.cfg",
                "paper = \"octree\"; mesh = \"shape:block\"; particles = 500; w = 1; bend = 0.3;\n");
+    write_text("wishes.cfg",
+               "mesh = \"shape:block\"; cells = 343; engine = \"octree\"; bend = 0.3;\n"
+               "instances = 2; frames = 2;\n"
+               "octree = { levels = 2; bases = 3; summation_nodes = 1000.0; weighting = \"plain\";\n"
+               "           widths = ( { radius = 0.15; w = 0.0; } ); };\n");
     write_text("tree.cfg",
                "paper = \"octree\"; row = \"hand-sampled\"; mesh = \"shape:block\"; cells = 343;\n"
                "engine = \"octree\"; bend = 0.3; kick = 0.01; epsilon = 0.5;\n"
@@ -237,6 +242,19 @@ static void an_octree_can_be_run(void **state)
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
         if (!strstr(result.out, wanted[i])) fail_msg("no '%s' in %s", wanted[i], result.out);
     assert_true(there("tree.vtkhdf") && there("tree.vtkhdf.xdmf"));
+    run("run block.obj --engine octree --particles 500 --w 0.4 --frames 1 --no-output", &result);
+    assert_non_null(strstr(result.out, "the body falls into "));
+    run("run wishes.cfg --no-output", &result);
+    if (result.code) fail_msg("%s", result.err);
+    static const char *const told[] = {"wishes: octree, single precision: 2 bodies of ",
+                                       "(nearest to the 3 wanted)",
+                                       "(nearest to the 1000 wanted)",
+                                       ", w local at ",
+                                       "regions reach ",
+                                       " MB\n",
+                                       "momentum not kept by plain weighting, off by "};
+    for (size_t i = 0; i < sizeof told / sizeof *told; i++)
+        if (!strstr(result.out, told[i])) fail_msg("no '%s' in %s", told[i], result.out);
     run("run block.obj --engine octree --particles 200 --precision double --frames 1 --no-output",
         &result);
     if (result.code) fail_msg("%s", result.err);

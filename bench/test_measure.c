@@ -15,13 +15,13 @@
 static const char text[] = "mesh = \"shape:block\"; particles = 64; w = 1; damping = 0.2;\n"
                            "bend = 0.5; twist = 0.5; kick = 0.05;";
 
-static SmCode measure(const SmEngineType *type, BenchRow *row)
+static SmCode measure_text(const char *scene_text, const SmEngineType *type, BenchRow *row)
 {
     BenchScene scene;
     SmMesh mesh;
     BenchBody body;
     SmError error;
-    if (bench_scene_parse(text, strlen(text), "tiny.cfg", &scene, &error))
+    if (bench_scene_parse(scene_text, strlen(scene_text), "tiny.cfg", &scene, &error))
         fail_msg("%s", error.text);
     if (bench_mesh_of_scene(&scene, NULL, &mesh, &error)) fail_msg("%s", error.text);
     if (bench_body_create(&scene, &mesh, &body, &error)) fail_msg("%s", error.text);
@@ -29,6 +29,11 @@ static SmCode measure(const SmEngineType *type, BenchRow *row)
     SmCode code = bench_measure(&scene, &body, type, &params, row, &error);
     bench_body_free(&body);
     return code;
+}
+
+static SmCode measure(const SmEngineType *type, BenchRow *row)
+{
+    return measure_text(text, type, row);
 }
 
 static void a_right_engine_is_valid_and_timed(void **state)
@@ -133,6 +138,46 @@ static void an_octree_is_valid_and_described(void **state)
     }
 }
 
+/* Plain weighting is right without keeping momentum; by how much it does not is measured. */
+static void plain_weighting_loses_momentum_and_says_so(void **state)
+{
+    (void)state;
+    static const char *const weighting[] = {"conserving", "plain"};
+    for (int plain = 0; plain < 2; plain++) {
+        char scene[256];
+        BenchRow row;
+        snprintf(scene, sizeof scene,
+                 "mesh = \"shape:block\"; cells = 343; bend = 0.5; twist = 0.5; kick = 0.05;\n"
+                 "octree = { levels = 2; nodes = 150; weighting = \"%s\"; };",
+                 weighting[plain]);
+        assert_int_equal(measure_text(scene, &octree_engine_f64, &row), SM_OK);
+        if (!row.valid) fail_msg("%s", row.reason);
+        assert_int_equal(row.plain, plain);
+        if (plain ? !(row.momentum_error > 1e-4) : !(row.momentum_error <= 1e-12))
+            fail_msg("%s weighting: momentum off by %g", weighting[plain], row.momentum_error);
+        bench_row_free(&row);
+    }
+}
+
+/* Widths of places, how far regions reach, and what was wanted. */
+static void an_octrees_widths_and_wishes_are_in_its_row(void **state)
+{
+    (void)state;
+    BenchRow row;
+    static const char scene[] =
+        "mesh = \"shape:block\"; cells = 343; epsilon = 0.5; damping = 0.2; bend = 0.3;\n"
+        "octree = { levels = 2; bases = 3; nodes = 99; summation_nodes = 5;\n"
+        "           widths = ( { radius = 0.05; w = 0.0; } ); };";
+    assert_int_equal(measure_text(scene, &octree_engine_f64, &row), SM_OK);
+    if (!row.valid) fail_msg("%s", row.reason);
+    assert_true(row.wanted_nodes == 99 && row.wanted_bases == 3);
+    assert_true(row.bases > 3);
+    assert_true(row.local_nodes > 0 && row.local_nodes < row.particles);
+    assert_true(row.reached > 0 && row.reached < row.most_reached);
+    assert_true(row.most_reached <= 1.5 * row.width_edges * 4);
+    bench_row_free(&row);
+}
+
 static void wrong_octree_get(SmEngine *engine, SmField field, double (*values)[3])
 {
     octree_engine_f64.get(engine, field, values);
@@ -157,6 +202,8 @@ int main(void)
         cmocka_unit_test(a_wrong_engine_is_invalid),
         cmocka_unit_test(a_wrong_count_of_regions_is_invalid),
         cmocka_unit_test(an_octree_is_valid_and_described),
+        cmocka_unit_test(plain_weighting_loses_momentum_and_says_so),
+        cmocka_unit_test(an_octrees_widths_and_wishes_are_in_its_row),
         cmocka_unit_test(a_wrong_octree_is_invalid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

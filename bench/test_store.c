@@ -17,7 +17,7 @@
 #include "../lib/test_folder.h"
 #include "store.h"
 
-enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 680 };
+enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 744 };
 
 /* A field new in row.h is to be stored (store.c), described (results/README.md) and filled here. */
 _Static_assert(sizeof(BenchRow) == ROW_BYTES, "row.h has changed: see above");
@@ -59,6 +59,14 @@ static void fill_row(BenchRow *row, int seed)
                       .bases = 28,
                       .cells = 29358,
                       .parts = 4,
+                      .reached = 3.25,
+                      .most_reached = 12.5,
+                      .wanted_nodes = 661,
+                      .wanted_bases = 27,
+                      .local_nodes = 11,
+                      .welded_cells = 3,
+                      .welded_pairs = 2,
+                      .plain = seed % 2 == 1,
                       .paper_total_ms = 0.281,
                       .input_hash = 0xcbf29ce484222325ULL};
     strcpy(row->paper, "fastlsm");

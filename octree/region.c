@@ -223,6 +223,8 @@ static void measure(const Build *b)
     for (long i = 0; i < r->leaves; i++) {
         long members = r->first[i + 1] - r->first[i];
         if (members > r->most) r->most = members;
+        if (r->width[i] > r->most_width) r->most_width = r->width[i];
+        r->mean_width += (double)r->width[i] / (double)r->leaves;
         for (long n = r->first[i]; n < r->first[i + 1]; n++) r->size[i] += b->below[r->member[n]];
     }
     r->mean = r->leaves ? (double)r->first[r->leaves] / (double)r->leaves : 0;

@@ -14,6 +14,8 @@ typedef struct {
     int *size;   /* [leaves] leaves in the region */
     double mean; /* summation nodes per region */
     long most;
+    double mean_width; /* of `width`: how far regions reach on average, and at most */
+    int most_width;
 } OctRegions;
 
 /* Regions of widths w[leaf] (half finest cells, 0 or more), symmetric: j in R_i exactly when i in

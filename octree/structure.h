@@ -11,6 +11,7 @@ struct OctStructure {
     OctGraph graph;
     OctRegions regions;
     OctWidth width;         /* as given or found; where no local one holds */
+    long local_leaves;      /* where one does */
     int *w;                 /* [leaves] half finest cells */
     double *mass;           /* [leaves] kg */
     double origin[3], cell; /* of the voxels, in mesh units */

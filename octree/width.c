@@ -55,6 +55,7 @@ static void fill_widths(const OctOptions *options, const OctWidth *width, OctStr
                         long held[OCT_MAX_WIDTHS])
 {
     memset(held, 0, OCT_MAX_WIDTHS * sizeof *held);
+    s->local_leaves = 0;
     for (long leaf = 0; leaf < s->tree.leaves; leaf++) {
         const OctWidth *own = width;
         double centre[3];
@@ -64,6 +65,7 @@ static void fill_widths(const OctOptions *options, const OctWidth *width, OctStr
                 own = &options->local[i].width;
                 held[i]++;
             }
+        s->local_leaves += own != width;
         s->w[leaf] = width_of(own, s->tree.size[s->tree.node[leaf]]);
     }
 }
