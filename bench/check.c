@@ -44,6 +44,10 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
     memcpy(check->mass, structure->mass, (size_t)check->count * sizeof *check->mass);
     ref_tree_init(&structure->tree, &structure->regions, structure->mass, check->plain,
                   &check->octree);
+    const OctOptions *options = &scene->octree;
+    check->octree.yield = options->yield;
+    check->octree.creep = options->creep * scene->params.h;
+    check->octree.most = options->most > 0 ? options->most : 1;
 }
 
 void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
@@ -105,27 +109,48 @@ static double momentum_error(const double (*x)[3], const double (*g)[3], const d
     return spread > 0 ? length / spread : length;
 }
 
-/* The twin's goals of one body, in mesh units. Ties go to the identity, as in a lattice. */
-static void exact_goals(const BenchCheck *check, const double (*x)[3], double (*exact)[3])
+/* The octree's, by the rest shapes S; with `flow` those become what a step leaves. */
+static void twin_goals(const BenchCheck *check, const double (*x)[3], double yield, bool flow,
+                       double (*S)[9], double (*exact)[3])
 {
-    const BenchBody *body = check->body;
-    if (!check->hierarchical) {
-        ref_goals(&check->regions, (const double(*)[3])body->x0, check->mass, x, exact);
-        return;
-    }
+    const SmVoxels *voxels = &check->body->voxels;
+    size_t count = (size_t)check->count;
     RefTreeBody twin = check->octree;
-    double(*at)[3] = sm_alloc((size_t)check->count, sizeof *at), cell = body->voxels.cell;
-    twin.R = sm_alloc((size_t)check->count, sizeof *twin.R);
-    for (long i = 0; i < check->count; i++)
+    double(*at)[3] = sm_alloc(count, sizeof *at);
+    twin.yield = yield;
+    twin.S = S;
+    twin.R = sm_alloc(count, sizeof *twin.R);
+    for (size_t i = 0; i < count; i++)
         for (int d = 0; d < 3; d++) {
-            at[i][d] = (x[i][d] - body->voxels.origin[d]) / cell;
+            at[i][d] = (x[i][d] - voxels->origin[d]) / voxels->cell;
             twin.R[i][4 * d] = 1;
         }
-    ref_tree_goals(&twin, (const double(*)[3])at, false, exact);
-    for (long i = 0; i < check->count; i++)
-        for (int d = 0; d < 3; d++) exact[i][d] = body->voxels.origin[d] + cell * exact[i][d];
+    ref_tree_goals(&twin, (const double(*)[3])at, flow, exact);
+    for (size_t i = 0; i < count; i++)
+        for (int d = 0; d < 3; d++) exact[i][d] = voxels->origin[d] + voxels->cell * exact[i][d];
     free(at);
     free(twin.R);
+}
+
+/* The twin's goals of one body, in mesh units. Ties go to the identity, as in a lattice. */
+static void exact_goals(const BenchCheck *check, const double (*x)[3], double (*S)[9],
+                        double (*exact)[3])
+{
+    if (check->hierarchical)
+        twin_goals(check, x, check->octree.yield, false, S, exact);
+    else
+        ref_goals(&check->regions, (const double(*)[3])check->body->x0, check->mass, x, exact);
+}
+
+/* Those of all instances, of an elastic octree the identity; NULL of a lattice. */
+static double (*rest_shapes(const BenchCheck *check, const SmEngineType *type, SmEngine *engine))[9]
+{
+    if (!check->hierarchical) return NULL;
+    long all = check->count * check->body->instances;
+    double(*S)[9] = sm_alloc((size_t)all, sizeof *S);
+    if (!type->get_shapes(engine, S))
+        for (long i = 0; i < all; i++) S[i][0] = S[i][4] = S[i][8] = 1;
+    return S;
 }
 
 BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *type,
@@ -136,6 +161,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     double(*v)[3] = sm_alloc((size_t)all, sizeof *v);
     double(*g)[3] = sm_alloc((size_t)all, sizeof *g);
     double(*exact)[3] = sm_alloc((size_t)count, sizeof *exact);
+    double(*S)[9] = rest_shapes(check, type, engine);
     type->goals(engine);
     type->get(engine, SM_POSITION, x);
     type->get(engine, SM_VELOCITY, v);
@@ -147,7 +173,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     for (long first = 0; first < all && result.finite; first += count) {
         const double(*at)[3] = (const double(*)[3])(x + first);
         const double(*goal)[3] = (const double(*)[3])(g + first);
-        exact_goals(check, at, exact);
+        exact_goals(check, at, S ? S + first : NULL, exact);
         double error = goal_error(goal, (const double(*)[3])exact, count, check->body->voxels.cell);
         double drift = momentum_error(at, goal, check->mass, count);
         result.goal_error = fmax(result.goal_error, error);
@@ -157,7 +183,49 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     free(v);
     free(g);
     free(exact);
+    free(S);
     return result;
+}
+
+/* How far a region's shape is from the nearest of two that are both right. */
+static double shape_error(const double S[9], const double low[9], const double high[9])
+{
+    double worst[2] = {0};
+    for (int i = 0; i < 9; i++) {
+        worst[0] = fmax(worst[0], isfinite(S[i]) ? fabs(S[i] - low[i]) : INFINITY);
+        worst[1] = fmax(worst[1], isfinite(S[i]) ? fabs(S[i] - high[i]) : INFINITY);
+    }
+    return fmin(worst[0], worst[1]);
+}
+
+double bench_check_flow(const BenchCheck *check, BenchRunner *runner)
+{
+    const SmEngineType *type = runner->type;
+    if (!(check->hierarchical && check->octree.creep > 0)) return 0;
+    size_t count = (size_t)check->count, all = count * (size_t)check->body->instances;
+    double(*x)[3] = sm_alloc(all, sizeof *x), (*unused)[3] = sm_alloc(count, sizeof *unused);
+    double(*low)[9] = sm_alloc(count, sizeof *low), (*high)[9] = sm_alloc(count, sizeof *high);
+    double(*before)[9] = rest_shapes(check, type, runner->engine), worst = 0;
+    double slack = bench_check_tolerance(type->precision), yield = check->octree.yield;
+    type->get(runner->engine, SM_POSITION, x);
+    bench_runner_step(runner, NULL);
+    double(*after)[9] = rest_shapes(check, type, runner->engine);
+    for (size_t first = 0; first < all; first += count) {
+        const double(*at)[3] = (const double(*)[3])(x + first);
+        memcpy(low, before + first, count * sizeof *low);
+        memcpy(high, before + first, count * sizeof *high);
+        twin_goals(check, at, fmax(yield - slack, 0), true, low, unused);
+        twin_goals(check, at, yield + slack, true, high, unused);
+        for (size_t r = 0; r < count; r++)
+            worst = fmax(worst, shape_error(after[first + r], low[r], high[r]));
+    }
+    free(x);
+    free(unused);
+    free(low);
+    free(high);
+    free(before);
+    free(after);
+    return worst / fmax(1, check->octree.creep);
 }
 
 double bench_check_tolerance(const char *precision)

@@ -8,17 +8,19 @@ static void write_parameters(BenchH5 *h5, hid_t group, const BenchTrajectoryPara
         BENCH_FIELD(OctOptions, BENCH_DOUBLE, epsilon),
         BENCH_FIELD(OctOptions, BENCH_DOUBLE, yield),
         BENCH_FIELD(OctOptions, BENCH_DOUBLE, creep),
+        BENCH_FIELD(OctOptions, BENCH_DOUBLE, most),
     };
     static const BenchField body[] = {
         BENCH_FIELD(OctStructure, BENCH_DOUBLE, origin),
         BENCH_FIELD(OctStructure, BENCH_DOUBLE, cell),
     };
-    const OctOptions *o = all->params->octree;
+    OctOptions o = *all->params->octree;
+    if (!(o.most > 0)) o.most = 1;
     const OctTree *tree = &all->structure->tree;
-    bench_h5_fields(h5, group, options, 3, o);
+    bench_h5_fields(h5, group, options, 4, &o);
     bench_h5_fields(h5, group, body, 2, all->structure);
-    bench_h5_text(h5, group, "weighting", o->weighting == OCT_PLAIN ? "plain" : "conserving");
-    bench_h5_text(h5, group, "goals", o->form == OCT_ADJOINT ? "adjoint" : "gather");
+    bench_h5_text(h5, group, "weighting", o.weighting == OCT_PLAIN ? "plain" : "conserving");
+    bench_h5_text(h5, group, "goals", o.form == OCT_ADJOINT ? "adjoint" : "gather");
     bench_h5_numbers(h5, group, "levels", H5T_STD_I32LE, 0, &tree->levels);
     bench_h5_numbers(h5, group, "corner", H5T_STD_I32LE, 3, tree->corner);
 }

@@ -120,14 +120,20 @@ void bench_particles_begin(BenchH5 *h5, const BenchTrajectoryParams *params,
     particles->x = bench_h5_growing(h5, group, "x", H5T_IEEE_F64LE, 3, size);
     particles->v = bench_h5_growing(h5, group, "v", H5T_IEEE_F64LE, 3, size);
     particles->g = bench_h5_growing(h5, group, "g", H5T_IEEE_F64LE, 3, size);
+    size[2] = 9;
+    particles->S = nodes && params->params->octree->creep > 0
+                       ? bench_h5_growing(h5, group, "S", H5T_IEEE_F64LE, 3, size)
+                       : -1;
 }
 
 void bench_particles_record(BenchH5 *h5, const BenchParticles *particles, long step,
-                            const double (*x)[3], const double (*v)[3], const double (*g)[3])
+                            const double (*x)[3], const double (*v)[3], const double (*g)[3],
+                            const double (*S)[9])
 {
     bench_h5_append(h5, particles->step, 1, &step);
     bench_h5_append(h5, particles->x, 1, x);
     bench_h5_append(h5, particles->v, 1, v);
+    if (particles->S >= 0) bench_h5_append(h5, particles->S, 1, S);
     if (g) {
         bench_h5_append(h5, particles->g, 1, g);
         return;

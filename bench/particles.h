@@ -7,6 +7,7 @@
 
 typedef struct {
     hid_t step, x, v, g; /* growing datasets */
+    hid_t S;             /* another one, of a plastic octree; else -1 */
     long count;          /* particles or nodes of all instances */
 } BenchParticles;
 
@@ -15,8 +16,9 @@ typedef struct {
 void bench_particles_begin(BenchH5 *h5, const BenchTrajectoryParams *params,
                            BenchParticles *particles);
 
-/* Appends a record; `g` NULL is stored as NaN. */
+/* Appends a record; `g` NULL is stored as NaN, `S` is used of a plastic octree only. */
 void bench_particles_record(BenchH5 *h5, const BenchParticles *particles, long step,
-                            const double (*x)[3], const double (*v)[3], const double (*g)[3]);
+                            const double (*x)[3], const double (*v)[3], const double (*g)[3],
+                            const double (*S)[9]);
 
 #endif

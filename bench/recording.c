@@ -1,6 +1,5 @@
 #include "recording.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,6 +30,7 @@ static void release(BenchRecording *recording)
     free(recording->x);
     free(recording->v);
     free(recording->g);
+    free(recording->S);
     *recording = (BenchRecording){0};
 }
 
@@ -82,6 +82,8 @@ SmCode bench_recording_open(const BenchRunner *runner, const char *path, BenchRe
     recording->x = sm_alloc(count, sizeof *recording->x);
     recording->v = sm_alloc(count, sizeof *recording->v);
     recording->g = sm_alloc(count, sizeof *recording->g);
+    if (is_octree(runner) && runner->scene->octree.creep > 0)
+        recording->S = sm_alloc(count, sizeof *recording->S);
     SmEngineParams params = bench_engine_params(runner->scene, body, machine->threads);
     SmBoundary boundary = bench_runner_boundary(runner);
     BenchTrajectoryParams wanted = {
@@ -108,6 +110,7 @@ double bench_recording_bytes(const BenchRecording *recording)
     double frames = scene->frames + 1.0, steps = (double)scene->frames * scene->steps_per_frame + 1;
     double state = (sizeof *recording->x + sizeof *recording->v + sizeof *recording->g) *
                    (double)recording->runner->particles;
+    if (recording->S) state *= 2;
     return bench_trajectory_bytes(recording->trajectory, frames) +
            (recording->record ? steps * state : 0);
 }
@@ -139,17 +142,11 @@ SmCode bench_recording_step(BenchRecording *recording, long step, bool before, S
         type->goals(runner->engine);
         type->get(runner->engine, SM_GOAL, recording->g);
     }
+    if (recording->S) type->get_shapes(runner->engine, recording->S);
     return bench_trajectory_step(recording->trajectory, step, (const double(*)[3])recording->x,
                                  (const double(*)[3])recording->v,
-                                 before ? (const double(*)[3])recording->g : NULL, error);
-}
-
-bool bench_recording_finite(const BenchRecording *recording)
-{
-    for (long i = 0; i < recording->runner->particles; i++)
-        for (int d = 0; d < 3; d++)
-            if (!isfinite(recording->x[i][d])) return false;
-    return true;
+                                 before ? (const double(*)[3])recording->g : NULL,
+                                 (const double(*)[9])recording->S, error);
 }
 
 SmCode bench_recording_close(BenchRecording *recording, SmError *error)

@@ -15,6 +15,7 @@ typedef struct {
     SmEmbedding embedding;            /* of one, in a lattice engine's particles */
     OctSurface carried;               /* or of one, by an octree engine's nodes */
     double (*x)[3], (*v)[3], (*g)[3]; /* [runner->particles] */
+    double (*S)[9];                   /* [runner->particles] of a plastic body, or NULL */
     BenchTrajectory *trajectory;
     BenchRecord record;
 } BenchRecording;
@@ -33,9 +34,6 @@ SmCode bench_recording_frame(BenchRecording *recording, SmError *error);
 /* Records particles or nodes between bench_runner_prepare() and bench_runner_advance() of step
  * `step`; `before` false: after it, without goals. Computes the goals. */
 SmCode bench_recording_step(BenchRecording *recording, long step, bool before, SmError *error);
-
-/* Are all positions finite? The positions are those of the last frame. */
-bool bench_recording_finite(const BenchRecording *recording);
 
 /* Completes the file, or throws it away, and frees all. */
 SmCode bench_recording_close(BenchRecording *recording, SmError *error);

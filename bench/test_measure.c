@@ -178,6 +178,31 @@ static void an_octrees_widths_and_wishes_are_in_its_row(void **state)
     bench_row_free(&row);
 }
 
+static bool wrong_shapes(SmEngine *engine, double (*S)[9])
+{
+    bool plastic = octree_engine_f64.get_shapes(engine, S);
+    if (plastic) S[3][1] += 1e-6;
+    return plastic;
+}
+
+/* Plastic bodies are held to their rest shapes, and those to how they flow. */
+static void a_plastic_octree_is_checked(void **state)
+{
+    (void)state;
+    static const char scene[] =
+        "mesh = \"shape:block\"; cells = 343; epsilon = 0.5; damping = 0.2; squash = 0.3;\n"
+        "bend = 0.3; instances = 2; octree = { levels = 2; yield = 0.02; creep = 20.0; };";
+    SmEngineType wrong_type = octree_engine_f64;
+    wrong_type.get_shapes = wrong_shapes;
+    const SmEngineType *const types[] = {&octree_engine_f32, &octree_engine_f64, &wrong_type};
+    for (int t = 0; t < 3; t++) {
+        BenchRow row;
+        assert_int_equal(measure_text(scene, types[t], &row), SM_OK);
+        if (row.valid != (t < 2)) fail_msg("%s", row.reason);
+        bench_row_free(&row);
+    }
+}
+
 static void wrong_octree_get(SmEngine *engine, SmField field, double (*values)[3])
 {
     octree_engine_f64.get(engine, field, values);
@@ -204,6 +229,7 @@ int main(void)
         cmocka_unit_test(an_octree_is_valid_and_described),
         cmocka_unit_test(plain_weighting_loses_momentum_and_says_so),
         cmocka_unit_test(an_octrees_widths_and_wishes_are_in_its_row),
+        cmocka_unit_test(a_plastic_octree_is_checked),
         cmocka_unit_test(a_wrong_octree_is_invalid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -76,7 +76,8 @@ static void record(const SmEngineType *type, BenchTrajectoryParams *params)
     long count = counts.particles;
     double(*x)[3] = sm_alloc((size_t)count, sizeof *x),
     (*v)[3] = sm_alloc((size_t)count, sizeof *v);
-    double(*g)[3] = sm_alloc((size_t)count, sizeof *g);
+    double(*g)[3] = sm_alloc((size_t)count, sizeof *g),
+    (*S)[9] = sm_alloc((size_t)count, sizeof *S);
     if (params->boundary) type->bound(engine, params->boundary);
     disturb(type, engine, count, params->voxels->cell);
     if (bench_trajectory_open(params, &trajectory, &error) != SM_OK) fail_msg("%s", error.text);
@@ -85,10 +86,12 @@ static void record(const SmEngineType *type, BenchTrajectoryParams *params)
         type->get(engine, SM_VELOCITY, v);
         type->goals(engine);
         type->get(engine, SM_GOAL, g);
+        if (type->get_shapes) type->get_shapes(engine, S);
         if (step < STEPS) type->step(engine, NULL);
         assert_int_equal(bench_trajectory_step(trajectory, step, (const double(*)[3])x,
                                                (const double(*)[3])v,
-                                               step < STEPS ? (const double(*)[3])g : NULL, &error),
+                                               step < STEPS ? (const double(*)[3])g : NULL,
+                                               (const double(*)[9])S, &error),
                          SM_OK);
     }
     if (bench_trajectory_close(trajectory, &error) != SM_OK) fail_msg("%s", error.text);
@@ -96,6 +99,7 @@ static void record(const SmEngineType *type, BenchTrajectoryParams *params)
     free(x);
     free(v);
     free(g);
+    free(S);
 }
 
 /* Records the L with the given parameters; writes the file at `path`. */
@@ -251,15 +255,33 @@ static void octree_held_in_single_precision(void **state)
     assert_int_equal(check_file(), 0);
 }
 
-/* Adds `amount` to one whole number of a list. */
+/* Adds `amount` to one number of a dataset of vectors of every particle and record. */
+static void corrupt(const char *name, int record_number, double amount)
+{
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset);
+    hsize_t point[] = {(hsize_t)record_number, 5, 1}, one = 1;
+    H5Sselect_elements(space, H5S_SELECT_SET, 1, point);
+    hid_t single = H5Screate_simple(1, &one, NULL);
+    double value = NAN;
+    assert_true(H5Dread(dataset, H5T_NATIVE_DOUBLE, single, space, H5P_DEFAULT, &value) >= 0);
+    value += amount;
+    assert_true(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, single, space, H5P_DEFAULT, &value) >= 0);
+    H5Sclose(single);
+    H5Sclose(space);
+    H5Dclose(dataset);
+    H5Fclose(file);
+}
+
+/* Adds `amount` to the first whole number in row `at` of a list. */
 static void corrupt_whole(const char *name, hsize_t at, int amount)
 {
     hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
     hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset);
-    hsize_t one = 1;
+    hsize_t one = 1, first[] = {at, 0};
     hid_t single = H5Screate_simple(1, &one, NULL);
     int value = 0;
-    H5Sselect_elements(space, H5S_SELECT_SET, 1, &at);
+    H5Sselect_elements(space, H5S_SELECT_SET, 1, first);
     assert_true(H5Dread(dataset, H5T_NATIVE_INT, single, space, H5P_DEFAULT, &value) >= 0);
     value += amount;
     assert_true(H5Dwrite(dataset, H5T_NATIVE_INT, single, space, H5P_DEFAULT, &value) >= 0);
@@ -278,33 +300,38 @@ static void octree_corrupted(void **state)
     static const struct {
         const char *name;
         int amount;
-    } change[] = {{"nodes/w", 40}, {"nodes/length", 1000}, {"nodes/summation", 1}};
+        int code;
+    } change[] = {{"nodes/w", 40, 1},
+                  {"nodes/length", 2, 1},
+                  {"nodes/summation", 1, 1},
+                  {"nodes/reached", 1, 1},
+                  {"nodes/tree/size", -1, 1},
+                  {"nodes/tree/material", 1, 1},
+                  {"nodes/tree/centre", 2, 1},
+                  {"nodes/node", 1, 1},
+                  {"nodes/edge", 100000, 3},
+                  {"nodes/node", 100000, 3},
+                  {"nodes/tree/parent", 100000, 3}};
     for (size_t i = 0; i < sizeof change / sizeof change[0]; i++) {
         record_octree(&octree_engine_f64, 2, &params, &options, NULL);
         corrupt_whole(change[i].name, 0, change[i].amount);
-        assert_int_equal(check_file(), 1);
+        if (check_file() != change[i].code) fail_msg("%s: %d", change[i].name, check_file());
     }
-    options.creep = 1;
-    record_octree(&octree_engine_f64, 2, &params, &options, NULL);
-    assert_int_equal(check_file(), 2);
 }
 
-/* Adds `amount` to one number of a dataset of vectors of every particle and record. */
-static void corrupt(const char *name, int record_number, double amount)
+/* Rest shapes flow from record to record, in either precision, to the most that is allowed. */
+static void plastic_octrees(void **state)
 {
-    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
-    hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(dataset);
-    hsize_t point[] = {(hsize_t)record_number, 5, 1}, one = 1;
-    H5Sselect_elements(space, H5S_SELECT_SET, 1, point);
-    hid_t single = H5Screate_simple(1, &one, NULL);
-    double value = NAN;
-    assert_true(H5Dread(dataset, H5T_NATIVE_DOUBLE, single, space, H5P_DEFAULT, &value) >= 0);
-    value += amount;
-    assert_true(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, single, space, H5P_DEFAULT, &value) >= 0);
-    H5Sclose(single);
-    H5Sclose(space);
-    H5Dclose(dataset);
-    H5Fclose(file);
+    (void)state;
+    static const SmEngineType *const types[] = {&octree_engine_f64, &octree_engine_f32};
+    for (int t = 0; t < 2; t++) {
+        OctOptions options = {.yield = 0.02, .creep = 20, .most = t ? 0 : 0.05};
+        SmEngineParams params = {.h = 0.01, .damping = 0.2, .instances = 2, .threads = 1};
+        record_octree(types[t], 2, &params, &options, NULL);
+        assert_int_equal(check_file(), 0);
+    }
+    corrupt("nodes/S", 1, 1e-2);
+    assert_int_equal(check_file(), 1);
 }
 
 static void corrupted(void **state)
@@ -357,6 +384,7 @@ int main(void)
         cmocka_unit_test(octrees),
         cmocka_unit_test(octree_held_in_single_precision),
         cmocka_unit_test(octree_corrupted),
+        cmocka_unit_test(plastic_octrees),
     };
     return cmocka_run_group_tests(tests, make_file_name, remove_folder);
 }

@@ -172,9 +172,10 @@ SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const do
 }
 
 SmCode bench_trajectory_step(BenchTrajectory *trajectory, long step, const double (*x)[3],
-                             const double (*v)[3], const double (*g)[3], SmError *error)
+                             const double (*v)[3], const double (*g)[3], const double (*S)[9],
+                             SmError *error)
 {
-    bench_particles_record(&trajectory->h5, &trajectory->particles, step, x, v, g);
+    bench_particles_record(&trajectory->h5, &trajectory->particles, step, x, v, g, S);
     return trajectory->h5.failed ? fail(trajectory, error) : SM_OK;
 }
 

@@ -44,11 +44,13 @@ SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const do
                               SmError *error);
 
 /* One step of particles or nodes: number of the step, counted from 0; x and v before it,
- * with pushes applied; the goals in it. All [instances * particles or nodes of one][3]. After the
+ * with pushes applied; the goals in it; of a plastic octree also the rest shapes S before it
+ * ([...][9], engine.h), else NULL. All [instances * particles or nodes of one][3]. After the
  * last step of a stretch, call it once more with the state after that step, the next number and `g`
  * NULL, so that the step's outcome is in the file. */
 SmCode bench_trajectory_step(BenchTrajectory *trajectory, long step, const double (*x)[3],
-                             const double (*v)[3], const double (*g)[3], SmError *error);
+                             const double (*v)[3], const double (*g)[3], const double (*S)[9],
+                             SmError *error);
 
 /* Completes, syncs and renames file and sidecar, and frees `trajectory`, also on failure; then no
  * draft is left. */

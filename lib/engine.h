@@ -100,6 +100,12 @@ typedef struct {
      * handles (cheap then). */
     void (*bound)(SmEngine *engine, const SmBoundary *boundary);
 
+    /* Rest shapes S of all particles' regions, by rows: what a plastic body has kept (octree eq.
+     * 9). `S` is [particles][9]. NULL of engines whose bodies are all elastic; false, and nothing
+     * read or written, of an elastic body. */
+    bool (*get_shapes)(SmEngine *engine, double (*S)[9]);
+    bool (*set_shapes)(SmEngine *engine, const double (*S)[9]);
+
     /* Masses m_i of one body's particles, kg; `mass` is [particles / instances]. */
     void (*masses)(SmEngine *engine, double *mass);
 

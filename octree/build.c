@@ -118,18 +118,32 @@ static void make_rows(const OctTree *tree, const Oct *oct, OctRows *rows)
     }
 }
 
-static void make_plastic(const Oct *oct, OctState *body)
+/* The lanes beyond the last leaf are as its own. */
+void oct_shape(Oct *oct, long body, const double (*S)[9])
+{
+    const OctState *b = &oct->body[body];
+    for (long block = 0; block < oct->blocks; block++) {
+        vec shape[9], inverse[9];
+        for (int lane = 0; lane < SM_LANES; lane++) {
+            long slot = block * SM_LANES + lane, leaf = slot < oct->leaves ? slot : oct->leaves - 1;
+            for (int i = 0; i < 9; i++)
+                b->plastic[(block * 9 + i) * SM_LANES + lane] = (real)S[leaf][i];
+        }
+        load9(b->plastic + block * 9 * SM_LANES, shape);
+        plastic_inverse(oct->spread + block * 6 * SM_LANES, shape, inverse);
+        store9(b->inverse + block * 9 * SM_LANES, inverse);
+    }
+}
+
+static void make_plastic(Oct *oct, long body)
 {
     size_t count = (size_t)oct->blocks * 9 * SM_LANES;
-    body->plastic = sm_alloc(count, sizeof(real));
-    body->inverse = sm_alloc(count, sizeof(real));
-    vec identity[9], inverse[9];
-    for (int i = 0; i < 9; i++) identity[i] = lanes_set(i % 4 == 0);
-    for (long block = 0; block < oct->blocks; block++) {
-        plastic_inverse(oct->spread + block * 6 * SM_LANES, identity, inverse);
-        store9(body->plastic + block * 9 * SM_LANES, identity);
-        store9(body->inverse + block * 9 * SM_LANES, inverse);
-    }
+    double(*S)[9] = sm_alloc((size_t)oct->leaves, sizeof *S);
+    for (long leaf = 0; leaf < oct->leaves; leaf++) S[leaf][0] = S[leaf][4] = S[leaf][8] = 1;
+    oct->body[body].plastic = sm_alloc(count, sizeof(real));
+    oct->body[body].inverse = sm_alloc(count, sizeof(real));
+    oct_shape(oct, body, (const double(*)[9])S);
+    free(S);
 }
 
 static void make_body(const Oct *oct, OctState *body)
@@ -143,7 +157,6 @@ static void make_body(const Oct *oct, OctState *body)
     for (int i = 0; i < 9; i++) identity[i] = lanes_set(i % 4 == 0);
     for (long block = 0; block < oct->blocks; block++)
         last_store(body->last + block * 6 * SM_LANES, identity);
-    if (oct->params.creep > 0) make_plastic(oct, body);
 }
 
 /* All bodies start at rest in one place. */
@@ -187,7 +200,10 @@ Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mas
     oct->rows = sm_alloc((size_t)oct->workers, sizeof *oct->rows);
     for (int i = 0; i < oct->workers; i++) make_rows(tree, oct, &oct->rows[i]);
     oct->body = sm_alloc((size_t)oct->instances, sizeof *oct->body);
-    for (long i = 0; i < oct->instances; i++) make_body(oct, &oct->body[i]);
+    for (long i = 0; i < oct->instances; i++) {
+        make_body(oct, &oct->body[i]);
+        if (params->creep > 0) make_plastic(oct, i);
+    }
     for (int d = 0; d < 3; d++) oct->gravity[d] = (real)params->gravity[d];
     start_at_rest(tree, oct);
     return oct;

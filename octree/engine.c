@@ -69,6 +69,25 @@ static void engine_get(SmEngine *e, SmField field, double (*values)[3])
             get_node(e, field, number, values[number]);
 }
 
+static bool engine_get_shapes(SmEngine *e, double (*S)[9])
+{
+    if (!e->oct->spread) return false;
+    for (long number = 0; number < e->oct->instances * e->count; number++) {
+        long leaf = number % e->count;
+        const real *from = body_of(e, number)->plastic + leaf / SM_LANES * 9 * SM_LANES;
+        for (int i = 0; i < 9; i++) S[number][i] = (double)from[i * SM_LANES + leaf % SM_LANES];
+    }
+    return true;
+}
+
+static bool engine_set_shapes(SmEngine *e, const double (*S)[9])
+{
+    if (!e->oct->spread) return false;
+    e->goals = false;
+    for (long i = 0; i < e->oct->instances; i++) oct_shape(e->oct, i, S + i * e->count);
+    return true;
+}
+
 static void set_positions(SmEngine *e, const double (*values)[3])
 {
     double(*x)[3] = sm_alloc((size_t)e->count, sizeof *x);
@@ -299,6 +318,8 @@ const SmEngineType SM_NAME(octree_engine) = {
     .set = engine_set,
     .push = engine_push,
     .bound = engine_bound,
+    .get_shapes = engine_get_shapes,
+    .set_shapes = engine_set_shapes,
     .masses = engine_masses,
     .count = engine_count,
     .region = engine_region,

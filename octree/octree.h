@@ -14,6 +14,7 @@
 #define oct_damp       SM_NAME(oct_damp)
 #define oct_recentre   SM_NAME(oct_recentre)
 #define oct_place      SM_NAME(oct_place)
+#define oct_shape      SM_NAME(oct_shape)
 
 /* Bodies at rest, all in one place: simulation nodes at their cells' centres, counted in finest
  * cells from the corner of voxel (0,0,0). `mass` is [leaves] kg, positive, finite. Tree and regions
@@ -42,6 +43,9 @@ void oct_recentre(Oct *oct);
 
 /* Puts every node of a body: `x` is [leaves][3], finest cells. The origin goes to the middle. */
 void oct_place(Oct *oct, long body, const double (*x)[3]);
+
+/* Sets the rest shapes of a plastic body's regions; `S` is [leaves][9]. */
+void oct_shape(Oct *oct, long body, const double (*S)[9]);
 
 /* Where component d of simulation node `leaf` is in x, v and g of a body. */
 static inline long oct_index(long leaf, int d)

@@ -111,18 +111,6 @@ void oct_surface_free(OctSurface *surface)
     *surface = (OctSurface){0};
 }
 
-size_t oct_surface_bytes(const OctSurface *s)
-{
-    const OctGradients *g = &s->gradients;
-    size_t leaves = (size_t)g->leaves, vertices = (size_t)s->vertices;
-    return leaves * (sizeof *s->centre + sizeof *s->F + sizeof *g->span) +
-           (size_t)g->count * (sizeof *g->leaf + sizeof *g->first) +
-           (size_t)g->first[g->count] * (sizeof *g->neighbour + sizeof *g->share) +
-           (size_t)g->flats * sizeof *g->flat +
-           vertices * (sizeof *s->rest + sizeof *s->normal + sizeof *s->first) +
-           (size_t)s->first[vertices] * (sizeof *s->leaf + sizeof *s->weight);
-}
-
 /* x_k + F_k (X - X_k) */
 static inline void carry(const OctSurface *s, const double (*x)[3], int k, const double X[3],
                          double to[3])

@@ -36,7 +36,6 @@ typedef struct {
 void oct_surface_build(const SmMesh *mesh, const SmVoxels *voxels, const OctTree *tree,
                        const OctGraph *graph, OctSurface *surface);
 void oct_surface_free(OctSurface *surface);
-size_t oct_surface_bytes(const OctSurface *surface);
 
 /* Vertex positions (and unit normals, unless NULL) from node positions x, all in mesh units. A
  * normal of a surface that has collapsed is 0, never NaN (while x is finite and within 1e60).

@@ -6,11 +6,13 @@ Usage: check_step.py FILE      (a file of `shapebench run --record particles` or
 Everything comes from the group /particles or /nodes of FILE (results/README.md): a lattice's regions
 by breadth-first search over the cells, goals by fastlsm eqs. 9-12; an octree's distances by Dijkstra
 over the visibility edges, regions by the intervals of octree section 4.2 and symmetry, goals by octree
-eqs. 6-8, leaf by leaf; the step by fastlsm eqs. 1-2 and 14. An octree's stored summation nodes must be
-those regions' largest cells. Prints the largest deviations in (finest) cells; velocities count as what
-they move in a step, and are compared after the last step only, because the others hold the next step's
-pushes already. Particles that follow a handle or end within a thousandth of a cell of an obstacle are
-compared in their goals only.
+eqs. 6-10, leaf by leaf; the step by fastlsm eqs. 1-2 and 14. An octree's cells must be those of one
+lattice, its lengths those of their centres, its stored summation nodes those regions' largest cells; the
+rest shapes of a plastic body begin at 1 with step 0 and flow from record to record (where a stretch is at
+the yield to rounding, it may or may not). Prints the largest deviations in (finest) cells, of rest shapes
+in their unit; velocities count as what they move in a step, and are compared after the last step only,
+because the others hold the next step's pushes already. Particles that follow a handle or end within a
+thousandth of a cell of an obstacle are compared in their goals only.
 Exit code: 0 all within tolerance, 1 not, 2 nothing can be compared, 3 the file cannot be used."""
 import heapq
 import sys
@@ -55,6 +57,7 @@ class Lattice:
         self.weight = self.mass / total(self.members, self.share)[:, 0]  # modified mass m~
         self.pairs = np.array([(p, q) for p in range(len(near)) for q in near[p] if q > p])
         self.limit, self.rest = group.attrs["strain_limit"], group["rest"][:]
+        self.plastic = False
 
     def unknown(self, x, begins):
         """Why a state is not to be recomputed, or nothing."""
@@ -71,6 +74,13 @@ class Tree:
     def __init__(self, group):
         self.mass, self.node, self.rest = group["mass"][:], group["node"][:], group["rest"][:]
         self.parent, self.plastic = group["tree/parent"][:].tolist(), group.attrs["creep"] > 0
+        self.creep = group.attrs["creep"] * group.attrs["h"]
+        self.yield_, self.most = group.attrs["yield"], group.attrs["most"]
+        usable(group)
+        wrong = misplaced(group)
+        if wrong:
+            print(wrong, file=sys.stderr)
+            sys.exit(1)
         self.children = [[] for _ in self.parent]
         for child, parent in enumerate(self.parent):
             if parent >= 0:
@@ -89,19 +99,26 @@ class Tree:
             if sorted(self.largest(leaves)) != stored[first[i]:first[i + 1]].tolist():
                 print(f"the summation nodes of region {i} are not those of its intervals", file=sys.stderr)
                 sys.exit(1)
+            if self.distances(i, np.inf, leaves) != group["reached"][i]:
+                print(f"region {i} does not reach as far as is stored", file=sys.stderr)
+                sys.exit(1)
         print(f"{len(inside)} regions, {len(stored) / len(inside):.3g} summation nodes each, recomputed")
         self.members = [np.array(sorted(leaves)) for leaves in inside]
         self.share = self.mass  # eq. 8: regions count by m_r
         plain = text(group.attrs["weighting"]) == "plain"
         self.weight = self.mass if plain else self.mass / total(self.members, self.share)[:, 0]
 
-    def distances(self, source, most):
-        """Dijkstra."""
-        found, queue = {}, [(0, source)]
+    def distances(self, source, most, wanted=None):
+        """Dijkstra; with `wanted` only the distance of the farthest of these leaves."""
+        found, queue, left = {}, [(0, source)], set(wanted or ())
         while queue:
             d, leaf = heapq.heappop(queue)
             if leaf not in found:
                 found[leaf] = d
+                if wanted:
+                    left.discard(leaf)
+                    if not left:
+                        return d
                 for to, length in self.edges[leaf]:
                     if to not in found and d + length <= most:
                         heapq.heappush(queue, (d + length, to))
@@ -152,23 +169,96 @@ class Tree:
         return [n for n in whole if self.parent[n] not in whole]
 
     def unknown(self, x, begins):
-        return "the body is plastic: its regions' rest shapes are not in the file" if self.plastic else None
+        return None
+
+
+def usable(group):
+    """Raises ValueError where sizes or indices do not fit each other."""
+    nodes, leaves, edges = len(group["tree/parent"]), len(group["node"]), len(group["edge"])
+    sizes = {"tree/centre": (nodes, 3), "tree/size": (nodes,), "tree/leaf": (nodes,),
+             "tree/material": (nodes,), "rest": (leaves, 3), "size": (leaves,), "mass": (leaves,),
+             "w": (leaves,), "reached": (leaves,), "edge": (edges, 2), "length": (edges,),
+             "region_first": (leaves + 1,)}
+    for name, size in sizes.items():
+        if group[name].shape != size:
+            raise ValueError(f"{name} is {group[name].shape}, not {size}")
+    ranges = {"node": (0, nodes), "edge": (0, leaves), "tree/leaf": (-1, leaves),
+              "summation": (0, nodes), "region_first": (0, len(group["summation"]) + 1)}
+    for name, (low, high) in ranges.items():
+        values = group[name][:]
+        if values.size and (values.min() < low or values.max() >= high):
+            raise ValueError(f"{name} has an index that is not from {low} to {high - 1}")
+    if (group["tree/parent"][:] >= np.arange(nodes)).any() or group["tree/parent"][:].min() < -1:
+        raise ValueError("tree/parent has a node before its parent")
+
+
+def misplaced(group):
+    """What of the tree, of the leaves or of the edges does not fit a lattice of cells, or nothing."""
+    centre, size, parent = group["tree/centre"][:], group["tree/size"][:], group["tree/parent"][:]
+    material, leaf, node = group["tree/material"][:], group["tree/leaf"][:], group["node"][:]
+    child, root = np.nonzero(parent >= 0)[0], np.nonzero(parent < 0)[0]
+    inner = np.unique(parent[child])
+    whole = np.zeros_like(material)
+    np.add.at(whole, parent[child], material[child])
+    cell, edge = group.attrs["cell"], group["edge"][:]
+    base = 2 << int(group.attrs["levels"])
+    low = centre - size[:, None] // 2
+    apart = np.abs(centre[node[edge[:, 0]]] - centre[node[edge[:, 1]]]).max(1, initial=0)
+    right = {
+        "tree/size": (size[root] == base).all() and (2 * size[child] == size[parent[child]]).all(),
+        "tree/centre": ((low[root] - 2 * group.attrs["corner"]) % base == 0).all() and
+                       (2 * np.abs(centre[child] - centre[parent[child]]) == size[child, None]).all()
+                       and len(np.unique(np.column_stack((centre, size)), axis=0)) == len(size),
+        "tree/material": (material > 0).all() and (8 * material <= size.astype(float)**3).all() and
+                         (whole[inner] == material[inner]).all(),
+        "tree/leaf": (leaf[inner] < 0).all() and (leaf >= 0).sum() == len(node) and
+                     len(leaf) - len(inner) == len(node) and (leaf[node] == np.arange(len(node))).all(),
+        "rest": np.allclose(group["rest"][:], group.attrs["origin"] + 0.5 * cell * centre[node],
+                            1e-12, 1e-9 * cell),
+        "size": np.allclose(group["size"][:], 0.5 * cell * size[node], 1e-12, 0),
+        "edge": (edge[:, 0] != edge[:, 1]).all() and len(np.unique(np.sort(edge, 1), axis=0)) == len(edge),
+        "length": (group["length"][:] == apart).all(),
+    }
+    wrong = [name for name, fits in right.items() if not fits]
+    return f"{', '.join(wrong)}: not those of one lattice's cells and their centres" if wrong else None
+
+
+def tolerance_of(group):
+    """In cells; of rest shapes in their own unit, 1."""
+    return TOLERANCE.get(text(group.attrs["precision"]), TOLERANCE["single"])
 
 
 def text(value):
     return value.decode() if isinstance(value, bytes) else value
 
 
-def goals(body, x):
-    """fastlsm eqs. 9-12, octree eqs. 6-8; every region about its own centres of mass."""
-    g, rest = np.zeros_like(x), body.rest
-    for r, share in zip(body.members, body.share):
-        m = body.weight[r][:, None]
+def goals(body, x, shapes):
+    """fastlsm eqs. 9-12, octree eqs. 6-9; every region about its own centres of mass. Of a plastic body
+    also the shapes after the step, if they flow, and by how much its stretch exceeds the yield."""
+    g, rest, flowed, beyond = np.zeros_like(x), body.rest, shapes.copy(), np.full(len(x), -np.inf)
+    for i, (r, share) in enumerate(zip(body.members, body.share)):
+        m, shape = body.weight[r][:, None], shapes[i] if body.plastic else np.eye(3)
         c0, c = (m * rest[r]).sum(0) / m.sum(), (m * x[r]).sum(0) / m.sum()
-        u, _, vt = np.linalg.svd((m * (x[r] - c)).T @ (rest[r] - c0))
+        at = (rest[r] - c0) @ shape.T
+        moments = (m * (x[r] - c)).T @ at
+        u, _, vt = np.linalg.svd(moments)
         rotation = u @ np.diag([1, 1, np.linalg.det(u @ vt)]) @ vt
-        g[r] += share * (c + (rest[r] - c0) @ rotation.T)
-    return g / total(body.members, body.share)
+        g[r] += share * (c + at @ rotation.T)
+        if body.plastic:
+            flowed[i], beyond[i] = flow(body, shape, rotation.T @ moments, (m * at).T @ at)
+    return g / total(body.members, body.share), flowed, beyond
+
+
+def flow(body, shape, stretched, spread):
+    """Eq. 10: the shape that a region keeps if it yields, and its stretch beyond the yield."""
+    if not np.linalg.det(spread) > 1e-6 * (np.trace(spread) / 3)**3:
+        return shape, -np.inf  # its nodes lie in a plane: elastic
+    strain = stretched @ np.linalg.inv(spread) - np.eye(3)
+    off = shape + body.creep * strain @ shape - np.eye(3)
+    kept = np.eye(3) + off * min(1, body.most / max(np.linalg.norm(off), 1e-300))
+    volume = np.linalg.det(kept)
+    kept = kept / np.cbrt(volume) if 0.05 < volume < 20 else shape
+    return kept, np.linalg.norm(strain) - body.yield_
 
 
 def total(members, share):
@@ -213,11 +303,20 @@ def check(group, body):
     step, held = group["step"][:], group["held"][:].reshape(-1, count)
     h, every, cell = a["h"], max(1, a["damping_every"]), a["cell"]
     worst, compared = {"g": 0.0, "x": 0.0, "v": 0.0}, 0
+    none, begin = np.full((count, 3, 3), np.nan), np.eye(3)
+    tolerance = tolerance_of(group)
 
-    def note(kind, deviation):
-        deviation = np.abs(deviation).max(initial=0.0) / cell
+    def note(kind, deviation, unit=cell):
+        deviation = np.abs(deviation).max(initial=0.0) / unit
         worst[kind] = max(worst[kind], deviation if np.isfinite(deviation) else np.inf)
 
+    def shapes_of(s, own):
+        return group["S"][s, own].reshape(-1, 3, 3) if body.plastic else none
+
+    if body.plastic:
+        worst["S"] = 0.0
+        for own in [slice(b * count, (b + 1) * count) for b in range(len(held)) if step[:1] == [0]]:
+            note("S", shapes_of(0, own) - begin, 1)
     for s in range(len(step)):
         last = s + 1 == len(step) or step[s + 1] != step[s] + 1
         for b, alone in enumerate(held):
@@ -229,11 +328,16 @@ def check(group, body):
                 sys.exit(2)
             if np.isnan(recorded).all():
                 continue
-            g = goals(body, x)
+            shapes = shapes_of(s, own)
+            g, flowed, beyond = goals(body, x, shapes)
             note("g", g - recorded)
             compared += 1
             if last:
                 continue
+            if body.plastic:
+                off = [np.abs(shapes_of(s + 1, own) - to).max((1, 2)) for to in (shapes, flowed)]
+                note("S", np.where(np.abs(beyond) < tolerance, np.minimum(*off),
+                                   np.where(beyond > 0, off[1], off[0])), max(1, body.creep))
             v = v + (g - x) / h + h * a["gravity"]
             if a["damping"] > 0 and step[s] % every == 0:
                 v += a["damping"] * (rigid_velocity(body, x, v) - v)
@@ -259,12 +363,13 @@ def main():
                 sys.exit(3)
             group = file[kind]
             worst, compared = check(group, Lattice(group) if kind == "particles" else Tree(group))
-            precision = text(group.attrs["precision"])
-    except (OSError, KeyError) as error:
+            precision, tolerance = text(group.attrs["precision"]), tolerance_of(group)
+    except (OSError, KeyError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "not a trajectory with particles or nodes"
+        if isinstance(error, ValueError):
+            reason = str(error).splitlines()[0]
         print(f"{sys.argv[1]}: {reason}", file=sys.stderr)
         sys.exit(3)
-    tolerance = TOLERANCE.get(precision, TOLERANCE["single"])
     print(", ".join(f"{kind} {value:.2e}" for kind, value in worst.items()),
           f"cells at most apart in {compared} steps; tolerance {tolerance:g} ({precision})")
     sys.exit(2 if compared == 0 else int(max(worst.values()) > tolerance))
