@@ -79,25 +79,46 @@ static double mean_summation_nodes(const OctStructure *s, double epsilon)
     return mean;
 }
 
-/* The number of edges whose regions have nearest to as many summation nodes as wanted. */
+typedef struct {
+    const OctOptions *options;
+    OctStructure *s;
+    double off; /* of the nearest so far */
+    int step;   /* its width, in steps */
+} Search;
+
+/* How many summation nodes more than wanted a width of so many steps gives on average. */
+static double beyond(Search *search, int step)
+{
+    long held[OCT_MAX_WIDTHS];
+    OctWidth width = {.edges = (double)step / OCT_WIDTH_STEPS};
+    const OctOptions *options = search->options;
+    fill_widths(options, &width, search->s, held);
+    double off = mean_summation_nodes(search->s, options->epsilon) - options->summation_nodes;
+    if (fabs(off) < search->off) {
+        search->off = fabs(off);
+        search->step = step;
+    }
+    return off;
+}
+
+/* The number of edges with as many summation nodes as wanted, by doubling and then halving: of the
+ * two neighbouring steps between which they pass the number, the nearer. */
 static double search_edges(const OctOptions *options, OctStructure *s)
 {
-    size_t bytes = (size_t)s->tree.leaves * sizeof *s->w;
-    int *before = sm_alloc(1, bytes);
-    double best = 1, nearest = INFINITY;
-    for (int step = 1; step <= OCT_WIDTH_STEPS * OCT_WIDTH_EDGES; step++) {
-        OctWidth width = {.edges = (double)step / OCT_WIDTH_STEPS};
-        long held[OCT_MAX_WIDTHS];
-        fill_widths(options, &width, s, held);
-        if (!memcmp(before, s->w, bytes)) continue;
-        memcpy(before, s->w, bytes);
-        double off = fabs(mean_summation_nodes(s, options->epsilon) - options->summation_nodes);
-        if (off >= nearest) continue;
-        nearest = off;
-        best = width.edges;
+    Search search = {options, s, INFINITY, 0};
+    int low = 0, high = 4, widest = OCT_WIDTH_STEPS * OCT_WIDTH_EDGES;
+    for (; beyond(&search, high) < 0; high *= 2) {
+        if (high == widest) return (double)search.step / OCT_WIDTH_STEPS;
+        low = high;
     }
-    free(before);
-    return best;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (beyond(&search, middle) < 0)
+            low = middle;
+        else
+            high = middle;
+    }
+    return (double)search.step / OCT_WIDTH_STEPS;
 }
 
 SmCode oct_width_find(const OctOptions *options, OctStructure *s, SmError *error)
