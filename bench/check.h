@@ -28,7 +28,9 @@ typedef struct {
                             * with plain weighting, too */
 } BenchDeviation;
 
-/* Region members that a check of this body would hold in memory, at most; 4 bytes each. */
+/* Region members that a check of this body would hold in memory, at most; 4 bytes each. Beyond
+ * BENCH_MOST_MEMBERS nothing is checked. */
+#define BENCH_MOST_MEMBERS 1e8
 double bench_check_members(const BenchBody *body, int w);
 
 /* The same of an engine on the scene's body, which for an octree is asked. */

@@ -204,6 +204,18 @@ static void time_blocks(Trial *trial, const BenchMeasureParams *params, BenchRow
     summarise(row);
 }
 
+static SmCode check_room(const BenchRunner *runner, SmError *error)
+{
+    const BenchScene *scene = runner->scene;
+    double members = bench_check_room(scene, runner->body, runner->type, runner->engine);
+    if (members <= BENCH_MOST_MEMBERS) return SM_OK;
+    return sm_fail(
+        error, SM_INPUT,
+        "%s: regions with %.3g members take too much memory to be checked by brute force "
+        "(at most %g): take narrower ones",
+        scene->file, members, BENCH_MOST_MEMBERS);
+}
+
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error)
 {
@@ -211,6 +223,11 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
     BenchRunner *runner = &trial.runner;
     SmCode code = bench_runner_create(scene, body, type, params->threads, runner, error);
     if (code) return code;
+    code = check_room(runner, error);
+    if (code) {
+        bench_runner_free(runner);
+        return code;
+    }
     name_row(scene, body, type, row);
     row->threads = params->threads;
     row->speedup = NAN;

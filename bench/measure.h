@@ -25,7 +25,8 @@ typedef struct {
 } BenchMeasureParams;
 
 /* Measures the scene's body on the engine. A failed check is no error: the row says why it is not
- * valid. Errors are those of creating the engine. The caller frees the row. */
+ * valid. Errors are those of creating the engine, and SM_INPUT where regions are too many to
+ * be checked. The caller frees the row. */
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error);
 

@@ -37,6 +37,7 @@ typedef struct {
     long wanted_nodes, wanted_bases;          /* 0: not given */
     long local_nodes;                         /* whose regions have a width of their own place */
     long welded_cells, welded_pairs; /* nodes, and pairs, that weld what does not connect there */
+    long balance_splits;             /* of cells for balance alone */
     bool plain;                      /* plain weighting, which does not keep momentum */
     double paper_total_ms, paper_stage_ms[SM_STAGES]; /* NaN: not given */
     unsigned long long input_hash; /* FNV-1a of the mesh's coordinates and indices */

@@ -185,10 +185,15 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
 {
     *runner = (BenchRunner){.type = type, .scene = scene, .body = body};
     SmEngineParams params = bench_engine_params(scene, body, threads);
-    SmCode code = type->create(&body->voxels, &params, &runner->engine, error);
+    if (scene->octree.creep > 0 && strcmp(type->name, "octree") != 0)
+        return sm_fail(error, SM_INPUT,
+                       "%s: a plastic body (octree.creep) needs the engine octree, and %s has none",
+                       scene->file, type->name);
+    SmError why;
+    SmCode code = type->create(&body->voxels, &params, &runner->engine, &why);
     if (code) {
         runner->engine = NULL;
-        return code;
+        return sm_fail(error, code, "%s: %s", scene->file, why.text);
     }
     find_particles(runner);
     code = make_handles(runner, error);

@@ -66,8 +66,10 @@ static const BenchSetting box_table[] = {CORNER("low", a), CORNER("high", b), FR
 static const BenchSetting capsule_table[] = {
     CORNER("from", a), CORNER("to", b), RADIUS, FRICTION, {0}};
 
+static const char criterion_kinds[] = "uniform|features|surface|box|sphere";
+
 static const BenchSetting criterion_table[] = {
-    WORDS("kind", offsetof(OctCriterion, kind), "uniform|features|surface|box|sphere"),
+    {"kind", BENCH_CHOICE, offsetof(OctCriterion, kind), 1, 0, criterion_kinds, NULL, 0, 0},
     ITEM("level", BENCH_INT, offsetof(OctCriterion, level), 1, OCT_MAX_LEVELS),
     ITEM("low", BENCH_VECTOR, offsetof(OctCriterion, low), -FAR, FAR),
     ITEM("high", BENCH_VECTOR, offsetof(OctCriterion, high), -FAR, FAR),
@@ -205,6 +207,39 @@ static SmCode check_selection(BenchSelect *select, const char *what, int number,
     return SM_OK;
 }
 
+static bool any(const double v[3])
+{
+    return v[0] != 0 || v[1] != 0 || v[2] != 0;
+}
+
+/* Places that would not be looked at, and plasticity without its rate: mistakes, not to be passed
+ * over. */
+static SmCode check_octree(const BenchScene *scene, SmError *error)
+{
+    const OctOptions *o = &scene->octree;
+    for (int i = 0; i < o->sampling.criteria_count; i++) {
+        const OctCriterion *c = &o->sampling.criteria[i];
+        if ((c->kind != OCT_BOX && (any(c->low) || any(c->high))) ||
+            (c->kind != OCT_SPHERE && (any(c->centre) || c->radius > 0)))
+            return sm_fail(error, SM_INPUT,
+                           "%s: criterion %d: 'low' and 'high' are of the kind \"box\", 'centre' "
+                           "and 'radius' of \"sphere\"",
+                           scene->file, i + 1);
+    }
+    for (int i = 0; i < o->local_count; i++)
+        if ((any(o->local[i].low) || any(o->local[i].high)) && o->local[i].radius > 0)
+            return sm_fail(
+                error, SM_INPUT,
+                "%s: width %d has a box and a sphere: give 'low' and 'high', or 'centre' "
+                "and 'radius'",
+                scene->file, i + 1);
+    if ((o->yield > 0 || o->most > 0) && !(o->creep > 0))
+        return sm_fail(error, SM_INPUT,
+                       "%s: 'yield' and 'most' are a plastic body's: give 'creep' too, in 1/s",
+                       scene->file);
+    return SM_OK;
+}
+
 static SmCode check(SceneFile *read, SmError *error)
 {
     BenchScene *scene = &read->scene;
@@ -214,7 +249,7 @@ static SmCode check(SceneFile *read, SmError *error)
     if ((scene->voxel.particles > 0) + (scene->voxel.cell > 0) + (scene->cells > 0) != 1)
         return sm_fail(error, SM_INPUT, "%s: give one of 'particles', 'cell' and 'cells'",
                        scene->file);
-    SmCode code = SM_OK;
+    SmCode code = check_octree(scene, error);
     for (int i = 0; i < scene->handle_count && !code; i++) {
         BenchHandle *handle = &scene->handle[i];
         code = check_selection(&handle->select, "handle", i + 1, scene, error);

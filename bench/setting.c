@@ -185,5 +185,10 @@ SmCode bench_settings_read(const config_setting_t *group, const BenchSetting *ta
         SmCode code = read_item(item, setting, target, file, error);
         if (code) return code;
     }
+    for (; table->name; table++)
+        if (table->kind == BENCH_CHOICE && table->low > 0 &&
+            !config_setting_get_member(group, table->name))
+            return sm_fail(error, SM_INPUT, "%s:%u: no '%s': give one of \"%s\"", file,
+                           config_setting_source_line(group), table->name, table->words);
     return SM_OK;
 }

@@ -17,7 +17,7 @@ typedef enum {
     BENCH_BOOL,   /* bool */
     BENCH_TEXT,   /* char[high] */
     BENCH_VECTOR, /* double[3], each low..high */
-    BENCH_CHOICE, /* an enum; `words` in its order, separated by | */
+    BENCH_CHOICE, /* an enum; `words` in its order, separated by |; low 1: it must be given */
     BENCH_GROUP,  /* a group with its own table */
     BENCH_LIST,   /* a list of at most `high` groups with their own table */
 } BenchKind;

@@ -63,6 +63,7 @@ static const BenchField row_fields[] = {
     FIELD(BENCH_LONG, local_nodes),
     FIELD(BENCH_LONG, welded_cells),
     FIELD(BENCH_LONG, welded_pairs),
+    FIELD(BENCH_LONG, balance_splits),
     FIELD(BENCH_BOOL, plain),
     FIELD(BENCH_DOUBLE, paper_total_ms),
     FIELD(BENCH_DOUBLE, paper_stage_ms),

@@ -9,13 +9,12 @@
 /* Prints the last state's deviation from brute force; false: beyond the tolerance. */
 static bool print_deviation(const BenchRunner *runner, const SmCounts *counts)
 {
-    static const double most_members = 1e8;
     const BenchScene *scene = runner->scene;
     if (counts->broken) {
         printf("deviation: not checked: %ld links are broken\n", counts->broken);
         return true;
     }
-    if (bench_check_room(scene, runner->body, runner->type, runner->engine) > most_members) {
+    if (bench_check_room(scene, runner->body, runner->type, runner->engine) > BENCH_MOST_MEMBERS) {
         printf("deviation: not checked: brute force would take too much memory\n");
         return true;
     }

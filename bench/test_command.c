@@ -58,11 +58,19 @@ static int set_up(void **state)
     write_text("noise.obj", "no mesh at all\n");
     write_text("lattice.cfg",
                "paper = \"octree\"; mesh = \"shape:block\"; particles = 500; w = 1; bend = 0.3;\n");
-    write_text("wishes.cfg",
-               "mesh = \"shape:block\"; cells = 343; engine = \"octree\"; bend = 0.3;\n"
-               "instances = 2; frames = 2;\n"
-               "octree = { levels = 2; bases = 3; summation_nodes = 1000.0; weighting = \"plain\";\n"
-               "           widths = ( { radius = 0.15; w = 0.0; } ); };\n");
+    write_text(
+        "wishes.cfg",
+        "mesh = \"shape:block\"; cells = 343; engine = \"octree\"; bend = 0.3;\n"
+        "instances = 2; frames = 2;\n"
+        "octree = { levels = 2; bases = 3; summation_nodes = 1000.0; weighting = \"plain\";\n"
+        "           widths = ( { radius = 0.15; w = 0.0; } ); };\n");
+    write_text("plastic.cfg",
+               "mesh = \"shape:block\"; particles = 64; octree = { creep = 1.0; };\n");
+    write_text(
+        "far.cfg",
+        "mesh = \"shape:block\"; particles = 64; engine = \"octree\";\n"
+        "octree = { widths = ( { centre = [9.0, 0.0, 0.0]; radius = 1.0; w = 1.0; } ); };\n");
+    write_text("wide.cfg", "mesh = \"shape:block\"; particles = 10648; w = 31;\n");
     write_text("tree.cfg",
                "paper = \"octree\"; row = \"hand-sampled\"; mesh = \"shape:block\"; cells = 343;\n"
                "engine = \"octree\"; bend = 0.3; kick = 0.01; epsilon = 0.5;\n"
@@ -105,6 +113,11 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run tiny.cfg --engine octree --strain-limit 2", 3, "strain_limit: the octree's"},
         {"run tiny.cfg --engine octree --record particles", 2, "stores a lattice"},
         {"run tiny.cfg --record nodes", 2, "--record nodes stores an octree"},
+        {"run tiny.cfg --engine octree --layout lists", 3,
+         "tiny.cfg: summation, polar and layout:"},
+        {"run plastic.cfg --engine fastlsm", 3, "plastic.cfg: a plastic body (octree.creep) needs"},
+        {"run far.cfg", 3, "far.cfg: octree: no node's centre lies in the box or sphere"},
+        {"tables --scene wide.cfg", 3, "wide.cfg: regions with 1.13e+08 members take too much"},
         {"run no-such-scene", 2, "shapebench scenes"},
         {"run bad.cfg", 3, "bad.cfg:3: unknown setting 'damping_k'; known: "},
         {"run missing.cfg", 3, "missing.cfg: cannot be opened"},

@@ -138,6 +138,15 @@ static void errors_name_file_line_and_remedy(void **state)
         {BODY "octree = { goals = \"sum\"; };", "'goals' must be one of \"gather|adjoint\""},
         {BODY "octree = { criteria = ( { kind = \"corner\"; } ); };", "'kind' must be one of"},
         {BODY "octree = { criteria = ( { kind = \"box\"; low = 1; } ); };", "'low' must be three"},
+        {BODY "octree = { criteria = (\n{ level = 1; } ); };",
+         "dir/my.cfg:4: no 'kind': give one of \"uniform|features|surface|box|sphere\""},
+        {BODY "octree = { criteria = ( { kind = \"uniform\"; high = (1, 1, 1); } ); };",
+         "dir/my.cfg: criterion 1: 'low' and 'high' are of the kind \"box\""},
+        {BODY "octree = { criteria = ( { kind = \"box\"; high = (1, 1, 1); radius = 1; } ); };",
+         "dir/my.cfg: criterion 1: "},
+        {BODY "octree = { widths = ( { high = (1, 1, 1); radius = 1; w = 1; } ); };",
+         "dir/my.cfg: width 1 has a box and a sphere"},
+        {BODY "octree = { yield = 0.1; };", "dir/my.cfg: 'yield' and 'most' are a plastic body's"},
         {"", "dir/my.cfg: no 'mesh'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -10,7 +10,7 @@
 #include "particles.h"
 #include "xdmf.h"
 
-enum { TRAJECTORY_SCHEMA = 1, TRIANGLE_CELL = 5 /* VTK_TRIANGLE */ };
+enum { TRAJECTORY_SCHEMA = 2, TRIANGLE_CELL = 5 /* VTK_TRIANGLE */ };
 
 struct BenchTrajectory {
     BenchDraft draft;

@@ -33,6 +33,7 @@ void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row)
     row->local_nodes = s->local_leaves;
     row->welded_cells = s->report.welded_cells;
     row->welded_pairs = s->report.welded_pairs;
+    row->balance_splits = s->report.balance_splits;
     row->plain = scene->octree.weighting == OCT_PLAIN;
 }
 
@@ -49,6 +50,7 @@ void bench_tree_row_nodes(FILE *file, const BenchRow *row)
     tell_wanted(file, row->wanted_nodes, nodes);
     fprintf(file, " from %ld base cells", row->bases);
     tell_wanted(file, row->wanted_bases, row->bases);
+    if (row->balance_splits) fprintf(file, ", %ld splits for balance alone", row->balance_splits);
     fprintf(file, ", %ld finest cells", row->cells);
 }
 

@@ -148,10 +148,11 @@ static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmErro
         return sm_fail(error, SM_INPUT,
                        "strain_limit: the octree's material does not break; give 0, or use the "
                        "engine fastlsm");
-    if (params->summation != SM_SUM_FAST || params->polar != SM_POLAR_FAST)
+    if (params->summation != SM_SUM_FAST || params->polar != SM_POLAR_FAST ||
+        params->layout != SM_LAYOUT_AUTO)
         return sm_fail(error, SM_INPUT,
-                       "summation and polar: the octree has its own, 'fast' both; use the engine "
-                       "fastlsm for others");
+                       "summation, polar and layout: the octree has its own, 'fast', 'fast' and "
+                       "'auto'; use the engine fastlsm for others");
     return SM_OK;
 }
 
@@ -263,9 +264,11 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
     Oct *oct = e->oct;
     sm_handles_set(&e->handles, boundary, e->oct->instances * e->count);
-    free(oct->obstacle);
-    oct->obstacle_count = boundary->obstacle_count;
-    oct->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *oct->obstacle);
+    if (!oct->obstacle || oct->obstacle_count != boundary->obstacle_count) {
+        free(oct->obstacle);
+        oct->obstacle_count = boundary->obstacle_count;
+        oct->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *oct->obstacle);
+    }
     for (int i = 0; i < boundary->obstacle_count; i++)
         oct->obstacle[i] =
             obstacle_in_cells(&boundary->obstacle[i], e->structure.origin, e->structure.cell);

@@ -112,14 +112,12 @@ static void count_welds(const OctSplitter *s, OctSampleReport *report)
 
 static void fill_report(const OctSplitter *s, OctSampleReport *report)
 {
-    const SmVoxels *v = s->voxels;
     *report = (OctSampleReport){
         .bases = s->whole->roots,
         .nodes = s->leaves,
         .wanted_bases = s->sampling->bases,
         .wanted_nodes = s->sampling->nodes,
         .balance_splits = s->balance_splits,
-        .volume = (double)v->cell_count * v->cell * v->cell * v->cell,
     };
     memcpy(report->corner, s->whole->corner, sizeof report->corner);
     count_welds(s, report);

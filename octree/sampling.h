@@ -53,7 +53,6 @@ typedef struct {
     long welded_pairs;   /* leaves above the finest level and touching tree nodes of the same size
                           * that do not connect within the box around both */
     long balance_splits; /* made for balance alone */
-    double volume;       /* of the material, in the mesh's units cubed */
 } OctSampleReport;
 
 /* Makes the tree. The caller frees it. `report` may be NULL. O(nodes of the whole tree * log), some

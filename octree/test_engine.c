@@ -7,13 +7,14 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <cmocka.h>
 
 #include "../lib/test_fields.h"
 #include "../reference/octree_goals.h"
 #include "random_trees.h"
-#include "structure.h"
+#include "width.h"
 
 static const SmEngineType *const engines[2] = {&octree_engine_f32, &octree_engine_f64};
 static const double limit[2] = {5e-5, 1e-10}; /* finest cells */
@@ -386,6 +387,32 @@ static void a_width_is_found_for_summation_nodes(void **state)
     sm_voxels_free(&voxels);
 }
 
+/* The search costs no more than the few region builds that it says. */
+static void a_width_is_found_by_few_builds(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    OctStructure s;
+    sm_voxels_init(&voxels, 20, 20, 20, 1);
+    for (int n = 0; n < 8000; n++) sm_voxel_set(&voxels, n % 20, n / 20 % 20, n / 400);
+    sm_voxels_count(&voxels);
+    OctOptions options = {
+        .epsilon = 0.5, .summation_nodes = 10, .sampling = {.levels = 3, .nodes = 900}};
+    clock_t start = clock();
+    assert_int_equal(oct_structure_build(&voxels, &options, NULL, &s, NULL), SM_OK);
+    clock_t searched = clock() - start;
+    options.width = s.width;
+    options.summation_nodes = 0;
+    oct_structure_free(&s);
+    start = clock();
+    assert_int_equal(oct_structure_build(&voxels, &options, NULL, &s, NULL), SM_OK);
+    clock_t direct = clock() - start;
+    if (searched > (OCT_WIDTH_TRIES + 2) * direct)
+        fail_msg("%ld against %ld microseconds", (long)searched, (long)direct);
+    oct_structure_free(&s);
+    sm_voxels_free(&voxels);
+}
+
 /* Regions of single nodes hold nothing together. */
 static void parts_are_counted(void **state)
 {
@@ -417,8 +444,9 @@ static void refuses_what_it_does_not_do(void **state)
         const char *wanted;
     } cases[] = {
         {{.epsilon = 0}, {.h = 0.01, .strain_limit = 1.5}, "strain_limit: the octree's material"},
-        {{.epsilon = 0}, {.h = 0.01, .summation = SM_SUM_NAIVE}, "summation and polar"},
-        {{.epsilon = 0}, {.h = 0.01, .polar = SM_POLAR_JACOBI}, "summation and polar"},
+        {{.epsilon = 0}, {.h = 0.01, .summation = SM_SUM_NAIVE}, "summation, polar and layout"},
+        {{.epsilon = 0}, {.h = 0.01, .polar = SM_POLAR_JACOBI}, "summation, polar and layout"},
+        {{.epsilon = 0}, {.h = 0.01, .layout = SM_LAYOUT_LISTS}, "summation, polar and layout"},
         {{.epsilon = 0}, {.h = 0}, "h is 0"},
         {{.epsilon = 0}, {.h = 0.01, .damping = 2}, "damping is 2"},
         {{.epsilon = 0}, {.h = 0.01, .mass = masses}, "the mass of particle 0 is -1"},
@@ -458,6 +486,7 @@ int main(void)
         cmocka_unit_test(instances_rest_in_their_poses),
         cmocka_unit_test(wide_regions_are_stiff),
         cmocka_unit_test(a_width_is_found_for_summation_nodes),
+        cmocka_unit_test(a_width_is_found_by_few_builds),
         cmocka_unit_test(parts_are_counted),
         cmocka_unit_test(refuses_what_it_does_not_do),
     };
