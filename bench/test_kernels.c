@@ -203,6 +203,22 @@ static void octree_kernels_run_by_name(void **state)
     free(rows);
 }
 
+/* Set-up is asserted to be linear, whatever caches hold. */
+static void octree_setup_is_linear(void **state)
+{
+    (void)state;
+    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    int count;
+    run_only((const char *const[]){"oct-setup-1e4", NULL}, rows, &count);
+    assert_int_equal(count, 1);
+    assert_true(rows[0].valid && rows[0].wanted == 2 && !rows[0].wanted_least);
+    assert_string_equal(rows[0].ratio_to, "oct-setup-1e3's user time");
+    assert_non_null(strstr(rows[0].note, "ns of user time"));
+    assert_true(rows[0].ratio > 0.3 && rows[0].ratio < 10);
+    assert_true(*bench_kernel_verdict(&rows[0]));
+    free(rows);
+}
+
 /* A cube whose first region has lost a summation node that is not its own. */
 static void lose_member(BenchSampled *body)
 {
@@ -446,6 +462,7 @@ int main(void)
         cmocka_unit_test(every_polar_method_is_checked),
         cmocka_unit_test(only_what_is_named_runs),
         cmocka_unit_test(octree_kernels_run_by_name),
+        cmocka_unit_test(octree_setup_is_linear),
         cmocka_unit_test(a_wrong_octree_step_is_not_timed),
         cmocka_unit_test(a_wrong_octree_setup_is_not_timed),
         cmocka_unit_test(wrong_distances_are_found),

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #include "../lib/stage.h"
 #include "tree_steps.h"
@@ -183,6 +184,14 @@ static double sample(const BenchSampled *body, BenchSetupKind kind, BenchPrecisi
     return kind == BENCH_SETUP_DISTANCES ? seconds / (double)setup->sources : seconds;
 }
 
+/* Seconds of this process. */
+static double user_seconds(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec;
+}
+
 void bench_setup_time(const BenchSampled *body, BenchSetupKind kind, BenchPrecision precision,
                       int repeats, BenchSetup *setup)
 {
@@ -195,9 +204,11 @@ void bench_setup_time(const BenchSampled *body, BenchSetupKind kind, BenchPrecis
     setup->ns = sm_alloc((size_t)repeats, sizeof *setup->ns);
     oct_reach_init(&reach, &body->graph);
     if (leaves <= LEAVES_WARMED) sample(body, kind, precision, setup, &reach);
-    double start = sm_now();
+    double start = sm_now(), user = user_seconds();
     while (setup->samples < repeats && (setup->samples == 0 || sm_now() - start < most_seconds))
         setup->ns[setup->samples++] = 1e9 * sample(body, kind, precision, setup, &reach);
+    double parts = kind == BENCH_SETUP_DISTANCES ? (double)setup->sources : 1;
+    setup->user_ns = 1e9 * (user_seconds() - user) / (parts * (double)setup->samples);
     setup->bytes += setup->engine_bytes;
     oct_reach_free(&reach);
 }

@@ -21,6 +21,8 @@ typedef struct {
     char reason[BENCH_TREE_REASON]; /* why not valid */
     int samples;    /* timed: as many as asked for, or as take about two seconds, at least one */
     double *ns;     /* [samples] a source; else the whole body. NULL where not valid */
+    double user_ns; /* the same as user CPU time, mean of the samples: without page faults, which
+                     * are the system's, and whatever else runs */
     long sources;   /* timed in a sample, of distances */
     BenchWork work; /* a source; else a node */
     double bytes;   /* of what is read and written */
