@@ -212,8 +212,8 @@ static bool any(const double v[3])
     return v[0] != 0 || v[1] != 0 || v[2] != 0;
 }
 
-/* Places that would not be looked at, and plasticity without its rate: mistakes, not to be passed
- * over. */
+/* Places and widths that would not be looked at, and plasticity without its rate: mistakes, not to
+ * be passed over. */
 static SmCode check_octree(const BenchScene *scene, SmError *error)
 {
     const OctOptions *o = &scene->octree;
@@ -233,6 +233,11 @@ static SmCode check_octree(const BenchScene *scene, SmError *error)
                 "%s: width %d has a box and a sphere: give 'low' and 'high', or 'centre' "
                 "and 'radius'",
                 scene->file, i + 1);
+    if (o->summation_nodes > 0 && (o->width.cells > 0 || o->width.edges > 0))
+        return sm_fail(error, SM_INPUT,
+                       "%s: the width is searched for 'summation_nodes', or given by 'w' and "
+                       "'edges': not both",
+                       scene->file);
     if ((o->yield > 0 || o->most > 0) && !(o->creep > 0))
         return sm_fail(error, SM_INPUT,
                        "%s: 'yield' and 'most' are a plastic body's: give 'creep' too, in 1/s",

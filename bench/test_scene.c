@@ -68,7 +68,7 @@ static void an_octree_has_a_group_of_settings(void **state)
         "  criteria = ( { kind = \"surface\"; level = 2; },\n"
         "               { kind = \"sphere\"; centre = (1, 2, 3); radius = 0.5; },\n"
         "               { kind = \"box\"; low = (0, 0, 0); high = (1, 1, 1); } );\n"
-        "  w = 2.5; edges = 0.75; summation_nodes = 6;\n"
+        "  w = 2.5; edges = 0.75;\n"
         "  widths = ( { low = (0, 0, 0); high = (1, 1, 2); edges = 3; },\n"
         "             { centre = (0, 0, 1); radius = 0.1; w = 1.5; } );\n"
         "  weighting = \"plain\"; goals = \"adjoint\"; yield = 0.1; creep = 5; most = 0.8; };";
@@ -83,13 +83,16 @@ static void an_octree_has_a_group_of_settings(void **state)
     assert_int_equal(o->sampling.criteria[1].kind, OCT_SPHERE);
     assert_true(o->sampling.criteria[1].centre[2] == 3 && o->sampling.criteria[1].radius == 0.5);
     assert_int_equal(o->sampling.criteria[2].kind, OCT_BOX);
-    assert_true(o->width.cells == 2.5 && o->width.edges == 0.75 && o->summation_nodes == 6);
+    assert_true(o->width.cells == 2.5 && o->width.edges == 0.75);
     assert_int_equal(o->local_count, 2);
     assert_true(o->local[0].width.edges == 3 && o->local[0].high[2] == 2);
     assert_true(o->local[1].width.cells == 1.5 && o->local[1].radius == 0.1);
     assert_int_equal(o->weighting, OCT_PLAIN);
     assert_int_equal(o->form, OCT_ADJOINT);
     assert_true(o->yield == 0.1 && o->creep == 5 && o->most == 0.8);
+    if (parse(BODY "octree = { summation_nodes = 6; };", &scene, &error))
+        fail_msg("%s", error.text);
+    assert_true(scene.octree.summation_nodes == 6);
 }
 
 static void errors_name_file_line_and_remedy(void **state)
@@ -146,6 +149,8 @@ static void errors_name_file_line_and_remedy(void **state)
          "dir/my.cfg: criterion 1: "},
         {BODY "octree = { widths = ( { high = (1, 1, 1); radius = 1; w = 1; } ); };",
          "dir/my.cfg: width 1 has a box and a sphere"},
+        {BODY "octree = { w = 1; summation_nodes = 6; };",
+         "dir/my.cfg: the width is searched for 'summation_nodes', or given by"},
         {BODY "octree = { yield = 0.1; };", "dir/my.cfg: 'yield' and 'most' are a plastic body's"},
         {"", "dir/my.cfg: no 'mesh'"},
     };

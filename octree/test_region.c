@@ -96,11 +96,17 @@ static void check_trial(unsigned *seed, int trial, const SmVoxels *v, const OctT
     ref_octree_regions(t, &ref, w, epsilon, member);
     check_promises(&ref, w, epsilon, member);
     long most = 0;
+    int widest = 0;
+    double widths = 0;
     for (long i = 0; i < t->leaves; i++) {
         check_leaves(t, &r, i, member + i * t->leaves, ref.distance + i * t->leaves);
         check_members(t, &r, i);
         if (r.first[i + 1] - r.first[i] > most) most = r.first[i + 1] - r.first[i];
+        if (r.width[i] > widest) widest = r.width[i];
+        widths += r.width[i];
     }
+    assert_int_equal(r.most_width, widest);
+    assert_true(fabs(r.mean_width * (double)t->leaves - widths) < 1e-6);
     assert_int_equal(r.most, most);
     assert_true(fabs(r.mean * (double)t->leaves - (double)r.first[t->leaves]) < 1e-6);
     free(member);
