@@ -24,10 +24,16 @@ typedef enum { SM_LAYOUT_AUTO, SM_LAYOUT_LISTS, SM_LAYOUT_BLOCKS } SmLayout;
 
 typedef struct OctOptions OctOptions; /* octree/engine.h */
 
+/* Damping sums moments about the body's middle, so the inertia of a region at distance D from it is
+ * known to about 8 epsilon D^2. Single precision resolves it to a 64th for D up to about 130 times
+ * the region's radius of gyration (w = 1: 150 cells in a solid, 90 in a stick of one cell). Farther
+ * out regions turn less than eq. 14 says, and past ten times that hardly: the body's turning is
+ * damped there, and its relative motions less (lib/rigid_lanes.h). In double precision that begins
+ * at some 10^6 cells. */
 typedef struct {
     int w;               /* region half-width in cells, 1 or more; not the octree's */
     double h;            /* time step, s */
-    double damping;      /* k in [0,1]; 0: none (fastlsm eq. 14) */
+    double damping;      /* k in [0,1]; 0: none (fastlsm eq. 14); see above */
     int damping_every;   /* run it every n-th step; 0 means 1 */
     double gravity[3];   /* mesh units / s^2 */
     double strain_limit; /* a link breaks beyond this times its rest length; 0: never */

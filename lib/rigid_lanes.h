@@ -18,27 +18,53 @@ SM_INLINE void damping_products(vec weight, const real *x, const real *v, int d,
     out[3] = p_e * x_f;
 }
 
-/* omega = I^-1 L by the adjugate. I is the inertia tr(S) - S of the spread
- * S = sum m~ x x^T - M c c^T. A region on a line has no inertia about it: there, and where the
- * least inertia is below what the sums resolve, I + S = tr(S) takes its place, which is the same
- * for all that a line can turn. */
+/* omega = J^-1 L, where J is the inertia I = tr(S) - S of the spread S = sum m~ x x^T - M c c^T
+ * wherever that is known well enough.
+ *
+ * The sums are about the body's origin, so S comes with an error of a few roundings of |c|^2, which
+ * `noise` bounds, however small the region is. eq. 14 with an inertia J >= I (as matrices, I the
+ * true one) cannot add energy: within a region v -> v_r + (J^-1 L) x (x - c) is self-adjoint in
+ * the product sum m~ a.b, and its eigenvalues are 1 on translations, those of I^(1/2) J^-1 I^(1/2)
+ * on rotations, and 0 on all else, none above 1. As R_i holds r where R_r holds i, u is for the
+ * whole body the sum of these maps, so sum m u.v <= sum m v.v and u, too, is self-adjoint with
+ * eigenvalues in [0,1]; those of v += k (u - v) are then in [0,1] for any k in [0,1]. So:
+ *
+ * - Solid: I's least eigenvalue is at least determinant / tr C, C its adjugate. Where noise is a
+ *   64th of that or more, J = (1 + noise tr C / determinant) I >= I + noise. Below, J = I:
+ *   rotations are kept, to noise's share in I (to a 64th at most, a tenth of that as a rule).
+ * - Not solid: a region on a line has no inertia about it, and where the least inertia is not above
+ *   noise it is not known; J = tr(S), or tr(S) + noise, is I + S, and the same as I for all that a
+ *   line can turn.
+ *
+ * A spread that is all noise may have a negative trace, or an indefinite I whose determinant is
+ * positive; these are not solid. Positive traces of S and C and a positive determinant make I
+ * definite; tr C is at least tr(S)^2 for a true spread, and half of that keeps it clear of 0. What
+ * is firm, 64 times above noise, has both. */
 SM_INLINE void angular_velocity(const vec S[6], const vec L[3], vec size, vec omega[3])
 {
-    const real thinnest = SM_REAL_BITS == 32 ? (real)1e-5 : (real)1e-10;
+    const real thinnest = SM_REAL_BITS == 32 ? (real)1e-5 : (real)1e-10, resolved = 64;
     vec trace = S[0] + S[1] + S[2], noise = 8 * SM_EPSILON * size + (real)1e-30;
     vec xx = S[1] + S[2], yy = S[2] + S[0], zz = S[0] + S[1];
     vec yz = -S[3], zx = -S[4], xy = -S[5];
     vec Cxx = yy * zz - yz * yz, Cyy = zz * xx - zx * zx, Czz = xx * yy - xy * xy;
     vec Cxy = yz * zx - xy * zz, Cyz = zx * xy - yz * xx, Czx = xy * yz - zx * yy;
-    vec determinant = xx * Cxx + xy * Cxy + zx * Czx;
-    /* the least inertia is one to three times determinant / tr C */
-    vec least = (thinnest * trace + noise) * (Cxx + Cyy + Czz);
-    /* tr C of a lone particle is rounding, and may be negative */
-    ivec solid = determinant > lanes_max(least, lanes_set((real)1e-30));
-    vec inverse = 1 / lanes_select(solid, determinant, lanes_max(trace, noise));
-    omega[0] = lanes_select(solid, Cxx * L[0] + Cxy * L[1] + Czx * L[2], L[0]) * inverse;
-    omega[1] = lanes_select(solid, Cxy * L[0] + Cyy * L[1] + Cyz * L[2], L[1]) * inverse;
-    omega[2] = lanes_select(solid, Czx * L[0] + Cyz * L[1] + Czz * L[2], L[2]) * inverse;
+    vec over = xx * Cxx + xy * Cxy + zx * Czx, trace_C = Cxx + Cyy + Czz;
+    vec turn[3] = {Cxx * L[0] + Cxy * L[1] + Czx * L[2], Cxy * L[0] + Cyy * L[1] + Cyz * L[2],
+                   Czx * L[0] + Cyz * L[1] + Czz * L[2]};
+    ivec possible = trace_C > (real)0.5 * trace * trace;
+    vec tiny = lanes_set((real)1e-30), least = (thinnest * trace + resolved * noise) * trace_C;
+    ivec firm = possible & (over > lanes_max(least, tiny));
+    if (__builtin_expect(lanes_any(~firm), 0)) { /* the same for lanes that are firm */
+        vec more = noise * trace_C;
+        least = thinnest * trace * trace_C + more;
+        ivec solid = possible & (trace > 0) & (over > lanes_max(least, tiny));
+        for (int d = 0; d < 3; d++) turn[d] = lanes_select(solid, turn[d], L[d]);
+        over = lanes_select(solid, over, lanes_max(trace, lanes_set(0)));
+        more = lanes_select(solid, more, noise);
+        over += lanes_and(more, resolved * more > over);
+    }
+    vec inverse = 1 / over;
+    for (int d = 0; d < 3; d++) omega[d] = turn[d] * inverse;
 }
 
 /* From a tile's sums to (omega, v_r - omega x c_r). */
