@@ -1,10 +1,13 @@
 #include "check.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../octree/structure.h"
+#include "../reference/condition.h"
 
 double bench_check_members(const BenchBody *body, int w)
 {
@@ -27,6 +30,18 @@ double bench_check_room(const BenchScene *scene, const BenchBody *body, const Sm
     return members;
 }
 
+void bench_check_cells(const BenchCheck *check, const double (*x)[3], double (*cells)[3])
+{
+    const SmVoxels *voxels = &check->body->voxels;
+    for (long i = 0; i < check->count; i++)
+        for (int d = 0; d < 3; d++) cells[i][d] = (x[i][d] - voxels->origin[d]) / voxels->cell;
+}
+
+const RefRegions *bench_check_regions(const BenchCheck *check)
+{
+    return check->hierarchical ? &check->octree.regions : &check->regions;
+}
+
 void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                        const SmEngine *engine, BenchCheck *check)
 {
@@ -40,14 +55,19 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
                           .unique = structure->tree.leaves,
                           .hierarchical = true,
                           .plain = scene->octree.weighting == OCT_PLAIN};
-    check->mass = sm_alloc((size_t)check->count, sizeof *check->mass);
-    memcpy(check->mass, structure->mass, (size_t)check->count * sizeof *check->mass);
+    size_t count = (size_t)check->count;
     ref_tree_init(&structure->tree, &structure->regions, structure->mass, check->plain,
                   &check->octree);
     const OctOptions *options = &scene->octree;
     check->octree.yield = options->yield;
     check->octree.creep = options->creep * scene->params.h;
     check->octree.most = options->most > 0 ? options->most : 1;
+    check->mass = sm_alloc(count, sizeof *check->mass);
+    check->weight = sm_alloc(count, sizeof *check->weight);
+    check->rest = sm_alloc(count, sizeof *check->rest);
+    memcpy(check->mass, structure->mass, count * sizeof *check->mass);
+    memcpy(check->weight, check->octree.weight, count * sizeof *check->weight);
+    memcpy(check->rest, check->octree.x0, count * sizeof *check->rest);
 }
 
 void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
@@ -57,7 +77,14 @@ void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
     ref_regions_build(&body->voxels, w, NULL, 0, &check->regions);
     check->unique = ref_regions_unique(&check->regions);
     check->mass = sm_alloc((size_t)count, sizeof *check->mass);
-    for (long p = 0; p < count; p++) check->mass[p] = body->mass ? body->mass[p] : 1;
+    check->weight = sm_alloc((size_t)count, sizeof *check->weight);
+    check->rest = sm_alloc((size_t)count, sizeof *check->rest);
+    for (long p = 0; p < count; p++) {
+        long members = check->regions.start[p + 1] - check->regions.start[p];
+        check->mass[p] = body->mass ? body->mass[p] : 1;
+        check->weight[p] = check->mass[p] / (double)members;
+    }
+    bench_check_cells(check, (const double(*)[3])body->x0, check->rest);
 }
 
 void bench_check_free(BenchCheck *check)
@@ -67,6 +94,8 @@ void bench_check_free(BenchCheck *check)
     else
         ref_regions_free(&check->regions);
     free(check->mass);
+    free(check->weight);
+    free(check->rest);
     *check = (BenchCheck){0};
 }
 
@@ -77,14 +106,15 @@ static bool all_finite(const double (*value)[3], long count)
     return sum == 0;
 }
 
-/* Largest distance of two goals, in cells. */
-static double goal_error(const double (*g)[3], const double (*exact)[3], long count, double cell)
+/* Largest distance of two goals that are not `tied`, in cells. */
+static double goal_error(const double (*g)[3], const double (*exact)[3], const bool *tied,
+                         long count, double cell)
 {
     double largest = 0;
     for (long p = 0; p < count; p++) {
         double square = 0;
         for (int d = 0; d < 3; d++) square += (g[p][d] - exact[p][d]) * (g[p][d] - exact[p][d]);
-        largest = fmax(largest, square);
+        if (!tied[p]) largest = fmax(largest, square);
     }
     return sqrt(largest) / cell;
 }
@@ -153,6 +183,45 @@ static double (*rest_shapes(const BenchCheck *check, const SmEngineType *type, S
     return S;
 }
 
+/* Largest distance along an axis from the mean. */
+static double extent(const double (*x)[3], long count)
+{
+    double largest = 0;
+    for (int d = 0; d < 3; d++) {
+        double sum = 0;
+        for (long i = 0; i < count; i++) sum += x[i][d];
+        for (long i = 0; i < count; i++)
+            largest = fmax(largest, fabs(x[i][d] - sum / (double)count));
+    }
+    return largest;
+}
+
+void bench_check_tied(const BenchCheck *check, const char *precision, const double (*x)[3],
+                      bool *tied)
+{
+    const RefRegions *regions = bench_check_regions(check);
+    double(*at)[3] = sm_alloc((size_t)check->count, sizeof *at);
+    double tolerance = bench_check_tolerance(precision);
+    bench_check_cells(check, x, at);
+    double known =
+        0.5 * bench_check_epsilon(precision) * extent((const double(*)[3])at, check->count);
+    double least = fmin(0.125, known / tolerance);
+    double *hold = sm_alloc((size_t)check->count, sizeof *hold);
+#pragma omp parallel for if (check->count > REF_SERIAL)
+    for (long r = 0; r < check->count; r++) {
+        RefCondition found;
+        ref_condition(regions, check->weight, (const double(*)[3])check->rest,
+                      (const double(*)[3])at, r, tolerance, &found);
+        hold[r] = found.hold;
+    }
+    memset(tied, 0, (size_t)check->count * sizeof *tied);
+    for (long r = 0; r < check->count; r++)
+        for (long n = regions->start[r]; n < regions->start[r + 1]; n++)
+            if (!(hold[r] >= least)) tied[regions->member[n]] = true;
+    free(hold);
+    free(at);
+}
+
 BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *type,
                                  SmEngine *engine)
 {
@@ -162,11 +231,15 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     double(*g)[3] = sm_alloc((size_t)all, sizeof *g);
     double(*exact)[3] = sm_alloc((size_t)count, sizeof *exact);
     double(*S)[9] = rest_shapes(check, type, engine);
+    bool *tied = sm_alloc((size_t)count, sizeof *tied);
     type->goals(engine);
     type->get(engine, SM_POSITION, x);
     type->get(engine, SM_VELOCITY, v);
     type->get(engine, SM_GOAL, g);
-    BenchDeviation result = {.finite = all_finite((const double(*)[3])x, all) &&
+    BenchDeviation result = {.particles = all,
+                             .goal_tolerance = bench_check_tolerance(type->precision),
+                             .plain = check->plain,
+                             .finite = all_finite((const double(*)[3])x, all) &&
                                        all_finite((const double(*)[3])v, all) &&
                                        all_finite((const double(*)[3])g, all)};
     if (!result.finite) result.goal_error = result.momentum_error = INFINITY;
@@ -174,7 +247,10 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
         const double(*at)[3] = (const double(*)[3])(x + first);
         const double(*goal)[3] = (const double(*)[3])(g + first);
         exact_goals(check, at, S ? S + first : NULL, exact);
-        double error = goal_error(goal, (const double(*)[3])exact, count, check->body->voxels.cell);
+        bench_check_tied(check, type->precision, at, tied);
+        for (long p = 0; p < count; p++) result.tied += tied[p];
+        double error =
+            goal_error(goal, (const double(*)[3])exact, tied, count, check->body->voxels.cell);
         double drift = momentum_error(at, goal, check->mass, count);
         result.goal_error = fmax(result.goal_error, error);
         result.momentum_error = fmax(result.momentum_error, drift);
@@ -183,6 +259,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     free(v);
     free(g);
     free(exact);
+    free(tied);
     free(S);
     return result;
 }
@@ -228,7 +305,73 @@ double bench_check_flow(const BenchCheck *check, BenchRunner *runner)
     return worst / fmax(1, check->octree.creep);
 }
 
+double bench_check_epsilon(const char *precision)
+{
+    return strcmp(precision, "double") ? FLT_EPSILON : DBL_EPSILON;
+}
+
 double bench_check_tolerance(const char *precision)
 {
     return strcmp(precision, "double") ? 5e-5 : 1e-10;
+}
+
+bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason)
+{
+    if (!found->finite)
+        snprintf(reason, size, "positions, velocities or goals are not finite");
+    else if (!(found->goal_error <= found->goal_tolerance))
+        snprintf(reason, size, "goals are %.3g cells from brute force; at most %g allowed",
+                 found->goal_error, found->goal_tolerance);
+    else if (!(found->damping_error <= found->damping_tolerance))
+        snprintf(reason, size,
+                 "damped velocities are %.3g of the largest from brute force; at most %.2g allowed",
+                 found->damping_error, found->damping_tolerance);
+    else if ((double)found->tied > BENCH_LEFT_OUT * (double)found->particles)
+        snprintf(reason, size,
+                 "%ld of %ld particles are in regions whose rotation is not unique; at most %g%% "
+                 "may be",
+                 found->tied, found->particles, 100 * BENCH_LEFT_OUT);
+    else
+        return true;
+    return false;
+}
+
+void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
+{
+    worst->finite = found->finite;
+    worst->goal_tolerance = found->goal_tolerance;
+    worst->goal_error = fmax(worst->goal_error, found->goal_error);
+    worst->momentum_error = fmax(worst->momentum_error, found->momentum_error);
+    worst->plain = found->plain;
+    worst->particles = found->particles;
+    if (found->tied > worst->tied) worst->tied = found->tied;
+    if (found->blurred > worst->blurred) worst->blurred = found->blurred;
+    if (found->damping_error * worst->damping_tolerance <
+        worst->damping_error * found->damping_tolerance)
+        return;
+    worst->damping_error = found->damping_error;
+    worst->damping_tolerance = found->damping_tolerance;
+}
+
+void bench_check_text(const BenchDeviation *found, size_t size, char *text)
+{
+    size_t used = (size_t)snprintf(
+        text, size, "goals within %.2g cells of brute force (allowed %.0e), momentum %s %.1g",
+        found->goal_error, found->goal_tolerance,
+        found->plain ? "not kept by plain weighting, off by" : "kept to", found->momentum_error);
+    if (found->damping_tolerance > 0 && used < size)
+        used += (size_t)snprintf(text + used, size - used,
+                                 ", damping within %.1g of the largest velocity (allowed %.0e)",
+                                 found->damping_error, found->damping_tolerance);
+    if (found->tied && used < size)
+        used += (size_t)snprintf(text + used, size - used,
+                                 "; %ld particle%s of regions whose rotation is not unique "
+                                 "left out",
+                                 found->tied, found->tied > 1 ? "s" : "");
+    long blurred = found->blurred - found->tied;
+    if (blurred > 0 && used < size)
+        snprintf(text + used, size - used,
+                 "; %ld left out of damping, whose regions' inertia the precision does not "
+                 "resolve",
+                 blurred);
 }

@@ -1,7 +1,7 @@
-/* check.h - is an engine's present state's goal right? Held to brute force in double precision:
- * lattice engines to reference/brute.h, the octree to reference/octree_goals.h. A plastic body's
- * goals are those of the rest shapes that it has; whether they flow as they should is a check of
- * its own, over a step. */
+/* check.h - are the goals and the damping of an engine's present state right? Held to brute force
+ * in double precision: lattice engines to reference/brute.h, the octree to
+ * reference/octree_goals.h. A plastic body's goals are those of the rest shapes that it has;
+ * whether they flow as they should is a check of its own, over a step. */
 #ifndef BENCH_CHECK_H
 #define BENCH_CHECK_H
 
@@ -14,18 +14,29 @@ typedef struct {
     long count;            /* particles that one body should have */
     long unique;           /* different regions; of an octree all */
     double *mass;          /* [count] */
+    double *weight;        /* [count] what particles count in region sums */
+    double (*rest)[3];     /* [count] rest positions, in cells */
     bool hierarchical;     /* an octree's */
     bool plain;            /* its weighting: momentum is measured, but need not be kept */
     RefRegions regions;    /* of a lattice */
     RefTreeBody octree;
 } BenchCheck;
 
+/* What was found, of all instances. */
 typedef struct {
     bool finite; /* positions, velocities and goals */
     double
         goal_error; /* largest |g - brute force| over particles, in cells; infinite if not finite */
+    double goal_tolerance; /* what is allowed */
     double momentum_error; /* |sum m g - sum m x| / sum m |x - centroid|, largest of all instances;
                             * with plain weighting, too */
+    bool plain;            /* weighting, with which it need not be kept */
+    double damping_error;  /* |v - brute force| / largest |v| after damping, of the particle ... */
+    double damping_tolerance; /* ... where it is largest of what is allowed there; 0: no damping */
+    long particles;           /* checked or left out */
+    long tied;                /* left out: in a region whose rotation is not unique */
+    long blurred;             /* left out of damping's check: tied or in a region whose inertia the
+                               * precision does not resolve */
 } BenchDeviation;
 
 /* Region members that a check of this body would hold in memory, at most; 4 bytes each. Beyond
@@ -46,9 +57,31 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
                        const SmEngine *engine, BenchCheck *check);
 void bench_check_free(BenchCheck *check);
 
-/* Calls engine->goals() and compares; the state does not change. */
+/* Calls engine->goals() and compares; the state does not change.
+ *
+ * Particles of a region whose rotation is not unique to the precision are left out, and counted:
+ * there rounding decides, or what the rotation was before. Of a region at rest goals are known to
+ * about epsilon D, D cells being the body's largest distance from its middle; over the region's
+ * hold (reference/condition.h) they may differ by as much as a turn by rounding moves them. Left
+ * out are regions whose hold is below half of epsilon D / tolerance, but none that is held to an
+ * eighth: where that would not do, the body is larger than the precision resolves, and is INVALID.
+ */
 BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *type,
                                  SmEngine *engine);
+
+/* Adds the check of damping to `found`, if the scene has any: puts the state of `engine` into
+ * another one built alike, but at no handles and obstacles, steps that, and compares velocities to
+ * eq. 14's in double precision from the same goals.
+ *
+ * What is allowed, of the largest velocity, is the rounding of the sums (lib/rigid_lanes.h): with
+ * n = 8 epsilon D^2 / inertia, D from the body's middle to the region, and f = spread / inertia,
+ * it is 16 epsilon + k (n + 8 epsilon f + 4 sqrt(epsilon n f)) of a particle's worst region: of
+ * the inertia, of its inversion, and of omega x x - omega x c; and what double precision loses of
+ * g - x at large coordinates. Left out are particles of regions
+ * where n is above 1/128, as the engine may damp more there, or f so large that it may take the
+ * region for a line, unless it is one; and those that the check of goals leaves out. */
+void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
+                         SmEngine *engine, BenchDeviation *found);
 
 /* Runs one step of a plastic octree: the largest difference of a component of S from what eq. 10
  * makes of the state before it. Where a stretch is at the yield to within rounding, either side of
@@ -56,9 +89,35 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
  * is not stepped. */
 double bench_check_flow(const BenchCheck *check, BenchRunner *runner);
 
+/* Marks the particles of one body at x (mesh units) whose goals rest on a rotation that is not
+ * unique to the precision; O(members). */
+void bench_check_tied(const BenchCheck *check, const char *precision, const double (*x)[3],
+                      bool *tied);
+
+/* The regions' members, whichever engine's. */
+const RefRegions *bench_check_regions(const BenchCheck *check);
+
+/* Positions of one body, from mesh units to cells. */
+void bench_check_cells(const BenchCheck *check, const double (*x)[3], double (*cells)[3]);
+
+/* Rounding of the precision: the distance from 1 to the next number. */
+double bench_check_epsilon(const char *precision);
+
 /* The tolerance of goal_error: 5e-5 cells in "single", 1e-10 in "double" precision. */
 double bench_check_tolerance(const char *precision);
 
+/* Says in `reason` what is not finite or beyond its tolerance and returns false, or true; momentum
+ * is the caller's to judge (BENCH_MOMENTUM_TOLERANCE). Invalid is also a state of which more than
+ * BENCH_LEFT_OUT of the particles were left out of the check of goals. */
+bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason);
+
+/* Makes the worse of each of two findings `worst`. */
+void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst);
+
+/* What was found for people: "goals within 2e-06 cells of brute force, ..." */
+void bench_check_text(const BenchDeviation *found, size_t size, char *text);
+
 #define BENCH_MOMENTUM_TOLERANCE 1e-6
+#define BENCH_LEFT_OUT           0.25
 
 #endif

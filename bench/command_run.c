@@ -371,7 +371,7 @@ static SmCode record(const Options *options, BenchRunner *runner, const BenchMac
                runner->scene->frames ? "s" : "");
     if (valid) return SM_OK;
     return sm_fail(error, SM_INVALID,
-                   "%s is INVALID: its last goals are not those of brute force; try "
+                   "%s is INVALID: its last state is not that of brute force; try "
                    "--precision double or a smaller --h",
                    runner->scene->name);
 }

@@ -3,6 +3,7 @@
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,25 +103,31 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
         row->paper_stage_ms[s] = paper ? paper->stage_ms[s].value : NAN;
 }
 
-static void invalidate(BenchRow *row, const char *format, double value, double limit)
+static __attribute__((format(printf, 2, 3))) void invalidate(BenchRow *row, const char *format, ...)
 {
-    if (row->valid) snprintf(row->reason, sizeof row->reason, format, value, limit);
+    va_list values;
+    va_start(values, format);
+    if (row->valid) vsnprintf(row->reason, sizeof row->reason, format, values);
+    va_end(values);
     row->valid = false;
 }
 
-static void check_state(const BenchCheck *check, const BenchRunner *runner, BenchRow *row)
+/* `worst` keeps the larger of both checks' findings. */
+static void check_state(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *worst,
+                        BenchRow *row)
 {
+    char reason[sizeof row->reason];
     BenchDeviation found = bench_check_state(check, runner->type, runner->engine);
-    row->goal_error = fmax(row->goal_error, found.goal_error);
-    row->momentum_error = fmax(row->momentum_error, found.momentum_error);
-    if (!found.finite)
-        invalidate(row, "positions, velocities or goals are not finite", 0, 0);
-    else if (!(found.goal_error <= row->goal_tolerance))
-        invalidate(row, "goals are %.3g cells from brute force; at most %g allowed",
-                   found.goal_error, row->goal_tolerance);
+    bench_check_damping(check, runner->scene, runner->type, runner->engine, &found);
+    if (!bench_check_verdict(&found, sizeof reason, reason))
+        invalidate(row, "%s", reason);
     else if (!check->plain && !(found.momentum_error <= BENCH_MOMENTUM_TOLERANCE))
         invalidate(row, "linear momentum is off by %.3g; at most %g allowed", found.momentum_error,
                    BENCH_MOMENTUM_TOLERANCE);
+    bench_check_merge(&found, worst);
+    row->goal_error = worst->goal_error;
+    row->momentum_error = worst->momentum_error;
+    bench_check_text(worst, sizeof row->found, row->found);
 }
 
 /* Of a plastic octree: do its rest shapes flow as they should in the step that follows? */
@@ -234,15 +241,16 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
     row->valid = true;
     if (params->progress) bench_progress_show(params->progress, row->scene, 0);
     BenchCheck check;
+    BenchDeviation worst = {0};
     bench_check_begin(scene, body, type, runner->engine, &check);
     check_counts(&check, runner, row);
     bench_tree_row_fill(runner, row);
     bench_runner_disturb(runner, params->seed);
     for (int i = 0; i < BENCH_SETTLE_STEPS; i++) bench_runner_step(runner, NULL);
-    check_state(&check, runner, row);
+    check_state(&check, runner, &worst, row);
     save(&trial);
     time_blocks(&trial, params, row);
-    check_state(&check, runner, row);
+    check_state(&check, runner, &worst, row);
     check_flow(&check, runner, row);
     bench_check_free(&check);
     bench_runner_free(runner);

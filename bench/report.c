@@ -165,12 +165,10 @@ static void print_check(FILE *file, const BenchRow *row)
         return;
     }
     fprintf(file,
-            "goals within %.2g cells of brute force (allowed %.0e),\n    momentum %s %.1g; "
-            "quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost %.1f%%;\n    "
+            "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost "
+            "%.1f%%;\n    "
             "voxelised in %.3g ms, built in %.3g ms, %.4g bytes a particle\n",
-            row->goal_error, row->goal_tolerance,
-            row->plain ? "not kept by plain weighting, off by" : "kept to", row->momentum_error,
-            row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
+            row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
             row->instruments_percent, 1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,
             (double)row->bytes / (double)row->particles);
 }

@@ -33,6 +33,7 @@ static const BenchField row_fields[] = {
     FIELD(BENCH_INT, threads),
     FIELD(BENCH_BOOL, valid),
     FIELD(BENCH_TEXT, reason),
+    FIELD(BENCH_TEXT, found),
     FIELD(BENCH_DOUBLE, goal_error),
     FIELD(BENCH_DOUBLE, momentum_error),
     FIELD(BENCH_DOUBLE, goal_tolerance),

@@ -19,19 +19,18 @@ static bool print_deviation(const BenchRunner *runner, const SmCounts *counts)
         return true;
     }
     BenchCheck check;
+    char text[512], reason[160];
     bench_check_begin(scene, runner->body, runner->type, runner->engine, &check);
     BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
-    double allowed = bench_check_tolerance(runner->type->precision);
-    printf("deviation: goals within %.3g cells of brute force, momentum %s %.2g\n",
-           found.goal_error, check.plain ? "not kept by plain weighting, off by" : "kept to",
-           found.momentum_error);
+    bench_check_damping(&check, scene, runner->type, runner->engine, &found);
+    bench_check_text(&found, sizeof text, text);
+    printf("deviation: %s\n", text);
     if (check.hierarchical && check.octree.creep > 0)
         printf("deviation: of the rest shapes as they are; how they flowed is checked by 'tables', "
                "and by scripts/check_step.py after --record nodes\n");
     bench_check_free(&check);
-    if (found.goal_error <= allowed) return true;
-    printf("deviation: beyond the %g cells that 'tables' allows: does the body fly off?\n",
-           allowed);
+    if (bench_check_verdict(&found, sizeof reason, reason)) return true;
+    printf("deviation: %s\n", reason);
     return false;
 }
 

@@ -17,7 +17,7 @@
 #include "../lib/test_folder.h"
 #include "store.h"
 
-enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 752 };
+enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 1136 };
 
 /* A field new in row.h is to be stored (store.c), described (results/README.md) and filled here. */
 _Static_assert(sizeof(BenchRow) == ROW_BYTES, "row.h has changed: see above");
@@ -76,6 +76,7 @@ static void fill_row(BenchRow *row, int seed)
     strcpy(row->engine, "fastlsm");
     strcpy(row->precision, "single");
     memset(row->reason, 'r', sizeof row->reason - 1); /* the longest there can be */
+    strcpy(row->found, "goals within 1.5e-05 cells");
     row->total = sm_alloc(REPEATS, sizeof *row->total);
     row->stage = sm_alloc(REPEATS, sizeof *row->stage);
     for (int i = 0; i < REPEATS; i++) row->total[i] = 1e-4 * (i + seed);
