@@ -148,6 +148,13 @@ static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmErro
         return sm_fail(error, SM_INPUT,
                        "strain_limit: the octree's material does not break; give 0, or use the "
                        "engine fastlsm");
+    double creep = params->octree ? params->octree->creep : 0;
+    if (creep * params->h > 1 + 1e-9) /* Mueller et al. 2005: creep is in [0, 1/h] */
+        return sm_fail(
+            error, SM_INPUT,
+            "octree: creep is %g: in a step of h = %g s no more than all of a strain can "
+            "stay, creep is at most 1/h = %g; give less, or a smaller h",
+            creep, params->h, 1 / params->h);
     if (params->summation != SM_SUM_FAST || params->polar != SM_POLAR_FAST ||
         params->layout != SM_LAYOUT_AUTO)
         return sm_fail(error, SM_INPUT,

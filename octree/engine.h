@@ -40,7 +40,7 @@ struct OctOptions {
     int local_count;
     OctWeighting weighting;
     OctGoalForm form;
-    double yield, creep; /* plasticity (state.h); creep is a rate, 1/s, 0: elastic */
+    double yield, creep; /* plasticity (state.h); creep is a rate, 0 (elastic) to 1/h, 1/s */
     double most;         /* largest |S_r - I|; 0: 1 */
 };
 

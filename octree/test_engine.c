@@ -459,6 +459,7 @@ static void refuses_what_it_does_not_do(void **state)
         {{.local_count = OCT_MAX_WIDTHS + 1}, {.h = 0.01}, "17 widths: at most 16"},
         {{.summation_nodes = -2}, {.h = 0.01}, "-2 summation nodes wanted"},
         {{.creep = -1}, {.h = 0.01}, "plasticity of yield 0, creep -1"},
+        {{.creep = 101}, {.h = 0.01}, "creep is at most 1/h = 100; give less, or a smaller h"},
         {{.sampling = {.levels = 99}}, {.h = 0.01}, "99"},
         {{.sampling = {.nodes = -5}}, {.h = 0.01}, "-5"},
     };
