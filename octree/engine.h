@@ -30,7 +30,8 @@ typedef struct {
 /* All zero: the defaults. */
 struct OctOptions {
     OctSampling sampling; /* levels 0: up to OCT_DEFAULT_LEVELS, with base cells of at most an
-                           * eighth of the body's longest side; no criteria: OCT_FEATURES;
+                           * eighth of the body's longest side, and more levels if that gives more
+                           * base cells than `nodes` are wanted; no criteria: OCT_FEATURES;
                            * a criterion's level 0: the deepest */
     double epsilon;       /* 0 or more */
     OctWidth width;

@@ -24,6 +24,25 @@ static void complete_sampling(const SmVoxels *voxels, OctSampling *sampling)
         if (sampling->criteria[i].level == 0) sampling->criteria[i].level = sampling->levels;
 }
 
+/* The tree; where levels are free and fewer nodes are wanted than there are base cells, these are
+ * made larger. */
+static SmCode sample(const SmVoxels *voxels, const OctSampling *wanted, OctStructure *s,
+                     SmError *error)
+{
+    OctSampling sampling = *wanted;
+    for (;;) {
+        complete_sampling(voxels, &sampling);
+        SmCode code = oct_sampling_tree(&sampling, voxels, &s->tree, &s->report, error);
+        bool free_levels = wanted->levels == 0 && wanted->bases == 0 && wanted->nodes > 0;
+        if (code || !free_levels || s->report.bases <= wanted->nodes) return code;
+        int levels = sampling.levels + 1;
+        if (levels > OCT_MAX_LEVELS) return SM_OK;
+        oct_tree_free(&s->tree);
+        sampling = *wanted;
+        sampling.levels = levels;
+    }
+}
+
 static SmCode check_options(const OctOptions *o, SmError *error)
 {
     if (!(o->epsilon >= 0 && o->epsilon <= 1e6))
@@ -73,12 +92,9 @@ SmCode oct_structure_build(const SmVoxels *voxels, const OctOptions *options, co
 {
     *structure = (OctStructure){.cell = voxels->cell};
     for (int d = 0; d < 3; d++) structure->origin[d] = voxels->origin[d];
-    OctSampling sampling = options->sampling;
-    complete_sampling(voxels, &sampling);
     SmCode code = check_options(options, error);
     if (!code) code = oct_width_check(options, error);
-    if (!code)
-        code = oct_sampling_tree(&sampling, voxels, &structure->tree, &structure->report, error);
+    if (!code) code = sample(voxels, &options->sampling, structure, error);
     if (!code) {
         oct_graph_build(&structure->tree, voxels, &structure->graph);
         code = oct_width_find(options, structure, error);

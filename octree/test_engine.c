@@ -432,6 +432,24 @@ static void parts_are_counted(void **state)
     sm_voxels_free(&voxels);
 }
 
+/* A plank of 64 base cells as the engine would choose them. */
+static void few_nodes_get_large_base_cells(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    sm_voxels_block(&voxels, 64, 64, 8, 0.1);
+    static const int wanted[] = {64, 16, 4, 1};
+    for (int n = 0; n < 4; n++) {
+        OctOptions options = {.sampling = {.nodes = wanted[n]}};
+        SmEngineParams params = usual(&options);
+        SmCounts counts;
+        SmEngine *engine = make(0, &voxels, &params, &counts);
+        assert_int_equal(counts.particles, wanted[n]);
+        octree_engine_f32.destroy(engine);
+    }
+    sm_voxels_free(&voxels);
+}
+
 static void refuses_what_it_does_not_do(void **state)
 {
     (void)state;
@@ -489,6 +507,7 @@ int main(void)
         cmocka_unit_test(a_width_is_found_for_summation_nodes),
         cmocka_unit_test(a_width_is_found_by_few_builds),
         cmocka_unit_test(parts_are_counted),
+        cmocka_unit_test(few_nodes_get_large_base_cells),
         cmocka_unit_test(refuses_what_it_does_not_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
