@@ -148,52 +148,78 @@ static inline void adopt(const Oct *oct, Body *body)
     get(oct, 0, oct->body->v, false, body->v);
 }
 
-/* The tree whose leaves are the particles of a FastLSM body, with its regions. */
-static inline void lattice_body(unsigned *seed, const SmVoxels *cells, SmEngine *engine,
+/* The visibility graph whose neighbours are a lattice's: of leaf i, `ring`, an engine of w = 1,
+ * says which particles share a cell with particle[i], all within one cell, and leaf[] which leaves
+ * they are. */
+static inline void lattice_graph(const SmEngineType *type, SmEngine *ring, long n,
+                                 const long *particle, const int *leaf, OctGraph *graph)
+{
+    long *member = sm_alloc((size_t)n, sizeof *member), at = 0;
+    *graph = (OctGraph){.leaves = n,
+                        .first = sm_alloc((size_t)n + 1, sizeof(long)),
+                        .to = sm_alloc(27 * (size_t)n, sizeof(int)),
+                        .length = sm_alloc(27 * (size_t)n, sizeof(int)),
+                        .longest = 2};
+    for (long i = 0; i < n; i++) {
+        long count = type->region(ring, particle[i], member, n);
+        for (long k = 0; k < count; k++) {
+            if (member[k] == particle[i]) continue;
+            graph->to[at] = leaf[member[k]];
+            graph->length[at++] = 2;
+        }
+        qsort(graph->to + graph->first[i], (size_t)(count - 1), sizeof(int), compare_members);
+        graph->first[i + 1] = at;
+    }
+    free(member);
+}
+
+/* The octree over the particles of a FastLSM body of half-width w: a leaf where a particle is, the
+ * same neighbours, the regions that the octree itself builds of them; positions and, in body->b,
+ * goals are the lattice engine's, masses 1. */
+static inline void lattice_body(unsigned *seed, const SmVoxels *cells, int w, SmEngine *engine,
                                 const SmEngineType *type, Body *body)
 {
     const int corner[3] = {random_int(seed, 9), random_int(seed, 9), random_int(seed, 9)};
-    long n = cells->particle_count, at = 0;
-    int(*coord)[3] = sm_alloc((size_t)n, sizeof *coord);
-    long *member = sm_alloc((size_t)n, sizeof *member),
-         *particle = sm_alloc((size_t)n, sizeof(long));
+    size_t n = (size_t)cells->particle_count;
+    int(*coord)[3] = sm_alloc(n, sizeof *coord), *leaf = sm_alloc(n, sizeof *leaf);
+    long *particle = sm_alloc(n, sizeof *particle);
     sm_voxels_particles(cells, coord);
     sm_voxels_init(&body->voxels, cells->size[0] + 1, cells->size[1] + 1, cells->size[2] + 1, 1);
-    for (long p = 0; p < n; p++) sm_voxel_set(&body->voxels, coord[p][0], coord[p][1], coord[p][2]);
+    for (size_t p = 0; p < n; p++)
+        sm_voxel_set(&body->voxels, coord[p][0], coord[p][1], coord[p][2]);
     sm_voxels_count(&body->voxels);
     assert_int_equal(oct_tree_build(&body->voxels, 3, corner, &body->tree, NULL), SM_OK);
     assert_int_equal(body->tree.leaves, n);
-    int *node = sm_alloc((size_t)n, sizeof(int));
-    for (long p = 0; p < n; p++) {
-        node[p] = oct_tree_find(&body->tree, coord[p][0], coord[p][1], coord[p][2]);
-        particle[body->tree.leaf[node[p]]] = p;
+    int *width = sm_alloc(n, sizeof *width);
+    for (size_t p = 0; p < n; p++) {
+        int node = oct_tree_find(&body->tree, coord[p][0], coord[p][1], coord[p][2]);
+        leaf[p] = body->tree.leaf[node];
+        particle[leaf[p]] = (long)p;
+        width[p] = 2 * w; /* half finest cells */
     }
-    OctRegions *r = &body->regions;
-    *r = (OctRegions){.leaves = n,
-                      .first = sm_alloc((size_t)n + 1, sizeof(long)),
-                      .member = sm_alloc((size_t)(n * n), sizeof(int))};
-    for (long leaf = 0; leaf < n; leaf++) {
-        long count = type->region(engine, particle[leaf], member, n);
-        for (long k = 0; k < count; k++) r->member[at++] = node[member[k]];
-        qsort(r->member + r->first[leaf], (size_t)count, sizeof(int), compare_members);
-        r->first[leaf + 1] = at;
-        if (count > r->most) r->most = count;
-    }
+    SmEngineParams nearest = {.w = 1, .h = 0.01, .threads = 1};
+    SmEngine *ring;
+    OctGraph graph;
+    assert_int_equal(type->create(cells, &nearest, &ring, NULL), SM_OK);
+    lattice_graph(type, ring, (long)n, particle, leaf, &graph);
+    type->destroy(ring);
+    assert_int_equal(oct_regions_build(&body->tree, &graph, width, 0, &body->regions, NULL), SM_OK);
+    oct_graph_free(&graph);
     body_arrays(seed, body);
-    double(*x)[3] = triples(n);
+    double(*x)[3] = triples((long)n), (*g)[3] = triples((long)n);
     type->get(engine, SM_POSITION, x);
-    for (long p = 0; p < n; p++) {
-        body->m[body->tree.leaf[node[p]]] = 1;
-        for (int d = 0; d < 3; d++) body->x[body->tree.leaf[node[p]]][d] = x[p][d];
-    }
     type->goals(engine);
-    type->get(engine, SM_GOAL, x);
-    for (long p = 0; p < n; p++)
-        for (int d = 0; d < 3; d++) body->b[body->tree.leaf[node[p]]][d] = x[p][d];
+    type->get(engine, SM_GOAL, g);
+    for (size_t p = 0; p < n; p++) {
+        body->m[leaf[p]] = 1;
+        memcpy(body->x[leaf[p]], x[p], sizeof *x);
+        memcpy(body->b[leaf[p]], g[p], sizeof *g);
+    }
     free(x);
-    free(node);
+    free(g);
+    free(width);
     free(particle);
-    free(member);
+    free(leaf);
     free(coord);
 }
 
