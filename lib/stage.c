@@ -35,3 +35,11 @@ void sm_laps_start(SmLaps *laps)
     memset(laps, 0, sizeof *laps);
     laps->last = sm_now();
 }
+
+void sm_lap_take(SmLaps *laps, SmStage stage)
+{
+    double now = sm_now();
+    laps->seconds[stage] += now - laps->last;
+    laps->count[stage]++;
+    laps->last = now;
+}
