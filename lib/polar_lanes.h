@@ -64,7 +64,24 @@ SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, vec *l)
             f[t] * slope[t] * lanes_rough_inverse(lanes_max(change[t], lanes_set((real)1e-12)));
         POLAR_EACH l[t] -= change[t];
         POLAR_EACH more |= lanes_abs(change[t]) > enough * l[t];
-        if (!lanes_any(more)) break;
+        if (step && !lanes_any(more)) break; /* one step is hardly ever enough */
+    }
+}
+
+/* R = first cof D + second A, whose third column is the cross product of the others. */
+SM_INLINE void polar_columns(int tiles, const vec (*A)[9], const vec (*D)[9], const vec *first,
+                             const vec *second, vec (*R)[9])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 2; j++) {
+            int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+            POLAR_EACH R[t][i * 3 + j] =
+                D[t][i1 * 3 + j1] * D[t][i2 * 3 + j2] - D[t][i1 * 3 + j2] * D[t][i2 * 3 + j1];
+            POLAR_EACH R[t][i * 3 + j] = first[t] * R[t][i * 3 + j] + second[t] * A[t][i * 3 + j];
+        }
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        POLAR_EACH R[t][i * 3 + 2] = R[t][j * 3] * R[t][k * 3 + 1] - R[t][k * 3] * R[t][j * 3 + 1];
     }
 }
 
@@ -92,14 +109,13 @@ SM_INLINE void polar_quartic(int tiles, const vec (*A)[9], vec (*R)[9], ivec *ti
     POLAR_EACH first[t] = l[t] * over[t] * of[t].inverse;
     POLAR_EACH over_l[t] *= of[t].inverse;
     for (int i = 0; i < 9; i++) POLAR_EACH D[t][i] = A[t][i] + C[t][i] * over_l[t];
-    polar_cofactor(tiles, (const vec(*)[9])D, R);
-    for (int i = 0; i < 9; i++) POLAR_EACH R[t][i] = first[t] * R[t][i] + second[t] * A[t][i];
-    /* The iteration is lost where three roots meet; what it leaves then is no rotation. Written so
-     * that a NaN counts as a tie. */
-    polar_norm(tiles, (const vec(*)[9])R, i2);
-    POLAR_EACH tie[t] =
-        ~((lanes_abs(i2[t] - 3) < (real)1e-3) & (below[t] > (real)0.03 * l[t] * l[t] * l[t]) &
-          (square[t] > (real)1e-16) & (square[t] < (real)1e16));
+    polar_columns(tiles, A, (const vec(*)[9])D, first, second, R);
+    /* The iteration is lost where three roots meet; what it leaves then is no root. The quartic is
+     * 4 (i2^2 - II - 2 J l). Written so that a NaN counts as a tie. */
+    const real root = SM_REAL_BITS == 32 ? (real)1e-5 : (real)1e-10;
+    POLAR_EACH i2[t] = i2[t] * i2[t] - (of[t].II + 2 * of[t].J * l[t]);
+    POLAR_EACH tie[t] = ~((lanes_abs(i2[t]) < root) & (below[t] > (real)0.03 * l[t] * l[t] * l[t]) &
+                          (square[t] > (real)1e-16) & (square[t] < (real)1e16));
 }
 
 /* Redoes the lanes of `tie` one by one, keeping near the last rotation. */
