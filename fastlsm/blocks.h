@@ -4,9 +4,10 @@
  * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
  * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
  * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
- * summed anew at every RESTART-th row and plane, or rounding would add up. Empty sites hold zero. A
+ * summed anew at every RESTART-th row and plane, or rounding would add up. Along x lanes slide, and
+ * from w = FAR on prefixes are subtracted, O(1) too (blocks_far.h). Empty sites hold zero. A
  * region whose box sum is not its exact sum (a gap, a corner, a broken link within its box) is
- * summed by its lists instead, lane by lane. */
+ * made so by corrections (corrections.h) or summed by its lists instead, lane by lane. */
 #ifndef LSM_BLOCKS_H
 #define LSM_BLOCKS_H
 
@@ -29,6 +30,12 @@ typedef struct {
     bool moves_y, moves_z; /* windows of its blocks move on from the row or plane before */
 } BlockRun;
 
+/* The runs of a row of a plane. */
+typedef struct {
+    const BlockRun *run;
+    int runs;
+} BlockRow;
+
 struct Blocks {
     int width;          /* blocks across the lattice's box along x */
     bool running;       /* sums along y and z are windows that move: O(1) */
@@ -39,17 +46,18 @@ struct Blocks {
     int *along_z;       /* [blocks][side] the block at the same place in planes z - w .. z + w; the
                            empty block (number `blocks`) where there is none */
     uint64_t *passable; /* bitmap of the sites whose sums other sites' sums pass through */
-    ivec *site;         /* [blocks + 1] lanes that hold a particle */
-    bool *whole;        /* [blocks] all lanes do */
-    bool *listed;       /* [blocks] lists read this block: rows of it are needed */
-    bool *mixed;        /* [blocks] lists sum some of its lanes */
+    uint16_t *site;     /* [blocks] the lanes that hold a particle, as bits */
+    bool *listed;       /* [blocks] lists or corrections read what this block brings down, and
+                           lists its particles: rows of them are needed */
+    bool *mixed;        /* [blocks] lists or corrections make the sums of some lanes exact */
     real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until part 2 */
     real *down_memory;
     int threads;
     long shared_bytes;
-    real **scratch; /* [threads] rows of one plane, and windows */
-    real **window;  /* [threads] up, down: the z windows of a plane's places, [12] and [6] blocks
-                       each; none unless `running` */
+    real **scratch;  /* [threads] rows of one plane, and windows */
+    BlockRow **held; /* [threads] what is in these rows (blocks_pass.h) */
+    real **window;   /* [threads] up, down: the z windows of a plane's places, [12] and [6] blocks
+                        each; none unless `running` */
 };
 
 /* What a pass does with the 12 sums of one or two blocks' regions, the second's after the first's;

@@ -15,15 +15,12 @@ static bool occupied(const LsmLattice *l, int column, int y, int z)
 static void add_block(Lsm *lsm, Blocks *box, int column, int y, int z)
 {
     long block = lsm->blocks++;
-    box->whole[block] = true;
     for (int lane = 0; lane < SM_LANES; lane++) {
         long p = lsm_lattice_find(&lsm->lattice, column * SM_LANES + lane, y, z);
         lsm->particle[block * SM_LANES + lane] = (int)p;
-        box->site[block][lane] = p >= 0 ? -1 : 0;
-        if (p >= 0)
-            lsm->slot[p] = (int)(block * SM_LANES + lane);
-        else
-            box->whole[block] = false;
+        if (p < 0) continue;
+        lsm->slot[p] = (int)(block * SM_LANES + lane);
+        box->site[block] |= (uint16_t)(1 << lane);
     }
 }
 
@@ -158,8 +155,7 @@ void lsm_blocks_build(Lsm *lsm)
     box->plane_run = sm_alloc((size_t)planes + 1, sizeof(int));
     box->row_run = sm_alloc((size_t)l->size[1] * (size_t)planes + 1, sizeof(int));
     box->run = sm_alloc((size_t)blocks + 1, sizeof(BlockRun));
-    box->site = sm_alloc((size_t)blocks + 1, sizeof(ivec));
-    box->whole = sm_alloc((size_t)blocks, sizeof(bool));
+    box->site = sm_alloc((size_t)blocks, sizeof *box->site);
     box->listed = sm_alloc((size_t)blocks, sizeof(bool));
     box->mixed = sm_alloc((size_t)blocks, sizeof(bool));
     lsm->layers = planes;
@@ -215,7 +211,7 @@ bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
 static size_t scratch_size(const Lsm *lsm)
 {
     size_t width = (size_t)lsm->box->width, side = (size_t)lsm->side;
-    return width * SM_LANES * (2 * (side + 1) * 12 + 2 * 12);
+    return width * SM_LANES * (2 * (side + 1) * 12 + 3 * 12);
 }
 
 /* Reals of one thread's z windows, up and down. */
@@ -229,9 +225,11 @@ static void free_shared(Blocks *box)
 {
     for (int t = 0; t < box->threads; t++) {
         free(box->scratch[t]);
+        free(box->held[t]);
         free(box->window[t]);
     }
     free(box->scratch);
+    free(box->held);
     free(box->window);
     free(box->down);
     free(box->down_memory);
@@ -268,9 +266,11 @@ void lsm_blocks_share(Lsm *lsm)
         box->down[z] = box->down_memory + store[z] * most * 6 * SM_LANES;
     free(store);
     box->scratch = sm_alloc((size_t)lsm->threads, sizeof *box->scratch);
+    box->held = sm_alloc((size_t)lsm->threads, sizeof *box->held);
     box->window = sm_alloc((size_t)lsm->threads, sizeof *box->window);
     for (int t = 0; t < lsm->threads; t++) {
         box->scratch[t] = sm_alloc(scratch_size(lsm), sizeof(real));
+        box->held[t] = sm_alloc(2 * ((size_t)lsm->side + 1), sizeof(BlockRow));
         box->window[t] = sm_alloc(window_size(lsm), sizeof(real));
     }
     long own = (long)(scratch_size(lsm) + window_size(lsm));
@@ -280,7 +280,7 @@ void lsm_blocks_share(Lsm *lsm)
 long lsm_blocks_bytes(const Lsm *lsm)
 {
     long a_block =
-        (lsm->side + 1) * (long)sizeof(int) + (long)sizeof(ivec) + 3 * (long)sizeof(bool);
+        (lsm->side + 1) * (long)sizeof(int) + (long)sizeof *lsm->box->site + 2 * (long)sizeof(bool);
     long rows = lsm->box->plane_run[lsm->layers] * (long)sizeof(BlockRun);
     const LsmLattice *l = &lsm->lattice;
     rows += (long)l->size[1] * l->size[2] * (l->words * (long)sizeof(uint64_t) + (long)sizeof(int));
@@ -298,7 +298,6 @@ void lsm_blocks_free(Blocks *box)
     free(box->along_z);
     free(box->site);
     free(box->passable);
-    free(box->whole);
     free(box->listed);
     free(box->mixed);
     free(box);

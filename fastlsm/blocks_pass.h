@@ -4,56 +4,10 @@
 #define LSM_BLOCKS_PASS_H
 
 #include "../lib/rigid_lanes.h"
-#include "blocks.h"
+#include "blocks_far.h"
+#include "blocks_rows.h"
 #include "match.h"
 #include "window.h"
-
-#include <string.h>
-
-/* One body serves shape matching and damping. Values are numbered 3 k + d, d = 0..2 for x, y, z:
- * up, k counts (P, Pz, Px, Py) and down (Q, Rz, Rx, Ry) in the order in which the chain's stages
- * add and use them; damping sums four plain triples up and two down. */
-enum { BLOCK = 12 * SM_LANES, BLOCK_DOWN = 6 * SM_LANES };
-
-/* Scratch of a thread. Rings hold the last 2 w + 2 rows of a plane, each [width][BLOCK]. */
-typedef struct {
-    long pitch;      /* values in a row */
-    int ring;        /* rows in a ring */
-    real *above;     /* [ring] rows after the stages up along z and x */
-    real *below;     /* [ring] rows after `solve` */
-    real *window[2]; /* up, down: each column's window of the y stage, [BLOCK] */
-    real *plane;     /* up: each place's window of the z stage, [BLOCK] */
-} Scratch;
-
-static Scratch scratch_of(const Lsm *lsm, int thread)
-{
-    int width = lsm->box->width;
-    Scratch s = {.pitch = width * (long)BLOCK, .ring = lsm->side + 1};
-    s.above = lsm->box->scratch[thread];
-    s.below = s.above + s.ring * s.pitch;
-    s.window[0] = s.below + s.ring * s.pitch;
-    s.window[1] = s.window[0] + s.pitch;
-    s.plane = lsm->box->window[thread];
-    return s;
-}
-
-/* Where the y stage of a row reads: rows y - w - 1 .. y + w of a ring, and the windows. */
-typedef struct {
-    const real *row[LSM_MAX_SIDE + 1];
-    real *window;
-    bool running;
-} Around;
-
-/* `slot` of the ring holds row y + w. */
-SM_INLINE Around rows_around(const Lsm *lsm, const Scratch *s, int way, int slot, int w)
-{
-    Around around = {.window = s->window[way], .running = lsm->box->running};
-    for (int b = 0; b < 2 * w + 2; b++) {
-        slot = slot + 1 == s->ring ? 0 : slot + 1;
-        around.row[b] = (way ? s->below : s->above) + slot * s->pitch;
-    }
-    return around;
-}
 
 /* Value f of the y stage at a column, and its moment, number m, unless that is NULL. */
 SM_INLINE vec window_y(const Around *in, long column, int w, bool moving, int f, int m, vec *moment)
@@ -101,7 +55,7 @@ SM_INLINE vec window_y_less(const Around *in, long column, int w, bool moving, i
 /* Where sums pass through particles only, those of other sites are dropped (blocks.h). */
 SM_INLINE vec through(const Lsm *lsm, long block, int w, vec sum)
 {
-    return w > 1 ? sum : lanes_and(sum, lsm->box->site[block]);
+    return w > 1 ? sum : lanes_keep(lsm->box->site[block], sum);
 }
 
 /* What the z stage up sums of a block: value d of m~ x, or of damping's four triples. */
@@ -194,26 +148,31 @@ SM_INLINE void run_up(const Lsm *lsm, const BlockRun *run, int w, bool damping, 
     }
 }
 
-/* The runs of a row of a plane. */
-typedef struct {
-    const BlockRun *run;
-    int runs;
-    bool full; /* blocks all the way */
-} Row;
-
-SM_INLINE Row row_at(const Lsm *lsm, int plane, int y)
+/* The same where w >= FAR, for all d. */
+SM_INLINE void run_up_far(const Lsm *lsm, const BlockRun *run, int w, bool damping, bool moving,
+                          real *kept, real *row)
 {
-    const Blocks *box = lsm->box;
-    if (y < 0 || y >= lsm->lattice.size[1]) return (Row){NULL, 0, false};
-    const int *first = box->row_run + plane * (long)lsm->lattice.size[1] + y;
-    const BlockRun *run = box->run + first[0];
-    int runs = first[1] - first[0];
-    return (Row){run, runs, run[runs].first - run->first == box->width};
+    int n = damping ? 4 : 2;
+    real *first = row + run->column * (long)BLOCK;
+    kept += run->column * (long)BLOCK;
+    for (int i = 0; i < run->count; i++)
+        for (int d = 0; d < 3; d++) {
+            vec sum[4];
+            stage_z_up(lsm, run->first + i, w, damping, moving, d, kept + i * (long)BLOCK, sum);
+            for (int k = 0; k < n; k++)
+                lanes_store(first + i * (long)BLOCK + (3 * k + d) * SM_LANES, sum[k]);
+        }
+    for (int f = 0; f < 3 * n; f++)
+        far_sum(first + f * SM_LANES, run->count, BLOCK, w, damping || f > 2 ? 0 : 6 * SM_LANES);
 }
 
 SM_INLINE void run_up_all(const Lsm *lsm, const BlockRun *run, int w, bool damping, bool moving,
                           real *kept, real *row)
 {
+    if (w >= FAR && lsm->box->running) {
+        run_up_far(lsm, run, w, damping, moving, kept, row);
+        return;
+    }
     if (damping) /* in turn: all at once would not fit into registers */
         for (int d = 0; d < 3; d++) run_up(lsm, run, w, true, moving, d, 1, kept, row);
     else
@@ -221,10 +180,9 @@ SM_INLINE void run_up_all(const Lsm *lsm, const BlockRun *run, int w, bool dampi
 }
 
 /* Rows have zeros where they have no blocks. */
-SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, Row at, int slot, int w, bool damping)
+SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, BlockRow at, int slot, int w, bool damping)
 {
-    real *row = s->above + slot * s->pitch;
-    if (!at.full) memset(row, 0, (size_t)s->pitch * sizeof(real));
+    real *row = row_for(s, 0, slot, at);
     for (int i = 0; i < at.runs; i++) {
         const BlockRun *run = at.run + i;
         real *kept = w >= RUNNING ? s->plane + run->y * s->pitch : NULL;
@@ -268,12 +226,11 @@ SM_INLINE void run_solve(Lsm *lsm, const Around *in, const BlockRun *run, int la
 
 /* The stage up along y and `solve` for the row whose row y + w is in slot `newest` of the ring
  * `above`, into `slot` of the ring `below`. */
-SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, Row at, int newest, int slot, int layer, int w,
-                         bool damping, BlockSolve *solve, SmLaps *laps)
+SM_INLINE void row_solve(Lsm *lsm, const Scratch *s, BlockRow at, int newest, int slot, int layer,
+                         int w, bool damping, BlockSolve *solve, SmLaps *laps)
 {
-    real *row = s->below + slot * s->pitch;
+    real *row = row_for(s, 1, slot, at);
     Around in = rows_around(lsm, s, 0, newest, w);
-    if (!at.full) memset(row, 0, (size_t)s->pitch * sizeof(real));
     for (int i = 0; i < at.runs; i++) {
         if (w >= RUNNING && at.run[i].moves_y)
             run_solve(lsm, &in, at.run + i, layer, w, damping, true, row, solve, laps);
@@ -294,43 +251,82 @@ SM_INLINE void stage_y_down(const Lsm *lsm, const Around *in, const BlockRun *ru
     for (int k = 0; k < n; k++) out[k] = through(lsm, run->first + i, w, out[k]);
 }
 
-/* The stages down along y and x for values 3 k + d of a run: 4 -> 3 -> 2 of them, into the plane's
- * store. */
+/* The stages down along y and x for values 3 k + d of a run, d = first .. first + parts - 1: 4 -> 3
+ * -> 2 of them, into the plane's store. */
 SM_INLINE void run_down(const Lsm *lsm, const Around *in, const BlockRun *run, int w, bool damping,
-                        bool moving, int d, real *out)
+                        bool moving, int first, int parts, real *out)
 {
     int n = damping ? 2 : 3;
-    vec before[3], here[3], after[3], sum[3], moment = lanes_set(0);
-    for (int k = 0; k < n; k++) before[k] = lanes_set(0);
-    stage_y_down(lsm, in, run, 0, w, damping, moving, d, here);
-    for (int i = 0; i < run->count; i++, out += BLOCK_DOWN) {
-        for (int k = 0; k < n; k++) after[k] = lanes_set(0);
-        if (i + 1 < run->count) stage_y_down(lsm, in, run, i + 1, w, damping, moving, d, after);
-        for (int k = 0; k < n; k++) {
-            sum[k] = window_sum_x(before[k], here[k], after[k], w, k == 2 ? &moment : NULL);
-            before[k] = here[k];
-            here[k] = after[k];
-        }
-        if (!damping) sum[0] -= moment;
-        for (int k = 0; k < 2; k++)
-            lanes_store(out + (3 * k + d) * SM_LANES, through(lsm, run->first + i, w, sum[k]));
+    vec before[3][3], here[3][3], after[3][3], sum[3], moment = lanes_set(0);
+    for (int d = 0; d < parts; d++) {
+        for (int k = 0; k < n; k++) before[d][k] = lanes_set(0);
+        stage_y_down(lsm, in, run, 0, w, damping, moving, first + d, here[d]);
     }
+    for (int i = 0; i < run->count; i++, out += BLOCK_DOWN)
+        for (int d = 0; d < parts; d++) {
+            if (i + 1 < run->count)
+                stage_y_down(lsm, in, run, i + 1, w, damping, moving, first + d, after[d]);
+            else
+                for (int k = 0; k < n; k++) after[d][k] = lanes_set(0);
+            for (int k = 0; k < n; k++) {
+                sum[k] =
+                    window_sum_x(before[d][k], here[d][k], after[d][k], w, k == 2 ? &moment : NULL);
+                before[d][k] = here[d][k];
+                here[d][k] = after[d][k];
+            }
+            if (!damping) sum[0] -= moment;
+            for (int k = 0; k < 2; k++)
+                lanes_store(out + (3 * k + first + d) * SM_LANES,
+                            through(lsm, run->first + i, w, sum[k]));
+        }
+}
+
+/* The same where w >= FAR, for all d; `line` is room for a row. */
+SM_INLINE void run_down_far(const Lsm *lsm, const Around *in, const BlockRun *run, int w,
+                            bool damping, bool moving, real *line, real *out)
+{
+    int n = damping ? 2 : 3;
+    for (int i = 0; i < run->count; i++)
+        for (int d = 0; d < 3; d++) {
+            vec sum[3];
+            stage_y_down(lsm, in, run, i, w, damping, moving, d, sum);
+            for (int k = 0; k < n; k++)
+                lanes_store(line + i * (long)BLOCK + (3 * k + d) * SM_LANES, sum[k]);
+        }
+    for (int f = 0; f < 3 * n; f++)
+        far_sum(line + f * SM_LANES, run->count, BLOCK, w, f < 6 ? 0 : 3 * SM_LANES);
+    for (int i = 0; i < run->count; i++, line += BLOCK, out += BLOCK_DOWN)
+        for (int f = 0; f < 6; f++) {
+            vec sum = lanes_load(line + f * SM_LANES);
+            if (!damping && f < 3) sum -= lanes_load(line + (9 + f) * SM_LANES);
+            lanes_store(out + f * SM_LANES, sum);
+        }
 }
 
 /* The stages down along y and x for the row whose row y + w is in slot `newest` of `below`. */
-SM_INLINE void row_down(const Lsm *lsm, const Scratch *s, Row at, int newest, int plane, int w,
+SM_INLINE void row_down(const Lsm *lsm, const Scratch *s, BlockRow at, int newest, int plane, int w,
                         bool damping)
 {
     Around in = rows_around(lsm, s, 1, newest, w);
     for (int i = 0; i < at.runs; i++) {
         const BlockRun *run = at.run + i;
         real *out = lsm->box->down[plane] + (run->first - lsm->layer_block[plane]) * BLOCK_DOWN;
-        for (int d = 0; d < 3; d++) {
-            if (w >= RUNNING && run->moves_y)
-                run_down(lsm, &in, run, w, damping, true, d, out);
+        if (w >= FAR && in.running) {
+            if (run->moves_y)
+                run_down_far(lsm, &in, run, w, damping, true, s->line, out);
             else
-                run_down(lsm, &in, run, w, damping, false, d, out);
+                run_down_far(lsm, &in, run, w, damping, false, s->line, out);
+            continue;
         }
+        if (w < RUNNING)
+            run_down(lsm, &in, run, w, damping, false, 0, 3, out);
+        else
+            for (int d = 0; d < 3; d++) {
+                if (w >= RUNNING && run->moves_y)
+                    run_down(lsm, &in, run, w, damping, true, d, 1, out);
+                else
+                    run_down(lsm, &in, run, w, damping, false, d, 1, out);
+            }
     }
 }
 
@@ -345,8 +341,8 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, 
     Scratch s = scratch_of(lsm, thread);
     int first = box->run[begin].y, last = box->run[end - 1].y;
     SmStage stage = damping ? SM_DAMPING : SM_FAST_SUM;
-    memset(s.above + (s.ring - w) * s.pitch, 0,
-           (size_t)(w * s.pitch) * sizeof(real)); /* above `first` */
+    for (int slot = s.ring - w; slot < s.ring; slot++) /* above `first` */
+        row_for(&s, 0, slot, (BlockRow){NULL, 0});
     for (int y = first, slot = 0; y <= last + 2 * w; y++) {
         int behind = slot < w ? slot - w + s.ring : slot - w; /* of row y - w */
         row_up(lsm, &s, row_at(lsm, plane, y), slot, w, damping);
@@ -358,127 +354,35 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool damping, 
     }
 }
 
-/* Part 1 of a pass for one plane: sums up, `solve` at every block, sums down along x and y. */
-SM_INLINE void lsm_blocks_up(Lsm *lsm, int plane, int thread, bool damping, BlockSolve *solve,
-                             SmLaps *laps)
-{
-#define WIDTH(w)                                                                                   \
-    if (damping)                                                                                   \
-        plane_pass(lsm, plane, thread, w, true, solve, laps);                                      \
-    else                                                                                           \
-        plane_pass(lsm, plane, thread, w, false, solve, laps);                                     \
-    break
-    switch (lsm->w) { /* constants for the usual widths */
-#ifdef __AVX512F__    /* elsewhere a vector is many instructions, and compiling takes too long */
-    case 1:
-        WIDTH(1);
-    case 2:
-        WIDTH(2);
-    case 3:
-        WIDTH(3);
-    case 4:
-        WIDTH(4);
-    case 5:
-        WIDTH(5);
+/* Part 1 of a pass for one plane: sums up, `solve` at every block, sums down along x and y.
+ * PLANE_PASSES(damping, solve) makes lsm_blocks_up() of them, with a function for each of the usual
+ * widths: in one together the compiler runs out of registers. */
+typedef void PlanePass(Lsm *lsm, int plane, int thread, SmLaps *laps);
+
+#define PLANE_PASS(name, width, damping, solve)                                                    \
+    static __attribute__((noinline)) void name(Lsm *lsm, int plane, int thread, SmLaps *laps)      \
+    {                                                                                              \
+        plane_pass(lsm, plane, thread, width, damping, solve, laps);                               \
+    }
+#ifdef __AVX512F__
+#define PLANE_PASSES(damping, solve)                                                               \
+    PLANE_PASS(plane_pass_any, lsm->w, damping, solve)                                             \
+    PLANE_PASS(plane_pass_1, 1, damping, solve)                                                    \
+    PLANE_PASS(plane_pass_2, 2, damping, solve)                                                    \
+    PLANE_PASS(plane_pass_3, 3, damping, solve)                                                    \
+    PLANE_PASS(plane_pass_4, 4, damping, solve)                                                    \
+    PLANE_PASS(plane_pass_5, 5, damping, solve)                                                    \
+    PLANE_PASS(plane_pass_6, 6, damping, solve)                                                    \
+    PLANE_PASS(plane_pass_7, 7, damping, solve)                                                    \
+    static void lsm_blocks_up(Lsm *lsm, int plane, int thread, SmLaps *laps)                       \
+    {                                                                                              \
+        static PlanePass *const pass[] = {                                                         \
+            plane_pass_any, plane_pass_1, plane_pass_2, plane_pass_3,                              \
+            plane_pass_4,   plane_pass_5, plane_pass_6, plane_pass_7};                             \
+        pass[lsm->w < 8 ? lsm->w : 0](lsm, plane, thread, laps);                                   \
+    }
+#else /* a vector is many instructions, and compiling them for each width takes too long */
+#define PLANE_PASSES(damping, solve) PLANE_PASS(lsm_blocks_up, lsm->w, damping, solve)
 #endif
-    default:
-        WIDTH(lsm->w);
-    }
-#undef WIDTH
-}
-
-/* Where part 1 has left a block's sums down along y and x; NULL for the empty block. */
-SM_INLINE const real *down_at(const Lsm *lsm, int plane, int block)
-{
-    if (block == lsm->blocks) return NULL;
-    return lsm->box->down[plane] + (block - lsm->layer_block[plane]) * BLOCK_DOWN;
-}
-
-SM_INLINE void sum_z_down(const Lsm *lsm, int plane, long block, int w, bool damping, vec sum[6])
-{
-    const int *along = lsm->box->along_z + block * (2 * w + 1);
-    for (int f = 0; f < 6; f++) sum[f] = lanes_set(0);
-    for (int c = 0; c <= 2 * w; c++) {
-        const real *in = down_at(lsm, plane + c - w, along[c]);
-        if (!in) continue;
-        for (int f = 0; f < 6; f++) {
-            if (f < 3 || damping || w >= RUNNING) sum[f] += lanes_load(in + f * SM_LANES);
-            if (f >= 3 && !damping && c != w)
-                sum[f - 3] -= (real)(c - w) * lanes_load(in + f * SM_LANES);
-        }
-    }
-}
-
-/* The same from the window of the block in the plane before. */
-SM_INLINE void move_z_down(const Lsm *lsm, int plane, long block, int w, bool damping, vec sum[6])
-{
-    const int *along = lsm->box->along_z + block * (2 * w + 1);
-    const int *along_before = lsm->box->along_z + along[w - 1] * (long)(2 * w + 1);
-    const real *leave = down_at(lsm, plane - w - 1, along_before[0]);
-    const real *enter = down_at(lsm, plane + w, along[2 * w]);
-    for (int d = 0; d < 3; d++) {
-        vec out[2] = {{0}}, join[2] = {{0}};
-        for (int k = 0; k < 2; k++) {
-            if (leave) out[k] = lanes_load(leave + (3 * k + d) * SM_LANES);
-            if (enter) join[k] = lanes_load(enter + (3 * k + d) * SM_LANES);
-        }
-        if (damping)
-            for (int k = 0; k < 2; k++) window_move(out[k], join[k], w, &sum[3 * k + d], NULL);
-        else
-            window_less_move(out, join, w, &sum[d], &sum[3 + d]);
-    }
-}
-
-/* The last stage down, along z, for one block of `plane`: 3 or 6 values. */
-SM_INLINE void stage_z_down(const Lsm *lsm, int plane, long block, bool moving, int thread, int w,
-                            bool damping, vec sum[6])
-{
-    if (w < RUNNING || !lsm->box->running) {
-        sum_z_down(lsm, plane, block, w, damping, sum);
-        return;
-    }
-    real *kept = lsm->box->window[thread] + lsm->box->width * (long)lsm->lattice.size[1] * BLOCK +
-                 lsm->box->place[block] * (long)BLOCK_DOWN;
-    if (moving) {
-        for (int f = 0; f < 6; f++) sum[f] = lanes_load(kept + f * SM_LANES);
-        move_z_down(lsm, plane, block, w, damping, sum);
-    } else {
-        sum_z_down(lsm, plane, block, w, damping, sum);
-    }
-    for (int f = 0; f < 6; f++) lanes_store(kept + f * SM_LANES, sum[f]);
-}
-
-/* What a pass does at the end with a block's 3 or 6 sums. */
-typedef void BlockEnd(Lsm *lsm, long block, vec sum[6], SmLaps *laps);
-
-SM_INLINE void plane_down(Lsm *lsm, int plane, int thread, int w, bool damping, BlockEnd *end,
-                          SmLaps *laps)
-{
-    const Blocks *box = lsm->box;
-    for (int r = box->plane_run[plane]; r < box->plane_run[plane + 1]; r++) {
-        const BlockRun *run = &box->run[r];
-        for (long block = run->first; block < run->first + run->count; block++) {
-            vec sum[6];
-            stage_z_down(lsm, plane, block, run->moves_z, thread, w, damping, sum);
-            end(lsm, block, sum, laps);
-        }
-    }
-}
-
-/* Part 2 of a pass for one plane: the last stage down, along z, and what the pass ends with. */
-SM_INLINE void lsm_blocks_down(Lsm *lsm, int plane, int thread, bool damping, BlockEnd *end,
-                               SmLaps *laps)
-{
-    switch (lsm->w) {
-    case 1:
-        plane_down(lsm, plane, thread, 1, damping, end, laps);
-        break;
-    case 2:
-        plane_down(lsm, plane, thread, 2, damping, end, laps);
-        break;
-    default:
-        plane_down(lsm, plane, thread, lsm->w, damping, end, laps);
-    }
-}
 
 #endif

@@ -215,6 +215,7 @@ static void place_lists(Lsm *lsm, const bool *listed)
     }
     for (long i = lsm->side; i < lsm->sets.bar_count * lsm->side; i++)
         if (lsm->sets.bar[i]) box->listed[(lsm->sets.bar[i] - 1) / SM_LANES] = true;
+    if (lsm->corrections) lsm_corrections_mark(lsm);
 }
 
 /* Slots that have rows. */

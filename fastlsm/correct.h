@@ -53,7 +53,7 @@ SM_INLINE void correct_up(const Lsm *lsm, long block, bool products, vec sums[12
     Span span = corrections_of(&lsm->corrections->up, block);
     if (span.at == span.end) return;
     vec sum[12];
-    memcpy(sum, sums, sizeof sum);
+    lanes_copy(12, sums, sum);
     clear_lanes(lsm->corrections->up.clear[block], 12, sum);
     for (const Correction *at = span.at; at < span.end; at++) {
         vec weight = at->sign * lsm->particle_const[lsm->block_const[at->source]].weight;
@@ -62,7 +62,7 @@ SM_INLINE void correct_up(const Lsm *lsm, long block, bool products, vec sums[12
         else
             correct_region(lsm, at, weight, sum);
     }
-    memcpy(sums, sum, sizeof sum);
+    lanes_copy(12, sum, sums);
 }
 
 static __attribute__((noinline, unused)) void correct_regions(const Lsm *lsm, long block,
@@ -79,19 +79,23 @@ static __attribute__((noinline, unused)) void correct_products(const Lsm *lsm, l
 
 /* The sums down of a block's particles: of transforms at the particles, or of `values` plain ones.
  */
-SM_INLINE void correct_particles(const Lsm *lsm, long block, bool plain, vec *sum)
+SM_INLINE void correct_down(const Lsm *lsm, long block, bool plain, vec *sums)
 {
+    int n = plain ? 6 : 3;
+    vec sum[6];
     Span span = corrections_of(&lsm->corrections->down, block);
-    clear_lanes(lsm->corrections->down.clear[block], plain ? 6 : 3, sum);
+    lanes_copy(n, sums, sum);
+    clear_lanes(lsm->corrections->down.clear[block], n, sum);
     for (const Correction *at = span.at; at < span.end; at++) {
         const real *T = lsm->corrections->kept + at->source * 12L * SM_LANES;
-        for (int f = 0; f < (plain ? 6 : 3); f++) {
+        for (int f = 0; f < n; f++) {
             vec value = lanes_load(T + f * SM_LANES);
             for (int k = 0; k < 3 && !plain; k++)
                 value -= at->offset[2 - k] * lanes_load(T + (3 * k + 3 + f) * SM_LANES);
             sum[f] += lanes_pick(at->sign * value, at->shift, at->lanes);
         }
     }
+    lanes_copy(n, sum, sums);
 }
 
 #endif

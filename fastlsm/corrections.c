@@ -172,6 +172,20 @@ void lsm_corrections_close(CorrectionsBuilder *builder, Lsm *lsm)
     number_rows(lsm, corrections);
 }
 
+static bool mends(const CorrectionList *list, long block)
+{
+    return list->first[block] < list->first[block + 1] || list->clear[block];
+}
+
+void lsm_corrections_mark(const Lsm *lsm)
+{
+    const Corrections *c = lsm->corrections;
+    for (long block = 0; block < lsm->blocks; block++) {
+        lsm->box->mixed[block] = mends(&c->up, block) || mends(&c->down, block);
+        lsm->box->listed[block] = c->row[block] >= 0;
+    }
+}
+
 void lsm_corrections_free(Corrections *corrections)
 {
     if (!corrections) return;

@@ -15,6 +15,7 @@
 #define lsm_corrections_open  SM_NAME(lsm_corrections_open)
 #define lsm_corrections_add   SM_NAME(lsm_corrections_add)
 #define lsm_corrections_close SM_NAME(lsm_corrections_close)
+#define lsm_corrections_mark  SM_NAME(lsm_corrections_mark)
 #define lsm_corrections_free  SM_NAME(lsm_corrections_free)
 #define lsm_corrections_bytes SM_NAME(lsm_corrections_bytes)
 
@@ -48,14 +49,16 @@ CorrectionsBuilder *lsm_corrections_open(const Lsm *lsm);
 void lsm_corrections_add(CorrectionsBuilder *builder, long p, const uint64_t *rows);
 void lsm_corrections_close(CorrectionsBuilder *builder, Lsm *lsm);
 
+/* Sets `mixed` and `listed` of the blocks (blocks.h) that corrections mend and read. */
+void lsm_corrections_mark(const Lsm *lsm);
+
 void lsm_corrections_free(Corrections *corrections);
 
 long lsm_corrections_bytes(const Lsm *lsm);
 
-/* Keeps what a block's regions bring down (BlockSolve), for corrections. */
+/* Keeps what a block's regions bring down (BlockSolve), for corrections that read it. */
 SM_INLINE void keep_solved(const Lsm *lsm, long block, int values, const vec *out)
 {
-    if (!lsm->corrections || lsm->corrections->row[block] < 0) return;
     real *kept = lsm->corrections->kept + lsm->corrections->row[block] * 12L * SM_LANES;
     for (int i = 0; i < values; i++) lanes_store(kept + i * SM_LANES, out[i]);
 }

@@ -1,6 +1,6 @@
 /* damping.c - region damping (fastlsm eq. 14): each region's rigid velocity, averaged over the
  * regions of a particle, pulls the particle's velocity towards it. */
-#include "blocks_pass.h"
+#include "blocks_down.h"
 #include "chain_sums.h"
 #include "correct.h"
 #include "match.h"
@@ -11,7 +11,7 @@
 static void weigh(Lsm *lsm, int layer)
 {
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
-        if (lsm->box && !lsm->box->listed[block]) continue;
+        if (lsm->box && (lsm->corrections || !lsm->box->listed[block])) continue;
         vec part[4], field[16] = {{0}};
         real *row[SM_LANES];
         for (int d = 0; d < 3; d++) {
@@ -78,23 +78,49 @@ static void solve_tile(Lsm *lsm, long tile)
     store_velocities(lsm, tile, out);
 }
 
+/* As in fastlsm.c: where lists or corrections make a block's sums exact. */
+static __attribute__((noinline)) void mend_copies(const Lsm *lsm, long block, vec F[12])
+{
+    if (lsm->corrections) {
+        correct_products(lsm, block, F);
+        return;
+    }
+    const int *region = lsm->block_region + block * SM_LANES;
+    vec listed[16];
+    region_sums(lsm, region, listed);
+    ivec lanes = listed_lanes(region);
+    for (int i = 0; i < 12; i++) F[i] = lanes_select(lanes, listed[i], F[i]);
+}
+
+SM_INLINE void mend_sums(const Lsm *lsm, long block, vec F[12])
+{
+    vec copy[12];
+    memcpy(copy, F, sizeof copy);
+    mend_copies(lsm, block, copy);
+    memcpy(F, copy, sizeof copy);
+}
+
+/* Where lists or corrections read a block's rigid velocities. */
+static __attribute__((noinline)) void keep_velocities(const Lsm *lsm, long block, const vec out[6])
+{
+    if (lsm->corrections)
+        keep_solved(lsm, block, 6, out);
+    else
+        store_velocities(lsm, block, out);
+}
+
 SM_INLINE void solve_block(const Lsm *lsm, long block, vec *F, vec *out)
 {
     vec c[3];
-    if (lsm->corrections) {
-        correct_products(lsm, block, F);
-    } else if (lsm->box->mixed[block]) {
-        const int *region = lsm->block_region + block * SM_LANES;
-        vec listed[16];
-        region_sums(lsm, region, listed);
-        ivec lanes = listed_lanes(region);
-        for (int i = 0; i < 12; i++) F[i] = lanes_select(lanes, listed[i], F[i]);
-    }
+    if (lsm->box->mixed[block]) mend_sums(lsm, block, F);
     load3(lsm->centre + block * 3 * SM_LANES, c);
     rigid_velocity(F, c, lsm->region_const[lsm->tile_const[block]].inverse_mass, out);
-    for (int i = 0; i < 6; i++) out[i] = lanes_and(out[i], lsm->box->site[block]);
-    if (lsm->box->listed[block]) store_velocities(lsm, block, out);
-    keep_solved(lsm, block, 6, out);
+    for (int i = 0; i < 6; i++) out[i] = lanes_keep(lsm->box->site[block], out[i]);
+    if (lsm->box->listed[block]) {
+        vec copy[6];
+        memcpy(copy, out, sizeof copy);
+        keep_velocities(lsm, block, copy);
+    }
 }
 
 SM_INLINE void solve_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*F)[12],
@@ -104,11 +130,13 @@ SM_INLINE void solve_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*F
     for (int k = 0; k < blocks; k++) solve_block(lsm, block + k, F[k], out[k]);
 }
 
+PLANE_PASSES(true, solve_blocks)
+
 static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     if (lsm->chains) lsm_chain_regions_up(lsm, layer, true);
     if (lsm->box)
-        lsm_blocks_up(lsm, layer, thread, true, solve_blocks, laps);
+        lsm_blocks_up(lsm, layer, thread, laps);
     else
         for (long tile = lsm->layer_tile[layer]; tile < lsm->layer_tile[layer + 1]; tile++)
             solve_tile(lsm, tile);
@@ -136,9 +164,13 @@ SM_INLINE void slow_down(Lsm *lsm, long block, const vec sum[6])
     store3(lsm->x + block * 3 * SM_LANES, x);
 }
 
-/* What lists sum, added to a block's sums. */
-static __attribute__((noinline)) void add_listed(const Lsm *lsm, long block, vec sum[6])
+/* What lists or corrections add to a block's sums. */
+static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec sum[6])
 {
+    if (lsm->corrections) {
+        correct_down(lsm, block, true, sum);
+        return;
+    }
     real sums[6][SM_LANES] __attribute__((aligned(64)));
     for (int f = 0; f < 6; f++) lanes_store(sums[f], sum[f]);
     if (lsm->chains)
@@ -151,12 +183,16 @@ static __attribute__((noinline)) void add_listed(const Lsm *lsm, long block, vec
 SM_INLINE void slow_block(Lsm *lsm, long block, vec sum[6], SmLaps *laps)
 {
     (void)laps;
-    if (lsm->corrections)
-        correct_particles(lsm, block, true, sum);
-    else if (!lsm->box || lsm->box->mixed[block])
-        add_listed(lsm, block, sum);
+    if (!lsm->box || lsm->box->mixed[block]) {
+        vec copy[6];
+        memcpy(copy, sum, sizeof copy);
+        add_mended(lsm, block, copy);
+        memcpy(sum, copy, sizeof copy);
+    }
     slow_down(lsm, block, sum);
 }
+
+PLANE_DOWNS(true, slow_block)
 
 static void slow(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
@@ -166,7 +202,7 @@ static void slow(Lsm *lsm, int layer, int thread, SmLaps *laps)
         vec sum[6] = {{0}};
         slow_block(lsm, block, sum, laps);
     }
-    if (lsm->box) lsm_blocks_down(lsm, layer, thread, true, slow_block, laps);
+    if (lsm->box) lsm_blocks_down(lsm, layer, thread, laps);
     sm_lap(laps, SM_DAMPING);
 }
 

@@ -1,16 +1,16 @@
 /* fastlsm.c - one step of fast lattice shape matching (Rivers and James 2007), top to bottom.
  *
- *     sums over regions   C_r, and moments about the region's centre     fast summation,
- * section 3.1 per region          c_r, A_r, polar decomposition, transform T_r   eqs. 9-11 sums
- * over particles g_i = (1/|R_i|) sum of T_r x0_i                eq. 12 per particle        v,
- * damping, x                                  eqs. 1, 14, 2
+ * - sums over regions (fast summation, section 3.1): C_r, and moments about the region's centre
+ * - per region (eqs. 9-11): c_r, A_r, its polar decomposition, the transform T_r
+ * - sums over particles (fast summation, eq. 12): g_i = (1/|R_i|) sum of T_r x0_i
+ * - per particle (eqs. 1, 14, 2): v, damping, x
  *
  * A step runs through the layers of the lattice as a pipeline (pipeline.h): part 0 makes bars and
  * plates, part 1 finishes the region sums, matches, and makes the adjoint's bars and plates, part 2
  * finishes goal positions and integrates. */
 #include "fastlsm.h"
 
-#include "blocks_pass.h"
+#include "blocks_down.h"
 #include "build.h"
 #include "chain_sums.h"
 #include "correct.h"
@@ -23,7 +23,7 @@
 static void weigh(Lsm *lsm, int layer)
 {
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
-        if (lsm->box && !lsm->box->listed[block]) continue;
+        if (lsm->box && (lsm->corrections || !lsm->box->listed[block])) continue;
         vec weight = lsm->particle_const[lsm->block_const[block]].weight;
         vec p[4] = {lanes_set(1), lanes_set(1), lanes_set(1), lanes_set(0)};
         if (lsm->pass != PASS_CONSTANTS) load3(lsm->x + block * 3 * SM_LANES, p);
@@ -87,18 +87,21 @@ SM_INLINE void rotate(Lsm *lsm, int layer, long tile, int tiles, const vec (*A)[
     }
 }
 
-/* Scatters a tile's transforms as rows (q, Rz, Ry, Rx). */
-static void store_transforms(Lsm *lsm, long tile, const vec q[3], const vec R[9])
+/* What a region brings down: (q, Rz, Ry, Rx). */
+SM_INLINE void transform(const vec q[3], const vec R[9], vec T[12])
+{
+    for (int i = 0; i < 3; i++) {
+        T[i] = q[i];
+        for (int d = 0; d < 3; d++) T[9 - 3 * d + i] = R[i * 3 + d];
+    }
+}
+
+/* Scatters a tile's transforms as rows. */
+SM_INLINE void store_transforms(const Lsm *lsm, long tile, const vec T[12])
 {
     vec padded[16];
     real *row[SM_LANES];
-    for (int i = 0; i < 4; i++) padded[4 * i + 3] = lanes_set(0);
-    for (int i = 0; i < 3; i++) {
-        padded[i] = q[i];
-        padded[4 + i] = R[i * 3 + 2];
-        padded[8 + i] = R[i * 3 + 1];
-        padded[12 + i] = R[i * 3];
-    }
+    for (int i = 0; i < 16; i++) padded[i] = i % 4 < 3 ? T[i / 4 * 3 + i % 4] : lanes_set(0);
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
         row[lane] =
@@ -171,7 +174,10 @@ SM_INLINE void match_tiles(Lsm *lsm, int layer, long tile, int tiles, SmLaps *la
     for (int t = 0; t < tiles; t++) tile_sums(lsm, tile + t, S[t]);
     sm_lap(laps, SM_FAST_SUM);
     if (match_sums(lsm, layer, tile, tiles, (const vec(*)[12])S, q, R, laps))
-        for (int t = 0; t < tiles; t++) store_transforms(lsm, tile + t, q[t], R[t]);
+        for (int t = 0; t < tiles; t++) {
+            transform(q[t], R[t], S[t]);
+            store_transforms(lsm, tile + t, S[t]);
+        }
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
 
@@ -185,13 +191,47 @@ static void replace_sums(const Lsm *lsm, long block, vec S[12])
     for (int i = 0; i < 12; i++) S[i] = lanes_select(lanes, listed[i], S[i]);
 }
 
+/* Where lists or corrections make a block's sums exact. Not inline, and on copies of what stays in
+ * registers for all the other blocks. */
+static __attribute__((noinline)) void mend_copies(const Lsm *lsm, long block, vec S[12])
+{
+    if (lsm->corrections)
+        correct_regions(lsm, block, S);
+    else
+        replace_sums(lsm, block, S);
+}
+
+SM_INLINE void mend_sums(const Lsm *lsm, long block, vec S[12])
+{
+    vec copy[12];
+    memcpy(copy, S, sizeof copy);
+    mend_copies(lsm, block, copy);
+    memcpy(S, copy, sizeof copy);
+}
+
+/* Where lists or corrections read a block's transforms. */
+static __attribute__((noinline)) void keep_copies(const Lsm *lsm, long block, const vec T[12])
+{
+    if (lsm->corrections)
+        keep_solved(lsm, block, 12, T);
+    else
+        store_transforms(lsm, block, T);
+}
+
+SM_INLINE void keep_transforms(const Lsm *lsm, long block, const vec T[12])
+{
+    vec copy[12];
+    memcpy(copy, T, sizeof copy);
+    keep_copies(lsm, block, copy);
+}
+
 /* Empty lanes hold the sums of a unit matrix: the quickest to rotate, and their constants are zero.
  */
-SM_INLINE void empty_sums(ivec site, vec S[12])
+SM_INLINE void empty_sums(unsigned site, vec S[12])
 {
     for (int i = 0; i < 12; i++) {
         bool diagonal = i == 5 || i == 7 || i == 9;
-        S[i] = diagonal ? lanes_select(site, S[i], lanes_set(1)) : lanes_and(S[i], site);
+        S[i] = diagonal ? lanes_choose(site, S[i], lanes_set(1)) : lanes_keep(site, S[i]);
     }
 }
 
@@ -202,11 +242,8 @@ SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S
     const Blocks *box = lsm->box;
     vec R[2][9], q[2][3];
     for (int k = 0; k < blocks; k++) {
-        if (lsm->corrections)
-            correct_regions(lsm, block + k, S[k]);
-        else if (box->mixed[block + k])
-            replace_sums(lsm, block + k, S[k]);
-        if (!box->whole[block + k]) empty_sums(box->site[block + k], S[k]);
+        if (box->mixed[block + k]) mend_sums(lsm, block + k, S[k]);
+        empty_sums(box->site[block + k], S[k]);
     }
     sm_lap(laps, SM_FAST_SUM);
     bool matched = match_sums(lsm, layer, block, blocks, (const vec(*)[12])S, q, R, laps);
@@ -215,17 +252,15 @@ SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S
             for (int f = 0; f < 12; f++) out[k][f] = lanes_set(0);
             continue;
         }
-        if (box->listed[block + k]) store_transforms(lsm, block + k, q[k], R[k]);
-        for (int i = 0; i < 3; i++) {
-            out[k][i] = q[k][i];
-            for (int d = 0; d < 3; d++) out[k][9 - 3 * d + i] = R[k][i * 3 + d];
-        }
-        for (int i = 0; i < 12 && !box->whole[block + k]; i++) /* empty lanes bring nothing down */
-            out[k][i] = lanes_and(out[k][i], box->site[block + k]);
-        keep_solved(lsm, block + k, 12, out[k]);
+        transform(q[k], R[k], out[k]);
+        for (int f = 0; f < 12; f++) /* empty lanes bring nothing down */
+            out[k][f] = lanes_keep(box->site[block + k], out[k][f]);
+        if (box->listed[block + k]) keep_transforms(lsm, block + k, out[k]);
     }
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
+
+PLANE_PASSES(false, match_blocks)
 
 static void match_layer(Lsm *lsm, int layer, SmLaps *laps)
 {
@@ -239,7 +274,7 @@ static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
     lsm->sweeps[layer] = 0;
     if (lsm->chains) lsm_chain_regions_up(lsm, layer, false);
     if (lsm->box)
-        lsm_blocks_up(lsm, layer, thread, false, match_blocks, laps);
+        lsm_blocks_up(lsm, layer, thread, laps);
     else
         match_layer(lsm, layer, laps);
     if (lsm->pass == PASS_CONSTANTS) return;
@@ -254,9 +289,13 @@ static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
     sm_lap(laps, SM_FAST_SUM);
 }
 
-/* The lanes of a block that lists sum, added to its |R_i| g_i. */
-static __attribute__((noinline)) void add_listed(const Lsm *lsm, long block, vec sum[3])
+/* What lists or corrections add to a block's |R_i| g_i. */
+static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec sum[3])
 {
+    if (lsm->corrections) {
+        correct_down(lsm, block, false, sum);
+        return;
+    }
     real sums[3][SM_LANES] __attribute__((aligned(64)));
     store3(sums[0], sum);
     if (lsm->chains)
@@ -290,21 +329,25 @@ SM_INLINE void integrate(Lsm *lsm, long block, const vec sum[3])
 /* A block's particles from |R_i| g_i, to which the lists may have more to add. */
 SM_INLINE void move_block(Lsm *lsm, long block, vec sum[6], SmLaps *laps)
 {
-    if (lsm->corrections)
-        correct_particles(lsm, block, false, sum);
-    else if (!lsm->box || lsm->box->mixed[block])
-        add_listed(lsm, block, sum);
+    if (!lsm->box || lsm->box->mixed[block]) {
+        vec copy[3];
+        memcpy(copy, sum, sizeof copy);
+        add_mended(lsm, block, copy);
+        memcpy(sum, copy, sizeof copy);
+    }
     sm_lap(laps, SM_FAST_SUM);
     integrate(lsm, block, sum);
     sm_lap(laps, SM_OTHER);
 }
+
+PLANE_DOWNS(false, move_block)
 
 static void move(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     if (lsm->pass == PASS_CONSTANTS) return;
     if (lsm->chains) lsm_chain_particles(lsm, layer, false);
     if (lsm->box) {
-        lsm_blocks_down(lsm, layer, thread, false, move_block, laps);
+        lsm_blocks_down(lsm, layer, thread, laps);
         return;
     }
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {

@@ -34,6 +34,12 @@ SM_INLINE void store3(real *p, const vec in[3])
     for (int d = 0; d < 3; d++) lanes_store(p + d * SM_LANES, in[d]);
 }
 
+/* Into registers or out of them: memcpy() would be called for as many. */
+SM_INLINE void lanes_copy(int count, const vec *from, vec *to)
+{
+    for (int i = 0; i < count; i++) to[i] = from[i];
+}
+
 SM_INLINE vec4 load4(const real *p)
 {
     return *(const vec4_loose *)p;
@@ -67,6 +73,14 @@ SM_INLINE vec lanes_set(real value)
     return value - (vec){0};
 }
 
+/* 0, 1, 2, .. */
+SM_INLINE vec lanes_number(void)
+{
+    vec number;
+    for (int i = 0; i < SM_LANES; i++) number[i] = (real)i;
+    return number;
+}
+
 SM_INLINE vec lanes_select(ivec mask, vec yes, vec no)
 {
     return (vec)((mask & (ivec)yes) | (~mask & (ivec)no));
@@ -75,6 +89,42 @@ SM_INLINE vec lanes_select(ivec mask, vec yes, vec no)
 SM_INLINE vec lanes_and(vec v, ivec mask)
 {
     return (vec)((ivec)v & mask);
+}
+
+/* Bits say which lanes: bit i is lane i. One instruction, or none where it goes with the one that
+ * makes v. */
+#define LANES_ALL ((1u << SM_LANES) - 1)
+
+#ifndef __AVX512F__
+SM_INLINE ivec lanes_of_bits(unsigned lanes)
+{
+    ivec mask;
+    for (int i = 0; i < SM_LANES; i++) mask[i] = -(lane_int)(lanes >> i & 1);
+    return mask;
+}
+#endif
+
+SM_INLINE vec lanes_choose(unsigned lanes, vec yes, vec no)
+{
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return (vec)_mm512_mask_mov_ps((__m512)no, (__mmask16)lanes, (__m512)yes);
+#elif defined(__AVX512F__)
+    return (vec)_mm512_mask_mov_pd((__m512d)no, (__mmask8)lanes, (__m512d)yes);
+#else
+    return lanes_select(lanes_of_bits(lanes), yes, no);
+#endif
+}
+
+/* Zero in the lanes whose bit is not set. */
+SM_INLINE vec lanes_keep(unsigned lanes, vec v)
+{
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return (vec)_mm512_maskz_mov_ps((__mmask16)lanes, (__m512)v);
+#elif defined(__AVX512F__)
+    return (vec)_mm512_maskz_mov_pd((__mmask8)lanes, (__m512d)v);
+#else
+    return lanes_and(v, lanes_of_bits(lanes));
+#endif
 }
 
 SM_INLINE vec lanes_max(vec a, vec b)

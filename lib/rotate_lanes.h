@@ -68,8 +68,13 @@ SM_INLINE void polar_fast_lanes(int tiles, const vec (*A)[9], const int *slot, s
     ivec tie[2];
     polar_quartic(tiles, A, R, tie);
     for (int t = 0; t < tiles; t++)
-        if (__builtin_expect(lanes_any(tie[t]), 0))
-            polar_ties(A[t], tie[t], slot + t * SM_LANES, last + t * 6 * SM_LANES, R[t]);
+        if (__builtin_expect(lanes_any(tie[t]), 0)) { /* copies: A and R stay in registers */
+            vec from[9], to[9];
+            memcpy(from, A[t], sizeof from);
+            memcpy(to, R[t], sizeof to);
+            polar_ties(from, tie[t], slot + t * SM_LANES, last + t * 6 * SM_LANES, to);
+            memcpy(R[t], to, sizeof to);
+        }
     for (int t = 0; t < tiles; t++) last_store(last + t * 6 * SM_LANES, R[t]);
 }
 
