@@ -64,12 +64,14 @@ static double best_fill(const SmVoxels *v, int lanes, int *turn)
     return best;
 }
 
-/* The fill from which blocks are faster than lists, as measured (shapebench kernels shows both): a
- * large body's lists are beyond the L2 cache, and at w = 1 block form needs few corrections. */
+/* The fill from which blocks are faster than lists, as measured (shapebench kernels shows both): in
+ * a box no sum needs a correction; a large body's lists are beyond the L2 cache, and at w = 1 block
+ * form needs few corrections. */
 static double fill_worth(const SmVoxels *v, const SmEngineParams *params)
 {
     const long large = 30000;
     bool lists_are_slow = v->particle_count >= large && params->w == 1;
+    if (v->cell_count == (long)v->size[0] * v->size[1] * v->size[2]) return 0.5;
     return lists_are_slow && !(params->strain_limit > 0) ? 0.6 : 0.85;
 }
 
