@@ -100,7 +100,7 @@ static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NUL
 static void list_kernels(void)
 {
     const char *name, *group;
-    for (int i = 0; (name = bench_kernel_name(i, &group)); i++) printf("%-20s %s\n", name, group);
+    for (int i = 0; (name = bench_kernel_name(i, &group)); i++) printf("%-26s %s\n", name, group);
 }
 
 static SmCode verdict(const BenchKernel *rows, int count, SmError *error)

@@ -53,7 +53,7 @@ static SmCode list(SmError *error)
         BenchScene scene;
         SmCode code = bench_scene_find(*name, &scene, error);
         if (code) return code;
-        printf("  %-16s %s\n", *name, scene.title);
+        printf("  %-20s %s\n", *name, scene.title);
     }
     int count;
     const SmShape *shape = sm_shapes(&count);

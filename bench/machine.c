@@ -87,7 +87,8 @@ static void read_libraries(size_t size, char *text)
              JANSSON_VERSION);
 }
 
-/* Joins the words, quoted where a shell would not take them as they are. */
+/* Joins the words, quoted where a shell would not take them as they are. The first is the program
+ * and its command. */
 static void quote_command(int argc, char **argv, size_t size, char *text)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
@@ -96,7 +97,7 @@ static void quote_command(int argc, char **argv, size_t size, char *text)
     text[0] = '\0';
     for (int i = 0; i < argc; i++) {
         const char *word = argv[i];
-        bool quote = !*word || word[strspn(word, plain)];
+        bool quote = i > 0 && (!*word || word[strspn(word, plain)]);
         char piece[8];
         for (long at = quote ? -1 : 0; at <= (long)strlen(word); at++) {
             bool end = at == (long)strlen(word);

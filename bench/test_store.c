@@ -173,10 +173,10 @@ static void no_rows(void **state)
 static void machine_is_described(void **state)
 {
     (void)state;
-    static char *arguments[] = {"a b", "it's", "", "plain-1.5"};
+    static char *arguments[] = {"shapebench run", "a b", "it's", "", "plain-1.5"};
     BenchMachine machine;
-    bench_machine_read(4, arguments, 3, &machine);
-    assert_string_equal(machine.command, "'a b' 'it'\\''s' '' plain-1.5");
+    bench_machine_read(5, arguments, 3, &machine);
+    assert_string_equal(machine.command, "shapebench run 'a b' 'it'\\''s' '' plain-1.5");
     assert_int_equal(machine.threads, 3);
     assert_true(machine.cores >= 1);
     assert_true(strlen(machine.git_commit) == 40 || !strcmp(machine.git_commit, "unknown"));

@@ -8,7 +8,7 @@ if(GIT_FOUND AND EXISTS "${SOURCE}/.git")
     OUTPUT_VARIABLE head RESULT_VARIABLE failed ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
   if(NOT failed)
     set(commit "${head}")
-    execute_process(COMMAND ${GIT_EXECUTABLE} --no-optional-locks -C "${SOURCE}" status --porcelain
+    execute_process(COMMAND ${GIT_EXECUTABLE} --no-optional-locks -C "${SOURCE}" status --porcelain --untracked-files=no
       OUTPUT_VARIABLE changes ERROR_QUIET)
     if(changes)
       set(dirty 1)
