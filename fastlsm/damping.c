@@ -78,8 +78,8 @@ static void solve_tile(Lsm *lsm, long tile)
     store_velocities(lsm, tile, out);
 }
 
-/* As in fastlsm.c: where lists or corrections make a block's sums exact. */
-static __attribute__((noinline)) void mend_copies(const Lsm *lsm, long block, vec F[12])
+/* Where lists or corrections make a block's sums exact. */
+static __attribute__((noinline)) void mend_sums(const Lsm *lsm, long block, vec *F)
 {
     if (lsm->corrections) {
         correct_products(lsm, block, F);
@@ -92,16 +92,8 @@ static __attribute__((noinline)) void mend_copies(const Lsm *lsm, long block, ve
     for (int i = 0; i < 12; i++) F[i] = lanes_select(lanes, listed[i], F[i]);
 }
 
-SM_INLINE void mend_sums(const Lsm *lsm, long block, vec F[12])
-{
-    vec copy[12];
-    memcpy(copy, F, sizeof copy);
-    mend_copies(lsm, block, copy);
-    memcpy(F, copy, sizeof copy);
-}
-
 /* Where lists or corrections read a block's rigid velocities. */
-static __attribute__((noinline)) void keep_velocities(const Lsm *lsm, long block, const vec out[6])
+static __attribute__((noinline)) void keep_velocities(const Lsm *lsm, long block, vec *out)
 {
     if (lsm->corrections)
         keep_solved(lsm, block, 6, out);
@@ -112,15 +104,11 @@ static __attribute__((noinline)) void keep_velocities(const Lsm *lsm, long block
 SM_INLINE void solve_block(const Lsm *lsm, long block, vec *F, vec *out)
 {
     vec c[3];
-    if (lsm->box->mixed[block]) mend_sums(lsm, block, F);
+    if (lsm->box->mixed[block]) on_copy(mend_sums, lsm, block, 12, F);
     load3(lsm->centre + block * 3 * SM_LANES, c);
     rigid_velocity(F, c, lsm->region_const[lsm->tile_const[block]].inverse_mass, out);
     for (int i = 0; i < 6; i++) out[i] = lanes_keep(lsm->box->site[block], out[i]);
-    if (lsm->box->listed[block]) {
-        vec copy[6];
-        memcpy(copy, out, sizeof copy);
-        keep_velocities(lsm, block, copy);
-    }
+    if (lsm->box->listed[block]) on_copy(keep_velocities, lsm, block, 6, out);
 }
 
 SM_INLINE void solve_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*F)[12],
@@ -165,7 +153,7 @@ SM_INLINE void slow_down(Lsm *lsm, long block, const vec sum[6])
 }
 
 /* What lists or corrections add to a block's sums. */
-static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec sum[6])
+static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec *sum)
 {
     if (lsm->corrections) {
         correct_down(lsm, block, true, sum);
@@ -183,12 +171,7 @@ static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec
 SM_INLINE void slow_block(Lsm *lsm, long block, vec sum[6], SmLaps *laps)
 {
     (void)laps;
-    if (!lsm->box || lsm->box->mixed[block]) {
-        vec copy[6];
-        memcpy(copy, sum, sizeof copy);
-        add_mended(lsm, block, copy);
-        memcpy(sum, copy, sizeof copy);
-    }
+    if (!lsm->box || lsm->box->mixed[block]) on_copy(add_mended, lsm, block, 6, sum);
     slow_down(lsm, block, sum);
 }
 

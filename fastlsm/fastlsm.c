@@ -191,9 +191,8 @@ static void replace_sums(const Lsm *lsm, long block, vec S[12])
     for (int i = 0; i < 12; i++) S[i] = lanes_select(lanes, listed[i], S[i]);
 }
 
-/* Where lists or corrections make a block's sums exact. Not inline, and on copies of what stays in
- * registers for all the other blocks. */
-static __attribute__((noinline)) void mend_copies(const Lsm *lsm, long block, vec S[12])
+/* Where lists or corrections make a block's sums exact. */
+static __attribute__((noinline)) void mend_sums(const Lsm *lsm, long block, vec *S)
 {
     if (lsm->corrections)
         correct_regions(lsm, block, S);
@@ -201,28 +200,13 @@ static __attribute__((noinline)) void mend_copies(const Lsm *lsm, long block, ve
         replace_sums(lsm, block, S);
 }
 
-SM_INLINE void mend_sums(const Lsm *lsm, long block, vec S[12])
-{
-    vec copy[12];
-    memcpy(copy, S, sizeof copy);
-    mend_copies(lsm, block, copy);
-    memcpy(S, copy, sizeof copy);
-}
-
 /* Where lists or corrections read a block's transforms. */
-static __attribute__((noinline)) void keep_copies(const Lsm *lsm, long block, const vec T[12])
+static __attribute__((noinline)) void keep_transforms(const Lsm *lsm, long block, vec *T)
 {
     if (lsm->corrections)
         keep_solved(lsm, block, 12, T);
     else
         store_transforms(lsm, block, T);
-}
-
-SM_INLINE void keep_transforms(const Lsm *lsm, long block, const vec T[12])
-{
-    vec copy[12];
-    memcpy(copy, T, sizeof copy);
-    keep_copies(lsm, block, copy);
 }
 
 /* Empty lanes hold the sums of a unit matrix: the quickest to rotate, and their constants are zero.
@@ -242,7 +226,7 @@ SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S
     const Blocks *box = lsm->box;
     vec R[2][9], q[2][3];
     for (int k = 0; k < blocks; k++) {
-        if (box->mixed[block + k]) mend_sums(lsm, block + k, S[k]);
+        if (box->mixed[block + k]) on_copy(mend_sums, lsm, block + k, 12, S[k]);
         empty_sums(box->site[block + k], S[k]);
     }
     sm_lap(laps, SM_FAST_SUM);
@@ -255,7 +239,7 @@ SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S
         transform(q[k], R[k], out[k]);
         for (int f = 0; f < 12; f++) /* empty lanes bring nothing down */
             out[k][f] = lanes_keep(box->site[block + k], out[k][f]);
-        if (box->listed[block + k]) keep_transforms(lsm, block + k, out[k]);
+        if (box->listed[block + k]) on_copy(keep_transforms, lsm, block + k, 12, out[k]);
     }
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
@@ -290,7 +274,7 @@ static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
 }
 
 /* What lists or corrections add to a block's |R_i| g_i. */
-static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec sum[3])
+static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec *sum)
 {
     if (lsm->corrections) {
         correct_down(lsm, block, false, sum);
@@ -329,12 +313,7 @@ SM_INLINE void integrate(Lsm *lsm, long block, const vec sum[3])
 /* A block's particles from |R_i| g_i, to which the lists may have more to add. */
 SM_INLINE void move_block(Lsm *lsm, long block, vec sum[6], SmLaps *laps)
 {
-    if (!lsm->box || lsm->box->mixed[block]) {
-        vec copy[3];
-        memcpy(copy, sum, sizeof copy);
-        add_mended(lsm, block, copy);
-        memcpy(sum, copy, sizeof copy);
-    }
+    if (!lsm->box || lsm->box->mixed[block]) on_copy(add_mended, lsm, block, 3, sum);
     sm_lap(laps, SM_FAST_SUM);
     integrate(lsm, block, sum);
     sm_lap(laps, SM_OTHER);

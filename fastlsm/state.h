@@ -169,4 +169,16 @@ SM_INLINE void slot_values(const Lsm *lsm, long block, int count, real (*out)[SM
         for (int i = 0; i < count; i++) out[i][lane] = row[lane * ROW_T + i / 3 * 4 + i % 3];
 }
 
+/* Something for only some blocks, which is not inline, on a copy of their vectors: if it took the
+ * address of the vectors themselves, those of all blocks would leave the registers. */
+typedef void BlockWork(const Lsm *lsm, long block, vec *values);
+
+SM_INLINE void on_copy(BlockWork *work, const Lsm *lsm, long block, int count, vec *values)
+{
+    vec copy[12];
+    memcpy(copy, values, (size_t)count * sizeof *copy);
+    work(lsm, block, copy);
+    memcpy(values, copy, (size_t)count * sizeof *copy);
+}
+
 #endif
