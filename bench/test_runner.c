@@ -6,10 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
+#include "../lib/test_folder.h"
 #include "../reference/brute.h"
 #include "runner.h"
 
@@ -176,11 +176,12 @@ static void density_weighs_the_material(void **state)
 static void vertex_masses_go_to_the_nearest_particles(void **state)
 {
     (void)state;
-    char path[] = "/tmp/test_runner_XXXXXX", text[256];
+    const char *path = path_in("masses.txt");
+    char text[512];
     SmMesh mesh;
     SmError error;
     assert_int_equal(bench_mesh_load("shape:block", &mesh, &error), SM_OK);
-    FILE *file = fdopen(mkstemp(path), "w");
+    FILE *file = fopen(path, "w");
     double middle = 0, count = (double)mesh.vertex_count;
     for (long i = 0; i < mesh.vertex_count; i++) middle += mesh.position[i][1] / count;
     for (long i = 0; i < mesh.vertex_count; i++)
@@ -198,7 +199,6 @@ static void vertex_masses_go_to_the_nearest_particles(void **state)
     assert_int_equal(bench_scene_parse(text, strlen(text), "run.cfg", &run.scene, &error), SM_OK);
     assert_int_equal(bench_body_create(&run.scene, &mesh, &body, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "masses above 0 kg, one for each mesh vertex"));
-    unlink(path);
 }
 
 /* A mesh alone drops onto a plane below it under gravity of its own size; a mesh in a scene's
@@ -219,8 +219,7 @@ static void any_units_drop_and_fit(void **state)
     assert_true(fabs(height - 70) < 1);
     assert_true(fabs(scene.params.gravity[1] + 9.81 * height) < 1e-9 * height);
     assert_true(fabs(scene.obstacle[0].a[1] - (info.low[1] - height / 2)) < 1e-9);
-    char path[] = "/tmp/test_runner_XXXXXX.obj";
-    close(mkstemps(path, 4));
+    const char *path = path_in("high.obj");
     assert_int_equal(sm_mesh_write_obj(&mesh, path, &error), SM_OK);
     assert_int_equal(bench_scene_find("penguin", &scene, &error), SM_OK);
     SmMesh model;
@@ -233,7 +232,6 @@ static void any_units_drop_and_fit(void **state)
     sm_mesh_free(&mesh);
     sm_mesh_free(&model);
     sm_mesh_free(&fitted);
-    unlink(path);
 }
 
 int main(void)
@@ -248,5 +246,5 @@ int main(void)
         cmocka_unit_test(vertex_masses_go_to_the_nearest_particles),
         cmocka_unit_test(any_units_drop_and_fit),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

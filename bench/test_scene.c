@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "../lib/test_folder.h"
 #include "scene.h"
 
 #define BODY "mesh = \"shape:block\";\nparticles = 100;\n"
@@ -239,12 +240,8 @@ static void every_prefix_is_handled(void **state)
 static void paths_are_relative_to_the_file(void **state)
 {
     (void)state;
-    char folder[] = "/tmp/test_scene_XXXXXX", path[64];
-    assert_non_null(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/own.cfg", folder);
-    FILE *file = fopen(path, "w");
-    fputs("mesh = \"part/a.obj\"; vertex_mass = \"/abs/m.txt\"; cell = 0.5;", file);
-    fclose(file);
+    const char *path =
+        write_text("own.cfg", "mesh = \"part/a.obj\"; vertex_mass = \"/abs/m.txt\"; cell = 0.5;");
     BenchScene scene;
     SmError error;
     assert_int_equal(bench_scene_find(path, &scene, &error), SM_OK);
@@ -255,7 +252,6 @@ static void paths_are_relative_to_the_file(void **state)
     assert_string_equal(scene.name, "own");
     assert_int_equal(bench_scene_read(folder, &scene, &error), SM_INPUT);
     unlink(path);
-    rmdir(folder);
     assert_int_equal(bench_scene_read(path, &scene, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "cannot be opened: No such file"));
     assert_int_equal(bench_scene_find("no-such-scene", &scene, &error), SM_USAGE);
@@ -274,5 +270,5 @@ int main(void)
         cmocka_unit_test(every_prefix_is_handled),
         cmocka_unit_test(paths_are_relative_to_the_file),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

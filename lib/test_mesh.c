@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "test_folder.h"
+
 /* cmocka's assert_float_equal() compares in single precision. */
 static void assert_near(double value, double expected, double tolerance)
 {
@@ -215,9 +217,7 @@ static void test_check(void **state)
 static void test_write_obj(void **state)
 {
     (void)state;
-    char folder[] = "/tmp/sm_mesh_XXXXXX", path[64];
-    assert_non_null(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/cube.obj", folder);
+    const char *path = path_in("cube.obj");
     SmMesh mesh = cube();
     mesh.position[0][0] = 1.0 / 3;
     assert_int_equal(sm_mesh_write_obj(&mesh, path, NULL), SM_OK);
@@ -228,9 +228,10 @@ static void test_write_obj(void **state)
     assert_true(x == 1.0 / 3);
     fclose(file);
     unlink(path);
-    assert_int_equal(rmdir(folder), 0); /* no temporary file is left */
+    assert_int_equal(entries(""), 0); /* no temporary file is left */
 
     SmError error;
+    path = path_in("no-folder/cube.obj");
     assert_int_equal(sm_mesh_write_obj(&mesh, path, &error), SM_OUTPUT);
     assert_non_null(strstr(error.text, path));
     assert_int_equal(sm_mesh_write_obj(&mesh, "/tmp", &error), SM_OUTPUT);
@@ -254,5 +255,5 @@ int main(void)
         cmocka_unit_test(test_check),
         cmocka_unit_test(test_write_obj),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

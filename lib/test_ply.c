@@ -12,7 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+
+#include "test_folder.h"
 
 /* A tetrahedron: faces and an element that nobody knows, then vertices. */
 static const char header[] = "ply\nformat %s 1.0\ncomment c\nelement face 4\n"
@@ -23,15 +24,10 @@ static const char header[] = "ply\nformat %s 1.0\ncomment c\nelement face 4\n"
 
 static void assert_tetrahedron(const char *bytes, size_t size, double low)
 {
-    char path[] = "/tmp/sm_ply_XXXXXX.ply";
-    int file = mkstemps(path, 4);
-    assert_true(file >= 0);
-    assert_int_equal(write(file, bytes, size), size);
-    close(file);
+    const char *path = write_bytes("tetrahedron.ply", bytes, size);
     SmMesh mesh;
     SmError error = {0};
     SmCode code = sm_import(path, NULL, &mesh, &error);
-    unlink(path);
     if (code != SM_OK) fail_msg("%s", error.text);
     SmMeshInfo info = sm_mesh_info(&mesh);
     sm_mesh_free(&mesh);
@@ -128,5 +124,5 @@ int main(void)
         cmocka_unit_test(test_binary),
         cmocka_unit_test(test_what_is_left_alone),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
