@@ -223,14 +223,15 @@ void bench_h5_append(BenchH5 *h5, hid_t dataset, hsize_t rows, const void *value
     H5Tclose(type);
 }
 
-void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source,
-                   const hsize_t start[2], const hsize_t size[2])
+void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, const hsize_t *start,
+                   const hsize_t *size)
 {
     if (h5->failed) return;
     char path[256];
     if (check(h5, H5Iget_name(source, path, sizeof path)) < 0) return;
     hid_t type = H5Dget_type(source), part = H5Dget_space(source);
-    hid_t space = H5Screate_simple(2, size, NULL), layout = H5Pcreate(H5P_DATASET_CREATE);
+    int rank = H5Sget_simple_extent_ndims(part);
+    hid_t space = H5Screate_simple(rank, size, NULL), layout = H5Pcreate(H5P_DATASET_CREATE);
     H5Sselect_hyperslab(part, H5S_SELECT_SET, start, NULL, size, NULL);
     check(h5, H5Pset_virtual(layout, space, ".", path, part));
     hid_t view = check(h5, H5Dcreate2(parent, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT));

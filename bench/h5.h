@@ -64,9 +64,10 @@ hid_t bench_h5_growing(BenchH5 *h5, hid_t parent, const char *name, hid_t type, 
                        const hsize_t *size);
 /* Appends `rows` entries along the first axis. */
 void bench_h5_append(BenchH5 *h5, hid_t dataset, hsize_t rows, const void *values);
-/* A two-dimensional dataset that is a part of another one in the file: a virtual one, no copy. */
-void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source,
-                   const hsize_t start[2], const hsize_t size[2]);
+/* A dataset that is a part of another one in the file, of as many dimensions: a virtual one, no
+ * copy. */
+void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, const hsize_t *start,
+                   const hsize_t *size);
 
 /* Reading: wrong type, wrong size and absence are failures that name the thing. */
 hid_t bench_h5_find_group(BenchH5 *h5, hid_t parent, const char *name);

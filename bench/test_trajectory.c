@@ -148,6 +148,61 @@ static void frames_round_trip(void **state)
     }
 }
 
+/* A surface that loses its last row of triangles after two frames and gets it back after three:
+ * every frame with its own points, triangles and place in the file. */
+static void topology_may_change(void **state)
+{
+    (void)state;
+    enum { ROW = 2 * (SIDE - 1) };
+    const char *path = path_in("cut.vtkhdf");
+    SmMesh sheet;
+    make_sheet(0, &sheet);
+    BenchTrajectoryParams params = sheet_params(path, &sheet);
+    BenchTrajectory *trajectory;
+    assert_int_equal(bench_trajectory_open(&params, &trajectory, NULL), SM_OK);
+    assert_int_equal(write_frames(trajectory, &sheet, 2, NULL), SM_OK);
+    sheet.vertex_count -= SIDE, sheet.triangle_count -= ROW;
+    assert_int_equal(bench_trajectory_topology(trajectory, &sheet, NULL), SM_OK);
+    assert_int_equal(write_frames(trajectory, &sheet, 1, NULL), SM_OK);
+    sheet.vertex_count += SIDE, sheet.triangle_count += ROW;
+    assert_int_equal(bench_trajectory_topology(trajectory, &sheet, NULL), SM_OK);
+    assert_int_equal(write_frames(trajectory, &sheet, 2, NULL), SM_OK);
+    assert_int_equal(bench_trajectory_close(trajectory, NULL), SM_OK);
+    hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    const long part[5] = {0, 0, 1, 2, 2}, less = TRIANGLES - ROW, fewer = POINTS - SIDE;
+    const long points[3] = {POINTS, fewer, POINTS}, cells[3] = {TRIANGLES, less, TRIANGLES};
+    const long first[3] = {0, TRIANGLES, TRIANGLES + less};
+    long got[5], corner[3 * (3 * TRIANGLES - ROW)], at = 0, corners = 3 * (2 * TRIANGLES + less);
+    read_longs(file, "VTKHDF/NumberOfPoints", 3, got);
+    assert_memory_equal(got, points, sizeof points);
+    read_longs(file, "VTKHDF/NumberOfCells", 3, got);
+    assert_memory_equal(got, cells, sizeof cells);
+    read_longs(file, "VTKHDF/Connectivity", (int)corners, corner);
+    for (int i = 0; i < corners; i++) {
+        int t = i / 3 < TRIANGLES  ? i / 3
+                : i / 3 < first[2] ? i / 3 - TRIANGLES
+                                   : (int)(i / 3 - first[2]);
+        assert_int_equal(corner[i], sheet.triangle[t][i % 3]);
+    }
+    long steps[3][5];
+    read_longs(file, "VTKHDF/Steps/PartOffsets", 5, steps[0]);
+    read_longs(file, "VTKHDF/Steps/PointOffsets", 5, steps[1]);
+    read_longs(file, "VTKHDF/Steps/CellOffsets", 5, steps[2]);
+    for (int f = 0; f < 5; f++) {
+        assert_int_equal(steps[0][f], part[f]);
+        assert_int_equal(steps[1][f], at);
+        assert_int_equal(steps[2][f], first[part[f]]);
+        at += points[part[f]];
+    }
+    hid_t view = H5Dopen2(file, "topologies/1", H5P_DEFAULT);
+    hid_t space = H5Dget_space(view);
+    assert_int_equal(H5Sget_simple_extent_npoints(space), 3 * less);
+    H5Sclose(space);
+    H5Dclose(view);
+    H5Fclose(file);
+    sm_mesh_free(&sheet);
+}
+
 /* The sidecar is well-formed with a scene's name and a file's name of odd characters. */
 static void sidecar_is_xml(void **state)
 {
@@ -292,10 +347,10 @@ static void full_disk(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_round_trip), cmocka_unit_test(sidecar_is_xml),
-        cmocka_unit_test(bad_targets),       cmocka_unit_test(blocked_sidecar),
-        cmocka_unit_test(abandoned),         cmocka_unit_test(killed_writer),
-        cmocka_unit_test(full_disk),
+        cmocka_unit_test(frames_round_trip), cmocka_unit_test(topology_may_change),
+        cmocka_unit_test(sidecar_is_xml),    cmocka_unit_test(bad_targets),
+        cmocka_unit_test(blocked_sidecar),   cmocka_unit_test(abandoned),
+        cmocka_unit_test(killed_writer),     cmocka_unit_test(full_disk),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

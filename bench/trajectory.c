@@ -10,17 +10,26 @@
 #include "particles.h"
 #include "xdmf.h"
 
-enum { TRAJECTORY_SCHEMA = 2, TRIANGLE_CELL = 5 /* VTK_TRIANGLE */ };
+enum { TRAJECTORY_SCHEMA = 3, TRIANGLE_CELL = 5 /* VTK_TRIANGLE */ };
+
+/* Of a surface: what frames share between two changes of topology. */
+typedef struct {
+    long points, triangles, corner; /* corner: its first one in /VTKHDF/Connectivity */
+} Topology;
 
 struct BenchTrajectory {
     BenchDraft draft;
     BenchH5 h5;
     char scene[256];
-    long points, triangles, frames, room;
-    double *time;  /* [room] */
-    void *packed;  /* a frame's points as stored */
-    bool single;   /* coordinates are stored in 4 bytes */
-    hid_t dataset; /* /VTKHDF/Points */
+    long frames, room;
+    double *time; /* [room] */
+    long *part;   /* [room] a frame's topology */
+    long parts;
+    Topology *topology; /* [parts] */
+    void *packed;       /* a frame's points as stored */
+    bool single;        /* coordinates are stored in 4 bytes */
+    hid_t points;       /* /VTKHDF/Points, ... */
+    hid_t corners, offsets, types;
     BenchParticles particles;
 };
 
@@ -39,8 +48,19 @@ static bool single_is_enough(const SmMesh *mesh)
     return far * FLT_EPSILON / 2 <= 1e-6 * extent;
 }
 
-static void write_topology(BenchH5 *h5, hid_t group, const SmMesh *surface)
+/* Ends the writing: the draft goes, the cause is told. */
+static SmCode fail(BenchTrajectory *trajectory, SmError *error)
 {
+    bench_h5_close(&trajectory->h5);
+    bench_draft_discard(&trajectory->draft);
+    return bench_draft_fail(trajectory->draft.path, trajectory->h5.number, trajectory->h5.message,
+                            error);
+}
+
+/* A surface's triangles behind those of the surfaces before. */
+static void write_topology(BenchTrajectory *trajectory, const SmMesh *surface)
+{
+    BenchH5 *h5 = &trajectory->h5;
     size_t count = (size_t)surface->triangle_count;
     long(*corner)[3] = sm_alloc(count, sizeof *corner), *offset = sm_alloc(count + 1, sizeof(long));
     unsigned char *type = sm_alloc(count, 1);
@@ -49,18 +69,32 @@ static void write_topology(BenchH5 *h5, hid_t group, const SmMesh *surface)
         offset[t + 1] = 3 * (long)t + 3;
         type[t] = TRIANGLE_CELL;
     }
-    long corners = 3 * surface->triangle_count;
-    hsize_t one = 1, cells = count, ends = count + 1, connected = (hsize_t)corners;
-    hid_t whole = H5T_STD_I64LE;
-    bench_h5_dataset(h5, group, "NumberOfPoints", whole, 1, &one, &surface->vertex_count);
-    bench_h5_dataset(h5, group, "NumberOfCells", whole, 1, &one, &surface->triangle_count);
-    bench_h5_dataset(h5, group, "NumberOfConnectivityIds", whole, 1, &one, &corners);
-    bench_h5_dataset(h5, group, "Connectivity", whole, 1, &connected, corner);
-    bench_h5_dataset(h5, group, "Offsets", whole, 1, &ends, offset);
-    bench_h5_dataset(h5, group, "Types", H5T_STD_U8LE, 1, &cells, type);
+    bench_h5_append(h5, trajectory->corners, 3 * count, corner);
+    bench_h5_append(h5, trajectory->offsets, count + 1, offset);
+    bench_h5_append(h5, trajectory->types, count, type);
     free(corner);
     free(offset);
     free(type);
+}
+
+static void add_topology(BenchTrajectory *trajectory, const SmMesh *surface)
+{
+    long parts = trajectory->parts++, corner = 0;
+    const Topology *before = parts ? &trajectory->topology[parts - 1] : NULL;
+    if (before) corner = before->corner + 3 * before->triangles;
+    trajectory->topology =
+        sm_realloc(trajectory->topology, (size_t)trajectory->parts, sizeof(Topology));
+    trajectory->topology[parts] =
+        (Topology){surface->vertex_count, surface->triangle_count, corner};
+    trajectory->packed =
+        sm_realloc(trajectory->packed, 3 * (size_t)surface->vertex_count, sizeof(double));
+    write_topology(trajectory, surface);
+}
+
+SmCode bench_trajectory_topology(BenchTrajectory *trajectory, const SmMesh *surface, SmError *error)
+{
+    add_topology(trajectory, surface);
+    return trajectory->h5.failed ? fail(trajectory, error) : SM_OK;
 }
 
 /* VTK's reader takes the attribute Type only as a fixed-length ASCII string without a zero. */
@@ -92,25 +126,21 @@ static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryPa
     group = bench_h5_group(h5, h5->file, "VTKHDF");
     bench_h5_numbers(h5, group, "Version", H5T_STD_I64LE, 2, (long[]){2, 0});
     write_type(h5, group);
-    write_topology(h5, group, params->surface);
     hsize_t size[] = {0, 3};
-    trajectory->dataset = bench_h5_growing(
-        h5, group, "Points", trajectory->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, 2, size);
+    hid_t whole = H5T_STD_I64LE, real = trajectory->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
+    trajectory->points = bench_h5_growing(h5, group, "Points", real, 2, size);
+    trajectory->corners = bench_h5_growing(h5, group, "Connectivity", whole, 1, size);
+    trajectory->offsets = bench_h5_growing(h5, group, "Offsets", whole, 1, size);
+    trajectory->types = bench_h5_growing(h5, group, "Types", H5T_STD_U8LE, 1, size);
+    add_topology(trajectory, params->surface);
     if (params->record) bench_particles_begin(h5, params, &trajectory->particles);
-}
-
-/* Ends the writing: the draft goes, the cause is told. */
-static SmCode fail(BenchTrajectory *trajectory, SmError *error)
-{
-    bench_h5_close(&trajectory->h5);
-    bench_draft_discard(&trajectory->draft);
-    return bench_draft_fail(trajectory->draft.path, trajectory->h5.number, trajectory->h5.message,
-                            error);
 }
 
 static void release(BenchTrajectory *trajectory)
 {
     free(trajectory->time);
+    free(trajectory->part);
+    free(trajectory->topology);
     free(trajectory->packed);
     free(trajectory);
 }
@@ -132,10 +162,7 @@ SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajector
         return code;
     }
     snprintf(made->scene, sizeof made->scene, "%s", params->scene);
-    made->points = params->surface->vertex_count;
-    made->triangles = params->surface->triangle_count;
     made->single = single_is_enough(params->surface);
-    made->packed = sm_alloc(3 * (size_t)made->points, sizeof(double));
     bench_h5_create(&made->h5, made->draft.tmp);
     write_beginning(made, params);
     if (made->h5.failed) {
@@ -151,22 +178,26 @@ double bench_trajectory_bytes(const BenchTrajectory *trajectory, double frames)
 {
     double point = 3 * (trajectory->single ? sizeof(float) : sizeof(double));
     double triangle = 4 * sizeof(long) + 1; /* corners, offset, type */
-    return frames * point * (double)trajectory->points + triangle * (double)trajectory->triangles;
+    const Topology *first = trajectory->topology;
+    return frames * point * (double)first->points + triangle * (double)first->triangles;
 }
 
 SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const double (*point)[3],
                               SmError *error)
 {
+    long points = trajectory->topology[trajectory->parts - 1].points;
     if (trajectory->frames == trajectory->room) {
         trajectory->room = 2 * trajectory->room + 64;
         trajectory->time = sm_realloc(trajectory->time, (size_t)trajectory->room, sizeof(double));
+        trajectory->part = sm_realloc(trajectory->part, (size_t)trajectory->room, sizeof(long));
     }
+    trajectory->part[trajectory->frames] = trajectory->parts - 1;
     trajectory->time[trajectory->frames++] = time;
     const double *from = &point[0][0];
     float *narrow = trajectory->packed;
     if (trajectory->single)
-        for (long i = 0; i < 3 * trajectory->points; i++) narrow[i] = (float)from[i];
-    bench_h5_append(&trajectory->h5, trajectory->dataset, (hsize_t)trajectory->points,
+        for (long i = 0; i < 3 * points; i++) narrow[i] = (float)from[i];
+    bench_h5_append(&trajectory->h5, trajectory->points, (hsize_t)points,
                     trajectory->single ? trajectory->packed : (const void *)from);
     return trajectory->h5.failed ? fail(trajectory, error) : SM_OK;
 }
@@ -179,53 +210,104 @@ SmCode bench_trajectory_step(BenchTrajectory *trajectory, long step, const doubl
     return trajectory->h5.failed ? fail(trajectory, error) : SM_OK;
 }
 
-/* /VTKHDF/Steps: every step has its own points and shares the one topology. */
+/* How many points, cells and corners each topology has: a part of VTKHDF's. */
+static void write_parts(BenchTrajectory *trajectory)
+{
+    BenchH5 *h5 = &trajectory->h5;
+    size_t count = (size_t)trajectory->parts;
+    long *points = sm_alloc(count, sizeof *points), *cells = sm_alloc(count, sizeof *cells);
+    long *corners = sm_alloc(count, sizeof *corners);
+    for (size_t i = 0; i < count; i++) {
+        points[i] = trajectory->topology[i].points;
+        cells[i] = trajectory->topology[i].triangles;
+        corners[i] = 3 * cells[i];
+    }
+    hid_t whole = H5T_STD_I64LE, file = h5->file;
+    hsize_t size = count;
+    bench_h5_dataset(h5, file, "VTKHDF/NumberOfPoints", whole, 1, &size, points);
+    bench_h5_dataset(h5, file, "VTKHDF/NumberOfCells", whole, 1, &size, cells);
+    bench_h5_dataset(h5, file, "VTKHDF/NumberOfConnectivityIds", whole, 1, &size, corners);
+    free(points);
+    free(cells);
+    free(corners);
+}
+
+/* /VTKHDF/Steps: every step has its own points; steps of one topology share it. */
 static void write_steps(BenchTrajectory *trajectory)
 {
     BenchH5 *h5 = &trajectory->h5;
     size_t count = (size_t)trajectory->frames;
-    long *zero = sm_alloc(count, sizeof *zero), *one = sm_alloc(count, sizeof *one);
-    long *start = sm_alloc(count, sizeof *start);
+    long *one = sm_alloc(count, sizeof *one), *point = sm_alloc(count, sizeof *point);
+    long *cell = sm_alloc(count, sizeof *cell), *corner = sm_alloc(count, sizeof *corner), at = 0;
     for (size_t i = 0; i < count; i++) {
+        const Topology *topology = &trajectory->topology[trajectory->part[i]];
         one[i] = 1;
-        start[i] = (long)i * trajectory->points;
+        point[i] = at;
+        cell[i] = topology->corner / 3;
+        corner[i] = topology->corner;
+        at += topology->points;
     }
     hid_t whole = H5T_STD_I64LE, group = bench_h5_group(h5, h5->file, "VTKHDF/Steps");
     hsize_t size[] = {count, 1};
     bench_h5_numbers(h5, group, "NSteps", whole, 0, &trajectory->frames);
     bench_h5_dataset(h5, group, "Values", H5T_IEEE_F64LE, 1, size, trajectory->time);
-    bench_h5_dataset(h5, group, "PartOffsets", whole, 1, size, zero);
+    bench_h5_dataset(h5, group, "PartOffsets", whole, 1, size, trajectory->part);
     bench_h5_dataset(h5, group, "NumberOfParts", whole, 1, size, one);
-    bench_h5_dataset(h5, group, "PointOffsets", whole, 1, size, start);
-    bench_h5_dataset(h5, group, "CellOffsets", whole, 2, size, zero);
-    bench_h5_dataset(h5, group, "ConnectivityIdOffsets", whole, 2, size, zero);
-    free(zero);
+    bench_h5_dataset(h5, group, "PointOffsets", whole, 1, size, point);
+    bench_h5_dataset(h5, group, "CellOffsets", whole, 2, size, cell);
+    bench_h5_dataset(h5, group, "ConnectivityIdOffsets", whole, 2, size, corner);
     free(one);
-    free(start);
+    free(point);
+    free(cell);
+    free(corner);
 }
 
 /* /frames/0, /frames/1, ...: each frame's part of /VTKHDF/Points under a name of its own, without a
- * copy (HDF5 virtual datasets). XDMF could cut the parts itself (HyperSlab), but ParaView 5.11's
- * reader reports an error at every frame that it reads so. */
+ * copy (HDF5 virtual datasets), and so /topologies/0, ... of /VTKHDF/Connectivity. XDMF could cut
+ * the parts itself (HyperSlab), but ParaView 5.11's reader reports an error at every frame that it
+ * reads so. */
 static void write_views(BenchTrajectory *trajectory)
 {
     BenchH5 *h5 = &trajectory->h5;
     hid_t group = bench_h5_group(h5, h5->file, "frames");
-    hsize_t count = (hsize_t)trajectory->points;
+    hsize_t start[] = {0, 0};
+    char name[24];
     for (long frame = 0; frame < trajectory->frames; frame++) {
-        char name[24];
-        hsize_t start[] = {(hsize_t)frame * count, 0}, size[] = {count, 3};
+        hsize_t size[] = {(hsize_t)trajectory->topology[trajectory->part[frame]].points, 3};
         snprintf(name, sizeof name, "%ld", frame);
-        bench_h5_view(h5, group, name, trajectory->dataset, start, size);
+        bench_h5_view(h5, group, name, trajectory->points, start, size);
+        start[0] += size[0];
     }
+    group = bench_h5_group(h5, h5->file, "topologies");
+    for (long part = 0; part < trajectory->parts; part++) {
+        const Topology *topology = &trajectory->topology[part];
+        hsize_t first = (hsize_t)topology->corner, size = 3 * (hsize_t)topology->triangles;
+        snprintf(name, sizeof name, "%ld", part);
+        bench_h5_view(h5, group, name, trajectory->corners, &first, &size);
+    }
+}
+
+/* The sidecar's counts of every frame. */
+static SmCode write_sidecar(const BenchTrajectory *trajectory, const BenchDraft *sidecar,
+                            SmError *error)
+{
+    size_t count = (size_t)trajectory->frames;
+    BenchXdmfFrame *frame = sm_alloc(count, sizeof *frame);
+    for (size_t i = 0; i < count; i++) {
+        const Topology *topology = &trajectory->topology[trajectory->part[i]];
+        frame[i] = (BenchXdmfFrame){trajectory->time[i], topology->points, topology->triangles,
+                                    trajectory->part[i]};
+    }
+    BenchXdmf xdmf = {trajectory->draft.path, trajectory->scene, trajectory->frames,
+                      trajectory->single ? 4 : 8, frame};
+    SmCode code = bench_xdmf_write(&xdmf, sidecar, error);
+    free(frame);
+    return code;
 }
 
 static SmCode commit(BenchTrajectory *trajectory, BenchDraft *sidecar, SmError *error)
 {
-    BenchXdmf xdmf = {trajectory->draft.path, trajectory->scene,  trajectory->points,
-                      trajectory->triangles,  trajectory->frames, trajectory->single ? 4 : 8,
-                      trajectory->time};
-    SmCode code = bench_xdmf_write(&xdmf, sidecar, error);
+    SmCode code = write_sidecar(trajectory, sidecar, error);
     if (code == SM_OK) code = bench_draft_commit(&trajectory->draft, error);
     if (code == SM_OK) return bench_draft_commit(sidecar, error);
     bench_draft_discard(sidecar);
@@ -236,6 +318,7 @@ static SmCode commit(BenchTrajectory *trajectory, BenchDraft *sidecar, SmError *
 SmCode bench_trajectory_close(BenchTrajectory *trajectory, SmError *error)
 {
     SmCode code;
+    write_parts(trajectory);
     write_steps(trajectory);
     write_views(trajectory);
     if (!bench_h5_close(&trajectory->h5)) {

@@ -17,7 +17,7 @@ typedef enum { BENCH_RECORD_SURFACE, BENCH_RECORD_PARTICLES, BENCH_RECORD_NODES 
 
 typedef struct {
     const char *path;      /* "out.vtkhdf"; the sidecar is path + ".xdmf" */
-    const SmMesh *surface; /* topology of the points written each frame; rest positions */
+    const SmMesh *surface; /* topology of the points written first; rest positions */
     const BenchMachine *machine;
     const char *scene;  /* name; any bytes */
     BenchRecord record; /* all below is for particles or nodes, and else unused */
@@ -38,8 +38,12 @@ SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajector
 /* About what the file takes with so many frames and no particles. */
 double bench_trajectory_bytes(const BenchTrajectory *trajectory, double frames);
 
-/* One frame: time in s, surface points [vertex_count][3] in mesh units. On SM_OUTPUT from this and
- * the next function the draft is removed; what is left is to call abandon. */
+/* From the next frame on points have this surface's topology. On SM_OUTPUT from this and the next
+ * two functions the draft is removed; what is left is to call abandon. */
+SmCode bench_trajectory_topology(BenchTrajectory *trajectory, const SmMesh *surface,
+                                 SmError *error);
+
+/* One frame: time in s, surface points [vertex_count][3] in mesh units. */
 SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const double (*point)[3],
                               SmError *error);
 

@@ -54,16 +54,18 @@ static void write_item(FILE *file, const BenchXdmf *xdmf, const char *attributes
 
 static void write_frame(FILE *file, const BenchXdmf *xdmf, long frame)
 {
+    const BenchXdmfFrame *f = &xdmf->frame[frame];
     char attributes[128], place[32];
     fprintf(file, "<Grid Name=\"frame %ld\" GridType=\"Uniform\"><Time Value=\"%.17g\"/>\n", frame,
-            xdmf->time[frame]);
-    fprintf(file, "<Topology TopologyType=\"Triangle\" NumberOfElements=\"%ld\">", xdmf->triangles);
+            f->time);
+    fprintf(file, "<Topology TopologyType=\"Triangle\" NumberOfElements=\"%ld\">", f->triangles);
     snprintf(attributes, sizeof attributes, "Dimensions=\"%ld\" NumberType=\"Int\" Precision=\"8\"",
-             3 * xdmf->triangles);
-    write_item(file, xdmf, attributes, "/VTKHDF/Connectivity");
+             3 * f->triangles);
+    snprintf(place, sizeof place, "/topologies/%ld", f->topology);
+    write_item(file, xdmf, attributes, place);
     fprintf(file, "</Topology>\n<Geometry GeometryType=\"XYZ\">");
     snprintf(attributes, sizeof attributes,
-             "Dimensions=\"%ld 3\" NumberType=\"Float\" Precision=\"%d\"", xdmf->points,
+             "Dimensions=\"%ld 3\" NumberType=\"Float\" Precision=\"%d\"", f->points,
              xdmf->point_bytes);
     snprintf(place, sizeof place, "/frames/%ld", frame);
     write_item(file, xdmf, attributes, place);

@@ -5,11 +5,17 @@
 #include "draft.h"
 
 typedef struct {
+    double time; /* s */
+    long points, triangles;
+    long topology; /* number of the surface that it shows */
+} BenchXdmfFrame;
+
+typedef struct {
     const char *data;  /* path of the HDF5 file; named without its folder, beside which it lies */
     const char *scene; /* any bytes; what XML cannot hold becomes '?' */
-    long points, triangles, frames;
-    int point_bytes;    /* 4 or 8 for a coordinate */
-    const double *time; /* [frames] s */
+    long frames;
+    int point_bytes;             /* 4 or 8 for a coordinate */
+    const BenchXdmfFrame *frame; /* [frames] */
 } BenchXdmf;
 
 /* Writes into a draft that has begun; the caller commits or discards it. SM_OUTPUT. */

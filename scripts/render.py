@@ -66,15 +66,17 @@ def read_trajectory(path, frame):
         root = file["VTKHDF"]
         kind = root.attrs["Type"].decode() if isinstance(root.attrs["Type"], bytes) else root.attrs["Type"]
         cells = root["Polygons"] if kind == "PolyData" else root
-        first, count = 0, len(root["Points"])
+        first, count, part, corner = 0, len(root["Points"]), 0, 0
         if "Steps" in root:
             offsets = root["Steps/PointOffsets"][()].ravel()
             if not -len(offsets) <= frame < len(offsets):
                 fail(f"{path}: has {len(offsets)} frames, no frame {frame}", 2)
-            first, count = int(offsets[frame]), int(root["NumberOfPoints"][0])
+            part = int(root["Steps/PartOffsets"][frame])
+            first, count = int(offsets[frame]), int(root["NumberOfPoints"][part])
+            corner = int(root["Steps/ConnectivityIdOffsets"][frame, 2 if kind == "PolyData" else 0])
         elif frame not in (0, -1):
             fail(f"{path}: has one frame, no frame {frame}", 2)
-        corners = cells["Connectivity"][: int(cells["NumberOfConnectivityIds"][0])]
+        corners = cells["Connectivity"][corner : corner + int(cells["NumberOfConnectivityIds"][part])]
         if len(corners) % 3:
             fail(f"{path}: its cells are not all triangles", 3)
         return polydata(root["Points"][first : first + count], corners.reshape(-1, 3))
