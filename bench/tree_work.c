@@ -11,14 +11,15 @@ enum { ROW = 12, CENTRE = 3 };
 static void count_rows(const OctTree *tree, const OctBreadth *lists, long first, long last,
                        double *leaf, double *inner)
 {
-    for (long at = lists->first[first]; at < lists->first[last]; at++) {
-        long row = lists->row[at];
-        if (row == lists->nodes) continue; /* the zero row fills up groups */
-        if (row < lists->nodes && tree->child[row] < 0)
-            *leaf += 1;
-        else
-            *inner += 1;
-    }
+    for (long t = first; t < last; t++)
+        for (int i = 0; i < lists->span[t].count; i++) {
+            long row = lists->row[lists->span[t].first + i], node = row - lists->base;
+            if (row == OCT_ZERO_ROW) continue; /* fills up groups */
+            if (node >= 0 && tree->child[node] < 0)
+                *leaf += 1;
+            else
+                *inner += 1;
+        }
 }
 
 BenchTreeCounts bench_tree_counts(const OctTree *tree, const OctBreadth *lists,
@@ -42,15 +43,15 @@ BenchTreeCounts bench_tree_counts(const OctTree *tree, const OctBreadth *lists,
                              .goal_carriers = (double)goals->carriers / n};
 }
 
-/* What reading the lists takes: an entry is 4 bytes, where a list begins 8. */
+/* What reading the lists takes: an entry is 4 bytes, where a list is 16. */
 static double region_list_bytes(const BenchTreeCounts *c)
 {
-    return 4 * (c->leaf_entries + c->inner_entries) + 8 * (1 + c->carriers);
+    return 4 * (c->leaf_entries + c->inner_entries) + 16 * (1 + c->carriers);
 }
 
 static double goal_list_bytes(const BenchTreeCounts *c)
 {
-    return 4 * (c->goal_entries + c->goal_carrier_entries) + 8 * (1 + c->goal_carriers);
+    return 4 * (c->goal_entries + c->goal_carrier_entries) + 16 * (1 + c->goal_carriers);
 }
 
 BenchWork bench_work_depth(const BenchTreeCounts *c)

@@ -96,23 +96,31 @@ static void share_sets(const OctTree *tree, const Sets *full, Sets *own)
     free(base);
 }
 
-/* Writes list t: the carrier above, then what the node itself adds. */
-static long pack_list(OctBreadth *lists, long t, long at, int above, const Sets *own, long node)
+/* Fills the list that begins at `first` up and closes it. */
+static void close_list(OctBreadth *lists, long t, long first)
 {
-    lists->first[t] = at;
-    if (above >= 0) lists->row[at++] = (int)oct_carrier_row(lists, above);
-    if (own->count[node])
-        memcpy(lists->row + at, own->member + own->first[node],
-               (size_t)own->count[node] * sizeof(int));
-    at += own->count[node];
-    if (t < lists->carriers + lists->leaves) lists->entries += at - lists->first[t];
-    while ((at - lists->first[t]) % OCT_GROUP) lists->row[at++] = (int)lists->nodes;
-    return at;
+    while ((lists->used - first) % OCT_GROUP) lists->row[lists->used++] = OCT_ZERO_ROW;
+    int count = (int)(lists->used - first);
+    lists->span[t] = (OctSpan){first, count, count};
+}
+
+/* Writes list t: the carrier above, then what the node itself adds. */
+static void pack_list(OctBreadth *lists, long t, int above, const Sets *own, long node)
+{
+    long first = lists->used;
+    if (above >= 0) {
+        lists->row[lists->used++] = (int)oct_carrier_row(above);
+        lists->needed[above]++;
+    }
+    for (long i = 0; i < own->count[node]; i++)
+        lists->row[lists->used++] = (int)(lists->base + own->member[own->first[node] + i]);
+    lists->entries += lists->used - first;
+    close_list(lists, t, first);
 }
 
 static void find_carriers(const OctTree *tree, const Sets *own, OctBreadth *lists)
 {
-    *lists = (OctBreadth){.nodes = tree->nodes, .leaves = tree->leaves, .levels = tree->levels};
+    *lists = (OctBreadth){.leaves = tree->leaves, .levels = tree->levels};
     lists->level_first = sm_alloc((size_t)tree->levels + 2, sizeof(long));
     lists->carrier = sm_alloc((size_t)tree->nodes, sizeof(int));
     for (int level = 0; level <= tree->levels; level++) {
@@ -121,6 +129,16 @@ static void find_carriers(const OctTree *tree, const Sets *own, OctBreadth *list
                 lists->carrier[lists->carriers++] = (int)n;
         lists->level_first[level + 1] = lists->carriers;
     }
+    lists->base = oct_carrier_row(lists->carriers);
+    lists->needed = sm_alloc((size_t)lists->carriers, sizeof(int));
+}
+
+/* What a slot without a leaf sums. */
+static void pack_unit(OctBreadth *lists, long slot)
+{
+    long first = lists->used;
+    lists->row[lists->used++] = OCT_UNIT_ROW;
+    close_list(lists, lists->carriers + slot, first);
 }
 
 /* The lists from what every node adds itself. */
@@ -128,25 +146,23 @@ static void pack(const OctTree *tree, const Sets *own, OctBreadth *lists)
 {
     find_carriers(tree, own, lists);
     int *above = sm_alloc((size_t)tree->nodes, sizeof(int)); /* carrier above a node, or -1 */
-    long slots = oct_slots(tree->leaves), at = 0, next = 0;
-    lists->first = sm_alloc((size_t)(lists->carriers + slots) + 1, sizeof(long));
-    lists->row = sm_alloc((size_t)(own->used + OCT_GROUP * (lists->carriers + slots)) +
-                              OCT_SLOTS * (size_t)own->count[tree->node[tree->leaves - 1]],
-                          sizeof(int));
+    long next = 0;
+    lists->slots = lists->slot_room = oct_slots(tree->leaves);
+    lists->span = sm_alloc((size_t)(lists->carriers + lists->slots), sizeof *lists->span);
+    lists->room = own->used + OCT_GROUP * (lists->carriers + lists->slots);
+    lists->row = sm_alloc((size_t)lists->room, sizeof(int));
     for (long n = 0; n < tree->nodes; n++) {
         if (tree->parent[n] < 0) above[n] = -1;
         int below = above[n];
         if (next < lists->carriers && lists->carrier[next] == n) {
-            at = pack_list(lists, next, at, above[n], own, n);
+            pack_list(lists, next, above[n], own, n);
             below = (int)next++;
         }
         for (int i = 0; i < tree->children[n]; i++) above[tree->child[n] + i] = below;
     }
-    for (long slot = 0; slot < slots; slot++) {
-        int n = tree->node[slot < tree->leaves ? slot : tree->leaves - 1];
-        at = pack_list(lists, lists->carriers + slot, at, above[n], own, n);
-    }
-    lists->first[lists->carriers + slots] = at;
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        pack_list(lists, lists->carriers + leaf, above[tree->node[leaf]], own, tree->node[leaf]);
+    for (long slot = tree->leaves; slot < lists->slots; slot++) pack_unit(lists, slot);
     free(above);
 }
 
@@ -170,35 +186,117 @@ void oct_breadth_transpose(const OctTree *tree, const OctBreadth *lists, OctBrea
     Sets own;
     long count = lists->carriers + lists->leaves;
     sets_init(&own, tree->nodes);
-    for (long at = 0; at < lists->first[count]; at++)
-        if (lists->row[at] < lists->nodes) own.count[lists->row[at]]++;
+    for (long at = 0; at < lists->used; at++)
+        if (lists->row[at] >= lists->base) own.count[lists->row[at] - lists->base]++;
     for (long n = 0; n < tree->nodes; n++) {
         sets_open(&own, n, own.count[n]);
         sets_close(&own, n, own.count[n]);
         own.count[n] = 0;
     }
     for (long t = 0; t < count; t++)
-        for (long at = lists->first[t]; at < lists->first[t + 1]; at++) {
-            long row = lists->row[at];
-            if (row < lists->nodes)
-                own.member[own.first[row] + own.count[row]++] = (int)list_node(tree, lists, t);
+        for (int i = 0; i < lists->span[t].count; i++) {
+            long node = lists->row[lists->span[t].first + i] - lists->base;
+            if (node >= 0)
+                own.member[own.first[node] + own.count[node]++] = (int)list_node(tree, lists, t);
         }
     pack(tree, &own, transposed);
     sets_free(&own);
+}
+
+void oct_breadth_rebase(OctBreadth *lists, long base)
+{
+    for (long at = 0; at < lists->used; at++)
+        if (lists->row[at] >= lists->base) lists->row[at] += (int)(base - lists->base);
+    lists->base = base;
+}
+
+/* Takes list t out of those that need carrier k, whose own list ends with the last. */
+static void leave_carrier(OctBreadth *lists, long k)
+{
+    while (k >= 0 && --lists->needed[k] == 0) {
+        OctSpan *span = &lists->span[k];
+        long above = lists->row[span->first] - OCT_CARRIER_ROW;
+        bool inherits = lists->row[span->first] < lists->base;
+        lists->idle += span->room;
+        span->count = span->room = 0;
+        k = inherits ? above : -1;
+    }
+}
+
+/* Lists follow each other again, in an array that is half empty. */
+static void compact(OctBreadth *lists, long more)
+{
+    long at = 0;
+    int *row = sm_alloc((size_t)(lists->room = 2 * (lists->used - lists->idle + more)), sizeof *row);
+    for (long t = 0; t < lists->carriers + lists->slots; t++) {
+        OctSpan *span = &lists->span[t];
+        memcpy(row + at, lists->row + span->first, (size_t)span->count * sizeof *row);
+        span->first = at;
+        at += span->room;
+    }
+    free(lists->row);
+    lists->row = row;
+    lists->used = at;
+    lists->idle = 0;
+}
+
+static void add_slots(OctBreadth *lists, long slots)
+{
+    long count = lists->carriers + lists->slots;
+    if (slots > lists->slot_room) {
+        lists->slot_room = 2 * slots;
+        lists->span = sm_realloc(
+            lists->span, (size_t)(lists->carriers + lists->slot_room), sizeof *lists->span);
+    }
+    memset(lists->span + count, 0, (size_t)(slots - lists->slots) * sizeof *lists->span);
+    long first = lists->slots;
+    lists->slots = slots;
+    for (long slot = first; slot < slots; slot++) oct_breadth_set(lists, slot, NULL, 0);
+}
+
+/* A list that outgrows its place moves to the end, with some place to spare. */
+static OctSpan *make_room(OctBreadth *lists, long t, int entries)
+{
+    OctSpan *span = &lists->span[t];
+    if (entries <= span->room) return span;
+    int room = entries + entries / 4 / OCT_GROUP * OCT_GROUP;
+    lists->idle += span->room;
+    span->count = span->room = 0;
+    if (lists->used + room > lists->room) compact(lists, room);
+    *span = (OctSpan){lists->used, 0, room};
+    lists->used += room;
+    return span;
+}
+
+void oct_breadth_set(OctBreadth *lists, long leaf, const int *member, long count)
+{
+    if (leaf >= lists->slots) add_slots(lists, oct_slots(leaf + 1));
+    long t = lists->carriers + leaf;
+    OctSpan *span = &lists->span[t];
+    int head = span->count ? lists->row[span->first] : 0;
+    if (head >= OCT_CARRIER_ROW && head < lists->base) leave_carrier(lists, head - OCT_CARRIER_ROW);
+    int needed = count ? (int)count : 1, entries = (needed + OCT_GROUP - 1) / OCT_GROUP * OCT_GROUP;
+    span = make_room(lists, t, entries);
+    int *row = lists->row + span->first;
+    for (long i = 0; i < count; i++) row[i] = (int)(lists->base + member[i]);
+    if (!count) row[0] = OCT_UNIT_ROW;
+    for (int i = needed; i < entries; i++) row[i] = OCT_ZERO_ROW;
+    span->count = entries;
 }
 
 void oct_breadth_free(OctBreadth *lists)
 {
     free(lists->carrier);
     free(lists->level_first);
-    free(lists->first);
+    free(lists->needed);
+    free(lists->span);
     free(lists->row);
     *lists = (OctBreadth){0};
 }
 
 size_t oct_breadth_bytes(const OctBreadth *lists)
 {
-    size_t count = (size_t)(lists->carriers + oct_slots(lists->leaves));
-    return sizeof(long) * ((size_t)lists->levels + 3 + count) +
-           sizeof(int) * ((size_t)lists->nodes + (size_t)lists->first[count]);
+    return sizeof(long) * ((size_t)lists->levels + 2) +
+           sizeof *lists->span * (size_t)(lists->carriers + lists->slot_room) +
+           sizeof(int) * (size_t)(2 * lists->carriers + lists->room);
 }

@@ -6,157 +6,80 @@
 #include <string.h>
 
 #include "octree.h"
-#include "plastic.h"
+#include "slots.h"
 
 enum { BLOCKS_WORTH_A_THREAD = 128 };
 
 /* Which tree nodes a depth visits, by level. */
 static void copy_tree(const OctTree *tree, Oct *oct)
 {
-    size_t nodes = (size_t)tree->nodes;
-    oct->child = sm_alloc(nodes, sizeof(int));
-    oct->children = sm_alloc(nodes, 1);
-    oct->inner = sm_alloc(nodes - (size_t)tree->leaves, sizeof(int));
-    oct->level_first = sm_alloc((size_t)tree->levels + 2, sizeof(long));
-    memcpy(oct->child, tree->child, nodes * sizeof(int));
-    memcpy(oct->children, tree->children, nodes);
-    for (int level = 0; level <= tree->levels; level++) {
-        for (long n = tree->level_first[level]; n < tree->level_first[level + 1]; n++)
-            if (tree->child[n] >= 0) oct->inner[oct->inners++] = (int)n;
-        oct->level_first[level + 1] = oct->inners;
-    }
+    oct_nodes_room(oct, tree, tree->nodes);
+    memcpy(oct->child, tree->child, (size_t)tree->nodes * sizeof(int));
+    memcpy(oct->children, tree->children, (size_t)tree->nodes);
+    for (long n = 0; n < tree->nodes; n++)
+        if (tree->child[n] >= 0)
+            oct_levels_add(&oct->inner, oct_tree_level(tree, (int)n), (int)n);
 }
 
-/* Finest cells from the first node, which keeps all digits. */
-static double centre_of(const OctTree *tree, long node, int d)
+static void fill_slots(const OctTree *tree, const OctRegions *regions, const double *mass, Oct *oct)
 {
-    return 0.5 * (tree->centre[node][d] - tree->centre[0][d]);
-}
-
-static void fill_blocks(const OctTree *tree, const OctWeights *w, Oct *oct)
-{
-    oct->row = sm_alloc((size_t)oct->blocks * SM_LANES, sizeof(int));
-    oct->block = sm_alloc((size_t)oct->blocks, sizeof(OctConst));
-    if (oct->params.creep > 0)
-        oct->spread = sm_alloc((size_t)oct->blocks * 6 * SM_LANES, sizeof(real));
-    for (long slot = 0; slot < oct->blocks * SM_LANES; slot++) {
-        long leaf = slot < oct->leaves ? slot : oct->leaves - 1, lane = slot % SM_LANES;
-        OctConst *k = &oct->block[slot / SM_LANES];
-        oct->row[slot] = slot < oct->leaves ? tree->node[leaf] : (int)oct->row_count - 1;
-        k->weight[lane] = (real)w->weight[leaf];
-        k->inverse_reach[lane] = (real)(1 / w->reach[leaf]);
-        k->mass[lane] = (real)w->mass[leaf];
-        k->inverse_mass[lane] = (real)(1 / w->region_mass[leaf]);
-        for (int d = 0; d < 3; d++) {
-            k->offset[d][lane] = (real)w->offset[leaf][d];
-            k->centre[d][lane] = (real)centre_of(tree, tree->node[leaf], d);
-        }
-        for (int i = 0; i < 6 && oct->spread; i++)
-            oct->spread[(slot / SM_LANES * 6 + i) * SM_LANES + lane] = (real)w->spread[leaf][i];
+    OctWeights w;
+    OctRegionRest rest;
+    oct_weights_build(tree, regions, mass, oct->params.weighting, &w);
+    oct->mass_unit = w.mass_unit;
+    oct_slots_room(oct, tree->leaves);
+    for (long leaf = 0; leaf < tree->leaves; leaf++) {
+        oct_weights_region(&w, tree, regions, leaf, &rest);
+        oct_slot_fill(oct, tree, &w, leaf, &rest);
     }
-}
-
-static void find_thin(const OctWeights *w, Oct *oct)
-{
-    oct->thin_of = sm_alloc((size_t)oct->blocks, sizeof(int));
-    for (long block = 0; block < oct->blocks; block++) {
-        bool any = false;
-        for (long slot = block * SM_LANES; slot < (block + 1) * SM_LANES; slot++)
-            any |= w->thin[slot < oct->leaves ? slot : oct->leaves - 1];
-        oct->thin_of[block] = any ? (int)oct->thin_count++ : -1;
-    }
-    oct->thin = sm_alloc((size_t)oct->thin_count, sizeof(OctThin));
-    for (long slot = 0; slot < oct->blocks * SM_LANES; slot++) {
-        long leaf = slot < oct->leaves ? slot : oct->leaves - 1, lane = slot % SM_LANES;
-        if (!w->thin[leaf]) continue;
-        OctThin *thin = &oct->thin[oct->thin_of[slot / SM_LANES]];
-        thin->lanes[lane] = -1;
-        for (int d = 0; d < 3; d++) thin->axis[d][lane] = (real)w->axis[leaf][d];
-    }
+    oct_weights_free(&w);
+    for (long i = 0; i < oct->instances && oct->spread; i++)
+        for (long block = 0; block < oct->blocks; block++) oct_block_inverse(oct, i, block);
 }
 
 /* Shares the blocks among threads by what their lists hold. */
-static void share_blocks(Oct *oct)
+static void share_blocks(Oct *oct, long blocks)
 {
-    long worth = oct->blocks / BLOCKS_WORTH_A_THREAD;
+    long worth = blocks / BLOCKS_WORTH_A_THREAD;
     int threads = oct->workers;
     if (oct->instances > 1) threads = 1;
     if (threads > worth) threads = worth > 1 ? (int)worth : 1;
     oct->threads = threads;
     if (oct->instances == 1) oct->workers = 1;
     oct->share = sm_alloc((size_t)threads + 1, sizeof(long));
-    const long *first = oct->lists.first + oct->lists.carriers, per_block = 20 * SM_LANES;
-    long all = first[oct->blocks * SM_LANES] - first[0] + per_block * oct->blocks, block = 0;
+    const OctSpan *span = oct->lists.span + oct->lists.carriers;
+    long all = 0, block = 0, before = 0, per_block = 20 * SM_LANES;
+    for (long slot = 0; slot < blocks * SM_LANES; slot++) all += span[slot].count;
+    all += per_block * blocks;
     for (int t = 1; t < threads; t++) {
-        while (block < oct->blocks &&
-               (first[block * SM_LANES] - first[0] + per_block * block) * threads < all * t)
-            block++;
+        for (; block < blocks && before * threads < all * t; block++) {
+            before += per_block;
+            for (int lane = 0; lane < SM_LANES; lane++)
+                before += span[block * SM_LANES + lane].count;
+        }
         oct->share[t] = block;
     }
-    oct->share[threads] = oct->blocks;
+    oct->share[threads] = blocks;
 }
 
-static void set_pads(const OctTree *tree, long node, real *row)
+/* The rows that belong to no node of the tree. */
+static void fill_rows(const OctTree *tree, const Oct *oct, OctRows *rows)
 {
-    for (int d = 0; d < 3; d++) row[7 + 4 * d] = (real)centre_of(tree, node, d);
-}
-
-static void make_rows(const OctTree *tree, const Oct *oct, OctRows *rows)
-{
-    size_t count = (size_t)oct->row_count;
-    rows->moment = sm_alloc(count * OCT_ROW, sizeof(real));
-    rows->transform = sm_alloc(count * OCT_ROW, sizeof(real));
-    rows->velocity = sm_alloc(count * OCT_ROW_VELOCITY, sizeof(real));
-    rows->centre = sm_alloc((size_t)oct->blocks * 3 * SM_LANES, sizeof(real));
     real *const array[2] = {rows->moment, rows->transform};
     const OctBreadth *const lists[2] = {&oct->lists, oct_goal_breadth(oct)};
-    for (int a = 0; a < 2; a++) {
-        for (long n = 0; n < oct->nodes; n++) set_pads(tree, n, array[a] + n * OCT_ROW);
+    for (int d = 0; d < 3; d++) rows->moment[OCT_UNIT_ROW * OCT_ROW + 5 * d + 4] = 1;
+    for (int a = 0; a < 2; a++)
         for (long k = 0; k < lists[a]->carriers; k++)
-            set_pads(tree, lists[a]->carrier[k], array[a] + oct_carrier_row(lists[a], k) * OCT_ROW);
-        set_pads(tree, tree->node[oct->leaves - 1], array[a] + (oct->row_count - 1) * OCT_ROW);
-    }
+            oct_row_centre(tree, lists[a]->carrier[k], array[a] + oct_carrier_row(k) * OCT_ROW);
 }
 
-/* The lanes beyond the last leaf are as its own. */
 void oct_shape(Oct *oct, long body, const double (*S)[9])
 {
-    const OctState *b = &oct->body[body];
-    for (long block = 0; block < oct->blocks; block++) {
-        vec shape[9], inverse[9];
-        for (int lane = 0; lane < SM_LANES; lane++) {
-            long slot = block * SM_LANES + lane, leaf = slot < oct->leaves ? slot : oct->leaves - 1;
-            for (int i = 0; i < 9; i++)
-                b->plastic[(block * 9 + i) * SM_LANES + lane] = (real)S[leaf][i];
-        }
-        load9(b->plastic + block * 9 * SM_LANES, shape);
-        plastic_inverse(oct->spread + block * 6 * SM_LANES, shape, inverse);
-        store9(b->inverse + block * 9 * SM_LANES, inverse);
-    }
-}
-
-static void make_plastic(Oct *oct, long body)
-{
-    size_t count = (size_t)oct->blocks * 9 * SM_LANES;
-    double(*S)[9] = sm_alloc((size_t)oct->leaves, sizeof *S);
-    for (long leaf = 0; leaf < oct->leaves; leaf++) S[leaf][0] = S[leaf][4] = S[leaf][8] = 1;
-    oct->body[body].plastic = sm_alloc(count, sizeof(real));
-    oct->body[body].inverse = sm_alloc(count, sizeof(real));
-    oct_shape(oct, body, (const double(*)[9])S);
-    free(S);
-}
-
-static void make_body(const Oct *oct, OctState *body)
-{
-    size_t count = (size_t)oct->blocks * 3 * SM_LANES;
-    body->x = sm_alloc(count, sizeof(real));
-    body->v = sm_alloc(count, sizeof(real));
-    body->g = sm_alloc(count, sizeof(real));
-    body->last = sm_alloc(count * 2, sizeof(short));
-    vec identity[9];
-    for (int i = 0; i < 9; i++) identity[i] = lanes_set(i % 4 == 0);
-    for (long block = 0; block < oct->blocks; block++)
-        last_store(body->last + block * 6 * SM_LANES, identity);
+    real *plastic = oct->body[body].plastic;
+    for (long leaf = 0; leaf < oct->leaves; leaf++)
+        for (int i = 0; i < 9 && oct_alive(oct, leaf); i++)
+            plastic[(leaf / SM_LANES * 9 + i) * SM_LANES + leaf % SM_LANES] = (real)S[leaf][i];
+    for (long block = 0; block < oct->blocks; block++) oct_block_inverse(oct, body, block);
 }
 
 /* All bodies start at rest in one place. */
@@ -169,41 +92,33 @@ static void start_at_rest(const OctTree *tree, Oct *oct)
     free(rest);
 }
 
+static void build_lists(const OctTree *tree, const OctRegions *regions, Oct *oct)
+{
+    oct_breadth_build(tree, regions, &oct->lists);
+    if (oct->params.form != OCT_ADJOINT) return;
+    oct_breadth_transpose(tree, &oct->lists, &oct->goal_lists);
+    long base = oct->lists.base > oct->goal_lists.base ? oct->lists.base : oct->goal_lists.base;
+    oct_breadth_rebase(&oct->lists, base);
+    oct_breadth_rebase(&oct->goal_lists, base);
+}
+
 Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mass,
                const OctParams *params)
 {
     assert(tree->leaves > 0 && tree->leaves == regions->leaves);
     Oct *oct = sm_alloc(1, sizeof *oct);
-    OctWeights weights;
     oct->params = *params;
-    oct->leaves = tree->leaves;
-    oct->nodes = tree->nodes;
     oct->levels = tree->levels;
-    oct->blocks = (tree->leaves + SM_LANES - 1) / SM_LANES;
     oct->instances = params->instances > 1 ? params->instances : 1;
     oct->workers = params->threads > 0 ? params->threads : omp_get_max_threads();
     if (oct->instances > 1 && oct->workers > oct->instances) oct->workers = (int)oct->instances;
-    copy_tree(tree, oct);
-    oct_breadth_build(tree, regions, &oct->lists);
-    long carriers = oct->lists.carriers;
-    if (params->form == OCT_ADJOINT) {
-        oct_breadth_transpose(tree, &oct->lists, &oct->goal_lists);
-        if (oct->goal_lists.carriers > carriers) carriers = oct->goal_lists.carriers;
-    }
-    oct->row_count = oct->nodes + 1 + carriers + 1; /* the zero row, the spare one */
-    oct_weights_build(tree, &oct->lists, mass, params->weighting, &weights);
-    oct->mass_unit = weights.mass_unit;
-    fill_blocks(tree, &weights, oct);
-    find_thin(&weights, oct);
-    oct_weights_free(&weights);
-    share_blocks(oct);
+    build_lists(tree, regions, oct);
+    share_blocks(oct, (tree->leaves + SM_LANES - 1) / SM_LANES);
     oct->rows = sm_alloc((size_t)oct->workers, sizeof *oct->rows);
-    for (int i = 0; i < oct->workers; i++) make_rows(tree, oct, &oct->rows[i]);
     oct->body = sm_alloc((size_t)oct->instances, sizeof *oct->body);
-    for (long i = 0; i < oct->instances; i++) {
-        make_body(oct, &oct->body[i]);
-        if (params->creep > 0) make_plastic(oct, i);
-    }
+    copy_tree(tree, oct);
+    fill_slots(tree, regions, mass, oct);
+    for (int i = 0; i < oct->workers; i++) fill_rows(tree, oct, &oct->rows[i]);
     for (int d = 0; d < 3; d++) oct->gravity[d] = (real)params->gravity[d];
     start_at_rest(tree, oct);
     return oct;
@@ -224,23 +139,23 @@ void oct_free(Oct *oct)
     }
     oct_breadth_free(&oct->lists);
     oct_breadth_free(&oct->goal_lists);
-    void *all[] = {oct->thin,     oct->thin_of, oct->inner,   oct->level_first, oct->child,
-                   oct->children, oct->row,     oct->block,   oct->share,       oct->spread,
-                   oct->rows,     oct->body,    oct->obstacle};
+    oct_levels_free(&oct->inner);
+    void *all[] = {oct->thin,  oct->thin_of, oct->child,  oct->children, oct->row,  oct->live,
+                   oct->block, oct->share,   oct->spread, oct->rows,     oct->body, oct->obstacle};
     for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
     free(oct);
 }
 
 long oct_bytes(const Oct *oct)
 {
-    size_t lanes = (size_t)oct->blocks * SM_LANES, nodes = (size_t)oct->nodes;
-    size_t structure = oct_breadth_bytes(&oct->lists) + nodes * (sizeof(int) + 1) +
-                       (size_t)oct->inners * sizeof(int) + lanes * sizeof(int) +
-                       (size_t)oct->blocks * (sizeof(OctConst) + sizeof(int)) +
-                       (size_t)oct->thin_count * sizeof(OctThin);
-    if (oct->goal_lists.first) structure += oct_breadth_bytes(&oct->goal_lists);
-    size_t rows =
-        ((size_t)oct->row_count * (2 * OCT_ROW + OCT_ROW_VELOCITY) + lanes * 3) * sizeof(real);
+    size_t blocks = (size_t)oct->block_room, lanes = blocks * SM_LANES;
+    size_t row_count = (size_t)(oct->lists.base + oct->node_room);
+    size_t structure =
+        oct_breadth_bytes(&oct->lists) + (size_t)oct->node_room * (sizeof(int) + 1) +
+        oct_levels_bytes(&oct->inner) + lanes * sizeof(int) +
+        blocks * (sizeof(OctConst) + sizeof(int) + 1) + (size_t)oct->thin_room * sizeof(OctThin);
+    if (oct->goal_lists.span) structure += oct_breadth_bytes(&oct->goal_lists);
+    size_t rows = (row_count * (2 * OCT_ROW + OCT_ROW_VELOCITY) + lanes * 3) * sizeof(real);
     size_t state = lanes * (9 * sizeof(real) + 6 * sizeof(short));
     if (oct->spread) {
         structure += lanes * 6 * sizeof(real);
@@ -254,12 +169,23 @@ void oct_place(Oct *oct, long body, const double (*x)[3])
     OctState *b = &oct->body[body];
     for (int d = 0; d < 3; d++) {
         double sum = 0;
-        for (long leaf = 0; leaf < oct->leaves; leaf++) sum += x[leaf][d];
-        b->origin[d] = sum / (double)oct->leaves;
-        for (long slot = 0; slot < oct->blocks * SM_LANES; slot++) {
-            long leaf = slot < oct->leaves ? slot : oct->leaves - 1;
-            b->x[oct_index(slot, d)] = (real)(x[leaf][d] - b->origin[d]);
-        }
+        for (long leaf = 0; leaf < oct->leaves; leaf++)
+            if (oct_alive(oct, leaf)) sum += x[leaf][d];
+        b->origin[d] = sum / (double)oct->alive;
+        for (long leaf = 0; leaf < oct->leaves; leaf++)
+            if (oct_alive(oct, leaf)) b->x[oct_index(leaf, d)] = (real)(x[leaf][d] - b->origin[d]);
+    }
+}
+
+/* Slots without a leaf go back to the origin. */
+static void shift_body(const Oct *oct, OctState *b, int d, double shift)
+{
+    b->origin[d] += shift;
+    for (long block = 0; block < oct->blocks; block++) {
+        real *x = b->x + (block * 3 + d) * SM_LANES, *v = b->v + (block * 3 + d) * SM_LANES;
+        ivec alive = oct->block[block].mass > 0;
+        lanes_store(x, lanes_and(lanes_load(x) - (real)shift, alive));
+        lanes_store(v, lanes_and(lanes_load(v), alive));
     }
 }
 
@@ -267,22 +193,17 @@ void oct_recentre(Oct *oct)
 {
     for (long i = 0; i < oct->instances; i++) {
         OctState *b = &oct->body[i];
-        double sum[3] = {0};
-        for (long block = 0; block < oct->blocks; block++)
-            for (int d = 0; d < 3; d++) {
-                const real *x = b->x + (block * 3 + d) * SM_LANES;
+        for (int d = 0; d < 3; d++) {
+            double sum = 0;
+            for (long block = 0; block < oct->blocks; block++) {
+                vec x = lanes_load(b->x + (block * 3 + d) * SM_LANES);
+                x = lanes_and(x, oct->block[block].mass > 0);
                 real part = 0;
                 for (int lane = 0; lane < SM_LANES; lane++) part += x[lane];
-                sum[d] += (double)part;
+                sum += (double)part;
             }
-        for (int d = 0; d < 3; d++) {
-            double middle = rint(sum[d] / (double)(oct->blocks * SM_LANES));
-            if (!(fabs(middle) > 4)) continue; /* nor is a NaN a place */
-            b->origin[d] += middle;
-            for (long block = 0; block < oct->blocks; block++) {
-                real *x = b->x + (block * 3 + d) * SM_LANES;
-                lanes_store(x, lanes_load(x) - (real)middle);
-            }
+            double middle = rint(sum / (double)oct->alive);
+            if (fabs(middle) > 4) shift_body(oct, b, d, middle); /* nor is a NaN a place */
         }
     }
 }

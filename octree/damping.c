@@ -28,32 +28,32 @@ static void weigh(OctTask *task, long first, long last)
 static void sums_up(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;
+    real *rows = task->rows->transform + oct->lists.base * OCT_ROW;
     for (long i = first; i < last; i++) {
-        long node = oct->inner[i];
-        const real *child = task->rows->transform + (long)oct->child[node] * OCT_ROW;
+        long node = task->inner[i];
+        const real *child = rows + (long)oct->child[node] * OCT_ROW;
         Row sum = {0};
         for (int c = 0; c < oct->children[node]; c++)
             sum = row_add(sum, row_load(child + c * OCT_ROW));
-        row_keep(task->rows->transform + node * OCT_ROW, sum);
+        row_keep(rows + node * OCT_ROW, sum);
     }
 }
 
 SM_INLINE Row list_sum(const OctTask *task, long t)
 {
     const OctBreadth *lists = &task->oct->lists;
+    const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
     Row sum[OCT_GROUP] = {{{{0}}}};
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_GROUP)
+    for (; row < end; row += OCT_GROUP)
         for (int i = 0; i < OCT_GROUP; i++)
-            sum[i] = row_add(sum[i],
-                             row_load(task->rows->transform + (long)lists->row[at + i] * OCT_ROW));
+            sum[i] = row_add(sum[i], row_load(task->rows->transform + (long)row[i] * OCT_ROW));
     return row_total(sum);
 }
 
 static void sums_down(OctTask *task, long first, long last)
 {
     for (long k = first; k < last; k++)
-        row_keep(task->rows->transform + oct_carrier_row(&task->oct->lists, k) * OCT_ROW,
-                 list_sum(task, k));
+        row_keep(task->rows->transform + oct_carrier_row(k) * OCT_ROW, list_sum(task, k));
 }
 
 /* omega and v - omega x c of every region, times m_r. */
@@ -61,6 +61,7 @@ static void solve(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;
     for (long block = first; block < last; block++) {
+        if (!oct->live[block]) continue;
         const OctConst *k = &oct->block[block];
         real sums[SM_LANES][OCT_ROW] __attribute__((aligned(64)));
         const real *row[SM_LANES];
@@ -87,9 +88,9 @@ static void solve(OctTask *task, long first, long last)
 static void velocities_up(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;
-    real *velocity = task->rows->velocity;
+    real *velocity = task->rows->velocity + oct->lists.base * OCT_ROW_VELOCITY;
     for (long i = first; i < last; i++) {
-        long node = oct->inner[i];
+        long node = task->inner[i];
         const real *child = velocity + (long)oct->child[node] * OCT_ROW_VELOCITY;
         vec8 sum = {0};
         for (int c = 0; c < oct->children[node]; c++) sum += load8(child + c * OCT_ROW_VELOCITY);
@@ -99,10 +100,11 @@ static void velocities_up(OctTask *task, long first, long last)
 
 SM_INLINE vec8 list_velocity(const OctBreadth *lists, const real *velocity, long t)
 {
+    const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
     vec8 sum[OCT_GROUP] = {{0}};
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_GROUP)
+    for (; row < end; row += OCT_GROUP)
         for (int i = 0; i < OCT_GROUP; i++)
-            sum[i] += load8(velocity + (long)lists->row[at + i] * OCT_ROW_VELOCITY);
+            sum[i] += load8(velocity + (long)row[i] * OCT_ROW_VELOCITY);
     for (int i = 1; i < OCT_GROUP; i++) sum[0] += sum[i];
     return sum[0];
 }
@@ -112,7 +114,7 @@ static void velocities_down(OctTask *task, long first, long last)
     const OctBreadth *lists = oct_goal_breadth(task->oct);
     real *velocity = task->rows->velocity;
     for (long k = first; k < last; k++)
-        store8(velocity + oct_carrier_row(lists, k) * OCT_ROW_VELOCITY,
+        store8(velocity + oct_carrier_row(k) * OCT_ROW_VELOCITY,
                list_velocity(lists, velocity, k));
 }
 
@@ -123,6 +125,7 @@ static void slow(OctTask *task, long first, long last)
     vec shift[3];
     for (int d = 0; d < 3; d++) shift[d] = lanes_set((real)task->body->origin[d]);
     for (long block = first; block < last; block++) {
+        if (!oct->live[block]) continue;
         long at = block * 3 * SM_LANES;
         vec x[3], v[3], field[8], sum[6];
         for (int lane = 0; lane < SM_LANES; lane++)

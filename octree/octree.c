@@ -13,6 +13,7 @@
 
 #include <assert.h>
 #include <omp.h>
+#include <string.h>
 
 #include "plastic.h"
 #include "sum.h"
@@ -39,10 +40,11 @@ static void weigh(OctTask *task, long first, long last)
 static void moments_up(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;
+    real *moment = task->rows->moment + oct->lists.base * OCT_ROW;
     for (long i = first; i < last; i++) {
-        long node = oct->inner[i];
-        real *to = task->rows->moment + node * OCT_ROW;
-        const real *from = task->rows->moment + (long)oct->child[node] * OCT_ROW;
+        long node = task->inner[i];
+        real *to = moment + node * OCT_ROW;
+        const real *from = moment + (long)oct->child[node] * OCT_ROW;
         Row centre = row_pads(row_load(to)), sum = {0}, moved = {0};
         for (int c = 0; c < oct->children[node]; c++)
             row_add_moments(from + c * OCT_ROW, &centre, &sum, &moved);
@@ -56,19 +58,19 @@ SM_INLINE Row list_moments(const OctTask *task, long t, long to)
 {
     const OctBreadth *lists = &task->oct->lists;
     const real *moment = task->rows->moment;
+    const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
     Row centre = row_pads(row_load(moment + to * OCT_ROW));
     Row sum[OCT_GROUP] = {{{{0}}}}, moved[OCT_GROUP] = {{{{0}}}};
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_GROUP)
+    for (; row < end; row += OCT_GROUP)
         for (int i = 0; i < OCT_GROUP; i++)
-            row_add_moments(moment + (long)lists->row[at + i] * OCT_ROW, &centre, &sum[i],
-                            &moved[i]);
+            row_add_moments(moment + (long)row[i] * OCT_ROW, &centre, &sum[i], &moved[i]);
     return row_add(row_total(sum), row_total(moved));
 }
 
 static void moments_down(OctTask *task, long first, long last)
 {
     for (long k = first; k < last; k++) {
-        long row = oct_carrier_row(&task->oct->lists, k);
+        long row = oct_carrier_row(k);
         row_keep(task->rows->moment + row * OCT_ROW, list_moments(task, k, row));
     }
     sm_lap(task->laps, SM_FAST_SUM);
@@ -122,6 +124,7 @@ static void match(OctTask *task, long first, long last)
     const Oct *oct = task->oct;
     OctState *body = task->body;
     for (long block = first; block < last; block++) {
+        if (!oct->live[block]) continue;
         vec S[16], c[3], A[9], R[9], F[9];
         const OctConst *k = &oct->block[block];
         region_sums(task, block, S);
@@ -155,10 +158,11 @@ SM_INLINE void keep_transform(real *to, Row linear, const Row *value)
 static void transforms_up(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;
+    real *transform = task->rows->transform + oct->lists.base * OCT_ROW;
     for (long i = first; i < last; i++) {
-        long node = oct->inner[i];
-        real *to = task->rows->transform + node * OCT_ROW;
-        const real *child = task->rows->transform + (long)oct->child[node] * OCT_ROW;
+        long node = task->inner[i];
+        real *to = transform + node * OCT_ROW;
+        const real *child = transform + (long)oct->child[node] * OCT_ROW;
         Row from = row_from(row_pads(row_load(to))), linear = {0}, value = {0};
         for (int c = 0; c < oct->children[node]; c++) {
             Row row = row_load(child + c * OCT_ROW);
@@ -175,10 +179,11 @@ static void transforms_down(OctTask *task, long first, long last)
     const OctBreadth *lists = oct_goal_breadth(task->oct);
     const real *transform = task->rows->transform;
     for (long k = first; k < last; k++) {
-        real *to = task->rows->transform + oct_carrier_row(lists, k) * OCT_ROW;
+        real *to = task->rows->transform + oct_carrier_row(k) * OCT_ROW;
         Row from = row_from(row_pads(row_load(to))), linear = {0}, value = {0};
-        for (long at = lists->first[k]; at < lists->first[k + 1]; at++) {
-            Row row = row_load(transform + (long)lists->row[at] * OCT_ROW);
+        const int *entry = lists->row + lists->span[k].first;
+        for (int i = 0; i < lists->span[k].count; i++) {
+            Row row = row_load(transform + (long)entry[i] * OCT_ROW);
             row_add_values(row, &from, &value);
             linear = row_add(linear, row);
         }
@@ -197,13 +202,14 @@ SM_INLINE void goal_sums(const OctTask *task, long block, vec sum[3])
     const real *row[SM_LANES];
     vec field[16];
     for (int lane = 0; lane < SM_LANES; lane++) {
-        long slot = block * SM_LANES + lane, t = lists->carriers + slot;
+        long slot = block * SM_LANES + lane;
+        const OctSpan *span = &lists->span[lists->carriers + slot];
+        const int *entry = lists->row + span->first, *end = entry + span->count;
         Row from = row_from(row_pads(row_load(transform + (long)oct->row[slot] * OCT_ROW)));
         Row value[OCT_GROUP] = {{{{0}}}};
-        for (long at = lists->first[t]; at < lists->first[t + 1]; at += OCT_GROUP)
+        for (; entry < end; entry += OCT_GROUP)
             for (int i = 0; i < OCT_GROUP; i++)
-                row_add_values(row_load(transform + (long)lists->row[at + i] * OCT_ROW), &from,
-                               &value[i]);
+                row_add_values(row_load(transform + (long)entry[i] * OCT_ROW), &from, &value[i]);
         row_store(values[lane], row_total(value));
         row[lane] = values[lane];
     }
@@ -217,8 +223,11 @@ static void move(OctTask *task, long first, long last)
     const Oct *oct = task->oct;
     OctState *body = task->body;
     vec shift[3];
+    real push[3]; /* gravity, and what is left of a change (state.h) */
     for (int d = 0; d < 3; d++) shift[d] = lanes_set((real)body->origin[d]);
+    for (int d = 0; d < 3; d++) push[d] = (real)((double)oct->gravity[d] + body->kick[d]);
     for (long block = first; block < last; block++) {
+        if (!oct->live[block]) continue;
         long at = block * 3 * SM_LANES;
         vec g[3], x[3], v[3];
         goal_sums(task, block, g);
@@ -230,7 +239,7 @@ static void move(OctTask *task, long first, long last)
         }
         load3(body->x + at, x);
         load3(body->v + at, v);
-        integrate_velocity(g, x, oct->gravity, lanes_set(1), v);
+        integrate_velocity(g, x, push, lanes_set(1), v);
         if (!oct->damp_now) {
             integrate_position(oct->obstacle, oct->obstacle_count, shift, x, v);
             store3(body->x + at, x);
@@ -300,6 +309,7 @@ static void step(Oct *oct, SmLaps *laps, bool apart)
     int every = oct->params.damping_every > 0 ? oct->params.damping_every : 1;
     oct->damp_now = oct->params.damping > 0 && oct->steps % every == 0;
     step_all(oct, false, laps, apart);
+    for (long i = 0; i < oct->instances; i++) memset(oct->body[i].kick, 0, sizeof oct->body->kick);
     oct->steps++;
     sm_lap(apart ? laps + OCT_PARTS - 1 : laps, SM_OTHER);
 }

@@ -2,15 +2,18 @@
  *
  * Inside, lengths are finest cells from a movable origin and velocities are finest cells per step.
  * Simulation nodes live in slots, slot = leaf number; SM_LANES slots are a block, and a block's
- * coordinates are stored as x[3][lanes]. The slots beyond the last leaf repeat its lists and
- * constants, so that no lane is a special case; what they sum goes to a spare row. Region r is that
- * of simulation node r. */
+ * coordinates are stored as x[3][lanes]. A slot without a leaf, be it beyond the last one or of a
+ * number that nothing bears, weighs nothing and matches the unit row, so that no lane is a special
+ * case; what it sums goes to a spare row, and it stays near the origin. Region r is that of
+ * simulation node r. */
 #ifndef OCT_STATE_H
 #define OCT_STATE_H
 
 #include "../lib/engine.h"
 #include "../lib/integrate.h"
 #include "../lib/lanes.h"
+#include "breadth.h"
+#include "levels.h"
 #include "weights.h"
 
 typedef struct {
@@ -44,11 +47,11 @@ typedef struct {
  *     moments      sum m~ x            ; of m~ x (x0 - centre)^T the columns x, y, z
  *     transforms   value at the centre ; linear part, columns x, y, z
  *     damping      twelve sums
- * The pads of quarters 1 to 3 hold the node's centre, x, y, z; that of quarter 0 is 0. */
+ * The pads of quarters 1 to 3 hold the node's centre, x, y, z; that of quarter 0 is 0. Row numbers
+ * are those of breadth.h. */
 enum { OCT_ROW = 16, OCT_ROW_VELOCITY = 8 };
 
-/* Sums of one body while it is stepped. Row numbers are those of breadth.h; the last row is the
- * spare one. */
+/* Sums of one body while it is stepped. */
 typedef struct {
     real *moment;    /* [rows][OCT_ROW] */
     real *transform; /* [rows][OCT_ROW] transforms, then what damping sums */
@@ -59,6 +62,7 @@ typedef struct {
 /* One body. */
 typedef struct {
     double origin[3]; /* finest cells: where it is, is origin + x */
+    double kick[3];   /* finest cells per step: its velocity is kick + v; the next step adds it */
     real *x, *v, *g;  /* [blocks][3][lanes] */
     short *last;      /* [blocks][6][lanes] the regions' last rotations (rotate_lanes.h) */
     real *plastic;    /* [blocks][9][lanes] S_r, or NULL for an elastic body */
@@ -67,21 +71,26 @@ typedef struct {
 
 typedef struct {
     OctParams params;
-    long leaves, nodes, blocks, row_count, inners;
+    long leaves, nodes; /* numbers; of a fixed body all of them are borne */
+    long alive;         /* leaves */
+    long blocks;
+    long block_room, node_room; /* there is place for as many */
     int levels, threads;
     double mass_unit;
-    OctBreadth lists, goal_lists; /* goal_lists.first is NULL where the same lists serve */
-    int *inner;                   /* [inners] tree nodes with children, rising */
-    long *level_first;            /* [levels + 2] first inner node of every level */
+    OctBreadth lists, goal_lists; /* goal_lists.span is NULL where the same lists serve */
+    OctLevels inner;              /* tree nodes with children; of a fixed body rising */
     int *child;                   /* [nodes] */
     unsigned char *children;      /* [nodes] */
-    int *row;        /* [blocks * lanes] row of a slot; the spare one beyond the leaves */
-    OctConst *block; /* [blocks] */
-    long thin_count; /* blocks that have thin regions */
-    int *thin_of;    /* [blocks] which of them, or -1 */
-    OctThin *thin;   /* [thin_count] */
-    real *spread;    /* [blocks][6][lanes] rest moments of the regions, or NULL */
-    long *share;     /* [threads + 1] first block of each thread */
+    int *row;            /* [blocks * lanes] row of a slot, the spare one if it has no leaf */
+    unsigned char *live; /* [blocks] leaves in it */
+    OctConst *block;     /* [blocks] */
+    long thin_count;     /* blocks that have had thin regions */
+    long thin_room;
+    int *thin_of;  /* [blocks] which of them, or -1 */
+    OctThin *thin; /* [thin_count] */
+    real *spread;  /* [blocks][6][lanes] rest moments of the regions, or NULL */
+    long *share;   /* [threads + 1] first block of each thread */
+    struct OctChanging *changing; /* what is kept to change the body (changing.h), or NULL */
 
     int workers;   /* bodies that are stepped at the same time */
     OctRows *rows; /* [workers] */
@@ -108,6 +117,7 @@ typedef struct {
     Oct *oct;
     OctState *body;
     OctRows *rows;
+    const int *inner; /* of the level that oct_climb() is at */
     int me, team;
     bool goals;   /* goal positions only */
     bool alone;   /* the first thread has worked alone since all have met */
@@ -118,7 +128,7 @@ typedef struct {
 /* The lists that goal positions and damping sum over. */
 static inline const OctBreadth *oct_goal_breadth(const Oct *oct)
 {
-    return oct->goal_lists.first ? &oct->goal_lists : &oct->lists;
+    return oct->goal_lists.span ? &oct->goal_lists : &oct->lists;
 }
 
 #endif

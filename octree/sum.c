@@ -40,9 +40,11 @@ static void run_level(OctTask *task, OctPart *part, long first, long last)
 
 void oct_climb(OctTask *task, OctPart *part)
 {
-    const long *first = task->oct->level_first;
-    for (int level = task->oct->levels; level >= 0; level--)
-        run_level(task, part, first[level], first[level + 1]);
+    for (int level = task->oct->levels; level >= 0; level--) {
+        const OctLevel *inner = &task->oct->inner.level[level];
+        task->inner = inner->node;
+        run_level(task, part, 0, inner->count);
+    }
 }
 
 void oct_descend(OctTask *task, const OctBreadth *lists, OctPart *part)

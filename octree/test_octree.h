@@ -68,14 +68,15 @@ static void test_asymmetric(void **state)
 /* How often list t, with its carriers' lists, holds each leaf. */
 static void count_leaves(const OctTree *tree, const OctBreadth *lists, long t, int *count)
 {
-    for (long at = lists->first[t]; at < lists->first[t + 1]; at++) {
-        long row = lists->row[at];
-        if (row > lists->nodes) count_leaves(tree, lists, row - lists->nodes - 1, count);
-        if (row >= lists->nodes) continue;
+    for (int i = 0; i < lists->span[t].count; i++) {
+        long row = lists->row[lists->span[t].first + i], node = row - lists->base;
+        if (node < 0 && row >= OCT_CARRIER_ROW)
+            count_leaves(tree, lists, row - OCT_CARRIER_ROW, count);
+        if (node < 0) continue;
         for (long leaf = 0; leaf < tree->leaves; leaf++) {
             int n = tree->node[leaf];
-            while (n > row) n = tree->parent[n];
-            count[leaf] += n == row;
+            while (n > node) n = tree->parent[n];
+            count[leaf] += n == node;
         }
     }
 }

@@ -4,11 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Moments of weighted points about a place: 1, d, d d^T (xx yy zz yz zx xy). */
-enum { MOMENTS = 10 };
-
 /* to += the moments `from`, which are about `shift` from where those of `to` are. */
-static void add_moments(const double from[MOMENTS], const double shift[3], double to[MOMENTS])
+static void add_moments(const double from[OCT_MOMENTS], const double shift[3], double to[OCT_MOMENTS])
 {
     to[0] += from[0];
     for (int d = 0; d < 3; d++) {
@@ -26,55 +23,35 @@ static void shift_between(const OctTree *tree, long from, long to, double shift[
     for (int d = 0; d < 3; d++) shift[d] = 0.5 * (tree->centre[from][d] - tree->centre[to][d]);
 }
 
-/* M_i of every simulation node: each list's entries receive the mass below the list's node, and
- * hand it down. */
-static void sum_reach(const OctTree *tree, const OctBreadth *lists, const double *mass,
-                      double *reach)
+/* M_i of every simulation node: each region's members receive its mass and hand it down. */
+static void sum_reach(const OctTree *tree, const OctRegions *regions, OctWeights *w)
 {
-    double *below = sm_alloc((size_t)tree->nodes, sizeof(double));
     double *sum = sm_alloc((size_t)tree->nodes, sizeof(double));
-    for (long n = tree->nodes - 1; n >= 0; n--) {
-        if (tree->leaf[n] >= 0) below[n] = mass[tree->leaf[n]];
-        if (tree->parent[n] >= 0) below[tree->parent[n]] += below[n];
-    }
-    for (long t = 0; t < lists->carriers + lists->leaves; t++) {
-        long node = t < lists->carriers ? lists->carrier[t] : tree->node[t - lists->carriers];
-        for (long at = lists->first[t]; at < lists->first[t + 1]; at++)
-            if (lists->row[at] < lists->nodes) sum[lists->row[at]] += below[node];
-    }
+    for (long r = 0; r < tree->leaves; r++)
+        for (long at = regions->first[r]; at < oct_regions_end(regions, r); at++)
+            sum[regions->member[at]] += oct_weights_mass(w, tree, r);
     for (long n = 0; n < tree->nodes; n++) {
         if (tree->parent[n] >= 0) sum[n] += sum[tree->parent[n]];
-        if (tree->leaf[n] >= 0) reach[tree->leaf[n]] = sum[n];
+        if (tree->leaf[n] >= 0) w->reach[tree->leaf[n]] = sum[n];
     }
-    free(below);
     free(sum);
 }
 
-/* Rest moments of every list about its node, from those of the tree nodes. */
-static double (*list_moments(const OctTree *tree, const OctBreadth *lists,
-                             const double *weight))[MOMENTS]
+void oct_weights_weigh(OctWeights *w, const OctTree *tree, long leaf)
 {
-    long nodes = tree->nodes, count = lists->carriers + lists->leaves;
-    double(*row)[MOMENTS] = sm_alloc((size_t)(nodes + 1 + count), sizeof *row);
-    double shift[3];
-    for (long n = nodes - 1; n >= 0; n--) {
-        if (tree->leaf[n] >= 0) row[n][0] = weight[tree->leaf[n]];
-        for (int i = 0; i < tree->children[n]; i++) {
-            shift_between(tree, tree->child[n] + i, n, shift);
-            add_moments(row[tree->child[n] + i], shift, row[n]);
-        }
+    double mass = oct_weights_mass(w, tree, leaf), *sum = w->sum[tree->node[leaf]];
+    memset(sum, 0, sizeof w->sum[0]);
+    sum[0] = w->weighting == OCT_CONSERVING ? mass / w->reach[leaf] : mass;
+}
+
+void oct_weights_sum(OctWeights *w, const OctTree *tree, long node)
+{
+    double shift[3], *sum = w->sum[node];
+    memset(sum, 0, sizeof w->sum[node]);
+    for (int c = tree->child[node]; c < tree->child[node] + tree->children[node]; c++) {
+        shift_between(tree, c, node, shift);
+        add_moments(w->sum[c], shift, sum);
     }
-    for (long t = 0; t < count; t++) {
-        long node = t < lists->carriers ? lists->carrier[t] : tree->node[t - lists->carriers];
-        for (long at = lists->first[t]; at < lists->first[t + 1]; at++) {
-            long from = lists->row[at];
-            if (from == nodes) continue; /* the zero row */
-            shift_between(tree, from < nodes ? from : lists->carrier[from - nodes - 1], node,
-                          shift);
-            add_moments(row[from], shift, row[nodes + 1 + t]);
-        }
-    }
-    return row;
 }
 
 /* Is all of the spread along one axis? Lengths of nothing are those below 1e-4 finest cells. */
@@ -96,48 +73,55 @@ static bool find_axis(const double spread[6], double mass, double axis[3])
     return true;
 }
 
-static void sum_regions(const OctTree *tree, const OctBreadth *lists, OctWeights *w)
+void oct_weights_region(const OctWeights *w, const OctTree *tree, const OctRegions *regions,
+                        long leaf, OctRegionRest *rest)
 {
-    double(*row)[MOMENTS] = list_moments(tree, lists, w->weight);
-    for (long leaf = 0; leaf < tree->leaves; leaf++) {
-        const double *sum = row[lists->nodes + 1 + lists->carriers + leaf];
-        w->region_mass[leaf] = sum[0];
-        for (int d = 0; d < 3; d++) w->offset[leaf][d] = sum[1 + d] / sum[0];
-        for (int d = 0; d < 3; d++) {
-            int e = (d + 1) % 3, f = (d + 2) % 3;
-            w->spread[leaf][d] = sum[4 + d] - sum[1 + d] * w->offset[leaf][d];
-            w->spread[leaf][3 + d] = sum[7 + d] - sum[1 + e] * w->offset[leaf][f];
-        }
-        w->thin[leaf] = find_axis(w->spread[leaf], sum[0], w->axis[leaf]);
+    double sum[OCT_MOMENTS] = {0}, shift[3];
+    for (long at = regions->first[leaf]; at < oct_regions_end(regions, leaf); at++) {
+        shift_between(tree, regions->member[at], tree->node[leaf], shift);
+        add_moments(w->sum[regions->member[at]], shift, sum);
     }
-    free(row);
+    *rest = (OctRegionRest){.mass = sum[0]};
+    for (int d = 0; d < 3; d++) rest->offset[d] = sum[1 + d] / sum[0];
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        rest->spread[d] = sum[4 + d] - sum[1 + d] * rest->offset[d];
+        rest->spread[3 + d] = sum[7 + d] - sum[1 + e] * rest->offset[f];
+    }
+    rest->thin = find_axis(rest->spread, sum[0], rest->axis);
 }
 
-void oct_weights_build(const OctTree *tree, const OctBreadth *lists, const double *mass,
+void oct_weights_build(const OctTree *tree, const OctRegions *regions, const double *mass,
                        OctWeighting weighting, OctWeights *w)
 {
-    size_t n = (size_t)tree->leaves;
-    w->mass = sm_alloc(n, sizeof(double));
-    w->weight = sm_alloc(n, sizeof(double));
+    size_t n = (size_t)tree->leaves, nodes = (size_t)tree->nodes;
+    *w = (OctWeights){.weighting = weighting, .nodes = tree->nodes, .leaves = tree->leaves};
+    w->below = sm_alloc(nodes, sizeof(double));
     w->reach = sm_alloc(n, sizeof(double));
-    w->region_mass = sm_alloc(n, sizeof(double));
-    w->offset = sm_alloc(n, sizeof *w->offset);
-    w->spread = sm_alloc(n, sizeof *w->spread);
-    w->thin = sm_alloc(n, sizeof *w->thin);
-    w->axis = sm_alloc(n, sizeof *w->axis);
-    w->mass_unit = 0;
+    w->sum = sm_alloc(nodes, sizeof *w->sum);
     for (size_t i = 0; i < n; i++) w->mass_unit += mass[i] / (double)n;
-    for (size_t i = 0; i < n; i++) w->mass[i] = mass[i] / w->mass_unit;
-    sum_reach(tree, lists, w->mass, w->reach);
-    for (size_t i = 0; i < n; i++)
-        w->weight[i] = weighting == OCT_CONSERVING ? w->mass[i] / w->reach[i] : w->mass[i];
-    sum_regions(tree, lists, w);
+    for (long m = tree->nodes - 1; m >= 0; m--) {
+        if (tree->leaf[m] >= 0) w->below[m] = mass[tree->leaf[m]] / w->mass_unit;
+        if (tree->parent[m] >= 0) w->below[tree->parent[m]] += w->below[m];
+    }
+    sum_reach(tree, regions, w);
+    for (long m = tree->nodes - 1; m >= 0; m--)
+        if (tree->leaf[m] >= 0)
+            oct_weights_weigh(w, tree, tree->leaf[m]);
+        else
+            oct_weights_sum(w, tree, m);
 }
 
 void oct_weights_free(OctWeights *w)
 {
-    void *all[] = {w->mass,   w->weight, w->reach, w->region_mass,
-                   w->offset, w->spread, w->thin,  w->axis};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    free(w->below);
+    free(w->reach);
+    free(w->sum);
     memset(w, 0, sizeof *w);
+}
+
+size_t oct_weights_bytes(const OctWeights *w)
+{
+    return (size_t)w->nodes * (sizeof *w->below + sizeof *w->sum) +
+           (size_t)w->leaves * sizeof *w->reach;
 }
