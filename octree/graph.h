@@ -7,11 +7,19 @@
 /* Undirected; every edge is stored at both ends. Numbers are leaf numbers (tree.h). */
 typedef struct {
     long leaves;
+    long edges;  /* both ends counted */
     long *first; /* [leaves + 1] */
-    int *to;     /* [first[leaves]] rising within a leaf */
+    long *end;   /* [leaves] of a graph that has been changed; NULL: lists follow each other */
+    int *to;     /* rising within a leaf, until the graph is changed */
     int *length; /* max-norm length between the centres, half finest cells, 1 or more */
-    int longest; /* 0 without any edge */
+    int longest; /* no edge is longer; 0 without any edge */
 } OctGraph;
+
+/* The edges of a leaf are first[leaf] to oct_graph_end() - 1. */
+static inline long oct_graph_end(const OctGraph *graph, long leaf)
+{
+    return graph->end ? graph->end[leaf] : graph->first[leaf + 1];
+}
 
 /* Two leaves that touch (face, edge or corner) are joined where a material finest cell of one
  * touches a material finest cell of the other (touch.h). Leaves i, j whose centres are within the

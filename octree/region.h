@@ -8,15 +8,23 @@
  * node. */
 typedef struct {
     long leaves;
-    long *first; /* [leaves + 1] */
-    int *member; /* tree nodes, rising within a region; no leaf is below two of them */
-    int *width;  /* [leaves] largest distance of a leaf in the region, half finest cells */
-    int *size;   /* [leaves] leaves in the region */
-    double mean; /* summation nodes per region */
+    long members; /* of all regions */
+    long *first;  /* [leaves + 1] */
+    long *end;    /* [leaves] of regions that have been changed; NULL: lists follow each other */
+    int *member;  /* tree nodes, rising within a region; no leaf is below two of them */
+    int *width;   /* [leaves] largest distance of a leaf in the region, half finest cells */
+    int *size;    /* [leaves] leaves in the region */
+    double mean;  /* summation nodes per region */
     long most;
     double mean_width; /* of `width`: how far regions reach on average, and at most */
     int most_width;
 } OctRegions;
+
+/* The members of a region are first[leaf] to oct_regions_end() - 1. */
+static inline long oct_regions_end(const OctRegions *regions, long leaf)
+{
+    return regions->end ? regions->end[leaf] : regions->first[leaf + 1];
+}
 
 /* Regions of widths w[leaf] (half finest cells, 0 or more), symmetric: j in R_i exactly when i in
  * R_j. Every leaf within w_i of i is in R_i, none beyond w_i + floor(epsilon w_i) is unless

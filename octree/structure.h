@@ -3,8 +3,11 @@
 #ifndef OCT_STRUCTURE_H
 #define OCT_STRUCTURE_H
 
+#include "../lib/cut.h"
 #include "engine.h"
 #include "region.h"
+
+struct OctResample; /* what is kept to change the structure while it runs (resample.c) */
 
 struct OctStructure {
     OctTree tree;
@@ -16,6 +19,11 @@ struct OctStructure {
     double *mass;           /* [leaves] kg */
     double origin[3], cell; /* of the voxels, in mesh units */
     OctSampleReport report;
+    SmVoxels voxels;              /* its own */
+    double *cell_mass;            /* [voxels.cell_count] kg, in the order z, y, x; NULL: 1 a cell */
+    OctOptions options;           /* as given */
+    SmCut cut;                    /* edges that cross it are not in the graph */
+    struct OctResample *resample; /* or NULL */
 };
 
 /* `mass` is that of the lattice's vertices (engine.h): each gives equal parts of it to the material
@@ -24,6 +32,12 @@ struct OctStructure {
  * frees. */
 SmCode oct_structure_build(const SmVoxels *voxels, const OctOptions *options, const double *mass,
                            OctStructure *structure, SmError *error);
+
+/* The same of a tree over the voxels, which becomes the structure's, whatever the options say of
+ * sampling, and of a cut, which is copied (NULL: none): what a changed structure must equal. */
+SmCode oct_structure_of_tree(const SmVoxels *voxels, const OctOptions *options, const double *mass,
+                             OctTree *tree, const SmCut *cut, OctStructure *structure,
+                             SmError *error);
 void oct_structure_free(OctStructure *structure);
 size_t oct_structure_bytes(const OctStructure *structure);
 

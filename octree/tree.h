@@ -6,7 +6,8 @@
  *
  * Nodes are stored level by level from the roots down, along the Morton curve within a level, so
  * that parents come before their children, siblings follow each other, and the nodes of one level
- * are one range. Lengths are whole numbers of half a finest cell, in which every centre-to-centre
+ * are one range; a tree that has been changed is in no order and has numbers that nothing bears
+ * (resample.h). Lengths are whole numbers of half a finest cell, in which every centre-to-centre
  * length is exact (octree section 6). Positions count from the corner of voxel (0,0,0). */
 #ifndef OCT_TREE_H
 #define OCT_TREE_H
@@ -19,6 +20,7 @@ typedef struct {
     int levels;    /* of splitting there can be; a finest cell has level `levels` */
     int corner[3]; /* of the base lattice, in finest cells */
     long roots, nodes, leaves;
+    long live;               /* leaves that live; as many as there are until the tree is changed */
     long *level_first;       /* [levels + 2] first node of every level; its last entry is `nodes` */
     int (*centre)[3];        /* [nodes] half finest cells */
     int *size;               /* [nodes] edge length, half finest cells: 2 << (levels - level) */
