@@ -7,20 +7,42 @@
 void oct_reach_init(OctReach *reach, const OctGraph *graph)
 {
     size_t leaves = (size_t)graph->leaves;
-    *reach = (OctReach){.graph = graph, .room = 1024};
+    *reach = (OctReach){.graph = graph, .leaves = graph->leaves, .room = 1024};
     reach->distance = sm_alloc(leaves, sizeof *reach->distance);
     reach->reached = sm_alloc(leaves, sizeof *reach->reached);
     reach->nearest = sm_alloc(leaves, sizeof *reach->nearest);
-    reach->bucket = sm_alloc((size_t)graph->longest + 1, sizeof *reach->bucket);
+    reach->longest = -1;
     reach->entry = sm_alloc((size_t)reach->room, sizeof *reach->entry);
-    for (int b = 0; b <= graph->longest; b++) reach->bucket[b] = -1;
     for (long l = 0; l < graph->leaves; l++) {
-        reach->distance[l] = reach->nearest[l] = OCT_FAR;
-        for (long e = graph->first[l]; e < graph->first[l + 1]; e++) {
-            assert(graph->length[e] > 0 && graph->length[e] <= graph->longest);
-            if (graph->length[e] < reach->nearest[l]) reach->nearest[l] = graph->length[e];
-        }
+        reach->distance[l] = OCT_FAR;
+        oct_reach_update(reach, l);
     }
+    oct_reach_grow(reach, graph->leaves);
+}
+
+void oct_reach_update(OctReach *reach, long leaf)
+{
+    const OctGraph *g = reach->graph;
+    reach->nearest[leaf] = OCT_FAR;
+    for (long e = g->first[leaf]; e < oct_graph_end(g, leaf); e++) {
+        assert(g->length[e] > 0 && g->length[e] <= g->longest);
+        if (g->length[e] < reach->nearest[leaf]) reach->nearest[leaf] = g->length[e];
+    }
+}
+
+void oct_reach_grow(OctReach *reach, long leaves)
+{
+    if (leaves > reach->leaves) {
+        reach->distance = sm_realloc(reach->distance, (size_t)leaves, sizeof *reach->distance);
+        reach->reached = sm_realloc(reach->reached, (size_t)leaves, sizeof *reach->reached);
+        reach->nearest = sm_realloc(reach->nearest, (size_t)leaves, sizeof *reach->nearest);
+    }
+    for (; reach->leaves < leaves; reach->leaves++)
+        reach->distance[reach->leaves] = reach->nearest[reach->leaves] = OCT_FAR;
+    if (reach->graph->longest <= reach->longest) return;
+    reach->longest = reach->graph->longest;
+    reach->bucket = sm_realloc(reach->bucket, (size_t)reach->longest + 1, sizeof *reach->bucket);
+    for (int b = 0; b <= reach->longest; b++) reach->bucket[b] = -1;
 }
 
 void oct_reach_free(OctReach *reach)
@@ -38,37 +60,38 @@ void oct_reach_free(OctReach *reach)
 static long spread(OctReach *reach, int leaf, int k, int most, int place, long entries)
 {
     const OctGraph *g = reach->graph;
-    long before = entries, need = entries + g->first[leaf + 1] - g->first[leaf];
+    long before = entries, end = oct_graph_end(g, leaf), need = entries + end - g->first[leaf];
     if (need > reach->room) {
         reach->room = 2 * need;
         reach->entry = sm_realloc(reach->entry, (size_t)reach->room, sizeof *reach->entry);
     }
-    for (long e = g->first[leaf]; e < g->first[leaf + 1]; e++) {
+    for (long e = g->first[leaf]; e < end; e++) {
         int to = g->to[e], d = k + g->length[e];
         if (d >= reach->distance[to] || d > most) continue;
         reach->distance[to] = d;
         int b = place + g->length[e];
-        if (b > g->longest) b -= g->longest + 1;
+        if (b > reach->longest) b -= reach->longest + 1;
         reach->entry[entries] = (struct OctEntry){to, reach->bucket[b]};
         reach->bucket[b] = (int)entries++;
     }
     return entries - before;
 }
 
-/* A node is appended only where its distance falls, so it is in a bucket once for each distance it
- * had, and of these the entry whose distance still holds is the first to come up: the others are
- * the ones that the paper's marks would discard. */
-void oct_reach_from(OctReach *reach, int source, int most)
+/* Forgets the last search. */
+static void clear(OctReach *reach)
 {
-    assert(source >= 0 && source < reach->graph->leaves && most >= 0 && most <= OCT_FAR / 2);
     for (long n = 0; n < reach->count; n++) reach->distance[reach->reached[n]] = OCT_FAR;
     reach->count = 0;
-    reach->distance[source] = 0;
-    reach->entry[0] = (struct OctEntry){source, -1};
-    reach->bucket[0] = 0;
-    long entries = 1, waiting = 1;
+}
+
+/* A node is appended only where its distance falls, so it is in a bucket once for each distance it
+ * had, and of these the entry whose distance still holds is the first to come up: the others are
+ * the ones that the paper's marks would discard. `entries` are in the buckets. */
+static void search(OctReach *reach, long entries, int most)
+{
+    long waiting = entries;
     for (int k = 0, place = 0; waiting > 0; k++, place++) {
-        if (place > reach->graph->longest) place = 0;
+        if (place > reach->longest) place = 0;
         int n = reach->bucket[place];
         reach->bucket[place] = -1;
         for (; n >= 0; waiting--) {
@@ -82,4 +105,34 @@ void oct_reach_from(OctReach *reach, int source, int most)
             waiting += more;
         }
     }
+}
+
+void oct_reach_from(OctReach *reach, int source, int most)
+{
+    assert(source >= 0 && source < reach->graph->leaves && most >= 0 && most <= OCT_FAR / 2);
+    clear(reach);
+    reach->distance[source] = 0;
+    reach->entry[0] = (struct OctEntry){source, -1};
+    reach->bucket[0] = 0;
+    search(reach, 1, most);
+}
+
+void oct_reach_from_all(OctReach *reach, long count, const struct OctSource *source, int most)
+{
+    long entries = 0;
+    assert(most >= 0 && most <= OCT_FAR / 2);
+    clear(reach);
+    if (count > reach->room) {
+        reach->room = 2 * count;
+        reach->entry = sm_realloc(reach->entry, (size_t)reach->room, sizeof *reach->entry);
+    }
+    for (long s = 0; s < count; s++) {
+        int leaf = source[s].leaf, d = source[s].distance;
+        assert(d >= 0 && d <= reach->longest);
+        if (d >= reach->distance[leaf] || d > most) continue;
+        reach->distance[leaf] = d;
+        reach->entry[entries] = (struct OctEntry){leaf, reach->bucket[d]};
+        reach->bucket[d] = (int)entries++;
+    }
+    search(reach, entries, most);
 }

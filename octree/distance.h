@@ -18,6 +18,8 @@ typedef struct {
     /* the search's own */
     int *nearest; /* [leaves] shortest edge */
     int *bucket;  /* [longest + 1] a ring: last entry of each bucket, or -1 */
+    int longest;
+    long leaves;
     struct OctEntry {
         int leaf, before; /* entry of the same bucket, or -1 */
     } * entry;            /* grows to the most entries of any search */
@@ -31,5 +33,17 @@ void oct_reach_free(OctReach *reach);
 /* Bucket-Moore: distances of all leaves within `most` (0 to OCT_FAR / 2) of `source`, exactly
  * Dijkstra's. Allocates nothing once the buckets have grown. O(edges of what is reached + most). */
 void oct_reach_from(OctReach *reach, int source, int most);
+
+/* The same from several leaves at once, each with a start no greater than the graph's longest edge:
+ * the least of a start and the distance from its leaf. */
+struct OctSource {
+    int leaf, distance;
+};
+void oct_reach_from_all(OctReach *reach, long count, const struct OctSource *source, int most);
+
+/* Where the graph changes: makes the scratch good for `leaves` leaf numbers and the graph's longest
+ * edge, between searches; takes note of the edges that a leaf has now. */
+void oct_reach_grow(OctReach *reach, long leaves);
+void oct_reach_update(OctReach *reach, long leaf);
 
 #endif

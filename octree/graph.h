@@ -2,6 +2,8 @@
 #ifndef OCT_GRAPH_H
 #define OCT_GRAPH_H
 
+#include "../lib/cut.h"
+#include "plots.h"
 #include "tree.h"
 
 /* Undirected; every edge is stored at both ends. Numbers are leaf numbers (tree.h). */
@@ -36,6 +38,13 @@ static inline long oct_graph_end(const OctGraph *graph, long leaf)
  * larger than those around it has O(r^3) neighbours, each found in O(1) in the bulk and at worst
  * by a search of their box at a concave place. */
 void oct_graph_build(const OctTree *tree, const SmVoxels *voxels, OctGraph *graph);
+
+/* Takes the edges out whose segment between the leaves' centres crosses the cut, which is in mesh
+ * units. Of a graph whose lists follow each other. O(edges). */
+void oct_graph_cut(const OctTree *tree, const SmVoxels *voxels, const SmCut *cut, OctGraph *graph);
+
+/* The joined leaves of every leaf. The caller frees. O(leaves). */
+void oct_graph_joined(const OctTree *tree, const SmVoxels *voxels, OctPlots *joined);
 void oct_graph_free(OctGraph *graph);
 
 /* Memory of the graph. */

@@ -8,24 +8,31 @@
 int *oct_interval_below(const OctTree *tree)
 {
     int *below = sm_alloc((size_t)tree->nodes, sizeof *below);
-    for (long n = tree->nodes - 1; n >= 0; n--) {
-        if (!tree->children[n]) below[n] = 1;
-        if (tree->parent[n] >= 0) below[tree->parent[n]] += below[n];
-    }
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        for (int n = tree->node[leaf]; n >= 0; n = tree->parent[n]) below[n]++;
     return below;
 }
 
 void oct_interval_init(OctIntervals *s, const OctTree *tree, const OctGraph *graph,
                        const int *below)
 {
-    size_t nodes = (size_t)tree->nodes;
     *s = (OctIntervals){.tree = tree, .below = below};
     oct_reach_init(&s->reach, graph);
-    s->member = sm_alloc((size_t)tree->leaves, sizeof *s->member);
-    s->interval = sm_alloc(nodes, sizeof *s->interval);
-    s->queue = sm_alloc(nodes, sizeof *s->queue);
-    s->taken = sm_alloc(nodes, 1);
+    oct_interval_grow(s, tree->nodes, tree->leaves, below);
     for (int l = 0; l <= tree->levels; l++) s->touched[l] = -1;
+}
+
+void oct_interval_grow(OctIntervals *s, long nodes, long leaves, const int *below)
+{
+    s->below = below;
+    oct_reach_grow(&s->reach, leaves);
+    if (leaves > s->leaves) s->member = sm_realloc(s->member, (size_t)leaves, sizeof *s->member);
+    s->leaves = leaves > s->leaves ? leaves : s->leaves;
+    if (nodes <= s->nodes) return;
+    s->interval = oct_plots_widen(s->interval, s->nodes, nodes, sizeof *s->interval, 0);
+    s->queue = oct_plots_widen(s->queue, s->nodes, nodes, sizeof *s->queue, 0);
+    s->taken = oct_plots_widen(s->taken, s->nodes, nodes, 1, 0);
+    s->nodes = nodes;
 }
 
 void oct_interval_free(OctIntervals *s)
@@ -38,7 +45,7 @@ void oct_interval_free(OctIntervals *s)
     memset(s, 0, sizeof *s);
 }
 
-static void clear(OctIntervals *s)
+void oct_interval_clear(OctIntervals *s)
 {
     for (long m = 0; m < s->members; m++) s->taken[s->member[m]] = 0;
     s->members = 0;
@@ -97,11 +104,19 @@ static void take(OctIntervals *s, int node, int most)
     if (most > s->width) s->width = most;
 }
 
-/* Children follow each other in their parents' order, so nodes leave the queue in rising order. */
+/* In a tree as it was built, children follow each other in their parents' order, and nodes leave
+ * the queue in rising order. */
+static void sort_members(OctIntervals *s)
+{
+    bool rising = true;
+    for (long m = 1; m < s->members; m++) rising = rising && s->member[m] > s->member[m - 1];
+    if (!rising) qsort(s->member, (size_t)s->members, sizeof *s->member, oct_lists_compare);
+}
+
 void oct_interval_find(OctIntervals *s, int i, int w, int most)
 {
     const OctTree *t = s->tree;
-    clear(s);
+    oct_interval_clear(s);
     oct_reach_from(&s->reach, i, most);
     find_intervals(s);
     long count = queue_roots(s);
@@ -120,6 +135,7 @@ void oct_interval_find(OctIntervals *s, int i, int w, int most)
         }
         for (int c = 0; c < t->children[node]; c++) s->queue[count++] = t->child[node] + c;
     }
+    sort_members(s);
 }
 
 bool oct_interval_holds(const OctIntervals *s, int leaf)

@@ -21,15 +21,21 @@ typedef struct {
     } * interval;         /* [nodes] of inner nodes */
     int *queue;           /* [nodes] */
     unsigned char *taken; /* [nodes] 1 for members */
+    long nodes, leaves;   /* that the scratch is good for */
     int touched[OCT_MAX_LEVELS + 1]; /* first touched node of every level, or -1 */
 } OctIntervals;
 
-/* Leaves of every node's subtree. The caller frees with free(). */
+/* Leaves of every node's subtree. O(leaves * levels). The caller frees with free(). */
 int *oct_interval_below(const OctTree *tree);
 
 void oct_interval_init(OctIntervals *s, const OctTree *tree, const OctGraph *graph,
                        const int *below);
 void oct_interval_free(OctIntervals *s);
+
+/* Where the tree changes: makes the scratch good for as many numbers and the graph's longest edge,
+ * between searches. What was found last is to be forgotten with oct_interval_clear() before. */
+void oct_interval_grow(OctIntervals *s, long nodes, long leaves, const int *below);
+void oct_interval_clear(OctIntervals *s);
 
 /* The summation nodes of leaf i: from the roots down, a node with a_j > w is discarded, one with
  * b_j <= most is taken, another one gives way to its children. So a leaf is in for its own distance

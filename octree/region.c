@@ -1,233 +1,81 @@
 #include "region.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "interval.h"
-#include "lists.h"
+#include "cover.h"
+#include "halves.h"
 
 enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
 
-typedef struct {
-    const OctTree *tree;
-    const OctGraph *graph;
-    const int *w;
-    double epsilon;
-    int *below;
-    OctRegions *regions;
-} Build;
-
-/* How far the search for region i goes. */
-static int farthest(const Build *b, long i)
+/* What leaf j owns and what it takes, into `member`. */
+static void merge_region(const OctHalves *h, OctCover *cover, long j, OctLists *member)
 {
-    double most = b->w[i] + floor(b->epsilon * b->w[i]);
-    return most < OCT_FAR / 2 ? (int)most : OCT_FAR / 2;
-}
-
-/* Region i by its own intervals into `member`, and into `doubtful` its leaves in whose regions i
- * may be missing, because the distance is more than their widths. A number below 0 there is the
- * distance, negated, of the leaves that follow. */
-static void find_region(const Build *b, OctIntervals *s, long i, OctLists *member,
-                        OctLists *doubtful)
-{
-    int w = b->w[i], listed = 0;
-    oct_interval_find(s, (int)i, w, farthest(b, i));
-    b->regions->width[i] = s->width;
-    oct_lists_add(member, i, s->member, s->members);
-    for (long n = 0; n < s->reach.count; n++) {
-        int j = s->reach.reached[n], d = s->reach.distance[j];
-        if (d <= b->w[j] || (d > w && !oct_interval_holds(s, j))) continue;
-        int negated = -d;
-        if (d != listed) oct_lists_add(doubtful, i, &negated, 1);
-        listed = d;
-        oct_lists_add(doubtful, i, &j, 1);
-    }
-}
-
-/* Every region by its own intervals. */
-static void find_regions(const Build *b, OctLists *doubtful)
-{
-    OctLists member;
-    oct_lists_init(&member, b->tree->leaves);
-#pragma omp parallel if (b->tree->leaves > SERIAL)
-    {
-        OctIntervals s;
-        oct_interval_init(&s, b->tree, b->graph, b->below);
-#pragma omp for schedule(dynamic)
-        for (long block = 0; block < member.blocks; block++)
-            for (long i = oct_lists_from(block); i < oct_lists_to(&member, block); i++)
-                find_region(b, &s, i, &member, doubtful);
-        oct_interval_free(&s);
-    }
-    oct_lists_pack(&member, &b->regions->first, &b->regions->member);
-}
-
-/* Is a leaf in the region of j? */
-static bool region_holds(const Build *b, int j, int leaf)
-{
-    const OctRegions *r = b->regions;
-    for (int node = b->tree->node[leaf]; node >= 0; node = b->tree->parent[node]) {
-        long low = r->first[j], high = r->first[j + 1];
-        while (low < high) {
-            long middle = low + (high - low) / 2;
-            if (r->member[middle] < node)
-                low = middle + 1;
-            else
-                high = middle;
-        }
-        if (low < r->first[j + 1] && r->member[low] == node) return true;
-    }
-    return false;
-}
-
-/* Of the doubtful leaves keeps, in place, those in whose regions i is missing. */
-static void keep_missing(const Build *b, long i, int *item, int *count)
-{
-    int kept = 0;
-    for (int n = 0; n < *count; n++)
-        if (item[n] < 0 || !region_holds(b, item[n], (int)i)) item[kept++] = item[n];
-    *count = kept;
-}
-
-/* Leaves to be added to every region, as rows. */
-typedef struct {
-    long *first; /* [leaves + 1] */
-    int *leaf;
-} Added;
-
-/* Turns "i is missing in j" round to "j gets i", and widens j to its distance. */
-static void turn_round(const Build *b, const OctLists *missing, Added *added)
-{
-    long leaves = b->tree->leaves;
-    long *next = sm_alloc((size_t)leaves, sizeof *next);
-    added->first = sm_alloc((size_t)leaves + 1, sizeof *added->first);
-    for (long i = 0; i < leaves; i++) {
-        const int *item = oct_lists_item(missing, i);
-        for (int n = 0, d = 0; n < missing->count[i]; n++) {
-            if (item[n] < 0) {
-                d = -item[n];
-                continue;
-            }
-            added->first[item[n] + 1]++;
-            int *width = b->regions->width + item[n];
-            if (d > *width) *width = d;
-        }
-    }
-    for (long j = 0; j < leaves; j++) added->first[j + 1] += next[j] = added->first[j];
-    added->leaf = sm_alloc((size_t)added->first[leaves], sizeof *added->leaf);
-    for (long i = 0; i < leaves; i++) {
-        const int *item = oct_lists_item(missing, i);
-        for (int n = 0; n < missing->count[i]; n++)
-            if (item[n] >= 0) added->leaf[next[item[n]]++] = (int)i;
-    }
-    free(next);
-}
-
-/* Scratch of one thread for merging. */
-typedef struct {
-    const OctTree *tree;
-    unsigned char *in; /* [nodes] children that are in, all 0 between merges */
-    int *list;
-    long count, room;
-} Merge;
-
-/* Puts a node on the list and, where it completes its siblings, their parent. */
-static void put(Merge *m, int node)
-{
-    const OctTree *t = m->tree;
-    for (bool complete = true; complete; node = t->parent[node]) {
-        if (m->count == m->room) {
-            m->room = m->room ? 2 * m->room : 256;
-            m->list = sm_realloc(m->list, (size_t)m->room, sizeof *m->list);
-        }
-        m->list[m->count++] = node;
-        int parent = t->parent[node];
-        complete = parent >= 0 && ++m->in[parent] == t->children[parent];
-    }
-}
-
-/* Leaves on the list, rising, what has no parent there; clears `in`. */
-static void finish(Merge *m)
-{
-    const OctTree *t = m->tree;
-    long kept = 0;
-    for (long n = 0; n < m->count; n++) {
-        int node = m->list[n], parent = t->parent[node];
-        if (parent >= 0 && m->in[parent] == t->children[parent]) continue;
-        m->list[n] = m->list[kept];
-        m->list[kept++] = node;
-    }
-    for (long n = 0; n < m->count; n++) {
-        int parent = t->parent[m->list[n]];
-        if (parent >= 0) m->in[parent] = 0;
-    }
-    m->count = kept;
-    qsort(m->list, (size_t)kept, sizeof *m->list, oct_lists_compare);
-}
-
-/* Region j with what is added to it, into `member`. */
-static void merge_region(const Build *b, Merge *m, const Added *added, long j, OctLists *member)
-{
-    const OctRegions *r = b->regions;
-    long first = r->first[j], count = r->first[j + 1] - first;
-    if (added->first[j] == added->first[j + 1]) {
-        oct_lists_add(member, j, r->member + first, count);
+    long first = h->first[j], count = h->first[j + 1] - first;
+    if (h->taken_first[j] == h->taken_first[j + 1]) {
+        oct_lists_add(member, j, h->member + first, count);
         return;
     }
-    m->count = 0;
-    for (long n = 0; n < count; n++) put(m, r->member[first + n]);
-    for (long n = added->first[j]; n < added->first[j + 1]; n++)
-        put(m, b->tree->node[added->leaf[n]]);
-    finish(m);
-    oct_lists_add(member, j, m->list, m->count);
+    cover->count = 0;
+    for (long n = 0; n < count; n++) oct_cover_put(cover, h->member[first + n]);
+    for (long n = h->taken_first[j]; n < h->taken_first[j + 1]; n++)
+        oct_cover_put(cover, cover->tree->node[h->taken[n]]);
+    oct_cover_finish(cover);
+    oct_lists_add(member, j, cover->list, cover->count);
 }
 
-/* Replaces the regions by those with what is added to them. */
-static void merge_regions(const Build *b, const Added *added)
+static void merge_halves(const OctTree *tree, const OctHalves *h, OctRegions *regions)
 {
     OctLists member;
-    oct_lists_init(&member, b->tree->leaves);
-#pragma omp parallel if (b->tree->leaves > SERIAL)
+    oct_lists_init(&member, tree->leaves);
+#pragma omp parallel if (tree->leaves > SERIAL)
     {
-        Merge m = {.tree = b->tree, .in = sm_alloc((size_t)b->tree->nodes, 1)};
+        OctCover cover;
+        oct_cover_init(&cover, tree, tree->nodes);
 #pragma omp for schedule(dynamic)
         for (long block = 0; block < member.blocks; block++)
             for (long j = oct_lists_from(block); j < oct_lists_to(&member, block); j++)
-                merge_region(b, &m, added, j, &member);
-        free(m.in);
-        free(m.list);
+                merge_region(h, &cover, j, &member);
+        oct_cover_free(&cover);
     }
-    free(b->regions->first);
-    free(b->regions->member);
-    oct_lists_pack(&member, &b->regions->first, &b->regions->member);
+    oct_lists_pack(&member, &regions->first, &regions->member);
 }
 
-static void make_symmetric(const Build *b, OctLists *doubtful)
+/* What is owned is all there is where nobody takes anything. */
+static void join_halves(const OctTree *tree, OctHalves *h, OctRegions *regions)
 {
-    Added added;
-#pragma omp parallel for schedule(dynamic) if (b->tree->leaves > SERIAL)
-    for (long block = 0; block < doubtful->blocks; block++)
-        for (long i = oct_lists_from(block); i < oct_lists_to(doubtful, block); i++)
-            keep_missing(b, i, oct_lists_item(doubtful, i), doubtful->count + i);
-    turn_round(b, doubtful, &added);
-    if (added.first[b->tree->leaves] > 0) merge_regions(b, &added);
-    free(added.first);
-    free(added.leaf);
+    regions->width = h->width;
+    h->width = NULL;
+    for (long j = 0; j < tree->leaves; j++)
+        for (long n = h->taken_first[j]; n < h->taken_first[j + 1]; n++)
+            if (h->distance[n] > regions->width[j]) regions->width[j] = h->distance[n];
+    if (h->taken_first[tree->leaves] > 0) {
+        merge_halves(tree, h, regions);
+    } else {
+        regions->first = h->first;
+        regions->member = h->member;
+        h->first = NULL;
+        h->member = NULL;
+    }
 }
 
-static void measure(const Build *b)
+void oct_regions_measure(OctRegions *r)
 {
-    OctRegions *r = b->regions;
+    long live = 0;
+    r->members = r->most = 0;
+    r->most_width = 0;
+    r->mean_width = 0;
     for (long i = 0; i < r->leaves; i++) {
-        long members = r->first[i + 1] - r->first[i];
+        long members = oct_regions_end(r, i) - r->first[i];
+        live += members > 0;
+        r->members += members;
         if (members > r->most) r->most = members;
         if (r->width[i] > r->most_width) r->most_width = r->width[i];
-        r->mean_width += (double)r->width[i] / (double)r->leaves;
-        for (long n = r->first[i]; n < r->first[i + 1]; n++) r->size[i] += b->below[r->member[n]];
+        r->mean_width += (double)r->width[i];
     }
-    r->mean = r->leaves ? (double)r->first[r->leaves] / (double)r->leaves : 0;
+    r->mean_width = live ? r->mean_width / (double)live : 0;
+    r->mean = live ? (double)r->members / (double)live : 0;
 }
 
 static SmCode check(const OctTree *tree, const int *w, double epsilon, SmError *error)
@@ -249,23 +97,25 @@ SmCode oct_regions_build(const OctTree *tree, const OctGraph *graph, const int *
     *regions = (OctRegions){0};
     SmCode code = check(tree, w, epsilon, error);
     if (code) return code;
+    OctHalves halves;
+    int *below = oct_interval_below(tree);
+    oct_halves_build(tree, graph, w, epsilon, below, &halves);
+    join_halves(tree, &halves, regions);
+    oct_halves_free(&halves);
     regions->leaves = tree->leaves;
-    regions->width = sm_alloc((size_t)tree->leaves, sizeof *regions->width);
     regions->size = sm_alloc((size_t)tree->leaves, sizeof *regions->size);
-    Build b = {tree, graph, w, epsilon, oct_interval_below(tree), regions};
-    OctLists doubtful;
-    oct_lists_init(&doubtful, tree->leaves);
-    find_regions(&b, &doubtful);
-    make_symmetric(&b, &doubtful);
-    oct_lists_free(&doubtful);
-    measure(&b);
-    free(b.below);
+    for (long i = 0; i < tree->leaves; i++)
+        for (long n = regions->first[i]; n < regions->first[i + 1]; n++)
+            regions->size[i] += below[regions->member[n]];
+    free(below);
+    oct_regions_measure(regions);
     return SM_OK;
 }
 
 void oct_regions_free(OctRegions *regions)
 {
     free(regions->first);
+    free(regions->end);
     free(regions->member);
     free(regions->width);
     free(regions->size);
@@ -276,7 +126,7 @@ size_t oct_regions_bytes(const OctRegions *regions)
 {
     return sizeof *regions + ((size_t)regions->leaves + 1) * sizeof *regions->first +
            (size_t)regions->leaves * (sizeof *regions->width + sizeof *regions->size) +
-           (size_t)regions->first[regions->leaves] * sizeof *regions->member;
+           (size_t)regions->members * sizeof *regions->member;
 }
 
 /* Puts the leaves below a node from `leaf` on; returns the end. A node is smaller than its children
@@ -295,6 +145,6 @@ static int *leaves_below(const OctTree *tree, int node, int *leaf)
 
 void oct_regions_leaves(const OctTree *tree, const OctRegions *regions, long i, int *leaf)
 {
-    for (long n = regions->first[i]; n < regions->first[i + 1]; n++)
+    for (long n = regions->first[i]; n < oct_regions_end(regions, i); n++)
         leaf = leaves_below(tree, regions->member[n], leaf);
 }

@@ -39,12 +39,16 @@ static inline long oct_regions_end(const OctRegions *regions, long leaf)
  *
  * The caller frees. The result does not depend on the number of threads. Cost: the searches, each
  * the edges of what lies within (1 + epsilon) w_i, so linear in the leaves at a fixed width; for a
- * moment also memory of 4 bytes for every leaf that a region holds beyond the other's w.
+ * moment also memory of 8 bytes for every leaf that a region holds beyond the other's w.
  * Errors (SM_USAGE), on which `regions` is zeroed: a negative width; epsilon negative or not
  * finite. */
 SmCode oct_regions_build(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,
                          OctRegions *regions, SmError *error);
 void oct_regions_free(OctRegions *regions);
+
+/* Brings members, mean, most and the mean and largest width up to date, after the regions have been
+ * changed. O(leaves). */
+void oct_regions_measure(OctRegions *regions);
 
 /* Memory of the regions. */
 size_t oct_regions_bytes(const OctRegions *regions);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "width.h"
 
@@ -59,53 +60,75 @@ static SmCode check_options(const OctOptions *o, SmError *error)
 void oct_structure_centre(const OctStructure *structure, long leaf, double centre[3])
 {
     const OctTree *tree = &structure->tree;
-    for (int d = 0; d < 3; d++)
-        centre[d] =
-            structure->origin[d] + 0.5 * structure->cell * tree->centre[tree->node[leaf]][d];
+    oct_tree_centre(tree, &structure->voxels, tree->node[leaf], centre);
 }
 
-/* A vertex's mass in equal parts to the leaves of the material cells around it. */
-static void share_mass(const SmVoxels *voxels, const int at[3], double mass, OctStructure *s)
+static void copy_cut(const SmCut *from, double cube, SmCut *to)
 {
-    int node[8], count = 0;
-    for (int corner = 0; corner < 8; corner++) {
-        int i = at[0] - (corner & 1), j = at[1] - (corner >> 1 & 1), k = at[2] - (corner >> 2);
-        if (sm_voxel_get(voxels, i, j, k)) node[count++] = oct_tree_find(&s->tree, i, j, k);
-    }
-    for (int n = 0; n < count; n++) s->mass[s->tree.leaf[node[n]]] += mass / count;
+    sm_cut_init(to, from ? from->cube : cube);
+    if (!from) return;
+    for (long v = 0; v < from->vertices; v++) sm_cut_vertex(to, from->vertex[v]);
+    for (long t = 0; t < from->triangles; t++) sm_cut_triangle(to, from->triangle[t]);
 }
 
-static void find_masses(const SmVoxels *voxels, const double *mass, OctStructure *s)
+/* All that a tree and a cut leave to be found. */
+static SmCode complete(const double *mass, const SmCut *cut, OctStructure *s, SmError *error)
 {
-    s->mass = sm_alloc((size_t)s->tree.leaves, sizeof *s->mass);
-    for (long leaf = 0; leaf < s->tree.leaves && !mass; leaf++)
-        s->mass[leaf] = (double)s->tree.material[s->tree.node[leaf]];
-    if (!mass) return;
-    int(*at)[3] = sm_alloc((size_t)voxels->particle_count, sizeof *at);
-    sm_voxels_particles(voxels, at);
-    for (long p = 0; p < voxels->particle_count; p++) share_mass(voxels, at[p], mass[p], s);
-    free(at);
+    const OctTree *tree = &s->tree;
+    copy_cut(cut, 4 * s->cell, &s->cut); /* twice an edge of fine leaves */
+    oct_graph_build(tree, &s->voxels, &s->graph);
+    oct_graph_cut(tree, &s->voxels, &s->cut, &s->graph);
+    SmCode code = oct_width_find(&s->options, s, error);
+    if (!code)
+        code = oct_regions_build(tree, &s->graph, s->w, s->options.epsilon, &s->regions, error);
+    if (code) return code;
+    oct_mass_init(&s->cell_mass, &s->voxels, mass);
+    s->mass = sm_alloc((size_t)tree->leaves, sizeof *s->mass);
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        s->mass[leaf] = oct_mass_of(&s->cell_mass, tree, &s->voxels, tree->node[leaf]);
+    return SM_OK;
+}
+
+static void copy_voxels(const SmVoxels *from, SmVoxels *to)
+{
+    size_t words = (size_t)from->words * (size_t)from->size[1] * (size_t)from->size[2];
+    *to = *from;
+    to->bits = sm_alloc(words, sizeof *to->bits);
+    memcpy(to->bits, from->bits, words * sizeof *to->bits);
+}
+
+static void start(const SmVoxels *voxels, const OctOptions *options, OctStructure *s)
+{
+    *s = (OctStructure){.cell = voxels->cell, .options = *options};
+    for (int d = 0; d < 3; d++) s->origin[d] = voxels->origin[d];
+    copy_voxels(voxels, &s->voxels);
 }
 
 SmCode oct_structure_build(const SmVoxels *voxels, const OctOptions *options, const double *mass,
                            OctStructure *structure, SmError *error)
 {
-    *structure = (OctStructure){.cell = voxels->cell};
-    for (int d = 0; d < 3; d++) structure->origin[d] = voxels->origin[d];
+    start(voxels, options, structure);
     SmCode code = check_options(options, error);
     if (!code) code = oct_width_check(options, error);
     if (!code) code = sample(voxels, &options->sampling, structure, error);
-    if (!code) {
-        oct_graph_build(&structure->tree, voxels, &structure->graph);
-        code = oct_width_find(options, structure, error);
-    }
-    if (!code)
-        code = oct_regions_build(&structure->tree, &structure->graph, structure->w,
-                                 options->epsilon, &structure->regions, error);
-    if (!code)
-        find_masses(voxels, mass, structure);
-    else
-        oct_structure_free(structure);
+    if (!code) code = complete(mass, NULL, structure, error);
+    if (code) oct_structure_free(structure);
+    return code;
+}
+
+SmCode oct_structure_of_tree(const SmVoxels *voxels, const OctOptions *options, const double *mass,
+                             OctTree *tree, const SmCut *cut, OctStructure *structure,
+                             SmError *error)
+{
+    start(voxels, options, structure);
+    structure->tree = *tree;
+    *tree = (OctTree){0};
+    structure->report.bases = structure->tree.roots;
+    structure->report.nodes = structure->tree.leaves;
+    SmCode code = check_options(options, error);
+    if (!code) code = oct_width_check(options, error);
+    if (!code) code = complete(mass, cut, structure, error);
+    if (code) oct_structure_free(structure);
     return code;
 }
 
@@ -116,13 +139,18 @@ void oct_structure_free(OctStructure *structure)
     oct_regions_free(&structure->regions);
     free(structure->w);
     free(structure->mass);
+    sm_voxels_free(&structure->voxels);
+    oct_mass_free(&structure->cell_mass);
+    sm_cut_free(&structure->cut);
     *structure = (OctStructure){0};
 }
 
 size_t oct_structure_bytes(const OctStructure *structure)
 {
+    const SmVoxels *v = &structure->voxels;
     return oct_tree_bytes(&structure->tree) + oct_graph_bytes(&structure->graph) +
-           oct_regions_bytes(&structure->regions) +
+           oct_regions_bytes(&structure->regions) + oct_mass_bytes(&structure->cell_mass, v) +
+           (size_t)v->words * (size_t)v->size[1] * (size_t)v->size[2] * sizeof *v->bits +
            (size_t)structure->tree.leaves * (sizeof *structure->w + sizeof *structure->mass);
 }
 

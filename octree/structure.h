@@ -5,6 +5,7 @@
 
 #include "../lib/cut.h"
 #include "engine.h"
+#include "mass.h"
 #include "region.h"
 
 struct OctResample; /* what is kept to change the structure while it runs (resample.c) */
@@ -20,7 +21,7 @@ struct OctStructure {
     double origin[3], cell; /* of the voxels, in mesh units */
     OctSampleReport report;
     SmVoxels voxels;              /* its own */
-    double *cell_mass;            /* [voxels.cell_count] kg, in the order z, y, x; NULL: 1 a cell */
+    OctMass cell_mass;            /* of the voxels */
     OctOptions options;           /* as given */
     SmCut cut;                    /* edges that cross it are not in the graph */
     struct OctResample *resample; /* or NULL */

@@ -103,7 +103,7 @@ static void bucket_moore_is_dijkstra_on_any_graph(void **state)
                 }
             first[i + 1] = count;
         }
-        OctGraph g = {n, first, to, edge, longest};
+        OctGraph g = {.leaves = n, .first = first, .to = to, .length = edge, .longest = longest};
         OctReach reach;
         oct_reach_init(&reach, &g);
         for (int source = 0; source < n; source++) {

@@ -32,12 +32,12 @@ typedef struct {
     int low[3], high[3]; /* finest cells, both within */
 } Box;
 
-static Box box_of(const Walk *walk, int node)
+static Box box_of(const OctTree *tree, const SmVoxels *voxels, int node)
 {
     Box box;
     for (int d = 0; d < 3; d++) {
-        int low = oct_tree_low(walk->tree, node, d);
-        int high = low + walk->tree->size[node] / 2 - 1, last = walk->voxels->size[d] - 1;
+        int low = oct_tree_low(tree, node, d);
+        int high = low + tree->size[node] / 2 - 1, last = voxels->size[d] - 1;
         box.low[d] = low > 0 ? low : 0;
         box.high[d] = high < last ? high : last;
     }
@@ -76,18 +76,17 @@ static bool is_full(const OctTree *t, int node)
     return t->material[node] == wide * wide * wide;
 }
 
-/* Two cells touch; does their material? */
-static bool material_touches(const Walk *walk, int node, int other)
+bool oct_touch_material(const OctTree *tree, const SmVoxels *voxels, int node, int other)
 {
-    if (is_full(walk->tree, node) && is_full(walk->tree, other)) return true;
-    Box a = box_of(walk, node), b = box_of(walk, other);
+    if (is_full(tree, node) && is_full(tree, other)) return true;
+    Box a = box_of(tree, voxels, node), b = box_of(tree, voxels, other);
     for (int d = 0; d < 3; d++) {
         if (a.low[d] < b.low[d] - 1) a.low[d] = b.low[d] - 1;
         if (a.high[d] > b.high[d] + 1) a.high[d] = b.high[d] + 1;
     }
     for (int k = a.low[2]; k <= a.high[2]; k++)
         for (int j = a.low[1]; j <= a.high[1]; j++)
-            if (row_touches(walk->voxels, j, k, &a, &b)) return true;
+            if (row_touches(voxels, j, k, &a, &b)) return true;
     return false;
 }
 
@@ -115,7 +114,7 @@ static void join_leaf(Walk *walk, int node, const int around[AROUND])
         bool same_size = t->size[other] == t->size[node], again = same_size && other < node;
         for (int e = 0; e < d && !again; e++) again = around[e] == other;
         if (again) continue;
-        if (material_touches(walk, node, other))
+        if (oct_touch_material(t, walk->voxels, node, other))
             add_pair(walk, t->leaf[node], t->leaf[other]);
         else if (same_size)
             walk->touch->open[t->leaf[node]] = 1;

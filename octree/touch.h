@@ -22,6 +22,9 @@ typedef struct {
  * leaf, among the 26 cells of its size around it. O(nodes), and the finest cells on the boundary of
  * coarse leaves that do not touch. */
 void oct_touch_find(const OctTree *tree, const SmVoxels *voxels, OctTouch *touch);
+
+/* Do the cells of two leaves, which touch, have material that touches? Both are tree nodes. */
+bool oct_touch_material(const OctTree *tree, const SmVoxels *voxels, int node, int other);
 void oct_touch_free(OctTouch *touch);
 
 #endif

@@ -72,7 +72,7 @@ static void alloc_nodes(OctTree *tree, long nodes, long leaves)
 {
     size_t n = (size_t)nodes;
     tree->nodes = nodes;
-    tree->leaves = leaves;
+    tree->leaves = tree->live = leaves;
     tree->level_first = sm_alloc((size_t)tree->levels + 2, sizeof *tree->level_first);
     tree->centre = sm_alloc(n, sizeof *tree->centre);
     tree->size = sm_alloc(n, sizeof *tree->size);
@@ -305,4 +305,11 @@ int oct_tree_at(const OctTree *tree, int level, int i, int j, int k)
 int oct_tree_find(const OctTree *tree, int i, int j, int k)
 {
     return oct_tree_at(tree, tree->levels, i, j, k);
+}
+
+/* Not inline: the compiler rounds it in the same way wherever it is asked for. */
+void oct_tree_centre(const OctTree *tree, const SmVoxels *voxels, int node, double centre[3])
+{
+    for (int d = 0; d < 3; d++)
+        centre[d] = voxels->origin[d] + 0.5 * voxels->cell * tree->centre[node][d];
 }

@@ -61,10 +61,25 @@ int oct_tree_at(const OctTree *tree, int level, int i, int j, int k);
 /* The leaf that holds finest cell (i,j,k), as a tree node, or -1. */
 int oct_tree_find(const OctTree *tree, int i, int j, int k);
 
+/* Centre of a node in mesh units. */
+void oct_tree_centre(const OctTree *tree, const SmVoxels *voxels, int node, double centre[3]);
+
 /* Level of a node. O(1). */
 static inline int oct_tree_level(const OctTree *tree, int node)
 {
     return tree->levels + 1 - __builtin_ctz((unsigned)tree->size[node]);
+}
+
+/* Max-norm length between the centres of two nodes, half finest cells. */
+static inline int oct_tree_between(const OctTree *tree, int node, int other)
+{
+    int length = 0;
+    for (int d = 0; d < 3; d++) {
+        int difference = tree->centre[node][d] - tree->centre[other][d];
+        if (difference < 0) difference = -difference;
+        if (difference > length) length = difference;
+    }
+    return length;
 }
 
 /* Lowest corner of a node's cell along axis d, in finest cells. */

@@ -49,6 +49,24 @@ static int width_of(const OctWidth *width, int size)
     return (int)fmin(w, 1 << 28);
 }
 
+/* Which local width holds a leaf's centre, or -1. */
+static int local_of(const OctOptions *options, const OctStructure *s, long leaf)
+{
+    double centre[3];
+    int local = options->local_count - 1;
+    oct_structure_centre(s, leaf, centre);
+    while (local >= 0 && !holds(&options->local[local], centre)) local--;
+    return local;
+}
+
+int oct_width_of(const OctStructure *s, long leaf, bool *is_local)
+{
+    int local = local_of(&s->options, s, leaf);
+    *is_local = local >= 0;
+    return width_of(*is_local ? &s->options.local[local].width : &s->width,
+                    s->tree.size[s->tree.node[leaf]]);
+}
+
 /* The widths of all leaves by the options, with `width` where no local one holds. Counts in `held`
  * the leaves of every local one. */
 static void fill_widths(const OctOptions *options, const OctWidth *width, OctStructure *s,
@@ -57,16 +75,13 @@ static void fill_widths(const OctOptions *options, const OctWidth *width, OctStr
     memset(held, 0, OCT_MAX_WIDTHS * sizeof *held);
     s->local_leaves = 0;
     for (long leaf = 0; leaf < s->tree.leaves; leaf++) {
-        const OctWidth *own = width;
         double centre[3];
         oct_structure_centre(s, leaf, centre);
-        for (int i = 0; i < options->local_count; i++)
-            if (holds(&options->local[i], centre)) {
-                own = &options->local[i].width;
-                held[i]++;
-            }
-        s->local_leaves += own != width;
-        s->w[leaf] = width_of(own, s->tree.size[s->tree.node[leaf]]);
+        for (int i = 0; i < options->local_count; i++) held[i] += holds(&options->local[i], centre);
+        int local = local_of(options, s, leaf);
+        s->local_leaves += local >= 0;
+        s->w[leaf] = width_of(local >= 0 ? &options->local[local].width : width,
+                              s->tree.size[s->tree.node[leaf]]);
     }
 }
 

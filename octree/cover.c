@@ -1,0 +1,65 @@
+#include "cover.h"
+
+#include <stdlib.h>
+
+#include "lists.h"
+
+void oct_cover_init(OctCover *cover, const OctTree *tree, long nodes)
+{
+    *cover = (OctCover){.tree = tree, .in = sm_alloc((size_t)nodes, 1)};
+}
+
+void oct_cover_free(OctCover *cover)
+{
+    free(cover->in);
+    free(cover->list);
+    *cover = (OctCover){0};
+}
+
+void oct_cover_put(OctCover *cover, int node)
+{
+    const OctTree *t = cover->tree;
+    for (bool complete = true; complete; node = t->parent[node]) {
+        if (cover->count == cover->room) {
+            cover->room = cover->room ? 2 * cover->room : 256;
+            cover->list = sm_realloc(cover->list, (size_t)cover->room, sizeof *cover->list);
+        }
+        cover->list[cover->count++] = node;
+        int parent = t->parent[node];
+        complete = parent >= 0 && ++cover->in[parent] == t->children[parent];
+    }
+}
+
+void oct_cover_finish(OctCover *cover)
+{
+    const OctTree *t = cover->tree;
+    long kept = 0;
+    for (long n = 0; n < cover->count; n++) {
+        int node = cover->list[n], parent = t->parent[node];
+        if (parent >= 0 && cover->in[parent] == t->children[parent]) continue;
+        cover->list[n] = cover->list[kept];
+        cover->list[kept++] = node;
+    }
+    for (long n = 0; n < cover->count; n++) {
+        int parent = t->parent[cover->list[n]];
+        if (parent >= 0) cover->in[parent] = 0;
+    }
+    cover->count = kept;
+    qsort(cover->list, (size_t)kept, sizeof *cover->list, oct_lists_compare);
+}
+
+bool oct_cover_holds(const OctTree *tree, const int *member, long count, int leaf)
+{
+    for (int node = tree->node[leaf]; node >= 0; node = tree->parent[node]) {
+        long low = 0, high = count;
+        while (low < high) {
+            long middle = low + (high - low) / 2;
+            if (member[middle] < node)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        if (low < count && member[low] == node) return true;
+    }
+    return false;
+}
