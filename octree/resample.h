@@ -78,7 +78,8 @@ const OctChange *oct_resample_update(OctStructure *structure);
 long oct_resample_near_cut(OctStructure *structure, long first, double distance, int level,
                            const int **node);
 
-/* Memory of what is kept for resampling; 0 if the structure was never made ready. */
+/* Memory of what is kept for resampling, 0 if the structure was never made ready; and its end,
+ * which is a part of oct_structure_free(). */
 size_t oct_resample_bytes(const OctStructure *structure);
 void oct_resample_free(OctStructure *structure);
 

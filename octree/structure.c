@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "resample.h"
 #include "width.h"
 
 /* Levels of splitting with which base cells are at most an eighth of the longest side. */
@@ -78,6 +79,7 @@ static SmCode complete(const double *mass, const SmCut *cut, OctStructure *s, Sm
     copy_cut(cut, 4 * s->cell, &s->cut); /* twice an edge of fine leaves */
     oct_graph_build(tree, &s->voxels, &s->graph);
     oct_graph_cut(tree, &s->voxels, &s->cut, &s->graph);
+    s->cut_known = s->cut.triangles;
     SmCode code = oct_width_find(&s->options, s, error);
     if (!code)
         code = oct_regions_build(tree, &s->graph, s->w, s->options.epsilon, &s->regions, error);
@@ -134,6 +136,7 @@ SmCode oct_structure_of_tree(const SmVoxels *voxels, const OctOptions *options, 
 
 void oct_structure_free(OctStructure *structure)
 {
+    oct_resample_free(structure);
     oct_tree_free(&structure->tree);
     oct_graph_free(&structure->graph);
     oct_regions_free(&structure->regions);
@@ -148,8 +151,9 @@ void oct_structure_free(OctStructure *structure)
 size_t oct_structure_bytes(const OctStructure *structure)
 {
     const SmVoxels *v = &structure->voxels;
-    return oct_tree_bytes(&structure->tree) + oct_graph_bytes(&structure->graph) +
-           oct_regions_bytes(&structure->regions) + oct_mass_bytes(&structure->cell_mass, v) +
+    return oct_resample_bytes(structure) + oct_tree_bytes(&structure->tree) +
+           oct_graph_bytes(&structure->graph) + oct_regions_bytes(&structure->regions) +
+           oct_mass_bytes(&structure->cell_mass, v) +
            (size_t)v->words * (size_t)v->size[1] * (size_t)v->size[2] * sizeof *v->bits +
            (size_t)structure->tree.leaves * (sizeof *structure->w + sizeof *structure->mass);
 }

@@ -24,6 +24,7 @@ struct OctStructure {
     OctMass cell_mass;            /* of the voxels */
     OctOptions options;           /* as given */
     SmCut cut;                    /* edges that cross it are not in the graph */
+    long cut_known;               /* triangles of it that the graph has been held against */
     struct OctResample *resample; /* or NULL */
 };
 

@@ -49,22 +49,21 @@ static int width_of(const OctWidth *width, int size)
     return (int)fmin(w, 1 << 28);
 }
 
-/* Which local width holds a leaf's centre, or -1. */
-static int local_of(const OctOptions *options, const OctStructure *s, long leaf)
+/* Which local width holds the centre of a tree node, or -1. */
+static int local_of(const OctOptions *options, const OctStructure *s, int node)
 {
     double centre[3];
     int local = options->local_count - 1;
-    oct_structure_centre(s, leaf, centre);
+    oct_tree_centre(&s->tree, &s->voxels, node, centre);
     while (local >= 0 && !holds(&options->local[local], centre)) local--;
     return local;
 }
 
-int oct_width_of(const OctStructure *s, long leaf, bool *is_local)
+int oct_width_of(const OctStructure *s, int node, bool *is_local)
 {
-    int local = local_of(&s->options, s, leaf);
+    int local = local_of(&s->options, s, node);
     *is_local = local >= 0;
-    return width_of(*is_local ? &s->options.local[local].width : &s->width,
-                    s->tree.size[s->tree.node[leaf]]);
+    return width_of(*is_local ? &s->options.local[local].width : &s->width, s->tree.size[node]);
 }
 
 /* The widths of all leaves by the options, with `width` where no local one holds. Counts in `held`
@@ -78,7 +77,7 @@ static void fill_widths(const OctOptions *options, const OctWidth *width, OctStr
         double centre[3];
         oct_structure_centre(s, leaf, centre);
         for (int i = 0; i < options->local_count; i++) held[i] += holds(&options->local[i], centre);
-        int local = local_of(options, s, leaf);
+        int local = local_of(options, s, s->tree.node[leaf]);
         s->local_leaves += local >= 0;
         s->w[leaf] = width_of(local >= 0 ? &options->local[local].width : width,
                               s->tree.size[s->tree.node[leaf]]);

@@ -17,7 +17,8 @@ SmCode oct_width_check(const OctOptions *options, SmError *error);
  * without a leaf. */
 SmCode oct_width_find(const OctOptions *options, OctStructure *structure, SmError *error);
 
-/* The width of a live leaf by the structure's options and `width`, and whether a local one. */
-int oct_width_of(const OctStructure *structure, long leaf, bool *is_local);
+/* The width of a leaf, given as its tree node, by the structure's options and `width`, and whether
+ * it is a local one. */
+int oct_width_of(const OctStructure *structure, int node, bool *is_local);
 
 #endif

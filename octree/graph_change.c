@@ -1,0 +1,274 @@
+#include "graph_change.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "touch.h"
+
+/* The graph's arrays are those of the plots. */
+static void publish(OctGraphChange *c)
+{
+    OctGraph *graph = &c->s->graph;
+    graph->leaves = c->edges.rows;
+    graph->edges = c->edges.live;
+    graph->first = c->edges.first;
+    graph->end = c->edges.end;
+    graph->to = c->edges.item;
+    graph->length = c->edges.also;
+}
+
+void oct_graph_change_init(OctGraphChange *c, OctStructure *structure)
+{
+    const OctTree *tree = &structure->tree;
+    OctGraph *graph = &structure->graph;
+    *c = (OctGraphChange){.s = structure, .leaf_space = tree->leaves};
+    oct_graph_joined(tree, &structure->voxels, &c->joined);
+    oct_plots_adopt(&c->edges, tree->leaves, graph->first, graph->to, graph->length);
+    publish(c);
+    oct_visible_init(&c->visible, tree, &c->joined, tree->leaves);
+    oct_near_init(&c->near, tree, &structure->voxels);
+    c->mark = sm_alloc((size_t)tree->leaves, sizeof *c->mark);
+}
+
+void oct_graph_change_free(OctGraphChange *c)
+{
+    free(c->edges.room);
+    oct_plots_free(&c->joined);
+    oct_visible_free(&c->visible);
+    oct_near_free(&c->near);
+    free(c->gone);
+    free(c->come);
+    free(c->mark);
+    free(c->around);
+    *c = (OctGraphChange){0};
+}
+
+size_t oct_graph_change_bytes(const OctGraphChange *c)
+{
+    return oct_plots_bytes(&c->joined) + oct_plots_bytes(&c->edges) +
+           (size_t)c->leaf_space * (sizeof *c->mark + sizeof *c->visible.mark) +
+           (size_t)(c->gone_room + c->come_room) * sizeof *c->gone +
+           (size_t)c->around_room * sizeof *c->around;
+}
+
+static void grow(OctGraphChange *c)
+{
+    const OctTree *tree = &c->s->tree;
+    oct_plots_grow(&c->joined, tree->leaves);
+    oct_plots_grow(&c->edges, tree->leaves);
+    if (tree->leaves > c->leaf_space) {
+        long from = c->leaf_space, to = tree->leaves + tree->leaves / 2;
+        c->mark = oct_plots_widen(c->mark, from, to, sizeof *c->mark, 0);
+        c->visible.mark = oct_plots_widen(c->visible.mark, from, to, 1, 0);
+        c->leaf_space = to;
+    }
+    publish(c);
+}
+
+static void note(OctEdge **list, long *count, long *room, OctEdge edge)
+{
+    if (*count == *room) {
+        *room = 2 * *room + 256;
+        *list = sm_realloc(*list, (size_t)*room, sizeof **list);
+    }
+    (*list)[(*count)++] = edge;
+}
+
+/* A number that no leaf is marked with. */
+static int fresh_mark(OctGraphChange *c)
+{
+    if (c->last == INT_MAX) {
+        memset(c->mark, 0, (size_t)c->leaf_space * sizeof *c->mark);
+        c->last = 0;
+    }
+    return ++c->last;
+}
+
+/* What material touches does not depend on other leaves: only what is removed and added counts. */
+static void update_joined(OctGraphChange *c, const OctChange *batch)
+{
+    const OctTree *t = &c->s->tree;
+    int added = fresh_mark(c);
+    for (long r = 0; r < batch->removed_count; r++) {
+        int leaf = batch->removed[r].leaf;
+        for (long e = c->joined.first[leaf]; e < c->joined.end[leaf]; e++)
+            oct_plots_remove(&c->joined, c->joined.item[e], leaf);
+        oct_plots_resize(&c->joined, leaf, 0);
+    }
+    for (long a = 0; a < batch->added_count; a++) c->mark[batch->added[a].leaf] = added;
+    for (long a = 0; a < batch->added_count; a++) {
+        int leaf = batch->added[a].leaf, node = batch->added[a].node, low[3], high[3];
+        for (int d = 0; d < 3; d++) {
+            low[d] = t->centre[node][d] - t->size[node] / 2;
+            high[d] = low[d] + t->size[node];
+        }
+        oct_near_box(&c->near, low, high, OCT_CELLS);
+        for (long n = 0; n < c->near.count; n++) {
+            int other = c->near.node[n];
+            if (other == node || !oct_touch_material(t, &c->s->voxels, node, other)) continue;
+            oct_plots_add(&c->joined, leaf, t->leaf[other], 0);
+            if (c->mark[t->leaf[other]] != added)
+                oct_plots_add(&c->joined, t->leaf[other], leaf, 0);
+        }
+    }
+}
+
+/* Adds those leaves found near by to the list that are not marked so yet. */
+static void list_near(OctGraphChange *c, int mark)
+{
+    for (long n = 0; n < c->near.count; n++) {
+        int leaf = c->s->tree.leaf[c->near.node[n]];
+        if (c->mark[leaf] == mark) continue;
+        c->mark[leaf] = mark;
+        if (c->around_count == c->around_room) {
+            c->around_room = 2 * c->around_room + 256;
+            c->around = sm_realloc(c->around, (size_t)c->around_room, sizeof *c->around);
+        }
+        c->around[c->around_count++] = leaf;
+    }
+}
+
+/* Lists the leaves that have a cell that was split or merged within their reach. */
+static void list_around(OctGraphChange *c, const OctChange *batch)
+{
+    const OctTree *t = &c->s->tree;
+    int mark = fresh_mark(c);
+    c->around_count = 0;
+    for (long n = 0; n < batch->removed_count + batch->added_count; n++) {
+        bool removed = n < batch->removed_count;
+        long a = n - batch->removed_count;
+        if (removed ? batch->removed[n].into >= 0 : batch->added[a].from >= 0) continue;
+        int node = removed ? batch->removed[n].node : batch->added[a].node, low[3], high[3];
+        for (int d = 0; d < 3; d++) {
+            low[d] = t->centre[node][d] - t->size[node] / 2;
+            high[d] = low[d] + t->size[node];
+        }
+        oct_near_box(&c->near, low, high, OCT_REACHES);
+        list_near(c, mark);
+    }
+}
+
+static int size_of(const OctGraphChange *c, int leaf)
+{
+    return c->s->tree.size[c->s->tree.node[leaf]];
+}
+
+/* Of the pairs of leaf i with those no larger, of its own size the later ones, the leaf `other`. */
+static bool is_own(const OctGraphChange *c, int i, int other)
+{
+    int own = size_of(c, i), size = size_of(c, other);
+    return size < own || (size == own && other > i);
+}
+
+static bool is_cut(const OctGraphChange *c, long first, int leaf, int other)
+{
+    double here[3], there[3];
+    if (first >= c->s->cut.triangles) return false;
+    oct_structure_centre(c->s, leaf, here);
+    oct_structure_centre(c->s, other, there);
+    return sm_cut_crosses(&c->s->cut, first, here, there);
+}
+
+/* Compares the edges that leaf i has to those no larger with what it should have. A neighbour that
+ * it had is not across the old cut; across the new one it is sought later. */
+static void compare(OctGraphChange *c, int i)
+{
+    const OctPlots *edges = &c->edges;
+    const OctVisible *visible = &c->visible;
+    int had = fresh_mark(c), stays = fresh_mark(c);
+    oct_visible_find(&c->visible, i);
+    for (long e = edges->first[i]; e < edges->end[i]; e++) c->mark[edges->item[e]] = had;
+    for (long n = 0; n < visible->count; n++) {
+        int j = visible->leaf[n];
+        if (c->mark[j] == had) {
+            c->mark[j] = stays;
+        } else if (is_own(c, i, j) && !is_cut(c, 0, i, j)) {
+            int length = oct_tree_between(&c->s->tree, c->s->tree.node[i], c->s->tree.node[j]);
+            note(&c->come, &c->come_count, &c->come_room, (OctEdge){i, j, length});
+        }
+    }
+    for (long e = edges->first[i]; e < edges->end[i]; e++) {
+        int j = edges->item[e];
+        if (c->mark[j] == had && c->s->tree.node[j] >= 0 && is_own(c, i, j))
+            note(&c->gone, &c->gone_count, &c->gone_room, (OctEdge){i, j, edges->also[e]});
+    }
+}
+
+void oct_graph_change_find(OctGraphChange *c, const OctChange *batch)
+{
+    const OctTree *t = &c->s->tree;
+    grow(c);
+    c->gone_count = c->come_count = 0;
+    update_joined(c, batch);
+    list_around(c, batch);
+    for (long n = 0; n < c->around_count; n++) compare(c, c->around[n]);
+    for (long r = 0; r < batch->removed_count; r++) {
+        int leaf = batch->removed[r].leaf;
+        for (long e = c->edges.first[leaf]; e < c->edges.end[leaf]; e++) {
+            int other = c->edges.item[e];
+            if (t->node[other] >= 0 || other > leaf)
+                note(&c->gone, &c->gone_count, &c->gone_room,
+                     (OctEdge){leaf, other, c->edges.also[e]});
+        }
+    }
+}
+
+void oct_graph_change_corners(const OctStructure *s, long triangle, double corner[3][3])
+{
+    const int *vertex = s->cut.triangle[triangle];
+    for (int i = 0; i < 3; i++)
+        for (int d = 0; d < 3; d++)
+            corner[i][d] = 2 * (s->cut.vertex[vertex[i]][d] - s->origin[d]) / s->cell;
+}
+
+void oct_graph_change_cut(OctGraphChange *c, long first)
+{
+    static const double margin = 1e-3; /* half finest cells: against rounding */
+    const OctStructure *s = c->s;
+    int mark = fresh_mark(c);
+    c->around_count = c->gone_count = c->come_count = 0;
+    for (long t = first; t < s->cut.triangles; t++) {
+        double corner[3][3];
+        oct_graph_change_corners(s, t, corner);
+        oct_near_triangle(&c->near, (const double(*)[3])corner, margin, OCT_REACHES);
+        list_near(c, mark);
+    }
+    for (long n = 0; n < c->around_count; n++) {
+        int i = c->around[n];
+        for (long e = c->edges.first[i]; e < c->edges.end[i]; e++) {
+            int j = c->edges.item[e];
+            if (is_own(c, i, j) && is_cut(c, first, i, j))
+                note(&c->gone, &c->gone_count, &c->gone_room, (OctEdge){i, j, c->edges.also[e]});
+        }
+    }
+}
+
+/* Notes the rows of leaves that are not marked so yet. */
+static void note_rows(OctGraphChange *c, const OctEdge *edge, long count, int mark, OctReach *reach)
+{
+    for (long n = 0; n < 2 * count; n++) {
+        int leaf = n % 2 ? edge[n / 2].leaf : edge[n / 2].other;
+        if (c->mark[leaf] != mark) oct_reach_update(reach, leaf);
+        c->mark[leaf] = mark;
+    }
+}
+
+void oct_graph_change_apply(OctGraphChange *c, OctReach *reach)
+{
+    OctGraph *graph = &c->s->graph;
+    for (long n = 0; n < c->gone_count; n++) {
+        oct_plots_remove(&c->edges, c->gone[n].leaf, c->gone[n].other);
+        oct_plots_remove(&c->edges, c->gone[n].other, c->gone[n].leaf);
+    }
+    for (long n = 0; n < c->come_count; n++) {
+        OctEdge edge = c->come[n];
+        oct_plots_add(&c->edges, edge.leaf, edge.other, edge.length);
+        oct_plots_add(&c->edges, edge.other, edge.leaf, edge.length);
+        if (edge.length > graph->longest) graph->longest = edge.length;
+    }
+    publish(c);
+    oct_reach_grow(reach, graph->leaves);
+    int noted = fresh_mark(c);
+    note_rows(c, c->gone, c->gone_count, noted, reach);
+    note_rows(c, c->come, c->come_count, noted, reach);
+}

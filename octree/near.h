@@ -1,0 +1,29 @@
+/* near.h - the leaves around a place, found from the roots down, in any tree. */
+#ifndef OCT_NEAR_H
+#define OCT_NEAR_H
+
+#include "tree.h"
+
+/* Which leaves count: those whose cell meets the place, or those whose neighbours' centres may,
+ * that is whose cell grown to twice its size does. Boundaries belong to both. */
+typedef enum { OCT_CELLS, OCT_REACHES } OctNearKind;
+
+typedef struct {
+    const OctTree *tree;
+    int *node; /* [count] of the leaves found, as tree nodes, in no set order */
+    long count, room;
+    int wide[3]; /* base cells along each axis that there can be */
+} OctNear;
+
+/* The voxels are those of the tree. The caller frees. */
+void oct_near_init(OctNear *near, const OctTree *tree, const SmVoxels *voxels);
+void oct_near_free(OctNear *near);
+
+/* Leaves at a box, half finest cells. O(those found, levels, and base cells met * log roots). */
+void oct_near_box(OctNear *near, const int low[3], const int high[3], OctNearKind kind);
+
+/* Leaves at a triangle, in half finest cells, thickened by `margin` in the max norm. O(those found
+ * and base cells of its box). */
+void oct_near_triangle(OctNear *near, const double corner[3][3], double margin, OctNearKind kind);
+
+#endif

@@ -1,0 +1,305 @@
+#include "region_change.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What is to be done about a leaf. */
+enum {
+    SEARCH = 1, /* what it owns may change */
+    REGION = 2, /* what it takes may change */
+};
+
+/* `list` with room for so many more entries. */
+#define ROOM(list, count, more, room)                                                              \
+    do {                                                                                           \
+        if ((count) + (more) > (room)) {                                                           \
+            (room) = 2 * ((count) + (more)) + 64;                                                  \
+            (list) = sm_realloc((list), (size_t)(room), sizeof *(list));                           \
+        }                                                                                          \
+    } while (0)
+
+/* The regions' arrays are those of the plots. */
+static void publish(OctRegionChange *c)
+{
+    OctRegions *regions = &c->s->regions;
+    regions->leaves = c->region.rows;
+    regions->members = c->region.live;
+    regions->first = c->region.first;
+    regions->end = c->region.end;
+    regions->member = c->region.item;
+}
+
+static int reach_of(const OctRegionChange *c, long leaf)
+{
+    return oct_halves_reach(c->s->w[leaf], c->s->options.epsilon);
+}
+
+void oct_region_change_init(OctRegionChange *c, OctStructure *structure, const int *below)
+{
+    const OctTree *tree = &structure->tree;
+    OctRegions *regions = &structure->regions;
+    OctHalves halves;
+    *c = (OctRegionChange){.s = structure, .leaf_space = tree->leaves, .node_space = tree->nodes};
+    oct_interval_init(&c->intervals, tree, &structure->graph, below);
+    oct_halves_build(tree, &structure->graph, structure->w, structure->options.epsilon, below,
+                     &halves);
+    oct_plots_adopt(&c->own, tree->leaves, halves.first, halves.member, NULL);
+    oct_plots_adopt(&c->taken, tree->leaves, halves.taken_first, halves.taken, halves.distance);
+    oct_plots_adopt(&c->region, tree->leaves, regions->first, regions->member, NULL);
+    c->own_width = halves.width;
+    oct_cover_init(&c->cover, tree, tree->nodes);
+    c->state = sm_alloc((size_t)tree->leaves, 1);
+    c->stirred = sm_alloc((size_t)tree->nodes, 1);
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        if (reach_of(c, leaf) > c->widest) c->widest = reach_of(c, leaf);
+    publish(c);
+}
+
+void oct_region_change_free(OctRegionChange *c)
+{
+    oct_interval_free(&c->intervals);
+    oct_plots_free(&c->own);
+    oct_plots_free(&c->taken);
+    free(c->region.room);
+    oct_cover_free(&c->cover);
+    void *all[] = {c->own_width, c->state,     c->stirred, c->list,
+                   c->fresh,     c->fresh_end, c->doubt,   c->source};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    *c = (OctRegionChange){0};
+}
+
+size_t oct_region_change_bytes(const OctRegionChange *c)
+{
+    const OctIntervals *s = &c->intervals;
+    return oct_plots_bytes(&c->own) + oct_plots_bytes(&c->taken) + oct_plots_bytes(&c->region) +
+           (size_t)c->leaf_space * (sizeof *c->own_width + 1 + sizeof *s->member) +
+           (size_t)s->reach.leaves *
+               (sizeof *s->reach.distance + sizeof *s->reach.reached + sizeof *s->reach.nearest) +
+           (size_t)c->node_space * (3 + sizeof *s->interval + sizeof *s->queue) +
+           (size_t)c->list_room * sizeof *c->list + (size_t)c->fresh_room * sizeof *c->fresh +
+           (size_t)c->fresh_end_room * sizeof *c->fresh_end +
+           (size_t)c->doubt_room * sizeof *c->doubt + (size_t)c->source_room * sizeof *c->source;
+}
+
+static void grow_leaves(OctRegionChange *c)
+{
+    OctRegions *regions = &c->s->regions;
+    long leaves = c->s->tree.leaves, from = c->leaf_space, to = leaves + leaves / 2;
+    oct_plots_grow(&c->own, leaves);
+    oct_plots_grow(&c->taken, leaves);
+    oct_plots_grow(&c->region, leaves);
+    if (leaves <= from) return;
+    c->own_width = oct_plots_widen(c->own_width, from, to, sizeof *c->own_width, 0);
+    c->state = oct_plots_widen(c->state, from, to, 1, 0);
+    regions->width = oct_plots_widen(regions->width, from, to, sizeof *regions->width, 0);
+    regions->size = oct_plots_widen(regions->size, from, to, sizeof *regions->size, 0);
+    c->leaf_space = to;
+}
+
+void oct_region_change_grow(OctRegionChange *c, const int *below)
+{
+    long nodes = c->s->tree.nodes;
+    grow_leaves(c);
+    publish(c);
+    oct_interval_clear(&c->intervals);
+    if (nodes > c->node_space) {
+        long from = c->node_space, to = nodes + nodes / 2;
+        c->cover.in = oct_plots_widen(c->cover.in, from, to, 1, 0);
+        c->stirred = oct_plots_widen(c->stirred, from, to, 1, 0);
+        c->node_space = to;
+    }
+    oct_interval_grow(&c->intervals, c->node_space, c->leaf_space, below);
+}
+
+/* Puts a leaf on the list, where it is not yet. */
+static void list_leaf(OctRegionChange *c, int leaf, unsigned char what)
+{
+    if (c->state[leaf]) return;
+    c->state[leaf] = what;
+    ROOM(c->list, c->list_count, 1, c->list_room);
+    c->list[c->list_count++] = leaf;
+}
+
+void oct_region_change_mark(OctRegionChange *c, const OctEdge *edge, long count)
+{
+    OctReach *reach = &c->intervals.reach;
+    if (count == 0) return;
+    ROOM(c->source, 0, 2 * count, c->source_room);
+    for (long e = 0; e < count; e++) {
+        c->source[2 * e] = (struct OctSource){edge[e].leaf, edge[e].length};
+        c->source[2 * e + 1] = (struct OctSource){edge[e].other, edge[e].length};
+    }
+    oct_reach_from_all(reach, 2 * count, c->source, c->widest);
+    for (long n = 0; n < reach->count; n++) {
+        int leaf = reach->reached[n];
+        if (c->s->tree.node[leaf] >= 0 && reach->distance[leaf] <= reach_of(c, leaf))
+            list_leaf(c, leaf, SEARCH);
+    }
+}
+
+static bool owns(const OctRegionChange *c, int owner, int leaf)
+{
+    long first = c->own.first[owner];
+    return oct_cover_holds(&c->s->tree, c->own.item + first, c->own.end[owner] - first, leaf);
+}
+
+/* Where leaf k, which is not searched, was owned by leaf i: it takes i no more, unless i owns it
+ * again; and where it owns i and i, which has just been searched, does not own it any more, i takes
+ * it. */
+static void part(OctRegionChange *c, int i, int k, bool dead)
+{
+    if (c->state[k] == SEARCH) return;
+    if (oct_plots_remove(&c->taken, k, i)) list_leaf(c, k, REGION);
+    if (dead || oct_interval_holds(&c->intervals, k) || !owns(c, k, i)) return;
+    oct_plots_add(&c->taken, i, k, c->intervals.reach.distance[k]);
+}
+
+/* All leaves that leaf i owned before and that live, new ones but not searched ones apart. */
+static void part_all(OctRegionChange *c, int i, bool dead)
+{
+    const OctTree *t = &c->s->tree;
+    for (long m = c->own.first[i]; m < c->own.end[i]; m++) {
+        int stack[8 * (OCT_MAX_LEVELS + 1)], count = 1;
+        stack[0] = c->own.item[m];
+        while (count > 0) {
+            int node = stack[--count];
+            if (t->size[node] > 0 && !t->children[node]) part(c, i, t->leaf[node], dead);
+            for (int n = 0; n < t->children[node]; n++) stack[count++] = t->child[node] + n;
+        }
+    }
+}
+
+/* Of what leaf i, which has just been searched, took before, keeps what still holds: the others
+ * are searched too, or dead, or i owns them now. */
+static void keep_taken(OctRegionChange *c, int i)
+{
+    long first = c->taken.first[i], end = c->taken.end[i], kept = first;
+    for (long e = first; e < end; e++) {
+        int k = c->taken.item[e];
+        if (c->s->tree.node[k] < 0 || c->state[k] == SEARCH || oct_interval_holds(&c->intervals, k))
+            continue;
+        c->taken.item[kept] = k;
+        c->taken.also[kept++] = c->taken.also[e];
+    }
+    oct_plots_resize(&c->taken, i, kept - first);
+}
+
+/* What leaf number n of the list owns now goes to `fresh`, what may not own it to `doubt`. */
+static void search(OctRegionChange *c, long n)
+{
+    OctIntervals *s = &c->intervals;
+    int i = c->list[n], w = c->s->w[i];
+    long from = n ? c->fresh_end[n - 1] : 0;
+    oct_interval_find(s, i, w, reach_of(c, i));
+    c->own_width[i] = s->width;
+    ROOM(c->fresh, from, s->members, c->fresh_room);
+    if (s->members > 0) memcpy(c->fresh + from, s->member, (size_t)s->members * sizeof *s->member);
+    c->fresh_end[n] = from + s->members;
+    ROOM(c->doubt, c->doubt_count, s->reach.count, c->doubt_room);
+    for (long r = 0; r < s->reach.count; r++) {
+        int j = s->reach.reached[r], d = s->reach.distance[j];
+        if (d <= c->s->w[j] || (d > w && !oct_interval_holds(s, j))) continue;
+        c->doubt[c->doubt_count++] = (struct OctDoubt){i, j, d};
+    }
+    keep_taken(c, i);
+    part_all(c, i, false);
+}
+
+/* Marks all above a node. */
+static void stir(OctRegionChange *c, int node, unsigned char mark)
+{
+    for (; node >= 0 && c->stirred[node] != mark; node = c->s->tree.parent[node])
+        c->stirred[node] = mark;
+}
+
+static void stir_all(OctRegionChange *c, const OctChange *batch, unsigned char mark)
+{
+    for (long r = 0; r < batch->removed_count; r++) stir(c, batch->removed[r].node, mark);
+    for (long a = 0; a < batch->added_count; a++) stir(c, batch->added[a].node, mark);
+}
+
+/* Replaces a row; false if it was the same and no leaf below its nodes has changed. */
+static bool replace(OctRegionChange *c, OctPlots *rows, int row, const int *item, long count)
+{
+    const int *old = rows->item + rows->first[row];
+    bool other = rows->end[row] - rows->first[row] != count;
+    for (long n = 0; n < count && !other; n++) other = old[n] != item[n] || c->stirred[item[n]];
+    if (!other) return false;
+    oct_plots_resize(rows, row, count);
+    if (count > 0) memcpy(rows->item + rows->first[row], item, (size_t)count * sizeof *item);
+    return true;
+}
+
+/* What leaf i owns and what it takes. */
+static void join(OctRegionChange *c, int i, OctChange *batch)
+{
+    const OctTree *t = &c->s->tree;
+    OctRegions *regions = &c->s->regions;
+    const int *item = c->own.item + c->own.first[i];
+    long count = c->own.end[i] - c->own.first[i];
+    int width = c->own_width[i];
+    if (c->taken.end[i] > c->taken.first[i]) {
+        c->cover.count = 0;
+        for (long n = 0; n < count; n++) oct_cover_put(&c->cover, item[n]);
+        for (long e = c->taken.first[i]; e < c->taken.end[i]; e++) {
+            oct_cover_put(&c->cover, t->node[c->taken.item[e]]);
+            if (c->taken.also[e] > width) width = c->taken.also[e];
+        }
+        oct_cover_finish(&c->cover);
+        item = c->cover.list;
+        count = c->cover.count;
+    }
+    regions->width[i] = width;
+    regions->size[i] = 0;
+    for (long n = 0; n < count; n++) regions->size[i] += c->intervals.below[item[n]];
+    if (!replace(c, &c->region, i, item, count)) return;
+    ROOM(batch->region, batch->region_count, 1, c->region_room);
+    batch->region[batch->region_count++] = i;
+}
+
+/* A leaf that is no more owns nothing and takes nothing. */
+static void bury(OctRegionChange *c, int leaf)
+{
+    part_all(c, leaf, true);
+    oct_plots_resize(&c->own, leaf, 0);
+    oct_plots_resize(&c->taken, leaf, 0);
+    oct_plots_resize(&c->region, leaf, 0);
+    c->s->regions.width[leaf] = c->s->regions.size[leaf] = c->own_width[leaf] = 0;
+}
+
+static void search_all(OctRegionChange *c)
+{
+    long count = c->search_count;
+    c->doubt_count = 0;
+    ROOM(c->fresh_end, 0, count, c->fresh_end_room);
+    for (long n = 0; n < count; n++) search(c, n);
+    for (long n = 0; n < count; n++) {
+        long from = n ? c->fresh_end[n - 1] : 0;
+        replace(c, &c->own, c->list[n], c->fresh + from, c->fresh_end[n] - from);
+    }
+    for (long n = 0; n < c->doubt_count; n++) {
+        struct OctDoubt d = c->doubt[n];
+        if (owns(c, d.leaf, d.owner)) continue;
+        oct_plots_add(&c->taken, d.leaf, d.owner, d.distance);
+        list_leaf(c, d.leaf, REGION);
+    }
+}
+
+void oct_region_change_update(OctRegionChange *c, OctChange *batch)
+{
+    batch->region_count = 0;
+    stir_all(c, batch, 1);
+    for (long a = 0; a < batch->added_count; a++) {
+        int leaf = batch->added[a].leaf, reach = reach_of(c, leaf);
+        if (reach > c->widest) c->widest = reach;
+        list_leaf(c, leaf, SEARCH);
+    }
+    c->search_count = c->list_count;
+    for (long r = 0; r < batch->removed_count; r++) bury(c, batch->removed[r].leaf);
+    search_all(c);
+    for (long n = 0; n < c->list_count; n++) join(c, c->list[n], batch);
+    for (long n = 0; n < c->list_count; n++) c->state[c->list[n]] = 0;
+    c->list_count = 0;
+    stir_all(c, batch, 0);
+    publish(c);
+}
