@@ -151,7 +151,7 @@ size_t oct_graph_bytes(const OctGraph *graph)
 {
     size_t edge = sizeof *graph->to + sizeof *graph->length;
     return sizeof *graph + ((size_t)graph->leaves + 1) * sizeof *graph->first +
-           (size_t)graph->first[graph->leaves] * edge;
+           (size_t)graph->edges * edge;
 }
 
 void oct_graph_free(OctGraph *graph)

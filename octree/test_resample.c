@@ -118,8 +118,8 @@ static void check(const OctStructure *s, const double *mass)
     if (s->local_leaves == 0) options.local_count = 0; /* refused where it holds no leaf */
     check_numbers(&s->tree);
     rebuilt_tree(s, &tree);
-    assert_int_equal(
-        oct_structure_of_tree(&s->voxels, &options, mass, &tree, &s->cut, &want, NULL), SM_OK);
+    assert_int_equal(oct_structure_of_tree(&s->voxels, &options, mass, &tree, &s->cut, &want, NULL),
+                     SM_OK);
     assert_int_equal(s->tree.live, want.tree.leaves);
     assert_int_equal(s->graph.edges, want.graph.first[want.tree.leaves]);
     assert_int_equal(s->regions.members, want.regions.first[want.tree.leaves]);
@@ -133,6 +133,179 @@ static void check(const OctStructure *s, const double *mass)
         check_region(s, leaf, &want, twin);
     }
     oct_structure_free(&want);
+}
+
+/* What a structure was before a batch. */
+typedef struct {
+    long nodes, leaves;
+    int *size, *leaf, (*centre)[3];
+    bool *inner;
+    int *node;     /* of leaves */
+    long *members; /* of regions */
+    int **member;
+    int *held;   /* leaves in regions */
+    int **holds; /* rising */
+} Before;
+
+static int *region_leaves(const OctStructure *s, long i)
+{
+    int *leaf = sm_alloc((size_t)s->regions.size[i] + 1, sizeof *leaf);
+    oct_regions_leaves(&s->tree, &s->regions, i, leaf);
+    qsort(leaf, (size_t)s->regions.size[i], sizeof *leaf, oct_lists_compare);
+    return leaf;
+}
+
+static void *copy(const void *from, long count, size_t size)
+{
+    void *to = sm_alloc((size_t)count, size);
+    memcpy(to, from, (size_t)count * size);
+    return to;
+}
+
+static Before remember(const OctStructure *s)
+{
+    const OctTree *t = &s->tree;
+    Before b = {.nodes = t->nodes, .leaves = t->leaves};
+    b.size = copy(t->size, t->nodes, sizeof *b.size);
+    b.leaf = copy(t->leaf, t->nodes, sizeof *b.leaf);
+    b.centre = copy(t->centre, t->nodes, sizeof *b.centre);
+    b.node = copy(t->node, t->leaves, sizeof *b.node);
+    b.inner = sm_alloc((size_t)t->nodes, sizeof *b.inner);
+    for (long n = 0; n < t->nodes; n++) b.inner[n] = t->size[n] > 0 && t->children[n];
+    b.members = sm_alloc((size_t)t->leaves, sizeof *b.members);
+    b.member = sm_alloc((size_t)t->leaves, sizeof *b.member);
+    b.held = copy(s->regions.size, t->leaves, sizeof *b.held);
+    b.holds = sm_alloc((size_t)t->leaves, sizeof *b.holds);
+    for (long i = 0; i < t->leaves; i++) {
+        b.members[i] = oct_regions_end(&s->regions, i) - s->regions.first[i];
+        b.member[i] = copy(s->regions.member + s->regions.first[i], b.members[i], sizeof(int));
+        b.holds[i] = region_leaves(s, i);
+    }
+    return b;
+}
+
+static void forget(Before *b)
+{
+    for (long i = 0; i < b->leaves; i++) {
+        free(b->member[i]);
+        free(b->holds[i]);
+    }
+    void *all[] = {b->size,    b->leaf,   b->centre, b->inner, b->node,
+                   b->members, b->member, b->held,   b->holds};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+}
+
+/* A list names those nodes whose `was` differs from `is` and is `value`; each once. */
+static void check_places(const OctPlace *list, long count, const OctTree *t, const bool *was,
+                         const bool *is, bool value)
+{
+    long changed = 0;
+    bool *named = sm_alloc((size_t)t->nodes, sizeof *named);
+    for (long n = 0; n < count; n++) {
+        assert_false(named[list[n].node]);
+        named[list[n].node] = true;
+        if (is[list[n].node]) assert_int_equal(list[n].level, oct_tree_level(t, list[n].node));
+    }
+    for (long n = 0; n < t->nodes; n++) {
+        bool change = was[n] != is[n] && is[n] == value;
+        assert_int_equal(named[n], change);
+        changed += change;
+    }
+    assert_int_equal(changed, count);
+    free(named);
+}
+
+static void check_nodes(const Before *b, const OctStructure *s, const OctChange *c)
+{
+    const OctTree *t = &s->tree;
+    size_t nodes = (size_t)t->nodes;
+    bool *was = sm_alloc(nodes, sizeof *was), *is = sm_alloc(nodes, sizeof *is);
+    for (long n = 0; n < t->nodes; n++) {
+        was[n] = n < b->nodes && b->size[n] > 0;
+        is[n] = t->size[n] > 0;
+    }
+    check_places(c->born, c->born_count, t, was, is, true);
+    check_places(c->dead, c->dead_count, t, was, is, false);
+    for (long n = 0; n < t->nodes; n++) {
+        was[n] = n < b->nodes && b->inner[n];
+        is[n] = t->size[n] > 0 && t->children[n];
+    }
+    check_places(c->inner, c->inner_count, t, was, is, true);
+    check_places(c->outer, c->outer_count, t, was, is, false);
+    free(was);
+    free(is);
+}
+
+static bool inside(const int centre[3], const int outer[3], int size)
+{
+    bool in = true;
+    for (int d = 0; d < 3; d++) in = in && 2 * abs(centre[d] - outer[d]) < size;
+    return in;
+}
+
+/* Leaves are named as removed and as new where they are, and with whom they share their place. */
+static void check_leaves(const Before *b, const OctStructure *s, const OctChange *c)
+{
+    const OctTree *t = &s->tree;
+    long gone = 0, come = 0;
+    for (long l = 0; l < t->leaves; l++) {
+        int was = l < b->leaves ? b->node[l] : -1;
+        if (was >= 0 && t->node[l] >= 0) assert_int_equal(was, t->node[l]);
+        gone += was >= 0 && t->node[l] < 0;
+        come += was < 0 && t->node[l] >= 0;
+    }
+    assert_int_equal(c->removed_count, gone);
+    assert_int_equal(c->added_count, come);
+    for (long r = 0; r < gone; r++) {
+        OctRemoved removed = c->removed[r];
+        assert_int_equal(b->node[removed.leaf], removed.node);
+        assert_int_equal(t->node[removed.leaf], -1);
+        const int *centre = b->centre[removed.node];
+        long shared = 0;
+        for (long a = 0; a < come; a++) {
+            OctAdded added = c->added[a];
+            bool in = inside(centre, t->centre[added.node], t->size[added.node]);
+            assert_int_equal(in && b->size[removed.node] <= t->size[added.node],
+                             removed.into == added.leaf);
+            bool out = inside(t->centre[added.node], centre, b->size[removed.node]);
+            assert_int_equal(out && t->size[added.node] <= b->size[removed.node],
+                             added.from == removed.leaf);
+            shared += in || out;
+        }
+        assert_true(shared > 0);
+    }
+    for (long a = 0; a < come; a++) assert_int_equal(t->node[c->added[a].leaf], c->added[a].node);
+}
+
+static void check_changed_regions(const Before *b, const OctStructure *s, const OctChange *c)
+{
+    bool *named = sm_alloc((size_t)s->tree.leaves, sizeof *named);
+    for (long n = 0; n < c->region_count; n++) {
+        assert_false(named[c->region[n]]);
+        named[c->region[n]] = true;
+    }
+    for (long i = 0; i < s->tree.leaves; i++) {
+        bool same = i < b->leaves && (b->node[i] >= 0) == (s->tree.node[i] >= 0);
+        if (s->tree.node[i] < 0) same = true;
+        if (same && s->tree.node[i] >= 0) {
+            int *holds = region_leaves(s, i);
+            long count = s->regions.end[i] - s->regions.first[i];
+            same = b->held[i] == s->regions.size[i] && b->members[i] == count &&
+                   !memcmp(holds, b->holds[i], (size_t)b->held[i] * sizeof *holds) &&
+                   !memcmp(s->regions.member + s->regions.first[i], b->member[i],
+                           (size_t)count * sizeof(int));
+            free(holds);
+        }
+        assert_int_equal(named[i], !same);
+    }
+    free(named);
+}
+
+static void check_change(const Before *b, const OctStructure *s, const OctChange *c)
+{
+    check_nodes(b, s, c);
+    check_leaves(b, s, c);
+    check_changed_regions(b, s, c);
 }
 
 static void random_options(unsigned *seed, OctOptions *options)
@@ -258,9 +431,11 @@ static void any_sequence_ends_where_a_build_from_scratch_does(void **state)
         random_structure(&seed, trial, &s, &mass);
         for (int batch = 0; batch < BATCHES; batch++) {
             int changes = random_int(&seed, 2 + batch % 2 * 6);
+            Before before = remember(&s);
             for (int c = 0; c < changes; c++) random_change(&seed, &s);
-            oct_resample_update(&s);
+            check_change(&before, &s, oct_resample_update(&s));
             check(&s, mass);
+            forget(&before);
         }
         free(mass);
         oct_structure_free(&s);

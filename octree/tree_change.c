@@ -26,7 +26,7 @@ void oct_tree_change_free(OctTreeChange *c)
     OctChange *change = &c->change;
     void *all[] = {c->below,     c->touched,      c->place,      c->waiting,
                    c->number,    change->removed, change->added, change->born,
-                   change->dead, change->inner,   change->outer};
+                   change->dead, change->inner,   change->outer, change->region};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *c = (OctTreeChange){0};
 }
