@@ -45,7 +45,7 @@ void oct_cover_finish(OctCover *cover)
         if (parent >= 0) cover->in[parent] = 0;
     }
     cover->count = kept;
-    qsort(cover->list, (size_t)kept, sizeof *cover->list, oct_lists_compare);
+    oct_lists_sort(cover->list, kept);
 }
 
 bool oct_cover_holds(const OctTree *tree, const int *member, long count, int leaf)

@@ -21,13 +21,15 @@ void oct_graph_change_init(OctGraphChange *c, OctStructure *structure)
 {
     const OctTree *tree = &structure->tree;
     OctGraph *graph = &structure->graph;
-    *c = (OctGraphChange){.s = structure, .leaf_space = tree->leaves};
+    *c = (OctGraphChange){.s = structure, .leaf_space = oct_plots_room(tree->leaves)};
     oct_graph_joined(tree, &structure->voxels, &c->joined);
     oct_plots_adopt(&c->edges, tree->leaves, graph->first, graph->to, graph->length);
+    oct_plots_reserve(&c->joined);
+    oct_plots_reserve(&c->edges);
     publish(c);
-    oct_visible_init(&c->visible, tree, &c->joined, tree->leaves);
+    oct_visible_init(&c->visible, tree, &c->joined, c->leaf_space);
     oct_near_init(&c->near, tree, &structure->voxels);
-    c->mark = sm_alloc((size_t)tree->leaves, sizeof *c->mark);
+    c->mark = sm_alloc((size_t)c->leaf_space, sizeof *c->mark);
 }
 
 void oct_graph_change_free(OctGraphChange *c)
@@ -57,7 +59,7 @@ static void grow(OctGraphChange *c)
     oct_plots_grow(&c->joined, tree->leaves);
     oct_plots_grow(&c->edges, tree->leaves);
     if (tree->leaves > c->leaf_space) {
-        long from = c->leaf_space, to = tree->leaves + tree->leaves / 2;
+        long from = c->leaf_space, to = oct_plots_room(tree->leaves);
         c->mark = oct_plots_widen(c->mark, from, to, sizeof *c->mark, 0);
         c->visible.mark = oct_plots_widen(c->visible.mark, from, to, 1, 0);
         c->leaf_space = to;

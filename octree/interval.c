@@ -93,7 +93,7 @@ static long queue_roots(OctIntervals *s)
         int node = t->node[s->reach.reached[n]];
         if (node < t->roots) s->queue[count++] = node;
     }
-    qsort(s->queue, (size_t)count, sizeof *s->queue, oct_lists_compare);
+    oct_lists_sort(s->queue, count);
     return count;
 }
 
@@ -104,15 +104,8 @@ static void take(OctIntervals *s, int node, int most)
     if (most > s->width) s->width = most;
 }
 
-/* In a tree as it was built, children follow each other in their parents' order, and nodes leave
- * the queue in rising order. */
-static void sort_members(OctIntervals *s)
-{
-    bool rising = true;
-    for (long m = 1; m < s->members; m++) rising = rising && s->member[m] > s->member[m - 1];
-    if (!rising) qsort(s->member, (size_t)s->members, sizeof *s->member, oct_lists_compare);
-}
-
+/* In a tree as it was built children follow each other in their parents' order, and nodes leave the
+ * queue in rising order; in a changed one they are sorted. */
 void oct_interval_find(OctIntervals *s, int i, int w, int most)
 {
     const OctTree *t = s->tree;
@@ -135,7 +128,7 @@ void oct_interval_find(OctIntervals *s, int i, int w, int most)
         }
         for (int c = 0; c < t->children[node]; c++) s->queue[count++] = t->child[node] + c;
     }
-    sort_members(s);
+    oct_lists_sort(s->member, s->members);
 }
 
 bool oct_interval_holds(const OctIntervals *s, int leaf)

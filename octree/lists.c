@@ -1,5 +1,6 @@
 #include "lists.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,6 +44,24 @@ int oct_lists_compare(const void *a, const void *b)
 {
     int p = *(const int *)a, q = *(const int *)b;
     return (p > q) - (p < q);
+}
+
+void oct_lists_sort(int *item, long count)
+{
+    enum { FEW = 48 };
+    bool rising = true;
+    for (long n = 1; n < count && rising; n++) rising = item[n - 1] <= item[n];
+    if (rising) return;
+    if (count > FEW) {
+        qsort(item, (size_t)count, sizeof *item, oct_lists_compare);
+        return;
+    }
+    for (long n = 1; n < count; n++) {
+        int here = item[n];
+        long to = n;
+        for (; to > 0 && item[to - 1] > here; to--) item[to] = item[to - 1];
+        item[to] = here;
+    }
 }
 
 void oct_lists_pack(OctLists *lists, long **first, int **item)

@@ -43,6 +43,9 @@ int *oct_lists_item(const OctLists *lists, long leaf);
 /* Rising order of ints, for qsort(). */
 int oct_lists_compare(const void *a, const void *b);
 
+/* Sorts whole numbers; quick where they are few or nearly in order. */
+void oct_lists_sort(int *item, long count);
+
 /* Moves all lists into one array `item`, list l from first[l] to first[l + 1] - 1, and frees
  * `lists`. The caller frees both arrays. */
 void oct_lists_pack(OctLists *lists, long **first, int **item);

@@ -45,15 +45,32 @@ size_t oct_plots_bytes(const OctPlots *rows)
            (size_t)rows->space * sizeof(int) * (rows->pairs ? 2 : 1);
 }
 
+/* Room for so many rows. */
+static void make_rows(OctPlots *rows, long space)
+{
+    rows->row_space = space;
+    rows->first = sm_realloc(rows->first, (size_t)space, sizeof *rows->first);
+    rows->end = sm_realloc(rows->end, (size_t)space, sizeof *rows->end);
+    rows->room = sm_realloc(rows->room, (size_t)space, sizeof *rows->room);
+}
+
+/* Room for so many items. */
+static void make_items(OctPlots *rows, long space)
+{
+    rows->space = space;
+    rows->item = sm_realloc(rows->item, (size_t)space, sizeof *rows->item);
+    if (rows->pairs) rows->also = sm_realloc(rows->also, (size_t)space, sizeof *rows->also);
+}
+
+void oct_plots_reserve(OctPlots *rows)
+{
+    make_rows(rows, oct_plots_room(rows->rows));
+    make_items(rows, oct_plots_room(rows->used));
+}
+
 void oct_plots_grow(OctPlots *rows, long count)
 {
-    if (count > rows->row_space) {
-        rows->row_space = count + count / 2;
-        size_t space = (size_t)rows->row_space;
-        rows->first = sm_realloc(rows->first, space, sizeof *rows->first);
-        rows->end = sm_realloc(rows->end, space, sizeof *rows->end);
-        rows->room = sm_realloc(rows->room, space, sizeof *rows->room);
-    }
+    if (count > rows->row_space) make_rows(rows, oct_plots_room(count));
     for (; rows->rows < count; rows->rows++) {
         rows->first[rows->rows] = rows->end[rows->rows] = 0;
         rows->room[rows->rows] = 0;
@@ -93,9 +110,7 @@ static void make_space(OctPlots *rows, long need)
 {
     if (rows->used + need > rows->space && rows->lost > rows->used / 2) compact(rows);
     if (rows->used + need <= rows->space) return;
-    rows->space = rows->used + rows->used / 2 + need + 1024;
-    rows->item = sm_realloc(rows->item, (size_t)rows->space, sizeof *rows->item);
-    if (rows->pairs) rows->also = sm_realloc(rows->also, (size_t)rows->space, sizeof *rows->also);
+    make_items(rows, oct_plots_room(rows->used + need));
 }
 
 void oct_plots_resize(OctPlots *rows, long row, long count)

@@ -34,6 +34,25 @@ static int reach_of(const OctRegionChange *c, long leaf)
     return oct_halves_reach(c->s->w[leaf], c->s->options.epsilon);
 }
 
+static void make_leaves(OctRegionChange *c, long to)
+{
+    OctRegions *regions = &c->s->regions;
+    long from = c->leaf_space;
+    c->own_width = oct_plots_widen(c->own_width, from, to, sizeof *c->own_width, 0);
+    c->state = oct_plots_widen(c->state, from, to, 1, 0);
+    regions->width = oct_plots_widen(regions->width, from, to, sizeof *regions->width, 0);
+    regions->size = oct_plots_widen(regions->size, from, to, sizeof *regions->size, 0);
+    c->leaf_space = to;
+}
+
+static void make_nodes(OctRegionChange *c, long to)
+{
+    long from = c->node_space;
+    c->cover.in = oct_plots_widen(c->cover.in, from, to, 1, 0);
+    c->stirred = oct_plots_widen(c->stirred, from, to, 1, 0);
+    c->node_space = to;
+}
+
 void oct_region_change_init(OctRegionChange *c, OctStructure *structure, const int *below)
 {
     const OctTree *tree = &structure->tree;
@@ -52,6 +71,12 @@ void oct_region_change_init(OctRegionChange *c, OctStructure *structure, const i
     c->stirred = sm_alloc((size_t)tree->nodes, 1);
     for (long leaf = 0; leaf < tree->leaves; leaf++)
         if (reach_of(c, leaf) > c->widest) c->widest = reach_of(c, leaf);
+    oct_plots_reserve(&c->own);
+    oct_plots_reserve(&c->taken);
+    oct_plots_reserve(&c->region);
+    make_leaves(c, oct_plots_room(tree->leaves));
+    make_nodes(c, oct_plots_room(tree->nodes));
+    oct_interval_grow(&c->intervals, c->node_space, c->leaf_space, below);
     publish(c);
 }
 
@@ -83,17 +108,11 @@ size_t oct_region_change_bytes(const OctRegionChange *c)
 
 static void grow_leaves(OctRegionChange *c)
 {
-    OctRegions *regions = &c->s->regions;
-    long leaves = c->s->tree.leaves, from = c->leaf_space, to = leaves + leaves / 2;
+    long leaves = c->s->tree.leaves;
     oct_plots_grow(&c->own, leaves);
     oct_plots_grow(&c->taken, leaves);
     oct_plots_grow(&c->region, leaves);
-    if (leaves <= from) return;
-    c->own_width = oct_plots_widen(c->own_width, from, to, sizeof *c->own_width, 0);
-    c->state = oct_plots_widen(c->state, from, to, 1, 0);
-    regions->width = oct_plots_widen(regions->width, from, to, sizeof *regions->width, 0);
-    regions->size = oct_plots_widen(regions->size, from, to, sizeof *regions->size, 0);
-    c->leaf_space = to;
+    if (leaves > c->leaf_space) make_leaves(c, oct_plots_room(leaves));
 }
 
 void oct_region_change_grow(OctRegionChange *c, const int *below)
@@ -102,12 +121,7 @@ void oct_region_change_grow(OctRegionChange *c, const int *below)
     grow_leaves(c);
     publish(c);
     oct_interval_clear(&c->intervals);
-    if (nodes > c->node_space) {
-        long from = c->node_space, to = nodes + nodes / 2;
-        c->cover.in = oct_plots_widen(c->cover.in, from, to, 1, 0);
-        c->stirred = oct_plots_widen(c->stirred, from, to, 1, 0);
-        c->node_space = to;
-    }
+    if (nodes > c->node_space) make_nodes(c, oct_plots_room(nodes));
     oct_interval_grow(&c->intervals, c->node_space, c->leaf_space, below);
 }
 

@@ -17,6 +17,14 @@ typedef struct OctResample {
     long leaf_space; /* of widths and masses */
 } OctResample;
 
+static void make_leaves(OctStructure *s, long to)
+{
+    long from = s->resample->leaf_space;
+    s->w = oct_plots_widen(s->w, from, to, sizeof *s->w, 0);
+    s->mass = oct_plots_widen(s->mass, from, to, sizeof *s->mass, 0);
+    s->resample->leaf_space = to;
+}
+
 void oct_resample_prepare(OctStructure *s)
 {
     if (s->resample) return;
@@ -27,6 +35,7 @@ void oct_resample_prepare(OctStructure *s)
     oct_near_init(&r->near, &s->tree, &s->voxels);
     r->leaf_space = s->tree.leaves;
     s->resample = r;
+    make_leaves(s, oct_plots_room(s->tree.leaves));
 }
 
 void oct_resample_free(OctStructure *s)
@@ -65,14 +74,8 @@ SmCode oct_resample_merge(OctStructure *s, int node, SmError *error)
 /* Widths and masses of the leaves that a batch has removed and added. */
 static void weigh(OctStructure *s, const OctChange *change)
 {
-    OctResample *r = s->resample;
     bool local;
-    if (s->tree.leaves > r->leaf_space) {
-        long from = r->leaf_space, to = s->tree.leaves + s->tree.leaves / 2;
-        s->w = oct_plots_widen(s->w, from, to, sizeof *s->w, 0);
-        s->mass = oct_plots_widen(s->mass, from, to, sizeof *s->mass, 0);
-        r->leaf_space = to;
-    }
+    if (s->tree.leaves > s->resample->leaf_space) make_leaves(s, oct_plots_room(s->tree.leaves));
     for (long n = 0; n < change->removed_count; n++) {
         OctRemoved gone = change->removed[n];
         oct_width_of(s, gone.node, &local);

@@ -12,6 +12,29 @@
         }                                                                                          \
     } while (0)
 
+static void grow_nodes(OctTreeChange *c, long nodes)
+{
+    OctTree *t = c->tree;
+    if (nodes <= c->node_space) return;
+    long from = c->node_space, to = oct_plots_room(nodes);
+    t->centre = sm_realloc(t->centre, (size_t)to, sizeof *t->centre);
+    t->size = oct_plots_widen(t->size, from, to, sizeof *t->size, 0);
+    t->parent = oct_plots_widen(t->parent, from, to, sizeof *t->parent, -1);
+    t->child = oct_plots_widen(t->child, from, to, sizeof *t->child, -1);
+    t->children = oct_plots_widen(t->children, from, to, sizeof *t->children, 0);
+    t->material = oct_plots_widen(t->material, from, to, sizeof *t->material, 0);
+    t->leaf = oct_plots_widen(t->leaf, from, to, sizeof *t->leaf, -1);
+    c->below = oct_plots_widen(c->below, from, to, sizeof *c->below, 0);
+    c->place = oct_plots_widen(c->place, from, to, sizeof *c->place, 0);
+    c->node_space = to;
+}
+
+static void grow_leaves(OctTreeChange *c)
+{
+    c->leaf_space = oct_plots_room(c->tree->leaves);
+    c->tree->node = sm_realloc(c->tree->node, (size_t)c->leaf_space, sizeof *c->tree->node);
+}
+
 void oct_tree_change_init(OctTreeChange *c, OctTree *tree, const SmVoxels *voxels)
 {
     *c = (OctTreeChange){.tree = tree, .voxels = voxels, .below = oct_interval_below(tree)};
@@ -19,6 +42,8 @@ void oct_tree_change_init(OctTreeChange *c, OctTree *tree, const SmVoxels *voxel
     c->leaf_space = tree->leaves;
     c->place = sm_alloc((size_t)tree->nodes, sizeof *c->place);
     for (int count = 0; count <= 8; count++) c->group[count] = -1;
+    grow_nodes(c, tree->nodes + 1);
+    grow_leaves(c);
 }
 
 void oct_tree_change_free(OctTreeChange *c)
@@ -76,23 +101,6 @@ static OctTouched *touch(OctTreeChange *c, int node, bool there)
                                                   .leaf = there && !inner ? t->leaf[node] : -1};
     c->place[node] = (int)c->touched_count;
     return c->touched + c->touched_count - 1;
-}
-
-static void grow_nodes(OctTreeChange *c, long nodes)
-{
-    OctTree *t = c->tree;
-    if (nodes <= c->node_space) return;
-    long from = c->node_space, to = nodes + nodes / 2;
-    t->centre = sm_realloc(t->centre, (size_t)to, sizeof *t->centre);
-    t->size = oct_plots_widen(t->size, from, to, sizeof *t->size, 0);
-    t->parent = oct_plots_widen(t->parent, from, to, sizeof *t->parent, -1);
-    t->child = oct_plots_widen(t->child, from, to, sizeof *t->child, -1);
-    t->children = oct_plots_widen(t->children, from, to, sizeof *t->children, 0);
-    t->material = oct_plots_widen(t->material, from, to, sizeof *t->material, 0);
-    t->leaf = oct_plots_widen(t->leaf, from, to, sizeof *t->leaf, -1);
-    c->below = oct_plots_widen(c->below, from, to, sizeof *c->below, 0);
-    c->place = oct_plots_widen(c->place, from, to, sizeof *c->place, 0);
-    c->node_space = to;
 }
 
 /* First number of `count` siblings. */
@@ -218,8 +226,7 @@ static int number_leaf(OctTreeChange *c, int node)
     OctTree *t = c->tree;
     int leaf = c->number_count ? c->number[--c->number_count] : (int)t->leaves++;
     if (leaf >= c->leaf_space) {
-        c->leaf_space = t->leaves + t->leaves / 2;
-        t->node = sm_realloc(t->node, (size_t)c->leaf_space, sizeof *t->node);
+        grow_leaves(c);
     }
     t->node[leaf] = node;
     t->leaf[node] = leaf;

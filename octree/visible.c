@@ -5,6 +5,7 @@
 /* What has become of a leaf in the search around another one. */
 enum {
     FOUND = 1,   /* reached over joined leaves near by */
+    OUTSIDE = 8, /* reached, but beyond what any box could need */
     VISIBLE = 2, /* a neighbour by the definition */
     TRIED = 4,   /* reached in the box of the pair in hand */
 };
@@ -22,6 +23,7 @@ void oct_visible_free(OctVisible *visible)
     free(visible->mark);
     free(visible->leaf);
     free(visible->found);
+    free(visible->outside);
     free(visible->tried);
     free(visible->candidate);
     *visible = (OctVisible){0};
@@ -34,6 +36,7 @@ static void make_room(OctVisible *s, long count)
     s->room = 2 * count + 64;
     s->leaf = sm_realloc(s->leaf, (size_t)s->room, sizeof *s->leaf);
     s->found = sm_realloc(s->found, (size_t)s->room, sizeof *s->found);
+    s->outside = sm_realloc(s->outside, (size_t)s->room, sizeof *s->outside);
     s->tried = sm_realloc(s->tried, (size_t)s->room, sizeof *s->tried);
     s->candidate = sm_realloc(s->candidate, (size_t)s->room, sizeof *s->candidate);
 }
@@ -90,22 +93,28 @@ static long add_candidate(OctVisible *s, int i, int k, long candidates)
     return candidates;
 }
 
-/* Every leaf that the box of a pair with leaf i could need, over joined leaves from i. */
+/* Every leaf that the box of a pair with leaf i could need, over joined leaves from i, into
+ * `found`; those that are joined to them, but beyond, into `outside`. */
 static long find_around(OctVisible *s, int i)
 {
     const int *from = centre(s, i), wide = size_of(s, i);
     long found = 1;
     make_room(s, 1);
+    s->outside_count = 0;
     s->found[0] = i;
     s->mark[i] = FOUND | VISIBLE;
     for (long n = 0; n < found; n++) {
         int k = s->found[n];
-        make_room(s, found + s->joined->end[k] - s->joined->first[k]);
+        make_room(s, found + s->outside_count + s->joined->end[k] - s->joined->first[k]);
         for (long e = s->joined->first[k]; e < s->joined->end[k]; e++) {
             int j = s->joined->item[e];
-            if (s->mark[j] || !meets(s, j, from, from, wide)) continue;
-            s->mark[j] = FOUND;
-            s->found[found++] = j;
+            if (s->mark[j]) continue;
+            bool outside = !meets(s, j, from, from, wide);
+            s->mark[j] = outside ? OUTSIDE : FOUND;
+            if (outside)
+                s->outside[s->outside_count++] = j;
+            else
+                s->found[found++] = j;
         }
     }
     return found;
@@ -130,7 +139,8 @@ static bool search_box(OctVisible *s, int i, int j)
         reached = leads_to(s, k, i, j);
         for (long e = s->joined->first[k]; e < s->joined->end[k]; e++) {
             int next = s->joined->item[e];
-            if (s->mark[next] & TRIED || !meets(s, next, centre(s, i), centre(s, j), 0)) continue;
+            if (s->mark[next] & (TRIED | OUTSIDE)) continue;
+            if (!meets(s, next, centre(s, i), centre(s, j), 0)) continue;
             s->mark[next] |= TRIED;
             s->tried[count++] = next;
         }
@@ -150,11 +160,13 @@ static bool is_visible(OctVisible *s, int i, int j)
 static void find_unjoined(OctVisible *s, int i, long found)
 {
     long candidates = 0;
-    for (long n = 1; n < found; n++) candidates = add_candidate(s, i, s->found[n], candidates);
+    for (long n = 1; n < found; n++)
+        if (!(s->mark[s->found[n]] & VISIBLE))
+            candidates = add_candidate(s, i, s->found[n], candidates);
     qsort(s->candidate, (size_t)candidates, sizeof *s->candidate, compare_candidates);
     for (long n = 0; n < candidates; n++) {
         int j = s->candidate[n].leaf;
-        if (s->mark[j] & VISIBLE || !is_visible(s, i, j)) continue;
+        if (!is_visible(s, i, j)) continue;
         s->mark[j] |= VISIBLE;
         if (size_of(s, j) <= size_of(s, i)) s->leaf[s->count++] = j;
     }
@@ -172,4 +184,5 @@ void oct_visible_find(OctVisible *s, int i)
     s->joined_count = s->count;
     find_unjoined(s, i, found);
     for (long n = 0; n < found; n++) s->mark[s->found[n]] = 0;
+    for (long n = 0; n < s->outside_count; n++) s->mark[s->outside[n]] = 0;
 }

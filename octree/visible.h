@@ -12,8 +12,9 @@ typedef struct {
     int *leaf;              /* [count] the neighbours found, the `joined_count` joined ones first */
     long count, joined_count;
     /* the search's own */
-    unsigned char *mark; /* [leaves] all 0 between searches */
-    int *found, *tried;  /* marked leaves */
+    unsigned char *mark;          /* [leaves] all 0 between searches */
+    int *found, *outside, *tried; /* marked leaves */
+    long outside_count;
     struct OctCandidate {
         int leaf, away; /* sum of the coordinates' differences */
     } * candidate;
