@@ -61,7 +61,7 @@ static int *reach_out(const OctTree *tree, OctReach *reach, long k, int most, lo
 static void choose(const OctTree *tree, const OctGraph *graph, OctReach *reach, long k, long n,
                    OctLists *lists)
 {
-    long first = graph->first[k], count = graph->first[k + 1] - first;
+    long first = graph->first[k], count = oct_graph_end(graph, k) - first;
     const int *leaf = graph->to + first;
     Moments m;
     find_moments(tree, k, leaf, count, &m);

@@ -67,8 +67,9 @@ SmCode oct_resample_split(OctStructure *structure, int node, SmError *error);
 SmCode oct_resample_merge(OctStructure *structure, int node, SmError *error);
 
 /* Ends the batch: brings leaf numbers, graph, widths, regions and masses up to date with the tree
- * and with all triangles of structure->cut. The result is valid until the next call of any function
- * here. Allocates nothing once the arrays have grown. */
+ * and with all triangles of structure->cut. regions.mean, most and the like are not: see
+ * oct_regions_measure(). The result is valid until the next call of any function here. Allocates
+ * nothing once the arrays have grown, but when gaps are closed (plots.h). One thread. */
 const OctChange *oct_resample_update(OctStructure *structure);
 
 /* Tree nodes of leaves of a level below `level` whose cell is within `distance` (mesh units, max

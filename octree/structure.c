@@ -166,11 +166,11 @@ static int group_of(int *next, int i)
 
 long oct_structure_parts(const OctStructure *structure)
 {
-    long leaves = structure->tree.leaves, parts = leaves;
+    long leaves = structure->tree.leaves, parts = structure->tree.live;
     int *next = sm_alloc((size_t)leaves, sizeof *next);
     int *leaf = sm_alloc((size_t)leaves, sizeof *leaf);
     for (int i = 0; i < leaves; i++) next[i] = i;
-    for (int i = 0; i < leaves && parts > 1; i++) {
+    for (int i = 0; i < leaves && parts > 1; i++) { /* a dead leaf's region is empty */
         oct_regions_leaves(&structure->tree, &structure->regions, i, leaf);
         for (int k = 0; k < structure->regions.size[i]; k++) {
             int a = group_of(next, i), b = group_of(next, leaf[k]);

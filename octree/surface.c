@@ -45,7 +45,7 @@ static void choose(const Carrier *c, const double X[3], long vertex, OctLists *l
     int own = find_leaf(c, X, q);
     double least = 1e-9 * weigh(c->tree, own, q);
     oct_lists_add(lists, vertex, &own, 1);
-    for (long e = c->graph->first[own]; e < c->graph->first[own + 1]; e++)
+    for (long e = c->graph->first[own]; e < oct_graph_end(c->graph, own); e++)
         if (weigh(c->tree, c->graph->to[e], q) > least)
             oct_lists_add(lists, vertex, &c->graph->to[e], 1);
 }
@@ -71,9 +71,8 @@ static void copy_rest(const SmMesh *mesh, const Carrier *c, OctSurface *s)
         sm_normalize(s->normal[v]);
     }
     for (long k = 0; k < c->tree->leaves; k++)
-        for (int d = 0; d < 3; d++)
-            s->centre[k][d] =
-                c->voxels->origin[d] + 0.5 * c->voxels->cell * c->tree->centre[c->tree->node[k]][d];
+        if (c->tree->node[k] >= 0)
+            oct_tree_centre(c->tree, c->voxels, c->tree->node[k], s->centre[k]);
 }
 
 void oct_surface_build(const SmMesh *mesh, const SmVoxels *voxels, const OctTree *tree,

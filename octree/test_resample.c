@@ -1,6 +1,5 @@
 /* A structure changed step by step against one built from scratch. */
-#include "resample.h"
-
+#include <limits.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,130 +9,10 @@
 
 #include <cmocka.h>
 
-#include "lists.h"
-#include "random_trees.h"
+#include "random_changes.h"
+#include "rebuilt.h"
 
 enum { SEQUENCES = 1500, BATCHES = 5, LEAVES = 100 };
-
-static double random_between(unsigned *seed, double low, double high)
-{
-    return low + (high - low) * random_unit(seed);
-}
-
-/* Level and place of a node, as a number of its own. */
-static int same_node(const OctTree *from, int node, const OctTree *to)
-{
-    int at[3], level = oct_tree_level(from, node);
-    for (int d = 0; d < 3; d++) at[d] = oct_tree_low(from, node, d);
-    int found = oct_tree_at(to, level, at[0], at[1], at[2]);
-    assert_true(found >= 0);
-    assert_int_equal(to->size[found], from->size[node]);
-    assert_memory_equal(to->centre[found], from->centre[node], sizeof *to->centre);
-    return found;
-}
-
-/* The tree with the same cells split, as it is built. */
-static void rebuilt_tree(const OctStructure *s, OctTree *tree)
-{
-    OctTree whole;
-    assert_int_equal(oct_tree_build(&s->voxels, s->tree.levels, s->tree.corner, &whole, NULL),
-                     SM_OK);
-    unsigned char *split = sm_alloc((size_t)whole.nodes, 1);
-    for (long n = 0; n < s->tree.nodes; n++)
-        if (s->tree.size[n] > 0 && s->tree.children[n])
-            split[same_node(&s->tree, (int)n, &whole)] = 1;
-    oct_tree_prune(&whole, split, tree);
-    free(split);
-    oct_tree_free(&whole);
-}
-
-static int compare_pairs(const void *a, const void *b)
-{
-    const int *p = a, *q = b;
-    return p[0] != q[0] ? (p[0] > q[0]) - (p[0] < q[0]) : (p[1] > q[1]) - (p[1] < q[1]);
-}
-
-static void check_edges(const OctStructure *s, long leaf, const OctStructure *want, long twin)
-{
-    long count = s->graph.end[leaf] - s->graph.first[leaf];
-    assert_int_equal(count, want->graph.first[twin + 1] - want->graph.first[twin]);
-    int(*edge)[2] = sm_alloc((size_t)count, sizeof *edge);
-    for (long n = 0; n < count; n++) {
-        long e = s->graph.first[leaf] + n;
-        edge[n][0] =
-            want->tree.leaf[same_node(&s->tree, s->tree.node[s->graph.to[e]], &want->tree)];
-        edge[n][1] = s->graph.length[e];
-        assert_true(edge[n][1] <= s->graph.longest);
-    }
-    qsort(edge, (size_t)count, sizeof *edge, compare_pairs);
-    for (long n = 0; n < count; n++) {
-        long e = want->graph.first[twin] + n;
-        assert_int_equal(edge[n][0], want->graph.to[e]);
-        assert_int_equal(edge[n][1], want->graph.length[e]);
-    }
-    free(edge);
-}
-
-static void check_region(const OctStructure *s, long leaf, const OctStructure *want, long twin)
-{
-    const OctRegions *r = &s->regions;
-    long count = r->end[leaf] - r->first[leaf], first = want->regions.first[twin];
-    assert_int_equal(count, want->regions.first[twin + 1] - first);
-    int *member = sm_alloc((size_t)count, sizeof *member);
-    for (long n = 0; n < count; n++) {
-        assert_true(n == 0 || r->member[r->first[leaf] + n] > r->member[r->first[leaf] + n - 1]);
-        member[n] = same_node(&s->tree, r->member[r->first[leaf] + n], &want->tree);
-    }
-    qsort(member, (size_t)count, sizeof *member, oct_lists_compare);
-    assert_memory_equal(member, want->regions.member + first, (size_t)count * sizeof *member);
-    assert_int_equal(r->width[leaf], want->regions.width[twin]);
-    assert_int_equal(r->size[leaf], want->regions.size[twin]);
-    free(member);
-}
-
-/* Numbers that live are used once, dead ones say so. */
-static void check_numbers(const OctTree *t)
-{
-    long live = 0;
-    for (long l = 0; l < t->leaves; l++) {
-        if (t->node[l] < 0) continue;
-        live++;
-        assert_int_equal(t->leaf[t->node[l]], l);
-        assert_int_equal(t->children[t->node[l]], 0);
-        assert_true(t->size[t->node[l]] > 0);
-    }
-    assert_int_equal(live, t->live);
-    for (long n = 0; n < t->nodes; n++) {
-        if (t->size[n] == 0 || t->children[n]) assert_int_equal(t->leaf[n], -1);
-        for (int c = 0; t->size[n] > 0 && c < t->children[n]; c++)
-            assert_int_equal(t->parent[t->child[n] + c], n);
-    }
-}
-
-static void check(const OctStructure *s, const double *mass)
-{
-    OctTree tree;
-    OctStructure want;
-    OctOptions options = s->options;
-    if (s->local_leaves == 0) options.local_count = 0; /* refused where it holds no leaf */
-    check_numbers(&s->tree);
-    rebuilt_tree(s, &tree);
-    assert_int_equal(oct_structure_of_tree(&s->voxels, &options, mass, &tree, &s->cut, &want, NULL),
-                     SM_OK);
-    assert_int_equal(s->tree.live, want.tree.leaves);
-    assert_int_equal(s->graph.edges, want.graph.first[want.tree.leaves]);
-    assert_int_equal(s->regions.members, want.regions.first[want.tree.leaves]);
-    assert_int_equal(s->local_leaves, want.local_leaves);
-    for (long twin = 0; twin < want.tree.leaves; twin++) {
-        long leaf = s->tree.leaf[same_node(&want.tree, want.tree.node[twin], &s->tree)];
-        assert_true(leaf >= 0);
-        assert_int_equal(s->w[leaf], want.w[twin]);
-        assert_true(s->mass[leaf] == want.mass[twin]);
-        check_edges(s, leaf, &want, twin);
-        check_region(s, leaf, &want, twin);
-    }
-    oct_structure_free(&want);
-}
 
 /* What a structure was before a batch. */
 typedef struct {
@@ -308,119 +187,6 @@ static void check_change(const Before *b, const OctStructure *s, const OctChange
     check_changed_regions(b, s, c);
 }
 
-static void random_options(unsigned *seed, OctOptions *options)
-{
-    static const double epsilons[] = {0, 0.5, 0.5, 1, 2};
-    *options = (OctOptions){.epsilon = epsilons[random_int(seed, 5)]};
-    int kind = random_int(seed, 4);
-    if (kind != 1) options->width.edges = random_between(seed, 0, kind == 3 ? 4 : 2);
-    if (kind != 0) options->width.cells = random_int(seed, kind == 3 ? 8 : 4);
-}
-
-static void random_structure(unsigned *seed, int trial, OctStructure *s, double **mass)
-{
-    SmVoxels v;
-    OctTree tree;
-    OctOptions options;
-    random_small_tree(seed, trial, LEAVES, &v, &tree);
-    random_options(seed, &options);
-    *mass = NULL;
-    if (trial % 3 == 0) {
-        *mass = sm_alloc((size_t)v.particle_count, sizeof **mass);
-        for (long p = 0; p < v.particle_count; p++) (*mass)[p] = random_between(seed, 0.5, 2);
-    }
-    if (trial % 4 == 0) {
-        options.local_count = 1;
-        options.local[0].width = (OctWidth){.cells = random_int(seed, 6)};
-        int node = tree.node[random_int(seed, (int)tree.leaves)];
-        oct_tree_centre(&tree, &v, node, options.local[0].centre);
-        options.local[0].radius = random_between(seed, 0.1, 4) * v.cell;
-    }
-    assert_int_equal(oct_structure_of_tree(&v, &options, *mass, &tree, NULL, s, NULL), SM_OK);
-    sm_voxels_free(&v);
-}
-
-/* Anywhere, at corners of finest cells, or at their centres, with a little beyond the body. */
-static void random_place(unsigned *seed, const OctStructure *s, int kind, double place[3])
-{
-    for (int d = 0; d < 3; d++) {
-        double at = random_between(seed, -2, s->voxels.size[d] + 2);
-        if (kind > 0) at = floor(at);
-        if (kind == 2) at += 0.5;
-        place[d] = s->origin[d] + s->cell * at;
-    }
-}
-
-static void random_triangle(unsigned *seed, OctStructure *s)
-{
-    int vertex[3], kind = random_int(seed, 3);
-    if (s->cut.triangles && random_int(seed, 5) == 0) { /* the same again */
-        int *again = s->cut.triangle[random_int(seed, (int)s->cut.triangles)];
-        memcpy(vertex, again, sizeof vertex);
-    } else {
-        for (int i = 0; i < 3; i++) {
-            double place[3];
-            random_place(seed, s, kind, place);
-            vertex[i] = (int)sm_cut_vertex(&s->cut, place);
-        }
-    }
-    sm_cut_triangle(&s->cut, vertex);
-}
-
-/* A square in a plane across an axis, larger than the body: along cell boundaries, through centres
- * or between. */
-static void add_plane(OctStructure *s, int axis, double at)
-{
-    int vertex[4];
-    for (int i = 0; i < 4; i++) {
-        double place[3];
-        for (int d = 0; d < 3; d++) {
-            bool high = d == (axis + 1) % 3 ? i == 1 || i == 2 : i >= 2;
-            place[d] = s->origin[d] + s->cell * (d == axis ? at : high ? 60 : -40);
-        }
-        vertex[i] = (int)sm_cut_vertex(&s->cut, place);
-    }
-    sm_cut_triangle(&s->cut, (int[3]){vertex[0], vertex[1], vertex[2]});
-    sm_cut_triangle(&s->cut, (int[3]){vertex[2], vertex[3], vertex[0]});
-}
-
-/* A live node of a kind, or -1: to split, or with leaves to merge. */
-static int random_node(unsigned *seed, const OctTree *t, bool split)
-{
-    for (int tries = 0; tries < 30; tries++) {
-        int node = random_int(seed, (int)t->nodes);
-        if (t->size[node] == 0) continue;
-        bool can = split ? !t->children[node] && t->size[node] > 2 : t->children[node] > 0;
-        for (int c = 0; can && !split && c < t->children[node]; c++)
-            can = !t->children[t->child[node] + c];
-        if (can) return node;
-    }
-    return -1;
-}
-
-static void random_change(unsigned *seed, OctStructure *s)
-{
-    int kind = random_int(seed, 10), node = -1;
-    if (kind < 7) node = random_node(seed, &s->tree, kind < 4);
-    if (kind < 7 && node < 0) return;
-    if (kind < 4) {
-        assert_int_equal(oct_resample_split(s, node, NULL), SM_OK);
-        int child = s->tree.child[node] + random_int(seed, s->tree.children[node]);
-        if (kind == 0 && s->tree.size[child] > 2)
-            assert_int_equal(oct_resample_split(s, child, NULL), SM_OK);
-        else if (kind == 1)
-            assert_int_equal(oct_resample_merge(s, node, NULL), SM_OK);
-    } else if (kind < 7) {
-        assert_int_equal(oct_resample_merge(s, node, NULL), SM_OK);
-        if (kind == 4) assert_int_equal(oct_resample_split(s, node, NULL), SM_OK);
-    } else if (kind < 9) {
-        random_triangle(seed, s);
-    } else {
-        int axis = random_int(seed, 3);
-        add_plane(s, axis, 0.25 * random_int(seed, 4 * s->voxels.size[axis] + 1));
-    }
-}
-
 static void any_sequence_ends_where_a_build_from_scratch_does(void **state)
 {
     (void)state;
@@ -428,7 +194,7 @@ static void any_sequence_ends_where_a_build_from_scratch_does(void **state)
     for (int trial = 0; trial < SEQUENCES; trial++) {
         OctStructure s;
         double *mass;
-        random_structure(&seed, trial, &s, &mass);
+        random_structure(&seed, trial, LEAVES, &s, &mass);
         for (int batch = 0; batch < BATCHES; batch++) {
             int changes = random_int(&seed, 2 + batch % 2 * 6);
             Before before = remember(&s);
@@ -442,10 +208,236 @@ static void any_sequence_ends_where_a_build_from_scratch_does(void **state)
     }
 }
 
+static void merge_all_new(OctStructure *s, const OctTree *before)
+{
+    bool again = true;
+    while (again) {
+        again = false;
+        for (int n = 0; n < s->tree.nodes; n++) {
+            bool was_leaf = n < before->nodes && !before->children[n];
+            if (s->tree.size[n] == 0 || !s->tree.children[n]) continue;
+            if (n < before->nodes && !was_leaf) continue;
+            again = !oct_resample_merge(s, n, NULL) || again;
+        }
+    }
+}
+
+/* In one batch or several, to any depth. */
+static void refining_and_coarsening_gives_the_old_structure_back(void **state)
+{
+    (void)state;
+    unsigned seed = 12;
+    for (int trial = 0; trial < 150; trial++) {
+        OctStructure s, before;
+        double *mass;
+        random_structure(&seed, trial, LEAVES, &s, &mass);
+        random_triangle(&seed, &s);
+        oct_resample_update(&s);
+        rebuild(&s, mass, &before);
+        long nodes = 0;
+        for (int round = 0; round < 4; round++) {
+            for (int n = 0; n < 1 + random_int(&seed, 12); n++) {
+                int node = random_node(&seed, &s.tree, true);
+                if (node >= 0) assert_int_equal(oct_resample_split(&s, node, NULL), SM_OK);
+                if (random_int(&seed, 3) == 0) oct_resample_update(&s);
+            }
+            oct_resample_update(&s);
+            merge_all_new(&s, &before.tree);
+            oct_resample_update(&s);
+            check_equal(&s, &before);
+            if (round == 0) nodes = s.tree.nodes;
+        }
+        assert_true(s.tree.nodes <= 8 * (nodes + 200));
+        oct_structure_free(&before);
+        oct_structure_free(&s);
+        free(mass);
+    }
+}
+
+static void block_structure(int wide, int levels, const OctOptions *options, OctStructure *s)
+{
+    SmVoxels v;
+    OctTree tree;
+    sm_voxels_block(&v, wide, wide, wide, 0.25);
+    unsigned seed = 3;
+    random_split_tree(&seed, &v, levels, (int[3]){0, 0, 0}, 0.5, &tree);
+    assert_int_equal(oct_structure_of_tree(&v, options, NULL, &tree, NULL, s, NULL), SM_OK);
+    sm_voxels_free(&v);
+}
+
+static void cutting_everything_leaves_single_nodes(void **state)
+{
+    (void)state;
+    OctStructure s;
+    const OctOptions options = {.epsilon = 0.5, .width = {.edges = 1.5}};
+    block_structure(12, 2, &options, &s);
+    for (int axis = 0; axis < 3; axis++)
+        for (int at = 1; at < 12; at++) add_plane(&s, axis, at);
+    oct_resample_update(&s);
+    check(&s, NULL);
+    assert_int_equal(s.graph.edges, 0);
+    assert_int_equal(oct_structure_parts(&s), s.tree.live);
+    for (long l = 0; l < s.tree.leaves; l++) assert_int_equal(s.regions.size[l], 1);
+    int node = random_node(&(unsigned){5}, &s.tree, true);
+    assert_int_equal(oct_resample_split(&s, node, NULL), SM_OK);
+    oct_resample_update(&s);
+    check(&s, NULL);
+    assert_int_equal(s.graph.edges, 0);
+    oct_structure_free(&s);
+}
+
+/* Misses, has no area, or comes a second time: no edge goes and no region changes. */
+static void a_cut_of_nothing_changes_nothing(void **state)
+{
+    (void)state;
+    OctStructure s;
+    const OctOptions options = {.epsilon = 0.5, .width = {.edges = 1}};
+    block_structure(8, 2, &options, &s);
+    add_plane(&s, 0, 4);
+    const OctChange *change = oct_resample_update(&s);
+    long edges = s.graph.edges, changed = change->region_count;
+    assert_true(changed > 0);
+    assert_int_equal(oct_structure_parts(&s), 2);
+    add_plane(&s, 0, 4);
+    add_plane(&s, 1, -3);
+    add_plane(&s, 2, 0);
+    add_plane(&s, 2, 8);
+    int point = (int)sm_cut_vertex(&s.cut, (double[3]){1, 1, 1});
+    int other = (int)sm_cut_vertex(&s.cut, (double[3]){1, 1.2, 1});
+    sm_cut_triangle(&s.cut, (int[3]){point, point, point});
+    sm_cut_triangle(&s.cut, (int[3]){point, other, point});
+    change = oct_resample_update(&s);
+    assert_int_equal(change->region_count, 0);
+    assert_int_equal(change->added_count + change->removed_count, 0);
+    assert_int_equal(s.graph.edges, edges);
+    oct_structure_free(&s);
+}
+
+/* Is there something left of a triangle within a cube? Clipped side by side. */
+static bool clips(const double corner[3][3], const double centre[3], double half)
+{
+    double shape[16][3], next[16][3];
+    int count = 3;
+    memcpy(shape, corner, 3 * sizeof *shape);
+    for (int side = 0; side < 6 && count > 0; side++) {
+        int d = side / 2, kept = 0;
+        double sign = side % 2 ? -1 : 1, edge = sign * centre[d] + half;
+        for (int i = 0; i < count; i++) {
+            const double *p = shape[i], *q = shape[(i + 1) % count];
+            double a = edge - sign * p[d], b = edge - sign * q[d];
+            if (a >= 0) memcpy(next[kept++], p, sizeof *next);
+            if ((a < 0) == (b < 0)) continue;
+            for (int e = 0; e < 3; e++) next[kept][e] = p[e] + a / (a - b) * (q[e] - p[e]);
+            kept++;
+        }
+        count = kept;
+        memcpy(shape, next, sizeof shape);
+    }
+    return count > 0;
+}
+
+/* Of leaves coarser than a level, those near enough to new triangles and no other. */
+static void leaves_near_a_cut_are_those_that_it_comes_near(void **state)
+{
+    (void)state;
+    unsigned seed = 13;
+    for (int trial = 0; trial < 300; trial++) {
+        OctStructure s;
+        double *mass;
+        const int *node;
+        random_structure(&seed, trial, LEAVES, &s, &mass);
+        random_triangle(&seed, &s);
+        int from = (int)s.cut.triangles, level = random_int(&seed, s.tree.levels + 1);
+        double distance = random_between(&seed, 0, 3) * s.cell;
+        for (int i = 0; i < 3; i++) { /* not on any boundary */
+            double place[3];
+            random_place(&seed, &s, 0, place);
+            sm_cut_vertex(&s.cut, place);
+        }
+        int last = (int)s.cut.vertices;
+        sm_cut_triangle(&s.cut, (int[3]){last - 3, last - 2, last - 1});
+        long count = oct_resample_near_cut(&s, from, distance, level, &node), wanted = 0;
+        for (long l = 0; l < s.tree.leaves; l++) {
+            double centre[3];
+            int here = s.tree.node[l];
+            oct_structure_centre(&s, l, centre);
+            bool coarse = oct_tree_level(&s.tree, here) < level, found = false;
+            bool near = clips((const double(*)[3])(s.cut.vertex + last - 3), centre,
+                              s.cell * s.tree.size[here] / 4 + distance);
+            for (long n = 0; n < count; n++) found = found || node[n] == here;
+            assert_int_equal(found, coarse && near);
+            wanted += coarse && near;
+        }
+        assert_int_equal(count, wanted);
+        oct_structure_free(&s);
+        free(mass);
+    }
+}
+
+static void surroundings_of_a_cut_are_refined_in_one_batch(void **state)
+{
+    (void)state;
+    OctStructure s;
+    const int *node;
+    const OctOptions options = {.epsilon = 0.5, .width = {.edges = 1}};
+    block_structure(16, 4, &options, &s);
+    add_plane(&s, 1, 5.3);
+    long live = s.tree.live, count;
+    while ((count = oct_resample_near_cut(&s, 0, 0.1 * s.cell, 3, &node)) > 0)
+        for (long n = 0; n < count; n++)
+            assert_int_equal(oct_resample_split(&s, node[n], NULL), SM_OK);
+    const OctChange *change = oct_resample_update(&s);
+    assert_true(s.tree.live > live && change->added_count >= s.tree.live - live);
+    for (long l = 0; l < s.tree.leaves; l++) {
+        int here = s.tree.node[l];
+        if (here < 0) continue;
+        bool meets = abs(s.tree.centre[here][1] - 10) <= s.tree.size[here] / 2;
+        if (meets) assert_true(oct_tree_level(&s.tree, here) >= 3);
+    }
+    check(&s, NULL);
+    oct_structure_free(&s);
+}
+
+static void what_cannot_be_split_or_merged_is_refused(void **state)
+{
+    (void)state;
+    OctStructure s;
+    SmError error;
+    const OctOptions options = {.epsilon = 0.5, .width = {.edges = 1}};
+    block_structure(4, 2, &options, &s);
+    const int none[] = {-1, INT_MIN, INT_MAX, (int)s.tree.nodes};
+    for (int n = 0; n < 4; n++) {
+        assert_int_equal(oct_resample_split(&s, none[n], &error), SM_USAGE);
+        assert_non_null(strstr(error.text, "no such leaf"));
+        assert_int_equal(oct_resample_merge(&s, none[n], &error), SM_USAGE);
+        assert_non_null(strstr(error.text, "cannot be merged"));
+    }
+    while (!s.tree.children[0] || !s.tree.children[s.tree.child[0]])
+        assert_int_equal(oct_resample_split(&s, s.tree.children[0] ? s.tree.child[0] : 0, NULL),
+                         SM_OK);
+    int child = s.tree.child[0], finest = s.tree.child[child];
+    assert_int_equal(oct_resample_split(&s, 0, &error), SM_USAGE);
+    assert_int_equal(oct_resample_split(&s, finest, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "finest"));
+    assert_int_equal(oct_resample_merge(&s, 0, &error), SM_USAGE);
+    assert_int_equal(oct_resample_merge(&s, finest, &error), SM_USAGE);
+    assert_int_equal(oct_resample_merge(&s, child, &error), SM_OK);
+    assert_int_equal(oct_resample_split(&s, finest, &error), SM_USAGE); /* dead */
+    oct_resample_update(&s);
+    check(&s, NULL);
+    oct_structure_free(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_sequence_ends_where_a_build_from_scratch_does),
+        cmocka_unit_test(refining_and_coarsening_gives_the_old_structure_back),
+        cmocka_unit_test(cutting_everything_leaves_single_nodes),
+        cmocka_unit_test(a_cut_of_nothing_changes_nothing),
+        cmocka_unit_test(leaves_near_a_cut_are_those_that_it_comes_near),
+        cmocka_unit_test(surroundings_of_a_cut_are_refined_in_one_batch),
+        cmocka_unit_test(what_cannot_be_split_or_merged_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
