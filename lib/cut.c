@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "overlap.h"
 #include "vector.h"
 
 struct SmCutEntry {
@@ -176,7 +177,23 @@ static bool left(const double a[3], const double b[3], const double p[3], const 
     return positive(sm_dot(along, normal), slope);
 }
 
-/* Edges are looked at from their lower vertex number to the higher one, for whichever triangle. */
+/* Does the box of a segment, a little wider against rounding, meet a triangle? */
+static bool comes_near(const SmCut *cut, const int triangle[3], const double a[3],
+                       const double b[3])
+{
+    double corner[3][3], centre[3], half[3];
+    for (int d = 0; d < 3; d++) {
+        centre[d] = 0.5 * (a[d] + b[d]);
+        half[d] = 0.5 * fabs(b[d] - a[d]) + 1e-6 * cut->cube;
+        for (int i = 0; i < 3; i++) corner[i][d] = cut->vertex[triangle[i]][d];
+    }
+    return sm_triangle_meets_box((const double(*)[3])corner, centre, half);
+}
+
+/* In the plane of a triangle rounding alone decides which sides the points are on, and then whether
+ * the line passes it; so a segment that is said to cross must also come near.
+ *
+ * Edges are looked at from their lower vertex number to the higher one, for whichever triangle. */
 static bool crosses(const SmCut *cut, const int triangle[3], const double a[3], const double b[3])
 {
     int i = triangle[0], j = triangle[1], k = triangle[2], swap;
@@ -186,7 +203,7 @@ static bool crosses(const SmCut *cut, const int triangle[3], const double a[3], 
     const double *p = cut->vertex[i], *q = cut->vertex[j], *r = cut->vertex[k];
     if (above(p, q, r, a) == above(p, q, r, b)) return false;
     bool side = left(a, b, p, q);
-    return left(a, b, q, r) == side && left(a, b, p, r) != side;
+    return left(a, b, q, r) == side && left(a, b, p, r) != side && comes_near(cut, triangle, a, b);
 }
 
 static bool in_order(const double a[3], const double b[3])

@@ -126,12 +126,40 @@ static void only_later_triangles_are_asked(void **state)
     sm_cut_free(&cut);
 }
 
+/* Triangles and segments that lie in one plane but for rounding, apart from each other. */
+static void what_lies_in_the_plane_of_a_far_triangle_is_not_cut(void **state)
+{
+    (void)state;
+    long apart = 0;
+    for (int trial = 0; trial < 20000; trial++) {
+        SmCut cut;
+        double place[5][3], low = INFINITY, high = -INFINITY, least = INFINITY, most = -INFINITY;
+        for (int i = 0; i < 5; i++) {
+            double along = floor(uniform(0, 6)), up = floor(uniform(0, 8));
+            place[i][0] = -0.39788157 + 0.98360069 * 2 * along;
+            place[i][1] = 3.68959300 - 0.98360069 * along;
+            place[i][2] = 1.28073174 + 0.98360069 * up;
+            if (i < 3) low = fmin(low, up), high = fmax(high, up);
+            if (i >= 3) least = fmin(least, up), most = fmax(most, up);
+        }
+        if (most >= low && least <= high) continue;
+        sm_cut_init(&cut, 4);
+        for (int i = 0; i < 3; i++) sm_cut_vertex(&cut, place[i]);
+        sm_cut_triangle(&cut, (int[3]){0, 1, 2});
+        assert_false(sm_cut_crosses(&cut, 0, place[3], place[4]));
+        sm_cut_free(&cut);
+        apart++;
+    }
+    assert_true(apart > 1000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_segments_cross_what_they_cross),
         cmocka_unit_test(nothing_slips_through_where_triangles_meet),
         cmocka_unit_test(only_later_triangles_are_asked),
+        cmocka_unit_test(what_lies_in_the_plane_of_a_far_triangle_is_not_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
