@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../lib/vector.h"
+#include "../lib/overlap.h"
 
 /* A place: a box, and perhaps a triangle in it, half finest cells. */
 typedef struct {
@@ -26,39 +26,13 @@ void oct_near_free(OctNear *near)
     *near = (OctNear){0};
 }
 
-/* Does the projection on `axis` part a triangle, given from the box's centre, from the box? */
-static bool parts(const double corner[3][3], const double axis[3], double half)
-{
-    double reach = half * (fabs(axis[0]) + fabs(axis[1]) + fabs(axis[2]));
-    double a = sm_dot(axis, corner[0]), b = sm_dot(axis, corner[1]), c = sm_dot(axis, corner[2]);
-    return fmin(a, fmin(b, c)) > reach || fmax(a, fmax(b, c)) < -reach;
-}
-
-/* Do a cube and a triangle meet, by separating axes? The cube's own have been tried. */
-static bool triangle_meets(const double corner[3][3], const double centre[3], double half)
-{
-    double p[3][3], edge[3][3], axis[3];
-    for (int i = 0; i < 3; i++)
-        for (int d = 0; d < 3; d++) {
-            p[i][d] = corner[i][d] - centre[d];
-            edge[i][d] = corner[(i + 1) % 3][d] - corner[i][d];
-        }
-    sm_cross(edge[0], edge[1], axis);
-    if (parts((const double(*)[3])p, axis, half)) return false;
-    for (int i = 0; i < 3; i++)
-        for (int d = 0; d < 3; d++) {
-            double along[3] = {d == 0, d == 1, d == 2};
-            sm_cross(edge[i], along, axis);
-            if (parts((const double(*)[3])p, axis, half)) return false;
-        }
-    return true;
-}
-
 static bool meets(const Place *place, const double centre[3], double half)
 {
     for (int d = 0; d < 3; d++)
         if (centre[d] + half < place->low[d] || centre[d] - half > place->high[d]) return false;
-    return !place->corner || triangle_meets(place->corner, centre, half + place->margin);
+    double grown = half + place->margin;
+    return !place->corner ||
+           sm_triangle_meets_box(place->corner, centre, (double[3]){grown, grown, grown});
 }
 
 /* Could a node's leaves, or does a leaf, count? A leaf below an inner node is half its size at the
