@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "builtin.h"
+#include "scene_check.h"
 #include "setting.h"
 
 enum { SCENE_BYTES = 1 << 20, BUILTIN_MAX = 64 };
@@ -53,6 +54,40 @@ static const BenchSetting force_table[] = {
     ITEM("force", BENCH_VECTOR, offsetof(BenchForce, force), -FAR, FAR),
     ITEM("start", BENCH_REAL, offsetof(BenchForce, start), 0, 1e6),
     ITEM("stop", BENCH_REAL, offsetof(BenchForce, stop), 0, 1e6),
+    {0},
+};
+
+static const BenchSetting cut_table[] = {
+    ITEM("base_from", BENCH_VECTOR, offsetof(BenchCut, base_from), -FAR, FAR),
+    ITEM("tip_from", BENCH_VECTOR, offsetof(BenchCut, tip_from), -FAR, FAR),
+    ITEM("base_to", BENCH_VECTOR, offsetof(BenchCut, base_to), -FAR, FAR),
+    ITEM("tip_to", BENCH_VECTOR, offsetof(BenchCut, tip_to), -FAR, FAR),
+    ITEM("start", BENCH_REAL, offsetof(BenchCut, start), 0, 1e6),
+    ITEM("stop", BENCH_REAL, offsetof(BenchCut, stop), 0, 1e6),
+    ITEM("level", BENCH_INT, offsetof(BenchCut, level), 1, OCT_MAX_LEVELS),
+    ITEM("reach", BENCH_REAL, offsetof(BenchCut, reach), 0, 1e6),
+    {0},
+};
+
+static const BenchSetting touch_table[] = {
+    ITEM("instance", BENCH_LONG, offsetof(BenchTouch, instance), 1, 1000000),
+    ITEM("centre", BENCH_VECTOR, offsetof(BenchTouch, centre), -FAR, FAR),
+    ITEM("radius", BENCH_REAL, offsetof(BenchTouch, radius), 0, FAR),
+    ITEM("level", BENCH_INT, offsetof(BenchTouch, level), 1, OCT_MAX_LEVELS),
+    ITEM("start", BENCH_REAL, offsetof(BenchTouch, start), 0, 1e6),
+    ITEM("stop", BENCH_REAL, offsetof(BenchTouch, stop), 0, 1e6),
+    ITEM("hold", BENCH_REAL, offsetof(BenchTouch, hold), 0, 1e6),
+    {0},
+};
+
+static const BenchSetting view_table[] = {
+    ITEM("eye_from", BENCH_VECTOR, offsetof(BenchView, eye_from), -FAR, FAR),
+    ITEM("eye_to", BENCH_VECTOR, offsetof(BenchView, eye_to), -FAR, FAR),
+    ITEM("start", BENCH_REAL, offsetof(BenchView, start), 0, 1e6),
+    ITEM("stop", BENCH_REAL, offsetof(BenchView, stop), 0, 1e6),
+    ITEM("near", BENCH_REAL, offsetof(BenchView, near), 0, FAR),
+    ITEM("slack", BENCH_REAL, offsetof(BenchView, slack), 0, 1e6),
+    ITEM("level", BENCH_INT, offsetof(BenchView, level), 1, OCT_MAX_LEVELS),
     {0},
 };
 
@@ -153,6 +188,9 @@ static const BenchSetting scene_table[] = {
     ITEM("kick", BENCH_REAL, AT(kick), 0, 100),
     LIST("handles", scene.handle, scene.handle_count, BenchHandle, handle_table),
     LIST("forces", scene.force, scene.force_count, BenchForce, force_table),
+    LIST("cuts", scene.cut, scene.cut_count, BenchCut, cut_table),
+    LIST("touches", scene.touch, scene.touch_count, BenchTouch, touch_table),
+    {"view", BENCH_GROUP, AT(view), 0, 0, NULL, view_table, 0, 0},
     LIST("planes", plane, planes, SmObstacle, plane_table),
     LIST("spheres", ball, balls, SmObstacle, ball_table),
     LIST("boxes", box, boxes, SmObstacle, box_table),
@@ -193,80 +231,10 @@ static SmCode add_obstacles(BenchScene *scene, const SmObstacle *items, int coun
     return SM_OK;
 }
 
-static SmCode check_selection(BenchSelect *select, const char *what, int number,
-                              const BenchScene *scene, SmError *error)
-{
-    select->sphere = select->radius > 0;
-    if (select->sphere) return SM_OK;
-    for (int d = 0; d < 3; d++)
-        if (!(select->high[d] > select->low[d]))
-            return sm_fail(error, SM_INPUT,
-                           "%s: %s %d selects nothing: it needs 'box_low' below 'box_high', or "
-                           "'sphere_centre' and 'sphere_radius'",
-                           scene->file, what, number);
-    return SM_OK;
-}
-
-static bool any(const double v[3])
-{
-    return v[0] != 0 || v[1] != 0 || v[2] != 0;
-}
-
-/* Places and widths that would not be looked at, and plasticity without its rate: mistakes, not to
- * be passed over. */
-static SmCode check_octree(const BenchScene *scene, SmError *error)
-{
-    const OctOptions *o = &scene->octree;
-    for (int i = 0; i < o->sampling.criteria_count; i++) {
-        const OctCriterion *c = &o->sampling.criteria[i];
-        if ((c->kind != OCT_BOX && (any(c->low) || any(c->high))) ||
-            (c->kind != OCT_SPHERE && (any(c->centre) || c->radius > 0)))
-            return sm_fail(error, SM_INPUT,
-                           "%s: criterion %d: 'low' and 'high' are of the kind \"box\", 'centre' "
-                           "and 'radius' of \"sphere\"",
-                           scene->file, i + 1);
-    }
-    for (int i = 0; i < o->local_count; i++)
-        if ((any(o->local[i].low) || any(o->local[i].high)) && o->local[i].radius > 0)
-            return sm_fail(
-                error, SM_INPUT,
-                "%s: width %d has a box and a sphere: give 'low' and 'high', or 'centre' "
-                "and 'radius'",
-                scene->file, i + 1);
-    if (o->summation_nodes > 0 && (o->width.cells > 0 || o->width.edges > 0))
-        return sm_fail(error, SM_INPUT,
-                       "%s: the width is searched for 'summation_nodes', or given by 'w' and "
-                       "'edges': not both",
-                       scene->file);
-    if ((o->yield > 0 || o->most > 0) && !(o->creep > 0))
-        return sm_fail(error, SM_INPUT,
-                       "%s: 'yield' and 'most' are a plastic body's: give 'creep' too, in 1/s",
-                       scene->file);
-    return SM_OK;
-}
-
 static SmCode check(SceneFile *read, SmError *error)
 {
     BenchScene *scene = &read->scene;
-    if (!scene->mesh[0])
-        return sm_fail(error, SM_INPUT, "%s: no 'mesh': give \"shape:NAME\" or a mesh file's path",
-                       scene->file);
-    if ((scene->voxel.particles > 0) + (scene->voxel.cell > 0) + (scene->cells > 0) != 1)
-        return sm_fail(error, SM_INPUT, "%s: give one of 'particles', 'cell' and 'cells'",
-                       scene->file);
-    SmCode code = check_octree(scene, error);
-    for (int i = 0; i < scene->handle_count && !code; i++) {
-        BenchHandle *handle = &scene->handle[i];
-        code = check_selection(&handle->select, "handle", i + 1, scene, error);
-        double length = hypot(hypot(handle->axis[0], handle->axis[1]), handle->axis[2]);
-        bool turns = handle->rate != 0 || (handle->amplitude != 0 && handle->period > 0);
-        if (!code && turns && !(length > 0))
-            code = sm_fail(error, SM_INPUT, "%s: handle %d turns but has no 'axis'", scene->file,
-                           i + 1);
-        for (int d = 0; d < 3 && length > 0; d++) handle->axis[d] /= length;
-    }
-    for (int i = 0; i < scene->force_count && !code; i++)
-        code = check_selection(&scene->force[i].select, "force", i + 1, scene, error);
+    SmCode code = bench_scene_check(scene, error);
     if (!code) code = add_obstacles(scene, read->plane, read->planes, SM_PLANE, error);
     if (!code) code = add_obstacles(scene, read->ball, read->balls, SM_SPHERE, error);
     if (!code) code = add_obstacles(scene, read->box, read->boxes, SM_BOX, error);

@@ -35,6 +35,34 @@ typedef struct {
     double start, stop;
 } BenchForce;
 
+/* A blade: a segment from base to tip, swept evenly through the moving world from start to stop. It
+ * cuts what it crosses. */
+typedef struct {
+    double base_from[3], tip_from[3], base_to[3], tip_to[3]; /* mesh units */
+    double start, stop;                                      /* s */
+    int level;    /* octree: leaves near the cut are split down to it; 0: not */
+    double reach; /* how near, in finest cells */
+} BenchCut;
+
+/* A finger on one instance: octree leaves that meet the ball, in the body's rest position, are
+ * split down to `level` while it touches, and merged again once it has been gone for `hold`. */
+typedef struct {
+    long instance;            /* from 1 */
+    double centre[3], radius; /* mesh units */
+    int level;
+    double start, stop, hold; /* s; stop 0: for ever */
+} BenchTouch;
+
+/* An eye that moves evenly from start to stop: leaves nearer to it than `near` are split down to
+ * `level`, to a level less with every doubling of the distance, and merged again where they are
+ * farther by the share `slack`. */
+typedef struct {
+    double eye_from[3], eye_to[3]; /* mesh units */
+    double start, stop;            /* s */
+    double near, slack;
+    int level; /* 0: no eye */
+} BenchView;
+
 typedef struct {
     char name[BENCH_NAME];
     char title[160];
@@ -52,10 +80,13 @@ typedef struct {
     double spacing; /* between instances, in widths of the body */
     int steps_per_frame;
     int frames;
-    int handle_count, force_count, obstacle_count;
+    int handle_count, force_count, obstacle_count, cut_count, touch_count;
     BenchHandle handle[BENCH_MAX];
     BenchForce force[BENCH_MAX];
     SmObstacle obstacle[BENCH_MAX];
+    BenchCut cut[BENCH_MAX];
+    BenchTouch touch[BENCH_MAX];
+    BenchView view;
     double bend, twist, squash; /* initial deformation that starts it moving, 0: none */
     double kick;                /* random initial velocity, cells per step, from the seed */
 } BenchScene;

@@ -96,6 +96,32 @@ static void an_octree_has_a_group_of_settings(void **state)
     assert_true(scene.octree.summation_nodes == 6);
 }
 
+#define OCTREE BODY "engine = \"octree\";"
+
+static void changes_while_it_runs(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "mesh = \"shape:liver\"; particles = 100; engine = \"octree\"; instances = 1;\n"
+        "cuts = ( { base_from = (1, 2, 3); tip_to = (4, 5, 6); start = 0.5; stop = 2; level = 3; "
+        "},\n"
+        "         { stop = 1; reach = 2; } );\n"
+        "touches = ( { radius = 0.5; level = 4; hold = 0.25; } );\n"
+        "view = { eye_from = (0, 0, 9); near = 2; slack = 0.1; level = 2; };\n";
+    BenchScene scene;
+    SmError error;
+    if (bench_scene_parse(text, sizeof text - 1, "my.cfg", &scene, &error))
+        fail_msg("%s", error.text);
+    assert_int_equal(scene.cut_count, 2);
+    assert_true(scene.cut[0].base_from[1] == 2 && scene.cut[0].tip_to[2] == 6);
+    assert_true(scene.cut[0].start == 0.5 && scene.cut[0].stop == 2 && scene.cut[0].level == 3);
+    assert_true(scene.cut[0].reach == 1 && scene.cut[1].reach == 2 && scene.cut[1].level == 0);
+    assert_int_equal(scene.touch_count, 1);
+    assert_int_equal(scene.touch[0].instance, 1);
+    assert_true(scene.touch[0].radius == 0.5 && scene.touch[0].hold == 0.25);
+    assert_true(scene.view.eye_from[2] == 9 && scene.view.near == 2 && scene.view.level == 2);
+}
+
 static void errors_name_file_line_and_remedy(void **state)
 {
     (void)state;
@@ -153,6 +179,15 @@ static void errors_name_file_line_and_remedy(void **state)
         {BODY "octree = { w = 1; summation_nodes = 6; };",
          "dir/my.cfg: the width is searched for 'summation_nodes', or given by"},
         {BODY "octree = { yield = 0.1; };", "dir/my.cfg: 'yield' and 'most' are a plastic body's"},
+        {BODY "cuts = ( { start = 1; stop = 1; } );", "dir/my.cfg: cut 1 ends before it begins"},
+        {BODY "instances = 2; cuts = ( { stop = 1; } );", "'cuts' and 'view' are of a body alone"},
+        {BODY "cuts = ( { stop = 1; level = 0; } );",
+         "dir/my.cfg:3: 'level' must be a whole number"},
+        {BODY "touches = ( { radius = 1; level = 2; } );", "'touches' and 'view' refine octrees"},
+        {OCTREE "touches = ( { radius = 1; } );", "touch 1 needs a 'radius' and a 'level'"},
+        {OCTREE "touches = ( { instance = 2; radius = 1; level = 2; } );",
+         "touch 1 is on instance 2, and there are 1"},
+        {OCTREE "view = { level = 3; };", "'view' needs 'near', a distance above 0"},
         {"", "dir/my.cfg: no 'mesh'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -263,6 +298,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_every_kind_of_setting),
         cmocka_unit_test(an_octree_has_a_group_of_settings),
+        cmocka_unit_test(changes_while_it_runs),
         cmocka_unit_test(errors_name_file_line_and_remedy),
         cmocka_unit_test(refuses_zero_bytes_and_huge_files),
         cmocka_unit_test(too_many_obstacles_are_an_error),

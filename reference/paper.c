@@ -74,6 +74,13 @@ static void read_row(const config_setting_t *from, RefPaperRow *row)
     row->speedup = value_of(from, "speedup");
     row->bases = value_of(from, "bases");
     row->summation_nodes = value_of(from, "summation_nodes");
+    const config_setting_t *change = config_setting_get_member(from, "change");
+    row->last_particles = value_of(change, "last_particles");
+    row->added = value_of(change, "added");
+    row->last_ms = value_of(change, "last_ms");
+    row->change_ms = value_of(change, "least_ms");
+    row->change_most_ms = value_of(change, "most_ms");
+    row->surface_ms = value_of(change, "surface_ms");
     const config_setting_t *ms = config_setting_get_member(from, "stage_ms");
     const config_setting_t *percent = config_setting_get_member(from, "stage_percent");
     for (int s = 0; s < SM_STAGES; s++) {

@@ -99,6 +99,21 @@ static void the_hand_has_its_rows(void **state)
                 ref_paper_find("octree", "hand-lattice")->fps.value);
 }
 
+/* Scenes that change say what becomes of them, in numbers that agree. */
+static void changing_scenes_have_an_end(void **state)
+{
+    (void)state;
+    const RefPaperRow *liver = ref_paper_find("octree", "liver");
+    const RefPaperRow *flowers = ref_paper_find("octree", "flowers");
+    assert_true(liver->last_particles.value > 3 * liver->particles.value);
+    assert_true(liver->last_ms.value > liver->total_ms.value);
+    assert_true(liver->change_ms.value < liver->change_most_ms.value);
+    assert_true(flowers->particles.value + flowers->added.value == flowers->last_particles.value);
+    assert_int_equal((int)(100 * flowers->added.value / flowers->particles.value), 6);
+    assert_true(isnan(ref_paper_find("octree", "block")->last_particles.value));
+    assert_true(isnan(ref_paper_find("fastlsm", "penguin")->change_most_ms.value));
+}
+
 static void claims_are_complete(void **state)
 {
     (void)state;
@@ -123,6 +138,7 @@ int main(void)
         cmocka_unit_test(stages_add_up),
         cmocka_unit_test(costs_per_particle_follow_from_the_table),
         cmocka_unit_test(the_hand_has_its_rows),
+        cmocka_unit_test(changing_scenes_have_an_end),
         cmocka_unit_test(claims_are_complete),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
