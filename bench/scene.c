@@ -88,6 +88,13 @@ static const BenchSetting width_table[] = {
     {0},
 };
 
+static const BenchSetting collide_table[] = {
+    ITEM("self", BENCH_BOOL, offsetof(SmCollideParams, self), 0, 0),
+    ITEM("bodies", BENCH_BOOL, offsetof(SmCollideParams, bodies), 0, 0),
+    ITEM("friction", BENCH_REAL, offsetof(SmCollideParams, friction), 0, 1),
+    {0},
+};
+
 #define OCT_LIST(name, items, most, count, type, table)                                            \
     {                                                                                              \
         name, BENCH_LIST, offsetof(OctOptions, items), 0, most, NULL, table, sizeof(type),         \
@@ -141,6 +148,7 @@ static const BenchSetting scene_table[] = {
     WORDS("layout", AT(params.layout), "auto|lists|blocks"),
     ITEM("epsilon", BENCH_REAL, AT(octree.epsilon), 0, 1e6),
     {"octree", BENCH_GROUP, AT(octree), 0, 0, NULL, octree_table, 0, 0},
+    {"collide", BENCH_GROUP, AT(params.collide), 0, 0, NULL, collide_table, 0, 0},
     ITEM("density", BENCH_REAL, AT(density), 0, FAR),
     ITEM("vertex_mass", BENCH_TEXT, AT(vertex_mass), 0, BENCH_PATH),
     ITEM("instances", BENCH_LONG, AT(instances), 1, 1000000),

@@ -7,6 +7,7 @@
 
 #include "../lib/handles.h"
 #include "../lib/rotate_lanes.h"
+#include "contacts.h"
 #include "octree.h"
 #include "structure.h"
 
@@ -19,6 +20,7 @@ struct SmEngine {
     double h;
     double (*pose)[3][4]; /* [instances] */
     SmHandles handles;
+    OctContacts *contacts; /* NULL: nothing collides */
     double build_seconds;
     bool goals; /* g is that of the present state */
 };
@@ -197,6 +199,7 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     e->count = e->structure.tree.leaves;
     e->h = params->h;
     start_at_rest(e, params);
+    e->contacts = oct_contacts_build(e->oct, &e->structure, &params->collide);
     e->build_seconds = sm_now() - start;
     *engine = e;
     return SM_OK;
@@ -206,6 +209,7 @@ static void engine_destroy(SmEngine *e)
 {
     if (!e) return;
     sm_handles_free(&e->handles);
+    oct_contacts_free(e->contacts);
     oct_free(e->oct);
     oct_structure_free(&e->structure);
     free(e->pose);
@@ -250,8 +254,10 @@ static void engine_step(SmEngine *e, SmLaps *laps)
 {
     e->goals = false;
     note_held(e);
+    if (e->contacts) oct_contacts_before(e->contacts);
     oct_step(e->oct, laps);
     move_held(e);
+    if (e->contacts) oct_contacts_after(e->contacts);
     if (e->oct->steps % RECENTRE_STEPS == 0) oct_recentre(e->oct);
     sm_lap(laps, SM_OTHER);
 }
@@ -267,10 +273,21 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     }
 }
 
+static void fix_held(SmEngine *e)
+{
+    long at = 0, *held = sm_alloc((size_t)e->handles.held, sizeof *held);
+    for (int i = 0; i < e->handles.count; i++)
+        for (long k = 0; k < e->handles.handle[i].count; k++)
+            held[at++] = e->handles.handle[i].particle[k];
+    oct_contacts_fix(e->contacts, at, held);
+    free(held);
+}
+
 static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
     Oct *oct = e->oct;
     sm_handles_set(&e->handles, boundary, e->oct->instances * e->count);
+    if (e->contacts) fix_held(e);
     if (!oct->obstacle || oct->obstacle_count != boundary->obstacle_count) {
         free(oct->obstacle);
         oct->obstacle_count = boundary->obstacle_count;
@@ -293,7 +310,9 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .particles = e->oct->instances * e->count,
         .regions = s->regions.leaves,
         .links = s->graph.first[e->count] / 2,
-        .bytes = oct_bytes(e->oct) + (long)oct_structure_bytes(s),
+        .bytes = oct_bytes(e->oct) + (long)oct_structure_bytes(s) +
+                 (e->contacts ? oct_contacts_bytes(e->contacts) : 0),
+        .contacts = e->contacts ? oct_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,
         .summation_nodes = s->regions.mean,
     };
