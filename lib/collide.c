@@ -12,9 +12,6 @@
 #include "error.h"
 #include "vector.h"
 
-#define FLATTEST 0.1 /* a cell with less of its volume has no inside */
-#define LONGEST  4.0 /* nor has one stretched to more than this */
-
 /* What one thread found. */
 typedef struct {
     SmCollideContact *contact;
@@ -66,7 +63,7 @@ static bool invert(const double F[9], double inverse[9])
         for (int d = 0; d < 3; d++) column[d][i] = F[3 * i + d];
     for (int d = 0; d < 3; d++) sm_cross(column[(d + 1) % 3], column[(d + 2) % 3], row[d]);
     double determinant = sm_dot(column[0], row[0]);
-    if (!(determinant > FLATTEST)) return false;
+    if (!(determinant > SM_COLLIDE_FLATTEST)) return false;
     for (int d = 0; d < 3; d++)
         for (int i = 0; i < 3; i++) inverse[3 * d + i] = row[d][i] / determinant;
     return true;
@@ -111,7 +108,7 @@ static bool extents(const SmCollide *c, const SmCollideCell *cell, const double 
 {
     for (int i = 0; i < 3; i++) {
         double sum = fabs(F[3 * i]) + fabs(F[3 * i + 1]) + fabs(F[3 * i + 2]);
-        if (!(sum < LONGEST)) return false;
+        if (!(sum < SM_COLLIDE_LONGEST)) return false;
         half[i] = sum * cell->edge / 2 + c->shape.thickest;
     }
     return true;
@@ -170,7 +167,7 @@ static double find_balls(SmCollide *c, const double (*x)[3])
 {
     SmCollideWork *work = c->work;
     const SmCollideParts *parts = &work->parts;
-    double largest = 0, most = LONGEST * parts->widest;
+    double largest = 0, most = SM_COLLIDE_LONGEST * parts->widest;
     if (c->params.bodies)
         sm_collide_sweep(&work->sweep, x, c->shape.nodes, parts->loosest + c->shape.thickest);
     sm_collide_hash_start(&work->balls, c->bodies * parts->count, 3 * c->shape.mean);
@@ -384,6 +381,7 @@ static void spend(SmCollide *c)
     double share = total > c->bank ? c->bank / total : 1;
     for (long i = 0; i < c->contact_count; i++) {
         const SmCollideContact *contact = &c->contact[i];
+        stop(c, contact, 0);
         double cost = fmin(share * price(c, contact, &speed), c->bank);
         if (!(cost > 0)) continue;
         double more = sqrt(speed * speed + 2 * cost / contact->mass) - speed;

@@ -45,6 +45,9 @@
 #define SM_COLLIDE_PUSH 0.25 /* share of the depth that is pushed out in a step, at most */
 #define SM_COLLIDE_KEPT 0.98 /* share of what is in the bank that lasts to the next step */
 
+#define SM_COLLIDE_FLATTEST 0.1 /* a cell with less of its volume has no inside, */
+#define SM_COLLIDE_LONGEST  4.0 /* nor has one stretched to about this many times its edge */
+
 enum { SM_COLLIDE_SWEEPS = 4 }; /* over all contacts in a step */
 
 /* Node p of body b has number b * nodes + p; a cell's has the same form. */

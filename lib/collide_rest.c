@@ -57,10 +57,14 @@ static void offer(Flood *flood, int cell, int number, double *nearest)
     int at = flood->count[cell];
     for (int i = 0; i < at; i++)
         if (list[i] == number) return;
-    if (at == SM_COLLIDE_FACES) return;
+    bool full = at == SM_COLLIDE_FACES; /* then those of the lowest numbers stay */
+    if (full && number > list[at - 1]) return;
+    if (full)
+        at--;
+    else
+        flood->count[cell]++;
     for (; at > 0 && list[at - 1] > number; at--) list[at] = list[at - 1];
     list[at] = number;
-    flood->count[cell]++;
 }
 
 static void flood_layer(Flood *flood, int level)
