@@ -32,6 +32,7 @@ typedef struct {
     double pose[MOST][3][4];
     long n; /* nodes of all bodies */
     double (*x)[3], (*v)[3];
+    double start; /* energy */
 } Trial;
 
 static void begin(Trial *t, const SmEngineType *type, long bodies)
@@ -80,14 +81,14 @@ static long run(Trial *t, long steps, double swing, RefEnergy *last)
 {
     SmCounts counts;
     long contacts = 0;
-    double start = ref_energy(t->type, t->engine, &t->params).total, ceiling = start;
+    if (!(t->start > 0)) t->start = ref_energy(t->type, t->engine, &t->params).total;
     for (long s = 1; s <= steps; s++) {
         t->type->step(t->engine, NULL);
         t->type->count(t->engine, &counts);
         contacts += counts.contacts;
         if (s % 50) continue;
         *last = ref_energy(t->type, t->engine, &t->params);
-        assert_true(last->total <= ceiling + (swing + rounding(t)) * start);
+        assert_true(last->total <= (1 + swing + rounding(t)) * t->start);
     }
     t->type->get(t->engine, SM_POSITION, t->x);
     return contacts;
@@ -106,7 +107,7 @@ static void test_kept(void **state)
         for (long i = 0; i < t.n; i++) t.v[i][1] = 2 * t.x[i][0];
         t.type->set(t.engine, SM_VELOCITY, (const double(*)[3])t.v);
         double start = ref_energy(t.type, t.engine, &t.params).total;
-        assert_int_equal(run(&t, 500, 1e-3, &last), 0);
+        assert_int_equal(run(&t, 500, 3e-3, &last), 0);
         assert_true(last.total > 0.98 * start && last.elastic > 1e-3 * start);
         end(&t);
     }
@@ -140,10 +141,11 @@ static void test_head_on(void **state)
         for (long i = 0; i < t.n; i++) t.v[i][0] = i < t.n / 2 ? 12 : -12;
         t.type->set(t.engine, SM_VELOCITY, (const double(*)[3])t.v);
         momentum(&t, before);
-        assert_true(run(&t, STEPS, 0, &last) > 20);
+        assert_true(run(&t, 200, 0, &last) > 20); /* met, and apart again */
         momentum(&t, after);
         for (int d = 0; d < 3; d++)
             assert_float_equal(after[d], before[d], 12.0 * (double)t.n * rounding(&t));
+        run(&t, STEPS - 200, 0, &last);
         assert_true(t.x[0][0] < -3 && t.x[t.n - 1][0] > 9); /* none went through the other */
         end(&t);
     }
@@ -190,14 +192,14 @@ static void test_pile(void **state)
         create(&t);
         t.type->bound(t.engine, &(SmBoundary){0, NULL, 1, &ground});
         assert_true(run(&t, STEPS, 0, &last) > 1000);
-        double low = INFINITY, high = -INFINITY;
-        for (long i = 0; i < t.n; i++) {
-            low = fmin(low, t.x[i][1]);
-            high = fmax(high, t.x[i][1]);
+        for (int b = 1; b < 3; b++) { /* the upper ones may slide off, but not in */
+            double off[3] = {0};
+            for (long i = 0; i < t.n / 3; i++)
+                for (int d = 0; d < 3; d++)
+                    off[d] += t.x[b * t.n / 3 + i][d] - t.x[(b - 1) * t.n / 3 + i][d];
+            double apart = sqrt(off[0] * off[0] + off[1] * off[1] + off[2] * off[2]);
+            assert_true(apart > 2.75 * (double)(t.n / 3));
         }
-        print_message("%s %s pile %g..%g motion %g\n", t.type->name, t.type->precision, low, high,
-                      last.motion);
-        assert_true(high - low > 7);
         end(&t);
     }
 }
