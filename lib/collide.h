@@ -16,25 +16,28 @@
  * with v in cells per step, so that the change of v is also that of the place just moved to.
  *
  * The response gains no energy. Without it the step is v+ = v- + f(x), x+ = x + v+, symplectic
- * Euler, which keeps H = sum m |v|^2 / 2 + V(x) - sum |f|^2 / 8m at v = (v- + v+) / 2 exactly while
- * f is linear in x (fastlsm eqs. 1 and 2: f = g - x; gravity). Impulses J at time x change v and v+
- * alike and nothing else in H, so H does not grow if sum m |v|^2 does not. Every impulse acts
- * between the node and the nodes that carry the cell, with their weights w (sum 1): the point's
- * velocity relative to the cell is u = v_i - sum w_c v_c, an impulse p on the node and -w_c p on
- * the carriers keeps the momentum, changes u by p / mu, 1 / mu = 1 / m_i + sum w_c^2 / m_c, and the
- * kinetic energy by mu (|u'|^2 - |u|^2) / 2. A contact acts only while the point comes deeper; it
- * then turns its normal speed a into min(a, SM_COLLIDE_PUSH x depth) outwards, and takes the share
- * `friction` of the tangential one: |u'| <= |u|. So what pushes bodies apart is always less than
- * what had pressed them together, and bodies that overlap at rest stay at rest.
+ * Euler, which keeps H = sum m |v|^2 / 2 + V(x) - sum m |f|^2 / 8 at v = (v- + v+) / 2 exactly
+ * while f is linear in x (fastlsm eqs. 1 and 2: f = g - x, and gravity; reference/energy.h).
+ * Impulses at time x change v and v+ alike and nothing else in H, so H changes as sum m |v|^2 / 2
+ * does. Every impulse acts between a node and the nodes that carry the cell, with their weights w
+ * (sum 1): the node's velocity relative to the cell is u = v_i - sum w_c v_c, an impulse p on the
+ * node and -w_c p on the carriers keeps the momentum, changes u by p / mu, 1 / mu = 1 / m_i + sum
+ * w_c^2 / m_c, and the kinetic energy by mu (|u'|^2 - |u|^2) / 2. First all contacts, a few times
+ * in turn, lose the part of u that leads deeper and the share `friction` of the tangential one:
+ * |u'| <= |u|. What they lose goes into a bank, from which the deepest are paid for being pushed
+ * out, at no more than SM_COLLIDE_PUSH x depth; the bank forgets some of its money in every step
+ * and never owes any. So H + bank never grows, and H never exceeds what it was when the bank was
+ * empty. What overlaps and rests stays as it is.
  *
- * Speed limit: a point that moves, relative to the cells that it meets, by less than half the
- * thickness of what they are part of in a step, so by half a cell for a wall one cell thick, is
- * found before it is nearer to the far side, and does not get through. Of obstacles (obstacle.h)
- * the same holds; a plane has no limit.
+ * Speed limit: a node that moves, relative to the cells that it meets, by less than half the
+ * thickness of what they are part of in a step is found before it is nearer to the far side, and
+ * does not get through. The pull of the body behind it counts: a body of regions up to 3 cells wide
+ * may fly at 0.15 times that thickness a step (SM_COLLIDE_SPEED), so at 0.15 cells against a wall
+ * one cell thick. The same holds for obstacles (obstacle.h), but for planes, which have no limit.
  *
  * Results do not depend on the number of threads. A step costs O(1) for every node and cell near a
  * surface that can collide (of bodies that do not collide with themselves: in the box of another
- * body), O(8) for each contact. It allocates nothing once its arrays have grown. Twin:
+ * body), and O(carriers) for each contact. It allocates nothing once its arrays have grown. Twin:
  * reference/collide.c. */
 #ifndef SM_COLLIDE_H
 #define SM_COLLIDE_H
@@ -45,8 +48,9 @@
 #define SM_COLLIDE_PUSH 0.25 /* share of the depth that is pushed out in a step, at most */
 #define SM_COLLIDE_KEPT 0.98 /* share of what is in the bank that lasts to the next step */
 
-#define SM_COLLIDE_FLATTEST 0.1 /* a cell with less of its volume has no inside, */
-#define SM_COLLIDE_LONGEST  4.0 /* nor has one stretched to about this many times its edge */
+#define SM_COLLIDE_SPEED    0.15 /* of the thickness of a wall, that a body may fly at in a step */
+#define SM_COLLIDE_FLATTEST 0.1  /* a cell with less of its volume has no inside, */
+#define SM_COLLIDE_LONGEST  4.0  /* nor has one stretched to about this many times its edge */
 
 enum { SM_COLLIDE_SWEEPS = 4 }; /* over all contacts in a step */
 

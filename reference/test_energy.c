@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "../fastlsm/fastlsm.h"
+#include "../lib/collide.h"
 #include "../lib/test_fields.h"
 #include "../octree/engine.h"
 #include "energy.h"
@@ -204,6 +205,79 @@ static void test_pile(void **state)
     }
 }
 
+#define FASTEST (SM_COLLIDE_SPEED / 0.01) /* cells a second, against what is one cell thick */
+
+/* A plate one cell thick meets another that is held, flat on (turn 0) or with an edge. */
+static void throw_at_plate(const SmEngineType *type, int w, int turn)
+{
+    Trial t;
+    begin(&t, type, 2);
+    t.params.w = w;
+    sm_voxels_block(&t.voxels, 8, 8, 1, 1);
+    memset(t.pose[1], 0, sizeof t.pose[1]);
+    for (int d = 0; d < 3; d++) t.pose[1][(d + turn) % 3][d] = 1;
+    for (int d = 0; d < 3; d++) t.pose[1][d][3] = 0.3;
+    t.pose[1][2][3] = -10.4;
+    create(&t);
+    long half = t.n / 2, *held = sm_alloc((size_t)half, sizeof *held), near = 0;
+    for (long i = 0; i < half; i++) held[i] = i;
+    SmHandle handle = {.count = half, .particle = held, .pose = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    t.type->bound(t.engine, &(SmBoundary){1, &handle, 0, NULL});
+    for (long i = half; i < t.n; i++) t.v[i][2] = FASTEST;
+    t.type->set(t.engine, SM_VELOCITY, (const double(*)[3])t.v);
+    for (int s = 0; s < 400; s++) {
+        t.type->step(t.engine, NULL);
+        t.type->get(t.engine, SM_POSITION, t.x);
+        for (long i = half; i < t.n; i++) {
+            double *x = t.x[i];
+            if (x[0] > 0 && x[0] < 8 && x[1] > 0 && x[1] < 8) assert_true(x[2] < 1);
+            near += x[2] > -1;
+        }
+    }
+    assert_true(near > 0);
+    free(held);
+    end(&t);
+}
+
+static void test_plates(void **state)
+{
+    (void)state;
+    for (int e = 0; e < ENGINES; e++)
+        for (int turn = 0; turn < 3; turn++) throw_at_plate(engines[e], 1 + turn, turn);
+}
+
+/* Obstacles one cell thick: a wall, a bar, a ball; the body comes to one side and stays there. */
+static void test_obstacles(void **state)
+{
+    (void)state;
+    static const SmObstacle obstacle[3] = {
+        {.kind = SM_BOX, .a = {-5e3, -5e3, 6}, .b = {5e3, 5e3, 7}},
+        {.kind = SM_PLANE, .a = {0, 0, 6}, .b = {0, 0, -1}},
+        {.kind = SM_SPHERE, .a = {1.5, 1.5, 56}, .radius = 50},
+    };
+    for (int e = 0; e < ENGINES; e++)
+        for (int o = 0; o < 3; o++) {
+            Trial t;
+            RefEnergy last;
+            begin(&t, engines[e], 1);
+            t.params.collide = (SmCollideParams){0};
+            t.params.gravity[2] = 4;
+            sm_voxels_block(&t.voxels, 3, 3, 3, 1);
+            create(&t);
+            for (long i = 0; i < t.n; i++) t.v[i][2] = o == 1 ? 10 * FASTEST : FASTEST;
+            t.type->set(t.engine, SM_VELOCITY, (const double(*)[3])t.v);
+            t.type->bound(t.engine, &(SmBoundary){0, NULL, 1, &obstacle[o]});
+            for (int s = 0; s < 20; s++) {
+                run(&t, STEPS / 20, 0, &last);
+                for (long i = 0; i < t.n; i++)
+                    assert_true(o == 2 ? hypot(hypot(t.x[i][0] - 1.5, t.x[i][1] - 1.5),
+                                               t.x[i][2] - 56) > 49.5
+                                       : t.x[i][2] < 6.5);
+            }
+            end(&t);
+        }
+}
+
 /* A step gives the same bits for any number of threads. */
 static void test_threads(void **state)
 {
@@ -237,8 +311,10 @@ static void test_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kept), cmocka_unit_test(test_head_on), cmocka_unit_test(test_fold),
-        cmocka_unit_test(test_pile), cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_kept),    cmocka_unit_test(test_head_on),
+        cmocka_unit_test(test_fold),    cmocka_unit_test(test_pile),
+        cmocka_unit_test(test_plates),  cmocka_unit_test(test_obstacles),
+        cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
