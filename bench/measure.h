@@ -1,6 +1,6 @@
 /* measure.h - one scene, one engine: checked against brute force, then timed, then checked again.
  *
- * How. The scene's disturbance is applied and a few steps run; that state is the start of every
+ * How. The scene's disturbance is applied and its `settle` steps run; that state is the start of every
  * timed segment, so that all repeats do the same work on a body in motion. The check compares the
  * goal positions there, and again where the last segment ended. Then after a warm-up come
  * `repeats` repeats of two blocks, one plain and one with laps, in turn first. A block is as many
@@ -14,7 +14,7 @@
 #include "progress.h"
 #include "row.h"
 
-enum { BENCH_SEGMENT_STEPS = 64, BENCH_SETTLE_STEPS = 8 };
+enum { BENCH_SEGMENT_STEPS = 64 };
 
 typedef struct {
     int repeats;          /* 0: 15 */

@@ -155,6 +155,7 @@ static const BenchSetting scene_table[] = {
     ITEM("spacing", BENCH_REAL, AT(spacing), 0, 1e6),
     ITEM("steps_per_frame", BENCH_INT, AT(steps_per_frame), 1, 1000000),
     ITEM("frames", BENCH_INT, AT(frames), 0, 10000000),
+    ITEM("settle", BENCH_INT, AT(settle), 0, 1000000),
     ITEM("bend", BENCH_REAL, AT(bend), -100, 100),
     ITEM("twist", BENCH_REAL, AT(twist), -100, 100),
     ITEM("squash", BENCH_REAL, AT(squash), -10, 10),
@@ -179,6 +180,7 @@ void bench_scene_init(BenchScene *scene)
     scene->spacing = 1.5;
     scene->steps_per_frame = 4;
     scene->frames = 100;
+    scene->settle = BENCH_SETTLE_STEPS;
 }
 
 static SmCode add_obstacles(BenchScene *scene, const SmObstacle *items, int count,
