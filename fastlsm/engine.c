@@ -258,7 +258,10 @@ static void engine_step(SmEngine *e, SmLaps *laps)
 {
     Lsm *lsm = e->lsm;
     note_held(e);
-    if (e->contacts) lsm_contacts_before(e->contacts);
+    if (e->contacts) {
+        lsm_contacts_before(e->contacts);
+        sm_lap(laps, SM_OTHER);
+    }
     if (e->crowd) {
         int every = lsm->params.damping_every > 0 ? lsm->params.damping_every : 1;
         lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;

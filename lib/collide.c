@@ -30,8 +30,9 @@ struct SmCollideWork {
     long *fixed_node;     /* [fixed_count] */
     long fixed_count, contact_room, node_room;
     long *cell; /* [bodies * cells of the shape] those of such parts: body * cells + place */
-    double (*before)[3]; /* [node_room] */
-    long cells;          /* of a body as described */
+    double *inverse_mass; /* [node_room] of the nodes that contacts change; 0: fixed */
+    double (*before)[3];  /* [node_room] */
+    long cells;           /* of a body as described */
 };
 
 void sm_collide_frame(const SmCollideCell *cell, const double (*x)[3], const double (*frame)[9],
@@ -199,22 +200,24 @@ static bool parts_may_collide(const SmCollide *c, long a, long b)
     return c->params.self && !sm_collide_parts_joined(parts, a % parts->count, b % parts->count);
 }
 
-static void close_in(const SmCollide *c, const SmCollideEntry *part, double largest)
+/* Balls of up to the usual size look for such; larger ones, of which a stretched body has some,
+ * look for all. */
+static void close_in(const SmCollide *c, const SmCollideEntry *part, double usual, double largest)
 {
     const SmCollideWork *work = c->work;
     double radius = work->radius[part->item], low[3], high[3];
+    bool large = radius > usual;
     for (int d = 0; d < 3; d++) {
-        low[d] = part->x[d] - radius - largest;
-        high[d] = part->x[d] + radius + largest;
+        low[d] = part->x[d] - radius - (large ? largest : usual);
+        high[d] = part->x[d] + radius + (large ? largest : usual);
     }
-    low[2] = part->x[2]; /* every pair once */
+    if (!large) low[2] = part->x[2]; /* every pair once */
     const SmCollideEntry *other;
     SmCollideQuery query;
     for (sm_collide_hash_query(&work->balls, low, high, &query);
          (other = sm_collide_hash_next(&work->balls, &query));) {
         double off[3], reach = radius + work->radius[other->item];
-        if (other->x[2] < part->x[2]) continue;
-        if (other->x[2] == part->x[2] && other->item <= part->item) continue;
+        if (other == part || (!large && other->x[2] < part->x[2])) continue;
         for (int d = 0; d < 3; d++) off[d] = other->x[d] - part->x[d];
         if (sm_dot(off, off) > reach * reach || !parts_may_collide(c, part->item, other->item))
             continue;
@@ -230,7 +233,8 @@ static long gather(SmCollide *c, const double (*x)[3])
     const SmCollideParts *parts = &work->parts;
     long nodes = 0, cells = 0, all = c->bodies * parts->count;
     double largest = find_balls(c, x);
-    for (long i = 0; i < work->balls.count; i++) close_in(c, &work->balls.noted[i], largest);
+    for (long i = 0; i < work->balls.count; i++)
+        close_in(c, &work->balls.entry[i], fmin(1.25 * parts->widest, largest), largest);
     for (long i = 0; i < all; i++)
         if (work->close[i])
             nodes += parts->node_first[i % parts->count + 1] - parts->node_first[i % parts->count];
@@ -260,8 +264,12 @@ static int place_of(SmCollide *c, long number)
         c->node = sm_realloc(c->node, (size_t)work->node_room, sizeof *c->node);
         c->v = sm_realloc(c->v, (size_t)work->node_room, sizeof *c->v);
         work->before = sm_realloc(work->before, (size_t)work->node_room, sizeof *c->v);
+        work->inverse_mass =
+            sm_realloc(work->inverse_mass, (size_t)work->node_room, sizeof(double));
     }
     c->node[c->node_count] = (int)number;
+    work->inverse_mass[c->node_count] =
+        work->fixed[number] ? 0 : c->shape.inverse_mass[number % c->shape.nodes];
     return work->place[number] = (int)c->node_count++;
 }
 
@@ -273,13 +281,11 @@ static void complete(SmCollide *c, SmCollideContact *contact)
     long b = contact->cell / shape->cell_count, first = b * shape->nodes;
     const SmCollideCell *cell = &shape->cell[contact->cell % shape->cell_count];
     contact->place = place_of(c, contact->node);
-    double inverse =
-        work->fixed[contact->node] ? 0 : shape->inverse_mass[contact->node % shape->nodes];
+    double inverse = work->inverse_mass[contact->place];
     for (int i = 0; i < shape->carriers; i++) {
-        int node = cell->carrier[i];
-        contact->carrier[i] = place_of(c, first + node);
-        if (!work->fixed[first + node])
-            inverse += contact->weight[i] * contact->weight[i] * shape->inverse_mass[node];
+        contact->carrier[i] = place_of(c, first + cell->carrier[i]);
+        inverse +=
+            contact->weight[i] * contact->weight[i] * work->inverse_mass[contact->carrier[i]];
     }
     contact->mass = inverse > 0 ? 1 / inverse : 0;
     contact->cell = (int)(b * work->cells + cell->number);
@@ -331,9 +337,7 @@ void sm_collide_begin(SmCollide *c)
 
 static void kick(SmCollide *c, int place, double share, const double impulse[3])
 {
-    long number = c->node[place];
-    if (c->work->fixed[number]) return;
-    double scale = share * c->shape.inverse_mass[number % c->shape.nodes];
+    double scale = share * c->work->inverse_mass[place];
     for (int d = 0; d < 3; d++) c->v[place][d] += scale * impulse[d];
 }
 
@@ -430,9 +434,8 @@ static void work_free(SmCollide *c)
 {
     SmCollideWork *work = c->work;
     for (int t = 0; t < c->threads; t++) free(work->found[t].contact);
-    void *all[] = {work->found,      work->place, work->fixed,
-                   work->fixed_node, work->cell,  work->before,
-                   work->radius,     work->close, work};
+    void *all[] = {work->found,  work->place,        work->fixed,  work->fixed_node, work->cell,
+                   work->before, work->inverse_mass, work->radius, work->close,      work};
     sm_collide_hash_free(&work->hash);
     sm_collide_hash_free(&work->balls);
     sm_collide_parts_free(&work->parts);
@@ -496,7 +499,7 @@ long sm_collide_bytes(const SmCollide *c)
                    (size_t)(c->bodies * work->parts.count) * (sizeof(double) + 1) +
                    (size_t)(c->bodies * c->shape.cell_count) * sizeof(long) +
                    (size_t)work->contact_room * 2 * sizeof *c->contact +
-                   (size_t)work->node_room * (sizeof(int) + 2 * sizeof *c->v) +
+                   (size_t)work->node_room * (sizeof(int) + sizeof(double) + 2 * sizeof *c->v) +
                    (size_t)work->hash.room * (2 * sizeof(SmCollideEntry) + sizeof(unsigned)) +
                    ((size_t)work->hash.table_room + 1) * sizeof(int);
     return (long)bytes + sm_collide_parts_bytes(&work->parts) + sm_collide_shape_bytes(&c->shape);

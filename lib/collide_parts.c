@@ -154,9 +154,15 @@ static void list_joined(const SmCollideShape *shape, SmCollideParts *parts)
 
 bool sm_collide_parts_joined(const SmCollideParts *parts, long a, long b)
 {
-    for (long i = parts->joined_first[a]; i < parts->joined_first[a + 1]; i++)
-        if (parts->joined[i] == b) return true;
-    return false;
+    long low = parts->joined_first[a], high = parts->joined_first[a + 1];
+    while (low < high) {
+        long middle = (low + high) / 2;
+        if (parts->joined[middle] < b)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < parts->joined_first[a + 1] && parts->joined[low] == b;
 }
 
 void sm_collide_parts_build(const SmCollideShape *shape, SmCollideParts *parts)

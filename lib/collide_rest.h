@@ -10,7 +10,7 @@
 
 enum {
     SM_COLLIDE_LAYERS = 2,  /* cells below the surface that nodes are tested against */
-    SM_COLLIDE_APART = 3,   /* a node and a cell that many cells apart or nearer do not collide */
+    SM_COLLIDE_APART = 5,   /* a node and a cell that many cells apart or nearer do not collide */
     SM_COLLIDE_AROUND = 2,  /* unless the way through the material is over that many times as far */
     SM_COLLIDE_CORNERS = 8, /* carriers of a lattice cell; bit d of one's place: high along d */
     SM_COLLIDE_FACES = 6    /* 2 d is the low one along axis d, 2 d + 1 the high one */

@@ -254,7 +254,10 @@ static void engine_step(SmEngine *e, SmLaps *laps)
 {
     e->goals = false;
     note_held(e);
-    if (e->contacts) oct_contacts_before(e->contacts);
+    if (e->contacts) {
+        oct_contacts_before(e->contacts);
+        sm_lap(laps, SM_OTHER);
+    }
     oct_step(e->oct, laps);
     move_held(e);
     if (e->contacts) oct_contacts_after(e->contacts);
