@@ -51,12 +51,17 @@ void lsm_contacts_free(LsmContacts *k)
     free(k);
 }
 
+static void fix(LsmContacts *k)
+{
+    if (k->fixed) sm_collide_fix(k->collide, k->fixed_count, k->fixed);
+}
+
 static void describe(LsmContacts *k)
 {
     LsmOutline outline;
     lsm_outline_build(&k->lsm->lattice, k->lsm->mass, &outline);
     sm_collide_describe(k->collide, &outline.rest);
-    sm_collide_fix(k->collide, k->fixed_count, k->fixed);
+    fix(k);
     lsm_outline_free(&outline);
     k->broken = k->lsm->broken;
 }
@@ -126,7 +131,7 @@ void lsm_contacts_fix(LsmContacts *k, long count, const long *particle)
     k->fixed = sm_realloc(k->fixed, (size_t)count + 1, sizeof *k->fixed);
     memcpy(k->fixed, particle, (size_t)count * sizeof *particle);
     k->fixed_count = count;
-    sm_collide_fix(k->collide, count, particle);
+    fix(k);
 }
 
 long lsm_contacts_count(const LsmContacts *k)

@@ -147,7 +147,8 @@ static void list_joined(const SmCollideShape *shape, SmCollideParts *parts)
             parts->joined[count++] = entry->item;
         }
         parts->joined_first[p + 1] = count;
-        qsort(parts->joined + first, (size_t)(count - first), sizeof(int), compare);
+        if (count > first)
+            qsort(parts->joined + first, (size_t)(count - first), sizeof(int), compare);
     }
     sm_collide_hash_free(&hash);
 }

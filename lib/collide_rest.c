@@ -298,7 +298,9 @@ static void find_far(SmCollideShape *shape, SmCollideHash *hash, Ways *ways, int
         }
         shape->far[shape->far_first[node + 1]++] = (int)entry->item;
     }
-    qsort(shape->far + first, (size_t)(shape->far_first[node + 1] - first), sizeof(int), compare);
+    if (shape->far_first[node + 1] > first)
+        qsort(shape->far + first, (size_t)(shape->far_first[node + 1] - first), sizeof(int),
+              compare);
 }
 
 static void keep_far(const SmCollideRest *rest, SmCollideShape *shape)

@@ -186,7 +186,7 @@ static long same_contacts(const Body *body, const SmCollideParams *params)
     RefContact *exact;
     long at = 0, count = ref_collide_find(body->rest, params, BODIES, (const double(*)[3])body->x,
                                           (const double(*)[9])body->frame, &exact);
-    qsort(c->contact, (size_t)c->contact_count, sizeof *c->contact, compare);
+    if (c->contact_count) qsort(c->contact, (size_t)c->contact_count, sizeof *c->contact, compare);
     for (long i = 0; i < count; i++) {
         const SmCollideContact *found = &c->contact[at];
         bool missing =
@@ -268,9 +268,9 @@ static void check_response(unsigned *seed, const Body *body)
             after[i][d] = before[i][d] + 0.2 * (random_unit(seed) - 0.5);
         }
     c->bank = 0.5;
-    memcpy(c->v, before, (size_t)c->node_count * sizeof *before);
+    if (c->node_count) memcpy(c->v, before, (size_t)c->node_count * sizeof *before);
     sm_collide_begin(c);
-    memcpy(c->v, after, (size_t)c->node_count * sizeof *after);
+    if (c->node_count) memcpy(c->v, after, (size_t)c->node_count * sizeof *after);
     double was = motion(c, (const double(*)[3])before, (const double(*)[3])after);
     sm_collide_respond(c);
     double moved[3] = {0}, size = 0;

@@ -14,9 +14,10 @@ typedef struct {
 
 static void regions(const SmEngineType *type, SmEngine *engine, Body *body)
 {
+    long none;
     body->start = sm_alloc((size_t)body->count + 1, sizeof(long));
     for (long r = 0; r < body->count; r++)
-        body->start[r + 1] = body->start[r] + type->region(engine, r, NULL, 0);
+        body->start[r + 1] = body->start[r] + type->region(engine, r, &none, 0);
     body->member = sm_alloc((size_t)body->start[body->count], sizeof(long));
     for (long r = 0; r < body->count; r++)
         type->region(engine, r, body->member + body->start[r], body->start[r + 1] - body->start[r]);
