@@ -179,7 +179,7 @@ static SmCode measure_scene(const Options *options, int number, BenchProgress *p
     return code;
 }
 
-/* Speed-ups over the octree paper's lattice. */
+/* Speed-ups over the octree paper's lattice, of the same mesh. */
 static void compare_rows(BenchRow *rows, int count)
 {
     const BenchRow *lattice = NULL;
@@ -187,7 +187,7 @@ static void compare_rows(BenchRow *rows, int count)
         if (!strcmp(rows[i].paper, "octree") && !strcmp(rows[i].engine, "fastlsm") && rows[i].valid)
             lattice = &rows[i];
     for (int i = 0; i < count && lattice; i++)
-        if (!strcmp(rows[i].paper, "octree"))
+        if (!strcmp(rows[i].paper, "octree") && rows[i].input_hash == lattice->input_hash)
             rows[i].speedup = lattice->total_ms / rows[i].total_ms;
 }
 

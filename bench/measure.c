@@ -246,7 +246,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
     check_counts(&check, runner, row);
     bench_tree_row_fill(runner, row);
     bench_runner_disturb(runner, params->seed);
-    for (int i = 0; i < BENCH_SETTLE_STEPS; i++) bench_runner_step(runner, NULL);
+    for (int i = 0; i < scene->settle; i++) bench_runner_step(runner, NULL);
     check_state(&check, runner, &worst, row);
     save(&trial);
     time_blocks(&trial, params, row);

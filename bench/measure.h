@@ -1,8 +1,8 @@
 /* measure.h - one scene, one engine: checked against brute force, then timed, then checked again.
  *
- * How. The scene's disturbance is applied and a few steps run; that state is the start of every
- * timed segment, so that all repeats do the same work on a body in motion. The check compares the
- * goal positions there, and again where the last segment ended. Then after a warm-up come
+ * How. The scene's disturbance is applied and its `settle` steps run; that state is the start of
+ * every timed segment, so that all repeats do the same work on a body in motion. The check compares
+ * the goal positions there, and again where the last segment ended. Then after a warm-up come
  * `repeats` repeats of two blocks, one plain and one with laps, in turn first. A block is as many
  * segments as fill block_seconds; a segment restores the start state and runs one step untimed,
  * and then times up to BENCH_SEGMENT_STEPS steps. The total is that of the plain blocks; stage
@@ -14,7 +14,7 @@
 #include "progress.h"
 #include "row.h"
 
-enum { BENCH_SEGMENT_STEPS = 64, BENCH_SETTLE_STEPS = 8 };
+enum { BENCH_SEGMENT_STEPS = 64 };
 
 typedef struct {
     int repeats;          /* 0: 15 */

@@ -123,6 +123,13 @@ static const BenchSetting width_table[] = {
     {0},
 };
 
+static const BenchSetting collide_table[] = {
+    ITEM("self", BENCH_BOOL, offsetof(SmCollideParams, self), 0, 0),
+    ITEM("bodies", BENCH_BOOL, offsetof(SmCollideParams, bodies), 0, 0),
+    ITEM("friction", BENCH_REAL, offsetof(SmCollideParams, friction), 0, 1),
+    {0},
+};
+
 #define OCT_LIST(name, items, most, count, type, table)                                            \
     {                                                                                              \
         name, BENCH_LIST, offsetof(OctOptions, items), 0, most, NULL, table, sizeof(type),         \
@@ -176,12 +183,14 @@ static const BenchSetting scene_table[] = {
     WORDS("layout", AT(params.layout), "auto|lists|blocks"),
     ITEM("epsilon", BENCH_REAL, AT(octree.epsilon), 0, 1e6),
     {"octree", BENCH_GROUP, AT(octree), 0, 0, NULL, octree_table, 0, 0},
+    {"collide", BENCH_GROUP, AT(params.collide), 0, 0, NULL, collide_table, 0, 0},
     ITEM("density", BENCH_REAL, AT(density), 0, FAR),
     ITEM("vertex_mass", BENCH_TEXT, AT(vertex_mass), 0, BENCH_PATH),
     ITEM("instances", BENCH_LONG, AT(instances), 1, 1000000),
     ITEM("spacing", BENCH_REAL, AT(spacing), 0, 1e6),
     ITEM("steps_per_frame", BENCH_INT, AT(steps_per_frame), 1, 1000000),
     ITEM("frames", BENCH_INT, AT(frames), 0, 10000000),
+    ITEM("settle", BENCH_INT, AT(settle), 0, 1000000),
     ITEM("bend", BENCH_REAL, AT(bend), -100, 100),
     ITEM("twist", BENCH_REAL, AT(twist), -100, 100),
     ITEM("squash", BENCH_REAL, AT(squash), -10, 10),
@@ -209,6 +218,7 @@ void bench_scene_init(BenchScene *scene)
     scene->spacing = 1.5;
     scene->steps_per_frame = 4;
     scene->frames = 100;
+    scene->settle = BENCH_SETTLE_STEPS;
 }
 
 static SmCode add_obstacles(BenchScene *scene, const SmObstacle *items, int count,

@@ -7,7 +7,7 @@
 
 #include "../octree/engine.h"
 
-enum { BENCH_NAME = 64, BENCH_PATH = 1024, BENCH_MAX = 64 };
+enum { BENCH_NAME = 64, BENCH_PATH = 1024, BENCH_MAX = 64, BENCH_SETTLE_STEPS = 8 };
 
 /* Particles whose rest position lies in a box, given in fractions of the mesh's bounding box
  * (0..1 each axis), or in a sphere in mesh units. */
@@ -80,6 +80,7 @@ typedef struct {
     double spacing; /* between instances, in widths of the body */
     int steps_per_frame;
     int frames;
+    int settle; /* steps before what `tables` measures */
     int handle_count, force_count, obstacle_count, cut_count, touch_count;
     BenchHandle handle[BENCH_MAX];
     BenchForce force[BENCH_MAX];

@@ -6,6 +6,7 @@
 
 #include "../lib/handles.h"
 #include "build.h"
+#include "contacts.h"
 #include "crowd.h"
 #include "fastlsm.h"
 #include "fracture.h"
@@ -24,6 +25,7 @@ struct SmEngine {
     int *inner;           /* [count] particle numbers in the lattice as turned */
     double (*pose)[3][4]; /* [bodies] */
     SmHandles handles;
+    LsmContacts *contacts; /* NULL: nothing collides */
     double build_seconds;
 };
 
@@ -202,6 +204,7 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     for (int d = 0; d < 3; d++)
         lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
     start_at_rest(e);
+    e->contacts = lsm_contacts_build(lsm, e->crowd);
     e->build_seconds = sm_now() - start;
     *engine = e;
     return SM_OK;
@@ -211,6 +214,7 @@ static void engine_destroy(SmEngine *e)
 {
     if (!e) return;
     sm_handles_free(&e->handles);
+    lsm_contacts_free(e->contacts);
     crowd_free(e->crowd);
     lsm_free(e->lsm);
     free(e->inner);
@@ -255,6 +259,10 @@ static void engine_step(SmEngine *e, SmLaps *laps)
 {
     Lsm *lsm = e->lsm;
     note_held(e);
+    if (e->contacts) {
+        lsm_contacts_before(e->contacts);
+        sm_lap(laps, SM_OTHER);
+    }
     if (e->crowd) {
         int every = lsm->params.damping_every > 0 ? lsm->params.damping_every : 1;
         lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;
@@ -264,6 +272,7 @@ static void engine_step(SmEngine *e, SmLaps *laps)
         lsm_step(lsm, laps);
     }
     move_held(e);
+    if (e->contacts) lsm_contacts_after(e->contacts);
     if (lsm->params.strain_limit > 0 && isfinite(lsm->params.strain_limit)) lsm_fracture(lsm);
     if (lsm->steps % RECENTRE_STEPS == 0) {
         if (e->crowd)
@@ -333,9 +342,22 @@ static void copy_obstacles(Lsm *lsm, const SmBoundary *boundary)
     shift_obstacles(lsm);
 }
 
+static void fix_held(SmEngine *e)
+{
+    long at = 0, *held = sm_alloc((size_t)e->handles.held, sizeof *held);
+    for (int i = 0; i < e->handles.count; i++)
+        for (long k = 0; k < e->handles.handle[i].count; k++) {
+            long number = e->handles.handle[i].particle[k];
+            held[at++] = number / e->count * e->count + e->inner[number % e->count];
+        }
+    lsm_contacts_fix(e->contacts, at, held);
+    free(held);
+}
+
 static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
     sm_handles_set(&e->handles, boundary, e->bodies * e->count);
+    if (e->contacts) fix_held(e);
     copy_obstacles(e->lsm, boundary);
 }
 
@@ -354,7 +376,9 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .regions = lsm_unique(e->lsm),
         .links = lsm_lattice_links(&lsm->lattice),
         .broken = lsm->broken,
-        .bytes = lsm_bytes(lsm) + (e->crowd ? crowd_bytes(e->crowd) : 0),
+        .bytes = lsm_bytes(lsm) + (e->crowd ? crowd_bytes(e->crowd) : 0) +
+                 (e->contacts ? lsm_contacts_bytes(e->contacts) : 0),
+        .contacts = e->contacts ? lsm_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,
         .jacobi_sweeps = sweeps / (double)(e->count - lsm->copies),
     };

@@ -16,6 +16,9 @@ SmCode sm_engine_check(const SmVoxels *voxels, const SmEngineParams *params, SmE
     if (!(params->strain_limit >= 0))
         return sm_fail(error, SM_INPUT, "strain_limit is %g: it is 0 (never) or more",
                        params->strain_limit);
+    if (!(params->collide.friction >= 0 && params->collide.friction <= 1))
+        return sm_fail(error, SM_INPUT, "the friction of collisions is %g: it is from 0 to 1",
+                       params->collide.friction);
     for (int a = 0; a < 3; a++)
         if (!isfinite(params->gravity[a]))
             return sm_fail(error, SM_INPUT, "gravity is not finite: give three numbers");

@@ -26,6 +26,13 @@ typedef enum { SM_LAYOUT_AUTO, SM_LAYOUT_LISTS, SM_LAYOUT_BLOCKS } SmLayout;
 
 typedef struct OctOptions OctOptions; /* octree/engine.h */
 
+/* What collides with what, beside the boundary's obstacles (collide.h). All zero: nothing does. */
+typedef struct {
+    bool self;       /* a body with itself, but for what its material holds close together */
+    bool bodies;     /* instances with each other */
+    double friction; /* share of the tangential velocity lost on contact, 0..1 */
+} SmCollideParams;
+
 /* Damping sums moments about the body's middle, so the inertia of a region at distance D from it is
  * known to about 8 epsilon D^2. Single precision resolves it to a 64th for D up to about 130 times
  * the region's radius of gyration (w = 1: 150 cells in a solid, 90 in a stick of one cell). Farther
@@ -49,6 +56,7 @@ typedef struct {
     long instances;                      /* bodies that share the lattice; 0 means 1 */
     const double (*instance_pose)[3][4]; /* [instances] rest to initial position, or NULL */
     const OctOptions *octree;            /* of the octree only; NULL: its defaults */
+    SmCollideParams collide;
 } SmEngineParams;
 
 typedef struct {
@@ -60,6 +68,7 @@ typedef struct {
     double build_seconds;   /* time that create() took */
     double jacobi_sweeps;   /* mean sweeps per polar decomposition of the last step, Jacobi only */
     double summation_nodes; /* mean per region; octree only */
+    long contacts;          /* of the last step, but those with obstacles */
 } SmCounts;
 
 typedef enum {

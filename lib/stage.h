@@ -11,7 +11,7 @@ typedef enum {
     SM_SHAPE_MATCHING, /* c_r, A_r, T_r, goal positions */
     SM_POLAR,          /* polar decomposition of A_r */
     SM_DAMPING,        /* region damping, its sums included */
-    SM_OTHER,          /* integration, boundaries, fracture, bookkeeping */
+    SM_OTHER,          /* integration, boundaries, collisions, fracture, bookkeeping */
     SM_STAGES
 } SmStage;
 

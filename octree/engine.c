@@ -8,6 +8,7 @@
 #include "../lib/handles.h"
 #include "../lib/rotate_lanes.h"
 #include "changing.h"
+#include "contacts.h"
 #include "head.h"
 #include "octree.h"
 
@@ -35,6 +36,7 @@ struct SmEngine {
     long held_count, held_room;
     int *holds; /* [holds_room] 1 + the handle that holds a leaf, or 0; of a body that is changed */
     long holds_room;
+    OctContacts *contacts; /* NULL: nothing collides */
     double build_seconds;
     bool goals; /* g is that of the present state */
 };
@@ -61,7 +63,7 @@ static void renumber(SmEngine *e)
 /* The leaf of a node of any of the bodies. */
 static long leaf_of(const SmEngine *e, long number)
 {
-    return e->leaf ? e->leaf[number] : number % e->count;
+    return e->leaf ? e->leaf[number % e->count] : number % e->count;
 }
 
 static void rest_position(const SmEngine *e, long body, long leaf, double x0[3])
@@ -251,6 +253,18 @@ static void hold_heirs(SmEngine *e, const OctChange *change)
     e->held_count = kept;
 }
 
+/* Contacts do not move what is held. */
+static void fix_held(SmEngine *e)
+{
+    long *held = sm_alloc((size_t)e->held_count, sizeof *held);
+    renumber(e);
+    for (long i = 0; i < e->held_count; i++)
+        held[i] =
+            e->held[i].body * e->count + (e->number ? e->number[e->held[i].leaf] : e->held[i].leaf);
+    oct_contacts_fix(e->contacts, e->held_count, held);
+    free(held);
+}
+
 static const OctChange *engine_end(SmEngine *e)
 {
     const OctChange *change = oct_resample_update(&e->head.structure);
@@ -259,6 +273,10 @@ static const OctChange *engine_end(SmEngine *e)
     e->count = e->head.structure.tree.live;
     e->renumber = true;
     e->goals = false;
+    if (e->contacts && change->region_count > 0) {
+        oct_contacts_rebuild(e->contacts, &e->head.structure);
+        fix_held(e);
+    }
     return change;
 }
 
@@ -329,6 +347,7 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     e->count = e->head.structure.tree.leaves;
     e->h = params->h;
     start_at_rest(e, params);
+    e->contacts = oct_contacts_build(e->oct, &e->head.structure, &params->collide);
     e->build_seconds = sm_now() - start;
     *engine = e;
     return SM_OK;
@@ -338,6 +357,7 @@ static void engine_destroy(SmEngine *e)
 {
     if (!e) return;
     sm_handles_free(&e->handles);
+    oct_contacts_free(e->contacts);
     oct_free(e->oct);
     oct_structure_free(&e->head.structure);
     free(e->pose);
@@ -379,8 +399,13 @@ static void engine_step(SmEngine *e, SmLaps *laps)
 {
     e->goals = false;
     note_held(e);
+    if (e->contacts) {
+        oct_contacts_before(e->contacts);
+        sm_lap(laps, SM_OTHER);
+    }
     oct_step(e->oct, laps);
     move_held(e);
+    if (e->contacts) oct_contacts_after(e->contacts);
     if (e->oct->steps % RECENTRE_STEPS == 0) oct_recentre(e->oct);
     sm_lap(laps, SM_OTHER);
 }
@@ -408,6 +433,7 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
             long number = e->handles.handle[i].particle[k];
             hold(e, number / e->count, (int)leaf_of(e, number), i);
         }
+    if (e->contacts) fix_held(e);
     if (!oct->obstacle || oct->obstacle_count != boundary->obstacle_count) {
         free(oct->obstacle);
         oct->obstacle_count = boundary->obstacle_count;
@@ -431,7 +457,9 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .particles = e->oct->instances * e->count,
         .regions = e->count,
         .links = s->graph.edges / 2,
-        .bytes = oct_bytes(e->oct) + (long)oct_structure_bytes(s),
+        .bytes = oct_bytes(e->oct) + (long)oct_structure_bytes(s) +
+                 (e->contacts ? oct_contacts_bytes(e->contacts) : 0),
+        .contacts = e->contacts ? oct_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,
         .summation_nodes = s->regions.mean,
     };

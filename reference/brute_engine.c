@@ -94,6 +94,10 @@ static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params,
     double start = sm_now();
     SmCode code = sm_engine_check(voxels, params, error);
     if (code != SM_OK) return code;
+    if (params->collide.self || params->collide.bodies)
+        return sm_fail(error, SM_INPUT,
+                       "collide: the brute-force engine's bodies do not collide; use the engine "
+                       "fastlsm or octree");
     SmEngine *engine = sm_alloc(1, sizeof *engine);
     engine->voxels = *voxels;
     size_t words = (size_t)voxels->size[2] * (size_t)voxels->size[1] * (size_t)voxels->words;

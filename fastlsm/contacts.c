@@ -1,0 +1,147 @@
+#include "contacts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../lib/collide.h"
+#include "outline.h"
+
+struct LsmContacts {
+    Lsm *lsm;
+    Crowd *crowd;
+    SmCollide *collide;
+    double (*x)[3]; /* [bodies * particles] cells */
+    long broken;    /* links, in the present description */
+    long *fixed, fixed_count;
+};
+
+/* Where coordinate 0 of a particle is in x and v; the others follow at SM_LANES. */
+static long index_of(const LsmContacts *k, long number)
+{
+    long count = k->lsm->lattice.count;
+    if (k->crowd) {
+        long body = number / count, p = number % count;
+        return (body / SM_LANES * count + p) * 3 * SM_LANES + body % SM_LANES;
+    }
+    long slot = k->lsm->slot[number];
+    return slot / SM_LANES * 3 * SM_LANES + slot % SM_LANES;
+}
+
+LsmContacts *lsm_contacts_build(Lsm *lsm, Crowd *crowd)
+{
+    const SmCollideParams *params = &lsm->params.collide;
+    long bodies = crowd ? crowd->bodies : 1;
+    if (!params->self && !(params->bodies && bodies > 1)) return NULL;
+    LsmContacts *k = sm_alloc(1, sizeof *k);
+    LsmOutline outline;
+    *k = (LsmContacts){.lsm = lsm, .crowd = crowd};
+    k->x = sm_alloc((size_t)(bodies * lsm->lattice.count), sizeof *k->x);
+    lsm_outline_build(&lsm->lattice, lsm->mass, &outline);
+    k->collide = sm_collide_build(&outline.rest, params, bodies, lsm->params.threads);
+    lsm_outline_free(&outline);
+    return k;
+}
+
+void lsm_contacts_free(LsmContacts *k)
+{
+    if (!k) return;
+    sm_collide_free(k->collide);
+    free(k->x);
+    free(k->fixed);
+    free(k);
+}
+
+static void fix(LsmContacts *k)
+{
+    if (k->fixed) sm_collide_fix(k->collide, k->fixed_count, k->fixed);
+}
+
+static void describe(LsmContacts *k)
+{
+    LsmOutline outline;
+    lsm_outline_build(&k->lsm->lattice, k->lsm->mass, &outline);
+    sm_collide_describe(k->collide, &outline.rest);
+    fix(k);
+    lsm_outline_free(&outline);
+    k->broken = k->lsm->broken;
+}
+
+static void read_crowd(LsmContacts *k)
+{
+    const Crowd *crowd = k->crowd;
+    long count = k->lsm->lattice.count;
+    for (long body = 0; body < crowd->bodies; body++) {
+        double shift[3];
+        for (int d = 0; d < 3; d++)
+            shift[d] = (crowd->origin[body][d] - k->lsm->home[d]) / k->lsm->cell;
+        const real *from = crowd->x + index_of(k, body * count);
+        double(*to)[3] = k->x + body * count;
+        for (long p = 0; p < count; p++, from += 3 * SM_LANES)
+            for (int d = 0; d < 3; d++) to[p][d] = shift[d] + (double)from[d * SM_LANES];
+    }
+}
+
+static void read_body(LsmContacts *k)
+{
+    for (long p = 0; p < k->lsm->lattice.count; p++) {
+        const real *from = k->lsm->x + index_of(k, p);
+        for (int d = 0; d < 3; d++) k->x[p][d] = (double)from[d * SM_LANES];
+    }
+}
+
+static void read_velocities(LsmContacts *k)
+{
+    SmCollide *c = k->collide;
+    const real *v = k->crowd ? k->crowd->v : k->lsm->v;
+    for (long i = 0; i < c->node_count; i++) {
+        const real *from = v + index_of(k, c->node[i]);
+        for (int d = 0; d < 3; d++) c->v[i][d] = (double)from[d * SM_LANES];
+    }
+}
+
+void lsm_contacts_before(LsmContacts *k)
+{
+    if (k->broken != k->lsm->broken) describe(k);
+    if (k->crowd)
+        read_crowd(k);
+    else
+        read_body(k);
+    sm_collide_find(k->collide, (const double(*)[3])k->x, NULL);
+    read_velocities(k);
+    sm_collide_begin(k->collide);
+}
+
+void lsm_contacts_after(LsmContacts *k)
+{
+    SmCollide *c = k->collide;
+    real *v = k->crowd ? k->crowd->v : k->lsm->v, *x = k->crowd ? k->crowd->x : k->lsm->x;
+    read_velocities(k);
+    sm_collide_respond(c);
+    for (long i = 0; i < c->node_count; i++) {
+        long at = index_of(k, c->node[i]);
+        for (int d = 0; d < 3; d++) {
+            v[at + d * SM_LANES] += (real)c->v[i][d];
+            x[at + d * SM_LANES] += (real)c->v[i][d];
+        }
+    }
+}
+
+void lsm_contacts_fix(LsmContacts *k, long count, const long *particle)
+{
+    k->fixed = sm_realloc(k->fixed, (size_t)count + 1, sizeof *k->fixed);
+    memcpy(k->fixed, particle, (size_t)count * sizeof *particle);
+    k->fixed_count = count;
+    fix(k);
+}
+
+long lsm_contacts_count(const LsmContacts *k)
+{
+    return k->collide->contact_count;
+}
+
+long lsm_contacts_bytes(const LsmContacts *k)
+{
+    const Lsm *lsm = k->lsm;
+    long bodies = k->crowd ? k->crowd->bodies : 1;
+    return sm_collide_bytes(k->collide) + bodies * lsm->lattice.count * (long)sizeof *k->x;
+}

@@ -1,0 +1,35 @@
+/* contacts.h - collisions of FastLSM bodies (lib/collide.h): before a step finds the contacts,
+ * after it answers them. */
+#ifndef LSM_CONTACTS_H
+#define LSM_CONTACTS_H
+
+#include "crowd.h"
+
+#define LsmContacts         SM_NAME(LsmContacts)
+#define lsm_contacts_build  SM_NAME(lsm_contacts_build)
+#define lsm_contacts_free   SM_NAME(lsm_contacts_free)
+#define lsm_contacts_before SM_NAME(lsm_contacts_before)
+#define lsm_contacts_after  SM_NAME(lsm_contacts_after)
+#define lsm_contacts_fix    SM_NAME(lsm_contacts_fix)
+#define lsm_contacts_count  SM_NAME(lsm_contacts_count)
+#define lsm_contacts_bytes  SM_NAME(lsm_contacts_bytes)
+
+typedef struct LsmContacts LsmContacts;
+
+/* Of a body, or of `crowd` if it is not NULL; both must outlive it. NULL where nothing is to
+ * collide. */
+LsmContacts *lsm_contacts_build(Lsm *lsm, Crowd *crowd);
+void lsm_contacts_free(LsmContacts *contacts);
+
+/* Around a step. Links that broke since the last one make the body's description anew. */
+void lsm_contacts_before(LsmContacts *contacts);
+void lsm_contacts_after(LsmContacts *contacts);
+
+/* Particles that nothing moves: particle p, as the lattice counts, of body b is b * particles + p.
+ */
+void lsm_contacts_fix(LsmContacts *contacts, long count, const long *particle);
+
+long lsm_contacts_count(const LsmContacts *contacts);
+long lsm_contacts_bytes(const LsmContacts *contacts);
+
+#endif

@@ -1,0 +1,129 @@
+#include "contacts.h"
+
+#include <stdlib.h>
+
+#include "../lib/collide.h"
+#include "../lib/rotate_lanes.h"
+#include "outline.h"
+
+struct OctContacts {
+    Oct *oct;
+    SmCollide *collide;
+    long nodes;         /* of one body */
+    int *leaf;          /* [nodes] */
+    double (*x)[3];     /* [instances * nodes] finest cells */
+    double (*frame)[9]; /* [instances * nodes] rotations of the nodes' regions */
+};
+
+/* Takes the nodes' leaves over. */
+static void adopt(OctContacts *k, OctOutline *outline)
+{
+    size_t all = (size_t)(k->oct->instances * outline->rest.nodes);
+    free(k->x);
+    free(k->frame);
+    free(k->leaf);
+    k->x = sm_alloc(all, sizeof *k->x);
+    k->frame = sm_alloc(all, sizeof *k->frame);
+    k->nodes = outline->rest.nodes;
+    k->leaf = outline->leaf;
+    outline->leaf = NULL;
+    oct_outline_free(outline);
+}
+
+OctContacts *oct_contacts_build(Oct *oct, const OctStructure *structure,
+                                const SmCollideParams *params)
+{
+    if (!params->self && !(params->bodies && oct->instances > 1)) return NULL;
+    OctContacts *k = sm_alloc(1, sizeof *k);
+    OctOutline outline;
+    k->oct = oct;
+    oct_outline_build(structure, &outline);
+    k->collide = sm_collide_build(&outline.rest, params, oct->instances, oct->params.threads);
+    adopt(k, &outline);
+    return k;
+}
+
+void oct_contacts_rebuild(OctContacts *k, const OctStructure *structure)
+{
+    OctOutline outline;
+    oct_outline_build(structure, &outline);
+    sm_collide_describe(k->collide, &outline.rest);
+    adopt(k, &outline);
+}
+
+void oct_contacts_free(OctContacts *k)
+{
+    if (!k) return;
+    sm_collide_free(k->collide);
+    free(k->leaf);
+    free(k->x);
+    free(k->frame);
+    free(k);
+}
+
+static void read_body(const OctContacts *k, const OctState *body, double (*x)[3],
+                      double (*frame)[9])
+{
+    long block = -1;
+    vec R[9];
+    for (long n = 0; n < k->nodes; n++) {
+        long leaf = k->leaf[n], lane = leaf % SM_LANES;
+        if (leaf / SM_LANES != block) {
+            block = leaf / SM_LANES;
+            last_load(body->last + block * 6 * SM_LANES, R);
+        }
+        for (int d = 0; d < 3; d++) x[n][d] = body->origin[d] + (double)body->x[oct_index(leaf, d)];
+        for (int i = 0; i < 9; i++) frame[n][i] = (double)R[i][lane];
+    }
+}
+
+static void read_velocities(const OctContacts *k)
+{
+    SmCollide *c = k->collide;
+    for (long i = 0; i < c->node_count; i++) {
+        const OctState *body = &k->oct->body[c->node[i] / k->nodes];
+        for (int d = 0; d < 3; d++)
+            c->v[i][d] = (double)body->v[oct_index(k->leaf[c->node[i] % k->nodes], d)];
+    }
+}
+
+void oct_contacts_before(OctContacts *k)
+{
+    for (long b = 0; b < k->oct->instances; b++)
+        read_body(k, &k->oct->body[b], k->x + b * k->nodes, k->frame + b * k->nodes);
+    sm_collide_find(k->collide, (const double(*)[3])k->x, (const double(*)[9])k->frame);
+    read_velocities(k);
+    sm_collide_begin(k->collide);
+}
+
+void oct_contacts_after(OctContacts *k)
+{
+    SmCollide *c = k->collide;
+    read_velocities(k);
+    sm_collide_respond(c);
+    for (long i = 0; i < c->node_count; i++) {
+        OctState *body = &k->oct->body[c->node[i] / k->nodes];
+        for (int d = 0; d < 3; d++) {
+            long at = oct_index(k->leaf[c->node[i] % k->nodes], d);
+            body->v[at] += (real)c->v[i][d];
+            body->x[at] += (real)c->v[i][d];
+        }
+    }
+}
+
+void oct_contacts_fix(OctContacts *k, long count, const long *node)
+{
+    sm_collide_fix(k->collide, count, node);
+}
+
+long oct_contacts_count(const OctContacts *k)
+{
+    return k->collide->contact_count;
+}
+
+long oct_contacts_bytes(const OctContacts *k)
+{
+    long all = k->oct->instances * k->nodes;
+    return sm_collide_bytes(k->collide) + k->nodes * (long)sizeof *k->leaf +
+           all * (long)(sizeof *k->x + sizeof *k->frame);
+}

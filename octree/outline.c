@@ -1,0 +1,101 @@
+#include "outline.h"
+
+#include <stdlib.h>
+
+static bool joined(const OctGraph *graph, long a, int b)
+{
+    for (long e = graph->first[a]; e < oct_graph_end(graph, a); e++)
+        if (graph->to[e] == b) return true;
+    return false;
+}
+
+static int leaf_across(const OctStructure *s, long leaf, int side)
+{
+    const OctTree *tree = &s->tree;
+    int node = tree->node[leaf], edge = tree->size[node] / 2, at[3];
+    for (int d = 0; d < 3; d++) {
+        at[d] = oct_tree_low(tree, node, d) + edge / 2;
+        if (d == side / 2) at[d] = oct_tree_low(tree, node, d) + (side % 2 ? edge : -1);
+    }
+    int other = oct_tree_find(tree, at[0], at[1], at[2]);
+    if (other < 0 || !joined(&s->graph, leaf, tree->leaf[other])) return -1;
+    return tree->leaf[other];
+}
+
+static void number_nodes(const OctTree *tree, OctOutline *o)
+{
+    o->leaf = sm_alloc((size_t)tree->live, sizeof *o->leaf);
+    o->node = sm_alloc((size_t)tree->leaves, sizeof *o->node);
+    for (int leaf = 0; leaf < tree->leaves; leaf++) {
+        if (tree->node[leaf] < 0) continue;
+        o->node[leaf] = (int)o->rest.nodes;
+        o->leaf[o->rest.nodes++] = leaf;
+    }
+}
+
+static void copy_edges(const OctGraph *graph, OctOutline *o)
+{
+    long at = 0;
+    o->first = sm_alloc((size_t)o->rest.nodes + 1, sizeof *o->first);
+    o->to = sm_alloc((size_t)graph->edges, sizeof *o->to);
+    o->length = sm_alloc((size_t)graph->edges, sizeof *o->length);
+    for (long n = 0; n < o->rest.nodes; n++) {
+        o->first[n] = at;
+        for (long e = graph->first[o->leaf[n]]; e < oct_graph_end(graph, o->leaf[n]); e++, at++) {
+            o->to[at] = o->node[graph->to[e]];
+            o->length[at] = graph->length[e];
+        }
+    }
+    o->first[o->rest.nodes] = at;
+}
+
+static void describe_node(const OctStructure *s, OctOutline *o, long n)
+{
+    int leaf = o->leaf[n], node = s->tree.node[leaf];
+    o->carrier[n] = (int)n;
+    o->mass[n] = s->mass[leaf];
+    o->size[n] = 0.5 * s->tree.size[node];
+    o->radius[n] = 0.25 * s->tree.size[node];
+    for (int d = 0; d < 3; d++) o->x0[n][d] = 0.5 * s->tree.centre[node][d];
+    for (int side = 0; side < SM_COLLIDE_FACES; side++) {
+        int across = leaf_across(s, leaf, side);
+        o->across[n][side] = across < 0 ? -1 : o->node[across];
+    }
+}
+
+void oct_outline_build(const OctStructure *s, OctOutline *o)
+{
+    *o = (OctOutline){0};
+    number_nodes(&s->tree, o);
+    copy_edges(&s->graph, o);
+    size_t n = (size_t)o->rest.nodes;
+    o->carrier = sm_alloc(n, sizeof(int));
+    o->across = sm_alloc(n, sizeof *o->across);
+    o->x0 = sm_alloc(n, sizeof *o->x0);
+    o->size = sm_alloc(n, sizeof(double));
+    o->radius = sm_alloc(n, sizeof(double));
+    o->mass = sm_alloc(n, sizeof(double));
+    for (long i = 0; i < o->rest.nodes; i++) describe_node(s, o, i);
+    o->rest = (SmCollideRest){.nodes = o->rest.nodes,
+                              .cells = o->rest.nodes,
+                              .carriers = 1,
+                              .carrier = o->carrier,
+                              .x0 = (const double(*)[3])o->x0,
+                              .size = o->size,
+                              .radius = o->radius,
+                              .mass = o->mass,
+                              .centre = (const double(*)[3])o->x0,
+                              .edge = o->size,
+                              .across = (const int(*)[6])o->across,
+                              .first = o->first,
+                              .to = o->to,
+                              .length = o->length};
+}
+
+void oct_outline_free(OctOutline *o)
+{
+    void *all[] = {o->leaf,   o->node, o->first, o->to,     o->length, o->carrier,
+                   o->across, o->x0,   o->size,  o->radius, o->mass};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    *o = (OctOutline){0};
+}
