@@ -26,7 +26,9 @@ double bench_check_room(const BenchScene *scene, const BenchBody *body, const Sm
     if (!is_octree(type)) return bench_check_members(body, scene->params.w);
     const OctRegions *regions = &oct_engine_structure(engine)->regions;
     double members = 0;
-    for (long i = 0; i < regions->leaves; i++) members += regions->size[i];
+    const OctTree *tree = &oct_engine_structure(engine)->tree;
+    for (long i = 0; i < tree->leaves; i++)
+        if (tree->node[i] >= 0) members += regions->size[i];
     return members;
 }
 
@@ -51,8 +53,8 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
     }
     const OctStructure *structure = oct_engine_structure(engine);
     *check = (BenchCheck){.body = body,
-                          .count = structure->tree.leaves,
-                          .unique = structure->tree.leaves,
+                          .count = structure->tree.live,
+                          .unique = structure->tree.live,
                           .hierarchical = true,
                           .plain = scene->octree.weighting == OCT_PLAIN};
     size_t count = (size_t)check->count;
@@ -65,7 +67,7 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
     check->mass = sm_alloc(count, sizeof *check->mass);
     check->weight = sm_alloc(count, sizeof *check->weight);
     check->rest = sm_alloc(count, sizeof *check->rest);
-    memcpy(check->mass, structure->mass, count * sizeof *check->mass);
+    memcpy(check->mass, check->octree.m, count * sizeof *check->mass);
     memcpy(check->weight, check->octree.weight, count * sizeof *check->weight);
     memcpy(check->rest, check->octree.x0, count * sizeof *check->rest);
 }

@@ -266,44 +266,62 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
     return SM_OK;
 }
 
-static SmCode run_step(BenchRunner *runner, BenchRecording *recording, bool record,
+static SmCode run_step(BenchPlay *play, BenchRecording *recording, bool record,
                        BenchOutcome *outcome, SmError *error)
 {
-    bench_runner_prepare(runner);
+    bench_play_prepare(play);
     if (record) {
         SmCode code = bench_recording_step(recording, outcome->steps, true, error);
         if (code) return code;
     }
     double start = sm_now();
-    bench_runner_advance(runner, NULL);
+    bench_play_advance(play, NULL);
     outcome->seconds += sm_now() - start;
     outcome->steps++;
     return SM_OK;
 }
 
-static bool state_finite(const BenchRunner *runner)
+static bool state_finite(const BenchPlay *play)
 {
-    double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x), sum = 0;
-    runner->type->get(runner->engine, SM_POSITION, x);
-    for (long i = 0; i < runner->particles; i++) sum += 0 * (x[i][0] + x[i][1] + x[i][2]);
-    free(x);
+    double sum = 0;
+    for (int p = 0; p < play->cast.count; p++) {
+        const BenchRunner *runner = &play->cast.part[p].runner;
+        double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x);
+        runner->type->get(runner->engine, SM_POSITION, x);
+        for (long i = 0; i < runner->particles; i++) sum += 0 * (x[i][0] + x[i][1] + x[i][2]);
+        free(x);
+    }
     return sum == 0;
 }
 
+/* What the scene changes before a frame. */
+static SmCode change(BenchPlay *play, BenchOutcome *outcome, SmError *error)
+{
+    double start = sm_now();
+    SmCode code = bench_play_change(play, error);
+    bool changed = false;
+    for (int p = 0; p < play->cast.count; p++) changed |= play->changes[p].last.resampled;
+    if (!changed) return code;
+    outcome->changes++;
+    outcome->change_seconds += sm_now() - start;
+    return code;
+}
+
 /* Runs all frames; stops early when no longer finite. `recording` may be NULL. */
-static SmCode run_frames(BenchRunner *runner, BenchRecording *recording, const Options *options,
+static SmCode run_frames(BenchPlay *play, BenchRecording *recording, const Options *options,
                          BenchOutcome *outcome, SmError *error)
 {
-    const BenchScene *scene = runner->scene;
+    const BenchScene *scene = play->cast.scene;
     BenchProgress progress;
     bench_progress_start(&progress, options->common.quiet);
     *outcome = (BenchOutcome){.finite = true};
     SmCode code = recording ? bench_recording_frame(recording, error) : SM_OK;
     for (int f = 0; f < scene->frames && !code && outcome->finite; f++) {
+        code = change(play, outcome, error);
         for (int s = 0; s < scene->steps_per_frame && !code; s++)
-            code = run_step(runner, recording, options->record, outcome, error);
+            code = run_step(play, recording, options->record, outcome, error);
         if (code) break;
-        outcome->finite = state_finite(runner);
+        outcome->finite = state_finite(play);
         if (recording && outcome->finite) code = bench_recording_frame(recording, error);
         bench_progress_show(&progress, scene->name, (f + 1.0) / scene->frames);
     }
@@ -341,39 +359,40 @@ static void warn_of_size(const Options *options, const BenchRecording *recording
 }
 
 /* Runs the scene on an engine that is ready, and writes what was asked for. */
-static SmCode record(const Options *options, BenchRunner *runner, const BenchMachine *machine,
+static SmCode record(const Options *options, BenchPlay *play, const BenchMachine *machine,
                      SmError *error)
 {
+    const BenchScene *scene = play->cast.scene;
     BenchRecording recording;
     BenchRecording *recorder = options->no_output ? NULL : &recording;
     char path[BENCH_PATH];
-    output_path(options, runner->scene, path);
+    output_path(options, scene, path);
     SmCode code = SM_OK;
     if (recorder)
-        code = bench_recording_open(runner, path, (BenchRecord)options->record, machine, recorder,
+        code = bench_recording_open(play, path, (BenchRecord)options->record, machine, recorder,
                                     error);
     if (code) return code;
     if (recorder) warn_of_size(options, recorder, path);
     BenchOutcome outcome;
-    code = run_frames(runner, recorder, options, &outcome, error);
+    code = run_frames(play, recorder, options, &outcome, error);
     if (code || !outcome.finite) {
         if (recorder) bench_recording_abandon(recorder);
         if (code) return code;
-        bench_summary_print(runner, &outcome);
+        bench_summary_print(play, &outcome);
         return sm_fail(error, SM_INVALID, "%s is INVALID: positions are not finite after step %ld",
-                       runner->scene->name, outcome.steps);
+                       scene->name, outcome.steps);
     }
     if (recorder) code = bench_recording_close(recorder, error);
     if (code) return code;
-    bool valid = bench_summary_print(runner, &outcome);
+    bool valid = bench_summary_print(play, &outcome);
     if (recorder && !options->common.quiet)
-        printf("wrote %s and %s.xdmf: %d frame%s\n", path, path, runner->scene->frames + 1,
-               runner->scene->frames ? "s" : "");
+        printf("wrote %s and %s.xdmf: %d frame%s\n", path, path, scene->frames + 1,
+               scene->frames ? "s" : "");
     if (valid) return SM_OK;
     return sm_fail(error, SM_INVALID,
                    "%s is INVALID: its last state is not that of brute force; try "
                    "--precision double or a smaller --h",
-                   runner->scene->name);
+                   scene->name);
 }
 
 static SmCode run(const Options *options, const BenchMachine *machine, SmError *error)
@@ -382,7 +401,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     const SmEngineType *type;
     SmMesh mesh;
     BenchBody body;
-    BenchRunner runner;
+    BenchPlay play;
     SmCode code = load(options, &scene, &mesh, error);
     if (code) return code;
     apply_options(options, &scene);
@@ -394,11 +413,11 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     }
     code = bench_body_create(&scene, &mesh, &body, error);
     if (code) return code;
-    code = bench_runner_create(&scene, &body, type, options->common.threads, &runner, error);
+    code = bench_play_create(&scene, &body, type, options->common.threads, options->common.seed,
+                             &play, error);
     if (!code) {
-        bench_runner_disturb(&runner, options->common.seed);
-        code = record(options, &runner, machine, error);
-        bench_runner_free(&runner);
+        code = record(options, &play, machine, error);
+        bench_play_free(&play);
     }
     bench_body_free(&body);
     return code;

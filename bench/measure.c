@@ -10,13 +10,18 @@
 
 #include "../reference/paper.h"
 #include "check.h"
+#include "frames.h"
 #include "tree_row.h"
 
-/* The state that every timed segment starts from. */
+/* The state of one part that every timed segment starts from. */
 typedef struct {
-    BenchRunner runner;
-    double (*x)[3], (*v)[3]; /* [runner.particles] */
+    double (*x)[3], (*v)[3]; /* [particles] */
     double (*S)[9];          /* of an octree, also plastic; or NULL */
+} Saved;
+
+typedef struct {
+    BenchPlay play;
+    Saved *saved; /* [play.cast.count] */
     double time;
     int steps;    /* in a segment */
     int segments; /* in a block */
@@ -24,36 +29,61 @@ typedef struct {
 
 static void save(Trial *trial)
 {
-    BenchRunner *runner = &trial->runner;
-    trial->x = sm_alloc((size_t)runner->particles, sizeof *trial->x);
-    trial->v = sm_alloc((size_t)runner->particles, sizeof *trial->v);
-    runner->type->get(runner->engine, SM_POSITION, trial->x);
-    runner->type->get(runner->engine, SM_VELOCITY, trial->v);
-    if (runner->type->get_shapes) {
-        trial->S = sm_alloc((size_t)runner->particles, sizeof *trial->S);
-        runner->type->get_shapes(runner->engine, trial->S);
+    trial->saved = sm_alloc((size_t)trial->play.cast.count, sizeof *trial->saved);
+    for (int p = 0; p < trial->play.cast.count; p++) {
+        BenchRunner *runner = &trial->play.cast.part[p].runner;
+        Saved *saved = &trial->saved[p];
+        saved->x = sm_alloc((size_t)runner->particles, sizeof *saved->x);
+        saved->v = sm_alloc((size_t)runner->particles, sizeof *saved->v);
+        runner->type->get(runner->engine, SM_POSITION, saved->x);
+        runner->type->get(runner->engine, SM_VELOCITY, saved->v);
+        if (runner->type->get_shapes) {
+            saved->S = sm_alloc((size_t)runner->particles, sizeof *saved->S);
+            runner->type->get_shapes(runner->engine, saved->S);
+        }
+        trial->time = runner->time;
     }
-    trial->time = runner->time;
 }
 
 static void restore(Trial *trial)
 {
-    BenchRunner *runner = &trial->runner;
-    runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])trial->x);
-    runner->type->set(runner->engine, SM_VELOCITY, (const double(*)[3])trial->v);
-    if (trial->S) runner->type->set_shapes(runner->engine, (const double(*)[9])trial->S);
-    runner->time = trial->time;
+    for (int p = 0; p < trial->play.cast.count; p++) {
+        BenchRunner *runner = &trial->play.cast.part[p].runner;
+        const Saved *saved = &trial->saved[p];
+        runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])saved->x);
+        runner->type->set(runner->engine, SM_VELOCITY, (const double(*)[3])saved->v);
+        if (saved->S) runner->type->set_shapes(runner->engine, (const double(*)[9])saved->S);
+        runner->time = trial->time;
+    }
+}
+
+static void free_trial(Trial *trial)
+{
+    for (int p = 0; p < trial->play.cast.count && trial->saved; p++) {
+        free(trial->saved[p].x);
+        free(trial->saved[p].v);
+        free(trial->saved[p].S);
+    }
+    free(trial->saved);
+    bench_play_free(&trial->play);
+}
+
+static void step(Trial *trial, SmLaps *laps)
+{
+    bench_play_prepare(&trial->play);
+    sm_lap(laps, SM_OTHER);
+    bench_play_advance(&trial->play, laps);
 }
 
 /* Runs a segment's steps; seconds that they took. Adds to `stage` unless NULL. */
 static double run_segment(Trial *trial, int steps, double stage[SM_STAGES])
 {
     restore(trial);
-    bench_runner_step(&trial->runner, NULL);
+    step(trial, NULL);
     SmLaps laps;
     double start = sm_now();
     if (stage) sm_laps_start(&laps);
-    for (int i = 0; i < steps; i++) bench_runner_step(&trial->runner, stage ? &laps : NULL);
+    for (int i = 0; i < steps; i++) step(trial, stage ? &laps : NULL);
     double seconds = sm_now() - start;
     for (int s = 0; stage && s < SM_STAGES; s++) stage[s] += laps.seconds[s];
     return seconds;
@@ -223,16 +253,60 @@ static SmCode check_room(const BenchRunner *runner, SmError *error)
         scene->file, members, BENCH_MOST_MEMBERS);
 }
 
+/* Plays a scene that changes from its beginning to its end, and checks what it has become. */
+static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                           const BenchMeasureParams *params, BenchDeviation *worst, BenchRow *row,
+                           SmError *error)
+{
+    enum { ROUNDS = 3 };
+    BenchFramesParams frames = {params->threads, ROUNDS, params->seed, params->progress};
+    BenchPlay play;
+    SmCode code = bench_frames_play(scene, body, type, &frames, &row->change, &play, error);
+    if (code) return code;
+    BenchRunner *runner = bench_play_runner(&play);
+    BenchCheck check;
+    bench_check_begin(scene, runner->body, type, runner->engine, &check);
+    check_state(&check, runner, worst, row);
+    bench_check_free(&check);
+    bench_play_free(&play);
+    const BenchChangeRow *change = &row->change;
+    SmMeshInfo before = sm_mesh_info(&body->mesh);
+    bool closed = before.open_edges + before.nonmanifold_edges == 0;
+    if (change->changed == 0) invalidate(row, "no frame has changed anything");
+    if (closed && change->open_edges > 0)
+        invalidate(row, "the surface has %ld open edges", change->open_edges);
+    return SM_OK;
+}
+
+static void measure_start(Trial *trial, const BenchMeasureParams *params, BenchDeviation *worst,
+                          BenchRow *row)
+{
+    BenchRunner *runner = bench_play_runner(&trial->play);
+    BenchCheck check;
+    bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &check);
+    check_counts(&check, runner, row);
+    bench_tree_row_fill(runner, row);
+    row->particles = bench_cast_particles(&trial->play.cast);
+    for (int i = 0; i < runner->scene->settle; i++) step(trial, NULL);
+    check_state(&check, runner, worst, row);
+    save(trial);
+    time_blocks(trial, params, row);
+    check_state(&check, runner, worst, row);
+    check_flow(&check, runner, row);
+    bench_check_free(&check);
+}
+
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error)
 {
     Trial trial = {0};
-    BenchRunner *runner = &trial.runner;
-    SmCode code = bench_runner_create(scene, body, type, params->threads, runner, error);
+    BenchDeviation worst = {0};
+    SmCode code =
+        bench_play_create(scene, body, type, params->threads, params->seed, &trial.play, error);
     if (code) return code;
-    code = check_room(runner, error);
+    code = check_room(bench_play_runner(&trial.play), error);
     if (code) {
-        bench_runner_free(runner);
+        free_trial(&trial);
         return code;
     }
     name_row(scene, body, type, row);
@@ -240,24 +314,10 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
     row->speedup = NAN;
     row->valid = true;
     if (params->progress) bench_progress_show(params->progress, row->scene, 0);
-    BenchCheck check;
-    BenchDeviation worst = {0};
-    bench_check_begin(scene, body, type, runner->engine, &check);
-    check_counts(&check, runner, row);
-    bench_tree_row_fill(runner, row);
-    bench_runner_disturb(runner, params->seed);
-    for (int i = 0; i < scene->settle; i++) bench_runner_step(runner, NULL);
-    check_state(&check, runner, &worst, row);
-    save(&trial);
-    time_blocks(&trial, params, row);
-    check_state(&check, runner, &worst, row);
-    check_flow(&check, runner, row);
-    bench_check_free(&check);
-    bench_runner_free(runner);
-    free(trial.x);
-    free(trial.v);
-    free(trial.S);
-    return SM_OK;
+    measure_start(&trial, params, &worst, row);
+    bool changes = bench_play_changes(&trial.play);
+    free_trial(&trial);
+    return changes ? play_changes(scene, body, type, params, &worst, row, error) : SM_OK;
 }
 
 void bench_row_free(BenchRow *row)

@@ -5,28 +5,9 @@
 
 #include "../octree/structure.h"
 
-/* The body's surface once for every instance. */
-static void repeat_surface(const BenchBody *body, SmMesh *surface)
-{
-    const SmMesh *mesh = &body->mesh;
-    long n = body->instances, vertices = mesh->vertex_count, triangles = mesh->triangle_count;
-    *surface = sm_mesh_new(n * vertices, n * triangles);
-    for (long k = 0; k < n; k++) {
-        for (long i = 0; i < vertices; i++)
-            for (int d = 0; d < 3; d++)
-                surface->position[k * vertices + i][d] = mesh->position[i][d] + body->pose[k][d][3];
-        for (long i = 0; i < triangles; i++)
-            for (int d = 0; d < 3; d++)
-                surface->triangle[k * triangles + i][d] =
-                    mesh->triangle[i][d] + (int)(k * vertices);
-    }
-}
-
 static void release(BenchRecording *recording)
 {
     sm_mesh_free(&recording->surface);
-    sm_embed_free(&recording->embedding);
-    oct_surface_free(&recording->carried);
     free(recording->x);
     free(recording->v);
     free(recording->g);
@@ -39,22 +20,10 @@ static bool is_octree(const BenchRunner *runner)
     return !strcmp(runner->type->name, "octree");
 }
 
-static void attach_surface(BenchRecording *recording)
+static SmCode check(const BenchPlay *play, const BenchRunner *runner, BenchRecord record,
+                    SmError *error)
 {
-    const BenchRunner *runner = recording->runner;
-    const BenchBody *body = runner->body;
-    if (!is_octree(runner)) {
-        sm_embed_create(&body->mesh, &body->voxels, &recording->embedding);
-        return;
-    }
-    const OctStructure *s = oct_engine_structure(runner->engine);
-    oct_surface_build(&body->mesh, &(OctCarrier){&body->voxels, &s->tree, &s->graph, NULL},
-                      &recording->carried);
-}
-
-static SmCode check(const BenchRunner *runner, BenchRecord record, SmError *error)
-{
-    const BenchBody *body = runner->body;
+    const BenchBody *body = play->cast.body;
     if ((double)body->instances * (double)body->mesh.vertex_count > 2e9)
         return sm_fail(error, SM_INPUT, "%s: the surfaces of %ld instances have too many vertices",
                        runner->scene->file, body->instances);
@@ -67,18 +36,23 @@ static SmCode check(const BenchRunner *runner, BenchRecord record, SmError *erro
                        "--record nodes stores an octree, and %s has none: give --record particles, "
                        "or --engine octree",
                        runner->type->name);
+    if (record && bench_play_changes(play))
+        return sm_fail(error, SM_USAGE,
+                       "--record stores bodies that stay as they are, and %s cuts or refines its "
+                       "own: leave --record out, and the surface is still written",
+                       runner->scene->file);
     return SM_OK;
 }
 
-SmCode bench_recording_open(const BenchRunner *runner, const char *path, BenchRecord record,
+SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord record,
                             const BenchMachine *machine, BenchRecording *recording, SmError *error)
 {
+    const BenchRunner *runner = bench_play_runner(play);
     const BenchBody *body = runner->body;
-    SmCode code = check(runner, record, error);
+    SmCode code = check(play, runner, record, error);
     if (code) return code;
-    *recording = (BenchRecording){.runner = runner, .record = record};
-    repeat_surface(body, &recording->surface);
-    attach_surface(recording);
+    *recording = (BenchRecording){.play = play, .runner = runner, .record = record};
+    recording->surface = bench_play_surface(play);
     size_t count = (size_t)runner->particles;
     recording->x = sm_alloc(count, sizeof *recording->x);
     recording->v = sm_alloc(count, sizeof *recording->v);
@@ -118,18 +92,14 @@ double bench_recording_bytes(const BenchRecording *recording)
 
 SmCode bench_recording_frame(BenchRecording *recording, SmError *error)
 {
-    const BenchRunner *runner = recording->runner;
-    const BenchBody *body = runner->body;
-    runner->type->get(runner->engine, SM_POSITION, recording->x);
-    for (long k = 0; k < body->instances; k++) {
-        const double(*x)[3] = (const double(*)[3])(recording->x + k * runner->count);
-        double(*point)[3] = recording->surface.position + k * body->mesh.vertex_count;
-        if (is_octree(runner))
-            oct_surface_move(&recording->carried, x, point, NULL);
-        else
-            sm_embed_apply(&recording->embedding, x, point, NULL);
+    if (bench_play_split(recording->play)) {
+        sm_mesh_free(&recording->surface);
+        recording->surface = bench_play_surface(recording->play);
+        SmCode code = bench_trajectory_topology(recording->trajectory, &recording->surface, error);
+        if (code) return code;
     }
-    return bench_trajectory_frame(recording->trajectory, runner->time,
+    bench_play_points(recording->play, recording->surface.position);
+    return bench_trajectory_frame(recording->trajectory, recording->play->time,
                                   (const double(*)[3])recording->surface.position, error);
 }
 

@@ -3,32 +3,29 @@
 #ifndef BENCH_RECORDING_H
 #define BENCH_RECORDING_H
 
-#include "../lib/embed.h"
-#include "../octree/surface.h"
 #include "machine.h"
-#include "runner.h"
+#include "play.h"
 #include "trajectory.h"
 
 typedef struct {
-    const BenchRunner *runner;        /* the caller's, kept */
+    BenchPlay *play;                  /* the caller's, kept */
+    const BenchRunner *runner;        /* whose particles or nodes are recorded */
     SmMesh surface;                   /* of all instances */
-    SmEmbedding embedding;            /* of one, in a lattice engine's particles */
-    OctSurface carried;               /* or of one, by an octree engine's nodes */
-    double (*x)[3], (*v)[3], (*g)[3]; /* [runner->particles] */
+    double (*x)[3], (*v)[3], (*g)[3]; /* [runner->particles]; only to record particles or nodes */
     double (*S)[9];                   /* [runner->particles] of a plastic body, or NULL */
     BenchTrajectory *trajectory;
     BenchRecord record;
 } BenchRecording;
 
-/* Opens the file. Errors: those of bench_trajectory_open(); SM_USAGE for particles of an octree and
- * for nodes of a lattice. */
-SmCode bench_recording_open(const BenchRunner *runner, const char *path, BenchRecord record,
+/* Opens the file. Errors: those of bench_trajectory_open(); SM_USAGE for particles of an octree,
+ * for nodes of a lattice, and for either of bodies that change. */
+SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord record,
                             const BenchMachine *machine, BenchRecording *recording, SmError *error);
 
 /* About what the file will take with all of the scene's frames in it. */
 double bench_recording_bytes(const BenchRecording *recording);
 
-/* Writes the surface as it is now. */
+/* Writes the surface as it is now, with a new topology where the last change has split it. */
 SmCode bench_recording_frame(BenchRecording *recording, SmError *error);
 
 /* Records particles or nodes between bench_runner_prepare() and bench_runner_advance() of step

@@ -4,9 +4,10 @@
 #include <string.h>
 
 #include "../reference/paper.h"
+#include "change_grid.h"
 #include "tree_row.h"
 
-enum { FIELDS = 16, FIELD_TEXT = 96 };
+enum { FIELDS = 16, FIELD_TEXT = BENCH_GRID_TEXT };
 enum {
     SCENE,
     PARTICLES,
@@ -45,20 +46,10 @@ static void choose_fields(const BenchRow *rows, int count, bool shown[FIELDS])
     for (int f = 0; f < FIELDS; f++) shown[f] = octree || f < RATE || f > SUMS;
 }
 
-/* Three significant digits without an exponent: "167.8", "1.97", "0.0075"; "-" for NaN. */
-static void number_text(double value, char text[FIELD_TEXT])
-{
-    int digits = value > 0 ? 2 - (int)floor(log10(value)) : 0;
-    if (!isfinite(value))
-        strcpy(text, "-");
-    else
-        snprintf(text, FIELD_TEXT, "%.*f", digits < 0 ? 0 : digits > 9 ? 9 : digits, value);
-}
-
 static void stage_text(double ms, double percent, char text[FIELD_TEXT])
 {
     char number[FIELD_TEXT];
-    number_text(ms, number);
+    bench_grid_number(ms, number);
     if (isfinite(percent))
         snprintf(text, FIELD_TEXT, "%.40s (%2.0f%%)", number, percent);
     else
@@ -72,7 +63,7 @@ static void measured_line(const BenchRow *row, Line *line)
     snprintf(line->field[PARTICLES], FIELD_TEXT, "%ld", row->particles);
     snprintf(line->field[REGIONS], FIELD_TEXT, "%ld", row->regions);
     snprintf(line->field[W], FIELD_TEXT, row->w ? "%d" : "-", row->w);
-    number_text(of_octree(row) ? row->summation_nodes : NAN, line->field[SUMS]);
+    bench_grid_number(of_octree(row) ? row->summation_nodes : NAN, line->field[SUMS]);
     strcpy(line->field[VERDICT], row->valid ? "VALID" : "INVALID");
     for (int f = STAGES; f < SUMS && !row->valid; f++) strcpy(line->field[f], "INVALID");
     if (!row->valid) return;
@@ -80,12 +71,12 @@ static void measured_line(const BenchRow *row, Line *line)
         stage_text(row->stage_ms[s], 100 * row->stage_ms[s] / row->total_ms,
                    line->field[STAGES + s]);
     if (!(row->damping > 0)) strcpy(line->field[STAGES + SM_DAMPING], "-");
-    number_text(row->total_ms, line->field[TOTAL]);
-    number_text(row->ns_per_particle_step, line->field[PER_STEP]);
-    number_text(row->fps, line->field[RATE]);
-    number_text(row->speedup, line->field[SPEEDUP]);
+    bench_grid_number(row->total_ms, line->field[TOTAL]);
+    bench_grid_number(row->ns_per_particle_step, line->field[PER_STEP]);
+    bench_grid_number(row->fps, line->field[RATE]);
+    bench_grid_number(row->speedup, line->field[SPEEDUP]);
     if (!isfinite(row->paper_total_ms)) return;
-    number_text(row->paper_total_ms / row->total_ms, line->field[FASTER]);
+    bench_grid_number(row->paper_total_ms / row->total_ms, line->field[FASTER]);
     strcat(line->field[FASTER], "x");
 }
 
@@ -110,11 +101,11 @@ static bool paper_line(const BenchRow *row, Line *line)
                    line->field[STAGES + s]);
         if (paper->stage_ms[s].status == REF_DAMAGED) strcat(line->field[STAGES + s], "?");
     }
-    number_text(paper->total_ms.value, line->field[TOTAL]);
-    number_text(1e6 * paper->total_ms.value / paper->particles.value, line->field[PER_STEP]);
-    number_text(paper->fps.value, line->field[RATE]);
-    number_text(paper->speedup.value, line->field[SPEEDUP]);
-    number_text(paper->summation_nodes.value, line->field[SUMS]);
+    bench_grid_number(paper->total_ms.value, line->field[TOTAL]);
+    bench_grid_number(1e6 * paper->total_ms.value / paper->particles.value, line->field[PER_STEP]);
+    bench_grid_number(paper->fps.value, line->field[RATE]);
+    bench_grid_number(paper->speedup.value, line->field[SPEEDUP]);
+    bench_grid_number(paper->summation_nodes.value, line->field[SUMS]);
     if (paper->fps.status == REF_SECOND_HAND) strcat(line->field[RATE], "*");
     return true;
 }
@@ -131,29 +122,6 @@ static bool difference_line(const BenchRow *row, Line *line)
     if (isfinite(particles)) snprintf(line->field[PARTICLES], FIELD_TEXT, "%+.1f%%", particles);
     if (isfinite(regions)) snprintf(line->field[REGIONS], FIELD_TEXT, "%+.1f%%", regions);
     return true;
-}
-
-static void widen(const Line *line, int width[FIELDS])
-{
-    for (int f = 0; f < FIELDS; f++) {
-        int length = (int)strlen(line->field[f]);
-        if (length > width[f]) width[f] = length;
-    }
-}
-
-static void print_line(FILE *file, const Line *line, const int width[FIELDS],
-                       const bool shown[FIELDS])
-{
-    char text[FIELDS * (FIELD_TEXT + 2) + 1];
-    int used = 0;
-    for (int f = 0; f < FIELDS; f++) {
-        if (!shown[f]) continue;
-        int pad = f == SCENE || f == VERDICT ? -width[f] : width[f];
-        used += snprintf(text + used, sizeof text - (size_t)used, "%s%*s", f ? "  " : "", pad,
-                         line->field[f]);
-    }
-    while (used > 0 && text[used - 1] == ' ') text[--used] = '\0';
-    fprintf(file, "%s\n", text);
 }
 
 static void print_check(FILE *file, const BenchRow *row)
@@ -232,118 +200,74 @@ static void print_notes(FILE *file, const BenchRow *rows, int count)
     }
 }
 
-void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine)
+static void add_line(BenchGrid *grid, const Line *line, const bool shown[FIELDS])
 {
-    Line heading, line;
-    int width[FIELDS] = {0};
+    BenchGridLine *to = bench_grid_add(grid);
+    for (int f = 0, column = 0; f < FIELDS; f++)
+        if (shown[f]) strcpy((*to)[column++], line->field[f]);
+}
+
+/* The rows, each with the paper's below, and, if wanted, with how far its counts are off. */
+static BenchGrid make_grid(const BenchRow *rows, int count, bool differences)
+{
+    BenchGrid grid = {0};
     bool shown[FIELDS];
     choose_fields(rows, count, shown);
-    for (int f = 0; f < FIELDS; f++) snprintf(heading.field[f], FIELD_TEXT, "%s", headings[f]);
-    widen(&heading, width);
+    for (int f = 0; f < FIELDS; f++)
+        if (shown[f]) bench_grid_column(&grid, headings[f], f == SCENE || f == VERDICT);
     for (int r = 0; r < count; r++) {
+        Line line;
         measured_line(&rows[r], &line);
-        widen(&line, width);
-        if (paper_line(&rows[r], &line)) widen(&line, width);
-        if (difference_line(&rows[r], &line)) widen(&line, width);
+        add_line(&grid, &line, shown);
+        if (paper_line(&rows[r], &line)) add_line(&grid, &line, shown);
+        if (differences && difference_line(&rows[r], &line)) add_line(&grid, &line, shown);
     }
+    return grid;
+}
+
+void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine)
+{
+    BenchGrid grid = make_grid(rows, count, true), changes;
     fprintf(file, "Times of one step, median, on %s, %d thread%s.\n\n", machine->cpu,
             machine->threads, machine->threads == 1 ? "" : "s");
-    print_line(file, &heading, width, shown);
-    for (int r = 0; r < count; r++) {
-        measured_line(&rows[r], &line);
-        print_line(file, &line, width, shown);
-        if (paper_line(&rows[r], &line)) print_line(file, &line, width, shown);
-        if (difference_line(&rows[r], &line)) print_line(file, &line, width, shown);
-    }
+    bench_grid_text(file, &grid);
     fputc('\n', file);
+    if (bench_change_grid(rows, count, &changes)) {
+        fputs("While they change: simulation is the time of a frame before the first change and "
+              "after the last.\n\n",
+              file);
+        bench_grid_text(file, &changes);
+        fputc('\n', file);
+        bench_grid_free(&changes);
+    }
     for (int r = 0; r < count; r++) {
         print_check(file, &rows[r]);
         if (!strcmp(rows[r].engine, "octree")) print_octree(file, &rows[r]);
     }
     print_speedups(file, rows, count);
     print_notes(file, rows, count);
+    bench_grid_free(&grid);
 }
 
-/* Without the blanks that align the text table: at the start and after a bracket. */
-static void tight_text(const char *padded, char text[FIELD_TEXT])
+/* Both tables, one after the other. */
+static void write_grids(FILE *file, const BenchRow *rows, int count,
+                        void (*write)(FILE *, const BenchGrid *))
 {
-    size_t used = 0;
-    for (const char *c = padded; *c; c++)
-        if (*c != ' ' || (used && text[used - 1] != '(')) text[used++] = *c;
-    text[used] = '\0';
+    BenchGrid grid = make_grid(rows, count, false), changes;
+    write(file, &grid);
+    bench_grid_free(&grid);
+    if (!bench_change_grid(rows, count, &changes)) return;
+    fputc('\n', file);
+    write(file, &changes);
+    bench_grid_free(&changes);
 }
 
 void bench_report_markdown(FILE *file, const BenchRow *rows, int count)
 {
-    bool shown[FIELDS];
-    choose_fields(rows, count, shown);
-    for (int f = 0; f < FIELDS; f++)
-        if (shown[f]) fprintf(file, "| %s ", headings[f]);
-    fputs("|\n", file);
-    for (int f = 0; f < FIELDS; f++)
-        if (shown[f]) fputs(f == SCENE || f == VERDICT ? "| --- " : "| ---: ", file);
-    fputs("|\n", file);
-    for (int r = 0; r < 2 * count; r++) {
-        Line line;
-        const BenchRow *row = &rows[r / 2];
-        if (r % 2 == 0)
-            measured_line(row, &line);
-        else if (!paper_line(row, &line))
-            continue;
-        for (int f = 0; f < FIELDS; f++) {
-            char text[FIELD_TEXT];
-            if (!shown[f]) continue;
-            tight_text(line.field[f], text);
-            fputs("| ", file);
-            for (const char *c = text; *c; c++) fprintf(file, *c == '|' ? "\\%c" : "%c", *c);
-            fputc(' ', file);
-        }
-        fputs("|\n", file);
-    }
-}
-
-static void latex_text(FILE *file, const char *padded)
-{
-    char text[FIELD_TEXT];
-    tight_text(padded, text);
-    for (const char *c = text; *c; c++) {
-        if (*c == '\\')
-            fputs("\\textbackslash{}", file);
-        else if (*c == '~' || *c == '^')
-            fprintf(file, "\\%c{}", *c);
-        else if (strchr("&%$#_{}", *c))
-            fprintf(file, "\\%c", *c);
-        else
-            fputc(*c, file);
-    }
-}
-
-static void latex_line(FILE *file, const char (*field)[FIELD_TEXT], const bool shown[FIELDS])
-{
-    for (int f = 0; f < FIELDS; f++) {
-        if (!shown[f]) continue;
-        if (f) fputs(" & ", file);
-        latex_text(file, field[f]);
-    }
-    fputs(" \\\\\n", file);
+    write_grids(file, rows, count, bench_grid_markdown);
 }
 
 void bench_report_latex(FILE *file, const BenchRow *rows, int count)
 {
-    Line line;
-    for (int f = 0; f < FIELDS; f++) snprintf(line.field[f], FIELD_TEXT, "%s", headings[f]);
-    bool shown[FIELDS];
-    choose_fields(rows, count, shown);
-    fputs(shown[RATE] ? "\\begin{tabular}{lrrrrrrrrrrrrrrl}\n\\hline\n"
-                      : "\\begin{tabular}{lrrrrrrrrrrrl}\n\\hline\n",
-          file);
-    latex_line(file, (const char(*)[FIELD_TEXT])line.field, shown);
-    fputs("\\hline\n", file);
-    for (int r = 0; r < count; r++) {
-        measured_line(&rows[r], &line);
-        latex_line(file, (const char(*)[FIELD_TEXT])line.field, shown);
-        if (paper_line(&rows[r], &line))
-            latex_line(file, (const char(*)[FIELD_TEXT])line.field, shown);
-    }
-    fputs("\\hline\n\\end{tabular}\n", file);
+    write_grids(file, rows, count, bench_grid_latex);
 }

@@ -4,6 +4,19 @@
 
 #include "../lib/engine.h"
 
+/* What a scene that changes while it runs comes to, frame by frame (frames.h). */
+typedef struct {
+    long frames, changed; /* played; with a change: 0 of a scene that changes nothing */
+    long first_nodes, most_nodes, last_nodes, most_added; /* of all bodies; added in a frame */
+    double first_ms, last_ms;         /* simulation of a frame, before the first change, after the
+                                       * last */
+    double change_ms, change_most_ms; /* resampling in a frame that changes: median, most */
+    double follow_ms;                 /* then splitting and tying surfaces: median */
+    double surface_ms;                /* moving the surface of one body */
+    long first_triangles, last_triangles, pieces, open_edges; /* of all surfaces, at the end */
+    long left; /* cuts that a surface could not follow cleanly */
+} BenchChangeRow;
+
 typedef struct {
     char paper[24], paper_row[24]; /* row of the paper set beside it; empty: none */
     char scene[64], engine[24], precision[12];
@@ -41,6 +54,7 @@ typedef struct {
     long balance_splits;             /* of cells for balance alone */
     bool plain;                      /* plain weighting, which does not keep momentum */
     double paper_total_ms, paper_stage_ms[SM_STAGES]; /* NaN: not given */
+    BenchChangeRow change;
     unsigned long long input_hash; /* FNV-1a of the mesh's coordinates and indices */
 } BenchRow;
 

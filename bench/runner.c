@@ -140,11 +140,26 @@ static SmCode make_handles(BenchRunner *runner, SmError *error)
     return SM_OK;
 }
 
+/* Force i as it was in all, on the particles chosen of every body by their mass. */
+static void share_force(BenchRunner *runner, int i, long count, const long *chosen)
+{
+    double *mass = sm_alloc((size_t)runner->count, sizeof *mass), all = 0;
+    runner->type->masses(runner->engine, mass);
+    for (long n = 0; n < count; n++) all += mass[chosen[n]];
+    for (long n = 0; n < runner->push_count[i]; n++)
+        for (int d = 0; d < 3; d++)
+            runner->push_impulse[i][n][d] *=
+                (double)runner->push_first[i] * mass[chosen[n % count]] / all;
+    free(mass);
+}
+
 static SmCode make_forces(BenchRunner *runner, SmError *error)
 {
     const BenchScene *scene = runner->scene;
     const BenchBody *body = runner->body;
     size_t forces = (size_t)scene->force_count;
+    bool anew = runner->push_first != NULL;
+    if (!anew) runner->push_first = sm_alloc(forces, sizeof *runner->push_first);
     runner->push_count = sm_alloc(forces, sizeof *runner->push_count);
     runner->push_particle = sm_alloc(forces, sizeof(long *));
     runner->push_impulse = sm_alloc(forces, sizeof(double(*)[3]));
@@ -160,6 +175,10 @@ static SmCode make_forces(BenchRunner *runner, SmError *error)
             for (int d = 0; d < 3; d++)
                 runner->push_impulse[i][n][d] = scene->force[i].force[d] * scene->params.h;
         }
+        if (anew)
+            share_force(runner, i, count, chosen);
+        else
+            runner->push_first[i] = count;
         free(chosen);
         if (!count) return nothing_selected(scene, "force", i, error);
     }
@@ -205,9 +224,9 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
     return code;
 }
 
-void bench_runner_free(BenchRunner *runner)
+/* What depends on the engine's particles. */
+static void free_particles(BenchRunner *runner)
 {
-    if (runner->engine) runner->type->destroy(runner->engine);
     for (int i = 0; i < runner->held; i++) free((void *)runner->handle[i].particle);
     for (int i = 0; runner->push_count && i < runner->scene->force_count; i++) {
         free(runner->push_particle[i]);
@@ -221,7 +240,25 @@ void bench_runner_free(BenchRunner *runner)
     free(runner->push_count);
     free(runner->push_particle);
     free(runner->push_impulse);
+}
+
+void bench_runner_free(BenchRunner *runner)
+{
+    if (runner->engine) runner->type->destroy(runner->engine);
+    free_particles(runner);
+    free(runner->push_first);
     *runner = (BenchRunner){0};
+}
+
+SmCode bench_runner_refresh(BenchRunner *runner, SmError *error)
+{
+    free_particles(runner);
+    runner->held = 0;
+    find_particles(runner);
+    SmCode code = make_handles(runner, error);
+    if (!code) code = make_forces(runner, error);
+    if (!code) bind(runner, runner->time);
+    return code;
 }
 
 /* The point p of the rest body after squash, twist about y and bend about z. */

@@ -22,6 +22,7 @@ typedef struct {
     long *push_count; /* [scene->force_count] particles pushed, of all instances */
     long **push_particle;
     double (**push_impulse)[3];
+    long *push_first; /* [scene->force_count] particles of one body pushed at first */
 } BenchRunner;
 
 /* The engine of this name in "single" or "double" precision; NULL precision: the first that the
@@ -40,6 +41,10 @@ void bench_runner_free(BenchRunner *runner);
 
 /* Sets the scene's initial deformation and velocities (bend, twist, squash, kick). */
 void bench_runner_disturb(BenchRunner *runner, unsigned long seed);
+
+/* After a change of the engine's particles (octree/engine.h): counts, rest positions, handles and
+ * forces anew. A force keeps what it was in all, shared out by mass. O(particles). */
+SmCode bench_runner_refresh(BenchRunner *runner, SmError *error);
 
 /* What is bound to the engine now: handles that still hold, at their poses, and obstacles. Valid
  * until the next step. */

@@ -57,8 +57,33 @@ static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
            counts->regions, runner->scene->params.w, runner->body->voxels.cell);
 }
 
-bool bench_summary_print(const BenchRunner *runner, const BenchOutcome *outcome)
+/* Nodes and surface at the end of a scene that has changed them. */
+static void print_changes(const BenchPlay *play, const BenchOutcome *outcome)
 {
+    long open = 0, pieces = 0, triangles = 0;
+    for (int p = 0; p < play->cast.count; p++) {
+        SmMeshInfo info = sm_mesh_info(&play->changes[p].surface);
+        long bodies = play->cast.part[p].body.instances;
+        open += bodies * (info.open_edges + info.nonmanifold_edges);
+        pieces += bodies * info.components;
+        triangles += bodies * info.triangles;
+    }
+    printf(
+        "changes: %ld frame%s, %.4g ms each with the surface; in the end %ld nodes, and surfaces "
+        "of %ld triangles in %ld piece%s, ",
+        outcome->changes, outcome->changes == 1 ? "" : "s",
+        outcome->changes ? 1e3 * outcome->change_seconds / (double)outcome->changes : 0.0,
+        bench_cast_particles(&play->cast), triangles, pieces, pieces == 1 ? "" : "s");
+    if (open)
+        printf("with %ld open or non-manifold edges\n", open);
+    else
+        printf("watertight\n");
+}
+
+bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)
+{
+    const BenchRunner *runner = bench_play_runner(play);
+    long particles = bench_cast_particles(&play->cast);
     SmCounts counts;
     runner->type->count(runner->engine, &counts);
     double steps = (double)(outcome->steps > 0 ? outcome->steps : 1);
@@ -66,11 +91,12 @@ bool bench_summary_print(const BenchRunner *runner, const BenchOutcome *outcome)
         print_octree(runner);
     else
         print_lattice(runner, &counts);
+    if (bench_play_changes(play)) print_changes(play, outcome);
     bool valid = outcome->finite && print_deviation(runner, &counts);
     printf("%ld steps of %g s: ", outcome->steps, runner->scene->params.h);
     if (valid)
         printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * outcome->seconds / steps,
-               1e9 * outcome->seconds / steps / (double)counts.particles);
+               1e9 * outcome->seconds / steps / (double)particles);
     else
         printf("INVALID\n");
     return valid;

@@ -10,6 +10,9 @@
 
 enum { MOST_ROWS = 256 };
 
+/* Of a cell: a blade that has moved less waits, so that triangles are not slivers. */
+static const double least_move = 0.5;
+
 /* Nodes near what is swept over, and those near the line in hand. */
 typedef struct {
     const SmCarriers *carriers;
@@ -255,6 +258,25 @@ static void find_drift(const SmBlade *blade, Nearby *n, long points, const SmBla
     free(before);
 }
 
+/* Where `next` goes back the way that the point came, it stays; else it remembers which way. */
+static void go_ahead(const SmBladePoint *point, double cell, SmBladePoint *next)
+{
+    double way[3], square = 0;
+    if (!point->known || !next->known) return;
+    for (int d = 0; d < 3; d++) way[d] = next->rest[d] - point->rest[d];
+    double along = sm_dot(way, point->ahead);
+    for (int d = 0; d < 3; d++) {
+        double aside = way[d] - along * point->ahead[d];
+        square += aside * aside;
+    }
+    if (along < 0 && square < 0.25 * cell * cell)
+        *next = *point;
+    else if (sm_dot(way, way) > 1e-6 * cell * cell && sm_normalize(way))
+        memcpy(next->ahead, way, sizeof way);
+    else
+        memcpy(next->ahead, point->ahead, sizeof way);
+}
+
 /* Rows of triangles from the kept line to the new one, `last`, `far` away in the material. */
 static void sweep(SmBlade *blade, const double a[3], const double b[3], Nearby *n, long points,
                   const SmBladePoint *last, double far, SmCut *cut)
@@ -275,6 +297,8 @@ static void sweep(SmBlade *blade, const double a[3], const double b[3], Nearby *
             memcpy(row, last, (size_t)points * sizeof *row);
         for (long i = 0; i < points; i++)
             for (int d = 0; d < 3; d++) row[i].rest[d] += (1 - t) * drift[i][d];
+        for (long i = 0; i < points && points == blade->points; i++)
+            go_ahead(&blade->point[i], cell, &row[i]);
         add_strip(cut, cell, blade->points, blade->point, points, row);
         keep_line(blade, points, row);
     }
@@ -305,7 +329,7 @@ long sm_blade_sweep(SmBlade *blade, const double a[3], const double b[3],
     double far = blade->down ? moved(blade, points, last) : 0;
     if (!blade->down)
         keep_line(blade, points, last);
-    else if (far >= 0 && far < 0.05 * carriers->cell)
+    else if (far >= 0 && far < least_move * carriers->cell)
         stay(blade, points, last);
     else
         sweep(blade, a, b, &n, points, last, far, cut);

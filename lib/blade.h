@@ -22,9 +22,10 @@ typedef struct {
 
 typedef struct {
     double rest[3];
-    double along; /* the blade, 0 .. 1 */
-    int number;   /* vertex of the cut, or -1 */
-    bool known;   /* there is material near it */
+    double along;    /* the blade, 0 .. 1 */
+    int number;      /* vertex of the cut, or -1 */
+    bool known;      /* there is material near it */
+    double ahead[3]; /* which way it last went, of unit length; 0 at first */
 } SmBladePoint;
 
 typedef struct {
@@ -44,11 +45,14 @@ void sm_blade_free(SmBlade *blade);
 void sm_blade_lift(SmBlade *blade);
 
 /* Moves the blade to the segment from a to b, and adds to the cut what it sweeps over on the way;
- * the first time it is only set down. Returns the number of triangles added: 0 while it has moved,
- * through the material, less than a twentieth of a cell since it last cut anything, and where there
- * is none near it. A triangle of more than 4 cells' length joins places that are not together in
- * the material, and is left out. The blade's coordinates must be finite; it may be of length 0.
- * Nodes that are nowhere (NaN) carry nothing. O(nodes) for a look at each, and what is swept over.
+ * the first time it is only set down. A point of it that goes back the way it came, no farther
+ * aside than half a cell, is left where it was until it comes past that again: a body that shakes,
+ * or a blade that is drawn out, cuts nothing twice. Returns the number of triangles added: 0 while
+ * it has moved, through the material, less than half a cell since it last cut anything,
+ * and where there is none near it. A triangle of more than 4 cells' length joins places that are
+ * not together in the material, and is left out. The blade's coordinates must be finite; it may be
+ * of length 0. Nodes that are nowhere (NaN) carry nothing. O(nodes) for a look at each, and what is
+ * swept over.
  */
 long sm_blade_sweep(SmBlade *blade, const double a[3], const double b[3],
                     const SmCarriers *carriers, SmCut *cut);

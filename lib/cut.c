@@ -25,6 +25,7 @@ void sm_cut_free(SmCut *cut)
 {
     free(cut->vertex);
     free(cut->triangle);
+    free(cut->plane);
     free(cut->bucket);
     free(cut->entry);
     *cut = (SmCut){0};
@@ -59,6 +60,10 @@ static void grow(SmCut *cut)
 static void add_entry(SmCut *cut, const int cube[3], long triangle)
 {
     if (cut->entries == cut->entry_room) grow(cut);
+    for (int d = 0; d < 3; d++) {
+        if (cut->entries == 0 || cube[d] < cut->low[d]) cut->low[d] = cube[d];
+        if (cut->entries == 0 || cube[d] > cut->high[d]) cut->high[d] = cube[d];
+    }
     SmCutEntry *entry = &cut->entry[cut->entries];
     memcpy(entry->cube, cube, sizeof entry->cube);
     entry->triangle = (int)triangle;
@@ -126,9 +131,14 @@ long sm_cut_triangle(SmCut *cut, const int vertex[3])
         cut->triangle_room = 2 * cut->triangle_room + 64;
         cut->triangle =
             sm_realloc(cut->triangle, (size_t)cut->triangle_room, sizeof *cut->triangle);
+        cut->plane = sm_realloc(cut->plane, (size_t)cut->triangle_room, sizeof *cut->plane);
     }
     memcpy(cut->triangle[cut->triangles], vertex, sizeof *cut->triangle);
-    if (!sm_normalize(normal)) return cut->triangles++;
+    double *plane = cut->plane[cut->triangles];
+    bool flat = !sm_normalize(normal);
+    memcpy(plane, normal, sizeof normal);
+    plane[3] = sm_dot(normal, p[0]);
+    if (flat) return cut->triangles++;
     cubes_of(cut, 3, p, low, high);
     for (cube[2] = low[2]; cube[2] <= high[2]; cube[2]++)
         for (cube[1] = low[1]; cube[1] <= high[1]; cube[1]++)
@@ -175,6 +185,15 @@ static bool left(const double a[3], const double b[3], const double p[3], const 
     sm_cross(u, v, normal);
     sm_cross(edge, along, slope);
     return positive(sm_dot(along, normal), slope);
+}
+
+/* Are a and b on one side of a triangle's plane, without a doubt? */
+static bool beside(const SmCut *cut, long triangle, const double a[3], const double b[3])
+{
+    const double *plane = cut->plane[triangle];
+    double from_a = sm_dot(plane, a) - plane[3], from_b = sm_dot(plane, b) - plane[3];
+    double doubt = 1e-9 * cut->cube + 1e-12 * fabs(plane[3]);
+    return (from_a > doubt && from_b > doubt) || (from_a < -doubt && from_b < -doubt);
 }
 
 /* Does the box of a segment, a little wider against rounding, meet a triangle? */
@@ -227,20 +246,57 @@ static bool in_order(const double a[3], const double b[3])
     return a[2] <= b[2];
 }
 
+/* Narrows the part low .. high of the segment from a to b (0 .. 1) to where it is in row `row` of
+ * cubes across axis d, a little wider; false where it is not. */
+static bool clip(const SmCut *cut, const double a[3], const double b[3], int d, int row,
+                 double *low, double *high)
+{
+    double from = (row - 1e-6) * cut->cube - a[d], to = (row + 1 + 1e-6) * cut->cube - a[d];
+    double along = b[d] - a[d];
+    if (along != 0) {
+        double enter = (along > 0 ? from : to) / along, leave = (along > 0 ? to : from) / along;
+        *low = fmax(*low, enter);
+        *high = fmin(*high, leave);
+        return *low <= *high;
+    }
+    return from <= 0 && to >= 0;
+}
+
+static bool crosses_in(const SmCut *cut, const int cube[3], long first, const double a[3],
+                       const double b[3])
+{
+    for (long e = cut->bucket[bucket_of(cut, cube)]; e >= 0; e = cut->entry[e].before)
+        if (cut->entry[e].triangle >= first &&
+            memcmp(cut->entry[e].cube, cube, sizeof cut->entry[e].cube) == 0 &&
+            !beside(cut, cut->entry[e].triangle, a, b) &&
+            !apart(cut, cut->triangle[cut->entry[e].triangle], a, b) &&
+            crosses(cut, cut->triangle[cut->entry[e].triangle], a, b))
+            return true;
+    return false;
+}
+
 bool sm_cut_crosses(const SmCut *cut, long first, const double a[3], const double b[3])
 {
     int low[3], high[3], cube[3];
-    if (cut->entries == 0) return false;
+    if (cut->entries == 0 || first >= cut->triangles) return false;
     if (!in_order(a, b)) return sm_cut_crosses(cut, first, b, a);
     cubes_of(cut, 2, (const double *const[2]){a, b}, low, high);
-    for (cube[2] = low[2]; cube[2] <= high[2]; cube[2]++)
-        for (cube[1] = low[1]; cube[1] <= high[1]; cube[1]++)
-            for (cube[0] = low[0]; cube[0] <= high[0]; cube[0]++)
-                for (long e = cut->bucket[bucket_of(cut, cube)]; e >= 0; e = cut->entry[e].before)
-                    if (cut->entry[e].triangle >= first &&
-                        memcmp(cut->entry[e].cube, cube, sizeof cube) == 0 &&
-                        !apart(cut, cut->triangle[cut->entry[e].triangle], a, b) &&
-                        crosses(cut, cut->triangle[cut->entry[e].triangle], a, b))
-                        return true;
+    for (int d = 0; d < 3; d++) {
+        low[d] = low[d] > cut->low[d] ? low[d] : cut->low[d];
+        high[d] = high[d] < cut->high[d] ? high[d] : cut->high[d];
+    }
+    for (cube[2] = low[2]; cube[2] <= high[2]; cube[2]++) {
+        double layer[2] = {0, 1};
+        if (!clip(cut, a, b, 2, cube[2], &layer[0], &layer[1])) continue;
+        for (cube[1] = low[1]; cube[1] <= high[1]; cube[1]++) {
+            double row[2] = {layer[0], layer[1]};
+            if (!clip(cut, a, b, 1, cube[1], &row[0], &row[1])) continue;
+            int from = cube_of(cut, a[0] + row[0] * (b[0] - a[0]) - 1e-6 * cut->cube);
+            int to = cube_of(cut, a[0] + row[1] * (b[0] - a[0]) + 1e-6 * cut->cube);
+            for (cube[0] = from > low[0] ? from : low[0]; cube[0] <= high[0] && cube[0] <= to;
+                 cube[0]++)
+                if (crosses_in(cut, cube, first, a, b)) return true;
+        }
+    }
     return false;
 }

@@ -15,8 +15,10 @@ typedef struct {
     long vertices, triangles;
     double (*vertex)[3]; /* [vertices] rest positions, mesh units */
     int (*triangle)[3];  /* [triangles]; neighbours share vertices by number */
+    double (*plane)[4];  /* [triangles] unit normal, and its product with a corner */
     /* to find them: cubes of space of edge `cube`, hashed */
     double cube;
+    int low[3], high[3]; /* cubes with entries */
     long vertex_room, triangle_room;
     long buckets, entries, entry_room;
     long *bucket;      /* [buckets] last entry, or -1 */

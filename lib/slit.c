@@ -55,25 +55,55 @@ typedef struct {
     const SmCut *cut;
     double cell;
     bool inside_out;
+    bool tear; /* it is open already, and may come to be more so */
     SmSlitChange *change;
 } Slit;
 
-/* One solid for triangles first .. last - 1; other random moves, and at last without closing. */
+static SmMesh copy_mesh(const SmMesh *mesh)
+{
+    SmMesh copy = sm_mesh_new(mesh->vertex_count, mesh->triangle_count);
+    memcpy(copy.position, mesh->position, (size_t)mesh->vertex_count * sizeof *copy.position);
+    memcpy(copy.triangle, mesh->triangle, (size_t)mesh->triangle_count * sizeof *copy.triangle);
+    return copy;
+}
+
+/* Takes the solid for triangles first .. last - 1 away. What tears undoes itself, unless it may. */
+static SmCarveResult carve_once(const Slit *s, long first, long last, unsigned seed,
+                                const SmCarveOptions *options)
+{
+    SmMesh solid;
+    SmWedgeOrigin *origin;
+    SmWedgeOptions wedge = {thickness * s->cell, seed};
+    if (!sm_wedge_make(s->cut, first, last, &wedge, &solid, &origin)) return SM_CARVE_FAILED;
+    SmMesh before = s->tear ? (SmMesh){0} : copy_mesh(s->mesh);
+    SmCarveChange counts = s->change->mesh;
+    SmCarveResult result = sm_carve(s->mesh, &solid, options, &s->change->mesh);
+    note_sides(s->change, counts.vertices, origin);
+    if (result == SM_CARVE_TORN && !s->tear) {
+        sm_mesh_free(s->mesh);
+        *s->mesh = before;
+        before = (SmMesh){0};
+        s->change->mesh.vertices = counts.vertices;
+        s->change->mesh.triangles = counts.triangles;
+        s->change->mesh.dead = counts.dead;
+        result = SM_CARVE_FAILED;
+    }
+    sm_mesh_free(&before);
+    sm_mesh_free(&solid);
+    free(origin);
+    return result;
+}
+
+/* One solid for triangles first .. last - 1, with other random moves where it fails; and where the
+ * surface may tear at last without closing. */
 static SmSlitResult carve(const Slit *s, long first, long last)
 {
     static const SmSlitResult meaning[] = {SM_SLIT_MISSED, SM_SLIT_CLOSED, SM_SLIT_OPEN};
     SmCarveOptions options = {s->inside_out, true, slack * s->cell};
-    for (int try = 0; try < 2 * TRIES; try++) {
-        SmMesh solid;
-        SmWedgeOrigin *origin;
-        SmWedgeOptions wedge = {thickness * s->cell, (unsigned)(first * 2 * TRIES + try)};
-        if (!sm_wedge_make(s->cut, first, last, &wedge, &solid, &origin)) return SM_SLIT_LEFT;
+    for (int try = 0; try < (s->tear ? 2 : 1) * TRIES; try++) {
         options.close = try < TRIES;
-        long from = s->change->mesh.vertices;
-        SmCarveResult result = sm_carve(s->mesh, &solid, &options, &s->change->mesh);
-        note_sides(s->change, from, origin);
-        sm_mesh_free(&solid);
-        free(origin);
+        SmCarveResult result =
+            carve_once(s, first, last, (unsigned)(first * 2 * TRIES + try), &options);
         if (result != SM_CARVE_FAILED) return meaning[result];
     }
     return SM_SLIT_LEFT;
@@ -105,33 +135,22 @@ static SmSlitResult carve_each(const Slit *s, long first)
     return left ? SM_SLIT_LEFT : worst;
 }
 
-static SmMesh copy_mesh(const SmMesh *mesh)
+static bool is_closed(const SmMesh *mesh)
 {
-    SmMesh copy = sm_mesh_new(mesh->vertex_count, mesh->triangle_count);
-    memcpy(copy.position, mesh->position, (size_t)mesh->vertex_count * sizeof *copy.position);
-    memcpy(copy.triangle, mesh->triangle, (size_t)mesh->triangle_count * sizeof *copy.triangle);
-    return copy;
+    SmMeshInfo info = sm_mesh_info(mesh);
+    return info.open_edges == 0;
 }
 
 SmSlitResult sm_slit(SmMesh *mesh, const SmCut *cut, long first, double cell, SmSlitChange *change)
 {
     SmSlitChange unused = {0};
-    Slit s = {mesh, cut, cell, is_inside_out(mesh), change ? change : &unused};
+    Slit s = {mesh, cut, cell, is_inside_out(mesh), false, change ? change : &unused};
     SmSlitResult result = carve(&s, first, cut->triangles);
-    if (result == SM_SLIT_LEFT && cut->triangles > first) {
-        SmMesh before = copy_mesh(mesh);
-        SmCarveChange counts = s.change->mesh;
-        result = carve_each(&s, first);
-        if (result == SM_SLIT_LEFT) {
-            sm_mesh_free(mesh);
-            *mesh = before;
-            s.change->mesh.vertices = counts.vertices;
-            s.change->mesh.triangles = counts.triangles;
-            s.change->mesh.dead = counts.dead;
-        } else {
-            sm_mesh_free(&before);
-        }
+    if (result == SM_SLIT_LEFT && cut->triangles > first && !is_closed(mesh)) {
+        s.tear = true;
+        result = carve(&s, first, cut->triangles);
     }
+    if (result == SM_SLIT_LEFT) result = carve_each(&s, first);
     sm_slit_change_free(&unused);
     return result;
 }

@@ -5,8 +5,9 @@
  * narrow along its front, so that later cuts may cross, meet or repeat it like any other place. A
  * cut all the way through leaves separate pieces (pieces.h).
  *
- * A surface may be inside out. Where it is open, or crosses itself, there is no inside to close
- * against: such a cut splits the triangles that it passes through and leaves its sides open. */
+ * A surface may be inside out. Where an open one has no inside to close against, a cut splits the
+ * triangles that it passes through and leaves its sides open. A closed one stays closed: where it
+ * crosses itself, so that there is nothing to close against either, it is left as it is. */
 #ifndef SM_SLIT_H
 #define SM_SLIT_H
 
@@ -16,8 +17,8 @@
 typedef enum {
     SM_SLIT_MISSED, /* the new triangles do not touch the surface or what is in it */
     SM_SLIT_CLOSED, /* split, as closed as before */
-    SM_SLIT_OPEN,   /* split, but open along the cut: the surface was open or crosses itself */
-    SM_SLIT_LEFT,   /* could not be split cleanly; the surface is as before */
+    SM_SLIT_OPEN,   /* split, but open along the cut: the surface was open */
+    SM_SLIT_LEFT,   /* some of it could not be split cleanly, and is there as before */
 } SmSlitResult;
 
 /* What slits have changed; they add to it. Zeroed at first. `origin[].solid` is a vertex of the cut

@@ -7,56 +7,68 @@
 #include "../lib/vector.h"
 #include "polar.h"
 
-/* Appends the leaves below a tree node; returns how many there are then. */
-static long append_leaves(const OctTree *tree, long node, int *member, long count)
+/* Appends the leaves below a tree node, by rank; returns how many there are then. */
+static long append_leaves(const OctTree *tree, const int *rank, long node, int *member, long count)
 {
     if (tree->child[node] < 0) {
-        if (member) member[count] = tree->leaf[node];
+        if (member) member[count] = rank[tree->leaf[node]];
         return count + 1;
     }
     for (int i = 0; i < tree->children[node]; i++)
-        count = append_leaves(tree, tree->child[node] + i, member, count);
+        count = append_leaves(tree, rank, tree->child[node] + i, member, count);
     return count;
 }
 
-static long explicit_leaves(const OctTree *tree, const OctRegions *regions, long *start,
-                            int *member)
+static long explicit_leaves(const OctTree *tree, const OctRegions *regions, const int *rank,
+                            long *start, int *member)
 {
-    long count = 0;
-    for (long r = 0; r < regions->leaves; r++) {
-        start[r] = count;
-        for (long n = regions->first[r]; n < regions->first[r + 1]; n++)
-            count = append_leaves(tree, regions->member[n], member, count);
+    long count = 0, live = 0;
+    for (long r = 0; r < tree->leaves; r++) {
+        if (tree->node[r] < 0) continue;
+        start[live++] = count;
+        for (long n = regions->first[r]; n < oct_regions_end(regions, r); n++)
+            count = append_leaves(tree, rank, regions->member[n], member, count);
     }
-    start[regions->leaves] = count;
+    start[live] = count;
     return count;
+}
+
+static void start_leaf(RefTreeBody *body, const OctTree *tree, long leaf, double m)
+{
+    long i = body->regions.count++;
+    body->m[i] = m;
+    for (int a = 0; a < 3; a++) {
+        body->x0[i][a] = 0.5 * tree->centre[tree->node[leaf]][a];
+        body->R[i][4 * a] = body->S[i][4 * a] = 1;
+    }
 }
 
 void ref_tree_init(const OctTree *tree, const OctRegions *regions, const double *m, bool plain,
                    RefTreeBody *body)
 {
     size_t n = (size_t)tree->leaves;
+    int *rank = sm_alloc(n, sizeof *rank), live = 0;
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        if (tree->node[leaf] >= 0) rank[leaf] = live++;
     memset(body, 0, sizeof *body);
     RefRegions *r = &body->regions;
-    r->count = tree->leaves;
     r->start = sm_alloc(n + 1, sizeof *r->start);
-    r->member = sm_alloc((size_t)explicit_leaves(tree, regions, r->start, NULL), sizeof(int));
-    explicit_leaves(tree, regions, r->start, r->member);
+    r->member = sm_alloc((size_t)explicit_leaves(tree, regions, rank, r->start, NULL), sizeof(int));
+    explicit_leaves(tree, regions, rank, r->start, r->member);
     body->x0 = sm_alloc(n, sizeof *body->x0);
     body->m = sm_alloc(n, sizeof *body->m);
     body->weight = sm_alloc(n, sizeof *body->weight);
     body->reach = sm_alloc(n, sizeof *body->reach);
     body->R = sm_alloc(n, sizeof *body->R);
     body->S = sm_alloc(n, sizeof *body->S);
-    for (long i = 0; i < r->count; i++) {
-        body->m[i] = m[i];
-        for (int a = 0; a < 3; a++) {
-            body->x0[i][a] = 0.5 * tree->centre[tree->node[i]][a];
-            body->R[i][4 * a] = body->S[i][4 * a] = 1;
-        }
-        for (long k = r->start[i]; k < r->start[i + 1]; k++) body->reach[r->member[k]] += m[i];
-    }
-    for (size_t i = 0; i < n; i++) body->weight[i] = plain ? m[i] : m[i] / body->reach[i];
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        if (tree->node[leaf] >= 0) start_leaf(body, tree, leaf, m[leaf]);
+    for (long i = 0; i < r->count; i++)
+        for (long k = r->start[i]; k < r->start[i + 1]; k++)
+            body->reach[r->member[k]] += body->m[i];
+    for (long i = 0; i < r->count; i++)
+        body->weight[i] = plain ? body->m[i] : body->m[i] / body->reach[i];
+    free(rank);
 }
 
 void ref_tree_free(RefTreeBody *body)

@@ -1,0 +1,328 @@
+#include "changes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../octree/resample.h"
+
+static bool is_octree(const BenchPart *part)
+{
+    return !strcmp(part->runner.type->name, "octree");
+}
+
+static bool touches_part(const BenchPart *part, const BenchTouch *touch)
+{
+    return part->own && part->instance[0] + 1 == touch->instance;
+}
+
+bool bench_changes_any(const BenchPart *part)
+{
+    const BenchScene *scene = part->runner.scene;
+    return part->own || scene->cut_count > 0 || scene->view.level > 0;
+}
+
+static void tie_surface(BenchChanges *changes)
+{
+    const BenchPart *part = changes->part;
+    if (!is_octree(part)) {
+        sm_embed_create(&changes->surface, &part->body.voxels, &changes->embedding);
+        return;
+    }
+    const OctStructure *s = oct_engine_structure(part->runner.engine);
+    OctCarrier carrier = {&part->body.voxels, &s->tree, &s->graph, NULL};
+    oct_surface_build(&changes->surface, &carrier, &changes->carried);
+}
+
+void bench_changes_create(BenchPart *part, BenchChanges *changes)
+{
+    const SmMesh *mesh = &part->body.mesh;
+    *changes = (BenchChanges){.part = part};
+    changes->surface = sm_mesh_new(mesh->vertex_count, mesh->triangle_count);
+    memcpy(changes->surface.position, mesh->position,
+           (size_t)mesh->vertex_count * sizeof *mesh->position);
+    memcpy(changes->surface.triangle, mesh->triangle,
+           (size_t)mesh->triangle_count * sizeof *mesh->triangle);
+    for (int i = 0; i < part->runner.scene->cut_count; i++) sm_blade_init(&changes->blade[i]);
+    sm_cut_init(&changes->cut, 2 * part->body.voxels.cell);
+    tie_surface(changes);
+}
+
+void bench_changes_free(BenchChanges *changes)
+{
+    const BenchScene *scene = changes->part ? changes->part->runner.scene : NULL;
+    for (int i = 0; scene && i < scene->cut_count; i++) sm_blade_free(&changes->blade[i]);
+    for (int i = 0; scene && i < scene->touch_count; i++) oct_detail_free(&changes->touch[i]);
+    oct_detail_free(&changes->view);
+    sm_mesh_free(&changes->surface);
+    sm_cut_free(&changes->cut);
+    sm_embed_free(&changes->embedding);
+    oct_surface_free(&changes->carried);
+    free(changes->node);
+    free(changes->rest);
+    free(changes->x);
+    free(changes->F);
+    free(changes->near);
+    free(changes->absent);
+    *changes = (BenchChanges){0};
+}
+
+static double share_of(double time, double start, double stop)
+{
+    return stop > start ? fmin(fmax((time - start) / (stop - start), 0), 1) : 1;
+}
+
+static void between(const double from[3], const double to[3], double share, double at[3])
+{
+    for (int d = 0; d < 3; d++) at[d] = from[d] + share * (to[d] - from[d]);
+}
+
+/* ---- what an octree's changes need: nodes by leaf number */
+
+static void make_room(BenchChanges *changes, long leaves)
+{
+    if (leaves <= changes->room) return;
+    changes->room = 2 * leaves;
+    size_t room = (size_t)changes->room;
+    changes->node = sm_realloc(changes->node, room, sizeof *changes->node);
+    changes->rest = sm_realloc(changes->rest, room, sizeof *changes->rest);
+    changes->x = sm_realloc(changes->x, room, sizeof *changes->x);
+    changes->F = sm_realloc(changes->F, room, sizeof *changes->F);
+    changes->near = sm_realloc(changes->near, room, 1);
+    changes->absent = sm_realloc(changes->absent, room, 1);
+}
+
+/* Places of the part's nodes, of instance k, into changes->x by leaf number. */
+static void place_leaves(BenchChanges *changes, long instance)
+{
+    BenchRunner *runner = &changes->part->runner;
+    const OctStructure *s = oct_engine_structure(runner->engine);
+    const int *leaf = oct_engine_leaves(runner->engine);
+    make_room(changes, s->tree.leaves > runner->particles ? s->tree.leaves : runner->particles);
+    runner->type->get(runner->engine, SM_POSITION, changes->node);
+    for (long l = 0; l < s->tree.leaves; l++)
+        for (int d = 0; d < 3; d++) changes->x[l][d] = NAN;
+    for (long p = 0; p < runner->count; p++)
+        memcpy(changes->x[leaf[p]], changes->node[instance * runner->count + p],
+               sizeof *changes->x);
+}
+
+/* How far a blade's place is from the segment from a to b, squared. */
+static double square_from(const double p[3], const double a[3], const double b[3])
+{
+    double along[3], to[3], length = 0, dot = 0, square = 0;
+    for (int d = 0; d < 3; d++) {
+        along[d] = b[d] - a[d];
+        to[d] = p[d] - a[d];
+        length += along[d] * along[d];
+        dot += along[d] * to[d];
+    }
+    double share = length > 0 ? fmin(fmax(dot / length, 0), 1) : 0;
+    for (int d = 0; d < 3; d++) square += (to[d] - share * along[d]) * (to[d] - share * along[d]);
+    return square;
+}
+
+/* What carries the material near the blade, which is between two places in this frame. */
+static SmCarriers carriers_near(BenchChanges *changes, const double blade[4][3])
+{
+    const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
+    double widest = 0, sweep = 0;
+    OctGradients gradients;
+    place_leaves(changes, 0);
+    for (long l = 0; l < s->tree.leaves; l++) {
+        changes->absent[l] = s->tree.node[l] < 0;
+        if (!changes->absent[l])
+            widest = fmax(widest, 0.5 * s->cell * s->tree.size[s->tree.node[l]]);
+    }
+    for (int end = 0; end < 2; end++)
+        sweep = fmax(sweep, square_from(blade[end], blade[end + 2], blade[end + 2]));
+    double reach = widest + 2 * s->cell, far = sqrt(sweep) + 2 * reach;
+    for (long l = 0; l < s->tree.leaves; l++) {
+        changes->near[l] =
+            !changes->absent[l] && square_from(changes->x[l], blade[2], blade[3]) < far * far;
+        changes->absent[l] = !changes->near[l];
+        if (changes->near[l]) oct_structure_centre(s, l, changes->rest[l]);
+    }
+    oct_gradients_build(&s->tree, &s->graph, changes->near, s->cell, &gradients);
+    oct_gradients_find(&gradients, (const double(*)[3])changes->x, changes->F);
+    oct_gradients_free(&gradients);
+    return (SmCarriers){.nodes = s->tree.leaves,
+                        .rest = (const double(*)[3])changes->rest,
+                        .position = (const double(*)[3])changes->x,
+                        .F = (const double(*)[9])changes->F,
+                        .absent = changes->absent,
+                        .cell = 2 * s->cell,
+                        .reach = reach};
+}
+
+/* Where a cut's blade is at the beginning and the end of a frame: base, tip; base, tip. False while
+ * it is not in use. */
+static bool blade_moves(const BenchCut *cut, double from, double to, double blade[4][3])
+{
+    if (to < cut->start || from > cut->stop) return false;
+    for (int end = 0; end < 2; end++) {
+        double share = share_of(end ? to : from, cut->start, cut->stop);
+        between(cut->base_from, cut->base_to, share, blade[2 * end]);
+        between(cut->tip_from, cut->tip_to, share, blade[2 * end + 1]);
+    }
+    return true;
+}
+
+/* Moves the blades; the cut grows. */
+static void sweep_blades(BenchChanges *changes, double from, double to, SmCut *cut)
+{
+    const BenchScene *scene = changes->part->runner.scene;
+    for (int i = 0; i < scene->cut_count; i++) {
+        double blade[4][3];
+        if (!blade_moves(&scene->cut[i], from, to, blade)) continue;
+        SmCarriers carriers = carriers_near(changes, (const double(*)[3])blade);
+        if (!changes->blade[i].down)
+            sm_blade_sweep(&changes->blade[i], blade[0], blade[1], &carriers, cut);
+        sm_blade_sweep(&changes->blade[i], blade[2], blade[3], &carriers, cut);
+    }
+}
+
+/* Splits what is near the cut's triangles from `first` on, as the scene's cuts in use want. */
+static void refine_cut(BenchChanges *changes, double from, double to, OctStructure *s, long first)
+{
+    const BenchScene *scene = changes->part->runner.scene;
+    for (int i = 0; i < scene->cut_count; i++) {
+        const BenchCut *cut = &scene->cut[i];
+        const int *node;
+        long count;
+        if (cut->level == 0 || to < cut->start || from > cut->stop) continue;
+        int level = cut->level < s->tree.levels ? cut->level : s->tree.levels;
+        while ((count = oct_resample_near_cut(s, first, cut->reach * s->cell, level, &node)) > 0)
+            for (long n = 0; n < count; n++) oct_resample_split(s, node[n], NULL);
+    }
+}
+
+/* ---- details */
+
+/* The wish of touch or eye number i (the eye's is one more than touches) at a time; false: none. */
+typedef struct {
+    OctTouch touch;
+    OctEye eye;
+    OctWish *wish; /* NULL: nothing is wished for now */
+    const void *what;
+    double hold;
+} Wish;
+
+static bool find_wish(BenchChanges *changes, int i, double time, Wish *wish)
+{
+    const BenchScene *scene = changes->part->runner.scene;
+    *wish = (Wish){0};
+    if (i < scene->touch_count) {
+        const BenchTouch *from = &scene->touch[i];
+        if (!touches_part(changes->part, from)) return false;
+        bool now = time >= from->start && (from->stop <= 0 || time < from->stop);
+        memcpy(wish->touch.centre, from->centre, sizeof from->centre);
+        wish->touch.radius = from->radius;
+        wish->touch.level = from->level;
+        wish->wish = now ? oct_touch_wish : NULL;
+        wish->what = &wish->touch;
+        wish->hold = from->hold;
+        return true;
+    }
+    const BenchView *view = &scene->view;
+    if (view->level == 0) return false;
+    double share = share_of(time, view->start, view->stop);
+    between(view->eye_from, view->eye_to, share, wish->eye.eye);
+    wish->eye.near = view->near;
+    wish->eye.slack = view->slack;
+    wish->eye.level = view->level;
+    wish->wish = oct_eye_wish;
+    wish->what = &wish->eye;
+    return true;
+}
+
+/* Does touches and the eye; with `s` NULL only says whether there is anything to do. */
+static bool refine_details(BenchChanges *changes, double time, OctStructure *s)
+{
+    const BenchRunner *runner = &changes->part->runner;
+    bool any = false;
+    for (int i = 0; i <= runner->scene->touch_count; i++) {
+        Wish wish;
+        OctDetail *detail = i < runner->scene->touch_count ? &changes->touch[i] : &changes->view;
+        if (!find_wish(changes, i, time, &wish)) continue;
+        if (s)
+            any |= oct_detail_update(detail, s, wish.wish, wish.what, time, wish.hold) > 0;
+        else
+            any |= oct_detail_due(detail, oct_engine_structure(runner->engine), wish.wish,
+                                  wish.what, time, wish.hold);
+    }
+    return any;
+}
+
+/* ---- a frame */
+
+static bool blades_in_use(const BenchChanges *changes, double from, double to)
+{
+    const BenchScene *scene = changes->part->runner.scene;
+    for (int i = 0; i < scene->cut_count; i++)
+        if (to >= scene->cut[i].start && from <= scene->cut[i].stop) return true;
+    return false;
+}
+
+/* The surface after the engine has changed. */
+static void follow(BenchChanges *changes, const OctChange *change, long first)
+{
+    const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
+    double start = sm_now();
+    if (s->cut.triangles > first) {
+        SmSlitResult result = sm_slit(&changes->surface, &s->cut, first, s->cell, NULL);
+        changes->left |= result == SM_SLIT_LEFT;
+        changes->last.slit = result == SM_SLIT_CLOSED || result == SM_SLIT_OPEN;
+    }
+    OctCarrier carrier = {&changes->part->body.voxels, &s->tree, &s->graph, &s->cut};
+    long count = 0;
+    int *node = sm_alloc((size_t)(change->removed_count + change->added_count), sizeof *node);
+    for (long i = 0; i < change->removed_count; i++) node[count++] = change->removed[i].node;
+    for (long i = 0; i < change->added_count; i++) node[count++] = change->added[i].node;
+    oct_surface_retie(&changes->carried, &changes->surface, &carrier, count, node, first);
+    free(node);
+    changes->last.follow_seconds = sm_now() - start;
+}
+
+SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmError *error)
+{
+    BenchRunner *runner = &changes->part->runner;
+    changes->last = (BenchChanged){0};
+    if (!blades_in_use(changes, from, to) && !refine_details(changes, to, NULL)) return SM_OK;
+    OctStructure *s;
+    double start = sm_now();
+    SmCode code = oct_engine_begin(runner->engine, &s, error);
+    if (code) return code;
+    long first = s->cut.triangles, before = runner->particles;
+    sweep_blades(changes, from, to, &s->cut);
+    if (s->cut.triangles > first) refine_cut(changes, from, to, s, first);
+    refine_details(changes, to, s);
+    const OctChange *change = oct_engine_end(runner->engine);
+    changes->last.resample_seconds = sm_now() - start;
+    changes->last.resampled = change->region_count > 0;
+    if (!changes->last.resampled && s->cut.triangles == first) return SM_OK;
+    follow(changes, change, first);
+    code = bench_runner_refresh(runner, error);
+    changes->last.nodes = runner->particles - before;
+    return code;
+}
+
+void bench_changes_surface(BenchChanges *changes, double (*point)[3])
+{
+    BenchPart *part = changes->part;
+    BenchRunner *runner = &part->runner;
+    long vertices = changes->surface.vertex_count;
+    if (!is_octree(part)) {
+        make_room(changes, runner->particles);
+        runner->type->get(runner->engine, SM_POSITION, changes->node);
+    }
+    for (long k = 0; k < part->body.instances; k++, point += vertices) {
+        if (is_octree(part)) {
+            place_leaves(changes, k);
+            oct_surface_move(&changes->carried, (const double(*)[3])changes->x, point, NULL);
+        } else {
+            sm_embed_apply(&changes->embedding,
+                           (const double(*)[3])(changes->node + k * runner->count), point, NULL);
+        }
+    }
+}

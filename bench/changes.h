@@ -1,0 +1,51 @@
+/* changes.h - what a scene does to one part's body while it runs: cuts it, and refines it where it
+ * is touched or looked at (octree section 5); and the surface that follows. */
+#ifndef BENCH_CHANGES_H
+#define BENCH_CHANGES_H
+
+#include "../lib/blade.h"
+#include "../lib/embed.h"
+#include "../lib/slit.h"
+#include "../octree/detail.h"
+#include "../octree/surface.h"
+#include "cast.h"
+
+/* What the last frame has changed, and the seconds that it took. */
+typedef struct {
+    bool resampled; /* cells were split or merged, or material cut */
+    bool slit;      /* the surface was split */
+    long nodes;     /* more than before */
+    double resample_seconds, follow_seconds;
+} BenchChanged;
+
+typedef struct {
+    BenchPart *part;       /* the caller's, kept */
+    SmMesh surface;        /* of one body at rest, with all slits */
+    OctSurface carried;    /* what carries it: an octree's nodes, */
+    SmEmbedding embedding; /* or a lattice's particles */
+    SmBlade blade[BENCH_MAX];
+    OctDetail touch[BENCH_MAX], view;
+    SmCut cut; /* of a lattice; an octree's structure has it */
+    bool left; /* a cut did not split the surface: it could not be done cleanly */
+    BenchChanged last;
+    /* scratch: nodes as the engine counts them; by leaf number */
+    double (*node)[3];
+    double (*rest)[3], (*x)[3], (*F)[9];
+    unsigned char *near, *absent;
+    long room;
+} BenchChanges;
+
+/* Ties the part's surface. The part's handles and forces follow its changes. */
+void bench_changes_create(BenchPart *part, BenchChanges *changes);
+void bench_changes_free(BenchChanges *changes);
+
+/* Can the scene change this part at all? */
+bool bench_changes_any(const BenchPart *part);
+
+/* All that is due between two times, before the steps of that frame; fills `last`. */
+SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmError *error);
+
+/* The surfaces of the part's instances, one after the other, now: [instances * vertices][3]. */
+void bench_changes_surface(BenchChanges *changes, double (*point)[3]);
+
+#endif

@@ -1,0 +1,22 @@
+/* frames.h - a scene that changes while it runs, played from its first frame to its last and timed.
+ */
+#ifndef BENCH_FRAMES_H
+#define BENCH_FRAMES_H
+
+#include "play.h"
+#include "progress.h"
+#include "row.h"
+
+typedef struct {
+    int threads, rounds; /* played so often: of every time the least counts */
+    unsigned long seed;
+    BenchProgress *progress; /* or NULL */
+} BenchFramesParams;
+
+/* Fills `row` but for the paper's values. `play` is left as the last round ends; the caller frees
+ * it. Errors are those of playing the scene. */
+SmCode bench_frames_play(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                         const BenchFramesParams *params, BenchChangeRow *row, BenchPlay *play,
+                         SmError *error);
+
+#endif

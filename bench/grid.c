@@ -1,0 +1,118 @@
+#include "grid.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../lib/error.h"
+
+void bench_grid_column(BenchGrid *grid, const char *heading, bool left)
+{
+    grid->heading[grid->columns] = heading;
+    grid->left[grid->columns++] = left;
+}
+
+BenchGridLine *bench_grid_add(BenchGrid *grid)
+{
+    grid->line = sm_realloc(grid->line, (size_t)grid->lines + 1, sizeof *grid->line);
+    memset(&grid->line[grid->lines], 0, sizeof *grid->line);
+    return &grid->line[grid->lines++];
+}
+
+void bench_grid_free(BenchGrid *grid)
+{
+    free(grid->line);
+    *grid = (BenchGrid){0};
+}
+
+void bench_grid_number(double value, char text[BENCH_GRID_TEXT])
+{
+    int digits = value > 0 ? 2 - (int)floor(log10(value)) : 0;
+    if (!isfinite(value))
+        strcpy(text, "-");
+    else
+        snprintf(text, BENCH_GRID_TEXT, "%.*f", digits < 0 ? 0 : digits > 9 ? 9 : digits, value);
+}
+
+/* Heading where `line` is -1. */
+static const char *cell(const BenchGrid *grid, int line, int column)
+{
+    return line < 0 ? grid->heading[column] : grid->line[line][column];
+}
+
+void bench_grid_text(FILE *file, const BenchGrid *grid)
+{
+    int width[BENCH_GRID_COLUMNS] = {0};
+    for (int l = -1; l < grid->lines; l++)
+        for (int c = 0; c < grid->columns; c++) {
+            int length = (int)strlen(cell(grid, l, c));
+            if (length > width[c]) width[c] = length;
+        }
+    for (int l = -1; l < grid->lines; l++) {
+        char text[BENCH_GRID_COLUMNS * (BENCH_GRID_TEXT + 2) + 1];
+        int used = 0;
+        for (int c = 0; c < grid->columns; c++)
+            used += snprintf(text + used, sizeof text - (size_t)used, "%s%*s", c ? "  " : "",
+                             grid->left[c] ? -width[c] : width[c], cell(grid, l, c));
+        while (used > 0 && text[used - 1] == ' ') text[--used] = '\0';
+        fprintf(file, "%s\n", text);
+    }
+}
+
+/* Without the blanks that align the text table: at the start and after a bracket. */
+static void tight_text(const char *padded, char text[BENCH_GRID_TEXT])
+{
+    size_t used = 0;
+    for (const char *c = padded; *c && used < BENCH_GRID_TEXT - 1; c++)
+        if (*c != ' ' || (used && text[used - 1] != '(')) text[used++] = *c;
+    text[used] = '\0';
+}
+
+void bench_grid_markdown(FILE *file, const BenchGrid *grid)
+{
+    for (int l = -1; l < grid->lines; l++) {
+        for (int c = 0; c < grid->columns; c++) {
+            char text[BENCH_GRID_TEXT];
+            tight_text(cell(grid, l, c), text);
+            fputs("| ", file);
+            for (const char *t = text; *t; t++) fprintf(file, *t == '|' ? "\\%c" : "%c", *t);
+            fputc(' ', file);
+        }
+        fputs("|\n", file);
+        for (int c = 0; c < grid->columns && l < 0; c++)
+            fputs(grid->left[c] ? "| --- " : "| ---: ", file);
+        if (l < 0) fputs("|\n", file);
+    }
+}
+
+static void latex_text(FILE *file, const char *padded)
+{
+    char text[BENCH_GRID_TEXT];
+    tight_text(padded, text);
+    for (const char *c = text; *c; c++) {
+        if (*c == '\\')
+            fputs("\\textbackslash{}", file);
+        else if (*c == '~' || *c == '^')
+            fprintf(file, "\\%c{}", *c);
+        else if (strchr("&%$#_{}", *c))
+            fprintf(file, "\\%c", *c);
+        else
+            fputc(*c, file);
+    }
+}
+
+void bench_grid_latex(FILE *file, const BenchGrid *grid)
+{
+    fputs("\\begin{tabular}{", file);
+    for (int c = 0; c < grid->columns; c++) fputc(grid->left[c] ? 'l' : 'r', file);
+    fputs("}\n\\hline\n", file);
+    for (int l = -1; l < grid->lines; l++) {
+        for (int c = 0; c < grid->columns; c++) {
+            if (c) fputs(" & ", file);
+            latex_text(file, cell(grid, l, c));
+        }
+        fputs(" \\\\\n", file);
+        if (l < 0) fputs("\\hline\n", file);
+    }
+    fputs("\\hline\n\\end{tabular}\n", file);
+}
