@@ -227,7 +227,8 @@ static void leave_carrier(OctBreadth *lists, long k)
 static void compact(OctBreadth *lists, long more)
 {
     long at = 0;
-    int *row = sm_alloc((size_t)(lists->room = 2 * (lists->used - lists->idle + more)), sizeof *row);
+    int *row =
+        sm_alloc((size_t)(lists->room = 2 * (lists->used - lists->idle + more)), sizeof *row);
     for (long t = 0; t < lists->carriers + lists->slots; t++) {
         OctSpan *span = &lists->span[t];
         memcpy(row + at, lists->row + span->first, (size_t)span->count * sizeof *row);
@@ -240,13 +241,20 @@ static void compact(OctBreadth *lists, long more)
     lists->idle = 0;
 }
 
-static void add_slots(OctBreadth *lists, long slots)
+void oct_breadth_reserve(OctBreadth *lists)
 {
+    compact(lists, 0);
+}
+
+void oct_breadth_room(OctBreadth *lists, long leaves)
+{
+    long slots = oct_slots(leaves);
+    if (slots <= lists->slots) return;
     long count = lists->carriers + lists->slots;
     if (slots > lists->slot_room) {
         lists->slot_room = 2 * slots;
-        lists->span = sm_realloc(
-            lists->span, (size_t)(lists->carriers + lists->slot_room), sizeof *lists->span);
+        lists->span = sm_realloc(lists->span, (size_t)(lists->carriers + lists->slot_room),
+                                 sizeof *lists->span);
     }
     memset(lists->span + count, 0, (size_t)(slots - lists->slots) * sizeof *lists->span);
     long first = lists->slots;
@@ -270,7 +278,6 @@ static OctSpan *make_room(OctBreadth *lists, long t, int entries)
 
 void oct_breadth_set(OctBreadth *lists, long leaf, const int *member, long count)
 {
-    if (leaf >= lists->slots) add_slots(lists, oct_slots(leaf + 1));
     long t = lists->carriers + leaf;
     OctSpan *span = &lists->span[t];
     int head = span->count ? lists->row[span->first] : 0;

@@ -32,7 +32,7 @@ typedef struct {
 } OctSpan;
 
 typedef struct {
-    long base; /* row of tree node 0 */
+    long base;   /* row of tree node 0 */
     long leaves; /* as built */
     long carriers, slots;
     long entries; /* of the leaves' and carriers' lists as built, zero rows not counted */
@@ -69,8 +69,15 @@ void oct_breadth_transpose(const OctTree *tree, const OctBreadth *lists, OctBrea
 /* Moves the tree nodes' rows up to `base`. O(entries). */
 void oct_breadth_rebase(OctBreadth *lists, long base);
 
-/* The list of a leaf becomes that of the tree nodes `member`; of none, the unit row. Leaves may be
- * as many as there are numbers, those beyond the last one included. Amortised O(count). */
+/* There are to be lists for `leaves` numbers of leaves, new ones of the unit row. Amortised O(1)
+ * each. */
+void oct_breadth_room(OctBreadth *lists, long leaves);
+
+/* Makes place for as many entries again. O(entries). */
+void oct_breadth_reserve(OctBreadth *lists);
+
+/* The list of a leaf becomes that of the tree nodes `member`; of none, the unit row. Amortised
+ * O(count). */
 void oct_breadth_set(OctBreadth *lists, long leaf, const int *member, long count);
 
 void oct_breadth_free(OctBreadth *lists);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "changing.h"
 #include "octree.h"
 #include "slots.h"
 
@@ -17,8 +18,7 @@ static void copy_tree(const OctTree *tree, Oct *oct)
     memcpy(oct->child, tree->child, (size_t)tree->nodes * sizeof(int));
     memcpy(oct->children, tree->children, (size_t)tree->nodes);
     for (long n = 0; n < tree->nodes; n++)
-        if (tree->child[n] >= 0)
-            oct_levels_add(&oct->inner, oct_tree_level(tree, (int)n), (int)n);
+        if (tree->child[n] >= 0) oct_levels_add(&oct->inner, oct_tree_level(tree, (int)n), (int)n);
 }
 
 static void fill_slots(const OctTree *tree, const OctRegions *regions, const double *mass, Oct *oct)
@@ -140,6 +140,7 @@ void oct_free(Oct *oct)
     oct_breadth_free(&oct->lists);
     oct_breadth_free(&oct->goal_lists);
     oct_levels_free(&oct->inner);
+    oct_changing_free(oct->changing);
     void *all[] = {oct->thin,  oct->thin_of, oct->child,  oct->children, oct->row,  oct->live,
                    oct->block, oct->share,   oct->spread, oct->rows,     oct->body, oct->obstacle};
     for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
@@ -150,10 +151,10 @@ long oct_bytes(const Oct *oct)
 {
     size_t blocks = (size_t)oct->block_room, lanes = blocks * SM_LANES;
     size_t row_count = (size_t)(oct->lists.base + oct->node_room);
-    size_t structure =
-        oct_breadth_bytes(&oct->lists) + (size_t)oct->node_room * (sizeof(int) + 1) +
-        oct_levels_bytes(&oct->inner) + lanes * sizeof(int) +
-        blocks * (sizeof(OctConst) + sizeof(int) + 1) + (size_t)oct->thin_room * sizeof(OctThin);
+    size_t structure = oct_breadth_bytes(&oct->lists) + (size_t)oct->node_room * (sizeof(int) + 1) +
+                       oct_levels_bytes(&oct->inner) + lanes * sizeof(int) +
+                       blocks * (sizeof(OctConst) + sizeof(int) + 1) +
+                       (size_t)oct->thin_room * sizeof(OctThin);
     if (oct->goal_lists.span) structure += oct_breadth_bytes(&oct->goal_lists);
     size_t rows = (row_count * (2 * OCT_ROW + OCT_ROW_VELOCITY) + lanes * 3) * sizeof(real);
     size_t state = lanes * (9 * sizeof(real) + 6 * sizeof(short));
@@ -161,6 +162,7 @@ long oct_bytes(const Oct *oct)
         structure += lanes * 6 * sizeof(real);
         state += lanes * 18 * sizeof(real);
     }
+    structure += oct_changing_bytes(oct->changing);
     return (long)(structure + (size_t)oct->workers * rows + (size_t)oct->instances * state);
 }
 

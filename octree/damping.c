@@ -114,8 +114,7 @@ static void velocities_down(OctTask *task, long first, long last)
     const OctBreadth *lists = oct_goal_breadth(task->oct);
     real *velocity = task->rows->velocity;
     for (long k = first; k < last; k++)
-        store8(velocity + oct_carrier_row(k) * OCT_ROW_VELOCITY,
-               list_velocity(lists, velocity, k));
+        store8(velocity + oct_carrier_row(k) * OCT_ROW_VELOCITY, list_velocity(lists, velocity, k));
 }
 
 static void slow(OctTask *task, long first, long last)

@@ -3,6 +3,7 @@
 #ifndef OCT_OCTREE_H
 #define OCT_OCTREE_H
 
+#include "resample.h"
 #include "state.h"
 
 #define oct_build      SM_NAME(oct_build)
@@ -15,6 +16,8 @@
 #define oct_recentre   SM_NAME(oct_recentre)
 #define oct_place      SM_NAME(oct_place)
 #define oct_shape      SM_NAME(oct_shape)
+#define oct_prepare    SM_NAME(oct_prepare)
+#define oct_change     SM_NAME(oct_change)
 
 /* Bodies at rest, all in one place: simulation nodes at their cells' centres, counted in finest
  * cells from the corner of voxel (0,0,0). `mass` is [leaves] kg, positive, finite. Tree and regions
@@ -46,6 +49,16 @@ void oct_place(Oct *oct, long body, const double (*x)[3]);
 
 /* Sets the rest shapes of a plastic body's regions; `S` is [leaves][9]. */
 void oct_shape(Oct *oct, long body, const double (*S)[9]);
+
+/* Makes a body ready to be changed, where it is not; `structure` is what it was built of, not
+ * changed yet. One body alone, of form OCT_HIERARCHICAL. O(body). */
+void oct_prepare(Oct *oct, const OctStructure *structure);
+
+/* Makes a body that of a structure that `change` has changed, and starts its new leaves
+ * (inherit.h); `held`: some of its nodes are. Everything that the change did not touch stays as it
+ * is, bit by bit. Cost: that of the change, of the regions that hold a leaf whose weight is
+ * another, and of their leaves. */
+void oct_change(Oct *oct, const OctStructure *structure, const OctChange *change, bool held);
 
 /* Where component d of simulation node `leaf` is in x, v and g of a body. */
 static inline long oct_index(long leaf, int d)

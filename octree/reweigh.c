@@ -164,7 +164,6 @@ void oct_reweigh_free(OctReweigh *s)
 
 size_t oct_reweigh_bytes(const OctReweigh *s)
 {
-    return oct_levels_bytes(&s->path) +
-           (size_t)s->nodes * (sizeof *s->on_path + sizeof *s->below) +
+    return oct_levels_bytes(&s->path) + (size_t)s->nodes * (sizeof *s->on_path + sizeof *s->below) +
            (size_t)s->leaves * sizeof *s->listed + (size_t)s->room * sizeof *s->leaf;
 }

@@ -8,13 +8,13 @@
 
 /* Scratch; begins zeroed. */
 typedef struct {
-    OctLevels path;        /* nodes whose sums are to be found, by level */
-    unsigned mark;         /* marks that are less count for nothing */
-    unsigned *on_path;     /* [nodes] */
-    unsigned *below;       /* [nodes] whose leaves are all on the list */
-    unsigned *listed;      /* [leaves] */
-    long nodes, leaves;    /* there is place for as many */
-    int *leaf;             /* [count] the list */
+    OctLevels path;     /* nodes whose sums are to be found, by level */
+    unsigned mark;      /* marks that are less count for nothing */
+    unsigned *on_path;  /* [nodes] */
+    unsigned *below;    /* [nodes] whose leaves are all on the list */
+    unsigned *listed;   /* [leaves] */
+    long nodes, leaves; /* there is place for as many */
+    int *leaf;          /* [count] the list */
     long count, room;
 } OctReweigh;
 

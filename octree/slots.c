@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../lib/rotate_lanes.h"
+#include "octree.h"
 #include "plastic.h"
 
 /* Finest cells from the first node, which keeps all digits. */
@@ -26,19 +27,14 @@ static void *enlarge(void *old, size_t used, size_t bytes)
     return array;
 }
 
-/* What a number may be that there is to be room for. */
-static long room_for(long room, long wanted)
-{
-    return room ? 2 * wanted : wanted;
-}
-
 static void enlarge_body(const Oct *oct, OctState *body, size_t old, size_t now)
 {
     const size_t three = 3 * SM_LANES * sizeof(real), nine = 3 * three;
     body->x = enlarge(body->x, old * three, now * three);
     body->v = enlarge(body->v, old * three, now * three);
     body->g = enlarge(body->g, old * three, now * three);
-    body->last = enlarge(body->last, old * 6 * SM_LANES * sizeof(short), now * 6 * SM_LANES * sizeof(short));
+    body->last =
+        enlarge(body->last, old * 6 * SM_LANES * sizeof(short), now * 6 * SM_LANES * sizeof(short));
     if (!oct->spread) return;
     body->plastic = enlarge(body->plastic, old * nine, now * nine);
     body->inverse = enlarge(body->inverse, old * nine, now * nine);
@@ -71,36 +67,43 @@ static void open_block(Oct *oct, long block)
     }
 }
 
+void oct_slots_reserve(Oct *oct, long leaves)
+{
+    long blocks = (leaves + SM_LANES - 1) / SM_LANES;
+    if (blocks <= oct->block_room) return;
+    enlarge_blocks(oct, (size_t)oct->block_room, (size_t)blocks);
+    oct->block_room = blocks;
+}
+
 void oct_slots_room(Oct *oct, long leaves)
 {
     long blocks = (leaves + SM_LANES - 1) / SM_LANES, first = oct->blocks;
-    if (blocks > oct->block_room) {
-        long room = room_for(oct->block_room, blocks);
-        enlarge_blocks(oct, (size_t)oct->block_room, (size_t)room);
-        oct->block_room = room;
-    }
+    if (blocks > oct->block_room) oct_slots_reserve(oct, oct->block_room ? 2 * leaves : leaves);
     oct->leaves = leaves;
     oct->blocks = blocks;
     for (long block = first; block < blocks; block++) open_block(oct, block);
 }
 
+void oct_nodes_reserve(Oct *oct, long nodes)
+{
+    if (nodes <= oct->node_room) return;
+    size_t base = (size_t)oct->lists.base, old = (size_t)oct->node_room, now = (size_t)nodes;
+    size_t row = OCT_ROW * sizeof(real), velocity = OCT_ROW_VELOCITY * sizeof(real);
+    size_t before = old ? base + old : 0;
+    oct->child = enlarge(oct->child, old * sizeof(int), now * sizeof(int));
+    oct->children = enlarge(oct->children, old, now);
+    for (OctRows *r = oct->rows; r < oct->rows + oct->workers; r++) {
+        r->moment = enlarge(r->moment, before * row, (base + now) * row);
+        r->transform = enlarge(r->transform, before * row, (base + now) * row);
+        r->velocity = enlarge(r->velocity, before * velocity, (base + now) * velocity);
+    }
+    oct->node_room = nodes;
+}
+
 void oct_nodes_room(Oct *oct, const OctTree *tree, long nodes)
 {
-    size_t base = (size_t)oct->lists.base, old = (size_t)oct->node_room;
     long first = oct->nodes;
-    if (nodes > oct->node_room) {
-        size_t now = (size_t)room_for(oct->node_room, nodes);
-        size_t before = old ? base + old : 0, row = OCT_ROW * sizeof(real),
-               velocity = OCT_ROW_VELOCITY * sizeof(real);
-        oct->child = enlarge(oct->child, old * sizeof(int), now * sizeof(int));
-        oct->children = enlarge(oct->children, old, now);
-        for (int i = 0; i < oct->workers; i++) {
-            oct->rows[i].moment = enlarge(oct->rows[i].moment, before * row, (base + now) * row);
-            oct->rows[i].transform = enlarge(oct->rows[i].transform, before * row, (base + now) * row);
-            oct->rows[i].velocity = enlarge(oct->rows[i].velocity, before * velocity, (base + now) * velocity);
-        }
-        oct->node_room = (long)now;
-    }
+    if (nodes > oct->node_room) oct_nodes_reserve(oct, oct->node_room ? 2 * nodes : nodes);
     oct->nodes = nodes;
     for (long n = first; n < nodes; n++) oct_row_open(oct, tree, n);
 }
@@ -125,7 +128,8 @@ static void set_thin(Oct *oct, long leaf, const OctRegionRest *rest)
         if (!rest->thin) return;
         if (oct->thin_count == oct->thin_room) {
             size_t room = oct->thin_room ? 2 * (size_t)oct->thin_room : 4;
-            oct->thin = enlarge(oct->thin, (size_t)oct->thin_count * sizeof(OctThin), room * sizeof(OctThin));
+            oct->thin = enlarge(oct->thin, (size_t)oct->thin_count * sizeof(OctThin),
+                                room * sizeof(OctThin));
             oct->thin_room = (long)room;
         }
         *of = (int)oct->thin_count++;
@@ -166,8 +170,10 @@ void oct_slot_clear(Oct *oct, long leaf)
                         &k->offset[0], &k->offset[1],     &k->offset[2], &k->centre[0],
                         &k->centre[1], &k->centre[2]};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) (*all[i])[lane] = 0;
-    for (int i = 0; i < 6 && oct->spread; i++)
-        oct->spread[(block * 6 + i) * SM_LANES + lane] = 0;
+    for (int i = 0; i < 6 && oct->spread; i++) oct->spread[(block * 6 + i) * SM_LANES + lane] = 0;
+    for (long i = 0; i < oct->instances; i++)
+        for (int d = 0; d < 3; d++)
+            oct->body[i].x[oct_index(leaf, d)] = oct->body[i].v[oct_index(leaf, d)] = 0;
     set_thin(oct, leaf, &(OctRegionRest){0});
     oct->row[leaf] = OCT_SPARE_ROW;
     oct->live[block]--;

@@ -5,13 +5,15 @@
 
 #include "state.h"
 
-#define oct_slots_room SM_NAME(oct_slots_room)
-#define oct_nodes_room SM_NAME(oct_nodes_room)
-#define oct_slot_fill  SM_NAME(oct_slot_fill)
-#define oct_slot_clear SM_NAME(oct_slot_clear)
+#define oct_slots_room    SM_NAME(oct_slots_room)
+#define oct_nodes_room    SM_NAME(oct_nodes_room)
+#define oct_slots_reserve SM_NAME(oct_slots_reserve)
+#define oct_nodes_reserve SM_NAME(oct_nodes_reserve)
+#define oct_slot_fill     SM_NAME(oct_slot_fill)
+#define oct_slot_clear    SM_NAME(oct_slot_clear)
 #define oct_block_inverse SM_NAME(oct_block_inverse)
-#define oct_row_open   SM_NAME(oct_row_open)
-#define oct_row_centre SM_NAME(oct_row_centre)
+#define oct_row_open      SM_NAME(oct_row_open)
+#define oct_row_centre    SM_NAME(oct_row_centre)
 
 /* Is there a leaf of that number? */
 static inline bool oct_alive(const Oct *oct, long leaf)
@@ -23,6 +25,10 @@ static inline bool oct_alive(const Oct *oct, long leaf)
  * Amortised O(1) each; the first call takes as much as it needs. New slots are without a leaf. */
 void oct_slots_room(Oct *oct, long leaves);
 void oct_nodes_room(Oct *oct, const OctTree *tree, long nodes);
+
+/* Makes room for as many, so that they cost nothing later. O(body). */
+void oct_slots_reserve(Oct *oct, long leaves);
+void oct_nodes_reserve(Oct *oct, long nodes);
 
 /* Puts a leaf into its slot, or brings the constants there up to date. Its state stays. O(1). */
 void oct_slot_fill(Oct *oct, const OctTree *tree, const OctWeights *weights, long leaf,

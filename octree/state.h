@@ -86,10 +86,10 @@ typedef struct {
     OctConst *block;     /* [blocks] */
     long thin_count;     /* blocks that have had thin regions */
     long thin_room;
-    int *thin_of;  /* [blocks] which of them, or -1 */
-    OctThin *thin; /* [thin_count] */
-    real *spread;  /* [blocks][6][lanes] rest moments of the regions, or NULL */
-    long *share;   /* [threads + 1] first block of each thread */
+    int *thin_of;                 /* [blocks] which of them, or -1 */
+    OctThin *thin;                /* [thin_count] */
+    real *spread;                 /* [blocks][6][lanes] rest moments of the regions, or NULL */
+    long *share;                  /* [threads + 1] first block of each thread */
     struct OctChanging *changing; /* what is kept to change the body (changing.h), or NULL */
 
     int workers;   /* bodies that are stepped at the same time */

@@ -5,7 +5,8 @@
 #include <string.h>
 
 /* to += the moments `from`, which are about `shift` from where those of `to` are. */
-static void add_moments(const double from[OCT_MOMENTS], const double shift[3], double to[OCT_MOMENTS])
+static void add_moments(const double from[OCT_MOMENTS], const double shift[3],
+                        double to[OCT_MOMENTS])
 {
     to[0] += from[0];
     for (int d = 0; d < 3; d++) {
