@@ -7,27 +7,68 @@
 
 #include "../lib/handles.h"
 #include "../lib/rotate_lanes.h"
+#include "changing.h"
+#include "head.h"
 #include "octree.h"
-#include "structure.h"
 
 enum { RECENTRE_STEPS = 16 };
 
+/* A node that a handle holds. */
+typedef struct {
+    long body;
+    int leaf, handle;
+    double before[3]; /* where it was before the step, finest cells */
+} Held;
+
 struct SmEngine {
-    OctStructure structure; /* first: oct_engine_structure() */
+    OctHead head; /* first: oct_engine_structure() */
     Oct *oct;
-    long count; /* nodes of one body */
+    long count;     /* nodes of one body */
+    bool renumber;  /* leaf and number are to be found again */
+    int *leaf;      /* [count] leaf of a node; NULL of a body that was never changed: its own */
+    int *number;    /* [leaves] node of a leaf */
+    long leaf_room; /* of `leaf`, `number` */
     double h;
     double (*pose)[3][4]; /* [instances] */
     SmHandles handles;
+    Held *held; /* [held_count] */
+    long held_count, held_room;
+    int *holds; /* [holds_room] 1 + the handle that holds a leaf, or 0; of a body that is changed */
+    long holds_room;
     double build_seconds;
     bool goals; /* g is that of the present state */
 };
 
-static void rest_position(const SmEngine *e, long number, double x0[3])
+/* Finds the numbers of nodes again after a change. */
+static void renumber(SmEngine *e)
+{
+    const OctTree *tree = &e->head.structure.tree;
+    if (!e->renumber) return;
+    e->renumber = false;
+    if (tree->leaves > e->leaf_room) {
+        e->leaf_room = 2 * tree->leaves;
+        e->leaf = sm_realloc(e->leaf, (size_t)e->leaf_room, sizeof *e->leaf);
+        e->number = sm_realloc(e->number, (size_t)e->leaf_room, sizeof *e->number);
+    }
+    long count = 0;
+    for (long leaf = 0; leaf < tree->leaves; leaf++) {
+        if (tree->node[leaf] < 0) continue;
+        e->number[leaf] = (int)count;
+        e->leaf[count++] = (int)leaf;
+    }
+}
+
+/* The leaf of a node of any of the bodies. */
+static long leaf_of(const SmEngine *e, long number)
+{
+    return e->leaf ? e->leaf[number] : number % e->count;
+}
+
+static void rest_position(const SmEngine *e, long body, long leaf, double x0[3])
 {
     double rest[3];
-    oct_structure_centre(&e->structure, number % e->count, rest);
-    sm_pose_apply((const double(*)[4])e->pose[number / e->count], rest, x0);
+    oct_structure_centre(&e->head.structure, leaf, rest);
+    sm_pose_apply((const double(*)[4])e->pose[body], rest, x0);
 }
 
 static OctState *body_of(const SmEngine *e, long number)
@@ -38,7 +79,7 @@ static OctState *body_of(const SmEngine *e, long number)
 /* In finest cells from the corner of voxel (0,0,0). */
 static double to_cells(const SmEngine *e, double position, int d)
 {
-    return (position - e->structure.origin[d]) / e->structure.cell;
+    return (position - e->head.structure.origin[d]) / e->head.structure.cell;
 }
 
 static void engine_goals(SmEngine *e)
@@ -51,20 +92,22 @@ static void get_node(const SmEngine *e, SmField field, long number, double value
 {
     const OctState *body = body_of(e, number);
     const real *from = field == SM_VELOCITY ? body->v : field == SM_GOAL ? body->g : body->x;
-    double cell = e->structure.cell;
+    double cell = e->head.structure.cell;
     for (int d = 0; d < 3; d++) {
-        double here = (double)from[oct_index(number % e->count, d)];
-        value[d] = field == SM_VELOCITY ? here * cell / e->h
-                                        : e->structure.origin[d] + cell * (body->origin[d] + here);
+        double here = (double)from[oct_index(leaf_of(e, number), d)];
+        value[d] = field == SM_VELOCITY
+                       ? (body->kick[d] + here) * cell / e->h
+                       : e->head.structure.origin[d] + cell * (body->origin[d] + here);
     }
 }
 
 static void engine_get(SmEngine *e, SmField field, double (*values)[3])
 {
     if (field == SM_GOAL && !e->goals) engine_goals(e);
+    renumber(e);
     for (long number = 0; number < e->oct->instances * e->count; number++)
         if (field == SM_REST)
-            rest_position(e, number, values[number]);
+            rest_position(e, number / e->count, leaf_of(e, number), values[number]);
         else
             get_node(e, field, number, values[number]);
 }
@@ -72,8 +115,9 @@ static void engine_get(SmEngine *e, SmField field, double (*values)[3])
 static bool engine_get_shapes(SmEngine *e, double (*S)[9])
 {
     if (!e->oct->spread) return false;
+    renumber(e);
     for (long number = 0; number < e->oct->instances * e->count; number++) {
-        long leaf = number % e->count;
+        long leaf = leaf_of(e, number);
         const real *from = body_of(e, number)->plastic + leaf / SM_LANES * 9 * SM_LANES;
         for (int i = 0; i < 9; i++) S[number][i] = (double)from[i * SM_LANES + leaf % SM_LANES];
     }
@@ -84,16 +128,24 @@ static bool engine_set_shapes(SmEngine *e, const double (*S)[9])
 {
     if (!e->oct->spread) return false;
     e->goals = false;
-    for (long i = 0; i < e->oct->instances; i++) oct_shape(e->oct, i, S + i * e->count);
+    renumber(e);
+    double(*own)[9] = sm_alloc((size_t)e->oct->leaves, sizeof *own);
+    for (long i = 0; i < e->oct->instances; i++) {
+        for (long k = 0; k < e->count; k++)
+            memcpy(own[leaf_of(e, k)], S[i * e->count + k], sizeof *S);
+        oct_shape(e->oct, i, (const double(*)[9])own);
+    }
+    free(own);
     return true;
 }
 
 static void set_positions(SmEngine *e, const double (*values)[3])
 {
-    double(*x)[3] = sm_alloc((size_t)e->count, sizeof *x);
+    double(*x)[3] = sm_alloc((size_t)e->oct->leaves, sizeof *x);
     for (long i = 0; i < e->oct->instances; i++) {
-        for (long leaf = 0; leaf < e->count; leaf++)
-            for (int d = 0; d < 3; d++) x[leaf][d] = to_cells(e, values[i * e->count + leaf][d], d);
+        for (long k = 0; k < e->count; k++)
+            for (int d = 0; d < 3; d++)
+                x[leaf_of(e, k)][d] = to_cells(e, values[i * e->count + k][d], d);
         oct_place(e->oct, i, (const double(*)[3])x);
     }
     free(x);
@@ -103,18 +155,18 @@ static void engine_set(SmEngine *e, SmField field, const double (*values)[3])
 {
     assert(field == SM_POSITION || field == SM_VELOCITY);
     e->goals = false;
+    renumber(e);
     if (field == SM_POSITION) {
         set_positions(e, values);
         return;
     }
-    double scale = e->h / e->structure.cell;
+    double scale = e->h / e->head.structure.cell;
+    for (long number = 0; number < e->oct->instances * e->count; number++)
+        for (int d = 0; d < 3; d++)
+            body_of(e, number)->v[oct_index(leaf_of(e, number), d)] =
+                (real)(values[number][d] * scale);
     for (long i = 0; i < e->oct->instances; i++)
-        for (long slot = 0; slot < e->oct->blocks * SM_LANES; slot++) {
-            long leaf = slot < e->count ? slot : e->count - 1;
-            for (int d = 0; d < 3; d++)
-                e->oct->body[i].v[oct_index(slot, d)] =
-                    (real)(values[i * e->count + leaf][d] * scale);
-        }
+        memset(e->oct->body[i].kick, 0, sizeof e->oct->body->kick);
 }
 
 /* Where an instance's pose turns it, a tie goes to the rotation of the pose. */
@@ -136,6 +188,85 @@ static void start_at_rest(SmEngine *e, const SmEngineParams *params)
     set_positions(e, (const double(*)[3])rest);
     free(rest);
     for (long i = 0; i < bodies; i++) turn_last(e, i);
+}
+
+static void hold(SmEngine *e, long body, int leaf, int handle)
+{
+    if (e->held_count == e->held_room) {
+        e->held_room = e->held_room ? 2 * e->held_room : 64;
+        e->held = sm_realloc(e->held, (size_t)e->held_room, sizeof *e->held);
+    }
+    e->held[e->held_count++] = (Held){.body = body, .leaf = leaf, .handle = handle};
+}
+
+static SmCode engine_begin(SmEngine *e, SmError *error)
+{
+    if (e->oct->instances > 1)
+        return sm_fail(error, SM_USAGE,
+                       "octree: %ld bodies share this engine's sampling, and cannot be resampled; "
+                       "give a body that is to change an engine of its own",
+                       e->oct->instances);
+    if (e->oct->params.form != OCT_HIERARCHICAL)
+        return sm_fail(error, SM_USAGE,
+                       "octree: bodies of form 'adjoint' cannot be resampled; use 'hierarchical', "
+                       "which is the same where regions are symmetric, as the engine's are");
+    oct_resample_prepare(&e->head.structure);
+    oct_prepare(e->oct, &e->head.structure);
+    return SM_OK;
+}
+
+static void make_holds(SmEngine *e)
+{
+    long leaves = e->head.structure.tree.leaves;
+    if (leaves > e->holds_room) {
+        long room = 2 * leaves;
+        e->holds = sm_realloc(e->holds, (size_t)room, sizeof *e->holds);
+        memset(e->holds + e->holds_room, 0, (size_t)(room - e->holds_room) * sizeof *e->holds);
+        e->holds_room = room;
+    }
+    for (long i = 0; i < e->held_count; i++) e->holds[e->held[i].leaf] = 1 + e->held[i].handle;
+}
+
+/* What replaces a held leaf is held by the same handle; of merged leaves one is enough. */
+static void hold_heirs(SmEngine *e, const OctChange *change)
+{
+    if (!e->held_count) return;
+    make_holds(e);
+    for (long n = 0; n < change->removed_count; n++) {
+        int handle = e->holds[change->removed[n].leaf], into = change->removed[n].into;
+        if (!handle || into < 0 || e->holds[into]) continue;
+        e->holds[into] = handle;
+        hold(e, 0, into, handle - 1);
+    }
+    for (long n = 0; n < change->added_count; n++) {
+        const OctAdded *added = &change->added[n];
+        if (added->from >= 0 && e->holds[added->from])
+            hold(e, 0, added->leaf, e->holds[added->from] - 1);
+    }
+    long kept = 0;
+    for (long i = 0; i < e->held_count; i++) {
+        e->holds[e->held[i].leaf] = 0;
+        if (e->head.structure.tree.node[e->held[i].leaf] >= 0) e->held[kept++] = e->held[i];
+    }
+    e->held_count = kept;
+}
+
+static const OctChange *engine_end(SmEngine *e)
+{
+    const OctChange *change = oct_resample_update(&e->head.structure);
+    oct_change(e->oct, &e->head.structure, change, e->held_count > 0);
+    hold_heirs(e, change);
+    e->count = e->head.structure.tree.live;
+    e->renumber = true;
+    e->goals = false;
+    return change;
+}
+
+static const int *engine_leaves(SmEngine *e)
+{
+    if (!e->leaf) e->renumber = true;
+    renumber(e);
+    return e->leaf;
 }
 
 static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
@@ -188,13 +319,14 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     SmCode code = check(voxels, params, error);
     if (code) return code;
     SmEngine *e = sm_alloc(1, sizeof *e);
-    code = oct_structure_build(voxels, options, params->mass, &e->structure, error);
+    e->head = (OctHead){.begin = engine_begin, .end = engine_end, .leaves = engine_leaves};
+    code = oct_structure_build(voxels, options, params->mass, &e->head.structure, error);
     if (code) {
         free(e);
         return code;
     }
-    e->oct = build(&e->structure, options, params);
-    e->count = e->structure.tree.leaves;
+    e->oct = build(&e->head.structure, options, params);
+    e->count = e->head.structure.tree.leaves;
     e->h = params->h;
     start_at_rest(e, params);
     e->build_seconds = sm_now() - start;
@@ -207,43 +339,40 @@ static void engine_destroy(SmEngine *e)
     if (!e) return;
     sm_handles_free(&e->handles);
     oct_free(e->oct);
-    oct_structure_free(&e->structure);
+    oct_structure_free(&e->head.structure);
     free(e->pose);
+    free(e->leaf);
+    free(e->number);
+    free(e->held);
+    free(e->holds);
     free(e);
 }
 
 /* Keeps where the held nodes are before the step. */
 static void note_held(SmEngine *e)
 {
-    long at = 0;
-    for (int i = 0; i < e->handles.count; i++)
-        for (long k = 0; k < e->handles.handle[i].count; k++, at++) {
-            long number = e->handles.handle[i].particle[k];
-            const OctState *body = body_of(e, number);
-            for (int d = 0; d < 3; d++)
-                e->handles.before[at][d] =
-                    body->origin[d] + (double)body->x[oct_index(number % e->count, d)];
-        }
+    for (Held *held = e->held; held < e->held + e->held_count; held++) {
+        const OctState *body = &e->oct->body[held->body];
+        for (int d = 0; d < 3; d++)
+            held->before[d] = body->origin[d] + (double)body->x[oct_index(held->leaf, d)];
+    }
 }
 
 /* A held node goes where its handle takes it, whatever the step made of it. */
 static void move_held(SmEngine *e)
 {
-    long at = 0;
-    for (int i = 0; i < e->handles.count; i++)
-        for (long k = 0; k < e->handles.handle[i].count; k++, at++) {
-            long number = e->handles.handle[i].particle[k];
-            OctState *body = body_of(e, number);
-            double x0[3], to[3];
-            rest_position(e, number, x0);
-            sm_pose_apply((const double(*)[4])e->handles.handle[i].pose, x0, to);
-            for (int d = 0; d < 3; d++) {
-                long index = oct_index(number % e->count, d);
-                double x = to_cells(e, to[d], d);
-                body->x[index] = (real)(x - body->origin[d]);
-                body->v[index] = (real)(x - e->handles.before[at][d]);
-            }
+    for (const Held *held = e->held; held < e->held + e->held_count; held++) {
+        OctState *body = &e->oct->body[held->body];
+        double x0[3], to[3];
+        rest_position(e, held->body, held->leaf, x0);
+        sm_pose_apply((const double(*)[4])e->handles.handle[held->handle].pose, x0, to);
+        for (int d = 0; d < 3; d++) {
+            long index = oct_index(held->leaf, d);
+            double x = to_cells(e, to[d], d);
+            body->x[index] = (real)(x - body->origin[d]);
+            body->v[index] = (real)(x - held->before[d]);
         }
+    }
 }
 
 static void engine_step(SmEngine *e, SmLaps *laps)
@@ -258,10 +387,11 @@ static void engine_step(SmEngine *e, SmLaps *laps)
 
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])
 {
+    renumber(e);
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->oct->instances * e->count);
-        long leaf = particle[i] % e->count;
-        double scale = e->h / (e->structure.cell * e->structure.mass[leaf]);
+        long leaf = leaf_of(e, particle[i]);
+        double scale = e->h / (e->head.structure.cell * e->head.structure.mass[leaf]);
         for (int d = 0; d < 3; d++)
             body_of(e, particle[i])->v[oct_index(leaf, d)] += (real)(impulse[i][d] * scale);
     }
@@ -270,29 +400,37 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
 static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
     Oct *oct = e->oct;
+    renumber(e);
     sm_handles_set(&e->handles, boundary, e->oct->instances * e->count);
+    e->held_count = 0;
+    for (int i = 0; i < e->handles.count; i++)
+        for (long k = 0; k < e->handles.handle[i].count; k++) {
+            long number = e->handles.handle[i].particle[k];
+            hold(e, number / e->count, (int)leaf_of(e, number), i);
+        }
     if (!oct->obstacle || oct->obstacle_count != boundary->obstacle_count) {
         free(oct->obstacle);
         oct->obstacle_count = boundary->obstacle_count;
         oct->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *oct->obstacle);
     }
     for (int i = 0; i < boundary->obstacle_count; i++)
-        oct->obstacle[i] =
-            obstacle_in_cells(&boundary->obstacle[i], e->structure.origin, e->structure.cell);
+        oct->obstacle[i] = obstacle_in_cells(&boundary->obstacle[i], e->head.structure.origin,
+                                             e->head.structure.cell);
 }
 
 static void engine_masses(SmEngine *e, double *mass)
 {
-    memcpy(mass, e->structure.mass, (size_t)e->count * sizeof *mass);
+    renumber(e);
+    for (long k = 0; k < e->count; k++) mass[k] = e->head.structure.mass[leaf_of(e, k)];
 }
 
 static void engine_count(SmEngine *e, SmCounts *counts)
 {
-    const OctStructure *s = &e->structure;
+    const OctStructure *s = &e->head.structure;
     *counts = (SmCounts){
         .particles = e->oct->instances * e->count,
-        .regions = s->regions.leaves,
-        .links = s->graph.first[e->count] / 2,
+        .regions = e->count,
+        .links = s->graph.edges / 2,
         .bytes = oct_bytes(e->oct) + (long)oct_structure_bytes(s),
         .build_seconds = e->build_seconds,
         .summation_nodes = s->regions.mean,
@@ -307,12 +445,14 @@ static int compare_numbers(const void *a, const void *b)
 
 static long engine_region(SmEngine *e, long number, long *member, long room)
 {
-    const OctStructure *s = &e->structure;
-    long i = number % e->count, first = number - i, count = s->regions.size[i];
+    const OctStructure *s = &e->head.structure;
+    renumber(e);
+    long i = leaf_of(e, number), first = number / e->count * e->count, count = s->regions.size[i];
     int *leaf = sm_alloc((size_t)count, sizeof *leaf);
     oct_regions_leaves(&s->tree, &s->regions, i, leaf);
     qsort(leaf, (size_t)count, sizeof *leaf, compare_numbers);
-    for (long k = 0; k < count && k < room; k++) member[k] = first + leaf[k];
+    for (long k = 0; k < count && k < room; k++)
+        member[k] = first + (e->number ? e->number[leaf[k]] : leaf[k]);
     free(leaf);
     return count;
 }

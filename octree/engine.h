@@ -52,4 +52,26 @@ extern const SmEngineType octree_engine_f64; /* double precision */
 typedef struct OctStructure OctStructure;
 const OctStructure *oct_engine_structure(const SmEngine *engine);
 
+/* Resampling while it runs: oct_engine_begin(), then any number of oct_resample_split(), _merge()
+ * and _near_cut() of resample.h and of triangles added to the structure's cut, then
+ * oct_engine_end() in the place of oct_resample_update(): it brings everything up to date at the
+ * cost of what has changed, and says what has. The first begin costs O(body), once.
+ *
+ * New nodes start where the body has carried their cells, with the velocity that it has there
+ * (inherit.h). Where nothing is held, its linear momentum and its centre of mass stay; all other
+ * nodes stay where they are but for one small translation of the whole body. They inherit rotations
+ * and plastic shapes; children of a held node are held, and a node merged of any that was.
+ *
+ * Particles are then renumbered: particle p is the p-th of the leaves that live, in rising order of
+ * their numbers, oct_engine_leaves()[p]; SM_REST, masses and region() follow. Handles that are set
+ * again after a change must be given by the new numbers.
+ *
+ * Errors (SM_USAGE): several bodies share the engine; goal positions are summed by OCT_ADJOINT. */
+SmCode oct_engine_begin(SmEngine *engine, OctStructure **structure, SmError *error);
+typedef struct OctChange OctChange;
+const OctChange *oct_engine_end(SmEngine *engine);
+
+/* Leaf number of every particle of one body, rising. Valid until the next change. */
+const int *oct_engine_leaves(SmEngine *engine);
+
 #endif

@@ -39,7 +39,7 @@ typedef struct {
 
 /* What a batch has changed, net: a cell that was split and merged again in it is not named. A new
  * leaf's number is never that of a leaf removed in the same batch. */
-typedef struct {
+typedef struct OctChange {
     long removed_count, added_count;
     OctRemoved *removed;
     OctAdded *added;
