@@ -96,7 +96,8 @@ static void check_shapes(const Body *body, const long *same, const Oct *twin, in
                            ->plastic[(leaf / SM_LANES * 9 + e) * SM_LANES + leaf % SM_LANES],
                    b = (double)
                            twin->body->plastic[(to / SM_LANES * 9 + e) * SM_LANES + to % SM_LANES];
-            if (!(fabs(a - b) <= tolerance))
+            /* in single precision rounding may decide whether a region yields */
+            if (!(fabs(a - b) <= (SINGLE ? 5e-3 : 1e-8)))
                 fail_msg("trial %d, leaf %ld: shape is %g, from scratch %g", trial, leaf, a, b);
         }
 }
