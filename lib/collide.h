@@ -24,10 +24,10 @@
  * node and -w_c p on the carriers keeps the momentum, changes u by p / mu, 1 / mu = 1 / m_i + sum
  * w_c^2 / m_c, and the kinetic energy by mu (|u'|^2 - |u|^2) / 2. First all contacts, a few times
  * in turn, lose the part of u that leads deeper and the share `friction` of the tangential one:
- * |u'| <= |u|. What they lose goes into a bank, from which the deepest are paid for being pushed
- * out, at no more than SM_COLLIDE_PUSH x depth; the bank forgets some of its money in every step
- * and never owes any. So H + bank never grows, and H never exceeds what it was when the bank was
- * empty. What overlaps and rests stays as it is.
+ * |u'| <= |u|. What they lose goes into a bank, from which all are paid the same share of what it
+ * takes to push them out at SM_COLLIDE_PUSH x depth; the bank forgets some of its money in every
+ * step and never owes any. So H + bank never grows, and H never exceeds what it was when the bank
+ * was empty. What overlaps and rests stays as it is while the bank is empty.
  *
  * Speed limit: a node that moves, relative to the cells that it meets, by less than half the
  * thickness of what they are part of in a step is found before it is nearer to the far side, and
@@ -35,9 +35,14 @@
  * may fly at 0.15 times that thickness a step (SM_COLLIDE_SPEED), so at 0.15 cells against a wall
  * one cell thick. The same holds for obstacles (obstacle.h), but for planes, which have no limit.
  *
- * Results do not depend on the number of threads. A step costs O(1) for every node and cell near a
- * surface that can collide (of bodies that do not collide with themselves: in the box of another
- * body), and O(carriers) for each contact. It allocates nothing once its arrays have grown. Twin:
+ * Only parts of surfaces (collide_parts.h) whose balls meet, of bodies whose boxes meet or of one
+ * body where the material does not hold them together, look for contacts. A cell counts as the
+ * parallelepiped of its axes; where its corners are so bent that this reaches beyond them by more
+ * than a tenth of an edge, contacts in what reaches beyond may be missed.
+ *
+ * Results do not depend on the number of threads. A step costs O(1) for every particle that is
+ * looked at (all, for boxes and balls), O(1) for every node and cell of parts that may touch, and
+ * O(carriers) for each contact. It allocates nothing once its arrays have grown. Twin:
  * reference/collide.c. */
 #ifndef SM_COLLIDE_H
 #define SM_COLLIDE_H
