@@ -1,0 +1,38 @@
+/* slit.h - splits a surface, at rest, where a cut's new triangles pass through it.
+ *
+ * Along the cut a solid some 1e-4 cells thick is taken away (wedge.h, carve.h): a closed surface
+ * that does not cross itself stays one, with new triangles on both sides of the cut and a wall as
+ * narrow along its front, so that later cuts may cross, meet or repeat it like any other place. A
+ * cut all the way through leaves separate pieces (pieces.h).
+ *
+ * A surface may be inside out. Where it is open, or crosses itself, there is no inside to close
+ * against: such a cut splits the triangles that it passes through and leaves its sides open. */
+#ifndef SM_SLIT_H
+#define SM_SLIT_H
+
+#include "carve.h"
+#include "cut.h"
+
+typedef enum {
+    SM_SLIT_MISSED, /* the new triangles do not touch the surface or what is in it */
+    SM_SLIT_CLOSED, /* split, as closed as before */
+    SM_SLIT_OPEN,   /* split, but open along the cut: the surface was open or crosses itself */
+    SM_SLIT_LEFT,   /* could not be split cleanly; the surface is as before */
+} SmSlitResult;
+
+/* What slits have changed; they add to it. Zeroed at first. `origin[].solid` is a vertex of the cut
+ * here, `side` the side that the new vertex is on: 1 above the cut's triangles there, -1 below, 0
+ * for vertices that come from the surface. */
+typedef struct {
+    SmCarveChange mesh;
+    int *side; /* [mesh.vertices] */
+    long side_room;
+} SmSlitChange;
+
+/* Splits `mesh` by the cut's triangles `first` .. on. `cell` is the finest cells' size in mesh
+ * units (above 1e-9 of the mesh's size and coordinates), `change` may be NULL. Results are the same
+ * every time. O(mesh) for a look at its boxes and volume, and what is near the new triangles. */
+SmSlitResult sm_slit(SmMesh *mesh, const SmCut *cut, long first, double cell, SmSlitChange *change);
+void sm_slit_change_free(SmSlitChange *change);
+
+#endif
