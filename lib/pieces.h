@@ -1,0 +1,32 @@
+/* pieces.h - what hangs together: nodes over their links, and the parts of a surface. */
+#ifndef SM_PIECES_H
+#define SM_PIECES_H
+
+#include "mesh.h"
+
+/* Pieces are numbered from 0 in the order of their first members. */
+typedef struct {
+    long count;
+    int *piece; /* of every member, or -1 for one that is absent */
+} SmPieces;
+
+/* Pieces of `nodes` nodes: call sm_pieces_link() for every link there is, then sm_pieces_finish(),
+ * which numbers them; `absent` is [nodes], not 0 for numbers that no node has, or NULL. Nearly
+ * O(nodes + links). */
+void sm_pieces_init(long nodes, SmPieces *pieces);
+void sm_pieces_link(SmPieces *pieces, long p, long q);
+void sm_pieces_finish(SmPieces *pieces, const unsigned char *absent, long nodes);
+
+/* Pieces of a surface's triangles, those that share vertices. */
+void sm_pieces_of_mesh(const SmMesh *mesh, SmPieces *pieces);
+
+/* Sums `value` of all members of every piece into sum[count]: with masses, the pieces' masses. */
+void sm_pieces_sum(const SmPieces *pieces, long members, const double *value, double *sum);
+
+/* Signed volume between every piece of a surface and the origin, into volume[count]: what a closed
+ * piece holds. A hollow is a piece of its own, of negative volume. */
+void sm_pieces_volumes(const SmPieces *pieces, const SmMesh *mesh, double *volume);
+
+void sm_pieces_free(SmPieces *pieces);
+
+#endif
