@@ -48,7 +48,8 @@ static void attach_surface(BenchRecording *recording)
         return;
     }
     const OctStructure *s = oct_engine_structure(runner->engine);
-    oct_surface_build(&body->mesh, &body->voxels, &s->tree, &s->graph, &recording->carried);
+    oct_surface_build(&body->mesh, &(OctCarrier){&body->voxels, &s->tree, &s->graph, NULL},
+                      &recording->carried);
 }
 
 static SmCode check(const BenchRunner *runner, BenchRecord record, SmError *error)

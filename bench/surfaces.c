@@ -105,7 +105,8 @@ static SmCode make_octree(Statue *statue, SmError *error)
     SmCode code = oct_sampling_tree(&sampling, &statue->voxels, &tree, NULL, error);
     if (code) return code;
     oct_graph_build(&tree, &statue->voxels, &graph);
-    oct_surface_build(&statue->mesh, &statue->voxels, &tree, &graph, &statue->carried);
+    oct_surface_build(&statue->mesh, &(OctCarrier){&statue->voxels, &tree, &graph, NULL},
+                      &statue->carried);
     statue->node = sm_alloc((size_t)tree.leaves, sizeof *statue->node);
     for (long leaf = 0; leaf < tree.leaves; leaf++)
         turn(statue->carried.centre[leaf], statue->node[leaf]);
@@ -196,8 +197,7 @@ SmCode bench_surface_time(int threads, int repeats, BenchSurface *surface, SmErr
     surface->vertices = statue.mesh.vertex_count;
     surface->particles = statue.voxels.particle_count;
     surface->nodes = statue.carried.gradients.count;
-    surface->nodes_blended =
-        (double)statue.carried.first[surface->vertices] / (double)surface->vertices;
+    surface->nodes_blended = (double)statue.carried.rows.live / (double)surface->vertices;
     int before = omp_get_max_threads();
     omp_set_num_threads(threads); /* what deforms takes OpenMP's number */
     for (int k = 0; k < BENCH_SURFACE_KERNELS; k++) {

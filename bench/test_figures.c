@@ -296,7 +296,9 @@ static double volume_of(const Run *run)
     const OctStructure *structure = oct_engine_structure(run->runner.engine);
     const SmMesh *rest = &run->body.mesh;
     OctSurface surface;
-    oct_surface_build(rest, &run->body.voxels, &structure->tree, &structure->graph, &surface);
+    oct_surface_build(rest,
+                      &(OctCarrier){&run->body.voxels, &structure->tree, &structure->graph, NULL},
+                      &surface);
     SmMesh moved = *rest;
     moved.position = sm_alloc((size_t)rest->vertex_count, sizeof *moved.position);
     oct_surface_move(&surface, (const double(*)[3])run->x, moved.position, NULL);

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "../lib/polar.h"
-#include "distance.h"
 #include "lists.h"
 
 enum { FAR_EDGES = 64, CHUNK = 16 };
@@ -48,57 +47,67 @@ static void find_moments(const OctTree *tree, long k, const int *leaf, long coun
 }
 
 /* Leaves within `most` of leaf k, without itself, and their moments. */
-static int *reach_out(const OctTree *tree, OctReach *reach, long k, int most, long *count,
-                      Moments *m)
+static int *reach_out(const OctTree *tree, const OctGraph *graph, OctReach *reach, long k, int most,
+                      long *count, Moments *m)
 {
+    if (!reach->graph) oct_reach_init(reach, graph);
     oct_reach_from(reach, (int)k, most);
     *count = reach->count - 1;
     find_moments(tree, k, reach->reached + 1, *count, m);
     return reach->reached + 1;
 }
 
-/* The neighbours that leaf k is fitted to, into list n. */
-static void choose(const OctTree *tree, const OctGraph *graph, OctReach *reach, long k, long n,
-                   OctLists *lists)
+/* The neighbours that leaf k is fitted to; `most` becomes how far they were looked for. */
+static const int *choose(const OctTree *tree, const OctGraph *graph, OctReach *reach, long k,
+                         long *count, int *most)
 {
-    long first = graph->first[k], count = oct_graph_end(graph, k) - first;
-    const int *leaf = graph->to + first;
+    const int *leaf = graph->to + graph->first[k];
     Moments m;
-    find_moments(tree, k, leaf, count, &m);
-    if (m.span < 3) {
-        long more;
-        Moments wider;
-        int size = tree->size[tree->node[k]], most = 2 * size;
-        const int *found = reach_out(tree, reach, k, most, &more, &wider);
-        long before = 0;
-        while (wider.span < 2 && more > before && most < FAR_EDGES * size) {
-            before = more;
-            most *= 2;
-            found = reach_out(tree, reach, k, most, &more, &wider);
-        }
-        if (wider.span > m.span) {
-            leaf = found;
-            count = more;
-        }
+    *count = oct_graph_end(graph, k) - graph->first[k];
+    find_moments(tree, k, leaf, *count, &m);
+    *most = tree->size[tree->node[k]];
+    for (long n = 0; n < *count; n++) {
+        int length = graph->length[graph->first[k] + n];
+        if (length > *most) *most = length;
     }
-    oct_lists_add(lists, n, leaf, count);
+    if (m.span == 3) return leaf;
+    long more, before = 0;
+    Moments wider;
+    int size = tree->size[tree->node[k]], within = 2 * size;
+    const int *found = reach_out(tree, graph, reach, k, within, &more, &wider);
+    while (wider.span < 2 && more > before && within < FAR_EDGES * size) {
+        before = more;
+        within *= 2;
+        found = reach_out(tree, graph, reach, k, within, &more, &wider);
+    }
+    if (within > *most) *most = within;
+    if (wider.span <= m.span) return leaf;
+    *count = more;
+    return found;
 }
 
-static void choose_all(const OctTree *tree, const OctGraph *graph, OctGradients *g)
+static void choose_all(const OctTree *tree, const OctGraph *graph, const unsigned char *wanted,
+                       OctGradients *g)
 {
+    long *first;
+    int *neighbour;
     OctLists lists;
-    oct_lists_init(&lists, g->count);
+    oct_lists_init(&lists, g->leaves);
 #pragma omp parallel
     {
-        OctReach reach;
-        oct_reach_init(&reach, graph);
+        OctReach reach = {0};
 #pragma omp for schedule(dynamic)
         for (long block = 0; block < lists.blocks; block++)
-            for (long n = oct_lists_from(block); n < oct_lists_to(&lists, block); n++)
-                choose(tree, graph, &reach, g->leaf[n], n, &lists);
+            for (long k = oct_lists_from(block); k < oct_lists_to(&lists, block); k++) {
+                long count = 0;
+                if (!wanted[k]) continue;
+                const int *leaf = choose(tree, graph, &reach, k, &count, &g->reach[k]);
+                oct_lists_add(&lists, k, leaf, count);
+            }
         oct_reach_free(&reach);
     }
-    oct_lists_pack(&lists, &g->first, &g->neighbour);
+    oct_lists_pack(&lists, &first, &neighbour);
+    oct_rows_adopt(&g->rows, g->leaves, first, neighbour, 3 * sizeof(double));
 }
 
 /* sum over the directions, spanned or not, of value^power v v^T. */
@@ -113,42 +122,64 @@ static void compose(const Moments *m, bool spanned, double power, double M[9])
     }
 }
 
-static void neighbour_moments(const OctTree *tree, const OctGradients *g, long n, Moments *m)
+static void neighbour_moments(const OctTree *tree, const OctGradients *g, long k, Moments *m)
 {
-    find_moments(tree, g->leaf[n], g->neighbour + g->first[n], g->first[n + 1] - g->first[n], m);
+    find_moments(tree, k, g->rows.leaf + g->rows.first[k], g->rows.count[k], m);
 }
 
-/* Shares of the neighbours in list n; those of flat leaves come without the inverse. */
-static void share_out(const OctTree *tree, double cell, long n, OctGradients *g)
+/* Shares of leaf k's neighbours; those of flat leaves come without the inverse. */
+static void share_out(const OctTree *tree, long k, OctGradients *g)
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     Moments m;
     double inverse[9], d[3];
-    neighbour_moments(tree, g, n, &m);
-    g->span[g->leaf[n]] = (unsigned char)m.span;
+    double(*share)[3] = g->rows.value;
+    neighbour_moments(tree, g, k, &m);
+    g->span[k] = (unsigned char)m.span;
     compose(&m, true, -1, inverse);
     const double *apply = m.span == 3 ? inverse : identity;
-    for (long e = g->first[n]; e < g->first[n + 1]; e++) {
-        double scale = offset(tree, g->leaf[n], g->neighbour[e], d) / m.trace * 2 / cell;
+    for (long e = g->rows.first[k]; e < oct_rows_end(&g->rows, k); e++) {
+        double scale = offset(tree, k, g->rows.leaf[e], d) / m.trace * 2 / g->cell;
         for (int a = 0; a < 3; a++)
-            g->share[e][a] =
+            share[e][a] =
                 scale * (apply[3 * a] * d[0] + apply[3 * a + 1] * d[1] + apply[3 * a + 2] * d[2]);
     }
 }
 
-static void list_flats(const OctTree *tree, OctGradients *g)
+/* Takes a leaf into the flat ones, where there is room for all leaves, or out of them. */
+static void note_flat(const OctTree *tree, OctGradients *g, int k, bool flat)
 {
-    for (long n = 0; n < g->count; n++) g->flats += g->span[g->leaf[n]] < 3;
-    g->flat = sm_alloc((size_t)g->flats, sizeof *g->flat);
-    OctFlat *flat = g->flat;
-    for (long n = 0; n < g->count; n++) {
-        if (g->span[g->leaf[n]] == 3) continue;
-        Moments m;
-        neighbour_moments(tree, g, n, &m);
-        flat->leaf = g->leaf[n];
-        compose(&m, true, -1, flat->inverse);
-        compose(&m, false, 0, flat->beyond);
-        flat++;
+    Moments m;
+    int place = g->flat_place[k];
+    if (!flat && place >= 0) {
+        g->flat[place] = g->flat[--g->flats];
+        g->flat_place[g->flat[place].leaf] = place;
+        g->flat_place[k] = -1;
+    }
+    if (!flat) return;
+    if (place < 0) g->flat_place[k] = place = (int)g->flats++;
+    neighbour_moments(tree, g, k, &m);
+    g->flat[place].leaf = k;
+    compose(&m, true, -1, g->flat[place].inverse);
+    compose(&m, false, 0, g->flat[place].beyond);
+}
+
+static void make_room(OctGradients *g, long leaves)
+{
+    if (leaves > g->room) {
+        g->room = g->room ? 2 * leaves : leaves;
+        size_t room = (size_t)g->room;
+        g->leaf = sm_realloc(g->leaf, room, sizeof *g->leaf);
+        g->place = sm_realloc(g->place, room, sizeof *g->place);
+        g->span = sm_realloc(g->span, room, 1);
+        g->reach = sm_realloc(g->reach, room, sizeof *g->reach);
+        g->flat = sm_realloc(g->flat, room, sizeof *g->flat);
+        g->flat_place = sm_realloc(g->flat_place, room, sizeof *g->flat_place);
+    }
+    for (; g->leaves < leaves; g->leaves++) {
+        g->place[g->leaves] = g->flat_place[g->leaves] = -1;
+        g->span[g->leaves] = 0;
+        g->reach[g->leaves] = 0;
     }
 }
 
@@ -156,28 +187,63 @@ void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsig
                          double cell, OctGradients *gradients)
 {
     OctGradients *g = gradients;
-    *g = (OctGradients){.leaves = tree->leaves};
-    for (long k = 0; k < g->leaves; k++) g->count += wanted[k];
-    g->leaf = sm_alloc((size_t)g->count, sizeof *g->leaf);
-    for (long k = 0, n = 0; k < g->leaves; k++)
-        if (wanted[k]) g->leaf[n++] = (int)k;
-    choose_all(tree, graph, g);
-    g->share = sm_alloc((size_t)g->first[g->count], sizeof *g->share);
-    g->span = sm_alloc((size_t)g->leaves, 1);
+    *g = (OctGradients){.cell = cell};
+    make_room(g, tree->leaves);
+    choose_all(tree, graph, wanted, g);
+    for (int k = 0; k < g->leaves; k++) {
+        if (!wanted[k]) continue;
+        g->place[k] = (int)g->count;
+        g->leaf[g->count++] = k;
+    }
 #pragma omp parallel for schedule(static)
-    for (long n = 0; n < g->count; n++) share_out(tree, cell, n, g);
-    list_flats(tree, g);
+    for (long n = 0; n < g->count; n++) share_out(tree, g->leaf[n], g);
+    for (long n = 0; n < g->count; n++)
+        if (g->span[g->leaf[n]] < 3) note_flat(tree, g, g->leaf[n], true);
 }
 
 void oct_gradients_free(OctGradients *gradients)
 {
+    oct_rows_free(&gradients->rows);
     free(gradients->leaf);
-    free(gradients->first);
-    free(gradients->neighbour);
-    free(gradients->share);
+    free(gradients->place);
     free(gradients->span);
+    free(gradients->reach);
     free(gradients->flat);
+    free(gradients->flat_place);
     *gradients = (OctGradients){0};
+}
+
+void oct_gradients_grow(OctGradients *gradients, const OctTree *tree)
+{
+    make_room(gradients, tree->leaves);
+    oct_rows_grow(&gradients->rows, tree->leaves);
+}
+
+void oct_gradients_renew(OctGradients *gradients, const OctTree *tree, const OctGraph *graph,
+                         OctReach *search, int leaf)
+{
+    OctGradients *g = gradients;
+    long count;
+    const int *neighbour = choose(tree, graph, search, leaf, &count, &g->reach[leaf]);
+    if (g->place[leaf] < 0) {
+        g->place[leaf] = (int)g->count;
+        g->leaf[g->count++] = leaf;
+    }
+    oct_rows_set(&g->rows, leaf, count, neighbour);
+    share_out(tree, leaf, g);
+    note_flat(tree, g, leaf, g->span[leaf] < 3);
+}
+
+void oct_gradients_drop(OctGradients *gradients, int leaf)
+{
+    OctGradients *g = gradients;
+    int place = g->place[leaf];
+    if (place < 0) return;
+    g->leaf[place] = g->leaf[--g->count];
+    g->place[g->leaf[place]] = place;
+    g->place[leaf] = -1;
+    oct_rows_set(&g->rows, leaf, 0, NULL);
+    note_flat(NULL, g, leaf, false);
 }
 
 static void multiply(const double A[9], const double B[9], double C[9])
@@ -203,18 +269,20 @@ static void finish_flats(const OctGradients *g, long first, long last, double (*
 void oct_gradients_find(const OctGradients *gradients, const double (*x)[3], double (*F)[9])
 {
     const OctGradients *g = gradients;
+    const double(*share)[3] = g->rows.value;
 #pragma omp parallel
     {
 #pragma omp for schedule(static)
         for (long n = 0; n < g->count; n++) {
-            const double *own = x[g->leaf[n]];
+            int k = g->leaf[n];
+            const double *own = x[k];
             double sum[9] = {0};
-            for (long e = g->first[n]; e < g->first[n + 1]; e++)
+            for (long e = g->rows.first[k]; e < oct_rows_end(&g->rows, k); e++)
                 for (int a = 0; a < 3; a++) {
-                    double moved = x[g->neighbour[e]][a] - own[a];
-                    for (int b = 0; b < 3; b++) sum[3 * a + b] += moved * g->share[e][b];
+                    double moved = x[g->rows.leaf[e]][a] - own[a];
+                    for (int b = 0; b < 3; b++) sum[3 * a + b] += moved * share[e][b];
                 }
-            memcpy(F[g->leaf[n]], sum, sizeof sum);
+            memcpy(F[k], sum, sizeof sum);
         }
 #pragma omp for schedule(static)
         for (long n = 0; n < g->flats; n += CHUNK)

@@ -2,7 +2,8 @@
 #ifndef OCT_GRADIENT_H
 #define OCT_GRADIENT_H
 
-#include "graph.h"
+#include "distance.h"
+#include "rows.h"
 
 /* A leaf whose neighbours span less than space. */
 typedef struct {
@@ -19,13 +20,18 @@ typedef struct {
  * line it is the smallest rotation that takes the line along, and of a node alone the identity. */
 typedef struct {
     long leaves, count; /* of the tree; that are wanted */
-    int *leaf;          /* [count] those wanted, rising */
-    long *first;        /* [count + 1] */
-    int *neighbour;     /* leaves */
-    double (*share)[3]; /* of every neighbour, 1 / mesh unit; of a flat leaf still to be inverted */
+    int *leaf;          /* [count] those wanted */
+    OctRows rows; /* of every leaf: its neighbours; double [3] share of each, 1 / mesh unit, of a
+                     flat leaf still to be inverted */
+    int *place;   /* [leaves] in `leaf`, or -1 */
     unsigned char *span; /* [leaves] dimensions that the neighbours of those wanted span, 0 to 3 */
+    int *reach;          /* [leaves] half finest cells: what is farther from a wanted one's centre,
+                            in the max norm, makes no difference to it */
     long flats;
     OctFlat *flat;
+    int *flat_place; /* [leaves] in `flat`, or -1 */
+    double cell;
+    long room; /* for leaves */
 } OctGradients;
 
 /* Neighbours are those of the visibility graph; where these span less than space, the leaves within
@@ -36,6 +42,17 @@ typedef struct {
 void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsigned char *wanted,
                          double cell, OctGradients *gradients);
 void oct_gradients_free(OctGradients *gradients);
+
+/* Where tree and graph have changed: room for the tree's leaf numbers, of which new ones are not
+ * wanted; then every leaf anew whose F is wanted though it was not, or that has something changed
+ * within its reach. `search` is of the graph as it is now, or zeroed and made so when one is
+ * needed. */
+void oct_gradients_grow(OctGradients *gradients, const OctTree *tree);
+void oct_gradients_renew(OctGradients *gradients, const OctTree *tree, const OctGraph *graph,
+                         OctReach *search, int leaf);
+
+/* A leaf's F is not wanted any more; no matter if it was not. */
+void oct_gradients_drop(OctGradients *gradients, int leaf);
 
 /* F of every leaf that is wanted, row-major, into F[leaf], from the leaves' positions in mesh
  * units. Allocates nothing; any number of threads gives the same bits. O(neighbours). */

@@ -4,109 +4,123 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/nearest_cell.h"
 #include "../lib/vector.h"
 #include "lists.h"
+#include "tie.h"
 
-/* What a surface is tied to. */
-typedef struct {
-    const SmVoxels *voxels;
-    const OctTree *tree;
-    const OctGraph *graph;
-} Carrier;
-
-/* The leaf that holds X, and X in half finest cells, moved into the nearest material cell. */
-static int find_leaf(const Carrier *c, const double X[3], double q[3])
+static void find_centre(const OctCarrier *c, int leaf, OctSurface *s)
 {
-    int cell[3];
-    for (int d = 0; d < 3; d++) q[d] = (X[d] - c->voxels->origin[d]) / c->voxels->cell;
-    sm_nearest_cell(c->voxels, q, cell);
-    for (int d = 0; d < 3; d++) q[d] = 2 * fmin(fmax(q[d], cell[d]), cell[d] + 1);
-    return c->tree->leaf[oct_tree_find(c->tree, cell[0], cell[1], cell[2])];
+    for (int d = 0; d < 3; d++)
+        s->centre[leaf][d] =
+            c->voxels->origin[d] + 0.5 * c->voxels->cell * c->tree->centre[c->tree->node[leaf]][d];
 }
 
-/* w_k at place q, not yet made to add up to 1: along each axis 1 at the node, 1/2 at its cell's
- * side, 0 at a cell's width, with slope 0 at both ends. */
-static double weigh(const OctTree *tree, int leaf, const double q[3])
+static void find_normals(const SmMesh *mesh, const OctCarrier *c, OctSurface *s)
 {
-    int node = tree->node[leaf];
-    double size = tree->size[node], weight = 1 / size;
-    for (int d = 0; d < 3; d++) {
-        double t = fmin(fabs(q[d] - tree->centre[node][d]) / size, 1);
-        weight *= (1 - t) * (1 - t) * (1 + 2 * t);
-    }
-    return weight;
-}
-
-/* The nodes that move a vertex, into its list; not those that nobody would see. */
-static void choose(const Carrier *c, const double X[3], long vertex, OctLists *lists)
-{
-    double q[3];
-    int own = find_leaf(c, X, q);
-    double least = 1e-9 * weigh(c->tree, own, q);
-    oct_lists_add(lists, vertex, &own, 1);
-    for (long e = c->graph->first[own]; e < oct_graph_end(c->graph, own); e++)
-        if (weigh(c->tree, c->graph->to[e], q) > least)
-            oct_lists_add(lists, vertex, &c->graph->to[e], 1);
-}
-
-static void share_out(const Carrier *c, long vertex, OctSurface *s)
-{
-    double q[3], sum = 0;
-    find_leaf(c, s->rest[vertex], q);
-    for (long n = s->first[vertex]; n < s->first[vertex + 1]; n++)
-        sum += weigh(c->tree, s->leaf[n], q);
-    for (long n = s->first[vertex] + 1; n < s->first[vertex + 1]; n++)
-        s->weight[n] = (float)(weigh(c->tree, s->leaf[n], q) / sum);
-}
-
-static void copy_rest(const SmMesh *mesh, const Carrier *c, OctSurface *s)
-{
+    free(s->normal);
     s->normal = sm_mesh_normals(mesh, c->voxels->cell);
-    s->rest = sm_alloc((size_t)s->vertices, sizeof *s->rest);
-    s->centre = sm_alloc((size_t)c->tree->leaves, sizeof *s->centre);
-    s->F = sm_alloc((size_t)c->tree->leaves, sizeof *s->F);
-    for (long v = 0; v < s->vertices; v++) {
-        memcpy(s->rest[v], mesh->position[v], sizeof s->rest[v]);
-        sm_normalize(s->normal[v]);
-    }
-    for (long k = 0; k < c->tree->leaves; k++)
-        if (c->tree->node[k] >= 0)
-            oct_tree_centre(c->tree, c->voxels, c->tree->node[k], s->centre[k]);
+    for (long v = 0; v < mesh->vertex_count; v++) sm_normalize(s->normal[v]);
 }
 
-void oct_surface_build(const SmMesh *mesh, const SmVoxels *voxels, const OctTree *tree,
-                       const OctGraph *graph, OctSurface *surface)
+/* Room for the leaves of the tree and the vertices of the mesh, whose places are taken. */
+static void make_room(OctSurface *s, long leaves, const SmMesh *mesh)
 {
-    Carrier c = {voxels, tree, graph};
-    *surface = (OctSurface){.vertices = mesh->vertex_count};
-    copy_rest(mesh, &c, surface);
+    long vertices = mesh->vertex_count, before = s->vertices;
+    if (leaves > s->leaf_room) {
+        s->leaf_room = s->leaf_room ? 2 * leaves : leaves;
+        s->centre = sm_realloc(s->centre, (size_t)s->leaf_room, sizeof *s->centre);
+        s->F = sm_realloc(s->F, (size_t)s->leaf_room, sizeof *s->F);
+        s->users = sm_realloc(s->users, (size_t)s->leaf_room, sizeof *s->users);
+    }
+    for (; s->leaves < leaves; s->leaves++) s->users[s->leaves] = 0;
+    if (vertices > s->vertex_room) {
+        s->vertex_room = s->vertex_room ? 2 * vertices : vertices;
+        s->rest = sm_realloc(s->rest, (size_t)s->vertex_room, sizeof *s->rest);
+        s->reach = sm_realloc(s->reach, (size_t)s->vertex_room, sizeof *s->reach);
+    }
+    if (vertices > before)
+        memcpy(s->rest[before], mesh->position[before],
+               (size_t)(vertices - before) * sizeof *s->rest);
+    s->vertices = vertices;
+}
+
+/* Which leaves move every vertex; the weights come when the lists lie still. */
+static void tie_all(const OctCarrier *c, OctSurface *s)
+{
     OctLists lists;
-    oct_lists_init(&lists, surface->vertices);
-#pragma omp parallel for schedule(dynamic)
-    for (long block = 0; block < lists.blocks; block++)
-        for (long v = oct_lists_from(block); v < oct_lists_to(&lists, block); v++)
-            choose(&c, surface->rest[v], v, &lists);
-    oct_lists_pack(&lists, &surface->first, &surface->leaf);
-    unsigned char *wanted = sm_alloc((size_t)tree->leaves, 1);
-    for (long n = 0; n < surface->first[surface->vertices]; n++) wanted[surface->leaf[n]] = 1;
-    oct_gradients_build(tree, graph, wanted, voxels->cell, &surface->gradients);
+    long *first;
+    int *leaf;
+    oct_lists_init(&lists, s->vertices);
+#pragma omp parallel
+    {
+        OctTie tie = {0};
+#pragma omp for schedule(dynamic)
+        for (long block = 0; block < lists.blocks; block++)
+            for (long v = oct_lists_from(block); v < oct_lists_to(&lists, block); v++) {
+                oct_tie_find(c, s->rest[v], &tie);
+                oct_lists_add(&lists, v, tie.leaf, tie.count);
+                s->reach[v] = (float)(tie.reach * (1 + 1e-6));
+            }
+        oct_tie_free(&tie);
+    }
+    oct_lists_pack(&lists, &first, &leaf);
+    oct_rows_adopt(&s->rows, s->vertices, first, leaf, sizeof(float));
+    float *weight = s->rows.value;
+#pragma omp parallel
+    {
+        OctTie tie = {0};
+#pragma omp for schedule(dynamic, OCT_BLOCK)
+        for (long v = 0; v < s->vertices; v++) {
+            oct_tie_find(c, s->rest[v], &tie);
+            memcpy(weight + s->rows.first[v], tie.weight, (size_t)tie.count * sizeof *weight);
+        }
+        oct_tie_free(&tie);
+    }
+}
+
+void oct_surface_build(const SmMesh *mesh, const OctCarrier *carrier, OctSurface *surface)
+{
+    OctSurface *s = surface;
+    long leaves = carrier->tree->leaves;
+    *s = (OctSurface){0};
+    make_room(s, leaves, mesh);
+    find_normals(mesh, carrier, s);
+    for (int k = 0; k < leaves; k++)
+        if (carrier->tree->node[k] >= 0) find_centre(carrier, k, s);
+    tie_all(carrier, s);
+    unsigned char *wanted = sm_alloc((size_t)leaves, 1);
+    for (long v = 0; v < s->vertices; v++)
+        for (long n = s->rows.first[v]; n < oct_rows_end(&s->rows, v); n++)
+            s->users[s->rows.leaf[n]]++;
+    for (long k = 0; k < leaves; k++) wanted[k] = s->users[k] > 0;
+    oct_gradients_build(carrier->tree, carrier->graph, wanted, carrier->voxels->cell,
+                        &s->gradients);
     free(wanted);
-    surface->weight = sm_alloc((size_t)surface->first[surface->vertices], sizeof *surface->weight);
-#pragma omp parallel for schedule(static)
-    for (long v = 0; v < surface->vertices; v++) share_out(&c, v, surface);
+}
+
+void oct_surface_grow(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier,
+                      long count, const int *node)
+{
+    long before = surface->vertices;
+    make_room(surface, carrier->tree->leaves, mesh);
+    oct_rows_grow(&surface->rows, surface->vertices);
+    oct_gradients_grow(&surface->gradients, carrier->tree);
+    if (surface->vertices > before) find_normals(mesh, carrier, surface);
+    for (long n = 0; n < count; n++)
+        if (carrier->tree->leaf[node[n]] >= 0)
+            find_centre(carrier, carrier->tree->leaf[node[n]], surface);
 }
 
 void oct_surface_free(OctSurface *surface)
 {
     oct_gradients_free(&surface->gradients);
+    oct_rows_free(&surface->rows);
     free(surface->centre);
     free(surface->rest);
     free(surface->normal);
-    free(surface->first);
-    free(surface->leaf);
-    free(surface->weight);
     free(surface->F);
+    free(surface->reach);
+    free(surface->users);
     *surface = (OctSurface){0};
 }
 
@@ -125,10 +139,12 @@ static inline void carry(const OctSurface *s, const double (*x)[3], int k, const
 static inline void blend(const OctSurface *s, const double (*x)[3], long v, double position[3])
 {
     double first[3], other[3], sum[3] = {0};
-    carry(s, x, s->leaf[s->first[v]], s->rest[v], first);
-    for (long n = s->first[v] + 1; n < s->first[v + 1]; n++) {
-        carry(s, x, s->leaf[n], s->rest[v], other);
-        for (int d = 0; d < 3; d++) sum[d] += (double)s->weight[n] * (other[d] - first[d]);
+    const float *weight = s->rows.value;
+    long n = s->rows.first[v];
+    carry(s, x, s->rows.leaf[n], s->rest[v], first);
+    while (++n < oct_rows_end(&s->rows, v)) {
+        carry(s, x, s->rows.leaf[n], s->rest[v], other);
+        for (int d = 0; d < 3; d++) sum[d] += (double)weight[n] * (other[d] - first[d]);
     }
     for (int d = 0; d < 3; d++) position[d] = first[d] + sum[d];
 }
@@ -138,11 +154,13 @@ static inline void blend(const OctSurface *s, const double (*x)[3], long v, doub
 static inline void turn_normal(const OctSurface *s, long v, double normal[3])
 {
     static const double collapsed = 1e-12;
-    const double *first = s->F[s->leaf[s->first[v]]];
+    const float *weight = s->rows.value;
+    const double *first = s->F[s->rows.leaf[s->rows.first[v]]];
     double G[9], largest = 0;
     memcpy(G, first, sizeof G);
-    for (long n = s->first[v] + 1; n < s->first[v + 1]; n++)
-        for (int i = 0; i < 9; i++) G[i] += (double)s->weight[n] * (s->F[s->leaf[n]][i] - first[i]);
+    for (long n = s->rows.first[v] + 1; n < oct_rows_end(&s->rows, v); n++)
+        for (int i = 0; i < 9; i++)
+            G[i] += (double)weight[n] * (s->F[s->rows.leaf[n]][i] - first[i]);
     for (int i = 0; i < 9; i++) largest = fmax(largest, fabs(G[i]));
     for (int a = 0; a < 3; a++) {
         int p = (a + 1) % 3 * 3, q = (a + 2) % 3 * 3;

@@ -45,7 +45,8 @@ static void scatter(unsigned *seed, const SmVoxels *voxels, long count, SmMesh *
 /* Ties the mesh to the body, and puts the nodes at rest. */
 static void attach(Body *body)
 {
-    oct_surface_build(&body->mesh, &body->voxels, &body->tree, &body->graph, &body->surface);
+    oct_surface_build(&body->mesh, &(OctCarrier){&body->voxels, &body->tree, &body->graph, NULL},
+                      &body->surface);
     size_t leaves = (size_t)body->tree.leaves, vertices = (size_t)body->mesh.vertex_count;
     body->x = sm_alloc(leaves, sizeof *body->x);
     body->position = sm_alloc(vertices, sizeof *body->position);
@@ -106,8 +107,8 @@ static void random_motion(unsigned *seed, double stretch, double A[3][3], double
 /* Do the neighbours of all nodes that move a vertex span that many dimensions? */
 static bool spans(const OctSurface *s, long v, int dimensions)
 {
-    for (long n = s->first[v]; n < s->first[v + 1]; n++)
-        if (s->gradients.span[s->leaf[n]] < dimensions) return false;
+    for (long n = s->rows.first[v]; n < oct_rows_end(&s->rows, v); n++)
+        if (s->gradients.span[s->rows.leaf[n]] < dimensions) return false;
     return true;
 }
 
@@ -176,11 +177,12 @@ static void weights_are_a_partition_of_unity(void **state)
         Body body;
         make_body(&seed, trial % 6, 100, &body);
         const OctSurface *s = &body.surface;
+        const float *weight = s->rows.value;
         for (long v = 0; v < s->vertices; v++) {
             double others = 0;
-            for (long n = s->first[v] + 1; n < s->first[v + 1]; n++) {
-                assert_true(s->weight[n] > 0 && s->leaf[n] != s->leaf[s->first[v]]);
-                others += (double)s->weight[n];
+            for (long n = s->rows.first[v] + 1; n < oct_rows_end(&s->rows, v); n++) {
+                assert_true(weight[n] > 0 && s->rows.leaf[n] != s->rows.leaf[s->rows.first[v]]);
+                others += (double)weight[n];
             }
             /* its own weight is 1/8 of its most at least */
             assert_true(others >= 0 && others < 1 - 1e-3);
@@ -222,8 +224,9 @@ static void weights_of_a_lattice_are_the_kernel(void **state)
         }
         if (least < 1 || most > 15) continue;
         inner++;
-        for (long n = body.surface.first[v] + 1; n < body.surface.first[v + 1]; n++)
-            others += (double)body.surface.weight[n];
+        const OctRows *rows = &body.surface.rows;
+        for (long n = rows->first[v] + 1; n < oct_rows_end(rows, v); n++)
+            others += (double)((const float *)rows->value)[n];
         assert_true(fabs(others + own - 1) < 1e-6);
     }
     assert_true(inner > 100);
@@ -359,7 +362,8 @@ static void any_number_of_threads_gives_the_same_bits(void **state)
     memcpy(one, body.position, 2000 * sizeof *one);
     omp_set_num_threads(3);
     oct_surface_free(&body.surface);
-    oct_surface_build(&body.mesh, &body.voxels, &body.tree, &body.graph, &body.surface);
+    oct_surface_build(&body.mesh, &(OctCarrier){&body.voxels, &body.tree, &body.graph, NULL},
+                      &body.surface);
     move(&body);
     omp_set_num_threads(before);
     assert_memory_equal(one, body.position, 2000 * sizeof *one);

@@ -1,0 +1,29 @@
+/* tie.h - which leaves move a vertex of a surface, and by how much (surface.h). */
+#ifndef OCT_TIE_H
+#define OCT_TIE_H
+
+#include "surface.h"
+
+/* A vertex on its way to being tied; `leaf` and `weight` have room for all leaves that can move
+ * one. */
+typedef struct {
+    double q[3];  /* its place, or the nearest in the material, half finest cells */
+    double reach; /* mesh units (surface.h) */
+    int own;
+    long count, room;
+    int *leaf;
+    float *weight;
+} OctTie;
+
+void oct_tie_free(OctTie *tie);
+
+/* Finds the leaves that move a vertex at X, the one it belongs to first, and their weights. `tie`
+ * is zeroed at first, and used for any number of vertices. */
+void oct_tie_find(const OctCarrier *carrier, const double X[3], OctTie *tie);
+
+/* Room in a surface for the tree's leaves, of which those of the nodes given are new, and for the
+ * mesh's vertices; new ones have a place and a normal, but belong to no leaf yet. */
+void oct_surface_grow(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier,
+                      long count, const int *node);
+
+#endif
