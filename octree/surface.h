@@ -14,8 +14,8 @@
  *
  * Where material has been cut, a vertex stays with its side: no node moves it if the segment to
  * that node's centre at rest crosses the cut. A leaf's cell may have material on both sides; a
- * vertex that cannot see its centre belongs to the nearest leaf that it sees, near by, or, if there
- * is none, to that one after all. */
+ * vertex that cannot see its centre belongs to the nearest leaf that it sees, within a base cell's
+ * size, or, if there is none, to that one after all. */
 #ifndef OCT_SURFACE_H
 #define OCT_SURFACE_H
 

@@ -88,8 +88,8 @@ static double find_own(const OctCarrier *c, const double X[3], OctTie *tie)
     int node = oct_tree_find(c->tree, cell[0], cell[1], cell[2]);
     tie->own = c->tree->leaf[node];
     if (sees(c, X, node)) return 0;
-    double distance = c->tree->size[node];
-    for (int round = 0; round < 2; round++, distance *= 2) {
+    double distance = c->tree->size[node], base = 2 << c->tree->levels;
+    for (; distance <= base; distance *= 2) {
         Search s = {.carrier = c, .X = X, .q = tie->q, .best = -1};
         search_around(&s, distance);
         if (s.best >= 0) {
