@@ -1,5 +1,6 @@
 /* engine.c - FastLSM behind engine.h: one body, or many that share a lattice. */
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -263,7 +264,7 @@ static void engine_step(SmEngine *e, SmLaps *laps)
         lsm_step(lsm, laps);
     }
     move_held(e);
-    if (lsm->params.strain_limit > 0) lsm_fracture(lsm);
+    if (lsm->params.strain_limit > 0 && isfinite(lsm->params.strain_limit)) lsm_fracture(lsm);
     if (lsm->steps % RECENTRE_STEPS == 0) {
         if (e->crowd)
             crowd_recentre(e->crowd);
@@ -271,6 +272,37 @@ static void engine_step(SmEngine *e, SmLaps *laps)
             shift_obstacles(lsm);
     }
     sm_lap(laps, SM_OTHER);
+}
+
+static SmCode engine_cut(SmEngine *e, const SmCut *cut, long first, SmError *error)
+{
+    if (!(e->lsm->params.strain_limit > 0))
+        return sm_fail(error, SM_USAGE,
+                       "cut: the body was not made to be cut; create it with a strain_limit, "
+                       "INFINITY if it is to break in no other way");
+    lsm_cut(e->lsm, e->turn, cut, first);
+    return SM_OK;
+}
+
+/* Links go over from the lattice's numbers to the engine's. */
+static void engine_pieces(SmEngine *e, SmPieces *pieces)
+{
+    const LsmLattice *l = &e->lsm->lattice;
+    int *outer = sm_alloc((size_t)e->count, sizeof *outer);
+    for (long p = 0; p < e->count; p++) outer[e->inner[p]] = (int)p;
+    sm_pieces_init(e->count, pieces);
+    for (long p = 0; p < e->count; p++) {
+        const int *c = l->coord[p];
+        uint32_t later = l->link[p] >> (LSM_SELF + 1) << (LSM_SELF + 1);
+        for (; later; later &= later - 1) {
+            int bit = __builtin_ctz(later);
+            long q =
+                lsm_lattice_find(l, c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1);
+            sm_pieces_link(pieces, outer[p], outer[q]);
+        }
+    }
+    sm_pieces_finish(pieces, NULL, e->count);
+    free(outer);
 }
 
 static double kilograms(const SmEngine *e, long number)
@@ -370,5 +402,7 @@ const SmEngineType SM_NAME(fastlsm_engine) = {
     .bound = engine_bound,
     .masses = engine_masses,
     .count = engine_count,
+    .cut = engine_cut,
+    .pieces = engine_pieces,
     .region = engine_region,
 };

@@ -1,5 +1,6 @@
 #include "fracture.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -248,11 +249,25 @@ long lsm_break(Lsm *lsm, long count, const LsmLink *link)
     return work;
 }
 
+/* Links to be broken. */
+typedef struct {
+    LsmLink *link;
+    long count, room;
+} Links;
+
+static void add_link(Links *links, long p, int bit)
+{
+    if (links->count == links->room) {
+        links->room = 2 * links->room + 64;
+        links->link = sm_realloc(links->link, (size_t)links->room, sizeof *links->link);
+    }
+    links->link[links->count++] = (LsmLink){(int)p, bit};
+}
+
 void lsm_fracture(Lsm *lsm)
 {
     const LsmLattice *l = &lsm->lattice;
-    LsmLink *link = NULL;
-    long count = 0, room = 0;
+    Links links = {0};
     for (long p = 0; p < l->count; p++)
         for (uint32_t rest = l->link[p] >> (LSM_SELF + 1) << (LSM_SELF + 1); rest;
              rest &= rest - 1) {
@@ -260,15 +275,75 @@ void lsm_fracture(Lsm *lsm)
             const int *c = l->coord[p];
             long q =
                 lsm_lattice_find(l, c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1);
-            if (!too_long(lsm, p, q)) continue;
-            if (count == room) {
-                room = 2 * room + 64;
-                link = sm_realloc(link, (size_t)room, sizeof *link);
-            }
-            link[count++] = (LsmLink){(int)p, bit};
+            if (too_long(lsm, p, q)) add_link(&links, p, bit);
         }
-    if (count) lsm_break(lsm, count, link);
-    free(link);
+    if (links.count) lsm_break(lsm, links.count, links.link);
+    free(links.link);
+}
+
+/* A place in lattice cells, as it is in the cut's axes. */
+static void place_in(const Lsm *lsm, int turn, const int coord[3], double place[3])
+{
+    const LsmLattice *l = &lsm->lattice;
+    for (int d = 0; d < 3; d++) place[(d + turn) % 3] = l->origin[d] + l->cell * coord[d];
+}
+
+/* The links of particle p to later ones, where they cross the cut. */
+static void cut_links(const Lsm *lsm, int turn, const SmCut *cut, long first, long p, Links *links)
+{
+    const LsmLattice *l = &lsm->lattice;
+    const int *c = l->coord[p];
+    double from[3], to[3];
+    place_in(lsm, turn, c, from);
+    for (uint32_t rest = l->link[p] >> (LSM_SELF + 1) << (LSM_SELF + 1); rest; rest &= rest - 1) {
+        int bit = __builtin_ctz(rest);
+        int near[3] = {c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1};
+        place_in(lsm, turn, near, to);
+        if (sm_cut_crosses(cut, first, from, to)) add_link(links, p, bit);
+    }
+}
+
+/* The box of lattice sites whose links a triangle can cross. */
+static void sites_near(const Lsm *lsm, int turn, const SmCut *cut, long triangle, int low[3],
+                       int high[3])
+{
+    const LsmLattice *l = &lsm->lattice;
+    for (int d = 0; d < 3; d++) {
+        double least = INFINITY, most = -INFINITY;
+        for (int i = 0; i < 3; i++) {
+            double at = cut->vertex[cut->triangle[triangle][i]][(d + turn) % 3];
+            least = fmin(least, (at - l->origin[d]) / l->cell);
+            most = fmax(most, (at - l->origin[d]) / l->cell);
+        }
+        low[d] = (int)fmin(fmax(floor(least) - 1, 0), l->size[d]);
+        high[d] = (int)fmax(fmin(ceil(most) + 1, l->size[d] - 1), -1);
+    }
+}
+
+/* Every particle near is looked at once: the marks are those of lsm_break(). */
+long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first)
+{
+    List seen = {0};
+    Links links = {0};
+    long before = lsm->broken;
+    for (long t = first; t < cut->triangles; t++) {
+        int low[3], high[3];
+        sites_near(lsm, turn, cut, t, low, high);
+        for (int z = low[2]; z <= high[2]; z++)
+            for (int y = low[1]; y <= high[1]; y++)
+                for (int x = low[0]; x <= high[0]; x++) {
+                    long p = lsm_lattice_find(&lsm->lattice, x, y, z);
+                    if (p < 0 || lsm->mark[p]) continue;
+                    lsm->mark[p] = NEAR;
+                    append(&seen, p);
+                    cut_links(lsm, turn, cut, first, p, &links);
+                }
+    }
+    for (long i = 0; i < seen.count; i++) lsm->mark[seen.particle[i]] = 0;
+    if (links.count) lsm_break(lsm, links.count, links.link);
+    free(seen.particle);
+    free(links.link);
+    return lsm->broken - before;
 }
 
 bool lsm_recentre(Lsm *lsm)

@@ -2,10 +2,12 @@
 #ifndef LSM_FRACTURE_H
 #define LSM_FRACTURE_H
 
+#include "../lib/cut.h"
 #include "state.h"
 
 #define lsm_break    SM_NAME(lsm_break)
 #define lsm_fracture SM_NAME(lsm_fracture)
+#define lsm_cut      SM_NAME(lsm_cut)
 #define lsm_recentre SM_NAME(lsm_recentre)
 
 /* The link of a particle to its neighbour at ring offset `bit` (lattice.h). */
@@ -24,6 +26,11 @@ long lsm_break(Lsm *lsm, long count, const LsmLink *link);
 /* Breaks every link longer than strain_limit times its rest length (fastlsm section 4). Allocates
  * when something broke. */
 void lsm_fracture(Lsm *lsm);
+
+/* Breaks every link whose segment at rest crosses one of the cut's triangles from number `first`
+ * on. Axis d of the lattice is axis (d + turn) % 3 of the cut (turn.h). Returns how many are
+ * broken. O(lattice sites in the triangles' boxes), and lsm_break()'s work. */
+long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first);
 
 /* Moves the origin to the body's middle, by whole cells, once it has drifted: single precision
  * resolves positions best near zero. Returns whether it moved. */

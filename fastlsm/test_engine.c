@@ -173,6 +173,73 @@ static void test_fracture(void **state)
     }
 }
 
+/* A long block, which the engine turns inside, cut across by a plane: two pieces that fall apart,
+ * each with its own mass; a body that was not made for it says so. */
+static void test_cut(void **state)
+{
+    (void)state;
+    for (int trial = 0; trial < 12; trial++) {
+        Body body;
+        int axis = trial / 2 % 3, size[3] = {4, 4, 4};
+        const SmEngineType *type = engines[trial % 2];
+        size[axis] = 13;
+        block(&body, size[0], size[1], size[2]);
+        memcpy(body.x, body.x0, (size_t)body.n * sizeof *body.x);
+        SmEngine *engine = create(type, &body, (SmEngineParams){.w = 1, .h = 0.01});
+        SmCut cut;
+        SmError error;
+        double cell = body.voxels.cell;
+        sm_cut_init(&cut, 2 * cell);
+        for (int n = 0; n < 4; n++) {
+            double at[3];
+            for (int d = 0; d < 3; d++) {
+                bool high = d == (axis + 1) % 3 ? n % 2 : n / 2;
+                at[d] = body.voxels.origin[d] + cell * (d == axis ? 5.5 : high ? 20 : -20);
+            }
+            sm_cut_vertex(&cut, at);
+        }
+        sm_cut_triangle(&cut, (int[3]){0, 1, 3});
+        sm_cut_triangle(&cut, (int[3]){0, 3, 2});
+        assert_int_equal(type->cut(engine, &cut, 0, &error), SM_USAGE);
+        type->destroy(engine);
+        SmEngineParams params = {
+            .w = 1, .h = 0.01, .strain_limit = INFINITY, .layout = (SmLayout)(trial / 6 % 2 + 1)};
+        engine = create(type, &body, params);
+        SmPieces pieces;
+        type->pieces(engine, &pieces);
+        assert_int_equal(pieces.count, 1);
+        sm_pieces_free(&pieces);
+        assert_int_equal(type->cut(engine, &cut, 0, &error), SM_OK);
+        type->pieces(engine, &pieces);
+        assert_int_equal(pieces.count, 2);
+        SmCounts counts;
+        type->count(engine, &counts);
+        assert_int_equal(counts.broken, 25 + 4 * 2 * 2 * 5 + 4 * 4 * 4); /* faces, edges, corners */
+        double mass[2], *each = sm_alloc((size_t)body.n, sizeof *each);
+        type->masses(engine, each);
+        sm_pieces_sum(&pieces, body.n, each, mass);
+        for (long p = 0; p < body.n; p++) {
+            bool beyond = (body.x0[p][axis] - body.voxels.origin[axis]) / cell > 5.5;
+            assert_int_equal(pieces.piece[p], beyond);
+            mass[beyond] -= body.m[p];
+            body.v[p][axis] = beyond ? 1 : -1;
+            body.v[p][(axis + 1) % 3] = body.v[p][(axis + 2) % 3] = 0;
+        }
+        assert_true(fabs(mass[0]) < 1e-4 && fabs(mass[1]) < 1e-4);
+        type->set(engine, SM_VELOCITY, (const double(*)[3])body.v);
+        for (int step = 0; step < 50; step++) type->step(engine, NULL);
+        type->get(engine, SM_POSITION, body.x);
+        for (long p = 0; p < body.n; p++)
+            for (int d = 0; d < 3; d++)
+                assert_true(fabs(body.x[p][d] - body.x0[p][d] - 0.5 * body.v[p][d]) < 1e-4);
+        free(each);
+        sm_pieces_free(&pieces);
+        sm_cut_free(&cut);
+        type->destroy(engine);
+        body_free(&body);
+    }
+}
+
 /* Falling 10,000 cells far, goals stay as exact as at home. */
 static void test_journey(void **state)
 {
@@ -254,10 +321,10 @@ static void test_mass_unit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_handles),   cmocka_unit_test(test_obstacles),
-        cmocka_unit_test(test_instances), cmocka_unit_test(test_fracture),
-        cmocka_unit_test(test_journey),   cmocka_unit_test(test_bad_parameters),
-        cmocka_unit_test(test_mass_unit),
+        cmocka_unit_test(test_handles),        cmocka_unit_test(test_obstacles),
+        cmocka_unit_test(test_instances),      cmocka_unit_test(test_cut),
+        cmocka_unit_test(test_fracture),       cmocka_unit_test(test_journey),
+        cmocka_unit_test(test_bad_parameters), cmocka_unit_test(test_mass_unit),
     };
     return cmocka_run_group_tests_name("fastlsm_engine", tests, NULL, NULL);
 }

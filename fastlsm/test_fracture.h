@@ -241,6 +241,71 @@ static void test_equal_to_rebuild(void **state)
     if (rebuilt > TRIALS / 10) fail_msg("%d bodies of %d were rebuilt", rebuilt, TRIALS);
 }
 
+/* Planes and random triangles anywhere, through sites, along cells, the same again: the links that
+ * the reference finds crossed, one by one, and the state that a rebuild has without them. */
+static void random_cut(unsigned *seed, const Body *body, SmCut *cut)
+{
+    int axis = random_int(seed, 3), kind = random_int(seed, 3);
+    double at = random_int(seed, 2 * body->voxels.size[axis]) / 2.0 + body->voxels.origin[axis];
+    if (cut->vertices == 0 || random_int(seed, 5))
+        for (int i = 0; i < 3; i++) {
+            double place[3];
+            for (int d = 0; d < 3; d++) {
+                place[d] = body->voxels.origin[d] + 1.4 * random_unit(seed) * body->voxels.size[d];
+                if (kind == 0) place[d] = rint(place[d]);
+            }
+            if (kind == 1) place[axis] = at;
+            sm_cut_vertex(cut, place);
+        }
+    int last = (int)cut->vertices - 1;
+    sm_cut_triangle(cut, (int[3]){last, last - 1, last - 2});
+}
+
+static void test_cut_breaks_what_it_crosses(void **state)
+{
+    (void)state;
+    unsigned seed = 9;
+    long broken = 0;
+    for (int trial = 0; trial < TRIALS / 3; trial++) {
+        Body body;
+        make_body(&seed, trial / 8 % 6, 5, &body);
+        SmLayout layout = trial / 4 % 2 ? SM_LAYOUT_BLOCKS : SM_LAYOUT_LISTS;
+        Lsm *lsm = breakable(&body, 1 + trial % 3, layout, 0),
+            *twin = breakable(&body, 1 + trial % 3, layout, 0);
+        const LsmLattice *l = &twin->lattice;
+        Breaks breaks = {0};
+        SmCut cut;
+        sm_cut_init(&cut, 2);
+        for (int batch = 0; batch < 4; batch++) {
+            long first = cut.triangles, known = breaks.count;
+            for (int n = random_int(&seed, 3); n >= 0; n--) random_cut(&seed, &body, &cut);
+            for (long p = 0; p < l->count; p++)
+                for (int bit = LSM_SELF + 1; bit < LSM_RING; bit++) {
+                    double to[3];
+                    for (int d = 0; d < 3; d++)
+                        to[d] = body.x0[p][d] +
+                                (d == 0   ? bit % 3
+                                 : d == 1 ? bit / 3 % 3
+                                          : bit / 9) -
+                                1;
+                    if (sm_cut_crosses(&cut, first, body.x0[p], to)) add_break(&breaks, l, p, bit);
+                }
+            assert_int_equal(lsm_cut(lsm, 0, &cut, first), breaks.count - known);
+            for (long i = known; i < breaks.count; i++)
+                lsm_lattice_break(&twin->lattice, breaks.link[i].particle, breaks.link[i].bit);
+            lsm_rebuild_regions(twin);
+            compare(lsm, twin, &body, &breaks, trial);
+        }
+        broken += breaks.count;
+        sm_cut_free(&cut);
+        breaks_free(&breaks);
+        lsm_free(lsm);
+        lsm_free(twin);
+        body_free(&body);
+    }
+    assert_true(broken > 10 * TRIALS);
+}
+
 static void full_box(int cells, Body *body)
 {
     memset(body, 0, sizeof *body);
@@ -350,6 +415,7 @@ static int test_all(const char *name)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_equal_to_rebuild),
+        cmocka_unit_test(test_cut_breaks_what_it_crosses),
         cmocka_unit_test(test_local),
         cmocka_unit_test(test_crumble),
         cmocka_unit_test(test_threads),

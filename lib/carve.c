@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "facet.h"
+#include "orient.h"
 #include "vector.h"
 
 /* What is known of a vertex: whether it stays. */
@@ -75,24 +76,30 @@ static bool spread(Carving *c, long first, long last)
     return true;
 }
 
-/* How often the surface goes round a point, by the solid angles of its triangles (van Oosterom and
- * Strackee 1983). */
-static double winding(const Carving *c, const double at[3])
+/* Which way a triangle passes the ray along x from a point: 1 going out of a solid, -1 into it, 0
+ * not at all. */
+static int passes(const Carving *c, const int triangle[3], const double at[3])
 {
-    double sum = 0;
-    for (long t = 0; t < c->mesh->triangle_count; t++) {
-        double p[3][3], length[3], cross[3];
-        for (int i = 0; i < 3; i++) {
-            const double *corner = c->mesh->position[c->mesh->triangle[t][i]];
-            for (int d = 0; d < 3; d++) p[i][d] = corner[d] - at[d];
-            length[i] = sqrt(sm_dot(p[i], p[i]));
-        }
-        sm_cross(p[1], p[2], cross);
-        sum += atan2(sm_dot(p[0], cross),
-                     length[0] * length[1] * length[2] + sm_dot(p[0], p[1]) * length[2] +
-                         sm_dot(p[1], p[2]) * length[0] + sm_dot(p[2], p[0]) * length[1]);
+    const double *p[3];
+    int below = 0, left = 0, behind = 0;
+    for (int i = 0; i < 3; i++) {
+        p[i] = c->mesh->position[triangle[i]];
+        behind += p[i][0] < at[0];
+        left += p[i][1] < at[1];
+        below += p[i][2] < at[2];
     }
-    sum /= 2 * acos(-1);
+    if (behind == 3 || left % 3 == 0 || below % 3 == 0) return 0;
+    int turn[3];
+    for (int i = 0; i < 3; i++) turn[i] = sm_orient2(p[i] + 1, p[(i + 1) % 3] + 1, at + 1);
+    if (turn[0] == 0 || turn[0] != turn[1] || turn[0] != turn[2]) return 0;
+    return sm_orient3(p[0], p[1], p[2], at) == -turn[0] ? turn[0] : 0;
+}
+
+/* How often the surface goes round a point. */
+static int winding(const Carving *c, const double at[3])
+{
+    int sum = 0;
+    for (long t = 0; t < c->mesh->triangle_count; t++) sum += passes(c, c->mesh->triangle[t], at);
     return c->options->inside_out ? -sum : sum;
 }
 
@@ -105,7 +112,7 @@ static bool judge_rest(Carving *c)
         int corner[3];
         sm_crossing_corners(&c->crossing, f, corner);
         if (c->state[corner[0]] != UNKNOWN) continue;
-        bool inside = winding(c, sm_crossing_at(&c->crossing, corner[0])) > 0.5;
+        bool inside = winding(c, sm_crossing_at(&c->crossing, corner[0])) > 0;
         c->state[corner[0]] = inside ? STAYS : GOES;
         if (!spread(c, first, last)) return false;
     }

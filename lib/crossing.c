@@ -16,8 +16,8 @@ typedef struct {
 static void grow_box(Box *box, const double p[3])
 {
     for (int d = 0; d < 3; d++) {
-        box->low[d] = fmin(box->low[d], p[d]);
-        box->high[d] = fmax(box->high[d], p[d]);
+        box->low[d] = p[d] < box->low[d] ? p[d] : box->low[d];
+        box->high[d] = p[d] > box->high[d] ? p[d] : box->high[d];
     }
 }
 
@@ -27,6 +27,18 @@ static Box box_of(const SmMesh *mesh, long from, long to)
     for (long t = from; t < to; t++)
         for (int i = 0; i < 3; i++) grow_box(&box, mesh->position[mesh->triangle[t][i]]);
     return box;
+}
+
+/* Are all corners of a triangle beyond the same side of a box? */
+static bool beyond(const SmMesh *mesh, const int triangle[3], const Box *box)
+{
+    const double *p = mesh->position[triangle[0]], *q = mesh->position[triangle[1]];
+    const double *r = mesh->position[triangle[2]];
+    for (int d = 0; d < 3; d++) {
+        if (p[d] < box->low[d] && q[d] < box->low[d] && r[d] < box->low[d]) return true;
+        if (p[d] > box->high[d] && q[d] > box->high[d] && r[d] > box->high[d]) return true;
+    }
+    return false;
 }
 
 static bool meet(const Box *a, const Box *b)
@@ -52,8 +64,7 @@ static void find_candidates(SmCrossing *c, const Box *whole)
     long room = 64;
     c->candidate = sm_alloc((size_t)room, sizeof *c->candidate);
     for (long t = 0; t < c->surface->triangle_count; t++) {
-        Box box = box_of(c->surface, t, t + 1);
-        if (!meet(&box, whole)) continue;
+        if (beyond(c->surface, c->surface->triangle[t], whole)) continue;
         if (c->candidates == room) {
             room *= 2;
             c->candidate = sm_realloc(c->candidate, (size_t)room, sizeof *c->candidate);

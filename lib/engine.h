@@ -12,7 +12,9 @@
 #include <stdbool.h>
 
 #include "boundary.h"
+#include "cut.h"
 #include "error.h"
+#include "pieces.h"
 #include "stage.h"
 #include "voxel.h"
 
@@ -36,7 +38,8 @@ typedef struct {
     double damping;      /* k in [0,1]; 0: none (fastlsm eq. 14); see above */
     int damping_every;   /* run it every n-th step; 0 means 1 */
     double gravity[3];   /* mesh units / s^2 */
-    double strain_limit; /* a link breaks beyond this times its rest length; 0: never */
+    double strain_limit; /* a link breaks beyond this times its rest length; 0: never; INFINITY:
+                          * only where it is cut */
     SmSummation summation;
     SmPolarMethod polar;
     SmLayout layout;                     /* AUTO picks the faster one; results agree to rounding */
@@ -116,6 +119,15 @@ typedef struct {
     void (*masses)(SmEngine *engine, double *mass);
 
     void (*count)(SmEngine *engine, SmCounts *counts);
+
+    /* Breaks what holds the body together across the cut's triangles from number `first` on, which
+     * are in the rest position of the voxels, before any instance's pose. Allocates. SM_USAGE: the
+     * body was not created to be cut. NULL of engines that cannot cut any. */
+    SmCode (*cut)(SmEngine *engine, const SmCut *cut, long first, SmError *error);
+
+    /* What hangs together: the pieces that one body's particles are in. The caller frees. NULL of
+     * engines whose bodies stay in one piece. */
+    void (*pieces)(SmEngine *engine, SmPieces *pieces);
 
     /* Members of particle p's region in rising order. Returns how many; writes at most `room`. */
     long (*region)(SmEngine *engine, long p, long *member, long room);
