@@ -28,9 +28,9 @@ typedef struct {
     double thickness;
     uint64_t seed;
     long triangles, edges, fans;
-    int (*triangle)[3]; /* [triangles] cut vertices */
-    int *fan;           /* [3 * triangles] of every corner; first a forest */
-    char *border;       /* [3 * triangles] of the edge from every corner */
+    int (*triangle)[3];    /* [triangles] cut vertices */
+    int *fan;              /* [3 * triangles] of every corner; first a forest */
+    unsigned char *border; /* [3 * triangles] of the edge from every corner */
     Edge *edge;
     Fan *at;
 } Sheet;

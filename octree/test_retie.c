@@ -1,6 +1,6 @@
 /* A surface tied anew after every change against one tied from scratch; and which side of a cut
  * vertices follow. */
-#include "surface.h"
+#include "pieces.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -204,6 +204,46 @@ static void part(OctSurface *surface, const OctTree *tree, double level, double 
     free(position);
 }
 
+/* Two pieces, of nodes and of surface: every triangle follows the piece on its side, and the
+ * pieces' masses and volumes add up to the block's. */
+static void count_pieces(const OctStructure *s, const OctSurface *surface, const SmMesh *mesh,
+                         double level, double tilt)
+{
+    SmPieces nodes, parts;
+    double mass[2], volume[2];
+    int *piece = sm_alloc((size_t)mesh->triangle_count, sizeof *piece), below = -1;
+    oct_pieces_find(&s->tree, &s->graph, &nodes);
+    sm_pieces_of_mesh(mesh, &parts);
+    assert_int_equal(nodes.count, 2);
+    assert_int_equal(parts.count, 2);
+    for (long k = 0; k < s->tree.leaves; k++) {
+        const double *X = surface->centre[k];
+        if (s->tree.node[k] < 0) continue;
+        bool up = X[2] > level + tilt * (X[0] - 8);
+        if (below < 0) below = up ? 1 - nodes.piece[k] : nodes.piece[k];
+        assert_int_equal(nodes.piece[k] == below, !up);
+    }
+    oct_pieces_of_surface(&nodes, surface, mesh, piece);
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        double height = 0;
+        for (int i = 0; i < 3; i++) {
+            const double *X = mesh->position[mesh->triangle[t][i]];
+            height += X[2] - level - tilt * (X[0] - 8);
+        }
+        assert_int_equal(piece[t] == below, height < 0);
+        assert_int_equal(parts.piece[t] == parts.piece[0], piece[t] == piece[0]);
+    }
+    sm_pieces_sum(&nodes, s->tree.leaves, s->mass, mass);
+    sm_pieces_volumes(&parts, mesh, volume);
+    assert_true(fabs(mass[0] + mass[1] - 4096) < 1e-9);
+    assert_true(fabs(volume[0] + volume[1] - 4096) < 0.05);
+    double under = volume[parts.piece[0] == 0 && piece[0] == below ? 0 : 1];
+    assert_true(fabs(under - 256 * level) < 0.05 || tilt != 0);
+    free(piece);
+    sm_pieces_free(&nodes);
+    sm_pieces_free(&parts);
+}
+
 /* A plane somewhere through a block of large and small leaves, often through the middle of cells:
  * one half moves away, and every vertex goes or stays with its own half. */
 static void both_sides_of_a_cut_follow_their_own(void **state)
@@ -230,6 +270,7 @@ static void both_sides_of_a_cut_follow_their_own(void **state)
         assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1, NULL), SM_SLIT_CLOSED);
         retie(&surface, &mesh, &s, oct_resample_update(&s), 0);
         part(&surface, &s.tree, level, tilt);
+        count_pieces(&s, &surface, &mesh, level, tilt);
         oct_surface_free(&surface);
         oct_structure_free(&s);
         sm_voxels_free(&voxels);

@@ -88,8 +88,8 @@ static double find_own(const OctCarrier *c, const double X[3], OctTie *tie)
     int node = oct_tree_find(c->tree, cell[0], cell[1], cell[2]);
     tie->own = c->tree->leaf[node];
     if (sees(c, X, node)) return 0;
-    double distance = c->tree->size[node], base = 2 << c->tree->levels;
-    for (; distance <= base; distance *= 2) {
+    int distance = c->tree->size[node];
+    for (; distance <= 2 << c->tree->levels; distance *= 2) {
         Search s = {.carrier = c, .X = X, .q = tie->q, .best = -1};
         search_around(&s, distance);
         if (s.best >= 0) {
@@ -97,7 +97,7 @@ static double find_own(const OctCarrier *c, const double X[3], OctTie *tie)
             return distance;
         }
     }
-    return distance / 2;
+    return 0.5 * distance;
 }
 
 /* w_k at place q, not yet made to add up to 1: along each axis 1 at the node, 1/2 at its cell's
