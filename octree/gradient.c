@@ -57,7 +57,8 @@ static int *reach_out(const OctTree *tree, const OctGraph *graph, OctReach *reac
     return reach->reached + 1;
 }
 
-/* The neighbours that leaf k is fitted to; `most` becomes how far they were looked for. */
+/* The neighbours that leaf k is fitted to; `most` becomes how far they were looked for beyond its
+ * own, or 0. */
 static const int *choose(const OctTree *tree, const OctGraph *graph, OctReach *reach, long k,
                          long *count, int *most)
 {
@@ -65,11 +66,7 @@ static const int *choose(const OctTree *tree, const OctGraph *graph, OctReach *r
     Moments m;
     *count = oct_graph_end(graph, k) - graph->first[k];
     find_moments(tree, k, leaf, *count, &m);
-    *most = tree->size[tree->node[k]];
-    for (long n = 0; n < *count; n++) {
-        int length = graph->length[graph->first[k] + n];
-        if (length > *most) *most = length;
-    }
+    *most = 0;
     if (m.span == 3) return leaf;
     long more, before = 0;
     Moments wider;
@@ -80,7 +77,7 @@ static const int *choose(const OctTree *tree, const OctGraph *graph, OctReach *r
         within *= 2;
         found = reach_out(tree, graph, reach, k, within, &more, &wider);
     }
-    if (within > *most) *most = within;
+    *most = within;
     if (wider.span <= m.span) return leaf;
     *count = more;
     return found;

@@ -26,7 +26,7 @@ typedef struct {
     int *place;   /* [leaves] in `leaf`, or -1 */
     unsigned char *span; /* [leaves] dimensions that the neighbours of those wanted span, 0 to 3 */
     int *reach;          /* [leaves] half finest cells: what is farther from a wanted one's centre,
-                            in the max norm, makes no difference to it */
+                            in the max norm, makes no difference to it; 0: only its own edges do */
     long flats;
     OctFlat *flat;
     int *flat_place; /* [leaves] in `flat`, or -1 */
@@ -44,9 +44,9 @@ void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsig
 void oct_gradients_free(OctGradients *gradients);
 
 /* Where tree and graph have changed: room for the tree's leaf numbers, of which new ones are not
- * wanted; then every leaf anew whose F is wanted though it was not, or that has something changed
- * within its reach. `search` is of the graph as it is now, or zeroed and made so when one is
- * needed. */
+ * wanted; then every leaf anew whose F is wanted though it was not, or whose edges have changed or
+ * anything within its reach. `search` is of the graph as it is now, or zeroed and made so when one
+ * is needed. */
 void oct_gradients_grow(OctGradients *gradients, const OctTree *tree);
 void oct_gradients_renew(OctGradients *gradients, const OctTree *tree, const OctGraph *graph,
                          OctReach *search, int leaf);

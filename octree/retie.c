@@ -2,92 +2,165 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/vector.h"
 #include "surface.h"
 #include "tie.h"
 
-/* A box in which something has changed. */
+enum { CHUNK = 16 }; /* boxes whose common box is looked at first */
+
 typedef struct {
     double low[3], high[3];
-} Spot;
+} Box;
 
-enum { CHUNK = 16 }; /* spots whose common box is looked at first */
+/* Where something has changed. */
+typedef struct {
+    long count;
+    Box *box, *chunk, all;
+} Boxes;
 
 typedef struct {
     OctSurface *s;
     const OctCarrier *carrier;
-    long spots, fresh_count, fresh_room;
-    Spot *spot, *chunk, all;
+    long first;           /* the cut's first new triangle */
+    Boxes cells, sheets;  /* around leaves that are new or no more; of new triangles */
+    unsigned char *other; /* [leaves] that move a vertex: its edges are others */
+    long fresh_count, fresh_room;
     int *fresh; /* leaves that came to move a vertex */
 } Change;
 
-static void join(Spot *to, const Spot *spot, bool first)
+static void boxes_init(Boxes *boxes, long room)
+{
+    boxes->box = sm_alloc((size_t)room, sizeof *boxes->box);
+    boxes->chunk = sm_alloc((size_t)room / CHUNK + 1, sizeof *boxes->chunk);
+}
+
+static void boxes_free(Boxes *boxes)
+{
+    free(boxes->box);
+    free(boxes->chunk);
+}
+
+static void join(Box *to, const Box *box, bool first)
 {
     for (int d = 0; d < 3; d++) {
-        to->low[d] = first ? spot->low[d] : fmin(to->low[d], spot->low[d]);
-        to->high[d] = first ? spot->high[d] : fmax(to->high[d], spot->high[d]);
+        to->low[d] = first ? box->low[d] : fmin(to->low[d], box->low[d]);
+        to->high[d] = first ? box->high[d] : fmax(to->high[d], box->high[d]);
     }
 }
 
-static void add_spot(Change *change, const Spot *spot)
+static void add_box(Boxes *boxes, const Box *box)
 {
-    join(&change->all, spot, change->spots == 0);
-    join(&change->chunk[change->spots / CHUNK], spot, change->spots % CHUNK == 0);
-    change->spot[change->spots++] = *spot;
+    join(&boxes->all, box, boxes->count == 0);
+    join(&boxes->chunk[boxes->count / CHUNK], box, boxes->count % CHUNK == 0);
+    boxes->box[boxes->count++] = *box;
 }
 
-/* A cell and as much around it: how far edges to its leaf can go. Cells of dead nodes lie in those
- * of new leaves. */
-static void add_cell(Change *change, int node)
+static bool meet(const Box *a, const Box *b)
 {
-    const OctCarrier *c = change->carrier;
-    Spot spot;
-    if (c->tree->size[node] == 0) return;
-    for (int d = 0; d < 3; d++) {
-        int centre = c->tree->centre[node][d], reach = 2 * c->tree->size[node];
-        spot.low[d] = c->voxels->origin[d] + 0.5 * c->voxels->cell * (centre - reach);
-        spot.high[d] = c->voxels->origin[d] + 0.5 * c->voxels->cell * (centre + reach);
-    }
-    add_spot(change, &spot);
+    bool met = true;
+    for (int d = 0; d < 3; d++) met &= a->low[d] <= b->high[d] && a->high[d] >= b->low[d];
+    return met;
 }
 
-static void add_triangle(Change *change, long triangle)
+static bool meet_any(const Boxes *boxes, const Box *box)
 {
-    const SmCut *cut = change->carrier->cut;
-    Spot spot;
-    for (int d = 0; d < 3; d++) {
-        spot.low[d] = spot.high[d] = cut->vertex[cut->triangle[triangle][0]][d];
-        for (int i = 1; i < 3; i++) {
-            double at = cut->vertex[cut->triangle[triangle][i]][d];
-            spot.low[d] = fmin(spot.low[d], at);
-            spot.high[d] = fmax(spot.high[d], at);
-        }
-    }
-    add_spot(change, &spot);
-}
-
-static bool near(const Spot *spot, const double at[3], double reach)
-{
-    bool inside = true;
-    for (int d = 0; d < 3; d++)
-        inside &= at[d] >= spot->low[d] - reach && at[d] <= spot->high[d] + reach;
-    return inside;
-}
-
-static bool touched(const Change *change, const double at[3], double reach)
-{
-    if (change->spots == 0 || !near(&change->all, at, reach)) return false;
-    for (long n = 0; n < change->spots; n++) {
-        if (n % CHUNK == 0 && !near(&change->chunk[n / CHUNK], at, reach))
+    if (boxes->count == 0 || !meet(&boxes->all, box)) return false;
+    for (long n = 0; n < boxes->count; n++) {
+        if (n % CHUNK == 0 && !meet(&boxes->chunk[n / CHUNK], box))
             n += CHUNK - 1;
-        else if (near(&change->spot[n], at, reach))
+        else if (meet(&boxes->box[n], box))
             return true;
     }
     return false;
 }
 
-/* A leaf that moves no vertex any more is looked at with those wanted; one that came to move one
- * is noted. */
+/* Has anything changed within `reach` of a place? */
+static bool touched(const Change *change, const double at[3], double reach)
+{
+    Box box;
+    for (int d = 0; d < 3; d++) {
+        box.low[d] = at[d] - reach;
+        box.high[d] = at[d] + reach;
+    }
+    return meet_any(&change->cells, &box) || meet_any(&change->sheets, &box);
+}
+
+/* Does a new triangle come between two places? */
+static bool parted(const Change *change, const double a[3], const double b[3])
+{
+    Box box;
+    for (int d = 0; d < 3; d++) {
+        box.low[d] = a[d] < b[d] ? a[d] : b[d];
+        box.high[d] = a[d] < b[d] ? b[d] : a[d];
+    }
+    return meet_any(&change->sheets, &box) &&
+           sm_cut_crosses(change->carrier->cut, change->first, a, b);
+}
+
+/* A cell and as much around it as edges to its leaf can go beyond the reach of others. Cells of
+ * dead nodes lie in those of new leaves. */
+static void add_cell(Change *change, int node)
+{
+    const OctCarrier *c = change->carrier;
+    Box box;
+    if (c->tree->size[node] == 0) return;
+    for (int d = 0; d < 3; d++) {
+        int centre = c->tree->centre[node][d], reach = 2 * c->tree->size[node];
+        box.low[d] = c->voxels->origin[d] + 0.5 * c->voxels->cell * (centre - reach);
+        box.high[d] = c->voxels->origin[d] + 0.5 * c->voxels->cell * (centre + reach);
+    }
+    add_box(&change->cells, &box);
+}
+
+/* Wider by what sm_cut_crosses() may move a segment by. */
+static void add_triangle(Change *change, long triangle)
+{
+    const SmCut *cut = change->carrier->cut;
+    double margin = 1e-6 * change->carrier->voxels->cell;
+    Box box;
+    for (int i = 0; i < 3; i++) {
+        const double *at = cut->vertex[cut->triangle[triangle][i]];
+        Box corner;
+        for (int d = 0; d < 3; d++) {
+            corner.low[d] = at[d] - margin;
+            corner.high[d] = at[d] + margin;
+        }
+        join(&box, &corner, i == 0);
+    }
+    add_box(&change->sheets, &box);
+}
+
+/* Notes which of the leaves that move vertices have other edges now. An edge is no longer than the
+ * larger of its ends. */
+static void compare_edges(Change *change)
+{
+    OctSurface *s = change->s;
+    const OctCarrier *c = change->carrier;
+    for (long n = 0; n < s->gradients.count; n++) {
+        int k = s->gradients.leaf[n], node = c->tree->node[k];
+        if (node < 0) continue;
+        int reach = c->tree->size[node];
+        if (c->graph->longest > reach) reach = c->graph->longest;
+        if (!touched(change, s->centre[k], (0.5 + 1e-6) * c->voxels->cell * reach)) continue;
+        uint64_t edges = oct_tie_edges(c->graph, k);
+        change->other[k] = edges != s->edges[k];
+        s->edges[k] = edges;
+    }
+}
+
+/* Can other leaves move a vertex now, or by other weights? */
+static bool is_stale(const Change *change, long v)
+{
+    const OctSurface *s = change->s;
+    long first = s->rows.first[v], end = oct_rows_end(&s->rows, v);
+    int own = s->rows.leaf[first];
+    double reach = (double)s->reach[v];
+    if (change->carrier->tree->node[own] < 0 || change->other[own]) return true;
+    if (reach > 0 && touched(change, s->rest[v], reach)) return true;
+    for (long n = first; n < end && change->sheets.count > 0; n++)
+        if (parted(change, s->rest[v], s->centre[s->rows.leaf[n]])) return true;
+    return false;
+}
+
 static void count_user(Change *change, int leaf)
 {
     OctSurface *s = change->s;
@@ -112,17 +185,7 @@ static void tie_vertex(Change *change, long v, OctTie *tie)
     for (long n = 0; n < tie->count; n++) count_user(change, tie->leaf[n]);
 }
 
-static void tie_vertices(Change *change, long before)
-{
-    OctTie tie = {0};
-    for (long v = 0; v < change->s->vertices; v++)
-        if (v >= before || touched(change, change->s->rest[v], (double)change->s->reach[v]))
-            tie_vertex(change, v, &tie);
-    oct_tie_free(&tie);
-}
-
-/* Gradients: those not wanted any more go first, and take with them what was known of leaves that
- * are no more. */
+/* Gradients: first go those not wanted any more, and with them all of leaves that are no more. */
 static void renew_gradients(Change *change)
 {
     OctSurface *s = change->s;
@@ -134,29 +197,38 @@ static void renew_gradients(Change *change)
     for (long n = 0; n < g->count; n++) {
         int k = g->leaf[n];
         double reach = (0.5 + 1e-6) * c->voxels->cell * g->reach[k];
-        if (touched(change, s->centre[k], reach))
+        if (change->other[k] || (reach > 0 && touched(change, s->centre[k], reach)))
             oct_gradients_renew(g, c->tree, c->graph, &search, k);
     }
-    for (long n = 0; n < change->fresh_count; n++)
-        if (s->users[change->fresh[n]] > 0 && g->place[change->fresh[n]] < 0)
-            oct_gradients_renew(g, c->tree, c->graph, &search, change->fresh[n]);
+    for (long n = 0; n < change->fresh_count; n++) {
+        int k = change->fresh[n];
+        if (s->users[k] == 0 || g->place[k] >= 0) continue;
+        oct_gradients_renew(g, c->tree, c->graph, &search, k);
+        s->edges[k] = oct_tie_edges(c->graph, k);
+    }
     if (search.graph) oct_reach_free(&search);
 }
 
 void oct_surface_retie(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier,
                        long count, const int *node, long first)
 {
-    Change change = {.s = surface, .carrier = carrier};
+    Change change = {.s = surface, .carrier = carrier, .first = first};
     long triangles = carrier->cut ? carrier->cut->triangles - first : 0;
     long before = surface->vertices;
-    change.spot = sm_alloc((size_t)(count + triangles), sizeof *change.spot);
-    change.chunk = sm_alloc((size_t)(count + triangles) / CHUNK + 1, sizeof *change.chunk);
+    OctTie tie = {0};
+    boxes_init(&change.cells, count);
+    boxes_init(&change.sheets, triangles);
     for (long n = 0; n < count; n++) add_cell(&change, node[n]);
     for (long n = 0; n < triangles; n++) add_triangle(&change, first + n);
+    change.other = sm_alloc((size_t)carrier->tree->leaves, 1);
+    compare_edges(&change);
     oct_surface_grow(surface, mesh, carrier, count, node);
-    tie_vertices(&change, before);
+    for (long v = 0; v < surface->vertices; v++)
+        if (v >= before || is_stale(&change, v)) tie_vertex(&change, v, &tie);
     renew_gradients(&change);
-    free(change.spot);
-    free(change.chunk);
+    oct_tie_free(&tie);
+    boxes_free(&change.cells);
+    boxes_free(&change.sheets);
+    free(change.other);
     free(change.fresh);
 }

@@ -30,6 +30,7 @@ static void make_room(OctSurface *s, long leaves, const SmMesh *mesh)
         s->leaf_room = s->leaf_room ? 2 * leaves : leaves;
         s->centre = sm_realloc(s->centre, (size_t)s->leaf_room, sizeof *s->centre);
         s->F = sm_realloc(s->F, (size_t)s->leaf_room, sizeof *s->F);
+        s->edges = sm_realloc(s->edges, (size_t)s->leaf_room, sizeof *s->edges);
         s->users = sm_realloc(s->users, (size_t)s->leaf_room, sizeof *s->users);
     }
     for (; s->leaves < leaves; s->leaves++) s->users[s->leaves] = 0;
@@ -92,7 +93,10 @@ void oct_surface_build(const SmMesh *mesh, const OctCarrier *carrier, OctSurface
     for (long v = 0; v < s->vertices; v++)
         for (long n = s->rows.first[v]; n < oct_rows_end(&s->rows, v); n++)
             s->users[s->rows.leaf[n]]++;
-    for (long k = 0; k < leaves; k++) wanted[k] = s->users[k] > 0;
+    for (int k = 0; k < leaves; k++) {
+        wanted[k] = s->users[k] > 0;
+        if (wanted[k]) s->edges[k] = oct_tie_edges(carrier->graph, k);
+    }
     oct_gradients_build(carrier->tree, carrier->graph, wanted, carrier->voxels->cell,
                         &s->gradients);
     free(wanted);
@@ -121,6 +125,7 @@ void oct_surface_free(OctSurface *surface)
     free(surface->F);
     free(surface->reach);
     free(surface->users);
+    free(surface->edges);
     *surface = (OctSurface){0};
 }
 

@@ -19,6 +19,8 @@
 #ifndef OCT_SURFACE_H
 #define OCT_SURFACE_H
 
+#include <stdint.h>
+
 #include "../lib/cut.h"
 #include "../lib/mesh.h"
 #include "gradient.h"
@@ -42,9 +44,10 @@ typedef struct {
                             to; float w_k of each, that of the first is what is missing to 1: 0 */
     double (*F)[9];      /* [leaves] of those that move a vertex, by the last oct_surface_move() */
     /* to tie vertices anew */
-    float *reach; /* [vertices] mesh units: what is farther away in the max norm makes no difference
-                     to which nodes move it */
-    int *users;   /* [leaves] vertices that each moves */
+    float *reach;    /* [vertices] mesh units: how far the leaf that a vertex belongs to was looked
+                        for,    in the max norm; 0: it is the one that holds it */
+    uint64_t *edges; /* [leaves] of those that move a vertex: which edges they have (tie.h) */
+    int *users;      /* [leaves] vertices that each moves */
     long leaves, leaf_room, vertex_room;
 } OctSurface;
 

@@ -124,18 +124,26 @@ static void add(OctTie *tie, int leaf, double weight)
     tie->weight[tie->count++] = (float)weight;
 }
 
-static void find_reach(const OctCarrier *c, const double X[3], double searched, OctTie *tie)
+/* The sum of the neighbours' numbers, mixed (splitmix64, Steele et al. 2014): in any order. */
+uint64_t oct_tie_edges(const OctGraph *graph, int leaf)
 {
-    int node = c->tree->node[tie->own];
-    double outside = 0, edge = c->tree->size[node];
-    for (int d = 0; d < 3; d++) {
-        double at = 2 * (X[d] - c->voxels->origin[d]) / c->voxels->cell;
-        outside = fmax(outside, fabs(at - tie->q[d]));
+    uint64_t sum = 0;
+    for (long e = graph->first[leaf]; e < oct_graph_end(graph, leaf); e++) {
+        uint64_t z = ((uint64_t)graph->to[e] + 1) * 0x9e3779b97f4a7c15u;
+        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+        sum += z ^ z >> 31;
     }
-    for (long e = c->graph->first[tie->own]; e < oct_graph_end(c->graph, tie->own); e++)
-        edge = fmax(edge, c->graph->length[e]);
-    double far = fmax(searched, distance_to(c->tree, node, tie->q) + edge);
-    tie->reach = (outside + far) * 0.5 * c->voxels->cell;
+    return sum;
+}
+
+/* How far X is from where it counts as, plus how far its leaf was looked for. */
+static double find_reach(const OctCarrier *c, const double X[3], double searched, const double q[3])
+{
+    double outside = 0;
+    for (int d = 0; d < 3; d++)
+        outside = fmax(outside, fabs(2 * (X[d] - c->voxels->origin[d]) / c->voxels->cell - q[d]));
+    return (outside + searched) * 0.5 * c->voxels->cell;
 }
 
 void oct_tie_find(const OctCarrier *c, const double X[3], OctTie *tie)
@@ -151,7 +159,7 @@ void oct_tie_find(const OctCarrier *c, const double X[3], OctTie *tie)
         sum += weight;
     }
     for (long n = 1; n < tie->count; n++) tie->weight[n] = (float)((double)tie->weight[n] / sum);
-    find_reach(c, X, searched, tie);
+    tie->reach = searched > 0 ? find_reach(c, X, searched, tie->q) : 0;
 }
 
 void oct_tie_free(OctTie *tie)
