@@ -206,6 +206,20 @@ static bool crosses(const SmCut *cut, const int triangle[3], const double a[3], 
     return left(a, b, q, r) == side && left(a, b, p, r) != side && comes_near(cut, triangle, a, b);
 }
 
+/* Are the boxes of a segment and a triangle apart, by more than rounding? */
+static bool apart(const SmCut *cut, const int triangle[3], const double a[3], const double b[3])
+{
+    const double *p = cut->vertex[triangle[0]], *q = cut->vertex[triangle[1]];
+    const double *r = cut->vertex[triangle[2]], margin = 1e-6 * cut->cube;
+    for (int d = 0; d < 3; d++) {
+        double low = (a[d] < b[d] ? a[d] : b[d]) - margin;
+        double high = (a[d] < b[d] ? b[d] : a[d]) + margin;
+        if (p[d] < low && q[d] < low && r[d] < low) return true;
+        if (p[d] > high && q[d] > high && r[d] > high) return true;
+    }
+    return false;
+}
+
 static bool in_order(const double a[3], const double b[3])
 {
     for (int d = 0; d < 2; d++)
@@ -225,6 +239,7 @@ bool sm_cut_crosses(const SmCut *cut, long first, const double a[3], const doubl
                 for (long e = cut->bucket[bucket_of(cut, cube)]; e >= 0; e = cut->entry[e].before)
                     if (cut->entry[e].triangle >= first &&
                         memcmp(cut->entry[e].cube, cube, sizeof cube) == 0 &&
+                        !apart(cut, cut->triangle[cut->entry[e].triangle], a, b) &&
                         crosses(cut, cut->triangle[cut->entry[e].triangle], a, b))
                         return true;
     return false;

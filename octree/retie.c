@@ -73,14 +73,20 @@ static bool meet_any(const Boxes *boxes, const Box *box)
     return false;
 }
 
-/* Has anything changed within `reach` of a place? */
-static bool touched(const Change *change, const double at[3], double reach)
+static Box box_around(const double at[3], double reach)
 {
     Box box;
     for (int d = 0; d < 3; d++) {
         box.low[d] = at[d] - reach;
         box.high[d] = at[d] + reach;
     }
+    return box;
+}
+
+/* Has anything changed within `reach` of a place? */
+static bool touched(const Change *change, const double at[3], double reach)
+{
+    Box box = box_around(at, reach);
     return meet_any(&change->cells, &box) || meet_any(&change->sheets, &box);
 }
 
@@ -147,7 +153,8 @@ static void compare_edges(Change *change)
     }
 }
 
-/* Can other leaves move a vertex now, or by other weights? */
+/* Can other leaves move a vertex now, or by other weights? Of leaves that it looked at and did not
+ * come to belong to, none comes into question without being new: a cut only ever grows. */
 static bool is_stale(const Change *change, long v)
 {
     const OctSurface *s = change->s;
@@ -155,7 +162,8 @@ static bool is_stale(const Change *change, long v)
     int own = s->rows.leaf[first];
     double reach = (double)s->reach[v];
     if (change->carrier->tree->node[own] < 0 || change->other[own]) return true;
-    if (reach > 0 && touched(change, s->rest[v], reach)) return true;
+    Box looked = box_around(s->rest[v], reach);
+    if (reach > 0 && meet_any(&change->cells, &looked)) return true;
     for (long n = first; n < end && change->sheets.count > 0; n++)
         if (parted(change, s->rest[v], s->centre[s->rows.leaf[n]])) return true;
     return false;

@@ -15,7 +15,7 @@
 #include "random_trees.h"
 #include "resample.h"
 
-enum { SEQUENCES = 60, BATCHES = 6, FIRST_VERTICES = 150 };
+enum { SEQUENCES = 50, BATCHES = 6, FIRST_VERTICES = 150 };
 
 static OctCarrier carrier(const OctStructure *s)
 {
