@@ -11,6 +11,7 @@
 #include "contacts.h"
 #include "head.h"
 #include "octree.h"
+#include "rebuild.h"
 
 enum { RECENTRE_STEPS = 16 };
 
@@ -328,6 +329,23 @@ static Oct *build(const OctStructure *s, const OctOptions *options, const SmEngi
     return oct_build(&s->tree, &s->regions, s->mass, &own);
 }
 
+static SmCode engine_rebuild(SmEngine *e, const SmEngineParams *params, SmEngine **copy,
+                             long *order, SmError *error);
+
+/* Everything behind the structure, which is in its place. */
+static void complete(SmEngine *e, const OctOptions *options, const SmEngineParams *params)
+{
+    e->head.begin = engine_begin;
+    e->head.end = engine_end;
+    e->head.leaves = engine_leaves;
+    e->head.rebuild = engine_rebuild;
+    e->oct = build(&e->head.structure, options, params);
+    e->count = e->head.structure.tree.leaves;
+    e->h = params->h;
+    start_at_rest(e, params);
+    e->contacts = oct_contacts_build(e->oct, &e->head.structure, &params->collide);
+}
+
 static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
                             SmError *error)
 {
@@ -337,19 +355,35 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     SmCode code = check(voxels, params, error);
     if (code) return code;
     SmEngine *e = sm_alloc(1, sizeof *e);
-    e->head = (OctHead){.begin = engine_begin, .end = engine_end, .leaves = engine_leaves};
     code = oct_structure_build(voxels, options, params->mass, &e->head.structure, error);
     if (code) {
         free(e);
         return code;
     }
-    e->oct = build(&e->head.structure, options, params);
-    e->count = e->head.structure.tree.leaves;
-    e->h = params->h;
-    start_at_rest(e, params);
-    e->contacts = oct_contacts_build(e->oct, &e->head.structure, &params->collide);
+    complete(e, options, params);
     e->build_seconds = sm_now() - start;
     *engine = e;
+    return SM_OK;
+}
+
+static SmCode engine_rebuild(SmEngine *e, const SmEngineParams *params, SmEngine **copy,
+                             long *order, SmError *error)
+{
+    int *leaf;
+    if (e->oct->instances > 1)
+        return sm_fail(error, SM_USAGE, "octree: bodies that share a structure do not change");
+    SmEngine *made = sm_alloc(1, sizeof *made);
+    SmCode code = oct_structure_rebuild(&e->head.structure, params->mass, &made->head.structure,
+                                        &leaf, error);
+    if (code) {
+        free(made);
+        return code;
+    }
+    complete(made, &e->head.structure.options, params);
+    engine_leaves(e);
+    for (long p = 0; p < made->count; p++) order[p] = e->number[leaf[p]];
+    free(leaf);
+    *copy = made;
     return SM_OK;
 }
 

@@ -16,3 +16,9 @@ const int *oct_engine_leaves(SmEngine *engine)
 {
     return ((OctHead *)engine)->leaves(engine);
 }
+
+SmCode oct_engine_rebuild(SmEngine *engine, const SmEngineParams *params, SmEngine **copy,
+                          long *order, SmError *error)
+{
+    return ((OctHead *)engine)->rebuild(engine, params, copy, order, error);
+}

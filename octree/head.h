@@ -9,6 +9,8 @@ typedef struct {
     SmCode (*begin)(SmEngine *engine, SmError *error);
     const OctChange *(*end)(SmEngine *engine);
     const int *(*leaves)(SmEngine *engine);
+    SmCode (*rebuild)(SmEngine *engine, const SmEngineParams *params, SmEngine **copy, long *order,
+                      SmError *error);
 } OctHead;
 
 #endif
