@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../octree/agree.h"
 #include "../octree/resample.h"
 
 static bool is_octree(const BenchPart *part)
@@ -280,6 +281,7 @@ static void follow(BenchChanges *changes, const OctChange *change, long first)
     for (long i = 0; i < change->removed_count; i++) node[count++] = change->removed[i].node;
     for (long i = 0; i < change->added_count; i++) node[count++] = change->added[i].node;
     oct_surface_retie(&changes->carried, &changes->surface, &carrier, count, node, first);
+    oct_surface_agree(&changes->carried, &changes->surface, &s->graph);
     free(node);
     changes->last.follow_seconds = sm_now() - start;
 }
