@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/sever.h"
 #include "../octree/agree.h"
+#include "../octree/pieces.h"
 #include "../octree/resample.h"
 
 static bool is_octree(const BenchPart *part)
@@ -265,6 +267,34 @@ static bool blades_in_use(const BenchChanges *changes, double from, double to)
     return false;
 }
 
+static void retie(BenchChanges *changes, long count, const int *node, long first)
+{
+    const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
+    OctCarrier carrier = {&changes->part->body.voxels, &s->tree, &s->graph, &s->cut};
+    oct_surface_retie(&changes->carried, &changes->surface, &carrier, count, node, first);
+    oct_surface_agree(&changes->carried, &changes->surface, &s->graph);
+}
+
+/* Where material has come apart the surface does too. */
+static void sever(BenchChanges *changes)
+{
+    const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
+    const OctSurface *carried = &changes->carried;
+    SmPieces pieces;
+    oct_pieces_find(&s->tree, &s->graph, &pieces);
+    if (pieces.count > 1) {
+        int *piece = sm_alloc((size_t)carried->vertices, sizeof *piece);
+        for (long v = 0; v < carried->vertices; v++)
+            piece[v] = pieces.piece[carried->rows.leaf[carried->rows.first[v]]];
+        if (sm_sever(&changes->surface, piece)) {
+            changes->last.slit = true;
+            retie(changes, 0, NULL, s->cut.triangles);
+        }
+        free(piece);
+    }
+    sm_pieces_free(&pieces);
+}
+
 /* The surface after the engine has changed. */
 static void follow(BenchChanges *changes, const OctChange *change, long first)
 {
@@ -275,13 +305,12 @@ static void follow(BenchChanges *changes, const OctChange *change, long first)
         changes->left |= result == SM_SLIT_LEFT;
         changes->last.slit = result == SM_SLIT_CLOSED || result == SM_SLIT_OPEN;
     }
-    OctCarrier carrier = {&changes->part->body.voxels, &s->tree, &s->graph, &s->cut};
     long count = 0;
     int *node = sm_alloc((size_t)(change->removed_count + change->added_count), sizeof *node);
     for (long i = 0; i < change->removed_count; i++) node[count++] = change->removed[i].node;
     for (long i = 0; i < change->added_count; i++) node[count++] = change->added[i].node;
-    oct_surface_retie(&changes->carried, &changes->surface, &carrier, count, node, first);
-    oct_surface_agree(&changes->carried, &changes->surface, &s->graph);
+    retie(changes, count, node, first);
+    sever(changes);
     free(node);
     changes->last.follow_seconds = sm_now() - start;
 }
