@@ -272,7 +272,7 @@ static void retie(BenchChanges *changes, long count, const int *node, long first
     const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
     OctCarrier carrier = {&changes->part->body.voxels, &s->tree, &s->graph, &s->cut};
     oct_surface_retie(&changes->carried, &changes->surface, &carrier, count, node, first);
-    oct_surface_agree(&changes->carried, &changes->surface, &s->graph);
+    oct_surface_agree(&changes->carried, &changes->surface, &carrier);
 }
 
 /* Where material has come apart the surface does too. */

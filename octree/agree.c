@@ -10,13 +10,13 @@ static int own(const OctSurface *s, long vertex)
     return s->rows.leaf[s->rows.first[vertex]];
 }
 
-static bool agree(const OctSurface *s, const OctGraph *graph, long u, long v)
+static bool agree(const OctSurface *s, const OctCarrier *c, long u, long v)
 {
     int a = own(s, u), b = own(s, v);
     if (a == b) return true;
-    for (long e = graph->first[a]; e < oct_graph_end(graph, a); e++)
-        if (graph->to[e] == b) return true;
-    return false;
+    for (long e = c->graph->first[a]; e < oct_graph_end(c->graph, a); e++)
+        if (c->graph->to[e] == b) return true;
+    return !sm_cut_crosses(c->cut, 0, s->centre[a], s->centre[b]);
 }
 
 /* Vertex v is moved by the leaves of u. */
@@ -36,14 +36,14 @@ static void follow(OctSurface *s, long v, long u)
 
 /* Groups of vertices whose neighbours agree, and their sizes; vertices that no triangle uses are
  * groups of one. */
-static long *find_groups(const OctSurface *s, const SmMesh *mesh, const OctGraph *graph,
+static long *find_groups(const OctSurface *s, const SmMesh *mesh, const OctCarrier *carrier,
                          SmPieces *groups)
 {
     sm_pieces_init(s->vertices, groups);
     for (long t = 0; t < mesh->triangle_count; t++)
         for (int c = 0; c < 3; c++) {
             long u = mesh->triangle[t][c], v = mesh->triangle[t][(c + 1) % 3];
-            if (agree(s, graph, u, v)) sm_pieces_link(groups, u, v);
+            if (agree(s, carrier, u, v)) sm_pieces_link(groups, u, v);
         }
     sm_pieces_finish(groups, NULL, s->vertices);
     long *size = sm_alloc((size_t)groups->count, sizeof *size);
@@ -51,10 +51,10 @@ static long *find_groups(const OctSurface *s, const SmMesh *mesh, const OctGraph
     return size;
 }
 
-long oct_surface_agree(OctSurface *s, const SmMesh *mesh, const OctGraph *graph)
+long oct_surface_agree(OctSurface *s, const SmMesh *mesh, const OctCarrier *carrier)
 {
     SmPieces groups;
-    long *size = find_groups(s, mesh, graph, &groups), moved = 0;
+    long *size = find_groups(s, mesh, carrier, &groups), moved = 0;
     for (bool any = true; any;) { /* from the many inwards, vertex by vertex */
         any = false;
         for (long t = 0; t < mesh->triangle_count; t++)

@@ -4,6 +4,7 @@
 #define OCT_RANDOM_BATCHES_H
 
 #include "random_trees.h"
+#include "rebuild.h"
 #include "resample.h"
 
 /* Splits a few random leaves, some of their children too. */
@@ -65,20 +66,9 @@ static inline void random_batch(unsigned *seed, OctStructure *s, int most)
 /* The structure of the same split cells and cut from scratch. The caller frees. */
 static inline void rebuild(const OctStructure *s, const double *mass, OctStructure *fresh)
 {
-    OctTree whole, tree;
-    assert_int_equal(oct_tree_build(&s->voxels, s->tree.levels, s->tree.corner, &whole, NULL),
-                     SM_OK);
-    unsigned char *split = sm_alloc((size_t)whole.nodes, 1);
-    for (int n = 0; n < whole.nodes; n++) {
-        int same = oct_tree_at(&s->tree, oct_tree_level(&whole, n), oct_tree_low(&whole, n, 0),
-                               oct_tree_low(&whole, n, 1), oct_tree_low(&whole, n, 2));
-        split[n] = same >= 0 && s->tree.size[same] == whole.size[n] && s->tree.children[same];
-    }
-    oct_tree_prune(&whole, split, &tree);
-    assert_int_equal(
-        oct_structure_of_tree(&s->voxels, &s->options, mass, &tree, &s->cut, fresh, NULL), SM_OK);
-    oct_tree_free(&whole);
-    free(split);
+    int *leaf;
+    assert_int_equal(oct_structure_rebuild(s, mass, fresh, &leaf, NULL), SM_OK);
+    free(leaf);
 }
 
 /* The leaf of another structure of the same cells that has the cell of leaf `leaf`. */

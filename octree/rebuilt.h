@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "lists.h"
+#include "rebuild.h"
 #include "resample.h"
 
 /* The node of another tree that is the same cell. */
@@ -20,21 +21,6 @@ static inline int same_node(const OctTree *from, int node, const OctTree *to)
     assert_int_equal(to->size[found], from->size[node]);
     assert_memory_equal(to->centre[found], from->centre[node], sizeof *to->centre);
     return found;
-}
-
-/* The tree with the same cells split, as it is built. */
-static inline void rebuilt_tree(const OctStructure *s, OctTree *tree)
-{
-    OctTree whole;
-    assert_int_equal(oct_tree_build(&s->voxels, s->tree.levels, s->tree.corner, &whole, NULL),
-                     SM_OK);
-    unsigned char *split = sm_alloc((size_t)whole.nodes, 1);
-    for (long n = 0; n < s->tree.nodes; n++)
-        if (s->tree.size[n] > 0 && s->tree.children[n])
-            split[same_node(&s->tree, (int)n, &whole)] = 1;
-    oct_tree_prune(&whole, split, tree);
-    free(split);
-    oct_tree_free(&whole);
 }
 
 static inline int compare_pairs(const void *a, const void *b)
@@ -123,12 +109,12 @@ static inline void check_equal(const OctStructure *s, const OctStructure *want)
 /* A structure of the same split cells and the same cut, from scratch. */
 static inline void rebuild(const OctStructure *s, const double *mass, OctStructure *want)
 {
-    OctTree tree;
-    OctOptions options = s->options;
-    if (s->local_leaves == 0) options.local_count = 0; /* refused where it holds no leaf */
-    rebuilt_tree(s, &tree);
-    assert_int_equal(oct_structure_of_tree(&s->voxels, &options, mass, &tree, &s->cut, want, NULL),
-                     SM_OK);
+    int *leaf;
+    assert_int_equal(oct_structure_rebuild(s, mass, want, &leaf, NULL), SM_OK);
+    for (long i = 0; i < want->tree.leaves; i++)
+        assert_int_equal(leaf[i],
+                         s->tree.leaf[same_node(&want->tree, want->tree.node[i], &s->tree)]);
+    free(leaf);
 }
 
 static inline void check(const OctStructure *s, const double *mass)

@@ -11,7 +11,9 @@
 
 #include <cmocka.h>
 
+#include "../lib/shape.h"
 #include "../lib/slit.h"
+#include "agree.h"
 #include "random_trees.h"
 #include "resample.h"
 
@@ -278,11 +280,74 @@ static void both_sides_of_a_cut_follow_their_own(void **state)
     }
 }
 
+/* A block's fine surface in the box from 0 to 16. */
+static SmMesh fine_box(void)
+{
+    SmMesh mesh;
+    assert_int_equal(sm_shape_mesh("block", &mesh, NULL), SM_OK);
+    SmMeshInfo info = sm_mesh_info(&mesh);
+    for (long v = 0; v < mesh.vertex_count; v++)
+        for (int d = 0; d < 3; d++)
+            mesh.position[v][d] =
+                16 * (mesh.position[v][d] - info.low[d]) / (info.high[d] - info.low[d]);
+    return mesh;
+}
+
+/* Ties a vertex as another one is. */
+static void mislead(OctSurface *s, long v, long as)
+{
+    int leaf = s->rows.leaf[s->rows.first[as]];
+    for (long n = s->rows.first[v]; n < oct_rows_end(&s->rows, v); n++) s->users[s->rows.leaf[n]]--;
+    oct_rows_set(&s->rows, v, 1, &leaf);
+    ((float *)s->rows.value)[s->rows.first[v]] = 0;
+    s->users[leaf]++;
+}
+
+/* Some vertices next to a cut are tied to the other side: they come back, and no others move. */
+static void a_few_on_the_wrong_side_go_with_the_many(void **state)
+{
+    (void)state;
+    OctStructure s;
+    OctSurface surface;
+    OctTree tree;
+    SmVoxels voxels;
+    unsigned seed = 3;
+    OctOptions options = {.width.edges = 1};
+    SmMesh mesh = fine_box();
+    double level = 7.8;
+    sm_voxels_block(&voxels, 16, 16, 16, 1);
+    random_split_tree(&seed, &voxels, 3, (int[3]){0}, 0.3, &tree);
+    assert_int_equal(oct_structure_of_tree(&voxels, &options, NULL, &tree, NULL, &s, NULL), SM_OK);
+    OctCarrier c = carrier(&s);
+    oct_surface_build(&mesh, &c, &surface);
+    add_plane(&s.cut, level, 0);
+    refine(&s);
+    assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1, NULL), SM_SLIT_CLOSED);
+    retie(&surface, &mesh, &s, oct_resample_update(&s), 0);
+    assert_int_equal(oct_surface_agree(&surface, &mesh, &c), 0);
+    long misled = 0, below = 0;
+    while (surface.rest[below][2] > level - 1 || surface.rest[below][2] < level - 3) below++;
+    for (long v = 0; v < surface.vertices && misled < 10; v++)
+        if (surface.rest[v][2] > level && surface.rest[v][2] < level + 2 &&
+            random_int(&seed, 3) == 0) {
+            mislead(&surface, v, below);
+            misled++;
+        }
+    assert_int_equal(misled, 10);
+    assert_in_range(oct_surface_agree(&surface, &mesh, &c), 1, 10);
+    part(&surface, &s.tree, level, 0);
+    oct_surface_free(&surface);
+    oct_structure_free(&s);
+    sm_voxels_free(&voxels);
+    sm_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tied_anew_is_tied_from_scratch),
         cmocka_unit_test(both_sides_of_a_cut_follow_their_own),
+        cmocka_unit_test(a_few_on_the_wrong_side_go_with_the_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
