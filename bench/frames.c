@@ -26,6 +26,17 @@ static Times make_times(long frames)
     return t;
 }
 
+static void keep_times(const Times *t, BenchChangeRow *row)
+{
+    row->time = sm_alloc((size_t)t->frames, sizeof *row->time);
+    for (long f = 0; f < t->frames; f++) {
+        row->time[f][0] = t->simulation[f];
+        row->time[f][1] = t->change[f];
+        row->time[f][2] = t->follow[f];
+        row->time[f][3] = t->surface[f];
+    }
+}
+
 static void free_times(Times *t)
 {
     free(t->simulation);
@@ -179,6 +190,7 @@ SmCode bench_frames_play(const BenchScene *scene, const BenchBody *body, const S
     if (!code) {
         summarise(&times, row);
         note_end(play, row);
+        keep_times(&times, row);
     }
     free_times(&times);
     return code;

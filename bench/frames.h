@@ -13,8 +13,7 @@ typedef struct {
     BenchProgress *progress; /* or NULL */
 } BenchFramesParams;
 
-/* Fills `row` but for the paper's values. `play` is left as the last round ends; the caller frees
- * it. Errors are those of playing the scene. */
+/* `play` is left as the last round ends; the caller frees it, and row->time. Errors are those of playing the scene. */
 SmCode bench_frames_play(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                          const BenchFramesParams *params, BenchChangeRow *row, BenchPlay *play,
                          SmError *error);

@@ -324,5 +324,6 @@ void bench_row_free(BenchRow *row)
 {
     free(row->total);
     free(row->stage);
+    free(row->change.time);
     *row = (BenchRow){0};
 }

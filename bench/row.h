@@ -4,6 +4,8 @@
 
 #include "../lib/engine.h"
 
+enum { BENCH_FRAME_PARTS = 4 };
+
 /* What a scene that changes while it runs comes to, frame by frame (frames.h). */
 typedef struct {
     long frames, changed; /* played; with a change: 0 of a scene that changes nothing */
@@ -14,7 +16,9 @@ typedef struct {
     double follow_ms;                 /* then splitting and tying surfaces: median */
     double surface_ms;                /* moving the surface of one body */
     long first_triangles, last_triangles, pieces, open_edges; /* of all surfaces, at the end */
-    long left; /* cuts that a surface could not follow cleanly */
+    long left;                         /* cuts that a surface could not follow cleanly */
+    double (*time)[BENCH_FRAME_PARTS]; /* [frames] s: simulation, resampling, splitting, moving one
+                                        * body's surface; the least of all rounds */
 } BenchChangeRow;
 
 typedef struct {

@@ -12,7 +12,7 @@
 #define COUNT(array)        ((int)(sizeof(array) / sizeof((array)[0])))
 
 static const char file_kind[] = "shapebench results";
-enum { MOST_REPEATS = 1000000 }; /* more than anyone waits for: a damaged file */
+enum { MOST_REPEATS = 1000000, MOST_FRAMES = 10000000 }; /* more than can be: a damaged file */
 
 static const BenchField row_fields[] = {
     FIELD(BENCH_TEXT, paper),
@@ -68,6 +68,23 @@ static const BenchField row_fields[] = {
     FIELD(BENCH_BOOL, plain),
     FIELD(BENCH_DOUBLE, paper_total_ms),
     FIELD(BENCH_DOUBLE, paper_stage_ms),
+    FIELD(BENCH_LONG, change.frames),
+    FIELD(BENCH_LONG, change.changed),
+    FIELD(BENCH_LONG, change.first_nodes),
+    FIELD(BENCH_LONG, change.most_nodes),
+    FIELD(BENCH_LONG, change.last_nodes),
+    FIELD(BENCH_LONG, change.most_added),
+    FIELD(BENCH_DOUBLE, change.first_ms),
+    FIELD(BENCH_DOUBLE, change.last_ms),
+    FIELD(BENCH_DOUBLE, change.change_ms),
+    FIELD(BENCH_DOUBLE, change.change_most_ms),
+    FIELD(BENCH_DOUBLE, change.follow_ms),
+    FIELD(BENCH_DOUBLE, change.surface_ms),
+    FIELD(BENCH_LONG, change.first_triangles),
+    FIELD(BENCH_LONG, change.last_triangles),
+    FIELD(BENCH_LONG, change.pieces),
+    FIELD(BENCH_LONG, change.open_edges),
+    FIELD(BENCH_LONG, change.left),
     FIELD(BENCH_HASH, input_hash),
 };
 
@@ -91,6 +108,9 @@ static void write_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
     hsize_t size[] = {(hsize_t)row->repeats, SM_STAGES};
     bench_h5_dataset(h5, group, "total", H5T_IEEE_F64LE, 1, size, row->total);
     bench_h5_dataset(h5, group, "stage", H5T_IEEE_F64LE, 2, size, row->stage);
+    hsize_t frames[] = {(hsize_t)row->change.frames, BENCH_FRAME_PARTS};
+    if (row->change.frames)
+        bench_h5_dataset(h5, group, "frames", H5T_IEEE_F64LE, 2, frames, row->change.time);
     if (group >= 0) H5Gclose(group);
 }
 
@@ -140,6 +160,18 @@ static void read_samples(BenchH5 *h5, hid_t group, BenchRow *row)
     bench_h5_read(h5, stage, H5T_NATIVE_DOUBLE, row->stage);
 }
 
+static void read_frames(BenchH5 *h5, hid_t group, BenchChangeRow *change)
+{
+    if (!h5->failed && (change->frames < 0 || change->frames > MOST_FRAMES))
+        bench_h5_fail(h5, "change.frames is %ld", change->frames);
+    if (h5->failed || change->frames == 0) return;
+    hsize_t size[] = {(hsize_t)change->frames, BENCH_FRAME_PARTS};
+    hid_t frames = bench_h5_find_dataset(h5, group, "frames", 2, size);
+    if (h5->failed) return;
+    change->time = sm_alloc((size_t)change->frames, sizeof *change->time);
+    bench_h5_read(h5, frames, H5T_NATIVE_DOUBLE, change->time);
+}
+
 /* Reads row `index`; a failure's message is preceded by the row. */
 static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
 {
@@ -148,6 +180,7 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     hid_t group = bench_h5_find_group(h5, parent, name);
     bench_h5_read_fields(h5, group, row_fields, COUNT(row_fields), row);
     read_samples(h5, group, row);
+    read_frames(h5, group, &row->change);
     if (h5->failed) {
         char message[sizeof h5->message];
         snprintf(message, sizeof message, "row %s: %.200s", name, h5->message);
@@ -220,6 +253,7 @@ void bench_rows_free(BenchRow *rows, int count)
     for (int i = 0; i < count; i++) {
         free(rows[i].total);
         free(rows[i].stage);
+        free(rows[i].change.time);
     }
     free(rows);
 }

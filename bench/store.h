@@ -6,7 +6,7 @@
 #include "row.h"
 
 /* The layout written; raised with every change that a reader must know of. */
-enum { BENCH_STORE_SCHEMA = 3 };
+enum { BENCH_STORE_SCHEMA = 4 };
 
 /* Writes one results file with all rows: every repeat's samples, counts, validity, provenance.
  * The file appears whole or not at all (draft.h). SM_OUTPUT names cause and remedy. */

@@ -9,7 +9,7 @@
 
 const char *const bench_format_names[] = {"text", "markdown", "csv", "latex", "json", NULL};
 
-enum { COLUMNS = 20 };
+enum { COLUMNS = 27 };
 
 static const char *const column_names[COLUMNS] = {
     "paper",
@@ -32,6 +32,13 @@ static const char *const column_names[COLUMNS] = {
     "fps",
     "speedup",
     "summation_nodes",
+    "last_particles",
+    "frame_ms",
+    "last_frame_ms",
+    "resampling_ms",
+    "most_resampling_ms",
+    "splitting_ms",
+    "surface_ms",
 };
 
 /* A value of one of three kinds: text, a whole number, or a number. */
@@ -61,6 +68,12 @@ static void fill_cells(const BenchRow *row, Cell cell[COLUMNS])
     *c++ = (Cell){.kind = TIME, .number = row->fps};
     *c++ = (Cell){.kind = TIME, .number = row->speedup};
     *c++ = (Cell){.kind = NUMBER, .number = row->summation_nodes};
+    const BenchChangeRow *change = &row->change;
+    bool changes = change->frames > 0;
+    *c++ = (Cell){.kind = NUMBER, .number = changes ? (double)change->last_nodes : NAN};
+    const double times[] = {change->first_ms,       change->last_ms,   change->change_ms,
+                            change->change_most_ms, change->follow_ms, change->surface_ms};
+    for (int i = 0; i < 6; i++) *c++ = (Cell){.kind = TIME, .number = changes ? times[i] : NAN};
 }
 
 /* Quoted where it must be, with quotes doubled. */

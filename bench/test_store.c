@@ -17,7 +17,7 @@
 #include "../lib/test_folder.h"
 #include "store.h"
 
-enum { ROWS = 2, REPEATS = 7, ROW_BYTES = 1136 };
+enum { ROWS = 2, FRAMES = 7, REPEATS = 7, ROW_BYTES = 1280 };
 
 /* A field new in row.h is to be stored (store.c), described (results/README.md) and filled here. */
 _Static_assert(sizeof(BenchRow) == ROW_BYTES, "row.h has changed: see above");
@@ -69,6 +69,23 @@ static void fill_row(BenchRow *row, int seed)
                       .balance_splits = 9,
                       .plain = seed % 2 == 1,
                       .paper_total_ms = 0.281,
+                      .change = {.frames = seed % 2 ? FRAMES : 0,
+                                 .changed = 3,
+                                 .first_nodes = 500,
+                                 .most_nodes = 1600,
+                                 .last_nodes = 1550,
+                                 .most_added = 70,
+                                 .first_ms = 0.05,
+                                 .last_ms = 0.2,
+                                 .change_ms = 2.5,
+                                 .change_most_ms = 4.5,
+                                 .follow_ms = 1.5,
+                                 .surface_ms = 0.06,
+                                 .first_triangles = 4400,
+                                 .last_triangles = 12000,
+                                 .pieces = 2,
+                                 .open_edges = 4,
+                                 .left = 1},
                       .input_hash = 0xcbf29ce484222325ULL};
     strcpy(row->paper, "fastlsm");
     strcpy(row->paper_row, "penguin");
@@ -79,6 +96,9 @@ static void fill_row(BenchRow *row, int seed)
     strcpy(row->found, "goals within 1.5e-05 cells");
     row->total = sm_alloc(REPEATS, sizeof *row->total);
     row->stage = sm_alloc(REPEATS, sizeof *row->stage);
+    if (row->change.frames) row->change.time = sm_alloc(FRAMES, sizeof *row->change.time);
+    for (int f = 0; f < row->change.frames; f++)
+        for (int i = 0; i < BENCH_FRAME_PARTS; i++) row->change.time[f][i] = 1e-6 * (10 * f + i);
     for (int i = 0; i < REPEATS; i++) row->total[i] = 1e-4 * (i + seed);
     for (int s = 0; s < SM_STAGES; s++) {
         row->stage_ms[s] = 0.01 * (s + 1);
@@ -95,9 +115,12 @@ static void compare_rows(const BenchRow *a, const BenchRow *b)
     memcpy(&right, b, sizeof right);
     left.total = right.total = NULL;
     left.stage = right.stage = NULL;
+    left.change.time = right.change.time = NULL;
     assert_memory_equal(&left, &right, sizeof left);
     assert_memory_equal(a->total, b->total, REPEATS * sizeof *a->total);
     assert_memory_equal(a->stage, b->stage, REPEATS * sizeof *a->stage);
+    if (a->change.frames)
+        assert_memory_equal(a->change.time, b->change.time, FRAMES * sizeof *a->change.time);
 }
 
 static void fill_rows(BenchRow *rows, BenchMachine *machine)
@@ -119,6 +142,7 @@ static SmCode store_file(const char *path, SmError *error)
     for (int i = 0; i < ROWS; i++) {
         free(rows[i].total);
         free(rows[i].stage);
+        free(rows[i].change.time);
     }
     return code;
 }
@@ -150,6 +174,7 @@ static void round_trip(void **state)
     for (int i = 0; i < ROWS; i++) {
         free(expected[i].total);
         free(expected[i].stage);
+        free(expected[i].change.time);
     }
     unlink(path);
 }
@@ -270,6 +295,11 @@ static void more_rows(hid_t file)
 {
     set_int(file, "rows", 1 << 30);
 }
+static void lose_frames(hid_t file)
+{
+    assert_true(H5Ldelete(file, "rows/001/frames", H5P_DEFAULT) >= 0);
+}
+
 static void lose_total(hid_t file)
 {
     assert_true(H5Ldelete(file, "rows/001/total", H5P_DEFAULT) >= 0);
@@ -320,6 +350,7 @@ static void damaged_files(void **state)
     refuses_changed(lose_total, "row 001: dataset 'total' is missing");
     refuses_changed(lose_field, "row 000: attribute 'goal_error' is missing");
     refuses_changed(lose_machine, "group 'machine' is missing");
+    refuses_changed(lose_frames, "row 001: dataset 'frames' is missing");
     refuses_changed(more_repeats, "row 001: dataset 'total' has the wrong size");
     refuses_changed(negative_repeats, "row 001: repeats is -1");
     refuses_changed(text_for_number, "row 001: attribute 'w' has the wrong type");

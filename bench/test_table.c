@@ -15,7 +15,8 @@
 static const char header[] =
     "paper,scene,engine,particles,regions,w,epsilon,fast_sum_ms,shape_matching_ms,polar_ms,"
     "damping_ms,other_ms,total_ms,ns_per_particle_step,paper_total_ms,ratio,valid,fps,"
-    "speedup,summation_nodes\n";
+    "speedup,summation_nodes,last_particles,frame_ms,last_frame_ms,resampling_ms,"
+    "most_resampling_ms,splitting_ms,surface_ms\n";
 
 /* A valid row of the paper's penguin and an invalid one without a paper. */
 static void make_rows(BenchRow rows[2])
@@ -75,9 +76,10 @@ static void csv_is_the_stable_interface(void **state)
     char wanted[1024];
     snprintf(wanted, sizeof wanted, "%s%s%s", header,
              "fastlsm,penguin,fastlsm,150,130,2,0,0.002,0.003,0.004,0,0.005,0.014,93.25,0.28,20,"
-             "VALID,71428.5714,,\n",
+             "VALID,71428.5714,,,,,,,,,\n",
              ",\"a_b,\"\"c\"\"&50%|x\",fastlsm,150,130,2,0,INVALID,INVALID,INVALID,INVALID,INVALID,"
-             "INVALID,INVALID,,INVALID,INVALID,INVALID,INVALID,\n");
+             "INVALID,INVALID,,INVALID,INVALID,INVALID,INVALID,,,INVALID,INVALID,INVALID,INVALID,"
+             "INVALID,INVALID\n");
     assert_string_equal(text, wanted);
     free(text);
 }
@@ -239,6 +241,57 @@ static void an_octree_has_columns_of_its_own(void **state)
     }
 }
 
+/* A row that changes has a line in a second table, the paper's below, and its columns in CSV. */
+static void what_changes_has_a_table_of_its_own(void **state)
+{
+    (void)state;
+    BenchRow row = {.particles = 501,
+                    .valid = true,
+                    .total_ms = 0.05,
+                    .paper_total_ms = 3.7,
+                    .summation_nodes = 9,
+                    .speedup = NAN,
+                    .change = {.frames = 400,
+                               .changed = 30,
+                               .first_nodes = 501,
+                               .last_nodes = 1548,
+                               .most_added = 77,
+                               .first_ms = 0.0625,
+                               .last_ms = 0.25,
+                               .change_ms = 2.5,
+                               .change_most_ms = 4.75,
+                               .follow_ms = 1.25,
+                               .surface_ms = 0.075,
+                               .first_triangles = 4400,
+                               .last_triangles = 11858,
+                               .pieces = 2}};
+    strcpy(row.paper, "octree");
+    strcpy(row.paper_row, "liver");
+    strcpy(row.scene, "liver");
+    strcpy(row.engine, "octree");
+    static const char *const wanted[] = {
+        "\nWhile they change", "501 -> 1548", "0.0625 -> 0.250", "2.50 to 4.75", "1.25", "0.0750",
+        "4400 -> 11858",       "500 -> 1550", "3.70* -> 15.5*",  "62.0 to 124"};
+    BenchMachine machine = {.threads = 1};
+    for (int valid = 1; valid >= 0; valid--)
+        for (BenchFormat format = BENCH_AS_TEXT; format <= BENCH_AS_JSON; format++) {
+            char *text;
+            size_t size;
+            FILE *file = open_memstream(&text, &size);
+            row.valid = valid;
+            bench_table_write(file, format, &row, 1, &machine);
+            fclose(file);
+            for (size_t i = 0; i < sizeof wanted / sizeof *wanted && valid; i++)
+                if (format == BENCH_AS_TEXT && !strstr(text, wanted[i]))
+                    fail_msg("no \"%s\" in:\n%s", wanted[i], text);
+            if (format == BENCH_AS_CSV && valid)
+                assert_non_null(strstr(text, ",1548,0.0625,0.25,2.5,4.75,1.25,0.075\n"));
+            if (format == BENCH_AS_MARKDOWN) assert_non_null(strstr(text, "| 501 -> 1548 |"));
+            if (!valid) assert_null(strstr(text, "0.25"));
+            free(text);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -248,6 +301,7 @@ int main(void)
         cmocka_unit_test(text_sets_the_paper_beside_the_measured),
         cmocka_unit_test(markdown_and_latex_escape),
         cmocka_unit_test(an_octree_has_columns_of_its_own),
+        cmocka_unit_test(what_changes_has_a_table_of_its_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
