@@ -180,7 +180,7 @@ static void a_scene_can_be_copied_and_run(void **state)
     Result result;
     run("scenes", &result);
     assert_non_null(strstr(result.out, "penguin"));
-    run("scenes block", &result);
+    run("scenes block-twist", &result);
     assert_int_equal(result.code, 0);
     write_text("mine.cfg", result.out);
     run("run mine.cfg --engine brute --particles 64 --frames 2", &result);

@@ -221,10 +221,10 @@ static void what_is_not_swept_is_not_cut(void **state)
             sm_blade_sweep(&blade, (double[3]){0, f - 5, 20}, (double[3]){9, f, 30}, &c, &cut), 0);
     sm_blade_lift(&blade);
     for (int f = 0; f < 10; f++)
-        assert_int_equal(sm_blade_sweep(&blade, (double[3]){2, 5, 5 + 0.004 * f},
-                                        (double[3]){8, 5, 5}, &c, &cut),
-                         0);
-    assert_true(sm_blade_sweep(&blade, (double[3]){2, 5, 5.1}, (double[3]){8, 5, 5}, &c, &cut) > 0);
+        assert_int_equal(
+            sm_blade_sweep(&blade, (double[3]){2, 5, 5 + 0.04 * f}, (double[3]){8, 5, 5}, &c, &cut),
+            0);
+    assert_true(sm_blade_sweep(&blade, (double[3]){2, 5, 5.7}, (double[3]){8, 5, 5}, &c, &cut) > 0);
     sm_blade_lift(&blade);
     long before = cut.triangles;
     for (int f = 0; f < 20; f++)
@@ -237,6 +237,32 @@ static void what_is_not_swept_is_not_cut(void **state)
                     0);
         assert_true(cut.triangles > before);
     }
+    sm_cut_free(&cut);
+    sm_blade_free(&blade);
+    free(body);
+}
+
+/* Back the way it came it cuts nothing, and nothing twice when it comes again; aside it does. */
+static void a_blade_that_is_drawn_back_waits(void **state)
+{
+    (void)state;
+    static const struct {
+        double y, z;
+        bool cuts;
+    } way[] = {{-3, 5, false}, {2, 5, true}, {4, 5, true},    {1, 5, false}, {3.5, 5.1, false},
+               {0, 5, false},  {6, 5, true}, {5.4, 5, false}, {5, 7, true}};
+    Body *body = body_at_rest();
+    SmCarriers c = carriers(body);
+    SmBlade blade;
+    SmCut cut;
+    sm_blade_init(&blade);
+    sm_cut_init(&cut, 2);
+    for (size_t i = 0; i < sizeof way / sizeof *way; i++) {
+        long added = sm_blade_sweep(&blade, (double[3]){3, way[i].y, way[i].z},
+                                    (double[3]){7, way[i].y, way[i].z}, &c, &cut);
+        if ((added > 0) != way[i].cuts) fail_msg("place %zu: %ld triangles", i, added);
+    }
+    assert_disc(&cut);
     sm_cut_free(&cut);
     sm_blade_free(&blade);
     free(body);
@@ -282,6 +308,7 @@ int main(void)
         cmocka_unit_test(frames_join_on_however_the_body_moves),
         cmocka_unit_test(a_body_moving_through_a_blade_is_cut),
         cmocka_unit_test(what_is_not_swept_is_not_cut),
+        cmocka_unit_test(a_blade_that_is_drawn_back_waits),
         cmocka_unit_test(broken_bodies_do_no_harm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
