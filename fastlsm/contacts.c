@@ -10,6 +10,7 @@ struct LsmContacts {
     Lsm *lsm;
     Crowd *crowd;
     SmCollide *collide;
+    LsmOutline outline;
     double (*x)[3]; /* [bodies * particles] cells */
     long broken;    /* links, in the present description */
     long *fixed, fixed_count;
@@ -33,12 +34,10 @@ LsmContacts *lsm_contacts_build(Lsm *lsm, Crowd *crowd)
     long bodies = crowd ? crowd->bodies : 1;
     if (!params->self && !(params->bodies && bodies > 1)) return NULL;
     LsmContacts *k = sm_alloc(1, sizeof *k);
-    LsmOutline outline;
     *k = (LsmContacts){.lsm = lsm, .crowd = crowd};
     k->x = sm_alloc((size_t)(bodies * lsm->lattice.count), sizeof *k->x);
-    lsm_outline_build(&lsm->lattice, lsm->mass, &outline);
-    k->collide = sm_collide_build(&outline.rest, params, bodies, lsm->params.threads);
-    lsm_outline_free(&outline);
+    lsm_outline_build(&lsm->lattice, lsm->mass, &k->outline);
+    k->collide = sm_collide_build(&k->outline.rest, params, bodies, lsm->params.threads);
     return k;
 }
 
@@ -46,6 +45,7 @@ void lsm_contacts_free(LsmContacts *k)
 {
     if (!k) return;
     sm_collide_free(k->collide);
+    lsm_outline_free(&k->outline);
     free(k->x);
     free(k->fixed);
     free(k);
@@ -58,11 +58,10 @@ static void fix(LsmContacts *k)
 
 static void describe(LsmContacts *k)
 {
-    LsmOutline outline;
-    lsm_outline_build(&k->lsm->lattice, k->lsm->mass, &outline);
-    sm_collide_describe(k->collide, &outline.rest);
+    lsm_outline_free(&k->outline);
+    lsm_outline_build(&k->lsm->lattice, k->lsm->mass, &k->outline);
+    sm_collide_describe(k->collide, &k->outline.rest);
     fix(k);
-    lsm_outline_free(&outline);
     k->broken = k->lsm->broken;
 }
 
@@ -143,5 +142,6 @@ long lsm_contacts_bytes(const LsmContacts *k)
 {
     const Lsm *lsm = k->lsm;
     long bodies = k->crowd ? k->crowd->bodies : 1;
-    return sm_collide_bytes(k->collide) + bodies * lsm->lattice.count * (long)sizeof *k->x;
+    return sm_collide_bytes(k->collide) + lsm_outline_bytes(&k->outline) +
+           bodies * lsm->lattice.count * (long)sizeof *k->x;
 }

@@ -108,3 +108,10 @@ void lsm_outline_free(LsmOutline *o)
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *o = (LsmOutline){0};
 }
+
+long lsm_outline_bytes(const LsmOutline *o)
+{
+    long particle = (long)(CORNERS * sizeof(int) + sizeof *o->across + sizeof *o->x0 +
+                           sizeof *o->centre + sizeof *o->edge + sizeof *o->first);
+    return o->rest.nodes * particle + o->first[o->rest.nodes] * (long)(2 * sizeof(int));
+}

@@ -9,6 +9,7 @@
 #include "collide_hash.h"
 #include "collide_parts.h"
 #include "collide_sweep.h"
+#include "collide_ways.h"
 #include "error.h"
 #include "vector.h"
 
@@ -20,6 +21,7 @@ typedef struct {
 
 struct SmCollideWork {
     SmCollideParts parts;
+    SmCollideWays ways;
     SmCollideHash balls, hash; /* of parts, and of nodes of parts that may touch others */
     SmCollideSweep sweep;
     double *radius;       /* [bodies * parts] of the balls */
@@ -115,12 +117,14 @@ static bool extents(const SmCollide *c, const SmCollideCell *cell, const double 
     return true;
 }
 
-/* Whether a node may collide with a cell of body b. */
-static bool may_collide(const SmCollide *c, int number, long b, long k)
+/* Whether a node may collide with a cell of body b, as far as it is known. */
+static SmCollideRelation relation(const SmCollide *c, int number, long b, long k)
 {
-    long nodes = c->shape.nodes;
-    if (number / nodes != b) return c->params.bodies;
-    return c->params.self && !sm_collide_near(&c->shape, (int)(number - b * nodes), k);
+    long nodes = c->shape.nodes, first = b * nodes;
+    if (number < first || number >= first + nodes)
+        return c->params.bodies ? SM_COLLIDE_MAY : SM_COLLIDE_MUST_NOT;
+    if (!c->params.self) return SM_COLLIDE_MUST_NOT;
+    return sm_collide_relation(&c->shape, (int)(number - first), k);
 }
 
 static SmCollideContact *next_contact(Found *found)
@@ -152,12 +156,15 @@ static void test_cell(const SmCollide *c, const double (*x)[3], const double (*f
          (entry = sm_collide_hash_next(hash, &query));) {
         const double *p = entry->x;
         if (p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1] || p[2] < low[2] ||
-            p[2] > high[2] || !may_collide(c, entry->item, b, k))
+            p[2] > high[2])
             continue;
+        SmCollideRelation known = relation(c, entry->item, b, k);
+        if (known == SM_COLLIDE_MUST_NOT) continue;
         SmCollideContact *contact = next_contact(found);
         if (!sm_collide_meet(&c->shape, cell, (int)(entry->item % nodes), p, middle, F, contact))
             continue;
         contact->node = entry->item;
+        contact->place = known == SM_COLLIDE_UNKNOWN;       /* until it is known */
         contact->cell = (int)(b * c->shape.cell_count + k); /* its place, until it is numbered */
         found->count++;
     }
@@ -304,9 +311,13 @@ static void join(SmCollide *c)
     }
     for (int t = 0; t < c->threads; t++)
         for (long i = 0; i < work->found[t].count; i++) {
-            SmCollideContact *contact = &c->contact[c->contact_count++];
-            *contact = work->found[t].contact[i];
-            complete(c, contact);
+            const SmCollideContact *contact = &work->found[t].contact[i];
+            if (contact->place &&
+                !sm_collide_may(&work->ways, &c->shape, contact->node % (int)c->shape.nodes,
+                                contact->cell % c->shape.cell_count))
+                continue;
+            c->contact[c->contact_count] = *contact;
+            complete(c, &c->contact[c->contact_count++]);
         }
 }
 
@@ -422,6 +433,7 @@ static void work_build(SmCollide *c)
     work->place = sm_alloc(all, sizeof *work->place);
     work->fixed = sm_alloc(all, 1);
     sm_collide_parts_build(&c->shape, &work->parts);
+    sm_collide_ways_start(&work->ways, &c->shape);
     size_t parts = (size_t)(c->bodies * work->parts.count);
     work->radius = sm_alloc(parts, sizeof *work->radius);
     work->close = sm_alloc(parts, 1);
@@ -439,6 +451,7 @@ static void work_free(SmCollide *c)
     sm_collide_hash_free(&work->hash);
     sm_collide_hash_free(&work->balls);
     sm_collide_parts_free(&work->parts);
+    sm_collide_ways_free(&work->ways);
     sm_collide_sweep_free(&work->sweep);
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
@@ -499,8 +512,8 @@ long sm_collide_bytes(const SmCollide *c)
                    (size_t)(c->bodies * work->parts.count) * (sizeof(double) + 1) +
                    (size_t)(c->bodies * c->shape.cell_count) * sizeof(long) +
                    (size_t)work->contact_room * 2 * sizeof *c->contact +
-                   (size_t)work->node_room * (sizeof(int) + sizeof(double) + 2 * sizeof *c->v) +
-                   (size_t)work->hash.room * (2 * sizeof(SmCollideEntry) + sizeof(unsigned)) +
-                   ((size_t)work->hash.table_room + 1) * sizeof(int);
-    return (long)bytes + sm_collide_parts_bytes(&work->parts) + sm_collide_shape_bytes(&c->shape);
+                   (size_t)work->node_room * (sizeof(int) + sizeof(double) + 2 * sizeof *c->v);
+    return (long)bytes + sm_collide_hash_bytes(&work->hash) + sm_collide_hash_bytes(&work->balls) +
+           sm_collide_parts_bytes(&work->parts) + sm_collide_ways_bytes(&work->ways) +
+           sm_collide_shape_bytes(&c->shape);
 }

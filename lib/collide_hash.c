@@ -78,6 +78,12 @@ void sm_collide_hash_free(SmCollideHash *hash)
     *hash = (SmCollideHash){0};
 }
 
+long sm_collide_hash_bytes(const SmCollideHash *hash)
+{
+    return hash->room * (long)(2 * sizeof(SmCollideEntry) + sizeof(unsigned)) +
+           ((long)hash->table_room + 1) * (long)sizeof(int);
+}
+
 /* The row of cubes, from query->x on, as far as its places do not start again from 0. */
 static void enter(const SmCollideHash *hash, SmCollideQuery *query)
 {

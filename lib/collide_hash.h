@@ -39,6 +39,7 @@ void sm_collide_hash_start(SmCollideHash *hash, long most, double width);
 void sm_collide_hash_add(SmCollideHash *hash, long item, const double x[3]);
 void sm_collide_hash_finish(SmCollideHash *hash);
 void sm_collide_hash_free(SmCollideHash *hash);
+long sm_collide_hash_bytes(const SmCollideHash *hash);
 
 /* Walks over the points of all cubes that the box from low to high meets. */
 void sm_collide_hash_query(const SmCollideHash *hash, const double low[3], const double high[3],

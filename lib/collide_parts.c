@@ -1,85 +1,110 @@
 #include "collide_parts.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "collide_hash.h"
+#include "collide_clusters.h"
 #include "error.h"
 
 #define LOOSE 0.1 /* edges: how far a cell's axes reach beyond its bent corners */
 
-/* A cell and the cube that it is in. */
+/* What tells whether two parts are joined. Sides are 2 d + 1 up along axis d, 2 d down. */
 typedef struct {
-    int cube[3], cell;
-} Place;
+    double node_reach[SM_COLLIDE_FACES]; /* of its nodes, less the size that keeps cells apart */
+    double cell_reach[SM_COLLIDE_FACES]; /* of its cells' centres, less their edge's share of it */
+    double least_size, least_edge;
+} Reach;
 
-static int compare_places(const void *a, const void *b)
-{
-    const Place *x = a, *y = b;
-    for (int d = 3; d-- > 0;)
-        if (x->cube[d] != y->cube[d]) return x->cube[d] < y->cube[d] ? -1 : 1;
-    return (x->cell > y->cell) - (x->cell < y->cell);
-}
+/* A part is cluster part_of^-1; those with nodes or cells come first. */
+typedef struct {
+    const SmCollideShape *shape;
+    SmCollideParts *parts;
+    SmCollideClusters clusters;
+    int *part;    /* [clusters] -1: none */
+    int *cluster; /* [parts] */
+    Reach *reach; /* [parts] */
+    int *way;     /* [clusters] shortest that was found, or INT_MAX */
+    int *met;     /* [met_count] whose it is */
+    long met_count;
+} Build;
 
-static bool same_cube(const Place *a, const Place *b)
+/* Parts are clusters that have surface nodes or cells. */
+static void number_parts(Build *b)
 {
-    return !memcmp(a->cube, b->cube, sizeof a->cube);
-}
-
-static void split(const SmCollideShape *shape, SmCollideParts *parts)
-{
-    long cells = shape->cell_count;
-    Place *place = sm_alloc((size_t)cells, sizeof *place);
-    for (long k = 0; k < cells; k++) {
-        place[k].cell = (int)k;
-        for (int d = 0; d < 3; d++)
-            place[k].cube[d] = (int)floor(shape->cell[k].centre[d] / (2 * shape->mean));
+    const SmCollideShape *shape = b->shape;
+    size_t clusters = (size_t)b->clusters.count;
+    b->part = sm_alloc(clusters, sizeof(int));
+    b->cluster = sm_alloc(clusters, sizeof(int));
+    for (long i = 0; i < shape->surface_count; i++) b->part[b->clusters.of[shape->surface[i]]] = 1;
+    for (long k = 0; k < shape->cell_count; k++)
+        b->part[b->clusters.of[shape->cell[k].carrier[0]]] = 1;
+    for (long c = 0; c < b->clusters.count; c++) {
+        bool any = b->part[c];
+        b->part[c] = any ? (int)b->parts->count : -1;
+        if (any) b->cluster[b->parts->count++] = (int)c;
     }
-    qsort(place, (size_t)cells, sizeof *place, compare_places);
-    parts->cell = sm_alloc((size_t)cells, sizeof *parts->cell);
-    parts->cell_first = sm_alloc((size_t)cells + 1, sizeof *parts->cell_first);
-    for (long k = 0; k < cells; k++) {
-        if (k == 0 || !same_cube(&place[k], &place[k - 1])) parts->cell_first[parts->count++] = k;
-        parts->cell[k] = place[k].cell;
-    }
-    parts->cell_first[parts->count] = cells;
-    free(place);
 }
 
-/* Carriers, and the surface nodes among them that no part before has. */
-static void list_nodes(const SmCollideShape *shape, SmCollideParts *parts)
+static int part_of(const Build *b, int node)
 {
-    size_t most = (size_t)(shape->cell_count * shape->carriers), count = (size_t)parts->count;
-    long *seen = sm_alloc((size_t)shape->nodes, sizeof *seen); /* part that has it, from 1 */
-    char *wanted = sm_alloc((size_t)shape->nodes, 1);
-    for (long i = 0; i < shape->surface_count; i++) wanted[shape->surface[i]] = 1;
+    return b->part[b->clusters.of[node]];
+}
+
+/* Makes counts, in first[p + 1], the ends that lists get when they are filled from the back. */
+static void add_up(long *first, long count)
+{
+    for (long p = 0; p < count; p++) first[p + 1] += first[p];
+}
+
+static void list_members(Build *b)
+{
+    const SmCollideShape *shape = b->shape;
+    SmCollideParts *parts = b->parts;
+    size_t count = (size_t)parts->count;
+    parts->cell_first = sm_alloc(count + 2, sizeof(long));
+    parts->node_first = sm_alloc(count + 2, sizeof(long));
+    parts->cell = sm_alloc((size_t)shape->cell_count, sizeof(int));
+    parts->node = sm_alloc((size_t)shape->surface_count, sizeof(int));
+    for (long k = 0; k < shape->cell_count; k++)
+        parts->cell_first[part_of(b, shape->cell[k].carrier[0]) + 2]++;
+    for (long i = 0; i < shape->surface_count; i++)
+        parts->node_first[part_of(b, shape->surface[i]) + 2]++;
+    add_up(parts->cell_first + 1, parts->count);
+    add_up(parts->node_first + 1, parts->count);
+    for (long k = 0; k < shape->cell_count; k++)
+        parts->cell[parts->cell_first[part_of(b, shape->cell[k].carrier[0]) + 1]++] = (int)k;
+    for (long i = 0; i < shape->surface_count; i++)
+        parts->node[parts->node_first[part_of(b, shape->surface[i]) + 1]++] = shape->surface[i];
+}
+
+/* Carriers of the cells, and the surface nodes. */
+static void list_carriers(Build *b)
+{
+    const SmCollideShape *shape = b->shape;
+    SmCollideParts *parts = b->parts;
+    size_t most = (size_t)(shape->cell_count * shape->carriers + shape->surface_count);
+    long *seen = sm_alloc((size_t)shape->nodes, sizeof *seen), at = 0; /* last part, from 1 */
     parts->carrier = sm_alloc(most, sizeof *parts->carrier);
-    parts->node = sm_alloc((size_t)shape->surface_count, sizeof *parts->node);
-    parts->carrier_first = sm_alloc(count + 1, sizeof(long));
-    parts->node_first = sm_alloc(count + 1, sizeof(long));
-    parts->margin = sm_alloc(count, sizeof *parts->margin);
-    long carriers = 0, nodes = 0;
+    parts->carrier_first = sm_alloc((size_t)parts->count + 1, sizeof(long));
+    parts->margin = sm_alloc((size_t)parts->count, sizeof *parts->margin);
     for (long p = 0; p < parts->count; p++) {
         for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
             const SmCollideCell *cell = &shape->cell[parts->cell[i]];
             double out = shape->carriers == 1 ? sqrt(0.75) : LOOSE;
             parts->margin[p] = fmax(parts->margin[p], out * cell->edge);
             for (int c = 0; c < shape->carriers; c++) {
-                int node = cell->carrier[c];
-                if (seen[node] == p + 1) continue;
-                seen[node] = p + 1;
-                parts->carrier[carriers++] = node;
-                if (wanted[node]) parts->node[nodes++] = node;
-                wanted[node] = 0;
+                if (seen[cell->carrier[c]] == p + 1) continue;
+                seen[cell->carrier[c]] = p + 1;
+                parts->carrier[at++] = cell->carrier[c];
             }
         }
+        for (long i = parts->node_first[p]; i < parts->node_first[p + 1]; i++)
+            if (seen[parts->node[i]] != p + 1) parts->carrier[at++] = parts->node[i];
         parts->loosest = fmax(parts->loosest, parts->margin[p]);
-        parts->carrier_first[p + 1] = carriers;
-        parts->node_first[p + 1] = nodes;
+        parts->carrier_first[p + 1] = at;
     }
     free(seen);
-    free(wanted);
 }
 
 double sm_collide_parts_ball(const SmCollideParts *parts, const double (*x)[3], long p,
@@ -99,13 +124,96 @@ double sm_collide_parts_ball(const SmCollideParts *parts, const double (*x)[3], 
     return sqrt(most) + parts->margin[p];
 }
 
-/* Whether every node of a is near every cell of b. */
-static bool all_near(const SmCollideShape *shape, const SmCollideParts *parts, long a, long b)
+/* All nodes of part a are beside all cells of part b where the nodes reach no farther beyond the
+ * cells on any side: of |x - c| - edge / 2 - apart, the node's and the cell's shares (sizes and
+ * edges in sm_collide_apart()) have their largest values apart from each other. */
+static void find_reach(Build *b, long p)
 {
-    for (long i = parts->node_first[a]; i < parts->node_first[a + 1]; i++)
-        for (long k = parts->cell_first[b]; k < parts->cell_first[b + 1]; k++)
-            if (!sm_collide_near(shape, parts->node[i], parts->cell[k])) return false;
+    const SmCollideShape *shape = b->shape;
+    const SmCollideParts *parts = b->parts;
+    Reach *reach = &b->reach[p];
+    double of_size = sm_collide_apart(1, 0), of_edge = sm_collide_apart(0, 1) + 0.5;
+    reach->least_size = reach->least_edge = INFINITY;
+    for (int s = 0; s < SM_COLLIDE_FACES; s++)
+        reach->node_reach[s] = reach->cell_reach[s] = -INFINITY;
+    for (long i = parts->node_first[p]; i < parts->node_first[p + 1]; i++) {
+        int node = parts->node[i];
+        reach->least_size = fmin(reach->least_size, shape->size[node]);
+        for (int s = 0; s < SM_COLLIDE_FACES; s++)
+            reach->node_reach[s] =
+                fmax(reach->node_reach[s],
+                     (s % 2 ? 1 : -1) * shape->x0[node][s / 2] - of_size * shape->size[node]);
+    }
+    for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
+        const SmCollideCell *cell = &shape->cell[parts->cell[i]];
+        reach->least_edge = fmin(reach->least_edge, cell->edge);
+        for (int s = 0; s < SM_COLLIDE_FACES; s++)
+            reach->cell_reach[s] =
+                fmax(reach->cell_reach[s],
+                     (s % 2 ? 1 : -1) * cell->centre[s / 2] - of_edge * cell->edge);
+    }
+}
+
+/* Whether no node of a collides with a cell of b when no way between them is longer than `way`. */
+static bool held(const Build *b, long p, long q, double way)
+{
+    const Reach *a = &b->reach[p], *c = &b->reach[q];
+    if (!(way <= SM_COLLIDE_AROUND * sm_collide_apart(a->least_size, c->least_edge))) return false;
+    for (int s = 0; s < SM_COLLIDE_FACES; s++)
+        if (!(a->node_reach[s] + c->cell_reach[s ^ 1] <= 0)) return false;
     return true;
+}
+
+/* Whether the nodes of cluster q are in the window around every node of part p that ways from there
+ * lead through (collide_ways.c). */
+static bool in_window(const Build *b, long p, long q)
+{
+    const SmCollideClusters *c = &b->clusters;
+    long own = b->cluster[p];
+    double widest = b->shape->widest;
+    double window = sm_collide_apart(b->reach[p].least_size, widest) + widest;
+    for (int d = 0; d < 3; d++)
+        if (c->high[q][d] - c->low[own][d] > window || c->high[own][d] - c->low[q][d] > window)
+            return false;
+    return true;
+}
+
+static void meet(Build *b, int cluster, int way)
+{
+    if (b->way[cluster] == INT_MAX) b->met[b->met_count++] = cluster;
+    if (way < b->way[cluster]) b->way[cluster] = way;
+}
+
+/* Ways from part p over at most two arcs. */
+static void find_ways(Build *b, long p)
+{
+    const SmCollideClusters *c = &b->clusters;
+    int own = b->cluster[p];
+    for (long i = 0; i < b->met_count; i++) b->way[b->met[i]] = INT_MAX;
+    b->met_count = 0;
+    meet(b, own, 0);
+    for (long e = c->arc_first[own]; e < c->arc_first[own + 1]; e++) {
+        int over = c->arc[e];
+        if (!in_window(b, p, over)) continue;
+        meet(b, over, c->length[e]);
+        for (long f = c->arc_first[over]; f < c->arc_first[over + 1]; f++)
+            meet(b, c->arc[f], c->length[e] + c->length[f]);
+    }
+}
+
+/* Parts that p is joined to one way: nodes of p, cells of the other. Fills `list`. */
+static long list_held(Build *b, long p, int *list)
+{
+    const SmCollideClusters *c = &b->clusters;
+    long count = 0;
+    find_ways(b, p);
+    for (long i = 0; i < b->met_count; i++) {
+        int cluster = b->met[i], q = b->part[cluster];
+        double way =
+            0.5 * ((double)b->way[cluster] + c->radius[b->cluster[p]] + c->radius[cluster]);
+        if (q >= 0 && in_window(b, p, cluster) && held(b, p, q, way)) list[count++] = q;
+    }
+    return count;
 }
 
 static int compare(const void *a, const void *b)
@@ -114,46 +222,28 @@ static int compare(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-static void list_joined(const SmCollideShape *shape, SmCollideParts *parts)
+static void list_joined(Build *b)
 {
-    SmCollideHash hash = {0};
-    long count = 0, room = 0;
-    double centre[3], low[3], high[3];
-    sm_collide_hash_start(&hash, parts->count, 4 * shape->mean);
-    for (long p = 0; p < parts->count; p++) {
-        double radius = sm_collide_parts_ball(parts, (const double(*)[3])shape->x0, p, centre);
-        parts->widest = fmax(parts->widest, radius);
-        sm_collide_hash_add(&hash, p, centre);
-    }
-    sm_collide_hash_finish(&hash);
+    SmCollideParts *parts = b->parts;
+    long at = 0, room = 0;
+    b->reach = sm_alloc((size_t)parts->count, sizeof *b->reach);
+    b->way = sm_alloc((size_t)b->clusters.count, sizeof(int));
+    b->met = sm_alloc((size_t)b->clusters.count, sizeof(int));
+    for (long c = 0; c < b->clusters.count; c++) b->way[c] = INT_MAX;
+    for (long p = 0; p < parts->count; p++) find_reach(b, p);
     parts->joined_first = sm_alloc((size_t)parts->count + 1, sizeof(long));
     for (long p = 0; p < parts->count; p++) {
-        long first = count;
-        sm_collide_parts_ball(parts, (const double(*)[3])shape->x0, p, centre);
-        for (int d = 0; d < 3; d++) { /* parts farther off are not in each other's way at rest */
-            low[d] = centre[d] - 2.5 * parts->widest;
-            high[d] = centre[d] + 2.5 * parts->widest;
+        if (room < at + parts->count) {
+            room = 2 * at + parts->count;
+            parts->joined = sm_realloc(parts->joined, (size_t)room, sizeof(int));
         }
-        const SmCollideEntry *entry;
-        SmCollideQuery query;
-        for (sm_collide_hash_query(&hash, low, high, &query);
-             (entry = sm_collide_hash_next(&hash, &query));) {
-            if (!all_near(shape, parts, p, entry->item) || !all_near(shape, parts, entry->item, p))
-                continue;
-            if (count == room) {
-                room = 2 * room + 64;
-                parts->joined = sm_realloc(parts->joined, (size_t)room, sizeof(int));
-            }
-            parts->joined[count++] = entry->item;
-        }
-        parts->joined_first[p + 1] = count;
-        if (count > first)
-            qsort(parts->joined + first, (size_t)(count - first), sizeof(int), compare);
+        long count = list_held(b, p, parts->joined + at);
+        if (count) qsort(parts->joined + at, (size_t)count, sizeof(int), compare);
+        parts->joined_first[p + 1] = at += count;
     }
-    sm_collide_hash_free(&hash);
 }
 
-bool sm_collide_parts_joined(const SmCollideParts *parts, long a, long b)
+static bool holds(const SmCollideParts *parts, long a, long b)
 {
     long low = parts->joined_first[a], high = parts->joined_first[a + 1];
     while (low < high) {
@@ -166,12 +256,31 @@ bool sm_collide_parts_joined(const SmCollideParts *parts, long a, long b)
     return low < parts->joined_first[a + 1] && parts->joined[low] == b;
 }
 
+bool sm_collide_parts_joined(const SmCollideParts *parts, long a, long b)
+{
+    return holds(parts, a, b) && holds(parts, b, a);
+}
+
 void sm_collide_parts_build(const SmCollideShape *shape, SmCollideParts *parts)
 {
+    Build b = {.shape = shape, .parts = parts};
+    double centre[3];
     *parts = (SmCollideParts){0};
-    split(shape, parts);
-    list_nodes(shape, parts);
-    list_joined(shape, parts);
+    sm_collide_clusters_build(&shape->rest, 2 * shape->mean, &b.clusters);
+    number_parts(&b);
+    list_members(&b);
+    list_carriers(&b);
+    for (long p = 0; p < parts->count; p++) {
+        double radius = sm_collide_parts_ball(parts, (const double(*)[3])shape->x0, p, centre);
+        parts->widest = fmax(parts->widest, radius);
+    }
+    list_joined(&b);
+    sm_collide_clusters_free(&b.clusters);
+    free(b.part);
+    free(b.cluster);
+    free(b.reach);
+    free(b.way);
+    free(b.met);
 }
 
 void sm_collide_parts_free(SmCollideParts *parts)

@@ -2,14 +2,12 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "collide_hash.h"
 #include "error.h"
 
-#define SLACK 1e-9 /* cells: distances that differ by less are equal */
+#define SLACK SM_COLLIDE_SLACK
 
 /* The flood's own: faces by number 6 cell + side. */
 typedef struct {
@@ -185,157 +183,17 @@ bool sm_collide_depth(const SmCollideShape *shape, const SmCollideCell *cell, co
     return *depth > 0;
 }
 
-/* Distance in the max norm from a node to a cell, both at rest. */
-static double gap(const SmCollideShape *shape, int node, const SmCollideCell *cell)
+bool sm_collide_beside(const SmCollideShape *shape, int node, const SmCollideCell *cell)
 {
     double most = 0;
     for (int d = 0; d < 3; d++) most = fmax(most, fabs(shape->x0[node][d] - cell->centre[d]));
-    return most - cell->edge / 2;
-}
-
-bool sm_collide_near(const SmCollideShape *shape, int node, long c)
-{
-    const SmCollideCell *cell = &shape->cell[c];
-    if (gap(shape, node, cell) > sm_collide_apart(shape->size[node], cell->edge) + SLACK)
-        return false;
-    for (long i = shape->far_first[node]; i < shape->far_first[node + 1]; i++)
-        if (shape->far[i] == c) return false;
-    return true;
-}
-
-/* Shortest ways through the rest graph from one node. */
-typedef struct {
-    const SmCollideRest *rest;
-    int *distance; /* [nodes] half cells, INT32_MAX: not reached */
-    int *queue;    /* [nodes] a ring */
-    char *queued;  /* [nodes] */
-    int *reached;  /* [count] */
-    long count;
-} Ways;
-
-static bool within(const SmCollideRest *rest, int from, int to, double window)
-{
-    const double *a = rest->x0[from], *b = rest->x0[to];
-    return fabs(a[0] - b[0]) <= window && fabs(a[1] - b[1]) <= window &&
-           fabs(a[2] - b[2]) <= window;
-}
-
-/* Through nodes in the window around `from`. Label-correcting search: what comes out does not
- * depend on the order. */
-static void find_ways(Ways *ways, int from, double window, int most)
-{
-    const SmCollideRest *rest = ways->rest;
-    long head = 0, tail = 0, filled = 1;
-    for (long i = 0; i < ways->count; i++) ways->distance[ways->reached[i]] = INT32_MAX;
-    ways->distance[from] = 0;
-    ways->reached[0] = ways->queue[tail++] = from;
-    ways->count = 1;
-    for (; filled; filled--) {
-        int i = ways->queue[head];
-        if (++head == rest->nodes) head = 0;
-        ways->queued[i] = 0;
-        for (long e = rest->first[i]; e < rest->first[i + 1]; e++) {
-            int j = rest->to[e], d = ways->distance[i] + rest->length[e];
-            if (d > most || d >= ways->distance[j] || !within(rest, from, j, window)) continue;
-            if (ways->distance[j] == INT32_MAX) ways->reached[ways->count++] = j;
-            ways->distance[j] = d;
-            if (ways->queued[j]) continue;
-            ways->queued[j] = 1;
-            if (tail == rest->nodes) tail = 0;
-            ways->queue[tail++] = j;
-            filled++;
-        }
-    }
-}
-
-/* Way from the node searched from to a cell, cells. */
-static double way_to(const Ways *ways, const SmCollideShape *shape, const SmCollideCell *cell)
-{
-    int least = INT32_MAX;
-    for (int c = 0; c < shape->carriers; c++) {
-        int d = ways->distance[cell->carrier[c]];
-        if (d < least) least = d;
-    }
-    if (least == INT32_MAX) return DBL_MAX;
-    return 0.5 * least - (shape->carriers == 1 ? cell->edge / 2 : 0);
-}
-
-static bool touches(const SmCollideShape *shape, int node, const SmCollideCell *cell)
-{
-    double depth, out[3];
-    return sm_collide_depth(shape, cell, shape->x0[node], shape->radius[node], &depth, out);
-}
-
-static int compare(const void *a, const void *b)
-{
-    const int *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
-/* Cells that are far from one node, though not in space. */
-static void find_far(SmCollideShape *shape, SmCollideHash *hash, Ways *ways, int node, long *room)
-{
-    double most = sm_collide_apart(shape->size[node], shape->widest) + SLACK;
-    double low[3], high[3], window = most + shape->widest, span = most + shape->widest / 2;
-    for (int d = 0; d < 3; d++) {
-        low[d] = shape->x0[node][d] - span;
-        high[d] = shape->x0[node][d] + span;
-    }
-    find_ways(ways, node, window, (int)(2 * (SM_COLLIDE_AROUND * most + shape->widest)) + 1);
-    long first = shape->far_first[node + 1];
-    const SmCollideEntry *entry;
-    SmCollideQuery query;
-    for (sm_collide_hash_query(hash, low, high, &query);
-         (entry = sm_collide_hash_next(hash, &query));) {
-        const SmCollideCell *cell = &shape->cell[entry->item];
-        double apart = sm_collide_apart(shape->size[node], cell->edge) + SLACK;
-        if (gap(shape, node, cell) > apart ||
-            way_to(ways, shape, cell) <= SM_COLLIDE_AROUND * apart || touches(shape, node, cell))
-            continue;
-        if (shape->far_first[node + 1] == *room) {
-            *room = 2 * *room + 64;
-            shape->far = sm_realloc(shape->far, (size_t)*room, sizeof(int));
-        }
-        shape->far[shape->far_first[node + 1]++] = (int)entry->item;
-    }
-    if (shape->far_first[node + 1] > first)
-        qsort(shape->far + first, (size_t)(shape->far_first[node + 1] - first), sizeof(int),
-              compare);
-}
-
-static void keep_far(const SmCollideRest *rest, SmCollideShape *shape)
-{
-    size_t nodes = (size_t)rest->nodes;
-    Ways ways = {.rest = rest,
-                 .distance = sm_alloc(nodes, sizeof(int)),
-                 .queue = sm_alloc(nodes, sizeof(int)),
-                 .queued = sm_alloc(nodes, 1),
-                 .reached = sm_alloc(nodes, sizeof(int))};
-    SmCollideHash hash = {0};
-    long room = 0, at = 0;
-    for (size_t i = 0; i < nodes; i++) ways.distance[i] = INT32_MAX;
-    sm_collide_hash_start(&hash, shape->cell_count, 2 * shape->mean);
-    for (long k = 0; k < shape->cell_count; k++)
-        sm_collide_hash_add(&hash, k, shape->cell[k].centre);
-    sm_collide_hash_finish(&hash);
-    shape->far_first = sm_alloc(nodes + 1, sizeof(long));
-    for (int node = 0; node < rest->nodes; node++) {
-        shape->far_first[node + 1] = shape->far_first[node];
-        if (at == shape->surface_count || shape->surface[at] != node) continue;
-        find_far(shape, &hash, &ways, node, &room);
-        at++;
-    }
-    sm_collide_hash_free(&hash);
-    free(ways.distance);
-    free(ways.queue);
-    free(ways.queued);
-    free(ways.reached);
+    return most - cell->edge / 2 <= sm_collide_apart(shape->size[node], cell->edge) + SLACK;
 }
 
 void sm_collide_shape_build(const SmCollideRest *rest, SmCollideShape *shape)
 {
     Flood depths;
-    *shape = (SmCollideShape){.nodes = rest->nodes, .carriers = rest->carriers};
+    *shape = (SmCollideShape){.rest = *rest, .nodes = rest->nodes, .carriers = rest->carriers};
     flood(rest, &depths);
     keep_cells(&depths, shape);
     free(depths.level);
@@ -343,13 +201,12 @@ void sm_collide_shape_build(const SmCollideRest *rest, SmCollideShape *shape)
     free(depths.face);
     keep_nodes(rest, shape);
     keep_surface(shape);
-    keep_far(rest, shape);
 }
 
 void sm_collide_shape_free(SmCollideShape *shape)
 {
-    void *all[] = {shape->cell,   shape->face,         shape->surface,   shape->x0, shape->size,
-                   shape->radius, shape->inverse_mass, shape->far_first, shape->far};
+    void *all[] = {shape->cell, shape->face,   shape->surface,     shape->x0,
+                   shape->size, shape->radius, shape->inverse_mass};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *shape = (SmCollideShape){0};
 }
@@ -359,6 +216,6 @@ long sm_collide_shape_bytes(const SmCollideShape *shape)
     size_t bytes = (size_t)shape->cell_count * sizeof *shape->cell +
                    (size_t)shape->face_count * sizeof *shape->face +
                    (size_t)shape->surface_count * sizeof(int) +
-                   (size_t)shape->nodes * (6 * sizeof(double) + sizeof(long));
-    return (long)(bytes + (size_t)shape->far_first[shape->nodes] * sizeof(int));
+                   (size_t)shape->nodes * 6 * sizeof(double);
+    return (long)bytes;
 }

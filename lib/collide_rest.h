@@ -8,6 +8,8 @@
 
 #include <stdbool.h>
 
+#define SM_COLLIDE_SLACK 1e-9 /* cells: distances that differ by less are equal */
+
 enum {
     SM_COLLIDE_LAYERS = 2,  /* cells below the surface that nodes are tested against */
     SM_COLLIDE_APART = 5,   /* a node and a cell that many cells apart or nearer do not collide */
@@ -16,7 +18,7 @@ enum {
     SM_COLLIDE_FACES = 6    /* 2 d is the low one along axis d, 2 d + 1 the high one */
 };
 
-/* A body as an engine describes it. Everything stays the caller's. */
+/* A body as an engine describes it. Everything stays the caller's, and where it is. */
 typedef struct {
     long nodes, cells;
     int carriers;              /* of a cell: SM_COLLIDE_CORNERS, or 1 */
@@ -48,6 +50,7 @@ typedef struct {
 
 /* Made of it, for any number of instances of the body. */
 typedef struct {
+    SmCollideRest rest;
     long nodes, cell_count, face_count, surface_count;
     int carriers;
     SmCollideCell *cell; /* [cell_count] of levels below SM_COLLIDE_LAYERS, by rising number */
@@ -55,19 +58,13 @@ typedef struct {
     int *surface;        /* [surface_count] nodes that carry an outer face, rising */
     double (*x0)[3];     /* [nodes] */
     double *size, *radius, *inverse_mass;
-    long *far_first; /* [nodes + 1] */
-    int *far;        /* places in `cell`, rising: near in space but not through the material */
     double widest;   /* edge of a cell */
     double mean;     /* edge of a cell */
     double thickest; /* radius of a node */
 } SmCollideShape;
 
 /* Floods the depth from the outer faces: a cell without one takes, from the cells across its faces
- * that the flood has reached before it, the faces nearest to its centre.  Then finds for every
- * surface node the cells so near in space that sm_collide_near() would leave them out, but which
- * the rest graph does not join to it by a way of at most SM_COLLIDE_AROUND times that length
- * through nodes just as near, and which do not touch it at rest. O(cells + surface nodes x what
- * lies near one). */
+ * that the flood has reached before it, the faces nearest to its centre. O(cells + nodes). */
 void sm_collide_shape_build(const SmCollideRest *rest, SmCollideShape *shape);
 void sm_collide_shape_free(SmCollideShape *shape);
 
@@ -80,8 +77,8 @@ static inline double sm_collide_apart(double size, double edge)
     return SM_COLLIDE_APART * 0.5 * (size + edge);
 }
 
-/* Whether the material holds a node and the cell at place c too close together to collide. */
-bool sm_collide_near(const SmCollideShape *shape, int node, long c);
+/* Whether a node and a cell are no farther apart at rest than that. */
+bool sm_collide_beside(const SmCollideShape *shape, int node, const SmCollideCell *cell);
 
 /* How deep the rest position q is below the faces of `cell`: positive inside. A node of radius r
  * is solid from q - r on: true if any of it is inside, and then `depth` is from there. `out` is the

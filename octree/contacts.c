@@ -9,25 +9,22 @@
 struct OctContacts {
     Oct *oct;
     SmCollide *collide;
+    OctOutline outline;
     long nodes;         /* of one body */
-    int *leaf;          /* [nodes] */
+    const int *leaf;    /* [nodes] the outline's */
     double (*x)[3];     /* [instances * nodes] finest cells */
     double (*frame)[9]; /* [instances * nodes] rotations of the nodes' regions */
 };
 
-/* Takes the nodes' leaves over. */
-static void adopt(OctContacts *k, OctOutline *outline)
+static void make_room(OctContacts *k)
 {
-    size_t all = (size_t)(k->oct->instances * outline->rest.nodes);
+    size_t all = (size_t)(k->oct->instances * k->outline.rest.nodes);
     free(k->x);
     free(k->frame);
-    free(k->leaf);
     k->x = sm_alloc(all, sizeof *k->x);
     k->frame = sm_alloc(all, sizeof *k->frame);
-    k->nodes = outline->rest.nodes;
-    k->leaf = outline->leaf;
-    outline->leaf = NULL;
-    oct_outline_free(outline);
+    k->nodes = k->outline.rest.nodes;
+    k->leaf = k->outline.leaf;
 }
 
 OctContacts *oct_contacts_build(Oct *oct, const OctStructure *structure,
@@ -35,27 +32,26 @@ OctContacts *oct_contacts_build(Oct *oct, const OctStructure *structure,
 {
     if (!params->self && !(params->bodies && oct->instances > 1)) return NULL;
     OctContacts *k = sm_alloc(1, sizeof *k);
-    OctOutline outline;
     k->oct = oct;
-    oct_outline_build(structure, &outline);
-    k->collide = sm_collide_build(&outline.rest, params, oct->instances, oct->params.threads);
-    adopt(k, &outline);
+    oct_outline_build(structure, &k->outline);
+    k->collide = sm_collide_build(&k->outline.rest, params, oct->instances, oct->params.threads);
+    make_room(k);
     return k;
 }
 
 void oct_contacts_rebuild(OctContacts *k, const OctStructure *structure)
 {
-    OctOutline outline;
-    oct_outline_build(structure, &outline);
-    sm_collide_describe(k->collide, &outline.rest);
-    adopt(k, &outline);
+    oct_outline_free(&k->outline);
+    oct_outline_build(structure, &k->outline);
+    sm_collide_describe(k->collide, &k->outline.rest);
+    make_room(k);
 }
 
 void oct_contacts_free(OctContacts *k)
 {
     if (!k) return;
     sm_collide_free(k->collide);
-    free(k->leaf);
+    oct_outline_free(&k->outline);
     free(k->x);
     free(k->frame);
     free(k);
@@ -124,6 +120,6 @@ long oct_contacts_count(const OctContacts *k)
 long oct_contacts_bytes(const OctContacts *k)
 {
     long all = k->oct->instances * k->nodes;
-    return sm_collide_bytes(k->collide) + k->nodes * (long)sizeof *k->leaf +
+    return sm_collide_bytes(k->collide) + oct_outline_bytes(&k->outline) +
            all * (long)(sizeof *k->x + sizeof *k->frame);
 }

@@ -26,6 +26,7 @@ static void number_nodes(const OctTree *tree, OctOutline *o)
 {
     o->leaf = sm_alloc((size_t)tree->live, sizeof *o->leaf);
     o->node = sm_alloc((size_t)tree->leaves, sizeof *o->node);
+    o->leaves = tree->leaves;
     for (int leaf = 0; leaf < tree->leaves; leaf++) {
         if (tree->node[leaf] < 0) continue;
         o->node[leaf] = (int)o->rest.nodes;
@@ -98,4 +99,12 @@ void oct_outline_free(OctOutline *o)
                    o->across, o->x0,   o->size,  o->radius, o->mass};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *o = (OctOutline){0};
+}
+
+long oct_outline_bytes(const OctOutline *o)
+{
+    long node = (long)(2 * sizeof(int) + sizeof *o->across + sizeof *o->x0 + sizeof *o->first +
+                       3 * sizeof(double));
+    return o->rest.nodes * node + o->leaves * (long)sizeof *o->node +
+           o->first[o->rest.nodes] * (long)(2 * sizeof(int));
 }

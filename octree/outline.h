@@ -9,7 +9,8 @@
 
 typedef struct {
     SmCollideRest rest;
-    int *leaf;   /* [rest.nodes] a node's leaf, those that live, rising */
+    int *leaf; /* [rest.nodes] a node's leaf, those that live, rising */
+    long leaves;
     int *node;   /* [leaves] a leaf's node */
     long *first; /* of the rest graph */
     int *to, *length;
@@ -22,5 +23,6 @@ typedef struct {
  * join to it. O(leaves x levels + edges); the caller frees. */
 void oct_outline_build(const OctStructure *structure, OctOutline *outline);
 void oct_outline_free(OctOutline *outline);
+long oct_outline_bytes(const OctOutline *outline);
 
 #endif
