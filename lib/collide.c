@@ -19,19 +19,29 @@ typedef struct {
     long count, room;
 } Found;
 
+typedef struct {
+    double low[3], high[3];
+} Box;
+
 struct SmCollideWork {
     SmCollideParts parts;
     SmCollideWays ways;
-    SmCollideHash balls, hash; /* of parts, and of nodes of parts that may touch others */
+    SmCollideHash balls; /* of parts */
     SmCollideSweep sweep;
-    double *radius;       /* [bodies * parts] of the balls */
-    char *close;          /* [bodies * parts] may touch another */
-    Found *found;         /* [threads] */
-    int *place;           /* [bodies * nodes] in SmCollide.node, or -1 */
-    unsigned char *fixed; /* [bodies * nodes] */
-    long *fixed_node;     /* [fixed_count] */
+    double *radius; /* [bodies * parts] of the balls */
+    char *close;    /* [bodies * parts] may touch another */
+    int *mark;      /* [parts] 1 + the part that was last found joined to it */
+    int (*pair)[2]; /* [pair_count] parts that may touch, each pair once */
+    long pair_count, pair_room;
+    int *active; /* [active_count] parts that are close */
+    long active_count;
+    Box *cell_box, *node_box; /* [bodies * parts] of such parts */
+    Box *box;                 /* [bodies * cells of the shape] of their cells */
+    Found *found;             /* [threads] */
+    int *place;               /* [bodies * nodes] in SmCollide.node, or -1 */
+    unsigned char *fixed;     /* [bodies * nodes] */
+    long *fixed_node;         /* [fixed_count] */
     long fixed_count, contact_room, node_room;
-    long *cell; /* [bodies * cells of the shape] those of such parts: body * cells + place */
     double *inverse_mass; /* [node_room] of the nodes that contacts change; 0: fixed */
     double (*before)[3];  /* [node_room] */
     long cells;           /* of a body as described */
@@ -136,37 +146,92 @@ static SmCollideContact *next_contact(Found *found)
     return &found->contact[found->count];
 }
 
-static void test_cell(const SmCollide *c, const double (*x)[3], const double (*frame)[9], long b,
-                      long k, Found *found)
+static bool overlap(const Box *a, const Box *b)
+{
+    return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] &&
+           b->low[1] <= a->high[1] && a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
+}
+
+static bool holds(const Box *box, const double p[3])
+{
+    return p[0] >= box->low[0] && p[0] <= box->high[0] && p[1] >= box->low[1] &&
+           p[1] <= box->high[1] && p[2] >= box->low[2] && p[2] <= box->high[2];
+}
+
+static Box no_box(void)
+{
+    return (Box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
+static void widen(Box *box, const double low[3], const double high[3])
+{
+    for (int d = 0; d < 3; d++) {
+        box->low[d] = low[d] < box->low[d] ? low[d] : box->low[d];
+        box->high[d] = high[d] > box->high[d] ? high[d] : box->high[d];
+    }
+}
+
+/* Boxes of a part's cells, with the solid round of nodes, and of its nodes. */
+static void find_boxes(SmCollide *c, const double (*x)[3], const double (*frame)[9], long part)
+{
+    SmCollideWork *work = c->work;
+    const SmCollideParts *parts = &work->parts;
+    long b = part / parts->count, p = part % parts->count, first = b * c->shape.nodes;
+    double middle[3], F[9], half[3];
+    Box cells = no_box(), nodes = no_box();
+    for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
+        const SmCollideCell *cell = &c->shape.cell[parts->cell[i]];
+        Box *box = &work->box[b * c->shape.cell_count + parts->cell[i]];
+        *box = no_box();
+        sm_collide_frame(cell, x + first, frame ? frame + first : NULL, middle, F);
+        if (!extents(c, cell, F, half)) continue;
+        for (int d = 0; d < 3; d++) {
+            box->low[d] = middle[d] - half[d];
+            box->high[d] = middle[d] + half[d];
+        }
+        widen(&cells, box->low, box->high);
+    }
+    for (long i = parts->node_first[p]; i < parts->node_first[p + 1]; i++)
+        widen(&nodes, x[first + parts->node[i]], x[first + parts->node[i]]);
+    work->cell_box[part] = cells;
+    work->node_box[part] = nodes;
+}
+
+/* A node in the box of the cell at place k of body b. */
+static void test_node(const SmCollide *c, const double (*x)[3], const double (*frame)[9],
+                      int number, long b, long k, Found *found)
 {
     const SmCollideCell *cell = &c->shape.cell[k];
-    const SmCollideHash *hash = &c->work->hash;
+    double middle[3], F[9];
     long nodes = c->shape.nodes, first = b * nodes;
-    double middle[3], F[9], half[3], low[3], high[3];
+    SmCollideRelation known = relation(c, number, b, k);
+    if (known == SM_COLLIDE_MUST_NOT) return;
+    SmCollideContact *contact = next_contact(found);
     sm_collide_frame(cell, x + first, frame ? frame + first : NULL, middle, F);
-    if (!extents(c, cell, F, half)) return;
-    for (int d = 0; d < 3; d++) {
-        low[d] = middle[d] - half[d];
-        high[d] = middle[d] + half[d];
-    }
-    if (!c->params.self && !sm_collide_sweep_meets(&c->work->sweep, b, low, high)) return;
-    const SmCollideEntry *entry;
-    SmCollideQuery query;
-    for (sm_collide_hash_query(hash, low, high, &query);
-         (entry = sm_collide_hash_next(hash, &query));) {
-        const double *p = entry->x;
-        if (p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1] || p[2] < low[2] ||
-            p[2] > high[2])
-            continue;
-        SmCollideRelation known = relation(c, entry->item, b, k);
-        if (known == SM_COLLIDE_MUST_NOT) continue;
-        SmCollideContact *contact = next_contact(found);
-        if (!sm_collide_meet(&c->shape, cell, (int)(entry->item % nodes), p, middle, F, contact))
-            continue;
-        contact->node = entry->item;
-        contact->place = known == SM_COLLIDE_UNKNOWN;       /* until it is known */
-        contact->cell = (int)(b * c->shape.cell_count + k); /* its place, until it is numbered */
-        found->count++;
+    if (!sm_collide_meet(&c->shape, cell, (int)(number % nodes), x[number], middle, F, contact))
+        return;
+    contact->node = number;
+    contact->place = known == SM_COLLIDE_UNKNOWN;       /* until it is known */
+    contact->cell = (int)(b * c->shape.cell_count + k); /* its place, until it is numbered */
+    found->count++;
+}
+
+/* The cells of one part against the nodes of another. */
+static void test_parts(const SmCollide *c, const double (*x)[3], const double (*frame)[9],
+                       long with_cells, long with_nodes, Found *found)
+{
+    const SmCollideWork *work = c->work;
+    const SmCollideParts *parts = &work->parts;
+    const Box *nodes = &work->node_box[with_nodes];
+    long b = with_cells / parts->count, p = with_cells % parts->count;
+    long q = with_nodes % parts->count, first = with_nodes / parts->count * c->shape.nodes;
+    if (!overlap(&work->cell_box[with_cells], nodes)) return;
+    for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
+        const Box *box = &work->box[b * c->shape.cell_count + parts->cell[i]];
+        if (!overlap(box, nodes)) continue;
+        for (long n = parts->node_first[q]; n < parts->node_first[q + 1]; n++)
+            if (holds(box, x[first + parts->node[n]]))
+                test_node(c, x, frame, (int)(first + parts->node[n]), b, parts->cell[i], found);
     }
 }
 
@@ -199,19 +264,51 @@ static double find_balls(SmCollide *c, const double (*x)[3])
     return largest;
 }
 
-/* Whether nodes of one part may collide with cells of the other. */
-static bool parts_may_collide(const SmCollide *c, long a, long b)
+/* Marks the parts that part p cannot collide with. */
+static void mark_joined(const SmCollide *c, long p)
 {
     const SmCollideParts *parts = &c->work->parts;
-    if (a / parts->count != b / parts->count) return c->params.bodies;
-    return c->params.self && !sm_collide_parts_joined(parts, a % parts->count, b % parts->count);
+    for (long i = parts->joined_first[p]; i < parts->joined_first[p + 1]; i++)
+        c->work->mark[parts->joined[i]] = (int)p + 1;
+}
+
+/* Whether nodes of one part may collide with cells of the other; those joined to a are marked. */
+static bool parts_may_collide(const SmCollide *c, long a, long b)
+{
+    long count = c->work->parts.count;
+    if (a / count != b / count) return c->params.bodies;
+    return c->params.self && c->work->mark[b % count] != a % count + 1;
+}
+
+static void be_active(SmCollideWork *work, int part)
+{
+    if (!work->close[part]) work->active[work->active_count++] = part;
+    work->close[part] = 1;
+}
+
+static void add_pair(SmCollideWork *work, int a, int b)
+{
+    if (work->pair_count == work->pair_room) {
+        work->pair_room = 2 * work->pair_room + 64;
+        work->pair = sm_realloc(work->pair, (size_t)work->pair_room, sizeof *work->pair);
+    }
+    work->pair[work->pair_count][0] = a;
+    work->pair[work->pair_count++][1] = b;
+    be_active(work, a);
+    be_active(work, b);
+}
+
+/* Of two parts that both find each other, is it the second's turn? */
+static bool later(const SmCollideEntry *a, const SmCollideEntry *b)
+{
+    return a->x[2] != b->x[2] ? a->x[2] > b->x[2] : a->item > b->item;
 }
 
 /* Balls of up to the usual size look for such; larger ones, of which a stretched body has some,
  * look for all. */
-static void close_in(const SmCollide *c, const SmCollideEntry *part, double usual, double largest)
+static void pair_up(const SmCollide *c, const SmCollideEntry *part, double usual, double largest)
 {
-    const SmCollideWork *work = c->work;
+    SmCollideWork *work = c->work;
     double radius = work->radius[part->item], low[3], high[3];
     bool large = radius > usual;
     for (int d = 0; d < 3; d++) {
@@ -219,47 +316,28 @@ static void close_in(const SmCollide *c, const SmCollideEntry *part, double usua
         high[d] = part->x[d] + radius + (large ? largest : usual);
     }
     if (!large) low[2] = part->x[2]; /* every pair once */
+    if (c->params.self) mark_joined(c, part->item % work->parts.count);
     const SmCollideEntry *other;
     SmCollideQuery query;
     for (sm_collide_hash_query(&work->balls, low, high, &query);
          (other = sm_collide_hash_next(&work->balls, &query));) {
         double off[3], reach = radius + work->radius[other->item];
-        if (other == part || (!large && other->x[2] < part->x[2])) continue;
+        bool other_large = work->radius[other->item] > usual;
+        if (large != other_large ? other_large : later(part, other)) continue;
         for (int d = 0; d < 3; d++) off[d] = other->x[d] - part->x[d];
-        if (sm_dot(off, off) > reach * reach || !parts_may_collide(c, part->item, other->item))
-            continue;
-        work->close[part->item] = work->close[other->item] = 1;
+        if (sm_dot(off, off) <= reach * reach && parts_may_collide(c, part->item, other->item))
+            add_pair(work, part->item, other->item);
     }
 }
 
-/* Parts that may touch others: their surface nodes go into the hash; returns how many cells they
- * have. */
-static long gather(SmCollide *c, const double (*x)[3])
+/* Parts that may touch. */
+static void find_pairs(SmCollide *c, const double (*x)[3])
 {
     SmCollideWork *work = c->work;
-    const SmCollideParts *parts = &work->parts;
-    long nodes = 0, cells = 0, all = c->bodies * parts->count;
-    double largest = find_balls(c, x);
-    for (long i = 0; i < work->balls.count; i++)
-        close_in(c, &work->balls.entry[i], fmin(1.25 * parts->widest, largest), largest);
-    for (long i = 0; i < all; i++)
-        if (work->close[i])
-            nodes += parts->node_first[i % parts->count + 1] - parts->node_first[i % parts->count];
-    sm_collide_hash_start(&work->hash, nodes, 2 * c->shape.mean);
-    for (long i = 0; i < all; i++) {
-        long b = i / parts->count, p = i % parts->count;
-        if (!work->close[i]) continue;
-        work->close[i] = 0;
-        for (long n = parts->node_first[p]; n < parts->node_first[p + 1]; n++) {
-            long number = b * c->shape.nodes + parts->node[n];
-            if (c->params.self || sm_collide_sweep_meets(&work->sweep, b, x[number], x[number]))
-                sm_collide_hash_add(&work->hash, number, x[number]);
-        }
-        for (long k = parts->cell_first[p]; k < parts->cell_first[p + 1]; k++)
-            work->cell[cells++] = b * c->shape.cell_count + parts->cell[k];
-    }
-    sm_collide_hash_finish(&work->hash);
-    return cells;
+    double largest = find_balls(c, x), usual = fmin(1.25 * work->parts.widest, largest);
+    work->pair_count = work->active_count = 0;
+    for (long i = 0; i < work->balls.count; i++) pair_up(c, &work->balls.entry[i], usual, largest);
+    for (long i = 0; i < work->active_count; i++) work->close[work->active[i]] = 0;
 }
 
 static int place_of(SmCollide *c, long number)
@@ -324,12 +402,18 @@ static void join(SmCollide *c)
 void sm_collide_find(SmCollide *c, const double (*x)[3], const double (*frame)[9])
 {
     SmCollideWork *work = c->work;
-    long all = gather(c, x), cells = c->shape.cell_count;
+    find_pairs(c, x);
+#pragma omp parallel for schedule(static) num_threads(c->threads) if (c->threads > 1)
+    for (long i = 0; i < work->active_count; i++) find_boxes(c, x, frame, work->active[i]);
 #pragma omp parallel for schedule(static) num_threads(c->threads) if (c->threads > 1)
     for (int t = 0; t < c->threads; t++) {
         work->found[t].count = 0;
-        for (long i = all * t / c->threads; i < all * (t + 1) / c->threads; i++)
-            test_cell(c, x, frame, work->cell[i] / cells, work->cell[i] % cells, &work->found[t]);
+        for (long i = work->pair_count * t / c->threads;
+             i < work->pair_count * (t + 1) / c->threads; i++) {
+            int a = work->pair[i][0], b = work->pair[i][1];
+            test_parts(c, x, frame, a, b, &work->found[t]);
+            if (a != b) test_parts(c, x, frame, b, a, &work->found[t]);
+        }
     }
     join(c);
 }
@@ -437,7 +521,11 @@ static void work_build(SmCollide *c)
     size_t parts = (size_t)(c->bodies * work->parts.count);
     work->radius = sm_alloc(parts, sizeof *work->radius);
     work->close = sm_alloc(parts, 1);
-    work->cell = sm_alloc((size_t)(c->bodies * c->shape.cell_count), sizeof *work->cell);
+    work->mark = sm_alloc((size_t)work->parts.count, sizeof *work->mark);
+    work->active = sm_alloc(parts, sizeof *work->active);
+    work->cell_box = sm_alloc(parts, sizeof *work->cell_box);
+    work->node_box = sm_alloc(parts, sizeof *work->node_box);
+    work->box = sm_alloc((size_t)(c->bodies * c->shape.cell_count), sizeof *work->box);
     memset(work->place, -1, all * sizeof *work->place);
     sm_collide_sweep_init(&work->sweep, c->bodies);
 }
@@ -446,9 +534,9 @@ static void work_free(SmCollide *c)
 {
     SmCollideWork *work = c->work;
     for (int t = 0; t < c->threads; t++) free(work->found[t].contact);
-    void *all[] = {work->found,  work->place,        work->fixed,  work->fixed_node, work->cell,
-                   work->before, work->inverse_mass, work->radius, work->close,      work};
-    sm_collide_hash_free(&work->hash);
+    void *all[] = {work->found, work->place,        work->fixed,    work->fixed_node, work->before,
+                   work->box,   work->inverse_mass, work->radius,   work->close,      work->mark,
+                   work->pair,  work->active,       work->cell_box, work->node_box,   work};
     sm_collide_hash_free(&work->balls);
     sm_collide_parts_free(&work->parts);
     sm_collide_ways_free(&work->ways);
@@ -509,11 +597,13 @@ long sm_collide_bytes(const SmCollide *c)
 {
     const SmCollideWork *work = c->work;
     size_t bytes = (size_t)(c->bodies * c->shape.nodes) * (sizeof(int) + 1) +
-                   (size_t)(c->bodies * work->parts.count) * (sizeof(double) + 1) +
-                   (size_t)(c->bodies * c->shape.cell_count) * sizeof(long) +
+                   (size_t)(c->bodies * work->parts.count) *
+                       (sizeof(double) + sizeof(int) + 2 * sizeof(Box) + 1) +
+                   (size_t)(c->bodies * c->shape.cell_count) * sizeof *work->box +
+                   (size_t)work->pair_room * sizeof *work->pair +
                    (size_t)work->contact_room * 2 * sizeof *c->contact +
                    (size_t)work->node_room * (sizeof(int) + sizeof(double) + 2 * sizeof *c->v);
-    return (long)bytes + sm_collide_hash_bytes(&work->hash) + sm_collide_hash_bytes(&work->balls) +
+    return (long)bytes + sm_collide_hash_bytes(&work->balls) +
            sm_collide_parts_bytes(&work->parts) + sm_collide_ways_bytes(&work->ways) +
            sm_collide_shape_bytes(&c->shape);
 }

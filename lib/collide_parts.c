@@ -216,10 +216,28 @@ static long list_held(Build *b, long p, int *list)
     return count;
 }
 
-static int compare(const void *a, const void *b)
+/* Keeps of the lists what is held both ways. */
+static void keep_mutual(SmCollideParts *parts)
 {
-    const int *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
+    long total = parts->joined_first[parts->count], at = 0;
+    long *first = sm_alloc((size_t)parts->count + 2, sizeof *first);
+    int *back = sm_alloc((size_t)total, sizeof *back);
+    int *mark = sm_alloc((size_t)parts->count, sizeof *mark);
+    for (long i = 0; i < total; i++) first[parts->joined[i] + 2]++;
+    add_up(first + 1, parts->count);
+    for (long p = 0; p < parts->count; p++)
+        for (long i = parts->joined_first[p]; i < parts->joined_first[p + 1]; i++)
+            back[first[parts->joined[i] + 1]++] = (int)p;
+    for (long p = 0, i = 0; p < parts->count; p++) {
+        for (; i < parts->joined_first[p + 1]; i++) mark[parts->joined[i]] = (int)p + 1;
+        parts->joined_first[p] = at;
+        for (long k = first[p]; k < first[p + 1]; k++)
+            if (mark[back[k]] == p + 1) parts->joined[at++] = back[k];
+    }
+    parts->joined_first[parts->count] = at;
+    free(first);
+    free(back);
+    free(mark);
 }
 
 static void list_joined(Build *b)
@@ -237,28 +255,9 @@ static void list_joined(Build *b)
             room = 2 * at + parts->count;
             parts->joined = sm_realloc(parts->joined, (size_t)room, sizeof(int));
         }
-        long count = list_held(b, p, parts->joined + at);
-        if (count) qsort(parts->joined + at, (size_t)count, sizeof(int), compare);
-        parts->joined_first[p + 1] = at += count;
+        parts->joined_first[p + 1] = at += list_held(b, p, parts->joined + at);
     }
-}
-
-static bool holds(const SmCollideParts *parts, long a, long b)
-{
-    long low = parts->joined_first[a], high = parts->joined_first[a + 1];
-    while (low < high) {
-        long middle = (low + high) / 2;
-        if (parts->joined[middle] < b)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < parts->joined_first[a + 1] && parts->joined[low] == b;
-}
-
-bool sm_collide_parts_joined(const SmCollideParts *parts, long a, long b)
-{
-    return holds(parts, a, b) && holds(parts, b, a);
+    keep_mutual(parts);
 }
 
 void sm_collide_parts_build(const SmCollideShape *shape, SmCollideParts *parts)

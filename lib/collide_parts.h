@@ -13,7 +13,7 @@ typedef struct {
     int *cell;                                                    /* its cells */
     int *node;                                                    /* its surface nodes */
     int *carrier;   /* these and the nodes that carry its cells, each once */
-    int *joined;    /* parts, itself too, of which no cell can collide with its nodes: rising */
+    int *joined;    /* parts, itself too, that it cannot collide with: rising */
     double *margin; /* [count] how far cells may stand out from their carriers */
     double loosest; /* largest of them */
     double widest;  /* largest radius of a ball at rest */
@@ -30,7 +30,5 @@ long sm_collide_parts_bytes(const SmCollideParts *parts);
 /* The ball around part p of a body whose nodes are at x: returns its radius. */
 double sm_collide_parts_ball(const SmCollideParts *parts, const double (*x)[3], long p,
                              double centre[3]);
-
-bool sm_collide_parts_joined(const SmCollideParts *parts, long a, long b);
 
 #endif
