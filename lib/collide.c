@@ -6,9 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "collide_hash.h"
-#include "collide_parts.h"
-#include "collide_sweep.h"
+#include "collide_pairs.h"
 #include "collide_ways.h"
 #include "error.h"
 #include "vector.h"
@@ -26,16 +24,8 @@ typedef struct {
 struct SmCollideWork {
     SmCollideParts parts;
     SmCollideWays ways;
-    SmCollideHash balls; /* of parts */
-    SmCollideSweep sweep;
-    double *radius; /* [bodies * parts] of the balls */
-    char *close;    /* [bodies * parts] may touch another */
-    int *mark;      /* [parts] 1 + the part that was last found joined to it */
-    int (*pair)[2]; /* [pair_count] parts that may touch, each pair once */
-    long pair_count, pair_room;
-    int *active; /* [active_count] parts that are close */
-    long active_count;
-    Box *cell_box, *node_box; /* [bodies * parts] of such parts */
+    SmCollidePairs pairs;
+    Box *cell_box, *node_box; /* [bodies * parts] of those in pairs */
     Box *box;                 /* [bodies * cells of the shape] of their cells */
     Found *found;             /* [threads] */
     int *place;               /* [bodies * nodes] in SmCollide.node, or -1 */
@@ -235,111 +225,6 @@ static void test_parts(const SmCollide *c, const double (*x)[3], const double (*
     }
 }
 
-/* Balls of the parts that can touch anything; returns the largest radius. */
-static double find_balls(SmCollide *c, const double (*x)[3])
-{
-    SmCollideWork *work = c->work;
-    const SmCollideParts *parts = &work->parts;
-    double largest = 0, most = SM_COLLIDE_LONGEST * parts->widest;
-    if (c->params.bodies)
-        sm_collide_sweep(&work->sweep, x, c->shape.nodes, parts->loosest + c->shape.thickest);
-    sm_collide_hash_start(&work->balls, c->bodies * parts->count, 3 * c->shape.mean);
-    for (long b = 0; b < c->bodies; b++) {
-        if (!c->params.self && work->sweep.first[b] == work->sweep.first[b + 1]) continue;
-        for (long p = 0; p < parts->count; p++) {
-            double centre[3], low[3], high[3];
-            double radius = sm_collide_parts_ball(parts, x + b * c->shape.nodes, p, centre);
-            radius = radius < most ? radius : most;
-            for (int d = 0; d < 3; d++) {
-                low[d] = centre[d] - radius;
-                high[d] = centre[d] + radius;
-            }
-            if (!c->params.self && !sm_collide_sweep_meets(&work->sweep, b, low, high)) continue;
-            sm_collide_hash_add(&work->balls, b * parts->count + p, centre);
-            work->radius[b * parts->count + p] = radius;
-            largest = fmax(largest, radius);
-        }
-    }
-    sm_collide_hash_finish(&work->balls);
-    return largest;
-}
-
-/* Marks the parts that part p cannot collide with. */
-static void mark_joined(const SmCollide *c, long p)
-{
-    const SmCollideParts *parts = &c->work->parts;
-    for (long i = parts->joined_first[p]; i < parts->joined_first[p + 1]; i++)
-        c->work->mark[parts->joined[i]] = (int)p + 1;
-}
-
-/* Whether nodes of one part may collide with cells of the other; those joined to a are marked. */
-static bool parts_may_collide(const SmCollide *c, long a, long b)
-{
-    long count = c->work->parts.count;
-    if (a / count != b / count) return c->params.bodies;
-    return c->params.self && c->work->mark[b % count] != a % count + 1;
-}
-
-static void be_active(SmCollideWork *work, int part)
-{
-    if (!work->close[part]) work->active[work->active_count++] = part;
-    work->close[part] = 1;
-}
-
-static void add_pair(SmCollideWork *work, int a, int b)
-{
-    if (work->pair_count == work->pair_room) {
-        work->pair_room = 2 * work->pair_room + 64;
-        work->pair = sm_realloc(work->pair, (size_t)work->pair_room, sizeof *work->pair);
-    }
-    work->pair[work->pair_count][0] = a;
-    work->pair[work->pair_count++][1] = b;
-    be_active(work, a);
-    be_active(work, b);
-}
-
-/* Of two parts that both find each other, is it the second's turn? */
-static bool later(const SmCollideEntry *a, const SmCollideEntry *b)
-{
-    return a->x[2] != b->x[2] ? a->x[2] > b->x[2] : a->item > b->item;
-}
-
-/* Balls of up to the usual size look for such; larger ones, of which a stretched body has some,
- * look for all. */
-static void pair_up(const SmCollide *c, const SmCollideEntry *part, double usual, double largest)
-{
-    SmCollideWork *work = c->work;
-    double radius = work->radius[part->item], low[3], high[3];
-    bool large = radius > usual;
-    for (int d = 0; d < 3; d++) {
-        low[d] = part->x[d] - radius - (large ? largest : usual);
-        high[d] = part->x[d] + radius + (large ? largest : usual);
-    }
-    if (!large) low[2] = part->x[2]; /* every pair once */
-    if (c->params.self) mark_joined(c, part->item % work->parts.count);
-    const SmCollideEntry *other;
-    SmCollideQuery query;
-    for (sm_collide_hash_query(&work->balls, low, high, &query);
-         (other = sm_collide_hash_next(&work->balls, &query));) {
-        double off[3], reach = radius + work->radius[other->item];
-        bool other_large = work->radius[other->item] > usual;
-        if (large != other_large ? other_large : later(part, other)) continue;
-        for (int d = 0; d < 3; d++) off[d] = other->x[d] - part->x[d];
-        if (sm_dot(off, off) <= reach * reach && parts_may_collide(c, part->item, other->item))
-            add_pair(work, part->item, other->item);
-    }
-}
-
-/* Parts that may touch. */
-static void find_pairs(SmCollide *c, const double (*x)[3])
-{
-    SmCollideWork *work = c->work;
-    double largest = find_balls(c, x), usual = fmin(1.25 * work->parts.widest, largest);
-    work->pair_count = work->active_count = 0;
-    for (long i = 0; i < work->balls.count; i++) pair_up(c, &work->balls.entry[i], usual, largest);
-    for (long i = 0; i < work->active_count; i++) work->close[work->active[i]] = 0;
-}
-
 static int place_of(SmCollide *c, long number)
 {
     SmCollideWork *work = c->work;
@@ -402,15 +287,15 @@ static void join(SmCollide *c)
 void sm_collide_find(SmCollide *c, const double (*x)[3], const double (*frame)[9])
 {
     SmCollideWork *work = c->work;
-    find_pairs(c, x);
+    const SmCollidePairs *pairs = &work->pairs;
+    sm_collide_pairs_find(&work->pairs, &c->shape, &work->parts, x);
 #pragma omp parallel for schedule(static) num_threads(c->threads) if (c->threads > 1)
-    for (long i = 0; i < work->active_count; i++) find_boxes(c, x, frame, work->active[i]);
+    for (long i = 0; i < pairs->part_count; i++) find_boxes(c, x, frame, pairs->part[i]);
 #pragma omp parallel for schedule(static) num_threads(c->threads) if (c->threads > 1)
     for (int t = 0; t < c->threads; t++) {
         work->found[t].count = 0;
-        for (long i = work->pair_count * t / c->threads;
-             i < work->pair_count * (t + 1) / c->threads; i++) {
-            int a = work->pair[i][0], b = work->pair[i][1];
+        for (long i = pairs->count * t / c->threads; i < pairs->count * (t + 1) / c->threads; i++) {
+            int a = pairs->pair[i][0], b = pairs->pair[i][1];
             test_parts(c, x, frame, a, b, &work->found[t]);
             if (a != b) test_parts(c, x, frame, b, a, &work->found[t]);
         }
@@ -519,28 +404,22 @@ static void work_build(SmCollide *c)
     sm_collide_parts_build(&c->shape, &work->parts);
     sm_collide_ways_start(&work->ways, &c->shape);
     size_t parts = (size_t)(c->bodies * work->parts.count);
-    work->radius = sm_alloc(parts, sizeof *work->radius);
-    work->close = sm_alloc(parts, 1);
-    work->mark = sm_alloc((size_t)work->parts.count, sizeof *work->mark);
-    work->active = sm_alloc(parts, sizeof *work->active);
     work->cell_box = sm_alloc(parts, sizeof *work->cell_box);
     work->node_box = sm_alloc(parts, sizeof *work->node_box);
     work->box = sm_alloc((size_t)(c->bodies * c->shape.cell_count), sizeof *work->box);
     memset(work->place, -1, all * sizeof *work->place);
-    sm_collide_sweep_init(&work->sweep, c->bodies);
+    sm_collide_pairs_init(&work->pairs, &work->parts, &c->params, c->bodies);
 }
 
 static void work_free(SmCollide *c)
 {
     SmCollideWork *work = c->work;
     for (int t = 0; t < c->threads; t++) free(work->found[t].contact);
-    void *all[] = {work->found, work->place,        work->fixed,    work->fixed_node, work->before,
-                   work->box,   work->inverse_mass, work->radius,   work->close,      work->mark,
-                   work->pair,  work->active,       work->cell_box, work->node_box,   work};
-    sm_collide_hash_free(&work->balls);
+    void *all[] = {work->found,  work->place,        work->fixed,    work->fixed_node, work->box,
+                   work->before, work->inverse_mass, work->cell_box, work->node_box,   work};
+    sm_collide_pairs_free(&work->pairs);
     sm_collide_parts_free(&work->parts);
     sm_collide_ways_free(&work->ways);
-    sm_collide_sweep_free(&work->sweep);
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
@@ -597,13 +476,11 @@ long sm_collide_bytes(const SmCollide *c)
 {
     const SmCollideWork *work = c->work;
     size_t bytes = (size_t)(c->bodies * c->shape.nodes) * (sizeof(int) + 1) +
-                   (size_t)(c->bodies * work->parts.count) *
-                       (sizeof(double) + sizeof(int) + 2 * sizeof(Box) + 1) +
-                   (size_t)(c->bodies * c->shape.cell_count) * sizeof *work->box +
-                   (size_t)work->pair_room * sizeof *work->pair +
+                   (size_t)(c->bodies * work->parts.count) * 2 * sizeof(Box) +
+                   (size_t)(c->bodies * c->shape.cell_count) * sizeof(Box) +
                    (size_t)work->contact_room * 2 * sizeof *c->contact +
                    (size_t)work->node_room * (sizeof(int) + sizeof(double) + 2 * sizeof *c->v);
-    return (long)bytes + sm_collide_hash_bytes(&work->balls) +
+    return (long)bytes + sm_collide_pairs_bytes(&work->pairs) +
            sm_collide_parts_bytes(&work->parts) + sm_collide_ways_bytes(&work->ways) +
            sm_collide_shape_bytes(&c->shape);
 }
