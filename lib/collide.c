@@ -17,20 +17,16 @@ typedef struct {
     long count, room;
 } Found;
 
-typedef struct {
-    double low[3], high[3];
-} Box;
-
 struct SmCollideWork {
     SmCollideParts parts;
     SmCollideWays ways;
     SmCollidePairs pairs;
-    Box *cell_box, *node_box; /* [bodies * parts] of those in pairs */
-    Box *box;                 /* [bodies * cells of the shape] of their cells */
-    Found *found;             /* [threads] */
-    int *place;               /* [bodies * nodes] in SmCollide.node, or -1 */
-    unsigned char *fixed;     /* [bodies * nodes] */
-    long *fixed_node;         /* [fixed_count] */
+    SmCollideBox *cell_box, *node_box; /* [bodies * parts] of those in pairs */
+    SmCollideBox *box;                 /* [bodies * cells of the shape] of their cells */
+    Found *found;                      /* [threads] */
+    int *place;                        /* [bodies * nodes] in SmCollide.node, or -1 */
+    unsigned char *fixed;              /* [bodies * nodes] */
+    long *fixed_node;                  /* [fixed_count] */
     long fixed_count, contact_room, node_room;
     double *inverse_mass; /* [node_room] of the nodes that contacts change; 0: fixed */
     double (*before)[3];  /* [node_room] */
@@ -136,29 +132,10 @@ static SmCollideContact *next_contact(Found *found)
     return &found->contact[found->count];
 }
 
-static bool overlap(const Box *a, const Box *b)
-{
-    return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] &&
-           b->low[1] <= a->high[1] && a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
-}
-
-static bool holds(const Box *box, const double p[3])
+static bool holds(const SmCollideBox *box, const double p[3])
 {
     return p[0] >= box->low[0] && p[0] <= box->high[0] && p[1] >= box->low[1] &&
            p[1] <= box->high[1] && p[2] >= box->low[2] && p[2] <= box->high[2];
-}
-
-static Box no_box(void)
-{
-    return (Box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-}
-
-static void widen(Box *box, const double low[3], const double high[3])
-{
-    for (int d = 0; d < 3; d++) {
-        box->low[d] = low[d] < box->low[d] ? low[d] : box->low[d];
-        box->high[d] = high[d] > box->high[d] ? high[d] : box->high[d];
-    }
 }
 
 /* Boxes of a part's cells, with the solid round of nodes, and of its nodes. */
@@ -168,21 +145,21 @@ static void find_boxes(SmCollide *c, const double (*x)[3], const double (*frame)
     const SmCollideParts *parts = &work->parts;
     long b = part / parts->count, p = part % parts->count, first = b * c->shape.nodes;
     double middle[3], F[9], half[3];
-    Box cells = no_box(), nodes = no_box();
+    SmCollideBox cells = sm_collide_no_box(), nodes = sm_collide_no_box();
     for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
         const SmCollideCell *cell = &c->shape.cell[parts->cell[i]];
-        Box *box = &work->box[b * c->shape.cell_count + parts->cell[i]];
-        *box = no_box();
+        SmCollideBox *box = &work->box[b * c->shape.cell_count + parts->cell[i]];
+        *box = sm_collide_no_box();
         sm_collide_frame(cell, x + first, frame ? frame + first : NULL, middle, F);
         if (!extents(c, cell, F, half)) continue;
         for (int d = 0; d < 3; d++) {
             box->low[d] = middle[d] - half[d];
             box->high[d] = middle[d] + half[d];
         }
-        widen(&cells, box->low, box->high);
+        sm_collide_widen(&cells, box->low, box->high);
     }
     for (long i = parts->node_first[p]; i < parts->node_first[p + 1]; i++)
-        widen(&nodes, x[first + parts->node[i]], x[first + parts->node[i]]);
+        sm_collide_widen(&nodes, x[first + parts->node[i]], x[first + parts->node[i]]);
     work->cell_box[part] = cells;
     work->node_box[part] = nodes;
 }
@@ -212,13 +189,13 @@ static void test_parts(const SmCollide *c, const double (*x)[3], const double (*
 {
     const SmCollideWork *work = c->work;
     const SmCollideParts *parts = &work->parts;
-    const Box *nodes = &work->node_box[with_nodes];
+    const SmCollideBox *nodes = &work->node_box[with_nodes];
     long b = with_cells / parts->count, p = with_cells % parts->count;
     long q = with_nodes % parts->count, first = with_nodes / parts->count * c->shape.nodes;
-    if (!overlap(&work->cell_box[with_cells], nodes)) return;
+    if (!sm_collide_overlap(&work->cell_box[with_cells], nodes)) return;
     for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
-        const Box *box = &work->box[b * c->shape.cell_count + parts->cell[i]];
-        if (!overlap(box, nodes)) continue;
+        const SmCollideBox *box = &work->box[b * c->shape.cell_count + parts->cell[i]];
+        if (!sm_collide_overlap(box, nodes)) continue;
         for (long n = parts->node_first[q]; n < parts->node_first[q + 1]; n++)
             if (holds(box, x[first + parts->node[n]]))
                 test_node(c, x, frame, (int)(first + parts->node[n]), b, parts->cell[i], found);
@@ -288,7 +265,7 @@ void sm_collide_find(SmCollide *c, const double (*x)[3], const double (*frame)[9
 {
     SmCollideWork *work = c->work;
     const SmCollidePairs *pairs = &work->pairs;
-    sm_collide_pairs_find(&work->pairs, &c->shape, &work->parts, x);
+    sm_collide_pairs_find(&work->pairs, c->shape.nodes, x);
 #pragma omp parallel for schedule(static) num_threads(c->threads) if (c->threads > 1)
     for (long i = 0; i < pairs->part_count; i++) find_boxes(c, x, frame, pairs->part[i]);
 #pragma omp parallel for schedule(static) num_threads(c->threads) if (c->threads > 1)
@@ -476,8 +453,8 @@ long sm_collide_bytes(const SmCollide *c)
 {
     const SmCollideWork *work = c->work;
     size_t bytes = (size_t)(c->bodies * c->shape.nodes) * (sizeof(int) + 1) +
-                   (size_t)(c->bodies * work->parts.count) * 2 * sizeof(Box) +
-                   (size_t)(c->bodies * c->shape.cell_count) * sizeof(Box) +
+                   (size_t)(c->bodies * work->parts.count) * 2 * sizeof(SmCollideBox) +
+                   (size_t)(c->bodies * c->shape.cell_count) * sizeof(SmCollideBox) +
                    (size_t)work->contact_room * 2 * sizeof *c->contact +
                    (size_t)work->node_room * (sizeof(int) + sizeof(double) + 2 * sizeof *c->v);
     return (long)bytes + sm_collide_pairs_bytes(&work->pairs) +

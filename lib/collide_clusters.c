@@ -10,6 +10,17 @@
 
 enum { BITS = 21 }; /* of a cube's coordinate */
 
+/* Bits of a coordinate with two others' places between them: x, y, z in turn make the Morton
+ * curve. */
+static uint64_t apart(uint64_t bits)
+{
+    bits = (bits | bits << 32) & 0x1f00000000ffff;
+    bits = (bits | bits << 16) & 0x1f0000ff0000ff;
+    bits = (bits | bits << 8) & 0x100f00f00f00f00f;
+    bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
+    return (bits | bits << 2) & 0x1249249249249249;
+}
+
 /* A node and the cube that it is in. */
 typedef struct {
     uint64_t cube;
@@ -31,7 +42,7 @@ static Place *sort_nodes(const SmCollideRest *rest, double width)
         for (int d = 0; d < 3; d++) {
             double at = floor(rest->x0[i][d] / width) + (1 << (BITS - 1));
             uint64_t cube = (uint64_t)fmin(fmax(at, 0), (1 << BITS) - 1);
-            place[i].cube = place[i].cube << BITS | cube;
+            place[i].cube |= apart(cube) << d;
         }
     }
     qsort(place, (size_t)rest->nodes, sizeof *place, compare);

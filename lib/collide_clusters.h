@@ -19,7 +19,8 @@ typedef struct {
     int *length;                  /* from root to root */
 } SmCollideClusters;
 
-/* Nodes within a cube of that width. O(nodes log nodes + edges). The caller frees. */
+/* Nodes within a cube of that width; clusters follow the Morton curve through the cubes. O(nodes
+ * log nodes + edges). The caller frees. */
 void sm_collide_clusters_build(const SmCollideRest *rest, double width,
                                SmCollideClusters *clusters);
 void sm_collide_clusters_free(SmCollideClusters *clusters);

@@ -1,48 +1,62 @@
-/* collide_pairs.h - pairs of parts of bodies (collide_parts.h) that may touch: those whose balls
- * meet.
+/* collide_pairs.h - pairs of parts of bodies (collide_parts.h) that may touch: those whose boxes
+ * overlap.
  *
- * Where bodies collide with themselves, all pairs whose balls are nearer to each other than a mean
- * edge are kept in a list, until two parts may have come nearer by that, beside what all have moved
- * together. Otherwise only parts within the box of another body are looked at. */
+ * Parts follow each other along a curve through space, so halving their range gives a tree of boxes
+ * that needs no building; a body's tree is held against itself and against those of the bodies
+ * whose boxes its own overlaps. */
 #ifndef SM_COLLIDE_PAIRS_H
 #define SM_COLLIDE_PAIRS_H
 
-#include "collide_hash.h"
 #include "collide_parts.h"
 #include "collide_sweep.h"
 #include "engine.h"
 
-#define SM_COLLIDE_SLACK_EDGES 1.0 /* mean edges: pairs that near are listed */
+typedef struct {
+    double low[3], high[3];
+} SmCollideBox;
 
 /* Part p of body b has number b * parts + p. */
 typedef struct {
     SmCollideParams params;
-    long bodies;
-    int (*pair)[2]; /* [count] each pair once, by rising numbers: lower one first */
+    const SmCollideParts *parts;
+    long bodies, boxes;
+    int (*pair)[2]; /* [count] each pair once, in an order that depends on positions only */
     long count;
     int *part; /* [part_count] those in pairs, each once */
     long part_count;
     /* its own */
-    SmCollideHash balls;
     SmCollideSweep sweep;
-    double (*centre)[3], *radius;      /* [bodies * parts] of the balls */
-    double (*noted)[3], *noted_radius; /* the same, when `near` was listed */
-    int (*near)[2], (*sorted)[2];      /* [near_room] */
-    int *start;                        /* [bodies * parts + 1] */
-    char *close;                       /* [bodies * parts] is in `part` */
-    int *mark;                         /* [parts] 1 + the part that was last found joined to it */
-    long all, parts, near_count, near_room, room;
-    bool listed;
+    SmCollideBox *tree; /* [bodies][boxes] a range of parts, then its lower half's, its upper's */
+    char *known;        /* [bodies * parts] is in `part` */
+    long room;
 } SmCollidePairs;
 
+/* The parts must stay where they are. */
 void sm_collide_pairs_init(SmCollidePairs *pairs, const SmCollideParts *parts,
                            const SmCollideParams *params, long bodies);
 void sm_collide_pairs_free(SmCollidePairs *pairs);
 long sm_collide_pairs_bytes(const SmCollidePairs *pairs);
 
-/* The pairs of positions x [bodies * nodes][3]. They depend on these only. O(carriers of the
- * parts + pairs in the list), and what lies around every part when it is listed anew. */
-void sm_collide_pairs_find(SmCollidePairs *pairs, const SmCollideShape *shape,
-                           const SmCollideParts *parts, const double (*x)[3]);
+/* The pairs of positions x [bodies * nodes][3]. O(carriers of the parts + pairs whose boxes
+ * overlap). */
+void sm_collide_pairs_find(SmCollidePairs *pairs, long nodes, const double (*x)[3]);
+
+static inline bool sm_collide_overlap(const SmCollideBox *a, const SmCollideBox *b)
+{
+    return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] &&
+           b->low[1] <= a->high[1] && a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
+}
+
+/* Makes a box hold another one; nothing of one that is not a number. */
+static inline void sm_collide_widen(SmCollideBox *box, const double low[3], const double high[3])
+{
+    for (int d = 0; d < 3; d++) {
+        box->low[d] = low[d] < box->low[d] ? low[d] : box->low[d];
+        box->high[d] = high[d] > box->high[d] ? high[d] : box->high[d];
+    }
+}
+
+/* A box of nothing. */
+SmCollideBox sm_collide_no_box(void);
 
 #endif

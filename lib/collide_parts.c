@@ -99,29 +99,47 @@ static void list_carriers(Build *b)
                 parts->carrier[at++] = cell->carrier[c];
             }
         }
-        for (long i = parts->node_first[p]; i < parts->node_first[p + 1]; i++)
+        for (long i = parts->node_first[p]; i < parts->node_first[p + 1]; i++) {
+            parts->margin[p] = fmax(parts->margin[p], shape->radius[parts->node[i]]);
             if (seen[parts->node[i]] != p + 1) parts->carrier[at++] = parts->node[i];
+        }
         parts->loosest = fmax(parts->loosest, parts->margin[p]);
         parts->carrier_first[p + 1] = at;
     }
     free(seen);
 }
 
-double sm_collide_parts_ball(const SmCollideParts *parts, const double (*x)[3], long p,
-                             double centre[3])
+void sm_collide_parts_box(const SmCollideParts *parts, const double (*x)[3], long p, double low[3],
+                          double high[3])
 {
-    long first = parts->carrier_first[p], end = parts->carrier_first[p + 1];
-    double sum[3] = {0}, most = 0;
-    for (long i = first; i < end; i++)
-        for (int d = 0; d < 3; d++) sum[d] += x[parts->carrier[i]][d];
-    for (int d = 0; d < 3; d++) centre[d] = sum[d] / (double)(end - first);
-    for (long i = first; i < end; i++) {
-        const double *at = x[parts->carrier[i]];
-        double a = at[0] - centre[0], b = at[1] - centre[1], c = at[2] - centre[2];
-        double square = a * a + b * b + c * c;
-        most = square > most ? square : most;
+    for (int d = 0; d < 3; d++) {
+        low[d] = INFINITY;
+        high[d] = -INFINITY;
     }
-    return sqrt(most) + parts->margin[p];
+    for (long i = parts->carrier_first[p]; i < parts->carrier_first[p + 1]; i++) {
+        const double *at = x[parts->carrier[i]];
+        for (int d = 0; d < 3; d++) {
+            low[d] = at[d] < low[d] ? at[d] : low[d];
+            high[d] = at[d] > high[d] ? at[d] : high[d];
+        }
+    }
+    for (int d = 0; d < 3; d++) {
+        low[d] -= parts->margin[p];
+        high[d] += parts->margin[p];
+    }
+}
+
+bool sm_collide_parts_joined(const SmCollideParts *parts, long a, long b)
+{
+    long low = parts->joined_first[a], high = parts->joined_first[a + 1], end = high;
+    while (low < high) {
+        long middle = (low + high) / 2;
+        if (parts->joined[middle] < b)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < end && parts->joined[low] == b;
 }
 
 /* All nodes of part a are beside all cells of part b where the nodes reach no farther beyond the
@@ -263,16 +281,11 @@ static void list_joined(Build *b)
 void sm_collide_parts_build(const SmCollideShape *shape, SmCollideParts *parts)
 {
     Build b = {.shape = shape, .parts = parts};
-    double centre[3];
     *parts = (SmCollideParts){0};
     sm_collide_clusters_build(&shape->rest, 2 * shape->mean, &b.clusters);
     number_parts(&b);
     list_members(&b);
     list_carriers(&b);
-    for (long p = 0; p < parts->count; p++) {
-        double radius = sm_collide_parts_ball(parts, (const double(*)[3])shape->x0, p, centre);
-        parts->widest = fmax(parts->widest, radius);
-    }
     list_joined(&b);
     sm_collide_clusters_free(&b.clusters);
     free(b.part);

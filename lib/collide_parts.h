@@ -1,4 +1,4 @@
-/* collide_parts.h - a body in parts of a few nodes, and the balls around them: most parts are near
+/* collide_parts.h - a body in parts of a few nodes, and the boxes around them: most parts are near
  * nothing that they could collide with, and are then done with. */
 #ifndef SM_COLLIDE_PARTS_H
 #define SM_COLLIDE_PARTS_H
@@ -14,9 +14,8 @@ typedef struct {
     int *node;                                                    /* its surface nodes */
     int *carrier;   /* these and the nodes that carry its cells, each once */
     int *joined;    /* parts, itself too, that it cannot collide with: rising */
-    double *margin; /* [count] how far cells may stand out from their carriers */
+    double *margin; /* [count] how far cells and solid nodes may stand out from carriers */
     double loosest; /* largest of them */
-    double widest;  /* largest radius of a ball at rest */
 } SmCollideParts;
 
 /* Nodes within a cube of twice the mean edge that hang together there are a part. Two parts are
@@ -27,8 +26,10 @@ void sm_collide_parts_build(const SmCollideShape *shape, SmCollideParts *parts);
 void sm_collide_parts_free(SmCollideParts *parts);
 long sm_collide_parts_bytes(const SmCollideParts *parts);
 
-/* The ball around part p of a body whose nodes are at x: returns its radius. */
-double sm_collide_parts_ball(const SmCollideParts *parts, const double (*x)[3], long p,
-                             double centre[3]);
+/* The box of all that may touch anything, of part p of a body whose nodes are at x. */
+void sm_collide_parts_box(const SmCollideParts *parts, const double (*x)[3], long p, double low[3],
+                          double high[3]);
+
+bool sm_collide_parts_joined(const SmCollideParts *parts, long a, long b);
 
 #endif
