@@ -178,7 +178,7 @@ static bool held(const Build *b, long p, long q, double way)
     const Reach *a = &b->reach[p], *c = &b->reach[q];
     if (!(way <= SM_COLLIDE_AROUND * sm_collide_apart(a->least_size, c->least_edge))) return false;
     for (int s = 0; s < SM_COLLIDE_FACES; s++)
-        if (!(a->node_reach[s] + c->cell_reach[s ^ 1] <= 0)) return false;
+        if (!(a->node_reach[s] + c->cell_reach[s ^ 1] <= SM_COLLIDE_SLACK)) return false;
     return true;
 }
 
@@ -282,7 +282,8 @@ void sm_collide_parts_build(const SmCollideShape *shape, SmCollideParts *parts)
 {
     Build b = {.shape = shape, .parts = parts};
     *parts = (SmCollideParts){0};
-    sm_collide_clusters_build(&shape->rest, 2 * shape->mean, &b.clusters);
+    sm_collide_clusters_build(&shape->rest, (shape->carriers == 1 ? 2 : 3) * shape->mean,
+                              &b.clusters);
     number_parts(&b);
     list_members(&b);
     list_carriers(&b);
