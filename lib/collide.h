@@ -1,11 +1,12 @@
 /* collide.h - bodies collide with each other and with themselves.
  *
  * Method (octree section on collisions; Teschner et al. 2003): a rest distance field, flooded from
- * the outer faces (collide_rest.h), rides on the cells. The nodes of surfaces go into a spatial
- * hash; every cell near the surface looks up those in its box. A node inside a cell is at a rest
- * position there, which says how deep it is and which way is out. It makes one contact with every
- * cell that holds it. A node and a cell that the material joins by a short way never collide
- * (collide_rest.h).
+ * the outer faces (collide_rest.h), rides on the cells. Every cell near the surface looks up the
+ * surface's nodes in its box; in place of a spatial hash, parts of the surface do that in pairs
+ * (collide_pairs.h), which leaves out nearly all that a hash finds: neighbours in the material. A
+ * node inside a cell is at a rest position there, which says how deep it is and which way is out.
+ * It makes one contact with every cell that holds it. A node and a cell that the material joins by
+ * a short way never collide (collide_ways.h).
  *
  * Engines call, in every step:
  *     sm_collide_find(c, x, frame)                    contacts of the positions before the step
@@ -35,14 +36,16 @@
  * may fly at 0.15 times that thickness a step (SM_COLLIDE_SPEED), so at 0.15 cells against a wall
  * one cell thick. The same holds for obstacles (obstacle.h), but for planes, which have no limit.
  *
- * Only parts of surfaces (collide_parts.h) whose balls meet, of bodies whose boxes meet or of one
+ * Only parts of surfaces (collide_parts.h) whose boxes meet, of bodies whose boxes meet or of one
  * body where the material does not hold them together, look for contacts. A cell counts as the
  * parallelepiped of its axes; where its corners are so bent that this reaches beyond them by more
  * than a tenth of an edge, contacts in what reaches beyond may be missed.
  *
  * Results do not depend on the number of threads. A step costs O(1) for every particle that is
- * looked at (all, for boxes and balls), O(1) for every node and cell of parts that may touch, and
- * O(carriers) for each contact. It allocates nothing once its arrays have grown. Twin:
+ * looked at (all, for boxes), O(1) for every pair of parts whose boxes meet, for their nodes and
+ * cells where the material does not hold them together, and O(carriers) for each contact; once for
+ * every node that is in a cell of its own body neither far from it at rest nor its neighbour, what
+ * a search of the material around it costs. It allocates nothing once its arrays have grown. Twin:
  * reference/collide.c. */
 #ifndef SM_COLLIDE_H
 #define SM_COLLIDE_H
@@ -78,19 +81,21 @@ typedef struct {
     long bodies, contact_count, node_count;
     int threads;
     double bank; /* energy taken and not spent, in the masses' unit x (cells / step)^2 */
-    SmCollideContact *contact; /* [contact_count] by rising cell */
+    SmCollideContact *contact; /* [contact_count] in an order that positions decide */
     int *node;                 /* [node_count] nodes that contacts change, each once */
     double (*v)[3];            /* [node_count] */
     SmCollideWork *work;
 } SmCollide;
 
-/* For `bodies` instances of the body; threads 0: all cores. Free with sm_collide_free(). */
+/* For `bodies` instances of the body; threads 0: all cores. The description is not copied: what it
+ * points to stays where it is until the next one. Free with sm_collide_free(). */
 SmCollide *sm_collide_build(const SmCollideRest *rest, const SmCollideParams *params, long bodies,
                             int threads);
 void sm_collide_free(SmCollide *collide);
 
 /* The body has changed (broken links, cut or refined cells): its new description. Node numbers may
- * change; what was fixed is fixed no more. O(description). */
+ * change; what was fixed is fixed no more. O(description): about 1 us a node, most of it for the
+ * parts; who is far from whom through the material is not sought before it is asked for. */
 void sm_collide_describe(SmCollide *collide, const SmCollideRest *rest);
 
 /* Nodes that impulses do not move (held by handles), in place of those named before. O(count). */

@@ -11,8 +11,11 @@
 #include "../fastlsm/outline.h"
 #include "../fastlsm/random_bodies.h"
 #include "../octree/outline.h"
+#include "../octree/random_batches.h"
 #include "../reference/collide.h"
 #include "collide_hash.h"
+#include "collide_parts.h"
+#include "collide_ways.h"
 #include "test_fields.h"
 #include "vector.h"
 
@@ -96,6 +99,11 @@ static void octree_body(unsigned *seed, Body *body)
     any_voxels(seed, 9, &body->voxels);
     if (oct_structure_build(&body->voxels, &options, NULL, &body->structure, &error))
         fail_msg("%s", error.text);
+    unsigned own = *seed;
+    for (int batch = random_int(&own, 4); batch > 0; batch--) { /* some have been changed and cut */
+        random_batch(&own, &body->structure, 3);
+        oct_resample_update(&body->structure);
+    }
     oct_outline_build(&body->structure, &body->leaves);
     body->rest = &body->leaves.rest;
     place(seed, body);
@@ -207,7 +215,7 @@ static void test_twin(void **state)
     (void)state;
     unsigned seed = 5;
     long contacts = 0, self = 0;
-    for (int round = 0; round < 45; round++) {
+    for (int round = 0; round < 60; round++) {
         Body body;
         if (round % 3)
             lattice_body(&seed, &body);
@@ -219,6 +227,50 @@ static void test_twin(void **state)
         body_free(&body);
     }
     assert_true(self > 300 && contacts > 5000);
+}
+
+/* Parts that are joined have no node and cell that may collide, and what a search says of a node
+ * and a cell is what the twin says. */
+static void test_parts(void **state)
+{
+    (void)state;
+    unsigned seed = 15;
+    long joined = 0, far = 0;
+    for (int round = 0; round < 40; round++) {
+        Body body;
+        if (round % 2)
+            lattice_body(&seed, &body);
+        else
+            octree_body(&seed, &body);
+        SmCollideShape shape;
+        SmCollideParts parts;
+        SmCollideWays ways = {0};
+        sm_collide_shape_build(body.rest, &shape);
+        sm_collide_parts_build(&shape, &parts);
+        sm_collide_ways_start(&ways, &shape);
+        for (long a = 0; a < parts.count; a++)
+            for (long j = parts.joined_first[a]; j < parts.joined_first[a + 1]; j++, joined++) {
+                int b = parts.joined[j];
+                assert_true(sm_collide_parts_joined(&parts, b, a));
+                for (long i = parts.node_first[a]; i < parts.node_first[a + 1]; i++)
+                    for (long k = parts.cell_first[b]; k < parts.cell_first[b + 1]; k++)
+                        assert_false(sm_collide_may(&ways, &shape, parts.node[i], parts.cell[k]));
+            }
+        for (int n = 0; n < 3 && shape.surface_count; n++) {
+            int node = shape.surface[random_int(&seed, (int)shape.surface_count)];
+            int k = random_int(&seed, (int)shape.cell_count);
+            bool may = sm_collide_may(&ways, &shape, node, k);
+            SmCollideRelation told = sm_collide_relation(&shape, node, k);
+            assert_int_equal(may, !ref_collide_near(body.rest, node, shape.cell[k].number));
+            assert_true(told == SM_COLLIDE_UNKNOWN || (told == SM_COLLIDE_MAY) == may);
+            far += may;
+        }
+        sm_collide_ways_free(&ways);
+        sm_collide_parts_free(&parts);
+        sm_collide_shape_free(&shape);
+        body_free(&body);
+    }
+    assert_true(joined > 500 && far > 20);
 }
 
 /* At rest nothing touches, whatever the shape. */
@@ -440,7 +492,7 @@ int main(void)
         cmocka_unit_test(test_hash),  cmocka_unit_test(test_twin),
         cmocka_unit_test(test_rest),  cmocka_unit_test(test_response),
         cmocka_unit_test(test_fixed), cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_wild),
+        cmocka_unit_test(test_wild),  cmocka_unit_test(test_parts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

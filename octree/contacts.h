@@ -24,7 +24,9 @@ OctContacts *oct_contacts_build(Oct *oct, const OctStructure *structure,
                                 const SmCollideParams *params);
 void oct_contacts_free(OctContacts *contacts);
 
-/* The structure has changed, and `oct` with it. What was fixed is fixed no more. */
+/* The structure has changed, and `oct` with it. What was fixed is fixed no more. O(leaves): the
+ * description is made anew, about 1.5 us a leaf; the next steps search from nodes that touch cells
+ * across a cut, each once. */
 void oct_contacts_rebuild(OctContacts *contacts, const OctStructure *structure);
 
 /* Around a step. */

@@ -2,24 +2,24 @@
 
 #include <stdlib.h>
 
-static bool joined(const OctGraph *graph, long a, int b)
-{
-    for (long e = graph->first[a]; e < oct_graph_end(graph, a); e++)
-        if (graph->to[e] == b) return true;
-    return false;
-}
-
+/* The leaf that the graph joins to this one and that holds the finest cell across the middle of a
+ * face, or -1. */
 static int leaf_across(const OctStructure *s, long leaf, int side)
 {
     const OctTree *tree = &s->tree;
-    int node = tree->node[leaf], edge = tree->size[node] / 2, at[3];
+    int node = tree->node[leaf], edge = tree->size[node] / 2, at[3]; /* half finest cells */
     for (int d = 0; d < 3; d++) {
-        at[d] = oct_tree_low(tree, node, d) + edge / 2;
-        if (d == side / 2) at[d] = oct_tree_low(tree, node, d) + (side % 2 ? edge : -1);
+        int low = oct_tree_low(tree, node, d);
+        at[d] = 2 * (d != side / 2 ? low + edge / 2 : side % 2 ? low + edge : low - 1) + 1;
     }
-    int other = oct_tree_find(tree, at[0], at[1], at[2]);
-    if (other < 0 || !joined(&s->graph, leaf, tree->leaf[other])) return -1;
-    return tree->leaf[other];
+    for (long e = s->graph.first[leaf]; e < oct_graph_end(&s->graph, leaf); e++) {
+        int other = tree->node[s->graph.to[e]], half = tree->size[other] / 2;
+        const int *centre = tree->centre[other];
+        if (abs(at[0] - centre[0]) < half && abs(at[1] - centre[1]) < half &&
+            abs(at[2] - centre[2]) < half)
+            return s->graph.to[e];
+    }
+    return -1;
 }
 
 static void number_nodes(const OctTree *tree, OctOutline *o)

@@ -20,7 +20,7 @@ typedef struct {
 
 /* A leaf is solid half its edge around its node, so that leaves touch where their cells do. A face
  * is outer where the finest cell across its middle is in no leaf, or in one that the graph does not
- * join to it. O(leaves x levels + edges); the caller frees. */
+ * join to it. O(leaves + edges); the caller frees. */
 void oct_outline_build(const OctStructure *structure, OctOutline *outline);
 void oct_outline_free(OctOutline *outline);
 long oct_outline_bytes(const OctOutline *outline);
