@@ -68,7 +68,11 @@ SmCode bench_lattice_cut(BenchChanges *changes, long first, double start, SmErro
     if (code) return code;
     double cut = sm_now();
     SmSlitResult result = sm_slit(&changes->surface, &changes->cut, first, cell, NULL);
-    sm_embed_cut(&changes->embedding, &changes->surface, &changes->sites, &changes->cut, first);
+    SmPieces pieces;
+    runner->type->pieces(runner->engine, &pieces);
+    sm_embed_cut(&changes->embedding, &changes->surface, &changes->sites, &changes->cut, first,
+                 pieces.piece);
+    sm_pieces_free(&pieces);
     changes->left |= result == SM_SLIT_LEFT;
     changes->last = (BenchChanged){.resampled = true,
                                    .slit = result == SM_SLIT_CLOSED || result == SM_SLIT_OPEN,

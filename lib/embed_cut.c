@@ -16,6 +16,7 @@ typedef struct {
     const SmMesh *mesh;
     const SmSites *sites;
     const SmCut *cut;
+    const int *piece;    /* [particles] */
     double (*normal)[3]; /* [vertices] of any length */
     int *flat;           /* [vertices] its number in embedding->flat, or -1 */
     long flat_room;
@@ -93,6 +94,20 @@ static bool widens(double basis[3][3], int rank, const double at[3])
     return sm_normalize(basis[rank]);
 }
 
+/* Does a candidate see the eye, and what is chosen already? A look from where cuts meet takes in
+ * more than hangs together. */
+static bool may_carry(const Tying *t, const double eye[3], const Carriers *chosen,
+                      const Candidate *c)
+{
+    double place[3], first[3];
+    if (chosen->count > 0 && t->piece[c->particle] != t->piece[chosen->particle[0]]) return false;
+    place_of(t->sites, c->particle, place);
+    if (sm_cut_crosses(t->cut, 0, eye, place)) return false;
+    if (chosen->count == 0) return true;
+    place_of(t->sites, chosen->particle[0], first);
+    return !sm_cut_crosses(t->cut, 0, first, place);
+}
+
 /* The nearest particles that are seen from `eye`, so many of them far enough away that they span
  * what all that are seen do. Returns how many dimensions. */
 static int choose(const Tying *t, const double X[3], const double eye[3], int reach,
@@ -100,12 +115,11 @@ static int choose(const Tying *t, const double X[3], const double eye[3], int re
 {
     Candidate candidate[MOST_SIDE * MOST_SIDE * MOST_SIDE];
     int count = find_candidates(t->sites, X, reach, candidate), rank = 0;
-    double basis[3][3], place[3];
+    double basis[3][3];
     chosen->count = 0;
     for (int i = 0; i < count && chosen->count < CARRIERS; i++) {
         const Candidate *c = &candidate[i];
-        place_of(t->sites, c->particle, place);
-        if (sm_cut_crosses(t->cut, 0, eye, place)) continue;
+        if (!may_carry(t, eye, chosen, c)) continue;
         if (chosen->count > 0 && rank < 3) {
             double along[3];
             for (int d = 0; d < 3; d++) along[d] = c->at[d] - chosen->at[0][d];
@@ -121,10 +135,12 @@ static int choose(const Tying *t, const double X[3], const double eye[3], int re
 }
 
 /* The same with a wider reach where the near ones span less than space. */
-static void choose_any(const Tying *t, const double X[3], const double eye[3], Carriers *chosen)
+static int choose_any(const Tying *t, const double X[3], const double eye[3], Carriers *chosen)
 {
-    for (int reach = 1; reach <= MOST_REACH; reach++)
-        if (choose(t, X, eye, reach, chosen) == 3) return;
+    int rank = 0;
+    for (int reach = 1; reach <= MOST_REACH && rank < 3; reach++)
+        rank = choose(t, X, eye, reach, chosen);
+    return rank;
 }
 
 /* Moments of the carriers about their middle: `share` adds up to 1, `inverse` is on what they span,
@@ -251,14 +267,17 @@ static Box box_of(const SmCut *cut, long first, double margin)
     return box;
 }
 
-/* Do triangles from `first` on, all in the box, come between a vertex and what carries it? */
+/* Do triangles from `first` on, all in the box, come between a vertex and what carries it, or has
+ * that come apart? */
 static bool is_parted(const Tying *t, long v, long first, const Box *box)
 {
     const double *X = t->mesh->position[v];
+    const int *corner = t->embedding->corner[v];
     for (int i = 0; i < CARRIERS; i++) {
         double place[3];
         bool near = true;
-        place_of(t->sites, t->embedding->corner[v][i], place);
+        if (t->piece[corner[i]] != t->piece[corner[0]]) return true;
+        place_of(t->sites, corner[i], place);
         for (int d = 0; d < 3; d++)
             near &= fmin(X[d], place[d]) <= box->high[d] && fmax(X[d], place[d]) >= box->low[d];
         if (near && sm_cut_crosses(t->cut, first, X, place)) return true;
@@ -271,6 +290,7 @@ static bool agree(void *carriers, long u, long v)
     const Tying *t = carriers;
     const int *a = t->embedding->corner[u], *b = t->embedding->corner[v];
     double from[3], to[3];
+    if (t->piece[a[0]] != t->piece[b[0]]) return false;
     if (a[0] == b[0]) return true;
     place_of(t->sites, a[0], from);
     place_of(t->sites, b[0], to);
@@ -280,27 +300,32 @@ static bool agree(void *carriers, long u, long v)
     return false;
 }
 
-/* Vertex v is carried by what the first particle of u sees. */
+/* Vertex v is carried by what the first particle of u sees near it, or else by all that carry u. */
 static void follow(void *carriers, long v, long u)
 {
     Tying *t = carriers;
+    const SmVoxels *voxels = t->sites->voxels;
     const double *X = t->mesh->position[v];
+    const int *corner = t->embedding->corner[u];
     double eye[3];
     Carriers chosen;
-    int first = t->embedding->corner[u][0];
-    place_of(t->sites, first, eye);
-    choose_any(t, X, eye, &chosen);
-    if (chosen.count == 0) {
-        chosen.particle[chosen.count++] = first;
-        for (int d = 0; d < 3; d++) chosen.at[0][d] = (eye[d] - X[d]) / t->sites->voxels->cell;
+    place_of(t->sites, corner[0], eye);
+    if (choose_any(t, X, eye, &chosen) < 3) {
+        chosen.count = 0;
+        for (int i = 0; i < CARRIERS; i++) {
+            if (i > 0 && corner[i] == corner[0]) break; /* beyond those in use */
+            place_of(t->sites, corner[i], eye);
+            for (int d = 0; d < 3; d++) chosen.at[chosen.count][d] = (eye[d] - X[d]) / voxels->cell;
+            chosen.particle[chosen.count++] = corner[i];
+        }
     }
     weigh(t, v, &chosen);
 }
 
 void sm_embed_cut(SmEmbedding *embedding, const SmMesh *mesh, const SmSites *sites,
-                  const SmCut *cut, long first)
+                  const SmCut *cut, long first, const int *piece)
 {
-    Tying t = {embedding, mesh, sites, cut, .flat_room = embedding->flat_count};
+    Tying t = {embedding, mesh, sites, cut, piece, .flat_room = embedding->flat_count};
     double margin = 1e-6 * sites->voxels->cell;
     Box fresh = box_of(cut, first, margin), all = box_of(cut, 0, margin);
     long before = embedding->vertex_count;

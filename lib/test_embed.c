@@ -269,6 +269,21 @@ static void free_sliced(Sliced *s)
     free_case(&s->c);
 }
 
+/* What the cut has left of the lattice's links holds together. */
+static void find_pieces(const Sliced *s, SmPieces *pieces)
+{
+    double(*x)[3] = particles(&s->c.voxels, identity, nowhere);
+    sm_pieces_init(s->c.voxels.particle_count, pieces);
+    for (long p = 0; p < s->c.voxels.particle_count; p++) {
+        int neighbour[SM_RING], count = sm_sites_ring(&s->sites, p, neighbour);
+        for (int n = 0; n < count; n++)
+            if (!sm_cut_crosses(&s->cut, 0, x[p], x[neighbour[n]]))
+                sm_pieces_link(pieces, p, neighbour[n]);
+    }
+    sm_pieces_finish(pieces, NULL, s->c.voxels.particle_count);
+    free(x);
+}
+
 /* Cuts along a square about `at`, which reaches `reach` cells. */
 static SmSlitResult slice(Sliced *s, const double at[3], const double normal[3], double reach)
 {
@@ -286,7 +301,10 @@ static SmSlitResult slice(Sliced *s, const double at[3], const double normal[3],
     sm_cut_triangle(&s->cut, (int[3]){(int)base, (int)base + 1, (int)base + 3});
     sm_cut_triangle(&s->cut, (int[3]){(int)base, (int)base + 3, (int)base + 2});
     SmSlitResult result = sm_slit(&s->c.mesh, &s->cut, first, s->c.voxels.cell, NULL);
-    sm_embed_cut(&s->c.embedding, &s->c.mesh, &s->sites, &s->cut, first);
+    SmPieces pieces;
+    find_pieces(s, &pieces);
+    sm_embed_cut(&s->c.embedding, &s->c.mesh, &s->sites, &s->cut, first, pieces.piece);
+    sm_pieces_free(&pieces);
     size_t vertices = (size_t)s->c.mesh.vertex_count;
     s->c.position = sm_realloc(s->c.position, vertices, sizeof *s->c.position);
     s->c.normal = sm_realloc(s->c.normal, vertices, sizeof *s->c.normal);
