@@ -1,8 +1,10 @@
 #include "lattice_changes.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "../lib/embed_cut.h"
+#include "../lib/sever.h"
 #include "../octree/fit.h"
 #include "blades.h"
 
@@ -60,22 +62,46 @@ SmCarriers bench_lattice_carriers(BenchChanges *changes, const double blade[4][3
                         .reach = reach};
 }
 
+/* Where material has come apart the surface does too. */
+static bool sever(BenchChanges *changes, const SmPieces *pieces)
+{
+    const SmEmbedding *e = &changes->embedding;
+    if (pieces->count < 2) return false;
+    int *piece = sm_alloc((size_t)e->vertex_count, sizeof *piece);
+    for (long v = 0; v < e->vertex_count; v++) piece[v] = pieces->piece[e->corner[v][0]];
+    long gone = sm_sever(&changes->surface, piece);
+    free(piece);
+    return gone > 0;
+}
+
+/* Splits the surface by the cut's triangles from `first` on; it follows the engine's pieces. */
+static bool split_surface(BenchChanges *changes, long first)
+{
+    const BenchPart *part = changes->part;
+    const SmCut *cut = &changes->cut;
+    SmMesh *surface = &changes->surface;
+    SmPieces pieces;
+    part->runner.type->pieces(part->runner.engine, &pieces);
+    SmSlitResult result = sm_slit(surface, cut, first, part->body.voxels.cell, NULL);
+    sm_embed_cut(&changes->embedding, surface, &changes->sites, cut, first, pieces.piece);
+    bool severed = sever(changes, &pieces);
+    if (severed)
+        sm_embed_cut(&changes->embedding, surface, &changes->sites, cut, cut->triangles,
+                     pieces.piece);
+    sm_pieces_free(&pieces);
+    changes->left |= result == SM_SLIT_LEFT;
+    return severed || result == SM_SLIT_CLOSED || result == SM_SLIT_OPEN;
+}
+
 SmCode bench_lattice_cut(BenchChanges *changes, long first, double start, SmError *error)
 {
     const BenchRunner *runner = &changes->part->runner;
-    double cell = changes->part->body.voxels.cell;
     SmCode code = runner->type->cut(runner->engine, &changes->cut, first, error);
     if (code) return code;
     double cut = sm_now();
-    SmSlitResult result = sm_slit(&changes->surface, &changes->cut, first, cell, NULL);
-    SmPieces pieces;
-    runner->type->pieces(runner->engine, &pieces);
-    sm_embed_cut(&changes->embedding, &changes->surface, &changes->sites, &changes->cut, first,
-                 pieces.piece);
-    sm_pieces_free(&pieces);
-    changes->left |= result == SM_SLIT_LEFT;
+    bool slit = split_surface(changes, first);
     changes->last = (BenchChanged){.resampled = true,
-                                   .slit = result == SM_SLIT_CLOSED || result == SM_SLIT_OPEN,
+                                   .slit = slit,
                                    .resample_seconds = cut - start,
                                    .follow_seconds = sm_now() - cut};
     return SM_OK;
