@@ -10,6 +10,7 @@ typedef struct {
     double low[3], high[3]; /* the mesh's bounding box */
     double (*x0)[3];        /* [voxels.particle_count] rest positions, instance pose not applied */
     double *mass;           /* [voxels.particle_count] kg; NULL: 1 each */
+    const SmCut *cut;       /* what of a lattice has been cut, the caller's; NULL: nothing */
     long instances;
     double (*pose)[3][4];    /* [instances] rest to initial position: translations */
     double voxelise_seconds; /* wall clock */

@@ -8,6 +8,8 @@
 #include "../octree/agree.h"
 #include "../octree/pieces.h"
 #include "../octree/resample.h"
+#include "blades.h"
+#include "lattice_changes.h"
 
 static bool is_octree(const BenchPart *part)
 {
@@ -29,7 +31,7 @@ static void tie_surface(BenchChanges *changes)
 {
     const BenchPart *part = changes->part;
     if (!is_octree(part)) {
-        sm_embed_create(&changes->surface, &part->body.voxels, &changes->embedding);
+        bench_lattice_tie(changes);
         return;
     }
     const OctStructure *s = oct_engine_structure(part->runner.engine);
@@ -60,6 +62,7 @@ void bench_changes_free(BenchChanges *changes)
     sm_mesh_free(&changes->surface);
     sm_cut_free(&changes->cut);
     sm_embed_free(&changes->embedding);
+    sm_sites_free(&changes->sites);
     oct_surface_free(&changes->carried);
     free(changes->node);
     free(changes->rest);
@@ -70,22 +73,12 @@ void bench_changes_free(BenchChanges *changes)
     *changes = (BenchChanges){0};
 }
 
-static double share_of(double time, double start, double stop)
-{
-    return stop > start ? fmin(fmax((time - start) / (stop - start), 0), 1) : 1;
-}
-
-static void between(const double from[3], const double to[3], double share, double at[3])
-{
-    for (int d = 0; d < 3; d++) at[d] = from[d] + share * (to[d] - from[d]);
-}
-
 /* ---- what an octree's changes need: nodes by leaf number */
 
-static void make_room(BenchChanges *changes, long leaves)
+void bench_changes_room(BenchChanges *changes, long nodes)
 {
-    if (leaves <= changes->room) return;
-    changes->room = 2 * leaves;
+    if (nodes <= changes->room) return;
+    changes->room = 2 * nodes;
     size_t room = (size_t)changes->room;
     changes->node = sm_realloc(changes->node, room, sizeof *changes->node);
     changes->rest = sm_realloc(changes->rest, room, sizeof *changes->rest);
@@ -101,7 +94,8 @@ static void place_leaves(BenchChanges *changes, long instance)
     BenchRunner *runner = &changes->part->runner;
     const OctStructure *s = oct_engine_structure(runner->engine);
     const int *leaf = oct_engine_leaves(runner->engine);
-    make_room(changes, s->tree.leaves > runner->particles ? s->tree.leaves : runner->particles);
+    bench_changes_room(changes,
+                       s->tree.leaves > runner->particles ? s->tree.leaves : runner->particles);
     runner->type->get(runner->engine, SM_POSITION, changes->node);
     for (long l = 0; l < s->tree.leaves; l++)
         for (int d = 0; d < 3; d++) changes->x[l][d] = NAN;
@@ -110,26 +104,11 @@ static void place_leaves(BenchChanges *changes, long instance)
                sizeof *changes->x);
 }
 
-/* How far a blade's place is from the segment from a to b, squared. */
-static double square_from(const double p[3], const double a[3], const double b[3])
-{
-    double along[3], to[3], length = 0, dot = 0, square = 0;
-    for (int d = 0; d < 3; d++) {
-        along[d] = b[d] - a[d];
-        to[d] = p[d] - a[d];
-        length += along[d] * along[d];
-        dot += along[d] * to[d];
-    }
-    double share = length > 0 ? fmin(fmax(dot / length, 0), 1) : 0;
-    for (int d = 0; d < 3; d++) square += (to[d] - share * along[d]) * (to[d] - share * along[d]);
-    return square;
-}
-
 /* What carries the material near the blade, which is between two places in this frame. */
-static SmCarriers carriers_near(BenchChanges *changes, const double blade[4][3])
+static SmCarriers octree_carriers(BenchChanges *changes, const double blade[4][3])
 {
     const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
-    double widest = 0, sweep = 0;
+    double widest = 0;
     OctGradients gradients;
     place_leaves(changes, 0);
     for (long l = 0; l < s->tree.leaves; l++) {
@@ -137,12 +116,10 @@ static SmCarriers carriers_near(BenchChanges *changes, const double blade[4][3])
         if (!changes->absent[l])
             widest = fmax(widest, 0.5 * s->cell * s->tree.size[s->tree.node[l]]);
     }
-    for (int end = 0; end < 2; end++)
-        sweep = fmax(sweep, square_from(blade[end], blade[end + 2], blade[end + 2]));
-    double reach = widest + 2 * s->cell, far = sqrt(sweep) + 2 * reach;
+    double reach = widest + 2 * s->cell, far = bench_blade_stroke(blade) + 2 * reach;
     for (long l = 0; l < s->tree.leaves; l++) {
-        changes->near[l] =
-            !changes->absent[l] && square_from(changes->x[l], blade[2], blade[3]) < far * far;
+        changes->near[l] = !changes->absent[l] &&
+                           bench_blade_square(changes->x[l], blade[2], blade[3]) < far * far;
         changes->absent[l] = !changes->near[l];
         if (changes->near[l]) oct_structure_centre(s, l, changes->rest[l]);
     }
@@ -158,27 +135,16 @@ static SmCarriers carriers_near(BenchChanges *changes, const double blade[4][3])
                         .reach = reach};
 }
 
-/* Where a cut's blade is at the beginning and the end of a frame: base, tip; base, tip. False while
- * it is not in use. */
-static bool blade_moves(const BenchCut *cut, double from, double to, double blade[4][3])
-{
-    if (to < cut->start || from > cut->stop) return false;
-    for (int end = 0; end < 2; end++) {
-        double share = share_of(end ? to : from, cut->start, cut->stop);
-        between(cut->base_from, cut->base_to, share, blade[2 * end]);
-        between(cut->tip_from, cut->tip_to, share, blade[2 * end + 1]);
-    }
-    return true;
-}
-
 /* Moves the blades; the cut grows. */
 static void sweep_blades(BenchChanges *changes, double from, double to, SmCut *cut)
 {
     const BenchScene *scene = changes->part->runner.scene;
     for (int i = 0; i < scene->cut_count; i++) {
         double blade[4][3];
-        if (!blade_moves(&scene->cut[i], from, to, blade)) continue;
-        SmCarriers carriers = carriers_near(changes, (const double(*)[3])blade);
+        if (!bench_blade_moves(&scene->cut[i], from, to, blade)) continue;
+        SmCarriers carriers = is_octree(changes->part)
+                                  ? octree_carriers(changes, (const double(*)[3])blade)
+                                  : bench_lattice_carriers(changes, (const double(*)[3])blade);
         if (!changes->blade[i].down)
             sm_blade_sweep(&changes->blade[i], blade[0], blade[1], &carriers, cut);
         sm_blade_sweep(&changes->blade[i], blade[2], blade[3], &carriers, cut);
@@ -229,8 +195,8 @@ static bool find_wish(BenchChanges *changes, int i, double time, Wish *wish)
     }
     const BenchView *view = &scene->view;
     if (view->level == 0) return false;
-    double share = share_of(time, view->start, view->stop);
-    between(view->eye_from, view->eye_to, share, wish->eye.eye);
+    double share = bench_share_of(time, view->start, view->stop);
+    bench_between(view->eye_from, view->eye_to, share, wish->eye.eye);
     wish->eye.near = view->near;
     wish->eye.slack = view->slack;
     wish->eye.level = view->level;
@@ -258,14 +224,6 @@ static bool refine_details(BenchChanges *changes, double time, OctStructure *s)
 }
 
 /* ---- a frame */
-
-static bool blades_in_use(const BenchChanges *changes, double from, double to)
-{
-    const BenchScene *scene = changes->part->runner.scene;
-    for (int i = 0; i < scene->cut_count; i++)
-        if (to >= scene->cut[i].start && from <= scene->cut[i].stop) return true;
-    return false;
-}
 
 static void retie(BenchChanges *changes, long count, const int *node, long first)
 {
@@ -315,11 +273,11 @@ static void follow(BenchChanges *changes, const OctChange *change, long first)
     changes->last.follow_seconds = sm_now() - start;
 }
 
-SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmError *error)
+static SmCode octree_frame(BenchChanges *changes, double from, double to, SmError *error)
 {
     BenchRunner *runner = &changes->part->runner;
-    changes->last = (BenchChanged){0};
-    if (!blades_in_use(changes, from, to) && !refine_details(changes, to, NULL)) return SM_OK;
+    if (!bench_blades_move(runner->scene, from, to) && !refine_details(changes, to, NULL))
+        return SM_OK;
     OctStructure *s;
     double start = sm_now();
     SmCode code = oct_engine_begin(runner->engine, &s, error);
@@ -338,13 +296,30 @@ SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmErro
     return code;
 }
 
+static SmCode lattice_frame(BenchChanges *changes, double from, double to, SmError *error)
+{
+    double start = sm_now();
+    long first = changes->cut.triangles;
+    if (!bench_blades_move(changes->part->runner.scene, from, to)) return SM_OK;
+    sweep_blades(changes, from, to, &changes->cut);
+    if (changes->cut.triangles == first) return SM_OK;
+    return bench_lattice_cut(changes, first, start, error);
+}
+
+SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmError *error)
+{
+    changes->last = (BenchChanged){0};
+    return is_octree(changes->part) ? octree_frame(changes, from, to, error)
+                                    : lattice_frame(changes, from, to, error);
+}
+
 void bench_changes_surface(BenchChanges *changes, double (*point)[3])
 {
     BenchPart *part = changes->part;
     BenchRunner *runner = &part->runner;
     long vertices = changes->surface.vertex_count;
     if (!is_octree(part)) {
-        make_room(changes, runner->particles);
+        bench_changes_room(changes, runner->particles);
         runner->type->get(runner->engine, SM_POSITION, changes->node);
     }
     for (long k = 0; k < part->body.instances; k++, point += vertices) {

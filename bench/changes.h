@@ -25,10 +25,12 @@ typedef struct {
     SmEmbedding embedding; /* or a lattice's particles */
     SmBlade blade[BENCH_MAX];
     OctDetail touch[BENCH_MAX], view;
-    SmCut cut; /* of a lattice; an octree's structure has it */
-    bool left; /* a cut did not split the surface: it could not be done cleanly */
+    SmCut cut;     /* of a lattice; an octree's structure has it */
+    SmSites sites; /* of a lattice that is cut */
+    bool left;     /* a cut did not split the surface: it could not be done cleanly */
     BenchChanged last;
-    /* scratch: nodes as the engine counts them; by leaf number */
+    /* scratch: nodes as the engine counts them; by leaf or
+     * particle number */
     double (*node)[3];
     double (*rest)[3], (*x)[3], (*F)[9];
     unsigned char *near, *absent;
@@ -38,6 +40,9 @@ typedef struct {
 /* Ties the part's surface. The part's handles and forces follow its changes. */
 void bench_changes_create(BenchPart *part, BenchChanges *changes);
 void bench_changes_free(BenchChanges *changes);
+
+/* Scratch for so many nodes. */
+void bench_changes_room(BenchChanges *changes, long nodes);
 
 /* Can the scene change this part at all? */
 bool bench_changes_any(const BenchPart *part);

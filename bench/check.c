@@ -72,11 +72,37 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
     memcpy(check->rest, check->octree.x0, count * sizeof *check->rest);
 }
 
+/* Pairs of neighbours that a cut parts, found one by one; the caller frees. */
+static int (*find_parted(const BenchBody *body, long *count))[2]
+{
+    int(*pair)[2] = NULL;
+    RefLinks links;
+    long room = 0;
+    *count = 0;
+    ref_links_build(&body->voxels, NULL, 0, &links);
+    for (int p = 0; p < links.count; p++)
+        for (long n = links.start[p]; n < links.start[p + 1]; n++) {
+            int q = links.neighbour[n];
+            if (q < p || !sm_cut_crosses(body->cut, 0, body->x0[p], body->x0[q])) continue;
+            if (*count == room) {
+                room = 2 * room + 256;
+                pair = sm_realloc(pair, (size_t)room, sizeof *pair);
+            }
+            pair[*count][0] = p;
+            pair[(*count)++][1] = q;
+        }
+    ref_links_free(&links);
+    return pair;
+}
+
 void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
 {
     long count = body->voxels.particle_count;
     *check = (BenchCheck){.body = body, .count = count};
-    ref_regions_build(&body->voxels, w, NULL, 0, &check->regions);
+    long parted = 0;
+    int(*pair)[2] = body->cut ? find_parted(body, &parted) : NULL;
+    ref_regions_build(&body->voxels, w, (const int(*)[2])pair, parted, &check->regions);
+    free(pair);
     check->unique = ref_regions_unique(&check->regions);
     check->mass = sm_alloc((size_t)count, sizeof *check->mass);
     check->weight = sm_alloc((size_t)count, sizeof *check->weight);

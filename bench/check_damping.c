@@ -27,6 +27,7 @@ static SmEngine *build_alike(const SmEngineParams *params, const BenchBody *body
     bool changed = !strcmp(type->name, "octree") && oct_engine_structure(engine)->resample;
     SmCode code = changed ? oct_engine_rebuild(engine, params, &copy, order, NULL)
                           : type->create(&body->voxels, params, &copy, NULL);
+    if (!code && body->cut) code = type->cut(copy, body->cut, 0, NULL);
     assert(!code); /* as `engine` was */
     (void)code;
     return copy;

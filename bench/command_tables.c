@@ -157,8 +157,8 @@ static SmCode measure_scene(const Options *options, int number, BenchProgress *p
     const SmEngineType *type;
     SmCode code = bench_scene_find(name, &scene, error);
     if (code) return code;
-    code = bench_engine_find(chosen->engine ? chosen->engine : scene.engine, chosen->precision,
-                             &type, error);
+    if (chosen->engine) snprintf(scene.engine, sizeof scene.engine, "%.23s", chosen->engine);
+    code = bench_engine_find(scene.engine, chosen->precision, &type, error);
     if (code) return code;
     if (chosen->layout >= 0) scene.params.layout = (SmLayout)chosen->layout;
     SmMesh mesh;

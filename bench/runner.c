@@ -13,6 +13,8 @@ SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *bod
     params.mass = body->mass;
     params.instances = body->instances;
     params.instance_pose = (const double(*)[3][4])body->pose;
+    if (scene->cut_count > 0 && params.strain_limit == 0 && strcmp(scene->engine, "octree") != 0)
+        params.strain_limit = INFINITY; /* it breaks where it is cut */
     return params;
 }
 
@@ -208,6 +210,10 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
         return sm_fail(error, SM_INPUT,
                        "%s: a plastic body (octree.creep) needs the engine octree, and %s has none",
                        scene->file, type->name);
+    if (scene->cut_count > 0 && strcmp(type->name, "octree") != 0 && !type->cut)
+        return sm_fail(error, SM_INPUT,
+                       "%s: 'cuts' need the engine fastlsm or octree, and %s has none", scene->file,
+                       type->name);
     SmError why;
     SmCode code = type->create(&body->voxels, &params, &runner->engine, &why);
     if (code) {

@@ -10,7 +10,7 @@
 static bool print_deviation(const BenchRunner *runner, const SmCounts *counts)
 {
     const BenchScene *scene = runner->scene;
-    if (counts->broken) {
+    if (counts->broken && scene->params.strain_limit > 0) {
         printf("deviation: not checked: %ld links are broken\n", counts->broken);
         return true;
     }
@@ -55,6 +55,12 @@ static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
     printf("%s: %s, %s precision: %ld particles, %ld unique regions, w %d, cell %.6g\n",
            runner->scene->name, runner->type->name, runner->type->precision, counts->particles,
            counts->regions, runner->scene->params.w, runner->body->voxels.cell);
+    if (!counts->broken || !runner->type->pieces) return;
+    SmPieces pieces;
+    runner->type->pieces(runner->engine, &pieces);
+    printf("the body is in %ld piece%s, with %ld of %ld links broken\n", pieces.count,
+           pieces.count == 1 ? "" : "s", counts->broken, counts->links + counts->broken);
+    sm_pieces_free(&pieces);
 }
 
 /* Nodes and surface at the end of a scene that has changed them. */

@@ -6,50 +6,11 @@
 #include <string.h>
 
 #include "nearest_cell.h"
+#include "polar.h"
 #include "vector.h"
 
-/* Particles by lattice row (y, z), in which they rise with x: numbers without a box-sized table. */
-typedef struct {
-    const SmVoxels *voxels;
-    int (*coordinate)[3]; /* [particle_count] */
-    int *row;             /* [(size[2] + 1) * (size[1] + 1) + 1], first particle of each row */
-} Index;
-
-static size_t row_of(const SmVoxels *voxels, int j, int k)
-{
-    return (size_t)k * ((size_t)voxels->size[1] + 1) + (size_t)j;
-}
-
-static Index make_index(const SmVoxels *voxels)
-{
-    Index index = {.voxels = voxels};
-    size_t rows = row_of(voxels, 0, voxels->size[2] + 1);
-    index.coordinate = sm_alloc((size_t)voxels->particle_count, sizeof *index.coordinate);
-    index.row = sm_alloc(rows + 1, sizeof *index.row);
-    sm_voxels_particles(voxels, index.coordinate);
-    for (long p = 0; p < voxels->particle_count; p++)
-        index.row[row_of(voxels, index.coordinate[p][1], index.coordinate[p][2]) + 1]++;
-    for (size_t r = 0; r < rows; r++) index.row[r + 1] += index.row[r];
-    return index;
-}
-
-/* The particle at lattice vertex (i, j, k), which exists. */
-static int particle_at(const Index *index, int i, int j, int k)
-{
-    size_t row = row_of(index->voxels, j, k);
-    int low = index->row[row], high = index->row[row + 1];
-    while (high - low > 1) {
-        int middle = low + (high - low) / 2;
-        if (index->coordinate[middle][0] <= i)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /* U and V with U x V = N, orthonormal; zero when N is. */
-static void tangents(const double sum[3], double u[3], double v[3])
+void sm_embed_tangents(const double sum[3], double u[3], double v[3])
 {
     double n[3] = {sum[0], sum[1], sum[2]}, axis[3] = {0};
     bool usable = sm_normalize(n);
@@ -80,42 +41,49 @@ static void weigh(const double s[3], const double u[3], const double v[3], float
     }
 }
 
-static void embed_vertex(const Index *index, const double position[3], const double normal[3],
+static void embed_vertex(const SmSites *sites, const double position[3], const double normal[3],
                          SmEmbedding *embedding, long vertex)
 {
-    const SmVoxels *voxels = index->voxels;
+    const SmVoxels *voxels = sites->voxels;
     double q[3], s[3], u[3], v[3];
     int cell[3];
     for (int a = 0; a < 3; a++) q[a] = (position[a] - voxels->origin[a]) / voxels->cell;
     sm_nearest_cell(voxels, q, cell);
     for (int a = 0; a < 3; a++) s[a] = q[a] - cell[a];
     for (int i = 0; i < 8; i += 2) { /* neighbours along x have neighbouring numbers */
-        int particle = particle_at(index, cell[0], cell[1] + (i >> 1 & 1), cell[2] + (i >> 2));
+        int particle = sm_sites_find(sites, cell[0], cell[1] + (i >> 1 & 1), cell[2] + (i >> 2));
         embedding->corner[vertex][i] = particle;
         embedding->corner[vertex][i + 1] = particle + 1;
     }
-    tangents(normal, u, v);
+    sm_embed_tangents(normal, u, v);
     weigh(s, u, v, embedding->weight[vertex], embedding->tangent_u[vertex],
           embedding->tangent_v[vertex]);
+}
+
+void sm_embed_grow(SmEmbedding *e, const SmMesh *mesh, const SmSites *sites,
+                   const double (*normal)[3])
+{
+    size_t count = (size_t)mesh->vertex_count;
+    e->corner = sm_realloc(e->corner, count, sizeof *e->corner);
+    e->weight = sm_realloc(e->weight, count, sizeof *e->weight);
+    e->tangent_u = sm_realloc(e->tangent_u, count, sizeof *e->tangent_u);
+    e->tangent_v = sm_realloc(e->tangent_v, count, sizeof *e->tangent_v);
+#pragma omp parallel for schedule(static)
+    for (long v = e->vertex_count; v < mesh->vertex_count; v++)
+        embed_vertex(sites, mesh->position[v], normal[v], e, v);
+    e->vertex_count = mesh->vertex_count;
 }
 
 void sm_embed_create(const SmMesh *mesh, const SmVoxels *voxels, SmEmbedding *embedding)
 {
     assert(voxels->cell_count > 0);
-    size_t count = (size_t)mesh->vertex_count;
-    *embedding = (SmEmbedding){.vertex_count = mesh->vertex_count};
-    embedding->corner = sm_alloc(count, sizeof *embedding->corner);
-    embedding->weight = sm_alloc(count, sizeof *embedding->weight);
-    embedding->tangent_u = sm_alloc(count, sizeof *embedding->tangent_u);
-    embedding->tangent_v = sm_alloc(count, sizeof *embedding->tangent_v);
-    Index index = make_index(voxels);
+    *embedding = (SmEmbedding){0};
+    SmSites sites;
+    sm_sites_init(voxels, &sites);
     double(*normal)[3] = sm_mesh_normals(mesh, voxels->cell);
-#pragma omp parallel for schedule(static)
-    for (long v = 0; v < mesh->vertex_count; v++)
-        embed_vertex(&index, mesh->position[v], normal[v], embedding, v);
+    sm_embed_grow(embedding, mesh, &sites, (const double(*)[3])normal);
     free(normal);
-    free(index.coordinate);
-    free(index.row);
+    sm_sites_free(&sites);
 }
 
 void sm_embed_free(SmEmbedding *embedding)
@@ -124,6 +92,7 @@ void sm_embed_free(SmEmbedding *embedding)
     free(embedding->weight);
     free(embedding->tangent_u);
     free(embedding->tangent_v);
+    free(embedding->flat);
     *embedding = (SmEmbedding){0};
 }
 
@@ -145,6 +114,23 @@ static void deformed_normal(const double u[3], const double v[3], double normal[
     for (int a = 0; a < 3; a++) normal[a] = scale > 0 ? n[a] * scale : 0;
 }
 
+/* The vertex stands off what carries it, and turns with it as a rigid body. */
+static void stand_off(const SmFlat *flat, const int corner[8], const double (*x)[3],
+                      double position[3], double *normal)
+{
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double A[9] = {0}, R[9];
+    for (int i = 1; i < 8; i++)
+        for (int n = 0; n < 9; n++)
+            A[n] += (x[corner[i]][n / 3] - x[corner[0]][n / 3]) * flat->share[i][n % 3];
+    sm_polar_robust(A, identity, 1e-9, R);
+    for (int a = 0; a < 3; a++) {
+        const double *row = R + 3 * a;
+        position[a] += sm_dot(row, flat->offset);
+        if (normal) normal[a] = sm_dot(row, flat->normal);
+    }
+}
+
 void sm_embed_apply(const SmEmbedding *embedding, const double (*x)[3], double (*position)[3],
                     double (*normal)[3])
 {
@@ -161,5 +147,10 @@ void sm_embed_apply(const SmEmbedding *embedding, const double (*x)[3], double (
         blend(embedding->tangent_u[v], difference, u);
         blend(embedding->tangent_v[v], difference, w);
         deformed_normal(u, w, normal[v]);
+    }
+    for (long n = 0; n < embedding->flat_count; n++) {
+        long v = embedding->flat[n].vertex;
+        stand_off(&embedding->flat[n], embedding->corner[v], x, position[v],
+                  normal ? normal[v] : NULL);
     }
 }

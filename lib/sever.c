@@ -11,7 +11,8 @@ typedef struct {
 
 typedef struct {
     SmMesh *mesh;
-    Side *side; /* [count] by `from`, then `to` */
+    Side *side;  /* [count] by `from`, then `to` */
+    Side **path; /* [count] scratch */
     long count;
     int (*triangle)[3]; /* [made] of the fans */
     long made, room;
@@ -88,20 +89,32 @@ static int add_vertex(SmMesh *mesh, const double at[3])
     return (int)n;
 }
 
-/* Closes the hole that begins with a side. */
+/* A fan over the sides of a loop. */
+static void close_loop(Hole *hole, long count, Side *const *side)
+{
+    double middle[3] = {0};
+    for (long n = 0; n < count; n++)
+        for (int d = 0; d < 3; d++)
+            middle[d] += hole->mesh->position[side[n]->from][d] / (double)count;
+    int vertex = add_vertex(hole->mesh, middle);
+    for (long n = 0; n < count; n++) add_triangle(hole, side[n]->from, side[n]->to, vertex);
+}
+
+/* Closes the hole that begins with a side. Where it comes by a vertex again that is a loop of its
+ * own: one fan would have an edge to that vertex twice. */
 static void fill(Hole *hole, Side *first)
 {
-    long start = hole->made, count = 0;
-    double middle[3] = {0};
+    long count = 0;
     for (Side *side = first; side; side = next_side(hole, side->to)) {
         side->used = true;
-        add_triangle(hole, side->from, side->to, -1);
-        for (int d = 0; d < 3; d++) middle[d] += hole->mesh->position[side->from][d];
-        count++;
+        hole->path[count++] = side;
+        long from = count - 1;
+        while (from >= 0 && hole->path[from]->from != side->to) from--;
+        if (from < 0) continue;
+        close_loop(hole, count - from, hole->path + from);
+        count = from;
     }
-    for (int d = 0; d < 3; d++) middle[d] /= (double)count;
-    int vertex = add_vertex(hole->mesh, middle);
-    for (long t = start; t < hole->made; t++) hole->triangle[t][2] = vertex;
+    if (count > 0) close_loop(hole, count, hole->path);
 }
 
 /* New triangles take the places of those that go; what follows moves up. */
@@ -132,12 +145,14 @@ long sm_sever(SmMesh *mesh, const int *piece)
     for (long t = 0; t < mesh->triangle_count; t++) gone += goes[t] = parted(mesh, piece, t);
     if (gone > 0) {
         find_sides(&hole, piece, gone);
+        hole.path = sm_alloc((size_t)hole.count, sizeof(Side *));
         for (long n = 0; n < hole.count; n++)
             if (!hole.side[n].shared && !hole.side[n].used) fill(&hole, &hole.side[n]);
         replace(&hole, goes);
     }
     free(goes);
     free(hole.side);
+    free(hole.path);
     free(hole.triangle);
     return gone;
 }

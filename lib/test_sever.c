@@ -33,7 +33,7 @@ static int *slabs(const SmMesh *mesh, int axis, double wide)
 static void check_closed(const SmMesh *mesh)
 {
     SmMeshInfo info = sm_mesh_info(mesh);
-    assert_int_equal(info.open_edges, 0);
+    assert_int_equal(info.open_edges + info.nonmanifold_edges, 0);
     assert_int_equal(info.flipped_edges, 0);
 }
 

@@ -1,15 +1,10 @@
-/* agree.h - vertices of a surface that follow the wrong side of a cut.
+/* agree.h - vertices of a surface that follow the wrong side of a cut (lib/agree.h).
  *
- * On a cut's own faces vertices lie next to nothing from it, and where the blade has turned or its
- * front stood for a while some lie on the other side of it: what they see is then not what the
- * surface joins them to. Neighbours on a surface should belong to leaves that no cut parts. A few
- * vertices that agree with each other, but not with the many around them, go with these. */
+ * Neighbours on a surface should belong to leaves that no cut parts. */
 #ifndef OCT_AGREE_H
 #define OCT_AGREE_H
 
 #include "surface.h"
-
-enum { OCT_AGREE_FEW = 64 }; /* vertices that may be wrong together */
 
 /* Moves such vertices to the leaves of a neighbour on the surface. `carrier` has a cut. To be
  * called again after every oct_surface_retie(). Returns how many. O(vertices + triangles), and a
