@@ -13,7 +13,8 @@ typedef struct {
     BenchProgress *progress; /* or NULL */
 } BenchFramesParams;
 
-/* `play` is left as the last round ends; the caller frees it, and row->time. Errors are those of playing the scene. */
+/* `play` is left as the last round ends; the caller frees it, and row->time. Errors are those of
+ * playing the scene. */
 SmCode bench_frames_play(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                          const BenchFramesParams *params, BenchChangeRow *row, BenchPlay *play,
                          SmError *error);
