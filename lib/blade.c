@@ -13,6 +13,9 @@ enum { MOST_ROWS = 256 };
 /* Of a cell: a blade that has moved less waits, so that triangles are not slivers. */
 static const double least_move = 0.5;
 
+/* Of a cell: what goes back within so far to either side goes back the way it came. */
+static const double wide = 2;
+
 /* Nodes near what is swept over, and those near the line in hand. */
 typedef struct {
     const SmCarriers *carriers;
@@ -269,7 +272,7 @@ static void go_ahead(const SmBladePoint *point, double cell, SmBladePoint *next)
         double aside = way[d] - along * point->ahead[d];
         square += aside * aside;
     }
-    if (along < 0 && square < 0.25 * cell * cell)
+    if (along < 0 && square < wide * wide * cell * cell)
         *next = *point;
     else if (sm_dot(way, way) > 1e-6 * cell * cell && sm_normalize(way))
         memcpy(next->ahead, way, sizeof way);

@@ -46,7 +46,7 @@ void sm_blade_lift(SmBlade *blade);
 
 /* Moves the blade to the segment from a to b, and adds to the cut what it sweeps over on the way;
  * the first time it is only set down. A point of it that goes back the way it came, no farther
- * aside than half a cell, is left where it was until it comes past that again: a body that shakes,
+ * aside than two cells, is left where it was until it comes past that again: a body that shakes,
  * or a blade that is drawn out, cuts nothing twice. Returns the number of triangles added: 0 while
  * it has moved, through the material, less than half a cell since it last cut anything,
  * and where there is none near it. A triangle of more than 4 cells' length joins places that are
