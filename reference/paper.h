@@ -21,8 +21,8 @@ typedef struct {
     RefValue stage_ms[SM_STAGES], stage_percent[SM_STAGES], total_ms;
     RefValue fps, speedup, bases, summation_nodes; /* octree's; summation nodes per region, mean */
     /* of a scene that changes while it runs; total_ms is its first frame's */
-    RefValue last_particles, added; /* in the end; at once, at most */
-    RefValue last_ms;               /* of its last frame */
+    RefValue last_particles, added;                 /* in the end; at once, at most */
+    RefValue last_ms;                               /* of its last frame */
     RefValue change_ms, change_most_ms, surface_ms; /* resampling, least and most; a surface */
     char note[200];
 } RefPaperRow;
