@@ -63,11 +63,6 @@ void bench_cast_disturb(BenchCast *cast, unsigned long seed)
         bench_runner_disturb(&cast->part[i].runner, seed + (unsigned long)i);
 }
 
-void bench_cast_step(BenchCast *cast, SmLaps *laps)
-{
-    for (int i = 0; i < cast->count; i++) bench_runner_step(&cast->part[i].runner, laps);
-}
-
 long bench_cast_particles(const BenchCast *cast)
 {
     long particles = 0;

@@ -27,9 +27,6 @@ void bench_cast_free(BenchCast *cast);
 /* Sets the scene's initial deformation and velocities. */
 void bench_cast_disturb(BenchCast *cast, unsigned long seed);
 
-/* One step of all. */
-void bench_cast_step(BenchCast *cast, SmLaps *laps);
-
 /* Particles of all parts. */
 long bench_cast_particles(const BenchCast *cast);
 

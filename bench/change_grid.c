@@ -50,7 +50,7 @@ static void measured_line(const BenchRow *row, BenchGridLine *line)
 {
     const BenchChangeRow *c = &row->change;
     snprintf((*line)[SCENE], BENCH_GRID_TEXT, "%.60s", row->scene);
-    count_text((double)c->first_nodes, (double)c->last_nodes, (*line)[NODES]);
+    count_text((double)c->first_nodes, (double)c->most_nodes, (*line)[NODES]);
     snprintf((*line)[ADDED], BENCH_GRID_TEXT, "%ld", c->most_added);
     count_text((double)c->first_triangles, (double)c->last_triangles, (*line)[TRIANGLES]);
     snprintf((*line)[PIECES], BENCH_GRID_TEXT, "%ld", c->pieces);

@@ -142,7 +142,7 @@ static __attribute__((format(printf, 2, 3))) void invalidate(BenchRow *row, cons
     row->valid = false;
 }
 
-/* `worst` keeps the larger of both checks' findings. */
+/* `worst` keeps the larger of all checks' findings. */
 static void check_state(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *worst,
                         BenchRow *row)
 {
@@ -173,10 +173,10 @@ static void check_counts(const BenchCheck *check, const BenchRunner *runner, Ben
 {
     SmCounts counts;
     runner->type->count(runner->engine, &counts);
-    row->particles = counts.particles;
+    row->particles += counts.particles;
     row->regions = counts.regions;
-    row->bytes = counts.bytes;
-    row->build_seconds = counts.build_seconds;
+    row->bytes += counts.bytes;
+    row->build_seconds += counts.build_seconds;
     long particles = check->count * check->body->instances;
     if (counts.particles != particles)
         invalidate(row, "the engine has %.0f particles, its twin %.0f", (double)counts.particles,
@@ -253,6 +253,30 @@ static SmCode check_room(const BenchRunner *runner, SmError *error)
         scene->file, members, BENCH_MOST_MEMBERS);
 }
 
+/* A check of every part as it is now. */
+static BenchCheck *begin_checks(const BenchPlay *play)
+{
+    BenchCheck *check = sm_alloc((size_t)play->cast.count, sizeof *check);
+    for (int p = 0; p < play->cast.count; p++) {
+        const BenchRunner *runner = &play->cast.part[p].runner;
+        bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &check[p]);
+    }
+    return check;
+}
+
+static void check_states(const BenchCheck *check, const BenchPlay *play, BenchDeviation *worst,
+                         BenchRow *row)
+{
+    for (int p = 0; p < play->cast.count; p++)
+        check_state(&check[p], &play->cast.part[p].runner, worst, row);
+}
+
+static void free_checks(BenchCheck *check, const BenchPlay *play)
+{
+    for (int p = 0; p < play->cast.count; p++) bench_check_free(&check[p]);
+    free(check);
+}
+
 /* Plays a scene that changes from its beginning to its end, and checks what it has become. */
 static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                            const BenchMeasureParams *params, BenchDeviation *worst, BenchRow *row,
@@ -263,11 +287,9 @@ static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const
     BenchPlay play;
     SmCode code = bench_frames_play(scene, body, type, &frames, &row->change, &play, error);
     if (code) return code;
-    BenchRunner *runner = bench_play_runner(&play);
-    BenchCheck check;
-    bench_check_begin(scene, runner->body, type, runner->engine, &check);
-    check_state(&check, runner, worst, row);
-    bench_check_free(&check);
+    BenchCheck *check = begin_checks(&play);
+    check_states(check, &play, worst, row);
+    free_checks(check, &play);
     bench_play_free(&play);
     const BenchChangeRow *change = &row->change;
     SmMeshInfo before = sm_mesh_info(&body->mesh);
@@ -281,19 +303,20 @@ static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const
 static void measure_start(Trial *trial, const BenchMeasureParams *params, BenchDeviation *worst,
                           BenchRow *row)
 {
-    BenchRunner *runner = bench_play_runner(&trial->play);
-    BenchCheck check;
-    bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &check);
-    check_counts(&check, runner, row);
-    bench_tree_row_fill(runner, row);
-    row->particles = bench_cast_particles(&trial->play.cast);
-    for (int i = 0; i < runner->scene->settle; i++) step(trial, NULL);
-    check_state(&check, runner, worst, row);
+    BenchCheck *check = begin_checks(&trial->play);
+    bench_tree_row_fill(bench_play_runner(&trial->play), row);
+    row->instances = trial->play.cast.body->instances;
+    row->particles = row->bytes = 0;
+    for (int p = 0; p < trial->play.cast.count; p++)
+        check_counts(&check[p], &trial->play.cast.part[p].runner, row);
+    for (int i = 0; i < trial->play.cast.scene->settle; i++) step(trial, NULL);
+    check_states(check, &trial->play, worst, row);
     save(trial);
     time_blocks(trial, params, row);
-    check_state(&check, runner, worst, row);
-    check_flow(&check, runner, row);
-    bench_check_free(&check);
+    check_states(check, &trial->play, worst, row);
+    for (int p = 0; p < trial->play.cast.count; p++)
+        check_flow(&check[p], &trial->play.cast.part[p].runner, row);
+    free_checks(check, &trial->play);
 }
 
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
@@ -304,7 +327,8 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
     SmCode code =
         bench_play_create(scene, body, type, params->threads, params->seed, &trial.play, error);
     if (code) return code;
-    code = check_room(bench_play_runner(&trial.play), error);
+    for (int p = 0; p < trial.play.cast.count && !code; p++)
+        code = check_room(&trial.play.cast.part[p].runner, error);
     if (code) {
         free_trial(&trial);
         return code;

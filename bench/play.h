@@ -33,7 +33,7 @@ void bench_play_points(BenchPlay *play, double (*point)[3]);
 /* Has the last change given a surface new vertices or triangles? */
 bool bench_play_split(const BenchPlay *play);
 
-/* The part that is checked and reported: the only one, or that which was touched. */
+/* The part that is described and recorded: the only one, or the last that is touched. */
 BenchRunner *bench_play_runner(BenchPlay *play);
 
 #endif

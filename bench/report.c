@@ -233,8 +233,8 @@ void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchM
     bench_grid_text(file, &grid);
     fputc('\n', file);
     if (bench_change_grid(rows, count, &changes)) {
-        fputs("While they change: simulation is the time of a frame before the first change and "
-              "after the last.\n\n",
+        fputs("While they change: nodes at first and at most; simulation is the time of a frame "
+              "before the first change and after the last.\n\n",
               file);
         bench_grid_text(file, &changes);
         fputc('\n', file);

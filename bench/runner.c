@@ -210,7 +210,13 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
         return sm_fail(error, SM_INPUT,
                        "%s: a plastic body (octree.creep) needs the engine octree, and %s has none",
                        scene->file, type->name);
-    if (scene->cut_count > 0 && strcmp(type->name, "octree") != 0 && !type->cut)
+    bool octree = !strcmp(type->name, "octree");
+    if ((scene->touch_count > 0 || scene->view.level > 0) && !octree)
+        return sm_fail(error, SM_INPUT,
+                       "%s: 'touches' and 'view' refine octrees, and %s has none: use the engine "
+                       "octree",
+                       scene->file, type->name);
+    if (scene->cut_count > 0 && !octree && !type->cut)
         return sm_fail(error, SM_INPUT,
                        "%s: 'cuts' need the engine fastlsm or octree, and %s has none", scene->file,
                        type->name);

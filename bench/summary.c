@@ -7,11 +7,13 @@
 #include "tree_row.h"
 
 /* Prints the last state's deviation from brute force; false: beyond the tolerance. */
-static bool print_deviation(const BenchRunner *runner, const SmCounts *counts)
+static bool print_deviation(const BenchRunner *runner)
 {
     const BenchScene *scene = runner->scene;
-    if (counts->broken && scene->params.strain_limit > 0) {
-        printf("deviation: not checked: %ld links are broken\n", counts->broken);
+    SmCounts counts;
+    runner->type->count(runner->engine, &counts);
+    if (counts.broken && scene->params.strain_limit > 0) {
+        printf("deviation: not checked: %ld links are broken\n", counts.broken);
         return true;
     }
     if (bench_check_room(scene, runner->body, runner->type, runner->engine) > BENCH_MOST_MEMBERS) {
@@ -93,12 +95,22 @@ bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)
     SmCounts counts;
     runner->type->count(runner->engine, &counts);
     double steps = (double)(outcome->steps > 0 ? outcome->steps : 1);
+    if (play->cast.count > 1)
+        printf("%s: %ld bodies, %ld nodes in all; the last that is touched:\n", runner->scene->name,
+               play->cast.body->instances, particles);
     if (!strcmp(runner->type->name, "octree"))
         print_octree(runner);
     else
         print_lattice(runner, &counts);
     if (bench_play_changes(play)) print_changes(play, outcome);
-    bool valid = outcome->finite && print_deviation(runner, &counts);
+    bool valid = outcome->finite;
+    for (int p = 0; p < play->cast.count && outcome->finite; p++) {
+        const BenchPart *part = &play->cast.part[p];
+        if (play->cast.count > 1)
+            printf(part->own ? "instance %ld: " : "%ld that share a structure: ",
+                   part->own ? part->instance[0] + 1 : part->body.instances);
+        valid &= print_deviation(&part->runner);
+    }
     printf("%ld steps of %g s: ", outcome->steps, runner->scene->params.h);
     if (valid)
         printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * outcome->seconds / steps,

@@ -254,6 +254,7 @@ static void what_changes_has_a_table_of_its_own(void **state)
                     .change = {.frames = 400,
                                .changed = 30,
                                .first_nodes = 501,
+                               .most_nodes = 1548,
                                .last_nodes = 1548,
                                .most_added = 77,
                                .first_ms = 0.0625,
