@@ -88,6 +88,8 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
     } cases[] = {
         {"--frobnicate", 2, "frobnicate"},
         {"frobnicate", 2, "unknown command 'frobnicate'"},
+        {"penguin", 2, "unknown command 'penguin'; did you mean 'run penguin'?"},
+        {"tiny.cfg", 2, "did you mean 'run tiny.cfg'?"},
         {"run", 2, "which scene or mesh?"},
         {"run tiny.cfg --frobnicate", 2, "frobnicate"},
         {"run tiny.cfg --w 0", 2, "--w: '0' is not a whole number from 1 to 64"},
@@ -118,6 +120,8 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run plastic.cfg --engine fastlsm", 3, "plastic.cfg: a plastic body (octree.creep) needs"},
         {"run far.cfg", 3, "far.cfg: octree: no node's centre lies in the box or sphere"},
         {"tables --scene wide.cfg", 3, "wide.cfg: regions with 1.13e+08 members take too much"},
+        {"run tiny.cfg --particles 1000000000 --w 64 --no-output", 70,
+         "tiny.cfg: 1000000000 particles on brute take "},
         {"run no-such-scene", 2, "shapebench scenes"},
         {"run bad.cfg", 3, "bad.cfg:3: unknown setting 'damping_k'; known: "},
         {"run missing.cfg", 3, "missing.cfg: cannot be opened"},
