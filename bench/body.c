@@ -9,6 +9,7 @@
 #include "../lib/import.h"
 #include "../lib/shape.h"
 #include "nearest.h"
+#include "room.h"
 
 SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
 {
@@ -210,11 +211,14 @@ SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body,
     body->hash = hash_bytes(body->hash, m->position, (size_t)m->vertex_count * sizeof *m->position);
     body->hash =
         hash_bytes(body->hash, m->triangle, (size_t)m->triangle_count * sizeof *m->triangle);
-    double start = sm_now();
-    SmCode code = scene->cells > 0
-                      ? voxelise_cells(scene, m, &body->voxels, error)
-                      : sm_voxelise(m, &scene->voxel, scene->mesh, &body->voxels, error);
+    double start = sm_now(),
+           wishes = (double)(scene->cells ? scene->cells : scene->voxel.particles);
+    SmCode code = bench_room_check(scene, wishes, error); /* before minutes of voxelising */
+    if (!code)
+        code = scene->cells > 0 ? voxelise_cells(scene, m, &body->voxels, error)
+                                : sm_voxelise(m, &scene->voxel, scene->mesh, &body->voxels, error);
     body->voxelise_seconds = sm_now() - start;
+    if (!code) code = bench_room_check(scene, (double)body->voxels.particle_count, error);
     if (!code) {
         stand_instances(scene, body);
         code = place_particles(scene, body, error);

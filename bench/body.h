@@ -35,7 +35,8 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene);
  * octree's own defaults. */
 void bench_scene_sample(BenchScene *scene);
 
-/* Voxelises, and fills in the rest. Takes `mesh` over, also when it fails. */
+/* Voxelises, and fills in the rest. Takes `mesh` over, also when it fails. Errors as sm_voxelise(),
+ * and SM_MEMORY when the scene's engine would not fit (room.h). */
 SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error);
 void bench_body_free(BenchBody *body);
 

@@ -80,9 +80,10 @@ static const char help[] =
     "(sum m g = sum m x to 1e-6 of sum m |x - centroid|), counts, and that everything is finite. "
     "A row that fails has INVALID in place of its times.\v"
     "Times are medians over the repeats; the total is timed without clocks inside the step, stages "
-    "are the shares of a run with clocks, interleaved. 'ratio' and 'faster' are the paper's total "
-    "divided by the measured one, 'speed-up' the time of the table's first lattice row by the "
-    "row's.\n" BENCH_EXIT_CODES;
+    "are the shares of a run with clocks, interleaved. 'faster' is the paper's total divided by "
+    "the "
+    "measured one, 'speed-up' the time of the table's first lattice row by the row's; csv and json "
+    "call them 'ratio' and 'speedup'.\n" BENCH_EXIT_CODES;
 
 static const struct argp argp = {option_list, parse, NULL, help, bench_override_children,
                                  NULL,        NULL};

@@ -9,6 +9,7 @@
 #include "../lib/error.h"
 #include "command.h"
 #include "draft.h"
+#include "scene.h"
 
 static const BenchCommand commands[] = {
     {"tables", "measure a paper's table: every stage, checked, the paper's values beside",
@@ -64,6 +65,21 @@ static const BenchCommand *find_command(const char *name)
     return NULL;
 }
 
+static bool is_scene(const char *name)
+{
+    for (const char *const *scene = bench_scene_names(); *scene; scene++)
+        if (!strcmp(*scene, name)) return true;
+    return false;
+}
+
+/* Scenes and files are run's arguments. */
+static void unknown_command(const char *name)
+{
+    fprintf(stderr, "shapebench: unknown command '%s'; ", name);
+    if (is_scene(name) || access(name, F_OK) == 0) fprintf(stderr, "did you mean 'run %s'? ", name);
+    fprintf(stderr, "see 'shapebench --help'\n");
+}
+
 /* Ends the program with no file half written. */
 static void interrupt(int number)
 {
@@ -99,7 +115,7 @@ int main(int argc, char **argv)
     const char *name = first < argc ? argv[first] : "tables";
     const BenchCommand *command = find_command(name);
     if (!command) {
-        fprintf(stderr, "shapebench: unknown command '%s'; see 'shapebench --help'\n", name);
+        unknown_command(name);
         return SM_USAGE;
     }
     if (first >= argc) return run_command(command, 1, none);

@@ -111,7 +111,8 @@ bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)
                    part->own ? part->instance[0] + 1 : part->body.instances);
         valid &= print_deviation(&part->runner);
     }
-    printf("%ld steps of %g s: ", outcome->steps, runner->scene->params.h);
+    printf("%ld step%s of %g s: ", outcome->steps, outcome->steps == 1 ? "" : "s",
+           runner->scene->params.h);
     if (valid)
         printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * outcome->seconds / steps,
                1e9 * outcome->seconds / steps / (double)particles);

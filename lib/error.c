@@ -23,7 +23,7 @@ static void out_of_memory(size_t count, size_t size, const char *file, int line)
 {
     fprintf(stderr, "shapebench: out of memory: %zu x %zu bytes wanted at %s:%d\n", count, size,
             file, line);
-    exit(70);
+    exit(SM_MEMORY);
 }
 
 void *sm_alloc_at(size_t count, size_t size, const char *file, int line)

@@ -15,6 +15,7 @@ typedef enum {
     SM_USAGE = 2,   /* unknown option, value out of range */
     SM_INPUT = 3,   /* a mesh, scene or result file cannot be used */
     SM_OUTPUT = 4,  /* a file cannot be written: no permission, disk full */
+    SM_MEMORY = 70, /* it would not fit into this machine's memory */
 } SmCode;
 
 typedef struct {

@@ -11,7 +11,14 @@
 #include <immintrin.h>
 #endif
 
+/* A pass is made for each width, layout and precision by inlining all that it does with constants.
+ * Under sanitizers every inlined copy would be instrumented anew, which takes compilers minutes:
+ * SM_CALLS leaves the choice to them. */
+#ifdef SM_CALLS
+#define SM_INLINE static inline
+#else
 #define SM_INLINE static inline __attribute__((always_inline))
+#endif
 
 SM_INLINE vec lanes_load(const real *p) /* any alignment */
 {

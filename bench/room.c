@@ -1,0 +1,78 @@
+#include "room.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Of what is available; the rest is for results and for others. */
+#define SHARE 0.8
+
+/* Of a solid cube: offsets along an axis stay inside for (2w + 1) - w (w + 1) / side places on
+ * average; of a shell, a surface of two dimensions. */
+static double members(const BenchScene *scene, double particles)
+{
+    bool shell = scene->voxel.fill == SM_SHELL;
+    double side = fmax(1, shell ? sqrt(particles) : cbrt(particles));
+    double w = fmin(scene->params.w, side - 1);
+    double along = fmax(1, 2 * w + 1 - w * (w + 1) / side);
+    return particles * (shell ? along * along : along * along * along);
+}
+
+double bench_room_wanted(const BenchScene *scene, double particles)
+{
+    double instances = (double)scene->instances;
+    if (!strcmp(scene->engine, "octree")) return 90 * particles;
+    if (!strcmp(scene->engine, "brute"))
+        return instances * (450 * particles + sizeof(int) * members(scene, particles));
+    return (200 + 130 * (instances - 1)) * particles;
+}
+
+/* The number behind `name` in the file, or, with an empty name, at its start; else INFINITY. */
+static double read_number(const char *path, const char *name)
+{
+    char line[256];
+    double number = INFINITY;
+    size_t length = strlen(name);
+    FILE *file = fopen(path, "re");
+    if (!file) return INFINITY;
+    while (fgets(line, sizeof line, file))
+        if (!strncmp(line, name, length) && sscanf(line + length, "%lf", &number) == 1) break;
+    fclose(file);
+    return number; /* "max" is no number */
+}
+
+/* What this process's control group (Linux, version 2) leaves of its limit. */
+static double group_leaves(void)
+{
+    char line[512], path[640];
+    double leaves = INFINITY;
+    FILE *file = fopen("/proc/self/cgroup", "re");
+    if (!file) return INFINITY;
+    while (fgets(line, sizeof line, file)) {
+        if (strncmp(line, "0::/", 4) != 0) continue;
+        line[strcspn(line, "\n")] = '\0';
+        snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.max", line + 3);
+        double limit = read_number(path, "");
+        snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.current", line + 3);
+        double used = read_number(path, "");
+        if (isfinite(limit) && isfinite(used)) leaves = fmax(0, limit - used);
+    }
+    fclose(file);
+    return leaves;
+}
+
+double bench_room_available(void)
+{
+    return fmin(1024 * read_number("/proc/meminfo", "MemAvailable:"), group_leaves());
+}
+
+SmCode bench_room_check(const BenchScene *scene, double particles, SmError *error)
+{
+    double wanted = bench_room_wanted(scene, particles), available = bench_room_available();
+    if (wanted <= SHARE * available) return SM_OK;
+    return sm_fail(
+        error, SM_MEMORY,
+        "%s: %.0f particles on %s take about %.3g GB of memory, more than four fifths of "
+        "the %.3g GB available: ask for fewer particles, or larger cells",
+        scene->file, particles, scene->engine, wanted / 1e9, available / 1e9);
+}

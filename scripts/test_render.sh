@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Records a short trajectory and has scripts/render.py draw it: the body is seen, and not everywhere;
+# a frame that there is not is an error.
+#
+# usage: scripts/test_render.sh SHAPEBENCH
+# exit codes: 0 passed, 1 failed, 77 skipped: what `scripts/setup pictures` installs is not there
+set -eu
+program=$(realpath -- "${1:?SHAPEBENCH missing}")
+render=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)/render.py
+out=$(mktemp -d)
+trap 'rm -rf -- "$out"' EXIT
+cd -- "$out"
+if ! /usr/bin/python3 -c 'import h5py, matplotlib, numpy, vtk' 2>/dev/null ||
+    { [ -z "${DISPLAY-}" ] && ! { command -v xvfb-run && command -v xauth; } >/dev/null; }; then
+    echo "skipped: scripts/setup pictures installs what it needs"
+    exit 77
+fi
+"$program" run penguin --frames 2 --quiet -o penguin.vtkhdf >run.log || { cat run.log; exit 1; }
+"$render" penguin.vtkhdf --size 160x120 -o penguin.png
+/usr/bin/python3 - <<'PYTHON'
+from matplotlib import image
+
+pixels = image.imread("penguin.png")[:, :, :3]
+assert pixels.shape == (120, 160, 3), pixels.shape
+blue = pixels[:, :, 2] - pixels[:, :, 0] > 0.1  # the surface's colour; ground and background are grey
+assert 0.05 < blue.mean() < 0.8, f"the surface covers {blue.mean():.0%} of the image"
+assert blue[60, 80], "the body is not in the middle"
+assert not blue[0].any() and not blue[:, 0].any() and not blue[:, -1].any(), "it touches the image's edge"
+PYTHON
+status=0
+"$render" penguin.vtkhdf --frame 3 -o none.png 2>said || status=$?
+[ "$status" -eq 2 ] && grep -q 'has 3 frames, no frame 3' said && ! [ -e none.png ]
