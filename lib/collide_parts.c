@@ -281,7 +281,7 @@ static void list_joined(Build *b)
 void sm_collide_parts_build(const SmCollideShape *shape, SmCollideParts *parts)
 {
     Build b = {.shape = shape, .parts = parts};
-    *parts = (SmCollideParts){0};
+    *parts = (SmCollideParts){.edge = shape->mean};
     sm_collide_clusters_build(&shape->rest, (shape->carriers == 1 ? 2 : 3) * shape->mean,
                               &b.clusters);
     number_parts(&b);
