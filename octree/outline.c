@@ -2,24 +2,22 @@
 
 #include <stdlib.h>
 
-/* The leaf that the graph joins to this one and that holds the finest cell across the middle of a
- * face, or -1. */
-static int leaf_across(const OctStructure *s, long leaf, int side)
+/* The side of a leaf at whose middle's far side another one is, or -1: the finest cell there, on
+ * the high side of what is between two, is in it. The other leaf is off by `off`, in half finest
+ * cells. */
+static int side_of(const OctTree *tree, int node, int other)
 {
-    const OctTree *tree = &s->tree;
-    int node = tree->node[leaf], edge = tree->size[node] / 2, at[3]; /* half finest cells */
+    int own = tree->size[node] / 2, half = tree->size[other] / 2, far = -1, off[3];
     for (int d = 0; d < 3; d++) {
-        int low = oct_tree_low(tree, node, d);
-        at[d] = 2 * (d != side / 2 ? low + edge / 2 : side % 2 ? low + edge : low - 1) + 1;
+        off[d] = tree->centre[other][d] - tree->centre[node][d];
+        if (abs(off[d]) < own + half) continue;
+        if (far >= 0) return -1;
+        far = d;
     }
-    for (long e = s->graph.first[leaf]; e < oct_graph_end(&s->graph, leaf); e++) {
-        int other = tree->node[s->graph.to[e]], half = tree->size[other] / 2;
-        const int *centre = tree->centre[other];
-        if (abs(at[0] - centre[0]) < half && abs(at[1] - centre[1]) < half &&
-            abs(at[2] - centre[2]) < half)
-            return s->graph.to[e];
-    }
-    return -1;
+    if (far < 0 || abs(off[far]) - (own + 1) >= half) return -1;
+    for (int d = 0; d < 3; d++)
+        if (d != far && abs((own > 1) - off[d]) >= half) return -1;
+    return 2 * far + (off[far] > 0);
 }
 
 static void number_nodes(const OctTree *tree, OctOutline *o)
@@ -34,20 +32,19 @@ static void number_nodes(const OctTree *tree, OctOutline *o)
     }
 }
 
-static void copy_edges(const OctGraph *graph, OctOutline *o)
+/* Edges, and the leaves across the faces: a leaf's edges follow those of the one before it. */
+static void describe_edges(const OctStructure *s, OctOutline *o, long n)
 {
-    long at = 0;
-    o->first = sm_alloc((size_t)o->rest.nodes + 1, sizeof *o->first);
-    o->to = sm_alloc((size_t)graph->edges, sizeof *o->to);
-    o->length = sm_alloc((size_t)graph->edges, sizeof *o->length);
-    for (long n = 0; n < o->rest.nodes; n++) {
-        o->first[n] = at;
-        for (long e = graph->first[o->leaf[n]]; e < oct_graph_end(graph, o->leaf[n]); e++, at++) {
-            o->to[at] = o->node[graph->to[e]];
-            o->length[at] = graph->length[e];
-        }
+    const OctGraph *graph = &s->graph;
+    long at = o->first[n], end = oct_graph_end(graph, o->leaf[n]);
+    for (int side = 0; side < SM_COLLIDE_FACES; side++) o->across[n][side] = -1;
+    for (long e = graph->first[o->leaf[n]]; e < end; e++, at++) {
+        int to = graph->to[e], side = side_of(&s->tree, s->tree.node[o->leaf[n]], s->tree.node[to]);
+        o->to[at] = o->node[to];
+        o->length[at] = graph->length[e];
+        if (side >= 0) o->across[n][side] = o->to[at];
     }
-    o->first[o->rest.nodes] = at;
+    o->first[n + 1] = at;
 }
 
 static void describe_node(const OctStructure *s, OctOutline *o, long n)
@@ -58,18 +55,17 @@ static void describe_node(const OctStructure *s, OctOutline *o, long n)
     o->size[n] = 0.5 * s->tree.size[node];
     o->radius[n] = 0.25 * s->tree.size[node];
     for (int d = 0; d < 3; d++) o->x0[n][d] = 0.5 * s->tree.centre[node][d];
-    for (int side = 0; side < SM_COLLIDE_FACES; side++) {
-        int across = leaf_across(s, leaf, side);
-        o->across[n][side] = across < 0 ? -1 : o->node[across];
-    }
+    describe_edges(s, o, n);
 }
 
 void oct_outline_build(const OctStructure *s, OctOutline *o)
 {
     *o = (OctOutline){0};
     number_nodes(&s->tree, o);
-    copy_edges(&s->graph, o);
     size_t n = (size_t)o->rest.nodes;
+    o->first = sm_alloc(n + 1, sizeof *o->first);
+    o->to = sm_alloc((size_t)s->graph.edges, sizeof *o->to);
+    o->length = sm_alloc((size_t)s->graph.edges, sizeof *o->length);
     o->carrier = sm_alloc(n, sizeof(int));
     o->across = sm_alloc(n, sizeof *o->across);
     o->x0 = sm_alloc(n, sizeof *o->x0);
