@@ -1,23 +1,28 @@
 #include "outline.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-/* The side of a leaf at whose middle's far side another one is, or -1: the finest cell there, on
- * the high side of what is between two, is in it. The other leaf is off by `off`, in half finest
- * cells. */
+/* Whether the finest cell across the middle of a face is in a leaf that is off by that much along
+ * an axis, in half finest cells; `beyond`: across this axis. */
+static inline bool level(int off, bool beyond, int own, int half)
+{
+    return beyond ? abs(off) - (own + 1) < half : abs((own > 1) - off) < half;
+}
+
+/* The side of a leaf at whose middle another one is, or SM_COLLIDE_FACES: the finest cell across
+ * it, the higher one where the middle is between two, is in that leaf. */
 static int side_of(const OctTree *tree, int node, int other)
 {
-    int own = tree->size[node] / 2, half = tree->size[other] / 2, far = -1, off[3];
-    for (int d = 0; d < 3; d++) {
-        off[d] = tree->centre[other][d] - tree->centre[node][d];
-        if (abs(off[d]) < own + half) continue;
-        if (far >= 0) return -1;
-        far = d;
-    }
-    if (far < 0 || abs(off[far]) - (own + 1) >= half) return -1;
-    for (int d = 0; d < 3; d++)
-        if (d != far && abs((own > 1) - off[d]) >= half) return -1;
-    return 2 * far + (off[far] > 0);
+    const int *a = tree->centre[node], *b = tree->centre[other];
+    int own = tree->size[node] / 2, half = tree->size[other] / 2, touch = own + half;
+    int off[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    bool x = abs(off[0]) >= touch, y = abs(off[1]) >= touch, z = abs(off[2]) >= touch;
+    if (x + y + z != 1 ||
+        !(level(off[0], x, own, half) & level(off[1], y, own, half) & level(off[2], z, own, half)))
+        return SM_COLLIDE_FACES;
+    int axis = y + 2 * z;
+    return 2 * axis + (off[axis] > 0);
 }
 
 static void number_nodes(const OctTree *tree, OctOutline *o)
@@ -36,14 +41,15 @@ static void number_nodes(const OctTree *tree, OctOutline *o)
 static void describe_edges(const OctStructure *s, OctOutline *o, long n)
 {
     const OctGraph *graph = &s->graph;
+    int across[SM_COLLIDE_FACES + 1] = {-1, -1, -1, -1, -1, -1};
     long at = o->first[n], end = oct_graph_end(graph, o->leaf[n]);
-    for (int side = 0; side < SM_COLLIDE_FACES; side++) o->across[n][side] = -1;
     for (long e = graph->first[o->leaf[n]]; e < end; e++, at++) {
         int to = graph->to[e], side = side_of(&s->tree, s->tree.node[o->leaf[n]], s->tree.node[to]);
         o->to[at] = o->node[to];
         o->length[at] = graph->length[e];
-        if (side >= 0) o->across[n][side] = o->to[at];
+        across[side] = o->to[at];
     }
+    memcpy(o->across[n], across, sizeof o->across[n]);
     o->first[n + 1] = at;
 }
 
