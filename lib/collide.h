@@ -94,7 +94,7 @@ SmCollide *sm_collide_build(const SmCollideRest *rest, const SmCollideParams *pa
 void sm_collide_free(SmCollide *collide);
 
 /* The body has changed (broken links, cut or refined cells): its new description. Node numbers may
- * change; what was fixed is fixed no more. O(description): about 1 us a node, most of it for the
+ * change; what was fixed is fixed no more. O(description): about 0.5 us a node, most of it for the
  * parts; who is far from whom through the material is not sought before it is asked for. */
 void sm_collide_describe(SmCollide *collide, const SmCollideRest *rest);
 

@@ -113,8 +113,8 @@ static void split(const SmCollideRest *rest, double width, SmCollideClusters *c)
 {
     Place *place = sort_nodes(rest, width);
     int *cube = sm_alloc((size_t)rest->nodes, sizeof *cube);
-    Link *link = NULL;
-    long room = 0;
+    long room = 256;
+    Link *link = sm_alloc((size_t)room, sizeof *link);
     for (long i = 1; i < rest->nodes; i++)
         cube[place[i].node] = cube[place[i - 1].node] + (place[i].cube != place[i - 1].cube);
     for (long i = 0, end; i < rest->nodes; i = end) {
@@ -122,7 +122,7 @@ static void split(const SmCollideRest *rest, double width, SmCollideClusters *c)
         for (end = i; end < rest->nodes && place[end].cube == place[i].cube; end++)
             most += rest->first[place[end].node + 1] - rest->first[place[end].node];
         if (most >= room) {
-            room = 2 * most + 1;
+            room = 2 * most;
             link = sm_realloc(link, (size_t)room, sizeof *link);
         }
         long links = list_links(rest, place + i, end - i, cube, link);

@@ -5,7 +5,12 @@
 
 #include "error.h"
 
-#define SLACK 0.5 /* mean edges that a wide box is wider on every side */
+/* Mean edges that a wide box is wider on every side: twice as many where boxes have not been kept
+ * for SOON steps, half as many where they have for LATE. */
+#define LEAST_SLACK 0.5
+#define MOST_SLACK  4.0
+
+enum { SOON = 4, LATE = 64 };
 
 /* A range of the parts of a body, and its place in the body's tree. */
 typedef struct {
@@ -177,15 +182,19 @@ static bool settled(const SmCollidePairs *w, long b, const double middle[3])
 
 static void renew(SmCollidePairs *w, long b, const double middle[3])
 {
+    SmCollideNear *near = &w->near[b];
     long count = w->parts->count;
-    double slack = SLACK * w->parts->edge;
+    if (near->steps < SOON) near->slack = fmin(2 * near->slack, MOST_SLACK);
+    if (near->steps > LATE) near->slack /= 2;
+    near->slack = fmax(near->slack, LEAST_SLACK);
+    double slack = near->slack * w->parts->edge;
     for (long p = b * count; p < (b + 1) * count; p++)
         for (int d = 0; d < 3; d++) {
             w->wide[p].low[d] = w->box[p].low[d] - middle[d] - slack;
             w->wide[p].high[d] = w->box[p].high[d] - middle[d] + slack;
         }
-    w->near[b].count = 0;
-    w->near[b].fresh = true;
+    near->count = near->steps = 0;
+    near->fresh = true;
     fill_tree(w, w->wide + b * count, (Range){b, 0, count, 0});
     within(w, (Range){b, 0, count, 0});
 }
@@ -193,9 +202,10 @@ static void renew(SmCollidePairs *w, long b, const double middle[3])
 /* Pairs of parts of body b. */
 static void find_own(SmCollidePairs *w, long b, const double middle[3])
 {
-    const SmCollideNear *near = &w->near[b];
+    SmCollideNear *near = &w->near[b];
     long first = b * w->parts->count;
     if (!settled(w, b, middle)) renew(w, b, middle);
+    near->steps++;
     for (long i = 0; i < near->count; i++) {
         long p = first + near->pair[i][0], q = first + near->pair[i][1];
         if (p == q || sm_collide_overlap(&w->box[p], &w->box[q])) add_pair(w, p, q);

@@ -23,8 +23,9 @@ typedef struct {
 typedef struct {
     int (*pair)[2];
     long count, room;
-    double middle[3];
-    bool fresh;
+    double slack; /* mean edges that wide boxes are wider on every side */
+    long steps;   /* that they have been kept for */
+    bool fresh;   /* they are of this description */
 } SmCollideNear;
 
 /* Part p of body b has number b * parts + p. */
