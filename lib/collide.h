@@ -42,11 +42,11 @@
  * than a tenth of an edge, contacts in what reaches beyond may be missed.
  *
  * Results do not depend on the number of threads. A step costs O(1) for every particle that is
- * looked at (all, for boxes), O(1) for every pair of parts whose boxes meet, for their nodes and
- * cells where the material does not hold them together, and O(carriers) for each contact; once for
- * every node that is in a cell of its own body neither far from it at rest nor its neighbour, what
- * a search of the material around it costs. It allocates nothing once its arrays have grown. Twin:
- * reference/collide.c. */
+ * looked at (all, for boxes), O(1) for every pair of parts whose boxes meet or, of one body, soon
+ * may, for their nodes and cells where the material does not hold them together, and O(carriers)
+ * for each contact; once for every node and cell of one body that meet and are neither far apart at
+ * rest nor neighbours, what a search of the material between them costs. It allocates nothing once
+ * its arrays have grown. Twin: reference/collide.c. */
 #ifndef SM_COLLIDE_H
 #define SM_COLLIDE_H
 
@@ -94,7 +94,7 @@ SmCollide *sm_collide_build(const SmCollideRest *rest, const SmCollideParams *pa
 void sm_collide_free(SmCollide *collide);
 
 /* The body has changed (broken links, cut or refined cells): its new description. Node numbers may
- * change; what was fixed is fixed no more. O(description): about 1 us a node, most of it for the
+ * change; what was fixed is fixed no more. O(description): about 0.5 us a node, most of it for the
  * parts; who is far from whom through the material is not sought before it is asked for. */
 void sm_collide_describe(SmCollide *collide, const SmCollideRest *rest);
 

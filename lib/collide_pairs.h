@@ -3,7 +3,10 @@
  *
  * Parts follow each other along a curve through space, so halving their range gives a tree of boxes
  * that needs no building; a body's tree is held against itself and against those of the bodies
- * whose boxes its own overlaps. */
+ * whose boxes its own overlaps. Against itself it is held only now and then, with boxes that are
+ * wider than the parts': until a part leaves its wide box no other pairs can touch than those
+ * found. They are kept in the order of the tree, which no position changes, so what is found does
+ * not depend on when that was. */
 #ifndef SM_COLLIDE_PAIRS_H
 #define SM_COLLIDE_PAIRS_H
 
@@ -14,6 +17,16 @@
 typedef struct {
     double low[3], high[3];
 } SmCollideBox;
+
+/* Pairs of parts of a body, without those that are joined, whose wide boxes overlap. Those boxes
+ * move with the middle of the body's. */
+typedef struct {
+    int (*pair)[2];
+    long count, room;
+    double slack; /* mean edges that wide boxes are wider on every side */
+    long steps;   /* that they have been kept for */
+    bool fresh;   /* they are of this description */
+} SmCollideNear;
 
 /* Part p of body b has number b * parts + p. */
 typedef struct {
@@ -27,8 +40,11 @@ typedef struct {
     /* its own */
     SmCollideSweep sweep;
     SmCollideBox *tree; /* [bodies][boxes] a range of parts, then its lower half's, its upper's */
+    SmCollideBox *box;  /* [bodies * parts] of the parts as they are now */
     char *known;        /* [bodies * parts] is in `part` */
     long room;
+    SmCollideNear *near; /* [bodies] pairs of one body that may come to touch */
+    SmCollideBox *wide;  /* [bodies * parts] boxes that these hold for */
 } SmCollidePairs;
 
 /* The parts must stay where they are. */
@@ -37,8 +53,8 @@ void sm_collide_pairs_init(SmCollidePairs *pairs, const SmCollideParts *parts,
 void sm_collide_pairs_free(SmCollidePairs *pairs);
 long sm_collide_pairs_bytes(const SmCollidePairs *pairs);
 
-/* The pairs of positions x [bodies * nodes][3]. O(carriers of the parts + pairs whose boxes
- * overlap). */
+/* The pairs of positions x [bodies * nodes][3]. O(carriers of the parts + pairs of wide boxes that
+ * overlap), and where a part has left its wide box O(pairs of parts that are near each other). */
 void sm_collide_pairs_find(SmCollidePairs *pairs, long nodes, const double (*x)[3]);
 
 static inline bool sm_collide_overlap(const SmCollideBox *a, const SmCollideBox *b)

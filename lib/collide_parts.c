@@ -12,7 +12,8 @@
 /* What tells whether two parts are joined. Sides are 2 d + 1 up along axis d, 2 d down. */
 typedef struct {
     double node_reach[SM_COLLIDE_FACES]; /* of its nodes, less the size that keeps cells apart */
-    double cell_reach[SM_COLLIDE_FACES]; /* of its cells' centres, less their edge's share of it */
+    double cell_reach[SM_COLLIDE_FACES]; /* of its cells' centres, less their edge's share of it; of
+                                            the side across from each */
     double least_size, least_edge;
 } Reach;
 
@@ -21,12 +22,15 @@ typedef struct {
     const SmCollideShape *shape;
     SmCollideParts *parts;
     SmCollideClusters clusters;
-    int *part;    /* [clusters] -1: none */
-    int *cluster; /* [parts] */
-    Reach *reach; /* [parts] */
-    int *way;     /* [clusters] shortest that was found, or INT_MAX */
-    int *met;     /* [met_count] whose it is */
+    int *part;     /* [clusters] -1: none */
+    int *cluster;  /* [parts] rising */
+    Reach *reach;  /* [parts] */
+    double window; /* least distance in which ways lead from any node (collide_ways.c) */
+    int *way;      /* [clusters] shortest that was found, or INT_MAX */
+    int *met;      /* [met_count] whose it is */
     long met_count;
+    int (*pair)[2]; /* [pair_count] joined, by rising first one */
+    long pair_count, pair_room;
 } Build;
 
 /* Parts are clusters that have surface nodes or cells. */
@@ -78,6 +82,17 @@ static void list_members(Build *b)
         parts->node[parts->node_first[part_of(b, shape->surface[i]) + 1]++] = shape->surface[i];
 }
 
+/* In place of fmin() and fmax(), which are calls. */
+static inline double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* Carriers of the cells, and the surface nodes. */
 static void list_carriers(Build *b)
 {
@@ -92,7 +107,7 @@ static void list_carriers(Build *b)
         for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
             const SmCollideCell *cell = &shape->cell[parts->cell[i]];
             double out = shape->carriers == 1 ? sqrt(0.75) : LOOSE;
-            parts->margin[p] = fmax(parts->margin[p], out * cell->edge);
+            parts->margin[p] = larger(parts->margin[p], out * cell->edge);
             for (int c = 0; c < shape->carriers; c++) {
                 if (seen[cell->carrier[c]] == p + 1) continue;
                 seen[cell->carrier[c]] = p + 1;
@@ -100,10 +115,10 @@ static void list_carriers(Build *b)
             }
         }
         for (long i = parts->node_first[p]; i < parts->node_first[p + 1]; i++) {
-            parts->margin[p] = fmax(parts->margin[p], shape->radius[parts->node[i]]);
+            parts->margin[p] = larger(parts->margin[p], shape->radius[parts->node[i]]);
             if (seen[parts->node[i]] != p + 1) parts->carrier[at++] = parts->node[i];
         }
-        parts->loosest = fmax(parts->loosest, parts->margin[p]);
+        parts->loosest = larger(parts->loosest, parts->margin[p]);
         parts->carrier_first[p + 1] = at;
     }
     free(seen);
@@ -155,133 +170,150 @@ static void find_reach(Build *b, long p)
     for (int s = 0; s < SM_COLLIDE_FACES; s++)
         reach->node_reach[s] = reach->cell_reach[s] = -INFINITY;
     for (long i = parts->node_first[p]; i < parts->node_first[p + 1]; i++) {
-        int node = parts->node[i];
-        reach->least_size = fmin(reach->least_size, shape->size[node]);
+        const double *x = shape->x0[parts->node[i]], size = shape->size[parts->node[i]];
+        reach->least_size = smaller(reach->least_size, size);
         for (int s = 0; s < SM_COLLIDE_FACES; s++)
             reach->node_reach[s] =
-                fmax(reach->node_reach[s],
-                     (s % 2 ? 1 : -1) * shape->x0[node][s / 2] - of_size * shape->size[node]);
+                larger(reach->node_reach[s], (s % 2 ? 1 : -1) * x[s / 2] - of_size * size);
     }
     for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
         const SmCollideCell *cell = &shape->cell[parts->cell[i]];
-        reach->least_edge = fmin(reach->least_edge, cell->edge);
+        reach->least_edge = smaller(reach->least_edge, cell->edge);
         for (int s = 0; s < SM_COLLIDE_FACES; s++)
             reach->cell_reach[s] =
-                fmax(reach->cell_reach[s],
-                     (s % 2 ? 1 : -1) * cell->centre[s / 2] - of_edge * cell->edge);
+                larger(reach->cell_reach[s],
+                       (s % 2 ? -1 : 1) * cell->centre[s / 2] - of_edge * cell->edge);
     }
 }
 
 /* Whether no node of a collides with a cell of b when no way between them is longer than `way`. */
-static bool held(const Build *b, long p, long q, double way)
+static bool held(const Reach *a, const Reach *b, double way)
 {
-    const Reach *a = &b->reach[p], *c = &b->reach[q];
-    if (!(way <= SM_COLLIDE_AROUND * sm_collide_apart(a->least_size, c->least_edge))) return false;
+    bool out = !(way <= SM_COLLIDE_AROUND * sm_collide_apart(a->least_size, b->least_edge));
     for (int s = 0; s < SM_COLLIDE_FACES; s++)
-        if (!(a->node_reach[s] + c->cell_reach[s ^ 1] <= SM_COLLIDE_SLACK)) return false;
-    return true;
+        out |= !(a->node_reach[s] + b->cell_reach[s] <= SM_COLLIDE_SLACK);
+    return !out;
 }
 
-/* Whether the nodes of cluster q are in the window around every node of part p that ways from there
- * lead through (collide_ways.c). */
+/* Whether the nodes of two clusters are in the window around each other's nodes. */
 static bool in_window(const Build *b, long p, long q)
 {
     const SmCollideClusters *c = &b->clusters;
-    long own = b->cluster[p];
-    double widest = b->shape->widest;
-    double window = sm_collide_apart(b->reach[p].least_size, widest) + widest;
+    bool out = false;
     for (int d = 0; d < 3; d++)
-        if (c->high[q][d] - c->low[own][d] > window || c->high[own][d] - c->low[q][d] > window)
-            return false;
-    return true;
+        out |= c->high[q][d] - c->low[p][d] > b->window || c->high[p][d] - c->low[q][d] > b->window;
+    return !out;
 }
 
-static void meet(Build *b, int cluster, int way)
+/* Leaves out the arcs that lead out of the window. */
+static void keep_arcs(Build *b)
 {
-    if (b->way[cluster] == INT_MAX) b->met[b->met_count++] = cluster;
-    if (way < b->way[cluster]) b->way[cluster] = way;
+    SmCollideClusters *c = &b->clusters;
+    long at = 0;
+    for (long p = 0, e = 0; p < c->count; p++) {
+        for (; e < c->arc_first[p + 1]; e++) {
+            if (!in_window(b, p, c->arc[e])) continue;
+            c->arc[at] = c->arc[e];
+            c->length[at++] = c->length[e];
+        }
+        c->arc_first[p + 1] = at;
+    }
 }
 
-/* Ways from part p over at most two arcs. */
-static void find_ways(Build *b, long p)
+/* A way to a cluster; `met`, with room for one more, grows where it is the first. Without a branch:
+ * whether it is follows no pattern. */
+static inline long meet(int *restrict way, int *restrict met, long count, int cluster, int length)
+{
+    int was = way[cluster];
+    met[count] = cluster;
+    way[cluster] = length < was ? length : was;
+    return count + (was == INT_MAX);
+}
+
+/* Ways from a cluster over at most two arcs. */
+static void find_ways(Build *b, int own)
+{
+    const SmCollideClusters *c = &b->clusters;
+    int *restrict way = b->way, *restrict met = b->met;
+    const int *restrict arc = c->arc, *restrict length = c->length;
+    for (long i = 0; i < b->met_count; i++) way[met[i]] = INT_MAX;
+    long count = meet(way, met, 0, own, 0);
+    for (long e = c->arc_first[own]; e < c->arc_first[own + 1]; e++) {
+        long from = c->arc_first[arc[e]], end = c->arc_first[arc[e] + 1];
+        count = meet(way, met, count, arc[e], length[e]);
+        for (long f = from; f < end; f++)
+            count = meet(way, met, count, arc[f], length[e] + length[f]);
+    }
+    b->met_count = count;
+}
+
+/* Adds the pairs of part p with itself and later ones. */
+static void find_joined(Build *b, int p)
 {
     const SmCollideClusters *c = &b->clusters;
     int own = b->cluster[p];
-    for (long i = 0; i < b->met_count; i++) b->way[b->met[i]] = INT_MAX;
-    b->met_count = 0;
-    meet(b, own, 0);
-    for (long e = c->arc_first[own]; e < c->arc_first[own + 1]; e++) {
-        int over = c->arc[e];
-        if (!in_window(b, p, over)) continue;
-        meet(b, over, c->length[e]);
-        for (long f = c->arc_first[over]; f < c->arc_first[over + 1]; f++)
-            meet(b, c->arc[f], c->length[e] + c->length[f]);
-    }
-}
-
-/* Parts that p is joined to one way: nodes of p, cells of the other. Fills `list`. */
-static long list_held(Build *b, long p, int *list)
-{
-    const SmCollideClusters *c = &b->clusters;
-    long count = 0;
-    find_ways(b, p);
+    find_ways(b, own);
     for (long i = 0; i < b->met_count; i++) {
-        int cluster = b->met[i], q = b->part[cluster];
-        double way =
-            0.5 * ((double)b->way[cluster] + c->radius[b->cluster[p]] + c->radius[cluster]);
-        if (q >= 0 && in_window(b, p, cluster) && held(b, p, q, way)) list[count++] = q;
+        int other = b->met[i], q = b->part[other];
+        if (q < p) continue;
+        const Reach *a = &b->reach[p], *z = &b->reach[q];
+        double way = 0.5 * ((double)b->way[other] + c->radius[own] + c->radius[other]);
+        if (!(held(a, z, way) & held(z, a, way) & in_window(b, own, other))) continue;
+        if (b->pair_count == b->pair_room) {
+            b->pair_room = 2 * b->pair_room + 1024;
+            b->pair = sm_realloc(b->pair, (size_t)b->pair_room, sizeof *b->pair);
+        }
+        b->pair[b->pair_count][0] = p;
+        b->pair[b->pair_count++][1] = q;
     }
-    return count;
 }
 
-/* Keeps of the lists what is held both ways. */
-static void keep_mutual(SmCollideParts *parts)
+/* Lists the other one of every pair with both: first, by rising first one, those that come before
+ * a part, then, by rising second one, those after it. */
+static void list_pairs(Build *b)
 {
-    long total = parts->joined_first[parts->count], at = 0;
-    long *first = sm_alloc((size_t)parts->count + 2, sizeof *first);
-    int *back = sm_alloc((size_t)total, sizeof *back);
-    int *mark = sm_alloc((size_t)parts->count, sizeof *mark);
-    for (long i = 0; i < total; i++) first[parts->joined[i] + 2]++;
-    add_up(first + 1, parts->count);
-    for (long p = 0; p < parts->count; p++)
-        for (long i = parts->joined_first[p]; i < parts->joined_first[p + 1]; i++)
-            back[first[parts->joined[i] + 1]++] = (int)p;
-    for (long p = 0, i = 0; p < parts->count; p++) {
-        for (; i < parts->joined_first[p + 1]; i++) mark[parts->joined[i]] = (int)p + 1;
-        parts->joined_first[p] = at;
-        for (long k = first[p]; k < first[p + 1]; k++)
-            if (mark[back[k]] == p + 1) parts->joined[at++] = back[k];
+    SmCollideParts *parts = b->parts;
+    size_t count = (size_t)parts->count;
+    long *first = parts->joined_first = sm_alloc(count + 2, sizeof *first);
+    long *at = sm_alloc(count + 1, sizeof *at);
+    for (long i = 0; i < b->pair_count; i++) {
+        first[b->pair[i][1] + 1]++;
+        if (b->pair[i][0] != b->pair[i][1]) first[b->pair[i][0] + 1]++;
     }
-    parts->joined_first[parts->count] = at;
-    free(first);
-    free(back);
-    free(mark);
+    add_up(first, parts->count);
+    parts->joined = sm_alloc((size_t)first[count], sizeof *parts->joined);
+    for (size_t p = 0; p < count; p++) at[p] = first[p];
+    for (long i = 0; i < b->pair_count; i++) parts->joined[at[b->pair[i][1]]++] = b->pair[i][0];
+    for (long q = 0; q < parts->count; q++) {
+        long end = at[q]; /* only then come later ones */
+        for (long i = first[q]; i < end && parts->joined[i] < q; i++)
+            parts->joined[at[parts->joined[i]]++] = (int)q;
+    }
+    free(at);
 }
 
 static void list_joined(Build *b)
 {
-    SmCollideParts *parts = b->parts;
-    long at = 0, room = 0;
-    b->reach = sm_alloc((size_t)parts->count, sizeof *b->reach);
-    b->way = sm_alloc((size_t)b->clusters.count, sizeof(int));
-    b->met = sm_alloc((size_t)b->clusters.count, sizeof(int));
-    for (long c = 0; c < b->clusters.count; c++) b->way[c] = INT_MAX;
-    for (long p = 0; p < parts->count; p++) find_reach(b, p);
-    parts->joined_first = sm_alloc((size_t)parts->count + 1, sizeof(long));
-    for (long p = 0; p < parts->count; p++) {
-        if (room < at + parts->count) {
-            room = 2 * at + parts->count;
-            parts->joined = sm_realloc(parts->joined, (size_t)room, sizeof(int));
-        }
-        parts->joined_first[p + 1] = at += list_held(b, p, parts->joined + at);
+    long parts = b->parts->count, clusters = b->clusters.count;
+    double least = INFINITY;
+    b->reach = sm_alloc((size_t)parts, sizeof *b->reach);
+    b->way = sm_alloc((size_t)clusters, sizeof(int));
+    b->met = sm_alloc((size_t)clusters + 1, sizeof(int));
+    for (long c = 0; c < clusters; c++) b->way[c] = INT_MAX;
+    for (long p = 0; p < parts; p++) {
+        find_reach(b, p);
+        least = smaller(least, b->reach[p].least_size);
     }
-    keep_mutual(parts);
+    b->window = sm_collide_apart(least, b->shape->widest) + b->shape->widest;
+    keep_arcs(b);
+    for (long p = 0; p < parts; p++) find_joined(b, (int)p);
+    list_pairs(b);
 }
 
 void sm_collide_parts_build(const SmCollideShape *shape, SmCollideParts *parts)
 {
     Build b = {.shape = shape, .parts = parts};
-    *parts = (SmCollideParts){0};
+    *parts = (SmCollideParts){.edge = shape->mean};
     sm_collide_clusters_build(&shape->rest, (shape->carriers == 1 ? 2 : 3) * shape->mean,
                               &b.clusters);
     number_parts(&b);
@@ -294,6 +326,7 @@ void sm_collide_parts_build(const SmCollideShape *shape, SmCollideParts *parts)
     free(b.reach);
     free(b.way);
     free(b.met);
+    free(b.pair);
 }
 
 void sm_collide_parts_free(SmCollideParts *parts)

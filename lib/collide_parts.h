@@ -16,6 +16,7 @@ typedef struct {
     int *joined;    /* parts, itself too, that it cannot collide with: rising */
     double *margin; /* [count] how far cells and solid nodes may stand out from carriers */
     double loosest; /* largest of them */
+    double edge;    /* mean of the cells' */
 } SmCollideParts;
 
 /* Nodes within a cube of twice the mean edge that hang together there are a part. Two parts are

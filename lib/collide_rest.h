@@ -31,7 +31,8 @@ typedef struct {
     const double *edge;        /* [cells] */
     const int (*across)[6];    /* [cells] the cell across each face; -1: none, the face is outer */
     const long *first;         /* [nodes + 1] the rest graph */
-    const int *to, *length;    /* [first[nodes]] */
+    const int *to, *length;    /* [first[nodes]]; no edge is shorter than its nodes are apart along
+                                  any axis */
 } SmCollideRest;
 
 /* An outer face: a square of half-width `half` across axis side / 2, material behind it. */

@@ -1,6 +1,5 @@
 #include "collide_ways.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -10,90 +9,44 @@
 
 void sm_collide_ways_start(SmCollideWays *ways, const SmCollideShape *shape)
 {
-    size_t nodes = (size_t)shape->nodes;
     if (shape->nodes > ways->node_room) {
-        void *all[] = {ways->row, ways->distance, ways->queue, ways->queued, ways->reached};
+        void *all[] = {ways->distance, ways->queue, ways->queued, ways->reached};
         for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
         ways->node_room = shape->nodes + shape->nodes / 4;
         size_t room = (size_t)ways->node_room;
-        ways->row = sm_alloc(room, sizeof(int));
         ways->distance = sm_alloc(room, sizeof(int));
         ways->queue = sm_alloc(room, sizeof(int));
         ways->queued = sm_alloc(room, 1);
         ways->reached = sm_alloc(room, sizeof(int));
     }
-    memset(ways->row, 0, nodes * sizeof(int));
-    for (size_t i = 0; i < nodes; i++) ways->distance[i] = INT32_MAX;
-    ways->rows = ways->reached_count = 0;
-    sm_collide_hash_start(&ways->hash, 0, 2 * shape->mean);
+    for (long i = 0; i < shape->nodes; i++) ways->distance[i] = INT32_MAX;
+    if (ways->answers) memset(ways->answer, 0, (size_t)ways->room * sizeof *ways->answer);
+    ways->answers = ways->reached_count = 0;
 }
 
 void sm_collide_ways_free(SmCollideWays *ways)
 {
-    void *all[] = {ways->row,   ways->first,  ways->far,    ways->distance,
-                   ways->queue, ways->queued, ways->reached};
-    sm_collide_hash_free(&ways->hash);
+    void *all[] = {ways->answer, ways->distance, ways->queue, ways->queued, ways->reached};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *ways = (SmCollideWays){0};
 }
 
 long sm_collide_ways_bytes(const SmCollideWays *ways)
 {
-    return ways->node_room * (long)(4 * sizeof(int) + 1) + ways->row_room * (long)sizeof(long) +
-           ways->far_room * (long)sizeof(int) + sm_collide_hash_bytes(&ways->hash);
+    return ways->node_room * (long)(3 * sizeof(int) + 1) + ways->room * (long)sizeof *ways->answer;
 }
 
-static bool within(const SmCollideRest *rest, int from, int to, double window)
+static double apart(const double a[3], const double b[3])
 {
-    const double *a = rest->x0[from], *b = rest->x0[to];
-    return fabs(a[0] - b[0]) <= window && fabs(a[1] - b[1]) <= window &&
-           fabs(a[2] - b[2]) <= window;
-}
-
-/* Shortest ways from one node through nodes in the window around it. Label-correcting search: what
- * comes out does not depend on the order. */
-static void find_ways(SmCollideWays *ways, const SmCollideRest *rest, int from, double window,
-                      int most)
-{
-    long head = 0, tail = 0, filled = 1;
-    for (long i = 0; i < ways->reached_count; i++) ways->distance[ways->reached[i]] = INT32_MAX;
-    ways->distance[from] = 0;
-    ways->reached[0] = ways->queue[tail++] = from;
-    ways->reached_count = 1;
-    for (; filled; filled--) {
-        int i = ways->queue[head];
-        if (++head == rest->nodes) head = 0;
-        ways->queued[i] = 0;
-        for (long e = rest->first[i]; e < rest->first[i + 1]; e++) {
-            int j = rest->to[e], d = ways->distance[i] + rest->length[e];
-            if (d > most || d >= ways->distance[j] || !within(rest, from, j, window)) continue;
-            if (ways->distance[j] == INT32_MAX) ways->reached[ways->reached_count++] = j;
-            ways->distance[j] = d;
-            if (ways->queued[j]) continue;
-            ways->queued[j] = 1;
-            if (tail == rest->nodes) tail = 0;
-            ways->queue[tail++] = j;
-            filled++;
-        }
-    }
+    double x = fabs(a[0] - b[0]), y = fabs(a[1] - b[1]), z = fabs(a[2] - b[2]);
+    double most = x > y ? x : y;
+    return most > z ? most : z;
 }
 
 /* A way in half cells that ends at a carrier of a cell. */
 static double to_cell(const SmCollideShape *shape, const SmCollideCell *cell, int way)
 {
     return 0.5 * way - (shape->carriers == 1 ? cell->edge / 2 : 0);
-}
-
-/* Way from the node searched from to a cell, cells. */
-static double way_to(const SmCollideWays *ways, const SmCollideShape *shape,
-                     const SmCollideCell *cell)
-{
-    int least = INT32_MAX;
-    for (int c = 0; c < shape->carriers; c++) {
-        int d = ways->distance[cell->carrier[c]];
-        if (d < least) least = d;
-    }
-    return least == INT32_MAX ? DBL_MAX : to_cell(shape, cell, least);
 }
 
 static bool touches(const SmCollideShape *shape, int node, const SmCollideCell *cell)
@@ -108,49 +61,107 @@ static double longest(const SmCollideShape *shape, int node, const SmCollideCell
     return SM_COLLIDE_AROUND * (sm_collide_apart(shape->size[node], cell->edge) + SM_COLLIDE_SLACK);
 }
 
-static int compare(const void *a, const void *b)
+/* What one search needs. */
+typedef struct {
+    const SmCollideShape *shape;
+    const SmCollideCell *cell;
+    int from;
+    double window;  /* ways lead through nodes that near */
+    double most;    /* longest way to a carrier that counts, half cells */
+    double nearest; /* cells by which a carrier may be nearer than the cell's centre */
+} Search;
+
+static bool carries(const Search *s, int node)
 {
-    const int *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
+    for (int c = 0; c < s->shape->carriers; c++)
+        if (s->cell->carrier[c] == node) return true;
+    return false;
 }
 
-static void hash_cells(SmCollideWays *ways, const SmCollideShape *shape)
+/* Whether the way to a node is part of one that may be short enough. */
+static bool leads(const Search *s, int node, int way)
 {
-    sm_collide_hash_start(&ways->hash, shape->cell_count, 2 * shape->mean);
-    for (long k = 0; k < shape->cell_count; k++)
-        sm_collide_hash_add(&ways->hash, k, shape->cell[k].centre);
-    sm_collide_hash_finish(&ways->hash);
+    const double(*x)[3] = s->shape->rest.x0;
+    return way + 2 * (apart(x[node], s->cell->centre) - s->nearest) <= s->most &&
+           apart(x[s->from], x[node]) <= s->window;
 }
 
-/* The row of a node, which is the next one. */
-static void search(SmCollideWays *ways, const SmCollideShape *shape, int node)
+static void forget(SmCollideWays *ways)
 {
-    double most = sm_collide_apart(shape->size[node], shape->widest) + SM_COLLIDE_SLACK;
-    double low[3], high[3], window = most + shape->widest, span = most + shape->widest / 2;
-    long at = ways->first[ways->rows], first = at;
-    if (!ways->hash.count) hash_cells(ways, shape);
-    for (int d = 0; d < 3; d++) {
-        low[d] = shape->x0[node][d] - span;
-        high[d] = shape->x0[node][d] + span;
+    for (long i = 0; i < ways->reached_count; i++) {
+        ways->distance[ways->reached[i]] = INT32_MAX;
+        ways->queued[ways->reached[i]] = 0;
     }
-    find_ways(ways, &shape->rest, node, window,
-              (int)(2 * (SM_COLLIDE_AROUND * most + shape->widest)) + 1);
-    const SmCollideEntry *entry;
-    SmCollideQuery query;
-    for (sm_collide_hash_query(&ways->hash, low, high, &query);
-         (entry = sm_collide_hash_next(&ways->hash, &query));) {
-        const SmCollideCell *cell = &shape->cell[entry->item];
-        if (!sm_collide_beside(shape, node, cell) ||
-            way_to(ways, shape, cell) <= longest(shape, node, cell) || touches(shape, node, cell))
-            continue;
-        if (at == ways->far_room) {
-            ways->far_room = 2 * ways->far_room + 256;
-            ways->far = sm_realloc(ways->far, (size_t)ways->far_room, sizeof(int));
+    ways->reached_count = 0;
+}
+
+/* Whether a way is short enough. Label-correcting search: whether there is one does not depend on
+ * the order. */
+static bool find_way(SmCollideWays *ways, const Search *s)
+{
+    const SmCollideRest *rest = &s->shape->rest;
+    long head = 0, tail = 0, filled = 1;
+    forget(ways);
+    if (!leads(s, s->from, 0)) return false;
+    ways->distance[s->from] = 0;
+    ways->reached[ways->reached_count++] = ways->queue[tail++] = s->from;
+    for (; filled; filled--) {
+        int i = ways->queue[head];
+        if (++head == rest->nodes) head = 0;
+        ways->queued[i] = 0;
+        for (long e = rest->first[i]; e < rest->first[i + 1]; e++) {
+            int j = rest->to[e], d = ways->distance[i] + rest->length[e];
+            if (d >= ways->distance[j] || !leads(s, j, d)) continue;
+            if (carries(s, j)) return true;
+            if (ways->distance[j] == INT32_MAX) ways->reached[ways->reached_count++] = j;
+            ways->distance[j] = d;
+            if (ways->queued[j]) continue;
+            ways->queued[j] = 1;
+            if (tail == rest->nodes) tail = 0;
+            ways->queue[tail++] = j;
+            filled++;
         }
-        ways->far[at++] = entry->item;
     }
-    if (at > first) qsort(ways->far + first, (size_t)(at - first), sizeof(int), compare);
-    ways->first[++ways->rows] = at;
+    return false;
+}
+
+/* Whether a node and a cell beside it, which it does not carry, may collide. */
+static bool far_apart(SmCollideWays *ways, const SmCollideShape *shape, int node,
+                      const SmCollideCell *cell)
+{
+    double window = sm_collide_apart(shape->size[node], shape->widest) + SM_COLLIDE_SLACK;
+    double least = to_cell(shape, cell, 0);
+    Search s = {.shape = shape,
+                .cell = cell,
+                .from = node,
+                .window = window + shape->widest,
+                .most = 2 * (longest(shape, node, cell) - least),
+                .nearest = shape->carriers == 1 ? 0 : cell->edge / 2};
+    return !find_way(ways, &s) && !touches(shape, node, cell);
+}
+
+/* Where the answer about a node and a cell (from 1) is in the table, or would be. */
+static SmCollideAnswer *look_up(const SmCollideWays *ways, int node, int cell)
+{
+    uint64_t key = ((uint64_t)(uint32_t)node << 32 | (uint32_t)cell) * 0x9e3779b97f4a7c15u;
+    long at = (long)(key >> 32) & (ways->room - 1);
+    while (ways->answer[at].cell &&
+           (ways->answer[at].cell != cell || ways->answer[at].node != node))
+        at = (at + 1) & (ways->room - 1);
+    return &ways->answer[at];
+}
+
+/* Makes room for another answer. */
+static void make_room(SmCollideWays *ways)
+{
+    SmCollideAnswer *old = ways->answer;
+    long room = ways->room;
+    if (2 * (ways->answers + 1) <= room) return;
+    ways->room = room ? 2 * room : 256;
+    ways->answer = sm_alloc((size_t)ways->room, sizeof *ways->answer);
+    for (long i = 0; i < room; i++)
+        if (old[i].cell) *look_up(ways, old[i].node, old[i].cell) = old[i];
+    free(old);
 }
 
 SmCollideRelation sm_collide_relation(const SmCollideShape *shape, int node, long c)
@@ -169,23 +180,14 @@ SmCollideRelation sm_collide_relation(const SmCollideShape *shape, int node, lon
 
 bool sm_collide_may(SmCollideWays *ways, const SmCollideShape *shape, int node, long c)
 {
-    if (!sm_collide_beside(shape, node, &shape->cell[c])) return true;
-    if (!ways->row[node]) {
-        if (ways->rows + 2 > ways->row_room) {
-            ways->row_room = 2 * ways->row_room + 64;
-            ways->first = sm_realloc(ways->first, (size_t)ways->row_room, sizeof(long));
-        }
-        if (!ways->rows) ways->first[0] = 0;
-        search(ways, shape, node);
-        ways->row[node] = (int)ways->rows;
+    SmCollideRelation known = sm_collide_relation(shape, node, c);
+    if (known != SM_COLLIDE_UNKNOWN) return known == SM_COLLIDE_MAY;
+    make_room(ways);
+    SmCollideAnswer *answer = look_up(ways, node, (int)c + 1);
+    if (!answer->cell) {
+        *answer =
+            (SmCollideAnswer){node, (int)c + 1, far_apart(ways, shape, node, &shape->cell[c])};
+        ways->answers++;
     }
-    long low = ways->first[ways->row[node] - 1], end = ways->first[ways->row[node]], high = end;
-    while (low < high) {
-        long middle = (low + high) / 2;
-        if (ways->far[middle] < c)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < end && ways->far[low] == c;
+    return answer->may;
 }

@@ -1,25 +1,28 @@
 #include "outline.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-/* The leaf that the graph joins to this one and that holds the finest cell across the middle of a
- * face, or -1. */
-static int leaf_across(const OctStructure *s, long leaf, int side)
+/* Whether the finest cell across the middle of a face is in a leaf that is off by that much along
+ * an axis, in half finest cells; `beyond`: across this axis. */
+static inline bool level(int off, bool beyond, int own, int half)
 {
-    const OctTree *tree = &s->tree;
-    int node = tree->node[leaf], edge = tree->size[node] / 2, at[3]; /* half finest cells */
-    for (int d = 0; d < 3; d++) {
-        int low = oct_tree_low(tree, node, d);
-        at[d] = 2 * (d != side / 2 ? low + edge / 2 : side % 2 ? low + edge : low - 1) + 1;
-    }
-    for (long e = s->graph.first[leaf]; e < oct_graph_end(&s->graph, leaf); e++) {
-        int other = tree->node[s->graph.to[e]], half = tree->size[other] / 2;
-        const int *centre = tree->centre[other];
-        if (abs(at[0] - centre[0]) < half && abs(at[1] - centre[1]) < half &&
-            abs(at[2] - centre[2]) < half)
-            return s->graph.to[e];
-    }
-    return -1;
+    return beyond ? abs(off) - (own + 1) < half : abs((own > 1) - off) < half;
+}
+
+/* The side of a leaf at whose middle another one is, or SM_COLLIDE_FACES: the finest cell across
+ * it, the higher one where the middle is between two, is in that leaf. */
+static int side_of(const OctTree *tree, int node, int other)
+{
+    const int *a = tree->centre[node], *b = tree->centre[other];
+    int own = tree->size[node] / 2, half = tree->size[other] / 2, touch = own + half;
+    int off[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    bool x = abs(off[0]) >= touch, y = abs(off[1]) >= touch, z = abs(off[2]) >= touch;
+    if (x + y + z != 1 ||
+        !(level(off[0], x, own, half) & level(off[1], y, own, half) & level(off[2], z, own, half)))
+        return SM_COLLIDE_FACES;
+    int axis = y + 2 * z;
+    return 2 * axis + (off[axis] > 0);
 }
 
 static void number_nodes(const OctTree *tree, OctOutline *o)
@@ -34,20 +37,20 @@ static void number_nodes(const OctTree *tree, OctOutline *o)
     }
 }
 
-static void copy_edges(const OctGraph *graph, OctOutline *o)
+/* Edges, and the leaves across the faces: a leaf's edges follow those of the one before it. */
+static void describe_edges(const OctStructure *s, OctOutline *o, long n)
 {
-    long at = 0;
-    o->first = sm_alloc((size_t)o->rest.nodes + 1, sizeof *o->first);
-    o->to = sm_alloc((size_t)graph->edges, sizeof *o->to);
-    o->length = sm_alloc((size_t)graph->edges, sizeof *o->length);
-    for (long n = 0; n < o->rest.nodes; n++) {
-        o->first[n] = at;
-        for (long e = graph->first[o->leaf[n]]; e < oct_graph_end(graph, o->leaf[n]); e++, at++) {
-            o->to[at] = o->node[graph->to[e]];
-            o->length[at] = graph->length[e];
-        }
+    const OctGraph *graph = &s->graph;
+    int across[SM_COLLIDE_FACES + 1] = {-1, -1, -1, -1, -1, -1};
+    long at = o->first[n], end = oct_graph_end(graph, o->leaf[n]);
+    for (long e = graph->first[o->leaf[n]]; e < end; e++, at++) {
+        int to = graph->to[e], side = side_of(&s->tree, s->tree.node[o->leaf[n]], s->tree.node[to]);
+        o->to[at] = o->node[to];
+        o->length[at] = graph->length[e];
+        across[side] = o->to[at];
     }
-    o->first[o->rest.nodes] = at;
+    memcpy(o->across[n], across, sizeof o->across[n]);
+    o->first[n + 1] = at;
 }
 
 static void describe_node(const OctStructure *s, OctOutline *o, long n)
@@ -58,18 +61,17 @@ static void describe_node(const OctStructure *s, OctOutline *o, long n)
     o->size[n] = 0.5 * s->tree.size[node];
     o->radius[n] = 0.25 * s->tree.size[node];
     for (int d = 0; d < 3; d++) o->x0[n][d] = 0.5 * s->tree.centre[node][d];
-    for (int side = 0; side < SM_COLLIDE_FACES; side++) {
-        int across = leaf_across(s, leaf, side);
-        o->across[n][side] = across < 0 ? -1 : o->node[across];
-    }
+    describe_edges(s, o, n);
 }
 
 void oct_outline_build(const OctStructure *s, OctOutline *o)
 {
     *o = (OctOutline){0};
     number_nodes(&s->tree, o);
-    copy_edges(&s->graph, o);
     size_t n = (size_t)o->rest.nodes;
+    o->first = sm_alloc(n + 1, sizeof *o->first);
+    o->to = sm_alloc((size_t)s->graph.edges, sizeof *o->to);
+    o->length = sm_alloc((size_t)s->graph.edges, sizeof *o->length);
     o->carrier = sm_alloc(n, sizeof(int));
     o->across = sm_alloc(n, sizeof *o->across);
     o->x0 = sm_alloc(n, sizeof *o->x0);
