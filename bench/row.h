@@ -16,7 +16,7 @@ typedef struct {
     double follow_ms;                 /* then splitting and tying surfaces: median */
     double surface_ms;                /* moving the surface of one body */
     long first_triangles, last_triangles, pieces, open_edges; /* of all surfaces, at the end */
-    long left;                         /* cuts that a surface could not follow cleanly */
+    long left;                         /* bodies whose surface could not follow a cut everywhere */
     double (*time)[BENCH_FRAME_PARTS]; /* [frames] s: simulation, resampling, splitting, moving one
                                         * body's surface; the least of all rounds */
 } BenchChangeRow;
