@@ -13,7 +13,6 @@
 #include "../octree/outline.h"
 #include "../octree/random_batches.h"
 #include "../reference/collide.h"
-#include "../reference/outline.h"
 #include "collide_hash.h"
 #include "collide_parts.h"
 #include "collide_ways.h"
@@ -128,6 +127,14 @@ static void octree_body(unsigned *seed, Body *body)
     }
 }
 
+static void any_body(unsigned *seed, bool lattice, Body *body)
+{
+    if (lattice)
+        lattice_body(seed, body);
+    else
+        octree_body(seed, body);
+}
+
 static void body_free(Body *body)
 {
     if (body->frame) {
@@ -198,10 +205,7 @@ static void test_twin(void **state)
     long contacts = 0, self = 0;
     for (int round = 0; round < 60; round++) {
         Body body;
-        if (round % 3)
-            lattice_body(&seed, &body);
-        else
-            octree_body(&seed, &body);
+        any_body(&seed, round % 3 > 0, &body);
         contacts += same_contacts(&body, &everything);
         self += same_contacts(&body, &(SmCollideParams){.self = true});
         same_contacts(&body, &(SmCollideParams){.bodies = true});
@@ -219,10 +223,7 @@ static void test_parts(void **state)
     long joined = 0, far = 0;
     for (int round = 0; round < 40; round++) {
         Body body;
-        if (round % 2)
-            lattice_body(&seed, &body);
-        else
-            octree_body(&seed, &body);
+        any_body(&seed, round % 2 > 0, &body);
         SmCollideShape shape;
         SmCollideParts parts;
         SmCollideWays ways = {0};
@@ -254,51 +255,6 @@ static void test_parts(void **state)
     assert_true(joined > 500 && far > 20);
 }
 
-static void same_ints(const int *a, const int *b, long count)
-{
-    for (long i = 0; i < count; i++) assert_int_equal(a[i], b[i]);
-}
-
-/* What the engine makes of a lattice with broken links is what the cells one by one say. */
-static void test_outline(void **state)
-{
-    (void)state;
-    unsigned seed = 17;
-    for (int round = 0; round < 20; round++) {
-        Body body;
-        RefOutline exact;
-        long broken = 0;
-        lattice_body(&seed, &body);
-        const LsmLattice *l = &body.lattice;
-        int(*pair)[2] = sm_alloc((size_t)(l->count * LSM_RING), sizeof *pair);
-        LsmLattice whole;
-        lsm_lattice_build(&body.voxels, &whole);
-        for (int p = 0; p < l->count; p++)
-            for (int bit = LSM_SELF + 1; bit < LSM_RING; bit++) {
-                const int *at = l->coord[p];
-                if (!((l->link[p] ^ whole.link[p]) >> bit & 1)) continue;
-                pair[broken][0] = p;
-                pair[broken++][1] = (int)lsm_lattice_find(
-                    l, at[0] + bit % 3 - 1, at[1] + bit / 3 % 3 - 1, at[2] + bit / 9 - 1);
-            }
-        ref_outline_build(&body.voxels, (const int(*)[2])pair, broken, &exact);
-        const SmCollideRest *a = body.rest, *b = &exact.rest;
-        assert_int_equal(a->nodes, b->nodes);
-        assert_int_equal(a->cells, b->cells);
-        assert_int_equal(a->first[a->nodes], b->first[b->nodes]);
-        same_ints(a->carrier, b->carrier, a->cells * SM_COLLIDE_CORNERS);
-        same_ints(a->across[0], b->across[0], a->cells * SM_COLLIDE_FACES);
-        same_ints(a->to, b->to, a->first[a->nodes]);
-        same_ints(a->length, b->length, a->first[a->nodes]);
-        assert_memory_equal(a->x0, b->x0, (size_t)a->nodes * sizeof *a->x0);
-        assert_memory_equal(a->centre, b->centre, (size_t)a->cells * sizeof *a->centre);
-        ref_outline_free(&exact);
-        lsm_lattice_free(&whole);
-        free(pair);
-        body_free(&body);
-    }
-}
-
 /* At rest nothing touches, whatever the shape. */
 static void test_rest(void **state)
 {
@@ -306,10 +262,7 @@ static void test_rest(void **state)
     unsigned seed = 9;
     for (int round = 0; round < 40; round++) {
         Body body;
-        if (round % 2)
-            lattice_body(&seed, &body);
-        else
-            octree_body(&seed, &body);
+        any_body(&seed, round % 2 > 0, &body);
         long n = body.rest->nodes;
         for (long i = 0; i < BODIES * n; i++)
             for (int d = 0; d < 3; d++)
@@ -376,10 +329,7 @@ static void test_response(void **state)
     unsigned seed = 21;
     for (int round = 0; round < 30; round++) {
         Body body;
-        if (round % 3)
-            lattice_body(&seed, &body);
-        else
-            octree_body(&seed, &body);
+        any_body(&seed, round % 3 > 0, &body);
         check_response(&seed, &body);
         body_free(&body);
     }
@@ -458,10 +408,7 @@ static void test_wild(void **state)
     unsigned seed = 51;
     for (int round = 0; round < 24; round++) {
         Body body;
-        if (round % 2)
-            lattice_body(&seed, &body);
-        else
-            octree_body(&seed, &body);
+        any_body(&seed, round % 2 > 0, &body);
         long all = BODIES * body.rest->nodes;
         for (long i = 0; i < all; i++)
             if (round < 12 || random_int(&seed, 4) == 0) body.x[i][round % 3] = wild[round / 2 % 6];
@@ -515,11 +462,10 @@ static void test_hash(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hash),    cmocka_unit_test(test_twin),
-        cmocka_unit_test(test_rest),    cmocka_unit_test(test_response),
-        cmocka_unit_test(test_fixed),   cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_wild),    cmocka_unit_test(test_parts),
-        cmocka_unit_test(test_outline),
+        cmocka_unit_test(test_hash),  cmocka_unit_test(test_twin),
+        cmocka_unit_test(test_rest),  cmocka_unit_test(test_response),
+        cmocka_unit_test(test_fixed), cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_wild),  cmocka_unit_test(test_parts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
