@@ -45,6 +45,7 @@ typedef struct {
     SmEngine *engine;
     const OctStructure *structure;
     int side;
+    int node[SPLIT]; /* of the leaves to be refined */
     SmCounts before;
     long regions; /* made anew by the last change */
 } Cube;
@@ -65,6 +66,14 @@ static OctStructure *begin(Cube *cube)
     return s;
 }
 
+static void find_leaves(Cube *cube)
+{
+    int low = cube->side / 2 - 1;
+    for (int i = 0; i < SPLIT; i++)
+        cube->node[i] = oct_tree_find(&cube->structure->tree, 2 * (low - 1 + i % 5),
+                                      2 * (low + i / 5 % 2), 2 * (low + i / 10));
+}
+
 static SmCode make_cube(int side, const BenchKernelParams *params, Cube *cube, SmError *error)
 {
     SmVoxels voxels;
@@ -81,6 +90,7 @@ static SmCode make_cube(int side, const BenchKernelParams *params, Cube *cube, S
     sm_voxels_free(&voxels);
     if (code) return code;
     cube->structure = oct_engine_structure(cube->engine);
+    find_leaves(cube);
     begin(cube); /* what is made ready once is not a change's */
     oct_engine_end(cube->engine);
     cube->type->count(cube->engine, &cube->before);
@@ -101,20 +111,11 @@ static void add_square(const Cube *cube, int place, SmCut *cut)
     sm_cut_triangle(cut, (int[3]){vertex[2], vertex[3], vertex[0]});
 }
 
-/* Nodes of the leaves to be refined. */
-static void find_leaves(const Cube *cube, int node[SPLIT])
-{
-    int low = cube->side / 2 - 1;
-    for (int i = 0; i < SPLIT; i++)
-        node[i] = oct_tree_find(&cube->structure->tree, 2 * (low - 1 + i % 5),
-                                2 * (low + i / 5 % 2), 2 * (low + i / 10));
-}
-
-static void split_or_merge(Cube *cube, bool split, const int node[SPLIT])
+static void split_or_merge(Cube *cube, bool split)
 {
     OctStructure *s = begin(cube);
     for (int i = 0; i < SPLIT; i++) {
-        SmCode code = (split ? oct_resample_split : oct_resample_merge)(s, node[i], NULL);
+        SmCode code = (split ? oct_resample_split : oct_resample_merge)(s, cube->node[i], NULL);
         assert(!code);
         (void)code;
     }
@@ -124,16 +125,14 @@ static void split_or_merge(Cube *cube, bool split, const int node[SPLIT])
 /* Seconds of one change; cuts are made at a place of their own each. */
 static double change(Cube *cube, Kind kind, int place)
 {
-    int node[SPLIT];
-    if (kind == REFINE) find_leaves(cube, node);
     cube->regions = 0;
     double start = sm_now();
     if (kind == CUT) {
         add_square(cube, place, &begin(cube)->cut);
         cube->regions = oct_engine_end(cube->engine)->region_count;
     } else {
-        split_or_merge(cube, true, node);
-        split_or_merge(cube, false, node);
+        split_or_merge(cube, true);
+        split_or_merge(cube, false);
     }
     return sm_now() - start;
 }
@@ -179,15 +178,13 @@ static bool counts_are(const Cube *cube, long nodes, long parted, char *reason, 
 static bool check(Cube *cube, Kind kind, char *reason, size_t size)
 {
     long nodes = cube->before.particles;
-    int node[SPLIT];
     if (kind == CUT) {
         change(cube, CUT, 0);
         return counts_are(cube, nodes, PARTED, reason, size);
     }
-    find_leaves(cube, node);
-    split_or_merge(cube, true, node);
+    split_or_merge(cube, true);
     bool right = counts_are(cube, nodes + BORN * SPLIT, -1, reason, size);
-    split_or_merge(cube, false, node);
+    split_or_merge(cube, false);
     return right && counts_are(cube, nodes, 0, reason, size);
 }
 
