@@ -370,6 +370,9 @@ bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason)
     else if (found->contacts_wrong > 0)
         snprintf(reason, size, "%ld of %ld contacts are not those of brute force",
                  found->contacts_wrong, found->contacts);
+    else if (found->pushed_wrong > 0)
+        snprintf(reason, size, "%ld particles meet obstacles otherwise than brute force has it",
+                 found->pushed_wrong);
     else if (!(found->turn_error <= BENCH_TURN_TOLERANCE))
         snprintf(
             reason, size,
@@ -397,6 +400,9 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
     if (found->blurred > worst->blurred) worst->blurred = found->blurred;
     if (found->contact_nodes > worst->contact_nodes) worst->contact_nodes = found->contact_nodes;
     if (found->contact_all > worst->contact_all) worst->contact_all = found->contact_all;
+    worst->obstacles |= found->obstacles;
+    worst->pushed += found->pushed;
+    worst->pushed_wrong += found->pushed_wrong;
     worst->contacts += found->contacts;
     worst->contacts_wrong += found->contacts_wrong;
     worst->turn_error = fmax(worst->turn_error, found->turn_error);
@@ -422,6 +428,9 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
                                  ", contacts of %ld of %ld surface nodes right (%ld of %ld)",
                                  found->contact_nodes, found->contact_all,
                                  found->contacts - found->contacts_wrong, found->contacts);
+    if (found->obstacles && used < size)
+        used += (size_t)snprintf(text + used, size - used, ", %ld pushed out of obstacles as there",
+                                 found->pushed);
     if (found->tied && used < size)
         used += (size_t)snprintf(text + used, size - used,
                                  "; %ld particle%s of regions whose rotation is not unique "

@@ -1,7 +1,8 @@
-/* check.h - are the goals, the damping and the contacts of an engine's present state right? Held to
- * brute force in double precision: lattice engines to reference/brute.h, the octree to
- * reference/octree_goals.h, contacts to reference/collide.h. A plastic body's goals are those of
- * the rest shapes that it has; whether they flow as they should is a check of its own, over a step.
+/* check.h - are the goals, the damping, the contacts and what obstacles do of an engine's present
+ * state right? Held to brute force in double precision: lattice engines to reference/brute.h, the
+ * octree to reference/octree_goals.h, both to reference/collide.h and reference/obstacle.h. A
+ * plastic body's goals are those of the rest shapes that it has; whether they flow as they should
+ * is a check of its own, over a step.
  */
 #ifndef BENCH_CHECK_H
 #define BENCH_CHECK_H
@@ -43,6 +44,9 @@ typedef struct {
     long contacts;            /* of those compared, the engine's or brute force's */
     long contacts_wrong;      /* in one of the two only, or otherwise */
     double turn_error;        /* of an octree's colliding cells, largest |R - brute force| */
+    bool obstacles;           /* a step against obstacles was compared: */
+    long pushed;              /* particles that brute force pushes out of them, */
+    long pushed_wrong;        /* and all that end it otherwise */
 } BenchDeviation;
 
 /* Region members that a check of this body would hold in memory, at most; 4 bytes each. Beyond
@@ -99,6 +103,13 @@ void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const
  * others spread over the surface. */
 void bench_check_contacts(const BenchCheck *check, const BenchScene *scene,
                           const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
+
+/* Adds the check of obstacles to `found`, if the scene has any: the state of `engine` is stepped
+ * once with them and once without, at no handles and contacts, and the one must be what
+ * reference/obstacle.h makes of the other, within the rounding of coordinates, or of a particle
+ * that is elsewhere by no more than that. */
+void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
+                           const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
 
 /* Rotations of the regions of all instances at x (mesh units), an octree's; ties go to the
  * identity. */

@@ -150,6 +150,7 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
     BenchDeviation found = bench_check_state(check, runner->type, runner->engine);
     bench_check_damping(check, runner->scene, runner->type, runner->engine, &found);
     bench_check_contacts(check, runner->scene, runner->type, runner->engine, &found);
+    bench_check_obstacles(check, runner->scene, runner->type, runner->engine, &found);
     if (!bench_check_verdict(&found, sizeof reason, reason))
         invalidate(row, "%s", reason);
     else if (!check->plain && !(found.momentum_error <= BENCH_MOMENTUM_TOLERANCE))

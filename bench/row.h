@@ -30,7 +30,7 @@ typedef struct {
     int threads;
     bool valid;
     char reason[160];      /* why not valid */
-    char found[384];       /* what the checks found, for people (check.h) */
+    char found[448];       /* what the checks found, for people (check.h) */
     double goal_error;     /* largest deviation of g from brute force, in cells */
     double momentum_error; /* relative; no ground for invalidity where `plain` */
     double goal_tolerance;

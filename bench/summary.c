@@ -27,6 +27,7 @@ static bool print_deviation(const BenchRunner *runner)
     BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
     bench_check_damping(&check, scene, runner->type, runner->engine, &found);
     bench_check_contacts(&check, scene, runner->type, runner->engine, &found);
+    bench_check_obstacles(&check, scene, runner->type, runner->engine, &found);
     bench_check_text(&found, sizeof text, text);
     printf("deviation: %s\n", text);
     if (check.hierarchical && check.octree.creep > 0)

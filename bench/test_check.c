@@ -88,6 +88,7 @@ static BenchDeviation check_plate(Plate *plate)
     BenchDeviation found = bench_check_state(&check, plate->type, plate->engine);
     bench_check_damping(&check, &plate->scene, plate->type, plate->engine, &found);
     bench_check_contacts(&check, &plate->scene, plate->type, plate->engine, &found);
+    bench_check_obstacles(&check, &plate->scene, plate->type, plate->engine, &found);
     bench_check_free(&check);
     return found;
 }
@@ -330,6 +331,65 @@ static void of_many_bodies_a_sample_is_compared(void **state)
     plate_free(&plate);
 }
 
+/* One of each kind in the way of the plate as place() turns it. */
+static void add_obstacles(Plate *plate)
+{
+    const SmObstacle all[] = {
+        {.kind = SM_PLANE, .a = {0, 0, -3}, .b = {0, 0, 1}, .friction = 0.3},
+        {.kind = SM_SPHERE, .a = {0.2, 0.9, 1}, .radius = 0.7, .friction = 0.1},
+        {.kind = SM_BOX, .a = {-0.1, -0.1, 2}, .b = {0.5, 1, 3}, .friction = 0.5},
+        {.kind = SM_CAPSULE, .a = {-1, 0.4, -1.5}, .b = {1, 0.7, -1.4}, .radius = 0.35},
+    };
+    plate->scene.obstacle_count = sizeof all / sizeof *all;
+    memcpy(plate->scene.obstacle, all, sizeof all);
+}
+
+/* Obstacles are not bound as they were given: one is a little nearer, or smoother. */
+static bool smoother;
+
+static void wrong_bound(SmEngine *engine, const SmBoundary *boundary)
+{
+    SmObstacle wrong[4];
+    SmBoundary other = *boundary;
+    memcpy(wrong, boundary->obstacle, (size_t)boundary->obstacle_count * sizeof *wrong);
+    if (smoother)
+        wrong[0].friction *= 0.9;
+    else
+        wrong[1].radius += 0.003; /* a hundredth of a cell */
+    other.obstacle = wrong;
+    honest->bound(engine, &other);
+}
+
+static void wrong_obstacles_are_invalid(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        BenchDeviation found;
+        char reason[160], text[384];
+        plate_create(types[t], 0.2, false, &plate);
+        add_obstacles(&plate);
+        place(&plate, false, false);
+        expect_valid(&plate, &found);
+        assert_true(found.obstacles && found.pushed > plate.count / 10);
+        assert_true(found.pushed < plate.count);
+        bench_check_text(&found, sizeof text, text);
+        assert_non_null(strstr(text, " pushed out of obstacles"));
+        SmEngineType wrong = *types[t];
+        wrong.bound = wrong_bound;
+        honest = types[t];
+        plate.type = &wrong;
+        for (int k = 0; k < 2; k++) {
+            smoother = k;
+            found = check_plate(&plate);
+            assert_false(bench_check_verdict(&found, sizeof reason, reason));
+            if (!strstr(reason, "meet obstacles otherwise")) fail_msg("%s", reason);
+            assert_true(found.pushed_wrong > 0 && found.pushed_wrong < found.pushed);
+        }
+        plate_free(&plate);
+    }
+}
+
 /* Of two findings the worse of each, and finite only if both are. */
 static void findings_add_up(void **state)
 {
@@ -380,6 +440,7 @@ int main(void)
         cmocka_unit_test(contacts_are_brute_forces),
         cmocka_unit_test(wrong_contacts_are_invalid),
         cmocka_unit_test(of_many_bodies_a_sample_is_compared),
+        cmocka_unit_test(wrong_obstacles_are_invalid),
         cmocka_unit_test(findings_add_up),
         cmocka_unit_test(what_was_left_out_is_said),
     };
