@@ -75,6 +75,13 @@ static void paper_line(const RefPaperRow *paper, BenchGridLine *line)
     bench_grid_number(paper->surface_ms.value, (*line)[SURFACE]);
 }
 
+void bench_change_left(FILE *file, const char *before, long left)
+{
+    if (left)
+        fprintf(file, "%sthe surface of %ld bod%s could not follow a cut everywhere\n", before,
+                left, left == 1 ? "y" : "ies");
+}
+
 bool bench_change_grid(const BenchRow *rows, int count, BenchGrid *grid)
 {
     *grid = (BenchGrid){0};

@@ -9,4 +9,7 @@
  * does. */
 bool bench_change_grid(const BenchRow *rows, int count, BenchGrid *grid);
 
+/* A line that says of how many bodies the surface could not follow a cut everywhere; none of 0. */
+void bench_change_left(FILE *file, const char *before, long left);
+
 #endif

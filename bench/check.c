@@ -72,8 +72,7 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
     memcpy(check->rest, check->octree.x0, count * sizeof *check->rest);
 }
 
-/* Pairs of neighbours that a cut parts, found one by one; the caller frees. */
-static int (*find_parted(const BenchBody *body, long *count))[2]
+int (*bench_check_parted(const BenchBody *body, long *count))[2]
 {
     int(*pair)[2] = NULL;
     RefLinks links;
@@ -100,7 +99,7 @@ void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
     long count = body->voxels.particle_count;
     *check = (BenchCheck){.body = body, .count = count};
     long parted = 0;
-    int(*pair)[2] = body->cut ? find_parted(body, &parted) : NULL;
+    int(*pair)[2] = body->cut ? bench_check_parted(body, &parted) : NULL;
     ref_regions_build(&body->voxels, w, (const int(*)[2])pair, parted, &check->regions);
     free(pair);
     check->unique = ref_regions_unique(&check->regions);
@@ -167,9 +166,10 @@ static double momentum_error(const double (*x)[3], const double (*g)[3], const d
     return spread > 0 ? length / spread : length;
 }
 
-/* The octree's, by the rest shapes S; with `flow` those become what a step leaves. */
+/* The octree's, by the rest shapes S; with `flow` those become what a step leaves. Fills the
+ * regions' rotations R. */
 static void twin_goals(const BenchCheck *check, const double (*x)[3], double yield, bool flow,
-                       double (*S)[9], double (*exact)[3])
+                       double (*S)[9], double (*R)[9], double (*exact)[3])
 {
     const SmVoxels *voxels = &check->body->voxels;
     size_t count = (size_t)check->count;
@@ -177,25 +177,23 @@ static void twin_goals(const BenchCheck *check, const double (*x)[3], double yie
     double(*at)[3] = sm_alloc(count, sizeof *at);
     twin.yield = yield;
     twin.S = S;
-    twin.R = sm_alloc(count, sizeof *twin.R);
+    twin.R = R;
+    memset(R, 0, count * sizeof *R);
+    bench_check_cells(check, x, at);
     for (size_t i = 0; i < count; i++)
-        for (int d = 0; d < 3; d++) {
-            at[i][d] = (x[i][d] - voxels->origin[d]) / voxels->cell;
-            twin.R[i][4 * d] = 1;
-        }
+        for (int d = 0; d < 3; d++) R[i][4 * d] = 1;
     ref_tree_goals(&twin, (const double(*)[3])at, flow, exact);
     for (size_t i = 0; i < count; i++)
         for (int d = 0; d < 3; d++) exact[i][d] = voxels->origin[d] + voxels->cell * exact[i][d];
     free(at);
-    free(twin.R);
 }
 
 /* The twin's goals of one body, in mesh units. Ties go to the identity, as in a lattice. */
 static void exact_goals(const BenchCheck *check, const double (*x)[3], double (*S)[9],
-                        double (*exact)[3])
+                        double (*R)[9], double (*exact)[3])
 {
     if (check->hierarchical)
-        twin_goals(check, x, check->octree.yield, false, S, exact);
+        twin_goals(check, x, check->octree.yield, false, S, R, exact);
     else
         ref_goals(&check->regions, (const double(*)[3])check->body->x0, check->mass, x, exact);
 }
@@ -209,6 +207,17 @@ static double (*rest_shapes(const BenchCheck *check, const SmEngineType *type, S
     if (!type->get_shapes(engine, S))
         for (long i = 0; i < all; i++) S[i][0] = S[i][4] = S[i][8] = 1;
     return S;
+}
+
+void bench_check_turns(const BenchCheck *check, const SmEngineType *type, SmEngine *engine,
+                       const double (*x)[3], double (*R)[9])
+{
+    double(*S)[9] = rest_shapes(check, type, engine);
+    double(*unused)[3] = sm_alloc((size_t)check->count, sizeof *unused);
+    for (long first = 0; first < check->count * check->body->instances; first += check->count)
+        exact_goals(check, x + first, S + first, R + first, unused);
+    free(S);
+    free(unused);
 }
 
 /* Largest distance along an axis from the mean. */
@@ -258,8 +267,9 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     double(*v)[3] = sm_alloc((size_t)all, sizeof *v);
     double(*g)[3] = sm_alloc((size_t)all, sizeof *g);
     double(*exact)[3] = sm_alloc((size_t)count, sizeof *exact);
-    double(*S)[9] = rest_shapes(check, type, engine);
+    double(*S)[9] = rest_shapes(check, type, engine), (*R)[9] = NULL;
     bool *tied = sm_alloc((size_t)count, sizeof *tied);
+    if (check->hierarchical) R = sm_alloc((size_t)count, sizeof *R);
     type->goals(engine);
     type->get(engine, SM_POSITION, x);
     type->get(engine, SM_VELOCITY, v);
@@ -274,7 +284,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     for (long first = 0; first < all && result.finite; first += count) {
         const double(*at)[3] = (const double(*)[3])(x + first);
         const double(*goal)[3] = (const double(*)[3])(g + first);
-        exact_goals(check, at, S ? S + first : NULL, exact);
+        exact_goals(check, at, S ? S + first : NULL, R, exact);
         bench_check_tied(check, type->precision, at, tied);
         for (long p = 0; p < count; p++) result.tied += tied[p];
         double error =
@@ -289,6 +299,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
     free(exact);
     free(tied);
     free(S);
+    free(R);
     return result;
 }
 
@@ -309,6 +320,7 @@ double bench_check_flow(const BenchCheck *check, BenchRunner *runner)
     if (!(check->hierarchical && check->octree.creep > 0)) return 0;
     size_t count = (size_t)check->count, all = count * (size_t)check->body->instances;
     double(*x)[3] = sm_alloc(all, sizeof *x), (*unused)[3] = sm_alloc(count, sizeof *unused);
+    double(*R)[9] = sm_alloc(count, sizeof *R);
     double(*low)[9] = sm_alloc(count, sizeof *low), (*high)[9] = sm_alloc(count, sizeof *high);
     double(*before)[9] = rest_shapes(check, type, runner->engine), worst = 0;
     double slack = bench_check_tolerance(type->precision), yield = check->octree.yield;
@@ -319,13 +331,14 @@ double bench_check_flow(const BenchCheck *check, BenchRunner *runner)
         const double(*at)[3] = (const double(*)[3])(x + first);
         memcpy(low, before + first, count * sizeof *low);
         memcpy(high, before + first, count * sizeof *high);
-        twin_goals(check, at, fmax(yield - slack, 0), true, low, unused);
-        twin_goals(check, at, yield + slack, true, high, unused);
+        twin_goals(check, at, fmax(yield - slack, 0), true, low, R, unused);
+        twin_goals(check, at, yield + slack, true, high, R, unused);
         for (size_t r = 0; r < count; r++)
             worst = fmax(worst, shape_error(after[first + r], low[r], high[r]));
     }
     free(x);
     free(unused);
+    free(R);
     free(low);
     free(high);
     free(before);
@@ -354,6 +367,17 @@ bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason)
         snprintf(reason, size,
                  "damped velocities are %.3g of the largest from brute force; at most %.2g allowed",
                  found->damping_error, found->damping_tolerance);
+    else if (found->contacts_wrong > 0)
+        snprintf(reason, size, "%ld of %ld contacts are not those of brute force",
+                 found->contacts_wrong, found->contacts);
+    else if (found->pushed_wrong > 0)
+        snprintf(reason, size, "%ld particles meet obstacles otherwise than brute force has it",
+                 found->pushed_wrong);
+    else if (!(found->turn_error <= BENCH_TURN_TOLERANCE))
+        snprintf(
+            reason, size,
+            "cells that collide are turned %.3g otherwise than brute force; at most %g allowed",
+            found->turn_error, BENCH_TURN_TOLERANCE);
     else if ((double)found->tied > BENCH_LEFT_OUT * (double)found->particles)
         snprintf(reason, size,
                  "%ld of %ld particles are in regions whose rotation is not unique; at most %g%% "
@@ -366,7 +390,7 @@ bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason)
 
 void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
 {
-    worst->finite = found->finite;
+    worst->finite = worst->finite && found->finite;
     worst->goal_tolerance = found->goal_tolerance;
     worst->goal_error = fmax(worst->goal_error, found->goal_error);
     worst->momentum_error = fmax(worst->momentum_error, found->momentum_error);
@@ -374,6 +398,14 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
     worst->particles = found->particles;
     if (found->tied > worst->tied) worst->tied = found->tied;
     if (found->blurred > worst->blurred) worst->blurred = found->blurred;
+    if (found->contact_nodes > worst->contact_nodes) worst->contact_nodes = found->contact_nodes;
+    if (found->contact_all > worst->contact_all) worst->contact_all = found->contact_all;
+    worst->obstacles |= found->obstacles;
+    worst->pushed += found->pushed;
+    worst->pushed_wrong += found->pushed_wrong;
+    worst->contacts += found->contacts;
+    worst->contacts_wrong += found->contacts_wrong;
+    worst->turn_error = fmax(worst->turn_error, found->turn_error);
     if (found->damping_error * worst->damping_tolerance <
         worst->damping_error * found->damping_tolerance)
         return;
@@ -391,6 +423,14 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
         used += (size_t)snprintf(text + used, size - used,
                                  ", damping within %.1g of the largest velocity (allowed %.0e)",
                                  found->damping_error, found->damping_tolerance);
+    if (found->contact_nodes > 0 && used < size)
+        used += (size_t)snprintf(text + used, size - used,
+                                 ", contacts of %ld of %ld surface nodes right (%ld of %ld)",
+                                 found->contact_nodes, found->contact_all,
+                                 found->contacts - found->contacts_wrong, found->contacts);
+    if (found->obstacles && used < size)
+        used += (size_t)snprintf(text + used, size - used, ", %ld pushed out of obstacles as there",
+                                 found->pushed);
     if (found->tied && used < size)
         used += (size_t)snprintf(text + used, size - used,
                                  "; %ld particle%s of regions whose rotation is not unique "

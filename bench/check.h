@@ -1,7 +1,9 @@
-/* check.h - are the goals and the damping of an engine's present state right? Held to brute force
- * in double precision: lattice engines to reference/brute.h, the octree to
- * reference/octree_goals.h. A plastic body's goals are those of the rest shapes that it has;
- * whether they flow as they should is a check of its own, over a step. */
+/* check.h - are the goals, the damping, the contacts and what obstacles do of an engine's present
+ * state right? Held to brute force in double precision: lattice engines to reference/brute.h, the
+ * octree to reference/octree_goals.h, both to reference/collide.h and reference/obstacle.h. A
+ * plastic body's goals are those of the rest shapes that it has; whether they flow as they should
+ * is a check of its own, over a step.
+ */
 #ifndef BENCH_CHECK_H
 #define BENCH_CHECK_H
 
@@ -37,6 +39,14 @@ typedef struct {
     long tied;                /* left out: in a region whose rotation is not unique */
     long blurred;             /* left out of damping's check: tied or in a region whose inertia the
                                * precision does not resolve */
+    long contact_nodes;       /* whose contacts were compared; 0: nothing collides */
+    long contact_all;         /* nodes at the surface of all bodies, which alone have any */
+    long contacts;            /* of those compared, the engine's or brute force's */
+    long contacts_wrong;      /* in one of the two only, or otherwise */
+    double turn_error;        /* of an octree's colliding cells, largest |R - brute force| */
+    bool obstacles;           /* a step against obstacles was compared: */
+    long pushed;              /* particles that brute force pushes out of them, */
+    long pushed_wrong;        /* and all that end it otherwise */
 } BenchDeviation;
 
 /* Region members that a check of this body would hold in memory, at most; 4 bytes each. Beyond
@@ -83,6 +93,32 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
 void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
                          SmEngine *engine, BenchDeviation *found);
 
+/* Adds the check of contacts, of bodies with each other and with themselves, to `found`, if the
+ * scene has any; calls engine->goals(). Cells are described anew, of an octree from the engine's
+ * structure; its cells' turns are held to regions' rotations where these are unique. Every contact
+ * of a node with a cell that either has must be the other's too, and alike in depth, direction and
+ * weights, unless it is so for a node within the tolerance of this one; what lib/collide.h says may
+ * be missed may be. Of bodies of more than BENCH_CONTACT_PAIRS pairs of a node and a cell as many
+ * nodes are compared as make that: half of those from nodes that the engine has contacts of, the
+ * others spread over the surface. */
+void bench_check_contacts(const BenchCheck *check, const BenchScene *scene,
+                          const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
+
+/* Adds the check of obstacles to `found`, if the scene has any: the state of `engine` is stepped
+ * once with them and once without, at no handles and contacts, and the one must be what
+ * reference/obstacle.h makes of the other, within the rounding of coordinates, or of a particle
+ * that is elsewhere by no more than that. */
+void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
+                           const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
+
+/* Rotations of the regions of all instances at x (mesh units), an octree's; ties go to the
+ * identity. */
+void bench_check_turns(const BenchCheck *check, const SmEngineType *type, SmEngine *engine,
+                       const double (*x)[3], double (*R)[9]);
+
+/* Pairs of neighbours that the body's cut parts, found one by one; the caller frees. */
+int (*bench_check_parted(const BenchBody *body, long *count))[2];
+
 /* Runs one step of a plastic octree: the largest difference of a component of S from what eq. 10
  * makes of the state before it. Where a stretch is at the yield to within rounding, either side of
  * it is right; a creep above 1 scales rounding up and is divided out. 0 of an elastic body, which
@@ -111,12 +147,16 @@ double bench_check_tolerance(const char *precision);
  * BENCH_LEFT_OUT of the particles were left out of the check of goals. */
 bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason);
 
-/* Makes the worse of each of two findings `worst`. */
+/* Makes the worse of each of two findings `worst`, which is zero but for `finite` to begin with;
+ * contacts add up. */
 void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst);
 
 /* What was found for people: "goals within 2e-06 cells of brute force, ..." */
 void bench_check_text(const BenchDeviation *found, size_t size, char *text);
 
+#define BENCH_CONTACT_PAIRS      3e7
+#define BENCH_CONTACT_TOLERANCE  1e-6 /* cells; engines find contacts in double precision */
+#define BENCH_TURN_TOLERANCE     5e-4 /* engines keep rotations to 1/32767 */
 #define BENCH_MOMENTUM_TOLERANCE 1e-6
 #define BENCH_LEFT_OUT           0.25
 

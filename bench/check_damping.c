@@ -1,14 +1,13 @@
 /* check_damping.c - the check of one step's damping (check.h). */
-#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../lib/vector.h"
-#include "../octree/structure.h"
 #include "../reference/condition.h"
 #include "check.h"
+#include "check_copy.h"
 #include "runner.h"
 
 /* One engine's step: what goes into its damping and what comes out. */
@@ -17,30 +16,6 @@ typedef struct {
     double (*x)[3], (*before)[3], (*after)[3]; /* [all]; velocities before and after damping */
 } Step;
 
-/* An engine built as `engine` was, or, where that has changed since, as it would be built now; its
- * particle p is particle order[p]. */
-static SmEngine *build_alike(const SmEngineParams *params, const BenchBody *body,
-                             const SmEngineType *type, SmEngine *engine, long all, long *order)
-{
-    SmEngine *copy;
-    for (long p = 0; p < all; p++) order[p] = p;
-    bool changed = !strcmp(type->name, "octree") && oct_engine_structure(engine)->resample;
-    SmCode code = changed ? oct_engine_rebuild(engine, params, &copy, order, NULL)
-                          : type->create(&body->voxels, params, &copy, NULL);
-    if (!code && body->cut) code = type->cut(copy, body->cut, 0, NULL);
-    assert(!code); /* as `engine` was */
-    (void)code;
-    return copy;
-}
-
-/* `from` in another order: to[p] = from[order[p]], or, `back`, to[order[p]] = from[p]. */
-static void reorder(const double (*from)[3], const long *order, long all, bool back,
-                    double (*to)[3])
-{
-    for (long p = 0; p < all; p++)
-        memcpy(to[back ? order[p] : p], from[back ? p : order[p]], sizeof *to);
-}
-
 /* The state of `engine` in an engine built alike, stepped once. Engines damp their first step. */
 static void take_step(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                       SmEngine *engine, Step *step)
@@ -48,35 +23,22 @@ static void take_step(const BenchScene *scene, const BenchBody *body, const SmEn
     SmEngineParams params = bench_engine_params(scene, body, 1);
     params.collide = (SmCollideParams){0}; /* contacts would change velocities too */
     size_t all = (size_t)step->all;
-    long *order = sm_alloc(all, sizeof *order);
-    double(*field)[3] = sm_alloc(all, sizeof *field);
+    BenchCopy copy;
     step->x = sm_alloc(all, sizeof *step->x);
     step->before = sm_alloc(all, sizeof *step->before);
     step->after = sm_alloc(all, sizeof *step->after);
-    SmEngine *copy = build_alike(&params, body, type, engine, step->all, order);
-    const SmField fields[] = {SM_POSITION, SM_VELOCITY};
-    for (int i = 0; i < 2; i++) {
-        type->get(engine, fields[i], step->x);
-        reorder((const double(*)[3])step->x, order, step->all, false, field);
-        type->set(copy, fields[i], (const double(*)[3])field);
-    }
-    type->goals(copy);
-    type->get(copy, SM_GOAL, field);
-    reorder((const double(*)[3])field, order, step->all, true, step->after);
-    type->get(copy, SM_POSITION, field);
-    reorder((const double(*)[3])field, order, step->all, true, step->x);
-    type->get(copy, SM_VELOCITY, field);
-    reorder((const double(*)[3])field, order, step->all, true, step->before);
+    bench_copy_create(&params, body, type, engine, step->all, &copy);
+    type->goals(copy.engine);
+    bench_copy_get(&copy, SM_GOAL, step->after);
+    bench_copy_get(&copy, SM_POSITION, step->x);
+    bench_copy_get(&copy, SM_VELOCITY, step->before);
     for (size_t p = 0; p < all; p++) /* fastlsm eq. 1 */
         for (int d = 0; d < 3; d++)
             step->before[p][d] +=
                 (step->after[p][d] - step->x[p][d]) / params.h + params.h * params.gravity[d];
-    type->step(copy, NULL);
-    type->get(copy, SM_VELOCITY, field);
-    reorder((const double(*)[3])field, order, step->all, true, step->after);
-    type->destroy(copy);
-    free(order);
-    free(field);
+    type->step(copy.engine, NULL);
+    bench_copy_get(&copy, SM_VELOCITY, step->after);
+    bench_copy_free(&copy);
 }
 
 static double length(const double v[3])

@@ -34,8 +34,8 @@ static const struct argp_option option_list[] = {
     {"precision", KEY_PRECISION, "P", 0, "single or double (default: single)", 1},
     {"layout", KEY_LAYOUT, "L", 0, BENCH_LAYOUT_HELP, 1},
     {"scaling", KEY_SCALING, 0, 0,
-     "Also the cube of 10^7 particles, which takes about 4 GB, and the octree's set-up of 10^6 "
-     "nodes",
+     "Also the cube of 10^7 particles, which takes about 4 GB, and the octree's set-up and "
+     "resampling of 10^6 nodes",
      1},
     {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 9)", 2},
     {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv or json (default: text)", 3},
@@ -89,8 +89,9 @@ static const char help[] =
     "this machine cannot do a kernel's least work; the share says how near the kernel comes. "
     "A cube of side N has N^3 particles. Every kernel is checked before it is timed (cubes against "
     "double-precision brute force, or for finite goals and linear momentum where that would take "
-    "too long; the octree against its slow twins); one that fails has INVALID in place of its "
-    "times.\v"
+    "too long; the octree against its slow twins, resampling against a build from scratch); one "
+    "that "
+    "fails has INVALID in place of its times.\v"
     "Times are wall-clock medians over the repeats, with quartiles; kernels that are compared run "
     "in turn, sample by sample. A stage of a step comes from a run with clocks inside, less the "
     "time that reading them takes. One thread unless --threads says otherwise.\n" BENCH_EXIT_CODES;

@@ -152,7 +152,7 @@ static void note_end(const BenchPlay *play, BenchChangeRow *row)
         long bodies = play->cast.part[p].body.instances;
         row->pieces += bodies * info.components;
         row->open_edges += bodies * (info.open_edges + info.nonmanifold_edges);
-        row->left += play->changes[p].left;
+        row->left += bodies * play->changes[p].left;
     }
 }
 

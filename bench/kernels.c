@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../fastlsm/fastlsm.h"
+#include "change_kernels.h"
 #include "cubes.h"
 #include "kernel_run.h"
 #include "matrices.h"
@@ -92,7 +93,12 @@ typedef BenchKernelRun Run;
 
 const char *bench_kernel_name(int index, const char **group)
 {
-    if (index >= SPECS) return bench_tree_kernel_name(index - SPECS, group);
+    if (index >= SPECS) {
+        int trees = 0;
+        const char *name = bench_tree_kernel_name(index - SPECS, group);
+        while (bench_tree_kernel_name(trees, NULL)) trees++;
+        return name ? name : bench_change_kernel_name(index - SPECS - trees, group);
+    }
     if (index < 0) return NULL;
     if (group) *group = specs[index].group;
     return specs[index].name;
@@ -433,7 +439,8 @@ SmCode bench_kernels_run(const BenchKernelParams *params, const BenchCeilings *c
             break;
         }
     }
-    return code ? code : bench_tree_kernels_run(&run, error);
+    if (!code) code = bench_tree_kernels_run(&run, error);
+    return code ? code : bench_change_kernels_run(&run, error);
 }
 
 const char *bench_kernel_verdict(const BenchKernel *row)

@@ -149,6 +149,8 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
     char reason[sizeof row->reason];
     BenchDeviation found = bench_check_state(check, runner->type, runner->engine);
     bench_check_damping(check, runner->scene, runner->type, runner->engine, &found);
+    bench_check_contacts(check, runner->scene, runner->type, runner->engine, &found);
+    bench_check_obstacles(check, runner->scene, runner->type, runner->engine, &found);
     if (!bench_check_verdict(&found, sizeof reason, reason))
         invalidate(row, "%s", reason);
     else if (!check->plain && !(found.momentum_error <= BENCH_MOMENTUM_TOLERANCE))
@@ -323,7 +325,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
                      const BenchMeasureParams *params, BenchRow *row, SmError *error)
 {
     Trial trial = {0};
-    BenchDeviation worst = {0};
+    BenchDeviation worst = {.finite = true};
     SmCode code =
         bench_play_create(scene, body, type, params->threads, params->seed, &trial.play, error);
     if (code) return code;

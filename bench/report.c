@@ -242,6 +242,7 @@ void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchM
     }
     for (int r = 0; r < count; r++) {
         print_check(file, &rows[r]);
+        bench_change_left(file, "    ", rows[r].change.left);
         if (!strcmp(rows[r].engine, "octree")) print_octree(file, &rows[r]);
     }
     print_speedups(file, rows, count);

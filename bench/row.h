@@ -16,7 +16,7 @@ typedef struct {
     double follow_ms;                 /* then splitting and tying surfaces: median */
     double surface_ms;                /* moving the surface of one body */
     long first_triangles, last_triangles, pieces, open_edges; /* of all surfaces, at the end */
-    long left;                         /* cuts that a surface could not follow cleanly */
+    long left;                         /* bodies whose surface could not follow a cut everywhere */
     double (*time)[BENCH_FRAME_PARTS]; /* [frames] s: simulation, resampling, splitting, moving one
                                         * body's surface; the least of all rounds */
 } BenchChangeRow;
@@ -30,7 +30,7 @@ typedef struct {
     int threads;
     bool valid;
     char reason[160];      /* why not valid */
-    char found[384];       /* what the checks found, for people (check.h) */
+    char found[448];       /* what the checks found, for people (check.h) */
     double goal_error;     /* largest deviation of g from brute force, in cells */
     double momentum_error; /* relative; no ground for invalidity where `plain` */
     double goal_tolerance;

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "change_grid.h"
 #include "check.h"
 #include "tree_row.h"
 
@@ -25,6 +26,8 @@ static bool print_deviation(const BenchRunner *runner)
     bench_check_begin(scene, runner->body, runner->type, runner->engine, &check);
     BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
     bench_check_damping(&check, scene, runner->type, runner->engine, &found);
+    bench_check_contacts(&check, scene, runner->type, runner->engine, &found);
+    bench_check_obstacles(&check, scene, runner->type, runner->engine, &found);
     bench_check_text(&found, sizeof text, text);
     printf("deviation: %s\n", text);
     if (check.hierarchical && check.octree.creep > 0)
@@ -68,13 +71,14 @@ static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
 /* Nodes and surface at the end of a scene that has changed them. */
 static void print_changes(const BenchPlay *play, const BenchOutcome *outcome)
 {
-    long open = 0, pieces = 0, triangles = 0;
+    long open = 0, pieces = 0, triangles = 0, left = 0;
     for (int p = 0; p < play->cast.count; p++) {
         SmMeshInfo info = sm_mesh_info(&play->changes[p].surface);
         long bodies = play->cast.part[p].body.instances;
         open += bodies * (info.open_edges + info.nonmanifold_edges);
         pieces += bodies * info.components;
         triangles += bodies * info.triangles;
+        left += bodies * play->changes[p].left;
     }
     printf(
         "changes: %ld frame%s, %.4g ms each with the surface; in the end %ld nodes, and surfaces "
@@ -86,6 +90,7 @@ static void print_changes(const BenchPlay *play, const BenchOutcome *outcome)
         printf("with %ld open or non-manifold edges\n", open);
     else
         printf("watertight\n");
+    bench_change_left(stdout, "changes: ", left);
 }
 
 bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)

@@ -1,5 +1,5 @@
-/* The check of goals and damping: right engines stand it where rotations are not unique, and wrong
- * damping does not. */
+/* The check of goals, damping and contacts: right engines stand it where rotations are not unique,
+ * and wrong damping and contacts do not. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,11 +30,12 @@ static const SmEngineType *const types[] = {&fastlsm_engine_f32, &fastlsm_engine
 enum { TYPES = sizeof types / sizeof *types };
 
 /* A plate of one cell, whose cells are no mesh units. */
-static void plate_create(const SmEngineType *type, double damping, Plate *plate)
+static void plate_create(const SmEngineType *type, double damping, bool collide, Plate *plate)
 {
     SmVoxels voxels;
     SmCounts counts;
     *plate = (Plate){.type = type, .scene.params = {.w = 1, .h = 0.01, .damping = damping}};
+    plate->scene.params.collide.self = collide;
     plate->scene.octree.sampling.levels = 1;
     plate->scene.octree.sampling.criteria_count = 1; /* uniform, to the finest cells */
     sm_voxels_block(&voxels, LONG, WIDE, 1, 0.3);
@@ -86,6 +87,8 @@ static BenchDeviation check_plate(Plate *plate)
     bench_check_begin(&plate->scene, &plate->body, plate->type, plate->engine, &check);
     BenchDeviation found = bench_check_state(&check, plate->type, plate->engine);
     bench_check_damping(&check, &plate->scene, plate->type, plate->engine, &found);
+    bench_check_contacts(&check, &plate->scene, plate->type, plate->engine, &found);
+    bench_check_obstacles(&check, &plate->scene, plate->type, plate->engine, &found);
     bench_check_free(&check);
     return found;
 }
@@ -97,7 +100,7 @@ static void ties_are_left_out(void **state)
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         char reason[160];
-        plate_create(types[t], 0, &plate);
+        plate_create(types[t], 0, false, &plate);
         place(&plate, false, false);
         BenchDeviation found = check_plate(&plate);
         assert_int_equal(found.tied, 0);
@@ -118,7 +121,7 @@ static void nothing_but_ties_is_invalid(void **state)
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         char reason[160];
-        plate_create(types[t], 0, &plate);
+        plate_create(types[t], 0, false, &plate);
         place(&plate, false, true);
         BenchDeviation found = check_plate(&plate);
         assert_int_equal(found.tied, plate.count);
@@ -145,7 +148,7 @@ static void wrong_damping_is_invalid(void **state)
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         char reason[160], text[384];
-        plate_create(types[t], 0.3, &plate);
+        plate_create(types[t], 0.3, false, &plate);
         place(&plate, false, false);
         BenchDeviation found = check_plate(&plate);
         if (!bench_check_verdict(&found, sizeof reason, reason))
@@ -163,6 +166,249 @@ static void wrong_damping_is_invalid(void **state)
         if (!strstr(reason, "damped velocities are")) fail_msg("%s", reason);
         plate_free(&plate);
     }
+}
+
+/* Rolls the plate up in a spiral so narrow that it lies within itself. */
+static void roll(Plate *plate)
+{
+    unsigned seed = 5;
+    for (long p = 0; p < plate->count; p++) {
+        const double *x0 = plate->body.x0[p];
+        double angle = 9 * (x0[0] - 40) / (0.3 * LONG), out = 1 + 0.02 * angle + x0[2];
+        plate->x[p][0] = 40 + out * cos(angle);
+        plate->x[p][1] = x0[1] + 0.02 * rand_r(&seed) / (double)RAND_MAX;
+        plate->x[p][2] = -out * sin(angle);
+    }
+    plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
+}
+
+static void expect_valid(Plate *plate, BenchDeviation *found)
+{
+    char reason[160];
+    *found = check_plate(plate);
+    if (!bench_check_verdict(found, sizeof reason, reason))
+        fail_msg("%s, %s: %s", plate->type->name, plate->type->precision, reason);
+}
+
+static void contacts_are_brute_forces(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        BenchDeviation found;
+        char text[384];
+        plate_create(types[t], 0, true, &plate);
+        roll(&plate);
+        expect_valid(&plate, &found);
+        assert_int_equal(found.contact_nodes, plate.count); /* all are at the surface */
+        assert_int_equal(found.contact_all, plate.count);
+        assert_true(found.contacts > 30);
+        assert_true(found.turn_error < BENCH_TURN_TOLERANCE / 2);
+        bench_check_text(&found, sizeof text, text);
+        assert_non_null(strstr(text, ", contacts of "));
+        plate_free(&plate);
+    }
+}
+
+/* Contacts of a place that is not where the particles are. */
+static long stale_contacts(SmEngine *engine, double (*turn)[9], SmContact **contact)
+{
+    SmCounts counts;
+    honest->count(engine, &counts);
+    double(*x)[3] = sm_alloc((size_t)counts.particles, sizeof *x);
+    honest->get(engine, SM_POSITION, x);
+    for (long p = 0; p < counts.particles; p++) x[p][p % 3] += 0.01;
+    honest->set(engine, SM_POSITION, (const double(*)[3])x);
+    long count = honest->contacts(engine, turn, contact);
+    for (long p = 0; p < counts.particles; p++) x[p][p % 3] -= 0.01;
+    honest->set(engine, SM_POSITION, (const double(*)[3])x);
+    free(x);
+    return count;
+}
+
+/* An engine whose contacts are wrong, in the way of `fault`. */
+static enum {
+    STALE,
+    LOST,
+    DEEPER,
+    ASIDE,
+    WEIGHED,
+    OTHER_CELL,
+    NO_CELL,
+    MADE_UP,
+    ALL_DEEPER,
+    TURNED,
+    FAULTS
+} fault;
+
+static long wrong_contacts(SmEngine *engine, double (*turn)[9], SmContact **contact)
+{
+    if (fault == STALE) return stale_contacts(engine, turn, contact);
+    long count = honest->contacts(engine, turn, contact);
+    SmContact *one = &(*contact)[count / 2];
+    assert_true(count > 10);
+    if (fault == LOST) *one = (*contact)[--count];
+    if (fault == DEEPER) one->depth += 1e-5;
+    if (fault == ASIDE) {
+        double out = one->out[0];
+        one->out[0] = one->out[2];
+        one->out[2] = -out;
+    }
+    if (fault == WEIGHED) one->weight[0] += 1e-4;
+    if (fault == OTHER_CELL) one->cell = (one->cell + 2 * WIDE) % (LONG * WIDE);
+    if (fault == NO_CELL) one->cell = one->particle - one->particle % (WIDE + 1) + LONG;
+    if (fault == MADE_UP) {
+        *contact = sm_realloc(*contact, (size_t)count + 1, sizeof **contact);
+        (*contact)[count] = (*contact)[0];
+        (*contact)[count++].particle = LONG / 2;
+    }
+    if (fault == TURNED) turn[7][0] += 1e-3;
+    for (long i = 0; i < count && fault == ALL_DEEPER; i++) (*contact)[i].depth += 1e-5;
+    return count;
+}
+
+static void wrong_contacts_are_invalid(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        BenchDeviation found;
+        char reason[160];
+        plate_create(types[t], 0, true, &plate);
+        roll(&plate);
+        SmEngineType wrong = *types[t];
+        wrong.contacts = wrong_contacts;
+        honest = types[t];
+        plate.type = &wrong;
+        for (int f = 0; f < FAULTS; f++) {
+            fault = f;
+            if (fault == TURNED && !strcmp(types[t]->name, "fastlsm")) continue;
+            found = check_plate(&plate);
+            if (bench_check_verdict(&found, sizeof reason, reason))
+                fail_msg("%s, %s: fault %d is not seen", wrong.name, wrong.precision, f);
+            if (!strstr(reason, "brute force")) fail_msg("fault %d: %s", f, reason);
+            assert_int_equal(found.turn_error > BENCH_TURN_TOLERANCE, fault == TURNED);
+            assert_true(fault == TURNED || found.contacts_wrong > 0);
+            assert_true(fault == ALL_DEEPER || fault == STALE || found.contacts_wrong <= 2);
+        }
+        plate_free(&plate);
+    }
+}
+
+/* Where there are too many pairs of nodes and cells, nodes with contacts are still among those
+ * that are compared. */
+static void of_many_bodies_a_sample_is_compared(void **state)
+{
+    (void)state;
+    enum { MANY = 36 };
+    static double home[MANY][3][4];
+    Plate plate;
+    char reason[160];
+    plate_create(&fastlsm_engine_f32, 0, false, &plate);
+    plate.type->destroy(plate.engine);
+    for (int i = 0; i < MANY; i++)
+        for (int d = 0; d < 3; d++) {
+            home[i][d][d] = 1;
+            home[i][d][3] = d == 2 ? i / 2 * 2 + 0.1 * (i % 2) : 0.05 * (i % 2); /* in pairs */
+        }
+    plate.scene.params.collide.bodies = true;
+    plate.body.pose = home;
+    plate.body.instances = MANY;
+    SmEngineParams params = bench_engine_params(&plate.scene, &plate.body, 1);
+    assert_int_equal(plate.type->create(&plate.body.voxels, &params, &plate.engine, NULL), SM_OK);
+    BenchDeviation found = check_plate(&plate);
+    if (!bench_check_verdict(&found, sizeof reason, reason)) fail_msg("%s", reason);
+    assert_int_equal(found.contact_all, MANY * plate.count);
+    assert_true(found.contact_nodes > 1000 && found.contact_nodes < found.contact_all);
+    assert_true(found.contacts > 1000);
+    SmEngineType wrong = *plate.type;
+    wrong.contacts = wrong_contacts;
+    honest = plate.type;
+    plate.type = &wrong;
+    fault = ALL_DEEPER;
+    found = check_plate(&plate);
+    assert_int_equal(found.contacts_wrong, found.contacts);
+    plate_free(&plate);
+}
+
+/* One of each kind in the way of the plate as place() turns it. */
+static void add_obstacles(Plate *plate)
+{
+    const SmObstacle all[] = {
+        {.kind = SM_PLANE, .a = {0, 0, -3}, .b = {0, 0, 1}, .friction = 0.3},
+        {.kind = SM_SPHERE, .a = {0.2, 0.9, 1}, .radius = 0.7, .friction = 0.1},
+        {.kind = SM_BOX, .a = {-0.1, -0.1, 2}, .b = {0.5, 1, 3}, .friction = 0.5},
+        {.kind = SM_CAPSULE, .a = {-1, 0.4, -1.5}, .b = {1, 0.7, -1.4}, .radius = 0.35},
+    };
+    plate->scene.obstacle_count = sizeof all / sizeof *all;
+    memcpy(plate->scene.obstacle, all, sizeof all);
+}
+
+/* Obstacles are not bound as they were given: one is a little nearer, or smoother. */
+static bool smoother;
+
+static void wrong_bound(SmEngine *engine, const SmBoundary *boundary)
+{
+    SmObstacle wrong[4];
+    SmBoundary other = *boundary;
+    memcpy(wrong, boundary->obstacle, (size_t)boundary->obstacle_count * sizeof *wrong);
+    if (smoother)
+        wrong[0].friction *= 0.9;
+    else
+        wrong[1].radius += 0.003; /* a hundredth of a cell */
+    other.obstacle = wrong;
+    honest->bound(engine, &other);
+}
+
+static void wrong_obstacles_are_invalid(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        BenchDeviation found;
+        char reason[160], text[384];
+        plate_create(types[t], 0.2, false, &plate);
+        add_obstacles(&plate);
+        place(&plate, false, false);
+        expect_valid(&plate, &found);
+        assert_true(found.obstacles && found.pushed > plate.count / 10);
+        assert_true(found.pushed < plate.count);
+        bench_check_text(&found, sizeof text, text);
+        assert_non_null(strstr(text, " pushed out of obstacles"));
+        SmEngineType wrong = *types[t];
+        wrong.bound = wrong_bound;
+        honest = types[t];
+        plate.type = &wrong;
+        for (int k = 0; k < 2; k++) {
+            smoother = k;
+            found = check_plate(&plate);
+            assert_false(bench_check_verdict(&found, sizeof reason, reason));
+            if (!strstr(reason, "meet obstacles otherwise")) fail_msg("%s", reason);
+            assert_true(found.pushed_wrong > 0 && found.pushed_wrong < found.pushed);
+        }
+        plate_free(&plate);
+    }
+}
+
+/* Of two findings the worse of each, and finite only if both are. */
+static void findings_add_up(void **state)
+{
+    (void)state;
+    BenchDeviation good = {.finite = true, .goal_error = 1e-6, .contacts = 7, .contact_nodes = 90},
+                   bad = {.goal_error = INFINITY, .tied = 3},
+                   odd = {.finite = true, .goal_error = 1e-7, .contacts = 2, .contacts_wrong = 1};
+    BenchDeviation worst = {.finite = true};
+    bench_check_merge(&good, &worst);
+    assert_true(worst.finite);
+    bench_check_merge(&bad, &worst);
+    assert_false(worst.finite);
+    bench_check_merge(&odd, &worst); /* a later good one mends nothing */
+    assert_false(worst.finite);
+    assert_true(isinf(worst.goal_error));
+    assert_int_equal(worst.tied, 3);
+    assert_int_equal(worst.contacts, 9);
+    assert_int_equal(worst.contacts_wrong, 1);
+    assert_int_equal(worst.contact_nodes, 90);
 }
 
 static void what_was_left_out_is_said(void **state)
@@ -191,6 +437,11 @@ int main(void)
         cmocka_unit_test(ties_are_left_out),
         cmocka_unit_test(nothing_but_ties_is_invalid),
         cmocka_unit_test(wrong_damping_is_invalid),
+        cmocka_unit_test(contacts_are_brute_forces),
+        cmocka_unit_test(wrong_contacts_are_invalid),
+        cmocka_unit_test(of_many_bodies_a_sample_is_compared),
+        cmocka_unit_test(wrong_obstacles_are_invalid),
+        cmocka_unit_test(findings_add_up),
         cmocka_unit_test(what_was_left_out_is_said),
     };
     return cmocka_run_group_tests_name("check", tests, NULL, NULL);

@@ -219,6 +219,32 @@ static void octree_setup_is_linear(void **state)
     free(rows);
 }
 
+/* What a cut and a refinement cost is held to the same in the smallest body. */
+static void resampling_is_compared_with_the_smallest_body(void **state)
+{
+    (void)state;
+    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    int count;
+    run_only((const char *const[]){"oct-cut-1e4", "oct-refine-1e4", NULL}, rows, &count);
+    assert_int_equal(count, 2); /* those of 1e3, which they are compared with, have no rows */
+    static const char *const bases[] = {"oct-refine-1e3's CPU time", "oct-cut-1e3's CPU time"};
+    for (int r = 0; r < count; r++) {
+        if (!rows[r].valid) fail_msg("%s: %s", rows[r].kernel, rows[r].reason);
+        assert_string_equal(rows[r].group, "resampling");
+        assert_string_equal(rows[r].ratio_to, bases[r]);
+        assert_true(rows[r].ns > 0 && rows[r].floor_ns > 0 && rows[r].floor_ns < rows[r].ns);
+        assert_true(rows[r].wanted == 2 && rows[r].ratio > 0.1 && rows[r].ratio < 10);
+        assert_true(*bench_kernel_verdict(&rows[r]));
+        assert_non_null(strstr(rows[r].note, "in 10648 nodes"));
+    }
+    run_only((const char *const[]){"oct-cut-1e3", NULL}, rows, &count);
+    assert_int_equal(count, 1);
+    assert_true(rows[0].valid && isnan(rows[0].ratio));
+    assert_int_equal(rows[0].items, 1);
+    assert_true(bench_kernel_known("resampling") && bench_kernel_known("oct-refine-1e6"));
+    free(rows);
+}
+
 /* A cube whose first region has lost a summation node that is not its own. */
 static void lose_member(BenchSampled *body)
 {
@@ -462,6 +488,7 @@ int main(void)
         cmocka_unit_test(every_polar_method_is_checked),
         cmocka_unit_test(only_what_is_named_runs),
         cmocka_unit_test(octree_kernels_run_by_name),
+        cmocka_unit_test(resampling_is_compared_with_the_smallest_body),
         cmocka_unit_test(octree_setup_is_linear),
         cmocka_unit_test(a_wrong_octree_step_is_not_timed),
         cmocka_unit_test(a_wrong_octree_setup_is_not_timed),

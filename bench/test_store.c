@@ -17,7 +17,7 @@
 #include "../lib/test_folder.h"
 #include "store.h"
 
-enum { ROWS = 2, FRAMES = 7, REPEATS = 7, ROW_BYTES = 1280 };
+enum { ROWS = 2, FRAMES = 7, REPEATS = 7, ROW_BYTES = 1344 };
 
 /* A field new in row.h is to be stored (store.c), described (results/README.md) and filled here. */
 _Static_assert(sizeof(BenchRow) == ROW_BYTES, "row.h has changed: see above");

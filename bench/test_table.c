@@ -289,6 +289,31 @@ static void what_changes_has_a_table_of_its_own(void **state)
                 assert_non_null(strstr(text, ",1548,0.0625,0.25,2.5,4.75,1.25,0.075\n"));
             if (format == BENCH_AS_MARKDOWN) assert_non_null(strstr(text, "| 501 -> 1548 |"));
             if (!valid) assert_null(strstr(text, "0.25"));
+            assert_null(strstr(text, "could not follow"));
+            free(text);
+        }
+}
+
+/* Surfaces that a cut did not split are told of, whether the row is valid or not. */
+static void what_a_surface_could_not_follow_is_said(void **state)
+{
+    (void)state;
+    BenchMachine machine = {.threads = 1};
+    for (int valid = 1; valid >= 0; valid--)
+        for (long left = 0; left < 3; left++) {
+            static const char *const wanted[] = {NULL, "\n    the surface of 1 body could not ",
+                                                 "\n    the surface of 2 bodies could not "};
+            BenchRow row = {.valid = valid, .particles = 8, .change = {.frames = 5, .left = left}};
+            char *text;
+            size_t size;
+            FILE *file = open_memstream(&text, &size);
+            strcpy(row.engine, "fastlsm");
+            bench_table_write(file, BENCH_AS_TEXT, &row, 1, &machine);
+            fclose(file);
+            if (left)
+                assert_non_null(strstr(text, wanted[left]));
+            else
+                assert_null(strstr(text, "could not follow"));
             free(text);
         }
 }
@@ -303,6 +328,7 @@ int main(void)
         cmocka_unit_test(markdown_and_latex_escape),
         cmocka_unit_test(an_octree_has_columns_of_its_own),
         cmocka_unit_test(what_changes_has_a_table_of_its_own),
+        cmocka_unit_test(what_a_surface_could_not_follow_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -98,7 +98,7 @@ static void read_velocities(LsmContacts *k)
     }
 }
 
-void lsm_contacts_before(LsmContacts *k)
+static void find(LsmContacts *k)
 {
     if (k->broken != k->lsm->broken) describe(k);
     if (k->crowd)
@@ -106,6 +106,17 @@ void lsm_contacts_before(LsmContacts *k)
     else
         read_body(k);
     sm_collide_find(k->collide, (const double(*)[3])k->x, NULL);
+}
+
+long lsm_contacts_list(LsmContacts *k, SmContact **contact)
+{
+    find(k);
+    return sm_collide_list(k->collide, k->lsm->cell, contact);
+}
+
+void lsm_contacts_before(LsmContacts *k)
+{
+    find(k);
     read_velocities(k);
     sm_collide_begin(k->collide);
 }

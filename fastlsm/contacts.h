@@ -8,6 +8,7 @@
 #define LsmContacts         SM_NAME(LsmContacts)
 #define lsm_contacts_build  SM_NAME(lsm_contacts_build)
 #define lsm_contacts_free   SM_NAME(lsm_contacts_free)
+#define lsm_contacts_list   SM_NAME(lsm_contacts_list)
 #define lsm_contacts_before SM_NAME(lsm_contacts_before)
 #define lsm_contacts_after  SM_NAME(lsm_contacts_after)
 #define lsm_contacts_fix    SM_NAME(lsm_contacts_fix)
@@ -20,6 +21,9 @@ typedef struct LsmContacts LsmContacts;
  * collide. */
 LsmContacts *lsm_contacts_build(Lsm *lsm, Crowd *crowd);
 void lsm_contacts_free(LsmContacts *contacts);
+
+/* Contacts of the present positions, numbered as the lattice counts; the caller frees. */
+long lsm_contacts_list(LsmContacts *contacts, SmContact **contact);
 
 /* Around a step. Links that broke since the last one make the body's description anew. */
 void lsm_contacts_before(LsmContacts *contacts);

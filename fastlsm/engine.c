@@ -293,12 +293,42 @@ static SmCode engine_cut(SmEngine *e, const SmCut *cut, long first, SmError *err
     return SM_OK;
 }
 
+/* The engine's number of each particle of the lattice; the caller frees. */
+static int *outer_numbers(const SmEngine *e)
+{
+    int *outer = sm_alloc((size_t)e->count, sizeof *outer);
+    for (long p = 0; p < e->count; p++) outer[e->inner[p]] = (int)p;
+    return outer;
+}
+
+/* Contacts go over from the lattice's numbers and corners to the engine's. */
+static long engine_contacts(SmEngine *e, double (*turn)[9], SmContact **contact)
+{
+    (void)turn;
+    *contact = NULL;
+    if (!e->contacts) return 0;
+    long count = lsm_contacts_list(e->contacts, contact);
+    int *outer = outer_numbers(e);
+    for (SmContact *k = *contact; k < *contact + count; k++) {
+        double weight[8];
+        memcpy(weight, k->weight, sizeof weight);
+        k->particle = k->particle / e->count * e->count + outer[k->particle % e->count];
+        k->cell = k->cell / e->count * e->count + outer[k->cell % e->count];
+        for (int c = 0; c < 8; c++) {
+            int corner = 0;
+            for (int d = 0; d < 3; d++) corner |= (c >> d & 1) << (d + e->turn) % 3;
+            k->weight[corner] = weight[c];
+        }
+    }
+    free(outer);
+    return count;
+}
+
 /* Links go over from the lattice's numbers to the engine's. */
 static void engine_pieces(SmEngine *e, SmPieces *pieces)
 {
     const LsmLattice *l = &e->lsm->lattice;
-    int *outer = sm_alloc((size_t)e->count, sizeof *outer);
-    for (long p = 0; p < e->count; p++) outer[e->inner[p]] = (int)p;
+    int *outer = outer_numbers(e);
     sm_pieces_init(e->count, pieces);
     for (long p = 0; p < e->count; p++) {
         const int *c = l->coord[p];
@@ -397,9 +427,8 @@ static long engine_region(SmEngine *e, long number, long *member, long room)
     const int *c = lsm->lattice.coord[centre];
     uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
     long most = lsm_region_rows(&lsm->lattice, &lsm->interior, centre, rows);
-    int *outer = sm_alloc((size_t)e->count, sizeof(int));
+    int *outer = outer_numbers(e);
     long *all = sm_alloc((size_t)most, sizeof(long));
-    for (long p = 0; p < e->count; p++) outer[e->inner[p]] = (int)p;
     for (int row = 0; row < lsm->side * lsm->side; row++)
         for (uint64_t rest = rows[row]; rest; rest &= rest - 1)
             all[count++] =
@@ -427,6 +456,7 @@ const SmEngineType SM_NAME(fastlsm_engine) = {
     .masses = engine_masses,
     .count = engine_count,
     .cut = engine_cut,
+    .contacts = engine_contacts,
     .pieces = engine_pieces,
     .region = engine_region,
 };

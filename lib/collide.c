@@ -449,6 +449,21 @@ void sm_collide_fix(SmCollide *c, long count, const long *node)
     for (long i = 0; i < count; i++) work->fixed[work->fixed_node[i] = node[i]] = 1;
 }
 
+long sm_collide_list(const SmCollide *c, double cell, SmContact **contact)
+{
+    *contact = sm_alloc((size_t)c->contact_count, sizeof **contact);
+    for (long i = 0; i < c->contact_count; i++) {
+        const SmCollideContact *from = &c->contact[i];
+        SmContact *to = &(*contact)[i];
+        to->particle = from->node;
+        to->cell = c->node[from->carrier[0]];
+        to->depth = cell * from->depth;
+        memcpy(to->out, from->out, sizeof to->out);
+        memcpy(to->weight, from->weight, (size_t)c->shape.carriers * sizeof *to->weight);
+    }
+    return c->contact_count;
+}
+
 long sm_collide_bytes(const SmCollide *c)
 {
     const SmCollideWork *work = c->work;

@@ -109,6 +109,10 @@ void sm_collide_find(SmCollide *collide, const double (*x)[3], const double (*fr
 void sm_collide_begin(SmCollide *collide);
 void sm_collide_respond(SmCollide *collide);
 
+/* The contacts found last, of cells this long, numbered by nodes: a cell is its first carrier. The
+ * caller frees; returns how many. */
+long sm_collide_list(const SmCollide *collide, double cell, SmContact **contact);
+
 long sm_collide_bytes(const SmCollide *collide);
 
 /* Where a cell is: its middle and, by columns, what its axes have become. `frame` NULL: from its

@@ -68,7 +68,7 @@ typedef struct {
     double build_seconds;   /* time that create() took */
     double jacobi_sweeps;   /* mean sweeps per polar decomposition of the last step, Jacobi only */
     double summation_nodes; /* mean per region; octree only */
-    long contacts;          /* of the last step, but those with obstacles */
+    long contacts;          /* of the last step or contacts(), but those with obstacles */
 } SmCounts;
 
 typedef enum {
@@ -84,6 +84,16 @@ SmCode sm_engine_check(const SmVoxels *voxels, const SmEngineParams *params, SmE
 
 /* Where an instance starts: its pose, or the identity where none are given. */
 void sm_engine_pose(const SmEngineParams *params, long instance, double pose[3][4]);
+
+/* A contact of a particle with a cell of its own body or another (collide.h): of a lattice engine
+ * the cell whose lowest corner is particle `cell`, of the octree that of node `cell`. */
+typedef struct {
+    long particle, cell;
+    double depth;     /* mesh units of the cell at rest */
+    double out[3];    /* unit; the way out */
+    double weight[8]; /* of the cell's corners, bit d of one's place: high along d; the octree's is
+                       * weight[0] alone */
+} SmContact;
 
 typedef struct SmEngine SmEngine;
 
@@ -133,6 +143,12 @@ typedef struct {
      * are in the rest position of the voxels, before any instance's pose. Allocates. SM_USAGE: the
      * body was not created to be cut. NULL of engines that cannot cut any. */
     SmCode (*cut)(SmEngine *engine, const SmCut *cut, long first, SmError *error);
+
+    /* Contacts of the present positions, but those with obstacles, in any order; returns how many.
+     * The caller frees them. The octree's cells are turned as its regions were when it last found
+     * goals: `turn`, [particles][9] by rows or NULL; lattice engines leave it alone. Only
+     * `contacts` of count() change. NULL of engines whose bodies do not collide. */
+    long (*contacts)(SmEngine *engine, double (*turn)[9], SmContact **contact);
 
     /* What hangs together: the pieces that one body's particles are in. The caller frees. NULL of
      * engines whose bodies stay in one piece. */

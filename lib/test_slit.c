@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "polygonise.h"
+#include "test_area.h"
 #include "test_draw.h"
 #include "vector.h"
 
@@ -68,23 +69,6 @@ static long sheet(SmCut *cut, int nx, int ny, const double c[3], const double u[
         sm_cut_triangle(cut, (int[3]){a, b + 1, b});
     }
     return first;
-}
-
-static double cut_area(const SmCut *cut, long first)
-{
-    double sum = 0;
-    for (long t = first; t < cut->triangles; t++) {
-        const double *p = cut->vertex[cut->triangle[t][0]], *q = cut->vertex[cut->triangle[t][1]];
-        const double *r = cut->vertex[cut->triangle[t][2]];
-        double u[3], v[3], normal[3];
-        for (int d = 0; d < 3; d++) {
-            u[d] = q[d] - p[d];
-            v[d] = r[d] - p[d];
-        }
-        sm_cross(u, v, normal);
-        sum += 0.5 * sqrt(sm_dot(normal, normal));
-    }
-    return sum;
 }
 
 /* Every new vertex is where its origin says. */

@@ -1,6 +1,7 @@
 #include "contacts.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "../lib/collide.h"
 #include "../lib/rotate_lanes.h"
@@ -83,11 +84,23 @@ static void read_velocities(const OctContacts *k)
     }
 }
 
-void oct_contacts_before(OctContacts *k)
+static void find(OctContacts *k)
 {
     for (long b = 0; b < k->oct->instances; b++)
         read_body(k, &k->oct->body[b], k->x + b * k->nodes, k->frame + b * k->nodes);
     sm_collide_find(k->collide, (const double(*)[3])k->x, (const double(*)[9])k->frame);
+}
+
+long oct_contacts_list(OctContacts *k, double cell, double (*turn)[9], SmContact **contact)
+{
+    find(k);
+    if (turn) memcpy(turn, k->frame, (size_t)(k->oct->instances * k->nodes) * sizeof *turn);
+    return sm_collide_list(k->collide, cell, contact);
+}
+
+void oct_contacts_before(OctContacts *k)
+{
+    find(k);
     read_velocities(k);
     sm_collide_begin(k->collide);
 }

@@ -10,6 +10,7 @@
 #define oct_contacts_build   SM_NAME(oct_contacts_build)
 #define oct_contacts_rebuild SM_NAME(oct_contacts_rebuild)
 #define oct_contacts_free    SM_NAME(oct_contacts_free)
+#define oct_contacts_list    SM_NAME(oct_contacts_list)
 #define oct_contacts_before  SM_NAME(oct_contacts_before)
 #define oct_contacts_after   SM_NAME(oct_contacts_after)
 #define oct_contacts_fix     SM_NAME(oct_contacts_fix)
@@ -28,6 +29,10 @@ void oct_contacts_free(OctContacts *contacts);
  * description is made anew, about 0.7 us a leaf; the next steps search between nodes and the cells
  * across a cut that they touch, each pair once. */
 void oct_contacts_rebuild(OctContacts *contacts, const OctStructure *structure);
+
+/* Contacts of the present positions, of finest cells this long, and the rotations of all nodes'
+ * cells: `turn` is [instances * nodes][9], or NULL. The caller frees. */
+long oct_contacts_list(OctContacts *contacts, double cell, double (*turn)[9], SmContact **contact);
 
 /* Around a step. */
 void oct_contacts_before(OctContacts *contacts);

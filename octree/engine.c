@@ -444,6 +444,12 @@ static void engine_step(SmEngine *e, SmLaps *laps)
     sm_lap(laps, SM_OTHER);
 }
 
+static long engine_contacts(SmEngine *e, double (*turn)[9], SmContact **contact)
+{
+    *contact = NULL;
+    return e->contacts ? oct_contacts_list(e->contacts, e->head.structure.cell, turn, contact) : 0;
+}
+
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])
 {
     renumber(e);
@@ -534,5 +540,6 @@ const SmEngineType SM_NAME(octree_engine) = {
     .set_shapes = engine_set_shapes,
     .masses = engine_masses,
     .count = engine_count,
+    .contacts = engine_contacts,
     .region = engine_region,
 };

@@ -28,6 +28,13 @@ static int compare_places(const void *a, const void *b)
     return (p[0] > q[0]) - (p[0] < q[0]);
 }
 
+int ref_particle_at(const int (*coordinate)[3], long count, const int place[3])
+{
+    const int(*at)[3] =
+        bsearch(place, coordinate, (size_t)count, sizeof *coordinate, compare_places);
+    return at ? (int)(at - coordinate) : -1;
+}
+
 /* Does a material cell hold both the vertex at `place` and the one a step `d` (-1..1) away? */
 static bool share_cell(const SmVoxels *voxels, const int place[3], const int d[3])
 {
@@ -54,15 +61,13 @@ static bool is_broken(const Lattice *lattice, int p, int q)
 static int one_ring(const Lattice *lattice, long p, int neighbour[RING])
 {
     const int *place = lattice->coordinate[p];
-    size_t count = (size_t)lattice->voxels->particle_count;
+    long count = lattice->voxels->particle_count;
     int found = 0;
     for (int n = 0; n < 27; n++) {
         const int d[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
         if (n == 13 || !share_cell(lattice->voxels, place, d)) continue;
         const int there[3] = {place[0] + d[0], place[1] + d[1], place[2] + d[2]};
-        const int(*at)[3] =
-            bsearch(there, lattice->coordinate, count, sizeof there, compare_places);
-        int q = (int)(at - lattice->coordinate);
+        int q = ref_particle_at(lattice->coordinate, count, there);
         if (!is_broken(lattice, (int)p, q)) neighbour[found++] = q;
     }
     return found;
@@ -106,6 +111,13 @@ void ref_links_build(const SmVoxels *voxels, const int (*broken)[2], long broken
     }
     free(sorted);
     free(coordinate);
+}
+
+bool ref_linked(const RefLinks *links, int p, int q)
+{
+    for (long n = links->start[p]; n < links->start[p + 1]; n++)
+        if (links->neighbour[n] == q) return true;
+    return false;
 }
 
 void ref_links_free(RefLinks *links)

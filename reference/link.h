@@ -23,4 +23,10 @@ void ref_links_build(const SmVoxels *voxels, const int (*broken)[2], long broken
                      RefLinks *links);
 void ref_links_free(RefLinks *links);
 
+bool ref_linked(const RefLinks *links, int p, int q);
+
+/* The particle at lattice coordinates `place`, or -1; `coordinate` is [count] in canonical order.
+ * O(log count). */
+int ref_particle_at(const int (*coordinate)[3], long count, const int place[3]);
+
 #endif
