@@ -68,7 +68,7 @@ void bench_changes_free(BenchChanges *changes)
     free(changes->rest);
     free(changes->x);
     free(changes->F);
-    free(changes->near);
+    free(changes->found);
     free(changes->absent);
     *changes = (BenchChanges){0};
 }
@@ -84,7 +84,7 @@ void bench_changes_room(BenchChanges *changes, long nodes)
     changes->rest = sm_realloc(changes->rest, room, sizeof *changes->rest);
     changes->x = sm_realloc(changes->x, room, sizeof *changes->x);
     changes->F = sm_realloc(changes->F, room, sizeof *changes->F);
-    changes->near = sm_realloc(changes->near, room, 1);
+    changes->found = sm_realloc(changes->found, room, 1);
     changes->absent = sm_realloc(changes->absent, room, 1);
 }
 
@@ -104,33 +104,41 @@ static void place_leaves(BenchChanges *changes, long instance)
                sizeof *changes->x);
 }
 
-/* What carries the material near the blade, which is between two places in this frame. */
+/* Few of the nodes near a blade are so near that their F counts. */
+static void find_gradient(void *of, long leaf)
+{
+    BenchChanges *changes = of;
+    const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
+    if (changes->found[leaf]) return;
+    changes->found[leaf] = 1;
+    oct_gradient_of(&s->tree, &s->graph, s->cell, &changes->search, (int)leaf,
+                    (const double(*)[3])changes->x, changes->F[leaf]);
+}
+
+/* What carries the material near the blade, which is between two places in this frame; until the
+ * structure changes. */
 static SmCarriers octree_carriers(BenchChanges *changes, const double blade[4][3])
 {
     const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
     double widest = 0;
-    OctGradients gradients;
     place_leaves(changes, 0);
-    for (long l = 0; l < s->tree.leaves; l++) {
-        changes->absent[l] = s->tree.node[l] < 0;
-        if (!changes->absent[l])
+    for (long l = 0; l < s->tree.leaves; l++)
+        if (s->tree.node[l] >= 0)
             widest = fmax(widest, 0.5 * s->cell * s->tree.size[s->tree.node[l]]);
-    }
     double reach = widest + 2 * s->cell, far = bench_blade_stroke(blade) + 2 * reach;
     for (long l = 0; l < s->tree.leaves; l++) {
-        changes->near[l] = !changes->absent[l] &&
-                           bench_blade_square(changes->x[l], blade[2], blade[3]) < far * far;
-        changes->absent[l] = !changes->near[l];
-        if (changes->near[l]) oct_structure_centre(s, l, changes->rest[l]);
+        changes->found[l] = 0;
+        changes->absent[l] = s->tree.node[l] < 0 ||
+                             !(bench_blade_square(changes->x[l], blade[2], blade[3]) < far * far);
+        if (!changes->absent[l]) oct_structure_centre(s, l, changes->rest[l]);
     }
-    oct_gradients_build(&s->tree, &s->graph, changes->near, s->cell, &gradients);
-    oct_gradients_find(&gradients, (const double(*)[3])changes->x, changes->F);
-    oct_gradients_free(&gradients);
     return (SmCarriers){.nodes = s->tree.leaves,
                         .rest = (const double(*)[3])changes->rest,
                         .position = (const double(*)[3])changes->x,
                         .F = (const double(*)[9])changes->F,
                         .absent = changes->absent,
+                        .find = find_gradient,
+                        .of = changes,
                         .cell = 2 * s->cell,
                         .reach = reach};
 }
@@ -148,6 +156,7 @@ static void sweep_blades(BenchChanges *changes, double from, double to, SmCut *c
         if (!changes->blade[i].down)
             sm_blade_sweep(&changes->blade[i], blade[0], blade[1], &carriers, cut);
         sm_blade_sweep(&changes->blade[i], blade[2], blade[3], &carriers, cut);
+        oct_reach_free(&changes->search);
     }
 }
 

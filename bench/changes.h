@@ -33,8 +33,9 @@ typedef struct {
      * particle number */
     double (*node)[3];
     double (*rest)[3], (*x)[3], (*F)[9];
-    unsigned char *near, *absent;
+    unsigned char *found, *absent;
     long room;
+    OctReach search;
 } BenchChanges;
 
 /* Ties the part's surface. The part's handles and forces follow its changes. */

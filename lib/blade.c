@@ -130,6 +130,7 @@ static bool find_rest(const Nearby *n, const double x[3], double rest[3])
         double weight = 1 - sm_dot(d, d) / (radius * radius);
         if (!(weight > 0)) continue;
         weight *= weight;
+        if (c->find) c->find(c->of, k);
         take_back(c->F[k], d, back);
         for (int a = 0; a < 3; a++) mean[a] += weight * (c->rest[k][a] + back[a]);
         sum += weight;

@@ -15,6 +15,8 @@ typedef struct {
     const double (*rest)[3], (*position)[3]; /* [nodes] mesh units */
     const double (*F)[9];                    /* [nodes] by rows */
     const unsigned char *absent;             /* [nodes] not 0: no such node; NULL: all are there */
+    void (*find)(void *of, long node);       /* makes a node's F good, when it is wanted, every */
+    void *of;                                /* time that it is; NULL: they all are */
     double cell;  /* finest cells' size: about the size of the triangles */
     double reach; /* a blade's point has material near it when a node is within this:
                      2 cells more than material is from its nearest node */

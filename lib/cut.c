@@ -262,24 +262,29 @@ static bool clip(const SmCut *cut, const double a[3], const double b[3], int d, 
     return from <= 0 && to >= 0;
 }
 
-static bool crosses_in(const SmCut *cut, const int cube[3], long first, const double a[3],
+bool sm_cut_crosses_one(const SmCut *cut, long triangle, const double a[3], const double b[3])
+{
+    const int *vertex = cut->triangle[triangle];
+    if (beside(cut, triangle, a, b) || apart(cut, vertex, a, b)) return false;
+    return in_order(a, b) ? crosses(cut, vertex, a, b) : crosses(cut, vertex, b, a);
+}
+
+static long crossed_in(const SmCut *cut, const int cube[3], long first, const double a[3],
                        const double b[3])
 {
     for (long e = cut->bucket[bucket_of(cut, cube)]; e >= 0; e = cut->entry[e].before)
         if (cut->entry[e].triangle >= first &&
             memcmp(cut->entry[e].cube, cube, sizeof cut->entry[e].cube) == 0 &&
-            !beside(cut, cut->entry[e].triangle, a, b) &&
-            !apart(cut, cut->triangle[cut->entry[e].triangle], a, b) &&
-            crosses(cut, cut->triangle[cut->entry[e].triangle], a, b))
-            return true;
-    return false;
+            sm_cut_crosses_one(cut, cut->entry[e].triangle, a, b))
+            return cut->entry[e].triangle;
+    return -1;
 }
 
-bool sm_cut_crosses(const SmCut *cut, long first, const double a[3], const double b[3])
+long sm_cut_crossed(const SmCut *cut, long first, const double a[3], const double b[3])
 {
     int low[3], high[3], cube[3];
-    if (cut->entries == 0 || first >= cut->triangles) return false;
-    if (!in_order(a, b)) return sm_cut_crosses(cut, first, b, a);
+    if (cut->entries == 0 || first >= cut->triangles) return -1;
+    if (!in_order(a, b)) return sm_cut_crossed(cut, first, b, a);
     cubes_of(cut, 2, (const double *const[2]){a, b}, low, high);
     for (int d = 0; d < 3; d++) {
         low[d] = low[d] > cut->low[d] ? low[d] : cut->low[d];
@@ -294,9 +299,16 @@ bool sm_cut_crosses(const SmCut *cut, long first, const double a[3], const doubl
             int from = cube_of(cut, a[0] + row[0] * (b[0] - a[0]) - 1e-6 * cut->cube);
             int to = cube_of(cut, a[0] + row[1] * (b[0] - a[0]) + 1e-6 * cut->cube);
             for (cube[0] = from > low[0] ? from : low[0]; cube[0] <= high[0] && cube[0] <= to;
-                 cube[0]++)
-                if (crosses_in(cut, cube, first, a, b)) return true;
+                 cube[0]++) {
+                long triangle = crossed_in(cut, cube, first, a, b);
+                if (triangle >= 0) return triangle;
+            }
         }
     }
-    return false;
+    return -1;
+}
+
+bool sm_cut_crosses(const SmCut *cut, long first, const double a[3], const double b[3])
+{
+    return sm_cut_crossed(cut, first, a, b) >= 0;
 }

@@ -41,4 +41,10 @@ long sm_cut_triangle(SmCut *cut, const int vertex[3]);
  * of the segment's box). */
 bool sm_cut_crosses(const SmCut *cut, long first, const double a[3], const double b[3]);
 
+/* The same, and the number of such a triangle: one of them, or -1. */
+long sm_cut_crossed(const SmCut *cut, long first, const double a[3], const double b[3]);
+
+/* The same of one triangle. O(1). */
+bool sm_cut_crosses_one(const SmCut *cut, long triangle, const double a[3], const double b[3]);
+
 #endif

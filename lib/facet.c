@@ -20,6 +20,7 @@ void sm_facets_init(const SmCrossing *c, double slack, SmFacets *f)
 {
     *f = (SmFacets){.crossing = c, .slack = slack};
     size_t ends = 2 * (size_t)c->segments + 3;
+    f->ring_room = (int)ends;
     f->first = sm_alloc((size_t)c->faces + 1, sizeof *f->first);
     f->segment = sm_alloc(2 * (size_t)c->segments, sizeof *f->segment);
     f->next = sm_alloc((size_t)c->points, sizeof *f->next);
@@ -73,7 +74,9 @@ static const SmCrossingSegment *segment_of(const SmFacets *f, long s, long face,
     return segment;
 }
 
-/* The stops on the face's round, in order. Along each edge they are sorted by where they are. */
+/* The stops on the face's round, in order. Along each edge they are sorted by where they are. A
+ * face with a corner twice has an edge there and back: then every end of a segment may stop twice.
+ */
 static int list_stops(const SmFacets *f, long face, const int corner[3], Stop *stop)
 {
     int count = 0;
@@ -130,9 +133,12 @@ static void unlink_segments(SmFacets *f, long face)
     }
 }
 
-static void add_ring_point(SmFacets *f, int vertex)
+/* False where there is no room: rings that have no end, or lead into each other. */
+static bool add_ring_point(SmFacets *f, int vertex)
 {
+    if (f->ring_points == f->ring_room) return false;
     f->ring_point[f->ring_points++] = vertex;
+    return true;
 }
 
 static void begin_ring(SmFacets *f)
@@ -171,8 +177,21 @@ static int stop_of(int stops, const Stop *stop, int point)
     return -1;
 }
 
+/* The segments from an end on the round back to a start, which is returned, or -1 where they do not
+ * come to one. */
+static int trace_back(SmFacets *f, int stops, const Stop *stop, int point)
+{
+    for (; point >= 0; point = f->next[point]) {
+        int s = stop_of(stops, stop, point);
+        if (s >= 0 && stop[s].start) return s;
+        if (!add_ring_point(f, number_of(f->crossing, point))) return -1;
+        if (s < 0) f->visited[point] = 2;
+    }
+    return -1;
+}
+
 /* The rings that go along the round: from a start round to an end, back over segments to another
- * start, and so on. */
+ * start, and so on. False where points that coincide on the round have led astray. */
 static bool trace_round(SmFacets *f, int stops, const Stop *stop)
 {
     for (int i = 0; i < stops; i++) {
@@ -183,23 +202,19 @@ static bool trace_round(SmFacets *f, int stops, const Stop *stop)
             if (f->visited[stop[s].point] == 2) return false;
             f->visited[stop[s].point] = 2;
             do {
-                add_ring_point(f, stop[s].vertex);
+                if (!add_ring_point(f, stop[s].vertex)) return false;
                 s = (s + 1) % stops;
             } while (stop[s].point < 0);
-            int point = stop[s].point;
-            for (; s = stop_of(stops, stop, point), s < 0 || !stop[s].start;
-                 point = f->next[point]) {
-                add_ring_point(f, number_of(f->crossing, point));
-                if (s < 0) f->visited[point] = 2;
-            }
+            s = trace_back(f, stops, stop, stop[s].point);
+            if (s < 0) return false;
         } while (s != i);
         end_ring(f);
     }
     return true;
 }
 
-/* Rings that do not come to the round. */
-static void trace_loops(SmFacets *f, long face)
+/* Rings that do not come to the round; false where one that has not been traced does. */
+static bool trace_loops(SmFacets *f, long face)
 {
     bool on_round[2];
     for (long n = f->first[face]; n < f->first[face + 1]; n++) {
@@ -208,11 +223,13 @@ static void trace_loops(SmFacets *f, long face)
         if (on_round[0] || f->visited[point] == 2) continue;
         begin_ring(f);
         for (; f->visited[point] != 2; point = f->next[point]) {
+            if (f->next[point] < 0 || !add_ring_point(f, number_of(f->crossing, point)))
+                return false;
             f->visited[point] = 2;
-            add_ring_point(f, number_of(f->crossing, point));
         }
         end_ring(f);
     }
+    return true;
 }
 
 /* Sees all rings' points in the plane, along the axis that is nearest to the face's normal. */
@@ -274,7 +291,7 @@ static void judge_border(SmFacets *f, const int corner[3], bool kept[3])
     if (most > 0) return;
     int from = f->ring_points;
     begin_ring(f);
-    for (int i = 0; i < 3; i++) add_ring_point(f, corner[i]);
+    for (int i = 0; i < 3; i++) f->ring_point[f->ring_points++] = corner[i];
     end_ring(f);
     project(f, corner, from);
 }
@@ -362,7 +379,7 @@ static SmFacetResult fill(SmFacets *f, long face, Stop *stop, bool kept[3])
     if (stops > 3 && (!judge_corners(stops, stop, kept) || !trace_round(f, stops, stop)))
         return SM_FACET_FAILED;
     int loops_from = f->rings;
-    trace_loops(f, face);
+    if (!trace_loops(f, face)) return SM_FACET_FAILED;
     project(f, corner, 0);
     if (stops == 3) judge_border(f, corner, kept);
     return fill_rings(f, loops_from) ? SM_FACET_FILLED : SM_FACET_FAILED;
@@ -371,7 +388,7 @@ static SmFacetResult fill(SmFacets *f, long face, Stop *stop, bool kept[3])
 SmFacetResult sm_facets_fill(SmFacets *facets, long face, bool kept[3])
 {
     long segments = facets->first[face + 1] - facets->first[face];
-    Stop *stop = sm_alloc(3 + 2 * (size_t)segments, sizeof *stop);
+    Stop *stop = sm_alloc(3 + 4 * (size_t)segments, sizeof *stop);
     SmFacetResult result = fill(facets, face, stop, kept);
     unlink_segments(facets, face);
     free(stop);

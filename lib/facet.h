@@ -13,7 +13,7 @@ typedef struct {
     unsigned char *visited;
     double slack;
     /* outlines of the face in hand: rings of points in the shared numbering */
-    int rings, ring_points;
+    int rings, ring_points, ring_room;
     int *ring_first, *ring_point;
     double (*at)[2]; /* [ring_points] seen along the face's largest normal component */
     bool *hole;

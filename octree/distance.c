@@ -66,8 +66,8 @@ static long spread(OctReach *reach, int leaf, int k, int most, int place, long e
         reach->entry = sm_realloc(reach->entry, (size_t)reach->room, sizeof *reach->entry);
     }
     for (long e = g->first[leaf]; e < end; e++) {
-        int to = g->to[e], d = k + g->length[e];
-        if (d >= reach->distance[to] || d > most) continue;
+        int to = g->to[e], d = k + g->length[e], known = reach->distance[to];
+        if (d >= (known <= most ? known : most + 1)) continue; /* one branch: most are not taken */
         reach->distance[to] = d;
         int b = place + g->length[e];
         if (b > reach->longest) b -= reach->longest + 1;

@@ -57,17 +57,16 @@ static int *reach_out(const OctTree *tree, const OctGraph *graph, OctReach *reac
     return reach->reached + 1;
 }
 
-/* The neighbours that leaf k is fitted to; `most` becomes how far they were looked for beyond its
- * own, or 0. */
+/* The neighbours that leaf k is fitted to, and their moments; `most` becomes how far they were
+ * looked for beyond its own, or 0. */
 static const int *choose(const OctTree *tree, const OctGraph *graph, OctReach *reach, long k,
-                         long *count, int *most)
+                         long *count, int *most, Moments *m)
 {
     const int *leaf = graph->to + graph->first[k];
-    Moments m;
     *count = oct_graph_end(graph, k) - graph->first[k];
-    find_moments(tree, k, leaf, *count, &m);
+    find_moments(tree, k, leaf, *count, m);
     *most = 0;
-    if (m.span == 3) return leaf;
+    if (m->span == 3) return leaf;
     long more, before = 0;
     Moments wider;
     int size = tree->size[tree->node[k]], within = 2 * size;
@@ -78,8 +77,9 @@ static const int *choose(const OctTree *tree, const OctGraph *graph, OctReach *r
         found = reach_out(tree, graph, reach, k, within, &more, &wider);
     }
     *most = within;
-    if (wider.span <= m.span) return leaf;
+    if (wider.span <= m->span) return leaf;
     *count = more;
+    *m = wider;
     return found;
 }
 
@@ -97,8 +97,9 @@ static void choose_all(const OctTree *tree, const OctGraph *graph, const unsigne
         for (long block = 0; block < lists.blocks; block++)
             for (long k = oct_lists_from(block); k < oct_lists_to(&lists, block); k++) {
                 long count = 0;
+                Moments m;
                 if (!wanted[k]) continue;
-                const int *leaf = choose(tree, graph, &reach, k, &count, &g->reach[k]);
+                const int *leaf = choose(tree, graph, &reach, k, &count, &g->reach[k], &m);
                 oct_lists_add(&lists, k, leaf, count);
             }
         oct_reach_free(&reach);
@@ -124,41 +125,53 @@ static void neighbour_moments(const OctTree *tree, const OctGradients *g, long k
     find_moments(tree, k, g->rows.leaf + g->rows.first[k], g->rows.count[k], m);
 }
 
-/* Shares of leaf k's neighbours; those of flat leaves come without the inverse. */
-static void share_out(const OctTree *tree, long k, OctGradients *g)
+/* What a share's direction goes through: of flat leaves nothing yet. */
+static void find_apply(const Moments *m, double apply[9])
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    Moments m;
-    double inverse[9], d[3];
-    double(*share)[3] = g->rows.value;
-    neighbour_moments(tree, g, k, &m);
-    g->span[k] = (unsigned char)m.span;
-    compose(&m, true, -1, inverse);
-    const double *apply = m.span == 3 ? inverse : identity;
-    for (long e = g->rows.first[k]; e < oct_rows_end(&g->rows, k); e++) {
-        double scale = offset(tree, k, g->rows.leaf[e], d) / m.trace * 2 / g->cell;
-        for (int a = 0; a < 3; a++)
-            share[e][a] =
-                scale * (apply[3 * a] * d[0] + apply[3 * a + 1] * d[1] + apply[3 * a + 2] * d[2]);
-    }
+    if (m->span == 3)
+        compose(m, true, -1, apply);
+    else
+        memcpy(apply, identity, sizeof identity);
 }
 
-/* Takes a leaf into the flat ones, where there is room for all leaves, or out of them. */
-static void note_flat(const OctTree *tree, OctGradients *g, int k, bool flat)
+static void find_share(const OctTree *tree, long k, int j, const Moments *m, const double apply[9],
+                       double cell, double share[3])
 {
-    Moments m;
+    double d[3], scale = offset(tree, k, j, d) / m->trace * 2 / cell;
+    for (int a = 0; a < 3; a++)
+        share[a] =
+            scale * (apply[3 * a] * d[0] + apply[3 * a + 1] * d[1] + apply[3 * a + 2] * d[2]);
+}
+
+/* Shares of leaf k's neighbours; those of flat leaves come without the inverse. */
+static void share_out(const OctTree *tree, long k, const Moments *m, OctGradients *g)
+{
+    double apply[9], (*share)[3] = g->rows.value;
+    g->span[k] = (unsigned char)m->span;
+    find_apply(m, apply);
+    for (long e = g->rows.first[k]; e < oct_rows_end(&g->rows, k); e++)
+        find_share(tree, k, g->rows.leaf[e], m, apply, g->cell, share[e]);
+}
+
+/* Takes a leaf, by its moments, into the flat ones, where there is room for all leaves. */
+static void add_flat(OctGradients *g, int k, const Moments *m)
+{
     int place = g->flat_place[k];
-    if (!flat && place >= 0) {
-        g->flat[place] = g->flat[--g->flats];
-        g->flat_place[g->flat[place].leaf] = place;
-        g->flat_place[k] = -1;
-    }
-    if (!flat) return;
     if (place < 0) g->flat_place[k] = place = (int)g->flats++;
-    neighbour_moments(tree, g, k, &m);
     g->flat[place].leaf = k;
-    compose(&m, true, -1, g->flat[place].inverse);
-    compose(&m, false, 0, g->flat[place].beyond);
+    compose(m, true, -1, g->flat[place].inverse);
+    compose(m, false, 0, g->flat[place].beyond);
+}
+
+/* Takes a leaf out of the flat ones, if it is there. */
+static void drop_flat(OctGradients *g, int k)
+{
+    int place = g->flat_place[k];
+    if (place < 0) return;
+    g->flat[place] = g->flat[--g->flats];
+    g->flat_place[g->flat[place].leaf] = place;
+    g->flat_place[k] = -1;
 }
 
 static void make_room(OctGradients *g, long leaves)
@@ -193,9 +206,17 @@ void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsig
         g->leaf[g->count++] = k;
     }
 #pragma omp parallel for schedule(static)
-    for (long n = 0; n < g->count; n++) share_out(tree, g->leaf[n], g);
-    for (long n = 0; n < g->count; n++)
-        if (g->span[g->leaf[n]] < 3) note_flat(tree, g, g->leaf[n], true);
+    for (long n = 0; n < g->count; n++) {
+        Moments m;
+        neighbour_moments(tree, g, g->leaf[n], &m);
+        share_out(tree, g->leaf[n], &m, g);
+    }
+    for (long n = 0; n < g->count; n++) {
+        Moments m;
+        if (g->span[g->leaf[n]] == 3) continue;
+        neighbour_moments(tree, g, g->leaf[n], &m);
+        add_flat(g, g->leaf[n], &m);
+    }
 }
 
 void oct_gradients_free(OctGradients *gradients)
@@ -221,14 +242,18 @@ void oct_gradients_renew(OctGradients *gradients, const OctTree *tree, const Oct
 {
     OctGradients *g = gradients;
     long count;
-    const int *neighbour = choose(tree, graph, search, leaf, &count, &g->reach[leaf]);
+    Moments m;
+    const int *neighbour = choose(tree, graph, search, leaf, &count, &g->reach[leaf], &m);
     if (g->place[leaf] < 0) {
         g->place[leaf] = (int)g->count;
         g->leaf[g->count++] = leaf;
     }
     oct_rows_set(&g->rows, leaf, count, neighbour);
-    share_out(tree, leaf, g);
-    note_flat(tree, g, leaf, g->span[leaf] < 3);
+    share_out(tree, leaf, &m, g);
+    if (m.span < 3)
+        add_flat(g, leaf, &m);
+    else
+        drop_flat(g, leaf);
 }
 
 void oct_gradients_drop(OctGradients *gradients, int leaf)
@@ -240,7 +265,7 @@ void oct_gradients_drop(OctGradients *gradients, int leaf)
     g->place[g->leaf[place]] = place;
     g->place[leaf] = -1;
     oct_rows_set(&g->rows, leaf, 0, NULL);
-    note_flat(NULL, g, leaf, false);
+    drop_flat(g, leaf);
 }
 
 static void multiply(const double A[9], const double B[9], double C[9])
@@ -250,17 +275,53 @@ static void multiply(const double A[9], const double B[9], double C[9])
                A[i / 3 * 3 + 2] * B[6 + i % 3];
 }
 
-/* F = A inverse + R beyond of the flat leaves first..last - 1, where F holds their A. */
+/* F = A inverse + R beyond, of the R that turns A. */
+static void finish_flat(const OctFlat *flat, const double A[9], const double R[9], double F[9])
+{
+    double fit[9], turned[9];
+    multiply(A, flat->inverse, fit);
+    multiply(R, flat->beyond, turned);
+    for (int i = 0; i < 9; i++) F[i] = fit[i] + turned[i];
+}
+
+/* The same of the flat leaves first..last - 1, where F holds their A. */
 static void finish_flats(const OctGradients *g, long first, long last, double (*F)[9])
 {
-    double A[CHUNK][9] = {{0}}, R[CHUNK][9] = {{0}}, fit[9], turned[9];
+    double A[CHUNK][9] = {{0}}, R[CHUNK][9] = {{0}};
     for (long n = first; n < last; n++) memcpy(A[n - first], F[g->flat[n].leaf], sizeof A[0]);
     sm_polar_batch_f64(last - first, &A[0][0], NULL, &R[0][0]);
-    for (long n = first; n < last; n++) {
-        multiply(A[n - first], g->flat[n].inverse, fit);
-        multiply(R[n - first], g->flat[n].beyond, turned);
-        for (int i = 0; i < 9; i++) F[g->flat[n].leaf][i] = fit[i] + turned[i];
+    for (long n = first; n < last; n++)
+        finish_flat(&g->flat[n], A[n - first], R[n - first], F[g->flat[n].leaf]);
+}
+
+static void add_moved(const double x[3], const double own[3], const double share[3], double sum[9])
+{
+    for (int a = 0; a < 3; a++) {
+        double moved = x[a] - own[a];
+        for (int b = 0; b < 3; b++) sum[3 * a + b] += moved * share[b];
     }
+}
+
+void oct_gradient_of(const OctTree *tree, const OctGraph *graph, double cell, OctReach *search,
+                     int leaf, const double (*x)[3], double F[9])
+{
+    long count;
+    int most;
+    Moments m;
+    OctFlat flat;
+    double apply[9], share[3], A[9] = {0}, R[9];
+    const int *neighbour = choose(tree, graph, search, leaf, &count, &most, &m);
+    find_apply(&m, apply);
+    for (long n = 0; n < count; n++) {
+        find_share(tree, leaf, neighbour[n], &m, apply, cell, share);
+        add_moved(x[neighbour[n]], x[leaf], share, A);
+    }
+    memcpy(F, A, sizeof A);
+    if (m.span == 3) return;
+    compose(&m, true, -1, flat.inverse);
+    compose(&m, false, 0, flat.beyond);
+    sm_polar_batch_f64(1, A, NULL, R);
+    finish_flat(&flat, A, R, F);
 }
 
 void oct_gradients_find(const OctGradients *gradients, const double (*x)[3], double (*F)[9])
@@ -272,13 +333,9 @@ void oct_gradients_find(const OctGradients *gradients, const double (*x)[3], dou
 #pragma omp for schedule(static)
         for (long n = 0; n < g->count; n++) {
             int k = g->leaf[n];
-            const double *own = x[k];
             double sum[9] = {0};
             for (long e = g->rows.first[k]; e < oct_rows_end(&g->rows, k); e++)
-                for (int a = 0; a < 3; a++) {
-                    double moved = x[g->rows.leaf[e]][a] - own[a];
-                    for (int b = 0; b < 3; b++) sum[3 * a + b] += moved * share[e][b];
-                }
+                add_moved(x[g->rows.leaf[e]], x[k], share[e], sum);
             memcpy(F[k], sum, sizeof sum);
         }
 #pragma omp for schedule(static)

@@ -58,4 +58,9 @@ void oct_gradients_drop(OctGradients *gradients, int leaf);
  * units. Allocates nothing; any number of threads gives the same bits. O(neighbours). */
 void oct_gradients_find(const OctGradients *gradients, const double (*x)[3], double (*F)[9]);
 
+/* The same F of one leaf by itself, with nothing built or kept: for a few leaves, once. `search` as
+ * for oct_gradients_renew(). O(neighbours). */
+void oct_gradient_of(const OctTree *tree, const OctGraph *graph, double cell, OctReach *search,
+                     int leaf, const double (*x)[3], double F[9]);
+
 #endif

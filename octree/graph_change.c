@@ -232,7 +232,7 @@ void oct_graph_change_cut(OctGraphChange *c, long first)
     for (long t = first; t < s->cut.triangles; t++) {
         double corner[3][3];
         oct_graph_change_corners(s, t, corner);
-        oct_near_triangle(&c->near, (const double(*)[3])corner, margin, OCT_REACHES);
+        oct_near_triangle(&c->near, (const double(*)[3])corner, margin, INT_MAX, OCT_REACHES);
         list_near(c, mark);
     }
     for (long n = 0; n < c->around_count; n++) {

@@ -46,9 +46,11 @@ int oct_lists_compare(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
+/* Shell's sort, with the gaps of Ciura 2001. */
 void oct_lists_sort(int *item, long count)
 {
-    enum { FEW = 48 };
+    static const int gap[] = {132, 57, 23, 10, 4, 1};
+    enum { FEW = 512 };
     bool rising = true;
     for (long n = 1; n < count && rising; n++) rising = item[n - 1] <= item[n];
     if (rising) return;
@@ -56,12 +58,14 @@ void oct_lists_sort(int *item, long count)
         qsort(item, (size_t)count, sizeof *item, oct_lists_compare);
         return;
     }
-    for (long n = 1; n < count; n++) {
-        int here = item[n];
-        long to = n;
-        for (; to > 0 && item[to - 1] > here; to--) item[to] = item[to - 1];
-        item[to] = here;
-    }
+    for (size_t g = 0; g < sizeof gap / sizeof *gap; g++)
+        for (long n = gap[g]; n < count; n++) {
+            int here = item[n];
+            long to = n;
+            for (; to >= gap[g] && item[to - gap[g]] > here; to -= gap[g])
+                item[to] = item[to - gap[g]];
+            item[to] = here;
+        }
 }
 
 void oct_lists_pack(OctLists *lists, long **first, int **item)

@@ -10,6 +10,7 @@ typedef struct {
     double low[3], high[3];
     const double (*corner)[3]; /* of the triangle, or NULL */
     double margin;             /* of the triangle */
+    int least;                 /* leaves that are smaller do not count, half finest cells */
     OctNearKind kind;
 } Place;
 
@@ -62,6 +63,7 @@ static void visit(OctNear *near, const Place *place, int root)
     stack[0] = root;
     while (count > 0) {
         int node = stack[--count];
+        if (t->size[node] < (t->children[node] ? 2 : 1) * place->least) continue;
         if (!node_meets(t, place, node)) continue;
         if (!t->children[node]) add(near, node);
         for (int c = 0; c < t->children[node]; c++) stack[count++] = t->child[node] + c;
@@ -112,9 +114,12 @@ void oct_near_box(OctNear *near, const int low[3], const int high[3], OctNearKin
     search(near, &place);
 }
 
-void oct_near_triangle(OctNear *near, const double corner[3][3], double margin, OctNearKind kind)
+void oct_near_triangle(OctNear *near, const double corner[3][3], double margin, int level,
+                       OctNearKind kind)
 {
+    int levels = near->tree->levels;
     Place place = {.corner = corner, .margin = margin, .kind = kind};
+    place.least = (4 << levels) >> (level <= levels ? level : levels + 1);
     for (int d = 0; d < 3; d++) {
         place.low[d] = fmin(corner[0][d], fmin(corner[1][d], corner[2][d])) - margin;
         place.high[d] = fmax(corner[0][d], fmax(corner[1][d], corner[2][d])) + margin;

@@ -22,8 +22,9 @@ void oct_near_free(OctNear *near);
 /* Leaves at a box, half finest cells. O(those found, levels, and base cells met * log roots). */
 void oct_near_box(OctNear *near, const int low[3], const int high[3], OctNearKind kind);
 
-/* Leaves at a triangle, in half finest cells, thickened by `margin` in the max norm. O(those found
- * and base cells of its box). */
-void oct_near_triangle(OctNear *near, const double corner[3][3], double margin, OctNearKind kind);
+/* Leaves of a level below `level` at a triangle, in half finest cells, thickened by `margin` in the
+ * max norm. O(those found and base cells of its box). */
+void oct_near_triangle(OctNear *near, const double corner[3][3], double margin, int level,
+                       OctNearKind kind);
 
 #endif

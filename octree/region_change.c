@@ -157,15 +157,13 @@ static bool owns(const OctRegionChange *c, int owner, int leaf)
     return oct_cover_holds(&c->s->tree, c->own.item + first, c->own.end[owner] - first, leaf);
 }
 
-/* Where leaf k, which is not searched, was owned by leaf i: it takes i no more, unless i owns it
- * again; and where it owns i and i, which has just been searched, does not own it any more, i takes
- * it. */
+/* Where leaf k, which is not searched, was owned by leaf i and is not any more: it takes i no more;
+ * and where it owns i, i takes it. */
 static void part(OctRegionChange *c, int i, int k, bool dead)
 {
-    if (c->state[k] == SEARCH) return;
+    if (c->state[k] == SEARCH || (!dead && oct_interval_holds(&c->intervals, k))) return;
     if (oct_plots_remove(&c->taken, k, i)) list_leaf(c, k, REGION);
-    if (dead || oct_interval_holds(&c->intervals, k) || !owns(c, k, i)) return;
-    oct_plots_add(&c->taken, i, k, c->intervals.reach.distance[k]);
+    if (!dead && owns(c, k, i)) oct_plots_add(&c->taken, i, k, c->intervals.reach.distance[k]);
 }
 
 /* All leaves that leaf i owned before and that live, new ones but not searched ones apart. */
@@ -281,6 +279,24 @@ static void bury(OctRegionChange *c, int leaf)
     c->s->regions.width[leaf] = c->s->regions.size[leaf] = c->own_width[leaf] = 0;
 }
 
+/* The leaf takes its owner, if it does not own it. One that is not searched may have done so
+ * before, perhaps at another distance. */
+static void take(OctRegionChange *c, const struct OctDoubt *d)
+{
+    OctPlots *taken = &c->taken;
+    long at = taken->first[d->leaf], end = taken->end[d->leaf];
+    if (c->state[d->leaf] == SEARCH) at = end;
+    while (at < end && taken->item[at] != d->owner) at++;
+    if (at < end) {
+        if (taken->also[at] == d->distance) return;
+        taken->also[at] = d->distance;
+    } else {
+        if (d->distance <= reach_of(c, d->leaf) && owns(c, d->leaf, d->owner)) return;
+        oct_plots_add(taken, d->leaf, d->owner, d->distance);
+    }
+    list_leaf(c, d->leaf, REGION);
+}
+
 static void search_all(OctRegionChange *c)
 {
     long count = c->search_count;
@@ -291,12 +307,7 @@ static void search_all(OctRegionChange *c)
         long from = n ? c->fresh_end[n - 1] : 0;
         replace(c, &c->own, c->list[n], c->fresh + from, c->fresh_end[n] - from);
     }
-    for (long n = 0; n < c->doubt_count; n++) {
-        struct OctDoubt d = c->doubt[n];
-        if (owns(c, d.leaf, d.owner)) continue;
-        oct_plots_add(&c->taken, d.leaf, d.owner, d.distance);
-        list_leaf(c, d.leaf, REGION);
-    }
+    for (long n = 0; n < c->doubt_count; n++) take(c, &c->doubt[n]);
 }
 
 void oct_region_change_update(OctRegionChange *c, OctChange *batch)

@@ -1,6 +1,7 @@
 #include "resample.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "lists.h"
 #include "region_change.h"
@@ -135,14 +136,16 @@ long oct_resample_near_cut(OctStructure *s, long first, double distance, int lev
     for (long t = first; t < s->cut.triangles; t++) {
         double corner[3][3];
         oct_graph_change_corners(s, t, corner);
-        oct_near_triangle(&r->near, (const double(*)[3])corner, 2 * distance / s->cell, OCT_CELLS);
+        oct_near_triangle(&r->near, (const double(*)[3])corner, 2 * distance / s->cell, level,
+                          OCT_CELLS);
         if (r->coarse_count + r->near.count > r->coarse_room) {
             r->coarse_room = 2 * (r->coarse_count + r->near.count);
             r->coarse = sm_realloc(r->coarse, (size_t)r->coarse_room, sizeof *r->coarse);
         }
-        for (long n = 0; n < r->near.count; n++)
-            if (oct_tree_level(&s->tree, r->near.node[n]) < level)
-                r->coarse[r->coarse_count++] = r->near.node[n];
+        if (r->near.count > 0)
+            memcpy(r->coarse + r->coarse_count, r->near.node,
+                   (size_t)r->near.count * sizeof *r->coarse);
+        r->coarse_count += r->near.count;
     }
     r->coarse_count = r->coarse_count ? distinct(r->coarse, r->coarse_count) : 0;
     *node = r->coarse;

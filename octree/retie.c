@@ -20,7 +20,9 @@ typedef struct {
 typedef struct {
     OctSurface *s;
     const OctCarrier *carrier;
-    long first;           /* the cut's first new triangle */
+    long first; /* the cut's first new triangle */
+    long count;
+    const int *node;      /* [count] of leaves that are new or no more */
     Boxes cells, sheets;  /* around leaves that are new or no more; of new triangles */
     unsigned char *other; /* [leaves] that move a vertex: its edges are others */
     long fresh_count, fresh_room;
@@ -153,20 +155,27 @@ static void compare_edges(Change *change)
     }
 }
 
-/* Can other leaves move a vertex now, or by other weights? Of leaves that it looked at and did not
- * come to belong to, none comes into question without being new: a cut only ever grows. */
-static bool is_stale(const Change *change, long v)
+/* What a vertex needs, so that the right leaves move it by the right weights. */
+typedef enum { NOTHING, OTHERS, ALL } Need;
+
+/* Of leaves that it looked at and did not come to belong to, none comes into question without being
+ * new: a cut only ever grows. So what cannot see the leaf that it belongs to has nothing to lose
+ * there, and what can and still does needs no search. */
+static Need find_need(const Change *change, long v)
 {
     const OctSurface *s = change->s;
     long first = s->rows.first[v], end = oct_rows_end(&s->rows, v);
     int own = s->rows.leaf[first];
-    double reach = (double)s->reach[v];
-    if (change->carrier->tree->node[own] < 0 || change->other[own]) return true;
+    double reach = fabs((double)s->reach[v]);
+    if (change->carrier->tree->node[own] < 0) return ALL;
+    bool sheets = change->sheets.count > 0;
+    if (sheets && s->reach[v] >= 0 && parted(change, s->rest[v], s->centre[own])) return ALL;
+    if (change->other[own]) return OTHERS;
     Box looked = box_around(s->rest[v], reach);
-    if (reach > 0 && meet_any(&change->cells, &looked)) return true;
-    for (long n = first; n < end && change->sheets.count > 0; n++)
-        if (parted(change, s->rest[v], s->centre[s->rows.leaf[n]])) return true;
-    return false;
+    if (reach > 0 && meet_any(&change->cells, &looked)) return OTHERS;
+    for (long n = first + 1; n < end && sheets; n++)
+        if (parted(change, s->rest[v], s->centre[s->rows.leaf[n]])) return OTHERS;
+    return NOTHING;
 }
 
 static void count_user(Change *change, int leaf)
@@ -181,15 +190,21 @@ static void count_user(Change *change, int leaf)
     change->fresh[change->fresh_count++] = leaf;
 }
 
-static void tie_vertex(Change *change, long v, OctTie *tie)
+static void tie_vertex(Change *change, long v, Need need, OctTie *tie)
 {
     OctSurface *s = change->s;
     for (long n = s->rows.first[v]; n < oct_rows_end(&s->rows, v); n++) s->users[s->rows.leaf[n]]--;
-    oct_tie_find(change->carrier, s->rest[v], tie);
+    if (need == ALL) {
+        oct_tie_find(change->carrier, s->rest[v], tie);
+    } else {
+        tie->own = s->rows.leaf[s->rows.first[v]];
+        tie->reach = s->reach[v];
+        oct_tie_again(change->carrier, s->rest[v], change->count, change->node, tie);
+    }
     oct_rows_set(&s->rows, v, tie->count, tie->leaf);
     memcpy((float *)s->rows.value + s->rows.first[v], tie->weight,
            (size_t)tie->count * sizeof(float));
-    s->reach[v] = (float)(tie->reach * (1 + 1e-6));
+    s->reach[v] = tie->reach;
     for (long n = 0; n < tie->count; n++) count_user(change, tie->leaf[n]);
 }
 
@@ -220,7 +235,8 @@ static void renew_gradients(Change *change)
 void oct_surface_retie(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier,
                        long count, const int *node, long first)
 {
-    Change change = {.s = surface, .carrier = carrier, .first = first};
+    Change change = {
+        .s = surface, .carrier = carrier, .first = first, .count = count, .node = node};
     long triangles = carrier->cut ? carrier->cut->triangles - first : 0;
     long before = surface->vertices;
     OctTie tie = {0};
@@ -231,8 +247,10 @@ void oct_surface_retie(OctSurface *surface, const SmMesh *mesh, const OctCarrier
     change.other = sm_alloc((size_t)carrier->tree->leaves, 1);
     compare_edges(&change);
     oct_surface_grow(surface, mesh, carrier, count, node);
-    for (long v = 0; v < surface->vertices; v++)
-        if (v >= before || is_stale(&change, v)) tie_vertex(&change, v, &tie);
+    for (long v = 0; v < surface->vertices; v++) {
+        Need need = v >= before ? ALL : find_need(&change, v);
+        if (need != NOTHING) tie_vertex(&change, v, need, &tie);
+    }
     renew_gradients(&change);
     oct_tie_free(&tie);
     boxes_free(&change.cells);

@@ -60,7 +60,7 @@ static void tie_all(const OctCarrier *c, OctSurface *s)
             for (long v = oct_lists_from(block); v < oct_lists_to(&lists, block); v++) {
                 oct_tie_find(c, s->rest[v], &tie);
                 oct_lists_add(&lists, v, tie.leaf, tie.count);
-                s->reach[v] = (float)(tie.reach * (1 + 1e-6));
+                s->reach[v] = tie.reach;
             }
         oct_tie_free(&tie);
     }

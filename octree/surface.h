@@ -45,7 +45,8 @@ typedef struct {
     double (*F)[9];      /* [leaves] of those that move a vertex, by the last oct_surface_move() */
     /* to tie vertices anew */
     float *reach;    /* [vertices] mesh units: how far the leaf that a vertex belongs to was looked
-                        for,    in the max norm; 0: it is the one that holds it */
+                        for, in the max norm; 0: it is the one that holds it; less: no leaf is seen
+                        so far */
     uint64_t *edges; /* [leaves] of those that move a vertex: which edges they have (tie.h) */
     int *users;      /* [leaves] vertices that each moves */
     long leaves, leaf_room, vertex_room;
