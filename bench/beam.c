@@ -7,7 +7,7 @@
 
 #include "runner.h"
 
-enum { MOST_STEPS = 40000, ENOUGH_STEPS = 2000, ENOUGH_TURNS = 9 };
+enum { MOST_STEPS = 40000, ENOUGH_STEPS = 1000, ENOUGH_TURNS = 9 };
 static const double slightly = 0.01; /* of gravity */
 static const double two_pi = 6.283185307179586;
 

@@ -180,8 +180,7 @@ void bench_gap_path(const BenchPath *path, const BenchPath *full, double size, B
 {
     *gap = (BenchGap){.rms = NAN, .most = NAN};
     if (!path->points || !full->points) {
-        snprintf(gap->why, sizeof gap->why, "%s%.100s", path->points ? "full resolution: " : "",
-                 path->points ? full->why : path->why);
+        snprintf(gap->why, sizeof gap->why, "%s", path->points ? full->why : path->why);
         return;
     }
     double sum = 0, most = 0;

@@ -12,6 +12,7 @@
 /* What rank 0 tells the others at the start. */
 typedef struct {
     SmCode code; /* not SM_OK: there is nothing to do */
+    BenchPlan plan;
     bool done[BENCH_PLAN_POINTS];
 } Start;
 
@@ -45,22 +46,22 @@ static SmCode resume(const BenchSweepRun *run, BenchSweep *sweep, SmError *error
     return SM_OK;
 }
 
-static void say_interrupt(const BenchSweepRun *run, const BenchSweep *sweep)
+/* The same at every moment: a signal may come between a file's renaming and what follows it. */
+static void say_interrupt(const BenchSweepRun *run)
 {
     char line[240];
-    if (run->output && sweep->count)
-        snprintf(line, sizeof line,
-                 "%.100s holds the %ld of %d points that are finished; the same command goes on",
-                 run->output, sweep->count, sweep->plan.points);
-    bench_interrupt_say(run->output && sweep->count ? line : NULL);
+    if (!run->output) return;
+    snprintf(line, sizeof line,
+             "%.100s keeps the points that are finished, if any; the same command goes on with the "
+             "rest",
+             run->output);
+    bench_interrupt_say(line);
 }
 
 static SmCode take(Job *job, const BenchPoint *point, SmError *error)
 {
     bench_sweep_add(job->sweep, point);
-    SmCode code = job->run->output ? bench_sweep_store(job->run->output, job->sweep, error) : SM_OK;
-    say_interrupt(job->run, job->sweep);
-    return code;
+    return job->run->output ? bench_sweep_store(job->run->output, job->sweep, error) : SM_OK;
 }
 
 /* Notes of other ranks: those that are there, or with `wait` until all have ended. */
@@ -141,8 +142,17 @@ static SmCode prepare(Job *job, Start *start, SmError *error)
     if (!code) code = resume(run, sweep, error);
     if (!code && run->output) code = bench_draft_try(run->output, error);
     start->code = code;
+    start->plan = sweep->plan;
     for (long i = 0; i < sweep->count && !code; i++) start->done[sweep->point[i].index] = true;
     return code;
+}
+
+/* A rank of another program or other options would measure other points. */
+static SmCode check_rank(const BenchPlan *mine, const BenchPlan *first, SmError *error)
+{
+    char what[240];
+    if (bench_plan_same(first, mine, sizeof what, what)) return SM_OK;
+    return sm_fail(error, SM_INPUT, "it has another sweep than the first rank: %s", what);
 }
 
 static void remark(const Job *job, int pending)
@@ -162,13 +172,14 @@ SmCode bench_sweep_run(const BenchSweepRun *run, BenchSweep *sweep, SmError *err
     int *pending = sm_alloc(BENCH_PLAN_POINTS, sizeof *pending);
     SmCode code = prepare(&job, start, error);
     bench_ranks_share(run->ranks, start, sizeof *start);
+    if (!code && run->ranks->rank > 0) code = check_rank(&sweep->plan, &start->plan, error);
     if (!start->code) {
         int count = find_pending(run, &sweep->plan, start->done, pending);
         if (run->ranks->rank > 0) {
             serve(&job, pending, count, code ? error : NULL);
         } else {
             remark(&job, count);
-            say_interrupt(run, sweep);
+            say_interrupt(run);
             code = lead(&job, pending, count, error);
         }
     }
