@@ -9,31 +9,34 @@
  * `*memory` and `*file`. */
 static int value_types(const BenchField *field, hid_t *file, hid_t *memory)
 {
-    size_t unit = field->size;
+    hid_t stored = H5T_IEEE_F64LE, native = H5T_NATIVE_DOUBLE;
+    size_t unit = sizeof(double);
     switch (field->kind) {
-    case BENCH_TEXT:
-        *file = H5Tcopy(H5T_C_S1);
-        H5Tset_size(*file, field->size);
-        H5Tset_cset(*file, H5T_CSET_UTF8);
-        *memory = H5Tcopy(*file);
-        return 1;
     case BENCH_INT:
-        *file = H5Tcopy(H5T_STD_I32LE), *memory = H5Tcopy(H5T_NATIVE_INT), unit = sizeof(int);
+        stored = H5T_STD_I32LE, native = H5T_NATIVE_INT, unit = sizeof(int);
         break;
     case BENCH_LONG:
-        *file = H5Tcopy(H5T_STD_I64LE), *memory = H5Tcopy(H5T_NATIVE_LONG), unit = sizeof(long);
+        stored = H5T_STD_I64LE, native = H5T_NATIVE_LONG, unit = sizeof(long);
         break;
     case BENCH_BOOL:
-        *file = H5Tcopy(H5T_STD_U8LE), *memory = H5Tcopy(H5T_NATIVE_UINT8), unit = sizeof(bool);
+        stored = H5T_STD_U8LE, native = H5T_NATIVE_UINT8, unit = sizeof(bool);
         break;
     case BENCH_HASH:
-        *file = H5Tcopy(H5T_STD_U64LE), *memory = H5Tcopy(H5T_NATIVE_ULLONG);
-        unit = sizeof(unsigned long long);
+        stored = H5T_STD_U64LE, native = H5T_NATIVE_ULLONG, unit = sizeof(unsigned long long);
+        break;
+    case BENCH_TEXT:
+        stored = native = H5T_C_S1, unit = field->size;
         break;
     case BENCH_DOUBLE:
-        *file = H5Tcopy(H5T_IEEE_F64LE), *memory = H5Tcopy(H5T_NATIVE_DOUBLE);
-        unit = sizeof(double);
         break;
+    }
+    *file = H5Tcopy(stored);
+    *memory = H5Tcopy(native);
+    if (field->kind == BENCH_TEXT) {
+        H5Tset_size(*file, field->size);
+        H5Tset_cset(*file, H5T_CSET_UTF8);
+        H5Tset_size(*memory, field->size);
+        H5Tset_cset(*memory, H5T_CSET_UTF8);
     }
     return (int)(field->size / unit);
 }

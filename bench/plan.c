@@ -1,5 +1,6 @@
 #include "plan.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,6 +47,7 @@ SmCode bench_plan_count(BenchPlan *plan, SmError *error)
                            "%d; give --engine octree to sweep that alone",
                            plan->w[i], MOST_LATTICE);
     long points = (long)plan->ws * points_of_w(plan);
+    if (points < 1) return sm_fail(error, SM_USAGE, "no points: no engine '%.11s'", plan->engines);
     if (points > BENCH_PLAN_POINTS)
         return sm_fail(error, SM_USAGE,
                        "--w and --epsilon make %ld points, and a sweep has %d at most: take larger "
@@ -57,7 +59,9 @@ SmCode bench_plan_count(BenchPlan *plan, SmError *error)
 
 void bench_plan_point(const BenchPlan *plan, int index, BenchPoint *point)
 {
-    int each = points_of_w(plan), rest = index % each;
+    int each = points_of_w(plan);
+    assert(each > 0); /* bench_plan_count() has seen to it */
+    int rest = index % each;
     bool lattice = has(plan, "fastlsm") && rest == 0;
     point->index = index;
     point->w = plan->w[index / each];

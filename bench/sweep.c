@@ -99,25 +99,6 @@ SmCode bench_sweep_store(const char *path, BenchSweep *sweep, SmError *error)
     return bench_draft_fail(path, h5.number, h5.message, error);
 }
 
-/* Fails unless the file says that it is ours and of our schema. */
-static void check_kind(BenchH5 *h5)
-{
-    char kind[64] = "";
-    int schema = 0;
-    const BenchField field = {"schema", BENCH_INT, 0, sizeof schema};
-    bench_h5_read_text(h5, h5->file, "kind", sizeof kind, kind);
-    if (h5->failed || strcmp(kind, file_kind) != 0) {
-        snprintf(h5->message, sizeof h5->message, "it is HDF5, but not the file of a sweep%s%.40s",
-                 kind[0] ? ": " : "", kind);
-        h5->failed = true;
-    }
-    bench_h5_read_fields(h5, h5->file, &field, 1, &schema);
-    if (!h5->failed && schema != BENCH_SWEEP_SCHEMA)
-        bench_h5_fail(h5, "its schema is %d and this program reads %d; %s", schema,
-                      BENCH_SWEEP_SCHEMA,
-                      schema < BENCH_SWEEP_SCHEMA ? "sweep again" : "use a newer shapebench");
-}
-
 static void read_numbers(BenchH5 *h5, hid_t group, const char *name, int count, double *values)
 {
     hsize_t size = (hsize_t)count;
@@ -176,7 +157,7 @@ static void read_file(BenchH5 *h5, BenchSweep *sweep)
     int machine_count, count;
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
     const BenchField *fields = bench_point_fields(&count);
-    check_kind(h5);
+    bench_h5_check_kind(h5, file_kind, BENCH_SWEEP_SCHEMA);
     hid_t group = bench_h5_find_group(h5, h5->file, "machine");
     bench_h5_read_fields(h5, group, machine_fields, machine_count, &sweep->machine);
     read_plan(h5, &sweep->plan);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "export.h"
 #include "grid.h"
 #include "quote.h"
 
@@ -144,7 +145,7 @@ static void csv_value(FILE *file, const BenchField *field, const void *value)
         fprintf(file, "%llu", *(const unsigned long long *)value);
         return;
     case BENCH_DOUBLE:
-        if (isfinite(*(const double *)value)) fprintf(file, "%.9g", *(const double *)value);
+        bench_csv_number(file, *(const double *)value);
         return;
     }
 }
@@ -172,11 +173,6 @@ static void write_csv(FILE *file, const BenchSweep *sweep)
     }
 }
 
-static json_t *json_number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *json_value(const BenchField *field, const void *value)
 {
     switch (field->kind) {
@@ -198,9 +194,9 @@ static json_t *json_value(const BenchField *field, const void *value)
     }
     const double *numbers = value;
     size_t many = field->size / sizeof *numbers;
-    if (many == 1) return json_number(*numbers);
+    if (many == 1) return bench_json_number(*numbers);
     json_t *list = json_array();
-    for (size_t i = 0; i < many; i++) json_array_append_new(list, json_number(numbers[i]));
+    for (size_t i = 0; i < many; i++) json_array_append_new(list, bench_json_number(numbers[i]));
     return list;
 }
 
@@ -215,16 +211,15 @@ static json_t *json_record(const BenchField *fields, int count, const void *reco
 
 static void write_json(FILE *file, const BenchSweep *sweep)
 {
-    int points, plan, machine;
+    int points, plan;
     const BenchField *point_fields = bench_point_fields(&points);
     const BenchField *plan_fields = bench_plan_fields(&plan);
-    const BenchField *machine_fields = bench_machine_fields(&machine);
     json_t *root = json_object(), *list = json_array();
     for (long i = 0; i < sweep->count; i++)
         json_array_append_new(list, json_record(point_fields, points, &sweep->point[i]));
     json_object_set_new(root, "points", list);
     json_object_set_new(root, "plan", json_record(plan_fields, plan, &sweep->plan));
-    json_object_set_new(root, "environment", json_record(machine_fields, machine, &sweep->machine));
+    json_object_set_new(root, "environment", bench_json_machine(&sweep->machine));
     json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     fputc('\n', file);
     json_decref(root);

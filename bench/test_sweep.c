@@ -319,7 +319,7 @@ static void foreign_and_cut_files(void **state)
     refuses(path, "not an HDF5 file");
     hid_t other = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     H5Fclose(other);
-    refuses(path, "not the file of a sweep");
+    refuses(path, "not a shapebench sweep file");
     struct stat status;
     for (int eighth = 7; eighth >= 0; eighth--) {
         write_sweep(path);
@@ -403,7 +403,7 @@ static void changed_files(void **state)
         void (*change)(hid_t file);
         const char *words;
     } cases[] = {
-        {older, "sweep again"},
+        {older, "measure again"},
         {newer, "use a newer shapebench"},
         {more_points, "does not make 9 points"},
         {many_values, "1073741824 values of w"},
