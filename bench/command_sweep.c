@@ -36,7 +36,7 @@ typedef struct {
     BenchPlan plan;
     BenchSweepRun run;
     BenchFormat format;
-    bool recommend;
+    bool recommend, measuring; /* was an option given that says what to measure? */
     BenchWish wish;
 } Options;
 
@@ -59,7 +59,7 @@ static const struct argp_option option_list[] = {
      "What an octree's w counts: edges of each node's own cell, or finest cells (default: edges)",
      1},
     {"precision", KEY_PRECISION, "P", 0, "Of what is timed: single or double (default: single)", 1},
-    {"repeats", KEY_REPEATS, "N", 0, "Samples of every time, 1 to 64 (default: 5)", 2},
+    {"repeats", KEY_REPEATS, "N", 0, "Samples of every time, 1 to 64 (default: 9)", 2},
     {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 10)", 2},
     {"frames", KEY_FRAMES, "N", 0, "Frames of motion to compare (default: 50)", 2},
     {"output", 'o', "FILE.h5", 0,
@@ -133,6 +133,7 @@ static error_t parse_measuring(int key, char *text, const struct argp_state *sta
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
+    options->measuring |= (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o';
     switch (key) {
     case KEY_SCENE:
         options->scene = text;
@@ -160,6 +161,11 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case ARGP_KEY_ARG:
         if (options->file) bench_usage(state, "what is '%s'? One file is shown at a time", text);
         options->file = text;
+        return 0;
+    case ARGP_KEY_END:
+        if (options->file && options->measuring)
+            bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o",
+                        options->file);
         return 0;
     }
     return parse_measuring(key, text, state, options);
@@ -244,7 +250,7 @@ int bench_command_sweep(int argc, char **argv)
 {
     Options options = {.w = "1:8",
                        .epsilon = "0:1:0.1",
-                       .plan = {.repeats = 5, .block_ms = 10, .frames = 50},
+                       .plan = {.repeats = 9, .block_ms = 10, .frames = 50},
                        .run = {.shard = 1, .shards = 1},
                        .wish = {NAN, NAN, NAN}};
     BenchRanks ranks;

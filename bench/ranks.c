@@ -68,9 +68,10 @@ bool bench_ranks_receive(const BenchRanks *ranks, bool wait, BenchNote *note)
 void bench_ranks_stop(const BenchRanks *ranks)
 {
     (void)ranks;
-    int begun = 0;
+    int begun = 0, over = 0;
     MPI_Initialized(&begun);
-    if (begun) MPI_Finalize();
+    MPI_Finalized(&over);
+    if (begun && !over) MPI_Finalize();
 }
 
 void bench_ranks_abort(const BenchRanks *ranks, int code)

@@ -110,10 +110,11 @@ static void write_reasons(FILE *file, const BenchSweep *sweep)
 static void write_text(FILE *file, const BenchSweep *sweep, const BenchGrid *grid)
 {
     const BenchPlan *plan = &sweep->plan;
+    bool other = plan->mesh[0] && !strstr(plan->mesh, plan->scene); /* a mesh alone has its name */
     fprintf(file,
             "%s%s%s: cost against stiffness and deviation, %ld of %d points, on %s, %d thread%s.\n"
             "w: half-width of regions, of fastlsm in cells, of the octree in %s.\n\n",
-            plan->scene, plan->mesh[0] ? " with " : "", plan->mesh, sweep->count, plan->points,
+            plan->scene, other ? " with " : "", other ? plan->mesh : "", sweep->count, plan->points,
             sweep->machine.cpu, plan->threads, plan->threads == 1 ? "" : "s",
             strcmp(plan->width, "edges") != 0 ? "finest cells" : "edges of each node's own cell");
     bench_grid_text(file, grid);

@@ -14,42 +14,12 @@
 #include <cmocka.h>
 #include <jansson.h>
 
-#include "../lib/test_folder.h"
 #include "sweep.h"
+#include "test_program.h"
 
 /* A small body that a force pushes; three points. */
 #define SMALL                                                                                      \
     "sweep --scene small.cfg --w 6 --epsilon 0,0.5 --frames 3 --repeats 2 --block 0.1 --quiet"
-
-typedef struct {
-    int code; /* exit code, or 1000 + signal */
-    char out[65536], err[4096];
-} Result;
-
-static void slurp(const char *name, char *text, size_t room)
-{
-    FILE *file = fopen(path_in(name), "r");
-    size_t size = file ? fread(text, 1, room - 1, file) : 0;
-    text[size] = '\0';
-    if (file) fclose(file);
-}
-
-/* Runs "PREFIX shapebench ARGUMENTS" by a shell in the test's folder. */
-static void run_with(const char *prefix, const char *arguments, Result *result)
-{
-    char command[2048];
-    snprintf(command, sizeof command, "cd %s && %s '%s/shapebench' %s >out 2>err", folder, prefix,
-             BINARY_DIR, arguments);
-    int status = system(command);
-    result->code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-    slurp("out", result->out, sizeof result->out);
-    slurp("err", result->err, sizeof result->err);
-}
-
-static void run(const char *arguments, Result *result)
-{
-    run_with("", arguments, result);
-}
 
 static void runs(const char *arguments)
 {
@@ -217,39 +187,27 @@ static void shards_merge_to_the_whole(void **state)
 static void other_options_do_not_mix(void **state)
 {
     (void)state;
-    static const struct {
-        const char *arguments, *words;
-    } cases[] = {
-        {SMALL " --seed 5 -o whole.h5", "whole.h5 holds another sweep: its seed is 1, and here 5"},
-        {SMALL " --w 5 -o whole.h5", "its w is 1 numbers from 6 to 6"},
-        {SMALL " --engine octree -o whole.h5", "its engines is 'both', and here 'octree'"},
-        {SMALL " --width cells -o whole.h5", "its width is 'edges', and here 'cells'"},
-        {SMALL " --scene held.cfg -o whole.h5", "its scene is 'small', and here 'held'"},
-        {SMALL " --mesh ball.obj -o whole.h5", "its mesh_hash differs: the mesh has changed"},
-        {SMALL " -o noise.h5", "noise.h5: not an HDF5 file"},
-        {"sweep noise.h5", "noise.h5: not an HDF5 file"},
+    static const Mistake cases[] = {
+        {SMALL " --seed 5 -o whole.h5", 3,
+         "whole.h5 holds another sweep: its seed is 1, and here 5"},
+        {SMALL " --w 5 -o whole.h5", 3, "its w is 1 numbers from 6 to 6"},
+        {SMALL " --engine octree -o whole.h5", 3, "its engines is 'both', and here 'octree'"},
+        {SMALL " --width cells -o whole.h5", 3, "its width is 'edges', and here 'cells'"},
+        {SMALL " --scene held.cfg -o whole.h5", 3, "its scene is 'small', and here 'held'"},
+        {SMALL " --mesh ball.obj -o whole.h5", 3, "its mesh_hash differs: the mesh has changed"},
+        {SMALL " -o noise.h5", 3, "noise.h5: not an HDF5 file"},
+        {"sweep noise.h5", 3, "noise.h5: not an HDF5 file"},
     };
     write_text("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n"
                            "f 1 4 3\n");
-    Result *result = malloc(sizeof *result);
-    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-        run(cases[c].arguments, result);
-        const char *end = strchr(result->err, '\n');
-        if (result->code != 3 || !strstr(result->err, cases[c].words) || !end || end[1])
-            fail_msg("%s: %d: %s", cases[c].arguments, result->code, result->err);
-    }
-    free(result);
+    make_mistakes(cases, sizeof cases / sizeof cases[0]);
     equals_whole("whole.h5");
 }
 
 static void mistakes_are_one_line(void **state)
 {
     (void)state;
-    static const struct {
-        const char *arguments;
-        int code;
-        const char *words;
-    } cases[] = {
+    static const Mistake cases[] = {
         {"sweep --w 8:1", 2, "--w: 8:1 falls"},
         {"sweep --w 0:8", 2, "--w: 0 is not from 1 to 1000"},
         {"sweep --w 1:8:0.5", 2, "1.5 is no half-width of fastlsm"},
@@ -264,19 +222,14 @@ static void mistakes_are_one_line(void **state)
         {"sweep --mesh nothing.obj", 3, "nothing.obj"},
         {"sweep missing.h5", 3, "cannot read missing.h5: No such file"},
         {"sweep a.h5 b.h5", 2, "what is 'b.h5'?"},
+        {"sweep whole.h5 --w 3", 2, "whole.h5 alone is shown as it is"},
+        {"sweep whole.h5 -o x.h5", 2, "whole.h5 alone is shown as it is"},
         {SMALL " -o nowhere/x.h5", 4, "create the folder first"},
         {"merge", 2, "give the file to write"},
         {"merge a.h5", 2, "give the file to write"},
         {"merge nowhere/a.h5 whole.h5", 4, "create the folder first"},
     };
-    Result *result = malloc(sizeof *result);
-    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-        run(cases[c].arguments, result);
-        const char *end = strchr(result->err, '\n');
-        if (result->code != cases[c].code || !strstr(result->err, cases[c].words) || !end || end[1])
-            fail_msg("%s: %d: %s", cases[c].arguments, result->code, result->err);
-    }
-    free(result);
+    make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }
 
 /* A handle that holds lattice vertices on a face, and no node's centre. */
