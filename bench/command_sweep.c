@@ -179,7 +179,7 @@ static const char help[] =
     "times. The octree's goals are compared with those of epsilon 0 on the same deformed state; "
     "the "
     "surface, over some frames of the same scene, with a lattice of all finest cells whose "
-    "half-width is the mean of the octree's, by mass (a lattice is its own full resolution). "
+    "regions hold as much on average (a lattice is its own full resolution). "
     "Stiffness is that of a regularly sampled beam with the same w and epsilon. The scene's cuts, "
     "touches, plasticity and further instances are left out.\n"
     "Started by mpirun, all ranks measure and the first one stores. Points of ranks and shards "

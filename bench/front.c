@@ -111,6 +111,9 @@ static void say_point(const BenchPoint *p, const BenchWish *wish, const char *wi
         snprintf(choice, sizeof choice, "fastlsm with w %g", p->w);
     int used = snprintf(sentence, BENCH_SENTENCE, "%s take %s: %.20s ms a step of %ld %s", wanted,
                         choice, ms, p->particles, tree ? "nodes" : "particles");
+    if (p->parts > 1)
+        used += snprintf(sentence + used, BENCH_SENTENCE - (size_t)used,
+                         " in %ld parts that no region joins", p->parts);
     if (isfinite(p->frequency))
         used += snprintf(sentence + used, BENCH_SENTENCE - (size_t)used,
                          ", a beam of %.3g Hz that sags %.3g%% of its length", p->frequency,

@@ -213,7 +213,8 @@ SmCode bench_width_mean(const BenchScene *scene, const BenchBody *body, double *
     const OctStructure *s = oct_engine_structure(runner.engine);
     double sum = 0, all = 0;
     for (long i = 0; i < s->tree.leaves; i++) {
-        sum += s->mass[i] * 0.5 * s->w[i];
+        double edge = 0.5 * s->tree.size[s->tree.node[i]], rings = floor(0.5 * s->w[i] / edge);
+        sum += s->mass[i] * ((rings + 0.5) * edge - 0.5);
         all += s->mass[i];
     }
     *cells = sum / all;

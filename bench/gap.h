@@ -49,7 +49,10 @@ void bench_gap_path(const BenchPath *path, const BenchPath *full, double size, B
 /* Largest extent of the body at rest. */
 double bench_body_size(const BenchBody *body);
 
-/* Half-width asked for of an octree's regions, in finest cells: mean over the body by mass. */
+/* The half-width with which a lattice's regions hold as much of the body as the octree's: mean over
+ * the body by mass, in finest cells. A node whose cell has the edge e is held with floor(w / e)
+ * rings of such cells, which reach (floor(w / e) + 1/2) e to each side, and a lattice of half-width
+ * w' reaches w' + 1/2. Of a regular sampling in finest cells it is w. */
 SmCode bench_width_mean(const BenchScene *scene, const BenchBody *body, double *cells,
                         SmError *error);
 

@@ -17,8 +17,7 @@ typedef struct {
     char reason[160];   /* why not */
     long particles;     /* or nodes */
     long regions;       /* unique ones */
-    double width_cells; /* half-width of the regions asked for, in finest cells: mean over the body
-                         * by mass; of a lattice w */
+    double width_cells; /* half-width with which a lattice's regions hold as much (gap.h) */
     double total_ms, total_low_ms, total_high_ms; /* median and quartiles of a step */
     double stage_ms[SM_STAGES];
     double build_seconds;

@@ -107,9 +107,17 @@ static void goals_deviate_with_epsilon(void **state)
     }
     double cells;
     SmError error;
-    scene.octree.width = (OctWidth){.cells = 2.5};
+    scene.octree.width = (OctWidth){.cells = 5.5};
+    scene.octree.sampling.levels = 1;
+    scene.octree.sampling.criteria[0] = (OctCriterion){.kind = OCT_UNIFORM};
+    scene.octree.sampling.criteria_count = 1;
     assert_int_equal(bench_width_mean(&scene, &body, &cells, &error), SM_OK);
-    assert_true(cells == 2.5); /* that of all nodes */
+    assert_true(cells == 5); /* the lattice's, in finest cells */
+    scene.octree.sampling.levels = 0;
+    scene.octree.sampling.criteria_count = 0;
+    scene.octree.width = (OctWidth){.edges = 1};
+    assert_int_equal(bench_width_mean(&scene, &body, &cells, &error), SM_OK);
+    assert_true(cells > 1 && cells < 24); /* of cells of 1 to 16 */
     bench_body_free(&body);
 }
 

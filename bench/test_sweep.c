@@ -226,6 +226,9 @@ static void recommendations_meet_the_wish(void **state)
             fail_msg("case %zu: %ld: %s", c, best, sentence);
     }
     char sentence[BENCH_SENTENCE];
+    point[1].parts = 4;
+    bench_recommend(point, 6, &cases[3].wish, "edges", sentence);
+    assert_non_null(strstr(sentence, "295 nodes in 4 parts that no region joins"));
     assert_int_equal(bench_recommend(point + 4, 2, &cases[0].wish, "edges", sentence), -1);
     assert_non_null(strstr(sentence, "no valid point"));
 }
