@@ -17,13 +17,9 @@ def fail(text, code):
 
 try:
     import h5py
-    import matplotlib
     import numpy
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    from matplotlib.colors import LogNorm
 except ImportError as missing:
-    fail(f"{missing}: scripts/setup installs it (python3-h5py, python3-matplotlib)", 3)
+    fail(f"{missing}: scripts/setup installs it (python3-h5py)", 3)
 
 LATTICE, OCTREE = "fastlsm", "octree"
 SCHEMA = 1
@@ -69,6 +65,17 @@ def short(value):
     return f"{value:.2g}" if value < 100 else f"{value:.0f}"
 
 
+def drawing():
+    """matplotlib's pyplot, without a display; only now, because it takes a second."""
+    try:
+        import matplotlib
+        matplotlib.use("Agg")
+        from matplotlib import pyplot
+    except ImportError as missing:
+        fail(f"{missing}: scripts/setup installs it (python3-matplotlib)", 3)
+    return pyplot
+
+
 def heat_map(axes, point, values, title, logarithmic):
     tree = point["engine"] == OCTREE
     ws, epsilons = numpy.unique(point["w"]), numpy.unique(point["epsilon"][tree])
@@ -79,6 +86,8 @@ def heat_map(axes, point, values, title, logarithmic):
     known = cells[numpy.isfinite(cells) & ((cells > 0) | (not logarithmic))]
     axes.set_facecolor("0.85")
     if known.size:
+        from matplotlib.colors import LogNorm
+
         norm = LogNorm(known.min(), max(known.max(), 1.001 * known.min())) if logarithmic else None
         image = axes.imshow(cells, origin="lower", aspect="auto", cmap="viridis", norm=norm)
         axes.figure.colorbar(image, ax=axes, pad=0.02)
@@ -128,7 +137,7 @@ def front(axes, plan, point):
 def main():
     arguments = parse()
     plan, point = read(arguments.file)
-    figure, axes = pyplot.subplots(2, 2, figsize=(11, 8), layout="constrained")
+    figure, axes = drawing().subplots(2, 2, figsize=(11, 8), layout="constrained")
     maps = ((axes[0][0], point["total_ms"], "ms a step", True),
             (axes[0][1], 100 * point["path_rms"], "path off: surface from full resolution, % of size, rms", False),
             (axes[1][0], point["frequency"], "first frequency of the regular beam, Hz", True))

@@ -36,7 +36,7 @@ grep -q '</svg>' small.svg || wrong "no SVG"
 [ "$(head -c 4 small.png | tail -c 3)" = PNG ] || wrong "no PNG"
 "$build/shapebench" sweep --scene small.cfg --w 8 --engine fastlsm --repeats 1 --block 0.1 --quiet \
     -o lattice.h5 >/dev/null
-"$scripts/plot_sweep.py" lattice.h5
+"$scripts/plot_sweep.py" lattice.h5 -o lattice.png
 refused 3 small.cfg
 refused 3 nothing.h5
 refused 4 small.h5 -o nowhere/small.svg
