@@ -15,33 +15,7 @@
 #include <cmocka.h>
 #include <jansson.h>
 
-#include "../lib/test_folder.h"
-
-typedef struct {
-    int code; /* exit code, or 1000 + signal */
-    char out[65536], err[4096];
-} Result;
-
-/* The text of a file in the test's folder. */
-static void slurp(const char *name, char *text, size_t room)
-{
-    FILE *file = fopen(path_in(name), "r");
-    size_t size = file ? fread(text, 1, room - 1, file) : 0;
-    text[size] = '\0';
-    if (file) fclose(file);
-}
-
-/* Runs "shapebench ARGUMENTS" by a shell in the test's folder. */
-static void run(const char *arguments, Result *result)
-{
-    char command[2048];
-    snprintf(command, sizeof command, "cd %s && '%s/shapebench' %s >out 2>err", folder, BINARY_DIR,
-             arguments);
-    int status = system(command);
-    result->code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-    slurp("out", result->out, sizeof result->out);
-    slurp("err", result->err, sizeof result->err);
-}
+#include "test_program.h"
 
 static bool there(const char *name)
 {
@@ -81,11 +55,7 @@ static int set_up(void **state)
 static void mistakes_are_one_line_and_an_exit_code(void **state)
 {
     (void)state;
-    static const struct {
-        const char *arguments;
-        int code;
-        const char *wanted;
-    } cases[] = {
+    static const Mistake cases[] = {
         {"--frobnicate", 2, "frobnicate"},
         {"frobnicate", 2, "unknown command 'frobnicate'"},
         {"penguin", 2, "unknown command 'penguin'; did you mean 'run penguin'?"},
@@ -144,17 +114,7 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"tables -o no/such/rows.h5", 4, "no/such/rows.h5"},
         {"tables --threads -1", 2, "--threads: '-1'"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        Result result;
-        run(cases[i].arguments, &result);
-        char *newline = strchr(result.err, '\n');
-        bool one_line = newline && !newline[1];
-        if (result.code != cases[i].code || !one_line || !strstr(result.err, cases[i].wanted))
-            fail_msg("shapebench %s: exit code %d (wanted %d), standard error:\n%s",
-                     cases[i].arguments, result.code, cases[i].code, result.err);
-        assert_memory_equal(result.err, "shapebench", 10);
-        assert_string_equal(result.out, "");
-    }
+    make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }
 
 static void help_is_everywhere(void **state)

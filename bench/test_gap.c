@@ -1,0 +1,154 @@
+/* How far apart two ways to simulate a scene are, and how stiff a beam is. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "beam.h"
+#include "gap.h"
+
+static BenchScene make_scene(const char *text)
+{
+    BenchScene scene;
+    SmError error;
+    if (bench_scene_parse(text, strlen(text), "test.cfg", &scene, &error))
+        fail_msg("%s", error.text);
+    return scene;
+}
+
+static BenchBody make_body(const BenchScene *scene)
+{
+    SmMesh mesh;
+    BenchBody body;
+    SmError error;
+    if (bench_mesh_of_scene(scene, NULL, &mesh, &error) ||
+        bench_body_create(scene, &mesh, &body, &error))
+        fail_msg("%s", error.text);
+    return body;
+}
+
+static void paths_are_compared_point_by_point(void **state)
+{
+    (void)state;
+    double a[4][3] = {{0}}, b[4][3] = {{0}};
+    b[1][2] = 3;
+    b[3][0] = 4;
+    BenchPath one = {2, 2, a, ""}, other = {2, 2, b, ""}, none = {.why = "it broke"};
+    BenchGap gap;
+    bench_gap_path(&one, &other, 10, &gap);
+    assert_true(fabs(gap.rms - 0.25) < 1e-12); /* sqrt((9 + 16) / 4) / 10 */
+    assert_true(fabs(gap.most - 0.4) < 1e-12);
+    bench_gap_path(&other, &other, 10, &gap);
+    assert_true(gap.rms == 0 && gap.most == 0 && !gap.why[0]);
+    bench_gap_path(&one, &none, 10, &gap);
+    assert_true(isnan(gap.rms) && isnan(gap.most));
+    assert_string_equal(gap.why, "it broke");
+}
+
+/* A force on all of a free body accelerates it as one, whatever its particles and masses are: also
+ * where the scene's engine is the octree, whose nodes each have the force. */
+static void forces_push_every_engine_alike(void **state)
+{
+    (void)state;
+    static const char *const engines[] = {"fastlsm", "octree"};
+    for (int e = 0; e < 2; e++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "mesh = \"shape:block\"; particles = 200; w = 2; h = 0.01; steps_per_frame = 2;\n"
+                 "engine = \"%s\"; octree = { levels = 1; nodes = 30; };\n"
+                 "forces = ( { box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 1.0, 1.0];\n"
+                 "             force = [0.3, 0.0, 0.2]; } );\n",
+                 engines[e]);
+        BenchScene scene = make_scene(text), tree = scene;
+        BenchBody body = make_body(&scene);
+        BenchPush push;
+        SmError error;
+        assert_int_equal(bench_push_find(&scene, &body, &push, &error), SM_OK);
+        assert_int_equal(push.count, 1);
+        if (e == 0) assert_true(fabs(push.acceleration[0][0] - 0.3) < 1e-12); /* unit masses */
+        BenchPath path, other;
+        BenchGap gap;
+        strcpy(scene.engine, "fastlsm");
+        strcpy(tree.engine, "octree");
+        bench_path_record(&scene, &body, &push, 10, 1, &path);
+        bench_path_record(&tree, &body, &push, 10, 1, &other);
+        assert_int_equal(path.points, body.mesh.vertex_count);
+        bench_gap_path(&path, &other, bench_body_size(&body), &gap);
+        assert_true(gap.most < 1e-6); /* the embedding is in single precision */
+        double n = 20, moved = push.acceleration[0][0] * 1e-4 * n * (n + 1) / 2;
+        double went = path.point[9 * path.points][0] - body.mesh.position[0][0];
+        assert_true(fabs(went / moved - 1) < 1e-5);
+        bench_path_free(&path);
+        bench_path_free(&other);
+        bench_body_free(&body);
+    }
+}
+
+static void goals_deviate_with_epsilon(void **state)
+{
+    (void)state;
+    BenchScene scene = make_scene("mesh = \"shape:hand\"; particles = 2000; engine = \"octree\";\n"
+                                  "handles = ( { box_low = [0.0, 0.0, 0.0];\n"
+                                  "              box_high = [1.0, 0.2, 1.0]; } );\n");
+    BenchBody body = make_body(&scene);
+    BenchGap gap;
+    double before = -1;
+    for (int i = 0; i < 3; i++) {
+        scene.octree.epsilon = i * 0.5;
+        bench_gap_goals(&scene, &body, &gap);
+        assert_true(gap.rms > before && gap.most >= gap.rms && gap.most < 10);
+        if (i == 0) assert_true(gap.most == 0);
+        before = gap.rms;
+    }
+    double cells;
+    SmError error;
+    scene.octree.width = (OctWidth){.cells = 5.5};
+    scene.octree.sampling.levels = 1;
+    scene.octree.sampling.criteria[0] = (OctCriterion){.kind = OCT_UNIFORM};
+    scene.octree.sampling.criteria_count = 1;
+    assert_int_equal(bench_width_mean(&scene, &body, &cells, &error), SM_OK);
+    assert_true(cells == 5); /* the lattice's, in finest cells */
+    scene.octree.sampling.levels = 0;
+    scene.octree.sampling.criteria_count = 0;
+    scene.octree.width = (OctWidth){.edges = 1};
+    assert_int_equal(bench_width_mean(&scene, &body, &cells, &error), SM_OK);
+    assert_true(cells > 1 && cells < 24); /* of cells of 1 to 16 */
+    bench_body_free(&body);
+}
+
+/* Nodes in all cells of the beam, with exact regions, are as stiff as a lattice; wider regions and
+ * a larger epsilon are stiffer. */
+static void beams_get_stiffer(void **state)
+{
+    (void)state;
+    BenchBeam lattice, exact, wide, wider;
+    bench_beam_measure("fastlsm", 4, 0, &lattice);
+    bench_beam_measure("octree", 4, 0, &exact);
+    bench_beam_measure("octree", 4, 0.5, &wide);
+    bench_beam_measure("octree", 6, 0, &wider);
+    assert_true(fabs(lattice.relaxation / exact.relaxation - 1) < 0.25);
+    assert_true(fabs(lattice.frequency / exact.frequency - 1) < 0.25);
+    assert_true(wide.frequency > exact.frequency && wide.sag < exact.sag);
+    assert_true(wide.relaxation > exact.relaxation);
+    assert_true(wider.frequency > exact.frequency && wider.relaxation > exact.relaxation);
+    BenchBeam again;
+    bench_beam_measure("octree", 4, 0.5, &again);
+    assert_true(again.sag == wide.sag && again.frequency == wide.frequency);
+    assert_string_equal(again.why, "");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(paths_are_compared_point_by_point),
+        cmocka_unit_test(forces_push_every_engine_alike),
+        cmocka_unit_test(goals_deviate_with_epsilon),
+        cmocka_unit_test(beams_get_stiffer),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
