@@ -1,0 +1,206 @@
+#include "costs.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../fastlsm/fastlsm.h"
+#include "cubes.h"
+#include "matrices.h"
+#include "spread.h"
+#include "tree_setup.h"
+#include "tree_steps.h"
+
+static int repeats_of(const BenchLab *lab)
+{
+    return lab->quick ? 5 : 15;
+}
+
+static void add_spread(BenchCurve *curve, double x, const double *value, int count)
+{
+    BenchSpread spread = bench_spread(value, count);
+    bench_curve_add(curve, x, spread.median, spread.low, spread.high);
+}
+
+/* ---- steps of cubes */
+
+static void create_cubes(const BenchLab *lab, const SmEngineParams *params, const int *side,
+                         const int *w, int count, BenchCube *cubes, BenchCurve *curve)
+{
+    SmError error;
+    for (int c = 0; c < count && curve->valid; c++) {
+        SmEngineParams own = *params;
+        own.w = w[c];
+        if (bench_cube_create(side[c], &fastlsm_engine_f32, &own, lab->seed, &cubes[c], &error))
+            bench_curve_fail(curve, "%.180s", error.text);
+        else if (!cubes[c].valid)
+            bench_curve_fail(curve, "cube of side %d, w = %d: %s", side[c], w[c], cubes[c].reason);
+    }
+}
+
+static void check_cubes(const BenchCube *cubes, int count, BenchCurve *curve)
+{
+    for (int c = 0; c < count; c++)
+        if (!cubes[c].valid) bench_curve_fail(curve, "%s", cubes[c].reason);
+}
+
+/* Mean over a row of `side` particles of how many are within w. */
+static double mean_side(int side, int w)
+{
+    double reach = w < side ? w : side - 1;
+    return 2 * reach + 1 - reach * (reach + 1) / side;
+}
+
+void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int w[BENCH_RANGE_POINTS], side[BENCH_RANGE_POINTS] = {0};
+    int count = bench_range_numbers(&measure->w, w), repeats = lab->quick ? 3 : 7;
+    BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
+    const SmEngineParams params = {
+        .h = 0.01, .summation = measure->summation, .threads = lab->threads};
+    for (int c = 0; c < count; c++) side[c] = lab->quick ? 16 : 28;
+    bench_curve_begin(curve, "mean side of a region, particles",
+                      "fast summation, ns/particle/step");
+    create_cubes(lab, &params, side, w, count, cubes, curve);
+    if (curve->valid) bench_cubes_time(cubes, count, repeats, true);
+    check_cubes(cubes, count, curve);
+    double *ns = sm_alloc((size_t)repeats, sizeof *ns);
+    for (int c = 0; c < count && curve->valid; c++) {
+        for (int r = 0; r < repeats; r++) ns[r] = bench_cube_stage_ns(&cubes[c], SM_FAST_SUM, r);
+        add_spread(curve, mean_side(side[c], w[c]), ns, repeats);
+    }
+    free(ns);
+    for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
+    free(cubes);
+}
+
+static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve *curve)
+{
+    int w[BENCH_RANGE_POINTS] = {0}, repeats = repeats_of(lab);
+    BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
+    const SmEngineParams params = {.h = 0.01, .damping = 0.1, .threads = lab->threads};
+    for (int c = 0; c < count; c++) w[c] = 1;
+    create_cubes(lab, &params, side, w, count, cubes, curve);
+    if (curve->valid) bench_cubes_time(cubes, count, repeats, false);
+    check_cubes(cubes, count, curve);
+    double *ms = sm_alloc((size_t)repeats, sizeof *ms);
+    for (int c = 0; c < count && curve->valid; c++) {
+        for (int r = 0; r < repeats; r++) ms[r] = 1e3 * cubes[c].total[r];
+        add_spread(curve, (double)cubes[c].particles, ms, repeats);
+    }
+    free(ms);
+    for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
+    free(cubes);
+}
+
+/* ---- steps of the octree on cubes */
+
+/* Of a step, or of its hierarchical sums alone: ms. */
+static double tree_ms(const BenchTreeStep *step, bool sums, int r)
+{
+    if (!sums) return step->total[r] / 1e6;
+    return (step->part[r][BENCH_TREE_DEPTH] + step->part[r][BENCH_TREE_BREADTH] +
+            step->part[r][BENCH_TREE_GOALS]) /
+           1e6;
+}
+
+static void time_trees(BenchLab *lab, BenchTreeStep *steps, int count, bool sums, BenchCurve *curve)
+{
+    int repeats = repeats_of(lab);
+    double *ms = sm_alloc((size_t)repeats, sizeof *ms);
+    for (int s = 0; s < count; s++) bench_tree_step_create_f32(&steps[s]);
+    bench_tree_steps_time_f32(steps, count, repeats);
+    for (int s = 0; s < count; s++) {
+        if (!steps[s].valid)
+            bench_curve_fail(curve, "octree of %ld nodes: %s", steps[s].body->tree.leaves,
+                             steps[s].reason);
+        for (int r = 0; r < repeats && curve->valid; r++) ms[r] = tree_ms(&steps[s], sums, r);
+        if (curve->valid) add_spread(curve, (double)steps[s].body->tree.leaves, ms, repeats);
+    }
+    for (int s = 0; s < count; s++) bench_tree_step_free_f32(&steps[s]);
+    free(ms);
+}
+
+static void octree_sizes(BenchLab *lab, const int *side, int count, bool sums, BenchCurve *curve)
+{
+    BenchSampled *body = sm_alloc((size_t)count, sizeof *body);
+    BenchTreeStep *steps = sm_alloc((size_t)count, sizeof *steps);
+    SmError error;
+    int made = 0;
+    for (; made < count && curve->valid; made++) {
+        if (bench_sampled_cube(side[made], &body[made], &error))
+            bench_curve_fail(curve, "%.180s", error.text);
+        steps[made] = (BenchTreeStep){
+            .body = &body[made], .parts = sums, .threads = lab->threads, .seed = lab->seed};
+    }
+    if (curve->valid) time_trees(lab, steps, count, sums, curve);
+    for (int s = 0; s < made; s++) bench_sampled_free(&body[s]);
+    free(steps);
+    free(body);
+}
+
+void bench_costs_size(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int side[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, side);
+    bool octree = !strcmp(measure->engine, "octree"), sums = !strcmp(measure->field, "sums");
+    for (int c = 0; c < count && lab->quick; c++) side[c] = side[c] > 40 ? 40 : side[c];
+    while (count > 1 && side[count - 1] == side[count - 2]) count--;
+    bench_curve_begin(curve, octree ? "nodes" : "particles", sums ? "sums, ms/step" : "ms/step");
+    if (octree)
+        octree_sizes(lab, side, count, sums, curve);
+    else
+        lattice_sizes(lab, side, count, curve);
+}
+
+/* ---- single numbers */
+
+void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int repeats = repeats_of(lab);
+    BenchPolar method = !strncmp(measure->field, "cold", 4)   ? BENCH_POLAR_COLD
+                        : !strncmp(measure->field, "warm", 4) ? BENCH_POLAR_WARM
+                                                              : BENCH_POLAR_BATCH;
+    BenchPolarResult result[BENCH_POLARS] = {0};
+    result[method].wanted = true;
+    bench_matrices_time(BENCH_F32, repeats, lab->seed, result);
+    bench_curve_begin(curve, "-", measure->field);
+    const BenchPolarResult *found = &result[method];
+    if (!found->valid)
+        bench_curve_fail(curve, "rotations differ from the SVD's by %.3g; at most %g allowed",
+                         found->error, found->limit);
+    else if (strstr(measure->field, "sweeps"))
+        bench_curve_add(curve, 0, found->sweeps, found->sweeps, found->sweeps);
+    else
+        add_spread(curve, 0, found->ns, repeats);
+    free(found->ns);
+}
+
+void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    BenchSampled body;
+    BenchSetup distances = {0}, regions = {0};
+    SmError error;
+    int before = omp_get_max_threads(), repeats = repeats_of(lab);
+    bench_curve_begin(curve, "-", measure->field);
+    if (bench_sampled_hand(false, &body, &error)) {
+        bench_curve_fail(curve, "%.180s", error.text);
+        return;
+    }
+    omp_set_num_threads(lab->threads); /* which regions take */
+    bench_setup_time(&body, BENCH_SETUP_DISTANCES, BENCH_F32, repeats, &distances);
+    bench_setup_time(&body, BENCH_SETUP_REGIONS, BENCH_F32, repeats, &regions);
+    omp_set_num_threads(before);
+    if (!distances.valid || !regions.valid)
+        bench_curve_fail(curve, "%s", distances.valid ? regions.reason : distances.reason);
+    else {
+        double percent = 100 * (double)body.tree.leaves;
+        BenchSpread a = bench_spread(distances.ns, distances.samples);
+        BenchSpread b = bench_spread(regions.ns, regions.samples);
+        bench_curve_add(curve, 0, percent * a.median / b.median, percent * a.low / b.high,
+                        percent * a.high / b.low);
+    }
+    free(distances.ns);
+    free(regions.ns);
+    bench_sampled_free(&body);
+}
