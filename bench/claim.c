@@ -42,7 +42,7 @@ static const BenchSetting range_table[] = {
 
 static const BenchSetting measure_table[] = {
     WORDS(BenchMeasure, "experiment", experiment, 1,
-          "none|scene|sums|size|polar|smoothing|blending|sag|setup"),
+          "none|scene|sums|size|polar|sweeps|smoothing|blending|sag|setup"),
     TEXT(BenchMeasure, "scene", scene),
     TEXT(BenchMeasure, "engine", engine),
     TEXT(BenchMeasure, "field", field),

@@ -8,6 +8,7 @@
 #include "../fastlsm/fastlsm.h"
 #include "cubes.h"
 #include "matrices.h"
+#include "play.h"
 #include "spread.h"
 #include "tree_setup.h"
 #include "tree_steps.h"
@@ -21,6 +22,14 @@ static void add_spread(BenchCurve *curve, double x, const double *value, int cou
 {
     BenchSpread spread = bench_spread(value, count);
     bench_curve_add(curve, x, spread.median, spread.low, spread.high);
+}
+
+/* The same of times of which the least counts: what else runs on the machine only adds. */
+static void add_least(BenchCurve *curve, double x, const double *value, int count)
+{
+    double least = value[0];
+    for (int r = 1; r < count; r++) least = fmin(least, value[r]);
+    bench_curve_add(curve, x, least, least, bench_spread(value, count).median);
 }
 
 /* ---- steps of cubes */
@@ -55,11 +64,11 @@ static double mean_side(int side, int w)
 void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
 {
     int w[BENCH_RANGE_POINTS], side[BENCH_RANGE_POINTS] = {0};
-    int count = bench_range_numbers(&measure->w, w), repeats = lab->quick ? 3 : 7;
+    int count = bench_range_numbers(&measure->w, w), repeats = lab->quick ? 5 : 11;
     BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
     const SmEngineParams params = {
         .h = 0.01, .summation = measure->summation, .threads = lab->threads};
-    for (int c = 0; c < count; c++) side[c] = lab->quick ? 16 : 28;
+    for (int c = 0; c < count; c++) side[c] = lab->quick ? 16 : 20;
     bench_curve_begin(curve, "mean side of a region, particles",
                       "fast summation, ns/particle/step");
     create_cubes(lab, &params, side, w, count, cubes, curve);
@@ -68,7 +77,7 @@ void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *cu
     double *ns = sm_alloc((size_t)repeats, sizeof *ns);
     for (int c = 0; c < count && curve->valid; c++) {
         for (int r = 0; r < repeats; r++) ns[r] = bench_cube_stage_ns(&cubes[c], SM_FAST_SUM, r);
-        add_spread(curve, mean_side(side[c], w[c]), ns, repeats);
+        add_least(curve, mean_side(side[c], w[c]), ns, repeats);
     }
     free(ns);
     for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
@@ -87,7 +96,7 @@ static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve 
     double *ms = sm_alloc((size_t)repeats, sizeof *ms);
     for (int c = 0; c < count && curve->valid; c++) {
         for (int r = 0; r < repeats; r++) ms[r] = 1e3 * cubes[c].total[r];
-        add_spread(curve, (double)cubes[c].particles, ms, repeats);
+        add_least(curve, (double)cubes[c].particles, ms, repeats);
     }
     free(ms);
     for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
@@ -116,7 +125,7 @@ static void time_trees(BenchLab *lab, BenchTreeStep *steps, int count, bool sums
             bench_curve_fail(curve, "octree of %ld nodes: %s", steps[s].body->tree.leaves,
                              steps[s].reason);
         for (int r = 0; r < repeats && curve->valid; r++) ms[r] = tree_ms(&steps[s], sums, r);
-        if (curve->valid) add_spread(curve, (double)steps[s].body->tree.leaves, ms, repeats);
+        if (curve->valid) add_least(curve, (double)steps[s].body->tree.leaves, ms, repeats);
     }
     for (int s = 0; s < count; s++) bench_tree_step_free_f32(&steps[s]);
     free(ms);
@@ -174,6 +183,48 @@ void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
     else
         add_spread(curve, 0, found->ns, repeats);
     free(found->ns);
+}
+
+/* Sweeps of a decomposition, mean over the steps of some frames from the start. */
+static double mean_sweeps(BenchPlay *play, int frames)
+{
+    double sum = 0;
+    const BenchRunner *runner = bench_play_runner(play);
+    int steps = frames * runner->scene->steps_per_frame;
+    for (int s = 0; s < steps; s++) {
+        SmCounts counts;
+        bench_play_prepare(play);
+        bench_play_advance(play, NULL);
+        runner->type->count(runner->engine, &counts);
+        sum += counts.jacobi_sweeps / steps;
+    }
+    return sum;
+}
+
+void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    SmMesh mesh;
+    BenchBody body = {0};
+    BenchPlay play;
+    SmError error;
+    SmCode code = bench_scene_find(measure->scene, scene, &error);
+    bench_curve_begin(curve, "-", "sweeps a decomposition");
+    scene->params.polar = SM_POLAR_JACOBI;
+    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, &error);
+    if (!code) code = bench_body_create(scene, &mesh, &body, &error);
+    if (!code)
+        code = bench_play_create(scene, &body, &fastlsm_engine_f32, lab->threads, lab->seed, &play,
+                                 &error);
+    if (code)
+        bench_curve_fail(curve, "%.180s", error.text);
+    else {
+        double sweeps = mean_sweeps(&play, lab->quick ? 5 : 20);
+        bench_curve_add(curve, 0, sweeps, sweeps, sweeps);
+        bench_play_free(&play);
+    }
+    bench_body_free(&body);
+    free(scene);
 }
 
 void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)

@@ -1,4 +1,4 @@
-/* costs.h - the experiments "sums", "size", "polar" and "setup" (experiment.h): what things cost.
+/* costs.h - the experiments "sums", "size", "polar", "sweeps" and "setup" (experiment.h): what things cost.
  */
 #ifndef BENCH_COSTS_H
 #define BENCH_COSTS_H
@@ -10,6 +10,7 @@
 void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 void bench_costs_size(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
+void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 
 #endif

@@ -36,6 +36,7 @@ static const Kind kinds[] = {
                          .field = true,
                          .fields = BENCH_POLAR_FIELDS,
                          .run = bench_costs_polar},
+    [BENCH_TRY_SWEEPS] = {.name = "sweeps", .scene = true, .run = bench_costs_sweeps},
     [BENCH_TRY_SMOOTHING] = {.name = "smoothing", .w = true, .run = bench_deform_smoothing},
     [BENCH_TRY_BLENDING] = {.name = "blending",
                             .matching = true,

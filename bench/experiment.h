@@ -1,7 +1,9 @@
 /* experiment.h - what a claim can have measured, each giving a curve: points (x, y) with spread.
  *
  * Everything is checked before it counts: a curve that is not valid says why. Times are of one
- * thread unless asked otherwise; y's spread is the quartiles of the repeats. */
+ * thread unless asked otherwise; y is the median of the repeats and its spread the quartiles, but
+ * of "sums" and "size" y and `low` are the least, which other work on the machine disturbs least,
+ * and `high` is the median. */
 #ifndef BENCH_EXPERIMENT_H
 #define BENCH_EXPERIMENT_H
 
@@ -20,6 +22,8 @@
  *            alone
  * polar      one point, `field`: "cold-sweeps", "warm-sweeps" of the paper's Jacobi, "cold-ns",
  *            "warm-ns", "fast-ns" (what the engines use) of matrices that turn and stretch
+ * sweeps     one point: Jacobi sweeps a decomposition of `scene` on fastlsm, each started from the
+ *            last step's eigenvectors; mean over its first 20 frames
  * smoothing  how far, in cells and on average, a perturbed cross-section of a bar has spread after
  *            two steps of smoothing (fastlsm Fig. 2), against w; range `w`
  * blending   largest jump of the displacement gradient between neighbouring particles' goals, in a
@@ -34,6 +38,7 @@ typedef enum {
     BENCH_TRY_SUMS,
     BENCH_TRY_SIZE,
     BENCH_TRY_POLAR,
+    BENCH_TRY_SWEEPS,
     BENCH_TRY_SMOOTHING,
     BENCH_TRY_BLENDING,
     BENCH_TRY_SAG,
