@@ -20,8 +20,8 @@ static const char *const expectations[] = {"reproduced", "different", "not compa
 /* A finding as it is stored: words instead of enums. */
 typedef struct {
     char paper[24], name[BENCH_CLAIM_NAME], place[32], unit[32], statement[240], note[200];
-    char status[16], take[16], test[96], expect[16], because[320], verdict[16], words[480];
-    char evidence[160], over[160];
+    char status[16], take[16], test[96], expect[16], because[320], verdict[16], words[560];
+    char evidence[208], over[208];
     int values, count, trend;
     double tolerance;
     double paper_value[BENCH_CLAIM_VALUES], measured[BENCH_CLAIM_VALUES];

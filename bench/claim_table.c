@@ -1,5 +1,6 @@
 #include "claim_table.h"
 
+#include <ctype.h>
 #include <jansson.h>
 #include <math.h>
 #include <string.h>
@@ -12,10 +13,10 @@
 
 static BenchGrid make_grid(const BenchFinding *findings, int count)
 {
-    static const char *const headings[] = {"paper",    "claim", "where",  "paper says",
-                                           "measured", "test",  "verdict"};
+    static const char *const headings[] = {"paper",    "claim", "where", "paper says",
+                                           "measured", "unit",  "test",  "verdict"};
     BenchGrid grid = {0};
-    for (int c = 0; c < 7; c++) bench_grid_column(&grid, headings[c], c != 3 && c != 4);
+    for (int c = 0; c < 8; c++) bench_grid_column(&grid, headings[c], c != 3 && c != 4);
     for (int f = 0; f < count; f++) {
         const BenchClaim *claim = &findings[f].claim;
         BenchGridLine *line = bench_grid_add(&grid);
@@ -27,8 +28,9 @@ static BenchGrid make_grid(const BenchFinding *findings, int count)
         strcpy((*line)[2], claim->place);
         snprintf((*line)[3], BENCH_GRID_TEXT, "%s%s", paper, marks[claim->status]);
         bench_verdict_measured(&findings[f], BENCH_GRID_TEXT, (*line)[4]);
-        bench_verdict_test(claim, BENCH_GRID_TEXT, (*line)[5]);
-        strcpy((*line)[6], bench_verdict_name(findings[f].verdict));
+        strcpy((*line)[5], claim->unit);
+        bench_verdict_test(claim, BENCH_GRID_TEXT, (*line)[6]);
+        strcpy((*line)[7], bench_verdict_name(findings[f].verdict));
     }
     return grid;
 }
@@ -55,9 +57,10 @@ static void write_notes(FILE *file, const BenchFinding *findings, int count, boo
         const BenchFinding *finding = &findings[f];
         const BenchClaim *claim = &finding->claim;
         fprintf(file, "%s%s %s: %s", item, claim->paper, claim->name, claim->statement);
-        if (claim->unit[0]) fprintf(file, " In %s.", claim->unit);
-        if (finding->verdict != BENCH_REPRODUCED) fprintf(file, " %s.", finding->words);
-        if (claim->note[0]) fprintf(file, " Paper: %s.", claim->note);
+        if (finding->verdict != BENCH_REPRODUCED) {
+            fprintf(file, " %c%s.", toupper((unsigned char)finding->words[0]), finding->words + 1);
+            if (claim->note[0]) fprintf(file, " (Paper: %s.)", claim->note);
+        }
         fprintf(file, " Evidence: %s%s%s", code, finding->evidence[0], code);
         if (finding->evidence[1][0]) fprintf(file, " by %s%s%s", code, finding->evidence[1], code);
         fputs(".\n", file);

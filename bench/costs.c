@@ -1,11 +1,13 @@
 #include "costs.h"
 
+#include <assert.h>
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../fastlsm/fastlsm.h"
+#include "../octree/distance.h"
 #include "cubes.h"
 #include "matrices.h"
 #include "play.h"
@@ -15,7 +17,7 @@
 
 static int repeats_of(const BenchLab *lab)
 {
-    return lab->quick ? 5 : 15;
+    return lab->quick ? 9 : 31;
 }
 
 static void add_spread(BenchCurve *curve, double x, const double *value, int count)
@@ -64,7 +66,8 @@ static double mean_side(int side, int w)
 void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
 {
     int w[BENCH_RANGE_POINTS], side[BENCH_RANGE_POINTS] = {0};
-    int count = bench_range_numbers(&measure->w, w), repeats = lab->quick ? 5 : 11;
+    int count = bench_range_numbers(&measure->w, w),
+        repeats = repeats_of(lab) / (measure->summation == SM_SUM_NAIVE ? 3 : 1);
     BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
     const SmEngineParams params = {
         .h = 0.01, .summation = measure->summation, .threads = lab->threads};
@@ -227,31 +230,57 @@ void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *
     free(scene);
 }
 
+/* One sample: milliseconds of the searches that finding all regions takes, each as far as its
+ * region may reach, and of finding the regions, those searches included. */
+static void time_regions(const BenchSampled *body, OctReach *reach, double *search, double *all)
+{
+    OctRegions regions;
+    double start = sm_now();
+    for (long i = 0; i < body->tree.leaves; i++)
+        oct_reach_from(reach, (int)i, (int)(body->w[i] + floor(body->epsilon * body->w[i])));
+    double middle = sm_now();
+    SmCode code =
+        oct_regions_build(&body->tree, &body->graph, body->w, body->epsilon, &regions, NULL);
+    *all = 1e3 * (sm_now() - middle);
+    *search = 1e3 * (middle - start);
+    assert(!code); /* they were built before */
+    oct_regions_free(&regions);
+}
+
+static void add_share(const BenchSampled *body, int repeats, BenchCurve *curve)
+{
+    OctReach reach;
+    double *share = sm_alloc((size_t)repeats, sizeof *share), search, all;
+    oct_reach_init(&reach, &body->graph);
+    time_regions(body, &reach, &search, &all); /* warms up */
+    for (int r = 0; r < repeats; r++) {
+        time_regions(body, &reach, &search, &all);
+        share[r] = 100 * search / all;
+    }
+    add_spread(curve, 0, share, repeats);
+    oct_reach_free(&reach);
+    free(share);
+}
+
 void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
 {
     BenchSampled body;
-    BenchSetup distances = {0}, regions = {0};
+    BenchSetup checked[2];
     SmError error;
-    int before = omp_get_max_threads(), repeats = repeats_of(lab);
+    int before = omp_get_max_threads();
     bench_curve_begin(curve, "-", measure->field);
     if (bench_sampled_hand(false, &body, &error)) {
         bench_curve_fail(curve, "%.180s", error.text);
         return;
     }
-    omp_set_num_threads(lab->threads); /* which regions take */
-    bench_setup_time(&body, BENCH_SETUP_DISTANCES, BENCH_F32, repeats, &distances);
-    bench_setup_time(&body, BENCH_SETUP_REGIONS, BENCH_F32, repeats, &regions);
-    omp_set_num_threads(before);
-    if (!distances.valid || !regions.valid)
-        bench_curve_fail(curve, "%s", distances.valid ? regions.reason : distances.reason);
-    else {
-        double percent = 100 * (double)body.tree.leaves;
-        BenchSpread a = bench_spread(distances.ns, distances.samples);
-        BenchSpread b = bench_spread(regions.ns, regions.samples);
-        bench_curve_add(curve, 0, percent * a.median / b.median, percent * a.low / b.high,
-                        percent * a.high / b.low);
+    omp_set_num_threads(1); /* which regions take; searches are one after the other */
+    bench_setup_time(&body, BENCH_SETUP_DISTANCES, BENCH_F32, 1, &checked[0]);
+    bench_setup_time(&body, BENCH_SETUP_REGIONS, BENCH_F32, 1, &checked[1]);
+    for (int c = 0; c < 2; c++) {
+        if (!checked[c].valid) bench_curve_fail(curve, "%s", checked[c].reason);
+        free(checked[c].ns);
     }
-    free(distances.ns);
-    free(regions.ns);
+    if (curve->valid) add_share(&body, repeats_of(lab), curve);
+    omp_set_num_threads(before);
     bench_sampled_free(&body);
 }

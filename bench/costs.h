@@ -1,4 +1,5 @@
-/* costs.h - the experiments "sums", "size", "polar", "sweeps" and "setup" (experiment.h): what things cost.
+/* costs.h - the experiments "sums", "size", "polar", "sweeps" and "setup" (experiment.h): what
+ * things cost.
  */
 #ifndef BENCH_COSTS_H
 #define BENCH_COSTS_H

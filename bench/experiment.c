@@ -185,13 +185,13 @@ static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
     char w[24] = "", n[24] = "";
     range_text("w", &measure->w, sizeof w, w);
     range_text("n", &measure->n, sizeof n, n);
-    snprintf(name, BENCH_CURVE_NAME, "%s%s%.30s%s%.12s%s%.24s%s%s%s%s", kind->name,
+    snprintf(name, BENCH_CURVE_NAME, "%s%s%s%s%s%s%s%s%s%s%s", kind->name,
              measure->scene[0] ? "." : "", measure->scene, measure->engine[0] ? "." : "",
              measure->engine, measure->field[0] ? "." : "", measure->field,
              kind->summation ? summations[measure->summation] : "",
              kind->matching ? matchers[measure->matching] : "", w, n);
     for (char *c = name; *c; c++)
-        if (*c == '/' || *c == ' ') *c = '_';
+        if (*c == '/' || *c == ' ') *c = *c == '/' ? '|' : '_';
 }
 
 void bench_lab_keep(BenchLab *lab, const BenchCurve *curve)
@@ -200,17 +200,12 @@ void bench_lab_keep(BenchLab *lab, const BenchCurve *curve)
     lab->curve[lab->curves++] = *curve;
 }
 
-static bool same(const BenchCurve *curve, const char *name)
-{
-    return !strcmp(curve->name, name);
-}
-
 int bench_experiment(BenchLab *lab, const BenchMeasure *measure)
 {
     char name[BENCH_CURVE_NAME];
     name_curve(measure, name);
     for (int c = 0; c < lab->curves; c++)
-        if (same(&lab->curve[c], name)) return c;
+        if (!strcmp(lab->curve[c].name, name)) return c;
     BenchCurve curve;
     bench_curve_begin(&curve, "", "");
     kinds[measure->experiment].run(lab, measure, &curve);
@@ -229,6 +224,7 @@ void bench_lab_free(BenchLab *lab)
         free(lab->row[r].change.time);
     }
     free(lab->row);
+    free(lab->row_name);
     free(lab->curve);
     lab->rows = lab->curves = 0;
 }

@@ -60,7 +60,7 @@ typedef struct {
     BenchRange w, n;
 } BenchMeasure;
 
-enum { BENCH_CURVE_POINTS = 64, BENCH_CURVE_NAME = 96, BENCH_RANGE_POINTS = 24 };
+enum { BENCH_CURVE_POINTS = 64, BENCH_CURVE_NAME = 192, BENCH_RANGE_POINTS = 24 };
 
 typedef struct {
     char name[BENCH_CURVE_NAME]; /* what was measured, without a blank or '/': unique */
@@ -80,8 +80,9 @@ typedef struct {
     unsigned long seed;
     BenchProgress *progress; /* or NULL */
     int rows, curves;
-    BenchRow *row;     /* [rows] */
-    BenchCurve *curve; /* [curves]; some are only evidence, of no claim */
+    BenchRow *row;        /* [rows] */
+    char (*row_name)[96]; /* [rows] scene, as the claims name it, and engine */
+    BenchCurve *curve;    /* [curves]; some are only evidence, of no claim */
 } BenchLab;
 
 /* What is wrong with a measurement's settings, or NULL. */

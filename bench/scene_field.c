@@ -154,33 +154,42 @@ static SmCode measure_row(BenchLab *lab, BenchScene *scene, BenchRow *row, SmErr
     return code;
 }
 
-/* The scene's row on the engine, or -1. */
-static int known_row(const BenchLab *lab, const BenchScene *scene)
+/* The row of this name, or -1. */
+static int known_row(const BenchLab *lab, const char *name)
 {
     for (int r = 0; r < lab->rows; r++)
-        if (!strcmp(lab->row[r].scene, scene->name) && !strcmp(lab->row[r].engine, scene->engine))
-            return r;
+        if (!strcmp(lab->row_name[r], name)) return r;
     return -1;
+}
+
+/* Takes the row over; returns its number. */
+static int keep_row(BenchLab *lab, const BenchRow *row, const char *name)
+{
+    size_t rows = (size_t)lab->rows + 1;
+    lab->row = sm_realloc(lab->row, rows, sizeof *lab->row);
+    lab->row_name = sm_realloc(lab->row_name, rows, sizeof *lab->row_name);
+    lab->row[lab->rows] = *row;
+    strcpy(lab->row_name[lab->rows], name);
+    return lab->rows++;
 }
 
 void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
 {
     BenchScene *scene = sm_alloc(1, sizeof *scene);
     SmError error;
+    char name[sizeof *lab->row_name];
+    snprintf(name, sizeof name, "%s %s", measure->scene, measure->engine);
+    int number = known_row(lab, name);
     SmCode code = bench_scene_find(measure->scene, scene, &error);
     if (!code && measure->engine[0])
         snprintf(scene->engine, sizeof scene->engine, "%s", measure->engine);
-    int number = code ? -1 : known_row(lab, scene);
     if (!code && number < 0) {
         BenchRow row = {0};
         code = measure_row(lab, scene, &row, &error);
         if (code)
             bench_row_free(&row);
-        else {
-            number = lab->rows++;
-            lab->row = sm_realloc(lab->row, (size_t)lab->rows, sizeof *lab->row);
-            lab->row[number] = row;
-        }
+        else
+            number = keep_row(lab, &row, name);
     }
     if (code)
         bench_curve_fail(curve, "%.180s", error.text);

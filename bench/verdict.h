@@ -20,8 +20,8 @@ typedef struct {
     double value[BENCH_CLAIM_VALUES], low[BENCH_CLAIM_VALUES], high[BENCH_CLAIM_VALUES];
     int trend; /* 1: the curve rises from point to point; -1: falls; 0: neither */
     BenchVerdict verdict;
-    char words[480];       /* why */
-    char evidence[2][160]; /* where in a results file it is; the second one, if any, what the
+    char words[560];       /* why */
+    char evidence[2][208]; /* where in a results file it is; the second one, if any, what the
                             * first is divided by */
 } BenchFinding;
 
