@@ -85,11 +85,13 @@ typedef struct {
 static __attribute__((format(printf, 2, 3))) SmCode fail_at(const Place *place, const char *format,
                                                             ...)
 {
-    char text[360];
+    char text[440];
     va_list values;
     va_start(values, format);
     vsnprintf(text, sizeof text, format, values);
     va_end(values);
+    for (char *c = text; *c; c++)
+        if (*c == '\n' || *c == '\r') *c = ' '; /* of a name in the file */
     return sm_fail(place->error, SM_INPUT, "%s:%u: %s", place->file, place->line, text);
 }
 

@@ -57,6 +57,8 @@ static void write_notes(FILE *file, const BenchFinding *findings, int count, boo
         const BenchFinding *finding = &findings[f];
         const BenchClaim *claim = &finding->claim;
         fprintf(file, "%s%s %s: %s", item, claim->paper, claim->name, claim->statement);
+        if (finding->verdict == BENCH_REPRODUCED && claim->because[0])
+            fprintf(file, " But %s.", claim->because);
         if (finding->verdict != BENCH_REPRODUCED) {
             fprintf(file, " %c%s.", toupper((unsigned char)finding->words[0]), finding->words + 1);
             if (claim->note[0]) fprintf(file, " (Paper: %s.)", claim->note);

@@ -123,17 +123,21 @@ static const char *needless(const BenchMeasure *measure, const Kind *kind)
     return NULL;
 }
 
+/* NULL, or the line that names what there is; it stands until the next one. */
 static const char *field_fault(const BenchMeasure *measure, const Kind *kind)
 {
-    bool octree = !strcmp(measure->engine, "octree");
-    if (measure->experiment == BENCH_TRY_SCENE)
-        return bench_scene_field_known(measure->field) ? NULL : bench_scene_field_fault;
-    if (!kind->fields) return NULL;
-    if (!listed(kind->fields, measure->field)) {
-        static char fault[160];
-        snprintf(fault, sizeof fault, "'field' is one of %s", kind->fields);
-        return fault;
+    static char fault[400];
+    char names[360] = "";
+    bool octree = !strcmp(measure->engine, "octree"), known = true;
+    if (measure->experiment == BENCH_TRY_SCENE) {
+        known = bench_scene_field_known(measure->field);
+        bench_scene_field_names(sizeof names, names);
+    } else if (kind->fields) {
+        known = listed(kind->fields, measure->field);
+        snprintf(names, sizeof names, "%s", kind->fields);
     }
+    snprintf(fault, sizeof fault, "'field' is one of %s", names);
+    if (!known) return fault;
     if (measure->experiment != BENCH_TRY_SIZE) return NULL;
     if (!octree && strcmp(measure->engine, "fastlsm") != 0)
         return "'engine' is \"fastlsm\" or \"octree\"";

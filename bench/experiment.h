@@ -85,7 +85,7 @@ typedef struct {
     BenchCurve *curve;    /* [curves]; some are only evidence, of no claim */
 } BenchLab;
 
-/* What is wrong with a measurement's settings, or NULL. */
+/* What is wrong with a measurement's settings, or NULL; the line stands until the next call. */
 const char *bench_experiment_fault(const BenchMeasure *measure);
 
 /* How many points its curve has at most. */

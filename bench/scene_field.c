@@ -53,10 +53,6 @@ static const Field fields[] = {
 };
 enum { FIELDS = sizeof fields / sizeof fields[0] };
 
-const char bench_scene_field_fault[] =
-    "'field' is not one of a scene: see bench/scene_field.h, for example \"particles\", "
-    "\"total_ms\", \"stage_percent\"";
-
 static const Field *find(const char *name)
 {
     for (int f = 0; f < FIELDS; f++)
@@ -67,6 +63,13 @@ static const Field *find(const char *name)
 bool bench_scene_field_known(const char *name)
 {
     return find(name) != NULL;
+}
+
+void bench_scene_field_names(size_t size, char *names)
+{
+    size_t used = 0;
+    for (int f = 0; f < FIELDS && used < size; f++)
+        used += (size_t)snprintf(names + used, size - used, "%s%s", f ? "|" : "", fields[f].name);
 }
 
 /* The share of some stages, given as bits, with its spread over the repeats. */

@@ -12,7 +12,9 @@
 #include "experiment.h"
 
 bool bench_scene_field_known(const char *name);
-extern const char bench_scene_field_fault[]; /* the line for one that is not */
+
+/* All names, separated by |. */
+void bench_scene_field_names(size_t size, char *names);
 
 /* Fills the curve from a row; it has `steps_per_frame` of its scene. */
 void bench_scene_field(const BenchRow *row, int steps_per_frame, const char *name,

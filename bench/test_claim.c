@@ -92,6 +92,9 @@ static void mistakes_are_named_with_their_line(void **state)
         {"from = 1", "from = 9", "my.cfg:2:", "rising"},
         {"to = 8", "to = 80", "my.cfg:2:", "at most 16"},
         {"w = {", "scene = \"beam\"; w = {", "my.cfg:2:", "'scene' is not of this"},
+        {"experiment = \"sums\"; w = { from = 1; to = 8; points = 4; };",
+         "experiment = \"scene\"; scene = \"hand\"; field = \"x\";",
+         "my.cfg:2:", "one of particles|regions|"},
         {"value = 3.0;", "", "my.cfg:2:", "no value"},
         {"value = 3.0;", "value = 3.0; number = \"x\";", "my.cfg:2:", "give one of them"},
         {"value = 3.0;", "number = \"x\";", "my.cfg:2:", "has no number 'x'"},
@@ -265,7 +268,7 @@ static void tables_say_all(void **state)
         const char *has[3];
     } cases[] = {
         {BENCH_AS_TEXT,
-         {"1 reproduced, 1 differs", "3.25 to 1.25", "differs because of the weather"}},
+         {"1 reproduced, 1 differs", "3.25 to 1.25", "Differs because of the weather"}},
         {BENCH_AS_MARKDOWN, {"| p | n |", "`/curves/sag.beam.w1-3.3`", "| falls |"}},
         {BENCH_AS_LATEX, {"\\begin{tabular}", "3.25 to 1.25", "\\end{tabular}"}},
         {BENCH_AS_CSV,

@@ -147,7 +147,8 @@ static void judge(BenchFinding *finding)
         snprintf(finding->words, sizeof finding->words, "not comparable: %s", claim->because);
     } else if (passes(finding)) {
         finding->verdict = BENCH_REPRODUCED;
-        snprintf(finding->words, sizeof finding->words, "%s", test);
+        snprintf(finding->words, sizeof finding->words, "%s%s%s", test,
+                 claim->because[0] ? "; " : "", claim->because);
     } else if (claim->expect == BENCH_DIFFERS) {
         finding->verdict = BENCH_HAS_DIFFERED;
         snprintf(finding->words, sizeof finding->words, "differs because %s", claim->because);
