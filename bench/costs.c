@@ -63,26 +63,39 @@ static double mean_side(int side, int w)
     return 2 * reach + 1 - reach * (reach + 1) / side;
 }
 
+/* The sums' share of the step, of which the least CPU time counts: of a stage alone there is only
+ * the time on the wall, which other work is in, too. */
+static void add_sums(BenchCurve *curve, double x, const BenchCube *cube)
+{
+    double *share = sm_alloc((size_t)cube->repeats, sizeof *share);
+    double least = INFINITY;
+    for (int r = 0; r < cube->repeats; r++) {
+        double all = 0;
+        for (int s = 0; s < SM_STAGES; s++) all += bench_cube_stage_ns(cube, (SmStage)s, r);
+        share[r] = bench_cube_stage_ns(cube, SM_FAST_SUM, r) / all;
+        least = fmin(least, bench_cube_cpu_ns(cube, r));
+    }
+    BenchSpread spread = bench_spread(share, cube->repeats);
+    bench_curve_add(curve, x, least * spread.median, least * spread.low, least * spread.high);
+    free(share);
+}
+
 void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
 {
     int w[BENCH_RANGE_POINTS], side[BENCH_RANGE_POINTS] = {0};
     int count = bench_range_numbers(&measure->w, w),
-        repeats = repeats_of(lab) / (measure->summation == SM_SUM_NAIVE ? 3 : 1);
+        repeats = repeats_of(lab) / (measure->summation == SM_SUM_NAIVE ? 6 : 1);
     BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
     const SmEngineParams params = {
         .h = 0.01, .summation = measure->summation, .threads = lab->threads};
-    for (int c = 0; c < count; c++) side[c] = lab->quick ? 16 : 20;
+    for (int c = 0; c < count; c++) side[c] = lab->quick ? 20 : 32;
     bench_curve_begin(curve, "mean side of a region, particles",
                       "fast summation, ns/particle/step");
     create_cubes(lab, &params, side, w, count, cubes, curve);
     if (curve->valid) bench_cubes_time(cubes, count, repeats, true);
     check_cubes(cubes, count, curve);
-    double *ns = sm_alloc((size_t)repeats, sizeof *ns);
-    for (int c = 0; c < count && curve->valid; c++) {
-        for (int r = 0; r < repeats; r++) ns[r] = bench_cube_stage_ns(&cubes[c], SM_FAST_SUM, r);
-        add_least(curve, mean_side(side[c], w[c]), ns, repeats);
-    }
-    free(ns);
+    for (int c = 0; c < count && curve->valid; c++)
+        add_sums(curve, mean_side(side[c], w[c]), &cubes[c]);
     for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
     free(cubes);
 }
@@ -98,8 +111,10 @@ static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve 
     check_cubes(cubes, count, curve);
     double *ms = sm_alloc((size_t)repeats, sizeof *ms);
     for (int c = 0; c < count && curve->valid; c++) {
-        for (int r = 0; r < repeats; r++) ms[r] = 1e3 * cubes[c].total[r];
-        add_least(curve, (double)cubes[c].particles, ms, repeats);
+        double particles = (double)cubes[c].particles;
+        for (int r = 0; r < repeats; r++)
+            ms[r] = 1e-6 * bench_cube_cpu_ns(&cubes[c], r) * particles;
+        add_least(curve, particles, ms, repeats);
     }
     free(ms);
     for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
@@ -184,7 +199,7 @@ void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
     else if (strstr(measure->field, "sweeps"))
         bench_curve_add(curve, 0, found->sweeps, found->sweeps, found->sweeps);
     else
-        add_spread(curve, 0, found->ns, repeats);
+        add_least(curve, 0, found->ns, repeats);
     free(found->ns);
 }
 
@@ -232,34 +247,39 @@ void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *
 
 /* One sample: milliseconds of the searches that finding all regions takes, each as far as its
  * region may reach, and of finding the regions, those searches included. */
-static void time_regions(const BenchSampled *body, OctReach *reach, double *search, double *all)
+static void time_regions(const BenchSampled *body, const int *w, OctReach *reach, double *search,
+                         double *all)
 {
     OctRegions regions;
     double start = sm_now();
     for (long i = 0; i < body->tree.leaves; i++)
-        oct_reach_from(reach, (int)i, (int)(body->w[i] + floor(body->epsilon * body->w[i])));
+        oct_reach_from(reach, (int)i, (int)(w[i] + floor(body->epsilon * w[i])));
     double middle = sm_now();
-    SmCode code =
-        oct_regions_build(&body->tree, &body->graph, body->w, body->epsilon, &regions, NULL);
+    SmCode code = oct_regions_build(&body->tree, &body->graph, w, body->epsilon, &regions, NULL);
     *all = 1e3 * (sm_now() - middle);
     *search = 1e3 * (middle - start);
     assert(!code); /* they were built before */
     oct_regions_free(&regions);
 }
 
-static void add_share(const BenchSampled *body, int repeats, BenchCurve *curve)
+/* With regions so many times as wide as the body's. */
+static void add_share(const BenchSampled *body, int times, int repeats, BenchCurve *curve)
 {
     OctReach reach;
+    size_t leaves = (size_t)body->tree.leaves;
     double *share = sm_alloc((size_t)repeats, sizeof *share), search, all;
+    int *w = sm_alloc(leaves, sizeof *w);
+    for (size_t i = 0; i < leaves; i++) w[i] = times * body->w[i];
     oct_reach_init(&reach, &body->graph);
-    time_regions(body, &reach, &search, &all); /* warms up */
+    time_regions(body, w, &reach, &search, &all); /* warms up */
     for (int r = 0; r < repeats; r++) {
-        time_regions(body, &reach, &search, &all);
+        time_regions(body, w, &reach, &search, &all);
         share[r] = 100 * search / all;
     }
-    add_spread(curve, 0, share, repeats);
+    add_spread(curve, times, share, repeats);
     oct_reach_free(&reach);
     free(share);
+    free(w);
 }
 
 void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
@@ -267,8 +287,9 @@ void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
     BenchSampled body;
     BenchSetup checked[2];
     SmError error;
+    int times[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, times);
     int before = omp_get_max_threads();
-    bench_curve_begin(curve, "-", measure->field);
+    bench_curve_begin(curve, "times 0.75 of a node's edge", measure->field);
     if (bench_sampled_hand(false, &body, &error)) {
         bench_curve_fail(curve, "%.180s", error.text);
         return;
@@ -280,7 +301,8 @@ void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
         if (!checked[c].valid) bench_curve_fail(curve, "%s", checked[c].reason);
         free(checked[c].ns);
     }
-    if (curve->valid) add_share(&body, repeats_of(lab), curve);
+    for (int t = 0; t < count && curve->valid; t++)
+        add_share(&body, times[t], repeats_of(lab), curve);
     omp_set_num_threads(before);
     bench_sampled_free(&body);
 }

@@ -45,6 +45,7 @@ static const Kind kinds[] = {
     [BENCH_TRY_SAG] = {.name = "sag", .scene = true, .w = true, .run = bench_deform_sag},
     [BENCH_TRY_SETUP] = {.name = "setup",
                          .field = true,
+                         .n = true,
                          .fields = "distance-share",
                          .run = bench_costs_setup},
 };
