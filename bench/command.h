@@ -21,5 +21,6 @@ int bench_command_tables(int argc, char **argv);
 int bench_command_kernels(int argc, char **argv);
 int bench_command_sweep(int argc, char **argv);
 int bench_command_merge(int argc, char **argv);
+int bench_command_claims(int argc, char **argv);
 
 #endif

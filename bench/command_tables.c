@@ -219,7 +219,7 @@ int bench_command_tables(int argc, char **argv)
     bench_options_parse(&argp, argc, argv, &options, &options.common);
     SmCode code = choose_scenes(&options, &error);
     BenchRow *rows = sm_alloc(SCENES, sizeof *rows);
-    if (!code && options.output) code = bench_draft_try(options.output, &error);
+    if (!code) code = bench_draft_try(options.output, &error);
     if (!code) code = measure_all(&options, rows, &error);
     if (!code) {
         BenchMachine machine;

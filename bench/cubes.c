@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "check.h"
 
@@ -119,20 +120,30 @@ void bench_cube_free(BenchCube *cube)
     free(cube->x);
     free(cube->v);
     free(cube->total);
+    free(cube->cpu);
     free(cube->stage);
     *cube = (BenchCube){0};
 }
 
-/* Seconds a step; with `stage`, instrumented. The first step, which fills caches, is not timed. */
-static double sample(BenchCube *cube, int steps, double stage[SM_STAGES])
+static double cpu_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Seconds a step, and CPU seconds; with `stage`, instrumented. The first step, which fills caches,
+ * is not timed. */
+static double sample(BenchCube *cube, int steps, double stage[SM_STAGES], double *cpu)
 {
     SmLaps laps;
     restore(cube);
     cube->type->step(cube->engine, NULL);
-    double start = sm_now();
+    double cpu_start = cpu_now(), start = sm_now();
     if (stage) sm_laps_start(&laps);
     for (int i = 0; i < steps; i++) cube->type->step(cube->engine, stage ? &laps : NULL);
     double seconds = sm_now() - start;
+    *cpu = (cpu_now() - cpu_start) / steps;
     for (int s = 0; stage && s < SM_STAGES; s++) {
         stage[s] = laps.seconds[s] / steps;
         cube->laps[s] = laps.count[s] / steps;
@@ -154,12 +165,15 @@ static void check_end(BenchCube *cube)
 
 void bench_cubes_time(BenchCube *cubes, int count, int repeats, bool stages)
 {
+    double unused;
     for (BenchCube *c = cubes; c < cubes + count; c++) {
         if (!c->valid) continue;
         c->repeats = repeats;
         c->total = sm_alloc((size_t)repeats, sizeof *c->total);
+        c->cpu = sm_alloc((size_t)repeats, sizeof *c->cpu);
         if (stages) c->stage = sm_alloc((size_t)repeats, sizeof *c->stage);
-        double step = fmin(sample(c, 1, NULL), sample(c, 1, NULL)); /* also warms up */
+        double first = sample(c, 1, NULL, c->cpu); /* also warms up */
+        double step = fmin(first, sample(c, 1, NULL, c->cpu));
         c->clock = stages ? sm_lap_seconds() : 0;
         c->steps = (int)fmin(fmax(ceil(sample_seconds / step), 1), MOST_STEPS);
     }
@@ -167,8 +181,8 @@ void bench_cubes_time(BenchCube *cubes, int count, int repeats, bool stages)
         for (int i = 0; i < count; i++) {
             BenchCube *c = &cubes[(r + i) % count]; /* no cube is always first */
             if (!c->valid) continue;
-            c->total[r] = sample(c, c->steps, NULL);
-            if (stages) sample(c, c->steps, c->stage[r]);
+            c->total[r] = sample(c, c->steps, NULL, &c->cpu[r]);
+            if (stages) sample(c, c->steps, c->stage[r], &unused);
         }
     for (BenchCube *c = cubes; c < cubes + count; c++) {
         if (!c->valid) continue;
@@ -188,4 +202,9 @@ double bench_cube_stage_ns(const BenchCube *cube, SmStage stage, int r)
 {
     double seconds = cube->stage[r][stage] - cube->clock * (double)cube->laps[stage];
     return 1e9 * fmax(seconds, 0) / (double)cube->particles;
+}
+
+double bench_cube_cpu_ns(const BenchCube *cube, int r)
+{
+    return 1e9 * cube->cpu[r] / (double)cube->particles;
 }

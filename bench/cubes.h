@@ -23,6 +23,7 @@ typedef struct {
     double sweeps;    /* Jacobi sweeps of the last step */
     int repeats;
     double *total;              /* [repeats] seconds a step */
+    double *cpu;                /* [repeats] CPU seconds of the process a step, of the same steps */
     double (*stage)[SM_STAGES]; /* [repeats] seconds a step, instrumented; or NULL */
     long laps[SM_STAGES];       /* of an instrumented step */
     double clock;               /* seconds that a lap's clock takes */
@@ -41,5 +42,8 @@ void bench_cubes_time(BenchCube *cubes, int count, int repeats, bool stages);
 /* ns a particle and step in sample r: of the total, or of one stage, less its laps' clocks. */
 double bench_cube_ns(const BenchCube *cube, int r);
 double bench_cube_stage_ns(const BenchCube *cube, SmStage stage, int r);
+
+/* The total in CPU time, which other work on the machine hardly touches; for one thread. */
+double bench_cube_cpu_ns(const BenchCube *cube, int r);
 
 #endif

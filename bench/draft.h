@@ -19,7 +19,8 @@ typedef struct {
  * full, or a target that is there and not a regular file (a folder, a device). */
 SmCode bench_draft_begin(const char *path, BenchDraft *draft, SmError *error);
 
-/* Can it be begun? Now rather than after minutes of measuring. Leaves nothing. */
+/* Can the file be written? Asked before what takes minutes, whose result it is to hold. NULL: none
+ * is wanted. Leaves nothing behind. */
 SmCode bench_draft_try(const char *path, SmError *error);
 
 /* Syncs the draft and renames it. On SM_OUTPUT the draft is gone and the target untouched. */

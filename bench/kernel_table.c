@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "export.h"
+#include "quote.h"
+
 const char *const bench_kernel_formats[] = {"text", "markdown", "csv", "json", NULL};
 
 /* ---- for programs */
@@ -49,18 +52,6 @@ static void fill_cells(const BenchKernel *row, Cell cell[COLUMNS])
     memcpy(cell, cells, sizeof cells);
 }
 
-/* Quoted where it must be (RFC 4180). */
-static void csv_text(FILE *file, const char *text)
-{
-    bool quote = text[strcspn(text, ",\"\r\n")];
-    if (quote) fputc('"', file);
-    for (; *text; text++) {
-        if (*text == '"') fputc('"', file);
-        fputc(*text, file);
-    }
-    if (quote) fputc('"', file);
-}
-
 static void write_csv(FILE *file, const BenchKernel *rows, int count)
 {
     Cell cell[COLUMNS];
@@ -72,34 +63,14 @@ static void write_csv(FILE *file, const BenchKernel *rows, int count)
         for (int c = 0; c < COLUMNS; c++) {
             if (c) fputc(',', file);
             if (cell[c].text)
-                csv_text(file, cell[c].text);
+                bench_csv_text(file, cell[c].text);
             else if (cell[c].time && !rows[r].valid)
                 fputs("INVALID", file);
-            else if (isfinite(cell[c].number))
-                fprintf(file, "%.9g", cell[c].number);
+            else
+                bench_csv_number(file, cell[c].number);
         }
         fputc('\n', file);
     }
-}
-
-static json_t *json_number(double value)
-{
-    if (!isfinite(value)) return json_null();
-    return value == rint(value) && fabs(value) < 1e15 ? json_integer((json_int_t)value)
-                                                      : json_real(value);
-}
-
-/* Bytes that are no UTF-8 (of a command line) become '?'. */
-static json_t *json_text(const char *text)
-{
-    json_t *value = json_string(text);
-    if (value) return value;
-    size_t size = strlen(text);
-    char *copy = sm_alloc(size + 1, 1);
-    for (size_t i = 0; i < size; i++) copy[i] = (unsigned char)text[i] < 128 ? text[i] : '?';
-    value = json_string(copy);
-    free(copy);
-    return value;
 }
 
 static json_t *json_row(const BenchKernel *row)
@@ -108,9 +79,9 @@ static json_t *json_row(const BenchKernel *row)
     json_t *object = json_object();
     fill_cells(row, cell);
     for (int c = 0; c < COLUMNS; c++) {
-        json_t *value = cell[c].text                  ? json_text(cell[c].text)
+        json_t *value = cell[c].text                  ? bench_json_text(cell[c].text)
                         : cell[c].time && !row->valid ? json_null()
-                                                      : json_number(cell[c].number);
+                                                      : bench_json_number(cell[c].number);
         if (!strcmp(cell[c].name, "valid")) {
             json_decref(value);
             value = json_boolean(row->valid);
@@ -135,36 +106,6 @@ static json_t *json_rates(const BenchRates *rates)
     return object;
 }
 
-static json_t *json_environment(const BenchMachine *machine)
-{
-    int count;
-    const BenchField *fields = bench_machine_fields(&count);
-    json_t *object = json_object();
-    for (int i = 0; i < count; i++) {
-        const char *at = (const char *)machine + fields[i].offset;
-        json_t *value = NULL;
-        switch (fields[i].kind) {
-        case BENCH_TEXT:
-            value = json_text(at);
-            break;
-        case BENCH_INT:
-            value = json_integer(*(const int *)(const void *)at);
-            break;
-        case BENCH_LONG:
-            value = json_integer(*(const long *)(const void *)at);
-            break;
-        case BENCH_BOOL:
-            value = json_boolean(*(const bool *)at);
-            break;
-        case BENCH_HASH:
-        case BENCH_DOUBLE:
-            break; /* the machine has none */
-        }
-        if (value) json_object_set_new(object, fields[i].name, value);
-    }
-    return object;
-}
-
 static void write_json(FILE *file, const BenchKernel *rows, int count,
                        const BenchCeilings *ceilings, const BenchMachine *machine)
 {
@@ -174,7 +115,7 @@ static void write_json(FILE *file, const BenchKernel *rows, int count,
     if (ceilings->all.threads > 1) json_array_append_new(rates, json_rates(&ceilings->all));
     json_object_set_new(root, "ceilings", rates);
     json_object_set_new(root, "kernels", list);
-    json_object_set_new(root, "environment", json_environment(machine));
+    json_object_set_new(root, "environment", bench_json_machine(machine));
     json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     fputc('\n', file);
     json_decref(root);

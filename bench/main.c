@@ -13,6 +13,8 @@ static const BenchCommand commands[] = {
     {"tables", "measure a paper's table: every stage, checked, the paper's values beside",
      bench_command_tables},
     {"kernels", "time every kernel alone against what this machine can do", bench_command_kernels},
+    {"claims", "hold every quantitative claim of the papers against what is measured here",
+     bench_command_claims},
     {"run", "simulate a scene or a mesh and write its motion", bench_command_run},
     {"sweep", "cost, stiffness and deviation over region width and epsilon; recommend some",
      bench_command_sweep},

@@ -1,16 +1,16 @@
 #include "scene.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "builtin.h"
+#include "config_file.h"
 #include "scene_check.h"
 #include "setting.h"
 
-enum { SCENE_BYTES = 1 << 20, BUILTIN_MAX = 64 };
+enum { BUILTIN_MAX = 64 };
 
 /* What a file says, before the four kinds of obstacle become one array. */
 typedef struct {
@@ -252,23 +252,6 @@ static SmCode check(SceneFile *read, SmError *error)
     return code;
 }
 
-/* libconfig would open other files for @include, and would stop at a zero byte. */
-static SmCode check_text(const char *text, size_t size, const char *file, SmError *error)
-{
-    if (size > SCENE_BYTES)
-        return sm_fail(error, SM_INPUT, "%s: not a scene file: over %d bytes", file, SCENE_BYTES);
-    int line = 1;
-    for (size_t i = 0; i < size; i++) {
-        if (text[i] == '\0')
-            return sm_fail(error, SM_INPUT, "%s:%d: not a scene file: a zero byte", file, line);
-        if (text[i] == '@' && size - i >= 8 && !memcmp(text + i, "@include", 8))
-            return sm_fail(error, SM_INPUT, "%s:%d: '@include' is not supported: copy the text in",
-                           file, line);
-        line += text[i] == '\n';
-    }
-    return SM_OK;
-}
-
 /* "dir/penguin.cfg" names the scene "penguin". */
 static void name_scene(BenchScene *scene, const char *file)
 {
@@ -279,56 +262,21 @@ static void name_scene(BenchScene *scene, const char *file)
     if (dot && dot != scene->name) *dot = '\0';
 }
 
-static SmCode not_parsed(const config_t *config, const char *file, SmError *error)
-{
-    const char *text = config_error_text(config);
-    const char *remedy = strstr(text, "mismatched")
-                             ? "write all numbers of a [ ] with a decimal point, or use ( )"
-                             : "settings look like: name = value;";
-    return sm_fail(error, SM_INPUT, "%s:%d: %s; %s", file, config_error_line(config), text, remedy);
-}
-
 SmCode bench_scene_parse(const char *text, size_t size, const char *file, BenchScene *scene,
                          SmError *error)
 {
-    SmCode code = check_text(text, size, file, error);
+    config_t config;
+    SmCode code = bench_config_parse(text, size, file, "scene", &config, error);
     if (code) return code;
-    char *copy = sm_alloc(size + 1, 1);
-    memcpy(copy, text, size);
     SceneFile *read = sm_alloc(1, sizeof *read);
     bench_scene_init(&read->scene);
     name_scene(&read->scene, file);
-    config_t config;
-    config_init(&config);
-    if (config_read_string(&config, copy))
-        code = bench_settings_read(config_root_setting(&config), scene_table, read, file, error);
-    else
-        code = not_parsed(&config, file, error);
+    code = bench_settings_read(config_root_setting(&config), scene_table, read, file, error);
     config_destroy(&config);
     if (!code) code = check(read, error);
     if (!code) *scene = read->scene;
     free(read);
-    free(copy);
     return code;
-}
-
-/* The file's text, at most a byte more than a scene may have; NULL and `error` on failure. */
-static char *read_all(const char *path, size_t *size, SmError *error)
-{
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        sm_fail(error, SM_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
-        return NULL;
-    }
-    char *text = sm_alloc(SCENE_BYTES + 1, 1);
-    *size = fread(text, 1, SCENE_BYTES + 1, file);
-    if (ferror(file)) {
-        sm_fail(error, SM_INPUT, "%s: cannot be read: %s", path, strerror(errno));
-        free(text);
-        text = NULL;
-    }
-    fclose(file);
-    return text;
 }
 
 /* A mesh or mass path in a scene file is relative to that file. */
@@ -349,7 +297,7 @@ SmCode bench_scene_read(const char *path, BenchScene *scene, SmError *error)
     size_t size = 0;
     if (strlen(path) >= BENCH_PATH)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", path);
-    char *text = read_all(path, &size, error);
+    char *text = bench_config_load(path, &size, error);
     if (!text) return SM_INPUT;
     SmCode code = bench_scene_parse(text, size, path, scene, error);
     free(text);

@@ -97,7 +97,7 @@ static void stage_names(size_t size, char *names)
                                  sm_stage_name((SmStage)stage));
 }
 
-static void write_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
+void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
 {
     char name[16], stages[128];
     snprintf(name, sizeof name, "%03d", index);
@@ -124,7 +124,7 @@ static void write_file(BenchH5 *h5, const BenchRow *rows, int count, const Bench
     hid_t group = bench_h5_group(h5, h5->file, "machine");
     bench_h5_fields(h5, group, machine_fields, machine_count, machine);
     group = bench_h5_group(h5, h5->file, "rows");
-    for (int i = 0; i < count; i++) write_row(h5, group, i, &rows[i]);
+    for (int i = 0; i < count; i++) bench_store_row(h5, group, i, &rows[i]);
 }
 
 SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
@@ -188,29 +188,9 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     }
 }
 
-/* True when the file says that it is ours and of our schema. */
-static void check_kind(BenchH5 *h5)
-{
-    char kind[64] = "";
-    int schema = 0;
-    const BenchField field = {"schema", BENCH_INT, 0, sizeof schema};
-    bench_h5_read_text(h5, h5->file, "kind", sizeof kind, kind);
-    if (h5->failed || strcmp(kind, file_kind) != 0) {
-        snprintf(h5->message, sizeof h5->message, "it is HDF5, but not a shapebench results file");
-        h5->failed = true;
-    }
-    bench_h5_read_fields(h5, h5->file, &field, 1, &schema);
-    if (!h5->failed && schema < BENCH_STORE_SCHEMA)
-        bench_h5_fail(h5, "its schema is %d and this program reads %d; measure again", schema,
-                      BENCH_STORE_SCHEMA);
-    if (!h5->failed && schema > BENCH_STORE_SCHEMA)
-        bench_h5_fail(h5, "its schema is %d and this program reads %d; use a newer shapebench",
-                      schema, BENCH_STORE_SCHEMA);
-}
-
 static void read_file(BenchH5 *h5, BenchRow **rows, int *count, BenchMachine *machine)
 {
-    check_kind(h5);
+    bench_h5_check_kind(h5, file_kind, BENCH_STORE_SCHEMA);
     int stored = 0, machine_count;
     const BenchField field = {"rows", BENCH_INT, 0, sizeof stored};
     const BenchField *machine_fields = bench_machine_fields(&machine_count);

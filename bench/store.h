@@ -13,6 +13,9 @@ enum { BENCH_STORE_SCHEMA = 4 };
 SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
                         const BenchMachine *machine, SmError *error);
 
+/* One row, as group `index` of `parent`, in a file that holds other things too. */
+void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row);
+
 /* Reads such a file back. On SM_OK the caller frees *rows with bench_rows_free(). SM_INPUT: no such
  * file, not HDF5, truncated, not a results file, another schema, something missing or of a wrong
  * size; the line names the file and what. */

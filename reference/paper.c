@@ -2,6 +2,8 @@
 
 #include <libconfig.h>
 #include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,28 +61,46 @@ static void text_of(const config_setting_t *group, const char *name, char *text,
         memcpy(text, value, strlen(value) + 1);
 }
 
+#define COLUMN(name, in_change, member)                                                            \
+    {                                                                                              \
+        name, in_change, offsetof(RefPaperRow, member)                                             \
+    }
+
+/* Columns of one value, in the row's group or in its group `change`. */
+static const struct Column {
+    const char *name;
+    bool in_change;
+    size_t offset;
+} columns[] = {
+    COLUMN("triangles", false, triangles),
+    COLUMN("particles", false, particles),
+    COLUMN("regions", false, regions),
+    COLUMN("w", false, w),
+    COLUMN("total_ms", false, total_ms),
+    COLUMN("fps", false, fps),
+    COLUMN("speedup", false, speedup),
+    COLUMN("bases", false, bases),
+    COLUMN("summation_nodes", false, summation_nodes),
+    COLUMN("last_particles", true, last_particles),
+    COLUMN("added", true, added),
+    COLUMN("last_ms", true, last_ms),
+    COLUMN("least_ms", true, change_ms),
+    COLUMN("most_ms", true, change_most_ms),
+    COLUMN("surface_ms", true, surface_ms),
+};
+enum { COLUMNS = sizeof columns / sizeof columns[0] };
+
 static void read_row(const config_setting_t *from, RefPaperRow *row)
 {
     text_of(from, "paper", row->paper, sizeof row->paper);
     text_of(from, "scene", row->scene, sizeof row->scene);
     text_of(from, "title", row->title, sizeof row->title);
     text_of(from, "note", row->note, sizeof row->note);
-    row->triangles = value_of(from, "triangles");
-    row->particles = value_of(from, "particles");
-    row->regions = value_of(from, "regions");
-    row->w = value_of(from, "w");
-    row->total_ms = value_of(from, "total_ms");
-    row->fps = value_of(from, "fps");
-    row->speedup = value_of(from, "speedup");
-    row->bases = value_of(from, "bases");
-    row->summation_nodes = value_of(from, "summation_nodes");
     const config_setting_t *change = config_setting_get_member(from, "change");
-    row->last_particles = value_of(change, "last_particles");
-    row->added = value_of(change, "added");
-    row->last_ms = value_of(change, "last_ms");
-    row->change_ms = value_of(change, "least_ms");
-    row->change_most_ms = value_of(change, "most_ms");
-    row->surface_ms = value_of(change, "surface_ms");
+    for (int c = 0; c < COLUMNS; c++) {
+        RefValue value = value_of(columns[c].in_change ? change : from, columns[c].name);
+        memcpy((char *)row + columns[c].offset, &value, sizeof value);
+    }
     const config_setting_t *ms = config_setting_get_member(from, "stage_ms");
     const config_setting_t *percent = config_setting_get_member(from, "stage_percent");
     for (int s = 0; s < SM_STAGES; s++) {
@@ -134,6 +154,21 @@ const RefPaperRow *ref_paper_find(const char *paper, const char *scene)
     for (int n = 0; n < count; n++)
         if (strcmp(row[n].paper, paper) == 0 && strcmp(row[n].scene, scene) == 0) return row + n;
     return NULL;
+}
+
+int ref_paper_column(const RefPaperRow *row, const char *column, RefValue value[SM_STAGES])
+{
+    bool ms = strcmp(column, "stage_ms") == 0;
+    if (ms || strcmp(column, "stage_percent") == 0) {
+        memcpy(value, ms ? row->stage_ms : row->stage_percent, sizeof row->stage_ms);
+        return SM_STAGES;
+    }
+    for (int c = 0; c < COLUMNS; c++)
+        if (strcmp(column, columns[c].name) == 0) {
+            memcpy(value, (const char *)row + columns[c].offset, sizeof *value);
+            return 1;
+        }
+    return 0;
 }
 
 const RefPaperClaim *ref_paper_claims(int *count)

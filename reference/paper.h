@@ -45,6 +45,14 @@ const RefPaperRow *ref_paper_find(const char *paper, const char *scene);
 const RefPaperClaim *ref_paper_claims(int *count);
 const RefPaperClaim *ref_paper_claim(const char *paper, const char *name);
 
+/* Text of reference/claims.cfg, which bench/claim.h reads. */
+extern const char ref_claims_text[];
+
+/* The values in a column of the row, named as in papers.cfg ("particles"; of a change "added"),
+ * into `value`: of "stage_ms" and "stage_percent" SM_STAGES of them, else one. Returns how many, 0
+ * for an unknown column. What the paper does not give is NaN. */
+int ref_paper_column(const RefPaperRow *row, const char *column, RefValue value[SM_STAGES]);
+
 /* "quoted", "derived", "damaged", "second-hand". */
 const char *ref_status_name(RefStatus status);
 

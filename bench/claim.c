@@ -1,0 +1,274 @@
+#include "claim.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "config_file.h"
+#include "experiment.h"
+#include "setting.h"
+
+enum { CLAIMS_MOST = 500 };
+
+/* A claim as it stands in a file: where the paper's value comes from is resolved after it. */
+typedef struct {
+    BenchClaim claim;
+    char number[40], row[64], column[24]; /* names in papers.cfg */
+    double value;                         /* or given here */
+} Entry;
+
+#define MEMBER(type, name, kind, member, low, high, words, table)                                  \
+    {                                                                                              \
+        name, kind, offsetof(type, member), low, high, words, table, 0, 0                          \
+    }
+#define TEXT(type, name, member)                                                                   \
+    MEMBER(type, name, BENCH_TEXT, member, 0, sizeof((type *)0)->member, NULL, NULL)
+#define WHOLE(type, name, member, low, high)                                                       \
+    MEMBER(type, name, BENCH_INT, member, low, high, NULL, NULL)
+#define REAL(type, name, member, low, high)                                                        \
+    MEMBER(type, name, BENCH_REAL, member, low, high, NULL, NULL)
+#define WORDS(type, name, member, given, words)                                                    \
+    MEMBER(type, name, BENCH_CHOICE, member, given, 0, words, NULL)
+#define GROUP(type, name, member, table) MEMBER(type, name, BENCH_GROUP, member, 0, 0, NULL, table)
+
+static const BenchSetting range_table[] = {
+    WHOLE(BenchRange, "from", from, 1, 1000),
+    WHOLE(BenchRange, "to", to, 1, 1000),
+    WHOLE(BenchRange, "points", points, 1, 24),
+    {0},
+};
+
+static const BenchSetting measure_table[] = {
+    WORDS(BenchMeasure, "experiment", experiment, 1,
+          "none|scene|sums|size|polar|sweeps|smoothing|blending|sag|setup"),
+    TEXT(BenchMeasure, "scene", scene),
+    TEXT(BenchMeasure, "engine", engine),
+    TEXT(BenchMeasure, "field", field),
+    WORDS(BenchMeasure, "summation", summation, 0, "fast|bars|naive"),
+    WORDS(BenchMeasure, "matching", matching, 0, "lattice|rigid|linear|quadratic"),
+    GROUP(BenchMeasure, "w", w, range_table),
+    GROUP(BenchMeasure, "n", n, range_table),
+    {0},
+};
+
+static const char test_words[] = "near|within|factor|at_least|at_most|contains|inside|rises|falls";
+
+static const BenchSetting claim_table[] = {
+    TEXT(Entry, "paper", claim.paper),
+    TEXT(Entry, "name", claim.name),
+    TEXT(Entry, "statement", claim.statement),
+    TEXT(Entry, "place", claim.place),
+    TEXT(Entry, "unit", claim.unit),
+    TEXT(Entry, "number", number),
+    TEXT(Entry, "row", row),
+    TEXT(Entry, "column", column),
+    REAL(Entry, "value", value, -1e15, 1e15),
+    GROUP(Entry, "measure", claim.measure, measure_table),
+    GROUP(Entry, "over", claim.over, measure_table),
+    WORDS(Entry, "take", claim.reduction, 0, "values|exponent|largest|gain"),
+    WORDS(Entry, "test", claim.test, 1, test_words),
+    REAL(Entry, "tolerance", claim.tolerance, 0, 1e6),
+    WORDS(Entry, "expect", claim.expect, 0, "reproduced|different|not comparable"),
+    TEXT(Entry, "because", claim.because),
+    {0},
+};
+
+/* Where in a file a claim stands, for messages. */
+typedef struct {
+    const char *file;
+    unsigned line;
+    SmError *error;
+} Place;
+
+static __attribute__((format(printf, 2, 3))) SmCode fail_at(const Place *place, const char *format,
+                                                            ...)
+{
+    char text[440];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    for (char *c = text; *c; c++)
+        if (*c == '\n' || *c == '\r') *c = ' '; /* of a name in the file */
+    return sm_fail(place->error, SM_INPUT, "%s:%u: %s", place->file, place->line, text);
+}
+
+static bool curved(const BenchClaim *claim)
+{
+    return claim->reduction == BENCH_AS_EXPONENT || claim->reduction == BENCH_AS_GAIN ||
+           claim->test == BENCH_RISES || claim->test == BENCH_FALLS;
+}
+
+static bool wordy(BenchTest test)
+{
+    return test == BENCH_RISES || test == BENCH_FALLS;
+}
+
+/* A number that papers.cfg has outside its rows, with where and in what unit. */
+static SmCode take_number(const Entry *entry, BenchClaim *claim, const Place *place)
+{
+    const RefPaperClaim *said = ref_paper_claim(claim->paper, entry->number);
+    if (!said)
+        return fail_at(place, "'%s': the paper '%s' has no number '%s' in reference/papers.cfg",
+                       claim->name, claim->paper, entry->number);
+    claim->values = 1;
+    claim->value[0] = said->value.value;
+    claim->status = said->value.status;
+    if (!claim->place[0]) strcpy(claim->place, said->place);
+    if (!claim->unit[0]) strcpy(claim->unit, said->unit);
+    strcpy(claim->note, said->note);
+    return SM_OK;
+}
+
+static SmCode take_column(const Entry *entry, BenchClaim *claim, const Place *place)
+{
+    const RefPaperRow *row = ref_paper_find(claim->paper, entry->row);
+    if (!row)
+        return fail_at(place, "'%s': the paper '%s' has no row '%s' in reference/papers.cfg",
+                       claim->name, claim->paper, entry->row);
+    RefValue value[SM_STAGES];
+    claim->values = ref_paper_column(row, entry->column, value);
+    bool given = false;
+    for (int v = 0; v < claim->values; v++) {
+        claim->value[v] = value[v].value;
+        if (value[v].status > claim->status) claim->status = value[v].status;
+        given = given || isfinite(value[v].value);
+    }
+    if (!given)
+        return fail_at(place, "'%s': row '%s' has nothing in a column '%s'", claim->name,
+                       entry->row, entry->column);
+    strcpy(claim->note, row->note);
+    return SM_OK;
+}
+
+/* From one of the three places that it may have. */
+static SmCode take_value(const Entry *entry, BenchClaim *claim, const Place *place)
+{
+    int given = (entry->number[0] != 0) + (entry->row[0] != 0) + isfinite(entry->value);
+    if (given > 1)
+        return fail_at(place,
+                       "'%s': the paper's value is 'number', 'row' and 'column', or 'value': "
+                       "give one of them",
+                       claim->name);
+    if (given == 0 && !wordy(claim->test))
+        return fail_at(place,
+                       "'%s': no value to test: give 'number', 'row' and 'column', or "
+                       "'value'",
+                       claim->name);
+    if (entry->number[0]) return take_number(entry, claim, place);
+    if (entry->row[0]) return take_column(entry, claim, place);
+    claim->values = given;
+    claim->value[0] = entry->value;
+    return SM_OK;
+}
+
+static SmCode check_measure(const BenchClaim *claim, const BenchMeasure *measure,
+                            const Place *place)
+{
+    const char *fault = bench_experiment_fault(measure);
+    if (fault) return fail_at(place, "'%s': %s", claim->name, fault);
+    if (curved(claim) && bench_experiment_points(measure) < 3)
+        return fail_at(place,
+                       "'%s': an exponent, a gain, or what rises or falls is of a curve of "
+                       "three points or more: give the experiment a range of them",
+                       claim->name);
+    return SM_OK;
+}
+
+static SmCode check_claim(const Entry *entry, BenchClaim *claim, const Place *place)
+{
+    if (!claim->paper[0] || !claim->name[0] || !claim->statement[0])
+        return fail_at(place, "a claim needs 'paper', 'name' and 'statement'");
+    if (strpbrk(claim->name, "/ ") || strpbrk(claim->paper, "/ "))
+        return fail_at(place, "'%s' of '%s': no blank and no '/' in a name", claim->name,
+                       claim->paper);
+    if (claim->expect != BENCH_REPRODUCES && !claim->because[0])
+        return fail_at(place, "'%s': say 'because' why it is not expected to reproduce",
+                       claim->name);
+    if (claim->test == BENCH_IS_FACTOR && claim->tolerance < 1)
+        return fail_at(place, "'%s': a factor's 'tolerance' is 1 or more", claim->name);
+    SmCode code = take_value(entry, claim, place);
+    if (!code) code = check_measure(claim, &claim->measure, place);
+    if (!code && claim->over.experiment) code = check_measure(claim, &claim->over, place);
+    return code;
+}
+
+static SmCode add_claim(const config_setting_t *group, const char *file, BenchClaims *claims,
+                        SmError *error)
+{
+    const Place place = {file, config_setting_source_line(group), error};
+    Entry entry = {.value = NAN};
+    if (!config_setting_is_group(group))
+        return fail_at(&place, "'claims' is a list of groups: ( { ... }, { ... } )");
+    SmCode code = bench_settings_read(group, claim_table, &entry, file, error);
+    if (!code) code = check_claim(&entry, &entry.claim, &place);
+    if (code) return code;
+    for (int c = 0; c < claims->count; c++)
+        if (!strcmp(claims->claim[c].paper, entry.claim.paper) &&
+            !strcmp(claims->claim[c].name, entry.claim.name))
+            return fail_at(&place, "'%s' of '%s' is there already: take another name",
+                           entry.claim.name, entry.claim.paper);
+    claims->claim = sm_realloc(claims->claim, (size_t)claims->count + 1, sizeof *claims->claim);
+    claims->claim[claims->count++] = entry.claim;
+    return SM_OK;
+}
+
+static SmCode add_claims(const config_t *config, const char *file, BenchClaims *claims,
+                         SmError *error)
+{
+    const config_setting_t *root = config_root_setting(config), *list = NULL;
+    int before = claims->count;
+    if (config_setting_length(root) == 1) list = config_setting_get_member(root, "claims");
+    if (!list || !config_setting_is_list(list) || config_setting_length(list) > CLAIMS_MOST)
+        return sm_fail(
+            error, SM_INPUT,
+            "%s: a claims file has one setting, claims = ( { ... }, ... ), of at most %d "
+            "groups",
+            file, CLAIMS_MOST);
+    SmCode code = SM_OK;
+    for (int c = 0; c < config_setting_length(list) && !code; c++)
+        code = add_claim(config_setting_get_elem(list, (unsigned)c), file, claims, error);
+    if (code) claims->count = before;
+    return code;
+}
+
+SmCode bench_claims_parse(const char *text, size_t size, const char *file, BenchClaims *claims,
+                          SmError *error)
+{
+    config_t config;
+    SmCode code = bench_config_parse(text, size, file, "claims", &config, error);
+    if (code) return code;
+    code = add_claims(&config, file, claims, error);
+    config_destroy(&config);
+    return code;
+}
+
+SmCode bench_claims_builtin(BenchClaims *claims, SmError *error)
+{
+    return bench_claims_parse(ref_claims_text, strlen(ref_claims_text), "reference/claims.cfg",
+                              claims, error);
+}
+
+SmCode bench_claims_read(const char *path, BenchClaims *claims, SmError *error)
+{
+    size_t size = 0;
+    char *text = bench_config_load(path, &size, error);
+    if (!text) return SM_INPUT;
+    SmCode code = bench_claims_parse(text, size, path, claims, error);
+    free(text);
+    return code;
+}
+
+const char *bench_expectation_name(BenchExpectation expect)
+{
+    static const char *const names[] = {"reproduced", "different", "not comparable"};
+    return names[expect];
+}
+
+void bench_claims_free(BenchClaims *claims)
+{
+    free(claims->claim);
+    *claims = (BenchClaims){0};
+}

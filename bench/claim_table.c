@@ -1,0 +1,187 @@
+#include "claim_table.h"
+
+#include <ctype.h>
+#include <jansson.h>
+#include <math.h>
+#include <string.h>
+
+#include "export.h"
+#include "grid.h"
+#include "quote.h"
+
+/* ---- for people */
+
+static BenchGrid make_grid(const BenchFinding *findings, int count)
+{
+    static const char *const headings[] = {"paper",    "claim", "where", "paper says",
+                                           "measured", "unit",  "test",  "verdict"};
+    BenchGrid grid = {0};
+    for (int c = 0; c < 8; c++) bench_grid_column(&grid, headings[c], c != 3 && c != 4);
+    for (int f = 0; f < count; f++) {
+        const BenchClaim *claim = &findings[f].claim;
+        BenchGridLine *line = bench_grid_add(&grid);
+        const char *marks[] = {"", "", "?", "*"};
+        char paper[64];
+        bench_verdict_paper(claim, sizeof paper, paper);
+        strcpy((*line)[0], claim->paper);
+        strcpy((*line)[1], claim->name);
+        strcpy((*line)[2], claim->place);
+        snprintf((*line)[3], BENCH_GRID_TEXT, "%s%s", paper, marks[claim->status]);
+        bench_verdict_measured(&findings[f], BENCH_GRID_TEXT, (*line)[4]);
+        strcpy((*line)[5], claim->unit);
+        bench_verdict_test(claim, BENCH_GRID_TEXT, (*line)[6]);
+        strcpy((*line)[7], bench_verdict_name(findings[f].verdict));
+    }
+    return grid;
+}
+
+/* How many of each verdict: "31 reproduced, 9 differs". */
+static void tally(const BenchFinding *findings, int count, size_t size, char *text)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int v = 0; v < BENCH_VERDICTS; v++) {
+        int number = 0;
+        for (int f = 0; f < count; f++) number += findings[f].verdict == (BenchVerdict)v;
+        if (number && used < size)
+            used += (size_t)snprintf(text + used, size - used, "%s%d %s", used ? ", " : "", number,
+                                     bench_verdict_name((BenchVerdict)v));
+    }
+}
+
+/* What each says, why it is judged so, and where the evidence is. */
+static void write_notes(FILE *file, const BenchFinding *findings, int count, bool markdown)
+{
+    const char *item = markdown ? "- " : "  ", *code = markdown ? "`" : "";
+    for (int f = 0; f < count; f++) {
+        const BenchFinding *finding = &findings[f];
+        const BenchClaim *claim = &finding->claim;
+        fprintf(file, "%s%s %s: %s", item, claim->paper, claim->name, claim->statement);
+        if (finding->verdict == BENCH_REPRODUCED && claim->because[0])
+            fprintf(file, " But %s.", claim->because);
+        if (finding->verdict != BENCH_REPRODUCED) {
+            fprintf(file, " %c%s.", toupper((unsigned char)finding->words[0]), finding->words + 1);
+            if (claim->note[0]) fprintf(file, " (Paper: %s.)", claim->note);
+        }
+        fprintf(file, " Evidence: %s%s%s", code, finding->evidence[0], code);
+        if (finding->evidence[1][0]) fprintf(file, " by %s%s%s", code, finding->evidence[1], code);
+        fputs(".\n", file);
+    }
+}
+
+static void write_people(FILE *file, BenchFormat format, const BenchFinding *findings, int count,
+                         const BenchMachine *machine)
+{
+    char text[160];
+    BenchGrid grid = make_grid(findings, count);
+    tally(findings, count, sizeof text, text);
+    if (format == BENCH_AS_TEXT)
+        fprintf(file, "The papers' claims, measured on %s, %d thread%s.\n\n", machine->cpu,
+                machine->threads, machine->threads == 1 ? "" : "s");
+    if (format == BENCH_AS_LATEX)
+        bench_grid_latex(file, &grid);
+    else if (format == BENCH_AS_MARKDOWN)
+        bench_grid_markdown(file, &grid);
+    else
+        bench_grid_text(file, &grid);
+    bench_grid_free(&grid);
+    if (format == BENCH_AS_LATEX) return;
+    fprintf(file,
+            "\nOf %d: %s. Brackets hold quartiles, of exponents 95%% intervals; ? marks a value "
+            "that the paper misprints, * one at second hand.\n\n",
+            count, text);
+    write_notes(file, findings, count, format == BENCH_AS_MARKDOWN);
+}
+
+/* ---- for programs */
+
+enum { COLUMNS = 16 };
+
+/* A text, or numbers. */
+typedef struct {
+    const char *name, *text;
+    const double *number;
+    int count;
+} Cell;
+
+static void fill_cells(const BenchFinding *finding, const char *test, Cell cell[COLUMNS])
+{
+    const BenchClaim *claim = &finding->claim;
+    const Cell cells[COLUMNS] = {
+        {.name = "paper", .text = claim->paper},
+        {.name = "name", .text = claim->name},
+        {.name = "place", .text = claim->place},
+        {.name = "statement", .text = claim->statement},
+        {.name = "unit", .text = claim->unit},
+        {.name = "paper_value", .number = claim->value, .count = claim->values},
+        {.name = "status", .text = claim->values ? ref_status_name(claim->status) : ""},
+        {.name = "measured", .number = finding->value, .count = finding->count},
+        {.name = "low", .number = finding->low, .count = finding->count},
+        {.name = "high", .number = finding->high, .count = finding->count},
+        {.name = "test", .text = test},
+        {.name = "expect", .text = bench_expectation_name(claim->expect)},
+        {.name = "verdict", .text = bench_verdict_name(finding->verdict)},
+        {.name = "words", .text = finding->words},
+        {.name = "evidence", .text = finding->evidence[0]},
+        {.name = "over", .text = finding->evidence[1]},
+    };
+    memcpy(cell, cells, sizeof cells);
+}
+
+static void write_csv(FILE *file, const BenchFinding *findings, int count)
+{
+    Cell cell[COLUMNS];
+    char test[96];
+    fill_cells(&(BenchFinding){0}, "", cell);
+    for (int c = 0; c < COLUMNS; c++) fprintf(file, "%s%s", c ? "," : "", cell[c].name);
+    fputc('\n', file);
+    for (int f = 0; f < count; f++) {
+        bench_verdict_test(&findings[f].claim, sizeof test, test);
+        fill_cells(&findings[f], test, cell);
+        for (int c = 0; c < COLUMNS; c++) {
+            if (c) fputc(',', file);
+            if (cell[c].text) bench_csv_text(file, cell[c].text);
+            for (int v = 0; v < cell[c].count; v++) {
+                if (v) fputc('/', file);
+                bench_csv_number(file, cell[c].number[v]);
+            }
+        }
+        fputc('\n', file);
+    }
+}
+
+static void write_json(FILE *file, const BenchFinding *findings, int count,
+                       const BenchMachine *machine)
+{
+    json_t *list = json_array(), *root = json_object();
+    for (int f = 0; f < count; f++) {
+        Cell cell[COLUMNS];
+        char test[96];
+        json_t *object = json_object();
+        bench_verdict_test(&findings[f].claim, sizeof test, test);
+        fill_cells(&findings[f], test, cell);
+        for (int c = 0; c < COLUMNS; c++) {
+            json_t *value = cell[c].text ? bench_json_text(cell[c].text) : json_array();
+            for (int v = 0; v < cell[c].count; v++)
+                json_array_append_new(value, bench_json_number(cell[c].number[v]));
+            json_object_set_new(object, cell[c].name, value);
+        }
+        json_array_append_new(list, object);
+    }
+    json_object_set_new(root, "claims", list);
+    json_object_set_new(root, "environment", bench_json_machine(machine));
+    json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    fputc('\n', file);
+    json_decref(root);
+}
+
+void bench_claim_table_write(FILE *file, BenchFormat format, const BenchFinding *findings,
+                             int count, const BenchMachine *machine)
+{
+    if (format == BENCH_AS_CSV)
+        write_csv(file, findings, count);
+    else if (format == BENCH_AS_JSON)
+        write_json(file, findings, count, machine);
+    else
+        write_people(file, format, findings, count, machine);
+}

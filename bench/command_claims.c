@@ -1,0 +1,208 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "claim_store.h"
+#include "claim_table.h"
+#include "command.h"
+#include "draft.h"
+#include "option.h"
+
+enum { KEY_PAPER = 0x2000, KEY_CLAIM, KEY_CLAIMS, KEY_QUICK, KEY_LIST, KEY_FORMAT, NAMES = 64 };
+
+typedef struct {
+    BenchCommon common;
+    const char *paper, *output;
+    const char *claim[NAMES], *file[NAMES];
+    int claims, files;
+    bool quick, list;
+    BenchFormat format;
+} Options;
+
+static const struct argp_option option_list[] = {
+    {"paper", KEY_PAPER, "NAME", 0, "The claims of this paper only: fastlsm, octree", 1},
+    {"claim", KEY_CLAIM, "NAME", 0, "This claim only; may be repeated (see --list)", 1},
+    {"claims", KEY_CLAIMS, "FILE", 0,
+     "Add the claims of this file, written as reference/claims.cfg; may be repeated", 1},
+    {"list", KEY_LIST, 0, 0, "Print the claims and what they say, and end", 1},
+    {"quick", KEY_QUICK, 0, 0, "Smaller bodies and fewer repeats: noisier and quicker", 2},
+    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex or json (default: text)", 3},
+    {"output", 'o', "FILE.h5", 0,
+     "Also store verdicts, every curve's points, every row and provenance in HDF5 (default: "
+     "nothing stored)",
+     3},
+    {0},
+};
+
+static void add_name(const struct argp_state *state, const char *option, const char **names,
+                     int *count, const char *name)
+{
+    if (*count == NAMES) bench_usage(state, "%s: at most %d", option, NAMES);
+    names[(*count)++] = name;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case KEY_PAPER:
+        options->paper = text;
+        return 0;
+    case KEY_CLAIM:
+        add_name(state, "--claim", options->claim, &options->claims, text);
+        return 0;
+    case KEY_CLAIMS:
+        add_name(state, "--claims", options->file, &options->files, text);
+        return 0;
+    case KEY_LIST:
+        options->list = true;
+        return 0;
+    case KEY_QUICK:
+        options->quick = true;
+        return 0;
+    case KEY_FORMAT:
+        options->format =
+            (BenchFormat)bench_option_choice(state, "--format", text, bench_format_names);
+        return 0;
+    case 'o':
+        options->output = text;
+        return 0;
+    case ARGP_KEY_ARG:
+        bench_usage(state, "what is '%s'? Claims are named with --claim", text);
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const char help[] =
+    "Hold what the papers say against what is measured here, claim by claim: the paper's value, "
+    "the "
+    "measured one with its spread, the test, and the verdict: reproduced, not reproduced, differs "
+    "(with the reason), not comparable, or INVALID where the measurement failed its check. "
+    "Everything is measured once, and checked: against brute force; the largest cubes for finite "
+    "goals "
+    "and linear momentum.\v"
+    "The claims are data, in reference/claims.cfg; its head says how to write your own for "
+    "--claims. "
+    "Takes about three minutes of one core's time, less with --quick.\n"
+    "Exit codes: 0 all that should be reproduced is; 1 something is not, or is INVALID; 2 unknown "
+    "option or value out of range; 3 a claims or scene file cannot be used; 4 a file cannot be "
+    "written; 70 out of memory; 130 interrupted.";
+
+static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
+
+static bool named(const Options *options, const char *name)
+{
+    for (int n = 0; n < options->claims; n++)
+        if (!strcmp(options->claim[n], name)) return true;
+    return options->claims == 0;
+}
+
+static bool chosen(const Options *options, const BenchClaim *claim)
+{
+    if (options->paper && strcmp(options->paper, claim->paper) != 0) return false;
+    return named(options, claim->name);
+}
+
+/* All claims, less those that are not asked for. */
+static SmCode choose(const Options *options, BenchClaims *claims, SmError *error)
+{
+    SmCode code = bench_claims_builtin(claims, error);
+    for (int f = 0; f < options->files && !code; f++)
+        code = bench_claims_read(options->file[f], claims, error);
+    if (code) return code;
+    for (int n = 0; n < options->claims; n++) {
+        bool known = false;
+        for (int c = 0; c < claims->count; c++)
+            known = known || !strcmp(claims->claim[c].name, options->claim[n]);
+        if (!known)
+            return sm_fail(error, SM_USAGE, "--claim: no claim '%.60s'; --list names them",
+                           options->claim[n]);
+    }
+    int kept = 0;
+    for (int c = 0; c < claims->count; c++)
+        if (chosen(options, &claims->claim[c])) claims->claim[kept++] = claims->claim[c];
+    claims->count = kept;
+    if (kept) return SM_OK;
+    return sm_fail(error, SM_USAGE, "--paper: '%.40s' has no such claim; --list names all",
+                   options->paper);
+}
+
+static void list_claims(const BenchClaims *claims)
+{
+    for (int c = 0; c < claims->count; c++)
+        printf("%-8s %-24s %s\n", claims->claim[c].paper, claims->claim[c].name,
+               claims->claim[c].statement);
+}
+
+static void find(BenchLab *lab, const BenchClaim *claim, BenchFinding *finding)
+{
+    bool divided = claim->over.experiment != BENCH_TRY_NOTHING;
+    int curve = bench_experiment(lab, &claim->measure);
+    int over = divided ? bench_experiment(lab, &claim->over) : -1;
+    bench_verdict_find(claim, &lab->curve[curve], divided ? &lab->curve[over] : NULL, finding);
+    bench_claim_place(lab, curve, sizeof finding->evidence[0], finding->evidence[0]);
+    if (divided) bench_claim_place(lab, over, sizeof finding->evidence[1], finding->evidence[1]);
+}
+
+static BenchFinding *find_all(const Options *options, const BenchClaims *claims, BenchLab *lab)
+{
+    BenchProgress progress;
+    BenchFinding *findings = sm_alloc((size_t)claims->count, sizeof *findings);
+    bench_progress_start(&progress, options->common.quiet);
+    for (int c = 0; c < claims->count; c++) {
+        bench_progress_show(&progress, claims->claim[c].name, (double)c / claims->count);
+        find(lab, &claims->claim[c], &findings[c]);
+    }
+    bench_progress_stop(&progress);
+    return findings;
+}
+
+static SmCode verdict(const BenchFinding *findings, int count, SmError *error)
+{
+    if (bench_verdict_all(findings, count)) return SM_OK;
+    int failed = 0, first = -1;
+    for (int f = count - 1; f >= 0; f--)
+        if (!bench_verdict_all(&findings[f], 1)) {
+            failed++;
+            first = f;
+        }
+    return sm_fail(error, SM_INVALID,
+                   "%d of %d claims %s not reproduced or INVALID; first %s: %.300s", failed, count,
+                   failed == 1 ? "is" : "are", findings[first].claim.name, findings[first].words);
+}
+
+static SmCode report(const Options *options, const BenchClaims *claims, int argc, char **argv,
+                     SmError *error)
+{
+    BenchLab lab = {
+        .quick = options->quick, .threads = options->common.threads, .seed = options->common.seed};
+    BenchMachine machine;
+    SmCode code = SM_OK;
+    bench_machine_read(argc, argv, options->common.threads, &machine);
+    BenchFinding *findings = find_all(options, claims, &lab);
+    bench_claim_table_write(stdout, options->format, findings, claims->count, &machine);
+    if (options->output)
+        code = bench_claim_store(options->output, findings, claims->count, &lab, &machine, error);
+    if (!code) code = verdict(findings, claims->count, error);
+    free(findings);
+    bench_lab_free(&lab);
+    return code;
+}
+
+int bench_command_claims(int argc, char **argv)
+{
+    Options options = {0};
+    BenchClaims claims = {0};
+    SmError error;
+    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    SmCode code = choose(&options, &claims, &error);
+    if (!code && options.list)
+        list_claims(&claims);
+    else {
+        if (!code) code = bench_draft_try(options.output, &error);
+        if (!code) code = report(&options, &claims, argc, argv, &error);
+    }
+    bench_claims_free(&claims);
+    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    return (int)code;
+}

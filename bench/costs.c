@@ -1,0 +1,307 @@
+#include "costs.h"
+
+#include <assert.h>
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../fastlsm/fastlsm.h"
+#include "../octree/distance.h"
+#include "cubes.h"
+#include "matrices.h"
+#include "play.h"
+#include "spread.h"
+#include "tree_setup.h"
+#include "tree_steps.h"
+
+static int repeats_of(const BenchLab *lab)
+{
+    return lab->quick ? 9 : 31;
+}
+
+static void add_spread(BenchCurve *curve, double x, const double *value, int count)
+{
+    BenchSpread spread = bench_spread(value, count);
+    bench_curve_add(curve, x, spread.median, spread.low, spread.high);
+}
+
+/* The same of times of which the least counts: what else runs on the machine only adds. */
+static void add_least(BenchCurve *curve, double x, const double *value, int count)
+{
+    double least = value[0];
+    for (int r = 1; r < count; r++) least = fmin(least, value[r]);
+    bench_curve_add(curve, x, least, least, bench_spread(value, count).median);
+}
+
+/* ---- steps of cubes */
+
+static void create_cubes(const BenchLab *lab, const SmEngineParams *params, const int *side,
+                         const int *w, int count, BenchCube *cubes, BenchCurve *curve)
+{
+    SmError error;
+    for (int c = 0; c < count && curve->valid; c++) {
+        SmEngineParams own = *params;
+        own.w = w[c];
+        if (bench_cube_create(side[c], &fastlsm_engine_f32, &own, lab->seed, &cubes[c], &error))
+            bench_curve_fail(curve, "%.180s", error.text);
+        else if (!cubes[c].valid)
+            bench_curve_fail(curve, "cube of side %d, w = %d: %s", side[c], w[c], cubes[c].reason);
+    }
+}
+
+static void check_cubes(const BenchCube *cubes, int count, BenchCurve *curve)
+{
+    for (int c = 0; c < count; c++)
+        if (!cubes[c].valid) bench_curve_fail(curve, "%s", cubes[c].reason);
+}
+
+/* Mean over a row of `side` particles of how many are within w. */
+static double mean_side(int side, int w)
+{
+    double reach = w < side ? w : side - 1;
+    return 2 * reach + 1 - reach * (reach + 1) / side;
+}
+
+/* The sums' share of the step, of which the least CPU time counts: of a stage alone there is only
+ * the time on the wall, which other work is in, too. */
+static void add_sums(BenchCurve *curve, double x, const BenchCube *cube)
+{
+    double *share = sm_alloc((size_t)cube->repeats, sizeof *share);
+    double least = INFINITY;
+    for (int r = 0; r < cube->repeats; r++) {
+        double all = 0;
+        for (int s = 0; s < SM_STAGES; s++) all += bench_cube_stage_ns(cube, (SmStage)s, r);
+        share[r] = bench_cube_stage_ns(cube, SM_FAST_SUM, r) / all;
+        least = fmin(least, bench_cube_cpu_ns(cube, r));
+    }
+    BenchSpread spread = bench_spread(share, cube->repeats);
+    bench_curve_add(curve, x, least * spread.median, least * spread.low, least * spread.high);
+    free(share);
+}
+
+void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int w[BENCH_RANGE_POINTS], side[BENCH_RANGE_POINTS] = {0};
+    int count = bench_range_numbers(&measure->w, w),
+        repeats = repeats_of(lab) / (measure->summation == SM_SUM_NAIVE ? 6 : 1);
+    BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
+    const SmEngineParams params = {.h = 0.01, .summation = measure->summation, .threads = 1};
+    for (int c = 0; c < count; c++) side[c] = lab->quick ? 20 : 32;
+    bench_curve_begin(curve, "mean side of a region, particles",
+                      "fast summation, ns/particle/step");
+    create_cubes(lab, &params, side, w, count, cubes, curve);
+    if (curve->valid) bench_cubes_time(cubes, count, repeats, true);
+    check_cubes(cubes, count, curve);
+    for (int c = 0; c < count && curve->valid; c++)
+        add_sums(curve, mean_side(side[c], w[c]), &cubes[c]);
+    for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
+    free(cubes);
+}
+
+static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve *curve)
+{
+    int w[BENCH_RANGE_POINTS] = {0}, repeats = repeats_of(lab);
+    BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
+    const SmEngineParams params = {.h = 0.01, .damping = 0.1, .threads = 1};
+    for (int c = 0; c < count; c++) w[c] = 1;
+    create_cubes(lab, &params, side, w, count, cubes, curve);
+    if (curve->valid) bench_cubes_time(cubes, count, repeats, false);
+    check_cubes(cubes, count, curve);
+    double *ms = sm_alloc((size_t)repeats, sizeof *ms);
+    for (int c = 0; c < count && curve->valid; c++) {
+        double particles = (double)cubes[c].particles;
+        for (int r = 0; r < repeats; r++)
+            ms[r] = 1e-6 * bench_cube_cpu_ns(&cubes[c], r) * particles;
+        add_least(curve, particles, ms, repeats);
+    }
+    free(ms);
+    for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
+    free(cubes);
+}
+
+/* ---- steps of the octree on cubes */
+
+/* Of a step, or of its hierarchical sums alone: ms. */
+static double tree_ms(const BenchTreeStep *step, bool sums, int r)
+{
+    if (!sums) return step->total[r] / 1e6;
+    return (step->part[r][BENCH_TREE_DEPTH] + step->part[r][BENCH_TREE_BREADTH] +
+            step->part[r][BENCH_TREE_GOALS]) /
+           1e6;
+}
+
+static void time_trees(BenchLab *lab, BenchTreeStep *steps, int count, bool sums, BenchCurve *curve)
+{
+    int repeats = repeats_of(lab);
+    double *ms = sm_alloc((size_t)repeats, sizeof *ms);
+    for (int s = 0; s < count; s++) bench_tree_step_create_f32(&steps[s]);
+    bench_tree_steps_time_f32(steps, count, repeats);
+    for (int s = 0; s < count; s++) {
+        if (!steps[s].valid)
+            bench_curve_fail(curve, "octree of %ld nodes: %s", steps[s].body->tree.leaves,
+                             steps[s].reason);
+        for (int r = 0; r < repeats && curve->valid; r++) ms[r] = tree_ms(&steps[s], sums, r);
+        if (curve->valid) add_least(curve, (double)steps[s].body->tree.leaves, ms, repeats);
+    }
+    for (int s = 0; s < count; s++) bench_tree_step_free_f32(&steps[s]);
+    free(ms);
+}
+
+static void octree_sizes(BenchLab *lab, const int *side, int count, bool sums, BenchCurve *curve)
+{
+    BenchSampled *body = sm_alloc((size_t)count, sizeof *body);
+    BenchTreeStep *steps = sm_alloc((size_t)count, sizeof *steps);
+    SmError error;
+    int made = 0;
+    for (; made < count && curve->valid; made++) {
+        if (bench_sampled_cube(side[made], &body[made], &error))
+            bench_curve_fail(curve, "%.180s", error.text);
+        steps[made] =
+            (BenchTreeStep){.body = &body[made], .parts = sums, .threads = 1, .seed = lab->seed};
+    }
+    if (curve->valid) time_trees(lab, steps, count, sums, curve);
+    for (int s = 0; s < made; s++) bench_sampled_free(&body[s]);
+    free(steps);
+    free(body);
+}
+
+void bench_costs_size(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int side[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, side);
+    bool octree = !strcmp(measure->engine, "octree"), sums = !strcmp(measure->field, "sums");
+    for (int c = 0; c < count && lab->quick; c++) side[c] = side[c] > 40 ? 40 : side[c];
+    while (count > 1 && side[count - 1] == side[count - 2]) count--;
+    bench_curve_begin(curve, octree ? "nodes" : "particles", sums ? "sums, ms/step" : "ms/step");
+    if (octree)
+        octree_sizes(lab, side, count, sums, curve);
+    else
+        lattice_sizes(lab, side, count, curve);
+}
+
+/* ---- single numbers */
+
+void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int repeats = repeats_of(lab);
+    BenchPolar method = !strncmp(measure->field, "cold", 4)   ? BENCH_POLAR_COLD
+                        : !strncmp(measure->field, "warm", 4) ? BENCH_POLAR_WARM
+                                                              : BENCH_POLAR_BATCH;
+    BenchPolarResult result[BENCH_POLARS] = {0};
+    result[method].wanted = true;
+    bench_matrices_time(BENCH_F32, repeats, lab->seed, result);
+    bench_curve_begin(curve, "-", measure->field);
+    const BenchPolarResult *found = &result[method];
+    if (!found->valid)
+        bench_curve_fail(curve, "rotations differ from the SVD's by %.3g; at most %g allowed",
+                         found->error, found->limit);
+    else if (strstr(measure->field, "sweeps"))
+        bench_curve_add(curve, 0, found->sweeps, found->sweeps, found->sweeps);
+    else
+        add_least(curve, 0, found->ns, repeats);
+    free(found->ns);
+}
+
+/* Sweeps of a decomposition, mean over the steps of some frames from the start. */
+static double mean_sweeps(BenchPlay *play, int frames)
+{
+    double sum = 0;
+    const BenchRunner *runner = bench_play_runner(play);
+    int steps = frames * runner->scene->steps_per_frame;
+    for (int s = 0; s < steps; s++) {
+        SmCounts counts;
+        bench_play_prepare(play);
+        bench_play_advance(play, NULL);
+        runner->type->count(runner->engine, &counts);
+        sum += counts.jacobi_sweeps / steps;
+    }
+    return sum;
+}
+
+void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    SmMesh mesh;
+    BenchBody body = {0};
+    BenchPlay play;
+    SmError error;
+    SmCode code = bench_scene_find(measure->scene, scene, &error);
+    bench_curve_begin(curve, "-", "sweeps a decomposition");
+    scene->params.polar = SM_POLAR_JACOBI;
+    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, &error);
+    if (!code) code = bench_body_create(scene, &mesh, &body, &error);
+    if (!code)
+        code = bench_play_create(scene, &body, &fastlsm_engine_f32, lab->threads, lab->seed, &play,
+                                 &error);
+    if (code)
+        bench_curve_fail(curve, "%.180s", error.text);
+    else {
+        double sweeps = mean_sweeps(&play, lab->quick ? 5 : 20);
+        bench_curve_add(curve, 0, sweeps, sweeps, sweeps);
+        bench_play_free(&play);
+    }
+    bench_body_free(&body);
+    free(scene);
+}
+
+/* One sample: milliseconds of the searches that finding all regions takes, each as far as its
+ * region may reach, and of finding the regions, those searches included. */
+static void time_regions(const BenchSampled *body, const int *w, OctReach *reach, double *search,
+                         double *all)
+{
+    OctRegions regions;
+    double start = sm_now();
+    for (long i = 0; i < body->tree.leaves; i++)
+        oct_reach_from(reach, (int)i, (int)(w[i] + floor(body->epsilon * w[i])));
+    double middle = sm_now();
+    SmCode code = oct_regions_build(&body->tree, &body->graph, w, body->epsilon, &regions, NULL);
+    *all = 1e3 * (sm_now() - middle);
+    *search = 1e3 * (middle - start);
+    assert(!code); /* they were built before */
+    oct_regions_free(&regions);
+}
+
+/* With regions so many times as wide as the body's. */
+static void add_share(const BenchSampled *body, int times, int repeats, BenchCurve *curve)
+{
+    OctReach reach;
+    size_t leaves = (size_t)body->tree.leaves;
+    double *share = sm_alloc((size_t)repeats, sizeof *share), search, all;
+    int *w = sm_alloc(leaves, sizeof *w);
+    for (size_t i = 0; i < leaves; i++) w[i] = times * body->w[i];
+    oct_reach_init(&reach, &body->graph);
+    time_regions(body, w, &reach, &search, &all); /* warms up */
+    for (int r = 0; r < repeats; r++) {
+        time_regions(body, w, &reach, &search, &all);
+        share[r] = 100 * search / all;
+    }
+    add_spread(curve, times, share, repeats);
+    oct_reach_free(&reach);
+    free(share);
+    free(w);
+}
+
+void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    BenchSampled body;
+    BenchSetup checked[2];
+    SmError error;
+    int times[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, times);
+    int before = omp_get_max_threads();
+    bench_curve_begin(curve, "times 0.75 of a node's edge", measure->field);
+    if (bench_sampled_hand(false, &body, &error)) {
+        bench_curve_fail(curve, "%.180s", error.text);
+        return;
+    }
+    omp_set_num_threads(1); /* which regions take; searches are one after the other */
+    bench_setup_time(&body, BENCH_SETUP_DISTANCES, BENCH_F32, 1, &checked[0]);
+    bench_setup_time(&body, BENCH_SETUP_REGIONS, BENCH_F32, 1, &checked[1]);
+    for (int c = 0; c < 2; c++) {
+        if (!checked[c].valid) bench_curve_fail(curve, "%s", checked[c].reason);
+        free(checked[c].ns);
+    }
+    for (int t = 0; t < count && curve->valid; t++)
+        add_share(&body, times[t], repeats_of(lab), curve);
+    omp_set_num_threads(before);
+    bench_sampled_free(&body);
+}

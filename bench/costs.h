@@ -1,0 +1,17 @@
+/* costs.h - the experiments "sums", "size", "polar", "sweeps" and "setup" (experiment.h): what
+ * things cost.
+ */
+#ifndef BENCH_COSTS_H
+#define BENCH_COSTS_H
+
+#include "experiment.h"
+
+#define BENCH_POLAR_FIELDS "cold-sweeps|warm-sweeps|cold-ns|warm-ns|fast-ns"
+
+void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
+void bench_costs_size(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
+void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
+void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
+void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
+
+#endif

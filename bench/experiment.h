@@ -1,0 +1,110 @@
+/* experiment.h - what a claim can have measured, each giving a curve: points (x, y) with spread.
+ *
+ * Everything is checked before it counts: a curve that is not valid says why. y is the median of
+ * the repeats and its spread the quartiles. But of "size" and "polar" y and `low` are the least,
+ * which other work on the machine disturbs least, and `high` is the median; of cubes on the lattice
+ * the time is CPU time. */
+#ifndef BENCH_EXPERIMENT_H
+#define BENCH_EXPERIMENT_H
+
+#include "../lib/engine.h"
+#include "row.h"
+
+/* Which settings each takes beside those named here is an error.
+ *
+ * scene      one point: `field` of the scene's row as `tables` measures it, or NAMES of
+ *            scene_field.h; `scene`, and `engine` in place of the scene's
+ * sums       ns a particle (the stage's share of a step's least CPU time) of fast summation with
+ * `summation` in a solid cube, against the mean side of its regions (2w + 1 but for those at the
+ * surface); range `w` size       ms a step of solid cubes of n x n x n particles against their
+ * number; range `n`. `engine` fastlsm, w = 1; or octree, whose `field` may be "sums": its
+ * hierarchical sums alone polar      one point, `field`: "cold-sweeps", "warm-sweeps" of the
+ * paper's Jacobi, "cold-ns", "warm-ns", "fast-ns" (what the engines use) of matrices that turn and
+ * stretch sweeps     one point: Jacobi sweeps a decomposition of `scene` on fastlsm, each started
+ * from the last step's eigenvectors; mean over its first 20 frames smoothing  how far, in cells and
+ * on average, a perturbed cross-section of a bar has spread after two steps of smoothing (fastlsm
+ * Fig. 2), against w; range `w` blending   largest jump of the displacement gradient between
+ * neighbouring particles' goals, in a bar that is bent and twisted by half a turn (fastlsm Fig. 3),
+ * against the number of clusters, range `n`; `matching` lattice has a region for every particle
+ * instead sag        how deep the tip of a clamped beam hangs, in mesh units, against w; `scene`,
+ * range `w` setup      `field` "distance-share": percent of the time that finding the octree hand's
+ * summation nodes takes which goes into distances, against the width of regions in multiples of
+ *            0.75 of each node's edge; range `n` */
+typedef enum {
+    BENCH_TRY_NOTHING,
+    BENCH_TRY_SCENE,
+    BENCH_TRY_SUMS,
+    BENCH_TRY_SIZE,
+    BENCH_TRY_POLAR,
+    BENCH_TRY_SWEEPS,
+    BENCH_TRY_SMOOTHING,
+    BENCH_TRY_BLENDING,
+    BENCH_TRY_SAG,
+    BENCH_TRY_SETUP,
+} BenchTry;
+
+typedef enum { BENCH_BY_LATTICE, BENCH_BY_RIGID, BENCH_BY_LINEAR, BENCH_BY_QUADRATIC } BenchMatcher;
+
+/* Whole numbers from..to, `points` of them at even ratios, fewer where those fall together. */
+typedef struct {
+    int from, to, points;
+} BenchRange;
+
+typedef struct {
+    BenchTry experiment;
+    char scene[64], engine[24], field[32];
+    SmSummation summation;
+    BenchMatcher matching;
+    BenchRange w, n;
+} BenchMeasure;
+
+enum { BENCH_CURVE_POINTS = 64, BENCH_CURVE_NAME = 192, BENCH_RANGE_POINTS = 24 };
+
+typedef struct {
+    char name[BENCH_CURVE_NAME]; /* what was measured, without a blank or '/': unique */
+    char x_name[40], y_name[64];
+    int points;
+    double x[BENCH_CURVE_POINTS], y[BENCH_CURVE_POINTS];
+    double low[BENCH_CURVE_POINTS], high[BENCH_CURVE_POINTS]; /* of y */
+    bool valid;
+    char reason[192]; /* why not valid */
+    int row;          /* of the lab's rows that it is from; -1: none */
+} BenchCurve;
+
+/* What has been measured so far: nothing is measured twice. Begins zeroed but for the choices. */
+typedef struct {
+    bool quick;  /* fewer repeats, smaller bodies */
+    int threads; /* of scenes; cubes and kernels are timed on one */
+    unsigned long seed;
+    int rows, curves;
+    BenchRow *row;        /* [rows] */
+    char (*row_name)[96]; /* [rows] scene, as the claims name it, and engine */
+    BenchCurve *curve;    /* [curves]; some are only evidence, of no claim */
+} BenchLab;
+
+/* What is wrong with a measurement's settings, or NULL; the line stands until the next call. */
+const char *bench_experiment_fault(const BenchMeasure *measure);
+
+/* How many points its curve has at most. */
+int bench_experiment_points(const BenchMeasure *measure);
+
+/* The place in lab->curve of the measurement's curve, which is measured if it is not there. What
+ * cannot be measured (no such scene) is a curve that is not valid. */
+int bench_experiment(BenchLab *lab, const BenchMeasure *measure);
+
+void bench_lab_free(BenchLab *lab);
+
+/* Whole numbers of the range, rising; `number` is [BENCH_RANGE_POINTS]. Returns how many. */
+int bench_range_numbers(const BenchRange *range, int *number);
+
+/* For the experiments: an empty, valid curve; a point of it; its failure, the first of which
+ * counts. */
+void bench_curve_begin(BenchCurve *curve, const char *x_name, const char *y_name);
+void bench_curve_add(BenchCurve *curve, double x, double y, double low, double high);
+void bench_curve_fail(BenchCurve *curve, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Keeps a curve as evidence. */
+void bench_lab_keep(BenchLab *lab, const BenchCurve *curve);
+
+#endif

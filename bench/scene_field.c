@@ -1,0 +1,204 @@
+#include "scene_field.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "measure.h"
+#include "runner.h"
+#include "spread.h"
+
+/* A field that is a member of the row, or one that is made of several. */
+typedef struct {
+    const char *name;
+    enum { WHOLE, NUMBER, MADE } kind;
+    size_t offset;
+} Field;
+
+#define WHOLE_FIELD(name, member)                                                                  \
+    {                                                                                              \
+        name, WHOLE, offsetof(BenchRow, member)                                                    \
+    }
+#define NUMBER_FIELD(name, member)                                                                 \
+    {                                                                                              \
+        name, NUMBER, offsetof(BenchRow, member)                                                   \
+    }
+
+static const Field fields[] = {
+    WHOLE_FIELD("particles", particles),
+    WHOLE_FIELD("regions", regions),
+    WHOLE_FIELD("triangles", triangles),
+    WHOLE_FIELD("bases", bases),
+    WHOLE_FIELD("parts", parts),
+    WHOLE_FIELD("bytes", bytes),
+    NUMBER_FIELD("summation_nodes", summation_nodes),
+    NUMBER_FIELD("ns_per_particle_step", ns_per_particle_step),
+    WHOLE_FIELD("last_particles", change.last_nodes),
+    WHOLE_FIELD("added", change.most_added),
+    WHOLE_FIELD("pieces", change.pieces),
+    NUMBER_FIELD("first_ms", change.first_ms),
+    NUMBER_FIELD("last_ms", change.last_ms),
+    NUMBER_FIELD("least_ms", change.change_ms),
+    NUMBER_FIELD("most_ms", change.change_most_ms),
+    NUMBER_FIELD("surface_ms", change.surface_ms),
+    {"total_ms", MADE, 0},
+    {"fps", MADE, 0},
+    {"frame_rate", MADE, 0},
+    {"stage_percent", MADE, 0},
+    {"thirds_percent", MADE, 0},
+    {"growth_percent", MADE, 0},
+    {"cost_growth", MADE, 0},
+};
+enum { FIELDS = sizeof fields / sizeof fields[0] };
+
+static const Field *find(const char *name)
+{
+    for (int f = 0; f < FIELDS; f++)
+        if (!strcmp(fields[f].name, name)) return &fields[f];
+    return NULL;
+}
+
+bool bench_scene_field_known(const char *name)
+{
+    return find(name) != NULL;
+}
+
+void bench_scene_field_names(size_t size, char *names)
+{
+    size_t used = 0;
+    for (int f = 0; f < FIELDS && used < size; f++)
+        used += (size_t)snprintf(names + used, size - used, "%s%s", f ? "|" : "", fields[f].name);
+}
+
+/* The share of some stages, given as bits, with its spread over the repeats. */
+static void add_share(const BenchRow *row, unsigned stages, BenchCurve *curve)
+{
+    double *share = sm_alloc((size_t)row->repeats, sizeof *share), part = 0;
+    for (int r = 0; r < row->repeats; r++) {
+        double sum = 0;
+        for (int s = 0; s < SM_STAGES; s++) {
+            sum += row->stage[r][s];
+            if (stages >> s & 1) share[r] += row->stage[r][s];
+        }
+        share[r] *= 100 / sum;
+    }
+    for (int s = 0; s < SM_STAGES; s++)
+        if (stages >> s & 1) part += row->stage_ms[s];
+    BenchSpread spread = bench_spread(share, row->repeats);
+    bench_curve_add(curve, curve->points, 100 * part / row->total_ms, spread.low, spread.high);
+    free(share);
+}
+
+static void add_made(const BenchRow *row, int steps_per_frame, const char *name, BenchCurve *curve)
+{
+    static const unsigned thirds[] = {1U << SM_FAST_SUM | 1U << SM_SHAPE_MATCHING, 1U << SM_POLAR,
+                                      1U << SM_DAMPING};
+    const BenchChangeRow *change = &row->change;
+    double steps = !strcmp(name, "frame_rate") ? steps_per_frame : 1;
+    if (!strcmp(name, "total_ms"))
+        bench_curve_add(curve, 0, row->total_ms, row->total_low_ms, row->total_high_ms);
+    else if (!strcmp(name, "fps") || !strcmp(name, "frame_rate"))
+        bench_curve_add(curve, 0, 1e3 / row->total_ms / steps, 1e3 / row->total_high_ms / steps,
+                        1e3 / row->total_low_ms / steps);
+    else if (!strcmp(name, "stage_percent"))
+        for (int s = 0; s < SM_STAGES; s++) add_share(row, 1U << s, curve);
+    else if (!strcmp(name, "thirds_percent"))
+        for (int t = 0; t < 3; t++) add_share(row, thirds[t], curve);
+    else {
+        double value = !strcmp(name, "cost_growth")
+                           ? change->last_ms / change->first_ms
+                           : 100.0 * (double)change->most_added / (double)change->first_nodes;
+        bench_curve_add(curve, 0, value, value, value);
+    }
+}
+
+void bench_scene_field(const BenchRow *row, int steps_per_frame, const char *name,
+                       BenchCurve *curve)
+{
+    const Field *field = find(name);
+    char y_name[64];
+    snprintf(y_name, sizeof y_name, "%s of %.30s", name, row->scene);
+    bench_curve_begin(curve, "place in the list", y_name);
+    if (!row->valid) {
+        bench_curve_fail(curve, "%s is INVALID: %s", row->scene, row->reason);
+        return;
+    }
+    if (field->kind == MADE) {
+        add_made(row, steps_per_frame, name, curve);
+        return;
+    }
+    double value;
+    long whole;
+    if (field->kind == WHOLE) {
+        memcpy(&whole, (const char *)row + field->offset, sizeof whole);
+        value = (double)whole;
+    } else
+        memcpy(&value, (const char *)row + field->offset, sizeof value);
+    bench_curve_add(curve, 0, value, value, value);
+}
+
+static SmCode measure_row(BenchLab *lab, BenchScene *scene, BenchRow *row, SmError *error)
+{
+    SmMesh mesh;
+    BenchBody body;
+    const SmEngineType *type;
+    const BenchMeasureParams params = {.repeats = lab->quick ? 5 : 0,
+                                       .block_seconds = lab->quick ? 0.005 : 0,
+                                       .threads = lab->threads,
+                                       .seed = lab->seed};
+    SmCode code = bench_engine_find(scene->engine, NULL, &type, error);
+    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, error);
+    if (!code) code = bench_body_create(scene, &mesh, &body, error);
+    if (code) return code;
+    code = bench_measure(scene, &body, type, &params, row, error);
+    bench_body_free(&body);
+    return code;
+}
+
+/* The row of this name, or -1. */
+static int known_row(const BenchLab *lab, const char *name)
+{
+    for (int r = 0; r < lab->rows; r++)
+        if (!strcmp(lab->row_name[r], name)) return r;
+    return -1;
+}
+
+/* Takes the row over; returns its number. */
+static int keep_row(BenchLab *lab, const BenchRow *row, const char *name)
+{
+    size_t rows = (size_t)lab->rows + 1;
+    lab->row = sm_realloc(lab->row, rows, sizeof *lab->row);
+    lab->row_name = sm_realloc(lab->row_name, rows, sizeof *lab->row_name);
+    lab->row[lab->rows] = *row;
+    strcpy(lab->row_name[lab->rows], name);
+    return lab->rows++;
+}
+
+void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    SmError error;
+    char name[sizeof *lab->row_name];
+    snprintf(name, sizeof name, "%s %s", measure->scene, measure->engine);
+    int number = known_row(lab, name);
+    SmCode code = bench_scene_find(measure->scene, scene, &error);
+    if (!code && measure->engine[0])
+        snprintf(scene->engine, sizeof scene->engine, "%s", measure->engine);
+    if (!code && number < 0) {
+        BenchRow row = {0};
+        code = measure_row(lab, scene, &row, &error);
+        if (code)
+            bench_row_free(&row);
+        else
+            number = keep_row(lab, &row, name);
+    }
+    if (code)
+        bench_curve_fail(curve, "%.180s", error.text);
+    else {
+        bench_scene_field(&lab->row[number], scene->steps_per_frame, measure->field, curve);
+        curve->row = number;
+    }
+    free(scene);
+}

@@ -1,0 +1,299 @@
+#define _GNU_SOURCE
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../lib/test_folder.h"
+#include "claim_store.h"
+#include "claim_table.h"
+
+/* A claim to change words of. */
+static const char good[] =
+    "claims = (\n"
+    "  { paper = \"p\"; name = \"n\"; statement = \"It is so.\"; value = 3.0;\n"
+    "    test = \"near\"; tolerance = 0.1;\n"
+    "    measure = { experiment = \"sums\"; w = { from = 1; to = 8; points = 4; }; };\n"
+    "  }\n"
+    ");\n";
+
+static SmCode parse(const char *text, BenchClaims *claims, SmError *error)
+{
+    return bench_claims_parse(text, strlen(text), "my.cfg", claims, error);
+}
+
+/* The good claim with one text replaced by another. */
+static const char *with(const char *old, const char *new)
+{
+    static char text[2048];
+    const char *at = strstr(good, old);
+    assert_non_null(at);
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, new, at + strlen(old));
+    return text;
+}
+
+static void a_claim_is_read_whole(void **state)
+{
+    (void)state;
+    BenchClaims claims = {0};
+    SmError error;
+    assert_int_equal(parse(good, &claims, &error), SM_OK);
+    const BenchClaim *claim = &claims.claim[0];
+    assert_int_equal(claims.count, 1);
+    assert_true(claim->values == 1 && claim->value[0] == 3 && claim->tolerance == 0.1);
+    assert_int_equal(claim->test, BENCH_IS_NEAR);
+    assert_int_equal(claim->measure.experiment, BENCH_TRY_SUMS);
+    assert_int_equal(claim->measure.w.to, 8);
+    assert_int_equal(claim->over.experiment, BENCH_TRY_NOTHING);
+    assert_int_equal(claim->expect, BENCH_REPRODUCES);
+    bench_claims_free(&claims);
+}
+
+static void values_come_from_the_papers(void **state)
+{
+    (void)state;
+    BenchClaims claims = {0};
+    SmError error;
+    const char *number =
+        with("paper = \"p\"; name = \"n\"; statement = \"It is so.\"; value = 3.0;",
+             "paper = \"fastlsm\"; name = \"n\"; statement = \"s\"; number = \"warm-sweeps\";");
+    assert_int_equal(parse(number, &claims, &error), SM_OK);
+    assert_true(claims.claim[0].value[0] == ref_paper_claim("fastlsm", "warm-sweeps")->value.value);
+    assert_string_equal(claims.claim[0].place, "section 4");
+    const char *row =
+        with("paper = \"p\"; name = \"n\"; statement = \"It is so.\"; value = 3.0;",
+             "paper = \"fastlsm\"; name = \"row\"; statement = \"s\"; row = \"infant\"; "
+             "column = \"stage_percent\";");
+    assert_int_equal(parse(row, &claims, &error), SM_OK);
+    assert_int_equal(claims.claim[1].values, SM_STAGES);
+    assert_true(claims.claim[1].value[SM_DAMPING] == 30);
+    bench_claims_free(&claims);
+}
+
+static void mistakes_are_named_with_their_line(void **state)
+{
+    (void)state;
+    const struct {
+        const char *old, *new, *line, *says;
+    } cases[] = {
+        {"test = \"near\"", "test = \"nearly\"", "my.cfg:3:", "one of"},
+        {"tolerance = 0.1", "tolerance = -1.0", "my.cfg:3:", "number from"},
+        {"tolerance = 0.1", "tolerence = 0.1", "my.cfg:3:", "unknown setting 'tolerence'"},
+        {"test = \"near\"; ", "", "my.cfg:2:", "no 'test'"},
+        {"experiment = \"sums\"", "experiment = \"sum\"", "my.cfg:4:", "sums"},
+        {"measure = { experiment = \"sums\"; w = { from = 1; to = 8; points = 4; }; };", "",
+         "my.cfg:2:", "no experiment"},
+        {"to = 8", "to = 0", "my.cfg:4:", "whole number"},
+        {"from = 1", "from = 9", "my.cfg:2:", "rising"},
+        {"to = 8", "to = 80", "my.cfg:2:", "at most 16"},
+        {"w = {", "scene = \"beam\"; w = {", "my.cfg:2:", "'scene' is not of this"},
+        {"experiment = \"sums\"; w = { from = 1; to = 8; points = 4; };",
+         "experiment = \"scene\"; scene = \"hand\"; field = \"x\";",
+         "my.cfg:2:", "one of particles|regions|"},
+        {"value = 3.0;", "", "my.cfg:2:", "no value"},
+        {"value = 3.0;", "value = 3.0; number = \"x\";", "my.cfg:2:", "give one of them"},
+        {"value = 3.0;", "number = \"x\";", "my.cfg:2:", "has no number 'x'"},
+        {"value = 3.0;", "row = \"x\"; column = \"w\";", "my.cfg:2:", "has no row 'x'"},
+        {"value = 3.0;", "value = 3.0; expect = \"different\";", "my.cfg:2:", "because"},
+        {"test = \"near\"", "take = \"exponent\"; test = \"near\"", "", ""},
+        {"points = 4", "points = 2", "", ""},
+        {"name = \"n\"", "name = \"a/b\"", "my.cfg:2:", "no blank"},
+        {"name = \"n\"; ", "", "my.cfg:2:", "needs 'paper', 'name'"},
+        {"claims = (", "claim = (", "my.cfg", "one setting"},
+        {"claims = (", "@include \"x\"\nclaims = (", "my.cfg:1:", "@include"},
+        {"value = 3.0;", "value = = 3.0;", "my.cfg:2:", "syntax error"},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        BenchClaims claims = {0};
+        SmError error = {0};
+        SmCode code = parse(with(cases[c].old, cases[c].new), &claims, &error);
+        assert_int_equal(code, cases[c].says[0] ? SM_INPUT : SM_OK);
+        if (code) {
+            assert_memory_equal(error.text, cases[c].line, strlen(cases[c].line));
+            if (!strstr(error.text, cases[c].says)) fail_msg("%s", error.text);
+            assert_int_equal(claims.count, 0);
+        }
+        bench_claims_free(&claims);
+    }
+}
+
+static void a_name_is_there_once_and_curves_have_points(void **state)
+{
+    (void)state;
+    BenchClaims claims = {0};
+    SmError error;
+    assert_int_equal(parse(good, &claims, &error), SM_OK);
+    assert_int_equal(parse(good, &claims, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "there already"));
+    assert_int_equal(claims.count, 1);
+    assert_int_equal(
+        parse(with("points = 4", "points = 2; }; }; take = \"exponent\"; over = { experiment = "
+                                 "\"sums\"; w = { from = 1; to = 8; points = 2"),
+              &claims, &error),
+        SM_INPUT);
+    assert_non_null(strstr(error.text, "three points"));
+    bench_claims_free(&claims);
+}
+
+static void the_programs_own_claims_are_sound(void **state)
+{
+    (void)state;
+    BenchClaims claims = {0};
+    SmError error;
+    if (bench_claims_builtin(&claims, &error)) fail_msg("%s", error.text);
+    assert_true(claims.count >= 40);
+    for (int c = 0; c < claims.count; c++) {
+        assert_true(claims.claim[c].place[0] && claims.claim[c].unit[0]);
+        char test[96];
+        bench_verdict_test(&claims.claim[c], sizeof test, test);
+        assert_true(strlen(test) > 4);
+    }
+    bench_claims_free(&claims);
+}
+
+/* ---- the file */
+
+static void fill(BenchFinding findings[2], BenchLab *lab, BenchMachine *machine)
+{
+    static BenchCurve curve;
+    char program[] = "shapebench claims";
+    char *argv[] = {program, NULL};
+    bench_machine_read(1, argv, 2, machine);
+    bench_curve_begin(&curve, "w", "sag");
+    strcpy(curve.name, "sag.beam.w1-3.3");
+    for (int p = 0; p < 3; p++) bench_curve_add(&curve, p + 1, 3.25 - p, 3 - p, 3.5 - p);
+    *lab = (BenchLab){.quick = true, .threads = 2, .curves = 1, .curve = &curve};
+    BenchClaim claim = {.paper = "p",
+                        .name = "n",
+                        .statement = "It is, \"so\" it is said.",
+                        .test = BENCH_FALLS,
+                        .expect = BENCH_DIFFERS,
+                        .because = "of the weather"};
+    bench_verdict_find(&claim, &curve, NULL, &findings[0]);
+    bench_claim_place(lab, 0, sizeof findings[0].evidence[0], findings[0].evidence[0]);
+    claim.test = BENCH_IS_NEAR;
+    claim.values = 3;
+    claim.value[0] = claim.value[1] = claim.value[2] = 1;
+    strcpy(claim.name, "m");
+    bench_verdict_find(&claim, &curve, NULL, &findings[1]);
+}
+
+static void findings_and_curves_come_back(void **state)
+{
+    (void)state;
+    BenchFinding findings[2], *back;
+    BenchLab lab;
+    BenchMachine machine, there;
+    BenchCurve *curves;
+    SmError error;
+    int count, curve_count;
+    fill(findings, &lab, &machine);
+    const char *path = path_in("claims.h5");
+    assert_int_equal(bench_claim_store(path, findings, 2, &lab, &machine, &error), SM_OK);
+    if (bench_claim_load(path, &back, &count, &curves, &curve_count, &there, &error))
+        fail_msg("%s", error.text);
+    assert_true(count == 2 && curve_count == 1);
+    assert_string_equal(back[0].claim.statement, findings[0].claim.statement);
+    assert_string_equal(back[0].evidence[0], "/curves/sag.beam.w1-3.3");
+    assert_int_equal(back[0].verdict, BENCH_REPRODUCED);
+    assert_int_equal(back[0].trend, -1);
+    assert_int_equal(back[1].verdict, BENCH_HAS_DIFFERED);
+    assert_string_equal(back[1].words, findings[1].words);
+    assert_true(back[1].count == 3 && back[1].value[2] == 1.25 && back[1].high[2] == 1.5);
+    assert_true(back[1].claim.value[1] == 1 && isnan(back[1].claim.value[3]));
+    assert_string_equal(curves[0].name, "sag.beam.w1-3.3");
+    assert_true(curves[0].points == 3 && curves[0].y[1] == 2.25 && curves[0].low[1] == 2);
+    assert_string_equal(there.command, machine.command);
+    free(back);
+    free(curves);
+}
+
+static void other_files_are_refused(void **state)
+{
+    (void)state;
+    BenchFinding findings[2], *back;
+    BenchLab lab;
+    BenchMachine machine;
+    BenchCurve *curves;
+    SmError error;
+    int count, curve_count;
+    fill(findings, &lab, &machine);
+    const char *const names[] = {"no.h5", "text.h5", "cut.h5"};
+    assert_int_equal(bench_claim_store(path_in("whole.h5"), findings, 2, &lab, &machine, &error),
+                     SM_OK);
+    write_text("text.h5", "not HDF5");
+    FILE *whole = fopen(path_in("whole.h5"), "rb");
+    char bytes[3000];
+    size_t size = fread(bytes, 1, sizeof bytes, whole);
+    fclose(whole);
+    write_bytes("cut.h5", bytes, size);
+    for (int n = 0; n < 3; n++) {
+        const char *path = path_in(names[n]);
+        assert_int_equal(
+            bench_claim_load(path, &back, &count, &curves, &curve_count, &machine, &error),
+            SM_INPUT);
+        assert_non_null(strstr(error.text, names[n]));
+        assert_true(back == NULL && curves == NULL && count == 0);
+    }
+    assert_int_equal(bench_claim_store("/nowhere/x.h5", findings, 2, &lab, &machine, &error),
+                     SM_OUTPUT);
+}
+
+/* ---- tables */
+
+static char *written(BenchFormat format)
+{
+    BenchFinding findings[2];
+    BenchLab lab;
+    BenchMachine machine;
+    char *text;
+    size_t size;
+    fill(findings, &lab, &machine);
+    FILE *file = open_memstream(&text, &size);
+    bench_claim_table_write(file, format, findings, 2, &machine);
+    fclose(file);
+    return text;
+}
+
+static void tables_say_all(void **state)
+{
+    (void)state;
+    static const struct {
+        BenchFormat format;
+        const char *has[3];
+    } cases[] = {
+        {BENCH_AS_TEXT,
+         {"1 reproduced, 1 differs", "3.25 to 1.25", "Differs because of the weather"}},
+        {BENCH_AS_MARKDOWN, {"| p | n |", "`/curves/sag.beam.w1-3.3`", "| falls |"}},
+        {BENCH_AS_LATEX, {"\\begin{tabular}", "3.25 to 1.25", "\\end{tabular}"}},
+        {BENCH_AS_CSV,
+         {"paper,name,place,", "\"It is, \"\"so\"\" it is said.\"", "3.25/2.25/1.25"}},
+        {BENCH_AS_JSON, {"\"verdict\": \"differs\"", "\"environment\"", "\"cpu\""}},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        char *text = written(cases[c].format);
+        for (int h = 0; h < 3; h++)
+            if (!strstr(text, cases[c].has[h])) fail_msg("%s in:\n%s", cases[c].has[h], text);
+        free(text);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_claim_is_read_whole),
+        cmocka_unit_test(values_come_from_the_papers),
+        cmocka_unit_test(mistakes_are_named_with_their_line),
+        cmocka_unit_test(a_name_is_there_once_and_curves_have_points),
+        cmocka_unit_test(the_programs_own_claims_are_sound),
+        cmocka_unit_test(findings_and_curves_come_back),
+        cmocka_unit_test(other_files_are_refused),
+        cmocka_unit_test(tables_say_all),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,151 @@
+#define _GNU_SOURCE
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "deform.h"
+#include "scene_field.h"
+
+static BenchLab quick_lab(void)
+{
+    return (BenchLab){.quick = true, .threads = 1, .seed = 1};
+}
+
+static void ranges_are_even_and_rise(void **state)
+{
+    (void)state;
+    int number[BENCH_RANGE_POINTS];
+    assert_int_equal(bench_range_numbers(&(BenchRange){1, 8, 4}, number), 4);
+    const int doubled[] = {1, 2, 4, 8};
+    assert_memory_equal(number, doubled, sizeof doubled);
+    int count = bench_range_numbers(&(BenchRange){1, 4, 20}, number);
+    assert_int_equal(count, 4); /* what falls together is there once */
+    assert_int_equal(bench_range_numbers(&(BenchRange){7, 7, 1}, number), 1);
+    assert_int_equal(number[0], 7);
+}
+
+static void smoothing_reaches_four_widths_and_is_measured_once(void **state)
+{
+    (void)state;
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_SMOOTHING, .w = {1, 3, 3}};
+    int curve = bench_experiment(&lab, &measure), curves = lab.curves;
+    assert_true(lab.curve[curve].valid && lab.curve[curve].points == 3);
+    assert_true(lab.curve[curve].y[2] > lab.curve[curve].y[0]);
+    for (int c = 0; c < lab.curves; c++) {
+        const BenchCurve *profile = &lab.curve[c];
+        int w;
+        double all = 0;
+        if (!strstr(profile->name, ".profile")) continue;
+        assert_int_equal(sscanf(profile->name, "smoothing.w%d", &w), 1);
+        for (int p = 0; p < profile->points; p++) {
+            all += profile->y[p];
+            assert_true(p <= 4 * w || profile->y[p] < 1e-12); /* two goals, two w each */
+        }
+        assert_true(fabs(all - 1) < 1e-12 && profile->y[4 * w] > 1e-9);
+    }
+    assert_int_equal(bench_experiment(&lab, &measure), curve);
+    assert_int_equal(lab.curves, curves);
+    bench_lab_free(&lab);
+}
+
+/* A gradient that jumps at one plane by a known amount. */
+static void jumps_are_found(void **state)
+{
+    (void)state;
+    enum { N = 5 };
+    double g[N * N * N][3];
+    for (int p = 0; p < N * N * N; p++) {
+        g[p][0] = p % N;
+        g[p][1] = p / N % N;
+        g[p][2] = (double)(p / (N * N)) * 1.5;
+        if (p % N > 2) g[p][1] += 0.75 * (p % N - 2);
+    }
+    const int size[3] = {N, N, N};
+    assert_true(fabs(bench_deform_jump(size, (const double(*)[3])g) - 0.75) < 1e-12);
+}
+
+static void the_bar_bends_and_twists_by_half_a_turn(void **state)
+{
+    (void)state;
+    const double along = 40, radius = along / M_PI;
+    double a[3], b[3];
+    bench_deform_place((const double[3]){0, 0, -along / 2}, along, a);
+    bench_deform_place((const double[3]){0, 0, along / 2}, along, b);
+    assert_true(fabs(b[2] - a[2] - 2 * radius) < 1e-12 && fabs(b[0] - a[0]) < 1e-12);
+    bench_deform_place((const double[3]){1, 0, along / 2}, along, b);
+    assert_true(fabs(b[1] - 1) < 1e-12); /* a quarter turn at either end */
+    bench_deform_place((const double[3]){1, 2, 0}, along, b);
+    assert_true(b[0] == 1 && b[1] == 2 && b[2] == 0);
+}
+
+static void scenes_give_their_fields(void **state)
+{
+    (void)state;
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_SCENE};
+    strcpy(measure.scene, "penguin");
+    strcpy(measure.field, "stage_percent");
+    int shares = bench_experiment(&lab, &measure);
+    double sum = 0;
+    assert_int_equal(lab.curve[shares].points, SM_STAGES);
+    for (int s = 0; s < SM_STAGES; s++) sum += lab.curve[shares].y[s];
+    assert_true(fabs(sum - 100) < 1e-6);
+    strcpy(measure.field, "particles");
+    int particles = bench_experiment(&lab, &measure);
+    assert_true(lab.curve[particles].y[0] == 150);
+    assert_true(lab.rows == 1 && lab.curve[particles].row == 0);
+    bench_lab_free(&lab);
+}
+
+static void what_cannot_be_measured_is_not_valid(void **state)
+{
+    (void)state;
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_SCENE};
+    strcpy(measure.scene, "no-such-scene");
+    strcpy(measure.field, "particles");
+    int curve = bench_experiment(&lab, &measure);
+    assert_false(lab.curve[curve].valid);
+    assert_non_null(strstr(lab.curve[curve].reason, "no-such-scene"));
+    measure = (BenchMeasure){.experiment = BENCH_TRY_SAG, .w = {1, 2, 2}};
+    strcpy(measure.scene, "penguin");
+    curve = bench_experiment(&lab, &measure);
+    assert_false(lab.curve[curve].valid);
+    bench_lab_free(&lab);
+}
+
+static void cubes_of_both_engines_are_timed(void **state)
+{
+    (void)state;
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_SIZE, .n = {6, 10, 3}};
+    for (int engine = 0; engine < 2; engine++) {
+        strcpy(measure.engine, engine ? "octree" : "fastlsm");
+        strcpy(measure.field, engine ? "sums" : "");
+        int number = bench_experiment(&lab, &measure);
+        const BenchCurve *curve = &lab.curve[number];
+        if (!curve->valid) fail_msg("%s", curve->reason);
+        assert_true(curve->points == 3 && curve->x[2] == 1000 && curve->y[0] > 0);
+    }
+    bench_lab_free(&lab);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ranges_are_even_and_rise),
+        cmocka_unit_test(smoothing_reaches_four_widths_and_is_measured_once),
+        cmocka_unit_test(jumps_are_found),
+        cmocka_unit_test(the_bar_bends_and_twists_by_half_a_turn),
+        cmocka_unit_test(scenes_give_their_fields),
+        cmocka_unit_test(what_cannot_be_measured_is_not_valid),
+        cmocka_unit_test(cubes_of_both_engines_are_timed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
