@@ -19,5 +19,6 @@ int bench_command_info(int argc, char **argv);
 int bench_command_run(int argc, char **argv);
 int bench_command_tables(int argc, char **argv);
 int bench_command_kernels(int argc, char **argv);
+int bench_command_report(int argc, char **argv);
 
 #endif

@@ -1,0 +1,82 @@
+"""Result files, read for a report. Nothing here knows how they will look.
+
+Layouts are those of results/README.md: measurements ("shapebench results"), claims ("shapebench claims")
+and sweeps ("shapebench sweep")."""
+import os
+
+import h5py
+import numpy as np
+
+SCHEMAS = {"shapebench results": 4}
+
+
+class Unusable(Exception):
+    """A file that cannot be reported; says which, why, and what helps."""
+
+
+def plain(value):
+    """An attribute as Python has it: text, number, or array."""
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    if isinstance(value, np.ndarray):
+        return value
+    return value.item() if hasattr(value, "item") else value
+
+
+def attributes(node):
+    return {name: plain(value) for name, value in node.attrs.items()}
+
+
+class Source:
+    """A file: its kind, the machine that wrote it, and what its kind holds."""
+
+    def __init__(self, path, kind, machine):
+        self.path, self.kind, self.machine = path, kind, machine
+        self.name = os.path.basename(path)
+        self.rows = []
+
+    @property
+    def commit(self):
+        commit = self.machine.get("git_commit", "unknown")[:10]
+        return commit + ("+" if self.machine.get("git_dirty") else "")
+
+
+def read_row(group):
+    row = attributes(group)
+    for name in ("total", "stage", "frames"):
+        if name in group:
+            row[name + "_samples"] = group[name][:]
+    row["stage_names"] = row["stages"].split()
+    return row
+
+
+def read_rows(source, file):
+    source.rows = [read_row(file["rows"][name]) for name in sorted(file["rows"])]
+
+
+READERS = {"shapebench results": read_rows}
+
+
+def read(path):
+    """The file as a Source; raises Unusable."""
+    if not os.path.exists(path):
+        raise Unusable(f"{path}: no such file")
+    try:
+        file = h5py.File(path, "r")
+    except OSError:
+        raise Unusable(f"{path}: not an HDF5 file, or cut off: make it again") from None
+    with file:
+        kind, schema = plain(file.attrs.get("kind", "")), plain(file.attrs.get("schema", 0))
+        if kind not in SCHEMAS:
+            raise Unusable(f"{path}: not a file that can be reported (its kind is '{kind}'): give files that "
+                           "`shapebench tables`, `claims` or `sweep` wrote with -o")
+        if schema != SCHEMAS[kind]:
+            raise Unusable(f"{path}: {kind} of schema {schema}, and this program reads {SCHEMAS[kind]}: make it again "
+                           "with this version")
+        source = Source(path, kind, {})
+        try:
+            source.machine = attributes(file["machine"])
+            READERS[kind](source, file)
+        except (KeyError, OSError, ValueError) as error:
+            raise Unusable(f"{path}: something is missing or damaged ({error}): make it again") from None
+        return source
