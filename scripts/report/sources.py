@@ -8,6 +8,12 @@ import h5py
 import numpy as np
 
 SCHEMAS = {"shapebench results": 4}
+TEXTS = ("paper", "scene", "engine", "precision", "reason", "stages")
+NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_low_ms", "total_high_ms",
+           "ns_per_particle_step", "summation_nodes", "paper_total_ms") + tuple(
+    "change." + name for name in ("frames", "changed", "first_nodes", "most_nodes", "most_added", "first_ms", "last_ms",
+                                  "change_ms", "change_most_ms", "follow_ms", "surface_ms", "first_triangles",
+                                  "last_triangles", "pieces", "open_edges", "left"))
 
 
 class Unusable(Exception):
@@ -41,8 +47,20 @@ class Source:
         return commit + ("+" if self.machine.get("git_dirty") else "")
 
 
+def demand(row, names, kinds):
+    """All of these attributes, each of one of the kinds."""
+    for name in names:
+        if not isinstance(row.get(name), kinds):
+            raise ValueError(f"'{name}' of a row")
+
+
 def read_row(group):
     row = attributes(group)
+    demand(row, TEXTS, str)
+    demand(row, NUMBERS, (int, float))
+    demand(row, ("stage_ms", "paper_stage_ms"), np.ndarray)
+    if not len(row["stages"].split()) == len(row["stage_ms"]) == len(row["paper_stage_ms"]):
+        raise ValueError("the number of stages")
     for name in ("total", "stage", "frames"):
         if name in group:
             row[name + "_samples"] = group[name][:]
