@@ -21,6 +21,7 @@ except ImportError as missing:
     sys.exit(77)
 
 PROGRAM = sys.argv.pop(1)
+SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
 
 class Page(html.parser.HTMLParser):
@@ -171,6 +172,26 @@ class Report(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr.count("\n")), (4, 1))
         full = shapebench("report", "-o", "/dev/full/page", self.rows)
         self.assertEqual((full.returncode, full.stderr.count("\n")), (4, 1))
+
+    def example(self, language):
+        """The README's example of reading a results file."""
+        with open(os.path.join(SOURCES, "results", "README.md"), encoding="utf-8") as file:
+            return file.read().split(f"```{language}\n")[1].split("```")[0]
+
+    def test_the_readme_s_examples_run(self):
+        for name, language in (("example.py", "python"), ("example.c", "c")):
+            with open(self.at(name), "w", encoding="utf-8") as file:
+                file.write(self.example(language))
+        with h5py.File(self.rows) as file:
+            wanted = f"{file['rows/000'].attrs['total_ms']:.4g} ms"
+        python = subprocess.run([sys.executable, self.at("example.py"), self.rows], capture_output=True, text=True)
+        self.assertIn("penguin " + wanted, python.stdout, python.stderr)
+        flags = subprocess.run(["pkg-config", "--cflags", "--libs", "hdf5-serial"], capture_output=True, text=True)
+        built = subprocess.run(["cc", "-Wall", "-Werror", self.at("example.c"), "-o", self.at("example"),
+                                *flags.stdout.split()], capture_output=True, text=True)
+        self.assertEqual(built.returncode, 0, built.stderr)
+        said = subprocess.run([self.at("example"), self.rows], capture_output=True, text=True)
+        self.assertIn(wanted, said.stdout)
 
     def test_a_folder_of_something_else_is_kept(self):
         os.makedirs(self.at("mine"), exist_ok=True)
