@@ -22,6 +22,7 @@ try:
     import jinja2
     from markupsafe import Markup
 
+    import claim_figures
     import row_figures
     import sources
     import tables
@@ -51,8 +52,17 @@ def measured_part(files):
                 row_figures.all_figures(files))
 
 
+def claims_part(files):
+    files = [source for source in files if source.claims]
+    if not files:
+        return None
+    return Part("claims", "What the papers claim", map(claim_figures.said, files),
+                map(claim_figures.claim_table, files),
+                [figure for source in files for figure in claim_figures.figures(source)])
+
+
 def compose(files):
-    parts = [measured_part(files),
+    parts = [measured_part(files), claims_part(files),
              Part("environment", "Where and how", tables=[tables.environment(files)])]
     return [part for part in parts if part]
 

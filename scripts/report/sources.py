@@ -7,13 +7,15 @@ import os
 import h5py
 import numpy as np
 
-SCHEMAS = {"shapebench results": 4}
+SCHEMAS = {"shapebench results": 4, "shapebench claims": 1}
 TEXTS = ("paper", "scene", "engine", "precision", "reason", "stages")
 NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_low_ms", "total_high_ms",
            "ns_per_particle_step", "summation_nodes", "paper_total_ms") + tuple(
     "change." + name for name in ("frames", "changed", "first_nodes", "most_nodes", "most_added", "first_ms", "last_ms",
                                   "change_ms", "change_most_ms", "follow_ms", "surface_ms", "first_triangles",
                                   "last_triangles", "pieces", "open_edges", "left"))
+
+CLAIM_TEXTS = ("paper", "name", "place", "unit", "statement", "test", "verdict", "words", "evidence", "over")
 
 
 class Unusable(Exception):
@@ -39,7 +41,7 @@ class Source:
     def __init__(self, path, kind, machine):
         self.path, self.kind, self.machine = path, kind, machine
         self.name = os.path.basename(path)
-        self.rows = []
+        self.rows, self.claims, self.curves = [], [], {}
 
     @property
     def commit(self):
@@ -51,7 +53,7 @@ def demand(row, names, kinds):
     """All of these attributes, each of one of the kinds."""
     for name in names:
         if not isinstance(row.get(name), kinds):
-            raise ValueError(f"'{name}' of a row")
+            raise ValueError(f"'{name}'")
 
 
 def read_row(group):
@@ -72,7 +74,32 @@ def read_rows(source, file):
     source.rows = [read_row(file["rows"][name]) for name in sorted(file["rows"])]
 
 
-READERS = {"shapebench results": read_rows}
+def read_claim(group):
+    claim = attributes(group)
+    demand(claim, CLAIM_TEXTS, str)
+    demand(claim, ("values", "count"), int)
+    demand(claim, ("paper_value", "measured", "low", "high"), np.ndarray)
+    return claim
+
+
+def read_curve(group):
+    curve = attributes(group)
+    demand(curve, ("x_name", "y_name"), str)
+    demand(curve, ("valid", "exponent", "exponent_low", "exponent_high"), (int, float))
+    for name in ("x", "y", "low", "high"):
+        curve[name] = group[name][:] if name in group else np.empty(0)
+        if curve[name].shape != curve["x"].shape:
+            raise ValueError(f"the number of values of '{name}'")
+    return curve
+
+
+def read_claims(source, file):
+    """Rows measured for claims stay evidence: `tables` is what shows rows."""
+    source.claims = [read_claim(file["claims"][name]) for name in sorted(file["claims"])]
+    source.curves = {name: read_curve(file["curves"][name]) for name in file["curves"]}
+
+
+READERS = {"shapebench results": read_rows, "shapebench claims": read_claims}
 
 
 def read(path):
