@@ -8,6 +8,7 @@
 
 #include "../lib/import.h"
 #include "../lib/shape.h"
+#include "hash.h"
 #include "nearest.h"
 
 SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
@@ -169,13 +170,6 @@ static SmCode place_particles(const BenchScene *scene, BenchBody *body, SmError 
     return code;
 }
 
-static unsigned long long hash_bytes(unsigned long long hash, const void *data, size_t size)
-{
-    const unsigned char *byte = data;
-    for (size_t i = 0; i < size; i++) hash = (hash ^ byte[i]) * 0x100000001b3ULL;
-    return hash;
-}
-
 static double log_off(const SmVoxels *voxels, long cells)
 {
     return fabs(log((double)voxels->cell_count / (double)cells));
@@ -203,13 +197,14 @@ static SmCode voxelise_cells(const BenchScene *scene, const SmMesh *mesh, SmVoxe
 
 SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error)
 {
-    *body = (BenchBody){.mesh = *mesh, .hash = 0xcbf29ce484222325ULL};
+    *body = (BenchBody){.mesh = *mesh, .hash = BENCH_HASH_START};
     *mesh = (SmMesh){0};
     const SmMesh *m = &body->mesh;
     bounds(m, body->low, body->high);
-    body->hash = hash_bytes(body->hash, m->position, (size_t)m->vertex_count * sizeof *m->position);
     body->hash =
-        hash_bytes(body->hash, m->triangle, (size_t)m->triangle_count * sizeof *m->triangle);
+        bench_hash_bytes(body->hash, m->position, (size_t)m->vertex_count * sizeof *m->position);
+    body->hash =
+        bench_hash_bytes(body->hash, m->triangle, (size_t)m->triangle_count * sizeof *m->triangle);
     double start = sm_now();
     SmCode code = scene->cells > 0
                       ? voxelise_cells(scene, m, &body->voxels, error)

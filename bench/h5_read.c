@@ -1,5 +1,6 @@
 #include "h5.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static bool same_class(hid_t type, BenchKind kind)
@@ -123,4 +124,20 @@ void bench_h5_read(BenchH5 *h5, hid_t dataset, hid_t type, void *values)
     if (h5->failed) return;
     if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
         bench_h5_fail(h5, "a dataset cannot be read");
+}
+
+void bench_h5_check_kind(BenchH5 *h5, const char *kind, int schema)
+{
+    char found[64] = "";
+    int number = 0;
+    const BenchField field = {"schema", BENCH_INT, 0, sizeof number};
+    bench_h5_read_text(h5, h5->file, "kind", sizeof found, found);
+    if (h5->failed || strcmp(found, kind) != 0) {
+        snprintf(h5->message, sizeof h5->message, "it is HDF5, but not a %s file", kind);
+        h5->failed = true;
+    }
+    bench_h5_read_fields(h5, h5->file, &field, 1, &number);
+    if (!h5->failed && number != schema)
+        bench_h5_fail(h5, "its schema is %d and this program reads %d; %s", number, schema,
+                      number < schema ? "measure again" : "use a newer shapebench");
 }

@@ -1,14 +1,12 @@
 /* shapebench: dispatch to the commands; see command.h. */
 #include <argp.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "../lib/error.h"
 #include "command.h"
-#include "draft.h"
+#include "interrupt.h"
 
 static const BenchCommand commands[] = {
     {"tables", "measure a paper's table: every stage, checked, the paper's values beside",
@@ -17,6 +15,9 @@ static const BenchCommand commands[] = {
     {"report", "make a page of result files: tables, figures, where it was measured",
      bench_command_report},
     {"run", "simulate a scene or a mesh and write its motion", bench_command_run},
+    {"sweep", "cost, stiffness and deviation over region width and epsilon; recommend some",
+     bench_command_sweep},
+    {"merge", "put the shards of a sweep into one file", bench_command_merge},
     {"info", "say what is in a mesh, and whether it can be simulated", bench_command_info},
     {"scenes", "list the built-in scenes, or print one to copy and edit", bench_command_scenes},
 };
@@ -66,24 +67,6 @@ static const BenchCommand *find_command(const char *name)
     return NULL;
 }
 
-/* Ends the program with no file half written. */
-static void interrupt(int number)
-{
-    static const char text[] = "\nshapebench: interrupted: no file was written\n";
-    bench_drafts_remove();
-    ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
-    (void)written;
-    _exit(128 + number);
-}
-
-static void catch_signals(void)
-{
-    struct sigaction action = {.sa_handler = interrupt};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-}
-
 int main(int argc, char **argv)
 {
     char help[2048];
@@ -94,7 +77,7 @@ int main(int argc, char **argv)
     if (argc < 1) argv = none, argc = 1;
     argv[0] = program;
     argp_err_exit_status = SM_USAGE;
-    catch_signals();
+    bench_interrupt_catch();
 
     int first = argc;
     if (argp_parse(&argp, argc, argv, ARGP_IN_ORDER, &first, NULL)) return SM_USAGE;

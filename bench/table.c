@@ -2,9 +2,9 @@
 
 #include <jansson.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "quote.h"
 #include "report.h"
 
 const char *const bench_format_names[] = {"text", "markdown", "csv", "latex", "json", NULL};
@@ -76,25 +76,10 @@ static void fill_cells(const BenchRow *row, Cell cell[COLUMNS])
     for (int i = 0; i < 6; i++) *c++ = (Cell){.kind = TIME, .number = changes ? times[i] : NAN};
 }
 
-/* Quoted where it must be, with quotes doubled. */
-static void csv_text(FILE *file, const char *text)
-{
-    if (!text[strcspn(text, ",\"\r\n")]) {
-        fputs(text, file);
-        return;
-    }
-    fputc('"', file);
-    for (; *text; text++) {
-        if (*text == '"') fputc('"', file);
-        fputc(*text, file);
-    }
-    fputc('"', file);
-}
-
 static void csv_cell(FILE *file, const Cell *cell, bool valid)
 {
     if (cell->kind == TEXT)
-        csv_text(file, cell->text);
+        bench_csv_text(file, cell->text);
     else if (cell->kind == WHOLE)
         fprintf(file, "%ld", cell->whole);
     else if (cell->kind == VALID || (cell->kind == TIME && !valid))
@@ -118,22 +103,9 @@ static void write_csv(FILE *file, const BenchRow *rows, int count)
     }
 }
 
-/* A string that may hold bytes that are no UTF-8 (a command line): those become '?'. */
-static json_t *json_text(const char *text)
-{
-    json_t *value = json_string(text);
-    if (value) return value;
-    char copy[1024];
-    size_t i = 0;
-    for (; text[i] && i < sizeof copy - 1; i++)
-        copy[i] = (unsigned char)text[i] < 128 ? text[i] : '?';
-    copy[i] = '\0';
-    return json_string(copy);
-}
-
 static json_t *json_cell(const Cell *cell, bool valid)
 {
-    if (cell->kind == TEXT) return json_text(cell->text);
+    if (cell->kind == TEXT) return bench_json_text(cell->text);
     if (cell->kind == WHOLE) return json_integer(cell->whole);
     if (cell->kind == VALID) return json_boolean(valid);
     if ((cell->kind == TIME && !valid) || !isfinite(cell->number)) return json_null();
@@ -154,7 +126,7 @@ static json_t *json_environment(const BenchMachine *machine)
     };
     json_t *object = json_object();
     for (size_t i = 0; i < sizeof strings / sizeof strings[0]; i++)
-        json_object_set_new(object, strings[i].name, json_text(strings[i].text));
+        json_object_set_new(object, strings[i].name, bench_json_text(strings[i].text));
     json_object_set_new(object, "git_dirty", json_boolean(machine->git_dirty));
     json_object_set_new(object, "l1_bytes", json_integer(machine->l1_bytes));
     json_object_set_new(object, "l2_bytes", json_integer(machine->l2_bytes));

@@ -25,6 +25,7 @@ try:
     import claim_figures
     import row_figures
     import sources
+    import sweep_figures
     import tables
 except ImportError as error:
     fail(f"{error} (for {sys.executable}): scripts/setup run, or apt-get install python3-jinja2 python3-h5py "
@@ -61,8 +62,17 @@ def claims_part(files):
                 [figure for source in files for figure in claim_figures.figures(source)])
 
 
+def sweeps_part(files):
+    files = [source for source in files if source.plan]
+    if not files:
+        return None
+    return Part("sweeps", "Which w, which epsilon", map(sweep_figures.said, files),
+                map(sweep_figures.front_table, files),
+                [figure for source in files for figure in sweep_figures.figures(source)])
+
+
 def compose(files):
-    parts = [measured_part(files), claims_part(files),
+    parts = [measured_part(files), claims_part(files), sweeps_part(files),
              Part("environment", "Where and how", tables=[tables.environment(files)])]
     return [part for part in parts if part]
 

@@ -7,7 +7,7 @@ import os
 import h5py
 import numpy as np
 
-SCHEMAS = {"shapebench results": 4, "shapebench claims": 1}
+SCHEMAS = {"shapebench results": 4, "shapebench claims": 1, "shapebench sweep": 1}
 TEXTS = ("paper", "scene", "engine", "precision", "reason", "stages")
 NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_low_ms", "total_high_ms",
            "ns_per_particle_step", "summation_nodes", "paper_total_ms") + tuple(
@@ -16,6 +16,9 @@ NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_l
                                   "last_triangles", "pieces", "open_edges", "left"))
 
 CLAIM_TEXTS = ("paper", "name", "place", "unit", "statement", "test", "verdict", "words", "evidence", "over")
+
+SWEEP_COLUMNS = ("engine", "w", "epsilon", "valid", "total_ms", "build_seconds", "bytes", "summation_nodes", "goal_rms",
+                 "relaxation", "sag", "frequency", "path_rms", "path_most", "front")
 
 
 class Unusable(Exception):
@@ -42,6 +45,7 @@ class Source:
         self.path, self.kind, self.machine = path, kind, machine
         self.name = os.path.basename(path)
         self.rows, self.claims, self.curves = [], [], {}
+        self.plan, self.point = None, None
 
     @property
     def commit(self):
@@ -99,7 +103,19 @@ def read_claims(source, file):
     source.curves = {name: read_curve(file["curves"][name]) for name in file["curves"]}
 
 
-READERS = {"shapebench results": read_rows, "shapebench claims": read_claims}
+def read_sweep(source, file):
+    source.plan = attributes(file["plan"])
+    demand(source.plan, ("scene", "width"), str)
+    demand(source.plan, ("points",), int)
+    source.point = {name: column[:] for name, column in file["points"].items()}
+    missing = [name for name in SWEEP_COLUMNS if len(source.point.get(name, ())) != len(source.point["w"])]
+    if missing or not len(source.point["w"]):
+        raise ValueError(f"'{missing[0]}' of the points" if missing else "not one point is finished")
+    source.point["engine"] = np.array([plain(engine) for engine in source.point["engine"]])
+
+
+READERS = {"shapebench results": read_rows, "shapebench claims": read_claims,
+           "shapebench sweep": read_sweep}
 
 
 def read(path):

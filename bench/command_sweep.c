@@ -1,0 +1,267 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+#include "front.h"
+#include "option.h"
+#include "range.h"
+#include "sweep_run.h"
+#include "sweep_table.h"
+
+enum {
+    KEY_SCENE = 0x2000,
+    KEY_MESH,
+    KEY_ENGINE,
+    KEY_W,
+    KEY_EPSILON,
+    KEY_WIDTH,
+    KEY_PRECISION,
+    KEY_REPEATS,
+    KEY_BLOCK,
+    KEY_FRAMES,
+    KEY_SHARD,
+    KEY_FORMAT,
+    KEY_RECOMMEND,
+    KEY_STIFFNESS,
+    KEY_DEVIATION,
+    KEY_BUDGET
+};
+
+typedef struct {
+    BenchCommon common;
+    const char *scene, *mesh, *file, *w, *epsilon;
+    int engines, width, precision; /* in the lists below */
+    BenchPlan plan;
+    BenchSweepRun run;
+    BenchFormat format;
+    bool recommend;
+    BenchWish wish;
+} Options;
+
+static const char *const engine_choices[] = {"both", "fastlsm", "octree", NULL};
+static const char *const width_choices[] = {"edges", "cells", NULL};
+
+static const struct argp_option option_list[] = {
+    {"scene", KEY_SCENE, "NAME|FILE.cfg", 0, "The scene to sweep (default: hand)", 1},
+    {"mesh", KEY_MESH, "FILE", 0,
+     "Your mesh in the scene's place, scaled to it; without --scene dropped on the ground as 'run' "
+     "does",
+     1},
+    {"engine", KEY_ENGINE, "NAME", 0, "both, fastlsm or octree (default: both)", 1},
+    {"w", KEY_W, "RANGE", 0,
+     "Region half-widths, FIRST:LAST[:STEP] or a list (default: 1:8); of fastlsm in cells, whole "
+     "numbers",
+     1},
+    {"epsilon", KEY_EPSILON, "RANGE", 0, "The octree's (default: 0:1:0.1)", 1},
+    {"width", KEY_WIDTH, "UNIT", 0,
+     "What an octree's w counts: edges of each node's own cell, or finest cells (default: edges)",
+     1},
+    {"precision", KEY_PRECISION, "P", 0, "Of what is timed: single or double (default: single)", 1},
+    {"repeats", KEY_REPEATS, "N", 0, "Samples of every time, 1 to 64 (default: 5)", 2},
+    {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 10)", 2},
+    {"frames", KEY_FRAMES, "N", 0, "Frames of motion to compare (default: 50)", 2},
+    {"output", 'o', "FILE.h5", 0,
+     "Store every point as it is finished; if the file is there, go on with it (default: nothing "
+     "stored)",
+     3},
+    {"shard", KEY_SHARD, "I/N", 0,
+     "Measure only every N-th point, from the I-th on; put the files together with 'merge'", 3},
+    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex or json (default: text)", 3},
+    {"recommend", KEY_RECOMMEND, 0, 0,
+     "Say in one sentence which w and epsilon to take, for the wishes below (default: a deviation "
+     "of 1%)",
+     4},
+    {"stiffness", KEY_STIFFNESS, "HZ", 0, "Wish: the beam's first frequency", 4},
+    {"deviation", KEY_DEVIATION, "PERCENT", 0,
+     "Wish: the surface at most so far from full resolution, of the body's size, rms", 4},
+    {"budget", KEY_BUDGET, "MS", 0, "Wish: a step takes at most so long", 4},
+    {0},
+};
+
+static void parse_shard(const struct argp_state *state, const char *text, BenchSweepRun *run)
+{
+    char end;
+    bool good = sscanf(text, "%d/%d%c", &run->shard, &run->shards, &end) == 2 && run->shard >= 1 &&
+                run->shards <= BENCH_PLAN_POINTS && run->shard <= run->shards;
+    if (!good)
+        bench_usage(state, "--shard: '%.40s' is not I/N with I from 1 to N, and N at most %d", text,
+                    BENCH_PLAN_POINTS);
+}
+
+static error_t parse_measuring(int key, char *text, const struct argp_state *state,
+                               Options *options)
+{
+    switch (key) {
+    case KEY_REPEATS:
+        options->plan.repeats =
+            (int)bench_option_long(state, "--repeats", text, 1, BENCH_POINT_SAMPLES);
+        return 0;
+    case KEY_BLOCK:
+        options->plan.block_ms = bench_option_real(state, "--block", text, 0.001, 60000);
+        return 0;
+    case KEY_FRAMES:
+        options->plan.frames = (int)bench_option_long(state, "--frames", text, 1, 10000);
+        return 0;
+    case 'o':
+        options->run.output = text;
+        return 0;
+    case KEY_SHARD:
+        parse_shard(state, text, &options->run);
+        return 0;
+    case KEY_FORMAT:
+        options->format =
+            (BenchFormat)bench_option_choice(state, "--format", text, bench_format_names);
+        return 0;
+    case KEY_RECOMMEND:
+        options->recommend = true;
+        return 0;
+    case KEY_STIFFNESS:
+        options->wish.stiffness = bench_option_real(state, "--stiffness", text, 1e-6, 1e6);
+        return 0;
+    case KEY_DEVIATION:
+        options->wish.deviation = bench_option_real(state, "--deviation", text, 0, 1000);
+        return 0;
+    case KEY_BUDGET:
+        options->wish.budget = bench_option_real(state, "--budget", text, 1e-6, 1e9);
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case KEY_SCENE:
+        options->scene = text;
+        return 0;
+    case KEY_MESH:
+        if (strlen(text) >= sizeof options->plan.mesh)
+            bench_usage(state, "--mesh: the path '%.60s...' is too long", text);
+        options->mesh = text;
+        return 0;
+    case KEY_ENGINE:
+        options->engines = bench_option_choice(state, "--engine", text, engine_choices);
+        return 0;
+    case KEY_W:
+        options->w = text;
+        return 0;
+    case KEY_EPSILON:
+        options->epsilon = text;
+        return 0;
+    case KEY_WIDTH:
+        options->width = bench_option_choice(state, "--width", text, width_choices);
+        return 0;
+    case KEY_PRECISION:
+        options->precision = bench_option_choice(state, "--precision", text, bench_precisions);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (options->file) bench_usage(state, "what is '%s'? One file is shown at a time", text);
+        options->file = text;
+        return 0;
+    }
+    return parse_measuring(key, text, state, options);
+}
+
+static const char help[] =
+    "Measure an engine, or both, over region widths w and the octree's epsilon: what a step costs, "
+    "how stiff it makes a body, and how far it is from exact regions and from full resolution. "
+    "With FILE.h5 alone: show a stored sweep.\v"
+    "Every point is checked like a row of 'tables'; one that fails has INVALID in place of its "
+    "times. The octree's goals are compared with those of epsilon 0 on the same deformed state; "
+    "the "
+    "surface, over some frames of the same scene, with a lattice of all finest cells whose "
+    "half-width is the mean of the octree's, by mass (a lattice is its own full resolution). "
+    "Stiffness is that of a regularly sampled beam with the same w and epsilon. The scene's cuts, "
+    "touches, plasticity and further instances are left out.\n"
+    "Started by mpirun, all ranks measure and the first one stores. Points of ranks and shards "
+    "that "
+    "share a machine disturb each other's times; each keeps its host and rank.\n" BENCH_EXIT_CODES;
+
+static const struct argp argp = {option_list, parse, "[FILE.h5]", help, NULL, NULL, NULL};
+
+static SmCode make_plan(Options *options, BenchPlan *plan, SmError *error)
+{
+    const char *scene = options->scene ? options->scene : options->mesh ? "" : "hand";
+    if (strlen(scene) >= sizeof plan->file)
+        return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", scene);
+    snprintf(plan->file, sizeof plan->file, "%s", scene);
+    if (options->mesh) snprintf(plan->mesh, sizeof plan->mesh, "%s", options->mesh);
+    strcpy(plan->engines, engine_choices[options->engines]);
+    strcpy(plan->width, width_choices[options->width]);
+    strcpy(plan->precision, bench_precisions[options->precision]);
+    plan->threads = options->common.threads;
+    plan->seed = (long)options->common.seed;
+    SmCode code = bench_range_parse("--w", options->w, options->engines == 2 ? 0.01 : 1, 1000,
+                                    BENCH_PLAN_VALUES, plan->w, &plan->ws, error);
+    if (!code)
+        code = bench_range_parse("--epsilon", options->epsilon, 0, 1000, BENCH_PLAN_VALUES,
+                                 plan->epsilon, &plan->epsilons, error);
+    return code ? code : bench_plan_count(plan, error);
+}
+
+static SmCode verdict(const BenchSweep *sweep, SmError *error)
+{
+    long invalid = 0;
+    const BenchPoint *first = NULL;
+    for (long i = sweep->count - 1; i >= 0; i--)
+        if (!sweep->point[i].valid) invalid++, first = &sweep->point[i];
+    if (!first) return SM_OK;
+    return sm_fail(error, SM_INVALID,
+                   "%ld of %ld points are INVALID, the first %s with w %g, epsilon %g: %s", invalid,
+                   sweep->count, first->engine, first->w, first->epsilon, first->reason);
+}
+
+static SmCode show(const Options *options, BenchSweep *sweep, SmError *error)
+{
+    bench_front_mark(sweep->point, sweep->count);
+    bench_sweep_table(stdout, options->format, sweep);
+    const BenchWish *wish = &options->wish;
+    bool wished = !isnan(wish->stiffness) || !isnan(wish->deviation) || !isnan(wish->budget);
+    if (options->recommend || wished) {
+        char sentence[BENCH_SENTENCE];
+        bench_recommend(sweep->point, sweep->count, wish, sweep->plan.width, sentence);
+        bool table = options->format == BENCH_AS_CSV || options->format == BENCH_AS_JSON;
+        fprintf(table ? stderr : stdout, "%s%s\n", table ? "" : "\n", sentence);
+    }
+    return verdict(sweep, error);
+}
+
+static SmCode run(Options *options, int argc, char **argv, BenchSweep *sweep, SmError *error)
+{
+    sweep->plan = options->plan;
+    SmCode code = make_plan(options, &sweep->plan, error);
+    if (code) return code;
+    bench_machine_read(argc, argv, options->common.threads, &sweep->machine);
+    bench_plan_build(&sweep->machine, &sweep->plan);
+    options->run.quiet = options->common.quiet;
+    return bench_sweep_run(&options->run, sweep, error);
+}
+
+int bench_command_sweep(int argc, char **argv)
+{
+    Options options = {.w = "1:8",
+                       .epsilon = "0:1:0.1",
+                       .plan = {.repeats = 5, .block_ms = 10, .frames = 50},
+                       .run = {.shard = 1, .shards = 1},
+                       .wish = {NAN, NAN, NAN}};
+    BenchRanks ranks;
+    BenchSweep sweep = {0};
+    SmError error;
+    options.run.ranks = &ranks;
+    SmCode code = bench_ranks_start(&ranks, &error);
+    if (!code) {
+        bench_options_parse(&argp, argc, argv, &options, &options.common);
+        code = options.file ? bench_sweep_load(options.file, &sweep, &error)
+                            : run(&options, argc, argv, &sweep, &error);
+    }
+    if (!code && ranks.rank == 0) code = show(&options, &sweep, &error);
+    if (code && ranks.rank == 0) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    bench_sweep_free(&sweep);
+    if (ranks.rank > 0) code = SM_OK; /* the first rank says it for all */
+    if (code == SM_OUTPUT) bench_ranks_abort(&ranks, code);
+    bench_ranks_stop(&ranks);
+    return (int)code;
+}

@@ -1,0 +1,122 @@
+#include "ranks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* What launchers tell their processes: Open MPI's, those of MPICH's kind, Slurm's. */
+static long launcher_says(const char *const *names, long otherwise)
+{
+    for (; *names; names++) {
+        const char *text = getenv(*names);
+        if (text && *text) return strtol(text, NULL, 10);
+    }
+    return otherwise;
+}
+
+static const char *const counts[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", NULL};
+static const char *const numbers[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", NULL};
+
+static void be_silent(void)
+{
+    if (!freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr)) exit(SM_OUTPUT);
+}
+
+#ifdef SHAPEBENCH_MPI
+
+#include <mpi.h>
+
+enum { TAG = 1 };
+
+SmCode bench_ranks_start(BenchRanks *ranks, SmError *error)
+{
+    *ranks = (BenchRanks){0, 1};
+    long count = launcher_says(counts, 1);
+    if (launcher_says(numbers, -1) < 0 && count == 1) return SM_OK;
+    if (launcher_says(numbers, 0) > 0) be_silent();
+    MPI_Init(NULL, NULL);
+    MPI_Comm_rank(MPI_COMM_WORLD, &ranks->rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks->count);
+    if (ranks->count == count || count == 1) return SM_OK;
+    return sm_fail(error, SM_USAGE,
+                   "started as one of %ld processes by another MPI than the one that it was built "
+                   "with: use that one's mpirun, or --shard",
+                   count);
+}
+
+void bench_ranks_share(const BenchRanks *ranks, void *bytes, int size)
+{
+    if (ranks->count > 1) MPI_Bcast(bytes, size, MPI_BYTE, 0, MPI_COMM_WORLD);
+}
+
+void bench_ranks_send(const BenchRanks *ranks, BenchNote *note)
+{
+    note->rank = ranks->rank;
+    MPI_Send(note, sizeof *note, MPI_BYTE, 0, TAG, MPI_COMM_WORLD);
+}
+
+bool bench_ranks_receive(const BenchRanks *ranks, bool wait, BenchNote *note)
+{
+    int there = wait;
+    if (ranks->count == 1) return false;
+    if (!wait) MPI_Iprobe(MPI_ANY_SOURCE, TAG, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
+    if (there)
+        MPI_Recv(note, sizeof *note, MPI_BYTE, MPI_ANY_SOURCE, TAG, MPI_COMM_WORLD,
+                 MPI_STATUS_IGNORE);
+    return there;
+}
+
+void bench_ranks_stop(const BenchRanks *ranks)
+{
+    (void)ranks;
+    int begun = 0;
+    MPI_Initialized(&begun);
+    if (begun) MPI_Finalize();
+}
+
+void bench_ranks_abort(const BenchRanks *ranks, int code)
+{
+    if (ranks->count > 1) MPI_Abort(MPI_COMM_WORLD, code);
+    bench_ranks_stop(ranks);
+}
+
+#else
+
+SmCode bench_ranks_start(BenchRanks *ranks, SmError *error)
+{
+    *ranks = (BenchRanks){0, 1};
+    long count = launcher_says(counts, 1);
+    if (count <= 1) return SM_OK;
+    if (launcher_says(numbers, 0) > 0) be_silent();
+    return sm_fail(error, SM_USAGE,
+                   "started as one of %ld processes, but built without MPI: install libopenmpi-dev "
+                   "and build again, or use --shard",
+                   count);
+}
+
+void bench_ranks_share(const BenchRanks *ranks, void *bytes, int size)
+{
+    (void)ranks, (void)bytes, (void)size;
+}
+
+void bench_ranks_send(const BenchRanks *ranks, BenchNote *note)
+{
+    (void)ranks, (void)note;
+}
+
+bool bench_ranks_receive(const BenchRanks *ranks, bool wait, BenchNote *note)
+{
+    (void)ranks, (void)wait, (void)note;
+    return false;
+}
+
+void bench_ranks_stop(const BenchRanks *ranks)
+{
+    (void)ranks;
+}
+
+void bench_ranks_abort(const BenchRanks *ranks, int code)
+{
+    (void)ranks, (void)code;
+}
+
+#endif
