@@ -19,6 +19,7 @@ int bench_command_info(int argc, char **argv);
 int bench_command_run(int argc, char **argv);
 int bench_command_tables(int argc, char **argv);
 int bench_command_kernels(int argc, char **argv);
+int bench_command_report(int argc, char **argv);
 int bench_command_sweep(int argc, char **argv);
 int bench_command_merge(int argc, char **argv);
 int bench_command_claims(int argc, char **argv);

@@ -70,14 +70,6 @@ SmCode bench_draft_begin(const char *path, BenchDraft *draft, SmError *error)
     return SM_OK;
 }
 
-SmCode bench_draft_try(const char *path, SmError *error)
-{
-    BenchDraft draft;
-    SmCode code = bench_draft_begin(path, &draft, error);
-    if (!code) bench_draft_discard(&draft);
-    return code;
-}
-
 static int sync_path(const char *path)
 {
     int file = open(path, O_RDONLY | O_CLOEXEC);

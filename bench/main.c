@@ -15,6 +15,8 @@ static const BenchCommand commands[] = {
     {"kernels", "time every kernel alone against what this machine can do", bench_command_kernels},
     {"claims", "hold every quantitative claim of the papers against what is measured here",
      bench_command_claims},
+    {"report", "make a page of result files: tables, figures, where it was measured",
+     bench_command_report},
     {"run", "simulate a scene or a mesh and write its motion", bench_command_run},
     {"sweep", "cost, stiffness and deviation over region width and epsilon; recommend some",
      bench_command_sweep},

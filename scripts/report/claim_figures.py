@@ -1,0 +1,114 @@
+"""Claims of a report: the table of verdicts, and a figure for each group of curves measured for them."""
+import numpy as np
+from matplotlib.ticker import FormatStrFormatter, MaxNLocator
+
+from drawing import COLOURS, MARKS, PAPER, Figure, canvas, number
+from tables import Table
+
+# Groups of curves by how their names begin: title, caption, and which axes are logarithmic.
+GROUPS = {
+    "sums": ("Cost of the sums against w", "FastLSM Fig. 4: nanoseconds a particle for the sums alone, in a solid cube, "
+             "against the mean side of its regions; the exponent that fits stands with each curve.", "xy"),
+    "smoothing": ("How far two steps of smoothing spread", "FastLSM Fig. 2: a cross-section of a bar is displaced and two "
+                  "steps of smoothing follow.", ""),
+    "blending": ("How well clusters blend", "FastLSM Fig. 3: the largest jump of the displacement gradient between "
+                 "neighbouring particles of a bar bent and twisted by half a turn; one region a particle (lattice) against "
+                 "few overlapping clusters.", "y"),
+    "size": ("Cost against size", "Milliseconds a step against the number of particles or nodes.", "xy"),
+    "sag": ("Stiffness against w", "How deep the tip of a clamped beam hangs.", ""),
+}
+CLASSES = {"reproduced": "good", "not reproduced": "bad", "INVALID": "invalid"}
+
+
+def value_text(values):
+    return " / ".join(number(v) for v in values)
+
+
+def measured_text(claim):
+    values, low, high = (claim[name][:claim["count"]] for name in ("measured", "low", "high"))
+    text = value_text(values)
+    if claim["count"] == 1 and low[0] == low[0] and high[0] > low[0]:
+        text += f" ({number(low[0])} to {number(high[0])})"
+    return text or "–"
+
+
+def claim_table(source):
+    table = Table(f"Claims, {source.name}",
+                  ["claim", "verdict", "the paper says", "paper", "measured", "unit", "test", "why", "evidence"],
+                  "A measured value's spread is that of its repeats, or of an exponent the 95% confidence interval. "
+                  "Evidence is where in the file the measurement is.")
+    for claim in source.claims:
+        paper = value_text(claim["paper_value"][:claim["values"]]) or "–"
+        evidence = " over ".join(claim[name] for name in ("evidence", "over") if claim[name])
+        table.add([f"{claim['paper']} {claim['name']}", claim["verdict"], f"{claim['statement']} ({claim['place']})",
+                   paper, measured_text(claim), claim["unit"], claim["test"], claim["words"], evidence],
+                  CLASSES.get(claim["verdict"], ""))
+    return table
+
+
+def said(source):
+    count = {}
+    for claim in source.claims:
+        count[claim["verdict"]] = count.get(claim["verdict"], 0) + 1
+    words = ", ".join(f"{n} {verdict}" for verdict, n in sorted(count.items(), key=lambda item: -item[1]))
+    return f"{len(source.claims)} claims of the papers were tested ({source.name}): {words}."
+
+
+def label(name, curve):
+    """What tells a curve from the others of its group, and the power that fits it."""
+    parts = [part for part in name.split(".")[1:] if part[:1] not in "wn" or "-" not in part]
+    text = " ".join(part for part in parts if not part.isdigit() and part != "profile") or name.split(".")[0]
+    low, high = curve["exponent_low"], curve["exponent_high"]
+    if name.startswith(("sums", "size")) and curve["exponent"] == curve["exponent"]:
+        text += f": power {curve['exponent']:.2f} ({low:.2f} to {high:.2f})"
+    return text
+
+
+def plain_ticks(axes):
+    """On less than two decades, 3 and 10 instead of powers."""
+    low, high = axes.get_xlim()
+    if high < 100 * low:
+        axes.xaxis.set_minor_formatter(FormatStrFormatter("%g"))
+        axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
+
+
+def group_figure(group, curves):
+    """`curves` are (name, curve) of one group that have the same axes."""
+    title, caption, logarithmic = GROUPS.get(group.split("-")[0], (group, "Measured for a claim.", ""))
+    if group.endswith("-profile"):
+        title += ": the profile"
+    figure, axes = canvas(6.4, 3.8)
+    data, words = [], []
+    for n, (name, curve) in enumerate(curves):
+        x, y = curve["x"], curve["y"]
+        spread = np.array([y - curve["low"], curve["high"] - y])
+        axes.errorbar(x, y, yerr=np.maximum(np.nan_to_num(spread), 0), marker=MARKS[n % 7], color=COLOURS[n % 7],
+                      markersize=4, capsize=2, linewidth=1.3, label=label(name, curve))
+        data += [[name, float(a), float(b), float(c), float(d)] for a, b, c, d in zip(x, y, curve["low"], curve["high"])]
+        words.append(f"{label(name, curve)}: from {number(y[0])} at {number(x[0])} to {number(y[-1])} at {number(x[-1])}")
+    axes.set_xlabel(curves[0][1]["x_name"])
+    axes.set_ylabel(curves[0][1]["y_name"])
+    if "x" in logarithmic:
+        axes.set_xscale("log")
+        plain_ticks(axes)
+    else:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    if "y" in logarithmic and all((curve["y"] > 0).all() for _, curve in curves):
+        axes.set_yscale("log")
+    else:
+        axes.axhline(0, color=PAPER, linewidth=0.6)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.45, 1.0), ncols=min(3, len(curves)) if len(curves) > 3 else 1)
+    return Figure(group, title, caption, f"{curves[0][1]['y_name']} against {curves[0][1]['x_name']}. "
+                  + "; ".join(words) + ".", ["curve", "x", "y", "low", "high"], data).draw(figure)
+
+
+def figures(source):
+    groups = {}
+    for name, curve in source.curves.items():
+        if not curve["valid"] or len(curve["x"]) < 2:
+            continue
+        group = name.split(".")[0] + ("-profile" if name.endswith(".profile") else "")
+        groups.setdefault((group, curve["x_name"], curve["y_name"]), []).append((name, curve))
+    order = list(GROUPS)
+    ranked = sorted(groups, key=lambda g: (order.index(g[0].split("-")[0]) if g[0].split("-")[0] in order else 99, g))
+    return [group_figure(key[0], groups[key]) for key in ranked]

@@ -1,0 +1,64 @@
+"""Figures of a report: how all of them look, and what each must bring along."""
+import csv
+import io
+import math
+
+import matplotlib
+
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
+
+COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#999999"]  # Okabe and Ito
+MARKS = ["o", "s", "^", "D", "v", "P", "X"]
+PAPER = "#777777"
+
+matplotlib.rcParams.update({
+    "font.size": 10, "axes.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False,
+    "axes.grid": True, "grid.color": "#e4e4e4", "grid.linewidth": 0.7, "axes.axisbelow": True,
+    "axes.prop_cycle": matplotlib.cycler(color=COLOURS), "legend.frameon": False, "legend.fontsize": 9,
+    "svg.hashsalt": "shapebench", "figure.facecolor": "white", "savefig.facecolor": "white",
+})
+
+
+class Figure:
+    """A picture with its caption, a text that says the same in words, and its data."""
+
+    def __init__(self, name, title, caption, alternative, columns, data):
+        self.name, self.title, self.caption, self.alternative = name, title, caption, alternative
+        self.columns, self.data = columns, data
+        self.svg = self.png = None
+
+    def draw(self, figure):
+        """Keeps both forms of a matplotlib figure and closes it."""
+        pictures = {}
+        for form, options in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 160})):
+            room = io.BytesIO()
+            figure.savefig(room, format=form, bbox_inches="tight", pad_inches=0.08, **options)
+            pictures[form] = room.getvalue()
+        pyplot.close(figure)
+        self.svg, self.png = pictures["svg"], pictures["png"]
+        return self
+
+    def csv(self):
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows(["" if value is None or value != value else value for value in row] for row in self.data)
+        return text.getvalue()
+
+
+def canvas(width=7.2, height=3.6, **options):
+    return pyplot.subplots(figsize=(width, height), **options)
+
+
+def number(value, digits=3):
+    """A number for people: digits that count, no exponents where they are not needed."""
+    if value is None or value != value:
+        return "–"
+    if value == 0:
+        return "0"
+    if abs(value) >= 10 ** digits or abs(value) >= 1000:
+        return f"{value:,.0f}" if abs(value) < 1e9 else f"{value:.2e}"
+    if isinstance(value, int) or abs(value) < 1e-5:
+        return f"{value:g}"
+    return f"{value:.{max(0, digits - 1 - int(math.floor(math.log10(abs(value)))))}f}"

@@ -1,0 +1,197 @@
+#!/usr/bin/python3
+"""From result files to one page that can be sent to a colleague: `shapebench report` starts it.
+
+usage: main.py [--title TEXT] -o NAME.html|FOLDER FILE.h5...
+
+NAME.html is one file with everything in it; anything else is a folder with index.html, and every figure
+as SVG, PNG and CSV. Exit code: 0 done, 2 usage, 3 a file cannot be used, 4 cannot be written."""
+import argparse
+import base64
+import os
+import shutil
+import sys
+import tempfile
+
+
+def fail(text, code):
+    print(f"shapebench report: {text}", file=sys.stderr)
+    sys.exit(code)
+
+
+try:
+    import jinja2
+    from markupsafe import Markup
+
+    import claim_figures
+    import row_figures
+    import sources
+    import sweep_figures
+    import tables
+except ImportError as error:
+    fail(f"{error} (for {sys.executable}): scripts/setup run, or apt-get install python3-jinja2 python3-h5py "
+         "python3-matplotlib", 3)
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+class Part:
+    """A section of the page."""
+
+    def __init__(self, id, title, said=(), tables=(), figures=()):
+        self.id, self.title = id, title
+        self.said, self.tables, self.figures = list(said), list(tables), list(figures)
+
+
+def measured_part(files):
+    rows = [row for source in files for row in source.rows]
+    if not rows:
+        return None
+    bad = [row["scene"] for row in rows if not row["valid"]]
+    said = [f"{len(rows)} rows were measured; each was checked against brute force on the scene timed: "
+            + ("all are VALID." if not bad else f"{len(bad)} are INVALID and have no times: {', '.join(bad)}.")]
+    return Part("measured", "Measured beside the papers", said, tables.all_tables(files),
+                row_figures.all_figures(files))
+
+
+def claims_part(files):
+    files = [source for source in files if source.claims]
+    if not files:
+        return None
+    return Part("claims", "What the papers claim", map(claim_figures.said, files),
+                map(claim_figures.claim_table, files),
+                [figure for source in files for figure in claim_figures.figures(source)])
+
+
+def sweeps_part(files):
+    files = [source for source in files if source.plan]
+    if not files:
+        return None
+    return Part("sweeps", "Which w, which epsilon", map(sweep_figures.said, files),
+                map(sweep_figures.front_table, files),
+                [figure for source in files for figure in sweep_figures.figures(source)])
+
+
+def compose(files):
+    parts = [measured_part(files), claims_part(files), sweeps_part(files),
+             Part("environment", "Where and how", tables=[tables.environment(files)])]
+    return [part for part in parts if part]
+
+
+def summary(files):
+    machines = sorted({source.machine.get("cpu", "an unknown processor") for source in files})
+    days = sorted({source.machine.get("utc", "")[:10] for source in files} - {""})
+    when = "" if not days else f", {days[0]}" if days[0] == days[-1] else f", {days[0]} to {days[-1]}"
+    return f"Shape-matching deformation on {' and '.join(machines)}{when}."
+
+
+def page(title, files, parts, picture, data_link):
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True,
+                                     undefined=jinja2.StrictUndefined)
+    with open(os.path.join(HERE, "style.css"), encoding="utf-8") as file:
+        style = Markup(file.read())
+    return environment.get_template("page.html").render(
+        title=title, summary=summary(files), style=style, parts=parts, picture=picture, data_link=data_link,
+        contents=[(part.id, part.title) for part in parts], files=[source.name for source in files])
+
+
+def inline(figure):
+    """The SVG in the page itself, named for those who cannot see it."""
+    text = figure.svg.decode()
+    text = text[text.index("<svg"):]
+    label = Markup.escape(figure.alternative)
+    return Markup(text.replace("<svg", f'<svg role="img" aria-label="{label}"', 1))
+
+
+def inline_data(figure):
+    return "data:text/csv;charset=utf-8;base64," + base64.b64encode(figure.csv().encode()).decode()
+
+
+def linked(figure):
+    label = Markup.escape(figure.alternative)
+    return Markup(f'<img src="{figure.name}.svg" alt="{label}" loading="lazy">')
+
+
+def write_file(path, content):
+    with open(path, "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def write_page(output, title, files, parts):
+    """One file, whole or not at all."""
+    text = page(title, files, parts, inline, inline_data)
+    draft = f"{output}.{os.getpid()}.tmp"
+    try:
+        write_file(draft, text.encode())
+        os.replace(draft, output)
+    except BaseException:
+        if os.path.exists(draft):
+            os.remove(draft)
+        raise
+
+
+def write_folder(output, title, files, parts):
+    """A folder of a page and its figures, in place of an older report of that name."""
+    if os.path.exists(output) and not os.path.exists(os.path.join(output, "index.html")):
+        if not os.path.isdir(output) or os.listdir(output):
+            fail(f"{output}: is there already and is no report: name another folder", 2)
+    parent = os.path.dirname(os.path.abspath(output))
+    draft = tempfile.mkdtemp(prefix=os.path.basename(output) + ".", suffix=".tmp", dir=parent)
+    try:
+        os.chmod(draft, 0o755)
+        for figure in (figure for part in parts for figure in part.figures):
+            for form, content in (("svg", figure.svg), ("png", figure.png), ("csv", figure.csv().encode())):
+                write_file(os.path.join(draft, f"{figure.name}.{form}"), content)
+        text = page(title, files, parts, linked, lambda figure: f"{figure.name}.csv")
+        write_file(os.path.join(draft, "index.html"), text.encode())
+        if os.path.isdir(output):
+            shutil.rmtree(output)
+        os.rename(draft, output)
+    except BaseException:
+        shutil.rmtree(draft, ignore_errors=True)
+        raise
+
+
+def parse():
+    parser = argparse.ArgumentParser(prog="shapebench report", description=__doc__.splitlines()[0])
+    parser.add_argument("file", nargs="+", help="files that `shapebench tables`, `claims` and `sweep` wrote with -o")
+    parser.add_argument("-o", "--output", default="report.html",
+                        help="a page NAME.html, or a folder (default: %(default)s)")
+    parser.add_argument("--title", default="shapebench report")
+    parser.add_argument("--quiet", action="store_true")
+    return parser.parse_args()
+
+
+def unique_names(parts):
+    """No two figures share a name, and so a file."""
+    seen = {}
+    for figure in (figure for part in parts for figure in part.figures):
+        seen[figure.name] = seen.get(figure.name, 0) + 1
+        if seen[figure.name] > 1:
+            figure.name += f"-{seen[figure.name]}"
+
+
+def main():
+    options = parse()
+    try:
+        files = [sources.read(path) for path in options.file]
+    except sources.Unusable as error:
+        fail(str(error), 3)
+    parts = compose(files)
+    unique_names(parts)
+    output = options.output.rstrip("/") or "/"
+    write = write_page if output.endswith(".html") else write_folder
+    try:
+        write(output, options.title, files, parts)
+    except OSError as error:
+        fail(f"{output}: cannot be written: {error.strerror}", 4)
+    if not options.quiet:
+        print(f"wrote {output if output.endswith('.html') else os.path.join(output, 'index.html')}")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except KeyboardInterrupt:
+        fail("interrupted: nothing was written", 130)

@@ -1,0 +1,187 @@
+"""Figures of measured rows (`shapebench tables -o`): shares of stages, times beside the papers', frames of
+scenes that change, threads, and a scene's history."""
+import math
+
+import numpy as np
+
+from drawing import COLOURS, MARKS, PAPER, Figure, canvas, number
+
+STAGE_TITLES = {"fast_sum": "fast sum", "shape_matching": "shape matching", "polar": "polar decomposition",
+                "damping": "damping", "other": "other"}
+
+
+def valid(rows):
+    return [row for row in rows if row["valid"] and row["total_ms"] > 0]
+
+
+def share_bars(axes, y, values, height, alpha):
+    left = 0.0
+    for s, value in enumerate(values):
+        axes.barh(y, value, height, left=left, color=COLOURS[s], alpha=alpha)
+        left += value
+
+
+def paper_shares(row):
+    values = np.array(row["paper_stage_ms"], dtype=float)
+    return 100 * values / np.nansum(values) if np.isfinite(values).all() or np.nansum(values) > 0 else None
+
+
+def stage_shares(rows):
+    """Percent of a step in each stage; the paper's beneath, pale."""
+    rows = valid(rows)
+    if not rows:
+        return None
+    stages = rows[0]["stage_names"]
+    figure, axes = canvas(7.2, 0.9 + 0.36 * len(rows))
+    data = []
+    for y, row in enumerate(rows):
+        shares = 100 * np.array(row["stage_ms"]) / row["total_ms"]
+        share_bars(axes, y - 0.13, shares, 0.42, 1)
+        data.append([row["scene"], "measured"] + [round(float(v), 2) for v in shares])
+        paper = paper_shares(row)
+        if paper is not None:
+            share_bars(axes, y + 0.25, np.nan_to_num(paper), 0.2, 0.45)
+            data.append([row["scene"], "paper"] + [None if v != v else round(float(v), 2) for v in paper])
+    axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    axes.set_xlim(0, 100)
+    axes.grid(axis="y", visible=False)
+    axes.set_xlabel("percent of a step")
+    axes.legend([axes.barh(0, 0, color=COLOURS[s]) for s in range(len(stages))],
+                [STAGE_TITLES.get(s, s) for s in stages], ncols=5, loc="lower center", bbox_to_anchor=(0.45, 1.0),
+                columnspacing=1, handlelength=1)
+    largest = [f"{row['scene']}: {STAGE_TITLES.get(stages[int(np.argmax(row['stage_ms']))])} most" for row in rows]
+    return Figure("stage-shares", "Where a step's time goes",
+                  "Share of each stage in a step; thin pale bars are the paper's, where it gives them.",
+                  "Stacked bars, one for each scene. " + "; ".join(largest) + ".",
+                  ["scene", "source"] + [s + "_percent" for s in stages], data).draw(figure)
+
+
+def beside_paper(rows):
+    """ns per particle and step, and the paper's."""
+    rows = valid(rows)
+    if not any(row["paper_total_ms"] > 0 for row in rows):
+        return None
+    figure, axes = canvas(7.2, 0.9 + 0.3 * len(rows))
+    data = []
+    for y, row in enumerate(rows):
+        ns = row["ns_per_particle_step"]
+        paper = 1e6 * row["paper_total_ms"] / row["particles"] if row["particles"] else math.nan
+        if paper == paper:
+            axes.plot([ns, paper], [y, y], color="#cccccc", linewidth=1.5, zorder=1)
+            axes.plot(paper, y, "D", color=PAPER, markersize=5)
+        axes.plot(ns, y, "o", color=COLOURS[0])
+        data.append([row["scene"], round(ns, 2), None if paper != paper else round(paper, 1)])
+    axes.set_xscale("log")
+    axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    axes.set_xlabel("nanoseconds per particle and step (logarithmic)")
+    axes.legend([axes.plot([], [], "o", color=COLOURS[0])[0], axes.plot([], [], "D", color=PAPER, markersize=5)[0]],
+                ["measured here", "the paper, its machine"], ncols=2, loc="lower center", bbox_to_anchor=(0.45, 1.0))
+    times = [f"{scene} {number(ns)} against {number(paper)}" for scene, ns, paper in data if paper]
+    return Figure("beside-paper", "Cost of a particle and step",
+                  "Median of this run beside what the paper's table gives for its own processor; the paper's total is "
+                  "divided by the particles measured here.",
+                  "Dots on a logarithmic scale of nanoseconds: " + "; ".join(times) + ".",
+                  ["scene", "ns_per_particle_step", "paper_ns_per_particle_step"], data).draw(figure)
+
+
+def frames(row):
+    """What each frame of a scene that changes cost."""
+    time = row["frames_samples"] * 1e3
+    figure, axes = canvas(7.2, 3.2)
+    names = ["simulation", "resampling", "splitting of surfaces", "moving a surface"]
+    count = np.arange(1, len(time) + 1)
+    for part, name in enumerate(names):
+        shown = np.where(time[:, part] > 0, time[:, part], np.nan)
+        axes.plot(count, shown, "-" if part in (0, 3) else MARKS[part], markersize=3, linewidth=1.2, label=name)
+    axes.set_yscale("log")
+    axes.set_xlabel("frame")
+    axes.set_ylabel("milliseconds (logarithmic)")
+    axes.legend(ncols=4, loc="lower center", bbox_to_anchor=(0.45, 1.0), columnspacing=1)
+    changed = int((time[:, 1] > 0).sum())
+    return Figure(f"frames-{row['scene']}", f"Frames of {row['scene']}",
+                  f"{changed} of {len(time)} frames change the body; each time is the least of three rounds.",
+                  f"Curves over {len(time)} frames: simulation takes {number(row['change.first_ms'])} ms before the "
+                  f"first change and {number(row['change.last_ms'])} ms after the last; resampling "
+                  f"{number(row['change.change_ms'])} ms at the median and {number(row['change.change_most_ms'])} ms "
+                  "at most, in frames that change.",
+                  ["frame"] + [name.replace(" ", "_") + "_ms" for name in names],
+                  [[int(n)] + [round(float(v), 5) for v in line] for n, line in zip(count, time)]).draw(figure)
+
+
+def key(row):
+    return row["scene"], row["engine"], row["precision"]
+
+
+def threads(sources):
+    """Steps a second against threads, of scenes measured with several numbers of them."""
+    best = {}
+    for source in sources:
+        for row in valid(source.rows):
+            best.setdefault((source.machine.get("cpu"), source.commit) + key(row), {})[row["threads"]] = row["total_ms"]
+    curves = {name: sorted(times.items()) for name, times in best.items() if len(times) > 1}
+    if not curves:
+        return None
+    figure, axes = canvas(5.2, 3.6)
+    data = []
+    for n, (name, times) in enumerate(sorted(curves.items(), key=str)):
+        count = [t for t, _ in times]
+        gain = [times[0][1] * times[0][0] / ms for _, ms in times]
+        axes.plot(count, gain, marker=MARKS[n % 7], color=COLOURS[n % 7], label=name[2])
+        data += [[name[2], name[3], t, ms, g] for (t, ms), g in zip(times, gain)]
+    most = max(line[2] for line in data)
+    axes.plot([1, most], [1, most], color=PAPER, linestyle=":", label="as many times as threads")
+    axes.set_xticks(sorted({line[2] for line in data}))
+    axes.set_xlabel("threads")
+    axes.set_ylabel("times as fast as with the fewest")
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    said = [f"{scene} {number(gain)} times as fast with {t}" for scene, _, t, _, gain in data if t > 1]
+    return Figure("threads", "Threads", "Medians of a step, of rows that several files hold with different threads.",
+                  "; ".join(said) + ".", ["scene", "engine", "threads", "total_ms", "gain"], data).draw(figure)
+
+
+def history(sources):
+    """A scene's cost over commits, of files made by different ones."""
+    lines = {}
+    for source in sorted(sources, key=lambda s: s.machine.get("utc", "")):
+        for row in valid(source.rows):
+            point = (source.machine.get("utc", ""), source.commit, row["total_ms"], row["total_low_ms"],
+                     row["total_high_ms"])
+            lines.setdefault(key(row) + (row["threads"], source.machine.get("cpu", "")), []).append(point)
+    lines = {name: points for name, points in lines.items() if len({p[1] for p in points}) > 1}
+    if not lines:
+        return None
+    commits = sorted({(p[0], p[1]) for points in lines.values() for p in points})
+    place = {stamp: n for n, stamp in enumerate(commits)}
+    figure, axes = canvas(7.2, 3.8)
+    data = []
+    for n, (name, points) in enumerate(sorted(lines.items())):
+        x = [place[p[:2]] for p in points]
+        first = points[0][2]
+        spread = np.array([[(p[2] - p[3]) / first, (p[4] - p[2]) / first] for p in points]).T
+        axes.errorbar(x, [p[2] / first for p in points], yerr=np.maximum(spread, 0), marker=MARKS[n % 7],
+                      color=COLOURS[n % 7], capsize=2, label=f"{name[0]}, {name[3]} thread{'s' * (name[3] > 1)}")
+        data += [[name[0], name[1], name[3], p[0], p[1], p[2], p[3], p[4]] for p in points]
+    axes.set_xticks(range(len(commits)), [f"{c}\n{u[:10]}" for u, c in commits], rotation=0, fontsize=8)
+    axes.axhline(1, color=PAPER, linewidth=0.8)
+    axes.set_ylabel("time of a step, first commit = 1")
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    said = [f"{name[0]} from {number(points[0][2])} to {number(points[-1][2])} ms" for name, points in sorted(lines.items())]
+    return Figure("history", "A scene over commits", "Medians and quartiles, relative to the oldest file; + marks a "
+                  "build from changed sources.", "; ".join(said) + ".",
+                  ["scene", "engine", "threads", "utc", "commit", "total_ms", "low_ms", "high_ms"], data).draw(figure)
+
+
+def all_figures(sources):
+    made = []
+    for source in sources:
+        group = source.rows
+        for make in (beside_paper, stage_shares):
+            figure = make(group)
+            if figure:
+                figure.source = source
+                made.append(figure)
+        made += [frames(row) for row in valid(group) if "frames_samples" in row]
+    made += [figure for figure in (threads(sources), history(sources)) if figure]
+    return made

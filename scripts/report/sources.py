@@ -1,0 +1,143 @@
+"""Result files, read for a report. Nothing here knows how they will look.
+
+Layouts are those of results/README.md: measurements ("shapebench results"), claims ("shapebench claims")
+and sweeps ("shapebench sweep")."""
+import os
+
+import h5py
+import numpy as np
+
+SCHEMAS = {"shapebench results": 4, "shapebench claims": 1, "shapebench sweep": 1}
+TEXTS = ("paper", "scene", "engine", "precision", "reason", "stages")
+NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_low_ms", "total_high_ms",
+           "ns_per_particle_step", "summation_nodes", "paper_total_ms") + tuple(
+    "change." + name for name in ("frames", "changed", "first_nodes", "most_nodes", "most_added", "first_ms", "last_ms",
+                                  "change_ms", "change_most_ms", "follow_ms", "surface_ms", "first_triangles",
+                                  "last_triangles", "pieces", "open_edges", "left"))
+
+CLAIM_TEXTS = ("paper", "name", "place", "unit", "statement", "test", "verdict", "words", "evidence", "over")
+
+SWEEP_COLUMNS = ("engine", "w", "epsilon", "valid", "total_ms", "build_seconds", "bytes", "summation_nodes", "goal_rms",
+                 "relaxation", "sag", "frequency", "path_rms", "path_most", "front")
+
+
+class Unusable(Exception):
+    """A file that cannot be reported; says which, why, and what helps."""
+
+
+def plain(value):
+    """An attribute as Python has it: text, number, or array."""
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    if isinstance(value, np.ndarray):
+        return value
+    return value.item() if hasattr(value, "item") else value
+
+
+def attributes(node):
+    return {name: plain(value) for name, value in node.attrs.items()}
+
+
+class Source:
+    """A file: its kind, the machine that wrote it, and what its kind holds."""
+
+    def __init__(self, path, kind, machine):
+        self.path, self.kind, self.machine = path, kind, machine
+        self.name = os.path.basename(path)
+        self.rows, self.claims, self.curves = [], [], {}
+        self.plan, self.point = None, None
+
+    @property
+    def commit(self):
+        commit = self.machine.get("git_commit", "unknown")[:10]
+        return commit + ("+" if self.machine.get("git_dirty") else "")
+
+
+def demand(row, names, kinds):
+    """All of these attributes, each of one of the kinds."""
+    for name in names:
+        if not isinstance(row.get(name), kinds):
+            raise ValueError(f"'{name}'")
+
+
+def read_row(group):
+    row = attributes(group)
+    demand(row, TEXTS, str)
+    demand(row, NUMBERS, (int, float))
+    demand(row, ("stage_ms", "paper_stage_ms"), np.ndarray)
+    if not len(row["stages"].split()) == len(row["stage_ms"]) == len(row["paper_stage_ms"]):
+        raise ValueError("the number of stages")
+    for name in ("total", "stage", "frames"):
+        if name in group:
+            row[name + "_samples"] = group[name][:]
+    row["stage_names"] = row["stages"].split()
+    return row
+
+
+def read_rows(source, file):
+    source.rows = [read_row(file["rows"][name]) for name in sorted(file["rows"])]
+
+
+def read_claim(group):
+    claim = attributes(group)
+    demand(claim, CLAIM_TEXTS, str)
+    demand(claim, ("values", "count"), int)
+    demand(claim, ("paper_value", "measured", "low", "high"), np.ndarray)
+    return claim
+
+
+def read_curve(group):
+    curve = attributes(group)
+    demand(curve, ("x_name", "y_name"), str)
+    demand(curve, ("valid", "exponent", "exponent_low", "exponent_high"), (int, float))
+    for name in ("x", "y", "low", "high"):
+        curve[name] = group[name][:] if name in group else np.empty(0)
+        if curve[name].shape != curve["x"].shape:
+            raise ValueError(f"the number of values of '{name}'")
+    return curve
+
+
+def read_claims(source, file):
+    """Rows measured for claims stay evidence: `tables` is what shows rows."""
+    source.claims = [read_claim(file["claims"][name]) for name in sorted(file["claims"])]
+    source.curves = {name: read_curve(file["curves"][name]) for name in file["curves"]}
+
+
+def read_sweep(source, file):
+    source.plan = attributes(file["plan"])
+    demand(source.plan, ("scene", "width"), str)
+    demand(source.plan, ("points",), int)
+    source.point = {name: column[:] for name, column in file["points"].items()}
+    missing = [name for name in SWEEP_COLUMNS if len(source.point.get(name, ())) != len(source.point["w"])]
+    if missing or not len(source.point["w"]):
+        raise ValueError(f"'{missing[0]}' of the points" if missing else "not one point is finished")
+    source.point["engine"] = np.array([plain(engine) for engine in source.point["engine"]])
+
+
+READERS = {"shapebench results": read_rows, "shapebench claims": read_claims,
+           "shapebench sweep": read_sweep}
+
+
+def read(path):
+    """The file as a Source; raises Unusable."""
+    if not os.path.exists(path):
+        raise Unusable(f"{path}: no such file")
+    try:
+        file = h5py.File(path, "r")
+    except OSError:
+        raise Unusable(f"{path}: not an HDF5 file, or cut off: make it again") from None
+    with file:
+        kind, schema = plain(file.attrs.get("kind", "")), plain(file.attrs.get("schema", 0))
+        if kind not in SCHEMAS:
+            raise Unusable(f"{path}: not a file that can be reported (its kind is '{kind}'): give files that "
+                           "`shapebench tables`, `claims` or `sweep` wrote with -o")
+        if schema != SCHEMAS[kind]:
+            raise Unusable(f"{path}: {kind} of schema {schema}, and this program reads {SCHEMAS[kind]}: make it again "
+                           "with this version")
+        source = Source(path, kind, {})
+        try:
+            source.machine = attributes(file["machine"])
+            READERS[kind](source, file)
+        except (KeyError, OSError, ValueError) as error:
+            raise Unusable(f"{path}: something is missing or damaged ({error}): make it again") from None
+        return source

@@ -1,0 +1,99 @@
+"""Sweeps of a report: heat maps over w and epsilon, the front of cost against deviation, the front's table.
+How they are drawn is scripts/plot_sweep.py's matter."""
+import os
+import sys
+
+import numpy as np
+
+from drawing import Figure, canvas, number
+from tables import Table
+
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
+import plot_sweep  # noqa: E402
+
+# dataset, factor, file name, title, logarithmic, caption
+MAPS = [
+    ("total_ms", 1, "cost", "Milliseconds of a step", True, "Checked and timed; grey: not measured or INVALID."),
+    ("path_rms", 100, "deviation", "Path off, percent of the body's size", False,
+     "How far the surface moves from that of a lattice of all finest cells with regions as wide on average; root mean "
+     "square of all frames."),
+    ("goal_rms", 1, "goals", "Goals off, finest cells", False,
+     "Root mean square of goal positions from those of epsilon 0 in the same state."),
+    ("frequency", 1, "frequency", "First natural frequency of a clamped beam, Hz", True,
+     "The stiffness that w and epsilon give, on a beam of regular cells."),
+    ("sag", 100, "sag", "Sag of a clamped beam's tip, percent of its length", True, "In the limit of small sags."),
+    ("summation_nodes", 1, "summation", "Summation nodes of a region", True, "Mean; a lattice has none."),
+    ("bytes", 1e-6, "memory", "Memory, megabytes", True, "Held by the engine."),
+    ("build_seconds", 1e3, "build", "Set-up, milliseconds", True, "Engine built from voxels."),
+]
+
+
+def where(point, i):
+    return f"{point['engine'][i]} w {point['w'][i]:g}" + (
+        f", epsilon {point['epsilon'][i]:g}" if point["engine"][i] == plot_sweep.OCTREE else "")
+
+
+def listed(point, values):
+    return [[point["engine"][i], float(point["w"][i]), float(point["epsilon"][i]), float(values[i])]
+            for i in range(len(values))]
+
+
+def heat_map(source, name, factor, file_name, title, logarithmic, caption):
+    point = source.point
+    values = factor * np.array(point[name], dtype=float)
+    known = np.flatnonzero(np.isfinite(values))
+    if not len(known) or np.ptp(values[known]) == 0:
+        return None
+    figure, axes = canvas(7.2, 1.3 + 0.3 * len(np.unique(point["w"])))
+    axes.grid(visible=False)
+    plot_sweep.heat_map(axes, point, values, "", logarithmic)
+    least, most = known[np.argmin(values[known])], known[np.argmax(values[known])]
+    words = (f"Heat map over w and epsilon of {len(known)} points: from {number(values[least])} at {where(point, least)} "
+             f"to {number(values[most])} at {where(point, most)}.")
+    return Figure(f"sweep-{source.plan['scene']}-{file_name}", f"{source.plan['scene']}: {title}", caption, words,
+                  ["engine", "w", "epsilon", name], listed(point, values)).draw(figure)
+
+
+def front(source):
+    point = source.point
+    figure, axes = canvas(7.2, 4.2)
+    plot_sweep.front(axes, source.plan, point)
+    axes.set_title("")
+    best = on_front(point)
+    words = "Points of the front, cheapest first: " + "; ".join(
+        f"{where(point, i)}: {number(point['total_ms'][i])} ms, {number(100 * point['path_rms'][i])}% off" for i in best)
+    return Figure(f"sweep-{source.plan['scene']}-front", f"{source.plan['scene']}: cost against deviation",
+                  "Each point is an engine, a w and an epsilon; no other is both cheaper and nearer than one on the line.",
+                  words + ".", ["engine", "w", "epsilon", "total_ms", "path_rms", "front"],
+                  [line[:3] + [float(point["total_ms"][i]), float(point["path_rms"][i]), int(point["front"][i])]
+                   for i, line in enumerate(listed(point, point["total_ms"]))]).draw(figure)
+
+
+def on_front(point):
+    best = np.flatnonzero(point["front"])
+    return best[np.argsort(point["total_ms"][best], kind="stable")]
+
+
+def front_table(source):
+    point = source.point
+    table = Table(f"The front of {source.plan['scene']}, {source.name}",
+                  ["point", "ms a step", "path off, %", "most, %", "goals off, cells", "frequency, Hz", "sag, %",
+                   "sums/region", "set-up ms", "MB"], "No other valid point is as cheap and as near.")
+    for i in on_front(point):
+        table.add([where(point, i)] + [number(float(v)) for v in (
+            point["total_ms"][i], 100 * point["path_rms"][i], 100 * point["path_most"][i], point["goal_rms"][i],
+            point["frequency"][i], 100 * point["sag"][i], point["summation_nodes"][i], 1e3 * point["build_seconds"][i],
+            1e-6 * point["bytes"][i])])
+    return table
+
+
+def said(source):
+    plan, point = source.plan, source.point
+    bad = int((point["valid"] == 0).sum())
+    return (f"{plan['scene']} was swept over w and epsilon ({source.name}): {len(point['w'])} of {plan['points']} points, "
+            + ("all VALID" if not bad else f"{bad} INVALID") + f", {int(point['front'].sum())} on the front; an octree's w "
+            f"counts {plan['width']}, a lattice's cells.")
+
+
+def figures(source):
+    return [front(source)] + [figure for figure in (heat_map(source, *map_) for map_ in MAPS) if figure]

@@ -1,0 +1,89 @@
+"""Tables of a report: headings and lines of texts, numbers as people read them."""
+from drawing import number
+
+
+class Table:
+    def __init__(self, title, headings, note=""):
+        self.title, self.headings, self.note = title, headings, note
+        self.lines = []  # (class, cells)
+
+    def add(self, cells, kind=""):
+        self.lines.append((kind, cells))
+
+
+def times(values, total):
+    return [f"{number(ms)} ({100 * ms / total:.0f}%)" if ms == ms and total > 0 else "–" for ms in values]
+
+
+def measured(source):
+    """A paper's rows: totals first, then stages and counts; the paper's beneath."""
+    names = [name.replace("_", " ") for name in source.rows[0]["stage_names"]]
+    table = Table(f"Time of a step, {source.name}",
+                  ["scene", "total ms", "quartiles", "ns/particle/step", "faster than the paper", "check"]
+                  + [name + " ms" for name in names]
+                  + ["particles", "regions", "w", "sums/region", "engine", "precision", "threads"],
+                  "Medians. The paper's values are those of its own processor.")
+    for row in source.rows:
+        total, paper = row["total_ms"], row["paper_total_ms"]
+        counts = [number(row["particles"]), number(row["regions"]), row["w"] or "–", number(row["summation_nodes"]),
+                  row["engine"], row["precision"], row["threads"]]
+        if not row["valid"]:
+            table.add([row["scene"]] + ["–"] * 4 + ["INVALID: " + row["reason"]] + ["–"] * len(names) + counts,
+                      "invalid")
+            continue
+        faster = f"{number(paper / total)} times" if paper == paper and total > 0 else "–"
+        table.add([row["scene"], number(total), f"{number(row['total_low_ms'])} to {number(row['total_high_ms'])}",
+                   number(row["ns_per_particle_step"]), faster, "VALID"] + times(row["stage_ms"], total) + counts)
+        if paper == paper:
+            table.add(["paper", number(paper), "", number(1e6 * paper / row["particles"]), "", ""]
+                      + times(row["paper_stage_ms"], paper) + [""] * len(counts), "paper")
+    return table
+
+
+def changing(source):
+    rows = [row for row in source.rows if row["change.frames"]]
+    if not rows:
+        return None
+    table = Table(f"While it changes, {source.name}",
+                  ["scene", "frames", "with a change", "nodes", "added at once", "simulation ms", "resampling ms",
+                   "splitting ms", "a surface ms", "triangles", "pieces", "open edges", "check"],
+                  "Simulation is a frame's before the first change and after the last; resampling is the median and "
+                  "the most of frames that change.")
+    for row in rows:
+        c = {name[7:]: value for name, value in row.items() if name.startswith("change.")}
+        bad = "" if row["valid"] else "INVALID: " + row["reason"]
+        table.add([row["scene"], c["frames"], c["changed"], f"{number(c['first_nodes'])} to {number(c['most_nodes'])}",
+                   number(c["most_added"])]
+                  + (["–"] * 4 if bad else
+                     [f"{number(c['first_ms'])} to {number(c['last_ms'])}",
+                      f"{number(c['change_ms'])}, {number(c['change_most_ms'])}", number(c["follow_ms"]),
+                      number(c["surface_ms"])])
+                  + [f"{number(c['first_triangles'])} to {number(c['last_triangles'])}", c["pieces"], c["open_edges"],
+                     bad or "VALID"], "invalid" if bad else "")
+    return table
+
+
+ENVIRONMENT = [("cpu", "processor"), ("cores", "cores"), ("threads", "threads"), ("l1_bytes", "L1 bytes"),
+               ("l2_bytes", "L2 bytes"), ("l3_bytes", "L3 bytes"), ("governor", "governor"), ("kernel", "system"),
+               ("hostname", "host"), ("compiler", "compiler"), ("flags", "flags"), ("libraries", "libraries"),
+               ("version", "version"), ("git_commit", "commit"), ("git_dirty", "changed after it"), ("utc", "begun"),
+               ("command", "command")]
+
+
+def environment(sources):
+    """What wrote each file; what all share is one cell."""
+    table = Table("Where these were measured", [""] + [source.name for source in sources])
+    for name, title in ENVIRONMENT:
+        values = [source.machine.get(name, "unknown") for source in sources]
+        if name == "git_dirty":
+            values = ["yes" if value else "no" for value in values]
+        table.add([title] + [f"{value:,}" if isinstance(value, int) else value for value in values])
+    return table
+
+
+def all_tables(sources):
+    made = []
+    for source in sources:
+        if source.rows:
+            made += [table for table in (measured(source), changing(source)) if table]
+    return made

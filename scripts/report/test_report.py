@@ -1,0 +1,206 @@
+#!/usr/bin/python3
+"""Tests of `shapebench report` on files that the program itself writes. CTest runs it.
+
+usage: test_report.py PROGRAM"""
+import csv
+import html.parser
+import io
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import h5py
+    import jinja2  # noqa: F401
+    import matplotlib  # noqa: F401
+except ImportError as missing:
+    print(f"skipped: {missing}; scripts/setup run installs it")
+    sys.exit(77)
+
+PROGRAM = sys.argv.pop(1)
+SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+
+
+class Page(html.parser.HTMLParser):
+    """What a page holds: open tags left over, pictures without words, addresses, text."""
+
+    VOID = {"meta", "img", "br", "link", "input"}
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.wordless, self.addresses, self.text, self.figures = [], 0, [], "", 0
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        values = dict(attributes)
+        self.figures += tag == "figure"
+        self.addresses += [values[name] for name in ("href", "src") if name in values]
+        if tag == "svg" and not values.get("aria-label") or tag == "img" and not values.get("alt"):
+            self.wordless += 1
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.addresses += [v for k, v in attributes if k in ("href", "src", "xlink:href")]
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open[-1] == tag, f"</{tag}> closes {self.open[-1:]}"
+        self.open.pop()
+
+    def handle_data(self, data):
+        self.text += data
+
+
+def shapebench(*words):
+    return subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=300)
+
+
+class Report(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="shapebench_report_")
+        cls.rows = os.path.join(cls.folder, "rows.h5")
+        done = shapebench("tables", "--scene", "penguin", "--repeats", "2", "-o", cls.rows)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    def at(self, name):
+        return os.path.join(self.folder, name)
+
+    def copy(self, name, change):
+        path = self.at(name)
+        shutil.copy(self.rows, path)
+        with h5py.File(path, "r+") as file:
+            change(file)
+        return path
+
+    def page(self, *files):
+        output = self.at("page.html")
+        done = shapebench("report", "-o", output, *files)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(output, encoding="utf-8") as file:
+            page = Page(file.read())
+        self.assertEqual(page.open, [])
+        self.assertEqual(page.wordless, 0)
+        for address in page.addresses:
+            self.assertRegex(address, "^(#|data:)")
+        return page
+
+    def refused(self, path, words):
+        done = shapebench("report", "-o", self.at("none.html"), path)
+        self.assertEqual(done.returncode, 3)
+        self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertIn(path, done.stderr)
+        self.assertIn(words, done.stderr)
+        self.assertFalse(os.path.exists(self.at("none.html")))
+
+    def test_a_page_has_the_measured_values(self):
+        page = self.page(self.rows)
+        with h5py.File(self.rows) as file:
+            row = file["rows/000"].attrs
+            self.assertIn(f"{row['total_ms'] / row['particles'] * 1e6:.3g}"[:4], page.text)
+            self.assertIn(file["machine"].attrs["git_commit"].decode(), page.text)
+        self.assertIn("VALID", page.text)
+        self.assertGreaterEqual(page.figures, 2)
+
+    def test_an_invalid_row_has_no_times(self):
+        def spoil(file):
+            row = file["rows/000"].attrs
+            row["valid"], row["reason"], row["total_ms"] = 0, b"goals are off", 123.456
+
+        page = self.page(self.copy("invalid.h5", spoil))
+        self.assertIn("INVALID: goals are off", page.text)
+        self.assertNotIn("123", page.text.split("Where these were measured")[0])
+
+    def test_texts_are_escaped(self):
+        def name(file):
+            file["machine"].attrs["hostname"] = b"<script>x</script>"
+            file["rows/000"].attrs["scene"] = "a<b & \u00e9".encode()
+
+        page = self.page(self.copy("names.h5", name))
+        self.assertIn("<script>x</script>", page.text)
+        self.assertIn("a<b & \u00e9", page.text)
+
+    def test_commits_make_a_history(self):
+        def older(file):
+            file["machine"].attrs["git_commit"] = b"0123456789abcdef"
+            file["machine"].attrs["utc"] = b"2020-01-01T00:00:00Z"
+
+        page = self.page(self.rows, self.copy("older.h5", older))
+        self.assertIn("A scene over commits", page.text)
+
+    def test_a_folder_has_every_figure_with_its_data(self):
+        output = self.at("folder")
+        for _ in range(2):  # the second takes the first's place
+            self.assertEqual(shapebench("report", "-o", output, self.rows).returncode, 0)
+        names = os.listdir(output)
+        self.assertIn("index.html", names)
+        figures = [name[:-4] for name in names if name.endswith(".svg")]
+        self.assertGreaterEqual(len(figures), 2)
+        for name in figures:
+            self.assertGreater(os.path.getsize(os.path.join(output, name + ".png")), 1000)
+            with open(os.path.join(output, name + ".csv"), encoding="utf-8") as file:
+                lines = list(csv.reader(io.StringIO(file.read())))
+            self.assertGreater(len(lines), 1)
+            self.assertEqual({len(line) for line in lines}, {len(lines[0])})
+        self.assertEqual([name for name in os.listdir(self.folder) if name.endswith(".tmp")], [])
+
+    def test_bad_files_are_named(self):
+        self.refused(self.at("nothing.h5"), "no such file")
+        with open(self.at("text.h5"), "w", encoding="utf-8") as file:
+            file.write("no HDF5")
+        self.refused(self.at("text.h5"), "not an HDF5 file")
+        with open(self.rows, "rb") as file:
+            whole = file.read()
+        with open(self.at("cut.h5"), "wb") as file:
+            file.write(whole[:len(whole) // 2])
+        self.refused(self.at("cut.h5"), "cut off")
+        self.refused(self.copy("kind.h5", lambda f: f.attrs.__setitem__("kind", b"music")), "music")
+        self.refused(self.copy("schema.h5", lambda f: f.attrs.__setitem__("schema", 1)), "schema 1")
+        self.refused(self.copy("less.h5", lambda f: f["rows/000"].attrs.__delitem__("total_ms")), "missing")
+        self.refused(self.copy("bare.h5", lambda f: f.__delitem__("machine")), "missing")
+
+    def test_a_place_that_cannot_be_written(self):
+        done = shapebench("report", "-o", "/proc/none/page.html", self.rows)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (4, 1))
+        full = shapebench("report", "-o", "/dev/full/page", self.rows)
+        self.assertEqual((full.returncode, full.stderr.count("\n")), (4, 1))
+
+    def example(self, language):
+        """The README's example of reading a results file."""
+        with open(os.path.join(SOURCES, "results", "README.md"), encoding="utf-8") as file:
+            return file.read().split(f"```{language}\n")[1].split("```")[0]
+
+    def test_the_readme_s_examples_run(self):
+        for name, language in (("example.py", "python"), ("example.c", "c")):
+            with open(self.at(name), "w", encoding="utf-8") as file:
+                file.write(self.example(language))
+        with h5py.File(self.rows) as file:
+            wanted = f"{file['rows/000'].attrs['total_ms']:.4g} ms"
+        python = subprocess.run([sys.executable, self.at("example.py"), self.rows], capture_output=True, text=True)
+        self.assertIn("penguin " + wanted, python.stdout, python.stderr)
+        flags = subprocess.run(["pkg-config", "--cflags", "--libs", "hdf5-serial"], capture_output=True, text=True)
+        built = subprocess.run(["cc", "-Wall", "-Werror", self.at("example.c"), "-o", self.at("example"),
+                                *flags.stdout.split()], capture_output=True, text=True)
+        self.assertEqual(built.returncode, 0, built.stderr)
+        said = subprocess.run([self.at("example"), self.rows], capture_output=True, text=True)
+        self.assertIn(wanted, said.stdout)
+
+    def test_a_folder_of_something_else_is_kept(self):
+        os.makedirs(self.at("mine"), exist_ok=True)
+        with open(self.at("mine/letter"), "w", encoding="utf-8"):
+            pass
+        done = shapebench("report", "-o", self.at("mine"), self.rows)
+        self.assertEqual(done.returncode, 2)
+        self.assertTrue(os.path.exists(self.at("mine/letter")))
+
+
+if __name__ == "__main__":
+    unittest.main()
