@@ -7,6 +7,7 @@
 #include "command.h"
 #include "draft.h"
 #include "option.h"
+#include "progress.h"
 
 enum { KEY_PAPER = 0x2000, KEY_CLAIM, KEY_CLAIMS, KEY_QUICK, KEY_LIST, KEY_FORMAT, NAMES = 64 };
 
