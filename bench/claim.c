@@ -261,6 +261,12 @@ SmCode bench_claims_read(const char *path, BenchClaims *claims, SmError *error)
     return code;
 }
 
+const char *bench_expectation_name(BenchExpectation expect)
+{
+    static const char *const names[] = {"reproduced", "different", "not comparable"};
+    return names[expect];
+}
+
 void bench_claims_free(BenchClaims *claims)
 {
     free(claims->claim);

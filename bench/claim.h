@@ -62,6 +62,9 @@ SmCode bench_claims_parse(const char *text, size_t size, const char *file, Bench
 /* The same of those compiled in, and of a file. */
 SmCode bench_claims_builtin(BenchClaims *claims, SmError *error);
 SmCode bench_claims_read(const char *path, BenchClaims *claims, SmError *error);
+/* "reproduced", "different", "not comparable". */
+const char *bench_expectation_name(BenchExpectation expect);
+
 void bench_claims_free(BenchClaims *claims);
 
 #endif

@@ -15,7 +15,6 @@ static const char file_kind[] = "shapebench claims";
 enum { MOST = 10000 }; /* claims or curves: more is a damaged file */
 
 static const char *const takes[] = {"values", "exponent", "largest", "gain"};
-static const char *const expectations[] = {"reproduced", "different", "not comparable"};
 
 /* A finding as it is stored: words instead of enums. */
 typedef struct {
@@ -94,7 +93,7 @@ static void pack(const BenchFinding *finding, Stored *stored)
     strcpy(stored->words, finding->words);
     strcpy(stored->status, ref_status_name(claim->status));
     strcpy(stored->take, takes[claim->reduction]);
-    strcpy(stored->expect, expectations[claim->expect]);
+    strcpy(stored->expect, bench_expectation_name(claim->expect));
     strcpy(stored->verdict, bench_verdict_name(finding->verdict));
     strcpy(stored->evidence, finding->evidence[0]);
     strcpy(stored->over, finding->evidence[1]);
@@ -186,6 +185,9 @@ static int place_of(BenchH5 *h5, const char *word, const char *const *words, int
 static void unpack(BenchH5 *h5, const Stored *stored, BenchFinding *finding)
 {
     const char *verdicts[BENCH_VERDICTS], *statuses[REF_SECOND_HAND + 1];
+    const char *expectations[BENCH_NOT_COMPARABLE + 1];
+    for (int e = 0; e <= BENCH_NOT_COMPARABLE; e++)
+        expectations[e] = bench_expectation_name((BenchExpectation)e);
     for (int v = 0; v < BENCH_VERDICTS; v++) verdicts[v] = bench_verdict_name((BenchVerdict)v);
     for (int s = 0; s <= REF_SECOND_HAND; s++) statuses[s] = ref_status_name((RefStatus)s);
     BenchClaim *claim = &finding->claim;

@@ -106,7 +106,6 @@ typedef struct {
 
 static void fill_cells(const BenchFinding *finding, const char *test, Cell cell[COLUMNS])
 {
-    static const char *const expectations[] = {"reproduced", "different", "not comparable"};
     const BenchClaim *claim = &finding->claim;
     const Cell cells[COLUMNS] = {
         {.name = "paper", .text = claim->paper},
@@ -120,7 +119,7 @@ static void fill_cells(const BenchFinding *finding, const char *test, Cell cell[
         {.name = "low", .number = finding->low, .count = finding->count},
         {.name = "high", .number = finding->high, .count = finding->count},
         {.name = "test", .text = test},
-        {.name = "expect", .text = expectations[claim->expect]},
+        {.name = "expect", .text = bench_expectation_name(claim->expect)},
         {.name = "verdict", .text = bench_verdict_name(finding->verdict)},
         {.name = "words", .text = finding->words},
         {.name = "evidence", .text = finding->evidence[0]},

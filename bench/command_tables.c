@@ -211,15 +211,6 @@ static SmCode verdict(const BenchRow *rows, int count, SmError *error)
     return SM_OK;
 }
 
-/* Now rather than after a minute of measuring. */
-static SmCode check_output(const char *path, SmError *error)
-{
-    BenchDraft draft;
-    SmCode code = path ? bench_draft_begin(path, &draft, error) : SM_OK;
-    if (path && !code) bench_draft_discard(&draft);
-    return code;
-}
-
 int bench_command_tables(int argc, char **argv)
 {
     Options options = {.paper = "fastlsm", .repeats = 15, .block = 20};
@@ -227,7 +218,7 @@ int bench_command_tables(int argc, char **argv)
     bench_options_parse(&argp, argc, argv, &options, &options.common);
     SmCode code = choose_scenes(&options, &error);
     BenchRow *rows = sm_alloc(SCENES, sizeof *rows);
-    if (!code) code = check_output(options.output, &error);
+    if (!code) code = bench_draft_try(options.output, &error);
     if (!code) code = measure_all(&options, rows, &error);
     if (!code) {
         BenchMachine machine;

@@ -86,8 +86,7 @@ void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *cu
     int count = bench_range_numbers(&measure->w, w),
         repeats = repeats_of(lab) / (measure->summation == SM_SUM_NAIVE ? 6 : 1);
     BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
-    const SmEngineParams params = {
-        .h = 0.01, .summation = measure->summation, .threads = lab->threads};
+    const SmEngineParams params = {.h = 0.01, .summation = measure->summation, .threads = 1};
     for (int c = 0; c < count; c++) side[c] = lab->quick ? 20 : 32;
     bench_curve_begin(curve, "mean side of a region, particles",
                       "fast summation, ns/particle/step");
@@ -104,7 +103,7 @@ static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve 
 {
     int w[BENCH_RANGE_POINTS] = {0}, repeats = repeats_of(lab);
     BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
-    const SmEngineParams params = {.h = 0.01, .damping = 0.1, .threads = lab->threads};
+    const SmEngineParams params = {.h = 0.01, .damping = 0.1, .threads = 1};
     for (int c = 0; c < count; c++) w[c] = 1;
     create_cubes(lab, &params, side, w, count, cubes, curve);
     if (curve->valid) bench_cubes_time(cubes, count, repeats, false);
@@ -158,8 +157,8 @@ static void octree_sizes(BenchLab *lab, const int *side, int count, bool sums, B
     for (; made < count && curve->valid; made++) {
         if (bench_sampled_cube(side[made], &body[made], &error))
             bench_curve_fail(curve, "%.180s", error.text);
-        steps[made] = (BenchTreeStep){
-            .body = &body[made], .parts = sums, .threads = lab->threads, .seed = lab->seed};
+        steps[made] =
+            (BenchTreeStep){.body = &body[made], .parts = sums, .threads = 1, .seed = lab->seed};
     }
     if (curve->valid) time_trees(lab, steps, count, sums, curve);
     for (int s = 0; s < made; s++) bench_sampled_free(&body[s]);

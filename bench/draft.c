@@ -79,6 +79,14 @@ static int sync_path(const char *path)
     return number;
 }
 
+SmCode bench_draft_try(const char *path, SmError *error)
+{
+    BenchDraft draft;
+    SmCode code = path ? bench_draft_begin(path, &draft, error) : SM_OK;
+    if (path && !code) bench_draft_discard(&draft);
+    return code;
+}
+
 SmCode bench_draft_commit(BenchDraft *draft, SmError *error)
 {
     int number = sync_path(draft->tmp);

@@ -19,6 +19,10 @@ typedef struct {
  * full, or a target that is there and not a regular file (a folder, a device). */
 SmCode bench_draft_begin(const char *path, BenchDraft *draft, SmError *error);
 
+/* Can the file be written? Asked before what takes minutes, whose result it is to hold. NULL: none
+ * is wanted. Leaves nothing behind. */
+SmCode bench_draft_try(const char *path, SmError *error);
+
 /* Syncs the draft and renames it. On SM_OUTPUT the draft is gone and the target untouched. */
 SmCode bench_draft_commit(BenchDraft *draft, SmError *error);
 

@@ -9,6 +9,7 @@
 #include "costs.h"
 #include "deform.h"
 #include "scene_field.h"
+#include "store.h"
 
 /* What an experiment takes beside its name, and who runs it. */
 typedef struct {
@@ -223,12 +224,7 @@ int bench_experiment(BenchLab *lab, const BenchMeasure *measure)
 
 void bench_lab_free(BenchLab *lab)
 {
-    for (int r = 0; r < lab->rows; r++) {
-        free(lab->row[r].total);
-        free(lab->row[r].stage);
-        free(lab->row[r].change.time);
-    }
-    free(lab->row);
+    bench_rows_free(lab->row, lab->rows);
     free(lab->row_name);
     free(lab->curve);
     lab->rows = lab->curves = 0;

@@ -1,14 +1,13 @@
 /* experiment.h - what a claim can have measured, each giving a curve: points (x, y) with spread.
  *
- * Everything is checked before it counts: a curve that is not valid says why. Times are of one
- * thread unless asked otherwise; y is the median of the repeats and its spread the quartiles. But
- * of "size" and "polar" y and `low` are the least, which other work on the machine disturbs least,
- * and `high` is the median; of cubes on the lattice the time is CPU time. */
+ * Everything is checked before it counts: a curve that is not valid says why. y is the median of
+ * the repeats and its spread the quartiles. But of "size" and "polar" y and `low` are the least,
+ * which other work on the machine disturbs least, and `high` is the median; of cubes on the lattice
+ * the time is CPU time. */
 #ifndef BENCH_EXPERIMENT_H
 #define BENCH_EXPERIMENT_H
 
 #include "../lib/engine.h"
-#include "progress.h"
 #include "row.h"
 
 /* Which settings each takes beside those named here is an error.
@@ -74,10 +73,9 @@ typedef struct {
 
 /* What has been measured so far: nothing is measured twice. Begins zeroed but for the choices. */
 typedef struct {
-    bool quick; /* fewer repeats, smaller bodies */
-    int threads;
+    bool quick;  /* fewer repeats, smaller bodies */
+    int threads; /* of scenes; cubes and kernels are timed on one */
     unsigned long seed;
-    BenchProgress *progress; /* or NULL */
     int rows, curves;
     BenchRow *row;        /* [rows] */
     char (*row_name)[96]; /* [rows] scene, as the claims name it, and engine */
