@@ -14,6 +14,7 @@ static const BenchCommand commands[] = {
     {"tables", "measure a paper's table: every stage, checked, the paper's values beside",
      bench_command_tables},
     {"kernels", "time every kernel alone against what this machine can do", bench_command_kernels},
+    {"regress", "compare this build's times with a baseline's: slower?", bench_command_regress},
     {"run", "simulate a scene or a mesh and write its motion", bench_command_run},
     {"info", "say what is in a mesh, and whether it can be simulated", bench_command_info},
     {"scenes", "list the built-in scenes, or print one to copy and edit", bench_command_scenes},

@@ -118,8 +118,7 @@ static void write_csv(FILE *file, const BenchRow *rows, int count)
     }
 }
 
-/* A string that may hold bytes that are no UTF-8 (a command line): those become '?'. */
-static json_t *json_text(const char *text)
+json_t *bench_json_text(const char *text)
 {
     json_t *value = json_string(text);
     if (value) return value;
@@ -133,14 +132,14 @@ static json_t *json_text(const char *text)
 
 static json_t *json_cell(const Cell *cell, bool valid)
 {
-    if (cell->kind == TEXT) return json_text(cell->text);
+    if (cell->kind == TEXT) return bench_json_text(cell->text);
     if (cell->kind == WHOLE) return json_integer(cell->whole);
     if (cell->kind == VALID) return json_boolean(valid);
     if ((cell->kind == TIME && !valid) || !isfinite(cell->number)) return json_null();
     return json_real(cell->number);
 }
 
-static json_t *json_environment(const BenchMachine *machine)
+json_t *bench_json_environment(const BenchMachine *machine)
 {
     const struct {
         const char *name, *text;
@@ -154,7 +153,7 @@ static json_t *json_environment(const BenchMachine *machine)
     };
     json_t *object = json_object();
     for (size_t i = 0; i < sizeof strings / sizeof strings[0]; i++)
-        json_object_set_new(object, strings[i].name, json_text(strings[i].text));
+        json_object_set_new(object, strings[i].name, bench_json_text(strings[i].text));
     json_object_set_new(object, "git_dirty", json_boolean(machine->git_dirty));
     json_object_set_new(object, "l1_bytes", json_integer(machine->l1_bytes));
     json_object_set_new(object, "l2_bytes", json_integer(machine->l2_bytes));
@@ -177,7 +176,7 @@ static void write_json(FILE *file, const BenchRow *rows, int count, const BenchM
     }
     json_t *root = json_object();
     json_object_set_new(root, "rows", list);
-    json_object_set_new(root, "environment", json_environment(machine));
+    json_object_set_new(root, "environment", bench_json_environment(machine));
     json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     fputc('\n', file);
     json_decref(root);

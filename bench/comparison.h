@@ -1,0 +1,64 @@
+/* comparison.h - is the new build slower than the old one? Verdicts on every time of every scene.
+ *
+ * A time is called slower or faster where all of this holds: the ratio of the medians over
+ * processes lies beyond the threshold; its 95% bootstrap interval does not hold 1; and the
+ * Mann-Whitney test, adjusted by Holm for all times of all scenes, has p below 0.01. The threshold
+ * is what the same code differs from itself by (statistic.h), and at least 2%, or 5% against a
+ * stored file. */
+#ifndef BENCH_COMPARISON_H
+#define BENCH_COMPARISON_H
+
+#include "contest.h"
+
+typedef enum {
+    BENCH_FASTER,
+    BENCH_SAME,
+    BENCH_SLOWER,
+    BENCH_TOO_NOISY,   /* no difference was seen, and one within the limit could not have been */
+    BENCH_TOO_FEW,     /* processes */
+    BENCH_INVALID,     /* a build computes wrongly there: nothing is compared */
+    BENCH_NO_BASELINE, /* not measured on the old build, or other work (engine, particles, ...) */
+    BENCH_VERDICTS
+} BenchVerdict;
+
+/* "faster", "same", "slower", "too noisy", "too few samples", "INVALID", "no baseline". */
+const char *bench_verdict_name(BenchVerdict verdict);
+
+typedef struct {
+    bool interleaved; /* else the old times come from a file */
+    int rounds;
+    double threshold; /* as a share (0.05); NaN: as measured */
+    unsigned long seed;
+} BenchCompareParams;
+
+enum {
+    BENCH_LEAST_ROUNDS = 4,    /* for a verdict of builds that run interleaved */
+    BENCH_LEAST_PROCESSES = 5, /* of the new build, beside a file */
+};
+#define BENCH_NOISE_LIMIT 0.10 /* too noisy beyond, where no threshold is given */
+#define BENCH_LEVEL       0.01
+
+typedef struct {
+    const BenchContest *contest;
+    int time;                    /* 0 total, else 1 + stage; 0 alone where nothing is compared */
+    double ms[BENCH_BUILDS];     /* medians over processes */
+    double ratio, low, high;     /* new / old, with its interval */
+    double p, adjusted;          /* Mann-Whitney; by Holm */
+    double self[BENCH_BUILDS];   /* each build against itself, as a share; NaN: not known */
+    double threshold;            /* used, as a share */
+    bool *outlier[BENCH_BUILDS]; /* [processes] */
+    int outliers[BENCH_BUILDS];
+    BenchVerdict verdict;
+    char reason[256]; /* of INVALID and no baseline */
+} BenchComparison;
+
+/* Compares all; the caller frees the list with bench_comparisons_free() before the contests. */
+int bench_compare(const BenchContests *all, const BenchCompareParams *params,
+                  BenchComparison **list);
+void bench_comparisons_free(BenchComparison *list, int count);
+
+/* What they come to, as an exit code (command.h): SM_INVALID where anything is INVALID, else
+ * BENCH_EXIT_SLOWER, else BENCH_EXIT_NO_BASELINE where anything lacks one, else SM_OK. */
+int bench_comparisons_exit(const BenchComparison *list, int count);
+
+#endif

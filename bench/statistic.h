@@ -1,0 +1,67 @@
+/* statistic.h - comparing two sets of times: tests, resampling, outliers. GSL does the numbers.
+ *
+ * Values are positive times, in any unit. Medians and quantiles are GSL's (linear between order
+ * statistics). All random draws come from the seed. */
+#ifndef BENCH_STATISTIC_H
+#define BENCH_STATISTIC_H
+
+#include <stdbool.h>
+
+/* Quantile `share` (0..1) of `count` values, 1 or more, which need not be sorted. */
+double bench_quantile(const double *value, int count, double share);
+
+/* Two-sided p of the Mann-Whitney U test that a and b come from one distribution. Exact where no
+ * two values are equal and neither set has more than 40; else the normal approximation with
+ * correction for ties and continuity (Mann and Whitney 1947; Lehmann, Nonparametrics, 1975). 1
+ * where either set is empty or all values are equal. */
+double bench_mann_whitney(const double *a, int a_count, const double *b, int b_count);
+
+/* Holm's step-down adjustment (1979): p[i] becomes what may be held against a level for the whole
+ * family. NaNs are left alone and not counted. */
+void bench_holm(double *p, int count);
+
+/* flag[i]: value[i] lies more than 3 interquartile ranges outside the quartiles (Tukey's outer
+ * fences). Returns how many. Nothing is removed. */
+int bench_outliers(const double *value, int count, bool *flag);
+
+/* One build's times, a value for each process. `group` holds each one's round (0, 1, ...):
+ * processes of a round ran next to each other, in this order. */
+typedef struct {
+    const double *value;
+    const int *group;
+    int count; /* 1 or more */
+} BenchTimes;
+
+typedef struct {
+    double ratio;     /* median of `b` / median of `a` */
+    double low, high; /* 95% bootstrap confidence interval, percentiles of `draws` resamples */
+} BenchRatio;
+
+enum { BENCH_DRAWS = 2000 };
+
+/* Builds that ran interleaved, in `rounds` rounds: whole rounds are resampled, of both builds at
+ * once, so what a round's processes have in common (what else the machine did) cancels. */
+BenchRatio bench_ratio_paired(const BenchTimes *a, const BenchTimes *b, int rounds,
+                              unsigned long seed);
+
+/* Builds that did not: processes are resampled. Where `a` is a single process, nothing is known of
+ * how processes of it differ, and it is taken to be as much as those of `b` do. */
+BenchRatio bench_ratio_apart(const BenchTimes *a, const BenchTimes *b, unsigned long seed);
+
+/* How far the ratio of two sets of `times` can lie from 1 although one build made both: of every
+ * round one process goes to the left and one to the right at random, and the 99% quantile of
+ * |log(median right / median left)| over BENCH_DRAWS such draws is scaled from half as many
+ * processes to all by 1/sqrt(2). As a ratio less 1 (0.03: 3%). NaN for less than 2 whole rounds. */
+double bench_self_noise(const BenchTimes *times, int rounds, unsigned long seed);
+
+/* The same where the sets ran apart: half-width of Student's 1 - level/comparisons interval for the
+ * median of `a_count` further processes against that of these, from the spread of the log times
+ * (scaled median absolute deviation or standard deviation, whichever is larger). NaN for less than
+ * 3. */
+double bench_spread_noise(const BenchTimes *times, int a_count, double level, int comparisons);
+
+/* Divides each value by the median of its round (of all builds): what a round has in common goes,
+ * and tests see the rest. `out` has room for all of a, then all of b. */
+void bench_align(const BenchTimes *a, const BenchTimes *b, int rounds, double *out);
+
+#endif
