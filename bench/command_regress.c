@@ -55,9 +55,10 @@ static const struct argp_option option_list[] = {
      "Compare this scene only; may be repeated (default: all of the file, or of the paper)", 1},
     {"rounds", KEY_ROUNDS, "N", 0,
      "Rounds of two processes of each build and scene (default: 5; at least 4 for a verdict)", 2},
-    {"repeats", KEY_REPEATS, "N", 0, "Samples of every time in a process (default: 151)", 2},
+    {"repeats", KEY_REPEATS, "N", 0,
+     "Samples of every time in a process (default: 201; beside a file as there)", 2},
     {"block", KEY_BLOCK, "MS", 0,
-     "Least milliseconds in a sample (default: 1; beside a file as there)", 2},
+     "Least milliseconds in a sample (default: 0.5; beside a file as there)", 2},
     {"threshold", KEY_THRESHOLD, "auto|X", 0,
      "Differences up to X (0.05: 5%) are 'same' (default: auto, as the build differs from itself)",
      2},
@@ -172,7 +173,7 @@ static void task_of_row(const BenchRow *row, BenchTask *task)
     task->threads = row->threads;
     task->repeats = row->repeats;
     if (row->valid && row->steps > 0)
-        task->block = 1e3 * bench_quantile(row->total, row->repeats, 0.5) * row->steps;
+        task->block = 1e3 * bench_quantile(row->total, row->repeats, 0) * row->steps;
 }
 
 /* The scenes named, or all of the file. */
@@ -211,9 +212,9 @@ static SmCode choose_tasks(Session *session, SmError *error)
         BenchTask *task = &session->task[t];
         if (!task->threads) task->threads = options->common.threads;
         if (options->repeats || !task->repeats)
-            task->repeats = options->repeats ? options->repeats : 151;
+            task->repeats = options->repeats ? options->repeats : 201;
         if (options->block > 0 || !(task->block > 0))
-            task->block = options->block > 0 ? options->block : 1;
+            task->block = options->block > 0 ? options->block : 0.5;
         task->block = fmin(fmax(task->block, 0.001), 60000);
     }
     return SM_OK;

@@ -60,7 +60,7 @@ void bench_contest_add(BenchContests *all, BenchBuild build, int round, const Be
             block[r] = t ? row->stage[r][t - 1] : row->total[r];
             there &= isfinite(block[r]);
         }
-        side->time[t][side->count] = there ? bench_quantile(block, row->repeats, 0.1) : NAN;
+        side->time[t][side->count] = there ? bench_quantile(block, row->repeats, 0.02) : NAN;
     }
     side->blocks += row->repeats;
     side->round[side->count++] = round;

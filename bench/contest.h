@@ -1,9 +1,10 @@
 /* contest.h - one scene measured on two builds, in several processes of each.
  *
  * The unit is a process: its repeats share one memory layout and one moment of the machine, and
- * count as one value for each time, their lowest decile. Other work on the machine only ever adds
- * time, to more than half of the repeats where it keeps every core busy, so the low end is what the
- * code needs. */
+ * count as one value for each time, their 2% quantile. Other work on the machine only ever adds
+ * time, and to most repeats where it keeps every core busy: the low end is what the code needs, and
+ * differs by less than 1% between processes where medians differ by 20%. It is no minimum, which a
+ * longer run lowers. */
 #ifndef BENCH_CONTEST_H
 #define BENCH_CONTEST_H
 

@@ -26,21 +26,51 @@ static bool known(const char *text)
     return text[0] && strcmp(text, "unknown") != 0;
 }
 
+/* Appends the words of `flags` that `other` has not, but -Werror, which changes no program. */
+static void list_flags(const char *flags, const char *other, size_t size, char *list)
+{
+    char copy[512], padded[520], word[520], *rest = copy;
+    size_t used = 0;
+    list[0] = '\0';
+    snprintf(copy, sizeof copy, "%s", flags);
+    snprintf(padded, sizeof padded, " %s ", other);
+    for (char *flag; (flag = strtok_r(rest, " ", &rest)) && used < size;) {
+        snprintf(word, sizeof word, " %s ", flag);
+        if (strcmp(flag, "-Werror") != 0 && !strstr(padded, word))
+            used += (size_t)snprintf(list + used, size - used, " %s", flag);
+    }
+}
+
+static void compare_flags(BenchRegression *found)
+{
+    const char *old = found->machine[BENCH_OLD].flags, *new = found->machine[BENCH_NEW].flags;
+    char only_old[128], only_new[128];
+    if (!known(old) || !known(new)) return;
+    list_flags(old, new, sizeof only_old, only_old);
+    list_flags(new, old, sizeof only_new, only_new);
+    if (only_old[0] || only_new[0])
+        bench_regression_remark(found, "flags differ: only the baseline has%s; only this build%s",
+                                only_old[0] ? only_old : " none", only_new[0] ? only_new : " none");
+}
+
 void bench_regression_environment(BenchRegression *found)
 {
     const BenchMachine *old = &found->machine[BENCH_OLD], *new = &found->machine[BENCH_NEW];
     const struct {
         const char *what, *old, *new;
     } text[] = {
-        {"processor", old->cpu, new->cpu},      {"compiler", old->compiler, new->compiler},
-        {"flags", old->flags, new->flags},      {"libraries", old->libraries, new->libraries},
-        {"kernel", old->kernel, new->kernel},   {"governor", old->governor, new->governor},
+        {"processor", old->cpu, new->cpu},
+        {"compiler", old->compiler, new->compiler},
+        {"libraries", old->libraries, new->libraries},
+        {"kernel", old->kernel, new->kernel},
+        {"governor", old->governor, new->governor},
         {"host", old->hostname, new->hostname},
     };
     for (size_t i = 0; i < sizeof text / sizeof *text; i++)
         if (known(text[i].old) && known(text[i].new) && strcmp(text[i].old, text[i].new) != 0)
             bench_regression_remark(found, "%s differs: %.120s, now %.120s", text[i].what,
                                     text[i].old, text[i].new);
+    compare_flags(found);
     if (old->cores && old->cores != new->cores)
         bench_regression_remark(found, "cores differ: %d, now %d", old->cores, new->cores);
     if (old->git_dirty)
@@ -139,16 +169,31 @@ static void write_start(FILE *file, const BenchRegression *found)
     fprintf(file, "; %.0f s.\n\n", found->seconds);
 }
 
+/* A line on the outliers of a scene, if it has any; `first` is its first comparison. */
+static void write_outliers(FILE *file, const BenchRegression *found, int first, const char *bullet)
+{
+    const BenchContest *contest = found->list[first].contest;
+    bool any = false;
+    for (int i = first; i < found->count && found->list[i].contest == contest; i++) {
+        const BenchComparison *one = &found->list[i];
+        int old = one->outliers[BENCH_OLD], new = one->outliers[BENCH_NEW];
+        if (!old && !new) continue;
+        if (!any)
+            fprintf(file, "%s%s: outliers, kept, old+new of %d+%d:", bullet, contest->scene,
+                    contest->side[BENCH_OLD].count, contest->side[BENCH_NEW].count);
+        fprintf(file, "%s %s %d+%d", any ? "," : "", bench_time_name(one->time), old, new);
+        any = true;
+    }
+    if (any) fputc('\n', file);
+}
+
 static void write_remarks(FILE *file, const BenchRegression *found, const char *bullet)
 {
     for (int i = 0; i < found->count; i++) {
         const BenchComparison *one = &found->list[i];
         if (one->reason[0]) fprintf(file, "%s%s: %s\n", bullet, one->contest->scene, one->reason);
-        for (int b = 0; b < BENCH_BUILDS; b++)
-            if (one->outliers[b])
-                fprintf(file, "%s%s %s: %d of %d %s times are outliers, and kept\n", bullet,
-                        one->contest->scene, bench_time_name(one->time), one->outliers[b],
-                        one->contest->side[b].count, b == BENCH_OLD ? "old" : "new");
+        if (i == 0 || found->list[i - 1].contest != one->contest)
+            write_outliers(file, found, i, bullet);
     }
     for (int i = 0; i < found->remarks; i++) fprintf(file, "%s%s\n", bullet, found->remark[i]);
 }

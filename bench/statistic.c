@@ -232,7 +232,7 @@ double bench_self_noise(const BenchTimes *times, int rounds, unsigned long seed)
         drawn[d] = fabs(log(quantile_of(right, pairs, 0.5) / quantile_of(left, pairs, 0.5)));
     }
     gsl_rng_free(rng);
-    double noise = pairs > 1 ? expm1(quantile_of(drawn, BENCH_DRAWS, 0.99) / sqrt(2)) : NAN;
+    double noise = pairs > 1 ? expm1(quantile_of(drawn, BENCH_DRAWS, 0.99)) : NAN;
     free(pair);
     free(left);
     free(right);

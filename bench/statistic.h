@@ -49,9 +49,10 @@ BenchRatio bench_ratio_paired(const BenchTimes *a, const BenchTimes *b, int roun
 BenchRatio bench_ratio_apart(const BenchTimes *a, const BenchTimes *b, unsigned long seed);
 
 /* How far the ratio of two sets of `times` can lie from 1 although one build made both: of every
- * round one process goes to the left and one to the right at random, and the 99% quantile of
- * |log(median right / median left)| over BENCH_DRAWS such draws is scaled from half as many
- * processes to all by 1/sqrt(2). As a ratio less 1 (0.03: 3%). NaN for less than 2 whole rounds. */
+ * round one process goes to the left and one to the right at random, and this is the 99% quantile
+ * of |log(median right / median left)| over BENCH_DRAWS such draws, as a ratio less 1 (0.03: 3%).
+ * Its sets are half as large as those of a comparison, so it is on the safe side. NaN for less than
+ * 2 whole rounds. */
 double bench_self_noise(const BenchTimes *times, int rounds, unsigned long seed);
 
 /* The same where the sets ran apart: half-width of Student's 1 - level/comparisons interval for the
