@@ -124,16 +124,15 @@ static error_t parse(int key, char *text, struct argp_state *state)
 
 static const char help[] =
     "Is this build slower than that one? Every scene is measured in fresh processes, each of which "
-    "checks it first: what is INVALID is not compared. The sample is a process, its value the "
-    "lowest "
-    "decile of its repeats. A time is slower or faster where the ratio of medians is beyond the "
-    "threshold, its 95% bootstrap interval does not hold 1, and Mann-Whitney's p, adjusted for "
-    "all times that are compared, is below 0.01. The threshold is what a build differs from "
-    "itself by between processes of the same rounds, and at least 2%; beside a file, which "
-    "cannot be run interleaved, it is wider, and at least 5%.\v"
+    "checks it first: what is INVALID is not compared. The sample is a process, its value the 2% "
+    "quantile of its repeats, which other work on the machine hardly touches. A time is slower or "
+    "faster where the ratio of medians is beyond the threshold, its 95% bootstrap interval does "
+    "not "
+    "hold 1, and Mann-Whitney's p, adjusted for all times that are compared, is below 0.01. The "
+    "threshold is what a build differs from itself by between processes of the same rounds, and at "
+    "least 2%; beside a file, which cannot be run interleaved, it is wider, and at least 5%.\v"
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
-    " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another "
-    "machine.";
+    " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine.";
 
 static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
 
@@ -224,6 +223,10 @@ static SmCode load_baseline(Session *session, const BenchMachine *here, SmError 
 {
     const char *path = session->options->baseline;
     BenchMachine *there = &session->found.machine[BENCH_OLD];
+    if (access(path, F_OK) != 0 && errno == ENOENT)
+        return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
+                       "no baseline: there is no %.200s; store one with shapebench tables -o FILE",
+                       path);
     SmCode code = bench_samples_load(path, &session->stored, &session->stored_count, there, error);
     if (code) return code;
     snprintf(session->found.baseline, sizeof session->found.baseline, "%.200s", path);
