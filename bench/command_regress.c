@@ -54,7 +54,7 @@ static const struct argp_option option_list[] = {
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Compare this scene only; may be repeated (default: all of the file, or of the paper)", 1},
     {"rounds", KEY_ROUNDS, "N", 0,
-     "Rounds of two processes of each build and scene (default: 5; at least 4 for a verdict)", 2},
+     "Rounds of two processes of each build and scene (default: 8, or 5 beside a file)", 2},
     {"repeats", KEY_REPEATS, "N", 0,
      "Samples of every time in a process (default: 201; beside a file as there)", 2},
     {"block", KEY_BLOCK, "MS", 0,
@@ -126,9 +126,10 @@ static const char help[] =
     "Is this build slower than that one? Every scene is measured in fresh processes, each of which "
     "checks it first: what is INVALID is not compared. The sample is a process, its value the 2% "
     "quantile of its repeats, which other work on the machine hardly touches. A time is slower or "
-    "faster where the ratio of medians is beyond the threshold, its 95% bootstrap interval does "
+    "faster where the ratio of lower quartiles is beyond the threshold, its 95% bootstrap interval "
+    "does "
     "not "
-    "hold 1, and Mann-Whitney's p, adjusted for all times that are compared, is below 0.01. The "
+    "hold 1, and Mann-Whitney's p, adjusted for all times that are compared, is below 0.05. The "
     "threshold is what a build differs from itself by between processes of the same rounds, and at "
     "least 2%; beside a file, which cannot be run interleaved, it is wider, and at least 5%.\v"
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
@@ -352,13 +353,14 @@ static void remove_scratch(const Session *session)
 
 int bench_command_regress(int argc, char **argv)
 {
-    Options options = {.paper = "fastlsm", .rounds = 5, .threshold = NAN};
+    Options options = {.paper = "fastlsm", .threshold = NAN};
     BenchMachine here;
     BenchDraft draft = {0};
     SmError error;
     int exit_code = SM_OK;
     bench_options_parse(&argp, argc, argv, &options, &options.common);
     bench_machine_read(argc, argv, options.common.threads, &here);
+    if (!options.rounds) options.rounds = options.revision ? 8 : 5;
     Session *session = sm_alloc(1, sizeof *session);
     session->options = &options;
     snprintf(session->self, sizeof session->self, "/proc/%ld/exe", (long)getpid());

@@ -86,18 +86,20 @@ static BenchTimes times_of(const BenchSide *side, int time)
     return (BenchTimes){side->time[time], side->round, side->count};
 }
 
-/* Processes that ran side by side: what each round has in common is taken out of the test. */
 static void compare_interleaved(const BenchTimes *old, const BenchTimes *new,
                                 const BenchCompareParams *params, BenchComparison *result)
 {
-    double *aligned = sm_alloc((size_t)(old->count + new->count), sizeof *aligned);
+    size_t rounds = (size_t)params->rounds + 1;
+    double *left = sm_alloc(rounds, sizeof *left), *right = sm_alloc(rounds, sizeof *right);
     BenchRatio ratio = bench_ratio_paired(old, new, params->rounds, params->seed);
-    bench_align(old, new, params->rounds, aligned);
-    result->p = bench_mann_whitney(aligned, old->count, aligned + old->count, new->count);
+    int lefts = bench_round_best(old, params->rounds, left);
+    int rights = bench_round_best(new, params->rounds, right);
+    result->p = bench_mann_whitney(left, lefts, right, rights);
     result->self[BENCH_OLD] = bench_self_noise(old, params->rounds, params->seed);
     result->self[BENCH_NEW] = bench_self_noise(new, params->rounds, params->seed);
     result->ratio = ratio.ratio, result->low = ratio.low, result->high = ratio.high;
-    free(aligned);
+    free(left);
+    free(right);
 }
 
 static void compare_apart(const BenchTimes *old, const BenchTimes *new, int comparisons,
@@ -109,7 +111,7 @@ static void compare_apart(const BenchTimes *old, const BenchTimes *new, int comp
     result->p = bench_mann_whitney(left->block[result->time], left->blocks,
                                    right->block[result->time], right->blocks);
     result->self[BENCH_OLD] = NAN;
-    result->self[BENCH_NEW] = bench_spread_noise(new, old->count, BENCH_LEVEL, comparisons);
+    result->self[BENCH_NEW] = bench_spread_noise(new, old->count, BENCH_NOISE_LEVEL, comparisons);
     result->ratio = ratio.ratio, result->low = ratio.low, result->high = ratio.high;
 }
 
@@ -119,7 +121,7 @@ static void measure(BenchComparison *result, int comparisons, const BenchCompare
     BenchTimes times[BENCH_BUILDS];
     for (int b = 0; b < BENCH_BUILDS; b++) {
         times[b] = times_of(&side[b], result->time);
-        result->ms[b] = 1e3 * bench_quantile(times[b].value, times[b].count, 0.5);
+        result->ms[b] = 1e3 * bench_quantile(times[b].value, times[b].count, BENCH_LOW);
         result->outlier[b] = sm_alloc((size_t)times[b].count, sizeof(bool));
         result->outliers[b] = bench_outliers(times[b].value, times[b].count, result->outlier[b]);
     }
@@ -129,14 +131,15 @@ static void measure(BenchComparison *result, int comparisons, const BenchCompare
         compare_apart(&times[BENCH_OLD], &times[BENCH_NEW], comparisons, params, result);
 }
 
-static BenchVerdict judge(BenchComparison *result, const BenchCompareParams *params)
+static BenchVerdict judge(BenchComparison *result, int comparisons,
+                          const BenchCompareParams *params)
 {
     const BenchSide *side = result->contest->side;
     double noise = fmax(result->self[BENCH_OLD], result->self[BENCH_NEW]); /* NaN: the other one */
     double least = params->interleaved ? least_interleaved : least_apart;
     double limit = isnan(params->threshold) ? BENCH_NOISE_LIMIT : params->threshold;
     result->threshold = fmax(noise, isnan(params->threshold) ? least : params->threshold);
-    bool few = params->interleaved ? params->rounds < BENCH_LEAST_ROUNDS
+    bool few = params->interleaved ? bench_least_p(params->rounds) * comparisons >= BENCH_LEVEL
                                    : side[BENCH_NEW].count < BENCH_LEAST_PROCESSES;
     if (few || isnan(noise)) return BENCH_TOO_FEW;
     bool sure = result->adjusted < BENCH_LEVEL;
@@ -176,18 +179,19 @@ static int list_times(const BenchContest *contest, BenchComparison *list)
 int bench_compare(const BenchContests *all, const BenchCompareParams *params,
                   BenchComparison **list)
 {
-    int count = 0;
+    int count = 0, tested = 0;
     BenchComparison *result = sm_alloc((size_t)(all->count * BENCH_TIMES) + 1, sizeof *result);
     for (int i = 0; i < all->count; i++) count += list_times(&all->contest[i], result + count);
     double *p = sm_alloc((size_t)count, sizeof *p);
     for (int i = 0; i < count; i++) {
         if (result[i].verdict == BENCH_SAME) measure(&result[i], count, params);
         p[i] = result[i].p;
+        tested += isfinite(p[i]);
     }
     bench_holm(p, count);
     for (int i = 0; i < count; i++) {
         result[i].adjusted = p[i];
-        if (result[i].verdict == BENCH_SAME) result[i].verdict = judge(&result[i], params);
+        if (result[i].verdict == BENCH_SAME) result[i].verdict = judge(&result[i], tested, params);
     }
     free(p);
     *list = result;

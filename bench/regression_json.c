@@ -35,7 +35,7 @@ static json_t *side_json(const BenchComparison *one, BenchBuild build)
         if (one->outlier[build] && one->outlier[build][i])
             json_array_append_new(outliers, json_integer(i));
     }
-    json_object_set_new(object, "median_ms", number(one->ms[build]));
+    json_object_set_new(object, "low_quartile_ms", number(one->ms[build]));
     json_object_set_new(object, "samples", samples);
     json_object_set_new(object, "rounds", rounds);
     json_object_set_new(object, "outliers", outliers);
@@ -158,7 +158,7 @@ static void add_benchmarks(json_t *list, const BenchComparison *one, BenchBuild 
         const char *name;
         double value;
     } aggregate[] = {{"mean", mean},
-                     {"median", 1e-3 * one->ms[build]},
+                     {"median", bench_quantile(time, side->count, 0.5)},
                      {"stddev", deviation},
                      {"cv", deviation / mean}};
     for (int i = 0; i < side->count + 4; i++) {

@@ -3,6 +3,7 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
+#include <gsl/gsl_sf_gamma.h>
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics.h>
 #include <math.h>
@@ -161,8 +162,8 @@ BenchRatio bench_ratio_paired(const BenchTimes *a, const BenchTimes *b, int roun
     double *right = sm_alloc((size_t)(rounds * most_in_round(b, rounds)), sizeof *right);
     double drawn[BENCH_DRAWS];
     gsl_rng *rng = start_rng(seed);
-    double ratio =
-        bench_quantile(b->value, b->count, 0.5) / bench_quantile(a->value, a->count, 0.5);
+    double ratio = bench_quantile(b->value, b->count, BENCH_LOW) /
+                   bench_quantile(a->value, a->count, BENCH_LOW);
     for (int d = 0; d < BENCH_DRAWS; d++) {
         int lefts = 0, rights = 0;
         for (int i = 0; i < rounds; i++) {
@@ -170,8 +171,9 @@ BenchRatio bench_ratio_paired(const BenchTimes *a, const BenchTimes *b, int roun
             lefts = take_round(a, round, left, lefts);
             rights = take_round(b, round, right, rights);
         }
-        drawn[d] = lefts && rights ? quantile_of(right, rights, 0.5) / quantile_of(left, lefts, 0.5)
-                                   : ratio;
+        drawn[d] = lefts && rights
+                       ? quantile_of(right, rights, BENCH_LOW) / quantile_of(left, lefts, BENCH_LOW)
+                       : ratio;
     }
     gsl_rng_free(rng);
     free(left);
@@ -184,14 +186,15 @@ BenchRatio bench_ratio_apart(const BenchTimes *a, const BenchTimes *b, unsigned 
     size_t lefts = (size_t)a->count, rights = (size_t)b->count;
     double *left = sm_alloc(lefts, sizeof *left), *right = sm_alloc(rights, sizeof *right);
     double drawn[BENCH_DRAWS];
-    double old = bench_quantile(a->value, a->count, 0.5);
-    double new = bench_quantile(b->value, b->count, 0.5);
+    double old = bench_quantile(a->value, a->count, BENCH_LOW);
+    double new = bench_quantile(b->value, b->count, BENCH_LOW);
     gsl_rng *rng = start_rng(seed);
     for (int d = 0; d < BENCH_DRAWS; d++) {
         gsl_ran_sample(rng, left, lefts, (void *)a->value, lefts, sizeof *left);
         gsl_ran_sample(rng, right, rights, (void *)b->value, rights, sizeof *right);
         if (lefts == 1) left[0] *= b->value[gsl_rng_uniform_int(rng, rights)] / new;
-        drawn[d] = quantile_of(right, (int)rights, 0.5) / quantile_of(left, (int)lefts, 0.5);
+        drawn[d] =
+            quantile_of(right, (int)rights, BENCH_LOW) / quantile_of(left, (int)lefts, BENCH_LOW);
     }
     gsl_rng_free(rng);
     free(left);
@@ -229,7 +232,8 @@ double bench_self_noise(const BenchTimes *times, int rounds, unsigned long seed)
             left[i] = pair[i][swap];
             right[i] = pair[i][!swap];
         }
-        drawn[d] = fabs(log(quantile_of(right, pairs, 0.5) / quantile_of(left, pairs, 0.5)));
+        drawn[d] =
+            fabs(log(quantile_of(right, pairs, BENCH_LOW) / quantile_of(left, pairs, BENCH_LOW)));
     }
     gsl_rng_free(rng);
     double noise = pairs > 1 ? expm1(quantile_of(drawn, BENCH_DRAWS, 0.99)) : NAN;
@@ -253,17 +257,19 @@ double bench_spread_noise(const BenchTimes *times, int a_count, double level, in
     return expm1(t * deviation * sqrt(1.0 / n + 1.0 / a_count));
 }
 
-void bench_align(const BenchTimes *a, const BenchTimes *b, int rounds, double *out)
+int bench_round_best(const BenchTimes *times, int rounds, double *best)
 {
-    double *round_values = sm_alloc((size_t)(a->count + b->count), sizeof *round_values);
+    int found = 0;
     for (int r = 0; r < rounds; r++) {
-        int used = take_round(b, r, round_values, take_round(a, r, round_values, 0));
-        if (used == 0) continue;
-        double middle = quantile_of(round_values, used, 0.5);
-        for (int i = 0; i < a->count; i++)
-            if (a->group[i] == r) out[i] = a->value[i] / middle;
-        for (int i = 0; i < b->count; i++)
-            if (b->group[i] == r) out[a->count + i] = b->value[i] / middle;
+        best[found] = INFINITY;
+        for (int i = 0; i < times->count; i++)
+            if (times->group[i] == r) best[found] = fmin(best[found], times->value[i]);
+        found += isfinite(best[found]);
     }
-    free(round_values);
+    return found;
+}
+
+double bench_least_p(int count)
+{
+    return 2 * exp(-gsl_sf_lnchoose(2 * (unsigned)count, (unsigned)count));
 }

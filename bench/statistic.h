@@ -24,6 +24,11 @@ void bench_holm(double *p, int count);
  * fences). Returns how many. Nothing is removed. */
 int bench_outliers(const double *value, int count, bool *flag);
 
+/* Of several processes that were timed, the lower quartile counts: other work on the machine slows
+ * some of them from beginning to end, by up to half, and a median falls now among these, now among
+ * the others. */
+#define BENCH_LOW 0.25
+
 /* One build's times, a value for each process. `group` holds each one's round (0, 1, ...):
  * processes of a round ran next to each other, in this order. */
 typedef struct {
@@ -33,7 +38,7 @@ typedef struct {
 } BenchTimes;
 
 typedef struct {
-    double ratio;     /* median of `b` / median of `a` */
+    double ratio;     /* lower quartile of `b` / that of `a` */
     double low, high; /* 95% bootstrap confidence interval, percentiles of `draws` resamples */
 } BenchRatio;
 
@@ -50,19 +55,22 @@ BenchRatio bench_ratio_apart(const BenchTimes *a, const BenchTimes *b, unsigned 
 
 /* How far the ratio of two sets of `times` can lie from 1 although one build made both: of every
  * round one process goes to the left and one to the right at random, and this is the 99% quantile
- * of |log(median right / median left)| over BENCH_DRAWS such draws, as a ratio less 1 (0.03: 3%).
- * Its sets are half as large as those of a comparison, so it is on the safe side. NaN for less than
- * 2 whole rounds. */
+ * of |log(lower quartile right / lower quartile left)| over BENCH_DRAWS such draws, as a ratio less
+ * 1 (0.03: 3%). Its sets are half as large as those of a comparison, so it is on the safe side. NaN
+ * for less than 2 whole rounds. */
 double bench_self_noise(const BenchTimes *times, int rounds, unsigned long seed);
 
-/* The same where the sets ran apart: half-width of Student's 1 - level/comparisons interval for the
- * median of `a_count` further processes against that of these, from the spread of the log times
+/* The same where the sets ran apart: half-width of Student's 1 - level/comparisons interval for
+ * `a_count` further processes against that of these, from the spread of the log times
  * (scaled median absolute deviation or standard deviation, whichever is larger). NaN for less than
  * 3. */
 double bench_spread_noise(const BenchTimes *times, int a_count, double level, int comparisons);
 
-/* Divides each value by the median of its round (of all builds): what a round has in common goes,
- * and tests see the rest. `out` has room for all of a, then all of b. */
-void bench_align(const BenchTimes *a, const BenchTimes *b, int rounds, double *out);
+/* The least value of each round that has one, in `best`, which has room for `rounds`; returns how
+ * many. Rounds are independent of each other, which processes of a round are not. */
+int bench_round_best(const BenchTimes *times, int rounds, double *best);
+
+/* The least p that bench_mann_whitney() can find in two sets of `count` values without ties. */
+double bench_least_p(int count);
 
 #endif

@@ -87,9 +87,9 @@ static void a_slower_stage_is_caught_and_no_other_blamed(void **state)
     for (int trial = 0; trial < 10; trial++) {
         BenchContests all = {0};
         BenchComparison *list;
-        play(&all, "slow", 8, 1.08, 0.05);
-        play(&all, "same", 8, 1, 0.05);
-        play(&all, "fast", 8, 0.8, 0.05);
+        play(&all, "slow", 8, 1.08, 0.02);
+        play(&all, "same", 8, 1, 0.02);
+        play(&all, "fast", 8, 0.8, 0.02);
         const BenchCompareParams params = {true, 8, NAN, 1};
         int count = bench_compare(&all, &params, &list);
         assert_int_equal(count, 3 * BENCH_TIMES);
@@ -112,9 +112,9 @@ static void a_build_against_itself_raises_no_alarm(void **state)
     for (int trial = 0; trial < 60; trial++) {
         BenchContests all = {0};
         BenchComparison *list;
-        play(&all, "one", 5, 1, trial % 2 ? 0.3 : 0.02);
-        play(&all, "two", 5, 1, trial % 2 ? 0.3 : 0.02);
-        const BenchCompareParams params = {true, 5, NAN, (unsigned long)trial};
+        play(&all, "one", 8, 1, trial % 2 ? 0.3 : 0.02);
+        play(&all, "two", 8, 1, trial % 2 ? 0.3 : 0.02);
+        const BenchCompareParams params = {true, 8, NAN, (unsigned long)trial};
         int count = bench_compare(&all, &params, &list);
         alarms += bench_comparisons_exit(list, count) != SM_OK;
         bench_comparisons_free(list, count);

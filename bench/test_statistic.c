@@ -93,8 +93,8 @@ static void load_of(gsl_rng *rng, double drift, double load[ROUNDS])
     for (int r = 0; r < ROUNDS; r++) load[r] = exp(gsl_ran_gaussian(rng, drift));
 }
 
-/* The interval holds the true ratio nearly as often as it says (a bootstrap of few rounds is a bit
- * narrow), and is the same for the same seed. */
+/* The interval holds the true ratio in most cases (percentiles of a quartile of few rounds are
+ * rather narrow), and is the same for the same seed. */
 static void the_interval_holds_the_ratio(void **state)
 {
     (void)state;
@@ -117,8 +117,8 @@ static void the_interval_holds_the_ratio(void **state)
         apart += ratio.low <= 1.1 && 1.1 <= ratio.high;
     }
     gsl_rng_free(rng);
-    assert_in_range(held, 85, TRIALS);
-    assert_in_range(apart, 85, TRIALS);
+    assert_in_range(held, 75, TRIALS);
+    assert_in_range(apart, 75, TRIALS);
 }
 
 /* Two builds that are one differ by less than the noise that is found, nearly always. */
@@ -135,7 +135,8 @@ static void noise_bounds_what_one_build_differs_by(void **state)
         draw(rng, 1, 0.03, load, &b);
         double noise =
             fmax(bench_self_noise(&a.times, ROUNDS, 3), bench_self_noise(&b.times, ROUNDS, 3));
-        double ratio = bench_quantile(b.value, COUNT, 0.5) / bench_quantile(a.value, COUNT, 0.5);
+        double ratio =
+            bench_quantile(b.value, COUNT, BENCH_LOW) / bench_quantile(a.value, COUNT, BENCH_LOW);
         assert_true(noise > 0.005 && noise < 0.15);
         beyond += fabs(log(ratio)) > log1p(noise);
         double spread = bench_spread_noise(&a.times, 1, 0.01, 1);
@@ -152,19 +153,17 @@ static void noise_bounds_what_one_build_differs_by(void **state)
     assert_true(isnan(bench_spread_noise(&times, 1, 0.01, 1)));
 }
 
-static void aligned_times_lose_what_their_round_has_in_common(void **state)
+static void a_round_counts_with_its_best(void **state)
 {
     (void)state;
-    const double a[] = {1, 1.02, 10, 10.2}, b[] = {1.04, 1.06, 10.4, 10.6};
-    const int group[] = {0, 0, 1, 1};
-    const BenchTimes left = {a, group, 4}, right = {b, group, 4};
-    double out[8];
-    bench_align(&left, &right, 2, out);
-    for (int i = 0; i < 8; i += 4) {
-        near(out[i], out[i + 2], 1e-12);
-        near(out[i + 1], out[i + 3], 1e-12);
-    }
-    near(out[0], 1 / 1.03, 1e-12);
+    const double value[] = {3, 2, 7, 5, 6};
+    const int group[] = {0, 0, 2, 2, 2};
+    const BenchTimes times = {value, group, 5};
+    double best[4];
+    assert_int_equal(bench_round_best(&times, 3, best), 2);
+    assert_true(best[0] == 2 && best[1] == 5);
+    const double low[] = {1, 2, 3, 4, 5}, high[] = {6, 7, 8, 9, 10};
+    near(bench_least_p(5), bench_mann_whitney(low, 5, high, 5), 1e-9);
 }
 
 int main(void)
@@ -176,7 +175,7 @@ int main(void)
         cmocka_unit_test(outliers_are_beyond_tukeys_outer_fences),
         cmocka_unit_test(the_interval_holds_the_ratio),
         cmocka_unit_test(noise_bounds_what_one_build_differs_by),
-        cmocka_unit_test(aligned_times_lose_what_their_round_has_in_common),
+        cmocka_unit_test(a_round_counts_with_its_best),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,11 +5,11 @@
 # The slow program is build/shapebench linked once more: its calls of lsm_damp_f32() go through a
 # function that first waits for 5% of what the call takes. Nothing in the sources knows of it.
 #
-# usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]]     default: infant 5 10
+# usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]]     default: infant 10 10
 # exit codes: 0 as it should be, 1 not caught or a false alarm, 3 no build/shapebench (scripts/run makes it)
 set -u
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd) || exit 1
-scene=${1:-infant} rounds=${2:-5} times=${3:-10}
+scene=${1:-infant} rounds=${2:-10} times=${3:-10}
 revision=${REVISION:-HEAD}
 cd -- "$root" || exit 1
 [ -x build/shapebench ] || { echo "$0: no build/shapebench; scripts/run makes it" >&2 && exit 3; }
