@@ -119,9 +119,10 @@ static void measure(BenchComparison *result, int comparisons, const BenchCompare
 {
     const BenchSide *side = result->contest->side;
     BenchTimes times[BENCH_BUILDS];
+    double low = params->interleaved ? BENCH_LOW : 0.5;
     for (int b = 0; b < BENCH_BUILDS; b++) {
         times[b] = times_of(&side[b], result->time);
-        result->ms[b] = 1e3 * bench_quantile(times[b].value, times[b].count, BENCH_LOW);
+        result->ms[b] = 1e3 * bench_quantile(times[b].value, times[b].count, low);
         result->outlier[b] = sm_alloc((size_t)times[b].count, sizeof(bool));
         result->outliers[b] = bench_outliers(times[b].value, times[b].count, result->outlier[b]);
     }

@@ -1,12 +1,12 @@
 /* comparison.h - is the new build slower than the old one? Verdicts on every time of every scene.
  *
  * A time is called slower or faster where all of this holds: the ratio of the lower quartiles over
- * processes lies beyond the threshold; its 95% bootstrap interval does not hold 1; and p of the
- * Mann-Whitney test over the rounds' faster processes, adjusted by Holm for all times of all
- * scenes, is below 0.05. The threshold is what the same code differs from itself by (statistic.h),
- * and at least 2%, or 5% against a stored file. Beside a file the test is over the repeats, which
- * are not independent: there the threshold decides, which takes one process of the file for a draw
- * from as many as this build's differ by. */
+ * processes (beside a file: medians) lies beyond the threshold; its 95% bootstrap interval does not
+ * hold 1; and p of the Mann-Whitney test over the rounds' faster processes, adjusted by Holm for
+ * all times of all scenes, is below 0.05. The threshold is what the same code differs from itself
+ * by (statistic.h), and at least 2%, or 5% against a stored file. Beside a file the test is over
+ * the repeats, which are not independent: there the threshold decides, which takes one process of
+ * the file for a draw from as many as this build's differ by. */
 #ifndef BENCH_COMPARISON_H
 #define BENCH_COMPARISON_H
 
@@ -44,7 +44,7 @@ enum {
 typedef struct {
     const BenchContest *contest;
     int time;                    /* 0 total, else 1 + stage; 0 alone where nothing is compared */
-    double ms[BENCH_BUILDS];     /* lower quartiles over processes */
+    double ms[BENCH_BUILDS];     /* lower quartiles over processes, or medians */
     double ratio, low, high;     /* new / old, with its interval */
     double p, adjusted;          /* Mann-Whitney; by Holm */
     double self[BENCH_BUILDS];   /* each build against itself, as a share; NaN: not known */

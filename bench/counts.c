@@ -73,8 +73,15 @@ static SmCode count_run(const BenchRounds *rounds, const Tool *tool, const Bench
     word[words] = NULL;
     BenchProcess process = {.word = (char *const *)word, .output = log, .count = tool == &counter};
     BenchProcessEnd end;
-    SmCode code = bench_process_run(&process, &end, error);
-    if (code) return code;
+    SmError why;
+    SmCode code = bench_process_run(&process, &end, &why);
+    if (code)
+        return sm_fail(
+            error, code, "%.200s%s", why.text,
+            tool == &callgrind && !bench_process_caught()
+                ? ", and this machine has no instruction counter for us: install the package "
+                  "valgrind"
+                : "");
     *count = tool == &counter ? end.instructions : read_collected(log);
     if (end.status == SM_OK || end.status == SM_INVALID) return SM_OK;
     *count = NAN;

@@ -35,7 +35,7 @@ static json_t *side_json(const BenchComparison *one, BenchBuild build)
         if (one->outlier[build] && one->outlier[build][i])
             json_array_append_new(outliers, json_integer(i));
     }
-    json_object_set_new(object, "low_quartile_ms", number(one->ms[build]));
+    json_object_set_new(object, "ms", number(one->ms[build]));
     json_object_set_new(object, "samples", samples);
     json_object_set_new(object, "rounds", rounds);
     json_object_set_new(object, "outliers", outliers);

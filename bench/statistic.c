@@ -186,15 +186,14 @@ BenchRatio bench_ratio_apart(const BenchTimes *a, const BenchTimes *b, unsigned 
     size_t lefts = (size_t)a->count, rights = (size_t)b->count;
     double *left = sm_alloc(lefts, sizeof *left), *right = sm_alloc(rights, sizeof *right);
     double drawn[BENCH_DRAWS];
-    double old = bench_quantile(a->value, a->count, BENCH_LOW);
-    double new = bench_quantile(b->value, b->count, BENCH_LOW);
+    double old = bench_quantile(a->value, a->count, 0.5);
+    double new = bench_quantile(b->value, b->count, 0.5);
     gsl_rng *rng = start_rng(seed);
     for (int d = 0; d < BENCH_DRAWS; d++) {
         gsl_ran_sample(rng, left, lefts, (void *)a->value, lefts, sizeof *left);
         gsl_ran_sample(rng, right, rights, (void *)b->value, rights, sizeof *right);
         if (lefts == 1) left[0] *= b->value[gsl_rng_uniform_int(rng, rights)] / new;
-        drawn[d] =
-            quantile_of(right, (int)rights, BENCH_LOW) / quantile_of(left, (int)lefts, BENCH_LOW);
+        drawn[d] = quantile_of(right, (int)rights, 0.5) / quantile_of(left, (int)lefts, 0.5);
     }
     gsl_rng_free(rng);
     free(left);

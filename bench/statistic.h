@@ -38,7 +38,7 @@ typedef struct {
 } BenchTimes;
 
 typedef struct {
-    double ratio;     /* lower quartile of `b` / that of `a` */
+    double ratio;     /* lower quartile of `b` / that of `a`; medians where they ran apart */
     double low, high; /* 95% bootstrap confidence interval, percentiles of `draws` resamples */
 } BenchRatio;
 
@@ -49,8 +49,9 @@ enum { BENCH_DRAWS = 2000 };
 BenchRatio bench_ratio_paired(const BenchTimes *a, const BenchTimes *b, int rounds,
                               unsigned long seed);
 
-/* Builds that did not: processes are resampled. Where `a` is a single process, nothing is known of
- * how processes of it differ, and it is taken to be as much as those of `b` do. */
+/* Builds that did not: processes are resampled, and medians compared, because a single process is
+ * no more often in the lower quarter than elsewhere. Where `a` is a single process, nothing is
+ * known of how processes of it differ, and it is taken to be as much as those of `b` do. */
 BenchRatio bench_ratio_apart(const BenchTimes *a, const BenchTimes *b, unsigned long seed);
 
 /* How far the ratio of two sets of `times` can lie from 1 although one build made both: of every
