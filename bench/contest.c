@@ -31,7 +31,7 @@ BenchContest *bench_contest_of(BenchContests *all, const char *scene)
 /* Room for one process more, and its repeats. */
 static void grow(BenchSide *side, int repeats)
 {
-    size_t processes = (size_t)side->count + 1, blocks = (size_t)(side->blocks + repeats);
+    size_t processes = (size_t)side->count + 1, blocks = (size_t)side->blocks + (size_t)repeats;
     side->round = sm_realloc(side->round, processes, sizeof *side->round);
     for (int t = 0; t < BENCH_TIMES; t++) {
         side->time[t] = sm_realloc(side->time[t], processes, sizeof *side->time[t]);

@@ -78,21 +78,25 @@ void bench_regression_environment(BenchRegression *found)
                                 old->git_commit);
 }
 
-void bench_regression_summary(const BenchRegression *found, size_t size, char *line)
+/* The one to name: the first that is INVALID, else the one that is slowest; NULL: neither. */
+static const BenchComparison *find_worst(const BenchRegression *found)
 {
-    int had[BENCH_VERDICTS] = {0};
-    const BenchComparison *worst = NULL;
+    const BenchComparison *slowest = NULL;
     for (int i = 0; i < found->count; i++) {
         const BenchComparison *one = &found->list[i];
-        had[one->verdict]++;
-        bool graver = worst && worst->verdict == BENCH_INVALID;
-        if (one->verdict == BENCH_INVALID && !graver) worst = one;
-        if (one->verdict == BENCH_SLOWER && !graver && (!worst || one->ratio > worst->ratio))
-            worst = one;
+        if (one->verdict == BENCH_INVALID) return one;
+        if (one->verdict == BENCH_SLOWER && (!slowest || one->ratio > slowest->ratio))
+            slowest = one;
     }
-    int unsure = had[BENCH_TOO_NOISY] + had[BENCH_TOO_FEW];
-    int used;
-    if (had[BENCH_INVALID])
+    return slowest;
+}
+
+void bench_regression_summary(const BenchRegression *found, size_t size, char *line)
+{
+    int had[BENCH_VERDICTS] = {0}, used;
+    for (int i = 0; i < found->count; i++) had[found->list[i].verdict]++;
+    const BenchComparison *worst = find_worst(found);
+    if (worst && worst->verdict == BENCH_INVALID)
         used = snprintf(line, size, "INVALID: %s: %s", worst->contest->scene, worst->reason);
     else if (worst)
         used = snprintf(line, size,
@@ -104,6 +108,7 @@ void bench_regression_summary(const BenchRegression *found, size_t size, char *l
     else
         used = snprintf(line, size, "not slower in %d of %d times",
                         had[BENCH_SAME] + had[BENCH_FASTER], found->count);
+    int unsure = had[BENCH_TOO_NOISY] + had[BENCH_TOO_FEW];
     if (unsure && used > 0 && (size_t)used < size)
         snprintf(line + used, size - (size_t)used,
                  "; %d could not be judged (%d too noisy, %d too few samples): more --rounds, or a "
