@@ -166,8 +166,9 @@ static void fill_grid(const BenchRegression *found, BenchGrid *grid)
 static void write_start(FILE *file, const BenchRegression *found)
 {
     if (found->params->interleaved)
-        fprintf(file, "Against %s, interleaved: %d rounds of two processes of each build and scene",
-                found->baseline, found->params->rounds);
+        fprintf(file,
+                "Against %s, interleaved: %d round%s of two processes of each build and scene",
+                found->baseline, found->params->rounds, found->params->rounds > 1 ? "s" : "");
     else
         fprintf(file, "Against %s, as stored: %d processes of this build and scene",
                 found->baseline, 2 * found->params->rounds);

@@ -184,6 +184,7 @@ static void beside_a_stored_file(void **state)
     store("invalid.h5", &row, &machine);
     expect("shapebench regress --baseline invalid.h5 --rounds 1 " TINY, 1,
            "INVALID: tiny: the baseline: goals are off");
+    bench_row_free(&row);
     row_of_tiny(&row, &machine);
     for (int r = 0; r < row.repeats; r++) {
         row.total[r] /= 1000;
