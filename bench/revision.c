@@ -71,8 +71,9 @@ static SmCode find_commit(Build *build, char commit[64], SmError *error)
 /* Takes a setting over from a line NAME:TYPE=VALUE of a CMake cache. */
 static void take_setting(Build *build, const char *line)
 {
-    static const char *const names[] = {"CMAKE_C_COMPILER", "CMAKE_BUILD_TYPE", "CMAKE_C_FLAGS",
-                                        "CMAKE_C_COMPILER_LAUNCHER", "SHAPEBENCH_NATIVE"};
+    static const char *const names[] = {"CMAKE_C_COMPILER",  "CMAKE_BUILD_TYPE",
+                                        "CMAKE_C_FLAGS",     "CMAKE_C_COMPILER_LAUNCHER",
+                                        "SHAPEBENCH_NATIVE", "SHAPEBENCH_SANITIZE"};
     size_t length = strcspn(line, ":");
     const char *value = strchr(line, '=');
     if (!value) return;

@@ -95,28 +95,12 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     memcpy(h5->message, message, sizeof message);
 }
 
-static void check_kind(BenchH5 *h5)
-{
-    char kind[64] = "";
-    int schema = 0;
-    const BenchField field = {"schema", BENCH_INT, 0, sizeof schema};
-    bench_h5_read_text(h5, h5->file, "kind", sizeof kind, kind);
-    if (h5->failed || strcmp(kind, "shapebench results") != 0) {
-        snprintf(h5->message, sizeof h5->message, "it is HDF5, but not a shapebench results file");
-        h5->failed = true;
-    }
-    bench_h5_read_fields(h5, h5->file, &field, 1, &schema);
-    if (!h5->failed && schema > BENCH_STORE_SCHEMA)
-        bench_h5_fail(h5, "its schema is %d and this program reads %d; use a newer shapebench",
-                      schema, BENCH_STORE_SCHEMA);
-}
-
 static void read_file(BenchH5 *h5, BenchRow **rows, int *count, BenchMachine *machine)
 {
     int stored = 0, fields;
     const BenchField field = {"rows", BENCH_INT, 0, sizeof stored};
     const BenchField *machine_fields = bench_machine_fields(&fields);
-    check_kind(h5);
+    bench_store_check_kind(h5, 1);
     bench_h5_read_fields(h5, h5->file, &field, 1, &stored);
     hid_t group = bench_h5_find_group(h5, h5->file, "machine");
     if (!h5->failed) read_where_there(h5, group, machine_fields, fields, machine);

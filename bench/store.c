@@ -188,8 +188,7 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     }
 }
 
-/* True when the file says that it is ours and of our schema. */
-static void check_kind(BenchH5 *h5)
+void bench_store_check_kind(BenchH5 *h5, int oldest)
 {
     char kind[64] = "";
     int schema = 0;
@@ -200,7 +199,7 @@ static void check_kind(BenchH5 *h5)
         h5->failed = true;
     }
     bench_h5_read_fields(h5, h5->file, &field, 1, &schema);
-    if (!h5->failed && schema < BENCH_STORE_SCHEMA)
+    if (!h5->failed && schema < oldest)
         bench_h5_fail(h5, "its schema is %d and this program reads %d; measure again", schema,
                       BENCH_STORE_SCHEMA);
     if (!h5->failed && schema > BENCH_STORE_SCHEMA)
@@ -210,7 +209,7 @@ static void check_kind(BenchH5 *h5)
 
 static void read_file(BenchH5 *h5, BenchRow **rows, int *count, BenchMachine *machine)
 {
-    check_kind(h5);
+    bench_store_check_kind(h5, BENCH_STORE_SCHEMA);
     int stored = 0, machine_count;
     const BenchField field = {"rows", BENCH_INT, 0, sizeof stored};
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
