@@ -46,7 +46,9 @@ typedef struct {
 
 static const struct argp_option option_list[] = {
     {"baseline", KEY_BASELINE, "FILE.h5", 0,
-     "Compare with times that 'tables -o' stored, on this machine", 1},
+     "Compare with times that 'tables --repeats 201 --block 0.5 -o' (or other samples) stored, on "
+     "this machine",
+     1},
     {"revision", KEY_REVISION, "REV", 0,
      "Compare with this git revision, built in a temporary worktree and run interleaved", 1},
     {"paper", KEY_PAPER, "NAME", 0,
@@ -54,7 +56,7 @@ static const struct argp_option option_list[] = {
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Compare this scene only; may be repeated (default: all of the file, or of the paper)", 1},
     {"rounds", KEY_ROUNDS, "N", 0,
-     "Rounds of two processes of each build and scene (default: 8, or 5 beside a file)", 2},
+     "Rounds of two processes of each build and scene (default: 8, or 3 beside a file)", 2},
     {"repeats", KEY_REPEATS, "N", 0,
      "Samples of every time in a process (default: 201; beside a file as there)", 2},
     {"block", KEY_BLOCK, "MS", 0,
@@ -361,7 +363,7 @@ int bench_command_regress(int argc, char **argv)
     int exit_code = SM_OK;
     bench_options_parse(&argp, argc, argv, &options, &options.common);
     bench_machine_read(argc, argv, options.common.threads, &here);
-    if (!options.rounds) options.rounds = options.revision ? 8 : 5;
+    if (!options.rounds) options.rounds = options.revision ? 8 : 3;
     Session *session = sm_alloc(1, sizeof *session);
     session->options = &options;
     snprintf(session->self, sizeof session->self, "/proc/%ld/exe", (long)getpid());
