@@ -133,7 +133,7 @@ static const char help[] =
     "not "
     "hold 1, and Mann-Whitney's p, adjusted for all times that are compared, is below 0.05. The "
     "threshold is what a build differs from itself by between processes of the same rounds, and at "
-    "least 2%; beside a file, which cannot be run interleaved, it is wider, and at least 5%. "
+    "least 2%; beside a file, which cannot be run interleaved, it is wider, and at least 10%. "
     "Scenes of a file are measured with the engine, precision and threads that it says.\v"
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
     " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine.";

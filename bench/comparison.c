@@ -9,7 +9,7 @@
 #include "command.h"
 #include "statistic.h"
 
-static const double least_interleaved = 0.02, least_apart = 0.05;
+static const double least_interleaved = 0.02, least_apart = 0.10;
 
 const char *bench_verdict_name(BenchVerdict verdict)
 {

@@ -136,7 +136,7 @@ static void beside_a_file_the_threshold_is_wider(void **state)
         add(&all, BENCH_OLD, 0, "x", 1, 1);
         int count = bench_compare(&all, &params, &list);
         assert_int_equal(count, BENCH_TIMES);
-        for (int i = 0; i < count; i++) assert_true(list[i].threshold >= 0.05);
+        for (int i = 0; i < count; i++) assert_true(list[i].threshold >= 0.10);
         if (slow)
             assert_int_equal(verdict_of(list, count, "x", 1 + SM_DAMPING), BENCH_SLOWER);
         else
