@@ -18,6 +18,7 @@ static const BenchCommand commands[] = {
      bench_command_claims},
     {"report", "make a page of result files: tables, figures, where it was measured",
      bench_command_report},
+    {"regress", "compare this build's times with a baseline's: slower?", bench_command_regress},
     {"run", "simulate a scene or a mesh and write its motion", bench_command_run},
     {"sweep", "cost, stiffness and deviation over region width and epsilon; recommend some",
      bench_command_sweep},
