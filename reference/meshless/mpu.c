@@ -7,7 +7,7 @@
 #include "../../lib/vector.h"
 #include "mpu_fit.h"
 
-enum { LEAST_FITTED = 15, SURELY_SPLIT = 8192, MOST_CELLS = 1 << 22, PROBES = 400 };
+enum { LEAST_FITTED = 15, SURELY_SPLIT = 8192, MOST_CELLS = 1 << 22, PROBES = 400, COARSE = 6 };
 static const double ball = 0.75; /* radius in diagonals */
 
 void ref_mpu_free(RefMpu *mpu)
@@ -35,23 +35,27 @@ static bool settle(const RefMpu *mpu, int level, long *near, RefMpuCell *cell)
 {
     const RefCloud *cloud = &mpu->cloud;
     bool last = level >= mpu->levels || mpu->count + 8 > MOST_CELLS;
-    cell->radius = ball * sqrt(3) * cell->edge;
+    double reach = cell->radius = ball * sqrt(3) * cell->edge;
     long count = ref_cloud_ball(cloud, cell->centre, cell->radius, SURELY_SPLIT, near);
     if (count == 0) {
         ref_mpu_distance(cloud, cell);
-        return true;
+        return level >= COARSE || last || ref_mpu_sane(cloud, cell, 0);
     }
     if (count > SURELY_SPLIT && !last) return false;
     if (count > SURELY_SPLIT) count = SURELY_SPLIT;
-    if (count < LEAST_FITTED) {
+    bool few = count < LEAST_FITTED;
+    if (few) {
         double distance[LEAST_FITTED];
         count = ref_cloud_nearest(cloud, cell->centre, LEAST_FITTED, near, distance);
-        cell->radius = fmax(cell->radius, 1.0001 * distance[count - 1]);
-        last = true;
+        reach = fmax(reach, 1.0001 * distance[count - 1]);
+        /* its ball only grazes the surface: a fit would reach far beyond its points */
+        if (!last && cell->edge > cloud->spacing[near[0]]) return false;
     }
-    bool fitted = ref_mpu_fit(cloud, count, near, cell);
-    if (fitted && (last || misfit(cloud, count, near, cell) <= mpu->tolerance)) return true;
-    if (!last) return false;
+    bool good = ref_mpu_fit(cloud, count, near, reach, cell);
+    if (!few && !last) good = good && misfit(cloud, count, near, cell) <= mpu->tolerance;
+    if (few || last || level < COARSE) good = good && ref_mpu_sane(cloud, cell, 0.25);
+    if (good) return true;
+    if (!last && !(few && level >= COARSE)) return false;
     ref_mpu_distance(cloud, cell);
     return true;
 }

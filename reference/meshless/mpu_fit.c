@@ -1,11 +1,10 @@
 #include "mpu_fit.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
 
 #include "../../lib/vector.h"
+#include "normal.h"
 
 enum { HEIGHT = 6, QUADRIC = 10, CORNERS = 9, ASKED = 6 };
 
@@ -33,43 +32,19 @@ double ref_mpu_shape(const RefMpuCell *cell, const double x[3], double gradient[
     return cell->radius * (0.5 * (sm_dot(gradient, s) + linear) + q[9]);
 }
 
-/* Adds weight * (row . a - value)^2 to normal equations. */
-static void add_row(int terms, const double *row, double value, double weight, double *N, double *b)
-{
-    for (int i = 0; i < terms; i++) {
-        b[i] += weight * row[i] * value;
-        for (int j = 0; j < terms; j++) N[terms * i + j] += weight * row[i] * row[j];
-    }
-}
-
-/* Least squares with a little pull to zero, so that few points or such on a line do no harm; more
- * on the first `curved` unknowns, the quadratic ones. */
-static void solve(int terms, int curved, double *N, double *b)
-{
-    double trace = 0;
-    for (int i = 0; i < terms; i++) trace += N[terms * i + i];
-    for (int i = 0; i < terms; i++) N[terms * i + i] += (i < curved ? 1e-4 : 1e-9) * trace;
-    gsl_matrix_view matrix = gsl_matrix_view_array(N, (size_t)terms, (size_t)terms);
-    gsl_vector_view right = gsl_vector_view_array(b, (size_t)terms);
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    if (gsl_linalg_cholesky_decomp1(&matrix.matrix) == GSL_SUCCESS)
-        gsl_linalg_cholesky_svx(&matrix.matrix, &right.vector);
-    else
-        memset(b, 0, (size_t)terms * sizeof *b);
-    gsl_set_error_handler(handler);
-}
-
-static double local(const RefCloud *cloud, long point, const RefMpuCell *cell, double s[3])
+/* A point in the cell's coordinates, and its weight in a ball of `reach`. */
+static double local(const RefCloud *cloud, long point, double reach, const RefMpuCell *cell,
+                    double s[3])
 {
     double slope;
     for (int d = 0; d < 3; d++)
         s[d] = (cloud->points->position[point][d] - cell->centre[d]) / cell->radius;
-    return ref_mpu_weight(sqrt(sm_dot(s, s)) * cell->radius, cell->radius, &slope) + 1e-6;
+    return ref_mpu_weight(sqrt(sm_dot(s, s)) * cell->radius, reach, &slope) + 1e-6;
 }
 
 /* w = a uu + b uv + c vv + d u + e v + f along axes t1, t2 and the mean normal n. */
-static void fit_height(const RefCloud *cloud, long count, const long *point, const double n[3],
-                       RefMpuCell *cell)
+static void fit_height(const RefCloud *cloud, long count, const long *point, double reach,
+                       const double n[3], RefMpuCell *cell)
 {
     double N[HEIGHT * HEIGHT] = {0}, a[HEIGHT] = {0}, t[2][3], axis[3] = {0}, s[3];
     int least = 0;
@@ -80,12 +55,12 @@ static void fit_height(const RefCloud *cloud, long count, const long *point, con
     sm_normalize(t[0]);
     sm_cross(n, t[0], t[1]);
     for (long p = 0; p < count; p++) {
-        double weight = local(cloud, point[p], cell, s);
+        double weight = local(cloud, point[p], reach, cell, s);
         double u = sm_dot(s, t[0]), v = sm_dot(s, t[1]);
         const double row[HEIGHT] = {u * u, u * v, v * v, u, v, 1};
-        add_row(HEIGHT, row, sm_dot(s, n), weight, N, a);
+        ref_normal_add(HEIGHT, row, sm_dot(s, n), weight, N, a);
     }
-    solve(HEIGHT, 3, N, a);
+    ref_normal_solve(HEIGHT, 3, N, a);
     int at = 0;
     for (int i = 0; i < 3; i++)
         for (int j = i; j < 3; j++, at++) {
@@ -123,7 +98,8 @@ static bool ask(const RefCloud *cloud, const double x[3], double *distance)
     return outside == 0 || outside == found;
 }
 
-static bool fit_quadric(const RefCloud *cloud, long count, const long *point, RefMpuCell *cell)
+static bool fit_quadric(const RefCloud *cloud, long count, const long *point, double reach,
+                        RefMpuCell *cell)
 {
     double N[QUADRIC * QUADRIC] = {0}, row[QUADRIC], s[3], sum = 0, distance[CORNERS];
     double corner[CORNERS][3];
@@ -139,34 +115,35 @@ static bool fit_quadric(const RefCloud *cloud, long count, const long *point, Re
         agreed += asked[k];
     }
     if (agreed == 0) return false;
-    for (long p = 0; p < count; p++) sum += local(cloud, point[p], cell, s);
+    for (long p = 0; p < count; p++) sum += local(cloud, point[p], reach, cell, s);
     for (long p = 0; p < count; p++) {
-        double weight = local(cloud, point[p], cell, s) / sum;
+        double weight = local(cloud, point[p], reach, cell, s) / sum;
         terms_at(s, row);
-        add_row(QUADRIC, row, 0, weight, N, cell->shape);
+        ref_normal_add(QUADRIC, row, 0, weight, N, cell->shape);
     }
     for (int k = 0; k < CORNERS; k++) {
         if (!asked[k]) continue;
         terms_at(corner[k], row);
-        add_row(QUADRIC, row, distance[k] / cell->radius, 1.0 / agreed, N, cell->shape);
+        ref_normal_add(QUADRIC, row, distance[k] / cell->radius, 1.0 / agreed, N, cell->shape);
     }
-    solve(QUADRIC, 0, N, cell->shape);
+    ref_normal_solve(QUADRIC, 0, N, cell->shape);
     return true;
 }
 
-bool ref_mpu_fit(const RefCloud *cloud, long count, const long *point, RefMpuCell *cell)
+bool ref_mpu_fit(const RefCloud *cloud, long count, const long *point, double reach,
+                 RefMpuCell *cell)
 {
     double mean[3] = {0}, s[3];
     bool one_sided = true;
     for (long p = 0; p < count; p++) {
-        double weight = local(cloud, point[p], cell, s);
+        double weight = local(cloud, point[p], reach, cell, s);
         for (int d = 0; d < 3; d++) mean[d] += weight * cloud->points->normal[point[p]][d];
     }
     one_sided = sm_normalize(mean);
     for (long p = 0; one_sided && p < count; p++)
         one_sided = sm_dot(mean, cloud->points->normal[point[p]]) > 0;
-    if (!one_sided) return fit_quadric(cloud, count, point, cell);
-    fit_height(cloud, count, point, mean, cell);
+    if (!one_sided) return fit_quadric(cloud, count, point, reach, cell);
+    fit_height(cloud, count, point, reach, mean, cell);
     return true;
 }
 
@@ -181,4 +158,26 @@ void ref_mpu_distance(const RefCloud *cloud, RefMpuCell *cell)
     memset(cell->shape, 0, sizeof cell->shape);
     for (int d = 0; d < 3; d++) cell->shape[6 + d] = inside ? -normal[d] : normal[d];
     cell->shape[9] = (inside ? -far : far) / cell->radius;
+}
+
+/* Whether x is so near to the points that the winding number means nothing there. */
+static bool among_points(const RefCloud *cloud, const double x[3])
+{
+    long near;
+    double distance;
+    ref_cloud_nearest(cloud, x, 1, &near, &distance);
+    return distance < cloud->spacing[near];
+}
+
+bool ref_mpu_sane(const RefCloud *cloud, const RefMpuCell *cell, double doubt)
+{
+    for (int k = 0; k < CORNERS; k++) {
+        double x[3], gradient[3];
+        for (int d = 0; d < 3; d++)
+            x[d] = cell->centre[d] + (k == 8 ? 0 : ((k >> d & 1) - 0.5) * cell->edge);
+        double winds = ref_cloud_winding(cloud, x), value = ref_mpu_shape(cell, x, gradient);
+        if (fabs(winds - 0.5) > doubt && (value < 0) != (winds > 0.5) && !among_points(cloud, x))
+            return false;
+    }
+    return true;
 }
