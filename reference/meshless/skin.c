@@ -198,3 +198,19 @@ void ref_skin_place(const RefSkin *skin, const double (*moved)[3], double (*posi
     for (long b = 0; b < skin->blocks; b++)
         place_block(skin, skin->block + b, moved, skin->near, position);
 }
+
+void ref_skin_push(const RefSkin *skin, long place, const double push[3], double (*nodes)[3])
+{
+    long low = 0, high = skin->blocks;
+    while (high - low > 1) {
+        long middle = (low + high) / 2;
+        *(skin->block[middle].first <= place ? &low : &high) = middle;
+    }
+    const RefSkinBlock *block = skin->block + low;
+    int p = (int)(place - block->first);
+    const float *weight =
+        skin->weight + block->weight + p / LANES * block->nodes * LANES + p % LANES;
+    for (int n = 0; n < block->nodes; n++)
+        for (int d = 0; d < 3; d++)
+            nodes[skin->node[block->node + n]][d] += (double)weight[n * LANES] * push[d];
+}

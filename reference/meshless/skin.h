@@ -34,4 +34,7 @@ void ref_skin_free(RefSkin *skin);
 /* The points' positions, in the skin's order, from the nodes' displacements (motion.h, moved). */
 void ref_skin_place(const RefSkin *skin, const double (*moved)[3], double (*position)[3]);
 
+/* Adds to the nodes what a push at the skin's point `place` does to them. O(log blocks + nodes). */
+void ref_skin_push(const RefSkin *skin, long place, const double push[3], double (*nodes)[3]);
+
 #endif
