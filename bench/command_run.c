@@ -210,8 +210,9 @@ static const char help[] =
     "A mesh alone becomes a solid of about 2,000 particles, w 2, damping 0.1, that drops from half "
     "its height onto a ground plane; with --engine octree a lattice of about 35,000, sampled by "
     "features at epsilon 0.5; with --engine meshless an elastic body 1 m high, held at its lowest "
-    "tenth, for which points with normals do, too: lines of x y z nx ny nz in a file .xyz, .pts or "
-    ".txt. Its units are unknown, so gravity is 9.81 heights of the body "
+    "tenth, for which points with normals do, too: a PLY file, or lines of x y z nx ny nz in a "
+    "file "
+    ".xyz, .pts or .txt. Its units are unknown, so gravity is 9.81 heights of the body "
     "per second squared: a body 70 units tall falls like one of 1 m.\n"
     "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf) for ParaView; it appears "
     "whole or not at all. The deviation printed is the largest distance of a goal position from "
@@ -304,30 +305,35 @@ static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *e
     return SM_OK;
 }
 
-/* Text with a point a line, of which only the meshless engine makes a body. */
-static bool is_points(const Options *options)
-{
-    const char *dot = strrchr(options->scene, '.'), *engine = options->chosen.engine;
-    return engine && !strcmp(engine, "meshless") && dot &&
-           (!strcmp(dot, ".xyz") || !strcmp(dot, ".pts") || !strcmp(dot, ".txt"));
-}
-
 /* The surface of oriented points, from their implicit function. */
-static SmCode load_points(const char *path, SmMesh *mesh, SmError *error)
+static SmCode outline_points(const char *path, RefPoints *points, SmMesh *mesh, SmError *error)
 {
     enum { CELLS = 96 };
-    RefPoints points;
     RefMpu mpu;
     SmError why;
-    SmCode code = ref_points_read(path, &points, error);
-    if (code) return code;
-    code = ref_mpu_build(&points, NULL, &mpu, &why);
+    SmCode code = ref_mpu_build(points, NULL, &mpu, &why);
     if (!code) {
         RefField field = ref_mpu_field(&mpu);
         code = ref_outline(&field, CELLS, mesh, &why);
         ref_mpu_free(&mpu);
     }
     return code ? sm_fail(error, code, "%s: %s", path, why.text) : SM_OK;
+}
+
+/* A mesh, or for the meshless engine points: text, or a PLY file of points alone. */
+static SmCode load_body(const Options *options, SmMesh *mesh, SmError *error)
+{
+    const char *name = options->scene, *engine = options->chosen.engine;
+    const char *dot = strrchr(name, '.');
+    bool ply = dot && !strcmp(dot, ".ply");
+    RefPoints points;
+    if (!engine || strcmp(engine, "meshless") != 0 || !(ply || ref_points_text(name)))
+        return bench_mesh_load(name, mesh, error);
+    SmCode code = SM_INPUT;
+    if (ply) code = bench_mesh_load(name, mesh, NULL);
+    if (!code) return SM_OK;
+    code = ref_points_read(name, &points, error);
+    return code ? code : outline_points(name, &points, mesh, error);
 }
 
 /* A scene's name or file; anything else is a mesh. */
@@ -345,8 +351,7 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
     }
     if (length >= BENCH_PATH)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", name);
-    SmCode code =
-        is_points(options) ? load_points(name, mesh, error) : bench_mesh_load(name, mesh, error);
+    SmCode code = load_body(options, mesh, error);
     if (code) return code;
     bench_scene_drop(mesh, name, scene);
     if (options->chosen.engine && !strcmp(options->chosen.engine, "octree"))

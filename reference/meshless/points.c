@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
+#include "../../lib/import.h"
 #include "../../lib/vector.h"
 
 enum { LINE = 512 };
@@ -135,7 +137,7 @@ static double (*read_lines(FILE *file, const char *path, long *count, SmError *e
     return row;
 }
 
-SmCode ref_points_read(const char *path, RefPoints *points, SmError *error)
+static SmCode read_text(const char *path, RefPoints *points, SmError *error)
 {
     *points = (RefPoints){0};
     FILE *file = fopen(path, "r");
@@ -153,6 +155,28 @@ SmCode ref_points_read(const char *path, RefPoints *points, SmError *error)
     free(row);
     SmCode code = ref_points_create(count, (const double(*)[3])position, (const double(*)[3])normal,
                                     path, points, error);
+    free(position);
+    free(normal);
+    return code;
+}
+
+bool ref_points_text(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot &&
+           (!strcasecmp(dot, ".xyz") || !strcasecmp(dot, ".pts") || !strcasecmp(dot, ".txt"));
+}
+
+SmCode ref_points_read(const char *path, RefPoints *points, SmError *error)
+{
+    long count;
+    double(*position)[3], (*normal)[3];
+    if (ref_points_text(path)) return read_text(path, points, error);
+    *points = (RefPoints){0};
+    SmCode code = sm_import_points(path, NULL, &count, &position, &normal, error);
+    if (code != SM_OK) return code;
+    code = ref_points_create(count, (const double(*)[3])position, (const double(*)[3])normal, path,
+                             points, error);
     free(position);
     free(normal);
     return code;

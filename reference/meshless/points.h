@@ -21,11 +21,15 @@ SmCode ref_points_create(long count, const double (*position)[3], const double (
                          const char *name, RefPoints *points, SmError *error);
 void ref_points_free(RefPoints *points);
 
-/* Reads text: a point a line, x y z nx ny nz and perhaps more, which is not read; empty lines and
- * lines that begin with # are skipped, and so is a first line that holds only a count. Errors
- * (SM_INPUT): those above, with the line's number; a line of fewer numbers; SM_INPUT of a file that
- * cannot be read. */
+/* Reads the points of a PLY file, or of another format that the mesh importer reads; or text: a
+ * point a line, x y z nx ny nz and perhaps more, which is not read; empty lines and lines that
+ * begin with # are skipped, and so is a first line that holds only a count. Text is what ends in
+ * .xyz, .pts or .txt. Errors (SM_INPUT): those above, with the line's number; a line of fewer
+ * numbers; SM_INPUT of a file that cannot be read. */
 SmCode ref_points_read(const char *path, RefPoints *points, SmError *error);
+
+/* Whether ref_points_read() takes the file for text. */
+bool ref_points_text(const char *path);
 
 /* About `count` points spread evenly over a mesh's triangles, with their normals. The mesh has
  * passed sm_mesh_check() and is closed and oriented, or nearly. Deterministic. Errors: those of

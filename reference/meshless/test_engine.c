@@ -109,7 +109,6 @@ static void pushes(void **state)
         type->step(engine, NULL); /* it comes to rest in itself */
     double(*v)[3] = field(engine, SM_VELOCITY);
     for (long p = 0; p < count; p++) mean += v[p][2] / (double)count;
-    print_message("mean %g\n", mean);
     assert_true(fabs(mean - 0.5) < 0.05);
     free(v);
     free(mass);

@@ -225,6 +225,33 @@ static void text_files(void **state)
     free(text);
 }
 
+/* Points of a PLY file through the mesh importer; without normals, and of a mesh, there are none.
+ */
+static void ply_files(void **state)
+{
+    (void)state;
+    static const char head[] = "ply\nformat ascii 1.0\nelement vertex 60\nproperty float x\n"
+                               "property float y\nproperty float z\n";
+    static const char with[] = "property float nx\nproperty float ny\nproperty float nz\n";
+    char text[8000];
+    RefPoints points;
+    SmError error = {0};
+    for (int normals = 0; normals < 2; normals++) {
+        char *end = text + sprintf(text, "%s%send_header\n", head, normals ? with : "");
+        for (int p = 0; p < 60; p++)
+            end += sprintf(end, "%d 0.5 %d%s\n", p, p % 7, normals ? " 0 -1 0" : "");
+        SmCode code = ref_points_read(write_text("points.ply", text), &points, &error);
+        assert_int_equal(code, normals ? SM_OK : SM_INPUT);
+        if (!normals) assert_non_null(strstr(error.text, "no normals"));
+    }
+    assert_int_equal(points.count, 60);
+    assert_true(points.normal[7][1] == -1 && points.position[7][1] == 0.5);
+    ref_points_free(&points);
+    const char *mesh = write_text("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert_int_equal(ref_points_read(mesh, &points, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "no points"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -234,6 +261,7 @@ int main(void)
         cmocka_unit_test(holes_and_sheets),
         cmocka_unit_test(a_mesh),
         cmocka_unit_test(text_files),
+        cmocka_unit_test(ply_files),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
