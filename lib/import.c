@@ -81,9 +81,9 @@ static SmCode run(SmChildBody body, const char *path, const SmImportLimits *limi
     if (limits && limits->megabytes > 0) child.megabytes = limits->megabytes;
     *result = sm_child_run(body, (void *)path, &child);
     if (result->end == SM_CHILD_REPLIED) return SM_OK;
-    code = fail_child(result, &child, path, error);
+    fail_child(result, &child, path, error);
     free(result->reply);
-    return code;
+    return SM_INPUT;
 }
 
 SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh, SmError *error)
