@@ -62,6 +62,13 @@ SmCode bench_mesh_of_scene(const BenchScene *scene, const char *substitute, SmMe
     return code;
 }
 
+/* What stands for a body's height: of one that lies flat, its length. */
+static double height_of(const SmMesh *mesh, double low[3], double high[3])
+{
+    double extent = bounds(mesh, low, high), height = high[1] - low[1];
+    return height > 0.01 * extent ? height : extent;
+}
+
 void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene)
 {
     bench_scene_init(scene);
@@ -73,14 +80,23 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene)
     scene->voxel.fill = SM_SOLID;
     scene->voxel.particles = 2000;
     double low[3], high[3];
-    double extent = bounds(mesh, low, high);
-    double height = high[1] - low[1] > 0.01 * extent ? high[1] - low[1] : extent;
+    double height = height_of(mesh, low, high);
     scene->params.gravity[1] = -9.81 * height;
     scene->params.damping = 0.1;
     scene->obstacle_count = 1;
     scene->obstacle[0] = (SmObstacle){.kind = SM_PLANE, .b = {0, 1, 0}, .friction = 0.2};
     for (int d = 0; d < 3; d++) scene->obstacle[0].a[d] = (low[d] + high[d]) / 2;
     scene->obstacle[0].a[1] = low[1] - height / 2;
+}
+
+void bench_scene_hold(const SmMesh *mesh, BenchScene *scene)
+{
+    double low[3], high[3];
+    scene->metre = height_of(mesh, low, high);
+    snprintf(scene->title, sizeof scene->title, "%s held at its foot", scene->name);
+    scene->obstacle_count = 0;
+    scene->handle_count = 1;
+    scene->handle[0] = (BenchHandle){.select = {.high = {1, 0.1, 1}}};
 }
 
 void bench_scene_sample(BenchScene *scene)

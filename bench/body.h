@@ -35,6 +35,10 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene);
  * octree's own defaults. */
 void bench_scene_sample(BenchScene *scene);
 
+/* Makes it the meshless engine's: held at its lowest tenth, gravity as before, no ground; the mesh
+ * is taken to be 1 m high. */
+void bench_scene_hold(const SmMesh *mesh, BenchScene *scene);
+
 /* Voxelises, and fills in the rest. Takes `mesh` over, also when it fails. Errors as sm_voxelise(),
  * and SM_MEMORY when the scene's engine would not fit (room.h). */
 SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error);

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../reference/meshless/mpu.h"
+#include "../reference/meshless/outline.h"
 #include "command.h"
 #include "draft.h"
 #include "option.h"
@@ -16,6 +18,10 @@ enum {
     KEY_EPSILON,
     KEY_LEVELS,
     KEY_NODES,
+    KEY_YOUNG,
+    KEY_POISSON,
+    KEY_DENSITY,
+    KEY_MODES,
     KEY_PARTICLES,
     KEY_CELL,
     KEY_SHELL,
@@ -38,7 +44,9 @@ typedef struct {
     const char *scene, *output, *w;
     bool shell, no_output, has_gravity;
     int frames, steps, summation, polar, levels, record;
+    int modes;
     long particles, nodes;
+    double young, poisson, density; /* density 0: not given; poisson INFINITY */
     double cell, damping, epsilon, h, strain_limit, gravity[3];
 } Options;
 
@@ -55,7 +63,12 @@ static const struct argp_option option_list[] = {
     {"epsilon", KEY_EPSILON, "E", 0,
      "Octree: regions may be wider by this share (default for a mesh: 0.5)", 1},
     {"levels", KEY_LEVELS, "N", 0, "Octree: a base cell is 2^N finest cells wide, 1 to 12", 1},
-    {"nodes", KEY_NODES, "N", 0, "Octree: wanted simulation nodes", 1},
+    {"nodes", KEY_NODES, "N", 0, "Octree, meshless: wanted simulation nodes (meshless: 1000)", 1},
+    {"young", KEY_YOUNG, "E", 0, "Meshless: Young's modulus, Pa (default: 1e5)", 1},
+    {"poisson", KEY_POISSON, "NU", 0, "Meshless: Poisson's ratio, above -1 to 0.49 (default: 0.3)",
+     1},
+    {"density", KEY_DENSITY, "RHO", 0, "Meshless: kg/m^3 (default: 1000)", 1},
+    {"modes", KEY_MODES, "N", 0, "Meshless: natural modes, 7 to 1000 (default: 64)", 1},
     {"particles", KEY_PARTICLES, "N", 0, "Wanted particle count", 1},
     {"cell", KEY_CELL, "SIZE", 0, "Edge of a cell, in the mesh's units", 1},
     {"shell", KEY_SHELL, 0, 0, "Surface cells only, not the interior", 1},
@@ -134,6 +147,26 @@ static error_t parse_lattice(int key, char *text, struct argp_state *state)
     return parse_engine(key, text, state);
 }
 
+static error_t parse_meshless(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case KEY_YOUNG:
+        options->young = bench_option_real(state, "--young", text, 1e-30, 1e30);
+        return 0;
+    case KEY_POISSON:
+        options->poisson = bench_option_real(state, "--poisson", text, -0.99, 0.49);
+        return 0;
+    case KEY_DENSITY:
+        options->density = bench_option_real(state, "--density", text, 1e-30, 1e30);
+        return 0;
+    case KEY_MODES:
+        options->modes = (int)bench_option_long(state, "--modes", text, 7, 1000);
+        return 0;
+    }
+    return parse_lattice(key, text, state);
+}
+
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
@@ -168,7 +201,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
             bench_usage(state, "--no-output goes with neither --output nor --record");
         return 0;
     }
-    return parse_lattice(key, text, state);
+    return parse_meshless(key, text, state);
 }
 
 static const char help[] =
@@ -176,7 +209,10 @@ static const char help[] =
     "scene file NAME.cfg, or a mesh file.\v"
     "A mesh alone becomes a solid of about 2,000 particles, w 2, damping 0.1, that drops from half "
     "its height onto a ground plane; with --engine octree a lattice of about 35,000, sampled by "
-    "features at epsilon 0.5. Its units are unknown, so gravity is 9.81 heights of the body "
+    "features at epsilon 0.5; with --engine meshless an elastic body 1 m high, held at its lowest "
+    "tenth, for which points with normals do, too: a PLY file, or lines of x y z nx ny nz in a "
+    "file "
+    ".xyz, .pts or .txt. Its units are unknown, so gravity is 9.81 heights of the body "
     "per second squared: a body 70 units tall falls like one of 1 m.\n"
     "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf) for ParaView; it appears "
     "whole or not at all. The deviation printed is the largest distance of a goal position from "
@@ -184,7 +220,7 @@ static const char help[] =
     "INVALID (exit code 1), its trajectory kept.\n" BENCH_EXIT_CODES;
 
 static const struct argp argp = {
-    option_list, parse, "SCENE|FILE.cfg|MESH", help, bench_override_children, NULL, NULL};
+    option_list, parse, "SCENE|FILE.cfg|MESH|POINTS", help, bench_override_children, NULL, NULL};
 
 static void apply_options(const Options *options, BenchScene *scene)
 {
@@ -212,11 +248,37 @@ static bool is_octree(const BenchScene *scene)
     return !strcmp(scene->engine, "octree");
 }
 
+static bool is_meshless(const BenchScene *scene)
+{
+    return !strcmp(scene->engine, "meshless");
+}
+
+static SmCode apply_meshless(const Options *options, BenchScene *scene, SmError *error)
+{
+    RefMeshlessOptions *meshless = &scene->meshless;
+    bool given =
+        options->young > 0 || isfinite(options->poisson) || options->density > 0 || options->modes;
+    if (!is_meshless(scene))
+        return given ? sm_fail(error, SM_USAGE,
+                               "--young, --poisson, --density and --modes are a meshless body's: "
+                               "add --engine meshless")
+                     : SM_OK;
+    if (options->record)
+        return sm_fail(error, SM_USAGE, "--record is of shape matching; leave it out");
+    if (options->young > 0) meshless->material.young = options->young;
+    if (isfinite(options->poisson)) meshless->material.poisson = options->poisson;
+    if (options->density > 0) meshless->material.density = options->density;
+    if (options->modes) meshless->modes = options->modes;
+    if (options->nodes) meshless->nodes = options->nodes;
+    return SM_OK;
+}
+
 /* A lattice's w is a whole number, an octree's is not; the octree's options are its own. */
 static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *error)
 {
     OctOptions *octree = &scene->octree;
-    if (!is_octree(scene) && (options->epsilon >= 0 || options->levels || options->nodes))
+    bool nodes = options->nodes && !is_meshless(scene);
+    if (!is_octree(scene) && (options->epsilon >= 0 || options->levels || nodes))
         return sm_fail(error, SM_USAGE,
                        "--epsilon, --levels and --nodes are the octree's: add --engine octree");
     if (options->epsilon >= 0) octree->epsilon = options->epsilon;
@@ -243,6 +305,37 @@ static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *e
     return SM_OK;
 }
 
+/* The surface of oriented points, from their implicit function. */
+static SmCode outline_points(const char *path, RefPoints *points, SmMesh *mesh, SmError *error)
+{
+    enum { CELLS = 96 };
+    RefMpu mpu;
+    SmError why;
+    SmCode code = ref_mpu_build(points, NULL, &mpu, &why);
+    if (!code) {
+        RefField field = ref_mpu_field(&mpu);
+        code = ref_outline(&field, CELLS, mesh, &why);
+        ref_mpu_free(&mpu);
+    }
+    return code ? sm_fail(error, code, "%s: %s", path, why.text) : SM_OK;
+}
+
+/* A mesh, or for the meshless engine points: text, or a PLY file of points alone. */
+static SmCode load_body(const Options *options, SmMesh *mesh, SmError *error)
+{
+    const char *name = options->scene, *engine = options->chosen.engine;
+    const char *dot = strrchr(name, '.');
+    bool ply = dot && !strcmp(dot, ".ply");
+    RefPoints points;
+    if (!engine || strcmp(engine, "meshless") != 0 || !(ply || ref_points_text(name)))
+        return bench_mesh_load(name, mesh, error);
+    SmCode code = SM_INPUT;
+    if (ply) code = bench_mesh_load(name, mesh, NULL);
+    if (!code) return SM_OK;
+    code = ref_points_read(name, &points, error);
+    return code ? code : outline_points(name, &points, mesh, error);
+}
+
 /* A scene's name or file; anything else is a mesh. */
 static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmError *error)
 {
@@ -258,11 +351,13 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
     }
     if (length >= BENCH_PATH)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", name);
-    SmCode code = bench_mesh_load(name, mesh, error);
+    SmCode code = load_body(options, mesh, error);
     if (code) return code;
     bench_scene_drop(mesh, name, scene);
     if (options->chosen.engine && !strcmp(options->chosen.engine, "octree"))
         bench_scene_sample(scene);
+    if (options->chosen.engine && !strcmp(options->chosen.engine, "meshless"))
+        bench_scene_hold(mesh, scene);
     return SM_OK;
 }
 
@@ -406,6 +501,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     if (code) return code;
     apply_options(options, &scene);
     code = apply_octree(options, &scene, error);
+    if (!code) code = apply_meshless(options, &scene, error);
     if (!code) code = bench_engine_find(scene.engine, options->chosen.precision, &type, error);
     if (code) {
         sm_mesh_free(&mesh);
@@ -430,6 +526,7 @@ int bench_command_run(int argc, char **argv)
                        .polar = -1,
                        .damping = -1,
                        .epsilon = -1,
+                       .poisson = INFINITY,
                        .strain_limit = -1};
     SmError error;
     BenchMachine machine;

@@ -161,6 +161,10 @@ static SmCode measure_scene(const Options *options, int number, BenchProgress *p
     if (chosen->engine) snprintf(scene.engine, sizeof scene.engine, "%.23s", chosen->engine);
     code = bench_engine_find(scene.engine, chosen->precision, &type, error);
     if (code) return code;
+    if (!strcmp(type->name, "meshless"))
+        return sm_fail(
+            error, SM_USAGE,
+            "--engine meshless: tables are of shape matching; 'run' moves meshless bodies");
     if (chosen->layout >= 0) scene.params.layout = (SmLayout)chosen->layout;
     SmMesh mesh;
     BenchBody body;

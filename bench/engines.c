@@ -4,11 +4,12 @@
 #include "../fastlsm/fastlsm.h"
 #include "../octree/engine.h"
 #include "../reference/brute.h"
+#include "../reference/meshless/engine.h"
 #include "runner.h"
 
 static const SmEngineType *const engines[] = {
     &fastlsm_engine_f32, &fastlsm_engine_f64, &octree_engine_f32,
-    &octree_engine_f64,  &ref_brute_engine,
+    &octree_engine_f64,  &ref_brute_engine,   &ref_meshless_engine,
 };
 enum { ENGINES = sizeof engines / sizeof engines[0] };
 

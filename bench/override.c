@@ -5,7 +5,8 @@
 enum { KEY_ENGINE = 0x3000, KEY_PRECISION, KEY_LAYOUT, KEY_MESH };
 
 static const struct argp_option option_list[] = {
-    {"engine", KEY_ENGINE, "NAME", 0, "fastlsm, octree or brute (default: as the scene says)", 1},
+    {"engine", KEY_ENGINE, "NAME", 0,
+     "fastlsm, octree, brute or meshless (default: as the scene says)", 1},
     {"precision", KEY_PRECISION, "P", 0, "single or double (default: the engine's first)", 1},
     {"layout", KEY_LAYOUT, "HOW", 0, BENCH_LAYOUT_HELP " (default: as the scene says)", 1},
     {"mesh", KEY_MESH, "NAME=FILE", 0,

@@ -201,6 +201,16 @@ static void find_particles(BenchRunner *runner)
         for (int d = 0; d < 3; d++) runner->x0[p][d] -= body->pose[0][d][3];
 }
 
+/* The material in mesh units, and the mesh. */
+static RefMeshlessOptions meshless_options(const BenchScene *scene, const BenchBody *body)
+{
+    RefMeshlessOptions options = scene->meshless;
+    options.mesh = &body->mesh;
+    options.material.young /= scene->metre;
+    options.material.density /= scene->metre * scene->metre * scene->metre;
+    return options;
+}
+
 SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                            int threads, BenchRunner *runner, SmError *error)
 {
@@ -220,6 +230,14 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
         return sm_fail(error, SM_INPUT,
                        "%s: 'cuts' need the engine fastlsm or octree, and %s has none", scene->file,
                        type->name);
+    if (scene->obstacle_count > 0 && !strcmp(type->name, "meshless"))
+        return sm_fail(
+            error, SM_INPUT,
+            "%s: meshless bodies do not stop at obstacles: leave 'obstacles' out, or use "
+            "the engine fastlsm or octree",
+            scene->file);
+    RefMeshlessOptions meshless = meshless_options(scene, body);
+    params.meshless = &meshless;
     SmError why;
     SmCode code = type->create(&body->voxels, &params, &runner->engine, &why);
     if (code) {

@@ -211,6 +211,8 @@ void bench_scene_init(BenchScene *scene)
 {
     memset(scene, 0, sizeof *scene);
     strcpy(scene->engine, "fastlsm");
+    scene->meshless.material = (RefMaterial){.young = 1e5, .poisson = 0.3, .density = 1000};
+    scene->metre = 1;
     scene->params.w = 2;
     scene->params.h = 0.01;
     scene->params.damping_every = 1;

@@ -6,6 +6,7 @@
 #define BENCH_SCENE_H
 
 #include "../octree/engine.h"
+#include "../reference/meshless/engine.h"
 
 enum { BENCH_NAME = 64, BENCH_PATH = 1024, BENCH_MAX = 64, BENCH_SETTLE_STEPS = 8 };
 
@@ -76,6 +77,8 @@ typedef struct {
     double density;               /* kg/m^3; 0: unit masses */
     char vertex_mass[BENCH_PATH]; /* text file, a mass for every vertex; nearest vertex wins */
     OctOptions octree;            /* octree only */
+    RefMeshlessOptions meshless;  /* meshless only; in metres, its mesh filled by the runner */
+    double metre;                 /* mesh units that the meshless body's material takes for one */
     long instances;
     double spacing; /* between instances, in widths of the body */
     int steps_per_frame;

@@ -24,7 +24,8 @@ typedef enum { SM_POLAR_FAST, SM_POLAR_JACOBI } SmPolarMethod;
 /* How an engine lays its sums out: lists for any shape, blocks of lanes for solid ones. */
 typedef enum { SM_LAYOUT_AUTO, SM_LAYOUT_LISTS, SM_LAYOUT_BLOCKS } SmLayout;
 
-typedef struct OctOptions OctOptions; /* octree/engine.h */
+typedef struct OctOptions OctOptions;                 /* octree/engine.h */
+typedef struct RefMeshlessOptions RefMeshlessOptions; /* reference/meshless/engine.h */
 
 /* What collides with what, beside the boundary's obstacles (collide.h). All zero: nothing does. */
 typedef struct {
@@ -56,6 +57,7 @@ typedef struct {
     long instances;                      /* bodies that share the lattice; 0 means 1 */
     const double (*instance_pose)[3][4]; /* [instances] rest to initial position, or NULL */
     const OctOptions *octree;            /* of the octree only; NULL: its defaults */
+    const RefMeshlessOptions *meshless;  /* of the meshless engine only, which needs it */
     SmCollideParams collide;
 } SmEngineParams;
 

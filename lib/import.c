@@ -68,20 +68,42 @@ static SmCode fail_child(const SmChildResult *result, const SmChildLimits *limit
                    result->status);
 }
 
-SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh, SmError *error)
+/* Runs the importer on the file; on SM_OK the caller frees result->reply. */
+static SmCode run(SmChildBody body, const char *path, const SmImportLimits *limits,
+                  SmChildResult *result, SmError *error)
 {
     double bytes = 0;
-    *mesh = (SmMesh){0};
     SmCode code = check_file(path, &bytes, error);
     if (code != SM_OK) return code;
     SmChildLimits child = {rint(default_seconds + default_seconds_per_megabyte * bytes / 1e6),
                            default_megabytes};
     if (limits && limits->seconds > 0) child.seconds = limits->seconds;
     if (limits && limits->megabytes > 0) child.megabytes = limits->megabytes;
-    SmChildResult result = sm_child_run(sm_importer, (void *)path, &child);
-    code = result.end == SM_CHILD_REPLIED
-               ? sm_reply_read(result.reply, result.size, path, mesh, error)
-               : fail_child(&result, &child, path, error);
+    *result = sm_child_run(body, (void *)path, &child);
+    if (result->end == SM_CHILD_REPLIED) return SM_OK;
+    fail_child(result, &child, path, error);
+    free(result->reply);
+    return SM_INPUT;
+}
+
+SmCode sm_import(const char *path, const SmImportLimits *limits, SmMesh *mesh, SmError *error)
+{
+    SmChildResult result;
+    *mesh = (SmMesh){0};
+    SmCode code = run(sm_importer, path, limits, &result, error);
+    if (code != SM_OK) return code;
+    code = sm_reply_read(result.reply, result.size, path, mesh, error);
+    free(result.reply);
+    return code;
+}
+
+SmCode sm_import_points(const char *path, const SmImportLimits *limits, long *count,
+                        double (**position)[3], double (**normal)[3], SmError *error)
+{
+    SmChildResult result;
+    SmCode code = run(sm_importer_points, path, limits, &result, error);
+    if (code != SM_OK) return code;
+    code = sm_reply_points(result.reply, result.size, path, count, position, normal, error);
     free(result.reply);
     return code;
 }

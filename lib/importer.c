@@ -210,6 +210,14 @@ static const struct aiScene *read_scene(const char *path, double offset[3])
     return aiImportFileExWithProperties(path, 0, NULL, properties);
 }
 
+/* Why Assimp gave no scene. */
+static int reply_reason(int reply)
+{
+    const char *reason = aiGetErrorString();
+    if (strstr(reason, "bad_alloc")) return SM_CHILD_NO_MEMORY;
+    return reply_text(reply, *reason ? reason : "the importer gives no reason");
+}
+
 int sm_importer(void *path, int reply)
 {
     Import import = {0};
@@ -220,7 +228,76 @@ int sm_importer(void *path, int reply)
         free(import.triangle);
         return status;
     }
-    const char *reason = aiGetErrorString();
-    if (strstr(reason, "bad_alloc")) return SM_CHILD_NO_MEMORY;
-    return reply_text(reply, *reason ? reason : "the importer gives no reason");
+    return reply_reason(reply);
+}
+
+/* Points, and their normals behind them; walks as walk() does. `room` 0: counts only. */
+typedef struct {
+    const struct aiScene *scene;
+    int64_t count, room;
+    double (*position)[3], (*normal)[3];
+    double offset[3];
+    bool bare; /* some have no normals */
+} Points;
+
+static void copy_points(Points *points, const struct aiMesh *mesh, const Transform *transform)
+{
+    for (unsigned v = 0; v < mesh->mNumVertices; v++, points->count++) {
+        const struct aiVector3D *p = &mesh->mVertices[v], *n = &mesh->mNormals[v];
+        for (int a = 0; a < 3 && points->count < points->room; a++) {
+            const double *r = transform->row[a];
+            points->position[points->count][a] = r[0] * (double)p->x + r[1] * (double)p->y +
+                                                 r[2] * (double)p->z + r[3] + points->offset[a];
+            points->normal[points->count][a] =
+                r[0] * (double)n->x + r[1] * (double)n->y + r[2] * (double)n->z;
+        }
+    }
+}
+
+static void walk_points(Points *points, const struct aiNode *node, const Transform *outer)
+{
+    Transform transform = compose(outer, &node->mTransformation);
+    for (unsigned m = 0; m < node->mNumMeshes; m++) {
+        const struct aiMesh *mesh = points->scene->mMeshes[node->mMeshes[m]];
+        SmReplyHeader header = {0};
+        count_mesh(mesh, &header);
+        if (!header.points) continue;
+        points->bare |= !mesh->mNormals;
+        if (mesh->mNormals) copy_points(points, mesh, &transform);
+    }
+    for (unsigned c = 0; c < node->mNumChildren; c++)
+        walk_points(points, node->mChildren[c], &transform);
+}
+
+static int reply_points(int reply, Points *points)
+{
+    static const Transform identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    walk_points(points, points->scene->mRootNode, &identity);
+    if (points->bare) return reply_text(reply, "its points have no normals");
+    if (!points->count) return reply_text(reply, "it holds no points");
+    if (points->count > INT_MAX) return reply_text(reply, "more than 2147483647 points");
+    SmReplyHeader header = {.magic = SM_REPLY_MAGIC, .vertex_count = points->count};
+    size_t size = (size_t)points->count * sizeof *points->position;
+    points->room = points->count;
+    points->count = 0;
+    points->position = malloc(size);
+    points->normal = malloc(size);
+    int status = SM_CHILD_NO_MEMORY;
+    if (points->position && points->normal) {
+        walk_points(points, points->scene->mRootNode, &identity);
+        status = !(sm_child_write(reply, &header, sizeof header) &&
+                   sm_child_write(reply, points->position, size) &&
+                   sm_child_write(reply, points->normal, size));
+    }
+    free(points->position);
+    free(points->normal);
+    return status;
+}
+
+int sm_importer_points(void *path, int reply)
+{
+    Points points = {0};
+    points.scene = read_scene(path, points.offset);
+    if (points.scene && points.scene->mRootNode) return reply_points(reply, &points);
+    return reply_reason(reply);
 }

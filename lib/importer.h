@@ -6,4 +6,7 @@
  * reply.h describes to descriptor `reply`. */
 int sm_importer(void *path, int reply);
 
+/* The same of a file's points: parts without triangles, as sm_reply_points() reads them. */
+int sm_importer_points(void *path, int reply);
+
 #endif

@@ -67,3 +67,23 @@ SmCode sm_reply_read(const unsigned char *reply, size_t size, const char *path, 
     if (code != SM_OK) sm_mesh_free(mesh);
     return code;
 }
+
+SmCode sm_reply_points(const unsigned char *reply, size_t size, const char *path, long *count,
+                       double (**position)[3], double (**normal)[3], SmError *error)
+{
+    SmReplyHeader header = {0};
+    if (size >= sizeof header) memcpy(&header, reply, sizeof header);
+    bool sound = header.magic == SM_REPLY_MAGIC && header.text_length <= SM_REPLY_TEXT &&
+                 header.vertex_count >= 0 && header.vertex_count <= INT_MAX;
+    size_t half = (size_t)header.vertex_count * sizeof(double[3]);
+    if (!sound || size - sizeof header != (header.text_length ? header.text_length : 2 * half))
+        return sm_fail(error, SM_INPUT, "%s: the importer's reply is broken", path);
+    reply += sizeof header;
+    if (header.text_length) return fail_with_text(reply, header.text_length, path, error);
+    *count = header.vertex_count;
+    *position = sm_alloc((size_t)*count, sizeof **position);
+    *normal = sm_alloc((size_t)*count, sizeof **normal);
+    memcpy(*position, reply, half);
+    memcpy(*normal, reply + half, half);
+    return SM_OK;
+}

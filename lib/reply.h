@@ -22,4 +22,10 @@ typedef struct {
 SmCode sm_reply_read(const unsigned char *reply, size_t size, const char *path, SmMesh *mesh,
                      SmError *error);
 
+/* The points that `size` bytes of reply to sm_importer_points() describe: vertex_count positions,
+ * then as many normals. Nothing in the reply is trusted, but numbers may be anything. The caller
+ * frees both arrays. SM_INPUT. */
+SmCode sm_reply_points(const unsigned char *reply, size_t size, const char *path, long *count,
+                       double (**position)[3], double (**normal)[3], SmError *error);
+
 #endif

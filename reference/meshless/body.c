@@ -1,0 +1,92 @@
+#include "body.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEAST_NODES = 8 };
+
+void ref_body_free(RefBody *body)
+{
+    ref_octants_free(&body->octants);
+    ref_nodes_free(&body->nodes);
+    ref_matrices_free(&body->matrices);
+}
+
+static double alpha_of(const RefBodyOptions *options)
+{
+    if (options->alpha > 0) return options->alpha;
+    return options->basis == REF_LINEAR ? 3 : 6;
+}
+
+/* The nodes that octants of that edge give; 0 where they cannot be built. */
+static long nodes_of(const RefField *field, const RefBodyOptions *options, double cell)
+{
+    RefOctants octants;
+    RefNodes nodes;
+    RefOctantOptions rough = {cell, options->coarser, 0, 1, 1};
+    if (ref_octants_build(field, &rough, &octants, NULL) != SM_OK) return 0;
+    ref_nodes_place(field, &octants, alpha_of(options), &nodes);
+    long count = nodes.count;
+    ref_nodes_free(&nodes);
+    ref_octants_free(&octants);
+    return count;
+}
+
+/* Nodes go about as 1 / cell^3. A body's box is taken for a start. */
+static double find_cell(const RefField *field, const RefBodyOptions *options)
+{
+    double volume = 1, best = INFINITY, found = 0;
+    for (int d = 0; d < 3; d++) volume *= field->high[d] - field->low[d];
+    double cell = cbrt(volume / (double)options->nodes);
+    for (int attempt = 0; attempt < 8; attempt++) {
+        long count = nodes_of(field, options, cell);
+        double off = fabs(log((double)(count > 0 ? count : 1) / (double)options->nodes));
+        if (off < best) {
+            best = off;
+            found = cell;
+        }
+        if (off < 0.05) break;
+        cell *= cbrt((double)(count > 0 ? count : 1) / (double)options->nodes);
+    }
+    return found;
+}
+
+static SmCode cover(long count, const double (*shown)[3], RefBody *body, SmError *error)
+{
+    size_t points = (size_t)body->octants.points, all = points + (size_t)count;
+    double(*x)[3] = sm_alloc(all, sizeof *x);
+    for (size_t p = 0; p < points; p++) memcpy(x[p], body->octants.point[p].x, sizeof x[p]);
+    if (count) memcpy(x + points, shown, (size_t)count * sizeof *x);
+    long bad = ref_mls_cover(&body->nodes, body->basis, (long)all, (const double(*)[3])x);
+    free(x);
+    if (bad == 0) return SM_OK;
+    return sm_fail(
+        error, SM_INPUT,
+        "%ld of the body's %zu points are covered by too few of its %ld nodes, or by nodes "
+        "in a plane; give it more nodes",
+        bad, all, body->nodes.count);
+}
+
+SmCode ref_body_build(const RefField *field, const RefBodyOptions *options, long count,
+                      const double (*shown)[3], RefBody *body, SmError *error)
+{
+    *body = (RefBody){.basis = options->basis};
+    RefOctantOptions fine = {.cell = options->cell > 0 ? options->cell : find_cell(field, options),
+                             .coarser = options->coarser,
+                             .split = options->split > 0 ? options->split : 1,
+                             .gauss = options->basis == REF_LINEAR ? 2 : 3,
+                             .clip = 2};
+    SmCode code = ref_octants_build(field, &fine, &body->octants, error);
+    if (code != SM_OK) return code;
+    ref_nodes_place(field, &body->octants, alpha_of(options), &body->nodes);
+    if (body->nodes.count < LEAST_NODES)
+        code = sm_fail(error, SM_INPUT, "the body has only %ld nodes; give it %d or more",
+                       body->nodes.count, LEAST_NODES);
+    if (code == SM_OK) code = cover(count, shown, body, error);
+    if (code == SM_OK)
+        code = ref_matrices_build(&body->octants, &body->nodes, body->basis, &options->material,
+                                  &body->matrices, error);
+    if (code != SM_OK) ref_body_free(body);
+    return code;
+}

@@ -1,0 +1,33 @@
+/* body.h - a meshless elastic body: octants, nodes, covers and matrices of a field (meshless
+ * section 4.1). */
+#ifndef REF_MESHLESS_BODY_H
+#define REF_MESHLESS_BODY_H
+
+#include "matrices.h"
+
+typedef struct {
+    double cell;  /* edge of the finest octants; 0: one that gives about `nodes` nodes */
+    long nodes;   /* wanted where cell is 0 */
+    int coarser;  /* octants.h */
+    double alpha; /* edge of a cover in edges of its octant; 0: 3 (linear), 6 (quadratic) */
+    RefBasis basis;
+    int split; /* octants.h; 0: 1 */
+    RefMaterial material;
+} RefBodyOptions;
+
+typedef struct {
+    RefOctants octants;
+    RefNodes nodes;
+    RefBasis basis;
+    RefMatrices matrices;
+} RefBody;
+
+/* Builds a body. The `count` points `shown` (a surface, handles; may be none) are covered as the
+ * integration points are. The number of nodes is met to about a tenth, or as well as octants can.
+ * The caller frees. Errors: octants.h's, matrices.h's; SM_INPUT, fewer than 8 nodes, or points that
+ * stay uncovered: a body of one layer of octants, or `shown` points far outside. */
+SmCode ref_body_build(const RefField *field, const RefBodyOptions *options, long count,
+                      const double (*shown)[3], RefBody *body, SmError *error);
+void ref_body_free(RefBody *body);
+
+#endif

@@ -1,0 +1,17 @@
+/* clip.h - Gauss points in what of an octant lies inside a body (meshless section 4.1.2). */
+#ifndef REF_CLIP_H
+#define REF_CLIP_H
+
+#include "octants.h"
+
+/* -1: a cube is surely inside, 1: surely outside, 0: it may be cut. */
+int ref_clip_side(const RefField *field, const double centre[3], double edge);
+
+/* Appends an octant's points to the tree's and returns their volume. The octant is split
+ * `options->split` times into parts of gauss^3 points each; a part that is cut is split up to
+ * `options->clip` times more and then has one point a piece: its middle, or, of one that is cut,
+ * the middle of what lies below the field's tangent plane. */
+double ref_clip_cell(const RefField *field, const RefOctantOptions *options, const double centre[3],
+                     double edge, RefOctants *tree);
+
+#endif

@@ -1,0 +1,374 @@
+/* The engine: a field from the mesh's points, a body, its modes, their motion, and its particles.
+ */
+#include "engine.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../lib/handles.h"
+#include "motion.h"
+#include "mpu.h"
+#include "normal.h"
+#include "rotation.h"
+#include "skin.h"
+
+enum { POINTS = 12000, DEFAULT_NODES = 1000, DEFAULT_MODES = 64, BOUND = 4 };
+
+struct SmEngine {
+    long count;        /* particles */
+    double h, mass;    /* of a particle */
+    double pose[3][4]; /* rest to initial position: a translation */
+    RefBody body;
+    RefMotion motion;
+    RefSkin skin;
+    long *place;                         /* [count] where a particle is in the skin */
+    double (*rest)[3], (*x)[3], (*v)[3]; /* [count] particles; x without the pose */
+    double (*carried)[3];                /* [count] in the skin's order */
+    double (*impulse)[3];                /* [nodes] that pushes have left, for the next step */
+    bool pushed;
+    SmHandles handles;
+    int bound_count;
+    long *bound;   /* [bound_count] particles that are bound */
+    int *bound_by; /* [bound_count] the handle of each */
+    double build_seconds;
+};
+
+#define CONST(array) ((const double(*)[3])(array))
+
+static void meshless_destroy(SmEngine *engine)
+{
+    if (!engine) return;
+    ref_motion_free(&engine->motion);
+    ref_skin_free(&engine->skin);
+    ref_body_free(&engine->body);
+    sm_handles_free(&engine->handles);
+    free(engine->place);
+    free(engine->rest);
+    free(engine->x);
+    free(engine->v);
+    free(engine->carried);
+    free(engine->impulse);
+    free(engine->bound);
+    free(engine->bound_by);
+    free(engine);
+}
+
+static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
+{
+    SmEngineParams rest = *params;
+    rest.w = 1;
+    SmCode code = sm_engine_check(voxels, &rest, error);
+    if (code != SM_OK) return code;
+    if (!params->meshless || !params->meshless->mesh)
+        return sm_fail(error, SM_INPUT, "the meshless engine needs the body's mesh");
+    if (params->instances > 1)
+        return sm_fail(error, SM_INPUT, "%ld instances: the meshless engine moves one body",
+                       params->instances);
+    if (params->collide.self || params->collide.bodies)
+        return sm_fail(error, SM_INPUT,
+                       "collide: meshless bodies do not collide; use the engine fastlsm or octree");
+    if (params->strain_limit > 0)
+        return sm_fail(error, SM_INPUT, "strain_limit: meshless bodies do not break; leave it out");
+    if (!(params->damping < 1))
+        return sm_fail(error, SM_INPUT, "damping is 1, which stops a meshless body: give less");
+    return SM_OK;
+}
+
+/* The body of the mesh's points, whose covers reach all particles. */
+static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmError *error)
+{
+    RefPoints points;
+    RefMpu mpu;
+    SmCode code = ref_points_of_mesh(options->mesh, POINTS, &points, error);
+    if (code == SM_OK) code = ref_mpu_build(&points, NULL, &mpu, error);
+    if (code != SM_OK) return code;
+    RefField field = ref_mpu_field(&mpu);
+    RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : DEFAULT_NODES,
+                           .coarser = 1,
+                           .basis = REF_LINEAR,
+                           .material = options->material};
+    code = ref_body_build(&field, &body, engine->count, CONST(engine->rest), &engine->body, error);
+    ref_mpu_free(&mpu);
+    return code;
+}
+
+static SmCode make_motion(const SmEngineParams *params, SmEngine *engine, SmError *error)
+{
+    const RefMeshlessOptions *options = params->meshless;
+    long most = 3 * engine->body.nodes.count / 2;
+    int wanted = options->modes > 0 ? options->modes : (int)fmin(DEFAULT_MODES, (double)most);
+    RefDamping damping = {params->damping / (1 - params->damping) / params->h,
+                          options->stiffness_damping};
+    RefModes modes;
+    SmCode code = ref_modes_find(&engine->body.matrices, NULL, wanted, &modes, error);
+    if (code != SM_OK) return code;
+    ref_motion_create(&engine->body, &modes, &damping, &engine->motion);
+    ref_motion_gravity(&engine->body, params->gravity, &engine->motion);
+    ref_motion_pose(&engine->motion);
+    ref_modes_free(&modes);
+    return SM_OK;
+}
+
+/* Where the particles are, and how fast they came there. */
+static void place_particles(SmEngine *engine, bool moving)
+{
+    ref_skin_place(&engine->skin, CONST(engine->motion.moved), engine->carried);
+    for (long s = 0; s < engine->count; s++) {
+        long p = engine->skin.order[s];
+        for (int d = 0; d < 3; d++) {
+            engine->v[p][d] = moving ? (engine->carried[s][d] - engine->x[p][d]) / engine->h : 0;
+            engine->x[p][d] = engine->carried[s][d];
+        }
+    }
+}
+
+static void make_particles(SmEngine *engine)
+{
+    size_t count = (size_t)engine->count;
+    ref_skin_create(&engine->body, engine->count, CONST(engine->rest), &engine->skin, NULL);
+    engine->place = sm_alloc(count, sizeof *engine->place);
+    engine->x = sm_alloc(count, sizeof *engine->x);
+    engine->v = sm_alloc(count, sizeof *engine->v);
+    engine->carried = sm_alloc(count, sizeof *engine->carried);
+    engine->impulse = sm_alloc((size_t)engine->body.nodes.count, sizeof *engine->impulse);
+    for (long s = 0; s < engine->count; s++) engine->place[engine->skin.order[s]] = s;
+    place_particles(engine, false);
+}
+
+static SmCode meshless_create(const SmVoxels *voxels, const SmEngineParams *params,
+                              SmEngine **result, SmError *error)
+{
+    double start = sm_now();
+    SmCode code = check(voxels, params, error);
+    if (code != SM_OK) return code;
+    SmEngine *engine = sm_alloc(1, sizeof *engine);
+    engine->count = voxels->particle_count;
+    engine->h = params->h;
+    sm_engine_pose(params, 0, engine->pose);
+    size_t count = (size_t)engine->count;
+    int(*at)[3] = sm_alloc(count, sizeof *at);
+    engine->rest = sm_alloc(count, sizeof *engine->rest);
+    sm_voxels_particles(voxels, at);
+    for (size_t p = 0; p < count; p++)
+        for (int d = 0; d < 3; d++)
+            engine->rest[p][d] = voxels->origin[d] + voxels->cell * at[p][d];
+    free(at);
+    code = make_body(params->meshless, engine, error);
+    if (code == SM_OK) code = make_motion(params, engine, error);
+    if (code != SM_OK) {
+        meshless_destroy(engine);
+        return code;
+    }
+    make_particles(engine);
+    engine->mass = params->meshless->material.density * ref_octants_volume(&engine->body.octants) /
+                   (double)engine->count;
+    engine->build_seconds = sm_now() - start;
+    *result = engine;
+    return SM_OK;
+}
+
+/* What pushes left at the nodes becomes speed of the modes, whose masses are 1. */
+static void take_impulses(SmEngine *engine)
+{
+    RefMotion *motion = &engine->motion;
+    for (long n = 0; engine->pushed && n < motion->nodes; n++) {
+        double R[9], f[3];
+        const double *row = motion->row + (size_t)n * 6 * (size_t)motion->modes;
+        const double *F = engine->impulse[n];
+        ref_rotation(motion->rotation[n], R);
+        for (int d = 0; d < 3; d++) f[d] = R[d] * F[0] + R[3 + d] * F[1] + R[6 + d] * F[2];
+        for (int d = 0; d < 3; d++)
+            for (int k = 0; k < motion->modes; k++)
+                motion->speed[k] += f[d] * row[d * motion->modes + k];
+    }
+    if (engine->pushed) memset(engine->impulse, 0, (size_t)motion->nodes * sizeof *engine->impulse);
+    engine->pushed = false;
+}
+
+static void meshless_step(SmEngine *engine, SmLaps *laps)
+{
+    take_impulses(engine);
+    ref_motion_step(&engine->motion, engine->h);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+    place_particles(engine, true);
+    sm_lap(laps, SM_OTHER);
+}
+
+static void meshless_goals(SmEngine *engine)
+{
+    (void)engine;
+}
+
+static void meshless_get(SmEngine *engine, SmField field, double (*values)[3])
+{
+    const double(*from)[3] = field == SM_REST       ? CONST(engine->rest)
+                             : field == SM_VELOCITY ? CONST(engine->v)
+                                                    : CONST(engine->x);
+    for (long p = 0; p < engine->count; p++)
+        for (int d = 0; d < 3; d++)
+            values[p][d] = from[p][d] + (field == SM_VELOCITY ? 0 : engine->pose[d][3]);
+}
+
+/* The modes' amplitudes whose motion is nearest to `u` at the particles, as if it were small. */
+static void project(const SmEngine *engine, const double (*u)[3], double *amplitude)
+{
+    const RefMotion *motion = &engine->motion;
+    size_t modes = (size_t)motion->modes;
+    RefShape shape = ref_shape_create(&engine->body.nodes);
+    double *row = sm_alloc(modes, sizeof *row), *N = sm_alloc(modes * modes, sizeof *N);
+    memset(amplitude, 0, modes * sizeof *amplitude);
+    for (long p = 0; p < engine->count; p++) {
+        if (!ref_mls_at(&engine->body.nodes, engine->body.basis, engine->rest[p], &shape)) continue;
+        for (size_t d = 0; d < 3; d++) {
+            memset(row, 0, modes * sizeof *row);
+            for (int n = 0; n < shape.count; n++) {
+                const double *psi = motion->row + ((size_t)shape.node[n] * 6 + d) * modes;
+                for (size_t k = 0; k < modes; k++) row[k] += shape.value[n] * psi[k];
+            }
+            ref_normal_add((int)modes, row, u[p][d], 1, N, amplitude);
+        }
+    }
+    ref_normal_solve((int)modes, 0, N, amplitude);
+    ref_shape_free(&shape);
+    free(row);
+    free(N);
+}
+
+static void meshless_set(SmEngine *engine, SmField field, const double (*values)[3])
+{
+    double(*u)[3] = sm_alloc((size_t)engine->count, sizeof *u);
+    for (long p = 0; p < engine->count; p++)
+        for (int d = 0; d < 3; d++)
+            u[p][d] = field == SM_VELOCITY ? values[p][d]
+                                           : values[p][d] - engine->pose[d][3] - engine->rest[p][d];
+    project(engine, CONST(u), field == SM_VELOCITY ? engine->motion.speed : engine->motion.z);
+    free(u);
+    if (field == SM_VELOCITY) {
+        memcpy(engine->v, values, (size_t)engine->count * sizeof *values);
+        return;
+    }
+    ref_motion_pose(&engine->motion);
+    ref_skin_place(&engine->skin, CONST(engine->motion.moved), engine->carried);
+    for (long s = 0; s < engine->count; s++)
+        memcpy(engine->x[engine->skin.order[s]], engine->carried[s], sizeof *engine->x);
+}
+
+static void meshless_push(SmEngine *engine, long count, const long *particle,
+                          const double (*impulse)[3])
+{
+    for (long n = 0; n < count; n++) {
+        assert(particle[n] >= 0 && particle[n] < engine->count);
+        ref_skin_push(&engine->skin, engine->place[particle[n]], impulse[n], engine->impulse);
+    }
+    engine->pushed = engine->pushed || count > 0;
+}
+
+/* The particle of a handle that is farthest from those bound so far, or from x where there are
+ * none. */
+static long farthest(const SmEngine *engine, const SmHandle *handle, const double x[3], int bound,
+                     const long *chosen)
+{
+    long best = handle->particle[0];
+    double most = -1;
+    for (long k = 0; k < handle->count; k++) {
+        double least = INFINITY;
+        for (int n = 0; n < (bound ? bound : 1); n++) {
+            const double *to = bound ? engine->rest[chosen[n]] : x;
+            double square = 0;
+            for (int d = 0; d < 3; d++)
+                square += (engine->rest[handle->particle[k]][d] - to[d]) *
+                          (engine->rest[handle->particle[k]][d] - to[d]);
+            least = fmin(least, square);
+        }
+        if (least > most) {
+            most = least;
+            best = handle->particle[k];
+        }
+    }
+    return best;
+}
+
+/* Binds the body at a few of each handle's particles that lie far apart. */
+static void bind(SmEngine *engine)
+{
+    size_t most = (size_t)engine->handles.count * BOUND;
+    ref_motion_release(&engine->motion);
+    free(engine->bound);
+    engine->bound = sm_alloc(most, sizeof *engine->bound);
+    engine->bound_by = sm_realloc(engine->bound_by, most + 1, sizeof *engine->bound_by);
+    engine->bound_count = 0;
+    for (int n = 0; n < engine->handles.count; n++) {
+        const SmHandle *handle = engine->handles.handle + n;
+        double middle[3] = {0};
+        for (long k = 0; k < handle->count; k++)
+            for (int d = 0; d < 3; d++)
+                middle[d] += engine->rest[handle->particle[k]][d] / (double)handle->count;
+        long *chosen = engine->bound + engine->bound_count;
+        for (int k = 0; k < BOUND && k < handle->count; k++) {
+            chosen[k] = farthest(engine, handle, middle, k, chosen);
+            int number = ref_motion_hold(&engine->body, REF_HOLD_POSITION, engine->rest[chosen[k]],
+                                         &engine->motion);
+            assert(number >= 0); /* the body was shown all particles */
+            engine->bound_by[engine->bound_count++] = n;
+        }
+    }
+}
+
+static void meshless_bound(SmEngine *engine, const SmBoundary *boundary)
+{
+    const SmHandle *before = engine->handles.handle;
+    sm_handles_set(&engine->handles, boundary, engine->count);
+    if (engine->handles.handle != before) bind(engine);
+    for (int n = 0; n < engine->bound_count; n++) {
+        const SmHandle *handle = engine->handles.handle + engine->bound_by[n];
+        double from[3], to[3];
+        for (int d = 0; d < 3; d++)
+            from[d] = engine->rest[engine->bound[n]][d] + engine->pose[d][3];
+        sm_pose_apply((const double(*)[4])handle->pose, from, to);
+        for (int d = 0; d < 3; d++) engine->motion.hold[n].target[d] = to[d] - from[d];
+    }
+}
+
+static void meshless_masses(SmEngine *engine, double *mass)
+{
+    for (long p = 0; p < engine->count; p++) mass[p] = engine->mass;
+}
+
+static void meshless_count(SmEngine *engine, SmCounts *counts)
+{
+    size_t modes = (size_t)engine->motion.modes, nodes = (size_t)engine->motion.nodes;
+    *counts = (SmCounts){.particles = engine->count,
+                         .regions = engine->motion.nodes,
+                         .build_seconds = engine->build_seconds};
+    size_t bytes = sizeof *engine + nodes * (6 * modes + 15) * sizeof(double) +
+                   (size_t)engine->count * 5 * sizeof(double[3]);
+    for (long b = 0; b < engine->skin.blocks; b++)
+        bytes += (size_t)engine->skin.block[b].nodes * (size_t)engine->skin.block[b].room *
+                 sizeof(float);
+    counts->bytes = (long)bytes;
+}
+
+static long meshless_region(SmEngine *engine, long p, long *member, long room)
+{
+    (void)engine;
+    if (room > 0) member[0] = p;
+    return 1;
+}
+
+const SmEngineType ref_meshless_engine = {
+    .name = "meshless",
+    .precision = "double",
+    .create = meshless_create,
+    .destroy = meshless_destroy,
+    .step = meshless_step,
+    .goals = meshless_goals,
+    .get = meshless_get,
+    .set = meshless_set,
+    .push = meshless_push,
+    .bound = meshless_bound,
+    .masses = meshless_masses,
+    .count = meshless_count,
+    .region = meshless_region,
+};

@@ -1,0 +1,30 @@
+/* engine.h - meshless elastic bodies (Guo and Qin 2009) behind lib/engine.h.
+ *
+ * Its particles are the lattice's vertices, carried by the body as its surface would be (skin.h),
+ * so that scenes, handles and surfaces are those of lattice engines; w, summation, polar and layout
+ * mean nothing here. A goal is where a particle is, and a particle's region the particle alone.
+ * create() refuses several instances, collisions and a strain limit; obstacles are not looked at.
+ *
+ * A handle binds position and orientation at its particles' middle (meshless section 5.3.3); it
+ * takes six of the modes. Modes that are free elsewhere give way too little: a cantilever of 64
+ * sags 10% less than theory says. A body without handles falls, and should not turn far while it
+ * does: its modes' rotation turns its path, too. */
+#ifndef REF_MESHLESS_ENGINE_H
+#define REF_MESHLESS_ENGINE_H
+
+#include "../../lib/engine.h"
+#include "../../lib/mesh.h"
+#include "matrices.h"
+
+struct RefMeshlessOptions {
+    const SmMesh *mesh;       /* the body's closed surface, read by create() only */
+    long nodes;               /* wanted; 0: 1000 */
+    int modes;                /* 0: 64, or half of what there is */
+    RefMaterial material;     /* mesh units, kg, s */
+    double stiffness_damping; /* b of Rayleigh's a + b lambda, s; a loses the share params->damping
+                               * of the speed in a step */
+};
+
+extern const SmEngineType ref_meshless_engine;
+
+#endif

@@ -1,0 +1,37 @@
+/* matrices.h - mass and stiffness of a meshless body (meshless sections 4.1.2 and 5.1). */
+#ifndef REF_MESHLESS_MATRICES_H
+#define REF_MESHLESS_MATRICES_H
+
+#include "mls.h"
+
+typedef struct {
+    double young;   /* E, Pa where lengths are m; above 0 */
+    double poisson; /* above -1, below 0.5 */
+    double density; /* above 0 */
+} RefMaterial;
+
+/* The lower half of a symmetric matrix, column by column, rows rising. */
+typedef struct {
+    int columns;
+    int *start; /* [columns + 1] */
+    int *row;   /* [start[columns]] */
+    double *value;
+} RefSparse;
+
+typedef struct {
+    RefSparse mass;      /* of the nodes: int rho phi_I phi_J; the same along every axis */
+    RefSparse stiffness; /* of the parameters 3 I + d: int B^T D B */
+} RefMatrices;
+
+/* Linear elasticity, isotropic, over the tree's integration points. Eq. 18 as printed lacks the
+ * half of Green's strain; this is the usual one. O(points * covers^2). The caller frees. Errors:
+ * SM_USAGE, a material out of range; SM_INPUT, a point that too few nodes cover (ref_mls_cover()
+ * mends that), or a stiffness of more than 2^31 entries. */
+SmCode ref_matrices_build(const RefOctants *tree, const RefNodes *nodes, RefBasis basis,
+                          const RefMaterial *material, RefMatrices *matrices, SmError *error);
+void ref_matrices_free(RefMatrices *matrices);
+
+/* y = S x for `width` columns side by side: x and y are [columns][width]. */
+void ref_sparse_apply(const RefSparse *sparse, int width, const double *x, double *y);
+
+#endif

@@ -1,0 +1,37 @@
+/* mls.h - moving least squares shape functions and their derivatives (meshless section 3). */
+#ifndef REF_MLS_H
+#define REF_MLS_H
+
+#include "nodes.h"
+
+typedef enum { REF_LINEAR = 4, REF_QUADRATIC = 10 } RefBasis; /* the number of its terms */
+
+/* The shape functions that are not zero at one point. */
+typedef struct {
+    int count, room;
+    int *node;             /* [count] rising */
+    double *value;         /* [count] phi */
+    double (*gradient)[3]; /* [count] */
+    double *scratch;
+} RefShape;
+
+/* For up to nodes->most functions. The caller frees. */
+RefShape ref_shape_create(const RefNodes *nodes);
+void ref_shape_free(RefShape *shape);
+
+/* phi_I = p^T A^-1 w_I p_I and its derivatives (meshless eqs. 1-13) at x, the basis p taken about x
+ * and scaled by the covers' size. False, and count 0, where too few nodes cover x or they are close
+ * to a plane (a conic, for the quadratic basis): where a pivot of the moment matrix, scaled to ones
+ * on its diagonal, is below REF_LEAST_PIVOT: from there on
+ * reproduction is good to 1e-10. O(nodes covering x). */
+bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefShape *shape);
+
+#define REF_LEAST_PIVOT 1e-3
+
+/* How many of the points the shape functions are not defined at, after the covers of the nodes
+ * nearest to such points were enlarged (up to eight times, each time of more nodes). Changes
+ * reaches and bins. For a body whose surface runs along octants' faces this is the rule: its
+ * corners have one octant, and covers of three edges only touch them. */
+long ref_mls_cover(RefNodes *nodes, RefBasis basis, long count, const double (*x)[3]);
+
+#endif

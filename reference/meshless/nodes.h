@@ -1,0 +1,51 @@
+/* nodes.h - a meshless body's nodes and their covers (meshless section 4.1.1).
+ *
+ * A node's cover is the open cube of half-edge `reach` around it. Bins over the box of all covers
+ * say which nodes may cover a point without a search. */
+#ifndef REF_NODES_H
+#define REF_NODES_H
+
+#include "octants.h"
+
+typedef struct {
+    long count;
+    double (*position)[3]; /* [count] */
+    double *reach;         /* [count] half the cover's edge */
+    double low[3], bin;    /* the bins' corner and edge */
+    int size[3];           /* bins a direction */
+    long *start;           /* [bins + 1] */
+    int *member;           /* [start[bins]] nodes whose covers touch the bin, rising */
+    int most;              /* members of the fullest bin */
+} RefNodes;
+
+/* A node at the centre of every octant that is inside or cut; those whose centre is outside move
+ * onto the surface. `alpha` is the cover's edge in edges of the octant. Three kinds of octant get
+ * no node, because it would say what another one says and make the mass matrix singular: cut ones
+ * of which less than a 64th is inside; those whose centre does not find the surface within an
+ * octant's diagonal; and those that find it within a quarter of a cell of another node (at a
+ * corner many do). The caller frees. */
+void ref_nodes_place(const RefField *field, const RefOctants *tree, double alpha, RefNodes *nodes);
+
+/* Nodes of the caller's, positions and reaches copied. */
+void ref_nodes_create(long count, const double (*position)[3], const double *reach,
+                      RefNodes *nodes);
+void ref_nodes_free(RefNodes *nodes);
+
+/* Makes the bins anew after reaches have changed. */
+void ref_nodes_bin(RefNodes *nodes);
+
+/* The nodes that may cover x: `count` of them. NULL where there are none. O(1). */
+static inline const int *ref_nodes_near(const RefNodes *nodes, const double x[3], int *count)
+{
+    long bin = 0;
+    *count = 0;
+    for (int d = 2; d >= 0; d--) {
+        double place = (x[d] - nodes->low[d]) / nodes->bin;
+        if (!(place >= 0 && place < nodes->size[d])) return NULL;
+        bin = bin * nodes->size[d] + (int)place;
+    }
+    *count = (int)(nodes->start[bin + 1] - nodes->start[bin]);
+    return nodes->member + nodes->start[bin];
+}
+
+#endif

@@ -1,0 +1,216 @@
+#include "skin.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK = 64, LANES = 16 };
+
+typedef struct {
+    const RefBody *body;
+    RefShape shape;
+    int *number;           /* [nodes] in the block's list, or -1 */
+    long nodes, node_room; /* of all blocks */
+    long weights, weight_room;
+    long loose;
+} Builder;
+
+typedef struct {
+    long octant, point;
+} Keyed;
+
+static int by_octant(const void *a, const void *b)
+{
+    const Keyed *p = a, *q = b;
+    if (p->octant != q->octant) return p->octant < q->octant ? -1 : 1;
+    return (p->point > q->point) - (p->point < q->point);
+}
+
+static Keyed *sort_points(const RefBody *body, long count, const double (*x)[3])
+{
+    Keyed *key = sm_alloc((size_t)count, sizeof *key);
+    const RefOctants *octants = &body->octants;
+    for (long p = 0; p < count; p++) {
+        int place[3];
+        for (int d = 0; d < 3; d++) {
+            double at = floor((x[p][d] - octants->origin[d]) / octants->cell);
+            place[d] = (int)fmin(fmax(at, 0), octants->octant[0].size - 1);
+        }
+        key[p] = (Keyed){ref_octants_at(octants, place), p};
+    }
+    qsort(key, (size_t)count, sizeof *key, by_octant);
+    return key;
+}
+
+static int nearest_node(const RefNodes *nodes, const double x[3])
+{
+    int best = 0;
+    double least = INFINITY;
+    for (long n = 0; n < nodes->count; n++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++)
+            square += (nodes->position[n][d] - x[d]) * (nodes->position[n][d] - x[d]);
+        if (square < least) {
+            least = square;
+            best = (int)n;
+        }
+    }
+    return best;
+}
+
+/* Shape functions at x, or the nearest node alone. */
+static void evaluate(Builder *builder, const double x[3])
+{
+    const RefBody *body = builder->body;
+    if (ref_mls_at(&body->nodes, body->basis, x, &builder->shape)) return;
+    builder->loose++;
+    builder->shape.count = 1;
+    builder->shape.node[0] = nearest_node(&body->nodes, x);
+    builder->shape.value[0] = 1;
+}
+
+/* The block's nodes, behind those of the blocks before. */
+static void list_nodes(Builder *builder, RefSkin *skin, RefSkinBlock *block)
+{
+    for (int p = 0; p < block->points; p++) {
+        evaluate(builder, skin->rest[block->first + p]);
+        for (int n = 0; n < builder->shape.count; n++) {
+            int node = builder->shape.node[n];
+            if (builder->number[node] >= 0) continue;
+            if (builder->nodes == builder->node_room) {
+                builder->node_room = 2 * builder->node_room + 256;
+                skin->node = sm_realloc(skin->node, (size_t)builder->node_room, sizeof(int));
+            }
+            builder->number[node] = block->nodes++;
+            skin->node[builder->nodes++] = node;
+        }
+    }
+}
+
+static void fill_weights(Builder *builder, RefSkin *skin, RefSkinBlock *block)
+{
+    long size = (long)block->nodes * block->room, loose = builder->loose;
+    if (builder->weights + size > builder->weight_room) {
+        builder->weight_room = 2 * builder->weight_room + size;
+        skin->weight = sm_realloc(skin->weight, (size_t)builder->weight_room, sizeof(float));
+    }
+    float *weight = skin->weight + builder->weights;
+    memset(weight, 0, (size_t)size * sizeof *weight);
+    builder->weights += size;
+    for (int p = 0; p < block->points; p++) {
+        evaluate(builder, skin->rest[block->first + p]);
+        for (int n = 0; n < builder->shape.count; n++)
+            weight[(p / LANES * block->nodes + builder->number[builder->shape.node[n]]) * LANES +
+                   p % LANES] = (float)builder->shape.value[n];
+    }
+    builder->loose = loose; /* counted while the nodes were listed */
+    for (int n = 0; n < block->nodes; n++) builder->number[skin->node[block->node + n]] = -1;
+}
+
+static void add_block(Builder *builder, RefSkin *skin, long first, int points)
+{
+    RefSkinBlock *block = skin->block + skin->blocks++;
+    *block = (RefSkinBlock){.points = points,
+                            .room = (points + LANES - 1) / LANES * LANES,
+                            .first = first,
+                            .node = builder->nodes,
+                            .weight = builder->weights};
+    list_nodes(builder, skin, block);
+    fill_weights(builder, skin, block);
+}
+
+void ref_skin_create(const RefBody *body, long count, const double (*x)[3], RefSkin *skin,
+                     long *loose)
+{
+    Keyed *key = sort_points(body, count, x);
+    Builder builder = {.body = body, .shape = ref_shape_create(&body->nodes)};
+    builder.number = sm_alloc((size_t)body->nodes.count, sizeof *builder.number);
+    for (long n = 0; n < body->nodes.count; n++) builder.number[n] = -1;
+    *skin = (RefSkin){.count = count};
+    skin->order = sm_alloc((size_t)count, sizeof *skin->order);
+    skin->rest = sm_alloc((size_t)count, sizeof *skin->rest);
+    skin->block = sm_alloc((size_t)count, sizeof *skin->block);
+    for (long p = 0; p < count; p++) {
+        skin->order[p] = key[p].point;
+        memcpy(skin->rest[p], x[key[p].point], sizeof skin->rest[p]);
+    }
+    for (long p = 0, end; p < count; p = end) {
+        for (end = p + 1; end < count && end - p < BLOCK && key[end].octant == key[p].octant;)
+            end++;
+        add_block(&builder, skin, p, (int)(end - p));
+    }
+    if (loose) *loose = builder.loose;
+    int most = 0;
+    for (long b = 0; b < skin->blocks; b++)
+        if (skin->block[b].nodes > most) most = skin->block[b].nodes;
+    skin->near = sm_alloc((size_t)most, sizeof *skin->near);
+    ref_shape_free(&builder.shape);
+    free(builder.number);
+    free(key);
+}
+
+void ref_skin_free(RefSkin *skin)
+{
+    free(skin->order);
+    free(skin->rest);
+    free(skin->block);
+    free(skin->node);
+    free(skin->weight);
+    free(skin->near);
+    *skin = (RefSkin){0};
+}
+
+/* One vector of points; their sums stay in registers. */
+static void place_lanes(const RefSkinBlock *block, const float *weight, const float (*moved)[3],
+                        float sum[3][LANES])
+{
+    float x[LANES] = {0}, y[LANES] = {0}, z[LANES] = {0};
+    for (int n = 0; n < block->nodes; n++)
+        for (int p = 0; p < LANES; p++) {
+            x[p] += weight[n * LANES + p] * moved[n][0];
+            y[p] += weight[n * LANES + p] * moved[n][1];
+            z[p] += weight[n * LANES + p] * moved[n][2];
+        }
+    memcpy(sum[0], x, sizeof x);
+    memcpy(sum[1], y, sizeof y);
+    memcpy(sum[2], z, sizeof z);
+}
+
+static void place_block(const RefSkin *skin, const RefSkinBlock *block, const double (*moved)[3],
+                        float (*near)[3], double (*position)[3])
+{
+    const float *weight = skin->weight + block->weight;
+    for (int n = 0; n < block->nodes; n++)
+        for (int d = 0; d < 3; d++) near[n][d] = (float)moved[skin->node[block->node + n]][d];
+    for (int begin = 0; begin < block->points; begin += LANES, weight += LANES * block->nodes) {
+        float sum[3][LANES];
+        int end = block->points - begin < LANES ? block->points - begin : LANES;
+        place_lanes(block, weight, (const float(*)[3])near, sum);
+        for (int p = 0; p < end; p++)
+            for (int d = 0; d < 3; d++)
+                position[block->first + begin + p][d] =
+                    skin->rest[block->first + begin + p][d] + (double)sum[d][p];
+    }
+}
+
+void ref_skin_place(const RefSkin *skin, const double (*moved)[3], double (*position)[3])
+{
+    for (long b = 0; b < skin->blocks; b++)
+        place_block(skin, skin->block + b, moved, skin->near, position);
+}
+
+void ref_skin_push(const RefSkin *skin, long place, const double push[3], double (*nodes)[3])
+{
+    long low = 0, high = skin->blocks;
+    while (high - low > 1) {
+        long middle = (low + high) / 2;
+        *(skin->block[middle].first <= place ? &low : &high) = middle;
+    }
+    const RefSkinBlock *block = skin->block + low;
+    int p = (int)(place - block->first);
+    const float *weight =
+        skin->weight + block->weight + p / LANES * block->nodes * LANES + p % LANES;
+    for (int n = 0; n < block->nodes; n++)
+        for (int d = 0; d < 3; d++)
+            nodes[skin->node[block->node + n]][d] += (double)weight[n * LANES] * push[d];
+}

@@ -1,0 +1,224 @@
+#include "solver.h"
+
+#include <cholmod.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const bool ref_solver_built = true;
+
+struct RefSolver {
+    cholmod_common common;
+    cholmod_factor *factor;
+    int size, rows, rank;
+    RefRows A;
+    double *response; /* [rows][size] K'^-1 A^T, row by row */
+    double *S;        /* [rows][rows] Cholesky factor of A K'^-1 A^T, rows as in `order` */
+    int *order;       /* [rows]; the first `rank` count */
+};
+
+/* LAPACK's Cholesky factorisation with pivots: PA of a semidefinite matrix, its rank. */
+void dpstrf_(const char *half, const int *size, double *matrix, const int *leading, int *pivot,
+             int *rank, const double *tolerance, double *work, int *info);
+
+static void row_of(const RefRows *rows, long row, double *dense, double factor)
+{
+    for (long e = rows->start[row]; e < rows->start[row + 1]; e++)
+        dense[rows->column[e]] += factor * rows->value[e];
+}
+
+static RefRows copy_rows(const RefRows *rows)
+{
+    RefRows copy = {0};
+    if (!rows || rows->count == 0) return copy;
+    size_t entries = (size_t)rows->start[rows->count];
+    copy.count = rows->count;
+    copy.start = sm_alloc((size_t)rows->count + 1, sizeof *copy.start);
+    copy.column = sm_alloc(entries, sizeof *copy.column);
+    copy.value = sm_alloc(entries, sizeof *copy.value);
+    memcpy(copy.start, rows->start, ((size_t)rows->count + 1) * sizeof *copy.start);
+    memcpy(copy.column, rows->column, entries * sizeof *copy.column);
+    memcpy(copy.value, rows->value, entries * sizeof *copy.value);
+    return copy;
+}
+
+/* K - shift M as CHOLMOD has it, with M spread over the three axes. */
+static cholmod_sparse *shifted(const RefMatrices *matrices, double shift, cholmod_common *common)
+{
+    const RefSparse *K = &matrices->stiffness, *M = &matrices->mass;
+    size_t size = (size_t)K->columns, entries = (size_t)K->start[size];
+    cholmod_sparse *matrix =
+        cholmod_allocate_sparse(size, size, entries, 1, 1, -1, CHOLMOD_REAL, common);
+    if (!matrix) return NULL;
+    memcpy(matrix->p, K->start, (size + 1) * sizeof(int));
+    memcpy(matrix->i, K->row, entries * sizeof(int));
+    memcpy(matrix->x, K->value, entries * sizeof(double));
+    double *value = matrix->x;
+    for (int i = 0; shift != 0 && i < M->columns; i++)
+        for (int a = 0; a < 3; a++) {
+            int at = K->start[3 * i + a];
+            for (int e = M->start[i]; e < M->start[i + 1]; e++) {
+                while (K->row[at] != 3 * M->row[e] + a) at++;
+                value[at] -= shift * M->value[e];
+            }
+        }
+    return matrix;
+}
+
+/* matrix + A^T A times a typical stiffness. */
+static cholmod_sparse *held(cholmod_sparse *matrix, const RefMatrices *matrices, const RefRows *A,
+                            cholmod_common *common)
+{
+    const RefSparse *K = &matrices->stiffness;
+    size_t entries = (size_t)A->start[A->count];
+    double trace = 0, squares = 0, one[2] = {1, 0};
+    for (int c = 0; c < K->columns; c++) trace += K->value[K->start[c]];
+    for (size_t e = 0; e < entries; e++) squares += A->value[e] * A->value[e];
+    double weight[2] = {trace / K->columns / (squares / (double)A->count), 0};
+    cholmod_triplet *triplet = cholmod_allocate_triplet((size_t)K->columns, (size_t)A->count,
+                                                        entries, 0, CHOLMOD_REAL, common);
+    for (long r = 0; r < A->count; r++)
+        for (long e = A->start[r]; e < A->start[r + 1]; e++) {
+            ((int *)triplet->i)[e] = A->column[e];
+            ((int *)triplet->j)[e] = (int)r;
+            ((double *)triplet->x)[e] = A->value[e];
+        }
+    triplet->nnz = entries;
+    cholmod_sparse *At = cholmod_triplet_to_sparse(triplet, entries, common);
+    cholmod_sparse *product = cholmod_aat(At, NULL, 0, 1, common);
+    cholmod_sparse *lower = cholmod_copy(product, -1, 1, common);
+    cholmod_sparse *sum = cholmod_add(matrix, lower, one, weight, 1, 1, common);
+    cholmod_free_triplet(&triplet, common);
+    cholmod_free_sparse(&At, common);
+    cholmod_free_sparse(&product, common);
+    cholmod_free_sparse(&lower, common);
+    cholmod_free_sparse(&matrix, common);
+    return sum;
+}
+
+static void solve_free(RefSolver *solver, const double *b, double *x)
+{
+    size_t size = (size_t)solver->size;
+    cholmod_dense right = {.nrow = size,
+                           .ncol = 1,
+                           .nzmax = size,
+                           .d = size,
+                           .x = (double *)b,
+                           .xtype = CHOLMOD_REAL,
+                           .dtype = CHOLMOD_DOUBLE};
+    cholmod_dense *result = cholmod_solve(CHOLMOD_A, solver->factor, &right, &solver->common);
+    memcpy(x, result->x, size * sizeof *x);
+    cholmod_free_dense(&result, &solver->common);
+}
+
+/* What the rows' multipliers do, and the Schur complement with its independent rows. */
+static void complement(RefSolver *solver)
+{
+    size_t rows = (size_t)solver->rows, size = (size_t)solver->size;
+    double *dense = sm_alloc(size, sizeof *dense), *work = sm_alloc(2 * rows, sizeof *work);
+    double largest = 0;
+    int info = 0;
+    solver->response = sm_alloc(rows * size, sizeof *solver->response);
+    solver->S = sm_alloc(rows * rows, sizeof *solver->S);
+    solver->order = sm_alloc(rows, sizeof *solver->order);
+    for (size_t r = 0; r < rows; r++) {
+        memset(dense, 0, size * sizeof *dense);
+        row_of(&solver->A, (long)r, dense, 1);
+        solve_free(solver, dense, solver->response + r * size);
+    }
+    for (size_t r = 0; r < rows; r++)
+        for (size_t c = 0; c < rows; c++)
+            solver->S[r * rows + c] =
+                ref_rows_apply(&solver->A, (long)c, solver->response + r * size);
+    for (size_t r = 0; r < rows; r++) largest = fmax(largest, solver->S[r * rows + r]);
+    double tolerance = 1e-10 * largest;
+    dpstrf_("L", &solver->rows, solver->S, &solver->rows, solver->order, &solver->rank, &tolerance,
+            work, &info);
+    for (size_t r = 0; r < rows; r++) solver->order[r]--;
+    free(dense);
+    free(work);
+}
+
+SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRows *rows,
+                         RefSolver **result, SmError *error)
+{
+    RefSolver *solver = sm_alloc(1, sizeof *solver);
+    cholmod_common *common = &solver->common;
+    cholmod_start(common);
+    common->print = 0;
+    solver->size = matrices->stiffness.columns;
+    solver->A = copy_rows(rows);
+    solver->rows = (int)solver->A.count;
+    cholmod_sparse *matrix = shifted(matrices, shift, common);
+    if (matrix && solver->rows) matrix = held(matrix, matrices, &solver->A, common);
+    if (matrix) solver->factor = cholmod_analyze(matrix, common);
+    if (solver->factor) cholmod_factorize(matrix, solver->factor, common);
+    cholmod_free_sparse(&matrix, common);
+    int status = common->status;
+    double condition = status == CHOLMOD_OK ? cholmod_rcond(solver->factor, common) : 0;
+    if (condition > 1e-14) {
+        if (solver->rows) complement(solver);
+        *result = solver;
+        return SM_OK;
+    }
+    ref_solver_destroy(solver);
+    if (status == CHOLMOD_OUT_OF_MEMORY)
+        return sm_fail(error, SM_INPUT, "no memory to factorise a stiffness of %d columns",
+                       matrices->stiffness.columns);
+    return sm_fail(error, SM_INPUT,
+                   "the stiffness matrix is singular: the body is not held, or parts of it hang "
+                   "together by too few nodes; hold it, or give it more nodes");
+}
+
+void ref_solver_destroy(RefSolver *solver)
+{
+    if (!solver) return;
+    cholmod_free_factor(&solver->factor, &solver->common);
+    cholmod_finish(&solver->common);
+    ref_rows_free(&solver->A);
+    free(solver->response);
+    free(solver->S);
+    free(solver->order);
+    free(solver);
+}
+
+/* y = S^-1 y over the rows that count, in their order. */
+static void solve_complement(const RefSolver *solver, double *y)
+{
+    size_t rows = (size_t)solver->rows;
+    for (int i = 0; i < solver->rank; i++) { /* the lower half, column by column */
+        for (int k = 0; k < i; k++) y[i] -= solver->S[(size_t)k * rows + (size_t)i] * y[k];
+        y[i] /= solver->S[(size_t)i * rows + (size_t)i];
+    }
+    for (int i = solver->rank - 1; i >= 0; i--) {
+        for (int k = i + 1; k < solver->rank; k++)
+            y[i] -= solver->S[(size_t)i * rows + (size_t)k] * y[k];
+        y[i] /= solver->S[(size_t)i * rows + (size_t)i];
+    }
+}
+
+void ref_solver_solve(RefSolver *solver, const double *b, const double *target, double *x)
+{
+    size_t size = (size_t)solver->size;
+    if (b)
+        solve_free(solver, b, x);
+    else
+        memset(x, 0, size * sizeof *x);
+    if (!solver->rank) return;
+    double *y = sm_alloc((size_t)solver->rank, sizeof *y);
+    for (int i = 0; i < solver->rank; i++) {
+        int row = solver->order[i];
+        y[i] = ref_rows_apply(&solver->A, row, x) - (target ? target[row] : 0);
+    }
+    solve_complement(solver, y);
+    for (int i = 0; i < solver->rank; i++) {
+        const double *response = solver->response + (size_t)solver->order[i] * size;
+        for (size_t n = 0; n < size; n++) x[n] -= y[i] * response[n];
+    }
+    free(y);
+}
+
+int ref_solver_rank(const RefSolver *solver)
+{
+    return solver->rank;
+}

@@ -1,0 +1,222 @@
+/* The meshless engine behind engine.h: rest, falling, pushes, handles, and what it refuses. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../../lib/shape.h"
+#include "engine.h"
+#include "solver.h"
+
+static const SmEngineType *const type = &ref_meshless_engine;
+
+typedef struct {
+    SmMesh mesh;
+    SmVoxels voxels;
+    RefMeshlessOptions options;
+    SmEngineParams params;
+} Scene;
+
+static Scene scene_create(void)
+{
+    Scene scene = {.options = {.nodes = 200,
+                               .modes = 30,
+                               .material = {.young = 1e5, .poisson = 0.3, .density = 1000}},
+                   .params = {.w = 1, .h = 0.01}};
+    SmVoxelParams solid = {.fill = SM_SOLID, .particles = 400};
+    assert_int_equal(sm_shape_mesh("penguin", &scene.mesh, NULL), SM_OK);
+    assert_int_equal(sm_voxelise(&scene.mesh, &solid, "penguin", &scene.voxels, NULL), SM_OK);
+    return scene;
+}
+
+static SmCode create(Scene *scene, SmEngine **engine, SmError *error)
+{
+    scene->options.mesh = &scene->mesh;
+    scene->params.meshless = &scene->options;
+    return type->create(&scene->voxels, &scene->params, engine, error);
+}
+
+static void scene_free(Scene *scene)
+{
+    sm_mesh_free(&scene->mesh);
+    sm_voxels_free(&scene->voxels);
+}
+
+static long particles_of(SmEngine *engine)
+{
+    SmCounts counts;
+    type->count(engine, &counts);
+    return counts.particles;
+}
+
+static double (*field(SmEngine *engine, SmField which))[3]
+{
+    double(*values)[3] = sm_alloc((size_t)particles_of(engine), sizeof *values);
+    type->get(engine, which, values);
+    return values;
+}
+
+/* A body at rest stays; one that falls is where h^2 g n (n + 1) / 2 says, undeformed. */
+static void rest_and_fall(void **state)
+{
+    (void)state;
+    if (!ref_solver_built) skip();
+    for (int falls = 0; falls < 2; falls++) {
+        Scene scene = scene_create();
+        SmEngine *engine;
+        scene.params.gravity[1] = falls ? -9.81 : 0;
+        assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+        long count = particles_of(engine);
+        assert_int_equal(count, scene.voxels.particle_count);
+        for (int step = 0; step < 20; step++) type->step(engine, NULL);
+        double(*rest)[3] = field(engine, SM_REST), (*x)[3] = field(engine, SM_POSITION);
+        double way = falls ? -9.81 * 1e-4 * 20 * 21 / 2 : 0;
+        for (long p = 0; p < count; p++)
+            for (int d = 0; d < 3; d++)
+                assert_true(fabs(x[p][d] - rest[p][d] - (d == 1 ? way : 0)) < 1e-4);
+        free(rest);
+        free(x);
+        type->destroy(engine);
+        scene_free(&scene);
+    }
+}
+
+/* Pushes on all particles of a speed times their mass give the body that speed, once it no longer
+ * swings; and a little turning, for vertices are not spread as the mass is. */
+static void pushes(void **state)
+{
+    (void)state;
+    if (!ref_solver_built) skip();
+    Scene scene = scene_create();
+    SmEngine *engine;
+    scene.options.stiffness_damping = 0.05;
+    assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+    long count = particles_of(engine);
+    double *mass = sm_alloc((size_t)count, sizeof *mass), mean = 0;
+    long *particle = sm_alloc((size_t)count, sizeof *particle);
+    double(*impulse)[3] = sm_alloc((size_t)count, sizeof *impulse);
+    type->masses(engine, mass);
+    for (long p = 0; p < count; p++) {
+        particle[p] = p;
+        impulse[p][2] = 0.5 * mass[p];
+    }
+    type->push(engine, count, particle, (const double(*)[3])impulse);
+    for (int step = 0; step < 200; step++)
+        type->step(engine, NULL); /* it comes to rest in itself */
+    double(*v)[3] = field(engine, SM_VELOCITY);
+    for (long p = 0; p < count; p++) mean += v[p][2] / (double)count;
+    assert_true(fabs(mean - 0.5) < 0.05);
+    free(v);
+    free(mass);
+    free(particle);
+    free(impulse);
+    type->destroy(engine);
+    scene_free(&scene);
+}
+
+/* A handle on everything that turns by 60 degrees takes the body with it. */
+static void handles(void **state)
+{
+    (void)state;
+    if (!ref_solver_built) skip();
+    Scene scene = scene_create();
+    SmEngine *engine;
+    scene.params.damping = 0.1;
+    assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+    long count = particles_of(engine);
+    long *particle = sm_alloc((size_t)count, sizeof *particle);
+    for (long p = 0; p < count; p++) particle[p] = p;
+    SmHandle handle = {.count = count, .particle = particle};
+    SmBoundary boundary = {.handle_count = 1, .handle = &handle};
+    for (int step = 0; step < 400; step++) {
+        double angle = acos(0.5) * fmin(step / 300.0, 1), c = cos(angle), s = sin(angle);
+        const double pose[3][4] = {{c, 0, s, 0.3}, {0, 1, 0, 0}, {-s, 0, c, 0}};
+        memcpy(handle.pose, pose, sizeof pose);
+        type->bound(engine, &boundary);
+        type->step(engine, NULL);
+    }
+    double(*rest)[3] = field(engine, SM_REST), (*x)[3] = field(engine, SM_POSITION), off = 0;
+    for (long p = 0; p < count; p++)
+        for (int d = 0; d < 3; d++) {
+            double wanted = handle.pose[d][3];
+            for (int e = 0; e < 3; e++) wanted += handle.pose[d][e] * rest[p][e];
+            off = fmax(off, fabs(x[p][d] - wanted));
+        }
+    assert_true(off < 0.02); /* of a body 1 high: it still swings a little */
+    free(rest);
+    free(x);
+    free(particle);
+    type->destroy(engine);
+    scene_free(&scene);
+}
+
+/* A small squash comes back as it was set; so does a speed. */
+static void set_and_get(void **state)
+{
+    (void)state;
+    if (!ref_solver_built) skip();
+    Scene scene = scene_create();
+    SmEngine *engine;
+    assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+    double(*rest)[3] = field(engine, SM_REST), (*x)[3] = field(engine, SM_REST);
+    long count = particles_of(engine);
+    for (long p = 0; p < count; p++) x[p][1] = 0.98 * rest[p][1] + 0.1;
+    type->set(engine, SM_POSITION, (const double(*)[3])x);
+    double(*back)[3] = field(engine, SM_POSITION);
+    for (long p = 0; p < count; p++)
+        for (int d = 0; d < 3; d++) assert_true(fabs(back[p][d] - x[p][d]) < 0.02);
+    type->set(engine, SM_VELOCITY, (const double(*)[3])rest);
+    type->get(engine, SM_VELOCITY, back);
+    assert_memory_equal(back, rest, (size_t)count * sizeof *rest);
+    free(rest);
+    free(x);
+    free(back);
+    type->destroy(engine);
+    scene_free(&scene);
+}
+
+static void what_is_refused(void **state)
+{
+    (void)state;
+    if (!ref_solver_built) skip();
+    Scene scene = scene_create();
+    SmEngine *engine;
+    SmError error = {0};
+    SmEngineParams sound = scene.params;
+    scene.params.instances = 2;
+    assert_int_equal(create(&scene, &engine, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "one body"));
+    scene.params = sound;
+    scene.params.collide.self = true;
+    assert_int_equal(create(&scene, &engine, &error), SM_INPUT);
+    scene.params = sound;
+    scene.params.strain_limit = 2;
+    assert_int_equal(create(&scene, &engine, &error), SM_INPUT);
+    scene.params = sound;
+    scene.params.damping = 1;
+    assert_int_equal(create(&scene, &engine, &error), SM_INPUT);
+    scene.params = sound;
+    scene.options.material.young = 0;
+    assert_int_equal(create(&scene, &engine, &error), SM_USAGE);
+    scene.options.material.young = 1;
+    scene.options.modes = 5000;
+    assert_int_equal(create(&scene, &engine, &error), SM_USAGE);
+    scene.options.modes = 0;
+    scene.params.meshless = NULL;
+    assert_int_equal(type->create(&scene.voxels, &scene.params, &engine, &error), SM_INPUT);
+    scene_free(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rest_and_fall),   cmocka_unit_test(pushes),
+        cmocka_unit_test(handles),         cmocka_unit_test(set_and_get),
+        cmocka_unit_test(what_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
