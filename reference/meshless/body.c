@@ -16,7 +16,7 @@ void ref_body_free(RefBody *body)
 static double alpha_of(const RefBodyOptions *options)
 {
     if (options->alpha > 0) return options->alpha;
-    return options->basis == REF_LINEAR ? 3 : 6;
+    return options->basis == REF_MLS_LINEAR ? 3 : 6;
 }
 
 /* The nodes that octants of that edge give; 0 where they cannot be built. */
@@ -75,7 +75,7 @@ SmCode ref_body_build(const RefField *field, const RefBodyOptions *options, long
     RefOctantOptions fine = {.cell = options->cell > 0 ? options->cell : find_cell(field, options),
                              .coarser = options->coarser,
                              .split = options->split > 0 ? options->split : 1,
-                             .gauss = options->basis == REF_LINEAR ? 2 : 3,
+                             .gauss = options->basis == REF_MLS_LINEAR ? 2 : 3,
                              .clip = 2};
     SmCode code = ref_octants_build(field, &fine, &body->octants, error);
     if (code != SM_OK) return code;

@@ -87,7 +87,7 @@ static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmE
     RefField field = ref_mpu_field(&mpu);
     RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : DEFAULT_NODES,
                            .coarser = 1,
-                           .basis = REF_LINEAR,
+                           .basis = REF_MLS_LINEAR,
                            .material = options->material};
     code = ref_body_build(&field, &body, engine->count, CONST(engine->rest), &engine->body, error);
     ref_mpu_free(&mpu);

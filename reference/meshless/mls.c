@@ -12,7 +12,7 @@ RefShape ref_shape_create(const RefNodes *nodes)
                       .node = sm_alloc(room, sizeof(int)),
                       .value = sm_alloc(room, sizeof(double)),
                       .gradient = sm_alloc(room, sizeof(double[3])),
-                      .scratch = sm_alloc(room, sizeof(double[4 + REF_QUADRATIC]))};
+                      .scratch = sm_alloc(room, sizeof(double[4 + REF_MLS_QUADRATIC]))};
 }
 
 void ref_shape_free(RefShape *shape)
@@ -52,7 +52,7 @@ static void gather(const RefNodes *nodes, int terms, const double x[3], RefShape
         w[3] = c[0] * c[1] * slope[2] / reach;
         p[0] = 1;
         for (int d = 0; d < 3; d++) p[1 + d] = (at[d] - x[d]) / scale;
-        if (terms == REF_QUADRATIC)
+        if (terms == REF_MLS_QUADRATIC)
             for (int i = 1, t = 4; i < 4; i++)
                 for (int j = i; j < 4; j++) p[t++] = p[i] * p[j];
         shape->node[count++] = member[n];
@@ -62,7 +62,7 @@ static void gather(const RefNodes *nodes, int terms, const double x[3], RefShape
 }
 
 /* Moment matrices A and A_,k, upper halves; A[0] is A. */
-static inline void moments(int terms, const RefShape *shape, double A[4][REF_QUADRATIC * 10])
+static inline void moments(int terms, const RefShape *shape, double A[4][REF_MLS_QUADRATIC * 10])
 {
     memset(A, 0, 4 * sizeof A[0]);
     for (int n = 0; n < shape->count; n++) {
@@ -110,8 +110,8 @@ static inline void solve(int terms, const double *L, const double *S, double *b)
  * same factors (eq. 9). p_I does not change with x: the origin of the basis is a constant. */
 static inline bool shape_at(int terms, RefShape *shape)
 {
-    double A[4][REF_QUADRATIC * 10], L[REF_QUADRATIC * 10], S[REF_QUADRATIC];
-    double gamma[4][REF_QUADRATIC] = {{1}};
+    double A[4][REF_MLS_QUADRATIC * 10], L[REF_MLS_QUADRATIC * 10], S[REF_MLS_QUADRATIC];
+    double gamma[4][REF_MLS_QUADRATIC] = {{1}};
     moments(terms, shape, A);
     if (!factorise(terms, A[0], L, S)) return false;
     solve(terms, L, S, gamma[0]);
@@ -135,9 +135,9 @@ static inline bool shape_at(int terms, RefShape *shape)
 bool ref_mls_at(const RefNodes *nodes, RefBasis basis, const double x[3], RefShape *shape)
 {
     gather(nodes, basis, x, shape);
-    bool defined =
-        shape->count >= (int)basis &&
-        (basis == REF_LINEAR ? shape_at(REF_LINEAR, shape) : shape_at(REF_QUADRATIC, shape));
+    bool defined = shape->count >= (int)basis &&
+                   (basis == REF_MLS_LINEAR ? shape_at(REF_MLS_LINEAR, shape)
+                                            : shape_at(REF_MLS_QUADRATIC, shape));
     if (!defined) shape->count = 0;
     return defined;
 }

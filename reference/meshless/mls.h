@@ -4,7 +4,7 @@
 
 #include "nodes.h"
 
-typedef enum { REF_LINEAR = 4, REF_QUADRATIC = 10 } RefBasis; /* the number of its terms */
+typedef enum { REF_MLS_LINEAR = 4, REF_MLS_QUADRATIC = 10 } RefBasis; /* the number of its terms */
 
 /* The shape functions that are not zero at one point. */
 typedef struct {

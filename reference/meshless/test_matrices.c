@@ -8,8 +8,9 @@
 
 #include "test_beam.h"
 
-static const RefBodyOptions coarse = {
-    .cell = 0.25, .basis = REF_LINEAR, .material = {.young = 1e7, .poisson = 0.3, .density = 1000}};
+static const RefBodyOptions coarse = {.cell = 0.25,
+                                      .basis = REF_MLS_LINEAR,
+                                      .material = {.young = 1e7, .poisson = 0.3, .density = 1000}};
 
 /* u = A x + b at the nodes, which linear functions reproduce everywhere. */
 static double *linear(const RefBody *body, const double A[9], const double b[3])
@@ -68,7 +69,7 @@ static void energy_of_plain_strains(void **state)
                         strain[9] = {1e-3, 2e-3, 0, 2e-3, -5e-4, 4e-4, 0, 4e-4, 2e-4};
     for (int basis = 0; basis < 2; basis++) {
         RefBodyOptions options = coarse;
-        options.basis = basis ? REF_QUADRATIC : REF_LINEAR;
+        options.basis = basis ? REF_MLS_QUADRATIC : REF_MLS_LINEAR;
         RefBody body = brick_body((double[]){1, 1, 1}, &options);
         double mu = 1e7 / 2.6, lambda = 2 * mu * 0.3 / 0.4, trace = 7e-4, square = 0;
         double *u = linear(&body, strain, none);
@@ -156,11 +157,12 @@ static void patch_test(void **state)
 {
     (void)state;
     if (!ref_solver_built) skip();
-    double once = patch_error(0.25, REF_LINEAR, 1), twice = patch_error(0.25, REF_LINEAR, 2);
-    double thrice = patch_error(0.25, REF_LINEAR, 3);
+    double once = patch_error(0.25, REF_MLS_LINEAR, 1),
+           twice = patch_error(0.25, REF_MLS_LINEAR, 2);
+    double thrice = patch_error(0.25, REF_MLS_LINEAR, 3);
     assert_true(once < 4e-2 && twice < once / 3 && thrice < twice / 3);
-    assert_true(patch_error(0.23, REF_LINEAR, 1) < 1e-2);
-    assert_true(patch_error(0.25, REF_QUADRATIC, 1) < 5e-3);
+    assert_true(patch_error(0.23, REF_MLS_LINEAR, 1) < 1e-2);
+    assert_true(patch_error(0.25, REF_MLS_QUADRATIC, 1) < 5e-3);
 }
 
 static void materials_out_of_range(void **state)
@@ -197,7 +199,7 @@ static void bodies_that_have_no_matrices(void **state)
     ref_nodes_bin(&body.nodes);
     RefMatrices matrices;
     assert_int_equal(
-        ref_matrices_build(&body.octants, &body.nodes, REF_LINEAR, &steel, &matrices, &error),
+        ref_matrices_build(&body.octants, &body.nodes, REF_MLS_LINEAR, &steel, &matrices, &error),
         SM_INPUT);
     assert_non_null(strstr(error.text, "holds none of the body"));
     ref_body_free(&body);

@@ -87,14 +87,14 @@ static void reproduces(RefBasis basis, double alpha, double margin)
 static void linear_fields_to_1e_10(void **state)
 {
     (void)state;
-    reproduces(REF_LINEAR, 3, 0);
-    reproduces(REF_LINEAR, 5, 0);
+    reproduces(REF_MLS_LINEAR, 3, 0);
+    reproduces(REF_MLS_LINEAR, 5, 0);
 }
 
 static void quadratic_fields_to_1e_10(void **state)
 {
     (void)state;
-    reproduces(REF_QUADRATIC, 6, 0);
+    reproduces(REF_MLS_QUADRATIC, 6, 0);
 }
 
 /* Gradients are the slopes of the values, also of single functions. */
@@ -104,11 +104,11 @@ static void gradients_are_slopes(void **state)
     RefNodes nodes = shaken(5, 0.2, 6);
     RefShape at = ref_shape_create(&nodes), ahead = ref_shape_create(&nodes);
     double x[3] = {0.43, 0.52, 0.47}, step = 1e-6;
-    assert_true(ref_mls_at(&nodes, REF_QUADRATIC, x, &at));
+    assert_true(ref_mls_at(&nodes, REF_MLS_QUADRATIC, x, &at));
     for (int d = 0; d < 3; d++) {
         double y[3] = {x[0], x[1], x[2]};
         y[d] += step;
-        assert_true(ref_mls_at(&nodes, REF_QUADRATIC, y, &ahead));
+        assert_true(ref_mls_at(&nodes, REF_MLS_QUADRATIC, y, &ahead));
         assert_int_equal(at.count, ahead.count);
         for (int n = 0; n < at.count; n++) {
             double slope = (ahead.value[n] - at.value[n]) / step;
@@ -130,8 +130,8 @@ static void too_few_covers(void **state)
         RefNodes nodes;
         ref_nodes_create(count, x, reach, &nodes);
         RefShape shape = ref_shape_create(&nodes);
-        assert_int_equal(ref_mls_at(&nodes, REF_LINEAR, middle, &shape), count == 5);
-        assert_false(ref_mls_at(&nodes, REF_LINEAR, far, &shape));
+        assert_int_equal(ref_mls_at(&nodes, REF_MLS_LINEAR, middle, &shape), count == 5);
+        assert_false(ref_mls_at(&nodes, REF_MLS_LINEAR, far, &shape));
         assert_int_equal(shape.count, 0);
         ref_shape_free(&shape);
         ref_nodes_free(&nodes);
@@ -145,12 +145,12 @@ static void covers_grow_where_that_helps(void **state)
     double corner[3] = {0, 0, 0};
     RefNodes nodes = shaken(4, 0, 3);
     RefShape shape = ref_shape_create(&nodes);
-    assert_false(ref_mls_at(&nodes, REF_LINEAR, corner, &shape));
-    assert_int_equal(ref_mls_cover(&nodes, REF_LINEAR, 1, CONST(&corner)), 0);
-    check_reproduction(&nodes, REF_LINEAR, corner);
+    assert_false(ref_mls_at(&nodes, REF_MLS_LINEAR, corner, &shape));
+    assert_int_equal(ref_mls_cover(&nodes, REF_MLS_LINEAR, 1, CONST(&corner)), 0);
+    check_reproduction(&nodes, REF_MLS_LINEAR, corner);
     for (long n = 0; n < nodes.count; n++) nodes.position[n][2] = 0.5;
     ref_nodes_bin(&nodes);
-    assert_int_equal(ref_mls_cover(&nodes, REF_LINEAR, 1, CONST(&corner)), 1);
+    assert_int_equal(ref_mls_cover(&nodes, REF_MLS_LINEAR, 1, CONST(&corner)), 1);
     ref_shape_free(&shape);
     ref_nodes_free(&nodes);
 }
@@ -169,7 +169,7 @@ static void rows_of_a_turn(void **state)
             int e = (d + 1) % 3, f = (d + 2) % 3;
             u[3 * n + d] = turn[e] * nodes.position[n][f] - turn[f] * nodes.position[n][e];
         }
-    assert_true(ref_mls_at(&nodes, REF_LINEAR, x, &shape));
+    assert_true(ref_mls_at(&nodes, REF_MLS_LINEAR, x, &shape));
     for (int d = 0; d < 3; d++) {
         ref_rows_displacement(&rows, &shape, d);
         ref_rows_turn(&rows, &shape, d);

@@ -75,7 +75,7 @@ static long root_points(double cell, double (*x)[3])
 
 static RefBody beam(double cell)
 {
-    RefBodyOptions options = {.cell = cell, .basis = REF_LINEAR, .material = steel};
+    RefBodyOptions options = {.cell = cell, .basis = REF_MLS_LINEAR, .material = steel};
     double x[MOST_HELD][3];
     long count = root_points(cell, x);
     return brick_body_showing((double[]){length, 1, 1}, &options, count, (const double(*)[3])x);
@@ -124,8 +124,9 @@ static void six_zeros_and_orthonormal(void **state)
     (void)state;
     if (!ref_solver_built) skip();
     for (int quadratic = 0; quadratic < 2; quadratic++) {
-        RefBodyOptions options = {
-            .cell = 0.23, .basis = quadratic ? REF_QUADRATIC : REF_LINEAR, .material = steel};
+        RefBodyOptions options = {.cell = 0.23,
+                                  .basis = quadratic ? REF_MLS_QUADRATIC : REF_MLS_LINEAR,
+                                  .material = steel};
         RefBody body = brick_body((double[]){1.4, 0.8, 0.9}, &options);
         RefModes modes;
         assert_int_equal(ref_modes_find(&body.matrices, NULL, 24, &modes, NULL), SM_OK);
@@ -227,7 +228,7 @@ static void cantilever(void **state)
     (void)state;
     if (!ref_solver_built) skip();
     const double P = 1000 * WIDTH, size[3] = {L, D, WIDTH};
-    RefBodyOptions options = {.cell = 1.5, .basis = REF_LINEAR, .material = {E, NU, 1}};
+    RefBodyOptions options = {.cell = 1.5, .basis = REF_MLS_LINEAR, .material = {E, NU, 1}};
     FacePoints face = face_points(size, options.cell);
     RefBody body = brick_body_showing(size, &options, face.count, (const double(*)[3])face.x);
     RefShape shape = ref_shape_create(&body.nodes);

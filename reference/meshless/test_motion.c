@@ -25,7 +25,7 @@ static Beam beam_create(bool clamped, const RefDamping *damping)
 {
     Beam beam;
     double shown[HELD + 2][3] = {{0, 0.5, 0.5}, {8, 0.5, 0.5}};
-    RefBodyOptions options = {.cell = cell, .basis = REF_LINEAR, .material = steel};
+    RefBodyOptions options = {.cell = cell, .basis = REF_MLS_LINEAR, .material = steel};
     RefRows rows = {0};
     for (int n = 0; n < HELD; n++) {
         shown[2 + n][0] = 0;
@@ -35,7 +35,7 @@ static Beam beam_create(bool clamped, const RefDamping *damping)
     beam.body = brick_body_showing(size, &options, HELD + 2, (const double(*)[3])shown);
     RefShape shape = ref_shape_create(&beam.body.nodes);
     for (int n = 0; clamped && n < HELD; n++) {
-        assert_true(ref_mls_at(&beam.body.nodes, REF_LINEAR, shown[2 + n], &shape));
+        assert_true(ref_mls_at(&beam.body.nodes, REF_MLS_LINEAR, shown[2 + n], &shape));
         for (int d = 0; d < 3; d++) ref_rows_displacement(&rows, &shape, d);
     }
     ref_shape_free(&shape);
@@ -58,7 +58,7 @@ static void beam_free(Beam *beam)
 static void place(const Beam *beam, const double x[3], double now[3])
 {
     RefShape shape = ref_shape_create(&beam->body.nodes);
-    assert_true(ref_mls_at(&beam->body.nodes, REF_LINEAR, x, &shape));
+    assert_true(ref_mls_at(&beam->body.nodes, REF_MLS_LINEAR, x, &shape));
     for (int d = 0; d < 3; d++) {
         now[d] = x[d];
         for (int n = 0; n < shape.count; n++)

@@ -19,7 +19,8 @@ static void points_follow_their_shape_functions(void **state)
     (void)state;
     enum { POINTS = 3000 };
     static const double size[3] = {2, 1.1, 0.9};
-    RefBodyOptions options = {.cell = 0.23, .coarser = 1, .basis = REF_LINEAR, .material = steel};
+    RefBodyOptions options = {
+        .cell = 0.23, .coarser = 1, .basis = REF_MLS_LINEAR, .material = steel};
     double(*x)[3] = sm_alloc(POINTS, sizeof *x), (*now)[3] = sm_alloc(POINTS, sizeof *now);
     for (int p = 0; p < POINTS; p++) { /* on all faces */
         for (int d = 0; d < 3; d++) x[p][d] = size[d] * uniform();
@@ -39,7 +40,7 @@ static void points_follow_their_shape_functions(void **state)
     for (int p = 0; p < POINTS; p++) {
         const double *at = x[skin.order[p]];
         seen[skin.order[p]]++;
-        assert_true(ref_mls_at(&body.nodes, REF_LINEAR, at, &shape));
+        assert_true(ref_mls_at(&body.nodes, REF_MLS_LINEAR, at, &shape));
         for (int d = 0; d < 3; d++) {
             double wanted = at[d];
             for (int n = 0; n < shape.count; n++)
