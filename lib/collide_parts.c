@@ -187,7 +187,7 @@ static void find_reach(Build *b, long p)
 }
 
 /* Whether no node of a collides with a cell of b when no way between them is longer than `way`. */
-static bool held(const Reach *a, const Reach *b, double way)
+static int held(const Reach *a, const Reach *b, double way)
 {
     bool out = !(way <= SM_COLLIDE_AROUND * sm_collide_apart(a->least_size, b->least_edge));
     for (int s = 0; s < SM_COLLIDE_FACES; s++)
@@ -196,7 +196,7 @@ static bool held(const Reach *a, const Reach *b, double way)
 }
 
 /* Whether the nodes of two clusters are in the window around each other's nodes. */
-static bool in_window(const Build *b, long p, long q)
+static int in_window(const Build *b, long p, long q)
 {
     const SmCollideClusters *c = &b->clusters;
     bool out = false;
@@ -258,6 +258,7 @@ static void find_joined(Build *b, int p)
         if (q < p) continue;
         const Reach *a = &b->reach[p], *z = &b->reach[q];
         double way = 0.5 * ((double)b->way[other] + c->radius[own] + c->radius[other]);
+        /* '&': all three are cheap, and which fails cannot be foreseen */
         if (!(held(a, z, way) & held(z, a, way) & in_window(b, own, other))) continue;
         if (b->pair_count == b->pair_room) {
             b->pair_room = 2 * b->pair_room + 1024;
