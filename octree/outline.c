@@ -5,7 +5,7 @@
 
 /* Whether the finest cell across the middle of a face is in a leaf that is off by that much along
  * an axis, in half finest cells; `beyond`: across this axis. */
-static inline bool level(int off, bool beyond, int own, int half)
+static inline int level(int off, bool beyond, int own, int half)
 {
     return beyond ? abs(off) - (own + 1) < half : abs((own > 1) - off) < half;
 }
