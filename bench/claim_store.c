@@ -272,7 +272,7 @@ static void read_file(BenchH5 *h5, BenchFinding **findings, int *count, BenchCur
     int stored = 0, machine_count;
     const BenchField field = {"claims", BENCH_INT, 0, sizeof stored};
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
-    bench_h5_check_kind(h5, file_kind, BENCH_CLAIM_SCHEMA);
+    bench_h5_check_kind(h5, file_kind, BENCH_CLAIM_SCHEMA, BENCH_CLAIM_SCHEMA);
     bench_h5_read_fields(h5, h5->file, &field, 1, &stored);
     hid_t group = bench_h5_find_group(h5, h5->file, "machine");
     bench_h5_read_fields(h5, group, machine_fields, machine_count, machine);

@@ -2,6 +2,9 @@
 #ifndef BENCH_COMMAND_H
 #define BENCH_COMMAND_H
 
+/* Those of `regress` alone. */
+enum { BENCH_EXIT_SLOWER = 5, BENCH_EXIT_NO_BASELINE = 6 };
+
 /* Exit codes as every command's help prints them; error.h has them as SmCode. */
 #define BENCH_EXIT_CODES                                                                           \
     "Exit codes: 0 done; 1 a correctness check failed (INVALID); 2 unknown option or value out "   \
@@ -18,6 +21,7 @@ int bench_command_scenes(int argc, char **argv);
 int bench_command_info(int argc, char **argv);
 int bench_command_run(int argc, char **argv);
 int bench_command_tables(int argc, char **argv);
+int bench_command_regress(int argc, char **argv);
 int bench_command_kernels(int argc, char **argv);
 int bench_command_report(int argc, char **argv);
 int bench_command_sweep(int argc, char **argv);

@@ -126,7 +126,7 @@ void bench_h5_read(BenchH5 *h5, hid_t dataset, hid_t type, void *values)
         bench_h5_fail(h5, "a dataset cannot be read");
 }
 
-void bench_h5_check_kind(BenchH5 *h5, const char *kind, int schema)
+void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest)
 {
     char found[64] = "";
     int number = 0;
@@ -137,7 +137,7 @@ void bench_h5_check_kind(BenchH5 *h5, const char *kind, int schema)
         h5->failed = true;
     }
     bench_h5_read_fields(h5, h5->file, &field, 1, &number);
-    if (!h5->failed && number != schema)
-        bench_h5_fail(h5, "its schema is %d and this program reads %d; %s", number, schema,
-                      number < schema ? "measure again" : "use a newer shapebench");
+    if (!h5->failed && (number < oldest || number > newest))
+        bench_h5_fail(h5, "its schema is %d and this program reads %d; %s", number, newest,
+                      number < oldest ? "measure again" : "use a newer shapebench");
 }

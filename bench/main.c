@@ -11,17 +11,14 @@
 #include "scene.h"
 
 static const BenchCommand commands[] = {
-    {"tables", "measure a paper's table: every stage, checked, the paper's values beside",
-     bench_command_tables},
-    {"kernels", "time every kernel alone against what this machine can do", bench_command_kernels},
-    {"claims", "hold every quantitative claim of the papers against what is measured here",
-     bench_command_claims},
-    {"report", "make a page of result files: tables, figures, where it was measured",
-     bench_command_report},
-    {"run", "simulate a scene or a mesh and write its motion", bench_command_run},
-    {"sweep", "cost, stiffness and deviation over region width and epsilon; recommend some",
-     bench_command_sweep},
+    {"tables", "measure a paper's table, checked, its values beside", bench_command_tables},
+    {"claims", "hold every claim of the papers against what is measured", bench_command_claims},
+    {"sweep", "cost and quality over w and epsilon; recommend some", bench_command_sweep},
     {"merge", "put the shards of a sweep into one file", bench_command_merge},
+    {"regress", "is this build slower than another one, or wrong?", bench_command_regress},
+    {"report", "make a page of result files to send to a colleague", bench_command_report},
+    {"kernels", "time every kernel against what this machine can do", bench_command_kernels},
+    {"run", "simulate a scene or a mesh and write its motion", bench_command_run},
     {"info", "say what is in a mesh, and whether it can be simulated", bench_command_info},
     {"scenes", "list the built-in scenes, or print one to copy and edit", bench_command_scenes},
 };

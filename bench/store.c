@@ -188,9 +188,14 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     }
 }
 
+void bench_store_check_kind(BenchH5 *h5, int oldest)
+{
+    bench_h5_check_kind(h5, file_kind, oldest, BENCH_STORE_SCHEMA);
+}
+
 static void read_file(BenchH5 *h5, BenchRow **rows, int *count, BenchMachine *machine)
 {
-    bench_h5_check_kind(h5, file_kind, BENCH_STORE_SCHEMA);
+    bench_store_check_kind(h5, BENCH_STORE_SCHEMA);
     int stored = 0, machine_count;
     const BenchField field = {"rows", BENCH_INT, 0, sizeof stored};
     const BenchField *machine_fields = bench_machine_fields(&machine_count);

@@ -23,4 +23,7 @@ SmCode bench_load_rows(const char *path, BenchRow **rows, int *count, BenchMachi
                        SmError *error);
 void bench_rows_free(BenchRow *rows, int count);
 
+/* Fails unless the open file says that it is a results file, of a schema from `oldest` to ours. */
+void bench_store_check_kind(BenchH5 *h5, int oldest);
+
 #endif

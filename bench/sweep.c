@@ -157,7 +157,7 @@ static void read_file(BenchH5 *h5, BenchSweep *sweep)
     int machine_count, count;
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
     const BenchField *fields = bench_point_fields(&count);
-    bench_h5_check_kind(h5, file_kind, BENCH_SWEEP_SCHEMA);
+    bench_h5_check_kind(h5, file_kind, BENCH_SWEEP_SCHEMA, BENCH_SWEEP_SCHEMA);
     hid_t group = bench_h5_find_group(h5, h5->file, "machine");
     bench_h5_read_fields(h5, group, machine_fields, machine_count, &sweep->machine);
     read_plan(h5, &sweep->plan);

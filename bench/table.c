@@ -112,7 +112,7 @@ static json_t *json_cell(const Cell *cell, bool valid)
     return json_real(cell->number);
 }
 
-static json_t *json_environment(const BenchMachine *machine)
+json_t *bench_json_environment(const BenchMachine *machine)
 {
     const struct {
         const char *name, *text;
@@ -149,7 +149,7 @@ static void write_json(FILE *file, const BenchRow *rows, int count, const BenchM
     }
     json_t *root = json_object();
     json_object_set_new(root, "rows", list);
-    json_object_set_new(root, "environment", json_environment(machine));
+    json_object_set_new(root, "environment", bench_json_environment(machine));
     json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     fputc('\n', file);
     json_decref(root);

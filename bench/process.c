@@ -1,0 +1,162 @@
+#define _GNU_SOURCE
+#include "process.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/perf_event.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static volatile sig_atomic_t caught;
+
+static void note(int number)
+{
+    if (!caught) caught = number;
+}
+
+void bench_process_catch(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction before, action = {.sa_handler = note};
+    sigemptyset(&action.sa_mask);
+    for (int i = 0; i < 3; i++) /* what is ignored (nohup) stays so */
+        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(numbers[i], &action, NULL);
+}
+
+int bench_process_caught(void)
+{
+    return caught;
+}
+
+/* Instructions in user mode of process `pid` from its exec on, with all its children; -1 where the
+ * kernel or the machine has no such counter. */
+static int open_counter(pid_t pid)
+{
+    struct perf_event_attr event = {.size = sizeof event,
+                                    .type = PERF_TYPE_HARDWARE,
+                                    .config = PERF_COUNT_HW_INSTRUCTIONS,
+                                    .disabled = 1,
+                                    .inherit = 1,
+                                    .exclude_kernel = 1,
+                                    .exclude_hv = 1,
+                                    .enable_on_exec = 1};
+    return (int)syscall(SYS_perf_event_open, &event, pid, -1, -1, PERF_FLAG_FD_CLOEXEC);
+}
+
+/* In the child; waits for the parent's word (`start` closes), then becomes the program. */
+static void become(const BenchProcess *process, int start, int failure, pid_t parent)
+{
+    char byte;
+    for (int s = 1; s < NSIG; s++) signal(s, SIG_DFL);
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent || read(start, &byte, 1) != 0) _exit(127);
+    int in = open("/dev/null", O_RDONLY);
+    int out =
+        open(process->output ? process->output : "/dev/null", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    bool ready = in >= 0 && out >= 0 && dup2(in, 0) >= 0 && dup2(out, 1) >= 0 && dup2(out, 2) >= 0;
+    if (ready && (!process->folder || chdir(process->folder) == 0))
+        execvp(process->word[0], process->word);
+    int number = errno;
+    ssize_t written = write(failure, &number, sizeof number);
+    (void)written;
+    _exit(127);
+}
+
+static void stop_group(pid_t pid, int *status)
+{
+    kill(-pid, SIGTERM);
+    for (int i = 0; i < 100; i++) {
+        if (waitpid(pid, status, WNOHANG) == pid) break;
+        nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+    }
+    kill(-pid, SIGKILL);
+    while (waitpid(pid, status, 0) < 0 && errno == EINTR) continue;
+}
+
+/* Waits for the end, ticking; false when interrupted, and then all is stopped. */
+static bool await(const BenchProcess *process, pid_t pid, int *status)
+{
+    for (long naps = 0;; naps++) {
+        pid_t ended = waitpid(pid, status, WNOHANG);
+        if (ended == pid || (ended < 0 && errno != EINTR)) return true;
+        if (caught && !process->tidying) {
+            stop_group(pid, status);
+            return false;
+        }
+        if (process->tick && naps % 20 == 0) process->tick(process->context);
+        nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
+    }
+}
+
+static SmCode oversee(const BenchProcess *process, pid_t pid, int counter, BenchProcessEnd *end,
+                      SmError *error)
+{
+    int status = 0;
+    long long counted;
+    bool whole = await(process, pid, &status);
+    kill(-pid, SIGKILL); /* whatever it has left behind */
+    end->instructions = NAN;
+    if (counter >= 0 && read(counter, &counted, sizeof counted) == sizeof counted && counted > 0)
+        end->instructions = (double)counted;
+    end->status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    if (!whole) return sm_fail(error, SM_INPUT, "interrupted; nothing is left behind");
+    return SM_OK;
+}
+
+SmCode bench_process_run(const BenchProcess *process, BenchProcessEnd *end, SmError *error)
+{
+    int start[2], failure[2], number = 0;
+    if (caught && !process->tidying)
+        return sm_fail(error, SM_INPUT, "interrupted; nothing is left behind");
+    if (pipe2(start, O_CLOEXEC) != 0)
+        return sm_fail(error, SM_INPUT, "no pipe can be made: %s", strerror(errno));
+    if (pipe2(failure, O_CLOEXEC) != 0) {
+        close(start[0]);
+        close(start[1]);
+        return sm_fail(error, SM_INPUT, "no pipe can be made: %s", strerror(errno));
+    }
+    fflush(NULL);
+    pid_t parent = getpid(), pid = fork();
+    if (pid == 0) {
+        close(start[1]);
+        become(process, start[0], failure[1], parent);
+    }
+    if (pid > 0) setpgid(pid, pid);
+    int counter = pid > 0 && process->count ? open_counter(pid) : -1;
+    close(start[0]);
+    close(start[1]);
+    close(failure[1]);
+    if (pid < 0) number = errno;
+    SmCode code = SM_OK;
+    if (pid > 0 && read(failure[0], &number, sizeof number) == sizeof number)
+        waitpid(pid, NULL, 0);
+    else if (pid > 0)
+        code = oversee(process, pid, counter, end, error);
+    close(failure[0]);
+    if (counter >= 0) close(counter);
+    if (number)
+        return sm_fail(error, SM_INPUT, "%.100s cannot be started: %s", process->word[0],
+                       strerror(number));
+    return code;
+}
+
+void bench_process_last_line(const char *path, size_t size, char *line)
+{
+    char text[1024];
+    line[0] = '\0';
+    FILE *file = fopen(path, "re");
+    while (file && fgets(text, sizeof text, file)) {
+        text[strcspn(text, "\r\n")] = '\0';
+        if (text[strspn(text, " \t")]) snprintf(line, size, "%s", text + strspn(text, " \t"));
+    }
+    if (file) fclose(file);
+}

@@ -1,0 +1,181 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+
+#include "statistic.h"
+
+static void near(double value, double wanted, double relative)
+{
+    if (!(fabs(value - wanted) <= relative * fabs(wanted)))
+        fail_msg("%.12g instead of %.12g", value, wanted);
+}
+
+/* The values wanted are those of scipy 1.10.1's mannwhitneyu(), two-sided. */
+static void mann_whitney_is_scipys(void **state)
+{
+    (void)state;
+    const double males[] = {19, 22, 16, 29, 24}, females[] = {20, 11, 17, 12};
+    near(bench_mann_whitney(males, 5, females, 4), 0.1111111111111111, 1e-12);
+    near(bench_mann_whitney(females, 4, males, 5), 0.1111111111111111, 1e-12);
+    const double a[] = {1, 2, 2, 3, 4, 4, 4, 9}, b[] = {2, 5, 4, 6, 7, 7, 10};
+    near(bench_mann_whitney(a, 8, b, 7), 0.07846899285908836, 1e-9); /* ties: approximate */
+    double c[12], d[14], e[45], f[30];
+    for (int i = 0; i < 12; i++) c[i] = 0.1 * (i + 1) * (i + 1);
+    for (int i = 0; i < 14; i++) d[i] = 0.1 * (i + 1) * (i + 1) + 7.77;
+    near(bench_mann_whitney(c, 12, d, 14), 0.00041127804756826156, 1e-9);
+    for (int i = 0; i < 45; i++) e[i] = i + 1;
+    for (int i = 0; i < 30; i++) f[i] = i + 10.5;
+    near(bench_mann_whitney(e, 45, f, 30), 0.5199137884327018, 1e-9); /* many: approximate */
+}
+
+static void mann_whitney_of_next_to_nothing_is_1(void **state)
+{
+    (void)state;
+    const double one[] = {1, 1, 1}, two[] = {2};
+    assert_true(bench_mann_whitney(one, 3, one, 3) == 1);
+    assert_true(bench_mann_whitney(one, 0, one, 3) == 1);
+    assert_true(bench_mann_whitney(one, 1, two, 1) == 1);
+}
+
+/* R's p.adjust(c(0.01, 0.04, 0.03, 0.005), "holm"). */
+static void holm_is_rs(void **state)
+{
+    (void)state;
+    double p[] = {0.01, NAN, 0.04, 0.03, 0.005};
+    bench_holm(p, 5);
+    near(p[0], 0.03, 1e-12);
+    assert_true(isnan(p[1]));
+    near(p[2], 0.06, 1e-12);
+    near(p[3], 0.06, 1e-12);
+    near(p[4], 0.02, 1e-12);
+}
+
+static void outliers_are_beyond_tukeys_outer_fences(void **state)
+{
+    (void)state;
+    /* quartiles 3.25 and 7.75 of the values 1..10: fences at -10.25 and 21.25 */
+    const double value[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, far[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 22};
+    bool flag[10];
+    assert_int_equal(bench_outliers(value, 10, flag), 0);
+    assert_int_equal(bench_outliers(far, 10, flag), 1);
+    assert_true(flag[9] && !flag[0]);
+    assert_int_equal(bench_outliers(value, 0, flag), 0);
+    near(bench_quantile(far, 10, 0.25), 3.25, 1e-12);
+}
+
+enum { ROUNDS = 8, COUNT = 2 * ROUNDS };
+
+typedef struct {
+    double value[COUNT];
+    int group[COUNT];
+    BenchTimes times;
+} Sample;
+
+/* Two processes a round, spread by `noise`, times what the round has in common. */
+static void draw(gsl_rng *rng, double middle, double noise, const double *load, Sample *sample)
+{
+    for (int i = 0; i < COUNT; i++) {
+        sample->group[i] = i / 2;
+        sample->value[i] = middle * load[i / 2] * exp(gsl_ran_gaussian(rng, noise));
+    }
+    sample->times = (BenchTimes){sample->value, sample->group, COUNT};
+}
+
+static void load_of(gsl_rng *rng, double drift, double load[ROUNDS])
+{
+    for (int r = 0; r < ROUNDS; r++) load[r] = exp(gsl_ran_gaussian(rng, drift));
+}
+
+/* The interval holds the true ratio in most cases (percentiles of a quartile of few rounds are
+ * rather narrow), and is the same for the same seed. */
+static void the_interval_holds_the_ratio(void **state)
+{
+    (void)state;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    int held = 0, apart = 0;
+    enum { TRIALS = 100 };
+    for (int i = 0; i < TRIALS; i++) {
+        Sample a, b;
+        double load[ROUNDS];
+        load_of(rng, 0.02, load);
+        draw(rng, 1e-3, 0.03, load, &a);
+        draw(rng, 1.1e-3, 0.03, load, &b);
+        BenchRatio ratio = bench_ratio_paired(&a.times, &b.times, ROUNDS, 7);
+        BenchRatio again = bench_ratio_paired(&a.times, &b.times, ROUNDS, 7);
+        assert_true(ratio.low == again.low && ratio.high == again.high);
+        assert_true(ratio.low <= ratio.ratio && ratio.ratio <= ratio.high);
+        held += ratio.low <= 1.1 && 1.1 <= ratio.high;
+        BenchTimes one = {a.value, a.group, 1};
+        ratio = bench_ratio_apart(&one, &b.times, 7);
+        apart += ratio.low <= 1.1 && 1.1 <= ratio.high;
+    }
+    gsl_rng_free(rng);
+    assert_in_range(held, 85, TRIALS);
+    assert_in_range(apart, 85, TRIALS);
+}
+
+/* Two builds that are one differ by less than the noise that is found, nearly always. */
+static void noise_bounds_what_one_build_differs_by(void **state)
+{
+    (void)state;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    int beyond = 0, beyond_spread = 0;
+    for (int i = 0; i < 100; i++) {
+        Sample a, b;
+        double load[ROUNDS];
+        load_of(rng, 0.02, load);
+        draw(rng, 1, 0.03, load, &a);
+        draw(rng, 1, 0.03, load, &b);
+        double noise =
+            fmax(bench_self_noise(&a.times, ROUNDS, 3), bench_self_noise(&b.times, ROUNDS, 3));
+        double ratio =
+            bench_quantile(b.value, COUNT, BENCH_LOW) / bench_quantile(a.value, COUNT, BENCH_LOW);
+        assert_true(noise > 0.005 && noise < 0.15);
+        beyond += fabs(log(ratio)) > log1p(noise);
+        double spread = bench_spread_noise(&a.times, 1, 0.01, 1);
+        beyond_spread +=
+            fabs(log(b.value[0] / bench_quantile(a.value, COUNT, 0.5))) > log1p(spread);
+    }
+    gsl_rng_free(rng);
+    assert_in_range(beyond, 0, 8);
+    assert_in_range(beyond_spread, 0, 5);
+    const double few[] = {1, 2};
+    const int group[] = {0, 0};
+    BenchTimes times = {few, group, 2};
+    assert_true(isnan(bench_self_noise(&times, 1, 3)));
+    assert_true(isnan(bench_spread_noise(&times, 1, 0.01, 1)));
+}
+
+static void a_round_counts_with_its_best(void **state)
+{
+    (void)state;
+    const double value[] = {3, 2, 7, 5, 6};
+    const int group[] = {0, 0, 2, 2, 2};
+    const BenchTimes times = {value, group, 5};
+    double best[4];
+    assert_int_equal(bench_round_best(&times, 3, best), 2);
+    assert_true(best[0] == 2 && best[1] == 5);
+    const double low[] = {1, 2, 3, 4, 5}, high[] = {6, 7, 8, 9, 10};
+    near(bench_least_p(5), bench_mann_whitney(low, 5, high, 5), 1e-9);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mann_whitney_is_scipys),
+        cmocka_unit_test(mann_whitney_of_next_to_nothing_is_1),
+        cmocka_unit_test(holm_is_rs),
+        cmocka_unit_test(outliers_are_beyond_tukeys_outer_fences),
+        cmocka_unit_test(the_interval_holds_the_ratio),
+        cmocka_unit_test(noise_bounds_what_one_build_differs_by),
+        cmocka_unit_test(a_round_counts_with_its_best),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
