@@ -253,10 +253,7 @@ static void sever(BenchChanges *changes)
         int *piece = sm_alloc((size_t)carried->vertices, sizeof *piece);
         for (long v = 0; v < carried->vertices; v++)
             piece[v] = pieces.piece[carried->rows.leaf[carried->rows.first[v]]];
-        if (sm_sever(&changes->surface, piece)) {
-            changes->last.slit = true;
-            retie(changes, 0, NULL, s->cut.triangles);
-        }
+        if (sm_sever(&changes->surface, piece)) retie(changes, 0, NULL, s->cut.triangles);
         free(piece);
     }
     sm_pieces_free(&pieces);
@@ -270,7 +267,6 @@ static void follow(BenchChanges *changes, const OctChange *change, long first)
     if (s->cut.triangles > first) {
         SmSlitResult result = sm_slit(&changes->surface, &s->cut, first, s->cell, NULL);
         changes->left |= result == SM_SLIT_LEFT;
-        changes->last.slit = result == SM_SLIT_CLOSED || result == SM_SLIT_OPEN;
     }
     long count = 0;
     int *node = sm_alloc((size_t)(change->removed_count + change->added_count), sizeof *node);
@@ -317,9 +313,15 @@ static SmCode lattice_frame(BenchChanges *changes, double from, double to, SmErr
 
 SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmError *error)
 {
+    long vertices = changes->surface.vertex_count, triangles = changes->surface.triangle_count;
     changes->last = (BenchChanged){0};
-    return is_octree(changes->part) ? octree_frame(changes, from, to, error)
-                                    : lattice_frame(changes, from, to, error);
+    SmCode code = is_octree(changes->part) ? octree_frame(changes, from, to, error)
+                                           : lattice_frame(changes, from, to, error);
+    /* what has been split has vertices more, what lay in a gap triangles less; this may be so too
+     * where sm_slit() has left some of it */
+    changes->last.slit =
+        changes->surface.vertex_count != vertices || changes->surface.triangle_count != triangles;
+    return code;
 }
 
 void bench_changes_surface(BenchChanges *changes, double (*point)[3])

@@ -7,6 +7,7 @@
 #include "../octree/outline.h"
 #include "../octree/structure.h"
 #include "../reference/collide.h"
+#include "../reference/condition.h"
 #include "../reference/outline.h"
 #include "check.h"
 
@@ -188,6 +189,16 @@ static void compare_contacts(const Contacts *c, BenchDeviation *found)
     free(exact);
 }
 
+/* Do a region's nodes lie on a line, or in one place? What it is turned by about that is up to its
+ * past, and moves no goal. */
+static bool is_line(const BenchCheck *check, long r, double negligible)
+{
+    const double(*rest)[3] = (const double(*)[3])check->rest;
+    RefCondition found;
+    ref_condition(bench_check_regions(check), check->weight, rest, rest, r, negligible, &found);
+    return !(found.inertia > negligible * negligible);
+}
+
 /* How far an octree's cells are turned otherwise than their regions, where that is unique. */
 static double turn_error(const Contacts *c, const SmEngineType *type, SmEngine *engine)
 {
@@ -195,18 +206,23 @@ static double turn_error(const Contacts *c, const SmEngineType *type, SmEngine *
     double worst = 0, (*R)[9] = sm_alloc((size_t)c->all, sizeof *R);
     double(*x)[3] = sm_alloc((size_t)c->all, sizeof *x);
     bool *tied = sm_alloc((size_t)check->count, sizeof *tied);
+    bool *line = sm_alloc((size_t)check->count, sizeof *line);
+    double negligible = bench_check_tolerance(type->precision);
+    for (long r = 0; r < check->count; r++) line[r] = is_line(check, r, negligible);
     type->get(engine, SM_POSITION, x);
     bench_check_turns(check, type, engine, (const double(*)[3])x, R);
     for (long first = 0; first < c->all; first += check->count) {
         bench_check_tied(check, type->precision, (const double(*)[3])(x + first), tied);
         for (long n = 0; n < 9 * check->count; n++) {
             double error = fabs(c->turn[first + n / 9][n % 9] - R[first + n / 9][n % 9]);
-            if (!tied[n / 9]) worst = fmax(worst, isfinite(error) ? error : INFINITY);
+            if (!tied[n / 9] && !line[n / 9])
+                worst = fmax(worst, isfinite(error) ? error : INFINITY);
         }
     }
     free(R);
     free(x);
     free(tied);
+    free(line);
     return worst;
 }
 

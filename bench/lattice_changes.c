@@ -75,7 +75,7 @@ static bool sever(BenchChanges *changes, const SmPieces *pieces)
 }
 
 /* Splits the surface by the cut's triangles from `first` on; it follows the engine's pieces. */
-static bool split_surface(BenchChanges *changes, long first)
+static void split_surface(BenchChanges *changes, long first)
 {
     const BenchPart *part = changes->part;
     const SmCut *cut = &changes->cut;
@@ -84,13 +84,11 @@ static bool split_surface(BenchChanges *changes, long first)
     part->runner.type->pieces(part->runner.engine, &pieces);
     SmSlitResult result = sm_slit(surface, cut, first, part->body.voxels.cell, NULL);
     sm_embed_cut(&changes->embedding, surface, &changes->sites, cut, first, pieces.piece);
-    bool severed = sever(changes, &pieces);
-    if (severed)
+    if (sever(changes, &pieces))
         sm_embed_cut(&changes->embedding, surface, &changes->sites, cut, cut->triangles,
                      pieces.piece);
     sm_pieces_free(&pieces);
     changes->left |= result == SM_SLIT_LEFT;
-    return severed || result == SM_SLIT_CLOSED || result == SM_SLIT_OPEN;
 }
 
 SmCode bench_lattice_cut(BenchChanges *changes, long first, double start, SmError *error)
@@ -99,10 +97,8 @@ SmCode bench_lattice_cut(BenchChanges *changes, long first, double start, SmErro
     SmCode code = runner->type->cut(runner->engine, &changes->cut, first, error);
     if (code) return code;
     double cut = sm_now();
-    bool slit = split_surface(changes, first);
-    changes->last = (BenchChanged){.resampled = true,
-                                   .slit = slit,
-                                   .resample_seconds = cut - start,
-                                   .follow_seconds = sm_now() - cut};
+    split_surface(changes, first);
+    changes->last = (BenchChanged){
+        .resampled = true, .resample_seconds = cut - start, .follow_seconds = sm_now() - cut};
     return SM_OK;
 }

@@ -29,8 +29,9 @@ static const SmEngineType *const types[] = {&fastlsm_engine_f32, &fastlsm_engine
                                             &octree_engine_f32, &octree_engine_f64};
 enum { TYPES = sizeof types / sizeof *types };
 
-/* A plate of one cell, whose cells are no mesh units. */
-static void plate_create(const SmEngineType *type, double damping, bool collide, Plate *plate)
+/* A plate of one cell's thickness, whose cells are no mesh units. */
+static void strip_create(const SmEngineType *type, int wide, double damping, bool collide,
+                         Plate *plate)
 {
     SmVoxels voxels;
     SmCounts counts;
@@ -38,7 +39,7 @@ static void plate_create(const SmEngineType *type, double damping, bool collide,
     plate->scene.params.collide.self = collide;
     plate->scene.octree.sampling.levels = 1;
     plate->scene.octree.sampling.criteria_count = 1; /* uniform, to the finest cells */
-    sm_voxels_block(&voxels, LONG, WIDE, 1, 0.3);
+    sm_voxels_block(&voxels, LONG, wide, 1, 0.3);
     voxels.origin[0] = 40;
     static double home[1][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     plate->body = (BenchBody){.voxels = voxels, .instances = 1, .pose = home};
@@ -50,6 +51,11 @@ static void plate_create(const SmEngineType *type, double damping, bool collide,
     plate->v = sm_alloc((size_t)plate->count, sizeof *plate->v);
     plate->body.x0 = sm_alloc((size_t)plate->count, sizeof *plate->x);
     type->get(plate->engine, SM_REST, plate->body.x0);
+}
+
+static void plate_create(const SmEngineType *type, double damping, bool collide, Plate *plate)
+{
+    strip_create(type, WIDE, damping, collide, plate);
 }
 
 static void plate_free(Plate *plate)
@@ -207,6 +213,28 @@ static void contacts_are_brute_forces(void **state)
         bench_check_text(&found, sizeof text, text);
         assert_non_null(strstr(text, ", contacts of "));
         plate_free(&plate);
+    }
+}
+
+/* A row of cells that was turned one way and then another: how its regions, all lines, are turned
+ * about themselves is up to that. */
+static void lines_are_turned_by_their_past(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate row;
+        BenchDeviation found;
+        strip_create(types[t], 1, 0, true, &row);
+        place(&row, false, false);
+        for (long p = 0; p < row.count; p++) {
+            row.x[p][1] = row.body.x0[p][0];
+            row.x[p][2] = 0;
+        }
+        row.type->set(row.engine, SM_POSITION, (const double(*)[3])row.x);
+        row.type->goals(row.engine);
+        expect_valid(&row, &found);
+        assert_int_equal(found.tied, 0);
+        plate_free(&row);
     }
 }
 
@@ -438,6 +466,7 @@ int main(void)
         cmocka_unit_test(nothing_but_ties_is_invalid),
         cmocka_unit_test(wrong_damping_is_invalid),
         cmocka_unit_test(contacts_are_brute_forces),
+        cmocka_unit_test(lines_are_turned_by_their_past),
         cmocka_unit_test(wrong_contacts_are_invalid),
         cmocka_unit_test(of_many_bodies_a_sample_is_compared),
         cmocka_unit_test(wrong_obstacles_are_invalid),

@@ -338,19 +338,19 @@ static bool fill_ring(SmFacets *f, int ring, const int *around)
         }
         first[++rings] = points;
     }
-    long count = sm_outline_triangles(points, rings);
-    bool filled = false;
-    if (count > 0) {
-        int(*triangle)[3] = add_triangles(f, count);
+    long most = sm_outline_triangles(points, rings), count = -1;
+    if (most > 0) {
+        int(*triangle)[3] = add_triangles(f, most);
         const SmOutline outline = {rings, first, (const double(*)[2])at};
-        filled = sm_outline_fill(&outline, f->slack, triangle);
+        count = sm_outline_fill(&outline, f->slack, triangle);
         int *number = *triangle;
-        for (long n = 0; n < 3 * count && filled; n++) number[n] = vertex[number[n]];
+        for (long n = 0; n < 3 * count; n++) number[n] = vertex[number[n]];
+        f->triangles -= count < 0 ? most : most - count;
     }
     free(at);
     free(vertex);
     free(first);
-    return filled;
+    return count >= 0;
 }
 
 static bool fill_rings(SmFacets *f, int loops_from)

@@ -1,6 +1,7 @@
 #include "outline.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -202,7 +203,15 @@ static int choose(Filling *f, int ring)
     return flattest(f, ring);
 }
 
-static bool clip(Filling *f, int (*triangle)[3])
+/* A spike, or a point that follows itself, has no triangle: its sides are each other's. Those that
+ * meet there are then neighbours. */
+static void emit(const int corner[3], int (*triangle)[3], long *count)
+{
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) return;
+    memcpy(triangle[(*count)++], corner, sizeof *triangle);
+}
+
+static bool clip(Filling *f, int (*triangle)[3], long *count)
 {
     int c = 0;
     for (; f->left > 3; f->left--) {
@@ -210,22 +219,23 @@ static bool clip(Filling *f, int (*triangle)[3])
         if (c < 0) return false;
         Corner *k = &f->corner[c];
         int ear[3] = {point_before(f, c), k->point, point_after(f, c)};
-        memcpy(*triangle++, ear, sizeof ear);
+        emit(ear, triangle, count);
         f->corner[k->before].after = k->after;
         f->corner[k->after].before = k->before;
         f->corner[k->before].worth = f->corner[k->after].worth = 0;
         c = k->after;
     }
     int p = point_before(f, c), q = f->corner[c].point, r = point_after(f, c), last[3] = {p, q, r};
-    memcpy(*triangle, last, sizeof last);
+    emit(last, triangle, count);
     double side = sqrt(fmax(fmax(square(f, p, q), square(f, q, r)), square(f, p, r)));
     return area(f, p, q, r) >= -f->slack * side;
 }
 
-bool sm_outline_fill(const SmOutline *outline, double slack, int (*triangle)[3])
+long sm_outline_fill(const SmOutline *outline, double slack, int (*triangle)[3])
 {
     int points = outline->first[outline->rings], room = points + 2 * (outline->rings - 1);
-    if (outline->first[1] < 3) return false;
+    long count = 0;
+    if (outline->first[1] < 3) return -1;
     Filling f = {.at = outline->at, .slack = slack};
     f.corner = sm_alloc((size_t)room, sizeof *f.corner);
     f.hole = sm_alloc((size_t)outline->rings, sizeof *f.hole);
@@ -237,8 +247,8 @@ bool sm_outline_fill(const SmOutline *outline, double slack, int (*triangle)[3])
         if (r > 0) f.hole[f.holes++] = rightmost;
     }
     f.left = room;
-    bool filled = join_holes(&f) && clip(&f, triangle);
+    bool filled = join_holes(&f) && clip(&f, triangle, &count);
     free(f.corner);
     free(f.hole);
-    return filled;
+    return filled ? count : -1;
 }

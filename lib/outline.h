@@ -2,8 +2,6 @@
 #ifndef SM_OUTLINE_H
 #define SM_OUTLINE_H
 
-#include <stdbool.h>
-
 /* Rings of points: ring r is at[first[r]] .. at[first[r + 1] - 1], each point once. The first goes
  * round its outside counter-clockwise, the others are holes in it and go clockwise. */
 typedef struct {
@@ -12,16 +10,17 @@ typedef struct {
     const double (*at)[2];
 } SmOutline;
 
-/* Triangles that an outline of that many points and rings is filled with. */
+/* Triangles that an outline of that many points and rings is filled with, at most. */
 static inline long sm_outline_triangles(int points, int rings)
 {
     return (long)points + 2L * (rings - 1) - 2;
 }
 
-/* Fills the outline with triangles of its points, counter-clockwise, without others; `triangle` has
- * room for sm_outline_triangles(). Best shaped ears go first. What rounding has bent by less than
- * `slack` still counts as straight. False, with rubbish written, where rings cross. O(points^2) and
- * more where ears are rare; allocates. */
-bool sm_outline_fill(const SmOutline *outline, double slack, int (*triangle)[3]);
+/* Fills the outline with triangles of three of its points, counter-clockwise, without others;
+ * `triangle` has room for sm_outline_triangles(). Best shaped ears go first. What rounding has bent
+ * by less than `slack` still counts as straight: of that some triangles may have no area, and where
+ * rings touch there may be fewer of them. Their number, or -1, with rubbish written, where rings
+ * cross. O(points^2) and more where ears are rare; allocates. */
+long sm_outline_fill(const SmOutline *outline, double slack, int (*triangle)[3]);
 
 #endif

@@ -316,6 +316,42 @@ static void everything_into_small_cubes(void **state)
     sm_mesh_free(&mesh);
 }
 
+/* Some triangles of the surface: with a corner twice or three times, those of others again or
+ * turned over, of no area, as thin as rounding. Split or left, never harmed. */
+static void triangles_that_should_not_be_do_no_harm(void **state)
+{
+    (void)state;
+    const double c[3] = {5, 5, 4.9}, u[3] = {30, 0, 1}, v[3] = {0, 30, 1};
+    for (int kind = 0; kind < 6; kind++)
+        for (int many = 1; many < 60; many += 29) {
+            static const int odd[6][3] = {{0, 4, 0}, {4, 4, 4}, {0, 4, 5}, {5, 4, 0}, {0, 4, 8}};
+            SmMesh small = cube(), mesh = sm_mesh_new(9, 12 + many);
+            memcpy(mesh.position, small.position, 8 * sizeof *mesh.position);
+            memcpy(mesh.triangle, small.triangle, 12 * sizeof *mesh.triangle);
+            for (int d = 0; d < 3; d++)
+                mesh.position[8][d] = (mesh.position[0][d] + mesh.position[4][d]) / 2;
+            for (int n = 0; n < many; n++) memcpy(mesh.triangle[12 + n], odd[kind], sizeof *odd);
+            if (kind == 5) {
+                mesh.position[8][0] = 1e-17;
+                for (int n = 0; n < many; n++)
+                    memcpy(mesh.triangle[12 + n], ((int[3]){0, 8, 4}), sizeof *odd);
+            }
+            SmCut cut;
+            sm_cut_init(&cut, 2);
+            for (int n = 0; n < 3; n++) {
+                long first = sheet(&cut, 3, 3, c, u, v, n);
+                assert_in_range(sm_slit(&mesh, &cut, first, 1, NULL), SM_SLIT_MISSED, SM_SLIT_LEFT);
+                assert_true(mesh.triangle_count >= 12);
+            }
+            for (long t = 0; t < mesh.triangle_count; t++)
+                for (int i = 0; i < 3; i++)
+                    assert_in_range(mesh.triangle[t][i], 0, mesh.vertex_count - 1);
+            sm_cut_free(&cut);
+            sm_mesh_free(&small);
+            sm_mesh_free(&mesh);
+        }
+}
+
 /* Inside out: closed, and inside out still. Open, or two that cross: split along the cut, or
  * closed where that is possible; never harmed. */
 static void surfaces_that_are_not_solid_are_split_too(void **state)
@@ -366,6 +402,7 @@ int main(void)
         cmocka_unit_test(a_cut_within_the_material_is_a_hollow),
         cmocka_unit_test(odd_sheets_are_cut_triangle_by_triangle),
         cmocka_unit_test(everything_into_small_cubes),
+        cmocka_unit_test(triangles_that_should_not_be_do_no_harm),
         cmocka_unit_test(surfaces_that_are_not_solid_are_split_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
