@@ -140,11 +140,19 @@ void oct_plots_add(OctPlots *rows, long row, int item, int also)
     if (rows->pairs) rows->also[rows->first[row] + at] = also;
 }
 
+/* Looks at all of them: nobody can foresee where it is. */
+long oct_plots_find(const OctPlots *rows, long row, int item)
+{
+    const int *from = rows->item + rows->first[row];
+    int count = (int)(rows->end[row] - rows->first[row]), found = -1;
+    for (int n = 0; n < count; n++) found = from[n] == item ? n : found;
+    return found < 0 ? -1 : rows->first[row] + found;
+}
+
 bool oct_plots_remove(OctPlots *rows, long row, int item)
 {
-    long at = rows->first[row], last = rows->end[row] - 1;
-    while (at <= last && rows->item[at] != item) at++;
-    if (at > last) return false;
+    long at = oct_plots_find(rows, row, item), last = rows->end[row] - 1;
+    if (at < 0) return false;
     rows->item[at] = rows->item[last];
     if (rows->pairs) rows->also[at] = rows->also[last];
     rows->end[row] = last;

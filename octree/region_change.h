@@ -6,13 +6,17 @@
 #ifndef OCT_REGION_CHANGE_H
 #define OCT_REGION_CHANGE_H
 
+#include <stdint.h>
+
 #include "cover.h"
 #include "graph_change.h"
 #include "halves.h"
+#include "sheaf.h"
 
 typedef struct {
     OctStructure *s;
-    OctIntervals intervals;
+    OctReach reach;
+    OctSheaf sheaf;
     OctPlots own;    /* summation nodes that every leaf owns, rising */
     OctPlots taken;  /* leaves that it takes, and their distances */
     OctPlots region; /* of the regions, whose arrays these are */
@@ -30,9 +34,13 @@ typedef struct {
     } * doubt; /* leaves that may not own the leaf that owns them */
     long doubt_count;
     struct OctSource *source;
+    struct OctOrder {
+        uint64_t along; /* the Morton curve */
+        int leaf;
+    } * order;
     int widest; /* reach of any leaf so far */
     long leaf_space, node_space;
-    long list_room, fresh_room, fresh_end_room, doubt_room, source_room, region_room;
+    long list_room, fresh_room, fresh_end_room, doubt_room, source_room, region_room, order_room;
 } OctRegionChange;
 
 /* Takes the arrays of the structure's regions over, which must stay where it is. `below` is

@@ -99,7 +99,7 @@ const OctChange *oct_resample_update(OctStructure *s)
     OctResample *r = s->resample;
     OctGraphChange *graph = &r->graph;
     OctChange *change = &r->tree.change;
-    OctReach *reach = &r->region.intervals.reach;
+    OctReach *reach = &r->region.reach;
     oct_tree_change_settle(&r->tree);
     weigh(s, change);
     oct_graph_change_find(graph, change);
