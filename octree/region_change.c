@@ -143,21 +143,26 @@ static void list_leaf(OctRegionChange *c, int leaf, unsigned char what)
     c->list[c->list_count++] = leaf;
 }
 
-void oct_region_change_mark(OctRegionChange *c, const OctEdge *edge, long count)
+void oct_region_change_note(OctRegionChange *c, const OctEdge *edge, long count)
+{
+    ROOM(c->source, c->source_count, 2 * count, c->source_room);
+    for (long e = 0; e < count; e++) {
+        c->source[c->source_count++] = (struct OctSource){edge[e].leaf, edge[e].length};
+        c->source[c->source_count++] = (struct OctSource){edge[e].other, edge[e].length};
+    }
+}
+
+void oct_region_change_mark(OctRegionChange *c)
 {
     OctReach *reach = &c->reach;
-    if (count == 0) return;
-    ROOM(c->source, 0, 2 * count, c->source_room);
-    for (long e = 0; e < count; e++) {
-        c->source[2 * e] = (struct OctSource){edge[e].leaf, edge[e].length};
-        c->source[2 * e + 1] = (struct OctSource){edge[e].other, edge[e].length};
-    }
-    oct_reach_from_all(reach, 2 * count, c->source, c->widest);
+    if (c->source_count == 0) return;
+    oct_reach_from_all(reach, c->source_count, c->source, c->widest);
     for (long n = 0; n < reach->count; n++) {
         int leaf = reach->reached[n];
         if (c->s->tree.node[leaf] >= 0 && reach->distance[leaf] <= reach_of(c, leaf))
             list_leaf(c, leaf, SEARCH);
     }
+    c->source_count = 0;
 }
 
 static bool owns(const OctRegionChange *c, int owner, int leaf)

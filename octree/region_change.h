@@ -33,7 +33,8 @@ typedef struct {
         int owner, leaf, distance;
     } * doubt; /* leaves that may not own the leaf that owns them */
     long doubt_count;
-    struct OctSource *source;
+    struct OctSource *source; /* [source_count] ends of edges */
+    long source_count;
     struct OctOrder {
         uint64_t along; /* the Morton curve */
         int leaf;
@@ -52,9 +53,10 @@ size_t oct_region_change_bytes(const OctRegionChange *change);
 /* Makes room for the leaves and nodes there are. */
 void oct_region_change_grow(OctRegionChange *change, const int *below);
 
-/* Marks the leaves whose own distances an edge can change, by the graph as it is: with the edges
- * that are to go, or that have come. */
-void oct_region_change_mark(OctRegionChange *change, const OctEdge *edge, long count);
+/* Notes edges that are to go, or that have come; then marks the leaves whose own distances those
+ * noted can change, by the graph as it is, which has all of them. */
+void oct_region_change_note(OctRegionChange *change, const OctEdge *edge, long count);
+void oct_region_change_mark(OctRegionChange *change);
 
 /* Makes the regions what they should be, of the graph as it is, and lists in `batch` which hold
  * other leaves than before. The structure's `w` has the widths of the new leaves. */

@@ -104,19 +104,6 @@ static void make_leaves(OctSheaf *s, long room)
     s->leaf_room = room;
 }
 
-/* The place of a leaf, of which there is room. */
-static inline long place_of(OctSheaf *s, int leaf)
-{
-    long at = s->leaf_at[leaf];
-    if (at >= 0) return at;
-    at = s->leaves++;
-    s->leaf_at[leaf] = (int)at;
-    s->leaf[at] = leaf;
-    s->distance[at] = s->beyond;
-    s->waiting[at] = false;
-    return at;
-}
-
 /* Where ways over the leaf at a place are shorter than known; appends to the queue who has not been
  * waiting there. Returns the queue's end. */
 static long spread(OctSheaf *s, long place, long end)
@@ -132,16 +119,26 @@ static long spread(OctSheaf *s, long place, long end)
         s->queue_room = 2 * (end + edges);
         s->queue = sm_realloc(s->queue, (size_t)s->queue_room, sizeof *s->queue);
     }
-    for (long e = g->first[leaf]; e < g->first[leaf] + edges; e++) {
-        OctLanes way = own + g->length[e];
-        if (s->leaf_at[g->to[e]] < 0 && !below(way, s->beyond)) continue;
-        long at = place_of(s, g->to[e]);
-        OctLanes known = s->distance[at];
-        if (!below(way, known)) continue;
-        s->distance[at] = least_of(way, known);
-        s->queue[end] = (int)at;
-        end += !s->waiting[at];
-        s->waiting[at] = true;
+    const int *restrict to = g->to + g->first[leaf], *restrict length = g->length + g->first[leaf];
+    OctLanes *restrict distance = s->distance, beyond = s->beyond;
+    int *restrict queue = s->queue;
+    bool *restrict waiting = s->waiting;
+    for (long e = 0; e < edges; e++) {
+        OctLanes way = own + length[e];
+        long at = s->leaf_at[to[e]];
+        if (at < 0) {
+            if (!below(way, beyond)) continue;
+            at = s->leaves++;
+            s->leaf_at[to[e]] = (int)at;
+            s->leaf[at] = to[e];
+            distance[at] = least_of(way, beyond);
+        } else {
+            if (!below(way, distance[at])) continue;
+            distance[at] = least_of(way, distance[at]);
+            if (waiting[at]) continue;
+        }
+        waiting[at] = true;
+        queue[end++] = (int)at;
     }
     return end;
 }
@@ -149,18 +146,21 @@ static long spread(OctSheaf *s, long place, long end)
 /* Distances of all leaves that are within reach. */
 static void find_distances(OctSheaf *s, int count, const int *leaf)
 {
-    long end = 0;
+    long end;
     make_leaves(s, OCT_SHEAF);
     if (s->queue_room < OCT_SHEAF) {
         s->queue_room = OCT_SHEAF;
         s->queue = sm_realloc(s->queue, (size_t)s->queue_room, sizeof *s->queue);
     }
     for (int l = 0; l < count; l++) {
-        long at = place_of(s, leaf[l]);
-        s->distance[at][l] = 0;
-        s->waiting[at] = true;
-        s->queue[end++] = (int)at;
+        s->leaf_at[leaf[l]] = l;
+        s->leaf[l] = leaf[l];
+        s->distance[l] = s->beyond;
+        s->distance[l][l] = 0;
+        s->waiting[l] = true;
+        s->queue[l] = l;
     }
+    s->leaves = end = count;
     for (long n = 0; n < end; n++) end = spread(s, s->queue[n], end);
 }
 

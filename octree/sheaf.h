@@ -47,7 +47,7 @@ size_t oct_sheaf_bytes(const OctSheaf *sheaf);
 /* Makes the scratch good for as many numbers, between searches. */
 void oct_sheaf_grow(OctSheaf *sheaf, long nodes, long leaves, const int *below);
 
-/* What `count` leaves of widths w own, who reach so far (halves.h): the same as
+/* What `count` different leaves of widths w own, who reach so far (halves.h): the same as
  * oct_interval_find() of each. Cost: what all of them reach together, times its edges, for each
  * time that a distance to it falls; so leaves should be near each other. */
 void oct_sheaf_find(OctSheaf *sheaf, int count, const int *leaf, const int *w, const int *reaches);
