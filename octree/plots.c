@@ -134,10 +134,15 @@ void oct_plots_resize(OctPlots *rows, long row, long count)
 
 void oct_plots_add(OctPlots *rows, long row, int item, int also)
 {
-    long at = rows->end[row] - rows->first[row];
-    oct_plots_resize(rows, row, at + 1);
-    rows->item[rows->first[row] + at] = item;
-    if (rows->pairs) rows->also[rows->first[row] + at] = also;
+    long count = rows->end[row] - rows->first[row];
+    if (count < rows->room[row]) {
+        rows->end[row]++;
+        rows->live++;
+    } else {
+        oct_plots_resize(rows, row, count + 1);
+    }
+    rows->item[rows->first[row] + count] = item;
+    if (rows->pairs) rows->also[rows->first[row] + count] = also;
 }
 
 /* Looks at all of them: nobody can foresee where it is. */
