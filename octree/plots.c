@@ -149,9 +149,12 @@ void oct_plots_add(OctPlots *rows, long row, int item, int also)
 long oct_plots_find(const OctPlots *rows, long row, int item)
 {
     const int *from = rows->item + rows->first[row];
-    int count = (int)(rows->end[row] - rows->first[row]), found = -1;
-    for (int n = 0; n < count; n++) found = from[n] == item ? n : found;
-    return found < 0 ? -1 : rows->first[row] + found;
+    int count = (int)(rows->end[row] - rows->first[row]), found = count;
+    for (int n = 0; n < count; n++) {
+        int at = from[n] == item ? n : count;
+        found = at < found ? at : found;
+    }
+    return found == count ? -1 : rows->first[row] + found;
 }
 
 bool oct_plots_remove(OctPlots *rows, long row, int item)
