@@ -7,22 +7,12 @@
 #include <string.h>
 
 #include "error.h"
+#include "morton.h"
 
 enum {
     BITS = 21,        /* of a cube's coordinate */
     FAR = INT_MAX / 2 /* a way that has not been found */
 };
-
-/* Bits of a coordinate with two others' places between them: x, y, z in turn make the Morton
- * curve. */
-static uint64_t apart(uint64_t bits)
-{
-    bits = (bits | bits << 32) & 0x1f00000000ffff;
-    bits = (bits | bits << 16) & 0x1f0000ff0000ff;
-    bits = (bits | bits << 8) & 0x100f00f00f00f00f;
-    bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
-    return (bits | bits << 2) & 0x1249249249249249;
-}
 
 /* A node and the cube that it is in. */
 typedef struct {
@@ -60,7 +50,7 @@ static Place *sort_nodes(const SmCollideRest *rest, double width)
             double at = floor(rest->x0[i][d] / width) + (1 << (BITS - 1));
             at = at < 0 ? 0 : at;
             uint64_t cube = (uint64_t)(at < (1 << BITS) - 1 ? at : (1 << BITS) - 1);
-            place[i].cube |= apart(cube) << d;
+            place[i].cube |= sm_morton_apart(cube) << d;
         }
     }
     return sort_places(place, rest->nodes);

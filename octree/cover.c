@@ -51,15 +51,10 @@ void oct_cover_finish(OctCover *cover)
 bool oct_cover_holds(const OctTree *tree, const int *member, long count, int leaf)
 {
     for (int node = tree->node[leaf]; node >= 0; node = tree->parent[node]) {
-        long low = 0, high = count;
-        while (low < high) {
-            long middle = low + (high - low) / 2;
-            if (member[middle] < node)
-                low = middle + 1;
-            else
-                high = middle;
-        }
-        if (low < count && member[low] == node) return true;
+        const int *from = member; /* of the `left` members from there on one may be it */
+        for (long left = count; left > 1; left -= left / 2)
+            from += from[left / 2] <= node ? left / 2 : 0;
+        if (count > 0 && *from == node) return true;
     }
     return false;
 }

@@ -65,14 +65,20 @@ static long spread(OctReach *reach, int leaf, int k, int most, int place, long e
         reach->room = 2 * need;
         reach->entry = sm_realloc(reach->entry, (size_t)reach->room, sizeof *reach->entry);
     }
-    for (long e = g->first[leaf]; e < end; e++) {
-        int to = g->to[e], d = k + g->length[e], known = reach->distance[to];
-        if (d >= (known <= most ? known : most + 1)) continue; /* one branch: most are not taken */
-        reach->distance[to] = d;
-        int b = place + g->length[e];
+    struct OctEntry *nearer = reach->entry + entries; /* the lengths in the place of `before` */
+    const int *restrict to = g->to, *restrict length = g->length, *restrict known = reach->distance;
+    for (long e = g->first[leaf]; e < end; e++) { /* nobody can foresee which: no branch */
+        int d = k + length[e];
+        *nearer = (struct OctEntry){to[e], length[e]};
+        nearer += (d < known[to[e]]) & (d <= most);
+    }
+    for (long more = nearer - reach->entry; entries < more; entries++) {
+        struct OctEntry *entry = reach->entry + entries;
+        int b = place + entry->before;
         if (b > reach->longest) b -= reach->longest + 1;
-        reach->entry[entries] = (struct OctEntry){to, reach->bucket[b]};
-        reach->bucket[b] = (int)entries++;
+        reach->distance[entry->leaf] = k + entry->before;
+        entry->before = reach->bucket[b];
+        reach->bucket[b] = (int)entries;
     }
     return entries - before;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { FEW = 192 };
+
 void oct_lists_init(OctLists *lists, long leaves)
 {
     *lists = (OctLists){.leaves = leaves, .blocks = (leaves + OCT_BLOCK - 1) / OCT_BLOCK};
@@ -46,26 +48,30 @@ int oct_lists_compare(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* Shell's sort, with the gaps of Ciura 2001. */
+/* Every number goes to the place that those less than it, and equal ones before it, leave: no
+ * branch that nobody can foresee, and many comparisons at once. */
+static void sort_few(int *restrict item, int count)
+{
+    int place[FEW], from[FEW];
+    for (int n = 0; n < count; n++) {
+        int here = item[n], before = 0;
+        for (int i = 0; i < n; i++) before += item[i] <= here;
+        for (int i = n + 1; i < count; i++) before += item[i] < here;
+        place[n] = before;
+        from[n] = here;
+    }
+    for (int n = 0; n < count; n++) item[place[n]] = from[n];
+}
+
 void oct_lists_sort(int *item, long count)
 {
-    static const int gap[] = {132, 57, 23, 10, 4, 1};
-    enum { FEW = 512 };
     bool rising = true;
     for (long n = 1; n < count && rising; n++) rising = item[n - 1] <= item[n];
     if (rising) return;
-    if (count > FEW) {
+    if (count <= FEW)
+        sort_few(item, (int)count);
+    else
         qsort(item, (size_t)count, sizeof *item, oct_lists_compare);
-        return;
-    }
-    for (size_t g = 0; g < sizeof gap / sizeof *gap; g++)
-        for (long n = gap[g]; n < count; n++) {
-            int here = item[n];
-            long to = n;
-            for (; to >= gap[g] && item[to - gap[g]] > here; to -= gap[g])
-                item[to] = item[to - gap[g]];
-            item[to] = here;
-        }
 }
 
 void oct_lists_pack(OctLists *lists, long **first, int **item)

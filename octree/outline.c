@@ -12,11 +12,11 @@ static inline int level(int off, bool beyond, int own, int half)
 
 /* The side of a leaf at whose middle another one is, or SM_COLLIDE_FACES: the finest cell across
  * it, the higher one where the middle is between two, is in that leaf. */
-static int side_of(const OctTree *tree, int node, int other)
+static int side_of(const struct OctOutlined *a, const struct OctOutlined *b)
 {
-    const int *a = tree->centre[node], *b = tree->centre[other];
-    int own = tree->size[node] / 2, half = tree->size[other] / 2, touch = own + half;
-    int off[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    int own = a->half, half = b->half, touch = own + half;
+    int off[3] = {b->centre[0] - a->centre[0], b->centre[1] - a->centre[1],
+                  b->centre[2] - a->centre[2]};
     bool x = abs(off[0]) >= touch, y = abs(off[1]) >= touch, z = abs(off[2]) >= touch;
     if (x + y + z != 1 ||
         !(level(off[0], x, own, half) & level(off[1], y, own, half) & level(off[2], z, own, half)))
@@ -28,26 +28,30 @@ static int side_of(const OctTree *tree, int node, int other)
 static void number_nodes(const OctTree *tree, OctOutline *o)
 {
     o->leaf = sm_alloc((size_t)tree->live, sizeof *o->leaf);
-    o->node = sm_alloc((size_t)tree->leaves, sizeof *o->node);
+    o->of = sm_alloc((size_t)tree->leaves, sizeof *o->of);
     o->leaves = tree->leaves;
     for (int leaf = 0; leaf < tree->leaves; leaf++) {
-        if (tree->node[leaf] < 0) continue;
-        o->node[leaf] = (int)o->rest.nodes;
+        int node = tree->node[leaf];
+        if (node < 0) continue;
+        struct OctOutlined *of = &o->of[leaf];
+        memcpy(of->centre, tree->centre[node], sizeof of->centre);
+        of->half = tree->size[node] / 2;
+        of->number = (int)o->rest.nodes;
         o->leaf[o->rest.nodes++] = leaf;
     }
 }
 
 /* Edges, and the leaves across the faces: a leaf's edges follow those of the one before it. */
-static void describe_edges(const OctStructure *s, OctOutline *o, long n)
+static void describe_edges(const OctGraph *graph, OctOutline *o, long n)
 {
-    const OctGraph *graph = &s->graph;
     int across[SM_COLLIDE_FACES + 1] = {-1, -1, -1, -1, -1, -1};
+    const struct OctOutlined own = o->of[o->leaf[n]];
     long at = o->first[n], end = oct_graph_end(graph, o->leaf[n]);
     for (long e = graph->first[o->leaf[n]]; e < end; e++, at++) {
-        int to = graph->to[e], side = side_of(&s->tree, s->tree.node[o->leaf[n]], s->tree.node[to]);
-        o->to[at] = o->node[to];
+        const struct OctOutlined *to = &o->of[graph->to[e]];
+        o->to[at] = to->number;
         o->length[at] = graph->length[e];
-        across[side] = o->to[at];
+        across[side_of(&own, to)] = to->number;
     }
     memcpy(o->across[n], across, sizeof o->across[n]);
     o->first[n + 1] = at;
@@ -61,7 +65,7 @@ static void describe_node(const OctStructure *s, OctOutline *o, long n)
     o->size[n] = 0.5 * s->tree.size[node];
     o->radius[n] = 0.25 * s->tree.size[node];
     for (int d = 0; d < 3; d++) o->x0[n][d] = 0.5 * s->tree.centre[node][d];
-    describe_edges(s, o, n);
+    describe_edges(&s->graph, o, n);
 }
 
 void oct_outline_build(const OctStructure *s, OctOutline *o)
@@ -97,8 +101,8 @@ void oct_outline_build(const OctStructure *s, OctOutline *o)
 
 void oct_outline_free(OctOutline *o)
 {
-    void *all[] = {o->leaf,   o->node, o->first, o->to,     o->length, o->carrier,
-                   o->across, o->x0,   o->size,  o->radius, o->mass};
+    void *all[] = {o->leaf,   o->of, o->first, o->to,     o->length, o->carrier,
+                   o->across, o->x0, o->size,  o->radius, o->mass};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *o = (OctOutline){0};
 }
@@ -107,6 +111,6 @@ long oct_outline_bytes(const OctOutline *o)
 {
     long node = (long)(2 * sizeof(int) + sizeof *o->across + sizeof *o->x0 + sizeof *o->first +
                        3 * sizeof(double));
-    return o->rest.nodes * node + o->leaves * (long)sizeof *o->node +
+    return o->rest.nodes * node + o->leaves * (long)sizeof *o->of +
            o->first[o->rest.nodes] * (long)(2 * sizeof(int));
 }

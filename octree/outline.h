@@ -11,8 +11,10 @@ typedef struct {
     SmCollideRest rest;
     int *leaf; /* [rest.nodes] a node's leaf, those that live, rising */
     long leaves;
-    int *node;   /* [leaves] a leaf's node */
-    long *first; /* of the rest graph */
+    struct OctOutlined {
+        int centre[3], half, number; /* half finest cells; its node */
+    } * of;                          /* [leaves] where a leaf is, in one place for its neighbours */
+    long *first;                     /* of the rest graph */
     int *to, *length;
     int *carrier, (*across)[6];
     double (*x0)[3], *size, *radius, *mass;

@@ -134,17 +134,33 @@ void oct_plots_resize(OctPlots *rows, long row, long count)
 
 void oct_plots_add(OctPlots *rows, long row, int item, int also)
 {
-    long at = rows->end[row] - rows->first[row];
-    oct_plots_resize(rows, row, at + 1);
-    rows->item[rows->first[row] + at] = item;
-    if (rows->pairs) rows->also[rows->first[row] + at] = also;
+    long count = rows->end[row] - rows->first[row];
+    if (count < rows->room[row]) {
+        rows->end[row]++;
+        rows->live++;
+    } else {
+        oct_plots_resize(rows, row, count + 1);
+    }
+    rows->item[rows->first[row] + count] = item;
+    if (rows->pairs) rows->also[rows->first[row] + count] = also;
+}
+
+/* Looks at all of them: nobody can foresee where it is. */
+long oct_plots_find(const OctPlots *rows, long row, int item)
+{
+    const int *from = rows->item + rows->first[row];
+    int count = (int)(rows->end[row] - rows->first[row]), found = count;
+    for (int n = 0; n < count; n++) {
+        int at = from[n] == item ? n : count;
+        found = at < found ? at : found;
+    }
+    return found == count ? -1 : rows->first[row] + found;
 }
 
 bool oct_plots_remove(OctPlots *rows, long row, int item)
 {
-    long at = rows->first[row], last = rows->end[row] - 1;
-    while (at <= last && rows->item[at] != item) at++;
-    if (at > last) return false;
+    long at = oct_plots_find(rows, row, item), last = rows->end[row] - 1;
+    if (at < 0) return false;
     rows->item[at] = rows->item[last];
     if (rows->pairs) rows->also[at] = rows->also[last];
     rows->end[row] = last;

@@ -40,6 +40,9 @@ void oct_plots_resize(OctPlots *rows, long row, long count);
 /* Appends to a row; `also` counts in pairs only. */
 void oct_plots_add(OctPlots *rows, long row, int item, int also);
 
+/* Place in `item` of the first such item of a row, or -1. O(items of the row). */
+long oct_plots_find(const OctPlots *rows, long row, int item);
+
 /* Takes an item out of a row, whose last takes its place; false if it is not there. */
 bool oct_plots_remove(OctPlots *rows, long row, int item);
 

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/morton.h"
+
 /* What is to be done about a leaf. */
 enum {
     SEARCH = 1, /* what it owns may change */
@@ -53,13 +55,20 @@ static void make_nodes(OctRegionChange *c, long to)
     c->node_space = to;
 }
 
+static void grow_scratch(OctRegionChange *c, const int *below)
+{
+    oct_reach_grow(&c->reach, c->leaf_space);
+    oct_sheaf_grow(&c->sheaf, c->node_space, c->leaf_space, below);
+}
+
 void oct_region_change_init(OctRegionChange *c, OctStructure *structure, const int *below)
 {
     const OctTree *tree = &structure->tree;
     OctRegions *regions = &structure->regions;
     OctHalves halves;
     *c = (OctRegionChange){.s = structure, .leaf_space = tree->leaves, .node_space = tree->nodes};
-    oct_interval_init(&c->intervals, tree, &structure->graph, below);
+    oct_reach_init(&c->reach, &structure->graph);
+    oct_sheaf_init(&c->sheaf, tree, &c->reach);
     oct_halves_build(tree, &structure->graph, structure->w, structure->options.epsilon, below,
                      &halves);
     oct_plots_adopt(&c->own, tree->leaves, halves.first, halves.member, NULL);
@@ -76,31 +85,32 @@ void oct_region_change_init(OctRegionChange *c, OctStructure *structure, const i
     oct_plots_reserve(&c->region);
     make_leaves(c, oct_plots_room(tree->leaves));
     make_nodes(c, oct_plots_room(tree->nodes));
-    oct_interval_grow(&c->intervals, c->node_space, c->leaf_space, below);
+    grow_scratch(c, below);
     publish(c);
 }
 
 void oct_region_change_free(OctRegionChange *c)
 {
-    oct_interval_free(&c->intervals);
+    oct_reach_free(&c->reach);
+    oct_sheaf_free(&c->sheaf);
     oct_plots_free(&c->own);
     oct_plots_free(&c->taken);
     free(c->region.room);
     oct_cover_free(&c->cover);
-    void *all[] = {c->own_width, c->state,     c->stirred, c->list,
-                   c->fresh,     c->fresh_end, c->doubt,   c->source};
+    void *all[] = {c->own_width, c->state, c->stirred, c->list, c->fresh,
+                   c->fresh_end, c->doubt, c->source,  c->order};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *c = (OctRegionChange){0};
 }
 
 size_t oct_region_change_bytes(const OctRegionChange *c)
 {
-    const OctIntervals *s = &c->intervals;
+    const OctReach *reach = &c->reach;
     return oct_plots_bytes(&c->own) + oct_plots_bytes(&c->taken) + oct_plots_bytes(&c->region) +
-           (size_t)c->leaf_space * (sizeof *c->own_width + 1 + sizeof *s->member) +
-           (size_t)s->reach.leaves *
-               (sizeof *s->reach.distance + sizeof *s->reach.reached + sizeof *s->reach.nearest) +
-           (size_t)c->node_space * (3 + sizeof *s->interval + sizeof *s->queue) +
+           oct_sheaf_bytes(&c->sheaf) + (size_t)c->leaf_space * (sizeof *c->own_width + 1) +
+           (size_t)reach->leaves *
+               (sizeof *reach->distance + sizeof *reach->reached + sizeof *reach->nearest) +
+           (size_t)c->node_space * 2 + (size_t)c->order_room * sizeof *c->order +
            (size_t)c->list_room * sizeof *c->list + (size_t)c->fresh_room * sizeof *c->fresh +
            (size_t)c->fresh_end_room * sizeof *c->fresh_end +
            (size_t)c->doubt_room * sizeof *c->doubt + (size_t)c->source_room * sizeof *c->source;
@@ -120,9 +130,8 @@ void oct_region_change_grow(OctRegionChange *c, const int *below)
     long nodes = c->s->tree.nodes;
     grow_leaves(c);
     publish(c);
-    oct_interval_clear(&c->intervals);
     if (nodes > c->node_space) make_nodes(c, oct_plots_room(nodes));
-    oct_interval_grow(&c->intervals, c->node_space, c->leaf_space, below);
+    grow_scratch(c, below);
 }
 
 /* Puts a leaf on the list, where it is not yet. */
@@ -134,21 +143,26 @@ static void list_leaf(OctRegionChange *c, int leaf, unsigned char what)
     c->list[c->list_count++] = leaf;
 }
 
-void oct_region_change_mark(OctRegionChange *c, const OctEdge *edge, long count)
+void oct_region_change_note(OctRegionChange *c, const OctEdge *edge, long count)
 {
-    OctReach *reach = &c->intervals.reach;
-    if (count == 0) return;
-    ROOM(c->source, 0, 2 * count, c->source_room);
+    ROOM(c->source, c->source_count, 2 * count, c->source_room);
     for (long e = 0; e < count; e++) {
-        c->source[2 * e] = (struct OctSource){edge[e].leaf, edge[e].length};
-        c->source[2 * e + 1] = (struct OctSource){edge[e].other, edge[e].length};
+        c->source[c->source_count++] = (struct OctSource){edge[e].leaf, edge[e].length};
+        c->source[c->source_count++] = (struct OctSource){edge[e].other, edge[e].length};
     }
-    oct_reach_from_all(reach, 2 * count, c->source, c->widest);
+}
+
+void oct_region_change_mark(OctRegionChange *c)
+{
+    OctReach *reach = &c->reach;
+    if (c->source_count == 0) return;
+    oct_reach_from_all(reach, c->source_count, c->source, c->widest);
     for (long n = 0; n < reach->count; n++) {
         int leaf = reach->reached[n];
         if (c->s->tree.node[leaf] >= 0 && reach->distance[leaf] <= reach_of(c, leaf))
             list_leaf(c, leaf, SEARCH);
     }
+    c->source_count = 0;
 }
 
 static bool owns(const OctRegionChange *c, int owner, int leaf)
@@ -158,16 +172,17 @@ static bool owns(const OctRegionChange *c, int owner, int leaf)
 }
 
 /* Where leaf k, which is not searched, was owned by leaf i and is not any more: it takes i no more;
- * and where it owns i, i takes it. */
-static void part(OctRegionChange *c, int i, int k, bool dead)
+ * and where it owns i, i takes it. Leaf i is in a lane of the sheaf, or below 0 there and dead. */
+static void part(OctRegionChange *c, int i, int k, int lane)
 {
-    if (c->state[k] == SEARCH || (!dead && oct_interval_holds(&c->intervals, k))) return;
+    if (c->state[k] == SEARCH || (lane >= 0 && oct_sheaf_owns(&c->sheaf, lane, k))) return;
     if (oct_plots_remove(&c->taken, k, i)) list_leaf(c, k, REGION);
-    if (!dead && owns(c, k, i)) oct_plots_add(&c->taken, i, k, c->intervals.reach.distance[k]);
+    if (lane >= 0 && owns(c, k, i))
+        oct_plots_add(&c->taken, i, k, c->sheaf.distance[c->sheaf.leaf_at[k]][lane]);
 }
 
 /* All leaves that leaf i owned before and that live, new ones but not searched ones apart. */
-static void part_all(OctRegionChange *c, int i, bool dead)
+static void part_all(OctRegionChange *c, int i, int lane)
 {
     const OctTree *t = &c->s->tree;
     for (long m = c->own.first[i]; m < c->own.end[i]; m++) {
@@ -175,7 +190,7 @@ static void part_all(OctRegionChange *c, int i, bool dead)
         stack[0] = c->own.item[m];
         while (count > 0) {
             int node = stack[--count];
-            if (t->size[node] > 0 && !t->children[node]) part(c, i, t->leaf[node], dead);
+            if (t->size[node] > 0 && !t->children[node]) part(c, i, t->leaf[node], lane);
             for (int n = 0; n < t->children[node]; n++) stack[count++] = t->child[node] + n;
         }
     }
@@ -183,12 +198,12 @@ static void part_all(OctRegionChange *c, int i, bool dead)
 
 /* Of what leaf i, which has just been searched, took before, keeps what still holds: the others
  * are searched too, or dead, or i owns them now. */
-static void keep_taken(OctRegionChange *c, int i)
+static void keep_taken(OctRegionChange *c, int i, int lane)
 {
     long first = c->taken.first[i], end = c->taken.end[i], kept = first;
     for (long e = first; e < end; e++) {
         int k = c->taken.item[e];
-        if (c->s->tree.node[k] < 0 || c->state[k] == SEARCH || oct_interval_holds(&c->intervals, k))
+        if (c->s->tree.node[k] < 0 || c->state[k] == SEARCH || oct_sheaf_owns(&c->sheaf, lane, k))
             continue;
         c->taken.item[kept] = k;
         c->taken.also[kept++] = c->taken.also[e];
@@ -196,25 +211,47 @@ static void keep_taken(OctRegionChange *c, int i)
     oct_plots_resize(&c->taken, i, kept - first);
 }
 
-/* What leaf number n of the list owns now goes to `fresh`, what may not own it to `doubt`. */
-static void search(OctRegionChange *c, long n)
+/* Leaves that the sheaf's leaves, from number n of the list on, own beyond the others' widths: they
+ * may not own them. */
+static void note_doubts(OctRegionChange *c, long n)
 {
-    OctIntervals *s = &c->intervals;
-    int i = c->list[n], w = c->s->w[i];
-    long from = n ? c->fresh_end[n - 1] : 0;
-    oct_interval_find(s, i, w, reach_of(c, i));
-    c->own_width[i] = s->width;
-    ROOM(c->fresh, from, s->members, c->fresh_room);
-    if (s->members > 0) memcpy(c->fresh + from, s->member, (size_t)s->members * sizeof *s->member);
-    c->fresh_end[n] = from + s->members;
-    ROOM(c->doubt, c->doubt_count, s->reach.count, c->doubt_room);
-    for (long r = 0; r < s->reach.count; r++) {
-        int j = s->reach.reached[r], d = s->reach.distance[j];
-        if (d <= c->s->w[j] || (d > w && !oct_interval_holds(s, j))) continue;
-        c->doubt[c->doubt_count++] = (struct OctDoubt){i, j, d};
+    const OctSheaf *s = &c->sheaf;
+    for (long at = 0; at < s->leaves; at++) {
+        int leaf = s->leaf[at];
+        unsigned lanes = s->owned[at] & oct_lanes_beyond(s->distance[at], c->s->w[leaf]);
+        if (!lanes) continue;
+        ROOM(c->doubt, c->doubt_count, OCT_SHEAF, c->doubt_room);
+        for (; lanes; lanes &= lanes - 1) {
+            int lane = __builtin_ctz(lanes);
+            c->doubt[c->doubt_count++] =
+                (struct OctDoubt){c->list[n + lane], leaf, s->distance[at][lane]};
+        }
     }
-    keep_taken(c, i);
-    part_all(c, i, false);
+}
+
+/* What leaves number n of the list and some more own now goes to `fresh`, what may not own them to
+ * `doubt`. */
+static void search(OctRegionChange *c, long n, int count)
+{
+    int w[OCT_SHEAF], reaches[OCT_SHEAF];
+    for (int lane = 0; lane < count; lane++) {
+        w[lane] = c->s->w[c->list[n + lane]];
+        reaches[lane] = reach_of(c, c->list[n + lane]);
+    }
+    oct_sheaf_find(&c->sheaf, count, c->list + n, w, reaches);
+    note_doubts(c, n);
+    for (int lane = 0; lane < count; lane++) {
+        int i = c->list[n + lane], members = c->sheaf.members[lane];
+        long from = n + lane ? c->fresh_end[n + lane - 1] : 0;
+        c->own_width[i] = c->sheaf.width[lane];
+        ROOM(c->fresh, from, members, c->fresh_room);
+        if (members > 0)
+            memcpy(c->fresh + from, oct_sheaf_member(&c->sheaf, lane),
+                   (size_t)members * sizeof *c->fresh);
+        c->fresh_end[n + lane] = from + members;
+        keep_taken(c, i, lane);
+        part_all(c, i, lane);
+    }
 }
 
 /* Marks all above a node. */
@@ -263,7 +300,7 @@ static void join(OctRegionChange *c, int i, OctChange *batch)
     }
     regions->width[i] = width;
     regions->size[i] = 0;
-    for (long n = 0; n < count; n++) regions->size[i] += c->intervals.below[item[n]];
+    for (long n = 0; n < count; n++) regions->size[i] += c->sheaf.below[item[n]];
     if (!replace(c, &c->region, i, item, count)) return;
     ROOM(batch->region, batch->region_count, 1, c->region_room);
     batch->region[batch->region_count++] = i;
@@ -272,7 +309,7 @@ static void join(OctRegionChange *c, int i, OctChange *batch)
 /* A leaf that is no more owns nothing and takes nothing. */
 static void bury(OctRegionChange *c, int leaf)
 {
-    part_all(c, leaf, true);
+    part_all(c, leaf, -1);
     oct_plots_resize(&c->own, leaf, 0);
     oct_plots_resize(&c->taken, leaf, 0);
     oct_plots_resize(&c->region, leaf, 0);
@@ -284,10 +321,8 @@ static void bury(OctRegionChange *c, int leaf)
 static void take(OctRegionChange *c, const struct OctDoubt *d)
 {
     OctPlots *taken = &c->taken;
-    long at = taken->first[d->leaf], end = taken->end[d->leaf];
-    if (c->state[d->leaf] == SEARCH) at = end;
-    while (at < end && taken->item[at] != d->owner) at++;
-    if (at < end) {
+    long at = c->state[d->leaf] == SEARCH ? -1 : oct_plots_find(taken, d->leaf, d->owner);
+    if (at >= 0) {
         if (taken->also[at] == d->distance) return;
         taken->also[at] = d->distance;
     } else {
@@ -297,12 +332,37 @@ static void take(OctRegionChange *c, const struct OctDoubt *d)
     list_leaf(c, d->leaf, REGION);
 }
 
+static int compare_order(const void *a, const void *b)
+{
+    const struct OctOrder *p = a, *q = b;
+    if (p->along != q->along) return p->along < q->along ? -1 : 1;
+    return (p->leaf > q->leaf) - (p->leaf < q->leaf);
+}
+
+/* Brings leaves that are near each other together on the list. */
+static void order_list(OctRegionChange *c)
+{
+    const OctTree *t = &c->s->tree;
+    ROOM(c->order, 0, c->search_count, c->order_room);
+    for (long n = 0; n < c->search_count; n++) {
+        const int *centre = t->centre[t->node[c->list[n]]];
+        c->order[n].leaf = c->list[n];
+        c->order[n].along =
+            sm_morton((uint64_t)centre[0], (uint64_t)centre[1], (uint64_t)centre[2]);
+    }
+    if (c->search_count > 0)
+        qsort(c->order, (size_t)c->search_count, sizeof *c->order, compare_order);
+    for (long n = 0; n < c->search_count; n++) c->list[n] = c->order[n].leaf;
+}
+
 static void search_all(OctRegionChange *c)
 {
     long count = c->search_count;
     c->doubt_count = 0;
     ROOM(c->fresh_end, 0, count, c->fresh_end_room);
-    for (long n = 0; n < count; n++) search(c, n);
+    order_list(c);
+    for (long n = 0; n < count; n += OCT_SHEAF)
+        search(c, n, (int)(count - n < OCT_SHEAF ? count - n : OCT_SHEAF));
     for (long n = 0; n < count; n++) {
         long from = n ? c->fresh_end[n - 1] : 0;
         replace(c, &c->own, c->list[n], c->fresh + from, c->fresh_end[n] - from);

@@ -6,13 +6,17 @@
 #ifndef OCT_REGION_CHANGE_H
 #define OCT_REGION_CHANGE_H
 
+#include <stdint.h>
+
 #include "cover.h"
 #include "graph_change.h"
 #include "halves.h"
+#include "sheaf.h"
 
 typedef struct {
     OctStructure *s;
-    OctIntervals intervals;
+    OctReach reach;
+    OctSheaf sheaf;
     OctPlots own;    /* summation nodes that every leaf owns, rising */
     OctPlots taken;  /* leaves that it takes, and their distances */
     OctPlots region; /* of the regions, whose arrays these are */
@@ -29,10 +33,15 @@ typedef struct {
         int owner, leaf, distance;
     } * doubt; /* leaves that may not own the leaf that owns them */
     long doubt_count;
-    struct OctSource *source;
+    struct OctSource *source; /* [source_count] ends of edges */
+    long source_count;
+    struct OctOrder {
+        uint64_t along; /* the Morton curve */
+        int leaf;
+    } * order;
     int widest; /* reach of any leaf so far */
     long leaf_space, node_space;
-    long list_room, fresh_room, fresh_end_room, doubt_room, source_room, region_room;
+    long list_room, fresh_room, fresh_end_room, doubt_room, source_room, region_room, order_room;
 } OctRegionChange;
 
 /* Takes the arrays of the structure's regions over, which must stay where it is. `below` is
@@ -44,9 +53,10 @@ size_t oct_region_change_bytes(const OctRegionChange *change);
 /* Makes room for the leaves and nodes there are. */
 void oct_region_change_grow(OctRegionChange *change, const int *below);
 
-/* Marks the leaves whose own distances an edge can change, by the graph as it is: with the edges
- * that are to go, or that have come. */
-void oct_region_change_mark(OctRegionChange *change, const OctEdge *edge, long count);
+/* Notes edges that are to go, or that have come; then marks the leaves whose own distances those
+ * noted can change, by the graph as it is, which has all of them. */
+void oct_region_change_note(OctRegionChange *change, const OctEdge *edge, long count);
+void oct_region_change_mark(OctRegionChange *change);
 
 /* Makes the regions what they should be, of the graph as it is, and lists in `batch` which hold
  * other leaves than before. The structure's `w` has the widths of the new leaves. */

@@ -99,20 +99,20 @@ const OctChange *oct_resample_update(OctStructure *s)
     OctResample *r = s->resample;
     OctGraphChange *graph = &r->graph;
     OctChange *change = &r->tree.change;
-    OctReach *reach = &r->region.intervals.reach;
+    OctReach *reach = &r->region.reach;
     oct_tree_change_settle(&r->tree);
     weigh(s, change);
     oct_graph_change_find(graph, change);
     oct_region_change_grow(&r->region, r->tree.below);
-    oct_region_change_mark(&r->region, graph->gone, graph->gone_count);
+    oct_region_change_note(&r->region, graph->gone, graph->gone_count);
+    oct_region_change_mark(&r->region);
     oct_graph_change_apply(graph, reach);
-    oct_region_change_mark(&r->region, graph->come, graph->come_count);
-    if (s->cut_known < s->cut.triangles) {
-        oct_graph_change_cut(graph, s->cut_known);
-        oct_region_change_mark(&r->region, graph->gone, graph->gone_count);
-        oct_graph_change_apply(graph, reach);
-        s->cut_known = s->cut.triangles;
-    }
+    oct_region_change_note(&r->region, graph->come, graph->come_count);
+    oct_graph_change_cut(graph, s->cut_known);
+    oct_region_change_note(&r->region, graph->gone, graph->gone_count);
+    oct_region_change_mark(&r->region);
+    oct_graph_change_apply(graph, reach);
+    s->cut_known = s->cut.triangles;
     oct_region_change_update(&r->region, change);
     return change;
 }

@@ -106,16 +106,21 @@ static long find_around(OctVisible *s, int i)
     for (long n = 0; n < found; n++) {
         int k = s->found[n];
         make_room(s, found + s->outside_count + s->joined->end[k] - s->joined->first[k]);
-        for (long e = s->joined->first[k]; e < s->joined->end[k]; e++) {
-            int j = s->joined->item[e];
-            if (s->mark[j]) continue;
-            bool outside = !meets(s, j, from, from, wide);
-            s->mark[j] = outside ? OUTSIDE : FOUND;
-            if (outside)
-                s->outside[s->outside_count++] = j;
+        const int *restrict item = s->joined->item;
+        int *restrict list = s->found, *restrict outside = s->outside;
+        unsigned char *restrict mark = s->mark;
+        long beyond = s->outside_count;
+        for (long e = s->joined->first[k], end = s->joined->end[k]; e < end; e++) {
+            int j = item[e];
+            if (mark[j]) continue;
+            bool near = meets(s, j, from, from, wide);
+            mark[j] = near ? FOUND : OUTSIDE;
+            if (near)
+                list[found++] = j;
             else
-                s->found[found++] = j;
+                outside[beyond++] = j;
         }
+        s->outside_count = beyond;
     }
     return found;
 }
