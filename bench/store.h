@@ -23,6 +23,17 @@ SmCode bench_load_rows(const char *path, BenchRow **rows, int *count, BenchMachi
                        SmError *error);
 void bench_rows_free(BenchRow *rows, int count);
 
+/* Where what is read goes. */
+typedef struct {
+    BenchRow **rows;
+    int *count;
+    BenchMachine *machine;
+} BenchRowFile;
+
+/* bench_load_rows() with another reader (samples.h), whose `record` is `file`. */
+SmCode bench_store_load(const char *path, void (*read)(BenchH5 *h5, void *record),
+                        BenchRowFile *file, SmError *error);
+
 /* Fails unless the open file says that it is a results file, of a schema from `oldest` to ours. */
 void bench_store_check_kind(BenchH5 *h5, int oldest);
 
