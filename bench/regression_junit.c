@@ -1,9 +1,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "quote.h"
+#include "export.h"
 #include "regression.h"
-#include "table.h"
 
 /* In an attribute or as text. What XML 1.0 or UTF-8 does not know becomes '?'. */
 static void xml_text(FILE *file, const char *text)
