@@ -87,7 +87,7 @@ static const BenchField row_fields[] = {
 };
 
 /* "fast_sum shape_matching ...": the columns of `stage`, in order. */
-static void stage_names(size_t size, char *names)
+void bench_store_stages(size_t size, char *names)
 {
     size_t used = 0;
     for (int stage = 0; stage < SM_STAGES; stage++)
@@ -99,7 +99,7 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
 {
     char name[16], stages[128];
     snprintf(name, sizeof name, "%03d", index);
-    stage_names(sizeof stages, stages);
+    bench_store_stages(sizeof stages, stages);
     hid_t group = bench_h5_group(h5, parent, name);
     bench_h5_fields(h5, group, row_fields, COUNT(row_fields), row);
     bench_h5_text(h5, group, "stages", stages);
@@ -142,7 +142,7 @@ SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
 static void read_samples(BenchH5 *h5, hid_t group, BenchRow *row)
 {
     char expected[128], stages[128];
-    stage_names(sizeof expected, expected);
+    bench_store_stages(sizeof expected, expected);
     bench_h5_read_text(h5, group, "stages", sizeof stages, stages);
     if (!h5->failed && strcmp(stages, expected) != 0)
         bench_h5_fail(h5, "its stages are '%s', not '%s'", stages, expected);

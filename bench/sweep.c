@@ -8,6 +8,7 @@
 #include "column.h"
 #include "draft.h"
 #include "front.h"
+#include "store.h"
 
 static const char file_kind[] = "shapebench sweep";
 
@@ -63,6 +64,7 @@ static void write_samples(BenchH5 *h5, hid_t group, const BenchSweep *sweep)
 static void write_file(BenchH5 *h5, const BenchSweep *sweep)
 {
     int schema = BENCH_SWEEP_SCHEMA, machine_count, plan_count, point_count;
+    char stages[128];
     const BenchPlan *plan = &sweep->plan;
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
     const BenchField *plan_fields = bench_plan_fields(&plan_count);
@@ -77,7 +79,8 @@ static void write_file(BenchH5 *h5, const BenchSweep *sweep)
     bench_h5_dataset(h5, group, "w", H5T_IEEE_F64LE, 1, &ws, plan->w);
     bench_h5_dataset(h5, group, "epsilon", H5T_IEEE_F64LE, 1, &epsilons, plan->epsilon);
     group = bench_h5_group(h5, h5->file, "points");
-    bench_h5_text(h5, group, "stages", "fast_sum shape_matching polar damping other");
+    bench_store_stages(sizeof stages, stages);
+    bench_h5_text(h5, group, "stages", stages);
     bench_h5_columns(h5, group, point_fields, point_count, sweep->point, sizeof *sweep->point,
                      sweep->count);
     write_samples(h5, group, sweep);
