@@ -2,7 +2,28 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "../lib/error.h"
+
+/* Bytes of the UTF-8 character at `text` that XML may hold, or 0. */
+static int character_length(const unsigned char *text)
+{
+    static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
+    unsigned c = text[0];
+    if (c < 0x80) return c >= 0x20 && c != 0x7f;
+    int length = c >= 0xf0 ? 4 : c >= 0xe0 ? 3 : 2;
+    if (c < 0xc0 || c >= 0xf8) return 0;
+    unsigned code = c & (0xffu >> (length + 1));
+    for (int i = 1; i < length; i++) {
+        if ((text[i] & 0xc0) != 0x80) return 0;
+        code = code << 6 | (text[i] & 0x3f);
+    }
+    bool surrogate = code >= 0xd800 && code < 0xe000;
+    bool beyond = code > 0x10ffff || code == 0xfffe || code == 0xffff;
+    return code < least[length] || surrogate || beyond ? 0 : length;
+}
 
 void bench_csv_text(FILE *file, const char *text)
 {
@@ -27,12 +48,17 @@ json_t *bench_json_text(const char *text)
 {
     json_t *value = json_string(text);
     if (value) return value;
-    char copy[1024];
-    size_t i = 0;
-    for (; text[i] && i < sizeof copy - 1; i++)
-        copy[i] = (unsigned char)text[i] < 128 ? text[i] : '?';
-    copy[i] = '\0';
-    return json_string(copy);
+    size_t size = strlen(text);
+    char *copy = sm_alloc(size + 1, 1);
+    memcpy(copy, text, size);
+    for (size_t i = 0; i < size;) {
+        int length = character_length((const unsigned char *)copy + i);
+        if (length == 0) copy[i] = '?';
+        i += length ? (size_t)length : 1;
+    }
+    value = json_string(copy);
+    free(copy);
+    return value;
 }
 
 json_t *bench_json_number(double value)
@@ -90,4 +116,24 @@ void bench_json_write(FILE *file, json_t *root)
     json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     fputc('\n', file);
     json_decref(root);
+}
+
+void bench_xml_text(FILE *file, const char *text)
+{
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        int length = character_length(c);
+        if (length == 0)
+            fputc('?', file);
+        else if (*c == '&')
+            fputs("&amp;", file);
+        else if (*c == '<')
+            fputs("&lt;", file);
+        else if (*c == '>')
+            fputs("&gt;", file);
+        else if (*c == '"')
+            fputs("&quot;", file);
+        else
+            fwrite(c, 1, (size_t)length, file);
+        c += length ? length : 1;
+    }
 }

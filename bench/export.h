@@ -1,4 +1,4 @@
-/* export.h - texts, numbers, records, and where they are from, as CSV and JSON take them. */
+/* export.h - texts, numbers, records, and where they are from, as CSV, JSON and XML take them. */
 #ifndef BENCH_EXPORT_H
 #define BENCH_EXPORT_H
 
@@ -27,5 +27,9 @@ json_t *bench_json_machine(const BenchMachine *machine);
 
 /* Writes it, nine digits a number, with an end of line, and frees it. */
 void bench_json_write(FILE *file, json_t *root);
+
+/* As text or in an attribute; bytes that are no UTF-8, and what XML 1.0 does not know, become '?'.
+ */
+void bench_xml_text(FILE *file, const char *text);
 
 #endif
