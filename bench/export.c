@@ -50,7 +50,7 @@ json_t *bench_json_text(const char *text)
     if (value) return value;
     size_t size = strlen(text);
     char *copy = sm_alloc(size + 1, 1);
-    memcpy(copy, text, size);
+    memcpy(copy, text, size + 1);
     for (size_t i = 0; i < size;) {
         int length = character_length((const unsigned char *)copy + i);
         if (length == 0) copy[i] = '?';
