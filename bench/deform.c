@@ -80,7 +80,7 @@ void bench_deform_smoothing(BenchLab *lab, const BenchMeasure *measure, BenchCur
         smooth(&block, w[c], half, curve);
         double mean = profile_of(&block, half, share);
         bench_curve_add(curve, w[c], mean, mean, mean);
-        keep_profile(lab, w[c], share, half);
+        if (curve->valid) keep_profile(lab, w[c], share, half);
         bench_block_free(&block);
     }
 }
