@@ -106,6 +106,18 @@ static void write_reasons(FILE *file, const BenchSweep *sweep)
     }
 }
 
+/* Times of different machines do not compare, nor does a front that is made of them. */
+static void write_hosts(FILE *file, const BenchSweep *sweep)
+{
+    for (long i = 1; i < sweep->count; i++) {
+        const char *first = sweep->point[0].host, *other = sweep->point[i].host;
+        if (!strcmp(first, other)) continue;
+        fprintf(file, "Points are of several hosts (%s, %s): times, and the front, mix them.\n",
+                first, other);
+        return;
+    }
+}
+
 static void write_text(FILE *file, const BenchSweep *sweep, const BenchGrid *grid)
 {
     const BenchPlan *plan = &sweep->plan;
@@ -123,6 +135,7 @@ static void write_text(FILE *file, const BenchSweep *sweep, const BenchGrid *gri
           "lattice's of equal width\n(w cells) at full resolution, of the body's size, rms and "
           "most. *: on the front of cost (ms/step) against deviation (path off).\n",
           file);
+    write_hosts(file, sweep);
     write_reasons(file, sweep);
 }
 
