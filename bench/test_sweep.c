@@ -17,7 +17,6 @@
 #include "front.h"
 #include "range.h"
 #include "sweep.h"
-#include "sweep_table.h"
 
 enum { POINT_BYTES = 1392 };
 
@@ -246,22 +245,6 @@ static BenchSweep make_sweep(double first)
         bench_sweep_add(&sweep, &point);
     }
     return sweep;
-}
-
-/* Points of two machines cannot be set beside each other without a word. */
-static void several_hosts_are_said(void **state)
-{
-    (void)state;
-    static char text[8192];
-    BenchSweep sweep = make_sweep(1.5);
-    for (int i = 0; i < 2; i++) {
-        if (i) strcpy(sweep.point[2].host, "there");
-        FILE *file = fmemopen(text, sizeof text, "w");
-        bench_sweep_table(file, BENCH_AS_TEXT, &sweep);
-        fclose(file);
-        assert_true(!strstr(text, "Points are of several hosts (here, there)") == !i);
-    }
-    bench_sweep_free(&sweep);
 }
 
 static void write_sweep(const char *path)
@@ -497,7 +480,6 @@ int main(void)
         cmocka_unit_test(plans_differ_in_words),
         cmocka_unit_test(the_front_is_marked),
         cmocka_unit_test(recommendations_meet_the_wish),
-        cmocka_unit_test(several_hosts_are_said),
         cmocka_unit_test(a_sweep_comes_back),
         cmocka_unit_test(merging_adds_and_refuses),
         cmocka_unit_test(foreign_and_cut_files),
