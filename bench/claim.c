@@ -113,6 +113,8 @@ static SmCode take_number(const Entry *entry, BenchClaim *claim, const Place *pl
     if (!said)
         return fail_at(place, "'%s': the paper '%s' has no number '%s' in reference/papers.cfg",
                        claim->name, claim->paper, entry->number);
+    if (!isfinite(said->value.value))
+        return fail_at(place, "'%s': the paper's '%s' cannot be read", claim->name, entry->number);
     claim->values = 1;
     claim->value[0] = said->value.value;
     claim->status = said->value.status;

@@ -1,11 +1,9 @@
 #include "claim_store.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "draft.h"
 #include "fit.h"
@@ -266,34 +264,44 @@ static int links_of(BenchH5 *h5, hid_t group)
     return (int)info.nlinks;
 }
 
-static void read_file(BenchH5 *h5, BenchFinding **findings, int *count, BenchCurve **curves,
-                      int *curve_count, BenchMachine *machine)
+/* Where what is read goes. */
+typedef struct {
+    BenchFinding **findings;
+    int *count;
+    BenchCurve **curves;
+    int *curve_count;
+    BenchMachine *machine;
+} File;
+
+static void read_file(BenchH5 *h5, void *record)
 {
+    File *file = record;
     int stored = 0, machine_count;
     const BenchField field = {"claims", BENCH_INT, 0, sizeof stored};
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
     bench_h5_check_kind(h5, file_kind, BENCH_CLAIM_SCHEMA, BENCH_CLAIM_SCHEMA);
     bench_h5_read_fields(h5, h5->file, &field, 1, &stored);
     hid_t group = bench_h5_find_group(h5, h5->file, "machine");
-    bench_h5_read_fields(h5, group, machine_fields, machine_count, machine);
+    bench_h5_read_fields(h5, group, machine_fields, machine_count, file->machine);
     hid_t claims = bench_h5_find_group(h5, h5->file, "claims");
     if (!h5->failed && links_of(h5, claims) != stored)
         bench_h5_fail(h5, "it holds another number of claims than the %d it states", stored);
     group = bench_h5_find_group(h5, h5->file, "curves");
     int links = links_of(h5, group);
     if (h5->failed) return;
-    *findings = sm_alloc((size_t)stored, sizeof **findings);
-    *count = stored;
-    for (int f = 0; f < stored && !h5->failed; f++) read_claim(h5, claims, f, &(*findings)[f]);
-    *curves = sm_alloc((size_t)links, sizeof **curves);
-    *curve_count = links;
+    *file->findings = sm_alloc((size_t)stored, sizeof **file->findings);
+    *file->count = stored;
+    for (int f = 0; f < stored && !h5->failed; f++)
+        read_claim(h5, claims, f, &(*file->findings)[f]);
+    *file->curves = sm_alloc((size_t)links, sizeof **file->curves);
+    *file->curve_count = links;
     for (int c = 0; c < links && !h5->failed; c++) {
         char name[BENCH_CURVE_NAME];
         if (H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, (hsize_t)c, name,
                                sizeof name, H5P_DEFAULT) < 0)
             bench_h5_fail(h5, "a curve has no name");
         else
-            read_curve(h5, group, name, &(*curves)[c]);
+            read_curve(h5, group, name, &(*file->curves)[c]);
     }
 }
 
@@ -304,19 +312,13 @@ SmCode bench_claim_load(const char *path, BenchFinding **findings, int *count, B
     *curves = NULL;
     *count = *curve_count = 0;
     memset(machine, 0, sizeof *machine);
-    if (access(path, R_OK) != 0)
-        return sm_fail(error, SM_INPUT, "cannot read %.300s: %s", path, strerror(errno));
-    BenchH5 h5;
-    bench_h5_open(&h5, path);
-    if (h5.file < 0)
-        return sm_fail(error, SM_INPUT, "cannot read %.200s: not an HDF5 file, or cut off (%.200s)",
-                       path, h5.message);
-    read_file(&h5, findings, count, curves, curve_count, machine);
-    if (bench_h5_close(&h5)) return SM_OK;
+    SmCode code = bench_h5_load(path, read_file,
+                                &(File){findings, count, curves, curve_count, machine}, error);
+    if (!code) return SM_OK;
     free(*findings);
     free(*curves);
     *findings = NULL;
     *curves = NULL;
     *count = *curve_count = 0;
-    return sm_fail(error, SM_INPUT, "cannot use %.200s: %.250s", path, h5.message);
+    return code;
 }

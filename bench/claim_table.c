@@ -1,13 +1,11 @@
 #include "claim_table.h"
 
 #include <ctype.h>
-#include <jansson.h>
 #include <math.h>
 #include <string.h>
 
 #include "export.h"
 #include "grid.h"
-#include "quote.h"
 
 /* ---- for people */
 
@@ -170,9 +168,7 @@ static void write_json(FILE *file, const BenchFinding *findings, int count,
     }
     json_object_set_new(root, "claims", list);
     json_object_set_new(root, "environment", bench_json_machine(machine));
-    json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    fputc('\n', file);
-    json_decref(root);
+    bench_json_write(file, root);
 }
 
 void bench_claim_table_write(FILE *file, BenchFormat format, const BenchFinding *findings,

@@ -76,18 +76,14 @@ static error_t parse(int key, char *text, struct argp_state *state)
 
 static const char help[] =
     "Hold what the papers say against what is measured here, claim by claim: the paper's value, "
-    "the "
-    "measured one with its spread, the test, and the verdict: reproduced, not reproduced, differs "
+    "the measured one with its spread, the test, and the verdict: reproduced, not reproduced, "
+    "differs "
     "(with the reason), not comparable, or INVALID where the measurement failed its check. "
     "Everything is measured once, and checked: against brute force; the largest cubes for finite "
-    "goals "
-    "and linear momentum.\v"
+    "goals and linear momentum.\v"
     "The claims are data, in reference/claims.cfg; its head says how to write your own for "
-    "--claims. "
-    "Takes about three minutes of one core's time, less with --quick.\n"
-    "Exit codes: 0 all that should be reproduced is; 1 something is not, or is INVALID; 2 unknown "
-    "option or value out of range; 3 a claims or scene file cannot be used; 4 a file cannot be "
-    "written; 70 out of memory; 130 interrupted.";
+    "--claims. Takes about three minutes of one core's time, less with --quick.\n" BENCH_EXIT_CODES
+    " Of claims also: 1 what should be reproduced is not; 3 a claims file cannot be used.";
 
 static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
 

@@ -177,14 +177,13 @@ static const char help[] =
     "With FILE.h5 alone: show a stored sweep.\v"
     "Every point is checked like a row of 'tables'; one that fails has INVALID in place of its "
     "times. The octree's goals are compared with those of epsilon 0 on the same deformed state; "
-    "the "
-    "surface, over some frames of the same scene, with a lattice of all finest cells whose "
+    "the surface, over some frames of the same scene, with a lattice of all finest cells whose "
     "regions hold as much on average (a lattice is its own full resolution). "
     "Stiffness is that of a regularly sampled beam with the same w and epsilon. The scene's cuts, "
     "touches, plasticity and further instances are left out.\n"
     "Started by mpirun, all ranks measure and the first one stores. Points of ranks and shards "
-    "that "
-    "share a machine disturb each other's times; each keeps its host and rank.\n" BENCH_EXIT_CODES;
+    "that share a machine disturb each other's times; each keeps its host and "
+    "rank.\n" BENCH_EXIT_CODES;
 
 static const struct argp argp = {option_list, parse, "[FILE.h5]", help, NULL, NULL, NULL};
 

@@ -237,6 +237,7 @@ void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *
         bench_curve_fail(curve, "%.180s", error.text);
     else {
         double sweeps = mean_sweeps(&play, lab->quick ? 5 : 20);
+        bench_curve_check(curve, bench_play_runner(&play));
         bench_curve_add(curve, 0, sweeps, sweeps, sweeps);
         bench_play_free(&play);
     }

@@ -116,14 +116,22 @@ static BenchTask task_of(const BenchRounds *rounds, const BenchContest *contest)
     return task;
 }
 
-static SmCode count_side(const BenchRounds *rounds, const Tool **tool, const BenchTask *task,
-                         BenchBuild build, double *count, SmError *error)
+/* Both builds of a scene, with one tool: the chosen one, or callgrind from where that has no
+ * counter on. */
+static SmCode count_contest(const BenchRounds *rounds, const Tool **tool, const BenchTask *task,
+                            BenchSide *side, SmError *error)
 {
-    const char *program = rounds->program[build];
-    SmCode code = count_step(rounds, *tool, task, program, count, error);
-    if (code || !isnan(*count) || *tool == &callgrind) return code;
-    *tool = &callgrind;
-    return count_step(rounds, *tool, task, program, count, error);
+    for (;;) {
+        bool counted = true;
+        SmCode code = SM_OK;
+        for (int b = 0; b < BENCH_BUILDS && !code && counted; b++) {
+            code =
+                count_step(rounds, *tool, task, rounds->program[b], &side[b].instructions, error);
+            counted = !isnan(side[b].instructions);
+        }
+        if (code || counted || *tool == &callgrind) return code;
+        *tool = &callgrind;
+    }
 }
 
 SmCode bench_counts_take(const BenchRounds *rounds, BenchContests *all, const char **tool,
@@ -135,10 +143,8 @@ SmCode bench_counts_take(const BenchRounds *rounds, BenchContests *all, const ch
         BenchSide *side = all->contest[i].side;
         BenchTask task = task_of(rounds, &all->contest[i]);
         bench_progress_show(rounds->progress, "counting instructions", (double)i / all->count);
-        for (int b = 0; b < BENCH_BUILDS && !code; b++)
-            if (side[BENCH_OLD].count && side[BENCH_NEW].count)
-                code =
-                    count_side(rounds, &chosen, &task, (BenchBuild)b, &side[b].instructions, error);
+        if (side[BENCH_OLD].count && side[BENCH_NEW].count)
+            code = count_contest(rounds, &chosen, &task, side, error);
     }
     bench_progress_stop(rounds->progress);
     *tool = chosen->name;

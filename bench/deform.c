@@ -80,7 +80,7 @@ void bench_deform_smoothing(BenchLab *lab, const BenchMeasure *measure, BenchCur
         smooth(&block, w[c], half, curve);
         double mean = profile_of(&block, half, share);
         bench_curve_add(curve, w[c], mean, mean, mean);
-        keep_profile(lab, w[c], share, half);
+        if (curve->valid) keep_profile(lab, w[c], share, half);
         bench_block_free(&block);
     }
 }
@@ -161,7 +161,7 @@ void bench_deform_blending(BenchLab *lab, const BenchMeasure *measure, BenchCurv
 
 /* ---- sag */
 
-/* A scene whose body hangs, and which of its particles are its tip. */
+/* A scene whose body hangs. */
 typedef struct {
     BenchScene scene;
     BenchBody body;
@@ -207,17 +207,6 @@ static double tip_depth(const Hanging *hanging, const BenchRunner *runner)
     return sum / count;
 }
 
-static void check_end(const Hanging *hanging, const BenchRunner *runner, BenchCurve *curve)
-{
-    char reason[160];
-    BenchCheck check;
-    bench_check_begin(&hanging->scene, &hanging->body, hanging->type, runner->engine, &check);
-    BenchDeviation found = bench_check_state(&check, hanging->type, runner->engine);
-    bench_check_free(&check);
-    if (!bench_check_verdict(&found, sizeof reason, reason))
-        bench_curve_fail(curve, "w = %d: %s", hanging->scene.params.w, reason);
-}
-
 /* Plays the scene to its end; the depth is the middle of its last quarter's. */
 static void hang(BenchLab *lab, const Hanging *hanging, BenchCurve *curve)
 {
@@ -239,7 +228,7 @@ static void hang(BenchLab *lab, const Hanging *hanging, BenchCurve *curve)
         }
         if (f >= frames - last) depth[f - (frames - last)] = tip_depth(hanging, runner);
     }
-    check_end(hanging, runner, curve);
+    bench_curve_check(curve, runner);
     BenchSpread spread = bench_spread(depth, last);
     bench_curve_add(curve, scene->params.w, spread.median, spread.low, spread.high);
     free(depth);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "check.h"
 #include "costs.h"
 #include "deform.h"
 #include "scene_field.h"
@@ -76,6 +77,17 @@ void bench_curve_fail(BenchCurve *curve, const char *format, ...)
     if (curve->valid) vsnprintf(curve->reason, sizeof curve->reason, format, values);
     va_end(values);
     curve->valid = false;
+}
+
+void bench_curve_check(BenchCurve *curve, const BenchRunner *runner)
+{
+    char reason[160];
+    BenchCheck check;
+    bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &check);
+    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
+    bench_check_free(&check);
+    if (!bench_check_verdict(&found, sizeof reason, reason))
+        bench_curve_fail(curve, "w = %d: %s", runner->scene->params.w, reason);
 }
 
 int bench_range_numbers(const BenchRange *range, int *number)

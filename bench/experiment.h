@@ -9,27 +9,30 @@
 
 #include "../lib/engine.h"
 #include "row.h"
+#include "runner.h"
 
 /* Which settings each takes beside those named here is an error.
  *
- * scene      one point: `field` of the scene's row as `tables` measures it, or NAMES of
- *            scene_field.h; `scene`, and `engine` in place of the scene's
- * sums       ns a particle (the stage's share of a step's least CPU time) of fast summation with
- * `summation` in a solid cube, against the mean side of its regions (2w + 1 but for those at the
- * surface); range `w` size       ms a step of solid cubes of n x n x n particles against their
- * number; range `n`. `engine` fastlsm, w = 1; or octree, whose `field` may be "sums": its
- * hierarchical sums alone polar      one point, `field`: "cold-sweeps", "warm-sweeps" of the
- * paper's Jacobi, "cold-ns", "warm-ns", "fast-ns" (what the engines use) of matrices that turn and
- * stretch sweeps     one point: Jacobi sweeps a decomposition of `scene` on fastlsm, each started
- * from the last step's eigenvectors; mean over its first 20 frames smoothing  how far, in cells and
- * on average, a perturbed cross-section of a bar has spread after two steps of smoothing (fastlsm
- * Fig. 2), against w; range `w` blending   largest jump of the displacement gradient between
- * neighbouring particles' goals, in a bar that is bent and twisted by half a turn (fastlsm Fig. 3),
- * against the number of clusters, range `n`; `matching` lattice has a region for every particle
- * instead sag        how deep the tip of a clamped beam hangs, in mesh units, against w; `scene`,
- * range `w` setup      `field` "distance-share": percent of the time that finding the octree hand's
- * summation nodes takes which goes into distances, against the width of regions in multiples of
- *            0.75 of each node's edge; range `n` */
+ * - scene: one point: `field` of the scene's row as `tables` measures it, or NAMES of
+ *   scene_field.h; `scene`, and `engine` in place of the scene's.
+ * - sums: ns a particle (the stage's share of a step's least CPU time) of fast summation with
+ *   `summation` in a solid cube, against the mean side of its regions (2w + 1 but for those at the
+ *   surface); range `w`.
+ * - size: ms a step of solid cubes of n x n x n particles against their number; range `n`. `engine`
+ *   fastlsm, w = 1; or octree, whose `field` may be "sums": its hierarchical sums alone.
+ * - polar: one point, `field`: "cold-sweeps", "warm-sweeps" of the paper's Jacobi, "cold-ns",
+ *   "warm-ns", "fast-ns" (what the engines use) of matrices that turn and stretch.
+ * - sweeps: one point: Jacobi sweeps a decomposition of `scene` on fastlsm, each started from the
+ *   last step's eigenvectors; mean over its first 20 frames.
+ * - smoothing: how far, in cells and on average, a perturbed cross-section of a bar has spread
+ *   after two steps of smoothing (fastlsm Fig. 2), against w; range `w`.
+ * - blending: largest jump of the displacement gradient between neighbouring particles' goals, in a
+ *   bar that is bent and twisted by half a turn (fastlsm Fig. 3), against the number of clusters,
+ *   range `n`; `matching` lattice has a region for every particle instead.
+ * - sag: how deep the tip of a clamped beam hangs, in mesh units, against w; `scene`, range `w`.
+ * - setup: `field` "distance-share": percent of the time that finding the octree hand's summation
+ *   nodes takes which goes into distances, against the width of regions in multiples of 0.75 of
+ *   each node's edge; range `n`. */
 typedef enum {
     BENCH_TRY_NOTHING,
     BENCH_TRY_SCENE,
@@ -103,6 +106,9 @@ void bench_curve_begin(BenchCurve *curve, const char *x_name, const char *y_name
 void bench_curve_add(BenchCurve *curve, double x, double y, double low, double high);
 void bench_curve_fail(BenchCurve *curve, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+/* Fails where the goals of the runner's body, as it is now, are not those of brute force. */
+void bench_curve_check(BenchCurve *curve, const BenchRunner *runner);
 
 /* Keeps a curve as evidence. */
 void bench_lab_keep(BenchLab *lab, const BenchCurve *curve);

@@ -2,12 +2,63 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
 
-#include "quote.h"
+#include "../lib/error.h"
+
+/* Bytes of the UTF-8 character at `text` that XML may hold, or 0. */
+static int character_length(const unsigned char *text)
+{
+    static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
+    unsigned c = text[0];
+    if (c < 0x80) return c >= 0x20 && c != 0x7f;
+    int length = c >= 0xf0 ? 4 : c >= 0xe0 ? 3 : 2;
+    if (c < 0xc0 || c >= 0xf8) return 0;
+    unsigned code = c & (0xffu >> (length + 1));
+    for (int i = 1; i < length; i++) {
+        if ((text[i] & 0xc0) != 0x80) return 0;
+        code = code << 6 | (text[i] & 0x3f);
+    }
+    bool surrogate = code >= 0xd800 && code < 0xe000;
+    bool beyond = code > 0x10ffff || code == 0xfffe || code == 0xffff;
+    return code < least[length] || surrogate || beyond ? 0 : length;
+}
+
+void bench_csv_text(FILE *file, const char *text)
+{
+    if (!text[strcspn(text, ",\"\r\n")]) {
+        fputs(text, file);
+        return;
+    }
+    fputc('"', file);
+    for (; *text; text++) {
+        if (*text == '"') fputc('"', file);
+        fputc(*text, file);
+    }
+    fputc('"', file);
+}
 
 void bench_csv_number(FILE *file, double value)
 {
     if (isfinite(value)) fprintf(file, "%.9g", value);
+}
+
+json_t *bench_json_text(const char *text)
+{
+    json_t *value = json_string(text);
+    if (value) return value;
+    size_t size = strlen(text);
+    char *copy = sm_alloc(size + 1, 1);
+    memcpy(copy, text, size + 1);
+    for (size_t i = 0; i < size;) {
+        int length = character_length((const unsigned char *)copy + i);
+        if (length == 0) copy[i] = '?';
+        i += length ? (size_t)length : 1;
+    }
+    value = json_string(copy);
+    free(copy);
+    return value;
 }
 
 json_t *bench_json_number(double value)
@@ -17,32 +68,72 @@ json_t *bench_json_number(double value)
                                                       : json_real(value);
 }
 
+static json_t *json_value(const BenchField *field, const void *value)
+{
+    switch (field->kind) {
+    case BENCH_TEXT:
+        return bench_json_text(value);
+    case BENCH_INT:
+        return json_integer(*(const int *)value);
+    case BENCH_LONG:
+        return json_integer(*(const long *)value);
+    case BENCH_BOOL:
+        return json_boolean(*(const bool *)value);
+    case BENCH_HASH: {
+        char text[24]; /* beyond what a JSON number holds exactly */
+        snprintf(text, sizeof text, "%016llx", *(const unsigned long long *)value);
+        return json_string(text);
+    }
+    case BENCH_DOUBLE:
+        break;
+    }
+    const double *numbers = value;
+    size_t many = field->size / sizeof *numbers;
+    if (many == 1) return bench_json_number(*numbers);
+    json_t *list = json_array();
+    for (size_t i = 0; i < many; i++) json_array_append_new(list, bench_json_number(numbers[i]));
+    return list;
+}
+
+json_t *bench_json_record(const BenchField *fields, int count, const void *record)
+{
+    json_t *object = json_object();
+    for (int f = 0; f < count; f++)
+        json_object_set_new(object, fields[f].name,
+                            json_value(&fields[f], (const char *)record + fields[f].offset));
+    return object;
+}
+
 json_t *bench_json_machine(const BenchMachine *machine)
 {
     int count;
     const BenchField *fields = bench_machine_fields(&count);
-    json_t *object = json_object();
-    for (int i = 0; i < count; i++) {
-        const char *at = (const char *)machine + fields[i].offset;
-        json_t *value = NULL;
-        switch (fields[i].kind) {
-        case BENCH_TEXT:
-            value = bench_json_text(at);
-            break;
-        case BENCH_INT:
-            value = json_integer(*(const int *)(const void *)at);
-            break;
-        case BENCH_LONG:
-            value = json_integer(*(const long *)(const void *)at);
-            break;
-        case BENCH_BOOL:
-            value = json_boolean(*(const bool *)at);
-            break;
-        case BENCH_HASH:
-        case BENCH_DOUBLE:
-            break; /* the machine has none */
-        }
-        if (value) json_object_set_new(object, fields[i].name, value);
+    return bench_json_record(fields, count, machine);
+}
+
+void bench_json_write(FILE *file, json_t *root)
+{
+    json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    fputc('\n', file);
+    json_decref(root);
+}
+
+void bench_xml_text(FILE *file, const char *text)
+{
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        int length = character_length(c);
+        if (length == 0)
+            fputc('?', file);
+        else if (*c == '&')
+            fputs("&amp;", file);
+        else if (*c == '<')
+            fputs("&lt;", file);
+        else if (*c == '>')
+            fputs("&gt;", file);
+        else if (*c == '"')
+            fputs("&quot;", file);
+        else
+            fwrite(c, 1, (size_t)length, file);
+        c += length ? length : 1;
     }
-    return object;
 }

@@ -1,9 +1,9 @@
 #include "frames.h"
 
-#include <gsl/gsl_sort.h>
-#include <gsl/gsl_statistics.h>
 #include <math.h>
 #include <stdlib.h>
+
+#include "spread.h"
 
 /* Seconds in every frame: the least of all rounds. */
 typedef struct {
@@ -104,13 +104,12 @@ static SmCode play_frame(BenchPlay *play, long frame, Times *times, BenchChangeR
  * NaN of none. */
 static double median_ms(const Times *times, const double *seconds, long from, long to, bool changed)
 {
-    size_t count = 0;
-    double *sorted = sm_alloc((size_t)times->frames, sizeof *sorted), median = NAN;
+    int count = 0;
+    double *chosen = sm_alloc((size_t)times->frames, sizeof *chosen), median = NAN;
     for (long f = from; f < to; f++)
-        if (!changed || times->changed[f]) sorted[count++] = seconds[f];
-    gsl_sort(sorted, 1, count);
-    if (count) median = 1e3 * gsl_stats_quantile_from_sorted_data(sorted, 1, count, 0.5);
-    free(sorted);
+        if (!changed || times->changed[f]) chosen[count++] = seconds[f];
+    if (count) median = 1e3 * bench_spread(chosen, count).median;
+    free(chosen);
     return median;
 }
 

@@ -49,11 +49,13 @@ static void compare_goals(const BenchRunner *runner, double cell, const double (
         sum += m * square;
         all += m;
         most = fmax(most, square);
-        if (!isfinite(square)) most = NAN; /* fmax() would pass over it */
     }
-    gap->rms = sqrt(sum / all) / cell;
-    gap->most = sqrt(most) / cell;
-    if (!isfinite(gap->rms)) snprintf(gap->why, sizeof gap->why, "goals are not finite");
+    if (isfinite(sum)) {
+        gap->rms = sqrt(sum / all) / cell;
+        gap->most = sqrt(most) / cell;
+    } else {
+        snprintf(gap->why, sizeof gap->why, "goals are not finite");
+    }
     free(mass);
 }
 

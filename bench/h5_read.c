@@ -1,7 +1,9 @@
 #include "h5.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static bool same_class(hid_t type, BenchKind kind)
 {
@@ -140,4 +142,19 @@ void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest)
     if (!h5->failed && (number < oldest || number > newest))
         bench_h5_fail(h5, "its schema is %d and this program reads %d; %s", number, newest,
                       number < oldest ? "measure again" : "use a newer shapebench");
+}
+
+SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), void *record,
+                     SmError *error)
+{
+    if (access(path, R_OK) != 0)
+        return sm_fail(error, SM_INPUT, "cannot read %.300s: %s", path, strerror(errno));
+    BenchH5 h5;
+    bench_h5_open(&h5, path);
+    if (h5.file < 0)
+        return sm_fail(error, SM_INPUT, "cannot read %.200s: not an HDF5 file, or cut off (%.200s)",
+                       path, h5.message);
+    read(&h5, record);
+    if (bench_h5_close(&h5)) return SM_OK;
+    return sm_fail(error, SM_INPUT, "cannot use %.200s: %.250s", path, h5.message);
 }

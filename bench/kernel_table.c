@@ -1,12 +1,10 @@
 #include "kernel_table.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "export.h"
-#include "quote.h"
 
 const char *const bench_kernel_formats[] = {"text", "markdown", "csv", "json", NULL};
 
@@ -116,9 +114,7 @@ static void write_json(FILE *file, const BenchKernel *rows, int count,
     json_object_set_new(root, "ceilings", rates);
     json_object_set_new(root, "kernels", list);
     json_object_set_new(root, "environment", bench_json_machine(machine));
-    json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    fputc('\n', file);
-    json_decref(root);
+    bench_json_write(file, root);
 }
 
 /* ---- for people */

@@ -1,7 +1,5 @@
 #include "measure.h"
 
-#include <gsl/gsl_sort.h>
-#include <gsl/gsl_statistics.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,6 +9,7 @@
 #include "../reference/paper.h"
 #include "check.h"
 #include "frames.h"
+#include "spread.h"
 #include "tree_row.h"
 
 /* The state of one part that every timed segment starts from. */
@@ -188,41 +187,33 @@ static void check_counts(const BenchCheck *check, const BenchRunner *runner, Ben
                    (double)counts.regions, (double)check->unique);
 }
 
-static double median(const double *value, int count, double *sorted)
-{
-    memcpy(sorted, value, (size_t)count * sizeof *value);
-    gsl_sort(sorted, 1, (size_t)count);
-    return gsl_stats_quantile_from_sorted_data(sorted, 1, (size_t)count, 0.5);
-}
-
 /* Medians, quartiles and shares from the repeats' samples. */
 static void summarise(BenchRow *row)
 {
     size_t count = (size_t)row->repeats;
-    double *sorted = sm_alloc(count, sizeof *sorted), *sample = sm_alloc(count, sizeof *sample);
-    double share[SM_STAGES], all = 0;
+    double *sample = sm_alloc(count, sizeof *sample), share[SM_STAGES], all = 0;
     for (int s = 0; s < SM_STAGES; s++) {
         for (size_t r = 0; r < count; r++) {
             double sum = 0;
             for (int t = 0; t < SM_STAGES; t++) sum += row->stage[r][t];
             sample[r] = sum > 0 ? row->stage[r][s] / sum : 0;
         }
-        all += share[s] = median(sample, row->repeats, sorted);
+        all += share[s] = bench_spread(sample, row->repeats).median;
     }
     for (size_t r = 0; r < count; r++) {
         sample[r] = 0;
         for (int s = 0; s < SM_STAGES; s++) sample[r] += row->stage[r][s];
         sample[r] /= row->total[r];
     }
-    row->instruments_percent = 100 * (median(sample, row->repeats, sorted) - 1);
-    row->total_ms = 1e3 * median(row->total, row->repeats, sorted);
-    row->total_low_ms = 1e3 * gsl_stats_quantile_from_sorted_data(sorted, 1, count, 0.25);
-    row->total_high_ms = 1e3 * gsl_stats_quantile_from_sorted_data(sorted, 1, count, 0.75);
+    BenchSpread total = bench_spread(row->total, row->repeats);
+    row->instruments_percent = 100 * (bench_spread(sample, row->repeats).median - 1);
+    row->total_ms = 1e3 * total.median;
+    row->total_low_ms = 1e3 * total.low;
+    row->total_high_ms = 1e3 * total.high;
     for (int s = 0; s < SM_STAGES; s++)
         row->stage_ms[s] = all > 0 ? row->total_ms * share[s] / all : 0;
     row->fps = 1e3 / row->total_ms;
     row->ns_per_particle_step = 1e6 * row->total_ms / (double)row->particles;
-    free(sorted);
     free(sample);
 }
 

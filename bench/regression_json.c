@@ -1,28 +1,12 @@
 #include <jansson.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include <gsl/gsl_statistics.h>
 
-#include "quote.h"
+#include "export.h"
 #include "regression.h"
 #include "statistic.h"
-#include "table.h"
-
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static void dump(FILE *file, json_t *root)
-{
-    json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    fputc('\n', file);
-    json_decref(root);
-}
 
 /* One build's part of a comparison. */
 static json_t *side_json(const BenchComparison *one, BenchBuild build)
@@ -31,17 +15,18 @@ static json_t *side_json(const BenchComparison *one, BenchBuild build)
     json_t *object = json_object(), *samples = json_array(), *rounds = json_array();
     json_t *outliers = json_array();
     for (int i = 0; i < side->count; i++) {
-        json_array_append_new(samples, number(side->time[one->time][i]));
+        json_array_append_new(samples, bench_json_number(side->time[one->time][i]));
         json_array_append_new(rounds, json_integer(side->round[i]));
         if (one->outlier[build] && one->outlier[build][i])
             json_array_append_new(outliers, json_integer(i));
     }
-    json_object_set_new(object, "ms", number(one->ms[build]));
+    json_object_set_new(object, "ms", bench_json_number(one->ms[build]));
     json_object_set_new(object, "samples", samples);
     json_object_set_new(object, "rounds", rounds);
     json_object_set_new(object, "outliers", outliers);
-    json_object_set_new(object, "self_difference", number(one->self[build]));
-    json_object_set_new(object, "instructions", number(one->time ? NAN : side->instructions));
+    json_object_set_new(object, "self_difference", bench_json_number(one->self[build]));
+    json_object_set_new(object, "instructions",
+                        bench_json_number(one->time ? NAN : side->instructions));
     return object;
 }
 
@@ -53,12 +38,12 @@ static json_t *comparison_json(const BenchComparison *one)
     json_object_set_new(object, "verdict", json_string(bench_comparison_name(one->verdict)));
     json_object_set_new(object, "reason",
                         one->reason[0] ? bench_json_text(one->reason) : json_null());
-    json_object_set_new(object, "ratio", number(one->ratio));
-    json_object_set_new(object, "low", number(one->low));
-    json_object_set_new(object, "high", number(one->high));
-    json_object_set_new(object, "p", number(one->p));
-    json_object_set_new(object, "p_adjusted", number(one->adjusted));
-    json_object_set_new(object, "threshold", number(one->threshold));
+    json_object_set_new(object, "ratio", bench_json_number(one->ratio));
+    json_object_set_new(object, "low", bench_json_number(one->low));
+    json_object_set_new(object, "high", bench_json_number(one->high));
+    json_object_set_new(object, "p", bench_json_number(one->p));
+    json_object_set_new(object, "p_adjusted", bench_json_number(one->adjusted));
+    json_object_set_new(object, "threshold", bench_json_number(one->threshold));
     json_object_set_new(object, "old", side_json(one, BENCH_OLD));
     json_object_set_new(object, "new", side_json(one, BENCH_NEW));
     return object;
@@ -74,8 +59,8 @@ void bench_regression_json(FILE *file, const BenchRegression *found)
         json_array_append_new(list, comparison_json(&found->list[i]));
     for (int i = 0; i < found->remarks; i++)
         json_array_append_new(remarks, bench_json_text(found->remark[i]));
-    json_object_set_new(environments, "old", bench_json_environment(&found->machine[BENCH_OLD]));
-    json_object_set_new(environments, "new", bench_json_environment(&found->machine[BENCH_NEW]));
+    json_object_set_new(environments, "old", bench_json_machine(&found->machine[BENCH_OLD]));
+    json_object_set_new(environments, "new", bench_json_machine(&found->machine[BENCH_NEW]));
     json_object_set_new(root, "schema", json_integer(1));
     json_object_set_new(root, "verdict", bench_json_text(line));
     json_object_set_new(root, "exit_code",
@@ -83,13 +68,13 @@ void bench_regression_json(FILE *file, const BenchRegression *found)
     json_object_set_new(root, "baseline", bench_json_text(found->baseline));
     json_object_set_new(root, "interleaved", json_boolean(found->params->interleaved));
     json_object_set_new(root, "rounds", json_integer(found->params->rounds));
-    json_object_set_new(root, "seconds", number(found->seconds));
+    json_object_set_new(root, "seconds", bench_json_number(found->seconds));
     json_object_set_new(root, "counter",
                         found->counter ? json_string(found->counter) : json_null());
     json_object_set_new(root, "comparisons", list);
     json_object_set_new(root, "remarks", remarks);
     json_object_set_new(root, "environments", environments);
-    dump(file, root);
+    bench_json_write(file, root);
 }
 
 static json_t *context_json(const BenchMachine *machine)
@@ -141,8 +126,8 @@ static json_t *benchmark_json(const BenchComparison *one, BenchBuild build, cons
     json_object_set_new(
         object, "iterations",
         json_integer(aggregate ? side->count : (side->row.steps > 0 ? side->row.steps : 1)));
-    json_object_set_new(object, "real_time", number(share ? time : 1e9 * time));
-    json_object_set_new(object, "cpu_time", number(share ? time : 1e9 * time));
+    json_object_set_new(object, "real_time", bench_json_number(share ? time : 1e9 * time));
+    json_object_set_new(object, "cpu_time", bench_json_number(share ? time : 1e9 * time));
     json_object_set_new(object, "time_unit", json_string("ns"));
     return object;
 }
@@ -185,5 +170,5 @@ void bench_regression_gbench(FILE *file, const BenchRegression *found)
         }
     json_object_set_new(root, "context", context_json(&found->machine[BENCH_NEW]));
     json_object_set_new(root, "benchmarks", list);
-    dump(file, root);
+    bench_json_write(file, root);
 }

@@ -1,28 +1,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "quote.h"
+#include "export.h"
 #include "regression.h"
-#include "table.h"
-
-/* In an attribute or as text. What XML 1.0 or UTF-8 does not know becomes '?'. */
-static void xml_text(FILE *file, const char *text)
-{
-    json_t *valid = bench_json_text(text);
-    for (const char *c = json_string_value(valid); *c; c++) {
-        if (*c == '&')
-            fputs("&amp;", file);
-        else if (*c == '<')
-            fputs("&lt;", file);
-        else if (*c == '>')
-            fputs("&gt;", file);
-        else if (*c == '"')
-            fputs("&quot;", file);
-        else
-            fputc((unsigned char)*c < ' ' ? '?' : *c, file);
-    }
-    json_decref(valid);
-}
 
 /* What the verdict is to JUnit; NULL: passed. */
 static const char *element(BenchComparisonVerdict verdict)
@@ -45,10 +25,10 @@ static void write_case(FILE *file, const BenchComparison *one)
                  bench_comparison_name(one->verdict), one->ratio, one->low, one->high,
                  100 * one->threshold, one->adjusted);
     fputs("    <testcase classname=\"", file);
-    xml_text(file, one->contest->scene);
+    bench_xml_text(file, one->contest->scene);
     fprintf(file, "\" name=\"%s\" time=\"%.9f\">\n", bench_time_name(one->time), seconds);
     fprintf(file, name ? "      <%s message=\"" : "      <system-out>", name);
-    xml_text(file, line);
+    bench_xml_text(file, line);
     fputs(name ? "\"/>\n" : "</system-out>\n", file);
     fputs("    </testcase>\n", file);
 }
@@ -68,15 +48,15 @@ void bench_regression_junit(FILE *file, const BenchRegression *found)
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"shapebench "
         "regress against ",
         file);
-    xml_text(file, found->baseline);
+    bench_xml_text(file, found->baseline);
     fprintf(file, "\" tests=\"%d\" failures=\"%d\" errors=\"%d\" skipped=\"%d\" time=\"%.3f\">\n",
             found->count, failures, errors, skipped, found->seconds);
     for (int i = 0; i < found->count; i++) write_case(file, &found->list[i]);
     fputs("    <system-out>", file);
-    xml_text(file, line);
+    bench_xml_text(file, line);
     for (int i = 0; i < found->remarks; i++) {
         fputc('\n', file);
-        xml_text(file, found->remark[i]);
+        bench_xml_text(file, found->remark[i]);
     }
     fputs("</system-out>\n  </testsuite>\n</testsuites>\n", file);
 }

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hash.h"
 #include "process.h"
 
 enum { PATH = BENCH_DRAFT_PATH, WORDS = 24, SETTING = 512 };
@@ -104,14 +105,13 @@ static void find_settings(Build *build)
     strcpy(build->setting[build->settings++], "-DSHAPEBENCH_WERROR=OFF");
 }
 
-/* FNV-1a of the settings, so that builds with others are kept apart. */
+/* Of the settings, so that builds with others are kept apart. */
 static unsigned hash_settings(const Build *build)
 {
-    unsigned hash = 2166136261U;
+    unsigned long long hash = BENCH_HASH_START;
     for (int i = 0; i < build->settings; i++)
-        for (const char *c = build->setting[i]; *c; c++)
-            hash = (hash ^ (unsigned char)*c) * 16777619U;
-    return hash;
+        hash = bench_hash_bytes(hash, build->setting[i], strlen(build->setting[i]));
+    return (unsigned)(hash ^ hash >> 32);
 }
 
 static SmCode make_folder(const char *path, SmError *error)
@@ -218,7 +218,9 @@ static SmCode check_out(Build *build, const char *commit, SmError *error)
 {
     char line[256];
     int status;
-    char *words[] = {"worktree", "add", "--detach", "--quiet", build->source, (char *)commit, NULL};
+    /* forced, twice: git may still know one there that somebody has deleted, or that was locked */
+    char *words[] = {"worktree", "add",         "--force",      "--force", "--detach",
+                     "--quiet",  build->source, (char *)commit, NULL};
     SmCode code = git(build, words, sizeof line, line, &status, error);
     if (!code && status)
         code = sm_fail(error, SM_OUTPUT, "--revision: git cannot check %.60s out: %.250s",
@@ -247,10 +249,27 @@ static SmCode make_program(Build *build, BenchRevision *revision, SmError *error
     return code;
 }
 
+/* Takes the lock, waiting for who holds it; -1 and `error` where that is not to be had. */
+static int take_lock(const Build *build, SmError *error)
+{
+    char path[PATH];
+    snprintf(path, sizeof path, "%.3800s/build/regress/lock", build->root);
+    int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    bool held = false;
+    while (file >= 0 && !bench_process_caught() && !(held = flock(file, LOCK_EX) == 0))
+        if (errno != EINTR) break;
+    if (held) return file;
+    if (bench_process_caught())
+        sm_fail(error, SM_INPUT, "interrupted; nothing is left behind");
+    else
+        bench_draft_fail(path, errno, "", error);
+    if (file >= 0) close(file);
+    return -1;
+}
+
 SmCode bench_revision_build(const char *name, const char *folder, BenchProgress *progress,
                             BenchRevision *revision, SmError *error)
 {
-    char lock[PATH];
     Build *build = sm_alloc(1, sizeof *build);
     *revision = (BenchRevision){0};
     build->name = name;
@@ -260,15 +279,9 @@ SmCode bench_revision_build(const char *name, const char *folder, BenchProgress 
     SmCode code = find_commit(build, revision->commit, error);
     if (!code) code = find_places(build, revision, error);
     if (!code) {
-        snprintf(lock, sizeof lock, "%.3800s/build/regress/lock", build->root);
-        int file = open(lock, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (file < 0) {
-            code = bench_draft_fail(lock, errno, "", error);
-        } else {
-            while (flock(file, LOCK_EX) != 0 && errno == EINTR && !bench_process_caught()) continue;
-            code = make_program(build, revision, error);
-            close(file);
-        }
+        int lock = take_lock(build, error);
+        code = lock < 0 ? error->code : make_program(build, revision, error);
+        if (lock >= 0) close(lock);
     }
     bench_progress_stop(progress);
     free(build);

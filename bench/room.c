@@ -55,6 +55,9 @@ static double group_leaves(void)
         double limit = read_number(path, "");
         snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.current", line + 3);
         double used = read_number(path, "");
+        snprintf(path, sizeof path, "/sys/fs/cgroup%s/memory.stat", line + 3);
+        double cache = read_number(path, "inactive_file "); /* of files: given back when wanted */
+        if (isfinite(cache)) used -= cache;
         if (isfinite(limit) && isfinite(used)) leaves = fmax(0, limit - used);
     }
     fclose(file);

@@ -10,7 +10,7 @@
 double bench_room_wanted(const BenchScene *scene, double particles);
 
 /* Bytes that this process may still take: what Linux says is available, or what its control group
- * leaves if that is less. INFINITY where neither is known. */
+ * leaves, its cache of files given back, if that is less. INFINITY where neither is known. */
 double bench_room_available(void);
 
 /* SM_MEMORY, with a line, when the first is more than four fifths of the second. */

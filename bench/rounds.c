@@ -48,14 +48,15 @@ static void make_words(const BenchRounds *rounds, const BenchTask *task, const c
     word[count] = NULL;
 }
 
-/* A scene that the old build cannot measure is no error: its contest says why. */
-static SmCode failed(const Session *session, const BenchTask *task, BenchBuild build, int status,
-                     const char *log, SmError *error)
+/* A scene that the old build cannot measure is no error: its contest says why. One that it could
+ * measure before is. */
+static SmCode failed(const Session *session, const BenchTask *task, BenchBuild build, int round,
+                     int status, const char *log, SmError *error)
 {
     char line[224];
     bench_process_last_line(log, sizeof line, line);
     bool crashed = status > 128 || status == 127;
-    if (build == BENCH_OLD && !crashed && status != SM_OUTPUT) {
+    if (build == BENCH_OLD && round == 0 && !crashed && status != SM_OUTPUT) {
         BenchSide *side = &bench_contest_of(session->all, task->scene)->side[BENCH_OLD];
         snprintf(side->reason, sizeof side->reason, "%s", line);
         return SM_OK;
@@ -103,7 +104,7 @@ static SmCode run_process(Session *session, const BenchTask *task, BenchBuild bu
      */
     *there = *there && access(output, F_OK) == 0;
     code = *there ? keep(session, build, round, output, error)
-                  : failed(session, task, build, end.status, log, error);
+                  : failed(session, task, build, round, end.status, log, error);
     unlink(output);
     return code;
 }

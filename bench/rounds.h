@@ -30,10 +30,10 @@ typedef struct {
 } BenchRounds;
 
 /* Runs all rounds and adds what they measured. `machine` receives each build's environment, from
- * its first process. A scene that the old build does not have (its exit code says so) is left
- * without old times, with the reason. Errors: SM_INPUT, SM_INVALID: a process that fails or
- * crashes, with its line; a file of it that cannot be read; interrupted. SM_OUTPUT: the disk is
- * full. */
+ * its first process. A scene that the old build does not have (its exit code says so, in the first
+ * round) is left without old times, with the reason. Errors: SM_INPUT, SM_INVALID: a process that
+ * fails or crashes, with its line; a file of it that cannot be read; interrupted. SM_OUTPUT: the
+ * disk is full. */
 SmCode bench_rounds_run(const BenchRounds *rounds, BenchContests *all,
                         BenchMachine machine[BENCH_BUILDS], SmError *error);
 

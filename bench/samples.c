@@ -1,11 +1,9 @@
 #include "samples.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "store.h"
 
@@ -95,41 +93,27 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     memcpy(h5->message, message, sizeof message);
 }
 
-static void read_file(BenchH5 *h5, BenchRow **rows, int *count, BenchMachine *machine)
+static void read_file(BenchH5 *h5, void *record)
 {
+    BenchRowFile *file = record;
     int stored = 0, fields;
     const BenchField field = {"rows", BENCH_INT, 0, sizeof stored};
     const BenchField *machine_fields = bench_machine_fields(&fields);
     bench_store_check_kind(h5, 1);
     bench_h5_read_fields(h5, h5->file, &field, 1, &stored);
     hid_t group = bench_h5_find_group(h5, h5->file, "machine");
-    if (!h5->failed) read_where_there(h5, group, machine_fields, fields, machine);
+    if (!h5->failed) read_where_there(h5, group, machine_fields, fields, file->machine);
     group = bench_h5_find_group(h5, h5->file, "rows");
     if (!h5->failed && (stored < 1 || stored > MOST_ROWS))
         bench_h5_fail(h5, "it states %d rows", stored);
     if (h5->failed) return;
-    *rows = sm_alloc((size_t)stored, sizeof **rows);
-    *count = stored;
-    for (int i = 0; i < stored && !h5->failed; i++) read_row(h5, group, i, &(*rows)[i]);
+    *file->rows = sm_alloc((size_t)stored, sizeof **file->rows);
+    *file->count = stored;
+    for (int i = 0; i < stored && !h5->failed; i++) read_row(h5, group, i, &(*file->rows)[i]);
 }
 
 SmCode bench_samples_load(const char *path, BenchRow **rows, int *count, BenchMachine *machine,
                           SmError *error)
 {
-    *rows = NULL;
-    *count = 0;
-    memset(machine, 0, sizeof *machine);
-    if (access(path, R_OK) != 0)
-        return sm_fail(error, SM_INPUT, "cannot read %.300s: %s", path, strerror(errno));
-    BenchH5 h5;
-    bench_h5_open(&h5, path);
-    if (h5.file < 0)
-        return sm_fail(error, SM_INPUT, "cannot read %.200s: not an HDF5 file, or cut off (%.200s)",
-                       path, h5.message);
-    read_file(&h5, rows, count, machine);
-    if (bench_h5_close(&h5)) return SM_OK;
-    bench_rows_free(*rows, *count);
-    *rows = NULL;
-    *count = 0;
-    return sm_fail(error, SM_INPUT, "cannot use %.200s: %.250s", path, h5.message);
+    return bench_store_load(path, read_file, &(BenchRowFile){rows, count, machine}, error);
 }

@@ -1,10 +1,8 @@
 #include "store.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "draft.h"
 
@@ -89,7 +87,7 @@ static const BenchField row_fields[] = {
 };
 
 /* "fast_sum shape_matching ...": the columns of `stage`, in order. */
-static void stage_names(size_t size, char *names)
+void bench_store_stages(size_t size, char *names)
 {
     size_t used = 0;
     for (int stage = 0; stage < SM_STAGES; stage++)
@@ -101,7 +99,7 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
 {
     char name[16], stages[128];
     snprintf(name, sizeof name, "%03d", index);
-    stage_names(sizeof stages, stages);
+    bench_store_stages(sizeof stages, stages);
     hid_t group = bench_h5_group(h5, parent, name);
     bench_h5_fields(h5, group, row_fields, COUNT(row_fields), row);
     bench_h5_text(h5, group, "stages", stages);
@@ -144,7 +142,7 @@ SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
 static void read_samples(BenchH5 *h5, hid_t group, BenchRow *row)
 {
     char expected[128], stages[128];
-    stage_names(sizeof expected, expected);
+    bench_store_stages(sizeof expected, expected);
     bench_h5_read_text(h5, group, "stages", sizeof stages, stages);
     if (!h5->failed && strcmp(stages, expected) != 0)
         bench_h5_fail(h5, "its stages are '%s', not '%s'", stages, expected);
@@ -193,44 +191,44 @@ void bench_store_check_kind(BenchH5 *h5, int oldest)
     bench_h5_check_kind(h5, file_kind, oldest, BENCH_STORE_SCHEMA);
 }
 
-static void read_file(BenchH5 *h5, BenchRow **rows, int *count, BenchMachine *machine)
+static void read_file(BenchH5 *h5, void *record)
 {
+    BenchRowFile *file = record;
     bench_store_check_kind(h5, BENCH_STORE_SCHEMA);
     int stored = 0, machine_count;
     const BenchField field = {"rows", BENCH_INT, 0, sizeof stored};
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
     bench_h5_read_fields(h5, h5->file, &field, 1, &stored);
     hid_t group = bench_h5_find_group(h5, h5->file, "machine");
-    bench_h5_read_fields(h5, group, machine_fields, machine_count, machine);
+    bench_h5_read_fields(h5, group, machine_fields, machine_count, file->machine);
     group = bench_h5_find_group(h5, h5->file, "rows");
     H5G_info_t info;
     if (!h5->failed && (H5Gget_info(group, &info) < 0 || (hsize_t)stored != info.nlinks))
         bench_h5_fail(h5, "it holds another number of rows than the %d it states", stored);
     if (h5->failed) return;
-    *rows = sm_alloc((size_t)stored, sizeof **rows);
-    *count = stored;
-    for (int i = 0; i < stored && !h5->failed; i++) read_row(h5, group, i, &(*rows)[i]);
+    *file->rows = sm_alloc((size_t)stored, sizeof **file->rows);
+    *file->count = stored;
+    for (int i = 0; i < stored && !h5->failed; i++) read_row(h5, group, i, &(*file->rows)[i]);
 }
 
 SmCode bench_load_rows(const char *path, BenchRow **rows, int *count, BenchMachine *machine,
                        SmError *error)
 {
-    *rows = NULL;
-    *count = 0;
-    memset(machine, 0, sizeof *machine);
-    if (access(path, R_OK) != 0)
-        return sm_fail(error, SM_INPUT, "cannot read %.300s: %s", path, strerror(errno));
-    BenchH5 h5;
-    bench_h5_open(&h5, path);
-    if (h5.file < 0)
-        return sm_fail(error, SM_INPUT, "cannot read %.200s: not an HDF5 file, or cut off (%.200s)",
-                       path, h5.message);
-    read_file(&h5, rows, count, machine);
-    if (bench_h5_close(&h5)) return SM_OK;
-    bench_rows_free(*rows, *count);
-    *rows = NULL;
-    *count = 0;
-    return sm_fail(error, SM_INPUT, "cannot use %.200s: %.250s", path, h5.message);
+    return bench_store_load(path, read_file, &(BenchRowFile){rows, count, machine}, error);
+}
+
+SmCode bench_store_load(const char *path, void (*read)(BenchH5 *h5, void *record),
+                        BenchRowFile *file, SmError *error)
+{
+    *file->rows = NULL;
+    *file->count = 0;
+    memset(file->machine, 0, sizeof *file->machine);
+    SmCode code = bench_h5_load(path, read, file, error);
+    if (!code) return SM_OK;
+    bench_rows_free(*file->rows, *file->count);
+    *file->rows = NULL;
+    *file->count = 0;
+    return code;
 }
 
 void bench_rows_free(BenchRow *rows, int count)

@@ -1,15 +1,14 @@
 #include "sweep.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "column.h"
 #include "draft.h"
 #include "front.h"
+#include "store.h"
 
 static const char file_kind[] = "shapebench sweep";
 
@@ -65,6 +64,7 @@ static void write_samples(BenchH5 *h5, hid_t group, const BenchSweep *sweep)
 static void write_file(BenchH5 *h5, const BenchSweep *sweep)
 {
     int schema = BENCH_SWEEP_SCHEMA, machine_count, plan_count, point_count;
+    char stages[128];
     const BenchPlan *plan = &sweep->plan;
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
     const BenchField *plan_fields = bench_plan_fields(&plan_count);
@@ -79,7 +79,8 @@ static void write_file(BenchH5 *h5, const BenchSweep *sweep)
     bench_h5_dataset(h5, group, "w", H5T_IEEE_F64LE, 1, &ws, plan->w);
     bench_h5_dataset(h5, group, "epsilon", H5T_IEEE_F64LE, 1, &epsilons, plan->epsilon);
     group = bench_h5_group(h5, h5->file, "points");
-    bench_h5_text(h5, group, "stages", "fast_sum shape_matching polar damping other");
+    bench_store_stages(sizeof stages, stages);
+    bench_h5_text(h5, group, "stages", stages);
     bench_h5_columns(h5, group, point_fields, point_count, sweep->point, sizeof *sweep->point,
                      sweep->count);
     write_samples(h5, group, sweep);
@@ -124,7 +125,7 @@ static void read_plan(BenchH5 *h5, BenchPlan *plan)
         bench_h5_fail(h5, "its plan has %d repeats", plan->repeats);
 }
 
-/* Every point must be one of the plan's, in order. */
+/* Every point must be one of the plan's, in order, with no more samples than there is room for. */
 static void check_points(BenchH5 *h5, const BenchSweep *sweep)
 {
     for (long i = 0; i < sweep->count && !h5->failed; i++) {
@@ -136,6 +137,8 @@ static void check_points(BenchH5 *h5, const BenchSweep *sweep)
         if (!inside || strcmp(planned.engine, p->engine) != 0 || planned.w != p->w ||
             planned.epsilon != p->epsilon)
             bench_h5_fail(h5, "point %ld is not one of its plan's", i);
+        if (p->samples < 0 || p->samples > sweep->plan.repeats)
+            bench_h5_fail(h5, "point %ld has %d samples", i, p->samples);
     }
 }
 
@@ -152,8 +155,9 @@ static void read_samples(BenchH5 *h5, hid_t group, BenchSweep *sweep)
     free(sample);
 }
 
-static void read_file(BenchH5 *h5, BenchSweep *sweep)
+static void read_file(BenchH5 *h5, void *record)
 {
+    BenchSweep *sweep = record;
     int machine_count, count;
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
     const BenchField *fields = bench_point_fields(&count);
@@ -175,17 +179,9 @@ static void read_file(BenchH5 *h5, BenchSweep *sweep)
 SmCode bench_sweep_load(const char *path, BenchSweep *sweep, SmError *error)
 {
     *sweep = (BenchSweep){0};
-    if (access(path, R_OK) != 0)
-        return sm_fail(error, SM_INPUT, "cannot read %.300s: %s", path, strerror(errno));
-    BenchH5 h5;
-    bench_h5_open(&h5, path);
-    if (h5.file < 0)
-        return sm_fail(error, SM_INPUT, "cannot read %.200s: not an HDF5 file, or cut off (%.200s)",
-                       path, h5.message);
-    read_file(&h5, sweep);
-    if (bench_h5_close(&h5)) return SM_OK;
-    bench_sweep_free(sweep);
-    return sm_fail(error, SM_INPUT, "cannot use %.200s: %.250s", path, h5.message);
+    SmCode code = bench_h5_load(path, read_file, sweep, error);
+    if (code) bench_sweep_free(sweep);
+    return code;
 }
 
 /* Bit for bit, but for the mark of a front, which depends on the other points. */

@@ -5,7 +5,6 @@
 
 #include "export.h"
 #include "grid.h"
-#include "quote.h"
 
 enum { REASONS = 8 };
 
@@ -107,6 +106,18 @@ static void write_reasons(FILE *file, const BenchSweep *sweep)
     }
 }
 
+/* Times of different machines do not compare, nor does a front that is made of them. */
+static void write_hosts(FILE *file, const BenchSweep *sweep)
+{
+    for (long i = 1; i < sweep->count; i++) {
+        const char *first = sweep->point[0].host, *other = sweep->point[i].host;
+        if (!strcmp(first, other)) continue;
+        fprintf(file, "Points are of several hosts (%s, %s): times, and the front, mix them.\n",
+                first, other);
+        return;
+    }
+}
+
 static void write_text(FILE *file, const BenchSweep *sweep, const BenchGrid *grid)
 {
     const BenchPlan *plan = &sweep->plan;
@@ -124,6 +135,7 @@ static void write_text(FILE *file, const BenchSweep *sweep, const BenchGrid *gri
           "lattice's of equal width\n(w cells) at full resolution, of the body's size, rms and "
           "most. *: on the front of cost (ms/step) against deviation (path off).\n",
           file);
+    write_hosts(file, sweep);
     write_reasons(file, sweep);
 }
 
@@ -174,42 +186,6 @@ static void write_csv(FILE *file, const BenchSweep *sweep)
     }
 }
 
-static json_t *json_value(const BenchField *field, const void *value)
-{
-    switch (field->kind) {
-    case BENCH_TEXT:
-        return bench_json_text(value);
-    case BENCH_INT:
-        return json_integer(*(const int *)value);
-    case BENCH_LONG:
-        return json_integer(*(const long *)value);
-    case BENCH_BOOL:
-        return json_boolean(*(const bool *)value);
-    case BENCH_HASH: {
-        char text[24]; /* beyond what a JSON number holds exactly */
-        snprintf(text, sizeof text, "%016llx", *(const unsigned long long *)value);
-        return json_string(text);
-    }
-    case BENCH_DOUBLE:
-        break;
-    }
-    const double *numbers = value;
-    size_t many = field->size / sizeof *numbers;
-    if (many == 1) return bench_json_number(*numbers);
-    json_t *list = json_array();
-    for (size_t i = 0; i < many; i++) json_array_append_new(list, bench_json_number(numbers[i]));
-    return list;
-}
-
-static json_t *json_record(const BenchField *fields, int count, const void *record)
-{
-    json_t *object = json_object();
-    for (int f = 0; f < count; f++)
-        json_object_set_new(object, fields[f].name,
-                            json_value(&fields[f], (const char *)record + fields[f].offset));
-    return object;
-}
-
 static void write_json(FILE *file, const BenchSweep *sweep)
 {
     int points, plan;
@@ -217,13 +193,11 @@ static void write_json(FILE *file, const BenchSweep *sweep)
     const BenchField *plan_fields = bench_plan_fields(&plan);
     json_t *root = json_object(), *list = json_array();
     for (long i = 0; i < sweep->count; i++)
-        json_array_append_new(list, json_record(point_fields, points, &sweep->point[i]));
+        json_array_append_new(list, bench_json_record(point_fields, points, &sweep->point[i]));
     json_object_set_new(root, "points", list);
-    json_object_set_new(root, "plan", json_record(plan_fields, plan, &sweep->plan));
+    json_object_set_new(root, "plan", bench_json_record(plan_fields, plan, &sweep->plan));
     json_object_set_new(root, "environment", bench_json_machine(&sweep->machine));
-    json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    fputc('\n', file);
-    json_decref(root);
+    bench_json_write(file, root);
 }
 
 void bench_sweep_table(FILE *file, BenchFormat format, const BenchSweep *sweep)

@@ -10,7 +10,8 @@
 
 /* The front must be marked (front.h). Times of a point that is not valid are INVALID, empty or
  * null; other quantities that could not be had are "-", empty or null. The reasons follow the text
- * form, each once. JSON: {"points": [...], "plan": {...}, "environment": {...}}. */
+ * form, each once, and a line where points were measured on several hosts. JSON: {"points": [...],
+ * "plan": {...}, "environment": {...}}. */
 void bench_sweep_table(FILE *file, BenchFormat format, const BenchSweep *sweep);
 
 #endif

@@ -1,10 +1,9 @@
 #include "table.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <string.h>
 
-#include "quote.h"
+#include "export.h"
 #include "report.h"
 
 const char *const bench_format_names[] = {"text", "markdown", "csv", "latex", "json", NULL};
@@ -84,8 +83,8 @@ static void csv_cell(FILE *file, const Cell *cell, bool valid)
         fprintf(file, "%ld", cell->whole);
     else if (cell->kind == VALID || (cell->kind == TIME && !valid))
         fputs(valid ? "VALID" : "INVALID", file);
-    else if (isfinite(cell->number))
-        fprintf(file, "%.9g", cell->number);
+    else
+        bench_csv_number(file, cell->number);
 }
 
 static void write_csv(FILE *file, const BenchRow *rows, int count)
@@ -112,30 +111,6 @@ static json_t *json_cell(const Cell *cell, bool valid)
     return json_real(cell->number);
 }
 
-json_t *bench_json_environment(const BenchMachine *machine)
-{
-    const struct {
-        const char *name, *text;
-    } strings[] = {
-        {"version", machine->version},   {"git_commit", machine->git_commit},
-        {"compiler", machine->compiler}, {"flags", machine->flags},
-        {"cpu", machine->cpu},           {"governor", machine->governor},
-        {"kernel", machine->kernel},     {"libraries", machine->libraries},
-        {"hostname", machine->hostname}, {"utc", machine->utc},
-        {"command", machine->command},
-    };
-    json_t *object = json_object();
-    for (size_t i = 0; i < sizeof strings / sizeof strings[0]; i++)
-        json_object_set_new(object, strings[i].name, bench_json_text(strings[i].text));
-    json_object_set_new(object, "git_dirty", json_boolean(machine->git_dirty));
-    json_object_set_new(object, "l1_bytes", json_integer(machine->l1_bytes));
-    json_object_set_new(object, "l2_bytes", json_integer(machine->l2_bytes));
-    json_object_set_new(object, "l3_bytes", json_integer(machine->l3_bytes));
-    json_object_set_new(object, "cores", json_integer(machine->cores));
-    json_object_set_new(object, "threads", json_integer(machine->threads));
-    return object;
-}
-
 static void write_json(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine)
 {
     json_t *list = json_array();
@@ -149,10 +124,8 @@ static void write_json(FILE *file, const BenchRow *rows, int count, const BenchM
     }
     json_t *root = json_object();
     json_object_set_new(root, "rows", list);
-    json_object_set_new(root, "environment", bench_json_environment(machine));
-    json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    fputc('\n', file);
-    json_decref(root);
+    json_object_set_new(root, "environment", bench_json_machine(machine));
+    bench_json_write(file, root);
 }
 
 void bench_table_write(FILE *file, BenchFormat format, const BenchRow *rows, int count,

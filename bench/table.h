@@ -5,7 +5,6 @@
 #ifndef BENCH_TABLE_H
 #define BENCH_TABLE_H
 
-#include <jansson.h>
 #include <stdio.h>
 
 #include "machine.h"
@@ -26,8 +25,5 @@ extern const char *const bench_format_names[];
  * header line, then a line for every row (RFC 4180); what is not given is empty. */
 void bench_table_write(FILE *file, BenchFormat format, const BenchRow *rows, int count,
                        const BenchMachine *machine);
-
-/* For other JSON: the object "environment". */
-json_t *bench_json_environment(const BenchMachine *machine);
 
 #endif

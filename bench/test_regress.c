@@ -274,11 +274,8 @@ static void revisions_that_cannot_be_had(void **state)
     nothing_is_left_in_the_repository();
 }
 
-/* Ctrl-C in mid-build: what runs is stopped, the worktree goes, exit code 130. */
-static void an_interrupt_leaves_nothing(void **state)
+static pid_t start_building(void)
 {
-    (void)state;
-    make_repository("execute_process(COMMAND sleep 47.11)\n");
     pid_t child = fork();
     if (child == 0) {
         if (chdir(path_in("repo")) || !freopen("../err", "w", stderr)) _exit(99);
@@ -286,15 +283,35 @@ static void an_interrupt_leaves_nothing(void **state)
               (char *)NULL);
         _exit(99);
     }
-    for (int i = 0; i < 100 && system("pgrep -fx 'sleep 47.11' >/dev/null") != 0; i++)
-        usleep(100000);
-    kill(child, SIGINT);
+    return child;
+}
+
+static void interrupt(pid_t child)
+{
     int status;
+    char said[4096];
+    kill(child, SIGINT);
     waitpid(child, &status, 0);
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
-    char said[4096];
     slurp("err", said, sizeof said);
     assert_non_null(strstr(said, "interrupted; nothing is left behind"));
+}
+
+/* Ctrl-C in mid-build: what runs is stopped, the worktree goes, exit code 130. Of one that waits
+ * for it to end, before: the build goes on. */
+static void an_interrupt_leaves_nothing(void **state)
+{
+    (void)state;
+    make_repository("execute_process(COMMAND sleep 47.11)\n");
+    pid_t first = start_building();
+    for (int i = 0; i < 100 && system("pgrep -fx 'sleep 47.11' >/dev/null") != 0; i++)
+        usleep(100000);
+    pid_t second = start_building();
+    usleep(500000);
+    interrupt(second);
+    expect("cd repo && git worktree list | wc -l", 0, "2\n");
+    expect("ls repo/build/regress/*.source/CMakeLists.txt", 0, "CMakeLists.txt");
+    interrupt(first);
     assert_int_not_equal(system("pgrep -fx 'sleep 47.11' >/dev/null"), 0);
     nothing_is_left_in_the_repository();
 }

@@ -391,12 +391,23 @@ static void text_column(hid_t file)
         H5Dcreate2(file, "points/sag", H5T_C_S1, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     H5Sclose(space);
 }
+static void set_column(hid_t file, const char *name, const int value[3])
+{
+    hid_t column = H5Dopen2(file, name, H5P_DEFAULT);
+    assert_true(H5Dwrite(column, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0);
+    H5Dclose(column);
+}
 static void other_index(hid_t file)
 {
-    hid_t index = H5Dopen2(file, "points/index", H5P_DEFAULT);
-    int value[] = {1, 5, 6};
-    assert_true(H5Dwrite(index, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0);
-    H5Dclose(index);
+    set_column(file, "points/index", (const int[]){1, 5, 6});
+}
+static void many_samples(hid_t file)
+{
+    set_column(file, "points/samples", (const int[]){3, 3, 1 << 30});
+}
+static void negative_samples(hid_t file)
+{
+    set_column(file, "points/samples", (const int[]){-1, 3, 3});
 }
 
 static void changed_files(void **state)
@@ -416,6 +427,8 @@ static void changed_files(void **state)
         {short_column, "dataset 'sag' has the wrong size"},
         {text_column, "dataset 'sag' has the wrong type"},
         {other_index, "point 1 is not one of its plan's"},
+        {many_samples, "point 2 has 1073741824 samples"},
+        {negative_samples, "point 0 has -1 samples"},
     };
     const char *path = path_in("changed.h5");
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {

@@ -15,6 +15,7 @@
 #include <jansson.h>
 
 #include "sweep.h"
+#include "sweep_table.h"
 #include "test_program.h"
 
 /* A small body that a force pushes; three points. */
@@ -328,6 +329,25 @@ static void ranks_share_the_work(void **state)
     free(result);
 }
 
+/* Points of two machines cannot be set beside each other without a word. */
+static void several_hosts_are_said(void **state)
+{
+    (void)state;
+    static char text[8192];
+    BenchSweep sweep = {.plan = {.width = "edges"}};
+    for (int i = 0; i < 2; i++) {
+        BenchPoint point = bench_point_none();
+        point.index = i;
+        strcpy(point.host, i ? "there" : "here");
+        bench_sweep_add(&sweep, &point);
+        FILE *file = fmemopen(text, sizeof text, "w");
+        bench_sweep_table(file, BENCH_AS_TEXT, &sweep);
+        fclose(file);
+        assert_int_equal(strstr(text, "Points are of several hosts (here, there)") != NULL, i);
+    }
+    bench_sweep_free(&sweep);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -339,6 +359,7 @@ int main(void)
         cmocka_unit_test(a_point_that_cannot_be_is_invalid),
         cmocka_unit_test(tables_in_every_format),
         cmocka_unit_test(ranks_share_the_work),
+        cmocka_unit_test(several_hosts_are_said),
     };
     return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -163,6 +163,11 @@ static void exponents_gains_and_trends_are_of_curves(void **state)
     claim.reduction = BENCH_AS_GAIN;
     bench_verdict_find(&claim, &fall, NULL, &finding);
     assert_int_equal(finding.verdict, BENCH_REPRODUCED);
+    const double from_zero[] = {0, 1, 2, 3};
+    BenchCurve endless = curve_of(4, from_zero);
+    claim.test = BENCH_IS_AT_LEAST;
+    bench_verdict_find(&claim, &endless, NULL, &finding);
+    assert_int_equal(finding.verdict, BENCH_INVALID);
     claim.reduction = BENCH_AS_LARGEST;
     bench_verdict_find(&claim, &wave, NULL, &finding);
     assert_true(finding.value[0] == 4);

@@ -169,6 +169,8 @@ void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const 
     divide(curve, over, ratio);
     if (ratio->valid && !reduce(ratio, finding))
         bench_curve_fail(ratio, "%d points are too few or too many for this test", ratio->points);
+    for (int v = 0; v < finding->count && ratio->valid; v++)
+        if (!isfinite(finding->value[v])) bench_curve_fail(ratio, "what follows is not a number");
     if (ratio->valid)
         judge(finding);
     else {

@@ -1,54 +1,17 @@
 #include "xdmf.h"
 
 #include <errno.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-/* Bytes of the UTF-8 character at `text` that XML may hold, or 0. */
-static int character_length(const unsigned char *text)
-{
-    static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
-    unsigned c = text[0];
-    if (c < 0x80) return c >= 0x20 && c != 0x7f;
-    int length = c >= 0xf0 ? 4 : c >= 0xe0 ? 3 : 2;
-    if (c < 0xc0 || c >= 0xf8) return 0;
-    unsigned code = c & (0xffu >> (length + 1));
-    for (int i = 1; i < length; i++) {
-        if ((text[i] & 0xc0) != 0x80) return 0;
-        code = code << 6 | (text[i] & 0x3f);
-    }
-    bool surrogate = code >= 0xd800 && code < 0xe000;
-    bool beyond = code > 0x10ffff || code == 0xfffe || code == 0xffff;
-    return code < least[length] || surrogate || beyond ? 0 : length;
-}
-
-static void write_text(FILE *file, const char *text)
-{
-    for (const unsigned char *c = (const unsigned char *)text; *c;) {
-        int length = character_length(c);
-        if (length == 0)
-            fputc('?', file);
-        else if (*c == '&')
-            fputs("&amp;", file);
-        else if (*c == '<')
-            fputs("&lt;", file);
-        else if (*c == '>')
-            fputs("&gt;", file);
-        else if (*c == '"')
-            fputs("&quot;", file);
-        else
-            fwrite(c, 1, (size_t)length, file);
-        c += length ? length : 1;
-    }
-}
+#include "export.h"
 
 /* The data item of an HDF5 dataset: dimensions, type, file and place. */
 static void write_item(FILE *file, const BenchXdmf *xdmf, const char *attributes, const char *place)
 {
     const char *slash = strrchr(xdmf->data, '/');
     fprintf(file, "<DataItem %s Format=\"HDF\">", attributes);
-    write_text(file, slash ? slash + 1 : xdmf->data);
+    bench_xml_text(file, slash ? slash + 1 : xdmf->data);
     fprintf(file, ":%s</DataItem>", place);
 }
 
@@ -78,7 +41,7 @@ SmCode bench_xdmf_write(const BenchXdmf *xdmf, const BenchDraft *draft, SmError 
     if (!file) return bench_draft_fail(draft->path, errno, "", error);
     fprintf(file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"2.0\"><Domain>\n");
     fprintf(file, "<Grid Name=\"");
-    write_text(file, xdmf->scene);
+    bench_xml_text(file, xdmf->scene);
     fprintf(file, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
     for (long frame = 0; frame < xdmf->frames; frame++) write_frame(file, xdmf, frame);
     fprintf(file, "</Grid>\n</Domain></Xdmf>\n");

@@ -147,9 +147,14 @@ def main():
     figure.suptitle(f"{plan['scene']}: {len(point['w'])} of {plan['points']} points; an octree's w in {plan['width']}, "
                     "a lattice's in cells", fontsize=10)
     output = arguments.output or os.path.splitext(arguments.file)[0] + ".svg"
+    name, form = os.path.splitext(output)
+    draft = f"{name}.{os.getpid()}.tmp{form}"
     try:
-        figure.savefig(output, dpi=130)
+        figure.savefig(draft, dpi=130)
+        os.replace(draft, output)
     except (OSError, ValueError) as error:
+        if os.path.exists(draft):
+            os.remove(draft)
         fail(f"{output}: cannot be written: {error}", 4)
 
 

@@ -31,6 +31,7 @@ except ImportError as error:
     fail(f"{error} (for {sys.executable}): scripts/setup run, or apt-get install python3-jinja2 python3-h5py "
          "python3-matplotlib", 3)
 
+MADE_BY = "Made by shapebench report from"
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 
@@ -90,7 +91,7 @@ def page(title, files, parts, picture, data_link):
     with open(os.path.join(HERE, "style.css"), encoding="utf-8") as file:
         style = Markup(file.read())
     return environment.get_template("page.html").render(
-        title=title, summary=summary(files), style=style, parts=parts, picture=picture, data_link=data_link,
+        title=title, made_by=MADE_BY, summary=summary(files), style=style, parts=parts, picture=picture, data_link=data_link,
         contents=[(part.id, part.title) for part in parts], files=[source.name for source in files])
 
 
@@ -131,11 +132,23 @@ def write_page(output, title, files, parts):
         raise
 
 
+def may_replace(folder):
+    """Is the folder empty, or a report with nothing else in it? A report takes its place, and it goes."""
+    if not os.path.isdir(folder) or os.path.islink(folder):
+        return False
+    names = os.listdir(folder)
+    if any(name != "index.html" and os.path.splitext(name)[1] not in (".svg", ".png", ".csv") for name in names):
+        return False
+    if "index.html" not in names:
+        return not names
+    with open(os.path.join(folder, "index.html"), encoding="utf-8", errors="replace") as file:
+        return MADE_BY in file.read()
+
+
 def write_folder(output, title, files, parts):
     """A folder of a page and its figures, in place of an older report of that name."""
-    if os.path.exists(output) and not os.path.exists(os.path.join(output, "index.html")):
-        if not os.path.isdir(output) or os.listdir(output):
-            fail(f"{output}: is there already and is no report: name another folder", 2)
+    if os.path.lexists(output) and not may_replace(output):
+        fail(f"{output}: is there already and is no report: name another folder", 2)
     parent = os.path.dirname(os.path.abspath(output))
     draft = tempfile.mkdtemp(prefix=os.path.basename(output) + ".", suffix=".tmp", dir=parent)
     try:

@@ -201,6 +201,18 @@ class Report(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertTrue(os.path.exists(self.at("mine/letter")))
 
+    def test_a_report_with_something_else_and_other_pages_are_kept(self):
+        output = self.at("pages")
+        self.assertEqual(shapebench("report", "-o", output, self.rows).returncode, 0)
+        for name, content in (("letter", "mine"), ("index.html", "<p>my page</p>")):
+            with open(os.path.join(output, name), "w", encoding="utf-8") as file:
+                file.write(content)
+            self.assertEqual(shapebench("report", "-o", output, self.rows).returncode, 2)
+            with open(os.path.join(output, name), encoding="utf-8") as file:
+                self.assertEqual(file.read(), content)
+            if name == "letter":
+                os.remove(os.path.join(output, name))
+
 
 if __name__ == "__main__":
     unittest.main()
