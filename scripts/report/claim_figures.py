@@ -1,6 +1,6 @@
 """Claims of a report: the table of verdicts, and a figure for each group of curves measured for them."""
 import numpy as np
-from matplotlib.ticker import FormatStrFormatter, MaxNLocator
+from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator
 
 from drawing import COLOURS, MARKS, PAPER, Figure, canvas, number
 from tables import Table
@@ -68,6 +68,7 @@ def plain_ticks(axes):
     """On less than two decades, 3 and 10 instead of powers."""
     low, high = axes.get_xlim()
     if high < 100 * low:
+        axes.xaxis.set_minor_locator(LogLocator(subs=(2, 3, 5)))  # all nine run into each other
         axes.xaxis.set_minor_formatter(FormatStrFormatter("%g"))
         axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
 

@@ -21,6 +21,12 @@ SWEEP_COLUMNS = ("engine", "w", "epsilon", "valid", "total_ms", "build_seconds",
                  "relaxation", "sag", "frequency", "path_rms", "path_most", "front")
 
 
+MACHINE_TEXTS = ("cpu", "git_commit", "utc")
+
+# What h5py raises for damaged files, and Python for objects of another kind than expected.
+DAMAGE = (KeyError, OSError, ValueError, RuntimeError, TypeError, AttributeError, MemoryError)
+
+
 class Unusable(Exception):
     """A file that cannot be reported; says which, why, and what helps."""
 
@@ -118,26 +124,49 @@ READERS = {"shapebench results": read_rows, "shapebench claims": read_claims,
            "shapebench sweep": read_sweep}
 
 
+def read_file(path, file):
+    kind, schema = plain(file.attrs.get("kind", "")), plain(file.attrs.get("schema", 0))
+    if kind not in SCHEMAS:
+        raise Unusable(f"{path}: not a file that can be reported (its kind is {kind!r}): give files that "
+                       "`shapebench tables`, `claims` or `sweep` wrote with -o")
+    if schema != SCHEMAS[kind]:
+        newer = isinstance(schema, int) and schema > SCHEMAS[kind]
+        raise Unusable(f"{path}: {kind} of schema {schema}, and this program reads {SCHEMAS[kind]}: "
+                       + ("use a newer shapebench" if newer else "make it again with this version"))
+    source = Source(path, kind, attributes(file["machine"]))
+    demand(source.machine, MACHINE_TEXTS, str)
+    READERS[kind](source, file)
+    return source
+
+
+def survives(path):
+    """Whether the file can be read to its end: damage can crash the HDF5 library, so a child tries first."""
+    child = os.fork()
+    if not child:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        try:
+            read_whole(path)
+        finally:
+            os._exit(0)
+    return not os.WIFSIGNALED(os.waitpid(child, 0)[1])
+
+
 def read(path):
     """The file as a Source; raises Unusable."""
     if not os.path.exists(path):
         raise Unusable(f"{path}: no such file")
+    if not survives(path):
+        raise Unusable(f"{path}: so damaged that it cannot be read: make it again")
+    return read_whole(path)
+
+
+def read_whole(path):
     try:
         file = h5py.File(path, "r")
     except OSError:
         raise Unusable(f"{path}: not an HDF5 file, or cut off: make it again") from None
-    with file:
-        kind, schema = plain(file.attrs.get("kind", "")), plain(file.attrs.get("schema", 0))
-        if kind not in SCHEMAS:
-            raise Unusable(f"{path}: not a file that can be reported (its kind is '{kind}'): give files that "
-                           "`shapebench tables`, `claims` or `sweep` wrote with -o")
-        if schema != SCHEMAS[kind]:
-            raise Unusable(f"{path}: {kind} of schema {schema}, and this program reads {SCHEMAS[kind]}: make it again "
-                           "with this version")
-        source = Source(path, kind, {})
-        try:
-            source.machine = attributes(file["machine"])
-            READERS[kind](source, file)
-        except (KeyError, OSError, ValueError) as error:
-            raise Unusable(f"{path}: something is missing or damaged ({error}): make it again") from None
-        return source
+    try:
+        with file:
+            return read_file(path, file)
+    except DAMAGE as error:
+        raise Unusable(f"{path}: something is missing or damaged ({error}): make it again") from None

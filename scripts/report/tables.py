@@ -10,6 +10,11 @@ class Table:
     def add(self, cells, kind=""):
         self.lines.append((kind, cells))
 
+    def texts(self):
+        """Of each column, whether it holds texts, which begin at the left, or numbers."""
+        return [any(isinstance(cells[i], str) and len(cells[i]) > 24 for _, cells in self.lines)
+                for i in range(len(self.headings))]
+
 
 def times(values, total):
     return [f"{number(ms)} ({100 * ms / total:.0f}%)" if ms == ms and total > 0 else "–" for ms in values]

@@ -6,6 +6,7 @@ import csv
 import html.parser
 import io
 import os
+import random
 import shutil
 import subprocess
 import sys
@@ -19,6 +20,8 @@ try:
 except ImportError as missing:
     print(f"skipped: {missing}; scripts/setup run installs it")
     sys.exit(77)
+
+import sources  # noqa: E402
 
 PROGRAM = sys.argv.pop(1)
 SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
@@ -164,8 +167,27 @@ class Report(unittest.TestCase):
         self.refused(self.at("cut.h5"), "cut off")
         self.refused(self.copy("kind.h5", lambda f: f.attrs.__setitem__("kind", b"music")), "music")
         self.refused(self.copy("schema.h5", lambda f: f.attrs.__setitem__("schema", 1)), "schema 1")
+        self.refused(self.copy("newer.h5", lambda f: f.attrs.__setitem__("schema", 99)), "use a newer shapebench")
         self.refused(self.copy("less.h5", lambda f: f["rows/000"].attrs.__delitem__("total_ms")), "missing")
         self.refused(self.copy("bare.h5", lambda f: f.__delitem__("machine")), "missing")
+
+    def test_damaged_bytes_are_refused_or_read(self):
+        with open(self.rows, "rb") as file:
+            whole = file.read()
+        refused = 0
+        for seed in range(60):
+            chance, damaged = random.Random(seed), bytearray(whole)
+            for _ in range(4 << seed % 6):
+                damaged[chance.randrange(100, len(whole))] = chance.randrange(256)
+            with open(self.at("damaged.h5"), "wb") as file:
+                file.write(damaged)
+            try:
+                sources.read(self.at("damaged.h5"))
+            except sources.Unusable as error:
+                refused += 1
+                self.assertIn("damaged.h5: ", str(error))
+                self.assertNotIn("\n", str(error))
+        self.assertGreater(refused, 20)
 
     def test_a_place_that_cannot_be_written(self):
         done = shapebench("report", "-o", "/proc/none/page.html", self.rows)
