@@ -24,7 +24,7 @@ static BenchScene make_scene(const char *text)
 static BenchBody make_body(const BenchScene *scene)
 {
     SmMesh mesh;
-    BenchBody body;
+    BenchBody body = {0};
     SmError error;
     if (bench_mesh_of_scene(scene, NULL, &mesh, &error) ||
         bench_body_create(scene, &mesh, &body, &error))
