@@ -105,10 +105,10 @@ static void search_cell(Search *s, int node)
 {
     const OctTree *tree = s->view->carrier->tree;
     double distance = distance_to(tree, node, s->q), away[8];
-    int child[8];
+    int child[8], children = tree->children[node];
     if (distance - 0.5 * tree->size[node] > s->distance) return;
-    if (tree->children[node] && is_hidden(s->view, node)) return;
-    for (int i = 0; i < tree->children[node]; i++) {
+    if (children && is_hidden(s->view, node)) return;
+    for (int i = 0; i < children; i++) {
         double here = distance_to(tree, tree->child[node] + i, s->q);
         int at = i;
         for (; at > 0 && away[at - 1] > here; at--) {
@@ -118,7 +118,7 @@ static void search_cell(Search *s, int node)
         away[at] = here;
         child[at] = tree->child[node] + i;
     }
-    for (int i = 0; i < tree->children[node]; i++) search_cell(s, child[i]);
+    for (int i = 0; i < children; i++) search_cell(s, child[i]);
     look_at(s, node, distance);
 }
 
