@@ -25,6 +25,7 @@ int bench_command_regress(int argc, char **argv);
 int bench_command_kernels(int argc, char **argv);
 int bench_command_report(int argc, char **argv);
 int bench_command_sweep(int argc, char **argv);
+int bench_command_calibrate(int argc, char **argv);
 int bench_command_merge(int argc, char **argv);
 int bench_command_claims(int argc, char **argv);
 

@@ -240,7 +240,7 @@ static SmCode run(Options *options, int argc, char **argv, BenchSweep *sweep, Sm
     SmCode code = make_plan(options, &sweep->plan, error);
     if (code) return code;
     bench_machine_read(argc, argv, options->common.threads, &sweep->machine);
-    bench_plan_build(&sweep->machine, &sweep->plan);
+    bench_plan_build(&sweep->machine, sizeof sweep->plan.build, sweep->plan.build);
     options->run.quiet = options->common.quiet;
     return bench_sweep_run(&options->run, sweep, error);
 }

@@ -44,6 +44,30 @@ void bench_csv_number(FILE *file, double value)
     if (isfinite(value)) fprintf(file, "%.9g", value);
 }
 
+void bench_csv_value(FILE *file, const BenchField *field, const void *value)
+{
+    switch (field->kind) {
+    case BENCH_TEXT:
+        bench_csv_text(file, value);
+        return;
+    case BENCH_INT:
+        fprintf(file, "%d", *(const int *)value);
+        return;
+    case BENCH_LONG:
+        fprintf(file, "%ld", *(const long *)value);
+        return;
+    case BENCH_BOOL:
+        fprintf(file, "%d", *(const bool *)value);
+        return;
+    case BENCH_HASH:
+        fprintf(file, "%llu", *(const unsigned long long *)value);
+        return;
+    case BENCH_DOUBLE:
+        bench_csv_number(file, *(const double *)value);
+        return;
+    }
+}
+
 json_t *bench_json_text(const char *text)
 {
     json_t *value = json_string(text);

@@ -13,6 +13,9 @@ void bench_csv_text(FILE *file, const char *text);
 /* Nine digits; nothing where it is not finite. */
 void bench_csv_number(FILE *file, double value);
 
+/* A field's value; of an array of numbers the one at `value`. */
+void bench_csv_value(FILE *file, const BenchField *field, const void *value);
+
 /* A string that may hold bytes that are no UTF-8 (a command line): those become '?'. */
 json_t *bench_json_text(const char *text);
 

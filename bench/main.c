@@ -15,6 +15,7 @@ static const BenchCommand commands[] = {
     {"claims", "hold every claim of the papers against what is measured", bench_command_claims},
     {"sweep", "cost and quality over w and epsilon; recommend some", bench_command_sweep},
     {"merge", "put the shards of a sweep into one file", bench_command_merge},
+    {"calibrate", "the elastic body that w and epsilon make: its modulus", bench_command_calibrate},
     {"regress", "is this build slower than another one, or wrong?", bench_command_regress},
     {"report", "make a page of result files to send to a colleague", bench_command_report},
     {"kernels", "time every kernel against what this machine can do", bench_command_kernels},
@@ -43,7 +44,7 @@ static void write_help(char *help, size_t room)
 {
     size_t used = (size_t)snprintf(help, room, "%s", help_start);
     for (int i = 0; i < COMMANDS && used < room; i++)
-        used += (size_t)snprintf(help + used, room - used, "  %-8s %s\n", commands[i].name,
+        used += (size_t)snprintf(help + used, room - used, "  %-9s %s\n", commands[i].name,
                                  commands[i].summary);
     if (used < room) snprintf(help + used, room - used, "%s", help_end);
 }

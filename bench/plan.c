@@ -73,8 +73,9 @@ static void say_numbers(const char *name, const double *mine, int my_count, cons
                         int their_count, size_t size, char *what)
 {
     snprintf(what, size, "its %s is %d numbers from %g to %g, and here %d from %g to %g", name,
-             their_count, theirs[0], theirs[their_count - 1], my_count, mine[0],
-             mine[my_count - 1]);
+             their_count, their_count ? theirs[0] : NAN,
+             their_count ? theirs[their_count - 1] : NAN, my_count, my_count ? mine[0] : NAN,
+             my_count ? mine[my_count - 1] : NAN);
 }
 
 static void say_field(const BenchField *field, const void *mine, const void *theirs, size_t size,
@@ -105,22 +106,17 @@ static void say_field(const BenchField *field, const void *mine, const void *the
     }
 }
 
-bool bench_plan_same(const BenchPlan *mine, const BenchPlan *theirs, size_t size, char *what)
+bool bench_plan_numbers_same(const char *name, const double *mine, int my_count,
+                             const double *theirs, int their_count, size_t size, char *what)
 {
-    int count;
-    const BenchField *fields = bench_plan_fields(&count);
-    size_t w = sizeof *mine->w * (size_t)mine->ws;
-    if (mine->ws != theirs->ws || memcmp(mine->w, theirs->w, w) != 0) {
-        say_numbers("w", mine->w, mine->ws, theirs->w, theirs->ws, size, what);
-        return false;
-    }
-    size_t epsilon = sizeof *mine->epsilon * (size_t)mine->epsilons;
-    if (mine->epsilons != theirs->epsilons ||
-        memcmp(mine->epsilon, theirs->epsilon, epsilon) != 0) {
-        say_numbers("epsilon", mine->epsilon, mine->epsilons, theirs->epsilon, theirs->epsilons,
-                    size, what);
-        return false;
-    }
+    bool same = my_count == their_count && !memcmp(mine, theirs, sizeof *mine * (size_t)my_count);
+    if (!same) say_numbers(name, mine, my_count, theirs, their_count, size, what);
+    return same;
+}
+
+bool bench_plan_fields_same(const BenchField *fields, int count, const void *mine,
+                            const void *theirs, size_t size, char *what)
+{
     for (int f = 0; f < count; f++) {
         const BenchField *field = &fields[f];
         const char *a = (const char *)mine + field->offset,
@@ -133,6 +129,16 @@ bool bench_plan_same(const BenchPlan *mine, const BenchPlan *theirs, size_t size
         return false;
     }
     return true;
+}
+
+bool bench_plan_same(const BenchPlan *mine, const BenchPlan *theirs, size_t size, char *what)
+{
+    int count;
+    const BenchField *fields = bench_plan_fields(&count);
+    return bench_plan_numbers_same("w", mine->w, mine->ws, theirs->w, theirs->ws, size, what) &&
+           bench_plan_numbers_same("epsilon", mine->epsilon, mine->epsilons, theirs->epsilon,
+                                   theirs->epsilons, size, what) &&
+           bench_plan_fields_same(fields, count, mine, theirs, size, what);
 }
 
 /* Of this program's file; 0 if it cannot be read. */
@@ -149,10 +155,10 @@ static unsigned long long hash_program(void)
     return hash;
 }
 
-void bench_plan_build(const BenchMachine *machine, BenchPlan *plan)
+void bench_plan_build(const BenchMachine *machine, size_t size, char *build)
 {
     char changed[32] = "";
     if (machine->git_dirty) snprintf(changed, sizeof changed, " changed %016llx", hash_program());
-    snprintf(plan->build, sizeof plan->build, "%s %.16s%s, %s %s", machine->version,
-             machine->git_commit, changed, machine->compiler, machine->flags);
+    snprintf(build, size, "%s %.16s%s, %s %s", machine->version, machine->git_commit, changed,
+             machine->compiler, machine->flags);
 }

@@ -44,7 +44,13 @@ void bench_plan_point(const BenchPlan *plan, int index, BenchPoint *point);
 /* Is `theirs` the same as `mine`? If not, `what` says in what they differ first. */
 bool bench_plan_same(const BenchPlan *mine, const BenchPlan *theirs, size_t size, char *what);
 
-/* Fills `build` in for this program. */
-void bench_plan_build(const BenchMachine *machine, BenchPlan *plan);
+/* Of any two plans: their numbers, all fields but `mesh`. */
+bool bench_plan_numbers_same(const char *name, const double *mine, int my_count,
+                             const double *theirs, int their_count, size_t size, char *what);
+bool bench_plan_fields_same(const BenchField *fields, int count, const void *mine,
+                            const void *theirs, size_t size, char *what);
+
+/* This program, for a plan's `build` of `size` bytes. */
+void bench_plan_build(const BenchMachine *machine, size_t size, char *build);
 
 #endif

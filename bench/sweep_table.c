@@ -139,30 +139,6 @@ static void write_text(FILE *file, const BenchSweep *sweep, const BenchGrid *gri
     write_reasons(file, sweep);
 }
 
-static void csv_value(FILE *file, const BenchField *field, const void *value)
-{
-    switch (field->kind) {
-    case BENCH_TEXT:
-        bench_csv_text(file, value);
-        return;
-    case BENCH_INT:
-        fprintf(file, "%d", *(const int *)value);
-        return;
-    case BENCH_LONG:
-        fprintf(file, "%ld", *(const long *)value);
-        return;
-    case BENCH_BOOL:
-        fprintf(file, "%d", *(const bool *)value);
-        return;
-    case BENCH_HASH:
-        fprintf(file, "%llu", *(const unsigned long long *)value);
-        return;
-    case BENCH_DOUBLE:
-        bench_csv_number(file, *(const double *)value);
-        return;
-    }
-}
-
 static void write_csv(FILE *file, const BenchSweep *sweep)
 {
     int count;
@@ -175,7 +151,7 @@ static void write_csv(FILE *file, const BenchSweep *sweep)
             for (int s = 0; s < (many ? SM_STAGES : 1); s++) {
                 if (s) fputc(',', file);
                 if (i >= 0)
-                    csv_value(file, &fields[f], value + (size_t)s * sizeof(double));
+                    bench_csv_value(file, &fields[f], value + (size_t)s * sizeof(double));
                 else if (many)
                     fprintf(file, "%s_ms", sm_stage_name((SmStage)s));
                 else

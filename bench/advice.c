@@ -1,0 +1,231 @@
+#include "advice.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "statistic.h"
+
+static const double near_enough = 0.1, alike = 0.1; /* of a modulus */
+
+/* Appends to a sentence; what does not fit is cut. */
+static void say(char *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void say(char *text, const char *format, ...)
+{
+    size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, BENCH_WORDS - used, format, arguments);
+    va_end(arguments);
+}
+
+static const BenchLaw *find_law(const BenchLaw *law, int laws, const char *engine, const char *kind)
+{
+    for (int i = 0; i < laws; i++)
+        if (!strcmp(law[i].engine, engine) && !strcmp(law[i].kind, kind)) return &law[i];
+    return NULL;
+}
+
+/* Values of valid specimens that are narrow or wide, or both (2): what is picked of each. */
+static int gather(const BenchSpecimen *specimen, long count, int wide,
+                  double (*pick)(const BenchSpecimen *s), double *value)
+{
+    int number = 0;
+    for (long i = 0; i < count; i++)
+        if (specimen[i].valid && (wide == 2 || specimen[i].wide == wide))
+            value[number++] = pick(&specimen[i]);
+    return number;
+}
+
+static const double *best_young(const BenchSpecimen *s)
+{
+    return isfinite(s->young_meshless[0]) ? s->young_meshless : s->young_timoshenko;
+}
+
+static double first_gap(const BenchSpecimen *s)
+{
+    return 100 * fabs(best_young(s)[1] / best_young(s)[0] - 1);
+}
+
+static double spread_of(const BenchSpecimen *s)
+{
+    return 100 * s->spread;
+}
+
+static double loss_of(const BenchSpecimen *s)
+{
+    return fabs(s->loss[0]);
+}
+
+/* How far what sag and frequencies say is apart. */
+static void say_alike(const BenchSpecimen *specimen, long count, char *text)
+{
+    double *value = sm_alloc((size_t)count, sizeof *value);
+    int all = gather(specimen, count, 2, first_gap, value);
+    if (all) {
+        say(text,
+            "An elastic beam behaves alike: of %d specimens of %ld that are valid, the Young's "
+            "moduli by "
+            "the static sag and by the first frequency are %.2g%% apart (median; at most %.2g%%)",
+            all, count, bench_quantile(value, all, 0.5), bench_quantile(value, all, 1));
+        for (int wide = 0; wide < 2; wide++) {
+            int number = gather(specimen, count, wide, spread_of, value);
+            if (number)
+                say(text, "%s %.2g%% (at most %.2g%%) where regions are %s",
+                    wide && strstr(text, "narrower") ? " and"
+                                                     : ", by the sag and three frequencies",
+                    bench_quantile(value, number, 0.5), bench_quantile(value, number, 1),
+                    wide ? "wider than the beam is thick" : "narrower than the beam");
+        }
+        int lossy = gather(specimen, count, 2, loss_of, value);
+        say(text, "; the first mode's loss factor is at most %.2g.",
+            bench_quantile(value, lossy, 1));
+    }
+    free(value);
+}
+
+static void say_laws(const BenchLaw *law, int laws, char *text)
+{
+    for (int i = 0; i < laws; i++) {
+        const BenchLaw *l = &law[i];
+        if (strcmp(l->kind, "two-term") != 0) continue;
+        say(text,
+            "%s%s c = %.3f (95%%: %.3f to %.3f) and d = %.3f (%.3f to %.3f), which leaves %.2g%%",
+            text[0] ? "; for the "
+                    : "E = rho (a/h)^2 w(w+1) (c + d w(w+1) (a/t)^2), a being the "
+                      "spacing, h the time step and t the thickness, with for the ",
+            l->engine, l->c[0], l->c[1], l->c[2], l->d[0], l->d[1], l->d[2], 100 * l->scatter);
+    }
+    for (int i = 0; i < laws; i++) {
+        const BenchLaw *l = &law[i];
+        if (!strcmp(l->kind, "two-term") || isnan(l->spacing[0]) || isnan(l->width[0])) continue;
+        say(text, "%s%s %s a^%.2f w^%.2f", strstr(text, "as powers") ? ", " : "; as powers, ",
+            l->engine, l->kind, l->spacing[0], l->width[0]);
+        if (isfinite(l->step[0])) say(text, " / h^%.3f", l->step[0]);
+    }
+    if (text[0]) say(text, ".");
+}
+
+/* Largest and least of a modulus over what differs from `of` in one thing alone. */
+static double ratio_over(const BenchSpecimen *specimen, long count, const char *set, bool epsilon)
+{
+    double most = NAN;
+    for (long i = 0; i < count; i++)
+        for (long j = 0; j < count; j++) {
+            const BenchSpecimen *a = &specimen[i], *b = &specimen[j];
+            bool same = a->valid && b->valid && !strcmp(a->engine, b->engine) && a->w == b->w;
+            if (!same || a->across != b->across || a->h != b->h) continue;
+            if (epsilon ? a->aspect != b->aspect : a->epsilon != b->epsilon) continue;
+            if (!epsilon && strcmp(a->set, set) != 0 && strcmp(b->set, set) != 0) continue;
+            most = fmax(most, a->young / b->young);
+        }
+    return most;
+}
+
+static void say_range(const BenchSpecimen *specimen, long count, char *text)
+{
+    double aspect = ratio_over(specimen, count, "aspect", false),
+           epsilon = ratio_over(specimen, count, "", true), linear = INFINITY;
+    int looked = 0, apart = 0;
+    const BenchSpecimen *grid = NULL;
+    for (long i = 0; i < count; i++) {
+        const BenchSpecimen *s = &specimen[i];
+        if (isfinite(s->linear_to)) linear = fmin(linear, s->linear_to), looked++;
+        if (s->valid && s->spread > alike) apart++;
+        if (!strcmp(s->set, "grid") && s->wide && (!grid || s->w < grid->w)) grid = s;
+    }
+    say(text, "It is no material's constant:");
+    if (grid)
+        say(text,
+            " from w %d on regions are wider than this beam of %d cells, and direction counts;",
+            grid->w, grid->across);
+    if (aspect > 1)
+        say(text, " the same setting is up to %.2g%% stiffer on one length than on another;",
+            100 * (aspect - 1));
+    if (epsilon > 1) say(text, " epsilon makes the octree up to %.2g times as stiff;", epsilon);
+    if (looked)
+        say(text, " sags are in proportion to the load to %g%% of the length (%d looked at);",
+            100 * linear, looked);
+    say(text, " sag and frequencies are more than %g%% apart in %d specimens.", 100 * alike, apart);
+}
+
+void bench_advice_found(const BenchSpecimen *specimen, long count, const BenchLaw *law, int laws,
+                        char found[BENCH_FOUND][BENCH_WORDS])
+{
+    for (int i = 0; i < BENCH_FOUND; i++) found[i][0] = '\0';
+    say_alike(specimen, count, found[0]);
+    say_laws(law, laws, found[1]);
+    if (found[0][0]) say_range(specimen, count, found[2]);
+}
+
+/* ---- the other way round */
+
+static double off(const BenchSpecimen *s, const BenchYoung *wish)
+{
+    return fabs(log(s->young * wish->density / wish->measured / wish->young));
+}
+
+static bool better(const BenchSpecimen *a, const BenchSpecimen *b, const BenchYoung *wish)
+{
+    double far = log(1 + near_enough), off_a = off(a, wish), off_b = off(b, wish);
+    if (off_a <= far && off_b <= far) return a->spread < b->spread;
+    return off_a < off_b;
+}
+
+/* The spacing at which the law has `ratio` times the modulus; NaN: no law. With q = a^2 it is a
+ * root of d W q^2 / t^2 + c q. */
+static double find_spacing(const BenchSpecimen *s, const BenchLaw *law, double thickness,
+                           double ratio)
+{
+    if (!law || !(law->c[0] > 0) || !(law->d[0] >= 0)) return NAN;
+    double W = s->w * (s->w + 1.0), bend = law->d[0] * W / (thickness * thickness);
+    double q = s->spacing * s->spacing, wanted = ratio * q * (law->c[0] + bend * q);
+    return sqrt(2 * wanted / (law->c[0] + sqrt(law->c[0] * law->c[0] + 4 * bend * wanted)));
+}
+
+static void say_remedy(const BenchSpecimen *s, const BenchLaw *law, const BenchYoung *wish,
+                       double young, char *text)
+{
+    double ratio = wish->young / young;
+    double spacing = find_spacing(s, law, wish->thickness, ratio);
+    say(text, " A time step of %.3g s in place of %.3g s would hit it", s->h / sqrt(ratio), s->h);
+    if (isfinite(spacing))
+        say(text, ", or about a spacing of %.3g in place of %.3g", spacing, s->spacing);
+    say(text, ".");
+}
+
+long bench_advice_young(const BenchSpecimen *specimen, long count, const BenchLaw *law, int laws,
+                        const BenchYoung *wish, char sentence[BENCH_WORDS])
+{
+    long best = -1;
+    double low = INFINITY, high = 0;
+    sentence[0] = '\0';
+    for (long i = 0; i < count; i++) {
+        const BenchSpecimen *s = &specimen[i];
+        if (!s->valid || strcmp(s->set, "grid") != 0) continue;
+        low = fmin(low, s->young), high = fmax(high, s->young);
+        if (best < 0 || better(s, &specimen[best], wish)) best = i;
+    }
+    if (best < 0) {
+        say(sentence, "No recommendation: no specimen of the grid is valid.");
+        return best;
+    }
+    const BenchSpecimen *s = &specimen[best];
+    double unit = wish->density / wish->measured, young = s->young * unit;
+    bool hit = off(s, wish) <= log(1 + near_enough);
+    if (!hit)
+        say(sentence, "No w and epsilon is within %g%% of %.4g Pa (%.3g to %.3g Pa there are). ",
+            100 * near_enough, wish->young, low * unit, high * unit);
+    say(sentence, "For %.4g Pa at %.4g kg/m^3 %s %s with w %d", wish->young, wish->density,
+        hit ? "take" : "the nearest is", s->engine, s->w);
+    if (!strcmp(s->engine, "octree")) say(sentence, " and epsilon %g", s->epsilon);
+    say(sentence,
+        ", spacing %.3g m and time step %.3g s: %.3g Pa, sag and frequencies %.2g%% apart, loss "
+        "factor "
+        "%.1g.",
+        s->spacing, s->h, young, 100 * s->spread, fabs(s->loss[0]));
+    say_remedy(s, find_law(law, laws, s->engine, "two-term"), wish, young, sentence);
+    return best;
+}

@@ -1,0 +1,27 @@
+/* advice.h - what a calibration says in words, and which w and epsilon have a given modulus. */
+#ifndef BENCH_ADVICE_H
+#define BENCH_ADVICE_H
+
+#include "law.h"
+
+enum { BENCH_FOUND = 3, BENCH_WORDS = 768 };
+
+/* What the specimens and laws say, in BENCH_FOUND sentences: how far an elastic body is like them;
+ * what its modulus follows from; how far it is no material's. Empty where nothing is known. */
+void bench_advice_found(const BenchSpecimen *specimen, long count, const BenchLaw *law, int laws,
+                        char found[BENCH_FOUND][BENCH_WORDS]);
+
+/* What is wished, and what the specimens are of. */
+typedef struct {
+    double young, density; /* Pa, kg a cubic unit */
+    double measured;       /* the specimens' density */
+    double thickness;      /* of their beam */
+} BenchYoung;
+
+/* The specimen of the grid that comes nearest to the wished modulus, and a sentence about it: what
+ * it has, and which time step, or spacing, would hit it. Of those within 10% the one with the least
+ * spread is taken. -1, and a sentence why, where no specimen is valid. */
+long bench_advice_young(const BenchSpecimen *specimen, long count, const BenchLaw *law, int laws,
+                        const BenchYoung *wish, char sentence[BENCH_WORDS]);
+
+#endif

@@ -1,0 +1,193 @@
+#include "law.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_multifit.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FIELD(kind, member) BENCH_FIELD(BenchLaw, kind, member)
+
+enum { SETTINGS = 4 }; /* spacing, w, aspect, time step */
+
+static const char *const engines[] = {"fastlsm", "octree"};
+static const double same = 1e-9; /* of logarithms */
+
+const BenchField *bench_law_fields(int *count)
+{
+    static const BenchField fields[] = {
+        FIELD(BENCH_TEXT, engine),    FIELD(BENCH_TEXT, kind),     FIELD(BENCH_INT, specimens),
+        FIELD(BENCH_DOUBLE, scatter), FIELD(BENCH_DOUBLE, c),      FIELD(BENCH_DOUBLE, spacing),
+        FIELD(BENCH_DOUBLE, width),   FIELD(BENCH_DOUBLE, aspect), FIELD(BENCH_DOUBLE, step),
+        FIELD(BENCH_DOUBLE, d),
+    };
+    *count = (int)(sizeof fields / sizeof fields[0]);
+    return fields;
+}
+
+static BenchLaw make_law(const char *engine, const char *kind)
+{
+    BenchLaw law = {.scatter = NAN};
+    strcpy(law.engine, engine);
+    strcpy(law.kind, kind);
+    for (int i = 0; i < 3; i++)
+        law.c[i] = law.spacing[i] = law.width[i] = law.aspect[i] = law.step[i] = law.d[i] = NAN;
+    return law;
+}
+
+/* The engine's valid specimens at its first epsilon; `kind` 0 or 1: the narrow or wide ones, 2:
+ * all. The caller frees the list. */
+static int choose(const BenchSpecimen *specimen, long count, const char *engine, int kind,
+                  const BenchSpecimen ***chosen)
+{
+    double first = INFINITY;
+    int number = 0;
+    *chosen = sm_alloc((size_t)count, sizeof **chosen);
+    for (long i = 0; i < count; i++)
+        if (!strcmp(specimen[i].engine, engine)) first = fmin(first, specimen[i].epsilon);
+    for (long i = 0; i < count; i++) {
+        const BenchSpecimen *s = &specimen[i];
+        if (!s->valid || strcmp(s->engine, engine) != 0 || s->epsilon != first) continue;
+        if (kind == 2 || s->wide == (kind == 1)) (*chosen)[number++] = s;
+    }
+    return number;
+}
+
+/* y = X times coefficients, by least squares. */
+typedef struct {
+    size_t rows, columns;
+    gsl_matrix *X, *both; /* both: covariances */
+    gsl_vector *y, *coefficient;
+    double scatter; /* rms of what is left of y */
+} Fit;
+
+static Fit begin_fit(int rows, int columns)
+{
+    size_t n = (size_t)rows, p = (size_t)columns;
+    return (Fit){.rows = n,
+                 .columns = p,
+                 .X = gsl_matrix_alloc(n, p),
+                 .both = gsl_matrix_alloc(p, p),
+                 .y = gsl_vector_alloc(n),
+                 .coefficient = gsl_vector_alloc(p)};
+}
+
+/* False where the columns say the same. */
+static bool find_fit(Fit *fit)
+{
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(fit->rows, fit->columns);
+    double squares;
+    gsl_multifit_linear(fit->X, fit->y, fit->coefficient, fit->both, &squares, work);
+    bool good = gsl_multifit_linear_rank(1e-6, work) == fit->columns;
+    gsl_multifit_linear_free(work);
+    fit->scatter = sqrt(squares / (double)fit->rows);
+    return good;
+}
+
+static void free_fit(Fit *fit)
+{
+    gsl_matrix_free(fit->X);
+    gsl_matrix_free(fit->both);
+    gsl_vector_free(fit->y);
+    gsl_vector_free(fit->coefficient);
+}
+
+/* A coefficient, with its 95% interval. */
+static void read_fit(const Fit *fit, size_t column, double found[3])
+{
+    double value = gsl_vector_get(fit->coefficient, column);
+    double half = gsl_cdf_tdist_Pinv(0.975, (double)(fit->rows - fit->columns)) *
+                  sqrt(fmax(gsl_matrix_get(fit->both, column, column), 0));
+    found[0] = value, found[1] = value - half, found[2] = value + half;
+}
+
+/* Logarithm of a setting. */
+static double setting(const BenchSpecimen *s, int number)
+{
+    const double value[SETTINGS] = {s->spacing, s->w, s->aspect, s->h};
+    return log(value[number]);
+}
+
+/* Columns of the settings that differ, 0 of the others; returns how many there are with the
+ * constant's, which is 0. */
+static int find_columns(const BenchSpecimen **s, int count, int column[SETTINGS])
+{
+    int columns = 1;
+    for (int k = 0; k < SETTINGS; k++) {
+        bool differ = false;
+        for (int i = 1; i < count; i++)
+            differ = differ || fabs(setting(s[i], k) - setting(s[0], k)) > same;
+        column[k] = differ ? columns++ : 0;
+    }
+    return columns;
+}
+
+static bool fit_power(const BenchSpecimen **s, int count, double density, BenchLaw *law)
+{
+    double *const exponent[SETTINGS] = {law->spacing, law->width, law->aspect, law->step};
+    int column[SETTINGS], columns = find_columns(s, count, column);
+    if (columns < 2 || count <= columns) return false;
+    Fit fit = begin_fit(count, columns);
+    for (int i = 0; i < count; i++) {
+        gsl_matrix_set(fit.X, (size_t)i, 0, 1);
+        for (int k = 0; k < SETTINGS; k++)
+            if (column[k]) gsl_matrix_set(fit.X, (size_t)i, (size_t)column[k], setting(s[i], k));
+        gsl_vector_set(fit.y, (size_t)i, log(s[i]->young / density));
+    }
+    bool good = find_fit(&fit);
+    law->specimens = count;
+    law->scatter = fit.scatter;
+    read_fit(&fit, 0, law->c);
+    for (int i = 0; i < 3; i++) law->c[i] = exp(law->c[i]);
+    for (int k = 0; k < SETTINGS; k++)
+        if (column[k]) read_fit(&fit, (size_t)column[k], exponent[k]);
+    double *step = law->step, low = -step[2]; /* the law divides by it */
+    step[2] = -step[1], step[1] = low, step[0] = -step[0];
+    free_fit(&fit);
+    return good;
+}
+
+/* w (w + 1): three times the variance of two smoothings, in cells. */
+static double smoothing(const BenchSpecimen *s)
+{
+    return s->w * (s->w + 1.0);
+}
+
+/* Divided by E, so that relative errors count: 1 = c x + d x z. */
+static bool fit_terms(const BenchSpecimen **s, int count, double thickness, double density,
+                      BenchLaw *law)
+{
+    if (count < 3) return false;
+    Fit fit = begin_fit(count, 2);
+    for (int i = 0; i < count; i++) {
+        double speed = s[i]->spacing / s[i]->h, across = s[i]->spacing / thickness;
+        double x = density * speed * speed * smoothing(s[i]) / s[i]->young;
+        gsl_matrix_set(fit.X, (size_t)i, 0, x);
+        gsl_matrix_set(fit.X, (size_t)i, 1, x * smoothing(s[i]) * across * across);
+        gsl_vector_set(fit.y, (size_t)i, 1);
+    }
+    bool good = find_fit(&fit);
+    law->specimens = count;
+    law->scatter = fit.scatter;
+    read_fit(&fit, 0, law->c);
+    read_fit(&fit, 1, law->d);
+    free_fit(&fit);
+    return good;
+}
+
+int bench_law_fit(const BenchSpecimen *specimen, long count, double thickness, double density,
+                  BenchLaw law[BENCH_LAWS])
+{
+    static const char *const kinds[] = {"narrow", "wide", "two-term"};
+    int laws = 0;
+    for (int e = 0; e < 2; e++)
+        for (int kind = 0; kind < 3; kind++) {
+            const BenchSpecimen **chosen;
+            int number = choose(specimen, count, engines[e], kind, &chosen);
+            law[laws] = make_law(engines[e], kinds[kind]);
+            laws += kind < 2 ? fit_power(chosen, number, density, &law[laws])
+                             : fit_terms(chosen, number, thickness, density, &law[laws]);
+            free(chosen);
+        }
+    return laws;
+}

@@ -1,0 +1,179 @@
+#include "stiffness.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_min.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MOST_STEPS = 400000, LOADS = 4, MOST_PERIODS = 30, LOOKS = 20 };
+
+static const int periods[BENCH_TONES] = {5, 10, 10};
+static const double height = 1e-4, small_sag = 1e-3, proportional = 0.05; /* of the length */
+static const double sags[LOADS] = {0.05, 0.1, 0.2, 0.4};
+static const double weight_over_first = 12.362363 / 8; /* omega^2 sag / load in theory */
+static const double two_pi = 6.283185307179586;
+
+/* A mode's share of the motion, step by step. */
+typedef struct {
+    long count, room;
+    double *value;
+    double turns; /* a step: its frequency by passages through zero */
+} Sound;
+
+BenchStiffness bench_stiffness_none(void)
+{
+    BenchStiffness none = {.load = NAN, .sag = NAN, .unrest = NAN, .linear_to = NAN};
+    for (int k = 0; k < BENCH_TONES; k++) none.frequency[k] = none.loss[k] = NAN;
+    return none;
+}
+
+static void keep(Sound *sound, double value)
+{
+    if (sound->count == sound->room) {
+        sound->room = 2 * sound->room + 1024;
+        sound->value = sm_realloc(sound->value, (size_t)sound->room, sizeof *sound->value);
+    }
+    sound->value[sound->count++] = value;
+}
+
+/* Lets the mode go and listens until it has passed through zero often enough. */
+static bool listen(BenchCantilever *beam, int mode, Sound *sound)
+{
+    double before = height * beam->length, first = 0;
+    int passed = 0;
+    bench_cantilever_bend(beam, mode, before);
+    sound->count = 0;
+    while (sound->count < MOST_STEPS && isfinite(before)) {
+        keep(sound, before);
+        bench_cantilever_step(beam, 0, 0);
+        double now = bench_cantilever_mode(beam, mode);
+        if ((before > 0) != (now > 0)) {
+            double at = (double)sound->count - 1 + before / (before - now);
+            if (passed == 0) first = at;
+            sound->turns = passed / (2 * (at - first));
+            if (passed++ == 2 * periods[mode]) return true;
+        }
+        before = now;
+    }
+    return false;
+}
+
+typedef struct {
+    const double *value;
+    long count;
+} Part;
+
+/* |Fourier transform| at so many turns a step, under Hann's window, negative: to be minimised. */
+static double spectrum(double turns, void *part)
+{
+    const Part *p = part;
+    double even = 0, odd = 0;
+    for (long n = 0; n < p->count; n++) {
+        double hann = 1 - cos(two_pi * ((double)n + 0.5) / (double)p->count);
+        even += hann * p->value[n] * cos(two_pi * turns * (double)n);
+        odd += hann * p->value[n] * sin(two_pi * turns * (double)n);
+    }
+    return -hypot(even, odd);
+}
+
+/* The highest place of the spectrum near `turns`; its lobe is two periods of the record wide. */
+static double peak(Part *part, double turns)
+{
+    gsl_function function = {spectrum, part};
+    gsl_min_fminimizer *search = gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent);
+    double lobe = 0.8 / (double)part->count, found = turns;
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    if (!gsl_min_fminimizer_set(search, &function, turns, turns - lobe, turns + lobe)) {
+        for (int i = 0; i < 40; i++) {
+            if (gsl_min_fminimizer_iterate(search)) break;
+            double low = gsl_min_fminimizer_x_lower(search),
+                   high = gsl_min_fminimizer_x_upper(search);
+            if (gsl_min_test_interval(low, high, 0, 1e-9) == GSL_SUCCESS) break;
+        }
+        found = gsl_min_fminimizer_x_minimum(search);
+    }
+    gsl_set_error_handler(handler);
+    gsl_min_fminimizer_free(search);
+    return found;
+}
+
+/* How much lower, in logarithms, the second half is than the first. */
+static double fall(const double *value, long count, double turns)
+{
+    Part first = {value, count / 2}, second = {value + count / 2, count / 2};
+    return log(spectrum(turns, &first) / spectrum(turns, &second));
+}
+
+/* A tone that loses nothing falls, too, by the window's leakage: that is taken off. */
+static void hear(const BenchCantilever *beam, const Sound *sound, int mode, BenchStiffness *found)
+{
+    Part whole = {sound->value, sound->count};
+    double turns = peak(&whole, sound->turns);
+    double *pure = sm_alloc((size_t)sound->count, sizeof *pure);
+    for (long n = 0; n < sound->count; n++) pure[n] = cos(two_pi * turns * (double)n);
+    double lost = fall(sound->value, sound->count, turns) - fall(pure, sound->count, turns);
+    free(pure);
+    found->frequency[mode] = turns / beam->scene.params.h;
+    found->loss[mode] = lost / (two_pi / 2 * turns * (double)(sound->count / 2));
+}
+
+/* Until it is at rest under the load; `omega` is that of the first mode. */
+static bool relax(BenchCantilever *beam, double load, double omega, double *unrest)
+{
+    double h = beam->scene.params.h, rate = fmin(2 * omega, 0.5 / h);
+    long look = (long)ceil(two_pi / (omega * h) / LOOKS);
+    for (int i = 0; i < MOST_PERIODS * LOOKS; i++) {
+        for (long step = 0; step < look; step++) bench_cantilever_step(beam, -load, rate);
+        *unrest = bench_cantilever_unrest(beam, -load);
+        if (*unrest < BENCH_REST) return true;
+    }
+    return false;
+}
+
+static bool sink(BenchCantilever *beam, BenchStiffness *found)
+{
+    double omega = two_pi * found->frequency[0];
+    found->load = omega * omega * small_sag * beam->length / weight_over_first;
+    bench_cantilever_bend(beam, 0, -small_sag * beam->length);
+    if (!relax(beam, found->load, omega, &found->unrest)) return false;
+    found->sag = -bench_cantilever_tip(beam) / beam->length;
+    return found->sag > 0;
+}
+
+void bench_stiffness_measure(BenchCantilever *beam, BenchStiffness *found)
+{
+    *found = bench_stiffness_none();
+    Sound sound = {0};
+    for (int k = 0; k < BENCH_TONES && !found->why[0]; k++) {
+        if (listen(beam, k, &sound))
+            hear(beam, &sound, k, found);
+        else
+            snprintf(found->why, sizeof found->why,
+                     "mode %d does not swing to and fro %d times in %d steps", k + 1, periods[k],
+                     MOST_STEPS);
+    }
+    free(sound.value);
+    if (!found->why[0] && !sink(beam, found))
+        snprintf(found->why, sizeof found->why,
+                 "it is not at rest after %d periods: %.2g of its weight is left over",
+                 MOST_PERIODS, found->unrest);
+    if (found->why[0]) {
+        BenchStiffness none = bench_stiffness_none();
+        snprintf(none.why, sizeof none.why, "%s", found->why);
+        *found = none;
+    }
+}
+
+void bench_stiffness_range(BenchCantilever *beam, BenchStiffness *found)
+{
+    double omega = two_pi * found->frequency[0];
+    for (int i = 0; i < LOADS && !found->why[0]; i++) {
+        double load = found->load * sags[i] / found->sag, unrest;
+        if (i == 0) found->linear_to = 0;
+        if (!relax(beam, load, omega, &unrest)) return;
+        double sag = -bench_cantilever_tip(beam) / beam->length;
+        if (!(fabs(sag / sags[i] - 1) <= proportional)) return;
+        found->linear_to = sags[i];
+    }
+}
