@@ -59,29 +59,35 @@ static double loss_of(const BenchSpecimen *s)
     return fabs(s->loss[0]);
 }
 
+/* "6.8% (at most 14%)" */
+static void say_percent(double *value, int count, char *text)
+{
+    say(text, "%.2g%% (at most %.2g%%)", bench_quantile(value, count, 0.5),
+        bench_quantile(value, count, 1));
+}
+
 /* How far what sag and frequencies say is apart. */
 static void say_alike(const BenchSpecimen *specimen, long count, char *text)
 {
+    static const char *const where[] = {"where regions are narrower than the beam is thick",
+                                        "where they are wider than it"};
     double *value = sm_alloc((size_t)count, sizeof *value);
-    int all = gather(specimen, count, 2, first_gap, value);
+    int all = gather(specimen, count, 2, first_gap, value), number;
     if (all) {
         say(text,
-            "An elastic beam behaves alike: of %d specimens of %ld that are valid, the Young's "
-            "moduli by "
-            "the static sag and by the first frequency are %.2g%% apart (median; at most %.2g%%)",
-            all, count, bench_quantile(value, all, 0.5), bench_quantile(value, all, 1));
+            "An elastic beam behaves alike: in %d valid specimens of %ld Young's moduli by the "
+            "static sag and by the first frequency differ by ",
+            all, count);
+        say_percent(value, all, text);
         for (int wide = 0; wide < 2; wide++) {
-            int number = gather(specimen, count, wide, spread_of, value);
-            if (number)
-                say(text, "%s %.2g%% (at most %.2g%%) where regions are %s",
-                    wide && strstr(text, "narrower") ? " and"
-                                                     : ", by the sag and three frequencies",
-                    bench_quantile(value, number, 0.5), bench_quantile(value, number, 1),
-                    wide ? "wider than the beam is thick" : "narrower than the beam");
+            if (!(number = gather(specimen, count, wide, spread_of, value))) continue;
+            say(text, ", those by the sag and three frequencies by ");
+            say_percent(value, number, text);
+            say(text, " %s", where[wide]);
         }
-        int lossy = gather(specimen, count, 2, loss_of, value);
+        number = gather(specimen, count, 2, loss_of, value);
         say(text, "; the first mode's loss factor is at most %.2g.",
-            bench_quantile(value, lossy, 1));
+            bench_quantile(value, number, 1));
     }
     free(value);
 }
@@ -91,11 +97,10 @@ static void say_laws(const BenchLaw *law, int laws, char *text)
     for (int i = 0; i < laws; i++) {
         const BenchLaw *l = &law[i];
         if (strcmp(l->kind, "two-term") != 0) continue;
-        say(text,
-            "%s%s c = %.3f (95%%: %.3f to %.3f) and d = %.3f (%.3f to %.3f), which leaves %.2g%%",
-            text[0] ? "; for the "
-                    : "E = rho (a/h)^2 w(w+1) (c + d w(w+1) (a/t)^2), a being the "
-                      "spacing, h the time step and t the thickness, with for the ",
+        say(text, "%s%s c = %.3f (%.3f to %.3f) and d = %.3f (%.3f to %.3f), off by %.2g%%",
+            text[0] ? "; of the "
+                    : "With spacing a, time step h and thickness t it follows E = rho (a/h)^2 "
+                      "w(w+1) (c + d w(w+1) (a/t)^2), with of the ",
             l->engine, l->c[0], l->c[1], l->c[2], l->d[0], l->d[1], l->d[2], 100 * l->scatter);
     }
     for (int i = 0; i < laws; i++) {
@@ -124,25 +129,36 @@ static double ratio_over(const BenchSpecimen *specimen, long count, const char *
     return most;
 }
 
+/* The first w of the scene's beam whose regions are wider than it is thick. */
+static const BenchSpecimen *find_wide(const BenchSpecimen *specimen, long count)
+{
+    const BenchSpecimen *found = NULL;
+    for (long i = 0; i < count; i++) {
+        const BenchSpecimen *s = &specimen[i];
+        if (!strcmp(s->set, "grid") && s->wide && (!found || s->w < found->w)) found = s;
+    }
+    return found;
+}
+
 static void say_range(const BenchSpecimen *specimen, long count, char *text)
 {
     double aspect = ratio_over(specimen, count, "aspect", false),
            epsilon = ratio_over(specimen, count, "", true), linear = INFINITY;
     int looked = 0, apart = 0;
-    const BenchSpecimen *grid = NULL;
     for (long i = 0; i < count; i++) {
         const BenchSpecimen *s = &specimen[i];
         if (isfinite(s->linear_to)) linear = fmin(linear, s->linear_to), looked++;
         if (s->valid && s->spread > alike) apart++;
-        if (!strcmp(s->set, "grid") && s->wide && (!grid || s->w < grid->w)) grid = s;
     }
+    const BenchSpecimen *wide = find_wide(specimen, count);
     say(text, "It is no material's constant:");
-    if (grid)
+    if (wide)
         say(text,
-            " from w %d on regions are wider than this beam of %d cells, and direction counts;",
-            grid->w, grid->across);
+            " from w %d on regions are wider than this beam of %d cells, and resist its bending by "
+            "their length;",
+            wide->w, wide->across);
     if (aspect > 1)
-        say(text, " the same setting is up to %.2g%% stiffer on one length than on another;",
+        say(text, " one setting is up to %.2g%% stiffer on one length than on another;",
             100 * (aspect - 1));
     if (epsilon > 1) say(text, " epsilon makes the octree up to %.2g times as stiff;", epsilon);
     if (looked)

@@ -69,8 +69,8 @@ static void estimate(const double value[3], char text[BENCH_GRID_TEXT])
 
 static BenchGrid law_grid(const BenchCalibration *calibration)
 {
-    static const char *const heading[] = {"engine", "law",   "specimens", "c",       "spacing^p",
-                                          "w^q",    "1/h^r", "d",         "off by %"};
+    static const char *const heading[] = {"engine", "law",      "specimens", "c", "spacing^p",
+                                          "w^q",    "aspect^s", "1/h^r",     "d", "off by %"};
     BenchGrid grid = {0};
     for (size_t c = 0; c < sizeof heading / sizeof heading[0]; c++)
         bench_grid_column(&grid, heading[c], c < 2);
@@ -83,9 +83,10 @@ static BenchGrid law_grid(const BenchCalibration *calibration)
         estimate(law->c, (*line)[3]);
         estimate(law->spacing, (*line)[4]);
         estimate(law->width, (*line)[5]);
-        estimate(law->step, (*line)[6]);
-        estimate(law->d, (*line)[7]);
-        number("%.2g", 100 * law->scatter, (*line)[8]);
+        estimate(law->aspect, (*line)[6]);
+        estimate(law->step, (*line)[7]);
+        estimate(law->d, (*line)[8]);
+        number("%.2g", 100 * law->scatter, (*line)[9]);
     }
     return grid;
 }

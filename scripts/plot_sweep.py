@@ -134,6 +134,19 @@ def front(axes, plan, point):
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label="w")
 
 
+def write(figure, output, refuse):
+    """The figure's file, whole or not at all; `refuse` says why not and ends the program."""
+    name, form = os.path.splitext(output)
+    draft = f"{name}.{os.getpid()}.tmp{form}"
+    try:
+        figure.savefig(draft, dpi=130)
+        os.replace(draft, output)
+    except (OSError, ValueError) as error:
+        if os.path.exists(draft):
+            os.remove(draft)
+        refuse(f"{output}: cannot be written: {error}", 4)
+
+
 def main():
     arguments = parse()
     plan, point = read(arguments.file)
@@ -147,15 +160,7 @@ def main():
     figure.suptitle(f"{plan['scene']}: {len(point['w'])} of {plan['points']} points; an octree's w in {plan['width']}, "
                     "a lattice's in cells", fontsize=10)
     output = arguments.output or os.path.splitext(arguments.file)[0] + ".svg"
-    name, form = os.path.splitext(output)
-    draft = f"{name}.{os.getpid()}.tmp{form}"
-    try:
-        figure.savefig(draft, dpi=130)
-        os.replace(draft, output)
-    except (OSError, ValueError) as error:
-        if os.path.exists(draft):
-            os.remove(draft)
-        fail(f"{output}: cannot be written: {error}", 4)
+    write(figure, output, fail)
 
 
 if __name__ == "__main__":

@@ -2,11 +2,16 @@
 import csv
 import io
 import math
+import os
+import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
+
+# Scripts that draw a file by themselves, and what they draw with, are a folder above.
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
 
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#999999"]  # Okabe and Ito
 MARKS = ["o", "s", "^", "D", "v", "P", "X"]

@@ -22,6 +22,7 @@ try:
     import jinja2
     from markupsafe import Markup
 
+    import calibration_figures
     import claim_figures
     import row_figures
     import sources
@@ -64,7 +65,7 @@ def claims_part(files):
 
 
 def sweeps_part(files):
-    files = [source for source in files if source.plan]
+    files = [source for source in files if source.point]
     if not files:
         return None
     return Part("sweeps", "Which w, which epsilon", map(sweep_figures.said, files),
@@ -72,8 +73,18 @@ def sweeps_part(files):
                 [figure for source in files for figure in sweep_figures.figures(source)])
 
 
+def calibrations_part(files):
+    files = [source for source in files if source.specimen]
+    if not files:
+        return None
+    return Part("calibrations", "Which elastic body", map(calibration_figures.said, files),
+                [table(source) for source in files
+                 for table in (calibration_figures.law_table, calibration_figures.grid_table)],
+                [figure for source in files for figure in calibration_figures.figures(source)])
+
+
 def compose(files):
-    parts = [measured_part(files), claims_part(files), sweeps_part(files),
+    parts = [measured_part(files), claims_part(files), sweeps_part(files), calibrations_part(files),
              Part("environment", "Where and how", tables=[tables.environment(files)])]
     return [part for part in parts if part]
 
@@ -168,7 +179,7 @@ def write_folder(output, title, files, parts):
 
 def parse():
     parser = argparse.ArgumentParser(prog="shapebench report", description=__doc__.splitlines()[0])
-    parser.add_argument("file", nargs="+", help="files that `shapebench tables`, `claims` and `sweep` wrote with -o")
+    parser.add_argument("file", nargs="+", help="files that `shapebench tables`, `claims`, `sweep` and `calibrate` wrote with -o")
     parser.add_argument("-o", "--output", default="report.html",
                         help="a page NAME.html, or a folder (default: %(default)s)")
     parser.add_argument("--title", default="shapebench report")

@@ -1,13 +1,14 @@
 """Result files, read for a report. Nothing here knows how they will look.
 
 Layouts are those of results/README.md: measurements ("shapebench results"), claims ("shapebench claims")
-and sweeps ("shapebench sweep")."""
+sweeps ("shapebench sweep") and calibrations ("shapebench calibration")."""
 import os
 
 import h5py
 import numpy as np
 
-SCHEMAS = {"shapebench results": 4, "shapebench claims": 1, "shapebench sweep": 1}
+SCHEMAS = {"shapebench results": 4, "shapebench claims": 1, "shapebench sweep": 1,
+           "shapebench calibration": 1}
 TEXTS = ("paper", "scene", "engine", "precision", "reason", "stages")
 NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_low_ms", "total_high_ms",
            "ns_per_particle_step", "summation_nodes", "paper_total_ms") + tuple(
@@ -20,6 +21,11 @@ CLAIM_TEXTS = ("paper", "name", "place", "unit", "statement", "test", "verdict",
 SWEEP_COLUMNS = ("engine", "w", "epsilon", "valid", "total_ms", "build_seconds", "bytes", "summation_nodes", "goal_rms",
                  "relaxation", "sag", "frequency", "path_rms", "path_most", "front")
 
+SPECIMEN_COLUMNS = ("engine", "w", "epsilon", "across", "aspect", "spacing", "h", "set", "wide", "valid", "reason",
+                    "frequency", "young", "spread", "young_euler", "young_timoshenko", "young_meshless")
+SPECIMEN_WIDE = {"frequency": 3, "young_euler": 4, "young_timoshenko": 4, "young_meshless": 4}
+LAW_COLUMNS = ("engine", "kind", "specimens", "scatter", "c", "spacing", "width", "aspect", "step", "d")
+LAW_WIDE = {name: 3 for name in ("c", "spacing", "width", "aspect", "step", "d")}
 
 MACHINE_TEXTS = ("cpu", "git_commit", "utc")
 
@@ -52,6 +58,7 @@ class Source:
         self.name = os.path.basename(path)
         self.rows, self.claims, self.curves = [], [], {}
         self.plan, self.point = None, None
+        self.specimen, self.law, self.found = None, None, []
 
     @property
     def commit(self):
@@ -120,15 +127,37 @@ def read_sweep(source, file):
     source.point["engine"] = np.array([plain(engine) for engine in source.point["engine"]])
 
 
+def read_columns(group, columns, wide):
+    """The group's datasets, all of one length; `wide` names those of several numbers a line, and how many."""
+    column = {name: values[:] for name, values in group.items()}
+    count = len(column["engine"])
+    for name in columns:
+        if column[name].shape != ((count, wide[name]) if name in wide else (count,)):
+            raise ValueError(f"the shape of '{name}'")
+    return {name: np.array([plain(text) for text in values]) if values.dtype.kind == "S" else values
+            for name, values in column.items()}
+
+
+def read_calibration(source, file):
+    source.plan = attributes(file["plan"])
+    demand(source.plan, ("scene",), str)
+    demand(source.plan, ("across", "aspect", "specimens", "thickness", "h", "density", "meshless"), (int, float))
+    source.specimen = read_columns(file["specimens"], SPECIMEN_COLUMNS, SPECIMEN_WIDE)
+    source.law = read_columns(file["laws"], LAW_COLUMNS, LAW_WIDE)
+    source.found = [plain(file["laws"].attrs[f"found_{n}"]) for n in (1, 2, 3)]
+    if not len(source.specimen["w"]):
+        raise ValueError("not one specimen is finished")
+
+
 READERS = {"shapebench results": read_rows, "shapebench claims": read_claims,
-           "shapebench sweep": read_sweep}
+           "shapebench sweep": read_sweep, "shapebench calibration": read_calibration}
 
 
 def read_file(path, file):
     kind, schema = plain(file.attrs.get("kind", "")), plain(file.attrs.get("schema", 0))
     if kind not in SCHEMAS:
         raise Unusable(f"{path}: not a file that can be reported (its kind is {kind!r}): give files that "
-                       "`shapebench tables`, `claims` or `sweep` wrote with -o")
+                       "`shapebench tables`, `claims`, `sweep` or `calibrate` wrote with -o")
     if schema != SCHEMAS[kind]:
         newer = isinstance(schema, int) and schema > SCHEMAS[kind]
         raise Unusable(f"{path}: {kind} of schema {schema}, and this program reads {SCHEMAS[kind]}: "

@@ -1,15 +1,11 @@
 """Sweeps of a report: heat maps over w and epsilon, the front of cost against deviation, the front's table.
 How they are drawn is scripts/plot_sweep.py's matter."""
-import os
-import sys
-
 import numpy as np
 
 from drawing import Figure, canvas, number
 from tables import Table
 
-sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
-import plot_sweep  # noqa: E402
+import plot_sweep
 
 # dataset, factor, file name, title, logarithmic, caption
 MAPS = [

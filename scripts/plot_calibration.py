@@ -1,0 +1,183 @@
+#!/usr/bin/python3
+"""Figure of a calibration file (`shapebench calibrate -o FILE.h5`): Young's modulus over w, and how far what the
+frequencies say is from what the sag says.
+
+Needs Debian's python3-h5py and python3-matplotlib, which scripts/setup installs. Exit codes: 0 drawn; 2 wrong
+usage; 3 not a calibration file, or nothing in it to draw, or a package is missing; 4 cannot be written."""
+
+import argparse
+import os
+import sys
+
+
+def fail(text, code):
+    print(f"plot_calibration.py: {text}", file=sys.stderr)
+    sys.exit(code)
+
+
+try:
+    import h5py
+    import numpy
+except ImportError as missing:
+    fail(f"{missing}: scripts/setup installs it (python3-h5py)", 3)
+
+from plot_sweep import LATTICE, OCTREE, drawing, write
+
+KIND, SCHEMA = "shapebench calibration", 1
+COLOURS = {LATTICE: "#0072b2", OCTREE: "#d55e00"}
+TONES = ("first", "second", "third")
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("file", help="of shapebench calibrate")
+    parser.add_argument("-o", "--output", help="SVG, PNG or PDF to write (default: FILE.svg)")
+    return parser.parse_args()
+
+
+def read(path):
+    """The plan's attributes, the specimens' columns and the laws' as arrays."""
+    try:
+        with h5py.File(path) as file:
+            if file.attrs.get("kind") not in (KIND, KIND.encode()):
+                fail(f"{path}: not the file of a calibration", 3)
+            if file.attrs["schema"] != SCHEMA:
+                fail(f"{path}: its schema is {file.attrs['schema']}, and this reads {SCHEMA}", 3)
+            plan = dict(file["plan"].attrs)
+            specimen, law = columns(file["specimens"]), columns(file["laws"])
+    except (OSError, KeyError) as error:
+        fail(f"{path}: cannot be read: {error}", 3)
+    if not specimen["valid"].any():
+        fail(f"{path}: no specimen is valid", 3)
+    return {key: value.decode() if isinstance(value, bytes) else value for key, value in plan.items()}, specimen, law
+
+
+def columns(group):
+    """A group's datasets as arrays, texts as str."""
+    return {name: column[:].astype(str) if column.dtype.kind == "S" else column[:] for name, column in group.items()}
+
+
+def best(plan, specimen):
+    """[specimens][by sag, by each frequency]: moduli by the reference, or without one by theory."""
+    return specimen["young_meshless" if plan["meshless"] else "young_timoshenko"]
+
+
+def first_epsilon(specimen):
+    tree = specimen["engine"] == OCTREE
+    return (specimen["epsilon"] == specimen["epsilon"][tree].min()) & tree if tree.any() else tree
+
+
+def two_terms(plan, specimen, law, engine, w):
+    """The law of an engine on the scene's beam and step, or None."""
+    rows = numpy.flatnonzero((law["engine"] == engine) & (law["kind"] == "two-term"))
+    if not len(rows):
+        return None
+    c, d = law["c"][rows[0]][0], law["d"][rows[0]][0]
+    spacing = plan["thickness"] / plan["across"]
+    steps = w * (w + 1)
+    return plan["density"] * (spacing / plan["h"]) ** 2 * steps * (c + d * steps / plan["across"] ** 2)
+
+
+def modulus(axes, plan, specimen, law):
+    """Young's modulus over w on the scene's beam: a line an epsilon, the law dashed."""
+    grid = (specimen["set"] == "grid") & (specimen["valid"] != 0)
+    epsilons = numpy.unique(specimen["epsilon"][grid & (specimen["engine"] == OCTREE)])
+    lines = [(LATTICE, 0.0)] + [(OCTREE, epsilon) for epsilon in epsilons]
+    for engine, epsilon in lines:
+        some = grid & (specimen["engine"] == engine) & (specimen["epsilon"] == epsilon)
+        if not some.any():
+            continue
+        share = 0.35 + 0.65 * (epsilon - epsilons[0]) / max(numpy.ptp(epsilons), 1e-9) if engine == OCTREE else 1
+        axes.plot(specimen["w"][some], specimen["young"][some], color=COLOURS[engine], alpha=share, markersize=4,
+                  marker="s" if engine == LATTICE else "o", linewidth=1.2,
+                  label=engine if engine == LATTICE else f"{engine}, epsilon {epsilon:g}")
+    w = numpy.geomspace(specimen["w"][grid].min(), specimen["w"][grid].max(), 50)
+    for engine in (LATTICE, OCTREE):
+        curve = two_terms(plan, specimen, law, engine, w)
+        if curve is not None:
+            axes.plot(w, curve, color=COLOURS[engine], linestyle=":", linewidth=1.5, zorder=0,
+                      label=f"law of {engine}")
+    wide = grid & (specimen["wide"] != 0)
+    if wide.any() and not (specimen["wide"][grid] != 0).all():
+        axes.axvspan(specimen["w"][wide].min() - 0.5, w[-1] + 0.5, color="0.93", zorder=-1)
+        axes.text(0.98, 0.02, "grey: regions wider than the beam is thick", ha="right", va="bottom", fontsize=8,
+                  color="0.35", transform=axes.transAxes)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    ticks = numpy.unique(specimen["w"][grid])
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.minorticks_off()
+    axes.set_xlim(max(0.5, w[0] - 0.2), w[-1] + 0.5)
+    axes.set_xlabel("w, cells")
+    axes.set_ylabel(f"Young's modulus, Pa (at {plan['density']:g} kg/m³)")
+    axes.legend(fontsize=8)
+
+
+def agreement(axes, plan, specimen):
+    """What each frequency says over what the sag says, against how wide regions are."""
+    valid = (specimen["valid"] != 0) & ((specimen["engine"] == LATTICE) | first_epsilon(specimen))
+    young = best(plan, specimen)
+    width = (2 * specimen["w"] + 1) * specimen["spacing"] / plan["thickness"]
+    marks = ("o", "^", "D")
+    for k, tone in enumerate(TONES):
+        for engine in (LATTICE, OCTREE):
+            some = valid & (specimen["engine"] == engine)
+            if some.any():
+                axes.scatter(width[some], 100 * (young[some, k + 1] / young[some, 0] - 1), s=16, marker=marks[k],
+                             color=COLOURS[engine], alpha=0.75, linewidths=0,
+                             label=f"{engine}, {tone} frequency")
+    axes.axhline(0, color="0.4", linewidth=0.8, zorder=0)
+    axes.axvline(1, color="0.4", linewidth=0.8, linestyle="--", zorder=0)
+    axes.set_xscale("log")
+    wide = [tick for tick in (0.25, 0.5, 1, 2, 4, 8, 16) if width[valid].min() / 1.5 < tick < width[valid].max() * 1.5]
+    axes.set_xticks(wide, [f"{tick:g}" for tick in wide])
+    axes.minorticks_off()
+    axes.grid(alpha=0.3)
+    axes.set_xlabel("width of a region, 2 w + 1 cells, over the beam's thickness")
+    axes.set_ylabel("modulus by a frequency, over that by the sag, %")
+    axes.legend(fontsize=8)
+
+
+def collapse(axes, plan, specimen, law):
+    """All specimens of the law: what is left of the modulus without rho (a / h)^2 w (w + 1)."""
+    valid = (specimen["valid"] != 0) & ((specimen["engine"] == LATTICE) | first_epsilon(specimen))
+    steps = specimen["w"] * (specimen["w"] + 1.0)
+    x = steps * (specimen["spacing"] / plan["thickness"]) ** 2
+    y = specimen["young"] / (plan["density"] * (specimen["spacing"] / specimen["h"]) ** 2 * steps)
+    marks = {"grid": "o", "spacing": "s", "aspect": "D", "step": "x"}
+    for engine in (LATTICE, OCTREE):
+        for kind, mark in marks.items():
+            some = valid & (specimen["engine"] == engine) & (specimen["set"] == kind)
+            if some.any():
+                axes.scatter(x[some], y[some], s=18, marker=mark, color=COLOURS[engine], alpha=0.8,
+                             label=f"{engine}, " + ("the scene's beam" if kind == "grid" else f"another {kind}"))
+        rows = numpy.flatnonzero((law["engine"] == engine) & (law["kind"] == "two-term"))
+        if len(rows):
+            at = numpy.geomspace(x[valid].min(), x[valid].max(), 60)
+            axes.plot(at, law["c"][rows[0]][0] + law["d"][rows[0]][0] * at, color=COLOURS[engine], linewidth=1)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    ticks = [tick for tick in (0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10) if low < tick < high]
+    axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.minorticks_off()
+    axes.set_xlabel("w (w + 1) (spacing / thickness)²")
+    axes.set_ylabel("E / (ρ (spacing / step)² w (w + 1))")
+    axes.legend(fontsize=8)
+
+
+def main():
+    arguments = parse()
+    plan, specimen, law = read(arguments.file)
+    figure, axes = drawing().subplots(1, 2, figsize=(12, 5), layout="constrained")
+    modulus(axes[0], plan, specimen, law)
+    agreement(axes[1], plan, specimen)
+    axes[0].set_title("the elastic body that behaves alike; dotted: the two-term law", fontsize=9)
+    axes[1].set_title("do the frequencies say the same as the sag? all beams, at the first epsilon", fontsize=9)
+    figure.suptitle(f"{plan['scene']}: {len(specimen['w'])} of {plan['specimens']} specimens, {plan['across']} cells "
+                    f"thick, {plan['aspect']} times as long, step {plan['h']:g} s", fontsize=10)
+    write(figure, arguments.output or os.path.splitext(arguments.file)[0] + ".svg", fail)
+
+
+if __name__ == "__main__":
+    main()
