@@ -8,9 +8,9 @@
 #include "calibration.h"
 #include "table.h"
 
-/* A specimen that is not valid is INVALID; its quantities are "-", empty or null. The text form also
- * has the laws, what was found in sentences, and the reasons; markdown and latex have the laws as a
- * second table. JSON: {"specimens": [...], "laws": [...], "found": [...], "plan": {...},
+/* A specimen that is not valid is INVALID; its quantities are "-", empty or null. The text form
+ * also has the laws, what was found in sentences, and the reasons; markdown and latex have the laws
+ * as a second table. JSON: {"specimens": [...], "laws": [...], "found": [...], "plan": {...},
  * "environment": {...}}. */
 void bench_calibration_table(FILE *file, BenchFormat format, const BenchCalibration *calibration);
 

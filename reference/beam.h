@@ -21,8 +21,8 @@ double ref_beam_sag(const RefBeam *beam, RefBeamTheory theory);
 /* Squares of the angular frequencies of the lowest bending modes. */
 void ref_beam_frequencies(const RefBeam *beam, RefBeamTheory theory, double square[REF_BEAM_MODES]);
 
-/* Euler and Bernoulli's mode 0, 1 or 2 at s, 0 at the clamp and 1 at the tip, where it is 2, and
- * its derivative by s. */
+/* Euler and Bernoulli's mode 0, 1 or 2 at s, 0 at the clamp and 1 at the tip, where it is 2 or -2,
+ * and its derivative by s. */
 double ref_beam_shape(int mode, double s, double *slope);
 
 #endif

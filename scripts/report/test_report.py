@@ -122,6 +122,29 @@ class Report(unittest.TestCase):
         self.assertIn("INVALID: goals are off", page.text)
         self.assertNotIn("123", page.text.split("Where these were measured")[0])
 
+    def test_a_calibration_says_what_it_found(self):
+        path = self.at("beam.h5")
+        with open(self.at("box.obj"), "w", encoding="utf-8") as file:
+            file.writelines(f"v {0.3 * (i & 1)} {0.1 * (i >> 1 & 1)} {0.1 * (i >> 2)}\n" for i in range(8))
+            file.writelines(f"f {text}\n" for text in ("1 3 2", "2 3 4", "5 6 7", "6 8 7", "1 2 5", "2 6 5", "3 7 4",
+                                                      "4 7 8", "1 5 3", "3 5 7", "2 4 6", "4 8 6"))
+        with open(self.at("beam.cfg"), "w", encoding="utf-8") as file:
+            file.write('mesh = "box.obj"; cell = 0.05; h = 0.001;')
+        done = shapebench("calibrate", "--scene", self.at("beam.cfg"), "--w", "1:2", "--epsilon", "0", "--across", "1",
+                          "--aspect", "none", "--step", "none", "--quiet", "-o", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = self.page(path)
+        with h5py.File(path, "r+") as file:
+            for n in (1, 2, 3):
+                self.assertIn(file["laws"].attrs[f"found_{n}"].decode(), page.text)
+            self.assertIn(f"{file['specimens/young'][0]:.3g}", page.text)
+            self.assertEqual(page.figures, 3)
+            file["specimens/valid"][0], file["specimens/young"][0] = 0, float("nan")
+        self.assertIn("INVALID", self.page(path).text)
+        with h5py.File(path, "r+") as file:
+            del file["laws/scatter"]
+        self.refused(path, "missing")
+
     def test_texts_are_escaped(self):
         def name(file):
             file["machine"].attrs["hostname"] = b"<script>x</script>"
