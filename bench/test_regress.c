@@ -69,7 +69,7 @@ static void row_of_tiny(BenchRow *row, BenchMachine *machine)
     SmError error;
     char path[256];
     snprintf(path, sizeof path, "%s", path_in("tiny.h5"));
-    assert_int_equal(bench_load_rows(path, &rows, &count, machine, &error), SM_OK);
+    assert_int_equal(bench_samples_load(path, &rows, &count, machine, &error), SM_OK);
     assert_int_equal(count, 1);
     *row = rows[0];
     free(rows); /* its samples are the row's now */

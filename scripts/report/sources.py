@@ -155,6 +155,8 @@ def read(path):
     """The file as a Source; raises Unusable."""
     if not os.path.exists(path):
         raise Unusable(f"{path}: no such file")
+    if not os.path.isfile(path):  # a pipe would be waited for
+        raise Unusable(f"{path}: it is a {'folder' if os.path.isdir(path) else 'pipe or device'}, not a file")
     if not survives(path):
         raise Unusable(f"{path}: so damaged that it cannot be read: make it again")
     return read_whole(path)

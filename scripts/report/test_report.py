@@ -157,6 +157,7 @@ class Report(unittest.TestCase):
 
     def test_bad_files_are_named(self):
         self.refused(self.at("nothing.h5"), "no such file")
+        self.refused(self.folder, "it is a folder")
         with open(self.at("text.h5"), "w", encoding="utf-8") as file:
             file.write("no HDF5")
         self.refused(self.at("text.h5"), "not an HDF5 file")
