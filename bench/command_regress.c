@@ -119,6 +119,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
                         "compare with what? Say either --baseline FILE.h5 or --revision REV");
         if (options->baseline && options->counts)
             bench_usage(state, "--counts: a file has no instruction counts; use --revision");
+        if (options->baseline && options->paper)
+            bench_usage(state, "--paper: a file has its own scenes; choose of them with --scene");
         return 0;
     }
     return ARGP_ERR_UNKNOWN;
@@ -144,7 +146,7 @@ typedef struct {
     const Options *options;
     BenchProgress progress;
     BenchContests all;
-    BenchTask task[SCENES];
+    BenchTask *task; /* [tasks] */
     int tasks;
     BenchRow *stored; /* rows of the file */
     int stored_count;
@@ -153,14 +155,26 @@ typedef struct {
     BenchRegression found;
 } Session;
 
+static BenchTask *add_task(Session *session, const char *scene)
+{
+    session->task = sm_realloc(session->task, (size_t)session->tasks + 1, sizeof *session->task);
+    session->task[session->tasks] = (BenchTask){.scene = scene};
+    return &session->task[session->tasks++];
+}
+
+static const char *paper_of(const Options *options)
+{
+    return options->paper ? options->paper : "fastlsm";
+}
+
 /* The built-in scenes that are set beside rows of the paper's table. */
 static SmCode paper_tasks(Session *session, SmError *error)
 {
-    const char *paper = session->options->paper;
-    for (const char *const *name = bench_scene_names(); *name && session->tasks < SCENES; name++) {
+    const char *paper = paper_of(session->options);
+    for (const char *const *name = bench_scene_names(); *name; name++) {
         BenchScene scene;
         if (bench_scene_find(*name, &scene, NULL) || strcmp(scene.paper, paper) != 0) continue;
-        if (scene.row[0]) session->task[session->tasks++].scene = *name;
+        if (scene.row[0]) add_task(session, *name);
     }
     if (session->tasks) return SM_OK;
     return sm_fail(error, SM_USAGE, "--paper: no table of '%.40s'; there are: fastlsm, octree",
@@ -194,9 +208,7 @@ static void file_tasks(Session *session)
             if (same && options->scenes) task_of_row(row, task);
             there |= same;
         }
-        if (there || session->tasks == SCENES) continue;
-        session->task[session->tasks].scene = row->scene;
-        task_of_row(row, &session->task[session->tasks++]);
+        if (!there) task_of_row(row, add_task(session, row->scene));
     }
 }
 
@@ -204,8 +216,7 @@ static void file_tasks(Session *session)
 static SmCode choose_tasks(Session *session, SmError *error)
 {
     const Options *options = session->options;
-    for (int i = 0; i < options->scenes; i++) session->task[i].scene = options->scene[i];
-    session->tasks = options->scenes;
+    for (int i = 0; i < options->scenes; i++) add_task(session, options->scene[i]);
     if (options->baseline)
         file_tasks(session);
     else if (!options->scenes && paper_tasks(session, error))
@@ -266,7 +277,7 @@ static SmCode measure(Session *session, SmError *error)
     BenchRegression *found = &session->found;
     BenchRounds rounds = {
         .program = {options->revision ? session->revision.program : NULL, session->self},
-        .paper = options->paper,
+        .paper = paper_of(options),
         .task = session->task,
         .tasks = session->tasks,
         .rounds = options->rounds,
@@ -355,7 +366,7 @@ static void remove_scratch(const Session *session)
 
 int bench_command_regress(int argc, char **argv)
 {
-    Options options = {.paper = "fastlsm", .threshold = NAN};
+    Options options = {.threshold = NAN};
     BenchMachine here;
     BenchDraft draft = {0};
     SmError error;
@@ -377,6 +388,7 @@ int bench_command_regress(int argc, char **argv)
     if (options.output && code) bench_draft_discard(&draft);
     bench_contests_free(&session->all);
     bench_rows_free(session->stored, session->stored_count);
+    free(session->task);
     free(session);
     if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
     if (bench_process_caught()) return 128 + bench_process_caught();

@@ -99,6 +99,7 @@ static void usage(void **state)
     expect("shapebench regress", 2, "compare with what?");
     expect("shapebench regress --baseline a --revision b", 2, "compare with what?");
     expect("shapebench regress --baseline a --counts", 2, "--counts: a file has no");
+    expect("shapebench regress --baseline a --paper octree", 2, "--paper: a file has its own");
     expect("shapebench regress --baseline a --format pdf", 2, "'pdf' is not one of text, markdown");
     expect("shapebench regress --baseline a --threshold x", 2, "--threshold: 'x'");
     expect("shapebench regress --baseline a --rounds 0", 2, "--rounds: '0'");
