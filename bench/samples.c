@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "measure.h"
 #include "store.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchRow, kind, member)

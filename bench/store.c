@@ -1,9 +1,9 @@
 #include "store.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "../reference/paper.h"
 #include "draft.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchRow, kind, member)
@@ -99,6 +99,21 @@ void bench_store_stages(size_t size, char *names)
                                  sm_stage_name((SmStage)stage));
 }
 
+/* How the paper's values came to us, where a row of it is set beside this one. */
+static void write_statuses(BenchH5 *h5, hid_t group, const BenchRow *row)
+{
+    const RefPaperRow *paper = ref_paper_find(row->paper, row->paper_row);
+    char stages[SM_STAGES * 16] = "";
+    if (!paper) return;
+    for (int s = 0; s < SM_STAGES; s++) {
+        if (s) strcat(stages, " ");
+        strcat(stages, ref_status_name(paper->stage_ms[s].status));
+    }
+    bench_h5_text(h5, group, "paper_total_status", ref_status_name(paper->total_ms.status));
+    bench_h5_text(h5, group, "paper_rate_status", ref_status_name(paper->fps.status));
+    bench_h5_text(h5, group, "paper_stage_status", stages);
+}
+
 void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
 {
     char name[16], stages[128];
@@ -107,6 +122,7 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
     hid_t group = bench_h5_group(h5, parent, name);
     bench_h5_fields(h5, group, row_fields, COUNT(row_fields), row);
     bench_h5_text(h5, group, "stages", stages);
+    write_statuses(h5, group, row);
     hsize_t size[] = {(hsize_t)row->repeats, SM_STAGES};
     bench_h5_dataset(h5, group, "total", H5T_IEEE_F64LE, 1, size, row->total);
     bench_h5_dataset(h5, group, "stage", H5T_IEEE_F64LE, 2, size, row->stage);
@@ -146,14 +162,4 @@ SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
 void bench_store_check_kind(BenchH5 *h5, int oldest)
 {
     bench_h5_check_kind(h5, file_kind, oldest, BENCH_STORE_SCHEMA);
-}
-
-void bench_rows_free(BenchRow *rows, int count)
-{
-    for (int i = 0; i < count; i++) {
-        free(rows[i].total);
-        free(rows[i].stage);
-        free(rows[i].change.time);
-    }
-    free(rows);
 }

@@ -22,9 +22,6 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row);
 /* What of a row is stored as attributes: all but the samples, which are datasets. */
 const BenchField *bench_row_fields(int *count);
 
-/* Rows that were measured or read (samples.h), with what they hold. */
-void bench_rows_free(BenchRow *rows, int count);
-
 /* Fails unless the open file says that it is a results file, of a schema from `oldest` to ours. */
 void bench_store_check_kind(BenchH5 *h5, int oldest);
 

@@ -186,6 +186,40 @@ static void round_trip(void **state)
     unlink(path);
 }
 
+/* One of the paper's numbers is misprinted; of the hand's, the rate is not from the paper. */
+static void statuses_of_the_paper_are_stored(void **state)
+{
+    (void)state;
+    static const char *const cases[][5] = {
+        {"fastlsm", "infant", "quoted", "quoted", "quoted damaged quoted quoted derived"},
+        {"octree", "hand-regular", "derived", "second-hand", "quoted quoted quoted quoted quoted"},
+    };
+    static const char *const names[] = {"paper_total_status", "paper_rate_status",
+                                        "paper_stage_status"};
+    for (int c = 0; c < 2; c++) {
+        BenchRow row;
+        BenchMachine machine;
+        BenchH5 h5;
+        SmError error;
+        char text[80];
+        fill_row(&row, 0);
+        strcpy(row.paper, cases[c][0]);
+        strcpy(row.paper_row, cases[c][1]);
+        bench_machine_read(0, NULL, 1, &machine);
+        const char *path = path_in("status.h5");
+        assert_int_equal(bench_store_rows(path, &row, 1, &machine, &error), SM_OK);
+        bench_h5_open(&h5, path);
+        hid_t group = bench_h5_find_group(&h5, h5.file, "rows/000");
+        for (int n = 0; n < 3; n++) {
+            bench_h5_read_text(&h5, group, names[n], sizeof text, text);
+            assert_string_equal(h5.failed ? h5.message : text, cases[c][2 + n]);
+        }
+        bench_h5_close(&h5);
+        bench_row_free(&row);
+        unlink(path);
+    }
+}
+
 static void no_rows(void **state)
 {
     (void)state;
@@ -453,6 +487,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_member_is_stored),
         cmocka_unit_test(round_trip),
+        cmocka_unit_test(statuses_of_the_paper_are_stored),
         cmocka_unit_test(no_rows),
         cmocka_unit_test(machine_is_described),
         cmocka_unit_test(long_command_is_cut),
