@@ -67,48 +67,29 @@ static const struct argp_option option_list[] = {
     {0},
 };
 
-static error_t parse_quantity(int key, const char *text, const struct argp_state *state,
-                              Options *options)
-{
-    switch (key) {
-    case KEY_DAMPING:
-        options->damping = bench_option_real(state, "--damping", text, 0, 1);
-        return 0;
-    case KEY_POISSON:
-        options->poisson = bench_option_real(state, "--poisson", text, -0.5, 0.49);
-        return 0;
-    case KEY_DENSITY:
-        options->density = bench_option_real(state, "--density", text, 1e-6, 1e9);
-        return 0;
-    case KEY_YOUNG:
-        options->young = bench_option_real(state, "--young", text, 1e-6, 1e18);
-        return 0;
-    case KEY_FORMAT:
-        options->format =
-            (BenchFormat)bench_option_choice(state, "--format", text, bench_format_names);
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
-}
+static const BenchOption options_taken[] = {
+    {KEY_SCENE, BENCH_TO(TEXT, scene), 0, 0, NULL},
+    {KEY_ENGINE, BENCH_TO(CHOICE, engines), 0, 0, engine_choices},
+    {KEY_W, BENCH_TO(TEXT, range[0]), 0, 0, NULL},
+    {KEY_EPSILON, BENCH_TO(TEXT, range[1]), 0, 0, NULL},
+    {KEY_ACROSS, BENCH_TO(TEXT, range[2]), 0, 0, NULL},
+    {KEY_ASPECT, BENCH_TO(TEXT, range[3]), 0, 0, NULL},
+    {KEY_STEP, BENCH_TO(TEXT, range[4]), 0, 0, NULL},
+    {KEY_DAMPING, BENCH_TO(REAL, damping), 0, 1, NULL},
+    {KEY_POISSON, BENCH_TO(REAL, poisson), -0.5, 0.49, NULL},
+    {'o', BENCH_TO(TEXT, run.output), 0, 0, NULL},
+    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
+    {KEY_DENSITY, BENCH_TO(REAL, density), 1e-6, 1e9, NULL},
+    {KEY_YOUNG, BENCH_TO(REAL, young), 1e-6, 1e18, NULL},
+    {0},
+};
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     options->measuring |= (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o';
-    if (key >= KEY_W && key <= KEY_STEP) {
-        options->range[key - KEY_W] = text;
-        return 0;
-    }
+    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
     switch (key) {
-    case KEY_SCENE:
-        options->scene = text;
-        return 0;
-    case KEY_ENGINE:
-        options->engines = bench_option_choice(state, "--engine", text, engine_choices);
-        return 0;
-    case 'o':
-        options->run.output = text;
-        return 0;
     case ARGP_KEY_ARG:
         if (options->file) bench_usage(state, "what is '%s'? One file is shown at a time", text);
         options->file = text;
@@ -119,7 +100,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
                         options->file);
         return 0;
     }
-    return parse_quantity(key, text, state, options);
+    return ARGP_ERR_UNKNOWN;
 }
 
 static const char help[] =
