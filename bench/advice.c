@@ -49,6 +49,11 @@ static double first_gap(const BenchSpecimen *s)
     return 100 * fabs(best_young(s)[1] / best_young(s)[0] - 1);
 }
 
+static double theory_gap(const BenchSpecimen *s)
+{
+    return 100 * (s->young_timoshenko[0] / s->young_meshless[0] - 1);
+}
+
 static double spread_of(const BenchSpecimen *s)
 {
     return 100 * s->spread;
@@ -85,8 +90,12 @@ static void say_alike(const BenchSpecimen *specimen, long count, char *text)
             say_percent(value, number, text);
             say(text, " %s", where[wide]);
         }
+        number = gather(specimen, count, 2, theory_gap, value);
+        double theory = bench_quantile(value, number, 0.5); /* NaN without the reference */
+        if (isfinite(theory))
+            say(text, "; Timoshenko's theory says %+.2g%% by the sag (median)", theory);
         number = gather(specimen, count, 2, loss_of, value);
-        say(text, "; the first mode's loss factor is at most %.2g.",
+        say(text, "; the first mode loses at most %.2g (loss factor).",
             bench_quantile(value, number, 1));
     }
     free(value);

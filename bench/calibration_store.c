@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "column.h"
-#include "draft.h"
 
 static const char file_kind[] = "shapebench calibration";
 
@@ -23,8 +22,9 @@ static void write_laws(BenchH5 *h5, const BenchCalibration *calibration)
     }
 }
 
-static void write_file(BenchH5 *h5, BenchCalibration *calibration)
+static void write_file(BenchH5 *h5, void *record)
 {
+    BenchCalibration *calibration = record;
     int schema = BENCH_CALIBRATION_SCHEMA, count;
     const BenchField *fields = bench_machine_fields(&count);
     bench_h5_text(h5, h5->file, "kind", file_kind);
@@ -48,15 +48,7 @@ static void write_file(BenchH5 *h5, BenchCalibration *calibration)
 
 SmCode bench_calibration_store(const char *path, BenchCalibration *calibration, SmError *error)
 {
-    BenchDraft draft;
-    SmCode code = bench_draft_begin(path, &draft, error);
-    if (code) return code;
-    BenchH5 h5;
-    bench_h5_create(&h5, draft.tmp);
-    write_file(&h5, calibration);
-    if (bench_h5_close(&h5)) return bench_draft_commit(&draft, error);
-    bench_draft_discard(&draft);
-    return bench_draft_fail(path, h5.number, h5.message, error);
+    return bench_h5_store(path, write_file, calibration, error);
 }
 
 static void read_list(BenchH5 *h5, hid_t group, const BenchCalibrationList *list)

@@ -89,18 +89,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     Options *options = state->input;
     options->measuring |= (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o';
     if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
-    switch (key) {
-    case ARGP_KEY_ARG:
-        if (options->file) bench_usage(state, "what is '%s'? One file is shown at a time", text);
-        options->file = text;
-        return 0;
-    case ARGP_KEY_END:
-        if (options->file && options->measuring)
-            bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o",
-                        options->file);
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
+    return bench_option_shown(key, text, state, options->measuring, &options->file);
 }
 
 static const char help[] =

@@ -123,17 +123,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_SHARD:
         parse_shard(state, text, &options->run);
         return 0;
-    case ARGP_KEY_ARG:
-        if (options->file) bench_usage(state, "what is '%s'? One file is shown at a time", text);
-        options->file = text;
-        return 0;
-    case ARGP_KEY_END:
-        if (options->file && options->measuring)
-            bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o",
-                        options->file);
-        return 0;
     }
-    return ARGP_ERR_UNKNOWN;
+    return bench_option_shown(key, text, state, options->measuring, &options->file);
 }
 
 static const char help[] =

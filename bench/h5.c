@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "draft.h"
 #include "sink.h"
 
 void bench_h5_fail(BenchH5 *h5, const char *format, ...)
@@ -240,4 +241,18 @@ void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, co
     H5Sclose(space);
     H5Sclose(part);
     H5Tclose(type);
+}
+
+SmCode bench_h5_store(const char *path, void (*write)(BenchH5 *h5, void *record), void *record,
+                      SmError *error)
+{
+    BenchDraft draft;
+    SmCode code = bench_draft_begin(path, &draft, error);
+    if (code) return code;
+    BenchH5 h5;
+    bench_h5_create(&h5, draft.tmp);
+    write(&h5, record);
+    if (bench_h5_close(&h5)) return bench_draft_commit(&draft, error);
+    bench_draft_discard(&draft);
+    return bench_draft_fail(path, h5.number, h5.message, error);
 }

@@ -84,6 +84,10 @@ void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest);
 /* A text attribute into room of `size` bytes. */
 void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size, char *text);
 
+/* Has `write` write the record: the file appears whole or not at all (draft.h). SM_OUTPUT. */
+SmCode bench_h5_store(const char *path, void (*write)(BenchH5 *h5, void *record), void *record,
+                      SmError *error);
+
 /* Has `read` read the file into `record`. SM_INPUT, with the file and what is wrong: no such file,
  * a folder or pipe, not HDF5, cut off, or what `read` failed at; the caller then frees what it has
  * made so far. */

@@ -56,6 +56,23 @@ static error_t parse_both(int key, char *text, struct argp_state *state)
     return 0;
 }
 
+error_t bench_option_shown(int key, const char *text, const struct argp_state *state,
+                           bool measuring, const char **file)
+{
+    switch (key) {
+    case ARGP_KEY_ARG:
+        if (*file) bench_usage(state, "what is '%s'? One file is shown at a time", text);
+        *file = text;
+        return 0;
+    case ARGP_KEY_END:
+        if (*file && measuring)
+            bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o",
+                        *file);
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
 void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input,
                          BenchCommon *common)
 {

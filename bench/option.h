@@ -58,6 +58,11 @@ typedef struct {
 bool bench_option_take(const struct argp_option *list, const BenchOption *options, int key,
                        const char *text, const struct argp_state *state);
 
+/* The file that a command shows when it is given alone: takes it as the argument, and refuses a
+ * second one, and at the end any option that says what to measure (`measuring`). */
+error_t bench_option_shown(int key, const char *text, const struct argp_state *state,
+                           bool measuring, const char **file);
+
 /* argp_parse() for a command: its own options `argp` into `input`, whose defaults are set, and
  * beside them those that every command has. Usage errors end the program: one line, exit code 2.
  * argv[0] is the program and command ("shapebench run"). */

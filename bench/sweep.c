@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "column.h"
-#include "draft.h"
 #include "front.h"
 #include "store.h"
 
@@ -61,8 +60,9 @@ static void write_samples(BenchH5 *h5, hid_t group, const BenchSweep *sweep)
     free(sample);
 }
 
-static void write_file(BenchH5 *h5, const BenchSweep *sweep)
+static void write_file(BenchH5 *h5, void *record)
 {
+    const BenchSweep *sweep = record;
     int schema = BENCH_SWEEP_SCHEMA, machine_count, plan_count, point_count;
     char stages[128];
     const BenchPlan *plan = &sweep->plan;
@@ -89,15 +89,7 @@ static void write_file(BenchH5 *h5, const BenchSweep *sweep)
 SmCode bench_sweep_store(const char *path, BenchSweep *sweep, SmError *error)
 {
     bench_front_mark(sweep->point, sweep->count);
-    BenchDraft draft;
-    SmCode code = bench_draft_begin(path, &draft, error);
-    if (code) return code;
-    BenchH5 h5;
-    bench_h5_create(&h5, draft.tmp);
-    write_file(&h5, sweep);
-    if (bench_h5_close(&h5)) return bench_draft_commit(&draft, error);
-    bench_draft_discard(&draft);
-    return bench_draft_fail(path, h5.number, h5.message, error);
+    return bench_h5_store(path, write_file, sweep, error);
 }
 
 static void read_numbers(BenchH5 *h5, hid_t group, const char *name, int count, double *values)

@@ -1,6 +1,5 @@
 /* Calibrations as a user runs them: whole, interrupted, the other way round; and mistakes. */
 #define _GNU_SOURCE
-#include <fcntl.h>
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -8,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -71,32 +69,13 @@ static void a_specimen_has_its_figures(void **state)
     free(c);
 }
 
-static void start_in_folder(void)
-{
-    if (chdir(folder)) _exit(99);
-    int err = open("err", O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    int out = open("out", O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    dup2(err, STDERR_FILENO);
-    dup2(out, STDOUT_FILENO);
-    execl("/bin/sh", "sh", "-c", "exec '" BINARY_DIR "/shapebench' " SMALL " -o part.h5",
-          (char *)NULL);
-    _exit(98);
-}
-
 /* Interrupted as soon as a specimen is stored; what is there is not measured again, and the whole
  * is the same to the last bit but for the time that it took. */
 static void an_interrupted_calibration_goes_on(void **state)
 {
     (void)state;
-    pid_t child = fork();
-    if (child == 0) start_in_folder();
-    for (int i = 0; i < 6000 && access(path_in("part.h5"), F_OK) != 0; i++)
-        nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
-    assert_int_equal(kill(child, SIGINT), 0);
-    int status;
     char said[512];
-    assert_int_equal(waitpid(child, &status, 0), child);
-    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
+    assert_int_equal(interrupt(SMALL " -o part.h5", "part.h5"), 128 + SIGINT);
     slurp("err", said, sizeof said);
     assert_non_null(strstr(said, "interrupted: part.h5 keeps the specimens that are finished"));
     assert_int_equal(entries(".tmp"), 0);

@@ -2,8 +2,11 @@
 #ifndef BENCH_TEST_PROGRAM_H
 #define BENCH_TEST_PROGRAM_H
 
+#include <signal.h>
 #include <stdbool.h>
 #include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "../lib/test_folder.h"
 
@@ -36,6 +39,26 @@ static inline void run_with(const char *prefix, const char *arguments, Result *r
 static inline void run(const char *arguments, Result *result)
 {
     run_with("", arguments, result);
+}
+
+/* Starts "shapebench ARGUMENTS", interrupts it (SIGINT) as soon as the file is there, and returns
+ * its exit code, or 1000 + signal. */
+static inline int interrupt(const char *arguments, const char *file)
+{
+    char command[2048];
+    snprintf(command, sizeof command, "cd %s && exec '%s/shapebench' %s >out 2>err", folder,
+             BINARY_DIR, arguments);
+    pid_t child = fork();
+    if (child == 0) {
+        execl("/bin/sh", "sh", "-c", command, (char *)NULL);
+        _exit(98);
+    }
+    for (int i = 0; i < 6000 && access(path_in(file), F_OK) != 0; i++)
+        nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
+    int status;
+    assert_int_equal(kill(child, SIGINT), 0);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
 }
 
 /* A mistake: its exit code, and what its one line on standard error says. */

@@ -1,14 +1,11 @@
 /* Sweeps as a user runs them: whole, interrupted, in shards, by mpirun; and mistakes. */
 #define _GNU_SOURCE
-#include <fcntl.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -112,37 +109,12 @@ static void a_point_has_its_figures(void **state)
     bench_sweep_free(&sweep);
 }
 
-static void pause_shortly(void)
-{
-    struct timespec time = {.tv_nsec = 5000000};
-    nanosleep(&time, NULL);
-}
-
-static void start_in_folder(void)
-{
-    if (chdir(folder)) _exit(99);
-    int err = open("err", O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    int out = open("out", O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    dup2(err, STDERR_FILENO);
-    dup2(out, STDOUT_FILENO);
-    execl("/bin/sh", "sh", "-c", "exec '" BINARY_DIR "/shapebench' " SMALL " -o part.h5",
-          (char *)NULL);
-    _exit(98);
-}
-
 /* Interrupted as soon as a point is stored, and again, until nothing is left. */
 static void an_interrupted_sweep_goes_on(void **state)
 {
     (void)state;
-    pid_t child = fork();
-    if (child == 0) start_in_folder();
-    for (int i = 0; i < 6000 && access(path_in("part.h5"), F_OK) != 0; i++) pause_shortly();
-    assert_int_equal(kill(child, SIGINT), 0);
-    int status;
     char said[512];
-    assert_int_equal(waitpid(child, &status, 0), child);
-    assert_true(WIFEXITED(status));
-    assert_int_equal(WEXITSTATUS(status), 128 + SIGINT);
+    assert_int_equal(interrupt(SMALL " -o part.h5", "part.h5"), 128 + SIGINT);
     slurp("err", said, sizeof said);
     assert_non_null(strstr(said, "interrupted: part.h5 keeps the points that are finished"));
     assert_int_equal(entries(".tmp"), 0);
