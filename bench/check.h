@@ -80,8 +80,8 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
                                  SmEngine *engine);
 
 /* Adds the check of damping to `found`, if the scene has any: puts the state of `engine` into
- * another one built alike, but at no handles and obstacles, steps that, and compares velocities to
- * eq. 14's in double precision from the same goals.
+ * others built alike, but at no handles and obstacles, steps one, and compares velocities to eq.
+ * 14's in double precision from the same goals, which another one finds.
  *
  * What is allowed, of the largest velocity, is the rounding of the sums (lib/rigid_lanes.h): with
  * n = 8 epsilon D^2 / inertia, D from the body's middle to the region, and f = spread / inertia,
@@ -110,6 +110,21 @@ void bench_check_contacts(const BenchCheck *check, const BenchScene *scene,
  * that is elsewhere by no more than that. */
 void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
                            const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
+
+/* A step without handles, obstacles, contacts and damping: how far, in cells, a particle's end of
+ * it is from eqs. 1 and 2 of fastlsm in double precision, by velocity times h or by position,
+ * whichever is more; goals are the engine's. Infinite if not finite. */
+double bench_check_motion(const BenchRunner *runner);
+
+/* Momentum's error of one body's goals, and whether it is small enough; says so otherwise. */
+double bench_check_drift(const double (*x)[3], const double (*g)[3], const double *m, long count);
+bool bench_check_keeps(double momentum_error, size_t size, char *reason);
+
+/* All of the above of the runner's present state, for what is measured without a row: goals and
+ * momentum, damping, contacts, obstacles, motion, and that what handles hold is where they hold it
+ * (the runner has stepped, or nothing is held). The state does not change. Where regions have more
+ * than BENCH_MOST_MEMBERS, goals are held to momentum alone. False, and `reason` says so. */
+bool bench_check_runner(const BenchRunner *runner, size_t size, char *reason);
 
 /* Rotations of the regions of all instances at x (mesh units), an octree's; ties go to the
  * identity. */

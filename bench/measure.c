@@ -152,9 +152,8 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
     bench_check_obstacles(check, runner->scene, runner->type, runner->engine, &found);
     if (!bench_check_verdict(&found, sizeof reason, reason))
         invalidate(row, "%s", reason);
-    else if (!check->plain && !(found.momentum_error <= BENCH_MOMENTUM_TOLERANCE))
-        invalidate(row, "linear momentum is off by %.3g; at most %g allowed", found.momentum_error,
-                   BENCH_MOMENTUM_TOLERANCE);
+    else if (!check->plain && !bench_check_keeps(found.momentum_error, sizeof reason, reason))
+        invalidate(row, "%s", reason);
     bench_check_merge(&found, worst);
     row->goal_error = worst->goal_error;
     row->momentum_error = worst->momentum_error;
