@@ -157,12 +157,13 @@ static void measure_cost(BenchSweeper *sweeper, const BenchPlan *plan, const Ben
     bench_row_free(&row);
 }
 
-/* No times of what is not right (point.h). */
+/* No times of what is not right (point.h); `why` begins with INVALID. */
 static void invalidate(BenchPoint *point, const char *what, const char *why)
 {
     const BenchPoint none = bench_point_none();
     if (point->valid || !point->reason[0])
-        snprintf(point->reason, sizeof point->reason, "%s: %.*s", what, BENCH_WHY, why);
+        snprintf(point->reason, sizeof point->reason, "%s%.*s", what, BENCH_WHY,
+                 why + strlen("INVALID"));
     point->valid = false;
     point->total_ms = point->total_low_ms = point->total_high_ms = point->build_seconds = NAN;
     point->samples = 0;
