@@ -35,7 +35,7 @@ typedef struct {
     double path_rms, path_most; /* gap.h: surface from that one's, of the body's size */
     char path_why[BENCH_WHY];
 
-    bool front;    /* no valid point of the file is as cheap and deviates less (front.h) */
+    bool front;    /* no valid point of the file displaces it (front.h) */
     double wall;   /* seconds that the point took in all */
     int rank;      /* of an MPI launch; else 0 */
     char host[64]; /* where it was measured, and when (ISO 8601) */

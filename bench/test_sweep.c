@@ -161,6 +161,8 @@ static BenchPoint make_point(const BenchPlan *plan, int index, double ms, double
     point.valid = isfinite(ms);
     point.particles = 295;
     point.total_ms = ms;
+    point.total_low_ms = 0.95 * ms;
+    point.total_high_ms = 1.05 * ms;
     point.path_rms = path;
     point.path_most = 2 * path;
     point.goal_rms = 0.02;
@@ -181,7 +183,7 @@ static void the_front_is_marked(void **state)
         make_point(&plan, 0, 4, 0, 1),       /* on it: nothing deviates less */
         make_point(&plan, 1, 5, 0, 1),       /* dearer, and no better */
         make_point(&plan, 2, 1, 0.02, 1),    /* on it: the cheapest */
-        make_point(&plan, 3, 1, 0.03, 1),    /* as cheap, and worse */
+        make_point(&plan, 3, 1.2, 0.03, 1),  /* dearer, and worse */
         make_point(&plan, 4, 2, 0.01, 1),    /* on it */
         make_point(&plan, 5, 2, 0.01, 1),    /* the same: neither beats the other */
         make_point(&plan, 6, NAN, 0.001, 1), /* INVALID */
@@ -190,6 +192,29 @@ static void the_front_is_marked(void **state)
     static const bool expected[] = {true, false, true, false, true, true, false, false};
     bench_front_mark(point, 8);
     for (int i = 0; i < 8; i++) assert_int_equal(point[i].front, expected[i]);
+}
+
+/* Whichever of two costs that differ by less than their spread comes out lower, the front stays. */
+static void noise_does_not_move_the_front(void **state)
+{
+    (void)state;
+    BenchPlan plan = make_plan("both");
+    for (int run = 0; run < 2; run++) {
+        BenchPoint point[] = {
+            make_point(&plan, 0, run ? 2.05 : 2, 0.01, 1),
+            make_point(&plan, 1, run ? 2 : 2.05, 0.02, 1),
+            make_point(&plan, 2, 2.5, 0.015, 1), /* dearer than both, beyond the spread */
+        };
+        bench_front_mark(point, 3);
+        assert_true(point[0].front && point[1].front && !point[2].front);
+        point[1].total_high_ms = 3;
+        point[1].total_low_ms = 1.04 * point[0].total_ms; /* still in the other's quartiles */
+        bench_front_mark(point, 3);
+        assert_true(point[1].front);
+        point[1].total_low_ms = 1.06 * point[0].total_ms; /* now beyond them */
+        bench_front_mark(point, 3);
+        assert_true(point[0].front && !point[1].front);
+    }
 }
 
 static void recommendations_meet_the_wish(void **state)
@@ -479,6 +504,7 @@ int main(void)
         cmocka_unit_test(a_plan_makes_its_points),
         cmocka_unit_test(plans_differ_in_words),
         cmocka_unit_test(the_front_is_marked),
+        cmocka_unit_test(noise_does_not_move_the_front),
         cmocka_unit_test(recommendations_meet_the_wish),
         cmocka_unit_test(a_sweep_comes_back),
         cmocka_unit_test(merging_adds_and_refuses),
