@@ -94,11 +94,7 @@ void bench_curve_fail(BenchCurve *curve, const char *format, ...)
 void bench_curve_check(BenchCurve *curve, const BenchRunner *runner)
 {
     char reason[160];
-    BenchCheck check;
-    bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &check);
-    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
-    bench_check_free(&check);
-    if (!bench_check_verdict(&found, sizeof reason, reason))
+    if (!bench_check_runner(runner, sizeof reason, reason))
         bench_curve_fail(curve, "w = %d: %s", runner->scene->params.w, reason);
 }
 

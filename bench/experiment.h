@@ -124,7 +124,7 @@ void bench_curve_sample(BenchCurve *curve, double x, const double *value, int co
 /* That interval alone. */
 BenchInterval bench_curve_interval(const double *value, int count, double share, int points);
 
-/* Fails where the goals of the runner's body, as it is now, are not those of brute force. */
+/* Fails where the runner's engine is not right in its present state: bench_check_runner(). */
 void bench_curve_check(BenchCurve *curve, const BenchRunner *runner);
 
 /* Keeps a curve as evidence. */
