@@ -120,10 +120,15 @@ double bench_check_motion(const BenchRunner *runner);
 double bench_check_drift(const double (*x)[3], const double (*g)[3], const double *m, long count);
 bool bench_check_keeps(double momentum_error, size_t size, char *reason);
 
-/* All of the above of the runner's present state, for what is measured without a row: goals and
- * momentum, damping, contacts, obstacles, motion, and that what handles hold is where they hold it
- * (the runner has stepped, or nothing is held). The state does not change. Where regions have more
- * than BENCH_MOST_MEMBERS, goals are held to momentum alone. False, and `reason` says so. */
+/* Goals, damping, contacts, obstacles and momentum of the runner's present state, and whether all
+ * are within their tolerances; `reason` says what is not. */
+bool bench_check_all(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *found,
+                     size_t size, char *reason);
+
+/* The same, motion, and that what handles hold is where they hold it (the runner has stepped, or
+ * nothing is held): of what is measured without a row. The state does not change. Where regions
+ * have more than BENCH_MOST_MEMBERS, goals are held to momentum alone. False, and `reason` says so.
+ */
 bool bench_check_runner(const BenchRunner *runner, size_t size, char *reason);
 
 /* Rotations of the regions of all instances at x (mesh units), an octree's; ties go to the

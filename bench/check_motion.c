@@ -67,18 +67,25 @@ static bool no_more_than(double found, double limit, const char *what, size_t si
     return false;
 }
 
-/* Goals, damping, contacts, obstacles and momentum by brute force. */
+bool bench_check_all(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *found,
+                     size_t size, char *reason)
+{
+    *found = bench_check_state(check, runner->type, runner->engine);
+    bench_check_damping(check, runner->scene, runner->type, runner->engine, found);
+    bench_check_contacts(check, runner->scene, runner->type, runner->engine, found);
+    bench_check_obstacles(check, runner->scene, runner->type, runner->engine, found);
+    if (!bench_check_verdict(found, size, reason)) return false;
+    return check->plain || bench_check_keeps(found->momentum_error, size, reason);
+}
+
 static bool held_to_brute(const BenchRunner *runner, size_t size, char *reason)
 {
     BenchCheck check;
+    BenchDeviation found;
     bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &check);
-    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
-    bench_check_damping(&check, runner->scene, runner->type, runner->engine, &found);
-    bench_check_contacts(&check, runner->scene, runner->type, runner->engine, &found);
-    bench_check_obstacles(&check, runner->scene, runner->type, runner->engine, &found);
+    bool right = bench_check_all(&check, runner, &found, size, reason);
     bench_check_free(&check);
-    if (!bench_check_verdict(&found, size, reason)) return false;
-    return found.plain || bench_check_keeps(found.momentum_error, size, reason);
+    return right;
 }
 
 /* Momentum of all goals alone; infinite of what is not finite. */

@@ -146,13 +146,8 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
                         BenchRow *row)
 {
     char reason[sizeof row->reason];
-    BenchDeviation found = bench_check_state(check, runner->type, runner->engine);
-    bench_check_damping(check, runner->scene, runner->type, runner->engine, &found);
-    bench_check_contacts(check, runner->scene, runner->type, runner->engine, &found);
-    bench_check_obstacles(check, runner->scene, runner->type, runner->engine, &found);
-    if (!bench_check_verdict(&found, sizeof reason, reason))
-        invalidate(row, "%s", reason);
-    else if (!check->plain && !bench_check_keeps(found.momentum_error, sizeof reason, reason))
+    BenchDeviation found;
+    if (!bench_check_all(check, runner, &found, sizeof reason, reason))
         invalidate(row, "%s", reason);
     bench_check_merge(&found, worst);
     row->goal_error = worst->goal_error;

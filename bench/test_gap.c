@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "../fastlsm/fastlsm.h"
+#include "../reference/brute.h"
 #include "beam.h"
 #include "gap.h"
 
@@ -238,6 +239,33 @@ static void wrong_kernels_have_no_gaps(void **state)
     bench_body_free(&body);
 }
 
+/* The path of a lattice, step by step, is the brute-force engine's. */
+static void paths_are_brute_forces(void **state)
+{
+    (void)state;
+    BenchScene scene = make_scene("mesh = \"shape:hand\"; particles = 400; w = 2; h = 0.01;\n"
+                                  "gravity = [0.0, -1.0, 0.0]; damping = 0.1; bend = 0.5;\n"
+                                  "handles = ( { box_low = [0.0, 0.0, 0.0];\n"
+                                  "              box_high = [1.0, 0.2, 1.0]; } );\n");
+    BenchBody body = make_body(&scene);
+    BenchPush push = {0};
+    BenchPath path, twin;
+    BenchGap gap;
+    bench_path_record(&scene, &body, &fastlsm_engine_f64, &push, 5, 1, &path);
+    bench_path_record(&scene, &body, &ref_brute_engine, &push, 5, 1, &twin);
+    assert_true(path.points > 0 && twin.points > 0);
+    bench_gap_path(&path, &twin, bench_body_size(&body), &gap);
+    assert_true(gap.most < 1e-9);
+    double moved = 0;
+    for (int d = 0; d < 3; d++)
+        for (long i = 0; i < path.points; i++)
+            moved = fmax(moved, fabs(path.point[i + 4 * path.points][d] - path.point[i][d]));
+    assert_true(moved > 1e-3 * bench_body_size(&body));
+    bench_path_free(&path);
+    bench_path_free(&twin);
+    bench_body_free(&body);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -247,6 +275,7 @@ int main(void)
         cmocka_unit_test(beams_get_stiffer),
         cmocka_unit_test(wrong_kernels_make_no_beams),
         cmocka_unit_test(wrong_kernels_have_no_gaps),
+        cmocka_unit_test(paths_are_brute_forces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
