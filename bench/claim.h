@@ -26,7 +26,6 @@ typedef enum {
     BENCH_IS_FACTOR,   /* p / t .. p t */
     BENCH_IS_AT_LEAST, /* p - t |p| and more */
     BENCH_IS_AT_MOST,  /* p + t |p| and less */
-    BENCH_CONTAINS,    /* low <= p <= high */
     BENCH_LIES_INSIDE, /* p - t .. p + t, and the whole interval must be in it */
     BENCH_RISES,       /* the curve, from every point to the next */
     BENCH_FALLS,

@@ -82,6 +82,7 @@ static void mistakes_are_named_with_their_line(void **state)
         const char *old, *new, *line, *says;
     } cases[] = {
         {"test = \"near\"", "test = \"nearly\"", "my.cfg:3:", "one of"},
+        {"test = \"near\"", "test = \"contains\"", "my.cfg:3:", "one of"},
         {"tolerance = 0.1", "tolerance = -1.0", "my.cfg:3:", "number from"},
         {"tolerance = 0.1", "tolerence = 0.1", "my.cfg:3:", "unknown setting 'tolerence'"},
         {"test = \"near\"; ", "", "my.cfg:2:", "no 'test'"},

@@ -102,9 +102,7 @@ static void find_band(const BenchClaim *claim, double paper, double band[2])
 {
     double t = claim->tolerance, share = fabs(paper) * t;
     bool factor = claim->test == BENCH_IS_FACTOR, inside = claim->test == BENCH_LIES_INSIDE;
-    double slack = factor || claim->test == BENCH_CONTAINS    ? 0
-                   : inside || claim->test == BENCH_IS_WITHIN ? t
-                                                              : share;
+    double slack = inside || claim->test == BENCH_IS_WITHIN ? t : share;
     band[0] = claim->test == BENCH_IS_AT_MOST ? -INFINITY : paper - slack;
     band[1] = claim->test == BENCH_IS_AT_LEAST ? INFINITY : paper + slack;
     if (!factor) return;
@@ -116,8 +114,6 @@ static Grade grade_at(const BenchFinding *finding, int v, double paper)
 {
     double band[2], value = finding->value[v], low = finding->low[v], high = finding->high[v];
     find_band(&finding->claim, paper, band);
-    if (finding->claim.test == BENCH_CONTAINS) /* of the interval alone */
-        return low <= paper && paper <= high ? WITHIN : OUTSIDE;
     if (low >= band[0] && high <= band[1]) return SHOWN;
     if (high < band[0] || low > band[1]) return OUTSIDE;
     bool strict = finding->claim.test == BENCH_LIES_INSIDE;
@@ -174,9 +170,8 @@ static void judge(BenchFinding *finding, const BenchCurve *curve)
     const BenchClaim *claim = &finding->claim;
     Grade grade = grade_of(finding, curve);
     const char *but = grade == OPEN ? "; the 95% interval is partly so: a quieter machine may tell"
-                      : grade == WITHIN && claim->test != BENCH_CONTAINS
-                          ? "; the 95% interval is only partly so"
-                          : "";
+                      : grade == WITHIN ? "; the 95% interval is only partly so"
+                                        : "";
     char test[96];
     bench_verdict_test(claim, sizeof test, test);
     finding->verdict = verdict_of(claim, grade);
@@ -296,9 +291,6 @@ void bench_verdict_test(const BenchClaim *claim, size_t size, char *text)
     case BENCH_IS_AT_MOST:
         snprintf(text, size, "at most %s", paper);
         if (t > 0) snprintf(text, size, "at most %s and %.3g%%", paper, 100 * t);
-        break;
-    case BENCH_CONTAINS:
-        snprintf(text, size, "95%% interval contains %s", paper);
         break;
     case BENCH_LIES_INSIDE:
         snprintf(text, size, "95%% interval within %.3g of %s", t, paper);
