@@ -6,8 +6,8 @@
  * at both, so that noise does not turn it over where the value is near the band's edge:
  *
  * - reproduced: the estimate is in the band. Either the whole interval is, too: that the value is
- *   in the band has been shown (an equivalence test, Schuirmann 1987, at 2.5% a side). Or it reaches
- *   beyond: nothing contradicts the claim, and the words say that it is not shown.
+ *   in the band has been shown (an equivalence test, Schuirmann 1987, at 2.5% a side). Or it
+ * reaches beyond: nothing contradicts the claim, and the words say that it is not shown.
  * - not reproduced: the whole interval is outside: a difference has been shown (at 2.5%).
  * - undecided: the estimate is outside, but the interval reaches into the band.
  * - differs, of what is expected to: the interval is not wholly in the band. Such a claim is
@@ -15,9 +15,9 @@
  *
  * "inside" is the strict test: without the whole interval in the band it is undecided. Of several
  * values each must do; the worst one counts. "rises" and "falls" look at every step from point to
- * point: the estimates must, and a step whose intervals are apart the wrong way contradicts it. What
- * has no interval (counts) is either in the band or outside. Measured are the repeats of one run: a
- * machine that does other work throughout shifts all of them. */
+ * point: the estimates must, and a step whose intervals are apart the wrong way contradicts it.
+ * What has no interval (counts) is either in the band or outside. Measured are the repeats of one
+ * run: a machine that does other work throughout shifts all of them. */
 #ifndef BENCH_VERDICT_H
 #define BENCH_VERDICT_H
 
