@@ -25,7 +25,7 @@ typedef struct {
     double summation_nodes; /* of a region, mean; NaN of a lattice */
     long most_summation;    /* 0 of a lattice */
     long parts;             /* groups of nodes that no region holds together; 0 of a lattice */
-    double goal_error; /* of what is timed, from brute force with the same regions, cells */
+    double goal_error;      /* of what is timed, from brute force with the same regions, cells */
 
     double goal_rms, goal_most; /* gap.h: goals from those of epsilon 0, cells */
     char goal_why[BENCH_WHY];
