@@ -412,6 +412,7 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
     worst->pushed_wrong += found->pushed_wrong;
     worst->contacts += found->contacts;
     worst->contacts_wrong += found->contacts_wrong;
+    worst->motion_error = fmax(worst->motion_error, found->motion_error);
     worst->turn_error = fmax(worst->turn_error, found->turn_error);
     if (found->damping_error * worst->damping_tolerance <
         worst->damping_error * found->damping_tolerance)

@@ -35,6 +35,7 @@ typedef struct {
     bool plain;            /* weighting, with which it need not be kept */
     double damping_error;  /* |v - brute force| / largest |v| after damping, of the particle ... */
     double damping_tolerance; /* ... where it is largest of what is allowed there; 0: no damping */
+    double motion_error;      /* bench_check_motion() of the step that was damped; 0: none was */
     long particles;           /* checked or left out */
     long tied;                /* left out: in a region whose rotation is not unique */
     long blurred;             /* left out of damping's check: tied or in a region whose inertia the
@@ -111,9 +112,9 @@ void bench_check_contacts(const BenchCheck *check, const BenchScene *scene,
 void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
                            const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
 
-/* A step without handles, obstacles, contacts and damping: how far, in cells, a particle's end of
- * it is from eqs. 1 and 2 of fastlsm in double precision, by velocity times h or by position,
- * whichever is more; goals are the engine's. Infinite if not finite. */
+/* A step without handles, obstacles and contacts: how far, in cells, a particle's end of it is from
+ * eqs. 1 (of an undamped body) and 2 of fastlsm in double precision from the engine's goals.
+ * Infinite if not finite. */
 double bench_check_motion(const BenchRunner *runner);
 
 /* Momentum's error of one body's goals, and whether it is small enough; says so otherwise. */

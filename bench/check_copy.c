@@ -1,6 +1,7 @@
 #include "check_copy.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -86,4 +87,17 @@ void bench_copy_step_free(BenchStep *step)
     free(step->after);
     free(step->to);
     *step = (BenchStep){0};
+}
+
+double bench_copy_motion(const BenchStep *step, const SmEngineParams *params)
+{
+    double most = 0, h = params->h;
+    for (long p = 0; p < step->all; p++)
+        for (int d = 0; d < 3; d++) {
+            double after = step->after[p][d], place = step->x[p][d] + h * after;
+            double off = fabs(step->to[p][d] - place);
+            if (!(params->damping > 0)) off = fmax(off, h * fabs(after - step->before[p][d]));
+            most = fmax(most, isfinite(after + step->to[p][d]) ? off : INFINITY);
+        }
+    return most;
 }

@@ -41,4 +41,9 @@ void bench_copy_step(const SmEngineParams *params, const BenchBody *body, const 
                      SmEngine *engine, long all, BenchStep *step);
 void bench_copy_step_free(BenchStep *step);
 
+/* How far, in mesh units, a particle's end of the step is from eq. 2 of fastlsm (x += h v) in
+ * double precision, or of an undamped body its velocity times h from eq. 1, whichever is more;
+ * infinite if not finite. */
+double bench_copy_motion(const BenchStep *step, const SmEngineParams *params);
+
 #endif

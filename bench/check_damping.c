@@ -119,5 +119,6 @@ void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const
                     &step);
     for (long first = 0; first < step.all; first += check->count)
         compare(check, scene, type->precision, &step, first, found);
+    found->motion_error = bench_copy_motion(&step, &params) / check->body->voxels.cell;
     bench_copy_step_free(&step);
 }
