@@ -36,12 +36,6 @@ void oct_lists_add(OctLists *lists, long leaf, const int *item, long count)
     lists->count[leaf] += (int)count;
 }
 
-int *oct_lists_item(const OctLists *lists, long leaf)
-{
-    int *item = lists->block[leaf / OCT_BLOCK].item;
-    return item ? item + lists->start[leaf] : NULL;
-}
-
 int oct_lists_compare(const void *a, const void *b)
 {
     int p = *(const int *)a, q = *(const int *)b;
@@ -82,7 +76,7 @@ void oct_lists_pack(OctLists *lists, long **first, int **item)
     for (long b = 0; b < lists->blocks; b++) {
         for (long l = oct_lists_from(b); l < oct_lists_to(lists, b); l++)
             if (lists->count[l] > 0)
-                memcpy(*item + (*first)[l], oct_lists_item(lists, l),
+                memcpy(*item + (*first)[l], lists->block[b].item + lists->start[l],
                        (size_t)lists->count[l] * sizeof **item);
         free(lists->block[b].item);
         lists->block[b] = (struct OctBlock){0};

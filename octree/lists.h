@@ -37,9 +37,6 @@ static inline long oct_lists_to(const OctLists *lists, long block)
 /* Appends to the list of a leaf, which must be the last of its block that was appended to. */
 void oct_lists_add(OctLists *lists, long leaf, const int *item, long count);
 
-/* The list of a leaf; NULL if its whole block is empty. */
-int *oct_lists_item(const OctLists *lists, long leaf);
-
 /* Rising order of ints, for qsort(). */
 int oct_lists_compare(const void *a, const void *b);
 

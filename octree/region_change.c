@@ -97,8 +97,8 @@ void oct_region_change_free(OctRegionChange *c)
     oct_plots_free(&c->taken);
     free(c->region.room);
     oct_cover_free(&c->cover);
-    void *all[] = {c->own_width, c->state, c->stirred, c->list, c->fresh,
-                   c->fresh_end, c->doubt, c->source,  c->order};
+    void *all[] = {c->own_width, c->state,       c->stirred, c->list, c->fresh,
+                   c->fresh_end, c->doubts.item, c->source,  c->order};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *c = (OctRegionChange){0};
 }
@@ -113,7 +113,8 @@ size_t oct_region_change_bytes(const OctRegionChange *c)
            (size_t)c->node_space * 2 + (size_t)c->order_room * sizeof *c->order +
            (size_t)c->list_room * sizeof *c->list + (size_t)c->fresh_room * sizeof *c->fresh +
            (size_t)c->fresh_end_room * sizeof *c->fresh_end +
-           (size_t)c->doubt_room * sizeof *c->doubt + (size_t)c->source_room * sizeof *c->source;
+           (size_t)c->doubts.room * sizeof *c->doubts.item +
+           (size_t)c->source_room * sizeof *c->source;
 }
 
 static void grow_leaves(OctRegionChange *c)
@@ -211,26 +212,8 @@ static void keep_taken(OctRegionChange *c, int i, int lane)
     oct_plots_resize(&c->taken, i, kept - first);
 }
 
-/* Leaves that the sheaf's leaves, from number n of the list on, own beyond the others' widths: they
- * may not own them. */
-static void note_doubts(OctRegionChange *c, long n)
-{
-    const OctSheaf *s = &c->sheaf;
-    for (long at = 0; at < s->leaves; at++) {
-        int leaf = s->leaf[at];
-        unsigned lanes = s->owned[at] & oct_lanes_beyond(s->distance[at], c->s->w[leaf]);
-        if (!lanes) continue;
-        ROOM(c->doubt, c->doubt_count, OCT_SHEAF, c->doubt_room);
-        for (; lanes; lanes &= lanes - 1) {
-            int lane = __builtin_ctz(lanes);
-            c->doubt[c->doubt_count++] =
-                (struct OctDoubt){c->list[n + lane], leaf, s->distance[at][lane]};
-        }
-    }
-}
-
 /* What leaves number n of the list and some more own now goes to `fresh`, what may not own them to
- * `doubt`. */
+ * `doubts`. */
 static void search(OctRegionChange *c, long n, int count)
 {
     int w[OCT_SHEAF], reaches[OCT_SHEAF];
@@ -239,7 +222,7 @@ static void search(OctRegionChange *c, long n, int count)
         reaches[lane] = reach_of(c, c->list[n + lane]);
     }
     oct_sheaf_find(&c->sheaf, count, c->list + n, w, reaches);
-    note_doubts(c, n);
+    oct_doubts_add(&c->doubts, &c->sheaf, c->list + n, c->s->w);
     for (int lane = 0; lane < count; lane++) {
         int i = c->list[n + lane], members = c->sheaf.members[lane];
         long from = n + lane ? c->fresh_end[n + lane - 1] : 0;
@@ -358,7 +341,7 @@ static void order_list(OctRegionChange *c)
 static void search_all(OctRegionChange *c)
 {
     long count = c->search_count;
-    c->doubt_count = 0;
+    c->doubts.count = 0;
     ROOM(c->fresh_end, 0, count, c->fresh_end_room);
     order_list(c);
     for (long n = 0; n < count; n += OCT_SHEAF)
@@ -367,7 +350,7 @@ static void search_all(OctRegionChange *c)
         long from = n ? c->fresh_end[n - 1] : 0;
         replace(c, &c->own, c->list[n], c->fresh + from, c->fresh_end[n] - from);
     }
-    for (long n = 0; n < c->doubt_count; n++) take(c, &c->doubt[n]);
+    for (long n = 0; n < c->doubts.count; n++) take(c, &c->doubts.item[n]);
 }
 
 void oct_region_change_update(OctRegionChange *c, OctChange *batch)

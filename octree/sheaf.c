@@ -216,7 +216,7 @@ static void from_above(const OctSheaf *s, int node, unsigned *opened, unsigned *
     *inside = parent < 0 ? 0 : s->inner[s->inner_at[parent]].inside;
 }
 
-/* As oct_interval_find() does. */
+/* From the roots down (sheaf.h). */
 static void choose(OctSheaf *s)
 {
     unsigned opened, inside;
@@ -249,7 +249,7 @@ void oct_sheaf_find(OctSheaf *s, int count, const int *leaf, const int *w, const
     s->width = same(0);
     memset(s->members, 0, sizeof s->members);
     for (int l = 0; l < count; l++) {
-        s->w[l] = w[l];
+        s->w[l] = w[l] < reaches[l] ? w[l] : reaches[l]; /* nothing beyond is found */
         s->beyond[l] = reaches[l] + 1;
     }
     find_distances(s, count, leaf);
