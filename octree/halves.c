@@ -35,7 +35,7 @@ static void find_own(const Build *b, OctSheaf *s, long from, int count, OctLists
         reaches[lane] = oct_halves_reach(b->w[leaf[lane]], b->epsilon);
     }
     oct_sheaf_find(s, count, leaf, b->w + from, reaches);
-    oct_doubts_add(doubts, s, leaf, b->w);
+    oct_doubts_add(doubts, s, (int)from, b->w);
     for (int lane = 0; lane < count; lane++) {
         b->halves->width[leaf[lane]] = s->width[lane];
         oct_lists_add(member, leaf[lane], oct_sheaf_member(s, lane), s->members[lane]);
@@ -67,18 +67,25 @@ static void find_all(const Build *b, OctLists *member, OctDoubts *doubts)
     oct_reach_free(&reach);
 }
 
-/* Of the doubts keeps those where the leaf does not own its owner. */
+/* Of the doubts keeps, in place, those where the leaf does not own its owner. */
 static void keep_missing(const Build *b, OctDoubts *doubts)
 {
     const OctHalves *h = b->halves;
-    long kept = 0;
-    for (long n = 0; n < doubts->count; n++) {
-        const struct OctDoubt *d = doubts->item + n;
-        long first = h->first[d->leaf], count = h->first[d->leaf + 1] - first;
-        if (!oct_cover_holds(b->tree, h->member + first, count, d->owner))
-            doubts->item[kept++] = *d;
+    const int *distance = doubts->distance;
+    long count = doubts->count;
+    doubts->count = doubts->distances = 0;
+    for (long n = 0; n < count; n++) {
+        struct OctDoubt d = doubts->item[n];
+        long first = h->first[d.leaf], members = h->first[d.leaf + 1] - first;
+        unsigned missing = 0;
+        for (; d.lanes; d.lanes &= d.lanes - 1, distance++) {
+            int lane = __builtin_ctz(d.lanes);
+            if (oct_cover_holds(b->tree, h->member + first, members, d.first + lane)) continue;
+            missing |= 1u << lane;
+            doubts->distance[doubts->distances++] = *distance;
+        }
+        if (missing) doubts->item[doubts->count++] = (struct OctDoubt){d.leaf, d.first, missing};
     }
-    doubts->count = kept;
 }
 
 /* Turns "leaf does not own its owner" round to "it takes it". */
@@ -86,16 +93,21 @@ static void turn_round(const OctDoubts *missing, long blocks, OctHalves *h)
 {
     long *next = sm_alloc((size_t)h->leaves, sizeof *next), *first = h->taken_first;
     for (long b = 0; b < blocks; b++)
-        for (long n = 0; n < missing[b].count; n++) first[missing[b].item[n].leaf + 1]++;
+        for (long n = 0; n < missing[b].count; n++)
+            first[missing[b].item[n].leaf + 1] += __builtin_popcount(missing[b].item[n].lanes);
     for (long j = 0; j < h->leaves; j++) first[j + 1] += next[j] = first[j];
     h->taken = sm_alloc((size_t)first[h->leaves], sizeof *h->taken);
     h->distance = sm_alloc((size_t)first[h->leaves], sizeof *h->distance);
-    for (long b = 0; b < blocks; b++)
+    for (long b = 0; b < blocks; b++) {
+        const int *distance = missing[b].distance;
         for (long n = 0; n < missing[b].count; n++) {
-            const struct OctDoubt *d = missing[b].item + n;
-            h->distance[next[d->leaf]] = d->distance;
-            h->taken[next[d->leaf]++] = d->owner;
+            struct OctDoubt d = missing[b].item[n];
+            for (; d.lanes; d.lanes &= d.lanes - 1) {
+                h->distance[next[d.leaf]] = *distance++;
+                h->taken[next[d.leaf]++] = d.first + __builtin_ctz(d.lanes);
+            }
         }
+    }
     free(next);
 }
 
@@ -116,7 +128,7 @@ void oct_halves_build(const OctTree *tree, const OctGraph *graph, const int *w, 
 #pragma omp parallel for schedule(dynamic) if (tree->leaves > SERIAL)
     for (long block = 0; block < blocks; block++) keep_missing(&b, doubts + block);
     turn_round(doubts, blocks, halves);
-    for (long block = 0; block < blocks; block++) free(doubts[block].item);
+    for (long block = 0; block < blocks; block++) oct_doubts_free(doubts + block);
     free(doubts);
 }
 

@@ -39,7 +39,7 @@ static inline long oct_regions_end(const OctRegions *regions, long leaf)
  *
  * The caller frees. The result does not depend on the number of threads. Cost: the searches, each
  * the edges of what lies within (1 + epsilon) w_i, so linear in the leaves at a fixed width; for a
- * moment also memory of 12 bytes for every leaf that a region holds beyond the other's w.
+ * moment also memory of some 10 bytes for every leaf that a region holds beyond the other's w.
  * Errors (SM_USAGE), on which `regions` is zeroed: a negative width; epsilon negative or not
  * finite. */
 SmCode oct_regions_build(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,

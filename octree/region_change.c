@@ -1,5 +1,6 @@
 #include "region_change.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,8 +98,9 @@ void oct_region_change_free(OctRegionChange *c)
     oct_plots_free(&c->taken);
     free(c->region.room);
     oct_cover_free(&c->cover);
-    void *all[] = {c->own_width, c->state,       c->stirred, c->list, c->fresh,
-                   c->fresh_end, c->doubts.item, c->source,  c->order};
+    oct_doubts_free(&c->doubts);
+    void *all[] = {c->own_width, c->state,     c->stirred, c->list,
+                   c->fresh,     c->fresh_end, c->source,  c->order};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *c = (OctRegionChange){0};
 }
@@ -112,8 +114,7 @@ size_t oct_region_change_bytes(const OctRegionChange *c)
                (sizeof *reach->distance + sizeof *reach->reached + sizeof *reach->nearest) +
            (size_t)c->node_space * 2 + (size_t)c->order_room * sizeof *c->order +
            (size_t)c->list_room * sizeof *c->list + (size_t)c->fresh_room * sizeof *c->fresh +
-           (size_t)c->fresh_end_room * sizeof *c->fresh_end +
-           (size_t)c->doubts.room * sizeof *c->doubts.item +
+           (size_t)c->fresh_end_room * sizeof *c->fresh_end + oct_doubts_bytes(&c->doubts) +
            (size_t)c->source_room * sizeof *c->source;
 }
 
@@ -178,8 +179,12 @@ static void part(OctRegionChange *c, int i, int k, int lane)
 {
     if (c->state[k] == SEARCH || (lane >= 0 && oct_sheaf_owns(&c->sheaf, lane, k))) return;
     if (oct_plots_remove(&c->taken, k, i)) list_leaf(c, k, REGION);
-    if (lane >= 0 && owns(c, k, i))
-        oct_plots_add(&c->taken, i, k, c->sheaf.distance[c->sheaf.leaf_at[k]][lane]);
+    if (lane < 0 || !owns(c, k, i)) return;
+    int at = c->sheaf.leaf_at[k];
+    /* k, which is not searched, has the distances within its reach that it had (mark): so it is as
+     * far from i, which it owns, as when i owned it, which was within i's reach */
+    assert(at >= 0 && c->sheaf.distance[at][lane] <= reach_of(c, i));
+    oct_plots_add(&c->taken, i, k, c->sheaf.distance[at][lane]);
 }
 
 /* All leaves that leaf i owned before and that live, new ones but not searched ones apart. */
@@ -222,7 +227,7 @@ static void search(OctRegionChange *c, long n, int count)
         reaches[lane] = reach_of(c, c->list[n + lane]);
     }
     oct_sheaf_find(&c->sheaf, count, c->list + n, w, reaches);
-    oct_doubts_add(&c->doubts, &c->sheaf, c->list + n, c->s->w);
+    oct_doubts_add(&c->doubts, &c->sheaf, (int)n, c->s->w);
     for (int lane = 0; lane < count; lane++) {
         int i = c->list[n + lane], members = c->sheaf.members[lane];
         long from = n + lane ? c->fresh_end[n + lane - 1] : 0;
@@ -301,18 +306,18 @@ static void bury(OctRegionChange *c, int leaf)
 
 /* The leaf takes its owner, if it does not own it. One that is not searched may have done so
  * before, perhaps at another distance. */
-static void take(OctRegionChange *c, const struct OctDoubt *d)
+static void take(OctRegionChange *c, int leaf, int owner, int distance)
 {
     OctPlots *taken = &c->taken;
-    long at = c->state[d->leaf] == SEARCH ? -1 : oct_plots_find(taken, d->leaf, d->owner);
+    long at = c->state[leaf] == SEARCH ? -1 : oct_plots_find(taken, leaf, owner);
     if (at >= 0) {
-        if (taken->also[at] == d->distance) return;
-        taken->also[at] = d->distance;
+        if (taken->also[at] == distance) return;
+        taken->also[at] = distance;
     } else {
-        if (d->distance <= reach_of(c, d->leaf) && owns(c, d->leaf, d->owner)) return;
-        oct_plots_add(taken, d->leaf, d->owner, d->distance);
+        if (distance <= reach_of(c, leaf) && owns(c, leaf, owner)) return;
+        oct_plots_add(taken, leaf, owner, distance);
     }
-    list_leaf(c, d->leaf, REGION);
+    list_leaf(c, leaf, REGION);
 }
 
 static int compare_order(const void *a, const void *b)
@@ -341,7 +346,7 @@ static void order_list(OctRegionChange *c)
 static void search_all(OctRegionChange *c)
 {
     long count = c->search_count;
-    c->doubts.count = 0;
+    c->doubts.count = c->doubts.distances = 0;
     ROOM(c->fresh_end, 0, count, c->fresh_end_room);
     order_list(c);
     for (long n = 0; n < count; n += OCT_SHEAF)
@@ -350,7 +355,12 @@ static void search_all(OctRegionChange *c)
         long from = n ? c->fresh_end[n - 1] : 0;
         replace(c, &c->own, c->list[n], c->fresh + from, c->fresh_end[n] - from);
     }
-    for (long n = 0; n < c->doubts.count; n++) take(c, &c->doubts.item[n]);
+    const int *distance = c->doubts.distance;
+    for (long n = 0; n < c->doubts.count; n++) {
+        struct OctDoubt d = c->doubts.item[n];
+        for (; d.lanes; d.lanes &= d.lanes - 1)
+            take(c, d.leaf, c->list[d.first + __builtin_ctz(d.lanes)], *distance++);
+    }
 }
 
 void oct_region_change_update(OctRegionChange *c, OctChange *batch)

@@ -30,8 +30,8 @@ typedef struct {
     long list_count, search_count; /* those whose regions change with them */
     int *fresh;                    /* what the leaves searched own now */
     long *fresh_end;               /* [searched] */
-    OctDoubts doubts;
-    struct OctSource *source; /* [source_count] ends of edges */
+    OctDoubts doubts;              /* of owners by their numbers on the list */
+    struct OctSource *source;      /* [source_count] ends of edges */
     long source_count;
     struct OctOrder {
         uint64_t along; /* the Morton curve */
