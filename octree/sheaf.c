@@ -2,7 +2,8 @@
 
 #include <stdlib.h>
 #include <string.h>
-#ifdef __AVX512F__
+#if defined(__AVX512F__) && !defined(OCT_PORTABLE) /* test_sheaf_portable.c */
+#define OCT_MASKS
 #include <immintrin.h>
 #endif
 
@@ -13,7 +14,7 @@ enum { ALL = (1 << OCT_SHEAF) - 1 };
 
 static inline unsigned below(OctLanes a, OctLanes b)
 {
-#ifdef __AVX512F__
+#ifdef OCT_MASKS
     return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
 #else
     OctLanes less = a < b;

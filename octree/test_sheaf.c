@@ -5,13 +5,11 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
 
 #include "../reference/octree_regions.h"
 #include "halves.h"
-#include "lists.h"
 #include "random_trees.h"
 
 enum { TRIALS = 400, LEAVES = 200 };
@@ -70,10 +68,14 @@ static void check_leaves(const Both *b, int lane, int reach, const bool *owned)
     for (int l = 0; l < b->tree->leaves; l++) {
         long distance = b->distance[l];
         assert_int_equal(oct_sheaf_owns(s, lane, l), owned[l]);
+        int at = s->leaf_at[l];
         if (distance >= 0 && distance <= reach)
-            assert_int_equal(s->distance[s->leaf_at[l]][lane], distance);
+            assert_int_equal(s->distance[at][lane], distance);
         else
-            assert_true(s->leaf_at[l] < 0 || s->distance[s->leaf_at[l]][lane] > reach);
+            assert_true(at < 0 || s->distance[at][lane] > reach);
+        if (at >= 0)
+            assert_int_equal(oct_lanes_beyond(s->distance[at], reach) >> lane & 1,
+                             s->distance[at][lane] > reach);
         if (owned[l] && distance > width) width = distance;
     }
     assert_int_equal(s->width[lane], width);
@@ -137,26 +139,10 @@ static void a_sheaf_owns_what_its_leaves_do(void **state)
     }
 }
 
-static void lists_are_sorted(void **state)
-{
-    (void)state;
-    enum { MOST = 500 };
-    unsigned seed = 3;
-    for (int trial = 0; trial < 2000; trial++) {
-        int item[MOST], sorted[MOST], count = random_int(&seed, trial % 2 ? MOST : 20);
-        for (int n = 0; n < count; n++) item[n] = random_int(&seed, 1 + trial);
-        memcpy(sorted, item, sizeof item[0] * (size_t)count);
-        qsort(sorted, (size_t)count, sizeof *sorted, oct_lists_compare);
-        oct_lists_sort(item, count);
-        assert_memory_equal(item, sorted, sizeof item[0] * (size_t)count);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sheaf_owns_what_its_leaves_do),
-        cmocka_unit_test(lists_are_sorted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
