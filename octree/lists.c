@@ -14,9 +14,8 @@ void oct_lists_init(OctLists *lists, long leaves)
     lists->block = sm_alloc((size_t)lists->blocks, sizeof *lists->block);
 }
 
-void oct_lists_free(OctLists *lists)
+static void free_lists(OctLists *lists)
 {
-    for (long b = 0; b < lists->blocks; b++) free(lists->block[b].item);
     free(lists->count);
     free(lists->start);
     free(lists->block);
@@ -79,7 +78,6 @@ void oct_lists_pack(OctLists *lists, long **first, int **item)
                 memcpy(*item + (*first)[l], lists->block[b].item + lists->start[l],
                        (size_t)lists->count[l] * sizeof **item);
         free(lists->block[b].item);
-        lists->block[b] = (struct OctBlock){0};
     }
-    oct_lists_free(lists);
+    free_lists(lists);
 }

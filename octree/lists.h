@@ -19,8 +19,8 @@ typedef struct {
     } * block; /* [blocks] */
 } OctLists;
 
+/* Empty lists, to be ended with oct_lists_pack(). */
 void oct_lists_init(OctLists *lists, long leaves);
-void oct_lists_free(OctLists *lists);
 
 /* Leaves of a block: from .. to - 1. */
 static inline long oct_lists_from(long block)
