@@ -152,12 +152,13 @@ static const BenchSpecimen *find_wide(const BenchSpecimen *specimen, long count)
 static void say_range(const BenchSpecimen *specimen, long count, char *text)
 {
     double aspect = ratio_over(specimen, count, "aspect", false),
-           epsilon = ratio_over(specimen, count, "", true), linear = INFINITY;
+           epsilon = ratio_over(specimen, count, "", true), linear = INFINITY, widest = 0;
     int looked = 0, apart = 0;
     for (long i = 0; i < count; i++) {
         const BenchSpecimen *s = &specimen[i];
         if (isfinite(s->linear_to)) linear = fmin(linear, s->linear_to), looked++;
         if (s->valid && s->spread > alike) apart++;
+        if (s->valid && s->spread <= alike) widest = fmax(widest, (2 * s->w + 1.0) / s->across);
     }
     const BenchSpecimen *wide = find_wide(specimen, count);
     say(text, "It is no material's constant:");
@@ -173,7 +174,12 @@ static void say_range(const BenchSpecimen *specimen, long count, char *text)
     if (looked)
         say(text, " sags are in proportion to the load to %g%% of the length (%d looked at);",
             100 * linear, looked);
-    say(text, " sag and frequencies are more than %g%% apart in %d specimens.", 100 * alike, apart);
+    say(text, " sag and three frequencies are more than %g%% apart in %d specimens", 100 * alike,
+        apart);
+    if (apart && widest > 0)
+        say(text, ", all of those with regions more than %.2g times as wide as the beam is thick",
+            widest);
+    say(text, ".");
 }
 
 void bench_advice_found(const BenchSpecimen *specimen, long count, const BenchLaw *law, int laws,

@@ -11,23 +11,6 @@
 #include "draft.h"
 #include "interrupt.h"
 
-/* Is what the engine makes of the bent beam what brute force does? */
-static void check(const BenchCantilever *beam, BenchSpecimen *specimen)
-{
-    const BenchRunner *runner = &beam->runner;
-    if (bench_check_room(&beam->scene, &beam->body, runner->type, runner->engine) >
-        BENCH_MOST_MEMBERS) {
-        snprintf(specimen->reason, sizeof specimen->reason,
-                 "its regions are too large to be checked against brute force");
-        return;
-    }
-    BenchCheck check;
-    bench_check_begin(&beam->scene, &beam->body, runner->type, runner->engine, &check);
-    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
-    bench_check_free(&check);
-    specimen->valid = bench_check_verdict(&found, sizeof specimen->reason, specimen->reason);
-}
-
 static void measure(BenchCantilever *beam, bool range, BenchSpecimen *specimen)
 {
     BenchStiffness found;
@@ -37,7 +20,7 @@ static void measure(BenchCantilever *beam, bool range, BenchSpecimen *specimen)
         snprintf(specimen->reason, sizeof specimen->reason, "%s", found.why);
         return;
     }
-    check(beam, specimen);
+    specimen->valid = bench_check_runner(&beam->runner, sizeof specimen->reason, specimen->reason);
     if (!specimen->valid) return;
     if (range) bench_stiffness_range(beam, &found);
     memcpy(specimen->frequency, found.frequency, sizeof found.frequency);
