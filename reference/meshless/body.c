@@ -24,7 +24,8 @@ static long nodes_of(const RefField *field, const RefBodyOptions *options, doubl
 {
     RefOctants octants;
     RefNodes nodes;
-    RefOctantOptions rough = {cell, options->coarser, 0, 1, 1};
+    RefOctantOptions rough = {
+        .cell = cell, .coarser = options->coarser, .gauss = 1, .clip = 1, .rough = true};
     if (ref_octants_build(field, &rough, &octants, NULL) != SM_OK) return 0;
     ref_nodes_place(field, &octants, alpha_of(options), &nodes);
     long count = nodes.count;
