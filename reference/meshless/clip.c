@@ -120,10 +120,15 @@ static void split_part(Clip *clip, const double centre[3], double edge, int dept
     }
 }
 
-bool ref_clip_sharp(const RefField *field, int count, const double (*x)[3], double edge)
+bool ref_clip_sharp(const RefField *field, int count, const double (*x)[3],
+                    const double gradient[3])
 {
-    for (int n = 0; n < count; n++)
-        if (fabs(ref_field_at(field, x[n], NULL)) > 0.02 * edge) return true;
+    for (int n = 0; n < count; n++) {
+        double there[3];
+        ref_field_at(field, x[n], there);
+        double lengths = sqrt(sm_dot(gradient, gradient) * sm_dot(there, there));
+        if (sm_dot(gradient, there) < 0.8 * lengths) return true;
+    }
     return false;
 }
 
@@ -144,7 +149,7 @@ static void part(Clip *clip, const double centre[3], double edge, int depth)
     } else {
         Share share = below_plane(centre, edge, value, gradient);
         if (!clip->options->rough && depth < clip->options->clip + REF_CLIP_SHARP &&
-            ref_clip_sharp(clip->field, share.ends, (const double(*)[3])share.end, edge)) {
+            ref_clip_sharp(clip->field, share.ends, (const double(*)[3])share.end, gradient)) {
             split_part(clip, centre, edge, depth);
             return;
         }

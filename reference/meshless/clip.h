@@ -10,10 +10,11 @@ int ref_clip_side(const RefField *field, const double centre[3], double edge);
 /* Gauss points and weights of sum 1 on -1/2..1/2. */
 void ref_clip_gauss(int order, double *at, double *weight);
 
-/* Whether a smallest part of this edge is to be split all the same, up to REF_CLIP_SHARP times: the
- * surface is not at the points x, where the part's tangent plane has it, so that an edge of the
- * body runs through it. */
-bool ref_clip_sharp(const RefField *field, int count, const double (*x)[3], double edge);
+/* Whether a smallest part is to be split all the same, up to REF_CLIP_SHARP times: the surface runs
+ * otherwise at the points x, which are the outermost on the part's tangent plane, so that an edge
+ * of the body is near. */
+bool ref_clip_sharp(const RefField *field, int count, const double (*x)[3],
+                    const double gradient[3]);
 
 enum { REF_CLIP_SHARP = 3 };
 

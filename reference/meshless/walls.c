@@ -89,8 +89,9 @@ static void split_part(Face *face, const double centre[3], double edge, int dept
 }
 
 static void cut_part(Face *face, const double centre[3], double edge, int depth, double value,
-                     const double slope[2])
+                     const double gradient[3])
 {
+    double slope[2] = {gradient[(face->axis + 1) % 3], gradient[(face->axis + 2) % 3]};
     Share share = below_line(edge, value, slope);
     double end[2][3];
     for (int n = 0; n < share.ends; n++) {
@@ -99,8 +100,9 @@ static void cut_part(Face *face, const double centre[3], double edge, int depth,
         end[n][(face->axis + 2) % 3] += share.end[n][1];
     }
     int clip = face->options->clip;
-    if (depth < clip || (depth < clip + REF_CLIP_SHARP &&
-                         ref_clip_sharp(face->field, share.ends, (const double(*)[3])end, edge)))
+    if (depth < clip ||
+        (depth < clip + REF_CLIP_SHARP &&
+         ref_clip_sharp(face->field, share.ends, (const double(*)[3])end, gradient)))
         split_part(face, centre, edge, depth);
     else if (share.area > 1e-9 * edge * edge)
         append(face, centre, share.middle[0], share.middle[1], share.area);
@@ -111,13 +113,13 @@ static void cut_part(Face *face, const double centre[3], double edge, int depth,
 static void part(Face *face, const double centre[3], double edge, int depth)
 {
     double gradient[3], value = ref_field_at(face->field, centre, gradient);
-    double slope[2] = {gradient[(face->axis + 1) % 3], gradient[(face->axis + 2) % 3]};
-    double corner = 0.5 * edge * (fabs(slope[0]) + fabs(slope[1]));
+    double corner =
+        0.5 * edge * (fabs(gradient[(face->axis + 1) % 3]) + fabs(gradient[(face->axis + 2) % 3]));
     bool cut = fabs(value) < corner * (1 - 1e-9);
     if (!cut && value > 1e-9 * edge) return;
     face->surface = !cut && value > -1e-9 * edge;
     if (cut)
-        cut_part(face, centre, edge, depth, value, slope);
+        cut_part(face, centre, edge, depth, value, gradient);
     else if (depth == 0)
         gauss(face, centre, edge);
     else
