@@ -76,7 +76,7 @@ SmCode ref_body_build(const RefField *field, const RefBodyOptions *options, long
     RefOctantOptions fine = {.cell = options->cell > 0 ? options->cell : find_cell(field, options),
                              .coarser = options->coarser,
                              .split = options->split > 0 ? options->split : 1,
-                             .gauss = options->basis == REF_MLS_LINEAR ? 2 : 3,
+                             .gauss = options->basis == REF_MLS_LINEAR ? 1 : 3,
                              .clip = 2};
     SmCode code = ref_octants_build(field, &fine, &body->octants, error);
     if (code != SM_OK) return code;

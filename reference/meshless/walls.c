@@ -8,10 +8,10 @@
 typedef struct {
     const RefField *field;
     const RefOctantOptions *options;
-    int order;               /* Gauss points a direction */
-    double at[5], weight[5]; /* Gauss, on -1/2..1/2, weights of sum 1 */
-    int axis, out;           /* the face's normal is `out`, 1 or -1, along the axis */
-    bool surface;            /* whether the present part lies in the body's surface */
+    int order[2];                  /* Gauss points a direction: inside, in the surface */
+    double at[2][4], weight[2][4]; /* on -1/2..1/2, weights of sum 1 */
+    int axis, out;                 /* the face's normal is `out`, 1 or -1, along the axis */
+    bool surface;                  /* whether the present part lies in the body's surface */
     RefOctants *tree;
 } Face;
 
@@ -37,10 +37,11 @@ static void append(const Face *face, const double centre[3], double across, doub
 
 static void gauss(const Face *face, const double centre[3], double edge)
 {
-    int order = face->options->gauss;
+    int order = face->order[face->surface];
+    const double *at = face->at[face->surface], *weight = face->weight[face->surface];
     for (int n = 0; n < order * order; n++)
-        append(face, centre, edge * face->at[n % order], edge * face->at[n / order],
-               edge * edge * face->weight[n % order] * face->weight[n / order]);
+        append(face, centre, edge * at[n % order], edge * at[n / order],
+               edge * edge * weight[n % order] * weight[n / order]);
 }
 
 /* What of a square lies on the inner side of a line, and the line's ends; from the square's centre.
@@ -165,7 +166,10 @@ void ref_walls_of_faces(const RefField *field, const RefOctantOptions *options, 
                         RefOctants *tree)
 {
     Face face = {.field = field, .options = options, .tree = tree};
-    ref_clip_gauss(options->gauss, face.at, face.weight);
+    for (int n = 0; n < 2; n++) {
+        face.order[n] = options->gauss + 1 + n < 4 ? options->gauss + 1 + n : 4;
+        ref_clip_gauss(face.order[n], face.at[n], face.weight[n]);
+    }
     for (int side = 0; side < 6; side++) {
         face.axis = side / 2;
         face.out = side % 2 ? 1 : -1;

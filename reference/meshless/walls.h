@@ -10,8 +10,9 @@
 #include "octants.h"
 
 /* Appends the six faces of terminal octant `o` to the tree's walls, as far as they are inside:
- * Gauss points as clip.h's parts have them, those of the finer octant where it touches smaller
- * ones; what the field's tangent plane cuts is split and then cut along a line. */
+ * Gauss points on the faces of clip.h's parts, one a direction more than these have, and two more
+ * in the body's surface, four at most; those of the finer octant where it touches smaller ones;
+ * what the field's tangent plane cuts is split and then cut along a line. */
 void ref_walls_of_faces(const RefField *field, const RefOctantOptions *options, long o,
                         RefOctants *tree);
 
