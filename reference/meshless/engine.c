@@ -8,12 +8,13 @@
 #include <string.h>
 
 #include "../../lib/handles.h"
+#include "../../lib/vector.h"
 #include "grip.h"
 #include "mpu.h"
 #include "normal.h"
 #include "skin.h"
 
-enum { POINTS = 12000, DEFAULT_NODES = 1000, DEFAULT_MODES = 64, MOST_POINTS = 64 };
+enum { POINTS = 12000, DEFAULT_NODES = 1000, DEFAULT_MODES = 64, MOST_POINTS = 128 };
 
 struct SmEngine {
     long count;        /* particles */
@@ -264,22 +265,41 @@ static void meshless_push(SmEngine *engine, long count, const long *particle,
     engine->pushed = engine->pushed || count > 0;
 }
 
-/* Points of every handle, about as many as there are nodes to hold by them. */
+/* Nodes beside a handle's particles. */
+static long nodes_beside(const RefBody *body, long count, const double (*x)[3])
+{
+    double most = pow(0.75 * body->octants.cell, 2);
+    long beside = 0;
+    for (long n = 0; n < body->nodes.count; n++)
+        for (long p = 0; p < count; p++) {
+            double way[3];
+            for (int d = 0; d < 3; d++) way[d] = body->nodes.position[n][d] - x[p][d];
+            if (sm_dot(way, way) > most) continue;
+            beside++;
+            break;
+        }
+    return beside;
+}
+
+/* Points of every handle, a little more than half as many as nodes are beside it: with one a node
+ * the body could bend no nearer to the handle than covers reach, and with a third of them it bends
+ * between them. A cantilever's sag says so: -4%, and +4% (test_engine.c). */
 static void choose_grips(SmEngine *engine)
 {
     const RefBody *body = &engine->body;
     engine->grip = sm_alloc((size_t)engine->handles.count, sizeof *engine->grip);
     engine->grip_pose = sm_alloc((size_t)engine->handles.count, sizeof *engine->grip_pose);
-    long most = body->nodes.count / 3 / (engine->handles.count + 1) + 1;
+    long room = body->nodes.count / 3 / (engine->handles.count + 1) + 1;
+    if (room > MOST_POINTS) room = MOST_POINTS;
     for (int n = 0; n < engine->handles.count; n++) {
         const SmHandle *handle = engine->handles.handle + n;
         if (handle->count == 0) continue;
         double(*x)[3] = sm_alloc((size_t)handle->count, sizeof *x);
         for (long k = 0; k < handle->count; k++)
             memcpy(x[k], engine->rest[handle->particle[k]], sizeof x[k]);
-        engine->grip[engine->grips++] =
-            ref_grip_choose(handle->count, CONST(x), body->octants.cell,
-                            most < MOST_POINTS ? (int)most : MOST_POINTS);
+        double wanted = fmax(0.55 * (double)nodes_beside(body, handle->count, CONST(x)), 4);
+        engine->grip[engine->grips++] = ref_grip_choose(
+            handle->count, CONST(x), 0.5 * body->octants.cell, (int)fmin(wanted, (double)room));
         free(x);
     }
 }
