@@ -365,6 +365,7 @@ static long meshless_region(SmEngine *engine, long p, long *member, long room)
 const SmEngineType ref_meshless_engine = {
     .name = "meshless",
     .precision = "double",
+    .unstopped = true,
     .create = meshless_create,
     .destroy = meshless_destroy,
     .step = meshless_step,
