@@ -146,15 +146,9 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
                         BenchRow *row)
 {
     char reason[sizeof row->reason];
-    BenchDeviation found = bench_check_state(check, runner->type, runner->engine);
-    bench_check_damping(check, runner->scene, runner->type, runner->engine, &found);
-    bench_check_contacts(check, runner->scene, runner->type, runner->engine, &found);
-    bench_check_obstacles(check, runner->scene, runner->type, runner->engine, &found);
-    if (!bench_check_verdict(&found, sizeof reason, reason))
+    BenchDeviation found;
+    if (!bench_check_all(check, runner, &found, sizeof reason, reason))
         invalidate(row, "%s", reason);
-    else if (!check->plain && !(found.momentum_error <= BENCH_MOMENTUM_TOLERANCE))
-        invalidate(row, "linear momentum is off by %.3g; at most %g allowed", found.momentum_error,
-                   BENCH_MOMENTUM_TOLERANCE);
     bench_check_merge(&found, worst);
     row->goal_error = worst->goal_error;
     row->momentum_error = worst->momentum_error;
@@ -343,4 +337,10 @@ void bench_row_free(BenchRow *row)
     free(row->stage);
     free(row->change.time);
     *row = (BenchRow){0};
+}
+
+void bench_rows_free(BenchRow *rows, int count)
+{
+    for (int i = 0; i < count; i++) bench_row_free(&rows[i]);
+    free(rows);
 }
