@@ -203,11 +203,9 @@ SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int 
     for (int k = 0; k < blocks; k++) {
         vec *sum = sums[k];
         for (int f = 0; f < (damping ? 12 : 9); f++) {
-            bool weighed = !damping && f < 3;
-            vec moment = lanes_set(0);
+            vec *moment = damping || f > 2 ? NULL : &sum[chain_value(9 + f)];
             sum[damping ? f : chain_value(f)] =
-                window_y(in, run->column + i + k, w, moving, f, 9 + f, weighed ? &moment : NULL);
-            if (weighed) sum[chain_value(9 + f)] = moment;
+                window_y(in, run->column + i + k, w, moving, f, 9 + f, moment);
         }
     }
     sm_lap(laps, damping ? SM_DAMPING : SM_FAST_SUM);
