@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../reference/meshless/solver.h"
 #include "../reference/paper.h"
 #include "command.h"
 #include "draft.h"
@@ -27,7 +28,9 @@ typedef struct {
 
 static const struct argp_option option_list[] = {
     {"paper", KEY_PAPER, "NAME", 0,
-     "The paper whose table to regenerate: fastlsm (default), octree", 1},
+     "The paper whose table to regenerate: fastlsm, octree or meshless (default: fastlsm and "
+     "meshless)",
+     1},
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Measure this scene only, or the paper's scenes NAME-...; may be repeated", 1},
     {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
@@ -78,6 +81,7 @@ static const char help[] =
     "force, the octree's against sums over its regions' leaves (at most 5e-5 of a cell off in "
     "single, 1e-10 in double precision), linear momentum "
     "(sum m g = sum m x to 1e-6 of sum m |x - centroid|), counts, and that everything is finite. "
+    "Of a meshless body its shape functions, matrices, modes, and the frames that are timed. "
     "A row that fails has INVALID in place of its times.\v"
     "Times are medians over the repeats; the total is timed without clocks inside the step, stages "
     "are the shares of a run with clocks, interleaved. 'faster' is the paper's total divided by "
@@ -106,47 +110,61 @@ static void add_scene(Options *options, const char *name, const char *stem)
     options->scene[options->scenes++] = name;
 }
 
-/* The scenes of the paper's table whose names begin with `stem` and a dash, or all: in the order of
+/* The scenes of a paper's table whose names begin with `stem` and a dash, or all: in the order of
  * its rows, behind each those that only we have. */
-static void add_scenes(Options *options, const char *stem)
+static void add_scenes(Options *options, const char *paper, const char *stem)
 {
     int count;
     const RefPaperRow *rows = ref_paper_rows(&count);
     for (int i = 0; i < count; i++) {
-        if (strcmp(rows[i].paper, options->paper) != 0) continue;
+        if (strcmp(rows[i].paper, paper) != 0) continue;
         for (const char *const *name = bench_scene_names(); *name; name++) {
-            if (!belongs(*name, options->paper, rows[i].scene, stem)) continue;
+            if (!belongs(*name, paper, rows[i].scene, stem)) continue;
             add_scene(options, *name, stem);
             for (const char *const *more = bench_scene_names(); *more; more++)
-                if (belongs(*more, options->paper, NULL, *name)) add_scene(options, *more, stem);
+                if (belongs(*more, paper, NULL, *name)) add_scene(options, *more, stem);
         }
     }
+}
+
+/* The tables that are regenerated when none is named. */
+static void add_default(Options *options)
+{
+    add_scenes(options, "fastlsm", NULL);
+    if (ref_solver_built)
+        add_scenes(options, "meshless", NULL);
+    else if (!options->common.quiet)
+        fputs("shapebench tables: --paper meshless is left out: this program was built without "
+              "CHOLMOD and ARPACK\n",
+              stderr);
 }
 
 /* Fills in the scenes of the paper's table, or those that a name given stands for. */
 static SmCode choose_scenes(Options *options, SmError *error)
 {
+    const char *paper = options->paper ? options->paper : "fastlsm";
     const char *given[SCENES];
     int count = options->scenes;
     memcpy(given, options->scene, sizeof given);
     options->scenes = 0;
     for (int i = 0; i < count; i++) {
         int before = options->scenes;
-        add_scenes(options, given[i]);
+        add_scenes(options, paper, given[i]);
         bool exact = false;
         for (const char *const *name = bench_scene_names(); *name; name++) {
             BenchScene scene;
             exact |= !strcmp(*name, given[i]) && !bench_scene_find(*name, &scene, NULL) &&
-                     !strcmp(scene.paper, options->paper);
+                     !strcmp(scene.paper, paper);
         }
         if (options->scenes > before && !exact) continue;
         options->scenes = before;
         add_scene(options, given[i], NULL);
     }
-    if (!count) add_scenes(options, NULL);
+    if (!count && options->paper) add_scenes(options, paper, NULL);
+    if (!count && !options->paper) add_default(options);
     if (options->scenes) return SM_OK;
-    return sm_fail(error, SM_USAGE, "--paper: no table of '%.40s'; there are: fastlsm, octree",
-                   options->paper);
+    return sm_fail(error, SM_USAGE,
+                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
 }
 
 static SmCode measure_scene(const Options *options, int number, BenchProgress *progress,
@@ -161,10 +179,6 @@ static SmCode measure_scene(const Options *options, int number, BenchProgress *p
     if (chosen->engine) snprintf(scene.engine, sizeof scene.engine, "%.23s", chosen->engine);
     code = bench_engine_find(scene.engine, chosen->precision, &type, error);
     if (code) return code;
-    if (!strcmp(type->name, "meshless"))
-        return sm_fail(
-            error, SM_USAGE,
-            "--engine meshless: tables are of shape matching; 'run' moves meshless bodies");
     if (chosen->layout >= 0) scene.params.layout = (SmLayout)chosen->layout;
     SmMesh mesh;
     BenchBody body;
@@ -218,7 +232,7 @@ static SmCode verdict(const BenchRow *rows, int count, SmError *error)
 
 int bench_command_tables(int argc, char **argv)
 {
-    Options options = {.paper = "fastlsm", .repeats = 15, .block = 20};
+    Options options = {.repeats = 15, .block = 20};
     SmError error;
     bench_options_parse(&argp, argc, argv, &options, &options.common);
     SmCode code = choose_scenes(&options, &error);

@@ -9,6 +9,7 @@
 #include "../reference/paper.h"
 #include "blocks.h"
 #include "check.h"
+#include "elastic_row.h"
 #include "frames.h"
 #include "tree_row.h"
 
@@ -75,7 +76,7 @@ static void step(void *subject, SmLaps *laps)
 }
 
 static void name_row(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                     BenchRow *row)
+                     const BenchMeasureParams *params, BenchRow *row)
 {
     *row = (BenchRow){.triangles = body->mesh.triangle_count,
                       .instances = body->instances,
@@ -85,6 +86,9 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
                       .damping = scene->params.damping,
                       .voxelise_seconds = body->voxelise_seconds,
                       .input_hash = body->hash,
+                      .threads = params->threads,
+                      .speedup = NAN,
+                      .valid = true,
                       .goal_tolerance = bench_check_tolerance(type->precision)};
     snprintf(row->paper, sizeof row->paper, "%s", scene->paper);
     snprintf(row->paper_row, sizeof row->paper_row, "%s", scene->row);
@@ -234,6 +238,10 @@ static void measure_start(Trial *trial, const BenchMeasureParams *params, BenchD
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error)
 {
+    if (!strcmp(type->name, "meshless")) {
+        name_row(scene, body, type, params, row);
+        return bench_elastic_measure(scene, body, params, row, error);
+    }
     Trial trial = {0};
     BenchDeviation worst = {.finite = true};
     SmCode code =
@@ -245,10 +253,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
         free_trial(&trial);
         return code;
     }
-    name_row(scene, body, type, row);
-    row->threads = params->threads;
-    row->speedup = NAN;
-    row->valid = true;
+    name_row(scene, body, type, params, row);
     if (params->progress) bench_progress_show(params->progress, row->scene, 0);
     measure_start(&trial, params, &worst, row);
     bool changes = bench_play_changes(&trial.play);

@@ -83,6 +83,13 @@ static const BenchField row_fields[] = {
     FIELD(BENCH_LONG, change.pieces),
     FIELD(BENCH_LONG, change.open_edges),
     FIELD(BENCH_LONG, change.left),
+    FIELD(BENCH_LONG, elastic.nodes),
+    FIELD(BENCH_LONG, elastic.modes),
+    FIELD(BENCH_DOUBLE, elastic.field_seconds),
+    FIELD(BENCH_DOUBLE, elastic.matrix_seconds),
+    FIELD(BENCH_DOUBLE, elastic.mode_seconds),
+    FIELD(BENCH_DOUBLE, elastic.skin_seconds),
+    FIELD(BENCH_DOUBLE, elastic.found),
     FIELD(BENCH_HASH, input_hash),
 };
 
