@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../lib/handles.h"
+#include "../lib/vector.h"
 #include "../reference/meshless/mpu.h"
 #include "runner.h"
 
@@ -56,7 +57,7 @@ static SmCode make_body(const BenchScene *scene, const BenchBody *of, BenchElast
     memcpy(*shown, mpu.points.position, (size_t)*count * sizeof **shown);
     RefField field = ref_mpu_field(&mpu);
     RefBodyOptions body = {.nodes = options.nodes > 0 ? options.nodes : REF_MESHLESS_NODES,
-                           .coarser = 1,
+                           .coarser = options.uniform ? 0 : 1,
                            .basis = REF_MLS_LINEAR,
                            .material = options.material};
     code = ref_body_build(&field, &body, *count, CONST(*shown), &elastic->body, error);
@@ -79,27 +80,43 @@ static SmCode make_motion(const BenchScene *scene, BenchElastic *elastic, SmErro
     return SM_OK;
 }
 
+/* The selected point that is nearest to the middle of all that are; false where none is. */
+static bool find_held(const BenchSelect *select, const BenchBody *of, long count,
+                      const double (*x)[3], double held[3])
+{
+    double middle[3] = {0}, least = INFINITY;
+    long chosen = 0;
+    for (long p = 0; p < count; p++) {
+        if (!bench_select_has(select, of, x[p])) continue;
+        for (int d = 0; d < 3; d++) middle[d] += x[p][d];
+        chosen++;
+    }
+    for (int d = 0; d < 3 && chosen; d++) middle[d] /= (double)chosen;
+    for (long p = 0; p < count; p++) {
+        double away[3] = {x[p][0] - middle[0], x[p][1] - middle[1], x[p][2] - middle[2]};
+        double square = sm_dot(away, away);
+        if (square >= least || !bench_select_has(select, of, x[p])) continue;
+        least = square;
+        memcpy(held, x[p], sizeof middle);
+    }
+    return chosen > 0;
+}
+
 /* Two constraints a handle, position and orientation. */
 static SmCode hold(const BenchBody *of, long count, const double (*x)[3], BenchElastic *elastic,
                    SmError *error)
 {
     const BenchScene *scene = elastic->scene;
-    elastic->middle = sm_alloc((size_t)scene->handle_count, sizeof *elastic->middle);
+    elastic->held = sm_alloc((size_t)scene->handle_count, sizeof *elastic->held);
     for (int i = 0; i < scene->handle_count; i++) {
-        double *middle = elastic->middle[i];
-        long chosen = 0;
-        for (long p = 0; p < count; p++) {
-            if (!bench_select_has(&scene->handle[i].select, of, x[p])) continue;
-            for (int d = 0; d < 3; d++) middle[d] += x[p][d];
-            chosen++;
-        }
-        for (int d = 0; d < 3 && chosen; d++) middle[d] /= (double)chosen;
-        if (!chosen ||
-            ref_motion_hold(&elastic->body, REF_HOLD_POSITION, middle, &elastic->motion) < 0)
+        double *held = elastic->held[i];
+        if (!find_held(&scene->handle[i].select, of, count, x, held) ||
+            ref_motion_hold(&elastic->body, REF_HOLD_POSITION, held, &elastic->motion) < 0)
             return sm_fail(error, SM_INPUT,
-                           "%s: handle %d selects no points whose middle is in the body",
+                           "%s: handle %d selects none of the body's points: enlarge its box or "
+                           "sphere",
                            scene->file, i + 1);
-        ref_motion_hold(&elastic->body, REF_HOLD_ROTATION, middle, &elastic->motion);
+        ref_motion_hold(&elastic->body, REF_HOLD_ROTATION, held, &elastic->motion);
     }
     return SM_OK;
 }
@@ -135,7 +152,7 @@ void bench_elastic_free(BenchElastic *elastic)
     ref_skin_free(&elastic->skin);
     ref_body_free(&elastic->body);
     free(elastic->carried);
-    free(elastic->middle);
+    free(elastic->held);
     *elastic = (BenchElastic){0};
 }
 
@@ -155,8 +172,8 @@ static void move_handles(BenchElastic *elastic)
         double pose[3][4];
         RefHold *bound = elastic->motion.hold + 2 * i;
         bench_handle_pose(&elastic->scene->handle[i], elastic->time, here, pose);
-        sm_pose_apply((const double(*)[4])pose, elastic->middle[i], bound[0].target);
-        for (int d = 0; d < 3; d++) bound[0].target[d] -= elastic->middle[i][d];
+        sm_pose_apply((const double(*)[4])pose, elastic->held[i], bound[0].target);
+        for (int d = 0; d < 3; d++) bound[0].target[d] -= elastic->held[i][d];
         turn_of((const double(*)[4])pose, bound[1].target);
     }
 }

@@ -2,8 +2,8 @@
  * that they give, a meshless body, its free modes, their motion, and the points carried by it.
  *
  * A frame is one implicit step and all points' new positions. Each of the scene's handles binds
- * position and orientation in the middle of the points that it selects (meshless section 5.3.3); of
- * what else moves a scene there is only gravity. The scene's lattice plays no part. */
+ * position and orientation of one of the points that it selects, the nearest to their middle
+ * (meshless section 5.3.3); of what else moves a scene there is only gravity. The scene's lattice plays no part. */
 #ifndef BENCH_ELASTIC_H
 #define BENCH_ELASTIC_H
 
@@ -19,7 +19,7 @@ typedef struct {
     RefMotion motion;
     RefSkin skin;
     double (*carried)[3]; /* [skin.count] the points now, in the skin's order */
-    double (*middle)[3];  /* [scene->handle_count] what each handle binds, at rest */
+    double (*held)[3];    /* [scene->handle_count] what each handle binds, at rest */
     double time;          /* s since the start */
     double field_seconds, matrix_seconds, mode_seconds, skin_seconds; /* what was built in */
 } BenchElastic;

@@ -165,6 +165,7 @@ static const BenchSetting meshless_table[] = {
     ITEM("stiffness_damping", BENCH_REAL, AT(meshless.stiffness_damping), 0, 1e6),
     ITEM("points", BENCH_LONG, AT(meshless.points), REF_LEAST_POINTS, 1e7),
     ITEM("nodes", BENCH_LONG, AT(meshless.nodes), 8, 1e6),
+    ITEM("uniform", BENCH_BOOL, AT(meshless.uniform), 0, 0),
     ITEM("modes", BENCH_INT, AT(meshless.modes), 7, 1000),
     ITEM("metre", BENCH_REAL, AT(metre), 1e-30, 1e30),
     {0},

@@ -48,7 +48,7 @@ static void test_shapes_are_closed_and_of_the_promised_count(void **state)
     (void)state;
     int count;
     const SmShape *shapes = sm_shapes(&count);
-    assert_true(count >= 11);
+    assert_true(count >= 12);
     for (int s = 0; s < count; s++) {
         SmMesh mesh = make(shapes[s].name);
         assert_int_equal(mesh.triangle_count, shapes[s].triangles);

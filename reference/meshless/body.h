@@ -23,7 +23,7 @@ typedef struct {
 } RefBody;
 
 /* Builds a body. The `count` points `shown` (a surface, handles; may be none) are covered as the
- * integration points are. The number of nodes is met to about a tenth, or as well as octants can.
+ * integration points are. The number of nodes is met to a hundredth, or as well as 16 attempts can.
  * The caller frees. Errors: octants.h's, matrices.h's; SM_INPUT, fewer than 8 nodes, or points that
  * stay uncovered: a body of one layer of octants, or `shown` points far outside. */
 SmCode ref_body_build(const RefField *field, const RefBodyOptions *options, long count,

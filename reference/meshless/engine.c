@@ -81,13 +81,13 @@ static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmE
 {
     RefPoints points;
     RefMpu mpu;
-    SmCode code = ref_points_of_mesh(options->mesh, options->points > 0 ? options->points : REF_MESHLESS_POINTS,
-                                     &points, error);
+    SmCode code = ref_points_of_mesh(
+        options->mesh, options->points > 0 ? options->points : REF_MESHLESS_POINTS, &points, error);
     if (code == SM_OK) code = ref_mpu_build(&points, NULL, &mpu, error);
     if (code != SM_OK) return code;
     RefField field = ref_mpu_field(&mpu);
     RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : REF_MESHLESS_NODES,
-                           .coarser = 1,
+                           .coarser = options->uniform ? 0 : 1,
                            .basis = REF_MLS_LINEAR,
                            .material = options->material};
     code = ref_body_build(&field, &body, engine->count, CONST(engine->rest), &engine->body, error);
