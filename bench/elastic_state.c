@@ -9,29 +9,37 @@
 
 enum { FREE_STEPS = 64, POINTS = 2000 };
 
-/* Amplitudes and their velocities. */
+/* Amplitudes, their velocities, and where the constraints are. */
 typedef struct {
     double *z, *speed;
-} Amplitudes;
+    double (*target)[3]; /* [holds] */
+} State;
 
-static Amplitudes keep(const RefMotion *motion)
+static State keep(const RefMotion *motion)
 {
     size_t modes = (size_t)motion->modes;
-    Amplitudes kept = {sm_alloc(modes, sizeof(double)), sm_alloc(modes, sizeof(double))};
+    State kept = {sm_alloc(modes, sizeof(double)), sm_alloc(modes, sizeof(double)),
+                  sm_alloc((size_t)motion->holds, sizeof(double[3]))};
+    for (int c = 0; c < motion->holds; c++)
+        memcpy(kept.target[c], motion->hold[c].target, sizeof kept.target[c]);
     memcpy(kept.z, motion->z, modes * sizeof(double));
     memcpy(kept.speed, motion->speed, modes * sizeof(double));
     return kept;
 }
 
-static void put_back(const Amplitudes *kept, RefMotion *motion)
+/* The targets only where `targets` says so. */
+static void put_back(const State *kept, bool targets, RefMotion *motion)
 {
+    for (int c = 0; c < motion->holds && targets; c++)
+        memcpy(motion->hold[c].target, kept->target[c], sizeof kept->target[c]);
     memcpy(motion->z, kept->z, (size_t)motion->modes * sizeof(double));
     memcpy(motion->speed, kept->speed, (size_t)motion->modes * sizeof(double));
     ref_motion_pose(motion);
 }
 
-static void let_go(Amplitudes *kept)
+static void let_go(State *kept)
 {
+    free(kept->target);
     free(kept->z);
     free(kept->speed);
 }
@@ -78,12 +86,13 @@ static double *slopes(RefMotion *motion, double step)
 
 /* Eq. 33 as a dense system of the changes of the modes' velocities and the multipliers, by LU:
  * right becomes them. */
-static void fill_system(RefMotion *motion, double h, const double *J, gsl_matrix *system,
+static void fill_system(const BenchElastic *elastic, double h, const double *J, gsl_matrix *system,
                         gsl_vector *right)
 {
+    const RefMotion *motion = &elastic->motion;
     size_t modes = (size_t)motion->modes, rows = 3 * (size_t)motion->holds;
     for (size_t k = 0; k < modes; k++) {
-        double lambda = motion->lambda[k];
+        double lambda = fmax(elastic->modes.lambda[k], 0);
         double damping = motion->damping.mass_damping + motion->damping.stiffness_damping * lambda;
         gsl_matrix_set(system, k, k, 1 + h * damping + h * h * lambda);
         gsl_vector_set(right, k,
@@ -104,9 +113,10 @@ static void fill_system(RefMotion *motion, double h, const double *J, gsl_matrix
 
 /* The step's velocities `after` from those that a dense solution gives. `motion` is as it was
  * before the step, with the step's targets. */
-static void compare_step(RefMotion *motion, double h, double step, const double *after,
+static void compare_step(BenchElastic *elastic, double step, const double *after,
                          BenchElasticFound *found)
 {
+    RefMotion *motion = &elastic->motion;
     size_t modes = (size_t)motion->modes, all = modes + 3 * (size_t)motion->holds;
     double *J = slopes(motion, step), off = 0, most = 0;
     int sign;
@@ -114,7 +124,7 @@ static void compare_step(RefMotion *motion, double h, double step, const double 
     gsl_vector *right = gsl_vector_calloc(all), *change = gsl_vector_calloc(all);
     gsl_permutation *order = gsl_permutation_alloc(all);
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    fill_system(motion, h, J, system, right);
+    fill_system(elastic, elastic->scene->params.h, J, system, right);
     bool solved = gsl_linalg_LU_decomp(system, order, &sign) == GSL_SUCCESS &&
                   gsl_linalg_LU_solve(system, order, right, change) == GSL_SUCCESS;
     gsl_set_error_handler(handler);
@@ -186,21 +196,20 @@ static void check_growth(BenchElastic *elastic, BenchElasticFound *found)
 void bench_elastic_check_state(BenchElastic *elastic, BenchElasticFound *found)
 {
     RefMotion *motion = &elastic->motion;
-    Amplitudes before = keep(motion);
+    State before = keep(motion);
     double time = elastic->time, mass = 0;
     for (int c = 0; c < elastic->body.matrices.mass.columns; c++)
         mass += elastic->body.matrices.mass.value[elastic->body.matrices.mass.start[c]];
     check_pose(elastic, found);
-    put_back(&before, motion);
+    put_back(&before, true, motion);
     bench_elastic_step(elastic, NULL);
     check_held(motion, found);
     check_skin(elastic, found);
-    Amplitudes after = keep(motion);
-    put_back(&before, motion);
-    compare_step(motion, elastic->scene->params.h, 1e-5 * motion->size * sqrt(mass), after.speed,
-                 found);
+    State after = keep(motion);
+    put_back(&before, false, motion);
+    compare_step(elastic, 1e-5 * motion->size * sqrt(mass), after.speed, found);
     check_growth(elastic, found);
-    put_back(&before, motion);
+    put_back(&before, true, motion);
     elastic->time = time;
     let_go(&before);
     let_go(&after);

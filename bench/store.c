@@ -83,14 +83,16 @@ static const BenchField row_fields[] = {
     FIELD(BENCH_LONG, change.pieces),
     FIELD(BENCH_LONG, change.open_edges),
     FIELD(BENCH_LONG, change.left),
-    FIELD(BENCH_LONG, elastic.nodes),
-    FIELD(BENCH_LONG, elastic.modes),
-    FIELD(BENCH_DOUBLE, elastic.field_seconds),
-    FIELD(BENCH_DOUBLE, elastic.matrix_seconds),
-    FIELD(BENCH_DOUBLE, elastic.mode_seconds),
-    FIELD(BENCH_DOUBLE, elastic.skin_seconds),
-    FIELD(BENCH_DOUBLE, elastic.found),
     FIELD(BENCH_HASH, input_hash),
+};
+
+/* In the group `elastic` of a row that has one. */
+#define ELASTIC(kind, member) BENCH_FIELD(BenchElasticRow, kind, member)
+static const BenchField elastic_fields[] = {
+    ELASTIC(BENCH_LONG, nodes),           ELASTIC(BENCH_LONG, modes),
+    ELASTIC(BENCH_DOUBLE, field_seconds), ELASTIC(BENCH_DOUBLE, matrix_seconds),
+    ELASTIC(BENCH_DOUBLE, mode_seconds),  ELASTIC(BENCH_DOUBLE, skin_seconds),
+    ELASTIC(BENCH_DOUBLE, found),
 };
 
 /* "fast_sum shape_matching ...": the columns of `stage`, in order. */
@@ -116,6 +118,11 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
     hsize_t frames[] = {(hsize_t)row->change.frames, BENCH_FRAME_PARTS};
     if (row->change.frames)
         bench_h5_dataset(h5, group, "frames", H5T_IEEE_F64LE, 2, frames, row->change.time);
+    if (row->elastic.nodes) {
+        hid_t elastic = bench_h5_group(h5, group, "elastic");
+        bench_h5_fields(h5, elastic, elastic_fields, COUNT(elastic_fields), &row->elastic);
+        if (elastic >= 0) H5Gclose(elastic);
+    }
     if (group >= 0) H5Gclose(group);
 }
 
@@ -177,6 +184,14 @@ static void read_frames(BenchH5 *h5, hid_t group, BenchChangeRow *change)
     bench_h5_read(h5, frames, H5T_NATIVE_DOUBLE, change->time);
 }
 
+static void read_elastic(BenchH5 *h5, hid_t group, BenchElasticRow *elastic)
+{
+    if (h5->failed || H5Lexists(group, "elastic", H5P_DEFAULT) <= 0) return;
+    hid_t from = bench_h5_find_group(h5, group, "elastic");
+    bench_h5_read_fields(h5, from, elastic_fields, COUNT(elastic_fields), elastic);
+    if (!h5->failed) H5Gclose(from);
+}
+
 /* Reads row `index`; a failure's message is preceded by the row. */
 static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
 {
@@ -186,6 +201,7 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     bench_h5_read_fields(h5, group, row_fields, COUNT(row_fields), row);
     read_samples(h5, group, row);
     read_frames(h5, group, &row->change);
+    read_elastic(h5, group, &row->elastic);
     if (h5->failed) {
         char message[sizeof h5->message];
         snprintf(message, sizeof message, "row %s: %.200s", name, h5->message);
