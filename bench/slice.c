@@ -33,8 +33,8 @@ typedef struct {
 static Picture lay_out(const RefField *field, const BenchSlice *slice)
 {
     Picture p = {.axis = slice->axis,
-                 .across = (slice->axis + 1) % 3,
-                 .along = (slice->axis + 2) % 3,
+                 .across = slice->axis == 0 ? 2 : 0,
+                 .along = slice->axis == 1 ? 2 : 1,
                  .at = field->low[slice->axis] +
                        slice->share * (field->high[slice->axis] - field->low[slice->axis])};
     const int axes[2] = {p.across, p.along};

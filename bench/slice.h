@@ -1,8 +1,9 @@
 /* slice.h - the signed distance from a body's surface function on a plane, in HDF5.
  *
  * The file: kind = "shapebench slice", schema = 1; the attributes source, axis (0 x, 1 y, 2 z: the
- * normal), at (where the plane is), low and high (of the picture, [2], along the other two axes in
- * cyclic order), points, flipped; the dataset distance [rows][columns], negative inside. */
+ * normal), at (where the plane is), low and high ([2]: of the picture, across and along), points,
+ * flipped (the normals pointed inwards); the dataset distance [rows][columns], negative inside.
+ * Columns go across: along x, or z where that is the normal; rows along y, or z where that is. */
 #ifndef BENCH_SLICE_H
 #define BENCH_SLICE_H
 

@@ -30,9 +30,9 @@ def draw(facts, distance, pyplot):
     import numpy
     from matplotlib.colors import TwoSlopeNorm
 
-    names = "xyz"
-    across, along = names[(facts["axis"] + 1) % 3], names[(facts["axis"] + 2) % 3]
+    normal, across, along = (("x", "z", "y"), ("y", "x", "z"), ("z", "x", "y"))[facts["axis"]]
     low, high = facts["low"], facts["high"]
+    at = facts["at"] if abs(facts["at"]) > 1e-4 * max(high - low) else 0
     most = numpy.abs(distance).max()
     norm = TwoSlopeNorm(0, -most if distance.min() >= 0 else distance.min(), most if distance.max() <= 0 else distance.max())
     width, height = high - low
@@ -48,7 +48,7 @@ def draw(facts, distance, pyplot):
     axes.set_xlabel(across)
     axes.set_ylabel(along)
     source = pathlib.PurePath(facts["source"]).name
-    axes.set_title(f"{source}, {facts['points']} points, {names[facts['axis']]} = {facts['at']:.4g}", fontsize=10)
+    axes.set_title(f"{source}, {facts['points']} points, {normal} = {at:.4g}", fontsize=10)
     return figure
 
 
@@ -68,7 +68,7 @@ def main():
     facts, distance = read(options.file, h5py)
     output = options.output or str(pathlib.Path(options.file).with_suffix(".png"))
     try:
-        draw(facts, distance, pyplot).savefig(output, dpi=100, bbox_inches="tight")
+        draw(facts, distance, pyplot).savefig(output, dpi=90, bbox_inches="tight")
     except (OSError, ValueError) as error:
         fail(f"{output}: {error}", 4)
     print(f"wrote {output}")
