@@ -3,7 +3,8 @@
  *
  * A frame is one implicit step and all points' new positions. Each of the scene's handles binds
  * position and orientation of one of the points that it selects, the nearest to their middle
- * (meshless section 5.3.3); of what else moves a scene there is only gravity. The scene's lattice plays no part. */
+ * (meshless section 5.3.3); of what else moves a scene there is only gravity. The scene's lattice
+ * plays no part. */
 #ifndef BENCH_ELASTIC_H
 #define BENCH_ELASTIC_H
 
