@@ -2,36 +2,13 @@
 # Draws a slice of a block by plot_slice.py: it is blue inside and red outside; lets it refuse what is
 # none.
 #
-# usage: test_plot_slice.sh BUILD-FOLDER     exit codes: 0 right, 1 wrong, 77 h5py or matplotlib is missing
-set -eu
-scripts=$(cd -- "$(dirname -- "$0")" && pwd)
-program=$(realpath -- "$1")/shapebench
-if ! /usr/bin/python3 -c 'import h5py, matplotlib' 2>/dev/null; then
-    echo "skipped: /usr/bin/python3 has no h5py or no matplotlib; scripts/setup installs them"
-    exit 77
-fi
-folder=$(mktemp -d)
-trap 'rm -rf -- "$folder"' EXIT
-cd "$folder"
-
-wrong() {
-    echo "wrong: $*" >&2
-    exit 1
-}
-
-# refused CODE ARGUMENTS...: one line on standard error, and that exit code
-refused() {
-    local code=0 wanted=$1
-    shift
-    "$scripts/plot_slice.py" "$@" >out 2>err || code=$?
-    [ "$code" -eq "$wanted" ] || wrong "exit code $code, not $wanted: $* $(cat err)"
-    [ "$(wc -l <err)" -eq 1 ] || wrong "more than a line: $(cat err)"
-}
+# usage: test_plot_slice.sh BUILD-FOLDER
+source "$(dirname -- "$0")/test_plots.bash"
 
 "$program" info shape:block --slice y=0.5 -o block.h5 --quiet
-"$scripts/plot_slice.py" block.h5 >said
+"$plot" block.h5 >said
 grep -qx 'wrote block.png' said || wrong "it says $(cat said)"
-"$scripts/plot_slice.py" block.h5 -o block.svg >/dev/null
+"$plot" block.h5 -o block.svg >/dev/null
 grep -q '<svg' block.svg || wrong "no SVG"
 /usr/bin/python3 - <<'PYTHON'
 from matplotlib import image
