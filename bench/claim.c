@@ -53,7 +53,7 @@ static const BenchSetting measure_table[] = {
     {0},
 };
 
-static const char test_words[] = "near|within|factor|at_least|at_most|contains|inside|rises|falls";
+static const char test_words[] = "near|within|factor|at_least|at_most|inside|rises|falls";
 
 static const BenchSetting claim_table[] = {
     TEXT(Entry, "paper", claim.paper),

@@ -25,7 +25,6 @@ typedef enum {
     BENCH_IS_FACTOR,   /* 1 / t <= m / p <= t */
     BENCH_IS_AT_LEAST, /* m >= p (1 - t) */
     BENCH_IS_AT_MOST,  /* m <= p (1 + t) */
-    BENCH_CONTAINS,    /* low <= p <= high */
     BENCH_LIES_INSIDE, /* p - t <= low, high <= p + t */
     BENCH_RISES,       /* the curve, from every point to the next */
     BENCH_FALLS,

@@ -17,10 +17,4 @@ void bench_claim_place(const BenchLab *lab, int curve, size_t size, char *place)
 SmCode bench_claim_store(const char *path, const BenchFinding *findings, int count,
                          const BenchLab *lab, const BenchMachine *machine, SmError *error);
 
-/* Reads them back, but for the settings of what was measured; and the curves. On SM_OK the caller
- * frees *findings and *curves. SM_INPUT: no such file, not HDF5, cut off, not a claims file,
- * another schema, something missing; the line names the file and what. */
-SmCode bench_claim_load(const char *path, BenchFinding **findings, int *count, BenchCurve **curves,
-                        int *curve_count, BenchMachine *machine, SmError *error);
-
 #endif

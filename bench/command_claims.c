@@ -9,13 +9,12 @@
 #include "option.h"
 #include "progress.h"
 
-enum { KEY_PAPER = 0x2000, KEY_CLAIM, KEY_CLAIMS, KEY_QUICK, KEY_LIST, KEY_FORMAT, NAMES = 64 };
+enum { KEY_PAPER = 0x2000, KEY_CLAIM, KEY_CLAIMS, KEY_QUICK, KEY_LIST, KEY_FORMAT };
 
 typedef struct {
     BenchCommon common;
     const char *paper, *output;
-    const char *claim[NAMES], *file[NAMES];
-    int claims, files;
+    BenchNames claims, files;
     bool quick, list;
     BenchFormat format;
 } Options;
@@ -35,42 +34,22 @@ static const struct argp_option option_list[] = {
     {0},
 };
 
-static void add_name(const struct argp_state *state, const char *option, const char **names,
-                     int *count, const char *name)
-{
-    if (*count == NAMES) bench_usage(state, "%s: at most %d", option, NAMES);
-    names[(*count)++] = name;
-}
+static const BenchOption options_taken[] = {
+    {KEY_PAPER, BENCH_TO(TEXT, paper), 0, 0, NULL},
+    {KEY_CLAIM, BENCH_TO(NAMES, claims), 0, 0, NULL},
+    {KEY_CLAIMS, BENCH_TO(NAMES, files), 0, 0, NULL},
+    {KEY_LIST, BENCH_TO(TRUE, list), 0, 0, NULL},
+    {KEY_QUICK, BENCH_TO(TRUE, quick), 0, 0, NULL},
+    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
+    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    {0},
+};
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
-    Options *options = state->input;
-    switch (key) {
-    case KEY_PAPER:
-        options->paper = text;
-        return 0;
-    case KEY_CLAIM:
-        add_name(state, "--claim", options->claim, &options->claims, text);
-        return 0;
-    case KEY_CLAIMS:
-        add_name(state, "--claims", options->file, &options->files, text);
-        return 0;
-    case KEY_LIST:
-        options->list = true;
-        return 0;
-    case KEY_QUICK:
-        options->quick = true;
-        return 0;
-    case KEY_FORMAT:
-        options->format =
-            (BenchFormat)bench_option_choice(state, "--format", text, bench_format_names);
-        return 0;
-    case 'o':
-        options->output = text;
-        return 0;
-    case ARGP_KEY_ARG:
+    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
+    if (key == ARGP_KEY_ARG)
         bench_usage(state, "what is '%s'? Claims are named with --claim", text);
-    }
     return ARGP_ERR_UNKNOWN;
 }
 
@@ -89,9 +68,9 @@ static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NUL
 
 static bool named(const Options *options, const char *name)
 {
-    for (int n = 0; n < options->claims; n++)
-        if (!strcmp(options->claim[n], name)) return true;
-    return options->claims == 0;
+    for (int n = 0; n < options->claims.count; n++)
+        if (!strcmp(options->claims.name[n], name)) return true;
+    return options->claims.count == 0;
 }
 
 static bool chosen(const Options *options, const BenchClaim *claim)
@@ -104,16 +83,16 @@ static bool chosen(const Options *options, const BenchClaim *claim)
 static SmCode choose(const Options *options, BenchClaims *claims, SmError *error)
 {
     SmCode code = bench_claims_builtin(claims, error);
-    for (int f = 0; f < options->files && !code; f++)
-        code = bench_claims_read(options->file[f], claims, error);
+    for (int f = 0; f < options->files.count && !code; f++)
+        code = bench_claims_read(options->files.name[f], claims, error);
     if (code) return code;
-    for (int n = 0; n < options->claims; n++) {
+    for (int n = 0; n < options->claims.count; n++) {
         bool known = false;
         for (int c = 0; c < claims->count; c++)
-            known = known || !strcmp(claims->claim[c].name, options->claim[n]);
+            known = known || !strcmp(claims->claim[c].name, options->claims.name[n]);
         if (!known)
             return sm_fail(error, SM_USAGE, "--claim: no claim '%.60s'; --list names them",
-                           options->claim[n]);
+                           options->claims.name[n]);
     }
     int kept = 0;
     for (int c = 0; c < claims->count; c++)

@@ -50,32 +50,22 @@ static void add_only(const struct argp_state *state, Options *options, const cha
     options->only[options->only_count++] = name;
 }
 
+static const BenchOption options_taken[] = {
+    {KEY_LIST, BENCH_TO(TRUE, list), 0, 0, NULL},
+    {KEY_PRECISION, BENCH_TO(CHOICE, precision), 0, 0, bench_precisions},
+    {KEY_LAYOUT, BENCH_TO(CHOICE, layout), 0, 0, bench_layouts},
+    {KEY_SCALING, BENCH_TO(TRUE, scaling), 0, 0, NULL},
+    {KEY_REPEATS, BENCH_TO(INT, repeats), 1, 10000, NULL},
+    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_kernel_formats},
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state)
 {
-    Options *options = state->input;
+    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
     switch (key) {
     case KEY_ONLY:
-        add_only(state, options, text);
-        return 0;
-    case KEY_LIST:
-        options->list = true;
-        return 0;
-    case KEY_PRECISION:
-        options->precision =
-            (BenchPrecision)bench_option_choice(state, "--precision", text, bench_precisions);
-        return 0;
-    case KEY_LAYOUT:
-        options->layout = (SmLayout)bench_option_choice(state, "--layout", text, bench_layouts);
-        return 0;
-    case KEY_SCALING:
-        options->scaling = true;
-        return 0;
-    case KEY_REPEATS:
-        options->repeats = (int)bench_option_long(state, "--repeats", text, 1, 10000);
-        return 0;
-    case KEY_FORMAT:
-        options->format =
-            (BenchKernelFormat)bench_option_choice(state, "--format", text, bench_kernel_formats);
+        add_only(state, state->input, text);
         return 0;
     case ARGP_KEY_ARG:
         bench_usage(state, "what is '%s'? Kernels are named with --only", text);

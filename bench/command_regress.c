@@ -11,6 +11,7 @@
 #include "command.h"
 #include "counts.h"
 #include "draft.h"
+#include "measure.h"
 #include "option.h"
 #include "process.h"
 #include "regression.h"
@@ -18,7 +19,6 @@
 #include "samples.h"
 #include "scene.h"
 #include "statistic.h"
-#include "store.h"
 
 enum {
     KEY_BASELINE = 0x2000,
@@ -30,15 +30,14 @@ enum {
     KEY_BLOCK,
     KEY_THRESHOLD,
     KEY_FORMAT,
-    KEY_COUNTS,
-    SCENES = 64
+    KEY_COUNTS
 };
 
 typedef struct {
     BenchCommon common;
     const char *baseline, *revision, *paper, *output;
-    const char *scene[SCENES];
-    int scenes, rounds, repeats;
+    BenchNames scenes;
+    int rounds, repeats;
     double block, threshold; /* ms; a share, NaN: auto */
     BenchRegressionFormat format;
     bool counts;
@@ -52,7 +51,7 @@ static const struct argp_option option_list[] = {
     {"revision", KEY_REVISION, "REV", 0,
      "Compare with this git revision, built in a temporary worktree and run interleaved", 1},
     {"paper", KEY_PAPER, "NAME", 0,
-     "With --revision: the scenes of this paper's table: fastlsm (default), octree", 1},
+     "With --revision: the scenes of this paper's table: fastlsm (default), octree, meshless", 1},
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Compare this scene only; may be repeated (default: all of the file, or of the paper)", 1},
     {"rounds", KEY_ROUNDS, "N", 0,
@@ -71,54 +70,43 @@ static const struct argp_option option_list[] = {
     {0},
 };
 
+static const BenchOption options_taken[] = {
+    {KEY_BASELINE, BENCH_TO(TEXT, baseline), 0, 0, NULL},
+    {KEY_REVISION, BENCH_TO(TEXT, revision), 0, 0, NULL},
+    {KEY_PAPER, BENCH_TO(TEXT, paper), 0, 0, NULL},
+    {KEY_SCENE, BENCH_TO(NAMES, scenes), 0, 0, NULL},
+    {KEY_ROUNDS, BENCH_TO(INT, rounds), 1, 1000, NULL},
+    {KEY_REPEATS, BENCH_TO(INT, repeats), 1, 10000, NULL},
+    {KEY_BLOCK, BENCH_TO(REAL, block), 0.001, 60000, NULL},
+    {KEY_COUNTS, BENCH_TO(TRUE, counts), 0, 0, NULL},
+    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_regression_formats},
+    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    {0},
+};
+
+static void check_options(const Options *options, const struct argp_state *state)
+{
+    if (!options->baseline == !options->revision)
+        bench_usage(state, "compare with what? Say either --baseline FILE.h5 or --revision REV");
+    if (options->baseline && options->counts)
+        bench_usage(state, "--counts: a file has no instruction counts; use --revision");
+    if (options->baseline && options->paper)
+        bench_usage(state, "--paper: a file has its own scenes; choose of them with --scene");
+}
+
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
+    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
     switch (key) {
-    case KEY_BASELINE:
-        options->baseline = text;
-        return 0;
-    case KEY_REVISION:
-        options->revision = text;
-        return 0;
-    case KEY_PAPER:
-        options->paper = text;
-        return 0;
-    case KEY_SCENE:
-        if (options->scenes == SCENES) bench_usage(state, "--scene: at most %d", SCENES);
-        options->scene[options->scenes++] = text;
-        return 0;
-    case KEY_ROUNDS:
-        options->rounds = (int)bench_option_long(state, "--rounds", text, 1, 1000);
-        return 0;
-    case KEY_REPEATS:
-        options->repeats = (int)bench_option_long(state, "--repeats", text, 1, 10000);
-        return 0;
-    case KEY_BLOCK:
-        options->block = bench_option_real(state, "--block", text, 0.001, 60000);
-        return 0;
     case KEY_THRESHOLD:
         options->threshold =
             strcmp(text, "auto") != 0 ? bench_option_real(state, "--threshold", text, 0, 10) : NAN;
         return 0;
-    case KEY_COUNTS:
-        options->counts = true;
-        return 0;
-    case KEY_FORMAT:
-        options->format = (BenchRegressionFormat)bench_option_choice(state, "--format", text,
-                                                                     bench_regression_formats);
-        return 0;
-    case 'o':
-        options->output = text;
-        return 0;
     case ARGP_KEY_ARG:
         bench_usage(state, "what is '%s'? Say --baseline FILE.h5 or --revision REV", text);
     case ARGP_KEY_END:
-        if (!options->baseline == !options->revision)
-            bench_usage(state,
-                        "compare with what? Say either --baseline FILE.h5 or --revision REV");
-        if (options->baseline && options->counts)
-            bench_usage(state, "--counts: a file has no instruction counts; use --revision");
+        check_options(options, state);
         return 0;
     }
     return ARGP_ERR_UNKNOWN;
@@ -144,7 +132,7 @@ typedef struct {
     const Options *options;
     BenchProgress progress;
     BenchContests all;
-    BenchTask task[SCENES];
+    BenchTask *task; /* [tasks] */
     int tasks;
     BenchRow *stored; /* rows of the file */
     int stored_count;
@@ -153,18 +141,30 @@ typedef struct {
     BenchRegression found;
 } Session;
 
+static BenchTask *add_task(Session *session, const char *scene)
+{
+    session->task = sm_realloc(session->task, (size_t)session->tasks + 1, sizeof *session->task);
+    session->task[session->tasks] = (BenchTask){.scene = scene};
+    return &session->task[session->tasks++];
+}
+
+static const char *paper_of(const Options *options)
+{
+    return options->paper ? options->paper : "fastlsm";
+}
+
 /* The built-in scenes that are set beside rows of the paper's table. */
 static SmCode paper_tasks(Session *session, SmError *error)
 {
-    const char *paper = session->options->paper;
-    for (const char *const *name = bench_scene_names(); *name && session->tasks < SCENES; name++) {
+    const char *paper = paper_of(session->options);
+    for (const char *const *name = bench_scene_names(); *name; name++) {
         BenchScene scene;
         if (bench_scene_find(*name, &scene, NULL) || strcmp(scene.paper, paper) != 0) continue;
-        if (scene.row[0]) session->task[session->tasks++].scene = *name;
+        if (scene.row[0]) add_task(session, *name);
     }
     if (session->tasks) return SM_OK;
-    return sm_fail(error, SM_USAGE, "--paper: no table of '%.40s'; there are: fastlsm, octree",
-                   paper);
+    return sm_fail(error, SM_USAGE,
+                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
 }
 
 /* As the row of the file was measured: as many repeats, of as many steps. */
@@ -184,19 +184,17 @@ static void file_tasks(Session *session)
     const Options *options = session->options;
     for (int i = 0; i < session->stored_count; i++) {
         const BenchRow *row = &session->stored[i];
-        bool there = options->scenes > 0;
+        bool there = options->scenes.count > 0;
         for (int t = 0; t < session->tasks; t++) {
             BenchScene scene;
             BenchTask *task = &session->task[t];
             bool same = !strcmp(task->scene, row->scene) ||
-                        (options->scenes && !bench_scene_find(task->scene, &scene, NULL) &&
+                        (options->scenes.count && !bench_scene_find(task->scene, &scene, NULL) &&
                          !strcmp(scene.name, row->scene));
-            if (same && options->scenes) task_of_row(row, task);
+            if (same && options->scenes.count) task_of_row(row, task);
             there |= same;
         }
-        if (there || session->tasks == SCENES) continue;
-        session->task[session->tasks].scene = row->scene;
-        task_of_row(row, &session->task[session->tasks++]);
+        if (!there) task_of_row(row, add_task(session, row->scene));
     }
 }
 
@@ -204,11 +202,10 @@ static void file_tasks(Session *session)
 static SmCode choose_tasks(Session *session, SmError *error)
 {
     const Options *options = session->options;
-    for (int i = 0; i < options->scenes; i++) session->task[i].scene = options->scene[i];
-    session->tasks = options->scenes;
+    for (int i = 0; i < options->scenes.count; i++) add_task(session, options->scenes.name[i]);
     if (options->baseline)
         file_tasks(session);
-    else if (!options->scenes && paper_tasks(session, error))
+    else if (!options->scenes.count && paper_tasks(session, error))
         return error->code;
     for (int t = 0; t < session->tasks; t++) {
         BenchTask *task = &session->task[t];
@@ -266,7 +263,7 @@ static SmCode measure(Session *session, SmError *error)
     BenchRegression *found = &session->found;
     BenchRounds rounds = {
         .program = {options->revision ? session->revision.program : NULL, session->self},
-        .paper = options->paper,
+        .paper = paper_of(options),
         .task = session->task,
         .tasks = session->tasks,
         .rounds = options->rounds,
@@ -355,7 +352,7 @@ static void remove_scratch(const Session *session)
 
 int bench_command_regress(int argc, char **argv)
 {
-    Options options = {.paper = "fastlsm", .threshold = NAN};
+    Options options = {.threshold = NAN};
     BenchMachine here;
     BenchDraft draft = {0};
     SmError error;
@@ -377,6 +374,7 @@ int bench_command_regress(int argc, char **argv)
     if (options.output && code) bench_draft_discard(&draft);
     bench_contests_free(&session->all);
     bench_rows_free(session->stored, session->stored_count);
+    free(session->task);
     free(session);
     if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
     if (bench_process_caught()) return 128 + bench_process_caught();

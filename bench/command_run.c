@@ -92,100 +92,49 @@ static const struct argp_option option_list[] = {
     {0},
 };
 
-static error_t parse_engine(int key, char *text, struct argp_state *state)
-{
-    Options *options = state->input;
-    switch (key) {
-    case KEY_W:
-        options->w = text;
-        return 0;
-    case KEY_DAMPING:
-        options->damping = bench_option_real(state, "--damping", text, 0, 1);
-        return 0;
-    case KEY_H:
-        options->h = bench_option_real(state, "--h", text, 1e-9, 10);
-        return 0;
-    case KEY_GRAVITY:
-        bench_option_vector(state, "--gravity", text, options->gravity);
-        options->has_gravity = true;
-        return 0;
-    case KEY_STRAIN:
-        options->strain_limit = bench_option_real(state, "--strain-limit", text, 0, 1e6);
-        return 0;
-    case KEY_SUMMATION:
-        options->summation = bench_option_choice(state, "--summation", text, summations);
-        return 0;
-    case KEY_POLAR:
-        options->polar = bench_option_choice(state, "--polar", text, polars);
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
-}
+static const BenchOption options_taken[] = {
+    {KEY_W, BENCH_TO(TEXT, w), 0, 0, NULL},
+    {KEY_EPSILON, BENCH_TO(REAL, epsilon), 0, 1e6, NULL},
+    {KEY_LEVELS, BENCH_TO(INT, levels), 1, OCT_MAX_LEVELS, NULL},
+    {KEY_NODES, BENCH_TO(LONG, nodes), 1, 1e9, NULL},
+    {KEY_YOUNG, BENCH_TO(REAL, young), 1e-30, 1e30, NULL},
+    {KEY_POISSON, BENCH_TO(REAL, poisson), -0.99, 0.49, NULL},
+    {KEY_DENSITY, BENCH_TO(REAL, density), 1e-30, 1e30, NULL},
+    {KEY_MODES, BENCH_TO(INT, modes), 7, 1000, NULL},
+    {KEY_PARTICLES, BENCH_TO(LONG, particles), 8, 1e9, NULL},
+    {KEY_CELL, BENCH_TO(REAL, cell), 1e-30, 1e30, NULL},
+    {KEY_SHELL, BENCH_TO(TRUE, shell), 0, 0, NULL},
+    {KEY_DAMPING, BENCH_TO(REAL, damping), 0, 1, NULL},
+    {KEY_H, BENCH_TO(REAL, h), 1e-9, 10, NULL},
+    {KEY_STRAIN, BENCH_TO(REAL, strain_limit), 0, 1e6, NULL},
+    {KEY_SUMMATION, BENCH_TO(CHOICE, summation), 0, 0, summations},
+    {KEY_POLAR, BENCH_TO(CHOICE, polar), 0, 0, polars},
+    {KEY_FRAMES, BENCH_TO(INT, frames), 0, 1e7, NULL},
+    {KEY_STEPS, BENCH_TO(INT, steps), 1, 1e6, NULL},
+    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    {KEY_NO_OUTPUT, BENCH_TO(TRUE, no_output), 0, 0, NULL},
+    {0},
+};
 
-static error_t parse_lattice(int key, char *text, struct argp_state *state)
+static void check_options(const Options *options, const struct argp_state *state)
 {
-    Options *options = state->input;
-    switch (key) {
-    case KEY_PARTICLES:
-        options->particles = bench_option_long(state, "--particles", text, 8, 1000000000);
-        return 0;
-    case KEY_CELL:
-        options->cell = bench_option_real(state, "--cell", text, 1e-30, 1e30);
-        return 0;
-    case KEY_SHELL:
-        options->shell = true;
-        return 0;
-    case KEY_EPSILON:
-        options->epsilon = bench_option_real(state, "--epsilon", text, 0, 1e6);
-        return 0;
-    case KEY_LEVELS:
-        options->levels = (int)bench_option_long(state, "--levels", text, 1, OCT_MAX_LEVELS);
-        return 0;
-    case KEY_NODES:
-        options->nodes = bench_option_long(state, "--nodes", text, 1, 1000000000);
-        return 0;
-    }
-    return parse_engine(key, text, state);
-}
-
-static error_t parse_meshless(int key, char *text, struct argp_state *state)
-{
-    Options *options = state->input;
-    switch (key) {
-    case KEY_YOUNG:
-        options->young = bench_option_real(state, "--young", text, 1e-30, 1e30);
-        return 0;
-    case KEY_POISSON:
-        options->poisson = bench_option_real(state, "--poisson", text, -0.99, 0.49);
-        return 0;
-    case KEY_DENSITY:
-        options->density = bench_option_real(state, "--density", text, 1e-30, 1e30);
-        return 0;
-    case KEY_MODES:
-        options->modes = (int)bench_option_long(state, "--modes", text, 7, 1000);
-        return 0;
-    }
-    return parse_lattice(key, text, state);
+    if (!options->scene) bench_usage(state, "which scene or mesh?");
+    if (options->particles && options->cell > 0) bench_usage(state, "either --particles or --cell");
+    if (options->no_output && (options->output || options->record))
+        bench_usage(state, "--no-output goes with neither --output nor --record");
 }
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
+    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &options->chosen;
         return 0;
-    case KEY_FRAMES:
-        options->frames = (int)bench_option_long(state, "--frames", text, 0, 10000000);
-        return 0;
-    case KEY_STEPS:
-        options->steps = (int)bench_option_long(state, "--steps", text, 1, 1000000);
-        return 0;
-    case 'o':
-        options->output = text;
-        return 0;
-    case KEY_NO_OUTPUT:
-        options->no_output = true;
+    case KEY_GRAVITY:
+        bench_option_vector(state, "--gravity", text, options->gravity);
+        options->has_gravity = true;
         return 0;
     case KEY_RECORD:
         options->record = 1 + bench_option_choice(state, "--record", text, records);
@@ -195,14 +144,10 @@ static error_t parse(int key, char *text, struct argp_state *state)
         options->scene = text;
         return 0;
     case ARGP_KEY_END:
-        if (!options->scene) bench_usage(state, "which scene or mesh?");
-        if (options->particles && options->cell > 0)
-            bench_usage(state, "either --particles or --cell");
-        if (options->no_output && (options->output || options->record))
-            bench_usage(state, "--no-output goes with neither --output nor --record");
+        check_options(options, state);
         return 0;
     }
-    return parse_meshless(key, text, state);
+    return ARGP_ERR_UNKNOWN;
 }
 
 static const char help[] =

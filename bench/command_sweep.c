@@ -90,73 +90,38 @@ static void parse_shard(const struct argp_state *state, const char *text, BenchS
                     BENCH_PLAN_POINTS);
 }
 
-static error_t parse_measuring(int key, char *text, const struct argp_state *state,
-                               Options *options)
-{
-    switch (key) {
-    case KEY_REPEATS:
-        options->plan.repeats =
-            (int)bench_option_long(state, "--repeats", text, 1, BENCH_POINT_SAMPLES);
-        return 0;
-    case KEY_BLOCK:
-        options->plan.block_ms = bench_option_real(state, "--block", text, 0.001, 60000);
-        return 0;
-    case KEY_FRAMES:
-        options->plan.frames = (int)bench_option_long(state, "--frames", text, 1, 10000);
-        return 0;
-    case 'o':
-        options->run.output = text;
-        return 0;
-    case KEY_SHARD:
-        parse_shard(state, text, &options->run);
-        return 0;
-    case KEY_FORMAT:
-        options->format =
-            (BenchFormat)bench_option_choice(state, "--format", text, bench_format_names);
-        return 0;
-    case KEY_RECOMMEND:
-        options->recommend = true;
-        return 0;
-    case KEY_STIFFNESS:
-        options->wish.stiffness = bench_option_real(state, "--stiffness", text, 1e-6, 1e6);
-        return 0;
-    case KEY_DEVIATION:
-        options->wish.deviation = bench_option_real(state, "--deviation", text, 0, 1000);
-        return 0;
-    case KEY_BUDGET:
-        options->wish.budget = bench_option_real(state, "--budget", text, 1e-6, 1e9);
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
-}
+static const BenchOption options_taken[] = {
+    {KEY_SCENE, BENCH_TO(TEXT, scene), 0, 0, NULL},
+    {KEY_ENGINE, BENCH_TO(CHOICE, engines), 0, 0, engine_choices},
+    {KEY_W, BENCH_TO(TEXT, w), 0, 0, NULL},
+    {KEY_EPSILON, BENCH_TO(TEXT, epsilon), 0, 0, NULL},
+    {KEY_WIDTH, BENCH_TO(CHOICE, width), 0, 0, width_choices},
+    {KEY_PRECISION, BENCH_TO(CHOICE, precision), 0, 0, bench_precisions},
+    {KEY_REPEATS, BENCH_TO(INT, plan.repeats), 1, BENCH_POINT_SAMPLES, NULL},
+    {KEY_BLOCK, BENCH_TO(REAL, plan.block_ms), 0.001, 60000, NULL},
+    {KEY_FRAMES, BENCH_TO(INT, plan.frames), 1, 10000, NULL},
+    {'o', BENCH_TO(TEXT, run.output), 0, 0, NULL},
+    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
+    {KEY_RECOMMEND, BENCH_TO(TRUE, recommend), 0, 0, NULL},
+    {KEY_STIFFNESS, BENCH_TO(REAL, wish.stiffness), 1e-6, 1e6, NULL},
+    {KEY_DEVIATION, BENCH_TO(REAL, wish.deviation), 0, 1000, NULL},
+    {KEY_BUDGET, BENCH_TO(REAL, wish.budget), 1e-6, 1e9, NULL},
+    {0},
+};
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     options->measuring |= (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o';
+    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
     switch (key) {
-    case KEY_SCENE:
-        options->scene = text;
-        return 0;
     case KEY_MESH:
         if (strlen(text) >= sizeof options->plan.mesh)
             bench_usage(state, "--mesh: the path '%.60s...' is too long", text);
         options->mesh = text;
         return 0;
-    case KEY_ENGINE:
-        options->engines = bench_option_choice(state, "--engine", text, engine_choices);
-        return 0;
-    case KEY_W:
-        options->w = text;
-        return 0;
-    case KEY_EPSILON:
-        options->epsilon = text;
-        return 0;
-    case KEY_WIDTH:
-        options->width = bench_option_choice(state, "--width", text, width_choices);
-        return 0;
-    case KEY_PRECISION:
-        options->precision = bench_option_choice(state, "--precision", text, bench_precisions);
+    case KEY_SHARD:
+        parse_shard(state, text, &options->run);
         return 0;
     case ARGP_KEY_ARG:
         if (options->file) bench_usage(state, "what is '%s'? One file is shown at a time", text);
@@ -168,7 +133,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
                         options->file);
         return 0;
     }
-    return parse_measuring(key, text, state, options);
+    return ARGP_ERR_UNKNOWN;
 }
 
 static const char help[] =

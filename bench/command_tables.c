@@ -13,18 +13,28 @@
 #include "store.h"
 #include "table.h"
 
-enum { KEY_PAPER = 0x2000, KEY_SCENE, KEY_FORMAT, KEY_REPEATS, KEY_BLOCK, SCENES = 64 };
+enum { KEY_PAPER = 0x2000, KEY_SCENE, KEY_FORMAT, KEY_REPEATS, KEY_BLOCK };
 
 typedef struct {
     BenchCommon common;
     BenchOverride chosen;
     const char *paper, *output;
-    const char *scene[SCENES];
-    const char *stem[SCENES]; /* the name that stood for this scene and others, or NULL */
-    int scenes, repeats;
+    BenchNames given;
+    int repeats;
     double block;
     BenchFormat format;
 } Options;
+
+/* A scene to measure, and the name that stood for it and others, or NULL. */
+typedef struct {
+    const char *scene, *stem;
+} Choice;
+
+typedef struct {
+    const Options *options;
+    Choice *scene; /* [count] */
+    int count;
+} Choices;
 
 static const struct argp_option option_list[] = {
     {"paper", KEY_PAPER, "NAME", 0,
@@ -42,32 +52,23 @@ static const struct argp_option option_list[] = {
     {0},
 };
 
+static const BenchOption options_taken[] = {
+    {KEY_PAPER, BENCH_TO(TEXT, paper), 0, 0, NULL},
+    {KEY_SCENE, BENCH_TO(NAMES, given), 0, 0, NULL},
+    {KEY_REPEATS, BENCH_TO(INT, repeats), 1, 10000, NULL},
+    {KEY_BLOCK, BENCH_TO(REAL, block), 0.001, 60000, NULL},
+    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
+    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    {0},
+};
+
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
+    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &options->chosen;
-        return 0;
-    case KEY_PAPER:
-        options->paper = text;
-        return 0;
-    case KEY_SCENE:
-        if (options->scenes == SCENES) bench_usage(state, "--scene: at most %d", SCENES);
-        options->scene[options->scenes++] = text;
-        return 0;
-    case KEY_REPEATS:
-        options->repeats = (int)bench_option_long(state, "--repeats", text, 1, 10000);
-        return 0;
-    case KEY_BLOCK:
-        options->block = bench_option_real(state, "--block", text, 0.001, 60000);
-        return 0;
-    case KEY_FORMAT:
-        options->format =
-            (BenchFormat)bench_option_choice(state, "--format", text, bench_format_names);
-        return 0;
-    case 'o':
-        options->output = text;
         return 0;
     case ARGP_KEY_ARG:
         bench_usage(state, "what is '%s'? Scenes are named with --scene", text);
@@ -103,16 +104,15 @@ static bool belongs(const char *name, const char *paper, const char *row, const 
     return row ? !strcmp(scene.row, row) : !scene.row[0];
 }
 
-static void add_scene(Options *options, const char *name, const char *stem)
+static void add_scene(Choices *chosen, const char *name, const char *stem)
 {
-    if (options->scenes == SCENES) return;
-    options->stem[options->scenes] = stem;
-    options->scene[options->scenes++] = name;
+    chosen->scene = sm_realloc(chosen->scene, (size_t)chosen->count + 1, sizeof *chosen->scene);
+    chosen->scene[chosen->count++] = (Choice){name, stem};
 }
 
 /* The scenes of a paper's table whose names begin with `stem` and a dash, or all: in the order of
  * its rows, behind each those that only we have. */
-static void add_scenes(Options *options, const char *paper, const char *stem)
+static void add_scenes(Choices *chosen, const char *paper, const char *stem)
 {
     int count;
     const RefPaperRow *rows = ref_paper_rows(&count);
@@ -120,61 +120,62 @@ static void add_scenes(Options *options, const char *paper, const char *stem)
         if (strcmp(rows[i].paper, paper) != 0) continue;
         for (const char *const *name = bench_scene_names(); *name; name++) {
             if (!belongs(*name, paper, rows[i].scene, stem)) continue;
-            add_scene(options, *name, stem);
+            add_scene(chosen, *name, stem);
             for (const char *const *more = bench_scene_names(); *more; more++)
-                if (belongs(*more, paper, NULL, *name)) add_scene(options, *more, stem);
+                if (belongs(*more, paper, NULL, *name)) add_scene(chosen, *more, stem);
         }
     }
 }
 
-/* The tables that are regenerated when none is named. */
-static void add_default(Options *options)
+/* Is it a built-in scene of the paper's? */
+static bool of_paper(const char *name, const char *paper)
 {
-    add_scenes(options, "fastlsm", NULL);
+    BenchScene scene;
+    for (const char *const *known = bench_scene_names(); *known; known++)
+        if (!strcmp(*known, name))
+            return !bench_scene_find(name, &scene, NULL) && !strcmp(scene.paper, paper);
+    return false;
+}
+
+/* The tables that are regenerated when none is named. */
+static void add_default(Choices *chosen)
+{
+    add_scenes(chosen, "fastlsm", NULL);
     if (ref_solver_built)
-        add_scenes(options, "meshless", NULL);
-    else if (!options->common.quiet)
+        add_scenes(chosen, "meshless", NULL);
+    else if (!chosen->options->common.quiet)
         fputs("shapebench tables: --paper meshless is left out: this program was built without "
               "CHOLMOD and ARPACK\n",
               stderr);
 }
 
-/* Fills in the scenes of the paper's table, or those that a name given stands for. */
-static SmCode choose_scenes(Options *options, SmError *error)
+/* The scenes of the paper's table, or those that the names given stand for. */
+static SmCode choose_scenes(Choices *chosen, SmError *error)
 {
+    const Options *options = chosen->options;
     const char *paper = options->paper ? options->paper : "fastlsm";
-    const char *given[SCENES];
-    int count = options->scenes;
-    memcpy(given, options->scene, sizeof given);
-    options->scenes = 0;
-    for (int i = 0; i < count; i++) {
-        int before = options->scenes;
-        add_scenes(options, paper, given[i]);
-        bool exact = false;
-        for (const char *const *name = bench_scene_names(); *name; name++) {
-            BenchScene scene;
-            exact |= !strcmp(*name, given[i]) && !bench_scene_find(*name, &scene, NULL) &&
-                     !strcmp(scene.paper, paper);
-        }
-        if (options->scenes > before && !exact) continue;
-        options->scenes = before;
-        add_scene(options, given[i], NULL);
+    for (int i = 0; i < options->given.count; i++) {
+        const char *name = options->given.name[i];
+        int before = chosen->count;
+        add_scenes(chosen, paper, name);
+        if (chosen->count > before && !of_paper(name, paper)) continue;
+        chosen->count = before;
+        add_scene(chosen, name, NULL);
     }
-    if (!count && options->paper) add_scenes(options, paper, NULL);
-    if (!count && !options->paper) add_default(options);
-    if (options->scenes) return SM_OK;
+    if (!options->given.count && options->paper) add_scenes(chosen, paper, NULL);
+    if (!options->given.count && !options->paper) add_default(chosen);
+    if (chosen->count) return SM_OK;
     return sm_fail(error, SM_USAGE,
                    "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
 }
 
-static SmCode measure_scene(const Options *options, int number, BenchProgress *progress,
+static SmCode measure_scene(const Options *options, const Choice *choice, BenchProgress *progress,
                             BenchRow *row, SmError *error)
 {
     const BenchOverride *chosen = &options->chosen;
-    const char *name = options->scene[number], *stem = options->stem[number];
     BenchScene scene;
     const SmEngineType *type;
-    SmCode code = bench_scene_find(name, &scene, error);
+    SmCode code = bench_scene_find(choice->scene, &scene, error);
     if (code) return code;
     if (chosen->engine) snprintf(scene.engine, sizeof scene.engine, "%.23s", chosen->engine);
     code = bench_engine_find(scene.engine, chosen->precision, &type, error);
@@ -183,7 +184,8 @@ static SmCode measure_scene(const Options *options, int number, BenchProgress *p
     SmMesh mesh;
     BenchBody body;
     const char *substitute = bench_substitute_find(&chosen->substitutes, scene.name);
-    if (!substitute && stem) substitute = bench_substitute_find(&chosen->substitutes, stem);
+    if (!substitute && choice->stem)
+        substitute = bench_substitute_find(&chosen->substitutes, choice->stem);
     bench_progress_show(progress, scene.name, 0);
     code = bench_mesh_of_scene(&scene, substitute, &mesh, error);
     if (!code) code = bench_body_create(&scene, &mesh, &body, error);
@@ -210,15 +212,16 @@ static void compare_rows(BenchRow *rows, int count)
             rows[i].speedup = lattice->total_ms / rows[i].total_ms;
 }
 
-static SmCode measure_all(const Options *options, BenchRow *rows, SmError *error)
+static SmCode measure_all(const Choices *chosen, BenchRow *rows, SmError *error)
 {
+    const Options *options = chosen->options;
     BenchProgress progress;
     bench_progress_start(&progress, options->common.quiet);
     SmCode code = SM_OK;
-    for (int i = 0; i < options->scenes && !code; i++)
-        code = measure_scene(options, i, &progress, &rows[i], error);
+    for (int i = 0; i < chosen->count && !code; i++)
+        code = measure_scene(options, &chosen->scene[i], &progress, &rows[i], error);
     bench_progress_stop(&progress);
-    if (!code) compare_rows(rows, options->scenes);
+    if (!code) compare_rows(rows, chosen->count);
     return code;
 }
 
@@ -233,22 +236,23 @@ static SmCode verdict(const BenchRow *rows, int count, SmError *error)
 int bench_command_tables(int argc, char **argv)
 {
     Options options = {.repeats = 15, .block = 20};
+    Choices chosen = {.options = &options};
     SmError error;
     bench_options_parse(&argp, argc, argv, &options, &options.common);
-    SmCode code = choose_scenes(&options, &error);
-    BenchRow *rows = sm_alloc(SCENES, sizeof *rows);
+    SmCode code = choose_scenes(&chosen, &error);
+    BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
     if (!code) code = bench_draft_try(options.output, &error);
-    if (!code) code = measure_all(&options, rows, &error);
+    if (!code) code = measure_all(&chosen, rows, &error);
     if (!code) {
         BenchMachine machine;
         bench_machine_read(argc, argv, options.common.threads, &machine);
-        bench_table_write(stdout, options.format, rows, options.scenes, &machine);
+        bench_table_write(stdout, options.format, rows, chosen.count, &machine);
         if (options.output)
-            code = bench_store_rows(options.output, rows, options.scenes, &machine, &error);
-        if (!code) code = verdict(rows, options.scenes, &error);
+            code = bench_store_rows(options.output, rows, chosen.count, &machine, &error);
+        if (!code) code = verdict(rows, chosen.count, &error);
     }
-    for (int i = 0; i < options.scenes; i++) bench_row_free(&rows[i]);
-    free(rows);
+    bench_rows_free(rows, chosen.count);
+    free(chosen.scene);
     if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
     return (int)code;
 }

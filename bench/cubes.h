@@ -31,7 +31,7 @@ typedef struct {
 
 /* Builds the engine with these parameters, disturbs it and checks its goals: against brute force
  * where that takes at most 5e7 region members, else that they are finite and keep momentum.
- * Errors: those of the engine, on which `cube` is zeroed. */
+ * Errors: SM_MEMORY (room.h), those of the engine; on which `cube` is zeroed. */
 SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParams *params,
                          unsigned long seed, BenchCube *cube, SmError *error);
 void bench_cube_free(BenchCube *cube);

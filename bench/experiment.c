@@ -9,8 +9,8 @@
 #include "check.h"
 #include "costs.h"
 #include "deform.h"
+#include "measure.h"
 #include "scene_field.h"
-#include "store.h"
 
 /* What an experiment takes beside its name, and who runs it. */
 typedef struct {

@@ -85,7 +85,8 @@ void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest);
 void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size, char *text);
 
 /* Has `read` read the file into `record`. SM_INPUT, with the file and what is wrong: no such file,
- * not HDF5, cut off, or what `read` failed at; the caller then frees what it has made so far. */
+ * a folder or pipe, not HDF5, cut off, or what `read` failed at; the caller then frees what it has
+ * made so far. */
 SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), void *record,
                      SmError *error);
 

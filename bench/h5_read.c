@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static bool same_class(hid_t type, BenchKind kind)
@@ -147,8 +148,12 @@ void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest)
 SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), void *record,
                      SmError *error)
 {
-    if (access(path, R_OK) != 0)
+    struct stat status;
+    if (access(path, R_OK) != 0 || stat(path, &status) != 0)
         return sm_fail(error, SM_INPUT, "cannot read %.300s: %s", path, strerror(errno));
+    if (!S_ISREG(status.st_mode)) /* a pipe would be waited for */
+        return sm_fail(error, SM_INPUT, "cannot read %.300s: it is a %s, not a file", path,
+                       S_ISDIR(status.st_mode) ? "folder" : "pipe or device");
     BenchH5 h5;
     bench_h5_open(&h5, path);
     if (h5.file < 0)

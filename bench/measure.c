@@ -268,3 +268,9 @@ void bench_row_free(BenchRow *row)
     free(row->change.time);
     *row = (BenchRow){0};
 }
+
+void bench_rows_free(BenchRow *rows, int count)
+{
+    for (int i = 0; i < count; i++) bench_row_free(&rows[i]);
+    free(rows);
+}

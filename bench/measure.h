@@ -31,5 +31,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
                      const BenchMeasureParams *params, BenchRow *row, SmError *error);
 
 void bench_row_free(BenchRow *row);
+/* The array, too. */
+void bench_rows_free(BenchRow *rows, int count);
 
 #endif

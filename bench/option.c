@@ -125,3 +125,46 @@ int bench_option_choice(const struct argp_state *state, const char *name, const 
     }
     bench_usage(state, "%s: '%s' is not %s%s", name, text, choices[1] ? "one of " : "", list);
 }
+
+static void add_name(const struct argp_state *state, const char *option, const char *text,
+                     BenchNames *names)
+{
+    if (names->count == BENCH_NAMES) bench_usage(state, "%s: at most %d", option, BENCH_NAMES);
+    names->name[names->count++] = text;
+}
+
+bool bench_option_take(const struct argp_option *list, const BenchOption *options, int key,
+                       const char *text, const struct argp_state *state)
+{
+    char name[32];
+    while (options->key && options->key != key) options++;
+    if (!options->key) return false;
+    while (list->key != key) list++;
+    snprintf(name, sizeof name, "--%s", list->name);
+    void *value = (char *)state->input + options->offset;
+    long low = (long)options->low, high = (long)options->high;
+    switch (options->target) {
+    case BENCH_TO_TEXT:
+        *(const char **)value = text;
+        break;
+    case BENCH_TO_NAMES:
+        add_name(state, name, text, value);
+        break;
+    case BENCH_TO_TRUE:
+        *(bool *)value = true;
+        break;
+    case BENCH_TO_INT:
+        *(int *)value = (int)bench_option_long(state, name, text, low, high);
+        break;
+    case BENCH_TO_LONG:
+        *(long *)value = bench_option_long(state, name, text, low, high);
+        break;
+    case BENCH_TO_REAL:
+        *(double *)value = bench_option_real(state, name, text, options->low, options->high);
+        break;
+    case BENCH_TO_CHOICE:
+        *(int *)value = bench_option_choice(state, name, text, options->choices);
+        break;
+    }
+    return true;
+}

@@ -7,6 +7,7 @@
 
 #include <argp.h>
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "../lib/error.h"
 
@@ -21,6 +22,41 @@ typedef struct {
 extern const char *const bench_precisions[];
 extern const char *const bench_layouts[];
 #define BENCH_LAYOUT_HELP "Fastlsm's sums: auto, lists, or blocks where it can"
+
+/* What an option does with its value in the command's record. */
+typedef enum {
+    BENCH_TO_TEXT,   /* const char *: the value itself */
+    BENCH_TO_NAMES,  /* BenchNames: one more of them */
+    BENCH_TO_TRUE,   /* bool: no value, sets it */
+    BENCH_TO_INT,    /* int, a whole number from `low` to `high` */
+    BENCH_TO_LONG,   /* long, likewise */
+    BENCH_TO_REAL,   /* double, from `low` to `high` */
+    BENCH_TO_CHOICE, /* int or enum: its place in `choices` */
+} BenchTarget;
+
+/* Values of an option that may be repeated. */
+enum { BENCH_NAMES = 64 };
+typedef struct {
+    const char *name[BENCH_NAMES];
+    int count;
+} BenchNames;
+
+/* An option that does no more than that. */
+typedef struct {
+    int key;
+    BenchTarget target;
+    size_t offset; /* of the member */
+    double low, high;
+    const char *const *choices;
+} BenchOption;
+
+/* Target and offset of a member of the command's record, which its file calls Options. */
+#define BENCH_TO(target, member) BENCH_TO_##target, offsetof(Options, member)
+
+/* Puts the value of the option `key` of the command's `list` into the record, which is the state's
+ * input, as `options` has it; false where it is none of these. Both end with {0}. */
+bool bench_option_take(const struct argp_option *list, const BenchOption *options, int key,
+                       const char *text, const struct argp_state *state);
 
 /* argp_parse() for a command: its own options `argp` into `input`, whose defaults are set, and
  * beside them those that every command has. Usage errors end the program: one line, exit code 2.

@@ -69,13 +69,27 @@ double bench_room_available(void)
     return fmin(1024 * read_number("/proc/meminfo", "MemAvailable:"), group_leaves());
 }
 
-SmCode bench_room_check(const BenchScene *scene, double particles, SmError *error)
+static SmCode check(const char *what, const char *engine, double particles, double wanted,
+                    SmError *error)
 {
-    double wanted = bench_room_wanted(scene, particles), available = bench_room_available();
+    double available = bench_room_available();
     if (wanted <= SHARE * available) return SM_OK;
     return sm_fail(
         error, SM_MEMORY,
         "%s: %.0f particles on %s take about %.3g GB of memory, more than four fifths of "
         "the %.3g GB available: ask for fewer particles, or larger cells",
-        scene->file, particles, scene->engine, wanted / 1e9, available / 1e9);
+        what, particles, engine, wanted / 1e9, available / 1e9);
+}
+
+SmCode bench_room_check(const BenchScene *scene, double particles, SmError *error)
+{
+    return check(scene->file, scene->engine, particles, bench_room_wanted(scene, particles), error);
+}
+
+SmCode bench_room_cube(int side, const char *engine, double each, SmError *error)
+{
+    char what[32];
+    double particles = pow(side, 3);
+    snprintf(what, sizeof what, "cube of side %d", side);
+    return check(what, engine, particles, each * particles, error);
 }

@@ -16,4 +16,7 @@ double bench_room_available(void);
 /* SM_MEMORY, with a line, when the first is more than four fifths of the second. */
 SmCode bench_room_check(const BenchScene *scene, double particles, SmError *error);
 
+/* The same of a cube of side^3 particles that takes so many bytes for `each`. */
+SmCode bench_room_cube(int side, const char *engine, double each, SmError *error);
+
 #endif

@@ -5,9 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "measure.h"
 #include "process.h"
 #include "samples.h"
-#include "store.h"
 
 enum { PATH = BENCH_DRAFT_PATH, WORDS = 32 };
 

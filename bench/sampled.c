@@ -4,9 +4,13 @@
 #include <string.h>
 
 #include "../lib/shape.h"
+#include "room.h"
 
 /* Of the hand's solid lattice; the second has 35,000 material cells. */
 enum { PARTICLES = 35000, REGULAR_PARTICLES = 41400, BASES = 28, NODES = 661, LEVELS = 4 };
+
+/* Of a cube, measured: voxels, tree, graph and regions, and an engine on them. */
+static const double node_bytes = 1300;
 
 void bench_sampled_widths(const OctTree *tree, double edges, int **w, double **mass)
 {
@@ -58,6 +62,10 @@ SmCode bench_sampled_cube(int side, BenchSampled *body, SmError *error)
                                         .criteria_count = 1},
                            .edges = 1,
                            .epsilon = 0.5};
+    if (bench_room_cube(side, "octree", node_bytes, error)) {
+        *body = (BenchSampled){0};
+        return SM_MEMORY;
+    }
     sm_voxels_block(&body->voxels, side, side, side, 1);
     return sample(body, error);
 }

@@ -21,7 +21,8 @@ typedef struct {
     OctRegions regions;
 } BenchSampled;
 
-/* Errors: those of making the shape, its voxels and its tree, on which `body` is zeroed. */
+/* Errors: those of making the shape, its voxels and its tree; of a cube SM_MEMORY (room.h); on
+ * which `body` is zeroed. */
 SmCode bench_sampled_hand(bool regular, BenchSampled *body, SmError *error);
 SmCode bench_sampled_cube(int side, BenchSampled *body, SmError *error);
 void bench_sampled_free(BenchSampled *body);

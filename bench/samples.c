@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "measure.h"
 #include "store.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchRow, kind, member)
@@ -93,9 +94,16 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     memcpy(h5->message, message, sizeof message);
 }
 
+/* Where what is read goes. */
+typedef struct {
+    BenchRow **rows;
+    int *count;
+    BenchMachine *machine;
+} File;
+
 static void read_file(BenchH5 *h5, void *record)
 {
-    BenchRowFile *file = record;
+    File *file = record;
     int stored = 0, fields;
     const BenchField field = {"rows", BENCH_INT, 0, sizeof stored};
     const BenchField *machine_fields = bench_machine_fields(&fields);
@@ -115,5 +123,13 @@ static void read_file(BenchH5 *h5, void *record)
 SmCode bench_samples_load(const char *path, BenchRow **rows, int *count, BenchMachine *machine,
                           SmError *error)
 {
-    return bench_store_load(path, read_file, &(BenchRowFile){rows, count, machine}, error);
+    *rows = NULL;
+    *count = 0;
+    memset(machine, 0, sizeof *machine);
+    SmCode code = bench_h5_load(path, read_file, &(File){rows, count, machine}, error);
+    if (!code) return SM_OK;
+    bench_rows_free(*rows, *count);
+    *rows = NULL;
+    *count = 0;
+    return code;
 }

@@ -1,8 +1,7 @@
 /* samples.h - what a comparison needs of a results file, also of one that another schema wrote.
  *
- * store.h reads a file whole and only of its own schema. Here an older one is read as far as it
- * goes: the scene, whether it was valid, every repeat's total and stages; all else only where it is
- * there. */
+ * Of any file: the scene, whether it was valid, every repeat's total and stages; all else only
+ * where it is there. */
 #ifndef BENCH_SAMPLES_H
 #define BENCH_SAMPLES_H
 

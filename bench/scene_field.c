@@ -114,11 +114,12 @@ static void add_made(const BenchRow *row, int steps_per_frame, const char *name,
     }
 }
 
-void bench_scene_field(const BenchRow *row, int steps_per_frame, const char *name,
+/* Fills the curve from a row; it has `steps_per_frame` of its scene. */
+static void fill_curve(const BenchRow *row, int steps_per_frame, const char *name,
                        BenchCurve *curve)
 {
     const Field *field = find(name);
-    char y_name[64];
+    char y_name[96];
     snprintf(y_name, sizeof y_name, "%s of %.30s", name, row->scene);
     bench_curve_begin(curve, "place in the list", y_name);
     if (!row->valid) {
@@ -197,7 +198,7 @@ void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, Bench
     if (code)
         bench_curve_fail(curve, "%.180s", error.text);
     else {
-        bench_scene_field(&lab->row[number], scene->steps_per_frame, measure->field, curve);
+        fill_curve(&lab->row[number], scene->steps_per_frame, measure->field, curve);
         curve->row = number;
     }
     free(scene);

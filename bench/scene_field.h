@@ -16,10 +16,6 @@ bool bench_scene_field_known(const char *name);
 /* All names, separated by |. */
 void bench_scene_field_names(size_t size, char *names);
 
-/* Fills the curve from a row; it has `steps_per_frame` of its scene. */
-void bench_scene_field(const BenchRow *row, int steps_per_frame, const char *name,
-                       BenchCurve *curve);
-
 /* Measures the scene, unless the lab has its row. */
 void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 

@@ -12,6 +12,7 @@
 #include "../lib/test_folder.h"
 #include "claim_store.h"
 #include "claim_table.h"
+#include "h5.h"
 
 /* A claim to change words of. */
 static const char good[] =
@@ -82,6 +83,7 @@ static void mistakes_are_named_with_their_line(void **state)
         const char *old, *new, *line, *says;
     } cases[] = {
         {"test = \"near\"", "test = \"nearly\"", "my.cfg:3:", "one of"},
+        {"test = \"near\"", "test = \"contains\"", "my.cfg:3:", "one of"},
         {"tolerance = 0.1", "tolerance = -1.0", "my.cfg:3:", "number from"},
         {"tolerance = 0.1", "tolerence = 0.1", "my.cfg:3:", "unknown setting 'tolerence'"},
         {"test = \"near\"; ", "", "my.cfg:2:", "no 'test'"},
@@ -158,16 +160,20 @@ static void the_programs_own_claims_are_sound(void **state)
 
 /* ---- the file */
 
-static void fill(BenchFinding findings[2], BenchLab *lab, BenchMachine *machine)
+static BenchFinding findings[2];
+static BenchLab lab;
+static BenchMachine machine;
+
+static void fill(void)
 {
     static BenchCurve curve;
     char program[] = "shapebench claims";
     char *argv[] = {program, NULL};
-    bench_machine_read(1, argv, 2, machine);
+    bench_machine_read(1, argv, 2, &machine);
     bench_curve_begin(&curve, "w", "sag");
     strcpy(curve.name, "sag.beam.w1-3.3");
     for (int p = 0; p < 3; p++) bench_curve_add(&curve, p + 1, 3.25 - p, 3 - p, 3.5 - p);
-    *lab = (BenchLab){.quick = true, .threads = 2, .curves = 1, .curve = &curve};
+    lab = (BenchLab){.quick = true, .threads = 2, .curves = 1, .curve = &curve};
     BenchClaim claim = {.paper = "p",
                         .name = "n",
                         .statement = "It is, \"so\" it is said.",
@@ -175,7 +181,7 @@ static void fill(BenchFinding findings[2], BenchLab *lab, BenchMachine *machine)
                         .expect = BENCH_DIFFERS,
                         .because = "of the weather"};
     bench_verdict_find(&claim, &curve, NULL, &findings[0]);
-    bench_claim_place(lab, 0, sizeof findings[0].evidence[0], findings[0].evidence[0]);
+    bench_claim_place(&lab, 0, sizeof findings[0].evidence[0], findings[0].evidence[0]);
     claim.test = BENCH_IS_NEAR;
     claim.values = 3;
     claim.value[0] = claim.value[1] = claim.value[2] = 1;
@@ -183,77 +189,107 @@ static void fill(BenchFinding findings[2], BenchLab *lab, BenchMachine *machine)
     bench_verdict_find(&claim, &curve, NULL, &findings[1]);
 }
 
-static void findings_and_curves_come_back(void **state)
+static void has_text(BenchH5 *h5, hid_t object, const char *name, const char *wanted)
 {
-    (void)state;
-    BenchFinding findings[2], *back;
-    BenchLab lab;
-    BenchMachine machine, there;
-    BenchCurve *curves;
-    SmError error;
-    int count, curve_count;
-    fill(findings, &lab, &machine);
-    const char *path = path_in("claims.h5");
-    assert_int_equal(bench_claim_store(path, findings, 2, &lab, &machine, &error), SM_OK);
-    if (bench_claim_load(path, &back, &count, &curves, &curve_count, &there, &error))
-        fail_msg("%s", error.text);
-    assert_true(count == 2 && curve_count == 1);
-    assert_string_equal(back[0].claim.statement, findings[0].claim.statement);
-    assert_string_equal(back[0].evidence[0], "/curves/sag.beam.w1-3.3");
-    assert_int_equal(back[0].verdict, BENCH_REPRODUCED);
-    assert_int_equal(back[0].trend, -1);
-    assert_int_equal(back[1].verdict, BENCH_HAS_DIFFERED);
-    assert_string_equal(back[1].words, findings[1].words);
-    assert_true(back[1].count == 3 && back[1].value[2] == 1.25 && back[1].high[2] == 1.5);
-    assert_true(back[1].claim.value[1] == 1 && isnan(back[1].claim.value[3]));
-    assert_string_equal(curves[0].name, "sag.beam.w1-3.3");
-    assert_true(curves[0].points == 3 && curves[0].y[1] == 2.25 && curves[0].low[1] == 2);
-    assert_string_equal(there.command, machine.command);
-    free(back);
-    free(curves);
+    char text[600] = "";
+    bench_h5_read_text(h5, object, name, sizeof text, text);
+    if (h5->failed) fail_msg("%s: %s", name, h5->message);
+    assert_string_equal(text, wanted);
 }
 
-static void other_files_are_refused(void **state)
+static void has_number(BenchH5 *h5, hid_t object, const char *name, int wanted)
+{
+    int number = 0;
+    const BenchField field = {name, BENCH_INT, 0, sizeof number};
+    bench_h5_read_fields(h5, object, &field, 1, &number);
+    if (h5->failed) fail_msg("%s: %s", name, h5->message);
+    assert_int_equal(number, wanted);
+}
+
+/* One of a claim's numbers, of which each has room for all values. */
+static double number_of(BenchH5 *h5, hid_t claim, const char *name, int value)
+{
+    double numbers[BENCH_CLAIM_VALUES];
+    const BenchField field = {name, BENCH_DOUBLE, 0, sizeof numbers};
+    bench_h5_read_fields(h5, claim, &field, 1, numbers);
+    if (h5->failed) fail_msg("%s: %s", name, h5->message);
+    return numbers[value];
+}
+
+/* Stores what fill() makes and opens it. */
+static void open_stored(BenchH5 *h5)
+{
+    SmError error;
+    const char *path = path_in("claims.h5");
+    fill();
+    if (bench_claim_store(path, findings, 2, &lab, &machine, &error)) fail_msg("%s", error.text);
+    bench_h5_open(h5, path);
+    bench_h5_check_kind(h5, "shapebench claims", 1, 1);
+}
+
+static void findings_are_stored(void **state)
 {
     (void)state;
-    BenchFinding findings[2], *back;
-    BenchLab lab;
-    BenchMachine machine;
-    BenchCurve *curves;
-    SmError error;
-    int count, curve_count;
-    fill(findings, &lab, &machine);
-    const char *const names[] = {"no.h5", "text.h5", "cut.h5"};
-    assert_int_equal(bench_claim_store(path_in("whole.h5"), findings, 2, &lab, &machine, &error),
-                     SM_OK);
-    write_text("text.h5", "not HDF5");
-    FILE *whole = fopen(path_in("whole.h5"), "rb");
-    char bytes[3000];
-    size_t size = fread(bytes, 1, sizeof bytes, whole);
-    fclose(whole);
-    write_bytes("cut.h5", bytes, size);
-    for (int n = 0; n < 3; n++) {
-        const char *path = path_in(names[n]);
-        assert_int_equal(
-            bench_claim_load(path, &back, &count, &curves, &curve_count, &machine, &error),
-            SM_INPUT);
-        assert_non_null(strstr(error.text, names[n]));
-        assert_true(back == NULL && curves == NULL && count == 0);
+    BenchH5 h5;
+    open_stored(&h5);
+    has_number(&h5, h5.file, "claims", 2);
+    has_text(&h5, bench_h5_find_group(&h5, h5.file, "machine"), "command", machine.command);
+    hid_t claim = bench_h5_find_group(&h5, h5.file, "claims/000");
+    has_text(&h5, claim, "statement", findings[0].claim.statement);
+    has_text(&h5, claim, "evidence", "/curves/sag.beam.w1-3.3");
+    has_text(&h5, claim, "verdict", "reproduced");
+    has_text(&h5, claim, "because", "of the weather");
+    has_number(&h5, claim, "trend", -1);
+    claim = bench_h5_find_group(&h5, h5.file, "claims/001");
+    has_text(&h5, claim, "verdict", "differs");
+    has_text(&h5, claim, "status", "quoted");
+    has_text(&h5, claim, "words", findings[1].words);
+    has_number(&h5, claim, "count", 3);
+    assert_true(number_of(&h5, claim, "measured", 2) == 1.25);
+    assert_true(number_of(&h5, claim, "high", 2) == 1.5);
+    assert_true(number_of(&h5, claim, "paper_value", 1) == 1);
+    assert_true(isnan(number_of(&h5, claim, "paper_value", 3)));
+    assert_true(bench_h5_close(&h5));
+}
+
+static void curves_are_stored(void **state)
+{
+    (void)state;
+    BenchH5 h5;
+    open_stored(&h5);
+    hid_t curve = bench_h5_find_group(&h5, h5.file, "curves/sag.beam.w1-3.3");
+    const char *const names[] = {"x", "y", "low", "high"};
+    const double wanted[] = {2, 2.25, 2, 2.5};
+    has_number(&h5, curve, "points", 3);
+    has_text(&h5, curve, "y_name", "sag");
+    for (int s = 0; s < 4; s++) {
+        double values[3];
+        const hsize_t size[] = {3};
+        bench_h5_read(&h5, bench_h5_find_dataset(&h5, curve, names[s], 1, size), H5T_NATIVE_DOUBLE,
+                      values);
+        if (h5.failed) fail_msg("%s", h5.message);
+        assert_true(values[1] == wanted[s]);
     }
+    assert_true(bench_h5_close(&h5));
+}
+
+static void a_place_that_cannot_be_written_is_named(void **state)
+{
+    (void)state;
+    SmError error;
+    fill();
     assert_int_equal(bench_claim_store("/nowhere/x.h5", findings, 2, &lab, &machine, &error),
                      SM_OUTPUT);
+    assert_non_null(strstr(error.text, "/nowhere/x.h5"));
 }
 
 /* ---- tables */
 
 static char *written(BenchFormat format)
 {
-    BenchFinding findings[2];
-    BenchLab lab;
-    BenchMachine machine;
     char *text;
     size_t size;
-    fill(findings, &lab, &machine);
+    fill();
     FILE *file = open_memstream(&text, &size);
     bench_claim_table_write(file, format, findings, 2, &machine);
     fclose(file);
@@ -291,8 +327,9 @@ int main(void)
         cmocka_unit_test(mistakes_are_named_with_their_line),
         cmocka_unit_test(a_name_is_there_once_and_curves_have_points),
         cmocka_unit_test(the_programs_own_claims_are_sound),
-        cmocka_unit_test(findings_and_curves_come_back),
-        cmocka_unit_test(other_files_are_refused),
+        cmocka_unit_test(findings_are_stored),
+        cmocka_unit_test(curves_are_stored),
+        cmocka_unit_test(a_place_that_cannot_be_written_is_named),
         cmocka_unit_test(tables_say_all),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

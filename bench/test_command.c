@@ -89,7 +89,6 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
          "tiny.cfg: summation, polar and layout:"},
         {"run plastic.cfg --engine fastlsm", 3, "plastic.cfg: a plastic body (octree.creep) needs"},
         {"run far.cfg", 3, "far.cfg: octree: no node's centre lies in the box or sphere"},
-        {"tables --scene wide.cfg", 3, "wide.cfg: regions with 1.13e+08 members take too much"},
         {"run tiny.cfg --particles 1000000000 --w 64 --no-output", 70,
          "tiny.cfg: 1000000000 particles on brute take "},
         {"run no-such-scene", 2, "shapebench scenes"},
@@ -100,12 +99,21 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run tiny.cfg -o no/such/folder.vtkhdf", 4, "no/such/folder.vtkhdf"},
         {"run tiny.cfg --mesh penguin", 2, "--mesh: 'penguin' is not NAME=FILE"},
         {"run tiny.cfg --mesh x=y", 2, "'x' is not a built-in scene"},
+    };
+    make_mistakes(cases, sizeof cases / sizeof cases[0]);
+}
+
+static void mistakes_of_other_commands_are_too(void **state)
+{
+    (void)state;
+    static const Mistake cases[] = {
         {"info", 2, "which MESH?"},
         {"info missing.obj", 3, "missing.obj"},
         {"info --format xml a.obj", 2, "'xml' is not one of text, json"},
         {"scenes no-such", 2, "'no-such' is not a built-in scene"},
         {"scenes --write-mesh a.obj", 2, "which shape?"},
         {"scenes penguin --write-mesh /no/such/a.obj", 4, "/no/such/a.obj"},
+        {"tables --scene wide.cfg", 3, "wide.cfg: regions with 1.13e+08 members take too much"},
         {"tables --repeats 0", 2, "--repeats: '0'"},
         {"tables --paper unknown", 2, "no table of 'unknown'"},
         {"tables --format pdf", 2, "'pdf' is not one of text, markdown, csv, latex, json"},
@@ -339,6 +347,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mistakes_are_one_line_and_an_exit_code),
+        cmocka_unit_test(mistakes_of_other_commands_are_too),
         cmocka_unit_test(help_is_everywhere),
         cmocka_unit_test(a_scene_can_be_copied_and_run),
         cmocka_unit_test(a_mesh_alone_can_be_run),

@@ -1,4 +1,4 @@
-/* Kernels against ceilings: figures are sane, checks can fail, formats parse. */
+/* Kernels against ceilings: figures are sane, checks can fail. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,15 +10,12 @@
 #include <sys/wait.h>
 
 #include <cmocka.h>
-#include <jansson.h>
 
 #include "../fastlsm/fastlsm.h"
 #include "cubes.h"
 #include "kernel_table.h"
 #include "matrices.h"
 #include "spread.h"
-#include "tree_setup.h"
-#include "tree_steps.h"
 
 static BenchMachine machine;
 static BenchCeilings ceilings;
@@ -245,217 +242,6 @@ static void resampling_is_compared_with_the_smallest_body(void **state)
     free(rows);
 }
 
-/* A cube whose first region has lost a summation node that is not its own. */
-static void lose_member(BenchSampled *body)
-{
-    OctRegions *r = &body->regions;
-    long lost = r->first[1] - 1;
-    assert_int_not_equal(r->member[lost], body->tree.node[0]);
-    memmove(r->member + lost, r->member + lost + 1,
-            (size_t)(r->first[r->leaves] - lost - 1) * sizeof *r->member);
-    for (long i = 1; i <= r->leaves; i++) r->first[i]--;
-    r->size[0]--;
-}
-
-static void a_wrong_octree_step_is_not_timed(void **state)
-{
-    (void)state;
-    BenchSampled body;
-    SmError error;
-    assert_int_equal(bench_sampled_cube(6, &body, &error), SM_OK);
-    BenchTreeStep steps[3] = {{.body = &body, .threads = 1, .seed = 1, .parts = true}};
-    bench_tree_step_create_f32(&steps[0]);
-    assert_true(steps[0].valid);
-    lose_member(&body); /* it is not symmetric: only the adjoint is right */
-    steps[1] = (BenchTreeStep){.body = &body, .threads = 1, .seed = 1, .parts = true};
-    steps[2] = steps[1];
-    steps[2].adjoint = true;
-    for (int s = 1; s < 3; s++) bench_tree_step_create_f32(&steps[s]);
-    assert_false(steps[1].valid);
-    assert_non_null(strstr(steps[1].reason, "brute force"));
-    assert_true(steps[2].valid);
-    bench_tree_steps_time_f32(steps, 3, 2);
-    assert_null(steps[1].total);
-    for (int s = 0; s < 3; s += 2)
-        for (int r = 0; r < 2; r++) {
-            assert_true(steps[s].total[r] > 0);
-            for (int p = 0; p < BENCH_TREE_PARTS; p++) assert_true(steps[s].part[r][p] >= 0);
-        }
-    for (int s = 0; s < 3; s++) bench_tree_step_free_f32(&steps[s]);
-    bench_sampled_free(&body);
-}
-
-/* Cubes that are held to the twins, and to what regular trees are. */
-static void a_wrong_octree_setup_is_not_timed(void **state)
-{
-    (void)state;
-    for (int side = 6; side <= 12; side += 6) {
-        BenchSampled body;
-        BenchSetup setup;
-        SmError error;
-        assert_int_equal(bench_sampled_cube(side, &body, &error), SM_OK);
-        for (int kind = 0; kind <= BENCH_SETUP_WHOLE; kind++) {
-            bench_setup_time(&body, (BenchSetupKind)kind, BENCH_F64, 2, &setup);
-            assert_true(setup.valid && setup.samples >= 1 && setup.ns[0] > 0);
-            free(setup.ns);
-        }
-        body.regions.member[0] = body.tree.node[body.tree.leaves - 1];
-        bench_setup_time(&body, BENCH_SETUP_REGIONS, BENCH_F32, 1, &setup);
-        assert_false(setup.valid);
-        assert_null(setup.ns);
-        assert_non_null(strstr(setup.reason, "region"));
-        body.graph.length[0]++;
-        bench_setup_time(&body, BENCH_SETUP_GRAPH, BENCH_F32, 1, &setup);
-        assert_false(setup.valid);
-        assert_non_null(strstr(setup.reason, "edge"));
-        bench_sampled_free(&body);
-    }
-}
-
-static void wrong_distances_are_found(void **state)
-{
-    (void)state;
-    BenchSampled body;
-    OctReach reach;
-    SmError error;
-    char reason[BENCH_TREE_REASON];
-    assert_int_equal(bench_sampled_cube(5, &body, &error), SM_OK);
-    oct_reach_init(&reach, &body.graph);
-    oct_reach_from(&reach, 7, OCT_FAR / 2);
-    assert_true(bench_tree_check_distances(&reach, 7, reason));
-    for (int by = -1; by <= 1; by += 2) {
-        reach.distance[100] += by;
-        assert_false(bench_tree_check_distances(&reach, 7, reason));
-        reach.distance[100] -= by;
-    }
-    reach.distance[100] = OCT_FAR;
-    assert_false(bench_tree_check_distances(&reach, 7, reason));
-    oct_reach_free(&reach);
-    bench_sampled_free(&body);
-}
-
-/* One base cell, split down to the finest. */
-static void octree_work_is_counted(void **state)
-{
-    (void)state;
-    BenchSampled body;
-    OctBreadth lists;
-    SmError error;
-    assert_int_equal(bench_sampled_cube(16, &body, &error), SM_OK);
-    oct_breadth_build(&body.tree, &body.regions, &lists);
-    BenchTreeCounts c = bench_tree_counts(&body.tree, &lists, &lists);
-    double leaves = 16 * 16 * 16;
-    assert_true(c.leaf_children == 1); /* a full octree of four levels */
-    assert_true(c.inner_children == (512 + 64 + 8) / leaves);
-    assert_true(c.inners == (512 + 64 + 8 + 1) / leaves);
-    assert_true((c.leaf_entries + c.inner_entries) * leaves == (double)lists.entries);
-    assert_true((c.goal_entries + c.goal_carrier_entries) * leaves == (double)lists.entries);
-    assert_true(bench_work_depth(&c).flops == 3 + 24 + 33 * c.inner_children);
-    assert_true(bench_work_tree_step(&c).flops >
-                bench_work_tree_goals(&c).flops + bench_work_tree_damping(&c).flops);
-    oct_breadth_free(&lists);
-    bench_sampled_free(&body);
-}
-
-static void verdicts_follow_the_limits(void **state)
-{
-    (void)state;
-    BenchKernel row = {.valid = true, .ns = 8, .at_most = NAN, .wanted = NAN};
-    assert_string_equal(bench_kernel_verdict(&row), "");
-    row.at_most = 8;
-    assert_string_equal(bench_kernel_verdict(&row), "met");
-    row.at_most = 7.9;
-    assert_string_equal(bench_kernel_verdict(&row), "missed");
-    row = (BenchKernel){
-        .valid = true, .at_most = NAN, .ratio = 1.9, .wanted = 1.85, .wanted_least = true};
-    assert_string_equal(bench_kernel_verdict(&row), "met");
-    row.wanted_least = false;
-    assert_string_equal(bench_kernel_verdict(&row), "missed");
-    row = (BenchKernel){.valid = false, .ns = 1, .at_most = 8, .wanted = NAN};
-    assert_string_equal(bench_kernel_verdict(&row), "missed");
-}
-
-/* Two rows, the second not valid although its times are filled in. */
-static void write_rows(BenchKernelFormat format, char **text, size_t *size)
-{
-    BenchKernel rows[2] = {{.kernel = "good",
-                            .group = "a",
-                            .item = "particle",
-                            .precision = "single",
-                            .threads = 1,
-                            .items = 10,
-                            .valid = true,
-                            .ns = 12.5,
-                            .low = 12,
-                            .high = 13,
-                            .floor_ns = 5,
-                            .bound = "L1",
-                            .at_most = 20,
-                            .ratio = NAN,
-                            .wanted = NAN,
-                            .note = "with, a comma"}};
-    rows[1] = rows[0];
-    rows[1].valid = false;
-    rows[1].ns = rows[1].low = rows[1].high = rows[1].floor_ns = 98765;
-    strcpy(rows[1].kernel, "bad");
-    strcpy(rows[1].reason, "it is \"wrong\"");
-    FILE *file = open_memstream(text, size);
-    bench_kernels_write(file, format, rows, 2, &ceilings, &machine);
-    fclose(file);
-}
-
-static void an_invalid_row_has_no_number(void **state)
-{
-    (void)state;
-    for (int f = 0; bench_kernel_formats[f]; f++) {
-        char *text;
-        size_t size;
-        write_rows((BenchKernelFormat)f, &text, &size);
-        assert_non_null(strstr(text, "12.5"));
-        assert_null(strstr(text, "98765"));
-        assert_null(strstr(text, "98.8"));
-        free(text);
-    }
-}
-
-static void formats_parse(void **state)
-{
-    (void)state;
-    char *text;
-    size_t size;
-    write_rows(BENCH_KERNELS_CSV, &text, &size);
-    assert_non_null(strstr(text,
-                           "\ngood,a,single,1,,particle,10,12.5,12,13,5,L1,40,20,,,,met,VALID,"
-                           "\"with, a comma\"\n"));
-    assert_non_null(strstr(text, "\nbad,a,single,1,,particle,10,INVALID,INVALID,INVALID,INVALID,L1,"
-                                 "INVALID,20,INVALID,,,missed,INVALID,\"it is \"\"wrong\"\"\"\n"));
-    free(text);
-    write_rows(BENCH_KERNELS_JSON, &text, &size);
-    json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
-    assert_non_null(root);
-    json_t *good = json_array_get(json_object_get(root, "kernels"), 0);
-    json_t *bad = json_array_get(json_object_get(root, "kernels"), 1);
-    assert_true(json_number_value(json_object_get(good, "share_percent")) == 40);
-    assert_true(json_is_true(json_object_get(good, "valid")));
-    assert_true(json_is_false(json_object_get(bad, "valid")));
-    assert_true(json_is_null(json_object_get(bad, "ns")));
-    assert_int_equal(json_array_size(json_object_get(root, "ceilings")), 2);
-    assert_string_equal(
-        json_string_value(json_object_get(json_object_get(root, "environment"), "cpu")),
-        machine.cpu);
-    json_decref(root);
-    free(text);
-    write_rows(BENCH_KERNELS_MARKDOWN, &text, &size);
-    int bars = 0, lines = 0; /* every line has as many cells */
-    for (const char *c = text; *c; c++) {
-        bars += *c == '|';
-        lines += *c == '\n';
-    }
-    assert_int_equal(lines, 4);
-    assert_int_equal(bars, 4 * 14);
-    free(text);
-}
-
 static int exit_code(const char *arguments)
 {
     char command[512];
@@ -490,13 +276,6 @@ int main(void)
         cmocka_unit_test(octree_kernels_run_by_name),
         cmocka_unit_test(resampling_is_compared_with_the_smallest_body),
         cmocka_unit_test(octree_setup_is_linear),
-        cmocka_unit_test(a_wrong_octree_step_is_not_timed),
-        cmocka_unit_test(a_wrong_octree_setup_is_not_timed),
-        cmocka_unit_test(wrong_distances_are_found),
-        cmocka_unit_test(octree_work_is_counted),
-        cmocka_unit_test(verdicts_follow_the_limits),
-        cmocka_unit_test(an_invalid_row_has_no_number),
-        cmocka_unit_test(formats_parse),
         cmocka_unit_test(the_command_has_exit_codes),
     };
     return cmocka_run_group_tests(tests, measure_ceilings, NULL);

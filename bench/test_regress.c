@@ -69,7 +69,7 @@ static void row_of_tiny(BenchRow *row, BenchMachine *machine)
     SmError error;
     char path[256];
     snprintf(path, sizeof path, "%s", path_in("tiny.h5"));
-    assert_int_equal(bench_load_rows(path, &rows, &count, machine, &error), SM_OK);
+    assert_int_equal(bench_samples_load(path, &rows, &count, machine, &error), SM_OK);
     assert_int_equal(count, 1);
     *row = rows[0];
     free(rows); /* its samples are the row's now */
@@ -99,6 +99,7 @@ static void usage(void **state)
     expect("shapebench regress", 2, "compare with what?");
     expect("shapebench regress --baseline a --revision b", 2, "compare with what?");
     expect("shapebench regress --baseline a --counts", 2, "--counts: a file has no");
+    expect("shapebench regress --baseline a --paper octree", 2, "--paper: a file has its own");
     expect("shapebench regress --baseline a --format pdf", 2, "'pdf' is not one of text, markdown");
     expect("shapebench regress --baseline a --threshold x", 2, "--threshold: 'x'");
     expect("shapebench regress --baseline a --rounds 0", 2, "--rounds: '0'");

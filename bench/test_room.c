@@ -10,10 +10,13 @@
 
 #include <cmocka.h>
 
+#include "../fastlsm/fastlsm.h"
+#include "cubes.h"
 #include "play.h"
 #include "room.h"
+#include "sampled.h"
 
-static BenchScene cube(const char *engine, long particles)
+static BenchScene scene_of_cube(const char *engine, long particles)
 {
     BenchScene scene;
     bench_scene_init(&scene);
@@ -59,7 +62,7 @@ static void the_estimate_is_near_what_is_taken(void **state)
     const char *const engine[] = {"fastlsm", "brute", "octree"};
     double before = held(NULL);
     for (int i = 0; i < 3; i++) {
-        BenchScene scene = cube(engine[i], 60000);
+        BenchScene scene = scene_of_cube(engine[i], 60000);
         double bytes = held(&scene) - before, wanted = bench_room_wanted(&scene, 60000);
         if (wanted > 1.3 * bytes || wanted < 0.2 * bytes)
             fail_msg("%s: %.3g bytes were estimated, %.3g were taken", engine[i], wanted, bytes);
@@ -69,11 +72,11 @@ static void the_estimate_is_near_what_is_taken(void **state)
 static void instances_and_wider_regions_take_more(void **state)
 {
     (void)state;
-    BenchScene scene = cube("fastlsm", 0);
+    BenchScene scene = scene_of_cube("fastlsm", 0);
     double one = bench_room_wanted(&scene, 1000);
     scene.instances = 100;
     assert_true(bench_room_wanted(&scene, 1000) > 10 * one);
-    scene = cube("brute", 0);
+    scene = scene_of_cube("brute", 0);
     scene.params.w = 1;
     one = bench_room_wanted(&scene, 1e6);
     scene.params.w = 10;
@@ -91,7 +94,7 @@ static void what_does_not_fit_is_refused_at_once(void **state)
     SmError error;
     double available = bench_room_available();
     assert_true(available > 1e6 && isfinite(available)); /* on Linux */
-    BenchScene scene = cube("fastlsm", 0);
+    BenchScene scene = scene_of_cube("fastlsm", 0);
     assert_int_equal(bench_room_check(&scene, 1000, &error), SM_OK);
     assert_int_equal(bench_room_check(&scene, available, &error), SM_MEMORY);
     assert_non_null(strstr(error.text, "cube.cfg: "));
@@ -105,12 +108,30 @@ static void what_does_not_fit_is_refused_at_once(void **state)
     assert_true(sm_now() - start < 2);
 }
 
+static void cubes_that_do_not_fit_are_refused(void **state)
+{
+    (void)state;
+    enum { SIDE = 20000 };
+    SmError error;
+    BenchCube cube;
+    BenchSampled body;
+    const SmEngineParams params = {.w = 1, .h = 0.01, .threads = 1};
+    assert_int_equal(bench_cube_create(SIDE, &fastlsm_engine_f32, &params, 1, &cube, &error),
+                     SM_MEMORY);
+    assert_memory_equal(error.text, "cube of side 20000: 8000000000000 particles on fastlsm", 54);
+    assert_null(cube.engine);
+    assert_int_equal(bench_sampled_cube(SIDE, &body, &error), SM_MEMORY);
+    assert_non_null(strstr(error.text, "particles on octree take about"));
+    assert_null(body.w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_estimate_is_near_what_is_taken),
         cmocka_unit_test(instances_and_wider_regions_take_more),
         cmocka_unit_test(what_does_not_fit_is_refused_at_once),
+        cmocka_unit_test(cubes_that_do_not_fit_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -122,12 +122,27 @@ static void changes_while_it_runs(void **state)
     assert_true(scene.view.eye_from[2] == 9 && scene.view.near == 2 && scene.view.level == 2);
 }
 
+/* A mistake in a scene, and what the error line says. */
+typedef struct {
+    const char *text, *wanted;
+} Mistake;
+
+static void expect_lines(const Mistake *cases, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        BenchScene scene = {.frames = 1234};
+        SmError error = {0};
+        assert_int_equal(parse(cases[i].text, &scene, &error), SM_INPUT);
+        if (!strstr(error.text, cases[i].wanted))
+            fail_msg("wanted \"%s\", got \"%s\"", cases[i].wanted, error.text);
+        assert_int_equal(scene.frames, 1234);
+    }
+}
+
 static void errors_name_file_line_and_remedy(void **state)
 {
     (void)state;
-    static const struct {
-        const char *text, *wanted;
-    } cases[] = {
+    static const Mistake cases[] = {
         {BODY "damping_k = 1;", "dir/my.cfg:3: unknown setting 'damping_k'; known: title, paper,"},
         {BODY "w = 2.5;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 64"},
         {BODY "w = 0;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 64"},
@@ -161,6 +176,15 @@ static void errors_name_file_line_and_remedy(void **state)
         {"mesh = \"a.obj\";", "dir/my.cfg: give one of 'particles', 'cell' and 'cells'"},
         {BODY "cell = 0.1;", "dir/my.cfg: give one of 'particles', 'cell' and 'cells'"},
         {BODY "cells = 100;", "dir/my.cfg: give one of 'particles', 'cell' and 'cells'"},
+        {"", "dir/my.cfg: no 'mesh'"},
+    };
+    expect_lines(cases, sizeof cases / sizeof cases[0]);
+}
+
+static void errors_in_an_octree_are_named(void **state)
+{
+    (void)state;
+    static const Mistake cases[] = {
         {BODY "octree = 3;", "dir/my.cfg:3: 'octree' must be a group"},
         {BODY "octree = { level = 3; };", "dir/my.cfg:3: unknown setting 'level'; known: levels"},
         {BODY "octree = {\n levels = 13; };", "dir/my.cfg:4: 'levels' must be a whole number"},
@@ -179,6 +203,14 @@ static void errors_name_file_line_and_remedy(void **state)
         {BODY "octree = { w = 1; summation_nodes = 6; };",
          "dir/my.cfg: the width is searched for 'summation_nodes', or given by"},
         {BODY "octree = { yield = 0.1; };", "dir/my.cfg: 'yield' and 'most' are a plastic body's"},
+    };
+    expect_lines(cases, sizeof cases / sizeof cases[0]);
+}
+
+static void errors_in_changes_are_named(void **state)
+{
+    (void)state;
+    static const Mistake cases[] = {
         {BODY "cuts = ( { start = 1; stop = 1; } );", "dir/my.cfg: cut 1 ends before it begins"},
         {BODY "instances = 2; cuts = ( { stop = 1; } );", "'cuts' and 'view' are of a body alone"},
         {BODY "cuts = ( { stop = 1; level = 0; } );",
@@ -188,16 +220,8 @@ static void errors_name_file_line_and_remedy(void **state)
         {OCTREE "touches = ( { instance = 2; radius = 1; level = 2; } );",
          "touch 1 is on instance 2, and there are 1"},
         {OCTREE "view = { level = 3; };", "'view' needs 'near', a distance above 0"},
-        {"", "dir/my.cfg: no 'mesh'"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        BenchScene scene = {.frames = 1234};
-        SmError error = {0};
-        assert_int_equal(parse(cases[i].text, &scene, &error), SM_INPUT);
-        if (!strstr(error.text, cases[i].wanted))
-            fail_msg("wanted \"%s\", got \"%s\"", cases[i].wanted, error.text);
-        assert_int_equal(scene.frames, 1234);
-    }
+    expect_lines(cases, sizeof cases / sizeof cases[0]);
 }
 
 static void refuses_zero_bytes_and_huge_files(void **state)
@@ -300,6 +324,8 @@ int main(void)
         cmocka_unit_test(an_octree_has_a_group_of_settings),
         cmocka_unit_test(changes_while_it_runs),
         cmocka_unit_test(errors_name_file_line_and_remedy),
+        cmocka_unit_test(errors_in_an_octree_are_named),
+        cmocka_unit_test(errors_in_changes_are_named),
         cmocka_unit_test(refuses_zero_bytes_and_huge_files),
         cmocka_unit_test(too_many_obstacles_are_an_error),
         cmocka_unit_test(every_built_in_scene_parses),

@@ -103,8 +103,6 @@ static bool passes_at(const BenchFinding *finding, int v, double paper)
         return value >= paper * (1 - t);
     case BENCH_IS_AT_MOST:
         return value <= paper * (1 + t);
-    case BENCH_CONTAINS:
-        return low <= paper && paper <= high;
     case BENCH_LIES_INSIDE:
         return paper - t <= low && high <= paper + t;
     case BENCH_RISES:
@@ -263,9 +261,6 @@ void bench_verdict_test(const BenchClaim *claim, size_t size, char *text)
     case BENCH_IS_AT_MOST:
         snprintf(text, size, "at most %s", paper);
         if (t > 0) snprintf(text, size, "at most %s and %.3g%%", paper, 100 * t);
-        break;
-    case BENCH_CONTAINS:
-        snprintf(text, size, "%s contains %s", interval, paper);
         break;
     case BENCH_LIES_INSIDE:
         snprintf(text, size, "%s within %.3g of %s", interval, t, paper);

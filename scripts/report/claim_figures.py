@@ -2,8 +2,8 @@
 import numpy as np
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator
 
-from drawing import COLOURS, MARKS, PAPER, Figure, canvas, number
-from tables import Table
+from drawing import COLOURS, DOUBTS, MARKS, PAPER, Figure, canvas, number
+from tables import Table, doubts_said
 
 # Groups of curves by how their names begin: title, caption, and which axes are logarithmic.
 GROUPS = {
@@ -38,11 +38,13 @@ def claim_table(source):
                   "A measured value's spread is that of its repeats, or of an exponent the 95% confidence interval. "
                   "Evidence is where in the file the measurement is.")
     for claim in source.claims:
-        paper = value_text(claim["paper_value"][:claim["values"]]) or "–"
+        paper = value_text(claim["paper_value"][:claim["values"]])
+        paper = paper + DOUBTS.get(claim["status"], "") if paper else "–"
         evidence = " over ".join(claim[name] for name in ("evidence", "over") if claim[name])
         table.add([f"{claim['paper']} {claim['name']}", claim["verdict"], f"{claim['statement']} ({claim['place']})",
                    paper, measured_text(claim), claim["unit"], claim["test"], claim["words"], evidence],
                   CLASSES.get(claim["verdict"], ""))
+    table.note += doubts_said(claim["status"] for claim in source.claims if claim["values"])
     return table
 
 
@@ -82,8 +84,8 @@ def group_figure(group, curves):
     data, words = [], []
     for n, (name, curve) in enumerate(curves):
         x, y = curve["x"], curve["y"]
-        spread = np.array([y - curve["low"], curve["high"] - y])
-        axes.errorbar(x, y, yerr=np.maximum(np.nan_to_num(spread), 0), marker=MARKS[n % 7], color=COLOURS[n % 7],
+        spread = np.maximum(np.nan_to_num([y - curve["low"], curve["high"] - y]), 0)
+        axes.errorbar(x, y, yerr=spread if spread.any() else None, marker=MARKS[n % 7], color=COLOURS[n % 7],
                       markersize=4, capsize=2, linewidth=1.3, label=label(name, curve))
         data += [[name, float(a), float(b), float(c), float(d)] for a, b, c, d in zip(x, y, curve["low"], curve["high"])]
         words.append(f"{label(name, curve)}: from {number(y[0])} at {number(x[0])} to {number(y[-1])} at {number(x[-1])}")

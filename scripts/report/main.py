@@ -145,6 +145,21 @@ def may_replace(folder):
         return MADE_BY in file.read()
 
 
+def take_place(draft, output):
+    """The draft in the output's place. What was there goes last: if anything fails before, it is there again."""
+    if not os.path.isdir(output):
+        os.rename(draft, output)
+        return
+    old = draft[:-len(".tmp")] + ".old"
+    os.rename(output, old)
+    try:
+        os.rename(draft, output)
+    except BaseException:
+        os.rename(old, output)
+        raise
+    shutil.rmtree(old, ignore_errors=True)
+
+
 def write_folder(output, title, files, parts):
     """A folder of a page and its figures, in place of an older report of that name."""
     if os.path.lexists(output) and not may_replace(output):
@@ -158,9 +173,7 @@ def write_folder(output, title, files, parts):
                 write_file(os.path.join(draft, f"{figure.name}.{form}"), content)
         text = page(title, files, parts, linked, lambda figure: f"{figure.name}.csv")
         write_file(os.path.join(draft, "index.html"), text.encode())
-        if os.path.isdir(output):
-            shutil.rmtree(output)
-        os.rename(draft, output)
+        take_place(draft, output)
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise

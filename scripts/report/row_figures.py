@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from drawing import COLOURS, MARKS, PAPER, Figure, canvas, number
+from drawing import COLOURS, DOUBTS, MARKS, PAPER, Figure, canvas, number
+from tables import doubts_said
 
 STAGE_TITLES = {"fast_sum": "fast sum", "shape_matching": "shape matching", "polar": "polar decomposition",
                 "damping": "damping", "other": "other"}
@@ -14,11 +15,13 @@ def valid(rows):
     return [row for row in rows if row["valid"] and row["total_ms"] > 0]
 
 
-def share_bars(axes, y, values, height, alpha):
+def share_bars(axes, y, values, height, alpha, statuses=()):
     left = 0.0
     for s, value in enumerate(values):
         axes.barh(y, value, height, left=left, color=COLOURS[s], alpha=alpha)
         left += value
+    for s, status in enumerate(statuses):
+        axes.text(sum(values[:s]) + values[s] / 2, y, DOUBTS.get(status, ""), ha="center", va="center", fontsize=7)
 
 
 def paper_shares(row):
@@ -33,15 +36,20 @@ def stage_shares(rows):
         return None
     stages = rows[0]["stage_names"]
     figure, axes = canvas(7.2, 0.9 + 0.36 * len(rows))
-    data = []
+    data, shown, doubted = [], [], []
     for y, row in enumerate(rows):
         shares = 100 * np.array(row["stage_ms"]) / row["total_ms"]
         share_bars(axes, y - 0.13, shares, 0.42, 1)
-        data.append([row["scene"], "measured"] + [round(float(v), 2) for v in shares])
+        data.append([row["scene"], "measured"] + [round(float(v), 2) for v in shares] + [""])
         paper = paper_shares(row)
         if paper is not None:
-            share_bars(axes, y + 0.25, np.nan_to_num(paper), 0.2, 0.45)
-            data.append([row["scene"], "paper"] + [None if v != v else round(float(v), 2) for v in paper])
+            share_bars(axes, y + 0.25, np.nan_to_num(paper), 0.2, 0.45, row["paper_stage_statuses"])
+            statuses = row["paper_stage_statuses"]
+            data.append([row["scene"], "paper"] + [None if v != v else round(float(v), 2) for v in paper]
+                        + [" ".join(statuses)])
+            shown += statuses
+            doubted += [f"the paper's {STAGE_TITLES.get(s)} of {row['scene']} ({DOUBTS[status]})"
+                        for s, status in zip(stages, statuses) if status in DOUBTS]
     axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlim(0, 100)
@@ -52,9 +60,10 @@ def stage_shares(rows):
                 columnspacing=1, handlelength=1)
     largest = [f"{row['scene']}: {STAGE_TITLES.get(stages[int(np.argmax(row['stage_ms']))])} most" for row in rows]
     return Figure("stage-shares", "Where a step's time goes",
-                  "Share of each stage in a step; thin pale bars are the paper's, where it gives them.",
-                  "Stacked bars, one for each scene. " + "; ".join(largest) + ".",
-                  ["scene", "source"] + [s + "_percent" for s in stages], data).draw(figure)
+                  "Share of each stage in a step; thin pale bars are the paper's, where it gives them."
+                  + doubts_said(shown),
+                  "Stacked bars, one for each scene. " + "; ".join(largest + doubted) + ".",
+                  ["scene", "source"] + [s + "_percent" for s in stages] + ["statuses"], data).draw(figure)
 
 
 def beside_paper(rows):
@@ -70,20 +79,23 @@ def beside_paper(rows):
         if paper == paper:
             axes.plot([ns, paper], [y, y], color="#cccccc", linewidth=1.5, zorder=1)
             axes.plot(paper, y, "D", color=PAPER, markersize=5)
+            axes.annotate(DOUBTS.get(row["paper_status"], ""), (paper, y), xytext=(5, 0), textcoords="offset points",
+                          va="center")
         axes.plot(ns, y, "o", color=COLOURS[0])
-        data.append([row["scene"], round(ns, 2), None if paper != paper else round(paper, 1)])
+        data.append([row["scene"], round(ns, 2), None if paper != paper else round(paper, 1), row["paper_status"]])
     axes.set_xscale("log")
     axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlabel("nanoseconds per particle and step (logarithmic)")
     axes.legend([axes.plot([], [], "o", color=COLOURS[0])[0], axes.plot([], [], "D", color=PAPER, markersize=5)[0]],
                 ["measured here", "the paper, its machine"], ncols=2, loc="lower center", bbox_to_anchor=(0.45, 1.0))
-    times = [f"{scene} {number(ns)} against {number(paper)}" for scene, ns, paper in data if paper]
+    times = [f"{scene} {number(ns)} against {number(paper)}{DOUBTS.get(status, '')}"
+             for scene, ns, paper, status in data if paper]
     return Figure("beside-paper", "Cost of a particle and step",
                   "Median of this run beside what the paper's table gives for its own processor; the paper's total is "
-                  "divided by the particles measured here.",
+                  "divided by the particles measured here." + doubts_said(line[3] for line in data),
                   "Dots on a logarithmic scale of nanoseconds: " + "; ".join(times) + ".",
-                  ["scene", "ns_per_particle_step", "paper_ns_per_particle_step"], data).draw(figure)
+                  ["scene", "ns_per_particle_step", "paper_ns_per_particle_step", "paper_status"], data).draw(figure)
 
 
 def frames(row):

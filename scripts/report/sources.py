@@ -15,7 +15,7 @@ NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_l
                                   "change_ms", "change_most_ms", "follow_ms", "surface_ms", "first_triangles",
                                   "last_triangles", "pieces", "open_edges", "left"))
 
-CLAIM_TEXTS = ("paper", "name", "place", "unit", "statement", "test", "verdict", "words", "evidence", "over")
+CLAIM_TEXTS = ("paper", "name", "place", "unit", "statement", "status", "test", "verdict", "words", "evidence", "over")
 
 SWEEP_COLUMNS = ("engine", "w", "epsilon", "valid", "total_ms", "build_seconds", "bytes", "summation_nodes", "goal_rms",
                  "relaxation", "sag", "frequency", "path_rms", "path_most", "front")
@@ -66,12 +66,28 @@ def demand(row, names, kinds):
             raise ValueError(f"'{name}'")
 
 
+STATUSES = ("paper_total_status", "paper_rate_status", "paper_stage_status")
+
+
+def read_statuses(row):
+    """How the paper's values came to us; empty where the file does not say, and of a total that follows from a
+    rate, how the rate did."""
+    given = {name: row.get(name, "") for name in STATUSES}
+    demand(given, STATUSES, str)
+    row["paper_status"] = given["paper_total_status"]
+    if row["paper_status"] == "derived":
+        row["paper_status"] = given["paper_rate_status"]
+    row["paper_stage_statuses"] = given["paper_stage_status"].split() or [""] * len(row["stage_ms"])
+
+
 def read_row(group):
     row = attributes(group)
     demand(row, TEXTS, str)
     demand(row, NUMBERS, (int, float))
     demand(row, ("stage_ms", "paper_stage_ms"), np.ndarray)
-    if not len(row["stages"].split()) == len(row["stage_ms"]) == len(row["paper_stage_ms"]):
+    read_statuses(row)
+    if not (len(row["stages"].split()) == len(row["stage_ms"]) == len(row["paper_stage_ms"])
+            == len(row["paper_stage_statuses"])):
         raise ValueError("the number of stages")
     for name in ("total", "stage", "frames"):
         if name in group:
@@ -158,6 +174,8 @@ def read(path):
     """The file as a Source; raises Unusable."""
     if not os.path.exists(path):
         raise Unusable(f"{path}: no such file")
+    if not os.path.isfile(path):  # a pipe would be waited for
+        raise Unusable(f"{path}: it is a {'folder' if os.path.isdir(path) else 'pipe or device'}, not a file")
     if not survives(path):
         raise Unusable(f"{path}: so damaged that it cannot be read: make it again")
     return read_whole(path)

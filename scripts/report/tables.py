@@ -1,5 +1,5 @@
 """Tables of a report: headings and lines of texts, numbers as people read them."""
-from drawing import number
+from drawing import DOUBTS, number
 
 
 class Table:
@@ -16,8 +16,18 @@ class Table:
                 for i in range(len(self.headings))]
 
 
-def times(values, total):
-    return [f"{number(ms)} ({100 * ms / total:.0f}%)" if ms == ms and total > 0 else "–" for ms in values]
+def doubts_said(statuses):
+    """What the marks of these values mean."""
+    words = {"?": "a question mark is behind a value that is damaged in our text of the paper, or misprinted",
+             "*": "a star is behind a value that we have only at second hand"}
+    marks = sorted({DOUBTS[status] for status in statuses if status in DOUBTS}, reverse=True)
+    text = "; ".join(words[mark] for mark in marks)
+    return f" {text[0].upper()}{text[1:]}." if text else ""
+
+
+def times(values, total, statuses=None):
+    texts = [f"{number(ms)} ({100 * ms / total:.0f}%)" if ms == ms and total > 0 else "–" for ms in values]
+    return [text + DOUBTS.get(status, "") for text, status in zip(texts, statuses or [""] * len(texts))]
 
 
 def measured(source):
@@ -31,6 +41,7 @@ def measured(source):
                   + [name + " ms" for name in names]
                   + ["particles", "regions", "w", "sums/region", "engine", "precision", "threads"],
                   "Medians. The paper's values are those of its own processor.")
+    shown = []
     for row in rows:
         total, paper = row["total_ms"], row["paper_total_ms"]
         counts = [number(row["particles"]), number(row["regions"]), row["w"] or "–", number(row["summation_nodes"]),
@@ -43,8 +54,11 @@ def measured(source):
         table.add([row["scene"], number(total), f"{number(row['total_low_ms'])} to {number(row['total_high_ms'])}",
                    number(row["ns_per_particle_step"]), faster, "VALID"] + times(row["stage_ms"], total) + counts)
         if paper == paper:
-            table.add(["paper", number(paper), "", number(1e6 * paper / row["particles"]), "", ""]
-                      + times(row["paper_stage_ms"], paper) + [""] * len(counts), "paper")
+            mark = DOUBTS.get(row["paper_status"], "")
+            table.add(["paper", number(paper) + mark, "", number(1e6 * paper / row["particles"]) + mark, "", ""]
+                      + times(row["paper_stage_ms"], paper, row["paper_stage_statuses"]) + [""] * len(counts), "paper")
+            shown += [row["paper_status"]] + row["paper_stage_statuses"]
+    table.note += doubts_said(shown)
     return table
 
 

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 try:
     import h5py
@@ -21,6 +22,7 @@ except ImportError as missing:
     print(f"skipped: {missing}; scripts/setup run installs it")
     sys.exit(77)
 
+import main  # noqa: E402
 import sources  # noqa: E402
 
 PROGRAM = sys.argv.pop(1)
@@ -122,6 +124,32 @@ class Report(unittest.TestCase):
         self.assertIn("INVALID: goals are off", page.text)
         self.assertNotIn("123", page.text.split("Where these were measured")[0])
 
+    def test_doubtful_values_of_a_paper_keep_their_marks(self):
+        def doubt(file):
+            row = file["rows/000"].attrs
+            row["paper_total_status"], row["paper_rate_status"] = b"derived", b"second-hand"
+            row["paper_stage_status"] = b"quoted damaged quoted quoted derived"
+
+        page = self.page(self.copy("doubt.h5", doubt))
+        for words in ("0.280*", "0.0700 (25%)?", "0.0300 (11%)", "A question mark is behind", "a star is behind",
+                      "shape matching of penguin (?)"):
+            self.assertIn(words, page.text)
+        self.assertNotIn("0.0300 (11%)?", page.text)
+        self.assertNotIn("a star is behind", self.page(self.rows).text)
+        self.refused(self.copy("few.h5", lambda f: f["rows/000"].attrs.__setitem__("paper_stage_status", b"quoted")),
+                     "the number of stages")
+
+    def test_a_claim_of_a_doubtful_value_has_its_mark(self):
+        with open(self.at("mine.cfg"), "w", encoding="utf-8") as file:
+            file.write('claims = ( { paper = "fastlsm"; name = "mine"; statement = "s"; number = "hand-rate"; '
+                       'test = "near"; tolerance = 100.0; '
+                       'measure = { experiment = "polar"; field = "cold-sweeps"; }; } );')
+        done = shapebench("claims", "--claims", self.at("mine.cfg"), "--claim", "mine", "--quick", "-o", self.at("c.h5"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = self.page(self.at("c.h5"))
+        self.assertIn("10.0*", page.text)
+        self.assertIn("A star is behind", page.text)
+
     def test_texts_are_escaped(self):
         def name(file):
             file["machine"].attrs["hostname"] = b"<script>x</script>"
@@ -155,8 +183,40 @@ class Report(unittest.TestCase):
             self.assertEqual({len(line) for line in lines}, {len(lines[0])})
         self.assertEqual([name for name in os.listdir(self.folder) if name.endswith(".tmp")], [])
 
+    def test_texts_of_figures_are_texts(self):
+        output = self.at("page.html")
+        self.page(self.rows)
+        with open(output, encoding="utf-8") as file:
+            picture = file.read().split("<svg")[1].split("</svg>")[0]
+        self.assertRegex(picture, "<text [^>]*>penguin</text>")
+        self.assertNotIn("<metadata", picture)
+        self.assertLess(len(picture), 20000)
+
+    def test_an_older_report_is_kept_until_the_new_one_is_there(self):
+        old, new = self.at("old"), self.at("new.tmp")
+        for folder in (old, new):
+            os.mkdir(folder)
+            with open(os.path.join(folder, "index.html"), "w", encoding="utf-8") as file:
+                file.write(folder)
+        rename = os.rename
+
+        def failing(source, target):
+            if source == new:
+                raise OSError(28, "No space left on device")
+            rename(source, target)
+
+        with mock.patch("os.rename", failing), self.assertRaises(OSError):
+            main.take_place(new, old)
+        with open(os.path.join(old, "index.html"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), old)
+        main.take_place(new, old)
+        with open(os.path.join(old, "index.html"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), new)
+        self.assertEqual([name for name in os.listdir(self.folder) if name.endswith((".old", ".tmp"))], [])
+
     def test_bad_files_are_named(self):
         self.refused(self.at("nothing.h5"), "no such file")
+        self.refused(self.folder, "it is a folder")
         with open(self.at("text.h5"), "w", encoding="utf-8") as file:
             file.write("no HDF5")
         self.refused(self.at("text.h5"), "not an HDF5 file")

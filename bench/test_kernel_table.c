@@ -1,0 +1,126 @@
+/* Timed kernels as tables: verdicts, rows without numbers, formats that parse. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+
+#include "kernel_table.h"
+
+static const BenchMachine machine = {.cpu = "Test CPU", .cores = 2};
+static const BenchCeilings ceilings = {.one = {.threads = 1}, .all = {.threads = 2}};
+
+static void verdicts_follow_the_limits(void **state)
+{
+    (void)state;
+    BenchKernel row = {.valid = true, .ns = 8, .at_most = NAN, .wanted = NAN};
+    assert_string_equal(bench_kernel_verdict(&row), "");
+    row.at_most = 8;
+    assert_string_equal(bench_kernel_verdict(&row), "met");
+    row.at_most = 7.9;
+    assert_string_equal(bench_kernel_verdict(&row), "missed");
+    row = (BenchKernel){
+        .valid = true, .at_most = NAN, .ratio = 1.9, .wanted = 1.85, .wanted_least = true};
+    assert_string_equal(bench_kernel_verdict(&row), "met");
+    row.wanted_least = false;
+    assert_string_equal(bench_kernel_verdict(&row), "missed");
+    row = (BenchKernel){.valid = false, .ns = 1, .at_most = 8, .wanted = NAN};
+    assert_string_equal(bench_kernel_verdict(&row), "missed");
+}
+
+/* Two rows, the second not valid although its times are filled in. */
+static void write_rows(BenchKernelFormat format, char **text, size_t *size)
+{
+    BenchKernel rows[2] = {{.kernel = "good",
+                            .group = "a",
+                            .item = "particle",
+                            .precision = "single",
+                            .threads = 1,
+                            .items = 10,
+                            .valid = true,
+                            .ns = 12.5,
+                            .low = 12,
+                            .high = 13,
+                            .floor_ns = 5,
+                            .bound = "L1",
+                            .at_most = 20,
+                            .ratio = NAN,
+                            .wanted = NAN,
+                            .note = "with, a comma"}};
+    rows[1] = rows[0];
+    rows[1].valid = false;
+    rows[1].ns = rows[1].low = rows[1].high = rows[1].floor_ns = 98765;
+    strcpy(rows[1].kernel, "bad");
+    strcpy(rows[1].reason, "it is \"wrong\"");
+    FILE *file = open_memstream(text, size);
+    bench_kernels_write(file, format, rows, 2, &ceilings, &machine);
+    fclose(file);
+}
+
+static void an_invalid_row_has_no_number(void **state)
+{
+    (void)state;
+    for (int f = 0; bench_kernel_formats[f]; f++) {
+        char *text;
+        size_t size;
+        write_rows((BenchKernelFormat)f, &text, &size);
+        assert_non_null(strstr(text, "12.5"));
+        assert_null(strstr(text, "98765"));
+        assert_null(strstr(text, "98.8"));
+        free(text);
+    }
+}
+
+static void formats_parse(void **state)
+{
+    (void)state;
+    char *text;
+    size_t size;
+    write_rows(BENCH_KERNELS_CSV, &text, &size);
+    assert_non_null(strstr(text,
+                           "\ngood,a,single,1,,particle,10,12.5,12,13,5,L1,40,20,,,,met,VALID,"
+                           "\"with, a comma\"\n"));
+    assert_non_null(strstr(text, "\nbad,a,single,1,,particle,10,INVALID,INVALID,INVALID,INVALID,L1,"
+                                 "INVALID,20,INVALID,,,missed,INVALID,\"it is \"\"wrong\"\"\"\n"));
+    free(text);
+    write_rows(BENCH_KERNELS_JSON, &text, &size);
+    json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
+    assert_non_null(root);
+    json_t *good = json_array_get(json_object_get(root, "kernels"), 0);
+    json_t *bad = json_array_get(json_object_get(root, "kernels"), 1);
+    assert_true(json_number_value(json_object_get(good, "share_percent")) == 40);
+    assert_true(json_is_true(json_object_get(good, "valid")));
+    assert_true(json_is_false(json_object_get(bad, "valid")));
+    assert_true(json_is_null(json_object_get(bad, "ns")));
+    assert_int_equal(json_array_size(json_object_get(root, "ceilings")), 2);
+    assert_string_equal(
+        json_string_value(json_object_get(json_object_get(root, "environment"), "cpu")),
+        machine.cpu);
+    json_decref(root);
+    free(text);
+    write_rows(BENCH_KERNELS_MARKDOWN, &text, &size);
+    int bars = 0, lines = 0; /* every line has as many cells */
+    for (const char *c = text; *c; c++) {
+        bars += *c == '|';
+        lines += *c == '\n';
+    }
+    assert_int_equal(lines, 4);
+    assert_int_equal(bars, 4 * 14);
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(verdicts_follow_the_limits),
+        cmocka_unit_test(an_invalid_row_has_no_number),
+        cmocka_unit_test(formats_parse),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

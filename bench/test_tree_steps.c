@@ -1,0 +1,138 @@
+/* Steps and set-up of the octree that are timed: wrong ones are found, and what they do is counted.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "tree_setup.h"
+#include "tree_steps.h"
+#include "tree_work.h"
+
+/* A cube whose first region has lost a summation node that is not its own. */
+static void lose_member(BenchSampled *body)
+{
+    OctRegions *r = &body->regions;
+    long lost = r->first[1] - 1;
+    assert_int_not_equal(r->member[lost], body->tree.node[0]);
+    memmove(r->member + lost, r->member + lost + 1,
+            (size_t)(r->first[r->leaves] - lost - 1) * sizeof *r->member);
+    for (long i = 1; i <= r->leaves; i++) r->first[i]--;
+    r->size[0]--;
+}
+
+static void a_wrong_octree_step_is_not_timed(void **state)
+{
+    (void)state;
+    BenchSampled body;
+    SmError error;
+    assert_int_equal(bench_sampled_cube(6, &body, &error), SM_OK);
+    BenchTreeStep steps[3] = {{.body = &body, .threads = 1, .seed = 1, .parts = true}};
+    bench_tree_step_create_f32(&steps[0]);
+    assert_true(steps[0].valid);
+    lose_member(&body); /* it is not symmetric: only the adjoint is right */
+    steps[1] = (BenchTreeStep){.body = &body, .threads = 1, .seed = 1, .parts = true};
+    steps[2] = steps[1];
+    steps[2].adjoint = true;
+    for (int s = 1; s < 3; s++) bench_tree_step_create_f32(&steps[s]);
+    assert_false(steps[1].valid);
+    assert_non_null(strstr(steps[1].reason, "brute force"));
+    assert_true(steps[2].valid);
+    bench_tree_steps_time_f32(steps, 3, 2);
+    assert_null(steps[1].total);
+    for (int s = 0; s < 3; s += 2)
+        for (int r = 0; r < 2; r++) {
+            assert_true(steps[s].total[r] > 0);
+            for (int p = 0; p < BENCH_TREE_PARTS; p++) assert_true(steps[s].part[r][p] >= 0);
+        }
+    for (int s = 0; s < 3; s++) bench_tree_step_free_f32(&steps[s]);
+    bench_sampled_free(&body);
+}
+
+/* Cubes that are held to the twins, and to what regular trees are. */
+static void a_wrong_octree_setup_is_not_timed(void **state)
+{
+    (void)state;
+    for (int side = 6; side <= 12; side += 6) {
+        BenchSampled body;
+        BenchSetup setup;
+        SmError error;
+        assert_int_equal(bench_sampled_cube(side, &body, &error), SM_OK);
+        for (int kind = 0; kind <= BENCH_SETUP_WHOLE; kind++) {
+            bench_setup_time(&body, (BenchSetupKind)kind, BENCH_F64, 2, &setup);
+            assert_true(setup.valid && setup.samples >= 1 && setup.ns[0] > 0);
+            free(setup.ns);
+        }
+        body.regions.member[0] = body.tree.node[body.tree.leaves - 1];
+        bench_setup_time(&body, BENCH_SETUP_REGIONS, BENCH_F32, 1, &setup);
+        assert_false(setup.valid);
+        assert_null(setup.ns);
+        assert_non_null(strstr(setup.reason, "region"));
+        body.graph.length[0]++;
+        bench_setup_time(&body, BENCH_SETUP_GRAPH, BENCH_F32, 1, &setup);
+        assert_false(setup.valid);
+        assert_non_null(strstr(setup.reason, "edge"));
+        bench_sampled_free(&body);
+    }
+}
+
+static void wrong_distances_are_found(void **state)
+{
+    (void)state;
+    BenchSampled body;
+    OctReach reach;
+    SmError error;
+    char reason[BENCH_TREE_REASON];
+    assert_int_equal(bench_sampled_cube(5, &body, &error), SM_OK);
+    oct_reach_init(&reach, &body.graph);
+    oct_reach_from(&reach, 7, OCT_FAR / 2);
+    assert_true(bench_tree_check_distances(&reach, 7, reason));
+    for (int by = -1; by <= 1; by += 2) {
+        reach.distance[100] += by;
+        assert_false(bench_tree_check_distances(&reach, 7, reason));
+        reach.distance[100] -= by;
+    }
+    reach.distance[100] = OCT_FAR;
+    assert_false(bench_tree_check_distances(&reach, 7, reason));
+    oct_reach_free(&reach);
+    bench_sampled_free(&body);
+}
+
+/* One base cell, split down to the finest. */
+static void octree_work_is_counted(void **state)
+{
+    (void)state;
+    BenchSampled body;
+    OctBreadth lists;
+    SmError error;
+    assert_int_equal(bench_sampled_cube(16, &body, &error), SM_OK);
+    oct_breadth_build(&body.tree, &body.regions, &lists);
+    BenchTreeCounts c = bench_tree_counts(&body.tree, &lists, &lists);
+    double leaves = 16 * 16 * 16;
+    assert_true(c.leaf_children == 1); /* a full octree of four levels */
+    assert_true(c.inner_children == (512 + 64 + 8) / leaves);
+    assert_true(c.inners == (512 + 64 + 8 + 1) / leaves);
+    assert_true((c.leaf_entries + c.inner_entries) * leaves == (double)lists.entries);
+    assert_true((c.goal_entries + c.goal_carrier_entries) * leaves == (double)lists.entries);
+    assert_true(bench_work_depth(&c).flops == 3 + 24 + 33 * c.inner_children);
+    assert_true(bench_work_tree_step(&c).flops >
+                bench_work_tree_goals(&c).flops + bench_work_tree_damping(&c).flops);
+    oct_breadth_free(&lists);
+    bench_sampled_free(&body);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_wrong_octree_step_is_not_timed),
+        cmocka_unit_test(a_wrong_octree_setup_is_not_timed),
+        cmocka_unit_test(wrong_distances_are_found),
+        cmocka_unit_test(octree_work_is_counted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
