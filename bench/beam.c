@@ -1,11 +1,12 @@
 #include "beam.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "runner.h"
+#include "check.h"
 
 enum { MOST_STEPS = 10000, ENOUGH_STEPS = 1000, ENOUGH_TURNS = 9 };
 static const double slightly = 0.01; /* of gravity */
@@ -22,16 +23,16 @@ typedef struct {
     double all, tips; /* sum of m shape^2; particles at the tip */
 } Swing;
 
-static BenchScene make_scene(const char *engine, double w, double epsilon, bool clamped)
+static BenchScene make_scene(const SmEngineType *type, double w, double epsilon, bool clamped)
 {
     BenchScene scene;
     SmError error;
     if (bench_scene_find("beam", &scene, &error)) abort(); /* it is built in */
-    snprintf(scene.engine, sizeof scene.engine, "%s", engine);
+    snprintf(scene.engine, sizeof scene.engine, "%s", type->name);
     scene.params.damping = 0;
     scene.params.gravity[1] *= slightly;
     if (!clamped) scene.handle_count = 0;
-    if (!strcmp(engine, "octree")) {
+    if (!strcmp(type->name, "octree")) {
         scene.octree.width = (OctWidth){.edges = w};
         scene.octree.epsilon = epsilon;
         scene.octree.sampling.criteria[0] = (OctCriterion){.kind = OCT_UNIFORM};
@@ -64,12 +65,11 @@ static void find_shape(Swing *swing)
     }
 }
 
-static SmCode create(const BenchScene *scene, const BenchBody *body, Swing *swing, SmError *error)
+static SmCode create(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                     Swing *swing, SmError *error)
 {
     *swing = (Swing){0};
-    const SmEngineType *type;
-    SmCode code = bench_engine_find(scene->engine, "double", &type, error);
-    if (!code) code = bench_runner_create(scene, body, type, 1, &swing->runner, error);
+    SmCode code = bench_runner_create(scene, body, type, 1, &swing->runner, error);
     if (!code) find_shape(swing);
     return code;
 }
@@ -138,18 +138,49 @@ static bool swing_out(Swing *swing, Turns *turns)
     return turns->count >= 2;
 }
 
-static SmCode measure_swing(const char *engine, double w, double epsilon, BenchBody *body,
+static __attribute__((format(printf, 2, 3))) void invalidate(BenchBeam *beam, const char *format,
+                                                             ...)
+{
+    va_list values;
+    va_start(values, format);
+    if (!beam->invalid) vsnprintf(beam->why, sizeof beam->why, format, values);
+    va_end(values);
+    beam->relaxation = beam->sag = beam->frequency = NAN;
+    beam->invalid = true;
+}
+
+static bool check(const BenchRunner *runner, BenchBeam *beam)
+{
+    char reason[160];
+    if (bench_check_runner(runner, sizeof reason, reason)) return true;
+    invalidate(beam, "INVALID: %.*s", BENCH_WHY - 10, reason);
+    return false;
+}
+
+/* beam.h; lengths in mesh units. */
+static void check_theory(double gravity, double length, BenchBeam *beam)
+{
+    double turn = two_pi * beam->frequency, ratio = beam->sag * length * turn * turn / gravity;
+    if (!(ratio >= BENCH_BEAM_LEAST && ratio <= BENCH_BEAM_MOST))
+        invalidate(beam, "INVALID: sag (2 pi f)^2 / g is %.3g, of beams %g to %g", ratio,
+                   BENCH_BEAM_LEAST, BENCH_BEAM_MOST);
+}
+
+static SmCode measure_swing(const SmEngineType *type, double w, double epsilon, BenchBody *body,
                             BenchBeam *beam, SmError *error)
 {
-    BenchScene scene = make_scene(engine, w, epsilon, true);
+    BenchScene scene = make_scene(type, w, epsilon, true);
     Swing swing;
-    SmCode code = create(&scene, body, &swing, error);
+    SmCode code = create(&scene, body, type, &swing, error);
     Turns turns;
-    if (!code && swing_out(&swing, &turns)) {
+    bool swings = !code && swing_out(&swing, &turns);
+    if (!code && !check(&swing.runner, beam)) swings = false;
+    if (swings) {
         double period = (turns.last - turns.first) / (turns.count - 1);
         beam->frequency = 1 / (period * scene.params.h);
         beam->sag = turns.tip_last / (double)(turns.to - turns.from) / slightly / swing.length;
-    } else if (!code) {
+        check_theory(-scene.params.gravity[1] / slightly, swing.length, beam);
+    } else if (!code && !beam->invalid) {
         snprintf(beam->why, sizeof beam->why, "the beam does not swing to and fro in %d steps",
                  MOST_STEPS);
     }
@@ -157,12 +188,12 @@ static SmCode measure_swing(const char *engine, double w, double epsilon, BenchB
     return code;
 }
 
-static SmCode measure_relaxation(const char *engine, double w, double epsilon, BenchBody *body,
-                                 BenchBeam *beam, SmError *error)
+static SmCode measure_relaxation(const SmEngineType *type, double w, double epsilon,
+                                 BenchBody *body, BenchBeam *beam, SmError *error)
 {
-    BenchScene scene = make_scene(engine, w, epsilon, false);
+    BenchScene scene = make_scene(type, w, epsilon, false);
     Swing swing;
-    SmCode code = create(&scene, body, &swing, error);
+    SmCode code = create(&scene, body, type, &swing, error);
     if (!code) {
         const BenchRunner *runner = &swing.runner;
         size_t count = (size_t)runner->particles;
@@ -181,23 +212,24 @@ static SmCode measure_relaxation(const char *engine, double w, double epsilon, B
             all += swing.mass[i] * p * p;
         }
         beam->relaxation = fabs(taken / all) < rounding ? 0 : taken / all;
+        check(runner, beam);
         free(goal);
     }
     free_swing(&swing);
     return code;
 }
 
-void bench_beam_measure(const char *engine, double w, double epsilon, BenchBeam *beam)
+void bench_beam_measure(const SmEngineType *type, double w, double epsilon, BenchBeam *beam)
 {
     *beam = (BenchBeam){.relaxation = NAN, .sag = NAN, .frequency = NAN};
-    BenchScene scene = make_scene(engine, w, epsilon, true);
+    BenchScene scene = make_scene(type, w, epsilon, true);
     SmMesh mesh;
     BenchBody body = {0};
     SmError error;
     SmCode code = bench_mesh_of_scene(&scene, NULL, &mesh, &error);
     if (!code) code = bench_body_create(&scene, &mesh, &body, &error);
-    if (!code) code = measure_relaxation(engine, w, epsilon, &body, beam, &error);
-    if (!code) code = measure_swing(engine, w, epsilon, &body, beam, &error);
+    if (!code) code = measure_relaxation(type, w, epsilon, &body, beam, &error);
+    if (!code && !beam->invalid) code = measure_swing(type, w, epsilon, &body, beam, &error);
     if (code) snprintf(beam->why, sizeof beam->why, "%.*s", BENCH_WHY - 1, error.text);
     bench_body_free(&body);
 }

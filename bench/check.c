@@ -146,8 +146,7 @@ static double goal_error(const double (*g)[3], const double (*exact)[3], const b
     return sqrt(largest) / cell;
 }
 
-static double momentum_error(const double (*x)[3], const double (*g)[3], const double *m,
-                             long count)
+double bench_check_drift(const double (*x)[3], const double (*g)[3], const double *m, long count)
 {
     double mass = 0, centre[3] = {0}, drift[3] = {0}, spread = 0;
     for (long p = 0; p < count; p++) {
@@ -289,7 +288,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
         for (long p = 0; p < count; p++) result.tied += tied[p];
         double error =
             goal_error(goal, (const double(*)[3])exact, tied, count, check->body->voxels.cell);
-        double drift = momentum_error(at, goal, check->mass, count);
+        double drift = bench_check_drift(at, goal, check->mass, count);
         result.goal_error = fmax(result.goal_error, error);
         result.momentum_error = fmax(result.momentum_error, drift);
     }
@@ -356,6 +355,14 @@ double bench_check_tolerance(const char *precision)
     return strcmp(precision, "double") ? 5e-5 : 1e-10;
 }
 
+bool bench_check_keeps(double momentum_error, size_t size, char *reason)
+{
+    if (momentum_error <= BENCH_MOMENTUM_TOLERANCE) return true;
+    snprintf(reason, size, "linear momentum is off by %.3g; at most %g allowed", momentum_error,
+             BENCH_MOMENTUM_TOLERANCE);
+    return false;
+}
+
 bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason)
 {
     if (!found->finite)
@@ -405,6 +412,7 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
     worst->pushed_wrong += found->pushed_wrong;
     worst->contacts += found->contacts;
     worst->contacts_wrong += found->contacts_wrong;
+    worst->motion_error = fmax(worst->motion_error, found->motion_error);
     worst->turn_error = fmax(worst->turn_error, found->turn_error);
     if (found->damping_error * worst->damping_tolerance <
         worst->damping_error * found->damping_tolerance)

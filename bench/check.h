@@ -35,6 +35,7 @@ typedef struct {
     bool plain;            /* weighting, with which it need not be kept */
     double damping_error;  /* |v - brute force| / largest |v| after damping, of the particle ... */
     double damping_tolerance; /* ... where it is largest of what is allowed there; 0: no damping */
+    double motion_error;      /* bench_check_motion() of the step that was damped; 0: none was */
     long particles;           /* checked or left out */
     long tied;                /* left out: in a region whose rotation is not unique */
     long blurred;             /* left out of damping's check: tied or in a region whose inertia the
@@ -80,8 +81,8 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
                                  SmEngine *engine);
 
 /* Adds the check of damping to `found`, if the scene has any: puts the state of `engine` into
- * another one built alike, but at no handles and obstacles, steps that, and compares velocities to
- * eq. 14's in double precision from the same goals.
+ * others built alike, but at no handles and obstacles, steps one, and compares velocities to eq.
+ * 14's in double precision from the same goals, which another one finds.
  *
  * What is allowed, of the largest velocity, is the rounding of the sums (lib/rigid_lanes.h): with
  * n = 8 epsilon D^2 / inertia, D from the body's middle to the region, and f = spread / inertia,
@@ -110,6 +111,26 @@ void bench_check_contacts(const BenchCheck *check, const BenchScene *scene,
  * that is elsewhere by no more than that. */
 void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
                            const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
+
+/* A step without handles, obstacles and contacts: how far, in cells, a particle's end of it is from
+ * eqs. 1 (of an undamped body) and 2 of fastlsm in double precision from the engine's goals.
+ * Infinite if not finite. */
+double bench_check_motion(const BenchRunner *runner);
+
+/* Momentum's error of one body's goals, and whether it is small enough; says so otherwise. */
+double bench_check_drift(const double (*x)[3], const double (*g)[3], const double *m, long count);
+bool bench_check_keeps(double momentum_error, size_t size, char *reason);
+
+/* Goals, damping, contacts, obstacles and momentum of the runner's present state, and whether all
+ * are within their tolerances; `reason` says what is not. */
+bool bench_check_all(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *found,
+                     size_t size, char *reason);
+
+/* The same, motion, and that what handles hold is where they hold it (the runner has stepped, or
+ * nothing is held): of what is measured without a row. The state does not change. Where regions
+ * have more than BENCH_MOST_MEMBERS, goals are held to momentum alone. False, and `reason` says so.
+ */
+bool bench_check_runner(const BenchRunner *runner, size_t size, char *reason);
 
 /* Rotations of the regions of all instances at x (mesh units), an octree's; ties go to the
  * identity. */

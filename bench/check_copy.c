@@ -1,6 +1,7 @@
 #include "check_copy.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,4 +54,50 @@ void bench_copy_get(BenchCopy *copy, SmField field, double (*values)[3])
     copy->type->get(copy->engine, field, copy->field);
     for (long p = 0; p < copy->all; p++)
         memcpy(values[copy->order[p]], copy->field[p], sizeof *values);
+}
+
+void bench_copy_step(const SmEngineParams *params, const BenchBody *body, const SmEngineType *type,
+                     SmEngine *engine, long all, BenchStep *step)
+{
+    BenchCopy copy;
+    size_t count = (size_t)all;
+    *step = (BenchStep){all, sm_alloc(count, sizeof *step->x), sm_alloc(count, sizeof *step->x),
+                        sm_alloc(count, sizeof *step->x), sm_alloc(count, sizeof *step->x)};
+    bench_copy_create(params, body, type, engine, all, &copy);
+    type->goals(copy.engine);
+    bench_copy_get(&copy, SM_GOAL, step->after);
+    bench_copy_get(&copy, SM_POSITION, step->x);
+    bench_copy_get(&copy, SM_VELOCITY, step->before);
+    bench_copy_free(&copy);
+    for (long p = 0; p < all; p++) /* fastlsm eq. 1 */
+        for (int d = 0; d < 3; d++)
+            step->before[p][d] +=
+                (step->after[p][d] - step->x[p][d]) / params->h + params->h * params->gravity[d];
+    bench_copy_create(params, body, type, engine, all, &copy);
+    type->step(copy.engine, NULL);
+    bench_copy_get(&copy, SM_VELOCITY, step->after);
+    bench_copy_get(&copy, SM_POSITION, step->to);
+    bench_copy_free(&copy);
+}
+
+void bench_copy_step_free(BenchStep *step)
+{
+    free(step->x);
+    free(step->before);
+    free(step->after);
+    free(step->to);
+    *step = (BenchStep){0};
+}
+
+double bench_copy_motion(const BenchStep *step, const SmEngineParams *params)
+{
+    double most = 0, h = params->h;
+    for (long p = 0; p < step->all; p++)
+        for (int d = 0; d < 3; d++) {
+            double after = step->after[p][d], place = step->x[p][d] + h * after;
+            double off = fabs(step->to[p][d] - place);
+            if (!(params->damping > 0)) off = fmax(off, h * fabs(after - step->before[p][d]));
+            most = fmax(most, isfinite(after + step->to[p][d]) ? off : INFINITY);
+        }
+    return most;
 }

@@ -10,37 +10,6 @@
 #include "check_copy.h"
 #include "runner.h"
 
-/* One engine's step: what goes into its damping and what comes out. */
-typedef struct {
-    long all;
-    double (*x)[3], (*before)[3], (*after)[3]; /* [all]; velocities before and after damping */
-} Step;
-
-/* The state of `engine` in an engine built alike, stepped once. Engines damp their first step. */
-static void take_step(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                      SmEngine *engine, Step *step)
-{
-    SmEngineParams params = bench_engine_params(scene, body, 1);
-    params.collide = (SmCollideParams){0}; /* contacts would change velocities too */
-    size_t all = (size_t)step->all;
-    BenchCopy copy;
-    step->x = sm_alloc(all, sizeof *step->x);
-    step->before = sm_alloc(all, sizeof *step->before);
-    step->after = sm_alloc(all, sizeof *step->after);
-    bench_copy_create(&params, body, type, engine, step->all, &copy);
-    type->goals(copy.engine);
-    bench_copy_get(&copy, SM_GOAL, step->after);
-    bench_copy_get(&copy, SM_POSITION, step->x);
-    bench_copy_get(&copy, SM_VELOCITY, step->before);
-    for (size_t p = 0; p < all; p++) /* fastlsm eq. 1 */
-        for (int d = 0; d < 3; d++)
-            step->before[p][d] +=
-                (step->after[p][d] - step->x[p][d]) / params.h + params.h * params.gravity[d];
-    type->step(copy.engine, NULL);
-    bench_copy_get(&copy, SM_VELOCITY, step->after);
-    bench_copy_free(&copy);
-}
-
 static double length(const double v[3])
 {
     return sqrt(sm_dot(v, v));
@@ -103,7 +72,7 @@ static void rigid_velocity(const BenchCheck *check, const double (*x)[3], const 
 
 /* Compares one body's velocities; keeps the worst particle in `found`. */
 static void compare(const BenchCheck *check, const BenchScene *scene, const char *precision,
-                    const Step *step, long first, BenchDeviation *found)
+                    const BenchStep *step, long first, BenchDeviation *found)
 {
     double k = scene->params.damping, h = scene->params.h;
     double epsilon = bench_check_epsilon(precision);
@@ -143,11 +112,13 @@ void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const
                          SmEngine *engine, BenchDeviation *found)
 {
     if (!(scene->params.damping > 0) || !found->finite) return;
-    Step step = {.all = check->count * check->body->instances};
-    take_step(scene, check->body, type, engine, &step);
+    SmEngineParams params = bench_engine_params(scene, check->body, 1);
+    params.collide = (SmCollideParams){0}; /* contacts would change velocities too */
+    BenchStep step;
+    bench_copy_step(&params, check->body, type, engine, check->count * check->body->instances,
+                    &step);
     for (long first = 0; first < step.all; first += check->count)
         compare(check, scene, type->precision, &step, first, found);
-    free(step.x);
-    free(step.before);
-    free(step.after);
+    found->motion_error = bench_copy_motion(&step, &params) / check->body->voxels.cell;
+    bench_copy_step_free(&step);
 }

@@ -14,18 +14,19 @@
 
 enum { BENCH_CLAIM_VALUES = 5, BENCH_CLAIM_NAME = 40 };
 
-/* What becomes of a curve: its values as they are; the power of x that fits; its largest value; its
- * last value by its first. */
+/* What becomes of a curve: its values as they are; the power of x that fits; its largest value
+ * (verdict.h); its last value by its first. */
 typedef enum { BENCH_AS_VALUES, BENCH_AS_EXPONENT, BENCH_AS_LARGEST, BENCH_AS_GAIN } BenchReduction;
 
-/* `t` is the tolerance, p the paper's value, m what was measured, low..high its spread. */
+/* The band that a test accepts; `t` is the tolerance, p the paper's value. How a measured value and
+ * its interval low..high are held against it: verdict.h. */
 typedef enum {
-    BENCH_IS_NEAR,     /* |m / p - 1| <= t, of every value */
-    BENCH_IS_WITHIN,   /* |m - p| <= t, of every value */
-    BENCH_IS_FACTOR,   /* 1 / t <= m / p <= t */
-    BENCH_IS_AT_LEAST, /* m >= p (1 - t) */
-    BENCH_IS_AT_MOST,  /* m <= p (1 + t) */
-    BENCH_LIES_INSIDE, /* p - t <= low, high <= p + t */
+    BENCH_IS_NEAR,     /* p - t |p| .. p + t |p|, of every value */
+    BENCH_IS_WITHIN,   /* p - t .. p + t, of every value */
+    BENCH_IS_FACTOR,   /* p / t .. p t */
+    BENCH_IS_AT_LEAST, /* p - t |p| and more */
+    BENCH_IS_AT_MOST,  /* p + t |p| and less */
+    BENCH_LIES_INSIDE, /* p - t .. p + t, and the whole interval must be in it */
     BENCH_RISES,       /* the curve, from every point to the next */
     BENCH_FALLS,
 } BenchTest;

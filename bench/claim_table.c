@@ -84,10 +84,12 @@ static void write_people(FILE *file, BenchFormat format, const BenchFinding *fin
         bench_grid_text(file, &grid);
     bench_grid_free(&grid);
     if (format == BENCH_AS_LATEX) return;
-    fprintf(file,
-            "\nOf %d: %s. Brackets hold quartiles, of exponents 95%% intervals; ? marks a value "
-            "that the paper misprints, * one at second hand.\n\n",
-            count, text);
+    fprintf(
+        file,
+        "\nOf %d: %s. Brackets hold 95%% confidence intervals, of several values half the widest; "
+        "undecided: the value is outside of what is wanted and its interval is not; ? marks a "
+        "value that the paper misprints, * one at second hand.\n\n",
+        count, text);
     write_notes(file, findings, count, format == BENCH_AS_MARKDOWN);
 }
 

@@ -3,7 +3,7 @@
 #define BENCH_COMMAND_H
 
 /* Those of `regress` alone. */
-enum { BENCH_EXIT_SLOWER = 5, BENCH_EXIT_NO_BASELINE = 6 };
+enum { BENCH_EXIT_SLOWER = 5, BENCH_EXIT_NO_BASELINE = 6, BENCH_EXIT_NOT_JUDGED = 7 };
 
 /* Exit codes as every command's help prints them; error.h has them as SmCode. */
 #define BENCH_EXIT_CODES                                                                           \

@@ -55,8 +55,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
 
 static const char help[] =
     "Hold what the papers say against what is measured here, claim by claim: the paper's value, "
-    "the measured one with its spread, the test, and the verdict: reproduced, not reproduced, "
-    "differs "
+    "the measured one with its 95% interval, the test, and the verdict: reproduced, undecided (the "
+    "interval reaches into what is wanted, the value does not), not reproduced, differs "
     "(with the reason), not comparable, or INVALID where the measurement failed its check. "
     "Everything is measured once, and checked: against brute force; the largest cubes for finite "
     "goals and linear momentum.\v"

@@ -123,7 +123,8 @@ static const char help[] =
     "least 2%; beside a file, which cannot be run interleaved, it is wider, and at least 10%. "
     "Scenes of a file are measured with the engine, precision and threads that it says.\v"
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
-    " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine.";
+    " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; "
+    "7 nothing could be judged: all too noisy, or too few samples.";
 
 static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
 

@@ -26,19 +26,20 @@ static bool has_time(const BenchSide *side, int time)
     return side->count > 0;
 }
 
-/* Where the builds did other work: what, and both. What an old file does not state is not judged.
- */
+/* Where the builds did other work: what, and both. What an old file does not state (samples.h) is
+ * not judged. */
 static bool same_work(const BenchRow *a, const BenchRow *b, size_t size, char *reason)
 {
     const struct {
         const char *what;
         double old, new;
+        bool stated;
     } number[] = {
-        {"threads", a->threads, b->threads},
-        {"particles", (double)a->particles, (double)b->particles},
-        {"w", a->w, b->w},
-        {"epsilon", a->epsilon, b->epsilon},
-        {"h", a->h, b->h},
+        {"threads", a->threads, b->threads, a->threads > 0},
+        {"particles", (double)a->particles, (double)b->particles, a->particles > 0},
+        {"w", a->w, b->w, a->w > 0},
+        {"epsilon", a->epsilon, b->epsilon, isfinite(a->epsilon)},
+        {"h", a->h, b->h, isfinite(a->h)},
     };
     if (a->engine[0] && strcmp(a->engine, b->engine) != 0) {
         snprintf(reason, size, "other work: engine %s, now %s", a->engine, b->engine);
@@ -49,7 +50,7 @@ static bool same_work(const BenchRow *a, const BenchRow *b, size_t size, char *r
         return false;
     }
     for (size_t i = 0; i < sizeof number / sizeof *number; i++)
-        if (number[i].old > 0 && number[i].old != number[i].new) {
+        if (number[i].stated && number[i].old != number[i].new) {
             snprintf(reason, size, "other work: %s %.9g, now %.9g", number[i].what, number[i].old,
                      number[i].new);
             return false;
@@ -212,5 +213,6 @@ int bench_comparisons_exit(const BenchComparison *list, int count)
     for (int i = 0; i < count; i++) had[list[i].verdict] = true;
     if (had[BENCH_INCORRECT]) return SM_INVALID;
     if (had[BENCH_SLOWER]) return BENCH_EXIT_SLOWER;
-    return had[BENCH_NO_BASELINE] ? BENCH_EXIT_NO_BASELINE : SM_OK;
+    if (had[BENCH_NO_BASELINE]) return BENCH_EXIT_NO_BASELINE;
+    return had[BENCH_SAME] || had[BENCH_FASTER] ? SM_OK : BENCH_EXIT_NOT_JUDGED;
 }

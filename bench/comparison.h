@@ -62,7 +62,8 @@ int bench_compare(const BenchContests *all, const BenchCompareParams *params,
 void bench_comparisons_free(BenchComparison *list, int count);
 
 /* What they come to, as an exit code (command.h): SM_INVALID where anything is INVALID, else
- * BENCH_EXIT_SLOWER, else BENCH_EXIT_NO_BASELINE where anything lacks one, else SM_OK. */
+ * BENCH_EXIT_SLOWER, else BENCH_EXIT_NO_BASELINE where anything lacks one, else SM_OK where any
+ * time is the same or faster, else BENCH_EXIT_NOT_JUDGED: nothing could be said of any. */
 int bench_comparisons_exit(const BenchComparison *list, int count);
 
 #endif

@@ -11,27 +11,12 @@
 #include "cubes.h"
 #include "matrices.h"
 #include "play.h"
-#include "spread.h"
 #include "tree_setup.h"
 #include "tree_steps.h"
 
 static int repeats_of(const BenchLab *lab)
 {
     return lab->quick ? 9 : 31;
-}
-
-static void add_spread(BenchCurve *curve, double x, const double *value, int count)
-{
-    BenchSpread spread = bench_spread(value, count);
-    bench_curve_add(curve, x, spread.median, spread.low, spread.high);
-}
-
-/* The same of times of which the least counts: what else runs on the machine only adds. */
-static void add_least(BenchCurve *curve, double x, const double *value, int count)
-{
-    double least = value[0];
-    for (int r = 1; r < count; r++) least = fmin(least, value[r]);
-    bench_curve_add(curve, x, least, least, bench_spread(value, count).median);
 }
 
 /* ---- steps of cubes */
@@ -63,21 +48,24 @@ static double mean_side(int side, int w)
     return 2 * reach + 1 - reach * (reach + 1) / side;
 }
 
-/* The sums' share of the step, of which the least CPU time counts: of a stage alone there is only
- * the time on the wall, which other work is in, too. */
-static void add_sums(BenchCurve *curve, double x, const BenchCube *cube)
+/* The sums' share of the step in CPU time: of a stage alone there is only the time on the wall,
+ * which other work is in, too. */
+static void add_sums(BenchCurve *curve, double x, const BenchCube *cube, int points)
 {
-    double *share = sm_alloc((size_t)cube->repeats, sizeof *share);
-    double least = INFINITY;
+    size_t repeats = (size_t)cube->repeats;
+    double *share = sm_alloc(repeats, sizeof *share), *step = sm_alloc(repeats, sizeof *step);
     for (int r = 0; r < cube->repeats; r++) {
         double all = 0;
         for (int s = 0; s < SM_STAGES; s++) all += bench_cube_stage_ns(cube, (SmStage)s, r);
         share[r] = bench_cube_stage_ns(cube, SM_FAST_SUM, r) / all;
-        least = fmin(least, bench_cube_cpu_ns(cube, r));
+        step[r] = bench_cube_cpu_ns(cube, r);
     }
-    BenchSpread spread = bench_spread(share, cube->repeats);
-    bench_curve_add(curve, x, least * spread.median, least * spread.low, least * spread.high);
+    BenchInterval part = bench_curve_interval(share, cube->repeats, 0.5, points);
+    BenchInterval whole = bench_curve_interval(step, cube->repeats, BENCH_LOW, points);
+    bench_curve_add(curve, x, whole.value * part.value, whole.low * part.low,
+                    whole.high * part.high);
     free(share);
+    free(step);
 }
 
 void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
@@ -94,7 +82,7 @@ void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *cu
     if (curve->valid) bench_cubes_time(cubes, count, repeats, true);
     check_cubes(cubes, count, curve);
     for (int c = 0; c < count && curve->valid; c++)
-        add_sums(curve, mean_side(side[c], w[c]), &cubes[c]);
+        add_sums(curve, mean_side(side[c], w[c]), &cubes[c], count);
     for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
     free(cubes);
 }
@@ -113,7 +101,7 @@ static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve 
         double particles = (double)cubes[c].particles;
         for (int r = 0; r < repeats; r++)
             ms[r] = 1e-6 * bench_cube_cpu_ns(&cubes[c], r) * particles;
-        add_least(curve, particles, ms, repeats);
+        bench_curve_sample(curve, particles, ms, repeats, BENCH_LOW, count);
     }
     free(ms);
     for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
@@ -142,7 +130,9 @@ static void time_trees(BenchLab *lab, BenchTreeStep *steps, int count, bool sums
             bench_curve_fail(curve, "octree of %ld nodes: %s", steps[s].body->tree.leaves,
                              steps[s].reason);
         for (int r = 0; r < repeats && curve->valid; r++) ms[r] = tree_ms(&steps[s], sums, r);
-        if (curve->valid) add_least(curve, (double)steps[s].body->tree.leaves, ms, repeats);
+        if (curve->valid)
+            bench_curve_sample(curve, (double)steps[s].body->tree.leaves, ms, repeats, BENCH_LOW,
+                               count);
     }
     for (int s = 0; s < count; s++) bench_tree_step_free_f32(&steps[s]);
     free(ms);
@@ -198,7 +188,7 @@ void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
     else if (strstr(measure->field, "sweeps"))
         bench_curve_add(curve, 0, found->sweeps, found->sweeps, found->sweeps);
     else
-        add_least(curve, 0, found->ns, repeats);
+        bench_curve_sample(curve, 0, found->ns, repeats, BENCH_LOW, 1);
     free(found->ns);
 }
 
@@ -263,7 +253,8 @@ static void time_regions(const BenchSampled *body, const int *w, OctReach *reach
 }
 
 /* With regions so many times as wide as the body's. */
-static void add_share(const BenchSampled *body, int times, int repeats, BenchCurve *curve)
+static void add_share(const BenchSampled *body, int times, int repeats, int points,
+                      BenchCurve *curve)
 {
     OctReach reach;
     size_t leaves = (size_t)body->tree.leaves;
@@ -276,7 +267,7 @@ static void add_share(const BenchSampled *body, int times, int repeats, BenchCur
         time_regions(body, w, &reach, &search, &all);
         share[r] = 100 * search / all;
     }
-    add_spread(curve, times, share, repeats);
+    bench_curve_sample(curve, times, share, repeats, 0.5, points);
     oct_reach_free(&reach);
     free(share);
     free(w);
@@ -302,7 +293,7 @@ void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
         free(checked[c].ns);
     }
     for (int t = 0; t < count && curve->valid; t++)
-        add_share(&body, times[t], repeats_of(lab), curve);
+        add_share(&body, times[t], repeats_of(lab), count, curve);
     omp_set_num_threads(before);
     bench_sampled_free(&body);
 }

@@ -9,7 +9,6 @@
 #include "../reference/shape_matching.h"
 #include "block.h"
 #include "play.h"
-#include "spread.h"
 
 static double length(const double a[3], const double b[3])
 {
@@ -61,11 +60,12 @@ static void keep_profile(BenchLab *lab, int w, const double *share, int half)
     bench_lab_keep(lab, &profile);
 }
 
+_Static_assert(4 * BENCH_MOST_W + 2 < BENCH_CURVE_POINTS, "a profile is longer than a curve");
+
 void bench_deform_smoothing(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
 {
     int w[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->w, w);
-    int half =
-        4 * w[count - 1] + 2 < BENCH_CURVE_POINTS ? 4 * w[count - 1] + 2 : BENCH_CURVE_POINTS - 1;
+    int half = 4 * w[count - 1] + 2; /* a step reaches 2 w; there are cells that nothing reaches */
     int side = lab->quick ? 5 : 9;
     const int size[3] = {side, side, 2 * half + 1};
     double share[BENCH_CURVE_POINTS];
@@ -229,8 +229,8 @@ static void hang(BenchLab *lab, const Hanging *hanging, BenchCurve *curve)
         if (f >= frames - last) depth[f - (frames - last)] = tip_depth(hanging, runner);
     }
     bench_curve_check(curve, runner);
-    BenchSpread spread = bench_spread(depth, last);
-    bench_curve_add(curve, scene->params.w, spread.median, spread.low, spread.high);
+    bench_curve_add(curve, scene->params.w, bench_quantile(depth, last, 0.5),
+                    bench_quantile(depth, last, 0), bench_quantile(depth, last, 1));
     free(depth);
     bench_play_free(&play);
 }

@@ -70,6 +70,18 @@ void bench_curve_add(BenchCurve *curve, double x, double y, double low, double h
     curve->high[curve->points++] = high;
 }
 
+BenchInterval bench_curve_interval(const double *value, int count, double share, int points)
+{
+    return bench_quantile_interval(value, count, share, 1 - 0.05 / points);
+}
+
+void bench_curve_sample(BenchCurve *curve, double x, const double *value, int count, double share,
+                        int points)
+{
+    BenchInterval found = bench_curve_interval(value, count, share, points);
+    bench_curve_add(curve, x, found.value, found.low, found.high);
+}
+
 void bench_curve_fail(BenchCurve *curve, const char *format, ...)
 {
     va_list values;
@@ -82,11 +94,7 @@ void bench_curve_fail(BenchCurve *curve, const char *format, ...)
 void bench_curve_check(BenchCurve *curve, const BenchRunner *runner)
 {
     char reason[160];
-    BenchCheck check;
-    bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &check);
-    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
-    bench_check_free(&check);
-    if (!bench_check_verdict(&found, sizeof reason, reason))
+    if (!bench_check_runner(runner, sizeof reason, reason))
         bench_curve_fail(curve, "w = %d: %s", runner->scene->params.w, reason);
 }
 
@@ -173,7 +181,7 @@ const char *bench_experiment_fault(const BenchMeasure *measure)
         return "cubes have four particles a side or more: n.from is at least 4";
     if (measure->experiment == BENCH_TRY_SIZE && measure->n.to > 128)
         return "cubes have at most 128 particles a side: n.to is at most 128";
-    if (kind->w && measure->w.to > 16) return "w.to is at most 16";
+    if (kind->w && measure->w.to > BENCH_MOST_W) return "w.to is at most 16";
     if (measure->experiment == BENCH_TRY_BLENDING && measure->n.to > 16)
         return "few clusters: n.to is at most 16";
     return field_fault(measure, kind);

@@ -1,15 +1,20 @@
 /* experiment.h - what a claim can have measured, each giving a curve: points (x, y) with spread.
  *
  * Everything is checked before it counts: a curve that is not valid says why. y is the median of
- * the repeats and its spread the quartiles. But of "size" and "polar" y and `low` are the least,
- * which other work on the machine disturbs least, and `high` is the median; of cubes on the lattice
- * the time is CPU time. */
+ * the repeats, of times of cubes and matrices the lower quartile, because other work on the machine
+ * only adds; of cubes on the lattice the time is CPU time. low..high is y's confidence interval,
+ * from order statistics (statistic.h), at a level at which all points of the curve hold at once
+ * with 95% (Bonferroni): what is taken of a curve may be any of them. It knows of the repeats, not
+ * of what would change from run to run. Where there are too few repeats for that level it is the
+ * extremes. Without repeats it is y alone: counts, what is deterministic, and times of scenes that
+ * change; of "sag" it is the extremes of the swing that is left. */
 #ifndef BENCH_EXPERIMENT_H
 #define BENCH_EXPERIMENT_H
 
 #include "../lib/engine.h"
 #include "row.h"
 #include "runner.h"
+#include "statistic.h"
 
 /* Which settings each takes beside those named here is an error.
  *
@@ -61,14 +66,19 @@ typedef struct {
     BenchRange w, n;
 } BenchMeasure;
 
-enum { BENCH_CURVE_POINTS = 64, BENCH_CURVE_NAME = 192, BENCH_RANGE_POINTS = 24 };
+enum {
+    BENCH_CURVE_POINTS = 72,
+    BENCH_CURVE_NAME = 192,
+    BENCH_RANGE_POINTS = 24,
+    BENCH_MOST_W = 16
+};
 
 typedef struct {
     char name[BENCH_CURVE_NAME]; /* what was measured, without a blank or '/': unique */
     char x_name[40], y_name[64];
     int points;
     double x[BENCH_CURVE_POINTS], y[BENCH_CURVE_POINTS];
-    double low[BENCH_CURVE_POINTS], high[BENCH_CURVE_POINTS]; /* of y */
+    double low[BENCH_CURVE_POINTS], high[BENCH_CURVE_POINTS]; /* y's confidence interval */
     bool valid;
     char reason[192]; /* why not valid */
     int row;          /* of the lab's rows that it is from; -1: none */
@@ -107,7 +117,14 @@ void bench_curve_add(BenchCurve *curve, double x, double y, double low, double h
 void bench_curve_fail(BenchCurve *curve, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Fails where the goals of the runner's body, as it is now, are not those of brute force. */
+/* A point of repeats: their quantile `share` and its interval, of a curve of `points` points. */
+void bench_curve_sample(BenchCurve *curve, double x, const double *value, int count, double share,
+                        int points);
+
+/* That interval alone. */
+BenchInterval bench_curve_interval(const double *value, int count, double share, int points);
+
+/* Fails where the runner's engine is not right in its present state: bench_check_runner(). */
 void bench_curve_check(BenchCurve *curve, const BenchRunner *runner);
 
 /* Keeps a curve as evidence. */

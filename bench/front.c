@@ -13,10 +13,10 @@ static bool judged(const BenchPoint *p)
     return p->valid && isfinite(p->total_ms) && isfinite(p->path_rms);
 }
 
+/* Quartiles that are not known overlap with all. */
 static bool beats(const BenchPoint *a, const BenchPoint *b)
 {
-    return a->total_ms <= b->total_ms && a->path_rms <= b->path_rms &&
-           (a->total_ms < b->total_ms || a->path_rms < b->path_rms);
+    return a->total_high_ms < b->total_low_ms && a->path_rms <= b->path_rms;
 }
 
 void bench_front_mark(BenchPoint *point, long count)

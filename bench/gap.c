@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../octree/structure.h"
+#include "check.h"
 #include "play.h"
 
 static SmCode create(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,
@@ -17,10 +18,10 @@ static SmCode create(const BenchScene *scene, const BenchBody *body, BenchRunner
 }
 
 /* Goal positions of the deformed body; the caller frees them, and the runner. */
-static SmCode find_goals(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,
-                         double (**goal)[3], SmError *error)
+static SmCode find_goals(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                         BenchRunner *runner, double (**goal)[3], SmError *error)
 {
-    SmCode code = create(scene, body, runner, error);
+    SmCode code = bench_runner_create(scene, body, type, 1, runner, error);
     if (code) return code;
     *goal = sm_alloc((size_t)runner->particles, sizeof **goal);
     bench_runner_disturb(runner, 1);
@@ -59,7 +60,17 @@ static void compare_goals(const BenchRunner *runner, double cell, const double (
     free(mass);
 }
 
-void bench_gap_goals(const BenchScene *scene, const BenchBody *body, BenchGap *gap)
+/* Says why where the check fails. */
+static bool right(const BenchRunner *runner, const char *what, char why[BENCH_WHY])
+{
+    char reason[160];
+    if (bench_check_runner(runner, sizeof reason, reason)) return true;
+    snprintf(why, BENCH_WHY, "INVALID%s: %.*s", what, BENCH_WHY - 32, reason);
+    return false;
+}
+
+void bench_gap_goals(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                     BenchGap *gap)
 {
     *gap = (BenchGap){.rms = NAN, .most = NAN};
     BenchScene alone = *scene, exact = *scene;
@@ -69,13 +80,15 @@ void bench_gap_goals(const BenchScene *scene, const BenchBody *body, BenchGap *g
     BenchRunner runner = {0}, twin = {0};
     double(*goal)[3] = NULL, (*wanted)[3] = NULL;
     SmError error;
-    SmCode code = find_goals(&alone, body, &runner, &goal, &error);
-    if (!code) code = find_goals(&exact, body, &twin, &wanted, &error);
+    SmCode code = find_goals(&alone, body, type, &runner, &goal, &error);
+    if (!code) code = find_goals(&exact, body, type, &twin, &wanted, &error);
     if (code)
         snprintf(gap->why, sizeof gap->why, "%.*s", BENCH_WHY - 1, error.text);
-    else
+    else if (right(&runner, "", gap->why) && right(&twin, " at epsilon 0", gap->why))
         compare_goals(&runner, body->voxels.cell, (const double(*)[3])goal,
                       (const double(*)[3])wanted, gap);
+    else
+        gap->invalid = true;
     free(goal);
     free(wanted);
     bench_runner_free(&runner);
@@ -154,21 +167,22 @@ static void play_frames(BenchPlay *play, BenchPath *path)
     path->points = 0;
 }
 
-void bench_path_record(const BenchScene *scene, const BenchBody *body, const BenchPush *push,
-                       int frames, unsigned long seed, BenchPath *path)
+void bench_path_record(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                       const BenchPush *push, int frames, unsigned long seed, BenchPath *path)
 {
     *path = (BenchPath){.frames = frames};
-    const SmEngineType *type;
     SmError error;
     BenchPlay play;
-    SmCode code = bench_engine_find(scene->engine, "double", &type, &error);
-    if (!code) code = bench_play_create(scene, body, type, 1, seed, &play, &error);
-    if (code) {
+    if (bench_play_create(scene, body, type, 1, seed, &play, &error)) {
         snprintf(path->why, sizeof path->why, "%.*s", BENCH_WHY - 1, error.text);
         return;
     }
     use_push(push, &play.cast.part[0].runner);
     play_frames(&play, path);
+    if (path->points && !right(&play.cast.part[0].runner, "", path->why)) {
+        path->points = 0;
+        path->invalid = true;
+    }
     bench_play_free(&play);
 }
 
@@ -183,6 +197,7 @@ void bench_gap_path(const BenchPath *path, const BenchPath *full, double size, B
     *gap = (BenchGap){.rms = NAN, .most = NAN};
     if (!path->points || !full->points) {
         snprintf(gap->why, sizeof gap->why, "%s", path->points ? full->why : path->why);
+        gap->invalid = path->invalid || full->invalid;
         return;
     }
     double sum = 0, most = 0;

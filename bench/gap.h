@@ -1,5 +1,7 @@
 /* gap.h - how far one way to simulate a scene is from another: in goal positions, and in motion.
- * All in double precision and on one thread, and so deterministic. */
+ * All in double precision and on one thread, and so deterministic. Engines are held to brute force
+ * in the states that are compared, paths at their last frame (bench_check_runner()): a wrong one
+ * gives no figure but `invalid`. Types are those of the scene's engine in double precision. */
 #ifndef BENCH_GAP_H
 #define BENCH_GAP_H
 
@@ -8,6 +10,7 @@
 
 typedef struct {
     double rms, most;    /* NaN: `why` */
+    bool invalid;        /* a check failed */
     char why[BENCH_WHY]; /* empty where they could be had */
 } BenchGap;
 
@@ -15,7 +18,8 @@ typedef struct {
  * exactly the width asked for, on one state: the body, held nowhere, in the scene's deformation at
  * the start (bend, twist, squash) or, where it has none, bent by 0.7 rad. In finest cells; the mean
  * is by mass. */
-void bench_gap_goals(const BenchScene *scene, const BenchBody *body, BenchGap *gap);
+void bench_gap_goals(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                     BenchGap *gap);
 
 /* Acceleration that each force of a scene gives to what it pushes: what the force of all particles
  * is on the scene's own engine, divided by their mass. Other engines and samplings have other
@@ -35,12 +39,13 @@ typedef struct {
     int frames;
     long points;
     double (*point)[3]; /* [frames * points] */
+    bool invalid;       /* a check failed */
     char why[BENCH_WHY];
 } BenchPath;
 
 /* Plays the scene; a path without points where it could not be. The caller frees it. */
-void bench_path_record(const BenchScene *scene, const BenchBody *body, const BenchPush *push,
-                       int frames, unsigned long seed, BenchPath *path);
+void bench_path_record(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                       const BenchPush *push, int frames, unsigned long seed, BenchPath *path);
 void bench_path_free(BenchPath *path);
 
 /* Root mean square and largest distance of the points over all frames, of `size`. */

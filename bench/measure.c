@@ -116,15 +116,9 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
                         BenchRow *row)
 {
     char reason[sizeof row->reason];
-    BenchDeviation found = bench_check_state(check, runner->type, runner->engine);
-    bench_check_damping(check, runner->scene, runner->type, runner->engine, &found);
-    bench_check_contacts(check, runner->scene, runner->type, runner->engine, &found);
-    bench_check_obstacles(check, runner->scene, runner->type, runner->engine, &found);
-    if (!bench_check_verdict(&found, sizeof reason, reason))
+    BenchDeviation found;
+    if (!bench_check_all(check, runner, &found, sizeof reason, reason))
         invalidate(row, "%s", reason);
-    else if (!check->plain && !(found.momentum_error <= BENCH_MOMENTUM_TOLERANCE))
-        invalidate(row, "linear momentum is off by %.3g; at most %g allowed", found.momentum_error,
-                   BENCH_MOMENTUM_TOLERANCE);
     bench_check_merge(&found, worst);
     row->goal_error = worst->goal_error;
     row->momentum_error = worst->momentum_error;

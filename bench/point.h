@@ -13,7 +13,7 @@ typedef struct {
     int index;          /* in the plan, from 0 */
     char engine[12];    /* "fastlsm" or "octree" */
     double w, epsilon;  /* of a lattice epsilon is 0 */
-    bool valid;         /* the check against brute force passed; otherwise all times are NaN */
+    bool valid;         /* all checks against brute force passed; otherwise all times are NaN */
     char reason[160];   /* why not */
     long particles;     /* or nodes */
     long regions;       /* unique ones */
@@ -25,7 +25,7 @@ typedef struct {
     double summation_nodes; /* of a region, mean; NaN of a lattice */
     long most_summation;    /* 0 of a lattice */
     long parts;             /* groups of nodes that no region holds together; 0 of a lattice */
-    double goal_error; /* from brute force with the same regions, cells: what `valid` is about */
+    double goal_error;      /* of what is timed, from brute force with the same regions, cells */
 
     double goal_rms, goal_most; /* gap.h: goals from those of epsilon 0, cells */
     char goal_why[BENCH_WHY];
@@ -35,7 +35,7 @@ typedef struct {
     double path_rms, path_most; /* gap.h: surface from that one's, of the body's size */
     char path_why[BENCH_WHY];
 
-    bool front;    /* no valid point of the file is as cheap and deviates less (front.h) */
+    bool front;    /* no valid point of the file displaces it (front.h) */
     double wall;   /* seconds that the point took in all */
     int rank;      /* of an MPI launch; else 0 */
     char host[64]; /* where it was measured, and when (ISO 8601) */

@@ -105,6 +105,8 @@ void bench_regression_summary(const BenchRegression *found, size_t size, char *l
                         bench_time_name(worst->time), worst->ratio, worst->low, worst->high);
     else if (found->count == had[BENCH_NO_BASELINE])
         used = snprintf(line, size, "no baseline: nothing could be compared");
+    else if (had[BENCH_SAME] + had[BENCH_FASTER] == 0)
+        used = snprintf(line, size, "nothing could be judged, of %d times", found->count);
     else
         used = snprintf(line, size, "not slower in %d of %d times",
                         had[BENCH_SAME] + had[BENCH_FASTER], found->count);

@@ -13,6 +13,12 @@ enum { PATH = BENCH_DRAFT_PATH, WORDS = 32 };
 
 static const char *const build_names[] = {"the baseline", "this build"};
 
+/* What has become of a task. */
+typedef struct {
+    bool there[BENCH_BUILDS]; /* which builds have it, as far as is known */
+    char reason[224];         /* why the old one has not */
+} State;
+
 typedef struct {
     const BenchRounds *rounds;
     BenchContests *all;
@@ -48,17 +54,16 @@ static void make_words(const BenchRounds *rounds, const BenchTask *task, const c
     word[count] = NULL;
 }
 
-/* A scene that the old build cannot measure is no error: its contest says why. One that it could
+/* A scene that the old build cannot measure is no error: `state` keeps why. One that it could
  * measure before is. */
-static SmCode failed(const Session *session, const BenchTask *task, BenchBuild build, int round,
-                     int status, const char *log, SmError *error)
+static SmCode failed(const BenchTask *task, BenchBuild build, int round, int status,
+                     const char *log, State *state, SmError *error)
 {
-    char line[224];
+    char line[sizeof state->reason];
     bench_process_last_line(log, sizeof line, line);
     bool crashed = status > 128 || status == 127;
     if (build == BENCH_OLD && round == 0 && !crashed && status != SM_OUTPUT) {
-        BenchSide *side = &bench_contest_of(session->all, task->scene)->side[BENCH_OLD];
-        snprintf(side->reason, sizeof side->reason, "%s", line);
+        memcpy(state->reason, line, sizeof line);
         return SM_OK;
     }
     if (crashed)
@@ -69,7 +74,17 @@ static SmCode failed(const Session *session, const BenchTask *task, BenchBuild b
                    task->scene, line);
 }
 
-static SmCode keep(Session *session, BenchBuild build, int round, const char *path, SmError *error)
+/* The scenes of a task that the old build has not say why; a task may be a file, whose name is not
+ * the scene's, or stand for several. */
+static void say_why(const State *state, BenchContest *contest)
+{
+    BenchSide *old = &contest->side[BENCH_OLD];
+    if (state->reason[0] && old->count == 0)
+        snprintf(old->reason, sizeof old->reason, "%s", state->reason);
+}
+
+static SmCode keep(Session *session, const State *state, BenchBuild build, int round,
+                   const char *path, SmError *error)
 {
     BenchRow *rows;
     BenchMachine machine;
@@ -79,7 +94,10 @@ static SmCode keep(Session *session, BenchBuild build, int round, const char *pa
     if (code)
         return sm_fail(error, code, "what %s has measured cannot be used: %.300s",
                        build_names[build], why.text);
-    for (int i = 0; i < count; i++) bench_contest_add(session->all, build, round, &rows[i]);
+    for (int i = 0; i < count; i++) {
+        bench_contest_add(session->all, build, round, &rows[i]);
+        say_why(state, bench_contest_of(session->all, rows[i].scene));
+    }
     bench_rows_free(rows, count);
     if (!session->measured[build]) session->machine[build] = machine;
     session->measured[build] = true;
@@ -87,7 +105,7 @@ static SmCode keep(Session *session, BenchBuild build, int round, const char *pa
 }
 
 static SmCode run_process(Session *session, const BenchTask *task, BenchBuild build, int round,
-                          bool *there, SmError *error)
+                          State *state, SmError *error)
 {
     const BenchRounds *rounds = session->rounds;
     char output[PATH], log[PATH], number[4][32];
@@ -99,12 +117,12 @@ static SmCode run_process(Session *session, const BenchTask *task, BenchBuild bu
     BenchProcessEnd end;
     SmCode code = bench_process_run(&process, &end, error);
     if (code) return code;
-    *there = end.status == SM_OK || end.status == SM_INVALID;
     /* an INVALID row is stored before the process says so; a scene that cannot run stores nothing
      */
-    *there = *there && access(output, F_OK) == 0;
-    code = *there ? keep(session, build, round, output, error)
-                  : failed(session, task, build, round, end.status, log, error);
+    bool there = (end.status == SM_OK || end.status == SM_INVALID) && access(output, F_OK) == 0;
+    state->there[build] = there;
+    code = there ? keep(session, state, build, round, output, error)
+                 : failed(task, build, round, end.status, log, state, error);
     unlink(output);
     return code;
 }
@@ -114,9 +132,9 @@ static void show(const Session *session, const BenchTask *task, int all)
     bench_progress_show(session->rounds->progress, task->scene, (double)session->done / all);
 }
 
-/* One round of one scene. `there` says which build still has it. */
-static SmCode run_round(Session *session, const BenchTask *task, int round,
-                        bool there[BENCH_BUILDS], int all, SmError *error)
+/* One round of one scene, of the builds that have it. */
+static SmCode run_round(Session *session, const BenchTask *task, int round, State *state, int all,
+                        SmError *error)
 {
     SmCode code = SM_OK;
     for (int i = 0; i < 4 && !code; i++) {
@@ -124,8 +142,8 @@ static SmCode run_round(Session *session, const BenchTask *task, int round,
         BenchBuild build = outer == (round % 2 == 0) ? BENCH_OLD : BENCH_NEW;
         show(session, task, all);
         session->done++;
-        if (session->rounds->program[build] && there[build])
-            code = run_process(session, task, build, round, &there[build], error);
+        if (session->rounds->program[build] && state->there[build])
+            code = run_process(session, task, build, round, state, error);
     }
     return code;
 }
@@ -134,14 +152,15 @@ SmCode bench_rounds_run(const BenchRounds *rounds, BenchContests *all,
                         BenchMachine machine[BENCH_BUILDS], SmError *error)
 {
     Session session = {.rounds = rounds, .all = all, .machine = machine};
-    bool(*there)[BENCH_BUILDS] = sm_alloc((size_t)rounds->tasks, sizeof *there);
-    for (int t = 0; t < rounds->tasks; t++) there[t][BENCH_OLD] = there[t][BENCH_NEW] = true;
+    State *state = sm_alloc((size_t)rounds->tasks, sizeof *state);
+    for (int t = 0; t < rounds->tasks; t++)
+        state[t].there[BENCH_OLD] = state[t].there[BENCH_NEW] = true;
     SmCode code = SM_OK;
     for (int r = 0; r < rounds->rounds; r++)
         for (int t = 0; t < rounds->tasks && !code; t++)
-            code = run_round(&session, &rounds->task[t], r, there[t],
+            code = run_round(&session, &rounds->task[t], r, &state[t],
                              4 * rounds->rounds * rounds->tasks, error);
     bench_progress_stop(rounds->progress);
-    free(there);
+    free(state);
     return code;
 }

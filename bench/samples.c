@@ -86,6 +86,7 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     char name[16], message[sizeof h5->message];
     snprintf(name, sizeof name, "%03d", index);
     hid_t group = bench_h5_find_group(h5, parent, name);
+    row->epsilon = row->h = NAN;
     bench_h5_read_fields(h5, group, needed, COUNT(needed), row);
     read_where_there(h5, group, wanted, COUNT(wanted), row);
     read_times(h5, group, row);

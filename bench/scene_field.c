@@ -8,7 +8,6 @@
 
 #include "measure.h"
 #include "runner.h"
-#include "spread.h"
 
 /* A field that is a member of the row, or one that is made of several. */
 typedef struct {
@@ -34,7 +33,6 @@ static const Field fields[] = {
     WHOLE_FIELD("parts", parts),
     WHOLE_FIELD("bytes", bytes),
     NUMBER_FIELD("summation_nodes", summation_nodes),
-    NUMBER_FIELD("ns_per_particle_step", ns_per_particle_step),
     WHOLE_FIELD("last_particles", change.last_nodes),
     WHOLE_FIELD("added", change.most_added),
     WHOLE_FIELD("pieces", change.pieces),
@@ -44,6 +42,7 @@ static const Field fields[] = {
     NUMBER_FIELD("most_ms", change.change_most_ms),
     NUMBER_FIELD("surface_ms", change.surface_ms),
     {"total_ms", MADE, 0},
+    {"ns_per_particle_step", MADE, 0},
     {"fps", MADE, 0},
     {"frame_rate", MADE, 0},
     {"stage_percent", MADE, 0},
@@ -72,8 +71,8 @@ void bench_scene_field_names(size_t size, char *names)
         used += (size_t)snprintf(names + used, size - used, "%s%s", f ? "|" : "", fields[f].name);
 }
 
-/* The share of some stages, given as bits, with its spread over the repeats. */
-static void add_share(const BenchRow *row, unsigned stages, BenchCurve *curve)
+/* The share of some stages, given as bits, one of `points` shares. */
+static void add_share(const BenchRow *row, unsigned stages, int points, BenchCurve *curve)
 {
     double *share = sm_alloc((size_t)row->repeats, sizeof *share), part = 0;
     for (int r = 0; r < row->repeats; r++) {
@@ -86,8 +85,10 @@ static void add_share(const BenchRow *row, unsigned stages, BenchCurve *curve)
     }
     for (int s = 0; s < SM_STAGES; s++)
         if (stages >> s & 1) part += row->stage_ms[s];
-    BenchSpread spread = bench_spread(share, row->repeats);
-    bench_curve_add(curve, curve->points, 100 * part / row->total_ms, spread.low, spread.high);
+    BenchInterval found = bench_curve_interval(share, row->repeats, 0.5, points);
+    double percent = 100 * part / row->total_ms; /* a table's, whose shares add up */
+    bench_curve_add(curve, curve->points, percent, fmin(percent, found.low),
+                    fmax(percent, found.high));
     free(share);
 }
 
@@ -97,15 +98,19 @@ static void add_made(const BenchRow *row, int steps_per_frame, const char *name,
                                       1U << SM_DAMPING};
     const BenchChangeRow *change = &row->change;
     double steps = !strcmp(name, "frame_rate") ? steps_per_frame : 1;
+    BenchInterval step = bench_curve_interval(row->total, row->repeats, 0.5, 1); /* s */
+    double each = 1e9 / (double)row->particles;
     if (!strcmp(name, "total_ms"))
-        bench_curve_add(curve, 0, row->total_ms, row->total_low_ms, row->total_high_ms);
+        bench_curve_add(curve, 0, 1e3 * step.value, 1e3 * step.low, 1e3 * step.high);
+    else if (!strcmp(name, "ns_per_particle_step"))
+        bench_curve_add(curve, 0, each * step.value, each * step.low, each * step.high);
     else if (!strcmp(name, "fps") || !strcmp(name, "frame_rate"))
-        bench_curve_add(curve, 0, 1e3 / row->total_ms / steps, 1e3 / row->total_high_ms / steps,
-                        1e3 / row->total_low_ms / steps);
+        bench_curve_add(curve, 0, 1 / step.value / steps, 1 / step.high / steps,
+                        1 / step.low / steps);
     else if (!strcmp(name, "stage_percent"))
-        for (int s = 0; s < SM_STAGES; s++) add_share(row, 1U << s, curve);
+        for (int s = 0; s < SM_STAGES; s++) add_share(row, 1U << s, SM_STAGES, curve);
     else if (!strcmp(name, "thirds_percent"))
-        for (int t = 0; t < 3; t++) add_share(row, thirds[t], curve);
+        for (int t = 0; t < 3; t++) add_share(row, thirds[t], 3, curve);
     else {
         double value = !strcmp(name, "cost_growth")
                            ? change->last_ms / change->first_ms

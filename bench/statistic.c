@@ -30,6 +30,22 @@ double bench_quantile(const double *value, int count, double share)
     return quantile;
 }
 
+BenchInterval bench_quantile_interval(const double *value, int count, double share, double level)
+{
+    unsigned n = (unsigned)count, first = 0, last = n - 1;
+    double side = (1 - level) / 2, *work = sm_alloc(n, sizeof *work);
+    memcpy(work, value, n * sizeof *work);
+    BenchInterval interval = {.value = quantile_of(work, count, share)};
+    /* work[k] is above the distribution's where at most k values are below that, and below it where
+     * more are */
+    while (gsl_cdf_binomial_P(first + 1, share, n) <= side) first++;
+    while (last > first && gsl_cdf_binomial_Q(last - 1, share, n) <= side) last--;
+    interval.low = work[first];
+    interval.high = work[last];
+    free(work);
+    return interval;
+}
+
 /* Share of all orders of m + n distinct values in which U is at most `most`: the number of ways is
  * N(u, m, n) = N(u - n, m - 1, n) + N(u, m, n - 1). As shares, so that none overflows. */
 static double exact_below(int m, int n, int most)

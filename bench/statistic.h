@@ -10,6 +10,16 @@
 /* Quantile `share` (0..1) of `count` values, 1 or more, which need not be sorted. */
 double bench_quantile(const double *value, int count, double share);
 
+typedef struct {
+    double value, low, high;
+} BenchInterval;
+
+/* That quantile, and two of the values between which that of their distribution lies with at least
+ * the confidence `level` whatever the distribution, for values that are independent of each other:
+ * how many of them are below it is binomial. Where they are too few for that, the extremes. `share`
+ * and `level` are above 0 and below 1. */
+BenchInterval bench_quantile_interval(const double *value, int count, double share, double level);
+
 /* Two-sided p of the Mann-Whitney U test that a and b come from one distribution. Exact where no
  * two values are equal and neither set has more than 40; else the normal approximation with
  * correction for ties and continuity (Mann and Whitney 1947; Lehmann, Nonparametrics, 1975). 1

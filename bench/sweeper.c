@@ -157,10 +157,34 @@ static void measure_cost(BenchSweeper *sweeper, const BenchPlan *plan, const Ben
     bench_row_free(&row);
 }
 
+/* No times of what is not right (point.h); `why` begins with INVALID. */
+static void invalidate(BenchPoint *point, const char *what, const char *why)
+{
+    const BenchPoint none = bench_point_none();
+    if (point->valid || !point->reason[0])
+        snprintf(point->reason, sizeof point->reason, "%s%.*s", what, BENCH_WHY,
+                 why + strlen("INVALID"));
+    point->valid = false;
+    point->total_ms = point->total_low_ms = point->total_high_ms = point->build_seconds = NAN;
+    point->samples = 0;
+    memcpy(point->stage_ms, none.stage_ms, sizeof point->stage_ms);
+    memcpy(point->sample, none.sample, sizeof point->sample);
+}
+
+/* In double precision, in which engines all are; it is asked for by name. */
+static const SmEngineType *exact_type(const char *engine)
+{
+    const SmEngineType *type;
+    SmError error;
+    if (bench_engine_find(engine, "double", &type, &error)) abort(); /* a plan has no others */
+    return type;
+}
+
 static void measure_beam(BenchPoint *point)
 {
     BenchBeam beam;
-    bench_beam_measure(point->engine, point->w, point->epsilon, &beam);
+    bench_beam_measure(exact_type(point->engine), point->w, point->epsilon, &beam);
+    if (beam.invalid) invalidate(point, "beam", beam.why);
     point->relaxation = beam.relaxation;
     point->sag = beam.sag;
     point->frequency = beam.frequency;
@@ -181,7 +205,7 @@ static void find_full(BenchSweeper *sweeper, const BenchPlan *plan, int w)
         return;
     }
     BenchScene scene = make_scene(sweeper, "fastlsm", w, 0, plan->width);
-    bench_path_record(&scene, &sweeper->body, &sweeper->push, plan->frames,
+    bench_path_record(&scene, &sweeper->body, exact_type("fastlsm"), &sweeper->push, plan->frames,
                       (unsigned long)plan->seed, &sweeper->full);
 }
 
@@ -189,7 +213,8 @@ static void measure_gaps(BenchSweeper *sweeper, const BenchPlan *plan, const Ben
                          BenchPoint *point)
 {
     BenchGap gap;
-    bench_gap_goals(scene, &sweeper->body, &gap);
+    bench_gap_goals(scene, &sweeper->body, exact_type(point->engine), &gap);
+    if (gap.invalid) invalidate(point, "goals", gap.why);
     point->goal_rms = gap.rms;
     point->goal_most = gap.most;
     snprintf(point->goal_why, sizeof point->goal_why, "%s", gap.why);
@@ -201,9 +226,10 @@ static void measure_gaps(BenchSweeper *sweeper, const BenchPlan *plan, const Ben
     point->full_w = (int)fmax(1, rint(fmin(point->width_cells, 1e6)));
     find_full(sweeper, plan, point->full_w);
     BenchPath path;
-    bench_path_record(scene, &sweeper->body, &sweeper->push, plan->frames,
-                      (unsigned long)plan->seed, &path);
+    bench_path_record(scene, &sweeper->body, exact_type(point->engine), &sweeper->push,
+                      plan->frames, (unsigned long)plan->seed, &path);
     bench_gap_path(&path, &sweeper->full, plan->size, &gap);
+    if (gap.invalid) invalidate(point, "path", gap.why);
     bench_path_free(&path);
     point->path_rms = gap.rms;
     point->path_most = gap.most;

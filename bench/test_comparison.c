@@ -117,7 +117,8 @@ static void a_build_against_itself_raises_no_alarm(void **state)
         play(&all, "two", 8, 1, trial % 2 ? 0.3 : 0.02);
         const BenchCompareParams params = {true, 8, NAN, (unsigned long)trial};
         int count = bench_compare(&all, &params, &list);
-        alarms += bench_comparisons_exit(list, count) != SM_OK;
+        int code = bench_comparisons_exit(list, count);
+        alarms += code != SM_OK && code != BENCH_EXIT_NOT_JUDGED;
         bench_comparisons_free(list, count);
         bench_contests_free(&all);
     }
@@ -192,6 +193,63 @@ static void what_cannot_be_compared_says_why(void **state)
     assert_int_equal(bench_comparisons_exit(list + BENCH_TIMES + 1, 2), BENCH_EXIT_NO_BASELINE);
     bench_comparisons_free(list, count);
     bench_contests_free(&all);
+}
+
+/* Where all is too noisy or too few, nothing is known to be not slower. */
+static void what_nobody_could_judge_is_not_ok(void **state)
+{
+    (void)state;
+    BenchContests all = {0};
+    BenchComparison *list;
+    char line[256];
+    play(&all, "few", 3, 1, 0.02);
+    const BenchCompareParams few = {true, 3, NAN, 1}, noisy = {true, 8, 0.0001, 1};
+    BenchRegression found = {.params = &few};
+    found.count = bench_compare(&all, &few, &list);
+    found.list = list;
+    assert_int_equal(bench_comparisons_exit(list, found.count), BENCH_EXIT_NOT_JUDGED);
+    bench_regression_summary(&found, sizeof line, line);
+    assert_non_null(strstr(line, "nothing could be judged, of 6 times; 6 could not"));
+    list[2].verdict = BENCH_SAME;
+    assert_int_equal(bench_comparisons_exit(list, found.count), SM_OK);
+    list[2].verdict = BENCH_NO_BASELINE;
+    assert_int_equal(bench_comparisons_exit(list, found.count), BENCH_EXIT_NO_BASELINE);
+    bench_comparisons_free(list, found.count);
+    bench_contests_free(&all);
+    play(&all, "noisy", 8, 1, 0.02);
+    int count = bench_compare(&all, &noisy, &list);
+    assert_int_equal(verdict_of(list, count, "noisy", 0), BENCH_TOO_NOISY);
+    assert_int_equal(bench_comparisons_exit(list, count), BENCH_EXIT_NOT_JUDGED);
+    bench_comparisons_free(list, count);
+    bench_contests_free(&all);
+    assert_int_equal(bench_comparisons_exit(NULL, 0), BENCH_EXIT_NOT_JUDGED);
+}
+
+/* An epsilon of 0 is one, and not an epsilon that a file does not state. */
+static void epsilon_0_is_stated(void **state)
+{
+    (void)state;
+    const struct {
+        double old, new;
+        BenchComparisonVerdict verdict;
+    } cases[] = {{0, 0, BENCH_SAME},
+                 {0, 0.5, BENCH_NO_BASELINE},
+                 {0.5, 0, BENCH_NO_BASELINE},
+                 {NAN, 0.5, BENCH_SAME}};
+    for (int c = 0; c < 4; c++) {
+        BenchContests all = {0};
+        BenchComparison *list;
+        play(&all, "x", 8, 1, 0.02);
+        BenchSide *side = bench_contest_of(&all, "x")->side;
+        side[BENCH_OLD].row.epsilon = cases[c].old;
+        side[BENCH_NEW].row.epsilon = cases[c].new;
+        const BenchCompareParams params = {true, 8, 9, 1};
+        int count = bench_compare(&all, &params, &list);
+        assert_int_equal(verdict_of(list, count, "x", 0), cases[c].verdict);
+        if (c == 1) assert_string_equal(list[0].reason, "other work: epsilon 0, now 0.5");
+        bench_comparisons_free(list, count);
+        bench_contests_free(&all);
+    }
 }
 
 /* A stage that takes no time (no damping in the scene) or that an old build has not is left out. */
@@ -352,6 +410,8 @@ int main(void)
         cmocka_unit_test(beside_a_file_the_threshold_is_wider),
         cmocka_unit_test(a_threshold_given_rules),
         cmocka_unit_test(what_cannot_be_compared_says_why),
+        cmocka_unit_test(what_nobody_could_judge_is_not_ok),
+        cmocka_unit_test(epsilon_0_is_stated),
         cmocka_unit_test(a_stage_without_time_is_left_out),
         cmocka_unit_test(text_and_markdown_end_in_the_verdict),
         cmocka_unit_test(json_holds_every_sample),

@@ -54,6 +54,34 @@ static void smoothing_reaches_four_widths_and_is_measured_once(void **state)
     bench_lab_free(&lab);
 }
 
+/* The bar of the widest regions has cells that nothing reaches, too. */
+static void the_widest_profile_ends_in_nothing(void **state)
+{
+    (void)state;
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_SMOOTHING, .w = {16, 16, 1}};
+    assert_true(lab.curves == 0 && bench_experiment(&lab, &measure) == 1);
+    const BenchCurve *profile = &lab.curve[0];
+    assert_string_equal(profile->name, "smoothing.w16.profile");
+    assert_int_equal(profile->points, 4 * 16 + 3);
+    assert_true(profile->y[64] > 1e-9 && profile->y[65] < 1e-12 && profile->y[66] < 1e-12);
+    bench_lab_free(&lab);
+}
+
+/* An interval for all points together is wider than one for each. */
+static void intervals_are_for_all_points(void **state)
+{
+    (void)state;
+    double value[15];
+    BenchCurve curve;
+    for (int i = 0; i < 15; i++) value[i] = 1 + i;
+    bench_curve_begin(&curve, "x", "y");
+    bench_curve_sample(&curve, 1, value, 15, 0.5, 1);
+    bench_curve_sample(&curve, 2, value, 15, 0.5, 12);
+    assert_true(curve.y[0] == 8 && curve.low[0] == 4 && curve.high[0] == 12);
+    assert_true(curve.y[1] == 8 && curve.low[1] == 2 && curve.high[1] == 14);
+}
+
 /* A gradient that jumps at one plane by a known amount. */
 static void jumps_are_found(void **state)
 {
@@ -96,6 +124,12 @@ static void scenes_give_their_fields(void **state)
     assert_int_equal(lab.curve[shares].points, SM_STAGES);
     for (int s = 0; s < SM_STAGES; s++) sum += lab.curve[shares].y[s];
     assert_true(fabs(sum - 100) < 1e-6);
+    strcpy(measure.field, "ns_per_particle_step");
+    const BenchRow *row = &lab.row[0];
+    int each = bench_experiment(&lab, &measure);
+    assert_true(fabs(lab.curve[each].y[0] / row->ns_per_particle_step - 1) < 1e-9);
+    assert_true(lab.curve[each].low[0] <= lab.curve[each].y[0]);
+    assert_true(lab.curve[each].high[0] >= lab.curve[each].y[0]);
     strcpy(measure.field, "particles");
     int particles = bench_experiment(&lab, &measure);
     assert_true(lab.curve[particles].y[0] == 150);
@@ -141,6 +175,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ranges_are_even_and_rise),
         cmocka_unit_test(smoothing_reaches_four_widths_and_is_measured_once),
+        cmocka_unit_test(the_widest_profile_ends_in_nothing),
+        cmocka_unit_test(intervals_are_for_all_points),
         cmocka_unit_test(jumps_are_found),
         cmocka_unit_test(the_bar_bends_and_twists_by_half_a_turn),
         cmocka_unit_test(scenes_give_their_fields),

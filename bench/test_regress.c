@@ -105,6 +105,7 @@ static void usage(void **state)
     expect("shapebench regress --baseline a --rounds 0", 2, "--rounds: '0'");
     expect("shapebench regress a.h5", 2, "what is 'a.h5'?");
     expect("shapebench regress --help", 0, "6 no baseline");
+    expect("shapebench regress --help | tr '\\n' ' '", 0, "7 nothing could be judged");
 }
 
 static void files_that_are_no_baseline(void **state)
@@ -175,7 +176,7 @@ static void beside_a_stored_file(void **state)
     row_of_tiny(&row, &machine);
     expect("shapebench regress --baseline tiny.h5 --threshold 9 --rounds 3 " TINY, 0,
            "not slower in ");
-    expect("shapebench regress --baseline tiny.h5 --rounds 1 " TINY, 0, "too few samples");
+    expect("shapebench regress --baseline tiny.h5 --rounds 1 " TINY, 7, "nothing could be judged");
     row.particles = 63;
     store("other.h5", &row, &machine);
     expect("shapebench regress --baseline other.h5 --rounds 1 " TINY, 6,
@@ -207,9 +208,9 @@ static void places_that_cannot_be_written(void **state)
     (void)state;
     expect("shapebench regress --baseline tiny.h5 -o no/such/out.txt", 4, "no/such/out.txt");
     expect("TMPDIR=/no/such shapebench regress --baseline tiny.h5", 4, "cannot write /no/such/");
-    expect("shapebench regress --baseline tiny.h5 --rounds 1 " TINY "> /dev/full", 4,
+    expect("shapebench regress --baseline tiny.h5 --rounds 3 --threshold 9 " TINY "> /dev/full", 4,
            "standard output cannot be written");
-    expect("shapebench regress --baseline tiny.h5 --rounds 1 " TINY "--format json -o out.json", 0,
+    expect("shapebench regress --baseline tiny.h5 --rounds 1 " TINY "--format json -o out.json", 7,
            "");
     assert_int_equal(access(path_in("out.json"), F_OK), 0);
 }
@@ -245,14 +246,17 @@ static void another_revision_is_built_and_measured(void **state)
 {
     (void)state;
     make_repository(works);
-    expect("cd repo && shapebench regress --revision HEAD --threshold 9 --rounds 4 " TINY, 0,
+    expect("cd repo && shapebench regress --revision HEAD --threshold 9 --rounds 5 " TINY, 0,
            "Against revision HEAD (");
     nothing_is_left_in_the_repository();
     expect("cd repo && ls build/regress", 0, "lock"); /* and the program, which is used again: */
-    expect("cd repo && PATH=/usr/bin:/bin shapebench regress --revision HEAD --rounds 1 " TINY, 0,
+    expect("cd repo && PATH=/usr/bin:/bin shapebench regress --revision HEAD --rounds 1 " TINY, 7,
            "too few samples");
     expect("cd repo && FAIL=2 shapebench regress --revision HEAD --rounds 1 " TINY, 6,
            "the baseline has no such scene");
+    expect("cd repo && FAIL=2 shapebench regress --revision HEAD --rounds 1 --format json " TINY
+           "| grep -c '\"scene\":'",
+           0, "1\n"); /* once, by its own name and not the file's */
     expect("cd repo && FAIL=139 shapebench regress --revision HEAD --rounds 1 " TINY, 1,
            "the baseline crashed on scene tiny.cfg (exit code 139)");
 }

@@ -70,6 +70,41 @@ static void outliers_are_beyond_tukeys_outer_fences(void **state)
     near(bench_quantile(far, 10, 0.25), 3.25, 1e-12);
 }
 
+/* Order statistics of the median from tables (Conover, Practical Nonparametric Statistics): of 9
+ * the 2nd and 8th, of 15 the 4th and 12th, of 20 the 6th and 15th; of 5 there is no 95%. */
+static void intervals_are_order_statistics(void **state)
+{
+    (void)state;
+    const int cases[][3] = {{5, 1, 5}, {6, 1, 6}, {9, 2, 8}, {15, 4, 12}, {20, 6, 15}, {1, 1, 1}};
+    double value[20];
+    for (int i = 0; i < 20; i++) value[i] = 1 + i;
+    for (int c = 0; c < 6; c++) {
+        int n = cases[c][0];
+        BenchInterval found = bench_quantile_interval(value, n, 0.5, 0.95);
+        assert_true(found.value == (n + 1) / 2.0);
+        assert_true(found.low == cases[c][1] && found.high == cases[c][2]);
+    }
+}
+
+/* At least as often as said, and not much more often. */
+static void intervals_hold_as_often_as_said(void **state)
+{
+    (void)state;
+    enum { TRIALS = 2000, SAMPLES = 31 };
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_rng_set(rng, 5);
+    int held = 0;
+    for (int t = 0; t < TRIALS; t++) {
+        double value[SAMPLES];
+        for (int i = 0; i < SAMPLES; i++) value[i] = gsl_ran_exponential(rng, 1);
+        BenchInterval found = bench_quantile_interval(value, SAMPLES, BENCH_LOW, 0.95);
+        held += found.low <= log(4.0 / 3) && log(4.0 / 3) <= found.high; /* its lower quartile */
+        assert_true(found.low <= found.value && found.value <= found.high);
+    }
+    gsl_rng_free(rng);
+    assert_true(held >= 0.94 * TRIALS && held <= 0.99 * TRIALS);
+}
+
 enum { ROUNDS = 8, COUNT = 2 * ROUNDS };
 
 typedef struct {
@@ -172,6 +207,8 @@ int main(void)
         cmocka_unit_test(mann_whitney_is_scipys),
         cmocka_unit_test(mann_whitney_of_next_to_nothing_is_1),
         cmocka_unit_test(holm_is_rs),
+        cmocka_unit_test(intervals_are_order_statistics),
+        cmocka_unit_test(intervals_hold_as_often_as_said),
         cmocka_unit_test(outliers_are_beyond_tukeys_outer_fences),
         cmocka_unit_test(the_interval_holds_the_ratio),
         cmocka_unit_test(noise_bounds_what_one_build_differs_by),

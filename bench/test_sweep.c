@@ -1,4 +1,4 @@
-/* A sweep's parts: ranges, plans, the front, recommendations, and the file. */
+/* A sweep's parts: ranges, plans, and the file. */
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -161,6 +161,8 @@ static BenchPoint make_point(const BenchPlan *plan, int index, double ms, double
     point.valid = isfinite(ms);
     point.particles = 295;
     point.total_ms = ms;
+    point.total_low_ms = 0.95 * ms;
+    point.total_high_ms = 1.05 * ms;
     point.path_rms = path;
     point.path_most = 2 * path;
     point.goal_rms = 0.02;
@@ -171,66 +173,6 @@ static BenchPoint make_point(const BenchPlan *plan, int index, double ms, double
     if (!point.valid) strcpy(point.reason, "goals are off");
     strcpy(point.host, "here");
     return point;
-}
-
-static void the_front_is_marked(void **state)
-{
-    (void)state;
-    BenchPlan plan = make_plan("both");
-    BenchPoint point[] = {
-        make_point(&plan, 0, 4, 0, 1),       /* on it: nothing deviates less */
-        make_point(&plan, 1, 5, 0, 1),       /* dearer, and no better */
-        make_point(&plan, 2, 1, 0.02, 1),    /* on it: the cheapest */
-        make_point(&plan, 3, 1, 0.03, 1),    /* as cheap, and worse */
-        make_point(&plan, 4, 2, 0.01, 1),    /* on it */
-        make_point(&plan, 5, 2, 0.01, 1),    /* the same: neither beats the other */
-        make_point(&plan, 6, NAN, 0.001, 1), /* INVALID */
-        make_point(&plan, 7, 0.5, NAN, 1),   /* no deviation known */
-    };
-    static const bool expected[] = {true, false, true, false, true, true, false, false};
-    bench_front_mark(point, 8);
-    for (int i = 0; i < 8; i++) assert_int_equal(point[i].front, expected[i]);
-}
-
-static void recommendations_meet_the_wish(void **state)
-{
-    (void)state;
-    BenchPlan plan = make_plan("both");
-    BenchPoint point[] = {
-        make_point(&plan, 0, 4, 0, 10),       make_point(&plan, 1, 1, 0.03, 20),
-        make_point(&plan, 2, 2, 0.008, 21),   make_point(&plan, 3, 1.5, 0.02, 40),
-        make_point(&plan, 4, NAN, 0.001, 30), make_point(&plan, 5, 0.1, NAN, 20),
-    };
-    const struct {
-        BenchWish wish;
-        long expected;
-        const char *words;
-    } cases[] = {
-        {{NAN, NAN, NAN},
-         2,
-         "For a deviation of at most 1% take the octree with w 1 edges and "
-         "epsilon 0.5: 2.00 ms"},
-        {{NAN, 3, NAN}, 1, "epsilon 0: 1.00 ms"},
-        {{NAN, 0, NAN}, 0, "fastlsm with w 1"},
-        {{20, NAN, NAN}, 1, "a beam of 20 Hz"},
-        {{20, 1, NAN}, 2, "epsilon 0.5"},
-        {{30, NAN, NAN}, 3, "nothing is within 10% of it"},
-        {{NAN, NAN, 1.7}, 3, "a step of at most 1.7 ms"},
-        {{NAN, NAN, 100}, 0, "itself full resolution"},
-        {{NAN, 0.5, 3}, -1, "within the budget and the deviation"},
-    };
-    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-        char sentence[BENCH_SENTENCE];
-        long best = bench_recommend(point, 6, &cases[c].wish, "edges", sentence);
-        if (best != cases[c].expected || !strstr(sentence, cases[c].words))
-            fail_msg("case %zu: %ld: %s", c, best, sentence);
-    }
-    char sentence[BENCH_SENTENCE];
-    point[1].parts = 4;
-    bench_recommend(point, 6, &cases[3].wish, "edges", sentence);
-    assert_non_null(strstr(sentence, "295 nodes in 4 parts that no region joins"));
-    assert_int_equal(bench_recommend(point + 4, 2, &cases[0].wish, "edges", sentence), -1);
-    assert_non_null(strstr(sentence, "no valid point"));
 }
 
 /* Three of the plan's eight points, one INVALID; the number in `first` is where it differs. */
@@ -474,16 +416,10 @@ static void a_full_disk_keeps_what_was(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ranges_are_numbers),
-        cmocka_unit_test(bad_ranges_are_refused),
-        cmocka_unit_test(a_plan_makes_its_points),
-        cmocka_unit_test(plans_differ_in_words),
-        cmocka_unit_test(the_front_is_marked),
-        cmocka_unit_test(recommendations_meet_the_wish),
-        cmocka_unit_test(a_sweep_comes_back),
-        cmocka_unit_test(merging_adds_and_refuses),
-        cmocka_unit_test(foreign_and_cut_files),
-        cmocka_unit_test(changed_files),
+        cmocka_unit_test(ranges_are_numbers),         cmocka_unit_test(bad_ranges_are_refused),
+        cmocka_unit_test(a_plan_makes_its_points),    cmocka_unit_test(plans_differ_in_words),
+        cmocka_unit_test(a_sweep_comes_back),         cmocka_unit_test(merging_adds_and_refuses),
+        cmocka_unit_test(foreign_and_cut_files),      cmocka_unit_test(changed_files),
         cmocka_unit_test(a_full_disk_keeps_what_was),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -64,21 +64,27 @@ static BenchClaim claim_of(BenchTest test, double paper, double tolerance)
     return claim;
 }
 
-static BenchCurve curve_of(int points, const double *y)
+/* Values with intervals of so many percent to each side. */
+static BenchCurve curve_with(int points, const double *y, double percent)
 {
     BenchCurve curve = {.valid = true, .row = -1, .points = points};
     for (int p = 0; p < points; p++) {
         curve.x[p] = p + 1;
         curve.y[p] = y[p];
-        curve.low[p] = 0.9 * y[p];
-        curve.high[p] = 1.1 * y[p];
+        curve.low[p] = (1 - percent / 100) * y[p];
+        curve.high[p] = (1 + percent / 100) * y[p];
     }
     return curve;
 }
 
-static BenchVerdict verdict_of(const BenchClaim *claim, double measured)
+static BenchCurve curve_of(int points, const double *y)
 {
-    BenchCurve curve = curve_of(1, &measured);
+    return curve_with(points, y, 10);
+}
+
+static BenchVerdict verdict_of(const BenchClaim *claim, double measured, double percent)
+{
+    BenchCurve curve = curve_with(1, &measured, percent);
     BenchFinding finding;
     bench_verdict_find(claim, &curve, NULL, &finding);
     return finding.verdict;
@@ -90,18 +96,103 @@ static void each_test_has_its_edges(void **state)
     const struct {
         BenchTest test;
         double tolerance, in, out;
-    } cases[] = {
-        {BENCH_IS_NEAR, 0.02, 101.9, 102.1}, {BENCH_IS_NEAR, 0.02, 98.1, 97.9},
-        {BENCH_IS_WITHIN, 5, 95.1, 94.9},    {BENCH_IS_WITHIN, 5, 104.9, 105.1},
-        {BENCH_IS_FACTOR, 2, 51, 49},        {BENCH_IS_FACTOR, 2, 199, 201},
-        {BENCH_IS_AT_LEAST, 0, 100, 99.9},   {BENCH_IS_AT_LEAST, 0.1, 90.1, 89.9},
-        {BENCH_IS_AT_MOST, 0, 100, 100.1},   {BENCH_IS_AT_MOST, 0.1, 109.9, 110.1},
-        {BENCH_LIES_INSIDE, 15, 104, 105},   {BENCH_LIES_INSIDE, 15, 95, 94},
-    };
+    } cases[] = {{BENCH_IS_NEAR, 0.02, 101.9, 102.1}, {BENCH_IS_NEAR, 0.02, 98.1, 97.9},
+                 {BENCH_IS_WITHIN, 5, 95.1, 94.9},    {BENCH_IS_WITHIN, 5, 104.9, 105.1},
+                 {BENCH_IS_FACTOR, 2, 51, 49},        {BENCH_IS_FACTOR, 2, 199, 201},
+                 {BENCH_IS_AT_LEAST, 0, 100, 99.9},   {BENCH_IS_AT_LEAST, 0.1, 90.1, 89.9},
+                 {BENCH_IS_AT_MOST, 0, 100, 100.1},   {BENCH_IS_AT_MOST, 0.1, 109.9, 110.1},
+                 {BENCH_LIES_INSIDE, 5, 104.9, 105.1}};
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
         BenchClaim claim = claim_of(cases[c].test, 100, cases[c].tolerance);
-        assert_int_equal(verdict_of(&claim, cases[c].in), BENCH_REPRODUCED);
-        assert_int_equal(verdict_of(&claim, cases[c].out), BENCH_NOT_REPRODUCED);
+        assert_int_equal(verdict_of(&claim, cases[c].in, 0), BENCH_REPRODUCED); /* exact ones */
+        assert_int_equal(verdict_of(&claim, cases[c].out, 0), BENCH_NOT_REPRODUCED);
+        if (cases[c].test == BENCH_LIES_INSIDE) continue;
+        assert_int_equal(verdict_of(&claim, cases[c].in, 10), BENCH_REPRODUCED);
+        assert_int_equal(verdict_of(&claim, cases[c].out, 10), BENCH_UNDECIDED);
+    }
+    BenchClaim claim = claim_of(BENCH_LIES_INSIDE, 100, 15);
+    assert_int_equal(verdict_of(&claim, 104, 10), BENCH_REPRODUCED); /* 93.6 to 114.4 */
+    assert_int_equal(verdict_of(&claim, 105, 10), BENCH_UNDECIDED);
+    assert_int_equal(verdict_of(&claim, 130, 10), BENCH_NOT_REPRODUCED); /* from 117 */
+}
+
+/* The exponent of naive sums: 2.90, from 2.69 to 3.12, wanted 3 within 0.25. */
+static void an_interval_beyond_the_band_is_no_contradiction(void **state)
+{
+    (void)state;
+    const struct {
+        double value, low, high;
+        BenchVerdict expected, different;
+        const char *words;
+    } cases[] = {
+        {2.9, 2.8, 3.0, BENCH_REPRODUCED, BENCH_REPRODUCED, "within 0.25 of 3"},
+        {2.9, 2.69, 3.12, BENCH_REPRODUCED, BENCH_HAS_DIFFERED,
+         "within 0.25 of 3; the 95% interval is only partly so"},
+        {2.7, 2.5, 2.9, BENCH_UNDECIDED, BENCH_HAS_DIFFERED,
+         "wanted: within 0.25 of 3; the 95% interval is partly so: a quieter machine may tell"},
+        {2.7, 2.66, 2.74, BENCH_NOT_REPRODUCED, BENCH_HAS_DIFFERED, "wanted: within 0.25 of 3"},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        BenchClaim claim = claim_of(BENCH_IS_WITHIN, 3, 0.25);
+        BenchCurve curve = curve_of(1, &cases[c].value);
+        BenchFinding finding;
+        curve.low[0] = cases[c].low;
+        curve.high[0] = cases[c].high;
+        bench_verdict_find(&claim, &curve, NULL, &finding);
+        assert_int_equal(finding.verdict, cases[c].expected);
+        assert_string_equal(finding.words, cases[c].words);
+        assert_true(bench_verdict_all(&finding, 1) == (cases[c].expected != BENCH_NOT_REPRODUCED));
+        claim.expect = BENCH_DIFFERS;
+        bench_verdict_find(&claim, &curve, NULL, &finding);
+        assert_int_equal(finding.verdict, cases[c].different);
+    }
+}
+
+/* The largest estimate is the luckiest one; what holds is where an interval begins. */
+static void the_largest_is_not_the_luckiest(void **state)
+{
+    (void)state;
+    const double y[] = {100, 104, 97};
+    BenchCurve curve = curve_with(3, y, 2);
+    BenchClaim claim = claim_of(BENCH_IS_AT_LEAST, 100, 0);
+    BenchFinding finding;
+    curve.low[1] = 60; /* a noisy point */
+    curve.high[1] = 150;
+    claim.reduction = BENCH_AS_LARGEST;
+    bench_verdict_find(&claim, &curve, NULL, &finding);
+    assert_true(finding.value[0] == 100 && finding.low[0] == 98 && finding.high[0] == 150);
+    assert_int_equal(finding.verdict, BENCH_REPRODUCED);
+    claim.value[0] = 101;
+    bench_verdict_find(&claim, &curve, NULL, &finding);
+    assert_int_equal(finding.verdict, BENCH_UNDECIDED);
+}
+
+/* A step between points whose intervals overlap contradicts nothing. */
+static void a_trend_is_contradicted_by_what_is_apart(void **state)
+{
+    (void)state;
+    const double rising[] = {1, 2, 4}, nearly[] = {1, 2, 1.99}, wavy[] = {1, 2, 1.5};
+    const struct {
+        const double *y;
+        double percent;
+        BenchVerdict verdict;
+    } cases[] = {{rising, 0, BENCH_REPRODUCED},
+                 {rising, 40, BENCH_REPRODUCED},
+                 {nearly, 5, BENCH_UNDECIDED},
+                 {nearly, 0, BENCH_NOT_REPRODUCED},
+                 {wavy, 5, BENCH_NOT_REPRODUCED}};
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        double fall[3];
+        for (int i = 0; i < 3; i++) fall[i] = cases[c].y[2 - i];
+        BenchCurve up = curve_with(3, cases[c].y, cases[c].percent);
+        BenchCurve down = curve_with(3, fall, cases[c].percent);
+        BenchClaim claim = {.test = BENCH_RISES};
+        BenchFinding finding;
+        bench_verdict_find(&claim, &up, NULL, &finding);
+        assert_int_equal(finding.verdict, cases[c].verdict);
+        claim.test = BENCH_FALLS;
+        bench_verdict_find(&claim, &down, NULL, &finding);
+        assert_int_equal(finding.verdict, cases[c].verdict);
     }
 }
 
@@ -111,10 +202,10 @@ static void the_verdict_follows_what_is_expected(void **state)
     BenchClaim claim = claim_of(BENCH_IS_NEAR, 100, 0.1);
     strcpy(claim.because, "of the weather");
     claim.expect = BENCH_DIFFERS;
-    assert_int_equal(verdict_of(&claim, 150), BENCH_HAS_DIFFERED);
-    assert_int_equal(verdict_of(&claim, 100), BENCH_REPRODUCED);
+    assert_int_equal(verdict_of(&claim, 150, 5), BENCH_HAS_DIFFERED);
+    assert_int_equal(verdict_of(&claim, 100, 5), BENCH_REPRODUCED);
     claim.expect = BENCH_NOT_COMPARABLE;
-    assert_int_equal(verdict_of(&claim, 100), BENCH_CANNOT_COMPARE);
+    assert_int_equal(verdict_of(&claim, 100, 5), BENCH_CANNOT_COMPARE);
 
     BenchFinding all[3] = {{.verdict = BENCH_REPRODUCED},
                            {.verdict = BENCH_HAS_DIFFERED},
@@ -230,7 +321,12 @@ static void words_are_short_and_whole(void **state)
     bench_verdict_measured(&finding, sizeof text, text);
     assert_string_equal(text, "2.94 (2.65 to 3.24)");
     bench_verdict_test(&claim, sizeof text, text);
-    assert_string_equal(text, "quartiles within 0.25 of 3");
+    assert_string_equal(text, "95% interval within 0.25 of 3");
+    const double two[] = {3, 40};
+    curve = curve_of(2, two);
+    bench_verdict_find(&claim, &curve, NULL, &finding);
+    bench_verdict_measured(&finding, sizeof text, text);
+    assert_string_equal(text, "3/40 (+-4)");
     claim.values = 3;
     claim.value[1] = 0.5;
     claim.value[2] = NAN;
@@ -245,6 +341,9 @@ int main(void)
         cmocka_unit_test(intervals_are_students),
         cmocka_unit_test(what_has_no_power_is_not_fitted),
         cmocka_unit_test(each_test_has_its_edges),
+        cmocka_unit_test(an_interval_beyond_the_band_is_no_contradiction),
+        cmocka_unit_test(the_largest_is_not_the_luckiest),
+        cmocka_unit_test(a_trend_is_contradicted_by_what_is_apart),
         cmocka_unit_test(the_verdict_follows_what_is_expected),
         cmocka_unit_test(what_failed_its_check_says_nothing),
         cmocka_unit_test(exponents_gains_and_trends_are_of_curves),

@@ -9,8 +9,8 @@
 
 const char *bench_verdict_name(BenchVerdict verdict)
 {
-    static const char *const names[BENCH_VERDICTS] = {"reproduced", "not reproduced", "differs",
-                                                      "not comparable", "INVALID"};
+    static const char *const names[BENCH_VERDICTS] = {
+        "reproduced", "undecided", "not reproduced", "differs", "not comparable", "INVALID"};
     return names[verdict];
 }
 
@@ -54,7 +54,7 @@ static void set_value(BenchFinding *finding, double value, double low, double hi
 /* False where the curve has nothing to take. */
 static bool reduce(const BenchCurve *curve, BenchFinding *finding)
 {
-    int last = curve->points - 1, most = 0;
+    int last = curve->points - 1, most = 0, end = 0;
     BenchFit fit;
     finding->trend = trend_of(curve);
     switch (finding->claim.reduction) {
@@ -72,91 +72,117 @@ static bool reduce(const BenchCurve *curve, BenchFinding *finding)
         set_value(finding, fit.exponent, fit.low, fit.high);
         return true;
     case BENCH_AS_LARGEST:
-        for (int p = 1; p <= last; p++)
-            if (curve->y[p] > curve->y[most]) most = p;
-        break;
+        if (last < 0) return false;
+        for (int p = 1; p <= last; p++) {
+            if (curve->low[p] > curve->low[most]) most = p;
+            if (curve->high[p] > curve->high[end]) end = p;
+        }
+        set_value(finding, curve->y[most], curve->low[most], curve->high[end]);
+        return true;
     case BENCH_AS_GAIN:
         if (last < 1) return false;
         set_value(finding, curve->y[last] / curve->y[0], curve->low[last] / curve->high[0],
                   curve->high[last] / curve->low[0]);
         return true;
     }
-    if (last < 0) return false;
-    set_value(finding, curve->y[most], curve->low[most], curve->high[most]);
-    return true;
+    return false;
 }
 
 /* ---- from values to a verdict */
 
-static bool passes_at(const BenchFinding *finding, int v, double paper)
+/* Where a value is that has an interval, from best to worst. */
+typedef enum {
+    SHOWN,  /* the whole interval is in the band */
+    WITHIN, /* the estimate is, and some of the interval is not */
+    OPEN,   /* the estimate is not, and some of the interval is */
+    OUTSIDE /* all of it */
+} Grade;
+
+static void find_band(const BenchClaim *claim, double paper, double band[2])
 {
-    double t = finding->claim.tolerance, value = finding->value[v];
-    double low = finding->low[v], high = finding->high[v];
-    switch (finding->claim.test) {
-    case BENCH_IS_NEAR:
-        return fabs(value / paper - 1) <= t;
-    case BENCH_IS_WITHIN:
-        return fabs(value - paper) <= t;
-    case BENCH_IS_FACTOR:
-        return value / paper <= t && value / paper >= 1 / t;
-    case BENCH_IS_AT_LEAST:
-        return value >= paper * (1 - t);
-    case BENCH_IS_AT_MOST:
-        return value <= paper * (1 + t);
-    case BENCH_LIES_INSIDE:
-        return paper - t <= low && high <= paper + t;
-    case BENCH_RISES:
-        return finding->trend > 0;
-    case BENCH_FALLS:
-        return finding->trend < 0;
+    double t = claim->tolerance, share = fabs(paper) * t;
+    bool factor = claim->test == BENCH_IS_FACTOR, inside = claim->test == BENCH_LIES_INSIDE;
+    double slack = inside || claim->test == BENCH_IS_WITHIN ? t : share;
+    band[0] = claim->test == BENCH_IS_AT_MOST ? -INFINITY : paper - slack;
+    band[1] = claim->test == BENCH_IS_AT_LEAST ? INFINITY : paper + slack;
+    if (!factor) return;
+    band[0] = fmin(paper * t, paper / t);
+    band[1] = fmax(paper * t, paper / t);
+}
+
+static Grade grade_at(const BenchFinding *finding, int v, double paper)
+{
+    double band[2], value = finding->value[v], low = finding->low[v], high = finding->high[v];
+    find_band(&finding->claim, paper, band);
+    if (low >= band[0] && high <= band[1]) return SHOWN;
+    if (high < band[0] || low > band[1]) return OUTSIDE;
+    bool strict = finding->claim.test == BENCH_LIES_INSIDE;
+    return value >= band[0] && value <= band[1] && !strict ? WITHIN : OPEN;
+}
+
+/* The worst of all steps from point to point; 1: they should rise, -1: fall. */
+static Grade grade_trend(const BenchCurve *curve, int way)
+{
+    Grade worst = SHOWN;
+    for (int p = 1; p < curve->points; p++) {
+        int to = way > 0 ? p : p - 1, from = way > 0 ? p - 1 : p;
+        Grade grade = curve->low[to] > curve->high[from]    ? SHOWN
+                      : curve->high[to] <= curve->low[from] ? OUTSIDE
+                      : curve->y[to] > curve->y[from]       ? WITHIN
+                                                            : OPEN;
+        if (grade > worst) worst = grade;
     }
-    return false;
+    return worst;
 }
 
 /* Every value that the paper gives; one paper's value is held against all measured. */
-static bool passes(const BenchFinding *finding)
+static Grade grade_all(const BenchFinding *finding)
 {
     const BenchClaim *claim = &finding->claim;
-    if (claim->test == BENCH_RISES || claim->test == BENCH_FALLS) return passes_at(finding, 0, NAN);
-    if (claim->values > 1 && claim->values != finding->count) return false;
+    Grade worst = SHOWN;
+    if (claim->values > 1 && claim->values != finding->count) return OUTSIDE;
     for (int v = 0; v < finding->count; v++) {
         double paper = claim->value[claim->values > 1 ? v : 0];
-        if (isfinite(paper) && !passes_at(finding, v, paper)) return false;
+        Grade grade = isfinite(paper) ? grade_at(finding, v, paper) : SHOWN;
+        if (grade > worst) worst = grade;
     }
-    return true;
+    return worst;
 }
 
-/* Is an interval so wide that it could be inside and outside of what is wanted? */
-static bool too_noisy(const BenchFinding *finding)
+static Grade grade_of(const BenchFinding *finding, const BenchCurve *curve)
 {
-    const BenchClaim *claim = &finding->claim;
-    if (claim->test != BENCH_LIES_INSIDE || finding->count != 1) return false;
-    double t = claim->tolerance, paper = claim->value[0];
-    return finding->low[0] <= paper + t && finding->high[0] >= paper - t;
+    if (finding->claim.test == BENCH_RISES) return grade_trend(curve, 1);
+    if (finding->claim.test == BENCH_FALLS) return grade_trend(curve, -1);
+    return grade_all(finding);
 }
 
-static void judge(BenchFinding *finding)
+static BenchVerdict verdict_of(const BenchClaim *claim, Grade grade)
+{
+    if (claim->expect == BENCH_NOT_COMPARABLE) return BENCH_CANNOT_COMPARE;
+    if (claim->expect == BENCH_DIFFERS)
+        return grade == SHOWN ? BENCH_REPRODUCED : BENCH_HAS_DIFFERED;
+    if (grade == OPEN) return BENCH_UNDECIDED;
+    return grade == OUTSIDE ? BENCH_NOT_REPRODUCED : BENCH_REPRODUCED;
+}
+
+static void judge(BenchFinding *finding, const BenchCurve *curve)
 {
     const BenchClaim *claim = &finding->claim;
+    Grade grade = grade_of(finding, curve);
+    const char *but = grade == OPEN ? "; the 95% interval is partly so: a quieter machine may tell"
+                      : grade == WITHIN ? "; the 95% interval is only partly so"
+                                        : "";
     char test[96];
     bench_verdict_test(claim, sizeof test, test);
-    if (claim->expect == BENCH_NOT_COMPARABLE) {
-        finding->verdict = BENCH_CANNOT_COMPARE;
+    finding->verdict = verdict_of(claim, grade);
+    if (finding->verdict == BENCH_CANNOT_COMPARE)
         snprintf(finding->words, sizeof finding->words, "not comparable: %s", claim->because);
-    } else if (passes(finding)) {
-        finding->verdict = BENCH_REPRODUCED;
-        snprintf(finding->words, sizeof finding->words, "%s%s%s", test,
-                 claim->because[0] ? "; " : "", claim->because);
-    } else if (claim->expect == BENCH_DIFFERS) {
-        finding->verdict = BENCH_HAS_DIFFERED;
+    else if (finding->verdict == BENCH_HAS_DIFFERED)
         snprintf(finding->words, sizeof finding->words, "differs because %s", claim->because);
-    } else {
-        finding->verdict = BENCH_NOT_REPRODUCED;
-        snprintf(finding->words, sizeof finding->words, "wanted: %s%s%s%s", test,
-                 too_noisy(finding) ? "; the interval is partly inside: a quieter machine may tell"
-                                    : "",
+    else
+        snprintf(finding->words, sizeof finding->words, "%s%s%s%s%s",
+                 finding->verdict == BENCH_REPRODUCED ? "" : "wanted: ", test, but,
                  claim->because[0] ? "; " : "", claim->because);
-    }
 }
 
 void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const BenchCurve *over,
@@ -170,7 +196,7 @@ void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const 
     for (int v = 0; v < finding->count && ratio->valid; v++)
         if (!isfinite(finding->value[v])) bench_curve_fail(ratio, "what follows is not a number");
     if (ratio->valid)
-        judge(finding);
+        judge(finding, ratio);
     else {
         finding->verdict = BENCH_INVALID;
         finding->count = 0;
@@ -224,6 +250,9 @@ void bench_verdict_measured(const BenchFinding *finding, size_t size, char *text
         snprintf(text, size, "INVALID");
         return;
     }
+    double half = 0;
+    for (int v = 0; v < finding->count; v++)
+        half = fmax(half, (finding->high[v] - finding->low[v]) / 2);
     join(finding->value, finding->count, sizeof value, value);
     if (claim->test == BENCH_RISES || claim->test == BENCH_FALLS) {
         char *slash = strchr(value, '/');
@@ -233,6 +262,9 @@ void bench_verdict_measured(const BenchFinding *finding, size_t size, char *text
         number_text(finding->low[0], sizeof low, low);
         number_text(finding->high[0], sizeof high, high);
         snprintf(text, size, "%s (%s to %s)", value, low, high);
+    } else if (half > 0) {
+        number_text(half, sizeof high, high);
+        snprintf(text, size, "%s (+-%s)", value, high);
     } else
         snprintf(text, size, "%s", value);
 }
@@ -242,8 +274,6 @@ void bench_verdict_test(const BenchClaim *claim, size_t size, char *text)
     char paper[64];
     double t = claim->tolerance;
     bench_verdict_paper(claim, sizeof paper, paper);
-    bool exponent = claim->reduction == BENCH_AS_EXPONENT;
-    const char *interval = exponent ? "95% interval" : "quartiles";
     switch (claim->test) {
     case BENCH_IS_NEAR:
         snprintf(text, size, "within %.3g%% of %s", 100 * t, paper);
@@ -263,7 +293,7 @@ void bench_verdict_test(const BenchClaim *claim, size_t size, char *text)
         if (t > 0) snprintf(text, size, "at most %s and %.3g%%", paper, 100 * t);
         break;
     case BENCH_LIES_INSIDE:
-        snprintf(text, size, "%s within %.3g of %s", interval, t, paper);
+        snprintf(text, size, "95%% interval within %.3g of %s", t, paper);
         break;
     case BENCH_RISES:
         snprintf(text, size, "rises from point to point");

@@ -1,4 +1,23 @@
-/* verdict.h - what was measured for a claim, and what that says of it. */
+/* verdict.h - what was measured for a claim, and what that says of it.
+ *
+ * A test accepts a band of values (claim.h), and what was measured is an estimate with its 95%
+ * confidence interval (experiment.h; of an exponent, the fit's; of a ratio, from the ends of both
+ * intervals that are farthest apart, which for independent ones is 95% or more). The verdict looks
+ * at both, so that noise does not turn it over where the value is near the band's edge:
+ *
+ * - reproduced: the estimate is in the band. Either the whole interval is, too: that the value is
+ *   in the band has been shown (an equivalence test, Schuirmann 1987, at 2.5% a side). Or it
+ * reaches beyond: nothing contradicts the claim, and the words say that it is not shown.
+ * - not reproduced: the whole interval is outside: a difference has been shown (at 2.5%).
+ * - undecided: the estimate is outside, but the interval reaches into the band.
+ * - differs, of what is expected to: the interval is not wholly in the band. Such a claim is
+ *   reproduced only where that is shown.
+ *
+ * "inside" is the strict test: without the whole interval in the band it is undecided. Of several
+ * values each must do; the worst one counts. "rises" and "falls" look at every step from point to
+ * point: the estimates must, and a step whose intervals are apart the wrong way contradicts it.
+ * What has no interval (counts) is either in the band or outside. Measured are the repeats of one
+ * run: a machine that does other work throughout shifts all of them. */
 #ifndef BENCH_VERDICT_H
 #define BENCH_VERDICT_H
 
@@ -6,6 +25,7 @@
 
 typedef enum {
     BENCH_REPRODUCED,
+    BENCH_UNDECIDED,      /* the measurement is too noisy to tell */
     BENCH_NOT_REPRODUCED, /* it should have been */
     BENCH_HAS_DIFFERED,   /* as expected, for the reason that the claim gives */
     BENCH_CANNOT_COMPARE,
@@ -25,19 +45,22 @@ typedef struct {
                             * first is divided by */
 } BenchFinding;
 
-/* Reduces `curve`, by `over` (or NULL) point by point, as the claim says, and judges it. The spread
- * of an exponent is its 95% confidence interval, else the quartiles. */
+/* Reduces `curve`, by `over` (or NULL) point by point, as the claim says, and judges it. The
+ * largest of several values is the one whose interval begins highest, and its interval goes from
+ * there to where the highest one ends: the largest estimate would be that with the luckiest noise.
+ */
 void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const BenchCurve *over,
                         BenchFinding *finding);
 
-/* "reproduced", "not reproduced", "differs", "not comparable", "INVALID". */
+/* "reproduced", "undecided", "not reproduced", "differs", "not comparable", "INVALID". */
 const char *bench_verdict_name(BenchVerdict verdict);
 
-/* Are all that should be reproduced, and none INVALID? */
+/* Is nothing INVALID, and nothing not reproduced that should be? What is undecided is no failure:
+ * it would come and go with the noise. */
 bool bench_verdict_all(const BenchFinding *findings, int count);
 
-/* "3", "18/17/18/30/17"; "rises", "falls". And "2.94 (2.90 to 2.98)", "35/13/10/38/5"; for a trend
- * the first and last value. */
+/* "3", "18/17/18/30/17"; "rises", "falls". And "2.94 (2.90 to 2.98)", the value and its interval;
+ * of several "35/13/10/38/5 (+-0.4)", half the widest one; for a trend the first and last value. */
 void bench_verdict_paper(const BenchClaim *claim, size_t size, char *text);
 void bench_verdict_measured(const BenchFinding *finding, size_t size, char *text);
 

@@ -110,7 +110,7 @@ def heat_map(axes, point, values, title, logarithmic):
 def front(axes, plan, point):
     cost, off = point["total_ms"], 100 * point["path_rms"]
     shown = numpy.isfinite(cost) & numpy.isfinite(off)
-    axes.set_title("cost against deviation; line: the front", fontsize=9)
+    axes.set_title("cost against deviation; rings: the front", fontsize=9)
     axes.set_xlabel("ms a step")
     axes.set_ylabel("path off, % rms")
     if not shown.any():
@@ -123,6 +123,8 @@ def front(axes, plan, point):
                                 vmin=point["w"].min(), vmax=point["w"].max(), label=engine)
     best = numpy.flatnonzero(shown & (point["front"] != 0))
     best = best[numpy.lexsort((off[best], cost[best]))]
+    axes.scatter(cost[best], off[best], marker="o", s=46, facecolors="none", edgecolors="0.3", linewidth=0.7)
+    best = best[off[best] <= numpy.minimum.accumulate(off[best])]  # others cost the same but for noise
     axes.step(cost[best], off[best], where="post", color="0.3", linewidth=1, zorder=0)
     for n, i in enumerate(best[:: max(1, len(best) // 5)]):
         name = f"w {point['w'][i]:g}" + (f", {point['epsilon'][i]:g}" if point["engine"][i] == OCTREE else "")
