@@ -57,6 +57,7 @@ static SmCode make_body(const BenchScene *scene, const BenchBody *of, BenchElast
     memcpy(*shown, mpu.points.position, (size_t)*count * sizeof **shown);
     RefField field = ref_mpu_field(&mpu);
     RefBodyOptions body = {.nodes = options.nodes > 0 ? options.nodes : REF_MESHLESS_NODES,
+                           .within = 0.01,
                            .coarser = options.uniform ? 0 : 1,
                            .basis = REF_MLS_LINEAR,
                            .material = options.material};

@@ -39,6 +39,7 @@ static long nodes_of(const RefField *field, const RefBodyOptions *options, doubl
 static double find_cell(const RefField *field, const RefBodyOptions *options)
 {
     double volume = 1, best = INFINITY, found = 0, fine = 0, coarse = INFINITY;
+    double within = options->within > 0 ? options->within : 0.05;
     for (int d = 0; d < 3; d++) volume *= field->high[d] - field->low[d];
     double cell = cbrt(volume / (double)options->nodes);
     for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
@@ -48,7 +49,7 @@ static double find_cell(const RefField *field, const RefBodyOptions *options)
             best = fabs(off);
             found = cell;
         }
-        if (best < 0.01) break;
+        if (best < within) break;
         if (off > 0)
             fine = fmax(fine, cell);
         else
