@@ -265,7 +265,7 @@ static void follow(BenchChanges *changes, const OctChange *change, long first)
     const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
     double start = sm_now();
     if (s->cut.triangles > first) {
-        SmSlitResult result = sm_slit(&changes->surface, &s->cut, first, s->cell, NULL);
+        SmSlitResult result = sm_slit(&changes->surface, &s->cut, first, s->cell);
         changes->left |= result == SM_SLIT_LEFT;
     }
     long count = 0;

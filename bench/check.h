@@ -177,7 +177,7 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text);
 
 #define BENCH_CONTACT_PAIRS      3e7
 #define BENCH_CONTACT_TOLERANCE  1e-6 /* cells; engines find contacts in double precision */
-#define BENCH_TURN_TOLERANCE     5e-4 /* engines keep rotations to 1/32767 */
+#define BENCH_TURN_TOLERANCE     5e-4 /* engines keep rotations to 1/16384 */
 #define BENCH_MOMENTUM_TOLERANCE 1e-6
 #define BENCH_LEFT_OUT           0.25
 

@@ -82,7 +82,7 @@ static void split_surface(BenchChanges *changes, long first)
     SmMesh *surface = &changes->surface;
     SmPieces pieces;
     part->runner.type->pieces(part->runner.engine, &pieces);
-    SmSlitResult result = sm_slit(surface, cut, first, part->body.voxels.cell, NULL);
+    SmSlitResult result = sm_slit(surface, cut, first, part->body.voxels.cell);
     sm_embed_cut(&changes->embedding, surface, &changes->sites, cut, first, pieces.piece);
     if (sever(changes, &pieces))
         sm_embed_cut(&changes->embedding, surface, &changes->sites, cut, cut->triangles,

@@ -60,11 +60,14 @@ struct Blocks {
                         each; none unless `running` */
 };
 
-/* What a pass does with the 12 sums of one or two blocks' regions, the second's after the first's;
- * it gives back 12 values each to bring down (shape matching: q, Rz, Ry, Rx) or 6 (damping: omega,
- * v_r - omega x c_r). */
-typedef void BlockSolve(Lsm *lsm, int layer, long block, int blocks, vec (*sum)[12], vec (*out)[12],
+/* What a pass does with the 12 sums of a group of blocks' regions that follow each other (shape
+ * matching: match.h); it writes what they bring down to `out`, where blocks are BLOCK values apart:
+ * 12 vectors each (q, Rz, Rx, Ry) or 6 (damping: omega, v_r - omega x c_r). */
+typedef void BlockSolve(Lsm *lsm, int layer, long block, int blocks, vec (*sum)[12], real *out,
                         SmLaps *laps);
+
+/* The most blocks of a group. */
+enum { BLOCK_GROUP = 4 };
 
 /* Blocks, rows and neighbours of the lattice; sets lsm->blocks, slot, particle, layers. */
 void lsm_blocks_build(Lsm *lsm);

@@ -193,35 +193,37 @@ SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, BlockRow at, int slot, i
     }
 }
 
-/* The stage up along y, 9 -> 12 values, and `solve` for one or two blocks of a row, into the ring
- * `below`. `solve` has its moments in the order z, y, x. */
-SM_INLINE void solve_some(Lsm *lsm, const Around *in, const BlockRun *run, int i, int blocks,
-                          int layer, int w, bool damping, bool moving, real *row, BlockSolve *solve,
-                          SmLaps *laps)
+/* The stage up along y, 9 -> 12 values, and `solve` for a group of blocks of a row, into the ring
+ * `below`. */
+SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int i, int blocks,
+                           int layer, int w, bool damping, bool moving, real *row,
+                           BlockSolve *solve, SmLaps *laps)
 {
-    vec sum[2][12], out[2][12];
-    for (int k = 0; k < blocks; k++)
+    vec sums[BLOCK_GROUP][12];
+    for (int k = 0; k < blocks; k++) {
+        vec *sum = sums[k];
         for (int f = 0; f < (damping ? 12 : 9); f++) {
-            int to = damping || f < 6 ? f : f + 3;
-            vec *moment = damping || f > 2 ? NULL : &sum[k][6 + f];
-            sum[k][to] = window_y(in, run->column + i + k, w, moving, f, 9 + f, moment);
+            bool weighed = !damping && f < 3;
+            vec moment = lanes_set(0);
+            sum[damping ? f : chain_value(f)] =
+                window_y(in, run->column + i + k, w, moving, f, 9 + f, weighed ? &moment : NULL);
+            if (weighed) sum[chain_value(9 + f)] = moment;
         }
+    }
     sm_lap(laps, damping ? SM_DAMPING : SM_FAST_SUM);
-    solve(lsm, layer, run->first + i, blocks, sum, out, laps);
-    for (int k = 0; k < blocks; k++)
-        for (int f = 0; f < (damping ? 6 : 12); f++) {
-            int from = damping || f < 6 ? f : f < 9 ? f + 3 : f - 3;
-            lanes_store(row + (run->column + i + k) * (long)BLOCK + f * SM_LANES, out[k][from]);
-        }
+    solve(lsm, layer, run->first + i, blocks, sums, row + (run->column + i) * (long)BLOCK, laps);
 }
 
 SM_INLINE void run_solve(Lsm *lsm, const Around *in, const BlockRun *run, int layer, int w,
                          bool damping, bool moving, real *row, BlockSolve *solve, SmLaps *laps)
 {
-    int i = 0;
-    for (; i + 1 < run->count; i += 2)
-        solve_some(lsm, in, run, i, 2, layer, w, damping, moving, row, solve, laps);
-    if (i < run->count) solve_some(lsm, in, run, i, 1, layer, w, damping, moving, row, solve, laps);
+    for (int i = 0, blocks; i < run->count; i += blocks) {
+        int left = run->count - i; /* no block is left for a group of its own */
+        blocks = left <= BLOCK_GROUP       ? left
+                 : left == BLOCK_GROUP + 1 ? BLOCK_GROUP - 1
+                                           : BLOCK_GROUP;
+        solve_group(lsm, in, run, i, blocks, layer, w, damping, moving, row, solve, laps);
+    }
 }
 
 /* The stage up along y and `solve` for the row whose row y + w is in slot `newest` of the ring

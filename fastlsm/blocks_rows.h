@@ -12,6 +12,12 @@
  * add and use them; damping sums four plain triples up and two down. */
 enum { BLOCK = 12 * SM_LANES, BLOCK_DOWN = 6 * SM_LANES };
 
+/* Which of a region's sums (C, A) or of its transform (q, R) value f is: match.h. */
+SM_INLINE int chain_value(int f)
+{
+    return f < 3 ? f : 3 + f % 3 * 3 + (f / 3 + 1) % 3;
+}
+
 /* Scratch of a thread. Rings hold the last 2 w + 2 rows of a plane, each [width][BLOCK]. */
 typedef struct {
     long pitch;      /* values in a row */

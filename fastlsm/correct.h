@@ -19,7 +19,7 @@ SM_INLINE Span corrections_of(const CorrectionList *list, long block)
     return (Span){list->of + list->first[block], list->of + list->first[block + 1]};
 }
 
-/* One correction of the sums up of a block's regions, in the order (C, Cz, Cy, Cx). */
+/* One correction of the sums up of a block's regions (match.h). */
 SM_INLINE void correct_region(const Lsm *lsm, const Correction *at, vec weight, vec *sum)
 {
     const real *x = lsm->x + at->source * 3L * SM_LANES;
@@ -27,7 +27,7 @@ SM_INLINE void correct_region(const Lsm *lsm, const Correction *at, vec weight, 
         vec p = lsm->pass == PASS_CONSTANTS ? weight : weight * lanes_load(x + d * SM_LANES);
         p = lanes_pick(p, at->shift, at->lanes);
         sum[d] += p;
-        for (int k = 0; k < 3; k++) sum[3 * k + 3 + d] += at->offset[2 - k] * p;
+        for (int k = 0; k < 3; k++) sum[3 + 3 * d + k] += at->offset[k] * p;
     }
 }
 
@@ -91,7 +91,7 @@ SM_INLINE void correct_down(const Lsm *lsm, long block, bool plain, vec *sums)
         for (int f = 0; f < n; f++) {
             vec value = lanes_load(T + f * SM_LANES);
             for (int k = 0; k < 3 && !plain; k++)
-                value -= at->offset[2 - k] * lanes_load(T + (3 * k + 3 + f) * SM_LANES);
+                value -= at->offset[k] * lanes_load(T + (3 + 3 * f + k) * SM_LANES);
             sum[f] += lanes_pick(at->sign * value, at->shift, at->lanes);
         }
     }

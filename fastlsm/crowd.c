@@ -164,24 +164,22 @@ SM_INLINE void match_region(Crowd *crowd, int side, long group, const GroupRows 
                             SmLaps *laps)
 {
     const Lsm *lsm = crowd->lsm;
-    static const int all_live[L] = {0};
-    vec S[15], c[3], A[9], R[9], q[3];
+    vec sums[15], S[12], R[9], q[3];
     RegionConst k = {.inverse_mass = lanes_set(crowd->region[p][0])};
     for (int d = 0; d < 3; d++) k.offset[d] = lanes_set(crowd->region[p][1 + d]);
-    last_level(crowd, side, r->plate, PLATE, p, 9, 0, S); /* (C, Cx, Cy, Cz) */
+    last_level(crowd, side, r->plate, PLATE, p, 9, 0, sums); /* (C, Cx, Cy, Cz) */
     for (int i = 0; i < 3; i++) {
-        vec x_moment = S[3 + i];
-        S[3 + i] = S[9 + i];
-        S[9 + i] = x_moment;
+        S[i] = sums[i];
+        for (int d = 0; d < 3; d++) S[MOMENT + 3 * i + d] = sums[3 * d + 3 + i];
     }
     sm_lap(laps, SM_FAST_SUM);
-    match_moments(S, &k, c, A);
-    store3(r->centre + p * 3 * L, c);
+    match_moments(&k, S);
+    store3(r->centre + p * 3 * L, S);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    polar_fast_lanes(1, (const vec(*)[9]) & A, all_live,
-                     crowd->last + (group * lsm->lattice.count + p) * 6 * L, &R);
+    polar_fast_lanes(S + MOMENT, LANES_ALL, crowd->last + (group * lsm->lattice.count + p) * 6 * L,
+                     R);
     sm_lap(laps, SM_POLAR);
-    match_centre(c, R, &k, q);
+    match_centre(S, R, &k, q);
     real *T = r->transform + (p + 1) * 12 * L;
     for (int i = 0; i < 3; i++) {
         lanes_store(T + i * L, q[i]);

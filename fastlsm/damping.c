@@ -93,29 +93,29 @@ static __attribute__((noinline)) void mend_sums(const Lsm *lsm, long block, vec 
 }
 
 /* Where lists or corrections read a block's rigid velocities. */
-static __attribute__((noinline)) void keep_velocities(const Lsm *lsm, long block, vec *out)
+static __attribute__((noinline)) void keep_velocities(const Lsm *lsm, long block, const real *from)
 {
+    vec out[6];
+    for (int i = 0; i < 6; i++) out[i] = lanes_load(from + i * SM_LANES);
     if (lsm->corrections)
         keep_solved(lsm, block, 6, out);
     else
         store_velocities(lsm, block, out);
 }
 
-SM_INLINE void solve_block(const Lsm *lsm, long block, vec *F, vec *out)
-{
-    vec c[3];
-    if (lsm->box->mixed[block]) on_copy(mend_sums, lsm, block, 12, F);
-    load3(lsm->centre + block * 3 * SM_LANES, c);
-    rigid_velocity(F, c, lsm->region_const[lsm->tile_const[block]].inverse_mass, out);
-    for (int i = 0; i < 6; i++) out[i] = lanes_keep(lsm->box->site[block], out[i]);
-    if (lsm->box->listed[block]) on_copy(keep_velocities, lsm, block, 6, out);
-}
-
-SM_INLINE void solve_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*F)[12],
-                            vec (*out)[12], SmLaps *laps)
+SM_INLINE void solve_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*F)[12], real *to,
+                            SmLaps *laps)
 {
     (void)layer, (void)laps;
-    for (int k = 0; k < blocks; k++) solve_block(lsm, block + k, F[k], out[k]);
+    for (int k = 0; k < blocks; k++, block++, to += BLOCK) {
+        vec c[3], out[6];
+        if (lsm->box->mixed[block]) mend_sums(lsm, block, F[k]);
+        load3(lsm->centre + block * 3 * SM_LANES, c);
+        rigid_velocity(F[k], c, lsm->region_const[lsm->tile_const[block]].inverse_mass, out);
+        for (int i = 0; i < 6; i++)
+            lanes_store(to + i * SM_LANES, lanes_keep(lsm->box->site[block], out[i]));
+        if (lsm->box->listed[block]) keep_velocities(lsm, block, to);
+    }
 }
 
 PLANE_PASSES(true, solve_blocks)

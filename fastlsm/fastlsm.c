@@ -47,61 +47,98 @@ static void bars_and_plates(Lsm *lsm, int layer, int thread, SmLaps *laps)
     sm_lap(laps, SM_FAST_SUM);
 }
 
-/* The list sums of SM_LANES regions, in lanes and in the order (C, Cz, Cy, Cx). */
+/* From rows of (C, Cx, Cy, Cz), each padded to four, to the sums of a tile (match.h). */
+SM_INLINE void sums_of_rows(const real *const row[SM_LANES], vec S[12])
+{
+    vec padded[16];
+    lanes_from_rows(row, padded);
+    for (int i = 0; i < 3; i++) {
+        S[i] = padded[i];
+        for (int d = 0; d < 3; d++) S[MOMENT + 3 * i + d] = padded[4 * (d + 1) + i];
+    }
+}
+
+/* The list sums of SM_LANES regions, in lanes. */
 static void region_sums(const Lsm *lsm, const int *region, vec S[12])
 {
     vec16 sums[SM_LANES] = {{0}};
     const real *row[SM_LANES];
-    vec padded[16];
     lsm_regions_up(lsm, region, sums);
     for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&sums[lane];
-    lanes_from_rows(row, padded);
-    for (int i = 0; i < 12; i++) S[i] = padded[(4 - i / 3) % 4 * 4 + i % 3];
+    sums_of_rows(row, S);
 }
 
-static void keep_constants(Lsm *lsm, long tile, const vec S[12])
+static void keep_constants(Lsm *lsm, long tile, unsigned site, const vec S[12])
 {
     RegionConst *k = &lsm->region_const[lsm->tile_const[tile]];
-    ivec live = S[0] > 0;
-    k->inverse_mass = lanes_and(1 / lanes_select(live, S[0], lanes_set(1)), live);
+    unsigned live = site & lanes_below(lanes_set(0), S[0]);
+    k->inverse_mass = lanes_keep(live, 1 / lanes_choose(live, S[0], lanes_set(1)));
     for (int d = 0; d < 3; d++) {
-        vec offset = S[9 - 3 * d] * k->inverse_mass;
+        vec offset = S[MOMENT + d] * k->inverse_mass;
         k->offset[d] =
             lanes_and(offset, lanes_abs(offset) > 8 * SM_EPSILON); /* the rest is rounding */
     }
 }
 
-/* Rotation of each region of one or two tiles that follow each other. */
-SM_INLINE void rotate(Lsm *lsm, int layer, long tile, int tiles, const vec (*A)[9], vec (*R)[9])
+/* Up to POLAR_TILES tiles of regions on the way from sums to transforms. */
+typedef struct {
+    unsigned live[POLAR_TILES]; /* lanes with a region */
+    PolarInvariants of[POLAR_TILES];
+    vec trace[POLAR_TILES];
+} Match;
+
+/* c_r, A_r and tr U of `tiles` tiles; false when only constants were wanted. */
+SM_INLINE bool match_begin(Lsm *lsm, long tile, int tiles, vec (*S)[12], Match *m, SmLaps *laps)
 {
+    for (int t = 0; t < tiles && lsm->pass == PASS_CONSTANTS; t++)
+        keep_constants(lsm, tile + t, m->live[t], S[t]);
+    if (lsm->pass == PASS_CONSTANTS) return false;
+    for (int t = 0; t < tiles; t++) {
+        match_moments(&lsm->region_const[lsm->tile_const[tile + t]], S[t]);
+        if (lsm->damp_now) store3(lsm->centre + (tile + t) * 3 * SM_LANES, S[t]);
+    }
+    sm_lap(laps, SM_SHAPE_MATCHING);
     if (lsm->params.polar == SM_POLAR_FAST) {
-        polar_fast_lanes(tiles, A, lsm->tile_slot + tile * SM_LANES,
-                         lsm->last + tile * 6 * SM_LANES, R);
-        return;
+        for (int t = 0; t < tiles; t++) polar_invariants(S[t] + MOMENT, &m->of[t]);
+        polar_traces(tiles, m->of, m->live, m->trace);
     }
-    for (int t = 0; t < tiles; t++, tile++) {
-        short *last = lsm->last + tile * 6 * SM_LANES;
-        lsm->sweeps[layer] += polar_jacobi_lanes(A[t], lsm->tile_slot + tile * SM_LANES, last,
-                                                 lsm->stretch + tile * 9 * SM_LANES, R[t]);
-        last_store(last, R[t]);
-    }
+    sm_lap(laps, SM_POLAR);
+    return true;
 }
 
-/* What a region brings down: (q, Rz, Ry, Rx). */
-SM_INLINE void transform(const vec q[3], const vec R[9], vec T[12])
+static __attribute__((noinline)) void rotate_jacobi(Lsm *lsm, int layer, long tile, unsigned live,
+                                                    const vec *A, vec *R)
 {
-    for (int i = 0; i < 3; i++) {
-        T[i] = q[i];
-        for (int d = 0; d < 3; d++) T[9 - 3 * d + i] = R[i * 3 + d];
+    short *last = lsm->last + tile * 6 * SM_LANES;
+    lsm->sweeps[layer] += polar_jacobi_lanes(A, live, last, lsm->stretch + tile * 9 * SM_LANES, R);
+    last_store(last, R);
+}
+
+/* R_r and q_r of tile number t of the group; S as match_begin() left it. */
+SM_INLINE void match_end(Lsm *lsm, int layer, long tile, const vec S[12], const Match *m, int t,
+                         vec q[3], vec R[9], SmLaps *laps)
+{
+    const vec *A = S + MOMENT;
+    if (lsm->params.polar == SM_POLAR_FAST) {
+        polar_finish(A, &m->of[t], m->trace[t], m->live[t], lsm->last + tile * 6 * SM_LANES, R);
+    } else {
+        vec jacobi[9];
+        rotate_jacobi(lsm, layer, tile, m->live[t], A, jacobi);
+        lanes_copy(9, jacobi, R);
     }
+    sm_lap(laps, SM_POLAR);
+    match_centre(S, R, &lsm->region_const[lsm->tile_const[tile]], q);
 }
 
 /* Scatters a tile's transforms as rows. */
-SM_INLINE void store_transforms(const Lsm *lsm, long tile, const vec T[12])
+SM_INLINE void store_transforms(const Lsm *lsm, long tile, const vec q[3], const vec R[9])
 {
     vec padded[16];
     real *row[SM_LANES];
-    for (int i = 0; i < 16; i++) padded[i] = i % 4 < 3 ? T[i / 4 * 3 + i % 4] : lanes_set(0);
+    for (int i = 0; i < 4; i++) {
+        padded[i] = i < 3 ? q[i] : lanes_set(0);
+        for (int d = 0; d < 3; d++) padded[4 * (3 - d) + i] = i < 3 ? R[i * 3 + d] : lanes_set(0);
+    }
     for (int lane = 0; lane < SM_LANES; lane++) {
         int slot = lsm->tile_slot[tile * SM_LANES + lane];
         row[lane] =
@@ -125,41 +162,13 @@ static void copy_transforms(Lsm *lsm, int layer)
     }
 }
 
-/* c_r, A_r, R_r, q_r of one or two tiles from their sums; false when only constants were wanted. */
-SM_INLINE bool match_sums(Lsm *lsm, int layer, long tile, int tiles, const vec (*S)[12],
-                          vec (*q)[3], vec (*R)[9], SmLaps *laps)
-{
-    vec c[2][3], A[2][9];
-    if (lsm->pass == PASS_CONSTANTS) {
-        for (int t = 0; t < tiles; t++) keep_constants(lsm, tile + t, S[t]);
-        return false;
-    }
-    for (int t = 0; t < tiles; t++) {
-        match_moments(S[t], &lsm->region_const[lsm->tile_const[tile + t]], c[t], A[t]);
-        if (lsm->damp_now) store3(lsm->centre + (tile + t) * 3 * SM_LANES, c[t]);
-    }
-    sm_lap(laps, SM_SHAPE_MATCHING);
-    rotate(lsm, layer, tile, tiles, (const vec(*)[9])A, R);
-    sm_lap(laps, SM_POLAR);
-    for (int t = 0; t < tiles; t++)
-        match_centre(c[t], R[t], &lsm->region_const[lsm->tile_const[tile + t]], q[t]);
-    return true;
-}
-
-/* The same from the rows of a tile's chained sums. */
-static void chained_sums(const Lsm *lsm, long tile, vec S[12])
-{
-    vec padded[16];
-    const real *row[SM_LANES];
-    tile_rows(lsm, tile, row);
-    lanes_from_rows(row, padded);
-    for (int i = 0; i < 12; i++) S[i] = padded[(4 - i / 3) % 4 * 4 + i % 3];
-}
-
+/* The sums of a tile, by lists or chains. */
 static void tile_sums(const Lsm *lsm, long tile, vec S[12])
 {
     if (lsm->chains) {
-        chained_sums(lsm, tile, S);
+        const real *row[SM_LANES];
+        tile_rows(lsm, tile, row);
+        sums_of_rows(row, S);
         return;
     }
     int region[SM_LANES];
@@ -167,79 +176,73 @@ static void tile_sums(const Lsm *lsm, long tile, vec S[12])
     region_sums(lsm, region, S);
 }
 
-/* List form: one or two tiles of regions. */
-SM_INLINE void match_tiles(Lsm *lsm, int layer, long tile, int tiles, SmLaps *laps)
+/* List form: a group of tiles of regions. */
+static void match_tiles(Lsm *lsm, int layer, long tile, int tiles, SmLaps *laps)
 {
-    vec S[2][12], R[2][9], q[2][3];
-    for (int t = 0; t < tiles; t++) tile_sums(lsm, tile + t, S[t]);
+    Match m;
+    vec S[POLAR_TILES][12];
+    for (int t = 0; t < tiles; t++) {
+        tile_sums(lsm, tile + t, S[t]);
+        m.live[t] = live_lanes(lsm->tile_slot + (tile + t) * SM_LANES);
+    }
     sm_lap(laps, SM_FAST_SUM);
-    if (match_sums(lsm, layer, tile, tiles, (const vec(*)[12])S, q, R, laps))
-        for (int t = 0; t < tiles; t++) {
-            transform(q[t], R[t], S[t]);
-            store_transforms(lsm, tile + t, S[t]);
-        }
-    sm_lap(laps, SM_SHAPE_MATCHING);
+    if (!match_begin(lsm, tile, tiles, S, &m, laps)) return;
+    for (int t = 0; t < tiles; t++) {
+        vec q[3], R[9];
+        match_end(lsm, layer, tile + t, S[t], &m, t, q, R, laps);
+        store_transforms(lsm, tile + t, q, R);
+        sm_lap(laps, SM_SHAPE_MATCHING);
+    }
 }
 
-/* The lanes of a block that lists sum replace its box sums. */
-static void replace_sums(const Lsm *lsm, long block, vec S[12])
+/* Where lists or corrections make a block's sums exact. */
+static __attribute__((noinline)) void mend_sums(const Lsm *lsm, long block, vec *S)
 {
-    const int *region = lsm->block_region + block * SM_LANES;
+    if (lsm->corrections) {
+        correct_regions(lsm, block, S);
+        return;
+    }
+    const int *region = lsm->block_region + block * SM_LANES; /* whose lanes replace box sums */
     vec listed[12];
     region_sums(lsm, region, listed);
     ivec lanes = listed_lanes(region);
     for (int i = 0; i < 12; i++) S[i] = lanes_select(lanes, listed[i], S[i]);
 }
 
-/* Where lists or corrections make a block's sums exact. */
-static __attribute__((noinline)) void mend_sums(const Lsm *lsm, long block, vec *S)
+/* Where lists or corrections read a block's transforms, which are those of a row (blocks_rows.h).
+ */
+static __attribute__((noinline)) void keep_transforms(const Lsm *lsm, long block, const real *out)
 {
-    if (lsm->corrections)
-        correct_regions(lsm, block, S);
-    else
-        replace_sums(lsm, block, S);
-}
-
-/* Where lists or corrections read a block's transforms. */
-static __attribute__((noinline)) void keep_transforms(const Lsm *lsm, long block, vec *T)
-{
+    vec T[12];
+    for (int f = 0; f < 12; f++) T[chain_value(f)] = lanes_load(out + f * SM_LANES);
     if (lsm->corrections)
         keep_solved(lsm, block, 12, T);
     else
-        store_transforms(lsm, block, T);
+        store_transforms(lsm, block, T, T + 3);
 }
 
-/* Empty lanes hold the sums of a unit matrix: the quickest to rotate, and their constants are zero.
- */
-SM_INLINE void empty_sums(unsigned site, vec S[12])
-{
-    for (int i = 0; i < 12; i++) {
-        bool diagonal = i == 5 || i == 7 || i == 9;
-        S[i] = diagonal ? lanes_choose(site, S[i], lanes_set(1)) : lanes_keep(site, S[i]);
-    }
-}
-
-/* Block form: the regions centred in one or two blocks that follow each other. */
-SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S)[12],
-                            vec (*out)[12], SmLaps *laps)
+/* Block form: the regions centred in a group of blocks that follow each other. */
+SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S)[12], real *out,
+                            SmLaps *laps)
 {
     const Blocks *box = lsm->box;
-    vec R[2][9], q[2][3];
+    Match m;
     for (int k = 0; k < blocks; k++) {
-        if (box->mixed[block + k]) on_copy(mend_sums, lsm, block + k, 12, S[k]);
-        empty_sums(box->site[block + k], S[k]);
+        m.live[k] = box->site[block + k];
+        if (box->mixed[block + k]) mend_sums(lsm, block + k, S[k]);
     }
     sm_lap(laps, SM_FAST_SUM);
-    bool matched = match_sums(lsm, layer, block, blocks, (const vec(*)[12])S, q, R, laps);
-    for (int k = 0; k < blocks; k++) {
+    bool matched = match_begin(lsm, block, blocks, S, &m, laps);
+    for (int k = 0; k < blocks; k++, out += BLOCK) {
+        vec q[3], R[9];
         if (!matched) {
-            for (int f = 0; f < 12; f++) out[k][f] = lanes_set(0);
+            for (int f = 0; f < 12; f++) lanes_store(out + f * SM_LANES, lanes_set(0));
             continue;
         }
-        transform(q[k], R[k], out[k]);
-        for (int f = 0; f < 12; f++) /* empty lanes bring nothing down */
-            out[k][f] = lanes_keep(box->site[block + k], out[k][f]);
-        if (box->listed[block + k]) on_copy(keep_transforms, lsm, block + k, 12, out[k]);
+        match_end(lsm, layer, block + k, S[k], &m, k, q, R, laps);
+        for (int f = 0; f < 12; f++)
+            lanes_store(out + f * SM_LANES, f < 3 ? q[f] : R[chain_value(f) - MOMENT]);
+        if (box->listed[block + k]) keep_transforms(lsm, block + k, out);
     }
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
@@ -249,8 +252,9 @@ PLANE_PASSES(false, match_blocks)
 static void match_layer(Lsm *lsm, int layer, SmLaps *laps)
 {
     long tile = lsm->layer_tile[layer], end = lsm->layer_tile[layer + 1];
-    for (; tile + 1 < end; tile += 2) match_tiles(lsm, layer, tile, 2, laps);
-    if (tile < end) match_tiles(lsm, layer, tile, 1, laps);
+    for (; tile < end; tile += POLAR_TILES)
+        match_tiles(lsm, layer, tile, end - tile < POLAR_TILES ? (int)(end - tile) : POLAR_TILES,
+                    laps);
 }
 
 static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)

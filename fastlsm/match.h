@@ -12,17 +12,18 @@ SM_INLINE bool match_is_centred(const RegionConst *k)
     return !lanes_any((ivec)k->offset[0] | (ivec)k->offset[1] | (ivec)k->offset[2]);
 }
 
-/* c_r (eq. 9) and A_r (eq. 11) from the sums S = (C, Cz, Cy, Cx) about the region's lattice centre:
- * column d of A is C_d - C offset_d, which is sum m~ x (x0 - c0)^T. */
-SM_INLINE void match_moments(const vec S[12], const RegionConst *k, vec c[3], vec A[9])
+/* What a region's sums are: S = (C, A), of C = sum m~ x and of its moments about the region's
+ * lattice centre, A[3 i + d] along axis d of component i. */
+enum { MOMENT = 3 };
+
+/* c_r (eq. 9) and A_r (eq. 11), in the place of the sums: column d of A less C offset_d is
+ * sum m~ x (x0 - c0)^T. */
+SM_INLINE void match_moments(const RegionConst *k, vec S[12])
 {
-    for (int i = 0; i < 3; i++) {
-        c[i] = S[i] * k->inverse_mass;
-        for (int d = 0; d < 3; d++) A[i * 3 + d] = S[9 - d * 3 + i];
-    }
-    if (match_is_centred(k)) return;
-    for (int i = 0; i < 3; i++)
-        for (int d = 0; d < 3; d++) A[i * 3 + d] -= S[i] * k->offset[d];
+    if (!match_is_centred(k))
+        for (int i = 0; i < 3; i++)
+            for (int d = 0; d < 3; d++) S[MOMENT + i * 3 + d] -= S[i] * k->offset[d];
+    for (int i = 0; i < 3; i++) S[i] *= k->inverse_mass;
 }
 
 /* The position that region r gives its own centre: q_r = c_r + R_r (x0_r - c0_r). */
@@ -36,14 +37,14 @@ SM_INLINE void match_centre(const vec c[3], const vec R[9], const RegionConst *k
 
 /* Jacobi, lane by lane, as the paper does it. Returns the sweeps, summed over live lanes. */
 static __attribute__((noinline, unused)) double
-polar_jacobi_lanes(const vec A[9], const int *slot, short *last, float *stretch, vec R[9])
+polar_jacobi_lanes(const vec *A, unsigned live, short *last, float *stretch, vec *R)
 {
     vec before[9];
     double sweeps = 0;
     last_load(last, before);
     for (int lane = 0; lane < SM_LANES; lane++) {
-        if (slot[lane] < 0) {
-            for (int i = 0; i < 9; i++) R[i][lane] = i % 4 == 0;
+        if (!(live >> lane & 1)) {
+            for (int i = 0; i < 9; i++) R[i][lane] = 0;
             continue;
         }
         double a[9], b[9], V[9], r[9];

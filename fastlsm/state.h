@@ -101,7 +101,7 @@ typedef struct Lsm {
     int *tile_const; /* [tiles] */
     RegionConst *region_const;
     real *centre;   /* [tiles][3][lanes] c_r, kept for damping; room for g */
-    short *last;    /* [tiles][6][lanes] two columns of the last rotation, in 1/32767 */
+    short *last;    /* [tiles][6][lanes] two columns of the last rotation (rotate_lanes.h) */
     float *stretch; /* [tiles][9][lanes] eigenvectors for the warm-started Jacobi method, or NULL */
     double *sweeps; /* [layers] Jacobi sweeps of the last step */
     long copies;    /* regions identical to another */
@@ -143,6 +143,14 @@ SM_INLINE ivec listed_lanes(const int *region)
 {
     typedef int narrow __attribute__((vector_size(SM_LANES * sizeof(int)), aligned(sizeof(int))));
     return __builtin_convertvector(*(const narrow *)region, ivec) >= 0;
+}
+
+/* The lanes whose slot is not negative, as bits. */
+SM_INLINE unsigned live_lanes(const int slot[SM_LANES])
+{
+    unsigned live = 0;
+    for (int lane = 0; lane < SM_LANES; lane++) live |= (unsigned)(slot[lane] >= 0) << lane;
+    return live;
 }
 
 /* List form: the rows of sets.region of a tile. */

@@ -1,7 +1,6 @@
 #include "carve.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,14 +22,6 @@ typedef struct {
     long of_solid;        /* triangle of `facets` from which they are the solid's */
     bool torn;
 } Carving;
-
-void sm_carve_change_free(SmCarveChange *change)
-{
-    free(change->origin);
-    free(change->triangle);
-    free(change->vertex);
-    *change = (SmCarveChange){0};
-}
 
 /* Fills cut faces from `first` on and notes which corners stay. */
 static SmFacetResult fill_faces(Carving *c, long first, long last)
@@ -244,73 +235,8 @@ static bool sound(const Carving *c)
     return good;
 }
 
-/* Where point `at` of a face is between its corners. */
-static void find_shares(const Carving *c, const int corner[3], const double at[3], double share[3])
-{
-    double u[3], v[3], w[3], normal[3], part[3], sum = 0;
-    const double *p[3];
-    for (int i = 0; i < 3; i++) p[i] = sm_crossing_at(&c->crossing, corner[i]);
-    for (int d = 0; d < 3; d++) {
-        u[d] = p[1][d] - p[0][d];
-        v[d] = p[2][d] - p[0][d];
-    }
-    sm_cross(u, v, normal);
-    for (int i = 0; i < 3; i++) {
-        for (int d = 0; d < 3; d++) {
-            u[d] = p[(i + 1) % 3][d] - at[d];
-            v[d] = p[(i + 2) % 3][d] - at[d];
-        }
-        sm_cross(u, v, w);
-        part[i] = fmax(sm_dot(w, normal), 0);
-        sum += part[i];
-    }
-    for (int i = 0; i < 3; i++) share[i] = sum > 0 ? part[i] / sum : 1.0 / 3;
-}
-
-static SmCarveOrigin origin_of(const Carving *c, int vertex)
-{
-    long own = c->mesh->vertex_count, both = own + c->solid->vertex_count;
-    if (vertex < both) return (SmCarveOrigin){{-1, -1, -1}, (int)(vertex - own), {0}};
-    const SmCrossingPoint *p = &c->crossing.point[vertex - both];
-    SmCarveOrigin origin = {{p->low, p->high, p->low}, -1, {1 - p->along, p->along, 0}};
-    if (p->low < own) return origin;
-    sm_crossing_corners(&c->crossing, p->face, origin.from);
-    find_shares(c, origin.from, p->at, origin.share);
-    return origin;
-}
-
-static void note_triangle(SmCarveChange *change, long triangle)
-{
-    if (change->triangles == change->triangle_room) {
-        change->triangle_room = 2 * change->triangle_room + 64;
-        change->triangle =
-            sm_realloc(change->triangle, (size_t)change->triangle_room, sizeof *change->triangle);
-    }
-    change->triangle[change->triangles++] = (int)triangle;
-}
-
-static void note_dead(SmCarveChange *change, int vertex)
-{
-    if (change->dead == change->dead_room) {
-        change->dead_room = 2 * change->dead_room + 64;
-        change->vertex =
-            sm_realloc(change->vertex, (size_t)change->dead_room, sizeof *change->vertex);
-    }
-    change->vertex[change->dead++] = vertex;
-}
-
-static void note_origin(SmCarveChange *change, SmCarveOrigin origin)
-{
-    if (change->vertices == change->vertex_room) {
-        change->vertex_room = 2 * change->vertex_room + 64;
-        change->origin =
-            sm_realloc(change->origin, (size_t)change->vertex_room, sizeof *change->origin);
-    }
-    change->origin[change->vertices++] = origin;
-}
-
 /* Gives the new triangles' vertices numbers that follow the mesh's, and the mesh their places. */
-static void number_vertices(Carving *c, SmCarveChange *change)
+static void number_vertices(Carving *c)
 {
     SmMesh *mesh = c->mesh;
     long own = mesh->vertex_count, count = own;
@@ -323,16 +249,9 @@ static void number_vertices(Carving *c, SmCarveChange *change)
             if (*vertex < own) continue;
             if (number[*vertex - own] == 0) {
                 memcpy(at[count - own], sm_crossing_at(&c->crossing, *vertex), sizeof *at);
-                note_origin(change, origin_of(c, *vertex));
                 number[*vertex - own] = (int)count++;
             }
             *vertex = number[*vertex - own];
-        }
-    for (long f = 0; f < c->crossing.candidates; f++)
-        for (int i = 0; i < 3; i++) {
-            int vertex = mesh->triangle[c->crossing.candidate[f]][i];
-            if (c->state[vertex] == GOES) note_dead(change, vertex);
-            c->state[vertex] = UNKNOWN;
         }
     mesh->position = sm_realloc(mesh->position, (size_t)count, sizeof *mesh->position);
     memcpy(mesh->position + own, at, (size_t)(count - own) * sizeof *at);
@@ -342,7 +261,7 @@ static void number_vertices(Carving *c, SmCarveChange *change)
 }
 
 /* Candidates rise, so the last gaps are filled first, from the end. */
-static void place_triangles(Carving *c, SmCarveChange *change)
+static void place_triangles(Carving *c)
 {
     SmMesh *mesh = c->mesh;
     long placed = 0, coming = c->facets.triangles, gaps = 0;
@@ -354,27 +273,21 @@ static void place_triangles(Carving *c, SmCarveChange *change)
             continue;
         }
         memcpy(mesh->triangle[gap], c->facets.triangle[placed++], sizeof *mesh->triangle);
-        note_triangle(change, gap);
     }
     while (gaps > 0) {
         int gap = c->crossing.candidate[--gaps];
-        if (gap != --mesh->triangle_count) {
+        if (gap != --mesh->triangle_count)
             memcpy(mesh->triangle[gap], mesh->triangle[mesh->triangle_count],
                    sizeof *mesh->triangle);
-            note_triangle(change, gap);
-        }
     }
     long count = mesh->triangle_count + coming - placed;
     mesh->triangle = sm_realloc(mesh->triangle, (size_t)count, sizeof *mesh->triangle);
-    for (; placed < coming; placed++) {
-        memcpy(mesh->triangle[mesh->triangle_count], c->facets.triangle[placed],
+    for (; placed < coming; placed++)
+        memcpy(mesh->triangle[mesh->triangle_count++], c->facets.triangle[placed],
                sizeof *mesh->triangle);
-        note_triangle(change, mesh->triangle_count++);
-    }
 }
 
-SmCarveResult sm_carve(SmMesh *mesh, const SmMesh *solid, const SmCarveOptions *options,
-                       SmCarveChange *change)
+SmCarveResult sm_carve(SmMesh *mesh, const SmMesh *solid, const SmCarveOptions *options)
 {
     Carving c = {.mesh = mesh, .solid = solid, .options = options};
     if (!sm_crossing_find(mesh, options->inside_out, solid, &c.crossing)) return SM_CARVE_FAILED;
@@ -384,8 +297,8 @@ SmCarveResult sm_carve(SmMesh *mesh, const SmMesh *solid, const SmCarveOptions *
     SmCarveResult result = plan(&c);
     if (result == SM_CARVE_CLOSED && !sound(&c)) result = SM_CARVE_FAILED;
     if (result == SM_CARVE_CLOSED || result == SM_CARVE_TORN) {
-        number_vertices(&c, change);
-        place_triangles(&c, change);
+        number_vertices(&c);
+        place_triangles(&c);
     }
     sm_facets_free(&c.facets);
     sm_crossing_free(&c.crossing);

@@ -17,36 +17,17 @@ typedef enum {
     SM_CARVE_FAILED, /* not in general position, or rounding; nothing changed */
 } SmCarveResult;
 
-/* Where a vertex comes from: sum of share[i] * vertex from[i] of the surface before, or, with from
- * -1, from inside the material: vertex `solid` of the solid. */
-typedef struct {
-    int from[3], solid;
-    double share[3];
-} SmCarveOrigin;
-
 typedef struct {
     bool inside_out; /* the surface's triangles are clockwise seen from outside */
     bool close;      /* false: only takes away, and so always tears */
     double slack;    /* heights below it do not matter: of triangles that rounding turned over */
 } SmCarveOptions;
 
-/* What carvings have changed; they add to it. Zeroed at first. */
-typedef struct {
-    long vertices, triangles, dead;
-    SmCarveOrigin *origin; /* [vertices] of the new vertices, which are the mesh's last ones */
-    int *triangle;         /* [triangles] that are new or have another number; some more than once,
-                              some perhaps beyond the mesh's last one by now */
-    int *vertex;           /* [dead] that no triangle uses any more */
-    long vertex_room, triangle_room, dead_room;
-} SmCarveChange;
-
 /* `solid` is closed, its triangles counter-clockwise from outside, and does not cross itself. New
  * vertices follow the old ones, which keep their numbers; triangles that go leave their numbers to
  * new ones, and what is then still free to the last ones. O(surface) for a look at its boxes, and
  * what is near the solid; a solid that meets no triangle costs O(surface) more, to see whether it
  * lies within. */
-SmCarveResult sm_carve(SmMesh *mesh, const SmMesh *solid, const SmCarveOptions *options,
-                       SmCarveChange *change);
-void sm_carve_change_free(SmCarveChange *change);
+SmCarveResult sm_carve(SmMesh *mesh, const SmMesh *solid, const SmCarveOptions *options);
 
 #endif

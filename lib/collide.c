@@ -33,8 +33,10 @@ struct SmCollideWork {
     long cells;           /* of a body as described */
 };
 
-void sm_collide_frame(const SmCollideCell *cell, const double (*x)[3], const double (*frame)[9],
-                      double middle[3], double F[9])
+/* Where a cell is: its middle and, by columns, what its axes have become. `frame` NULL: from its
+ * eight corners. */
+static void find_frame(const SmCollideCell *cell, const double (*x)[3], const double (*frame)[9],
+                       double middle[3], double F[9])
 {
     if (frame) {
         memcpy(middle, x[cell->carrier[0]], 3 * sizeof(double));
@@ -84,9 +86,11 @@ static void weigh(const SmCollideShape *shape, const SmCollideCell *cell, const 
     }
 }
 
-bool sm_collide_meet(const SmCollideShape *shape, const SmCollideCell *cell, int node,
-                     const double p[3], const double middle[3], const double F[9],
-                     SmCollideContact *contact)
+/* Contact of node `node`, which is at p, with a cell in that place: fills depth, out, weight. A
+ * cell that is flat or turned inside out has no inside. */
+static bool meet(const SmCollideShape *shape, const SmCollideCell *cell, int node,
+                 const double p[3], const double middle[3], const double F[9],
+                 SmCollideContact *contact)
 {
     double inverse[9], off[3], q[3], out[3], radius = shape->radius[node];
     if (!invert(F, inverse)) return false;
@@ -150,7 +154,7 @@ static void find_boxes(SmCollide *c, const double (*x)[3], const double (*frame)
         const SmCollideCell *cell = &c->shape.cell[parts->cell[i]];
         SmCollideBox *box = &work->box[b * c->shape.cell_count + parts->cell[i]];
         *box = sm_collide_no_box();
-        sm_collide_frame(cell, x + first, frame ? frame + first : NULL, middle, F);
+        find_frame(cell, x + first, frame ? frame + first : NULL, middle, F);
         if (!extents(c, cell, F, half)) continue;
         for (int d = 0; d < 3; d++) {
             box->low[d] = middle[d] - half[d];
@@ -174,9 +178,8 @@ static void test_node(const SmCollide *c, const double (*x)[3], const double (*f
     SmCollideRelation known = relation(c, number, b, k);
     if (known == SM_COLLIDE_MUST_NOT) return;
     SmCollideContact *contact = next_contact(found);
-    sm_collide_frame(cell, x + first, frame ? frame + first : NULL, middle, F);
-    if (!sm_collide_meet(&c->shape, cell, (int)(number % nodes), x[number], middle, F, contact))
-        return;
+    find_frame(cell, x + first, frame ? frame + first : NULL, middle, F);
+    if (!meet(&c->shape, cell, (int)(number % nodes), x[number], middle, F, contact)) return;
     contact->node = number;
     contact->place = known == SM_COLLIDE_UNKNOWN;       /* until it is known */
     contact->cell = (int)(b * c->shape.cell_count + k); /* its place, until it is numbered */

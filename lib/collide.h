@@ -115,15 +115,4 @@ long sm_collide_list(const SmCollide *collide, double cell, SmContact **contact)
 
 long sm_collide_bytes(const SmCollide *collide);
 
-/* Where a cell is: its middle and, by columns, what its axes have become. `frame` NULL: from its
- * eight corners. */
-void sm_collide_frame(const SmCollideCell *cell, const double (*x)[3], const double (*frame)[9],
-                      double middle[3], double F[9]);
-
-/* Contact of node `node`, which is at p, with a cell in that place: fills depth, out, weight. A
- * cell that is flat or turned inside out has no inside. */
-bool sm_collide_meet(const SmCollideShape *shape, const SmCollideCell *cell, int node,
-                     const double p[3], const double middle[3], const double F[9],
-                     SmCollideContact *contact);
-
 #endif

@@ -221,10 +221,9 @@ void sm_collide_pairs_find(SmCollidePairs *w, long nodes, const double (*x)[3])
     if (!count) return;
     if (w->params.bodies) sm_collide_sweep(&w->sweep, x, nodes, w->parts->loosest);
     for (long b = 0; b < w->bodies; b++) {
-        bool meets = sweep->first[b] < sweep->first[b + 1];
-        if (w->params.self || meets) find_boxes(w, b, x + b * nodes, middle);
+        if (w->params.self || sweep->meets[b]) find_boxes(w, b, x + b * nodes, middle);
         if (w->params.self) find_own(w, b, middle);
-        if (meets) fill_tree(w, w->box + b * count, (Range){b, 0, count, 0});
+        if (sweep->meets[b]) fill_tree(w, w->box + b * count, (Range){b, 0, count, 0});
     }
     for (long i = 0; w->params.bodies && i < sweep->pairs; i++)
         cross(w, (Range){sweep->pair[i][0], 0, count, 0}, (Range){sweep->pair[i][1], 0, count, 0});

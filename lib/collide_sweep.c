@@ -13,13 +13,13 @@ void sm_collide_sweep_init(SmCollideSweep *sweep, long bodies)
                               .low = sm_alloc(n, sizeof *sweep->low),
                               .high = sm_alloc(n, sizeof *sweep->high),
                               .order = sm_alloc(n, sizeof *sweep->order),
-                              .first = sm_alloc(n + 1, sizeof *sweep->first)};
+                              .meets = sm_alloc(n, sizeof *sweep->meets)};
     for (long b = 0; b < bodies; b++) sweep->order[b] = (int)b;
 }
 
 void sm_collide_sweep_free(SmCollideSweep *sweep)
 {
-    void *all[] = {sweep->low, sweep->high, sweep->order, sweep->pair, sweep->first, sweep->other};
+    void *all[] = {sweep->low, sweep->high, sweep->order, sweep->pair, sweep->meets};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *sweep = (SmCollideSweep){0};
 }
@@ -62,20 +62,10 @@ static void add_pair(SmCollideSweep *sweep, int a, int b)
     if (sweep->pairs == sweep->room) {
         sweep->room = 2 * sweep->room + 64;
         sweep->pair = sm_realloc(sweep->pair, (size_t)sweep->room, sizeof *sweep->pair);
-        sweep->other = sm_realloc(sweep->other, 2 * (size_t)sweep->room, sizeof *sweep->other);
     }
     sweep->pair[sweep->pairs][0] = a;
     sweep->pair[sweep->pairs++][1] = b;
-}
-
-static void list_pairs(SmCollideSweep *sweep)
-{
-    long *first = sweep->first;
-    memset(first, 0, (size_t)(sweep->bodies + 1) * sizeof *first);
-    for (long i = 0; i < 2 * sweep->pairs; i++) first[sweep->pair[i / 2][i % 2]]++;
-    for (long b = 1; b <= sweep->bodies; b++) first[b] += first[b - 1];
-    for (long i = 2 * sweep->pairs; i-- > 0;)
-        sweep->other[--first[sweep->pair[i / 2][i % 2]]] = sweep->pair[i / 2][1 - i % 2];
+    sweep->meets[a] = sweep->meets[b] = true;
 }
 
 void sm_collide_sweep(SmCollideSweep *sweep, const double (*x)[3], long nodes, double margin)
@@ -83,6 +73,7 @@ void sm_collide_sweep(SmCollideSweep *sweep, const double (*x)[3], long nodes, d
     for (long b = 0; b < sweep->bodies; b++) find_box(sweep, b, x, nodes, margin);
     sort(sweep);
     sweep->pairs = 0;
+    memset(sweep->meets, 0, (size_t)sweep->bodies * sizeof *sweep->meets);
     for (long i = 0; i < sweep->bodies; i++) {
         int a = sweep->order[i];
         for (long j = i + 1; j < sweep->bodies; j++) {
@@ -92,15 +83,4 @@ void sm_collide_sweep(SmCollideSweep *sweep, const double (*x)[3], long nodes, d
                 add_pair(sweep, a, b);
         }
     }
-    list_pairs(sweep);
-}
-
-bool sm_collide_sweep_meets(const SmCollideSweep *sweep, long b, const double low[3],
-                            const double high[3])
-{
-    for (long i = sweep->first[b]; i < sweep->first[b + 1]; i++) {
-        int other = sweep->other[i];
-        if (overlap(low, high, sweep->low[other], sweep->high[other])) return true;
-    }
-    return false;
 }

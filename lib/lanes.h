@@ -111,6 +111,21 @@ SM_INLINE ivec lanes_of_bits(unsigned lanes)
 }
 #endif
 
+/* The lanes where a < b; a NaN is not. */
+SM_INLINE unsigned lanes_below(vec a, vec b)
+{
+#if defined(__AVX512F__) && SM_REAL_BITS == 32
+    return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
+#elif defined(__AVX512F__)
+    return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LT_OQ);
+#else
+    ivec mask = a < b;
+    unsigned lanes = 0;
+    for (int i = 0; i < SM_LANES; i++) lanes |= (unsigned)(mask[i] & 1) << i;
+    return lanes;
+#endif
+}
+
 SM_INLINE vec lanes_choose(unsigned lanes, vec yes, vec no)
 {
 #if defined(__AVX512F__) && SM_REAL_BITS == 32

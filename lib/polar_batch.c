@@ -12,9 +12,8 @@ void SM_NAME(sm_polar_batch)(long count, const real *A, const real *last, real *
                 if (last) before[i][lane] = last[(first + lane) * 9 + i];
             }
         }
-        ivec tie;
-        polar_quartic(1, (const vec(*)[9]) & a, &r, &tie);
-        if (lanes_any(tie)) polar_mend(a, tie, before, r);
+        unsigned tie = polar_quartic(a, LANES_ALL, r);
+        if (tie) polar_mend(a, tie, before, r);
         for (int i = 0; i < 9; i++)
             for (long lane = 0; lane < lanes; lane++) R[(first + lane) * 9 + i] = r[i][lane];
     }

@@ -7,123 +7,156 @@
  * The denominator is (s1+s2)(s2+s3)(s3+s1): it vanishes where the rotation is not unique. Lanes
  * near that go to sm_polar_robust() one by one; they are rare in a body that is not crushed.
  *
- * The chain of operations is long, so one tile of SM_LANES matrices would leave the processor
- * waiting most of the time: functions take `tiles` (1 or 2) of them, whose operations alternate. */
+ * The chain of operations is long and would leave the processor waiting, so up to POLAR_TILES tiles
+ * of SM_LANES matrices go together. Only the iteration, whose few values stay in registers,
+ * alternates between tiles; the rest is wide enough alone, and runs tile by tile. */
 #ifndef SM_POLAR_LANES_H
 #define SM_POLAR_LANES_H
 
 #include "lanes.h"
 #include "polar.h"
 
+enum { POLAR_TILES = 4 };
+
 #define POLAR_EACH for (int t = 0; t < tiles; t++)
 
-SM_INLINE void polar_cofactor(int tiles, const vec (*A)[9], vec (*C)[9])
+SM_INLINE void polar_cofactor(const vec A[9], vec C[9])
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            POLAR_EACH C[t][i * 3 + j] =
-                A[t][i1 * 3 + j1] * A[t][i2 * 3 + j2] - A[t][i1 * 3 + j2] * A[t][i2 * 3 + j1];
+            C[i * 3 + j] = A[i1 * 3 + j1] * A[i2 * 3 + j2] - A[i1 * 3 + j2] * A[i2 * 3 + j1];
         }
 }
 
-SM_INLINE void polar_norm(int tiles, const vec (*A)[9], vec *norm)
+SM_INLINE vec polar_norm(const vec A[9])
 {
-    vec even[2], odd[2];
-    POLAR_EACH even[t] = A[t][0] * A[t][0];
-    POLAR_EACH odd[t] = A[t][1] * A[t][1];
+    vec even = A[0] * A[0], odd = A[1] * A[1];
     for (int i = 2; i < 8; i += 2) {
-        POLAR_EACH even[t] += A[t][i] * A[t][i];
-        POLAR_EACH odd[t] += A[t][i + 1] * A[t][i + 1];
+        even += A[i] * A[i];
+        odd += A[i + 1] * A[i + 1];
     }
-    POLAR_EACH norm[t] = even[t] + odd[t] + A[t][8] * A[t][8];
+    return even + odd + A[8] * A[8];
 }
 
-/* I, II and J of A / |A|, and about 1 / |A|. */
+/* |A|^2; I, II and J of A / |A|, and about 1 / |A|; the cofactor. */
 typedef struct {
-    vec I, II, J, inverse;
+    vec square, I, II, J, inverse, C[9];
 } PolarInvariants;
+
+SM_INLINE void polar_invariants(const vec A[9], PolarInvariants *of)
+{
+    vec square = polar_norm(A), C[9];
+    polar_cofactor(A, C);
+    vec inverse = lanes_rough_inverse(lanes_rough_root(square)), by = inverse * inverse;
+    vec det = A[0] * C[0] + A[1] * C[1] + A[2] * C[2];
+    of->II = polar_norm(C) * by * by;
+    lanes_copy(9, C, of->C);
+    of->square = square;
+    of->I = square * by;
+    of->J = det * by * inverse;
+    of->inverse = inverse;
+}
 
 /* tr U by Halley's iteration from above: (s1+s2+s3)^2 = I + 2 (s1 s2 + ..) <= I + 2 sqrt(3 II),
  * with equality where all stretches agree. Convergence is cubic, so a small change is the last one,
  * and rough reciprocals do: the iteration mends them. */
-SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, vec *l)
+SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, const unsigned *live, vec *l)
 {
-    const real enough = SM_REAL_BITS == 32 ? (real)1e-3 : (real)1e-6;
-    vec constant[2], J8[2], square[2], f[2], slope[2], change[2];
-    POLAR_EACH l[t] = lanes_rough_root(of[t].I + 2 * lanes_rough_root(3 * of[t].II + SM_EPSILON));
+    const real enough = SM_REAL_BITS == 32 ? (real)2e-3 : (real)1e-6;
+    vec I2[POLAR_TILES], constant[POLAR_TILES], J8[POLAR_TILES], square[POLAR_TILES],
+        f[POLAR_TILES], slope[POLAR_TILES], change[POLAR_TILES], trace[POLAR_TILES];
+    POLAR_EACH trace[t] =
+        lanes_rough_root(of[t].I + 2 * lanes_rough_root(3 * of[t].II + SM_EPSILON));
+    POLAR_EACH I2[t] = 2 * of[t].I;
     POLAR_EACH constant[t] = of[t].I * of[t].I - 4 * of[t].II;
     POLAR_EACH J8[t] = 8 * of[t].J;
     for (int step = 0; step < 16; step++) {
-        ivec more = {0};
-        POLAR_EACH square[t] = l[t] * l[t];
-        POLAR_EACH f[t] = (square[t] * (square[t] - 2 * of[t].I) + constant[t]) - J8[t] * l[t];
-        POLAR_EACH slope[t] = 4 * l[t] * (square[t] - of[t].I) - J8[t];
-        POLAR_EACH change[t] = slope[t] * slope[t] - f[t] * (6 * square[t] - 2 * of[t].I);
+        unsigned more = 0;
+        POLAR_EACH square[t] = trace[t] * trace[t];
+        POLAR_EACH f[t] = (square[t] * (square[t] - I2[t]) + constant[t]) - J8[t] * trace[t];
+        POLAR_EACH slope[t] = 2 * trace[t] * (2 * square[t] - I2[t]) - J8[t];
+        POLAR_EACH change[t] = slope[t] * slope[t] - f[t] * (6 * square[t] - I2[t]);
         POLAR_EACH change[t] =
             f[t] * slope[t] * lanes_rough_inverse(lanes_max(change[t], lanes_set((real)1e-12)));
-        POLAR_EACH l[t] -= change[t];
-        POLAR_EACH more |= lanes_abs(change[t]) > enough * l[t];
-        if (step && !lanes_any(more)) break; /* one step is hardly ever enough */
+        POLAR_EACH trace[t] -= change[t];
+        POLAR_EACH more |= lanes_below(enough * trace[t], lanes_abs(change[t])) & live[t];
+        if (!more) break;
     }
+    POLAR_EACH l[t] = trace[t];
 }
 
 /* R = first cof D + second A, whose third column is the cross product of the others. */
-SM_INLINE void polar_columns(int tiles, const vec (*A)[9], const vec (*D)[9], const vec *first,
-                             const vec *second, vec (*R)[9])
+SM_INLINE void polar_columns(const vec A[9], const vec D[9], vec first, vec second, vec R[9])
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 2; j++) {
             int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            POLAR_EACH R[t][i * 3 + j] =
-                D[t][i1 * 3 + j1] * D[t][i2 * 3 + j2] - D[t][i1 * 3 + j2] * D[t][i2 * 3 + j1];
-            POLAR_EACH R[t][i * 3 + j] = first[t] * R[t][i * 3 + j] + second[t] * A[t][i * 3 + j];
+            vec cofactor = D[i1 * 3 + j1] * D[i2 * 3 + j2] - D[i1 * 3 + j2] * D[i2 * 3 + j1];
+            R[i * 3 + j] = first * cofactor + second * A[i * 3 + j];
         }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        POLAR_EACH R[t][i * 3 + 2] = R[t][j * 3] * R[t][k * 3 + 1] - R[t][k * 3] * R[t][j * 3 + 1];
+        R[i * 3 + 2] = R[j * 3] * R[k * 3 + 1] - R[k * 3] * R[j * 3 + 1];
     }
 }
 
-/* R of `tiles` times SM_LANES matrices. `tie[t]` takes the lanes (all bits set) that are near a
- * tie, or of a scale whose fourth power leaves the range, and were left undefined. */
-SM_INLINE void polar_quartic(int tiles, const vec (*A)[9], vec (*R)[9], ivec *tie)
+/* tr U of up to POLAR_TILES tiles. */
+SM_INLINE void polar_traces(int tiles, const PolarInvariants *of, const unsigned *live, vec *l)
 {
-    vec square[2], l[2], over_l[2], i2[2], below[2], over[2], first[2], second[2], C[2][9], D[2][9];
-    PolarInvariants of[2];
-    polar_norm(tiles, A, square);
-    polar_cofactor(tiles, A, C);
-    polar_norm(tiles, (const vec(*)[9])C, i2);
-    POLAR_EACH
-    {
-        vec inverse = lanes_rough_inverse(lanes_rough_root(square[t])), by = inverse * inverse;
-        vec det = A[t][0] * C[t][0] + A[t][1] * C[t][1] + A[t][2] * C[t][2];
-        of[t] = (PolarInvariants){square[t] * by, i2[t] * by * by, det * by * inverse, inverse};
+    switch (tiles) {
+    case 1:
+        polar_trace(1, of, live, l);
+        break;
+    case 2:
+        polar_trace(2, of, live, l);
+        break;
+    case 3:
+        polar_trace(3, of, live, l);
+        break;
+    default:
+        polar_trace(4, of, live, l);
     }
-    polar_trace(tiles, of, l);
-    POLAR_EACH over_l[t] = lanes_inverse(l[t]);
-    POLAR_EACH i2[t] = (real)0.5 * (l[t] * l[t] - of[t].I);
-    POLAR_EACH below[t] = l[t] * i2[t] - of[t].J;
-    POLAR_EACH over[t] = lanes_inverse(below[t]) * of[t].inverse;
-    POLAR_EACH second[t] = (i2[t] - of[t].J * over_l[t]) * over[t];
-    POLAR_EACH first[t] = l[t] * over[t] * of[t].inverse;
-    POLAR_EACH over_l[t] *= of[t].inverse;
-    for (int i = 0; i < 9; i++) POLAR_EACH D[t][i] = A[t][i] + C[t][i] * over_l[t];
-    polar_columns(tiles, A, (const vec(*)[9])D, first, second, R);
+}
+
+/* R from tr U, zero in lanes that are not live. Returns the live lanes that are near a tie, or of a
+ * scale whose fourth power leaves the range, and were left undefined. */
+SM_INLINE unsigned polar_rotation(const vec A[9], const PolarInvariants *of, vec l, unsigned live,
+                                  vec R[9])
+{
+    vec D[9], over_l = lanes_inverse(l), i2 = (real)0.5 * (l * l - of->I), below = l * i2 - of->J,
+              over = lanes_inverse(below) * of->inverse;
+    vec second = lanes_keep(live, (i2 - of->J * over_l) * over),
+        first = lanes_keep(live, l * over * of->inverse);
+    over_l = lanes_keep(live, over_l * of->inverse);
+    for (int i = 0; i < 9; i++) D[i] = A[i] + of->C[i] * over_l;
+    polar_columns(A, D, first, second, R);
     /* The iteration is lost where three roots meet; what it leaves then is no root. The quartic is
      * 4 (i2^2 - II - 2 J l). Written so that a NaN counts as a tie. */
     const real root = SM_REAL_BITS == 32 ? (real)1e-5 : (real)1e-10;
-    POLAR_EACH i2[t] = i2[t] * i2[t] - (of[t].II + 2 * of[t].J * l[t]);
-    POLAR_EACH tie[t] = ~((lanes_abs(i2[t]) < root) & (below[t] > (real)0.03 * l[t] * l[t] * l[t]) &
-                          (square[t] > (real)1e-16) & (square[t] < (real)1e16));
+    vec rest = i2 * i2 - (of->II + 2 * of->J * l);
+    return live & ~(lanes_below(lanes_abs(rest), lanes_set(root)) &
+                    lanes_below((real)0.03 * l * l * l, below) &
+                    lanes_below(lanes_set((real)1e-16), of->square) &
+                    lanes_below(of->square, lanes_set((real)1e16)));
+}
+
+/* R of one tile, and its ties. */
+SM_INLINE unsigned polar_quartic(const vec A[9], unsigned live, vec R[9])
+{
+    PolarInvariants of;
+    vec l;
+    polar_invariants(A, &of);
+    polar_trace(1, &of, &live, &l);
+    return polar_rotation(A, &of, l, live, R);
 }
 
 /* Redoes the lanes of `tie` one by one, keeping near the last rotation. */
-static __attribute__((noinline)) void polar_mend(const vec A[9], ivec tie, const vec last[9],
+static __attribute__((noinline)) void polar_mend(const vec A[9], unsigned tie, const vec last[9],
                                                  vec R[9])
 {
     for (int lane = 0; lane < SM_LANES; lane++) {
-        if (!tie[lane]) continue;
+        if (!(tie >> lane & 1)) continue;
         double a[9], before[9], r[9];
         for (int i = 0; i < 9; i++) {
             a[i] = (double)A[i][lane];

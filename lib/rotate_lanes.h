@@ -8,17 +8,20 @@ typedef short short_vec __attribute__((vector_size(SM_LANES * sizeof(short))));
 typedef short short_loose
     __attribute__((vector_size(SM_LANES * sizeof(short)), aligned(sizeof(short))));
 
-/* The last rotation of a tile of regions is kept as its first two columns in 1/32767: it only says
- * which of several equally good rotations is nearest. */
+/* The last rotation of a tile of regions is kept as its first two columns in LAST_UNIT: it only
+ * says which of several equally good rotations is nearest. */
+#define LAST_UNIT (1.0 / 16384)
+
+/* Beside this number the last bit of a value is LAST_UNIT, so adding it rounds a value to a whole
+ * number of them, in its lowest bits. */
+#define LAST_ROUND ((real)(SM_REAL_BITS == 32 ? 768 : 412316860416.0))
+
 SM_INLINE void last_store(short *last, const vec R[9])
 {
-    for (int i = 0; i < 3; i++)
-        for (int column = 0; column < 2; column++) {
-            /* by way of whole lanes: compilers convert straight to short one by one */
-            ivec whole = __builtin_convertvector(R[i * 3 + column] * 32767, ivec);
-            short_vec packed = __builtin_convertvector(whole, short_vec);
-            *(short_loose *)(last + (column * 3 + i) * SM_LANES) = packed;
-        }
+    for (int i = 0; i < 6; i++) {
+        ivec whole = (ivec)(R[i % 3 * 3 + i / 3] + LAST_ROUND);
+        *(short_loose *)(last + i * SM_LANES) = __builtin_convertvector(whole, short_vec);
+    }
 }
 
 /* The rotations, orthonormal to rounding. */
@@ -28,7 +31,7 @@ SM_INLINE void last_load(const short *last, vec R[9])
     for (int i = 0; i < 6; i++) {
         short_vec packed = *(const short_loose *)(last + i * SM_LANES);
         column[i / 3][i % 3] =
-            __builtin_convertvector(__builtin_convertvector(packed, ivec), vec) / 32767;
+            __builtin_convertvector(__builtin_convertvector(packed, ivec), vec) * (real)LAST_UNIT;
     }
     for (int c = 0; c < 2; c++) {
         vec square = lanes_set(0);
@@ -47,35 +50,38 @@ SM_INLINE void last_load(const short *last, vec R[9])
 }
 
 /* The lanes of one tile that the fast method has left out. */
-static __attribute__((noinline)) void polar_ties(const vec A[9], ivec tie, const int *slot,
-                                                 const short *last, vec R[9])
+static __attribute__((noinline)) void polar_ties(const vec *A, unsigned tie, const short *last,
+                                                 vec *R)
 {
     vec before[9];
     last_load(last, before);
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        if (slot[lane] >= 0) continue;
-        tie[lane] = 0; /* an empty lane needs no rotation, only a finite one */
-        for (int i = 0; i < 9; i++) R[i][lane] = i % 4 == 0;
-    }
     polar_mend(A, tie, before, R);
 }
 
-/* Rotations of one or two tiles that follow each other by the fast method, near the last ones where
- * they are not unique; updates `last`. Lanes whose slot is negative hold no region. */
-SM_INLINE void polar_fast_lanes(int tiles, const vec (*A)[9], const int *slot, short *last,
-                                vec (*R)[9])
+/* The rotations of a tile from its invariants and tr U, near the last ones where they are not
+ * unique; zero in lanes that are not live. Updates `last`. */
+SM_INLINE void polar_finish(const vec A[9], const PolarInvariants *of, vec l, unsigned live,
+                            short *last, vec R[9])
 {
-    ivec tie[2];
-    polar_quartic(tiles, A, R, tie);
-    for (int t = 0; t < tiles; t++)
-        if (__builtin_expect(lanes_any(tie[t]), 0)) { /* copies: A and R stay in registers */
-            vec from[9], to[9];
-            memcpy(from, A[t], sizeof from);
-            memcpy(to, R[t], sizeof to);
-            polar_ties(from, tie[t], slot + t * SM_LANES, last + t * 6 * SM_LANES, to);
-            memcpy(R[t], to, sizeof to);
-        }
-    for (int t = 0; t < tiles; t++) last_store(last + t * 6 * SM_LANES, R[t]);
+    unsigned tie = polar_rotation(A, of, l, live, R);
+    if (__builtin_expect(tie != 0, 0)) { /* copies: A and R stay in registers */
+        vec from[9], to[9];
+        lanes_copy(9, A, from);
+        lanes_copy(9, R, to);
+        polar_ties(from, tie, last, to);
+        lanes_copy(9, to, R);
+    }
+    last_store(last, R);
+}
+
+/* The same of one tile alone, all of it. */
+SM_INLINE void polar_fast_lanes(const vec A[9], unsigned live, short *last, vec R[9])
+{
+    PolarInvariants of;
+    vec l;
+    polar_invariants(A, &of);
+    polar_trace(1, &of, &live, &l);
+    polar_finish(A, &of, l, live, last, R);
 }
 
 #endif

@@ -11,13 +11,6 @@ static const double thickness = 1e-4, slack = 1e-10;
 
 enum { TRIES = 5 };
 
-void sm_slit_change_free(SmSlitChange *change)
-{
-    sm_carve_change_free(&change->mesh);
-    free(change->side);
-    *change = (SmSlitChange){0};
-}
-
 static bool is_inside_out(const SmMesh *mesh)
 {
     double volume = 0;
@@ -35,28 +28,12 @@ static bool is_inside_out(const SmMesh *mesh)
     return volume < 0;
 }
 
-/* The new vertices from `from` on: which vertices of the cut they are, and on which side. */
-static void note_sides(SmSlitChange *change, long from, const SmWedgeOrigin *origin)
-{
-    long count = change->mesh.vertices;
-    if (count > change->side_room) {
-        change->side_room = 2 * count;
-        change->side = sm_realloc(change->side, (size_t)change->side_room, sizeof *change->side);
-    }
-    for (long n = from; n < count; n++) {
-        int *solid = &change->mesh.origin[n].solid;
-        change->side[n] = *solid < 0 ? 0 : origin[*solid].side;
-        if (*solid >= 0) *solid = origin[*solid].vertex;
-    }
-}
-
 typedef struct {
     SmMesh *mesh;
     const SmCut *cut;
     double cell;
     bool inside_out;
     bool tear; /* it is open already, and may come to be more so */
-    SmSlitChange *change;
 } Slit;
 
 static SmMesh copy_mesh(const SmMesh *mesh)
@@ -72,25 +49,18 @@ static SmCarveResult carve_once(const Slit *s, long first, long last, unsigned s
                                 const SmCarveOptions *options)
 {
     SmMesh solid;
-    SmWedgeOrigin *origin;
     SmWedgeOptions wedge = {thickness * s->cell, seed};
-    if (!sm_wedge_make(s->cut, first, last, &wedge, &solid, &origin)) return SM_CARVE_FAILED;
+    if (!sm_wedge_make(s->cut, first, last, &wedge, &solid)) return SM_CARVE_FAILED;
     SmMesh before = s->tear ? (SmMesh){0} : copy_mesh(s->mesh);
-    SmCarveChange counts = s->change->mesh;
-    SmCarveResult result = sm_carve(s->mesh, &solid, options, &s->change->mesh);
-    note_sides(s->change, counts.vertices, origin);
+    SmCarveResult result = sm_carve(s->mesh, &solid, options);
     if (result == SM_CARVE_TORN && !s->tear) {
         sm_mesh_free(s->mesh);
         *s->mesh = before;
         before = (SmMesh){0};
-        s->change->mesh.vertices = counts.vertices;
-        s->change->mesh.triangles = counts.triangles;
-        s->change->mesh.dead = counts.dead;
         result = SM_CARVE_FAILED;
     }
     sm_mesh_free(&before);
     sm_mesh_free(&solid);
-    free(origin);
     return result;
 }
 
@@ -141,16 +111,14 @@ static bool is_closed(const SmMesh *mesh)
     return info.open_edges == 0;
 }
 
-SmSlitResult sm_slit(SmMesh *mesh, const SmCut *cut, long first, double cell, SmSlitChange *change)
+SmSlitResult sm_slit(SmMesh *mesh, const SmCut *cut, long first, double cell)
 {
-    SmSlitChange unused = {0};
-    Slit s = {mesh, cut, cell, is_inside_out(mesh), false, change ? change : &unused};
+    Slit s = {mesh, cut, cell, is_inside_out(mesh), false};
     SmSlitResult result = carve(&s, first, cut->triangles);
     if (result == SM_SLIT_LEFT && cut->triangles > first && !is_closed(mesh)) {
         s.tear = true;
         result = carve(&s, first, cut->triangles);
     }
     if (result == SM_SLIT_LEFT) result = carve_each(&s, first);
-    sm_slit_change_free(&unused);
     return result;
 }

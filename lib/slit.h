@@ -21,19 +21,10 @@ typedef enum {
     SM_SLIT_LEFT,   /* some of it could not be split cleanly, and is there as before */
 } SmSlitResult;
 
-/* What slits have changed; they add to it. Zeroed at first. `origin[].solid` is a vertex of the cut
- * here, `side` the side that the new vertex is on: 1 above the cut's triangles there, -1 below, 0
- * for vertices that come from the surface. */
-typedef struct {
-    SmCarveChange mesh;
-    int *side; /* [mesh.vertices] */
-    long side_room;
-} SmSlitChange;
-
 /* Splits `mesh` by the cut's triangles `first` .. on. `cell` is the finest cells' size in mesh
- * units (above 1e-9 of the mesh's size and coordinates), `change` may be NULL. Results are the same
- * every time. O(mesh) for a look at its boxes and volume, and what is near the new triangles. */
-SmSlitResult sm_slit(SmMesh *mesh, const SmCut *cut, long first, double cell, SmSlitChange *change);
-void sm_slit_change_free(SmSlitChange *change);
+ * units (above 1e-9 of the mesh's size and coordinates). Vertices and triangles that stay keep
+ * their numbers, but the last triangles may fill gaps (carve.h). Results are the same every time.
+ * O(mesh) for a look at its boxes and volume, and what is near the new triangles. */
+SmSlitResult sm_slit(SmMesh *mesh, const SmCut *cut, long first, double cell);
 
 #endif

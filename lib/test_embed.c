@@ -300,7 +300,7 @@ static SmSlitResult slice(Sliced *s, const double at[3], const double normal[3],
     }
     sm_cut_triangle(&s->cut, (int[3]){(int)base, (int)base + 1, (int)base + 3});
     sm_cut_triangle(&s->cut, (int[3]){(int)base, (int)base + 3, (int)base + 2});
-    SmSlitResult result = sm_slit(&s->c.mesh, &s->cut, first, s->c.voxels.cell, NULL);
+    SmSlitResult result = sm_slit(&s->c.mesh, &s->cut, first, s->c.voxels.cell);
     SmPieces pieces;
     find_pieces(s, &pieces);
     sm_embed_cut(&s->c.embedding, &s->c.mesh, &s->sites, &s->cut, first, pieces.piece);

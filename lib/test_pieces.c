@@ -75,7 +75,7 @@ static void a_box_cut_through_has_two_pieces(void **state)
         sm_cut_vertex(&cut, (double[3]){0.5, n % 2 ? 3 : -1, n / 2 ? 3 : -1});
     sm_cut_triangle(&cut, (int[3]){0, 1, 3});
     sm_cut_triangle(&cut, (int[3]){0, 3, 2});
-    assert_int_equal(sm_slit(&mesh, &cut, 0, 0.1, NULL), SM_SLIT_CLOSED);
+    assert_int_equal(sm_slit(&mesh, &cut, 0, 0.1), SM_SLIT_CLOSED);
     SmPieces pieces;
     sm_pieces_of_mesh(&mesh, &pieces);
     assert_int_equal(pieces.count, 2);

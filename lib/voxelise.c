@@ -62,8 +62,9 @@ static bool is_closed(const SmMesh *mesh)
     return left == 0;
 }
 
-SmCode sm_voxeliser_init(SmVoxeliser *v, const SmMesh *mesh, SmFill fill, const char *name,
-                         SmError *error)
+/* Checks the mesh (the errors of sm_mesh_check()) and measures it. Free in any case. */
+static SmCode begin(SmVoxeliser *v, const SmMesh *mesh, SmFill fill, const char *name,
+                    SmError *error)
 {
     *v = (SmVoxeliser){.mesh = mesh, .name = name, .fill = fill};
     SmCode code = sm_mesh_check(mesh, name, error);
@@ -77,7 +78,7 @@ SmCode sm_voxeliser_init(SmVoxeliser *v, const SmMesh *mesh, SmFill fill, const 
     return SM_OK;
 }
 
-void sm_voxeliser_free(SmVoxeliser *v)
+static void end(SmVoxeliser *v)
 {
     free(v->point);
     memset(v, 0, sizeof *v);
@@ -187,7 +188,7 @@ SmCode sm_voxelise_report(const SmMesh *mesh, const SmVoxelParams *params, const
     if (!report) report = &unasked;
     *report = (SmVoxelReport){0};
     SmVoxeliser v;
-    SmCode code = sm_voxeliser_init(&v, mesh, params->fill, name, error);
+    SmCode code = begin(&v, mesh, params->fill, name, error);
     if (!code) code = check_params(&v, params, error);
     if (!code && params->particles)
         code = sm_voxel_search(&v, params->particles, voxels, report, error);
@@ -195,7 +196,7 @@ SmCode sm_voxelise_report(const SmMesh *mesh, const SmVoxelParams *params, const
         code = sm_voxeliser_build(&v, params->cell, (double[3]){0, 0, 0}, voxels, report, error);
         report->voxelisations = 1;
     }
-    sm_voxeliser_free(&v);
+    end(&v);
     if (!code && voxels->particle_count > INT_MAX) {
         code = sm_fail(error, SM_INPUT, "%s: %ld particles are more than %d: take larger cells",
                        name, voxels->particle_count, INT_MAX);

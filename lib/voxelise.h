@@ -4,6 +4,7 @@
 
 #include "voxel.h"
 
+/* Of one call of sm_voxelise(), which makes it. */
 typedef struct {
     const SmMesh *mesh;
     const char *name; /* for messages */
@@ -13,11 +14,6 @@ typedef struct {
     bool closed;              /* every edge is used by an even number of triangles */
     double (*point)[3];       /* [vertex_count], scratch */
 } SmVoxeliser;
-
-/* Checks the mesh (the errors of sm_mesh_check()) and measures it. Free in any case. */
-SmCode sm_voxeliser_init(SmVoxeliser *voxeliser, const SmMesh *mesh, SmFill fill, const char *name,
-                         SmError *error);
-void sm_voxeliser_free(SmVoxeliser *voxeliser);
 
 /* 64-bit words of a lattice of this cell size, moved by half a cell; INFINITY beyond the limits of
  * sm_voxelise(). */

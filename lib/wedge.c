@@ -198,13 +198,12 @@ static double draw(Sheet *s)
 }
 
 /* Vertices 2 f above fan f and 2 f + 1 below it. */
-static void place_vertices(Sheet *s, SmMesh *solid, SmWedgeOrigin *origin)
+static void place_vertices(Sheet *s, SmMesh *solid)
 {
     double half = 0.5 * s->thickness * (1 + 0.2 * draw(s));
     for (long n = 0; n < 2 * s->fans; n++) {
         const Fan *fan = &s->at[n / 2];
         int side = n % 2 ? -1 : 1;
-        origin[n] = (SmWedgeOrigin){fan->vertex, side};
         for (int d = 0; d < 3; d++)
             solid->position[n][d] = s->cut->vertex[fan->vertex][d] + s->thickness * fan->out[d] +
                                     side * half * (fan->old ? 0.5 : 1) * fan->normal[d] +
@@ -240,7 +239,7 @@ static bool make_sheet(Sheet *s, long first, long last)
 }
 
 bool sm_wedge_make(const SmCut *cut, long first, long last, const SmWedgeOptions *options,
-                   SmMesh *solid, SmWedgeOrigin **origin)
+                   SmMesh *solid)
 {
     Sheet s = {.cut = cut, .thickness = options->thickness, .seed = options->seed};
     *solid = (SmMesh){0};
@@ -249,8 +248,7 @@ bool sm_wedge_make(const SmCut *cut, long first, long last, const SmWedgeOptions
         long walls = 0;
         for (long c = 0; c < 3 * s.triangles; c++) walls += s.border[c] != INNER;
         *solid = sm_mesh_new(2 * s.fans, 2 * s.triangles + 2 * walls);
-        *origin = sm_alloc(2 * (size_t)s.fans, sizeof **origin);
-        place_vertices(&s, solid, *origin);
+        place_vertices(&s, solid);
         place_triangles(&s, solid);
     }
     free(s.triangle);

@@ -17,12 +17,8 @@ typedef struct {
  * that stood there are opened without touching the gap's sides. Every cut's triangles with an area
  * make one. False, with `solid` zeroed and nothing to free, where there are none, or where they do
  * not form a surface with two sides (edges of more than two triangles, turned-over neighbours,
- * folds). O(triangles). `origin` is the cut's vertex and the side, 1 above the triangles and -1
- * below, of every vertex; the caller frees both. */
-typedef struct {
-    int vertex, side;
-} SmWedgeOrigin;
+ * folds). O(triangles). The caller frees. */
 bool sm_wedge_make(const SmCut *cut, long first, long last, const SmWedgeOptions *options,
-                   SmMesh *solid, SmWedgeOrigin **origin);
+                   SmMesh *solid);
 
 #endif

@@ -5,22 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/handles.h"
 #include "../lib/rotate_lanes.h"
 #include "changing.h"
 #include "contacts.h"
 #include "head.h"
+#include "held.h"
+#include "lists.h"
 #include "octree.h"
 #include "rebuild.h"
 
 enum { RECENTRE_STEPS = 16 };
-
-/* A node that a handle holds. */
-typedef struct {
-    long body;
-    int leaf, handle;
-    double before[3]; /* where it was before the step, finest cells */
-} Held;
 
 struct SmEngine {
     OctHead head; /* first: oct_engine_structure() */
@@ -32,11 +26,7 @@ struct SmEngine {
     long leaf_room; /* of `leaf`, `number` */
     double h;
     double (*pose)[3][4]; /* [instances] */
-    SmHandles handles;
-    Held *held; /* [held_count] */
-    long held_count, held_room;
-    int *holds; /* [holds_room] 1 + the handle that holds a leaf, or 0; of a body that is changed */
-    long holds_room;
+    OctHeld held;
     OctContacts *contacts; /* NULL: nothing collides */
     double build_seconds;
     bool goals; /* g is that of the present state */
@@ -77,12 +67,6 @@ static void rest_position(const SmEngine *e, long body, long leaf, double x0[3])
 static OctState *body_of(const SmEngine *e, long number)
 {
     return &e->oct->body[number / e->count];
-}
-
-/* In finest cells from the corner of voxel (0,0,0). */
-static double to_cells(const SmEngine *e, double position, int d)
-{
-    return (position - e->head.structure.origin[d]) / e->head.structure.cell;
 }
 
 static void engine_goals(SmEngine *e)
@@ -144,11 +128,12 @@ static bool engine_set_shapes(SmEngine *e, const double (*S)[9])
 
 static void set_positions(SmEngine *e, const double (*values)[3])
 {
+    const OctStructure *s = &e->head.structure;
     double(*x)[3] = sm_alloc((size_t)e->oct->leaves, sizeof *x);
     for (long i = 0; i < e->oct->instances; i++) {
         for (long k = 0; k < e->count; k++)
             for (int d = 0; d < 3; d++)
-                x[leaf_of(e, k)][d] = to_cells(e, values[i * e->count + k][d], d);
+                x[leaf_of(e, k)][d] = (values[i * e->count + k][d] - s->origin[d]) / s->cell;
         oct_place(e->oct, i, (const double(*)[3])x);
     }
     free(x);
@@ -193,15 +178,6 @@ static void start_at_rest(SmEngine *e, const SmEngineParams *params)
     for (long i = 0; i < bodies; i++) turn_last(e, i);
 }
 
-static void hold(SmEngine *e, long body, int leaf, int handle)
-{
-    if (e->held_count == e->held_room) {
-        e->held_room = e->held_room ? 2 * e->held_room : 64;
-        e->held = sm_realloc(e->held, (size_t)e->held_room, sizeof *e->held);
-    }
-    e->held[e->held_count++] = (Held){.body = body, .leaf = leaf, .handle = handle};
-}
-
 static SmCode engine_begin(SmEngine *e, SmError *error)
 {
     if (e->oct->instances > 1)
@@ -218,59 +194,24 @@ static SmCode engine_begin(SmEngine *e, SmError *error)
     return SM_OK;
 }
 
-static void make_holds(SmEngine *e)
-{
-    long leaves = e->head.structure.tree.leaves;
-    if (leaves > e->holds_room) {
-        long room = 2 * leaves;
-        e->holds = sm_realloc(e->holds, (size_t)room, sizeof *e->holds);
-        memset(e->holds + e->holds_room, 0, (size_t)(room - e->holds_room) * sizeof *e->holds);
-        e->holds_room = room;
-    }
-    for (long i = 0; i < e->held_count; i++) e->holds[e->held[i].leaf] = 1 + e->held[i].handle;
-}
-
-/* What replaces a held leaf is held by the same handle; of merged leaves one is enough. */
-static void hold_heirs(SmEngine *e, const OctChange *change)
-{
-    if (!e->held_count) return;
-    make_holds(e);
-    for (long n = 0; n < change->removed_count; n++) {
-        int handle = e->holds[change->removed[n].leaf], into = change->removed[n].into;
-        if (!handle || into < 0 || e->holds[into]) continue;
-        e->holds[into] = handle;
-        hold(e, 0, into, handle - 1);
-    }
-    for (long n = 0; n < change->added_count; n++) {
-        const OctAdded *added = &change->added[n];
-        if (added->from >= 0 && e->holds[added->from])
-            hold(e, 0, added->leaf, e->holds[added->from] - 1);
-    }
-    long kept = 0;
-    for (long i = 0; i < e->held_count; i++) {
-        e->holds[e->held[i].leaf] = 0;
-        if (e->head.structure.tree.node[e->held[i].leaf] >= 0) e->held[kept++] = e->held[i];
-    }
-    e->held_count = kept;
-}
-
 /* Contacts do not move what is held. */
 static void fix_held(SmEngine *e)
 {
-    long *held = sm_alloc((size_t)e->held_count, sizeof *held);
+    long *fixed = sm_alloc((size_t)e->held.count, sizeof *fixed);
     renumber(e);
-    for (long i = 0; i < e->held_count; i++)
-        held[i] =
-            e->held[i].body * e->count + (e->number ? e->number[e->held[i].leaf] : e->held[i].leaf);
-    oct_contacts_fix(e->contacts, e->held_count, held);
-    free(held);
+    for (long i = 0; i < e->held.count; i++) {
+        const struct OctHeldNode *node = &e->held.node[i];
+        fixed[i] = node->body * e->count + (e->number ? e->number[node->leaf] : node->leaf);
+    }
+    oct_contacts_fix(e->contacts, e->held.count, fixed);
+    free(fixed);
 }
 
 static const OctChange *engine_end(SmEngine *e)
 {
     const OctChange *change = oct_resample_update(&e->head.structure);
-    oct_change(e->oct, &e->head.structure, change, e->held_count > 0);
-    hold_heirs(e, change);
+    oct_change(e->oct, &e->head.structure, change, e->held.count > 0);
+    oct_held_inherit(&e->held, &e->head.structure.tree, change);
     e->count = e->head.structure.tree.live;
     e->renumber = true;
     e->goals = false;
@@ -390,55 +331,26 @@ static SmCode engine_rebuild(SmEngine *e, const SmEngineParams *params, SmEngine
 static void engine_destroy(SmEngine *e)
 {
     if (!e) return;
-    sm_handles_free(&e->handles);
+    oct_held_free(&e->held);
     oct_contacts_free(e->contacts);
     oct_free(e->oct);
     oct_structure_free(&e->head.structure);
     free(e->pose);
     free(e->leaf);
     free(e->number);
-    free(e->held);
-    free(e->holds);
     free(e);
-}
-
-/* Keeps where the held nodes are before the step. */
-static void note_held(SmEngine *e)
-{
-    for (Held *held = e->held; held < e->held + e->held_count; held++) {
-        const OctState *body = &e->oct->body[held->body];
-        for (int d = 0; d < 3; d++)
-            held->before[d] = body->origin[d] + (double)body->x[oct_index(held->leaf, d)];
-    }
-}
-
-/* A held node goes where its handle takes it, whatever the step made of it. */
-static void move_held(SmEngine *e)
-{
-    for (const Held *held = e->held; held < e->held + e->held_count; held++) {
-        OctState *body = &e->oct->body[held->body];
-        double x0[3], to[3];
-        rest_position(e, held->body, held->leaf, x0);
-        sm_pose_apply((const double(*)[4])e->handles.handle[held->handle].pose, x0, to);
-        for (int d = 0; d < 3; d++) {
-            long index = oct_index(held->leaf, d);
-            double x = to_cells(e, to[d], d);
-            body->x[index] = (real)(x - body->origin[d]);
-            body->v[index] = (real)(x - held->before[d]);
-        }
-    }
 }
 
 static void engine_step(SmEngine *e, SmLaps *laps)
 {
     e->goals = false;
-    note_held(e);
+    oct_held_note(&e->held, e->oct);
     if (e->contacts) {
         oct_contacts_before(e->contacts);
         sm_lap(laps, SM_OTHER);
     }
     oct_step(e->oct, laps);
-    move_held(e);
+    oct_held_move(&e->held, e->oct, &e->head.structure, (const double(*)[3][4])e->pose);
     if (e->contacts) oct_contacts_after(e->contacts);
     if (e->oct->steps % RECENTRE_STEPS == 0) oct_recentre(e->oct);
     sm_lap(laps, SM_OTHER);
@@ -466,12 +378,12 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
     Oct *oct = e->oct;
     renumber(e);
-    sm_handles_set(&e->handles, boundary, e->oct->instances * e->count);
-    e->held_count = 0;
-    for (int i = 0; i < e->handles.count; i++)
-        for (long k = 0; k < e->handles.handle[i].count; k++) {
-            long number = e->handles.handle[i].particle[k];
-            hold(e, number / e->count, (int)leaf_of(e, number), i);
+    sm_handles_set(&e->held.handles, boundary, e->oct->instances * e->count);
+    e->held.count = 0;
+    for (int i = 0; i < e->held.handles.count; i++)
+        for (long k = 0; k < e->held.handles.handle[i].count; k++) {
+            long number = e->held.handles.handle[i].particle[k];
+            oct_held_add(&e->held, number / e->count, (int)leaf_of(e, number), i);
         }
     if (e->contacts) fix_held(e);
     if (!oct->obstacle || oct->obstacle_count != boundary->obstacle_count) {
@@ -505,12 +417,6 @@ static void engine_count(SmEngine *e, SmCounts *counts)
     };
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const int *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
 static long engine_region(SmEngine *e, long number, long *member, long room)
 {
     const OctStructure *s = &e->head.structure;
@@ -518,7 +424,7 @@ static long engine_region(SmEngine *e, long number, long *member, long room)
     long i = leaf_of(e, number), first = number / e->count * e->count, count = s->regions.size[i];
     int *leaf = sm_alloc((size_t)count, sizeof *leaf);
     oct_regions_leaves(&s->tree, &s->regions, i, leaf);
-    qsort(leaf, (size_t)count, sizeof *leaf, compare_numbers);
+    oct_lists_sort(leaf, count);
     for (long k = 0; k < count && k < room; k++)
         member[k] = first + (e->number ? e->number[leaf[k]] : leaf[k]);
     free(leaf);

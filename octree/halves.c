@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "cover.h"
+#include "doubts.h"
+#include "lists.h"
 
 enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
 
@@ -23,77 +25,87 @@ int oct_halves_reach(int w, double epsilon)
     return most < OCT_FAR / 2 ? (int)most : OCT_FAR / 2;
 }
 
-/* What leaf i owns into `member`, and into `doubtful` its leaves that may not own i, because the
- * distance is more than their widths. A number below 0 there is the distance, negated, of the
- * leaves that follow. */
-static void find_own(const Build *b, OctIntervals *s, long i, OctLists *member, OctLists *doubtful)
+/* What `count` leaves from number `from` on own. */
+static void find_own(const Build *b, OctSheaf *s, long from, int count, OctLists *member,
+                     OctDoubts *doubts)
 {
-    int w = b->w[i], listed = 0;
-    oct_interval_find(s, (int)i, w, oct_halves_reach(w, b->epsilon));
-    b->halves->width[i] = s->width;
-    oct_lists_add(member, i, s->member, s->members);
-    for (long n = 0; n < s->reach.count; n++) {
-        int j = s->reach.reached[n], d = s->reach.distance[j];
-        if (d <= b->w[j] || (d > w && !oct_interval_holds(s, j))) continue;
-        int negated = -d;
-        if (d != listed) oct_lists_add(doubtful, i, &negated, 1);
-        listed = d;
-        oct_lists_add(doubtful, i, &j, 1);
+    int leaf[OCT_SHEAF], reaches[OCT_SHEAF];
+    for (int lane = 0; lane < count; lane++) {
+        leaf[lane] = (int)from + lane;
+        reaches[lane] = oct_halves_reach(b->w[leaf[lane]], b->epsilon);
+    }
+    oct_sheaf_find(s, count, leaf, b->w + from, reaches);
+    oct_doubts_add(doubts, s, (int)from, b->w);
+    for (int lane = 0; lane < count; lane++) {
+        b->halves->width[leaf[lane]] = s->width[lane];
+        oct_lists_add(member, leaf[lane], oct_sheaf_member(s, lane), s->members[lane]);
     }
 }
 
-static void find_all(const Build *b, OctLists *doubtful)
+/* Leaves that follow each other in number are near each other, but for where a level ends. */
+static void find_block(const Build *b, OctSheaf *s, long block, OctLists *member, OctDoubts *doubts)
 {
-    OctLists member;
-    oct_lists_init(&member, b->tree->leaves);
+    long to = oct_lists_to(member, block);
+    for (long i = oct_lists_from(block); i < to; i += OCT_SHEAF)
+        find_own(b, s, i, (int)(to - i < OCT_SHEAF ? to - i : OCT_SHEAF), member, doubts + block);
+}
+
+static void find_all(const Build *b, OctLists *member, OctDoubts *doubts)
+{
+    OctReach reach;
+    oct_reach_init(&reach, b->graph);
 #pragma omp parallel if (b->tree->leaves > SERIAL)
     {
-        OctIntervals s;
-        oct_interval_init(&s, b->tree, b->graph, b->below);
+        OctSheaf s;
+        oct_sheaf_init(&s, b->tree, &reach);
+        oct_sheaf_grow(&s, b->tree->nodes, b->tree->leaves, b->below);
 #pragma omp for schedule(dynamic)
-        for (long block = 0; block < member.blocks; block++)
-            for (long i = oct_lists_from(block); i < oct_lists_to(&member, block); i++)
-                find_own(b, &s, i, &member, doubtful);
-        oct_interval_free(&s);
+        for (long block = 0; block < member->blocks; block++)
+            find_block(b, &s, block, member, doubts);
+        oct_sheaf_free(&s);
     }
-    oct_lists_pack(&member, &b->halves->first, &b->halves->member);
+    oct_reach_free(&reach);
 }
 
-/* Of the doubtful leaves keeps, in place, those that do not own i. */
-static void keep_missing(const Build *b, long i, int *item, int *count)
+/* Of the doubts keeps, in place, those where the leaf does not own its owner. */
+static void keep_missing(const Build *b, OctDoubts *doubts)
 {
     const OctHalves *h = b->halves;
-    int kept = 0;
-    for (int n = 0; n < *count; n++) {
-        int j = item[n];
-        if (j < 0 || !oct_cover_holds(b->tree, h->member + h->first[j],
-                                      h->first[j + 1] - h->first[j], (int)i))
-            item[kept++] = j;
+    const int *distance = doubts->distance;
+    long count = doubts->count;
+    doubts->count = doubts->distances = 0;
+    for (long n = 0; n < count; n++) {
+        struct OctDoubt d = doubts->item[n];
+        long first = h->first[d.leaf], members = h->first[d.leaf + 1] - first;
+        unsigned missing = 0;
+        for (; d.lanes; d.lanes &= d.lanes - 1, distance++) {
+            int lane = __builtin_ctz(d.lanes);
+            if (oct_cover_holds(b->tree, h->member + first, members, d.first + lane)) continue;
+            missing |= 1u << lane;
+            doubts->distance[doubts->distances++] = *distance;
+        }
+        if (missing) doubts->item[doubts->count++] = (struct OctDoubt){d.leaf, d.first, missing};
     }
-    *count = kept;
 }
 
-/* Turns "j does not own i" round to "j takes i". */
-static void turn_round(const OctLists *missing, OctHalves *h)
+/* Turns "leaf does not own its owner" round to "it takes it". */
+static void turn_round(const OctDoubts *missing, long blocks, OctHalves *h)
 {
     long *next = sm_alloc((size_t)h->leaves, sizeof *next), *first = h->taken_first;
-    for (long i = 0; i < h->leaves; i++) {
-        const int *item = oct_lists_item(missing, i);
-        for (int n = 0; n < missing->count[i]; n++)
-            if (item[n] >= 0) first[item[n] + 1]++;
-    }
+    for (long b = 0; b < blocks; b++)
+        for (long n = 0; n < missing[b].count; n++)
+            first[missing[b].item[n].leaf + 1] += __builtin_popcount(missing[b].item[n].lanes);
     for (long j = 0; j < h->leaves; j++) first[j + 1] += next[j] = first[j];
     h->taken = sm_alloc((size_t)first[h->leaves], sizeof *h->taken);
     h->distance = sm_alloc((size_t)first[h->leaves], sizeof *h->distance);
-    for (long i = 0; i < h->leaves; i++) {
-        const int *item = oct_lists_item(missing, i);
-        for (int n = 0, d = 0; n < missing->count[i]; n++) {
-            if (item[n] < 0) {
-                d = -item[n];
-                continue;
+    for (long b = 0; b < blocks; b++) {
+        const int *distance = missing[b].distance;
+        for (long n = 0; n < missing[b].count; n++) {
+            struct OctDoubt d = missing[b].item[n];
+            for (; d.lanes; d.lanes &= d.lanes - 1) {
+                h->distance[next[d.leaf]] = *distance++;
+                h->taken[next[d.leaf]++] = d.first + __builtin_ctz(d.lanes);
             }
-            h->distance[next[item[n]]] = d;
-            h->taken[next[item[n]]++] = (int)i;
         }
     }
     free(next);
@@ -103,19 +115,21 @@ void oct_halves_build(const OctTree *tree, const OctGraph *graph, const int *w, 
                       const int *below, OctHalves *halves)
 {
     Build b = {tree, graph, w, epsilon, below, halves};
-    OctLists doubtful;
+    OctLists member;
     size_t leaves = (size_t)tree->leaves;
     *halves = (OctHalves){.leaves = tree->leaves};
     halves->width = sm_alloc(leaves, sizeof *halves->width);
     halves->taken_first = sm_alloc(leaves + 1, sizeof *halves->taken_first);
-    oct_lists_init(&doubtful, tree->leaves);
-    find_all(&b, &doubtful);
+    oct_lists_init(&member, tree->leaves);
+    long blocks = member.blocks;
+    OctDoubts *doubts = sm_alloc((size_t)blocks, sizeof *doubts);
+    find_all(&b, &member, doubts);
+    oct_lists_pack(&member, &halves->first, &halves->member);
 #pragma omp parallel for schedule(dynamic) if (tree->leaves > SERIAL)
-    for (long block = 0; block < doubtful.blocks; block++)
-        for (long i = oct_lists_from(block); i < oct_lists_to(&doubtful, block); i++)
-            keep_missing(&b, i, oct_lists_item(&doubtful, i), doubtful.count + i);
-    turn_round(&doubtful, halves);
-    oct_lists_free(&doubtful);
+    for (long block = 0; block < blocks; block++) keep_missing(&b, doubts + block);
+    turn_round(doubts, blocks, halves);
+    for (long block = 0; block < blocks; block++) oct_doubts_free(doubts + block);
+    free(doubts);
 }
 
 void oct_halves_free(OctHalves *halves)

@@ -1,14 +1,13 @@
 /* halves.h - regions before symmetry: what each leaf's own intervals put in, and who else put the
  * leaf in theirs (octree section 4.2).
  *
- * Leaf i owns the summation nodes that interval.h finds, with all leaves within w_i. It takes leaf
+ * Leaf i owns the summation nodes that sheaf.h finds, with all leaves within w_i. It takes leaf
  * j where j owns i and i does not own j; then the distance is more than w_i. Region i is what i
  * owns and what it takes (region.h). */
 #ifndef OCT_HALVES_H
 #define OCT_HALVES_H
 
-#include "interval.h"
-#include "lists.h"
+#include "graph.h"
 
 typedef struct {
     long leaves;
@@ -20,7 +19,7 @@ typedef struct {
     int *distance;     /* of the taken leaves */
 } OctHalves;
 
-/* `below` is oct_interval_below(). Widths and epsilon are in range (region.h). O(edges within reach
+/* `below` is oct_tree_below(). Widths and epsilon are in range (region.h). O(edges within reach
  * of every leaf). The result does not depend on the number of threads. The caller frees. */
 void oct_halves_build(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,
                       const int *below, OctHalves *halves);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/rotate_lanes.h"
 #include "octree.h"
 
 static void rest_of(const Oct *oct, long leaf, double X[3])
@@ -76,11 +77,11 @@ static void unpack(const short last[6], double R[9])
     for (int c = 0; c < 2; c++) {
         double square = 0;
         for (int i = 0; i < 3; i++) {
-            column[c][i] = last[c * 3 + i] / 32767.0 - (c ? along * column[0][i] : 0);
+            column[c][i] = last[c * 3 + i] * LAST_UNIT - (c ? along * column[0][i] : 0);
             square += column[c][i] * column[c][i];
         }
         for (int i = 0; i < 3; i++) column[c][i] /= sqrt(square);
-        for (int i = 0; i < 3 && !c; i++) along += column[0][i] * last[3 + i] / 32767.0;
+        for (int i = 0; i < 3 && !c; i++) along += column[0][i] * last[3 + i] * LAST_UNIT;
     }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;

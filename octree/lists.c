@@ -14,9 +14,8 @@ void oct_lists_init(OctLists *lists, long leaves)
     lists->block = sm_alloc((size_t)lists->blocks, sizeof *lists->block);
 }
 
-void oct_lists_free(OctLists *lists)
+static void free_lists(OctLists *lists)
 {
-    for (long b = 0; b < lists->blocks; b++) free(lists->block[b].item);
     free(lists->count);
     free(lists->start);
     free(lists->block);
@@ -34,12 +33,6 @@ void oct_lists_add(OctLists *lists, long leaf, const int *item, long count)
     if (count > 0) memcpy(block->item + block->used, item, (size_t)count * sizeof *item);
     block->used += count;
     lists->count[leaf] += (int)count;
-}
-
-int *oct_lists_item(const OctLists *lists, long leaf)
-{
-    int *item = lists->block[leaf / OCT_BLOCK].item;
-    return item ? item + lists->start[leaf] : NULL;
 }
 
 int oct_lists_compare(const void *a, const void *b)
@@ -82,10 +75,9 @@ void oct_lists_pack(OctLists *lists, long **first, int **item)
     for (long b = 0; b < lists->blocks; b++) {
         for (long l = oct_lists_from(b); l < oct_lists_to(lists, b); l++)
             if (lists->count[l] > 0)
-                memcpy(*item + (*first)[l], oct_lists_item(lists, l),
+                memcpy(*item + (*first)[l], lists->block[b].item + lists->start[l],
                        (size_t)lists->count[l] * sizeof **item);
         free(lists->block[b].item);
-        lists->block[b] = (struct OctBlock){0};
     }
-    oct_lists_free(lists);
+    free_lists(lists);
 }

@@ -19,8 +19,8 @@ typedef struct {
     } * block; /* [blocks] */
 } OctLists;
 
+/* Empty lists, to be ended with oct_lists_pack(). */
 void oct_lists_init(OctLists *lists, long leaves);
-void oct_lists_free(OctLists *lists);
 
 /* Leaves of a block: from .. to - 1. */
 static inline long oct_lists_from(long block)
@@ -36,9 +36,6 @@ static inline long oct_lists_to(const OctLists *lists, long block)
 
 /* Appends to the list of a leaf, which must be the last of its block that was appended to. */
 void oct_lists_add(OctLists *lists, long leaf, const int *item, long count);
-
-/* The list of a leaf; NULL if its whole block is empty. */
-int *oct_lists_item(const OctLists *lists, long leaf);
 
 /* Rising order of ints, for qsort(). */
 int oct_lists_compare(const void *a, const void *b);

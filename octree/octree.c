@@ -120,7 +120,6 @@ SM_INLINE void store_transforms(const OctTask *task, long block, const vec c[3],
 
 static void match(OctTask *task, long first, long last)
 {
-    static const int live[SM_LANES] = {0};
     const Oct *oct = task->oct;
     OctState *body = task->body;
     for (long block = first; block < last; block++) {
@@ -135,7 +134,7 @@ static void match(OctTask *task, long first, long last)
         sm_lap(task->laps, SM_SHAPE_MATCHING);
         short *before = body->last + block * 6 * SM_LANES;
         if (oct->thin_of[block] >= 0) thin_rotations(&oct->thin[oct->thin_of[block]], before, A);
-        polar_fast_lanes(1, (const vec(*)[9]) & A, live, before, &R);
+        polar_fast_lanes(A, LANES_ALL, before, R);
         sm_lap(task->laps, SM_POLAR);
         if (body->plastic) plastic_block(task, block, A, R, F);
         store_transforms(task, block, c, body->plastic ? F : R);

@@ -52,7 +52,7 @@ SM_INLINE void plastic_inverse(const real *spread, const vec S[9], vec inverse[9
     for (int i = 0; i < 9; i++) B[i] = lanes_load(spread + entry[i] * SM_LANES);
     lanes_multiply(S, B, false, SB);
     lanes_multiply(SB, S, true, Q);
-    polar_cofactor(1, (const vec(*)[9])Q, &C);
+    polar_cofactor(Q, C);
     vec third = (Q[0] + Q[4] + Q[8]) / 3;
     vec determinant = Q[0] * C[0] + Q[1] * C[1] + Q[2] * C[2];
     ivec solid = determinant > (real)1e-6 * third * third * third;
@@ -73,12 +73,10 @@ SM_INLINE ivec plastic_creep(const OctParams *params, const vec strain[9], vec S
     vec add[9], C[9];
     lanes_multiply(strain, S, false, add);
     for (int i = 0; i < 9; i++) S[i] += (real)params->creep * add[i] - (real)(i % 4 == 0);
-    vec size;
-    polar_norm(1, (const vec(*)[9])S, &size);
-    size = lanes_sqrt(size);
+    vec size = lanes_sqrt(polar_norm(S));
     vec scale = lanes_select(size > (real)params->most, (real)params->most / size, lanes_set(1));
     for (int i = 0; i < 9; i++) S[i] = S[i] * scale + (real)(i % 4 == 0);
-    polar_cofactor(1, (const vec(*)[9])S, &C);
+    polar_cofactor(S, C);
     vec determinant = S[0] * C[0] + S[1] * C[1] + S[2] * C[2];
     ivec shape = (determinant > (real)0.05) & (determinant < 20);
     vec root = lanes_cube_root(lanes_select(shape, determinant, lanes_set(1)));
@@ -118,9 +116,7 @@ SM_INLINE void plastic_block(const OctTask *task, long block, const vec A[9], co
     lanes_multiply(turned, inverse, false, strain);
     for (int i = 0; i < 9; i += 4) strain[i] -= 1;
     real yield = (real)(task->oct->params.yield * task->oct->params.yield);
-    vec size;
-    polar_norm(1, (const vec(*)[9])strain, &size);
-    ivec yields = (size > yield) & (inverse[0] > 0);
+    ivec yields = (polar_norm(strain) > yield) & (inverse[0] > 0);
     if (lanes_any(yields)) plastic_flow(task, block, strain, yields);
 }
 

@@ -10,12 +10,6 @@ void *oct_plots_widen(void *array, long from, long to, size_t size, int byte)
     return wide;
 }
 
-void oct_plots_init(OctPlots *rows, long count, bool pairs)
-{
-    *rows = (OctPlots){.pairs = pairs};
-    oct_plots_grow(rows, count);
-}
-
 void oct_plots_adopt(OctPlots *rows, long count, long *first, int *item, int *also)
 {
     *rows = (OctPlots){.rows = count, .row_space = count, .first = first, .item = item};

@@ -22,10 +22,8 @@ typedef struct {
     long row_space, used, space, lost; /* rows and places there are; given out; of those no row's */
 } OctPlots;
 
-/* Empty rows; `pairs` if there is `also`. The caller frees. */
-void oct_plots_init(OctPlots *rows, long count, bool pairs);
-
-/* Takes over rows that follow each other: `first` is [count + 1], `also` may be NULL. */
+/* Takes over rows that follow each other: `first` is [count + 1]; `also` is NULL where there are
+ * no pairs. The caller frees. */
 void oct_plots_adopt(OctPlots *rows, long count, long *first, int *item, int *also);
 void oct_plots_free(OctPlots *rows);
 size_t oct_plots_bytes(const OctPlots *rows);

@@ -6,6 +6,7 @@
 
 #include "cover.h"
 #include "halves.h"
+#include "lists.h"
 
 enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
 
@@ -98,7 +99,7 @@ SmCode oct_regions_build(const OctTree *tree, const OctGraph *graph, const int *
     SmCode code = check(tree, w, epsilon, error);
     if (code) return code;
     OctHalves halves;
-    int *below = oct_interval_below(tree);
+    int *below = oct_tree_below(tree);
     oct_halves_build(tree, graph, w, epsilon, below, &halves);
     join_halves(tree, &halves, regions);
     oct_halves_free(&halves);

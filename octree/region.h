@@ -28,7 +28,7 @@ static inline long oct_regions_end(const OctRegions *regions, long leaf)
 
 /* Regions of widths w[leaf] (half finest cells, 0 or more), symmetric: j in R_i exactly when i in
  * R_j. Every leaf within w_i of i is in R_i, none beyond w_i + floor(epsilon w_i) is unless
- * symmetry adds it: j is in R_i exactly when the intervals of i (interval.h) or those of j put the
+ * symmetry adds it: j is in R_i exactly when the intervals of i (sheaf.h) or those of j put the
  * other in.
  *
  * Symmetry adds to R_j what is missing, leaf by leaf. It can be missing only where the distance is
@@ -39,7 +39,7 @@ static inline long oct_regions_end(const OctRegions *regions, long leaf)
  *
  * The caller frees. The result does not depend on the number of threads. Cost: the searches, each
  * the edges of what lies within (1 + epsilon) w_i, so linear in the leaves at a fixed width; for a
- * moment also memory of 8 bytes for every leaf that a region holds beyond the other's w.
+ * moment also memory of some 10 bytes for every leaf that a region holds beyond the other's w.
  * Errors (SM_USAGE), on which `regions` is zeroed: a negative width; epsilon negative or not
  * finite. */
 SmCode oct_regions_build(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,

@@ -1,5 +1,6 @@
 #include "region_change.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,8 +98,9 @@ void oct_region_change_free(OctRegionChange *c)
     oct_plots_free(&c->taken);
     free(c->region.room);
     oct_cover_free(&c->cover);
-    void *all[] = {c->own_width, c->state, c->stirred, c->list, c->fresh,
-                   c->fresh_end, c->doubt, c->source,  c->order};
+    oct_doubts_free(&c->doubts);
+    void *all[] = {c->own_width, c->state,     c->stirred, c->list,
+                   c->fresh,     c->fresh_end, c->source,  c->order};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *c = (OctRegionChange){0};
 }
@@ -112,8 +114,8 @@ size_t oct_region_change_bytes(const OctRegionChange *c)
                (sizeof *reach->distance + sizeof *reach->reached + sizeof *reach->nearest) +
            (size_t)c->node_space * 2 + (size_t)c->order_room * sizeof *c->order +
            (size_t)c->list_room * sizeof *c->list + (size_t)c->fresh_room * sizeof *c->fresh +
-           (size_t)c->fresh_end_room * sizeof *c->fresh_end +
-           (size_t)c->doubt_room * sizeof *c->doubt + (size_t)c->source_room * sizeof *c->source;
+           (size_t)c->fresh_end_room * sizeof *c->fresh_end + oct_doubts_bytes(&c->doubts) +
+           (size_t)c->source_room * sizeof *c->source;
 }
 
 static void grow_leaves(OctRegionChange *c)
@@ -177,8 +179,12 @@ static void part(OctRegionChange *c, int i, int k, int lane)
 {
     if (c->state[k] == SEARCH || (lane >= 0 && oct_sheaf_owns(&c->sheaf, lane, k))) return;
     if (oct_plots_remove(&c->taken, k, i)) list_leaf(c, k, REGION);
-    if (lane >= 0 && owns(c, k, i))
-        oct_plots_add(&c->taken, i, k, c->sheaf.distance[c->sheaf.leaf_at[k]][lane]);
+    if (lane < 0 || !owns(c, k, i)) return;
+    int at = c->sheaf.leaf_at[k];
+    /* k, which is not searched, has the distances within its reach that it had (mark): so it is as
+     * far from i, which it owns, as when i owned it, which was within i's reach */
+    assert(at >= 0 && c->sheaf.distance[at][lane] <= reach_of(c, i));
+    oct_plots_add(&c->taken, i, k, c->sheaf.distance[at][lane]);
 }
 
 /* All leaves that leaf i owned before and that live, new ones but not searched ones apart. */
@@ -211,26 +217,8 @@ static void keep_taken(OctRegionChange *c, int i, int lane)
     oct_plots_resize(&c->taken, i, kept - first);
 }
 
-/* Leaves that the sheaf's leaves, from number n of the list on, own beyond the others' widths: they
- * may not own them. */
-static void note_doubts(OctRegionChange *c, long n)
-{
-    const OctSheaf *s = &c->sheaf;
-    for (long at = 0; at < s->leaves; at++) {
-        int leaf = s->leaf[at];
-        unsigned lanes = s->owned[at] & oct_lanes_beyond(s->distance[at], c->s->w[leaf]);
-        if (!lanes) continue;
-        ROOM(c->doubt, c->doubt_count, OCT_SHEAF, c->doubt_room);
-        for (; lanes; lanes &= lanes - 1) {
-            int lane = __builtin_ctz(lanes);
-            c->doubt[c->doubt_count++] =
-                (struct OctDoubt){c->list[n + lane], leaf, s->distance[at][lane]};
-        }
-    }
-}
-
 /* What leaves number n of the list and some more own now goes to `fresh`, what may not own them to
- * `doubt`. */
+ * `doubts`. */
 static void search(OctRegionChange *c, long n, int count)
 {
     int w[OCT_SHEAF], reaches[OCT_SHEAF];
@@ -239,7 +227,7 @@ static void search(OctRegionChange *c, long n, int count)
         reaches[lane] = reach_of(c, c->list[n + lane]);
     }
     oct_sheaf_find(&c->sheaf, count, c->list + n, w, reaches);
-    note_doubts(c, n);
+    oct_doubts_add(&c->doubts, &c->sheaf, (int)n, c->s->w);
     for (int lane = 0; lane < count; lane++) {
         int i = c->list[n + lane], members = c->sheaf.members[lane];
         long from = n + lane ? c->fresh_end[n + lane - 1] : 0;
@@ -318,18 +306,18 @@ static void bury(OctRegionChange *c, int leaf)
 
 /* The leaf takes its owner, if it does not own it. One that is not searched may have done so
  * before, perhaps at another distance. */
-static void take(OctRegionChange *c, const struct OctDoubt *d)
+static void take(OctRegionChange *c, int leaf, int owner, int distance)
 {
     OctPlots *taken = &c->taken;
-    long at = c->state[d->leaf] == SEARCH ? -1 : oct_plots_find(taken, d->leaf, d->owner);
+    long at = c->state[leaf] == SEARCH ? -1 : oct_plots_find(taken, leaf, owner);
     if (at >= 0) {
-        if (taken->also[at] == d->distance) return;
-        taken->also[at] = d->distance;
+        if (taken->also[at] == distance) return;
+        taken->also[at] = distance;
     } else {
-        if (d->distance <= reach_of(c, d->leaf) && owns(c, d->leaf, d->owner)) return;
-        oct_plots_add(taken, d->leaf, d->owner, d->distance);
+        if (distance <= reach_of(c, leaf) && owns(c, leaf, owner)) return;
+        oct_plots_add(taken, leaf, owner, distance);
     }
-    list_leaf(c, d->leaf, REGION);
+    list_leaf(c, leaf, REGION);
 }
 
 static int compare_order(const void *a, const void *b)
@@ -358,7 +346,7 @@ static void order_list(OctRegionChange *c)
 static void search_all(OctRegionChange *c)
 {
     long count = c->search_count;
-    c->doubt_count = 0;
+    c->doubts.count = c->doubts.distances = 0;
     ROOM(c->fresh_end, 0, count, c->fresh_end_room);
     order_list(c);
     for (long n = 0; n < count; n += OCT_SHEAF)
@@ -367,7 +355,12 @@ static void search_all(OctRegionChange *c)
         long from = n ? c->fresh_end[n - 1] : 0;
         replace(c, &c->own, c->list[n], c->fresh + from, c->fresh_end[n] - from);
     }
-    for (long n = 0; n < c->doubt_count; n++) take(c, &c->doubt[n]);
+    const int *distance = c->doubts.distance;
+    for (long n = 0; n < c->doubts.count; n++) {
+        struct OctDoubt d = c->doubts.item[n];
+        for (; d.lanes; d.lanes &= d.lanes - 1)
+            take(c, d.leaf, c->list[d.first + __builtin_ctz(d.lanes)], *distance++);
+    }
 }
 
 void oct_region_change_update(OctRegionChange *c, OctChange *batch)

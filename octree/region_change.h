@@ -9,9 +9,10 @@
 #include <stdint.h>
 
 #include "cover.h"
+#include "doubts.h"
 #include "graph_change.h"
 #include "halves.h"
-#include "sheaf.h"
+#include "resample.h"
 
 typedef struct {
     OctStructure *s;
@@ -29,11 +30,8 @@ typedef struct {
     long list_count, search_count; /* those whose regions change with them */
     int *fresh;                    /* what the leaves searched own now */
     long *fresh_end;               /* [searched] */
-    struct OctDoubt {
-        int owner, leaf, distance;
-    } * doubt; /* leaves that may not own the leaf that owns them */
-    long doubt_count;
-    struct OctSource *source; /* [source_count] ends of edges */
+    OctDoubts doubts;              /* of owners by their numbers on the list */
+    struct OctSource *source;      /* [source_count] ends of edges */
     long source_count;
     struct OctOrder {
         uint64_t along; /* the Morton curve */
@@ -41,11 +39,11 @@ typedef struct {
     } * order;
     int widest; /* reach of any leaf so far */
     long leaf_space, node_space;
-    long list_room, fresh_room, fresh_end_room, doubt_room, source_room, region_room, order_room;
+    long list_room, fresh_room, fresh_end_room, source_room, region_room, order_room;
 } OctRegionChange;
 
 /* Takes the arrays of the structure's regions over, which must stay where it is. `below` is
- * oct_interval_below(). O(body). */
+ * oct_tree_below(). O(body). */
 void oct_region_change_init(OctRegionChange *change, OctStructure *structure, const int *below);
 void oct_region_change_free(OctRegionChange *change); /* the regions stay whole */
 size_t oct_region_change_bytes(const OctRegionChange *change);

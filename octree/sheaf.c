@@ -2,7 +2,8 @@
 
 #include <stdlib.h>
 #include <string.h>
-#ifdef __AVX512F__
+#if defined(__AVX512F__) && !defined(OCT_PORTABLE) /* test_sheaf_portable.c */
+#define OCT_MASKS
 #include <immintrin.h>
 #endif
 
@@ -11,31 +12,55 @@
 
 enum { ALL = (1 << OCT_SHEAF) - 1 };
 
+/* Vectors as wide as the processor's: gcc compares wider ones number by number. */
+#if defined(OCT_MASKS)
+enum { PARTS = 1 };
+#elif defined(__AVX2__)
+enum { PARTS = 2 };
+#else
+enum { PARTS = 4 };
+#endif
+typedef int Part __attribute__((vector_size(OCT_SHEAF / PARTS * sizeof(int))));
+typedef union {
+    OctLanes all;
+    Part part[PARTS];
+} Parts;
+
+/* The lanes in which a is less than b. */
 static inline unsigned below(OctLanes a, OctLanes b)
 {
-#ifdef __AVX512F__
+#ifdef OCT_MASKS
     return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
 #else
-    OctLanes less = a < b;
-    unsigned mask = 0;
-    for (int l = 0; l < OCT_SHEAF; l++) mask |= (unsigned)(less[l] & 1) << l;
-    return mask;
+    const OctLanes bit = {1,   2,   4,       8,       16,      32,      64,      128,
+                          256, 512, 1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15};
+    Parts p = {a}, q = {b}, r = {bit};
+    Part mask = {0};
+    int sum = 0;
+    for (int i = 0; i < PARTS; i++) mask |= (p.part[i] < q.part[i]) & r.part[i];
+    for (int l = 0; l < OCT_SHEAF / PARTS; l++) sum |= mask[l];
+    return (unsigned)sum;
 #endif
-}
-
-static inline OctLanes where(OctLanes is, OctLanes then, OctLanes otherwise)
-{
-    return (then & is) | (otherwise & ~is);
 }
 
 static inline OctLanes least_of(OctLanes a, OctLanes b)
 {
-    return where(a < b, a, b);
+    Parts p = {a}, q = {b};
+    for (int i = 0; i < PARTS; i++) {
+        Part is = p.part[i] < q.part[i];
+        p.part[i] = (p.part[i] & is) | (q.part[i] & ~is);
+    }
+    return p.all;
 }
 
 static inline OctLanes most_of(OctLanes a, OctLanes b)
 {
-    return where(a > b, a, b);
+    Parts p = {a}, q = {b};
+    for (int i = 0; i < PARTS; i++) {
+        Part is = p.part[i] > q.part[i];
+        p.part[i] = (p.part[i] & is) | (q.part[i] & ~is);
+    }
+    return p.all;
 }
 
 static inline OctLanes same(int value)
@@ -216,7 +241,7 @@ static void from_above(const OctSheaf *s, int node, unsigned *opened, unsigned *
     *inside = parent < 0 ? 0 : s->inner[s->inner_at[parent]].inside;
 }
 
-/* As oct_interval_find() does. */
+/* From the roots down (sheaf.h). */
 static void choose(OctSheaf *s)
 {
     unsigned opened, inside;
@@ -249,7 +274,7 @@ void oct_sheaf_find(OctSheaf *s, int count, const int *leaf, const int *w, const
     s->width = same(0);
     memset(s->members, 0, sizeof s->members);
     for (int l = 0; l < count; l++) {
-        s->w[l] = w[l];
+        s->w[l] = w[l] < reaches[l] ? w[l] : reaches[l]; /* nothing beyond is found */
         s->beyond[l] = reaches[l] + 1;
     }
     find_distances(s, count, leaf);

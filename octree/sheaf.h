@@ -1,5 +1,11 @@
-/* sheaf.h - what several leaves own (interval.h), found at once: those near each other reach much
- * the same leaves over the same edges. */
+/* sheaf.h - regions by distance intervals, before symmetry (octree section 4.2), of several leaves
+ * at once: those near each other reach much the same leaves over the same edges.
+ *
+ * A leaf of width w that reaches so far (halves.h) owns summation nodes: from the roots down, a
+ * node whose interval of distances [a_j, b_j] has a_j > w is discarded, one with b_j <= reach is
+ * taken, another one gives way to its children. So a leaf is in for its own distance up to w, for
+ * an ancestor's sake up to the reach. No two nodes taken hold a leaf in common, and no node is left
+ * out whose children are all taken. Twin: reference/octree_regions.c. */
 #ifndef OCT_SHEAF_H
 #define OCT_SHEAF_H
 
@@ -15,7 +21,7 @@ typedef int OctLanes __attribute__((vector_size(OCT_SHEAF * sizeof(int)), aligne
 typedef struct {
     const OctTree *tree;
     const OctReach *reach; /* of the same graph: its shortest edges */
-    const int *below;      /* oct_interval_below() */
+    const int *below;      /* oct_tree_below() */
     /* of the last search */
     int members[OCT_SHEAF]; /* summation nodes that a lane's leaf owns */
     OctLanes width;         /* largest distances of leaves that are owned */
@@ -47,9 +53,9 @@ size_t oct_sheaf_bytes(const OctSheaf *sheaf);
 /* Makes the scratch good for as many numbers, between searches. */
 void oct_sheaf_grow(OctSheaf *sheaf, long nodes, long leaves, const int *below);
 
-/* What `count` different leaves of widths w own, who reach so far (halves.h): the same as
- * oct_interval_find() of each. Cost: what all of them reach together, times its edges, for each
- * time that a distance to it falls; so leaves should be near each other. */
+/* What `count` different leaves of widths w own, who reach so far (0 to OCT_FAR / 2). Cost: what
+ * all of them reach together, times its edges, for each time that a distance to it falls; so leaves
+ * should be near each other. */
 void oct_sheaf_find(OctSheaf *sheaf, int count, const int *leaf, const int *w, const int *reaches);
 
 /* The members of a lane, rising. */

@@ -59,6 +59,12 @@ static void change(unsigned *seed, OctPlots *plots, Twin *twins)
     }
 }
 
+static void adopt_empty_rows(OctPlots *plots, long count, bool pairs)
+{
+    oct_plots_adopt(plots, count, sm_alloc((size_t)count + 1, sizeof(long)), NULL,
+                    pairs ? sm_alloc(1, sizeof(int)) : NULL);
+}
+
 static void lists_stay_what_they_are_while_others_change(void **state)
 {
     (void)state;
@@ -67,7 +73,7 @@ static void lists_stay_what_they_are_while_others_change(void **state)
         OctPlots plots;
         static Twin twin[ROWS];
         memset(twin, 0, sizeof twin);
-        oct_plots_init(&plots, ROWS / 2, pairs);
+        adopt_empty_rows(&plots, ROWS / 2, pairs);
         for (int step = 0; step < 20000; step++) {
             if (step == 5000) oct_plots_grow(&plots, ROWS);
             if (step == 9000) oct_plots_reserve(&plots);
@@ -85,7 +91,7 @@ static void gaps_do_not_pile_up(void **state)
     (void)state;
     OctPlots plots;
     enum { LONG = 400 };
-    oct_plots_init(&plots, ROWS, false);
+    adopt_empty_rows(&plots, ROWS, false);
     for (int n = 0; n < LONG; n++)
         for (int row = 0; row < ROWS; row++) oct_plots_add(&plots, row, n + row, 0);
     for (int row = 0; row < ROWS; row++)

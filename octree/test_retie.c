@@ -269,7 +269,7 @@ static void both_sides_of_a_cut_follow_their_own(void **state)
         oct_surface_build(&mesh, &c, &surface);
         add_plane(&s.cut, level, tilt);
         refine(&s);
-        assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1, NULL), SM_SLIT_CLOSED);
+        assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1), SM_SLIT_CLOSED);
         retie(&surface, &mesh, &s, oct_resample_update(&s), 0);
         part(&surface, &s.tree, level, tilt);
         count_pieces(&s, &surface, &mesh, level, tilt);
@@ -322,7 +322,7 @@ static void a_few_on_the_wrong_side_go_with_the_many(void **state)
     oct_surface_build(&mesh, &c, &surface);
     add_plane(&s.cut, level, 0);
     refine(&s);
-    assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1, NULL), SM_SLIT_CLOSED);
+    assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1), SM_SLIT_CLOSED);
     retie(&surface, &mesh, &s, oct_resample_update(&s), 0);
     assert_int_equal(oct_surface_agree(&surface, &mesh, &c), 0);
     long misled = 0, below = 0;

@@ -307,6 +307,14 @@ int oct_tree_find(const OctTree *tree, int i, int j, int k)
     return oct_tree_at(tree, tree->levels, i, j, k);
 }
 
+int *oct_tree_below(const OctTree *tree)
+{
+    int *below = sm_alloc((size_t)tree->nodes, sizeof *below);
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        for (int n = tree->node[leaf]; n >= 0; n = tree->parent[n]) below[n]++;
+    return below;
+}
+
 /* Not inline: the compiler rounds it in the same way wherever it is asked for. */
 void oct_tree_centre(const OctTree *tree, const SmVoxels *voxels, int node, double centre[3])
 {

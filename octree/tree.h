@@ -64,6 +64,10 @@ int oct_tree_find(const OctTree *tree, int i, int j, int k);
 /* Centre of a node in mesh units. */
 void oct_tree_centre(const OctTree *tree, const SmVoxels *voxels, int node, double centre[3]);
 
+/* Leaves below every node, itself counted if it is one. O(leaves * levels). The caller frees with
+ * free(). */
+int *oct_tree_below(const OctTree *tree);
+
 /* Level of a node. O(1). */
 static inline int oct_tree_level(const OctTree *tree, int node)
 {

@@ -37,7 +37,7 @@ static void grow_leaves(OctTreeChange *c)
 
 void oct_tree_change_init(OctTreeChange *c, OctTree *tree, const SmVoxels *voxels)
 {
-    *c = (OctTreeChange){.tree = tree, .voxels = voxels, .below = oct_interval_below(tree)};
+    *c = (OctTreeChange){.tree = tree, .voxels = voxels, .below = oct_tree_below(tree)};
     c->node_space = tree->nodes;
     c->leaf_space = tree->leaves;
     c->place = sm_alloc((size_t)tree->nodes, sizeof *c->place);

@@ -2,7 +2,6 @@
 #ifndef OCT_TREE_CHANGE_H
 #define OCT_TREE_CHANGE_H
 
-#include "interval.h"
 #include "resample.h"
 
 /* A node touched in the batch: what it was before it, and the children that it has lost. */

@@ -28,7 +28,9 @@ struct RefCollide {
     int *around;   /* [nodes] those that ways may lead through */
 };
 
-int *ref_collide_levels(const SmCollideRest *rest)
+/* How many cells lie between a cell and one with an outer face, by faces: 0 for these;
+ * SM_COLLIDE_LAYERS for all that are deeper. */
+static int *find_levels(const SmCollideRest *rest)
 {
     int *level = sm_alloc((size_t)rest->cells, sizeof *level);
     for (long k = 0; k < rest->cells; k++) level[k] = SM_COLLIDE_LAYERS;
@@ -263,7 +265,7 @@ RefCollide *ref_collide_start(const SmCollideRest *rest, const SmCollideParams *
                          .bodies = bodies,
                          .x = x,
                          .frame = frame,
-                         .level = ref_collide_levels(rest),
+                         .level = find_levels(rest),
                          .surface = sm_alloc(nodes, sizeof(bool)),
                          .place = sm_alloc((size_t)(bodies * rest->cells), sizeof(Place)),
                          .from = -1,

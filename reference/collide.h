@@ -36,10 +36,6 @@ bool ref_collide_at(RefCollide *twin, long number, const double p[3], long cell,
 long ref_collide_find(const SmCollideRest *rest, const SmCollideParams *params, long bodies,
                       const double (*x)[3], const double (*frame)[9], RefContact **contact);
 
-/* How many cells lie between a cell and one with an outer face, by faces: 0 for these;
- * SM_COLLIDE_LAYERS for all that are deeper. [cells], the caller frees. */
-int *ref_collide_levels(const SmCollideRest *rest);
-
 /* Whether a node and a cell are so close in the material that they never collide
  * (lib/collide_rest.h). */
 bool ref_collide_near(const SmCollideRest *rest, int node, int cell);

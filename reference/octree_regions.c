@@ -3,13 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool ref_octree_below(const OctTree *tree, long leaf, long node)
-{
-    long n = tree->node[leaf];
-    while (n >= 0 && n != node) n = tree->parent[n];
-    return n >= 0;
-}
-
 /* Joins the leaf of material cell (i,j,k) to those of the material cells that it touches. */
 static void join_cell(const OctTree *tree, const SmVoxels *v, int i, int j, int k, RefOctree *ref)
 {
@@ -116,12 +109,21 @@ void ref_octree_dijkstra(const int *length, long leaves, long source, long *dist
     free(done);
 }
 
+bool *ref_octree_below(const OctTree *tree)
+{
+    bool *below = sm_alloc((size_t)tree->nodes * (size_t)tree->leaves, sizeof *below);
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        for (long n = tree->node[leaf]; n >= 0; n = tree->parent[n])
+            below[n * tree->leaves + leaf] = true;
+    return below;
+}
+
 typedef struct {
     const OctTree *tree;
     const bool *below; /* [nodes][leaves] is the leaf below the node? */
     const long *distance;
     double w, most;
-    bool *member; /* of the region in hand */
+    bool *taken; /* [nodes] */
 } Traversal;
 
 /* Goes down from a node: the three cases of octree section 4.2. */
@@ -140,34 +142,36 @@ static void traverse(const Traversal *t, long node)
         any = true;
     }
     if (!any || (double)least > t->w) return;
-    if (all && (double)most <= t->most) {
-        for (long l = 0; l < t->tree->leaves; l++) t->member[l] |= below[l];
-        return;
-    }
+    t->taken[node] = all && (double)most <= t->most;
+    if (t->taken[node]) return;
     for (long c = 0; c < t->tree->children[node]; c++) traverse(t, t->tree->child[node] + c);
+}
+
+void ref_octree_own(const OctTree *tree, const bool *below, const long *distance, double w,
+                    double most, bool *taken)
+{
+    Traversal t = {tree, below, distance, w, most, taken};
+    memset(taken, 0, (size_t)tree->nodes * sizeof *taken);
+    for (long root = 0; root < tree->roots; root++) traverse(&t, root);
 }
 
 void ref_octree_regions(const OctTree *tree, const RefOctree *ref, const int *w, double epsilon,
                         bool *member)
 {
     long leaves = tree->leaves;
-    bool *below = sm_alloc((size_t)tree->nodes * (size_t)leaves, sizeof *below);
-    for (long n = 0; n < tree->nodes; n++)
-        for (long l = 0; l < leaves; l++) below[n * leaves + l] = ref_octree_below(tree, l, n);
+    bool *below = ref_octree_below(tree), *taken = sm_alloc((size_t)tree->nodes, sizeof *taken);
     memset(member, 0, (size_t)leaves * (size_t)leaves * sizeof *member);
     for (long i = 0; i < leaves; i++) {
-        Traversal t = {tree,
-                       below,
-                       ref->distance + i * leaves,
-                       w[i],
-                       (1 + epsilon) * w[i],
-                       member + i * leaves};
-        for (long root = 0; root < tree->roots; root++) traverse(&t, root);
+        ref_octree_own(tree, below, ref->distance + i * leaves, w[i], (1 + epsilon) * w[i], taken);
+        for (long n = 0; n < tree->nodes; n++)
+            for (long l = 0; l < leaves && taken[n]; l++)
+                member[i * leaves + l] |= below[n * leaves + l];
     }
     for (long i = 0; i < leaves; i++)
         for (long j = 0; j < i; j++) {
             bool *one = member + i * leaves + j, *other = member + j * leaves + i;
             *one = *other = *one || *other;
         }
+    free(taken);
     free(below);
 }

@@ -1,4 +1,5 @@
-/* octree_regions.h - the slow, readable twin of octree/graph.h, distance.h and region.h.
+/* octree_regions.h - the slow, readable twin of octree/graph.h, distance.h, sheaf.h
+ * and region.h.
  *
  * Everything as its definition says, over all pairs: O(leaves^2 * leaves) and more. Only tests and
  * checks link it. */
@@ -27,7 +28,12 @@ void ref_octree_dijkstra(const int *length, long leaves, long source, long *dist
 void ref_octree_regions(const OctTree *tree, const RefOctree *ref, const int *w, double epsilon,
                         bool *member);
 
-/* Is leaf l below tree node n, or n itself? */
-bool ref_octree_below(const OctTree *tree, long leaf, long node);
+/* below[n][l]: is leaf l below tree node n, or n itself? [nodes][leaves]. The caller frees. */
+bool *ref_octree_below(const OctTree *tree);
+
+/* taken[n]: does the leaf that has these distances put tree node n in, as the intervals of the
+ * leaves below it say? A leaf within w is in, one beyond `most` is not. `taken` is [nodes]. */
+void ref_octree_own(const OctTree *tree, const bool *below, const long *distance, double w,
+                    double most, bool *taken);
 
 #endif
