@@ -228,12 +228,12 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
         return sm_fail(error, SM_INPUT,
                        "%s: 'cuts' need the engine fastlsm or octree, and %s has none", scene->file,
                        type->name);
-    if (scene->obstacle_count > 0 && !strcmp(type->name, "meshless"))
+    if (scene->obstacle_count > 0 && type->unstopped)
         return sm_fail(
             error, SM_INPUT,
-            "%s: meshless bodies do not stop at obstacles: leave 'obstacles' out, or use "
-            "the engine fastlsm or octree",
-            scene->file);
+            "%s: bodies of the engine %s do not stop at obstacles: leave 'obstacles' out, "
+            "or use the engine fastlsm or octree",
+            scene->file, type->name);
     RefMeshlessOptions meshless = bench_meshless_options(scene, body);
     params.meshless = &meshless;
     SmError why;

@@ -24,7 +24,8 @@ static long nodes_of(const RefField *field, const RefBodyOptions *options, doubl
 {
     RefOctants octants;
     RefNodes nodes;
-    RefOctantOptions rough = {cell, options->coarser, 0, 1, 1};
+    RefOctantOptions rough = {
+        .cell = cell, .coarser = options->coarser, .gauss = 1, .clip = 1, .rough = true};
     if (ref_octants_build(field, &rough, &octants, NULL) != SM_OK) return 0;
     ref_nodes_place(field, &octants, alpha_of(options), &nodes);
     long count = nodes.count;
@@ -84,7 +85,7 @@ SmCode ref_body_build(const RefField *field, const RefBodyOptions *options, long
     RefOctantOptions fine = {.cell = options->cell > 0 ? options->cell : find_cell(field, options),
                              .coarser = options->coarser,
                              .split = options->split > 0 ? options->split : 1,
-                             .gauss = options->basis == REF_MLS_LINEAR ? 2 : 3,
+                             .gauss = options->basis == REF_MLS_LINEAR ? 1 : 3,
                              .clip = 2};
     SmCode code = ref_octants_build(field, &fine, &body->octants, error);
     if (code != SM_OK) return code;

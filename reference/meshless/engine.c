@@ -8,13 +8,13 @@
 #include <string.h>
 
 #include "../../lib/handles.h"
-#include "motion.h"
+#include "../../lib/vector.h"
+#include "grip.h"
 #include "mpu.h"
 #include "normal.h"
-#include "rotation.h"
 #include "skin.h"
 
-enum { BOUND = 4 };
+enum { MOST_POINTS = 128 };
 
 struct SmEngine {
     long count;        /* particles */
@@ -29,17 +29,30 @@ struct SmEngine {
     double (*impulse)[3];                /* [nodes] that pushes have left, for the next step */
     bool pushed;
     SmHandles handles;
-    int bound_count;
-    long *bound;   /* [bound_count] particles that are bound */
-    int *bound_by; /* [bound_count] the handle of each */
+    RefModes modes; /* of the body that nothing holds */
+    int grips;      /* of handles that hold any particles */
+    RefGrip *grip;
+    double (*grip_pose)[3][4]; /* [grips] */
     double build_seconds;
 };
 
 #define CONST(array) ((const double(*)[3])(array))
 
+static void release(SmEngine *engine)
+{
+    for (int k = 0; k < engine->grips; k++) ref_grip_free(engine->grip + k);
+    free(engine->grip);
+    free(engine->grip_pose);
+    engine->grip = NULL;
+    engine->grip_pose = NULL;
+    engine->grips = 0;
+}
+
 static void meshless_destroy(SmEngine *engine)
 {
     if (!engine) return;
+    release(engine);
+    ref_modes_free(&engine->modes);
     ref_motion_free(&engine->motion);
     ref_skin_free(&engine->skin);
     ref_body_free(&engine->body);
@@ -50,8 +63,6 @@ static void meshless_destroy(SmEngine *engine)
     free(engine->v);
     free(engine->carried);
     free(engine->impulse);
-    free(engine->bound);
-    free(engine->bound_by);
     free(engine);
 }
 
@@ -102,13 +113,11 @@ static SmCode make_motion(const SmEngineParams *params, SmEngine *engine, SmErro
     int wanted = options->modes > 0 ? options->modes : (int)fmin(REF_MESHLESS_MODES, (double)most);
     RefDamping damping = {params->damping / (1 - params->damping) / params->h,
                           options->stiffness_damping};
-    RefModes modes;
-    SmCode code = ref_modes_find(&engine->body.matrices, NULL, wanted, &modes, error);
+    SmCode code = ref_modes_find(&engine->body.matrices, NULL, wanted, &engine->modes, error);
     if (code != SM_OK) return code;
-    ref_motion_create(&engine->body, &modes, &damping, &engine->motion);
+    ref_motion_create(&engine->body, &engine->modes, &damping, &engine->motion);
     ref_motion_gravity(&engine->body, params->gravity, &engine->motion);
     ref_motion_pose(&engine->motion);
-    ref_modes_free(&modes);
     return SM_OK;
 }
 
@@ -173,18 +182,9 @@ static SmCode meshless_create(const SmVoxels *voxels, const SmEngineParams *para
 /* What pushes left at the nodes becomes speed of the modes, whose masses are 1. */
 static void take_impulses(SmEngine *engine)
 {
-    RefMotion *motion = &engine->motion;
-    for (long n = 0; engine->pushed && n < motion->nodes; n++) {
-        double R[9], f[3];
-        const double *row = motion->row + (size_t)n * 6 * (size_t)motion->modes;
-        const double *F = engine->impulse[n];
-        ref_rotation(motion->rotation[n], R);
-        for (int d = 0; d < 3; d++) f[d] = R[d] * F[0] + R[3 + d] * F[1] + R[6 + d] * F[2];
-        for (int d = 0; d < 3; d++)
-            for (int k = 0; k < motion->modes; k++)
-                motion->speed[k] += f[d] * row[d * motion->modes + k];
-    }
-    if (engine->pushed) memset(engine->impulse, 0, (size_t)motion->nodes * sizeof *engine->impulse);
+    if (!engine->pushed) return;
+    ref_motion_push(CONST(engine->impulse), &engine->motion);
+    memset(engine->impulse, 0, (size_t)engine->motion.nodes * sizeof *engine->impulse);
     engine->pushed = false;
 }
 
@@ -266,55 +266,61 @@ static void meshless_push(SmEngine *engine, long count, const long *particle,
     engine->pushed = engine->pushed || count > 0;
 }
 
-/* The particle of a handle that is farthest from those bound so far, or from x where there are
- * none. */
-static long farthest(const SmEngine *engine, const SmHandle *handle, const double x[3], int bound,
-                     const long *chosen)
+/* Nodes beside a handle's particles. */
+static long nodes_beside(const RefBody *body, long count, const double (*x)[3])
 {
-    long best = handle->particle[0];
-    double most = -1;
-    for (long k = 0; k < handle->count; k++) {
-        double least = INFINITY;
-        for (int n = 0; n < (bound ? bound : 1); n++) {
-            const double *to = bound ? engine->rest[chosen[n]] : x;
-            double square = 0;
-            for (int d = 0; d < 3; d++)
-                square += (engine->rest[handle->particle[k]][d] - to[d]) *
-                          (engine->rest[handle->particle[k]][d] - to[d]);
-            least = fmin(least, square);
+    double most = pow(0.75 * body->octants.cell, 2);
+    long beside = 0;
+    for (long n = 0; n < body->nodes.count; n++)
+        for (long p = 0; p < count; p++) {
+            double way[3];
+            for (int d = 0; d < 3; d++) way[d] = body->nodes.position[n][d] - x[p][d];
+            if (sm_dot(way, way) > most) continue;
+            beside++;
+            break;
         }
-        if (least > most) {
-            most = least;
-            best = handle->particle[k];
-        }
-    }
-    return best;
+    return beside;
 }
 
-/* Binds the body at a few of each handle's particles that lie far apart. */
-static void bind(SmEngine *engine)
+/* Points of every handle, a little more than half as many as nodes are beside it: with one a node
+ * the body could bend no nearer to the handle than covers reach, and with a third of them it bends
+ * between them. A cantilever's sag says so: -4%, and +4% (test_engine.c). */
+static void choose_grips(SmEngine *engine)
 {
-    size_t most = (size_t)engine->handles.count * BOUND;
-    ref_motion_release(&engine->motion);
-    free(engine->bound);
-    engine->bound = sm_alloc(most, sizeof *engine->bound);
-    engine->bound_by = sm_realloc(engine->bound_by, most + 1, sizeof *engine->bound_by);
-    engine->bound_count = 0;
+    const RefBody *body = &engine->body;
+    engine->grip = sm_alloc((size_t)engine->handles.count, sizeof *engine->grip);
+    engine->grip_pose = sm_alloc((size_t)engine->handles.count, sizeof *engine->grip_pose);
+    long room = body->nodes.count / 3 / (engine->handles.count + 1) + 1;
+    if (room > MOST_POINTS) room = MOST_POINTS;
     for (int n = 0; n < engine->handles.count; n++) {
         const SmHandle *handle = engine->handles.handle + n;
-        double middle[3] = {0};
+        if (handle->count == 0) continue;
+        double(*x)[3] = sm_alloc((size_t)handle->count, sizeof *x);
         for (long k = 0; k < handle->count; k++)
-            for (int d = 0; d < 3; d++)
-                middle[d] += engine->rest[handle->particle[k]][d] / (double)handle->count;
-        long *chosen = engine->bound + engine->bound_count;
-        for (int k = 0; k < BOUND && k < handle->count; k++) {
-            chosen[k] = farthest(engine, handle, middle, k, chosen);
-            int number = ref_motion_hold(&engine->body, REF_HOLD_POSITION, engine->rest[chosen[k]],
-                                         &engine->motion);
-            assert(number >= 0); /* the body was shown all particles */
-            engine->bound_by[engine->bound_count++] = n;
-        }
+            memcpy(x[k], engine->rest[handle->particle[k]], sizeof x[k]);
+        double wanted = fmax(0.55 * (double)nodes_beside(body, handle->count, CONST(x)), 4);
+        engine->grip[engine->grips++] = ref_grip_choose(
+            handle->count, CONST(x), 0.5 * body->octants.cell, (int)fmin(wanted, (double)room));
+        free(x);
     }
+}
+
+/* Other modes for other handles; the motion goes on. */
+static void bind(SmEngine *engine)
+{
+    RefMotion before = engine->motion;
+    RefModes held = {0};
+    release(engine);
+    if (engine->handles.count > 0) choose_grips(engine);
+    bool found = engine->grips > 0 && ref_grip_modes(&engine->body, engine->grips, engine->grip,
+                                                     engine->modes.count, &held, NULL) == SM_OK;
+    ref_motion_create(&engine->body, found ? &held : &engine->modes, &before.damping,
+                      &engine->motion);
+    memcpy(engine->motion.force, before.force, (size_t)before.nodes * sizeof *engine->motion.force);
+    ref_grip_bind(&engine->body, engine->grips, engine->grip, &engine->motion);
+    ref_motion_take(&engine->body, &before, engine->h, &engine->motion);
+    ref_motion_free(&before);
+    ref_modes_free(&held);
 }
 
 static void meshless_bound(SmEngine *engine, const SmBoundary *boundary)
@@ -322,14 +328,13 @@ static void meshless_bound(SmEngine *engine, const SmBoundary *boundary)
     const SmHandle *before = engine->handles.handle;
     sm_handles_set(&engine->handles, boundary, engine->count);
     if (engine->handles.handle != before) bind(engine);
-    for (int n = 0; n < engine->bound_count; n++) {
-        const SmHandle *handle = engine->handles.handle + engine->bound_by[n];
-        double from[3], to[3];
-        for (int d = 0; d < 3; d++)
-            from[d] = engine->rest[engine->bound[n]][d] + engine->pose[d][3];
-        sm_pose_apply((const double(*)[4])handle->pose, from, to);
-        for (int d = 0; d < 3; d++) engine->motion.hold[n].target[d] = to[d] - from[d];
-    }
+    for (int n = 0, k = 0; n < engine->handles.count; n++)
+        if (engine->handles.handle[n].count > 0)
+            memcpy(engine->grip_pose[k++], engine->handles.handle[n].pose,
+                   sizeof engine->grip_pose[0]);
+    const double shift[3] = {engine->pose[0][3], engine->pose[1][3], engine->pose[2][3]};
+    ref_grip_aim(engine->grips, engine->grip, shift, (const double(*)[3][4])engine->grip_pose,
+                 &engine->motion);
 }
 
 static void meshless_masses(SmEngine *engine, double *mass)
@@ -361,6 +366,7 @@ static long meshless_region(SmEngine *engine, long p, long *member, long room)
 const SmEngineType ref_meshless_engine = {
     .name = "meshless",
     .precision = "double",
+    .unstopped = true,
     .create = meshless_create,
     .destroy = meshless_destroy,
     .step = meshless_step,

@@ -5,6 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/vector.h"
+
+/* Walls of a sliver that miss its volume by more than this are no use. */
+static const double MOST_OPEN = 0.2;
+
 /* Products of pairs of shape functions, I <= J: lists of J for every I. */
 typedef struct {
     long count;   /* nodes */
@@ -20,8 +25,10 @@ typedef struct {
     int *node;   /* rising */
     int *number; /* [nodes] in `node`, or -1 */
     long points;
-    double *weight; /* [points] */
-    double *value;  /* [count][4][points]: phi and its derivatives */
+    double *weight;    /* [points] */
+    double *value;     /* [count][4][points]: phi and its derivatives */
+    double (*mean)[4]; /* [nodes] of `value` over the octant */
+    double (*wall)[3]; /* [nodes] sums of phi over the octant's walls */
 } Local;
 
 void ref_matrices_free(RefMatrices *matrices)
@@ -106,6 +113,11 @@ static long points_end(const RefOctants *tree, long o)
     return o + 1 < tree->count ? tree->octant[o + 1].first : tree->points;
 }
 
+static long walls_end(const RefOctants *tree, long o)
+{
+    return o + 1 < tree->count ? tree->octant[o + 1].first_wall : tree->walls;
+}
+
 /* Adds `count` rising numbers to a rising list of `*held`. */
 static int *merge(int *list, long *held, const int *number, int count)
 {
@@ -176,6 +188,100 @@ static bool evaluate(const RefOctants *tree, long o, const RefNodes *nodes, RefB
         }
     }
     return true;
+}
+
+/* The means of all functions over the octant's points, and the points' middle; returns the volume.
+ */
+static double take_means(const RefPoint *point, Local *local, double middle[3])
+{
+    double volume = 0;
+    memset(middle, 0, sizeof(double[3]));
+    for (long q = 0; q < local->points; q++) volume += local->weight[q];
+    for (long q = 0; q < local->points; q++)
+        for (int d = 0; d < 3; d++) middle[d] += local->weight[q] / volume * point[q].x[d];
+    for (int n = 0; n < local->count; n++)
+        for (int k = 0; k < 4; k++) {
+            const double *value = local->value + (4 * n + k) * local->points;
+            double sum = 0;
+            for (long q = 0; q < local->points; q++) sum += local->weight[q] * value[q];
+            local->mean[n][k] = sum / volume;
+        }
+    return volume;
+}
+
+/* Sums over the walls of what bounds an octant's share, for its mean gradients. */
+typedef struct {
+    double area[3], first[3][3]; /* area, and area times place from the points' middle */
+} Closure;
+
+/* The functions at a wall that too few nodes cover, along their slopes at
+ * the octant's point that is nearest: linear functions stay what they are. */
+static void extend(const RefPoint *point, const RefWall *wall, Local *local)
+{
+    long near = 0;
+    double least = INFINITY, way[3];
+    for (long q = 0; q < local->points; q++) {
+        for (int d = 0; d < 3; d++) way[d] = wall->x[d] - point[q].x[d];
+        if (sm_dot(way, way) >= least) continue;
+        least = sm_dot(way, way);
+        near = q;
+    }
+    for (int n = 0; n < local->count; n++) {
+        const double *value = local->value + 4 * n * local->points + near;
+        double phi = value[0];
+        for (int d = 0; d < 3; d++)
+            phi += value[(1 + d) * local->points] * (wall->x[d] - point[near].x[d]);
+        for (int d = 0; d < 3; d++) local->wall[n][d] += phi * wall->area[d];
+    }
+}
+
+static void sum_walls(const RefOctants *tree, long o, const RefNodes *nodes, RefBasis basis,
+                      const double middle[3], RefShape *shape, Local *local, Closure *closure)
+{
+    memset(local->wall, 0, (size_t)local->count * sizeof *local->wall);
+    for (long s = tree->octant[o].first_wall; s < walls_end(tree, o); s++) {
+        const RefWall *wall = tree->wall + s;
+        if (!ref_mls_at(nodes, basis, wall->x, shape))
+            extend(tree->point + tree->octant[o].first, wall, local);
+        for (int n = 0; n < shape->count; n++) {
+            int at = local->number[shape->node[n]];
+            for (int d = 0; at >= 0 && d < 3; d++)
+                local->wall[at][d] += shape->value[n] * wall->area[d];
+        }
+        for (int d = 0; d < 3; d++) {
+            closure->area[d] += wall->area[d];
+            for (int e = 0; e < 3; e++)
+                closure->first[d][e] += wall->area[d] * (wall->x[e] - middle[e]);
+        }
+    }
+}
+
+/* Gives the gradients at the octant's points the mean that the walls say, so that what they do sums
+ * up to the body's surface: then constant stress is in balance wherever shape functions are, and
+ * the patch test is passed (Chen, Wu, Yoon and You 2001; here the gradients keep how they vary in
+ * the octant, which leaves no soft modes). Where walls do not close, which is as well as the
+ * surface is cut, the rest is taken out, so that linear functions have their gradients exactly. */
+static void balance_gradients(const RefOctants *tree, long o, const RefNodes *nodes, RefBasis basis,
+                              RefShape *shape, Local *local)
+{
+    Closure closure = {{0}, {{0}}};
+    double middle[3], open[3][3], off = 0;
+    double volume = take_means(tree->point + tree->octant[o].first, local, middle);
+    sum_walls(tree, o, nodes, basis, middle, shape, local, &closure);
+    for (int d = 0; d < 3; d++)
+        for (int e = 0; e < 3; e++) {
+            open[d][e] = (d == e) - closure.first[d][e] / volume;
+            off = fmax(off, fabs(open[d][e]));
+        }
+    if (off > MOST_OPEN) return;
+    for (int n = 0; n < local->count; n++)
+        for (int d = 0; d < 3; d++) {
+            const double *mean = local->mean[n];
+            double *value = local->value + (4 * n + 1 + d) * local->points;
+            double change = (local->wall[n][d] - closure.area[d] * mean[0]) / volume - mean[1 + d];
+            for (int e = 0; e < 3; e++) change += open[d][e] * mean[1 + e];
+            for (long q = 0; q < local->points; q++) value[q] += change;
+        }
 }
 
 /* The ten products of functions i (times the points' weights) and j. */
@@ -279,6 +385,8 @@ static void local_create(const RefNodes *nodes, Local *local)
     *local = (Local){0};
     local->node = sm_alloc((size_t)nodes->count, sizeof *local->node);
     local->number = sm_alloc((size_t)nodes->count, sizeof *local->number);
+    local->mean = sm_alloc((size_t)nodes->count, sizeof *local->mean);
+    local->wall = sm_alloc((size_t)nodes->count, sizeof *local->wall);
     for (long n = 0; n < nodes->count; n++) local->number[n] = -1;
 }
 
@@ -288,6 +396,8 @@ static void local_free(Local *local)
     free(local->number);
     free(local->weight);
     free(local->value);
+    free(local->mean);
+    free(local->wall);
 }
 
 static void pairs_free(Pairs *pairs)
@@ -311,6 +421,7 @@ static SmCode integrate(const RefOctants *tree, const RefNodes *nodes, RefBasis 
         find_nodes(tree, tree->octant + o, nodes, local);
         defined = evaluate(tree, o, nodes, basis, &shape, local, &where);
         if (defined) {
+            balance_gradients(tree, o, nodes, basis, &shape, local);
             weighted = sm_realloc(weighted, 4 * (size_t)local->points, sizeof *weighted);
             add_pairs(local, weighted, pairs);
         }

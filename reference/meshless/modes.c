@@ -22,7 +22,7 @@ void ref_modes_free(RefModes *modes)
 }
 
 /* A little below 0 on the scale of the eigenvalues, which M and K's traces give. */
-static double shift_of(const RefMatrices *matrices)
+double ref_modes_shift(const RefMatrices *matrices)
 {
     const RefSparse *K = &matrices->stiffness, *M = &matrices->mass;
     double stiffness = 0, mass = 0;
@@ -108,22 +108,15 @@ static int extract(Lanczos *l, double shift, RefModes *modes)
     return info;
 }
 
-SmCode ref_modes_find(const RefMatrices *matrices, const RefRows *rows, int count, RefModes *modes,
-                      SmError *error)
+SmCode ref_modes_of(const RefMatrices *matrices, RefSolver *solver, double shift, int count,
+                    RefModes *modes, SmError *error)
 {
-    int size = matrices->stiffness.columns;
-    RefSolver *solver = NULL;
+    int size = matrices->stiffness.columns, left = size - ref_solver_rank(solver);
     *modes = (RefModes){0};
-    double shift = shift_of(matrices);
-    SmCode code = ref_solver_create(matrices, shift, rows, &solver, error);
-    if (code != SM_OK) return code;
-    int left = size - ref_solver_rank(solver);
-    if (count < 1 || count > left / 2) {
-        ref_solver_destroy(solver);
+    if (count < 1 || count > left / 2)
         return sm_fail(error, SM_USAGE,
                        "%d modes of a body that has %d: give a number from 1 to %d", count, left,
                        left / 2);
-    }
     Lanczos lanczos = lanczos_create(size, count, left);
     modes->nodes = matrices->mass.columns;
     modes->count = count;
@@ -132,10 +125,22 @@ SmCode ref_modes_find(const RefMatrices *matrices, const RefRows *rows, int coun
     int info = iterate(matrices, solver, &lanczos);
     if (info == 0) info = extract(&lanczos, shift, modes);
     lanczos_free(&lanczos);
-    ref_solver_destroy(solver);
     if (info == 0) return SM_OK;
     ref_modes_free(modes);
     return sm_fail(error, SM_INPUT,
                    "the search for %d modes did not converge (ARPACK's code %d): ask for others",
                    count, info);
+}
+
+SmCode ref_modes_find(const RefMatrices *matrices, const RefRows *rows, int count, RefModes *modes,
+                      SmError *error)
+{
+    RefSolver *solver;
+    double shift = ref_modes_shift(matrices);
+    *modes = (RefModes){0};
+    SmCode code = ref_solver_create(matrices, shift, rows, &solver, error);
+    if (code != SM_OK) return code;
+    code = ref_modes_of(matrices, solver, shift, count, modes, error);
+    ref_solver_destroy(solver);
+    return code;
 }

@@ -18,6 +18,11 @@ typedef struct {
  * frees. */
 SmCode ref_modes_find(const RefMatrices *matrices, const RefRows *rows, int count, RefModes *modes,
                       SmError *error);
+
+/* The same by a solver of the caller's, whose shift was this one. */
+SmCode ref_modes_of(const RefMatrices *matrices, RefSolver *solver, double shift, int count,
+                    RefModes *modes, SmError *error);
+double ref_modes_shift(const RefMatrices *matrices);
 void ref_modes_free(RefModes *modes);
 
 #endif

@@ -45,6 +45,19 @@ SmCode ref_modes_find(const RefMatrices *matrices, const RefRows *rows, int coun
     return absent(error);
 }
 
+SmCode ref_modes_of(const RefMatrices *matrices, RefSolver *solver, double shift, int count,
+                    RefModes *modes, SmError *error)
+{
+    (void)solver, (void)shift;
+    return ref_modes_find(matrices, NULL, count, modes, error);
+}
+
+double ref_modes_shift(const RefMatrices *matrices)
+{
+    (void)matrices;
+    return 0;
+}
+
 void ref_modes_free(RefModes *modes)
 {
     *modes = (RefModes){0};

@@ -5,11 +5,13 @@
 #include <string.h>
 
 #include "clip.h"
+#include "walls.h"
 
 void ref_octants_free(RefOctants *tree)
 {
     free(tree->octant);
     free(tree->point);
+    free(tree->wall);
     *tree = (RefOctants){0};
 }
 
@@ -120,11 +122,14 @@ static void classify(const RefField *field, const RefOctantOptions *options, Ref
         RefOctant *octant = tree->octant + at;
         double centre[3], edge = tree->cell * octant->size;
         octant->first = tree->points;
+        octant->first_wall = tree->walls;
         octant->kind = REF_EXTERIOR;
         if (octant->child >= 0 || outside_box(field, tree, octant)) continue;
         ref_octants_centre(tree, octant, centre);
         double volume = ref_clip_cell(field, options, centre, edge, tree);
         octant->share = volume / (edge * edge * edge);
+        if (!options->rough && tree->points > octant->first)
+            ref_walls_of_faces(field, options, at, tree);
         if (octant->share > 1 - 1e-9)
             octant->kind = REF_INTERIOR;
         else if (octant->share > 0)

@@ -22,12 +22,19 @@ typedef struct {
     int child;           /* first of eight, or -1: terminal */
     RefOctantClass kind; /* of a terminal one */
     double share;        /* of its volume that is inside, 0..1 */
-    long first;          /* its integration points: first .. first of the next terminal one - 1 */
+    long first;          /* its integration points: first .. first of the next octant - 1 */
+    long first_wall;     /* its walls, likewise */
 } RefOctant;
 
 typedef struct {
     double x[3], weight; /* weight: volume */
 } RefPoint;
+
+/* A point on what bounds the share of an octant that is inside (walls.h). */
+typedef struct {
+    double x[3], area[3]; /* area: times the normal that points out of the share */
+    bool surface;         /* of the body; otherwise shared with another octant */
+} RefWall;
 
 typedef struct {
     double origin[3], cell; /* cell: edge of a finest octant */
@@ -35,6 +42,8 @@ typedef struct {
     RefOctant *octant; /* [count]; 0 is the root, all children behind their parent */
     long points, point_room;
     RefPoint *point; /* [points], octant by octant */
+    long walls, wall_room;
+    RefWall *wall; /* [walls], octant by octant */
 } RefOctants;
 
 typedef struct {
@@ -43,6 +52,7 @@ typedef struct {
     int split;   /* levels by which an octant is split for the integration; 0..3 */
     int gauss;   /* points a direction in each part, 1..4 */
     int clip;    /* further levels by which cut parts are split, 0..4 */
+    bool rough;  /* for the octants alone: no walls, and no more levels where the body has edges */
 } RefOctantOptions;
 
 enum { REF_MOST_OCTANTS = 1 << 22 };

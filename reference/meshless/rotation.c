@@ -1,6 +1,7 @@
 #include "rotation.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "../../lib/vector.h"
 
@@ -62,4 +63,46 @@ void ref_rotation_slope(const double w[3], const double v[3], double J[9])
             J[3 * d + e] = w[e] * (k.bend_slope * once[d] + k.twist_slope * twice[d]) +
                            k.bend * across[d] + k.twist * (outer[d] + inner[d]);
     }
+}
+
+/* I - [w]x / 2 + k [w]x^2 with k = (1 - t / 2 cot(t / 2)) / t^2. */
+void ref_rotation_unmean(const double w[3], const double v[3], double result[3])
+{
+    double q = sm_dot(w, w), half = sqrt(q) / 2, s = sin(half), once[3], twice[3];
+    if (fabs(s) < 1e-3) s = copysign(1e-3, s);
+    double k = q < 1e-3 ? 1.0 / 12 + q / 720 : (1 - half * cos(half) / s) / q;
+    sm_cross(w, v, once);
+    sm_cross(w, once, twice);
+    for (int d = 0; d < 3; d++) result[d] = v[d] - 0.5 * once[d] + k * twice[d];
+}
+
+/* The quaternion that R is (Shepperd): its largest part first, then angle and axis. */
+void ref_rotation_vector(const double R[9], const double near[3], double w[3])
+{
+    double q[4] = {1 + R[0] + R[4] + R[8], 1 + R[0] - R[4] - R[8], 1 - R[0] + R[4] - R[8],
+                   1 - R[0] - R[4] + R[8]};
+    double odd[3] = {R[7] - R[5], R[2] - R[6], R[3] - R[1]};
+    double even[3] = {R[5] + R[7], R[2] + R[6], R[1] + R[3]};
+    int most = 0;
+    for (int k = 1; k < 4; k++)
+        if (q[k] > q[most]) most = k;
+    double root = sqrt(fmax(q[most], 0));
+    for (int k = 0; k < 4; k++) {
+        if (k == most)
+            q[k] = root;
+        else if (k == 0 || most == 0)
+            q[k] = odd[k + most - 1] / root;
+        else
+            q[k] = even[5 - k - most] / root; /* the axis that neither is: even[0] is y and z */
+    }
+    double sine = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]), axis[3];
+    double angle = 2 * atan2(sine, q[0]), along = 0;
+    for (int d = 0; d < 3; d++) axis[d] = sine > 0 ? q[1 + d] / sine : 0;
+    if (sine < 1e-9) { /* no axis of its own */
+        memcpy(axis, near, sizeof axis);
+        if (!sm_normalize(axis)) axis[0] = 1;
+    }
+    along = sm_dot(axis, near);
+    angle += 2 * M_PI * rint((along - angle) / (2 * M_PI));
+    for (int d = 0; d < 3; d++) w[d] = angle * axis[d];
 }

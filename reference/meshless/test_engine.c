@@ -33,6 +33,26 @@ static Scene scene_create(void)
     return scene;
 }
 
+/* A beam along x, 1 wide and high. */
+static Scene beam_create(double length, long nodes)
+{
+    static const int corner[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
+                                      {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
+                                      {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    Scene scene = {
+        .mesh = sm_mesh_new(8, 12),
+        .options = {.nodes = nodes, .material = {.young = 1e5, .poisson = 0.3, .density = 1000}},
+        .params = {.w = 1, .h = 0.05}};
+    SmVoxelParams solid = {.fill = SM_SOLID, .cell = 0.25};
+    for (int n = 0; n < 8; n++)
+        for (int d = 0; d < 3; d++)
+            scene.mesh.position[n][d] = (n >> d & 1 ? 1 - 1e-6 : 1e-6) * (d == 0 ? length : 1);
+    for (int t = 0; t < 12; t++)
+        for (int c = 0; c < 3; c++) scene.mesh.triangle[t][c] = corner[t][c];
+    assert_int_equal(sm_voxelise(&scene.mesh, &solid, "beam", &scene.voxels, NULL), SM_OK);
+    return scene;
+}
+
 static SmCode create(Scene *scene, SmEngine **engine, SmError *error)
 {
     scene->options.mesh = &scene->mesh;
@@ -154,6 +174,61 @@ static void handles(void **state)
     scene_free(&scene);
 }
 
+/* The particles of the slab x <= to; and, into *tip, the one whose rest is nearest to (x, 1/2,
+ * 1/2). */
+static long slab(SmEngine *engine, double to, double x, long *particle, long *tip)
+{
+    double(*rest)[3] = field(engine, SM_REST), least = INFINITY;
+    long count = 0;
+    for (long p = 0; p < particles_of(engine); p++) {
+        double way[3] = {rest[p][0] - x, rest[p][1] - 0.5, rest[p][2] - 0.5};
+        double square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+        if (rest[p][0] <= to + 1e-9) particle[count++] = p;
+        if (square < least) {
+            least = square;
+            *tip = p;
+        }
+    }
+    free(rest);
+    return count;
+}
+
+/* A cantilever of 64 modes sags under its weight as Timoshenko's beam does, and stays in its clamp.
+ */
+static void cantilever(void **state)
+{
+    (void)state;
+    if (!ref_solver_built) skip();
+    static const double root = 1, length = 9, g = 1e-3;
+    Scene scene = beam_create(length, 1000);
+    SmEngine *engine;
+    scene.params.gravity[1] = -g;
+    scene.params.damping = 0.016; /* about critical */
+    assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+    long *particle = sm_alloc((size_t)particles_of(engine), sizeof *particle), tip = 0;
+    SmHandle handle = {.count = slab(engine, root, length, particle, &tip), .particle = particle};
+    for (int d = 0; d < 3; d++) handle.pose[d][d] = 1;
+    SmBoundary boundary = {.handle_count = 1, .handle = &handle};
+    type->bound(engine, &boundary);
+    for (int step = 0; step < 1600; step++) type->step(engine, NULL);
+    double(*rest)[3] = field(engine, SM_REST), (*x)[3] = field(engine, SM_POSITION), held = 0;
+    for (long n = 0; n < handle.count; n++)
+        for (int d = 0; d < 3; d++)
+            held = fmax(held, fabs(x[particle[n]][d] - rest[particle[n]][d]));
+    double L = rest[tip][0] - root, q = 1000 * g, EI = 1e5 / 12, kGA = 5.0 / 6 * 1e5 / 2.6;
+    double wanted = q * pow(L, 4) / (8 * EI) + q * L * L / (2 * kGA);
+    double sag = rest[tip][1] - x[tip][1];
+    print_message("sag %g, in theory %g: %+.1f%%; clamp off by %.1e\n", sag, wanted,
+                  100 * (sag / wanted - 1), held);
+    assert_true(fabs(sag / wanted - 1) < 0.02);
+    assert_true(held < 0.005 * wanted);
+    free(rest);
+    free(x);
+    free(particle);
+    type->destroy(engine);
+    scene_free(&scene);
+}
+
 /* A small squash comes back as it was set; so does a speed. */
 static void set_and_get(void **state)
 {
@@ -214,9 +289,9 @@ static void what_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rest_and_fall),   cmocka_unit_test(pushes),
-        cmocka_unit_test(handles),         cmocka_unit_test(set_and_get),
-        cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(rest_and_fall), cmocka_unit_test(pushes),
+        cmocka_unit_test(handles),       cmocka_unit_test(cantilever),
+        cmocka_unit_test(set_and_get),   cmocka_unit_test(what_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
