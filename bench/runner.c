@@ -231,8 +231,8 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
     if (scene->obstacle_count > 0 && type->unstopped)
         return sm_fail(
             error, SM_INPUT,
-            "%s: bodies of the engine %s do not stop at obstacles: leave 'obstacles' out, "
-            "or use the engine fastlsm or octree",
+            "%s: bodies of the engine %s do not stop at obstacles: leave planes, spheres, "
+            "boxes and capsules out, or use the engine fastlsm or octree",
             scene->file, type->name);
     RefMeshlessOptions meshless = bench_meshless_options(scene, body);
     params.meshless = &meshless;
