@@ -7,8 +7,9 @@
 #include "body.h"
 #include "command.h"
 #include "option.h"
+#include "slice.h"
 
-enum { KEY_FORMAT = 0x2000, KEY_PARTICLES, FILES = 256 };
+enum { KEY_FORMAT = 0x2000, KEY_PARTICLES, KEY_SLICE, FILES = 256 };
 
 typedef struct {
     BenchCommon common;
@@ -16,6 +17,9 @@ typedef struct {
     int count;
     long particles;
     int json;
+    bool sliced;
+    BenchSlice slice;
+    const char *output; /* of the slice */
 } Options;
 
 /* What is said of one mesh. */
@@ -33,6 +37,12 @@ static const struct argp_option option_list[] = {
     {"format", KEY_FORMAT, "FORMAT", 0, "text or json (default: text)", 1},
     {"particles", KEY_PARTICLES, "N", 0,
      "Particle count of the lattice that is tried (default: 2000)", 1},
+    {"slice", KEY_SLICE, "AXIS=SHARE", 0,
+     "Instead, of one mesh or of points with normals: the signed distance from the surface that "
+     "the "
+     "meshless engine makes of them, on the plane so far through their box (z=0.5), into --output",
+     2},
+    {"output", 'o', "FILE.h5", 0, "HDF5 file of the slice; scripts/plot_slice.py draws it", 2},
     {0},
 };
 
@@ -46,12 +56,24 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_PARTICLES:
         options->particles = bench_option_long(state, "--particles", text, 8, 1000000000);
         return 0;
+    case KEY_SLICE:
+        options->sliced = true;
+        if (!bench_slice_parse(text, &options->slice))
+            bench_usage(state, "--slice: '%.40s' is not x=SHARE, y=SHARE or z=SHARE, 0 to 1", text);
+        return 0;
+    case 'o':
+        options->output = text;
+        return 0;
     case ARGP_KEY_ARG:
         if (options->count == FILES) bench_usage(state, "at most %d meshes", FILES);
         options->mesh[options->count++] = text;
         return 0;
     case ARGP_KEY_END:
         if (!options->count) bench_usage(state, "which MESH?");
+        if (options->sliced != (options->output != NULL))
+            bench_usage(state, "--slice and --output go together");
+        if (options->sliced && (options->count > 1 || options->json))
+            bench_usage(state, "--slice: of one mesh, without --format");
         return 0;
     }
     return ARGP_ERR_UNKNOWN;
@@ -162,10 +184,22 @@ static json_t *to_json(const char *name, const Facts *facts)
     return object;
 }
 
+static SmCode cut_slice(const Options *options, const char *program)
+{
+    SmError error;
+    SmCode code = bench_slice_write(options->mesh[0], &options->slice, options->output, &error);
+    if (code)
+        fprintf(stderr, "%s: %s\n", program, error.text);
+    else if (!options->common.quiet)
+        printf("wrote %s\n", options->output);
+    return code;
+}
+
 int bench_command_info(int argc, char **argv)
 {
     Options options = {.particles = 2000};
     bench_options_parse(&argp, argc, argv, &options, &options.common);
+    if (options.sliced) return (int)cut_slice(&options, argv[0]);
     SmCode code = SM_OK;
     json_t *list = json_array();
     for (int i = 0; i < options.count; i++) {

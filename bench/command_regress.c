@@ -51,7 +51,7 @@ static const struct argp_option option_list[] = {
     {"revision", KEY_REVISION, "REV", 0,
      "Compare with this git revision, built in a temporary worktree and run interleaved", 1},
     {"paper", KEY_PAPER, "NAME", 0,
-     "With --revision: the scenes of this paper's table: fastlsm (default), octree", 1},
+     "With --revision: the scenes of this paper's table: fastlsm (default), octree, meshless", 1},
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Compare this scene only; may be repeated (default: all of the file, or of the paper)", 1},
     {"rounds", KEY_ROUNDS, "N", 0,
@@ -164,8 +164,8 @@ static SmCode paper_tasks(Session *session, SmError *error)
         if (scene.row[0]) add_task(session, *name);
     }
     if (session->tasks) return SM_OK;
-    return sm_fail(error, SM_USAGE, "--paper: no table of '%.40s'; there are: fastlsm, octree",
-                   paper);
+    return sm_fail(error, SM_USAGE,
+                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
 }
 
 /* As the row of the file was measured: as many repeats, of as many steps. */

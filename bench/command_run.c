@@ -9,6 +9,7 @@
 #include "draft.h"
 #include "option.h"
 #include "override.h"
+#include "points_file.h"
 #include "progress.h"
 #include "recording.h"
 #include "summary.h"
@@ -265,20 +266,14 @@ static SmCode outline_points(const char *path, RefPoints *points, SmMesh *mesh, 
     return code ? sm_fail(error, code, "%s: %s", path, why.text) : SM_OK;
 }
 
-/* A mesh, or for the meshless engine points: text, or a PLY file of points alone. */
+/* A mesh, or for the meshless engine points. */
 static SmCode load_body(const Options *options, SmMesh *mesh, SmError *error)
 {
     const char *name = options->scene, *engine = options->chosen.engine;
-    const char *dot = strrchr(name, '.');
-    bool ply = dot && !strcmp(dot, ".ply");
     RefPoints points;
-    if (!engine || strcmp(engine, "meshless") != 0 || !(ply || ref_points_text(name)))
-        return bench_mesh_load(name, mesh, error);
-    SmCode code = SM_INPUT;
-    if (ply) code = bench_mesh_load(name, mesh, NULL);
-    if (!code) return SM_OK;
-    code = ref_points_read(name, &points, error);
-    return code ? code : outline_points(name, &points, mesh, error);
+    if (!engine || strcmp(engine, "meshless") != 0) return bench_mesh_load(name, mesh, error);
+    SmCode code = bench_points_or_mesh(name, &points, mesh, error);
+    return code || !points.count ? code : outline_points(name, &points, mesh, error);
 }
 
 /* A scene's name or file; anything else is a mesh. */

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../reference/meshless/solver.h"
 #include "../reference/paper.h"
 #include "command.h"
 #include "draft.h"
@@ -37,7 +38,9 @@ typedef struct {
 
 static const struct argp_option option_list[] = {
     {"paper", KEY_PAPER, "NAME", 0,
-     "The paper whose table to regenerate: fastlsm (default), octree", 1},
+     "The paper whose table to regenerate: fastlsm, octree or meshless (default: fastlsm and "
+     "meshless)",
+     1},
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Measure this scene only, or the paper's scenes NAME-...; may be repeated", 1},
     {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
@@ -79,6 +82,7 @@ static const char help[] =
     "force, the octree's against sums over its regions' leaves (at most 5e-5 of a cell off in "
     "single, 1e-10 in double precision), linear momentum "
     "(sum m g = sum m x to 1e-6 of sum m |x - centroid|), counts, and that everything is finite. "
+    "Of a meshless body its shape functions, matrices, modes, and the frames that are timed. "
     "A row that fails has INVALID in place of its times.\v"
     "Times are medians over the repeats; the total is timed without clocks inside the step, stages "
     "are the shares of a run with clocks, interleaved. 'faster' is the paper's total divided by "
@@ -106,13 +110,12 @@ static void add_scene(Choices *chosen, const char *name, const char *stem)
     chosen->scene[chosen->count++] = (Choice){name, stem};
 }
 
-/* The scenes of the paper's table whose names begin with `stem` and a dash, or all: in the order of
+/* The scenes of a paper's table whose names begin with `stem` and a dash, or all: in the order of
  * its rows, behind each those that only we have. */
-static void add_scenes(Choices *chosen, const char *stem)
+static void add_scenes(Choices *chosen, const char *paper, const char *stem)
 {
     int count;
     const RefPaperRow *rows = ref_paper_rows(&count);
-    const char *paper = chosen->options->paper;
     for (int i = 0; i < count; i++) {
         if (strcmp(rows[i].paper, paper) != 0) continue;
         for (const char *const *name = bench_scene_names(); *name; name++) {
@@ -134,22 +137,36 @@ static bool of_paper(const char *name, const char *paper)
     return false;
 }
 
+/* The tables that are regenerated when none is named. */
+static void add_default(Choices *chosen)
+{
+    add_scenes(chosen, "fastlsm", NULL);
+    if (ref_solver_built)
+        add_scenes(chosen, "meshless", NULL);
+    else if (!chosen->options->common.quiet)
+        fputs("shapebench tables: --paper meshless is left out: this program was built without "
+              "CHOLMOD and ARPACK\n",
+              stderr);
+}
+
 /* The scenes of the paper's table, or those that the names given stand for. */
 static SmCode choose_scenes(Choices *chosen, SmError *error)
 {
     const Options *options = chosen->options;
+    const char *paper = options->paper ? options->paper : "fastlsm";
     for (int i = 0; i < options->given.count; i++) {
         const char *name = options->given.name[i];
         int before = chosen->count;
-        add_scenes(chosen, name);
-        if (chosen->count > before && !of_paper(name, options->paper)) continue;
+        add_scenes(chosen, paper, name);
+        if (chosen->count > before && !of_paper(name, paper)) continue;
         chosen->count = before;
         add_scene(chosen, name, NULL);
     }
-    if (!options->given.count) add_scenes(chosen, NULL);
+    if (!options->given.count && options->paper) add_scenes(chosen, paper, NULL);
+    if (!options->given.count && !options->paper) add_default(chosen);
     if (chosen->count) return SM_OK;
-    return sm_fail(error, SM_USAGE, "--paper: no table of '%.40s'; there are: fastlsm, octree",
-                   options->paper);
+    return sm_fail(error, SM_USAGE,
+                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
 }
 
 static SmCode measure_scene(const Options *options, const Choice *choice, BenchProgress *progress,
@@ -163,10 +180,6 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
     if (chosen->engine) snprintf(scene.engine, sizeof scene.engine, "%.23s", chosen->engine);
     code = bench_engine_find(scene.engine, chosen->precision, &type, error);
     if (code) return code;
-    if (!strcmp(type->name, "meshless"))
-        return sm_fail(
-            error, SM_USAGE,
-            "--engine meshless: tables are of shape matching; 'run' moves meshless bodies");
     if (chosen->layout >= 0) scene.params.layout = (SmLayout)chosen->layout;
     SmMesh mesh;
     BenchBody body;
@@ -222,7 +235,7 @@ static SmCode verdict(const BenchRow *rows, int count, SmError *error)
 
 int bench_command_tables(int argc, char **argv)
 {
-    Options options = {.paper = "fastlsm", .repeats = 15, .block = 20};
+    Options options = {.repeats = 15, .block = 20};
     Choices chosen = {.options = &options};
     SmError error;
     bench_options_parse(&argp, argc, argv, &options, &options.common);

@@ -7,9 +7,10 @@
 #include <string.h>
 
 #include "../reference/paper.h"
+#include "blocks.h"
 #include "check.h"
+#include "elastic_row.h"
 #include "frames.h"
-#include "spread.h"
 #include "tree_row.h"
 
 /* The state of one part that every timed segment starts from. */
@@ -22,8 +23,6 @@ typedef struct {
     BenchPlay play;
     Saved *saved; /* [play.cast.count] */
     double time;
-    int steps;    /* in a segment */
-    int segments; /* in a block */
 } Trial;
 
 static void save(Trial *trial)
@@ -44,8 +43,9 @@ static void save(Trial *trial)
     }
 }
 
-static void restore(Trial *trial)
+static void restore(void *subject)
 {
+    Trial *trial = subject;
     for (int p = 0; p < trial->play.cast.count; p++) {
         BenchRunner *runner = &trial->play.cast.part[p].runner;
         const Saved *saved = &trial->saved[p];
@@ -67,49 +67,16 @@ static void free_trial(Trial *trial)
     bench_play_free(&trial->play);
 }
 
-static void step(Trial *trial, SmLaps *laps)
+static void step(void *subject, SmLaps *laps)
 {
+    Trial *trial = subject;
     bench_play_prepare(&trial->play);
     sm_lap(laps, SM_OTHER);
     bench_play_advance(&trial->play, laps);
 }
 
-/* Runs a segment's steps; seconds that they took. Adds to `stage` unless NULL. */
-static double run_segment(Trial *trial, int steps, double stage[SM_STAGES])
-{
-    restore(trial);
-    step(trial, NULL);
-    SmLaps laps;
-    double start = sm_now();
-    if (stage) sm_laps_start(&laps);
-    for (int i = 0; i < steps; i++) step(trial, stage ? &laps : NULL);
-    double seconds = sm_now() - start;
-    for (int s = 0; stage && s < SM_STAGES; s++) stage[s] += laps.seconds[s];
-    return seconds;
-}
-
-/* Seconds a step of one block; fills stage seconds a step unless NULL. */
-static double run_block(Trial *trial, double stage[SM_STAGES])
-{
-    double seconds = 0, steps = (double)trial->steps * trial->segments;
-    for (int i = 0; i < trial->segments; i++) seconds += run_segment(trial, trial->steps, stage);
-    for (int s = 0; stage && s < SM_STAGES; s++) stage[s] /= steps;
-    return seconds / steps;
-}
-
-/* Warms up and finds how many steps and segments fill a block. */
-static void size_blocks(Trial *trial, double block_seconds)
-{
-    double step = run_segment(trial, 1, NULL);
-    for (int i = 0; i < 3; i++) step = fmin(step, run_segment(trial, 2, NULL) / 2);
-    double wanted = fmin(fmax(ceil(block_seconds / step), 1), 1e7);
-    trial->steps = (int)fmin(wanted, BENCH_SEGMENT_STEPS);
-    trial->segments = (int)ceil(wanted / trial->steps);
-    run_block(trial, NULL);
-}
-
 static void name_row(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                     BenchRow *row)
+                     const BenchMeasureParams *params, BenchRow *row)
 {
     *row = (BenchRow){.triangles = body->mesh.triangle_count,
                       .instances = body->instances,
@@ -119,6 +86,9 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
                       .damping = scene->params.damping,
                       .voxelise_seconds = body->voxelise_seconds,
                       .input_hash = body->hash,
+                      .threads = params->threads,
+                      .speedup = NAN,
+                      .valid = true,
                       .goal_tolerance = bench_check_tolerance(type->precision)};
     snprintf(row->paper, sizeof row->paper, "%s", scene->paper);
     snprintf(row->paper_row, sizeof row->paper_row, "%s", scene->row);
@@ -179,53 +149,6 @@ static void check_counts(const BenchCheck *check, const BenchRunner *runner, Ben
     if (counts.broken == 0 && counts.regions != check->unique)
         invalidate(row, "the engine has %.0f unique regions, brute force %.0f",
                    (double)counts.regions, (double)check->unique);
-}
-
-/* Medians, quartiles and shares from the repeats' samples. */
-static void summarise(BenchRow *row)
-{
-    size_t count = (size_t)row->repeats;
-    double *sample = sm_alloc(count, sizeof *sample), share[SM_STAGES], all = 0;
-    for (int s = 0; s < SM_STAGES; s++) {
-        for (size_t r = 0; r < count; r++) {
-            double sum = 0;
-            for (int t = 0; t < SM_STAGES; t++) sum += row->stage[r][t];
-            sample[r] = sum > 0 ? row->stage[r][s] / sum : 0;
-        }
-        all += share[s] = bench_spread(sample, row->repeats).median;
-    }
-    for (size_t r = 0; r < count; r++) {
-        sample[r] = 0;
-        for (int s = 0; s < SM_STAGES; s++) sample[r] += row->stage[r][s];
-        sample[r] /= row->total[r];
-    }
-    BenchSpread total = bench_spread(row->total, row->repeats);
-    row->instruments_percent = 100 * (bench_spread(sample, row->repeats).median - 1);
-    row->total_ms = 1e3 * total.median;
-    row->total_low_ms = 1e3 * total.low;
-    row->total_high_ms = 1e3 * total.high;
-    for (int s = 0; s < SM_STAGES; s++)
-        row->stage_ms[s] = all > 0 ? row->total_ms * share[s] / all : 0;
-    row->fps = 1e3 / row->total_ms;
-    row->ns_per_particle_step = 1e6 * row->total_ms / (double)row->particles;
-    free(sample);
-}
-
-static void time_blocks(Trial *trial, const BenchMeasureParams *params, BenchRow *row)
-{
-    size_blocks(trial, params->block_seconds > 0 ? params->block_seconds : 0.02);
-    row->repeats = params->repeats > 0 ? params->repeats : 15;
-    row->steps = trial->steps * trial->segments;
-    row->total = sm_alloc((size_t)row->repeats, sizeof *row->total);
-    row->stage = sm_alloc((size_t)row->repeats, sizeof *row->stage);
-    for (int r = 0; r < row->repeats; r++) {
-        if (r % 2) run_block(trial, row->stage[r]);
-        row->total[r] = run_block(trial, NULL);
-        if (r % 2 == 0) run_block(trial, row->stage[r]);
-        if (params->progress)
-            bench_progress_show(params->progress, row->scene, (r + 1.0) / row->repeats);
-    }
-    summarise(row);
 }
 
 static SmCode check_room(const BenchRunner *runner, SmError *error)
@@ -299,7 +222,7 @@ static void measure_start(Trial *trial, const BenchMeasureParams *params, BenchD
     for (int i = 0; i < trial->play.cast.scene->settle; i++) step(trial, NULL);
     check_states(check, &trial->play, worst, row);
     save(trial);
-    time_blocks(trial, params, row);
+    bench_time_blocks(&(BenchTimed){trial, restore, step}, params, row);
     check_states(check, &trial->play, worst, row);
     for (int p = 0; p < trial->play.cast.count; p++)
         check_flow(&check[p], &trial->play.cast.part[p].runner, row);
@@ -309,6 +232,10 @@ static void measure_start(Trial *trial, const BenchMeasureParams *params, BenchD
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error)
 {
+    if (!strcmp(type->name, "meshless")) {
+        name_row(scene, body, type, params, row);
+        return bench_elastic_measure(scene, body, params, row, error);
+    }
     Trial trial = {0};
     BenchDeviation worst = {.finite = true};
     SmCode code =
@@ -320,10 +247,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
         free_trial(&trial);
         return code;
     }
-    name_row(scene, body, type, row);
-    row->threads = params->threads;
-    row->speedup = NAN;
-    row->valid = true;
+    name_row(scene, body, type, params, row);
     if (params->progress) bench_progress_show(params->progress, row->scene, 0);
     measure_start(&trial, params, &worst, row);
     bool changes = bench_play_changes(&trial.play);

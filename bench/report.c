@@ -5,6 +5,7 @@
 
 #include "../reference/paper.h"
 #include "change_grid.h"
+#include "elastic_row.h"
 #include "tree_row.h"
 
 enum { FIELDS = 16, FIELD_TEXT = BENCH_GRID_TEXT };
@@ -36,6 +37,11 @@ typedef struct {
 static bool of_octree(const BenchRow *row)
 {
     return !strcmp(row->paper, "octree") || !strcmp(row->engine, "octree");
+}
+
+static bool of_elastic(const BenchRow *row)
+{
+    return row->elastic.nodes > 0;
 }
 
 /* Which fields the table has. */
@@ -132,13 +138,15 @@ static void print_check(FILE *file, const BenchRow *row)
         fprintf(file, "%s\n", row->reason);
         return;
     }
-    fprintf(file,
-            "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost "
-            "%.1f%%;\n    "
-            "voxelised in %.3g ms, built in %.3g ms, %.4g bytes a particle\n",
-            row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
-            row->instruments_percent, 1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,
-            (double)row->bytes / (double)row->particles);
+    fprintf(
+        file,
+        "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost %.1f%%;\n",
+        row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
+        row->instruments_percent);
+    if (!of_elastic(row))
+        fprintf(file, "    voxelised in %.3g ms, built in %.3g ms, %.4g bytes a particle\n",
+                1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,
+                (double)row->bytes / (double)row->particles);
 }
 
 /* The step's time as the octree paper groups it. */
@@ -207,7 +215,8 @@ static void add_line(BenchGrid *grid, const Line *line, const bool shown[FIELDS]
         if (shown[f]) strcpy((*to)[column++], line->field[f]);
 }
 
-/* The rows, each with the paper's below, and, if wanted, with how far its counts are off. */
+/* The rows of shape matching, each with the paper's below, and, if wanted, with how far its counts
+ * are off. */
 static BenchGrid make_grid(const BenchRow *rows, int count, bool differences)
 {
     BenchGrid grid = {0};
@@ -216,6 +225,7 @@ static BenchGrid make_grid(const BenchRow *rows, int count, bool differences)
     for (int f = 0; f < FIELDS; f++)
         if (shown[f]) bench_grid_column(&grid, headings[f], f == SCENE || f == VERDICT);
     for (int r = 0; r < count; r++) {
+        if (of_elastic(&rows[r])) continue;
         Line line;
         measured_line(&rows[r], &line);
         add_line(&grid, &line, shown);
@@ -225,42 +235,68 @@ static BenchGrid make_grid(const BenchRow *rows, int count, bool differences)
     return grid;
 }
 
-void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine)
+/* The tables that there are, one after the other. */
+static int make_grids(const BenchRow *rows, int count, bool differences, BenchGrid grid[3])
 {
-    BenchGrid grid = make_grid(rows, count, true), changes;
-    fprintf(file, "Times of one step, median, on %s, %d thread%s.\n\n", machine->cpu,
-            machine->threads, machine->threads == 1 ? "" : "s");
-    bench_grid_text(file, &grid);
-    fputc('\n', file);
-    if (bench_change_grid(rows, count, &changes)) {
+    int grids = 0;
+    grid[0] = make_grid(rows, count, differences);
+    if (grid[0].lines)
+        grids++;
+    else
+        bench_grid_free(&grid[0]);
+    grids += bench_change_grid(rows, count, &grid[grids]);
+    grids += bench_elastic_grid(rows, count, differences, &grid[grids]);
+    return grids;
+}
+
+/* What stands above the tables as text. */
+static void print_heading(FILE *file, const BenchGrid *grid, const BenchMachine *machine)
+{
+    if (!strcmp(grid->heading[1], headings[PARTICLES]))
+        fprintf(file, "Times of one step, median, on %s, %d thread%s.\n\n", machine->cpu,
+                machine->threads, machine->threads == 1 ? "" : "s");
+    else if (!strcmp(grid->heading[1], "points"))
+        fprintf(
+            file,
+            "Meshless bodies: times of one frame, median, on %s, one thread: the modes' motion, "
+            "and the points that it carries.\n\n",
+            machine->cpu);
+    else
         fputs("While they change: nodes at first and at most; simulation is the time of a frame "
               "before the first change and after the last.\n\n",
               file);
-        bench_grid_text(file, &changes);
+}
+
+void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine)
+{
+    BenchGrid grid[3];
+    int grids = make_grids(rows, count, true, grid);
+    for (int g = 0; g < grids; g++) {
+        print_heading(file, &grid[g], machine);
+        bench_grid_text(file, &grid[g]);
         fputc('\n', file);
-        bench_grid_free(&changes);
+        bench_grid_free(&grid[g]);
     }
     for (int r = 0; r < count; r++) {
         print_check(file, &rows[r]);
         bench_change_left(file, "    ", rows[r].change.left);
         if (!strcmp(rows[r].engine, "octree")) print_octree(file, &rows[r]);
+        if (of_elastic(&rows[r])) bench_elastic_row_text(file, &rows[r]);
     }
     print_speedups(file, rows, count);
     print_notes(file, rows, count);
-    bench_grid_free(&grid);
 }
 
-/* Both tables, one after the other. */
 static void write_grids(FILE *file, const BenchRow *rows, int count,
                         void (*write)(FILE *, const BenchGrid *))
 {
-    BenchGrid grid = make_grid(rows, count, false), changes;
-    write(file, &grid);
-    bench_grid_free(&grid);
-    if (!bench_change_grid(rows, count, &changes)) return;
-    fputc('\n', file);
-    write(file, &changes);
-    bench_grid_free(&changes);
+    BenchGrid grid[3];
+    int grids = make_grids(rows, count, false, grid);
+    for (int g = 0; g < grids; g++) {
+        if (g) fputc('\n', file);
+        write(file, &grid[g]);
+        bench_grid_free(&grid[g]);
+    }
 }
 
 void bench_report_markdown(FILE *file, const BenchRow *rows, int count)

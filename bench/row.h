@@ -3,6 +3,7 @@
 #define BENCH_ROW_H
 
 #include "../lib/engine.h"
+#include "elastic_found.h"
 
 enum { BENCH_FRAME_PARTS = 4 };
 
@@ -20,6 +21,13 @@ typedef struct {
     double (*time)[BENCH_FRAME_PARTS]; /* [frames] s: simulation, resampling, splitting, moving one
                                         * body's surface; the least of all rounds */
 } BenchChangeRow;
+
+/* A meshless body (elastic.h); all 0 of others. */
+typedef struct {
+    long nodes, modes;
+    double field_seconds, matrix_seconds, mode_seconds, skin_seconds; /* what was built in */
+    double found[BENCH_ELASTIC_CHECKS]; /* in the order of elastic_found.h */
+} BenchElasticRow;
 
 typedef struct {
     char paper[24], paper_row[24]; /* row of the paper set beside it; empty: none */
@@ -59,6 +67,7 @@ typedef struct {
     bool plain;                      /* plain weighting, which does not keep momentum */
     double paper_total_ms, paper_stage_ms[SM_STAGES]; /* NaN: not given */
     BenchChangeRow change;
+    BenchElasticRow elastic;
     unsigned long long input_hash; /* FNV-1a of the mesh's coordinates and indices */
 } BenchRow;
 

@@ -18,29 +18,29 @@ SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *bod
     return params;
 }
 
+bool bench_select_has(const BenchSelect *select, const BenchBody *body, const double x[3])
+{
+    bool inside = true;
+    double square = 0, slack = 1e-9; /* of the box, for selections that end at its faces */
+    for (int d = 0; d < 3; d++) {
+        double extent = body->high[d] - body->low[d];
+        double share = extent > 0 ? (x[d] - body->low[d]) / extent : 0.5;
+        /* Lattice vertices stand out of the box by up to a cell: they count as on its face. */
+        share = fmin(fmax(share, 0), 1);
+        inside &= share >= select->low[d] - slack && share <= select->high[d] + slack;
+        double away = x[d] - select->centre[d];
+        square += away * away;
+    }
+    return select->sphere ? square <= select->radius * select->radius : inside;
+}
+
 /* Particles of one body that are selected: their numbers, rising; the caller frees them. */
 static long select_particles(const BenchSelect *select, const BenchRunner *runner, long **particle)
 {
-    const BenchBody *body = runner->body;
-    const double(*x0)[3] = (const double(*)[3])runner->x0;
     long count = 0, all = runner->count;
     *particle = sm_alloc((size_t)all, sizeof **particle);
-    double slack = 1e-9; /* of the bounding box, for selections that end at its faces */
-    for (long p = 0; p < all; p++) {
-        bool inside = true;
-        double square = 0;
-        for (int d = 0; d < 3; d++) {
-            double extent = body->high[d] - body->low[d];
-            double share = extent > 0 ? (x0[p][d] - body->low[d]) / extent : 0.5;
-            /* Lattice vertices stand out of the box by up to a cell: they count as on its face. */
-            share = fmin(fmax(share, 0), 1);
-            inside &= share >= select->low[d] - slack && share <= select->high[d] + slack;
-            double away = x0[p][d] - select->centre[d];
-            square += away * away;
-        }
-        if (select->sphere) inside = square <= select->radius * select->radius;
-        if (inside) (*particle)[count++] = p;
-    }
+    for (long p = 0; p < all; p++)
+        if (bench_select_has(select, runner->body, runner->x0[p])) (*particle)[count++] = p;
     return count;
 }
 
@@ -61,9 +61,8 @@ static void rigid(const double axis[3], double angle, const double centre[3], co
     }
 }
 
-/* Where the handle is at time t; `offset` is its instance's place. */
-static void pose_handle(const BenchHandle *handle, double t, const double offset[3],
-                        double pose[3][4])
+void bench_handle_pose(const BenchHandle *handle, double t, const double offset[3],
+                       double pose[3][4])
 {
     static const double two_pi = 6.283185307179586;
     double moved = fmax(0, (handle->stop > 0 ? fmin(t, handle->stop) : t) - handle->start);
@@ -101,7 +100,7 @@ static void bind(BenchRunner *runner, double t)
         const double(*place)[4] =
             (const double(*)[4])runner->body->pose[runner->handle_instance[i]];
         double offset[3] = {place[0][3], place[1][3], place[2][3]};
-        pose_handle(source, t, offset, runner->handle[i].pose);
+        bench_handle_pose(source, t, offset, runner->handle[i].pose);
         runner->bound[count++] = runner->handle[i];
     }
     runner->bound_count = count;
@@ -201,8 +200,7 @@ static void find_particles(BenchRunner *runner)
         for (int d = 0; d < 3; d++) runner->x0[p][d] -= body->pose[0][d][3];
 }
 
-/* The material in mesh units, and the mesh. */
-static RefMeshlessOptions meshless_options(const BenchScene *scene, const BenchBody *body)
+RefMeshlessOptions bench_meshless_options(const BenchScene *scene, const BenchBody *body)
 {
     RefMeshlessOptions options = scene->meshless;
     options.mesh = &body->mesh;
@@ -236,7 +234,7 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
             "%s: bodies of the engine %s do not stop at obstacles: leave planes, spheres, "
             "boxes and capsules out, or use the engine fastlsm or octree",
             scene->file, type->name);
-    RefMeshlessOptions meshless = meshless_options(scene, body);
+    RefMeshlessOptions meshless = bench_meshless_options(scene, body);
     params.meshless = &meshless;
     SmError why;
     SmCode code = type->create(&body->voxels, &params, &runner->engine, &why);

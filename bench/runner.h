@@ -30,8 +30,18 @@ typedef struct {
 SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
                          SmError *error);
 
+/* Is x, of the rest state, selected? */
+bool bench_select_has(const BenchSelect *select, const BenchBody *body, const double x[3]);
+
+/* Where the handle is at time t; `offset` is its instance's place. */
+void bench_handle_pose(const BenchHandle *handle, double t, const double offset[3],
+                       double pose[3][4]);
+
 /* Engine parameters of the scene and body, which they point into. */
 SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *body, int threads);
+
+/* The scene's meshless body: its mesh, and its material in mesh units. */
+RefMeshlessOptions bench_meshless_options(const BenchScene *scene, const BenchBody *body);
 
 /* Builds the engine at rest, with handles and obstacles. A selection without particles is an
  * error (SM_INPUT). */

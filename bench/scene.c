@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../reference/meshless/points.h"
 #include "builtin.h"
 #include "config_file.h"
 #include "scene_check.h"
@@ -156,6 +157,19 @@ static const BenchSetting octree_table[] = {
 };
 
 #define AT(member) offsetof(SceneFile, scene.member)
+
+static const BenchSetting meshless_table[] = {
+    ITEM("young", BENCH_REAL, AT(meshless.material.young), 1e-30, 1e30),
+    ITEM("poisson", BENCH_REAL, AT(meshless.material.poisson), -0.99, 0.49),
+    ITEM("density", BENCH_REAL, AT(meshless.material.density), 1e-30, 1e30),
+    ITEM("stiffness_damping", BENCH_REAL, AT(meshless.stiffness_damping), 0, 1e6),
+    ITEM("points", BENCH_LONG, AT(meshless.points), REF_LEAST_POINTS, 1e7),
+    ITEM("nodes", BENCH_LONG, AT(meshless.nodes), 8, 1e6),
+    ITEM("uniform", BENCH_BOOL, AT(meshless.uniform), 0, 0),
+    ITEM("modes", BENCH_INT, AT(meshless.modes), 7, 1000),
+    ITEM("metre", BENCH_REAL, AT(metre), 1e-30, 1e30),
+    {0},
+};
 #define LIST(name, items, count, type, table)                                                      \
     {                                                                                              \
         name, BENCH_LIST, offsetof(SceneFile, items), 0, BENCH_MAX, NULL, table, sizeof(type),     \
@@ -183,6 +197,7 @@ static const BenchSetting scene_table[] = {
     WORDS("layout", AT(params.layout), "auto|lists|blocks"),
     ITEM("epsilon", BENCH_REAL, AT(octree.epsilon), 0, 1e6),
     {"octree", BENCH_GROUP, AT(octree), 0, 0, NULL, octree_table, 0, 0},
+    {"meshless", BENCH_GROUP, 0, 0, 0, NULL, meshless_table, 0, 0},
     {"collide", BENCH_GROUP, AT(params.collide), 0, 0, NULL, collide_table, 0, 0},
     ITEM("density", BENCH_REAL, AT(density), 0, FAR),
     ITEM("vertex_mass", BENCH_TEXT, AT(vertex_mass), 0, BENCH_PATH),

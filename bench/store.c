@@ -85,6 +85,15 @@ static const BenchField row_fields[] = {
     FIELD(BENCH_HASH, input_hash),
 };
 
+/* In the group `elastic` of a row that has one. */
+#define ELASTIC(kind, member) BENCH_FIELD(BenchElasticRow, kind, member)
+static const BenchField elastic_fields[] = {
+    ELASTIC(BENCH_LONG, nodes),           ELASTIC(BENCH_LONG, modes),
+    ELASTIC(BENCH_DOUBLE, field_seconds), ELASTIC(BENCH_DOUBLE, matrix_seconds),
+    ELASTIC(BENCH_DOUBLE, mode_seconds),  ELASTIC(BENCH_DOUBLE, skin_seconds),
+    ELASTIC(BENCH_DOUBLE, found),
+};
+
 const BenchField *bench_row_fields(int *count)
 {
     *count = COUNT(row_fields);
@@ -129,6 +138,11 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
     hsize_t frames[] = {(hsize_t)row->change.frames, BENCH_FRAME_PARTS};
     if (row->change.frames)
         bench_h5_dataset(h5, group, "frames", H5T_IEEE_F64LE, 2, frames, row->change.time);
+    if (row->elastic.nodes) {
+        hid_t elastic = bench_h5_group(h5, group, "elastic");
+        bench_h5_fields(h5, elastic, elastic_fields, COUNT(elastic_fields), &row->elastic);
+        if (elastic >= 0) H5Gclose(elastic);
+    }
     if (group >= 0) H5Gclose(group);
 }
 

@@ -8,7 +8,7 @@
 
 const char *const bench_format_names[] = {"text", "markdown", "csv", "latex", "json", NULL};
 
-enum { COLUMNS = 27 };
+enum { COLUMNS = 31 };
 
 static const char *const column_names[COLUMNS] = {
     "paper",
@@ -38,6 +38,10 @@ static const char *const column_names[COLUMNS] = {
     "most_resampling_ms",
     "splitting_ms",
     "surface_ms",
+    "nodes",
+    "modes",
+    "matrices_s",
+    "modes_s",
 };
 
 /* A value of one of three kinds: text, a whole number, or a number. */
@@ -73,6 +77,12 @@ static void fill_cells(const BenchRow *row, Cell cell[COLUMNS])
     const double times[] = {change->first_ms,       change->last_ms,   change->change_ms,
                             change->change_most_ms, change->follow_ms, change->surface_ms};
     for (int i = 0; i < 6; i++) *c++ = (Cell){.kind = TIME, .number = changes ? times[i] : NAN};
+    const BenchElasticRow *elastic = &row->elastic;
+    bool moves = elastic->nodes > 0;
+    *c++ = (Cell){.kind = NUMBER, .number = moves ? (double)elastic->nodes : NAN};
+    *c++ = (Cell){.kind = NUMBER, .number = moves ? (double)elastic->modes : NAN};
+    *c++ = (Cell){.kind = TIME, .number = moves ? elastic->matrix_seconds : NAN};
+    *c++ = (Cell){.kind = TIME, .number = moves ? elastic->mode_seconds : NAN};
 }
 
 static void csv_cell(FILE *file, const Cell *cell, bool valid)

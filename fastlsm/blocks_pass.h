@@ -203,11 +203,9 @@ SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int 
     for (int k = 0; k < blocks; k++) {
         vec *sum = sums[k];
         for (int f = 0; f < (damping ? 12 : 9); f++) {
-            bool weighed = !damping && f < 3;
-            vec moment = lanes_set(0);
+            vec *moment = damping || f > 2 ? NULL : &sum[chain_value(9 + f)];
             sum[damping ? f : chain_value(f)] =
-                window_y(in, run->column + i + k, w, moving, f, 9 + f, weighed ? &moment : NULL);
-            if (weighed) sum[chain_value(9 + f)] = moment;
+                window_y(in, run->column + i + k, w, moving, f, 9 + f, moment);
         }
     }
     sm_lap(laps, damping ? SM_DAMPING : SM_FAST_SUM);
@@ -217,11 +215,11 @@ SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int 
 SM_INLINE void run_solve(Lsm *lsm, const Around *in, const BlockRun *run, int layer, int w,
                          bool damping, bool moving, real *row, BlockSolve *solve, SmLaps *laps)
 {
+    int most = damping ? 1 : BLOCK_GROUP; /* matching alone gains from several at once */
     for (int i = 0, blocks; i < run->count; i += blocks) {
-        int left = run->count - i; /* no block is left for a group of its own */
-        blocks = left <= BLOCK_GROUP       ? left
-                 : left == BLOCK_GROUP + 1 ? BLOCK_GROUP - 1
-                                           : BLOCK_GROUP;
+        int left = run->count - i;
+        blocks = left < most ? left : most;
+        if (most > 1 && left == most + 1) blocks--; /* no block is left for a group of its own */
         solve_group(lsm, in, run, i, blocks, layer, w, damping, moving, row, solve, laps);
     }
 }

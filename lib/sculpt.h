@@ -15,6 +15,9 @@ void sm_sculpt_infant(SmImplicit *solid);
 void sm_sculpt_hand(SmImplicit *solid);
 void sm_sculpt_liver(SmImplicit *solid);
 void sm_sculpt_flower(SmImplicit *solid);
+void sm_sculpt_balljoint(SmImplicit *solid);
+void sm_sculpt_rabbit(SmImplicit *solid);
+void sm_sculpt_santa(SmImplicit *solid);
 
 typedef struct {
     double x, y, z;

@@ -20,7 +20,7 @@ typedef struct {
     double length;
 } Recipe;
 
-enum { SHAPES = 8 };
+enum { SHAPES = 12 };
 
 static const SmShape shapes[SHAPES] = {
     {"penguin", "cartoon penguin, 1 m tall (FastLSM's penguin)", 9874},
@@ -29,15 +29,22 @@ static const SmShape shapes[SHAPES] = {
     {"hand", "open hand with five separate fingers, 0.19 m long", 16000},
     {"liver", "liver of two lobes with a gall bladder, 0.22 m wide", 4400},
     {"flower", "flower with thin petals, a thin stem and two leaves, 0.4 m tall", 4500},
+    {"balljoint", "upper end of a thigh bone, 0.2 m tall (for the meshless paper's balljoint)",
+     40000},
+    {"rabbit", "rabbit that sits, 0.3 m tall (for the meshless paper's rabbit)", 20000},
+    {"santa", "santa with a sack, 0.3 m tall (for the meshless paper's santa)", 26000},
     {"block", "cube, 0.2 m", 768},
     {"beam", "beam, 0.8 m x 0.1 m x 0.1 m along x", 1088},
+    {"bar", "bar, 0.56 m x 0.12 m x 0.12 m along x (for the meshless paper's beam)", 1488},
 };
 
 static const Recipe recipes[SHAPES] = {
-    {sm_sculpt_penguin, 0.020, {0}, 0, 1, 1.0}, {sm_sculpt_statue, 0.0152, {0}, 0, 1, 1.98},
-    {sm_sculpt_infant, 0.0085, {0}, 0, 1, 0.6}, {sm_sculpt_hand, 0.0028, {0}, 0, 1, 0.19},
-    {sm_sculpt_liver, 0.0060, {0}, 0, 0, 0.22}, {sm_sculpt_flower, 0.0034, {0}, 0, 1, 0.4},
-    {NULL, 0, {8, 8, 8}, 0.025, 1, 0.2},        {NULL, 0, {32, 4, 4}, 0.025, 0, 0.8},
+    {sm_sculpt_penguin, 0.020, {0}, 0, 1, 1.0},    {sm_sculpt_statue, 0.0152, {0}, 0, 1, 1.98},
+    {sm_sculpt_infant, 0.0085, {0}, 0, 1, 0.6},    {sm_sculpt_hand, 0.0028, {0}, 0, 1, 0.19},
+    {sm_sculpt_liver, 0.0060, {0}, 0, 0, 0.22},    {sm_sculpt_flower, 0.0034, {0}, 0, 1, 0.4},
+    {sm_sculpt_balljoint, 0.0018, {0}, 0, 1, 0.2}, {sm_sculpt_rabbit, 0.0030, {0}, 0, 1, 0.3},
+    {sm_sculpt_santa, 0.0026, {0}, 0, 1, 0.3},     {NULL, 0, {8, 8, 8}, 0.025, 1, 0.2},
+    {NULL, 0, {32, 4, 4}, 0.025, 0, 0.8},          {NULL, 0, {28, 6, 6}, 0.02, 0, 0.56},
 };
 
 const SmShape *sm_shapes(int *count)
@@ -119,7 +126,7 @@ SmCode sm_shape_mesh(const char *name, SmMesh *mesh, SmError *error)
     if (!shape)
         return sm_fail(error, SM_USAGE,
                        "%s: no such shape; there are penguin, statue, infant, hand, liver, flower, "
-                       "block and beam",
+                       "balljoint, rabbit, santa, block, beam and bar",
                        name);
     const Recipe *recipe = &recipes[shape - shapes];
     if (recipe->sculpt)

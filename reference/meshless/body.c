@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAST_NODES = 8 };
+enum { LEAST_NODES = 8, MOST_ATTEMPTS = 16 };
 
 void ref_body_free(RefBody *body)
 {
@@ -34,21 +34,30 @@ static long nodes_of(const RefField *field, const RefBodyOptions *options, doubl
     return count;
 }
 
-/* Nodes go about as 1 / cell^3. A body's box is taken for a start. */
+/* Nodes go about as 1 / cell^3, but by leaps, of whole layers where a body is flat: the cell is
+ * sought between the last that gave too many and the last that gave too few. A body's box is taken
+ * for a start. */
 static double find_cell(const RefField *field, const RefBodyOptions *options)
 {
-    double volume = 1, best = INFINITY, found = 0;
+    double volume = 1, best = INFINITY, found = 0, fine = 0, coarse = INFINITY;
+    double within = options->within > 0 ? options->within : 0.05;
     for (int d = 0; d < 3; d++) volume *= field->high[d] - field->low[d];
     double cell = cbrt(volume / (double)options->nodes);
-    for (int attempt = 0; attempt < 8; attempt++) {
+    for (int attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
         long count = nodes_of(field, options, cell);
-        double off = fabs(log((double)(count > 0 ? count : 1) / (double)options->nodes));
-        if (off < best) {
-            best = off;
+        double off = log((double)(count > 0 ? count : 1) / (double)options->nodes);
+        if (fabs(off) < best) {
+            best = fabs(off);
             found = cell;
         }
-        if (off < 0.05) break;
-        cell *= cbrt((double)(count > 0 ? count : 1) / (double)options->nodes);
+        if (best < within) break;
+        if (off > 0)
+            fine = fmax(fine, cell);
+        else
+            coarse = fmin(coarse, cell);
+        cell *= exp(off / 3);
+        if (!(cell > fine && cell < coarse))
+            cell = isfinite(coarse) ? sqrt(fine * coarse) : 2 * fine;
     }
     return found;
 }

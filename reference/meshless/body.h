@@ -6,10 +6,11 @@
 #include "matrices.h"
 
 typedef struct {
-    double cell;  /* edge of the finest octants; 0: one that gives about `nodes` nodes */
-    long nodes;   /* wanted where cell is 0 */
-    int coarser;  /* octants.h */
-    double alpha; /* edge of a cover in edges of its octant; 0: 3 (linear), 6 (quadratic) */
+    double cell;   /* edge of the finest octants; 0: one that gives about `nodes` nodes */
+    long nodes;    /* wanted where cell is 0, */
+    double within; /* by this share; 0: 0.05 */
+    int coarser;   /* octants.h */
+    double alpha;  /* edge of a cover in edges of its octant; 0: 3 (linear), 6 (quadratic) */
     RefBasis basis;
     int split; /* octants.h; 0: 1 */
     RefMaterial material;
@@ -23,7 +24,7 @@ typedef struct {
 } RefBody;
 
 /* Builds a body. The `count` points `shown` (a surface, handles; may be none) are covered as the
- * integration points are. The number of nodes is met to about a tenth, or as well as octants can.
+ * integration points are. The number of nodes is met as well as 16 attempts can.
  * The caller frees. Errors: octants.h's, matrices.h's; SM_INPUT, fewer than 8 nodes, or points that
  * stay uncovered: a body of one layer of octants, or `shown` points far outside. */
 SmCode ref_body_build(const RefField *field, const RefBodyOptions *options, long count,

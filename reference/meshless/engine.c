@@ -14,7 +14,7 @@
 #include "normal.h"
 #include "skin.h"
 
-enum { POINTS = 12000, DEFAULT_NODES = 1000, DEFAULT_MODES = 64, MOST_POINTS = 128 };
+enum { MOST_POINTS = 128 };
 
 struct SmEngine {
     long count;        /* particles */
@@ -92,12 +92,13 @@ static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmE
 {
     RefPoints points;
     RefMpu mpu;
-    SmCode code = ref_points_of_mesh(options->mesh, POINTS, &points, error);
+    SmCode code = ref_points_of_mesh(
+        options->mesh, options->points > 0 ? options->points : REF_MESHLESS_POINTS, &points, error);
     if (code == SM_OK) code = ref_mpu_build(&points, NULL, &mpu, error);
     if (code != SM_OK) return code;
     RefField field = ref_mpu_field(&mpu);
-    RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : DEFAULT_NODES,
-                           .coarser = 1,
+    RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : REF_MESHLESS_NODES,
+                           .coarser = options->uniform ? 0 : 1,
                            .basis = REF_MLS_LINEAR,
                            .material = options->material};
     code = ref_body_build(&field, &body, engine->count, CONST(engine->rest), &engine->body, error);
@@ -109,7 +110,7 @@ static SmCode make_motion(const SmEngineParams *params, SmEngine *engine, SmErro
 {
     const RefMeshlessOptions *options = params->meshless;
     long most = 3 * engine->body.nodes.count / 2;
-    int wanted = options->modes > 0 ? options->modes : (int)fmin(DEFAULT_MODES, (double)most);
+    int wanted = options->modes > 0 ? options->modes : (int)fmin(REF_MESHLESS_MODES, (double)most);
     RefDamping damping = {params->damping / (1 - params->damping) / params->h,
                           options->stiffness_damping};
     SmCode code = ref_modes_find(&engine->body.matrices, NULL, wanted, &engine->modes, error);

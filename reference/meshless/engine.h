@@ -19,10 +19,14 @@
 #include "../../lib/mesh.h"
 #include "matrices.h"
 
+enum { REF_MESHLESS_POINTS = 12000, REF_MESHLESS_NODES = 1000, REF_MESHLESS_MODES = 64 };
+
 struct RefMeshlessOptions {
-    const SmMesh *mesh;       /* the body's closed surface, read by create() only */
-    long nodes;               /* wanted; 0: 1000 */
-    int modes;                /* 0: 64, or half of what there is */
+    const SmMesh *mesh; /* the body's closed surface, read by create() only */
+    long points;        /* on the surface, of which the field is made; 0: REF_MESHLESS_POINTS */
+    long nodes;         /* wanted; 0: REF_MESHLESS_NODES */
+    bool uniform;       /* octants are all of one size; false: inside they may be twice as large */
+    int modes;          /* 0: REF_MESHLESS_MODES, or half of what there is */
     RefMaterial material;     /* mesh units, kg, s */
     double stiffness_damping; /* b of Rayleigh's a + b lambda, s; a loses the share params->damping
                                * of the speed in a step */

@@ -13,13 +13,14 @@ typedef struct {
 
 static Terms terms_of(const double w[3])
 {
-    double q = sm_dot(w, w), t = sqrt(q), s = sin(t), c = cos(t);
+    double q = sm_dot(w, w);
     if (q < 0.04)
         return (Terms){1 - q / 6 * (1 - q / 20 * (1 - q / 42)),
                        0.5 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56))),
                        1.0 / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72))),
                        -1.0 / 12 * (1 - q / 15 * (1 - 3 * q / 112)),
                        -1.0 / 60 * (1 - q / 21 * (1 - q / 48))};
+    double t = sqrt(q), s = sin(t), c = cos(t);
     return (Terms){s / t, (1 - c) / q, (t - s) / (q * t), (t * s - 2 * (1 - c)) / (q * q),
                    (t * (1 - c) - 3 * (t - s)) / (q * q * t)};
 }

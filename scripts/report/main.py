@@ -49,7 +49,7 @@ def measured_part(files):
     if not rows:
         return None
     bad = [row["scene"] for row in rows if not row["valid"]]
-    said = [f"{len(rows)} rows were measured; each was checked against brute force on the scene timed: "
+    said = [f"{len(rows)} rows were measured; each was checked on the very scene timed: "
             + ("all are VALID." if not bad else f"{len(bad)} are INVALID and have no times: {', '.join(bad)}.")]
     return Part("measured", "Measured beside the papers", said, tables.all_tables(files),
                 row_figures.all_figures(files))

@@ -99,6 +99,9 @@ def read_row(group):
     for name in ("total", "stage", "frames"):
         if name in group:
             row[name + "_samples"] = group[name][:]
+    if "elastic" in group:
+        row["elastic"] = attributes(group["elastic"])
+        demand(row["elastic"], ("nodes", "modes", "matrix_seconds", "mode_seconds"), (int, float))
     row["stage_names"] = row["stages"].split()
     return row
 

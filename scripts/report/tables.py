@@ -32,14 +32,17 @@ def times(values, total, statuses=None):
 
 def measured(source):
     """A paper's rows: totals first, then stages and counts; the paper's beneath."""
-    names = [name.replace("_", " ") for name in source.rows[0]["stage_names"]]
+    rows = [row for row in source.rows if "elastic" not in row]
+    if not rows:
+        return None
+    names = [name.replace("_", " ") for name in rows[0]["stage_names"]]
     table = Table(f"Time of a step, {source.name}",
                   ["scene", "total ms", "quartiles", "ns/particle/step", "faster than the paper", "check"]
                   + [name + " ms" for name in names]
                   + ["particles", "regions", "w", "sums/region", "engine", "precision", "threads"],
                   "Medians. The paper's values are those of its own processor.")
     shown = []
-    for row in source.rows:
+    for row in rows:
         total, paper = row["total_ms"], row["paper_total_ms"]
         counts = [number(row["particles"]), number(row["regions"]), row["w"] or "–", number(row["summation_nodes"]),
                   row["engine"], row["precision"], row["threads"]]
@@ -56,6 +59,28 @@ def measured(source):
                       + times(row["paper_stage_ms"], paper, row["paper_stage_statuses"]) + [""] * len(counts), "paper")
             shown += [row["paper_status"]] + row["paper_stage_statuses"]
     table.note += doubts_said(shown)
+    return table
+
+
+def elastic(source):
+    """Rows of meshless bodies: a frame is the modes' motion and the points that it carries."""
+    rows = [row for row in source.rows if "elastic" in row]
+    if not rows:
+        return None
+    table = Table(f"Meshless bodies, time of a frame, {source.name}",
+                  ["scene", "points", "nodes", "modes", "matrices s", "modes s", "motion ms", "points ms", "frame ms",
+                   "the paper's frame ms", "faster than the paper", "check"],
+                  "Medians. The paper's frames are of its own processor and include the drawing of the points.")
+    for row in rows:
+        body, total, paper = row["elastic"], row["total_ms"], row["paper_total_ms"]
+        parts = dict(zip(row["stage_names"], row["stage_ms"]))
+        counts = [row["scene"], number(row["particles"]), number(body["nodes"]), number(body["modes"])]
+        if not row["valid"]:
+            table.add(counts + ["–"] * 7 + ["INVALID: " + row["reason"]], "invalid")
+            continue
+        beside = [number(paper), f"{number(paper / total)} times"] if paper == paper else ["–", "–"]
+        table.add(counts + [number(body["matrix_seconds"]), number(body["mode_seconds"])]
+                  + times([parts["shape_matching"], parts["other"]], total) + [number(total)] + beside + ["VALID"])
     return table
 
 
@@ -104,5 +129,5 @@ def all_tables(sources):
     made = []
     for source in sources:
         if source.rows:
-            made += [table for table in (measured(source), changing(source)) if table]
+            made += [table for table in (measured(source), changing(source), elastic(source)) if table]
     return made

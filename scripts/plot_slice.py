@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+"""Draws the signed distance on a plane that `shapebench info POINTS --slice z=0.5 -o FILE.h5` wrote:
+blue inside, red outside, the surface (zero) black.
+
+Needs Debian's python3-h5py and python3-matplotlib (scripts/setup)."""
+
+import argparse
+import pathlib
+import sys
+
+
+def fail(text, code):
+    print(f"plot_slice.py: {text}", file=sys.stderr)
+    sys.exit(code)
+
+
+def read(path, h5py):
+    """Attributes by name, and the distances [rows][columns]."""
+    try:
+        with h5py.File(path) as file:
+            facts = {name: value.decode() if isinstance(value, bytes) else value for name, value in file.attrs.items()}
+            if facts.get("kind") != "shapebench slice":
+                fail(f"{path}: not what `shapebench info --slice` writes", 3)
+            return facts, file["distance"][:]
+    except OSError as error:
+        fail(f"{path}: {error}", 3)
+
+
+def draw(facts, distance, pyplot):
+    import numpy
+    from matplotlib.colors import TwoSlopeNorm
+
+    normal, across, along = (("x", "z", "y"), ("y", "x", "z"), ("z", "x", "y"))[facts["axis"]]
+    low, high = facts["low"], facts["high"]
+    at = facts["at"] if abs(facts["at"]) > 1e-4 * max(high - low) else 0
+    most = numpy.abs(distance).max()
+    norm = TwoSlopeNorm(0, -most if distance.min() >= 0 else distance.min(), most if distance.max() <= 0 else distance.max())
+    width, height = high - low
+    figure, axes = pyplot.subplots(figsize=(5.4, 1.1 + 3.9 * min(max(height / width, 0.3), 2)), constrained_layout=True)
+    image = axes.imshow(distance, origin="lower", extent=(low[0], high[0], low[1], high[1]), cmap="RdBu_r", norm=norm)
+    figure.colorbar(image, ax=axes, label="signed distance, mesh units", shrink=0.85)
+    u = low[0] + (numpy.arange(distance.shape[1]) + 0.5) / distance.shape[1] * width
+    v = low[1] + (numpy.arange(distance.shape[0]) + 0.5) / distance.shape[0] * height
+    steps = numpy.linspace(distance.min(), distance.max(), 12)
+    axes.contour(u, v, distance, levels=steps, colors="0.4", linewidths=0.3)
+    if distance.min() < 0 < distance.max():
+        axes.contour(u, v, distance, levels=[0], colors="black", linewidths=1.5)
+    axes.set_xlabel(across)
+    axes.set_ylabel(along)
+    source = pathlib.PurePath(facts["source"]).name
+    axes.set_title(f"{source}, {facts['points']} points, {normal} = {at:.4g}", fontsize=10)
+    return figure
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("file", help="HDF5 file of a slice")
+    parser.add_argument("-o", "--output", help="picture, PNG, SVG or PDF (default: FILE.png)")
+    options = parser.parse_args()
+    try:
+        import h5py
+        import matplotlib
+
+        matplotlib.use("Agg")
+        from matplotlib import pyplot
+    except ImportError as missing:
+        fail(f"{missing}: scripts/setup installs it (python3-h5py, python3-matplotlib)", 3)
+    facts, distance = read(options.file, h5py)
+    output = options.output or str(pathlib.Path(options.file).with_suffix(".png"))
+    try:
+        draw(facts, distance, pyplot).savefig(output, dpi=90, bbox_inches="tight")
+    except (OSError, ValueError) as error:
+        fail(f"{output}: {error}", 4)
+    print(f"wrote {output}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,26 @@
+# What the tests of scripts/plot_*.py share; test_plot_NAME.sh sources it, and it goes to a folder that
+# is removed in the end. exit codes of those: 0 right, 1 wrong, 77 h5py or matplotlib is missing
+set -eu
+plot=$(cd -- "$(dirname -- "$0")" && pwd)/$(basename -- "$0" .sh | sed s/^test_//).py
+program=$(realpath -- "${1:?BUILD-FOLDER missing}")/shapebench
+if ! /usr/bin/python3 -c 'import h5py, matplotlib' 2>/dev/null; then
+    echo "skipped: /usr/bin/python3 has no h5py or no matplotlib; scripts/setup installs them"
+    exit 77
+fi
+folder=$(mktemp -d)
+trap 'rm -rf -- "$folder"' EXIT
+cd "$folder"
+
+wrong() {
+    echo "wrong: $*" >&2
+    exit 1
+}
+
+# refused CODE ARGUMENTS...: one line on standard error, and that exit code
+refused() {
+    local code=0 wanted=$1
+    shift
+    "$plot" "$@" >out 2>err || code=$?
+    [ "$code" -eq "$wanted" ] || wrong "exit code $code, not $wanted: $* $(cat err)"
+    [ "$(wc -l <err)" -eq 1 ] || wrong "more than a line: $(cat err)"
+}
