@@ -14,6 +14,7 @@
 #include "decimate.h"
 #include "polygonise.h"
 #include "shape.h"
+#include "test_fields.h"
 
 static SmMesh make(const char *name)
 {
@@ -72,6 +73,7 @@ static void test_the_papers_triangle_counts(void **state)
 static void test_sizes(void **state)
 {
     (void)state;
+    if (!TEST_FIGURES) skip();
     static const struct {
         const char *name;
         int axis;
