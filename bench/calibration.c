@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../fastlsm/region.h"
 #include "plan.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchCalibrationPlan, kind, member)
@@ -141,9 +142,19 @@ static SmCode check_whole(const char *name, const double *value, int count, SmEr
     return SM_OK;
 }
 
-SmCode bench_calibration_plan(BenchCalibrationPlan *plan, BenchSpecimen *specimen, SmError *error)
+static SmCode check_w(const BenchCalibrationPlan *plan, SmError *error)
 {
     SmCode code = check_whole("--w", plan->w, plan->ws, error);
+    if (code || !strcmp(plan->engines, "octree") || plan->w[plan->ws - 1] <= LSM_MAX_W) return code;
+    return sm_fail(error, SM_USAGE,
+                   "--w: %g is too wide for fastlsm, whose w is 1 to %d: give less, or --engine "
+                   "octree",
+                   plan->w[plan->ws - 1], LSM_MAX_W);
+}
+
+SmCode bench_calibration_plan(BenchCalibrationPlan *plan, BenchSpecimen *specimen, SmError *error)
+{
+    SmCode code = check_w(plan, error);
     if (!code) code = check_whole("--across", plan->other_across, plan->acrosses, error);
     if (!code) code = check_whole("--aspect", plan->other_aspect, plan->aspects, error);
     if (code) return code;
