@@ -121,7 +121,7 @@ static SmCode check_closed(const RefCloud *cloud, SmError *error)
     return sm_fail(
         error, SM_INPUT,
         "the points leave the surface open: %.0f%% of it face one way without an opposite; a "
-        "solid needs points all around",
+        "solid needs points all around, and none far away",
         100 * open);
 }
 
