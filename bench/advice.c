@@ -205,15 +205,16 @@ static bool better(const BenchSpecimen *a, const BenchSpecimen *b, const BenchYo
     return off_a < off_b;
 }
 
-/* The spacing at which the law has `ratio` times the modulus; NaN: no law. With q = a^2 it is a
- * root of d W q^2 / t^2 + c q. */
+/* The spacing at which the law has `ratio` times the modulus; NaN: no law, or no spacing that the
+ * beam can have. With q = a^2 it is a root of d W q^2 / t^2 + c q. */
 static double find_spacing(const BenchSpecimen *s, const BenchLaw *law, double thickness,
                            double ratio)
 {
     if (!law || !(law->c[0] > 0) || !(law->d[0] >= 0)) return NAN;
     double W = s->w * (s->w + 1.0), bend = law->d[0] * W / (thickness * thickness);
     double q = s->spacing * s->spacing, wanted = ratio * q * (law->c[0] + bend * q);
-    return sqrt(2 * wanted / (law->c[0] + sqrt(law->c[0] * law->c[0] + 4 * bend * wanted)));
+    double found = sqrt(2 * wanted / (law->c[0] + sqrt(law->c[0] * law->c[0] + 4 * bend * wanted)));
+    return found <= thickness && found >= thickness / BENCH_MOST_ACROSS ? found : NAN;
 }
 
 static void say_remedy(const BenchSpecimen *s, const BenchLaw *law, const BenchYoung *wish,
@@ -221,9 +222,9 @@ static void say_remedy(const BenchSpecimen *s, const BenchLaw *law, const BenchY
 {
     double ratio = wish->young / young;
     double spacing = find_spacing(s, law, wish->thickness, ratio);
-    say(text, " A time step of %.3g s in place of %.3g s would hit it", s->h / sqrt(ratio), s->h);
+    say(text, " A time step of %.4g s in place of %.4g s would hit it", s->h / sqrt(ratio), s->h);
     if (isfinite(spacing))
-        say(text, ", or about a spacing of %.3g in place of %.3g", spacing, s->spacing);
+        say(text, ", or about a spacing of %.3g m in place of %.3g m", spacing, s->spacing);
     say(text, ".");
 }
 

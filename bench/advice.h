@@ -4,7 +4,7 @@
 
 #include "law.h"
 
-enum { BENCH_FOUND = 3, BENCH_WORDS = 768 };
+enum { BENCH_FOUND = 3, BENCH_WORDS = 768, BENCH_MOST_ACROSS = 64 };
 
 /* What the specimens and laws say, in BENCH_FOUND sentences: how far an elastic body is like them;
  * what its modulus follows from; how far it is no material's. Empty where nothing is known. */
@@ -19,7 +19,8 @@ typedef struct {
 } BenchYoung;
 
 /* The specimen of the grid that comes nearest to the wished modulus, and a sentence about it: what
- * it has, and which time step, or spacing, would hit it. Of those within 10% the one with the least
+ * it has, and which time step, or spacing (of 1 to BENCH_MOST_ACROSS cells through the beam), would
+ * hit it. Of those within 10% the one with the least
  * spread is taken. -1, and a sentence why, where no specimen is valid. */
 long bench_advice_young(const BenchSpecimen *specimen, long count, const BenchLaw *law, int laws,
                         const BenchYoung *wish, char sentence[BENCH_WORDS]);

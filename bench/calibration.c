@@ -5,11 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../fastlsm/region.h"
 #include "plan.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchCalibrationPlan, kind, member)
 
-enum { MOST_W = 64, SHORTEST = 3, MOST_ASPECT = 100, MOST_ACROSS = 64 };
+enum { MOST_W = 64, SHORTEST = 3, MOST_ASPECT = 100 };
 
 const BenchField *bench_calibration_fields(int *count)
 {
@@ -56,9 +57,9 @@ static SmCode find_beam(const BenchScene *scene, const BenchBody *body, BenchCal
             "%.200s: its body is no beam, which fills its box and is square, and %d to %d "
             "times as long as thick: take the scene 'beam', or one of such a mesh",
             scene->file, SHORTEST, MOST_ASPECT);
-    if (!(across >= 1 && across <= MOST_ACROSS))
+    if (!(across >= 1 && across <= BENCH_MOST_ACROSS))
         return sm_fail(error, SM_INPUT, "%.200s: its beam is %g cells thick; 1 to %d can be",
-                       scene->file, across, MOST_ACROSS);
+                       scene->file, across, BENCH_MOST_ACROSS);
     snprintf(plan->scene, sizeof plan->scene, "%s", scene->name);
     plan->thickness = thickness;
     plan->aspect = (int)aspect;
@@ -141,9 +142,19 @@ static SmCode check_whole(const char *name, const double *value, int count, SmEr
     return SM_OK;
 }
 
-SmCode bench_calibration_plan(BenchCalibrationPlan *plan, BenchSpecimen *specimen, SmError *error)
+static SmCode check_w(const BenchCalibrationPlan *plan, SmError *error)
 {
     SmCode code = check_whole("--w", plan->w, plan->ws, error);
+    if (code || !strcmp(plan->engines, "octree") || plan->w[plan->ws - 1] <= LSM_MAX_W) return code;
+    return sm_fail(error, SM_USAGE,
+                   "--w: %g is too wide for fastlsm, whose w is 1 to %d: give less, or --engine "
+                   "octree",
+                   plan->w[plan->ws - 1], LSM_MAX_W);
+}
+
+SmCode bench_calibration_plan(BenchCalibrationPlan *plan, BenchSpecimen *specimen, SmError *error)
+{
+    SmCode code = check_w(plan, error);
     if (!code) code = check_whole("--across", plan->other_across, plan->acrosses, error);
     if (!code) code = check_whole("--aspect", plan->other_aspect, plan->aspects, error);
     if (code) return code;
@@ -166,7 +177,7 @@ void bench_calibration_lists(BenchCalibrationPlan *plan,
     const BenchCalibrationList all[BENCH_CALIBRATION_LISTS] = {
         {"w", "--w", 1, MOST_W, plan->w, &plan->ws},
         {"epsilon", "--epsilon", 0, 4, plan->epsilon, &plan->epsilons},
-        {"across", "--across", 1, MOST_ACROSS, plan->other_across, &plan->acrosses},
+        {"across", "--across", 1, BENCH_MOST_ACROSS, plan->other_across, &plan->acrosses},
         {"aspect", "--aspect", SHORTEST, MOST_ASPECT, plan->other_aspect, &plan->aspects},
         {"step", "--step", 0.001, 1000, plan->step, &plan->steps},
     };

@@ -56,7 +56,7 @@ void bench_calibration_lists(BenchCalibrationPlan *plan,
 
 /* Counts the specimens and, unless `specimen` is NULL, writes them to it, which has room for
  * BENCH_CALIBRATION_SPECIMENS, with their settings and without figures. SM_USAGE: a w that is no
- * whole number, too many of them. */
+ * whole number or wider than fastlsm's may be, too many of them. */
 SmCode bench_calibration_plan(BenchCalibrationPlan *plan, BenchSpecimen *specimen, SmError *error);
 
 /* Is `theirs` the same as `mine`? If not, `what` says in what they differ first. */

@@ -46,7 +46,9 @@ static const struct argp_option option_list[] = {
      "A beam: its body's box, its cells and its time step are taken (default: beam)", 1},
     {"engine", KEY_ENGINE, "NAME", 0, "both, fastlsm or octree (default: both)", 1},
     {"w", KEY_W, "RANGE", 0,
-     "Region half-widths in cells, FIRST:LAST[:STEP] or a list (default: 1:10)", 1},
+     "Region half-widths in cells, 1 to 64 (fastlsm: to 31), FIRST:LAST[:STEP] or a list (default: "
+     "1:10)",
+     1},
     {"epsilon", KEY_EPSILON, "RANGE", 0, "The octree's (default: 0:1:0.25)", 1},
     {"across", KEY_ACROSS, "RANGE", 0,
      "Lattice spacings beside the scene's: cells through the beam, or none (default: 3,4,7)", 2},

@@ -226,7 +226,10 @@ static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *e
     bool nodes = options->nodes && !is_meshless(scene);
     if (!is_octree(scene) && (options->epsilon >= 0 || options->levels || nodes))
         return sm_fail(error, SM_USAGE,
-                       "--epsilon, --levels and --nodes are the octree's: add --engine octree");
+                       is_meshless(scene)
+                           ? "--epsilon and --levels are the octree's: add --engine octree"
+                           : "--epsilon, --levels and --nodes are the octree's: add --engine "
+                             "octree");
     if (options->epsilon >= 0) octree->epsilon = options->epsilon;
     if (options->levels) {
         octree->sampling.levels = options->levels;

@@ -117,6 +117,12 @@ static SmCode hold(const BenchBody *of, long count, const double (*x)[3], BenchE
                            "%s: handle %d selects none of the body's points: enlarge its box or "
                            "sphere",
                            scene->file, i + 1);
+        for (int other = 0; other < i; other++)
+            if (!memcmp(elastic->held[other], held, sizeof elastic->held[other]))
+                return sm_fail(error, SM_INPUT,
+                               "%s: handles %d and %d bind the same point of the body: move one's "
+                               "box or sphere",
+                               scene->file, other + 1, i + 1);
         ref_motion_hold(&elastic->body, REF_HOLD_ROTATION, held, &elastic->motion);
     }
     return SM_OK;

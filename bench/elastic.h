@@ -27,7 +27,7 @@ typedef struct {
 
 /* At rest. Errors: SM_INPUT, a scene with obstacles,
  * collisions, forces, cuts, touches, an eye, several instances or an initial deformation; a handle
- * that selects nothing; and those of points, field, body and modes. */
+ * that selects nothing, or another one's point; and those of points, field, body and modes. */
 SmCode bench_elastic_create(const BenchScene *scene, const BenchBody *of, BenchElastic *elastic,
                             SmError *error);
 void bench_elastic_free(BenchElastic *elastic);

@@ -20,7 +20,8 @@ typedef enum {
     BENCH_ELASTIC_MISSED,     /* how far below the highest lambda a mode lies that is not there */
     BENCH_ELASTIC_POSE,       /* displacement in the limit of small ones from Psi z, relative */
     BENCH_ELASTIC_STEP,       /* a step's modal velocities from a dense solution of eq. 33 whose
-                               * constraints are differentiated numerically, relative */
+                               * constraints are differentiated numerically, by the largest
+                               * of them or of what the forces alone would add */
     BENCH_ELASTIC_HELD,       /* constraints after the step, by the body's size */
     BENCH_ELASTIC_SKIN,       /* points from their shape functions, by the body's size */
     BENCH_ELASTIC_GROWTH,     /* of the energy in 64 steps without forces and constraints */

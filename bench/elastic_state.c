@@ -111,8 +111,9 @@ static void fill_system(const BenchElastic *elastic, double h, const double *J, 
     }
 }
 
-/* The step's velocities `after` from those that a dense solution gives. `motion` is as it was
- * before the step, with the step's targets. */
+/* The step's velocities `after` from those that a dense solution gives, by the largest of them, or
+ * by what the forces alone would add to them: of a stiff body at rest nothing but rounding is left.
+ * `motion` is as it was before the step, with the step's targets. */
 static void compare_step(BenchElastic *elastic, double step, const double *after,
                          BenchElasticFound *found)
 {
@@ -130,7 +131,7 @@ static void compare_step(BenchElastic *elastic, double step, const double *after
     gsl_set_error_handler(handler);
     for (size_t k = 0; k < modes; k++) {
         double wanted = motion->speed[k] + gsl_vector_get(change, k);
-        most = fmax(most, fabs(wanted));
+        most = fmax(most, fmax(fabs(wanted), elastic->scene->params.h * fabs(motion->load[k])));
         off = fmax(off, fabs(after[k] - wanted));
     }
     bench_elastic_note(found, BENCH_ELASTIC_STEP, !solved ? NAN : most > 0 ? off / most : off);

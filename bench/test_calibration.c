@@ -94,6 +94,11 @@ static void a_plan_makes_its_specimens(void **state)
     assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "--w: 2.5 is no whole number"));
     plan = sample_plan;
+    plan.w[3] = 32;
+    assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "--w: 32 is too wide for fastlsm"));
+    strcpy(plan.engines, "octree");
+    assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_OK);
     plan.ws = plan.epsilons = BENCH_CALIBRATION_VALUES;
     for (int i = 0; i < BENCH_CALIBRATION_VALUES; i++)
         plan.w[i] = i + 1, plan.epsilon[i] = 0.01 * i;
@@ -208,18 +213,24 @@ static void a_modulus_has_its_w(void **state)
     assert_int_equal(advise(made, 1.25 * young, 1000, text), 3);
     assert_non_null(strstr(text, "No w and epsilon is within 10%"));
     char step[48];
-    snprintf(step, sizeof step, "A time step of %.3g s", 1e-3 / sqrt(1.25));
+    snprintf(step, sizeof step, "A time step of %.4g s", 1e-3 / sqrt(1.25));
     assert_non_null(strstr(text, step));
     /* beyond all: a spacing that the law gives this modulus */
-    assert_int_equal(advise(made, 1e12, 1000, text), 11);
+    double beyond = 4 * made->specimen[11].young;
+    assert_int_equal(advise(made, beyond, 1000, text), 11);
     const char *place = strstr(text, "about a spacing of ");
     assert_non_null(place);
     BenchSpecimen s = made->specimen[11];
     s.spacing = strtod(place + strlen("about a spacing of "), NULL);
-    assert_true(fabs(two_terms(&s, 0.3, 0.1) / 1e12 - 1) < 0.03);
+    assert_true(fabs(two_terms(&s, 0.3, 0.1) / beyond - 1) < 0.03);
+    /* none that is thicker than the beam, or too fine for it */
+    advise(made, 1e12, 1000, text);
+    assert_null(strstr(text, "spacing of"));
+    advise(made, 1e-3, 1000, text);
+    assert_null(strstr(text, "spacing of"));
     /* without a law no spacing is named */
     made->laws = 0;
-    advise(made, 1e12, 1000, text);
+    advise(made, beyond, 1000, text);
     assert_null(strstr(text, "spacing of"));
     made->specimen[4].valid = false;
     assert_int_equal(advise(made, young, 1000, text), 3);

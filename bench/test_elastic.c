@@ -223,6 +223,34 @@ static void scenes_beyond_it_are_refused(void **state)
     assert_refused("instances = 2;", "several instances");
 }
 
+/* Of steel held at an end nothing moves but by rounding, which is no fault. */
+static void a_stiff_body_at_rest_passes(void **state)
+{
+    (void)state;
+    BenchElastic elastic;
+    SmError error;
+    char reason[160] = "";
+    scene.handle_count = 1;
+    scene.meshless.material.young = 2e11;
+    assert_int_equal(bench_elastic_create(&scene, &body, &elastic, &error), SM_OK);
+    for (int n = 0; n < 5; n++) bench_elastic_step(&elastic, NULL);
+    BenchElasticFound found = check(&elastic);
+    if (!bench_elastic_verdict(&found, sizeof reason, reason)) fail_msg("%s", reason);
+    bench_elastic_free(&elastic);
+    parse("");
+}
+
+static void two_handles_of_one_point_are_refused(void **state)
+{
+    (void)state;
+    BenchElastic elastic;
+    SmError error;
+    scene.handle[1] = scene.handle[0];
+    assert_int_equal(bench_elastic_create(&scene, &body, &elastic, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "bar.cfg: handles 1 and 2 bind the same point"));
+    parse("");
+}
+
 static BenchRow measure(void)
 {
     BenchRow row;
@@ -332,6 +360,8 @@ int main(void)
         cmocka_unit_test(what_is_not_finite_is_not_valid),
         cmocka_unit_test(handles_move_the_body),
         cmocka_unit_test(scenes_beyond_it_are_refused),
+        cmocka_unit_test(a_stiff_body_at_rest_passes),
+        cmocka_unit_test(two_handles_of_one_point_are_refused),
         cmocka_unit_test(its_row_is_a_table_of_its_own),
         cmocka_unit_test(its_row_is_in_the_file),
         cmocka_unit_test(scenes_are_of_the_papers_sizes),

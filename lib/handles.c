@@ -50,9 +50,11 @@ static void copy(SmHandles *own, const SmBoundary *boundary, long particles)
     own->before = sm_alloc((size_t)own->held, sizeof *own->before);
 }
 
-void sm_handles_set(SmHandles *own, const SmBoundary *boundary, long particles)
+bool sm_handles_set(SmHandles *own, const SmBoundary *boundary, long particles)
 {
-    if (!hold_the_same(own, boundary)) copy(own, boundary, particles);
+    bool others = !hold_the_same(own, boundary);
+    if (others) copy(own, boundary, particles);
     for (int i = 0; i < own->count; i++)
         memcpy(own->handle[i].pose, boundary->handle[i].pose, sizeof own->handle[i].pose);
+    return others;
 }

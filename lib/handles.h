@@ -13,9 +13,9 @@ typedef struct {
 } SmHandles;
 
 /* Copies the boundary's handles; their particles must be 0 .. particles - 1. Where they hold the
- * same particles as before, only the poses are copied: O(held), and nothing is allocated. `own`
- * begins zeroed; sm_handles_free() ends it. */
-void sm_handles_set(SmHandles *own, const SmBoundary *boundary, long particles);
+ * same particles as before, only the poses are copied: O(held), and nothing is allocated. Returns
+ * whether they hold others. `own` begins zeroed; sm_handles_free() ends it. */
+bool sm_handles_set(SmHandles *own, const SmBoundary *boundary, long particles);
 void sm_handles_free(SmHandles *own);
 
 /* to = pose * (from, 1). */

@@ -47,14 +47,19 @@ def read(path):
             specimen, law = columns(file["specimens"]), columns(file["laws"])
     except (OSError, KeyError) as error:
         fail(f"{path}: cannot be read: {error}", 3)
-    if not specimen["valid"].any():
-        fail(f"{path}: no specimen is valid", 3)
+    if not valid_grid(specimen).any():
+        fail(f"{path}: no specimen of the scene's beam is valid", 3)
     return {key: value.decode() if isinstance(value, bytes) else value for key, value in plan.items()}, specimen, law
 
 
 def columns(group):
     """A group's datasets as arrays, texts as str."""
     return {name: column[:].astype(str) if column.dtype.kind == "S" else column[:] for name, column in group.items()}
+
+
+def valid_grid(specimen):
+    """Which specimens are valid and of the scene's beam."""
+    return (specimen["set"] == "grid") & (specimen["valid"] != 0)
 
 
 def best(plan, specimen):
@@ -80,7 +85,7 @@ def two_terms(plan, specimen, law, engine, w):
 
 def modulus(axes, plan, specimen, law):
     """Young's modulus over w on the scene's beam: a line an epsilon, the law dashed."""
-    grid = (specimen["set"] == "grid") & (specimen["valid"] != 0)
+    grid = valid_grid(specimen)
     epsilons = numpy.unique(specimen["epsilon"][grid & (specimen["engine"] == OCTREE)])
     lines = [(LATTICE, 0.0)] + [(OCTREE, epsilon) for epsilon in epsilons]
     for engine, epsilon in lines:

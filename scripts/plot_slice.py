@@ -5,6 +5,7 @@ blue inside, red outside, the surface (zero) black.
 Needs Debian's python3-h5py and python3-matplotlib (scripts/setup)."""
 
 import argparse
+import os
 import pathlib
 import sys
 
@@ -14,20 +15,30 @@ def fail(text, code):
     sys.exit(code)
 
 
-def read(path, h5py):
+try:
+    import h5py
+    import numpy
+except ImportError as missing:
+    fail(f"{missing}: scripts/setup installs it (python3-h5py)", 3)
+
+from plot_sweep import drawing, write
+
+FACTS = ("source", "axis", "at", "low", "high", "points")
+
+
+def read(path):
     """Attributes by name, and the distances [rows][columns]."""
     try:
         with h5py.File(path) as file:
             facts = {name: value.decode() if isinstance(value, bytes) else value for name, value in file.attrs.items()}
             if facts.get("kind") != "shapebench slice":
                 fail(f"{path}: not what `shapebench info --slice` writes", 3)
-            return facts, file["distance"][:]
-    except OSError as error:
-        fail(f"{path}: {error}", 3)
+            return {name: facts[name] for name in FACTS}, file["distance"][:]
+    except (OSError, KeyError) as error:
+        fail(f"{path}: cannot be read: {error}", 3)
 
 
 def draw(facts, distance, pyplot):
-    import numpy
     from matplotlib.colors import TwoSlopeNorm
 
     normal, across, along = (("x", "z", "y"), ("y", "x", "z"), ("z", "x", "y"))[facts["axis"]]
@@ -57,20 +68,9 @@ def main():
     parser.add_argument("file", help="HDF5 file of a slice")
     parser.add_argument("-o", "--output", help="picture, PNG, SVG or PDF (default: FILE.png)")
     options = parser.parse_args()
-    try:
-        import h5py
-        import matplotlib
-
-        matplotlib.use("Agg")
-        from matplotlib import pyplot
-    except ImportError as missing:
-        fail(f"{missing}: scripts/setup installs it (python3-h5py, python3-matplotlib)", 3)
-    facts, distance = read(options.file, h5py)
-    output = options.output or str(pathlib.Path(options.file).with_suffix(".png"))
-    try:
-        draw(facts, distance, pyplot).savefig(output, dpi=90, bbox_inches="tight")
-    except (OSError, ValueError) as error:
-        fail(f"{output}: {error}", 4)
+    facts, distance = read(options.file)
+    output = options.output or os.path.splitext(options.file)[0] + ".png"
+    write(draw(facts, distance, drawing()), output, fail, dpi=90, bbox_inches="tight")
     print(f"wrote {output}")
 
 

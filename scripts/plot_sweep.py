@@ -136,12 +136,12 @@ def front(axes, plan, point):
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label="w")
 
 
-def write(figure, output, refuse):
-    """The figure's file, whole or not at all; `refuse` says why not and ends the program."""
+def write(figure, output, refuse, **how):
+    """The figure's file, whole or not at all; `refuse` says why not and ends the program. `how` is of savefig()."""
     name, form = os.path.splitext(output)
     draft = f"{name}.{os.getpid()}.tmp{form}"
     try:
-        figure.savefig(draft, dpi=130)
+        figure.savefig(draft, **{"dpi": 130, **how})
         os.replace(draft, output)
     except (OSError, ValueError) as error:
         if os.path.exists(draft):

@@ -19,4 +19,12 @@ refused 3 nothing.h5
 /usr/bin/python3 -c 'import h5py; h5py.File("other.h5", "w").attrs["kind"] = "else"'
 refused 3 other.h5
 refused 4 beam.h5 -o nowhere/beam.svg
+/usr/bin/python3 - <<'PYTHON'
+import h5py
+
+with h5py.File("beam.h5", "r+") as file:
+    some = file["specimens"]
+    some["valid"][:] = [text != b"grid" for text in some["set"][:]]
+PYTHON
+refused 3 beam.h5
 echo "drawn as SVG and PNG"

@@ -325,9 +325,7 @@ static void bind(SmEngine *engine)
 
 static void meshless_bound(SmEngine *engine, const SmBoundary *boundary)
 {
-    const SmHandle *before = engine->handles.handle;
-    sm_handles_set(&engine->handles, boundary, engine->count);
-    if (engine->handles.handle != before) bind(engine);
+    if (sm_handles_set(&engine->handles, boundary, engine->count)) bind(engine);
     for (int n = 0, k = 0; n < engine->handles.count; n++)
         if (engine->handles.handle[n].count > 0)
             memcpy(engine->grip_pose[k++], engine->handles.handle[n].pose,

@@ -121,7 +121,7 @@ static SmCode check_closed(const RefCloud *cloud, SmError *error)
     return sm_fail(
         error, SM_INPUT,
         "the points leave the surface open: %.0f%% of it face one way without an opposite; a "
-        "solid needs points all around",
+        "solid needs points all around, and none far away",
         100 * open);
 }
 
@@ -153,7 +153,8 @@ static SmCode orient(RefMpu *mpu, SmError *error)
         return sm_fail(
             error, SM_INPUT,
             "the points' normals disagree about what is inside: only %d%% of them separate "
-            "it from outside; orient them",
+            "it from outside; orient them, or give more where the body is thinner than they are "
+            "apart",
             100 * (right > wrong ? right : wrong) / probes);
     for (long p = 0; p < mpu->points.count; p++)
         for (int d = 0; d < 3; d++) mpu->points.normal[p][d] *= -1;

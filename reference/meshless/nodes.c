@@ -90,16 +90,6 @@ void ref_nodes_bin(RefNodes *nodes)
     nodes->start[0] = 0;
 }
 
-void ref_nodes_create(long count, const double (*position)[3], const double *reach, RefNodes *nodes)
-{
-    *nodes = (RefNodes){.count = count};
-    nodes->position = sm_alloc((size_t)count, sizeof *nodes->position);
-    nodes->reach = sm_alloc((size_t)count, sizeof *nodes->reach);
-    memcpy(nodes->position, position, (size_t)count * sizeof *position);
-    memcpy(nodes->reach, reach, (size_t)count * sizeof *reach);
-    ref_nodes_bin(nodes);
-}
-
 /* Whether a node stands within `distance` of x. */
 static bool taken(const RefNodes *nodes, const double x[3], double distance)
 {

@@ -26,9 +26,6 @@ typedef struct {
  * corner many do). The caller frees. */
 void ref_nodes_place(const RefField *field, const RefOctants *tree, double alpha, RefNodes *nodes);
 
-/* Nodes of the caller's, positions and reaches copied. */
-void ref_nodes_create(long count, const double (*position)[3], const double *reach,
-                      RefNodes *nodes);
 void ref_nodes_free(RefNodes *nodes);
 
 /* Makes the bins anew after reaches have changed. */

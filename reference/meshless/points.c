@@ -10,8 +10,6 @@
 #include "../../lib/import.h"
 #include "../../lib/vector.h"
 
-enum { LINE = 512 };
-
 void ref_points_free(RefPoints *points)
 {
     free(points->position);
@@ -39,8 +37,9 @@ static SmCode check(long count, const double (*position)[3], const double (*norm
         for (int d = 0; d < 3; d++) size = fmax(size, fabs(position[p][d]));
         if (!(isfinite(position[p][0] + position[p][1] + position[p][2]) && size < 1e30 &&
               isfinite(length)))
-            return sm_fail(error, SM_INPUT, "%s: point %ld has a coordinate that is no number",
-                           name, p + 1);
+            return sm_fail(error, SM_INPUT,
+                           "%s: point %ld has a coordinate that is no number, or beyond 1e30", name,
+                           p + 1);
         if (length > 0 && !(length > 0.5 && length < 1.5))
             return sm_fail(error, SM_INPUT,
                            "%s: point %ld has a normal of length %g, not 1: columns 4 to 6 must be "
@@ -64,6 +63,23 @@ static void merge(const Oriented *sorted, long count, RefPoints *points)
     }
 }
 
+/* Squares of lengths, areas and single precision (bench/slice.h) must hold what the points span. */
+static SmCode check_span(const RefPoints *points, const char *name, SmError *error)
+{
+    double span = 0;
+    for (int d = 0; d < 3; d++) {
+        double low = INFINITY, high = -INFINITY;
+        for (long p = 0; p < points->count; p++) {
+            low = fmin(low, points->position[p][d]);
+            high = fmax(high, points->position[p][d]);
+        }
+        span = fmax(span, high - low);
+    }
+    if (span >= 1e-30) return SM_OK;
+    return sm_fail(error, SM_INPUT, "%s: the points span %g: give them in a unit that is smaller",
+                   name, span);
+}
+
 SmCode ref_points_create(long count, const double (*position)[3], const double (*normal)[3],
                          const char *name, RefPoints *points, SmError *error)
 {
@@ -81,12 +97,15 @@ SmCode ref_points_create(long count, const double (*position)[3], const double (
     points->normal = sm_alloc((size_t)count, sizeof *points->normal);
     merge(sorted, count, points);
     free(sorted);
-    if (points->count >= REF_LEAST_POINTS) return SM_OK;
-    long left = points->count;
-    ref_points_free(points);
-    return sm_fail(error, SM_INPUT,
-                   "%s: %ld different points with normals are too few for a surface: %d or more",
-                   name, left, REF_LEAST_POINTS);
+    if (points->count >= REF_LEAST_POINTS)
+        code = check_span(points, name, error);
+    else
+        code = sm_fail(error, SM_INPUT,
+                       "%s: %ld different points with normals are too few for a surface: %d or "
+                       "more",
+                       name, points->count, REF_LEAST_POINTS);
+    if (code) ref_points_free(points);
+    return code;
 }
 
 /* Up to six numbers of a line; how many. */
@@ -108,16 +127,16 @@ static double (*read_lines(FILE *file, const char *path, long *count, SmError *e
 {
     double(*row)[3] = NULL, number[6];
     long room = 0, line = 0;
-    char text[LINE];
+    char *text = NULL;
+    size_t size = 0;
     *count = 0;
-    while (fgets(text, sizeof text, file)) {
+    while (getline(&text, &size, file) >= 0) {
         line++;
         const char *begin = text + strspn(text, " \t\r\n");
         if (*begin == 0 || *begin == '#') continue;
         int found = numbers(begin, number);
         if (found == 1 && *count == 0) continue;
-        bool whole = strchr(text, '\n') || feof(file);
-        if (found < 6 || !whole) {
+        if (found < 6) {
             sm_fail(error, SM_INPUT,
                     found == 3
                         ? "%s: line %ld has three numbers: the points have no normals; give them "
@@ -125,6 +144,7 @@ static double (*read_lines(FILE *file, const char *path, long *count, SmError *e
                         : "%s: line %ld is not x y z nx ny nz",
                     path, line);
             free(row);
+            free(text);
             return NULL;
         }
         if (*count == room) {
@@ -133,6 +153,7 @@ static double (*read_lines(FILE *file, const char *path, long *count, SmError *e
         }
         memcpy(row[2 * (*count)++], number, sizeof number);
     }
+    free(text);
     if (!row) sm_fail(error, SM_INPUT, "%s: holds no points", path);
     return row;
 }

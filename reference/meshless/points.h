@@ -15,8 +15,9 @@ typedef struct {
 
 /* Copies points; such at one position become one, whose normal is the mean, and those without a
  * normal (of length zero) are dropped. `name` is for messages. The caller frees. Errors (SM_INPUT):
- * numbers that are not finite, normals whose length is not 1 to within a half (columns that are
- * colours, say), and fewer than REF_LEAST_POINTS that are left. O(n log n). */
+ * numbers that are not finite or beyond 1e30, normals whose length is not 1 to within a half
+ * (columns that are colours, say), fewer than REF_LEAST_POINTS that are left, and such that span
+ * less than 1e-30. O(n log n). */
 SmCode ref_points_create(long count, const double (*position)[3], const double (*normal)[3],
                          const char *name, RefPoints *points, SmError *error);
 void ref_points_free(RefPoints *points);

@@ -1,8 +1,8 @@
 /* rows.h - linear functions of the nodal parameters: what constraints bind (meshless
  * section 5.3.3).
  *
- * MLS shape functions are no Kronecker delta, so a displacement at a point, and half its curl, are
- * sums over the nodes that cover it. Parameter 3 I + d is node I's along axis d. */
+ * MLS shape functions are no Kronecker delta, so a displacement at a point is a sum over the nodes
+ * that cover it. Parameter 3 I + d is node I's along axis d. */
 #ifndef REF_ROWS_H
 #define REF_ROWS_H
 
@@ -15,10 +15,9 @@ typedef struct {
     double *value; /* [start[count]] */
 } RefRows;
 
-/* Append a row to `rows` (zeroed: empty): the displacement along an axis where the shape functions
- * were taken, or the rotation about it, half the curl (eq. 26). */
+/* Appends a row to `rows` (zeroed: empty): the displacement along an axis where the shape functions
+ * were taken. */
 void ref_rows_displacement(RefRows *rows, const RefShape *shape, int axis);
-void ref_rows_turn(RefRows *rows, const RefShape *shape, int axis);
 void ref_rows_free(RefRows *rows);
 
 /* Row `row` applied to u. */

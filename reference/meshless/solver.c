@@ -162,8 +162,10 @@ SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRow
         return SM_OK;
     }
     ref_solver_destroy(solver);
-    if (status == CHOLMOD_OUT_OF_MEMORY)
-        return sm_fail(error, SM_INPUT, "no memory to factorise a stiffness of %d columns",
+    if (status == CHOLMOD_OUT_OF_MEMORY || status == CHOLMOD_TOO_LARGE)
+        return sm_fail(error, SM_INPUT,
+                       "a stiffness of %d columns is too large to be factorised: give the body "
+                       "fewer nodes",
                        matrices->stiffness.columns);
     return sm_fail(error, SM_INPUT,
                    "the stiffness matrix is singular: the body is not held, or parts of it hang "

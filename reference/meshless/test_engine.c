@@ -175,6 +175,38 @@ static void handles(void **state)
     scene_free(&scene);
 }
 
+/* Handles that hold others, as many as before, on one side of the body and the other in turn: each
+ * takes the points along that it grips. */
+static void handles_that_change(void **state)
+{
+    (void)state;
+    enum { HELD = 30 };
+    if (!ref_solver_built) skip();
+    Scene scene = scene_create();
+    SmEngine *engine;
+    assert_int_equal(create(&scene, &engine, NULL), SM_OK);
+    long particle[HELD], count = particles_of(engine);
+    double(*rest)[3] = field(engine, SM_REST);
+    for (int turn = 0; turn < 8; turn++) {
+        SmHandle handle = {.count = HELD, .particle = particle};
+        SmBoundary boundary = {.handle_count = 1, .handle = &handle};
+        for (int d = 0; d < 3; d++) handle.pose[d][d] = 1;
+        handle.pose[1][3] = 0.1 * turn;
+        for (long k = 0; k < HELD; k++) particle[k] = turn % 2 ? count - 1 - k : k;
+        type->bound(engine, &boundary);
+        for (int step = 0; step < 10; step++) type->step(engine, NULL);
+        double(*x)[3] = field(engine, SM_POSITION);
+        int met = 0;
+        for (int k = 0; k < HELD; k++)
+            met += fabs(x[particle[k]][1] - rest[particle[k]][1] - 0.1 * turn) < 1e-5;
+        assert_true(met >= 4); /* as many at least are gripped; the others swing */
+        free(x);
+    }
+    free(rest);
+    type->destroy(engine);
+    scene_free(&scene);
+}
+
 /* The particles of the slab x <= to; and, into *tip, the one whose rest is nearest to (x, 1/2,
  * 1/2). */
 static long slab(SmEngine *engine, double to, double x, long *particle, long *tip)
@@ -290,9 +322,10 @@ static void what_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rest_and_fall), cmocka_unit_test(pushes),
-        cmocka_unit_test(handles),       cmocka_unit_test(cantilever),
-        cmocka_unit_test(set_and_get),   cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(rest_and_fall),   cmocka_unit_test(pushes),
+        cmocka_unit_test(handles),         cmocka_unit_test(handles_that_change),
+        cmocka_unit_test(cantilever),      cmocka_unit_test(set_and_get),
+        cmocka_unit_test(what_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

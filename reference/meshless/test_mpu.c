@@ -218,6 +218,15 @@ static void text_files(void **state)
         assert_int_equal(read_points(wrong[n].text, &points, &error), SM_INPUT);
         assert_non_null(strstr(error.text, wrong[n].says));
     }
+    end = text + sprintf(text, "# ");
+    memset(end, '7', 2000);
+    strcpy(end + 2000, "\n1 2 3 4\n");
+    assert_int_equal(read_points(text, &points, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "line 2 is not"));
+    end = text;
+    for (int p = 0; p < 60; p++) end += sprintf(end, "%de-100 %d 0 0 0 1\n", p, 0);
+    assert_int_equal(read_points(text, &points, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "span 5.9e-99"));
     memset(text, ' ', 2000);
     text[2000] = 0;
     assert_int_equal(read_points(text, &points, &error), SM_INPUT);

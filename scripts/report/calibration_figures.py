@@ -73,7 +73,7 @@ def modulus(source):
     plan, specimen = source.plan, source.specimen
     figure, axes = canvas(7.2, 4.6)
     plot_calibration.modulus(axes, plan, specimen, source.law)
-    grid = (specimen["set"] == "grid") & (specimen["valid"] != 0)
+    grid = plot_calibration.valid_grid(specimen)
     parts = []
     for engine in np.unique(specimen["engine"][grid]):
         some = np.flatnonzero(grid & (specimen["engine"] == engine))
@@ -116,4 +116,5 @@ def collapse(source):
 
 
 def figures(source):
-    return [modulus(source), agreement(source), collapse(source)] if source.specimen["valid"].any() else []
+    shown = plot_calibration.valid_grid(source.specimen).any()
+    return [modulus(source), agreement(source), collapse(source)] if shown else []
