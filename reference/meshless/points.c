@@ -228,7 +228,7 @@ SmCode ref_points_of_mesh(const SmMesh *mesh, long count, RefPoints *points, SmE
         across(mesh, t, normal);
         due += sqrt(sm_dot(normal, normal)) / total * (double)count;
         if (!sm_normalize(normal)) continue;
-        for (; made < (long)due && made < count; made++) {
+        for (; made < (long)(due + 0.5) && made < count; made++) {
             /* a sequence of low discrepancy (plastic number) in the triangle */
             double u = fmod(0.5 + 0.7548776662466927 * (double)made, 1);
             double v = fmod(0.5 + 0.5698402909980532 * (double)made, 1);
