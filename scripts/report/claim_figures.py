@@ -17,7 +17,7 @@ GROUPS = {
     "size": ("Cost against size", "Milliseconds a step against the number of particles or nodes.", "xy"),
     "sag": ("Stiffness against w", "How deep the tip of a clamped beam hangs.", ""),
 }
-CLASSES = {"reproduced": "good", "not reproduced": "bad", "INVALID": "invalid"}
+CLASSES = {"reproduced": "good", "not reproduced": "bad", "undecided": "open", "INVALID": "invalid"}
 
 
 def value_text(values):
@@ -35,7 +35,8 @@ def measured_text(claim):
 def claim_table(source):
     table = Table(f"Claims, {source.name}",
                   ["claim", "verdict", "the paper says", "paper", "measured", "unit", "test", "why", "evidence"],
-                  "A measured value's spread is that of its repeats, or of an exponent the 95% confidence interval. "
+                  "Brackets hold 95% confidence intervals; undecided: the value is outside of what the test wants and its "
+                  "interval is not. "
                   "Evidence is where in the file the measurement is.")
     for claim in source.claims:
         paper = value_text(claim["paper_value"][:claim["values"]])

@@ -59,7 +59,8 @@ def front(source):
     words = "Points of the front, cheapest first: " + "; ".join(
         f"{where(point, i)}: {number(point['total_ms'][i])} ms, {number(100 * point['path_rms'][i])}% off" for i in best)
     return Figure(f"sweep-{source.plan['scene']}-front", f"{source.plan['scene']}: cost against deviation",
-                  "Each point is an engine, a w and an epsilon; no other is both cheaper and nearer than one on the line.",
+                  "Each point is an engine, a w and an epsilon; of one that is ringed no other is as near and cheaper "
+                  "beyond the spread of its repeats.",
                   words + ".", ["engine", "w", "epsilon", "total_ms", "path_rms", "front"],
                   [line[:3] + [float(point["total_ms"][i]), float(point["path_rms"][i]), int(point["front"][i])]
                    for i, line in enumerate(listed(point, point["total_ms"]))]).draw(figure)
