@@ -82,6 +82,7 @@ static const Spec specs[] = {
     {"infant", "cases", SCENE, .set = 32, .at_most = 45},
     {"penguin", "cases", SCENE, .set = 33, .at_most = 50},
     {"penguins", "cases", SCENE, .set = 34, .at_most = 44},
+    {"penguins-free", "cases", SCENE, .set = 35, .at_most = 20},
     {STEP_OF("scale-1e4", "scaling", 40, 22, 1)},
     {STEP_OF("scale-1e5", "scaling", 40, 46, 1), .base = least_of, .wanted = 1.25},
     {STEP_OF("scale-1e6", "scaling", 40, 100, 1), .base = least_of, .wanted = 1.25},
