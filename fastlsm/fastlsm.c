@@ -221,6 +221,8 @@ static __attribute__((noinline)) void keep_transforms(const Lsm *lsm, long block
         store_transforms(lsm, block, T, T + 3);
 }
 
+_Static_assert((int)BLOCK_GROUP <= (int)POLAR_TILES, "a group of blocks is matched at once");
+
 /* Block form: the regions centred in a group of blocks that follow each other. */
 SM_INLINE void match_blocks(Lsm *lsm, int layer, long block, int blocks, vec (*S)[12], real *out,
                             SmLaps *laps)
