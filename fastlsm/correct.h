@@ -4,98 +4,128 @@
 
 #include "corrections.h"
 
-/* A block's corrections one way. */
-typedef struct {
-    const Correction *at, *end;
-} Span;
+/* What one correction adds to the sums of half a block. */
+typedef void CorrectOne(const Lsm *lsm, const Correction *at, half_vec *sum);
 
-SM_INLINE void clear_lanes(unsigned lanes, int values, vec *sum)
+/* m~ of the source, or less than nothing. */
+SM_INLINE half_vec weight_of(const Lsm *lsm, const Correction *at)
 {
-    for (int i = 0; i < values && lanes; i++) sum[i] = lanes_pick(sum[i], 0, ~lanes);
+    const ParticleConst *k = &lsm->particle_const[lsm->block_const[at->source]];
+    return at->sign * half_load((const real *)&k->weight + at->from, at->lanes);
 }
 
-SM_INLINE Span corrections_of(const CorrectionList *list, long block)
+/* Of the sums up of a block's regions (match.h). */
+SM_INLINE void correct_region(const Lsm *lsm, const Correction *at, half_vec sum[12])
 {
-    return (Span){list->of + list->first[block], list->of + list->first[block + 1]};
-}
-
-/* One correction of the sums up of a block's regions (match.h). */
-SM_INLINE void correct_region(const Lsm *lsm, const Correction *at, vec weight, vec *sum)
-{
-    const real *x = lsm->x + at->source * 3L * SM_LANES;
+    const real *x = lsm->x + at->source * 3L * SM_LANES + at->from;
+    half_vec weight = weight_of(lsm, at);
     for (int d = 0; d < 3; d++) {
-        vec p = lsm->pass == PASS_CONSTANTS ? weight : weight * lanes_load(x + d * SM_LANES);
-        p = lanes_pick(p, at->shift, at->lanes);
+        half_vec p = weight * half_load(x + d * SM_LANES, at->lanes);
         sum[d] += p;
         for (int k = 0; k < 3; k++) sum[3 + 3 * d + k] += at->offset[k] * p;
     }
 }
 
-/* One of damping's four triples of sums up. */
-SM_INLINE void correct_product(const Lsm *lsm, const Correction *at, vec weight, vec *sum)
+/* The same of m~ in place of m~ x. */
+SM_INLINE void correct_constant(const Lsm *lsm, const Correction *at, half_vec sum[12])
 {
-    const real *from_x = lsm->x + at->source * 3L * SM_LANES,
-               *from_v = lsm->v + at->source * 3L * SM_LANES;
-    vec x[3], v[3], product[4];
-    weight = lanes_pick(weight, at->shift, at->lanes);
+    half_vec p = weight_of(lsm, at);
     for (int d = 0; d < 3; d++) {
-        x[d] = lanes_pick(lanes_load(from_x + d * SM_LANES), at->shift, at->lanes);
-        v[d] = lanes_pick(lanes_load(from_v + d * SM_LANES), at->shift, at->lanes);
-    }
-    for (int d = 0; d < 3; d++) {
-        damping_products(weight, (const real *)x, (const real *)v, d, product);
-        for (int k = 0; k < 4; k++) sum[3 * k + d] += product[k];
+        sum[d] += p;
+        for (int k = 0; k < 3; k++) sum[3 + 3 * d + k] += at->offset[k] * p;
     }
 }
 
-SM_INLINE void correct_up(const Lsm *lsm, long block, bool products, vec sums[12])
+/* Of damping's four triples of sums up. */
+SM_INLINE void correct_product(const Lsm *lsm, const Correction *at, half_vec sum[12])
 {
-    Span span = corrections_of(&lsm->corrections->up, block);
-    if (span.at == span.end) return;
-    vec sum[12];
-    lanes_copy(12, sums, sum);
-    clear_lanes(lsm->corrections->up.clear[block], 12, sum);
-    for (const Correction *at = span.at; at < span.end; at++) {
-        vec weight = at->sign * lsm->particle_const[lsm->block_const[at->source]].weight;
-        if (products)
-            correct_product(lsm, at, weight, sum);
-        else
-            correct_region(lsm, at, weight, sum);
+    const real *from_x = lsm->x + at->source * 3L * SM_LANES + at->from,
+               *from_v = lsm->v + at->source * 3L * SM_LANES + at->from;
+    half_vec weight = weight_of(lsm, at), x[3], v[3], p[3];
+    for (int d = 0; d < 3; d++) {
+        x[d] = half_load(from_x + d * SM_LANES, at->lanes);
+        v[d] = half_load(from_v + d * SM_LANES, at->lanes);
+        p[d] = weight * x[d];
     }
-    lanes_copy(12, sum, sums);
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        sum[d] += weight * v[d];
+        sum[3 + d] += p[e] * v[f] - p[f] * v[e];
+        sum[6 + d] += p[d] * x[d];
+        sum[9 + d] += p[e] * x[f];
+    }
 }
 
-static __attribute__((noinline, unused)) void correct_regions(const Lsm *lsm, long block,
-                                                              vec sums[12])
+/* Of the sums down of a block's particles: of transforms at the particles. */
+SM_INLINE void correct_goal(const Lsm *lsm, const Correction *at, half_vec sum[3])
 {
-    correct_up(lsm, block, false, sums);
+    const real *T = lsm->corrections->kept + at->source * 12L * SM_LANES + at->from;
+    for (int f = 0; f < 3; f++) {
+        half_vec value = half_load(T + f * SM_LANES, at->lanes);
+        for (int k = 0; k < 3; k++)
+            value -= at->offset[k] * half_load(T + (3 + 3 * f + k) * SM_LANES, at->lanes);
+        sum[f] += at->sign * value;
+    }
+}
+
+/* Of the sums down of rigid velocities. */
+SM_INLINE void correct_velocity(const Lsm *lsm, const Correction *at, half_vec sum[6])
+{
+    const real *kept = lsm->corrections->kept + at->source * 12L * SM_LANES + at->from;
+    for (int f = 0; f < 6; f++) sum[f] += at->sign * half_load(kept + f * SM_LANES, at->lanes);
+}
+
+/* What all of half a block, number `at`, come to. Loops are unrolled early, or the sums would not
+ * stay in registers. */
+SM_INLINE void correct_half(const Lsm *lsm, const CorrectionList *list, long at, int count,
+                            CorrectOne *correct_one, half_vec *sum)
+{
+    half_vec all[12];
+    const Correction *end = list->of + list->first[at + 1];
+#pragma GCC unroll 12
+    for (int f = 0; f < count; f++) all[f] = (half_vec){0};
+    for (const Correction *c = list->of + list->first[at]; c < end; c++) correct_one(lsm, c, all);
+#pragma GCC unroll 12
+    for (int f = 0; f < count; f++) sum[f] = all[f];
+}
+
+/* Corrects `count` sums of a block. */
+SM_INLINE void correct(const Lsm *lsm, const CorrectionList *list, long block, int count,
+                       CorrectOne *correct_one, vec *sums)
+{
+    half_vec low[12], high[12];
+    unsigned keep = ~(unsigned)list->clear[block] & LANES_ALL;
+    correct_half(lsm, list, 2 * block, count, correct_one, low);
+    correct_half(lsm, list, 2 * block + 1, count, correct_one, high);
+#pragma GCC unroll 12
+    for (int f = 0; f < count; f++)
+        sums[f] = lanes_keep(keep, sums[f]) + lanes_join(low[f], high[f]);
+}
+
+/* As BlockWork (state.h). */
+static __attribute__((noinline, unused)) void correct_regions(const Lsm *lsm, long block, vec *sums)
+{
+    if (lsm->pass == PASS_CONSTANTS)
+        correct(lsm, &lsm->corrections->up, block, 12, correct_constant, sums);
+    else
+        correct(lsm, &lsm->corrections->up, block, 12, correct_region, sums);
 }
 
 static __attribute__((noinline, unused)) void correct_products(const Lsm *lsm, long block,
-                                                               vec sums[12])
+                                                               vec *sums)
 {
-    correct_up(lsm, block, true, sums);
+    correct(lsm, &lsm->corrections->up, block, 12, correct_product, sums);
 }
 
-/* The sums down of a block's particles: of transforms at the particles, or of `values` plain ones.
- */
-SM_INLINE void correct_down(const Lsm *lsm, long block, bool plain, vec *sums)
+static __attribute__((noinline, unused)) void correct_goals(const Lsm *lsm, long block, vec *sums)
 {
-    int n = plain ? 6 : 3;
-    vec sum[6];
-    Span span = corrections_of(&lsm->corrections->down, block);
-    lanes_copy(n, sums, sum);
-    clear_lanes(lsm->corrections->down.clear[block], n, sum);
-    for (const Correction *at = span.at; at < span.end; at++) {
-        const real *T = lsm->corrections->kept + at->source * 12L * SM_LANES;
-        for (int f = 0; f < n; f++) {
-            vec value = lanes_load(T + f * SM_LANES);
-            for (int k = 0; k < 3 && !plain; k++)
-                value -= at->offset[k] * lanes_load(T + (3 + 3 * f + k) * SM_LANES);
-            sum[f] += lanes_pick(at->sign * value, at->shift, at->lanes);
-        }
-    }
-    lanes_copy(n, sum, sums);
+    correct(lsm, &lsm->corrections->down, block, 3, correct_goal, sums);
+}
+
+static __attribute__((noinline, unused)) void correct_velocities(const Lsm *lsm, long block,
+                                                                 vec *sums)
+{
+    correct(lsm, &lsm->corrections->down, block, 6, correct_velocity, sums);
 }
 
 #endif

@@ -5,7 +5,10 @@
 
 #include "blocks.h"
 
-/* Sites that a block's regions differ by on one way, by offset: row (c + w) * side + b + w holds
+/* Half a block is worked on at a time; halves are numbered through, two to a block. */
+enum { HALF = SM_LANES / 2 };
+
+/* Sites that a half's regions differ by on one way, by offset: row (c + w) * side + b + w holds
  * bits, lane by lane, of those to subtract and, from bit 16 on, of those to add. */
 typedef struct {
     uint32_t *lanes; /* [side^3] */
@@ -17,8 +20,8 @@ typedef struct {
 
 struct CorrectionsBuilder {
     const Lsm *lsm;
-    long block; /* whose regions are being added */
-    bool any;   /* have been */
+    long half; /* whose regions are being added */
+    bool any;  /* have been */
     Way up, down;
 };
 
@@ -29,7 +32,7 @@ static void open_way(const Lsm *lsm, Way *way)
     size_t side = (size_t)lsm->side;
     way->lanes = sm_alloc(side * side * side, sizeof *way->lanes);
     way->touched = sm_alloc(side * side, sizeof *way->touched);
-    way->list.first = sm_alloc((size_t)lsm->blocks + 1, sizeof *way->list.first);
+    way->list.first = sm_alloc(2 * (size_t)lsm->blocks + 1, sizeof *way->list.first);
     way->list.clear = sm_alloc((size_t)lsm->blocks, sizeof *way->list.clear);
 }
 
@@ -57,20 +60,21 @@ static void append_lanes(const Lsm *lsm, Way *way, const int corner[3], const in
                          uint32_t lanes, real sign)
 {
     int low = corner[0] + offset[0], column = (low + SM_LANES) / SM_LANES - 1,
-        shift = low - column * SM_LANES;
-    uint32_t next = lanes & (~(uint32_t)0 << (SM_LANES - shift));
-    Correction correction = {.shift = (uint16_t)shift, .sign = sign};
+        from = low - column * SM_LANES;
+    uint32_t next = lanes & (~(uint32_t)0 << (SM_LANES - from));
+    Correction correction = {.sign = sign};
     for (int d = 0; d < 3; d++) correction.offset[d] = (real)offset[d];
     for (int k = 0; k < 2; k++) {
         correction.lanes = (uint16_t)(k ? next : lanes & ~next);
         if (!correction.lanes) continue;
+        correction.from = (int16_t)(from - k * SM_LANES);
         correction.source =
             lsm_blocks_at(lsm, column + k, corner[1] + offset[1], corner[2] + offset[2]);
         append(way, correction);
     }
 }
 
-static void append_block(const Lsm *lsm, Way *way, const int corner[3])
+static void append_half(const Lsm *lsm, Way *way, const int corner[3])
 {
     int w = lsm->w, side = lsm->side;
     const uint32_t low = ((uint32_t)1 << ADD) - 1;
@@ -87,23 +91,24 @@ static void append_block(const Lsm *lsm, Way *way, const int corner[3])
     }
 }
 
-static void finish_block(CorrectionsBuilder *builder)
+static void finish_half(CorrectionsBuilder *builder)
 {
     const Lsm *lsm = builder->lsm;
     int corner[3] = {0, 0, 0}, lane = 0;
-    const int *particle = lsm->particle + builder->block * SM_LANES;
+    const int *particle = lsm->particle + builder->half * HALF;
     while (builder->any && particle[lane] < 0) lane++;
     for (int d = 0; d < 3 && builder->any; d++)
         corner[d] = lsm->lattice.coord[particle[lane]][d] - (d ? 0 : lane);
     Way *ways[2] = {&builder->up, &builder->down};
     for (int i = 0; i < 2; i++) {
-        if (builder->any) append_block(lsm, ways[i], corner);
-        ways[i]->list.first[builder->block + 1] = ways[i]->count;
-        ways[i]->list.clear[builder->block] = (uint16_t)ways[i]->clear;
+        if (builder->any) append_half(lsm, ways[i], corner);
+        ways[i]->list.first[builder->half + 1] = ways[i]->count;
+        ways[i]->list.clear[builder->half / 2] |=
+            (uint16_t)(ways[i]->clear << builder->half % 2 * HALF);
         ways[i]->clear = 0;
     }
     builder->any = false;
-    builder->block++;
+    builder->half++;
 }
 
 /* `taken`: what the box sum takes of a region with `members`. */
@@ -131,8 +136,8 @@ static void add_way(const Lsm *lsm, Way *way, int lane, const uint64_t *taken,
 void lsm_corrections_add(CorrectionsBuilder *builder, long p, const uint64_t *rows)
 {
     const Lsm *lsm = builder->lsm;
-    int lane = lsm->slot[p] % SM_LANES;
-    while (builder->block < lsm->slot[p] / SM_LANES) finish_block(builder);
+    int lane = lsm->slot[p] % HALF;
+    while (builder->half < lsm->slot[p] / HALF) finish_half(builder);
     uint64_t up[LSM_MAX_SIDE * LSM_MAX_SIDE], down[LSM_MAX_SIDE * LSM_MAX_SIDE];
     lsm_blocks_taken(lsm, p, up, down);
     add_way(lsm, &builder->up, lane, up, rows);
@@ -154,17 +159,17 @@ static void number_rows(const Lsm *lsm, Corrections *corrections)
     CorrectionList *down = &corrections->down;
     corrections->row = sm_alloc((size_t)lsm->blocks, sizeof(int));
     for (long block = 0; block < lsm->blocks; block++) corrections->row[block] = -1;
-    for (long i = 0; i < down->first[lsm->blocks]; i++) corrections->row[down->of[i].source] = 0;
+    for (long i = 0; i < down->first[2 * lsm->blocks]; i++) corrections->row[down->of[i].source] = 0;
     for (long block = 0; block < lsm->blocks; block++)
         if (!corrections->row[block]) corrections->row[block] = (int)corrections->rows++;
-    for (long i = 0; i < down->first[lsm->blocks]; i++)
+    for (long i = 0; i < down->first[2 * lsm->blocks]; i++)
         down->of[i].source = corrections->row[down->of[i].source];
     corrections->kept = sm_alloc((size_t)corrections->rows * 12 * SM_LANES, sizeof(real));
 }
 
 void lsm_corrections_close(CorrectionsBuilder *builder, Lsm *lsm)
 {
-    while (builder->block < lsm->blocks) finish_block(builder);
+    while (builder->half < 2 * lsm->blocks) finish_half(builder);
     Corrections *corrections = lsm->corrections = sm_alloc(1, sizeof *corrections);
     corrections->up = close_way(&builder->up);
     corrections->down = close_way(&builder->down);
@@ -174,7 +179,7 @@ void lsm_corrections_close(CorrectionsBuilder *builder, Lsm *lsm)
 
 static bool mends(const CorrectionList *list, long block)
 {
-    return list->first[block] < list->first[block + 1] || list->clear[block];
+    return list->first[2 * block] < list->first[2 * block + 2] || list->clear[block];
 }
 
 void lsm_corrections_mark(const Lsm *lsm)
@@ -204,7 +209,8 @@ long lsm_corrections_bytes(const Lsm *lsm)
 {
     const Corrections *c = lsm->corrections;
     if (!c) return 0;
-    return (c->up.first[lsm->blocks] + c->down.first[lsm->blocks]) * (long)sizeof(Correction) +
-           lsm->blocks * (long)(2 * sizeof(long) + 2 * sizeof(uint16_t) + sizeof(int)) +
+    long halves = 2 * lsm->blocks;
+    return (c->up.first[halves] + c->down.first[halves]) * (long)sizeof(Correction) +
+           lsm->blocks * (long)(4 * sizeof(long) + 2 * sizeof(uint16_t) + sizeof(int)) +
            c->rows * (long)(12 * SM_LANES * sizeof(real));
 }

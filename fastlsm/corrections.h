@@ -2,11 +2,13 @@
  *
  * Where a region's members differ from the sites that its box sum takes (a gap, a corner), each
  * particle too many is subtracted again and each one missing is added: on the way up from the
- * region's sum, on the way down the region from the particle's. Lanes of a block that differ at the
- * same offset by lanes of the same block are one correction, so whole vectors are read, moved along
- * x and masked. Where that takes more than the members themselves, the box sum is dropped and they
- * are all added: what is left of a sum is then never small beside what was taken from it. A block's
- * corrections follow each other in the order of their offsets (c, b, a). */
+ * region's sum, on the way down the region from the particle's. Lanes of half a block that differ
+ * at the same offset by lanes of the same block are one correction, so half vectors are read from
+ * where their lanes begin, and masked: corrections have few lanes, seldom more than two, and a
+ * whole vector takes twice the time. Where that takes more than the members themselves, the box sum
+ * is dropped and they are all added: what is left of a sum is then never small beside what was
+ * taken from it. The corrections of half a block follow each other in the order of their offsets
+ * (c, b, a). */
 #ifndef LSM_CORRECTIONS_H
 #define LSM_CORRECTIONS_H
 
@@ -21,15 +23,15 @@
 
 typedef struct {
     int source;           /* up: block of the members; down: row of `kept` */
-    uint16_t lanes;       /* bit i: lane i is corrected .. */
-    uint16_t shift;       /* .. by lane i + shift modulo SM_LANES of the source */
+    uint16_t lanes;       /* bit i: lane i of the half is corrected .. */
+    int16_t from;         /* .. by lane i + from of the source */
     real sign, offset[3]; /* 1 or -1; from the corrected lane to its source, in cells */
 } Correction;
 
 /* One way, up or down. */
 typedef struct {
-    Correction *of;  /* [first[blocks]] */
-    long *first;     /* [blocks + 1] */
+    Correction *of;  /* [first[2 * blocks]] */
+    long *first;     /* [2 * blocks + 1] of each half */
     uint16_t *clear; /* [blocks] lanes whose box sum is dropped first */
 } CorrectionList;
 
@@ -60,6 +62,7 @@ long lsm_corrections_bytes(const Lsm *lsm);
 SM_INLINE void keep_solved(const Lsm *lsm, long block, int values, const vec *out)
 {
     real *kept = lsm->corrections->kept + lsm->corrections->row[block] * 12L * SM_LANES;
+#pragma GCC unroll 12
     for (int i = 0; i < values; i++) lanes_store(kept + i * SM_LANES, out[i]);
 }
 

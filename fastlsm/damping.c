@@ -156,7 +156,7 @@ SM_INLINE void slow_down(Lsm *lsm, long block, const vec sum[6])
 static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec *sum)
 {
     if (lsm->corrections) {
-        correct_down(lsm, block, true, sum);
+        correct_velocities(lsm, block, sum);
         return;
     }
     real sums[6][SM_LANES] __attribute__((aligned(64)));

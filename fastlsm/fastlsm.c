@@ -283,7 +283,7 @@ static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
 static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec *sum)
 {
     if (lsm->corrections) {
-        correct_down(lsm, block, false, sum);
+        correct_goals(lsm, block, sum);
         return;
     }
     real sums[3][SM_LANES] __attribute__((aligned(64)));

@@ -184,9 +184,9 @@ typedef void BlockWork(const Lsm *lsm, long block, vec *values);
 SM_INLINE void on_copy(BlockWork *work, const Lsm *lsm, long block, int count, vec *values)
 {
     vec copy[12];
-    memcpy(copy, values, (size_t)count * sizeof *copy);
+    lanes_copy(count, values, copy);
     work(lsm, block, copy);
-    memcpy(values, copy, (size_t)count * sizeof *copy);
+    lanes_copy(count, copy, values);
 }
 
 #endif

@@ -41,9 +41,11 @@ SM_INLINE void store3(real *p, const vec in[3])
     for (int d = 0; d < 3; d++) lanes_store(p + d * SM_LANES, in[d]);
 }
 
-/* Into registers or out of them: memcpy() would be called for as many. */
+/* Into registers or out of them, at most 16: memcpy() would be called for as many, and so would it
+ * be by a compiler that has not unrolled the loop first. */
 SM_INLINE void lanes_copy(int count, const vec *from, vec *to)
 {
+#pragma GCC unroll 16
     for (int i = 0; i < count; i++) to[i] = from[i];
 }
 
@@ -275,20 +277,28 @@ SM_INLINE vec lanes_slide(vec low, vec high, int o)
 #endif
 }
 
-/* Lane i of the result is lane i + shift (modulo SM_LANES) of v where bit i of `lanes` is set, else
- * zero; 0 <= shift < SM_LANES. */
-SM_INLINE vec lanes_pick(vec v, int shift, unsigned lanes)
+/* Half a vector from p on where bit i of `lanes` is set, else zero; what is not set may lie outside
+ * of an array. */
+SM_INLINE half_vec half_load(const real *p, unsigned lanes)
 {
-#if defined(__AVX512F__) && SM_REAL_BITS == 32
-    return (vec)_mm512_maskz_permutexvar_ps((__mmask16)lanes,
-                                            _mm512_loadu_si512(lanes_count + shift), (__m512)v);
-#elif defined(__AVX512F__)
-    return (vec)_mm512_maskz_permutexvar_pd((__mmask8)lanes,
-                                            _mm512_loadu_si512(lanes_count + shift), (__m512d)v);
+#if defined(__AVX512VL__) && SM_REAL_BITS == 32
+    return (half_vec)_mm256_maskz_loadu_ps((__mmask8)lanes, p);
+#elif defined(__AVX512VL__)
+    return (half_vec)_mm256_maskz_loadu_pd((__mmask8)lanes, p);
 #else
-    vec picked;
-    for (int i = 0; i < SM_LANES; i++) picked[i] = lanes >> i & 1 ? v[(i + shift) % SM_LANES] : 0;
+    half_vec picked = {0};
+    for (int i = 0; i < SM_LANES / 2; i++)
+        if (lanes >> i & 1) picked[i] = p[i];
     return picked;
+#endif
+}
+
+SM_INLINE vec lanes_join(half_vec low, half_vec high)
+{
+#if SM_LANES == 16
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#else
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 #endif
 }
 

@@ -25,6 +25,7 @@ typedef long long lane_int;
 
 typedef real vec __attribute__((vector_size(SM_LANES * sizeof(real))));
 typedef lane_int ivec __attribute__((vector_size(SM_LANES * sizeof(real))));
+typedef real half_vec __attribute__((vector_size(SM_LANES / 2 * sizeof(real))));
 typedef real vec4 __attribute__((vector_size(4 * sizeof(real))));
 typedef real vec8 __attribute__((vector_size(8 * sizeof(real))));
 typedef real vec16 __attribute__((vector_size(16 * sizeof(real))));
