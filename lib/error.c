@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 SmCode sm_fail(SmError *error, SmCode code, const char *format, ...)
 {
@@ -26,12 +27,24 @@ static void out_of_memory(size_t count, size_t size, const char *file, int line)
     exit(SM_MEMORY);
 }
 
+/* Large arrays in huge pages, where the system has them: a step streams through more of them than
+ * the processor remembers small pages. Only pages that the array fills are asked for. */
+static void *allocate(size_t bytes)
+{
+    const size_t huge = (size_t)2 << 20;
+    void *memory = aligned_alloc(bytes < huge ? 64 : huge, bytes);
+#ifdef MADV_HUGEPAGE
+    if (memory && bytes >= huge) madvise(memory, bytes / huge * huge, MADV_HUGEPAGE);
+#endif
+    return memory;
+}
+
 void *sm_alloc_at(size_t count, size_t size, const char *file, int line)
 {
     if (size && count > (SIZE_MAX - 64) / size) out_of_memory(count, size, file, line);
     size_t bytes = (count * size + 63) / 64 * 64;
     if (bytes == 0) bytes = 64;
-    void *memory = aligned_alloc(64, bytes);
+    void *memory = allocate(bytes);
     if (!memory) out_of_memory(count, size, file, line);
     return memset(memory, 0, bytes);
 }
