@@ -126,8 +126,8 @@ static SmCode check_closed(const RefCloud *cloud, SmError *error)
         100 * open);
 }
 
-/* Just inside points the surface winds around once, just outside not at all. `agree` receives at
- * how many of the probes that holds, or the opposite. */
+/* Just inside points the surface winds around once, just outside not at all: at how many of the
+ * probes that holds, and at how many the opposite does, as it would with all normals turned. */
 static void probe(const RefCloud *cloud, int *right, int *wrong, int *probes)
 {
     const RefPoints *points = cloud->points;
