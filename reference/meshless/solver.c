@@ -21,10 +21,10 @@ struct RefSolver {
 void dpstrf_(const char *half, const int *size, double *matrix, const int *leading, int *pivot,
              int *rank, const double *tolerance, double *work, int *info);
 
-static void row_of(const RefRows *rows, long row, double *dense, double factor)
+static void row_of(const RefRows *rows, long row, double *dense)
 {
     for (long e = rows->start[row]; e < rows->start[row + 1]; e++)
-        dense[rows->column[e]] += factor * rows->value[e];
+        dense[rows->column[e]] += rows->value[e];
 }
 
 static RefRows copy_rows(const RefRows *rows)
@@ -123,7 +123,7 @@ static void complement(RefSolver *solver)
     solver->order = sm_alloc(rows, sizeof *solver->order);
     for (size_t r = 0; r < rows; r++) {
         memset(dense, 0, size * sizeof *dense);
-        row_of(&solver->A, (long)r, dense, 1);
+        row_of(&solver->A, (long)r, dense);
         solve_free(solver, dense, solver->response + r * size);
     }
     for (size_t r = 0; r < rows; r++)
