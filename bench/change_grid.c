@@ -82,7 +82,7 @@ void bench_change_left(FILE *file, const char *before, long left)
                 left, left == 1 ? "y" : "ies");
 }
 
-bool bench_change_grid(const BenchRow *rows, int count, BenchGrid *grid)
+void bench_change_grid(const BenchRow *rows, int count, BenchGrid *grid)
 {
     *grid = (BenchGrid){0};
     for (int r = 0; r < count; r++) {
@@ -95,5 +95,4 @@ bool bench_change_grid(const BenchRow *rows, int count, BenchGrid *grid)
             row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
         if (paper) paper_line(paper, bench_grid_add(grid));
     }
-    return grid->lines > 0;
 }

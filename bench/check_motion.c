@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/handles.h"
+#include "../lib/vector.h"
 #include "check.h"
 #include "check_copy.h"
 
@@ -21,11 +23,10 @@ double bench_check_motion(const BenchRunner *runner)
 /* How far a particle at x is from where the handle takes it from rest. */
 static double distance(const SmHandle *handle, const double rest[3], const double x[3])
 {
-    double square = 0;
-    for (int d = 0; d < 3; d++) {
-        const double *row = handle->pose[d];
-        square += pow(row[0] * rest[0] + row[1] * rest[1] + row[2] * rest[2] + row[3] - x[d], 2);
-    }
+    double to[3], off[3];
+    sm_pose_apply(handle->pose, rest, to);
+    for (int d = 0; d < 3; d++) off[d] = to[d] - x[d];
+    double square = sm_dot(off, off);
     return isfinite(square) ? sqrt(square) : INFINITY;
 }
 

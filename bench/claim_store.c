@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "draft.h"
 #include "fit.h"
 #include "store.h"
 
@@ -132,36 +131,37 @@ static void write_claims(BenchH5 *h5, const BenchFinding *findings, int count)
     }
 }
 
-static void write_file(BenchH5 *h5, const BenchFinding *findings, int count, const BenchLab *lab,
-                       const BenchMachine *machine)
+/* What a file is to hold. */
+typedef struct {
+    const BenchFinding *findings;
+    int count;
+    const BenchLab *lab;
+    const BenchMachine *machine;
+} File;
+
+static void write_file(BenchH5 *h5, void *record)
 {
+    const File *file = record;
+    const BenchLab *lab = file->lab;
     int schema = BENCH_CLAIM_SCHEMA, machine_count;
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
     const unsigned char quick = lab->quick;
     bench_h5_text(h5, h5->file, "kind", file_kind);
     bench_h5_numbers(h5, h5->file, "schema", H5T_STD_I32LE, 0, &schema);
-    bench_h5_numbers(h5, h5->file, "claims", H5T_STD_I32LE, 0, &count);
+    bench_h5_numbers(h5, h5->file, "claims", H5T_STD_I32LE, 0, &file->count);
     bench_h5_numbers(h5, h5->file, "quick", H5T_STD_U8LE, 0, &quick);
     hid_t group = bench_h5_group(h5, h5->file, "machine");
-    bench_h5_fields(h5, group, machine_fields, machine_count, machine);
+    bench_h5_fields(h5, group, machine_fields, machine_count, file->machine);
     group = bench_h5_group(h5, h5->file, "rows");
     for (int r = 0; r < lab->rows; r++) bench_store_row(h5, group, r, &lab->row[r]);
     group = bench_h5_group(h5, h5->file, "curves");
     for (int c = 0; c < lab->curves; c++)
         if (lab->curve[c].row < 0) write_curve(h5, group, &lab->curve[c]);
-    write_claims(h5, findings, count);
+    write_claims(h5, file->findings, file->count);
 }
 
 SmCode bench_claim_store(const char *path, const BenchFinding *findings, int count,
                          const BenchLab *lab, const BenchMachine *machine, SmError *error)
 {
-    BenchDraft draft;
-    SmCode code = bench_draft_begin(path, &draft, error);
-    if (code) return code;
-    BenchH5 h5;
-    bench_h5_create(&h5, draft.tmp);
-    write_file(&h5, findings, count, lab, machine);
-    if (bench_h5_close(&h5)) return bench_draft_commit(&draft, error);
-    bench_draft_discard(&draft);
-    return bench_draft_fail(path, h5.number, h5.message, error);
+    return bench_h5_store(path, write_file, &(File){findings, count, lab, machine}, error);
 }

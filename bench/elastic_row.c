@@ -144,7 +144,7 @@ static void difference_line(const BenchRow *row, const RefPaperRow *paper, Bench
     snprintf((*line)[NODES], BENCH_GRID_TEXT, "%+.1f%%", nodes);
 }
 
-bool bench_elastic_grid(const BenchRow *rows, int count, bool differences, BenchGrid *grid)
+void bench_elastic_grid(const BenchRow *rows, int count, bool differences, BenchGrid *grid)
 {
     *grid = (BenchGrid){0};
     for (int r = 0; r < count; r++) {
@@ -159,7 +159,6 @@ bool bench_elastic_grid(const BenchRow *rows, int count, bool differences, Bench
         paper_line(paper, bench_grid_add(grid));
         if (differences) difference_line(row, paper, bench_grid_add(grid));
     }
-    return grid->lines > 0;
 }
 
 void bench_elastic_row_text(FILE *file, const BenchRow *row)

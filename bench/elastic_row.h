@@ -11,8 +11,8 @@ SmCode bench_elastic_measure(const BenchScene *scene, const BenchBody *body,
                              const BenchMeasureParams *params, BenchRow *row, SmError *error);
 
 /* A line for every row of a meshless body, with the paper's below and, if wanted, how far its
- * counts are off. False, and nothing to free, where none is. */
-bool bench_elastic_grid(const BenchRow *rows, int count, bool differences, BenchGrid *grid);
+ * counts are off. No lines, and nothing to free, where none is. */
+void bench_elastic_grid(const BenchRow *rows, int count, bool differences, BenchGrid *grid);
 
 /* What the body is made of, behind the line of its check. */
 void bench_elastic_row_text(FILE *file, const BenchRow *row);

@@ -235,27 +235,23 @@ static BenchGrid make_grid(const BenchRow *rows, int count, bool differences)
     return grid;
 }
 
-/* The tables that there are, one after the other. */
-static int make_grids(const BenchRow *rows, int count, bool differences, BenchGrid grid[3])
+/* The tables, in order; one without lines is not there. */
+enum { STEPS, CHANGES, FRAMES, GRIDS };
+
+static void make_grids(const BenchRow *rows, int count, bool differences, BenchGrid grid[GRIDS])
 {
-    int grids = 0;
-    grid[0] = make_grid(rows, count, differences);
-    if (grid[0].lines)
-        grids++;
-    else
-        bench_grid_free(&grid[0]);
-    grids += bench_change_grid(rows, count, &grid[grids]);
-    grids += bench_elastic_grid(rows, count, differences, &grid[grids]);
-    return grids;
+    grid[STEPS] = make_grid(rows, count, differences);
+    bench_change_grid(rows, count, &grid[CHANGES]);
+    bench_elastic_grid(rows, count, differences, &grid[FRAMES]);
 }
 
-/* What stands above the tables as text. */
-static void print_heading(FILE *file, const BenchGrid *grid, const BenchMachine *machine)
+/* What stands above a table as text. */
+static void print_heading(FILE *file, int table, const BenchMachine *machine)
 {
-    if (!strcmp(grid->heading[1], headings[PARTICLES]))
+    if (table == STEPS)
         fprintf(file, "Times of one step, median, on %s, %d thread%s.\n\n", machine->cpu,
                 machine->threads, machine->threads == 1 ? "" : "s");
-    else if (!strcmp(grid->heading[1], "points"))
+    else if (table == FRAMES)
         fprintf(
             file,
             "Meshless bodies: times of one frame, median, on %s, one thread: the modes' motion, "
@@ -269,12 +265,14 @@ static void print_heading(FILE *file, const BenchGrid *grid, const BenchMachine 
 
 void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine)
 {
-    BenchGrid grid[3];
-    int grids = make_grids(rows, count, true, grid);
-    for (int g = 0; g < grids; g++) {
-        print_heading(file, &grid[g], machine);
-        bench_grid_text(file, &grid[g]);
-        fputc('\n', file);
+    BenchGrid grid[GRIDS];
+    make_grids(rows, count, true, grid);
+    for (int g = 0; g < GRIDS; g++) {
+        if (grid[g].lines) {
+            print_heading(file, g, machine);
+            bench_grid_text(file, &grid[g]);
+            fputc('\n', file);
+        }
         bench_grid_free(&grid[g]);
     }
     for (int r = 0; r < count; r++) {
@@ -290,11 +288,15 @@ void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchM
 static void write_grids(FILE *file, const BenchRow *rows, int count,
                         void (*write)(FILE *, const BenchGrid *))
 {
-    BenchGrid grid[3];
-    int grids = make_grids(rows, count, false, grid);
-    for (int g = 0; g < grids; g++) {
-        if (g) fputc('\n', file);
-        write(file, &grid[g]);
+    BenchGrid grid[GRIDS];
+    const char *between = "";
+    make_grids(rows, count, false, grid);
+    for (int g = 0; g < GRIDS; g++) {
+        if (grid[g].lines) {
+            fputs(between, file);
+            write(file, &grid[g]);
+            between = "\n";
+        }
         bench_grid_free(&grid[g]);
     }
 }

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "../reference/paper.h"
-#include "draft.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchRow, kind, member)
 #define COUNT(array)        ((int)(sizeof(array) / sizeof((array)[0])))
@@ -146,31 +145,31 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
     if (group >= 0) H5Gclose(group);
 }
 
-static void write_file(BenchH5 *h5, const BenchRow *rows, int count, const BenchMachine *machine)
+/* What a file is to hold. */
+typedef struct {
+    const BenchRow *rows;
+    int count;
+    const BenchMachine *machine;
+} File;
+
+static void write_file(BenchH5 *h5, void *record)
 {
+    const File *file = record;
     int schema = BENCH_STORE_SCHEMA, machine_count;
     const BenchField *machine_fields = bench_machine_fields(&machine_count);
     bench_h5_text(h5, h5->file, "kind", file_kind);
     bench_h5_numbers(h5, h5->file, "schema", H5T_STD_I32LE, 0, &schema);
-    bench_h5_numbers(h5, h5->file, "rows", H5T_STD_I32LE, 0, &count);
+    bench_h5_numbers(h5, h5->file, "rows", H5T_STD_I32LE, 0, &file->count);
     hid_t group = bench_h5_group(h5, h5->file, "machine");
-    bench_h5_fields(h5, group, machine_fields, machine_count, machine);
+    bench_h5_fields(h5, group, machine_fields, machine_count, file->machine);
     group = bench_h5_group(h5, h5->file, "rows");
-    for (int i = 0; i < count; i++) bench_store_row(h5, group, i, &rows[i]);
+    for (int i = 0; i < file->count; i++) bench_store_row(h5, group, i, &file->rows[i]);
 }
 
 SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
                         const BenchMachine *machine, SmError *error)
 {
-    BenchDraft draft;
-    SmCode code = bench_draft_begin(path, &draft, error);
-    if (code != SM_OK) return code;
-    BenchH5 h5;
-    bench_h5_create(&h5, draft.tmp);
-    write_file(&h5, rows, count, machine);
-    if (bench_h5_close(&h5)) return bench_draft_commit(&draft, error);
-    bench_draft_discard(&draft);
-    return bench_draft_fail(path, h5.number, h5.message, error);
+    return bench_h5_store(path, write_file, &(File){rows, count, machine}, error);
 }
 
 void bench_store_check_kind(BenchH5 *h5, int oldest)

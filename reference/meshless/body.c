@@ -13,10 +13,10 @@ void ref_body_free(RefBody *body)
     ref_matrices_free(&body->matrices);
 }
 
-static double alpha_of(const RefBodyOptions *options)
+/* Edge of a cover in edges of its octant. */
+static double alpha_of(RefBasis basis)
 {
-    if (options->alpha > 0) return options->alpha;
-    return options->basis == REF_MLS_LINEAR ? 3 : 6;
+    return basis == REF_MLS_LINEAR ? 3 : 6;
 }
 
 /* The nodes that octants of that edge give; 0 where they cannot be built. */
@@ -27,7 +27,7 @@ static long nodes_of(const RefField *field, const RefBodyOptions *options, doubl
     RefOctantOptions rough = {
         .cell = cell, .coarser = options->coarser, .gauss = 1, .clip = 1, .rough = true};
     if (ref_octants_build(field, &rough, &octants, NULL) != SM_OK) return 0;
-    ref_nodes_place(field, &octants, alpha_of(options), &nodes);
+    ref_nodes_place(field, &octants, alpha_of(options->basis), &nodes);
     long count = nodes.count;
     ref_nodes_free(&nodes);
     ref_octants_free(&octants);
@@ -89,7 +89,7 @@ SmCode ref_body_build(const RefField *field, const RefBodyOptions *options, long
                              .clip = 2};
     SmCode code = ref_octants_build(field, &fine, &body->octants, error);
     if (code != SM_OK) return code;
-    ref_nodes_place(field, &body->octants, alpha_of(options), &body->nodes);
+    ref_nodes_place(field, &body->octants, alpha_of(options->basis), &body->nodes);
     if (body->nodes.count < LEAST_NODES)
         code = sm_fail(error, SM_INPUT, "the body has only %ld nodes; give it %d or more",
                        body->nodes.count, LEAST_NODES);

@@ -6,13 +6,12 @@
 #include "matrices.h"
 
 typedef struct {
-    double cell;   /* edge of the finest octants; 0: one that gives about `nodes` nodes */
-    long nodes;    /* wanted where cell is 0, */
-    double within; /* by this share; 0: 0.05 */
-    int coarser;   /* octants.h */
-    double alpha;  /* edge of a cover in edges of its octant; 0: 3 (linear), 6 (quadratic) */
-    RefBasis basis;
-    int split; /* octants.h; 0: 1 */
+    double cell;    /* edge of the finest octants; 0: one that gives about `nodes` nodes */
+    long nodes;     /* wanted where cell is 0, */
+    double within;  /* by this share; 0: 0.05 */
+    int coarser;    /* octants.h */
+    RefBasis basis; /* covers are 3 edges of their octants wide, of the quadratic one 6 */
+    int split;      /* octants.h; 0: 1 */
     RefMaterial material;
 } RefBodyOptions;
 

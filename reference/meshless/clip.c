@@ -154,7 +154,7 @@ static void part(Clip *clip, const double centre[3], double edge, int depth)
             return;
         }
         if (share.volume > 1e-9 * edge * edge * edge) append(clip, share.middle, share.volume);
-        ref_walls_append(clip->tree, &share.wall);
+        if (!clip->options->rough) ref_walls_append(clip->tree, &share.wall);
     }
 }
 

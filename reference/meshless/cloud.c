@@ -90,10 +90,8 @@ typedef struct {
 
 static void consider(Search *s, long point, double square)
 {
+    if (s->found == s->wanted && square >= s->square[s->wanted - 1]) return;
     int at = s->found < s->wanted ? s->found++ : s->wanted - 1;
-    if (at == s->wanted - 1 && s->found == s->wanted && square >= s->square[at] &&
-        s->point[at] >= 0)
-        return;
     for (; at > 0 && s->square[at - 1] > square; at--) {
         s->square[at] = s->square[at - 1];
         s->point[at] = s->point[at - 1];
@@ -121,10 +119,6 @@ int ref_cloud_nearest(const RefCloud *cloud, const double x[3], int k, long *poi
                       double *distance)
 {
     Search s = {x, k, 0, point, distance};
-    for (int n = 0; n < k; n++) {
-        point[n] = -1;
-        distance[n] = INFINITY;
-    }
     search(cloud, 0, &s);
     for (int n = 0; n < s.found; n++) distance[n] = sqrt(distance[n]);
     return s.found;

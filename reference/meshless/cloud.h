@@ -6,8 +6,6 @@
 
 #include "points.h"
 
-enum { REF_MOST_NEAREST = 32 };
-
 typedef struct {
     double low[3], high[3];              /* box of its points */
     long first, count;                   /* points in `order` */

@@ -8,8 +8,7 @@
 RefShape ref_shape_create(const RefNodes *nodes)
 {
     size_t room = (size_t)nodes->most;
-    return (RefShape){.room = nodes->most,
-                      .node = sm_alloc(room, sizeof(int)),
+    return (RefShape){.node = sm_alloc(room, sizeof(int)),
                       .value = sm_alloc(room, sizeof(double)),
                       .gradient = sm_alloc(room, sizeof(double[3])),
                       .scratch = sm_alloc(room, sizeof(double[4 + REF_MLS_QUADRATIC]))};

@@ -8,7 +8,7 @@ typedef enum { REF_MLS_LINEAR = 4, REF_MLS_QUADRATIC = 10 } RefBasis; /* the num
 
 /* The shape functions that are not zero at one point. */
 typedef struct {
-    int count, room;
+    int count;
     int *node;             /* [count] rising */
     double *value;         /* [count] phi */
     double (*gradient)[3]; /* [count] */

@@ -19,17 +19,10 @@ static void hold_free(RefHold *hold)
     free(hold->row);
 }
 
-void ref_motion_release(RefMotion *motion)
+void ref_motion_free(RefMotion *motion)
 {
     for (int k = 0; k < motion->holds; k++) hold_free(motion->hold + k);
     free(motion->hold);
-    motion->hold = NULL;
-    motion->holds = 0;
-}
-
-void ref_motion_free(RefMotion *motion)
-{
-    ref_motion_release(motion);
     free(motion->lambda);
     free(motion->row);
     free(motion->anchor);

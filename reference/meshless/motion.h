@@ -69,7 +69,6 @@ void ref_motion_gravity(const RefBody *body, const double g[3], RefMotion *motio
  * whose target may be changed before every step, or -1 where no nodes cover x. The target is where
  * it is. */
 int ref_motion_hold(const RefBody *body, RefHoldKind kind, const double x[3], RefMotion *motion);
-void ref_motion_release(RefMotion *motion); /* all constraints */
 
 /* Binds three linear functions of z, [3][modes], where they are; returns the constraint's number.
  */

@@ -7,7 +7,8 @@
 #include "../../lib/vector.h"
 #include "mpu_fit.h"
 
-enum { LEAST_FITTED = 15, SURELY_SPLIT = 8192, MOST_CELLS = 1 << 22, PROBES = 400, COARSE = 6 };
+enum { LEAST_FITTED = 15, SURELY_SPLIT = 8192, PROBES = 400 };
+enum { MOST_CELLS = 1 << 22, MOST_LEVELS = 12, COARSE = 6 };
 static const double ball = 0.75; /* radius in diagonals */
 
 void ref_mpu_free(RefMpu *mpu)
@@ -34,7 +35,7 @@ static double misfit(const RefCloud *cloud, long count, const long *point, const
 static bool settle(const RefMpu *mpu, int level, long *near, RefMpuCell *cell)
 {
     const RefCloud *cloud = &mpu->cloud;
-    bool last = level >= mpu->levels || mpu->count + 8 > MOST_CELLS;
+    bool last = level >= MOST_LEVELS || mpu->count + 8 > MOST_CELLS;
     double reach = cell->radius = ball * sqrt(3) * cell->edge;
     long count = ref_cloud_ball(cloud, cell->centre, cell->radius, SURELY_SPLIT, near);
     if (count == 0) {
@@ -125,8 +126,8 @@ static SmCode check_closed(const RefCloud *cloud, SmError *error)
         100 * open);
 }
 
-/* Just inside points the surface winds around once, just outside not at all. `agree` receives at
- * how many of the probes that holds, or the opposite. */
+/* Just inside points the surface winds around once, just outside not at all: at how many of the
+ * probes that holds, and at how many the opposite does, as it would with all normals turned. */
 static void probe(const RefCloud *cloud, int *right, int *wrong, int *probes)
 {
     const RefPoints *points = cloud->points;
@@ -184,7 +185,6 @@ SmCode ref_mpu_build(RefPoints *points, const RefMpuOptions *options, RefMpu *mp
     }
     mpu->tolerance =
         sqrt(diagonal) * (options && options->tolerance > 0 ? options->tolerance : 1e-3);
-    mpu->levels = options && options->levels > 0 ? options->levels : 12;
     mpu->cell = sm_alloc(1, sizeof *mpu->cell);
     mpu->cell[0] = (RefMpuCell){.edge = 1.1 * edge, .child = -1};
     for (int d = 0; d < 3; d++) mpu->cell[0].centre[d] = (low[d] + high[d]) / 2;

@@ -9,7 +9,6 @@
 typedef struct {
     double tolerance; /* distance of points from their local shape, as a share of the box's
                        * diagonal; 0: 1e-3. Give points with noise twice the noise. */
-    int levels;       /* of the octree, at most; 0: 12 */
 } RefMpuOptions;
 
 /* A cell's local shape Q = s^T A s + b s + c in s = (x - centre) / radius, times radius: a length.
@@ -25,7 +24,7 @@ typedef struct {
     RefPoints points; /* taken over */
     RefCloud cloud;
     double tolerance; /* a length */
-    int levels, count, room;
+    int count, room;
     RefMpuCell *cell;
     bool flipped; /* the normals pointed inwards and were turned round */
 } RefMpu;

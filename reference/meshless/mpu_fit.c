@@ -134,12 +134,11 @@ bool ref_mpu_fit(const RefCloud *cloud, long count, const long *point, double re
                  RefMpuCell *cell)
 {
     double mean[3] = {0}, s[3];
-    bool one_sided = true;
     for (long p = 0; p < count; p++) {
         double weight = local(cloud, point[p], reach, cell, s);
         for (int d = 0; d < 3; d++) mean[d] += weight * cloud->points->normal[point[p]][d];
     }
-    one_sided = sm_normalize(mean);
+    bool one_sided = sm_normalize(mean);
     for (long p = 0; one_sided && p < count; p++)
         one_sided = sm_dot(mean, cloud->points->normal[point[p]]) > 0;
     if (!one_sided) return fit_quadric(cloud, count, point, reach, cell);

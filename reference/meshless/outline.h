@@ -1,6 +1,6 @@
 /* outline.h - the surface of a field as a closed mesh, to be seen and to be made into cells. */
-#ifndef REF_OUTLINE_H
-#define REF_OUTLINE_H
+#ifndef REF_MESHLESS_OUTLINE_H
+#define REF_MESHLESS_OUTLINE_H
 
 #include "../../lib/mesh.h"
 #include "field.h"

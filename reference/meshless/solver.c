@@ -21,10 +21,10 @@ struct RefSolver {
 void dpstrf_(const char *half, const int *size, double *matrix, const int *leading, int *pivot,
              int *rank, const double *tolerance, double *work, int *info);
 
-static void row_of(const RefRows *rows, long row, double *dense, double factor)
+static void row_of(const RefRows *rows, long row, double *dense)
 {
     for (long e = rows->start[row]; e < rows->start[row + 1]; e++)
-        dense[rows->column[e]] += factor * rows->value[e];
+        dense[rows->column[e]] += rows->value[e];
 }
 
 static RefRows copy_rows(const RefRows *rows)
@@ -75,20 +75,18 @@ static cholmod_sparse *held(cholmod_sparse *matrix, const RefMatrices *matrices,
     for (int c = 0; c < K->columns; c++) trace += K->value[K->start[c]];
     for (size_t e = 0; e < entries; e++) squares += A->value[e] * A->value[e];
     double weight[2] = {trace / K->columns / (squares / (double)A->count), 0};
-    cholmod_triplet *triplet = cholmod_allocate_triplet((size_t)K->columns, (size_t)A->count,
-                                                        entries, 0, CHOLMOD_REAL, common);
-    for (long r = 0; r < A->count; r++)
-        for (long e = A->start[r]; e < A->start[r + 1]; e++) {
-            ((int *)triplet->i)[e] = A->column[e];
-            ((int *)triplet->j)[e] = (int)r;
-            ((double *)triplet->x)[e] = A->value[e];
-        }
-    triplet->nnz = entries;
-    cholmod_sparse *At = cholmod_triplet_to_sparse(triplet, entries, common);
+    cholmod_sparse *At = cholmod_allocate_sparse((size_t)K->columns, (size_t)A->count, entries, 0,
+                                                 1, 0, CHOLMOD_REAL, common);
+    if (!At) {
+        cholmod_free_sparse(&matrix, common);
+        return NULL;
+    }
+    for (long r = 0; r <= A->count; r++) ((int *)At->p)[r] = (int)A->start[r];
+    memcpy(At->i, A->column, entries * sizeof(int));
+    memcpy(At->x, A->value, entries * sizeof(double));
     cholmod_sparse *product = cholmod_aat(At, NULL, 0, 1, common);
     cholmod_sparse *lower = cholmod_copy(product, -1, 1, common);
     cholmod_sparse *sum = cholmod_add(matrix, lower, one, weight, 1, 1, common);
-    cholmod_free_triplet(&triplet, common);
     cholmod_free_sparse(&At, common);
     cholmod_free_sparse(&product, common);
     cholmod_free_sparse(&lower, common);
@@ -123,7 +121,7 @@ static void complement(RefSolver *solver)
     solver->order = sm_alloc(rows, sizeof *solver->order);
     for (size_t r = 0; r < rows; r++) {
         memset(dense, 0, size * sizeof *dense);
-        row_of(&solver->A, (long)r, dense, 1);
+        row_of(&solver->A, (long)r, dense);
         solve_free(solver, dense, solver->response + r * size);
     }
     for (size_t r = 0; r < rows; r++)
