@@ -6,7 +6,6 @@
 
 #include "../reference/meshless/mpu.h"
 #include "body.h"
-#include "draft.h"
 #include "h5.h"
 #include "points_file.h"
 
@@ -65,29 +64,29 @@ static void sample(const RefField *field, Picture *picture)
         }
 }
 
-static SmCode store(const char *source, const RefMpu *mpu, const Picture *picture, const char *path,
-                    SmError *error)
+/* What a file is of. */
+typedef struct {
+    const char *source;
+    const RefMpu *mpu;
+    const Picture *picture;
+} Record;
+
+static void write_file(BenchH5 *h5, void *record)
 {
-    BenchDraft draft;
-    SmCode code = bench_draft_begin(path, &draft, error);
-    if (code) return code;
-    BenchH5 h5;
+    const Record *of = record;
+    const Picture *picture = of->picture;
     int schema = SCHEMA;
-    unsigned char flipped = mpu->flipped;
-    bench_h5_create(&h5, draft.tmp);
-    bench_h5_text(&h5, h5.file, "kind", "shapebench slice");
-    bench_h5_numbers(&h5, h5.file, "schema", H5T_STD_I32LE, 0, &schema);
-    bench_h5_text(&h5, h5.file, "source", source);
-    bench_h5_numbers(&h5, h5.file, "axis", H5T_STD_I32LE, 0, &picture->axis);
-    bench_h5_numbers(&h5, h5.file, "at", H5T_IEEE_F64LE, 0, &picture->at);
-    bench_h5_numbers(&h5, h5.file, "low", H5T_IEEE_F64LE, 2, picture->low);
-    bench_h5_numbers(&h5, h5.file, "high", H5T_IEEE_F64LE, 2, picture->high);
-    bench_h5_numbers(&h5, h5.file, "points", H5T_STD_I64LE, 0, &mpu->points.count);
-    bench_h5_numbers(&h5, h5.file, "flipped", H5T_STD_U8LE, 0, &flipped);
-    bench_h5_dataset(&h5, h5.file, "distance", H5T_IEEE_F32LE, 2, picture->size, picture->distance);
-    if (bench_h5_close(&h5)) return bench_draft_commit(&draft, error);
-    bench_draft_discard(&draft);
-    return bench_draft_fail(path, h5.number, h5.message, error);
+    unsigned char flipped = of->mpu->flipped;
+    bench_h5_text(h5, h5->file, "kind", "shapebench slice");
+    bench_h5_numbers(h5, h5->file, "schema", H5T_STD_I32LE, 0, &schema);
+    bench_h5_text(h5, h5->file, "source", of->source);
+    bench_h5_numbers(h5, h5->file, "axis", H5T_STD_I32LE, 0, &picture->axis);
+    bench_h5_numbers(h5, h5->file, "at", H5T_IEEE_F64LE, 0, &picture->at);
+    bench_h5_numbers(h5, h5->file, "low", H5T_IEEE_F64LE, 2, picture->low);
+    bench_h5_numbers(h5, h5->file, "high", H5T_IEEE_F64LE, 2, picture->high);
+    bench_h5_numbers(h5, h5->file, "points", H5T_STD_I64LE, 0, &of->mpu->points.count);
+    bench_h5_numbers(h5, h5->file, "flipped", H5T_STD_U8LE, 0, &flipped);
+    bench_h5_dataset(h5, h5->file, "distance", H5T_IEEE_F32LE, 2, picture->size, picture->distance);
 }
 
 /* The surface function of a file's points, or of points on its mesh. */
@@ -113,7 +112,7 @@ SmCode bench_slice_write(const char *source, const BenchSlice *slice, const char
     RefField field = ref_mpu_field(&mpu);
     Picture picture = lay_out(&field, slice);
     sample(&field, &picture);
-    code = store(source, &mpu, &picture, path, error);
+    code = bench_h5_store(path, write_file, &(Record){source, &mpu, &picture}, error);
     free(picture.distance);
     ref_mpu_free(&mpu);
     return code;
