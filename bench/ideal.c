@@ -8,8 +8,6 @@
 
 enum { ACROSS = 6, HELD = ACROSS * ACROSS, MODES = 18 };
 
-const char *const bench_model_names[BENCH_MODELS] = {"Euler-Bernoulli", "Timoshenko", "meshless"};
-
 /* Points of the clamped end, in the middle of every octant's face, and the middle of the tip. */
 typedef struct {
     double x[HELD + 1][3];

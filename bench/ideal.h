@@ -10,9 +10,6 @@
 
 typedef enum { BENCH_EULER, BENCH_TIMOSHENKO, BENCH_MESHLESS, BENCH_MODELS } BenchModel;
 
-/* "Euler-Bernoulli", "Timoshenko", "meshless" */
-extern const char *const bench_model_names[BENCH_MODELS];
-
 /* Of a square cantilever 1 thick, of Young's modulus and density 1. One `t` thick sags t^2 as far,
  * and its squares of frequencies are 1 / t^2 of these. */
 typedef struct {

@@ -21,7 +21,8 @@ typedef struct {
     double turns; /* a step: its frequency by passages through zero */
 } Sound;
 
-BenchStiffness bench_stiffness_none(void)
+/* None of it had: NaN everywhere. */
+static BenchStiffness have_none(void)
 {
     BenchStiffness none = {.load = NAN, .sag = NAN, .unrest = NAN, .linear_to = NAN};
     for (int k = 0; k < BENCH_TONES; k++) none.frequency[k] = none.loss[k] = NAN;
@@ -143,7 +144,7 @@ static bool sink(BenchCantilever *beam, BenchStiffness *found)
 
 void bench_stiffness_measure(BenchCantilever *beam, BenchStiffness *found)
 {
-    *found = bench_stiffness_none();
+    *found = have_none();
     Sound sound = {0};
     for (int k = 0; k < BENCH_TONES && !found->why[0]; k++) {
         if (listen(beam, k, &sound))
@@ -159,7 +160,7 @@ void bench_stiffness_measure(BenchCantilever *beam, BenchStiffness *found)
                  "it is not at rest after %d periods: %.2g of its weight is left over",
                  MOST_PERIODS, found->unrest);
     if (found->why[0]) {
-        BenchStiffness none = bench_stiffness_none();
+        BenchStiffness none = have_none();
         snprintf(none.why, sizeof none.why, "%s", found->why);
         *found = none;
     }

@@ -33,7 +33,4 @@ void bench_stiffness_measure(BenchCantilever *beam, BenchStiffness *found);
  * beam's own sag leaves proportion by 5% at 26% of its length (elastica), for it gets shorter. */
 void bench_stiffness_range(BenchCantilever *beam, BenchStiffness *found);
 
-/* The same, none of it had: NaN everywhere. */
-BenchStiffness bench_stiffness_none(void);
-
 #endif

@@ -5,56 +5,12 @@ frequencies say is from what the sag says.
 Needs Debian's python3-h5py and python3-matplotlib, which scripts/setup installs. Exit codes: 0 drawn; 2 wrong
 usage; 3 not a calibration file, or nothing in it to draw, or a package is missing; 4 cannot be written."""
 
-import argparse
-import os
-import sys
+from plots import LATTICE, OCTREE, drawing, fail, parse, read, write
 
+import numpy  # after plots, which says what is missing
 
-def fail(text, code):
-    print(f"plot_calibration.py: {text}", file=sys.stderr)
-    sys.exit(code)
-
-
-try:
-    import h5py
-    import numpy
-except ImportError as missing:
-    fail(f"{missing}: scripts/setup installs it (python3-h5py)", 3)
-
-from plot_sweep import LATTICE, OCTREE, drawing, write
-
-KIND, SCHEMA = "shapebench calibration", 1
 COLOURS = {LATTICE: "#0072b2", OCTREE: "#d55e00"}
 TONES = ("first", "second", "third")
-
-
-def parse():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("file", help="of shapebench calibrate")
-    parser.add_argument("-o", "--output", help="SVG, PNG or PDF to write (default: FILE.svg)")
-    return parser.parse_args()
-
-
-def read(path):
-    """The plan's attributes, the specimens' columns and the laws' as arrays."""
-    try:
-        with h5py.File(path) as file:
-            if file.attrs.get("kind") not in (KIND, KIND.encode()):
-                fail(f"{path}: not the file of a calibration", 3)
-            if file.attrs["schema"] != SCHEMA:
-                fail(f"{path}: its schema is {file.attrs['schema']}, and this reads {SCHEMA}", 3)
-            plan = dict(file["plan"].attrs)
-            specimen, law = columns(file["specimens"]), columns(file["laws"])
-    except (OSError, KeyError) as error:
-        fail(f"{path}: cannot be read: {error}", 3)
-    if not valid_grid(specimen).any():
-        fail(f"{path}: no specimen of the scene's beam is valid", 3)
-    return {key: value.decode() if isinstance(value, bytes) else value for key, value in plan.items()}, specimen, law
-
-
-def columns(group):
-    """A group's datasets as arrays, texts as str."""
-    return {name: column[:].astype(str) if column.dtype.kind == "S" else column[:] for name, column in group.items()}
 
 
 def valid_grid(specimen):
@@ -72,7 +28,7 @@ def first_epsilon(specimen):
     return (specimen["epsilon"] == specimen["epsilon"][tree].min()) & tree if tree.any() else tree
 
 
-def two_terms(plan, specimen, law, engine, w):
+def two_terms(plan, law, engine, w):
     """The law of an engine on the scene's beam and step, or None."""
     rows = numpy.flatnonzero((law["engine"] == engine) & (law["kind"] == "two-term"))
     if not len(rows):
@@ -98,7 +54,7 @@ def modulus(axes, plan, specimen, law):
                   label=engine if engine == LATTICE else f"{engine}, epsilon {epsilon:g}")
     w = numpy.geomspace(specimen["w"][grid].min(), specimen["w"][grid].max(), 50)
     for engine in (LATTICE, OCTREE):
-        curve = two_terms(plan, specimen, law, engine, w)
+        curve = two_terms(plan, law, engine, w)
         if curve is not None:
             axes.plot(w, curve, color=COLOURS[engine], linestyle=":", linewidth=1.5, zorder=0,
                       label=f"law of {engine}")
@@ -172,8 +128,11 @@ def collapse(axes, plan, specimen, law):
 
 
 def main():
-    arguments = parse()
-    plan, specimen, law = read(arguments.file)
+    arguments = parse(__doc__, "of shapebench calibrate", "svg")
+    source = read(arguments.file, "calibration")
+    plan, specimen, law = source.plan, source.specimen, source.law
+    if not valid_grid(specimen).any():
+        fail(f"{arguments.file}: no specimen of the scene's beam is valid", 3)
     figure, axes = drawing().subplots(1, 2, figsize=(12, 5), layout="constrained")
     modulus(axes[0], plan, specimen, law)
     agreement(axes[1], plan, specimen)
@@ -181,7 +140,7 @@ def main():
     axes[1].set_title("do the frequencies say the same as the sag? all beams, at the first epsilon", fontsize=9)
     figure.suptitle(f"{plan['scene']}: {len(specimen['w'])} of {plan['specimens']} specimens, {plan['across']} cells "
                     f"thick, {plan['aspect']} times as long, step {plan['h']:g} s", fontsize=10)
-    write(figure, arguments.output or os.path.splitext(arguments.file)[0] + ".svg", fail)
+    write(figure, arguments.output)
 
 
 if __name__ == "__main__":

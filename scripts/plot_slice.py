@@ -4,24 +4,12 @@ blue inside, red outside, the surface (zero) black.
 
 Needs Debian's python3-h5py and python3-matplotlib (scripts/setup)."""
 
-import argparse
-import os
 import pathlib
-import sys
 
+from plots import drawing, fail, parse, write
 
-def fail(text, code):
-    print(f"plot_slice.py: {text}", file=sys.stderr)
-    sys.exit(code)
-
-
-try:
-    import h5py
-    import numpy
-except ImportError as missing:
-    fail(f"{missing}: scripts/setup installs it (python3-h5py)", 3)
-
-from plot_sweep import drawing, write
+import h5py  # after plots, which says what is missing
+import numpy
 
 FACTS = ("source", "axis", "at", "low", "high", "points")
 
@@ -64,14 +52,10 @@ def draw(facts, distance, pyplot):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("file", help="HDF5 file of a slice")
-    parser.add_argument("-o", "--output", help="picture, PNG, SVG or PDF (default: FILE.png)")
-    options = parser.parse_args()
+    options = parse(__doc__, "HDF5 file of a slice", "png")
     facts, distance = read(options.file)
-    output = options.output or os.path.splitext(options.file)[0] + ".png"
-    write(draw(facts, distance, drawing()), output, fail, dpi=90, bbox_inches="tight")
-    print(f"wrote {output}")
+    write(draw(facts, distance, drawing()), options.output, dpi=90, bbox_inches="tight")
+    print(f"wrote {options.output}")
 
 
 if __name__ == "__main__":

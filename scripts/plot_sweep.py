@@ -5,50 +5,9 @@ the front of cost against deviation.
 Needs Debian's python3-h5py and python3-matplotlib, which scripts/setup installs. Exit codes: 0 drawn; 2 wrong
 usage; 3 not a sweep file, or nothing in it to draw, or a package is missing; 4 cannot be written."""
 
-import argparse
-import os
-import sys
+from plots import LATTICE, OCTREE, drawing, parse, read, write
 
-
-def fail(text, code):
-    print(f"plot_sweep.py: {text}", file=sys.stderr)
-    sys.exit(code)
-
-
-try:
-    import h5py
-    import numpy
-except ImportError as missing:
-    fail(f"{missing}: scripts/setup installs it (python3-h5py)", 3)
-
-LATTICE, OCTREE = "fastlsm", "octree"
-SCHEMA = 1
-
-
-def parse():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("file", help="of shapebench sweep")
-    parser.add_argument("-o", "--output", help="SVG, PNG or PDF to write (default: FILE.svg)")
-    return parser.parse_args()
-
-
-def read(path):
-    """The plan's attributes, and the points' columns as arrays."""
-    try:
-        with h5py.File(path) as file:
-            if file.attrs.get("kind") not in ("shapebench sweep", b"shapebench sweep"):
-                fail(f"{path}: not the file of a sweep", 3)
-            if file.attrs["schema"] != SCHEMA:
-                fail(f"{path}: its schema is {file.attrs['schema']}, and this reads {SCHEMA}", 3)
-            plan = dict(file["plan"].attrs)
-            point = {name: column[:] for name, column in file["points"].items()}
-    except (OSError, KeyError) as error:
-        fail(f"{path}: cannot be read: {error}", 3)
-    if not len(point["w"]):
-        fail(f"{path}: no point is finished", 3)
-    text = {key: value.decode() if isinstance(value, bytes) else value for key, value in plan.items()}
-    point["engine"] = point["engine"].astype(str)
-    return text, point
+import numpy  # after plots, which says what is missing
 
 
 def table(point, values, ws, epsilons):
@@ -63,17 +22,6 @@ def table(point, values, ws, epsilons):
 def short(value):
     """Two significant digits, at most."""
     return f"{value:.2g}" if value < 100 else f"{value:.0f}"
-
-
-def drawing():
-    """matplotlib's pyplot, without a display; only now, because it takes a second."""
-    try:
-        import matplotlib
-        matplotlib.use("Agg")
-        from matplotlib import pyplot
-    except ImportError as missing:
-        fail(f"{missing}: scripts/setup installs it (python3-matplotlib)", 3)
-    return pyplot
 
 
 def heat_map(axes, point, values, title, logarithmic):
@@ -136,22 +84,10 @@ def front(axes, plan, point):
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label="w")
 
 
-def write(figure, output, refuse, **how):
-    """The figure's file, whole or not at all; `refuse` says why not and ends the program. `how` is of savefig()."""
-    name, form = os.path.splitext(output)
-    draft = f"{name}.{os.getpid()}.tmp{form}"
-    try:
-        figure.savefig(draft, **{"dpi": 130, **how})
-        os.replace(draft, output)
-    except (OSError, ValueError) as error:
-        if os.path.exists(draft):
-            os.remove(draft)
-        refuse(f"{output}: cannot be written: {error}", 4)
-
-
 def main():
-    arguments = parse()
-    plan, point = read(arguments.file)
+    arguments = parse(__doc__, "of shapebench sweep", "svg")
+    source = read(arguments.file, "sweep")
+    plan, point = source.plan, source.point
     figure, axes = drawing().subplots(2, 2, figsize=(11, 8), layout="constrained")
     maps = ((axes[0][0], point["total_ms"], "ms a step", True),
             (axes[0][1], 100 * point["path_rms"], "path off: surface from full resolution, % of size, rms", False),
@@ -161,8 +97,7 @@ def main():
     front(axes[1][1], plan, point)
     figure.suptitle(f"{plan['scene']}: {len(point['w'])} of {plan['points']} points; an octree's w in {plan['width']}, "
                     "a lattice's in cells", fontsize=10)
-    output = arguments.output or os.path.splitext(arguments.file)[0] + ".svg"
-    write(figure, output, fail)
+    write(figure, arguments.output)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,9 @@ refused 3 beam.cfg
 refused 3 nothing.h5
 /usr/bin/python3 -c 'import h5py; h5py.File("other.h5", "w").attrs["kind"] = "else"'
 refused 3 other.h5
+cp beam.h5 half.h5
+/usr/bin/python3 -c 'import h5py; del h5py.File("half.h5", "r+")["specimens/young"]'
+refused 3 half.h5
 refused 4 beam.h5 -o nowhere/beam.svg
 /usr/bin/python3 - <<'PYTHON'
 import h5py

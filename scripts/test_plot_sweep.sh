@@ -16,6 +16,11 @@ grep -q '</svg>' small.svg || wrong "no SVG"
 "$plot" lattice.h5 -o lattice.png
 refused 3 small.cfg
 refused 3 nothing.h5
+cp small.h5 half.h5
+/usr/bin/python3 -c 'import h5py; del h5py.File("half.h5", "r+")["points/path_rms"]'
+refused 3 half.h5
+"$program" tables --scene small.cfg --repeats 1 --block 0.01 --quiet -o rows.h5 >/dev/null
+refused 3 rows.h5
 refused 4 small.h5 -o nowhere/small.svg
 refused 4 small.h5 -o small.docx
 echo "drawn as SVG and PNG"
