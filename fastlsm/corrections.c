@@ -159,7 +159,8 @@ static void number_rows(const Lsm *lsm, Corrections *corrections)
     CorrectionList *down = &corrections->down;
     corrections->row = sm_alloc((size_t)lsm->blocks, sizeof(int));
     for (long block = 0; block < lsm->blocks; block++) corrections->row[block] = -1;
-    for (long i = 0; i < down->first[2 * lsm->blocks]; i++) corrections->row[down->of[i].source] = 0;
+    for (long i = 0; i < down->first[2 * lsm->blocks]; i++)
+        corrections->row[down->of[i].source] = 0;
     for (long block = 0; block < lsm->blocks; block++)
         if (!corrections->row[block]) corrections->row[block] = (int)corrections->rows++;
     for (long i = 0; i < down->first[2 * lsm->blocks]; i++)
