@@ -32,9 +32,10 @@ static void out_of_memory(size_t count, size_t size, const char *file, int line)
 static void *allocate(size_t bytes)
 {
     const size_t huge = (size_t)2 << 20;
-    void *memory = aligned_alloc(bytes < huge ? 64 : huge, bytes);
+    void *memory;
+    if (posix_memalign(&memory, bytes < huge ? 64 : huge, bytes)) return NULL;
 #ifdef MADV_HUGEPAGE
-    if (memory && bytes >= huge) madvise(memory, bytes / huge * huge, MADV_HUGEPAGE);
+    if (bytes >= huge) madvise(memory, bytes / huge * huge, MADV_HUGEPAGE);
 #endif
     return memory;
 }
