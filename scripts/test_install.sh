@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs a build folder into a temporary prefix, then builds and runs a ten-line program against
-# what is there, with the shared library and with the static one.
+# what is there, with the shared library and with the static one. The paths are set as the README says.
 #
 # usage: scripts/test_install.sh BUILD_FOLDER
 set -eu
@@ -8,8 +8,9 @@ prefix=$(mktemp -d)
 trap 'rm -rf -- "$prefix"' EXIT
 build=${1:?BUILD_FOLDER missing}
 cmake --install "$build" --prefix "$prefix" >"$prefix/log" || { cat "$prefix/log"; exit 1; }
-libdir=$(dirname -- "$(find "$prefix" -name libshapebench.a)")
-export PKG_CONFIG_PATH=$libdir/pkgconfig
+export_line=$(sed -n 's/^ *export PKG_CONFIG_PATH=/export PKG_CONFIG_PATH=/p' "$(dirname -- "$0")/../README.md")
+[ -n "$export_line" ] || { echo "no export PKG_CONFIG_PATH in README.md"; exit 1; }
+eval "${export_line//PREFIX/\$prefix}"
 cat >"$prefix/program.c" <<'PROGRAM'
 #include <shapebench/fastlsm/fastlsm.h>
 #include <stdio.h>
@@ -50,9 +51,9 @@ for header in "$prefix"/include/shapebench/*/*.h; do # each one must compile alo
     "$cc" -std=c11 -Wall -Wextra -Werror -fsyntax-only -x c "$header"
 done
 read -ra flags < <(pkg-config --cflags --libs shapebench)
-"$cc" -std=c11 -Wall -o "$prefix/program" "$prefix/program.c" "${flags[@]}" -Wl,-rpath,"$libdir"
+"$cc" -std=c11 -Wall -o "$prefix/program" "$prefix/program.c" "${flags[@]}"
 check "shared library"
-rm -- "$libdir"/libshapebench.so*
+rm -- "$LD_LIBRARY_PATH"/libshapebench.so*
 read -ra flags < <(pkg-config --cflags --libs --static shapebench)
 "$cc" -std=c11 -Wall -o "$prefix/program" "$prefix/program.c" "${flags[@]}"
 check "static library"
