@@ -53,7 +53,7 @@ done
 read -ra flags < <(pkg-config --cflags --libs shapebench)
 "$cc" -std=c11 -Wall -o "$prefix/program" "$prefix/program.c" "${flags[@]}"
 check "shared library"
-rm -- "$LD_LIBRARY_PATH"/libshapebench.so*
 read -ra flags < <(pkg-config --cflags --libs --static shapebench)
-"$cc" -std=c11 -Wall -o "$prefix/program" "$prefix/program.c" "${flags[@]}"
+"$cc" -std=c11 -Wall -o "$prefix/program" "$prefix/program.c" "${flags[@]/#-lshapebench/-l:libshapebench.a}"
+unset LD_LIBRARY_PATH
 check "static library"
