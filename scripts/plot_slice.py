@@ -55,7 +55,6 @@ def main():
     options = parse(__doc__, "HDF5 file of a slice", "png")
     facts, distance = read(options.file)
     write(draw(facts, distance, drawing()), options.output, dpi=90, bbox_inches="tight")
-    print(f"wrote {options.output}")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,15 @@
-"""What plot_sweep.py, plot_slice.py and plot_calibration.py share: how they are called, read and write, and end."""
+"""What plot_sweep.py, plot_slice.py, plot_calibration.py and render.py share: how they are called, read and write,
+and end."""
 
-import argparse
 import os
 import sys
+
+sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "report"))
+import interrupt
+
+interrupt.watch()  # before what takes long to import
+
+import argparse
 
 
 def fail(text, code):
@@ -10,7 +17,6 @@ def fail(text, code):
     sys.exit(code)
 
 
-sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), "report"))
 try:
     import sources
 except ImportError as missing:
@@ -56,9 +62,12 @@ def write(figure, output, **how):
     name, form = os.path.splitext(output)
     draft = f"{name}.{os.getpid()}.tmp{form}"
     try:
-        figure.savefig(draft, **{"dpi": 130, **how})
-        os.replace(draft, output)
+        try:
+            figure.savefig(draft, **{"dpi": 130, **how})
+            os.replace(draft, output)
+        finally:
+            if os.path.exists(draft):
+                os.remove(draft)
     except (OSError, ValueError) as error:
-        if os.path.exists(draft):
-            os.remove(draft)
-        fail(f"{output}: cannot be written: {error}", 4)
+        fail(f"{output}: cannot be written: {getattr(error, 'strerror', None) or error}", 4)
+    print(f"wrote {output}")

@@ -4,15 +4,13 @@
 Needs what `scripts/setup pictures` installs: Debian's python3-vtk9, python3-h5py, python3-matplotlib and,
 for a machine without a display, xvfb, xauth and libgl1-mesa-dri."""
 
-import argparse
+from plots import fail, write
+
+import argparse  # after plots, which watches for interrupts
 import os
 import shutil
+import subprocess
 import sys
-
-
-def fail(text, code):
-    print(f"render.py: {text}", file=sys.stderr)
-    sys.exit(code)
 
 
 def parse():
@@ -31,13 +29,19 @@ def parse():
 
 
 def with_display():
-    """VTK draws through OpenGL, which wants an X server: lend it a virtual one."""
+    """VTK draws through OpenGL, which wants an X server: lend it a virtual one, which ends when this process has."""
     if os.environ.get("DISPLAY"):
         return
     missing = [tool for tool in ("xvfb-run", "xauth") if not shutil.which(tool)]
     if missing:
         fail(f"no display and no {' and no '.join(missing)}: apt-get install xvfb xauth libgl1-mesa-dri", 3)
-    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 64x64x24", sys.executable] + sys.argv)
+    until, _ = os.pipe()
+    lender = subprocess.Popen(["xvfb-run", "-a", "-s", "-screen 0 64x64x24", "sh", "-c",
+                               'echo "$DISPLAY $XAUTHORITY"; read -r end'], stdin=until, stdout=subprocess.PIPE,
+                              text=True, start_new_session=True)  # Ctrl-C is for us: we still need it then
+    os.environ["DISPLAY"], _, os.environ["XAUTHORITY"] = lender.stdout.readline().rstrip("\n").partition(" ")
+    if not os.environ["DISPLAY"]:
+        fail("no display, and xvfb-run lends none", 3)
 
 
 def polydata(points, faces):
@@ -339,12 +343,7 @@ def write_sheet(panels, names, columns, output):
         axes.set_axis_off()
         if names:
             axes.set_title(names[i], y=-0.5 * label / height, va="center", fontsize=15, color="0.25", pad=0)
-    temporary = output + ".tmp"
-    try:
-        figure.savefig(temporary, format="png")
-        os.replace(temporary, output)
-    except OSError as error:
-        fail(f"{output}: cannot be written: {error.strerror}", 4)
+    write(figure, output, format="png", dpi=100)
 
 
 def main():

@@ -10,7 +10,8 @@ printf '%s\n' 'v 0 0 0' 'v 0.3 0 0' 'v 0 0.1 0' 'v 0.3 0.1 0' 'v 0 0 0.1' 'v 0.3
 echo 'mesh = "box.obj"; cell = 0.05; h = 0.001;' >beam.cfg
 "$program" calibrate --scene beam.cfg --w 1:2 --epsilon 0,0.5 --across 1 --aspect none --step none --quiet \
     -o beam.h5 >/dev/null
-"$plot" beam.h5
+"$plot" beam.h5 >said
+grep -qx 'wrote beam.svg' said || wrong "it says $(cat said)"
 grep -q '</svg>' beam.svg || wrong "no SVG"
 "$plot" beam.h5 -o beam.png
 [ "$(head -c 4 beam.png | tail -c 3)" = PNG ] || wrong "no PNG"
@@ -21,7 +22,9 @@ refused 3 other.h5
 cp beam.h5 half.h5
 /usr/bin/python3 -c 'import h5py; del h5py.File("half.h5", "r+")["specimens/young"]'
 refused 3 half.h5
+interrupted beam.h5
 refused 4 beam.h5 -o nowhere/beam.svg
+grep -q ': nowhere/beam.svg: cannot be written: No such file or directory$' err || wrong "it says $(cat err)"
 /usr/bin/python3 - <<'PYTHON'
 import h5py
 

@@ -31,3 +31,4 @@ mkdir folder
 refused 4 block.h5 -o folder
 [ ! -e folder.png ] || wrong "it wrote beside the folder"
 refused 4 block.h5 -o no/such/block.png
+interrupted block.h5

@@ -7,7 +7,8 @@ source "$(dirname -- "$0")/test_plots.bash"
 echo 'mesh = "shape:block"; particles = 64; bend = 0.3;' >small.cfg
 "$program" sweep --scene small.cfg --w 7:8 --epsilon 0,0.5 --frames 2 --repeats 1 --block 0.1 \
     --quiet -o small.h5 >/dev/null
-"$plot" small.h5
+"$plot" small.h5 >said
+grep -qx 'wrote small.svg' said || wrong "it says $(cat said)"
 grep -q '</svg>' small.svg || wrong "no SVG"
 "$plot" small.h5 -o small.png
 [ "$(head -c 4 small.png | tail -c 3)" = PNG ] || wrong "no PNG"
@@ -22,5 +23,7 @@ refused 3 half.h5
 "$program" tables --scene small.cfg --repeats 1 --block 0.01 --quiet -o rows.h5 >/dev/null
 refused 3 rows.h5
 refused 4 small.h5 -o nowhere/small.svg
+grep -q ': nowhere/small.svg: cannot be written: No such file or directory$' err || wrong "it says $(cat err)"
 refused 4 small.h5 -o small.docx
+interrupted small.h5
 echo "drawn as SVG and PNG"

@@ -24,3 +24,25 @@ refused() {
     [ "$code" -eq "$wanted" ] || wrong "exit code $code, not $wanted: $* $(cat err)"
     [ "$(wc -l <err)" -eq 1 ] || wrong "more than a line: $(cat err)"
 }
+
+# interrupted FILE: Ctrl-C while matplotlib is imported, then while it writes; one line, no draft left
+interrupted() {
+    local when
+    mkdir -p early late
+    echo 'import os, signal; os.kill(os.getpid(), signal.SIGINT)' >early/matplotlib.py
+    cat >late/sitecustomize.py <<'PYTHON'
+import os, signal
+from matplotlib.figure import Figure
+
+def savefig(self, path, **how):
+    open(path, "w").write("half")
+    os.kill(os.getpid(), signal.SIGINT)
+
+Figure.savefig = savefig
+PYTHON
+    for when in early late; do
+        PYTHONPATH=$when refused 130 "$1" -o interrupted.svg
+        grep -q 'interrupted: nothing was written' err || wrong "it says $(cat err)"
+        [ -z "$(compgen -G 'interrupted*')" ] || wrong "left: $(compgen -G 'interrupted*')"
+    done
+}

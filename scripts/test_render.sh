@@ -16,7 +16,8 @@ if ! /usr/bin/python3 -c 'import h5py, matplotlib, numpy, vtk' 2>/dev/null ||
     exit 77
 fi
 "$program" run penguin --frames 2 --quiet -o penguin.vtkhdf >run.log || { cat run.log; exit 1; }
-"$render" penguin.vtkhdf --size 160x120 -o penguin.png
+"$render" penguin.vtkhdf --size 160x120 -o penguin.png >said
+grep -qx 'wrote penguin.png' said
 /usr/bin/python3 - <<'PYTHON'
 from matplotlib import image
 
@@ -30,3 +31,15 @@ PYTHON
 status=0
 "$render" penguin.vtkhdf --frame 3 -o none.png 2>said || status=$?
 [ "$status" -eq 2 ] && grep -q 'has 3 frames, no frame 3' said && ! [ -e none.png ]
+
+# Ctrl-C ends it with a line, and what lent it a display with it.
+echo 'import os, signal; os.kill(os.getpid(), signal.SIGINT)' >vtk.py
+status=0
+PYTHONPATH=. TMPDIR=$out "$render" penguin.vtkhdf -o none.png 2>said || status=$?
+[ "$status" -eq 130 ] && [ "$(cat said)" = "render.py: interrupted: nothing was written" ] && ! [ -e none.png ]
+for _ in {1..50}; do
+    compgen -G "$out/xvfb-run.*" >/dev/null || exit 0
+    sleep 0.1
+done
+echo "xvfb-run has not ended: $(ls "$out")"
+exit 1

@@ -5,11 +5,18 @@ usage: main.py [--title TEXT] -o NAME.html|FOLDER FILE.h5...
 
 NAME.html is one file with everything in it; anything else is a folder with index.html, and every figure
 as SVG, PNG and CSV. Exit code: 0 done, 2 usage, 3 a file cannot be used, 4 cannot be written."""
+import sys
+
+import interrupt
+
+if __name__ == "__main__":
+    sys.argv[0] = "shapebench report"
+    interrupt.watch()  # before what takes long to import
+
 import argparse
 import base64
 import os
 import shutil
-import sys
 import tempfile
 
 
@@ -228,7 +235,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except KeyboardInterrupt:
-        fail("interrupted: nothing was written", 130)
+    main()

@@ -272,6 +272,14 @@ class Report(unittest.TestCase):
                 self.assertNotIn("\n", str(error))
         self.assertGreater(refused, 20)
 
+    def test_an_interrupt_is_one_line_from_the_first_import_on(self):
+        with open(self.at("jinja2.py"), "w", encoding="utf-8") as file:
+            file.write("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
+        done = subprocess.run([PROGRAM, "report", "-o", self.at("none.html"), self.rows], capture_output=True, text=True,
+                              timeout=300, env={**os.environ, "PYTHONPATH": self.folder})
+        self.assertEqual((done.returncode, done.stderr), (130, "shapebench report: interrupted: nothing was written\n"))
+        self.assertFalse(os.path.exists(self.at("none.html")))
+
     def test_a_place_that_cannot_be_written(self):
         done = shapebench("report", "-o", "/proc/none/page.html", self.rows)
         self.assertEqual((done.returncode, done.stderr.count("\n")), (4, 1))

@@ -1,0 +1,17 @@
+"""Ctrl-C and SIGTERM end a script with one line and 128 + the signal, as they end shapebench, also while it imports."""
+import os
+import signal
+import sys
+
+
+def stop(number, _):
+    for other in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(other, signal.SIG_IGN)  # drafts are being removed
+    print(f"{os.path.basename(sys.argv[0])}: interrupted: nothing was written", file=sys.stderr)
+    sys.exit(128 + number)
+
+
+def watch():
+    for number in (signal.SIGINT, signal.SIGTERM):
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, stop)
