@@ -13,6 +13,11 @@ COLOURS = {LATTICE: "#0072b2", OCTREE: "#d55e00"}
 TONES = ("first", "second", "third")
 
 
+def legend_below(axes, columns):
+    """Under the axis' name: inside it would hide points."""
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=columns, frameon=False)
+
+
 def valid_grid(specimen):
     """Which specimens are valid and of the scene's beam."""
     return (specimen["set"] == "grid") & (specimen["valid"] != 0)
@@ -41,6 +46,8 @@ def two_terms(plan, law, engine, w):
 
 def modulus(axes, plan, specimen, law):
     """Young's modulus over w on the scene's beam: a line an epsilon, the law dashed."""
+    from matplotlib.ticker import LogFormatterSciNotation, LogLocator
+
     grid = valid_grid(specimen)
     epsilons = numpy.unique(specimen["epsilon"][grid & (specimen["engine"] == OCTREE)])
     lines = [(LATTICE, 0.0)] + [(OCTREE, epsilon) for epsilon in epsilons]
@@ -67,11 +74,15 @@ def modulus(axes, plan, specimen, law):
     axes.set_yscale("log")
     ticks = numpy.unique(specimen["w"][grid])
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    low, high = axes.get_ylim()
+    if high < 100 * low:  # powers of ten alone would be one tick or two
+        axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.yaxis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(numpy.inf, numpy.inf)))
     axes.minorticks_off()
     axes.set_xlim(max(0.5, w[0] - 0.2), w[-1] + 0.5)
     axes.set_xlabel("w, cells")
     axes.set_ylabel(f"Young's modulus, Pa (at {plan['density']:g} kg/m³)")
-    axes.legend(fontsize=8)
+    legend_below(axes, 3)
 
 
 def agreement(axes, plan, specimen):
@@ -96,7 +107,7 @@ def agreement(axes, plan, specimen):
     axes.grid(alpha=0.3)
     axes.set_xlabel("width of a region, 2 w + 1 cells, over the beam's thickness")
     axes.set_ylabel("modulus by a frequency, over that by the sag, %")
-    axes.legend(fontsize=8)
+    legend_below(axes, 3)
 
 
 def collapse(axes, plan, specimen, law):
@@ -124,7 +135,7 @@ def collapse(axes, plan, specimen, law):
     axes.minorticks_off()
     axes.set_xlabel("w (w + 1) (spacing / thickness)²")
     axes.set_ylabel("E / (ρ (spacing / step)² w (w + 1))")
-    axes.legend(fontsize=8)
+    legend_below(axes, 2)
 
 
 def main():
@@ -133,7 +144,7 @@ def main():
     plan, specimen, law = source.plan, source.specimen, source.law
     if not valid_grid(specimen).any():
         fail(f"{arguments.file}: no specimen of the scene's beam is valid", 3)
-    figure, axes = drawing().subplots(1, 2, figsize=(12, 5), layout="constrained")
+    figure, axes = drawing().subplots(1, 2, figsize=(12, 5.5), layout="constrained")
     modulus(axes[0], plan, specimen, law)
     agreement(axes[1], plan, specimen)
     axes[0].set_title("the elastic body that behaves alike; dotted: the two-term law", fontsize=9)

@@ -7,6 +7,8 @@ usage; 3 not a sweep file, or nothing in it to draw, or a package is missing; 4 
 
 from plots import LATTICE, OCTREE, drawing, parse, read, write
 
+import itertools
+
 import numpy  # after plots, which says what is missing
 
 
@@ -55,6 +57,32 @@ def heat_map(axes, point, values, title, logarithmic):
     axes.set_title(title, fontsize=9)
 
 
+def name_some(axes, names, at, others):
+    """Names beside points: in the nearest place where no name, no legend and none of the `others` is."""
+    from matplotlib.text import Text
+
+    axes.figure.draw_without_rendering()  # places are known only then
+    dots = axes.transData.transform(others)
+    renderer = axes.figure.canvas.get_renderer()
+    taken = [axes.get_legend().get_window_extent(renderer)]
+    for name, place in zip(names, at):
+        for distance, angle in itertools.product(range(10, 130, 10), range(45, 405, 30)):
+            far = distance * numpy.exp(1j * numpy.radians(angle))
+            note = axes.annotate(name, place, xytext=(far.real, far.imag), textcoords="offset points", fontsize=6,
+                                 ha="left" if far.real >= 0 else "right", va="center",
+                                 bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none"},
+                                 arrowprops={"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0, "shrinkB": 2})
+            note.update_positions(renderer)
+            box = Text.get_window_extent(note, renderer).padded(4)  # without the line to the point
+            if (not box.count_contains(dots) and not box.count_overlaps(taken)
+                    and axes.bbox.count_contains(box.corners()) == 4):
+                break
+            note.remove()
+        else:
+            continue
+        taken.append(box)
+
+
 def front(axes, plan, point):
     cost, off = point["total_ms"], 100 * point["path_rms"]
     shown = numpy.isfinite(cost) & numpy.isfinite(off)
@@ -74,14 +102,13 @@ def front(axes, plan, point):
     axes.scatter(cost[best], off[best], marker="o", s=46, facecolors="none", edgecolors="0.3", linewidth=0.7)
     best = best[off[best] <= numpy.minimum.accumulate(off[best])]  # others cost the same but for noise
     axes.step(cost[best], off[best], where="post", color="0.3", linewidth=1, zorder=0)
-    for n, i in enumerate(best[:: max(1, len(best) // 5)]):
-        name = f"w {point['w'][i]:g}" + (f", {point['epsilon'][i]:g}" if point["engine"][i] == OCTREE else "")
-        axes.annotate(name, (cost[i], off[i]), xytext=(6, 6 + 9 * (n % 3)), textcoords="offset points",
-                      fontsize=6, arrowprops={"arrowstyle": "-", "linewidth": 0.4})
     axes.set_xscale("log")
     axes.set_ylim(bottom=-0.03 * max(off[shown].max(), 1e-6))
     axes.legend(fontsize=7)
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label="w")
+    some = best[:: max(1, len(best) // 5)]
+    name_some(axes, [f"w {point['w'][i]:g}" + (f", {point['epsilon'][i]:g}" if point["engine"][i] == OCTREE else "")
+                     for i in some], numpy.c_[cost, off][some], numpy.c_[cost, off][shown])
 
 
 def main():

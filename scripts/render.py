@@ -12,6 +12,8 @@ import shutil
 import subprocess
 import sys
 
+SURFACE, EDGE = (0.55, 0.72, 0.90), (0.12, 0.18, 0.25)  # colours
+
 
 def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -23,7 +25,7 @@ def parse():
     parser.add_argument("--columns", type=int, default=4, help="panels in a row, at most (%(default)s)")
     parser.add_argument("--cells", choices=["boxes", "wire"], help="draw the leaf cells of an octree, coloured by "
                         "size, of files recorded with --record nodes: as boxes, or as wires in the surface")
-    parser.add_argument("--edges", action="store_true", help="show the triangles")
+    parser.add_argument("--edges", action="store_true", help="show the triangles, where they are not too small for it")
     parser.add_argument("--no-names", action="store_true", help="leave the file names out")
     return parser.parse_args()
 
@@ -179,11 +181,26 @@ def cells_actor(data, levels, wire):
         look.SetLineWidth(2)
     else:
         look.EdgeVisibilityOn()
-        look.SetEdgeColor(0.12, 0.18, 0.25)
+        look.SetEdgeColor(*EDGE)
     return actor
 
 
-def surface_actor(data, edges):
+def edge_colour(data, height):
+    """The darker the larger triangles are in the image; none for those under two pixels, which lines would cover."""
+    import math
+
+    import vtk
+
+    mass = vtk.vtkMassProperties()
+    mass.SetInputData(data)
+    bounds = data.GetBounds()
+    side = math.sqrt(2 * mass.GetSurfaceArea() / data.GetNumberOfPolys())
+    pixels = height * side / math.dist(bounds[::2], bounds[1::2])
+    share = min(1, pixels / 8)
+    return pixels >= 2 and [share * dark + (1 - share) * own for dark, own in zip(EDGE, SURFACE)]
+
+
+def surface_actor(data, edges, height):
     import vtk
 
     normals = vtk.vtkPolyDataNormals()
@@ -197,14 +214,15 @@ def surface_actor(data, edges):
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     look = actor.GetProperty()
-    look.SetColor(0.55, 0.72, 0.90)
+    look.SetColor(*SURFACE)
     look.SetAmbient(0.16)
     look.SetDiffuse(0.85)
     look.SetSpecular(0.18)
     look.SetSpecularPower(25)
-    if edges:
+    colour = edges and edge_colour(data, height)
+    if colour:
         look.EdgeVisibilityOn()
-        look.SetEdgeColor(0.12, 0.18, 0.25)
+        look.SetEdgeColor(*colour)
     return actor
 
 
@@ -278,7 +296,7 @@ def occlusion(renderer, span):
     renderer.SetPass(pass_)
 
 
-def fill(renderer, path, options):
+def fill(renderer, path, options, height):
     """What there is to see: the surface, an octree's cells, or both."""
     surface = read(path, options.frame)
     if options.cells:
@@ -288,7 +306,7 @@ def fill(renderer, path, options):
             fail(f"{path}: not a trajectory with an octree's nodes, which --cells draws", 3)
         renderer.AddActor(cells_actor(cells, levels, options.cells == "wire"))
     if options.cells != "boxes":
-        actor = surface_actor(surface, options.edges)
+        actor = surface_actor(surface, options.edges, height)
         renderer.AddActor(actor)
         if options.cells:
             actor.GetProperty().SetOpacity(0.35)
@@ -306,7 +324,7 @@ def panel(path, options, size):
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(0.97, 0.97, 0.98)
     renderer.AutomaticLightCreationOff()
-    fill(renderer, path, options)
+    fill(renderer, path, options, size[1])
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)

@@ -28,6 +28,12 @@ assert 0.05 < blue.mean() < 0.8, f"the surface covers {blue.mean():.0%} of the i
 assert blue[60, 80], "the body is not in the middle"
 assert not blue[0].any() and not blue[:, 0].any() and not blue[:, -1].any(), "it touches the image's edge"
 PYTHON
+"$render" penguin.vtkhdf --edges --size 64x64 -o small.png >said
+"$render" penguin.vtkhdf --size 64x64 -o plain.png >said
+cmp small.png plain.png # its triangles are too small for edges
+"$render" penguin.vtkhdf --edges --size 320x320 -o edges.png >said
+"$render" penguin.vtkhdf --size 320x320 -o plain.png >said
+if cmp -s edges.png plain.png; then echo "no edges" && exit 1; fi
 status=0
 "$render" penguin.vtkhdf --frame 3 -o none.png 2>said || status=$?
 [ "$status" -eq 2 ] && grep -q 'has 3 frames, no frame 3' said && ! [ -e none.png ]
