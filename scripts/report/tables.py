@@ -10,10 +10,11 @@ class Table:
     def add(self, cells, kind=""):
         self.lines.append((kind, cells))
 
-    def texts(self):
-        """Of each column, whether it holds texts, which begin at the left, or numbers."""
-        return [any(isinstance(cells[i], str) and len(cells[i]) > 24 for _, cells in self.lines)
-                for i in range(len(self.headings))]
+    def classes(self):
+        """Of each column: numbers (""), texts, which begin at the left, or long texts, which want room."""
+        longest = [max((len(cells[i]) for _, cells in self.lines if isinstance(cells[i], str)), default=0)
+                   for i in range(len(self.headings))]
+        return ["text long" if length > 80 else "text" if length > 24 else "" for length in longest]
 
 
 def doubts_said(statuses):
@@ -37,9 +38,9 @@ def measured(source):
         return None
     names = [name.replace("_", " ") for name in rows[0]["stage_names"]]
     table = Table(f"Time of a step, {source.name}",
-                  ["scene", "total ms", "quartiles", "ns/particle/step", "faster than the paper", "check"]
+                  ["scene", "total ms", "quartiles", "ns / particle / step", "faster than the paper", "check"]
                   + [name + " ms" for name in names]
-                  + ["particles", "regions", "w", "sums/region", "engine", "precision", "threads"],
+                  + ["particles", "regions", "w", "sums / region", "engine", "precision", "threads"],
                   "Medians. The paper's values are those of its own processor.")
     shown = []
     for row in rows:

@@ -172,6 +172,7 @@ class Report(unittest.TestCase):
         page = self.page(self.at("c.h5"))
         self.assertIn("10.0*", page.text)
         self.assertIn("A star is behind", page.text)
+        self.assertIn("1 claim of the papers was tested (c.h5): reproduced 1.", page.text)
 
     def test_texts_are_escaped(self):
         def name(file):
