@@ -96,7 +96,7 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
          "tiny.cfg: 1000000000 particles on brute take "},
         {"run no-such-scene", 2, "shapebench scenes"},
         {"run bad.cfg", 3, "bad.cfg:3: unknown setting 'damping_k'; known: "},
-        {"run missing.cfg", 3, "missing.cfg: cannot be opened"},
+        {"run missing.cfg", 3, "missing.cfg: no such file"},
         {"run missing.obj", 3, "missing.obj"},
         {"run noise.obj", 3, "noise.obj"},
         {"run tiny.cfg -o no/such/folder.vtkhdf", 4, "no/such/folder.vtkhdf"},

@@ -279,6 +279,7 @@ static void unwritable_targets(void **state)
     cannot_store(path, "create the folder");
     cannot_store("/dev/null", "not a regular file");
     cannot_store(folder, "not a regular file");
+    cannot_store("/proc/rows.h5", "no file can be made in that folder");
     cannot_store("/dev/null/rows.h5", "Not a directory");
 }
 
