@@ -377,7 +377,7 @@ int bench_command_regress(int argc, char **argv)
     bench_rows_free(session->stored, session->stored_count);
     free(session->task);
     free(session);
-    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    if (code) bench_option_fail(argv[0], &error);
     if (bench_process_caught()) return 128 + bench_process_caught();
     return code ? (int)code : exit_code;
 }
