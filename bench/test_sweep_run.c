@@ -147,6 +147,9 @@ static void shards_merge_to_the_whole(void **state)
     assert_int_equal(result->code, 0);
     assert_string_equal(result->out, "all.h5: 3 of 3 points\n");
     equals_whole("all.h5");
+    run("merge first.h5 two.h5", result);
+    assert_int_equal(result->code, 4);
+    assert_non_null(strstr(result->err, "cannot write first.h5: it is there; name a new file"));
     run("merge twice.h5 one.h5 whole.h5", result);
     assert_int_equal(result->code, 3);
     assert_non_null(strstr(result->err, "was measured twice"));
