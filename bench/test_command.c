@@ -31,6 +31,7 @@ static int set_up(void **state)
                "frames = 3; steps_per_frame = 2;\n");
     write_text("noise.obj", "no mesh at all\n");
     write_text("plain", "v 0 0 0\n");
+    write_text("loose.obj", "v 0 0 0\nv 3 1 2\nv 1 3 1\nf 1 2 3\n");
     write_text("lattice.cfg",
                "paper = \"octree\"; mesh = \"shape:block\"; particles = 500; w = 1; bend = 0.3;\n");
     write_text(
@@ -101,6 +102,7 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run missing.cfg", 3, "missing.cfg: no such file"},
         {"run missing.obj", 3, "missing.obj"},
         {"run noise.obj", 3, "noise.obj"},
+        {"run loose.obj", 3, "join its vertices, or simulate it as a shell ('run --shell')"},
         {"run tiny.cfg -o no/such/folder.vtkhdf", 4, "no/such/folder.vtkhdf"},
         {"run tiny.cfg --mesh penguin", 2, "--mesh: 'penguin' is not NAME=FILE"},
         {"run tiny.cfg --mesh penguin=noise.obj", 2, "--mesh: 'penguin' is not this scene, tiny"},
