@@ -148,11 +148,11 @@ static void print_check(FILE *file, const BenchRow *row)
         fprintf(file, "%s\n", row->reason);
         return;
     }
-    fprintf(
-        file,
-        "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost %.1f%%;\n",
-        row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
-        row->instruments_percent);
+    fprintf(file,
+            "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost %.1f%%, "
+            "which the total is without (below 0: noise);\n",
+            row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
+            row->instruments_percent);
     if (!of_elastic(row))
         fprintf(file, "    voxelised in %.3g ms, built in %.3g ms, %.4g bytes a particle\n",
                 1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,
