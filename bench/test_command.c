@@ -258,6 +258,8 @@ static void an_octree_can_be_run(void **state)
         &result);
     if (result.code) fail_msg("%s", result.err);
     assert_non_null(strstr(result.out, "w = 1 x the node's edge, epsilon 0.5"));
+    run("run tiny.cfg --frames 0 --no-output", &result);
+    assert_non_null(strstr(result.out, "\n0 steps of 0.01 s: nothing timed\n"));
     run("run tiny.cfg --engine octree --frames 1 --no-output", &result);
     if (result.code) fail_msg("%s", result.err);
 }
