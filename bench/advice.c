@@ -152,13 +152,15 @@ static const BenchSpecimen *find_wide(const BenchSpecimen *specimen, long count)
 static void say_range(const BenchSpecimen *specimen, long count, char *text)
 {
     double aspect = ratio_over(specimen, count, "aspect", false),
-           epsilon = ratio_over(specimen, count, "", true), linear = INFINITY, widest = 0;
+           epsilon = ratio_over(specimen, count, "", true), linear = INFINITY, least = INFINITY,
+           most = 0;
     int looked = 0, apart = 0;
     for (long i = 0; i < count; i++) {
         const BenchSpecimen *s = &specimen[i];
         if (isfinite(s->linear_to)) linear = fmin(linear, s->linear_to), looked++;
-        if (s->valid && s->spread > alike) apart++;
-        if (s->valid && s->spread <= alike) widest = fmax(widest, (2 * s->w + 1.0) / s->across);
+        if (!s->valid || s->spread <= alike) continue;
+        double wide_as = (2 * s->w + 1.0) / s->across;
+        least = fmin(least, wide_as), most = fmax(most, wide_as), apart++;
     }
     const BenchSpecimen *wide = find_wide(specimen, count);
     say(text, "It is no material's constant:");
@@ -176,9 +178,9 @@ static void say_range(const BenchSpecimen *specimen, long count, char *text)
             100 * linear, looked);
     say(text, " sag and three frequencies are more than %g%% apart in %d specimens", 100 * alike,
         apart);
-    if (apart && widest > 0)
-        say(text, ", all of those with regions more than %.2g times as wide as the beam is thick",
-            widest);
+    if (apart)
+        say(text, ", whose regions are %.2g to %.2g times as wide as the beam is thick", least,
+            most);
     say(text, ".");
 }
 

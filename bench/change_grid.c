@@ -23,7 +23,7 @@ static const char *const headings[] = {
     "splitting ms", "surface ms", "triangles",     "pieces",        "check",
 };
 
-/* "a -> b", or the one that there is, or "-"; `damaged` marks those that are second-hand. */
+/* "a -> b", or the one that there is, or "-"; `second_hand` marks those that are second-hand. */
 static void pair_text(double from, double to, const char *joint, bool second_hand,
                       char text[BENCH_GRID_TEXT])
 {
@@ -69,7 +69,7 @@ static void paper_line(const RefPaperRow *paper, BenchGridLine *line)
     count_text(paper->particles.value, paper->last_particles.value, (*line)[NODES]);
     bench_grid_number(paper->added.value, (*line)[ADDED]);
     pair_text(paper->total_ms.value, paper->last_ms.value, " -> ",
-              paper->total_ms.status == REF_SECOND_HAND, (*line)[SIMULATION]);
+              ref_paper_step_status(paper) == REF_SECOND_HAND, (*line)[SIMULATION]);
     pair_text(paper->change_ms.value, paper->change_most_ms.value, " to ", false,
               (*line)[RESAMPLING]);
     bench_grid_number(paper->surface_ms.value, (*line)[SURFACE]);

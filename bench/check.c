@@ -437,8 +437,9 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
                                  found->contact_nodes, found->contact_all,
                                  found->contacts - found->contacts_wrong, found->contacts);
     if (found->obstacles && used < size)
-        used += (size_t)snprintf(text + used, size - used, ", %ld pushed out of obstacles as there",
-                                 found->pushed);
+        used +=
+            (size_t)snprintf(text + used, size - used,
+                             ", %ld pushed out of obstacles as brute force has it", found->pushed);
     if (found->tied && used < size)
         used += (size_t)snprintf(text + used, size - used,
                                  "; %ld particle%s of regions whose rotation is not unique "

@@ -62,7 +62,7 @@ static const struct argp_option option_list[] = {
      "Store every specimen as it is finished; if the file is there, go on with it (default: "
      "nothing stored)",
      3},
-    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex or json (default: text)", 3},
+    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
     {"density", KEY_DENSITY, "RHO", 0, "kg a cubic unit, of the wish (default: 1000)", 4},
     {"young", KEY_YOUNG, "E", 0,
      "Say in words which w and epsilon have this Young's modulus, in Pa, or what would", 4},
@@ -190,7 +190,7 @@ int bench_command_calibrate(int argc, char **argv)
     SmCode code = options.file ? bench_calibration_load(options.file, calibration, &error)
                                : run(&options, argc, argv, calibration, &error);
     if (!code) code = show(&options, calibration, &error);
-    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    if (code) bench_option_fail(argv[0], &error);
     bench_calibration_free(calibration);
     free(calibration);
     return (int)code;

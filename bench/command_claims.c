@@ -26,7 +26,7 @@ static const struct argp_option option_list[] = {
      "Add the claims of this file, written as reference/claims.cfg; may be repeated", 1},
     {"list", KEY_LIST, 0, 0, "Print the claims and what they say, and end", 1},
     {"quick", KEY_QUICK, 0, 0, "Smaller bodies and fewer repeats: noisier and quicker", 2},
-    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex or json (default: text)", 3},
+    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
     {"output", 'o', "FILE.h5", 0,
      "Also store verdicts, every curve's points, every row and provenance in HDF5 (default: "
      "nothing stored)",
@@ -179,6 +179,6 @@ int bench_command_claims(int argc, char **argv)
         if (!code) code = report(&options, &claims, argc, argv, &error);
     }
     bench_claims_free(&claims);
-    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    if (code) bench_option_fail(argv[0], &error);
     return (int)code;
 }

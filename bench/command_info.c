@@ -189,7 +189,7 @@ static SmCode cut_slice(const Options *options, const char *program)
     SmError error;
     SmCode code = bench_slice_write(options->mesh[0], &options->slice, options->output, &error);
     if (code)
-        fprintf(stderr, "%s: %s\n", program, error.text);
+        bench_option_fail(program, &error);
     else if (!options->common.quiet)
         printf("wrote %s\n", options->output);
     return code;
@@ -207,7 +207,7 @@ int bench_command_info(int argc, char **argv)
         SmError error;
         SmCode failed = look(options.mesh[i], options.particles, &facts, &error);
         if (failed) {
-            fprintf(stderr, "%s: %s\n", argv[0], error.text);
+            bench_option_fail(argv[0], &error);
             code = failed;
         } else if (options.json) {
             json_array_append_new(list, to_json(options.mesh[i], &facts));

@@ -144,6 +144,6 @@ int bench_command_kernels(int argc, char **argv)
     }
     bench_machine_read(argc, argv, options.common.threads, &machine);
     SmCode code = measure(&options, &machine, &error);
-    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    if (code) bench_option_fail(argv[0], &error);
     return (int)code;
 }

@@ -1,5 +1,6 @@
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "command.h"
 #include "option.h"
@@ -32,13 +33,19 @@ static error_t parse(int key, char *text, struct argp_state *state)
 static const char help[] =
     "Put shards of a sweep (shapebench sweep --shard I/N -o IN.h5) into one file. They must be of "
     "one scene, mesh, build and set of options; a point in two of them must be the same in both.\v"
-    "What is missing is said, and 'sweep -o OUT.h5' with the same options measures "
+    "OUT.h5 is a new file; one that is there is not written over. What is missing is said, and "
+    "'sweep -o OUT.h5' with the same options measures "
     "it.\n" BENCH_EXIT_CODES;
 
 static const struct argp argp = {NULL, parse, "OUT.h5 IN.h5...", help, NULL, NULL, NULL};
 
 static SmCode merge(const Options *options, BenchSweep *all, SmError *error)
 {
+    if (access(options->output, F_OK) == 0)
+        return sm_fail(
+            error, SM_OUTPUT,
+            "cannot write %.300s: it is there; name a new file first, then those to read",
+            options->output);
     SmCode code = bench_sweep_load(options->input[0], all, error);
     for (int i = 1; i < options->inputs && !code; i++) {
         BenchSweep next;
@@ -76,7 +83,7 @@ int bench_command_merge(int argc, char **argv)
         code = bench_sweep_store(options.output, &all, &error);
     }
     if (code)
-        fprintf(stderr, "%s: %s\n", argv[0], error.text);
+        bench_option_fail(argv[0], &error);
     else
         say_missing(&options, &all);
     bench_sweep_free(&all);

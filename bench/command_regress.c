@@ -220,21 +220,23 @@ static SmCode choose_tasks(Session *session, SmError *error)
     return SM_OK;
 }
 
+/* As --baseline's help says; the samples that tables takes otherwise are too few and too short. */
+#define STORE "shapebench tables --repeats 201 --block 0.5 -o FILE.h5"
+
 static SmCode load_baseline(Session *session, const BenchMachine *here, SmError *error)
 {
     const char *path = session->options->baseline;
     BenchMachine *there = &session->found.machine[BENCH_OLD];
     if (access(path, F_OK) != 0 && errno == ENOENT)
         return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
-                       "no baseline: there is no %.200s; store one with shapebench tables -o FILE",
-                       path);
+                       "no baseline: there is no %.200s; store one with " STORE, path);
     SmCode code = bench_samples_load(path, &session->stored, &session->stored_count, there, error);
     if (code) return code;
     snprintf(session->found.baseline, sizeof session->found.baseline, "%.200s", path);
     if (!there->cpu[0] || !strcmp(there->cpu, here->cpu)) return SM_OK;
     return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
                    "no baseline: %.150s was measured on another machine (%.80s; this is %.80s): "
-                   "store one here with shapebench tables -o FILE.h5",
+                   "store one here with " STORE,
                    path, there->cpu, here->cpu);
 }
 
@@ -377,7 +379,7 @@ int bench_command_regress(int argc, char **argv)
     bench_rows_free(session->stored, session->stored_count);
     free(session->task);
     free(session);
-    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    if (code) bench_option_fail(argv[0], &error);
     if (bench_process_caught()) return 128 + bench_process_caught();
     return code ? (int)code : exit_code;
 }

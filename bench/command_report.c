@@ -54,7 +54,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
 static const char help[] =
     "Make a page of result files that can be sent to a colleague: tables beside the papers', "
     "claims with verdicts, figures with their data, and where it was measured.\v"
-    "FILE is what tables, claims and sweep write with -o. The page needs no network. Files of "
+    "FILE is what tables, claims, sweep and calibrate write with -o. The page needs no network. "
+    "Files of "
     "the same scenes from several commits make a history.\n" BENCH_EXIT_CODES;
 
 static const struct argp argp = {option_list, parse, "FILE...", help, NULL, NULL, NULL};

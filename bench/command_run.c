@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../fastlsm/region.h"
 #include "../reference/meshless/mpu.h"
 #include "../reference/meshless/outline.h"
 #include "command.h"
@@ -76,7 +77,10 @@ static const struct argp_option option_list[] = {
     {"damping", KEY_DAMPING, "K", 0, "Region damping, 0 to 1", 1},
     {"h", KEY_H, "S", 0, "Time step, seconds", 1},
     {"gravity", KEY_GRAVITY, "X,Y,Z", 0, "Mesh units per second squared", 1},
-    {"strain-limit", KEY_STRAIN, "S", 0, "Links break beyond this times their length; 0: never", 1},
+    {"strain-limit", KEY_STRAIN, "S", 0,
+     "Links break beyond this times their length; 0: never. Not of the surface, whose triangles "
+     "stretch across a tear",
+     1},
     {"summation", KEY_SUMMATION, "HOW", 0, "fast, bars or naive", 1},
     {"polar", KEY_POLAR, "HOW", 0, "fast or jacobi", 1},
     {0, 0, 0, 0, "What is written:", 2},
@@ -239,12 +243,16 @@ static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *e
     if (options->nodes) octree->sampling.nodes = options->nodes;
     if (!options->w) return SM_OK;
     char *end;
+    int most = !strcmp(scene->engine, "fastlsm") ? LSM_MAX_W : 64;
     double w = strtod(options->w, &end), low = is_octree(scene) ? 0 : 1,
-           high = is_octree(scene) ? 1e6 : 64;
+           high = is_octree(scene) ? 1e6 : most;
     bool good = end != options->w && !*end && w >= low && w <= high && w > 0;
     if (!good || (!is_octree(scene) && w != floor(w)))
-        return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a %s", options->w,
-                       is_octree(scene) ? "number above 0, to 1e6" : "whole number from 1 to 64");
+        return is_octree(scene)
+                   ? sm_fail(error, SM_USAGE, "--w: '%.40s' is not a number above 0, to 1e6",
+                             options->w)
+                   : sm_fail(error, SM_USAGE, "--w: '%.40s' is not a whole number from 1 to %d",
+                             options->w, most);
     if (is_octree(scene)) {
         octree->width = (OctWidth){.cells = w};
         octree->summation_nodes = 0;
@@ -289,9 +297,16 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
     if (file || !other) {
         SmCode code = bench_scene_find(name, scene, error);
         if (code) return code;
-        const char *substitute = bench_substitute_find(&options->chosen.substitutes, scene->name);
+        const BenchSubstitutes *given = &options->chosen.substitutes;
+        const char *substitute = bench_substitute_find(given, scene->name);
+        if (given->count && !substitute)
+            return sm_fail(error, SM_USAGE, "--mesh: '%s' is not this scene, %s", given->scene[0],
+                           scene->name);
         return bench_mesh_of_scene(scene, substitute, mesh, error);
     }
+    if (options->chosen.substitutes.count)
+        return sm_fail(error, SM_USAGE, "--mesh goes with a scene, and %.100s is a mesh itself",
+                       name);
     if (length >= BENCH_PATH)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", name);
     SmCode code = load_body(options, mesh, error);
@@ -476,6 +491,6 @@ int bench_command_run(int argc, char **argv)
     bench_options_parse(&argp, argc, argv, &options, &options.common);
     bench_machine_read(argc, argv, options.common.threads, &machine);
     SmCode code = run(&options, &machine, &error);
-    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    if (code) bench_option_fail(argv[0], &error);
     return (int)code;
 }

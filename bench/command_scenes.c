@@ -104,6 +104,6 @@ int bench_command_scenes(int argc, char **argv)
         code = print_scene(options.name, &error);
     else
         code = list(&error);
-    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    if (code) bench_option_fail(argv[0], &error);
     return (int)code;
 }

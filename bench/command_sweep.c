@@ -51,8 +51,8 @@ static const struct argp_option option_list[] = {
      1},
     {"engine", KEY_ENGINE, "NAME", 0, "both, fastlsm or octree (default: both)", 1},
     {"w", KEY_W, "RANGE", 0,
-     "Region half-widths, FIRST:LAST[:STEP] or a list (default: 1:8); of fastlsm in cells, whole "
-     "numbers",
+     "Region half-widths, FIRST:LAST[:STEP] or a list (default: 1:8); fastlsm's are whole numbers "
+     "of cells",
      1},
     {"epsilon", KEY_EPSILON, "RANGE", 0, "The octree's (default: 0:1:0.1)", 1},
     {"width", KEY_WIDTH, "UNIT", 0,
@@ -68,10 +68,10 @@ static const struct argp_option option_list[] = {
      3},
     {"shard", KEY_SHARD, "I/N", 0,
      "Measure only every N-th point, from the I-th on; put the files together with 'merge'", 3},
-    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex or json (default: text)", 3},
+    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
     {"recommend", KEY_RECOMMEND, 0, 0,
-     "Say in one sentence which w and epsilon to take, for the wishes below (default: a deviation "
-     "of 1%)",
+     "Say in one sentence which w and epsilon to take, for --budget, --deviation and --stiffness "
+     "(default: a deviation of 1%)",
      4},
     {"stiffness", KEY_STIFFNESS, "HZ", 0, "Wish: the beam's first frequency", 4},
     {"deviation", KEY_DEVIATION, "PERCENT", 0,
@@ -219,7 +219,7 @@ int bench_command_sweep(int argc, char **argv)
                             : run(&options, argc, argv, &sweep, &error);
     }
     if (!code && ranks.rank == 0) code = show(&options, &sweep, &error);
-    if (code && ranks.rank == 0) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    if (code && ranks.rank == 0) bench_option_fail(argv[0], &error);
     bench_sweep_free(&sweep);
     if (ranks.rank > 0) code = SM_OK; /* the first rank says it for all */
     if (code == SM_OUTPUT) bench_ranks_abort(&ranks, code);

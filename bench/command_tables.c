@@ -38,14 +38,14 @@ typedef struct {
 
 static const struct argp_option option_list[] = {
     {"paper", KEY_PAPER, "NAME", 0,
-     "The paper whose table to regenerate: fastlsm, octree or meshless (default: fastlsm and "
+     "The paper whose table to measure: fastlsm, octree or meshless (default: fastlsm and "
      "meshless)",
      1},
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Measure this scene only, or the paper's scenes NAME-...; may be repeated", 1},
     {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
     {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 20)", 2},
-    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex or json (default: text)", 3},
+    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
     {"output", 'o', "FILE.h5", 0,
      "Also store every sample, counts, validity and provenance in HDF5 (default: nothing stored)",
      3},
@@ -253,6 +253,6 @@ int bench_command_tables(int argc, char **argv)
     }
     bench_rows_free(rows, chosen.count);
     free(chosen.scene);
-    if (code) fprintf(stderr, "%s: %s\n", argv[0], error.text);
+    if (code) bench_option_fail(argv[0], &error);
     return (int)code;
 }

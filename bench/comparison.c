@@ -133,6 +133,12 @@ static void measure(BenchComparison *result, int comparisons, const BenchCompare
         compare_apart(&times[BENCH_OLD], &times[BENCH_NEW], comparisons, params, result);
 }
 
+/* Could the test call nothing different, whatever is measured? */
+static bool finds_nothing(int rounds, int comparisons)
+{
+    return bench_least_p(rounds) * comparisons >= BENCH_LEVEL;
+}
+
 static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
                                     const BenchCompareParams *params)
 {
@@ -141,7 +147,7 @@ static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
     double least = params->interleaved ? least_interleaved : least_apart;
     double limit = isnan(params->threshold) ? BENCH_NOISE_LIMIT : params->threshold;
     result->threshold = fmax(noise, isnan(params->threshold) ? least : params->threshold);
-    bool few = params->interleaved ? bench_least_p(params->rounds) * comparisons >= BENCH_LEVEL
+    bool few = params->interleaved ? finds_nothing(params->rounds, comparisons)
                                    : side[BENCH_NEW].count < BENCH_LEAST_PROCESSES;
     if (few || isnan(noise)) return BENCH_TOO_FEW;
     bool sure = result->adjusted < BENCH_LEVEL;
@@ -205,6 +211,18 @@ void bench_comparisons_free(BenchComparison *list, int count)
     for (int i = 0; i < count; i++)
         for (int b = 0; b < BENCH_BUILDS; b++) free(list[i].outlier[b]);
     free(list);
+}
+
+int bench_comparisons_rounds(const BenchComparison *list, int count,
+                             const BenchCompareParams *params)
+{
+    int rounds = params->rounds + 1, compared = 0;
+    if (!params->interleaved)
+        return rounds > BENCH_LEAST_PROCESSES / 2 ? rounds : BENCH_LEAST_PROCESSES / 2 + 1;
+    for (int i = 0; i < count; i++)
+        compared += list[i].verdict != BENCH_INCORRECT && list[i].verdict != BENCH_NO_BASELINE;
+    while (finds_nothing(rounds, compared)) rounds++;
+    return rounds;
 }
 
 int bench_comparisons_exit(const BenchComparison *list, int count)

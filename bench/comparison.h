@@ -61,6 +61,10 @@ int bench_compare(const BenchContests *all, const BenchCompareParams *params,
                   BenchComparison **list);
 void bench_comparisons_free(BenchComparison *list, int count);
 
+/* The least rounds that would not be BENCH_TOO_FEW for as many comparisons. */
+int bench_comparisons_rounds(const BenchComparison *list, int count,
+                             const BenchCompareParams *params);
+
 /* What they come to, as an exit code (command.h): SM_INVALID where anything is INVALID, else
  * BENCH_EXIT_SLOWER, else BENCH_EXIT_NO_BASELINE where anything lacks one, else SM_OK where any
  * time is the same or faster, else BENCH_EXIT_NOT_JUDGED: nothing could be said of any. */

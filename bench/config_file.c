@@ -9,7 +9,8 @@ char *bench_config_load(const char *path, size_t *size, SmError *error)
 {
     FILE *file = fopen(path, "rb");
     if (!file) {
-        sm_fail(error, SM_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+        sm_fail(error, SM_INPUT, "%s: %s%s", path, errno == ENOENT ? "" : "cannot be opened: ",
+                errno == ENOENT ? "no such file" : strerror(errno));
         return NULL;
     }
     char *text = sm_alloc(BENCH_CONFIG_BYTES + 1, 1);

@@ -7,7 +7,8 @@
 #include <string.h>
 
 #include "../fastlsm/fastlsm.h"
-#include "../octree/distance.h"
+#include "../octree/halves.h"
+#include "../octree/sheaf.h"
 #include "cubes.h"
 #include "matrices.h"
 #include "play.h"
@@ -235,15 +236,27 @@ void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *
     free(scene);
 }
 
-/* One sample: milliseconds of the searches that finding all regions takes, each as far as its
- * region may reach, and of finding the regions, those searches included. */
-static void time_regions(const BenchSampled *body, const int *w, OctReach *reach, double *search,
+/* The searches with which finding all regions begins, as halves.h has them. */
+static void search_all(const BenchSampled *body, const int *w, OctSheaf *sheaf)
+{
+    int leaf[OCT_SHEAF], reaches[OCT_SHEAF], count = 0;
+    for (long i = 0; i < body->tree.leaves; i++) {
+        leaf[count] = (int)i;
+        reaches[count++] = oct_halves_reach(w[i], body->epsilon);
+        if (count < OCT_SHEAF && i + 1 < body->tree.leaves) continue;
+        oct_sheaf_search(sheaf, count, leaf, reaches);
+        count = 0;
+    }
+}
+
+/* One sample: milliseconds of the searches, and of finding the regions, the same searches
+ * included. */
+static void time_regions(const BenchSampled *body, const int *w, OctSheaf *sheaf, double *search,
                          double *all)
 {
     OctRegions regions;
     double start = sm_now();
-    for (long i = 0; i < body->tree.leaves; i++)
-        oct_reach_from(reach, (int)i, (int)(w[i] + floor(body->epsilon * w[i])));
+    search_all(body, w, sheaf);
     double middle = sm_now();
     SmCode code = oct_regions_build(&body->tree, &body->graph, w, body->epsilon, &regions, NULL);
     *all = 1e3 * (sm_now() - middle);
@@ -257,19 +270,25 @@ static void add_share(const BenchSampled *body, int times, int repeats, int poin
                       BenchCurve *curve)
 {
     OctReach reach;
+    OctSheaf sheaf;
     size_t leaves = (size_t)body->tree.leaves;
     double *share = sm_alloc((size_t)repeats, sizeof *share), search, all;
     int *w = sm_alloc(leaves, sizeof *w);
     for (size_t i = 0; i < leaves; i++) w[i] = times * body->w[i];
+    int *below = oct_tree_below(&body->tree);
     oct_reach_init(&reach, &body->graph);
-    time_regions(body, w, &reach, &search, &all); /* warms up */
+    oct_sheaf_init(&sheaf, &body->tree, &reach);
+    oct_sheaf_grow(&sheaf, body->tree.nodes, body->tree.leaves, below);
+    time_regions(body, w, &sheaf, &search, &all); /* warms up */
     for (int r = 0; r < repeats; r++) {
-        time_regions(body, w, &reach, &search, &all);
+        time_regions(body, w, &sheaf, &search, &all);
         share[r] = 100 * search / all;
     }
     bench_curve_sample(curve, times, share, repeats, 0.5, points);
+    oct_sheaf_free(&sheaf);
     oct_reach_free(&reach);
     free(share);
+    free(below);
     free(w);
 }
 

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <libgen.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -27,11 +28,20 @@ static int list_draft(const char *tmp)
     return -1;
 }
 
-static const char *remedy(int number)
+/* Not of every file system's folders: /proc takes no new files. */
+static bool has_folder(const char *path)
+{
+    char folder[BENCH_DRAFT_PATH];
+    snprintf(folder, sizeof folder, "%s", path);
+    return access(dirname(folder), F_OK) == 0;
+}
+
+static const char *remedy(const char *path, int number)
 {
     switch (number) {
     case ENOENT:
-        return "; create the folder first";
+        return has_folder(path) ? "; no file can be made in that folder, choose another"
+                                : "; create the folder first";
     case EACCES:
     case EPERM:
     case EROFS:
@@ -50,7 +60,7 @@ SmCode bench_draft_fail(const char *path, int number, const char *detail, SmErro
 {
     if (number == 0) return sm_fail(error, SM_OUTPUT, "cannot write %.300s: %s", path, detail);
     return sm_fail(error, SM_OUTPUT, "cannot write %.300s: %s%s", path, strerror(number),
-                   remedy(number));
+                   remedy(path, number));
 }
 
 SmCode bench_draft_begin(const char *path, BenchDraft *draft, SmError *error)

@@ -36,8 +36,8 @@
  *   range `n`; `matching` lattice has a region for every particle instead.
  * - sag: how deep the tip of a clamped beam hangs, in mesh units, against w; `scene`, range `w`.
  * - setup: `field` "distance-share": percent of the time that finding the octree hand's summation
- *   nodes takes which goes into distances, against the width of regions in multiples of 0.75 of
- *   each node's edge; range `n`. */
+ *   nodes takes which its searches for distances take when run alone, against the width of regions
+ *   in multiples of 0.75 of each node's edge; range `n`. */
 typedef enum {
     BENCH_TRY_NOTHING,
     BENCH_TRY_SCENE,

@@ -115,9 +115,10 @@ static void say_point(const BenchPoint *p, const BenchWish *wish, const char *wi
         used += snprintf(sentence + used, BENCH_SENTENCE - (size_t)used,
                          " in %ld parts that no region joins", p->parts);
     if (isfinite(p->frequency))
-        used += snprintf(sentence + used, BENCH_SENTENCE - (size_t)used,
-                         ", a beam of %.3g Hz that sags %.3g%% of its length", p->frequency,
-                         100 * p->sag);
+        used += snprintf(
+            sentence + used, BENCH_SENTENCE - (size_t)used,
+            ", a beam of %.3g Hz that sags %.3g%% of its length in the limit of small sags",
+            p->frequency, 100 * p->sag);
     if (tree)
         snprintf(sentence + used, BENCH_SENTENCE - (size_t)used,
                  ", the surface %.3g%% of the body's size off full resolution (at most %.3g%%), "

@@ -96,6 +96,10 @@ static void latex_text(FILE *file, const char *padded)
             fprintf(file, "\\%c{}", *c);
         else if (strchr("&%$#_{}", *c))
             fprintf(file, "\\%c", *c);
+        else if (c[0] == '-' && c[1] == '>')
+            fputs("$\\to$", file), c++;
+        else if (strchr("<>|", *c)) /* other signs in TeX's own encoding of text */
+            fprintf(file, "$%c$", *c);
         else
             fputc(*c, file);
     }

@@ -8,6 +8,7 @@
 #include "../lib/error.h"
 #include "command.h"
 #include "interrupt.h"
+#include "option.h"
 #include "scene.h"
 
 static const BenchCommand commands[] = {
@@ -97,7 +98,7 @@ int main(int argc, char **argv)
     bench_interrupt_catch();
 
     int first = argc;
-    if (argp_parse(&argp, argc, argv, ARGP_IN_ORDER, &first, NULL)) return SM_USAGE;
+    bench_option_words(&argp, argc, argv, ARGP_IN_ORDER, &first, NULL);
     const char *name = first < argc ? argv[first] : "tables";
     const BenchCommand *command = find_command(name);
     if (!command) {

@@ -15,6 +15,7 @@ const char *argp_program_version = "shapebench " SHAPEBENCH_VERSION;
 enum { KEY_THREADS = 0x1000, KEY_SEED, KEY_QUIET };
 
 static const struct argp_option common_options[] = {
+    {0, 0, 0, 0, "Common options:", 90},
     {"threads", KEY_THREADS, "N", 0, "Threads; 0: all cores (default: 1)", 90},
     {"seed", KEY_SEED, "N", 0, "Seed of everything random (default: 1)", 90},
     {"quiet", KEY_QUIET, 0, 0, "No progress and no remarks on standard error", 90},
@@ -50,8 +51,7 @@ static error_t parse_both(int key, char *text, struct argp_state *state)
     (void)text;
     if (key != ARGP_KEY_INIT) return ARGP_ERR_UNKNOWN;
     void *const *inputs = state->input;
-    /* getopt's own line for an unknown option is the whole message: no second "Try ..." line. */
-    state->err_stream = NULL;
+    state->err_stream = NULL; /* getopt's line is enough: no second one, "Try ..." */
     for (int i = 0; i < 2; i++) state->child_inputs[i] = inputs[i];
     return 0;
 }
@@ -73,15 +73,55 @@ error_t bench_option_shown(int key, const char *text, const struct argp_state *s
     return ARGP_ERR_UNKNOWN;
 }
 
+/* Standard error while getopt's words go elsewhere, or NULL. */
+static FILE *console;
+
+static void restore_console(void)
+{
+    if (!console) return;
+    fclose(stderr);
+    stderr = console;
+    console = NULL;
+}
+
+static void say(const char *name, const char *text, int length, bool usage)
+{
+    const char *join = length && text[length - 1] == '?' ? " See" : "; see";
+    fprintf(stderr, "%s: %.*s", name, length, text);
+    bool told = strstr(text, " --help'") != NULL; /* by another program, whose line this repeats */
+    if (usage && !told) fprintf(stderr, "%s '%s --help'", join, name);
+    fputc('\n', stderr);
+}
+
+void bench_option_words(const struct argp *argp, int argc, char **argv, unsigned flags, int *first,
+                        void *input)
+{
+    char *said = NULL;
+    size_t size;
+    FILE *words = open_memstream(&said, &size);
+    if (words) console = stderr, stderr = words;
+    error_t failed = argp_parse(argp, argc, argv, flags, first, input);
+    restore_console();
+    size_t start = strlen(argv[0]) + 2; /* getopt begins with the name */
+    if (failed && said && strlen(said) > start)
+        say(argv[0], said + start, (int)strcspn(said + start, "\n"), true);
+    free(said);
+    if (failed) exit(SM_USAGE);
+}
+
+void bench_option_fail(const char *name, const SmError *error)
+{
+    say(name, error->text, (int)strlen(error->text), error->code == SM_USAGE);
+}
+
 void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input,
                          BenchCommon *common)
 {
-    const struct argp_child children[] = {
-        {argp, 0, NULL, 0}, {&common_argp, 0, "Common options:", 90}, {0}};
+    const struct argp_child children[] = {{argp, 0, NULL, 0}, {&common_argp, 0, NULL, 0}, {0}};
     const struct argp both = {NULL, parse_both, NULL, NULL, children, NULL, NULL};
     void *inputs[] = {input, common};
     *common = (BenchCommon){.threads = 1, .seed = 1};
-    if (argp_parse(&both, argc, argv, 0, NULL, inputs)) exit(SM_USAGE);
+    bench_option_words(&both, argc, argv, 0, NULL, inputs);
 }
 
 void bench_usage(const struct argp_state *state, const char *format, ...)
@@ -93,7 +133,8 @@ void bench_usage(const struct argp_state *state, const char *format, ...)
     va_end(arguments);
     for (char *c = error.text; *c; c++)
         if (*c == '\n' || *c == '\r') *c = ' ';
-    fprintf(stderr, "%s: %s; see '%s --help'\n", state->name, error.text, state->name);
+    restore_console();
+    say(state->name, error.text, (int)strlen(error.text), true);
     exit(SM_USAGE);
 }
 

@@ -69,7 +69,15 @@ error_t bench_option_shown(int key, const char *text, const struct argp_state *s
 void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input,
                          BenchCommon *common);
 
-/* Prints "program command: line" and ends the program with exit code 2. */
+/* argp_parse(), but what getopt finds wrong (an unknown option, a missing value) is one line like
+ * all others, and ends the program with exit code 2. */
+void bench_option_words(const struct argp *argp, int argc, char **argv, unsigned flags, int *first,
+                        void *input);
+
+/* Prints "program command: line", of SM_USAGE with where to look it up. */
+void bench_option_fail(const char *name, const SmError *error);
+
+/* Prints "program command: line; see ... --help" and ends the program with exit code 2. */
 void bench_usage(const struct argp_state *state, const char *format, ...)
     __attribute__((format(printf, 2, 3), noreturn));
 

@@ -111,11 +111,15 @@ void bench_regression_summary(const BenchRegression *found, size_t size, char *l
         used = snprintf(line, size, "not slower in %d of %d times",
                         had[BENCH_SAME] + had[BENCH_FASTER], found->count);
     int unsure = had[BENCH_TOO_NOISY] + had[BENCH_TOO_FEW];
-    if (unsure && used > 0 && (size_t)used < size)
-        snprintf(line + used, size - (size_t)used,
-                 "; %d could not be judged (%d too noisy, %d too few samples): more --rounds, or a "
-                 "quieter machine",
-                 unsure, had[BENCH_TOO_NOISY], had[BENCH_TOO_FEW]);
+    if (!unsure || used < 0 || (size_t)used >= size) return;
+    char remedy[64] = "more --rounds";
+    if (had[BENCH_TOO_FEW])
+        snprintf(remedy, sizeof remedy, "at least --rounds %d",
+                 bench_comparisons_rounds(found->list, found->count, found->params));
+    snprintf(line + used, size - (size_t)used,
+             "; %d could not be judged (%d too noisy, %d too few samples): %s%s", unsure,
+             had[BENCH_TOO_NOISY], had[BENCH_TOO_FEW], remedy,
+             had[BENCH_TOO_NOISY] ? ", or a quieter machine" : "");
 }
 
 static void percent_text(double share, char text[BENCH_GRID_TEXT])

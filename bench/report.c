@@ -91,7 +91,14 @@ static void count_text(RefValue value, char text[FIELD_TEXT])
     if (isfinite(value.value)) snprintf(text, FIELD_TEXT, "%.0f", value.value);
 }
 
-/* The paper's values, "?" behind a damaged or misprinted one, "*" behind a second-hand rate; false
+/* What stands behind a value of the paper's. */
+static void mark(RefStatus status, char text[FIELD_TEXT])
+{
+    if (status == REF_DAMAGED) strcat(text, "?");
+    if (status == REF_SECOND_HAND) strcat(text, "*");
+}
+
+/* The paper's values, "?" behind a damaged or misprinted one, "*" behind a second-hand one; false
  * where there are none. */
 static bool paper_line(const BenchRow *row, Line *line)
 {
@@ -105,14 +112,17 @@ static bool paper_line(const BenchRow *row, Line *line)
     for (int s = 0; s < SM_STAGES; s++) {
         stage_text(paper->stage_ms[s].value, paper->stage_percent[s].value,
                    line->field[STAGES + s]);
-        if (paper->stage_ms[s].status == REF_DAMAGED) strcat(line->field[STAGES + s], "?");
+        mark(paper->stage_ms[s].status, line->field[STAGES + s]);
     }
     bench_grid_number(paper->total_ms.value, line->field[TOTAL]);
     bench_grid_number(1e6 * paper->total_ms.value / paper->particles.value, line->field[PER_STEP]);
     bench_grid_number(paper->fps.value, line->field[RATE]);
     bench_grid_number(paper->speedup.value, line->field[SPEEDUP]);
     bench_grid_number(paper->summation_nodes.value, line->field[SUMS]);
-    if (paper->fps.status == REF_SECOND_HAND) strcat(line->field[RATE], "*");
+    static const int timed[] = {TOTAL, PER_STEP, RATE};
+    for (int t = 0; t < 3; t++)
+        if (strcmp(line->field[timed[t]], "-") != 0)
+            mark(ref_paper_step_status(paper), line->field[timed[t]]);
     return true;
 }
 
@@ -138,11 +148,11 @@ static void print_check(FILE *file, const BenchRow *row)
         fprintf(file, "%s\n", row->reason);
         return;
     }
-    fprintf(
-        file,
-        "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost %.1f%%;\n",
-        row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
-        row->instruments_percent);
+    fprintf(file,
+            "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d steps; stage clocks cost %.1f%%, "
+            "which the total is without (below 0: noise);\n",
+            row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
+            row->instruments_percent);
     if (!of_elastic(row))
         fprintf(file, "    voxelised in %.3g ms, built in %.3g ms, %.4g bytes a particle\n",
                 1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,

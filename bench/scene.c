@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "../reference/meshless/points.h"
 #include "builtin.h"
@@ -345,6 +346,11 @@ SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *er
     bool path =
         strchr(name_or_path, '/') || (length > 4 && !strcmp(name_or_path + length - 4, ".cfg"));
     if (path) return bench_scene_read(name_or_path, scene, error);
+    if (access(name_or_path, F_OK) == 0)
+        return sm_fail(error, SM_USAGE,
+                       "%.100s: the ending of its name must say what it is: .cfg a scene, .obj, "
+                       ".ply, .stl, .off or .glb a mesh",
+                       name_or_path);
     return sm_fail(error, SM_USAGE,
                    "'%.100s' is neither a built-in scene (list them with 'shapebench scenes') nor "
                    "a scene file NAME.cfg",

@@ -107,19 +107,23 @@ void bench_store_stages(size_t size, char *names)
                                  sm_stage_name((SmStage)stage));
 }
 
-/* How the paper's values came to us, where a row of it is set beside this one. */
-static void write_statuses(BenchH5 *h5, hid_t group, const BenchRow *row)
+/* More of the paper's row, where one is set beside this one, and how its values came to us. */
+static void write_paper(BenchH5 *h5, hid_t group, const BenchRow *row)
 {
     const RefPaperRow *paper = ref_paper_find(row->paper, row->paper_row);
     char stages[SM_STAGES * 16] = "";
+    double percent[SM_STAGES];
     if (!paper) return;
     for (int s = 0; s < SM_STAGES; s++) {
+        percent[s] = paper->stage_percent[s].value;
         if (s) strcat(stages, " ");
         strcat(stages, ref_status_name(paper->stage_ms[s].status));
     }
     bench_h5_text(h5, group, "paper_total_status", ref_status_name(paper->total_ms.status));
     bench_h5_text(h5, group, "paper_rate_status", ref_status_name(paper->fps.status));
     bench_h5_text(h5, group, "paper_stage_status", stages);
+    bench_h5_numbers(h5, group, "paper_stage_percent", H5T_IEEE_F64LE, SM_STAGES, percent);
+    bench_h5_numbers(h5, group, "paper_particles", H5T_IEEE_F64LE, 0, &paper->particles.value);
 }
 
 void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
@@ -130,7 +134,7 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
     hid_t group = bench_h5_group(h5, parent, name);
     bench_h5_fields(h5, group, row_fields, COUNT(row_fields), row);
     bench_h5_text(h5, group, "stages", stages);
-    write_statuses(h5, group, row);
+    write_paper(h5, group, row);
     hsize_t size[] = {(hsize_t)row->repeats, SM_STAGES};
     bench_h5_dataset(h5, group, "total", H5T_IEEE_F64LE, 1, size, row->total);
     bench_h5_dataset(h5, group, "stage", H5T_IEEE_F64LE, 2, size, row->stage);

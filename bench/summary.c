@@ -76,9 +76,10 @@ static void print_meshless(const BenchRunner *runner, const SmCounts *counts)
 
 static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
 {
-    printf("%s: %s, %s precision: %ld particles, %ld unique regions, w %d, cell %.6g\n",
+    printf("%s: %s, %s precision: %ld particle%s, %ld unique region%s, w %d, cell %.6g\n",
            runner->scene->name, runner->type->name, runner->type->precision, counts->particles,
-           counts->regions, runner->scene->params.w, runner->body->voxels.cell);
+           counts->particles == 1 ? "" : "s", counts->regions, counts->regions == 1 ? "" : "s",
+           runner->scene->params.w, runner->body->voxels.cell);
     if (!counts->broken || !runner->type->pieces) return;
     SmPieces pieces;
     runner->type->pieces(runner->engine, &pieces);
@@ -118,7 +119,6 @@ bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)
     long particles = bench_cast_particles(&play->cast);
     SmCounts counts;
     runner->type->count(runner->engine, &counts);
-    double steps = (double)(outcome->steps > 0 ? outcome->steps : 1);
     if (play->cast.count > 1)
         printf("%s: %ld bodies, %ld nodes in all; the last that is touched:\n", runner->scene->name,
                play->cast.body->instances, particles);
@@ -139,7 +139,10 @@ bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)
     }
     printf("%ld step%s of %g s: ", outcome->steps, outcome->steps == 1 ? "" : "s",
            runner->scene->params.h);
-    if (valid)
+    double steps = (double)outcome->steps;
+    if (valid && !outcome->steps)
+        printf("nothing timed\n");
+    else if (valid)
         printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * outcome->seconds / steps,
                1e9 * outcome->seconds / steps / (double)particles);
     else

@@ -130,10 +130,11 @@ static void write_text(FILE *file, const BenchSweep *sweep, const BenchGrid *gri
             strcmp(plan->width, "edges") != 0 ? "finest cells" : "edges of each node's own cell");
     bench_grid_text(file, grid);
     fputs("\nstages %: fast sum/shape matching/polar/damping/other. Stiffness is a regular beam's, "
-          "0.8 m x 0.1 m: relaxation of a bending wave a step, sag\nof its length, first natural "
-          "frequency. goals off: from epsilon 0, finest cells, rms. path off: the surface from a "
-          "lattice's of equal width\n(w cells) at full resolution, of the body's size, rms and "
-          "most. *: on the front of cost (ms/step) against deviation (path off).\n",
+          "0.8 m x 0.1 m: relaxation of a bending wave a step, sag\nof its length in the limit of "
+          "small sags (of a soft one above 100%), first natural frequency. goals off: from epsilon "
+          "0, finest cells, rms.\npath off: the surface from a lattice's of equal width (w cells) "
+          "at full resolution, of the body's size, rms and most. "
+          "*: on the front of\ncost (ms/step) against deviation (path off).\n",
           file);
     write_hosts(file, sweep);
     write_reasons(file, sweep);

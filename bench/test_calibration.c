@@ -141,6 +141,31 @@ static void two_terms_are_found_again(void **state)
     let_go(made);
 }
 
+/* Specimens whose sag and frequencies disagree are described as they are: those of w 1 and 5 of a
+ * beam of 5 cells, while w 9 agrees. */
+static void what_is_apart_is_described_as_it_is(void **state)
+{
+    (void)state;
+    BenchCalibration *made = make(0.3, 0.1);
+    int apart = 0;
+    for (long i = 0; i < made->count; i++) {
+        BenchSpecimen *s = &made->specimen[i];
+        if (s->across != 5 || (s->w != 1 && s->w != 5)) continue;
+        s->spread = 0.2;
+        apart++;
+    }
+    bench_calibration_conclude(made);
+    char wanted[160];
+    snprintf(wanted, sizeof wanted,
+             "in %d specimens, whose regions are 0.6 to 2.2 times as wide as the beam is thick.",
+             apart);
+    if (!strstr(made->found[2], wanted)) fail_msg("%s", made->found[2]);
+    for (long i = 0; i < made->count; i++) made->specimen[i].spread = 0.02;
+    bench_calibration_conclude(made);
+    assert_non_null(strstr(made->found[2], "apart in 0 specimens."));
+    let_go(made);
+}
+
 /* E = 0.7 rho a^1.5 w^1.2 (L / t)^0.3 / h^2.1; a scatter widens the interval. */
 static void powers_are_found_again(void **state)
 {
@@ -300,6 +325,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plan_makes_its_specimens),
         cmocka_unit_test(two_terms_are_found_again),
+        cmocka_unit_test(what_is_apart_is_described_as_it_is),
         cmocka_unit_test(powers_are_found_again),
         cmocka_unit_test(nothing_is_concluded_from_nothing),
         cmocka_unit_test(a_modulus_has_its_w),

@@ -30,6 +30,8 @@ static int set_up(void **state)
                "mesh = \"shape:block\"; particles = 64; w = 1; engine = \"brute\"; bend = 0.3;\n"
                "frames = 3; steps_per_frame = 2;\n");
     write_text("noise.obj", "no mesh at all\n");
+    write_text("plain", "v 0 0 0\n");
+    write_text("loose.obj", "v 0 0 0\nv 3 1 2\nv 1 3 1\nf 1 2 3\n");
     write_text("lattice.cfg",
                "paper = \"octree\"; mesh = \"shape:block\"; particles = 500; w = 1; bend = 0.3;\n");
     write_text(
@@ -56,13 +58,14 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
 {
     (void)state;
     static const Mistake cases[] = {
-        {"--frobnicate", 2, "frobnicate"},
+        {"--frobnicate", 2, "unrecognized option '--frobnicate'; see 'shapebench --help'"},
         {"frobnicate", 2, "unknown command 'frobnicate'"},
         {"penguin", 2, "unknown command 'penguin'; did you mean 'run penguin'?"},
         {"tiny.cfg", 2, "did you mean 'run tiny.cfg'?"},
-        {"run", 2, "which scene or mesh?"},
-        {"run tiny.cfg --frobnicate", 2, "frobnicate"},
-        {"run tiny.cfg --w 0", 2, "--w: '0' is not a whole number from 1 to 64"},
+        {"run", 2, "which scene or mesh? See 'shapebench run --help'"},
+        {"run tiny.cfg --frobnicate", 2, "'--frobnicate'; see 'shapebench run --help'"},
+        {"run tiny.cfg --w 0", 2,
+         "--w: '0' is not a whole number from 1 to 64; see 'shapebench run --help'"},
         {"run tiny.cfg --w 2x", 2, "--w: '2x'"},
         {"run tiny.cfg --damping 1.5", 2, "--damping: '1.5' is not a number from 0 to 1"},
         {"run tiny.cfg --damping nan", 2, "--damping: 'nan'"},
@@ -70,7 +73,7 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run tiny.cfg --summation slow", 2, "not one of fast, bars, naive"},
         {"run tiny.cfg --layout round", 2, "'round' is not one of auto, lists, blocks"},
         {"run tiny.cfg --record film", 2, "--record: 'film' is not one of particles, nodes"},
-        {"run tiny.cfg --w", 2, "requires an argument"},
+        {"run tiny.cfg --w", 2, "requires an argument; see 'shapebench run --help'"},
         {"run tiny.cfg tiny.cfg", 2, "one scene or mesh only"},
         {"run tiny.cfg --particles 100 --cell 0.1", 2, "either --particles or --cell"},
         {"run tiny.cfg --engine warp", 2, "no engine 'warp'; there are: "},
@@ -96,11 +99,16 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
          "tiny.cfg: 1000000000 particles on brute take "},
         {"run no-such-scene", 2, "shapebench scenes"},
         {"run bad.cfg", 3, "bad.cfg:3: unknown setting 'damping_k'; known: "},
-        {"run missing.cfg", 3, "missing.cfg: cannot be opened"},
+        {"run missing.cfg", 3, "missing.cfg: no such file"},
         {"run missing.obj", 3, "missing.obj"},
         {"run noise.obj", 3, "noise.obj"},
+        {"run loose.obj", 3, "join its vertices, or simulate it as a shell ('run --shell')"},
         {"run tiny.cfg -o no/such/folder.vtkhdf", 4, "no/such/folder.vtkhdf"},
         {"run tiny.cfg --mesh penguin", 2, "--mesh: 'penguin' is not NAME=FILE"},
+        {"run tiny.cfg --mesh penguin=noise.obj", 2, "--mesh: 'penguin' is not this scene, tiny"},
+        {"run noise.obj --mesh penguin=noise.obj", 2, "noise.obj is a mesh itself"},
+        {"run plain --no-output", 2, "plain: the ending of its name must say what it is"},
+        {"run lattice.cfg --w 32", 2, "--w: '32' is not a whole number from 1 to 31"},
         {"run tiny.cfg --mesh x=y", 2, "'x' is not a built-in scene"},
     };
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
@@ -131,8 +139,9 @@ static void mistakes_of_other_commands_are_too(void **state)
 static void help_is_everywhere(void **state)
 {
     (void)state;
-    static const char *const commands[] = {"", "run", "tables", "info", "scenes"};
-    for (int i = 0; i < 5; i++) {
+    static const char *const commands[] = {"",      "run",   "tables",    "info",
+                                           "sweep", "merge", "calibrate", "scenes"};
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         char arguments[64];
         Result result;
         snprintf(arguments, sizeof arguments, "%s --help", commands[i]);
@@ -141,6 +150,8 @@ static void help_is_everywhere(void **state)
         assert_string_equal(result.err, "");
         assert_non_null(strstr(result.out, "Usage: shapebench"));
         assert_non_null(strstr(result.out, "Exit codes: 0 done;"));
+        if (strstr(result.out, "\n\n\n") || strstr(result.out, " \n"))
+            fail_msg("shapebench %s has blank lines too many:\n%s", arguments, result.out);
         if (i) assert_non_null(strstr(result.out, "--threads"));
     }
     Result result;
@@ -247,6 +258,8 @@ static void an_octree_can_be_run(void **state)
         &result);
     if (result.code) fail_msg("%s", result.err);
     assert_non_null(strstr(result.out, "w = 1 x the node's edge, epsilon 0.5"));
+    run("run tiny.cfg --frames 0 --no-output", &result);
+    assert_non_null(strstr(result.out, "\n0 steps of 0.01 s: nothing timed\n"));
     run("run tiny.cfg --engine octree --frames 1 --no-output", &result);
     if (result.code) fail_msg("%s", result.err);
 }

@@ -170,6 +170,21 @@ static void cubes_of_both_engines_are_timed(void **state)
     bench_lab_free(&lab);
 }
 
+/* The searches alone are a part of finding the regions: whatever their width, less than all. */
+static void searches_are_a_part_of_the_set_up(void **state)
+{
+    (void)state;
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {
+        .experiment = BENCH_TRY_SETUP, .field = "distance-share", .n = {1, 4, 2}};
+    int number = bench_experiment(&lab, &measure);
+    const BenchCurve *curve = &lab.curve[number];
+    if (!curve->valid) fail_msg("%s", curve->reason);
+    assert_int_equal(curve->points, 2);
+    for (int p = 0; p < 2; p++) assert_true(curve->y[p] > 0 && curve->y[p] < 100);
+    bench_lab_free(&lab);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -182,6 +197,7 @@ int main(void)
         cmocka_unit_test(scenes_give_their_fields),
         cmocka_unit_test(what_cannot_be_measured_is_not_valid),
         cmocka_unit_test(cubes_of_both_engines_are_timed),
+        cmocka_unit_test(searches_are_a_part_of_the_set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -214,6 +214,13 @@ static void statuses_of_the_paper_are_stored(void **state)
             bench_h5_read_text(&h5, group, names[n], sizeof text, text);
             assert_string_equal(h5.failed ? h5.message : text, cases[c][2 + n]);
         }
+        double given[SM_STAGES + 1];
+        const BenchField more[] = {
+            {"paper_stage_percent", BENCH_DOUBLE, 0, SM_STAGES * sizeof *given},
+            {"paper_particles", BENCH_DOUBLE, SM_STAGES * sizeof *given, sizeof *given}};
+        bench_h5_read_fields(&h5, group, more, 2, given);
+        assert_true(c == 0 ? given[0] == 10 && given[1] == 19 : isnan(given[0]));
+        assert_true(given[SM_STAGES] == (c == 0 ? 2570 : 35000));
         bench_h5_close(&h5);
         bench_row_free(&row);
         unlink(path);
@@ -279,6 +286,7 @@ static void unwritable_targets(void **state)
     cannot_store(path, "create the folder");
     cannot_store("/dev/null", "not a regular file");
     cannot_store(folder, "not a regular file");
+    cannot_store("/proc/rows.h5", "no file can be made in that folder");
     cannot_store("/dev/null/rows.h5", "Not a directory");
 }
 

@@ -147,6 +147,9 @@ static void shards_merge_to_the_whole(void **state)
     assert_int_equal(result->code, 0);
     assert_string_equal(result->out, "all.h5: 3 of 3 points\n");
     equals_whole("all.h5");
+    run("merge first.h5 two.h5", result);
+    assert_int_equal(result->code, 4);
+    assert_non_null(strstr(result->err, "cannot write first.h5: it is there; name a new file"));
     run("merge twice.h5 one.h5 whole.h5", result);
     assert_int_equal(result->code, 3);
     assert_non_null(strstr(result->err, "was measured twice"));
@@ -266,7 +269,7 @@ static void a_rank_that_cannot_stops_no_other(Result *result)
              SMALL " -o lame.h5 : -n 1 '" BINARY_DIR "/shapebench' sweep --scene no.cfg -o lame.h5",
              result);
     assert_int_equal(result->code, 3);
-    assert_non_null(strstr(result->err, "rank 1: no.cfg: cannot be opened"));
+    assert_non_null(strstr(result->err, "rank 1: no.cfg: no such file"));
     BenchSweep sweep;
     load("lame.h5", &sweep);
     assert_int_equal(sweep.count, 2);

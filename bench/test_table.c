@@ -165,7 +165,7 @@ static void markdown_and_latex_escape(void **state)
     }
     free(text);
     text = print(BENCH_AS_LATEX);
-    assert_non_null(strstr(text, "\na\\_b,\"c\"\\&50\\%|x & 150 & 130 & 2 & INVALID &"));
+    assert_non_null(strstr(text, "\na\\_b,\"c\"\\&50\\%$|$x & 150 & 130 & 2 & INVALID &"));
     assert_non_null(strstr(text, "0.00200 (14\\%)"));
     assert_non_null(strstr(text, "\\end{tabular}"));
     free(text);
@@ -218,6 +218,7 @@ static void an_octree_has_columns_of_its_own(void **state)
         "99.5",
         "6.23",
         "88.0",
+        "4.50 ", /* of a rate that is quoted */
         "6.00",
         "662 nodes (nearest to the 661 wanted) from 29 base cells (nearest to the 28 wanted), "
         "29358 "
@@ -245,6 +246,15 @@ static void an_octree_has_columns_of_its_own(void **state)
         if (!valid) assert_null(strstr(text, "99.5"));
         free(text);
     }
+    char *text = NULL;
+    size_t size;
+    FILE *file = open_memstream(&text, &size);
+    strcpy(row.paper_row, "hand-regular"); /* its rate is second-hand, and so what follows */
+    bench_table_write(file, BENCH_AS_MARKDOWN, &row, 1, &machine);
+    fclose(file);
+    assert_non_null(strstr(text, "| 217* | 6211* |"));
+    assert_non_null(strstr(text, "| 4.60* |"));
+    free(text);
 }
 
 /* A row that changes has a line in a second table, the paper's below, and its columns in CSV. */
@@ -294,6 +304,7 @@ static void what_changes_has_a_table_of_its_own(void **state)
             if (format == BENCH_AS_CSV && valid)
                 assert_non_null(strstr(text, ",1548,0.0625,0.25,2.5,4.75,1.25,0.075,,,,\n"));
             if (format == BENCH_AS_MARKDOWN) assert_non_null(strstr(text, "| 501 -> 1548 |"));
+            if (format == BENCH_AS_LATEX) assert_non_null(strstr(text, " & 501 $\\to$ 1548 & "));
             if (!valid) assert_null(strstr(text, "0.25"));
             assert_null(strstr(text, "could not follow"));
             free(text);

@@ -331,7 +331,7 @@ static void words_are_short_and_whole(void **state)
     claim.value[1] = 0.5;
     claim.value[2] = NAN;
     bench_verdict_paper(&claim, sizeof text, text);
-    assert_string_equal(text, "3/0.50/-");
+    assert_string_equal(text, "3/0.500/-");
 }
 
 int main(void)

@@ -221,7 +221,8 @@ static int number_text(double value, size_t size, char *text)
     if (!isfinite(value)) return snprintf(text, size, "-");
     double big = fabs(value);
     if (big >= 1000 || value == rint(value)) return snprintf(text, size, "%.0f", value);
-    return snprintf(text, size, "%.*f", big >= 100 ? 0 : big >= 10 ? 1 : big >= 0.1 ? 2 : 4, value);
+    int decimals = big >= 100 ? 0 : big >= 10 ? 1 : big >= 1 ? 2 : big >= 0.1 ? 3 : 4;
+    return snprintf(text, size, "%.*f", decimals, value);
 }
 
 static void join(const double *value, int count, size_t size, char *text)

@@ -39,6 +39,7 @@ typedef struct {
 struct Blocks {
     int width;          /* blocks across the lattice's box along x */
     bool running;       /* sums along y and z are windows that move: O(1) */
+    bool streams;       /* what a step goes through does not stay in cache: it is asked for ahead */
     int *plane_run;     /* [planes + 1] first run of each plane; runs rise in y, then x */
     int *row_run;       /* [planes * rows + 1] the same of each row */
     BlockRun *run;      /* and one more, where the blocks end */

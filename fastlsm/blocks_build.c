@@ -151,6 +151,8 @@ void lsm_blocks_build(Lsm *lsm)
     Blocks *box = lsm->box = sm_alloc(1, sizeof *box);
     int planes = l->size[2];
     long blocks = count_blocks(l);
+    const long cache = 2 << 20;
+    box->streams = blocks * SM_LANES * (long)(6 * sizeof(real) + 6 * sizeof(short)) > cache;
     box->width = (l->size[0] + SM_LANES - 1) / SM_LANES;
     box->plane_run = sm_alloc((size_t)planes + 1, sizeof(int));
     box->row_run = sm_alloc((size_t)l->size[1] * (size_t)planes + 1, sizeof(int));

@@ -99,6 +99,7 @@ SM_INLINE void plane_down(Lsm *lsm, int plane, int thread, int w, bool damping, 
         const BlockRun *run = &box->run[r];
         for (long block = run->first; block < run->first + run->count; block++) {
             vec sum[6];
+            if (!damping && box->streams) prefetch_ahead(lsm, lsm->v, block);
             stage_z_down(lsm, &downs, block, run->moves_z, thread, w, damping, sum);
             end(lsm, block, sum, laps);
         }

@@ -179,11 +179,16 @@ SM_INLINE void run_up_all(const Lsm *lsm, const BlockRun *run, int w, bool dampi
         run_up(lsm, run, w, false, moving, 0, 3, kept, row);
 }
 
-/* Regions that differ have constants of their own, which come from far: asked for when their row
- * goes up, they are there when it is solved. */
-SM_INLINE void prefetch_constants(const Lsm *lsm, const BlockRun *run, bool damping)
+/* Asks for what comes from far: the newest plane that the z stage reads; and constants of regions,
+ * of which those that differ have their own: they are there when the row is solved. */
+SM_INLINE void prefetch_run(const Lsm *lsm, const BlockRun *run, int w, bool damping)
 {
     for (int block = run->first; block < run->first + run->count; block++) {
+        if (lsm->box->streams) {
+            int newest = lsm->box->along_z[block * (long)(2 * w + 1) + 2 * w];
+            prefetch_ahead(lsm, lsm->x, newest);
+            if (damping) prefetch_ahead(lsm, lsm->v, newest);
+        }
         const RegionConst *k = lsm->region_const + lsm->tile_const[block];
         __builtin_prefetch(&k->inverse_mass);
         for (int d = 0; d < 3 && !damping; d++) __builtin_prefetch(&k->offset[d]);
@@ -197,7 +202,7 @@ SM_INLINE void row_up(const Lsm *lsm, const Scratch *s, BlockRow at, int slot, i
     for (int i = 0; i < at.runs; i++) {
         const BlockRun *run = at.run + i;
         real *kept = w >= RUNNING ? s->plane + run->y * s->pitch : NULL;
-        prefetch_constants(lsm, run, damping);
+        prefetch_run(lsm, run, w, damping);
         if (w >= RUNNING && run->moves_z)
             run_up_all(lsm, run, w, damping, true, kept, row);
         else

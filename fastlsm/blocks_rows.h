@@ -18,6 +18,14 @@ SM_INLINE int chain_value(int f)
     return f < 3 ? f : 3 + f % 3 * 3 + (f / 3 + 1) % 3;
 }
 
+/* Asks for x or v of the block AHEAD of `block`. */
+enum { AHEAD = 8 };
+SM_INLINE void prefetch_ahead(const Lsm *lsm, const real *of, long block)
+{
+    long ahead = block + AHEAD < lsm->blocks ? block + AHEAD : lsm->blocks;
+    for (int d = 0; d < 3; d++) __builtin_prefetch(of + (ahead * 3 + d) * SM_LANES);
+}
+
 /* Scratch of a thread. Rings hold the last 2 w + 2 rows of a plane, each [width][BLOCK]. */
 typedef struct {
     long pitch;      /* values in a row */

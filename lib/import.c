@@ -39,8 +39,8 @@ static SmCode check_file(const char *path, double *bytes, SmError *error)
     if (status.st_size == 0) return sm_fail(error, SM_INPUT, "%s: the file is empty", path);
     if (is_point_format(path))
         return sm_fail(error, SM_INPUT,
-                       "%s: a point format holds only points, no triangles; the meshless engine "
-                       "takes points with normals",
+                       "%s: a point format holds only points, no triangles; 'run --engine "
+                       "meshless' takes points with normals",
                        path);
     *bytes = (double)status.st_size;
     return SM_OK;

@@ -215,7 +215,10 @@ static int reply_reason(int reply)
 {
     const char *reason = aiGetErrorString();
     if (strstr(reason, "bad_alloc")) return SM_CHILD_NO_MEMORY;
-    return reply_text(reply, *reason ? reason : "the importer gives no reason");
+    char text[SM_REPLY_TEXT];
+    snprintf(text, sizeof text, "%.300s; is it damaged or cut off? Export it again",
+             *reason ? reason : "the importer gives no reason");
+    return reply_text(reply, text);
 }
 
 int sm_importer(void *path, int reply)

@@ -294,13 +294,17 @@ SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error)
     for (long v = 0; v < mesh->vertex_count; v++)
         for (int a = 0; a < 3; a++)
             if (!isfinite(mesh->position[v][a]))
-                return sm_fail(error, SM_INPUT, "%s: %c of vertex %ld is not a finite number", name,
-                               "xyz"[a], v + 1);
+                return sm_fail(error, SM_INPUT,
+                               "%s: the %c of a vertex is not a finite number (nan, inf or too "
+                               "large); correct it, or export the mesh again",
+                               name, "xyz"[a]);
     for (long t = 0; t < mesh->triangle_count; t++)
         for (int c = 0; c < 3; c++)
             if (mesh->triangle[t][c] < 0 || mesh->triangle[t][c] >= mesh->vertex_count)
-                return sm_fail(error, SM_INPUT, "%s: triangle %ld names vertex %ld of %ld", name,
-                               t + 1, mesh->triangle[t][c] + 1L, mesh->vertex_count);
+                return sm_fail(error, SM_INPUT,
+                               "%s: a triangle names a vertex that is not there; export the mesh "
+                               "again",
+                               name);
     double low[3], side = longest_side(mesh, low);
     if (side == 0) return sm_fail(error, SM_INPUT, "%s: all vertices are at one point", name);
     if (side < 1e-30 || side > 1e30)

@@ -165,8 +165,11 @@ static void test_unusable_files(void **state)
     expect_error(write_text("words.obj", "these are words\n"), NULL, "");
     expect_error(write_text("words.stl", "solid words\n"), NULL, "");
     expect_error(write_text("words.glb", "glTF but not quite"), NULL, "");
-    expect_error(write_text("points.xyz", "1 2 3\n"), NULL, "only points");
-    expect_error(write_text("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), NULL, "");
+    expect_error(write_text("points.xyz", "1 2 3\n"), NULL, "run --engine meshless");
+    expect_error(write_text("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), NULL,
+                 "the x of a vertex is not a finite number");
+    expect_error(write_text("number.obj", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n"), NULL,
+                 "is it damaged or cut off? Export it again");
     expect_error(write_text("same.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"), NULL, "one point");
     expect_error(write_text("points.ply", "ply\nformat ascii 1.0\nelement vertex 2\n"
                                           "property float x\nproperty float y\n"
@@ -367,7 +370,8 @@ static void test_broken_replies(void **state)
         assert_int_equal(sm_reply_read(reply, size, "f", &mesh, &error), SM_INPUT);
     reply[sizeof header + 24] = 7;
     assert_int_equal(sm_reply_read(reply, sizeof header + 36, "f", &mesh, &error), SM_INPUT);
-    assert_string_equal(error.text, "f: triangle 1 names vertex 8 of 1");
+    assert_string_equal(error.text,
+                        "f: a triangle names a vertex that is not there; export the mesh again");
 }
 
 static void test_shared_meshes(void **state)

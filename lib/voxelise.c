@@ -158,7 +158,7 @@ SmCode sm_voxeliser_build(SmVoxeliser *v, double cell, const double shift[3], Sm
         sm_voxels_free(voxels);
         return sm_fail(error, SM_INPUT,
                        "%s: no inside to fill: its triangles are loose (most share no edge with "
-                       "another); simulate it as a shell",
+                       "another); join its vertices, or simulate it as a shell ('run --shell')",
                        v->name);
     }
     sm_voxels_count(voxels);

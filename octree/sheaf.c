@@ -168,10 +168,12 @@ static long spread(OctSheaf *s, long place, long end)
     return end;
 }
 
-/* Distances of all leaves that are within reach. */
-static void find_distances(OctSheaf *s, int count, const int *leaf)
+void oct_sheaf_search(OctSheaf *s, int count, const int *leaf, const int *reaches)
 {
     long end;
+    clear(s);
+    s->beyond = same(0);
+    for (int l = 0; l < count; l++) s->beyond[l] = reaches[l] + 1;
     make_leaves(s, OCT_SHEAF);
     if (s->queue_room < OCT_SHEAF) {
         s->queue_room = OCT_SHEAF;
@@ -268,16 +270,12 @@ static void choose(OctSheaf *s)
 
 void oct_sheaf_find(OctSheaf *s, int count, const int *leaf, const int *w, const int *reaches)
 {
-    clear(s);
     s->w = same(-1);
-    s->beyond = same(0);
     s->width = same(0);
     memset(s->members, 0, sizeof s->members);
-    for (int l = 0; l < count; l++) {
+    for (int l = 0; l < count; l++)
         s->w[l] = w[l] < reaches[l] ? w[l] : reaches[l]; /* nothing beyond is found */
-        s->beyond[l] = reaches[l] + 1;
-    }
-    find_distances(s, count, leaf);
+    oct_sheaf_search(s, count, leaf, reaches);
     find_intervals(s);
     choose(s);
     for (int l = 0; l < count; l++) oct_lists_sort(s->member + l * s->leaf_room, s->members[l]);

@@ -53,6 +53,9 @@ size_t oct_sheaf_bytes(const OctSheaf *sheaf);
 /* Makes the scratch good for as many numbers, between searches. */
 void oct_sheaf_grow(OctSheaf *sheaf, long nodes, long leaves, const int *below);
 
+/* The distances alone, with which oct_sheaf_find() begins: `leaves`, `leaf` and `distance`. */
+void oct_sheaf_search(OctSheaf *sheaf, int count, const int *leaf, const int *reaches);
+
 /* What `count` different leaves of widths w own, who reach so far (0 to OCT_FAR / 2). Cost: what
  * all of them reach together, times its edges, for each time that a distance to it falls; so leaves
  * should be near each other. */

@@ -175,6 +175,11 @@ int ref_paper_column(const RefPaperRow *row, const char *column, RefValue value[
     return 0;
 }
 
+RefStatus ref_paper_step_status(const RefPaperRow *row)
+{
+    return row->total_ms.status == REF_DERIVED ? row->fps.status : row->total_ms.status;
+}
+
 const RefPaperClaim *ref_paper_claims(int *count)
 {
     call_once(&once, read_all);

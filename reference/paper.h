@@ -55,6 +55,10 @@ extern const char ref_claims_text[];
  * for an unknown column. What the paper does not give is NaN. */
 int ref_paper_column(const RefPaperRow *row, const char *column, RefValue value[SM_STAGES]);
 
+/* How the row's time of a step, and its rate, came to us: either follows from the other, and a
+ * derived one is as sound as that. */
+RefStatus ref_paper_step_status(const RefPaperRow *row);
+
 /* "quoted", "derived", "damaged", "second-hand". */
 const char *ref_status_name(RefStatus status);
 

@@ -114,6 +114,22 @@ static void changing_scenes_have_an_end(void **state)
     assert_true(isnan(ref_paper_find("fastlsm", "penguin")->change_most_ms.value));
 }
 
+/* A rate that is second-hand makes the time that is derived from it so, and the other way round. */
+static void a_step_is_as_sound_as_its_source(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *paper, *scene;
+        RefStatus status;
+    } cases[] = {{"octree", "hand-regular", REF_SECOND_HAND},
+                 {"octree", "liver", REF_SECOND_HAND},
+                 {"octree", "hand-sampled", REF_QUOTED},
+                 {"fastlsm", "penguin", REF_QUOTED}};
+    for (int c = 0; c < 4; c++)
+        assert_int_equal(ref_paper_step_status(ref_paper_find(cases[c].paper, cases[c].scene)),
+                         cases[c].status);
+}
+
 static void claims_are_complete(void **state)
 {
     (void)state;
@@ -139,6 +155,7 @@ int main(void)
         cmocka_unit_test(costs_per_particle_follow_from_the_table),
         cmocka_unit_test(the_hand_has_its_rows),
         cmocka_unit_test(changing_scenes_have_an_end),
+        cmocka_unit_test(a_step_is_as_sound_as_its_source),
         cmocka_unit_test(claims_are_complete),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

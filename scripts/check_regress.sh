@@ -6,15 +6,20 @@
 # function that first waits for 5% of what the call takes. Nothing in the sources knows of it.
 #
 # usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]]     default: infant 10 10
-# exit codes: 0 as it should be, 1 not caught or a false alarm, 2 usage, 3 no build/shapebench (scripts/run makes it)
+# exit codes: 0 as it should be, 1 not caught or a false alarm, 2 not so called, 3 no build/shapebench (scripts/run makes it)
 set -u
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd) || exit 1
 scene=${1:-infant} rounds=${2:-10} times=${3:-10}
-if [ $# -gt 3 ] || [[ $scene = -* || ! $rounds =~ ^[1-9][0-9]*$ || ! $times =~ ^[1-9][0-9]*$ ]]; then
+revision=${REVISION:-HEAD}
+usage() {
     echo "usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]]" >&2
     exit 2
-fi
-revision=${REVISION:-HEAD}
+}
+case $scene in -*) usage ;; esac
+for number in "$rounds" "$times"; do
+    case $number in *[!0-9]* | "") usage ;; esac
+done
+[ $# -le 3 ] || usage
 cd -- "$root" || exit 1
 [ -x build/shapebench ] || { echo "$0: no build/shapebench; scripts/run makes it" >&2 && exit 3; }
 scratch=$(mktemp -d) || exit 1

@@ -1,7 +1,5 @@
 """Figures of measured rows (`shapebench tables -o`): shares of stages, times beside the papers', frames of
 scenes that change, threads, and a scene's history."""
-import math
-
 import numpy as np
 
 from drawing import COLOURS, DOUBTS, MARKS, PAPER, Figure, canvas, number
@@ -24,11 +22,6 @@ def share_bars(axes, y, values, height, alpha, statuses=()):
         axes.text(sum(values[:s]) + values[s] / 2, y, DOUBTS.get(status, ""), ha="center", va="center", fontsize=7)
 
 
-def paper_shares(row):
-    values = np.array(row["paper_stage_ms"], dtype=float)
-    return 100 * values / np.nansum(values) if np.isfinite(values).all() or np.nansum(values) > 0 else None
-
-
 def stage_shares(rows):
     """Percent of a step in each stage; the paper's beneath, pale."""
     rows = valid(rows)
@@ -41,8 +34,8 @@ def stage_shares(rows):
         shares = 100 * np.array(row["stage_ms"]) / row["total_ms"]
         share_bars(axes, y - 0.13, shares, 0.42, 1)
         data.append([row["scene"], "measured"] + [round(float(v), 2) for v in shares] + [""])
-        paper = paper_shares(row)
-        if paper is not None:
+        paper = row["paper_stage_percent"]
+        if np.isfinite(paper).any():
             share_bars(axes, y + 0.25, np.nan_to_num(paper), 0.2, 0.45, row["paper_stage_statuses"])
             statuses = row["paper_stage_statuses"]
             data.append([row["scene"], "paper"] + [None if v != v else round(float(v), 2) for v in paper]
@@ -69,13 +62,12 @@ def stage_shares(rows):
 def beside_paper(rows):
     """ns per particle and step, and the paper's."""
     rows = valid(rows)
-    if not any(row["paper_total_ms"] > 0 for row in rows):
+    if not any(row["paper_ns"] > 0 for row in rows):
         return None
     figure, axes = canvas(7.2, 0.9 + 0.3 * len(rows))
     data = []
     for y, row in enumerate(rows):
-        ns = row["ns_per_particle_step"]
-        paper = 1e6 * row["paper_total_ms"] / row["particles"] if row["particles"] else math.nan
+        ns, paper = row["ns_per_particle_step"], row["paper_ns"]
         if paper == paper:
             axes.plot([ns, paper], [y, y], color="#cccccc", linewidth=1.5, zorder=1)
             axes.plot(paper, y, "D", color=PAPER, markersize=5)
@@ -92,8 +84,8 @@ def beside_paper(rows):
     times = [f"{scene} {number(ns)} against {number(paper)}{DOUBTS.get(status, '')}"
              for scene, ns, paper, status in data if paper]
     return Figure("beside-paper", "Cost of a particle and step",
-                  "Median of this run beside what the paper's table gives for its own processor; the paper's total is "
-                  "divided by the particles measured here." + doubts_said(line[3] for line in data),
+                  "Median of this run beside what the paper's table gives for its own processor and "
+                  "particles." + doubts_said(line[3] for line in data),
                   "Dots on a logarithmic scale of nanoseconds: " + "; ".join(times) + ".",
                   ["scene", "ns_per_particle_step", "paper_ns_per_particle_step", "paper_status"], data).draw(figure)
 

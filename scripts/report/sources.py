@@ -2,6 +2,7 @@
 
 Layouts are those of results/README.md: measurements ("shapebench results"), claims ("shapebench claims")
 sweeps ("shapebench sweep") and calibrations ("shapebench calibration")."""
+import math
 import os
 
 import h5py
@@ -11,7 +12,7 @@ SCHEMAS = {"shapebench results": 4, "shapebench claims": 1, "shapebench sweep": 
            "shapebench calibration": 1}
 TEXTS = ("paper", "scene", "engine", "precision", "reason", "stages")
 NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_low_ms", "total_high_ms",
-           "ns_per_particle_step", "summation_nodes", "paper_total_ms") + tuple(
+           "ns_per_particle_step", "summation_nodes", "damping", "paper_total_ms") + tuple(
     "change." + name for name in ("frames", "changed", "first_nodes", "most_nodes", "most_added", "first_ms", "last_ms",
                                   "change_ms", "change_most_ms", "follow_ms", "surface_ms", "first_triangles",
                                   "last_triangles", "pieces", "open_edges", "left"))
@@ -87,14 +88,22 @@ def read_statuses(row):
     row["paper_stage_statuses"] = given["paper_stage_status"].split() or [""] * len(row["stage_ms"])
 
 
+def read_paper(row):
+    """The paper's time of a particle and step, and its stages' percents; NaN where the file does not say."""
+    row["paper_ns"] = 1e6 * row["paper_total_ms"] / (row.get("paper_particles") or math.nan)
+    row.setdefault("paper_stage_percent", np.full(len(row["stage_ms"]), math.nan))
+    demand(row, ("paper_stage_percent",), np.ndarray)
+
+
 def read_row(group):
     row = attributes(group)
     demand(row, TEXTS, str)
     demand(row, NUMBERS, (int, float))
     demand(row, ("stage_ms", "paper_stage_ms"), np.ndarray)
     read_statuses(row)
+    read_paper(row)
     if not (len(row["stages"].split()) == len(row["stage_ms"]) == len(row["paper_stage_ms"])
-            == len(row["paper_stage_statuses"])):
+            == len(row["paper_stage_statuses"]) == len(row["paper_stage_percent"])):
         raise ValueError("the number of stages")
     for name in ("total", "stage", "frames"):
         if name in group:

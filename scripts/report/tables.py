@@ -1,4 +1,6 @@
 """Tables of a report: headings and lines of texts, numbers as people read them."""
+import math
+
 from drawing import DOUBTS, number
 
 
@@ -26,9 +28,19 @@ def doubts_said(statuses):
     return f" {text[0].upper()}{text[1:]}." if text else ""
 
 
-def times(values, total, statuses=None):
-    texts = [f"{number(ms)} ({100 * ms / total:.0f}%)" if ms == ms and total > 0 else "–" for ms in values]
+def times(values, percents, statuses=None):
+    texts = [number(ms) + (f" ({percent:.0f}%)" if ms == ms and percent == percent else "")
+             for ms, percent in zip(values, percents)]
     return [text + DOUBTS.get(status, "") for text, status in zip(texts, statuses or [""] * len(texts))]
+
+
+def measured_times(row, names):
+    """Of these stages; of damping only where there is any."""
+    stages = dict(zip(row["stage_names"], row["stage_ms"]))
+    if not row["damping"] > 0:
+        stages["damping"] = math.nan
+    values = [stages[name] for name in names]
+    return times(values, [100 * ms / row["total_ms"] if row["total_ms"] > 0 else math.nan for ms in values])
 
 
 def measured(source):
@@ -53,11 +65,12 @@ def measured(source):
             continue
         faster = f"{number(paper / total)} times" if paper == paper and total > 0 else "–"
         table.add([row["scene"], number(total), f"{number(row['total_low_ms'])} to {number(row['total_high_ms'])}",
-                   number(row["ns_per_particle_step"]), faster, "VALID"] + times(row["stage_ms"], total) + counts)
+                   number(row["ns_per_particle_step"]), faster, "VALID"] + measured_times(row, row["stage_names"])
+                  + counts)
         if paper == paper:
             mark = DOUBTS.get(row["paper_status"], "")
-            table.add(["paper", number(paper) + mark, "", number(1e6 * paper / row["particles"]) + mark, "", ""]
-                      + times(row["paper_stage_ms"], paper, row["paper_stage_statuses"]) + [""] * len(counts), "paper")
+            table.add(["paper", number(paper) + mark, "", number(row["paper_ns"]) + mark, "", ""]
+                      + times(row["paper_stage_ms"], row["paper_stage_percent"], row["paper_stage_statuses"]) + [""] * len(counts), "paper")
             shown += [row["paper_status"]] + row["paper_stage_statuses"]
     table.note += doubts_said(shown)
     return table
@@ -74,14 +87,13 @@ def elastic(source):
                   "Medians. The paper's frames are of its own processor and include the drawing of the points.")
     for row in rows:
         body, total, paper = row["elastic"], row["total_ms"], row["paper_total_ms"]
-        parts = dict(zip(row["stage_names"], row["stage_ms"]))
         counts = [row["scene"], number(row["particles"]), number(body["nodes"]), number(body["modes"])]
         if not row["valid"]:
             table.add(counts + ["–"] * 7 + ["INVALID: " + row["reason"]], "invalid")
             continue
         beside = [number(paper), f"{number(paper / total)} times"] if paper == paper else ["–", "–"]
         table.add(counts + [number(body["matrix_seconds"]), number(body["mode_seconds"])]
-                  + times([parts["shape_matching"], parts["other"]], total) + [number(total)] + beside + ["VALID"])
+                  + measured_times(row, ["shape_matching", "other"]) + [number(total)] + beside + ["VALID"])
     return table
 
 
