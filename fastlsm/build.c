@@ -214,7 +214,7 @@ static void place_lists(Lsm *lsm, const bool *listed)
         box->mixed[lsm->slot[p] / SM_LANES] = true;
     }
     for (long i = lsm->side; i < lsm->sets.bar_count * lsm->side; i++)
-        if (lsm->sets.bar[i]) box->listed[(lsm->sets.bar[i] - 1) / SM_LANES] = true;
+        if (lsm->sets.bar[i]) box->listed[(lsm->sets.bar[i] / LSM_NAME - 1) / SM_LANES] = true;
     if (lsm->corrections) lsm_corrections_mark(lsm);
 }
 

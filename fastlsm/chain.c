@@ -33,10 +33,10 @@ void lsm_chain_factors(int w, double factor[LSM_FACTORS][2])
         }
 }
 
-static void add_term(LsmTerm *term, int *count, int row, int place, bool leaves)
+static void add_term(LsmTerm *term, int *count, int name, int place, bool leaves)
 {
-    if (!row) return;
-    if (term) term[*count] = (LsmTerm){row, 2 * (place + 1) + leaves};
+    if (!name) return;
+    if (term) term[*count] = (LsmTerm){name / LSM_NAME, 2 * (place + 1) + leaves};
     (*count)++;
 }
 
@@ -78,10 +78,10 @@ static int meet(const Kind *kind, long r)
     return list_terms(kind->side, row_of(kind, r), NULL, 0, NULL);
 }
 
-/* The member at place i of row r; 0 where there is none. */
+/* The number of the member at place i of row r; 0 where there is none. */
 static int member(const Kind *kind, long r, int i)
 {
-    return r == 0 || i >= kind->side ? 0 : row_of(kind, r)[i];
+    return r == 0 || i >= kind->side ? 0 : row_of(kind, r)[i] / LSM_NAME;
 }
 
 /* Bases of the bars of a plate, from the same plates of the regions one step back along x, y, z. */

@@ -111,6 +111,12 @@ SM_INLINE void row_sums(const real *const *at, int side, int F, int first, vec *
     }
 }
 
+/* Where the members of a list (sets.h) are, `pitch` vectors each. */
+SM_INLINE void members_at(const int *name, int side, const real *in, int pitch, const real **at)
+{
+    for (int i = 0; i < side; i++) at[i] = in + (long)name[i] * pitch * (L / LSM_NAME);
+}
+
 /* One list level: out[row] = window sum over in[list[row]], F values in and out_F out. `first` is
  * where the moments are taken (window.h), or -1; `down` takes them off instead of keeping them. */
 SM_INLINE void level(const int *list, long from, long to, int side, const real *in, int pitch,
@@ -119,8 +125,7 @@ SM_INLINE void level(const int *list, long from, long to, int side, const real *
     for (long row = from; row < to; row++) {
         const real *at[LSM_MAX_SIDE];
         vec sum[15];
-        for (int i = side - 1; i > 0; i--) at[i] = in + (long)list[row * side + i] * pitch * L;
-        at[0] = in + (long)list[row * side] * pitch * L;
+        members_at(list + row * side, side, in, pitch, at);
         row_sums(at, side, F, first, sum);
         for (int d = 0; d < 3 && down; d++) sum[d] -= sum[F + d];
         for (int f = 0; f < out_F; f++) lanes_store(out + (row * out_pitch + f) * L, sum[f]);
@@ -155,8 +160,7 @@ SM_INLINE void last_level(const Crowd *crowd, int side, const real *in, int pitc
 {
     const int *id = crowd->lsm->sets.region + p * side;
     const real *at[LSM_MAX_SIDE];
-    for (int i = side - 1; i > 0; i--) at[i] = in + (long)id[i] * pitch * L;
-    at[0] = in + (long)id[0] * pitch * L;
+    members_at(id, side, in, pitch, at);
     row_sums(at, side, F, first, sum);
 }
 

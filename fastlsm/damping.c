@@ -54,7 +54,7 @@ static void store_velocities(const Lsm *lsm, long tile, const vec out[6])
 /* The list sums of SM_LANES regions, in lanes. */
 static void region_sums(const Lsm *lsm, const int *region, vec field[16])
 {
-    vec16 sums[SM_LANES] = {{0}};
+    vec16 sums[SM_LANES];
     const real *row[SM_LANES];
     lsm_regions_plain(lsm, region, sums);
     for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&sums[lane];

@@ -61,7 +61,7 @@ SM_INLINE void sums_of_rows(const real *const row[SM_LANES], vec S[12])
 /* The list sums of SM_LANES regions, in lanes. */
 static void region_sums(const Lsm *lsm, const int *region, vec S[12])
 {
-    vec16 sums[SM_LANES] = {{0}};
+    vec16 sums[SM_LANES];
     const real *row[SM_LANES];
     lsm_regions_up(lsm, region, sums);
     for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&sums[lane];

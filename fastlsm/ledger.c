@@ -29,9 +29,9 @@ static int *make_room(int **rows, int side, long *count, long *plane, long *end,
     return number;
 }
 
-static void renumber(int *row, long count, const int *number)
+static void rename_rows(int *name, long count, const int *number)
 {
-    for (long i = 0; i < count; i++) row[i] = number[row[i]];
+    for (long i = 0; i < count; i++) name[i] = LSM_NAME * number[name[i] / LSM_NAME];
 }
 
 static uint64_t bucket_of(const LsmShelf *shelf, const int *row)
@@ -56,7 +56,7 @@ static void open_shelf(LsmShelf *shelf, long count, const int *named, long names
     shelf->next = sm_alloc(rows, sizeof(int));
     shelf->bucket = sm_alloc(shelf->mask + 1, sizeof(int));
     shelf->free_row = sm_alloc((size_t)planes + 1, sizeof(int));
-    for (long i = 0; i < names; i++) shelf->uses[named[i]]++;
+    for (long i = 0; i < names; i++) shelf->uses[named[i] / LSM_NAME]++;
     for (long r = 1; r < count; r++)
         if (shelf->uses[r]) enter(shelf, r);
 }
@@ -67,11 +67,11 @@ void lsm_ledger_open(LsmSets *sets, int layers, const int *layer_plane, long spa
     int side = sets->side;
     int *number = make_room(&sets->bar, side, &sets->bar_count, sets->bar_plane, sets->bar_end,
                             layers, layer_plane, spare);
-    renumber(sets->plate, sets->plate_count * side, number);
+    rename_rows(sets->plate, sets->plate_count * side, number);
     free(number);
     number = make_room(&sets->plate, side, &sets->plate_count, sets->plate_plane, sets->plate_end,
                        layers, layer_plane, spare);
-    renumber(sets->region, sets->region_count * side, number);
+    rename_rows(sets->region, sets->region_count * side, number);
     free(number);
     *ledger = (LsmLedger){
         .bars = {.side = side, .row = sets->bar, .limit = sets->bar_plane, .end = sets->bar_end},
@@ -149,13 +149,14 @@ static int add_plate(LsmLedger *ledger, const LsmLattice *l, const int *slot, co
     for (int i = 0; i < side; i++) {
         if (!rows[i]) continue;
         lsm_sets_bar(l, slot, side / 2, at[0], at[1] + i - side / 2, at[2], rows[i], bar);
-        plate[i] = find_or_add(&ledger->bars, layer_end, bar);
-        if (plate[i] < 0) return -1;
+        int r = find_or_add(&ledger->bars, layer_end, bar);
+        if (r < 0) return -1;
+        plate[i] = LSM_NAME * r;
     }
     int r = find_or_add(&ledger->plates, layer_end, plate);
     if (r < 0) return -1;
     for (int i = 0; i < side && !ledger->plates.uses[r]; i++)
-        if (plate[i]) ledger->bars.uses[plate[i]]++;
+        if (plate[i]) ledger->bars.uses[plate[i] / LSM_NAME]++;
     return r;
 }
 
@@ -164,7 +165,7 @@ static void drop_plate(LsmLedger *ledger, int z, int plate)
     int row[LSM_MAX_SIDE], bar[LSM_MAX_SIDE], layer_end = ledger->layer_end[z];
     if (!give_back(&ledger->plates, layer_end, plate, row)) return;
     for (int i = 0; i < ledger->plates.side; i++)
-        if (row[i]) give_back(&ledger->bars, layer_end, row[i], bar);
+        if (row[i]) give_back(&ledger->bars, layer_end, row[i] / LSM_NAME, bar);
 }
 
 bool lsm_ledger_revise(LsmLedger *ledger, LsmSets *sets, const LsmLattice *l, const int *slot,
@@ -175,12 +176,13 @@ bool lsm_ledger_revise(LsmLedger *ledger, LsmSets *sets, const LsmLattice *l, co
         int at[3] = {l->coord[p][0], l->coord[p][1], l->coord[p][2] + i - side / 2};
         uint64_t any = 0;
         for (int b = 0; b < side; b++) any |= rows[i * side + b];
-        plate[i] = any ? add_plate(ledger, l, slot, at, rows + i * side) : 0;
-        if (plate[i] < 0) return false;
-        if (plate[i]) ledger->plates.uses[plate[i]]++;
+        int r = any ? add_plate(ledger, l, slot, at, rows + i * side) : 0;
+        if (r < 0) return false;
+        if (r) ledger->plates.uses[r]++;
+        plate[i] = LSM_NAME * r;
     }
     for (int i = 0; i < side; i++)
-        if (old[i]) drop_plate(ledger, l->coord[p][2] + i - side / 2, old[i]);
+        if (old[i]) drop_plate(ledger, l->coord[p][2] + i - side / 2, old[i] / LSM_NAME);
     memcpy(old, plate, (size_t)side * sizeof(int));
     return true;
 }

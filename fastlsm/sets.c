@@ -92,7 +92,7 @@ void lsm_sets_bar(const LsmLattice *l, const int *slot, int w, int x, int y, int
             p = lsm_lattice_find(l, x - w + a, y, z);
         else
             p += a - last; /* particles of a run along x are numbered in a row */
-        row[a] = slot[p] + 1;
+        row[a] = LSM_NAME * (slot[p] + 1);
         last = a;
     }
 }
@@ -163,9 +163,10 @@ static int *sort_rows(const Pool *pool, int side, int planes, int keys, long **f
     return out;
 }
 
-static void renumber_rows(int *row, long count, const int *number)
+/* From the numbers that rows had in their pool to the names of where they are now. */
+static void name_rows(int *row, long count, const int *number)
 {
-    for (long i = 0; i < count; i++) row[i] = number[row[i]];
+    for (long i = 0; i < count; i++) row[i] = LSM_NAME * number[row[i]];
 }
 
 static long *copy_planes(const long *plane, int planes)
@@ -218,8 +219,8 @@ void lsm_sets_close(LsmSetsBuilder *b, LsmSets *sets)
     sets->plate_end = copy_planes(sets->plate_plane, planes);
     size_t places = (size_t)(b->region_count * side);
     sets->region = sm_realloc(b->region, places ? places : 1, sizeof(int));
-    renumber_rows(sets->plate, sets->plate_count * side, bar_number);
-    renumber_rows(sets->region, sets->region_count * side, plate_number);
+    name_rows(sets->plate, sets->plate_count * side, bar_number);
+    name_rows(sets->region, sets->region_count * side, plate_number);
     free(bar_number);
     free(plate_number);
     free(b->recent_bar);

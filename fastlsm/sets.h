@@ -5,18 +5,24 @@
  * plane z, a region its plates. Identical bars and plates are stored once. Every list has 2w+1
  * places, one for each offset -w..w from the region's centre, so the offset is implied by the place
  * and loops have a fixed length; an absent member is row 0, which always holds zero. Because
- * membership is symmetric the same lists sum regions over a particle. */
+ * membership is symmetric the same lists sum regions over a particle.
+ *
+ * A list names its members: a row's name is its number times LSM_NAME bytes, so that the row's
+ * address is base + name * (2, 4 or 8), which a load computes by itself. Names are ints: lists hold
+ * at most 2^28 - 1 particles, bars or plates (some 60 GB). */
 #ifndef LSM_SETS_H
 #define LSM_SETS_H
 
 #include "region.h"
 
+enum { LSM_NAME = 8 };
+
 typedef struct {
     int w, side;                               /* side = 2w+1 */
     long bar_count, plate_count, region_count; /* row 0 of bars and plates included */
-    int *bar;                                  /* [bar_count][side] 1 + particle slot */
-    int *plate;                                /* [plate_count][side] bar rows */
-    int *region;                               /* [region_count][side] plate rows */
+    int *bar;                                  /* [bar_count][side] names of 1 + particle slot */
+    int *plate;                                /* [plate_count][side] names of bars */
+    int *region;                               /* [region_count][side] names of plates */
     long region_room;                          /* rows that `region` has room for */
     int planes;                                /* lattice planes along z */
     long *bar_plane;   /* [planes + 1] first bar of each plane (plane 0 starts at row 1) */
@@ -39,7 +45,7 @@ void lsm_sets_add(LsmSetsBuilder *builder, long p, const uint64_t *rows);
 void lsm_sets_close(LsmSetsBuilder *builder, LsmSets *sets);
 void lsm_sets_free(LsmSets *sets);
 
-/* The bar of centre column x in row (y, z) whose members are `bits` (not 0): [2w+1] places. */
+/* The bar of centre column x in row (y, z) whose members are `bits` (not 0): [2w+1] names. */
 void lsm_sets_bar(const LsmLattice *lattice, const int *slot, int w, int x, int y, int z,
                   uint64_t bits, int *row);
 

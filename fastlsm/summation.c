@@ -1,5 +1,7 @@
 #include "summation.h"
 
+#include <string.h>
+
 /* Each kernel is one body in which `side` is a constant for the usual widths. */
 #define FOR_SIDE(side, call)                                                                       \
     switch (side) {                                                                                \
@@ -37,21 +39,44 @@ SM_INLINE vec16 widen_last(vec4 v)
 #endif
 }
 
-SM_INLINE vec4 first_four(vec16 v)
+#define FIRST_FOUR(v) __builtin_shufflevector(v, v, 0, 1, 2, 3)
+
+/* The names in row `row` of a list, two at a time: loads are what the sums wait for. */
+SM_INLINE void read_names(const int *list, long row, int side, uint64_t *name)
 {
-    return __builtin_shufflevector(v, v, 0, 1, 2, 3);
+    const bool big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
+    list += row * side;
+    for (int i = 0; i + 1 < side; i += 2) {
+        uint64_t two;
+        memcpy(&two, list + i, sizeof two);
+        name[i + big_endian] = two & UINT32_MAX;
+        name[i + !big_endian] = two >> 32;
+    }
+    name[side - 1] = (uint64_t)list[side - 1];
 }
+
+/* The row of this name among `rows`, which are `width` values wide. */
+SM_INLINE const real *named(const real *rows, uint64_t name, int width)
+{
+    return (const real *)((const char *)rows + name * ((size_t)width * sizeof(real) / LSM_NAME));
+}
+
+/* What places o steps to the right and left of the centre add to a moment. */
+#define ADD_APART(moment, o, apart) ((o) == 1 ? (apart) : (moment) + (real)(o) * (apart))
 
 SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
 {
     const real *p = lsm->rows.p;
     for (long bar = first; bar < last; bar++) {
-        const int *id = lsm->sets.bar + bar * side;
-        vec4 sum = {0}, moment = {0};
-        for (int i = 0; i < side; i++) {
-            vec4 member = load4(p + (long)id[i] * ROW_P);
-            sum += member;
-            moment += (real)(i - side / 2) * member;
+        uint64_t name[LSM_MAX_SIDE];
+        read_names(lsm->sets.bar, bar, side, name);
+        const uint64_t *centre = name + side / 2;
+        vec4 sum = load4(named(p, *centre, ROW_P)), moment = {0};
+        for (int o = 1; o <= side / 2; o++) {
+            vec4 left = load4(named(p, centre[-o], ROW_P)),
+                 right = load4(named(p, centre[o], ROW_P));
+            sum += left + right;
+            moment = ADD_APART(moment, o, right - left);
         }
         real *out = lsm->rows.bar + bar * ROW_BAR;
         store8(out, __builtin_shufflevector(sum, moment, 0, 1, 2, 3, 4, 5, 6, 7));
@@ -68,14 +93,16 @@ SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
 {
     const real *bar = lsm->rows.bar;
     for (long plate = first; plate < last; plate++) {
-        const int *id = lsm->sets.plate + plate * side;
-        vec8 sum = {0};
+        uint64_t name[LSM_MAX_SIDE];
+        read_names(lsm->sets.plate, plate, side, name);
+        const uint64_t *centre = name + side / 2;
+        vec8 sum = load8(named(bar, *centre, ROW_BAR));
         vec4 moment = {0};
-        for (int i = 0; i < side; i++) {
-            const real *member = bar + (long)id[i] * ROW_BAR;
-            vec8 value = load8(member);
-            sum += value;
-            moment += (real)(i - side / 2) * __builtin_shufflevector(value, value, 0, 1, 2, 3);
+        for (int o = 1; o <= side / 2; o++) {
+            vec8 left = load8(named(bar, centre[-o], ROW_BAR)),
+                 right = load8(named(bar, centre[o], ROW_BAR));
+            sum += left + right;
+            moment = ADD_APART(moment, o, FIRST_FOUR(right) - FIRST_FOUR(left));
         }
         real *out = lsm->rows.plate + plate * ROW_PLATE;
         store8(out, sum);
@@ -92,15 +119,25 @@ void lsm_plates_up(const Lsm *lsm, int first, int last){
 /* The last four of a plate's row are never written: they stay zero. */
 SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
 {
-    const int *id = lsm->sets.region + (long)region * side;
-    vec16 sum = {0};
+    uint64_t name[LSM_MAX_SIDE];
+    read_names(lsm->sets.region, region, side, name);
+    const uint64_t *centre = name + side / 2;
+    const real *plate = lsm->rows.plate;
+    vec16 sum = load16(named(plate, *centre, ROW_PLATE));
     vec4 moment = {0};
-    for (int i = 0; i < side; i++) {
-        vec16 member = load16(lsm->rows.plate + (long)id[i] * ROW_PLATE);
-        sum += member;
-        moment += (real)(i - side / 2) * first_four(member);
+    for (int o = 1; o <= side / 2; o++) {
+        vec16 left = load16(named(plate, centre[-o], ROW_PLATE)),
+              right = load16(named(plate, centre[o], ROW_PLATE));
+        sum += left + right;
+        moment = ADD_APART(moment, o, FIRST_FOUR(right) - FIRST_FOUR(left));
     }
     return sum + widen_last(moment);
+}
+
+/* The list of the row of this name. */
+SM_INLINE const int *members(const int *list, int name, int side)
+{
+    return list + (long)(name / LSM_NAME) * side;
 }
 
 /* Without reuse, member by member: the O(w^3) form. Rows are summed on their own first, so that
@@ -108,15 +145,15 @@ SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
 static vec16 region_up_naive(const Lsm *lsm, int region)
 {
     int side = lsm->side, w = lsm->w;
-    const int *plates = lsm->sets.region + (long)region * side;
+    const int *plate = lsm->sets.region + (long)region * side;
     vec4 C = {0}, X = {0}, Y = {0}, Z = {0};
     for (int c = -w; c <= w; c++)
         for (int b = -w; b <= w; b++) {
-            const int *id =
-                lsm->sets.bar + (long)lsm->sets.plate[(long)plates[c + w] * side + b + w] * side;
+            const int *bar = members(lsm->sets.plate, plate[c + w], side),
+                      *particle = members(lsm->sets.bar, bar[b + w], side);
             vec4 sum[4] = {{0}, {0}, {0}, {0}};
             for (int a = -w; a <= w; a++) {
-                vec4 p = load4(lsm->rows.p + (long)id[a + w] * ROW_P);
+                vec4 p = load4(named(lsm->rows.p, (uint64_t)particle[a + w], ROW_P));
                 sum[0] += p;
                 sum[1] += (real)a * p;
                 sum[2] += (real)b * p;
@@ -135,14 +172,14 @@ static vec16 region_up_naive(const Lsm *lsm, int region)
 SM_INLINE void regions_up(const Lsm *lsm, const int *region, vec16 *out, int side)
 {
     for (int lane = 0; lane < SM_LANES; lane++)
-        if (region[lane] >= 0) out[lane] = region_up(lsm, region[lane], side);
+        out[lane] = region[lane] < 0 ? (vec16){0} : region_up(lsm, region[lane], side);
 }
 
 void lsm_regions_up(const Lsm *lsm, const int *region, vec16 *out)
 {
     if (lsm->params.summation == SM_SUM_NAIVE) {
         for (int lane = 0; lane < SM_LANES; lane++)
-            if (region[lane] >= 0) out[lane] = region_up_naive(lsm, region[lane]);
+            out[lane] = region[lane] < 0 ? (vec16){0} : region_up_naive(lsm, region[lane]);
         return;
     }
 #define CALL(side) regions_up(lsm, region, out, side)
@@ -155,13 +192,16 @@ void lsm_regions_up(const Lsm *lsm, const int *region, vec16 *out)
 SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
 {
     for (long bar = first; bar < last; bar++) {
-        const int *id = lsm->sets.bar + bar * side;
-        vec16 sum = {0};
+        uint64_t name[LSM_MAX_SIDE];
+        read_names(lsm->sets.bar, bar, side, name);
+        const uint64_t *centre = name + side / 2;
+        const real *T = lsm->rows.transform;
+        vec16 sum = load16(named(T, *centre, ROW_T));
         vec4 moment = {0};
-        for (int i = 0; i < side; i++) {
-            const real *member = lsm->rows.transform + (long)id[i] * ROW_T;
-            sum += load16(member);
-            moment += (real)(i - side / 2) * load4(member + 12);
+        for (int o = 1; o <= side / 2; o++) {
+            const real *left = named(T, centre[-o], ROW_T), *right = named(T, centre[o], ROW_T);
+            sum += load16(left) + load16(right);
+            moment = ADD_APART(moment, o, load4(right + 12) - load4(left + 12));
         }
         store16(lsm->rows.bar + bar * ROW_BAR, sum - widen_first(moment));
     }
@@ -176,13 +216,17 @@ void lsm_bars_down(const Lsm *lsm, int first, int last){
 SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
 {
     for (long plate = first; plate < last; plate++) {
-        const int *id = lsm->sets.plate + plate * side;
-        vec8 sum = {0};
+        uint64_t name[LSM_MAX_SIDE];
+        read_names(lsm->sets.plate, plate, side, name);
+        const uint64_t *centre = name + side / 2;
+        const real *bar = lsm->rows.bar;
+        vec8 sum = load8(named(bar, *centre, ROW_BAR));
         vec4 moment = {0};
-        for (int i = 0; i < side; i++) {
-            const real *member = lsm->rows.bar + (long)id[i] * ROW_BAR;
-            sum += load8(member);
-            moment += (real)(i - side / 2) * load4(member + 8);
+        for (int o = 1; o <= side / 2; o++) {
+            const real *left = named(bar, centre[-o], ROW_BAR),
+                       *right = named(bar, centre[o], ROW_BAR);
+            sum += load8(left) + load8(right);
+            moment = ADD_APART(moment, o, load4(right + 8) - load4(left + 8));
         }
         store8(lsm->rows.plate_down + plate * ROW_PLATE_DOWN,
                sum - __builtin_shufflevector(moment, (vec4){0}, 0, 1, 2, 3, 4, 4, 4, 4));
@@ -197,11 +241,16 @@ void lsm_plates_down(const Lsm *lsm, int first, int last){
 
 SM_INLINE vec4 particle_down(const Lsm *lsm, int region, int side)
 {
-    const int *id = lsm->sets.region + (long)region * side;
-    vec4 sum = {0};
-    for (int i = 0; i < side; i++) {
-        const real *member = lsm->rows.plate_down + (long)id[i] * ROW_PLATE_DOWN;
-        sum += load4(member) - (real)(i - side / 2) * load4(member + 4);
+    uint64_t name[LSM_MAX_SIDE];
+    read_names(lsm->sets.region, region, side, name);
+    const uint64_t *centre = name + side / 2;
+    const real *plate = lsm->rows.plate_down;
+    vec4 sum = load4(named(plate, *centre, ROW_PLATE_DOWN));
+    for (int o = 1; o <= side / 2; o++) {
+        const real *left = named(plate, centre[-o], ROW_PLATE_DOWN),
+                   *right = named(plate, centre[o], ROW_PLATE_DOWN);
+        sum += load4(left) + load4(right);
+        sum -= (real)o * (load4(right + 4) - load4(left + 4));
     }
     return sum;
 }
@@ -209,15 +258,15 @@ SM_INLINE vec4 particle_down(const Lsm *lsm, int region, int side)
 static vec4 particle_down_naive(const Lsm *lsm, int region)
 {
     int side = lsm->side, w = lsm->w;
-    const int *plates = lsm->sets.region + (long)region * side;
+    const int *plate = lsm->sets.region + (long)region * side;
     vec4 sum = {0};
     for (int c = -w; c <= w; c++)
         for (int b = -w; b <= w; b++) {
-            const int *id =
-                lsm->sets.bar + (long)lsm->sets.plate[(long)plates[c + w] * side + b + w] * side;
+            const int *bar = members(lsm->sets.plate, plate[c + w], side),
+                      *particle = members(lsm->sets.bar, bar[b + w], side);
             vec4 row = {0};
             for (int a = -w; a <= w; a++) {
-                const real *T = lsm->rows.transform + (long)id[a + w] * ROW_T;
+                const real *T = named(lsm->rows.transform, (uint64_t)particle[a + w], ROW_T);
                 row += load4(T) - (real)a * load4(T + 12) - (real)b * load4(T + 8) -
                        (real)c * load4(T + 4);
             }
@@ -243,23 +292,36 @@ void lsm_particles_down(const Lsm *lsm, const int *region, real out[3][SM_LANES]
 #undef CALL
 }
 
+/* Sums without moments, of all values of a row or of the first eight. */
+SM_INLINE vec16 plain_row(const int *list, long row, int side, const real *in)
+{
+    uint64_t name[LSM_MAX_SIDE];
+    read_names(list, row, side, name);
+    vec16 sum = load16(named(in, name[0], 16));
+    for (int i = 1; i < side; i++) sum += load16(named(in, name[i], 16));
+    return sum;
+}
+
+SM_INLINE vec8 plain_half_row(const int *list, long row, int side, const real *in, int width)
+{
+    uint64_t name[LSM_MAX_SIDE];
+    read_names(list, row, side, name);
+    vec8 sum = load8(named(in, name[0], width));
+    for (int i = 1; i < side; i++) sum += load8(named(in, name[i], width));
+    return sum;
+}
+
 SM_INLINE void plain_up(const int *list, long first, long last, int side, const real *in, real *out)
 {
-    for (long row = first; row < last; row++) {
-        vec16 sum = {0};
-        for (int i = 0; i < side; i++) sum += load16(in + (long)list[row * side + i] * 16);
-        store16(out + row * 16, sum);
-    }
+    for (long row = first; row < last; row++)
+        store16(out + row * 16, plain_row(list, row, side, in));
 }
 
 SM_INLINE void plain_down(const int *list, long first, long last, int side, const real *in,
                           int in_width, real *out, int out_width)
 {
-    for (long row = first; row < last; row++) {
-        vec8 sum = {0};
-        for (int i = 0; i < side; i++) sum += load8(in + (long)list[row * side + i] * in_width);
-        store8(out + row * out_width, sum);
-    }
+    for (long row = first; row < last; row++)
+        store8(out + row * out_width, plain_half_row(list, row, side, in, in_width));
 }
 
 void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up)
@@ -293,13 +355,10 @@ void lsm_plates_plain(const Lsm *lsm, int first, int last, bool up)
 
 SM_INLINE void regions_plain(const Lsm *lsm, const int *region, vec16 *out, int side)
 {
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        if (region[lane] < 0) continue;
-        const int *id = lsm->sets.region + (long)region[lane] * side;
-        vec16 sum = {0};
-        for (int i = 0; i < side; i++) sum += load16(lsm->rows.plate + (long)id[i] * ROW_PLATE);
-        out[lane] = sum;
-    }
+    for (int lane = 0; lane < SM_LANES; lane++)
+        out[lane] = region[lane] < 0
+                        ? (vec16){0}
+                        : plain_row(lsm->sets.region, region[lane], side, lsm->rows.plate);
 }
 
 void lsm_regions_plain(const Lsm *lsm, const int *region, vec16 *out){
@@ -312,10 +371,8 @@ SM_INLINE void particles_plain(const Lsm *lsm, const int *region, real out[6][SM
 {
     for (int lane = 0; lane < SM_LANES; lane++) {
         if (region[lane] < 0) continue;
-        const int *id = lsm->sets.region + (long)region[lane] * side;
-        vec8 sum = {0};
-        for (int i = 0; i < side; i++)
-            sum += load8(lsm->rows.plate_down + (long)id[i] * ROW_PLATE_DOWN);
+        vec8 sum = plain_half_row(lsm->sets.region, region[lane], side, lsm->rows.plate_down,
+                                  ROW_PLATE_DOWN);
         for (int i = 0; i < 6; i++) out[i][lane] = sum[i / 3 * 4 + i % 3];
     }
 }

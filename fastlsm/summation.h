@@ -28,8 +28,8 @@
 void lsm_bars_up(const Lsm *lsm, int first, int last);
 void lsm_plates_up(const Lsm *lsm, int first, int last);
 
-/* The last stage for the rows region[lane] of the lists, SM_LANES of them (-1: none, its row is
- * left alone): out[lane] = (C, Cx, Cy, Cz), each padded to four. */
+/* The last stage for the rows region[lane] of the lists, SM_LANES of them (-1: none, its sums are
+ * zero): out[lane] = (C, Cx, Cy, Cz), each padded to four. */
 void lsm_regions_up(const Lsm *lsm, const int *region, vec16 *out);
 
 /* The adjoint, from rows.transform: out[d][lane] = component d of |R_i| g_i. */

@@ -157,7 +157,7 @@ static void break_both(Lsm *lsm, Lsm *twin, const Breaks *breaks, long first)
 static void assert_shelf(const LsmShelf *shelf, long count, const int *named, long names)
 {
     int *uses = sm_alloc((size_t)count, sizeof(int));
-    for (long i = 0; i < names; i++) uses[named[i]]++;
+    for (long i = 0; i < names; i++) uses[named[i] / LSM_NAME]++;
     for (long r = 1; r < count; r++) {
         assert_int_equal(shelf->uses[r], uses[r]);
         for (int i = 0; i < shelf->side && !uses[r]; i++)
