@@ -169,6 +169,29 @@ static SmCode choose_scenes(Choices *chosen, SmError *error)
                    "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
 }
 
+/* Is a scene to be measured that `--mesh name=FILE` gives a mesh? */
+static bool is_measured(const Choices *chosen, const char *name)
+{
+    for (int i = 0; i < chosen->count; i++) {
+        const Choice *choice = &chosen->scene[i];
+        BenchScene scene;
+        if (choice->stem && !strcmp(choice->stem, name)) return true;
+        if (!bench_scene_find(choice->scene, &scene, NULL) && !strcmp(scene.name, name))
+            return true;
+    }
+    return false;
+}
+
+static SmCode check_substitutes(const Choices *chosen, SmError *error)
+{
+    const BenchSubstitutes *given = &chosen->options->chosen.substitutes;
+    for (int i = 0; i < given->count; i++)
+        if (!is_measured(chosen, given->scene[i]))
+            return sm_fail(error, SM_USAGE, "--mesh: '%s' is not measured: add --scene %s",
+                           given->scene[i], given->scene[i]);
+    return SM_OK;
+}
+
 static SmCode measure_scene(const Options *options, const Choice *choice, BenchProgress *progress,
                             BenchRow *row, SmError *error)
 {
@@ -240,6 +263,7 @@ int bench_command_tables(int argc, char **argv)
     SmError error;
     bench_options_parse(&argp, argc, argv, &options, &options.common);
     SmCode code = choose_scenes(&chosen, &error);
+    if (!code) code = check_substitutes(&chosen, &error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
     if (!code) code = bench_draft_try(options.output, &error);
     if (!code) code = measure_all(&chosen, rows, &error);

@@ -107,6 +107,7 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run tiny.cfg --mesh penguin", 2, "--mesh: 'penguin' is not NAME=FILE"},
         {"run tiny.cfg --mesh penguin=noise.obj", 2, "--mesh: 'penguin' is not this scene, tiny"},
         {"run noise.obj --mesh penguin=noise.obj", 2, "noise.obj is a mesh itself"},
+        {"tables --scene penguin --mesh hand=noise.obj", 2, "'hand' is not measured: add --scene"},
         {"run plain --no-output", 2, "plain: the ending of its name must say what it is"},
         {"run lattice.cfg --w 32", 2, "--w: '32' is not a whole number from 1 to 31"},
         {"run tiny.cfg --mesh x=y", 2, "'x' is not a built-in scene"},
