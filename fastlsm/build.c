@@ -350,8 +350,8 @@ SmCode lsm_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *
     if (params->w > LSM_MAX_W)
         return sm_fail(error, SM_INPUT, "region half-width w = %d: must be 1 to %d", params->w,
                        LSM_MAX_W);
-    if (voxels->particle_count > 500000000)
-        return sm_fail(error, SM_INPUT, "%ld particles: at most 500 million; use larger cells",
+    if (voxels->particle_count > 250000000) /* lists could not name them (sets.h) */
+        return sm_fail(error, SM_INPUT, "%ld particles: at most 250 million; use larger cells",
                        voxels->particle_count);
     return SM_OK;
 }

@@ -1,5 +1,6 @@
 #include "sets.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,8 +58,10 @@ static int pool_add(Pool *pool, const int *row)
         if (!memcmp(pool->row + (long)pool->slot[at] * pool->width, row, bytes))
             return (int)pool->slot[at];
     if (pool->count == pool->room) {
+        bool nameable = pool->room <= INT_MAX / LSM_NAME / 2; /* or there is no room for more */
         pool->room *= 2;
-        pool->row = sm_realloc(pool->row, (size_t)pool->room * (size_t)pool->width, sizeof(int));
+        pool->row = sm_realloc(pool->row, nameable ? (size_t)pool->room : SIZE_MAX,
+                               (size_t)pool->width * sizeof(int));
     }
     long r = pool->count++;
     memcpy(pool->row + r * pool->width, row, bytes);

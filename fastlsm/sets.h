@@ -8,8 +8,8 @@
  * membership is symmetric the same lists sum regions over a particle.
  *
  * A list names its members: a row's name is its number times LSM_NAME bytes, so that the row's
- * address is base + name * (2, 4 or 8), which a load computes by itself. Names are ints: lists hold
- * at most 2^28 - 1 particles, bars or plates (some 60 GB). */
+ * address is base + name * (2, 4 or 8), which a load computes by itself. Names are ints: of 2^27
+ * bars or plates on (some 30 GB), memory is said to be out. */
 #ifndef LSM_SETS_H
 #define LSM_SETS_H
 
