@@ -169,27 +169,28 @@ static SmCode choose_scenes(Choices *chosen, SmError *error)
                    "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
 }
 
-/* Is a scene to be measured that `--mesh name=FILE` gives a mesh? */
-static bool is_measured(const Choices *chosen, const char *name)
+/* Fails where no scene is to be measured that `--mesh name=FILE` gives a mesh. */
+static SmCode check_substitute(const Choices *chosen, const char *name, SmError *error)
 {
     for (int i = 0; i < chosen->count; i++) {
         const Choice *choice = &chosen->scene[i];
         BenchScene scene;
-        if (choice->stem && !strcmp(choice->stem, name)) return true;
-        if (!bench_scene_find(choice->scene, &scene, NULL) && !strcmp(scene.name, name))
-            return true;
+        SmCode code = bench_scene_find(choice->scene, &scene, error);
+        if (code) return code;
+        if (!strcmp(scene.name, name) || (choice->stem && !strcmp(choice->stem, name)))
+            return SM_OK;
     }
-    return false;
+    return sm_fail(error, SM_USAGE, "--mesh: '%s' is not measured: name it with --scene %s", name,
+                   name);
 }
 
 static SmCode check_substitutes(const Choices *chosen, SmError *error)
 {
     const BenchSubstitutes *given = &chosen->options->chosen.substitutes;
-    for (int i = 0; i < given->count; i++)
-        if (!is_measured(chosen, given->scene[i]))
-            return sm_fail(error, SM_USAGE, "--mesh: '%s' is not measured: add --scene %s",
-                           given->scene[i], given->scene[i]);
-    return SM_OK;
+    SmCode code = SM_OK;
+    for (int i = 0; i < given->count && !code; i++)
+        code = check_substitute(chosen, given->scene[i], error);
+    return code;
 }
 
 static SmCode measure_scene(const Options *options, const Choice *choice, BenchProgress *progress,

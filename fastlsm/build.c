@@ -135,6 +135,7 @@ static void find_regions(Lsm *lsm, int *original, bool *listed)
     Keys keys = {sm_alloc((size_t)l->count, sizeof *keys.keyed), 0};
     LsmSetsBuilder *lists = lsm_sets_open(l, lsm->slot, lsm->w);
     CorrectionsBuilder *corrections = corrected(lsm) ? lsm_corrections_open(lsm) : NULL;
+    if (!corrections) lsm_names_reach(lsm->blocks * SM_LANES + 1);
     for (long p = 0; p < l->count; p++) {
         bool whole = lsm_bit(l, lsm->interior.interior, l->coord[p]), simple = true;
         lsm->members[p] = lsm->side * lsm->side * lsm->side;
@@ -350,8 +351,8 @@ SmCode lsm_check(const SmVoxels *voxels, const SmEngineParams *params, SmError *
     if (params->w > LSM_MAX_W)
         return sm_fail(error, SM_INPUT, "region half-width w = %d: must be 1 to %d", params->w,
                        LSM_MAX_W);
-    if (voxels->particle_count > 250000000) /* lists could not name them (sets.h) */
-        return sm_fail(error, SM_INPUT, "%ld particles: at most 250 million; use larger cells",
+    if (voxels->particle_count > 500000000)
+        return sm_fail(error, SM_INPUT, "%ld particles: at most 500 million; use larger cells",
                        voxels->particle_count);
     return SM_OK;
 }

@@ -111,14 +111,17 @@ SM_INLINE void row_sums(const real *const *at, int side, int F, int first, vec *
     }
 }
 
+_Static_assert(L % LSM_NAME == 0, "a name is a whole part of a vector's address");
+
 /* Where the members of a list (sets.h) are, `pitch` vectors each. */
 SM_INLINE void members_at(const int *name, int side, const real *in, int pitch, const real **at)
 {
     for (int i = 0; i < side; i++) at[i] = in + (long)name[i] * pitch * (L / LSM_NAME);
 }
 
-/* One list level: out[row] = window sum over in[list[row]], F values in and out_F out. `first` is
- * where the moments are taken (window.h), or -1; `down` takes them off instead of keeping them. */
+/* One list level: out[row] = window sum over the members of row `row` of the list, F values in and
+ * out_F out. `first` is where the moments are taken (window.h), or -1; `down` takes them off
+ * instead of keeping them. */
 SM_INLINE void level(const int *list, long from, long to, int side, const real *in, int pitch,
                      int F, real *out, int out_pitch, int out_F, int first, bool down)
 {
@@ -158,9 +161,9 @@ SM_INLINE void sums(const Crowd *crowd, const GroupRows *r, int side, bool dampi
 SM_INLINE void last_level(const Crowd *crowd, int side, const real *in, int pitch, long p, int F,
                           int first, vec sum[15])
 {
-    const int *id = crowd->lsm->sets.region + p * side;
+    const int *name = crowd->lsm->sets.region + p * side;
     const real *at[LSM_MAX_SIDE];
-    members_at(id, side, in, pitch, at);
+    members_at(name, side, in, pitch, at);
     row_sums(at, side, F, first, sum);
 }
 

@@ -9,6 +9,7 @@ static int *make_room(int **rows, int side, long *count, long *plane, long *end,
                       const int *layer_plane, long spare)
 {
     long room = *count + (*count) / 4 + layers * spare;
+    lsm_names_reach(room);
     int *number = sm_alloc((size_t)*count, sizeof *number);
     int *out = sm_alloc((size_t)room * (size_t)side, sizeof *out);
     long from = 1, to = 1;

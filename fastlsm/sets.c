@@ -58,10 +58,8 @@ static int pool_add(Pool *pool, const int *row)
         if (!memcmp(pool->row + (long)pool->slot[at] * pool->width, row, bytes))
             return (int)pool->slot[at];
     if (pool->count == pool->room) {
-        bool nameable = pool->room <= INT_MAX / LSM_NAME / 2; /* or there is no room for more */
         pool->room *= 2;
-        pool->row = sm_realloc(pool->row, nameable ? (size_t)pool->room : SIZE_MAX,
-                               (size_t)pool->width * sizeof(int));
+        pool->row = sm_realloc(pool->row, (size_t)pool->room * (size_t)pool->width, sizeof(int));
     }
     long r = pool->count++;
     memcpy(pool->row + r * pool->width, row, bytes);
@@ -203,8 +201,15 @@ void lsm_sets_add(LsmSetsBuilder *b, long p, const uint64_t *rows)
         region[i] = add_plate(b, c[0], c[1], c[2] + i - b->w, rows + i * b->side);
 }
 
+void lsm_names_reach(long rows)
+{
+    if (rows > INT_MAX / LSM_NAME) free(sm_alloc(SIZE_MAX, LSM_NAME));
+}
+
 void lsm_sets_close(LsmSetsBuilder *b, LsmSets *sets)
 {
+    lsm_names_reach(b->bars.count);
+    lsm_names_reach(b->plates.count);
     int side = b->side, planes = b->lattice->size[2], *bar_number, *plate_number;
     *sets = (LsmSets){.w = b->w,
                       .side = side,

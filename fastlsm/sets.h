@@ -8,8 +8,7 @@
  * membership is symmetric the same lists sum regions over a particle.
  *
  * A list names its members: a row's name is its number times LSM_NAME bytes, so that the row's
- * address is base + name * (2, 4 or 8), which a load computes by itself. Names are ints: of 2^27
- * bars or plates on (some 30 GB), memory is said to be out. */
+ * address is base + name * (2, 4 or 8 in single precision), which a load computes by itself. */
 #ifndef LSM_SETS_H
 #define LSM_SETS_H
 
@@ -33,6 +32,10 @@ typedef struct {
 } LsmSets;
 
 typedef struct LsmSetsBuilder LsmSetsBuilder;
+
+/* Ends the program as out of memory where a kind has more rows than names, which are ints, tell
+ * apart: from 2^28 on (some 60 GB). */
+void lsm_names_reach(long rows);
 
 /* To build lists of particles, which are numbered by `slot` (slot[p] of particle p): open, add
  * regions in rising order, close, which fills `sets` and frees the builder. What the builder was

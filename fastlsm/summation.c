@@ -61,7 +61,7 @@ SM_INLINE const real *named(const real *rows, uint64_t name, int width)
     return (const real *)((const char *)rows + name * ((size_t)width * sizeof(real) / LSM_NAME));
 }
 
-/* What places o steps to the right and left of the centre add to a moment. */
+/* A moment with what the places o steps to the right and left of the centre add to it. */
 #define ADD_APART(moment, o, apart) ((o) == 1 ? (apart) : (moment) + (real)(o) * (apart))
 
 SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)

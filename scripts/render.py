@@ -194,6 +194,8 @@ def edge_colour(data, height):
     mass = vtk.vtkMassProperties()
     mass.SetInputData(data)
     bounds = data.GetBounds()
+    if not data.GetNumberOfPolys() or bounds[::2] == bounds[1::2]:
+        return None
     side = math.sqrt(2 * mass.GetSurfaceArea() / data.GetNumberOfPolys())
     pixels = height * side / math.dist(bounds[::2], bounds[1::2])
     share = min(1, pixels / 8)

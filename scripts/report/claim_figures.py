@@ -17,8 +17,8 @@ GROUPS = {
     "size": ("Cost against size", "Milliseconds a step against the number of particles or nodes.", "xy"),
     "sag": ("Stiffness against w", "How deep the tip of a clamped beam hangs; bars are the extremes of the swing that is "
             "left.", ""),
-    "setup": ("Distances when an octree is set up", "Percent of the time that finding the octree hand's summation nodes "
-              "takes which goes into distances, against how wide regions are.", ""),
+    "setup": ("Distances when an octree is set up", "Percent of the time of finding the octree hand's summation nodes "
+              "that goes into distances, against how wide regions are.", ""),
 }
 AXES = {"distance-share": "distances, % of that time"}  # fields of which the name says too little
 CLASSES = {"reproduced": "good", "not reproduced": "bad", "undecided": "open", "INVALID": "invalid"}
