@@ -239,13 +239,15 @@ void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *
 /* The searches with which finding all regions begins, as halves.h has them. */
 static void search_all(const BenchSampled *body, const int *w, OctSheaf *sheaf)
 {
-    int leaf[OCT_SHEAF], reaches[OCT_SHEAF], count = 0;
-    for (long i = 0; i < body->tree.leaves; i++) {
-        leaf[count] = (int)i;
-        reaches[count++] = oct_halves_reach(w[i], body->epsilon);
-        if (count < OCT_SHEAF && i + 1 < body->tree.leaves) continue;
-        oct_sheaf_search(sheaf, count, leaf, reaches);
-        count = 0;
+    int leaf[OCT_SHEAF], reaches[OCT_SHEAF];
+    for (long from = 0, count; from < body->tree.leaves; from += count) {
+        long left = body->tree.leaves - from;
+        count = left < OCT_SHEAF ? left : OCT_SHEAF;
+        for (int lane = 0; lane < count; lane++) {
+            leaf[lane] = (int)from + lane;
+            reaches[lane] = oct_halves_reach(w[leaf[lane]], body->epsilon);
+        }
+        oct_sheaf_search(sheaf, (int)count, leaf, reaches);
     }
 }
 

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "window.h"
+
 /* Each kernel is one body in which `side` is a constant for the usual widths. */
 #define FOR_SIDE(side, call)                                                                       \
     switch (side) {                                                                                \
@@ -61,9 +63,6 @@ SM_INLINE const real *named(const real *rows, uint64_t name, int width)
     return (const real *)((const char *)rows + name * ((size_t)width * sizeof(real) / LSM_NAME));
 }
 
-/* A moment with what the places o steps to the right and left of the centre add to it. */
-#define ADD_APART(moment, o, apart) ((o) == 1 ? (apart) : (moment) + (real)(o) * (apart))
-
 SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
 {
     const real *p = lsm->rows.p;
@@ -76,7 +75,7 @@ SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
             vec4 left = load4(named(p, centre[-o], ROW_P)),
                  right = load4(named(p, centre[o], ROW_P));
             sum += left + right;
-            moment = ADD_APART(moment, o, right - left);
+            moment = WINDOW_MOMENT(moment, o, right - left);
         }
         real *out = lsm->rows.bar + bar * ROW_BAR;
         store8(out, __builtin_shufflevector(sum, moment, 0, 1, 2, 3, 4, 5, 6, 7));
@@ -102,7 +101,7 @@ SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
             vec8 left = load8(named(bar, centre[-o], ROW_BAR)),
                  right = load8(named(bar, centre[o], ROW_BAR));
             sum += left + right;
-            moment = ADD_APART(moment, o, FIRST_FOUR(right) - FIRST_FOUR(left));
+            moment = WINDOW_MOMENT(moment, o, FIRST_FOUR(right) - FIRST_FOUR(left));
         }
         real *out = lsm->rows.plate + plate * ROW_PLATE;
         store8(out, sum);
@@ -129,7 +128,7 @@ SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
         vec16 left = load16(named(plate, centre[-o], ROW_PLATE)),
               right = load16(named(plate, centre[o], ROW_PLATE));
         sum += left + right;
-        moment = ADD_APART(moment, o, FIRST_FOUR(right) - FIRST_FOUR(left));
+        moment = WINDOW_MOMENT(moment, o, FIRST_FOUR(right) - FIRST_FOUR(left));
     }
     return sum + widen_last(moment);
 }
@@ -201,7 +200,7 @@ SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
         for (int o = 1; o <= side / 2; o++) {
             const real *left = named(T, centre[-o], ROW_T), *right = named(T, centre[o], ROW_T);
             sum += load16(left) + load16(right);
-            moment = ADD_APART(moment, o, load4(right + 12) - load4(left + 12));
+            moment = WINDOW_MOMENT(moment, o, load4(right + 12) - load4(left + 12));
         }
         store16(lsm->rows.bar + bar * ROW_BAR, sum - widen_first(moment));
     }
@@ -226,7 +225,7 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
             const real *left = named(bar, centre[-o], ROW_BAR),
                        *right = named(bar, centre[o], ROW_BAR);
             sum += load8(left) + load8(right);
-            moment = ADD_APART(moment, o, load4(right + 8) - load4(left + 8));
+            moment = WINDOW_MOMENT(moment, o, load4(right + 8) - load4(left + 8));
         }
         store8(lsm->rows.plate_down + plate * ROW_PLATE_DOWN,
                sum - __builtin_shufflevector(moment, (vec4){0}, 0, 1, 2, 3, 4, 4, 4, 4));

@@ -5,6 +5,10 @@
 
 #include "state.h"
 
+/* A moment with what the places o steps to either side of its centre, `apart` the right one's less
+ * the left one's, add to it; they come in rising order from o = 1 on. */
+#define WINDOW_MOMENT(moment, o, apart) ((o) == 1 ? (apart) : (moment) + (real)(o) * (apart))
+
 /* The sum over 2w+1 places, place c at in[c] + at; and sum (c - w) value, unless `moment` is NULL.
  */
 SM_INLINE void window_sum(const real *const *in, long at, int w, vec *sum, vec *moment)
@@ -13,7 +17,7 @@ SM_INLINE void window_sum(const real *const *in, long at, int w, vec *sum, vec *
     for (int o = 1; o <= w; o++) {
         vec left = lanes_load(in[w - o] + at), right = lanes_load(in[w + o] + at);
         *sum += left + right;
-        if (moment) *moment = o == 1 ? right - left : *moment + (real)o * (right - left);
+        if (moment) *moment = WINDOW_MOMENT(*moment, o, right - left);
     }
 }
 
@@ -50,7 +54,7 @@ SM_INLINE vec window_sum_x(vec before, vec here, vec after, int w, vec *moment)
     for (int o = 1; o <= w; o++) {
         vec left = lanes_slide(before, here, SM_LANES - o), right = lanes_slide(here, after, o);
         sum += left + right;
-        if (moment) *moment = o == 1 ? right - left : *moment + (real)o * (right - left);
+        if (moment) *moment = WINDOW_MOMENT(*moment, o, right - left);
     }
     return sum;
 }
