@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../fastlsm/region.h"
+#include "../fastlsm/fastlsm.h"
 #include "plan.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchCalibrationPlan, kind, member)
@@ -144,12 +144,13 @@ static SmCode check_whole(const char *name, const double *value, int count, SmEr
 
 static SmCode check_w(const BenchCalibrationPlan *plan, SmError *error)
 {
+    const int most = fastlsm_engine_f32.most_w;
     SmCode code = check_whole("--w", plan->w, plan->ws, error);
-    if (code || !strcmp(plan->engines, "octree") || plan->w[plan->ws - 1] <= LSM_MAX_W) return code;
+    if (code || !strcmp(plan->engines, "octree") || plan->w[plan->ws - 1] <= most) return code;
     return sm_fail(error, SM_USAGE,
                    "--w: %g is too wide for fastlsm, whose w is 1 to %d: give less, or --engine "
                    "octree",
-                   plan->w[plan->ws - 1], LSM_MAX_W);
+                   plan->w[plan->ws - 1], most);
 }
 
 SmCode bench_calibration_plan(BenchCalibrationPlan *plan, BenchSpecimen *specimen, SmError *error)

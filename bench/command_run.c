@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../fastlsm/region.h"
 #include "../reference/meshless/mpu.h"
 #include "../reference/meshless/outline.h"
 #include "command.h"
@@ -223,7 +222,30 @@ static SmCode apply_meshless(const Options *options, BenchScene *scene, SmError 
     return SM_OK;
 }
 
-/* A lattice's w is a whole number, an octree's is not; the octree's options are its own. */
+/* A lattice's w is a whole number, an octree's is not. */
+static SmCode apply_w(const char *text, const SmEngineType *type, BenchScene *scene, SmError *error)
+{
+    if (!text) return SM_OK;
+    char *end;
+    double w = strtod(text, &end);
+    bool number = end != text && !*end;
+    if (is_octree(scene)) {
+        if (!number || !(w > 0 && w <= 1e6))
+            return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a number above 0, to 1e6", text);
+        scene->octree.width = (OctWidth){.cells = w};
+        scene->octree.summation_nodes = 0;
+        return SM_OK;
+    }
+    if (!type->most_w)
+        return sm_fail(error, SM_USAGE, "--w: a %s body has no regions", scene->engine);
+    if (!number || !(w >= 1 && w <= type->most_w) || w != floor(w))
+        return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a whole number from 1 to %d", text,
+                       type->most_w);
+    scene->params.w = (int)w;
+    return SM_OK;
+}
+
+/* The octree's options are its own. */
 static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *error)
 {
     OctOptions *octree = &scene->octree;
@@ -241,24 +263,6 @@ static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *e
             octree->sampling.criteria[i].level = 0; /* the deepest */
     }
     if (options->nodes) octree->sampling.nodes = options->nodes;
-    if (!options->w) return SM_OK;
-    char *end;
-    int most = !strcmp(scene->engine, "fastlsm") ? LSM_MAX_W : 64;
-    double w = strtod(options->w, &end), low = is_octree(scene) ? 0 : 1,
-           high = is_octree(scene) ? 1e6 : most;
-    bool good = end != options->w && !*end && w >= low && w <= high && w > 0;
-    if (!good || (!is_octree(scene) && w != floor(w)))
-        return is_octree(scene)
-                   ? sm_fail(error, SM_USAGE, "--w: '%.40s' is not a number above 0, to 1e6",
-                             options->w)
-                   : sm_fail(error, SM_USAGE, "--w: '%.40s' is not a whole number from 1 to %d",
-                             options->w, most);
-    if (is_octree(scene)) {
-        octree->width = (OctWidth){.cells = w};
-        octree->summation_nodes = 0;
-    } else {
-        scene->params.w = (int)w;
-    }
     return SM_OK;
 }
 
@@ -461,6 +465,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     code = apply_octree(options, &scene, error);
     if (!code) code = apply_meshless(options, &scene, error);
     if (!code) code = bench_engine_find(scene.engine, options->chosen.precision, &type, error);
+    if (!code) code = apply_w(options->w, type, &scene, error);
     if (code) {
         sm_mesh_free(&mesh);
         return code;

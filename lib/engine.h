@@ -103,6 +103,7 @@ typedef struct SmEngine SmEngine;
 typedef struct {
     const char *name;      /* "fastlsm", "octree", "brute" */
     const char *precision; /* "single" or "double" */
+    int most_w;            /* the largest params.w; 0: it goes by no w in cells */
     bool unstopped;        /* obstacles do not stop its bodies: callers refuse them */
 
     /* Builds an engine at rest on `voxels` (copied; may be freed after). SM_INPUT when the body
