@@ -284,20 +284,21 @@ static SmCode measure(Session *session, SmError *error)
     return SM_OK;
 }
 
+static void print_found(FILE *file, const void *what)
+{
+    const Session *session = what;
+    bench_regression_write(file, session->options->format, &session->found);
+}
+
+/* A draft that is not committed is discarded at the end. */
 static SmCode write_found(const Session *session, BenchDraft *draft, SmError *error)
 {
-    const Options *options = session->options;
-    if (!options->output) {
-        bench_regression_write(stdout, options->format, &session->found);
+    if (!session->options->output) {
+        print_found(stdout, session);
         return SM_OK;
     }
-    FILE *file = fopen(draft->tmp, "we");
-    if (file) bench_regression_write(file, options->format, &session->found);
-    bool whole = file && !ferror(file);
-    if (file && fclose(file) != 0) whole = false;
-    if (whole) return bench_draft_commit(draft, error);
-    bench_draft_discard(draft);
-    return bench_draft_fail(options->output, errno, "", error);
+    SmCode code = bench_draft_fill(draft, print_found, session, error);
+    return code ? code : bench_draft_commit(draft, error);
 }
 
 /* Measures, compares and writes; `exit_code` is the verdict's. */

@@ -4,6 +4,7 @@
 #include "../lib/shape.h"
 #include "body.h"
 #include "command.h"
+#include "draft.h"
 #include "option.h"
 
 enum { KEY_WRITE = 0x2000 };
@@ -75,6 +76,11 @@ static SmCode print_scene(const char *name, SmError *error)
     return SM_OK;
 }
 
+static void print_mesh(FILE *file, const void *what)
+{
+    sm_mesh_print_obj(what, file);
+}
+
 static SmCode write_mesh(const char *name, const char *path, SmError *error)
 {
     SmMesh mesh;
@@ -87,7 +93,7 @@ static SmCode write_mesh(const char *name, const char *path, SmError *error)
         code = sm_shape_mesh(name, &mesh, error);
     }
     if (code) return code;
-    code = sm_mesh_write_obj(&mesh, path, error);
+    code = bench_draft_write(path, print_mesh, &mesh, error);
     sm_mesh_free(&mesh);
     return code;
 }

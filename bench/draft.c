@@ -5,7 +5,6 @@
 #include <libgen.h>
 #include <signal.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -113,6 +112,29 @@ SmCode bench_draft_commit(BenchDraft *draft, SmError *error)
     draft->slot = -1;
     draft->tmp[0] = '\0';
     return SM_OK;
+}
+
+SmCode bench_draft_fill(const BenchDraft *draft, BenchDraftPrint *print, const void *what,
+                        SmError *error)
+{
+    FILE *file = fopen(draft->tmp, "we");
+    if (!file) return bench_draft_fail(draft->path, errno, "", error);
+    print(file, what);
+    int number = ferror(file) ? EIO : 0;
+    if (fflush(file) != 0) number = errno;
+    if (fclose(file) != 0 && number == 0) number = errno;
+    return number ? bench_draft_fail(draft->path, number, "", error) : SM_OK;
+}
+
+SmCode bench_draft_write(const char *path, BenchDraftPrint *print, const void *what, SmError *error)
+{
+    BenchDraft draft;
+    SmCode code = bench_draft_begin(path, &draft, error);
+    if (code) return code;
+    code = bench_draft_fill(&draft, print, what, error);
+    if (!code) return bench_draft_commit(&draft, error);
+    bench_draft_discard(&draft);
+    return code;
 }
 
 void bench_draft_discard(BenchDraft *draft)

@@ -5,6 +5,8 @@
 #ifndef BENCH_DRAFT_H
 #define BENCH_DRAFT_H
 
+#include <stdio.h>
+
 #include "../lib/error.h"
 
 enum { BENCH_DRAFT_PATH = 4096 };
@@ -18,6 +20,18 @@ typedef struct {
 /* Creates the empty draft. SM_OUTPUT, with cause and remedy: no permission, folder missing, disk
  * full, or a target that is there and not a regular file (a folder, a device). */
 SmCode bench_draft_begin(const char *path, BenchDraft *draft, SmError *error);
+
+/* Prints a text file, from `what`. */
+typedef void BenchDraftPrint(FILE *file, const void *what);
+
+/* Fills a draft that has begun with what `print` prints; the caller commits or discards it.
+ * SM_OUTPUT. */
+SmCode bench_draft_fill(const BenchDraft *draft, BenchDraftPrint *print, const void *what,
+                        SmError *error);
+
+/* All of it: a text file at `path`, whole or not at all. */
+SmCode bench_draft_write(const char *path, BenchDraftPrint *print, const void *what,
+                         SmError *error);
 
 /* Can the file be written? Asked before what takes minutes, whose result it is to hold. NULL: none
  * is wanted. Leaves nothing behind. */

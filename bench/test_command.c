@@ -110,6 +110,7 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"tables --scene penguin --mesh hand=noise.obj", 2,
          "'hand' is not measured: name it with --scene"},
         {"run plain --no-output", 2, "plain: the ending of its name must say what it is"},
+        {"run beam-elastic --w 2", 2, "--w: a meshless body has no regions"},
         {"run lattice.cfg --w 32", 2, "--w: '32' is not a whole number from 1 to 31"},
         {"run tiny.cfg --mesh x=y", 2, "'x' is not a built-in scene"},
     };
@@ -126,6 +127,8 @@ static void mistakes_of_other_commands_are_too(void **state)
         {"scenes no-such", 2, "'no-such' is not a built-in scene"},
         {"scenes --write-mesh a.obj", 2, "which shape?"},
         {"scenes penguin --write-mesh /no/such/a.obj", 4, "/no/such/a.obj"},
+        {"scenes penguin --write-mesh /dev/null", 4, "it is there and not a regular file"},
+        {"scenes penguin --write-mesh /tmp", 4, "it is there and not a regular file"},
         {"tables --scene wide.cfg", 3, "wide.cfg: regions with 1.13e+08 members take too much"},
         {"tables --repeats 0", 2, "--repeats: '0'"},
         {"tables --paper unknown", 2, "no table of 'unknown'"},

@@ -1,6 +1,5 @@
 #include "xdmf.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -35,19 +34,18 @@ static void write_frame(FILE *file, const BenchXdmf *xdmf, long frame)
     fprintf(file, "</Geometry></Grid>\n");
 }
 
-SmCode bench_xdmf_write(const BenchXdmf *xdmf, const BenchDraft *draft, SmError *error)
+static void print(FILE *file, const void *what)
 {
-    FILE *file = fopen(draft->tmp, "we");
-    if (!file) return bench_draft_fail(draft->path, errno, "", error);
+    const BenchXdmf *xdmf = what;
     fprintf(file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"2.0\"><Domain>\n");
     fprintf(file, "<Grid Name=\"");
     bench_xml_text(file, xdmf->scene);
     fprintf(file, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
     for (long frame = 0; frame < xdmf->frames; frame++) write_frame(file, xdmf, frame);
     fprintf(file, "</Grid>\n</Domain></Xdmf>\n");
-    errno = 0;
-    int number = ferror(file) ? EIO : 0;
-    if (fflush(file) != 0) number = errno;
-    if (fclose(file) != 0 && number == 0) number = errno;
-    return number ? bench_draft_fail(draft->path, number, "", error) : SM_OK;
+}
+
+SmCode bench_xdmf_write(const BenchXdmf *xdmf, const BenchDraft *draft, SmError *error)
+{
+    return bench_draft_fill(draft, print, xdmf, error);
 }

@@ -2,15 +2,11 @@
 #include "edges.h"
 #include "vector.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static const double rounding_gap = 1e-7; /* of the box's longest side */
 static const double no_height = 1e-14;   /* of a triangle's longest edge */
@@ -313,17 +309,7 @@ SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error)
     return SM_OK;
 }
 
-/* Closes `file`; false when anything written to it so far was lost. */
-static bool finish_file(FILE *file)
-{
-    bool written = !ferror(file) && fflush(file) == 0 && fsync(fileno(file)) == 0;
-    int reason = errno;
-    if (fclose(file) != 0 && written) return false;
-    errno = reason;
-    return written;
-}
-
-static void print_obj(const SmMesh *mesh, FILE *file)
+void sm_mesh_print_obj(const SmMesh *mesh, FILE *file)
 {
     for (long v = 0; v < mesh->vertex_count; v++) {
         const double *p = mesh->position[v];
@@ -333,27 +319,6 @@ static void print_obj(const SmMesh *mesh, FILE *file)
         const int *corner = mesh->triangle[t];
         fprintf(file, "f %ld %ld %ld\n", corner[0] + 1L, corner[1] + 1L, corner[2] + 1L);
     }
-}
-
-SmCode sm_mesh_write_obj(const SmMesh *mesh, const char *path, SmError *error)
-{
-    char temporary[PATH_MAX];
-    struct stat status;
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
-        return sm_fail(error, SM_OUTPUT, "%s: not a regular file", path);
-    if (snprintf(temporary, sizeof temporary, "%s.XXXXXX.tmp", path) >= (int)sizeof temporary)
-        return sm_fail(error, SM_OUTPUT, "%s: name too long", path);
-    int descriptor = mkstemps(temporary, 4);
-    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
-    if (!file) return sm_fail(error, SM_OUTPUT, "%s: cannot create: %s", path, strerror(errno));
-    mode_t mask = umask(0);
-    umask(mask);
-    fchmod(descriptor, 0666 & ~mask);
-    print_obj(mesh, file);
-    if (finish_file(file) && rename(temporary, path) == 0) return SM_OK;
-    sm_fail(error, SM_OUTPUT, "%s: cannot write: %s", path, strerror(errno));
-    unlink(temporary);
-    return SM_OUTPUT;
 }
 
 double (*sm_mesh_normals(const SmMesh *mesh, double unit))[3]

@@ -5,6 +5,7 @@
 #define SM_MESH_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "error.h"
 
@@ -54,8 +55,7 @@ SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error);
  * are in `unit` squared: give a length of the mesh's scale, so that nothing overflows. */
 double (*sm_mesh_normals(const SmMesh *mesh, double unit))[3];
 
-/* Writes Wavefront OBJ with all digits, atomically (temporary name beside `path`, then renamed).
- * SM_OUTPUT. */
-SmCode sm_mesh_write_obj(const SmMesh *mesh, const char *path, SmError *error);
+/* Prints Wavefront OBJ with all digits; ask ferror() whether the file took it. */
+void sm_mesh_print_obj(const SmMesh *mesh, FILE *file);
 
 #endif
