@@ -77,8 +77,8 @@ static const struct argp_option option_list[] = {
     {"h", KEY_H, "S", 0, "Time step, seconds", 1},
     {"gravity", KEY_GRAVITY, "X,Y,Z", 0, "Mesh units per second squared", 1},
     {"strain-limit", KEY_STRAIN, "S", 0,
-     "Links break beyond this times their length; 0: never. Not of the surface, whose triangles "
-     "stretch across a tear",
+     "Links break beyond this times their length, above 1; 0: never. The surface does not tear: "
+     "its triangles stretch",
      1},
     {"summation", KEY_SUMMATION, "HOW", 0, "fast, bars or naive", 1},
     {"polar", KEY_POLAR, "HOW", 0, "fast or jacobi", 1},

@@ -110,6 +110,7 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"tables --scene penguin --mesh hand=noise.obj", 2,
          "'hand' is not measured: name it with --scene"},
         {"run plain --no-output", 2, "plain: the ending of its name must say what it is"},
+        {"run tiny.cfg --strain-limit 0.5", 3, "it is 0 (never) or above 1"},
         {"run beam-elastic --w 2", 2, "--w: a meshless body has no regions"},
         {"run lattice.cfg --w 32", 2, "--w: '32' is not a whole number from 1 to 31"},
         {"run tiny.cfg --mesh x=y", 2, "'x' is not a built-in scene"},

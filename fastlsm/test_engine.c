@@ -276,6 +276,7 @@ static void test_bad_parameters(void **state)
                                   {.w = 1, .h = 0.01, .instances = 2, .strain_limit = 2},
                                   {.w = 1, .h = 0.01, .instances = 2, .polar = SM_POLAR_JACOBI},
                                   {.w = 1, .h = 0.01, .strain_limit = -1},
+                                  {.w = 1, .h = 0.01, .strain_limit = 0.05},
                                   {.w = 1, .h = 0.01, .gravity = {0, INFINITY, 0}},
                                   {.w = 1, .h = 0.01, .mass = nothing}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {

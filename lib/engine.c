@@ -13,9 +13,11 @@ SmCode sm_engine_check(const SmVoxels *voxels, const SmEngineParams *params, SmE
         return sm_fail(error, SM_INPUT, "h is %g: the time step is a positive number", params->h);
     if (!(params->damping >= 0 && params->damping <= 1))
         return sm_fail(error, SM_INPUT, "damping is %g: it is from 0 to 1", params->damping);
-    if (!(params->strain_limit >= 0))
-        return sm_fail(error, SM_INPUT, "strain_limit is %g: it is 0 (never) or more",
-                       params->strain_limit);
+    if (params->strain_limit != 0 && !(params->strain_limit > 1)) /* 1: broken at rest */
+        return sm_fail(
+            error, SM_INPUT,
+            "strain_limit is %g: it is 0 (never) or above 1 (times a link's rest length)",
+            params->strain_limit);
     if (!(params->collide.friction >= 0 && params->collide.friction <= 1))
         return sm_fail(error, SM_INPUT, "the friction of collisions is %g: it is from 0 to 1",
                        params->collide.friction);

@@ -46,8 +46,8 @@ typedef struct {
     double damping;      /* k in [0,1]; 0: none (fastlsm eq. 14); see above */
     int damping_every;   /* run it every n-th step; 0 means 1 */
     double gravity[3];   /* mesh units / s^2 */
-    double strain_limit; /* a link breaks beyond this times its rest length; 0: never; INFINITY:
-                          * only where it is cut */
+    double strain_limit; /* a link breaks beyond this times its rest length, > 1; 0: never;
+                          * INFINITY: only where it is cut */
     SmSummation summation;
     SmPolarMethod polar;
     SmLayout layout;                     /* AUTO picks the faster one; results agree to rounding */
