@@ -293,7 +293,7 @@ static SmCode octree_frame(BenchChanges *changes, double from, double to, SmErro
     refine_details(changes, to, s);
     const OctChange *change = oct_engine_end(runner->engine);
     changes->last.resample_seconds = sm_now() - start;
-    changes->last.resampled = change->region_count > 0;
+    changes->last.resampled = change->region_count + change->edge_count > 0;
     if (!changes->last.resampled && s->cut.triangles == first) return SM_OK;
     follow(changes, change, first);
     code = bench_runner_refresh(runner, error);

@@ -17,6 +17,10 @@
     "octree = { levels = 3; nodes = 200; edges = 1.0; };\n"                                        \
     "handles = ( { box_low = (0, 0, 0); box_high = (0.1, 1, 1); } );\n"
 
+#define LOOSE_BEAM                                                                                 \
+    "mesh = \"shape:beam\"; particles = 3000; engine = \"octree\"; h = 0.01;\n"                    \
+    "steps_per_frame = 1; frames = 60; octree = { levels = 3; nodes = 200; edges = 0.5; };\n"
+
 typedef struct {
     BenchScene scene;
     BenchBody body;
@@ -166,6 +170,37 @@ static void a_notch_leaves_one_body(void **state)
     close_show(&show);
 }
 
+/* Regions of 0.5 edges hold one node each: a cut changes none, but what lies across it are
+ * neighbours no more, and may touch. */
+static void contacts_follow_a_cut_that_changes_no_region(void **state)
+{
+    (void)state;
+    Show show;
+    char text[640] = "collide = { self = true; };\n", *cut = text + strlen(text);
+    beam_cut(0.5, 1.6, 3, cut);
+    char *refines = strstr(cut, "level = 3; reach = 1.0; ");
+    memset(refines, ' ', strlen("level = 3; reach = 1.0; "));
+    open_show(LOOSE_BEAM, text, 1, &show);
+    BenchRunner *runner = bench_play_runner(&show.play);
+    long first = runner->particles;
+    for (int f = 0; f < 30; f++) run_frame(&show);
+    assert_int_equal(runner->particles, first);
+    double(*x)[3] = sm_alloc((size_t)first, sizeof *x);
+    runner->type->get(runner->engine, SM_POSITION, x);
+    for (long p = 0; p < first; p++) x[p][0] *= 0.4; /* into each other */
+    runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])x);
+    free(x);
+    BenchCheck check;
+    BenchDeviation found = {.finite = true};
+    bench_check_begin(&show.scene, runner->body, runner->type, runner->engine, &check);
+    bench_check_contacts(&check, &show.scene, runner->type, runner->engine, &found);
+    assert_true(found.contacts > 0);
+    if (found.contacts_wrong)
+        fail_msg("%ld of %ld contacts are wrong", found.contacts_wrong, found.contacts);
+    bench_check_free(&check);
+    close_show(&show);
+}
+
 static void threads_do_not_matter(void **state)
 {
     (void)state;
@@ -266,6 +301,7 @@ int main(void)
         cmocka_unit_test(a_beam_cut_through_is_two_and_one_falls),
         cmocka_unit_test(a_blade_that_misses_changes_nothing),
         cmocka_unit_test(a_notch_leaves_one_body),
+        cmocka_unit_test(contacts_follow_a_cut_that_changes_no_region),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(a_touch_refines_one_of_three),
         cmocka_unit_test(an_eye_refines_what_is_near),

@@ -215,7 +215,7 @@ static const OctChange *engine_end(SmEngine *e)
     e->count = e->head.structure.tree.live;
     e->renumber = true;
     e->goals = false;
-    if (e->contacts && change->region_count > 0) {
+    if (e->contacts && change->region_count + change->edge_count > 0) {
         oct_contacts_rebuild(e->contacts, &e->head.structure);
         fix_held(e);
     }

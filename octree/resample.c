@@ -108,7 +108,9 @@ const OctChange *oct_resample_update(OctStructure *s)
     oct_region_change_mark(&r->region);
     oct_graph_change_apply(graph, reach);
     oct_region_change_note(&r->region, graph->come, graph->come_count);
+    change->edge_count = graph->gone_count + graph->come_count;
     oct_graph_change_cut(graph, s->cut_known);
+    change->edge_count += graph->gone_count;
     oct_region_change_note(&r->region, graph->gone, graph->gone_count);
     oct_region_change_mark(&r->region);
     oct_graph_change_apply(graph, reach);

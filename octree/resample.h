@@ -46,6 +46,7 @@ typedef struct OctChange {
     long region_count;
     int *region; /* leaves, new ones included, whose region holds other leaves than before: its list
                   * of members is another, or leaves below a member are. Each once, in no order */
+    long edge_count;             /* edges of the graph that have gone or come */
     long born_count, dead_count; /* tree nodes */
     OctPlace *born, *dead;
     long inner_count, outer_count;
