@@ -234,7 +234,10 @@ static void make_repository(const char *cmake)
     if (result.code) fail_msg("%s", result.err);
 }
 
+/* Its optional MPI is there by half. */
 static const char works[] = "cmake_minimum_required(VERSION 3.22)\nproject(p C)\n"
+                            "if(NOT CMAKE_DISABLE_FIND_PACKAGE_MPI)\nmessage(FATAL_ERROR \"MPI "
+                            "without headers\")\nendif()\n"
                             "add_executable(shapebench program.c)\n";
 
 static void nothing_is_left_in_the_repository(void)

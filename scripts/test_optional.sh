@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Configures where every optional library is broken in a way that packages are: MPI's compiler without the
+# headers that it names (as python3-vtk9 brings it), libraries that are there and cannot be linked. All are
+# to be left out, each with a line.
+#
+# usage: scripts/test_optional.sh
+set -eu
+root=$(cd -- "$(dirname -- "$0")/.." && pwd)
+folder=$(mktemp -d)
+trap 'rm -rf -- "$folder"' EXIT
+mkdir "$folder/bin" "$folder/pc" "$folder/lib"
+for library in mpi cmocka arpack cholmod lapack; do : >"$folder/lib/lib$library.so"; done
+cat >"$folder/bin/mpicc" <<MPICC
+#!/bin/sh
+case \$* in
+*showme:compile*) echo "-I$folder/absent" ;;
+*showme:link*) echo "-L$folder/lib -lmpi" ;;
+*) exec cc "\$@" ;;
+esac
+MPICC
+chmod +x "$folder/bin/mpicc"
+for module in mpi-c cmocka arpack; do
+    printf '%s\n' "Name: $module" "Description: broken" "Version: 1" "Cflags: -I$folder/absent" \
+        "Libs: -L$folder/lib -l${module%-c}" >"$folder/pc/$module.pc"
+done
+if ! PATH=$folder/bin:$PATH PKG_CONFIG_PATH=$folder/pc cmake -S "$root" -B "$folder/build" -G Ninja \
+    -DCHOLMOD_LIBRARY="$folder/lib/libcholmod.so" -DLAPACK_LIBRARY="$folder/lib/liblapack.so" \
+    >"$folder/log" 2>&1; then
+    cat "$folder/log"
+    exit 1
+fi
+for line in "No MPI" "No unit tests" "No meshless bodies"; do
+    grep -q -- "-- $line" "$folder/log" || { echo "no line '$line'"; cat "$folder/log"; exit 1; }
+done

@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# What scripts/setup asks of apt-get where no package is installed: never to remove any, and no second VTK
+# where Python has one. The package tools are stand-ins here; nothing is installed.
+#
+# usage: scripts/test_setup.sh     exit codes: 0 passed, 1 failed, 77 this is not Debian 12
+set -eu
+grep -qs '^VERSION_ID="12"$' /etc/os-release && grep -qs '^ID=debian$' /etc/os-release || exit 77
+setup=$(dirname -- "$0")/setup
+folder=$(mktemp -d)
+trap 'rm -rf -- "$folder"' EXIT
+mkdir "$folder/bin" "$folder/vtk"
+printf '#!/bin/sh\n' >"$folder/bin/dpkg-query"
+printf '#!/bin/sh\nshift\nexec "$@"\n' >"$folder/bin/sudo"
+printf '#!/bin/sh\necho "$*" >>"%s"\n' "$folder/asked" >"$folder/bin/apt-get"
+chmod +x "$folder"/bin/*
+
+# asked WHAT [PYTHONPATH]: the line that installs.
+asked() {
+    : >"$folder/asked"
+    PATH=$folder/bin:$PATH PYTHONPATH=${2-} "$setup" "$1" 2>/dev/null
+    grep ' install ' "$folder/asked"
+}
+
+for what in run test pictures; do
+    asked "$what" | grep -q -- ' --no-remove ' || { echo "$what: apt-get may remove packages"; exit 1; }
+done
+touch "$folder/vtk/vtk.py"
+! asked pictures "$folder/vtk" | grep -q vtk || { echo "a second VTK is asked for"; exit 1; }
+echo 'raise ImportError' >"$folder/vtk/vtk.py"
+asked pictures "$folder/vtk" | grep -q python3-vtk9 || { echo "no VTK is asked for"; exit 1; }
