@@ -145,8 +145,8 @@ static SmCode measure_all(const BenchCalibrate *run, BenchSpecimen *planned,
 SmCode bench_calibrate(const BenchCalibrate *run, BenchCalibration *calibration, SmError *error)
 {
     BenchSpecimen *planned = sm_alloc(BENCH_CALIBRATION_SPECIMENS, sizeof *planned);
-    SmCode code = resume(run, calibration, error);
-    if (!code && run->output) code = bench_draft_try(run->output, error);
+    SmCode code = bench_draft_reserve(run->output, true, error);
+    if (!code) code = resume(run, calibration, error);
     if (!code) code = bench_calibration_plan(&calibration->plan, planned, error);
     if (!code) {
         char line[240];

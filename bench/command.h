@@ -9,7 +9,7 @@ enum { BENCH_EXIT_SLOWER = 5, BENCH_EXIT_NO_BASELINE = 6, BENCH_EXIT_NOT_JUDGED 
 #define BENCH_EXIT_CODES                                                                           \
     "Exit codes: 0 done; 1 a correctness check failed (INVALID); 2 unknown option or value out "   \
     "of range; 3 a mesh, scene or result file cannot be used; 4 a file cannot be written; "        \
-    "70 out of memory; 130 interrupted."
+    "70 out of memory; 128 + N ended by signal N (Ctrl-C: 130)."
 
 typedef struct {
     const char *name;

@@ -15,7 +15,7 @@ typedef struct {
     BenchCommon common;
     const char *paper, *output;
     BenchNames claims, files;
-    bool quick, list;
+    bool quick, list, overwrite;
     BenchFormat format;
 } Options;
 
@@ -31,6 +31,7 @@ static const struct argp_option option_list[] = {
      "Also store verdicts, every curve's points, every row and provenance in HDF5 (default: "
      "nothing stored)",
      3},
+    BENCH_OVERWRITE_OPTION(3),
     {0},
 };
 
@@ -42,6 +43,7 @@ static const BenchOption options_taken[] = {
     {KEY_QUICK, BENCH_TO(TRUE, quick), 0, 0, NULL},
     {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
     {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    BENCH_OVERWRITE_TAKEN,
     {0},
 };
 
@@ -175,7 +177,7 @@ int bench_command_claims(int argc, char **argv)
     if (!code && options.list)
         list_claims(&claims);
     else {
-        if (!code) code = bench_draft_try(options.output, &error);
+        if (!code) code = bench_draft_reserve(options.output, options.overwrite, &error);
         if (!code) code = report(&options, &claims, argc, argv, &error);
     }
     bench_claims_free(&claims);

@@ -6,6 +6,7 @@
 #include "../lib/voxel.h"
 #include "body.h"
 #include "command.h"
+#include "draft.h"
 #include "option.h"
 #include "slice.h"
 
@@ -17,7 +18,7 @@ typedef struct {
     int count;
     long particles;
     int json;
-    bool sliced;
+    bool sliced, overwrite;
     BenchSlice slice;
     const char *output; /* of the slice */
 } Options;
@@ -43,6 +44,7 @@ static const struct argp_option option_list[] = {
      "meshless engine makes of them, on the plane so far through their box (z=0.5), into --output",
      2},
     {"output", 'o', "FILE.h5", 0, "HDF5 file of the slice; scripts/plot_slice.py draws it", 2},
+    BENCH_OVERWRITE_OPTION(2),
     {0},
 };
 
@@ -64,14 +66,17 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case 'o':
         options->output = text;
         return 0;
+    case BENCH_KEY_OVERWRITE:
+        options->overwrite = true;
+        return 0;
     case ARGP_KEY_ARG:
         if (options->count == FILES) bench_usage(state, "at most %d meshes", FILES);
         options->mesh[options->count++] = text;
         return 0;
     case ARGP_KEY_END:
         if (!options->count) bench_usage(state, "which MESH?");
-        if (options->sliced != (options->output != NULL))
-            bench_usage(state, "--slice and --output go together");
+        if (options->sliced != (options->output != NULL) || options->sliced < options->overwrite)
+            bench_usage(state, "--slice and --output go together, and --overwrite with both");
         if (options->sliced && (options->count > 1 || options->json))
             bench_usage(state, "--slice: of one mesh, without --format");
         return 0;
@@ -187,7 +192,8 @@ static json_t *to_json(const char *name, const Facts *facts)
 static SmCode cut_slice(const Options *options, const char *program)
 {
     SmError error;
-    SmCode code = bench_slice_write(options->mesh[0], &options->slice, options->output, &error);
+    SmCode code = bench_draft_reserve(options->output, options->overwrite, &error);
+    if (!code) code = bench_slice_write(options->mesh[0], &options->slice, options->output, &error);
     if (code)
         bench_option_fail(program, &error);
     else if (!options->common.quiet)

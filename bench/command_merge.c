@@ -1,8 +1,8 @@
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "command.h"
+#include "draft.h"
 #include "option.h"
 #include "sweep.h"
 
@@ -11,12 +11,18 @@ typedef struct {
     const char *output;
     const char **input; /* [inputs] */
     int inputs;
+    bool overwrite;
 } Options;
+
+static const struct argp_option option_list[] = {BENCH_OVERWRITE_OPTION(1), {0}};
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
     switch (key) {
+    case BENCH_KEY_OVERWRITE:
+        options->overwrite = true;
+        return 0;
     case ARGP_KEY_ARG:
         if (options->output)
             options->input[options->inputs++] = text;
@@ -33,20 +39,16 @@ static error_t parse(int key, char *text, struct argp_state *state)
 static const char help[] =
     "Put shards of a sweep (shapebench sweep --shard I/N -o IN.h5) into one file. They must be of "
     "one scene, mesh, build and set of options; a point in two of them must be the same in both.\v"
-    "OUT.h5 is a new file; one that is there is not written over. What is missing is said, and "
-    "'sweep -o OUT.h5' with the same options measures "
-    "it.\n" BENCH_EXIT_CODES;
+    "OUT.h5 comes first, and is a new file. What is missing is said, and 'sweep -o OUT.h5' with "
+    "the "
+    "same options measures it.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {NULL, parse, "OUT.h5 IN.h5...", help, NULL, NULL, NULL};
+static const struct argp argp = {option_list, parse, "OUT.h5 IN.h5...", help, NULL, NULL, NULL};
 
 static SmCode merge(const Options *options, BenchSweep *all, SmError *error)
 {
-    if (access(options->output, F_OK) == 0)
-        return sm_fail(
-            error, SM_OUTPUT,
-            "cannot write %.300s: it is there; name a new file first, then those to read",
-            options->output);
-    SmCode code = bench_sweep_load(options->input[0], all, error);
+    SmCode code = bench_draft_reserve(options->output, options->overwrite, error);
+    if (!code) code = bench_sweep_load(options->input[0], all, error);
     for (int i = 1; i < options->inputs && !code; i++) {
         BenchSweep next;
         code = bench_sweep_load(options->input[i], &next, error);

@@ -40,7 +40,7 @@ typedef struct {
     int rounds, repeats;
     double block, threshold; /* ms; a share, NaN: auto */
     BenchRegressionFormat format;
-    bool counts;
+    bool counts, overwrite;
 } Options;
 
 static const struct argp_option option_list[] = {
@@ -67,6 +67,7 @@ static const struct argp_option option_list[] = {
      "With --revision: also count each scene's instructions, which noise does not touch", 2},
     {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, json, junit or gbench (default: text)", 3},
     {"output", 'o', "FILE", 0, "Write there (default: standard output)", 3},
+    BENCH_OVERWRITE_OPTION(3),
     {0},
 };
 
@@ -81,6 +82,7 @@ static const BenchOption options_taken[] = {
     {KEY_COUNTS, BENCH_TO(TRUE, counts), 0, 0, NULL},
     {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_regression_formats},
     {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    BENCH_OVERWRITE_TAKEN,
     {0},
 };
 
@@ -369,7 +371,8 @@ int bench_command_regress(int argc, char **argv)
     snprintf(session->self, sizeof session->self, "/proc/%ld/exe", (long)getpid());
     bench_process_catch();
     bench_progress_start(&session->progress, options.common.quiet);
-    SmCode code = options.output ? bench_draft_begin(options.output, &draft, &error) : SM_OK;
+    SmCode code = bench_draft_reserve(options.output, options.overwrite, &error);
+    if (!code && options.output) code = bench_draft_begin(options.output, &draft, &error);
     if (!code) code = make_scratch(session, &error);
     if (!code) {
         code = run(session, &draft, &here, &exit_code, &error);

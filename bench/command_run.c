@@ -43,7 +43,7 @@ typedef struct {
     BenchCommon common;
     BenchOverride chosen;
     const char *scene, *output, *w;
-    bool shell, no_output, has_gravity;
+    bool shell, no_output, has_gravity, overwrite;
     int frames, steps, summation, polar, levels, record;
     int modes;
     long particles, nodes;
@@ -86,6 +86,7 @@ static const struct argp_option option_list[] = {
     {"frames", KEY_FRAMES, "N", 0, "Frames after the first", 2},
     {"steps", KEY_STEPS, "N", 0, "Steps in a frame", 2},
     {"output", 'o', "FILE.vtkhdf", 0, "Trajectory (default: SCENE.vtkhdf in this folder)", 2},
+    BENCH_OVERWRITE_OPTION(2),
     {"no-output", KEY_NO_OUTPUT, 0, 0, "Write no trajectory", 2},
     {"record", KEY_RECORD, "WHAT", 0,
      "particles: also store the lattice, and every step's particle positions, velocities and "
@@ -115,6 +116,7 @@ static const BenchOption options_taken[] = {
     {KEY_FRAMES, BENCH_TO(INT, frames), 0, 1e7, NULL},
     {KEY_STEPS, BENCH_TO(INT, steps), 1, 1e6, NULL},
     {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    BENCH_OVERWRITE_TAKEN,
     {KEY_NO_OUTPUT, BENCH_TO(TRUE, no_output), 0, 0, NULL},
     {0},
 };
@@ -123,8 +125,8 @@ static void check_options(const Options *options, const struct argp_state *state
 {
     if (!options->scene) bench_usage(state, "which scene or mesh?");
     if (options->particles && options->cell > 0) bench_usage(state, "either --particles or --cell");
-    if (options->no_output && (options->output || options->record))
-        bench_usage(state, "--no-output goes with neither --output nor --record");
+    if (options->no_output && (options->output || options->record || options->overwrite))
+        bench_usage(state, "--no-output goes with neither --output nor --record nor --overwrite");
 }
 
 static error_t parse(int key, char *text, struct argp_state *state)
@@ -401,6 +403,16 @@ static void output_path(const Options *options, const BenchScene *scene, char pa
         snprintf(path, BENCH_PATH, "%s.vtkhdf", stem);
 }
 
+/* The trajectory and its sidecar, before anything takes long. */
+static SmCode reserve(const Options *options, const char *path, SmError *error)
+{
+    char sidecar[BENCH_PATH + 8];
+    if (options->no_output) return SM_OK;
+    snprintf(sidecar, sizeof sidecar, "%s.xdmf", path);
+    SmCode code = bench_draft_reserve(path, options->overwrite, error);
+    return code ? code : bench_draft_reserve(sidecar, options->overwrite, error);
+}
+
 /* Before a long wait for a file that fills a disk. */
 static void warn_of_size(const Options *options, const BenchRecording *recording, const char *path)
 {
@@ -417,13 +429,11 @@ static void warn_of_size(const Options *options, const BenchRecording *recording
 
 /* Runs the scene on an engine that is ready, and writes what was asked for. */
 static SmCode record(const Options *options, BenchPlay *play, const BenchMachine *machine,
-                     SmError *error)
+                     const char *path, SmError *error)
 {
     const BenchScene *scene = play->cast.scene;
     BenchRecording recording;
     BenchRecording *recorder = options->no_output ? NULL : &recording;
-    char path[BENCH_PATH];
-    output_path(options, scene, path);
     SmCode code = SM_OK;
     if (recorder)
         code = bench_recording_open(play, path, (BenchRecord)options->record, machine, recorder,
@@ -459,6 +469,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     SmMesh mesh;
     BenchBody body;
     BenchPlay play;
+    char path[BENCH_PATH];
     SmCode code = load(options, &scene, &mesh, error);
     if (code) return code;
     apply_options(options, &scene);
@@ -466,6 +477,8 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     if (!code) code = apply_meshless(options, &scene, error);
     if (!code) code = bench_engine_find(scene.engine, options->chosen.precision, &type, error);
     if (!code) code = apply_w(options->w, type, &scene, error);
+    output_path(options, &scene, path);
+    if (!code) code = reserve(options, path, error);
     if (code) {
         sm_mesh_free(&mesh);
         return code;
@@ -475,7 +488,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     code = bench_play_create(&scene, &body, type, options->common.threads, options->common.seed,
                              &play, error);
     if (!code) {
-        code = record(options, &play, machine, error);
+        code = record(options, &play, machine, path, error);
         bench_play_free(&play);
     }
     bench_body_free(&body);

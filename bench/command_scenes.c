@@ -13,11 +13,13 @@ typedef struct {
     BenchCommon common;
     const char *name;  /* scene to print, or shape to write */
     const char *write; /* mesh file to write */
+    bool overwrite;
 } Options;
 
 static const struct argp_option option_list[] = {
     {"write-mesh", KEY_WRITE, "FILE.obj", 0,
      "Write the mesh of the scene or shape NAME instead, as Wavefront OBJ", 1},
+    BENCH_OVERWRITE_OPTION(1),
     {0},
 };
 
@@ -28,12 +30,17 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_WRITE:
         options->write = text;
         return 0;
+    case BENCH_KEY_OVERWRITE:
+        options->overwrite = true;
+        return 0;
     case ARGP_KEY_ARG:
         if (options->name) bench_usage(state, "one NAME only, not also '%s'", text);
         options->name = text;
         return 0;
     case ARGP_KEY_END:
         if (options->write && !options->name) bench_usage(state, "--write-mesh: which shape?");
+        if (options->overwrite && !options->write)
+            bench_usage(state, "--overwrite goes with --write-mesh");
         return 0;
     }
     return ARGP_ERR_UNKNOWN;
@@ -81,11 +88,13 @@ static void print_mesh(FILE *file, const void *what)
     sm_mesh_print_obj(what, file);
 }
 
-static SmCode write_mesh(const char *name, const char *path, SmError *error)
+static SmCode write_mesh(const Options *options, SmError *error)
 {
+    const char *name = options->name, *path = options->write;
     SmMesh mesh;
     BenchScene scene;
-    SmCode code = SM_OK;
+    SmCode code = bench_draft_reserve(path, options->overwrite, error);
+    if (code) return code;
     if (bench_scene_text(name, NULL)) {
         code = bench_scene_find(name, &scene, error);
         if (!code) code = bench_mesh_load(scene.mesh, &mesh, error);
@@ -105,7 +114,7 @@ int bench_command_scenes(int argc, char **argv)
     SmError error;
     SmCode code;
     if (options.write)
-        code = write_mesh(options.name, options.write, &error);
+        code = write_mesh(&options, &error);
     else if (options.name)
         code = print_scene(options.name, &error);
     else

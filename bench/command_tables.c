@@ -23,6 +23,7 @@ typedef struct {
     int repeats;
     double block;
     BenchFormat format;
+    bool overwrite;
 } Options;
 
 /* A scene to measure, and the name that stood for it and others, or NULL. */
@@ -49,6 +50,7 @@ static const struct argp_option option_list[] = {
     {"output", 'o', "FILE.h5", 0,
      "Also store every sample, counts, validity and provenance in HDF5 (default: nothing stored)",
      3},
+    BENCH_OVERWRITE_OPTION(3),
     {0},
 };
 
@@ -59,6 +61,7 @@ static const BenchOption options_taken[] = {
     {KEY_BLOCK, BENCH_TO(REAL, block), 0.001, 60000, NULL},
     {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
     {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    BENCH_OVERWRITE_TAKEN,
     {0},
 };
 
@@ -266,7 +269,7 @@ int bench_command_tables(int argc, char **argv)
     SmCode code = choose_scenes(&chosen, &error);
     if (!code) code = check_substitutes(&chosen, &error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
-    if (!code) code = bench_draft_try(options.output, &error);
+    if (!code) code = bench_draft_reserve(options.output, options.overwrite, &error);
     if (!code) code = measure_all(&chosen, rows, &error);
     if (!code) {
         BenchMachine machine;

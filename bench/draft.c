@@ -1,15 +1,19 @@
+#define _GNU_SOURCE
 #include "draft.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
+#include <limits.h>
 #include <signal.h>
-#include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
-enum { SLOTS = 16 };
+enum { SLOTS = 16, LINKS = 40 /* one after another, as the kernel allows */ };
 
 /* Read by a signal handler of the one thread that writes: a name is complete before its flag is
  * set. */
@@ -18,6 +22,8 @@ static volatile sig_atomic_t in_use[SLOTS];
 
 static int list_draft(const char *tmp)
 {
+    static bool at_exit; /* out of memory ends the program by exit() */
+    if (!at_exit) at_exit = atexit(bench_drafts_remove) == 0;
     for (int slot = 0; slot < SLOTS; slot++) {
         if (in_use[slot]) continue;
         strcpy(listed[slot], tmp);
@@ -62,20 +68,99 @@ SmCode bench_draft_fail(const char *path, int number, const char *detail, SmErro
                    remedy(path, number));
 }
 
+/* The folder that a path's last name lies in, without links. */
+static bool folder_of(const char *path, char folder[PATH_MAX])
+{
+    char copy[BENCH_DRAFT_PATH];
+    snprintf(copy, sizeof copy, "%s", path);
+    return realpath(dirname(copy), folder) != NULL;
+}
+
+/* One link further, seen from the link's own folder. False at links that stand for devices or open
+ * files (/dev/stdout, /proc/self/fd/1), and at paths too long. */
+static bool follow(char path[BENCH_DRAFT_PATH])
+{
+    char folder[PATH_MAX], to[BENCH_DRAFT_PATH];
+    ssize_t length = readlink(path, to, sizeof to - 1);
+    if (length < 0 || !folder_of(path, folder)) return false;
+    if (!strcmp(folder, "/dev") || !strncmp(folder, "/proc/", 6)) return false;
+    to[length] = '\0';
+    if (to[0] == '/') {
+        strcpy(path, to);
+        return true;
+    }
+    return snprintf(path, BENCH_DRAFT_PATH, "%s/%s", folder, to) < BENCH_DRAFT_PATH;
+}
+
+/* Where the bytes go: links at the path's end are followed, so that they stay. stat() comes first:
+ * it asks the kernel, which follows no stranger's link in /tmp. */
+static SmCode resolve(const char *path, char target[BENCH_DRAFT_PATH], SmError *error)
+{
+    static const char other[] = "it is there and not a regular file; choose another name";
+    struct stat status;
+    if (strlen(path) >= BENCH_DRAFT_PATH) return bench_draft_fail(path, ENAMETOOLONG, "", error);
+    bool there = stat(path, &status) == 0;
+    if (there && !S_ISREG(status.st_mode)) return bench_draft_fail(path, 0, other, error);
+    if (!there && errno != ENOENT) return bench_draft_fail(path, errno, "", error);
+    strcpy(target, path);
+    for (int links = 0; lstat(target, &status) == 0 && S_ISLNK(status.st_mode); links++)
+        if (links == LINKS || !follow(target)) return bench_draft_fail(path, 0, other, error);
+    return SM_OK;
+}
+
+/* May a file that is there be written? Root may, whatever the mode says: a file that nobody may
+ * write is protected from root, too. */
+static SmCode check_rights(const char *path, const char *target, const struct stat *status,
+                           SmError *error)
+{
+    int file = open(target, O_WRONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
+    int number = file < 0 ? errno : status->st_mode & 0222 ? 0 : EACCES;
+    if (file >= 0) close(file);
+    if (number == EACCES || number == EPERM)
+        return bench_draft_fail(path, 0, "it is write-protected; choose another name, or chmod +w",
+                                error);
+    return number ? bench_draft_fail(path, number, "", error) : SM_OK;
+}
+
+/* Makes a file that was not there, under a name of this process, and opens it; -1 and errno. */
+static int create(BenchDraft *draft)
+{
+    for (int n = 0; n < 100; n++) { /* an older process of this number may have left some */
+        char more[16] = "";
+        if (n) snprintf(more, sizeof more, "-%d", n);
+        int length = snprintf(draft->tmp, sizeof draft->tmp, "%s.%ld%s.tmp", draft->target,
+                              (long)getpid(), more);
+        errno = ENAMETOOLONG;
+        int file = length >= (int)sizeof draft->tmp
+                       ? -1
+                       : open(draft->tmp, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+        if (file >= 0 || errno != EEXIST) return file;
+    }
+    return -1;
+}
+
 SmCode bench_draft_begin(const char *path, BenchDraft *draft, SmError *error)
 {
-    draft->slot = -1;
     struct stat status;
-    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
-        return bench_draft_fail(path, 0, "it is there and not a regular file; choose another name",
-                                error);
-    int length = snprintf(draft->tmp, sizeof draft->tmp, "%s.%ld.tmp", path, (long)getpid());
-    if (length >= (int)sizeof draft->tmp) return bench_draft_fail(path, ENAMETOOLONG, "", error);
+    draft->slot = -1;
+    draft->tmp[0] = '\0';
+    SmCode code = resolve(path, draft->target, error);
+    if (code) return code;
+    bool there = lstat(draft->target, &status) == 0;
+    if (there) code = check_rights(path, draft->target, &status, error);
+    if (code) return code;
     strcpy(draft->path, path);
-    int file = open(draft->tmp, O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (file < 0) return bench_draft_fail(path, errno, "", error);
-    close(file);
+    int file = create(draft);
+    if (file < 0) {
+        draft->tmp[0] = '\0';
+        return bench_draft_fail(path, errno, "", error);
+    }
     draft->slot = list_draft(draft->tmp);
+    if (there) { /* who may read it, and whose it is: as before, where that can be */
+        if (fchown(file, status.st_uid, status.st_gid) != 0) status.st_mode &= 0777;
+        (void)fchmod(file, status.st_mode & 07777);
+    }
+    close(file);
     return SM_OK;
 }
 
@@ -88,25 +173,80 @@ static int sync_path(const char *path)
     return number;
 }
 
-SmCode bench_draft_try(const char *path, SmError *error)
+/* Who holds a lock, as its holder wrote it; control characters are not shown. */
+static SmCode refuse_held(const char *path, int file, SmError *error)
+{
+    char holder[160] = "";
+    ssize_t length = pread(file, holder, sizeof holder - 1, 0);
+    for (ssize_t i = 0; i < length; i++)
+        if ((unsigned char)holder[i] < ' ') holder[i] = '\0';
+    return sm_fail(error, SM_OUTPUT,
+                   "cannot write %.300s: %s is writing it; wait for it, or choose another name",
+                   path, holder[0] ? holder : "another program");
+}
+
+/* Says in the lock who holds it. It is not closed: it is held until the program has ended. */
+static void sign(int file)
+{
+    char host[64] = "unknown", utc[32], holder[160];
+    time_t now = time(NULL);
+    struct tm when;
+    if (gethostname(host, sizeof host - 1)) strcpy(host, "unknown");
+    strftime(utc, sizeof utc, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &when));
+    int length = snprintf(holder, sizeof holder, "process %ld on %s, since %s,\n", (long)getpid(),
+                          host, utc);
+    if (ftruncate(file, 0) == 0) (void)!pwrite(file, holder, (size_t)length, 0);
+}
+
+/* Locks TARGET.lock. The kernel lets a lock go when its holder ends, however it does; a file system
+ * without locks is trusted. */
+static SmCode take_lock(const BenchDraft *draft, SmError *error)
+{
+    char path[BENCH_DRAFT_PATH];
+    struct stat mine, there;
+    if (snprintf(path, sizeof path, "%s.lock", draft->target) >= (int)sizeof path)
+        return bench_draft_fail(draft->path, ENAMETOOLONG, "", error);
+    for (;;) {
+        int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+        if (file < 0) return bench_draft_fail(path, errno, "", error);
+        if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+            SmCode code = refuse_held(draft->path, file, error);
+            close(file);
+            return code;
+        }
+        if (fstat(file, &mine) == 0 && lstat(path, &there) == 0 && mine.st_ino == there.st_ino) {
+            sign(file);
+            list_draft(path);
+            return SM_OK;
+        }
+        close(file); /* its last holder has just removed it */
+    }
+}
+
+SmCode bench_draft_reserve(const char *path, bool overwrite, SmError *error)
 {
     BenchDraft draft;
-    SmCode code = path ? bench_draft_begin(path, &draft, error) : SM_OK;
-    if (path && !code) bench_draft_discard(&draft);
-    return code;
+    if (!path) return SM_OK;
+    SmCode code = bench_draft_begin(path, &draft, error);
+    if (code) return code;
+    bench_draft_discard(&draft);
+    code = take_lock(&draft, error);
+    if (code || overwrite || access(draft.target, F_OK) != 0) return code;
+    return bench_draft_fail(path, 0, "it is there; choose another name, or give --overwrite",
+                            error);
 }
 
 SmCode bench_draft_commit(BenchDraft *draft, SmError *error)
 {
     int number = sync_path(draft->tmp);
-    if (number == 0 && rename(draft->tmp, draft->path) != 0) number = errno;
+    if (number == 0 && rename(draft->tmp, draft->target) != 0) number = errno;
     if (number) {
         bench_draft_discard(draft);
         return bench_draft_fail(draft->path, number, "", error);
     }
     if (draft->slot >= 0) in_use[draft->slot] = 0;
     char folder[BENCH_DRAFT_PATH];
-    strcpy(folder, draft->path);
+    strcpy(folder, draft->target);
     /* Some file systems cannot sync a folder; the file itself is safe by now. */
     (void)sync_path(dirname(folder));
     draft->slot = -1;

@@ -12,13 +12,24 @@ static char lines[2][288];
 static size_t length[2];
 static volatile sig_atomic_t present;
 
+const int bench_interrupt_signals[BENCH_INTERRUPT_SIGNALS] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT,
+                                                              SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU};
+
 static void interrupt(int number)
 {
     bench_drafts_remove();
     int which = present;
-    ssize_t written = write(STDERR_FILENO, lines[which], length[which]);
+    ssize_t written = number == SIGPIPE ? 0 : write(STDERR_FILENO, lines[which], length[which]);
     (void)written;
     _exit(128 + number);
+}
+
+void bench_interrupt_handle(int number, void (*handler)(int))
+{
+    struct sigaction before, action = {.sa_handler = handler};
+    sigfillset(&action.sa_mask);
+    if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+        sigaction(number, &action, NULL);
 }
 
 void bench_interrupt_say(const char *line)
@@ -33,8 +44,8 @@ void bench_interrupt_say(const char *line)
 void bench_interrupt_catch(void)
 {
     bench_interrupt_say(NULL);
-    struct sigaction action = {.sa_handler = interrupt};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    for (int i = 0; i < BENCH_INTERRUPT_SIGNALS; i++)
+        bench_interrupt_handle(bench_interrupt_signals[i], interrupt);
+    bench_interrupt_handle(SIGPIPE, interrupt);
+    bench_interrupt_handle(SIGXFSZ, SIG_IGN); /* a write beyond the limit fails, and is told */
 }

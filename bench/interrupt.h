@@ -1,7 +1,14 @@
-/* interrupt.h - what an interrupted program (SIGINT, SIGTERM) leaves behind and says: no draft, one
- * line, exit code 128 + the signal's number. */
+/* interrupt.h - what a program that a signal ends (Ctrl-C, a closed terminal, a batch system, a
+ * closed pipe) leaves behind and says: no draft, one line (none for the pipe), exit code 128 + the
+ * signal's number. */
 #ifndef BENCH_INTERRUPT_H
 #define BENCH_INTERRUPT_H
+
+enum { BENCH_INTERRUPT_SIGNALS = 8 };
+extern const int bench_interrupt_signals[BENCH_INTERRUPT_SIGNALS]; /* all but the pipe's */
+
+/* Installs a handler; a signal that is ignored (nohup) stays so. */
+void bench_interrupt_handle(int number, void (*handler)(int));
 
 /* From now on. The line says that no file was written, until another one is set. */
 void bench_interrupt_catch(void);

@@ -53,6 +53,19 @@ typedef struct {
 /* Target and offset of a member of the command's record, which its file calls Options. */
 #define BENCH_TO(target, member) BENCH_TO_##target, offsetof(Options, member)
 
+/* What every command that writes a file has: in its options, and in what they do with a bool
+ * `overwrite` (bench_draft_try()). */
+enum { BENCH_KEY_OVERWRITE = 0x3000 };
+#define BENCH_OVERWRITE_OPTION(group)                                                              \
+    {                                                                                              \
+        "overwrite", BENCH_KEY_OVERWRITE, 0, 0, "Replace a file that is there (default: refuse)",  \
+            group                                                                                  \
+    }
+#define BENCH_OVERWRITE_TAKEN                                                                      \
+    {                                                                                              \
+        BENCH_KEY_OVERWRITE, BENCH_TO(TRUE, overwrite), 0, 0, NULL                                 \
+    }
+
 /* Puts the value of the option `key` of the command's `list` into the record, which is the state's
  * input, as `options` has it; false where it is none of these. Both end with {0}. */
 bool bench_option_take(const struct argp_option *list, const BenchOption *options, int key,

@@ -14,6 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "interrupt.h"
+
 static volatile sig_atomic_t caught;
 
 static void note(int number)
@@ -23,12 +25,8 @@ static void note(int number)
 
 void bench_process_catch(void)
 {
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-    struct sigaction before, action = {.sa_handler = note};
-    sigemptyset(&action.sa_mask);
-    for (int i = 0; i < 3; i++) /* what is ignored (nohup) stays so */
-        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
-            sigaction(numbers[i], &action, NULL);
+    for (int i = 0; i < BENCH_INTERRUPT_SIGNALS; i++)
+        bench_interrupt_handle(bench_interrupt_signals[i], note);
 }
 
 int bench_process_caught(void)

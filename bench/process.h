@@ -1,7 +1,7 @@
 /* process.h - other programs, started and waited for, and stopped when the user interrupts.
  *
  * A program runs in a process group of its own with all that it starts, so nothing of it outlives
- * this one: SIGINT, SIGTERM and SIGHUP stop the group, and the caller tidies up and ends. */
+ * this one: a signal that ends (interrupt.h) stops the group, and the caller tidies up and ends. */
 #ifndef BENCH_PROCESS_H
 #define BENCH_PROCESS_H
 

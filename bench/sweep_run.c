@@ -137,10 +137,11 @@ static SmCode prepare(Job *job, Start *start, SmError *error)
 {
     const BenchSweepRun *run = job->run;
     BenchSweep *sweep = job->sweep;
-    SmCode code = bench_sweeper_create(&sweep->plan, &job->sweeper, error);
-    if (run->ranks->rank > 0) return code;
+    bool first = run->ranks->rank == 0;
+    SmCode code = first ? bench_draft_reserve(run->output, true, error) : SM_OK;
+    if (!code) code = bench_sweeper_create(&sweep->plan, &job->sweeper, error);
+    if (!first) return code;
     if (!code) code = resume(run, sweep, error);
-    if (!code && run->output) code = bench_draft_try(run->output, error);
     start->code = code;
     start->plan = sweep->plan;
     for (long i = 0; i < sweep->count && !code; i++) start->done[sweep->point[i].index] = true;

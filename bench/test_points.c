@@ -73,10 +73,10 @@ static void assert_runs(const char *name)
 {
     Result result;
     char arguments[256];
-    snprintf(
-        arguments, sizeof arguments,
-        "run %s --engine meshless --nodes 150 --modes 20 --particles 300 --frames 3 -o a.vtkhdf",
-        name);
+    snprintf(arguments, sizeof arguments,
+             "run %s --engine meshless --nodes 150 --modes 20 --particles 300 --frames 3 "
+             "--overwrite -o a.vtkhdf",
+             name);
     run(arguments, &result);
     if (result.code || result.err[0]) fail_msg("%s: %d, %s", name, result.code, result.err);
     assert_non_null(strstr(result.out, "meshless, double precision"));

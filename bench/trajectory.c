@@ -18,7 +18,7 @@ typedef struct {
 } Topology;
 
 struct BenchTrajectory {
-    BenchDraft draft;
+    BenchDraft draft, sidecar; /* of the HDF5 and of the XDMF file */
     BenchH5 h5;
     char scene[256];
     long frames, room;
@@ -48,11 +48,17 @@ static bool single_is_enough(const SmMesh *mesh)
     return far * FLT_EPSILON / 2 <= 1e-6 * extent;
 }
 
-/* Ends the writing: the draft goes, the cause is told. */
+static void discard(BenchTrajectory *trajectory)
+{
+    bench_draft_discard(&trajectory->draft);
+    bench_draft_discard(&trajectory->sidecar);
+}
+
+/* Ends the writing: the drafts go, the cause is told. */
 static SmCode fail(BenchTrajectory *trajectory, SmError *error)
 {
     bench_h5_close(&trajectory->h5);
-    bench_draft_discard(&trajectory->draft);
+    discard(trajectory);
     return bench_draft_fail(trajectory->draft.path, trajectory->h5.number, trajectory->h5.message,
                             error);
 }
@@ -145,6 +151,18 @@ static void release(BenchTrajectory *trajectory)
     free(trajectory);
 }
 
+/* Both drafts: nothing is simulated for a file that cannot be written. */
+static SmCode begin(BenchTrajectory *trajectory, const char *path, SmError *error)
+{
+    char sidecar[BENCH_DRAFT_PATH + 8];
+    snprintf(sidecar, sizeof sidecar, "%s.xdmf", path);
+    SmCode code = bench_draft_begin(path, &trajectory->draft, error);
+    if (code) return code;
+    code = bench_draft_begin(sidecar, &trajectory->sidecar, error);
+    if (code) bench_draft_discard(&trajectory->draft);
+    return code;
+}
+
 SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajectory **trajectory,
                              SmError *error)
 {
@@ -156,7 +174,7 @@ SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajector
                        "choose another name",
                        params->path);
     BenchTrajectory *made = sm_alloc(1, sizeof *made);
-    SmCode code = bench_draft_begin(params->path, &made->draft, error);
+    SmCode code = begin(made, params->path, error);
     if (code != SM_OK) {
         release(made);
         return code;
@@ -288,8 +306,7 @@ static void write_views(BenchTrajectory *trajectory)
 }
 
 /* The sidecar's counts of every frame. */
-static SmCode write_sidecar(const BenchTrajectory *trajectory, const BenchDraft *sidecar,
-                            SmError *error)
+static SmCode write_sidecar(const BenchTrajectory *trajectory, SmError *error)
 {
     size_t count = (size_t)trajectory->frames;
     BenchXdmfFrame *frame = sm_alloc(count, sizeof *frame);
@@ -300,18 +317,8 @@ static SmCode write_sidecar(const BenchTrajectory *trajectory, const BenchDraft 
     }
     BenchXdmf xdmf = {trajectory->draft.path, trajectory->scene, trajectory->frames,
                       trajectory->single ? 4 : 8, frame};
-    SmCode code = bench_xdmf_write(&xdmf, sidecar, error);
+    SmCode code = bench_xdmf_write(&xdmf, &trajectory->sidecar, error);
     free(frame);
-    return code;
-}
-
-static SmCode commit(BenchTrajectory *trajectory, BenchDraft *sidecar, SmError *error)
-{
-    SmCode code = write_sidecar(trajectory, sidecar, error);
-    if (code == SM_OK) code = bench_draft_commit(&trajectory->draft, error);
-    if (code == SM_OK) return bench_draft_commit(sidecar, error);
-    bench_draft_discard(sidecar);
-    bench_draft_discard(&trajectory->draft);
     return code;
 }
 
@@ -324,14 +331,10 @@ SmCode bench_trajectory_close(BenchTrajectory *trajectory, SmError *error)
     if (!bench_h5_close(&trajectory->h5)) {
         code = fail(trajectory, error);
     } else {
-        char path[BENCH_DRAFT_PATH + 8];
-        BenchDraft sidecar;
-        snprintf(path, sizeof path, "%s.xdmf", trajectory->draft.path);
-        code = bench_draft_begin(path, &sidecar, error);
-        if (code == SM_OK)
-            code = commit(trajectory, &sidecar, error);
-        else
-            bench_draft_discard(&trajectory->draft);
+        code = write_sidecar(trajectory, error);
+        if (!code) code = bench_draft_commit(&trajectory->draft, error);
+        if (!code) code = bench_draft_commit(&trajectory->sidecar, error);
+        if (code) discard(trajectory);
     }
     release(trajectory);
     return code;
@@ -342,6 +345,6 @@ void bench_trajectory_abandon(BenchTrajectory *trajectory)
     if (!trajectory) return;
     trajectory->h5.failed = true;
     bench_h5_close(&trajectory->h5);
-    bench_draft_discard(&trajectory->draft);
+    discard(trajectory);
     release(trajectory);
 }
