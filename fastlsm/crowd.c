@@ -11,18 +11,26 @@
  * 0 stays zero. */
 enum { L = SM_LANES, P = 6, BAR = 12, PLATE = 12, TRANSFORM = 12, BAR_DOWN = 9, PLATE_DOWN = 6 };
 
-/* Rows of one group, [row][values][lanes]; row 0 of each is zero. */
+/* Rows of one group, [row][values][lanes]; row 0 of each is zero, but for `centre`, whose row p is
+ * region p's. Lists name rows of `p` and `transform` by slot, as those of one body (state.h): a
+ * body of several layers has slots that no particle has. */
 typedef struct {
     real *p, *bar, *plate, *transform, *bar_down, *plate_down, *centre;
 } GroupRows;
 
+SM_INLINE long row_of(const Crowd *crowd, long p)
+{
+    return crowd->lsm->slot[p] + 1;
+}
+
 static size_t rows_size(const Crowd *crowd, GroupRows *rows, real *memory)
 {
     const LsmSets *sets = &crowd->lsm->sets;
-    size_t n = (size_t)crowd->lsm->lattice.count + 1, bars = (size_t)sets->bar_count,
-           plates = (size_t)sets->plate_count, at = 0;
-    const size_t counts[7] = {n * P,           bars * BAR,          plates * PLATE, n * TRANSFORM,
-                              bars * BAR_DOWN, plates * PLATE_DOWN, n * 3};
+    size_t n = (size_t)crowd->lsm->lattice.count, slots = (size_t)crowd->lsm->blocks * L + 1,
+           bars = (size_t)sets->bar_count, plates = (size_t)sets->plate_count, at = 0;
+    const size_t counts[7] = {
+        slots * P,       bars * BAR,          plates * PLATE, slots * TRANSFORM,
+        bars * BAR_DOWN, plates * PLATE_DOWN, n * 3};
     real **part[7] = {&rows->p,        &rows->bar,        &rows->plate, &rows->transform,
                       &rows->bar_down, &rows->plate_down, &rows->centre};
     for (int i = 0; i < 7; i++) {
@@ -187,7 +195,7 @@ SM_INLINE void match_region(Crowd *crowd, int side, long group, const GroupRows 
                      R);
     sm_lap(laps, SM_POLAR);
     match_centre(S, R, &k, q);
-    real *T = r->transform + (p + 1) * 12 * L;
+    real *T = r->transform + row_of(crowd, p) * TRANSFORM * L;
     for (int i = 0; i < 3; i++) {
         lanes_store(T + i * L, q[i]);
         for (int d = 0; d < 3; d++) lanes_store(T + (3 + 3 * (2 - d) + i) * L, R[i * 3 + d]);
@@ -200,8 +208,8 @@ static void copy_region(const Crowd *crowd, const GroupRows *r, long p)
 {
     const LsmLattice *l = &crowd->lsm->lattice;
     long from = crowd->original[p];
-    const real *in = r->transform + (from + 1) * 12 * L;
-    real *out = r->transform + (p + 1) * 12 * L;
+    const real *in = r->transform + row_of(crowd, from) * TRANSFORM * L;
+    real *out = r->transform + row_of(crowd, p) * TRANSFORM * L;
     for (int f = 3; f < 12; f++) lanes_store(out + f * L, lanes_load(in + f * L));
     for (int i = 0; i < 3; i++) {
         vec q = lanes_load(in + i * L);
@@ -218,7 +226,7 @@ SM_INLINE void match_group(Crowd *crowd, int side, long group, const GroupRows *
     const real *x = crowd->x + group * n * 3 * L;
     for (long p = 0; p < n; p++)
         for (int d = 0; d < 3; d++)
-            lanes_store(r->p + ((p + 1) * P + d) * L,
+            lanes_store(r->p + (row_of(crowd, p) * P + d) * L,
                         crowd->weight[p] * lanes_load(x + (p * 3 + d) * L));
     sums(crowd, r, side, false, false);
     sm_lap(laps, SM_FAST_SUM);
@@ -269,7 +277,7 @@ SM_INLINE void damp_group(Crowd *crowd, int side, long group, const GroupRows *r
         for (int d = 0; d < 3; d++) {
             damping_products(lanes_set(crowd->weight[p]), crowd->x + at, crowd->v + at, d, F);
             for (int k = 0; k < 4; k++)
-                lanes_store(r->transform + ((p + 1) * 12 + 3 * k + d) * L, F[k]);
+                lanes_store(r->transform + (row_of(crowd, p) * TRANSFORM + 3 * k + d) * L, F[k]);
         }
     }
     sums(crowd, r, side, true, false);
@@ -279,7 +287,7 @@ SM_INLINE void damp_group(Crowd *crowd, int side, long group, const GroupRows *r
         last_level(crowd, side, r->plate, PLATE, from, 12, -1, F);
         load3(r->centre + from * 3 * L, c);
         rigid_velocity(F, c, lanes_set(crowd->region[from][0]), out);
-        for (int f = 0; f < 6; f++) lanes_store(r->p + ((p + 1) * P + f) * L, out[f]);
+        for (int f = 0; f < 6; f++) lanes_store(r->p + (row_of(crowd, p) * P + f) * L, out[f]);
     }
     sums(crowd, r, side, true, true);
     for (long p = 0; p < n; p++) {

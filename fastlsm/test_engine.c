@@ -149,6 +149,114 @@ static void test_instances(void **state)
     }
 }
 
+/* Reads one instance of a body, or a body alone, into `to`. */
+static void get_instance(const SmEngineType *type, SmEngine *engine, SmField field, long body,
+                         long n, double (*to)[3])
+{
+    SmCounts counts;
+    type->count(engine, &counts);
+    double(*all)[3] = triples(counts.particles);
+    type->get(engine, field, all);
+    memcpy(to, all + body * n, (size_t)n * sizeof *to);
+    free(all);
+}
+
+/* Sets every instance to a random state of its own. */
+static void set_random(const SmEngineType *type, SmEngine *engine, const Body *body, long instances,
+                       unsigned *seed)
+{
+    long n = body->n;
+    double(*x)[3] = triples(instances * n), (*v)[3] = triples(instances * n);
+    for (long k = 0; k < instances; k++)
+        random_deformation(seed, body->voxels.cell, 0.3, n, (const double(*)[3])body->x0,
+                           x + k * n);
+    for (long p = 0; p < instances * n; p++)
+        for (int d = 0; d < 3; d++) v[p][d] = body->voxels.cell * (random_unit(seed) - 0.5);
+    type->set(engine, SM_POSITION, (const double(*)[3])x);
+    type->set(engine, SM_VELOCITY, (const double(*)[3])v);
+    free(x);
+    free(v);
+}
+
+/* Goals of an instance, in body->a, beside those of the same body alone in every form of its sums,
+ * and by brute force. */
+static void check_alone(const SmEngineType *type, Body *body, SmEngineParams params, double allowed)
+{
+    params.instances = 1;
+    for (int form = 0; form < 6; form++) {
+        const SmEngineType *twin = form == 5 ? &ref_brute_engine : type;
+        params.layout = form < 3 ? SM_LAYOUT_LISTS : SM_LAYOUT_BLOCKS;
+        params.summation = form < 3 ? (SmSummation)form : (SmSummation)(form - 3);
+        SmEngine *alone = create(twin, body, params);
+        twin->goals(alone);
+        twin->get(alone, SM_GOAL, body->b);
+        double worst = difference(body, (const double(*)[3])body->a, (const double(*)[3])body->b);
+        if (!(worst <= allowed))
+            fail_msg("%s, w %d, %ld particles, form %d: goals differ by %g cells", type->precision,
+                     params.w, body->n, form, worst);
+        twin->destroy(alone);
+    }
+}
+
+/* Two damped steps of every instance, and of some of them by brute force. */
+static void check_steps(const SmEngineType *type, SmEngine *crowd, Body *body,
+                        SmEngineParams params, double allowed)
+{
+    long tried[3] = {0, params.instances / 2, params.instances - 1};
+    SmEngine *alone[3];
+    for (int i = 0; i < 3; i++) {
+        get_instance(type, crowd, SM_POSITION, tried[i], body->n, body->x);
+        get_instance(type, crowd, SM_VELOCITY, tried[i], body->n, body->v);
+        SmEngineParams one = params;
+        one.instances = 1;
+        alone[i] = create(&ref_brute_engine, body, one);
+    }
+    for (int step = 0; step < 2; step++) type->step(crowd, NULL);
+    for (int i = 0; i < 3; i++) {
+        for (int step = 0; step < 2; step++) ref_brute_engine.step(alone[i], NULL);
+        get_instance(type, crowd, SM_POSITION, tried[i], body->n, body->a);
+        ref_brute_engine.get(alone[i], SM_POSITION, body->b);
+        double worst = difference(body, (const double(*)[3])body->a, (const double(*)[3])body->b);
+        if (!(worst <= allowed))
+            fail_msg("%s, w %d, instance %ld of %ld, %ld particles: %g cells off after two steps",
+                     type->precision, params.w, tried[i], params.instances, body->n, worst);
+        ref_brute_engine.destroy(alone[i]);
+    }
+}
+
+/* Bodies of one layer of lists and of many, of every kind of shape: an instance moves as the body
+ * does alone. */
+static void test_instances_alone(void **state)
+{
+    (void)state;
+    unsigned seed = 12;
+    for (int trial = 0; trial < (TEST_FIGURES ? 48 : 12); trial++) {
+        Body body;
+        int precision = trial % 2, w = 1 + trial % 5;
+        const SmEngineType *type = engines[precision];
+        body_random(&seed, trial % 6, w > 3 ? 14 : 22, &body);
+        SmEngineParams params = {.w = w,
+                                 .h = 0.01,
+                                 .damping = trial % 3 * 0.15,
+                                 .gravity = {0, -9.81, 1},
+                                 .instances = 2 + random_int(&seed, 20),
+                                 .mass = body.m,
+                                 .threads = 1 + trial % 2};
+        SmEngine *crowd;
+        SmError error;
+        assert_int_equal(type->create(&body.voxels, &params, &crowd, &error), SM_OK);
+        set_random(type, crowd, &body, params.instances, &seed);
+        long k = random_int(&seed, (int)params.instances);
+        get_instance(type, crowd, SM_POSITION, k, body.n, body.x);
+        type->goals(crowd);
+        get_instance(type, crowd, SM_GOAL, k, body.n, body.a);
+        check_alone(type, &body, params, precision ? 1e-11 : 5e-5);
+        check_steps(type, crowd, &body, params, precision ? 1e-9 : 1e-3);
+        type->destroy(crowd);
+        body_free(&body);
+    }
+}
+
 /* Breaking while it runs equals the reference, which builds all regions anew. */
 static void test_fracture(void **state)
 {
@@ -322,10 +430,11 @@ static void test_mass_unit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_handles),        cmocka_unit_test(test_obstacles),
-        cmocka_unit_test(test_instances),      cmocka_unit_test(test_cut),
-        cmocka_unit_test(test_fracture),       cmocka_unit_test(test_journey),
-        cmocka_unit_test(test_bad_parameters), cmocka_unit_test(test_mass_unit),
+        cmocka_unit_test(test_handles),   cmocka_unit_test(test_obstacles),
+        cmocka_unit_test(test_instances), cmocka_unit_test(test_instances_alone),
+        cmocka_unit_test(test_cut),       cmocka_unit_test(test_fracture),
+        cmocka_unit_test(test_journey),   cmocka_unit_test(test_bad_parameters),
+        cmocka_unit_test(test_mass_unit),
     };
     return cmocka_run_group_tests_name("fastlsm_engine", tests, NULL, NULL);
 }
