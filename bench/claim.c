@@ -47,15 +47,19 @@ static const BenchSetting measure_table[] = {
     TEXT(BenchMeasure, "engine", engine),
     TEXT(BenchMeasure, "field", field),
     WORDS(BenchMeasure, "summation", summation, 0, "fast|bars|naive"),
+    WORDS(BenchMeasure, "layout", layout, 0, "auto|lists|blocks"),
     WORDS(BenchMeasure, "matching", matching, 0, "lattice|rigid|linear|quadratic"),
+    WORDS(BenchMeasure, "without", without, 0, "nothing|nodes|bases|summation_nodes|reach"),
     GROUP(BenchMeasure, "w", w, range_table),
     GROUP(BenchMeasure, "n", n, range_table),
     {0},
 };
 
+static const char kind_words[] = "method|machine|by construction";
 static const char test_words[] = "near|within|factor|at_least|at_most|inside|rises|falls";
 
 static const BenchSetting claim_table[] = {
+    WORDS(Entry, "kind", claim.kind, 1, kind_words),
     TEXT(Entry, "paper", claim.paper),
     TEXT(Entry, "name", claim.name),
     TEXT(Entry, "statement", claim.statement),
@@ -67,6 +71,7 @@ static const BenchSetting claim_table[] = {
     REAL(Entry, "value", value, -1e15, 1e15),
     GROUP(Entry, "measure", claim.measure, measure_table),
     GROUP(Entry, "over", claim.over, measure_table),
+    GROUP(Entry, "unset", claim.unset, measure_table),
     WORDS(Entry, "take", claim.reduction, 0, "values|exponent|largest|gain"),
     WORDS(Entry, "test", claim.test, 1, test_words),
     REAL(Entry, "tolerance", claim.tolerance, 0, 1e6),
@@ -179,6 +184,31 @@ static SmCode check_measure(const BenchClaim *claim, const BenchMeasure *measure
     return SM_OK;
 }
 
+/* What each kind needs and cannot have. */
+static SmCode check_kind(const BenchClaim *claim, const Place *place)
+{
+    bool speed = claim->test == BENCH_IS_AT_LEAST || claim->test == BENCH_IS_AT_MOST;
+    bool built = claim->kind == BENCH_BY_CONSTRUCTION, timed = claim->kind == BENCH_OF_MACHINE;
+    if (claim->unset.experiment && !built)
+        return fail_at(place, "'%s': 'unset' is of a claim of the kind \"by construction\"",
+                       claim->name);
+    if (built && !claim->unset.experiment && !claim->because[0])
+        return fail_at(place,
+                       "'%s': measure what comes where the scene does not set it, 'unset', or say "
+                       "'because' why there is no such thing",
+                       claim->name);
+    if (timed && (!speed || claim->values != 1 || claim->reduction != BENCH_AS_VALUES))
+        return fail_at(place,
+                       "'%s': a claim of the kind \"machine\" is of one value: of a rate with the "
+                       "test \"at_least\", of a time with \"at_most\"",
+                       claim->name);
+    if ((claim->expect == BENCH_DIFFERS && claim->kind != BENCH_OF_METHOD) ||
+        (claim->expect != BENCH_REPRODUCES && built))
+        return fail_at(place, "'%s': a claim of the kind \"%s\" is not expected to differ",
+                       claim->name, bench_claim_kind_name(claim->kind));
+    return SM_OK;
+}
+
 static SmCode check_claim(const Entry *entry, BenchClaim *claim, const Place *place)
 {
     if (!claim->paper[0] || !claim->name[0] || !claim->statement[0])
@@ -192,8 +222,10 @@ static SmCode check_claim(const Entry *entry, BenchClaim *claim, const Place *pl
     if (claim->test == BENCH_IS_FACTOR && claim->tolerance < 1)
         return fail_at(place, "'%s': a factor's 'tolerance' is 1 or more", claim->name);
     SmCode code = take_value(entry, claim, place);
+    if (!code) code = check_kind(claim, place);
     if (!code) code = check_measure(claim, &claim->measure, place);
     if (!code && claim->over.experiment) code = check_measure(claim, &claim->over, place);
+    if (!code && claim->unset.experiment) code = check_measure(claim, &claim->unset, place);
     return code;
 }
 
@@ -261,6 +293,12 @@ SmCode bench_claims_read(const char *path, BenchClaims *claims, SmError *error)
     SmCode code = bench_claims_parse(text, size, path, claims, error);
     free(text);
     return code;
+}
+
+const char *bench_claim_kind_name(BenchClaimKind kind)
+{
+    static const char *const names[] = {"method", "machine", "by construction"};
+    return names[kind];
 }
 
 const char *bench_expectation_name(BenchExpectation expect)

@@ -14,6 +14,16 @@
 
 enum { BENCH_CLAIM_VALUES = 5, BENCH_CLAIM_NAME = 40 };
 
+/* What a claim can show. Only those of the method are reproduced or not. */
+typedef enum {
+    BENCH_OF_METHOD,  /* what the paper's idea does on any machine, like compared with like */
+    BENCH_OF_MACHINE, /* a speed in ms or frames: how many times as fast as the paper's machine,
+                       * compiler and program */
+    BENCH_BY_CONSTRUCTION, /* the scene file sets it; it is counted, and what the method gives where
+                            * it is not set is measured beside it */
+    BENCH_CLAIM_KINDS
+} BenchClaimKind;
+
 /* What becomes of a curve: its values as they are; the power of x that fits; its largest value
  * (verdict.h); its last value by its first. */
 typedef enum { BENCH_AS_VALUES, BENCH_AS_EXPONENT, BENCH_AS_LARGEST, BENCH_AS_GAIN } BenchReduction;
@@ -34,12 +44,14 @@ typedef enum {
 typedef enum { BENCH_REPRODUCES, BENCH_DIFFERS, BENCH_NOT_COMPARABLE } BenchExpectation;
 
 typedef struct {
+    BenchClaimKind kind;
     char paper[24], name[BENCH_CLAIM_NAME], place[32], unit[32];
     char statement[240];
     int values; /* that the paper gives; 0: none, words only */
     double value[BENCH_CLAIM_VALUES];
     RefStatus status;
     BenchMeasure measure, over; /* what is measured is `measure` by `over`, if any */
+    BenchMeasure unset;         /* by construction: the same where nothing sets it, if any */
     BenchReduction reduction;
     BenchTest test;
     double tolerance;
@@ -62,6 +74,10 @@ SmCode bench_claims_parse(const char *text, size_t size, const char *file, Bench
 /* The same of those compiled in, and of a file. */
 SmCode bench_claims_builtin(BenchClaims *claims, SmError *error);
 SmCode bench_claims_read(const char *path, BenchClaims *claims, SmError *error);
+
+/* "method", "machine", "by construction". */
+const char *bench_claim_kind_name(BenchClaimKind kind);
+
 /* "reproduced", "different", "not comparable". */
 const char *bench_expectation_name(BenchExpectation expect);
 

@@ -16,9 +16,9 @@ static const char *const takes[] = {"values", "exponent", "largest", "gain"};
 typedef struct {
     char paper[24], name[BENCH_CLAIM_NAME], place[32], unit[32], statement[240], note[200];
     char status[16], take[16], test[96], expect[16], because[320], verdict[16], words[560];
-    char evidence[208], over[208];
+    char evidence[208], over[208], kind[20], unset_evidence[208];
     int values, count, trend;
-    double tolerance;
+    double tolerance, ratio[3], unset;
     double paper_value[BENCH_CLAIM_VALUES], measured[BENCH_CLAIM_VALUES];
     double low[BENCH_CLAIM_VALUES], high[BENCH_CLAIM_VALUES];
 } Stored;
@@ -27,14 +27,20 @@ typedef struct {
 #define COUNT(array)        ((int)(sizeof(array) / sizeof((array)[0])))
 
 static const BenchField claim_fields[] = {
-    FIELD(BENCH_TEXT, paper),       FIELD(BENCH_TEXT, name),          FIELD(BENCH_TEXT, place),
-    FIELD(BENCH_TEXT, unit),        FIELD(BENCH_TEXT, statement),     FIELD(BENCH_TEXT, note),
-    FIELD(BENCH_TEXT, status),      FIELD(BENCH_TEXT, take),          FIELD(BENCH_TEXT, test),
-    FIELD(BENCH_TEXT, expect),      FIELD(BENCH_TEXT, because),       FIELD(BENCH_TEXT, verdict),
-    FIELD(BENCH_TEXT, words),       FIELD(BENCH_TEXT, evidence),      FIELD(BENCH_TEXT, over),
-    FIELD(BENCH_INT, values),       FIELD(BENCH_INT, count),          FIELD(BENCH_INT, trend),
-    FIELD(BENCH_DOUBLE, tolerance), FIELD(BENCH_DOUBLE, paper_value), FIELD(BENCH_DOUBLE, measured),
-    FIELD(BENCH_DOUBLE, low),       FIELD(BENCH_DOUBLE, high),
+    FIELD(BENCH_TEXT, paper),          FIELD(BENCH_TEXT, name),
+    FIELD(BENCH_TEXT, place),          FIELD(BENCH_TEXT, unit),
+    FIELD(BENCH_TEXT, statement),      FIELD(BENCH_TEXT, note),
+    FIELD(BENCH_TEXT, status),         FIELD(BENCH_TEXT, take),
+    FIELD(BENCH_TEXT, test),           FIELD(BENCH_TEXT, expect),
+    FIELD(BENCH_TEXT, because),        FIELD(BENCH_TEXT, verdict),
+    FIELD(BENCH_TEXT, words),          FIELD(BENCH_TEXT, evidence),
+    FIELD(BENCH_TEXT, over),           FIELD(BENCH_INT, values),
+    FIELD(BENCH_INT, count),           FIELD(BENCH_INT, trend),
+    FIELD(BENCH_DOUBLE, tolerance),    FIELD(BENCH_DOUBLE, paper_value),
+    FIELD(BENCH_DOUBLE, measured),     FIELD(BENCH_DOUBLE, low),
+    FIELD(BENCH_DOUBLE, high),         FIELD(BENCH_TEXT, kind),
+    FIELD(BENCH_DOUBLE, ratio),        FIELD(BENCH_DOUBLE, unset),
+    FIELD(BENCH_TEXT, unset_evidence),
 };
 
 /* A curve's attributes. */
@@ -76,7 +82,11 @@ static void pack(const BenchFinding *finding, Stored *stored)
     *stored = (Stored){.values = claim->values,
                        .count = finding->count,
                        .trend = finding->trend,
-                       .tolerance = claim->tolerance};
+                       .tolerance = claim->tolerance,
+                       .unset = finding->unset};
+    memcpy(stored->ratio, finding->ratio, sizeof stored->ratio);
+    strcpy(stored->kind, bench_claim_kind_name(claim->kind));
+    strcpy(stored->unset_evidence, finding->evidence[2]);
     strcpy(stored->paper, claim->paper);
     strcpy(stored->name, claim->name);
     strcpy(stored->place, claim->place);

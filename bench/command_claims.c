@@ -57,14 +57,19 @@ static error_t parse(int key, char *text, struct argp_state *state)
 
 static const char help[] =
     "Hold what the papers say against what is measured here, claim by claim: the paper's value, "
-    "the measured one with its 95% interval, the test, and the verdict: reproduced, undecided (the "
-    "interval reaches into what is wanted, the value does not), not reproduced, differs "
-    "(with the reason), not comparable, or INVALID where the measurement failed its check. "
+    "the measured one with its 95% interval, the test, and the verdict. Claims of the method, what "
+    "the paper's idea does anywhere, are reproduced, undecided (the interval reaches into what is "
+    "wanted, the value does not), not reproduced, or differ (with the reason). Of a machine's "
+    "speed "
+    "the ratio to the paper's machine is given. What the scene file sets is counted, and what "
+    "comes "
+    "where it does not set it stands beside. INVALID is what failed its check. "
     "Everything is measured once, and checked: against brute force; the largest cubes for finite "
     "goals and linear momentum.\v"
     "The claims are data, in reference/claims.cfg; its head says how to write your own for "
     "--claims. Takes about three minutes of one core's time, less with --quick.\n" BENCH_EXIT_CODES
-    " Of claims also: 1 what should be reproduced is not; 3 a claims file cannot be used.";
+    " Of claims also: 1 what should be reproduced is not, or what is set is not so; 3 a claims "
+    "file cannot be used.";
 
 static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
 
@@ -108,8 +113,8 @@ static SmCode choose(const Options *options, BenchClaims *claims, SmError *error
 static void list_claims(const BenchClaims *claims)
 {
     for (int c = 0; c < claims->count; c++)
-        printf("%-8s %-24s %s\n", claims->claim[c].paper, claims->claim[c].name,
-               claims->claim[c].statement);
+        printf("%-8s %-24s %-15s %s\n", claims->claim[c].paper, claims->claim[c].name,
+               bench_claim_kind_name(claims->claim[c].kind), claims->claim[c].statement);
 }
 
 static void find(BenchLab *lab, const BenchClaim *claim, BenchFinding *finding)
@@ -117,9 +122,13 @@ static void find(BenchLab *lab, const BenchClaim *claim, BenchFinding *finding)
     bool divided = claim->over.experiment != BENCH_TRY_NOTHING;
     int curve = bench_experiment(lab, &claim->measure);
     int over = divided ? bench_experiment(lab, &claim->over) : -1;
+    int unset = claim->unset.experiment ? bench_experiment(lab, &claim->unset) : -1;
     bench_verdict_find(claim, &lab->curve[curve], divided ? &lab->curve[over] : NULL, finding);
     bench_claim_place(lab, curve, sizeof finding->evidence[0], finding->evidence[0]);
     if (divided) bench_claim_place(lab, over, sizeof finding->evidence[1], finding->evidence[1]);
+    if (unset < 0) return;
+    bench_verdict_unset(&lab->curve[unset], finding);
+    bench_claim_place(lab, unset, sizeof finding->evidence[2], finding->evidence[2]);
 }
 
 static BenchFinding *find_all(const Options *options, const BenchClaims *claims, BenchLab *lab)
@@ -145,8 +154,9 @@ static SmCode verdict(const BenchFinding *findings, int count, SmError *error)
             first = f;
         }
     return sm_fail(error, SM_INVALID,
-                   "%d of %d claims %s not reproduced or INVALID; first %s: %.300s", failed, count,
-                   failed == 1 ? "is" : "are", findings[first].claim.name, findings[first].words);
+                   "%d of %d claims %s not reproduced, not as set or INVALID; first %s: %.300s",
+                   failed, count, failed == 1 ? "is" : "are", findings[first].claim.name,
+                   findings[first].words);
 }
 
 static SmCode report(const Options *options, const BenchClaims *claims, int argc, char **argv,

@@ -75,7 +75,8 @@ void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *cu
     int count = bench_range_numbers(&measure->w, w),
         repeats = repeats_of(lab) / (measure->summation == SM_SUM_NAIVE ? 6 : 1);
     BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
-    const SmEngineParams params = {.h = 0.01, .summation = measure->summation, .threads = 1};
+    const SmEngineParams params = {
+        .h = 0.01, .summation = measure->summation, .layout = measure->layout, .threads = 1};
     for (int c = 0; c < count; c++) side[c] = lab->quick ? 20 : 32;
     bench_curve_begin(curve, "mean side of a region, particles",
                       "fast summation, ns/particle/step");

@@ -15,7 +15,7 @@
 /* What an experiment takes beside its name, and who runs it. */
 typedef struct {
     const char *name;
-    bool scene, engine, field, summation, matching, w, n;
+    bool scene, engine, field, without, summation, layout, matching, w, n;
     const char *fields; /* that there are, separated by |; NULL: scene_field.h's */
     void (*run)(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 } Kind;
@@ -26,8 +26,10 @@ static const Kind kinds[] = {
                          .scene = true,
                          .engine = true,
                          .field = true,
+                         .without = true,
                          .run = bench_scene_field_measure},
-    [BENCH_TRY_SUMS] = {.name = "sums", .summation = true, .w = true, .run = bench_costs_sums},
+    [BENCH_TRY_SUMS] =
+        {.name = "sums", .summation = true, .layout = true, .w = true, .run = bench_costs_sums},
     [BENCH_TRY_SIZE] = {.name = "size",
                         .engine = true,
                         .field = true,
@@ -138,7 +140,9 @@ static const char *needless(const BenchMeasure *measure, const Kind *kind)
     if (measure->scene[0] && !kind->scene) return "'scene' is not of this experiment";
     if (measure->engine[0] && !kind->engine) return "'engine' is not of this experiment";
     if (measure->field[0] && !kind->field) return "'field' is not of this experiment";
+    if (measure->without && !kind->without) return "'without' is not of this experiment";
     if (measure->summation && !kind->summation) return "'summation' is not of this experiment";
+    if (measure->layout && !kind->layout) return "'layout' is not of this experiment";
     if (measure->matching && !kind->matching) return "'matching' is not of this experiment";
     if (given(&measure->w) && !kind->w) return "'w' is not of this experiment";
     if (given(&measure->n) && !kind->n) return "'n' is not of this experiment";
@@ -187,6 +191,12 @@ const char *bench_experiment_fault(const BenchMeasure *measure)
     return field_fault(measure, kind);
 }
 
+const char *bench_without_name(BenchWithout without)
+{
+    static const char *const names[] = {"nothing", "nodes", "bases", "summation_nodes", "reach"};
+    return names[without];
+}
+
 int bench_experiment_points(const BenchMeasure *measure)
 {
     int number[BENCH_RANGE_POINTS];
@@ -206,16 +216,18 @@ static void range_text(const char *letter, const BenchRange *range, size_t size,
 static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
 {
     static const char *const summations[] = {".fast", ".bars", ".naive"};
+    static const char *const layouts[] = {"", ".lists", ".blocks"};
     static const char *const matchers[] = {".lattice", ".rigid", ".linear", ".quadratic"};
     const Kind *kind = &kinds[measure->experiment];
+    const char *without = measure->without ? bench_without_name(measure->without) : "";
     char w[24] = "", n[24] = "";
     range_text("w", &measure->w, sizeof w, w);
     range_text("n", &measure->n, sizeof n, n);
-    snprintf(name, BENCH_CURVE_NAME, "%s%s%s%s%s%s%s%s%s%s%s", kind->name,
-             measure->scene[0] ? "." : "", measure->scene, measure->engine[0] ? "." : "",
-             measure->engine, measure->field[0] ? "." : "", measure->field,
-             kind->summation ? summations[measure->summation] : "",
-             kind->matching ? matchers[measure->matching] : "", w, n);
+    snprintf(name, BENCH_CURVE_NAME, "%s%s%s%s%s%s%s%s%s%s%s%s%s%s", kind->name,
+             measure->scene[0] ? "." : "", measure->scene, measure->without ? ".without." : "",
+             without, measure->engine[0] ? "." : "", measure->engine, measure->field[0] ? "." : "",
+             measure->field, kind->summation ? summations[measure->summation] : "",
+             layouts[measure->layout], kind->matching ? matchers[measure->matching] : "", w, n);
     for (char *c = name; *c; c++)
         if (*c == '/' || *c == ' ') *c = *c == '/' ? '|' : '_';
 }

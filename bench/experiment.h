@@ -19,10 +19,12 @@
 /* Which settings each takes beside those named here is an error.
  *
  * - scene: one point: `field` of the scene's row as `tables` measures it, or NAMES of
- *   scene_field.h; `scene`, and `engine` in place of the scene's.
+ *   scene_field.h; `scene`, and `engine` in place of the scene's; `without` one of the scene's
+ *   settings, which then has its default: the octree's wanted nodes, bases or summation_nodes, or
+ *   the reach within which its cuts refine.
  * - sums: ns a particle (the stage's share of a step's least CPU time) of fast summation with
- *   `summation` in a solid cube, against the mean side of its regions (2w + 1 but for those at the
- *   surface); range `w`.
+ *   `summation` and `layout` (default: the engine's choice; naive sums are lists) in a solid cube,
+ *   against the mean side of its regions (2w + 1 but for those at the surface); range `w`.
  * - size: ms a step of solid cubes of n x n x n particles against their number; range `n`. `engine`
  *   fastlsm, w = 1; or octree, whose `field` may be "sums": its hierarchical sums alone.
  * - polar: one point, `field`: "cold-sweeps", "warm-sweeps" of the paper's Jacobi, "cold-ns",
@@ -51,6 +53,14 @@ typedef enum {
     BENCH_TRY_SETUP,
 } BenchTry;
 
+typedef enum {
+    BENCH_WITHOUT_NOTHING,
+    BENCH_WITHOUT_NODES,
+    BENCH_WITHOUT_BASES,
+    BENCH_WITHOUT_SUMMATION_NODES,
+    BENCH_WITHOUT_REACH
+} BenchWithout;
+
 typedef enum { BENCH_BY_LATTICE, BENCH_BY_RIGID, BENCH_BY_LINEAR, BENCH_BY_QUADRATIC } BenchMatcher;
 
 /* Whole numbers from..to, `points` of them at even ratios, fewer where those fall together. */
@@ -62,7 +72,9 @@ typedef struct {
     BenchTry experiment;
     char scene[64], engine[24], field[32];
     SmSummation summation;
+    SmLayout layout;
     BenchMatcher matching;
+    BenchWithout without;
     BenchRange w, n;
 } BenchMeasure;
 
@@ -90,13 +102,16 @@ typedef struct {
     int threads; /* of scenes; cubes and kernels are timed on one */
     unsigned long seed;
     int rows, curves;
-    BenchRow *row;        /* [rows] */
-    char (*row_name)[96]; /* [rows] scene, as the claims name it, and engine */
-    BenchCurve *curve;    /* [curves]; some are only evidence, of no claim */
+    BenchRow *row;         /* [rows] */
+    char (*row_name)[128]; /* [rows] scene, as the claims name it, engine, what is without */
+    BenchCurve *curve;     /* [curves]; some are only evidence, of no claim */
 } BenchLab;
 
 /* What is wrong with a measurement's settings, or NULL; the line stands until the next call. */
 const char *bench_experiment_fault(const BenchMeasure *measure);
+
+/* "nodes", "bases", "summation_nodes", "reach". */
+const char *bench_without_name(BenchWithout without);
 
 /* How many points its curve has at most. */
 int bench_experiment_points(const BenchMeasure *measure);

@@ -63,7 +63,8 @@ typedef struct {
     long wanted_nodes, wanted_bases;          /* 0: not given */
     long local_nodes;                         /* whose regions have a width of their own place */
     long welded_cells, welded_pairs; /* nodes, and pairs, that weld what does not connect there */
-    long balance_splits;             /* of cells for balance alone */
+    long splits, balance_splits;     /* of cells; those for balance alone */
+    long unasked_splits;             /* those for the wanted nodes alone: no criterion asks */
     bool plain;                      /* plain weighting, which does not keep momentum */
     double paper_total_ms, paper_stage_ms[SM_STAGES]; /* NaN: not given */
     BenchChangeRow change;

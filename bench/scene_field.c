@@ -31,6 +31,8 @@ static const Field fields[] = {
     WHOLE_FIELD("triangles", triangles),
     WHOLE_FIELD("bases", bases),
     WHOLE_FIELD("parts", parts),
+    WHOLE_FIELD("splits", splits),
+    WHOLE_FIELD("unasked_splits", unasked_splits),
     WHOLE_FIELD("bytes", bytes),
     NUMBER_FIELD("summation_nodes", summation_nodes),
     WHOLE_FIELD("last_particles", change.last_nodes),
@@ -182,16 +184,42 @@ static int keep_row(BenchLab *lab, const BenchRow *row, const char *name)
     return lab->rows++;
 }
 
+/* The setting has its default, and the scene says so in its name. */
+static void take_away(BenchScene *scene, BenchWithout without)
+{
+    size_t used = strlen(scene->name);
+    snprintf(scene->name + used, sizeof scene->name - used, " without %s",
+             bench_without_name(without));
+    switch (without) {
+    case BENCH_WITHOUT_NOTHING:
+        break;
+    case BENCH_WITHOUT_NODES:
+        scene->octree.sampling.nodes = 0;
+        break;
+    case BENCH_WITHOUT_BASES:
+        scene->octree.sampling.bases = 0;
+        break;
+    case BENCH_WITHOUT_SUMMATION_NODES:
+        scene->octree.summation_nodes = 0;
+        break;
+    case BENCH_WITHOUT_REACH:
+        for (int c = 0; c < scene->cut_count; c++) scene->cut[c].reach = 1;
+    }
+}
+
 void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
 {
     BenchScene *scene = sm_alloc(1, sizeof *scene);
     SmError error;
     char name[sizeof *lab->row_name];
-    snprintf(name, sizeof name, "%s %s", measure->scene, measure->engine);
+    snprintf(name, sizeof name, "%s %s%s%s", measure->scene, measure->engine,
+             measure->without ? " without " : "",
+             measure->without ? bench_without_name(measure->without) : "");
     int number = known_row(lab, name);
     SmCode code = bench_scene_find(measure->scene, scene, &error);
     if (!code && measure->engine[0])
         snprintf(scene->engine, sizeof scene->engine, "%s", measure->engine);
+    if (!code && measure->without) take_away(scene, measure->without);
     if (!code && number < 0) {
         BenchRow row = {0};
         code = measure_row(lab, scene, &row, &error);

@@ -17,7 +17,7 @@
 /* A claim to change words of. */
 static const char good[] =
     "claims = (\n"
-    "  { paper = \"p\"; name = \"n\"; statement = \"It is so.\"; value = 3.0;\n"
+    "  { kind = \"method\"; paper = \"p\"; name = \"n\"; statement = \"It is so.\"; value = 3.0;\n"
     "    test = \"near\"; tolerance = 0.1;\n"
     "    measure = { experiment = \"sums\"; w = { from = 1; to = 8; points = 4; }; };\n"
     "  }\n"
@@ -52,6 +52,7 @@ static void a_claim_is_read_whole(void **state)
     assert_int_equal(claim->measure.w.to, 8);
     assert_int_equal(claim->over.experiment, BENCH_TRY_NOTHING);
     assert_int_equal(claim->expect, BENCH_REPRODUCES);
+    assert_int_equal(claim->kind, BENCH_OF_METHOD);
     bench_claims_free(&claims);
 }
 
@@ -104,6 +105,16 @@ static void mistakes_are_named_with_their_line(void **state)
         {"value = 3.0;", "value = 3.0; expect = \"different\";", "my.cfg:2:", "because"},
         {"test = \"near\"", "take = \"exponent\"; test = \"near\"", "", ""},
         {"points = 4", "points = 2", "", ""},
+        {"kind = \"method\"; ", "", "my.cfg:2:", "no 'kind'"},
+        {"kind = \"method\"", "kind = \"guess\"", "my.cfg:2:", "one of"},
+        {"kind = \"method\"", "kind = \"machine\"", "my.cfg:2:", "at_least"},
+        {"kind = \"method\"", "kind = \"by construction\"", "my.cfg:2:", "'unset', or say"},
+        {"kind = \"method\"", "kind = \"by construction\"; because = \"x\"", "", ""},
+        {"kind = \"method\"", "kind = \"by construction\"; because = \"x\"; expect = \"different\"",
+         "my.cfg:2:", "is not expected to differ"},
+        {"value = 3.0;", "value = 3.0; unset = { experiment = \"polar\"; field = \"cold-ns\"; };",
+         "my.cfg:2:", "'unset' is of a claim of the kind"},
+        {"w = {", "without = \"nodes\"; w = {", "my.cfg:2:", "'without' is not of this"},
         {"name = \"n\"", "name = \"a/b\"", "my.cfg:2:", "no blank"},
         {"name = \"n\"; ", "", "my.cfg:2:", "needs 'paper', 'name'"},
         {"claims = (", "claim = (", "my.cfg", "one setting"},
@@ -142,27 +153,77 @@ static void a_name_is_there_once_and_curves_have_points(void **state)
     bench_claims_free(&claims);
 }
 
+/* "Table 1", "Fig. 4", "section 4" or "section 4.2", of what the paper has. */
+static bool place_is_known(const char *paper, const char *place)
+{
+    bool octree = !strcmp(paper, "octree");
+    int part, sub, used = 0;
+    if (sscanf(place, "Table %d%n", &part, &used) == 1) return !place[used] && !octree && part == 1;
+    if (sscanf(place, "Fig. %d%n", &part, &used) == 1)
+        return !place[used] && part >= 1 && part <= 6;
+    if (sscanf(place, "section %d%n", &part, &used) != 1) return false;
+    if (part < 1 || part > (octree ? 7 : 6)) return false;
+    if (!place[used]) return true;
+    place += used;
+    return sscanf(place, ".%d%n", &sub, &used) == 1 && !place[used] && sub >= 1 && sub <= 3;
+}
+
 static void the_programs_own_claims_are_sound(void **state)
 {
     (void)state;
     BenchClaims claims = {0};
     SmError error;
+    int kinds[BENCH_CLAIM_KINDS] = {0};
     if (bench_claims_builtin(&claims, &error)) fail_msg("%s", error.text);
     assert_true(claims.count >= 40);
     for (int c = 0; c < claims.count; c++) {
-        assert_true(claims.claim[c].place[0] && claims.claim[c].unit[0]);
+        const BenchClaim *claim = &claims.claim[c];
+        if (!place_is_known(claim->paper, claim->place))
+            fail_msg("%s of %s: '%s'", claim->name, claim->paper, claim->place);
+        assert_true(claim->unit[0]);
+        kinds[claim->kind]++;
         char test[96];
         bench_verdict_test(&claims.claim[c], sizeof test, test);
         assert_true(strlen(test) > 4);
     }
+    for (int k = 0; k < BENCH_CLAIM_KINDS; k++) assert_true(kinds[k] >= 5);
     bench_claims_free(&claims);
 }
 
 /* ---- the file */
 
-static BenchFinding findings[2];
+enum { FINDINGS = 4 };
+static BenchFinding findings[FINDINGS];
 static BenchLab lab;
 static BenchMachine machine;
+
+/* A machine's time, and a number that the scene sets. */
+static void fill_others(void)
+{
+    static BenchCurve time, count, unset;
+    bench_curve_begin(&time, "-", "ms");
+    bench_curve_add(&time, 0, 2, 1.5, 2.5);
+    bench_curve_begin(&count, "-", "nodes");
+    bench_curve_add(&count, 0, 662, 662, 662);
+    bench_curve_begin(&unset, "-", "nodes");
+    bench_curve_add(&unset, 0, 593, 593, 593);
+    BenchClaim claim = {.kind = BENCH_OF_MACHINE,
+                        .paper = "p",
+                        .name = "time",
+                        .test = BENCH_IS_AT_MOST,
+                        .values = 1,
+                        .value = {30}};
+    bench_verdict_find(&claim, &time, NULL, &findings[2]);
+    claim = (BenchClaim){.kind = BENCH_BY_CONSTRUCTION,
+                         .paper = "p",
+                         .name = "set",
+                         .tolerance = 0.02,
+                         .values = 1,
+                         .value = {661}};
+    bench_verdict_find(&claim, &count, NULL, &findings[3]);
+    bench_verdict_unset(&unset, &findings[3]);
+    strcpy(findings[3].evidence[2], "/rows/007");
+}
 
 static void fill(void)
 {
@@ -187,6 +248,7 @@ static void fill(void)
     claim.value[0] = claim.value[1] = claim.value[2] = 1;
     strcpy(claim.name, "m");
     bench_verdict_find(&claim, &curve, NULL, &findings[1]);
+    fill_others();
 }
 
 static void has_text(BenchH5 *h5, hid_t object, const char *name, const char *wanted)
@@ -222,9 +284,31 @@ static void open_stored(BenchH5 *h5)
     SmError error;
     const char *path = path_in("claims.h5");
     fill();
-    if (bench_claim_store(path, findings, 2, &lab, &machine, &error)) fail_msg("%s", error.text);
+    if (bench_claim_store(path, findings, FINDINGS, &lab, &machine, &error))
+        fail_msg("%s", error.text);
     bench_h5_open(h5, path);
-    bench_h5_check_kind(h5, "shapebench claims", 1, 1);
+    bench_h5_check_kind(h5, "shapebench claims", BENCH_CLAIM_SCHEMA, BENCH_CLAIM_SCHEMA);
+}
+
+/* What only claims of a machine, and those by construction, have. */
+static void kinds_are_stored(BenchH5 *h5)
+{
+    double ratio[3], unset;
+    const BenchField fields[] = {{"ratio", BENCH_DOUBLE, 0, sizeof ratio},
+                                 {"unset", BENCH_DOUBLE, 0, sizeof unset}};
+    hid_t claim = bench_h5_find_group(h5, h5->file, "claims/002");
+    has_text(h5, claim, "kind", "machine");
+    has_text(h5, claim, "verdict", "measured");
+    bench_h5_read_fields(h5, claim, &fields[0], 1, ratio);
+    bench_h5_read_fields(h5, claim, &fields[1], 1, &unset);
+    assert_true(ratio[0] == 15 && ratio[1] == 12 && ratio[2] == 20 && isnan(unset));
+    claim = bench_h5_find_group(h5, h5->file, "claims/003");
+    has_text(h5, claim, "kind", "by construction");
+    has_text(h5, claim, "verdict", "as set");
+    has_text(h5, claim, "unset_evidence", "/rows/007");
+    bench_h5_read_fields(h5, claim, &fields[0], 1, ratio);
+    bench_h5_read_fields(h5, claim, &fields[1], 1, &unset);
+    assert_true(unset == 593 && isnan(ratio[0]));
 }
 
 static void findings_are_stored(void **state)
@@ -232,7 +316,7 @@ static void findings_are_stored(void **state)
     (void)state;
     BenchH5 h5;
     open_stored(&h5);
-    has_number(&h5, h5.file, "claims", 2);
+    has_number(&h5, h5.file, "claims", FINDINGS);
     has_text(&h5, bench_h5_find_group(&h5, h5.file, "machine"), "command", machine.command);
     hid_t claim = bench_h5_find_group(&h5, h5.file, "claims/000");
     has_text(&h5, claim, "statement", findings[0].claim.statement);
@@ -249,6 +333,8 @@ static void findings_are_stored(void **state)
     assert_true(number_of(&h5, claim, "high", 2) == 1.5);
     assert_true(number_of(&h5, claim, "paper_value", 1) == 1);
     assert_true(isnan(number_of(&h5, claim, "paper_value", 3)));
+    has_text(&h5, claim, "kind", "method");
+    kinds_are_stored(&h5);
     assert_true(bench_h5_close(&h5));
 }
 
@@ -278,7 +364,7 @@ static void a_place_that_cannot_be_written_is_named(void **state)
     (void)state;
     SmError error;
     fill();
-    assert_int_equal(bench_claim_store("/nowhere/x.h5", findings, 2, &lab, &machine, &error),
+    assert_int_equal(bench_claim_store("/nowhere/x.h5", findings, FINDINGS, &lab, &machine, &error),
                      SM_OUTPUT);
     assert_non_null(strstr(error.text, "/nowhere/x.h5"));
 }
@@ -291,7 +377,7 @@ static char *written(BenchFormat format)
     size_t size;
     fill();
     FILE *file = open_memstream(&text, &size);
-    bench_claim_table_write(file, format, findings, 2, &machine);
+    bench_claim_table_write(file, format, findings, FINDINGS, &machine);
     fclose(file);
     return text;
 }
@@ -304,11 +390,17 @@ static void tables_say_all(void **state)
         const char *has[3];
     } cases[] = {
         {BENCH_AS_TEXT,
-         {"1 reproduced, 1 differs", "3.25 to 1.25", "Differs because of the weather"}},
+         {"Of 4, 2 method: 1 reproduced, 1 differs; 1 machine: 1 measured; 1 by construction: 1 as "
+          "set.",
+          "15 (12 to 20)  measured", "Differs because of the weather"}},
+        {BENCH_AS_TEXT, {"3.25 to 1.25", "593  within 2% of 661  as set", "not set /rows/007"}},
         {BENCH_AS_MARKDOWN, {"| p | n |", "`/curves/sag.beam.w1-3.3`", "| falls |"}},
         {BENCH_AS_LATEX, {"\\begin{tabular}", "3.25 to 1.25", "\\end{tabular}"}},
         {BENCH_AS_CSV,
          {"paper,name,place,", "\"It is, \"\"so\"\" it is said.\"", "3.25/2.25/1.25"}},
+        {BENCH_AS_CSV,
+         {",kind,ratio,unset,unset_evidence\n", ",machine,15/12/20,,\n",
+          ",by construction,,593,/rows/007\n"}},
         {BENCH_AS_JSON, {"\"verdict\": \"differs\"", "\"environment\"", "\"cpu\""}},
     };
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {

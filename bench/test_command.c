@@ -301,13 +301,16 @@ static void tables_set_the_octree_beside_the_lattice(void **state)
 
 static const char own_claims[] =
     "claims = (\n"
-    "  { paper = \"mine\"; name = \"few\"; statement = \"It has 64 particles.\"; value = 64;\n"
+    "  { kind = \"method\"; paper = \"mine\"; name = \"few\"; statement = \"It has 64 "
+    "particles.\"; value = 64;\n"
     "    test = \"near\"; measure = { experiment = \"scene\"; scene = \"./tiny.cfg\";\n"
     "    field = \"particles\"; }; },\n"
-    "  { paper = \"mine\"; name = \"many\"; statement = \"It has 640.\"; value = 640;\n"
+    "  { kind = \"method\"; paper = \"mine\"; name = \"many\"; statement = \"It has 640.\"; value "
+    "= 640;\n"
     "    test = \"near\"; measure = { experiment = \"scene\"; scene = \"./tiny.cfg\";\n"
     "    field = \"particles\"; }; },\n"
-    "  { paper = \"mine\"; name = \"none\"; statement = \"It is nowhere.\"; value = 1;\n"
+    "  { kind = \"method\"; paper = \"mine\"; name = \"none\"; statement = \"It is nowhere.\"; "
+    "value = 1;\n"
     "    test = \"near\"; measure = { experiment = \"scene\"; scene = \"./no.cfg\";\n"
     "    field = \"particles\"; }; } );\n";
 
@@ -318,12 +321,13 @@ static void claims_of_ones_own_decide_the_exit_code(void **state)
     write_text("own.cfg", own_claims);
     run("claims --claims own.cfg --claim few --quick -o few.h5", &result);
     assert_int_equal(result.code, 0);
-    assert_true(there("few.h5") && strstr(result.out, "Of 1: 1 reproduced"));
+    assert_true(there("few.h5") && strstr(result.out, "Of 1, 1 method: 1 reproduced."));
     run("claims --claims own.cfg --paper mine --quick --format csv -o all.h5", &result);
     assert_int_equal(result.code, 1); /* one is not reproduced, one cannot be measured */
     assert_true(there("all.h5") && strstr(result.out, ",not reproduced,"));
     assert_non_null(strstr(result.out, ",INVALID,"));
-    assert_non_null(strstr(result.err, "2 of 3 claims are not reproduced or INVALID; first many"));
+    assert_non_null(
+        strstr(result.err, "2 of 3 claims are not reproduced, not as set or INVALID; first many"));
     run("claims --claims own.cfg --claims own.cfg --list", &result);
     assert_int_equal(result.code, 3);
     assert_non_null(strstr(result.err, "own.cfg:2: 'few' of 'mine' is there already"));

@@ -217,6 +217,57 @@ static void the_verdict_follows_what_is_expected(void **state)
     assert_false(bench_verdict_all(all, 3));
 }
 
+/* A speed is never reproduced, whatever the machine. */
+static void a_machines_speed_is_a_ratio(void **state)
+{
+    (void)state;
+    const struct {
+        BenchTest test;
+        double measured, ratio;
+    } cases[] = {{BENCH_IS_AT_MOST, 50, 2},
+                 {BENCH_IS_AT_MOST, 200, 0.5},
+                 {BENCH_IS_AT_LEAST, 200, 2},
+                 {BENCH_IS_AT_LEAST, 50, 0.5}};
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        BenchClaim claim = claim_of(cases[c].test, 100, 0);
+        BenchCurve curve = curve_with(1, &cases[c].measured, 10);
+        BenchFinding finding;
+        claim.kind = BENCH_OF_MACHINE;
+        bench_verdict_find(&claim, &curve, NULL, &finding);
+        assert_int_equal(finding.verdict, BENCH_TIMED);
+        assert_true(fabs(finding.ratio[0] - cases[c].ratio) < 1e-12);
+        assert_true(finding.ratio[1] < finding.ratio[0] && finding.ratio[0] < finding.ratio[2]);
+        assert_non_null(strstr(finding.words, "times as fast as the paper's machine"));
+        assert_true(bench_verdict_all(&finding, 1));
+        claim.expect = BENCH_NOT_COMPARABLE;
+        bench_verdict_find(&claim, &curve, NULL, &finding);
+        assert_int_equal(finding.verdict, BENCH_CANNOT_COMPARE);
+        assert_true(isnan(finding.ratio[0]));
+    }
+}
+
+static void what_is_set_is_counted(void **state)
+{
+    (void)state;
+    const double right = 101, wrong = 90, free = 60;
+    BenchClaim claim = claim_of(BENCH_IS_NEAR, 100, 0.02);
+    BenchCurve good = curve_with(1, &right, 0), bad = curve_with(1, &wrong, 0),
+               unset = curve_with(1, &free, 0);
+    BenchFinding finding;
+    claim.kind = BENCH_BY_CONSTRUCTION;
+    bench_verdict_find(&claim, &good, NULL, &finding);
+    assert_true(finding.verdict == BENCH_AS_SET && isnan(finding.unset));
+    bench_verdict_unset(&unset, &finding);
+    assert_true(finding.unset == 60 && bench_verdict_all(&finding, 1));
+    bench_curve_fail(&unset, "no such body");
+    bench_verdict_unset(&unset, &finding);
+    assert_int_equal(finding.verdict, BENCH_INVALID);
+    assert_non_null(strstr(finding.words, "no such body"));
+    bench_verdict_find(&claim, &bad, NULL, &finding);
+    assert_int_equal(finding.verdict, BENCH_NOT_AS_SET);
+    assert_false(bench_verdict_all(&finding, 1));
+}
+
 static void what_failed_its_check_says_nothing(void **state)
 {
     (void)state;
@@ -345,6 +396,8 @@ int main(void)
         cmocka_unit_test(the_largest_is_not_the_luckiest),
         cmocka_unit_test(a_trend_is_contradicted_by_what_is_apart),
         cmocka_unit_test(the_verdict_follows_what_is_expected),
+        cmocka_unit_test(a_machines_speed_is_a_ratio),
+        cmocka_unit_test(what_is_set_is_counted),
         cmocka_unit_test(what_failed_its_check_says_nothing),
         cmocka_unit_test(exponents_gains_and_trends_are_of_curves),
         cmocka_unit_test(one_curve_is_divided_by_another),

@@ -33,7 +33,9 @@ void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row)
     row->local_nodes = s->local_leaves;
     row->welded_cells = s->report.welded_cells;
     row->welded_pairs = s->report.welded_pairs;
+    row->splits = s->report.splits;
     row->balance_splits = s->report.balance_splits;
+    row->unasked_splits = s->report.unasked_splits;
     row->plain = scene->octree.weighting == OCT_PLAIN;
 }
 
@@ -48,6 +50,9 @@ void bench_tree_row_nodes(FILE *file, const BenchRow *row)
     if (row->instances > 1) fprintf(file, "%ld bodies of ", row->instances);
     fprintf(file, "%ld nodes", nodes);
     tell_wanted(file, row->wanted_nodes, nodes);
+    if (row->unasked_splits)
+        fprintf(file, ", %ld of %ld splits asked for by no criterion,", row->unasked_splits,
+                row->splits);
     fprintf(file, " from %ld base cells", row->bases);
     tell_wanted(file, row->wanted_bases, row->bases);
     if (row->balance_splits) fprintf(file, ", %ld splits for balance alone", row->balance_splits);

@@ -10,7 +10,8 @@
 const char *bench_verdict_name(BenchVerdict verdict)
 {
     static const char *const names[BENCH_VERDICTS] = {
-        "reproduced", "undecided", "not reproduced", "differs", "not comparable", "INVALID"};
+        "reproduced", "undecided",  "not reproduced", "differs", "not comparable",
+        "as set",     "not as set", "measured",       "INVALID"};
     return names[verdict];
 }
 
@@ -159,10 +160,43 @@ static Grade grade_of(const BenchFinding *finding, const BenchCurve *curve)
 static BenchVerdict verdict_of(const BenchClaim *claim, Grade grade)
 {
     if (claim->expect == BENCH_NOT_COMPARABLE) return BENCH_CANNOT_COMPARE;
+    if (claim->kind == BENCH_OF_MACHINE) return BENCH_TIMED;
+    if (claim->kind == BENCH_BY_CONSTRUCTION)
+        return grade == OPEN || grade == OUTSIDE ? BENCH_NOT_AS_SET : BENCH_AS_SET;
     if (claim->expect == BENCH_DIFFERS)
         return grade == SHOWN ? BENCH_REPRODUCED : BENCH_HAS_DIFFERED;
     if (grade == OPEN) return BENCH_UNDECIDED;
     return grade == OUTSIDE ? BENCH_NOT_REPRODUCED : BENCH_REPRODUCED;
+}
+
+/* How many times as fast as the paper's machine; a time is at most so long, a rate at least so
+ * high. */
+static void compare_speed(BenchFinding *finding)
+{
+    const BenchClaim *claim = &finding->claim;
+    bool time = claim->test == BENCH_IS_AT_MOST;
+    const double measured[] = {finding->value[0], time ? finding->high[0] : finding->low[0],
+                               time ? finding->low[0] : finding->high[0]};
+    for (int i = 0; i < 3; i++)
+        finding->ratio[i] = time ? claim->value[0] / measured[i] : measured[i] / claim->value[0];
+}
+
+static void say_speed(BenchFinding *finding)
+{
+    char times[96];
+    bench_verdict_ratio(finding, sizeof times, times);
+    snprintf(finding->words, sizeof finding->words, "%s times as fast as the paper's machine%s%s",
+             times, finding->claim.because[0] ? "; " : "", finding->claim.because);
+}
+
+static void say_test(BenchFinding *finding, const char *but)
+{
+    const BenchClaim *claim = &finding->claim;
+    bool done = finding->verdict == BENCH_REPRODUCED || finding->verdict == BENCH_AS_SET;
+    char test[96];
+    bench_verdict_test(claim, sizeof test, test);
+    snprintf(finding->words, sizeof finding->words, "%s%s%s%s%s", done ? "" : "wanted: ", test, but,
+             claim->because[0] ? "; " : "", claim->because);
 }
 
 static void judge(BenchFinding *finding, const BenchCurve *curve)
@@ -172,24 +206,34 @@ static void judge(BenchFinding *finding, const BenchCurve *curve)
     const char *but = grade == OPEN ? "; the 95% interval is partly so: a quieter machine may tell"
                       : grade == WITHIN ? "; the 95% interval is only partly so"
                                         : "";
-    char test[96];
-    bench_verdict_test(claim, sizeof test, test);
     finding->verdict = verdict_of(claim, grade);
+    if (finding->verdict == BENCH_TIMED) compare_speed(finding);
     if (finding->verdict == BENCH_CANNOT_COMPARE)
         snprintf(finding->words, sizeof finding->words, "not comparable: %s", claim->because);
     else if (finding->verdict == BENCH_HAS_DIFFERED)
         snprintf(finding->words, sizeof finding->words, "differs because %s", claim->because);
+    else if (finding->verdict == BENCH_TIMED)
+        say_speed(finding);
     else
-        snprintf(finding->words, sizeof finding->words, "%s%s%s%s%s",
-                 finding->verdict == BENCH_REPRODUCED ? "" : "wanted: ", test, but,
-                 claim->because[0] ? "; " : "", claim->because);
+        say_test(finding, but);
+}
+
+void bench_verdict_unset(const BenchCurve *curve, BenchFinding *finding)
+{
+    if (finding->verdict == BENCH_INVALID) return;
+    if (curve->valid && curve->points == 1) {
+        finding->unset = curve->y[0];
+        return;
+    }
+    finding->verdict = BENCH_INVALID;
+    snprintf(finding->words, sizeof finding->words, "INVALID: not set, %s", curve->reason);
 }
 
 void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const BenchCurve *over,
                         BenchFinding *finding)
 {
     BenchCurve *ratio = sm_alloc(1, sizeof *ratio);
-    *finding = (BenchFinding){.claim = *claim};
+    *finding = (BenchFinding){.claim = *claim, .ratio = {NAN, NAN, NAN}, .unset = NAN};
     divide(curve, over, ratio);
     if (ratio->valid && !reduce(ratio, finding))
         bench_curve_fail(ratio, "%d points are too few or too many for this test", ratio->points);
@@ -208,7 +252,8 @@ void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const 
 bool bench_verdict_all(const BenchFinding *findings, int count)
 {
     for (int f = 0; f < count; f++)
-        if (findings[f].verdict == BENCH_INVALID || findings[f].verdict == BENCH_NOT_REPRODUCED)
+        if (findings[f].verdict == BENCH_INVALID || findings[f].verdict == BENCH_NOT_REPRODUCED ||
+            findings[f].verdict == BENCH_NOT_AS_SET)
             return false;
     return true;
 }
@@ -268,6 +313,23 @@ void bench_verdict_measured(const BenchFinding *finding, size_t size, char *text
         snprintf(text, size, "%s (+-%s)", value, high);
     } else
         snprintf(text, size, "%s", value);
+}
+
+void bench_verdict_ratio(const BenchFinding *finding, size_t size, char *text)
+{
+    char value[24], low[24], high[24];
+    number_text(finding->ratio[0], sizeof value, value);
+    number_text(finding->ratio[1], sizeof low, low);
+    number_text(finding->ratio[2], sizeof high, high);
+    if (finding->ratio[2] > finding->ratio[1])
+        snprintf(text, size, "%s (%s to %s)", value, low, high);
+    else
+        snprintf(text, size, "%s", value);
+}
+
+void bench_verdict_unset_text(const BenchFinding *finding, size_t size, char *text)
+{
+    number_text(finding->unset, size, text);
 }
 
 void bench_verdict_test(const BenchClaim *claim, size_t size, char *text)

@@ -16,6 +16,8 @@
  * "inside" is the strict test: without the whole interval in the band it is undecided. Of several
  * values each must do; the worst one counts. "rises" and "falls" look at every step from point to
  * point: the estimates must, and a step whose intervals are apart the wrong way contradicts it.
+ * That is of claims of the method. What the scene file sets is counted by the same tests and is as
+ * set or not; of a machine's speed the ratio is given, and no band is held against it (claim.h).
  * What has no interval (counts) is either in the band or outside. Measured are the repeats of one
  * run: a machine that does other work throughout shifts all of them. */
 #ifndef BENCH_VERDICT_H
@@ -29,7 +31,10 @@ typedef enum {
     BENCH_NOT_REPRODUCED, /* it should have been */
     BENCH_HAS_DIFFERED,   /* as expected, for the reason that the claim gives */
     BENCH_CANNOT_COMPARE,
-    BENCH_INVALID, /* the measurement's check failed: it says nothing */
+    BENCH_AS_SET,     /* by construction, and the count is that */
+    BENCH_NOT_AS_SET, /* it should have been */
+    BENCH_TIMED,      /* a machine's speed: see `ratio` */
+    BENCH_INVALID,    /* the measurement's check failed: it says nothing */
     BENCH_VERDICTS
 } BenchVerdict;
 
@@ -38,11 +43,13 @@ typedef struct {
     BenchClaim claim;
     int count;
     double value[BENCH_CLAIM_VALUES], low[BENCH_CLAIM_VALUES], high[BENCH_CLAIM_VALUES];
-    int trend; /* 1: the curve rises from point to point; -1: falls; 0: neither */
+    double ratio[3]; /* of a machine's speed: how many times as fast as the paper's, low, high */
+    double unset;    /* by construction: what comes where the scene does not set it; or NaN */
+    int trend;       /* 1: the curve rises from point to point; -1: falls; 0: neither */
     BenchVerdict verdict;
     char words[560];       /* why */
-    char evidence[2][208]; /* where in a results file it is; the second one, if any, what the
-                            * first is divided by */
+    char evidence[3][208]; /* where in a results file it is; the second one, if any, what the
+                            * first is divided by; the third that of `unset` */
 } BenchFinding;
 
 /* Reduces `curve`, by `over` (or NULL) point by point, as the claim says, and judges it. The
@@ -52,17 +59,27 @@ typedef struct {
 void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const BenchCurve *over,
                         BenchFinding *finding);
 
-/* "reproduced", "undecided", "not reproduced", "differs", "not comparable", "INVALID". */
+/* Adds what `curve` measured where the scene does not set the claim's number, to a finding that is
+ * not INVALID. */
+void bench_verdict_unset(const BenchCurve *curve, BenchFinding *finding);
+
+/* "reproduced", "undecided", "not reproduced", "differs", "not comparable", "as set", "not as set",
+ * "measured", "INVALID". */
 const char *bench_verdict_name(BenchVerdict verdict);
 
-/* Is nothing INVALID, and nothing not reproduced that should be? What is undecided is no failure:
- * it would come and go with the noise. */
+/* Is nothing INVALID, nothing not reproduced that should be, and all that is set as set? What is
+ * undecided is no failure: it would come and go with the noise. */
 bool bench_verdict_all(const BenchFinding *findings, int count);
 
 /* "3", "18/17/18/30/17"; "rises", "falls". And "2.94 (2.90 to 2.98)", the value and its interval;
  * of several "35/13/10/38/5 (+-0.4)", half the widest one; for a trend the first and last value. */
 void bench_verdict_paper(const BenchClaim *claim, size_t size, char *text);
 void bench_verdict_measured(const BenchFinding *finding, size_t size, char *text);
+
+/* The ratio and its interval, "71.9 (70.2 to 73.0)", and what comes where nothing is set; "-":
+ * none. */
+void bench_verdict_ratio(const BenchFinding *finding, size_t size, char *text);
+void bench_verdict_unset_text(const BenchFinding *finding, size_t size, char *text);
 
 /* The test in words: "within 2%", "95% interval inside 3 +- 0.25". */
 void bench_verdict_test(const BenchClaim *claim, size_t size, char *text);

@@ -117,8 +117,11 @@ static void fill_report(const OctSplitter *s, OctSampleReport *report)
         .nodes = s->leaves,
         .wanted_bases = s->sampling->bases,
         .wanted_nodes = s->sampling->nodes,
+        .splits = s->splits,
         .balance_splits = s->balance_splits,
+        .unasked_splits = -s->balance_splits,
     };
+    for (long i = 0; i < s->splits; i++) report->unasked_splits += !s->asked[s->order[i]];
     memcpy(report->corner, s->whole->corner, sizeof report->corner);
     count_welds(s, report);
 }

@@ -52,7 +52,9 @@ typedef struct {
     long welded_cells;   /* leaves above the finest level whose material falls into parts */
     long welded_pairs;   /* leaves above the finest level and touching tree nodes of the same size
                           * that do not connect within the box around both */
+    long splits;         /* in all */
     long balance_splits; /* made for balance alone */
+    long unasked_splits; /* made for as many nodes as are wanted: no criterion asks for them */
 } OctSampleReport;
 
 /* Makes the tree. The caller frees it. `report` may be NULL. O(nodes of the whole tree * log), some

@@ -1,8 +1,9 @@
-"""Claims of a report: the table of verdicts, and a figure for each group of curves measured for them."""
+"""Claims of a report: a table of each kind, and a figure for each group of curves measured for them."""
 import numpy as np
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator
 
 from drawing import COLOURS, DOUBTS, MARKS, PAPER, Figure, canvas, number
+from sources import CLAIM_KINDS
 from tables import Table, doubts_said
 
 # Groups of curves by how their names begin: title, caption, and which axes are logarithmic.
@@ -21,47 +22,71 @@ GROUPS = {
               "that goes into distances, against how wide regions are.", ""),
 }
 AXES = {"distance-share": "distances, % of that time"}  # fields of which the name says too little
-CLASSES = {"reproduced": "good", "not reproduced": "bad", "undecided": "open", "INVALID": "invalid"}
+CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "INVALID": "invalid"}
 
 
 def value_text(values):
     return " / ".join(number(v) for v in values)
 
 
+def with_interval(value, low, high):
+    return number(value) + (f" ({number(low)} to {number(high)})" if low == low and high > low else "")
+
+
 def measured_text(claim):
     values, low, high = (claim[name][:claim["count"]] for name in ("measured", "low", "high"))
-    text = value_text(values)
-    if claim["count"] == 1 and low[0] == low[0] and high[0] > low[0]:
-        text += f" ({number(low[0])} to {number(high[0])})"
-    return text or "–"
+    if claim["count"] == 1:
+        return with_interval(values[0], low[0], high[0])
+    return value_text(values) or "–"
 
 
-def claim_table(source):
-    table = Table(f"Claims, {source.name}",
-                  ["claim", "verdict", "the paper says, and beneath it why the verdict", "paper", "measured", "unit", "test",
+# What a table of each kind says beyond the others, and what stands beneath it.
+KINDS = {
+    "method": ("Method", "test", lambda claim: claim["test"],
+               "What the paper's idea should do anywhere, like compared with like; these alone are reproduced or not. "
+               "Undecided: the value is outside of what the test wants and its interval is not. "),
+    "machine": ("Machine", "times as fast",
+                lambda claim: with_interval(*claim["ratio"]) if claim["ratio"][0] == claim["ratio"][0] else "–",
+                "Speeds, as many times as fast as the paper's machine, compiler and program. "),
+    "by construction": ("By construction", "not set", lambda claim: number(claim["unset"]),
+                        "The scene file sets these numbers, and they are counted; not set is what comes where it does not. "),
+}
+
+
+def kind_table(source, kind):
+    title, heading, text, note = KINDS[kind]
+    table = Table(f"{title}: claims, {source.name}",
+                  ["claim", "verdict", "the paper says, and beneath it why the verdict", "paper", "measured", "unit", heading,
                    "evidence"],
-                  "Brackets hold 95% confidence intervals; undecided: the value is outside of what the test wants and its "
-                  "interval is not. "
-                  "Evidence is where in the file the measurement is.")
-    for claim in source.claims:
+                  note + "Brackets hold 95% confidence intervals. Evidence is where in the file the measurement is.")
+    claims = [claim for claim in source.claims if claim["kind"] == kind]
+    for claim in claims:
         paper = value_text(claim["paper_value"][:claim["values"]])
         paper = paper + DOUBTS.get(claim["status"], "") if paper else "–"
         evidence = " over ".join(claim[name] for name in ("evidence", "over") if claim[name])
+        evidence += f", not set {claim['unset_evidence']}" if claim["unset_evidence"] else ""
         why = "" if claim["words"] == claim["test"] else "\n" + claim["words"]
         table.add([f"{claim['paper']} {claim['name']}", claim["verdict"], f"{claim['statement']} ({claim['place']}){why}",
-                   paper, measured_text(claim), claim["unit"], claim["test"], evidence],
+                   paper, measured_text(claim), claim["unit"], text(claim), evidence],
                   CLASSES.get(claim["verdict"], ""))
-    table.note += doubts_said(claim["status"] for claim in source.claims if claim["values"])
+    table.note += doubts_said(claim["status"] for claim in claims if claim["values"])
     return table
 
 
+def claim_tables(source):
+    return [kind_table(source, kind) for kind in CLAIM_KINDS if any(c["kind"] == kind for c in source.claims)]
+
+
 def said(source):
-    count = {}
-    for claim in source.claims:
-        count[claim["verdict"]] = count.get(claim["verdict"], 0) + 1
-    words = ", ".join(f"{verdict} {n}" for verdict, n in sorted(count.items(), key=lambda item: -item[1]))
-    tested = "1 claim of the papers was" if len(source.claims) == 1 else f"{len(source.claims)} claims of the papers were"
-    return f"{tested} tested ({source.name}): {words}."
+    parts = []
+    for kind in CLAIM_KINDS:
+        verdicts = [claim["verdict"] for claim in source.claims if claim["kind"] == kind]
+        count = {verdict: verdicts.count(verdict) for verdict in dict.fromkeys(verdicts)}
+        words = ", ".join(f"{verdict} {n}" for verdict, n in sorted(count.items(), key=lambda item: -item[1]))
+        if verdicts:
+            parts.append(f"{len(verdicts)} {kind} ({words})")
+    held = "1 claim of the papers was" if len(source.claims) == 1 else f"{len(source.claims)} claims of the papers were"
+    return f"{held} measured ({source.name}): " + "; ".join(parts) + "."
 
 
 def label(name, curve):

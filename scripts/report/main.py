@@ -67,7 +67,7 @@ def claims_part(files):
     if not files:
         return None
     return Part("claims", "What the papers claim", map(claim_figures.said, files),
-                map(claim_figures.claim_table, files),
+                [table for source in files for table in claim_figures.claim_tables(source)],
                 [figure for source in files for figure in claim_figures.figures(source)])
 
 

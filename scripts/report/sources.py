@@ -8,7 +8,7 @@ import os
 import h5py
 import numpy as np
 
-SCHEMAS = {"shapebench results": 4, "shapebench claims": 1, "shapebench sweep": 1,
+SCHEMAS = {"shapebench results": 4, "shapebench claims": 2, "shapebench sweep": 1,
            "shapebench calibration": 1}
 TEXTS = ("paper", "scene", "engine", "precision", "reason", "stages")
 NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_low_ms", "total_high_ms",
@@ -17,7 +17,9 @@ NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_l
                                   "change_ms", "change_most_ms", "follow_ms", "surface_ms", "first_triangles",
                                   "last_triangles", "pieces", "open_edges", "left"))
 
-CLAIM_TEXTS = ("paper", "name", "place", "unit", "statement", "status", "test", "verdict", "words", "evidence", "over")
+CLAIM_KINDS = ("method", "machine", "by construction")
+CLAIM_TEXTS = ("kind", "paper", "name", "place", "unit", "statement", "status", "test", "verdict", "words", "evidence",
+               "over", "unset_evidence")
 
 SWEEP_COLUMNS = ("engine", "w", "epsilon", "valid", "total_ms", "build_seconds", "bytes", "summation_nodes", "goal_rms",
                  "relaxation", "sag", "frequency", "path_rms", "path_most", "front")
@@ -123,7 +125,10 @@ def read_claim(group):
     claim = attributes(group)
     demand(claim, CLAIM_TEXTS, str)
     demand(claim, ("values", "count"), int)
-    demand(claim, ("paper_value", "measured", "low", "high"), np.ndarray)
+    demand(claim, ("paper_value", "measured", "low", "high", "ratio"), np.ndarray)
+    demand(claim, ("unset",), float)
+    if claim["kind"] not in CLAIM_KINDS:
+        raise ValueError(f"the kind {claim['kind']!r} of a claim")
     return claim
 
 

@@ -181,15 +181,30 @@ class Report(unittest.TestCase):
 
     def test_a_claim_of_a_doubtful_value_has_its_mark(self):
         with open(self.at("mine.cfg"), "w", encoding="utf-8") as file:
-            file.write('claims = ( { paper = "fastlsm"; name = "mine"; statement = "s"; number = "hand-rate"; '
-                       'test = "near"; tolerance = 100.0; '
+            file.write('claims = ( { kind = "method"; paper = "octree"; name = "mine"; statement = "s"; '
+                       'number = "liver-growth"; test = "near"; tolerance = 100.0; '
                        'measure = { experiment = "polar"; field = "cold-sweeps"; }; } );')
         done = shapebench("claims", "--claims", self.at("mine.cfg"), "--claim", "mine", "--quick", "-o", self.at("c.h5"))
         self.assertEqual(done.returncode, 0, done.stderr)
         page = self.page(self.at("c.h5"))
-        self.assertIn("10.0*", page.text)
+        self.assertIn("4.19*", page.text)
         self.assertIn("A star is behind", page.text)
-        self.assertIn("1 claim of the papers was tested (c.h5): reproduced 1.", page.text)
+        self.assertIn("1 claim of the papers was measured (c.h5): 1 method (reproduced 1).", page.text)
+
+    def test_claims_of_each_kind_have_their_table(self):
+        with open(self.at("kinds.cfg"), "w", encoding="utf-8") as file:
+            file.write('claims = ( { kind = "machine"; paper = "mine"; name = "speed"; statement = "s"; value = 1e6; '
+                       'test = "at_most"; measure = { experiment = "polar"; field = "cold-ns"; }; },\n'
+                       '{ kind = "by construction"; paper = "mine"; name = "set"; statement = "s"; value = 2.2; '
+                       'test = "near"; tolerance = 0.5; measure = { experiment = "polar"; field = "cold-sweeps"; }; '
+                       'unset = { experiment = "polar"; field = "warm-sweeps"; }; } );')
+        done = shapebench("claims", "--claims", self.at("kinds.cfg"), "--paper", "mine", "--quick", "-o", self.at("k.h5"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = self.page(self.at("k.h5"))
+        for words in ("1 machine (measured 1); 1 by construction (as set 1).", "Machine: claims, k.h5", "times as fast",
+                      "By construction: claims, k.h5", "not set /curves/polar.warm-sweeps"):
+            self.assertIn(words, page.text)
+        self.assertNotIn("Method: claims", page.text)
 
     def test_texts_are_escaped(self):
         def name(file):
