@@ -19,6 +19,9 @@ static void write_parameters(BenchH5 *h5, hid_t group, const BenchTrajectoryPara
     const OctTree *tree = &all->structure->tree;
     bench_h5_fields(h5, group, options, 4, &o);
     bench_h5_fields(h5, group, body, 2, all->structure);
+    static const char *const symmetries[] = {"union", "intersection", "none"};
+    bench_h5_text(h5, group, "masses", o.masses == OCT_VOLUME ? "volume" : "material");
+    bench_h5_text(h5, group, "symmetry", symmetries[o.symmetry]);
     bench_h5_text(h5, group, "weighting", o.weighting == OCT_PLAIN ? "plain" : "conserving");
     bench_h5_text(h5, group, "goals", o.form == OCT_ADJOINT ? "adjoint" : "gather");
     bench_h5_numbers(h5, group, "levels", H5T_STD_I32LE, 0, &tree->levels);

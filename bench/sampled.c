@@ -30,8 +30,8 @@ static SmCode sample(BenchSampled *body, SmError *error)
     if (!code) {
         bench_sampled_widths(&body->tree, body->edges, &body->w, &body->mass);
         oct_graph_build(&body->tree, &body->voxels, &body->graph);
-        code = oct_regions_build(&body->tree, &body->graph, body->w, body->epsilon, &body->regions,
-                                 error);
+        code = oct_regions_build(&body->tree, &body->graph, body->w, body->epsilon, OCT_UNION,
+                                 &body->regions, error);
     }
     if (code) bench_sampled_free(body);
     return code;

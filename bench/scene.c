@@ -149,6 +149,8 @@ static const BenchSetting octree_table[] = {
     ITEM("edges", BENCH_REAL, offsetof(OctOptions, width.edges), 0, 1e6),
     ITEM("summation_nodes", BENCH_REAL, offsetof(OctOptions, summation_nodes), 0, 1e6),
     OCT_LIST("widths", local, OCT_MAX_WIDTHS, local_count, OctLocalWidth, width_table),
+    WORDS("masses", offsetof(OctOptions, masses), "material|volume"),
+    WORDS("symmetry", offsetof(OctOptions, symmetry), "union|intersection|none"),
     WORDS("weighting", offsetof(OctOptions, weighting), "conserving|plain"),
     WORDS("goals", offsetof(OctOptions, form), "gather|adjoint"),
     ITEM("yield", BENCH_REAL, offsetof(OctOptions, yield), 0, 1e6),

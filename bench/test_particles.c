@@ -239,6 +239,9 @@ static void octrees(void **state)
                                  .threads = 1};
         options.weighting = kind % 2 ? OCT_PLAIN : OCT_CONSERVING;
         options.form = kind % 3 ? OCT_HIERARCHICAL : OCT_ADJOINT;
+        options.masses = (OctMassRule)(kind / 2 % 2);
+        options.symmetry = (OctSymmetry)(kind % 3);
+        if (options.symmetry == OCT_ASYMMETRIC) options.form = OCT_ADJOINT;
         record_octree(&octree_engine_f64, kind, &params, &options, NULL);
         assert_int_equal(check_file(), 0);
     }

@@ -63,16 +63,16 @@ static void an_octree_has_a_group_of_settings(void **state)
     (void)state;
     BenchScene scene;
     SmError error;
-    const char *text =
-        "mesh = \"a.obj\"; cells = 3000; engine = \"octree\"; epsilon = 0.5;\n"
-        "octree = { levels = 3; bases = 28; nodes = 661; balance = true;\n"
-        "  criteria = ( { kind = \"surface\"; level = 2; },\n"
-        "               { kind = \"sphere\"; centre = (1, 2, 3); radius = 0.5; },\n"
-        "               { kind = \"box\"; low = (0, 0, 0); high = (1, 1, 1); } );\n"
-        "  w = 2.5; edges = 0.75;\n"
-        "  widths = ( { low = (0, 0, 0); high = (1, 1, 2); edges = 3; },\n"
-        "             { centre = (0, 0, 1); radius = 0.1; w = 1.5; } );\n"
-        "  weighting = \"plain\"; goals = \"adjoint\"; yield = 0.1; creep = 5; most = 0.8; };";
+    const char *text = "mesh = \"a.obj\"; cells = 3000; engine = \"octree\"; epsilon = 0.5;\n"
+                       "octree = { levels = 3; bases = 28; nodes = 661; balance = true;\n"
+                       "  criteria = ( { kind = \"surface\"; level = 2; },\n"
+                       "               { kind = \"sphere\"; centre = (1, 2, 3); radius = 0.5; },\n"
+                       "               { kind = \"box\"; low = (0, 0, 0); high = (1, 1, 1); } );\n"
+                       "  w = 2.5; edges = 0.75;\n"
+                       "  widths = ( { low = (0, 0, 0); high = (1, 1, 2); edges = 3; },\n"
+                       "             { centre = (0, 0, 1); radius = 0.1; w = 1.5; } );\n"
+                       "  masses = \"volume\"; symmetry = \"intersection\"; weighting = \"plain\"; "
+                       "goals = \"adjoint\"; yield = 0.1; creep = 5; most = 0.8; };";
     if (parse(text, &scene, &error)) fail_msg("%s", error.text);
     const OctOptions *o = &scene.octree;
     assert_int_equal(scene.cells, 3000);
@@ -88,6 +88,7 @@ static void an_octree_has_a_group_of_settings(void **state)
     assert_int_equal(o->local_count, 2);
     assert_true(o->local[0].width.edges == 3 && o->local[0].high[2] == 2);
     assert_true(o->local[1].width.cells == 1.5 && o->local[1].radius == 0.1);
+    assert_true(o->masses == OCT_VOLUME && o->symmetry == OCT_INTERSECTION);
     assert_int_equal(o->weighting, OCT_PLAIN);
     assert_int_equal(o->form, OCT_ADJOINT);
     assert_true(o->yield == 0.1 && o->creep == 5 && o->most == 0.8);

@@ -71,7 +71,7 @@ static bool twin_regions(const BenchSampled *body, char *reason)
     bool right = true, *member = sm_alloc(leaves * leaves, sizeof *member);
     int *leaf = sm_alloc(leaves, sizeof *leaf), *count = sm_alloc(leaves, sizeof *count);
     ref_octree_build(&body->tree, &body->voxels, &twin);
-    ref_octree_regions(&body->tree, &twin, body->w, body->epsilon, member);
+    ref_octree_regions(&body->tree, &twin, body->w, body->epsilon, OCT_UNION, member);
     for (long i = 0; i < body->tree.leaves && right; i++) {
         count_leaves(body, i, leaf, count);
         for (long j = 0; j < body->tree.leaves && right; j++)

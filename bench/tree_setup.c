@@ -127,7 +127,7 @@ static void search(OctReach *reach, long sources)
 static void make_regions(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,
                          OctRegions *regions)
 {
-    SmCode code = oct_regions_build(tree, graph, w, epsilon, regions, NULL);
+    SmCode code = oct_regions_build(tree, graph, w, epsilon, OCT_UNION, regions, NULL);
     assert(!code); /* they were built before */
 }
 

@@ -157,7 +157,8 @@ void oct_change(Oct *oct, const OctStructure *structure, const OctChange *change
     change_leaves(oct, structure, change, c);
     oct_reweigh(structure, change, &c->weights, &c->reweigh);
     fill_slots(oct, structure, c);
-    oct_inherit_start(oct, change, c->weights.below, c->mass, held, &c->heirloom);
+    bool free = !held && structure->options.masses == OCT_MATERIAL;
+    oct_inherit_start(oct, change, c->weights.below, c->mass, free, &c->heirloom);
     if (oct->spread) find_inverses(oct, change, c);
 }
 

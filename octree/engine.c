@@ -185,6 +185,10 @@ static SmCode engine_begin(SmEngine *e, SmError *error)
                        "octree: %ld bodies share this engine's sampling, and cannot be resampled; "
                        "give a body that is to change an engine of its own",
                        e->oct->instances);
+    if (e->head.structure.options.symmetry != OCT_UNION)
+        return sm_fail(error, SM_USAGE,
+                       "octree: only bodies of symmetry 'union' can be resampled; use it, or leave "
+                       "the sampling as it is");
     if (e->oct->params.form != OCT_HIERARCHICAL)
         return sm_fail(error, SM_USAGE,
                        "octree: bodies of form 'adjoint' cannot be resampled; use 'hierarchical', "

@@ -9,6 +9,7 @@
 #define OCT_ENGINE_H
 
 #include "../lib/engine.h"
+#include "mass.h"
 #include "sampling.h"
 #include "weights.h"
 
@@ -39,6 +40,8 @@ struct OctOptions {
                              * and the number of edges is searched that gives nearest to them */
     OctLocalWidth local[OCT_MAX_WIDTHS]; /* the last one that holds a leaf's centre counts */
     int local_count;
+    OctMassRule masses;
+    OctSymmetry symmetry; /* OCT_ASYMMETRIC only with OCT_ADJOINT */
     OctWeighting weighting;
     OctGoalForm form;
     double yield, creep; /* plasticity (state.h); creep is a rate, 0 (elastic) to 1/h, 1/s */
@@ -66,7 +69,11 @@ const OctStructure *oct_engine_structure(const SmEngine *engine);
  * their numbers, oct_engine_leaves()[p]; SM_REST, masses and region() follow. Handles that are set
  * again after a change must be given by the new numbers.
  *
- * Errors (SM_USAGE): several bodies share the engine; goal positions are summed by OCT_ADJOINT. */
+ * Where nodes weigh as much as their cells' volume, a body's mass changes with its sampling, and
+ * momentum and centre of mass are left to what new nodes start with.
+ *
+ * Errors (SM_USAGE): several bodies share the engine; goal positions are summed by OCT_ADJOINT;
+ * regions are not symmetric by union. */
 SmCode oct_engine_begin(SmEngine *engine, OctStructure **structure, SmError *error);
 typedef struct OctChange OctChange;
 const OctChange *oct_engine_end(SmEngine *engine);

@@ -221,7 +221,7 @@ static void start(Oct *oct, const OctHeirloom *h, const OctAdded *added)
 }
 
 void oct_inherit_start(Oct *oct, const OctChange *change, const double *below, double mass,
-                       bool held, const OctHeirloom *h)
+                       bool free, const OctHeirloom *h)
 {
     double place[3] = {0}, momentum[3] = {0}, x[3], v[3];
     for (long n = 0; n < change->added_count; n++) {
@@ -233,7 +233,7 @@ void oct_inherit_start(Oct *oct, const OctChange *change, const double *below, d
             momentum[d] += below[added->node] * v[d];
         }
     }
-    if (held) return;
+    if (!free) return;
     for (long n = 0; n < h->count; n++)
         for (int d = 0; d < 3; d++) {
             place[d] -= h->kin[n].mass * h->kin[n].x[d];

@@ -53,10 +53,9 @@ void oct_inherit_keep(const Oct *oct, const OctTree *tree, const OctChange *chan
                       const double *below, OctHeirloom *heirloom);
 
 /* Starts the new leaves, whose slots are filled; `below` are the masses now and `mass` is the
- * body's. Where some of the body is held (`held`), nothing is done for momentum. O(removed and new
- * leaves). */
+ * body's. Where `free` is false, nothing is done for momentum. O(removed and new leaves). */
 void oct_inherit_start(Oct *oct, const OctChange *change, const double *below, double mass,
-                       bool held, const OctHeirloom *heirloom);
+                       bool free, const OctHeirloom *heirloom);
 
 void oct_inherit_free(OctHeirloom *heirloom);
 size_t oct_inherit_bytes(const OctHeirloom *heirloom);

@@ -64,9 +64,9 @@ static void share(const OctMass *mass, const SmVoxels *v, const int at[3], doubl
     for (int n = 0; n < count; n++) mass->cell[cell[n]] += vertex / count;
 }
 
-void oct_mass_init(OctMass *mass, const SmVoxels *voxels, const double *vertex)
+void oct_mass_init(OctMass *mass, const SmVoxels *voxels, const double *vertex, OctMassRule rule)
 {
-    *mass = (OctMass){0};
+    *mass = (OctMass){.rule = rule};
     if (!vertex) return;
     long rows = (long)voxels->size[1] * voxels->size[2], cells = 0;
     mass->cell = sm_alloc((size_t)voxels->cell_count, sizeof *mass->cell);
@@ -96,7 +96,8 @@ size_t oct_mass_bytes(const OctMass *mass, const SmVoxels *voxels)
            (size_t)voxels->size[1] * (size_t)voxels->size[2] * sizeof *mass->row_first;
 }
 
-double oct_mass_of(const OctMass *mass, const OctTree *tree, const SmVoxels *voxels, int node)
+static double material_of(const OctMass *mass, const OctTree *tree, const SmVoxels *voxels,
+                          int node)
 {
     if (!mass->cell) return (double)tree->material[node];
     int low[3];
@@ -113,4 +114,10 @@ double oct_mass_of(const OctMass *mass, const OctTree *tree, const SmVoxels *vox
             for (long n = 0; n < cells; n++) sum += cell[n];
         }
     return sum;
+}
+
+double oct_mass_of(const OctMass *mass, const OctTree *tree, const SmVoxels *voxels, int node)
+{
+    double material = material_of(mass, tree, voxels, node);
+    return mass->rule == OCT_VOLUME ? material / oct_tree_filled(tree, node) : material;
 }

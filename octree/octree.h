@@ -55,9 +55,10 @@ void oct_shape(Oct *oct, long body, const double (*S)[9]);
 void oct_prepare(Oct *oct, const OctStructure *structure);
 
 /* Makes a body that of a structure that `change` has changed, and starts its new leaves
- * (inherit.h); `held`: some of its nodes are. Everything that the change did not touch stays as it
- * is, bit by bit. Cost: that of the change, of the regions that hold a leaf whose weight is
- * another, and of their leaves. */
+ * (inherit.h); `held`: some of its nodes are. Where none are and nodes weigh what their material
+ * does, linear momentum and centre of mass stay; by volume (mass.h) its mass is another, and they
+ * do not. All else that the change did not touch stays as it is, bit by bit. Cost: that of the
+ * change, of the regions that hold a leaf whose weight is another, and of their leaves. */
 void oct_change(Oct *oct, const OctStructure *structure, const OctChange *change, bool held);
 
 /* Where component d of simulation node `leaf` is in x, v and g of a body. */

@@ -4,6 +4,15 @@
 
 #include "graph.h"
 
+/* What becomes of leaves i and j where the intervals of i (sheaf.h) put j in R_i and those of j do
+ * not put i in R_j, as where w_i > (1 + epsilon) w_j. Of what octree section 4.2 asks, one thing
+ * has to give way: */
+typedef enum {
+    OCT_UNION,        /* each is in the other's region: some lie beyond (1 + epsilon) w of it */
+    OCT_INTERSECTION, /* neither is: some within w of a node are not in its region */
+    OCT_ASYMMETRIC,   /* j is in R_i, i is not in R_j */
+} OctSymmetry;
+
 /* Summation nodes of every simulation node's region. Memory: 16 bytes a region and 4 a summation
  * node. */
 typedef struct {
@@ -26,24 +35,22 @@ static inline long oct_regions_end(const OctRegions *regions, long leaf)
     return regions->end ? regions->end[leaf] : regions->first[leaf + 1];
 }
 
-/* Regions of widths w[leaf] (half finest cells, 0 or more), symmetric: j in R_i exactly when i in
- * R_j. Every leaf within w_i of i is in R_i, none beyond w_i + floor(epsilon w_i) is unless
- * symmetry adds it: j is in R_i exactly when the intervals of i (sheaf.h) or those of j put the
- * other in.
+/* Regions of widths w[leaf] (half finest cells, 0 or more). Before symmetry every leaf within w_i
+ * of i is in R_i, and none beyond w_i + floor(epsilon w_i).
  *
- * Symmetry adds to R_j what is missing, leaf by leaf. It can be missing only where the distance is
- * more than w_j; nothing that is in is taken out again, because every leaf within w_i must stay.
- * Where a cell's children have all come to be in R_j, the cell takes their place, as long as there
- * is one: members are the largest cells of which all leaves are in, so a set of leaves has one list
- * of members, no leaf is counted twice, and the sums are as short as they can be.
+ * Leaves come in or go out one by one; only those can that are farther than the smaller of the two
+ * widths. Where a cell's children have all come to be in R_j, the cell takes their place, as long
+ * as there is one: members are the largest cells of which all leaves are in, so a set of leaves has
+ * one list of members, no leaf is counted twice, and the sums are as short as they can be.
  *
  * The caller frees. The result does not depend on the number of threads. Cost: the searches, each
  * the edges of what lies within (1 + epsilon) w_i, so linear in the leaves at a fixed width; for a
- * moment also memory of some 10 bytes for every leaf that a region holds beyond the other's w.
+ * moment also memory of some 10 bytes for every leaf that a region holds beyond the other's w. An
+ * intersection costs O(leaves of all regions, levels, logarithm of their members) more.
  * Errors (SM_USAGE), on which `regions` is zeroed: a negative width; epsilon negative or not
  * finite. */
 SmCode oct_regions_build(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,
-                         OctRegions *regions, SmError *error);
+                         OctSymmetry symmetry, OctRegions *regions, SmError *error);
 void oct_regions_free(OctRegions *regions);
 
 /* Brings members, mean, most and the mean and largest width up to date, after the regions have been

@@ -55,6 +55,11 @@ static SmCode check_options(const OctOptions *o, SmError *error)
         return sm_fail(error, SM_INPUT,
                        "octree: plasticity of yield %g, creep %g, most %g: all are 0 or more",
                        o->yield, o->creep, o->most);
+    if (o->symmetry == OCT_ASYMMETRIC && o->form != OCT_ADJOINT)
+        return sm_fail(error, SM_INPUT,
+                       "octree: regions that are not symmetric (symmetry 'none') need goals "
+                       "'adjoint': 'gather' sums over a node's own region, where it is to sum over "
+                       "those that hold the node");
     return SM_OK;
 }
 
@@ -82,9 +87,10 @@ static SmCode complete(const double *mass, const SmCut *cut, OctStructure *s, Sm
     s->cut_known = s->cut.triangles;
     SmCode code = oct_width_find(&s->options, s, error);
     if (!code)
-        code = oct_regions_build(tree, &s->graph, s->w, s->options.epsilon, &s->regions, error);
+        code = oct_regions_build(tree, &s->graph, s->w, s->options.epsilon, s->options.symmetry,
+                                 &s->regions, error);
     if (code) return code;
-    oct_mass_init(&s->cell_mass, &s->voxels, mass);
+    oct_mass_init(&s->cell_mass, &s->voxels, mass, s->options.masses);
     s->mass = sm_alloc((size_t)tree->leaves, sizeof *s->mass);
     for (long leaf = 0; leaf < tree->leaves; leaf++)
         s->mass[leaf] = oct_mass_of(&s->cell_mass, tree, &s->voxels, tree->node[leaf]);

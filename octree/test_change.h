@@ -160,7 +160,7 @@ static void test_rebuilt(void **state)
     unsigned seed = 1;
     for (int trial = 0; trial < 60; trial++) {
         Body body;
-        body_random(&seed, trial, 10, random_params(trial), &body);
+        body_random(&seed, trial, 10, (OctMassRule)(trial % 4 == 3), random_params(trial), &body);
         for (int batch = 0; batch < 8; batch++) {
             shake(&seed, &body, 0.1, 0.01);
             random_batch(&seed, &body.structure, 3 + trial % 5);
@@ -251,7 +251,7 @@ static void test_momentum(void **state)
     unsigned seed = 3;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
-        body_random(&seed, trial, 10, random_params(trial), &body);
+        body_random(&seed, trial, 10, OCT_MATERIAL, random_params(trial), &body);
         for (int batch = 0; batch < 8; batch++) {
             shake(&seed, &body, 0.3, 0.1);
             oct_step(body.oct, NULL);
@@ -280,6 +280,40 @@ static double (*snapshot(const Body *body))[6]
     for (long leaf = 0; leaf < body->oct->leaves; leaf++)
         if (alive(body, leaf)) state_of(body, leaf, kept[leaf], kept[leaf] + 3);
     return kept;
+}
+
+/* By volume a body weighs less once cells that are not full are split: what the change does not
+ * touch stays where it is, and is given no velocity for what is gone. */
+static void test_volume(void **state)
+{
+    (void)state;
+    unsigned seed = 8;
+    for (int trial = 0; trial < 24; trial++) {
+        Body body;
+        body_random(&seed, trial, 10, OCT_VOLUME, random_params(trial), &body);
+        const OctStructure *s = &body.structure;
+        for (int batch = 0; batch < 4; batch++) {
+            shake(&seed, &body, 0.3, 0.1);
+            double(*before)[6] = snapshot(&body), now[6];
+            long leaves = body.oct->leaves;
+            random_batch(&seed, &body.structure, 5);
+            const OctChange *change = update(&body);
+            char *touched = sm_alloc((size_t)s->tree.leaves, 1);
+            for (long n = 0; n < change->added_count; n++) touched[change->added[n].leaf] = 1;
+            for (long leaf = 0; leaf < leaves; leaf++) {
+                if (!alive(&body, leaf) || touched[leaf]) continue;
+                state_of(&body, leaf, now, now + 3);
+                assert_memory_equal(now, before[leaf], sizeof now);
+            }
+            for (long leaf = 0; leaf < s->tree.leaves; leaf++) {
+                double edge = alive(&body, leaf) ? 0.5 * s->tree.size[s->tree.node[leaf]] : 0;
+                if (!body.painted) assert_true(fabs(s->mass[leaf] - edge * edge * edge) < 1e-9);
+            }
+            free(touched);
+            free(before);
+        }
+        body_free(&body);
+    }
 }
 
 /* Leaves that are split and merged again have the state that they had; all others always kept it.
@@ -357,7 +391,7 @@ static void test_extremes(void **state)
     unsigned seed = 6;
     for (int trial = 0; trial < 12; trial++) {
         Body body;
-        body_random(&seed, trial, 9, random_params(trial), &body);
+        body_random(&seed, trial, 9, OCT_MATERIAL, random_params(trial), &body);
         for (int turn = 0; turn < 4; turn++) {
             if (turn % 2)
                 merge_all(&body.structure);
@@ -424,6 +458,7 @@ int main(void)
         cmocka_unit_test(test_rebuilt),  cmocka_unit_test(test_rigid),
         cmocka_unit_test(test_momentum), cmocka_unit_test(test_back),
         cmocka_unit_test(test_extremes), cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_volume),
     };
     return cmocka_run_group_tests_name("change", tests, NULL, NULL);
 }

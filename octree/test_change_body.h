@@ -18,14 +18,16 @@ typedef struct {
 } Body;
 
 /* A random body at rest, ready to be changed. */
-static inline void body_random(unsigned *seed, int trial, int most, OctParams params, Body *body)
+static inline void body_random(unsigned *seed, int trial, int most, OctMassRule masses,
+                               OctParams params, Body *body)
 {
     SmVoxels voxels;
     OctTree tree;
     random_tree(seed, trial % 6, most, &voxels, &tree);
     voxels.cell = 0.5;
     OctOptions options = {.epsilon = random_int(seed, 3) / 2.0,
-                          .width = {.cells = random_int(seed, 3), .edges = 1}};
+                          .width = {.cells = random_int(seed, 3), .edges = 1},
+                          .masses = masses};
     *body = (Body){.params = params};
     if (random_int(seed, 2)) {
         body->painted = sm_alloc((size_t)voxels.particle_count, sizeof(double));

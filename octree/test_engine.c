@@ -33,13 +33,16 @@ static void goals_are_the_twins(void **state)
     (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
-    for (int trial = 0; trial < 8; trial++) {
+    for (int trial = 0; trial < 24; trial++) {
         int precision = trial % 2;
         const SmEngineType *type = engines[precision];
         OctOptions options = {.epsilon = 0.5,
                               .sampling = {.levels = 2, .nodes = 90},
+                              .masses = trial % 3 ? OCT_MATERIAL : OCT_VOLUME,
+                              .symmetry = (OctSymmetry)(trial / 8),
                               .weighting = trial / 2 % 2 ? OCT_PLAIN : OCT_CONSERVING,
-                              .form = trial / 4 ? OCT_ADJOINT : OCT_HIERARCHICAL};
+                              .form = trial / 4 % 2 ? OCT_ADJOINT : OCT_HIERARCHICAL};
+        if (options.symmetry == OCT_ASYMMETRIC) options.form = OCT_ADJOINT;
         SmEngineParams params = usual(&options);
         SmCounts counts;
         SmEngine *engine = make(precision, &voxels, &params, &counts);
@@ -305,6 +308,28 @@ static void few_nodes_get_large_base_cells(void **state)
     sm_voxels_free(&voxels);
 }
 
+static void other_choices_are_not_resampled(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    make_voxels(&voxels);
+    for (int symmetry = 0; symmetry < 3; symmetry++) {
+        OctOptions options = {.sampling = {.levels = 2, .nodes = 90},
+                              .symmetry = (OctSymmetry)symmetry,
+                              .form = symmetry == OCT_UNION ? OCT_HIERARCHICAL : OCT_ADJOINT};
+        SmEngineParams params = usual(&options);
+        SmCounts counts;
+        SmEngine *engine = make(1, &voxels, &params, &counts);
+        OctStructure *structure;
+        SmError error;
+        SmCode code = oct_engine_begin(engine, &structure, &error);
+        assert_int_equal(code, symmetry == OCT_UNION ? SM_OK : SM_USAGE);
+        if (code) assert_non_null(strstr(error.text, "only bodies of symmetry 'union'"));
+        octree_engine_f64.destroy(engine);
+    }
+    sm_voxels_free(&voxels);
+}
+
 static void refuses_what_it_does_not_do(void **state)
 {
     (void)state;
@@ -331,6 +356,7 @@ static void refuses_what_it_does_not_do(void **state)
         {{.local = {{.radius = 0.01}}, .local_count = 1}, {.h = 0.01}, "no node's centre lies in"},
         {{.local_count = OCT_MAX_WIDTHS + 1}, {.h = 0.01}, "17 widths: at most 16"},
         {{.summation_nodes = -2}, {.h = 0.01}, "-2 summation nodes wanted"},
+        {{.symmetry = OCT_ASYMMETRIC}, {.h = 0.01}, "need goals 'adjoint'"},
         {{.creep = -1}, {.h = 0.01}, "plasticity of yield 0, creep -1"},
         {{.creep = 101}, {.h = 0.01}, "creep is at most 1/h = 100; give less, or a smaller h"},
         {{.sampling = {.levels = 99}}, {.h = 0.01}, "99"},
@@ -359,6 +385,7 @@ int main(void)
         cmocka_unit_test(masses_come_from_the_vertices),
         cmocka_unit_test(instances_rest_in_their_poses),
         cmocka_unit_test(few_nodes_get_large_base_cells),
+        cmocka_unit_test(other_choices_are_not_resampled),
         cmocka_unit_test(refuses_what_it_does_not_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -81,7 +81,8 @@ static inline void interval_regions(unsigned *seed, const Body *body, OctRegions
     int *w = sm_alloc((size_t)body->tree.leaves, sizeof(int)), base = 1 + random_int(seed, 12);
     for (long i = 0; i < body->tree.leaves; i++) w[i] = base + random_int(seed, 6);
     oct_graph_build(&body->tree, &body->voxels, &graph);
-    if (oct_regions_build(&body->tree, &graph, w, random_int(seed, 4) / 4.0, regions, NULL))
+    if (oct_regions_build(&body->tree, &graph, w, random_int(seed, 4) / 4.0, OCT_UNION, regions,
+                          NULL))
         abort();
     oct_graph_free(&graph);
     free(w);
@@ -203,7 +204,8 @@ static inline void lattice_body(unsigned *seed, const SmVoxels *cells, int w, Sm
     assert_int_equal(type->create(cells, &nearest, &ring, NULL), SM_OK);
     lattice_graph(type, ring, (long)n, particle, leaf, &graph);
     type->destroy(ring);
-    assert_int_equal(oct_regions_build(&body->tree, &graph, width, 0, &body->regions, NULL), SM_OK);
+    assert_int_equal(
+        oct_regions_build(&body->tree, &graph, width, 0, OCT_UNION, &body->regions, NULL), SM_OK);
     oct_graph_free(&graph);
     body_arrays(seed, body);
     double(*x)[3] = triples((long)n), (*g)[3] = triples((long)n);

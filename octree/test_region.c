@@ -69,16 +69,20 @@ static void check_members(const OctTree *t, const OctRegions *r, long i)
 }
 
 /* Said of the leaves and distances alone, without intervals. */
-static void check_promises(const RefOctree *ref, const int *w, double epsilon, const bool *member)
+static void check_promises(const RefOctree *ref, const int *w, double epsilon, OctSymmetry symmetry,
+                           const bool *member)
 {
     long n = ref->leaves;
     for (long i = 0; i < n; i++)
         for (long j = 0; j < n; j++) {
             long d = ref->distance[i * n + j];
             bool in = member[i * n + j];
-            assert_int_equal(in, member[j * n + i]);
-            if (d >= 0 && d <= w[i]) assert_true(in);
-            if (in) assert_true(d >= 0 && (double)d <= (1 + epsilon) * fmax(w[i], w[j]));
+            int within = w[i], beyond = w[i];
+            if (symmetry != OCT_ASYMMETRIC) assert_int_equal(in, member[j * n + i]);
+            if (symmetry == OCT_UNION && w[j] > w[i]) beyond = w[j];
+            if (symmetry == OCT_INTERSECTION && w[j] < w[i]) within = beyond = w[j];
+            if (d >= 0 && d <= within) assert_true(in);
+            if (in) assert_true(d >= 0 && (double)d <= (1 + epsilon) * beyond);
         }
 }
 
@@ -88,13 +92,14 @@ static void check_trial(unsigned *seed, int trial, const SmVoxels *v, const OctT
     OctRegions r;
     RefOctree ref;
     double epsilon = epsilons[trial % 5];
+    OctSymmetry symmetry = (OctSymmetry)(trial / 15 % 3);
     int *w = random_widths(seed, trial, t->leaves);
     bool *member = sm_alloc((size_t)t->leaves * (size_t)t->leaves, sizeof *member);
     oct_graph_build(t, v, &g);
-    assert_int_equal(oct_regions_build(t, &g, w, epsilon, &r, NULL), SM_OK);
+    assert_int_equal(oct_regions_build(t, &g, w, epsilon, symmetry, &r, NULL), SM_OK);
     ref_octree_build(t, v, &ref);
-    ref_octree_regions(t, &ref, w, epsilon, member);
-    check_promises(&ref, w, epsilon, member);
+    ref_octree_regions(t, &ref, w, epsilon, symmetry, member);
+    check_promises(&ref, w, epsilon, symmetry, member);
     long most = 0;
     int widest = 0;
     double widths = 0;
@@ -161,25 +166,34 @@ static void a_row_has_the_regions_found_by_hand(void **state)
     row_of_eight(&v, &t, &g);
     const int narrow[8] = {2, 2, 2, 2, 2, 2, 2, 2}, wide[8] = {4, 4, 4, 4, 4, 4, 4, 4};
     const int one[8] = {14, 0, 0, 0, 0, 0, 0, 0};
-    assert_int_equal(oct_regions_build(&t, &g, narrow, 0.5, &r, NULL), SM_OK);
+    assert_int_equal(oct_regions_build(&t, &g, narrow, 0.5, OCT_UNION, &r, NULL), SM_OK);
     assert_region(&t, &r, 0, 2, "0-2");
     assert_region(&t, &r, 1, 2, "0-2 2-1");
     assert_region(&t, &r, 2, 2, "2-2 1-1");
     assert_true(r.most == 2 && r.mean == 14.0 / 8);
     oct_regions_free(&r);
     /* [0, 6] is a summation node of leaf 0 in octree Fig. 2's manner, [6, 8] is discarded by 3. */
-    assert_int_equal(oct_regions_build(&t, &g, wide, 0.5, &r, NULL), SM_OK);
+    assert_int_equal(oct_regions_build(&t, &g, wide, 0.5, OCT_UNION, &r, NULL), SM_OK);
     assert_region(&t, &r, 0, 6, "0-4");
     assert_region(&t, &r, 2, 6, "0-4 4-2");
     assert_region(&t, &r, 3, 6, "0-4 4-2");
     oct_regions_free(&r);
     /* One wide region adds its leaf to all others, and completes a pair. */
-    assert_int_equal(oct_regions_build(&t, &g, one, 0, &r, NULL), SM_OK);
+    assert_int_equal(oct_regions_build(&t, &g, one, 0, OCT_UNION, &r, NULL), SM_OK);
     assert_region(&t, &r, 0, 14, "0-8");
     assert_region(&t, &r, 1, 2, "0-2");
     assert_region(&t, &r, 5, 10, "0-1 5-1");
     assert_int_equal(r.size[0], 8);
     assert_int_equal(oct_regions_bytes(&r) - sizeof r, 8 * 9 + 8 * 8 + 4 * r.first[8]);
+    oct_regions_free(&r);
+    /* or loses its leaf to them, or has them without their having it */
+    assert_int_equal(oct_regions_build(&t, &g, one, 0, OCT_INTERSECTION, &r, NULL), SM_OK);
+    assert_region(&t, &r, 0, 0, "0-1");
+    assert_region(&t, &r, 5, 0, "5-1");
+    oct_regions_free(&r);
+    assert_int_equal(oct_regions_build(&t, &g, one, 0, OCT_ASYMMETRIC, &r, NULL), SM_OK);
+    assert_region(&t, &r, 0, 14, "0-8");
+    assert_region(&t, &r, 5, 0, "5-1");
     oct_regions_free(&r);
     oct_graph_free(&g);
     oct_tree_free(&t);
@@ -198,15 +212,15 @@ static void widths_and_epsilon_out_of_range_are_refused(void **state)
     int w[8] = {0};
     const double bad[] = {-0.1, NAN, INFINITY, -INFINITY};
     for (int n = 0; n < 4; n++) {
-        assert_int_equal(oct_regions_build(&t, &g, w, bad[n], &r, &error), SM_USAGE);
+        assert_int_equal(oct_regions_build(&t, &g, w, bad[n], OCT_UNION, &r, &error), SM_USAGE);
         assert_non_null(strstr(error.text, "epsilon"));
         assert_null(r.first);
     }
     w[5] = -1;
-    assert_int_equal(oct_regions_build(&t, &g, w, 0, &r, &error), SM_USAGE);
+    assert_int_equal(oct_regions_build(&t, &g, w, 0, OCT_UNION, &r, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "node 5 has width -1"));
     for (int l = 0; l < 8; l++) w[l] = INT_MAX;
-    assert_int_equal(oct_regions_build(&t, &g, w, 1e300, &r, &error), SM_OK);
+    assert_int_equal(oct_regions_build(&t, &g, w, 1e300, OCT_UNION, &r, &error), SM_OK);
     for (int l = 0; l < 8; l++) assert_int_equal(r.size[l], 8);
     assert_true(r.mean == 1);
     oct_regions_free(&r);
@@ -232,9 +246,9 @@ static void regions_are_equal_for_any_number_of_threads(void **state)
         for (long l = 0; l < t.leaves; l++) w[l] = random_int(&seed, 7);
         oct_graph_build(&t, &v, &g);
         omp_set_num_threads(1);
-        oct_regions_build(&t, &g, w, 0.5, &one, NULL);
+        oct_regions_build(&t, &g, w, 0.5, OCT_UNION, &one, NULL);
         omp_set_num_threads(2 + trial % 4);
-        oct_regions_build(&t, &g, w, 0.5, &many, NULL);
+        oct_regions_build(&t, &g, w, 0.5, OCT_UNION, &many, NULL);
         omp_set_num_threads(before);
         size_t members = (size_t)one.first[t.leaves], leaves = (size_t)t.leaves;
         assert_memory_equal(one.first, many.first, (leaves + 1) * sizeof *one.first);

@@ -74,6 +74,13 @@ static inline int oct_tree_level(const OctTree *tree, int node)
     return tree->levels + 1 - __builtin_ctz((unsigned)tree->size[node]);
 }
 
+/* Which share of a node's cell is material. */
+static inline double oct_tree_filled(const OctTree *tree, int node)
+{
+    double edge = 0.5 * tree->size[node];
+    return (double)tree->material[node] / (edge * edge * edge);
+}
+
 /* Max-norm length between the centres of two nodes, half finest cells. */
 static inline int oct_tree_between(const OctTree *tree, int node, int other)
 {

@@ -84,10 +84,12 @@ static void fill_widths(const OctOptions *options, const OctWidth *width, OctStr
     }
 }
 
-static double mean_summation_nodes(const OctStructure *s, double epsilon)
+static double mean_summation_nodes(const OctOptions *options, const OctStructure *s)
 {
     OctRegions regions;
-    if (oct_regions_build(&s->tree, &s->graph, s->w, epsilon, &regions, NULL)) return INFINITY;
+    if (oct_regions_build(&s->tree, &s->graph, s->w, options->epsilon, options->symmetry, &regions,
+                          NULL))
+        return INFINITY;
     double mean = regions.mean;
     oct_regions_free(&regions);
     return mean;
@@ -107,7 +109,7 @@ static double beyond(Search *search, int step)
     OctWidth width = {.edges = (double)step / OCT_WIDTH_STEPS};
     const OctOptions *options = search->options;
     fill_widths(options, &width, search->s, held);
-    double off = mean_summation_nodes(search->s, options->epsilon) - options->summation_nodes;
+    double off = mean_summation_nodes(options, search->s) - options->summation_nodes;
     if (fabs(off) < search->off) {
         search->off = fabs(off);
         search->step = step;

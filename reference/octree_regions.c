@@ -156,7 +156,7 @@ void ref_octree_own(const OctTree *tree, const bool *below, const long *distance
 }
 
 void ref_octree_regions(const OctTree *tree, const RefOctree *ref, const int *w, double epsilon,
-                        bool *member)
+                        OctSymmetry symmetry, bool *member)
 {
     long leaves = tree->leaves;
     bool *below = ref_octree_below(tree), *taken = sm_alloc((size_t)tree->nodes, sizeof *taken);
@@ -168,9 +168,9 @@ void ref_octree_regions(const OctTree *tree, const RefOctree *ref, const int *w,
                 member[i * leaves + l] |= below[n * leaves + l];
     }
     for (long i = 0; i < leaves; i++)
-        for (long j = 0; j < i; j++) {
+        for (long j = 0; j < i && symmetry != OCT_ASYMMETRIC; j++) {
             bool *one = member + i * leaves + j, *other = member + j * leaves + i;
-            *one = *other = *one || *other;
+            *one = *other = symmetry == OCT_UNION ? *one || *other : *one && *other;
         }
     free(taken);
     free(below);

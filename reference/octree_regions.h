@@ -23,10 +23,10 @@ void ref_octree_free(RefOctree *ref);
 /* Dijkstra over a matrix of lengths (0: no edge); `distance` is [leaves], -1 if not reached. */
 void ref_octree_dijkstra(const int *length, long leaves, long source, long *distance);
 
-/* member[i][j]: is leaf j in R_i? By intervals over the leaf sets of all nodes, then made symmetric
- * by the union. `member` is [leaves][leaves]. */
+/* member[i][j]: is leaf j in R_i? By intervals over the leaf sets of all nodes, then by `symmetry`.
+ * `member` is [leaves][leaves]. */
 void ref_octree_regions(const OctTree *tree, const RefOctree *ref, const int *w, double epsilon,
-                        bool *member);
+                        OctSymmetry symmetry, bool *member);
 
 /* below[n][l]: is leaf l below tree node n, or n itself? [nodes][leaves]. The caller frees. */
 bool *ref_octree_below(const OctTree *tree);

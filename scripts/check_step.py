@@ -5,7 +5,7 @@ Usage: check_step.py FILE      (a file of `shapebench run --record particles` or
 
 Everything comes from the group /particles or /nodes of FILE (results/README.md): a lattice's regions
 by breadth-first search over the cells, goals by fastlsm eqs. 9-12; an octree's distances by Dijkstra
-over the visibility edges, regions by the intervals of octree section 4.2 and symmetry, goals by octree
+over the visibility edges, regions by the intervals of octree section 4.2 and the symmetry asked for, goals by octree
 eqs. 6-10, leaf by leaf; the step by fastlsm eqs. 1-2 and 14. An octree's cells must be those of one
 lattice, its lengths those of their centres, its stored summation nodes those regions' largest cells; the
 rest shapes of a plastic body begin at 1 with step 0 and flow from record to record (where a stretch is at
@@ -93,7 +93,8 @@ class Tree:
             self.edges[i].append((j, length))
             self.edges[j].append((i, length))
         self.number = group["tree/leaf"][:].tolist()
-        inside = self.regions(group["w"][:].tolist(), group.attrs["epsilon"])
+        symmetry = text(group.attrs.get("symmetry", "union"))
+        inside = self.regions(group["w"][:].tolist(), group.attrs["epsilon"], symmetry)
         first, stored = group["region_first"][:], group["summation"][:]
         for i, leaves in enumerate(inside):
             if sorted(self.largest(leaves)) != stored[first[i]:first[i + 1]].tolist():
@@ -149,13 +150,18 @@ class Tree:
                 open_ += self.children[node]
         return inside
 
-    def regions(self, w, epsilon):
-        """Leaves of every region: j is in R_i if the intervals of one of them put the other in."""
-        inside = [self.interval(i, w[i], w[i] + int(np.floor(epsilon * w[i]))) for i in range(len(w))]
-        for i, leaves in enumerate(inside):
+    def regions(self, w, epsilon, symmetry):
+        """Leaves of every region: j is in R_i if the intervals of i put it in (none), and those of j
+        put i in (intersection), or if those of one of them put the other in (union)."""
+        own = [self.interval(i, w[i], w[i] + int(np.floor(epsilon * w[i]))) for i in range(len(w))]
+        if symmetry == "none":
+            return own
+        if symmetry == "intersection":
+            return [{j for j in leaves if i in own[j]} for i, leaves in enumerate(own)]
+        for i, leaves in enumerate(own):
             for j in list(leaves):
-                inside[j].add(i)
-        return inside
+                own[j].add(i)
+        return own
 
     def largest(self, leaves):
         """The largest cells all of whose leaves are given."""
@@ -262,8 +268,11 @@ def flow(body, shape, stretched, spread):
 
 
 def total(members, share):
-    """What the regions that contain each particle count: "r in R_i" is "i in R_r"."""
-    return np.array([share[r].sum() for r in members])[:, None]
+    """What the regions that contain each particle count."""
+    sum_ = np.zeros((len(members), 1))
+    for r, counts in zip(members, share):
+        sum_[r] += counts
+    return sum_
 
 
 def rigid_velocity(body, x, v):
