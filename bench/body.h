@@ -2,10 +2,12 @@
 #ifndef BENCH_BODY_H
 #define BENCH_BODY_H
 
+#include "../reference/meshless/mpu.h"
 #include "scene.h"
 
 typedef struct {
     SmMesh mesh;
+    const RefMpu *given; /* of points whose surface the mesh is, the caller's; NULL: a mesh alone */
     SmVoxels voxels;
     double low[3], high[3]; /* the mesh's bounding box */
     double (*x0)[3];        /* [voxels.particle_count] rest positions, instance pose not applied */

@@ -42,15 +42,17 @@ static void tie_surface(BenchChanges *changes)
 void bench_changes_create(BenchPart *part, BenchChanges *changes)
 {
     const SmMesh *mesh = &part->body.mesh;
+    const RefPoints *points = part->body.given ? &part->body.given->points : NULL;
     *changes = (BenchChanges){.part = part};
-    changes->surface = sm_mesh_new(mesh->vertex_count, mesh->triangle_count);
-    memcpy(changes->surface.position, mesh->position,
-           (size_t)mesh->vertex_count * sizeof *mesh->position);
-    memcpy(changes->surface.triangle, mesh->triangle,
-           (size_t)mesh->triangle_count * sizeof *mesh->triangle);
+    long vertices = points ? points->given : mesh->vertex_count;
+    long triangles = points ? 0 : mesh->triangle_count;
+    changes->surface = sm_mesh_new(vertices, triangles);
+    memcpy(changes->surface.position, points ? points->as_given : mesh->position,
+           (size_t)vertices * sizeof *mesh->position);
+    memcpy(changes->surface.triangle, mesh->triangle, (size_t)triangles * sizeof *mesh->triangle);
     for (int i = 0; i < part->runner.scene->cut_count; i++) sm_blade_init(&changes->blade[i]);
     sm_cut_init(&changes->cut, 2 * part->body.voxels.cell);
-    tie_surface(changes);
+    if (!points) tie_surface(changes);
 }
 
 void bench_changes_free(BenchChanges *changes)
@@ -329,6 +331,10 @@ void bench_changes_surface(BenchChanges *changes, double (*point)[3])
     BenchPart *part = changes->part;
     BenchRunner *runner = &part->runner;
     long vertices = changes->surface.vertex_count;
+    if (part->body.given) {
+        ref_meshless_points(runner->engine, point);
+        return;
+    }
     if (!is_octree(part)) {
         bench_changes_room(changes, runner->particles);
         runner->type->get(runner->engine, SM_POSITION, changes->node);

@@ -20,7 +20,7 @@ typedef struct {
 
 typedef struct {
     BenchPart *part;       /* the caller's, kept */
-    SmMesh surface;        /* of one body at rest, with all slits */
+    SmMesh surface;        /* of one body at rest, with all slits; points: no triangles */
     OctSurface carried;    /* what carries it: an octree's nodes, */
     SmEmbedding embedding; /* or a lattice's particles */
     SmBlade blade[BENCH_MAX];

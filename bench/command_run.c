@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../reference/meshless/mpu.h"
 #include "../reference/meshless/outline.h"
 #include "command.h"
 #include "draft.h"
@@ -23,6 +22,7 @@ enum {
     KEY_POISSON,
     KEY_DENSITY,
     KEY_MODES,
+    KEY_POINTS,
     KEY_PARTICLES,
     KEY_CELL,
     KEY_SHELL,
@@ -46,7 +46,7 @@ typedef struct {
     bool shell, no_output, has_gravity, overwrite;
     int frames, steps, summation, polar, levels, record;
     int modes;
-    long particles, nodes;
+    long particles, nodes, points;
     double young, poisson, density; /* density 0: not given; poisson INFINITY */
     double cell, damping, epsilon, h, strain_limit, gravity[3];
 } Options;
@@ -70,6 +70,11 @@ static const struct argp_option option_list[] = {
      1},
     {"density", KEY_DENSITY, "RHO", 0, "Meshless: kg/m^3 (default: 1000)", 1},
     {"modes", KEY_MODES, "N", 0, "Meshless: natural modes, 7 to 1000 (default: 64)", 1},
+    {"points", KEY_POINTS, "N", 0,
+     "Meshless: points on the mesh, of which its field is made (default: 12000, of thin bodies up "
+     "to "
+     "400000)",
+     1},
     {"particles", KEY_PARTICLES, "N", 0, "Wanted particle count", 1},
     {"cell", KEY_CELL, "SIZE", 0, "Edge of a cell, in the mesh's units", 1},
     {"shell", KEY_SHELL, 0, 0, "Surface cells only, not the interior", 1},
@@ -105,6 +110,7 @@ static const BenchOption options_taken[] = {
     {KEY_POISSON, BENCH_TO(REAL, poisson), -0.99, 0.49, NULL},
     {KEY_DENSITY, BENCH_TO(REAL, density), 1e-30, 1e30, NULL},
     {KEY_MODES, BENCH_TO(INT, modes), 7, 1000, NULL},
+    {KEY_POINTS, BENCH_TO(LONG, points), REF_LEAST_POINTS, REF_MOST_POINTS, NULL},
     {KEY_PARTICLES, BENCH_TO(LONG, particles), 8, 1e9, NULL},
     {KEY_CELL, BENCH_TO(REAL, cell), 1e-30, 1e30, NULL},
     {KEY_SHELL, BENCH_TO(TRUE, shell), 0, 0, NULL},
@@ -163,7 +169,8 @@ static const char help[] =
     "features at epsilon 0.5; with --engine meshless an elastic body 1 m high, held at its lowest "
     "tenth, for which points with normals do, too: a PLY file, or lines of x y z nx ny nz in a "
     "file "
-    ".xyz, .pts or .txt. Its units are unknown, so gravity is 9.81 heights of the body "
+    ".xyz, .pts or .txt, which are carried and written in their order. Its units are unknown, so "
+    "gravity is 9.81 heights of the body "
     "per second squared: a body 70 units tall falls like one of 1 m.\n"
     "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf) for ParaView; it appears "
     "whole or not at all. The deviation printed is the largest distance of a goal position from "
@@ -207,12 +214,12 @@ static bool is_meshless(const BenchScene *scene)
 static SmCode apply_meshless(const Options *options, BenchScene *scene, SmError *error)
 {
     RefMeshlessOptions *meshless = &scene->meshless;
-    bool given =
-        options->young > 0 || isfinite(options->poisson) || options->density > 0 || options->modes;
+    bool given = options->young > 0 || isfinite(options->poisson) || options->density > 0 ||
+                 options->modes || options->points;
     if (!is_meshless(scene))
         return given ? sm_fail(error, SM_USAGE,
-                               "--young, --poisson, --density and --modes are a meshless body's: "
-                               "add --engine meshless")
+                               "--young, --poisson, --density, --modes and --points are a meshless "
+                               "body's: add --engine meshless")
                      : SM_OK;
     if (options->record)
         return sm_fail(error, SM_USAGE, "--record is of shape matching; leave it out");
@@ -221,6 +228,7 @@ static SmCode apply_meshless(const Options *options, BenchScene *scene, SmError 
     if (options->density > 0) meshless->material.density = options->density;
     if (options->modes) meshless->modes = options->modes;
     if (options->nodes) meshless->nodes = options->nodes;
+    if (options->points) meshless->points = options->points;
     return SM_OK;
 }
 
@@ -268,34 +276,41 @@ static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *e
     return SM_OK;
 }
 
-/* The surface of oriented points, from their implicit function. */
-static SmCode outline_points(const char *path, RefPoints *points, SmMesh *mesh, SmError *error)
+/* The implicit function of oriented points, and its surface. */
+static SmCode outline_points(const char *path, RefPoints *points, RefMpu *given, SmMesh *mesh,
+                             SmError *error)
 {
     enum { CELLS = 96 };
-    RefMpu mpu;
     SmError why;
-    SmCode code = ref_mpu_build(points, NULL, &mpu, &why);
+    SmCode code = ref_mpu_build(points, NULL, given, &why);
     if (!code) {
-        RefField field = ref_mpu_field(&mpu);
+        RefField field = ref_mpu_field(given);
         code = ref_outline(&field, CELLS, mesh, &why);
-        ref_mpu_free(&mpu);
+        if (code) ref_mpu_free(given);
     }
     return code ? sm_fail(error, code, "%s: %s", path, why.text) : SM_OK;
 }
 
 /* A mesh, or for the meshless engine points. */
-static SmCode load_body(const Options *options, SmMesh *mesh, SmError *error)
+static SmCode load_body(const Options *options, RefMpu *given, SmMesh *mesh, SmError *error)
 {
     const char *name = options->scene, *engine = options->chosen.engine;
     RefPoints points;
     if (!engine || strcmp(engine, "meshless") != 0) return bench_mesh_load(name, mesh, error);
     SmCode code = bench_points_or_mesh(name, &points, mesh, error);
-    return code || !points.count ? code : outline_points(name, &points, mesh, error);
+    if (code || !points.count) return code;
+    if (options->points) {
+        ref_points_free(&points);
+        return sm_fail(error, SM_USAGE, "--points are taken of a mesh, and %s has its own", name);
+    }
+    return outline_points(name, &points, given, mesh, error);
 }
 
-/* A scene's name or file; anything else is a mesh. */
-static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmError *error)
+/* A scene's name or file; anything else is a mesh, or the surface of points that are given. */
+static SmCode load(const Options *options, BenchScene *scene, RefMpu *given, SmMesh *mesh,
+                   SmError *error)
 {
+    *given = (RefMpu){0};
     const char *name = options->scene;
     size_t length = strlen(name);
     bool file = length > 4 && !strcmp(name + length - 4, ".cfg");
@@ -303,10 +318,10 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
     if (file || !other) {
         SmCode code = bench_scene_find(name, scene, error);
         if (code) return code;
-        const BenchSubstitutes *given = &options->chosen.substitutes;
-        const char *substitute = bench_substitute_find(given, scene->name);
-        if (given->count && !substitute)
-            return sm_fail(error, SM_USAGE, "--mesh: '%s' is not this scene, %s", given->scene[0],
+        const BenchSubstitutes *chosen = &options->chosen.substitutes;
+        const char *substitute = bench_substitute_find(chosen, scene->name);
+        if (chosen->count && !substitute)
+            return sm_fail(error, SM_USAGE, "--mesh: '%s' is not this scene, %s", chosen->scene[0],
                            scene->name);
         return bench_mesh_of_scene(scene, substitute, mesh, error);
     }
@@ -315,7 +330,7 @@ static SmCode load(const Options *options, BenchScene *scene, SmMesh *mesh, SmEr
                        name);
     if (length >= BENCH_PATH)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", name);
-    SmCode code = load_body(options, mesh, error);
+    SmCode code = load_body(options, given, mesh, error);
     if (code) return code;
     bench_scene_drop(mesh, name, scene);
     if (options->chosen.engine && !strcmp(options->chosen.engine, "octree"))
@@ -466,11 +481,12 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
 {
     BenchScene scene;
     const SmEngineType *type;
+    RefMpu given;
     SmMesh mesh;
     BenchBody body;
     BenchPlay play;
     char path[BENCH_PATH];
-    SmCode code = load(options, &scene, &mesh, error);
+    SmCode code = load(options, &scene, &given, &mesh, error);
     if (code) return code;
     apply_options(options, &scene);
     code = apply_octree(options, &scene, error);
@@ -479,12 +495,13 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     if (!code) code = apply_w(options->w, type, &scene, error);
     output_path(options, &scene, path);
     if (!code) code = reserve(options, path, error);
+    if (!code) code = bench_body_create(&scene, &mesh, &body, error);
     if (code) {
         sm_mesh_free(&mesh);
+        ref_mpu_free(&given);
         return code;
     }
-    code = bench_body_create(&scene, &mesh, &body, error);
-    if (code) return code;
+    if (given.count) body.given = &given;
     code = bench_play_create(&scene, &body, type, options->common.threads, options->common.seed,
                              &play, error);
     if (!code) {
@@ -492,6 +509,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
         bench_play_free(&play);
     }
     bench_body_free(&body);
+    ref_mpu_free(&given);
     return code;
 }
 

@@ -6,7 +6,6 @@
 
 #include "../lib/handles.h"
 #include "../lib/vector.h"
-#include "../reference/meshless/mpu.h"
 #include "runner.h"
 
 #define CONST(array) ((const double(*)[3])(array))
@@ -43,12 +42,9 @@ static SmCode make_body(const BenchScene *scene, const BenchBody *of, BenchElast
 {
     RefMeshlessOptions options = bench_meshless_options(scene, of);
     elastic->material = options.material;
-    RefPoints points;
     RefMpu mpu;
     double start = sm_now();
-    SmCode code = ref_points_of_mesh(
-        &of->mesh, options.points > 0 ? options.points : REF_MESHLESS_POINTS, &points, error);
-    if (!code) code = ref_mpu_build(&points, NULL, &mpu, error);
+    SmCode code = ref_meshless_field(&options, &mpu, error);
     if (code) return code;
     double built = sm_now();
     elastic->field_seconds = built - start;

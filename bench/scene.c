@@ -166,7 +166,7 @@ static const BenchSetting meshless_table[] = {
     ITEM("poisson", BENCH_REAL, AT(meshless.material.poisson), -0.99, 0.49),
     ITEM("density", BENCH_REAL, AT(meshless.material.density), 1e-30, 1e30),
     ITEM("stiffness_damping", BENCH_REAL, AT(meshless.stiffness_damping), 0, 1e6),
-    ITEM("points", BENCH_LONG, AT(meshless.points), REF_LEAST_POINTS, 1e7),
+    ITEM("points", BENCH_LONG, AT(meshless.points), REF_LEAST_POINTS, REF_MOST_POINTS),
     ITEM("nodes", BENCH_LONG, AT(meshless.nodes), 8, 1e6),
     ITEM("uniform", BENCH_BOOL, AT(meshless.uniform), 0, 0),
     ITEM("modes", BENCH_INT, AT(meshless.modes), 7, 1000),

@@ -70,11 +70,13 @@ static void print_octree(const BenchRunner *runner)
 static void print_meshless(const BenchRunner *runner, const SmCounts *counts)
 {
     const RefMeshlessOptions *options = &runner->scene->meshless;
-    printf("%s: meshless, %s precision: %ld particles carried by %ld nodes; Young's modulus %g, "
+    long points = ref_meshless_points(runner->engine, NULL);
+    printf("%s: meshless, %s precision: ", runner->scene->name, runner->type->precision);
+    if (points) printf("%ld given points and ", points);
+    printf("%ld particles carried by %ld nodes; Young's modulus %g, "
            "Poisson's ratio %g, density %g, %.4g mesh units in a metre; built in %.3g s\n",
-           runner->scene->name, runner->type->precision, counts->particles, counts->regions,
-           options->material.young, options->material.poisson, options->material.density,
-           runner->scene->metre, counts->build_seconds);
+           counts->particles, counts->regions, options->material.young, options->material.poisson,
+           options->material.density, runner->scene->metre, counts->build_seconds);
 }
 
 static void print_lattice(const BenchRunner *runner, const SmCounts *counts)

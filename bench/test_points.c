@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "../reference/meshless/solver.h"
+#include "h5.h"
 #include "test_program.h"
 
 static double noise(double size)
@@ -100,6 +101,66 @@ static void clouds_run(void **state)
     assert_runs("doubled.pts");
     assert_runs("inwards.xyz");
     assert_runs("holed.xyz");
+}
+
+/* All given points, doubles too, are carried and written in their order, as cells of one corner. */
+static void given_points_are_written_as_they_are_given(void **state)
+{
+    (void)state;
+    needs_solver();
+    Result result;
+    char text[4096];
+    double first[3], still[1000][3], fallen[1000][3];
+    unsigned char types[1000];
+    write_text_ball("doubled.pts", &(Ball){500, 2, 0, -1, false, false});
+    run("run doubled.pts --engine meshless --nodes 150 --modes 20 --particles 300 --frames 2 "
+        "--points 600",
+        &result);
+    assert_int_equal(result.code, 2);
+    assert_non_null(strstr(result.err, "doubled.pts has its own"));
+    run("run doubled.pts --engine meshless --nodes 150 --modes 20 --particles 300 --frames 2 "
+        "-o given.vtkhdf",
+        &result);
+    assert_int_equal(result.code, 0);
+    assert_non_null(strstr(result.out, ": 1000 given points and "));
+    hid_t file = H5Fopen(path_in("given.vtkhdf"), H5F_ACC_RDONLY, H5P_DEFAULT);
+    BenchH5 h5 = {.file = file};
+    bench_h5_read(&h5, bench_h5_find_dataset(&h5, file, "VTKHDF/Types", 1, (hsize_t[]){1000}),
+                  H5T_NATIVE_UCHAR, types);
+    bench_h5_read(&h5, bench_h5_find_dataset(&h5, file, "frames/0", 2, (hsize_t[]){1000, 3}),
+                  H5T_NATIVE_DOUBLE, still);
+    bench_h5_read(&h5, bench_h5_find_dataset(&h5, file, "frames/2", 2, (hsize_t[]){1000, 3}),
+                  H5T_NATIVE_DOUBLE, fallen);
+    assert_false(h5.failed);
+    FILE *given = fopen(path_in("doubled.pts"), "r");
+    for (int p = 0; p < 1000; p++) {
+        assert_int_equal(types[p], 1); /* VTK_VERTEX */
+        assert_int_equal(fscanf(given, "%lf %lf %lf %*f %*f %*f", first, first + 1, first + 2), 3);
+        for (int d = 0; d < 3; d++) assert_true(fabs(still[p][d] - first[d]) < 1e-6);
+        assert_true(first[1] < 0 || (fallen[p][1] < still[p][1] && fallen[p][1] > -1));
+        assert_memory_equal(fallen[p], fallen[p % 500], sizeof *fallen);
+    }
+    fclose(given);
+    H5Fclose(file);
+    slurp("given.vtkhdf.xdmf", text, sizeof text);
+    assert_non_null(strstr(text, "TopologyType=\"Polyvertex\" NumberOfElements=\"1000\""));
+}
+
+/* A plate 50 times as wide as it is thick: sides are told apart by points as near to each other. */
+static void a_thin_mesh_says_how_many_points_would_do(void **state)
+{
+    (void)state;
+    needs_solver();
+    write_text(
+        "plate.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 0.02\nv 1 0 0.02\nv 0 1 0.02\nv 1 1 0.02\n"
+        "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+    static const Mistake mistakes[] = {
+        {"run plate.obj --engine meshless --points 3000", 3, "take 24000 (run --points, or points"},
+        {"run plate.obj --engine meshless --points 49", 2, "--points: '49'"},
+        {"run plate.obj --points 3000", 2, "add --engine meshless"},
+    };
+    make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }
 
 static void bad_clouds_are_one_clear_line(void **state)
@@ -253,6 +314,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(clouds_run),
+        cmocka_unit_test(given_points_are_written_as_they_are_given),
+        cmocka_unit_test(a_thin_mesh_says_how_many_points_would_do),
         cmocka_unit_test(bad_clouds_are_one_clear_line),
         cmocka_unit_test(wrong_options_are_said),
         cmocka_unit_test(settings_are_read_and_options_come_first),

@@ -10,11 +10,13 @@
 #include "particles.h"
 #include "xdmf.h"
 
-enum { TRAJECTORY_SCHEMA = 3, TRIANGLE_CELL = 5 /* VTK_TRIANGLE */ };
+enum { TRAJECTORY_SCHEMA = 3, VERTEX_CELL = 1, TRIANGLE_CELL = 5 /* as VTK has them */ };
 
 /* Of a surface: what frames share between two changes of topology. */
 typedef struct {
-    long points, triangles, corner; /* corner: its first one in /VTKHDF/Connectivity */
+    long points, cells;
+    int corners;       /* of a cell */
+    long cell, corner; /* its first in /VTKHDF/Types and in Connectivity */
 } Topology;
 
 struct BenchTrajectory {
@@ -63,19 +65,23 @@ static SmCode fail(BenchTrajectory *trajectory, SmError *error)
                             error);
 }
 
-/* A surface's triangles behind those of the surfaces before. */
-static void write_topology(BenchTrajectory *trajectory, const SmMesh *surface)
+/* A surface's triangles, or its points, behind what the surfaces before had. */
+static void write_topology(BenchTrajectory *trajectory, const Topology *topology,
+                           const SmMesh *surface)
 {
     BenchH5 *h5 = &trajectory->h5;
-    size_t count = (size_t)surface->triangle_count;
-    long(*corner)[3] = sm_alloc(count, sizeof *corner), *offset = sm_alloc(count + 1, sizeof(long));
+    size_t count = (size_t)topology->cells, corners = (size_t)topology->corners;
+    long *corner = sm_alloc(corners * count, sizeof *corner);
+    long *offset = sm_alloc(count + 1, sizeof(long));
     unsigned char *type = sm_alloc(count, 1);
-    for (size_t t = 0; t < count; t++) {
-        for (int c = 0; c < 3; c++) corner[t][c] = surface->triangle[t][c];
-        offset[t + 1] = 3 * (long)t + 3;
-        type[t] = TRIANGLE_CELL;
+    for (size_t cell = 0; cell < count; cell++) {
+        corner[corners * cell] = (long)cell;
+        for (size_t c = 0; corners == 3 && c < 3; c++)
+            corner[3 * cell + c] = surface->triangle[cell][c];
+        offset[cell + 1] = (long)(corners * (cell + 1));
+        type[cell] = corners == 3 ? TRIANGLE_CELL : VERTEX_CELL;
     }
-    bench_h5_append(h5, trajectory->corners, 3 * count, corner);
+    bench_h5_append(h5, trajectory->corners, corners * count, corner);
     bench_h5_append(h5, trajectory->offsets, count + 1, offset);
     bench_h5_append(h5, trajectory->types, count, type);
     free(corner);
@@ -85,16 +91,20 @@ static void write_topology(BenchTrajectory *trajectory, const SmMesh *surface)
 
 static void add_topology(BenchTrajectory *trajectory, const SmMesh *surface)
 {
-    long parts = trajectory->parts++, corner = 0;
-    const Topology *before = parts ? &trajectory->topology[parts - 1] : NULL;
-    if (before) corner = before->corner + 3 * before->triangles;
+    long parts = trajectory->parts++;
     trajectory->topology =
         sm_realloc(trajectory->topology, (size_t)trajectory->parts, sizeof(Topology));
-    trajectory->topology[parts] =
-        (Topology){surface->vertex_count, surface->triangle_count, corner};
+    Topology *topology = &trajectory->topology[parts];
+    *topology = surface->triangle_count > 0
+                    ? (Topology){surface->vertex_count, surface->triangle_count, 3, 0, 0}
+                    : (Topology){surface->vertex_count, surface->vertex_count, 1, 0, 0};
+    if (parts) {
+        topology->cell = topology[-1].cell + topology[-1].cells;
+        topology->corner = topology[-1].corner + topology[-1].corners * topology[-1].cells;
+    }
     trajectory->packed =
         sm_realloc(trajectory->packed, 3 * (size_t)surface->vertex_count, sizeof(double));
-    write_topology(trajectory, surface);
+    write_topology(trajectory, topology, surface);
 }
 
 SmCode bench_trajectory_topology(BenchTrajectory *trajectory, const SmMesh *surface, SmError *error)
@@ -195,9 +205,9 @@ SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajector
 double bench_trajectory_bytes(const BenchTrajectory *trajectory, double frames)
 {
     double point = 3 * (trajectory->single ? sizeof(float) : sizeof(double));
-    double triangle = 4 * sizeof(long) + 1; /* corners, offset, type */
     const Topology *first = trajectory->topology;
-    return frames * point * (double)first->points + triangle * (double)first->triangles;
+    double cell = (double)(first->corners + 1) * sizeof(long) + 1; /* corners, offset, type */
+    return frames * point * (double)first->points + cell * (double)first->cells;
 }
 
 SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const double (*point)[3],
@@ -237,8 +247,8 @@ static void write_parts(BenchTrajectory *trajectory)
     long *corners = sm_alloc(count, sizeof *corners);
     for (size_t i = 0; i < count; i++) {
         points[i] = trajectory->topology[i].points;
-        cells[i] = trajectory->topology[i].triangles;
-        corners[i] = 3 * cells[i];
+        cells[i] = trajectory->topology[i].cells;
+        corners[i] = trajectory->topology[i].corners * cells[i];
     }
     hid_t whole = H5T_STD_I64LE, file = h5->file;
     hsize_t size = count;
@@ -261,7 +271,7 @@ static void write_steps(BenchTrajectory *trajectory)
         const Topology *topology = &trajectory->topology[trajectory->part[i]];
         one[i] = 1;
         point[i] = at;
-        cell[i] = topology->corner / 3;
+        cell[i] = topology->cell;
         corner[i] = topology->corner;
         at += topology->points;
     }
@@ -299,7 +309,8 @@ static void write_views(BenchTrajectory *trajectory)
     group = bench_h5_group(h5, h5->file, "topologies");
     for (long part = 0; part < trajectory->parts; part++) {
         const Topology *topology = &trajectory->topology[part];
-        hsize_t first = (hsize_t)topology->corner, size = 3 * (hsize_t)topology->triangles;
+        hsize_t first = (hsize_t)topology->corner;
+        hsize_t size = (hsize_t)topology->corners * (hsize_t)topology->cells;
         snprintf(name, sizeof name, "%ld", part);
         bench_h5_view(h5, group, name, trajectory->corners, &first, &size);
     }
@@ -312,8 +323,8 @@ static SmCode write_sidecar(const BenchTrajectory *trajectory, SmError *error)
     BenchXdmfFrame *frame = sm_alloc(count, sizeof *frame);
     for (size_t i = 0; i < count; i++) {
         const Topology *topology = &trajectory->topology[trajectory->part[i]];
-        frame[i] = (BenchXdmfFrame){trajectory->time[i], topology->points, topology->triangles,
-                                    trajectory->part[i]};
+        frame[i] = (BenchXdmfFrame){trajectory->time[i], topology->points, topology->cells,
+                                    topology->corners, trajectory->part[i]};
     }
     BenchXdmf xdmf = {trajectory->draft.path, trajectory->scene, trajectory->frames,
                       trajectory->single ? 4 : 8, frame};

@@ -17,7 +17,8 @@ typedef enum { BENCH_RECORD_SURFACE, BENCH_RECORD_PARTICLES, BENCH_RECORD_NODES 
 
 typedef struct {
     const char *path;      /* "out.vtkhdf"; the sidecar is path + ".xdmf" */
-    const SmMesh *surface; /* topology of the points written first; rest positions */
+    const SmMesh *surface; /* topology of the points written first; rest positions. Without
+                            * triangles each point is a cell of its own */
     const BenchMachine *machine;
     const char *scene;  /* name; any bytes */
     BenchRecord record; /* all below is for particles or nodes, and else unused */

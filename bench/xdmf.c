@@ -20,9 +20,10 @@ static void write_frame(FILE *file, const BenchXdmf *xdmf, long frame)
     char attributes[128], place[32];
     fprintf(file, "<Grid Name=\"frame %ld\" GridType=\"Uniform\"><Time Value=\"%.17g\"/>\n", frame,
             f->time);
-    fprintf(file, "<Topology TopologyType=\"Triangle\" NumberOfElements=\"%ld\">", f->triangles);
+    const char *type = f->corners == 3 ? "Triangle" : "Polyvertex";
+    fprintf(file, "<Topology TopologyType=\"%s\" NumberOfElements=\"%ld\">", type, f->cells);
     snprintf(attributes, sizeof attributes, "Dimensions=\"%ld\" NumberType=\"Int\" Precision=\"8\"",
-             3 * f->triangles);
+             f->corners * f->cells);
     snprintf(place, sizeof place, "/topologies/%ld", f->topology);
     write_item(file, xdmf, attributes, place);
     fprintf(file, "</Topology>\n<Geometry GeometryType=\"XYZ\">");

@@ -6,7 +6,8 @@
 
 typedef struct {
     double time; /* s */
-    long points, triangles;
+    long points, cells;
+    int corners;   /* of a cell: 3, or 1 of points alone */
     long topology; /* number of the surface that it shows */
 } BenchXdmfFrame;
 

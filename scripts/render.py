@@ -83,7 +83,7 @@ def read_trajectory(path, frame):
         elif frame not in (0, -1):
             fail(f"{path}: has one frame, no frame {frame}", 2)
         corners = cells["Connectivity"][corner : corner + int(cells["NumberOfConnectivityIds"][part])]
-        if len(corners) % 3:
+        if len(corners) % 3 or ("Types" in cells and (cells["Types"][corner // 3 : corner // 3 + 1] != 5).any()):
             fail(f"{path}: its cells are not all triangles", 3)
         return polydata(root["Points"][first : first + count], corners.reshape(-1, 3))
 

@@ -74,7 +74,7 @@ static SmCode cover(long count, const double (*shown)[3], RefBody *body, SmError
     return sm_fail(
         error, SM_INPUT,
         "%ld of the body's %zu points are covered by too few of its %ld nodes, or by nodes "
-        "in a plane; give it more nodes",
+        "in a plane: take more (run --nodes, or nodes in a scene's group meshless)",
         bad, all, body->nodes.count);
 }
 

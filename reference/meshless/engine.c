@@ -10,7 +10,6 @@
 #include "../../lib/handles.h"
 #include "../../lib/vector.h"
 #include "grip.h"
-#include "mpu.h"
 #include "normal.h"
 #include "skin.h"
 
@@ -18,14 +17,15 @@ enum { MOST_POINTS = 128 };
 
 struct SmEngine {
     long count;        /* particles */
+    long all;          /* and behind them the points that were given */
     double h, mass;    /* of a particle */
     double pose[3][4]; /* rest to initial position: a translation */
     RefBody body;
     RefMotion motion;
     RefSkin skin;
-    long *place;                         /* [count] where a particle is in the skin */
-    double (*rest)[3], (*x)[3], (*v)[3]; /* [count] particles; x without the pose */
-    double (*carried)[3];                /* [count] in the skin's order */
+    long *place;                         /* [all] where a particle is in the skin */
+    double (*rest)[3], (*x)[3], (*v)[3]; /* [all] particles; x without the pose */
+    double (*carried)[3];                /* [all] in the skin's order */
     double (*impulse)[3];                /* [nodes] that pushes have left, for the next step */
     bool pushed;
     SmHandles handles;
@@ -87,16 +87,46 @@ static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmErro
     return SM_OK;
 }
 
-/* The body of the mesh's points, whose covers reach all particles. */
-static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmError *error)
+/* The fewest points, of `least` and its doubles, that tell the mesh's sides apart; 0: too many. */
+static long enough_points(const SmMesh *mesh, long least)
+{
+    for (long wanted = least; wanted <= REF_MESHLESS_MOST_POINTS; wanted *= 2) {
+        RefPoints points;
+        if (ref_points_of_mesh(mesh, wanted, &points, NULL) != SM_OK) return wanted;
+        bool enough = ref_mpu_dense(&points);
+        ref_points_free(&points);
+        if (enough) return wanted;
+    }
+    return 0;
+}
+
+SmCode ref_meshless_field(const RefMeshlessOptions *options, RefMpu *mpu, SmError *error)
 {
     RefPoints points;
-    RefMpu mpu;
-    SmCode code = ref_points_of_mesh(
-        options->mesh, options->points > 0 ? options->points : REF_MESHLESS_POINTS, &points, error);
-    if (code == SM_OK) code = ref_mpu_build(&points, NULL, &mpu, error);
+    SmError why;
+    long enough =
+        enough_points(options->mesh, options->points > 0 ? options->points : REF_MESHLESS_POINTS);
+    long wanted = options->points > 0 ? options->points : enough > 0 ? enough : REF_MESHLESS_POINTS;
+    SmCode code = ref_points_of_mesh(options->mesh, wanted, &points, error);
     if (code != SM_OK) return code;
-    RefField field = ref_mpu_field(&mpu);
+    code = ref_mpu_build(&points, NULL, mpu, &why);
+    if (code == SM_OK) return code;
+    if (enough > wanted)
+        return sm_fail(
+            error, code,
+            "%ld points on its surface are too few to tell the sides of a body this thin "
+            "apart: take %ld (run --points, or points in a scene's group meshless)",
+            wanted, enough);
+    return sm_fail(error, code, "%s", why.text);
+}
+
+/* The body of the points' field, whose covers reach all particles. */
+static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmError *error)
+{
+    RefMpu mpu = {0};
+    SmCode code = options->given ? SM_OK : ref_meshless_field(options, &mpu, error);
+    if (code != SM_OK) return code;
+    RefField field = ref_mpu_field(options->given ? options->given : &mpu);
     RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : REF_MESHLESS_NODES,
                            .coarser = options->uniform ? 0 : 1,
                            .basis = REF_MLS_LINEAR,
@@ -125,7 +155,7 @@ static SmCode make_motion(const SmEngineParams *params, SmEngine *engine, SmErro
 static void place_particles(SmEngine *engine, bool moving)
 {
     ref_skin_place(&engine->skin, CONST(engine->motion.moved), engine->carried);
-    for (long s = 0; s < engine->count; s++) {
+    for (long s = 0; s < engine->all; s++) {
         long p = engine->skin.order[s];
         for (int d = 0; d < 3; d++) {
             engine->v[p][d] = moving ? (engine->carried[s][d] - engine->x[p][d]) / engine->h : 0;
@@ -136,14 +166,14 @@ static void place_particles(SmEngine *engine, bool moving)
 
 static void make_particles(SmEngine *engine)
 {
-    size_t count = (size_t)engine->count;
-    ref_skin_create(&engine->body, engine->count, CONST(engine->rest), &engine->skin, NULL);
+    size_t count = (size_t)engine->all;
+    ref_skin_create(&engine->body, engine->all, CONST(engine->rest), &engine->skin, NULL);
     engine->place = sm_alloc(count, sizeof *engine->place);
     engine->x = sm_alloc(count, sizeof *engine->x);
     engine->v = sm_alloc(count, sizeof *engine->v);
     engine->carried = sm_alloc(count, sizeof *engine->carried);
     engine->impulse = sm_alloc((size_t)engine->body.nodes.count, sizeof *engine->impulse);
-    for (long s = 0; s < engine->count; s++) engine->place[engine->skin.order[s]] = s;
+    for (long s = 0; s < engine->all; s++) engine->place[engine->skin.order[s]] = s;
     place_particles(engine, false);
 }
 
@@ -154,12 +184,16 @@ static SmCode meshless_create(const SmVoxels *voxels, const SmEngineParams *para
     SmCode code = check(voxels, params, error);
     if (code != SM_OK) return code;
     SmEngine *engine = sm_alloc(1, sizeof *engine);
+    const RefPoints *given = params->meshless->given ? &params->meshless->given->points : NULL;
     engine->count = voxels->particle_count;
+    engine->all = engine->count + (given ? given->given : 0);
     engine->h = params->h;
     sm_engine_pose(params, 0, engine->pose);
     size_t count = (size_t)engine->count;
     int(*at)[3] = sm_alloc(count, sizeof *at);
-    engine->rest = sm_alloc(count, sizeof *engine->rest);
+    engine->rest = sm_alloc((size_t)engine->all, sizeof *engine->rest);
+    if (given)
+        memcpy(engine->rest + count, given->as_given, (size_t)given->given * sizeof *engine->rest);
     sm_voxels_particles(voxels, at);
     for (size_t p = 0; p < count; p++)
         for (int d = 0; d < 3; d++)
@@ -252,8 +286,15 @@ static void meshless_set(SmEngine *engine, SmField field, const double (*values)
     }
     ref_motion_pose(&engine->motion);
     ref_skin_place(&engine->skin, CONST(engine->motion.moved), engine->carried);
-    for (long s = 0; s < engine->count; s++)
+    for (long s = 0; s < engine->all; s++)
         memcpy(engine->x[engine->skin.order[s]], engine->carried[s], sizeof *engine->x);
+}
+
+long ref_meshless_points(const SmEngine *engine, double (*x)[3])
+{
+    for (long p = engine->count; x && p < engine->all; p++)
+        for (int d = 0; d < 3; d++) x[p - engine->count][d] = engine->x[p][d] + engine->pose[d][3];
+    return engine->all - engine->count;
 }
 
 static void meshless_push(SmEngine *engine, long count, const long *particle,
@@ -347,7 +388,7 @@ static void meshless_count(SmEngine *engine, SmCounts *counts)
                          .regions = engine->motion.nodes,
                          .build_seconds = engine->build_seconds};
     size_t bytes = sizeof *engine + nodes * (6 * modes + 15) * sizeof(double) +
-                   (size_t)engine->count * 5 * sizeof(double[3]);
+                   (size_t)engine->all * 5 * sizeof(double[3]);
     for (long b = 0; b < engine->skin.blocks; b++)
         bytes += (size_t)engine->skin.block[b].nodes * (size_t)engine->skin.block[b].room *
                  sizeof(float);

@@ -18,19 +18,35 @@
 #include "../../lib/engine.h"
 #include "../../lib/mesh.h"
 #include "matrices.h"
+#include "mpu.h"
 
-enum { REF_MESHLESS_POINTS = 12000, REF_MESHLESS_NODES = 1000, REF_MESHLESS_MODES = 64 };
+enum {
+    REF_MESHLESS_POINTS = 12000,
+    REF_MESHLESS_MOST_POINTS = 400000,
+    REF_MESHLESS_NODES = 1000,
+    REF_MESHLESS_MODES = 64
+};
 
 struct RefMeshlessOptions {
-    const SmMesh *mesh; /* the body's closed surface, read by create() only */
-    long points;        /* on the surface, of which the field is made; 0: REF_MESHLESS_POINTS */
-    long nodes;         /* wanted; 0: REF_MESHLESS_NODES */
-    bool uniform;       /* octants are all of one size; false: inside they may be twice as large */
-    int modes;          /* 0: REF_MESHLESS_MODES, or half of what there is */
+    const SmMesh *mesh;  /* the body's closed surface, read by create() only */
+    const RefMpu *given; /* NULL, or the field of points that were given: they are carried, too */
+    long points;         /* on the mesh's surface, of which the field is made without `given`; 0:
+                          * REF_MESHLESS_POINTS, of thin bodies more, to REF_MESHLESS_MOST_POINTS */
+    long nodes;          /* wanted; 0: REF_MESHLESS_NODES */
+    bool uniform;        /* octants are all of one size; false: inside they may be twice as large */
+    int modes;           /* 0: REF_MESHLESS_MODES, or half of what there is */
     RefMaterial material;     /* mesh units, kg, s */
     double stiffness_damping; /* b of Rayleigh's a + b lambda, s; a loses the share params->damping
                                * of the speed in a step */
 };
+
+/* The field of a mesh's points, as many as the options say. The caller frees. Errors (SM_INPUT):
+ * those of making it, of thin bodies with how many points would do. */
+SmCode ref_meshless_field(const RefMeshlessOptions *options, RefMpu *mpu, SmError *error);
+
+/* How many points options->given has (RefPoints, as_given), and unless `x` is NULL where they are
+ * now, in their order; 0 of a mesh. */
+long ref_meshless_points(const SmEngine *engine, double (*x)[3]);
 
 extern const SmEngineType ref_meshless_engine;
 

@@ -165,6 +165,18 @@ static SmCode orient(RefMpu *mpu, SmError *error)
     return SM_OK;
 }
 
+bool ref_mpu_dense(const RefPoints *points)
+{
+    RefCloud cloud;
+    int right, wrong, probes;
+    ref_cloud_create(points, &cloud);
+    probe(&cloud, &right, &wrong, &probes);
+    bool dense =
+        10 * right >= 7 * probes || 10 * wrong >= 7 * probes || check_closed(&cloud, NULL) != SM_OK;
+    ref_cloud_free(&cloud);
+    return dense;
+}
+
 SmCode ref_mpu_build(RefPoints *points, const RefMpuOptions *options, RefMpu *mpu, SmError *error)
 {
     double low[3], high[3], diagonal = 0, edge = 0;

@@ -37,6 +37,10 @@ typedef struct {
 SmCode ref_mpu_build(RefPoints *points, const RefMpuOptions *options, RefMpu *mpu, SmError *error);
 void ref_mpu_free(RefMpu *mpu);
 
+/* Whether the points lie near enough to each other to tell inside from outside. True also where
+ * ref_mpu_build() refuses them because they leave the surface open. */
+bool ref_mpu_dense(const RefPoints *points);
+
 /* The function as a field; `mpu` stays the caller's. O(log cells). */
 RefField ref_mpu_field(const RefMpu *mpu);
 

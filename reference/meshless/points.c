@@ -14,6 +14,7 @@ void ref_points_free(RefPoints *points)
 {
     free(points->position);
     free(points->normal);
+    free(points->as_given);
     *points = (RefPoints){0};
 }
 
@@ -95,6 +96,9 @@ SmCode ref_points_create(long count, const double (*position)[3], const double (
     qsort(sorted, (size_t)count, sizeof *sorted, by_position);
     points->position = sm_alloc((size_t)count, sizeof *points->position);
     points->normal = sm_alloc((size_t)count, sizeof *points->normal);
+    points->given = count;
+    points->as_given = sm_alloc((size_t)count, sizeof *points->as_given);
+    memcpy(points->as_given, position, (size_t)count * sizeof *position);
     merge(sorted, count, points);
     free(sorted);
     if (points->count >= REF_LEAST_POINTS)

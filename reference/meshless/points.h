@@ -4,20 +4,22 @@
 
 #include "../../lib/mesh.h"
 
-enum { REF_LEAST_POINTS = 50 };
+enum { REF_LEAST_POINTS = 50, REF_MOST_POINTS = 10000000 };
 
 typedef struct {
     long count;
     double (*position)[3]; /* [count], all different */
     double (*normal)[3];   /* [count] outwards, unit length */
     long merged;           /* points dropped at a position that was there already */
+    long given;            /* points as they were given: all of them, in their order */
+    double (*as_given)[3]; /* [given] */
 } RefPoints;
 
-/* Copies points; such at one position become one, whose normal is the mean, and those without a
- * normal (of length zero) are dropped. `name` is for messages. The caller frees. Errors (SM_INPUT):
- * numbers that are not finite or beyond 1e30, normals whose length is not 1 to within a half
- * (columns that are colours, say), fewer than REF_LEAST_POINTS that are left, and such that span
- * less than 1e-30. O(n log n). */
+/* Copies points, also as they were given; of the others such at one position become one, whose
+ * normal is the mean, and those without a normal (of length zero) are dropped. `name` is for
+ * messages. The caller frees. Errors (SM_INPUT): numbers that are not finite or beyond 1e30,
+ * normals whose length is not 1 to within a half (columns that are colours, say), fewer than
+ * REF_LEAST_POINTS that are left, and such that span less than 1e-30. O(n log n). */
 SmCode ref_points_create(long count, const double (*position)[3], const double (*normal)[3],
                          const char *name, RefPoints *points, SmError *error);
 void ref_points_free(RefPoints *points);

@@ -319,13 +319,35 @@ static void what_is_refused(void **state)
     scene_free(&scene);
 }
 
+/* A plate 50 times as wide as it is thick, whose sides 12,000 points do not tell apart. */
+static void a_thin_mesh_gets_more_points(void **state)
+{
+    (void)state;
+    Scene scene = beam_create(1, 0);
+    SmError error = {0};
+    RefMpu mpu;
+    double gradient[3];
+    for (int n = 0; n < 8; n++) scene.mesh.position[n][1] *= 0.02;
+    RefMeshlessOptions options = {.mesh = &scene.mesh};
+    if (ref_meshless_field(&options, &mpu, &error)) fail_msg("%s", error.text);
+    RefField thin = ref_mpu_field(&mpu);
+    assert_true(thin.at(&mpu, (double[]){0.5, 0.01, 0.5}, gradient) < 0);
+    assert_true(thin.at(&mpu, (double[]){0.5, 0.04, 0.5}, gradient) > 0);
+    assert_in_range(mpu.points.count, 20000, 30000);
+    ref_mpu_free(&mpu);
+    options.points = REF_MESHLESS_POINTS;
+    assert_int_equal(ref_meshless_field(&options, &mpu, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "take 24000 (run --points"));
+    scene_free(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rest_and_fall),   cmocka_unit_test(pushes),
         cmocka_unit_test(handles),         cmocka_unit_test(handles_that_change),
         cmocka_unit_test(cantilever),      cmocka_unit_test(set_and_get),
-        cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(what_is_refused), cmocka_unit_test(a_thin_mesh_gets_more_points),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
