@@ -4,8 +4,10 @@
  *     l^4 - 2 I l^2 - 8 J l + I^2 - 4 II,   I = |A|^2, II = |cof A|^2, J = det A,
  * Cayley-Hamilton gives R without eigenvectors:
  *     R = (l cof(A + cof A / l) + (i2 - J / l) A) / (l i2 - J),   i2 = (l^2 - I) / 2.
- * The denominator is (s1+s2)(s2+s3)(s3+s1): it vanishes where the rotation is not unique. Lanes
- * near that go to sm_polar_robust() one by one; they are rare in a body that is not crushed.
+ * The denominator is (s1+s2)(s2+s3)(s3+s1): it vanishes where the rotation is not unique, and
+ * where it is small (of flat and narrow regions) rounding is magnified by more than its inverse:
+ * such rotations are mended by polar_polish(). Lanes nearer to a tie go to sm_polar_robust() one by
+ * one; they are rare in a body that is not crushed.
  *
  * The chain of operations is long and would leave the processor waiting, so up to POLAR_TILES tiles
  * of SM_LANES matrices go together. Only the iteration, whose few values stay in registers,
@@ -119,6 +121,41 @@ SM_INLINE void polar_traces(int tiles, const PolarInvariants *of, const unsigned
     }
 }
 
+/* Mends the rounding of rotations that are good to a percent: R^T R = 1 by one step of Newton and
+ * Schulz; then R^T A = exp(w) U, whose axial vector is (tr U - U) w to first order. The error about
+ * an axis is then that of A over what holds the rotation there. */
+static __attribute__((noinline, unused)) void polar_polish(const vec *A, unsigned lanes, vec *R)
+{
+    vec Q[9], M[9], K[9], C[9], skew[3], turn[3];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            M[i * 3 + j] = lanes_set(0);
+            for (int k = 0; k < 3; k++) M[i * 3 + j] -= R[k * 3 + i] * R[k * 3 + j];
+            if (i == j) M[i * 3 + j] += 1;
+        }
+    for (int i = 0; i < 9; i++) {
+        Q[i] = R[i];
+        for (int k = 0; k < 3; k++) Q[i] += (real)0.5 * R[i / 3 * 3 + k] * M[k * 3 + i % 3];
+    }
+    for (int i = 0; i < 9; i++) {
+        M[i] = lanes_set(0);
+        for (int k = 0; k < 3; k++) M[i] += Q[k * 3 + i / 3] * A[k * 3 + i % 3];
+    }
+    for (int i = 0; i < 9; i++)
+        K[i] = (real)-0.5 * (M[i] + M[i % 3 * 3 + i / 3]) +
+               (i % 4 ? lanes_set(0) : M[0] + M[4] + M[8]);
+    polar_cofactor(K, C);
+    vec over = lanes_inverse(K[0] * C[0] + K[1] * C[1] + K[2] * C[2]);
+    for (int i = 0; i < 3; i++)
+        skew[i] = over * (M[(i + 2) % 3 * 3 + (i + 1) % 3] - M[(i + 1) % 3 * 3 + (i + 2) % 3]);
+    for (int i = 0; i < 3; i++) turn[i] = C[i] * skew[0] + C[3 + i] * skew[1] + C[6 + i] * skew[2];
+    for (int i = 0; i < 9; i++) { /* Q + Q [turn] */
+        int row = i / 3 * 3, d = i % 3, e = (d + 1) % 3, f = (d + 2) % 3;
+        vec more = Q[row + e] * turn[f] - Q[row + f] * turn[e];
+        R[i] = lanes_choose(lanes, Q[i] + more, R[i]);
+    }
+}
+
 /* R from tr U, zero in lanes that are not live. Returns the live lanes that are near a tie, or of a
  * scale whose fourth power leaves the range, and were left undefined. */
 SM_INLINE unsigned polar_rotation(const vec A[9], const PolarInvariants *of, vec l, unsigned live,
@@ -134,11 +171,19 @@ SM_INLINE unsigned polar_rotation(const vec A[9], const PolarInvariants *of, vec
     /* The iteration is lost where three roots meet; what it leaves then is no root. The quartic is
      * 4 (i2^2 - II - 2 J l). Written so that a NaN counts as a tie. */
     const real root = SM_REAL_BITS == 32 ? (real)1e-5 : (real)1e-10;
-    vec rest = i2 * i2 - (of->II + 2 * of->J * l);
-    return live & ~(lanes_below(lanes_abs(rest), lanes_set(root)) &
-                    lanes_below((real)0.03 * l * l * l, below) &
-                    lanes_below(lanes_set((real)1e-16), of->square) &
-                    lanes_below(of->square, lanes_set((real)1e16)));
+    vec rest = i2 * i2 - (of->II + 2 * of->J * l), cube = l * l * l;
+    unsigned narrow = live & lanes_below(below, (real)0.15 * cube);
+    if (__builtin_expect(narrow != 0, 0)) {
+        vec from[9], to[9]; /* copies: A and R stay in registers */
+        lanes_copy(9, A, from);
+        lanes_copy(9, R, to);
+        polar_polish(from, narrow, to);
+        lanes_copy(9, to, R);
+    }
+    return live &
+           ~(lanes_below(lanes_abs(rest), lanes_set(root)) & lanes_below((real)0.03 * cube, below) &
+             lanes_below(lanes_set((real)1e-16), of->square) &
+             lanes_below(of->square, lanes_set((real)1e16)));
 }
 
 /* R of one tile, and its ties. */

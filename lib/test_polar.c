@@ -128,6 +128,29 @@ static void test_unique(void **state)
     }
 }
 
+/* Of what is flat and narrow, or folded, rounding may turn the thin directions, but no more than it
+ * must, and not the long one. */
+static void test_narrow(void **state)
+{
+    (void)state;
+    unsigned seed = 8;
+    for (int trial = 0; trial < 6000; trial++) {
+        double A[9], R[9], best[9], off[9], moved[9], long_way = 0;
+        double width = exp(-4 * (trial % 100) / 100.0), thin = width * unit(&seed);
+        compose(&seed, (double[3]){1, width, thin > -0.7 * width ? thin : 0}, 1, A);
+        for (int i = 0; i < 9; i++) A[i] = (double)(float)A[i];
+        ref_polar(A, identity, best);
+        batch32(A, identity, R);
+        for (int i = 0; i < 9; i++) off[i] = R[i] - best[i];
+        for (int i = 0; i < 9; i++) { /* (R - best) A^T: what the error moves of A's spread */
+            moved[i] = 0;
+            for (int k = 0; k < 3; k++) moved[i] += off[i / 3 * 3 + k] * A[i % 3 * 3 + k];
+            long_way = fmax(long_way, fabs(moved[i]));
+        }
+        if (!(long_way < 2e-6)) fail_msg("width %g, thin %g: off by %g", width, thin, long_way);
+    }
+}
+
 /* No class of matrix gives anything but a proper rotation, and none a worse one than it must. */
 static void test_degenerate(void **state)
 {
@@ -209,9 +232,9 @@ static void test_warm_start(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_unique),     cmocka_unit_test(test_degenerate),
-        cmocka_unit_test(test_last),       cmocka_unit_test(test_batches),
-        cmocka_unit_test(test_warm_start),
+        cmocka_unit_test(test_unique),     cmocka_unit_test(test_narrow),
+        cmocka_unit_test(test_degenerate), cmocka_unit_test(test_last),
+        cmocka_unit_test(test_batches),    cmocka_unit_test(test_warm_start),
     };
     return cmocka_run_group_tests_name("polar", tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "changing.h"
+#include "ghosts.h"
 #include "octree.h"
 #include "slots.h"
 
@@ -32,6 +33,7 @@ static void fill_slots(const OctTree *tree, const OctRegions *regions, const dou
         oct_weights_region(&w, tree, regions, leaf, &rest);
         oct_slot_fill(oct, tree, &w, leaf, &rest);
     }
+    oct_ghosts_fill(oct, &w);
     oct_weights_free(&w);
     for (long i = 0; i < oct->instances && oct->spread; i++)
         for (long block = 0; block < oct->blocks; block++) oct_block_inverse(oct, i, block);
@@ -112,10 +114,11 @@ Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mas
     oct->instances = params->instances > 1 ? params->instances : 1;
     oct->workers = params->threads > 0 ? params->threads : omp_get_max_threads();
     if (oct->instances > 1 && oct->workers > oct->instances) oct->workers = (int)oct->instances;
+    oct->body = sm_alloc((size_t)oct->instances, sizeof *oct->body);
     build_lists(tree, regions, oct);
+    oct_ghosts_build(oct, tree, regions);
     share_blocks(oct, (tree->leaves + SM_LANES - 1) / SM_LANES);
     oct->rows = sm_alloc((size_t)oct->workers, sizeof *oct->rows);
-    oct->body = sm_alloc((size_t)oct->instances, sizeof *oct->body);
     copy_tree(tree, oct);
     fill_slots(tree, regions, mass, oct);
     for (int i = 0; i < oct->workers; i++) fill_rows(tree, oct, &oct->rows[i]);
@@ -134,13 +137,14 @@ void oct_free(Oct *oct)
     }
     for (long i = 0; i < oct->instances; i++) {
         OctState *b = &oct->body[i];
-        void *all[] = {b->x, b->v, b->g, b->last, b->plastic, b->inverse};
+        void *all[] = {b->origin, b->x, b->v, b->g, b->last, b->plastic, b->inverse};
         for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
     }
     oct_breadth_free(&oct->lists);
     oct_breadth_free(&oct->goal_lists);
     oct_levels_free(&oct->inner);
     oct_changing_free(oct->changing);
+    oct_ghosts_free(oct);
     void *all[] = {oct->thin,  oct->thin_of, oct->child,  oct->children, oct->row,  oct->live,
                    oct->block, oct->share,   oct->spread, oct->rows,     oct->body, oct->obstacle};
     for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
@@ -162,50 +166,59 @@ long oct_bytes(const Oct *oct)
         structure += lanes * 6 * sizeof(real);
         state += lanes * 18 * sizeof(real);
     }
-    structure += oct_changing_bytes(oct->changing);
+    structure += oct_changing_bytes(oct->changing) + oct_ghosts_bytes(oct);
     return (long)(structure + (size_t)oct->workers * rows + (size_t)oct->instances * state);
+}
+
+/* Sums and counts of a body's coordinates by frame, from its origin, or of `x` from 0. */
+static void sum_frames(const Oct *oct, const OctState *b, const double (*x)[3], double (*sum)[4])
+{
+    memset(sum, 0, (size_t)oct->frames * sizeof *sum);
+    for (long leaf = 0; leaf < oct->leaves; leaf++) {
+        if (!oct_alive(oct, leaf)) continue;
+        double *to = sum[oct->frame ? oct->frame[leaf] : 0];
+        for (int d = 0; d < 3; d++) to[d] += x ? x[leaf][d] : (double)b->x[oct_index(leaf, d)];
+        to[3]++;
+    }
 }
 
 void oct_place(Oct *oct, long body, const double (*x)[3])
 {
     OctState *b = &oct->body[body];
-    for (int d = 0; d < 3; d++) {
-        double sum = 0;
-        for (long leaf = 0; leaf < oct->leaves; leaf++)
-            if (oct_alive(oct, leaf)) sum += x[leaf][d];
-        b->origin[d] = sum / (double)oct->alive;
-        for (long leaf = 0; leaf < oct->leaves; leaf++)
-            if (oct_alive(oct, leaf)) b->x[oct_index(leaf, d)] = (real)(x[leaf][d] - b->origin[d]);
-    }
+    sum_frames(oct, b, x, oct->middle);
+    for (long f = 0; f < oct->frames; f++)
+        for (int d = 0; d < 3; d++) b->origin[f][d] = rint(oct->middle[f][d] / oct->middle[f][3]);
+    for (long leaf = 0; leaf < oct->leaves; leaf++)
+        for (int d = 0; d < 3 && oct_alive(oct, leaf); d++)
+            b->x[oct_index(leaf, d)] = (real)(x[leaf][d] - oct_origin(oct, b, leaf)[d]);
 }
 
 /* Slots without a leaf go back to the origin. */
-static void shift_body(const Oct *oct, OctState *b, int d, double shift)
+static void shift_leaves(const Oct *oct, OctState *b, const double (*shift)[4])
 {
-    b->origin[d] += shift;
-    for (long block = 0; block < oct->blocks; block++) {
-        real *x = b->x + (block * 3 + d) * SM_LANES, *v = b->v + (block * 3 + d) * SM_LANES;
-        ivec alive = oct->block[block].mass > 0;
-        lanes_store(x, lanes_and(lanes_load(x) - (real)shift, alive));
-        lanes_store(v, lanes_and(lanes_load(v), alive));
-    }
+    for (long leaf = 0; leaf < oct->blocks * SM_LANES; leaf++)
+        for (int d = 0; d < 3; d++) {
+            real *x = &b->x[oct_index(leaf, d)], *v = &b->v[oct_index(leaf, d)];
+            if (oct_alive(oct, leaf))
+                *x -= (real)shift[oct->frame ? oct->frame[leaf] : 0][d];
+            else
+                *x = *v = 0;
+        }
 }
 
 void oct_recentre(Oct *oct)
 {
-    for (long i = 0; i < oct->instances; i++) {
-        OctState *b = &oct->body[i];
-        for (int d = 0; d < 3; d++) {
-            double sum = 0;
-            for (long block = 0; block < oct->blocks; block++) {
-                vec x = lanes_load(b->x + (block * 3 + d) * SM_LANES);
-                x = lanes_and(x, oct->block[block].mass > 0);
-                real part = 0;
-                for (int lane = 0; lane < SM_LANES; lane++) part += x[lane];
-                sum += (double)part;
+    for (OctState *b = oct->body; b < oct->body + oct->instances; b++) {
+        bool moves = false;
+        sum_frames(oct, b, NULL, oct->middle);
+        for (long f = 0; f < oct->frames; f++)
+            for (int d = 0; d < 3; d++) {
+                double middle = rint(oct->middle[f][d] / oct->middle[f][3]);
+                middle = fabs(middle) > 4 ? middle : 0; /* nor is a NaN a place */
+                oct->middle[f][d] = middle;
+                b->origin[f][d] += middle;
+                moves |= middle != 0;
             }
-            double middle = rint(sum / (double)oct->alive);
-            if (fabs(middle) > 4) shift_body(oct, b, d, middle); /* nor is a NaN a place */
-        }
+        if (moves) shift_leaves(oct, b, (const double(*)[4])oct->middle);
     }
 }

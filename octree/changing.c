@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ghosts.h"
 #include "octree.h"
 #include "slots.h"
 
@@ -28,6 +29,7 @@ void oct_prepare(Oct *oct, const OctStructure *structure)
     assert(oct->instances == 1 && oct->params.form == OCT_HIERARCHICAL);
     if (oct->changing) return;
     const OctTree *tree = &structure->tree;
+    oct_ghosts_merge(oct);
     OctChanging *c = oct->changing = sm_alloc(1, sizeof *c);
     oct_weights_build(tree, &structure->regions, structure->mass, oct->params.weighting,
                       &c->weights);

@@ -69,7 +69,8 @@ static void read_body(const OctContacts *k, const OctState *body, double (*x)[3]
             block = leaf / SM_LANES;
             last_load(body->last + block * 6 * SM_LANES, R);
         }
-        for (int d = 0; d < 3; d++) x[n][d] = body->origin[d] + (double)body->x[oct_index(leaf, d)];
+        for (int d = 0; d < 3; d++)
+            x[n][d] = oct_origin(k->oct, body, leaf)[d] + (double)body->x[oct_index(leaf, d)];
         for (int i = 0; i < 9; i++) frame[n][i] = (double)R[i][lane];
     }
 }

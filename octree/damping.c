@@ -1,8 +1,8 @@
 /* damping.c - region damping by HF: each region's rigid velocity, averaged over the regions of a
  * node, pulls the node's velocity towards it (fastlsm eq. 14). */
 #include "../lib/rigid_lanes.h"
+#include "ghosts.h"
 #include "octree.h"
-#include "sum.h"
 
 static void weigh(OctTask *task, long first, long last)
 {
@@ -121,12 +121,10 @@ static void slow(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;
     const OctBreadth *lists = oct_goal_breadth(oct);
-    vec shift[3];
-    for (int d = 0; d < 3; d++) shift[d] = lanes_set((real)task->body->origin[d]);
     for (long block = first; block < last; block++) {
         if (!oct->live[block]) continue;
         long at = block * 3 * SM_LANES;
-        vec x[3], v[3], field[8], sum[6];
+        vec x[3], v[3], field[8], sum[6], shift[3];
         for (int lane = 0; lane < SM_LANES; lane++)
             store8((real *)field + lane * OCT_ROW_VELOCITY,
                    list_velocity(lists, task->rows->velocity,
@@ -136,6 +134,7 @@ static void slow(OctTask *task, long first, long last)
         load3(task->body->x + at, x);
         load3(task->body->v + at, v);
         pull(sum, oct->block[block].inverse_reach, (real)oct->params.damping, x, v);
+        oct_shift(oct, task->body, block, shift);
         integrate_position(oct->obstacle, oct->obstacle_count, shift, x, v);
         store3(task->body->v + at, v);
         store3(task->body->x + at, x);
@@ -147,9 +146,11 @@ void oct_damp(OctTask *task)
 {
     oct_each_block(task, weigh);
     oct_climb(task, sums_up);
+    oct_each_ghost(task, oct_ghosts_products);
     oct_descend(task, &task->oct->lists, sums_down);
     oct_each_block(task, solve);
     oct_climb(task, velocities_up);
+    oct_each_ghost(task, oct_ghosts_velocities);
     oct_descend(task, oct_goal_breadth(task->oct), velocities_down);
     oct_each_block(task, slow);
 }

@@ -81,10 +81,11 @@ static void get_node(const SmEngine *e, SmField field, long number, double value
     const real *from = field == SM_VELOCITY ? body->v : field == SM_GOAL ? body->g : body->x;
     double cell = e->head.structure.cell;
     for (int d = 0; d < 3; d++) {
-        double here = (double)from[oct_index(leaf_of(e, number), d)];
-        value[d] = field == SM_VELOCITY
-                       ? (body->kick[d] + here) * cell / e->h
-                       : e->head.structure.origin[d] + cell * (body->origin[d] + here);
+        long leaf = leaf_of(e, number);
+        double here = (double)from[oct_index(leaf, d)];
+        value[d] = field == SM_VELOCITY ? (body->kick[d] + here) * cell / e->h
+                                        : e->head.structure.origin[d] +
+                                              cell * (oct_origin(e->oct, body, leaf)[d] + here);
     }
 }
 

@@ -58,7 +58,8 @@ void oct_held_note(OctHeld *held, const Oct *oct)
     for (struct OctHeldNode *node = held->node; node < held->node + held->count; node++) {
         const OctState *body = &oct->body[node->body];
         for (int d = 0; d < 3; d++)
-            node->before[d] = body->origin[d] + (double)body->x[oct_index(node->leaf, d)];
+            node->before[d] =
+                oct_origin(oct, body, node->leaf)[d] + (double)body->x[oct_index(node->leaf, d)];
     }
 }
 
@@ -74,7 +75,7 @@ void oct_held_move(const OctHeld *held, Oct *oct, const OctStructure *structure,
         for (int d = 0; d < 3; d++) {
             long index = oct_index(node->leaf, d);
             double x = (to[d] - structure->origin[d]) / structure->cell;
-            body->x[index] = (real)(x - body->origin[d]);
+            body->x[index] = (real)(x - oct_origin(oct, body, node->leaf)[d]);
             body->v[index] = (real)(x - node->before[d]);
         }
     }

@@ -240,7 +240,7 @@ void oct_inherit_start(Oct *oct, const OctChange *change, const double *below, d
             momentum[d] -= h->kin[n].mass * h->kin[n].v[d];
         }
     for (int d = 0; d < 3; d++) {
-        oct->body->origin[d] -= place[d] / mass;
+        oct->body->origin[0][d] -= place[d] / mass;
         oct->body->kick[d] -= momentum[d] / mass;
     }
 }

@@ -1,6 +1,6 @@
 /* octree.c - one step of octree shape matching (octree section 4), top to bottom.
  *
- *     depth      every inner node sums the moments of its children
+ *     depth      every inner node sums the moments of its children (ghosts.h: of several frames)
  *     breadth    every region sums its summation nodes (octree eqs. 6, 7)
  *     match      c_r, A_r, polar decomposition, transform m_r T_r
  *     depth      every inner node sums the transforms of its children
@@ -15,8 +15,8 @@
 #include <omp.h>
 #include <string.h>
 
+#include "ghosts.h"
 #include "plastic.h"
-#include "sum.h"
 #include "thin.h"
 
 /* m~ x of the simulation nodes; a node has no moments about itself. */
@@ -221,9 +221,7 @@ static void move(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;
     OctState *body = task->body;
-    vec shift[3];
     real push[3]; /* gravity, and what is left of a change (state.h) */
-    for (int d = 0; d < 3; d++) shift[d] = lanes_set((real)body->origin[d]);
     for (int d = 0; d < 3; d++) push[d] = (real)((double)oct->gravity[d] + body->kick[d]);
     for (long block = first; block < last; block++) {
         if (!oct->live[block]) continue;
@@ -240,6 +238,8 @@ static void move(OctTask *task, long first, long last)
         load3(body->v + at, v);
         integrate_velocity(g, x, push, lanes_set(1), v);
         if (!oct->damp_now) {
+            vec shift[3];
+            oct_shift(oct, body, block, shift);
             integrate_position(oct->obstacle, oct->obstacle_count, shift, x, v);
             store3(body->x + at, x);
         }
@@ -260,11 +260,13 @@ static void step_body(OctTask *task)
 {
     oct_each_block(task, weigh);
     oct_climb(task, moments_up);
+    oct_each_ghost(task, oct_ghosts_moments);
     next_part(task);
     oct_descend(task, &task->oct->lists, moments_down);
     oct_each_block(task, match);
     next_part(task);
     oct_climb(task, transforms_up);
+    oct_each_ghost(task, oct_ghosts_transforms);
     next_part(task);
     oct_descend(task, oct_goal_breadth(task->oct), transforms_down);
     oct_each_block(task, move);

@@ -41,10 +41,12 @@ void oct_goals(Oct *oct);
 /* Region damping of one body (fastlsm eq. 14 by HF), then x += v; part of the step. */
 void oct_damp(OctTask *task);
 
-/* Moves each body's origin to its middle by whole cells: single precision is best near zero. */
+/* Moves the origin of each frame to its middle by whole cells: single precision is best near zero.
+ */
 void oct_recentre(Oct *oct);
 
-/* Puts every node of a body: `x` is [leaves][3], finest cells. The origin goes to the middle. */
+/* Puts every node of a body: `x` is [leaves][3], finest cells. Origins go to the
+ * whole cells next to their frames' middles. */
 void oct_place(Oct *oct, long body, const double (*x)[3]);
 
 /* Sets the rest shapes of a plastic body's regions; `S` is [leaves][9]. */

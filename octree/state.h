@@ -1,6 +1,7 @@
 /* state.h - what the octree engine holds, in one precision.
  *
- * Inside, lengths are finest cells from a movable origin and velocities are finest cells per step.
+ * Inside, lengths are finest cells from movable origins (frames.h) and velocities are finest cells
+ * per step.
  * Simulation nodes live in slots, slot = leaf number; SM_LANES slots are a block, and a block's
  * coordinates are stored as x[3][lanes]. A slot without a leaf, be it beyond the last one or of a
  * number that nothing bears, weighs nothing and matches the unit row, so that no lane is a special
@@ -43,6 +44,13 @@ typedef struct {
     vec axis[3];
 } OctThin;
 
+/* The row of a tree node once more, about the origin of another frame (ghosts.h). */
+typedef struct {
+    int node, from, to;    /* the frames of its leaves and of the lists that name the ghost */
+    real mass;             /* of its leaves */
+    real weight, first[3]; /* sum m~; sum m~ (x0 - centre) */
+} OctGhost;
+
 /* A row holds what a tree node sums: four quarters of three values each and a fourth, `pad`.
  *     moments      sum m~ x            ; of m~ x (x0 - centre)^T the columns x, y, z
  *     transforms   value at the centre ; linear part, columns x, y, z
@@ -61,12 +69,12 @@ typedef struct {
 
 /* One body. */
 typedef struct {
-    double origin[3]; /* finest cells: where it is, is origin + x */
-    double kick[3];   /* finest cells per step: its velocity is kick + v; the next step adds it */
-    real *x, *v, *g;  /* [blocks][3][lanes] */
-    short *last;      /* [blocks][6][lanes] the regions' last rotations (rotate_lanes.h) */
-    real *plastic;    /* [blocks][9][lanes] S_r, or NULL for an elastic body */
-    real *inverse;    /* [blocks][9][lanes] Aqq_r, or NULL */
+    double (*origin)[3]; /* [frames] finest cells: a leaf is at its frame's origin + x */
+    double kick[3];  /* finest cells per step: its velocity is kick + v; the next step adds it */
+    real *x, *v, *g; /* [blocks][3][lanes] */
+    short *last;     /* [blocks][6][lanes] the regions' last rotations (rotate_lanes.h) */
+    real *plastic;   /* [blocks][9][lanes] S_r, or NULL for an elastic body */
+    real *inverse;   /* [blocks][9][lanes] Aqq_r, or NULL */
 } OctState;
 
 typedef struct {
@@ -91,6 +99,12 @@ typedef struct {
     real *spread;                 /* [blocks][6][lanes] rest moments of the regions, or NULL */
     long *share;                  /* [threads + 1] first block of each thread */
     struct OctChanging *changing; /* what is kept to change the body (changing.h), or NULL */
+
+    long frames;
+    int *frame;             /* [slots] of every leaf; NULL: one for all */
+    long ghosts, ghost_row; /* the first one's row */
+    OctGhost *ghost;        /* [ghosts] */
+    double (*middle)[4];    /* [frames] for oct_recentre() */
 
     int workers;   /* bodies that are stepped at the same time */
     OctRows *rows; /* [workers] */
@@ -124,6 +138,21 @@ typedef struct {
     SmLaps *laps; /* of the first thread of an instrumented step, or NULL */
     bool apart;   /* there are laps for every part of the step, those of the next one follow */
 } OctTask;
+
+/* Where the coordinates of a leaf count from. */
+static inline double *oct_origin(const Oct *oct, const OctState *body, long leaf)
+{
+    return body->origin[oct->frame ? oct->frame[leaf] : 0];
+}
+
+/* The same of a block's leaves, for obstacles. */
+SM_INLINE void oct_shift(const Oct *oct, const OctState *body, long block, vec shift[3])
+{
+    for (int d = 0; d < 3; d++) shift[d] = lanes_set((real)body->origin[0][d]);
+    for (int lane = 0; oct->frame && lane < SM_LANES; lane++)
+        for (int d = 0; d < 3; d++)
+            shift[d][lane] = (real)oct_origin(oct, body, block * SM_LANES + lane)[d];
+}
 
 /* The lists that goal positions and damping sum over. */
 static inline const OctBreadth *oct_goal_breadth(const Oct *oct)

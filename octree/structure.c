@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "frames.h"
 #include "resample.h"
 #include "width.h"
 
@@ -164,28 +165,11 @@ size_t oct_structure_bytes(const OctStructure *structure)
            (size_t)structure->tree.leaves * (sizeof *structure->w + sizeof *structure->mass);
 }
 
-static int group_of(int *next, int i)
-{
-    while (next[i] != i) i = next[i] = next[next[i]];
-    return i;
-}
-
 long oct_structure_parts(const OctStructure *structure)
 {
-    long leaves = structure->tree.leaves, parts = structure->tree.live;
-    int *next = sm_alloc((size_t)leaves, sizeof *next);
-    int *leaf = sm_alloc((size_t)leaves, sizeof *leaf);
-    for (int i = 0; i < leaves; i++) next[i] = i;
-    for (int i = 0; i < leaves && parts > 1; i++) { /* a dead leaf's region is empty */
-        oct_regions_leaves(&structure->tree, &structure->regions, i, leaf);
-        for (int k = 0; k < structure->regions.size[i]; k++) {
-            int a = group_of(next, i), b = group_of(next, leaf[k]);
-            parts -= a != b;
-            next[a] = b;
-        }
-    }
-    free(next);
-    free(leaf);
+    int *group = sm_alloc((size_t)structure->tree.leaves, sizeof *group);
+    long parts = oct_frames_groups(&structure->tree, &structure->regions, group);
+    free(group);
     return parts;
 }
 

@@ -43,8 +43,8 @@ SmCode oct_structure_of_tree(const SmVoxels *voxels, const OctOptions *options, 
 void oct_structure_free(OctStructure *structure);
 size_t oct_structure_bytes(const OctStructure *structure);
 
-/* Groups of nodes that no region holds together: 1 for a body that holds together. O(members of
- * all regions). */
+/* Groups of nodes that no region holds together: 1 for a body that holds together. O(nodes +
+ * members). */
 long oct_structure_parts(const OctStructure *structure);
 
 /* Centre of a leaf in mesh units. */

@@ -52,3 +52,8 @@ void oct_descend(OctTask *task, const OctBreadth *lists, OctPart *part)
     for (int level = 0; level <= lists->levels; level++)
         run_level(task, part, lists->level_first[level], lists->level_first[level + 1]);
 }
+
+void oct_each_ghost(OctTask *task, OctPart *part)
+{
+    run_level(task, part, 0, task->oct->ghosts);
+}

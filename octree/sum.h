@@ -11,8 +11,9 @@
 #define oct_each_block SM_NAME(oct_each_block)
 #define oct_climb      SM_NAME(oct_climb)
 #define oct_descend    SM_NAME(oct_descend)
+#define oct_each_ghost SM_NAME(oct_each_ghost)
 
-/* What a pass does with the blocks, inner nodes or carriers first .. last - 1. */
+/* What a pass does with the blocks, inner nodes, carriers or ghosts first .. last - 1. */
 typedef void OctPart(OctTask *task, long first, long last);
 
 /* Each runs its part over this thread's shares and waits for the others. Which thread does what
@@ -21,6 +22,7 @@ void oct_each_block(OctTask *task, OctPart *part);
 void oct_climb(OctTask *task, OctPart *part); /* inner nodes, level by level from the deepest */
 void oct_descend(OctTask *task, const OctBreadth *lists,
                  OctPart *part); /* carriers, from the top */
+void oct_each_ghost(OctTask *task, OctPart *part);
 
 enum { ROW_VECS = OCT_ROW / SM_LANES };
 

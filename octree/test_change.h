@@ -111,6 +111,7 @@ static void check_rebuilt(Body *body, int trial)
     rebuild(&body->structure, body->painted, &fresh);
     Oct *twin = oct_build(&fresh.tree, &fresh.regions, fresh.mass, &body->params);
     assert_int_equal(oct->alive, twin->leaves);
+    oct_ghosts_merge(twin);
     long *same = sm_alloc((size_t)oct->leaves, sizeof *same), found = 0;
     for (long leaf = 0; leaf < oct->leaves; leaf++) {
         same[leaf] = -1;
@@ -122,7 +123,7 @@ static void check_rebuilt(Body *body, int trial)
         found++;
     }
     assert_int_equal(found, twin->leaves);
-    memcpy(twin->body->origin, oct->body->origin, sizeof oct->body->origin);
+    memcpy(twin->body->origin, oct->body->origin, sizeof *oct->body->origin);
     memcpy(twin->body->kick, oct->body->kick, sizeof oct->body->kick);
     for (long block = 0; block < twin->blocks && twin->spread; block++)
         oct_block_inverse(twin, 0, block);
