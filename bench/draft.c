@@ -20,10 +20,18 @@ enum { SLOTS = 16, LINKS = 40 /* one after another, as the kernel allows */ };
 static char listed[SLOTS][BENCH_DRAFT_PATH];
 static volatile sig_atomic_t in_use[SLOTS];
 
+static pid_t owner; /* a child that ends by exit() leaves its parent's drafts alone */
+
+/* Out of memory ends the program by exit(). */
+static void remove_at_exit(void)
+{
+    if (getpid() == owner) bench_drafts_remove();
+}
+
 static int list_draft(const char *tmp)
 {
-    static bool at_exit; /* out of memory ends the program by exit() */
-    if (!at_exit) at_exit = atexit(bench_drafts_remove) == 0;
+    if (!owner) atexit(remove_at_exit);
+    owner = getpid();
     for (int slot = 0; slot < SLOTS; slot++) {
         if (in_use[slot]) continue;
         strcpy(listed[slot], tmp);

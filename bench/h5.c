@@ -64,6 +64,7 @@ void bench_h5_create(BenchH5 *h5, const char *path)
     bench_sink_use(access, &h5->number);
     h5->file = check(h5, H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access));
     H5Pclose(access);
+    bench_h5_text(h5, h5->file, BENCH_H5_CHECKSUM, "CRC-32, the file's last 64 bytes");
 }
 
 void bench_h5_open(BenchH5 *h5, const char *path)

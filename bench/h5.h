@@ -11,10 +11,15 @@
 
 #include "../lib/error.h"
 
+/* Attribute of every file that ends in its checksum (checksum.h). */
+#define BENCH_H5_CHECKSUM "checksum"
+
 typedef struct {
     hid_t file;
     bool failed;
     int number;        /* errno of a write that failed (sink.h), else 0 */
+    hsize_t size;      /* of a file that is loaded: its datasets hold no more; 0: not known */
+    hsize_t found;     /* bytes of datasets so far */
     char message[256]; /* what failed */
 } BenchH5;
 
@@ -71,7 +76,8 @@ void bench_h5_append(BenchH5 *h5, hid_t dataset, hsize_t rows, const void *value
 void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, const hsize_t *start,
                    const hsize_t *size);
 
-/* Reading: wrong type, wrong size and absence are failures that name the thing. */
+/* Reading: wrong type, wrong size and absence are failures that name the thing, and so are datasets
+ * that hold more than the file does, or lie in another one. */
 hid_t bench_h5_find_group(BenchH5 *h5, hid_t parent, const char *name);
 hid_t bench_h5_find_dataset(BenchH5 *h5, hid_t parent, const char *name, int rank,
                             const hsize_t *size);
@@ -88,9 +94,11 @@ void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size
 SmCode bench_h5_store(const char *path, void (*write)(BenchH5 *h5, void *record), void *record,
                       SmError *error);
 
-/* Has `read` read the file into `record`. SM_INPUT, with the file and what is wrong: no such file,
- * a folder or pipe, not HDF5, cut off, or what `read` failed at; the caller then frees what it has
- * made so far. */
+/* Has `read` read the file into `record`. First its checksum is compared (a file from before there
+ * were any has none, and is read as it is), and then a child reads it, because damage can crash
+ * HDF5 or have it take any memory. SM_INPUT, with the file and what is wrong: no such file, a
+ * folder or pipe, not HDF5, cut off, damaged, or what `read` failed at; the caller then frees what
+ * it has made so far. */
 SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), void *record,
                      SmError *error);
 

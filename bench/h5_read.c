@@ -2,9 +2,13 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "../lib/child.h"
+#include "checksum.h"
 
 static bool same_class(hid_t type, BenchKind kind)
 {
@@ -96,19 +100,42 @@ void bench_h5_read_fields(BenchH5 *h5, hid_t object, const BenchField *fields, i
     }
 }
 
+/* Not a link to another name or file: those that we write have none. */
+static bool is_own(hid_t parent, const char *name)
+{
+    H5L_info_t link;
+    return H5Lget_info(parent, name, &link, H5P_DEFAULT) >= 0 && link.type == H5L_TYPE_HARD;
+}
+
 hid_t bench_h5_find_group(BenchH5 *h5, hid_t parent, const char *name)
 {
     if (h5->failed) return -1;
-    hid_t group = H5Gopen2(parent, name, H5P_DEFAULT);
+    hid_t group = is_own(parent, name) ? H5Gopen2(parent, name, H5P_DEFAULT) : -1;
     if (group < 0) bench_h5_fail(h5, "group '%s' is missing", name);
     return group;
+}
+
+/* Does the dataset lie in the file, and are all that were found no larger than it? One that was
+ * never written, or is packed, can claim any size. */
+static bool fits(BenchH5 *h5, hid_t dataset, hid_t space)
+{
+    hid_t layout = H5Dget_create_plist(dataset), type = H5Dget_type(dataset);
+    hssize_t count = H5Sget_simple_extent_npoints(space);
+    size_t unit = H5Tget_size(type);
+    bool inside = layout >= 0 && H5Pget_layout(layout) != H5D_VIRTUAL &&
+                  H5Pget_external_count(layout) == 0 && count >= 0 && unit > 0 &&
+                  (!h5->size || (hsize_t)count <= (h5->size - h5->found) / unit);
+    if (inside) h5->found += (hsize_t)count * unit;
+    if (layout >= 0) H5Pclose(layout);
+    if (type >= 0) H5Tclose(type);
+    return inside;
 }
 
 hid_t bench_h5_find_dataset(BenchH5 *h5, hid_t parent, const char *name, int rank,
                             const hsize_t *size)
 {
     if (h5->failed) return -1;
-    hid_t dataset = H5Dopen2(parent, name, H5P_DEFAULT);
+    hid_t dataset = is_own(parent, name) ? H5Dopen2(parent, name, H5P_DEFAULT) : -1;
     if (dataset < 0) {
         bench_h5_fail(h5, "dataset '%s' is missing", name);
         return -1;
@@ -118,6 +145,8 @@ hid_t bench_h5_find_dataset(BenchH5 *h5, hid_t parent, const char *name, int ran
     bool same = H5Sget_simple_extent_dims(space, stored, NULL) == rank;
     for (int axis = 0; same && axis < rank; axis++) same = stored[axis] == size[axis];
     if (!same) bench_h5_fail(h5, "dataset '%s' has the wrong size", name);
+    if (same && !fits(h5, dataset, space))
+        bench_h5_fail(h5, "dataset '%s' holds more than the file does", name);
     H5Sclose(space);
     return dataset;
 }
@@ -145,6 +174,66 @@ void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest)
                       number < oldest ? "measure again" : "use a newer shapebench");
 }
 
+/* A file to load. */
+typedef struct {
+    const char *path;
+    void (*read)(BenchH5 *h5, void *record);
+    void *record;
+    hsize_t size;
+    BenchChecksum checksum;
+} Load;
+
+static SmCode load_here(const Load *load, SmError *error)
+{
+    BenchH5 h5;
+    bench_h5_open(&h5, load->path);
+    if (h5.file < 0)
+        return sm_fail(error, SM_INPUT, "cannot read %.200s: not an HDF5 file, or cut off (%.200s)",
+                       load->path, h5.message);
+    h5.size = load->size;
+    if (load->checksum == BENCH_CHECKSUM_ABSENT && H5Aexists(h5.file, BENCH_H5_CHECKSUM) > 0)
+        bench_h5_fail(&h5,
+                      "its checksum is missing: it was cut off, or something else wrote to it");
+    else
+        load->read(&h5, load->record);
+    if (bench_h5_close(&h5)) return SM_OK;
+    return sm_fail(error, SM_INPUT, "cannot use %.200s: %.250s", load->path, h5.message);
+}
+
+/* In a child: its copy of the record goes with it, its error is the reply. */
+static int try_to_load(void *load, int reply)
+{
+    SmError error;
+    memset(&error, 0, sizeof error);
+    bool good = load_here(load, &error) == SM_OK;
+    return good || sm_child_write(reply, &error, sizeof error) ? 0 : 1;
+}
+
+/* Damage that crashes HDF5, or has it take memory or time beyond measure, ends a child only. */
+static SmCode load_in_child(const Load *load, SmError *error)
+{
+    static const double megabyte = 1048576;
+    double megabytes = (double)load->size / megabyte;
+    SmChildLimits limits = {.seconds = 30 + megabytes / 10, .megabytes = 128 + 8 * megabytes};
+    SmChildResult result = sm_child_run(try_to_load, (void *)load, &limits);
+    SmCode code = SM_OK;
+    if (result.end == SM_CHILD_REPLIED && result.size == sizeof *error) {
+        const SmError *said = (const SmError *)result.reply;
+        code = sm_fail(error, said->code, "%s", said->text);
+    } else if (result.end == SM_CHILD_FAILED) {
+        code = sm_fail(error, SM_INPUT, "cannot read %.200s: no process can be started: %s",
+                       load->path, strerror(result.status));
+    } else if (result.end != SM_CHILD_REPLIED) {
+        code =
+            sm_fail(error, SM_INPUT, "cannot use %.200s: so damaged that reading it %s", load->path,
+                    result.end == SM_CHILD_CRASHED    ? "crashes HDF5"
+                    : result.end == SM_CHILD_TOO_LONG ? "does not end"
+                                                      : "takes more memory than its size allows");
+    }
+    free(result.reply);
+    return code;
+}
+
 SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), void *record,
                      SmError *error)
 {
@@ -154,12 +243,13 @@ SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), 
     if (!S_ISREG(status.st_mode)) /* a pipe would be waited for */
         return sm_fail(error, SM_INPUT, "cannot read %.300s: it is a %s, not a file", path,
                        S_ISDIR(status.st_mode) ? "folder" : "pipe or device");
-    BenchH5 h5;
-    bench_h5_open(&h5, path);
-    if (h5.file < 0)
-        return sm_fail(error, SM_INPUT, "cannot read %.200s: not an HDF5 file, or cut off (%.200s)",
-                       path, h5.message);
-    read(&h5, record);
-    if (bench_h5_close(&h5)) return SM_OK;
-    return sm_fail(error, SM_INPUT, "cannot use %.200s: %.250s", path, h5.message);
+    Load load = {path, read, record, (hsize_t)status.st_size, BENCH_CHECKSUM_ABSENT};
+    int number = bench_checksum_check(path, &load.checksum);
+    if (number) return sm_fail(error, SM_INPUT, "cannot read %.300s: %s", path, strerror(number));
+    if (load.checksum == BENCH_CHECKSUM_WRONG)
+        return sm_fail(error, SM_INPUT,
+                       "cannot use %.200s: it is damaged: its content is not that of its checksum",
+                       path);
+    SmCode code = load_in_child(&load, error);
+    return code ? code : load_here(&load, error);
 }

@@ -11,7 +11,7 @@
 #define FIELD(kind, member) BENCH_FIELD(BenchRow, kind, member)
 #define COUNT(array)        ((int)(sizeof(array) / sizeof((array)[0])))
 
-enum { MOST_ROWS = 100000, MOST_REPEATS = 1000000, MOST_STAGES = 64 };
+enum { MOST_ROWS = 100000, MOST_REPEATS = 1000000, MOST_STAGES = 64, LEAST_ROW = 256 /* bytes */ };
 
 /* In every schema so far. */
 static const BenchField needed[] = {
@@ -113,7 +113,7 @@ static void read_file(BenchH5 *h5, void *record)
     hid_t group = bench_h5_find_group(h5, h5->file, "machine");
     if (!h5->failed) read_where_there(h5, group, machine_fields, fields, file->machine);
     group = bench_h5_find_group(h5, h5->file, "rows");
-    if (!h5->failed && (stored < 1 || stored > MOST_ROWS))
+    if (!h5->failed && (stored < 1 || stored > MOST_ROWS || (hsize_t)stored > h5->size / LEAST_ROW))
         bench_h5_fail(h5, "it states %d rows", stored);
     if (h5->failed) return;
     *file->rows = sm_alloc((size_t)stored, sizeof **file->rows);

@@ -1,5 +1,6 @@
 #include "trajectory.h"
 
+#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -354,7 +355,7 @@ SmCode bench_trajectory_close(BenchTrajectory *trajectory, SmError *error)
 void bench_trajectory_abandon(BenchTrajectory *trajectory)
 {
     if (!trajectory) return;
-    trajectory->h5.failed = true;
+    trajectory->h5.number = ECANCELED; /* nothing more is written */
     bench_h5_close(&trajectory->h5);
     discard(trajectory);
     release(trajectory);
