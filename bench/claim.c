@@ -41,14 +41,18 @@ static const BenchSetting range_table[] = {
 };
 
 static const BenchSetting measure_table[] = {
-    WORDS(BenchMeasure, "experiment", experiment, 1,
-          "none|scene|sums|size|polar|sweeps|smoothing|blending|sag|setup"),
+    WORDS(
+        BenchMeasure, "experiment", experiment, 1,
+        "none|scene|sums|size|polar|sweeps|smoothing|blending|sag|setup|regions|growth|placement"),
     TEXT(BenchMeasure, "scene", scene),
     TEXT(BenchMeasure, "engine", engine),
     TEXT(BenchMeasure, "field", field),
     WORDS(BenchMeasure, "summation", summation, 0, "fast|bars|naive"),
     WORDS(BenchMeasure, "layout", layout, 0, "auto|lists|blocks"),
     WORDS(BenchMeasure, "matching", matching, 0, "lattice|rigid|linear|quadratic"),
+    WORDS(BenchMeasure, "masses", masses, 0, BENCH_MASSES),
+    WORDS(BenchMeasure, "symmetry", symmetry, 0, BENCH_SYMMETRIES),
+    WORDS(BenchMeasure, "weighting", weighting, 0, BENCH_WEIGHTINGS),
     WORDS(BenchMeasure, "without", without, 0, "nothing|nodes|bases|summation_nodes|reach"),
     GROUP(BenchMeasure, "w", w, range_table),
     GROUP(BenchMeasure, "n", n, range_table),

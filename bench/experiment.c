@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "choices.h"
 #include "costs.h"
 #include "deform.h"
 #include "measure.h"
@@ -16,6 +17,7 @@
 typedef struct {
     const char *name;
     bool scene, engine, field, without, summation, layout, matching, w, n;
+    bool masses, symmetry, weighting;
     const char *fields; /* that there are, separated by |; NULL: scene_field.h's */
     void (*run)(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 } Kind;
@@ -52,6 +54,20 @@ static const Kind kinds[] = {
                          .n = true,
                          .fields = "distance-share",
                          .run = bench_costs_setup},
+    [BENCH_TRY_REGIONS] = {.name = "regions",
+                           .scene = true,
+                           .field = true,
+                           .symmetry = true,
+                           .n = true,
+                           .fields = BENCH_REGION_FIELDS,
+                           .run = bench_choices_regions},
+    [BENCH_TRY_GROWTH] = {.name = "growth",
+                          .scene = true,
+                          .masses = true,
+                          .symmetry = true,
+                          .weighting = true,
+                          .run = bench_choices_growth},
+    [BENCH_TRY_PLACEMENT] = {.name = "placement", .masses = true, .run = bench_choices_placement},
 };
 
 /* ---- curves */
@@ -144,6 +160,9 @@ static const char *needless(const BenchMeasure *measure, const Kind *kind)
     if (measure->summation && !kind->summation) return "'summation' is not of this experiment";
     if (measure->layout && !kind->layout) return "'layout' is not of this experiment";
     if (measure->matching && !kind->matching) return "'matching' is not of this experiment";
+    if (measure->masses && !kind->masses) return "'masses' is not of this experiment";
+    if (measure->symmetry && !kind->symmetry) return "'symmetry' is not of this experiment";
+    if (measure->weighting && !kind->weighting) return "'weighting' is not of this experiment";
     if (given(&measure->w) && !kind->w) return "'w' is not of this experiment";
     if (given(&measure->n) && !kind->n) return "'n' is not of this experiment";
     return NULL;
@@ -216,6 +235,9 @@ static void range_text(const char *letter, const BenchRange *range, size_t size,
 static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
 {
     static const char *const summations[] = {".fast", ".bars", ".naive"};
+    static const char *const masses[] = {"", ".volume"};
+    static const char *const symmetries[] = {"", ".intersection", ".asymmetric"};
+    static const char *const weightings[] = {"", ".plain"};
     static const char *const layouts[] = {"", ".lists", ".blocks"};
     static const char *const matchers[] = {".lattice", ".rigid", ".linear", ".quadratic"};
     const Kind *kind = &kinds[measure->experiment];
@@ -223,11 +245,13 @@ static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
     char w[24] = "", n[24] = "";
     range_text("w", &measure->w, sizeof w, w);
     range_text("n", &measure->n, sizeof n, n);
-    snprintf(name, BENCH_CURVE_NAME, "%s%s%s%s%s%s%s%s%s%s%s%s%s%s", kind->name,
+    snprintf(name, BENCH_CURVE_NAME, "%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s", kind->name,
              measure->scene[0] ? "." : "", measure->scene, measure->without ? ".without." : "",
              without, measure->engine[0] ? "." : "", measure->engine, measure->field[0] ? "." : "",
              measure->field, kind->summation ? summations[measure->summation] : "",
-             layouts[measure->layout], kind->matching ? matchers[measure->matching] : "", w, n);
+             layouts[measure->layout], masses[measure->masses], symmetries[measure->symmetry],
+             weightings[measure->weighting], kind->matching ? matchers[measure->matching] : "", w,
+             n);
     for (char *c = name; *c; c++)
         if (*c == '/' || *c == ' ') *c = *c == '/' ? '|' : '_';
 }

@@ -66,6 +66,7 @@ typedef struct {
     long splits, balance_splits;     /* of cells; those for balance alone */
     long unasked_splits;             /* those for the wanted nodes alone: no criterion asks */
     bool plain;                      /* plain weighting, which does not keep momentum */
+    int masses, symmetry;            /* OctMassRule and OctSymmetry of an octree */
     double paper_total_ms, paper_stage_ms[SM_STAGES]; /* NaN: not given */
     BenchChangeRow change;
     BenchElasticRow elastic;

@@ -95,6 +95,11 @@ typedef struct {
     double kick;                /* random initial velocity, cells per step, from the seed */
 } BenchScene;
 
+/* Words for an octree's choices, in the order of its enumerations. */
+#define BENCH_MASSES     "material|volume"
+#define BENCH_SYMMETRIES "union|intersection|none"
+#define BENCH_WEIGHTINGS "conserving|plain"
+
 /* The defaults of everything that a scene file may leave out; no mesh. */
 void bench_scene_init(BenchScene *scene);
 

@@ -64,6 +64,8 @@ static const BenchField row_fields[] = {
     FIELD(BENCH_LONG, balance_splits),
     FIELD(BENCH_LONG, unasked_splits),
     FIELD(BENCH_BOOL, plain),
+    FIELD(BENCH_INT, masses),
+    FIELD(BENCH_INT, symmetry),
     FIELD(BENCH_DOUBLE, paper_total_ms),
     FIELD(BENCH_DOUBLE, paper_stage_ms),
     FIELD(BENCH_LONG, change.frames),

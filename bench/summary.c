@@ -57,9 +57,6 @@ static void print_octree(const BenchRunner *runner)
     bench_tree_row_nodes(stdout, &row);
     printf(" of %.6g\nregions: ", runner->body->voxels.cell);
     bench_tree_row_widths(stdout, &row);
-    static const char *const symmetries[] = {"", ", symmetry by intersection", ", not symmetric"};
-    fputs(symmetries[runner->scene->octree.symmetry], stdout);
-    if (runner->scene->octree.masses == OCT_VOLUME) fputs(", masses by volume", stdout);
     fputs(": ", stdout);
     bench_tree_row_regions(stdout, &row);
     fputs("\nthe body ", stdout);

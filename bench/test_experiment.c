@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "choices.h"
 #include "deform.h"
 #include "scene_field.h"
 
@@ -185,6 +186,65 @@ static void searches_are_a_part_of_the_set_up(void **state)
     bench_lab_free(&lab);
 }
 
+static BenchCurve choice(BenchLab *lab, BenchMeasure measure, const char *scene, const char *field)
+{
+    strcpy(measure.scene, scene);
+    strcpy(measure.field, field);
+    int number = bench_experiment(lab, &measure); /* moves lab->curve */
+    if (!lab->curve[number].valid) fail_msg("%s", lab->curve[number].reason);
+    return lab->curve[number];
+}
+
+/* Only union takes in what lies beyond (1 + epsilon) w, and only without symmetry does epsilon make
+ * regions' lists shorter. */
+static void regions_are_measured_by_their_symmetry(void **state)
+{
+    (void)state;
+    BenchLab lab = quick_lab();
+    for (int s = 0; s < 3; s++) {
+        BenchMeasure measure = {
+            .experiment = BENCH_TRY_REGIONS, .symmetry = (OctSymmetry)s, .n = {2, 8, 2}};
+        BenchCurve beyond = choice(&lab, measure, "hand-sampled-whole", "beyond_percent");
+        const char *field = s == OCT_INTERSECTION ? "parts" : "summation_nodes";
+        BenchCurve also = choice(&lab, measure, "hand-sampled-whole", field);
+        assert_true(also.points == 2 && also.x[0] == 0.5 && also.x[1] == 2);
+        for (int p = 0; p < 2; p++) {
+            assert_true((beyond.y[p] > 1) == (s == OCT_UNION));
+            assert_true(s == OCT_UNION || beyond.y[p] == 0);
+            if (s == OCT_INTERSECTION) assert_true(also.y[p] > 1);
+        }
+        if (s == OCT_ASYMMETRIC) assert_true(also.y[1] < also.y[0]);
+        if (s == OCT_UNION) assert_true(also.y[1] > also.y[0]);
+    }
+    bench_lab_free(&lab);
+}
+
+/* By volume a beam is as thick as the cells that it touches: five instead of four, (5/4)^2 as
+ * stiff. */
+static void stiffness_by_volume_depends_on_the_place(void **state)
+{
+    (void)state;
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_PLACEMENT};
+    double material = choice(&lab, measure, "", "").y[0];
+    measure.masses = OCT_VOLUME;
+    double volume = choice(&lab, measure, "", "").y[0];
+    assert_true(material > 1.1 && material < 1.25);
+    assert_true(volume > 1.5 && volume < 1.65);
+    bench_lab_free(&lab);
+}
+
+static void energy_stays_but_with_plain_weights(void **state)
+{
+    (void)state;
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_GROWTH};
+    assert_true(fabs(choice(&lab, measure, "hand-sampled-whole", "").y[0] - 1) < 0.05);
+    measure.weighting = OCT_PLAIN;
+    assert_true(choice(&lab, measure, "hand-sampled-whole", "").y[0] > 1.5);
+    bench_lab_free(&lab);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -198,6 +258,9 @@ int main(void)
         cmocka_unit_test(what_cannot_be_measured_is_not_valid),
         cmocka_unit_test(cubes_of_both_engines_are_timed),
         cmocka_unit_test(searches_are_a_part_of_the_set_up),
+        cmocka_unit_test(regions_are_measured_by_their_symmetry),
+        cmocka_unit_test(stiffness_by_volume_depends_on_the_place),
+        cmocka_unit_test(energy_stays_but_with_plain_weights),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

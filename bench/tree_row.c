@@ -37,6 +37,8 @@ void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row)
     row->balance_splits = s->report.balance_splits;
     row->unasked_splits = s->report.unasked_splits;
     row->plain = scene->octree.weighting == OCT_PLAIN;
+    row->masses = (int)scene->octree.masses;
+    row->symmetry = (int)scene->octree.symmetry;
 }
 
 static void tell_wanted(FILE *file, long wanted, long count)
@@ -72,6 +74,9 @@ void bench_tree_row_widths(FILE *file, const BenchRow *row)
     else if (row->local_nodes > 0)
         fprintf(file, ", w local at %ld of %ld nodes", row->local_nodes, nodes);
     fprintf(file, ", epsilon %g", row->epsilon);
+    if (row->symmetry == OCT_INTERSECTION) fputs(", symmetry by intersection", file);
+    if (row->symmetry == OCT_ASYMMETRIC) fputs(", not symmetric", file);
+    if (row->masses == OCT_VOLUME) fputs(", masses by volume", file);
 }
 
 void bench_tree_row_regions(FILE *file, const BenchRow *row)
