@@ -13,7 +13,7 @@ enum {
     RESAMPLING,
     FOLLOWING,
     SURFACE,
-    TRIANGLES,
+    TRIANGLES, /* this and the next ones not as text */
     PIECES,
     VERDICT
 };
@@ -82,13 +82,14 @@ void bench_change_left(FILE *file, const char *before, long left)
                 left, left == 1 ? "y" : "ies");
 }
 
-void bench_change_grid(const BenchRow *rows, int count, BenchGrid *grid)
+void bench_change_grid(const BenchRow *rows, int count, BenchGridForm form, BenchGrid *grid)
 {
+    int last = form == BENCH_GRID_PLAIN ? SURFACE : VERDICT;
     *grid = (BenchGrid){0};
     for (int r = 0; r < count; r++) {
         const BenchRow *row = &rows[r];
         if (row->change.frames == 0) continue;
-        for (int f = 0; f <= VERDICT && grid->columns <= VERDICT; f++)
+        for (int f = 0; f <= last && grid->columns <= last; f++)
             bench_grid_column(grid, headings[f], f == SCENE || f == VERDICT);
         measured_line(row, bench_grid_add(grid));
         const RefPaperRow *paper =

@@ -13,7 +13,7 @@
 #include "store.h"
 #include "table.h"
 
-enum { KEY_PAPER = 0x2000, KEY_SCENE, KEY_FORMAT, KEY_REPEATS, KEY_BLOCK };
+enum { KEY_PAPER = 0x2000, KEY_SCENE, KEY_FORMAT, KEY_REPEATS, KEY_BLOCK, KEY_EXPLAIN };
 
 typedef struct {
     BenchCommon common;
@@ -23,7 +23,7 @@ typedef struct {
     int repeats;
     double block;
     BenchFormat format;
-    bool overwrite;
+    bool overwrite, explain;
 } Options;
 
 /* A scene to measure, and the name that stood for it and others, or NULL. */
@@ -47,6 +47,8 @@ static const struct argp_option option_list[] = {
     {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
     {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 20)", 2},
     {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
+    {"explain", KEY_EXPLAIN, NULL, 0,
+     "Say below a text table all that stands behind each row, not only a line each", 3},
     {"output", 'o', "FILE.h5", 0,
      "Also store every sample, counts, validity and provenance in HDF5 (default: nothing stored)",
      3},
@@ -60,6 +62,7 @@ static const BenchOption options_taken[] = {
     {KEY_REPEATS, BENCH_TO(INT, repeats), 1, 10000, NULL},
     {KEY_BLOCK, BENCH_TO(REAL, block), 0.001, 60000, NULL},
     {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
+    {KEY_EXPLAIN, BENCH_TO(TRUE, explain), 0, 0, NULL},
     {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
     BENCH_OVERWRITE_TAKEN,
     {0},
@@ -196,15 +199,48 @@ static SmCode check_substitutes(const Choices *chosen, SmError *error)
     return code;
 }
 
+static SmCode find_scene(const Options *options, const Choice *choice, BenchScene *scene,
+                         SmError *error)
+{
+    SmCode code = bench_scene_find(choice->scene, scene, error);
+    if (!code && options->chosen.engine)
+        snprintf(scene->engine, sizeof scene->engine, "%.23s", options->chosen.engine);
+    return code;
+}
+
+/* Names the rows (report.h), the meshless ones last; fails where a scene is not there. */
+static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
+{
+    Choice *last = sm_alloc((size_t)chosen->count, sizeof *last);
+    int meshless = 0, planned = 0;
+    SmCode code = SM_OK;
+    for (int i = 0; i < chosen->count && !code; i++) {
+        BenchScene scene;
+        code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
+        if (code) break;
+        bool later = !strcmp(scene.engine, "meshless");
+        *(later ? &last[meshless++] : &chosen->scene[planned++]) = chosen->scene[i];
+    }
+    for (int i = 0; i < meshless && !code; i++) chosen->scene[planned + i] = last[i];
+    for (int i = 0; i < chosen->count && !code; i++) {
+        BenchScene scene;
+        code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
+        snprintf(rows[i].paper, sizeof rows[i].paper, "%s", scene.paper);
+        snprintf(rows[i].scene, sizeof rows[i].scene, "%s", scene.name);
+        snprintf(rows[i].engine, sizeof rows[i].engine, "%s", scene.engine);
+    }
+    free(last);
+    return code;
+}
+
 static SmCode measure_scene(const Options *options, const Choice *choice, BenchProgress *progress,
                             BenchRow *row, SmError *error)
 {
     const BenchOverride *chosen = &options->chosen;
     BenchScene scene;
     const SmEngineType *type;
-    SmCode code = bench_scene_find(choice->scene, &scene, error);
+    SmCode code = find_scene(options, choice, &scene, error);
     if (code) return code;
-    if (chosen->engine) snprintf(scene.engine, sizeof scene.engine, "%.23s", chosen->engine);
     code = bench_engine_find(scene.engine, chosen->precision, &type, error);
     if (code) return code;
     if (chosen->layout >= 0) scene.params.layout = (SmLayout)chosen->layout;
@@ -227,28 +263,43 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
     return code;
 }
 
-/* Speed-ups over the octree paper's lattice, of the same mesh. */
-static void compare_rows(BenchRow *rows, int count)
+static bool of_lattice(const BenchRow *row)
 {
-    const BenchRow *lattice = NULL;
-    for (int i = count - 1; i >= 0; i--)
-        if (!strcmp(rows[i].paper, "octree") && !strcmp(rows[i].engine, "fastlsm") && rows[i].valid)
-            lattice = &rows[i];
-    for (int i = 0; i < count && lattice; i++)
-        if (!strcmp(rows[i].paper, "octree") && rows[i].input_hash == lattice->input_hash)
-            rows[i].speedup = lattice->total_ms / rows[i].total_ms;
+    return !strcmp(row->paper, "octree") && !strcmp(row->engine, "fastlsm");
 }
 
-static SmCode measure_all(const Choices *chosen, BenchRow *rows, SmError *error)
+/* Speed-ups over the octree paper's lattice, of the same mesh. Returns how many of the rows
+ * measured are complete: those of the paper wait for a lattice that is still to come. */
+static int compare_rows(BenchRow *rows, int measured, int count)
+{
+    int lattice = 0, first = 0;
+    while (lattice < count &&
+           !(of_lattice(&rows[lattice]) && (lattice >= measured || rows[lattice].valid)))
+        lattice++;
+    for (int i = 0; i < measured && lattice < measured; i++)
+        if (!strcmp(rows[i].paper, "octree") && rows[i].input_hash == rows[lattice].input_hash)
+            rows[i].speedup = rows[lattice].total_ms / rows[i].total_ms;
+    if (lattice < measured || lattice == count) return measured;
+    while (first < measured && strcmp(rows[first].paper, "octree") != 0) first++;
+    return first;
+}
+
+/* Rows are written as they are measured; those before an error stay. */
+static SmCode measure_all(const Choices *chosen, BenchRow *rows, BenchTable *table, SmError *error)
 {
     const Options *options = chosen->options;
     BenchProgress progress;
     bench_progress_start(&progress, options->common.quiet);
     SmCode code = SM_OK;
-    for (int i = 0; i < chosen->count && !code; i++)
-        code = measure_scene(options, &chosen->scene[i], &progress, &rows[i], error);
-    bench_progress_stop(&progress);
-    if (!code) compare_rows(rows, chosen->count);
+    int measured = 0;
+    while (measured < chosen->count && !code) {
+        code = measure_scene(options, &chosen->scene[measured], &progress, &rows[measured], error);
+        bench_progress_stop(&progress);
+        if (!code) bench_table_rows(table, compare_rows(rows, ++measured, chosen->count));
+    }
+    if (code && table->format == BENCH_AS_JSON) return code;
+    bench_table_rows(table, measured);
+    bench_table_end(table);
     return code;
 }
 
@@ -270,15 +321,17 @@ int bench_command_tables(int argc, char **argv)
     if (!code) code = check_substitutes(&chosen, &error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
     if (!code) code = bench_draft_reserve(options.output, options.overwrite, &error);
-    if (!code) code = measure_all(&chosen, rows, &error);
-    if (!code) {
-        BenchMachine machine;
-        bench_machine_read(argc, argv, options.common.threads, &machine);
-        bench_table_write(stdout, options.format, rows, chosen.count, &machine);
-        if (options.output)
-            code = bench_store_rows(options.output, rows, chosen.count, &machine, &error);
-        if (!code) code = verdict(rows, chosen.count, &error);
-    }
+    if (!code) code = plan_rows(&chosen, rows, &error);
+    BenchMachine machine;
+    bench_machine_read(argc, argv, options.common.threads, &machine);
+    BenchTable table = {
+        .format = options.format,
+        .explain = options.explain,
+        .report = {.file = stdout, .rows = rows, .count = chosen.count, .machine = &machine}};
+    if (!code) code = measure_all(&chosen, rows, &table, &error);
+    if (!code && options.output)
+        code = bench_store_rows(options.output, rows, chosen.count, &machine, &error);
+    if (!code) code = verdict(rows, chosen.count, &error);
     bench_rows_free(rows, chosen.count);
     free(chosen.scene);
     if (code) bench_option_fail(argv[0], &error);

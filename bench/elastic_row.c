@@ -86,35 +86,82 @@ SmCode bench_elastic_measure(const BenchScene *scene, const BenchBody *body,
     return code;
 }
 
-enum { SCENE, POINTS, NODES, MODES, MATRICES, MODE_TIME, MOTION, SKIN, FRAME, FASTER, VERDICT };
+bool bench_row_of_elastic(const BenchRow *row)
+{
+    return !strcmp(row->engine, "meshless");
+}
 
-static const char *const headings[] = {
-    "scene",     "points",  "nodes",    "modes",  "matrices s", "modes s",
-    "motion ms", "skin ms", "frame ms", "faster", "check",
+enum {
+    SCENE,
+    POINTS,
+    NODES,
+    MODES,
+    MATRICES,
+    MODE_TIME,
+    MOTION,
+    SKIN,
+    FRAME,
+    FASTER,
+    VERDICT,
+    QUARTILES, /* this and the next only in LaTeX */
+    SAMPLES,
+    FIELDS
 };
 
-static void part_text(double ms, double total, char text[BENCH_GRID_TEXT])
+static const char *const headings[] = {
+    "scene",   "points",   "nodes",  "modes", "matrices s",   "modes s", "motion ms",
+    "skin ms", "frame ms", "faster", "check", "quartiles ms", "samples",
+};
+
+static int fields_of(BenchGridForm form)
+{
+    return form == BENCH_GRID_LATEX ? FIELDS : QUARTILES;
+}
+
+void bench_elastic_columns(const BenchRow *rows, int count, BenchGridForm form, BenchGrid *grid)
+{
+    bool text = form == BENCH_GRID_PLAIN;
+    for (int f = 0; f < fields_of(form); f++)
+        bench_grid_column(grid,
+                          text && f == MOTION ? "motion"
+                          : text && f == SKIN ? "skin"
+                                              : headings[f],
+                          f == SCENE || f == VERDICT);
+    for (int r = 0; r < count; r++)
+        if (bench_row_of_elastic(&rows[r]) && (int)strlen(rows[r].scene) > grid->width[SCENE])
+            grid->width[SCENE] = (int)strlen(rows[r].scene);
+}
+
+/* A part of the frame: as text only its percent. */
+static void part_text(double ms, double total, BenchGridForm form, char text[BENCH_GRID_TEXT])
 {
     char number[BENCH_GRID_TEXT];
     bench_grid_number(ms, number);
-    snprintf(text, BENCH_GRID_TEXT, "%.40s (%2.0f%%)", number, 100 * ms / total);
+    if (form == BENCH_GRID_PLAIN)
+        snprintf(text, BENCH_GRID_TEXT, "%.0f%%", 100 * ms / total);
+    else
+        snprintf(text, BENCH_GRID_TEXT, "%.40s (%2.0f%%)", number, 100 * ms / total);
 }
 
-static void measured_line(const BenchRow *row, BenchGridLine *line)
+static void measured_line(const BenchRow *row, BenchGridForm form, BenchGridLine *line)
 {
     const BenchElasticRow *e = &row->elastic;
     snprintf((*line)[SCENE], BENCH_GRID_TEXT, "%.60s", row->scene);
     snprintf((*line)[POINTS], BENCH_GRID_TEXT, "%ld", row->particles);
     snprintf((*line)[NODES], BENCH_GRID_TEXT, "%ld", e->nodes);
     snprintf((*line)[MODES], BENCH_GRID_TEXT, "%ld", e->modes);
+    snprintf((*line)[SAMPLES], BENCH_GRID_TEXT, "%d", row->repeats);
     strcpy((*line)[VERDICT], row->valid ? "VALID" : "INVALID");
-    for (int column = MATRICES; column <= FASTER; column++) strcpy((*line)[column], "INVALID");
+    strcpy((*line)[QUARTILES], "INVALID");
+    for (int column = MATRICES; column <= FASTER; column++)
+        strcpy((*line)[column], form == BENCH_GRID_PLAIN && column < FRAME ? "-" : "INVALID");
     if (!row->valid) return;
     bench_grid_number(e->matrix_seconds, (*line)[MATRICES]);
     bench_grid_number(e->mode_seconds, (*line)[MODE_TIME]);
-    part_text(row->stage_ms[SM_SHAPE_MATCHING], row->total_ms, (*line)[MOTION]);
-    part_text(row->stage_ms[SM_OTHER], row->total_ms, (*line)[SKIN]);
+    part_text(row->stage_ms[SM_SHAPE_MATCHING], row->total_ms, form, (*line)[MOTION]);
+    part_text(row->stage_ms[SM_OTHER], row->total_ms, form, (*line)[SKIN]);
     bench_grid_number(row->total_ms, (*line)[FRAME]);
+    bench_grid_range(row->total_low_ms, row->total_high_ms, (*line)[QUARTILES]);
     (*line)[FASTER][0] = '\0';
     if (!isfinite(row->paper_total_ms)) return;
     bench_grid_number(row->paper_total_ms / row->total_ms, (*line)[FASTER]);
@@ -135,30 +182,14 @@ static void paper_line(const RefPaperRow *paper, BenchGridLine *line)
     bench_grid_number(paper->total_ms.value, (*line)[FRAME]);
 }
 
-static void difference_line(const BenchRow *row, const RefPaperRow *paper, BenchGridLine *line)
+void bench_elastic_lines(const BenchRow *rows, int count, int r, BenchGridForm form,
+                         BenchGrid *grid)
 {
-    strcpy((*line)[SCENE], "  difference");
-    double points = 100 * ((double)row->particles / paper->particles.value - 1);
-    double nodes = 100 * ((double)row->elastic.nodes / paper->nodes.value - 1);
-    snprintf((*line)[POINTS], BENCH_GRID_TEXT, "%+.1f%%", points);
-    snprintf((*line)[NODES], BENCH_GRID_TEXT, "%+.1f%%", nodes);
-}
-
-void bench_elastic_grid(const BenchRow *rows, int count, bool differences, BenchGrid *grid)
-{
-    *grid = (BenchGrid){0};
-    for (int r = 0; r < count; r++) {
-        const BenchRow *row = &rows[r];
-        if (row->elastic.nodes == 0) continue;
-        for (int f = 0; f <= VERDICT && grid->columns <= VERDICT; f++)
-            bench_grid_column(grid, headings[f], f == SCENE || f == VERDICT);
-        measured_line(row, bench_grid_add(grid));
-        const RefPaperRow *paper =
-            row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
-        if (!paper || !isfinite(paper->nodes.value)) continue;
-        paper_line(paper, bench_grid_add(grid));
-        if (differences) difference_line(row, paper, bench_grid_add(grid));
-    }
+    const BenchRow *row = &rows[r];
+    const RefPaperRow *paper = row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
+    (void)count;
+    measured_line(row, form, bench_grid_add(grid));
+    if (paper && isfinite(paper->nodes.value)) paper_line(paper, bench_grid_add(grid));
 }
 
 void bench_elastic_row_text(FILE *file, const BenchRow *row)

@@ -10,9 +10,13 @@
 SmCode bench_elastic_measure(const BenchScene *scene, const BenchBody *body,
                              const BenchMeasureParams *params, BenchRow *row, SmError *error);
 
-/* A line for every row of a meshless body, with the paper's below and, if wanted, how far its
- * counts are off. No lines, and nothing to free, where none is. */
-void bench_elastic_grid(const BenchRow *rows, int count, bool differences, BenchGrid *grid);
+/* Whether the row is a meshless body's. */
+bool bench_row_of_elastic(const BenchRow *row);
+
+/* As bench_step_columns() and bench_step_lines() (step_grid.h). */
+void bench_elastic_columns(const BenchRow *rows, int count, BenchGridForm form, BenchGrid *grid);
+void bench_elastic_lines(const BenchRow *rows, int count, int r, BenchGridForm form,
+                         BenchGrid *grid);
 
 /* What the body is made of, behind the line of its check. */
 void bench_elastic_row_text(FILE *file, const BenchRow *row);

@@ -9,6 +9,7 @@
 void bench_grid_column(BenchGrid *grid, const char *heading, bool left)
 {
     grid->heading[grid->columns] = heading;
+    grid->width[grid->columns] = (int)strlen(heading);
     grid->left[grid->columns++] = left;
 }
 
@@ -34,29 +35,29 @@ void bench_grid_number(double value, char text[BENCH_GRID_TEXT])
         snprintf(text, BENCH_GRID_TEXT, "%.*f", digits < 0 ? 0 : digits > 9 ? 9 : digits, value);
 }
 
+void bench_grid_range(double low, double high, char text[BENCH_GRID_TEXT])
+{
+    char a[BENCH_GRID_TEXT], b[BENCH_GRID_TEXT];
+    bench_grid_number(low, a);
+    bench_grid_number(high, b);
+    snprintf(text, BENCH_GRID_TEXT, "%.40s to %.40s", a, b);
+}
+
 /* Heading where `line` is -1. */
 static const char *cell(const BenchGrid *grid, int line, int column)
 {
     return line < 0 ? grid->heading[column] : grid->line[line][column];
 }
 
-void bench_grid_text(FILE *file, const BenchGrid *grid)
+static void text_line(FILE *file, const BenchGrid *grid, int line)
 {
-    int width[BENCH_GRID_COLUMNS] = {0};
-    for (int l = -1; l < grid->lines; l++)
-        for (int c = 0; c < grid->columns; c++) {
-            int length = (int)strlen(cell(grid, l, c));
-            if (length > width[c]) width[c] = length;
-        }
-    for (int l = -1; l < grid->lines; l++) {
-        char text[BENCH_GRID_COLUMNS * (BENCH_GRID_TEXT + 2) + 1];
-        int used = 0;
-        for (int c = 0; c < grid->columns; c++)
-            used += snprintf(text + used, sizeof text - (size_t)used, "%s%*s", c ? "  " : "",
-                             grid->left[c] ? -width[c] : width[c], cell(grid, l, c));
-        while (used > 0 && text[used - 1] == ' ') text[--used] = '\0';
-        fprintf(file, "%s\n", text);
-    }
+    char text[BENCH_GRID_COLUMNS * (BENCH_GRID_TEXT + 2) + 1] = "";
+    int used = 0;
+    for (int c = 0; c < grid->columns; c++)
+        used += snprintf(text + used, sizeof text - (size_t)used, "%s%*s", c ? "  " : "",
+                         grid->left[c] ? -grid->width[c] : grid->width[c], cell(grid, line, c));
+    while (used > 0 && text[used - 1] == ' ') text[--used] = '\0';
+    fprintf(file, "%s\n", text);
 }
 
 /* Without the blanks that align the text table: at the start and after a bracket. */
@@ -68,21 +69,16 @@ static void tight_text(const char *padded, char text[BENCH_GRID_TEXT])
     text[used] = '\0';
 }
 
-void bench_grid_markdown(FILE *file, const BenchGrid *grid)
+static void markdown_line(FILE *file, const BenchGrid *grid, int line)
 {
-    for (int l = -1; l < grid->lines; l++) {
-        for (int c = 0; c < grid->columns; c++) {
-            char text[BENCH_GRID_TEXT];
-            tight_text(cell(grid, l, c), text);
-            fputs("| ", file);
-            for (const char *t = text; *t; t++) fprintf(file, *t == '|' ? "\\%c" : "%c", *t);
-            fputc(' ', file);
-        }
-        fputs("|\n", file);
-        for (int c = 0; c < grid->columns && l < 0; c++)
-            fputs(grid->left[c] ? "| --- " : "| ---: ", file);
-        if (l < 0) fputs("|\n", file);
+    for (int c = 0; c < grid->columns; c++) {
+        char text[BENCH_GRID_TEXT];
+        tight_text(cell(grid, line, c), text);
+        fputs("| ", file);
+        for (const char *t = text; *t; t++) fprintf(file, *t == '|' ? "\\%c" : "%c", *t);
+        fputc(' ', file);
     }
+    fputs("|\n", file);
 }
 
 static void latex_text(FILE *file, const char *padded)
@@ -105,18 +101,70 @@ static void latex_text(FILE *file, const char *padded)
     }
 }
 
+static void latex_line(FILE *file, const BenchGrid *grid, int line)
+{
+    for (int c = 0; c < grid->columns; c++) {
+        if (c) fputs(" & ", file);
+        latex_text(file, cell(grid, line, c));
+    }
+    fputs(" \\\\\n", file);
+}
+
+static void write_line(FILE *file, const BenchGrid *grid, BenchGridForm form, int line)
+{
+    static void (*const write[])(FILE *, const BenchGrid *, int) = {text_line, markdown_line,
+                                                                    latex_line};
+    write[form](file, grid, line);
+}
+
+void bench_grid_head(FILE *file, const BenchGrid *grid, BenchGridForm form)
+{
+    if (form == BENCH_GRID_LATEX) {
+        fputs("\\begin{tabular}{", file);
+        for (int c = 0; c < grid->columns; c++) fputc(grid->left[c] ? 'l' : 'r', file);
+        fputs("}\n\\hline\n", file);
+    }
+    write_line(file, grid, form, -1);
+    for (int c = 0; c < grid->columns && form == BENCH_GRID_MARKDOWN; c++)
+        fputs(grid->left[c] ? "| --- " : "| ---: ", file);
+    if (form == BENCH_GRID_MARKDOWN) fputs("|\n", file);
+    if (form == BENCH_GRID_LATEX) fputs("\\hline\n", file);
+}
+
+void bench_grid_lines(FILE *file, const BenchGrid *grid, BenchGridForm form)
+{
+    for (int l = 0; l < grid->lines; l++) write_line(file, grid, form, l);
+}
+
+void bench_grid_end(FILE *file, BenchGridForm form)
+{
+    if (form == BENCH_GRID_LATEX) fputs("\\hline\n\\end{tabular}\n", file);
+}
+
+void bench_grid_whole(FILE *file, const BenchGrid *grid, BenchGridForm form)
+{
+    BenchGrid fitted = *grid;
+    for (int l = 0; l < grid->lines; l++)
+        for (int c = 0; c < grid->columns; c++) {
+            int length = (int)strlen(grid->line[l][c]);
+            if (length > fitted.width[c]) fitted.width[c] = length;
+        }
+    bench_grid_head(file, &fitted, form);
+    bench_grid_lines(file, &fitted, form);
+    bench_grid_end(file, form);
+}
+
+void bench_grid_text(FILE *file, const BenchGrid *grid)
+{
+    bench_grid_whole(file, grid, BENCH_GRID_PLAIN);
+}
+
+void bench_grid_markdown(FILE *file, const BenchGrid *grid)
+{
+    bench_grid_whole(file, grid, BENCH_GRID_MARKDOWN);
+}
+
 void bench_grid_latex(FILE *file, const BenchGrid *grid)
 {
-    fputs("\\begin{tabular}{", file);
-    for (int c = 0; c < grid->columns; c++) fputc(grid->left[c] ? 'l' : 'r', file);
-    fputs("}\n\\hline\n", file);
-    for (int l = -1; l < grid->lines; l++) {
-        for (int c = 0; c < grid->columns; c++) {
-            if (c) fputs(" & ", file);
-            latex_text(file, cell(grid, l, c));
-        }
-        fputs(" \\\\\n", file);
-        if (l < 0) fputs("\\hline\n", file);
-    }
-    fputs("\\hline\n\\end{tabular}\n", file);
+    bench_grid_whole(file, grid, BENCH_GRID_LATEX);
 }

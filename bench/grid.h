@@ -1,4 +1,5 @@
-/* grid.h - a table of short texts, written with aligned columns, as Markdown or as LaTeX. */
+/* grid.h - a table of short texts, written with aligned columns, as Markdown or as LaTeX: whole, or
+ * line by line. */
 #ifndef BENCH_GRID_H
 #define BENCH_GRID_H
 
@@ -14,19 +15,33 @@ typedef struct {
     int columns, lines;
     const char *heading[BENCH_GRID_COLUMNS];
     bool left[BENCH_GRID_COLUMNS]; /* aligned left; the others right */
+    int width[BENCH_GRID_COLUMNS]; /* characters of the column as text, at least */
     BenchGridLine *line;           /* [lines] */
 } BenchGrid;
 
-/* Begins zeroed. A column; and an empty line, valid until the next one is added. */
+typedef enum { BENCH_GRID_PLAIN, BENCH_GRID_MARKDOWN, BENCH_GRID_LATEX } BenchGridForm;
+
+/* Begins zeroed. A column, as wide as its heading; and an empty line, valid until the next one is
+ * added. */
 void bench_grid_column(BenchGrid *grid, const char *heading, bool left);
 BenchGridLine *bench_grid_add(BenchGrid *grid);
 void bench_grid_free(BenchGrid *grid);
 
+/* The whole table, as text with columns as wide as they need be. */
+void bench_grid_whole(FILE *file, const BenchGrid *grid, BenchGridForm form);
 void bench_grid_text(FILE *file, const BenchGrid *grid);
 void bench_grid_markdown(FILE *file, const BenchGrid *grid); /* GitHub's */
 void bench_grid_latex(FILE *file, const BenchGrid *grid);    /* a tabular */
 
+/* The same in parts: the head, all lines (with the widths as they are; may be none), the end. */
+void bench_grid_head(FILE *file, const BenchGrid *grid, BenchGridForm form);
+void bench_grid_lines(FILE *file, const BenchGrid *grid, BenchGridForm form);
+void bench_grid_end(FILE *file, BenchGridForm form);
+
 /* Three significant digits without an exponent: "167.8", "1.97", "0.0075"; "-" for NaN. */
 void bench_grid_number(double value, char text[BENCH_GRID_TEXT]);
+
+/* "0.0131 to 0.0135" */
+void bench_grid_range(double low, double high, char text[BENCH_GRID_TEXT]);
 
 #endif

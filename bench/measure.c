@@ -122,6 +122,7 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
     bench_check_merge(&found, worst);
     row->goal_error = worst->goal_error;
     row->momentum_error = worst->momentum_error;
+    row->left_out = worst->blurred > worst->tied ? worst->blurred : worst->tied;
     bench_check_text(worst, sizeof row->found, row->found);
 }
 

@@ -1,17 +1,28 @@
-/* report.h - measured rows for people: every stage in ms and percent, the paper's values below. */
+/* report.h - measured rows for people: tables of steps, of scenes that change, and of meshless
+ * bodies, each row with the paper's values below; written row by row, as they are measured. */
 #ifndef BENCH_REPORT_H
 #define BENCH_REPORT_H
 
-#include <stdio.h>
-
+#include "grid.h"
 #include "machine.h"
 #include "row.h"
 
-/* Aligned columns, with a line on the check and the spread of every row. */
-void bench_report_text(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine);
+typedef struct {
+    FILE *file;
+    BenchGridForm form;
+    const BenchRow *rows; /* [count] meshless ones last; of those not measured only paper, scene
+                           * and engine need be there */
+    int count;
+    const BenchMachine *machine;
+    int written;    /* rows so far; begins at 0 */
+    BenchGrid grid; /* the table that is being written; begins zeroed */
+} BenchReport;
 
-/* A table in GitHub's Markdown, and a LaTeX tabular; the same columns. */
-void bench_report_markdown(FILE *file, const BenchRow *rows, int count);
-void bench_report_latex(FILE *file, const BenchRow *rows, int count);
+/* Writes the rows up to `measured`, and flushes. */
+void bench_report_rows(BenchReport *report, int measured);
+
+/* Ends the last table. As text: what the rows' checks found follows, a line each or, if `explain`
+ * is set, all of it. */
+void bench_report_end(BenchReport *report, bool explain);
 
 #endif

@@ -42,6 +42,7 @@ typedef struct {
     double goal_error;     /* largest deviation of g from brute force, in cells */
     double momentum_error; /* relative; no ground for invalidity where `plain` */
     double goal_tolerance;
+    long left_out; /* of a check (check.h): particles whose rotation or inertia is not resolved */
     int repeats;
     double *total;              /* [repeats] seconds a step, not instrumented */
     double (*stage)[SM_STAGES]; /* [repeats] seconds a step, instrumented, interleaved */

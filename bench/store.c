@@ -32,6 +32,7 @@ static const BenchField row_fields[] = {
     FIELD(BENCH_TEXT, found),
     FIELD(BENCH_DOUBLE, goal_error),
     FIELD(BENCH_DOUBLE, momentum_error),
+    FIELD(BENCH_LONG, left_out),
     FIELD(BENCH_DOUBLE, goal_tolerance),
     FIELD(BENCH_INT, repeats),
     FIELD(BENCH_DOUBLE, stage_ms),

@@ -4,11 +4,10 @@
 #include <string.h>
 
 #include "export.h"
-#include "report.h"
 
 const char *const bench_format_names[] = {"text", "markdown", "csv", "latex", "json", NULL};
 
-enum { COLUMNS = 31 };
+enum { COLUMNS = 35 };
 
 static const char *const column_names[COLUMNS] = {
     "paper",
@@ -42,14 +41,26 @@ static const char *const column_names[COLUMNS] = {
     "modes",
     "matrices_s",
     "modes_s",
+    "total_low_ms",
+    "total_high_ms",
+    "steps",
+    "samples_ms",
 };
 
-/* A value of one of three kinds: text, a whole number, or a number. */
+/* A value of one of these kinds. */
 typedef struct {
     const char *text;
-    long whole;
-    double number;                                  /* NaN: not given */
-    enum { TEXT, WHOLE, NUMBER, TIME, VALID } kind; /* TIME: not for invalid rows */
+    long whole;            /* also the number of samples */
+    double number;         /* NaN: not given */
+    const double *samples; /* s */
+    enum {
+        TEXT,
+        WHOLE,
+        NUMBER,
+        TIME,
+        SAMPLES,
+        VALID
+    } kind; /* TIME, SAMPLES: not for invalid rows */
 } Cell;
 
 static void fill_cells(const BenchRow *row, Cell cell[COLUMNS])
@@ -83,6 +94,10 @@ static void fill_cells(const BenchRow *row, Cell cell[COLUMNS])
     *c++ = (Cell){.kind = NUMBER, .number = moves ? (double)elastic->modes : NAN};
     *c++ = (Cell){.kind = TIME, .number = moves ? elastic->matrix_seconds : NAN};
     *c++ = (Cell){.kind = TIME, .number = moves ? elastic->mode_seconds : NAN};
+    *c++ = (Cell){.kind = TIME, .number = row->total_low_ms};
+    *c++ = (Cell){.kind = TIME, .number = row->total_high_ms};
+    *c++ = (Cell){.kind = WHOLE, .whole = row->steps};
+    *c++ = (Cell){.kind = SAMPLES, .samples = row->total, .whole = row->total ? row->repeats : 0};
 }
 
 static void csv_cell(FILE *file, const Cell *cell, bool valid)
@@ -91,25 +106,33 @@ static void csv_cell(FILE *file, const Cell *cell, bool valid)
         bench_csv_text(file, cell->text);
     else if (cell->kind == WHOLE)
         fprintf(file, "%ld", cell->whole);
-    else if (cell->kind == VALID || (cell->kind == TIME && !valid))
+    else if (cell->kind == VALID || (cell->kind >= TIME && !valid))
         fputs(valid ? "VALID" : "INVALID", file);
+    else if (cell->kind == SAMPLES)
+        for (long i = 0; i < cell->whole; i++) {
+            if (i) fputc(' ', file);
+            bench_csv_number(file, 1e3 * cell->samples[i]);
+        }
     else
         bench_csv_number(file, cell->number);
 }
 
-static void write_csv(FILE *file, const BenchRow *rows, int count)
+static void write_csv(BenchReport *report, int measured)
 {
-    for (int c = 0; c < COLUMNS; c++) fprintf(file, "%s%s", c ? "," : "", column_names[c]);
-    fputc('\n', file);
-    for (int r = 0; r < count; r++) {
+    FILE *file = report->file;
+    for (int c = 0; c < COLUMNS && !report->written; c++)
+        fprintf(file, "%s%s%s", c ? "," : "", column_names[c], c + 1 < COLUMNS ? "" : "\n");
+    for (; report->written < measured; report->written++) {
+        const BenchRow *row = &report->rows[report->written];
         Cell cell[COLUMNS];
-        fill_cells(&rows[r], cell);
+        fill_cells(row, cell);
         for (int c = 0; c < COLUMNS; c++) {
             if (c) fputc(',', file);
-            csv_cell(file, &cell[c], rows[r].valid);
+            csv_cell(file, &cell[c], row->valid);
         }
         fputc('\n', file);
     }
+    fflush(file);
 }
 
 static json_t *json_cell(const Cell *cell, bool valid)
@@ -117,45 +140,52 @@ static json_t *json_cell(const Cell *cell, bool valid)
     if (cell->kind == TEXT) return bench_json_text(cell->text);
     if (cell->kind == WHOLE) return json_integer(cell->whole);
     if (cell->kind == VALID) return json_boolean(valid);
-    if ((cell->kind == TIME && !valid) || !isfinite(cell->number)) return json_null();
+    if ((cell->kind >= TIME && !valid) || !isfinite(cell->number)) return json_null();
+    if (cell->kind == SAMPLES) {
+        json_t *list = json_array();
+        for (long i = 0; i < cell->whole; i++)
+            json_array_append_new(list, bench_json_number(1e3 * cell->samples[i]));
+        return list;
+    }
     return json_real(cell->number);
 }
 
-static void write_json(FILE *file, const BenchRow *rows, int count, const BenchMachine *machine)
+static void write_json(const BenchReport *report)
 {
     json_t *list = json_array();
-    for (int r = 0; r < count; r++) {
+    for (int r = 0; r < report->written; r++) {
+        const BenchRow *row = &report->rows[r];
         Cell cell[COLUMNS];
-        fill_cells(&rows[r], cell);
+        fill_cells(row, cell);
         json_t *object = json_object();
         for (int c = 0; c < COLUMNS; c++)
-            json_object_set_new(object, column_names[c], json_cell(&cell[c], rows[r].valid));
+            json_object_set_new(object, column_names[c], json_cell(&cell[c], row->valid));
         json_array_append_new(list, object);
     }
     json_t *root = json_object();
     json_object_set_new(root, "rows", list);
-    json_object_set_new(root, "environment", bench_json_machine(machine));
-    bench_json_write(file, root);
+    json_object_set_new(root, "environment", bench_json_machine(report->machine));
+    bench_json_write(report->file, root);
 }
 
-void bench_table_write(FILE *file, BenchFormat format, const BenchRow *rows, int count,
-                       const BenchMachine *machine)
+void bench_table_rows(BenchTable *table, int measured)
 {
-    switch (format) {
-    case BENCH_AS_TEXT:
-        bench_report_text(file, rows, count, machine);
-        break;
-    case BENCH_AS_MARKDOWN:
-        bench_report_markdown(file, rows, count);
-        break;
-    case BENCH_AS_LATEX:
-        bench_report_latex(file, rows, count);
-        break;
-    case BENCH_AS_CSV:
-        write_csv(file, rows, count);
-        break;
-    case BENCH_AS_JSON:
-        write_json(file, rows, count, machine);
-        break;
-    }
+    BenchReport *report = &table->report;
+    report->form = table->format == BENCH_AS_MARKDOWN ? BENCH_GRID_MARKDOWN
+                   : table->format == BENCH_AS_LATEX  ? BENCH_GRID_LATEX
+                                                      : BENCH_GRID_PLAIN;
+    if (table->format == BENCH_AS_CSV)
+        write_csv(report, measured);
+    else if (table->format == BENCH_AS_JSON)
+        report->written = measured;
+    else
+        bench_report_rows(report, measured);
+}
+
+void bench_table_end(BenchTable *table)
+{
+    if (table->format == BENCH_AS_JSON)
+        write_json(&table->report);
+    else if (table->format != BENCH_AS_CSV)
+        bench_report_end(&table->report, table->explain);
 }

@@ -5,10 +5,7 @@
 #ifndef BENCH_TABLE_H
 #define BENCH_TABLE_H
 
-#include <stdio.h>
-
-#include "machine.h"
-#include "row.h"
+#include "report.h"
 
 typedef enum {
     BENCH_AS_TEXT,
@@ -21,9 +18,20 @@ typedef enum {
 /* "text", "markdown", "csv", "latex", "json", NULL: in the order of BenchFormat. */
 extern const char *const bench_format_names[];
 
-/* Writes rows in the format. JSON: {"rows": [{column: value}], "environment": {...}}. CSV: a
- * header line, then a line for every row (RFC 4180); what is not given is empty. */
-void bench_table_write(FILE *file, BenchFormat format, const BenchRow *rows, int count,
-                       const BenchMachine *machine);
+/* A table that is written while its rows are measured. JSON: {"rows": [{column: value}],
+ * "environment": {...}}, at the end. CSV: a header line, then a line for every row (RFC 4180); what
+ * is not given is empty. */
+typedef struct {
+    BenchFormat format;
+    bool explain; /* all of what stands behind the rows, as text; otherwise a line each */
+    BenchReport
+        report; /* file, rows, count and machine are set by the caller; the rest is zeroed */
+} BenchTable;
+
+/* Writes the rows up to `measured`. */
+void bench_table_rows(BenchTable *table, int measured);
+
+/* Ends the table with the rows so far. */
+void bench_table_end(BenchTable *table);
 
 #endif

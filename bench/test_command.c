@@ -294,9 +294,31 @@ static void tables_set_the_octree_beside_the_lattice(void **state)
         assert_true(json_is_true(json_object_get(row, "valid")));
     }
     json_decref(root);
-    run("tables --paper octree --scene tree.cfg --repeats 1 --block 1", &result);
+    run("tables --paper octree --scene tree.cfg --repeats 1 --block 1 --explain", &result);
     assert_non_null(strstr(result.out, "found for 9 summation nodes a region"));
     assert_non_null(strstr(result.out, "88.0")); /* the paper's */
+    run("tables --paper octree --scene tree.cfg --scene lattice.cfg --repeats 1 --block 1",
+        &result);
+    char *row = strstr(result.out, "\ntree "); /* has waited for the lattice */
+    assert_non_null(row);
+    row[1 + strcspn(row + 1, "\n")] = '\0';
+    assert_null(strstr(row, "-  VALID")); /* the column of speed-ups */
+}
+
+/* What was measured before a scene that cannot be stays; a scene that is not there stops all. */
+static void rows_before_an_error_are_kept(void **state)
+{
+    (void)state;
+    Result result;
+    run("tables --scene tiny.cfg --scene wide.cfg --repeats 1 --block 1", &result);
+    assert_int_equal(result.code, 3);
+    assert_non_null(strstr(result.out, "\ntiny "));
+    assert_non_null(strstr(result.out, "Checked on the state that was timed"));
+    run("tables --scene tiny.cfg --scene wide.cfg --repeats 1 --block 1 --format json", &result);
+    assert_string_equal(result.out, "");
+    run("tables --scene tiny.cfg --scene no-such --repeats 1 --block 1", &result);
+    assert_int_equal(result.code, 2);
+    assert_string_equal(result.out, "");
 }
 
 static const char own_claims[] =
@@ -380,6 +402,7 @@ int main(void)
         cmocka_unit_test(tables_measure_a_scene),
         cmocka_unit_test(an_octree_can_be_run),
         cmocka_unit_test(tables_set_the_octree_beside_the_lattice),
+        cmocka_unit_test(rows_before_an_error_are_kept),
         cmocka_unit_test(claims_of_ones_own_decide_the_exit_code),
         cmocka_unit_test(a_full_disk_is_an_error),
         cmocka_unit_test(a_huge_file_is_announced_and_an_interrupt_leaves_nothing),
