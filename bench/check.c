@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "../octree/structure.h"
 #include "../reference/condition.h"
 
@@ -243,7 +244,7 @@ void bench_check_tied(const BenchCheck *check, const char *precision, const doub
         0.5 * bench_check_epsilon(precision) * extent((const double(*)[3])at, check->count);
     double least = fmin(0.125, known / tolerance);
     double *hold = sm_alloc((size_t)check->count, sizeof *hold);
-#pragma omp parallel for if (check->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0)) if (check->count > REF_SERIAL)
     for (long r = 0; r < check->count; r++) {
         RefCondition found;
         ref_condition(regions, check->weight, (const double(*)[3])check->rest,

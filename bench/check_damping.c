@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "../lib/vector.h"
 #include "../reference/condition.h"
 #include "check.h"
@@ -45,7 +46,7 @@ static void particle_rounding(const BenchCheck *check, const char *precision, co
     double *of = sm_alloc((size_t)check->count, sizeof *of);
     bench_check_cells(check, x, at);
     middle((const double(*)[3])at, check->count, origin);
-#pragma omp parallel for if (check->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0)) if (check->count > REF_SERIAL)
     for (long r = 0; r < check->count; r++) {
         RefCondition found;
         ref_condition(regions, check->weight, (const double(*)[3])check->rest,

@@ -107,7 +107,7 @@ static SmCode measure(const Options *options, BenchMachine *machine, SmError *er
     BenchCeilings ceilings;
     BenchProgress progress;
     int count;
-    int threads = options->common.threads ? options->common.threads : machine->cores;
+    int threads = options->common.threads;
     BenchKernelParams params = {.only = options->only,
                                 .precision = options->precision,
                                 .layout = options->layout,

@@ -2,11 +2,11 @@
 
 #include <assert.h>
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../fastlsm/fastlsm.h"
+#include "../lib/team.h"
 #include "../octree/halves.h"
 #include "../octree/sheaf.h"
 #include "cubes.h"
@@ -302,13 +302,12 @@ void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
     BenchSetup checked[2];
     SmError error;
     int times[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, times);
-    int before = omp_get_max_threads();
     bench_curve_begin(curve, "times 0.75 of a node's edge", measure->field);
     if (bench_sampled_hand(false, &body, &error)) {
         bench_curve_fail(curve, "%.180s", error.text);
         return;
     }
-    omp_set_num_threads(1); /* which regions take; searches are one after the other */
+    int before = sm_team_enter(1); /* which regions take; searches are one after the other */
     bench_setup_time(&body, BENCH_SETUP_DISTANCES, BENCH_F32, 1, &checked[0]);
     bench_setup_time(&body, BENCH_SETUP_REGIONS, BENCH_F32, 1, &checked[1]);
     for (int c = 0; c < 2; c++) {
@@ -317,6 +316,6 @@ void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
     }
     for (int t = 0; t < count && curve->valid; t++)
         add_share(&body, times[t], repeats_of(lab), count, curve);
-    omp_set_num_threads(before);
+    sm_team_leave(before);
     bench_sampled_free(&body);
 }

@@ -2,12 +2,12 @@
 
 #include <errno.h>
 #include <math.h>
-#include <omp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "provenance.h"
 
 const char *argp_program_version = "shapebench " SHAPEBENCH_VERSION;
@@ -27,8 +27,8 @@ static error_t parse_common(int key, char *text, struct argp_state *state)
     BenchCommon *common = state->input;
     switch (key) {
     case KEY_THREADS:
-        common->threads = (int)bench_option_long(state, "--threads", text, 0, 1024);
-        if (!common->threads) common->threads = omp_get_num_procs();
+        common->threads = (int)bench_option_long(state, "--threads", text, 0, SM_MOST_THREADS);
+        if (!common->threads) common->threads = sm_team(omp_get_num_procs());
         return 0;
     case KEY_SEED:
         common->seed = (unsigned long)bench_option_long(state, "--seed", text, 0, 2147483647);
@@ -44,6 +44,16 @@ const char *const bench_precisions[] = {"single", "double", NULL};
 const char *const bench_layouts[] = {"auto", "lists", "blocks", NULL};
 
 static const struct argp common_argp = {common_options, parse_common, 0, 0, 0, 0, 0};
+
+/* Where the system's BLAS is OpenBLAS, which has threads of its own. */
+void openblas_set_num_threads(int threads) __attribute__((weak));
+
+/* One number for all that takes none of its own (lib/team.h). */
+static void set_threads(int threads)
+{
+    omp_set_num_threads(threads);
+    if (openblas_set_num_threads) openblas_set_num_threads(threads);
+}
 
 /* Above a command's own parser and the common one: hands each its input. */
 static error_t parse_both(int key, char *text, struct argp_state *state)
@@ -122,6 +132,7 @@ void bench_options_parse(const struct argp *argp, int argc, char **argv, void *i
     void *inputs[] = {input, common};
     *common = (BenchCommon){.threads = 1, .seed = 1};
     bench_option_words(&both, argc, argv, 0, NULL, inputs);
+    set_threads(common->threads);
 }
 
 void bench_usage(const struct argp_state *state, const char *format, ...)

@@ -1,7 +1,6 @@
 #include "surfaces.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 #include "../lib/embed.h"
 #include "../lib/shape.h"
 #include "../lib/stage.h"
+#include "../lib/team.h"
 #include "../lib/voxel.h"
 #include "../octree/sampling.h"
 #include "../octree/surface.h"
@@ -198,8 +198,7 @@ SmCode bench_surface_time(int threads, int repeats, BenchSurface *surface, SmErr
     surface->particles = statue.voxels.particle_count;
     surface->nodes = statue.carried.gradients.count;
     surface->nodes_blended = (double)statue.carried.rows.live / (double)surface->vertices;
-    int before = omp_get_max_threads();
-    omp_set_num_threads(threads); /* what deforms takes OpenMP's number */
+    int before = sm_team_enter(threads);
     for (int k = 0; k < BENCH_SURFACE_KERNELS; k++) {
         surface->kernel[k].ns = sm_alloc((size_t)repeats, sizeof(double));
         if (!surface->kernel[k].wanted) continue;
@@ -212,7 +211,7 @@ SmCode bench_surface_time(int threads, int repeats, BenchSurface *surface, SmErr
         for (int k = 0; k < BENCH_SURFACE_KERNELS; k++)
             if (surface->kernel[k].wanted && surface->kernel[k].valid)
                 surface->kernel[k].ns[r] = time_once(&statue, (BenchSurfaceKernel)k, surface);
-    omp_set_num_threads(before);
+    sm_team_leave(before);
     free_statue(&statue);
     return SM_OK;
 }

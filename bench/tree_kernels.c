@@ -1,11 +1,11 @@
 #include "tree_kernels.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "spread.h"
 #include "tree_setup.h"
 #include "tree_steps.h"
@@ -362,10 +362,9 @@ static void run_setup(BenchKernelRun *run, const Spec *spec, const BenchSampled 
                       double *least_ns)
 {
     BenchSetup setup;
-    int before = omp_get_max_threads();
-    omp_set_num_threads(threads_of(run, spec)); /* graph and regions take OpenMP's number */
+    int before = sm_team_enter(threads_of(run, spec));
     bench_setup_time(body, spec->kind, run->params->precision, run->params->repeats, &setup);
-    omp_set_num_threads(before);
+    sm_team_leave(before);
     double user_ns = setup.user_ns / (double)body->tree.leaves;
     if (setup.valid && !strcmp(spec->name, least_of)) *least_ns = user_ns;
     if (chosen(run, spec)) {

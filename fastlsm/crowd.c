@@ -1,9 +1,9 @@
 #include "crowd.h"
 
-#include <omp.h>
 #include <stdlib.h>
 
 #include "../lib/rigid_lanes.h"
+#include "../lib/team.h"
 #include "match.h"
 #include "window.h"
 
@@ -72,7 +72,7 @@ Crowd *crowd_build(const Lsm *lsm, long bodies)
         region[0] = k->inverse_mass[s % L];
         for (int d = 0; d < 3; d++) region[1 + d] = k->offset[d][s % L];
     }
-    int threads = lsm->params.threads > 0 ? lsm->params.threads : omp_get_max_threads();
+    int threads = sm_team(lsm->params.threads);
     crowd->threads = threads > crowd->groups ? (int)crowd->groups : threads;
     crowd->scratch = sm_alloc((size_t)crowd->threads, sizeof *crowd->scratch);
     GroupRows rows;

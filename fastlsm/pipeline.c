@@ -1,4 +1,5 @@
 #include "pipeline.h"
+#include "../lib/team.h"
 
 #include <omp.h>
 #include <stdlib.h>
@@ -13,7 +14,7 @@ static int chapter_from(const Lsm *lsm, int layer)
 
 void lsm_pipeline_split(Lsm *lsm)
 {
-    int threads = lsm->params.threads > 0 ? lsm->params.threads : omp_get_max_threads();
+    int threads = sm_team(lsm->params.threads);
     long worth = lsm->blocks / BLOCKS_WORTH_A_THREAD;
     if (threads > worth) threads = worth > 1 ? (int)worth : 1;
     if (threads > lsm->layers) threads = lsm->layers > 0 ? lsm->layers : 1;

@@ -2,13 +2,13 @@
 
 #include <float.h>
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "collide_pairs.h"
 #include "collide_ways.h"
 #include "error.h"
+#include "team.h"
 #include "vector.h"
 
 /* What one thread found. */
@@ -409,7 +409,7 @@ SmCollide *sm_collide_build(const SmCollideRest *rest, const SmCollideParams *pa
     SmCollide *c = sm_alloc(1, sizeof *c);
     c->params = *params;
     c->bodies = bodies;
-    c->threads = threads > 0 ? threads : omp_get_max_threads();
+    c->threads = sm_team(threads);
     sm_collide_shape_build(rest, &c->shape);
     work_build(c);
     c->work->cells = rest->cells;

@@ -87,8 +87,8 @@ typedef struct {
     SmCollideWork *work;
 } SmCollide;
 
-/* For `bodies` instances of the body; threads 0: all cores. The description is not copied: what it
- * points to stays where it is until the next one. Free with sm_collide_free(). */
+/* For `bodies` instances of the body; threads 0: OpenMP's number. The description is not copied:
+ * what it points to stays where it is until the next one. Free with sm_collide_free(). */
 SmCollide *sm_collide_build(const SmCollideRest *rest, const SmCollideParams *params, long bodies,
                             int threads);
 void sm_collide_free(SmCollide *collide);

@@ -7,6 +7,7 @@
 
 #include "nearest_cell.h"
 #include "polar.h"
+#include "team.h"
 #include "vector.h"
 
 /* U and V with U x V = N, orthonormal; zero when N is. */
@@ -68,7 +69,7 @@ void sm_embed_grow(SmEmbedding *e, const SmMesh *mesh, const SmSites *sites,
     e->weight = sm_realloc(e->weight, count, sizeof *e->weight);
     e->tangent_u = sm_realloc(e->tangent_u, count, sizeof *e->tangent_u);
     e->tangent_v = sm_realloc(e->tangent_v, count, sizeof *e->tangent_v);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(sm_team(0))
     for (long v = e->vertex_count; v < mesh->vertex_count; v++)
         embed_vertex(sites, mesh->position[v], normal[v], e, v);
     e->vertex_count = mesh->vertex_count;
@@ -134,7 +135,7 @@ static void stand_off(const SmFlat *flat, const int corner[8], const double (*x)
 void sm_embed_apply(const SmEmbedding *embedding, const double (*x)[3], double (*position)[3],
                     double (*normal)[3])
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(sm_team(0))
     for (long v = 0; v < embedding->vertex_count; v++) {
         const int *corner = embedding->corner[v];
         const double *first = x[corner[0]];

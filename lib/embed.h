@@ -40,7 +40,7 @@ void sm_embed_free(SmEmbedding *embedding);
 
 /* Deformed vertex positions (and unit normals, unless NULL) from particle positions x.
  * A normal whose tangents are parallel comes out zero, never NaN (while x is finite and within
- * 1e60). Threads share the vertices; any number of them gives the same bits. */
+ * 1e60). OpenMP's number of threads share the vertices; any gives the same bits. */
 void sm_embed_apply(const SmEmbedding *embedding, const double (*x)[3], double (*position)[3],
                     double (*normal)[3]);
 

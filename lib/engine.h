@@ -51,7 +51,7 @@ typedef struct {
     SmSummation summation;
     SmPolarMethod polar;
     SmLayout layout;                     /* AUTO picks the faster one; results agree to rounding */
-    int threads;                         /* 0: all cores */
+    int threads;                         /* of all it does; 0: OpenMP's number, all cores */
     const double *mass;                  /* of the lattice's vertices, [voxels->particle_count] kg;
                                           * or NULL: 1 each, of the octree 1 a finest cell */
     long instances;                      /* bodies that share the lattice; 0 means 1 */

@@ -1,4 +1,5 @@
 #include "polygonise.h"
+#include "team.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -89,7 +90,7 @@ typedef void (*NodeVisit)(Lattice *g, const Leaf *leaf, const int at[3], int s);
 
 static void visit_nodes(Lattice *g, NodeVisit visit)
 {
-#pragma omp parallel for schedule(dynamic, 16)
+#pragma omp parallel for schedule(dynamic, 16) num_threads(sm_team(0))
     for (int l = 0; l < g->leaf_count; l++) {
         const Leaf *leaf = &g->leaf[l];
         for (int c = 0; c < LEAF * LEAF * LEAF; c++) {
@@ -169,7 +170,7 @@ static int count_vertices(Lattice *g)
 
 static void place_vertices(const Lattice *g, SmMesh *mesh)
 {
-#pragma omp parallel for schedule(dynamic, 16)
+#pragma omp parallel for schedule(dynamic, 16) num_threads(sm_team(0))
     for (int l = 0; l < g->leaf_count; l++) {
         const Leaf *leaf = &g->leaf[l];
         for (int c = 0; c < 2 * LEAF * LEAF * LEAF; c++) {

@@ -1,10 +1,10 @@
 /* build.c - bodies from a tree, its regions and masses; and what moves them as a whole. */
 #include <assert.h>
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "changing.h"
 #include "ghosts.h"
 #include "octree.h"
@@ -112,7 +112,7 @@ Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mas
     oct->params = *params;
     oct->levels = tree->levels;
     oct->instances = params->instances > 1 ? params->instances : 1;
-    oct->workers = params->threads > 0 ? params->threads : omp_get_max_threads();
+    oct->workers = sm_team(params->threads);
     if (oct->instances > 1 && oct->workers > oct->instances) oct->workers = (int)oct->instances;
     oct->body = sm_alloc((size_t)oct->instances, sizeof *oct->body);
     build_lists(tree, regions, oct);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../lib/rotate_lanes.h"
+#include "../lib/team.h"
 #include "changing.h"
 #include "contacts.h"
 #include "head.h"
@@ -194,7 +195,9 @@ static SmCode engine_begin(SmEngine *e, SmError *error)
         return sm_fail(error, SM_USAGE,
                        "octree: bodies of form 'adjoint' cannot be resampled; use 'hierarchical', "
                        "which is the same where regions are symmetric, as the engine's are");
+    int team = sm_team_enter(e->oct->params.threads);
     oct_resample_prepare(&e->head.structure);
+    sm_team_leave(team);
     oct_prepare(e->oct, &e->head.structure);
     return SM_OK;
 }
@@ -300,13 +303,15 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     double start = sm_now();
     SmCode code = check(voxels, params, error);
     if (code) return code;
+    int team = sm_team_enter(params->threads);
     SmEngine *e = sm_alloc(1, sizeof *e);
     code = oct_structure_build(voxels, options, params->mass, &e->head.structure, error);
+    if (!code) complete(e, options, params);
+    sm_team_leave(team);
     if (code) {
         free(e);
         return code;
     }
-    complete(e, options, params);
     e->build_seconds = sm_now() - start;
     *engine = e;
     return SM_OK;
@@ -319,13 +324,15 @@ static SmCode engine_rebuild(SmEngine *e, const SmEngineParams *params, SmEngine
     if (e->oct->instances > 1)
         return sm_fail(error, SM_USAGE, "octree: bodies that share a structure do not change");
     SmEngine *made = sm_alloc(1, sizeof *made);
+    int team = sm_team_enter(params->threads);
     SmCode code = oct_structure_rebuild(&e->head.structure, params->mass, &made->head.structure,
                                         &leaf, error);
+    if (!code) complete(made, &e->head.structure.options, params);
+    sm_team_leave(team);
     if (code) {
         free(made);
         return code;
     }
-    complete(made, &e->head.structure.options, params);
     engine_leaves(e);
     for (long p = 0; p < made->count; p++) order[p] = e->number[leaf[p]];
     free(leaf);

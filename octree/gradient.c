@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../lib/polar.h"
+#include "../lib/team.h"
 #include "lists.h"
 
 enum { FAR_EDGES = 64, CHUNK = 16 };
@@ -90,7 +91,7 @@ static void choose_all(const OctTree *tree, const OctGraph *graph, const unsigne
     int *neighbour;
     OctLists lists;
     oct_lists_init(&lists, g->leaves);
-#pragma omp parallel
+#pragma omp parallel num_threads(sm_team(0))
     {
         OctReach reach = {0};
 #pragma omp for schedule(dynamic)
@@ -205,7 +206,7 @@ void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsig
         g->place[k] = (int)g->count;
         g->leaf[g->count++] = k;
     }
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(sm_team(0))
     for (long n = 0; n < g->count; n++) {
         Moments m;
         neighbour_moments(tree, g, g->leaf[n], &m);
@@ -328,7 +329,7 @@ void oct_gradients_find(const OctGradients *gradients, const double (*x)[3], dou
 {
     const OctGradients *g = gradients;
     const double(*share)[3] = g->rows.value;
-#pragma omp parallel
+#pragma omp parallel num_threads(sm_team(0))
     {
 #pragma omp for schedule(static)
         for (long n = 0; n < g->count; n++) {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "touch.h"
 #include "visible.h"
 
@@ -81,7 +82,7 @@ static void add_unjoined(const OctTree *tree, OctTouch *touch)
 {
     OctPlots joined;
     join(tree, touch, &joined);
-#pragma omp parallel if (tree->leaves > SERIAL)
+#pragma omp parallel num_threads(sm_team(0)) if (tree->leaves > SERIAL)
     {
         OctVisible visible;
         Pairs own = {0};

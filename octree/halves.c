@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "cover.h"
 #include "doubts.h"
 #include "lists.h"
@@ -54,7 +55,7 @@ static void find_all(const Build *b, OctLists *member, OctDoubts *doubts)
 {
     OctReach reach;
     oct_reach_init(&reach, b->graph);
-#pragma omp parallel if (b->tree->leaves > SERIAL)
+#pragma omp parallel num_threads(sm_team(0)) if (b->tree->leaves > SERIAL)
     {
         OctSheaf s;
         oct_sheaf_init(&s, b->tree, &reach);
@@ -125,7 +126,7 @@ void oct_halves_build(const OctTree *tree, const OctGraph *graph, const int *w, 
     OctDoubts *doubts = sm_alloc((size_t)blocks, sizeof *doubts);
     find_all(&b, &member, doubts);
     oct_lists_pack(&member, &halves->first, &halves->member);
-#pragma omp parallel for schedule(dynamic) if (tree->leaves > SERIAL)
+#pragma omp parallel for schedule(dynamic) num_threads(sm_team(0)) if (tree->leaves > SERIAL)
     for (long block = 0; block < blocks; block++) keep_missing(&b, doubts + block);
     turn_round(doubts, blocks, halves);
     for (long block = 0; block < blocks; block++) oct_doubts_free(doubts + block);

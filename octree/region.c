@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "cover.h"
 #include "distance.h"
 #include "halves.h"
@@ -90,7 +91,7 @@ static void make_regions(const OctTree *tree, const OctGraph *graph, const int *
 {
     OctLists member;
     oct_lists_init(&member, tree->leaves);
-#pragma omp parallel if (tree->leaves > SERIAL)
+#pragma omp parallel num_threads(sm_team(0)) if (tree->leaves > SERIAL)
     {
         Maker m = {.tree = tree, .halves = h, .w = w};
         oct_cover_init(&m.cover, tree, tree->nodes);

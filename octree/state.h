@@ -26,7 +26,7 @@ typedef struct {
     double yield;      /* |S - I| from which a region deforms for good; plasticity only if creep */
     double creep;      /* share of it that stays in each step: h times the creep rate; 0: elastic */
     double most;       /* largest |S_r - I| */
-    int threads;       /* 0: all cores */
+    int threads;       /* 0: OpenMP's number */
     long instances;    /* bodies that share the structure; 0 means 1 */
 } OctParams;
 

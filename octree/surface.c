@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "../lib/vector.h"
 #include "lists.h"
 #include "tie.h"
@@ -52,7 +53,7 @@ static void tie_all(const OctCarrier *c, OctSurface *s)
     long *first;
     int *leaf;
     oct_lists_init(&lists, s->vertices);
-#pragma omp parallel
+#pragma omp parallel num_threads(sm_team(0))
     {
         OctTie tie = {0};
 #pragma omp for schedule(dynamic)
@@ -67,7 +68,7 @@ static void tie_all(const OctCarrier *c, OctSurface *s)
     oct_lists_pack(&lists, &first, &leaf);
     oct_rows_adopt(&s->rows, s->vertices, first, leaf, sizeof(float));
     float *weight = s->rows.value;
-#pragma omp parallel
+#pragma omp parallel num_threads(sm_team(0))
     {
         OctTie tie = {0};
 #pragma omp for schedule(dynamic, OCT_BLOCK)
@@ -184,7 +185,7 @@ void oct_surface_move(OctSurface *surface, const double (*x)[3], double (*positi
                       double (*normal)[3])
 {
     oct_gradients_find(&surface->gradients, x, surface->F);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(sm_team(0))
     for (long v = 0; v < surface->vertices; v++) {
         blend(surface, x, v, position[v]);
         if (normal) turn_normal(surface, v, normal[v]);

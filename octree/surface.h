@@ -71,7 +71,7 @@ void oct_surface_retie(OctSurface *surface, const SmMesh *mesh, const OctCarrier
 
 /* Vertex positions (and unit normals, unless NULL) from node positions x, all in mesh units. A
  * normal of a surface that has collapsed is 0, never NaN (while x is finite and within 1e60).
- * Allocates nothing; any number of threads gives the same bits. */
+ * Allocates nothing. OpenMP's number of threads, of which any gives the same bits. */
 void oct_surface_move(OctSurface *surface, const double (*x)[3], double (*position)[3],
                       double (*normal)[3]);
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/team.h"
 #include "../lib/vector.h"
 #include "polar.h"
 
@@ -41,7 +42,7 @@ static long reach(const RefLinks *links, int w, long r, long *seen, int *found)
 /* Counts every region's members into start[r + 1] where `member` is NULL, else writes them. */
 static void reach_all(const RefLinks *links, int w, long *start, int *member)
 {
-#pragma omp parallel if (links->count > REF_SERIAL)
+#pragma omp parallel num_threads(sm_team(0)) if (links->count > REF_SERIAL)
     {
         long *seen = sm_alloc((size_t)links->count, sizeof *seen);
         int *found = sm_alloc((size_t)links->count, sizeof *found);
@@ -142,7 +143,7 @@ static double weighted_mean(const RefRegions *regions, const double *m, const do
 void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const double *m,
                     const double (*x)[3], RefMatch *match)
 {
-#pragma omp parallel for if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long r = 0; r < regions->count; r++) {
         RefMatch *t = match + r;
         weighted_mean(regions, m, x0, r, t->c0);
@@ -160,7 +161,7 @@ void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const doub
 
 void ref_match_rotations(const RefRegions *regions, RefMatch *match)
 {
-#pragma omp parallel for if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long r = 0; r < regions->count; r++) {
         double R[9];
         ref_polar(match[r].A, match[r].R, R);
@@ -171,7 +172,7 @@ void ref_match_rotations(const RefRegions *regions, RefMatch *match)
 void ref_match_goals(const RefRegions *regions, const RefMatch *match, const double (*x0)[3],
                      const double (*x)[3], double (*g)[3])
 {
-#pragma omp parallel for if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long i = 0; i < regions->count; i++) {
         double sum[3] = {0}; /* of T_r x0_i - x_i; the regions that hold i are R_i's members */
         for (long n = regions->start[i]; n < regions->start[i + 1]; n++) {
@@ -264,9 +265,9 @@ void ref_rigid_velocity(const RefRegions *regions, const double *m, const double
                         const double (*v)[3], double (*u)[3])
 {
     Motion *motion = sm_alloc((size_t)regions->count, sizeof *motion);
-#pragma omp parallel for if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long r = 0; r < regions->count; r++) rigid_motion(regions, m, x, v, r, motion + r);
-#pragma omp parallel for if (regions->count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long i = 0; i < regions->count; i++) {
         double sum[3] = {0};
         for (long n = regions->start[i]; n < regions->start[i + 1]; n++) {

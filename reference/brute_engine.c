@@ -1,11 +1,11 @@
 /* The brute-force engine: every instance is a body of its own, every step the equations in turn. */
 #include <assert.h>
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../lib/handles.h"
+#include "../lib/team.h"
 #include "brute.h"
 #include "obstacle.h"
 
@@ -80,14 +80,6 @@ static double (*rest_positions(const SmVoxels *voxels))[3]
     return rest;
 }
 
-/* OpenMP's team for this engine's parameters; returns the caller's, to be put back. */
-static int take_threads(const SmEngine *engine)
-{
-    int before = omp_get_max_threads();
-    omp_set_num_threads(engine->params.threads > 0 ? engine->params.threads : omp_get_num_procs());
-    return before;
-}
-
 static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **result,
                            SmError *error)
 {
@@ -114,7 +106,7 @@ static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params,
     size_t bodies = (size_t)engine->params.instances;
     engine->held = sm_alloc(bodies * (size_t)engine->count, sizeof *engine->held);
     engine->body = sm_alloc(bodies, sizeof *engine->body);
-    int threads = take_threads(engine);
+    int team = sm_team_enter(engine->params.threads);
     double(*rest)[3] = rest_positions(voxels);
     for (size_t b = 0; b < bodies; b++) {
         double pose[3][4];
@@ -122,7 +114,7 @@ static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params,
         body_create(engine, CONST(rest), (const double(*)[4])pose, engine->body + b);
     }
     free(rest);
-    omp_set_num_threads(threads);
+    sm_team_leave(team);
     engine->build_seconds = sm_now() - start;
     *result = engine;
     return SM_OK;
@@ -230,7 +222,7 @@ static void fracture_body(const SmEngine *engine, Body *body)
 
 static void brute_step(SmEngine *engine, SmLaps *laps)
 {
-    int threads = take_threads(engine);
+    int team = sm_team_enter(engine->params.threads);
     for (long b = 0; b < engine->params.instances; b++) {
         match_body(engine, engine->body + b, laps);
         accelerate_body(engine, engine->body + b, laps);
@@ -241,15 +233,15 @@ static void brute_step(SmEngine *engine, SmLaps *laps)
         if (engine->params.strain_limit > 0) fracture_body(engine, engine->body + b);
     }
     engine->steps++;
-    omp_set_num_threads(threads);
+    sm_team_leave(team);
     sm_lap(laps, SM_OTHER);
 }
 
 static void brute_goals(SmEngine *engine)
 {
-    int threads = take_threads(engine);
+    int team = sm_team_enter(engine->params.threads);
     for (long b = 0; b < engine->params.instances; b++) match_body(engine, engine->body + b, NULL);
-    omp_set_num_threads(threads);
+    sm_team_leave(team);
 }
 
 static double (*field_of(Body *body, SmField field))[3]

@@ -1,4 +1,5 @@
 #include "link.h"
+#include "../lib/team.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -96,14 +97,14 @@ void ref_links_build(const SmVoxels *voxels, const int (*broken)[2], long broken
 
     links->count = count;
     links->start = sm_alloc((size_t)count + 1, sizeof *links->start);
-#pragma omp parallel for if (count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0)) if (count > REF_SERIAL)
     for (long p = 0; p < count; p++) {
         int neighbour[RING];
         links->start[p + 1] = one_ring(&lattice, p, neighbour);
     }
     for (long p = 0; p < count; p++) links->start[p + 1] += links->start[p];
     links->neighbour = sm_alloc((size_t)links->start[count], sizeof *links->neighbour);
-#pragma omp parallel for if (count > REF_SERIAL)
+#pragma omp parallel for num_threads(sm_team(0)) if (count > REF_SERIAL)
     for (long p = 0; p < count; p++) {
         int neighbour[RING];
         int found = one_ring(&lattice, p, neighbour);

@@ -104,7 +104,9 @@ static void solve_free(RefSolver *solver, const double *b, double *x)
                            .x = (double *)b,
                            .xtype = CHOLMOD_REAL,
                            .dtype = CHOLMOD_DOUBLE};
-    cholmod_dense *result = cholmod_solve(CHOLMOD_A, solver->factor, &right, &solver->common);
+    cholmod_dense *result;
+#pragma omp teams num_teams(1) thread_limit(1)
+    result = cholmod_solve(CHOLMOD_A, solver->factor, &right, &solver->common);
     memcpy(x, result->x, size * sizeof *x);
     cholmod_free_dense(&result, &solver->common);
 }
@@ -137,6 +139,13 @@ static void complement(RefSolver *solver)
     free(work);
 }
 
+/* On one thread, as all else here: CHOLMOD itself asks for four, whatever OpenMP's number is. */
+static void factorise(cholmod_sparse *matrix, RefSolver *solver)
+{
+#pragma omp teams num_teams(1) thread_limit(1)
+    cholmod_factorize(matrix, solver->factor, &solver->common);
+}
+
 SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRows *rows,
                          RefSolver **result, SmError *error)
 {
@@ -150,7 +159,7 @@ SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRow
     cholmod_sparse *matrix = shifted(matrices, shift, common);
     if (matrix && solver->rows) matrix = held(matrix, matrices, &solver->A, common);
     if (matrix) solver->factor = cholmod_analyze(matrix, common);
-    if (solver->factor) cholmod_factorize(matrix, solver->factor, common);
+    if (solver->factor) factorise(matrix, solver);
     cholmod_free_sparse(&matrix, common);
     int status = common->status;
     double condition = status == CHOLMOD_OK ? cholmod_rcond(solver->factor, common) : 0;

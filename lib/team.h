@@ -1,0 +1,35 @@
+/* team.h - how many threads a parallel loop runs on.
+ *
+ * Every parallel region names its number by sm_team(), so that one number holds everywhere: that
+ * of the engine it belongs to (SmEngineParams.threads), else OpenMP's of the calling thread
+ * (omp_set_num_threads(), OMP_NUM_THREADS, or all cores), which the program sets to its --threads.
+ */
+#ifndef SM_TEAM_H
+#define SM_TEAM_H
+
+#include <omp.h>
+
+enum { SM_MOST_THREADS = 1024 }; /* OpenMP's runtimes crash some way beyond */
+
+/* The number that was asked for, where it is 0 OpenMP's; never too many. */
+static inline int sm_team(int wanted)
+{
+    int threads = wanted > 0 ? wanted : omp_get_max_threads();
+    return threads < SM_MOST_THREADS ? threads : SM_MOST_THREADS;
+}
+
+/* Makes that the number for what the calling thread calls from here to sm_team_leave(), which takes
+ * what this returns: the number before. */
+static inline int sm_team_enter(int wanted)
+{
+    int before = omp_get_max_threads();
+    omp_set_num_threads(sm_team(wanted));
+    return before;
+}
+
+static inline void sm_team_leave(int before)
+{
+    omp_set_num_threads(before);
+}
+
+#endif
