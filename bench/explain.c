@@ -28,8 +28,8 @@ static void brief_row(FILE *file, const BenchRow *row, int width)
     if (bench_row_of_elastic(row))
         fprintf(file, "all %d checks hold", (int)BENCH_ELASTIC_CHECKS);
     else
-        fprintf(file, "goals off %.1e, momentum %.0e%s", row->goal_error, row->momentum_error,
-                row->plain ? " (plain)" : "");
+        fprintf(file, "goals %.1e, momentum %.0e%s", row->goal_error, row->momentum_error,
+                row->plain ? " plain" : "");
     if (row->left_out) fprintf(file, ", %ld left out", row->left_out);
     bench_grid_range(row->total_low_ms, row->total_high_ms, range);
     fprintf(file, "; %s ms\n", range);
@@ -40,8 +40,9 @@ void bench_explain_briefly(FILE *file, const BenchRow *rows, int count)
     int width = 0;
     for (int r = 0; r < count; r++)
         if ((int)strlen(rows[r].scene) > width) width = (int)strlen(rows[r].scene);
-    fputs("Checked on the state that was timed (goals in cells), and the times' quartiles; "
-          "--explain says more:\n",
+    fputs("On the state that was timed: goals off in cells, momentum; then times' quartiles "
+          "(more: "
+          "--explain)\n",
           file);
     for (int r = 0; r < count; r++) {
         brief_row(file, &rows[r], width);

@@ -313,7 +313,7 @@ static void rows_before_an_error_are_kept(void **state)
     run("tables --scene tiny.cfg --scene wide.cfg --repeats 1 --block 1", &result);
     assert_int_equal(result.code, 3);
     assert_non_null(strstr(result.out, "\ntiny "));
-    assert_non_null(strstr(result.out, "Checked on the state that was timed"));
+    assert_non_null(strstr(result.out, "On the state that was timed"));
     run("tables --scene tiny.cfg --scene wide.cfg --repeats 1 --block 1 --format json", &result);
     assert_string_equal(result.out, "");
     run("tables --scene tiny.cfg --scene no-such --repeats 1 --block 1", &result);
