@@ -8,7 +8,7 @@
 #include "command.h"
 #include "option.h"
 
-enum { FILES = 256, FIXED = 8 }; /* FIXED: words of the command that starts the script */
+enum { FILES = 256, FIXED = 9 }; /* FIXED: words of the command that starts the script */
 
 #define PYTHON "/usr/bin/python3" /* Debian's, which has h5py and matplotlib */
 
@@ -17,6 +17,7 @@ typedef struct {
     const char *file[FILES];
     int count;
     const char *output, *title;
+    bool overwrite;
 } Options;
 
 static const struct argp_option option_list[] = {
@@ -24,6 +25,7 @@ static const struct argp_option option_list[] = {
      "NAME.html: one page with everything in it; any other NAME: a folder with index.html, and "
      "every figure as SVG, PNG and CSV (default: report.html)",
      1},
+    BENCH_OVERWRITE_OPTION(1),
     {"title", 't', "TEXT", 0, "The page's heading (default: shapebench report)", 1},
     {0},
 };
@@ -38,6 +40,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
         return 0;
     case 't':
         options->title = text;
+        return 0;
+    case BENCH_KEY_OVERWRITE:
+        options->overwrite = true;
         return 0;
     case ARGP_KEY_ARG:
         if (options->count == FILES) bench_usage(state, "at most %d files", FILES);
@@ -90,6 +95,7 @@ int bench_command_report(int argc, char **argv)
                                            options.output, "--title", options.title};
     int words = 6;
     if (options.common.quiet) word[words++] = "--quiet";
+    if (options.overwrite) word[words++] = "--overwrite";
     word[words++] = "--"; /* what follows are files, whatever they begin with */
     memcpy(word + words, options.file, (size_t)options.count * sizeof *word);
     fflush(NULL);

@@ -12,13 +12,15 @@ rest shapes of a plastic body begin at 1 with step 0 and flow from record to rec
 the yield to rounding, it may or may not). Prints the largest deviations in (finest) cells, of rest shapes
 in their unit; velocities count as what they move in a step, and are compared after the last step only,
 because the others hold the next step's pushes already. Particles that follow a handle or end within a
-thousandth of a cell of an obstacle are compared in their goals only.
+thousandth of a cell of an obstacle are compared in their goals only, and so is a record after which the next
+step is missing; how many those are is said.
 Exit code: 0 all within tolerance, 1 not, 2 nothing can be compared, 3 the file cannot be used."""
 import heapq
 import sys
 
-import h5py
-import numpy as np
+from plots import fail, opened
+
+import numpy as np  # after plots, which says what is missing
 
 TOLERANCE = {"double": 1e-9, "single": 1e-4}  # cells
 
@@ -40,6 +42,8 @@ def regions(near, w):
     for p in range(len(near)):
         reached = front = {p}
         for _ in range(w):
+            if not front:
+                break
             front = set().union(*(near[q] for q in front)) - reached
             reached = reached | front
         members.append(np.array(sorted(reached)))
@@ -50,6 +54,7 @@ class Lattice:
     """Regions, masses and what may break of the group /particles."""
 
     def __init__(self, group):
+        usable_lattice(group)
         self.mass = group["mass"][:]
         near = links(group["cells"][:], group["coordinate"][:])
         self.members = regions(near, group.attrs["w"])
@@ -73,10 +78,10 @@ class Tree:
 
     def __init__(self, group):
         self.mass, self.node, self.rest = group["mass"][:], group["node"][:], group["rest"][:]
+        usable_tree(group)
         self.parent, self.plastic = group["tree/parent"][:].tolist(), group.attrs["creep"] > 0
         self.creep = group.attrs["creep"] * group.attrs["h"]
         self.yield_, self.most = group.attrs["yield"], group.attrs["most"]
-        usable(group)
         wrong = misplaced(group)
         if wrong:
             print(wrong, file=sys.stderr)
@@ -178,17 +183,70 @@ class Tree:
         return None
 
 
-def usable(group):
-    """Raises ValueError where sizes or indices do not fit each other."""
-    nodes, leaves, edges = len(group["tree/parent"]), len(group["node"]), len(group["edge"])
-    sizes = {"tree/centre": (nodes, 3), "tree/size": (nodes,), "tree/leaf": (nodes,),
-             "tree/material": (nodes,), "rest": (leaves, 3), "size": (leaves,), "mass": (leaves,),
-             "w": (leaves,), "reached": (leaves,), "edge": (edges, 2), "length": (edges,),
-             "region_first": (leaves + 1,)}
+def demand_numbers(group, ranges):
+    """Raises ValueError unless the attributes are single numbers in their ranges, ends included."""
+    for name, (low, high) in ranges.items():
+        value = np.asarray(group.attrs[name])
+        if value.shape != () or value.dtype.kind not in "iuf" or not low <= value <= high:
+            raise ValueError(f"attribute {name} is {group.attrs[name]}, not from {low:g} to {high:g}")
+
+
+def demand_arrays(group, sizes):
+    """Raises ValueError unless the datasets have these shapes and hold finite numbers, positive ones where the
+    name ends in +, whole ones where it ends in #."""
     for name, size in sizes.items():
-        if group[name].shape != size:
-            raise ValueError(f"{name} is {group[name].shape}, not {size}")
-    ranges = {"node": (0, nodes), "edge": (0, leaves), "tree/leaf": (-1, leaves),
+        values = group[name.rstrip("+#")]
+        if values.shape != size:
+            raise ValueError(f"{values.name} is {values.shape}, not {size}")
+        if values.dtype.kind not in ("iu" if name.endswith("#") else "iuf"):
+            raise ValueError(f"{values.name} holds {values.dtype}")
+        if not np.isfinite(values[:]).all() or name.endswith("+") and not (values[:] > 0).all():
+            raise ValueError(f"{values.name} has a number that it cannot have")
+
+
+def usable(group, count):
+    """Raises ValueError where what both kinds of bodies have does not fit `count` particles or leaves."""
+    a, large = group.attrs, 1e100
+    demand_numbers(group, {"h": (1e-30, large), "cell": (1e-30, large), "damping": (0, 1),
+                           "damping_every": (0, 2**31), "instances": (1, 2**31)})
+    gravity, records, all_ = np.asarray(a["gravity"]), len(group["step"]), int(a["instances"]) * count
+    if gravity.shape != (3,) or not (np.abs(gravity) <= large).all():
+        raise ValueError(f"attribute gravity is {gravity}")
+    demand_arrays(group, {"step#": (records,), "held#": (all_,), "obstacles": (len(group["obstacles"]), 9)})
+    if (np.diff(group["step"][:]) <= 0).any():
+        raise ValueError("the steps are not in order")
+    for name, width in (("x", 3), ("v", 3), ("g", 3)) + ((("S", 9),) if "S" in group else ()):
+        if group[name].shape != (records, all_, width) or group[name].dtype.kind != "f":
+            raise ValueError(f"{name} is {group[name].shape}, not {(records, all_, width)}")
+
+
+def usable_lattice(group):
+    """Raises ValueError where the lattice's numbers do not fit each other."""
+    count, cells, corner = len(group["mass"]), group["cells"][:], group["coordinate"][:]
+    usable(group, count)
+    demand_numbers(group, {"w": (1, 2**31), "strain_limit": (0, 1e100)})
+    demand_arrays(group, {"mass+": (count,), "rest": (count, 3), "coordinate#": (count, 3), "cells#": (len(cells), 3)})
+    if len(np.unique(corner, axis=0)) != count:
+        raise ValueError("two particles have one place")
+    wanted = np.unique((cells[:, None] + np.indices((2, 2, 2)).reshape(3, 8).T).reshape(-1, 3), axis=0)
+    if len(np.unique(np.concatenate((corner, wanted)), axis=0)) != count:
+        raise ValueError("a cell has a corner that is no particle")
+
+
+def usable_tree(group):
+    """Raises ValueError where the octree's sizes or indices do not fit each other."""
+    nodes, leaves, edges = len(group["tree/parent"]), len(group["node"]), len(group["edge"])
+    usable(group, leaves)
+    demand_numbers(group, {"epsilon": (0, 1e100), "creep": (0, 1e100), "yield": (0, 1e100), "most": (0, 1e100),
+                           "levels": (0, 30)})
+    if np.shape(group.attrs["origin"]) != (3,) or np.shape(group.attrs["corner"]) != (3,):
+        raise ValueError("origin and corner are three numbers each")
+    demand_arrays(group, {"tree/centre#": (nodes, 3), "tree/size#": (nodes,), "tree/leaf#": (nodes,),
+                          "tree/parent#": (nodes,), "tree/material#": (nodes,), "node#": (leaves,), "rest": (leaves, 3),
+                          "size+": (leaves,), "mass+": (leaves,), "w#": (leaves,), "reached#": (leaves,),
+                          "edge#": (edges, 2), "length#": (edges,), "region_first#": (leaves + 1,),
+                          "summation#": (len(group["summation"]),)})
+    ranges = {"node": (0, nodes), "edge": (0, leaves), "tree/leaf": (-1, leaves), "length": (1, 2**31),
               "summation": (0, nodes), "region_first": (0, len(group["summation"]) + 1)}
     for name, (low, high) in ranges.items():
         values = group[name][:]
@@ -247,6 +305,8 @@ def goals(body, x, shapes):
         c0, c = (m * rest[r]).sum(0) / m.sum(), (m * x[r]).sum(0) / m.sum()
         at = (rest[r] - c0) @ shape.T
         moments = (m * (x[r] - c)).T @ at
+        if not np.isfinite(moments).all():
+            return np.full_like(x, np.inf), flowed, beyond
         u, _, vt = np.linalg.svd(moments)
         rotation = u @ np.diag([1, 1, np.linalg.det(u @ vt)]) @ vt
         g[r] += share * (c + at @ rotation.T)
@@ -331,6 +391,10 @@ def check(group, body):
         for b, alone in enumerate(held):
             own = slice(b * count, (b + 1) * count)
             x, v, recorded = (group[name][s, own] for name in "xvg")
+            if not (np.isfinite(x).all() and np.isfinite(v).all()):
+                note("x", np.inf)
+                compared += 1
+                continue
             why = body.unknown(x, step[0] == 0)
             if why:
                 print(why, file=sys.stderr)
@@ -362,23 +426,19 @@ def main():
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         print(__doc__)
         sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)
-    try:
-        open(sys.argv[1], "rb").close()
-        with h5py.File(sys.argv[1], "r") as file:
-            kind = next((name for name in ("particles", "nodes") if name in file), None)
-            if not kind:
-                print(f"{sys.argv[1]}: holds no particles and no nodes: write it with --record particles, "
-                      "of an octree --record nodes", file=sys.stderr)
-                sys.exit(3)
-            group = file[kind]
-            worst, compared = check(group, Lattice(group) if kind == "particles" else Tree(group))
-            precision, tolerance = text(group.attrs["precision"]), tolerance_of(group)
-    except (OSError, KeyError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "not a trajectory with particles or nodes"
-        if isinstance(error, ValueError):
-            reason = str(error).splitlines()[0]
-        print(f"{sys.argv[1]}: {reason}", file=sys.stderr)
-        sys.exit(3)
+    np.seterr(all="ignore")  # what is not finite is a deviation
+    with opened(sys.argv[1]) as file:
+        kind = next((name for name in ("particles", "nodes") if name in file), None)
+        if not kind:
+            fail(f"{sys.argv[1]}: holds no particles and no nodes: write it with --record particles, "
+                 "of an octree --record nodes", 3)
+        group = file[kind]
+        worst, compared = check(group, Lattice(group) if kind == "particles" else Tree(group))
+        precision, tolerance = text(group.attrs["precision"]), tolerance_of(group)
+        gaps = np.flatnonzero(np.diff(group["step"][:]) != 1)
+        after = ", ".join(str(step) for step in group["step"][:][gaps[:5]]) + (", ..." if len(gaps) > 5 else "")
+    if len(gaps):
+        print(f"after {len(gaps)} of the records, of steps {after}, the next step is missing: compared in their goals only")
     print(", ".join(f"{kind} {value:.2e}" for kind, value in worst.items()),
           f"cells at most apart in {compared} steps; tolerance {tolerance:g} ({precision})")
     sys.exit(2 if compared == 0 else int(max(worst.values()) > tolerance))

@@ -151,7 +151,7 @@ def main():
     axes[1].set_title("do the frequencies say the same as the sag? all beams, at the first epsilon", fontsize=9)
     figure.suptitle(f"{plan['scene']}: {len(specimen['w'])} of {plan['specimens']} specimens, {plan['across']} cells "
                     f"thick, {plan['aspect']} times as long, step {plan['h']:g} s", fontsize=10)
-    write(figure, arguments.output)
+    write(figure, arguments.output, arguments.overwrite)
 
 
 if __name__ == "__main__":

@@ -2,28 +2,45 @@
 """Draws the signed distance on a plane that `shapebench info POINTS --slice z=0.5 -o FILE.h5` wrote:
 blue inside, red outside, the surface (zero) black.
 
-Needs Debian's python3-h5py and python3-matplotlib (scripts/setup)."""
+Needs Debian's python3-h5py and python3-matplotlib (scripts/setup). Exit codes: 0 drawn; 2 wrong usage; 3 not a
+slice, or damaged, or a package is missing; 4 cannot be written."""
 
 import pathlib
 
-from plots import drawing, fail, parse, write
+from plots import drawing, fail, opened, parse, write
 
-import h5py  # after plots, which says what is missing
-import numpy
+import numpy  # after plots, which says what is missing
 
 FACTS = ("source", "axis", "at", "low", "high", "points")
+LEAST, MOST = 2, 10000  # samples along a side
+
+
+def check(facts, distance):
+    """Raises ValueError where numbers are none that a slice has."""
+    low, high = facts["low"], facts["high"]
+    right = {
+        "source": isinstance(facts["source"], str),
+        "axis": facts["axis"] in range(3),
+        "at": numpy.isfinite(facts["at"]),
+        "low, high": low.shape == high.shape == (2,) and numpy.isfinite(high - low).all() and (low < high).all(),
+        "points": facts["points"] > 0,
+        "distance": distance.ndim == 2 and distance.dtype.kind == "f" and numpy.isfinite(distance).all()
+                    and LEAST <= min(distance.shape) and max(distance.shape) <= MOST,
+    }
+    wrong = [name for name, fits in right.items() if not fits]
+    if wrong:
+        raise ValueError(f"{', '.join(wrong)}: not those of a slice")
 
 
 def read(path):
     """Attributes by name, and the distances [rows][columns]."""
-    try:
-        with h5py.File(path) as file:
-            facts = {name: value.decode() if isinstance(value, bytes) else value for name, value in file.attrs.items()}
-            if facts.get("kind") != "shapebench slice":
-                fail(f"{path}: not what `shapebench info --slice` writes", 3)
-            return {name: facts[name] for name in FACTS}, file["distance"][:]
-    except (OSError, KeyError) as error:
-        fail(f"{path}: cannot be read: {error}", 3)
+    with opened(path) as file:
+        facts = {name: value.decode() if isinstance(value, bytes) else value for name, value in file.attrs.items()}
+        if facts.get("kind") != "shapebench slice":
+            fail(f"{path}: not what `shapebench info --slice` writes", 3)
+        facts, distance = {name: facts[name] for name in FACTS}, file["distance"][:]
+        check(facts, distance)
+        return facts, distance
 
 
 def draw(facts, distance, pyplot):
@@ -54,7 +71,7 @@ def draw(facts, distance, pyplot):
 def main():
     options = parse(__doc__, "HDF5 file of a slice", "png")
     facts, distance = read(options.file)
-    write(draw(facts, distance, drawing()), options.output, dpi=90, bbox_inches="tight")
+    write(draw(facts, distance, drawing()), options.output, options.overwrite, dpi=90, bbox_inches="tight")
 
 
 if __name__ == "__main__":

@@ -124,7 +124,7 @@ def main():
     front(axes[1][1], plan, point)
     figure.suptitle(f"{plan['scene']}: {len(point['w'])} of {plan['points']} points; an octree's w in {plan['width']}, "
                     "a lattice's in cells", fontsize=10)
-    write(figure, arguments.output)
+    write(figure, arguments.output, arguments.overwrite)
 
 
 if __name__ == "__main__":

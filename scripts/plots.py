@@ -10,6 +10,7 @@ import interrupt
 interrupt.watch()  # before what takes long to import
 
 import argparse
+import contextlib
 
 
 def fail(text, code):
@@ -18,7 +19,9 @@ def fail(text, code):
 
 
 try:
+    import draft
     import sources
+    import stored
 except ImportError as missing:
     fail(f"{missing}: scripts/setup installs it (python3-h5py)", 3)
 
@@ -30,6 +33,7 @@ def parse(says, what, form):
     parser = argparse.ArgumentParser(description=says.split("\n\n")[0])
     parser.add_argument("file", help=what)
     parser.add_argument("-o", "--output", help=f"SVG, PNG or PDF to write (default: FILE.{form})")
+    parser.add_argument("--overwrite", action="store_true", help="replace a picture that is there")
     arguments = parser.parse_args()
     arguments.output = arguments.output or f"{os.path.splitext(arguments.file)[0]}.{form}"
     return arguments
@@ -57,17 +61,24 @@ def drawing():
     return pyplot
 
 
-def write(figure, output, **how):
-    """The figure's file, whole or not at all. `how` is of savefig()."""
-    name, form = os.path.splitext(output)
-    draft = f"{name}.{os.getpid()}.tmp{form}"
+@contextlib.contextmanager
+def opened(path):
+    """The file for `with`, where it is whole (stored.py); with what is wrong in it the script ends."""
     try:
-        try:
-            figure.savefig(draft, **{"dpi": 130, **how})
-            os.replace(draft, output)
-        finally:
-            if os.path.exists(draft):
-                os.remove(draft)
+        with stored.opened(path) as file:
+            yield file
+    except stored.Unusable as error:
+        fail(error, 3)
+
+
+def write(figure, output, overwrite, **how):
+    """The figure's file, whole or not at all. `how` is of savefig()."""
+    form = os.path.splitext(output)[1][1:]
+    try:
+        with draft.begun(output, overwrite) as file:
+            figure.savefig(file, **{"dpi": 130, "format": form or "png", **how})
+    except draft.Refused as error:
+        fail(error, 4)
     except (OSError, ValueError) as error:
         fail(f"{output}: cannot be written: {getattr(error, 'strerror', None) or error}", 4)
     print(f"wrote {output}")

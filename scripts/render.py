@@ -4,7 +4,7 @@
 Needs what `scripts/setup pictures` installs: Debian's python3-vtk9, python3-h5py, python3-matplotlib and,
 for a machine without a display, xvfb, xauth and libgl1-mesa-dri."""
 
-from plots import fail, write
+from plots import fail, opened, write
 
 import argparse  # after plots, which watches for interrupts
 import os
@@ -19,6 +19,7 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("file", nargs="+", help="several files are shown side by side, with names")
     parser.add_argument("-o", "--output", default="render.png", help="PNG to write (%(default)s)")
+    parser.add_argument("--overwrite", action="store_true", help="replace a picture that is there")
     parser.add_argument("--view", choices=["front", "side", "back", "three-quarter"], default="three-quarter")
     parser.add_argument("--size", default="640x640", metavar="WxH", help="of each panel (%(default)s)")
     parser.add_argument("--frame", type=int, default=-1, metavar="N", help="of a trajectory; negative: from the end")
@@ -66,9 +67,7 @@ def polydata(points, faces):
 
 def read_trajectory(path, frame):
     """One frame of a VTKHDF file, UnstructuredGrid or PolyData, with or without steps."""
-    import h5py
-
-    with h5py.File(path, "r") as file:
+    with opened(path) as file:
         root = file["VTKHDF"]
         kind = root.attrs["Type"].decode() if isinstance(root.attrs["Type"], bytes) else root.attrs["Type"]
         cells = root["Polygons"] if kind == "PolyData" else root
@@ -85,7 +84,10 @@ def read_trajectory(path, frame):
         corners = cells["Connectivity"][corner : corner + int(cells["NumberOfConnectivityIds"][part])]
         if len(corners) % 3 or ("Types" in cells and (cells["Types"][corner // 3 : corner // 3 + 1] != 5).any()):
             fail(f"{path}: its cells are not all triangles", 3)
-        return polydata(root["Points"][first : first + count], corners.reshape(-1, 3))
+        points, faces = root["Points"][first : first + count], corners.reshape(-1, 3)
+        if points.shape[1] != 3 or len(points) != count or (faces < 0).any() or (faces >= count).any():
+            raise ValueError("triangles of points that are not there")  # VTK would read beyond them
+        return polydata(points, faces)
 
 
 def read(path, frame):
@@ -96,10 +98,7 @@ def read(path, frame):
         fail(f"{path}: no such file", 3)
     ending = os.path.splitext(path)[1].lower()
     if ending in (".vtkhdf", ".h5", ".hdf5", ".hdf"):
-        try:
-            return read_trajectory(path, frame)
-        except (KeyError, OSError) as error:
-            fail(f"{path}: not a VTKHDF trajectory: {error}", 3)
+        return read_trajectory(path, frame)
     readers = {".obj": vtk.vtkOBJReader, ".ply": vtk.vtkPLYReader, ".stl": vtk.vtkSTLReader}
     if ending not in readers:
         fail(f"{path}: reads .obj, .ply, .stl and .vtkhdf or .h5, not {ending or 'files without an ending'}", 3)
@@ -131,13 +130,12 @@ def turns(rest, x, edge):
 
 def read_cells(path, frame):
     """The leaf cells at a frame, moved and turned with their nodes; each of their faces has the level."""
-    import h5py
     import numpy
     from vtk.util import numpy_support
 
     corner = numpy.array([[i & 1, i >> 1 & 1, i >> 2] for i in range(8)]) - 0.5
     side = numpy.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]])
-    with h5py.File(path, "r") as file:
+    with opened(path) as file:
         if "nodes" not in file:
             fail(f"{path}: holds no octree: write it with shapebench run --engine octree --record nodes", 3)
         nodes, times = file["nodes"], file["VTKHDF/Steps/Values"][()].ravel()
@@ -302,10 +300,7 @@ def fill(renderer, path, options, height):
     """What there is to see: the surface, an octree's cells, or both."""
     surface = read(path, options.frame)
     if options.cells:
-        try:
-            cells, levels = read_cells(path, options.frame)
-        except (KeyError, OSError):
-            fail(f"{path}: not a trajectory with an octree's nodes, which --cells draws", 3)
+        cells, levels = read_cells(path, options.frame)
         renderer.AddActor(cells_actor(cells, levels, options.cells == "wire"))
     if options.cells != "boxes":
         actor = surface_actor(surface, options.edges, height)
@@ -343,7 +338,7 @@ def panel(path, options, size):
     return image.reshape(size[1], 2, size[0], 2, 3).mean(axis=(1, 3)) / 255
 
 
-def write_sheet(panels, names, columns, output):
+def write_sheet(panels, names, columns, options):
     import matplotlib
 
     matplotlib.use("Agg")
@@ -363,7 +358,7 @@ def write_sheet(panels, names, columns, output):
         axes.set_axis_off()
         if names:
             axes.set_title(names[i], y=-0.5 * label / height, va="center", fontsize=15, color="0.25", pad=0)
-    write(figure, output, format="png", dpi=100)
+    write(figure, options.output, options.overwrite, format="png", dpi=100)
 
 
 def main():
@@ -381,7 +376,7 @@ def main():
     panels = [panel(path, options, size) for path in options.file]
     names = [os.path.splitext(os.path.basename(path))[0] for path in options.file]
     show = len(names) > 1 and not options.no_names
-    write_sheet(panels, names if show else None, max(1, options.columns), options.output)
+    write_sheet(panels, names if show else None, max(1, options.columns), options)
 
 
 if __name__ == "__main__":

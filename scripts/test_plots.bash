@@ -34,8 +34,8 @@ interrupted() {
 import os, signal
 from matplotlib.figure import Figure
 
-def savefig(self, path, **how):
-    open(path, "w").write("half")
+def savefig(self, file, **how):
+    file.write(b"half")
     os.kill(os.getpid(), signal.SIGINT)
 
 Figure.savefig = savefig

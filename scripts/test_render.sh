@@ -32,7 +32,7 @@ PYTHON
 "$render" penguin.vtkhdf --size 64x64 -o plain.png >said
 cmp small.png plain.png # its triangles are too small for edges
 "$render" penguin.vtkhdf --edges --size 320x320 -o edges.png >said
-"$render" penguin.vtkhdf --size 320x320 -o plain.png >said
+"$render" penguin.vtkhdf --size 320x320 --overwrite -o plain.png >said
 if cmp -s edges.png plain.png; then echo "no edges" && exit 1; fi
 status=0
 "$render" penguin.vtkhdf --frame 3 -o none.png 2>said || status=$?

@@ -1,17 +1,20 @@
-"""Ctrl-C and SIGTERM end a script with one line and 128 + the signal, as they end shapebench, also while it imports."""
+"""Signals end a script with one line and 128 + the signal, as they end shapebench, also while it imports."""
 import os
 import signal
 import sys
 
+NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGALRM, signal.SIGUSR1,
+           signal.SIGUSR2, signal.SIGXCPU)
+
 
 def stop(number, _):
-    for other in (signal.SIGINT, signal.SIGTERM):
+    for other in NUMBERS:
         signal.signal(other, signal.SIG_IGN)  # drafts are being removed
     print(f"{os.path.basename(sys.argv[0])}: interrupted: nothing was written", file=sys.stderr)
     sys.exit(128 + number)
 
 
 def watch():
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in NUMBERS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, stop)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """From result files to one page that can be sent to a colleague: `shapebench report` starts it.
 
-usage: main.py [--title TEXT] -o NAME.html|FOLDER FILE.h5...
+usage: main.py [--title TEXT] [--overwrite] -o NAME.html|FOLDER FILE.h5...
 
 NAME.html is one file with everything in it; anything else is a folder with index.html, and every figure
 as SVG, PNG and CSV. Exit code: 0 done, 2 usage, 3 a file cannot be used, 4 cannot be written."""
@@ -31,6 +31,7 @@ try:
 
     import calibration_figures
     import claim_figures
+    import draft
     import row_figures
     import sources
     import sweep_figures
@@ -137,17 +138,10 @@ def write_file(path, content):
         os.fsync(file.fileno())
 
 
-def write_page(output, title, files, parts):
+def write_page(output, title, files, parts, overwrite):
     """One file, whole or not at all."""
-    text = page(title, files, parts, inline, inline_data)
-    draft = f"{output}.{os.getpid()}.tmp"
-    try:
-        write_file(draft, text.encode())
-        os.replace(draft, output)
-    except BaseException:
-        if os.path.exists(draft):
-            os.remove(draft)
-        raise
+    with draft.begun(output, overwrite) as file:
+        file.write(page(title, files, parts, inline, inline_data).encode())
 
 
 def may_replace(folder):
@@ -178,22 +172,28 @@ def take_place(draft, output):
     shutil.rmtree(old, ignore_errors=True)
 
 
-def write_folder(output, title, files, parts):
-    """A folder of a page and its figures, in place of an older report of that name."""
+def check_folder(output, overwrite):
     if os.path.lexists(output) and not may_replace(output):
         fail(f"{output}: is there already and is no report: name another folder", 2)
+    if os.path.lexists(output) and os.listdir(output) and not overwrite:
+        raise draft.Refused(f"{output}: cannot be written: it is there; choose another name, or give --overwrite")
+
+
+def write_folder(output, title, files, parts, overwrite):
+    """A folder of a page and its figures, in place of an older report of that name."""
+    check_folder(output, overwrite)
     parent = os.path.dirname(os.path.abspath(output))
-    draft = tempfile.mkdtemp(prefix=os.path.basename(output) + ".", suffix=".tmp", dir=parent)
+    made = tempfile.mkdtemp(prefix=os.path.basename(output) + ".", suffix=".tmp", dir=parent)
     try:
-        os.chmod(draft, 0o755)
+        os.chmod(made, 0o755)
         for figure in (figure for part in parts for figure in part.figures):
             for form, content in (("svg", figure.svg), ("png", figure.png), ("csv", figure.csv().encode())):
-                write_file(os.path.join(draft, f"{figure.name}.{form}"), content)
+                write_file(os.path.join(made, f"{figure.name}.{form}"), content)
         text = page(title, files, parts, linked, lambda figure: f"{figure.name}.csv")
-        write_file(os.path.join(draft, "index.html"), text.encode())
-        take_place(draft, output)
+        write_file(os.path.join(made, "index.html"), text.encode())
+        take_place(made, output)
     except BaseException:
-        shutil.rmtree(draft, ignore_errors=True)
+        shutil.rmtree(made, ignore_errors=True)
         raise
 
 
@@ -202,6 +202,7 @@ def parse():
     parser.add_argument("file", nargs="+", help="files that `shapebench tables`, `claims`, `sweep` and `calibrate` wrote with -o")
     parser.add_argument("-o", "--output", default="report.html",
                         help="a page NAME.html, or a folder (default: %(default)s)")
+    parser.add_argument("--overwrite", action="store_true", help="replace a page or report that is there")
     parser.add_argument("--title", default="shapebench report")
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args()
@@ -218,20 +219,27 @@ def unique_names(parts):
 
 def main():
     options = parse()
+    output = options.output.rstrip("/") or "/"
+    alone = output.endswith(".html")
+    check = draft.check if alone else check_folder
     try:
+        check(output, options.overwrite)
         files = [sources.read(path) for path in options.file]
+    except draft.Refused as error:
+        fail(str(error), 4)
     except sources.Unusable as error:
         fail(str(error), 3)
     parts = compose(files)
     unique_names(parts)
-    output = options.output.rstrip("/") or "/"
-    write = write_page if output.endswith(".html") else write_folder
+    write = write_page if alone else write_folder
     try:
-        write(output, options.title, files, parts)
+        write(output, options.title, files, parts, options.overwrite)
+    except draft.Refused as error:
+        fail(str(error), 4)
     except OSError as error:
         fail(f"{output}: cannot be written: {error.strerror}", 4)
     if not options.quiet:
-        print(f"wrote {output if output.endswith('.html') else os.path.join(output, 'index.html')}")
+        print(f"wrote {output if alone else os.path.join(output, 'index.html')}")
 
 
 if __name__ == "__main__":

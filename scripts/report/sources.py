@@ -5,8 +5,10 @@ sweeps ("shapebench sweep") and calibrations ("shapebench calibration")."""
 import math
 import os
 
-import h5py
 import numpy as np
+
+import stored
+from stored import Unusable
 
 SCHEMAS = {"shapebench results": 4, "shapebench claims": 2, "shapebench sweep": 1,
            "shapebench calibration": 1}
@@ -31,14 +33,6 @@ LAW_COLUMNS = ("engine", "kind", "specimens", "scatter", "c", "spacing", "width"
 LAW_WIDE = {name: 3 for name in ("c", "spacing", "width", "aspect", "step", "d")}
 
 MACHINE_TEXTS = ("cpu", "git_commit", "utc")
-
-# What h5py raises for damaged files, and Python for objects of another kind than expected.
-DAMAGE = (KeyError, OSError, ValueError, RuntimeError, TypeError, AttributeError, MemoryError)
-
-
-class Unusable(Exception):
-    """A file that cannot be reported; says which, why, and what helps."""
-
 
 def plain(value):
     """An attribute as Python has it: text, number, or array."""
@@ -201,36 +195,7 @@ def read_file(path, file):
     return source
 
 
-def survives(path):
-    """Whether the file can be read to its end: damage can crash the HDF5 library, so a child tries first."""
-    child = os.fork()
-    if not child:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        try:
-            read_whole(path)
-        finally:
-            os._exit(0)
-    return not os.WIFSIGNALED(os.waitpid(child, 0)[1])
-
-
 def read(path):
     """The file as a Source; raises Unusable."""
-    if not os.path.exists(path):
-        raise Unusable(f"{path}: no such file")
-    if not os.path.isfile(path):  # a pipe would be waited for
-        raise Unusable(f"{path}: it is a {'folder' if os.path.isdir(path) else 'pipe or device'}, not a file")
-    if not survives(path):
-        raise Unusable(f"{path}: so damaged that it cannot be read: make it again")
-    return read_whole(path)
-
-
-def read_whole(path):
-    try:
-        file = h5py.File(path, "r")
-    except OSError:
-        raise Unusable(f"{path}: not an HDF5 file, or cut off: make it again") from None
-    try:
-        with file:
-            return read_file(path, file)
-    except DAMAGE as error:
-        raise Unusable(f"{path}: something is missing or damaged ({error}): make it again") from None
+    with stored.opened(path) as file:
+        return read_file(path, file)
