@@ -195,9 +195,15 @@ void bench_advice_found(const BenchSpecimen *specimen, long count, const BenchLa
 
 /* ---- the other way round */
 
+/* Its Young's modulus at the wished density. */
+static double young_of(const BenchSpecimen *s, const BenchYoung *wish)
+{
+    return s->young * wish->density / wish->measured;
+}
+
 static double off(const BenchSpecimen *s, const BenchYoung *wish)
 {
-    return fabs(log(s->young * wish->density / wish->measured / wish->young));
+    return fabs(log(young_of(s, wish) / wish->young));
 }
 
 static bool better(const BenchSpecimen *a, const BenchSpecimen *b, const BenchYoung *wish)
@@ -219,12 +225,17 @@ static double find_spacing(const BenchSpecimen *s, const BenchLaw *law, double t
     return found <= thickness && found >= thickness / BENCH_MOST_ACROSS ? found : NAN;
 }
 
-static void say_remedy(const BenchSpecimen *s, const BenchLaw *law, const BenchYoung *wish,
-                       double young, char *text)
+/* Moduli go with the inverse square of the time step. */
+static double find_step(const BenchSpecimen *s, const BenchYoung *wish)
 {
-    double ratio = wish->young / young;
-    double spacing = find_spacing(s, law, wish->thickness, ratio);
-    say(text, " A time step of %.4g s in place of %.4g s would hit it", s->h / sqrt(ratio), s->h);
+    return s->h / sqrt(wish->young / young_of(s, wish));
+}
+
+static void say_remedy(const BenchSpecimen *s, const BenchLaw *law, const BenchYoung *wish,
+                       char *text)
+{
+    double spacing = find_spacing(s, law, wish->thickness, wish->young / young_of(s, wish));
+    say(text, " A time step of %.4g s in place of %.4g s would hit it", find_step(s, wish), s->h);
     if (isfinite(spacing))
         say(text, ", or about a spacing of %.3g m in place of %.3g m", spacing, s->spacing);
     say(text, ".");
@@ -247,7 +258,7 @@ long bench_advice_young(const BenchSpecimen *specimen, long count, const BenchLa
         return best;
     }
     const BenchSpecimen *s = &specimen[best];
-    double unit = wish->density / wish->measured, young = s->young * unit;
+    double unit = wish->density / wish->measured;
     bool hit = off(s, wish) <= log(1 + near_enough);
     if (!hit)
         say(sentence, "No w and epsilon is within %g%% of %.4g Pa (%.3g to %.3g Pa there are). ",
@@ -259,7 +270,23 @@ long bench_advice_young(const BenchSpecimen *specimen, long count, const BenchLa
         ", spacing %.3g m and time step %.3g s: %.3g Pa, sag and frequencies %.2g%% apart, loss "
         "factor "
         "%.1g.",
-        s->spacing, s->h, young, 100 * s->spread, fabs(s->loss[0]));
-    say_remedy(s, find_law(law, laws, s->engine, "two-term"), wish, young, sentence);
+        s->spacing, s->h, young_of(s, wish), 100 * s->spread, fabs(s->loss[0]));
+    say_remedy(s, find_law(law, laws, s->engine, "two-term"), wish, sentence);
     return best;
+}
+
+void bench_advice_settings(const BenchSpecimen *s, const BenchYoung *wish, double damping,
+                           char settings[BENCH_WORDS])
+{
+    settings[0] = '\0';
+    say(settings, "engine = \"%s\"; ", s->engine);
+    if (strcmp(s->engine, "octree") != 0)
+        say(settings, "w = %d; ", s->w);
+    else
+        say(settings,
+            "epsilon = %.6g; octree = { edges = %d.0; criteria = ( { kind = \"uniform\"; } ); }; ",
+            s->epsilon, s->w);
+    say(settings, "cell = %.6g; h = %.6g; ", s->spacing, find_step(s, wish));
+    if (damping > 0) say(settings, "damping = %.6g; ", damping);
+    say(settings, "density = %.6g;", wish->density);
 }

@@ -25,4 +25,11 @@ typedef struct {
 long bench_advice_young(const BenchSpecimen *specimen, long count, const BenchLaw *law, int laws,
                         const BenchYoung *wish, char sentence[BENCH_WORDS]);
 
+/* The settings of a scene (scene.h) whose material is that specimen's at the time step that hits
+ * the wish, with the specimens' damping. Its density is a part of it: where none is given particles
+ * of a lattice weigh 1 each, those at its surface more than their share of the material, and bodies
+ * are up to a quarter stiffer. */
+void bench_advice_settings(const BenchSpecimen *specimen, const BenchYoung *wish, double damping,
+                           char settings[BENCH_WORDS]);
+
 #endif

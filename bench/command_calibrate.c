@@ -65,7 +65,9 @@ static const struct argp_option option_list[] = {
     {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
     {"density", KEY_DENSITY, "RHO", 0, "kg a cubic unit, of the wish (default: 1000)", 4},
     {"young", KEY_YOUNG, "E", 0,
-     "Say in words which w and epsilon have this Young's modulus, in Pa, or what would", 4},
+     "Say which w and epsilon have this Young's modulus, in Pa, or what would, and print a scene's "
+     "settings that do",
+     4},
     {0},
 };
 
@@ -104,7 +106,9 @@ static const char help[] =
     "for all w, other lengths and time steps for the first, middle and last, at the first epsilon. "
     "Every specimen is checked against brute force, and that it is at rest; one that fails is "
     "INVALID. The laws are fitted to all of them. The octree samples the beam regularly.\n"
-    "A modulus goes with the density: --density serves --young alone.\n" BENCH_EXIT_CODES;
+    "A modulus goes with the density: --density serves --young alone. It holds for scenes that set "
+    "their density: where particles weigh 1 each, as is the default, those at a lattice's surface "
+    "weigh too much, and it is 24% stiffer by sag at w 1, 21% at w 2.\n" BENCH_EXIT_CODES;
 
 static const struct argp argp = {option_list, parse, "[FILE.h5]", help, NULL, NULL, NULL};
 
@@ -162,18 +166,25 @@ static SmCode verdict(const BenchCalibration *calibration, SmError *error)
                    first->reason);
 }
 
+static void advise(const Options *options, const BenchCalibration *calibration)
+{
+    char sentence[BENCH_WORDS], settings[BENCH_WORDS];
+    const BenchCalibrationPlan *plan = &calibration->plan;
+    BenchYoung wish = {options->young, options->density, plan->density, plan->thickness};
+    long best = bench_advice_young(calibration->specimen, calibration->count, calibration->law,
+                                   calibration->laws, &wish, sentence);
+    bool table = options->format == BENCH_AS_CSV || options->format == BENCH_AS_JSON;
+    FILE *file = table ? stderr : stdout;
+    fprintf(file, "%s%s\n", table ? "" : "\n", sentence);
+    if (best < 0) return;
+    bench_advice_settings(&calibration->specimen[best], &wish, plan->damping, settings);
+    fprintf(file, "The scene's settings that hit it, of which density is one:\n    %s\n", settings);
+}
+
 static SmCode show(const Options *options, const BenchCalibration *calibration, SmError *error)
 {
     bench_calibration_table(stdout, options->format, calibration);
-    if (!isnan(options->young)) {
-        char sentence[BENCH_WORDS];
-        BenchYoung wish = {options->young, options->density, calibration->plan.density,
-                           calibration->plan.thickness};
-        bench_advice_young(calibration->specimen, calibration->count, calibration->law,
-                           calibration->laws, &wish, sentence);
-        bool table = options->format == BENCH_AS_CSV || options->format == BENCH_AS_JSON;
-        fprintf(table ? stderr : stdout, "%s%s\n", table ? "" : "\n", sentence);
-    }
+    if (!isnan(options->young)) advise(options, calibration);
     return verdict(calibration, error);
 }
 

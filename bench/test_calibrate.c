@@ -12,13 +12,22 @@
 #include <cmocka.h>
 #include <jansson.h>
 
+#include "../reference/beam.h"
 #include "calibration_store.h"
+#include "runner.h"
 #include "test_program.h"
 
 /* A short beam of two cells through; three specimens, and one with another step. */
 #define SMALL                                                                                      \
     "calibrate --scene small.cfg --w 1:2 --engine fastlsm --across none --aspect none --step 2 "   \
     "--quiet"
+
+/* One specimen of five cells through, and a wish. */
+#define FIVE                                                                                       \
+    "--scene five.cfg --w 1 --across none --aspect none --step none --quiet --young 1.3e6 "        \
+    "--density 800"
+
+#define CELL (1.0 / 32)
 
 static Result result;
 
@@ -28,14 +37,26 @@ static void runs(const char *arguments)
     if (result.code) fail_msg("%s: %d: %s", arguments, result.code, result.err);
 }
 
+/* A beam from x = low to x = high, so thick. */
+static void write_box(const char *name, double low, double high, double thick)
+{
+    char text[1024] = "";
+    for (int c = 0; c < 8; c++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "v %.9g %.9g %.9g\n",
+                 c & 1 ? high : low, c & 2 ? thick : 0, c & 4 ? thick : 0);
+    strcat(text, "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\n"
+                 "f 1 5 3\nf 3 5 7\nf 2 4 6\nf 4 8 6\n");
+    write_text(name, text);
+}
+
 static int set_up(void **state)
 {
     if (make_folder(state)) return -1;
-    write_text("box.obj", "v 0 0 0\nv 0.3 0 0\nv 0 0.1 0\nv 0.3 0.1 0\nv 0 0 0.1\nv 0.3 0 0.1\n"
-                          "v 0 0.1 0.1\nv 0.3 0.1 0.1\n"
-                          "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\n"
-                          "f 4 7 8\nf 1 5 3\nf 3 5 7\nf 2 4 6\nf 4 8 6\n");
+    write_box("box.obj", 0, 0.3, 0.1);
+    write_box("beam.obj", 0, 15 * CELL, 5 * CELL);
+    write_box("rooted.obj", -8 * CELL, 15 * CELL, 5 * CELL);
     write_text("small.cfg", "mesh = \"box.obj\"; cell = 0.05; h = 0.001;\n");
+    write_text("five.cfg", "mesh = \"beam.obj\"; cell = 0.03125; h = 0.001;\n");
     write_text("fine.cfg", "mesh = \"box.obj\"; cell = 0.001; h = 0.001;\n");
     write_text("noise.h5", "no HDF5\n");
     runs(SMALL " -o whole.h5");
@@ -126,6 +147,77 @@ static void tables_in_every_format(void **state)
     assert_non_null(strstr(result.out, "\\begin{tabular}"));
 }
 
+/* The tip's sag of a beam at rest, held behind x = 0; where nodes are in cells its end is half a
+ * cell farther, which adds as much of the sag as its slope there does. */
+static double sag_of(const char *name)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    BenchBody body;
+    BenchRunner runner;
+    SmMesh mesh;
+    SmError error;
+    const SmEngineType *type;
+    SmCode code = bench_scene_read(path_in(name), scene, &error);
+    if (!code) code = bench_engine_find(scene->engine, "double", &type, &error);
+    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, &error);
+    if (!code) code = bench_body_create(scene, &mesh, &body, &error);
+    if (!code) code = bench_runner_create(scene, &body, type, 1, &runner, &error);
+    if (code) fail_msg("%s", error.text);
+    double(*v)[3] = sm_alloc((size_t)runner.particles, sizeof *v), end = 0, sag = 0;
+    for (int step = 0; step < 1500; step++) {
+        bench_runner_step(&runner, NULL);
+        type->get(runner.engine, SM_VELOCITY, v);
+        for (long p = 0; p < runner.particles; p++)
+            for (int d = 0; d < 3; d++) v[p][d] *= 0.9;
+        type->set(runner.engine, SM_VELOCITY, (const double(*)[3])v);
+    }
+    type->get(runner.engine, SM_POSITION, v);
+    for (long p = 0; p < runner.particles; p++) end = fmax(end, runner.x0[p][0]);
+    int tips = 0;
+    for (long p = 0; p < runner.particles; p++) {
+        if (runner.x0[p][0] < end - 1e-9) continue;
+        sag += runner.x0[p][1] - v[p][1];
+        tips++;
+    }
+    double s = end / (15 * CELL);
+    bench_runner_free(&runner);
+    bench_body_free(&body);
+    free(scene);
+    free(v);
+    return sag / tips / (s * s * (6 - 4 * s + s * s) / 3);
+}
+
+/* What is printed for a wish is all that a scene needs to have it: a beam of these settings sags as
+ * an elastic one does. Without the density, which is one of them, a lattice's does not. */
+static void the_settings_printed_have_the_modulus(void **state)
+{
+    (void)state;
+    const RefBeam beam = {15 * CELL, 5 * CELL, 0.3};
+    const double young = 1.3e6, density = 800, gravity = 2;
+    double wanted = ref_beam_sag(&beam, REF_TIMOSHENKO) * density * gravity / young;
+    for (int engine = 0; engine < 2; engine++) {
+        static const char clamp[] =
+            "\nmesh = \"rooted.obj\"; gravity = [0.0, -2.0, 0.0];\n"
+            "handles = ( { box_low = [0.0, 0.0, 0.0]; box_high = [0.3479, 1.0, 1.0]; } );\n";
+        char text[2048];
+        runs(engine ? "calibrate --engine octree --epsilon 0.5 " FIVE
+                    : "calibrate --engine fastlsm " FIVE);
+        const char *settings = strstr(result.out, "The scene's settings that hit it");
+        assert_non_null(settings);
+        settings = strchr(settings, '\n') + 1;
+        snprintf(text, sizeof text, "%s%s", settings, clamp);
+        write_text("wish.cfg", text);
+        double sag = sag_of("wish.cfg");
+        if (fabs(sag / wanted - 1) > 0.05) fail_msg("sags %g, promised %g", sag, wanted);
+        char *rho = strstr(text, "density");
+        assert_non_null(rho);
+        memset(rho, ' ', strcspn(rho, ";") + 1);
+        write_text("light.cfg", text);
+        double light = sag_of("light.cfg");
+        assert_true(engine ? fabs(light / sag - 1) < 1e-6 : light < 0.9 * sag);
+    }
+}
+
 /* With all of the relative motion damped away at every step a beam does not swing. */
 static void a_beam_that_does_not_swing_is_invalid(void **state)
 {
@@ -189,6 +281,7 @@ int main(void)
         cmocka_unit_test(a_specimen_has_its_figures),
         cmocka_unit_test(an_interrupted_calibration_goes_on),
         cmocka_unit_test(tables_in_every_format),
+        cmocka_unit_test(the_settings_printed_have_the_modulus),
         cmocka_unit_test(a_beam_that_does_not_swing_is_invalid),
         cmocka_unit_test(mistakes_are_one_line),
     };
