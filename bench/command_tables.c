@@ -225,9 +225,7 @@ static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
     for (int i = 0; i < chosen->count && !code; i++) {
         BenchScene scene;
         code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
-        snprintf(rows[i].paper, sizeof rows[i].paper, "%s", scene.paper);
-        snprintf(rows[i].scene, sizeof rows[i].scene, "%s", scene.name);
-        snprintf(rows[i].engine, sizeof rows[i].engine, "%s", scene.engine);
+        bench_row_name(&scene, &rows[i]);
     }
     free(last);
     return code;
@@ -263,25 +261,22 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
     return code;
 }
 
-static bool of_lattice(const BenchRow *row)
-{
-    return !strcmp(row->paper, "octree") && !strcmp(row->engine, "fastlsm");
-}
-
-/* Speed-ups over the octree paper's lattice, of the same mesh. Returns how many of the rows
- * measured are complete: those of the paper wait for a lattice that is still to come. */
+/* Speed-ups of the octree paper's rows over their lattices. Returns how many of the rows measured
+ * are complete: a row waits for a lattice that is still to come. */
 static int compare_rows(BenchRow *rows, int measured, int count)
 {
-    int lattice = 0, first = 0;
-    while (lattice < count &&
-           !(of_lattice(&rows[lattice]) && (lattice >= measured || rows[lattice].valid)))
-        lattice++;
-    for (int i = 0; i < measured && lattice < measured; i++)
-        if (!strcmp(rows[i].paper, "octree") && rows[i].input_hash == rows[lattice].input_hash)
-            rows[i].speedup = rows[lattice].total_ms / rows[i].total_ms;
-    if (lattice < measured || lattice == count) return measured;
-    while (first < measured && strcmp(rows[first].paper, "octree") != 0) first++;
-    return first;
+    int complete = 0;
+    bool waits = false;
+    for (int i = 0; i < measured; i++) {
+        if (!strcmp(rows[i].paper, "octree")) {
+            const BenchRow *lattice = bench_row_lattice(rows, measured, &rows[i]);
+            if (lattice) rows[i].speedup = lattice->total_ms / rows[i].total_ms;
+            for (int l = measured; l < count && !lattice; l++)
+                waits |= bench_row_measures(&rows[l], &rows[i]);
+        }
+        if (!waits) complete = i + 1;
+    }
+    return complete;
 }
 
 /* Rows are written as they are measured; those before an error stay. */

@@ -75,6 +75,18 @@ static void step(void *subject, SmLaps *laps)
     bench_play_advance(&trial->play, laps);
 }
 
+void bench_row_name(const BenchScene *scene, BenchRow *row)
+{
+    static const char *const polars[] = {"fast", "jacobi"};
+    static const char *const summations[] = {"fast", "bars", "naive"};
+    snprintf(row->paper, sizeof row->paper, "%s", scene->paper);
+    snprintf(row->paper_row, sizeof row->paper_row, "%s", scene->row);
+    snprintf(row->scene, sizeof row->scene, "%s", scene->name);
+    snprintf(row->engine, sizeof row->engine, "%s", scene->engine);
+    strcpy(row->polar, polars[scene->params.polar]);
+    strcpy(row->summation, summations[scene->params.summation]);
+}
+
 static void name_row(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row)
 {
@@ -90,9 +102,7 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
                       .speedup = NAN,
                       .valid = true,
                       .goal_tolerance = bench_check_tolerance(type->precision)};
-    snprintf(row->paper, sizeof row->paper, "%s", scene->paper);
-    snprintf(row->paper_row, sizeof row->paper_row, "%s", scene->row);
-    snprintf(row->scene, sizeof row->scene, "%s", scene->name);
+    bench_row_name(scene, row);
     snprintf(row->engine, sizeof row->engine, "%s", type->name);
     snprintf(row->precision, sizeof row->precision, "%s", type->precision);
     if (strcmp(type->name, "octree") != 0) row->w = scene->params.w;
@@ -254,6 +264,21 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
     bool changes = bench_play_changes(&trial.play);
     free_trial(&trial);
     return changes ? play_changes(scene, body, type, params, &worst, row, error) : SM_OK;
+}
+
+bool bench_row_measures(const BenchRow *lattice, const BenchRow *row)
+{
+    return !strcmp(lattice->engine, "fastlsm") && !strcmp(lattice->paper, row->paper) &&
+           !strcmp(lattice->polar, row->polar) && strcmp(lattice->summation, "naive") != 0;
+}
+
+const BenchRow *bench_row_lattice(const BenchRow *rows, int count, const BenchRow *row)
+{
+    for (int i = 0; i < count; i++)
+        if (bench_row_measures(&rows[i], row) && rows[i].valid &&
+            rows[i].input_hash == row->input_hash)
+            return &rows[i];
+    return NULL;
 }
 
 void bench_row_free(BenchRow *row)

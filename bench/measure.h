@@ -30,6 +30,17 @@ typedef struct {
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error);
 
+/* Names the row: its scene and paper, engine, and how rotations and sums are found. */
+void bench_row_name(const BenchScene *scene, BenchRow *row);
+
+/* Is a row, of which only the name need be known, a lattice beside which the other's speed may be
+ * set? Of the same paper and rotations: code without low-level optimisation is compared with such
+ * code, optimised code with optimised code. Naive sums are nobody's measure. */
+bool bench_row_measures(const BenchRow *lattice, const BenchRow *row);
+
+/* The first valid one of the table that is of the same mesh, or NULL. */
+const BenchRow *bench_row_lattice(const BenchRow *rows, int count, const BenchRow *row);
+
 void bench_row_free(BenchRow *row);
 /* The array, too. */
 void bench_rows_free(BenchRow *rows, int count);

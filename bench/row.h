@@ -32,6 +32,7 @@ typedef struct {
 typedef struct {
     char paper[24], paper_row[24]; /* row of the paper set beside it; empty: none */
     char scene[64], engine[24], precision[12];
+    char polar[12], summation[12]; /* "fast" or "jacobi"; "fast", "bars" or "naive" */
     long triangles, particles, regions, instances;
     int w, steps; /* half-width, 0 of an octree; steps in each repeat */
     double epsilon, h, cell, damping;
@@ -52,7 +53,7 @@ typedef struct {
     double ns_per_particle_step;
     double voxelise_seconds, build_seconds;
     long bytes;
-    double fps, speedup;          /* steps a second; over the table's first lattice, or NaN */
+    double fps, speedup;          /* steps a second; over bench_row_lattice(), or NaN */
     double summation_nodes;       /* mean per region; NaN of a lattice, as are the next two */
     double width_cells;           /* of an octree's regions: w is that and this times */
     double width_edges;           /* the node's own edge, */

@@ -142,6 +142,7 @@ static bool paper_line(const BenchRow *row, BenchGridForm form, Line *line)
     bench_grid_number(1e6 * paper->total_ms.value / paper->particles.value, line->field[PER_STEP]);
     bench_grid_number(paper->fps.value, line->field[RATE]);
     bench_grid_number(paper->speedup.value, line->field[SPEEDUP]);
+    if (isfinite(paper->speedup.value)) mark(paper->speedup.status, line->field[SPEEDUP]);
     bench_grid_number(paper->summation_nodes.value, line->field[SUMS]);
     static const int timed[] = {TOTAL, PER_STEP, RATE};
     for (int t = 0; t < 3; t++)

@@ -16,6 +16,8 @@ static const BenchField row_fields[] = {
     FIELD(BENCH_TEXT, scene),
     FIELD(BENCH_TEXT, engine),
     FIELD(BENCH_TEXT, precision),
+    FIELD(BENCH_TEXT, polar),
+    FIELD(BENCH_TEXT, summation),
     FIELD(BENCH_LONG, triangles),
     FIELD(BENCH_LONG, particles),
     FIELD(BENCH_LONG, regions),

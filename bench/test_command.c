@@ -92,7 +92,7 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run tiny.cfg --engine octree --record particles", 2, "stores a lattice"},
         {"run tiny.cfg --record nodes", 2, "--record nodes stores an octree"},
         {"run tiny.cfg --engine octree --layout lists", 3,
-         "tiny.cfg: summation, polar and layout:"},
+         "tiny.cfg: summation and layout:"},
         {"run plastic.cfg --engine fastlsm", 3, "plastic.cfg: a plastic body (octree.creep) needs"},
         {"run far.cfg", 3, "far.cfg: octree: no node's centre lies in the box or sphere"},
         {"run tiny.cfg --particles 1000000000 --w 64 --no-output", 70,

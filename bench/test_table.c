@@ -10,6 +10,7 @@
 #include <cmocka.h>
 #include <jansson.h>
 
+#include "measure.h"
 #include "table.h"
 
 static const char header[] =
@@ -350,6 +351,48 @@ static void an_octree_has_columns_of_its_own(void **state)
     free(text);
 }
 
+/* Optimised code beside optimised code, of the same body; naive sums beside nothing. */
+static void like_is_compared_with_like(void **state)
+{
+    (void)state;
+    enum { ROWS = 6, FAST = 0, PLAIN = 2, SAMPLED = 4, JACOBI = 5 };
+    static const struct {
+        const char *scene, *engine, *polar, *summation;
+        unsigned long long hash;
+        double ms;
+    } of[ROWS] = {{"hand-lattice", "fastlsm", "fast", "fast", 1, 2},
+                  {"hand-lattice-naive", "fastlsm", "jacobi", "naive", 1, 30},
+                  {"hand-lattice-plain", "fastlsm", "jacobi", "bars", 1, 12},
+                  {"penguins", "fastlsm", "fast", "fast", 2, 9},
+                  {"hand-sampled", "octree", "fast", "fast", 1, 0.04},
+                  {"hand-sampled-jacobi", "octree", "jacobi", "fast", 1, 0.2}};
+    static BenchRow rows[ROWS];
+    for (int r = 0; r < ROWS; r++) {
+        rows[r] = (BenchRow){.valid = true, .input_hash = of[r].hash, .total_ms = of[r].ms};
+        strcpy(rows[r].paper, "octree");
+        strcpy(rows[r].scene, of[r].scene);
+        strcpy(rows[r].engine, of[r].engine);
+        strcpy(rows[r].polar, of[r].polar);
+        strcpy(rows[r].summation, of[r].summation);
+        if (r >= SAMPLED) rows[r].wanted_nodes = 661;
+    }
+    strcpy(rows[PLAIN].paper_row, "hand-lattice-plain");
+    assert_ptr_equal(bench_row_lattice(rows, ROWS, &rows[SAMPLED]), &rows[FAST]);
+    assert_ptr_equal(bench_row_lattice(rows, ROWS, &rows[JACOBI]), &rows[PLAIN]);
+    rows[SAMPLED].speedup = 50;
+    rows[JACOBI].speedup = 60;
+    char *text = write_rows(BENCH_AS_TEXT, rows, ROWS, true, true);
+    assert_non_null(strstr(text, "hand-sampled is 50 times as fast as hand-lattice, both with fast "
+                                 "rotations\n"));
+    assert_non_null(strstr(text,
+                           "hand-sampled-jacobi is 60 times as fast as hand-lattice-plain, both "
+                           "with jacobi rotations (paper, Fig. 1: 88 times)"));
+    assert_null(strstr(text, "as fast as penguins"));
+    free(text);
+    rows[PLAIN].valid = false;
+    assert_null(bench_row_lattice(rows, ROWS, &rows[JACOBI]));
+}
+
 /* A row that changes has a line in a second table, the paper's below, and its columns in CSV. */
 static void what_changes_has_a_table_of_its_own(void **state)
 {
@@ -438,6 +481,7 @@ int main(void)
         cmocka_unit_test(text_fits_100_characters),
         cmocka_unit_test(markdown_and_latex_escape),
         cmocka_unit_test(an_octree_has_columns_of_its_own),
+        cmocka_unit_test(like_is_compared_with_like),
         cmocka_unit_test(what_changes_has_a_table_of_its_own),
         cmocka_unit_test(what_a_surface_could_not_follow_is_said),
     };

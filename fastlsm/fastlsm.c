@@ -106,14 +106,6 @@ SM_INLINE bool match_begin(Lsm *lsm, long tile, int tiles, vec (*S)[12], Match *
     return true;
 }
 
-static __attribute__((noinline)) void rotate_jacobi(Lsm *lsm, int layer, long tile, unsigned live,
-                                                    const vec *A, vec *R)
-{
-    short *last = lsm->last + tile * 6 * SM_LANES;
-    lsm->sweeps[layer] += polar_jacobi_lanes(A, live, last, lsm->stretch + tile * 9 * SM_LANES, R);
-    last_store(last, R);
-}
-
 /* R_r and q_r of tile number t of the group; S as match_begin() left it. */
 SM_INLINE void match_end(Lsm *lsm, int layer, long tile, const vec S[12], const Match *m, int t,
                          vec q[3], vec R[9], SmLaps *laps)
@@ -123,7 +115,8 @@ SM_INLINE void match_end(Lsm *lsm, int layer, long tile, const vec S[12], const 
         polar_finish(A, &m->of[t], m->trace[t], m->live[t], lsm->last + tile * 6 * SM_LANES, R);
     } else {
         vec jacobi[9];
-        rotate_jacobi(lsm, layer, tile, m->live[t], A, jacobi);
+        lsm->sweeps[layer] += polar_jacobi_lanes(A, m->live[t], lsm->last + tile * 6 * SM_LANES,
+                                                 lsm->stretch + tile * 9 * SM_LANES, jacobi);
         lanes_copy(9, jacobi, R);
     }
     sm_lap(laps, SM_POLAR);

@@ -35,31 +35,4 @@ SM_INLINE void match_centre(const vec c[3], const vec R[9], const RegionConst *k
         for (int d = 0; d < 3; d++) q[i] -= R[i * 3 + d] * k->offset[d];
 }
 
-/* Jacobi, lane by lane, as the paper does it. Returns the sweeps, summed over live lanes. */
-static __attribute__((noinline, unused)) double
-polar_jacobi_lanes(const vec *A, unsigned live, short *last, float *stretch, vec *R)
-{
-    vec before[9];
-    double sweeps = 0;
-    last_load(last, before);
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        if (!(live >> lane & 1)) {
-            for (int i = 0; i < 9; i++) R[i][lane] = 0;
-            continue;
-        }
-        double a[9], b[9], V[9], r[9];
-        for (int i = 0; i < 9; i++) {
-            a[i] = (double)A[i][lane];
-            b[i] = (double)before[i][lane];
-            V[i] = (double)stretch[i * SM_LANES + lane];
-        }
-        sweeps += sm_polar_jacobi(a, V, b, r);
-        for (int i = 0; i < 9; i++) {
-            R[i][lane] = (real)r[i];
-            stretch[i * SM_LANES + lane] = (float)V[i];
-        }
-    }
-    return sweeps;
-}
-
 #endif

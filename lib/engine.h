@@ -68,7 +68,7 @@ typedef struct {
     long broken;            /* links broken so far */
     long bytes;             /* memory held */
     double build_seconds;   /* time that create() took */
-    double jacobi_sweeps;   /* mean sweeps per polar decomposition of the last step, Jacobi only */
+    double jacobi_sweeps;   /* mean sweeps a decomposition in the last step: lattices, by Jacobi */
     double summation_nodes; /* mean per region; octree only */
     long contacts;          /* of the last step or contacts(), but those with obstacles */
 } SmCounts;

@@ -84,4 +84,34 @@ SM_INLINE void polar_fast_lanes(const vec A[9], unsigned live, short *last, vec 
     polar_finish(A, &of, l, live, last, R);
 }
 
+/* The paper's way (fastlsm section 4), lane by lane, from the eigenvectors `stretch` of the last
+ * step, [9][lanes]; zero in lanes that are not live. Updates `last` and `stretch`. Returns the
+ * sweeps, summed over live lanes. */
+static __attribute__((noinline, unused)) double
+polar_jacobi_lanes(const vec *A, unsigned live, short *last, float *stretch, vec *R)
+{
+    vec before[9];
+    double sweeps = 0;
+    last_load(last, before);
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        if (!(live >> lane & 1)) {
+            for (int i = 0; i < 9; i++) R[i][lane] = 0;
+            continue;
+        }
+        double a[9], b[9], V[9], r[9];
+        for (int i = 0; i < 9; i++) {
+            a[i] = (double)A[i][lane];
+            b[i] = (double)before[i][lane];
+            V[i] = (double)stretch[i * SM_LANES + lane];
+        }
+        sweeps += sm_polar_jacobi(a, V, b, r);
+        for (int i = 0; i < 9; i++) {
+            R[i][lane] = (real)r[i];
+            stretch[i * SM_LANES + lane] = (float)V[i];
+        }
+    }
+    last_store(last, R);
+    return sweeps;
+}
+
 #endif

@@ -137,7 +137,7 @@ void oct_free(Oct *oct)
     }
     for (long i = 0; i < oct->instances; i++) {
         OctState *b = &oct->body[i];
-        void *all[] = {b->origin, b->x, b->v, b->g, b->last, b->plastic, b->inverse};
+        void *all[] = {b->origin, b->x, b->v, b->g, b->last, b->stretch, b->plastic, b->inverse};
         for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
     }
     oct_breadth_free(&oct->lists);
@@ -162,6 +162,7 @@ long oct_bytes(const Oct *oct)
     if (oct->goal_lists.span) structure += oct_breadth_bytes(&oct->goal_lists);
     size_t rows = (row_count * (2 * OCT_ROW + OCT_ROW_VELOCITY) + lanes * 3) * sizeof(real);
     size_t state = lanes * (9 * sizeof(real) + 6 * sizeof(short));
+    if (oct->params.polar == SM_POLAR_JACOBI) state += lanes * 9 * sizeof(float);
     if (oct->spread) {
         structure += lanes * 6 * sizeof(real);
         state += lanes * 18 * sizeof(real);

@@ -254,11 +254,10 @@ static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmErro
             "octree: creep is %g: in a step of h = %g s no more than all of a strain can "
             "stay, creep is at most 1/h = %g; give less, or a smaller h",
             creep, params->h, 1 / params->h);
-    if (params->summation != SM_SUM_FAST || params->polar != SM_POLAR_FAST ||
-        params->layout != SM_LAYOUT_AUTO)
+    if (params->summation != SM_SUM_FAST || params->layout != SM_LAYOUT_AUTO)
         return sm_fail(error, SM_INPUT,
-                       "summation, polar and layout: the octree has its own, 'fast', 'fast' and "
-                       "'auto'; use the engine fastlsm for others");
+                       "summation and layout: the octree has its own, 'fast' and 'auto'; use the "
+                       "engine fastlsm for others");
     return SM_OK;
 }
 
@@ -266,6 +265,7 @@ static Oct *build(const OctStructure *s, const OctOptions *options, const SmEngi
 {
     OctParams own = {.weighting = options->weighting,
                      .form = options->form,
+                     .polar = params->polar,
                      .damping = params->damping,
                      .damping_every = params->damping_every,
                      .yield = options->yield,

@@ -1,8 +1,8 @@
 /* engine.h - octree shape matching (Steinemann, Otaduy and Gross 2008) behind lib/engine.h.
  *
  * A particle is a simulation node: leaf i of the tree, at rest in its cell's centre. There is no
- * fracture, and sums and rotations are found in one way only: create() refuses strain_limit,
- * summation, polar and layout other than their defaults (SM_INPUT). params->w is not used.
+ * fracture, and sums are found in one way only: create() refuses strain_limit, summation and layout
+ * other than their defaults (SM_INPUT). params->w is not used.
  *
  * Read octree.c first: the step, top to bottom. */
 #ifndef OCT_ENGINE_H

@@ -118,6 +118,15 @@ SM_INLINE void store_transforms(const OctTask *task, long block, const vec c[3],
     lanes_to_rows(field, row);
 }
 
+/* Copies: A and R of the fast method stay in registers. */
+SM_INLINE void rotate_jacobi(const vec A[9], short *last, float *stretch, vec R[9])
+{
+    vec from[9], to[9];
+    lanes_copy(9, A, from);
+    polar_jacobi_lanes(from, LANES_ALL, last, stretch, to);
+    lanes_copy(9, to, R);
+}
+
 static void match(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;
@@ -134,7 +143,10 @@ static void match(OctTask *task, long first, long last)
         sm_lap(task->laps, SM_SHAPE_MATCHING);
         short *before = body->last + block * 6 * SM_LANES;
         if (oct->thin_of[block] >= 0) thin_rotations(&oct->thin[oct->thin_of[block]], before, A);
-        polar_fast_lanes(A, LANES_ALL, before, R);
+        if (body->stretch)
+            rotate_jacobi(A, before, body->stretch + block * 9 * SM_LANES, R);
+        else
+            polar_fast_lanes(A, LANES_ALL, before, R);
         sm_lap(task->laps, SM_POLAR);
         if (body->plastic) plastic_block(task, block, A, R, F);
         store_transforms(task, block, c, body->plastic ? F : R);

@@ -20,6 +20,7 @@
 typedef struct {
     OctWeighting weighting;
     OctGoalForm form;
+    SmPolarMethod polar;
     double damping; /* k in [0,1]; 0: none */
     int damping_every;
     double gravity[3]; /* finest cells per step and step */
@@ -73,6 +74,7 @@ typedef struct {
     double kick[3];  /* finest cells per step: its velocity is kick + v; the next step adds it */
     real *x, *v, *g; /* [blocks][3][lanes] */
     short *last;     /* [blocks][6][lanes] the regions' last rotations (rotate_lanes.h) */
+    float *stretch;  /* [blocks][9][lanes] eigenvectors for Jacobi's method, or NULL */
     real *plastic;   /* [blocks][9][lanes] S_r, or NULL for an elastic body */
     real *inverse;   /* [blocks][9][lanes] Aqq_r, or NULL */
 } OctState;

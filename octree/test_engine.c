@@ -16,6 +16,7 @@
 #include "test_engine_body.h"
 
 static const double limit[2] = {5e-5, 1e-10}; /* finest cells */
+static const double jacobi_limit = 5e-6;      /* the method stops at off-diagonals of 1e-6 */
 
 /* The state moved at random by a tenth of a cell. */
 static void shake(const SmEngineType *type, SmEngine *engine, long n, double (*x)[3])
@@ -35,6 +36,7 @@ static void goals_are_the_twins(void **state)
     make_voxels(&voxels);
     for (int trial = 0; trial < 24; trial++) {
         int precision = trial % 2;
+        bool jacobi = trial % 7 > 4;
         const SmEngineType *type = engines[precision];
         OctOptions options = {.epsilon = 0.5,
                               .sampling = {.levels = 2, .nodes = 90},
@@ -44,6 +46,7 @@ static void goals_are_the_twins(void **state)
                               .form = trial / 4 % 2 ? OCT_ADJOINT : OCT_HIERARCHICAL};
         if (options.symmetry == OCT_ASYMMETRIC) options.form = OCT_ADJOINT;
         SmEngineParams params = usual(&options);
+        if (jacobi) params.polar = SM_POLAR_JACOBI;
         SmCounts counts;
         SmEngine *engine = make(precision, &voxels, &params, &counts);
         const OctStructure *s = oct_engine_structure(engine);
@@ -53,7 +56,7 @@ static void goals_are_the_twins(void **state)
         assert_int_equal(n, s->tree.leaves);
         assert_true(counts.summation_nodes == s->regions.mean && counts.bytes > 0);
         shake(type, engine, n, x);
-        type->goals(engine);
+        for (int turn = 0; turn <= jacobi; turn++) type->goals(engine); /* from where it ended */
         type->get(engine, SM_GOAL, g);
         ref_tree_init(&s->tree, &s->regions, s->mass, options.weighting == OCT_PLAIN, &twin);
         for (long i = 0; i < n; i++)
@@ -62,7 +65,7 @@ static void goals_are_the_twins(void **state)
         for (long i = 0; i < n; i++)
             for (int d = 0; d < 3; d++) g[i][d] = (g[i][d] - voxels.origin[d]) / voxels.cell;
         assert_true(field_difference(n, (const double(*)[3])g, (const double(*)[3])exact) <
-                    limit[precision]);
+                    (jacobi ? fmax(limit[precision], jacobi_limit) : limit[precision]));
         ref_tree_free(&twin);
         free(x);
         free(g);
@@ -342,9 +345,8 @@ static void refuses_what_it_does_not_do(void **state)
         const char *wanted;
     } cases[] = {
         {{.epsilon = 0}, {.h = 0.01, .strain_limit = 1.5}, "strain_limit: the octree's material"},
-        {{.epsilon = 0}, {.h = 0.01, .summation = SM_SUM_NAIVE}, "summation, polar and layout"},
-        {{.epsilon = 0}, {.h = 0.01, .polar = SM_POLAR_JACOBI}, "summation, polar and layout"},
-        {{.epsilon = 0}, {.h = 0.01, .layout = SM_LAYOUT_LISTS}, "summation, polar and layout"},
+        {{.epsilon = 0}, {.h = 0.01, .summation = SM_SUM_NAIVE}, "summation and layout"},
+        {{.epsilon = 0}, {.h = 0.01, .layout = SM_LAYOUT_LISTS}, "summation and layout"},
         {{.epsilon = 0}, {.h = 0}, "h is 0"},
         {{.epsilon = 0}, {.h = 0.01, .damping = 2}, "damping is 2"},
         {{.epsilon = 0}, {.h = 0.01, .mass = masses}, "the mass of particle 0 is -1"},
