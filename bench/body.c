@@ -1,11 +1,11 @@
 #include "body.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/file.h"
 #include "../lib/import.h"
 #include "../lib/shape.h"
 #include "hash.h"
@@ -79,6 +79,7 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene)
     snprintf(scene->file, sizeof scene->file, "%s", path);
     scene->voxel.fill = SM_SOLID;
     scene->voxel.particles = 2000;
+    scene->voxel.fewer = true;
     double low[3], high[3];
     double height = height_of(mesh, low, high);
     scene->params.gravity[1] = -9.81 * height;
@@ -133,8 +134,8 @@ static void weigh_cells(double density, const SmVoxels *voxels, const int (*at)[
 
 static SmCode read_masses(const char *path, long count, double *mass, SmError *error)
 {
-    FILE *file = fopen(path, "r");
-    if (!file) return sm_fail(error, SM_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+    FILE *file = sm_file_open(path, NULL, error);
+    if (!file) return SM_INPUT;
     long i = 0;
     bool good = true;
     while (i < count && good) {
@@ -197,7 +198,7 @@ static double log_off(const SmVoxels *voxels, long cells)
 static SmCode voxelise_cells(const BenchScene *scene, const SmMesh *mesh, SmVoxels *voxels,
                              SmError *error)
 {
-    SmVoxelParams params = {scene->voxel.fill, 0, scene->cells > 8 ? scene->cells : 8};
+    SmVoxelParams params = {scene->voxel.fill, 0, scene->cells > 8 ? scene->cells : 8, false};
     SmCode code = sm_voxelise(mesh, &params, scene->mesh, voxels, error);
     for (int i = 0; i < 4 && !code && log_off(voxels, scene->cells) > 0.002; i++) {
         SmVoxels next;

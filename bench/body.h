@@ -28,7 +28,8 @@ SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error);
 SmCode bench_mesh_of_scene(const BenchScene *scene, const char *substitute, SmMesh *result,
                            SmError *error);
 
-/* The scene that `shapebench run MESH` uses for a mesh alone: solid, about 2,000 particles, w 2,
+/* The scene that `shapebench run MESH` uses for a mesh alone: solid, about 2,000 particles (fewer
+ * where so many take too large a lattice), w 2,
  * dropped from half its height onto a ground plane. Mesh units are unknown, so gravity is 9.81
  * body heights per second squared: a body 70 units tall falls as one of 1 m does. */
 void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene);

@@ -103,7 +103,7 @@ static SmCode look(const char *name, long particles, Facts *facts, SmError *erro
     SmVoxels voxels;
     SmVoxelReport report;
     SmError why;
-    SmVoxelParams params = {.fill = SM_SOLID, .particles = particles};
+    SmVoxelParams params = {.fill = SM_SOLID, .particles = particles, .fewer = true};
     facts->solid = !sm_voxelise_report(&mesh, &params, name, &voxels, &report, &why);
     if (facts->solid) {
         snprintf(facts->verdict, sizeof facts->verdict, "%s", sm_voxel_verdict(&report));

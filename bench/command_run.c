@@ -165,7 +165,8 @@ static const char help[] =
     "Simulate a scene and write the motion of its surface: a built-in scene (shapebench scenes), a "
     "scene file NAME.cfg, or a mesh file.\v"
     "A mesh alone becomes a solid of about 2,000 particles, w 2, damping 0.1, that drops from half "
-    "its height onto a ground plane; with --engine octree a lattice of about 35,000, sampled by "
+    "its height onto a ground plane; with --engine octree a lattice of about 35,000 (fewer where "
+    "that takes too large a one), sampled by "
     "features at epsilon 0.5; with --engine meshless an elastic body 1 m high, held at its lowest "
     "tenth, for which points with normals do, too: a PLY file, or lines of x y z nx ny nz in a "
     "file "
@@ -195,8 +196,9 @@ static void apply_options(const Options *options, BenchScene *scene)
     if (options->shell) scene->voxel.fill = SM_SHELL;
     if (options->particles || options->cell > 0) scene->cells = 0;
     if (options->particles)
-        scene->voxel = (SmVoxelParams){scene->voxel.fill, 0, options->particles};
-    if (options->cell > 0) scene->voxel = (SmVoxelParams){scene->voxel.fill, options->cell, 0};
+        scene->voxel = (SmVoxelParams){scene->voxel.fill, 0, options->particles, false};
+    if (options->cell > 0)
+        scene->voxel = (SmVoxelParams){scene->voxel.fill, options->cell, 0, false};
     if (options->frames >= 0) scene->frames = options->frames;
     if (options->steps) scene->steps_per_frame = options->steps;
 }

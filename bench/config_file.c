@@ -5,14 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/file.h"
+
 char *bench_config_load(const char *path, size_t *size, SmError *error)
 {
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        sm_fail(error, SM_INPUT, "%s: %s%s", path, errno == ENOENT ? "" : "cannot be opened: ",
-                errno == ENOENT ? "no such file" : strerror(errno));
-        return NULL;
-    }
+    FILE *file = sm_file_open(path, NULL, error);
+    if (!file) return NULL;
     char *text = sm_alloc(BENCH_CONFIG_BYTES + 1, 1);
     *size = fread(text, 1, BENCH_CONFIG_BYTES + 1, file);
     if (ferror(file)) {

@@ -23,7 +23,7 @@ static BenchScene scene_of_cube(const char *engine, long particles)
     strcpy(scene.mesh, "shape:block");
     strcpy(scene.file, "cube.cfg");
     strcpy(scene.engine, engine);
-    scene.voxel = (SmVoxelParams){SM_SOLID, 0, particles};
+    scene.voxel = (SmVoxelParams){SM_SOLID, 0, particles, false};
     return scene;
 }
 

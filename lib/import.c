@@ -1,15 +1,13 @@
 #include "import.h"
 #include "child.h"
+#include "file.h"
 #include "importer.h"
 #include "reply.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static const double default_seconds = 20, default_seconds_per_megabyte = 1;
 static const double default_megabytes = 4096;
@@ -17,7 +15,7 @@ static const double default_megabytes = 4096;
 /* Suffixes of common point files, which Assimp does not know. */
 static bool is_point_format(const char *path)
 {
-    static const char *const suffix[] = {".xyz", ".pts", ".pcd", ".las", ".laz"};
+    static const char *const suffix[] = {".xyz", ".pts", ".txt", ".pcd", ".las", ".laz"};
     const char *dot = strrchr(path, '.');
     for (size_t i = 0; dot && i < sizeof suffix / sizeof *suffix; i++)
         if (strcasecmp(dot, suffix[i]) == 0) return true;
@@ -27,22 +25,14 @@ static bool is_point_format(const char *path)
 /* Says also how many bytes the file has. */
 static SmCode check_file(const char *path, double *bytes, SmError *error)
 {
-    struct stat status;
-    if (stat(path, &status) != 0)
-        return sm_fail(error, SM_INPUT, "%s: %s", path,
-                       errno == ENOENT ? "no such file" : strerror(errno));
-    if (S_ISDIR(status.st_mode))
-        return sm_fail(error, SM_INPUT, "%s: is a directory; name a mesh file", path);
-    if (!S_ISREG(status.st_mode)) return sm_fail(error, SM_INPUT, "%s: not a regular file", path);
-    if (access(path, R_OK) != 0)
-        return sm_fail(error, SM_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
-    if (status.st_size == 0) return sm_fail(error, SM_INPUT, "%s: the file is empty", path);
+    FILE *file = sm_file_open(path, bytes, error);
+    if (!file) return SM_INPUT;
+    fclose(file);
+    if (*bytes == 0) return sm_fail(error, SM_INPUT, "%s: the file is empty", path);
     if (is_point_format(path))
         return sm_fail(error, SM_INPUT,
-                       "%s: a point format holds only points, no triangles; 'run --engine "
-                       "meshless' takes points with normals",
+                       "%s: a point format holds only points, no triangles; " SM_REPLY_POINTS,
                        path);
-    *bytes = (double)status.st_size;
     return SM_OK;
 }
 

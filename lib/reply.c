@@ -21,8 +21,9 @@ static SmCode fail_with_text(const unsigned char *text, size_t length, const cha
 static SmCode fail_without_triangles(const SmReplyHeader *header, const char *path, SmError *error)
 {
     if (header->points > 0)
-        return sm_fail(error, SM_INPUT, "%s: holds only points or lines (%lld), no triangles", path,
-                       (long long)header->points);
+        return sm_fail(error, SM_INPUT,
+                       "%s: holds only points or lines (%lld), no triangles; " SM_REPLY_POINTS,
+                       path, (long long)header->points);
     return sm_fail(error, SM_INPUT, "%s: holds no triangles", path);
 }
 

@@ -28,6 +28,7 @@ typedef struct {
     SmFill fill;
     double cell;    /* edge length of a cell; used when particles is 0 */
     long particles; /* wanted particle count, or 0 */
+    bool fewer;     /* fewer particles will do where so many take too large a lattice */
 } SmVoxelParams;
 
 /* How the inside of a solid was found; see sm_voxelise(). */
@@ -67,8 +68,8 @@ typedef struct {
  * lattice; at most 7 times bits/8 bytes for a moment. On success the caller frees `voxels`.
  * `report` may be NULL. Errors (SM_INPUT), on which `voxels` is zeroed: what sm_mesh_check() says;
  * loose triangles without an inside for a solid; a lattice of more than 2^31 cells or 512 MiB; a
- * cell size or particle count out of range, or one beyond those 2^32 cells. The line begins with
- * `name`. */
+ * cell size or particle count out of range, or (unless `fewer`) one beyond those 2^32 cells. The
+ * line begins with `name`. */
 SmCode sm_voxelise_report(const SmMesh *mesh, const SmVoxelParams *params, const char *name,
                           SmVoxels *voxels, SmVoxelReport *report, SmError *error);
 

@@ -121,18 +121,18 @@ static SmCode search_shift(Search *s, SmError *error)
     return SM_OK;
 }
 
-SmCode sm_voxel_search(SmVoxeliser *voxeliser, long wanted, SmVoxels *voxels, SmVoxelReport *report,
-                       SmError *error)
+SmCode sm_voxel_search(SmVoxeliser *voxeliser, const SmVoxelParams *params, SmVoxels *voxels,
+                       SmVoxelReport *report, SmError *error)
 {
-    Search s = {.voxeliser = voxeliser, .wanted = wanted, .words = WORDS};
+    Search s = {.voxeliser = voxeliser, .wanted = params->particles, .words = WORDS};
     SmCode code = search_cell(&s, error);
     if (!code) code = search_shift(&s, error);
-    if (!code && s.limited && miss(&s) * 50 > wanted)
+    if (!code && s.limited && !params->fewer && miss(&s) * 50 > s.wanted)
         code =
             sm_fail(error, SM_INPUT,
                     "%s: %ld particles need too large a lattice (most of its box would be empty); "
-                    "%ld were reached: ask for fewer",
-                    voxeliser->name, wanted, s.best.particle_count);
+                    "%ld were reached: ask for that many",
+                    voxeliser->name, s.wanted, s.best.particle_count);
     if (code) {
         sm_voxels_free(&s.best);
         return code;

@@ -191,7 +191,7 @@ SmCode sm_voxelise_report(const SmMesh *mesh, const SmVoxelParams *params, const
     SmCode code = begin(&v, mesh, params->fill, name, error);
     if (!code) code = check_params(&v, params, error);
     if (!code && params->particles)
-        code = sm_voxel_search(&v, params->particles, voxels, report, error);
+        code = sm_voxel_search(&v, params, voxels, report, error);
     else if (!code) {
         code = sm_voxeliser_build(&v, params->cell, (double[3]){0, 0, 0}, voxels, report, error);
         report->voxelisations = 1;

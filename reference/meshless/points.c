@@ -7,8 +7,11 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../../lib/file.h"
 #include "../../lib/import.h"
 #include "../../lib/vector.h"
+
+enum { LINE = 1 << 20 };
 
 void ref_points_free(RefPoints *points)
 {
@@ -126,30 +129,52 @@ static int numbers(const char *line, double number[6])
     return count;
 }
 
+/* The next line into `text`; false at the file's end, and with `error` for what is no line. */
+static bool next_line(FILE *file, const char *path, long line, char *text, SmError *error)
+{
+    if (!fgets(text, LINE, file)) {
+        if (ferror(file))
+            sm_fail(error, SM_INPUT, "%s: line %ld cannot be read: %s", path, line,
+                    strerror(errno));
+        return false;
+    }
+    size_t length = strlen(text);
+    if ((length > 0 && text[length - 1] == '\n') || (length < LINE - 1 && feof(file))) return true;
+    sm_fail(error, SM_INPUT, "%s: line %ld %s: not a file of points", path, line,
+            length < LINE - 1 ? "holds a zero byte" : "has over a million characters");
+    return false;
+}
+
+/* Six numbers of the line; false with `error` for others, and without for a line to be skipped. */
+static bool take_line(const char *text, const char *path, long line, bool first, double number[6],
+                      SmError *error)
+{
+    const char *begin = text + strspn(text, " \t\r\n");
+    if (*begin == 0 || *begin == '#') return false;
+    int found = numbers(begin, number);
+    if (found == 6) return true;
+    if (found != 1 || !first)
+        sm_fail(error, SM_INPUT,
+                found == 3
+                    ? "%s: line %ld has three numbers: the points have no normals; give them "
+                      "as x y z nx ny nz"
+                    : "%s: line %ld is not x y z nx ny nz",
+                path, line);
+    return false;
+}
+
 /* All lines, positions and normals in turn; NULL and a reason where one is wrong. */
 static double (*read_lines(FILE *file, const char *path, long *count, SmError *error))[3]
 {
     double(*row)[3] = NULL, number[6];
-    long room = 0, line = 0;
-    char *text = NULL;
-    size_t size = 0;
+    char *text = sm_alloc(LINE, 1);
+    SmError why = {0};
+    long room = 0;
     *count = 0;
-    while (getline(&text, &size, file) >= 0) {
-        line++;
-        const char *begin = text + strspn(text, " \t\r\n");
-        if (*begin == 0 || *begin == '#') continue;
-        int found = numbers(begin, number);
-        if (found == 1 && *count == 0) continue;
-        if (found < 6) {
-            sm_fail(error, SM_INPUT,
-                    found == 3
-                        ? "%s: line %ld has three numbers: the points have no normals; give them "
-                          "as x y z nx ny nz"
-                        : "%s: line %ld is not x y z nx ny nz",
-                    path, line);
-            free(row);
-            free(text);
-            return NULL;
+    for (long line = 1; next_line(file, path, line, text, &why); line++) {
+        if (!take_line(text, path, line, *count == 0, number, &why)) {
+            if (why.code) break;
+            continue;
         }
         if (*count == room) {
             room = 2 * room + 1024;
@@ -158,15 +183,18 @@ static double (*read_lines(FILE *file, const char *path, long *count, SmError *e
         memcpy(row[2 * (*count)++], number, sizeof number);
     }
     free(text);
-    if (!row) sm_fail(error, SM_INPUT, "%s: holds no points", path);
-    return row;
+    if (!why.code && row) return row;
+    free(row);
+    sm_fail(error, SM_INPUT, "%s%s", why.code ? why.text : path,
+            why.code ? "" : ": holds no points");
+    return NULL;
 }
 
 static SmCode read_text(const char *path, RefPoints *points, SmError *error)
 {
     *points = (RefPoints){0};
-    FILE *file = fopen(path, "r");
-    if (!file) return sm_fail(error, SM_INPUT, "%s: %s", path, strerror(errno));
+    FILE *file = sm_file_open(path, NULL, error);
+    if (!file) return SM_INPUT;
     long count;
     double(*row)[3] = read_lines(file, path, &count, error);
     fclose(file);

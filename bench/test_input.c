@@ -1,0 +1,106 @@
+/* Files that are not what they are taken for, by the program: it neither waits nor fills memory,
+ * says what is wrong in one line, and hands nothing of theirs on that a terminal or a spreadsheet
+ * would act on. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "test_program.h"
+
+/* Within 20 s. */
+static void assert_refused(const char *arguments, const char *wanted)
+{
+    Result result;
+    run_with("timeout 20", arguments, &result);
+    if (result.code != 3 || !strstr(result.err, wanted) || strchr(result.err, '\n')[1])
+        fail_msg("shapebench %s: exit code %d, not 3 with \"%s\":\n%s", arguments, result.code,
+                 wanted, result.err);
+}
+
+static void pipes_and_devices_are_refused_at_once(void **state)
+{
+    (void)state;
+    static const char *const ends[] = {".cfg", ".xyz", ".ply", ".obj", ".h5"};
+    static const char *const commands[] = {"run pipe.cfg",
+                                           "run zero.cfg",
+                                           "claims --list --claims pipe.cfg",
+                                           "claims --list --claims zero.cfg",
+                                           "run pipe.xyz --engine meshless",
+                                           "run zero.xyz --engine meshless",
+                                           "info zero.xyz --slice z=0.5 -o slice.h5",
+                                           "run pipe.ply --engine meshless",
+                                           "run zero.ply --engine meshless",
+                                           "run pipe.obj",
+                                           "run penguin --mesh penguin=zero.obj",
+                                           "run masses.cfg --no-output",
+                                           "report pipe.h5 -o report.html",
+                                           "report zero.h5 -o report.html"};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "pipe%s", ends[i]);
+        assert_int_equal(mkfifo(path_in(name), 0600), 0);
+        snprintf(name, sizeof name, "zero%s", ends[i]);
+        assert_int_equal(symlink("/dev/zero", path_in(name)), 0);
+    }
+    write_text("masses.cfg",
+               "mesh = \"shape:block\"; particles = 64; w = 1; vertex_mass = \"pipe.xyz\";\n");
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+        assert_refused(commands[i], "pipe or device");
+}
+
+/* Points without an end of line, in a file that takes no room on disk. */
+static void lines_have_an_end(void **state)
+{
+    (void)state;
+    write_text("sparse.xyz", "0 0 0 0 0 1\n");
+    assert_int_equal(truncate(path_in("sparse.xyz"), (off_t)1 << 40), 0);
+    assert_refused("run sparse.xyz --engine meshless", "line 2 holds a zero byte");
+    char *blanks = malloc(3000000);
+    memset(blanks, ' ', 3000000);
+    write_bytes("long.xyz", blanks, 3000000);
+    free(blanks);
+    assert_refused("run long.xyz --engine meshless", "line 1 has over a million characters");
+}
+
+static void points_are_told_of_the_engine_that_takes_them(void **state)
+{
+    (void)state;
+    write_text("cloud.ply", "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
+                            "property float y\nproperty float z\nend_header\n0 0 0\n1 1 1\n");
+    write_text("cloud.txt", "0 0 0 0 0 1\n");
+    assert_refused("run cloud.ply", "'run --engine meshless' takes points with normals");
+    assert_refused("run cloud.txt", "'run --engine meshless' takes points with normals");
+    assert_refused("info cloud.ply", "'run --engine meshless' takes points with normals");
+}
+
+/* One sliver across its box, of which 35,000 particles would need too large a lattice. */
+static void a_default_is_never_refused(void **state)
+{
+    (void)state;
+    Result result;
+    write_text("sliver.obj", "v 0 0 0\nv 1 0.3 0.2\nv 1 0.3001 0.2\nf 1 2 3\n");
+    run("run sliver.obj --engine octree --shell --no-output --frames 0", &result);
+    assert_null(strstr(result.err, "too large a lattice"));
+    assert_non_null(strstr(result.out, "octree, single precision: "));
+    assert_refused("run sliver.obj --engine octree --shell --no-output --particles 35000",
+                   "ask for that many");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pipes_and_devices_are_refused_at_once),
+        cmocka_unit_test(lines_have_an_end),
+        cmocka_unit_test(points_are_told_of_the_engine_that_takes_them),
+        cmocka_unit_test(a_default_is_never_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
