@@ -23,8 +23,12 @@ CLAIM_KINDS = ("method", "machine", "by construction")
 CLAIM_TEXTS = ("kind", "paper", "name", "place", "unit", "statement", "status", "test", "verdict", "words", "evidence",
                "over", "unset_evidence")
 
+CLAIM_VALUES = ("paper_value", "measured", "low", "high")
+
 SWEEP_COLUMNS = ("engine", "w", "epsilon", "valid", "total_ms", "build_seconds", "bytes", "summation_nodes", "goal_rms",
                  "relaxation", "sag", "frequency", "path_rms", "path_most", "front")
+
+TEXT_COLUMNS = ("engine", "set", "reason", "kind")
 
 SPECIMEN_COLUMNS = ("engine", "w", "epsilon", "across", "aspect", "spacing", "h", "set", "wide", "valid", "reason",
                     "frequency", "young", "spread", "young_euler", "young_timoshenko", "young_meshless")
@@ -64,9 +68,10 @@ class Source:
 
 
 def demand(row, names, kinds):
-    """All of these attributes, each of one of the kinds."""
+    """All of these attributes, each of one of the kinds; arrays are lists of numbers."""
     for name in names:
-        if not isinstance(row.get(name), kinds):
+        value = row.get(name)
+        if not isinstance(value, kinds) or kinds is np.ndarray and (value.ndim != 1 or value.dtype.kind not in "iuf"):
             raise ValueError(f"'{name}'")
 
 
@@ -119,8 +124,10 @@ def read_claim(group):
     claim = attributes(group)
     demand(claim, CLAIM_TEXTS, str)
     demand(claim, ("values", "count"), int)
-    demand(claim, ("paper_value", "measured", "low", "high", "ratio"), np.ndarray)
+    demand(claim, (*CLAIM_VALUES, "ratio"), np.ndarray)
     demand(claim, ("unset",), float)
+    if not 0 <= max(claim["values"], claim["count"]) <= min(len(claim[name]) for name in CLAIM_VALUES):
+        raise ValueError("the number of values of a claim")
     if claim["kind"] not in CLAIM_KINDS:
         raise ValueError(f"the kind {claim['kind']!r} of a claim")
     return claim
@@ -132,6 +139,7 @@ def read_curve(group):
     demand(curve, ("valid", "exponent", "exponent_low", "exponent_high"), (int, float))
     for name in ("x", "y", "low", "high"):
         curve[name] = group[name][:] if name in group else np.empty(0)
+        demand(curve, (name,), np.ndarray)
         if curve[name].shape != curve["x"].shape:
             raise ValueError(f"the number of values of '{name}'")
     return curve
@@ -147,11 +155,9 @@ def read_sweep(source, file):
     source.plan = attributes(file["plan"])
     demand(source.plan, ("scene", "width"), str)
     demand(source.plan, ("points",), int)
-    source.point = {name: column[:] for name, column in file["points"].items()}
-    missing = [name for name in SWEEP_COLUMNS if len(source.point.get(name, ())) != len(source.point["w"])]
-    if missing or not len(source.point["w"]):
-        raise ValueError(f"'{missing[0]}' of the points" if missing else "not one point is finished")
-    source.point["engine"] = np.array([plain(engine) for engine in source.point["engine"]])
+    source.point = read_columns(file["points"], SWEEP_COLUMNS, {})
+    if not len(source.point["w"]):
+        raise ValueError("not one point is finished")
 
 
 def read_columns(group, columns, wide):
@@ -161,6 +167,8 @@ def read_columns(group, columns, wide):
     for name in columns:
         if column[name].shape != ((count, wide[name]) if name in wide else (count,)):
             raise ValueError(f"the shape of '{name}'")
+        if column[name].dtype.kind not in ("S" if name in TEXT_COLUMNS else "iuf"):
+            raise ValueError(f"the type of '{name}'")
     return {name: np.array([plain(text) for text in values]) if values.dtype.kind == "S" else values
             for name, values in column.items()}
 
