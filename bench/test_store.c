@@ -192,7 +192,7 @@ static void statuses_of_the_paper_are_stored(void **state)
     (void)state;
     static const char *const cases[][5] = {
         {"fastlsm", "infant", "quoted", "quoted", "quoted damaged quoted quoted derived"},
-        {"octree", "hand-regular", "second-hand", "second-hand", "quoted quoted quoted quoted quoted"},
+        {"octree", "hand-regular", "derived", "second-hand", "quoted quoted quoted quoted quoted"},
     };
     static const char *const names[] = {"paper_total_status", "paper_rate_status",
                                         "paper_stage_status"};
