@@ -43,7 +43,7 @@ static const BenchSetting range_table[] = {
 static const BenchSetting measure_table[] = {
     WORDS(
         BenchMeasure, "experiment", experiment, 1,
-        "none|scene|sums|size|polar|sweeps|smoothing|blending|sag|setup|regions|growth|placement"),
+        "none|scene|sums|size|polar|sweeps|smoothing|blending|sag|resampling|regions|growth|placement"),
     TEXT(BenchMeasure, "scene", scene),
     TEXT(BenchMeasure, "engine", engine),
     TEXT(BenchMeasure, "field", field),

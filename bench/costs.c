@@ -8,11 +8,11 @@
 #include "../fastlsm/fastlsm.h"
 #include "../lib/team.h"
 #include "../octree/halves.h"
+#include "../octree/resample.h"
 #include "../octree/sheaf.h"
 #include "cubes.h"
 #include "matrices.h"
 #include "play.h"
-#include "tree_setup.h"
 #include "tree_steps.h"
 
 static int repeats_of(const BenchLab *lab)
@@ -237,85 +237,124 @@ void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *
     free(scene);
 }
 
-/* The searches with which finding all regions begins, as halves.h has them. */
-static void search_all(const BenchSampled *body, const int *w, OctSheaf *sheaf)
-{
-    int leaf[OCT_SHEAF], reaches[OCT_SHEAF];
-    for (long from = 0, count; from < body->tree.leaves; from += count) {
-        long left = body->tree.leaves - from;
-        count = left < OCT_SHEAF ? left : OCT_SHEAF;
-        for (int lane = 0; lane < count; lane++) {
-            leaf[lane] = (int)from + lane;
-            reaches[lane] = oct_halves_reach(w[leaf[lane]], body->epsilon);
-        }
-        oct_sheaf_search(sheaf, (int)count, leaf, reaches);
-    }
-}
+/* ---- resampling */
 
-/* One sample: milliseconds of the searches, and of finding the regions, the same searches
- * included. */
-static void time_regions(const BenchSampled *body, const int *w, OctSheaf *sheaf, double *search,
-                         double *all)
-{
-    OctRegions regions;
-    double start = sm_now();
-    search_all(body, w, sheaf);
-    double middle = sm_now();
-    SmCode code =
-        oct_regions_build(&body->tree, &body->graph, w, body->epsilon, OCT_UNION, &regions, NULL);
-    *all = 1e3 * (sm_now() - middle);
-    *search = 1e3 * (middle - start);
-    assert(!code); /* they were built before */
-    oct_regions_free(&regions);
-}
-
-/* With regions so many times as wide as the body's. */
-static void add_share(const BenchSampled *body, int times, int repeats, int points,
-                      BenchCurve *curve)
-{
+/* An octree that is changed, and scratch for searches in it. */
+typedef struct {
+    OctStructure s;
     OctReach reach;
     OctSheaf sheaf;
-    size_t leaves = (size_t)body->tree.leaves;
-    double *share = sm_alloc((size_t)repeats, sizeof *share), search, all;
-    int *w = sm_alloc(leaves, sizeof *w);
-    for (size_t i = 0; i < leaves; i++) w[i] = times * body->w[i];
-    int *below = oct_tree_below(&body->tree);
-    oct_reach_init(&reach, &body->graph);
-    oct_sheaf_init(&sheaf, &body->tree, &reach);
-    oct_sheaf_grow(&sheaf, body->tree.nodes, body->tree.leaves, below);
-    time_regions(body, w, &sheaf, &search, &all); /* warms up */
-    for (int r = 0; r < repeats; r++) {
-        time_regions(body, w, &sheaf, &search, &all);
-        share[r] = 100 * search / all;
+    int *below;
+} Resampled;
+
+static SmCode make_resampled(const BenchMeasure *measure, Resampled *of, SmError *error)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    SmMesh mesh;
+    BenchBody body;
+    SmCode code = bench_scene_find(measure->scene, scene, error);
+    if (!code && strcmp(scene->engine, "octree") != 0)
+        code = sm_fail(error, SM_INPUT, "'%.60s' is no octree: nothing is resampled", scene->name);
+    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, error);
+    if (!code) code = bench_body_create(scene, &mesh, &body, error);
+    if (!code) {
+        code = oct_structure_build(&body.voxels, &scene->octree, NULL, &of->s, error);
+        bench_body_free(&body);
     }
-    bench_curve_sample(curve, times, share, repeats, 0.5, points);
-    oct_sheaf_free(&sheaf);
-    oct_reach_free(&reach);
-    free(share);
-    free(below);
-    free(w);
+    free(scene);
+    if (code) return code;
+    oct_resample_prepare(&of->s);
+    of->below = oct_tree_below(&of->s.tree); /* searches do not read it */
+    oct_reach_init(&of->reach, &of->s.graph);
+    oct_sheaf_init(&of->sheaf, &of->s.tree, &of->reach);
+    return SM_OK;
 }
 
-void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+static void free_resampled(Resampled *of)
 {
-    BenchSampled body;
-    BenchSetup checked[2];
+    oct_sheaf_free(&of->sheaf);
+    oct_reach_free(&of->reach);
+    oct_structure_free(&of->s);
+    free(of->below);
+}
+
+/* The leaves among the children of a node that can be split; returns how many. */
+static int leaves_below(const OctTree *tree, int node, int leaf[8])
+{
+    int count = 0;
+    for (int c = tree->child[node]; c < tree->child[node] + tree->children[node]; c++)
+        if (tree->children[c] == 0 && tree->size[c] > 2) leaf[count++] = c;
+    return count;
+}
+
+static void change_all(OctStructure *s, const int *node, int count, bool split)
+{
+    for (int n = 0; n < count; n++) {
+        SmCode code = (split ? oct_resample_split : oct_resample_merge)(s, node[n], NULL);
+        assert(!code); /* leaves that can be split, and then those */
+        (void)code;
+    }
+}
+
+/* Percent of the time of a change that the distances of the leaves searched take when they are
+ * found alone. */
+static double distance_percent(Resampled *of, int node)
+{
+    OctStructure *s = &of->s;
+    int leaves[8], leaf_count = leaves_below(&s->tree, node, leaves);
+    double start = sm_now();
+    change_all(s, leaves, leaf_count, true);
+    const OctChange *change = oct_resample_update(s);
+    double all = sm_now() - start;
+    oct_reach_grow(&of->reach, s->tree.leaves);
+    oct_sheaf_grow(&of->sheaf, s->tree.nodes, s->tree.leaves, of->below);
+    start = sm_now();
+    for (long from = 0; from < change->searched_count; from += OCT_SHEAF) {
+        int reaches[OCT_SHEAF];
+        const int *leaf = change->searched + from;
+        long left = change->searched_count - from, count = left < OCT_SHEAF ? left : OCT_SHEAF;
+        for (int lane = 0; lane < count; lane++)
+            reaches[lane] = oct_halves_reach(s->w[leaf[lane]], s->options.epsilon);
+        oct_sheaf_search(&of->sheaf, (int)count, leaf, reaches);
+    }
+    double search = sm_now() - start;
+    change_all(s, leaves, leaf_count, false);
+    oct_resample_update(s);
+    return 100 * search / all;
+}
+
+/* A parent of leaves that can be split, the one for this turn, or -1. */
+static int parent_of_leaves(const OctTree *tree, int turn, int turns)
+{
+    for (long n = 0; n < tree->live; n++) {
+        int leaf = (int)((n + (long)turn * tree->live / turns) % tree->live);
+        int node = tree->node[leaf];
+        if (tree->size[node] > 2 && tree->parent[node] >= 0) return tree->parent[node];
+    }
+    return -1;
+}
+
+void bench_costs_resampling(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int repeats = repeats_of(lab);
+    double *percent = sm_alloc((size_t)repeats, sizeof *percent);
+    int *node = sm_alloc((size_t)repeats, sizeof *node);
     SmError error;
-    int times[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, times);
-    bench_curve_begin(curve, "times 0.75 of a node's edge", measure->field);
-    if (bench_sampled_hand(false, &body, &error)) {
+    Resampled *of = sm_alloc(1, sizeof *of);
+    bench_curve_begin(curve, "-", measure->field);
+    if (make_resampled(measure, of, &error))
         bench_curve_fail(curve, "%.180s", error.text);
-        return;
+    else {
+        for (int r = 0; r < repeats; r++) node[r] = parent_of_leaves(&of->s.tree, r, repeats);
+        if (node[0] < 0) bench_curve_fail(curve, "no leaf can be split");
+        for (int r = 0; r < repeats && curve->valid; r++) {
+            distance_percent(of, node[r]); /* warms up */
+            percent[r] = distance_percent(of, node[r]);
+        }
+        if (curve->valid) bench_curve_sample(curve, 0, percent, repeats, 0.5, 1);
+        free_resampled(of);
     }
-    int before = sm_team_enter(1); /* which regions take; searches are one after the other */
-    bench_setup_time(&body, BENCH_SETUP_DISTANCES, BENCH_F32, 1, &checked[0]);
-    bench_setup_time(&body, BENCH_SETUP_REGIONS, BENCH_F32, 1, &checked[1]);
-    for (int c = 0; c < 2; c++) {
-        if (!checked[c].valid) bench_curve_fail(curve, "%s", checked[c].reason);
-        free(checked[c].ns);
-    }
-    for (int t = 0; t < count && curve->valid; t++)
-        add_share(&body, times[t], repeats_of(lab), count, curve);
-    sm_team_leave(before);
-    bench_sampled_free(&body);
+    free(of);
+    free(node);
+    free(percent);
 }

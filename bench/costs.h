@@ -1,4 +1,4 @@
-/* costs.h - the experiments "sums", "size", "polar", "sweeps" and "setup" (experiment.h): what
+/* costs.h - the experiments "sums", "size", "polar", "sweeps" and "resampling" (experiment.h): what
  * things cost.
  */
 #ifndef BENCH_COSTS_H
@@ -12,6 +12,6 @@ void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *cu
 void bench_costs_size(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
-void bench_costs_setup(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
+void bench_costs_resampling(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 
 #endif

@@ -37,19 +37,9 @@
  *   bar that is bent and twisted by half a turn (fastlsm Fig. 3), against the number of clusters,
  *   range `n`; `matching` lattice has a region for every particle instead.
  * - sag: how deep the tip of a clamped beam hangs, in mesh units, against w; `scene`, range `w`.
- * - setup: `field` "distance-share": percent of the time that finding the octree hand's summation
- *   nodes takes which its searches for distances take when run alone, against the width of regions
- *   in multiples of 0.75 of each node's edge; range `n`.
- *
- * Of octrees by `masses`, `symmetry` (with "none" goals are the adjoint's) and `weighting`, all of
- * them the default's unless given, and deterministic (choices.h):
- * - regions: `field` summation_nodes (mean of all regions), most_summation, beyond_percent (of all
- *   memberships those beyond (1 + epsilon) w), parts, of `scene`, against epsilon; range `n`,
- *   quarters of it.
- * - growth: one point: kinetic energy of the body of `scene`, free, undamped, bent and kicked, over
- *   the last tenth of 20,000 steps (2,000 where quick) by that over the first; double precision.
- * - placement: one point: how much the bending stiffness of a beam four nodes across depends on
- *   where the base lattice lies: of four places the most by the least. */
+ * - resampling: `field` "distance-share": percent of the time of resampling `scene`'s octree, where
+ *   the leaves of one parent are split, which the distances of the leaves searched take when they
+ *   are found alone (octree section 5.3); median over places spread over the body. */
 typedef enum {
     BENCH_TRY_NOTHING,
     BENCH_TRY_SCENE,
@@ -60,7 +50,7 @@ typedef enum {
     BENCH_TRY_SMOOTHING,
     BENCH_TRY_BLENDING,
     BENCH_TRY_SAG,
-    BENCH_TRY_SETUP,
+    BENCH_TRY_RESAMPLING,
     BENCH_TRY_REGIONS,
     BENCH_TRY_GROWTH,
     BENCH_TRY_PLACEMENT,

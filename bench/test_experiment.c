@@ -171,18 +171,20 @@ static void cubes_of_both_engines_are_timed(void **state)
     bench_lab_free(&lab);
 }
 
-/* The searches alone are a part of finding the regions: whatever their width, less than all. */
-static void searches_are_a_part_of_the_set_up(void **state)
+/* The searches alone are a part of a change. */
+static void searches_are_a_part_of_resampling(void **state)
 {
     (void)state;
     BenchLab lab = quick_lab();
     BenchMeasure measure = {
-        .experiment = BENCH_TRY_SETUP, .field = "distance-share", .n = {1, 4, 2}};
+        .experiment = BENCH_TRY_RESAMPLING, .scene = "liver", .field = "distance-share"};
     int number = bench_experiment(&lab, &measure);
-    const BenchCurve *curve = &lab.curve[number];
-    if (!curve->valid) fail_msg("%s", curve->reason);
-    assert_int_equal(curve->points, 2);
-    for (int p = 0; p < 2; p++) assert_true(curve->y[p] > 0 && curve->y[p] < 100);
+    if (!lab.curve[number].valid) fail_msg("%s", lab.curve[number].reason);
+    assert_int_equal(lab.curve[number].points, 1);
+    assert_true(lab.curve[number].y[0] > 0 && lab.curve[number].y[0] < 100);
+    strcpy(measure.scene, "hand-lattice");
+    number = bench_experiment(&lab, &measure);
+    assert_true(!lab.curve[number].valid && strstr(lab.curve[number].reason, "is no octree"));
     bench_lab_free(&lab);
 }
 
@@ -257,7 +259,7 @@ int main(void)
         cmocka_unit_test(scenes_give_their_fields),
         cmocka_unit_test(what_cannot_be_measured_is_not_valid),
         cmocka_unit_test(cubes_of_both_engines_are_timed),
-        cmocka_unit_test(searches_are_a_part_of_the_set_up),
+        cmocka_unit_test(searches_are_a_part_of_resampling),
         cmocka_unit_test(regions_are_measured_by_their_symmetry),
         cmocka_unit_test(stiffness_by_volume_depends_on_the_place),
         cmocka_unit_test(energy_stays_but_with_plain_weights),

@@ -377,6 +377,8 @@ void oct_region_change_update(OctRegionChange *c, OctChange *batch)
     search_all(c);
     for (long n = 0; n < c->list_count; n++) join(c, c->list[n], batch);
     for (long n = 0; n < c->list_count; n++) c->state[c->list[n]] = 0;
+    batch->searched_count = c->search_count;
+    batch->searched = c->list;
     c->list_count = 0;
     stir_all(c, batch, 0);
     publish(c);

@@ -46,7 +46,10 @@ typedef struct OctChange {
     long region_count;
     int *region; /* leaves, new ones included, whose region holds other leaves than before: its list
                   * of members is another, or leaves below a member are. Each once, in no order */
-    long edge_count;             /* edges of the graph that have gone or come */
+    long searched_count;
+    const int *searched; /* leaves whose summation nodes were found anew (N_update, octree section
+                          * 5), those near each other together */
+    long edge_count;     /* edges of the graph that have gone or come */
     long born_count, dead_count; /* tree nodes */
     OctPlace *born, *dead;
     long inner_count, outer_count;

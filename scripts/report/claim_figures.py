@@ -18,10 +18,7 @@ GROUPS = {
     "size": ("Cost against size", "Milliseconds a step against the number of particles or nodes.", "xy"),
     "sag": ("Stiffness against w", "How deep the tip of a clamped beam hangs; bars are the extremes of the swing that is "
             "left.", ""),
-    "setup": ("Distances when an octree is set up", "Percent of the time of finding the octree hand's summation nodes "
-              "that goes into distances, against how wide regions are.", ""),
 }
-AXES = {"distance-share": "distances, % of that time"}  # fields of which the name says too little
 CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "INVALID": "invalid"}
 
 
@@ -123,7 +120,7 @@ def group_figure(group, curves):
         data += [[name, float(a), float(b), float(c), float(d)] for a, b, c, d in zip(x, y, curve["low"], curve["high"])]
         words.append(f"{label(name, curve)}: from {number(y[0])} at {number(x[0])} to {number(y[-1])} at {number(x[-1])}")
     axes.set_xlabel(curves[0][1]["x_name"])
-    y_name = AXES.get(curves[0][1]["y_name"], curves[0][1]["y_name"])
+    y_name = curves[0][1]["y_name"]
     axes.set_ylabel(y_name)
     if "x" in logarithmic:
         axes.set_xscale("log")
