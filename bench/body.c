@@ -8,7 +8,6 @@
 #include "../lib/file.h"
 #include "../lib/import.h"
 #include "../lib/shape.h"
-#include "hash.h"
 #include "nearest.h"
 #include "room.h"
 
@@ -215,14 +214,10 @@ static SmCode voxelise_cells(const BenchScene *scene, const SmMesh *mesh, SmVoxe
 
 SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error)
 {
-    *body = (BenchBody){.mesh = *mesh, .hash = BENCH_HASH_START};
+    *body = (BenchBody){.mesh = *mesh, .hash = sm_mesh_hash(mesh)};
     *mesh = (SmMesh){0};
     const SmMesh *m = &body->mesh;
     bounds(m, body->low, body->high);
-    body->hash =
-        bench_hash_bytes(body->hash, m->position, (size_t)m->vertex_count * sizeof *m->position);
-    body->hash =
-        bench_hash_bytes(body->hash, m->triangle, (size_t)m->triangle_count * sizeof *m->triangle);
     double start = sm_now(),
            wishes = (double)(scene->cells ? scene->cells : scene->voxel.particles);
     SmCode code = bench_room_check(scene, wishes, error); /* before minutes of voxelising */

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/hash.h"
 #include "../fastlsm/fastlsm.h"
-#include "hash.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchPlan, kind, member)
 
@@ -146,10 +146,10 @@ static unsigned long long hash_program(void)
 {
     FILE *file = fopen("/proc/self/exe", "rbe");
     if (!file) return 0;
-    unsigned long long hash = BENCH_HASH_START;
+    unsigned long long hash = SM_HASH_START;
     char *bytes = sm_alloc(1 << 16, 1);
     for (size_t got; (got = fread(bytes, 1, 1 << 16, file)) > 0;)
-        hash = bench_hash_bytes(hash, bytes, got);
+        hash = sm_hash_bytes(hash, bytes, got);
     fclose(file);
     free(bytes);
     return hash;

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "hash.h"
+#include "../lib/hash.h"
 #include "process.h"
 
 enum { PATH = BENCH_DRAFT_PATH, WORDS = 24, SETTING = 512 };
@@ -110,9 +110,9 @@ static void find_settings(Build *build)
 /* Of the settings, so that builds with others are kept apart. */
 static unsigned hash_settings(const Build *build)
 {
-    unsigned long long hash = BENCH_HASH_START;
+    unsigned long long hash = SM_HASH_START;
     for (int i = 0; i < build->settings; i++)
-        hash = bench_hash_bytes(hash, build->setting[i], strlen(build->setting[i]));
+        hash = sm_hash_bytes(hash, build->setting[i], strlen(build->setting[i]));
     return (unsigned)(hash ^ hash >> 32);
 }
 

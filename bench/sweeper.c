@@ -7,9 +7,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "../lib/hash.h"
 #include "beam.h"
 #include "check.h"
-#include "hash.h"
 #include "measure.h"
 
 /* Of a lattice's regions, where all were cubes: about half a minute of building. */
@@ -53,7 +53,7 @@ static unsigned long long hash_scene(const BenchScene *scene)
     memset(copy->mesh, 0, sizeof copy->mesh);
     memset(copy->name, 0, sizeof copy->name);
     memset(copy->title, 0, sizeof copy->title);
-    unsigned long long hash = bench_hash_bytes(BENCH_HASH_START, copy, sizeof *copy);
+    unsigned long long hash = sm_hash_bytes(SM_HASH_START, copy, sizeof *copy);
     free(copy);
     return hash;
 }

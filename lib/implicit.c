@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "turn.h"
 
 static const double nowhere = 1e9; /* value of the empty solid */
 
@@ -20,7 +21,7 @@ SmPrimitive sm_primitive(SmPrimitiveKind kind, double blend, const double centre
 void sm_primitive_turn(SmPrimitive *primitive, int axis, double angle)
 {
     int u = (axis + 1) % 3, w = (axis + 2) % 3;
-    double c = cos(angle), s = sin(angle);
+    double c = sm_cos(angle), s = sm_sin(angle);
     for (int row = 0; row < 3; row++) {
         double *v = primitive->axis[row], a = v[u], b = v[w];
         v[u] = c * a - s * b;

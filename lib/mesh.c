@@ -1,5 +1,6 @@
 #include "mesh.h"
 #include "edges.h"
+#include "hash.h"
 #include "vector.h"
 
 #include <limits.h>
@@ -307,6 +308,14 @@ SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error)
         return sm_fail(error, SM_INPUT, "%s: its size of %g is outside 1e-30 to 1e30; scale it",
                        name, side);
     return SM_OK;
+}
+
+unsigned long long sm_mesh_hash(const SmMesh *mesh)
+{
+    size_t vertices = (size_t)mesh->vertex_count, triangles = (size_t)mesh->triangle_count;
+    unsigned long long hash =
+        sm_hash_bytes(SM_HASH_START, mesh->position, vertices * sizeof *mesh->position);
+    return sm_hash_bytes(hash, mesh->triangle, triangles * sizeof *mesh->triangle);
 }
 
 void sm_mesh_print_obj(const SmMesh *mesh, FILE *file)

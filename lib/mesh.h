@@ -55,6 +55,9 @@ SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error);
  * are in `unit` squared: give a length of the mesh's scale, so that nothing overflows. */
 double (*sm_mesh_normals(const SmMesh *mesh, double unit))[3];
 
+/* A name for the mesh: FNV-1a of its coordinates and its indices, bit for bit. */
+unsigned long long sm_mesh_hash(const SmMesh *mesh);
+
 /* Prints Wavefront OBJ with all digits; ask ferror() whether the file took it. */
 void sm_mesh_print_obj(const SmMesh *mesh, FILE *file);
 

@@ -1,6 +1,7 @@
 #include <math.h>
 
 #include "sculpt.h"
+#include "turn.h"
 
 /* A cartoon penguin, 1.0 tall. */
 static void penguin_feet(SmImplicit *solid)
@@ -40,7 +41,7 @@ static void penguin_belly(SmImplicit *solid)
     sm_sculpt_egg(solid, (SmPoint){0, 0.370, 0.085}, (SmPoint){0.215, 0.285, 0.205}, 0.006);
     for (int i = 0; i < 13; i++) {
         double angle = 2 * M_PI * i / 12;
-        rim[i] = (SmPoint){0.205 * sin(angle), 0.375 + 0.265 * cos(angle), 0.5};
+        rim[i] = (SmPoint){0.205 * sm_sin(angle), 0.375 + 0.265 * sm_cos(angle), 0.5};
     }
     int base = solid->count;
     sm_sculpt_relief(solid, base, 13, rim, (SmPoint){0, 0, -0.5}, 0.009, 0.008, 1);

@@ -1,6 +1,7 @@
 #include <math.h>
 
 #include "sculpt.h"
+#include "turn.h"
 
 static const double head[3] = {0.012, 0.325, 0.012};
 static const double tilt = 0.85; /* of the head, from looking up towards looking ahead */
@@ -8,7 +9,7 @@ static const double tilt = 0.85; /* of the head, from looking up towards looking
 /* Adds a primitive given relative to the head looking up, turned with the head. */
 static void add_to_head(SmImplicit *solid, SmPrimitive made)
 {
-    double c = cos(tilt), s = sin(tilt), y = made.centre[1], z = made.centre[2];
+    double c = sm_cos(tilt), s = sm_sin(tilt), y = made.centre[1], z = made.centre[2];
     made.centre[0] += head[0];
     made.centre[1] = head[1] + c * y - s * z;
     made.centre[2] = head[2] + s * y + c * z;
@@ -20,7 +21,7 @@ static void petals(SmImplicit *solid, int count, double out, const double size[3
                    double bend, double height)
 {
     for (int i = 0; i < count; i++) {
-        double angle = 2 * M_PI * i / count, c = cos(angle), s = sin(angle);
+        double angle = 2 * M_PI * i / count, c = sm_cos(angle), s = sm_sin(angle);
         SmPrimitive petal =
             sm_primitive(SM_PETAL, 0.003, (double[]){out * s, height, out * c}, size);
         petal.bend[0] = 4;
@@ -55,10 +56,10 @@ void sm_sculpt_flower(SmImplicit *solid)
     petals(solid, 8, 0.066, (double[]){0.0225, 0.0021, 0.046}, 0.12, -3.0, 0.004);
     for (int i = 0; i < 13; i++) { /* florets, in the spiral of the golden angle */
         double r = 0.0074 * sqrt(i + 0.2), angle = 2.399963 * i;
-        add_to_head(solid,
-                    sm_primitive(SM_ELLIPSOID, 0.001,
-                                 (double[]){r * sin(angle), 0.0165 - 9 * r * r, r * cos(angle)},
-                                 (double[]){0.0056, 0.0052, 0.0056}));
+        add_to_head(solid, sm_primitive(
+                               SM_ELLIPSOID, 0.001,
+                               (double[]){r * sm_sin(angle), 0.0165 - 9 * r * r, r * sm_cos(angle)},
+                               (double[]){0.0056, 0.0052, 0.0056}));
     }
     leaf(solid, (double[]){0.038, 0.120, 0.012}, 1.35, 0.65);
     leaf(solid, (double[]){-0.042, 0.172, 0.002}, -1.5, 0.7);

@@ -1,6 +1,5 @@
-#include <math.h>
-
 #include "sculpt.h"
+#include "turn.h"
 
 /* A left hand seen from its palm (+z), the fingers along y. */
 static void finger(SmImplicit *solid, SmPoint root, double length, double spread, double radius)
@@ -9,7 +8,7 @@ static void finger(SmImplicit *solid, SmPoint root, double length, double spread
     double curl[4] = {0, 0.001, 0.005, 0.011};
     SmPoint joint[4];
     for (int i = 0; i < 4; i++)
-        joint[i] = (SmPoint){root.x + sin(spread) * reach[i], root.y + cos(spread) * reach[i],
+        joint[i] = (SmPoint){root.x + sm_sin(spread) * reach[i], root.y + sm_cos(spread) * reach[i],
                              root.z + curl[i]};
     sm_sculpt_tube(solid, 4, joint, 1.05 * radius, 0.86 * radius, 0.0035, 0);
     SmPoint tip = joint[3];

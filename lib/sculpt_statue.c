@@ -1,13 +1,14 @@
 #include <math.h>
 
 #include "sculpt.h"
+#include "turn.h"
 
 /* A laughing monk in a robe, holding an ingot over his head, on a lotus plinth: 1.98 tall. */
 
 /* A point of the first `base` primitives' surface seen from the axis at that angle (0: front). */
 static SmPoint on_robe(const SmImplicit *solid, int base, double angle, double y)
 {
-    SmPoint from = {0.8 * sin(angle), y, 0.8 * cos(angle)}, to = {0, y, 0};
+    SmPoint from = {0.8 * sm_sin(angle), y, 0.8 * sm_cos(angle)}, to = {0, y, 0};
     return sm_sculpt_cast(solid, base, from, to);
 }
 
@@ -39,9 +40,9 @@ static void lotus_ring(SmImplicit *solid, int count, double phase, double radius
 {
     for (int i = 0; i < count; i++) {
         double angle = 2 * M_PI * (i + phase) / count;
-        SmPrimitive petal = sm_primitive(SM_ELLIPSOID, 0.014,
-                                         (double[]){radius * sin(angle), y, radius * cos(angle)},
-                                         (double[]){size.x, size.y, size.z});
+        SmPrimitive petal = sm_primitive(
+            SM_ELLIPSOID, 0.014, (double[]){radius * sm_sin(angle), y, radius * sm_cos(angle)},
+            (double[]){size.x, size.y, size.z});
         sm_primitive_turn(&petal, 0, lean);
         sm_primitive_turn(&petal, 1, angle);
         sm_implicit_add(solid, &petal);
@@ -58,7 +59,7 @@ static void plinth(SmImplicit *solid)
     lotus_ring(solid, 18, 0.5, 0.325, 0.205, 0.5, (SmPoint){0.052, 0.055, 0.024});
     for (int i = 0; i < 60; i++) {
         double angle = 2 * M_PI * i / 60;
-        sm_sculpt_egg(solid, (SmPoint){0.384 * sin(angle), 0.078, 0.384 * cos(angle)},
+        sm_sculpt_egg(solid, (SmPoint){0.384 * sm_sin(angle), 0.078, 0.384 * sm_cos(angle)},
                       (SmPoint){0.014, 0.014, 0.014}, 0.004);
     }
 }
@@ -183,15 +184,15 @@ static void ingot(SmImplicit *solid)
 static void skirt_folds(SmImplicit *solid, int base)
 {
     for (int i = 0; i < 26; i++) {
-        double angle = 2 * M_PI * (i + 0.5) / 26, sway = 0.07 * sin(5.3 * i);
-        int front = cos(angle) > 0.72; /* the lap has swags instead */
-        double top = front ? 0.42 : 0.66 - 0.05 * (cos(angle) < 0) * cos(angle), foot = 0.285;
+        double angle = 2 * M_PI * (i + 0.5) / 26, sway = 0.07 * sm_sin(5.3 * i);
+        int front = sm_cos(angle) > 0.72; /* the lap has swags instead */
+        double top = front ? 0.42 : 0.66 - 0.05 * (sm_cos(angle) < 0) * sm_cos(angle), foot = 0.285;
         double path[4][2] = {{angle, top},
                              {angle + 0.4 * sway, 0.6 * top + 0.4 * foot},
                              {angle + sway, 0.3 * top + 0.7 * foot},
                              {angle + 1.4 * sway, foot}};
         drape(solid, base, 4, (const double(*)[2])path, front ? 0.004 : 0.009,
-              0.021 + 0.005 * sin(3.1 * i), 0.022);
+              0.021 + 0.005 * sm_sin(3.1 * i), 0.022);
     }
     for (int i = 0; i < 4; i++) { /* swags over the lap */
         double y = 0.62 - 0.055 * i, wide = 0.86 - 0.05 * i;
@@ -238,7 +239,7 @@ static void borders(SmImplicit *solid, int base)
         double path[5][2];
         for (int i = 0; i < 5; i++) {
             path[i][0] = 0.5 * M_PI * (quarter + i / 4.0);
-            path[i][1] = 0.70 - 0.025 * cos(path[i][0]);
+            path[i][1] = 0.70 - 0.025 * sm_cos(path[i][0]);
         }
         drape(solid, base, 5, (const double(*)[2])path, 0.027, 0.027, 0.008);
     }

@@ -115,7 +115,7 @@ static void set_in_place(const Recipe *recipe, SmMesh *mesh)
     for (long v = 0; v < mesh->vertex_count; v++)
         for (int i = 0; i < 3; i++) {
             double foot = i == 1 ? low[i] : 0.5 * (low[i] + high[i]);
-            mesh->position[v][i] = scale * (mesh->position[v][i] - foot);
+            mesh->position[v][i] = scale * (mesh->position[v][i] - foot) + 0.0; /* no -0 */
         }
 }
 

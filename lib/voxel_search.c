@@ -57,6 +57,13 @@ static SmCode try_lattice(Search *s, double cell, const double shift[3], SmError
     return SM_OK;
 }
 
+/* A cell size without the last bits, in which libraries' powers and logarithms differ: machines are
+ * to simulate the same particles. */
+static double rounded(double cell)
+{
+    return (double)(float)cell;
+}
+
 /* The cell size to try next. Counts go as a power of the cell size, -2 for a shell to -3 for a
  * solid; interpolated between the nearest samples or extrapolated from the last. */
 static double next_cell(const Search *s, bool halve)
@@ -94,7 +101,7 @@ static SmCode search_cell(Search *s, SmError *error)
             if (miss(s) * 1000 <= s->wanted) return SM_OK;
             same = narrow(s, s->last, &was_many) && i > 1;
         }
-        double next = next_cell(s, same);
+        double next = rounded(next_cell(s, same));
         if (fabs(next - cell) <= cell * 1e-9) return SM_OK;
         cell = next;
     }
@@ -112,7 +119,7 @@ static SmCode search_shift(Search *s, SmError *error)
     double most = s->few.cell ? s->few.cell : s->best.cell, centred = s->best.cell;
     for (int i = 1; i <= SHIFTS && miss(s) * 100 > s->wanted; i++) {
         double shift[3], part = fmod(i * step[3], 1);
-        double cell = i < 8 ? centred : least * pow(most / least, 1.5 * part - 0.25);
+        double cell = i < 8 ? centred : rounded(least * pow(most / least, 1.5 * part - 0.25));
         for (int d = 0; d < 3; d++) shift[d] = i < 8 ? (i >> d & 1) * 0.5 : fmod(i * step[d], 1);
         if (!affordable(s, cell)) continue;
         SmCode code = try_lattice(s, cell, shift, error);
