@@ -33,7 +33,7 @@ static void fill_slots(const OctTree *tree, const OctRegions *regions, const dou
         oct_weights_region(&w, tree, regions, leaf, &rest);
         oct_slot_fill(oct, tree, &w, leaf, &rest);
     }
-    oct_ghosts_fill(oct, &w);
+    oct_ghosts_fill(oct, tree, &w);
     oct_weights_free(&w);
     for (long i = 0; i < oct->instances && oct->spread; i++)
         for (long block = 0; block < oct->blocks; block++) oct_block_inverse(oct, i, block);

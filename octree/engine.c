@@ -261,6 +261,18 @@ static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmErro
     return SM_OK;
 }
 
+/* Goals are to be right to 5e-5 finest cells: some hundred roundings of a coordinate within a
+ * region must be no more. */
+static SmCode check_reach(const OctStructure *s, SmError *error)
+{
+    enum { MOST = 256 };
+    if (SM_REAL_BITS == 64 || s->regions.most_width <= 2 * MOST) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "octree: regions reach %g finest cells, and single precision has the digits for "
+                   "%d: take narrower regions, larger cells, fewer levels, or double precision",
+                   0.5 * s->regions.most_width, MOST);
+}
+
 static Oct *build(const OctStructure *s, const OctOptions *options, const SmEngineParams *params)
 {
     OctParams own = {.weighting = options->weighting,
@@ -306,6 +318,10 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     int team = sm_team_enter(params->threads);
     SmEngine *e = sm_alloc(1, sizeof *e);
     code = oct_structure_build(voxels, options, params->mass, &e->head.structure, error);
+    if (!code) {
+        code = check_reach(&e->head.structure, error);
+        if (code) oct_structure_free(&e->head.structure);
+    }
     if (!code) complete(e, options, params);
     sm_team_leave(team);
     if (code) {

@@ -2,7 +2,8 @@
  *
  * A particle is a simulation node: leaf i of the tree, at rest in its cell's centre. There is no
  * fracture, and sums are found in one way only: create() refuses strain_limit, summation and layout
- * other than their defaults (SM_INPUT). params->w is not used.
+ * other than their defaults (SM_INPUT), and in single precision regions that reach more than 256
+ * finest cells. params->w is not used.
  *
  * Read octree.c first: the step, top to bottom. */
 #ifndef OCT_ENGINE_H

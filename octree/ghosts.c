@@ -98,12 +98,17 @@ void oct_ghosts_build(Oct *oct, const OctTree *tree, const OctRegions *regions)
     free(search.found);
 }
 
-void oct_ghosts_fill(Oct *oct, const OctWeights *w)
+void oct_ghosts_fill(Oct *oct, const OctTree *tree, const OctWeights *w)
 {
+    double place[3];
     for (OctGhost *g = oct->ghost; g < oct->ghost + oct->ghosts; g++) {
         g->mass = (real)w->below[g->node];
         g->weight = (real)w->sum[g->node][0];
-        for (int d = 0; d < 3; d++) g->first[d] = (real)w->sum[g->node][1 + d];
+        oct_row_place(tree, g->node, place);
+        for (int d = 0; d < 3; d++) {
+            double to = 0.5 * (tree->centre[g->node][d] - tree->centre[0][d]) - place[d];
+            g->first[d] = (real)(w->sum[g->node][1 + d] + w->sum[g->node][0] * to);
+        }
     }
 }
 

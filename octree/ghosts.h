@@ -22,7 +22,7 @@
 /* Finds frames and ghosts of lists that have none, before anything is made of their rows; then,
  * once the weights are known, what the ghosts' leaves weigh. */
 void oct_ghosts_build(Oct *oct, const OctTree *tree, const OctRegions *regions);
-void oct_ghosts_fill(Oct *oct, const OctWeights *weights);
+void oct_ghosts_fill(Oct *oct, const OctTree *tree, const OctWeights *weights);
 
 /* Makes one frame of all, so that lists may be replaced. O(body). */
 void oct_ghosts_merge(Oct *oct);

@@ -1,5 +1,6 @@
 #include "slots.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,9 +14,27 @@ static double centre_of(const OctTree *tree, long node, int d)
     return 0.5 * (tree->centre[node][d] - tree->centre[0][d]);
 }
 
+static long add_leaves(const OctTree *tree, long node, double sum[3])
+{
+    long count = 0;
+    for (int c = 0; c < tree->children[node]; c++)
+        count += add_leaves(tree, tree->child[node] + c, sum);
+    for (int d = 0; d < 3 && !tree->children[node]; d++) sum[d] += centre_of(tree, node, d);
+    return tree->children[node] ? count : 1;
+}
+
+void oct_row_place(const OctTree *tree, long node, double place[3])
+{
+    memset(place, 0, 3 * sizeof *place);
+    long count = add_leaves(tree, node, place);
+    for (int d = 0; d < 3; d++) place[d] = 0.5 * rint(2 * place[d] / (double)count);
+}
+
 void oct_row_centre(const OctTree *tree, long node, real *row)
 {
-    for (int d = 0; d < 3; d++) row[7 + 4 * d] = (real)centre_of(tree, node, d);
+    double place[3];
+    oct_row_place(tree, node, place);
+    for (int d = 0; d < 3; d++) row[7 + 4 * d] = (real)place[d];
 }
 
 /* A larger array of `bytes` in the place of `old`, zeroed beyond the `used` bytes of it. */

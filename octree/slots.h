@@ -13,6 +13,7 @@
 #define oct_slot_clear    SM_NAME(oct_slot_clear)
 #define oct_block_inverse SM_NAME(oct_block_inverse)
 #define oct_row_open      SM_NAME(oct_row_open)
+#define oct_row_place     SM_NAME(oct_row_place)
 #define oct_row_centre    SM_NAME(oct_row_centre)
 
 /* Is there a leaf of that number? */
@@ -43,7 +44,10 @@ void oct_block_inverse(Oct *oct, long body, long block);
 /* Empties the row of a tree node that is new, or of a number that another one bore. */
 void oct_row_open(Oct *oct, const OctTree *tree, long node);
 
-/* Makes the centre of a tree node that of a row. */
+/* Where the row of a tree node has its centre: in the middle of its leaves, to half finest cells,
+ * because little of a large cell may be material; finest cells from the tree's first node. O(leaves
+ * below). The other writes it into the row. */
+void oct_row_place(const OctTree *tree, long node, double place[3]);
 void oct_row_centre(const OctTree *tree, long node, real *row);
 
 #endif

@@ -56,8 +56,8 @@ typedef struct {
  *     moments      sum m~ x            ; of m~ x (x0 - centre)^T the columns x, y, z
  *     transforms   value at the centre ; linear part, columns x, y, z
  *     damping      twelve sums
- * The pads of quarters 1 to 3 hold the node's centre, x, y, z; that of quarter 0 is 0. Row numbers
- * are those of breadth.h. */
+ * The pads of quarters 1 to 3 hold the node's centre (slots.h), x, y, z; that of quarter 0 is 0.
+ * Row numbers are those of breadth.h. */
 enum { OCT_ROW = 16, OCT_ROW_VELOCITY = 8 };
 
 /* Sums of one body while it is stepped. */

@@ -376,6 +376,26 @@ static void refuses_what_it_does_not_do(void **state)
     sm_voxels_free(&voxels);
 }
 
+/* Single precision has not the digits for what is far apart and yet in one region. */
+static void regions_may_not_reach_further_than_the_digits(void **state)
+{
+    (void)state;
+    SmVoxels voxels;
+    SmEngine *engine;
+    SmError error;
+    sm_voxels_block(&voxels, 520, 1, 1, 0.5);
+    for (int precision = 0; precision < 2; precision++)
+        for (int wide = 0; wide < 2; wide++) {
+            OctOptions options = {.sampling = {.levels = 1}, .width.cells = wide ? 260 : 256};
+            SmEngineParams params = usual(&options);
+            SmCode code = engines[precision]->create(&voxels, &params, &engine, &error);
+            assert_int_equal(code, precision == 0 && wide ? SM_INPUT : SM_OK);
+            if (code) assert_non_null(strstr(error.text, "double precision"));
+            if (!code) engines[precision]->destroy(engine);
+        }
+    sm_voxels_free(&voxels);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -389,6 +409,7 @@ int main(void)
         cmocka_unit_test(few_nodes_get_large_base_cells),
         cmocka_unit_test(other_choices_are_not_resampled),
         cmocka_unit_test(refuses_what_it_does_not_do),
+        cmocka_unit_test(regions_may_not_reach_further_than_the_digits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
