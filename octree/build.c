@@ -209,6 +209,8 @@ static void shift_leaves(const Oct *oct, OctState *b, const double (*shift)[4])
 
 void oct_recentre(Oct *oct)
 {
+    enum { STEPS = 16, CELLS = 8 };
+    double farthest = CELLS;
     for (OctState *b = oct->body; b < oct->body + oct->instances; b++) {
         bool moves = false;
         sum_frames(oct, b, NULL, oct->middle);
@@ -219,7 +221,11 @@ void oct_recentre(Oct *oct)
                 oct->middle[f][d] = middle;
                 b->origin[f][d] += middle;
                 moves |= middle != 0;
+                farthest = fmax(farthest, fabs(middle));
             }
         if (moves) shift_leaves(oct, b, (const double(*)[4])oct->middle);
     }
+    long since = oct->steps - oct->recentred;
+    oct->recentred = oct->steps;
+    oct->recentre = oct->steps + 1 + (long)fmin((double)since * CELLS / farthest, STEPS - 1);
 }

@@ -15,8 +15,6 @@
 #include "octree.h"
 #include "rebuild.h"
 
-enum { RECENTRE_STEPS = 16 };
-
 struct SmEngine {
     OctHead head; /* first: oct_engine_structure() */
     Oct *oct;
@@ -380,7 +378,7 @@ static void engine_step(SmEngine *e, SmLaps *laps)
     oct_step(e->oct, laps);
     oct_held_move(&e->held, e->oct, &e->head.structure, (const double(*)[3][4])e->pose);
     if (e->contacts) oct_contacts_after(e->contacts);
-    if (e->oct->steps % RECENTRE_STEPS == 0) oct_recentre(e->oct);
+    if (e->oct->steps >= e->oct->recentre) oct_recentre(e->oct);
     sm_lap(laps, SM_OTHER);
 }
 

@@ -42,7 +42,7 @@ void oct_goals(Oct *oct);
 void oct_damp(OctTask *task);
 
 /* Moves the origin of each frame to its middle by whole cells: single precision is best near zero.
- */
+ * The next time is due in 16 steps, or before the fastest frame has moved by 8 cells. */
 void oct_recentre(Oct *oct);
 
 /* Puts every node of a body: `x` is [leaves][3], finest cells. Origins go to the

@@ -114,6 +114,7 @@ typedef struct {
     OctState *body; /* [instances] */
     bool damp_now;
     long steps;
+    long recentred, recentre; /* `steps` when origins moved last, and are to move next */
     real gravity[3];
     int obstacle_count;
     Obstacle *obstacle; /* in finest cells from where origins count */

@@ -1,0 +1,131 @@
+/* Bodies of many thin parts, dropped: goals are found again in every state that they pass. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "check.h"
+
+static double unit(unsigned *seed)
+{
+    return 2 * (rand_r(seed) / (double)RAND_MAX) - 1;
+}
+
+/* A triangle of a base `width` wide about `foot` and a tip `way` from there. */
+static void add_sliver(SmMesh *mesh, unsigned *seed, const double foot[3], const double way[3],
+                       double width)
+{
+    double side[3], to[3] = {unit(seed), unit(seed), unit(seed)}, square = 0;
+    long v = 3 * mesh->triangle_count;
+    for (int d = 0; d < 3; d++) {
+        side[d] = way[(d + 1) % 3] * to[(d + 2) % 3] - way[(d + 2) % 3] * to[(d + 1) % 3];
+        square += side[d] * side[d];
+    }
+    for (int d = 0; d < 3; d++) {
+        side[d] *= 0.5 * width / sqrt(square);
+        mesh->position[v][d] = foot[d] - side[d];
+        mesh->position[v + 1][d] = foot[d] + side[d];
+        mesh->position[v + 2][d] = foot[d] + way[d];
+    }
+    for (int c = 0; c < 3; c++) mesh->triangle[mesh->triangle_count][c] = (int)v + c;
+    mesh->triangle_count++;
+    mesh->vertex_count += 3;
+}
+
+static SmMesh new_slivers(long count)
+{
+    SmMesh mesh = sm_mesh_new(3 * count, count);
+    mesh.vertex_count = mesh.triangle_count = 0;
+    return mesh;
+}
+
+/* From one place to all sides above it: `width` as of leaves, or as of needles. */
+static SmMesh fan(unsigned seed, int count, double width)
+{
+    SmMesh mesh = new_slivers(count);
+    for (int i = 0; i < count; i++) {
+        const double way[3] = {unit(&seed), fabs(unit(&seed)) + 0.01, unit(&seed)};
+        add_sliver(&mesh, &seed, (double[3]){0}, way, width);
+    }
+    return mesh;
+}
+
+/* Anywhere: most touch nothing. */
+static SmMesh scattered(unsigned seed, int count, double width)
+{
+    SmMesh mesh = new_slivers(count);
+    for (int i = 0; i < count; i++) {
+        const double foot[3] = {unit(&seed), unit(&seed), unit(&seed)};
+        const double way[3] = {unit(&seed), unit(&seed), unit(&seed)};
+        add_sliver(&mesh, &seed, foot, way, width);
+    }
+    return mesh;
+}
+
+/* Stems of short pieces that wander upwards, each with a leaf. */
+static SmMesh plant(unsigned seed, int stems)
+{
+    enum { PIECES = 12 };
+    SmMesh mesh = new_slivers(2L * stems * PIECES);
+    for (int s = 0; s < stems; s++) {
+        double at[3] = {0.1 * unit(&seed), 0, 0.1 * unit(&seed)}, along[3];
+        for (int d = 0; d < 3; d++) along[d] = d == 1 ? 0.1 : 0.05 * unit(&seed);
+        for (int p = 0; p < PIECES; p++) {
+            add_sliver(&mesh, &seed, at, along, 0.02);
+            for (int d = 0; d < 3; d++) at[d] += 0.9 * along[d] + 0.005 * unit(&seed);
+            const double leaf[3] = {0.2 * unit(&seed), 0.1 * unit(&seed), 0.2 * unit(&seed)};
+            add_sliver(&mesh, &seed, at, leaf, 0.03);
+        }
+    }
+    return mesh;
+}
+
+/* As `shapebench run MESH --engine octree --shell` drops it, through the air and the first impact.
+ */
+static void drop(SmMesh mesh, const char *name, double particles)
+{
+    BenchScene scene;
+    BenchBody body;
+    BenchRunner runner;
+    BenchCheck check;
+    SmError error;
+    char reason[160];
+    bench_scene_drop(&mesh, name, &scene);
+    bench_scene_sample(&scene);
+    scene.voxel = (SmVoxelParams){SM_SHELL, 0, (long)particles};
+    if (bench_body_create(&scene, &mesh, &body, &error) ||
+        bench_runner_create(&scene, &body, &octree_engine_f32, 1, &runner, &error))
+        fail_msg("%s: %s", name, error.text);
+    bench_check_begin(&scene, &body, &octree_engine_f32, runner.engine, &check);
+    for (int step = 0; step < 60; step++) {
+        bench_runner_step(&runner, NULL);
+        if (step % 12) continue;
+        BenchDeviation found = bench_check_state(&check, runner.type, runner.engine);
+        if (!bench_check_verdict(&found, sizeof reason, reason))
+            fail_msg("%s, step %d: %s", name, step, reason);
+    }
+    bench_check_free(&check);
+    bench_runner_free(&runner);
+    bench_body_free(&body);
+}
+
+static void what_is_thin_is_as_exact_as_its_check(void **state)
+{
+    (void)state;
+    drop(fan(1, 12, 0.01), "spray", 20000);
+    drop(fan(2, 20, 1e-4), "needles", 20000);
+    drop(scattered(3, 20, 0.02), "few slivers", 20000);
+    drop(scattered(4, 60, 0.01), "slivers", 20000);
+    drop(plant(5, 6), "plant", 20000);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_thin_is_as_exact_as_its_check)};
+    return cmocka_run_group_tests_name("sliver", tests, NULL, NULL);
+}
