@@ -97,7 +97,7 @@ static void drop(SmMesh mesh, const char *name)
     char reason[160];
     bench_scene_drop(&mesh, name, &scene);
     bench_scene_sample(&scene);
-    scene.voxel = (SmVoxelParams){SM_SHELL, 0, 20000};
+    scene.voxel = (SmVoxelParams){.fill = SM_SHELL, .particles = 20000};
     if (bench_body_create(&scene, &mesh, &body, &error) ||
         bench_runner_create(&scene, &body, &octree_engine_f32, 1, &runner, &error))
         fail_msg("%s: %s", name, error.text);
