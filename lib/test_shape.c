@@ -87,7 +87,7 @@ static void test_sizes(void **state)
 static unsigned long long hash_of_lattice(const SmMesh *mesh, const char *name)
 {
     SmVoxels voxels;
-    SmVoxelParams params = {SM_SOLID, 0, 1000};
+    SmVoxelParams params = {.fill = SM_SOLID, .particles = 1000};
     assert_int_equal(sm_voxelise(mesh, &params, name, &voxels, NULL), SM_OK);
     size_t rows = (size_t)voxels.size[1] * (size_t)voxels.size[2];
     unsigned long long hash = sm_hash_bytes(SM_HASH_START, voxels.origin, sizeof voxels.origin);
