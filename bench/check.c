@@ -134,17 +134,16 @@ static bool all_finite(const double (*value)[3], long count)
     return sum == 0;
 }
 
-/* Largest distance of two goals that are not `tied`, in cells. */
-static double goal_error(const double (*g)[3], const double (*exact)[3], const bool *tied,
-                         long count, double cell)
+/* Adds the largest distance of two goals, in cells; of those that are `tied` apart. */
+static void find_goal_error(const double (*g)[3], const double (*exact)[3], const bool *tied,
+                            long count, double cell, BenchDeviation *found)
 {
-    double largest = 0;
     for (long p = 0; p < count; p++) {
-        double square = 0;
+        double square = 0, *error = tied[p] ? &found->tied_error : &found->goal_error;
         for (int d = 0; d < 3; d++) square += (g[p][d] - exact[p][d]) * (g[p][d] - exact[p][d]);
-        if (!tied[p]) largest = fmax(largest, square);
+        *error = fmax(*error, sqrt(square) / cell);
+        found->tied += tied[p];
     }
-    return sqrt(largest) / cell;
 }
 
 double bench_check_drift(const double (*x)[3], const double (*g)[3], const double *m, long count)
@@ -286,11 +285,9 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
         const double(*goal)[3] = (const double(*)[3])(g + first);
         exact_goals(check, at, S ? S + first : NULL, R, exact);
         bench_check_tied(check, type->precision, at, tied);
-        for (long p = 0; p < count; p++) result.tied += tied[p];
-        double error =
-            goal_error(goal, (const double(*)[3])exact, tied, count, check->body->voxels.cell);
+        find_goal_error(goal, (const double(*)[3])exact, tied, count, check->body->voxels.cell,
+                        &result);
         double drift = bench_check_drift(at, goal, check->mass, count);
-        result.goal_error = fmax(result.goal_error, error);
         result.momentum_error = fmax(result.momentum_error, drift);
     }
     free(x);
@@ -356,6 +353,11 @@ double bench_check_tolerance(const char *precision)
     return strcmp(precision, "double") ? 5e-5 : 1e-10;
 }
 
+double bench_check_step(const char *precision)
+{
+    return strcmp(precision, "double") ? 1e-4 : 1e-9;
+}
+
 bool bench_check_keeps(double momentum_error, size_t size, char *reason)
 {
     if (momentum_error <= BENCH_MOMENTUM_TOLERANCE) return true;
@@ -406,6 +408,8 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
     worst->particles = found->particles;
     if (found->tied > worst->tied) worst->tied = found->tied;
     if (found->blurred > worst->blurred) worst->blurred = found->blurred;
+    worst->tied_error = fmax(worst->tied_error, found->tied_error);
+    worst->blurred_error = fmax(worst->blurred_error, found->blurred_error);
     if (found->contact_nodes > worst->contact_nodes) worst->contact_nodes = found->contact_nodes;
     if (found->contact_all > worst->contact_all) worst->contact_all = found->contact_all;
     worst->obstacles |= found->obstacles;
@@ -444,12 +448,11 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
     if (found->tied && used < size)
         used += (size_t)snprintf(text + used, size - used,
                                  "; %ld particle%s of regions whose rotation is not unique "
-                                 "left out",
-                                 found->tied, found->tied > 1 ? "s" : "");
-    long blurred = found->blurred - found->tied;
-    if (blurred > 0 && used < size)
+                                 "left out (within %.1g)",
+                                 found->tied, found->tied > 1 ? "s" : "", found->tied_error);
+    if (found->blurred > 0 && used < size)
         snprintf(text + used, size - used,
                  "; %ld left out of damping, whose regions' inertia the precision does not "
-                 "resolve",
-                 blurred);
+                 "resolve (within %.1g cells a step)",
+                 found->blurred, found->blurred_error);
 }

@@ -38,16 +38,19 @@ typedef struct {
     double motion_error;      /* bench_check_motion() of the step that was damped; 0: none was */
     long particles;           /* checked or left out */
     long tied;                /* left out: in a region whose rotation is not unique */
-    long blurred;             /* left out of damping's check: tied or in a region whose inertia the
-                               * precision does not resolve */
-    long contact_nodes;       /* whose contacts were compared; 0: nothing collides */
-    long contact_all;         /* nodes at the surface of all bodies, which alone have any */
-    long contacts;            /* of those compared, the engine's or brute force's */
-    long contacts_wrong;      /* in one of the two only, or otherwise */
-    double turn_error;        /* of an octree's colliding cells, largest |R - brute force| */
-    bool obstacles;           /* a step against obstacles was compared: */
-    long pushed;              /* particles that brute force pushes out of them, */
-    long pushed_wrong;        /* and all that end it otherwise */
+    double tied_error;        /* of those; what they would add to goal_error */
+    long blurred;         /* left out of damping's check: off by more than bench_check_step(), and
+                           * tied or in a region whose inertia the precision does not
+                           * resolve */
+    double blurred_error; /* of those, how far the step takes them elsewhere, in cells */
+    long contact_nodes;   /* whose contacts were compared; 0: nothing collides */
+    long contact_all;     /* nodes at the surface of all bodies, which alone have any */
+    long contacts;        /* of those compared, the engine's or brute force's */
+    long contacts_wrong;  /* in one of the two only, or otherwise */
+    double turn_error;    /* of an octree's colliding cells, largest |R - brute force| */
+    bool obstacles;       /* a step against obstacles was compared: */
+    long pushed;          /* particles that brute force pushes out of them, */
+    long pushed_wrong;    /* and all that end it otherwise */
 } BenchDeviation;
 
 /* Region members that a check of this body would hold in memory, at most; 4 bytes each. Beyond
@@ -88,9 +91,12 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
  * n = 8 epsilon D^2 / inertia, D from the body's middle to the region, and f = spread / inertia,
  * it is 16 epsilon + k (n + 8 epsilon f + 4 sqrt(epsilon n f)) of a particle's worst region: of
  * the inertia, of its inversion, and of omega x x - omega x c; and what double precision loses of
- * g - x at large coordinates. Left out are particles of regions
- * where n is above 1/128, as the engine may damp more there, or f so large that it may take the
- * region for a line, unless it is one; and those that the check of goals leaves out. */
+ * g - x at large coordinates. Regions are not resolved
+ * where n is above 1/128, as the engine may damp less there, or f so large that it may take the
+ * region for a line, unless it is one; nor are those that the check of goals leaves out. Their
+ * particles may be as far off as the whole of damping moves them, 2 k; but they are left out,
+ * counted, and their error is given only if the step takes them elsewhere by more than
+ * bench_check_step(). scripts/check_step.py has the same rule for recorded steps. */
 void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
                          SmEngine *engine, BenchDeviation *found);
 
@@ -162,6 +168,10 @@ double bench_check_epsilon(const char *precision);
 
 /* The tolerance of goal_error: 5e-5 cells in "single", 1e-10 in "double" precision. */
 double bench_check_tolerance(const char *precision);
+
+/* What damping may move a particle otherwise in a step where its regions are not resolved, without
+ * its being left out: 1e-4 cells in "single", 1e-9 in "double" precision. */
+double bench_check_step(const char *precision);
 
 /* Says in `reason` what is not finite or beyond its tolerance and returns false, or true; momentum
  * is the caller's to judge (BENCH_MOMENTUM_TOLERANCE). Invalid is also a state of which more than

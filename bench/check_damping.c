@@ -97,9 +97,16 @@ static void compare(const BenchCheck *check, const BenchScene *scene, const char
             off[d] = v[p][d] + k * (u[p][d] - v[p][d]) - step->after[(size_t)first + p][d];
         double error = length(off) / largest,
                worst = found->damping_error / found->damping_tolerance;
-        found->blurred += tied[p] || isinf(allowed);
-        if (tied[p] || isinf(allowed)) continue;
         if (!isfinite(error)) error = INFINITY;
+        if (tied[p] || isinf(allowed)) {
+            double cells = error * largest * h / check->body->voxels.cell;
+            allowed = known + 2 * k;
+            if (cells > bench_check_step(precision) && error <= allowed) {
+                found->blurred++;
+                found->blurred_error = fmax(found->blurred_error, cells);
+            }
+            if (error <= allowed) continue;
+        }
         if (found->damping_tolerance > 0 && error / allowed <= worst) continue;
         found->damping_error = error;
         found->damping_tolerance = allowed;

@@ -442,7 +442,7 @@ static void findings_add_up(void **state)
 static void what_was_left_out_is_said(void **state)
 {
     (void)state;
-    char text[384];
+    char text[512];
     BenchDeviation found = {.finite = true,
                             .goal_error = 2e-6,
                             .goal_tolerance = 5e-5,
@@ -450,13 +450,16 @@ static void what_was_left_out_is_said(void **state)
                             .plain = true,
                             .particles = 100,
                             .tied = 12,
-                            .blurred = 15};
+                            .tied_error = 0.3,
+                            .blurred = 15,
+                            .blurred_error = 3e-4};
     bench_check_text(&found, sizeof text, text);
     assert_string_equal(text,
                         "goals within 2e-06 cells of brute force (allowed 5e-05), momentum not "
                         "kept by plain weighting, off by 0.02; 12 particles of regions whose "
-                        "rotation is not unique left out; 3 left out of damping, whose regions' "
-                        "inertia the precision does not resolve");
+                        "rotation is not unique left out (within 0.3); 15 left out of damping, "
+                        "whose regions' inertia the precision does not resolve (within 0.0003 "
+                        "cells a step)");
 }
 
 int main(void)
