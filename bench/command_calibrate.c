@@ -46,8 +46,8 @@ static const struct argp_option option_list[] = {
      "A beam: its body's box, its cells and its time step are taken (default: beam)", 1},
     {"engine", KEY_ENGINE, "NAME", 0, "both, fastlsm or octree (default: both)", 1},
     {"w", KEY_W, "RANGE", 0,
-     "Region half-widths in cells, 1 to 64 (fastlsm: to 31), FIRST:LAST[:STEP] or a list (default: "
-     "1:10)",
+     "Region half-widths in cells, which in a regular octree are its nodes' edges, 1 to 64 (fastlsm: "
+     "to 31), FIRST:LAST[:STEP] or a list (default: 1:10)",
      1},
     {"epsilon", KEY_EPSILON, "RANGE", 0, "The octree's (default: 0:1:0.25)", 1},
     {"across", KEY_ACROSS, "RANGE", 0,

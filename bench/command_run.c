@@ -15,6 +15,7 @@
 
 enum {
     KEY_W = 0x2000,
+    KEY_WIDTH,
     KEY_EPSILON,
     KEY_LEVELS,
     KEY_NODES,
@@ -44,7 +45,7 @@ typedef struct {
     BenchOverride chosen;
     const char *scene, *output, *w;
     bool shell, no_output, has_gravity, overwrite;
-    int frames, steps, summation, polar, levels, record;
+    int frames, steps, summation, polar, levels, record, width;
     int modes;
     long particles, nodes, points;
     double young, poisson, density; /* density 0: not given; poisson INFINITY */
@@ -58,8 +59,11 @@ static const char *const records[] = {"particles", "nodes", NULL}; /* BenchRecor
 static const struct argp_option option_list[] = {
     {0, 0, 0, 0, "What replaces the scene's settings:", 1},
     {"w", KEY_W, "W", 0,
-     "Region half-width in cells, 1 to 64 (fastlsm: to 31); octree: any width in finest cells "
-     "(default: each node's own edge)",
+     "Region half-width, in edges of each node's own cell (octree default: 1, the least that holds "
+     "together what touches); of a lattice, whose cells are alike, 1 to 31 cells (brute: to 64)",
+     1},
+    {"width", KEY_WIDTH, "UNIT", 0,
+     "What an octree's --w counts: edges of each node's own cell, or finest cells (default: edges)",
      1},
     {"epsilon", KEY_EPSILON, "E", 0,
      "Octree: regions may be wider by this share (default for a mesh: 0.5)", 1},
@@ -103,6 +107,7 @@ static const struct argp_option option_list[] = {
 
 static const BenchOption options_taken[] = {
     {KEY_W, BENCH_TO(TEXT, w), 0, 0, NULL},
+    {KEY_WIDTH, BENCH_TO(CHOICE, width), 0, 0, bench_widths},
     {KEY_EPSILON, BENCH_TO(REAL, epsilon), 0, 1e6, NULL},
     {KEY_LEVELS, BENCH_TO(INT, levels), 1, OCT_MAX_LEVELS, NULL},
     {KEY_NODES, BENCH_TO(LONG, nodes), 1, 1e9, NULL},
@@ -235,8 +240,14 @@ static SmCode apply_meshless(const Options *options, BenchScene *scene, SmError 
 }
 
 /* A lattice's w is a whole number, an octree's is not. */
-static SmCode apply_w(const char *text, const SmEngineType *type, BenchScene *scene, SmError *error)
+static SmCode apply_w(const Options *options, const SmEngineType *type, BenchScene *scene,
+                      SmError *error)
 {
+    const char *text = options->w;
+    if (options->width >= 0 && !(text && is_octree(scene)))
+        return sm_fail(error, SM_USAGE,
+                       "--width says what an octree's --w counts: add %s, or leave it out",
+                       text ? "--engine octree" : "--w");
     if (!text) return SM_OK;
     char *end;
     double w = strtod(text, &end);
@@ -244,7 +255,7 @@ static SmCode apply_w(const char *text, const SmEngineType *type, BenchScene *sc
     if (is_octree(scene)) {
         if (!number || !(w > 0 && w <= 1e6))
             return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a number above 0, to 1e6", text);
-        scene->octree.width = (OctWidth){.cells = w};
+        scene->octree.width = options->width > 0 ? (OctWidth){.cells = w} : (OctWidth){.edges = w};
         scene->octree.summation_nodes = 0;
         return SM_OK;
     }
@@ -494,7 +505,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     code = apply_octree(options, &scene, error);
     if (!code) code = apply_meshless(options, &scene, error);
     if (!code) code = bench_engine_find(scene.engine, options->chosen.precision, &type, error);
-    if (!code) code = apply_w(options->w, type, &scene, error);
+    if (!code) code = apply_w(options, type, &scene, error);
     output_path(options, &scene, path);
     if (!code) code = reserve(options, path, error);
     if (!code) code = bench_body_create(&scene, &mesh, &body, error);
@@ -520,6 +531,7 @@ int bench_command_run(int argc, char **argv)
     Options options = {.frames = -1,
                        .summation = -1,
                        .polar = -1,
+                       .width = -1,
                        .damping = -1,
                        .epsilon = -1,
                        .poisson = INFINITY,

@@ -7,6 +7,7 @@
 #include "front.h"
 #include "option.h"
 #include "range.h"
+#include "recommend.h"
 #include "sweep_run.h"
 #include "sweep_table.h"
 
@@ -41,7 +42,6 @@ typedef struct {
 } Options;
 
 static const char *const engine_choices[] = {"both", "fastlsm", "octree", NULL};
-static const char *const width_choices[] = {"edges", "cells", NULL};
 
 static const struct argp_option option_list[] = {
     {"scene", KEY_SCENE, "NAME|FILE.cfg", 0, "The scene to sweep (default: hand)", 1},
@@ -51,8 +51,8 @@ static const struct argp_option option_list[] = {
      1},
     {"engine", KEY_ENGINE, "NAME", 0, "both, fastlsm or octree (default: both)", 1},
     {"w", KEY_W, "RANGE", 0,
-     "Region half-widths, FIRST:LAST[:STEP] or a list (default: 1:8); fastlsm's are whole numbers "
-     "of cells",
+     "Region half-widths, FIRST:LAST[:STEP] or a list (default: 1:8), in edges of each node's own "
+     "cell as run's --w; of a lattice, whose cells are alike, whole numbers of cells",
      1},
     {"epsilon", KEY_EPSILON, "RANGE", 0, "The octree's (default: 0:1:0.1)", 1},
     {"width", KEY_WIDTH, "UNIT", 0,
@@ -70,8 +70,8 @@ static const struct argp_option option_list[] = {
      "Measure only every N-th point, from the I-th on; put the files together with 'merge'", 3},
     {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
     {"recommend", KEY_RECOMMEND, 0, 0,
-     "Say in one sentence which w and epsilon to take, for --budget, --deviation and --stiffness "
-     "(default: a deviation of 1%)",
+     "Say which w and epsilon of each engine to take, for --budget, --deviation and --stiffness "
+     "(default: at most 1% more deviation than the engine's least), and the command that runs it",
      4},
     {"stiffness", KEY_STIFFNESS, "HZ", 0, "Wish: the beam's first frequency", 4},
     {"deviation", KEY_DEVIATION, "PERCENT", 0,
@@ -95,7 +95,7 @@ static const BenchOption options_taken[] = {
     {KEY_ENGINE, BENCH_TO(CHOICE, engines), 0, 0, engine_choices},
     {KEY_W, BENCH_TO(TEXT, w), 0, 0, NULL},
     {KEY_EPSILON, BENCH_TO(TEXT, epsilon), 0, 0, NULL},
-    {KEY_WIDTH, BENCH_TO(CHOICE, width), 0, 0, width_choices},
+    {KEY_WIDTH, BENCH_TO(CHOICE, width), 0, 0, bench_widths},
     {KEY_PRECISION, BENCH_TO(CHOICE, precision), 0, 0, bench_precisions},
     {KEY_REPEATS, BENCH_TO(INT, plan.repeats), 1, BENCH_POINT_SAMPLES, NULL},
     {KEY_BLOCK, BENCH_TO(REAL, plan.block_ms), 0.001, 60000, NULL},
@@ -151,7 +151,7 @@ static SmCode make_plan(Options *options, BenchPlan *plan, SmError *error)
     snprintf(plan->file, sizeof plan->file, "%s", scene);
     if (options->mesh) snprintf(plan->mesh, sizeof plan->mesh, "%s", options->mesh);
     strcpy(plan->engines, engine_choices[options->engines]);
-    strcpy(plan->width, width_choices[options->width]);
+    strcpy(plan->width, bench_widths[options->width]);
     strcpy(plan->precision, bench_precisions[options->precision]);
     plan->threads = options->common.threads;
     plan->seed = (long)options->common.seed;
@@ -182,10 +182,9 @@ static SmCode show(const Options *options, BenchSweep *sweep, SmError *error)
     const BenchWish *wish = &options->wish;
     bool wished = !isnan(wish->stiffness) || !isnan(wish->deviation) || !isnan(wish->budget);
     if (options->recommend || wished) {
-        char sentence[BENCH_SENTENCE];
-        bench_recommend(sweep->point, sweep->count, wish, sweep->plan.width, sentence);
         bool table = options->format == BENCH_AS_CSV || options->format == BENCH_AS_JSON;
-        fprintf(table ? stderr : stdout, "%s%s\n", table ? "" : "\n", sentence);
+        if (!table) putchar('\n');
+        bench_recommend(table ? stderr : stdout, &sweep->plan, sweep->point, sweep->count, wish);
     }
     return verdict(sweep, error);
 }

@@ -11,19 +11,7 @@
  * would change from run to run. Points without both figures are not on it. O(points^2). */
 void bench_front_mark(BenchPoint *point, long count);
 
-/* What is wished; NaN: nothing of the kind. */
-typedef struct {
-    double stiffness; /* the beam's first frequency, Hz */
-    double deviation; /* at most so much rms from full resolution, percent of the body's size */
-    double budget;    /* at most so many ms a step */
-} BenchWish;
-
-/* The point that fulfils the wish, and a sentence about it; -1 where none does, and a sentence why.
- * A stiffness is met within 10%, or else by what is nearest; of all that meet it, and the deviation
- * and budget, the cheapest is taken; with a budget and no stiffness the one that deviates least.
- * Where nothing is wished, a deviation of 1%. */
-enum { BENCH_SENTENCE = 512 };
-long bench_recommend(const BenchPoint *point, long count, const BenchWish *wish, const char *width,
-                     char sentence[BENCH_SENTENCE]);
+/* Is it valid, with a time and a deviation? */
+bool bench_front_judged(const BenchPoint *point);
 
 #endif

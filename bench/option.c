@@ -41,6 +41,7 @@ static error_t parse_common(int key, char *text, struct argp_state *state)
 }
 
 const char *const bench_precisions[] = {"single", "double", NULL};
+const char *const bench_widths[] = {"edges", "cells", NULL};
 const char *const bench_layouts[] = {"auto", "lists", "blocks", NULL};
 
 static const struct argp common_argp = {common_options, parse_common, 0, 0, 0, 0, 0};

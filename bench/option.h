@@ -20,6 +20,7 @@ typedef struct {
 
 /* Choices of --precision, and of --layout in SmLayout's order with its help. */
 extern const char *const bench_precisions[];
+extern const char *const bench_widths[]; /* units of an octree's w: "edges", "cells" */
 extern const char *const bench_layouts[];
 #define BENCH_LAYOUT_HELP "Fastlsm's sums: auto, lists, or blocks where it can"
 

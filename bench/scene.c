@@ -370,7 +370,7 @@ void bench_width_text(const OctWidth *width, char text[BENCH_WIDTH_TEXT])
 {
     int used = 0;
     if (width->cells > 0 || !(width->edges > 0))
-        used = snprintf(text, BENCH_WIDTH_TEXT, "%.6g cells%s", width->cells,
+        used = snprintf(text, BENCH_WIDTH_TEXT, "%.6g finest cells%s", width->cells,
                         width->edges > 0 ? " + " : "");
     if (width->edges > 0)
         snprintf(text + used, BENCH_WIDTH_TEXT - (size_t)used, "%.6g x the node's edge",

@@ -118,7 +118,7 @@ SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *er
 
 enum { BENCH_WIDTH_TEXT = 64 };
 
-/* "2.5 cells", "0.75 x the node's edge", or their sum. */
+/* "2.5 finest cells", "0.75 x the node's edge", or their sum. */
 void bench_width_text(const OctWidth *width, char text[BENCH_WIDTH_TEXT]);
 
 /* Built-in scene names, in order, NULL-terminated. */

@@ -87,12 +87,13 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run tiny.cfg --engine octree --nodes 0", 2, "--nodes: '0'"},
         {"run tiny.cfg --engine octree --w wide", 2, "--w: 'wide' is not a number above 0"},
         {"run tiny.cfg --engine octree --w 0", 2, "--w: '0' is not a number above 0"},
+        {"run tiny.cfg --w 1 --width cells", 2, "add --engine octree"},
+        {"run tiny.cfg --engine octree --width cells", 2, "add --w"},
         {"run tiny.cfg --engine octree --summation naive", 3, "the octree has its own"},
         {"run tiny.cfg --engine octree --strain-limit 2", 3, "strain_limit: the octree's"},
         {"run tiny.cfg --engine octree --record particles", 2, "stores a lattice"},
         {"run tiny.cfg --record nodes", 2, "--record nodes stores an octree"},
-        {"run tiny.cfg --engine octree --layout lists", 3,
-         "tiny.cfg: summation and layout:"},
+        {"run tiny.cfg --engine octree --layout lists", 3, "tiny.cfg: summation and layout:"},
         {"run plastic.cfg --engine fastlsm", 3, "plastic.cfg: a plastic body (octree.creep) needs"},
         {"run far.cfg", 3, "far.cfg: octree: no node's centre lies in the box or sphere"},
         {"run tiny.cfg --particles 1000000000 --w 64 --no-output", 70,
@@ -235,20 +236,24 @@ static void an_octree_can_be_run(void **state)
     Result result;
     run("scenes block --write-mesh block.obj", &result);
     run("run block.obj --engine octree --epsilon 0.5 --particles 500 --levels 2 --nodes 120 "
-        "--w 2.5 --frames 2 --steps 2 -o tree.vtkhdf",
+        "--w 2.5 --width cells --frames 2 --steps 2 -o tree.vtkhdf",
         &result);
     if (result.code) fail_msg("%s", result.err);
     static const char *const wanted[] = {"block.obj: octree, single precision: ",
                                          " nodes",
                                          " base cells, 343 finest cells of ",
-                                         "regions: w = 2.5 cells, epsilon 0.5: ",
+                                         "regions: w = 2.5 finest cells, epsilon 0.5: ",
                                          "deviation: goals within ",
                                          "4 steps of 0.01 s: "};
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
         if (!strstr(result.out, wanted[i])) fail_msg("no '%s' in %s", wanted[i], result.out);
     assert_true(there("tree.vtkhdf") && there("tree.vtkhdf.xdmf"));
     run("run block.obj --engine octree --particles 500 --w 0.4 --frames 1 --no-output", &result);
+    assert_non_null(strstr(result.out, "w = 0.4 x the node's edge"));
     assert_non_null(strstr(result.out, "the body falls into "));
+    assert_non_null(strstr(result.out, "a w of 1 edge of each node's own cell joins what touches"));
+    run("run block.obj --engine octree --particles 500 --w 1 --frames 1 --no-output", &result);
+    assert_non_null(strstr(result.out, "the body is held together"));
     run("run wishes.cfg --no-output", &result);
     if (result.code) fail_msg("%s", result.err);
     static const char *const told[] = {"wishes: octree, single precision: 2 bodies of ",

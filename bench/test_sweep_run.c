@@ -231,6 +231,33 @@ static void a_point_that_cannot_be_is_invalid(void **state)
     free(result);
 }
 
+/* The command that is recommended has the w and the epsilon recommended. */
+static void a_recommended_command_gives_that_w(void **state)
+{
+    (void)state;
+    static const char *const wanted[] = {", w 6, cell ",
+                                         "regions: w = 6 x the node's edge, epsilon 0"};
+    Result *result = malloc(sizeof *result);
+    char command[2][256];
+    run("sweep whole.h5 --deviation 100", result);
+    static const char before[] = "\n  shapebench ";
+    const char *at = result->out;
+    for (int c = 0; c < 2; c++) {
+        at = strstr(at, before);
+        assert_non_null(at);
+        int length = 0;
+        at += sizeof before - 1;
+        while (at[length] && at[length] != '\n') length++;
+        snprintf(command[c], sizeof command[c], "%.*s --frames 1 --no-output", length, at);
+    }
+    for (int c = 0; c < 2; c++) {
+        run(command[c], result);
+        if (result->code || !strstr(result->out, wanted[c]))
+            fail_msg("%s: %s%s", command[c], result->out, result->err);
+    }
+    free(result);
+}
+
 static void tables_in_every_format(void **state)
 {
     (void)state;
@@ -238,7 +265,7 @@ static void tables_in_every_format(void **state)
     run("sweep whole.h5 --deviation 100", result);
     assert_int_equal(result->code, 0);
     assert_non_null(strstr(result->out, "3 of 3 points"));
-    assert_non_null(strstr(result->out, "For a deviation of at most 100% take "));
+    assert_non_null(strstr(result->out, "octree: for a deviation of at most 100% take w 6 "));
     run("sweep whole.h5 --format csv", result);
     int lines = 0, commas = 0;
     for (const char *c = result->out; *c; c++) {
@@ -248,7 +275,7 @@ static void tables_in_every_format(void **state)
     assert_int_equal(lines, 4);
     assert_int_equal(commas, 36 + 4 - 1); /* a column a member, five of the stages */
     run("sweep whole.h5 --format json --recommend", result);
-    assert_non_null(strstr(result->err, "For a deviation of at most 1%"));
+    assert_non_null(strstr(result->err, "fastlsm: whatever is cheapest take w 6 (cells)"));
     json_t *root = json_loads(result->out, 0, NULL);
     assert_int_equal(json_array_size(json_object_get(root, "points")), 3);
     const json_t *point = json_array_get(json_object_get(root, "points"), 0);
@@ -333,6 +360,7 @@ int main(void)
         cmocka_unit_test(other_options_do_not_mix),
         cmocka_unit_test(mistakes_are_one_line),
         cmocka_unit_test(a_point_that_cannot_be_is_invalid),
+        cmocka_unit_test(a_recommended_command_gives_that_w),
         cmocka_unit_test(tables_in_every_format),
         cmocka_unit_test(ranks_share_the_work),
         cmocka_unit_test(several_hosts_are_said),

@@ -92,8 +92,13 @@ void bench_tree_row_body(FILE *file, const BenchRow *row)
 {
     if (row->parts == 1)
         fputs("is held together by its regions", file);
+    else if (row->width_edges >= 1 && row->local_nodes == 0)
+        fprintf(file, "falls into %ld parts whose nodes no region joins", row->parts);
     else
-        fprintf(file, "falls into %ld parts that no region joins", row->parts);
+        fprintf(file,
+                "falls into %ld parts that no region joins (a w of 1 edge of each node's own cell "
+                "joins what touches)",
+                row->parts);
     if (row->welded_cells || row->welded_pairs)
         fprintf(file, "; coarse nodes weld what does not touch: %ld inside, %ld pairs",
                 row->welded_cells, row->welded_pairs);
