@@ -18,6 +18,8 @@ import sys
 import tempfile
 import time
 
+from small_inputs import QUICK, write_inputs
+
 if not all(importlib.util.find_spec(name) for name in ("h5py", "matplotlib", "jinja2")):
     print("skipped: h5py, matplotlib or jinja2 is missing; scripts/setup installs them")
     sys.exit(77)
@@ -26,11 +28,6 @@ SCRIPTS = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(1, os.path.join(SCRIPTS, "report"))
 import stored
 
-SCENE = 'mesh = "shape:block"; particles = 64; w = 1; bend = 0.3; frames = 2; steps_per_frame = 2;\n'
-BEAM = 'mesh = "box.obj"; cell = 0.05; h = 0.001;\n'
-CLAIM = ('claims = ( { kind = "method"; paper = "octree"; name = "mine"; statement = "s"; number = "liver-growth"; '
-         'test = "near"; tolerance = 100.0; measure = { experiment = "polar"; field = "cold-sweeps"; }; } );\n')
-QUICK = ["--repeats", "2", "--block", "0.1"]
 PROGRAM = "PROGRAM"  # stands for shapebench
 COMMANDS = {  # what is written: the command, without its output; it comes last
     "rows.h5": [PROGRAM, "tables", "--scene", "a.cfg", *QUICK, "-o"],
@@ -124,13 +121,7 @@ class Trial:
 
     def prepare(self):
         """The inputs, and how long every command takes."""
-        for path, text in (("a.cfg", SCENE), ("beam.cfg", BEAM), ("mine.cfg", CLAIM)):
-            with open(self.at(path), "w", encoding="utf-8") as file:
-                file.write(text)
-        faces = ("1 3 2", "2 3 4", "5 6 7", "6 8 7", "1 2 5", "2 6 5", "3 7 4", "4 7 8", "1 5 3", "3 5 7", "2 4 6", "4 8 6")
-        with open(self.at("box.obj"), "w", encoding="utf-8") as file:
-            file.writelines(f"v {0.3 * (i & 1)} {0.1 * (i >> 1 & 1)} {0.1 * (i >> 2)}\n" for i in range(8))
-            file.writelines(f"f {text}\n" for text in faces)
+        write_inputs(self.folder)
         os.mkdir(self.at("tmp"))
         os.mkdir(self.at("matplotlib"))
         for name in COMMANDS:
