@@ -86,7 +86,7 @@ static double decompose(Motion *motion, BenchPolar method, int frame)
         if (method == BENCH_POLAR_ROBUST)
             sm_polar_robust(A, identity, 1e-12, motion->R[m]);
         else
-            sweeps += sm_polar_jacobi(A, motion->V[m], identity, motion->R[m]);
+            sweeps += sm_polar_jacobi(A, motion->V[m], identity, 1e-6, motion->R[m]);
     }
     return sweeps;
 }

@@ -312,7 +312,7 @@ static void build_memory(Lsm *lsm)
         last_store(lsm->last + tile * 6 * SM_LANES, identity);
     lsm->sweeps = sm_alloc((size_t)lsm->layers, sizeof(double));
     if (lsm->params.polar != SM_POLAR_JACOBI) return;
-    lsm->stretch = sm_alloc(tiles * 9 * SM_LANES, sizeof(float));
+    lsm->stretch = sm_alloc(tiles * 9 * SM_LANES, sizeof(real));
     for (size_t i = 0; i < tiles * 9 * SM_LANES; i++) lsm->stretch[i] = i / SM_LANES % 9 % 4 == 0;
 }
 
@@ -460,7 +460,7 @@ long lsm_bytes(const Lsm *lsm)
     bytes += l->count * (long)((lsm->mass ? sizeof(double) : 0) + (lsm->members ? sizeof(int) : 0));
     bytes += lanes * (9 * real_size + (lsm->box ? 2 : 1) * (long)sizeof(int)); /* x, v, centre */
     bytes += lsm->tiles * SM_LANES * (long)(6 * sizeof(short) + sizeof(int));
-    bytes += lsm->stretch ? lsm->tiles * SM_LANES * 9 * (long)sizeof(float) : 0;
+    bytes += lsm->stretch ? lsm->tiles * SM_LANES * 9 * real_size : 0;
     bytes += (lsm->blocks + lsm->tiles) * (long)sizeof(int) + lsm->copies * (long)sizeof *lsm->copy;
     bytes += lsm->particle_records.room * (long)sizeof(ParticleConst) +
              lsm->region_records.room * (long)sizeof(RegionConst);

@@ -102,7 +102,7 @@ typedef struct Lsm {
     RegionConst *region_const;
     real *centre;   /* [tiles][3][lanes] c_r, kept for damping; room for g */
     short *last;    /* [tiles][6][lanes] two columns of the last rotation (rotate_lanes.h) */
-    float *stretch; /* [tiles][9][lanes] eigenvectors for the warm-started Jacobi method, or NULL */
+    real *stretch;  /* [tiles][9][lanes] eigenvectors for the warm-started Jacobi method, or NULL */
     double *sweeps; /* [layers] Jacobi sweeps of the last step */
     long copies;    /* regions identical to another */
     int (*copy)[2]; /* [copies] (slot of the copy, slot of the original) in list form */

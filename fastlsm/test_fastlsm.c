@@ -16,10 +16,11 @@
  * several times as much at its ends), and the same multiple of epsilon in double. */
 static const double tolerance[2] = {5e-5, 1e-11};
 
-static void check_goals(int precision, SmSummation summation, SmLayout layout, int w, Body *body)
+static void check_goals(int precision, SmSummation summation, SmPolarMethod polar, SmLayout layout,
+                        int w, Body *body)
 {
     SmEngineParams params = {
-        .w = w, .h = 0.01, .summation = summation, .layout = layout, .threads = 1};
+        .w = w, .h = 0.01, .summation = summation, .polar = polar, .layout = layout, .threads = 1};
     SmEngine *engine = create(engines[precision], body, params);
     RefRegions regions;
     ref_regions_build(&body->voxels, w, NULL, 0, &regions);
@@ -51,7 +52,7 @@ static void test_goals(void **state)
         int w = 1 + trial % 6;
         body_random(&seed, trial / 6 % 6, w > 3 ? 12 : 20, &body);
         check_goals(trial / 36 % 2, (SmSummation)((trial + trial / 6) % 3),
-                    (SmLayout)(1 + trial / 18 % 2), w, &body);
+                    (SmPolarMethod)(trial / 12 % 2), (SmLayout)(1 + trial / 18 % 2), w, &body);
         body_free(&body);
     }
 }
@@ -66,7 +67,8 @@ static void test_wide_lists(void **state)
         Body body;
         body_random(&seed, trial % 6, trial < 50 ? 14 : 6, &body);
         if (trial % 5 == 4) body.m[random_int(&seed, (int)body.n)] = 100;
-        check_goals(trial / 6 % 2, SM_SUM_FAST, SM_LAYOUT_LISTS, 4 + trial % 5, &body);
+        check_goals(trial / 6 % 2, SM_SUM_FAST, SM_POLAR_FAST, SM_LAYOUT_LISTS, 4 + trial % 5,
+                    &body);
         body_free(&body);
     }
     for (int trial = 0; trial < 8; trial++) {
@@ -75,7 +77,8 @@ static void test_wide_lists(void **state)
         random_block(&seed, size, 0.5, trial % 2 ? 0.8 : 1, &body.voxels);
         body_arrays(&body);
         random_deformation(&seed, 0.5, 0.3, body.n, (const double(*)[3])body.x0, body.x);
-        check_goals(trial / 2 % 2, SM_SUM_FAST, SM_LAYOUT_LISTS, 4 + trial % 3, &body);
+        check_goals(trial / 2 % 2, SM_SUM_FAST, SM_POLAR_FAST, SM_LAYOUT_LISTS, 4 + trial % 3,
+                    &body);
         body_free(&body);
     }
 }

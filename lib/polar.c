@@ -1,5 +1,6 @@
 #include "polar.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -142,16 +143,33 @@ static double determinant(const double A[9])
            A[2] * (A[3] * A[7] - A[4] * A[6]);
 }
 
-double sm_polar_jacobi(const double A[9], double V[9], const double last[9], double R[9])
+/* Makes the columns of V, nearly a rotation, orthonormal again: what rounding took from it would
+ * otherwise go into R, and grow from step to step. */
+static void straighten(double V[9])
+{
+    for (int c = 0; c < 3; c++) {
+        double norm = 0;
+        for (int b = 0; b < c; b++) {
+            double along = V[b] * V[c] + V[3 + b] * V[3 + c] + V[6 + b] * V[6 + c];
+            for (int i = 0; i < 9; i += 3) V[i + c] -= along * V[i + b];
+        }
+        for (int i = 0; i < 9; i += 3) norm += V[i + c] * V[i + c];
+        for (int i = 0; i < 9; i += 3) V[i + c] /= sqrt(norm);
+    }
+}
+
+double sm_polar_jacobi(const double A[9], double V[9], const double last[9], double tolerance,
+                       double R[9])
 {
     double scale = 0, B[9], AV[9], S[9];
     for (int i = 0; i < 9; i++) scale = fmax(scale, fabs(A[i]));
     for (int i = 0; i < 9; i++) B[i] = scale > 0 ? A[i] / scale : 0;
+    straighten(V);
     multiply(B, V, 0, AV);
     multiply(AV, AV, 1, S); /* V^T A^T A V */
-    double sweeps = sm_jacobi(3, S, V, 1e-6);
+    double sweeps = sm_jacobi(3, S, V, tolerance);
     double low = fmin(S[0], fmin(S[4], S[8])), high = fmax(S[0], fmax(S[4], S[8]));
-    if (!(low > 1e-8 * high) || determinant(B) <= 0) {
+    if (!(low > fmax(1e-8, DBL_EPSILON / tolerance) * high) || determinant(B) <= 0) {
         sm_polar_robust(A, last, 1e-12, R);
         return sweeps;
     }

@@ -12,9 +12,12 @@
 void sm_polar_robust(const double A[9], const double last[9], double tie, double R[9]);
 
 /* The paper's way (fastlsm section 4): cyclic Jacobi on V^T A^T A V, warm-started from the last
- * step's eigenvectors `V` (updated; start with the identity), R = A U^-1. Falls back on
- * sm_polar_robust() where U is singular or A reflects. Returns the sweeps it took. */
-double sm_polar_jacobi(const double A[9], double V[9], const double last[9], double R[9]);
+ * step's eigenvectors `V` (updated; start with the identity; may be rounded between steps), R = A
+ * U^-1, to some times `tolerance`, 1e-13 or more. Falls back on sm_polar_robust() where A reflects,
+ * or U is so near singular that its square's rounding is more than the tolerance. Returns the
+ * sweeps it took. */
+double sm_polar_jacobi(const double A[9], double V[9], const double last[9], double tolerance,
+                       double R[9]);
 
 /* Diagonalises the symmetric n x n matrix S, in place, by cyclic sweeps until every element off the
  * diagonal is below `tolerance` of its two diagonal ones' geometric mean; rotates the columns of V

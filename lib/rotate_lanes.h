@@ -88,9 +88,10 @@ SM_INLINE void polar_fast_lanes(const vec A[9], unsigned live, short *last, vec 
  * step, [9][lanes]; zero in lanes that are not live. Updates `last` and `stretch`. Returns the
  * sweeps, summed over live lanes. */
 static __attribute__((noinline, unused)) double
-polar_jacobi_lanes(const vec *A, unsigned live, short *last, float *stretch, vec *R)
+polar_jacobi_lanes(const vec *A, unsigned live, short *last, real *stretch, vec *R)
 {
     vec before[9];
+    const double tolerance = SM_REAL_BITS == 32 ? 1e-6 : 1e-13;
     double sweeps = 0;
     last_load(last, before);
     for (int lane = 0; lane < SM_LANES; lane++) {
@@ -104,10 +105,10 @@ polar_jacobi_lanes(const vec *A, unsigned live, short *last, float *stretch, vec
             b[i] = (double)before[i][lane];
             V[i] = (double)stretch[i * SM_LANES + lane];
         }
-        sweeps += sm_polar_jacobi(a, V, b, r);
+        sweeps += sm_polar_jacobi(a, V, b, tolerance, r);
         for (int i = 0; i < 9; i++) {
             R[i][lane] = (real)r[i];
-            stretch[i * SM_LANES + lane] = (float)V[i];
+            stretch[i * SM_LANES + lane] = (real)V[i];
         }
     }
     last_store(last, R);

@@ -162,7 +162,7 @@ long oct_bytes(const Oct *oct)
     if (oct->goal_lists.span) structure += oct_breadth_bytes(&oct->goal_lists);
     size_t rows = (row_count * (2 * OCT_ROW + OCT_ROW_VELOCITY) + lanes * 3) * sizeof(real);
     size_t state = lanes * (9 * sizeof(real) + 6 * sizeof(short));
-    if (oct->params.polar == SM_POLAR_JACOBI) state += lanes * 9 * sizeof(float);
+    if (oct->params.polar == SM_POLAR_JACOBI) state += lanes * 9 * sizeof(real);
     if (oct->spread) {
         structure += lanes * 6 * sizeof(real);
         state += lanes * 18 * sizeof(real);

@@ -119,7 +119,7 @@ SM_INLINE void store_transforms(const OctTask *task, long block, const vec c[3],
 }
 
 /* Copies: A and R of the fast method stay in registers. */
-SM_INLINE void rotate_jacobi(const vec A[9], short *last, float *stretch, vec R[9])
+SM_INLINE void rotate_jacobi(const vec A[9], short *last, real *stretch, vec R[9])
 {
     vec from[9], to[9];
     lanes_copy(9, A, from);

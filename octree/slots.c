@@ -55,8 +55,8 @@ static void enlarge_body(const Oct *oct, OctState *body, size_t old, size_t now)
     body->last =
         enlarge(body->last, old * 6 * SM_LANES * sizeof(short), now * 6 * SM_LANES * sizeof(short));
     if (oct->params.polar == SM_POLAR_JACOBI)
-        body->stretch = enlarge(body->stretch, old * 9 * SM_LANES * sizeof(float),
-                                now * 9 * SM_LANES * sizeof(float));
+        body->stretch = enlarge(body->stretch, old * 9 * SM_LANES * sizeof(real),
+                                now * 9 * SM_LANES * sizeof(real));
     if (!oct->spread) return;
     body->plastic = enlarge(body->plastic, old * nine, now * nine);
     body->inverse = enlarge(body->inverse, old * nine, now * nine);
@@ -84,7 +84,7 @@ static void open_block(Oct *oct, long block)
     for (int lane = 0; lane < SM_LANES; lane++) oct->row[block * SM_LANES + lane] = OCT_SPARE_ROW;
     for (long i = 0; i < oct->instances; i++) {
         last_store(oct->body[i].last + block * 6 * SM_LANES, identity);
-        float *stretch = oct->body[i].stretch;
+        real *stretch = oct->body[i].stretch;
         for (int e = 0; e < 9 * SM_LANES && stretch; e++)
             stretch[block * 9 * SM_LANES + e] = e / SM_LANES % 4 == 0;
         for (int e = 0; e < 9 && oct->spread; e += 4)

@@ -74,7 +74,7 @@ typedef struct {
     double kick[3];  /* finest cells per step: its velocity is kick + v; the next step adds it */
     real *x, *v, *g; /* [blocks][3][lanes] */
     short *last;     /* [blocks][6][lanes] the regions' last rotations (rotate_lanes.h) */
-    float *stretch;  /* [blocks][9][lanes] eigenvectors for Jacobi's method, or NULL */
+    real *stretch;   /* [blocks][9][lanes] eigenvectors for Jacobi's method, or NULL */
     real *plastic;   /* [blocks][9][lanes] S_r, or NULL for an elastic body */
     real *inverse;   /* [blocks][9][lanes] Aqq_r, or NULL */
 } OctState;
