@@ -87,7 +87,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
 static const char help[] =
     "Say what is in mesh files (OBJ, PLY, STL, OFF, glTF and what else Assimp reads, or "
     "shape:NAME): triangles, vertices, components, edges that are open, shared by more than two "
-    "triangles or flipped, bounding box, volume, and whether it can be simulated as a solid.\v"
+    "triangles or flipped, bounding box, volume (of closed ones), and whether it can be simulated "
+    "as a solid.\v"
     "With several meshes each gets its say; the exit code is that of the last one that cannot be "
     "read. --format json prints one array with an object for every mesh.\n" BENCH_EXIT_CODES;
 
@@ -126,11 +127,21 @@ static double box_volume(const SmMeshInfo *m)
     return (m->high[0] - m->low[0]) * (m->high[1] - m->low[1]) * (m->high[2] - m->low[2]);
 }
 
+static void print_volume(const SmMeshInfo *m)
+{
+    bool some = fabs(m->volume) > 1e-12 * box_volume(m); /* not rounding's sign */
+    if (isfinite(m->volume))
+        printf("  volume        %.6g%s\n", some ? m->volume : 0,
+               some && m->volume < 0 ? " (inside out)" : "");
+    else
+        printf("  volume        none: %s\n",
+               m->open_edges ? "the surface is open"
+                             : "the triangles do not agree which side is outside");
+}
+
 static void print_text(const char *name, const Facts *facts)
 {
     const SmMeshInfo *m = &facts->mesh;
-    double volume =
-        fabs(m->volume) > 1e-12 * box_volume(m) ? m->volume : 0; /* not rounding's sign */
     printf("%s\n", name);
     printf("  triangles     %ld\n", m->triangles);
     printf("  vertices      %ld\n", m->vertices);
@@ -146,7 +157,7 @@ static void print_text(const char *name, const Facts *facts)
            m->high[0], m->high[1], m->high[2]);
     printf("  size          %.6g x %.6g x %.6g\n", m->high[0] - m->low[0], m->high[1] - m->low[1],
            m->high[2] - m->low[2]);
-    printf("  volume        %.6g%s\n", volume, volume < 0 ? " (inside out)" : "");
+    print_volume(m);
     printf("  solid         %s: %s\n", facts->solid ? "yes" : "no", facts->verdict);
     if (facts->solid)
         printf("  lattice       %ld particles, %ld cells of %.6g\n", facts->particles, facts->cells,
@@ -182,7 +193,7 @@ static json_t *to_json(const char *name, const Facts *facts)
     json_object_set_new(object, "watertight", json_boolean(m->watertight));
     json_object_set_new(object, "low", vector(m->low));
     json_object_set_new(object, "high", vector(m->high));
-    json_object_set_new(object, "volume", json_real(m->volume));
+    json_object_set_new(object, "volume", isfinite(m->volume) ? json_real(m->volume) : json_null());
     json_object_set_new(object, "solid", json_boolean(facts->solid));
     json_object_set_new(object, "verdict", json_string(facts->verdict));
     json_object_set_new(object, "cell", json_real(facts->cell));

@@ -162,7 +162,10 @@ static double sag_of(const char *name)
     if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, &error);
     if (!code) code = bench_body_create(scene, &mesh, &body, &error);
     if (!code) code = bench_runner_create(scene, &body, type, 1, &runner, &error);
-    if (code) fail_msg("%s", error.text);
+    if (code) {
+        fail_msg("%s", error.text);
+        return NAN;
+    }
     double(*v)[3] = sm_alloc((size_t)runner.particles, sizeof *v), end = 0, sag = 0;
     for (int step = 0; step < 1500; step++) {
         bench_runner_step(&runner, NULL);

@@ -198,6 +198,13 @@ static void a_mesh_alone_can_be_run(void **state)
     assert_true(json_is_true(json_object_get(mesh, "solid")));
     assert_int_equal(json_integer_value(json_object_get(mesh, "open_edges")), 0);
     json_decref(list);
+    write_text("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\n");
+    run("info open.obj", &result);
+    assert_non_null(strstr(result.out, "volume        none: the surface is open\n"));
+    run("info open.obj --format json", &result);
+    list = json_loads(result.out, 0, NULL);
+    assert_true(json_is_null(json_object_get(json_array_get(list, 0), "volume")));
+    json_decref(list);
     run("info block.obj missing.obj", &result);
     assert_int_equal(result.code, 3);
     assert_non_null(strstr(result.out, "watertight    yes"));

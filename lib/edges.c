@@ -90,12 +90,15 @@ SmEdgeCounts sm_edges_count(const SmMesh *mesh, bool *boundary)
         size_t end = buckets.start[v + 1];
         for (size_t i = buckets.start[v], next; i < end; i = next) {
             const int *pair = buckets.pair[i];
-            for (next = i + 1; next < end && buckets.pair[next][0] == pair[0];) next++;
+            long up = pair[1]; /* how often from the lower end to the higher */
+            for (next = i + 1; next < end && buckets.pair[next][0] == pair[0];)
+                up += buckets.pair[next++][1];
             if (next - i == 1) {
                 counts.open++;
                 if (boundary) boundary[v] = boundary[pair[0]] = true;
             }
             counts.nonmanifold += next - i > 2;
+            counts.unbalanced += 2 * up != (long)(next - i);
             counts.flipped += next - i == 2 && pair[1] == buckets.pair[i + 1][1];
         }
     }

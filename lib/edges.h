@@ -8,6 +8,8 @@ typedef struct {
     long open;        /* used by one triangle */
     long nonmanifold; /* used by more than two */
     long flipped;     /* used by two that run along it the same way */
+    long unbalanced;  /* used more often one way than the other, as are all of the first and third
+                       * kind: where there is none, the triangles bound a volume */
 } SmEdgeCounts;
 
 /* Counts the edges of each kind; an edge from a vertex to itself is not counted. `boundary`

@@ -279,6 +279,7 @@ SmMeshInfo sm_mesh_info(const SmMesh *mesh)
     info.duplicates = sm_edges_duplicates(mesh);
     bounding_box(mesh, info.low, info.high);
     measure_triangles(mesh, &info);
+    if (edges.unbalanced) info.volume = NAN;
     return info;
 }
 

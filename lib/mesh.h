@@ -25,7 +25,9 @@ typedef struct {
     long duplicates;          /* triangles whose three corners an earlier one has too */
     bool watertight;          /* no open and no non-manifold edge */
     double low[3], high[3];   /* bounding box */
-    double volume;            /* signed: negative for a mesh that is inside out */
+    double volume;            /* signed: negative for a mesh that is inside out; NaN where edges are
+                               * used more often one way than the other: such a mesh bounds none,
+                               * and the sum would depend on where the mesh lies */
 } SmMeshInfo;
 
 /* A mesh of zeros, for the caller to fill in and to free. */

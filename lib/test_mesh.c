@@ -93,6 +93,28 @@ static void test_info_of_defects(void **state)
     sm_mesh_free(&mesh);
 }
 
+/* Of what is open, or turned two ways, the sum over triangles depends on where it lies. */
+static void test_volume_only_where_triangles_bound_one(void **state)
+{
+    (void)state;
+    SmMesh mesh = cube();
+    mesh.triangle_count = 11;
+    assert_true(isnan(sm_mesh_info(&mesh).volume));
+    mesh.triangle_count = 12;
+    int swapped = mesh.triangle[5][0];
+    mesh.triangle[5][0] = mesh.triangle[5][1];
+    mesh.triangle[5][1] = swapped;
+    assert_true(isnan(sm_mesh_info(&mesh).volume));
+    sm_mesh_free(&mesh);
+    mesh = cube(); /* used by four triangles, an edge can still be one of a closed surface */
+    for (int t = 0; t < 12; t++)
+        add_triangle(&mesh, mesh.triangle[t][0], mesh.triangle[t][1], mesh.triangle[t][2]);
+    SmMeshInfo info = sm_mesh_info(&mesh);
+    assert_int_equal(info.nonmanifold_edges, 18);
+    assert_near(info.volume, 2, 1e-15);
+    sm_mesh_free(&mesh);
+}
+
 static void test_merge_drops(void **state)
 {
     (void)state;
@@ -247,6 +269,7 @@ int main(void)
         cmocka_unit_test(test_merge_closes_rounding_gaps),
         cmocka_unit_test(test_components_and_degenerate),
         cmocka_unit_test(test_volume_far_away),
+        cmocka_unit_test(test_volume_only_where_triangles_bound_one),
         cmocka_unit_test(test_fan_is_cheap),
         cmocka_unit_test(test_check),
         cmocka_unit_test(test_print_obj),
