@@ -135,9 +135,9 @@ class Trial:
         self.inputs = {entry for entry in os.listdir(self.folder) if entry not in COMMANDS and ".xdmf" not in entry}
 
     def remove_output(self, name):
-        shutil.rmtree(self.at(name)) if name == "folder" else os.path.exists(self.at(name)) and os.remove(self.at(name))
-        for entry in os.listdir(self.folder):
-            if entry == name + ".xdmf":
+        shutil.rmtree(self.at(name), ignore_errors=True)
+        for entry in (name, name + ".xdmf"):
+            if os.path.isfile(self.at(entry)):
                 os.remove(self.at(entry))
 
     def check_rest(self, name, before, killed):
