@@ -7,6 +7,7 @@
 
 #include "../lib/file.h"
 #include "../lib/import.h"
+#include "../lib/printable.h"
 #include "../lib/shape.h"
 #include "nearest.h"
 #include "room.h"
@@ -73,6 +74,7 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene)
     bench_scene_init(scene);
     const char *slash = strrchr(path, '/');
     snprintf(scene->name, sizeof scene->name, "%.*s", BENCH_NAME - 1, slash ? slash + 1 : path);
+    sm_printable(scene->name);
     snprintf(scene->title, sizeof scene->title, "%s dropped on the ground", scene->name);
     snprintf(scene->mesh, sizeof scene->mesh, "%s", path);
     snprintf(scene->file, sizeof scene->file, "%s", path);

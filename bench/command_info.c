@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../lib/printable.h"
 #include "../lib/voxel.h"
 #include "body.h"
 #include "command.h"
@@ -142,7 +143,10 @@ static void print_volume(const SmMeshInfo *m)
 static void print_text(const char *name, const Facts *facts)
 {
     const SmMeshInfo *m = &facts->mesh;
-    printf("%s\n", name);
+    char shown[BENCH_PATH];
+    snprintf(shown, sizeof shown, "%s", name);
+    sm_printable(shown);
+    printf("%s\n", shown);
     printf("  triangles     %ld\n", m->triangles);
     printf("  vertices      %ld\n", m->vertices);
     printf("  components    %ld\n", m->components);

@@ -6,32 +6,26 @@
 #include <string.h>
 
 #include "../lib/error.h"
+#include "../lib/printable.h"
 
-/* Bytes of the UTF-8 character at `text` that XML may hold, or 0. */
-static int character_length(const unsigned char *text)
+/* Whether a spreadsheet would take the text for a formula. */
+static bool is_formula(const char *text)
 {
-    static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
-    unsigned c = text[0];
-    if (c < 0x80) return c >= 0x20 && c != 0x7f;
-    int length = c >= 0xf0 ? 4 : c >= 0xe0 ? 3 : 2;
-    if (c < 0xc0 || c >= 0xf8) return 0;
-    unsigned code = c & (0xffu >> (length + 1));
-    for (int i = 1; i < length; i++) {
-        if ((text[i] & 0xc0) != 0x80) return 0;
-        code = code << 6 | (text[i] & 0x3f);
-    }
-    bool surrogate = code >= 0xd800 && code < 0xe000;
-    bool beyond = code > 0x10ffff || code == 0xfffe || code == 0xffff;
-    return code < least[length] || surrogate || beyond ? 0 : length;
+    char *end;
+    if (!*text || !strchr("=+-@\t\r", *text)) return false;
+    strtod(text, &end);
+    return end == text || *end;
 }
 
 void bench_csv_text(FILE *file, const char *text)
 {
-    if (!text[strcspn(text, ",\"\r\n")]) {
+    bool formula = is_formula(text);
+    if (!formula && !text[strcspn(text, ",\"\r\n")]) {
         fputs(text, file);
         return;
     }
     fputc('"', file);
+    if (formula) fputc('\'', file);
     for (; *text; text++) {
         if (*text == '"') fputc('"', file);
         fputc(*text, file);
@@ -75,11 +69,7 @@ json_t *bench_json_text(const char *text)
     size_t size = strlen(text);
     char *copy = sm_alloc(size + 1, 1);
     memcpy(copy, text, size + 1);
-    for (size_t i = 0; i < size;) {
-        int length = character_length((const unsigned char *)copy + i);
-        if (length == 0) copy[i] = '?';
-        i += length ? (size_t)length : 1;
-    }
+    sm_printable(copy);
     value = json_string(copy);
     free(copy);
     return value;
@@ -144,8 +134,8 @@ void bench_json_write(FILE *file, json_t *root)
 
 void bench_xml_text(FILE *file, const char *text)
 {
-    for (const unsigned char *c = (const unsigned char *)text; *c;) {
-        int length = character_length(c);
+    for (const char *c = text; *c;) {
+        int length = sm_character(c);
         if (length == 0)
             fputc('?', file);
         else if (*c == '&')

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "../lib/child.h"
+#include "../lib/printable.h"
 #include "checksum.h"
 
 static bool same_class(hid_t type, BenchKind kind)
@@ -46,6 +47,7 @@ void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size
         if (H5Tget_size(stored) > size || H5Aread(attribute, type, text) < 0)
             bench_h5_fail(h5, "attribute '%s' cannot be read or is too long", name);
         text[size - 1] = '\0';
+        sm_printable(text);
         H5Tclose(type);
         H5Tclose(stored);
     }

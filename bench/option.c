@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/printable.h"
 #include "../lib/team.h"
 #include "provenance.h"
 
@@ -98,7 +99,11 @@ static void restore_console(void)
 static void say(const char *name, const char *text, int length, bool usage)
 {
     const char *join = length && text[length - 1] == '?' ? " See" : "; see";
-    fprintf(stderr, "%s: %.*s", name, length, text);
+    char *line = sm_alloc((size_t)length + 1, 1); /* it may name a file, or what was typed */
+    memcpy(line, text, (size_t)length);
+    sm_printable(line);
+    fprintf(stderr, "%s: %s", name, line);
+    free(line);
     bool told = strstr(text, " --help'") != NULL; /* by another program, whose line this repeats */
     if (usage && !told) fprintf(stderr, "%s '%s --help'", join, name);
     fputc('\n', stderr);

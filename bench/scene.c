@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../lib/printable.h"
 #include "../reference/meshless/points.h"
 #include "builtin.h"
 #include "config_file.h"
@@ -280,6 +281,7 @@ static void name_scene(BenchScene *scene, const char *file)
     snprintf(scene->name, sizeof scene->name, "%.*s", BENCH_NAME - 1, slash ? slash + 1 : file);
     char *dot = strrchr(scene->name, '.');
     if (dot && dot != scene->name) *dot = '\0';
+    sm_printable(scene->name);
 }
 
 SmCode bench_scene_parse(const char *text, size_t size, const char *file, BenchScene *scene,

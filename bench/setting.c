@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../lib/printable.h"
+
 static const BenchSetting *find(const BenchSetting *table, const char *name)
 {
     for (; table->name; table++)
@@ -98,6 +100,9 @@ static SmCode read_text(const config_setting_t *item, const BenchSetting *settin
         return wrong(item, setting, wanted, file, error);
     }
     strcpy(place, text);
+    sm_printable(place);
+    if (strcmp(place, text) != 0)
+        return wrong(item, setting, "UTF-8 without control characters", file, error);
     return SM_OK;
 }
 

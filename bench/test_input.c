@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "export.h"
 #include "test_program.h"
 
 /* Within 20 s. */
@@ -94,6 +95,66 @@ static void a_default_is_never_refused(void **state)
                    "ask for that many");
 }
 
+/* Of what runs, and of what fails. */
+static void assert_shown_safely(const char *arguments, int code, const char *wanted)
+{
+    Result result;
+    run(arguments, &result);
+    if (result.code != code || strpbrk(result.out, "\x1b\a\b\x7f") ||
+        strpbrk(result.err, "\x1b\a\b\x7f") || strstr(result.out, "\xc2\x9b") ||
+        (!strstr(result.out, wanted) && !strstr(result.err, wanted)))
+        fail_msg("shapebench %s: exit code %d, not %d with \"%s\":\n%s%s", arguments, result.code,
+                 code, wanted, result.out, result.err);
+}
+
+static void no_escape_code_of_a_file_reaches_the_terminal(void **state)
+{
+    (void)state;
+    static const char mesh[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                               "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    write_text("\x1b[31mred.obj", mesh);
+    write_text("\x1b[31mbad.obj", "f 1 2 3\n");
+    write_text("csi\xc2\x9b.obj", mesh);
+    write_text("\x1b]0;title\a.cfg", "mesh = \"shape:block\"; particles = 64; w = 1;\n");
+    write_text("title.cfg", "title = \"\\x1b[31m\"; mesh = \"shape:block\"; particles = 64;\n");
+    write_text("word.cfg", "mesh = \"shape:block\";\n\x1b[31m = 1;\n");
+    write_text("group.obj", "g \x1b[31m\nusemtl \x1b[31m\nv 0 0 0\nf 1 2 \x1b[31m\n");
+    assert_shown_safely("info '\x1b[31mred.obj'", 0, "?[31mred.obj\n");
+    assert_shown_safely("info 'csi\xc2\x9b.obj'", 0, "csi??.obj\n");
+    assert_shown_safely("run '\x1b[31mred.obj' --frames 0 -o red.vtkhdf", 0, "?[31mred.obj: ");
+    assert_shown_safely("info '\x1b[31mbad.obj'", 3, "?[31mbad.obj: ");
+    assert_shown_safely("info '\x1b[31mabsent.obj'", 3, "?[31mabsent.obj: ");
+    assert_shown_safely("run '\x1b]0;title\a.cfg' --frames 0 --no-output", 0, "?]0;title?: ");
+    assert_shown_safely("run title.cfg", 3, "UTF-8 without control characters");
+    assert_shown_safely("run word.cfg", 3, "word.cfg:2");
+    assert_shown_safely("info group.obj", 3, "group.obj: ");
+    assert_shown_safely("run penguin --polar '\x1b[31m'", 2, "?[31m");
+}
+
+static void no_cell_is_a_formula(void **state)
+{
+    (void)state;
+    static const char *const cells[][2] = {{"=1+1", "\"'=1+1\""},
+                                           {"@SUM(A1)", "\"'@SUM(A1)\""},
+                                           {"+1", "+1"},
+                                           {"-2.5e3", "-2.5e3"},
+                                           {"-cmd|x", "\"'-cmd|x\""},
+                                           {"plain", "plain"},
+                                           {"a=1", "a=1"},
+                                           {"+1,=2", "\"'+1,=2\""},
+                                           {"", ""},
+                                           {"=\"a\"", "\"'=\"\"a\"\"\""}};
+    for (size_t i = 0; i < sizeof cells / sizeof *cells; i++) {
+        char *text;
+        size_t size;
+        FILE *file = open_memstream(&text, &size);
+        bench_csv_text(file, cells[i][0]);
+        fclose(file);
+        assert_string_equal(text, cells[i][1]);
+        free(text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -101,6 +162,8 @@ int main(void)
         cmocka_unit_test(lines_have_an_end),
         cmocka_unit_test(points_are_told_of_the_engine_that_takes_them),
         cmocka_unit_test(a_default_is_never_refused),
+        cmocka_unit_test(no_escape_code_of_a_file_reaches_the_terminal),
+        cmocka_unit_test(no_cell_is_a_formula),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,4 +1,5 @@
 #include "error.h"
+#include "printable.h"
 
 #include <stdarg.h>
 #include <stdint.h>
@@ -15,8 +16,7 @@ SmCode sm_fail(SmError *error, SmCode code, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(error->text, sizeof error->text, format, arguments);
     va_end(arguments);
-    for (char *c = error->text; *c; c++)
-        if (*c == '\n' || *c == '\r') *c = ' ';
+    sm_printable(error->text);
     return code;
 }
 

@@ -20,7 +20,7 @@ typedef enum {
 
 typedef struct {
     SmCode code;
-    char text[512]; /* one line, no newline, no trailing full stop needed */
+    char text[512]; /* one line that a terminal can show (printable.h), no full stop needed */
 } SmError;
 
 /* Writes the formatted line into `error` (which may be NULL) and returns `code`. */

@@ -8,8 +8,7 @@ static SmCode fail_with_text(const unsigned char *text, size_t length, const cha
                              SmError *error)
 {
     char line[SM_REPLY_TEXT + 1];
-    for (size_t i = 0; i < length; i++)
-        line[i] = text[i] < 32 ? ' ' : text[i] > 126 ? '?' : (char)text[i];
+    memcpy(line, text, length);
     line[length] = 0;
     if (strncmp(line, "No suitable reader", 18) == 0)
         return sm_fail(

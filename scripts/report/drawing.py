@@ -63,9 +63,14 @@ class Figure:
     def csv(self):
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(self.columns)
-        writer.writerows(["" if value is None or value != value else value for value in row] for row in self.data)
+        writer.writerow(map(cell, self.columns))
+        writer.writerows(["" if value is None or value != value else cell(value) for value in row] for row in self.data)
         return text.getvalue()
+
+
+def cell(value):
+    """Text that a spreadsheet would take for a formula gets an apostrophe before it."""
+    return f"'{value}" if isinstance(value, str) and value[:1] in tuple("=+-@\t\r") else value
 
 
 def canvas(width=7.2, height=3.6, **options):
