@@ -1,8 +1,9 @@
 /* import.h - mesh files, through Assimp's C API in a child process.
  *
  * The importer parses untrusted input in C++; here it runs in a forked child with limits on time
- * and memory that hands triangles back through a pipe, so that a crash, a hang or a memory blow-up
- * in it is one error line that names the file. */
+ * and memory, and without a way to anything beyond the mesh's folder (importer.h), that hands
+ * triangles back through a pipe, so that a crash, a hang or a memory blow-up in it is one error
+ * line that names the file. */
 #ifndef SM_IMPORT_H
 #define SM_IMPORT_H
 

@@ -1,5 +1,7 @@
 #include "importer.h"
 #include "child.h"
+#include "confine.h"
+#include "mesh_files.h"
 #include "ply.h"
 #include "polygon.h"
 #include "recentre.h"
@@ -8,14 +10,23 @@
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+/* What a file of so many bytes may hold without wondering: more comes of parts that are used again
+ * and again, by which a small file would take minutes and all memory. */
+static double most_elements(double bytes)
+{
+    return 2e6 + bytes;
+}
+
 typedef struct {
     const struct aiScene *scene;
+    double most; /* triangles, and vertices a third of them has */
     SmReplyHeader header;
     double (*position)[3];
     int (*triangle)[3];
@@ -113,16 +124,24 @@ static void copy_vertices(Import *import, const struct aiMesh *mesh, const Trans
     }
 }
 
-/* Walks the node tree; counts while import->position is NULL, then copies. False: no memory. */
+static bool too_many(const Import *import)
+{
+    double vertices = (double)(import->header.vertex_count + import->header.points);
+    return (double)import->header.triangle_count > import->most || vertices > 3 * import->most;
+}
+
+/* Walks the node tree; counts while import->position is NULL, then copies. False: too many while it
+ * counts, later no memory. */
 static bool walk(Import *import, const struct aiNode *node, const Transform *outer)
 {
     Transform transform = compose(outer, &node->mTransformation);
     for (unsigned m = 0; m < node->mNumMeshes; m++) {
         const struct aiMesh *mesh = import->scene->mMeshes[node->mMeshes[m]];
         long triangles = import->header.triangle_count;
-        if (!import->position)
+        if (!import->position) {
             count_mesh(mesh, &import->header);
-        else if (!copy_triangles(import, mesh, mirrors(&transform)))
+            if (too_many(import)) return false;
+        } else if (!copy_triangles(import, mesh, mirrors(&transform)))
             return false;
         else if (import->header.triangle_count > triangles)
             copy_vertices(import, mesh, &transform);
@@ -139,10 +158,21 @@ static int reply_text(int reply, const char *text)
     return !(sm_child_write(reply, &header, sizeof header) && sm_child_write(reply, text, length));
 }
 
+static int reply_many(int reply, double most)
+{
+    char text[SM_REPLY_TEXT];
+    snprintf(
+        text, sizeof text,
+        "it uses its parts so often that they make more than %.2g million triangles or points, "
+        "which a file of its size does not hold: export one of each part",
+        most / 1e6);
+    return reply_text(reply, text);
+}
+
 static int reply_mesh(int reply, Import *import)
 {
     static const Transform identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    walk(import, import->scene->mRootNode, &identity);
+    if (!walk(import, import->scene->mRootNode, &identity)) return reply_many(reply, import->most);
     SmReplyHeader header = import->header;
     if (header.vertex_count > INT_MAX || header.triangle_count > INT_MAX)
         return reply_text(reply, "more than 2147483647 vertices or triangles");
@@ -178,11 +208,14 @@ static char *read_text(const char *path, size_t *size)
 }
 
 /* The file's bytes where Assimp needs other ones (ply.h, recentre.h), or NULL. */
-static char *rewritten(const char *path, const char *suffix, size_t *size, double offset[3])
+static char *rewritten(const char *path, const char *suffix, SmMeshFiles *files, double offset[3])
 {
+    size_t *size = &files->size;
     size_t new_size = 0;
     char *text = read_text(path, size);
     char *ordered = NULL, *moved = NULL;
+    if (text && strcasecmp(suffix, "ply") == 0 && sm_ply_lacks_lines(text))
+        snprintf(files->altered, sizeof files->altered, "PLY: fewer lines than its header says");
     if (text && strcasecmp(suffix, "ply") == 0)
         ordered = sm_ply_vertices_first(text, *size, &new_size);
     if (ordered) {
@@ -197,47 +230,76 @@ static char *rewritten(const char *path, const char *suffix, size_t *size, doubl
     return moved ? moved : ordered;
 }
 
-static const struct aiScene *read_scene(const char *path, double offset[3])
+/* What Assimp tells only its log: numbers that it has put in place of those in the file. */
+static void note_alteration(const char *line, char *noted)
 {
-    const char *dot = strrchr(path, '.'), *suffix = dot ? dot + 1 : "";
-    struct aiPropertyStore *properties = aiCreatePropertyStore();
-    aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
-    size_t size = 0;
-    char *text = rewritten(path, suffix, &size, offset);
-    if (text && size < UINT_MAX)
-        return aiImportFileFromMemoryWithProperties(text, (unsigned)size, 0, suffix, properties);
-    offset[0] = offset[1] = offset[2] = 0;
-    return aiImportFileExWithProperties(path, 0, NULL, properties);
+    static const char *const altered[] = {"out of range", "out-of-range", "is incorrect"};
+    for (size_t i = 0; i < sizeof altered / sizeof *altered && !*noted; i++)
+        if (strstr(line, altered[i])) {
+            const char *colon = strstr(line, ": ");
+            const char *said = colon ? colon + 2 : line;
+            snprintf(noted, SM_REPLY_TEXT, "%.*s", (int)strcspn(said, "\n"), said);
+        }
 }
 
-/* Why Assimp gave no scene. */
-static int reply_reason(int reply)
+/* The scene, from a process that can read nothing but what lies beneath the mesh's folder; NULL,
+ * and then errno is ENOMEM where memory is what it lacks. */
+static const struct aiScene *read_scene(const char *path, SmMeshFiles *files, double offset[3])
+{
+    const char *dot = strrchr(path, '.'), *suffix = dot ? dot + 1 : "";
+    sm_mesh_files_init(path, files);
+    sm_confine(files->folder ? files->folder : "", path);
+    errno = 0;
+    files->text = rewritten(path, suffix, files, offset);
+    if (errno == ENOMEM) return NULL;
+    struct aiPropertyStore *properties = aiCreatePropertyStore();
+    aiSetImportPropertyInteger(properties, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
+    struct aiLogStream log = {note_alteration, files->altered};
+    aiAttachLogStream(&log);
+    errno = 0;
+    const struct aiScene *scene = aiImportFileExWithProperties(path, 0, &files->io, properties);
+    aiDetachLogStream(&log);
+    return scene && scene->mRootNode && !files->altered[0] ? scene : NULL;
+}
+
+/* Why there is no scene. */
+static int reply_reason(int reply, const SmMeshFiles *files)
 {
     const char *reason = aiGetErrorString();
-    if (strstr(reason, "bad_alloc")) return SM_CHILD_NO_MEMORY;
+    if (strstr(reason, "bad_alloc") || errno == ENOMEM) return SM_CHILD_NO_MEMORY;
     char text[SM_REPLY_TEXT];
-    snprintf(text, sizeof text, "%.300s; is it damaged or cut off? Export it again",
-             *reason ? reason : "the importer gives no reason");
+    if (files->outside[0])
+        snprintf(text, sizeof text,
+                 "it names '%s', which does not lie in its folder, and is not read: put it there",
+                 files->outside);
+    else
+        snprintf(text, sizeof text, "%.300s; is it damaged or cut off? Export it again",
+                 *reason             ? reason
+                 : files->altered[0] ? files->altered
+                                     : "the importer gives no reason");
     return reply_text(reply, text);
 }
 
 int sm_importer(void *path, int reply)
 {
     Import import = {0};
-    import.scene = read_scene(path, import.offset);
-    if (import.scene && import.scene->mRootNode) {
+    SmMeshFiles files;
+    import.scene = read_scene(path, &files, import.offset);
+    if (import.scene) {
+        import.most = most_elements(files.bytes);
         int status = reply_mesh(reply, &import);
         free(import.position);
         free(import.triangle);
         return status;
     }
-    return reply_reason(reply);
+    return reply_reason(reply, &files);
 }
 
 /* Points, and their normals behind them; walks as walk() does. `room` 0: counts only. */
 typedef struct {
     const struct aiScene *scene;
     int64_t count, room;
+    double most; /* of them */
     double (*position)[3], (*normal)[3];
     double offset[3];
     bool bare; /* some have no normals */
@@ -245,6 +307,10 @@ typedef struct {
 
 static void copy_points(Points *points, const struct aiMesh *mesh, const Transform *transform)
 {
+    if (points->room == 0) { /* counted only */
+        points->count += mesh->mNumVertices;
+        return;
+    }
     for (unsigned v = 0; v < mesh->mNumVertices; v++, points->count++) {
         const struct aiVector3D *p = &mesh->mVertices[v], *n = &mesh->mNormals[v];
         for (int a = 0; a < 3 && points->count < points->room; a++) {
@@ -278,6 +344,7 @@ static int reply_points(int reply, Points *points)
     walk_points(points, points->scene->mRootNode, &identity);
     if (points->bare) return reply_text(reply, "its points have no normals");
     if (!points->count) return reply_text(reply, "it holds no points");
+    if ((double)points->count > points->most) return reply_many(reply, points->most);
     if (points->count > INT_MAX) return reply_text(reply, "more than 2147483647 points");
     SmReplyHeader header = {.magic = SM_REPLY_MAGIC, .vertex_count = points->count};
     size_t size = (size_t)points->count * sizeof *points->position;
@@ -300,7 +367,9 @@ static int reply_points(int reply, Points *points)
 int sm_importer_points(void *path, int reply)
 {
     Points points = {0};
-    points.scene = read_scene(path, points.offset);
-    if (points.scene && points.scene->mRootNode) return reply_points(reply, &points);
-    return reply_reason(reply);
+    SmMeshFiles files;
+    points.scene = read_scene(path, &files, points.offset);
+    if (!points.scene) return reply_reason(reply, &files);
+    points.most = most_elements(files.bytes);
+    return reply_points(reply, &points);
 }

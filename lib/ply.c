@@ -150,3 +150,22 @@ char *sm_ply_vertices_first(const char *text, size_t size, size_t *new_size)
     free(copy);
     return NULL;
 }
+
+bool sm_ply_lacks_lines(const char *text)
+{
+    const char *end = strstr(text, "\nend_header");
+    const char *format = strstr(text, "\nformat ascii");
+    double wanted = 0, lines = 0;
+    if (!end || !format || format > end) return false;
+    for (const char *at = text; (at = strstr(at, "\nelement ")) && at < end; at++) {
+        const char *count = at + strlen("\nelement ");
+        count += strcspn(count, " \n");
+        wanted += strtod(count, NULL);
+    }
+    const char *line = end + 1;
+    for (line += strcspn(line, "\r\n"); *line; line += strcspn(line, "\r\n")) {
+        line += strspn(line, " \t\r\n");
+        lines += *line != 0;
+    }
+    return lines < wanted;
+}

@@ -1,4 +1,5 @@
 #include "child.h"
+#include "confine.h"
 #include "import.h"
 #include "reply.h"
 #include "stage.h"
@@ -11,11 +12,14 @@
 #include <cmocka.h>
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -192,6 +196,134 @@ static void test_truncated(void **state)
         assert_true(code == SM_OK ? mesh.triangle_count > 0 : strstr(error.text, path) != NULL);
         sm_mesh_free(&mesh);
     }
+}
+
+/* A glTF file of a tetrahedron whose buffer has that name, and the buffer; its last index is given.
+ */
+static void write_gltf(const char *name, const char *uri, const char *buffer, unsigned short last)
+{
+    static const float corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const unsigned short index[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, last};
+    char bytes[sizeof corner + sizeof index], text[1024];
+    memcpy(bytes, corner, sizeof corner);
+    memcpy(bytes + sizeof corner, index, sizeof index);
+    write_bytes(buffer, bytes, sizeof bytes);
+    snprintf(
+        text, sizeof text,
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"meshes\":[{"
+        "\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],\"buffers\":[{"
+        "\"byteLength\":72,\"uri\":\"%s\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{"
+        "\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],\"accessors\":[{\"bufferView\":0,"
+        "\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},{\"bufferView\":1,"
+        "\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}],\"nodes\":[{\"mesh\":0}]}",
+        uri);
+    write_text(name, text);
+}
+
+static void no_file_beyond_the_folder_is_read(void **state)
+{
+    (void)state;
+    char inner[300], outer[320];
+    snprintf(inner, sizeof inner, "%s", path_in("inner"));
+    assert_int_equal(mkdir(inner, 0700), 0);
+    assert_int_equal(mkdir(path_in("inner/sub"), 0700), 0);
+    write_gltf("inner/in.gltf", "in.bin", "inner/in.bin", 2);
+    write_gltf("inner/sub.gltf", "sub/in.bin", "inner/sub/in.bin", 2);
+    write_gltf("inner/out.gltf", "../out.bin", "out.bin", 2);
+    write_gltf("inner/link.gltf", "link.bin", "out.bin", 2);
+    assert_int_equal(symlink("../out.bin", path_in("inner/link.bin")), 0);
+    write_gltf("inner/pipe.gltf", "pipe.bin", "out.bin", 2);
+    assert_int_equal(mkfifo(path_in("inner/pipe.bin"), 0600), 0);
+    assert_int_equal(import_info(path_in("inner/in.gltf")).triangles, 4);
+    assert_int_equal(import_info(path_in("inner/sub.gltf")).triangles, 4);
+    snprintf(outer, sizeof outer, "%s/out.gltf", inner);
+    expect_error(outer, NULL, "which does not lie in its folder");
+    snprintf(outer, sizeof outer, "%s/link.gltf", inner);
+    expect_error(outer, NULL, "which does not lie in its folder");
+    snprintf(outer, sizeof outer, "%s/pipe.gltf", inner);
+    expect_error(outer, NULL, "could not open");
+}
+
+/* A mesh of 100,000 triangles, used 100 times: 10 million in a file of a megabyte. */
+static void parts_used_again_and_again_are_counted_first(void **state)
+{
+    (void)state;
+    FILE *file = fopen(path_in("many.dae"), "w");
+    fputs("<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+          "version=\"1.4.1\"><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
+          "<float_array id=\"pa\" count=\"9\">0 0 0 1 0 0 0 1 0</float_array><technique_common>"
+          "<accessor source=\"#pa\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/>"
+          "<param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor>"
+          "</technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" "
+          "source=\"#p\"/></vertices><triangles count=\"100000\"><input semantic=\"VERTEX\" "
+          "source=\"#v\" offset=\"0\"/><p>",
+          file);
+    for (int t = 0; t < 100000; t++) fputs("0 1 2 ", file);
+    fputs("</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>"
+          "<visual_scene id=\"s\">",
+          file);
+    for (int n = 0; n < 100; n++) fputs("<node><instance_geometry url=\"#g\"/></node>", file);
+    fputs(
+        "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene>"
+        "</COLLADA>",
+        file);
+    fclose(file);
+    expect_error(path_in("many.dae"), NULL, "it uses its parts so often");
+}
+
+static void numbers_that_the_importer_alters_are_refused(void **state)
+{
+    (void)state;
+    static const char start[] =
+        "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n";
+    static const char *const last[] = {"3 0 3 4\n", "3 0 3 999\n", ""};
+    for (int i = 0; i < 3; i++) {
+        char text[256];
+        snprintf(text, sizeof text, "%s%s", start, last[i]);
+        expect_error(write_text("last.off", text), NULL, "Export it again");
+    }
+    write_gltf("last.gltf", "last.bin", "last.bin", 9);
+    expect_error(path_in("last.gltf"), NULL, "out-of-range");
+    expect_error(write_text("last.ply",
+                            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                            "property float y\nproperty float z\nelement face 2\n"
+                            "property list uchar int vertex_indices\nend_header\n"
+                            "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+                 NULL, "fewer lines than its header says");
+}
+
+/* What the child is left: reading beneath the folder, but no writing, no other process, no code. */
+static int body_confined(void *argument, int reply)
+{
+    char inside[300];
+    snprintf(inside, sizeof inside, "%s/inside", (const char *)argument);
+    SmConfined confined = sm_confine(argument, inside);
+    int reading = open(inside, O_RDONLY), writing = open(inside, O_WRONLY);
+    int other = open("/etc/passwd", O_RDONLY), network = socket(AF_INET, SOCK_STREAM, 0);
+    bool killed = kill(getppid(), 0) == 0;
+    bool code =
+        mmap(NULL, 4096, PROT_READ | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) != MAP_FAILED;
+    char found[8] = {confined.calls, confined.files, reading >= 0, writing >= 0,
+                     other >= 0,     network >= 0,   killed,       code};
+    return !sm_child_write(reply, found, sizeof found);
+}
+
+static void a_confined_child_can_only_read(void **state)
+{
+    (void)state;
+    write_text("inside", "text");
+    SmChildLimits limits = {20, 256};
+    SmChildResult result = sm_child_run(body_confined, folder, &limits);
+    assert_int_equal(result.end, SM_CHILD_REPLIED);
+    assert_int_equal(result.size, 8);
+    bool calls = result.reply[0], files = result.reply[1];
+    if (!calls) print_message("system calls are not filtered here\n");
+    if (!files) print_message("no Landlock here\n");
+    assert_true(result.reply[2]);
+    if (calls || files) assert_false(result.reply[3]);
+    if (files) assert_false(result.reply[4]);
+    for (int i = 5; i < 8 && calls; i++) assert_false(result.reply[i]);
+    free(result.reply);
 }
 
 static int body_echo(void *argument, int reply)
@@ -416,6 +548,10 @@ int main(void)
         cmocka_unit_test(test_node_transforms),
         cmocka_unit_test(test_unusable_files),
         cmocka_unit_test(test_truncated),
+        cmocka_unit_test(no_file_beyond_the_folder_is_read),
+        cmocka_unit_test(parts_used_again_and_again_are_counted_first),
+        cmocka_unit_test(numbers_that_the_importer_alters_are_refused),
+        cmocka_unit_test(a_confined_child_can_only_read),
         cmocka_unit_test(test_child_ends),
         cmocka_unit_test(test_child_limits),
         cmocka_unit_test(test_child_without_memory),
