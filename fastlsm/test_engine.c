@@ -230,11 +230,11 @@ static void test_instances_alone(void **state)
 {
     (void)state;
     unsigned seed = 12;
-    for (int trial = 0; trial < (TEST_FIGURES ? 48 : 12); trial++) {
+    for (int trial = 0; trial < (TEST_FIGURES ? 24 : 12); trial++) {
         Body body;
         int precision = trial % 2, w = 1 + trial % 5;
         const SmEngineType *type = engines[precision];
-        body_random(&seed, trial % 6, w > 3 ? 14 : 22, &body);
+        body_random(&seed, trial % 6, w > 3 ? 12 : 20, &body);
         SmEngineParams params = {.w = w,
                                  .h = 0.01,
                                  .damping = trial % 3 * 0.15,
