@@ -171,8 +171,9 @@ static SmCode verdict(const BenchSweep *sweep, SmError *error)
         if (!sweep->point[i].valid) invalid++, first = &sweep->point[i];
     if (!first) return SM_OK;
     return sm_fail(error, SM_INVALID,
-                   "%ld of %ld points are INVALID, the first %s with w %g, epsilon %g: %s", invalid,
-                   sweep->count, first->engine, first->w, first->epsilon, first->reason);
+                   "%ld of %ld points are INVALID, the first %s with w %g %s, epsilon %g: %s",
+                   invalid, sweep->count, first->engine, first->w, sweep->plan.width,
+                   first->epsilon, first->reason);
 }
 
 static SmCode show(const Options *options, BenchSweep *sweep, SmError *error)

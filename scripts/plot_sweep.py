@@ -26,7 +26,12 @@ def short(value):
     return f"{value:.2g}" if value < 100 else f"{value:.0f}"
 
 
-def heat_map(axes, point, values, title, logarithmic):
+def unit_of_w(plan):
+    """A lattice's cells are alike: of it both are cells."""
+    return "w, edges of each node's cell" if plan["width"] == "edges" else "w, finest cells"
+
+
+def heat_map(axes, plan, point, values, title, logarithmic):
     tree = point["engine"] == OCTREE
     ws, epsilons = numpy.unique(point["w"]), numpy.unique(point["epsilon"][tree])
     has_lattice = not tree.all()
@@ -53,7 +58,7 @@ def heat_map(axes, point, values, title, logarithmic):
     if has_lattice:
         axes.axvline(0.5, color="white", linewidth=2)
     axes.set_xlabel("epsilon")
-    axes.set_ylabel("w")
+    axes.set_ylabel(unit_of_w(plan))
     axes.set_title(title, fontsize=9)
 
 
@@ -105,7 +110,7 @@ def front(axes, plan, point):
     axes.set_xscale("log")
     axes.set_ylim(bottom=-0.03 * max(off[shown].max(), 1e-6))
     axes.legend(fontsize=7)
-    axes.figure.colorbar(dots, ax=axes, pad=0.02, label="w")
+    axes.figure.colorbar(dots, ax=axes, pad=0.02, label=unit_of_w(plan))
     some = best[:: max(1, len(best) // 5)]
     name_some(axes, [f"w {point['w'][i]:g}" + (f", {point['epsilon'][i]:g}" if point["engine"][i] == OCTREE else "")
                      for i in some], numpy.c_[cost, off][some], numpy.c_[cost, off][shown])
@@ -120,10 +125,9 @@ def main():
             (axes[0][1], 100 * point["path_rms"], "path off: surface from full resolution, % of size, rms", False),
             (axes[1][0], point["frequency"], "first frequency of the regular beam, Hz", True))
     for place, values, title, logarithmic in maps:
-        heat_map(place, point, values, title, logarithmic)
+        heat_map(place, plan, point, values, title, logarithmic)
     front(axes[1][1], plan, point)
-    figure.suptitle(f"{plan['scene']}: {len(point['w'])} of {plan['points']} points; an octree's w in {plan['width']}, "
-                    "a lattice's in cells", fontsize=10)
+    figure.suptitle(f"{plan['scene']}: {len(point['w'])} of {plan['points']} points", fontsize=10)
     write(figure, arguments.output, arguments.overwrite)
 
 

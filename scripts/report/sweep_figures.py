@@ -42,7 +42,7 @@ def heat_map(source, name, factor, file_name, title, logarithmic, caption):
         return None
     figure, axes = canvas(7.2, 1.3 + 0.3 * len(np.unique(point["w"])))
     axes.grid(visible=False)
-    plot_sweep.heat_map(axes, point, values, "", logarithmic)
+    plot_sweep.heat_map(axes, source.plan, point, values, "", logarithmic)
     least, most = known[np.argmin(values[known])], known[np.argmax(values[known])]
     words = (f"Heat map over w and epsilon of {len(known)} points: from {number(values[least])} at {where(point, least)} "
              f"to {number(values[most])} at {where(point, most)}.")
@@ -59,8 +59,8 @@ def front(source):
     words = "Points of the front, cheapest first: " + "; ".join(
         f"{where(point, i)}: {number(point['total_ms'][i])} ms, {number(100 * point['path_rms'][i])}% off" for i in best)
     return Figure(f"sweep-{source.plan['scene']}-front", f"{source.plan['scene']}: cost against deviation",
-                  "Each point is an engine, a w and an epsilon; of one that is ringed no other is as near and cheaper "
-                  "beyond the spread of its repeats.",
+                  f"Each point is an engine, a {plot_sweep.unit_of_w(source.plan)}, and an epsilon; of one that is ringed "
+                  "no other is as near and cheaper beyond the spread of its repeats.",
                   words + ".", ["engine", "w", "epsilon", "total_ms", "path_rms", "front"],
                   [line[:3] + [float(point["total_ms"][i]), float(point["path_rms"][i]), int(point["front"][i])]
                    for i, line in enumerate(listed(point, point["total_ms"]))]).draw(figure)
