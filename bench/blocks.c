@@ -3,46 +3,113 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "moment.h"
 #include "spread.h"
 
 typedef struct {
     BenchTimed timed;
+    int threads;
     int steps;    /* in a segment */
     int segments; /* in a block */
+    int chunk;    /* steps that are timed together: as many as fill chunk_seconds */
 } Blocks;
 
-/* Runs a segment's steps; seconds that they took. Adds to `stage` unless NULL. */
-static double run_segment(Blocks *blocks, int steps, double stage[SM_STAGES])
+/* Long beside reading the clocks, and short beside the turns that a busy machine's programs take:
+ * between them is time that nobody disturbs. A team's clocks are slower. */
+static const double chunk_seconds = 0.0002, team_chunk_seconds = 0.001;
+
+/* What steps took. */
+typedef struct {
+    double seconds, stage[SM_STAGES];
+    double steps;
+} Sum;
+
+/* What has been timed: all, and what nobody disturbed. */
+typedef struct {
+    Sum all, good;
+    double lost; /* seconds of the wall that others took */
+} Tally;
+
+static void add(Sum *sum, int steps, double seconds, const SmLaps *laps)
 {
-    blocks->timed.restore(blocks->timed.subject);
-    blocks->timed.step(blocks->timed.subject, NULL);
-    SmLaps laps;
-    double start = sm_now();
-    if (stage) sm_laps_start(&laps);
-    for (int i = 0; i < steps; i++) blocks->timed.step(blocks->timed.subject, stage ? &laps : NULL);
-    double seconds = sm_now() - start;
-    for (int s = 0; stage && s < SM_STAGES; s++) stage[s] += laps.seconds[s];
-    return seconds;
+    sum->steps += steps;
+    sum->seconds += seconds;
+    for (int s = 0; laps && s < SM_STAGES; s++) sum->stage[s] += laps->seconds[s];
 }
 
-/* Seconds a step of one block; fills stage seconds a step unless NULL. */
-static double run_block(Blocks *blocks, double stage[SM_STAGES])
+/* Times so many steps; false: they were disturbed. After a disturbance (`cold`) caches hold other
+ * things, and the steps do not count either. */
+static bool run_chunk(Blocks *blocks, int steps, bool clocks, bool cold, Tally *tally)
 {
-    double seconds = 0, steps = (double)blocks->steps * blocks->segments;
-    for (int i = 0; i < blocks->segments; i++) seconds += run_segment(blocks, blocks->steps, stage);
-    for (int s = 0; stage && s < SM_STAGES; s++) stage[s] /= steps;
-    return seconds / steps;
+    SmLaps laps;
+    BenchMoment start = bench_moment_start(blocks->threads);
+    if (clocks) sm_laps_start(&laps);
+    for (int i = 0; i < steps; i++)
+        blocks->timed.step(blocks->timed.subject, clocks ? &laps : NULL);
+    BenchMoment end = bench_moment_end(blocks->threads);
+    double seconds = end.wall - start.wall, lost = bench_moment_lost(&start, &end);
+    bool good = lost <= BENCH_LOST_LIMIT;
+    add(&tally->all, steps, seconds, clocks ? &laps : NULL);
+    if (good && !cold) add(&tally->good, steps, seconds, clocks ? &laps : NULL);
+    tally->lost += lost * seconds;
+    return good;
+}
+
+static void run_segment(Blocks *blocks, int steps, bool clocks, Tally *tally)
+{
+    bool cold = false;
+    blocks->timed.restore(blocks->timed.subject);
+    blocks->timed.step(blocks->timed.subject, NULL);
+    for (int done = 0; done < steps; done += blocks->chunk) {
+        int left = steps - done;
+        cold = !run_chunk(blocks, left < blocks->chunk ? left : blocks->chunk, clocks, cold, tally);
+    }
+}
+
+/* One block, and more segments while less than half of it was undisturbed, up to as many again.
+ * False: still less than half; then all of it counts. Adds what was lost to `tally`. */
+static bool run_block(Blocks *blocks, double *total, double stage[SM_STAGES], Tally *tally)
+{
+    Tally block = {0};
+    double half = 0.5 * blocks->steps * blocks->segments;
+    int most = 3 * blocks->segments;
+    for (int i = 0; i < most && (i < blocks->segments || block.good.steps < half); i++)
+        run_segment(blocks, blocks->steps, stage != NULL, &block);
+    bool good = block.good.steps >= half;
+    const Sum *sum = good ? &block.good : &block.all;
+    if (total) *total = sum->seconds / sum->steps;
+    for (int s = 0; stage && s < SM_STAGES; s++) stage[s] = sum->stage[s] / sum->steps;
+    tally->lost += block.lost;
+    tally->all.seconds += block.all.seconds;
+    return good;
 }
 
 /* Warms up and finds how many steps and segments fill a block. */
 static void size_blocks(Blocks *blocks, double block_seconds)
 {
-    double step = run_segment(blocks, 1, NULL);
-    for (int i = 0; i < 3; i++) step = fmin(step, run_segment(blocks, 2, NULL) / 2);
+    double step = INFINITY, chunk = blocks->threads == 1 ? chunk_seconds : team_chunk_seconds;
+    for (int i = 0; i < 4; i++) {
+        Tally tally = {0};
+        run_segment(blocks, i ? 2 : 1, false, &tally);
+        step = fmin(step, tally.all.seconds / tally.all.steps);
+    }
     double wanted = fmin(fmax(ceil(block_seconds / step), 1), 1e7);
     blocks->steps = (int)fmin(wanted, BENCH_SEGMENT_STEPS);
     blocks->segments = (int)ceil(wanted / blocks->steps);
-    run_block(blocks, NULL);
+    blocks->chunk = (int)fmin(fmax(ceil(chunk / step), 1), blocks->steps);
+}
+
+/* Both blocks of a repeat, up to three times while they are disturbed. */
+static bool run_repeat(Blocks *blocks, int r, int tries, BenchRow *row, Tally *tally)
+{
+    for (; tries > 0; tries--) {
+        bool good = true;
+        if (r % 2) good &= run_block(blocks, NULL, row->stage[r], tally);
+        good &= run_block(blocks, &row->total[r], NULL, tally);
+        if (r % 2 == 0) good &= run_block(blocks, NULL, row->stage[r], tally);
+        if (good) return true;
+    }
+    return false;
 }
 
 /* Medians, quartiles and shares from the repeats' samples. */
@@ -75,20 +142,35 @@ static void summarise(BenchRow *row)
     free(sample);
 }
 
+/* A row of which others took more than a quarter of the samples has no times. */
+static void find_busy(BenchRow *row, int disturbed, const Tally *tally, double stolen)
+{
+    row->lost_percent = 100 * fmin(1, (tally->lost + stolen) / tally->all.seconds);
+    row->load = bench_moment_load();
+    row->busy = 4 * disturbed > row->repeats || stolen > 0.1 * tally->all.seconds;
+    if (!row->busy) return;
+    row->total_ms = row->total_low_ms = row->total_high_ms = NAN;
+    row->fps = row->ns_per_particle_step = row->instruments_percent = NAN;
+    for (int s = 0; s < SM_STAGES; s++) row->stage_ms[s] = NAN;
+}
+
 void bench_time_blocks(const BenchTimed *timed, const BenchMeasureParams *params, BenchRow *row)
 {
-    Blocks blocks = {.timed = *timed};
+    Blocks blocks = {.timed = *timed, .threads = params->threads, .chunk = 1};
+    Tally tally = {0};
+    int disturbed = 0;
     size_blocks(&blocks, params->block_seconds > 0 ? params->block_seconds : 0.02);
     row->repeats = params->repeats > 0 ? params->repeats : 15;
     row->steps = blocks.steps * blocks.segments;
     row->total = sm_alloc((size_t)row->repeats, sizeof *row->total);
     row->stage = sm_alloc((size_t)row->repeats, sizeof *row->stage);
+    run_block(&blocks, NULL, NULL, &(Tally){0});
+    double stolen = bench_moment_stolen();
     for (int r = 0; r < row->repeats; r++) {
-        if (r % 2) run_block(&blocks, row->stage[r]);
-        row->total[r] = run_block(&blocks, NULL);
-        if (r % 2 == 0) run_block(&blocks, row->stage[r]);
+        disturbed += !run_repeat(&blocks, r, 2 * disturbed > r ? 1 : 3, row, &tally);
         if (params->progress)
             bench_progress_show(params->progress, row->scene, (r + 1.0) / row->repeats);
     }
     summarise(row);
+    find_busy(row, disturbed, &tally, bench_moment_stolen() - stolen);
 }

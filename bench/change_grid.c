@@ -54,9 +54,10 @@ static void measured_line(const BenchRow *row, BenchGridLine *line)
     snprintf((*line)[ADDED], BENCH_GRID_TEXT, "%ld", c->most_added);
     count_text((double)c->first_triangles, (double)c->last_triangles, (*line)[TRIANGLES]);
     snprintf((*line)[PIECES], BENCH_GRID_TEXT, "%ld", c->pieces);
-    strcpy((*line)[VERDICT], row->valid ? "VALID" : "INVALID");
-    for (int column = SIMULATION; column <= SURFACE; column++) strcpy((*line)[column], "INVALID");
-    if (!row->valid) return;
+    const char *mark = bench_row_mark(row);
+    strcpy((*line)[VERDICT], mark);
+    for (int column = SIMULATION; column <= SURFACE; column++) strcpy((*line)[column], mark);
+    if (!bench_row_timed(row)) return;
     pair_text(c->first_ms, c->last_ms, " -> ", false, (*line)[SIMULATION]);
     pair_text(c->change_ms, c->change_most_ms, " to ", false, (*line)[RESAMPLING]);
     bench_grid_number(c->follow_ms, (*line)[FOLLOWING]);

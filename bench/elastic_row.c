@@ -151,11 +151,12 @@ static void measured_line(const BenchRow *row, BenchGridForm form, BenchGridLine
     snprintf((*line)[NODES], BENCH_GRID_TEXT, "%ld", e->nodes);
     snprintf((*line)[MODES], BENCH_GRID_TEXT, "%ld", e->modes);
     snprintf((*line)[SAMPLES], BENCH_GRID_TEXT, "%d", row->repeats);
-    strcpy((*line)[VERDICT], row->valid ? "VALID" : "INVALID");
-    strcpy((*line)[QUARTILES], "INVALID");
+    const char *mark = bench_row_mark(row);
+    strcpy((*line)[VERDICT], mark);
+    strcpy((*line)[QUARTILES], mark);
     for (int column = MATRICES; column <= FASTER; column++)
-        strcpy((*line)[column], form == BENCH_GRID_PLAIN && column < FRAME ? "-" : "INVALID");
-    if (!row->valid) return;
+        strcpy((*line)[column], form == BENCH_GRID_PLAIN && column < FRAME ? "-" : mark);
+    if (!bench_row_timed(row)) return;
     bench_grid_number(e->matrix_seconds, (*line)[MATRICES]);
     bench_grid_number(e->mode_seconds, (*line)[MODE_TIME]);
     part_text(row->stage_ms[SM_SHAPE_MATCHING], row->total_ms, form, (*line)[MOTION]);

@@ -11,11 +11,13 @@
 #include "costs.h"
 #include "deform.h"
 #include "measure.h"
+#include "moment.h"
 #include "scene_field.h"
 
 /* What an experiment takes beside its name, and who runs it. */
 typedef struct {
     const char *name;
+    bool timed; /* on one thread */
     bool scene, engine, field, without, summation, layout, matching, w, n;
     bool masses, symmetry, weighting;
     const char *fields; /* that there are, separated by |; NULL: scene_field.h's */
@@ -30,15 +32,21 @@ static const Kind kinds[] = {
                          .field = true,
                          .without = true,
                          .run = bench_scene_field_measure},
-    [BENCH_TRY_SUMS] =
-        {.name = "sums", .summation = true, .layout = true, .w = true, .run = bench_costs_sums},
+    [BENCH_TRY_SUMS] = {.name = "sums",
+                        .timed = true,
+                        .summation = true,
+                        .layout = true,
+                        .w = true,
+                        .run = bench_costs_sums},
     [BENCH_TRY_SIZE] = {.name = "size",
+                        .timed = true,
                         .engine = true,
                         .field = true,
                         .n = true,
                         .fields = "|step|sums",
                         .run = bench_costs_size},
     [BENCH_TRY_POLAR] = {.name = "polar",
+                         .timed = true,
                          .field = true,
                          .fields = BENCH_POLAR_FIELDS,
                          .run = bench_costs_polar},
@@ -50,6 +58,7 @@ static const Kind kinds[] = {
                             .run = bench_deform_blending},
     [BENCH_TRY_SAG] = {.name = "sag", .scene = true, .w = true, .run = bench_deform_sag},
     [BENCH_TRY_RESAMPLING] = {.name = "resampling",
+                              .timed = true,
                               .scene = true,
                               .field = true,
                               .fields = "distance-share",
@@ -262,6 +271,19 @@ void bench_lab_keep(BenchLab *lab, const BenchCurve *curve)
     lab->curve[lab->curves++] = *curve;
 }
 
+/* Of times that were taken from `start` on: are they of this program alone? The low end of them
+ * stands a quarter of the time lost. Counts of sweeps stand all. */
+static void check_busy(const BenchMeasure *measure, const BenchMoment *start, BenchCurve *curve)
+{
+    BenchMoment end = bench_moment_end(1);
+    double lost = bench_moment_lost(start, &end);
+    if (!kinds[measure->experiment].timed || strstr(measure->field, "sweeps") || lost <= 0.25)
+        return;
+    curve->busy = curve->valid;
+    bench_curve_fail(curve, "others took %.0f%% of its processor (load average %.1f)", 100 * lost,
+                     bench_moment_load());
+}
+
 int bench_experiment(BenchLab *lab, const BenchMeasure *measure)
 {
     char name[BENCH_CURVE_NAME];
@@ -270,7 +292,9 @@ int bench_experiment(BenchLab *lab, const BenchMeasure *measure)
         if (!strcmp(lab->curve[c].name, name)) return c;
     BenchCurve curve;
     bench_curve_begin(&curve, "", "");
+    BenchMoment start = bench_moment_start(1);
     kinds[measure->experiment].run(lab, measure, &curve);
+    check_busy(measure, &start, &curve);
     strcpy(curve.name, name);
     for (int p = 0; p < curve.points; p++)
         if (!isfinite(curve.y[p])) bench_curve_fail(&curve, "point %d is not a number", p + 1);

@@ -98,6 +98,7 @@ typedef struct {
     double x[BENCH_CURVE_POINTS], y[BENCH_CURVE_POINTS];
     double low[BENCH_CURVE_POINTS], high[BENCH_CURVE_POINTS]; /* y's confidence interval */
     bool valid;
+    bool busy;        /* not valid because others took the processors: nothing is wrong */
     char reason[192]; /* why not valid */
     int row;          /* of the lab's rows that it is from; -1: none */
 } BenchCurve;

@@ -18,6 +18,18 @@ static const RefPaperRow *paper_of(const BenchRow *row)
 
 /* ---- one line a row */
 
+/* What others took, where it is worth a word. */
+static void print_lost(FILE *file, const BenchRow *row, const char *before)
+{
+    if (row->busy)
+        fprintf(file,
+                "%sBUSY: other programs took %.0f%% of its processors (load average %.1f): measure "
+                "again when they are done",
+                before, row->lost_percent, row->load);
+    else if (row->lost_percent >= 5)
+        fprintf(file, "%s%.0f%% lost to other programs, left out", before, row->lost_percent);
+}
+
 static void brief_row(FILE *file, const BenchRow *row, int width)
 {
     char range[BENCH_GRID_TEXT];
@@ -32,6 +44,11 @@ static void brief_row(FILE *file, const BenchRow *row, int width)
         fprintf(file, "goals %.1e, momentum %.0e%s", row->goal_error, row->momentum_error,
                 row->plain ? " plain" : "");
     if (row->left_out) fprintf(file, ", %ld left out", row->left_out);
+    print_lost(file, row, "; ");
+    if (row->busy) {
+        fputc('\n', file);
+        return;
+    }
     bench_grid_range(row->total_low_ms, row->total_high_ms, range);
     fprintf(file, "; %s ms\n", range);
 }
@@ -92,11 +109,17 @@ static void print_stages(FILE *file, const BenchRow *row)
 static void print_check(FILE *file, const BenchRow *row)
 {
     fprintf(file, "  %s, %s in %s precision: %s: ", row->scene, row->engine, row->precision,
-            row->valid ? "VALID" : "INVALID");
+            bench_row_mark(row));
     if (!row->valid) {
         fprintf(file, "%s\n", row->reason);
         return;
     }
+    print_lost(file, row, "");
+    if (row->busy) {
+        fprintf(file, ";\n    %s\n", row->found);
+        return;
+    }
+    if (row->lost_percent >= 5) fputs("; ", file);
     fprintf(
         file,
         "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d step%s; stage clocks cost %.1f%%, "
@@ -140,7 +163,7 @@ static void print_octree(FILE *file, const BenchRow *row)
     fputs(";\n    the body ", file);
     bench_tree_row_body(file, row);
     fputc('\n', file);
-    if (row->valid) print_groups(file, row);
+    if (bench_row_timed(row)) print_groups(file, row);
 }
 
 /* How many times as fast as a lattice an octree of the same body is, like with like; the paper's 88

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/hash.h"
 #include "../fastlsm/fastlsm.h"
+#include "../lib/hash.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchPlan, kind, member)
 

@@ -14,7 +14,7 @@ typedef struct {
     char engine[12];    /* "fastlsm" or "octree" */
     double w, epsilon;  /* of a lattice epsilon is 0 */
     bool valid;         /* all checks against brute force passed; otherwise all times are NaN */
-    char reason[160];   /* why not */
+    char reason[160];   /* why not; of a valid one: why it is BUSY, and has no times */
     long particles;     /* or nodes */
     long regions;       /* unique ones */
     double width_cells; /* half-width with which a lattice's regions hold as much (gap.h) */

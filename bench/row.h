@@ -38,12 +38,15 @@ typedef struct {
     double epsilon, h, cell, damping;
     int threads;
     bool valid;
+    bool busy;             /* others took the processors: no times but the samples, NaN */
     char reason[160];      /* why not valid */
     char found[448];       /* what the checks found, for people (check.h) */
     double goal_error;     /* largest deviation of g from brute force, in cells */
     double momentum_error; /* relative; no ground for invalidity where `plain` */
     double goal_tolerance;
     long left_out; /* of a check (check.h): particles whose rotation or inertia is not resolved */
+    double lost_percent; /* of the time that the samples took, taken by others (moment.h) */
+    double load;         /* load average when it was timed */
     int repeats;
     double *total;              /* [repeats] seconds a step, not instrumented */
     double (*stage)[SM_STAGES]; /* [repeats] seconds a step, instrumented, interleaved */
@@ -74,5 +77,16 @@ typedef struct {
     BenchElasticRow elastic;
     unsigned long long input_hash; /* FNV-1a of the mesh's coordinates and indices */
 } BenchRow;
+
+/* What stands for the check, and for the times that there are not. */
+static inline const char *bench_row_mark(const BenchRow *row)
+{
+    return !row->valid ? "INVALID" : row->busy ? "BUSY" : "VALID";
+}
+
+static inline bool bench_row_timed(const BenchRow *row)
+{
+    return row->valid && !row->busy;
+}
 
 #endif

@@ -133,6 +133,15 @@ static void fill_curve(const BenchRow *row, int steps_per_frame, const char *nam
         bench_curve_fail(curve, "%s is INVALID: %s", row->scene, row->reason);
         return;
     }
+    size_t length = strlen(name);
+    bool time = field->kind == MADE ? strcmp(name, "growth_percent") != 0
+                                    : length > 3 && !strcmp(name + length - 3, "_ms");
+    if (time && row->busy) {
+        curve->busy = true;
+        bench_curve_fail(curve, "others took %.0f%% of its processors (load average %.1f)",
+                         row->lost_percent, row->load);
+        return;
+    }
     if (field->kind == MADE) {
         add_made(row, steps_per_frame, name, curve);
         return;

@@ -91,11 +91,12 @@ static void measured_line(const BenchRow *row, BenchGridForm form, Line *line)
     snprintf(line->field[W], FIELD_TEXT, row->w ? "%d" : "-", row->w);
     bench_grid_number(bench_row_of_octree(row) ? row->summation_nodes : NAN, line->field[SUMS]);
     snprintf(line->field[SAMPLES], FIELD_TEXT, "%d", row->repeats);
-    strcpy(line->field[VERDICT], row->valid ? "VALID" : "INVALID");
-    strcpy(line->field[QUARTILES], "INVALID");
-    for (int f = STAGES; f < SUMS && !row->valid; f++)
-        strcpy(line->field[f], form == BENCH_GRID_PLAIN && f < TOTAL ? "-" : "INVALID");
-    if (!row->valid) return;
+    const char *mark = bench_row_mark(row);
+    strcpy(line->field[VERDICT], mark);
+    strcpy(line->field[QUARTILES], mark);
+    for (int f = STAGES; f < SUMS && !bench_row_timed(row); f++)
+        strcpy(line->field[f], form == BENCH_GRID_PLAIN && f < TOTAL ? "-" : mark);
+    if (!bench_row_timed(row)) return;
     for (int s = 0; s < SM_STAGES; s++)
         stage_text(row->stage_ms[s], 100 * row->stage_ms[s] / row->total_ms,
                    form == BENCH_GRID_PLAIN, line->field[STAGES + s]);

@@ -66,10 +66,10 @@ static void add_line(BenchGrid *grid, const BenchPoint *p)
         snprintf((*line)[c++], BENCH_GRID_TEXT, "%ld", p->particles);
     number(p->width_cells, (*line)[c++]);
     number(p->summation_nodes, (*line)[c++]);
-    if (p->valid)
-        number(p->total_ms, (*line)[c++]);
+    if (!p->valid || p->reason[0])
+        strcpy((*line)[c++], p->valid ? "BUSY" : "INVALID");
     else
-        strcpy((*line)[c++], "INVALID");
+        number(p->total_ms, (*line)[c++]);
     stages(p, (*line)[c++]);
     number(1e3 * p->build_seconds, (*line)[c++]);
     number(1e-3 * (double)p->bytes, (*line)[c++]);
@@ -99,7 +99,7 @@ static void write_reasons(FILE *file, const BenchSweep *sweep)
     int count = 0;
     for (long i = 0; i < sweep->count; i++) {
         const BenchPoint *p = &sweep->point[i];
-        say_once(file, p, " is INVALID", p->reason, said, &count);
+        say_once(file, p, p->valid ? " is BUSY" : " is INVALID", p->reason, said, &count);
         say_once(file, p, ", goals", p->goal_why, said, &count);
         say_once(file, p, ", beam", p->beam_why, said, &count);
         say_once(file, p, ", path", p->path_why, said, &count);

@@ -128,7 +128,11 @@ static void keep_row(const BenchRow *row, BenchPoint *point)
     point->most_summation = row->most_summation;
     point->parts = row->parts;
     point->goal_error = row->goal_error;
-    if (!row->valid) return; /* no times of what is not right */
+    if (row->valid && row->busy)
+        snprintf(point->reason, sizeof point->reason,
+                 "others took %.0f%% of its processors (load average %.1f)", row->lost_percent,
+                 row->load);
+    if (!bench_row_timed(row)) return; /* no times of what is not right, or was disturbed */
     point->total_ms = row->total_ms;
     point->total_low_ms = row->total_low_ms;
     point->total_high_ms = row->total_high_ms;

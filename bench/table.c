@@ -7,7 +7,7 @@
 
 const char *const bench_format_names[] = {"text", "markdown", "csv", "latex", "json", NULL};
 
-enum { COLUMNS = 35 };
+enum { COLUMNS = 38 };
 
 static const char *const column_names[COLUMNS] = {
     "paper",
@@ -44,6 +44,9 @@ static const char *const column_names[COLUMNS] = {
     "total_low_ms",
     "total_high_ms",
     "steps",
+    "busy",
+    "lost_percent",
+    "load",
     "samples_ms",
 };
 
@@ -60,7 +63,7 @@ typedef struct {
         TIME,
         SAMPLES,
         VALID
-    } kind; /* TIME, SAMPLES: not for invalid rows */
+    } kind; /* TIME, SAMPLES: not of rows that are INVALID or BUSY */
 } Cell;
 
 static void fill_cells(const BenchRow *row, Cell cell[COLUMNS])
@@ -97,17 +100,20 @@ static void fill_cells(const BenchRow *row, Cell cell[COLUMNS])
     *c++ = (Cell){.kind = TIME, .number = row->total_low_ms};
     *c++ = (Cell){.kind = TIME, .number = row->total_high_ms};
     *c++ = (Cell){.kind = WHOLE, .whole = row->steps};
+    *c++ = (Cell){.kind = WHOLE, .whole = row->busy};
+    *c++ = (Cell){.kind = NUMBER, .number = row->lost_percent};
+    *c++ = (Cell){.kind = NUMBER, .number = row->load};
     *c++ = (Cell){.kind = SAMPLES, .samples = row->total, .whole = row->total ? row->repeats : 0};
 }
 
-static void csv_cell(FILE *file, const Cell *cell, bool valid)
+static void csv_cell(FILE *file, const Cell *cell, const BenchRow *row)
 {
     if (cell->kind == TEXT)
         bench_csv_text(file, cell->text);
     else if (cell->kind == WHOLE)
         fprintf(file, "%ld", cell->whole);
-    else if (cell->kind == VALID || (cell->kind >= TIME && !valid))
-        fputs(valid ? "VALID" : "INVALID", file);
+    else if (cell->kind == VALID || (cell->kind >= TIME && !bench_row_timed(row)))
+        fputs(bench_row_mark(row), file);
     else if (cell->kind == SAMPLES)
         for (long i = 0; i < cell->whole; i++) {
             if (i) fputc(' ', file);
@@ -128,19 +134,20 @@ static void write_csv(BenchReport *report, int measured)
         fill_cells(row, cell);
         for (int c = 0; c < COLUMNS; c++) {
             if (c) fputc(',', file);
-            csv_cell(file, &cell[c], row->valid);
+            csv_cell(file, &cell[c], row);
         }
         fputc('\n', file);
     }
     fflush(file);
 }
 
-static json_t *json_cell(const Cell *cell, bool valid)
+static json_t *json_cell(const Cell *cell, const BenchRow *row)
 {
     if (cell->kind == TEXT) return bench_json_text(cell->text);
     if (cell->kind == WHOLE) return json_integer(cell->whole);
-    if (cell->kind == VALID) return json_boolean(valid);
-    if ((cell->kind >= TIME && !valid) || !isfinite(cell->number)) return json_null();
+    if (cell->kind == VALID) return json_boolean(row->valid);
+    if ((cell->kind >= TIME && !bench_row_timed(row)) || !isfinite(cell->number))
+        return json_null();
     if (cell->kind == SAMPLES) {
         json_t *list = json_array();
         for (long i = 0; i < cell->whole; i++)
@@ -159,7 +166,7 @@ static void write_json(const BenchReport *report)
         fill_cells(row, cell);
         json_t *object = json_object();
         for (int c = 0; c < COLUMNS; c++)
-            json_object_set_new(object, column_names[c], json_cell(&cell[c], row->valid));
+            json_object_set_new(object, column_names[c], json_cell(&cell[c], row));
         json_array_append_new(list, object);
     }
     json_t *root = json_object();

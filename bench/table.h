@@ -1,6 +1,7 @@
 /* table.h - measured rows as a table: for people (text, markdown, latex; report.h) and for
  * programs (csv, json), whose columns are a stable interface.
  *
+ * A row that others left no time has none: BUSY, null in JSON, whose "busy" is then 1.
  * An invalid row has no times in any format: INVALID stands there, null in JSON. */
 #ifndef BENCH_TABLE_H
 #define BENCH_TABLE_H

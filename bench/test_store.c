@@ -69,7 +69,7 @@ static void fill_row(BenchRow *row, int seed)
 static void every_member_is_stored(void **state)
 {
     (void)state;
-    enum { PADDING = 18 }; /* between members */
+    enum { PADDING = 17 }; /* between members */
     const BenchRow *row = NULL;
     int count;
     const BenchField *fields = bench_row_fields(&count);

@@ -18,7 +18,7 @@ static const char header[] =
     "damping_ms,other_ms,total_ms,ns_per_particle_step,paper_total_ms,ratio,valid,fps,"
     "speedup,summation_nodes,last_particles,frame_ms,last_frame_ms,resampling_ms,"
     "most_resampling_ms,splitting_ms,surface_ms,nodes,modes,matrices_s,modes_s,total_low_ms,"
-    "total_high_ms,steps,samples_ms\n";
+    "total_high_ms,steps,busy,lost_percent,load,samples_ms\n";
 
 static double seconds[] = {13e-6, 14e-6, 15e-6};
 
@@ -131,10 +131,10 @@ static void csv_is_the_stable_interface(void **state)
     char wanted[1024];
     snprintf(wanted, sizeof wanted, "%s%s%s", header,
              "fastlsm,penguin,fastlsm,150,130,2,0,0.002,0.003,0.004,0,0.005,0.014,93.25,0.28,20,"
-             "VALID,71428.5714,,,,,,,,,,,,,,0.013,0.015,64,0.013 0.014 0.015\n",
+             "VALID,71428.5714,,,,,,,,,,,,,,0.013,0.015,64,0,0,0,0.013 0.014 0.015\n",
              ",\"a_b,\"\"c\"\"&50%|x\",fastlsm,150,130,2,0,INVALID,INVALID,INVALID,INVALID,INVALID,"
              "INVALID,INVALID,,INVALID,INVALID,INVALID,INVALID,,,INVALID,INVALID,INVALID,INVALID,"
-             "INVALID,INVALID,,,INVALID,INVALID,INVALID,INVALID,64,INVALID\n");
+             "INVALID,INVALID,,,INVALID,INVALID,INVALID,INVALID,64,0,0,0,INVALID\n");
     assert_string_equal(text, wanted);
     free(text);
 }

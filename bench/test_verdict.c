@@ -286,6 +286,26 @@ static void what_failed_its_check_says_nothing(void **state)
     assert_int_equal(finding.verdict, BENCH_INVALID);
 }
 
+static void times_that_others_took_are_not_judged(void **state)
+{
+    (void)state;
+    const double y[] = {100};
+    BenchClaim claim = claim_of(BENCH_IS_NEAR, 100, 0.1);
+    BenchCurve busy = curve_of(1, y), good = busy;
+    char text[64];
+    busy.busy = true;
+    bench_curve_fail(&busy, "others took it");
+    for (int over = 0; over < 2; over++) {
+        BenchFinding finding;
+        bench_verdict_find(&claim, over ? &good : &busy, over ? &busy : NULL, &finding);
+        assert_int_equal(finding.verdict, BENCH_TOO_BUSY);
+        assert_true(bench_verdict_all(&finding, 1));
+        assert_string_equal(finding.words, "BUSY: others took it");
+        bench_verdict_measured(&finding, sizeof text, text);
+        assert_string_equal(text, "BUSY");
+    }
+}
+
 static void exponents_gains_and_trends_are_of_curves(void **state)
 {
     (void)state;
@@ -399,6 +419,7 @@ int main(void)
         cmocka_unit_test(a_machines_speed_is_a_ratio),
         cmocka_unit_test(what_is_set_is_counted),
         cmocka_unit_test(what_failed_its_check_says_nothing),
+        cmocka_unit_test(times_that_others_took_are_not_judged),
         cmocka_unit_test(exponents_gains_and_trends_are_of_curves),
         cmocka_unit_test(one_curve_is_divided_by_another),
         cmocka_unit_test(lists_are_held_value_by_value),

@@ -11,7 +11,7 @@ const char *bench_verdict_name(BenchVerdict verdict)
 {
     static const char *const names[BENCH_VERDICTS] = {
         "reproduced", "undecided",  "not reproduced", "differs", "not comparable",
-        "as set",     "not as set", "measured",       "INVALID"};
+        "as set",     "not as set", "measured",       "BUSY",    "INVALID"};
     return names[verdict];
 }
 
@@ -22,7 +22,10 @@ static void divide(const BenchCurve *curve, const BenchCurve *over, BenchCurve *
 {
     *ratio = *curve;
     if (!over) return;
-    if (!over->valid) bench_curve_fail(ratio, "%.180s", over->reason);
+    if (!over->valid && ratio->valid) {
+        ratio->busy = over->busy;
+        bench_curve_fail(ratio, "%.180s", over->reason);
+    }
     if (over->points != curve->points)
         bench_curve_fail(ratio, "%d points cannot be divided by %d", curve->points, over->points);
     for (int p = 0; p < ratio->points && ratio->valid; p++) {
@@ -220,7 +223,7 @@ static void judge(BenchFinding *finding, const BenchCurve *curve)
 
 void bench_verdict_unset(const BenchCurve *curve, BenchFinding *finding)
 {
-    if (finding->verdict == BENCH_INVALID) return;
+    if (finding->verdict == BENCH_INVALID || finding->verdict == BENCH_TOO_BUSY) return;
     if (curve->valid && curve->points == 1) {
         finding->unset = curve->y[0];
         return;
@@ -242,9 +245,10 @@ void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const 
     if (ratio->valid)
         judge(finding, ratio);
     else {
-        finding->verdict = BENCH_INVALID;
+        finding->verdict = ratio->busy ? BENCH_TOO_BUSY : BENCH_INVALID;
         finding->count = 0;
-        snprintf(finding->words, sizeof finding->words, "INVALID: %s", ratio->reason);
+        snprintf(finding->words, sizeof finding->words, "%s: %s",
+                 bench_verdict_name(finding->verdict), ratio->reason);
     }
     free(ratio);
 }
@@ -292,8 +296,8 @@ void bench_verdict_measured(const BenchFinding *finding, size_t size, char *text
 {
     char value[64], low[32], high[32];
     const BenchClaim *claim = &finding->claim;
-    if (finding->verdict == BENCH_INVALID) {
-        snprintf(text, size, "INVALID");
+    if (finding->verdict == BENCH_INVALID || finding->verdict == BENCH_TOO_BUSY) {
+        snprintf(text, size, "%s", bench_verdict_name(finding->verdict));
         return;
     }
     double half = 0;

@@ -18,6 +18,7 @@
  * point: the estimates must, and a step whose intervals are apart the wrong way contradicts it.
  * That is of claims of the method. What the scene file sets is counted by the same tests and is as
  * set or not; of a machine's speed the ratio is given, and no band is held against it (claim.h).
+ * Times that other programs took too much of (moment.h) are BUSY and judge nothing.
  * What has no interval (counts) is either in the band or outside. Measured are the repeats of one
  * run: a machine that does other work throughout shifts all of them. */
 #ifndef BENCH_VERDICT_H
@@ -34,6 +35,7 @@ typedef enum {
     BENCH_AS_SET,     /* by construction, and the count is that */
     BENCH_NOT_AS_SET, /* it should have been */
     BENCH_TIMED,      /* a machine's speed: see `ratio` */
+    BENCH_TOO_BUSY,   /* others took the processors: it is not judged */
     BENCH_INVALID,    /* the measurement's check failed: it says nothing */
     BENCH_VERDICTS
 } BenchVerdict;
@@ -64,7 +66,7 @@ void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const 
 void bench_verdict_unset(const BenchCurve *curve, BenchFinding *finding);
 
 /* "reproduced", "undecided", "not reproduced", "differs", "not comparable", "as set", "not as set",
- * "measured", "INVALID". */
+ * "measured", "BUSY", "INVALID". */
 const char *bench_verdict_name(BenchVerdict verdict);
 
 /* Is nothing INVALID, nothing not reproduced that should be, and all that is set as set? What is

@@ -19,7 +19,8 @@ GROUPS = {
     "sag": ("Stiffness against w", "How deep the tip of a clamped beam hangs; bars are the extremes of the swing that is "
             "left.", ""),
 }
-CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "INVALID": "invalid"}
+CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "BUSY": "open",
+           "INVALID": "invalid"}
 
 
 def value_text(values):
