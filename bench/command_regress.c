@@ -55,7 +55,10 @@ static const struct argp_option option_list[] = {
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Compare this scene only; may be repeated (default: all of the file, or of the paper)", 1},
     {"rounds", KEY_ROUNDS, "N", 0,
-     "Rounds of two processes of each build and scene (default: 8, or 3 beside a file)", 2},
+     "Rounds of two processes of each build and scene (default: 10 or as many as the test needs, or "
+     "3 "
+     "beside a file)",
+     2},
     {"repeats", KEY_REPEATS, "N", 0,
      "Samples of every time in a process (default: 201; beside a file as there)", 2},
     {"block", KEY_BLOCK, "MS", 0,
@@ -120,9 +123,10 @@ static const char help[] =
     "quantile of its repeats, which other work on the machine hardly touches. A time is slower or "
     "faster where the ratio of lower quartiles is beyond the threshold, its 95% bootstrap interval "
     "does not hold 1, and Mann-Whitney's p, adjusted for all times that are compared, is below "
-    "0.05. The "
+    "0.01. The "
     "threshold is what a build differs from itself by between processes of the same rounds, and at "
-    "least 2%; beside a file, which cannot be run interleaved, it is wider, and at least 10%. "
+    "least 2%, of a stage also 0.5% of the step; beside a file, which cannot be run interleaved, "
+    "it is wider, and at least 10%. "
     "Scenes of a file are measured with the engine, precision and threads that it says.\v"
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
     " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; "
@@ -136,7 +140,7 @@ typedef struct {
     BenchProgress progress;
     BenchContests all;
     BenchTask *task; /* [tasks] */
-    int tasks;
+    int tasks, rounds;
     BenchRow *stored; /* rows of the file */
     int stored_count;
     BenchRevision revision;
@@ -222,6 +226,23 @@ static SmCode choose_tasks(Session *session, SmError *error)
     return SM_OK;
 }
 
+/* Refuses, before anything is built, what could find nothing. */
+static SmCode choose_rounds(Session *session, SmError *error)
+{
+    const Options *options = session->options;
+    int times = session->tasks * BENCH_TIMES, least = bench_compare_rounds(times);
+    session->rounds = options->rounds ? options->rounds : options->baseline ? 3 : 10;
+    if (options->baseline || session->rounds >= least) return SM_OK;
+    if (!options->rounds) {
+        session->rounds = least;
+        return SM_OK;
+    }
+    return sm_fail(error, SM_USAGE,
+                   "--rounds %d: so few cannot show a difference in one of %d times: take at least "
+                   "--rounds %d, or fewer scenes",
+                   options->rounds, times, least);
+}
+
 /* As --baseline's help says; the samples that tables takes otherwise are too few and too short. */
 #define STORE "shapebench tables --repeats 201 --block 0.5 -o FILE.h5"
 
@@ -235,11 +256,12 @@ static SmCode load_baseline(Session *session, const BenchMachine *here, SmError 
     SmCode code = bench_samples_load(path, &session->stored, &session->stored_count, there, error);
     if (code) return code;
     snprintf(session->found.baseline, sizeof session->found.baseline, "%.200s", path);
-    if (!there->cpu[0] || !strcmp(there->cpu, here->cpu)) return SM_OK;
+    char differs[160];
+    if (bench_machine_same(there, here, sizeof differs, differs)) return SM_OK;
     return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
-                   "no baseline: %.150s was measured on another machine (%.80s; this is %.80s): "
+                   "no baseline: %.150s was measured on another machine (%s): "
                    "store one here with " STORE,
-                   path, there->cpu, here->cpu);
+                   path, differs);
 }
 
 static SmCode build_revision(Session *session, SmError *error)
@@ -271,7 +293,7 @@ static SmCode measure(Session *session, SmError *error)
         .paper = paper_of(options),
         .task = session->task,
         .tasks = session->tasks,
-        .rounds = options->rounds,
+        .rounds = session->rounds,
         .seed = options->common.seed,
         .folder = session->folder,
         .progress = &session->progress};
@@ -307,7 +329,7 @@ static SmCode write_found(const Session *session, BenchDraft *draft, SmError *er
 static SmCode compare(Session *session, BenchDraft *draft, int *exit_code, SmError *error)
 {
     const Options *options = session->options;
-    BenchCompareParams params = {options->revision != NULL, options->rounds, options->threshold,
+    BenchCompareParams params = {options->revision != NULL, session->rounds, options->threshold,
                                  options->common.seed};
     BenchRegression *found = &session->found;
     double start = sm_now();
@@ -329,9 +351,10 @@ static SmCode run(Session *session, BenchDraft *draft, const BenchMachine *here,
                   SmError *error)
 {
     const Options *options = session->options;
-    SmCode code =
-        options->baseline ? load_baseline(session, here, error) : build_revision(session, error);
+    SmCode code = options->baseline ? load_baseline(session, here, error) : SM_OK;
     if (!code) code = choose_tasks(session, error);
+    if (!code) code = choose_rounds(session, error);
+    if (!code && options->revision) code = build_revision(session, error);
     return code ? code : compare(session, draft, exit_code, error);
 }
 
@@ -365,7 +388,6 @@ int bench_command_regress(int argc, char **argv)
     int exit_code = SM_OK;
     bench_options_parse(&argp, argc, argv, &options, &options.common);
     bench_machine_read(argc, argv, options.common.threads, &here);
-    if (!options.rounds) options.rounds = options.revision ? 8 : 3;
     Session *session = sm_alloc(1, sizeof *session);
     session->options = &options;
     snprintf(session->self, sizeof session->self, "/proc/%ld/exe", (long)getpid());

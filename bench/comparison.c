@@ -11,6 +11,10 @@
 
 static const double least_interleaved = 0.02, least_apart = 0.10;
 
+/* Where code lies in memory moves a stage by some percent whenever anything is changed; what that
+ * is of a step nobody needs to know. */
+static const double least_of_step = 0.005;
+
 const char *bench_comparison_name(BenchComparisonVerdict verdict)
 {
     static const char *const names[BENCH_COMPARISONS] = {
@@ -145,6 +149,9 @@ static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
     const BenchSide *side = result->contest->side;
     double noise = fmax(result->self[BENCH_OLD], result->self[BENCH_NEW]); /* NaN: the other one */
     double least = params->interleaved ? least_interleaved : least_apart;
+    double step = bench_quantile(side[BENCH_OLD].time[0], side[BENCH_OLD].count,
+                                 params->interleaved ? BENCH_LOW : 0.5);
+    least = fmax(least, least_of_step * 1e3 * step / result->ms[BENCH_OLD]);
     double limit = isnan(params->threshold) ? BENCH_NOISE_LIMIT : params->threshold;
     result->threshold = fmax(noise, isnan(params->threshold) ? least : params->threshold);
     bool few = params->interleaved ? finds_nothing(params->rounds, comparisons)
@@ -213,6 +220,13 @@ void bench_comparisons_free(BenchComparison *list, int count)
     free(list);
 }
 
+int bench_compare_rounds(int comparisons)
+{
+    int rounds = 1;
+    while (finds_nothing(rounds, comparisons)) rounds++;
+    return rounds;
+}
+
 int bench_comparisons_rounds(const BenchComparison *list, int count,
                              const BenchCompareParams *params)
 {
@@ -221,8 +235,7 @@ int bench_comparisons_rounds(const BenchComparison *list, int count,
         return rounds > BENCH_LEAST_PROCESSES / 2 ? rounds : BENCH_LEAST_PROCESSES / 2 + 1;
     for (int i = 0; i < count; i++)
         compared += list[i].verdict != BENCH_INCORRECT && list[i].verdict != BENCH_NO_BASELINE;
-    while (finds_nothing(rounds, compared)) rounds++;
-    return rounds;
+    return rounds > bench_compare_rounds(compared) ? rounds : bench_compare_rounds(compared);
 }
 
 int bench_comparisons_exit(const BenchComparison *list, int count)

@@ -3,11 +3,12 @@
  * A time is called slower or faster where all of this holds: the ratio of the lower quartiles over
  * processes (beside a file: medians) lies beyond the threshold; its 95% bootstrap interval does not
  * hold 1; and p of the Mann-Whitney test over the rounds' faster processes, adjusted by Holm for
- * all times of all scenes, is below 0.05. The threshold is what the same code differs from itself
- * by (statistic.h), and at least 2%, or 10% against a stored file, whose one process may have had a
- * slow second. Beside a file the test is over the repeats, which are not independent: there the
- * threshold decides, which takes one process of the file for a draw from as many as this build's
- * differ by. */
+ * all times of all scenes, is below 0.01: of a hundred runs without a difference one at most gives
+ * an alarm. The threshold is what the same code differs from itself
+ * by (statistic.h), and at least 2%, of a stage also what is 0.5% of the step, or 10% against a
+ * stored file, whose one process may have had a slow second. Beside a file the test is over the
+ * repeats, which are not independent: there the threshold decides, which takes one process of the
+ * file for a draw from as many as this build's differ by. */
 #ifndef BENCH_COMPARISON_H
 #define BENCH_COMPARISON_H
 
@@ -39,7 +40,7 @@ enum {
                                 * the test could find something */
 };
 #define BENCH_NOISE_LIMIT 0.10 /* too noisy beyond, where no threshold is given */
-#define BENCH_LEVEL       0.05
+#define BENCH_LEVEL       0.01 /* false alarms in all comparisons of a run together */
 #define BENCH_NOISE_LEVEL 0.01
 
 typedef struct {
@@ -60,6 +61,9 @@ typedef struct {
 int bench_compare(const BenchContests *all, const BenchCompareParams *params,
                   BenchComparison **list);
 void bench_comparisons_free(BenchComparison *list, int count);
+
+/* Interleaved rounds from which on the test can find a difference in one of so many times. */
+int bench_compare_rounds(int comparisons);
 
 /* The least rounds that would not be BENCH_TOO_FEW for as many comparisons. */
 int bench_comparisons_rounds(const BenchComparison *list, int count,

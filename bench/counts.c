@@ -12,10 +12,14 @@ enum { PATH = BENCH_DRAFT_PATH, WORDS = 32 };
 
 typedef struct {
     const char *name;
-    int few, more; /* steps of the two runs */
+    int few, least; /* steps of the shorter run, and at least as many again of the longer one */
 } Tool;
 
-static const Tool counter = {"perf_event", 20, 120}, callgrind = {"callgrind", 4, 12};
+static const Tool counter = {"perf_event", 20, 100}, callgrind = {"callgrind", 4, 8};
+
+/* Particles times steps that the runs differ by: some 10^8 instructions, beside which those of
+ * loading the program, which depend on its addresses, are nothing. */
+static const double particle_steps = 2e6, most_steps = 1e4;
 
 /* The line "... Collected : 123" of callgrind's; NaN: it has none. */
 static double read_collected(const char *log)
@@ -93,14 +97,16 @@ static SmCode count_run(const BenchRounds *rounds, const Tool *tool, const Bench
 
 /* Instructions a step; NaN where the tool has no counter here. */
 static SmCode count_step(const BenchRounds *rounds, const Tool *tool, const BenchTask *task,
-                         const char *program, double *count, SmError *error)
+                         const char *program, long particles, double *count, SmError *error)
 {
     double few, more;
+    double steps = fmin(particle_steps / (double)(particles > 0 ? particles : 1), most_steps);
+    int longer = tool->few + (int)fmax(steps, tool->least);
     *count = NAN;
     SmCode code = count_run(rounds, tool, task, program, tool->few, &few, error);
     if (code || isnan(few)) return code;
-    code = count_run(rounds, tool, task, program, tool->more, &more, error);
-    if (!code) *count = (more - few) / (tool->more - tool->few);
+    code = count_run(rounds, tool, task, program, longer, &more, error);
+    if (!code) *count = (more - few) / (longer - tool->few);
     return code;
 }
 
@@ -125,8 +131,8 @@ static SmCode count_contest(const BenchRounds *rounds, const Tool **tool, const 
         bool counted = true;
         SmCode code = SM_OK;
         for (int b = 0; b < BENCH_BUILDS && !code && counted; b++) {
-            code =
-                count_step(rounds, *tool, task, rounds->program[b], &side[b].instructions, error);
+            code = count_step(rounds, *tool, task, rounds->program[b], side[b].row.particles,
+                              &side[b].instructions, error);
             counted = !isnan(side[b].instructions);
         }
         if (code || counted || *tool == &callgrind) return code;

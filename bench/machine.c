@@ -20,12 +20,16 @@
 const BenchField *bench_machine_fields(int *count)
 {
     static const BenchField fields[] = {
-        FIELD(BENCH_TEXT, git_commit), FIELD(BENCH_BOOL, git_dirty), FIELD(BENCH_TEXT, version),
-        FIELD(BENCH_TEXT, compiler),   FIELD(BENCH_TEXT, flags),     FIELD(BENCH_TEXT, cpu),
-        FIELD(BENCH_LONG, l1_bytes),   FIELD(BENCH_LONG, l2_bytes),  FIELD(BENCH_LONG, l3_bytes),
-        FIELD(BENCH_INT, cores),       FIELD(BENCH_INT, threads),    FIELD(BENCH_TEXT, governor),
-        FIELD(BENCH_TEXT, kernel),     FIELD(BENCH_TEXT, libraries), FIELD(BENCH_TEXT, hostname),
-        FIELD(BENCH_TEXT, utc),        FIELD(BENCH_TEXT, command),
+        FIELD(BENCH_TEXT, git_commit), FIELD(BENCH_BOOL, git_dirty),
+        FIELD(BENCH_TEXT, version),    FIELD(BENCH_TEXT, compiler),
+        FIELD(BENCH_TEXT, flags),      FIELD(BENCH_TEXT, cpu),
+        FIELD(BENCH_TEXT, cpu_model),  FIELD(BENCH_TEXT, cpu_instructions),
+        FIELD(BENCH_LONG, l1_bytes),   FIELD(BENCH_LONG, l2_bytes),
+        FIELD(BENCH_LONG, l3_bytes),   FIELD(BENCH_INT, cores),
+        FIELD(BENCH_INT, threads),     FIELD(BENCH_TEXT, governor),
+        FIELD(BENCH_TEXT, kernel),     FIELD(BENCH_TEXT, libraries),
+        FIELD(BENCH_TEXT, hostname),   FIELD(BENCH_TEXT, utc),
+        FIELD(BENCH_TEXT, command),
     };
     *count = (int)(sizeof fields / sizeof fields[0]);
     return fields;
@@ -40,20 +44,84 @@ static void read_line(const char *path, size_t size, char *line)
     line[strcspn(line, "\n")] = '\0';
 }
 
-static void read_cpu(size_t size, char *cpu)
+/* Appends `words` to `text`, but only those that name instruction sets. */
+static void add_instructions(char *words, size_t size, char *text)
 {
-    snprintf(cpu, size, "unknown");
+    static const char *const sets[] = {"sse", "ssse", "avx", "fma", "f16c",
+                                       "bmi", "amx",  "sve", "sme", "asimd"};
+    size_t used = 0;
+    for (char *word; (word = strtok_r(words, " \t\n", &words)) && used < size;)
+        for (size_t s = 0; s < sizeof sets / sizeof *sets; s++)
+            if (!strncmp(word, sets[s], strlen(sets[s]))) {
+                used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", word);
+                break;
+            }
+}
+
+/* Of /proc/cpuinfo's first processor, on x86 and on ARM. */
+static void read_cpu(BenchMachine *machine)
+{
+    static const struct {
+        const char *key, *word; /* NULL: the value alone */
+    } parts[] = {
+        {"vendor_id", NULL},      {"cpu family", "family"},           {"model\t", "model"},
+        {"stepping", "stepping"}, {"CPU implementer", "implementer"}, {"CPU variant", "variant"},
+        {"CPU part", "part"},     {"CPU revision", "revision"}};
+    char line[8192], *model = machine->cpu_model;
+    size_t used = 0, room = sizeof machine->cpu_model;
     FILE *file = fopen("/proc/cpuinfo", "re");
-    if (!file) return;
-    char line[512];
-    while (fgets(line, sizeof line, file)) {
+    while (file && fgets(line, sizeof line, file) && line[0] != '\n') {
         char *value = strchr(line, ':');
-        if (strncmp(line, "model name", 10) != 0 || !value) continue;
+        if (!value) continue;
+        value += 1 + strspn(value + 1, " ");
         value[strcspn(value, "\n")] = '\0';
-        snprintf(cpu, size, "%.*s", (int)size - 1, value + strspn(value, ": "));
-        break;
+        if (!strncmp(line, "model name", 10))
+            snprintf(machine->cpu, sizeof machine->cpu, "%.127s", value);
+        if (!strncmp(line, "flags", 5) || !strncmp(line, "Features", 8))
+            add_instructions(value, sizeof machine->cpu_instructions, machine->cpu_instructions);
+        for (size_t p = 0; p < sizeof parts / sizeof *parts && used < room; p++)
+            if (!strncmp(line, parts[p].key, strlen(parts[p].key)))
+                used += (size_t)snprintf(model + used, room - used, "%s%s%s%s", used ? " " : "",
+                                         parts[p].word ? parts[p].word : "",
+                                         parts[p].word ? " " : "", value);
     }
-    fclose(file);
+    if (file) fclose(file);
+    char *texts[] = {machine->cpu, machine->cpu_model, machine->cpu_instructions};
+    for (int t = 0; t < 3; t++)
+        if (!texts[t][0]) strcpy(texts[t], "unknown");
+}
+
+static bool known(const char *text)
+{
+    return text[0] && strcmp(text, "unknown") != 0;
+}
+
+bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t size, char *text)
+{
+    const char *const texts[][3] = {
+        {"", a->cpu, b->cpu},
+        {"", a->cpu_model, b->cpu_model},
+        {"instructions ", a->cpu_instructions, b->cpu_instructions},
+    };
+    const struct {
+        int level;
+        long a, b;
+    } cache[] = {{1, a->l1_bytes, b->l1_bytes},
+                 {2, a->l2_bytes, b->l2_bytes},
+                 {3, a->l3_bytes, b->l3_bytes}};
+    for (int t = 0; t < 3; t++)
+        if (known(texts[t][1]) && known(texts[t][2]) && strcmp(texts[t][1], texts[t][2]) != 0) {
+            snprintf(text, size, "%s%.*s; this is %.*s", texts[t][0], (int)size / 2 - 16,
+                     texts[t][1], (int)size / 2 - 16, texts[t][2]);
+            return false;
+        }
+    for (int c = 0; c < 3; c++)
+        if (cache[c].a && cache[c].b && cache[c].a != cache[c].b) {
+            snprintf(text, size, "an L%d cache of %ld KiB; this has %ld KiB", cache[c].level,
+                     cache[c].a / 1024, cache[c].b / 1024);
+            return false;
+        }
+    return true;
 }
 
 /* Linux lists processor 0's caches as index0, index1, ...; sizes are like "32K". */
@@ -144,7 +212,7 @@ void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machin
     snprintf(machine->compiler, sizeof machine->compiler, "%s", SHAPEBENCH_COMPILER);
     snprintf(machine->flags, sizeof machine->flags, "%s", SHAPEBENCH_FLAGS);
     machine->threads = threads;
-    read_cpu(sizeof machine->cpu, machine->cpu);
+    read_cpu(machine);
     read_caches(machine);
     read_system(machine);
     read_libraries(sizeof machine->libraries, machine->libraries);

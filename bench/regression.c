@@ -60,6 +60,7 @@ void bench_regression_environment(BenchRegression *found)
         const char *what, *old, *new;
     } text[] = {
         {"processor", old->cpu, new->cpu},
+        {"processor", old->cpu_model, new->cpu_model},
         {"compiler", old->compiler, new->compiler},
         {"libraries", old->libraries, new->libraries},
         {"kernel", old->kernel, new->kernel},

@@ -88,10 +88,10 @@ static void a_slower_stage_is_caught_and_no_other_blamed(void **state)
     for (int trial = 0; trial < 10; trial++) {
         BenchContests all = {0};
         BenchComparison *list;
-        play(&all, "slow", 8, 1.08, 0.02);
-        play(&all, "same", 8, 1, 0.02);
-        play(&all, "fast", 8, 0.8, 0.02);
-        const BenchCompareParams params = {true, 8, NAN, 1};
+        play(&all, "slow", 10, 1.08, 0.02);
+        play(&all, "same", 10, 1, 0.02);
+        play(&all, "fast", 10, 0.8, 0.02);
+        const BenchCompareParams params = {true, 10, NAN, 1};
         int count = bench_compare(&all, &params, &list);
         assert_int_equal(count, 3 * BENCH_TIMES);
         assert_int_equal(verdict_of(list, count, "slow", 1 + SM_DAMPING), BENCH_SLOWER);
@@ -211,7 +211,7 @@ static void what_nobody_could_judge_is_not_ok(void **state)
     bench_regression_summary(&found, sizeof line, line);
     assert_non_null(strstr(line, "nothing could be judged, of 6 times; 6 could not"));
     const BenchCompareParams beside = {false, 1, NAN, 1};
-    assert_non_null(strstr(line, "(0 too noisy, 6 too few samples): at least --rounds 5"));
+    assert_non_null(strstr(line, "(0 too noisy, 6 too few samples): at least --rounds 7"));
     assert_int_equal(bench_comparisons_rounds(list, found.count, &beside), 3);
     list[2].verdict = BENCH_SAME;
     assert_int_equal(bench_comparisons_exit(list, found.count), SM_OK);
@@ -275,14 +275,14 @@ static void write_format(BenchRegressionFormat format, const char *name)
 {
     BenchContests all = {0};
     BenchComparison *list;
-    play(&all, "slow <&\"> \xc3\xa9", 6, 1.3, 0.02);
+    play(&all, "slow <&\"> \xc3\xa9", 7, 1.3, 0.02);
     play(&all, "bad", 5, 1, 0.02);
     add(&all, BENCH_NEW, 0, "young", 1, 1);
     bench_contest_of(&all, "bad")->side[BENCH_NEW].valid = false;
     strcpy(bench_contest_of(&all, "bad")->side[BENCH_NEW].reason, "1 < 2");
     BenchSide *slow = bench_contest_of(&all, "slow <&\"> \xc3\xa9")->side;
     slow[BENCH_OLD].instructions = 1000, slow[BENCH_NEW].instructions = 1100;
-    const BenchCompareParams params = {true, 6, NAN, 1};
+    const BenchCompareParams params = {true, 7, NAN, 1};
     BenchRegression *found = sm_alloc(1, sizeof *found);
     found->count = bench_compare(&all, &params, &list);
     found->list = list;
@@ -316,7 +316,7 @@ static void text_and_markdown_end_in_the_verdict(void **state)
     (void)state;
     static char text[16384];
     static const char *const wanted[] = {
-        "Against revision \"v1\" (abc), interleaved: 6 rounds",
+        "Against revision \"v1\" (abc), interleaved: 7 rounds",
         "compiler differs: GNU 11, now GNU 12",
         "flags differ: only the baseline has -O2; only this build -O3",
         "bad: this build: 1 < 2",
@@ -348,7 +348,7 @@ static void json_holds_every_sample(void **state)
     assert_string_equal(json_string_value(json_object_get(damping, "time")), "damping");
     assert_string_equal(json_string_value(json_object_get(damping, "verdict")), "slower");
     json_t *old = json_object_get(damping, "old");
-    assert_int_equal(json_array_size(json_object_get(old, "samples")), 12);
+    assert_int_equal(json_array_size(json_object_get(old, "samples")), 14);
     assert_true(json_number_value(json_object_get(old, "self_difference")) > 0);
     json_t *total = json_object_get(json_array_get(list, 0), "new");
     assert_true(json_number_value(json_object_get(total, "instructions")) == 1100);
@@ -377,11 +377,11 @@ static void gbench_holds_runs_and_aggregates(void **state)
         assert_true(json_is_number(json_object_get(one, "real_time")));
         assert_true(json_is_number(json_object_get(one, "cpu_time")));
         assert_string_equal(json_string_value(json_object_get(one, "time_unit")), "ns");
-        assert_int_equal(json_integer_value(json_object_get(one, "repetitions")), 12);
+        assert_int_equal(json_integer_value(json_object_get(one, "repetitions")), 14);
         runs += !strcmp(type, "iteration");
         aggregates += !strcmp(type, "aggregate");
     }
-    assert_int_equal(runs, 2 * 12 * BENCH_TIMES);
+    assert_int_equal(runs, 2 * 14 * BENCH_TIMES);
     assert_int_equal(aggregates, 2 * 4 * BENCH_TIMES);
     json_decref(root);
 }

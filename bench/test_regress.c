@@ -115,12 +115,26 @@ static void files_that_are_no_baseline(void **state)
     BenchRow row;
     BenchMachine machine;
     row_of_tiny(&row, &machine);
-    strcpy(machine.cpu, "Another 9000");
-    store("alien.h5", &row, &machine);
+    BenchMachine alien = machine;
+    strcpy(alien.cpu, "Another 9000");
+    store("alien.h5", &row, &alien);
+    alien = machine; /* of the same name */
+    strcpy(alien.cpu_model, "AuthenticAMD family 25 model 17 stepping 1, elsewhere");
+    store("family.h5", &row, &alien);
+    alien = machine;
+    alien.l3_bytes = 2 * machine.l3_bytes + 1024;
+    store("cache.h5", &row, &alien);
+    alien = machine;
+    strcpy(alien.cpu_instructions, "sse");
+    store("instructions.h5", &row, &alien);
     expect("shapebench regress --baseline missing.h5", 6, "there is no missing.h5");
     expect("shapebench regress --baseline noise.h5", 3, "not an HDF5 file, or cut off");
     expect("head -c 3000 tiny.h5 >cut.h5; shapebench regress --baseline cut.h5", 3, "cut.h5");
     expect("shapebench regress --baseline alien.h5", 6, "another machine (Another 9000; this is ");
+    expect("shapebench regress --baseline family.h5", 6,
+           "family 25 model 17 stepping 1, elsewhere; ");
+    expect("shapebench regress --baseline instructions.h5", 6, "(instructions sse; this is ");
+    if (machine.l3_bytes) expect("shapebench regress --baseline cache.h5", 6, "(an L3 cache of ");
     expect(
         "shapebench run tiny.cfg --frames 1 --quiet -o x.vtkhdf >x; shapebench regress --baseline "
         "x.vtkhdf",
@@ -252,20 +266,21 @@ static void another_revision_is_built_and_measured(void **state)
 {
     (void)state;
     make_repository(works);
-    expect("cd repo && shapebench regress --revision HEAD --threshold 9 --rounds 5 " TINY, 0,
+    expect("cd repo && shapebench regress --revision HEAD --rounds 4 " TINY, 2,
+           "one of 6 times: take at least --rounds 7");
+    expect("ls repo", 0, "CMakeLists.txt\nprogram.c\ntiny.cfg"); /* nothing was built */
+    expect("cd repo && shapebench regress --revision HEAD --threshold 9 --rounds 7 " TINY, 0,
            "Against revision HEAD (");
     nothing_is_left_in_the_repository();
     expect("cd repo && TMPDIR=/no/such shapebench regress --revision HEAD " TINY, 4,
            "cannot write /no/such/shapebench_");
     expect("cd repo && ls build/regress", 0, "lock"); /* and the program, which is used again: */
-    expect("cd repo && PATH=/usr/bin:/bin shapebench regress --revision HEAD --rounds 1 " TINY, 7,
-           "too few samples");
-    expect("cd repo && FAIL=2 shapebench regress --revision HEAD --rounds 1 " TINY, 6,
+    expect("cd repo && FAIL=2 shapebench regress --revision HEAD --rounds 7 " TINY, 6,
            "the baseline has no such scene");
-    expect("cd repo && FAIL=2 shapebench regress --revision HEAD --rounds 1 --format json " TINY
+    expect("cd repo && FAIL=2 shapebench regress --revision HEAD --rounds 7 --format json " TINY
            "| grep -c '\"scene\":'",
            0, "1\n"); /* once, by its own name and not the file's */
-    expect("cd repo && FAIL=139 shapebench regress --revision HEAD --rounds 1 " TINY, 1,
+    expect("cd repo && FAIL=139 shapebench regress --revision HEAD --rounds 7 " TINY, 1,
            "the baseline crashed on scene tiny.cfg (exit code 139)");
 }
 
