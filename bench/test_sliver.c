@@ -91,7 +91,7 @@ static void drop(SmMesh mesh, const char *name)
 {
     BenchScene scene;
     BenchBody body;
-    BenchRunner runner;
+    BenchRunner runner = {0};
     BenchCheck check;
     SmError error = {0};
     char reason[160];
