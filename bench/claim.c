@@ -41,9 +41,9 @@ static const BenchSetting range_table[] = {
 };
 
 static const BenchSetting measure_table[] = {
-    WORDS(
-        BenchMeasure, "experiment", experiment, 1,
-        "none|scene|sums|size|polar|sweeps|smoothing|blending|sag|resampling|regions|growth|placement"),
+    WORDS(BenchMeasure, "experiment", experiment, 1,
+          "none|scene|sums|size|polar|sweeps|smoothing|blending|sag|resampling|regions|growth|"
+          "placement"),
     TEXT(BenchMeasure, "scene", scene),
     TEXT(BenchMeasure, "engine", engine),
     TEXT(BenchMeasure, "field", field),
