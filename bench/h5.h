@@ -77,7 +77,7 @@ void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, co
                    const hsize_t *size);
 
 /* Reading: wrong type, wrong size and absence are failures that name the thing, and so are datasets
- * that hold more than the file does, or lie in another one. */
+ * of a file that is loaded that hold more than it does, or lie in another one. */
 hid_t bench_h5_find_group(BenchH5 *h5, hid_t parent, const char *name);
 hid_t bench_h5_find_dataset(BenchH5 *h5, hid_t parent, const char *name, int rank,
                             const hsize_t *size);
