@@ -341,7 +341,7 @@ def kind_of(wrong):
 def reduce(program, path, settings, options, wrong):
     """Leaves out, one after the other, the settings without which it fails the same way."""
     for group in [settings, *(v for v in settings.values() if isinstance(v, dict))]:
-        for name in [n for n in group if n not in ("mesh", "particles", "engine")]:
+        for name in [n for n in group if n not in ("mesh", "particles", "engine", "frames", "steps_per_frame")]:
             kept = dict(group)
             del group[name]
             write_scene(path, settings)
@@ -378,8 +378,10 @@ def keep(program, path, settings, options, wrong, folder):
     mesh = os.path.join(os.path.dirname(path), settings["mesh"])
     if os.path.exists(mesh):
         shutil.copy(mesh, folder)
-    reduce(program, kept, settings, options, wrong)
+    write_scene(kept, settings)
     print(f"\n{kept}: {wrong}\n  {shlex.join(command_of(program, kept, options))}", flush=True)
+    if not wrong.startswith("no end"): # or it would take hours
+        reduce(program, kept, settings, options, wrong)
 
 
 def main():
