@@ -330,7 +330,8 @@ static void an_octree_has_columns_of_its_own(void **state)
         "epsilon 0.5;",
         "6.23 summation nodes a region on average (nearest to the 6 wanted), 32 at most; regions "
         "reach 4.12 finest cells on average, 21 at most",
-        "falls into 4 parts that no region joins; coarse nodes weld what does not touch: 0 inside, "
+        "falls into 4 parts that no region joins (a w of 1 edge of each node's own cell joins what "
+        "touches); coarse nodes weld what does not touch: 0 inside, "
         "3 pairs; 1.5 MB",
         "summation and matching 45%, polar 20%, damping 25%, other 10% (paper, regular sampling: "
         "33/33/33)",
