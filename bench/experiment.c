@@ -17,7 +17,7 @@
 /* What an experiment takes beside its name, and who runs it. */
 typedef struct {
     const char *name;
-    bool timed; /* on one thread */
+    bool timed; /* on one thread, in samples of milliseconds */
     bool scene, engine, field, without, summation, layout, matching, w, n;
     bool masses, symmetry, weighting;
     const char *fields; /* that there are, separated by |; NULL: scene_field.h's */
@@ -46,7 +46,6 @@ static const Kind kinds[] = {
                         .fields = "|step|sums",
                         .run = bench_costs_size},
     [BENCH_TRY_POLAR] = {.name = "polar",
-                         .timed = true,
                          .field = true,
                          .fields = BENCH_POLAR_FIELDS,
                          .run = bench_costs_polar},
@@ -272,13 +271,12 @@ void bench_lab_keep(BenchLab *lab, const BenchCurve *curve)
 }
 
 /* Of times that were taken from `start` on: are they of this program alone? The low end of them
- * stands a quarter of the time lost. Counts of sweeps stand all. */
+ * stands a quarter of the time lost; that of matrices, whose samples are short, more. */
 static void check_busy(const BenchMeasure *measure, const BenchMoment *start, BenchCurve *curve)
 {
     BenchMoment end = bench_moment_end(1);
     double lost = bench_moment_lost(start, &end);
-    if (!kinds[measure->experiment].timed || strstr(measure->field, "sweeps") || lost <= 0.25)
-        return;
+    if (!kinds[measure->experiment].timed || lost <= 0.25) return;
     curve->busy = curve->valid;
     bench_curve_fail(curve, "others took %.0f%% of its processor (load average %.1f)", 100 * lost,
                      bench_moment_load());

@@ -57,8 +57,11 @@ def measured_part(files):
     if not rows:
         return None
     bad = [row["scene"] for row in rows if not row["valid"]]
+    busy = [row["scene"] for row in rows if row["valid"] and row["total_ms"] != row["total_ms"]]
     said = [f"{len(rows)} rows were measured; each was checked on the very scene timed: "
             + ("all are VALID." if not bad else f"{len(bad)} are INVALID and have no times: {', '.join(bad)}.")]
+    if busy:
+        said.append(f"Other programs left no undisturbed time to {', '.join(busy)}: they are BUSY.")
     return Part("measured", "Measured beside the papers", said, tables.all_tables(files),
                 row_figures.all_figures(files))
 

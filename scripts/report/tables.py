@@ -65,7 +65,7 @@ def measured(source):
             continue
         faster = f"{number(paper / total)} times" if paper == paper and total > 0 else "–"
         table.add([row["scene"], number(total), f"{number(row['total_low_ms'])} to {number(row['total_high_ms'])}",
-                   number(row["ns_per_particle_step"]), faster, "VALID"] + measured_times(row, row["stage_names"])
+                   number(row["ns_per_particle_step"]), faster, check(row)] + measured_times(row, row["stage_names"])
                   + counts)
         if paper == paper:
             mark = DOUBTS.get(row["paper_status"], "")
@@ -74,6 +74,11 @@ def measured(source):
             shown += [row["paper_status"]] + row["paper_stage_statuses"]
     table.note += doubts_said(shown)
     return table
+
+
+def check(row):
+    """Of a valid row: one without a time was left none by other programs."""
+    return "VALID" if row["total_ms"] == row["total_ms"] else "BUSY: other programs took the processors"
 
 
 def elastic(source):
@@ -93,7 +98,7 @@ def elastic(source):
             continue
         beside = [number(paper), f"{number(paper / total)} times"] if paper == paper else ["–", "–"]
         table.add(counts + [number(body["matrix_seconds"]), number(body["mode_seconds"])]
-                  + measured_times(row, ["shape_matching", "other"]) + [number(total)] + beside + ["VALID"])
+                  + measured_times(row, ["shape_matching", "other"]) + [number(total)] + beside + [check(row)])
     return table
 
 
@@ -116,7 +121,7 @@ def changing(source):
                       f"{number(c['change_ms'])}, {number(c['change_most_ms'])}", number(c["follow_ms"]),
                       number(c["surface_ms"])])
                   + [f"{number(c['first_triangles'])} to {number(c['last_triangles'])}", c["pieces"], c["open_edges"],
-                     bad or "VALID"], "invalid" if bad else "")
+                     bad or check(row)], "invalid" if bad else "")
     return table
 
 

@@ -126,6 +126,15 @@ class Report(unittest.TestCase):
         self.assertIn("INVALID: goals are off", page.text)
         self.assertNotIn("123", page.text.split("Where these were measured")[0])
 
+    def test_a_busy_row_has_no_times(self):
+        def disturb(file):
+            row = file["rows/000"].attrs
+            row["busy"], row["total_ms"] = 1, float("nan")
+
+        text = self.page(self.copy("busy.h5", disturb)).text
+        self.assertIn("BUSY: other programs took the processors", text)
+        self.assertIn("left no undisturbed time to", text)
+
     def test_a_calibration_says_what_it_found(self):
         path = self.at("beam.h5")
         with open(self.at("box.obj"), "w", encoding="utf-8") as file:
