@@ -5,12 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../fastlsm/fastlsm.h"
+#include "../lib/engine.h"
 #include "plan.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchCalibrationPlan, kind, member)
 
-enum { MOST_W = 64, SHORTEST = 3, MOST_ASPECT = 100 };
+enum { SHORTEST = 3, MOST_ASPECT = 100 };
 
 const BenchField *bench_calibration_fields(int *count)
 {
@@ -142,20 +142,9 @@ static SmCode check_whole(const char *name, const double *value, int count, SmEr
     return SM_OK;
 }
 
-static SmCode check_w(const BenchCalibrationPlan *plan, SmError *error)
-{
-    const int most = fastlsm_engine_f32.most_w;
-    SmCode code = check_whole("--w", plan->w, plan->ws, error);
-    if (code || !strcmp(plan->engines, "octree") || plan->w[plan->ws - 1] <= most) return code;
-    return sm_fail(error, SM_USAGE,
-                   "--w: %g is too wide for fastlsm, whose w is 1 to %d: give less, or --engine "
-                   "octree",
-                   plan->w[plan->ws - 1], most);
-}
-
 SmCode bench_calibration_plan(BenchCalibrationPlan *plan, BenchSpecimen *specimen, SmError *error)
 {
-    SmCode code = check_w(plan, error);
+    SmCode code = check_whole("--w", plan->w, plan->ws, error);
     if (!code) code = check_whole("--across", plan->other_across, plan->acrosses, error);
     if (!code) code = check_whole("--aspect", plan->other_aspect, plan->aspects, error);
     if (code) return code;
@@ -176,7 +165,7 @@ void bench_calibration_lists(BenchCalibrationPlan *plan,
                              BenchCalibrationList list[BENCH_CALIBRATION_LISTS])
 {
     const BenchCalibrationList all[BENCH_CALIBRATION_LISTS] = {
-        {"w", "--w", 1, MOST_W, plan->w, &plan->ws},
+        {"w", "--w", 1, SM_MOST_W, plan->w, &plan->ws},
         {"epsilon", "--epsilon", 0, 4, plan->epsilon, &plan->epsilons},
         {"across", "--across", 1, BENCH_MOST_ACROSS, plan->other_across, &plan->acrosses},
         {"aspect", "--aspect", SHORTEST, MOST_ASPECT, plan->other_aspect, &plan->aspects},

@@ -46,8 +46,8 @@ static const struct argp_option option_list[] = {
      "A beam: its body's box, its cells and its time step are taken (default: beam)", 1},
     {"engine", KEY_ENGINE, "NAME", 0, "both, fastlsm or octree (default: both)", 1},
     {"w", KEY_W, "RANGE", 0,
-     "Region half-widths in cells, which in a regular octree are its nodes' edges, 1 to 64 (fastlsm: "
-     "to 31), FIRST:LAST[:STEP] or a list (default: 1:10)",
+     "Region half-widths in cells, which in a regular octree are its nodes' edges, 1 to 31, "
+     "FIRST:LAST[:STEP] or a list (default: 1:10)",
      1},
     {"epsilon", KEY_EPSILON, "RANGE", 0, "The octree's (default: 0:1:0.25)", 1},
     {"across", KEY_ACROSS, "RANGE", 0,
@@ -197,7 +197,8 @@ int bench_command_calibrate(int argc, char **argv)
                        .young = NAN};
     BenchCalibration *calibration = sm_alloc(1, sizeof *calibration);
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS,
+                        &options.common);
     SmCode code = options.file ? bench_calibration_load(options.file, calibration, &error)
                                : run(&options, argc, argv, calibration, &error);
     if (!code) code = show(&options, calibration, &error);

@@ -183,7 +183,7 @@ int bench_command_claims(int argc, char **argv)
     Options options = {0};
     BenchClaims claims = {0};
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
     SmCode code = choose(&options, &claims, &error);
     if (!code && options.list)
         list_claims(&claims);

@@ -219,7 +219,8 @@ static SmCode cut_slice(const Options *options, const char *program)
 int bench_command_info(int argc, char **argv)
 {
     Options options = {.particles = 2000};
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS,
+                        &options.common);
     if (options.sliced) return (int)cut_slice(&options, argv[0]);
     SmCode code = SM_OK;
     json_t *list = json_array();

@@ -137,7 +137,7 @@ int bench_command_kernels(int argc, char **argv)
     Options options = {.repeats = 9};
     BenchMachine machine;
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
     if (options.list) {
         list_kernels();
         return SM_OK;

@@ -78,7 +78,7 @@ int bench_command_merge(int argc, char **argv)
     Options options = {.input = sm_alloc((size_t)argc, sizeof *options.input)};
     BenchSweep all = {0};
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, 0, &options.common);
     SmCode code = merge(&options, &all, &error);
     if (!code) {
         bench_machine_read(argc, argv, all.plan.threads, &all.machine);

@@ -386,7 +386,7 @@ int bench_command_regress(int argc, char **argv)
     BenchDraft draft = {0};
     SmError error;
     int exit_code = SM_OK;
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
     bench_machine_read(argc, argv, options.common.threads, &here);
     Session *session = sm_alloc(1, sizeof *session);
     session->options = &options;

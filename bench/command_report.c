@@ -84,7 +84,7 @@ static bool find_script(char path[PATH_MAX])
 int bench_command_report(int argc, char **argv)
 {
     Options options = {.output = "report.html", .title = "shapebench report"};
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET, &options.common);
     char script[PATH_MAX];
     if (!find_script(script)) {
         fprintf(stderr, "%s: %s is missing: install shapebench again, or keep its sources\n",

@@ -60,7 +60,7 @@ static const struct argp_option option_list[] = {
     {0, 0, 0, 0, "What replaces the scene's settings:", 1},
     {"w", KEY_W, "W", 0,
      "Region half-width, in edges of each node's own cell (octree default: 1, the least that holds "
-     "together what touches); of a lattice, whose cells are alike, 1 to 31 cells (brute: to 64)",
+     "together what touches); of a lattice, whose cells are alike, 1 to 31 cells",
      1},
     {"width", KEY_WIDTH, "UNIT", 0,
      "What an octree's --w counts: edges of each node's own cell, or finest cells (default: edges)",
@@ -178,7 +178,8 @@ static const char help[] =
     ".xyz, .pts or .txt, which are carried and written in their order. Its units are unknown, so "
     "gravity is 9.81 heights of the body "
     "per second squared: a body 70 units tall falls like one of 1 m.\n"
-    "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf) for ParaView; it appears "
+    "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf; a script of ParaView's must "
+    "open ./FILE.vtkhdf.xdmf, with a folder) for ParaView; it appears "
     "whole or not at all. The deviation printed is the largest distance of a goal position from "
     "double-precision brute force in the last state; beyond the tolerance of 'tables' the run is "
     "INVALID (exit code 1), its trajectory kept.\n" BENCH_EXIT_CODES;
@@ -259,11 +260,11 @@ static SmCode apply_w(const Options *options, const SmEngineType *type, BenchSce
         scene->octree.summation_nodes = 0;
         return SM_OK;
     }
-    if (!type->most_w)
+    if (!type->by_cells)
         return sm_fail(error, SM_USAGE, "--w: a %s body has no regions", scene->engine);
-    if (!number || !(w >= 1 && w <= type->most_w) || w != floor(w))
+    if (!number || !(w >= 1 && w <= SM_MOST_W) || w != floor(w))
         return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a whole number from 1 to %d", text,
-                       type->most_w);
+                       SM_MOST_W);
     scene->params.w = (int)w;
     return SM_OK;
 }
@@ -538,7 +539,7 @@ int bench_command_run(int argc, char **argv)
                        .strain_limit = -1};
     SmError error;
     BenchMachine machine;
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
     bench_machine_read(argc, argv, options.common.threads, &machine);
     SmCode code = run(&options, &machine, &error);
     if (code) bench_option_fail(argv[0], &error);

@@ -110,7 +110,7 @@ static SmCode write_mesh(const Options *options, SmError *error)
 int bench_command_scenes(int argc, char **argv)
 {
     Options options = {0};
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, 0, &options.common);
     SmError error;
     SmCode code;
     if (options.write)

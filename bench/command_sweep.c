@@ -214,7 +214,7 @@ int bench_command_sweep(int argc, char **argv)
     options.run.ranks = &ranks;
     SmCode code = bench_ranks_start(&ranks, &error);
     if (!code) {
-        bench_options_parse(&argp, argc, argv, &options, &options.common);
+        bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
         code = options.file ? bench_sweep_load(options.file, &sweep, &error)
                             : run(&options, argc, argv, &sweep, &error);
     }

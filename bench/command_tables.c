@@ -312,7 +312,7 @@ int bench_command_tables(int argc, char **argv)
     Options options = {.repeats = 15, .block = 20};
     Choices chosen = {.options = &options};
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, &options.common);
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
     SmCode code = choose_scenes(&chosen, &error);
     if (!code) code = check_substitutes(&chosen, &error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);

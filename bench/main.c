@@ -10,6 +10,7 @@
 #include "interrupt.h"
 #include "option.h"
 #include "scene.h"
+#include "suggest.h"
 
 static const BenchCommand commands[] = {
     {"tables", "measure a paper's table, checked, its values beside", bench_command_tables},
@@ -29,7 +30,7 @@ enum { COMMANDS = sizeof commands / sizeof commands[0] };
 static const char help_start[] =
     "Reference implementation and benchmark harness for shape-matching deformation.\n"
     "With no command: tables.\v"
-    "Commands (each has its own --help):\n";
+    "Commands ('shapebench help COMMAND' says more of each):\n";
 
 static const char help_end[] = "\n" BENCH_EXIT_CODES;
 
@@ -80,9 +81,29 @@ static bool is_scene(const char *name)
 /* Scenes and files are run's arguments. */
 static void unknown_command(const char *name)
 {
+    BenchSuggestion meant = {.typed = name};
+    for (int i = 0; i < COMMANDS; i++) bench_suggest(&meant, commands[i].name);
+    bool of_run = is_scene(name) || access(name, F_OK) == 0;
+    if (of_run) meant.name = name;
     fprintf(stderr, "shapebench: unknown command '%s'; ", name);
-    if (is_scene(name) || access(name, F_OK) == 0) fprintf(stderr, "did you mean 'run %s'? ", name);
-    fprintf(stderr, "see 'shapebench --help'\n");
+    if (meant.name)
+        fprintf(stderr, "did you mean '%s%s'? See", of_run ? "run " : "", meant.name);
+    else
+        fputs("see", stderr);
+    fputs(" 'shapebench --help'\n", stderr);
+}
+
+/* -h is --help, and so is the command help; 'help NAME' is 'NAME --help'. Returns how many words
+ * are left. */
+static int ask_for_help(int argc, char **argv)
+{
+    static char help[] = "--help";
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+        if (!strcmp(argv[i], "-h")) argv[i] = help;
+    if (argc < 2 || strcmp(argv[1], "help") != 0) return argc;
+    argv[1] = argc > 2 ? argv[2] : help;
+    if (argc > 2) argv[2] = help;
+    return argc < 3 ? argc : 3;
 }
 
 int main(int argc, char **argv)
@@ -96,6 +117,7 @@ int main(int argc, char **argv)
     argv[0] = program;
     argp_err_exit_status = SM_USAGE;
     bench_interrupt_catch();
+    argc = ask_for_help(argc, argv);
 
     int first = argc;
     bench_option_words(&argp, argc, argv, ARGP_IN_ORDER, &first, NULL);

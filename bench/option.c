@@ -10,18 +10,19 @@
 #include "../lib/printable.h"
 #include "../lib/team.h"
 #include "provenance.h"
+#include "suggest.h"
 
 const char *argp_program_version = "shapebench " SHAPEBENCH_VERSION;
 
 enum { KEY_THREADS = 0x1000, KEY_SEED, KEY_QUIET };
 
+/* In the order of BENCH_TAKES_QUIET and so on. */
 static const struct argp_option common_options[] = {
-    {0, 0, 0, 0, "Common options:", 90},
+    {"quiet", KEY_QUIET, 0, 0, "No progress and no remarks on standard error", 90},
     {"threads", KEY_THREADS, "N", 0, "Threads; 0: all cores (default: 1)", 90},
     {"seed", KEY_SEED, "N", 0, "Seed of everything random (default: 1)", 90},
-    {"quiet", KEY_QUIET, 0, 0, "No progress and no remarks on standard error", 90},
-    {0},
 };
+enum { COMMON = sizeof common_options / sizeof *common_options };
 
 static error_t parse_common(int key, char *text, struct argp_state *state)
 {
@@ -45,8 +46,6 @@ const char *const bench_precisions[] = {"single", "double", NULL};
 const char *const bench_widths[] = {"edges", "cells", NULL};
 const char *const bench_layouts[] = {"auto", "lists", "blocks", NULL};
 
-static const struct argp common_argp = {common_options, parse_common, 0, 0, 0, 0, 0};
-
 /* Where the system's BLAS is OpenBLAS, which has threads of its own. */
 void openblas_set_num_threads(int threads) __attribute__((weak));
 
@@ -64,7 +63,8 @@ static error_t parse_both(int key, char *text, struct argp_state *state)
     if (key != ARGP_KEY_INIT) return ARGP_ERR_UNKNOWN;
     void *const *inputs = state->input;
     state->err_stream = NULL; /* getopt's line is enough: no second one, "Try ..." */
-    for (int i = 0; i < 2; i++) state->child_inputs[i] = inputs[i];
+    for (int i = 0; i < 2 && state->root_argp->children[i].argp; i++)
+        state->child_inputs[i] = inputs[i];
     return 0;
 }
 
@@ -109,6 +109,35 @@ static void say(const char *name, const char *text, int length, bool usage)
     fputc('\n', stderr);
 }
 
+/* Offers all long names that the parser and its children have. */
+static void suggest_options(const struct argp *argp, BenchSuggestion *meant)
+{
+    const struct argp_option *option = argp->options;
+    const struct argp_child *child = argp->children;
+    for (; option && (option->name || option->key || option->doc); option++)
+        if (option->name) bench_suggest(meant, option->name);
+    for (; child && child->argp; child++) suggest_options(child->argp, meant);
+}
+
+/* Adds to what getopt says of an unknown option which one may be meant. */
+static void say_words(const struct argp *argp, const char *name, const char *words)
+{
+    static const char unknown[] = "unrecognized option '--";
+    char line[512], typed[64];
+    BenchSuggestion meant = {.typed = typed};
+    int length = (int)strcspn(words, "\n");
+    if (!strncmp(words, unknown, sizeof unknown - 1)) {
+        const char *start = words + sizeof unknown - 1;
+        snprintf(typed, sizeof typed, "%.*s", (int)strcspn(start, "='\n"), start);
+        suggest_options(argp, &meant);
+        bench_suggest(&meant, "help");
+        bench_suggest(&meant, "version");
+    }
+    snprintf(line, sizeof line, "%.*s%s%s%s", length, words, meant.name ? "; did you mean '--" : "",
+             meant.name ? meant.name : "", meant.name ? "'?" : "");
+    say(name, line, (int)strlen(line), true);
+}
+
 void bench_option_words(const struct argp *argp, int argc, char **argv, unsigned flags, int *first,
                         void *input)
 {
@@ -119,8 +148,7 @@ void bench_option_words(const struct argp *argp, int argc, char **argv, unsigned
     error_t failed = argp_parse(argp, argc, argv, flags, first, input);
     restore_console();
     size_t start = strlen(argv[0]) + 2; /* getopt begins with the name */
-    if (failed && said && strlen(said) > start)
-        say(argv[0], said + start, (int)strcspn(said + start, "\n"), true);
+    if (failed && said && strlen(said) > start) say_words(argp, argv[0], said + start);
     free(said);
     if (failed) exit(SM_USAGE);
 }
@@ -131,9 +159,14 @@ void bench_option_fail(const char *name, const SmError *error)
 }
 
 void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input,
-                         BenchCommon *common)
+                         unsigned takes, BenchCommon *common)
 {
-    const struct argp_child children[] = {{argp, 0, NULL, 0}, {&common_argp, 0, NULL, 0}, {0}};
+    struct argp_option options[COMMON + 2] = {{0, 0, 0, 0, "Common options:", 90}};
+    for (int i = 0, count = 0; i < COMMON; i++)
+        if (takes & 1u << i) options[++count] = common_options[i];
+    const struct argp common_argp = {options, parse_common, 0, 0, 0, 0, 0};
+    const struct argp_child children[] = {
+        {argp, 0, NULL, 0}, {takes ? &common_argp : NULL, 0, NULL, 0}, {0}};
     const struct argp both = {NULL, parse_both, NULL, NULL, children, NULL, NULL};
     void *inputs[] = {input, common};
     *common = (BenchCommon){.threads = 1, .seed = 1};

@@ -1,4 +1,4 @@
-/* option.h - option values as text, checked; and the options that every command has.
+/* option.h - option values as text, checked; and the options that several commands have.
  *
  * A value that is not what the option takes ends the program with one line on standard error and
  * exit code 2. `name` is the option's name as typed ("--w"). */
@@ -11,7 +11,7 @@
 
 #include "../lib/error.h"
 
-/* Options that every command has. */
+/* Options that several commands have. */
 typedef struct {
     int threads; /* 1 or more */
     unsigned long seed;
@@ -77,11 +77,14 @@ bool bench_option_take(const struct argp_option *list, const BenchOption *option
 error_t bench_option_shown(int key, const char *text, const struct argp_state *state,
                            bool measuring, const char **file);
 
+/* What of BenchCommon a command takes; the rest has its defaults. */
+enum { BENCH_TAKES_QUIET = 1, BENCH_TAKES_THREADS = 2, BENCH_TAKES_SEED = 4, BENCH_TAKES_ALL = 7 };
+
 /* argp_parse() for a command: its own options `argp` into `input`, whose defaults are set, and
- * beside them those that every command has. Usage errors end the program: one line, exit code 2.
+ * beside them the common ones that it takes. Usage errors end the program: one line, exit code 2.
  * argv[0] is the program and command ("shapebench run"). */
 void bench_options_parse(const struct argp *argp, int argc, char **argv, void *input,
-                         BenchCommon *common);
+                         unsigned takes, BenchCommon *common);
 
 /* argp_parse(), but what getopt finds wrong (an unknown option, a missing value) is one line like
  * all others, and ends the program with exit code 2. */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../fastlsm/fastlsm.h"
+#include "../lib/engine.h"
 #include "../lib/hash.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchPlan, kind, member)
@@ -39,13 +39,12 @@ static int points_of_w(const BenchPlan *plan)
 
 SmCode bench_plan_count(BenchPlan *plan, SmError *error)
 {
-    const int most = fastlsm_engine_f32.most_w;
     for (int i = 0; i < plan->ws && has(plan, "fastlsm"); i++)
-        if (plan->w[i] != floor(plan->w[i]) || plan->w[i] > most)
+        if (plan->w[i] != floor(plan->w[i]) || plan->w[i] > SM_MOST_W)
             return sm_fail(error, SM_USAGE,
                            "--w: %g is no half-width of fastlsm, which are whole numbers from 1 to "
                            "%d; give --engine octree to sweep that alone",
-                           plan->w[i], most);
+                           plan->w[i], SM_MOST_W);
     long points = (long)plan->ws * points_of_w(plan);
     if (points < 1) return sm_fail(error, SM_USAGE, "no points: no engine '%.11s'", plan->engines);
     if (points > BENCH_PLAN_POINTS)

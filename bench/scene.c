@@ -12,6 +12,7 @@
 #include "config_file.h"
 #include "scene_check.h"
 #include "setting.h"
+#include "suggest.h"
 
 enum { BUILTIN_MAX = 64 };
 
@@ -190,7 +191,7 @@ static const BenchSetting scene_table[] = {
     ITEM("cell", BENCH_REAL, AT(voxel.cell), 1e-30, 1e30),
     ITEM("cells", BENCH_LONG, AT(cells), 1, 1e9),
     ITEM("engine", BENCH_TEXT, AT(engine), 0, sizeof((BenchScene *)0)->engine),
-    ITEM("w", BENCH_INT, AT(params.w), 1, 64),
+    ITEM("w", BENCH_INT, AT(params.w), 1, SM_MOST_W),
     ITEM("h", BENCH_REAL, AT(params.h), 1e-9, 10),
     ITEM("damping", BENCH_REAL, AT(params.damping), 0, 1),
     ITEM("damping_every", BENCH_INT, AT(params.damping_every), 1, 1000000),
@@ -355,10 +356,13 @@ SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *er
                        "%.100s: the ending of its name must say what it is: .cfg a scene, .obj, "
                        ".ply, .stl, .off or .glb a mesh",
                        name_or_path);
+    BenchSuggestion meant = {.typed = name_or_path};
+    for (const char *const *name = bench_scene_names(); *name; name++) bench_suggest(&meant, *name);
     return sm_fail(error, SM_USAGE,
                    "'%.100s' is neither a built-in scene (list them with 'shapebench scenes') nor "
-                   "a scene file NAME.cfg",
-                   name_or_path);
+                   "a scene file NAME.cfg%s%s%s",
+                   name_or_path, meant.name ? "; did you mean '" : "", meant.name ? meant.name : "",
+                   meant.name ? "'?" : "");
 }
 
 const char *const *bench_scene_names(void)

@@ -247,7 +247,7 @@ static void mistakes_are_one_line(void **state)
         {"calibrate --w 3:1", 2, "--w: 3:1 falls"},
         {"calibrate --w 1.5", 2, "--w: 1.5 is no whole number"},
         {"calibrate --w none", 2, "--w: 'none' is not a range"},
-        {"calibrate --w 0:3", 2, "--w: 0 is not from 1 to 64"},
+        {"calibrate --w 0:3", 2, "--w: 0 is not from 1 to 31"},
         {"calibrate --epsilon -1", 2, "--epsilon: -1 is not from 0 to 4"},
         {"calibrate --aspect 2", 2, "--aspect: 2 is not from 3 to 100"},
         {"calibrate --across 2.5", 2, "--across: 2.5 is no whole number"},

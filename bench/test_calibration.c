@@ -94,9 +94,6 @@ static void a_plan_makes_its_specimens(void **state)
     assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "--w: 2.5 is no whole number"));
     plan = sample_plan;
-    plan.w[3] = 32;
-    assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_USAGE);
-    assert_non_null(strstr(error.text, "--w: 32 is too wide for fastlsm"));
     strcpy(plan.engines, "octree");
     assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_OK);
     plan.ws = plan.epsilons = BENCH_CALIBRATION_VALUES;

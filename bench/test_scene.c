@@ -145,8 +145,8 @@ static void errors_name_file_line_and_remedy(void **state)
     (void)state;
     static const Mistake cases[] = {
         {BODY "damping_k = 1;", "dir/my.cfg:3: unknown setting 'damping_k'; known: title, paper,"},
-        {BODY "w = 2.5;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 64"},
-        {BODY "w = 0;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 64"},
+        {BODY "w = 2.5;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 31"},
+        {BODY "w = 0;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 31"},
         {BODY "\n\nw = \"2\";", "dir/my.cfg:5: 'w' must be"},
         {BODY "h = 0;", "dir/my.cfg:3: 'h' must be a number from 1e-09 to 10"},
         {BODY "h = 1e400;", "dir/my.cfg:3: 'h' must be a number"},

@@ -445,7 +445,7 @@ static long engine_region(SmEngine *e, long number, long *member, long room)
 const SmEngineType SM_NAME(fastlsm_engine) = {
     .name = "fastlsm",
     .precision = SM_REAL_BITS == 32 ? "single" : "double",
-    .most_w = LSM_MAX_W,
+    .by_cells = true,
     .create = engine_create,
     .destroy = engine_destroy,
     .step = engine_step,

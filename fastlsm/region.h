@@ -6,9 +6,10 @@
 #ifndef LSM_REGION_H
 #define LSM_REGION_H
 
+#include "../lib/engine.h"
 #include "lattice.h"
 
-enum { LSM_MAX_W = 31, LSM_MAX_SIDE = 2 * LSM_MAX_W + 1 };
+enum { LSM_MAX_W = SM_MOST_W, LSM_MAX_SIDE = 2 * LSM_MAX_W + 1 };
 
 /* Bitmaps in the lattice's layout, rebuilt when links break. */
 typedef struct {

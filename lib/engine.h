@@ -99,11 +99,14 @@ typedef struct {
 
 typedef struct SmEngine SmEngine;
 
+/* The largest half-width of regions that are counted in cells. */
+enum { SM_MOST_W = 31 };
+
 /* One engine in one precision. */
 typedef struct {
     const char *name;      /* "fastlsm", "octree", "brute" */
     const char *precision; /* "single" or "double" */
-    int most_w;            /* the largest params.w; 0: it goes by no w in cells */
+    bool by_cells;         /* params.w is the half-width of its regions, to SM_MOST_W */
     bool unstopped;        /* obstacles do not stop its bodies: callers refuse them */
 
     /* Builds an engine at rest on `voxels` (copied; may be freed after). SM_INPUT when the body

@@ -336,7 +336,7 @@ static long brute_region(SmEngine *engine, long p, long *member, long room)
 const SmEngineType ref_brute_engine = {
     .name = "brute",
     .precision = "double",
-    .most_w = 64,
+    .by_cells = true,
     .create = brute_create,
     .destroy = brute_destroy,
     .step = brute_step,

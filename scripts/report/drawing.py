@@ -64,12 +64,17 @@ class Figure:
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(map(cell, self.columns))
-        writer.writerows(["" if value is None or value != value else cell(value) for value in row] for row in self.data)
+        writer.writerows(map(cell, row) for row in self.data)
         return text.getvalue()
 
 
 def cell(value):
-    """Text that a spreadsheet would take for a formula gets an apostrophe before it."""
+    """Of CSV. Text that a spreadsheet would take for a formula gets an apostrophe before it; numbers are rounded here
+    and in number(), and nowhere before, for twice is once too often."""
+    if value is None or value != value:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.9g}"
     return f"'{value}" if isinstance(value, str) and value[:1] in tuple("=+-@\t\r") else value
 
 

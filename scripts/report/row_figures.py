@@ -33,12 +33,12 @@ def stage_shares(rows):
     for y, row in enumerate(rows):
         shares = 100 * np.array(row["stage_ms"]) / row["total_ms"]
         share_bars(axes, y - 0.13, shares, 0.42, 1)
-        data.append([row["scene"], "measured"] + [round(float(v), 2) for v in shares] + [""])
+        data.append([row["scene"], "measured"] + [float(v) for v in shares] + [""])
         paper = row["paper_stage_percent"]
         if np.isfinite(paper).any():
             share_bars(axes, y + 0.25, np.nan_to_num(paper), 0.2, 0.45, row["paper_stage_statuses"])
             statuses = row["paper_stage_statuses"]
-            data.append([row["scene"], "paper"] + [None if v != v else round(float(v), 2) for v in paper]
+            data.append([row["scene"], "paper"] + [None if v != v else float(v) for v in paper]
                         + [" ".join(statuses)])
             shown += statuses
             doubted += [f"the paper's {STAGE_TITLES.get(s)} of {row['scene']} ({DOUBTS[status]})"
@@ -74,7 +74,7 @@ def beside_paper(rows):
             axes.annotate(DOUBTS.get(row["paper_status"], ""), (paper, y), xytext=(5, 0), textcoords="offset points",
                           va="center")
         axes.plot(ns, y, "o", color=COLOURS[0])
-        data.append([row["scene"], round(ns, 2), None if paper != paper else round(paper, 1), row["paper_status"]])
+        data.append([row["scene"], ns, None if paper != paper else paper, row["paper_status"]])
     axes.set_xscale("log")
     axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
@@ -111,7 +111,7 @@ def frames(row):
                   f"{number(row['change.change_ms'])} ms at the median and {number(row['change.change_most_ms'])} ms "
                   "at most, in frames that change.",
                   ["frame"] + [name.replace(" ", "_") + "_ms" for name in names],
-                  [[int(n)] + [round(float(v), 5) for v in line] for n, line in zip(count, time)]).draw(figure)
+                  [[int(n)] + [float(v) for v in line] for n, line in zip(count, time)]).draw(figure)
 
 
 def key(row):
@@ -146,35 +146,37 @@ def threads(sources):
 
 
 def history(sources):
-    """A scene's cost over commits, of files made by different ones."""
+    """A scene's cost from file to file, of one commit or several."""
     lines = {}
     for source in sorted(sources, key=lambda s: s.machine.get("utc", "")):
         for row in valid(source.rows):
-            point = (source.machine.get("utc", ""), source.commit, row["total_ms"], row["total_low_ms"],
-                     row["total_high_ms"])
+            point = (source.machine.get("utc", ""), source.commit, source.name, source.path, row["total_ms"],
+                     row["total_low_ms"], row["total_high_ms"])
             lines.setdefault(key(row) + (row["threads"], source.machine.get("cpu", "")), []).append(point)
-    lines = {name: points for name, points in lines.items() if len({p[1] for p in points}) > 1}
+    lines = {name: points for name, points in lines.items() if len({p[3] for p in points}) > 1}
     if not lines:
         return None
-    commits = sorted({(p[0], p[1]) for points in lines.values() for p in points})
-    place = {stamp: n for n, stamp in enumerate(commits)}
+    files = sorted({p[:4] for points in lines.values() for p in points})
+    place = {file: n for n, file in enumerate(files)}
     figure, axes = canvas(7.2, 3.8)
-    data = []
+    data, said = [], []
     for n, (name, points) in enumerate(sorted(lines.items())):
-        x = [place[p[:2]] for p in points]
-        first = points[0][2]
-        spread = np.array([[(p[2] - p[3]) / first, (p[4] - p[2]) / first] for p in points]).T
-        axes.errorbar(x, [p[2] / first for p in points], yerr=np.maximum(spread, 0), marker=MARKS[n % 7],
-                      color=COLOURS[n % 7], capsize=2, label=f"{name[0]}, {name[3]} thread{'s' * (name[3] > 1)}")
-        data += [[name[0], name[1], name[3], p[0], p[1], p[2], p[3], p[4]] for p in points]
-    axes.set_xticks(range(len(commits)), [f"{c}\n{u[:10]}" for u, c in commits], rotation=0, fontsize=8)
+        (first, low, high), (last, last_low, last_high) = points[0][4:], points[-1][4:]
+        spread = np.array([[(p[4] - p[5]) / first, (p[6] - p[4]) / first] for p in points]).T
+        axes.errorbar([place[p[:4]] for p in points], [p[4] / first for p in points], yerr=np.maximum(spread, 0),
+                      marker=MARKS[n % 7], color=COLOURS[n % 7], capsize=2,
+                      label=f"{name[0]}, {name[3]} thread{'s' * (name[3] > 1)}")
+        data += [[name[0], name[1], name[3], *p[:3], *p[4:]] for p in points]
+        apart = "overlap" if low <= last_high and last_low <= high else "do not overlap"
+        said.append(f"{name[0]} from {number(first)} to {number(last)} ms ({last / first:.3f} times; quartiles {apart})")
+    axes.set_xticks(range(len(files)), [f"{name}\n{commit}\n{utc[:16]}" for utc, commit, name, _ in files], fontsize=8)
     axes.axhline(1, color=PAPER, linewidth=0.8)
-    axes.set_ylabel("time of a step, first commit = 1")
+    axes.set_ylabel("time of a step, first file = 1")
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
-    said = [f"{name[0]} from {number(points[0][2])} to {number(points[-1][2])} ms" for name, points in sorted(lines.items())]
-    return Figure("history", "A scene over commits", "Medians and quartiles, relative to the oldest file; + marks a "
+    return Figure("history", "A scene from file to file", "Medians and quartiles, relative to the oldest file; + marks a "
                   "build from changed sources.", "; ".join(said) + ".",
-                  ["scene", "engine", "threads", "utc", "commit", "total_ms", "low_ms", "high_ms"], data).draw(figure)
+                  ["scene", "engine", "threads", "utc", "commit", "file", "total_ms", "low_ms", "high_ms"],
+                  data).draw(figure)
 
 
 def all_figures(sources):

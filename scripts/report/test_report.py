@@ -232,7 +232,28 @@ class Report(unittest.TestCase):
             file["machine"].attrs["utc"] = b"2020-01-01T00:00:00Z"
 
         page = self.page(self.rows, self.copy("older.h5", older))
-        self.assertIn("A scene over commits", page.text)
+        self.assertIn("A scene from file to file", page.text)
+
+    def test_two_files_of_one_commit_are_compared(self):
+        def slower(file):
+            row = file["rows/000"].attrs
+            for name in ("total_ms", "total_low_ms", "total_high_ms"):
+                row[name] *= 1.25
+
+        page = self.page(self.rows, self.copy("b.h5", slower))
+        self.assertIn("A scene from file to file", page.text)
+        self.assertIn("(1.250 times; quartiles", page.text)
+        self.assertIn("b.h5", page.text)
+
+    def test_a_number_is_rounded_once(self):
+        def tell(file):
+            row = file["rows/000"].attrs
+            row["ns_per_particle_step"] = 58.746  # 58.75 in two digits, and that 58.8 in one
+            row["paper_total_ms"], row["paper_particles"] = 0.28, 150.0
+
+        page = self.page(self.copy("round.h5", tell))
+        self.assertIn("58.7 against", page.text)
+        self.assertNotIn("58.8", page.text)
 
     def test_a_folder_has_every_figure_with_its_data(self):
         output = self.at("folder")

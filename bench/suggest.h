@@ -1,0 +1,16 @@
+/* suggest.h - what was meant by a mistyped name. */
+#ifndef BENCH_SUGGEST_H
+#define BENCH_SUGGEST_H
+
+/* Begins zeroed but for `typed`; the one nearest of all that were offered, or NULL. */
+typedef struct {
+    const char *typed, *name;
+    int changes;
+} BenchSuggestion;
+
+/* Offers a name. One is near when at most 2 changes (a letter more, less, another, or two that are
+ * next to each other exchanged; 1 of a name of under 5 letters) make it of what was typed.
+ * O(product of the lengths). */
+void bench_suggest(BenchSuggestion *suggestion, const char *name);
+
+#endif
