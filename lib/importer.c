@@ -2,6 +2,7 @@
 #include "child.h"
 #include "confine.h"
 #include "mesh_files.h"
+#include "off.h"
 #include "ply.h"
 #include "polygon.h"
 #include "recentre.h"
@@ -216,6 +217,8 @@ static char *rewritten(const char *path, const char *suffix, SmMeshFiles *files,
     char *ordered = NULL, *moved = NULL;
     if (text && strcasecmp(suffix, "ply") == 0 && sm_ply_lacks_lines(text))
         snprintf(files->altered, sizeof files->altered, "PLY: fewer lines than its header says");
+    if (text && strcasecmp(suffix, "off") == 0 && sm_off_astray(text))
+        snprintf(files->altered, sizeof files->altered, "OFF: a face names a vertex out of range");
     if (text && strcasecmp(suffix, "ply") == 0)
         ordered = sm_ply_vertices_first(text, *size, &new_size);
     if (ordered) {

@@ -276,8 +276,8 @@ static void numbers_that_the_importer_alters_are_refused(void **state)
     (void)state;
     static const char start[] =
         "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n";
-    static const char *const last[] = {"3 0 3 4\n", "3 0 3 999\n", ""};
-    for (int i = 0; i < 3; i++) {
+    static const char *const last[] = {"3 0 3 4\n", "3 0 3 -1\n", "3 0 3 4294967298\n", ""};
+    for (int i = 0; i < 4; i++) {
         char text[256];
         snprintf(text, sizeof text, "%s%s", start, last[i]);
         expect_error(write_text("last.off", text), NULL, "Export it again");
