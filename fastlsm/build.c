@@ -287,6 +287,7 @@ static void build_constants(Lsm *lsm)
             int p = lsm->particle[block * SM_LANES + lane];
             if (p < 0) continue;
             k->weight[lane] = (real)(mass_of(lsm, p) / lsm->members[p]);
+            k->count[lane] = (real)lsm->members[p];
             k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
         }
     }
@@ -392,6 +393,10 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     lsm->x = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->v = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     build_regions(lsm);
+    int extent = 0;
+    for (int d = 0; d < 3; d++)
+        if (lsm->lattice.size[d] > extent) extent = lsm->lattice.size[d];
+    lsm->rounding = rounding_square(extent, lsm->w);
     lsm->params.mass = NULL; /* the caller's, as is what follows */
     lsm->params.instance_pose = NULL;
     return lsm;

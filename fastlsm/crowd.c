@@ -54,12 +54,14 @@ Crowd *crowd_build(const Lsm *lsm, long bodies)
     crowd->last = sm_alloc(lanes * 6, sizeof(short));
     crowd->origin = sm_alloc((size_t)crowd->groups * L, sizeof *crowd->origin);
     crowd->weight = sm_alloc(n, sizeof(real));
+    crowd->count = sm_alloc(n, sizeof(real));
     crowd->inverse_count = sm_alloc(n, sizeof(real));
     crowd->region = sm_alloc(n, sizeof *crowd->region);
     crowd->original = sm_alloc(n, sizeof(int));
     for (size_t p = 0; p < n; p++) {
         const ParticleConst *k = &lsm->particle_const[lsm->block_const[lsm->slot[p] / L]];
         crowd->weight[p] = k->weight[lsm->slot[p] % L];
+        crowd->count[p] = k->count[lsm->slot[p] % L];
         crowd->inverse_count[p] = k->inverse_count[lsm->slot[p] % L];
         crowd->original[p] = (int)p;
     }
@@ -95,17 +97,9 @@ void crowd_free(Crowd *crowd)
 {
     if (!crowd) return;
     for (int t = 0; t < crowd->threads; t++) free(crowd->scratch[t]);
-    void *all[] = {crowd->x,
-                   crowd->v,
-                   crowd->g,
-                   crowd->last,
-                   crowd->origin,
-                   crowd->weight,
-                   crowd->inverse_count,
-                   crowd->region,
-                   crowd->original,
-                   crowd->scratch,
-                   crowd};
+    void *all[] = {crowd->x,      crowd->v,        crowd->g,       crowd->last,
+                   crowd->origin, crowd->weight,   crowd->count,   crowd->inverse_count,
+                   crowd->region, crowd->original, crowd->scratch, crowd};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
@@ -249,14 +243,16 @@ SM_INLINE void move_group(Crowd *crowd, int side, long group, const GroupRows *r
         long at = (group * n + p) * 3 * L;
         vec sum[15], x[3], v[3];
         last_level(crowd, side, r->plate_down, PLATE_DOWN, p, 6, 3, sum);
-        for (int d = 0; d < 3; d++) sum[d] = (sum[d] - sum[6 + d]) * crowd->inverse_count[p];
+        for (int d = 0; d < 3; d++) sum[d] -= sum[6 + d];
         if (goals) {
+            for (int d = 0; d < 3; d++) sum[d] *= crowd->inverse_count[p];
             store3(crowd->g + at, sum);
             continue;
         }
         load3(crowd->x + at, x);
         load3(crowd->v + at, v);
-        integrate_velocity(sum, x, lsm->gravity, lanes_set(1), v);
+        integrate_velocity(sum, lanes_set(crowd->count[p]), lanes_set(crowd->inverse_count[p]), x,
+                           lsm->gravity, lsm->rounding, lanes_set(1), v);
         if (!damp) {
             integrate_position(lsm->obstacle, lsm->obstacle_count, shift, x, v);
             store3(crowd->x + at, x);
@@ -354,7 +350,7 @@ void crowd_goals(Crowd *crowd)
     run(crowd, true, NULL);
 }
 
-void crowd_recentre(Crowd *crowd)
+void crowd_recentre(Crowd *crowd, Momentum *momentum)
 {
     long n = crowd->lsm->lattice.count;
     for (long group = 0; group < crowd->groups; group++) {
@@ -367,6 +363,10 @@ void crowd_recentre(Crowd *crowd)
                 middle[d][lane] = (real)rint((double)middle[d][lane] / (double)n);
                 crowd->origin[group * L + lane][d] += (double)middle[d][lane] * crowd->lsm->cell;
             }
+        for (int lane = 0; lane < L && group * L + lane < crowd->bodies; lane++)
+            momentum_shift(momentum, group * L + lane,
+                           (const double[3]){(double)middle[0][lane], (double)middle[1][lane],
+                                             (double)middle[2][lane]});
         for (long p = 0; p < n; p++)
             for (int d = 0; d < 3; d++) {
                 real *x = crowd->x + ((group * n + p) * 3 + d) * L;

@@ -5,6 +5,7 @@
 #ifndef LSM_CROWD_H
 #define LSM_CROWD_H
 
+#include "../lib/momentum.h"
 #include "state.h"
 
 #define crowd_build    SM_NAME(crowd_build)
@@ -17,12 +18,12 @@
 typedef struct {
     const Lsm *lsm; /* lattice, lists and constants of one body, in list form */
     long bodies, groups;
-    real *x, *v, *g;              /* [groups][particles][3][lanes] */
-    short *last;                  /* [groups][particles][6][lanes] */
-    double (*origin)[3];          /* [groups * lanes] */
-    real *weight, *inverse_count; /* [particles] */
-    real (*region)[4];            /* [particles] 1 / M_r, c0_r - x0_r */
-    int *original;                /* [particles] particle whose region is the same */
+    real *x, *v, *g;                      /* [groups][particles][3][lanes] */
+    short *last;                          /* [groups][particles][6][lanes] */
+    double (*origin)[3];                  /* [groups * lanes] */
+    real *weight, *count, *inverse_count; /* [particles] m~, |R|, 1 / |R| */
+    real (*region)[4];                    /* [particles] 1 / M_r, c0_r - x0_r */
+    int *original;                        /* [particles] particle whose region is the same */
     int threads;
     real **scratch; /* [threads] rows of one group */
 } Crowd;
@@ -36,7 +37,7 @@ void crowd_step(Crowd *crowd, SmLaps *laps);
 void crowd_goals(Crowd *crowd);
 
 /* Moves each body's origin to its middle, by whole cells. */
-void crowd_recentre(Crowd *crowd);
+void crowd_recentre(Crowd *crowd, Momentum *momentum);
 
 long crowd_bytes(const Crowd *crowd);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../lib/handles.h"
+#include "../lib/momentum.h"
 #include "build.h"
 #include "contacts.h"
 #include "crowd.h"
@@ -26,6 +27,9 @@ struct SmEngine {
     double (*pose)[3][4]; /* [bodies] */
     SmHandles handles;
     LsmContacts *contacts; /* NULL: nothing collides */
+    Momentum *momentum;
+    SmPieces pieces; /* of its particles, by the lattice's numbers */
+    long divided_at; /* links broken when its pieces were found */
     double build_seconds;
 };
 
@@ -107,6 +111,7 @@ static void shift_obstacles(Lsm *lsm)
 static void engine_set(SmEngine *e, SmField field, const double (*values)[3])
 {
     assert(field == SM_POSITION || field == SM_VELOCITY);
+    momentum_forget(e->momentum);
     if (field == SM_POSITION) centre_on(e, values);
     if (field == SM_POSITION) shift_obstacles(e->lsm);
     real *to = field_of(e, field);
@@ -146,6 +151,46 @@ static void fill_empty_lanes(SmEngine *e)
                 long at = ((body / SM_LANES * e->count + p) * 3 + d) * SM_LANES + body % SM_LANES;
                 e->crowd->x[at] = (real)(e->lsm->lattice.coord[p][d] - e->lsm->lattice.size[d] / 2);
             }
+}
+
+/* Links of the lattice make pieces of `pieces`, whose members are the particles by the numbers
+ * given, or by the lattice's where they are NULL. */
+static void link_pieces(const LsmLattice *l, const int *number, SmPieces *pieces)
+{
+    for (long p = 0; p < l->count; p++) {
+        const int *c = l->coord[p];
+        uint32_t later = l->link[p] >> (LSM_SELF + 1) << (LSM_SELF + 1);
+        for (; later; later &= later - 1) {
+            int bit = __builtin_ctz(later);
+            long q =
+                lsm_lattice_find(l, c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1);
+            sm_pieces_link(pieces, number ? number[p] : p, number ? number[q] : q);
+        }
+    }
+}
+
+/* What keeps its momentum, now that as many links are broken. */
+static void divide_momentum(SmEngine *e)
+{
+    Momentum *m = e->momentum;
+    sm_pieces_again(e->count, &e->pieces);
+    link_pieces(&e->lsm->lattice, NULL, &e->pieces);
+    sm_pieces_finish(&e->pieces, NULL, e->count);
+    for (long slot = 0; slot < e->lsm->blocks * SM_LANES && !e->crowd; slot++) m->label[slot] = -1;
+    for (long p = 0; p < e->count; p++) {
+        long slot = e->crowd ? p : e->lsm->slot[p];
+        m->mass[slot] = (real)mass_of(e->lsm, p);
+        m->label[slot] = e->pieces.piece[p];
+    }
+    momentum_divide(m, e->pieces.count);
+    e->divided_at = e->lsm->broken;
+}
+
+/* How often momenta are kept: the more particles there are, the better their roundings cancel, and
+ * the more it costs when they do not stay in the cache. */
+static int keep_steps(long blocks)
+{
+    return blocks <= 256 ? 2 : blocks <= 8192 ? 4 : 16;
 }
 
 static void start_at_rest(SmEngine *e)
@@ -205,6 +250,11 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
         lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
     start_at_rest(e);
     e->contacts = lsm_contacts_build(lsm, e->crowd);
+    e->momentum =
+        momentum_build(e->crowd ? e->count : lsm->blocks, e->bodies, e->crowd != NULL,
+                       keep_steps(lsm->blocks), e->crowd ? e->crowd->threads : lsm->threads);
+    sm_pieces_init(e->count, &e->pieces);
+    divide_momentum(e);
     e->build_seconds = sm_now() - start;
     *engine = e;
     return SM_OK;
@@ -215,6 +265,8 @@ static void engine_destroy(SmEngine *e)
     if (!e) return;
     sm_handles_free(&e->handles);
     lsm_contacts_free(e->contacts);
+    momentum_free(e->momentum);
+    sm_pieces_free(&e->pieces);
     crowd_free(e->crowd);
     lsm_free(e->lsm);
     free(e->inner);
@@ -255,10 +307,38 @@ static void move_held(SmEngine *e)
         }
 }
 
+/* Does nothing but gravity act on the body? */
+static bool is_free(const SmEngine *e)
+{
+    return e->handles.held == 0 && e->lsm->obstacle_count == 0 &&
+           !(e->contacts && lsm_contacts_count(e->contacts) > 0);
+}
+
+static void begin_momentum(SmEngine *e)
+{
+    if (!is_free(e)) return;
+    momentum_begin(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY));
+}
+
+/* Pieces are found again when the body has stopped breaking for a while. */
+static void keep_momentum(SmEngine *e)
+{
+    bool broke = e->lsm->broken != e->divided_at;
+    if (!is_free(e)) momentum_forget(e->momentum);
+    if (!is_free(e) || !momentum_due(e->momentum)) return;
+    if (broke)
+        divide_momentum(e);
+    else
+        momentum_keep(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY),
+                      e->lsm->gravity);
+    momentum_kept(e->momentum);
+}
+
 static void engine_step(SmEngine *e, SmLaps *laps)
 {
     Lsm *lsm = e->lsm;
     note_held(e);
+    begin_momentum(e);
     if (e->contacts) {
         lsm_contacts_before(e->contacts);
         sm_lap(laps, SM_OTHER);
@@ -274,10 +354,11 @@ static void engine_step(SmEngine *e, SmLaps *laps)
     move_held(e);
     if (e->contacts) lsm_contacts_after(e->contacts);
     if (lsm->params.strain_limit > 0 && isfinite(lsm->params.strain_limit)) lsm_fracture(lsm);
+    keep_momentum(e);
     if (lsm->steps % RECENTRE_STEPS == 0) {
         if (e->crowd)
-            crowd_recentre(e->crowd);
-        else if (lsm_recentre(lsm))
+            crowd_recentre(e->crowd, e->momentum);
+        else if (lsm_recentre(lsm, e->momentum))
             shift_obstacles(lsm);
     }
     sm_lap(laps, SM_OTHER);
@@ -327,19 +408,9 @@ static long engine_contacts(SmEngine *e, double (*turn)[9], SmContact **contact)
 /* Links go over from the lattice's numbers to the engine's. */
 static void engine_pieces(SmEngine *e, SmPieces *pieces)
 {
-    const LsmLattice *l = &e->lsm->lattice;
     int *outer = outer_numbers(e);
     sm_pieces_init(e->count, pieces);
-    for (long p = 0; p < e->count; p++) {
-        const int *c = l->coord[p];
-        uint32_t later = l->link[p] >> (LSM_SELF + 1) << (LSM_SELF + 1);
-        for (; later; later &= later - 1) {
-            int bit = __builtin_ctz(later);
-            long q =
-                lsm_lattice_find(l, c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1);
-            sm_pieces_link(pieces, outer[p], outer[q]);
-        }
-    }
+    link_pieces(&e->lsm->lattice, outer, pieces);
     sm_pieces_finish(pieces, NULL, e->count);
     free(outer);
 }
@@ -351,14 +422,20 @@ static double kilograms(const SmEngine *e, long number)
 
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])
 {
-    real *v = field_of(e, SM_VELOCITY);
+    real *x = field_of(e, SM_POSITION), *v = field_of(e, SM_VELOCITY);
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->bodies * e->count);
-        double scale = e->lsm->params.h / (e->lsm->cell * kilograms(e, particle[i]));
+        double scale = e->lsm->params.h / (e->lsm->cell * kilograms(e, particle[i])), at[3], dv[3];
         for (int d = 0; d < 3; d++) {
             const double *origin;
-            v[index_of(e, particle[i], d, &origin)] += (real)(impulse[i][d] * scale);
+            long index = index_of(e, particle[i], d, &origin);
+            at[d] = (double)x[index];
+            dv[d] = impulse[i][d] * scale;
+            v[index] += (real)dv[d];
         }
+        long p = e->inner[particle[i] % e->count];
+        momentum_pushed(e->momentum, particle[i] / e->count, e->crowd ? p : e->lsm->slot[p], at,
+                        dv);
     }
 }
 
@@ -386,6 +463,7 @@ static void fix_held(SmEngine *e)
 
 static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
+    momentum_forget(e->momentum);
     sm_handles_set(&e->handles, boundary, e->bodies * e->count);
     if (e->contacts) fix_held(e);
     copy_obstacles(e->lsm, boundary);
@@ -407,7 +485,7 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .links = lsm_lattice_links(&lsm->lattice),
         .broken = lsm->broken,
         .bytes = lsm_bytes(lsm) + (e->crowd ? crowd_bytes(e->crowd) : 0) +
-                 (e->contacts ? lsm_contacts_bytes(e->contacts) : 0),
+                 (e->contacts ? lsm_contacts_bytes(e->contacts) : 0) + momentum_bytes(e->momentum),
         .contacts = e->contacts ? lsm_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,
         .jacobi_sweeps = sweeps / (double)(e->count - lsm->copies),

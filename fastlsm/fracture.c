@@ -151,6 +151,7 @@ static void revise_particle(Lsm *lsm, long p)
                                      &lsm->particle_records, &lsm->block_const[block]);
     ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
     k->weight[lane] = (real)(mass_of(lsm, p) / lsm->members[p]);
+    k->count[lane] = (real)lsm->members[p];
     k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
 }
 
@@ -346,7 +347,7 @@ long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first)
     return lsm->broken - before;
 }
 
-bool lsm_recentre(Lsm *lsm)
+bool lsm_recentre(Lsm *lsm, Momentum *momentum)
 {
     double sum[3] = {0, 0, 0};
     for (long block = 0; block < lsm->blocks; block++)
@@ -360,9 +361,10 @@ bool lsm_recentre(Lsm *lsm)
     bool far = false;
     for (int d = 0; d < 3; d++) {
         middle[d] = rint(sum[d] / (double)lsm->lattice.count);
-        far |= fabs(middle[d]) > 4;
+        far |= fabs(middle[d]) > 1;
     }
     if (!far) return false;
+    momentum_shift(momentum, 0, middle);
     for (int d = 0; d < 3; d++) lsm->origin[d] += middle[d] * lsm->cell;
     for (long slot = 0; slot < lsm->blocks * SM_LANES; slot++)
         for (int d = 0; d < 3 && lsm->particle[slot] >= 0; d++)

@@ -3,6 +3,7 @@
 #define LSM_FRACTURE_H
 
 #include "../lib/cut.h"
+#include "../lib/momentum.h"
 #include "state.h"
 
 #define lsm_break    SM_NAME(lsm_break)
@@ -34,6 +35,6 @@ long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first);
 
 /* Moves the origin to the body's middle, by whole cells, once it has drifted: single precision
  * resolves positions best near zero. Returns whether it moved. */
-bool lsm_recentre(Lsm *lsm);
+bool lsm_recentre(Lsm *lsm, Momentum *momentum);
 
 #endif

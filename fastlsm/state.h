@@ -22,7 +22,7 @@ typedef struct {
 } RegionConst;
 
 typedef struct {
-    vec weight, inverse_count; /* m~_i = m_i / |R_i|; 1 / |R_i|; 0 for an empty slot */
+    vec weight, count, inverse_count; /* m~_i = m_i / |R_i|; |R_i|; 1 / |R_i|; empty slots: 0 */
 } ParticleConst;
 
 /* How many constant records there are. Equal ones are stored once; those from `shared` on belong to
@@ -124,6 +124,7 @@ typedef struct Lsm {
     bool damp_now;
 
     real gravity[3]; /* cells per step and step */
+    real rounding;   /* square of what goals are off by rounding (integrate.h) */
     int obstacle_count;
     Obstacle *obstacle;
     vec shift[3]; /* (origin - home) / cell: from x to obstacle coordinates */

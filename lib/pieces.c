@@ -6,7 +6,13 @@
 
 void sm_pieces_init(long nodes, SmPieces *pieces)
 {
-    *pieces = (SmPieces){.piece = sm_alloc((size_t)nodes, sizeof *pieces->piece)};
+    pieces->piece = sm_alloc((size_t)nodes, sizeof *pieces->piece);
+    sm_pieces_again(nodes, pieces);
+}
+
+void sm_pieces_again(long nodes, SmPieces *pieces)
+{
+    pieces->count = 0;
     for (long p = 0; p < nodes; p++) pieces->piece[p] = (int)p;
 }
 
@@ -25,16 +31,13 @@ void sm_pieces_link(SmPieces *pieces, long p, long q)
 
 void sm_pieces_finish(SmPieces *pieces, const unsigned char *absent, long nodes)
 {
-    int *number = sm_alloc((size_t)nodes, sizeof *number);
+    int *piece = pieces->piece; /* those before p are numbered already, and p's parent is */
     for (long p = 0; p < nodes; p++) {
-        int first = root(pieces->piece, (int)p);
         if (absent && absent[p])
-            number[p] = -1;
+            piece[p] = -1;
         else
-            number[p] = first == p ? (int)pieces->count++ : number[first];
+            piece[p] = piece[p] == p ? (int)pieces->count++ : piece[piece[p]];
     }
-    free(pieces->piece);
-    pieces->piece = number;
 }
 
 void sm_pieces_of_mesh(const SmMesh *mesh, SmPieces *pieces)

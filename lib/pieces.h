@@ -11,9 +11,10 @@ typedef struct {
 } SmPieces;
 
 /* Pieces of `nodes` nodes: call sm_pieces_link() for every link there is, then sm_pieces_finish(),
- * which numbers them; `absent` is [nodes], not 0 for numbers that no node has, or NULL. Nearly
- * O(nodes + links). */
+ * which numbers them; `absent` is [nodes], not 0 for numbers that no node has, or NULL. again()
+ * begins anew in the same memory. Nearly O(nodes + links). */
 void sm_pieces_init(long nodes, SmPieces *pieces);
+void sm_pieces_again(long nodes, SmPieces *pieces);
 void sm_pieces_link(SmPieces *pieces, long p, long q);
 void sm_pieces_finish(SmPieces *pieces, const unsigned char *absent, long nodes);
 

@@ -84,6 +84,22 @@ void oct_shape(Oct *oct, long body, const double (*S)[9])
     for (long block = 0; block < oct->blocks; block++) oct_block_inverse(oct, body, block);
 }
 
+/* The longest edge of the box around all cells' centres, finest cells. */
+static double extent_of(const OctTree *tree)
+{
+    int most = 0;
+    for (int d = 0; d < 3; d++) {
+        int low = tree->centre[tree->node[0]][d], high = low;
+        for (long leaf = 0; leaf < tree->leaves; leaf++) {
+            int at = tree->centre[tree->node[leaf]][d];
+            low = at < low ? at : low;
+            high = at > high ? at : high;
+        }
+        if (high - low > most) most = high - low;
+    }
+    return 0.5 * most;
+}
+
 /* All bodies start at rest in one place. */
 static void start_at_rest(const OctTree *tree, Oct *oct)
 {
@@ -123,6 +139,7 @@ Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mas
     fill_slots(tree, regions, mass, oct);
     for (int i = 0; i < oct->workers; i++) fill_rows(tree, oct, &oct->rows[i]);
     for (int d = 0; d < 3; d++) oct->gravity[d] = (real)params->gravity[d];
+    oct->rounding = rounding_square(extent_of(tree), 0.5 * regions->most_width);
     start_at_rest(tree, oct);
     return oct;
 }

@@ -5,10 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/momentum.h"
 #include "../lib/rotate_lanes.h"
 #include "../lib/team.h"
 #include "changing.h"
 #include "contacts.h"
+#include "frames.h"
 #include "head.h"
 #include "held.h"
 #include "lists.h"
@@ -27,6 +29,8 @@ struct SmEngine {
     double (*pose)[3][4]; /* [instances] */
     OctHeld held;
     OctContacts *contacts; /* NULL: nothing collides */
+    Momentum *momentum;    /* NULL of a weighting that keeps none */
+    bool divided;          /* its pieces are those of the present structure */
     double build_seconds;
     bool goals; /* g is that of the present state */
 };
@@ -143,6 +147,7 @@ static void engine_set(SmEngine *e, SmField field, const double (*values)[3])
 {
     assert(field == SM_POSITION || field == SM_VELOCITY);
     e->goals = false;
+    momentum_forget(e->momentum);
     renumber(e);
     if (field == SM_POSITION) {
         set_positions(e, values);
@@ -176,6 +181,24 @@ static void start_at_rest(SmEngine *e, const SmEngineParams *params)
     set_positions(e, (const double(*)[3])rest);
     free(rest);
     for (long i = 0; i < bodies; i++) turn_last(e, i);
+}
+
+/* What keeps its momentum: leaves that regions hold together. */
+static void divide_momentum(SmEngine *e)
+{
+    Momentum *m = e->momentum;
+    const OctStructure *s = &e->head.structure;
+    momentum_room(m, e->oct->blocks);
+    long slots = e->oct->blocks * SM_LANES, pieces;
+    for (long slot = 0; slot < slots; slot++) m->label[slot] = -1;
+    pieces = oct_frames_groups(&s->tree, &s->regions, m->label);
+    for (long slot = 0; slot < slots; slot++) {
+        bool there = m->label[slot] >= 0;
+        m->mass[slot] = there ? (real)(s->mass[slot] / e->oct->mass_unit) : 0;
+        if (there && e->oct->frame) m->frame[slot] = e->oct->frame[slot];
+    }
+    momentum_divide(m, pieces);
+    e->divided = true;
 }
 
 static SmCode engine_begin(SmEngine *e, SmError *error)
@@ -220,7 +243,8 @@ static const OctChange *engine_end(SmEngine *e)
     oct_held_inherit(&e->held, &e->head.structure.tree, change);
     e->count = e->head.structure.tree.live;
     e->renumber = true;
-    e->goals = false;
+    e->goals = e->divided = false;
+    momentum_forget(e->momentum);
     if (e->contacts && change->region_count + change->edge_count > 0) {
         oct_contacts_rebuild(e->contacts, &e->head.structure);
         fix_held(e);
@@ -303,6 +327,9 @@ static void complete(SmEngine *e, const OctOptions *options, const SmEngineParam
     e->h = params->h;
     start_at_rest(e, params);
     e->contacts = oct_contacts_build(e->oct, &e->head.structure, &params->collide);
+    if (options->weighting != OCT_CONSERVING) return;
+    e->momentum = momentum_build(e->oct->blocks, e->oct->instances, false, 1, e->oct->threads);
+    divide_momentum(e);
 }
 
 static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
@@ -359,6 +386,7 @@ static void engine_destroy(SmEngine *e)
     if (!e) return;
     oct_held_free(&e->held);
     oct_contacts_free(e->contacts);
+    momentum_free(e->momentum);
     oct_free(e->oct);
     oct_structure_free(&e->head.structure);
     free(e->pose);
@@ -367,10 +395,47 @@ static void engine_destroy(SmEngine *e)
     free(e);
 }
 
+/* Does nothing but gravity act on the bodies? */
+static bool is_free(const SmEngine *e)
+{
+    return e->held.count == 0 && e->oct->obstacle_count == 0 &&
+           !(e->contacts && oct_contacts_count(e->contacts) > 0);
+}
+
+static bool is_kicked(const OctState *body)
+{
+    return body->kick[0] != 0 || body->kick[1] != 0 || body->kick[2] != 0;
+}
+
+static void begin_momentum(SmEngine *e)
+{
+    if (!e->momentum || !e->divided || !is_free(e) || is_kicked(e->oct->body)) return;
+    for (long i = 0; i < e->oct->instances; i++) {
+        OctState *b = &e->oct->body[i];
+        momentum_begin(e->momentum, i, (const double(*)[3])b->origin, b->x, b->v);
+    }
+}
+
+/* Pieces are found again when the body has not changed for a while. */
+static void keep_momentum(SmEngine *e)
+{
+    Oct *oct = e->oct;
+    if (!e->momentum) return;
+    if (!is_free(e)) momentum_forget(e->momentum);
+    if (!is_free(e) || !momentum_due(e->momentum)) return;
+    for (long i = 0; i < oct->instances && e->divided; i++) {
+        OctState *b = &oct->body[i];
+        momentum_keep(e->momentum, i, (const double(*)[3])b->origin, b->x, b->v, oct->gravity);
+    }
+    if (!e->divided) divide_momentum(e);
+    momentum_kept(e->momentum);
+}
+
 static void engine_step(SmEngine *e, SmLaps *laps)
 {
     e->goals = false;
     oct_held_note(&e->held, e->oct);
+    begin_momentum(e);
     if (e->contacts) {
         oct_contacts_before(e->contacts);
         sm_lap(laps, SM_OTHER);
@@ -378,6 +443,7 @@ static void engine_step(SmEngine *e, SmLaps *laps)
     oct_step(e->oct, laps);
     oct_held_move(&e->held, e->oct, &e->head.structure, (const double(*)[3][4])e->pose);
     if (e->contacts) oct_contacts_after(e->contacts);
+    keep_momentum(e);
     if (e->oct->steps >= e->oct->recentre) oct_recentre(e->oct);
     sm_lap(laps, SM_OTHER);
 }
@@ -394,9 +460,16 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->oct->instances * e->count);
         long leaf = leaf_of(e, particle[i]);
-        double scale = e->h / (e->head.structure.cell * e->head.structure.mass[leaf]);
-        for (int d = 0; d < 3; d++)
-            body_of(e, particle[i])->v[oct_index(leaf, d)] += (real)(impulse[i][d] * scale);
+        double scale = e->h / (e->head.structure.cell * e->head.structure.mass[leaf]), at[3], dv[3];
+        OctState *body = body_of(e, particle[i]);
+        for (int d = 0; d < 3; d++) {
+            long index = oct_index(leaf, d);
+            at[d] = oct_origin(e->oct, body, leaf)[d] + (double)body->x[index];
+            dv[d] = impulse[i][d] * scale;
+            body->v[index] += (real)dv[d];
+        }
+        if (e->momentum && e->divided)
+            momentum_pushed(e->momentum, particle[i] / e->count, leaf, at, dv);
     }
 }
 
@@ -404,6 +477,7 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
 {
     Oct *oct = e->oct;
     renumber(e);
+    momentum_forget(e->momentum);
     sm_handles_set(&e->held.handles, boundary, e->oct->instances * e->count);
     e->held.count = 0;
     for (int i = 0; i < e->held.handles.count; i++)
@@ -436,7 +510,8 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .regions = e->count,
         .links = s->graph.edges / 2,
         .bytes = oct_bytes(e->oct) + (long)oct_structure_bytes(s) +
-                 (e->contacts ? oct_contacts_bytes(e->contacts) : 0),
+                 (e->contacts ? oct_contacts_bytes(e->contacts) : 0) +
+                 (e->momentum ? momentum_bytes(e->momentum) : 0),
         .contacts = e->contacts ? oct_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,
         .summation_nodes = s->regions.mean,

@@ -241,14 +241,15 @@ static void move(OctTask *task, long first, long last)
         vec g[3], x[3], v[3];
         goal_sums(task, block, g);
         sm_lap(task->laps, SM_FAST_SUM);
-        for (int d = 0; d < 3; d++) g[d] *= oct->block[block].inverse_reach;
+        const OctConst *k = &oct->block[block];
         if (task->goals) {
+            for (int d = 0; d < 3; d++) g[d] *= k->inverse_reach;
             store3(body->g + at, g);
             continue;
         }
         load3(body->x + at, x);
         load3(body->v + at, v);
-        integrate_velocity(g, x, push, lanes_set(1), v);
+        integrate_velocity(g, k->reach, k->inverse_reach, x, push, oct->rounding, lanes_set(1), v);
         if (!oct->damp_now) {
             vec shift[3];
             oct_shift(oct, body, block, shift);

@@ -1,0 +1,118 @@
+/* momentum.h - keeps the momentum of free bodies, which rounding would change.
+ *
+ * Shape matching keeps linear and angular momentum: the changes m (g - x) of a region add up to
+ * nothing and have no moment. Rounded they do not, and since a body that moves little is rounded
+ * the same way in every step, what is left adds up: a body at rest in empty space would fly away,
+ * its velocity in proportion to time. So every few steps the momentum of each piece of a body is
+ * measured, and what it has too much, next to what it had and what gravity has added since, is
+ * taken from its particles as a rigid velocity at the next measurement; so is a share of what its
+ * centre is off its parabola. The error stays what few steps make of it, for any number of steps.
+ *
+ * Pieces are measured apart, because each keeps its own momentum. Only what nothing acts on but
+ * gravity is kept: whoever changes positions or velocities from outside, or has them changed by
+ * handles, obstacles or contacts, says so by momentum_forget(), and begins anew.
+ *
+ * Lengths are cells, velocities cells per step, as inside an engine. */
+#ifndef SM_MOMENTUM_H
+#define SM_MOMENTUM_H
+
+#include <stdbool.h>
+
+#include "real.h"
+
+#define Momentum        SM_NAME(SmMomentum)
+#define momentum_build  SM_NAME(sm_momentum_build)
+#define momentum_room   SM_NAME(sm_momentum_room)
+#define momentum_divide SM_NAME(sm_momentum_divide)
+#define momentum_forget SM_NAME(sm_momentum_forget)
+#define momentum_begin  SM_NAME(sm_momentum_begin)
+#define momentum_pushed SM_NAME(sm_momentum_pushed)
+#define momentum_keep   SM_NAME(sm_momentum_keep)
+#define momentum_shift  SM_NAME(sm_momentum_shift)
+#define momentum_bytes  SM_NAME(sm_momentum_bytes)
+#define momentum_free   SM_NAME(sm_momentum_free)
+
+/* One piece of one body. Places count from where the origins do (momentum_keep()). */
+typedef struct {
+    double mass, about[3];                 /* what sums are taken about; whole cells */
+    double place[3], velocity[3], spin[3]; /* where its centre should be, and its momenta */
+    double shift[3], push[3], turn[3];     /* too far, too fast, turning about `about` */
+    double drift[3], twist[3];             /* what rounding adds from one time to the next */
+    double sum[15];                        /* of its particles, while they are measured */
+    long since;                            /* the `age` in which these were measured */
+} MomentumPiece;
+
+/* Blocks whose lanes are of the same pieces and frames; of one piece where it is not -1. */
+typedef struct {
+    long first, piece;
+} MomentumRun;
+
+typedef struct {
+    /* the caller's to fill in before momentum_divide(): */
+    real *mass; /* [slots] 0 in empty ones; abreast, slots are particles */
+    int *label; /* [slots] the piece, from 0; -1 in empty slots */
+    int *frame; /* [slots] which origin x counts from; all 0 as built */
+    /* its own: */
+    long blocks; /* of SM_LANES slots, of one body; abreast: its particles */
+    long bodies;
+    bool abreast; /* lane l of group k is body k SM_LANES + l */
+    int threads;
+    long pieces, piece_room;
+    MomentumPiece *piece; /* [bodies][pieces] */
+    long runs;
+    MomentumRun *run;  /* [runs + 1] */
+    void *sum;         /* of the runs that are summed at once */
+    long age;          /* how often momenta were forgotten, and once more */
+    long every, steps; /* steps from one measurement to the next, and since the last one */
+} Momentum;
+
+/* Room for bodies of so many blocks each, without masses or pieces, whose momenta are kept in every
+ * `every`-th step. The caller frees. */
+Momentum *momentum_build(long blocks, long bodies, bool abreast, int every, int threads);
+
+/* Bodies have as many blocks from now on. Allocates. */
+void momentum_room(Momentum *m, long blocks);
+
+/* Takes up masses, labels of `pieces` pieces, and frames. Forgets. Allocates only where there are
+ * more pieces than ever before. O(slots). */
+void momentum_divide(Momentum *m, long pieces);
+
+/* Something from outside has changed positions or velocities, or may have. NULL: does nothing. */
+void momentum_forget(Momentum *m);
+
+/* Before a step of a body that is free: takes its momenta for what they should be, unless they are
+ * known. Of one body, or all of them if they are abreast. A particle is at x + origin[its frame];
+ * origins count by whole cells, or are one that stays; NULL: 0. O(slots) when they are not known.
+ */
+void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, real *v);
+
+/* After a step: is it time to keep the momenta? */
+static inline bool momentum_due(Momentum *m)
+{
+    return ++m->steps >= m->every;
+}
+
+/* Measures one body (all of them if they are abreast), and takes from its particles what was found
+ * too much the last time. `gravity` in cells per step and step. The same bits for any number of
+ * threads. O(slots): some 40 operations a block, and reads 28 bytes a slot. */
+void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, real *v,
+                   const real gravity[3]);
+
+/* After all bodies were measured. */
+static inline void momentum_kept(Momentum *m)
+{
+    m->steps = 0;
+}
+
+/* The velocity of a slot (abreast: particle) at x, origin included, was changed by `dv`: an
+ * external force. */
+void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3]);
+
+/* x of a body counts from a place farther on by `by`, which no `origin` tells. */
+void momentum_shift(Momentum *m, long body, const double by[3]);
+
+long momentum_bytes(const Momentum *m);
+
+void momentum_free(Momentum *m);
+
+#endif
