@@ -11,6 +11,10 @@ cmake --install "$build" --prefix "$prefix" >"$prefix/log" || { cat "$prefix/log
 export_line=$(sed -n 's/^ *export PKG_CONFIG_PATH=/export PKG_CONFIG_PATH=/p' "$(dirname -- "$0")/../README.md")
 [ -n "$export_line" ] || { echo "no export PKG_CONFIG_PATH in README.md"; exit 1; }
 eval "${export_line//PREFIX/\$prefix}"
+for script in check_step.py render.py plots.py plot_calibration.py plot_slice.py plot_sweep.py report/main.py; do
+    cmp -s "$(dirname -- "$0")/$script" "$prefix/share/shapebench/$script" ||
+        { echo "not installed: $script"; exit 1; }
+done
 cat >"$prefix/program.c" <<'PROGRAM'
 #include <shapebench/fastlsm/fastlsm.h>
 #include <stdio.h>
