@@ -55,7 +55,8 @@ static const struct argp_option option_list[] = {
     {"scene", KEY_SCENE, "NAME|FILE", 0,
      "Compare this scene only; may be repeated (default: all of the file, or of the paper)", 1},
     {"rounds", KEY_ROUNDS, "N", 0,
-     "Rounds of two processes of each build and scene (default: 10 or as many as the test needs, or "
+     "Rounds of two processes of each build and scene (default: 10 or as many as the test needs, "
+     "or "
      "3 "
      "beside a file)",
      2},

@@ -47,8 +47,8 @@ static void read_line(const char *path, size_t size, char *line)
 /* Appends `words` to `text`, but only those that name instruction sets. */
 static void add_instructions(char *words, size_t size, char *text)
 {
-    static const char *const sets[] = {"sse", "ssse", "avx", "fma", "f16c",
-                                       "bmi", "amx",  "sve", "sme", "asimd"};
+    static const char *const sets[] = {"sse", "ssse", "avx", "fma",  "f16c",
+                                       "bmi", "amx",  "sve", "asimd"};
     size_t used = 0;
     for (char *word; (word = strtok_r(words, " \t\n", &words)) && used < size;)
         for (size_t s = 0; s < sizeof sets / sizeof *sets; s++)
