@@ -1,18 +1,40 @@
 #!/usr/bin/python3
 """Pictures of meshes and trajectories: OBJ, PLY, STL, and the VTKHDF files that `shapebench run` writes.
 
+A trajectory has one camera, which sees all of its frames, so that pictures of two frames can be laid over each
+other. Its bodies stand on nothing but the obstacles that it holds; a mesh by itself stands on a ground of its own.
+
 Needs what `scripts/setup pictures` installs: Debian's python3-vtk9, python3-h5py, python3-matplotlib and,
 for a machine without a display, xvfb, xauth and libgl1-mesa-dri."""
 
 from plots import fail, opened, write
 
 import argparse  # after plots, which watches for interrupts
+import dataclasses
 import os
 import shutil
 import subprocess
 import sys
 
-SURFACE, EDGE = (0.55, 0.72, 0.90), (0.12, 0.18, 0.25)  # colours
+SURFACE, EDGE, GROUND = (0.55, 0.72, 0.90), (0.12, 0.18, 0.25), (0.97, 0.97, 0.98)  # colours
+TRAJECTORIES = (".vtkhdf", ".h5", ".hdf5", ".hdf")
+
+
+@dataclasses.dataclass
+class Sequence:
+    """What all pictures of a file share: its camera sees the box of all frames."""
+
+    low: "numpy.ndarray"
+    high: "numpy.ndarray"
+    still: bool  # a mesh that is not of a simulation
+
+    @property
+    def centre(self):
+        return (self.low + self.high) / 2
+
+    @property
+    def span(self):
+        return float(sum((self.high - self.low) ** 2) ** 0.5) or 1.0
 
 
 def parse():
@@ -65,6 +87,26 @@ def polydata(points, faces):
     return data
 
 
+def read_sequence(path, mesh):
+    """The box of `mesh`, or of all frames of a trajectory, whose points lie one frame after the other."""
+    import numpy
+
+    if mesh:
+        bounds = numpy.array(mesh.GetBounds())
+        return Sequence(bounds[::2], bounds[1::2], True)
+    with opened(path) as file:
+        points, rows = file["VTKHDF/Points"], 1 << 20
+        if not len(points):
+            raise ValueError("no points")
+        low, high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
+        for first in range(0, len(points), rows):
+            some = points[first : first + rows]
+            low, high = numpy.minimum(low, some.min(0)), numpy.maximum(high, some.max(0))
+        if not numpy.isfinite(high - low).all():
+            raise ValueError("points that are not finite")
+    return Sequence(low.astype(float), high.astype(float), False)
+
+
 def read_trajectory(path, frame):
     """One frame of a VTKHDF file, UnstructuredGrid or PolyData, with or without steps."""
     with opened(path) as file:
@@ -90,15 +132,17 @@ def read_trajectory(path, frame):
         return polydata(points, faces)
 
 
-def read(path, frame):
+def is_trajectory(path):
+    return os.path.splitext(path)[1].lower() in TRAJECTORIES
+
+
+def read_mesh(path):
     import vtk
 
     vtk.vtkObject.GlobalWarningDisplayOff()
     if not os.path.isfile(path):
         fail(f"{path}: no such file", 3)
     ending = os.path.splitext(path)[1].lower()
-    if ending in (".vtkhdf", ".h5", ".hdf5", ".hdf"):
-        return read_trajectory(path, frame)
     readers = {".obj": vtk.vtkOBJReader, ".ply": vtk.vtkPLYReader, ".stl": vtk.vtkSTLReader}
     if ending not in readers:
         fail(f"{path}: reads .obj, .ply, .stl and .vtkhdf or .h5, not {ending or 'files without an ending'}", 3)
@@ -183,24 +227,23 @@ def cells_actor(data, levels, wire):
     return actor
 
 
-def edge_colour(data, height):
-    """The darker the larger triangles are in the image; none for those under two pixels, which lines would cover."""
+def edge_colour(data, scale):
+    """The darker the larger triangles are in the image, of so many pixels a unit of length; none for those under two
+    pixels, which lines would cover."""
     import math
 
     import vtk
 
     mass = vtk.vtkMassProperties()
     mass.SetInputData(data)
-    bounds = data.GetBounds()
-    if not data.GetNumberOfPolys() or bounds[::2] == bounds[1::2]:
+    if not data.GetNumberOfPolys():
         return None
-    side = math.sqrt(2 * mass.GetSurfaceArea() / data.GetNumberOfPolys())
-    pixels = height * side / math.dist(bounds[::2], bounds[1::2])
+    pixels = scale * math.sqrt(2 * mass.GetSurfaceArea() / data.GetNumberOfPolys())
     share = min(1, pixels / 8)
     return pixels >= 2 and [share * dark + (1 - share) * own for dark, own in zip(EDGE, SURFACE)]
 
 
-def surface_actor(data, edges, height):
+def surface_actor(data, edges, scale):
     import vtk
 
     normals = vtk.vtkPolyDataNormals()
@@ -219,28 +262,28 @@ def surface_actor(data, edges, height):
     look.SetDiffuse(0.85)
     look.SetSpecular(0.18)
     look.SetSpecularPower(25)
-    colour = edges and edge_colour(data, height)
+    colour = edges and edge_colour(data, scale)
     if colour:
         look.EdgeVisibilityOn()
         look.SetEdgeColor(*colour)
     return actor
 
 
-def ground_actor(bounds, span):
-    """A large disc under the mesh that takes its shadow."""
+def ground_actor(sequence):
+    """A large disc under a mesh by itself, seen by the contact shadow that it takes."""
     import vtk
 
     disc = vtk.vtkRegularPolygonSource()
     disc.SetNumberOfSides(96)
-    disc.SetRadius(4 * span)
+    disc.SetRadius(4 * sequence.span)
     disc.SetNormal(0, 1, 0)
-    disc.SetCenter((bounds[0] + bounds[1]) / 2, bounds[2] - 0.002 * span, (bounds[4] + bounds[5]) / 2)
+    disc.SetCenter(sequence.centre[0], sequence.low[1] - 0.002 * sequence.span, sequence.centre[2])
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputConnection(disc.GetOutputPort())
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     look = actor.GetProperty()
-    look.SetColor(0.97, 0.97, 0.98)
+    look.SetColor(*GROUND)
     look.SetAmbient(1.0)
     look.SetDiffuse(0.0)  # its own colour but for the contact shadow
     return actor
@@ -257,13 +300,11 @@ def light(renderer, centre, span, direction, strength):
     renderer.AddLight(lamp)
 
 
-def stage(renderer, data, view):
+def stage(renderer, sequence, view):
     """Camera and lights: key from the upper left of the camera, fill from its right."""
     import math
 
-    bounds = data.GetBounds()
-    centre = [(bounds[i] + bounds[i + 1]) / 2 for i in (0, 2, 4)]
-    span = math.dist(bounds[::2], bounds[1::2])
+    centre, span = sequence.centre, sequence.span
     turn = {"front": 0.0, "side": 90.0, "back": 180.0, "three-quarter": 35.0}[view]
     a, rise = math.radians(turn), math.radians(12)
 
@@ -275,12 +316,12 @@ def stage(renderer, data, view):
     camera.SetPosition(*[c + 5 * span * d for c, d in zip(centre, around(0, rise))])
     camera.SetViewUp(0, 1, 0)
     camera.SetViewAngle(2 * math.degrees(math.atan(0.53 / 5)))
-    renderer.AddActor(ground_actor(bounds, span))
+    if sequence.still:
+        renderer.AddActor(ground_actor(sequence))
     light(renderer, centre, span, around(-0.7, 0.85), 0.85)
     light(renderer, centre, span, around(0.9, 0.35), 0.32)
     light(renderer, centre, span, around(0, 0.1), 0.16)
     renderer.ResetCameraClippingRange()
-    return span
 
 
 def occlusion(renderer, span):
@@ -298,18 +339,20 @@ def occlusion(renderer, span):
 
 def fill(renderer, path, options, height):
     """What there is to see: the surface, an octree's cells, or both."""
-    surface = read(path, options.frame)
+    mesh = None if is_trajectory(path) else read_mesh(path)
+    sequence = read_sequence(path, mesh)
+    surface = mesh or read_trajectory(path, options.frame)
     if options.cells:
         cells, levels = read_cells(path, options.frame)
         renderer.AddActor(cells_actor(cells, levels, options.cells == "wire"))
     if options.cells != "boxes":
-        actor = surface_actor(surface, options.edges, height)
+        actor = surface_actor(surface, options.edges, height / sequence.span)
         renderer.AddActor(actor)
         if options.cells:
             actor.GetProperty().SetOpacity(0.35)
-    span = stage(renderer, cells if options.cells == "boxes" else surface, options.view)
+    stage(renderer, sequence, options.view)
     if options.cells != "wire":  # it cannot look through the surface
-        occlusion(renderer, span)
+        occlusion(renderer, sequence.span)
 
 
 def panel(path, options, size):
@@ -319,7 +362,7 @@ def panel(path, options, size):
     from vtk.util import numpy_support
 
     renderer = vtk.vtkRenderer()
-    renderer.SetBackground(0.97, 0.97, 0.98)
+    renderer.SetBackground(*GROUND)
     renderer.AutomaticLightCreationOff()
     fill(renderer, path, options, size[1])
     window = vtk.vtkRenderWindow()
@@ -349,7 +392,7 @@ def write_sheet(panels, names, columns, options):
     rows = -(-len(panels) // columns)
     label = 34 if names else 0
     figure = pyplot.figure(figsize=(columns * width / 100, rows * (height + label) / 100), dpi=100,
-                           facecolor=(0.97, 0.97, 0.98))
+                           facecolor=GROUND)
     for i, image in enumerate(panels):
         row, column = divmod(i, columns)
         bottom = 1 - (row * (height + label) + height) / (rows * (height + label))

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Records a short trajectory and has scripts/render.py draw it: the body is seen, and not everywhere;
-# a frame that there is not is an error.
+# one that falls moves in the picture, and stands on nothing that is not there; a frame that there is not
+# is an error.
 #
 # usage: scripts/test_render.sh SHAPEBENCH
 # exit codes: 0 passed, 1 failed, 77 skipped: what `scripts/setup pictures` installs is not there
@@ -37,6 +38,26 @@ if cmp -s edges.png plain.png; then echo "no edges" && exit 1; fi
 status=0
 "$render" penguin.vtkhdf --frame 3 -o none.png 2>said || status=$?
 [ "$status" -eq 2 ] && grep -q 'has 3 frames, no frame 3' said && ! [ -e none.png ]
+
+# A body that falls through empty space: the camera stays, the body moves down, and has no shadow.
+cat >fall.cfg <<'SCENE'
+mesh = "shape:penguin"; particles = 100; w = 2; h = 0.01; gravity = [0.0, -9.81, 0.0];
+steps_per_frame = 30; frames = 2;
+SCENE
+"$program" run fall.cfg --quiet -o fall.vtkhdf >run.log || { cat run.log; exit 1; }
+for frame in 0 2; do "$render" fall.vtkhdf --frame "$frame" --size 120x120 -o "fall$frame.png" >said; done
+/usr/bin/python3 - <<'PYTHON'
+from matplotlib import image
+
+rows = []
+for frame in (0, 2):
+    pixels = image.imread(f"fall{frame}.png")[:, :, :3]
+    blue = pixels[:, :, 2] - pixels[:, :, 0] > 0.05
+    rows.append(blue.any(axis=1).nonzero()[0])
+    below = pixels[rows[-1][-1] + 3 :]
+    assert not below.size or below.min() > 0.96, "the body has something under it"
+assert rows[0][-1] < rows[1][0], f"the body has not fallen: rows {rows}"
+PYTHON
 
 # Ctrl-C ends it with a line, and what lent it a display with it.
 echo 'import os, signal; os.kill(os.getpid(), signal.SIGINT)' >vtk.py
