@@ -225,6 +225,12 @@ void bench_h5_append(BenchH5 *h5, hid_t dataset, hsize_t rows, const void *value
     H5Tclose(type);
 }
 
+void bench_h5_link(BenchH5 *h5, const char *path, hid_t parent, const char *name)
+{
+    if (h5->failed) return;
+    check(h5, H5Lcreate_hard(h5->file, path, parent, name, H5P_DEFAULT, H5P_DEFAULT));
+}
+
 void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, const hsize_t *start,
                    const hsize_t *size)
 {

@@ -71,6 +71,8 @@ hid_t bench_h5_growing(BenchH5 *h5, hid_t parent, const char *name, hid_t type, 
                        const hsize_t *size);
 /* Appends `rows` entries along the first axis. */
 void bench_h5_append(BenchH5 *h5, hid_t dataset, hsize_t rows, const void *values);
+/* One more name, in `parent`, of what the file has at `path`. */
+void bench_h5_link(BenchH5 *h5, const char *path, hid_t parent, const char *name);
 /* A dataset that is a part of another one in the file, of as many dimensions: a virtual one, no
  * copy. */
 void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, const hsize_t *start,

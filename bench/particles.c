@@ -80,26 +80,17 @@ static void write_parameters(BenchH5 *h5, hid_t group, const BenchTrajectoryPara
     bench_h5_text(h5, group, "precision", all->precision ? all->precision : "unknown");
 }
 
-/* Which particles follow a handle, and the obstacles as rows of numbers. */
+/* Which particles follow a handle; and the file's obstacles under a second name. */
 static void write_boundary(BenchH5 *h5, hid_t group, const SmBoundary *boundary, long count)
 {
     unsigned char *held = sm_alloc((size_t)count, 1);
-    int obstacles = boundary ? boundary->obstacle_count : 0;
-    double(*row)[9] = sm_alloc((size_t)obstacles, sizeof *row);
     for (int i = 0; boundary && i < boundary->handle_count; i++)
         for (long p = 0; p < boundary->handle[i].count; p++)
             held[boundary->handle[i].particle[p]] = 1;
-    for (int i = 0; i < obstacles; i++) {
-        const SmObstacle *o = &boundary->obstacle[i];
-        const double values[9] = {o->kind, o->a[0], o->a[1],   o->a[2],    o->b[0],
-                                  o->b[1], o->b[2], o->radius, o->friction};
-        for (int a = 0; a < 9; a++) row[i][a] = values[a];
-    }
-    hsize_t held_size = (hsize_t)count, size[] = {(hsize_t)obstacles, 9};
+    hsize_t held_size = (hsize_t)count;
     bench_h5_dataset(h5, group, "held", H5T_STD_U8LE, 1, &held_size, held);
-    bench_h5_dataset(h5, group, "obstacles", H5T_IEEE_F64LE, 2, size, row);
+    bench_h5_link(h5, "obstacles", group, "obstacles");
     free(held);
-    free(row);
 }
 
 void bench_particles_begin(BenchH5 *h5, const BenchTrajectoryParams *params,

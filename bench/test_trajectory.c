@@ -204,6 +204,34 @@ static void topology_may_change(void **state)
     sm_mesh_free(&sheet);
 }
 
+/* What the bodies met lies in the file, recorded particles or not. */
+static void obstacles_are_stored(void **state)
+{
+    (void)state;
+    const SmObstacle obstacle[2] = {
+        {.kind = SM_PLANE, .a = {1, 2, 3}, .b = {0, 1, 0}, .friction = 0.25},
+        {.kind = SM_CAPSULE, .a = {4, 5, 6}, .b = {7, 8, 9}, .radius = 0.5}};
+    const SmBoundary boundary = {.obstacle_count = 2, .obstacle = obstacle};
+    const double wanted[2][9] = {{0, 1, 2, 3, 0, 1, 0, 0, 0.25}, {3, 4, 5, 6, 7, 8, 9, 0.5, 0}};
+    double got[2][9];
+    SmMesh sheet;
+    make_sheet(0, &sheet);
+    BenchTrajectoryParams params = sheet_params(path_in("met.vtkhdf"), &sheet);
+    params.boundary = &boundary;
+    BenchTrajectory *trajectory;
+    assert_int_equal(bench_trajectory_open(&params, &trajectory, NULL), SM_OK);
+    assert_int_equal(write_frames(trajectory, &sheet, 1, NULL), SM_OK);
+    assert_int_equal(bench_trajectory_close(trajectory, NULL), SM_OK);
+    BenchH5 h5 = {.file = H5Fopen(params.path, H5F_ACC_RDONLY, H5P_DEFAULT)};
+    hid_t dataset = bench_h5_find_dataset(&h5, h5.file, "obstacles", 2, (hsize_t[]){2, 9});
+    bench_h5_read(&h5, dataset, H5T_NATIVE_DOUBLE, got);
+    if (h5.failed) fail_msg("%s", h5.message);
+    assert_memory_equal(got, wanted, sizeof wanted);
+    H5Dclose(dataset);
+    H5Fclose(h5.file);
+    sm_mesh_free(&sheet);
+}
+
 /* The sidecar is well-formed with a scene's name and a file's name of odd characters. */
 static void sidecar_is_xml(void **state)
 {
@@ -356,10 +384,15 @@ int main(void)
 {
     mallopt(M_PERTURB, 0x5a);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_round_trip), cmocka_unit_test(topology_may_change),
-        cmocka_unit_test(sidecar_is_xml),    cmocka_unit_test(bad_targets),
-        cmocka_unit_test(blocked_sidecar),   cmocka_unit_test(abandoned),
-        cmocka_unit_test(killed_writer),     cmocka_unit_test(full_disk),
+        cmocka_unit_test(frames_round_trip),
+        cmocka_unit_test(topology_may_change),
+        cmocka_unit_test(obstacles_are_stored),
+        cmocka_unit_test(sidecar_is_xml),
+        cmocka_unit_test(bad_targets),
+        cmocka_unit_test(blocked_sidecar),
+        cmocka_unit_test(abandoned),
+        cmocka_unit_test(killed_writer),
+        cmocka_unit_test(full_disk),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -11,7 +11,7 @@
 #include "particles.h"
 #include "xdmf.h"
 
-enum { TRAJECTORY_SCHEMA = 3, VERTEX_CELL = 1, TRIANGLE_CELL = 5 /* as VTK has them */ };
+enum { TRAJECTORY_SCHEMA = 4, VERTEX_CELL = 1, TRIANGLE_CELL = 5 /* as VTK has them */ };
 
 /* Of a surface: what frames share between two changes of topology. */
 typedef struct {
@@ -130,6 +130,22 @@ static void write_type(BenchH5 *h5, hid_t group)
     H5Tclose(type);
 }
 
+/* As rows of numbers. */
+static void write_obstacles(BenchH5 *h5, const SmBoundary *boundary)
+{
+    int count = boundary ? boundary->obstacle_count : 0;
+    double(*row)[9] = sm_alloc((size_t)count, sizeof *row);
+    for (int i = 0; i < count; i++) {
+        const SmObstacle *o = &boundary->obstacle[i];
+        const double values[9] = {o->kind, o->a[0], o->a[1],   o->a[2],    o->b[0],
+                                  o->b[1], o->b[2], o->radius, o->friction};
+        for (int a = 0; a < 9; a++) row[i][a] = values[a];
+    }
+    hsize_t size[] = {(hsize_t)count, 9};
+    bench_h5_dataset(h5, h5->file, "obstacles", H5T_IEEE_F64LE, 2, size, row);
+    free(row);
+}
+
 static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryParams *params)
 {
     BenchH5 *h5 = &trajectory->h5;
@@ -140,6 +156,7 @@ static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryPa
     bench_h5_text(h5, h5->file, "scene", params->scene);
     hid_t group = bench_h5_group(h5, h5->file, "machine");
     bench_h5_fields(h5, group, machine_fields, machine_count, params->machine);
+    write_obstacles(h5, params->boundary);
     group = bench_h5_group(h5, h5->file, "VTKHDF");
     bench_h5_numbers(h5, group, "Version", H5T_STD_I64LE, 2, (long[]){2, 0});
     write_type(h5, group);

@@ -20,15 +20,15 @@ typedef struct {
     const SmMesh *surface; /* topology of the points written first; rest positions. Without
                             * triangles each point is a cell of its own */
     const BenchMachine *machine;
-    const char *scene;  /* name; any bytes */
-    BenchRecord record; /* all below is for particles or nodes, and else unused */
+    const char *scene;          /* name; any bytes */
+    const SmBoundary *boundary; /* its obstacles, which stay where they are; NULL: none */
+    BenchRecord record; /* all below is for particles or nodes, and else unused; so are handles */
     const SmVoxels *voxels;
     const OctStructure *structure; /* of nodes only */
     const SmEngineParams *params;  /* with `octree`, of nodes */
     const double *mass;            /* [particle_count] kg of a lattice; NULL: 1 each */
     const char *engine;            /* SmEngineType's name and precision; NULL: "unknown" */
     const char *precision;
-    const SmBoundary *boundary; /* NULL: a free body */
 } BenchTrajectoryParams;
 
 /* `params` and all it points to may go after the call. SM_OUTPUT when the

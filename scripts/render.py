@@ -17,6 +17,9 @@ import subprocess
 import sys
 
 SURFACE, EDGE, GROUND = (0.55, 0.72, 0.90), (0.12, 0.18, 0.25), (0.97, 0.97, 0.98)  # colours
+STOP, SHADE = (0.90, 0.89, 0.87), (0.80, 0.80, 0.81)  # of obstacles, and of shadows on them
+OBSTACLES = ("obstacles", "particles/obstacles", "nodes/obstacles")  # before schema 4 only the latter
+PLANE, SPHERE, BOX, CAPSULE = range(4)  # kinds of obstacles
 TRAJECTORIES = (".vtkhdf", ".h5", ".hdf5", ".hdf")
 
 
@@ -26,6 +29,7 @@ class Sequence:
 
     low: "numpy.ndarray"
     high: "numpy.ndarray"
+    obstacles: list  # rows of numbers, as in results/README.md
     still: bool  # a mesh that is not of a simulation
 
     @property
@@ -93,7 +97,7 @@ def read_sequence(path, mesh):
 
     if mesh:
         bounds = numpy.array(mesh.GetBounds())
-        return Sequence(bounds[::2], bounds[1::2], True)
+        return Sequence(bounds[::2], bounds[1::2], [], True)
     with opened(path) as file:
         points, rows = file["VTKHDF/Points"], 1 << 20
         if not len(points):
@@ -104,7 +108,10 @@ def read_sequence(path, mesh):
             low, high = numpy.minimum(low, some.min(0)), numpy.maximum(high, some.max(0))
         if not numpy.isfinite(high - low).all():
             raise ValueError("points that are not finite")
-    return Sequence(low.astype(float), high.astype(float), False)
+        obstacles = next((file[name][()] for name in OBSTACLES if name in file), numpy.empty((0, 9)))
+        if obstacles.ndim != 2 or obstacles.shape[1] != 9 or not numpy.isfinite(obstacles).all():
+            raise ValueError("obstacles that are none")
+    return Sequence(low.astype(float), high.astype(float), list(obstacles), False)
 
 
 def read_trajectory(path, frame):
@@ -269,24 +276,110 @@ def surface_actor(data, edges, scale):
     return actor
 
 
-def ground_actor(sequence):
-    """A large disc under a mesh by itself, seen by the contact shadow that it takes."""
+def flat_actor(source, colour):
+    """Something of one colour, but for contact shadows."""
     import vtk
 
-    disc = vtk.vtkRegularPolygonSource()
-    disc.SetNumberOfSides(96)
-    disc.SetRadius(4 * sequence.span)
-    disc.SetNormal(0, 1, 0)
-    disc.SetCenter(sequence.centre[0], sequence.low[1] - 0.002 * sequence.span, sequence.centre[2])
     mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(disc.GetOutputPort())
+    mapper.SetInputConnection(source.GetOutputPort())
+    mapper.ScalarVisibilityOff()
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     look = actor.GetProperty()
-    look.SetColor(*GROUND)
+    look.SetColor(*colour)
     look.SetAmbient(1.0)
-    look.SetDiffuse(0.0)  # its own colour but for the contact shadow
+    look.SetDiffuse(0.0)
     return actor
+
+
+def disc(centre, normal, radius):
+    import vtk
+
+    source = vtk.vtkRegularPolygonSource()
+    source.SetNumberOfSides(96)
+    source.SetRadius(radius)
+    source.SetNormal(*normal)
+    source.SetCenter(*centre)
+    return source
+
+
+def ball(centre, radius):
+    import vtk
+
+    source = vtk.vtkSphereSource()
+    source.SetCenter(*centre)
+    source.SetRadius(radius)
+    source.SetPhiResolution(48)
+    source.SetThetaResolution(96)
+    return source
+
+
+def solid(kind, a, b, radius):
+    """A sphere, box or capsule."""
+    import vtk
+
+    if kind == SPHERE:
+        return ball(a, radius)
+    if kind == BOX:
+        source = vtk.vtkCubeSource()
+        source.SetBounds(a[0], b[0], a[1], b[1], a[2], b[2])
+        return source
+    line = vtk.vtkLineSource()
+    line.SetPoint1(*a)
+    line.SetPoint2(*b)
+    tube = vtk.vtkTubeFilter()
+    tube.SetInputConnection(line.GetOutputPort())
+    tube.SetRadius(radius)
+    tube.SetNumberOfSides(96)
+    whole = vtk.vtkAppendPolyData()
+    for part in [ball(a, radius), ball(b, radius)] + [tube] * bool((a != b).any()):
+        whole.AddInputConnection(part.GetOutputPort())
+    return whole
+
+
+def obstacle_actor(kind, a, b, radius):
+    actor = flat_actor(solid(kind, a, b, radius), STOP)
+    actor.GetProperty().SetAmbient(0.35)
+    actor.GetProperty().SetDiffuse(0.65)
+    return actor
+
+
+def shadow_actor(data, point, normal):
+    """What the light from straight above leaves dark of a plane: shows how far above it a body is."""
+    import vtk
+
+    drop = vtk.vtkMatrix4x4()  # y becomes the plane's
+    for axis in (0, 2):
+        drop.SetElement(1, axis, -normal[axis] / normal[1])
+    drop.SetElement(1, 1, 0)
+    drop.SetElement(1, 3, float(point @ normal) / normal[1])
+    transform = vtk.vtkTransform()
+    transform.SetMatrix(drop)
+    flat = vtk.vtkTransformPolyDataFilter()
+    flat.SetInputData(data)
+    flat.SetTransform(transform)
+    return flat_actor(flat, SHADE)
+
+
+def surroundings(renderer, sequence, data):
+    """The obstacles, with the shadow of `data` on those that it can lie on; under a mesh by itself a ground, seen by
+    the contact shadow that it takes. A plane is drawn about the bodies, and only for who looks at its free side."""
+    import numpy
+
+    centre, span = sequence.centre, sequence.span
+    eye = numpy.array(renderer.GetActiveCamera().GetPosition())
+    if sequence.still:
+        under = (centre[0], sequence.low[1] - 0.002 * span, centre[2])
+        renderer.AddActor(flat_actor(disc(under, (0, 1, 0), 4 * span), GROUND))
+    for row in sequence.obstacles:
+        kind, a, b, radius = row[0], row[1:4], row[4:7], row[7]
+        if kind != PLANE:
+            renderer.AddActor(obstacle_actor(kind, a, b, radius))
+        elif (eye - a) @ b > 0:
+            middle = centre - ((centre - a) @ b + 0.002 * span) * b
+            renderer.AddActor(flat_actor(disc(middle, b, 1.5 * span), STOP))
+            if b[1] > 0.5:
+                renderer.AddActor(shadow_actor(data, a - 0.001 * span * b, b))
 
 
 def light(renderer, centre, span, direction, strength):
@@ -315,13 +408,11 @@ def stage(renderer, sequence, view):
     camera.SetFocalPoint(*centre)
     camera.SetPosition(*[c + 5 * span * d for c, d in zip(centre, around(0, rise))])
     camera.SetViewUp(0, 1, 0)
+    camera.SetClippingRange(0.5 * span, 12 * span)  # whatever size an obstacle is
     camera.SetViewAngle(2 * math.degrees(math.atan(0.53 / 5)))
-    if sequence.still:
-        renderer.AddActor(ground_actor(sequence))
     light(renderer, centre, span, around(-0.7, 0.85), 0.85)
     light(renderer, centre, span, around(0.9, 0.35), 0.32)
     light(renderer, centre, span, around(0, 0.1), 0.16)
-    renderer.ResetCameraClippingRange()
 
 
 def occlusion(renderer, span):
@@ -351,6 +442,7 @@ def fill(renderer, path, options, height):
         if options.cells:
             actor.GetProperty().SetOpacity(0.35)
     stage(renderer, sequence, options.view)
+    surroundings(renderer, sequence, cells if options.cells == "boxes" else surface)
     if options.cells != "wire":  # it cannot look through the surface
         occlusion(renderer, sequence.span)
 

@@ -59,6 +59,26 @@ for frame in (0, 2):
 assert rows[0][-1] < rows[1][0], f"the body has not fallen: rows {rows}"
 PYTHON
 
+# Where there is a floor it is drawn, with a shadow under the body, and what stands on it.
+cp fall.cfg floor.cfg
+cat >>floor.cfg <<'SCENE'
+planes = ( { point = [0.0, -1.5, 0.0]; normal = [0.0, 1.0, 0.0]; } );
+spheres = ( { centre = [0.9, -1.3, 0.4]; radius = 0.2; } );
+boxes = ( { low = [-1e5, -1e5, -1e5]; high = [1e5, -1.6, 1e5]; } );
+capsules = ( { from = [-0.9, -1.4, 0.0]; to = [-0.9, -1.4, 0.0]; radius = 0.1; } );
+SCENE
+"$program" run floor.cfg --quiet -o floor.vtkhdf >run.log || { cat run.log; exit 1; }
+"$render" floor.vtkhdf --frame 0 --size 120x120 -o floor.png >said
+/usr/bin/python3 - <<'PYTHON'
+from matplotlib import image
+
+pixels = image.imread("floor.png")[:, :, :3]
+warm, blue = (pixels[:, :, 0] - pixels[:, :, 2] > 0.01), (pixels[:, :, 2] - pixels[:, :, 0] > 0.05)
+assert warm[-1].all() and not warm[0].any(), "no floor"
+below = pixels[blue.any(axis=1).nonzero()[0][-1] + 6 :]
+assert (abs(below - [0.80, 0.80, 0.81]).max(axis=2) < 0.02).sum() > 40, "no shadow"
+PYTHON
+
 # Ctrl-C ends it with a line, and what lent it a display with it.
 echo 'import os, signal; os.kill(os.getpid(), signal.SIGINT)' >vtk.py
 status=0
