@@ -90,15 +90,27 @@ void bench_changes_room(BenchChanges *changes, long nodes)
     changes->absent = sm_realloc(changes->absent, room, 1);
 }
 
-/* Places of the part's nodes, of instance k, into changes->x by leaf number. */
+/* Places of the nodes of all instances, or where their velocities had them `back` s ago. */
+static void get_nodes(BenchChanges *changes, double back)
+{
+    const BenchRunner *runner = &changes->part->runner;
+    bench_changes_room(changes, runner->particles);
+    runner->type->get(runner->engine, SM_POSITION, changes->node);
+    if (back == 0) return;
+    double(*v)[3] = sm_alloc((size_t)runner->particles, sizeof *v);
+    runner->type->get(runner->engine, SM_VELOCITY, v);
+    for (long p = 0; p < runner->particles; p++)
+        for (int d = 0; d < 3; d++) changes->node[p][d] -= back * v[p][d];
+    free(v);
+}
+
+/* What get_nodes() found of an instance's nodes, into changes->x by leaf number. */
 static void place_leaves(BenchChanges *changes, long instance)
 {
     BenchRunner *runner = &changes->part->runner;
     const OctStructure *s = oct_engine_structure(runner->engine);
     const int *leaf = oct_engine_leaves(runner->engine);
-    bench_changes_room(changes,
-                       s->tree.leaves > runner->particles ? s->tree.leaves : runner->particles);
-    runner->type->get(runner->engine, SM_POSITION, changes->node);
+    bench_changes_room(changes, s->tree.leaves);
     for (long l = 0; l < s->tree.leaves; l++)
         for (int d = 0; d < 3; d++) changes->x[l][d] = NAN;
     for (long p = 0; p < runner->count; p++)
@@ -123,6 +135,7 @@ static SmCarriers octree_carriers(BenchChanges *changes, const double blade[4][3
 {
     const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
     double widest = 0;
+    get_nodes(changes, 0);
     place_leaves(changes, 0);
     for (long l = 0; l < s->tree.leaves; l++)
         if (s->tree.node[l] >= 0)
@@ -326,7 +339,7 @@ SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmErro
     return code;
 }
 
-void bench_changes_surface(BenchChanges *changes, double (*point)[3])
+void bench_changes_surface(BenchChanges *changes, double back, double (*point)[3])
 {
     BenchPart *part = changes->part;
     BenchRunner *runner = &part->runner;
@@ -335,10 +348,7 @@ void bench_changes_surface(BenchChanges *changes, double (*point)[3])
         ref_meshless_points(runner->engine, point);
         return;
     }
-    if (!is_octree(part)) {
-        bench_changes_room(changes, runner->particles);
-        runner->type->get(runner->engine, SM_POSITION, changes->node);
-    }
+    get_nodes(changes, back);
     for (long k = 0; k < part->body.instances; k++, point += vertices) {
         if (is_octree(part)) {
             place_leaves(changes, k);
@@ -347,5 +357,49 @@ void bench_changes_surface(BenchChanges *changes, double (*point)[3])
             sm_embed_apply(&changes->embedding,
                            (const double(*)[3])(changes->node + k * runner->count), point, NULL);
         }
+    }
+}
+
+bool bench_changes_is_octree(const BenchChanges *changes)
+{
+    return is_octree(changes->part);
+}
+
+/* The leaf or particle that a vertex belongs to. */
+static int carrier_of(const BenchChanges *changes, long vertex)
+{
+    if (is_octree(changes->part))
+        return changes->carried.rows.leaf[changes->carried.rows.first[vertex]];
+    const float *weight = changes->embedding.weight[vertex];
+    int most = 0;
+    for (int i = 1; i < 8; i++)
+        if (weight[i] > weight[most]) most = i;
+    return changes->embedding.corner[vertex][most];
+}
+
+long bench_changes_pieces(const BenchChanges *changes, int *piece)
+{
+    const BenchRunner *runner = &changes->part->runner;
+    SmPieces pieces = {.count = 1};
+    if (is_octree(changes->part)) {
+        const OctStructure *s = oct_engine_structure(runner->engine);
+        oct_pieces_find(&s->tree, &s->graph, &pieces);
+    } else if (runner->type->pieces) {
+        runner->type->pieces(runner->engine, &pieces);
+    }
+    for (long v = 0; v < changes->surface.vertex_count; v++)
+        piece[v] = pieces.piece ? pieces.piece[carrier_of(changes, v)] : 0;
+    long count = pieces.count;
+    if (pieces.piece) sm_pieces_free(&pieces);
+    return count;
+}
+
+void bench_changes_levels(const BenchChanges *changes, int *level)
+{
+    const OctTree *tree = &oct_engine_structure(changes->part->runner.engine)->tree;
+    for (long v = 0; v < changes->surface.vertex_count; v++) {
+        int size = tree->size[tree->node[carrier_of(changes, v)]];
+        level[v] = 0;
+        while (size << level[v] < 2 << tree->levels) level[v]++;
     }
 }

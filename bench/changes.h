@@ -51,7 +51,15 @@ bool bench_changes_any(const BenchPart *part);
 /* All that is due between two times, before the steps of that frame; fills `last`. */
 SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmError *error);
 
-/* The surfaces of the part's instances, one after the other, now: [instances * vertices][3]. */
-void bench_changes_surface(BenchChanges *changes, double (*point)[3]);
+/* The surfaces of the part's instances, one after the other, now: [instances * vertices][3]. With
+ * `back` s the velocities of what carries them are followed so far back (not of given points). */
+void bench_changes_surface(BenchChanges *changes, double back, double (*point)[3]);
+
+bool bench_changes_is_octree(const BenchChanges *changes);
+
+/* Of what carries each vertex of one body: the piece of material, and of an octree the leaf's
+ * level, 0 of a base cell; into [surface.vertex_count]. Returns how many pieces there are. */
+long bench_changes_pieces(const BenchChanges *changes, int *piece);
+void bench_changes_levels(const BenchChanges *changes, int *level);
 
 #endif

@@ -36,6 +36,7 @@ enum {
     KEY_POLAR,
     KEY_STRAIN,
     KEY_RECORD,
+    KEY_FIELDS,
     KEY_NO_OUTPUT
 };
 
@@ -47,6 +48,7 @@ typedef struct {
     bool shell, no_output, has_gravity, overwrite;
     int frames, steps, summation, polar, levels, record, width;
     int modes;
+    BenchFields fields;
     long particles, nodes, points;
     double young, poisson, density; /* density 0: not given; poisson INFINITY */
     double cell, damping, epsilon, h, strain_limit, gravity[3];
@@ -102,6 +104,11 @@ static const struct argp_option option_list[] = {
      "goals, 72 bytes a particle and step; nodes: the same of an octree, with its tree, edges and "
      "regions",
      2},
+    {"fields", KEY_FIELDS, "LIST", 0,
+     "Also store, for every point of the surface and frame: displacement (12 bytes), speed, strain "
+     "(largest in the surface), piece (of material), level (of the octree's leaf; 4 bytes each); "
+     "several with commas between them",
+     2},
     {0},
 };
 
@@ -132,12 +139,29 @@ static const BenchOption options_taken[] = {
     {0},
 };
 
+/* "speed,strain" */
+static BenchFields parse_fields(const struct argp_state *state, const char *text)
+{
+    char name[64];
+    BenchFields fields = 0;
+    for (const char *end = text; end; text = end + 1) {
+        end = strchr(text, ',');
+        int length = end ? (int)(end - text) : (int)strlen(text);
+        snprintf(name, sizeof name, "%.*s", length, text);
+        fields |= 1u << bench_option_choice(state, "--fields", name, bench_field_names);
+        if (!end) break;
+    }
+    return fields;
+}
+
 static void check_options(const Options *options, const struct argp_state *state)
 {
     if (!options->scene) bench_usage(state, "which scene or mesh?");
     if (options->particles && options->cell > 0) bench_usage(state, "either --particles or --cell");
-    if (options->no_output && (options->output || options->record || options->overwrite))
-        bench_usage(state, "--no-output goes with neither --output nor --record nor --overwrite");
+    if (options->no_output &&
+        (options->output || options->record || options->fields || options->overwrite))
+        bench_usage(state,
+                    "--no-output goes with none of --output, --record, --fields and --overwrite");
 }
 
 static error_t parse(int key, char *text, struct argp_state *state)
@@ -154,6 +178,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_RECORD:
         options->record = 1 + bench_option_choice(state, "--record", text, records);
+        return 0;
+    case KEY_FIELDS:
+        options->fields |= parse_fields(state, text);
         return 0;
     case ARGP_KEY_ARG:
         if (options->scene) bench_usage(state, "one scene or mesh only, not also '%s'", text);
@@ -465,8 +492,8 @@ static SmCode record(const Options *options, BenchPlay *play, const BenchMachine
     BenchRecording *recorder = options->no_output ? NULL : &recording;
     SmCode code = SM_OK;
     if (recorder)
-        code = bench_recording_open(play, path, (BenchRecord)options->record, machine, recorder,
-                                    error);
+        code = bench_recording_open(play, path, (BenchRecord)options->record, options->fields,
+                                    machine, recorder, error);
     if (code) return code;
     if (recorder) warn_of_size(options, recorder, path);
     BenchOutcome outcome;

@@ -83,7 +83,7 @@ SmMesh bench_play_surface(const BenchPlay *play)
 void bench_play_points(BenchPlay *play, double (*point)[3])
 {
     for (int i = 0; i < play->cast.count; i++) {
-        bench_changes_surface(&play->changes[i], point);
+        bench_changes_surface(&play->changes[i], 0, point);
         point += play->cast.part[i].body.instances * play->changes[i].surface.vertex_count;
     }
 }

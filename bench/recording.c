@@ -8,6 +8,8 @@
 static void release(BenchRecording *recording)
 {
     sm_mesh_free(&recording->surface);
+    free(recording->point);
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++) free(recording->value[f]);
     free(recording->x);
     free(recording->v);
     free(recording->g);
@@ -44,15 +46,31 @@ static SmCode check(const BenchPlay *play, const BenchRunner *runner, BenchRecor
     return SM_OK;
 }
 
+/* The surface at rest, and room for what is found of it. */
+static void take_surface(BenchRecording *recording)
+{
+    sm_mesh_free(&recording->surface);
+    recording->surface = bench_play_surface(recording->play);
+    size_t count = (size_t)recording->surface.vertex_count;
+    recording->point = sm_realloc(recording->point, count, sizeof *recording->point);
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++)
+        if (recording->fields & 1u << f)
+            recording->value[f] = sm_realloc(
+                recording->value[f], count * (size_t)bench_field_components[f], sizeof(float));
+}
+
 SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord record,
-                            const BenchMachine *machine, BenchRecording *recording, SmError *error)
+                            BenchFields fields, const BenchMachine *machine,
+                            BenchRecording *recording, SmError *error)
 {
     const BenchRunner *runner = bench_play_runner(play);
     const BenchBody *body = runner->body;
     SmCode code = check(play, runner, record, error);
+    if (!code) code = bench_fields_check(play, fields, error);
     if (code) return code;
-    *recording = (BenchRecording){.play = play, .runner = runner, .record = record};
-    recording->surface = bench_play_surface(play);
+    *recording =
+        (BenchRecording){.play = play, .runner = runner, .record = record, .fields = fields};
+    take_surface(recording);
     size_t count = (size_t)runner->particles;
     recording->x = sm_alloc(count, sizeof *recording->x);
     recording->v = sm_alloc(count, sizeof *recording->v);
@@ -67,6 +85,7 @@ SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord recor
         .machine = machine,
         .scene = runner->scene->name,
         .record = record,
+        .fields = fields,
         .voxels = &body->voxels,
         .structure = is_octree(runner) ? oct_engine_structure(runner->engine) : NULL,
         .params = &params,
@@ -93,14 +112,16 @@ double bench_recording_bytes(const BenchRecording *recording)
 SmCode bench_recording_frame(BenchRecording *recording, SmError *error)
 {
     if (bench_play_split(recording->play)) {
-        sm_mesh_free(&recording->surface);
-        recording->surface = bench_play_surface(recording->play);
+        take_surface(recording);
         SmCode code = bench_trajectory_topology(recording->trajectory, &recording->surface, error);
         if (code) return code;
     }
-    bench_play_points(recording->play, recording->surface.position);
-    return bench_trajectory_frame(recording->trajectory, recording->play->time,
-                                  (const double(*)[3])recording->surface.position, error);
+    const double(*point)[3] = (const double(*)[3])recording->point;
+    bench_play_points(recording->play, recording->point);
+    bench_fields_find(recording->play, recording->fields, &recording->surface, point,
+                      recording->value);
+    return bench_trajectory_frame(recording->trajectory, recording->play->time, point,
+                                  (const float *const *)recording->value, error);
 }
 
 SmCode bench_recording_step(BenchRecording *recording, long step, bool before, SmError *error)

@@ -3,6 +3,7 @@
 #ifndef BENCH_RECORDING_H
 #define BENCH_RECORDING_H
 
+#include "fields.h"
 #include "machine.h"
 #include "play.h"
 #include "trajectory.h"
@@ -10,7 +11,10 @@
 typedef struct {
     BenchPlay *play;                  /* the caller's, kept */
     const BenchRunner *runner;        /* whose particles or nodes are recorded */
-    SmMesh surface;                   /* of all instances */
+    SmMesh surface;                   /* of all instances, at rest */
+    double (*point)[3];               /* [surface.vertex_count] where it is */
+    BenchFields fields;               /* what else is stored of it, */
+    float *value[BENCH_POINT_FIELDS]; /* [surface.vertex_count * components] of these */
     double (*x)[3], (*v)[3], (*g)[3]; /* [runner->particles]; only to record particles or nodes */
     double (*S)[9];                   /* [runner->particles] of a plastic body, or NULL */
     BenchTrajectory *trajectory;
@@ -18,9 +22,11 @@ typedef struct {
 } BenchRecording;
 
 /* Opens the file. Errors: those of bench_trajectory_open(); SM_USAGE for particles of an octree,
- * for nodes of a lattice, and for either of bodies that change. */
+ * for nodes of a lattice, and for either of bodies that change, and for fields that there are not.
+ */
 SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord record,
-                            const BenchMachine *machine, BenchRecording *recording, SmError *error);
+                            BenchFields fields, const BenchMachine *machine,
+                            BenchRecording *recording, SmError *error);
 
 /* About what the file will take with all of the scene's frames in it. */
 double bench_recording_bytes(const BenchRecording *recording);

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "check.h"
+#include "fields.h"
 #include "frames.h"
 
 #define BEAM                                                                                       \
@@ -295,6 +296,57 @@ static void frames_are_timed_and_counted(void **state)
     close_show(&show);
 }
 
+/* Runs a frame. The speed is how far its one step takes the points; returns the largest piece. */
+static double check_fields(Show *show)
+{
+    const BenchFields all = (1u << BENCH_POINT_FIELDS) - 1;
+    SmError error;
+    float *value[BENCH_POINT_FIELDS];
+    if (bench_play_change(&show->play, &error)) fail_msg("%s", error.text);
+    SmMesh rest = bench_play_surface(&show->play);
+    size_t count = (size_t)rest.vertex_count;
+    double(*before)[3] = sm_alloc(count, sizeof *before), (*point)[3] = sm_alloc(count, 24);
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++)
+        value[f] = sm_alloc(count * (size_t)bench_field_components[f], sizeof(float));
+    bench_play_points(&show->play, before);
+    bench_play_prepare(&show->play);
+    bench_play_advance(&show->play, NULL);
+    bench_play_points(&show->play, point);
+    bench_fields_find(&show->play, all, &rest, (const double(*)[3])point, value);
+    double h = show->scene.params.h, worst = 0, most = 0;
+    for (size_t v = 0; v < count; v++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++) {
+            square += (point[v][d] - before[v][d]) * (point[v][d] - before[v][d]) / (h * h);
+            assert_true(value[BENCH_DISPLACEMENT][3 * v + (size_t)d] ==
+                        (float)(point[v][d] - rest.position[v][d]));
+        }
+        worst = fmax(worst, fabs(sqrt(square) - value[BENCH_SPEED][v]));
+        most = fmax(most, value[BENCH_PIECE][v]);
+        assert_true(value[BENCH_LEVEL][v] >= 0 && value[BENCH_LEVEL][v] <= 3);
+    }
+    assert_true(worst < 1e-4); /* of single precision, over h */
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++) free(value[f]);
+    free(before);
+    free(point);
+    sm_mesh_free(&rest);
+    return most;
+}
+
+static void fields_tell_of_speed_and_pieces(void **state)
+{
+    (void)state;
+    char cut[512];
+    Show show;
+    beam_cut(0.5, 1.6, 3, cut);
+    open_show(LOOSE_BEAM "kick = 0.02;\n", cut, 1, &show);
+    assert_true(check_fields(&show) == 0);
+    double pieces = 0;
+    for (int f = 1; f < 25; f++) pieces = check_fields(&show);
+    assert_true(pieces == 1);
+    close_show(&show);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -306,6 +358,7 @@ int main(void)
         cmocka_unit_test(a_touch_refines_one_of_three),
         cmocka_unit_test(an_eye_refines_what_is_near),
         cmocka_unit_test(frames_are_timed_and_counted),
+        cmocka_unit_test(fields_tell_of_speed_and_pieces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

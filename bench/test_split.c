@@ -71,8 +71,8 @@ static void what_is_recorded_is_the_surface_that_is_there(const char *engine)
     BenchRecording recording;
     long changed = 0;
     open_show(engine, &show);
-    if (bench_recording_open(&show.play, path_in("split.vtkhdf"), BENCH_RECORD_SURFACE, &machine,
-                             &recording, &error))
+    if (bench_recording_open(&show.play, path_in("split.vtkhdf"), BENCH_RECORD_SURFACE,
+                             1u << BENCH_SPEED | 1u << BENCH_PIECE, &machine, &recording, &error))
         fail_msg("%s", error.text);
     for (int f = 0; f < FRAMES; f++) {
         if (bench_play_change(&show.play, &error)) fail_msg("%s", error.text);

@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-#include "../lib/test_folder.h"
 #include "draft.h"
+#include "test_program.h"
 #include "trajectory.h"
 
 enum { FRAMES = 5, SIDE = 12, POINTS = SIDE * SIDE, TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1) };
@@ -51,7 +51,7 @@ static SmCode write_frames(BenchTrajectory *trajectory, const SmMesh *sheet, int
     for (int f = 0; f < frames && code == SM_OK; f++) {
         for (int p = 0; p < POINTS; p++)
             for (int a = 0; a < 3; a++) point[p][a] = moved(sheet, f, p, a);
-        code = bench_trajectory_frame(trajectory, 0.5 * f, (const double(*)[3])point, error);
+        code = bench_trajectory_frame(trajectory, 0.5 * f, (const double(*)[3])point, NULL, error);
     }
     return code;
 }
@@ -201,6 +201,76 @@ static void topology_may_change(void **state)
     H5Sclose(space);
     H5Dclose(view);
     H5Fclose(file);
+    sm_mesh_free(&sheet);
+}
+
+/* A sheet pulled to 1.5 times its length along x, pressed to 0.4 of it along y and turned about z:
+ * the larger of the two is what is told, wherever it is. */
+static void strain_is_the_largest_stretch(void **state)
+{
+    (void)state;
+    float strain[POINTS];
+    double point[POINTS][3];
+    const double pull[2][2] = {{1.5, 0.8}, {1.5, 0.4}}, wanted[2] = {0.5, 0.6};
+    SmMesh sheet;
+    make_sheet(0, &sheet);
+    for (int n = 0; n < 2; n++) {
+        for (int p = 0; p < POINTS; p++) {
+            double x = pull[n][0] * sheet.position[p][0], y = pull[n][1] * sheet.position[p][1];
+            point[p][0] = 0.6 * x - 0.8 * y, point[p][1] = 0.8 * x + 0.6 * y, point[p][2] = 7;
+        }
+        bench_strain(&sheet, (const double(*)[3])point, strain);
+        for (int p = 0; p < POINTS; p++) assert_float_equal(strain[p], wanted[n], 1e-6);
+    }
+    for (int p = 0; p < POINTS; p++) /* all rests in one point */
+        for (int d = 0; d < 3; d++) sheet.position[p][d] = 1;
+    bench_strain(&sheet, (const double(*)[3])point, strain);
+    for (int p = 0; p < POINTS; p++) assert_true(strain[p] == 0);
+    sm_mesh_free(&sheet);
+}
+
+/* Values of every point and frame, each frame's also under a name of its own, which the sidecar
+ * has. */
+static void fields_are_stored(void **state)
+{
+    (void)state;
+    static float speed[POINTS], displacement[3 * POINTS], got[2 * POINTS], part[3 * POINTS];
+    const float *value[BENCH_POINT_FIELDS] = {
+        [BENCH_DISPLACEMENT] = displacement, [BENCH_SPEED] = speed};
+    SmMesh sheet;
+    make_sheet(0, &sheet);
+    BenchTrajectoryParams params = sheet_params(path_in("fields.vtkhdf"), &sheet);
+    params.fields = 1u << BENCH_DISPLACEMENT | 1u << BENCH_SPEED;
+    BenchTrajectory *trajectory;
+    assert_int_equal(bench_trajectory_open(&params, &trajectory, NULL), SM_OK);
+    for (int f = 0; f < 2; f++) {
+        for (int i = 0; i < 3 * POINTS; i++) displacement[i] = (float)(1000 * f + i);
+        for (int p = 0; p < POINTS; p++) speed[p] = (float)(-1000 * f - p);
+        assert_int_equal(
+            bench_trajectory_frame(trajectory, f, (const double(*)[3])sheet.position, value, NULL),
+            SM_OK);
+    }
+    assert_int_equal(bench_trajectory_close(trajectory, NULL), SM_OK);
+    BenchH5 h5 = {.file = H5Fopen(params.path, H5F_ACC_RDONLY, H5P_DEFAULT)};
+    hsize_t all[] = {2 * POINTS}, one[] = {POINTS, 3};
+    hid_t whole = bench_h5_find_dataset(&h5, h5.file, "VTKHDF/PointData/speed", 1, all);
+    bench_h5_read(&h5, whole, H5T_NATIVE_FLOAT, got);
+    hid_t view = bench_h5_find_dataset(&h5, h5.file, "fields/displacement/1", 2, one);
+    bench_h5_read(&h5, view, H5T_NATIVE_FLOAT, part);
+    if (h5.failed) fail_msg("%s", h5.message);
+    for (int i = 0; i < 2 * POINTS; i++)
+        assert_true(got[i] == (float)(-1000 * (i / POINTS) - i % POINTS));
+    assert_memory_equal(part, displacement, sizeof part);
+    H5Dclose(whole);
+    H5Dclose(view);
+    long offset[2];
+    read_longs(h5.file, "VTKHDF/Steps/PointDataOffsets/speed", 2, offset);
+    assert_int_equal(offset[1], POINTS);
+    H5Fclose(h5.file);
+    char text[8192];
+    slurp("fields.vtkhdf.xdmf", text, sizeof text);
+    assert_non_null(strstr(text, "<Attribute Name=\"speed\""));
+    assert_non_null(strstr(text, "fields.vtkhdf:/fields/displacement/1<"));
     sm_mesh_free(&sheet);
 }
 
@@ -387,6 +457,8 @@ int main(void)
         cmocka_unit_test(frames_round_trip),
         cmocka_unit_test(topology_may_change),
         cmocka_unit_test(obstacles_are_stored),
+        cmocka_unit_test(strain_is_the_largest_stretch),
+        cmocka_unit_test(fields_are_stored),
         cmocka_unit_test(sidecar_is_xml),
         cmocka_unit_test(bad_targets),
         cmocka_unit_test(blocked_sidecar),

@@ -33,6 +33,8 @@ struct BenchTrajectory {
     bool single;        /* coordinates are stored in 4 bytes */
     hid_t points;       /* /VTKHDF/Points, ... */
     hid_t corners, offsets, types;
+    BenchFields fields;
+    hid_t value[BENCH_POINT_FIELDS]; /* /VTKHDF/PointData/NAME */
     BenchParticles particles;
 };
 
@@ -146,6 +148,20 @@ static void write_obstacles(BenchH5 *h5, const SmBoundary *boundary)
     free(row);
 }
 
+/* They grow as points do. */
+static void begin_fields(BenchTrajectory *trajectory)
+{
+    BenchH5 *h5 = &trajectory->h5;
+    if (!trajectory->fields) return;
+    hid_t group = bench_h5_group(h5, h5->file, "VTKHDF/PointData");
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++) {
+        hsize_t size[] = {0, (hsize_t)bench_field_components[f]};
+        if (trajectory->fields & 1u << f)
+            trajectory->value[f] = bench_h5_growing(h5, group, bench_field_names[f], H5T_IEEE_F32LE,
+                                                    size[1] > 1 ? 2 : 1, size);
+    }
+}
+
 static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryParams *params)
 {
     BenchH5 *h5 = &trajectory->h5;
@@ -166,6 +182,7 @@ static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryPa
     trajectory->corners = bench_h5_growing(h5, group, "Connectivity", whole, 1, size);
     trajectory->offsets = bench_h5_growing(h5, group, "Offsets", whole, 1, size);
     trajectory->types = bench_h5_growing(h5, group, "Types", H5T_STD_U8LE, 1, size);
+    begin_fields(trajectory);
     add_topology(trajectory, params->surface);
     if (params->record) bench_particles_begin(h5, params, &trajectory->particles);
 }
@@ -208,6 +225,7 @@ SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajector
         return code;
     }
     snprintf(made->scene, sizeof made->scene, "%s", params->scene);
+    made->fields = params->fields;
     made->single = single_is_enough(params->surface);
     bench_h5_create(&made->h5, made->draft.tmp);
     write_beginning(made, params);
@@ -223,13 +241,15 @@ SmCode bench_trajectory_open(const BenchTrajectoryParams *params, BenchTrajector
 double bench_trajectory_bytes(const BenchTrajectory *trajectory, double frames)
 {
     double point = 3 * (trajectory->single ? sizeof(float) : sizeof(double));
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++)
+        if (trajectory->fields & 1u << f) point += bench_field_components[f] * sizeof(float);
     const Topology *first = trajectory->topology;
     double cell = (double)(first->corners + 1) * sizeof(long) + 1; /* corners, offset, type */
     return frames * point * (double)first->points + cell * (double)first->cells;
 }
 
 SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const double (*point)[3],
-                              SmError *error)
+                              const float *const value[BENCH_POINT_FIELDS], SmError *error)
 {
     long points = trajectory->topology[trajectory->parts - 1].points;
     if (trajectory->frames == trajectory->room) {
@@ -245,6 +265,9 @@ SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const do
         for (long i = 0; i < 3 * points; i++) narrow[i] = (float)from[i];
     bench_h5_append(&trajectory->h5, trajectory->points, (hsize_t)points,
                     trajectory->single ? trajectory->packed : (const void *)from);
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++)
+        if (trajectory->fields & 1u << f)
+            bench_h5_append(&trajectory->h5, trajectory->value[f], (hsize_t)points, value[f]);
     return trajectory->h5.failed ? fail(trajectory, error) : SM_OK;
 }
 
@@ -302,29 +325,48 @@ static void write_steps(BenchTrajectory *trajectory)
     bench_h5_dataset(h5, group, "PointOffsets", whole, 1, size, point);
     bench_h5_dataset(h5, group, "CellOffsets", whole, 2, size, cell);
     bench_h5_dataset(h5, group, "ConnectivityIdOffsets", whole, 2, size, corner);
+    if (trajectory->fields) group = bench_h5_group(h5, group, "PointDataOffsets");
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++)
+        if (trajectory->fields & 1u << f)
+            bench_h5_dataset(h5, group, bench_field_names[f], whole, 1, size, point);
     free(one);
     free(point);
     free(cell);
     free(corner);
 }
 
+/* Each frame's part, from its first point on, of a dataset that all share, as GROUP/0, GROUP/1. */
+static void view_frames(BenchTrajectory *trajectory, const char *where, hid_t shared, hsize_t width)
+{
+    BenchH5 *h5 = &trajectory->h5;
+    hid_t group = bench_h5_group(h5, h5->file, where);
+    hsize_t start[] = {0, 0};
+    char name[24];
+    for (long frame = 0; frame < trajectory->frames; frame++) {
+        hsize_t size[] = {(hsize_t)trajectory->topology[trajectory->part[frame]].points, width};
+        snprintf(name, sizeof name, "%ld", frame);
+        bench_h5_view(h5, group, name, shared, start, size);
+        start[0] += size[0];
+    }
+}
+
 /* /frames/0, /frames/1, ...: each frame's part of /VTKHDF/Points under a name of its own, without a
- * copy (HDF5 virtual datasets), and so /topologies/0, ... of /VTKHDF/Connectivity. XDMF could cut
+ * copy (HDF5 virtual datasets), and so /fields/NAME/0, ... of fields, and /topologies/0, ... of
+ * /VTKHDF/Connectivity. XDMF could cut
  * the parts itself (HyperSlab), but ParaView 5.11's reader reports an error at every frame that it
  * reads so. */
 static void write_views(BenchTrajectory *trajectory)
 {
     BenchH5 *h5 = &trajectory->h5;
-    hid_t group = bench_h5_group(h5, h5->file, "frames");
-    hsize_t start[] = {0, 0};
-    char name[24];
-    for (long frame = 0; frame < trajectory->frames; frame++) {
-        hsize_t size[] = {(hsize_t)trajectory->topology[trajectory->part[frame]].points, 3};
-        snprintf(name, sizeof name, "%ld", frame);
-        bench_h5_view(h5, group, name, trajectory->points, start, size);
-        start[0] += size[0];
+    char name[48];
+    view_frames(trajectory, "frames", trajectory->points, 3);
+    if (trajectory->fields) bench_h5_group(h5, h5->file, "fields");
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++) {
+        if (!(trajectory->fields & 1u << f)) continue;
+        snprintf(name, sizeof name, "fields/%s", bench_field_names[f]);
+        view_frames(trajectory, name, trajectory->value[f], (hsize_t)bench_field_components[f]);
     }
-    group = bench_h5_group(h5, h5->file, "topologies");
+    hid_t group = bench_h5_group(h5, h5->file, "topologies");
     for (long part = 0; part < trajectory->parts; part++) {
         const Topology *topology = &trajectory->topology[part];
         hsize_t first = (hsize_t)topology->corner;
@@ -344,8 +386,8 @@ static SmCode write_sidecar(const BenchTrajectory *trajectory, SmError *error)
         frame[i] = (BenchXdmfFrame){trajectory->time[i], topology->points, topology->cells,
                                     topology->corners, trajectory->part[i]};
     }
-    BenchXdmf xdmf = {trajectory->draft.path, trajectory->scene, trajectory->frames,
-                      trajectory->single ? 4 : 8, frame};
+    BenchXdmf xdmf = {trajectory->draft.path,     trajectory->scene,  trajectory->frames,
+                      trajectory->single ? 4 : 8, trajectory->fields, frame};
     SmCode code = bench_xdmf_write(&xdmf, &trajectory->sidecar, error);
     free(frame);
     return code;

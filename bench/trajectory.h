@@ -8,6 +8,7 @@
 #define BENCH_TRAJECTORY_H
 
 #include "../octree/structure.h"
+#include "fields.h"
 #include "machine.h"
 
 typedef struct BenchTrajectory BenchTrajectory;
@@ -21,6 +22,7 @@ typedef struct {
                             * triangles each point is a cell of its own */
     const BenchMachine *machine;
     const char *scene;          /* name; any bytes */
+    BenchFields fields;         /* stored of every point */
     const SmBoundary *boundary; /* its obstacles, which stay where they are; NULL: none */
     BenchRecord record; /* all below is for particles or nodes, and else unused; so are handles */
     const SmVoxels *voxels;
@@ -44,9 +46,10 @@ double bench_trajectory_bytes(const BenchTrajectory *trajectory, double frames);
 SmCode bench_trajectory_topology(BenchTrajectory *trajectory, const SmMesh *surface,
                                  SmError *error);
 
-/* One frame: time in s, surface points [vertex_count][3] in mesh units. */
+/* One frame: time in s, surface points [vertex_count][3] in mesh units, and the fields' values
+ * (fields.h); `value` may be NULL where there are none. */
 SmCode bench_trajectory_frame(BenchTrajectory *trajectory, double time, const double (*point)[3],
-                              SmError *error);
+                              const float *const value[BENCH_POINT_FIELDS], SmError *error);
 
 /* One step of particles or nodes: number of the step, counted from 0; x and v before it,
  * with pushes applied; the goals in it; of a plastic octree also the rest shapes S before it

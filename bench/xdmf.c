@@ -14,6 +14,21 @@ static void write_item(FILE *file, const BenchXdmf *xdmf, const char *attributes
     fprintf(file, ":%s</DataItem>", place);
 }
 
+static void write_field(FILE *file, const BenchXdmf *xdmf, long frame, int field)
+{
+    char attributes[128], place[64];
+    const char *name = bench_field_names[field];
+    bool vector = bench_field_components[field] > 1;
+    fprintf(file, "\n<Attribute Name=\"%s\" Center=\"Node\" AttributeType=\"%s\">", name,
+            vector ? "Vector" : "Scalar");
+    snprintf(attributes, sizeof attributes,
+             "Dimensions=\"%ld%s\" NumberType=\"Float\" Precision=\"4\"", xdmf->frame[frame].points,
+             vector ? " 3" : "");
+    snprintf(place, sizeof place, "/fields/%s/%ld", name, frame);
+    write_item(file, xdmf, attributes, place);
+    fprintf(file, "</Attribute>");
+}
+
 static void write_frame(FILE *file, const BenchXdmf *xdmf, long frame)
 {
     const BenchXdmfFrame *f = &xdmf->frame[frame];
@@ -32,7 +47,10 @@ static void write_frame(FILE *file, const BenchXdmf *xdmf, long frame)
              xdmf->point_bytes);
     snprintf(place, sizeof place, "/frames/%ld", frame);
     write_item(file, xdmf, attributes, place);
-    fprintf(file, "</Geometry></Grid>\n");
+    fprintf(file, "</Geometry>");
+    for (int i = 0; i < BENCH_POINT_FIELDS; i++)
+        if (xdmf->fields & 1u << i) write_field(file, xdmf, frame, i);
+    fprintf(file, "</Grid>\n");
 }
 
 static void print(FILE *file, const void *what)

@@ -3,6 +3,7 @@
 #define BENCH_XDMF_H
 
 #include "draft.h"
+#include "fields.h"
 
 typedef struct {
     double time; /* s */
@@ -16,6 +17,7 @@ typedef struct {
     const char *scene; /* any bytes; what XML cannot hold becomes '?' */
     long frames;
     int point_bytes;             /* 4 or 8 for a coordinate */
+    BenchFields fields;          /* of every point, in 4 bytes a number */
     const BenchXdmfFrame *frame; /* [frames] */
 } BenchXdmf;
 

@@ -53,8 +53,13 @@ def parse():
     parser.add_argument("--cells", choices=["boxes", "wire"], help="draw the leaf cells of an octree, coloured by "
                         "size, of files recorded with --record nodes: as boxes, or as wires in the surface")
     parser.add_argument("--edges", action="store_true", help="show the triangles, where they are not too small for it")
+    parser.add_argument("--colour", metavar="FIELD", help="colour by what shapebench run --fields has stored: "
+                        "displacement, speed, strain, piece or level; one scale for all frames of all files")
     parser.add_argument("--no-names", action="store_true", help="leave the file names out")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.colour and options.cells == "boxes":
+        parser.error("--colour is of the surface, and --cells boxes leaves it out")
+    return options
 
 
 def with_display():
@@ -114,8 +119,10 @@ def read_sequence(path, mesh):
     return Sequence(low.astype(float), high.astype(float), list(obstacles), False)
 
 
-def read_trajectory(path, frame):
-    """One frame of a VTKHDF file, UnstructuredGrid or PolyData, with or without steps."""
+def read_trajectory(path, frame, colours):
+    """One frame of a VTKHDF file, UnstructuredGrid or PolyData, with or without steps, with values to colour by."""
+    from vtk.util import numpy_support
+
     with opened(path) as file:
         root = file["VTKHDF"]
         kind = root.attrs["Type"].decode() if isinstance(root.attrs["Type"], bytes) else root.attrs["Type"]
@@ -136,7 +143,73 @@ def read_trajectory(path, frame):
         points, faces = root["Points"][first : first + count], corners.reshape(-1, 3)
         if points.shape[1] != 3 or len(points) != count or (faces < 0).any() or (faces >= count).any():
             raise ValueError("triangles of points that are not there")  # VTK would read beyond them
-        return polydata(points, faces)
+        data = polydata(points, faces)
+        if colours:
+            values = field_values(file, colours.name, first, count)
+            if len(values) != count:
+                raise ValueError(f"values of '{colours.name}' for other points")
+            data.GetPointData().SetScalars(numpy_support.numpy_to_vtk(values, deep=True))
+        return data
+
+
+@dataclasses.dataclass
+class Colours:
+    """The scale of a field, from 0."""
+
+    name: str
+    high: float
+    over: bool  # whether single values lie beyond it
+    whole: bool  # numbers of something
+
+    def map(self):
+        """matplotlib's."""
+        import matplotlib
+        from matplotlib.colors import ListedColormap
+
+        count = int(self.high) + 1
+        if not self.whole:
+            return matplotlib.colormaps["viridis"]
+        if self.name == "piece":  # neighbours differ
+            return ListedColormap([matplotlib.colormaps["tab20"](n % 20) for n in range(count)])
+        return matplotlib.colormaps["viridis"].resampled(count)
+
+    def range(self):
+        return (-0.5, self.high + 0.5) if self.whole else (0, self.high)
+
+
+def read_colours(paths, name):
+    """One scale for all frames of all files: up to the value that a hundredth of the points exceed."""
+    import numpy
+
+    some, most = [], 0.0
+    for path in paths:
+        if not is_trajectory(path):
+            fail(f"{path}: a mesh holds no fields to colour by", 3)
+        with opened(path) as file:
+            fields = file["VTKHDF"].get("PointData", {})
+            if name not in fields:
+                there = f"it has {', '.join(fields)}" if len(fields) else "it has none"
+                fail(f"{path}: has no field '{name}' ({there}): write it with shapebench run --fields", 3)
+            rows, skip = 1 << 20, 1 + len(fields[name]) // 10**7
+            for first in range(0, len(fields[name]), rows):
+                values = field_values(file, name, first, rows)
+                some.append(values[::skip])
+                most = max(most, values.max(initial=0))
+    whole = name in ("piece", "level") and most < 10**5
+    high = most if whole else float(numpy.percentile(numpy.concatenate(some), 99)) or most
+    return Colours(name, high or float(not whole), most > high, whole)
+
+
+def field_values(file, name, first, count):
+    """Of so many points, as far as there are; of vectors how long they are."""
+    import numpy
+
+    values = file["VTKHDF/PointData"][name][first : first + count].astype(float)
+    if values.ndim > 1:
+        values = numpy.sqrt((values**2).sum(1))
+    if not numpy.isfinite(values).all():
+        raise ValueError(f"values of '{name}' that are not finite")
+    return values
 
 
 def is_trajectory(path):
@@ -250,7 +323,22 @@ def edge_colour(data, scale):
     return pixels >= 2 and [share * dark + (1 - share) * own for dark, own in zip(EDGE, SURFACE)]
 
 
-def surface_actor(data, edges, scale):
+def colour_by(mapper, colours):
+    import vtk
+
+    shades = colours.map()
+    table = vtk.vtkLookupTable()
+    table.SetNumberOfTableValues(shades.N)
+    for n in range(shades.N):
+        table.SetTableValue(n, *shades(n))
+    table.SetTableRange(*colours.range())
+    mapper.SetLookupTable(table)
+    mapper.UseLookupTableScalarRangeOn()
+    mapper.SetInterpolateScalarsBeforeMapping(not colours.whole)
+    mapper.ScalarVisibilityOn()
+
+
+def surface_actor(data, edges, scale, colours):
     import vtk
 
     normals = vtk.vtkPolyDataNormals()
@@ -261,6 +349,8 @@ def surface_actor(data, edges, scale):
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputConnection(normals.GetOutputPort())
     mapper.ScalarVisibilityOff()
+    if colours:
+        colour_by(mapper, colours)
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     look = actor.GetProperty()
@@ -428,16 +518,15 @@ def occlusion(renderer, span):
     renderer.SetPass(pass_)
 
 
-def fill(renderer, path, options, height):
+def fill(renderer, path, frame, shared, options, height):
     """What there is to see: the surface, an octree's cells, or both."""
-    mesh = None if is_trajectory(path) else read_mesh(path)
-    sequence = read_sequence(path, mesh)
-    surface = mesh or read_trajectory(path, options.frame)
+    mesh, sequence, colours = shared
+    surface = mesh or read_trajectory(path, frame, colours)
     if options.cells:
-        cells, levels = read_cells(path, options.frame)
+        cells, levels = read_cells(path, frame)
         renderer.AddActor(cells_actor(cells, levels, options.cells == "wire"))
     if options.cells != "boxes":
-        actor = surface_actor(surface, options.edges, height / sequence.span)
+        actor = surface_actor(surface, options.edges, height / sequence.span, colours)
         renderer.AddActor(actor)
         if options.cells:
             actor.GetProperty().SetOpacity(0.35)
@@ -447,7 +536,13 @@ def fill(renderer, path, options, height):
         occlusion(renderer, sequence.span)
 
 
-def panel(path, options, size):
+def share(path, colours):
+    """What all pictures of a file are made with."""
+    mesh = None if is_trajectory(path) else read_mesh(path)
+    return mesh, read_sequence(path, mesh), colours
+
+
+def panel(path, frame, shared, options, size):
     """An image of one file, drawn at twice the size and averaged."""
     import numpy
     import vtk
@@ -456,7 +551,7 @@ def panel(path, options, size):
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(*GROUND)
     renderer.AutomaticLightCreationOff()
-    fill(renderer, path, options, size[1])
+    fill(renderer, path, frame, shared, options, size[1])
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
@@ -471,6 +566,27 @@ def panel(path, options, size):
     flat = numpy_support.vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars())
     image = flat.reshape(2 * size[1], 2 * size[0], 3)[::-1].astype(numpy.float32)
     return image.reshape(size[1], 2, size[0], 2, 3).mean(axis=(1, 3)) / 255
+
+
+def bar(colours, height):
+    """An image of the scale."""
+    import numpy
+    from matplotlib import cm, colors, ticker
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    units = {"displacement": " (mesh units)", "speed": " (mesh units/s)"}
+    figure = Figure(figsize=(1, height / 100), dpi=100, facecolor=GROUND)
+    norm = colors.Normalize(*colours.range())
+    axes = figure.add_axes((0.12, 0.12, 0.16, 0.76))
+    extend = "max" if colours.over else "neither"
+    drawn = figure.colorbar(cm.ScalarMappable(norm, colours.map()), cax=axes, extend=extend)
+    drawn.set_label(colours.name + units.get(colours.name, ""), fontsize=9)
+    axes.tick_params(labelsize=9)
+    axes.yaxis.set_major_locator(ticker.MaxNLocator(6, integer=colours.whole))
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return numpy.asarray(canvas.buffer_rgba())[:, :, :3].astype(numpy.float32) / 255
 
 
 def write_sheet(panels, names, columns, options):
@@ -508,7 +624,10 @@ def main():
         import h5py, matplotlib, numpy, vtk  # noqa: F401
     except ImportError as error:
         fail(f"{error} (for {sys.executable}): apt-get install python3-vtk9 python3-h5py python3-matplotlib", 3)
-    panels = [panel(path, options, size) for path in options.file]
+    colours = options.colour and read_colours(options.file, options.colour)
+    panels = [panel(path, options.frame, share(path, colours), options, size) for path in options.file]
+    if colours:
+        panels = [numpy.hstack((image, bar(colours, size[1]))) for image in panels]
     names = [os.path.splitext(os.path.basename(path))[0] for path in options.file]
     show = len(names) > 1 and not options.no_names
     write_sheet(panels, names if show else None, max(1, options.columns), options)

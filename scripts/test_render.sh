@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Records a short trajectory and has scripts/render.py draw it: the body is seen, and not everywhere;
 # one that falls moves in the picture, and stands on nothing that is not there; a frame that there is not
-# is an error.
+# is an error. Obstacles and fields are drawn.
 #
 # usage: scripts/test_render.sh SHAPEBENCH
 # exit codes: 0 passed, 1 failed, 77 skipped: what `scripts/setup pictures` installs is not there
@@ -67,7 +67,7 @@ spheres = ( { centre = [0.9, -1.3, 0.4]; radius = 0.2; } );
 boxes = ( { low = [-1e5, -1e5, -1e5]; high = [1e5, -1.6, 1e5]; } );
 capsules = ( { from = [-0.9, -1.4, 0.0]; to = [-0.9, -1.4, 0.0]; radius = 0.1; } );
 SCENE
-"$program" run floor.cfg --quiet -o floor.vtkhdf >run.log || { cat run.log; exit 1; }
+"$program" run floor.cfg --fields speed,piece --quiet -o floor.vtkhdf >run.log || { cat run.log; exit 1; }
 "$render" floor.vtkhdf --frame 0 --size 120x120 -o floor.png >said
 /usr/bin/python3 - <<'PYTHON'
 from matplotlib import image
@@ -78,6 +78,25 @@ assert warm[-1].all() and not warm[0].any(), "no floor"
 below = pixels[blue.any(axis=1).nonzero()[0][-1] + 6 :]
 assert (abs(below - [0.80, 0.80, 0.81]).max(axis=2) < 0.02).sum() > 40, "no shadow"
 PYTHON
+
+# Colours of a field, with a scale beside it; a field that is not there is named.
+for frame in 0 2; do
+    "$render" floor.vtkhdf --colour speed --frame "$frame" --size 120x120 -o "speed$frame.png" >said
+done
+/usr/bin/python3 - <<'PYTHON'
+from matplotlib import image
+
+first, last = (image.imread(f"speed{frame}.png")[:, :, :3] for frame in (0, 2))
+assert first.shape == (120, 220, 3), first.shape
+assert (first[:, 120:] == last[:, 120:]).all(), "another scale for each frame"
+still = first[:, :120, 1] < 0.6 * first[:, :120, 2]  # viridis begins in violet
+assert still.sum() > 200, "a body at rest is not of the scale's first colour"
+fast = (last[:, :120, 1] - last[:, :120, 2] > 0.1) & (last[:, :120, 1] > 0.4)
+assert fast.sum() > 100, "a body that falls is not of its last colours"
+PYTHON
+status=0
+"$render" floor.vtkhdf --colour strain -o none.png 2>said || status=$?
+[ "$status" -eq 3 ] && grep -q "has no field 'strain' (it has piece, speed)" said && ! [ -e none.png ]
 
 # Ctrl-C ends it with a line, and what lent it a display with it.
 echo 'import os, signal; os.kill(os.getpid(), signal.SIGINT)' >vtk.py
