@@ -432,6 +432,12 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
         text, size, "goals within %.2g cells of brute force (allowed %.0e), momentum %s %.1g",
         found->goal_error, found->goal_tolerance,
         found->plain ? "not kept by plain weighting, off by" : "kept to", found->momentum_error);
+    if (found->drift.steps > 0 && used < size)
+        used +=
+            (size_t)snprintf(text + used, size - used,
+                             ", left alone for %ld steps it drifts by %.1g cells and %.1g radians "
+                             "a step in each",
+                             found->drift.steps, found->drift.linear, found->drift.angular);
     if (found->damping_tolerance > 0 && used < size)
         used += (size_t)snprintf(text + used, size - used,
                                  ", damping within %.1g of the largest velocity (allowed %.0e)",

@@ -9,6 +9,7 @@
 
 #include "../reference/brute.h"
 #include "../reference/octree_goals.h"
+#include "drift.h"
 #include "runner.h"
 
 typedef struct {
@@ -33,6 +34,7 @@ typedef struct {
     double momentum_error; /* |sum m g - sum m x| / sum m |x - centroid|, largest of all instances;
                             * with plain weighting, too */
     bool plain;            /* weighting, with which it need not be kept */
+    BenchDrift drift;      /* of momenta, left alone over many steps; filled in by the caller */
     double damping_error;  /* |v - brute force| / largest |v| after damping, of the particle ... */
     double damping_tolerance; /* ... where it is largest of what is allowed there; 0: no damping */
     double motion_error;      /* bench_check_motion() of the step that was damped; 0: none was */

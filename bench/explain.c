@@ -41,7 +41,7 @@ static void brief_row(FILE *file, const BenchRow *row, int width)
     if (bench_row_of_elastic(row))
         fprintf(file, "all %d checks hold", (int)BENCH_ELASTIC_CHECKS);
     else
-        fprintf(file, "goals %.1e, momentum %.0e%s", row->goal_error, row->momentum_error,
+        fprintf(file, "goals %.1e, drift %.0e%s", row->goal_error, row->drift,
                 row->plain ? " plain" : "");
     if (row->left_out) fprintf(file, ", %ld left out", row->left_out);
     print_lost(file, row, "; ");
@@ -58,9 +58,8 @@ void bench_explain_briefly(FILE *file, const BenchRow *rows, int count)
     int width = 0;
     for (int r = 0; r < count; r++)
         if ((int)strlen(rows[r].scene) > width) width = (int)strlen(rows[r].scene);
-    fputs("On the state that was timed: goals off in cells, momentum; then times' quartiles "
-          "(more: "
-          "--explain)\n",
+    fputs("On the state that was timed: goals off in cells; left alone, drift of the velocity in "
+          "cells a\nstep, each step; then times' quartiles (more: --explain)\n",
           file);
     for (int r = 0; r < count; r++) {
         brief_row(file, &rows[r], width);

@@ -136,6 +136,24 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
     bench_check_text(worst, sizeof row->found, row->found);
 }
 
+/* Are the momenta of the body, left alone as it is now, kept over many steps? */
+static void check_drift(const BenchRunner *runner, BenchDeviation *worst, BenchRow *row)
+{
+    double most = bench_drift_most(runner->type->precision);
+    BenchDrift drift = bench_drift(runner);
+    if (drift.steps > worst->drift.steps) worst->drift.steps = drift.steps;
+    row->drift = worst->drift.linear = fmax(worst->drift.linear, drift.linear);
+    row->twist = worst->drift.angular = fmax(worst->drift.angular, drift.angular);
+    row->drift_steps = worst->drift.steps;
+    bench_check_text(worst, sizeof row->found, row->found);
+    if (worst->plain || (drift.linear <= most && drift.angular <= most)) return;
+    invalidate(
+        row,
+        "left alone for %ld steps it drifts by %.3g cells and %.3g radians a step in each; at "
+        "most %g allowed",
+        drift.steps, drift.linear, drift.angular, most);
+}
+
 /* Of a plastic octree: do its rest shapes flow as they should in the step that follows? */
 static void check_flow(const BenchCheck *check, BenchRunner *runner, BenchRow *row)
 {
@@ -237,6 +255,8 @@ static void measure_start(Trial *trial, const BenchMeasureParams *params, BenchD
     check_states(check, &trial->play, worst, row);
     for (int p = 0; p < trial->play.cast.count; p++)
         check_flow(&check[p], &trial->play.cast.part[p].runner, row);
+    for (int p = 0; p < trial->play.cast.count; p++)
+        check_drift(&trial->play.cast.part[p].runner, worst, row);
     free_checks(check, &trial->play);
 }
 

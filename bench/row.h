@@ -43,6 +43,8 @@ typedef struct {
     char found[448];       /* what the checks found, for people (check.h) */
     double goal_error;     /* largest deviation of g from brute force, in cells */
     double momentum_error; /* relative; no ground for invalidity where `plain` */
+    double drift, twist;   /* of momenta, left alone for `drift_steps` steps (drift.h) */
+    long drift_steps;
     double goal_tolerance;
     long left_out; /* of a check (check.h): particles whose rotation or inertia is not resolved */
     double lost_percent; /* of the time that the samples took, taken by others (moment.h) */

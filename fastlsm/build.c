@@ -393,10 +393,6 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     lsm->x = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->v = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     build_regions(lsm);
-    int extent = 0;
-    for (int d = 0; d < 3; d++)
-        if (lsm->lattice.size[d] > extent) extent = lsm->lattice.size[d];
-    lsm->rounding = rounding_square(extent, lsm->w);
     lsm->params.mass = NULL; /* the caller's, as is what follows */
     lsm->params.instance_pose = NULL;
     return lsm;

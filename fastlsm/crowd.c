@@ -185,8 +185,8 @@ SM_INLINE void match_region(Crowd *crowd, int side, long group, const GroupRows 
     match_moments(&k, S);
     store3(r->centre + p * 3 * L, S);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    polar_fast_lanes(S + MOMENT, LANES_ALL, crowd->last + (group * lsm->lattice.count + p) * 6 * L,
-                     R);
+    polar_fast_lanes(S + MOMENT, LANES_ALL, POLAR_LATTICE,
+                     crowd->last + (group * lsm->lattice.count + p) * 6 * L, R);
     sm_lap(laps, SM_POLAR);
     match_centre(S, R, &k, q);
     real *T = r->transform + row_of(crowd, p) * TRANSFORM * L;
@@ -251,8 +251,9 @@ SM_INLINE void move_group(Crowd *crowd, int side, long group, const GroupRows *r
         }
         load3(crowd->x + at, x);
         load3(crowd->v + at, v);
-        integrate_velocity(sum, lanes_set(crowd->count[p]), lanes_set(crowd->inverse_count[p]), x,
-                           lsm->gravity, lsm->rounding, lanes_set(1), v);
+        for (int d = 0; d < 3; d++)
+            sum[d] = (sum[d] - crowd->count[p] * x[d]) * crowd->inverse_count[p];
+        integrate_velocity(sum, lsm->gravity, lsm->rounding, lanes_set(1), v);
         if (!damp) {
             integrate_position(lsm->obstacle, lsm->obstacle_count, shift, x, v);
             store3(crowd->x + at, x);
@@ -350,8 +351,9 @@ void crowd_goals(Crowd *crowd)
     run(crowd, true, NULL);
 }
 
-void crowd_recentre(Crowd *crowd, Momentum *momentum)
+double crowd_recentre(Crowd *crowd, Momentum *momentum)
 {
+    double far = 0;
     long n = crowd->lsm->lattice.count;
     for (long group = 0; group < crowd->groups; group++) {
         vec middle[3] = {{0}};
@@ -362,6 +364,7 @@ void crowd_recentre(Crowd *crowd, Momentum *momentum)
             for (int lane = 0; lane < L; lane++) {
                 middle[d][lane] = (real)rint((double)middle[d][lane] / (double)n);
                 crowd->origin[group * L + lane][d] += (double)middle[d][lane] * crowd->lsm->cell;
+                far = fmax(far, fabs((double)middle[d][lane]));
             }
         for (int lane = 0; lane < L && group * L + lane < crowd->bodies; lane++)
             momentum_shift(momentum, group * L + lane,
@@ -373,4 +376,5 @@ void crowd_recentre(Crowd *crowd, Momentum *momentum)
                 lanes_store(x, lanes_load(x) - middle[d]);
             }
     }
+    return far;
 }

@@ -36,8 +36,9 @@ void crowd_free(Crowd *crowd);
 void crowd_step(Crowd *crowd, SmLaps *laps);
 void crowd_goals(Crowd *crowd);
 
-/* Moves each body's origin to its middle, by whole cells. */
-void crowd_recentre(Crowd *crowd, Momentum *momentum);
+/* Moves each body's origin to its middle, by whole cells. Returns the most that one was off along
+ * an axis. */
+double crowd_recentre(Crowd *crowd, Momentum *momentum);
 
 long crowd_bytes(const Crowd *crowd);
 

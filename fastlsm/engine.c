@@ -15,8 +15,6 @@
 #include "step.h"
 #include "turn.h"
 
-enum { RECENTRE_STEPS = 16 };
-
 struct SmEngine {
     Lsm *lsm;
     Crowd *crowd; /* NULL: one body */
@@ -28,8 +26,10 @@ struct SmEngine {
     SmHandles handles;
     LsmContacts *contacts; /* NULL: nothing collides */
     Momentum *momentum;
-    SmPieces pieces; /* of its particles, by the lattice's numbers */
-    long divided_at; /* links broken when its pieces were found */
+    real rounding;            /* of a body at rest (integrate.h) */
+    SmPieces pieces;          /* of its particles, by the lattice's numbers */
+    long divided_at;          /* links broken when its pieces were found */
+    long recentred, recentre; /* steps when origins moved last, and are to move next */
     double build_seconds;
 };
 
@@ -186,11 +186,17 @@ static void divide_momentum(SmEngine *e)
     e->divided_at = e->lsm->broken;
 }
 
+static int longest(const LsmLattice *l)
+{
+    int most = l->size[0] > l->size[1] ? l->size[0] : l->size[1];
+    return l->size[2] > most ? l->size[2] : most;
+}
+
 /* How often momenta are kept: the more particles there are, the better their roundings cancel, and
  * the more it costs when they do not stay in the cache. */
 static int keep_steps(long blocks)
 {
-    return blocks <= 256 ? 2 : blocks <= 8192 ? 4 : 16;
+    return blocks <= 256 ? 4 : blocks <= 8192 ? 8 : 16;
 }
 
 static void start_at_rest(SmEngine *e)
@@ -253,6 +259,7 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     e->momentum =
         momentum_build(e->crowd ? e->count : lsm->blocks, e->bodies, e->crowd != NULL,
                        keep_steps(lsm->blocks), e->crowd ? e->crowd->threads : lsm->threads);
+    e->rounding = rounding_square(longest(&lsm->lattice), lsm->w);
     sm_pieces_init(e->count, &e->pieces);
     divide_momentum(e);
     e->build_seconds = sm_now() - start;
@@ -316,8 +323,9 @@ static bool is_free(const SmEngine *e)
 
 static void begin_momentum(SmEngine *e)
 {
-    if (!is_free(e)) return;
-    momentum_begin(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY));
+    if (is_free(e))
+        momentum_begin(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY));
+    e->lsm->rounding = momentum_rests(e->momentum) ? e->rounding : 0;
 }
 
 /* Pieces are found again when the body has stopped breaking for a while. */
@@ -332,6 +340,17 @@ static void keep_momentum(SmEngine *e)
         momentum_keep(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY),
                       e->lsm->gravity);
     momentum_kept(e->momentum);
+}
+
+/* Origins go to bodies' middles: the next time before one is likely to be some cells off again. */
+static void recentre(SmEngine *e)
+{
+    double far =
+        e->crowd ? crowd_recentre(e->crowd, e->momentum) : lsm_recentre(e->lsm, e->momentum);
+    shift_obstacles(e->lsm);
+    long since = e->lsm->steps - e->recentred;
+    e->recentred = e->lsm->steps;
+    e->recentre = e->recentred + sm_recentre_after(since, far);
 }
 
 static void engine_step(SmEngine *e, SmLaps *laps)
@@ -355,12 +374,7 @@ static void engine_step(SmEngine *e, SmLaps *laps)
     if (e->contacts) lsm_contacts_after(e->contacts);
     if (lsm->params.strain_limit > 0 && isfinite(lsm->params.strain_limit)) lsm_fracture(lsm);
     keep_momentum(e);
-    if (lsm->steps % RECENTRE_STEPS == 0) {
-        if (e->crowd)
-            crowd_recentre(e->crowd, e->momentum);
-        else if (lsm_recentre(lsm, e->momentum))
-            shift_obstacles(lsm);
-    }
+    if (lsm->steps >= e->recentre) recentre(e);
     sm_lap(laps, SM_OTHER);
 }
 

@@ -112,7 +112,8 @@ SM_INLINE void match_end(Lsm *lsm, int layer, long tile, const vec S[12], const 
 {
     const vec *A = S + MOMENT;
     if (lsm->params.polar == SM_POLAR_FAST) {
-        polar_finish(A, &m->of[t], m->trace[t], m->live[t], lsm->last + tile * 6 * SM_LANES, R);
+        polar_finish(A, &m->of[t], m->trace[t], m->live[t], POLAR_LATTICE,
+                     lsm->last + tile * 6 * SM_LANES, R);
     } else {
         vec jacobi[9];
         lsm->sweeps[layer] += polar_jacobi_lanes(A, m->live[t], lsm->last + tile * 6 * SM_LANES,
@@ -292,7 +293,7 @@ static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec
 SM_INLINE void integrate(Lsm *lsm, long block, const vec sum[3])
 {
     const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
-    vec x[3], v[3];
+    vec x[3], v[3], pull[3];
     if (lsm->pass == PASS_GOALS) {
         vec g[3];
         for (int d = 0; d < 3; d++) g[d] = sum[d] * k->inverse_count;
@@ -302,7 +303,8 @@ SM_INLINE void integrate(Lsm *lsm, long block, const vec sum[3])
     load3(lsm->x + block * 3 * SM_LANES, x);
     load3(lsm->v + block * 3 * SM_LANES, v);
     vec live = lanes_select(k->count > 0, lanes_set(1), lanes_set(0));
-    integrate_velocity(sum, k->count, k->inverse_count, x, lsm->gravity, lsm->rounding, live, v);
+    for (int d = 0; d < 3; d++) pull[d] = (sum[d] - k->count * x[d]) * k->inverse_count;
+    integrate_velocity(pull, lsm->gravity, lsm->rounding, live, v);
     if (!lsm->damp_now) {
         integrate_position(lsm->obstacle, lsm->obstacle_count, lsm->shift, x, v);
         store3(lsm->x + block * 3 * SM_LANES, x);

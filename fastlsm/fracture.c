@@ -347,7 +347,7 @@ long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first)
     return lsm->broken - before;
 }
 
-bool lsm_recentre(Lsm *lsm, Momentum *momentum)
+double lsm_recentre(Lsm *lsm, Momentum *momentum)
 {
     double sum[3] = {0, 0, 0};
     for (long block = 0; block < lsm->blocks; block++)
@@ -357,17 +357,16 @@ bool lsm_recentre(Lsm *lsm, Momentum *momentum)
             for (int lane = 0; lane < SM_LANES; lane++) part += x[lane];
             sum[d] += (double)part;
         }
-    double middle[3];
-    bool far = false;
+    double middle[3], far = 0;
     for (int d = 0; d < 3; d++) {
         middle[d] = rint(sum[d] / (double)lsm->lattice.count);
-        far |= fabs(middle[d]) > 1;
+        far = fmax(far, fabs(middle[d]));
     }
-    if (!far) return false;
+    if (!(far > 1)) return far;
     momentum_shift(momentum, 0, middle);
     for (int d = 0; d < 3; d++) lsm->origin[d] += middle[d] * lsm->cell;
     for (long slot = 0; slot < lsm->blocks * SM_LANES; slot++)
         for (int d = 0; d < 3 && lsm->particle[slot] >= 0; d++)
             lsm->x[(slot / SM_LANES * 3 + d) * SM_LANES + slot % SM_LANES] -= (real)middle[d];
-    return true;
+    return far;
 }

@@ -34,7 +34,7 @@ void lsm_fracture(Lsm *lsm);
 long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first);
 
 /* Moves the origin to the body's middle, by whole cells, once it has drifted: single precision
- * resolves positions best near zero. Returns whether it moved. */
-bool lsm_recentre(Lsm *lsm, Momentum *momentum);
+ * resolves positions best near zero. Returns how many cells it was off along an axis, at most. */
+double lsm_recentre(Lsm *lsm, Momentum *momentum);
 
 #endif

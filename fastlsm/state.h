@@ -124,7 +124,7 @@ typedef struct Lsm {
     bool damp_now;
 
     real gravity[3]; /* cells per step and step */
-    real rounding;   /* square of what goals are off by rounding (integrate.h) */
+    real rounding;   /* of a body at rest, square of what goals are off (integrate.h); else 0 */
     int obstacle_count;
     Obstacle *obstacle;
     vec shift[3]; /* (origin - home) / cell: from x to obstacle coordinates */

@@ -19,17 +19,15 @@ static inline real rounding_square(double extent, double reach)
     return (real)((way < most ? way : most) * (way < most ? way : most));
 }
 
-/* Eq. 1 from sums over a particle's regions: `sum` of their goals, each times the region's share,
- * and `count` of the shares. `gravity` in cells per step and step; empty lanes (`live` 0) do not
- * fall. Rounding sets nothing in motion: a particle that does not move is pulled only where its
- * goal is farther off than the square root of `rounding`. */
-SM_INLINE void integrate_velocity(const vec sum[3], vec count, vec inverse_count, const vec x[3],
-                                  const real gravity[3], real rounding, vec live, vec v[3])
+/* Eq. 1; `pull` is g - x. `gravity` in cells per step and step; empty lanes (`live` 0) do not fall.
+ * Of a body at rest rounding sets nothing in motion: a particle that does not move is pulled only
+ * where its goal is farther off than the square root of `rounding`, which is 0 of others. */
+SM_INLINE void integrate_velocity(const vec pull[3], const real gravity[3], real rounding, vec live,
+                                  vec v[3])
 {
     const real much = (real)1e30;
-    vec pull[3], off = lanes_set(0), speed = lanes_set(0);
+    vec off = lanes_set(0), speed = lanes_set(0);
     for (int d = 0; d < 3; d++) {
-        pull[d] = (sum[d] - count * x[d]) * inverse_count;
         off += pull[d] * pull[d];
         speed += v[d] * v[d];
     }

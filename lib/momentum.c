@@ -8,22 +8,19 @@
 #include "lanes.h"
 #include "vector.h"
 
-/* What is summed of every piece, with r = x - about: m r, m v, m r X v, and the upper half of
- * m r r^T. */
-enum { MASS_R, MASS_V = 3, MOMENT = 6, SPREAD = 9, SUMS = 15 };
+/* What is summed of every piece, with r = x - about: m r, m v, m r X v, the upper half of m r r^T,
+ * and m v^2. */
+enum { MASS_R, MASS_V = 3, MOMENT = 6, SPREAD = 9, ENERGY = 15, SUMS = MOMENTUM_SUMS };
 
-/* Runs are cut at RUN_BLOCKS blocks; RUNS_AT_ONCE are summed before they are added up. Rounding is
- * the same whatever the threads. */
-enum { RUN_BLOCKS = 64, RUNS_AT_ONCE = 64 };
+/* Runs are cut at RUN_BLOCKS blocks, over which sums are in `real`; RUNS_AT_ONCE are summed before
+ * they are added up in double precision. Rounding is the same whatever the threads. */
+enum { RUN_BLOCKS = 32, RUNS_AT_ONCE = 64 };
 
 /* Of what is over at one time, the share that is expected to be over again, and how long for. */
 static const double LEARNT = 0.125, LASTING = 0.97;
 
-/* Sums in `real` go over as many blocks before they are added up in double precision. */
-enum { ROUNDED_BLOCKS = 8 };
-
-typedef double wide __attribute__((vector_size(SM_LANES * sizeof(double))));
-typedef wide RunSum[SUMS];
+typedef real RunSum[SM_LANES][SUMS];
+typedef double wide __attribute__((vector_size(SUMS * sizeof(double)), aligned(sizeof(double))));
 
 Momentum *momentum_build(long blocks, long bodies, bool abreast, int every, int threads)
 {
@@ -111,7 +108,8 @@ void momentum_divide(Momentum *m, long pieces)
         lanes_of(m, block, here);
         if (block == 0 || block - m->run[m->runs - 1].first == RUN_BLOCKS ||
             memcmp(here, before, sizeof here) != 0)
-            m->run[m->runs++] = (MomentumRun){block, all_the_same(here) ? here[0].piece : -1};
+            m->run[m->runs++] =
+                (MomentumRun){block, all_the_same(here) ? here[0].piece : -1, here[0].frame};
         memcpy(before, here, sizeof here);
     }
     m->run[m->runs].first = all_blocks(m);
@@ -123,6 +121,7 @@ void momentum_forget(Momentum *m)
     if (!m) return;
     m->age++;
     m->steps = 0;
+    m->begun = m->moving = false;
 }
 
 static bool is_known(const Momentum *m, const MomentumPiece *p)
@@ -151,16 +150,21 @@ static void frame_of(const Momentum *m, const MomentumPiece *piece, const double
                      long run, Frame *frame)
 {
     static const double zero[1][3];
+    const MomentumRun *r = &m->run[run];
+    if (!origin) origin = zero;
+    if (r->piece >= 0) {
+        frame_lane(m, &piece[r->piece], origin[r->frame], 0, frame);
+        vec *all = (vec *)frame;
+        for (size_t i = 0; i < sizeof *frame / sizeof *all; i++) all[i] = lanes_set(all[i][0]);
+        return;
+    }
     Lane lane[SM_LANES];
-    lanes_of(m, m->run[run].first, lane);
-    bool same = m->run[run].piece >= 0;
+    lanes_of(m, r->first, lane);
     memset(frame, 0, sizeof *frame);
-    for (int l = 0; l < (same ? 1 : SM_LANES); l++)
+    for (int l = 0; l < SM_LANES; l++)
         if (lane[l].piece >= 0)
-            frame_lane(m, &piece[lane[l].piece], origin ? origin[lane[l].frame] : zero[0], l,
+            frame_lane(m, &piece[lane[l].piece], origin[origin == zero ? 0 : lane[l].frame], l,
                        frame);
-    vec *all = (vec *)frame;
-    for (size_t i = 0; i < sizeof *frame / sizeof *all && same; i++) all[i] = lanes_set(all[i][0]);
 }
 
 /* Corrects a block, and adds what it has to `sum`. */
@@ -186,6 +190,7 @@ SM_INLINE void keep_block(const Frame *f, vec mass, real *x, real *v, vec sum[SU
         sum[MOMENT + d] += next * u[g] - mass * r[g] * u[e];
         sum[SPREAD + d] += here * r[d];
         sum[SPREAD + 3 + d] += next * r[g];
+        sum[ENERGY] += mass * u[d] * u[d];
     }
 }
 
@@ -193,17 +198,17 @@ static void keep_run(const Momentum *m, const MomentumPiece *piece, const double
                      long run, real *x, real *v, RunSum total)
 {
     Frame frame;
+    vec sum[SUMS] = {{0}};
     frame_of(m, piece, origin, run, &frame);
-    memset(total, 0, sizeof(RunSum));
-    for (long first = m->run[run].first, last = m->run[run + 1].first; first < last;) {
-        vec sum[SUMS] = {{0}};
-        long end = last - first > ROUNDED_BLOCKS ? first + ROUNDED_BLOCKS : last;
-        for (; first < end; first++) {
-            vec mass = m->abreast ? lanes_set(m->mass[first % m->blocks])
-                                  : lanes_load(m->mass + first * SM_LANES);
-            keep_block(&frame, mass, x + first * 3 * SM_LANES, v + first * 3 * SM_LANES, sum);
-        }
-        for (int i = 0; i < SUMS; i++) total[i] += __builtin_convertvector(sum[i], wide);
+    for (long block = m->run[run].first; block < m->run[run + 1].first; block++) {
+        vec mass = m->abreast ? lanes_set(m->mass[block % m->blocks])
+                              : lanes_load(m->mass + block * SM_LANES);
+        keep_block(&frame, mass, x + block * 3 * SM_LANES, v + block * 3 * SM_LANES, sum);
+    }
+    for (int part = 0; part < SUMS; part += SM_LANES) { /* to rows of lanes */
+        lanes_interleave(sum + part, SM_LANES);
+        for (int lane = 0; lane < SM_LANES; lane++)
+            lanes_store(total[lane] + part, sum[part + lane]);
     }
 }
 
@@ -238,10 +243,10 @@ typedef struct {
 static void momenta_of(const MomentumPiece *p, Momenta *is)
 {
     const double *L = p->sum + MOMENT, *V = p->sum + MASS_V;
-    double off[3];
+    double off[3], inverse = 1 / p->mass;
     for (int d = 0; d < 3; d++) {
-        off[d] = p->sum[MASS_R + d] / p->mass;
-        is->velocity[d] = V[d] / p->mass;
+        off[d] = p->sum[MASS_R + d] * inverse;
+        is->velocity[d] = V[d] * inverse;
         is->place[d] = p->about[d] + off[d];
     }
     for (int d = 0; d < 3; d++) {
@@ -256,19 +261,17 @@ static void momenta_of(const MomentumPiece *p, Momenta *is)
 static void add_run(const Momentum *m, long run, RunSum total, MomentumPiece *piece)
 {
     Lane of[SM_LANES];
-    if (m->run[run].piece >= 0) {
-        for (int i = 0; i < SUMS; i++) {
-            double *lane = (double *)&total[i];
-            for (int half = SM_LANES / 2; half > 0; half /= 2)
-                for (int l = 0; l < half; l++) lane[l] += lane[l + half];
-            piece[m->run[run].piece].sum[i] += lane[0];
-        }
-        return;
+    long same = m->run[run].piece;
+    wide all = {0};
+    if (same < 0) lanes_of(m, m->run[run].first, of);
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        wide sum = __builtin_convertvector(load16(total[lane]), wide);
+        if (same >= 0)
+            all += sum;
+        else if (of[lane].piece >= 0)
+            *(wide *)piece[of[lane].piece].sum += sum;
     }
-    lanes_of(m, m->run[run].first, of);
-    for (int lane = 0; lane < SM_LANES; lane++)
-        for (int i = 0; i < SUMS && of[lane].piece >= 0; i++)
-            piece[of[lane].piece].sum[i] += total[i][lane];
+    if (same >= 0) *(wide *)piece[same].sum += all;
 }
 
 /* Sums of all pieces of a body, corrected where they are known; the first of them. */
@@ -305,12 +308,15 @@ void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, 
                 p->shift[d] = p->push[d] = p->turn[d] = p->drift[d] = p->twist[d] = 0;
             }
             p->since = time > 0 ? m->age : 0;
+            if (!(p->sum[ENERGY] == 0)) m->moving = true;
         }
     }
+    m->begun = true;
 }
 
 void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3])
 {
+    m->moving = true;
     MomentumPiece *p = &m->piece[body * m->pieces + m->label[slot]];
     double mass = (double)m->mass[slot], n = (double)m->steps, r[3], moment[3];
     for (int d = 0; d < 3; d++) {
@@ -333,6 +339,7 @@ void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, r
         Momenta is;
         double over[3], lost[3], off[3], aside[3];
         momenta_of(p, &is);
+        if (!(p->sum[ENERGY] == 0)) m->moving = true;
         for (int d = 0; d < 3; d++) {
             double fall = (double)gravity[d], fast;
             p->place[d] += n * p->velocity[d] + fall * n * (n + 1) / 2;

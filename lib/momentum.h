@@ -32,19 +32,21 @@
 #define momentum_bytes  SM_NAME(sm_momentum_bytes)
 #define momentum_free   SM_NAME(sm_momentum_free)
 
+enum { MOMENTUM_SUMS = 16 };
+
 /* One piece of one body. Places count from where the origins do (momentum_keep()). */
 typedef struct {
     double mass, about[3];                 /* what sums are taken about; whole cells */
     double place[3], velocity[3], spin[3]; /* where its centre should be, and its momenta */
     double shift[3], push[3], turn[3];     /* too far, too fast, turning about `about` */
     double drift[3], twist[3];             /* what rounding adds from one time to the next */
-    double sum[15];                        /* of its particles, while they are measured */
+    double sum[MOMENTUM_SUMS];             /* of its particles, while they are measured */
     long since;                            /* the `age` in which these were measured */
 } MomentumPiece;
 
 /* Blocks whose lanes are of the same pieces and frames; of one piece where it is not -1. */
 typedef struct {
-    long first, piece;
+    long first, piece, frame;
 } MomentumRun;
 
 typedef struct {
@@ -60,10 +62,11 @@ typedef struct {
     long pieces, piece_room;
     MomentumPiece *piece; /* [bodies][pieces] */
     long runs;
-    MomentumRun *run;  /* [runs + 1] */
-    void *sum;         /* of the runs that are summed at once */
-    long age;          /* how often momenta were forgotten, and once more */
-    long every, steps; /* steps from one measurement to the next, and since the last one */
+    MomentumRun *run;   /* [runs + 1] */
+    void *sum;          /* of the runs that are summed at once */
+    bool begun, moving; /* momenta are known; and something has moved since they were forgotten */
+    long age;           /* how often momenta were forgotten, and once more */
+    long every, steps;  /* steps from one measurement to the next, and since the last one */
 } Momentum;
 
 /* Room for bodies of so many blocks each, without masses or pieces, whose momenta are kept in every
@@ -86,6 +89,12 @@ void momentum_forget(Momentum *m);
  */
 void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, real *v);
 
+/* Is all of it known to rest? */
+static inline bool momentum_rests(const Momentum *m)
+{
+    return m->begun && !m->moving;
+}
+
 /* After a step: is it time to keep the momenta? */
 static inline bool momentum_due(Momentum *m)
 {
@@ -107,6 +116,15 @@ static inline void momentum_kept(Momentum *m)
 /* The velocity of a slot (abreast: particle) at x, origin included, was changed by `dv`: an
  * external force. */
 void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3]);
+
+/* After how many steps origins are to go to their bodies' middles again, when `since` the last time
+ * one has come `far` off: before it is some eight cells off, as a coordinate in single precision
+ * has fewer digits behind the point the larger it is, but in 16 steps. */
+static inline long sm_recentre_after(long since, double far)
+{
+    double enough = 8, steps = (double)since * enough / (far > enough / 2 ? far : enough / 2);
+    return steps < 15 ? 1 + (long)steps : 16;
+}
 
 /* x of a body counts from a place farther on by `by`, which no `origin` tells. */
 void momentum_shift(Momentum *m, long body, const double by[3]);

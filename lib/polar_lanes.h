@@ -156,10 +156,16 @@ static __attribute__((noinline, unused)) void polar_polish(const vec *A, unsigne
     }
 }
 
+/* Rotations are polished where the denominator is below this share of (tr U)^3, of which it is 8/27
+ * where all stretches agree. Particles of a lattice have wide regions in their flattest places, and
+ * what rounding is magnified by there is less than it is in their sums. */
+#define POLAR_NARROW  ((real)0.15)
+#define POLAR_LATTICE ((real)0)
+
 /* R from tr U, zero in lanes that are not live. Returns the live lanes that are near a tie, or of a
  * scale whose fourth power leaves the range, and were left undefined. */
 SM_INLINE unsigned polar_rotation(const vec A[9], const PolarInvariants *of, vec l, unsigned live,
-                                  vec R[9])
+                                  real polish, vec R[9])
 {
     vec D[9], over_l = lanes_inverse(l), i2 = (real)0.5 * (l * l - of->I), below = l * i2 - of->J,
               over = lanes_inverse(below) * of->inverse;
@@ -172,7 +178,7 @@ SM_INLINE unsigned polar_rotation(const vec A[9], const PolarInvariants *of, vec
      * 4 (i2^2 - II - 2 J l). Written so that a NaN counts as a tie. */
     const real root = SM_REAL_BITS == 32 ? (real)1e-5 : (real)1e-10;
     vec rest = i2 * i2 - (of->II + 2 * of->J * l), cube = l * l * l;
-    unsigned narrow = live & lanes_below(below, (real)0.15 * cube);
+    unsigned narrow = polish > 0 ? live & lanes_below(below, polish * cube) : 0;
     if (__builtin_expect(narrow != 0, 0)) {
         vec from[9], to[9]; /* copies: A and R stay in registers */
         lanes_copy(9, A, from);
@@ -193,7 +199,7 @@ SM_INLINE unsigned polar_quartic(const vec A[9], unsigned live, vec R[9])
     vec l;
     polar_invariants(A, &of);
     polar_trace(1, &of, &live, &l);
-    return polar_rotation(A, &of, l, live, R);
+    return polar_rotation(A, &of, l, live, POLAR_NARROW, R);
 }
 
 /* Redoes the lanes of `tie` one by one, keeping near the last rotation. */

@@ -61,9 +61,9 @@ static __attribute__((noinline)) void polar_ties(const vec *A, unsigned tie, con
 /* The rotations of a tile from its invariants and tr U, near the last ones where they are not
  * unique; zero in lanes that are not live. Updates `last`. */
 SM_INLINE void polar_finish(const vec A[9], const PolarInvariants *of, vec l, unsigned live,
-                            short *last, vec R[9])
+                            real polish, short *last, vec R[9])
 {
-    unsigned tie = polar_rotation(A, of, l, live, R);
+    unsigned tie = polar_rotation(A, of, l, live, polish, R);
     if (__builtin_expect(tie != 0, 0)) { /* copies: A and R stay in registers */
         vec from[9], to[9];
         lanes_copy(9, A, from);
@@ -75,13 +75,13 @@ SM_INLINE void polar_finish(const vec A[9], const PolarInvariants *of, vec l, un
 }
 
 /* The same of one tile alone, all of it. */
-SM_INLINE void polar_fast_lanes(const vec A[9], unsigned live, short *last, vec R[9])
+SM_INLINE void polar_fast_lanes(const vec A[9], unsigned live, real polish, short *last, vec R[9])
 {
     PolarInvariants of;
     vec l;
     polar_invariants(A, &of);
     polar_trace(1, &of, &live, &l);
-    polar_finish(A, &of, l, live, last, R);
+    polar_finish(A, &of, l, live, polish, last, R);
 }
 
 /* The paper's way (fastlsm section 4), lane by lane, from the eigenvectors `stretch` of the last

@@ -173,7 +173,7 @@ static void check_piece(const Free *f, const Sums *before, int piece, double tim
 {
     Sums now = sums_of(f, piece);
     bool single = strcmp(f->type->precision, "single") == 0, turns;
-    double place[3], most = (single ? 1e-6 : 1e-11) * fmax(1, sqrt(64 / (double)now.particles));
+    double place[3], most = (single ? 1e-6 : 1e-11) * fmax(1, sqrt(300 / (double)now.particles));
     if (now.particles * f->params.instances < f->n) most *= 20;
     for (int d = 0; d < 3; d++) place[d] = before->centre[d] + before->linear[d] / now.mass * time;
     double linear = difference(now.linear, before->linear) / before->speed,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/momentum.h"
 #include "../lib/team.h"
 #include "changing.h"
 #include "ghosts.h"
@@ -139,7 +140,7 @@ Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mas
     fill_slots(tree, regions, mass, oct);
     for (int i = 0; i < oct->workers; i++) fill_rows(tree, oct, &oct->rows[i]);
     for (int d = 0; d < 3; d++) oct->gravity[d] = (real)params->gravity[d];
-    oct->rounding = rounding_square(extent_of(tree), 0.5 * regions->most_width);
+    oct->at_rest = rounding_square(extent_of(tree), 0.5 * regions->most_width);
     start_at_rest(tree, oct);
     return oct;
 }
@@ -226,8 +227,7 @@ static void shift_leaves(const Oct *oct, OctState *b, const double (*shift)[4])
 
 void oct_recentre(Oct *oct)
 {
-    enum { STEPS = 16, CELLS = 8 };
-    double farthest = CELLS;
+    double farthest = 0;
     for (OctState *b = oct->body; b < oct->body + oct->instances; b++) {
         bool moves = false;
         sum_frames(oct, b, NULL, oct->middle);
@@ -244,5 +244,5 @@ void oct_recentre(Oct *oct)
     }
     long since = oct->steps - oct->recentred;
     oct->recentred = oct->steps;
-    oct->recentre = oct->steps + 1 + (long)fmin((double)since * CELLS / farthest, STEPS - 1);
+    oct->recentre = oct->steps + sm_recentre_after(since, farthest);
 }

@@ -409,11 +409,11 @@ static bool is_kicked(const OctState *body)
 
 static void begin_momentum(SmEngine *e)
 {
-    if (!e->momentum || !e->divided || !is_free(e) || is_kicked(e->oct->body)) return;
-    for (long i = 0; i < e->oct->instances; i++) {
-        OctState *b = &e->oct->body[i];
-        momentum_begin(e->momentum, i, (const double(*)[3])b->origin, b->x, b->v);
-    }
+    if (!e->momentum) return;
+    bool begins = e->divided && is_free(e) && !is_kicked(e->oct->body);
+    for (OctState *b = e->oct->body; begins && b < e->oct->body + e->oct->instances; b++)
+        momentum_begin(e->momentum, b - e->oct->body, (const double(*)[3])b->origin, b->x, b->v);
+    e->oct->rounding = momentum_rests(e->momentum) ? e->oct->at_rest : 0;
 }
 
 /* Pieces are found again when the body has not changed for a while. */

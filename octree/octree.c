@@ -146,7 +146,7 @@ static void match(OctTask *task, long first, long last)
         if (body->stretch)
             rotate_jacobi(A, before, body->stretch + block * 9 * SM_LANES, R);
         else
-            polar_fast_lanes(A, LANES_ALL, before, R);
+            polar_fast_lanes(A, LANES_ALL, POLAR_NARROW, before, R);
         sm_lap(task->laps, SM_POLAR);
         if (body->plastic) plastic_block(task, block, A, R, F);
         store_transforms(task, block, c, body->plastic ? F : R);
@@ -241,15 +241,15 @@ static void move(OctTask *task, long first, long last)
         vec g[3], x[3], v[3];
         goal_sums(task, block, g);
         sm_lap(task->laps, SM_FAST_SUM);
-        const OctConst *k = &oct->block[block];
+        for (int d = 0; d < 3; d++) g[d] *= oct->block[block].inverse_reach;
         if (task->goals) {
-            for (int d = 0; d < 3; d++) g[d] *= k->inverse_reach;
             store3(body->g + at, g);
             continue;
         }
         load3(body->x + at, x);
         load3(body->v + at, v);
-        integrate_velocity(g, k->reach, k->inverse_reach, x, push, oct->rounding, lanes_set(1), v);
+        for (int d = 0; d < 3; d++) g[d] -= x[d];
+        integrate_velocity(g, push, oct->rounding, lanes_set(1), v);
         if (!oct->damp_now) {
             vec shift[3];
             oct_shift(oct, body, block, shift);

@@ -175,7 +175,6 @@ void oct_slot_fill(Oct *oct, const OctTree *tree, const OctWeights *w, long leaf
     }
     oct->row[leaf] = (int)oct->lists.base + tree->node[leaf];
     k->weight[lane] = (real)oct_weights_weight(w, tree, leaf);
-    k->reach[lane] = (real)w->reach[leaf];
     k->inverse_reach[lane] = (real)(1 / w->reach[leaf]);
     k->mass[lane] = (real)oct_weights_mass(w, tree, leaf);
     k->inverse_mass[lane] = (real)(1 / rest->mass);
@@ -192,9 +191,9 @@ void oct_slot_clear(Oct *oct, long leaf)
 {
     long block = leaf / SM_LANES, lane = leaf % SM_LANES;
     OctConst *k = &oct->block[block];
-    vec *const all[] = {&k->weight,       &k->reach,     &k->inverse_reach, &k->mass,
-                        &k->inverse_mass, &k->offset[0], &k->offset[1],     &k->offset[2],
-                        &k->centre[0],    &k->centre[1], &k->centre[2]};
+    vec *const all[] = {&k->weight,    &k->inverse_reach, &k->mass,      &k->inverse_mass,
+                        &k->offset[0], &k->offset[1],     &k->offset[2], &k->centre[0],
+                        &k->centre[1], &k->centre[2]};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) (*all[i])[lane] = 0;
     for (int i = 0; i < 6 && oct->spread; i++) oct->spread[(block * 6 + i) * SM_LANES + lane] = 0;
     for (long i = 0; i < oct->instances; i++)

@@ -33,10 +33,10 @@ typedef struct {
 
 /* Constants of a block. */
 typedef struct {
-    vec weight, reach, inverse_reach; /* of the simulation nodes: m~_i; M_i; 1 / M_i */
-    vec mass;                         /* m_r */
-    vec inverse_mass, offset[3];      /* of the regions: 1 / M'_r; c0_r - x0_r */
-    vec centre[3];                    /* x0, finest cells from the tree's first node */
+    vec weight, inverse_reach;   /* of the simulation nodes: m~_i; 1 / M_i */
+    vec mass;                    /* m_r */
+    vec inverse_mass, offset[3]; /* of the regions: 1 / M'_r; c0_r - x0_r */
+    vec centre[3];               /* x0, finest cells from the tree's first node */
 } OctConst;
 
 /* The thin regions of a block (thin.h). */
@@ -116,7 +116,8 @@ typedef struct {
     long steps;
     long recentred, recentre; /* `steps` when origins moved last, and are to move next */
     real gravity[3];
-    real rounding; /* square of what goals are off by rounding (integrate.h) */
+    real rounding, at_rest; /* square of what goals are off by rounding (integrate.h), of bodies at
+                             * rest, else 0; and what it is then */
     int obstacle_count;
     Obstacle *obstacle; /* in finest cells from where origins count */
 } Oct;
