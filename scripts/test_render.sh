@@ -11,6 +11,7 @@ render=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)/render.py
 out=$(mktemp -d)
 trap 'rm -rf -- "$out"' EXIT
 cd -- "$out"
+lost() { echo "line ${BASH_LINENO[0]}: not as it should be; it said: $(cat said)" && exit 1; }
 if ! /usr/bin/python3 -c 'import h5py, matplotlib, numpy, vtk' 2>/dev/null ||
     { [ -z "${DISPLAY-}" ] && ! { command -v xvfb-run && command -v xauth; } >/dev/null; }; then
     echo "skipped: scripts/setup pictures installs what it needs"
@@ -37,7 +38,7 @@ cmp small.png plain.png # its triangles are too small for edges
 if cmp -s edges.png plain.png; then echo "no edges" && exit 1; fi
 status=0
 "$render" penguin.vtkhdf --frame 3 -o none.png 2>said || status=$?
-[ "$status" -eq 2 ] && grep -q 'has 3 frames, no frame 3' said && ! [ -e none.png ]
+[ "$status" -eq 2 ] && grep -q 'has 3 frames, no frame 3' said && ! [ -e none.png ] || lost
 
 # A body that falls through empty space: the camera stays, the body moves down, and has no shadow.
 cat >fall.cfg <<'SCENE'
@@ -96,13 +97,31 @@ assert fast.sum() > 100, "a body that falls is not of its last colours"
 PYTHON
 status=0
 "$render" floor.vtkhdf --colour strain -o none.png 2>said || status=$?
-[ "$status" -eq 3 ] && grep -q "has no field 'strain' (it has piece, speed)" said && ! [ -e none.png ]
+[ "$status" -eq 3 ] && grep -q "has no field 'strain' (it has piece, speed)" said && ! [ -e none.png ] || lost
+
+# A video of all frames; without ffmpeg a line that names it.
+status=0
+PATH=/none "$render" floor.vtkhdf --video none.mp4 2>said || status=$?
+[ "$status" -eq 3 ] && grep -q 'needs ffmpeg: apt-get install ffmpeg' said && ! [ -e none.mp4 ] || lost
+if command -v ffmpeg ffprobe >/dev/null; then
+    "$render" floor.vtkhdf --colour speed --video film.mp4 --size 65x64 >said
+    grep -qx 'wrote film.mp4: 3 pictures, 3.333 a second' said
+    [ "$(ffprobe -v error -count_frames -show_entries stream=width,height,nb_read_frames -of csv=p=0 film.mp4)" = \
+        166,64,3 ]
+    status=0
+    mkdir fake
+    printf '#!/bin/sh\necho full >&2\nexit 1\n' >fake/ffmpeg
+    chmod +x fake/ffmpeg
+    PATH=$PWD/fake:$PATH "$render" floor.vtkhdf --video none.mp4 --size 64x64 2>said || status=$?
+    [ "$status" -eq 4 ] && grep -qx 'render.py: none.mp4: ffmpeg failed: full' said &&
+        ! compgen -G 'none.mp4*' >/dev/null || lost
+fi
 
 # Ctrl-C ends it with a line, and what lent it a display with it.
 echo 'import os, signal; os.kill(os.getpid(), signal.SIGINT)' >vtk.py
 status=0
 PYTHONPATH=. TMPDIR=$out "$render" penguin.vtkhdf -o none.png 2>said || status=$?
-[ "$status" -eq 130 ] && [ "$(cat said)" = "render.py: interrupted: nothing was written" ] && ! [ -e none.png ]
+[ "$status" -eq 130 ] && [ "$(cat said)" = "render.py: interrupted: nothing was written" ] && ! [ -e none.png ] || lost
 for _ in {1..50}; do
     compgen -G "$out/xvfb-run.*" >/dev/null || exit 0
     sleep 0.1
