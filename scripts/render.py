@@ -127,7 +127,8 @@ def read_sequence(path, mesh):
         if not numpy.isfinite(high - low).all():
             raise ValueError("points that are not finite")
         obstacles = next((file[name][()] for name in OBSTACLES if name in file), numpy.empty((0, 9)))
-        if obstacles.ndim != 2 or obstacles.shape[1] != 9 or not numpy.isfinite(obstacles).all():
+        if obstacles.ndim != 2 or obstacles.shape[1] != 9 or not numpy.isfinite(obstacles).all() or \
+                not numpy.isin(obstacles[:, 0], (PLANE, SPHERE, BOX, CAPSULE)).all():
             raise ValueError("obstacles that are none")
         times = file["VTKHDF/Steps/Values"][()].ravel() if "Steps" in file["VTKHDF"] else [0]
     return Sequence(low.astype(float), high.astype(float), list(obstacles), list(times), False)
