@@ -287,7 +287,6 @@ static void build_constants(Lsm *lsm)
             int p = lsm->particle[block * SM_LANES + lane];
             if (p < 0) continue;
             k->weight[lane] = (real)(mass_of(lsm, p) / lsm->members[p]);
-            k->count[lane] = (real)lsm->members[p];
             k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
         }
     }

@@ -54,14 +54,12 @@ Crowd *crowd_build(const Lsm *lsm, long bodies)
     crowd->last = sm_alloc(lanes * 6, sizeof(short));
     crowd->origin = sm_alloc((size_t)crowd->groups * L, sizeof *crowd->origin);
     crowd->weight = sm_alloc(n, sizeof(real));
-    crowd->count = sm_alloc(n, sizeof(real));
     crowd->inverse_count = sm_alloc(n, sizeof(real));
     crowd->region = sm_alloc(n, sizeof *crowd->region);
     crowd->original = sm_alloc(n, sizeof(int));
     for (size_t p = 0; p < n; p++) {
         const ParticleConst *k = &lsm->particle_const[lsm->block_const[lsm->slot[p] / L]];
         crowd->weight[p] = k->weight[lsm->slot[p] % L];
-        crowd->count[p] = k->count[lsm->slot[p] % L];
         crowd->inverse_count[p] = k->inverse_count[lsm->slot[p] % L];
         crowd->original[p] = (int)p;
     }
@@ -97,9 +95,17 @@ void crowd_free(Crowd *crowd)
 {
     if (!crowd) return;
     for (int t = 0; t < crowd->threads; t++) free(crowd->scratch[t]);
-    void *all[] = {crowd->x,      crowd->v,        crowd->g,       crowd->last,
-                   crowd->origin, crowd->weight,   crowd->count,   crowd->inverse_count,
-                   crowd->region, crowd->original, crowd->scratch, crowd};
+    void *all[] = {crowd->x,
+                   crowd->v,
+                   crowd->g,
+                   crowd->last,
+                   crowd->origin,
+                   crowd->weight,
+                   crowd->inverse_count,
+                   crowd->region,
+                   crowd->original,
+                   crowd->scratch,
+                   crowd};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
@@ -243,16 +249,14 @@ SM_INLINE void move_group(Crowd *crowd, int side, long group, const GroupRows *r
         long at = (group * n + p) * 3 * L;
         vec sum[15], x[3], v[3];
         last_level(crowd, side, r->plate_down, PLATE_DOWN, p, 6, 3, sum);
-        for (int d = 0; d < 3; d++) sum[d] -= sum[6 + d];
+        for (int d = 0; d < 3; d++) sum[d] = (sum[d] - sum[6 + d]) * crowd->inverse_count[p];
         if (goals) {
-            for (int d = 0; d < 3; d++) sum[d] *= crowd->inverse_count[p];
             store3(crowd->g + at, sum);
             continue;
         }
         load3(crowd->x + at, x);
         load3(crowd->v + at, v);
-        for (int d = 0; d < 3; d++)
-            sum[d] = (sum[d] - crowd->count[p] * x[d]) * crowd->inverse_count[p];
+        for (int d = 0; d < 3; d++) sum[d] -= x[d];
         integrate_velocity(sum, lsm->gravity, lsm->rounding, lanes_set(1), v);
         if (!damp) {
             integrate_position(lsm->obstacle, lsm->obstacle_count, shift, x, v);

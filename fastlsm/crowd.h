@@ -18,12 +18,12 @@
 typedef struct {
     const Lsm *lsm; /* lattice, lists and constants of one body, in list form */
     long bodies, groups;
-    real *x, *v, *g;                      /* [groups][particles][3][lanes] */
-    short *last;                          /* [groups][particles][6][lanes] */
-    double (*origin)[3];                  /* [groups * lanes] */
-    real *weight, *count, *inverse_count; /* [particles] m~, |R|, 1 / |R| */
-    real (*region)[4];                    /* [particles] 1 / M_r, c0_r - x0_r */
-    int *original;                        /* [particles] particle whose region is the same */
+    real *x, *v, *g;              /* [groups][particles][3][lanes] */
+    short *last;                  /* [groups][particles][6][lanes] */
+    double (*origin)[3];          /* [groups * lanes] */
+    real *weight, *inverse_count; /* [particles] m~, 1 / |R| */
+    real (*region)[4];            /* [particles] 1 / M_r, c0_r - x0_r */
+    int *original;                /* [particles] particle whose region is the same */
     int threads;
     real **scratch; /* [threads] rows of one group */
 } Crowd;

@@ -293,18 +293,17 @@ static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec
 SM_INLINE void integrate(Lsm *lsm, long block, const vec sum[3])
 {
     const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
-    vec x[3], v[3], pull[3];
+    vec x[3], v[3], g[3];
+    for (int d = 0; d < 3; d++) g[d] = sum[d] * k->inverse_count;
     if (lsm->pass == PASS_GOALS) {
-        vec g[3];
-        for (int d = 0; d < 3; d++) g[d] = sum[d] * k->inverse_count;
         store3(lsm->g + block * 3 * SM_LANES, g);
         return;
     }
     load3(lsm->x + block * 3 * SM_LANES, x);
     load3(lsm->v + block * 3 * SM_LANES, v);
-    vec live = lanes_select(k->count > 0, lanes_set(1), lanes_set(0));
-    for (int d = 0; d < 3; d++) pull[d] = (sum[d] - k->count * x[d]) * k->inverse_count;
-    integrate_velocity(pull, lsm->gravity, lsm->rounding, live, v);
+    vec live = lanes_select(k->inverse_count > 0, lanes_set(1), lanes_set(0));
+    for (int d = 0; d < 3; d++) g[d] -= x[d];
+    integrate_velocity(g, lsm->gravity, lsm->rounding, live, v);
     if (!lsm->damp_now) {
         integrate_position(lsm->obstacle, lsm->obstacle_count, lsm->shift, x, v);
         store3(lsm->x + block * 3 * SM_LANES, x);

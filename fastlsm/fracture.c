@@ -151,7 +151,6 @@ static void revise_particle(Lsm *lsm, long p)
                                      &lsm->particle_records, &lsm->block_const[block]);
     ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
     k->weight[lane] = (real)(mass_of(lsm, p) / lsm->members[p]);
-    k->count[lane] = (real)lsm->members[p];
     k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
 }
 

@@ -22,7 +22,7 @@ typedef struct {
 } RegionConst;
 
 typedef struct {
-    vec weight, count, inverse_count; /* m~_i = m_i / |R_i|; |R_i|; 1 / |R_i|; empty slots: 0 */
+    vec weight, inverse_count; /* m~_i = m_i / |R_i|; 1 / |R_i|; 0 for an empty slot */
 } ParticleConst;
 
 /* How many constant records there are. Equal ones are stored once; those from `shared` on belong to
