@@ -116,6 +116,19 @@ static void compare(const BenchCheck *check, const BenchScene *scene, const char
     free(tied);
 }
 
+/* Does nothing move, and is no particle pulled by more than goals may be off? A body at rest in
+ * empty space is held there (lib/integrate.h), while its goals are off by rounding, which is all
+ * that there is to its velocities. */
+static bool is_held_at_rest(const BenchCheck *check, const char *precision, double h,
+                            const BenchStep *step)
+{
+    double most = bench_check_tolerance(precision) * check->body->voxels.cell / h;
+    for (long p = 0; p < step->all; p++)
+        if (sm_dot(step->after[p], step->after[p]) != 0 || !(length(step->before[p]) <= most))
+            return false;
+    return true;
+}
+
 void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
                          SmEngine *engine, BenchDeviation *found)
 {
@@ -125,7 +138,9 @@ void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const
     BenchStep step;
     bench_copy_step(&params, check->body, type, engine, check->count * check->body->instances,
                     &step);
-    for (long first = 0; first < step.all; first += check->count)
+    bool held = is_held_at_rest(check, type->precision, params.h, &step);
+    if (held) found->damping_tolerance = 16 * bench_check_epsilon(type->precision);
+    for (long first = 0; first < step.all && !held; first += check->count)
         compare(check, scene, type->precision, &step, first, found);
     found->motion_error = bench_copy_motion(&step, &params) / check->body->voxels.cell;
     bench_copy_step_free(&step);

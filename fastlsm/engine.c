@@ -325,7 +325,9 @@ static void begin_momentum(SmEngine *e)
 {
     if (is_free(e))
         momentum_begin(e->momentum, 0, NULL, field_of(e, SM_POSITION), field_of(e, SM_VELOCITY));
-    e->lsm->rounding = momentum_rests(e->momentum) ? e->rounding : 0;
+    const real *fall = e->lsm->gravity;
+    bool rests = momentum_rests(e->momentum) && fall[0] == 0 && fall[1] == 0 && fall[2] == 0;
+    e->lsm->rounding = rests ? e->rounding : 0;
 }
 
 /* Pieces are found again when the body has stopped breaking for a while. */

@@ -413,7 +413,9 @@ static void begin_momentum(SmEngine *e)
     bool begins = e->divided && is_free(e) && !is_kicked(e->oct->body);
     for (OctState *b = e->oct->body; begins && b < e->oct->body + e->oct->instances; b++)
         momentum_begin(e->momentum, b - e->oct->body, (const double(*)[3])b->origin, b->x, b->v);
-    e->oct->rounding = momentum_rests(e->momentum) ? e->oct->at_rest : 0;
+    const real *fall = e->oct->gravity;
+    bool rests = momentum_rests(e->momentum) && fall[0] == 0 && fall[1] == 0 && fall[2] == 0;
+    e->oct->rounding = rests ? e->oct->at_rest : 0;
 }
 
 /* Pieces are found again when the body has not changed for a while. */
