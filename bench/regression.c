@@ -59,12 +59,9 @@ void bench_regression_environment(BenchRegression *found)
     const struct {
         const char *what, *old, *new;
     } text[] = {
-        {"processor", old->cpu, new->cpu},
-        {"processor", old->cpu_model, new->cpu_model},
-        {"compiler", old->compiler, new->compiler},
-        {"libraries", old->libraries, new->libraries},
-        {"kernel", old->kernel, new->kernel},
-        {"governor", old->governor, new->governor},
+        {"processor", old->cpu, new->cpu},          {"processor", old->cpu_model, new->cpu_model},
+        {"compiler", old->compiler, new->compiler}, {"libraries", old->libraries, new->libraries},
+        {"kernel", old->kernel, new->kernel},       {"governor", old->governor, new->governor},
         {"host", old->hostname, new->hostname},
     };
     for (size_t i = 0; i < sizeof text / sizeof *text; i++)
