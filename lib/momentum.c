@@ -108,8 +108,7 @@ void momentum_divide(Momentum *m, long pieces)
         lanes_of(m, block, here);
         if (block == 0 || block - m->run[m->runs - 1].first == RUN_BLOCKS ||
             memcmp(here, before, sizeof here) != 0)
-            m->run[m->runs++] =
-                (MomentumRun){block, all_the_same(here) ? here[0].piece : -1, here[0].frame};
+            m->run[m->runs++] = (MomentumRun){block, all_the_same(here) ? here[0].piece : -1};
         memcpy(before, here, sizeof here);
     }
     m->run[m->runs].first = all_blocks(m);
@@ -134,37 +133,37 @@ typedef struct {
     vec about[3], shift[3], push[3], turn[3];
 } Frame;
 
+/* The same as numbers: [about, shift, push, turn][d][lane]. */
+typedef real FrameValues[4][3][SM_LANES];
+
 static void frame_lane(const Momentum *m, const MomentumPiece *p, const double origin[3], int lane,
-                       Frame *frame)
+                       FrameValues value)
 {
-    bool known = is_known(m, p);
     for (int d = 0; d < 3; d++) {
-        frame->about[d][lane] = (real)(p->about[d] - origin[d]);
-        frame->shift[d][lane] = known ? (real)p->shift[d] : 0;
-        frame->push[d][lane] = known ? (real)p->push[d] : 0;
-        frame->turn[d][lane] = known ? (real)p->turn[d] : 0;
+        value[0][d][lane] = (real)(p->about[d] - origin[d]);
+        value[1][d][lane] = is_known(m, p) ? (real)p->shift[d] : 0;
+        value[2][d][lane] = is_known(m, p) ? (real)p->push[d] : 0;
+        value[3][d][lane] = is_known(m, p) ? (real)p->turn[d] : 0;
     }
 }
 
 static void frame_of(const Momentum *m, const MomentumPiece *piece, const double (*origin)[3],
                      long run, Frame *frame)
 {
-    static const double zero[1][3];
-    const MomentumRun *r = &m->run[run];
-    if (!origin) origin = zero;
-    if (r->piece >= 0) {
-        frame_lane(m, &piece[r->piece], origin[r->frame], 0, frame);
-        vec *all = (vec *)frame;
-        for (size_t i = 0; i < sizeof *frame / sizeof *all; i++) all[i] = lanes_set(all[i][0]);
-        return;
-    }
+    static const double zero[3];
+    FrameValues value;
     Lane lane[SM_LANES];
-    lanes_of(m, r->first, lane);
-    memset(frame, 0, sizeof *frame);
+    lanes_of(m, m->run[run].first, lane);
+    memset(value, 0, sizeof value);
     for (int l = 0; l < SM_LANES; l++)
         if (lane[l].piece >= 0)
-            frame_lane(m, &piece[lane[l].piece], origin[origin == zero ? 0 : lane[l].frame], l,
-                       frame);
+            frame_lane(m, &piece[lane[l].piece], origin ? origin[lane[l].frame] : zero, l, value);
+    for (int d = 0; d < 3; d++) {
+        frame->about[d] = lanes_load(value[0][d]);
+        frame->shift[d] = lanes_load(value[1][d]);
+        frame->push[d] = lanes_load(value[2][d]);
+        frame->turn[d] = lanes_load(value[3][d]);
+    }
 }
 
 /* Corrects a block, and adds what it has to `sum`. */

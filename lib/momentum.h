@@ -46,7 +46,7 @@ typedef struct {
 
 /* Blocks whose lanes are of the same pieces and frames; of one piece where it is not -1. */
 typedef struct {
-    long first, piece, frame;
+    long first, piece;
 } MomentumRun;
 
 typedef struct {
