@@ -5,7 +5,7 @@
  * the same way in every step, what is left adds up: a body at rest in empty space would fly away,
  * its velocity in proportion to time. So every few steps the momentum of each piece of a body is
  * measured, and what it has too much, next to what it had and what gravity has added since, is
- * taken from its particles as a rigid velocity at the next measurement; so is a share of what its
+ * taken from its particles as a rigid velocity at the next measurement; so is what its
  * centre is off its parabola. The error stays what few steps make of it, for any number of steps.
  *
  * Pieces are measured apart, because each keeps its own momentum. Only what nothing acts on but

