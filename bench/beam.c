@@ -223,11 +223,9 @@ void bench_beam_measure(const SmEngineType *type, double w, double epsilon, Benc
 {
     *beam = (BenchBeam){.relaxation = NAN, .sag = NAN, .frequency = NAN};
     BenchScene scene = make_scene(type, w, epsilon, true);
-    SmMesh mesh;
-    BenchBody body = {0};
+    BenchBody body;
     SmError error;
-    SmCode code = bench_mesh_of_scene(&scene, NULL, &mesh, &error);
-    if (!code) code = bench_body_create(&scene, &mesh, &body, &error);
+    SmCode code = bench_body_of_scene(&scene, NULL, &body, &error);
     if (!code) code = measure_relaxation(type, w, epsilon, &body, beam, &error);
     if (!code && !beam->invalid) code = measure_swing(type, w, epsilon, &body, beam, &error);
     if (code) snprintf(beam->why, sizeof beam->why, "%.*s", BENCH_WHY - 1, error.text);

@@ -69,12 +69,17 @@ static double height_of(const SmMesh *mesh, double low[3], double high[3])
     return height > 0.01 * extent ? height : extent;
 }
 
+void bench_mesh_name(const char *path, char name[BENCH_NAME])
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(name, BENCH_NAME, "%.*s", BENCH_NAME - 1, slash ? slash + 1 : path);
+    sm_printable(name);
+}
+
 void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene)
 {
     bench_scene_init(scene);
-    const char *slash = strrchr(path, '/');
-    snprintf(scene->name, sizeof scene->name, "%.*s", BENCH_NAME - 1, slash ? slash + 1 : path);
-    sm_printable(scene->name);
+    bench_mesh_name(path, scene->name);
     snprintf(scene->title, sizeof scene->title, "%s dropped on the ground", scene->name);
     snprintf(scene->mesh, sizeof scene->mesh, "%s", path);
     snprintf(scene->file, sizeof scene->file, "%s", path);
@@ -234,6 +239,15 @@ SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body,
     }
     if (code) bench_body_free(body);
     return code;
+}
+
+SmCode bench_body_of_scene(const BenchScene *scene, const char *substitute, BenchBody *body,
+                           SmError *error)
+{
+    SmMesh mesh;
+    *body = (BenchBody){0};
+    SmCode code = bench_mesh_of_scene(scene, substitute, &mesh, error);
+    return code ? code : bench_body_create(scene, &mesh, body, error);
 }
 
 void bench_body_free(BenchBody *body)

@@ -28,6 +28,9 @@ SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error);
 SmCode bench_mesh_of_scene(const BenchScene *scene, const char *substitute, SmMesh *result,
                            SmError *error);
 
+/* The name of a mesh alone: its file's, without the folder. */
+void bench_mesh_name(const char *path, char name[BENCH_NAME]);
+
 /* The scene that `shapebench run MESH` uses for a mesh alone: solid, about 2,000 particles (fewer
  * where so many take too large a lattice), w 2,
  * dropped from half its height onto a ground plane. Mesh units are unknown, so gravity is 9.81
@@ -45,6 +48,10 @@ void bench_scene_hold(const SmMesh *mesh, BenchScene *scene);
 /* Voxelises, and fills in the rest. Takes `mesh` over, also when it fails. Errors as sm_voxelise(),
  * and SM_MEMORY when the scene's engine would not fit (room.h). */
 SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error);
+
+/* The same of bench_mesh_of_scene(). When it fails the body is zeroed. */
+SmCode bench_body_of_scene(const BenchScene *scene, const char *substitute, BenchBody *body,
+                           SmError *error);
 void bench_body_free(BenchBody *body);
 
 #endif

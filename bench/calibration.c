@@ -71,11 +71,9 @@ static SmCode find_beam(const BenchScene *scene, const BenchBody *body, BenchCal
 SmCode bench_calibration_beam(BenchCalibrationPlan *plan, SmError *error)
 {
     BenchScene *scene = sm_alloc(1, sizeof *scene);
-    SmMesh mesh;
     BenchBody body = {0};
     SmCode code = bench_scene_find(plan->file, scene, error);
-    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, error);
-    if (!code) code = bench_body_create(scene, &mesh, &body, error);
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
     if (!code) code = find_beam(scene, &body, plan, error);
     bench_body_free(&body);
     free(scene);

@@ -19,14 +19,12 @@ static void choose(const BenchMeasure *measure, OctOptions *options)
 static SmCode prepare(const BenchMeasure *measure, BenchScene *scene, BenchBody *body,
                       SmError *error)
 {
-    SmMesh mesh;
     SmCode code = bench_scene_find(measure->scene, scene, error);
     if (code) return code;
     if (strcmp(scene->engine, "octree") != 0 || scene->instances != 1)
         return sm_fail(error, SM_INPUT, "%.100s: one body in the octree is wanted", scene->file);
     choose(measure, &scene->octree);
-    code = bench_mesh_of_scene(scene, NULL, &mesh, error);
-    return code ? code : bench_body_create(scene, &mesh, body, error);
+    return bench_body_of_scene(scene, NULL, body, error);
 }
 
 /* ---- regions */
@@ -201,14 +199,12 @@ static double bending(const BenchBody *body, BenchRunner *runner)
 static double stiffness_at(const BenchMeasure *measure, int shift, BenchCurve *curve)
 {
     BenchScene *scene = sm_alloc(1, sizeof *scene);
-    SmMesh mesh;
-    BenchBody body = {0};
+    BenchBody body;
     BenchRunner runner;
     SmError error;
     double stiffness = NAN;
     place_beam(measure, shift, scene);
-    SmCode code = bench_mesh_of_scene(scene, NULL, &mesh, &error);
-    if (!code) code = bench_body_create(scene, &mesh, &body, &error);
+    SmCode code = bench_body_of_scene(scene, NULL, &body, &error);
     if (!code) {
         code = bench_runner_create(scene, &body, &octree_engine_f64, 1, &runner, &error);
         if (!code) {

@@ -243,14 +243,12 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
     code = bench_engine_find(scene.engine, chosen->precision, &type, error);
     if (code) return code;
     if (chosen->layout >= 0) scene.params.layout = (SmLayout)chosen->layout;
-    SmMesh mesh;
     BenchBody body;
     const char *substitute = bench_substitute_find(&chosen->substitutes, scene.name);
     if (!substitute && choice->stem)
         substitute = bench_substitute_find(&chosen->substitutes, choice->stem);
     bench_progress_show(progress, scene.name, 0);
-    code = bench_mesh_of_scene(&scene, substitute, &mesh, error);
-    if (!code) code = bench_body_create(&scene, &mesh, &body, error);
+    code = bench_body_of_scene(&scene, substitute, &body, error);
     if (code) return code;
     BenchMeasureParams params = {.repeats = options->repeats,
                                  .block_seconds = options->block / 1e3,

@@ -213,15 +213,13 @@ static double mean_sweeps(BenchPlay *play, int frames)
 void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
 {
     BenchScene *scene = sm_alloc(1, sizeof *scene);
-    SmMesh mesh;
     BenchBody body = {0};
     BenchPlay play;
     SmError error;
     SmCode code = bench_scene_find(measure->scene, scene, &error);
     bench_curve_begin(curve, "-", "sweeps a decomposition");
     scene->params.polar = SM_POLAR_JACOBI;
-    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, &error);
-    if (!code) code = bench_body_create(scene, &mesh, &body, &error);
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, &error);
     if (!code)
         code = bench_play_create(scene, &body, &fastlsm_engine_f32, lab->threads, lab->seed, &play,
                                  &error);
@@ -250,13 +248,11 @@ typedef struct {
 static SmCode make_resampled(const BenchMeasure *measure, Resampled *of, SmError *error)
 {
     BenchScene *scene = sm_alloc(1, sizeof *scene);
-    SmMesh mesh;
     BenchBody body;
     SmCode code = bench_scene_find(measure->scene, scene, error);
     if (!code && strcmp(scene->engine, "octree") != 0)
         code = sm_fail(error, SM_INPUT, "'%.60s' is no octree: nothing is resampled", scene->name);
-    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, error);
-    if (!code) code = bench_body_create(scene, &mesh, &body, error);
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
     if (!code) {
         code = oct_structure_build(&body.voxels, &scene->octree, NULL, &of->s, error);
         bench_body_free(&body);

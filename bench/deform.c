@@ -172,7 +172,6 @@ typedef struct {
 static SmCode prepare(const char *name, Hanging *hanging, SmError *error)
 {
     BenchScene *scene = &hanging->scene;
-    SmMesh mesh;
     SmCode code = bench_scene_find(name, scene, error);
     if (code) return code;
     const double none[3] = {0}, *gravity = scene->params.gravity;
@@ -183,8 +182,7 @@ static SmCode prepare(const char *name, Hanging *hanging, SmError *error)
                        scene->file);
     for (int d = 0; d < 3; d++) hanging->down[d] = gravity[d] / pull;
     code = bench_engine_find(scene->engine, NULL, &hanging->type, error);
-    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, error);
-    return code ? code : bench_body_create(scene, &mesh, &hanging->body, error);
+    return code ? code : bench_body_of_scene(scene, NULL, &hanging->body, error);
 }
 
 /* How deep the tip hangs: the mean over the particles farthest along the body's longest axis. */

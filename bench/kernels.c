@@ -390,7 +390,6 @@ static SmCode run_scene(Run *run, const Spec *spec, SmError *error)
     BenchScene scene;
     BenchBody body;
     BenchRow found;
-    SmMesh mesh;
     const SmEngineType *type =
         run->params->precision == BENCH_F64 ? &fastlsm_engine_f64 : &fastlsm_engine_f32;
     BenchMeasureParams params = {.repeats = run->params->repeats,
@@ -398,10 +397,9 @@ static SmCode run_scene(Run *run, const Spec *spec, SmError *error)
                                  .seed = run->params->seed,
                                  .progress = run->params->progress};
     SmCode code = bench_scene_find(spec->name, &scene, error);
-    if (!code) code = bench_mesh_of_scene(&scene, NULL, &mesh, error);
     if (code) return code;
     scene.params.layout = run->params->layout;
-    code = bench_body_create(&scene, &mesh, &body, error);
+    code = bench_body_of_scene(&scene, NULL, &body, error);
     if (code) return code;
     code = bench_measure(&scene, &body, type, &params, &found, error);
     if (!code) {

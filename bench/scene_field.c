@@ -158,7 +158,6 @@ static void fill_curve(const BenchRow *row, int steps_per_frame, const char *nam
 
 static SmCode measure_row(BenchLab *lab, BenchScene *scene, BenchRow *row, SmError *error)
 {
-    SmMesh mesh;
     BenchBody body;
     const SmEngineType *type;
     const BenchMeasureParams params = {.repeats = lab->quick ? 5 : 0,
@@ -166,8 +165,7 @@ static SmCode measure_row(BenchLab *lab, BenchScene *scene, BenchRow *row, SmErr
                                        .threads = lab->threads,
                                        .seed = lab->seed};
     SmCode code = bench_engine_find(scene->engine, NULL, &type, error);
-    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, error);
-    if (!code) code = bench_body_create(scene, &mesh, &body, error);
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
     if (code) return code;
     code = bench_measure(scene, &body, type, &params, row, error);
     bench_body_free(&body);

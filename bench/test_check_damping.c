@@ -23,14 +23,12 @@ static void parts_are_damped_right(void **state)
         BenchBody body;
         BenchRunner runner;
         BenchCheck check;
-        SmMesh mesh;
         char reason[160];
         assert_int_equal(bench_scene_find("hand", &scene, NULL), SM_OK);
         strcpy(scene.engine, "octree");
         scene.octree.width = (OctWidth){.edges = 0.75};
         scene.octree.epsilon = 0;
-        assert_int_equal(bench_mesh_of_scene(&scene, NULL, &mesh, NULL), SM_OK);
-        assert_int_equal(bench_body_create(&scene, &mesh, &body, NULL), SM_OK);
+        assert_int_equal(bench_body_of_scene(&scene, NULL, &body, NULL), SM_OK);
         assert_int_equal(bench_runner_create(&scene, &body, types[t], 1, &runner, NULL), SM_OK);
         bench_runner_disturb(&runner, 1);
         bench_check_begin(&scene, &body, types[t], runner.engine, &check);

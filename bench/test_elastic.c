@@ -41,10 +41,8 @@ static void parse(const char *more)
 
 static void make_body(void)
 {
-    SmMesh mesh;
     SmError error;
-    assert_int_equal(bench_mesh_of_scene(&scene, NULL, &mesh, &error), SM_OK);
-    assert_int_equal(bench_body_create(&scene, &mesh, &body, &error), SM_OK);
+    assert_int_equal(bench_body_of_scene(&scene, NULL, &body, &error), SM_OK);
 }
 
 static int create(void **state)

@@ -30,11 +30,8 @@ static void find_scene(const char *name, Run *run)
 
 static void make_body(Run *run)
 {
-    SmMesh mesh;
     SmError error;
-    bool failed = bench_mesh_of_scene(&run->scene, NULL, &mesh, &error) ||
-                  bench_body_create(&run->scene, &mesh, &run->body, &error);
-    if (failed) fail_msg("%s", error.text);
+    if (bench_body_of_scene(&run->scene, NULL, &run->body, &error)) fail_msg("%s", error.text);
 }
 
 /* At rest, on the body that is there. */

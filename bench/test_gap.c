@@ -25,12 +25,9 @@ static BenchScene make_scene(const char *text)
 
 static BenchBody make_body(const BenchScene *scene)
 {
-    SmMesh mesh;
-    BenchBody body = {0};
+    BenchBody body;
     SmError error;
-    if (bench_mesh_of_scene(scene, NULL, &mesh, &error) ||
-        bench_body_create(scene, &mesh, &body, &error))
-        fail_msg("%s", error.text);
+    if (bench_body_of_scene(scene, NULL, &body, &error)) fail_msg("%s", error.text);
     return body;
 }
 

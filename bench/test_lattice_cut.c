@@ -33,11 +33,9 @@ typedef struct {
 
 static SmCode start(const char *text, const char *engine, Run *run, SmError *error)
 {
-    SmMesh mesh;
     const SmEngineType *type;
     SmCode code = bench_scene_parse(text, strlen(text), "cut.cfg", &run->scene, error);
-    if (!code) code = bench_mesh_of_scene(&run->scene, NULL, &mesh, error);
-    if (!code) code = bench_body_create(&run->scene, &mesh, &run->body, error);
+    if (!code) code = bench_body_of_scene(&run->scene, NULL, &run->body, error);
     if (code) fail_msg("%s", error->text);
     run->point = NULL;
     code = bench_engine_find(engine, NULL, &type, error);

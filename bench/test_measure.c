@@ -20,13 +20,11 @@ static const char text[] = "mesh = \"shape:block\"; particles = 64; w = 1; dampi
 static SmCode measure_text(const char *scene_text, const SmEngineType *type, BenchRow *row)
 {
     BenchScene scene;
-    SmMesh mesh;
     BenchBody body;
     SmError error;
     if (bench_scene_parse(scene_text, strlen(scene_text), "tiny.cfg", &scene, &error))
         fail_msg("%s", error.text);
-    if (bench_mesh_of_scene(&scene, NULL, &mesh, &error)) fail_msg("%s", error.text);
-    if (bench_body_create(&scene, &mesh, &body, &error)) fail_msg("%s", error.text);
+    if (bench_body_of_scene(&scene, NULL, &body, &error)) fail_msg("%s", error.text);
     BenchMeasureParams params = {.repeats = 5, .block_seconds = 0.002, .threads = 1, .seed = 3};
     SmCode code = bench_measure(&scene, &body, type, &params, row, &error);
     bench_body_free(&body);

@@ -34,12 +34,10 @@ static void open_show(const char *text, const char *changes, int threads, Show *
 {
     char all[2048];
     SmError error = {0};
-    SmMesh mesh;
     snprintf(all, sizeof all, "%s%s", text, changes);
     if (bench_scene_parse(all, strlen(all), "show.cfg", &show->scene, &error) ||
         bench_engine_find(show->scene.engine, "single", &show->type, &error) ||
-        bench_mesh_of_scene(&show->scene, NULL, &mesh, &error) ||
-        bench_body_create(&show->scene, &mesh, &show->body, &error) ||
+        bench_body_of_scene(&show->scene, NULL, &show->body, &error) ||
         bench_play_create(&show->scene, &show->body, show->type, threads, 1, &show->play, &error))
         fail_msg("%s", error.text);
 }

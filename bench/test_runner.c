@@ -24,12 +24,10 @@ typedef struct {
 
 static void start(const char *text, Run *run)
 {
-    SmMesh mesh;
     SmError error;
     bool failed =
         bench_scene_parse(text, strlen(text), "run.cfg", &run->scene, &error) ||
-        bench_mesh_of_scene(&run->scene, NULL, &mesh, &error) ||
-        bench_body_create(&run->scene, &mesh, &run->body, &error) ||
+        bench_body_of_scene(&run->scene, NULL, &run->body, &error) ||
         bench_runner_create(&run->scene, &run->body, &ref_brute_engine, 1, &run->runner, &error);
     if (failed) fail_msg("%s", error.text);
     run->x = sm_alloc((size_t)run->runner.particles, sizeof *run->x);
@@ -147,12 +145,10 @@ static void selecting_nothing_is_an_error(void **state)
 {
     (void)state;
     Run run;
-    SmMesh mesh;
     SmError error;
     const char *text = BODY "handles = ({ sphere_centre = (9, 9, 9); sphere_radius = 0.1; });";
     assert_int_equal(bench_scene_parse(text, strlen(text), "run.cfg", &run.scene, &error), SM_OK);
-    assert_int_equal(bench_mesh_of_scene(&run.scene, NULL, &mesh, &error), SM_OK);
-    assert_int_equal(bench_body_create(&run.scene, &mesh, &run.body, &error), SM_OK);
+    assert_int_equal(bench_body_of_scene(&run.scene, NULL, &run.body, &error), SM_OK);
     assert_int_equal(
         bench_runner_create(&run.scene, &run.body, &ref_brute_engine, 1, &run.runner, &error),
         SM_INPUT);
