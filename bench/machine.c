@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "provenance.h"
+#include "quote.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchMachine, kind, member)
 
@@ -155,32 +156,17 @@ static void read_libraries(size_t size, char *text)
              JANSSON_VERSION);
 }
 
-/* Joins the words, quoted where a shell would not take them as they are. The first is the program
- * and its command. */
+/* Joins the words; the first is the program and its command. What has no room becomes "...". */
 static void quote_command(int argc, char **argv, size_t size, char *text)
 {
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                                "_-+=./:,@%^";
     size_t used = 0;
     text[0] = '\0';
-    for (int i = 0; i < argc; i++) {
-        const char *word = argv[i];
-        bool quote = i > 0 && (!*word || word[strspn(word, plain)]);
-        char piece[8];
-        for (long at = quote ? -1 : 0; at <= (long)strlen(word); at++) {
-            bool end = at == (long)strlen(word);
-            snprintf(piece, sizeof piece, "%c", at < 0 || end ? '\'' : word[at]);
-            if (end && !quote) piece[0] = '\0';
-            if (at >= 0 && !end && word[at] == '\'') snprintf(piece, sizeof piece, "'\\''");
-            if (end && i + 1 < argc) strcat(piece, " ");
-            if (used + strlen(piece) + 4 > size) {
-                strcpy(text + used, "...");
-                return;
-            }
-            strcpy(text + used, piece);
-            used += strlen(piece);
-        }
+    for (int i = 0; i < argc && used < size; i++) {
+        if (i) text[used++] = ' ';
+        used += i ? bench_quote(argv[i], size - used, text + used)
+                  : (size_t)snprintf(text, size, "%s", argv[i]);
     }
+    if (used >= size) strcpy(text + size - 4, "...");
 }
 
 static void read_system(BenchMachine *machine)

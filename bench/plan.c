@@ -8,6 +8,7 @@
 
 #include "../lib/engine.h"
 #include "../lib/hash.h"
+#include "body.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchPlan, kind, member)
 
@@ -54,6 +55,13 @@ SmCode bench_plan_count(BenchPlan *plan, SmError *error)
                        points, BENCH_PLAN_POINTS);
     plan->points = (int)points;
     return SM_OK;
+}
+
+bool bench_plan_alone(const BenchPlan *plan)
+{
+    char name[BENCH_NAME];
+    bench_mesh_name(plan->mesh, name);
+    return plan->mesh[0] && !plan->file[0] && !strcmp(name, plan->scene);
 }
 
 void bench_plan_point(const BenchPlan *plan, int index, BenchPoint *point)

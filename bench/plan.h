@@ -38,6 +38,9 @@ const BenchField *bench_plan_fields(int *count);
  * fastlsm, too many points. */
 SmCode bench_plan_count(BenchPlan *plan, SmError *error);
 
+/* Is the body a mesh alone, dropped on the ground, rather than in the place of a scene's? */
+bool bench_plan_alone(const BenchPlan *plan);
+
 /* Engine, w and epsilon of a point: of every w in turn fastlsm, then the octree's epsilons. */
 void bench_plan_point(const BenchPlan *plan, int index, BenchPoint *point);
 

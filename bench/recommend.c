@@ -5,12 +5,13 @@
 
 #include "front.h"
 #include "grid.h"
+#include "quote.h"
 #include "scene.h"
 
 static const double near_enough = 0.1; /* of a stiffness: within 10% */
 static const double some_more = 0.01;  /* of the body's size: deviation where nothing is wished */
 static const double noise = 0.1; /* points minutes apart differ by more than their quartiles say */
-enum { MOST_BOUGHT = 6 };
+enum { MOST_BOUGHT = 6, WORD = 4200 /* a path, every character quoted */ };
 
 /* An engine's points, and what they are held against. */
 typedef struct {
@@ -126,33 +127,26 @@ long bench_recommend_point(const BenchPoint *point, long count, const char *engi
 
 /* ---- in words */
 
-static void quote(const char *word, size_t size, char *text)
-{
-    bool plain = !strpbrk(word, " '\"$&;()*?<>|\\`");
-    snprintf(text, size, plain ? "%.1000s" : "'%.1000s'", word);
-}
-
 void bench_recommend_command(const BenchPlan *plan, const BenchPoint *point, size_t size,
                              char *command)
 {
-    char body[1024], mesh[1024], substitute[1100] = "", epsilon[40] = "", cell[32] = "";
-    bool alone = plan->mesh[0] && !plan->file[0] && strstr(plan->mesh, plan->scene);
+    char body[WORD], mesh[1100], word[WORD], epsilon[40] = "", cell[32] = "";
+    bool alone = bench_plan_alone(plan), substituted = plan->mesh[0] && !alone;
     bool stored = !plan->file[0] && !bench_scene_text(plan->scene, NULL); /* where it was is not */
     char file[sizeof plan->scene + 4];
     snprintf(file, sizeof file, "%s%s", plan->scene, stored ? ".cfg" : "");
-    quote(alone ? plan->mesh : plan->file[0] ? plan->file : file, sizeof body, body);
-    quote(plan->mesh, sizeof mesh, mesh);
-    if (plan->mesh[0] && !alone)
-        snprintf(substitute, sizeof substitute, " --mesh %s=%.1000s", plan->scene, mesh);
+    bench_quote(alone ? plan->mesh : plan->file[0] ? plan->file : file, sizeof body, body);
+    snprintf(mesh, sizeof mesh, "%s=%s", plan->scene, plan->mesh);
+    bench_quote(mesh, sizeof word, word);
     bool tree = !strcmp(point->engine, "octree"), cells = !strcmp(plan->width, "cells");
     if (tree)
         snprintf(epsilon, sizeof epsilon, "%s --epsilon %g", cells ? " --width cells" : "",
                  point->epsilon);
     if (tree && alone) /* of a mesh alone, run gives the octree a finer lattice */
         snprintf(cell, sizeof cell, " --cell %.10g", plan->cell);
-    snprintf(command, size, "shapebench run %.1000s%s --engine %s --w %g%s%s%s", body, substitute,
-             point->engine, point->w, epsilon, cell,
-             strcmp(plan->precision, "double") != 0 ? "" : " --precision double");
+    snprintf(command, size, "shapebench run %s%s%s --engine %s --w %g%s%s%s", body,
+             substituted ? " --mesh " : "", substituted ? word : "", point->engine, point->w,
+             epsilon, cell, strcmp(plan->precision, "double") != 0 ? "" : " --precision double");
 }
 
 static void say_wish(FILE *file, const Choice *c)
@@ -196,7 +190,7 @@ static void say_alike(FILE *file, const Choice *c)
 
 static void say_point(FILE *file, const BenchPlan *plan, const Choice *c, const BenchPoint *p)
 {
-    char ms[BENCH_GRID_TEXT], command[2400];
+    char ms[BENCH_GRID_TEXT], command[3 * WORD];
     bool tree = !strcmp(p->engine, "octree"), cells = !strcmp(plan->width, "cells");
     bench_grid_number(p->total_ms, ms);
     fprintf(file, "%s: ", c->engine);

@@ -121,7 +121,7 @@ static void write_hosts(FILE *file, const BenchSweep *sweep)
 static void write_text(FILE *file, const BenchSweep *sweep, const BenchGrid *grid)
 {
     const BenchPlan *plan = &sweep->plan;
-    bool other = plan->mesh[0] && !strstr(plan->mesh, plan->scene); /* a mesh alone has its name */
+    bool other = plan->mesh[0] && !bench_plan_alone(plan);
     fprintf(file,
             "%s%s%s: cost against stiffness and deviation, %ld of %d points, on %s, %d thread%s.\n"
             "w: half-width of regions, of fastlsm in cells, of the octree in %s.\n\n",

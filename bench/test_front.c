@@ -144,6 +144,7 @@ static void what_is_recommended_can_be_run(void **state)
         if (!strstr(text, wanted[i])) fail_msg("no \"%s\" in:\n%s", wanted[i], text);
     free(text);
     strcpy(plan.mesh, "my meshes/hand.obj");
+    strcpy(plan.scene, "hand.obj"); /* alone it has its file's name */
     strcpy(plan.width, "cells");
     strcpy(plan.precision, "double");
     plan.cell = 0.25;
@@ -151,10 +152,11 @@ static void what_is_recommended_can_be_run(void **state)
     assert_string_equal(command,
                         "shapebench run 'my meshes/hand.obj' --engine octree --w 1 --width "
                         "cells --epsilon 0.5 --cell 0.25 --precision double");
-    strcpy(plan.mesh, "other.obj");
+    strcpy(plan.scene, "hand");
+    strcpy(plan.mesh, "it's a hand.obj"); /* in the place of the scene's, whatever it is called */
     bench_recommend_command(&plan, &point[0], sizeof command, command);
-    assert_string_equal(command, "shapebench run hand --mesh hand=other.obj --engine fastlsm --w 1 "
-                                 "--precision double");
+    assert_string_equal(command, "shapebench run hand --mesh 'hand=it'\\''s a hand.obj' "
+                                 "--engine fastlsm --w 1 --precision double");
 }
 
 int main(void)
