@@ -446,26 +446,25 @@ static SmCode run_frames(BenchPlay *play, BenchRecording *recording, const Optio
     return code;
 }
 
-static void output_path(const Options *options, const BenchScene *scene, char path[BENCH_PATH])
+/* What --output says, or the scene's name in this folder, which `room` has room for. */
+static const char *output_path(const Options *options, const BenchScene *scene,
+                               char room[BENCH_NAME + 8])
 {
-    char stem[BENCH_NAME];
-    snprintf(stem, sizeof stem, "%s",
-             strncmp(scene->name, "shape:", 6) ? scene->name : scene->name + 6);
-    char *dot = strrchr(stem, '.');
-    if (dot && dot != stem) *dot = '\0';
-    if (options->output)
-        snprintf(path, BENCH_PATH, "%s", options->output);
-    else
-        snprintf(path, BENCH_PATH, "%s.vtkhdf", stem);
+    if (options->output) return options->output;
+    const char *stem = strncmp(scene->name, "shape:", 6) ? scene->name : scene->name + 6;
+    const char *dot = strrchr(stem, '.');
+    int length = dot && dot != stem ? (int)(dot - stem) : (int)strlen(stem);
+    snprintf(room, BENCH_NAME + 8, "%.*s.vtkhdf", length, stem);
+    return room;
 }
 
 /* The trajectory and its sidecar, before anything takes long. */
 static SmCode reserve(const Options *options, const char *path, SmError *error)
 {
-    char sidecar[BENCH_PATH + 8];
+    char sidecar[BENCH_DRAFT_PATH + 8];
     if (options->no_output) return SM_OK;
-    snprintf(sidecar, sizeof sidecar, "%s.xdmf", path);
     SmCode code = bench_draft_reserve(path, options->overwrite, error);
+    snprintf(sidecar, sizeof sidecar, "%s.xdmf", path);
     return code ? code : bench_draft_reserve(sidecar, options->overwrite, error);
 }
 
@@ -526,7 +525,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     SmMesh mesh;
     BenchBody body;
     BenchPlay play;
-    char path[BENCH_PATH];
+    char room[BENCH_NAME + 8];
     SmCode code = load(options, &scene, &given, &mesh, error);
     if (code) return code;
     apply_options(options, &scene);
@@ -534,7 +533,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     if (!code) code = apply_meshless(options, &scene, error);
     if (!code) code = bench_engine_find(scene.engine, options->chosen.precision, &type, error);
     if (!code) code = apply_w(options, type, &scene, error);
-    output_path(options, &scene, path);
+    const char *path = output_path(options, &scene, room);
     if (!code) code = reserve(options, path, error);
     if (!code) code = bench_body_create(&scene, &mesh, &body, error);
     if (code) {
