@@ -145,7 +145,7 @@ static SmCode measure_all(const BenchCalibrate *run, BenchSpecimen *planned,
 SmCode bench_calibrate(const BenchCalibrate *run, BenchCalibration *calibration, SmError *error)
 {
     BenchSpecimen *planned = sm_alloc(BENCH_CALIBRATION_SPECIMENS, sizeof *planned);
-    SmCode code = bench_draft_reserve(run->output, true, error);
+    SmCode code = bench_draft_reserve(run->output, run->output != NULL, error);
     if (!code) code = resume(run, calibration, error);
     if (!code) code = bench_calibration_plan(&calibration->plan, planned, error);
     if (!code) {

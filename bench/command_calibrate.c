@@ -93,6 +93,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
     Options *options = state->input;
     options->measuring |= (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o';
     if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
+    if (key == ARGP_KEY_END && options->density > 0 && isnan(options->young))
+        bench_usage(state, "--density is that of --young's body: give both");
     return bench_option_shown(key, text, state, options->measuring, &options->file);
 }
 
@@ -170,7 +172,8 @@ static void advise(const Options *options, const BenchCalibration *calibration)
 {
     char sentence[BENCH_WORDS], settings[BENCH_WORDS];
     const BenchCalibrationPlan *plan = &calibration->plan;
-    BenchYoung wish = {options->young, options->density, plan->density, plan->thickness};
+    double density = options->density > 0 ? options->density : standard_density;
+    BenchYoung wish = {options->young, density, plan->density, plan->thickness};
     long best = bench_advice_young(calibration->specimen, calibration->count, calibration->law,
                                    calibration->laws, &wish, sentence);
     bool table = options->format == BENCH_AS_CSV || options->format == BENCH_AS_JSON;
@@ -193,7 +196,6 @@ int bench_command_calibrate(int argc, char **argv)
     Options options = {.scene = "beam",
                        .range = {"1:10", "0:1:0.25", "3,4,7", "5,12", "0.5,2"},
                        .poisson = 0.3,
-                       .density = standard_density,
                        .young = NAN};
     BenchCalibration *calibration = sm_alloc(1, sizeof *calibration);
     SmError error;

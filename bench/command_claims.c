@@ -49,9 +49,14 @@ static const BenchOption options_taken[] = {
 
 static error_t parse(int key, char *text, struct argp_state *state)
 {
+    const Options *options = state->input;
     if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
     if (key == ARGP_KEY_ARG)
         bench_usage(state, "what is '%s'? Claims are named with --claim", text);
+    if (key == ARGP_KEY_END && options->list &&
+        (options->output || options->overwrite || options->quick || options->format))
+        bench_usage(state, "--list measures nothing: it goes with none of --output, --overwrite, "
+                           "--quick and --format");
     return ARGP_ERR_UNKNOWN;
 }
 

@@ -234,6 +234,8 @@ static SmCode take_lock(const BenchDraft *draft, SmError *error)
 SmCode bench_draft_reserve(const char *path, bool overwrite, SmError *error)
 {
     BenchDraft draft;
+    if (!path && overwrite)
+        return sm_fail(error, SM_USAGE, "--overwrite: what? Name the file with --output");
     if (!path) return SM_OK;
     SmCode code = bench_draft_begin(path, &draft, error);
     if (code) return code;

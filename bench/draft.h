@@ -40,7 +40,8 @@ SmCode bench_draft_write(const char *path, BenchDraftPrint *print, const void *w
 /* Before what takes minutes and whose result the file is to hold: can it be written, and does no
  * other program write it? Until this one ends the lock TARGET.lock keeps others away. Without
  * `overwrite` (the option of every command that writes) a file that is there is refused. NULL: none
- * is wanted. SM_OUTPUT, also with the process and host that hold the lock. */
+ * is wanted, and with `overwrite` SM_USAGE. SM_OUTPUT, also with the process and host that hold the
+ * lock. */
 SmCode bench_draft_reserve(const char *path, bool overwrite, SmError *error);
 
 /* Syncs the draft and renames it. On SM_OUTPUT the draft is gone and the target untouched. */

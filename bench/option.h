@@ -55,7 +55,7 @@ typedef struct {
 #define BENCH_TO(target, member) BENCH_TO_##target, offsetof(Options, member)
 
 /* What every command that writes a file has: in its options, and in what they do with a bool
- * `overwrite` (bench_draft_try()). */
+ * `overwrite` (bench_draft_reserve()). */
 enum { BENCH_KEY_OVERWRITE = 0x3000 };
 #define BENCH_OVERWRITE_OPTION(group)                                                              \
     {                                                                                              \

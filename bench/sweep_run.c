@@ -138,7 +138,7 @@ static SmCode prepare(Job *job, Start *start, SmError *error)
     const BenchSweepRun *run = job->run;
     BenchSweep *sweep = job->sweep;
     bool first = run->ranks->rank == 0;
-    SmCode code = first ? bench_draft_reserve(run->output, true, error) : SM_OK;
+    SmCode code = first ? bench_draft_reserve(run->output, run->output != NULL, error) : SM_OK;
     if (!code) code = bench_sweeper_create(&sweep->plan, &job->sweeper, error);
     if (!first) return code;
     if (!code) code = resume(run, sweep, error);

@@ -154,13 +154,11 @@ static double sag_of(const char *name)
     BenchScene *scene = sm_alloc(1, sizeof *scene);
     BenchBody body;
     BenchRunner runner;
-    SmMesh mesh;
     SmError error;
     const SmEngineType *type;
     SmCode code = bench_scene_read(path_in(name), scene, &error);
     if (!code) code = bench_engine_find(scene->engine, "double", &type, &error);
-    if (!code) code = bench_mesh_of_scene(scene, NULL, &mesh, &error);
-    if (!code) code = bench_body_create(scene, &mesh, &body, &error);
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, &error);
     if (!code) code = bench_runner_create(scene, &body, type, 1, &runner, &error);
     if (code) {
         fail_msg("%s", error.text);
@@ -245,6 +243,7 @@ static void mistakes_are_one_line(void **state)
     (void)state;
     static const Mistake cases[] = {
         {"calibrate --w 3:1", 2, "--w: 3:1 falls"},
+        {"calibrate --density 800", 2, "--density is that of --young's body: give both"},
         {"calibrate --w 1.5", 2, "--w: 1.5 is no whole number"},
         {"calibrate --w none", 2, "--w: 'none' is not a range"},
         {"calibrate --w 0:3", 2, "--w: 0 is not from 1 to 31"},

@@ -155,6 +155,10 @@ static void mistakes_of_other_commands_are_too(void **state)
         {"tables --layout round", 2, "--layout: 'round'"},
         {"tables -o no/such/rows.h5", 4, "no/such/rows.h5"},
         {"tables --threads -1", 2, "--threads: '-1'"},
+        {"tables --scene tiny.cfg --overwrite", 2,
+         "--overwrite: what? Name the file with --output"},
+        {"claims --overwrite", 2, "--overwrite: what?"},
+        {"claims --list -o claims.h5", 2, "--list measures nothing"},
     };
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }
@@ -208,6 +212,17 @@ static void a_scene_can_be_copied_and_run(void **state)
     assert_non_null(strstr(result.out, "mine: brute, double precision: 64 particles"));
     assert_non_null(strstr(result.out, "deviation: goals within"));
     assert_true(there("mine.vtkhdf") && there("mine.vtkhdf.xdmf"));
+}
+
+static void a_path_may_be_as_long_as_the_system_has_it(void **state)
+{
+    (void)state;
+    Result result;
+    run_with("D=$(printf %0200d 0); P=$D/$D/$D/$D/$D/$D; mkdir -p $P;",
+             "run tiny.cfg --frames 0 -o $P/a.vtkhdf && { ls $P; rm -r $D; }", &result);
+    if (result.code) fail_msg("%s", result.err);
+    const char *last = strstr(result.out, "a.vtkhdf\na.vtkhdf.xdmf\n");
+    if (!last) fail_msg("written elsewhere: %s", result.out);
 }
 
 static void a_mesh_alone_can_be_run(void **state)
@@ -436,6 +451,7 @@ int main(void)
         cmocka_unit_test(mistakes_of_other_commands_are_too),
         cmocka_unit_test(help_is_everywhere),
         cmocka_unit_test(a_scene_can_be_copied_and_run),
+        cmocka_unit_test(a_path_may_be_as_long_as_the_system_has_it),
         cmocka_unit_test(a_mesh_alone_can_be_run),
         cmocka_unit_test(tables_measure_a_scene),
         cmocka_unit_test(an_octree_can_be_run),

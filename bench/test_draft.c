@@ -144,6 +144,7 @@ static void a_file_that_is_there_is_replaced_only_when_asked(void **state)
     SmError error = {0};
     write_text("results", "old");
     assert_int_equal(bench_draft_reserve(NULL, false, &error), SM_OK);
+    assert_int_equal(bench_draft_reserve(NULL, true, &error), SM_USAGE);
     assert_int_equal(bench_draft_reserve(path_in("absent"), false, &error), SM_OK);
     assert_int_equal(bench_draft_reserve(path_in("results"), false, &error), SM_OUTPUT);
     assert_non_null(strstr(error.text, "--overwrite"));
