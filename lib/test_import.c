@@ -1,6 +1,7 @@
 #include "child.h"
 #include "confine.h"
 #include "import.h"
+#include "off.h"
 #include "reply.h"
 #include "stage.h"
 
@@ -281,6 +282,14 @@ static void numbers_that_the_importer_alters_are_refused(void **state)
         char text[256];
         snprintf(text, sizeof text, "%s%s", start, last[i]);
         expect_error(write_text("last.off", text), NULL, "Export it again");
+    }
+    static const char *const keyword[] = {"OFF ", "# a\nCOFF # b\n", "\nOFF\n\n"};
+    for (int i = 0; i < 3; i++) { /* whole coordinates are no faces, wherever the counts stand */
+        char text[256];
+        snprintf(text, sizeof text, "%s4 4 0\n1 5 3\n2 7 9\n3 1 2\n4 4 4\n%s%s", keyword[i],
+                 "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 ", i % 2 ? "4\n" : "2\n");
+        assert_true(sm_off_astray(text) == (i % 2 == 1));
+        if (i == 0) assert_int_equal(import_info(write_text("whole.off", text)).triangles, 4);
     }
     write_gltf("last.gltf", "last.bin", "last.bin", 9);
     expect_error(path_in("last.gltf"), NULL, "out-of-range");
