@@ -120,9 +120,3 @@ void sm_mesh_files_init(const char *path, SmMeshFiles *files)
     struct stat status;
     if (stat(path, &status) == 0) files->bytes = (double)status.st_size;
 }
-
-void sm_mesh_files_free(SmMeshFiles *files)
-{
-    free(files->folder);
-    files->folder = NULL;
-}

@@ -10,6 +10,8 @@
 #include <assimp/cfileio.h>
 #include <stddef.h>
 
+#include "reply.h"
+
 typedef struct {
     struct aiFileIO io; /* for Assimp; its UserData is this */
     const char *path;   /* the mesh, the caller's */
@@ -18,13 +20,11 @@ typedef struct {
     size_t size;
     double bytes;      /* of all files opened, once for each opening of another than the mesh */
     char outside[256]; /* the first name that led out of the folder, or "" */
-    char
-        altered[400]; /* for the importer: what it says of numbers that it did not believe, or "" */
+    char altered[SM_REPLY_TEXT]; /* what Assimp says of numbers that it altered, or "" */
 } SmMeshFiles;
 
-/* The caller calls sm_mesh_files_free(), and may set text and size in between. Assimp gets
- * &files->io, so that it does not move. folder is NULL where there is none. */
+/* The caller may set text and size afterwards, and frees the folder, which is NULL where there is
+ * none. Assimp gets &files->io: the struct stays where it is. */
 void sm_mesh_files_init(const char *path, SmMeshFiles *files);
-void sm_mesh_files_free(SmMeshFiles *files);
 
 #endif

@@ -16,7 +16,8 @@ enum { MASS_R, MASS_V = 3, MOMENT = 6, SPREAD = 9, ENERGY = 15, SUMS = MOMENTUM_
  * they are added up in double precision. Rounding is the same whatever the threads. */
 enum { RUN_BLOCKS = 32, RUNS_AT_ONCE = 64 };
 
-/* Of what is over at one time, the share that is expected to be over again, and how long for. */
+/* What is over is expected to be over again: the share of it that the expectation gains each time,
+ * and the share of the expectation that stays. */
 static const double LEARNT = 0.125, LASTING = 0.97;
 
 typedef real RunSum[SM_LANES][SUMS];

@@ -1,12 +1,13 @@
-/* momentum.h - keeps the momentum of free bodies, which rounding would change.
+/* momentum.h - free bodies keep their momenta, whatever rounding adds to them.
  *
- * Shape matching keeps linear and angular momentum: the changes m (g - x) of a region add up to
- * nothing and have no moment. Rounded they do not, and since a body that moves little is rounded
- * the same way in every step, what is left adds up: a body at rest in empty space would fly away,
- * its velocity in proportion to time. So every few steps the momentum of each piece of a body is
- * measured, and what it has too much, next to what it had and what gravity has added since, is
- * taken from its particles as a rigid velocity at the next measurement; so is what its
- * centre is off its parabola. The error stays what few steps make of it, for any number of steps.
+ * Shape matching conserves linear and angular momentum: the impulses m (g - x) of a region add up
+ * to zero, and so do their moments. Rounded they do not quite, and since a body that moves little
+ * is rounded the same way in every step, what is left adds up: a body at rest in empty space would
+ * fly away, ever faster. So every few steps the momenta of each piece of a body are measured and
+ * compared with what they should be, which is what they were at first and what gravity has added.
+ * At the next measurement the difference is taken from the piece's particles as a rigid velocity,
+ * and the distance of its centre from its parabola as a displacement. The error then stays what a
+ * few steps make of it, for any number of steps.
  *
  * Pieces are measured apart, because each keeps its own momentum. Only what nothing acts on but
  * gravity is kept: whoever changes positions or velocities from outside, or has them changed by
@@ -95,7 +96,7 @@ static inline bool momentum_rests(const Momentum *m)
     return m->begun && !m->moving;
 }
 
-/* After a step: is it time to keep the momenta? */
+/* Counts a step. Is it time to keep the momenta? */
 static inline bool momentum_due(Momentum *m)
 {
     return ++m->steps >= m->every;
@@ -117,20 +118,20 @@ static inline void momentum_kept(Momentum *m)
  * external force. */
 void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3]);
 
-/* After how many steps origins are to go to their bodies' middles again, when `since` the last time
- * one has come `far` off: before it is some eight cells off, as a coordinate in single precision
- * has fewer digits behind the point the larger it is, but in 16 steps. */
-static inline long sm_recentre_after(long since, double far)
-{
-    double enough = 8, steps = (double)since * enough / (far > enough / 2 ? far : enough / 2);
-    return steps < 15 ? 1 + (long)steps : 16;
-}
-
 /* x of a body counts from a place farther on by `by`, which no `origin` tells. */
 void momentum_shift(Momentum *m, long body, const double by[3]);
 
 long momentum_bytes(const Momentum *m);
 
 void momentum_free(Momentum *m);
+
+/* In how many steps origins are to go to their bodies' middles again, when in the last `since`
+ * steps one has come `far` cells off: in 16, or as soon as one may be some eight cells off, because
+ * in single precision a coordinate has the fewer digits behind the point the larger it is. */
+static inline long sm_recentre_after(long since, double far)
+{
+    double enough = 8, steps = (double)since * enough / (far > enough / 2 ? far : enough / 2);
+    return steps < 15 ? 1 + (long)steps : 16;
+}
 
 #endif

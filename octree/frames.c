@@ -3,52 +3,39 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What stands for all that are joined to tree node i: the lowest of them. */
-static int top(int *next, int i)
-{
-    while (next[i] != i) i = next[i] = next[next[i]];
-    return i;
-}
-
-static void join(int *next, int i, int j)
-{
-    int a = top(next, i), b = top(next, j);
-    if (a < b)
-        next[b] = a;
-    else
-        next[a] = b;
-}
+#include "../lib/pieces.h"
 
 /* Joins everything below a node to it, once. */
-static void join_below(const OctTree *tree, int *next, char *whole, int node)
+static void join_below(const OctTree *tree, SmPieces *pieces, char *whole, int node)
 {
     if (whole[node]) return;
     whole[node] = 1;
     for (int c = tree->child[node]; c < tree->child[node] + tree->children[node]; c++) {
-        join(next, node, c);
-        join_below(tree, next, whole, c);
+        sm_pieces_link(pieces, node, c);
+        join_below(tree, pieces, whole, c);
     }
 }
 
 long oct_frames_groups(const OctTree *tree, const OctRegions *regions, int *group)
 {
-    size_t nodes = (size_t)tree->nodes;
-    int *next = sm_alloc(nodes, sizeof *next), *number = sm_alloc(nodes, sizeof *number);
-    char *whole = sm_alloc(nodes, 1);
+    SmPieces pieces; /* of tree nodes, most inner ones among them alone */
+    char *whole = sm_alloc((size_t)tree->nodes, 1);
     long groups = 0;
-    for (int n = 0; n < tree->nodes; n++) next[n] = n;
+    sm_pieces_init(tree->nodes, &pieces);
     for (long leaf = 0; leaf < tree->leaves; leaf++)
         for (long at = regions->first[leaf];
              tree->node[leaf] >= 0 && at < oct_regions_end(regions, leaf); at++) {
-            join(next, tree->node[leaf], regions->member[at]);
-            join_below(tree, next, whole, regions->member[at]);
+            sm_pieces_link(&pieces, tree->node[leaf], regions->member[at]);
+            join_below(tree, &pieces, whole, regions->member[at]);
         }
+    sm_pieces_finish(&pieces, NULL, tree->nodes);
+    int *number = sm_alloc((size_t)pieces.count, sizeof *number);
     for (long leaf = 0; leaf < tree->leaves; leaf++) {
-        int node = tree->node[leaf], *of = node < 0 ? NULL : &number[top(next, node)];
+        int node = tree->node[leaf], *of = node < 0 ? NULL : &number[pieces.piece[node]];
         if (of && !*of) *of = (int)++groups;
         group[leaf] = of ? *of - 1 : -1;
     }
-    free(next);
+    sm_pieces_free(&pieces);
     free(number);
     free(whole);
     return groups;
