@@ -450,8 +450,8 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
             v[index] += (real)dv[d];
         }
         long p = e->inner[particle[i] % e->count];
-        momentum_pushed(e->momentum, particle[i] / e->count, e->crowd ? p : e->lsm->slot[p], at,
-                        dv);
+        momentum_pushed(e->momentum, particle[i] / e->count, e->crowd ? p : e->lsm->slot[p], at, dv,
+                        e->lsm->gravity);
     }
 }
 

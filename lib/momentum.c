@@ -314,14 +314,15 @@ void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, 
     m->begun = true;
 }
 
-void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3])
+void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3],
+                     const real gravity[3])
 {
     m->moving = true;
     MomentumPiece *p = &m->piece[body * m->pieces + m->label[slot]];
     double mass = (double)m->mass[slot], n = (double)m->steps, r[3], moment[3];
     for (int d = 0; d < 3; d++) {
         double change = mass * dv[d] / p->mass;
-        r[d] = x[d] - (p->place[d] + n * p->velocity[d]);
+        r[d] = x[d] - (p->place[d] + n * p->velocity[d] + (double)gravity[d] * n * (n + 1) / 2);
         p->velocity[d] += change;
         p->place[d] -= n * change; /* from where it would be here with this velocity */
     }

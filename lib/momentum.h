@@ -115,8 +115,9 @@ static inline void momentum_kept(Momentum *m)
 }
 
 /* The velocity of a slot (abreast: particle) at x, origin included, was changed by `dv`: an
- * external force. */
-void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3]);
+ * external force. `gravity` in cells per step and step. */
+void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3],
+                     const real gravity[3]);
 
 /* x of a body counts from a place farther on by `by`, which no `origin` tells. */
 void momentum_shift(Momentum *m, long body, const double by[3]);

@@ -471,7 +471,7 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
             body->v[index] += (real)dv[d];
         }
         if (e->momentum && e->divided)
-            momentum_pushed(e->momentum, particle[i] / e->count, leaf, at, dv);
+            momentum_pushed(e->momentum, particle[i] / e->count, leaf, at, dv, e->oct->gravity);
     }
 }
 
