@@ -1,8 +1,8 @@
 /* shape.h - procedural models: implicit shapes made into closed triangle meshes.
  *
  * They stand in for the papers' models, which cannot be shipped, and have their triangle counts.
- * The same name gives the same
- * bytes on every machine and from every compiler. y is up; one unit is one metre. */
+ * The same name gives the same bytes on every machine and from every compiler. y is up; one unit is
+ * one metre. */
 #ifndef SM_SHAPE_H
 #define SM_SHAPE_H
 

@@ -402,15 +402,10 @@ static bool is_free(const SmEngine *e)
            !(e->contacts && oct_contacts_count(e->contacts) > 0);
 }
 
-static bool is_kicked(const OctState *body)
-{
-    return body->kick[0] != 0 || body->kick[1] != 0 || body->kick[2] != 0;
-}
-
 static void begin_momentum(SmEngine *e)
 {
     if (!e->momentum) return;
-    bool begins = e->divided && is_free(e) && !is_kicked(e->oct->body);
+    bool begins = e->divided && is_free(e); /* a change's kick was over before it was divided */
     for (OctState *b = e->oct->body; begins && b < e->oct->body + e->oct->instances; b++)
         momentum_begin(e->momentum, b - e->oct->body, (const double(*)[3])b->origin, b->x, b->v);
     const real *fall = e->oct->gravity;
@@ -418,7 +413,7 @@ static void begin_momentum(SmEngine *e)
     e->oct->rounding = rests ? e->oct->at_rest : 0;
 }
 
-/* Pieces are found again when the body has not changed for a while. */
+/* After the first step of a body that has changed its pieces are found again. */
 static void keep_momentum(SmEngine *e)
 {
     Oct *oct = e->oct;

@@ -45,8 +45,8 @@ void oct_damp(OctTask *task);
  * The next time is due in 16 steps, or before the fastest frame has moved by 8 cells. */
 void oct_recentre(Oct *oct);
 
-/* Puts every node of a body: `x` is [leaves][3], finest cells. Origins go to the
- * whole cells next to their frames' middles. */
+/* Puts every node of a body: `x` is [leaves][3], finest cells. Origins go to the whole cells next
+ * to their frames' middles. */
 void oct_place(Oct *oct, long body, const double (*x)[3]);
 
 /* Sets the rest shapes of a plastic body's regions; `S` is [leaves][9]. */

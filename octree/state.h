@@ -1,11 +1,10 @@
 /* state.h - what the octree engine holds, in one precision.
  *
  * Inside, lengths are finest cells from movable origins (frames.h) and velocities are finest cells
- * per step.
- * Simulation nodes live in slots, slot = leaf number; SM_LANES slots are a block, and a block's
- * coordinates are stored as x[3][lanes]. A slot without a leaf, be it beyond the last one or of a
- * number that nothing bears, weighs nothing and matches the unit row, so that no lane is a special
- * case; what it sums goes to a spare row, and it stays near the origin. Region r is that of
+ * per step. Simulation nodes live in slots, slot = leaf number; SM_LANES slots are a block, and a
+ * block's coordinates are stored as x[3][lanes]. A slot without a leaf, be it beyond the last one
+ * or of a number that nothing bears, weighs nothing and matches the unit row, so that no lane is a
+ * special case; what it sums goes to a spare row, and it stays near the origin. Region r is that of
  * simulation node r. */
 #ifndef OCT_STATE_H
 #define OCT_STATE_H

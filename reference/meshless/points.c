@@ -183,10 +183,10 @@ static double (*read_lines(FILE *file, const char *path, long *count, SmError *e
         memcpy(row[2 * (*count)++], number, sizeof number);
     }
     free(text);
-    if (!why.code && row) return row;
+    if (!why.code && !row) sm_fail(&why, SM_INPUT, "%s: holds no points", path);
+    if (!why.code) return row;
     free(row);
-    sm_fail(error, SM_INPUT, "%s%s", why.code ? why.text : path,
-            why.code ? "" : ": holds no points");
+    if (error) *error = why;
     return NULL;
 }
 
