@@ -8,7 +8,7 @@ sight of the engines, of reference/ or of check_step.py, so that an error has to
 are found from the recorded cells or edges, every sum is over a region's members one by one, and rotations are by SVD.
 Prints the largest deviations of goals, positions and velocities in (finest) cells, and how far momentum strays where
 nothing acts from outside. Memory grows with the square of the particles: for some 5,000 a body at most.
-Exit code 0: all within the tolerance printed; 1: not; 2: nothing to compare; 3: not such a file.
+Exit code 0: all within the tolerance printed; 1: not; 2: nothing to compare, or usage; 3: not such a file.
 """
 import heapq
 import sys
@@ -19,6 +19,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent / "report"))
 from stored import Unusable, opened  # noqa: E402
 
+LARGE = 1e30  # no number of a run is as large
 ROUNDINGS = 16  # a deviation may be so many times the rounding of a number as large as the body's radius
 
 
@@ -42,6 +43,8 @@ def lattice_regions(lattice):
         for _ in range(lattice.attrs["w"]):
             front = set().union(*(ring[i] for i in front)) - reached
             reached = reached | front
+            if not front:
+                break
         members[centre, list(reached)] = True
     return members
 
@@ -61,6 +64,8 @@ def distances(links, start):
 def octree_regions(nodes):
     """members[r, i] by intervals of distance, from the roots down (octree section 4.2), then made symmetric."""
     parent, leaf, width = nodes["tree/parent"][:], nodes["tree/leaf"][:], nodes["w"][:]
+    if (parent >= np.arange(len(parent))).any() or (nodes["length"][:] <= 0).any():
+        raise ValueError("a tree or lengths that no octree has")
     children, leaves = [[] for _ in parent], [[i] if i >= 0 else [] for i in leaf]
     for j in range(len(parent) - 1, -1, -1):  # parents come before children
         if parent[j] >= 0:
@@ -156,12 +161,14 @@ def check(file):
     and pressed by an obstacle (not compared)."""
     octree = "nodes" in file
     if not octree and "particles" not in file:
-        raise Unusable("no recorded steps: run with --record particles, or nodes of an octree")
+        raise Unusable(f"{file.filename}: no recorded steps: run with --record particles, or nodes of an octree")
     group = file["nodes" if octree else "particles"]
     if group.attrs.get("strain_limit", 0):
-        raise Unusable("links may have broken, and the file does not say which")
+        raise Unusable(f"{file.filename}: links may have broken, and the file does not say which")
     body, n, h, cell = Body(group, octree), len(group["rest"]), group.attrs["h"], group.attrs["cell"]
     precision = word(group, "precision")
+    if precision not in ("single", "double") or not all(1 / LARGE < number < LARGE for number in (h, cell)):
+        raise ValueError("a precision, time step or cell that no run has")
     damping, every = group.attrs["damping"], max(1, group.attrs["damping_every"])
     gravity, held, steps = group.attrs["gravity"], group["held"][:].astype(bool), group["step"][:]
     obstacles = group["obstacles"][:] if "obstacles" in group else []
@@ -175,6 +182,9 @@ def check(file):
         record = {name: group[name][k:k + 2] for name in ("x", "v", "g")}
         for first in range(0, len(held), n):
             here = slice(first, first + n)
+            if not all(np.abs(record[name][:, here]).max() < LARGE for name in "xv"):
+                worst["x"] = np.inf  # also where it is no number
+                continue
             middle = record["x"][0, here].mean(0)  # far from the origin the sums would cancel
             x, x1, v0, v1 = (record[name][j, here] for name, j in (("x", 0), ("x", 1), ("v", 0), ("v", 1)))
             x, x1, free = x - middle, x1 - middle, ~held[here]
@@ -191,7 +201,7 @@ def check(file):
             pushed = good & (drift > allowed) & (off <= allowed)
             for name, deviation in (("goals", np.abs(g - (record["g"][0, here] - middle)).max(1) / cell),
                                     ("x", off[good]), ("v", drift[good & ~pushed])):
-                worst[name] = max(worst[name], deviation.max(initial=0))
+                worst[name] = max(worst[name], np.nan_to_num(deviation, nan=np.inf).max(initial=0))
             for name, which in (("compared", good), ("pushed", pushed), ("pressed", free & ~apart)):
                 count[name] += int(which.sum())
             if free.all() and apart.all() and not pushed.any() and word(group, "weighting") != "plain":
@@ -215,19 +225,23 @@ def told(worst, count):
 
 
 def main(paths):
-    code = 0
+    if not paths or paths[0].startswith("-"):
+        print(__doc__)
+        return 0 if paths in (["-h"], ["--help"]) else 2
+    codes = set()
     for path in paths:
         try:
             with opened(path) as file:
                 allowed, worst, count = check(file)
         except Unusable as error:
             print(f"brute_force: {error}", file=sys.stderr)
-            return 3
+            codes.add(3)
+            continue
         fits = not beyond(allowed, worst)
         print(path, "within" if fits else "OFF", f"{allowed:.2g}:", told(worst, count))
-        code = max(code, 1 if not fits else 0 if count["compared"] else 2)
-    return code
+        codes.add(1 if not fits else 0 if count["compared"] else 2)
+    return next((code for code in (1, 3, 2) if code in codes), 0)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]) if sys.argv[1:] else print(__doc__) or 3)
+    sys.exit(main(sys.argv[1:]))

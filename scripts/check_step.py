@@ -17,7 +17,7 @@ more than the tolerance, by what damping does at most; they are counted and thei
 Particles that follow a handle or end within a
 thousandth of a cell of an obstacle are compared in their goals only, and so is a record after which the next
 step is missing; how many those are is said.
-Exit code: 0 all within tolerance, 1 not, 2 nothing can be compared, 3 the file cannot be used."""
+Exit code: 0 all within tolerance, 1 not, 2 nothing can be compared, or usage, 3 the file cannot be used."""
 import heapq
 import sys
 

@@ -50,8 +50,8 @@ READ = {  # file: what reads it; @ is the file, ! a new name
                 ["plot_calibration.py", "@", "-o", "!.svg"]],
     "claims.h5": [["PROGRAM", "report", "-o", "!.html", "@"]],
     "slice.h5": [["plot_slice.py", "@", "-o", "!.png"]],
-    "particles.vtkhdf": [["check_step.py", "@"]],
-    "nodes.vtkhdf": [["check_step.py", "@"]],
+    "particles.vtkhdf": [["check_step.py", "@"], ["brute_force.py", "@"]],
+    "nodes.vtkhdf": [["check_step.py", "@"], ["brute_force.py", "@"]],
 }
 FINE = {0, 1, 2, 3}  # documented, of readers: done, a check failed, nothing to compare or no such scene, unusable
 

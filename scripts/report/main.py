@@ -177,7 +177,7 @@ def take_place(draft, output):
 
 def check_folder(output, overwrite):
     if os.path.lexists(output) and not may_replace(output):
-        fail(f"{output}: is there already and is no report: name another folder", 2)
+        raise draft.Refused(f"{output}: cannot be written: it is there and is no report; choose another name")
     if os.path.lexists(output) and os.listdir(output) and not overwrite:
         raise draft.Refused(f"{output}: cannot be written: it is there; choose another name, or give --overwrite")
 

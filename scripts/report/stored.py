@@ -10,6 +10,8 @@ import zlib
 
 import h5py
 
+import interrupt
+
 CHECKSUM_LINE = 64  # bytes at the file's end (bench/checksum.h)
 CHECKSUM = re.compile(rb"\nshapebench: CRC-32 ([0-9a-f]{8}) of (\d{18}) bytes before\n")
 BLOCK = 1 << 24  # bytes read at once
@@ -91,17 +93,18 @@ def why_unreadable(path):
     ends = os.pipe()
     child = os.fork()
     if not child:
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, signal.SIG_DFL)
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         try:
+            for number in interrupt.NUMBERS:
+                signal.signal(number, signal.SIG_DFL)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
             os.write(ends[1], try_to_read(path, os.path.getsize(path)).encode()[:2000])
-        finally:
             os._exit(0)
+        finally:
+            os._exit(1)
     os.close(ends[1])
     with open(ends[0], "rb") as pipe:
         said = pipe.read()
-    if os.WIFSIGNALED(os.waitpid(child, 0)[1]):
+    if os.waitpid(child, 0)[1]:
         return "so damaged that it cannot be read"
     return " ".join(said.decode("utf-8", "replace").split())
 
