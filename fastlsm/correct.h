@@ -4,6 +4,8 @@
 
 #include "corrections.h"
 
+enum { CORRECT_BATCH = 16 };
+
 /* What one correction adds to the sums of half a block. */
 typedef void CorrectOne(const Lsm *lsm, const Correction *at, half_vec *sum);
 
@@ -75,18 +77,43 @@ SM_INLINE void correct_velocity(const Lsm *lsm, const Correction *at, half_vec s
     for (int f = 0; f < 6; f++) sum[f] += at->sign * half_load(kept + f * SM_LANES, at->lanes);
 }
 
-/* What all of half a block, number `at`, come to. Loops are unrolled early, or the sums would not
- * stay in registers. */
+/* What the corrections from `c` up to `end` come to. Loops are unrolled early, or the sums would
+ * not stay in registers. */
+SM_INLINE void correct_batch(const Lsm *lsm, const Correction *c, const Correction *end, int count,
+                             CorrectOne *correct_one, half_vec *sum)
+{
+    half_vec all[12];
+#pragma GCC unroll 12
+    for (int f = 0; f < count; f++) all[f] = (half_vec){0};
+    for (; c < end; c++) correct_one(lsm, c, all);
+#pragma GCC unroll 12
+    for (int f = 0; f < count; f++) sum[f] = all[f];
+}
+
+/* What all of half a block, number `at`, come to. Of thousands of like numbers, one added after the
+ * other, each would be rounded the same way; batches are summed on their own, and then batches of
+ * batches. */
 SM_INLINE void correct_half(const Lsm *lsm, const CorrectionList *list, long at, int count,
                             CorrectOne *correct_one, half_vec *sum)
 {
-    half_vec all[12];
-    const Correction *end = list->of + list->first[at + 1];
-#pragma GCC unroll 12
-    for (int f = 0; f < count; f++) all[f] = (half_vec){0};
-    for (const Correction *c = list->of + list->first[at]; c < end; c++) correct_one(lsm, c, all);
-#pragma GCC unroll 12
-    for (int f = 0; f < count; f++) sum[f] = all[f];
+    const Correction *c = list->of + list->first[at], *end = list->of + list->first[at + 1];
+    if (end - c <= CORRECT_BATCH) {
+        correct_batch(lsm, c, end, count, correct_one, sum);
+        return;
+    }
+    half_vec batch[12], batches[12];
+    for (int f = 0; f < count; f++) batches[f] = sum[f] = (half_vec){0};
+    for (int i = 1; c < end; i++) {
+        const Correction *last = end - c < CORRECT_BATCH ? end : c + CORRECT_BATCH;
+        correct_batch(lsm, c, last, count, correct_one, batch);
+        for (int f = 0; f < count; f++) batches[f] += batch[f];
+        c = last;
+        if (i % CORRECT_BATCH && c < end) continue;
+        for (int f = 0; f < count; f++) {
+            sum[f] += batches[f];
+            batches[f] = (half_vec){0};
+        }
+    }
 }
 
 /* Corrects `count` sums of a block. */

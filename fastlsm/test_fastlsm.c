@@ -83,6 +83,26 @@ static void test_wide_lists(void **state)
     }
 }
 
+/* At rest, two tall walls a cell apart and joined at the foot: a block's box sum takes both, and
+ * hundreds of particles of the other are taken from it again. */
+static void test_wide_corrections(void **state)
+{
+    (void)state;
+    for (int precision = 0; precision < 2; precision++) {
+        Body body;
+        sm_voxels_init(&body.voxels, 3, 60, 12, 0.25);
+        for (int y = 0; y < 60; y++)
+            for (int z = 0; z < 12; z++)
+                for (int x = 0; x < 3; x++)
+                    if (x != 1 || !y) sm_voxel_set(&body.voxels, x, y, z);
+        sm_voxels_count(&body.voxels);
+        body_arrays(&body);
+        memcpy(body.x, body.x0, (size_t)body.n * sizeof *body.x);
+        check_goals(precision, SM_SUM_FAST, SM_POLAR_FAST, SM_LAYOUT_BLOCKS, 8, &body);
+        body_free(&body);
+    }
+}
+
 /* Every member list against breadth-first search. */
 static void test_regions(void **state)
 {
@@ -288,10 +308,15 @@ static void test_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_goals),    cmocka_unit_test(test_wide_lists),
-        cmocka_unit_test(test_regions),  cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_momentum), cmocka_unit_test(test_rigid),
-        cmocka_unit_test(test_recovery), cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_goals),
+        cmocka_unit_test(test_wide_lists),
+        cmocka_unit_test(test_wide_corrections),
+        cmocka_unit_test(test_regions),
+        cmocka_unit_test(test_steps),
+        cmocka_unit_test(test_momentum),
+        cmocka_unit_test(test_rigid),
+        cmocka_unit_test(test_recovery),
+        cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests_name("fastlsm", tests, NULL, NULL);
 }

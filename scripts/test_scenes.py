@@ -194,7 +194,9 @@ class Scene:
                           axis=(0.0, 1.0, 0.0), centre=self.point(), rate=r.uniform(-2, 2))
             s.setdefault("handles", []).append(handle)
         if self.often(0.2):
-            force = tuple(r.uniform(-1e-3, 1e-3) for _ in range(3))
+            # as gravity, or a part of it: its particles of 1 kg, or as heavy as those of a full box
+            mass = s.get("density", 0) * self.size ** 3 / s["particles"] or 1
+            force = tuple(mass * self.size * r.uniform(-0.001, 0.001) / s["h"] ** 2 for _ in range(3))
             s["forces"] = [dict(self.selection(), force=force, start=0.0, stop=r.uniform(0, 0.1))]
 
     def draw_obstacles(self):
