@@ -337,12 +337,20 @@ static void run_group(Crowd *crowd, long group, int thread, bool goals, SmLaps *
     }
 }
 
+static void run_share(Crowd *crowd, int thread, bool goals, SmLaps *laps)
+{
+    for (long group = thread; group < crowd->groups; group += crowd->threads)
+        run_group(crowd, group, thread, goals, thread ? NULL : laps);
+}
+
 static void run(Crowd *crowd, bool goals, SmLaps *laps)
 {
-#pragma omp parallel for schedule(static) num_threads(crowd->threads) if (crowd->threads > 1)
-    for (int t = 0; t < crowd->threads; t++)
-        for (long group = t; group < crowd->groups; group += crowd->threads)
-            run_group(crowd, group, t, goals, t ? NULL : laps);
+    if (crowd->threads == 1) {
+        run_share(crowd, 0, goals, laps);
+        return;
+    }
+#pragma omp parallel for schedule(static) num_threads(crowd->threads)
+    for (int t = 0; t < crowd->threads; t++) run_share(crowd, t, goals, laps);
 }
 
 void crowd_step(Crowd *crowd, SmLaps *laps)

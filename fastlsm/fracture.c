@@ -348,24 +348,25 @@ long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first)
 
 double lsm_recentre(Lsm *lsm, Momentum *momentum)
 {
-    double sum[3] = {0, 0, 0};
+    vec sum[3] = {{0}}, by[3];
+    double middle[3] = {0}, far = 0;
     for (long block = 0; block < lsm->blocks; block++)
-        for (int d = 0; d < 3; d++) {
-            const real *x = lsm->x + (block * 3 + d) * SM_LANES;
-            real part = 0;
-            for (int lane = 0; lane < SM_LANES; lane++) part += x[lane];
-            sum[d] += (double)part;
-        }
-    double middle[3], far = 0;
+        for (int d = 0; d < 3; d++) sum[d] += lanes_load(lsm->x + (block * 3 + d) * SM_LANES);
     for (int d = 0; d < 3; d++) {
-        middle[d] = rint(sum[d] / (double)lsm->lattice.count);
+        for (int lane = 0; lane < SM_LANES; lane++) middle[d] += (double)sum[d][lane];
+        middle[d] = rint(middle[d] / (double)lsm->lattice.count);
+        by[d] = lanes_set((real)middle[d]);
         far = fmax(far, fabs(middle[d]));
     }
     if (!(far > 1)) return far;
     momentum_shift(momentum, 0, middle);
     for (int d = 0; d < 3; d++) lsm->origin[d] += middle[d] * lsm->cell;
-    for (long slot = 0; slot < lsm->blocks * SM_LANES; slot++)
-        for (int d = 0; d < 3 && lsm->particle[slot] >= 0; d++)
-            lsm->x[(slot / SM_LANES * 3 + d) * SM_LANES + slot % SM_LANES] -= (real)middle[d];
+    for (long block = 0; block < lsm->blocks; block++) {
+        const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
+        for (int d = 0; d < 3; d++) {
+            real *x = lsm->x + (block * 3 + d) * SM_LANES;
+            lanes_store(x, lanes_load(x) - lanes_and(by[d], k->inverse_count > 0));
+        }
+    }
     return far;
 }

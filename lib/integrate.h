@@ -19,11 +19,9 @@ static inline real rounding_square(double extent, double reach)
     return (real)((way < most ? way : most) * (way < most ? way : most));
 }
 
-/* Eq. 1; `pull` is g - x. `gravity` in cells per step and step; empty lanes (`live` 0) do not fall.
- * Of a body at rest rounding sets nothing in motion: a particle that does not move is pulled only
- * where its goal is farther off than the square root of `rounding`, which is 0 of others. */
-SM_INLINE void integrate_velocity(const vec pull[3], const real gravity[3], real rounding, vec live,
-                                  vec v[3])
+/* Of a body at rest rounding sets nothing in motion: what does not move is pulled only where its
+ * goal is farther off than the square root of `rounding`. */
+SM_INLINE void hold_at_rest(real rounding, const vec v[3], vec pull[3])
 {
     const real much = (real)1e30;
     vec off = lanes_set(0), speed = lanes_set(0);
@@ -32,7 +30,16 @@ SM_INLINE void integrate_velocity(const vec pull[3], const real gravity[3], real
         speed += v[d] * v[d];
     }
     ivec moves = ~(off + much * speed < rounding); /* so does a NaN */
-    for (int d = 0; d < 3; d++) v[d] += lanes_and(pull[d], moves) + gravity[d] * live;
+    for (int d = 0; d < 3; d++) pull[d] = lanes_and(pull[d], moves);
+}
+
+/* Eq. 1; `pull` is g - x. `gravity` in cells per step and step; empty lanes (`live` 0) do not fall.
+ * `rounding` is 0 but of a body at rest. */
+SM_INLINE void integrate_velocity(vec pull[3], const real gravity[3], real rounding, vec live,
+                                  vec v[3])
+{
+    if (rounding > 0) hold_at_rest(rounding, v, pull);
+    for (int d = 0; d < 3; d++) v[d] += pull[d] + gravity[d] * live;
 }
 
 /* Eq. 2, then obstacles in turn; x + shift is in the obstacles' coordinates. */

@@ -134,37 +134,43 @@ typedef struct {
     vec about[3], shift[3], push[3], turn[3];
 } Frame;
 
-/* The same as numbers: [about, shift, push, turn][d][lane]. */
-typedef real FrameValues[4][3][SM_LANES];
-
-static void frame_lane(const Momentum *m, const MomentumPiece *p, const double origin[3], int lane,
-                       FrameValues value)
+/* Of one piece as numbers: [about, shift, push, turn][d]. */
+static void frame_values(const Momentum *m, const MomentumPiece *p, const double origin[3],
+                         real value[4][3])
 {
+    bool known = is_known(m, p);
     for (int d = 0; d < 3; d++) {
-        value[0][d][lane] = (real)(p->about[d] - origin[d]);
-        value[1][d][lane] = is_known(m, p) ? (real)p->shift[d] : 0;
-        value[2][d][lane] = is_known(m, p) ? (real)p->push[d] : 0;
-        value[3][d][lane] = is_known(m, p) ? (real)p->turn[d] : 0;
+        value[0][d] = (real)(p->about[d] - origin[d]);
+        value[1][d] = known ? (real)p->shift[d] : 0;
+        value[2][d] = known ? (real)p->push[d] : 0;
+        value[3][d] = known ? (real)p->turn[d] : 0;
     }
 }
 
+static const double *origin_of(const double (*origin)[3], const Lane *lane)
+{
+    static const double zero[3];
+    return origin ? origin[lane->frame] : zero;
+}
+
+/* Most runs are of one piece. */
 static void frame_of(const Momentum *m, const MomentumPiece *piece, const double (*origin)[3],
                      long run, Frame *frame)
 {
-    static const double zero[3];
-    FrameValues value;
+    vec *part[4] = {frame->about, frame->shift, frame->push, frame->turn};
+    real value[4][3], lanes[4][3][SM_LANES] = {0};
     Lane lane[SM_LANES];
+    long same = m->run[run].piece;
     lanes_of(m, m->run[run].first, lane);
-    memset(value, 0, sizeof value);
-    for (int l = 0; l < SM_LANES; l++)
-        if (lane[l].piece >= 0)
-            frame_lane(m, &piece[lane[l].piece], origin ? origin[lane[l].frame] : zero, l, value);
-    for (int d = 0; d < 3; d++) {
-        frame->about[d] = lanes_load(value[0][d]);
-        frame->shift[d] = lanes_load(value[1][d]);
-        frame->push[d] = lanes_load(value[2][d]);
-        frame->turn[d] = lanes_load(value[3][d]);
+    if (same >= 0) frame_values(m, &piece[same], origin_of(origin, lane), value);
+    for (int l = 0; l < SM_LANES && same < 0; l++) {
+        if (lane[l].piece < 0) continue;
+        frame_values(m, &piece[lane[l].piece], origin_of(origin, &lane[l]), value);
+        for (int i = 0; i < 12; i++) lanes[i / 3][i % 3][l] = value[i / 3][i % 3];
     }
+    for (int i = 0; i < 12; i++)
+        part[i / 3][i % 3] =
+            same >= 0 ? lanes_set(value[i / 3][i % 3]) : lanes_load(lanes[i / 3][i % 3]);
 }
 
 /* Corrects a block, and adds what it has to `sum`. */
@@ -282,10 +288,16 @@ static MomentumPiece *measure(Momentum *m, long body, const double (*origin)[3],
     MomentumPiece *piece = m->piece + (m->abreast ? 0 : body * *count);
     RunSum *total = (RunSum *)m->sum;
     for (long p = 0; p < *count; p++) memset(piece[p].sum, 0, sizeof piece->sum);
+    bool alone = m->threads == 1 || m->runs <= 4; /* a team of one costs more than it measures */
     for (long first = 0; first < m->runs; first += RUNS_AT_ONCE) {
         long end = m->runs - first < RUNS_AT_ONCE ? m->runs : first + RUNS_AT_ONCE;
-#pragma omp parallel for schedule(static) num_threads(m->threads) if (m->threads > 1 && m->runs > 4)
-        for (long r = first; r < end; r++) keep_run(m, piece, origin, r, x, v, total[r - first]);
+        for (long r = first; alone && r < end; r++)
+            keep_run(m, piece, origin, r, x, v, total[r - first]);
+        if (!alone) {
+#pragma omp parallel for schedule(static) num_threads(m->threads)
+            for (long r = first; r < end; r++)
+                keep_run(m, piece, origin, r, x, v, total[r - first]);
+        }
         for (long r = first; r < end; r++) add_run(m, r, total[r - first], piece);
     }
     return piece;

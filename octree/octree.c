@@ -286,31 +286,48 @@ static void step_body(OctTask *task)
     if (task->oct->damp_now && !task->goals) oct_damp(task);
 }
 
-/* One body is shared by all threads; of several, each thread steps some. */
-static void step_all(Oct *oct, bool goals, SmLaps *laps, bool apart)
+static void step_one(Oct *oct, int me, int team, bool goals, SmLaps *laps, bool apart)
 {
-    if (oct->instances > 1) {
-#pragma omp parallel for schedule(static) num_threads(oct->workers) if (oct->workers > 1)
-        for (int w = 0; w < oct->workers; w++)
-            for (long i = w; i < oct->instances; i += oct->workers)
-                step_body(&(OctTask){.oct = oct,
-                                     .body = &oct->body[i],
-                                     .rows = &oct->rows[w],
-                                     .team = 1,
-                                     .goals = goals,
-                                     .laps = w ? NULL : laps,
-                                     .apart = apart});
-        return;
-    }
-#pragma omp parallel num_threads(oct->threads) if (oct->threads > 1)
     step_body(&(OctTask){.oct = oct,
                          .body = oct->body,
                          .rows = oct->rows,
-                         .me = omp_get_thread_num(),
-                         .team = omp_get_num_threads(),
+                         .me = me,
+                         .team = team,
                          .goals = goals,
-                         .laps = omp_get_thread_num() ? NULL : laps,
+                         .laps = me ? NULL : laps,
                          .apart = apart});
+}
+
+/* The bodies of one thread. */
+static void step_some(Oct *oct, int worker, bool goals, SmLaps *laps, bool apart)
+{
+    for (long i = worker; i < oct->instances; i += oct->workers)
+        step_body(&(OctTask){.oct = oct,
+                             .body = &oct->body[i],
+                             .rows = &oct->rows[worker],
+                             .team = 1,
+                             .goals = goals,
+                             .laps = worker ? NULL : laps,
+                             .apart = apart});
+}
+
+/* One body is shared by all threads; of several, each thread steps some. A team of one would be
+ * made anew in every step, with memory and system calls. */
+static void step_all(Oct *oct, bool goals, SmLaps *laps, bool apart)
+{
+    bool several = oct->instances > 1;
+    if ((several ? oct->workers : oct->threads) == 1) {
+        if (several)
+            step_some(oct, 0, goals, laps, apart);
+        else
+            step_one(oct, 0, 1, goals, laps, apart);
+    } else if (several) {
+#pragma omp parallel for schedule(static) num_threads(oct->workers)
+        for (int w = 0; w < oct->workers; w++) step_some(oct, w, goals, laps, apart);
+    } else {
+#pragma omp parallel num_threads(oct->threads)
+        step_one(oct, omp_get_thread_num(), omp_get_num_threads(), goals, laps, apart);
+    }
 }
 
 void oct_goals(Oct *oct)
