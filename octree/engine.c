@@ -29,7 +29,7 @@ struct SmEngine {
     double (*pose)[3][4]; /* [instances] */
     OctHeld held;
     OctContacts *contacts; /* NULL: nothing collides */
-    Momentum *momentum;    /* NULL of a weighting that keeps none */
+    Momentum *momentum;    /* of a weighting that keeps none: tells only what rests */
     bool divided;          /* its pieces are those of the present structure */
     double build_seconds;
     bool goals; /* g is that of the present state */
@@ -327,8 +327,8 @@ static void complete(SmEngine *e, const OctOptions *options, const SmEngineParam
     e->h = params->h;
     start_at_rest(e, params);
     e->contacts = oct_contacts_build(e->oct, &e->head.structure, &params->collide);
-    if (options->weighting != OCT_CONSERVING) return;
-    e->momentum = momentum_build(e->oct->blocks, e->oct->instances, false, 1, e->oct->threads);
+    int every = options->weighting == OCT_CONSERVING ? 1 : 16;
+    e->momentum = momentum_build(e->oct->blocks, e->oct->instances, false, every, e->oct->threads);
     divide_momentum(e);
 }
 
@@ -404,7 +404,6 @@ static bool is_free(const SmEngine *e)
 
 static void begin_momentum(SmEngine *e)
 {
-    if (!e->momentum) return;
     bool begins = e->divided && is_free(e); /* a change's kick was over before it was divided */
     for (OctState *b = e->oct->body; begins && b < e->oct->body + e->oct->instances; b++)
         momentum_begin(e->momentum, b - e->oct->body, (const double(*)[3])b->origin, b->x, b->v);
@@ -417,10 +416,11 @@ static void begin_momentum(SmEngine *e)
 static void keep_momentum(SmEngine *e)
 {
     Oct *oct = e->oct;
-    if (!e->momentum) return;
+    bool keeps = oct->params.weighting == OCT_CONSERVING;
     if (!is_free(e)) momentum_forget(e->momentum);
     if (!is_free(e) || !momentum_due(e->momentum)) return;
-    for (long i = 0; i < oct->instances && e->divided; i++) {
+    if (!keeps) momentum_forget(e->momentum);
+    for (long i = 0; i < oct->instances && e->divided && keeps; i++) {
         OctState *b = &oct->body[i];
         momentum_keep(e->momentum, i, (const double(*)[3])b->origin, b->x, b->v, oct->gravity);
     }
@@ -465,7 +465,7 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
             dv[d] = impulse[i][d] * scale;
             body->v[index] += (real)dv[d];
         }
-        if (e->momentum && e->divided)
+        if (e->divided)
             momentum_pushed(e->momentum, particle[i] / e->count, leaf, at, dv, e->oct->gravity);
     }
 }
@@ -507,8 +507,7 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .regions = e->count,
         .links = s->graph.edges / 2,
         .bytes = oct_bytes(e->oct) + (long)oct_structure_bytes(s) +
-                 (e->contacts ? oct_contacts_bytes(e->contacts) : 0) +
-                 (e->momentum ? momentum_bytes(e->momentum) : 0),
+                 (e->contacts ? oct_contacts_bytes(e->contacts) : 0) + momentum_bytes(e->momentum),
         .contacts = e->contacts ? oct_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,
         .summation_nodes = s->regions.mean,
