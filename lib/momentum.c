@@ -308,6 +308,7 @@ void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, 
     long count;
     Momenta is;
     if (is_known(m, m->piece + body * m->pieces)) return;
+    m->steps = 0; /* contacts may have ended in the last step, which was counted */
     for (int time = 0; time < 2; time++) { /* about anywhere, then about the centre */
         MomentumPiece *piece = measure(m, body, origin, x, v, &count);
         for (MomentumPiece *p = piece; p < piece + count; p++) {
