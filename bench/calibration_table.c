@@ -113,7 +113,7 @@ static void write_text(FILE *file, const BenchCalibration *calibration, const Be
             "taken as %g.\n\n",
             plan->scene, plan->density, calibration->count, plan->specimens, plan->thickness,
             plan->aspect, plan->across, plan->damping, plan->poisson);
-    bench_grid_text(file, grid);
+    bench_grid_whole(file, grid, BENCH_GRID_PLAIN);
     fprintf(
         file,
         "\nE: geometric mean of what the static sag and the first natural frequency of a clamped "
@@ -130,7 +130,7 @@ static void write_text(FILE *file, const BenchCalibration *calibration, const Be
               "(spacing/h)^2 "
               "w(w+1) (c + d w(w+1) (spacing/thickness)^2); with 95% confidence intervals.\n\n",
               file);
-        bench_grid_text(file, laws);
+        bench_grid_whole(file, laws, BENCH_GRID_PLAIN);
     }
     fputc('\n', file);
     for (int i = 0; i < BENCH_FOUND; i++)
@@ -199,11 +199,9 @@ void bench_calibration_table(FILE *file, BenchFormat format, const BenchCalibrat
     if (format == BENCH_AS_TEXT) {
         write_text(file, calibration, &grid, &laws);
     } else {
-        void (*write)(FILE *, const BenchGrid *) =
-            format == BENCH_AS_LATEX ? bench_grid_latex : bench_grid_markdown;
-        write(file, &grid);
+        bench_grid_whole(file, &grid, bench_format_form(format));
         fputc('\n', file);
-        if (laws.lines) write(file, &laws);
+        if (laws.lines) bench_grid_whole(file, &laws, bench_format_form(format));
     }
     bench_grid_free(&grid);
     bench_grid_free(&laws);

@@ -109,9 +109,7 @@ static void write_grids(FILE *file, BenchFormat format, const BenchFinding *find
         BenchGrid grid = make_grid(findings, count, (BenchClaimKind)k);
         if (grid.lines) {
             fprintf(file, format == BENCH_AS_LATEX ? "%% %s\n" : "%s\n\n", titles[k]);
-            (format == BENCH_AS_LATEX      ? bench_grid_latex
-             : format == BENCH_AS_MARKDOWN ? bench_grid_markdown
-                                           : bench_grid_text)(file, &grid);
+            bench_grid_whole(file, &grid, bench_format_form(format));
             fputc('\n', file);
         }
         bench_grid_free(&grid);

@@ -39,9 +39,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
 static const char help[] =
     "Put shards of a sweep (shapebench sweep --shard I/N -o IN.h5) into one file. They must be of "
     "one scene, mesh, build and set of options; a point in two of them must be the same in both.\v"
-    "OUT.h5 comes first, and is a new file. What is missing is said, and 'sweep -o OUT.h5' with "
-    "the "
-    "same options measures it.\n" BENCH_EXIT_CODES;
+    "OUT.h5 comes first, and is a new file (or give --overwrite). What is missing is said, and "
+    "'sweep -o OUT.h5' with the same options measures it.\n" BENCH_EXIT_CODES;
 
 static const struct argp argp = {option_list, parse, "OUT.h5 IN.h5...", help, NULL, NULL, NULL};
 

@@ -78,8 +78,7 @@ static const struct argp_option option_list[] = {
     {"modes", KEY_MODES, "N", 0, "Meshless: natural modes, 7 to 1000 (default: 64)", 1},
     {"points", KEY_POINTS, "N", 0,
      "Meshless: points on the mesh, of which its field is made (default: 12000, of thin bodies up "
-     "to "
-     "400000)",
+     "to 400000)",
      1},
     {"particles", KEY_PARTICLES, "N", 0, "Wanted particle count", 1},
     {"cell", KEY_CELL, "SIZE", 0, "Edge of a cell, in the mesh's units", 1},

@@ -153,18 +153,3 @@ void bench_grid_whole(FILE *file, const BenchGrid *grid, BenchGridForm form)
     bench_grid_lines(file, &fitted, form);
     bench_grid_end(file, form);
 }
-
-void bench_grid_text(FILE *file, const BenchGrid *grid)
-{
-    bench_grid_whole(file, grid, BENCH_GRID_PLAIN);
-}
-
-void bench_grid_markdown(FILE *file, const BenchGrid *grid)
-{
-    bench_grid_whole(file, grid, BENCH_GRID_MARKDOWN);
-}
-
-void bench_grid_latex(FILE *file, const BenchGrid *grid)
-{
-    bench_grid_whole(file, grid, BENCH_GRID_LATEX);
-}

@@ -27,11 +27,9 @@ void bench_grid_column(BenchGrid *grid, const char *heading, bool left);
 BenchGridLine *bench_grid_add(BenchGrid *grid);
 void bench_grid_free(BenchGrid *grid);
 
-/* The whole table, as text with columns as wide as they need be. */
+/* The whole table: as text with columns as wide as they need be, as GitHub's Markdown, or as a
+ * LaTeX tabular. */
 void bench_grid_whole(FILE *file, const BenchGrid *grid, BenchGridForm form);
-void bench_grid_text(FILE *file, const BenchGrid *grid);
-void bench_grid_markdown(FILE *file, const BenchGrid *grid); /* GitHub's */
-void bench_grid_latex(FILE *file, const BenchGrid *grid);    /* a tabular */
 
 /* The same in parts: the head, all lines (with the widths as they are; may be none), the end. */
 void bench_grid_head(FILE *file, const BenchGrid *grid, BenchGridForm form);

@@ -214,7 +214,7 @@ static void write_text(FILE *file, const BenchRegression *found, bool markdown)
     char line[512];
     fill_grid(found, &grid);
     write_start(file, found);
-    (markdown ? bench_grid_markdown : bench_grid_text)(file, &grid);
+    bench_grid_whole(file, &grid, markdown ? BENCH_GRID_MARKDOWN : BENCH_GRID_PLAIN);
     bench_grid_free(&grid);
     fputc('\n', file);
     write_remarks(file, found, markdown ? "- " : "  ");

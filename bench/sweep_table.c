@@ -128,7 +128,7 @@ static void write_text(FILE *file, const BenchSweep *sweep, const BenchGrid *gri
             plan->scene, other ? " with " : "", other ? plan->mesh : "", sweep->count, plan->points,
             sweep->machine.cpu, plan->threads, plan->threads == 1 ? "" : "s",
             strcmp(plan->width, "edges") != 0 ? "finest cells" : "edges of each node's own cell");
-    bench_grid_text(file, grid);
+    bench_grid_whole(file, grid, BENCH_GRID_PLAIN);
     fputs("\nstages %: fast sum/shape matching/polar/damping/other. Stiffness is a regular beam's, "
           "0.8 m x 0.1 m: relaxation of a bending wave a step, sag\nof its length in the limit of "
           "small sags (of a soft one above 100%), first natural frequency. goals off: from epsilon "
@@ -189,6 +189,6 @@ void bench_sweep_table(FILE *file, BenchFormat format, const BenchSweep *sweep)
     if (format == BENCH_AS_TEXT)
         write_text(file, sweep, &grid);
     else
-        (format == BENCH_AS_LATEX ? bench_grid_latex : bench_grid_markdown)(file, &grid);
+        bench_grid_whole(file, &grid, bench_format_form(format));
     bench_grid_free(&grid);
 }

@@ -175,12 +175,17 @@ static void write_json(const BenchReport *report)
     bench_json_write(report->file, root);
 }
 
+BenchGridForm bench_format_form(BenchFormat format)
+{
+    return format == BENCH_AS_MARKDOWN ? BENCH_GRID_MARKDOWN
+           : format == BENCH_AS_LATEX  ? BENCH_GRID_LATEX
+                                       : BENCH_GRID_PLAIN;
+}
+
 void bench_table_rows(BenchTable *table, int measured)
 {
     BenchReport *report = &table->report;
-    report->form = table->format == BENCH_AS_MARKDOWN ? BENCH_GRID_MARKDOWN
-                   : table->format == BENCH_AS_LATEX  ? BENCH_GRID_LATEX
-                                                      : BENCH_GRID_PLAIN;
+    report->form = bench_format_form(table->format);
     if (table->format == BENCH_AS_CSV)
         write_csv(report, measured);
     else if (table->format == BENCH_AS_JSON)

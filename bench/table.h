@@ -19,6 +19,9 @@ typedef enum {
 /* "text", "markdown", "csv", "latex", "json", NULL: in the order of BenchFormat. */
 extern const char *const bench_format_names[];
 
+/* The form of tables for people in that format. */
+BenchGridForm bench_format_form(BenchFormat format);
+
 /* A table that is written while its rows are measured. JSON: {"rows": [{column: value}],
  * "environment": {...}}, at the end. CSV: a header line, then a line for every row (RFC 4180); what
  * is not given is empty. */

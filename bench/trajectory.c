@@ -352,9 +352,8 @@ static void view_frames(BenchTrajectory *trajectory, const char *where, hid_t sh
 
 /* /frames/0, /frames/1, ...: each frame's part of /VTKHDF/Points under a name of its own, without a
  * copy (HDF5 virtual datasets), and so /fields/NAME/0, ... of fields, and /topologies/0, ... of
- * /VTKHDF/Connectivity. XDMF could cut
- * the parts itself (HyperSlab), but ParaView 5.11's reader reports an error at every frame that it
- * reads so. */
+ * /VTKHDF/Connectivity. XDMF could cut the parts itself (HyperSlab), but ParaView 5.11's reader
+ * reports an error at every frame that it reads so. */
 static void write_views(BenchTrajectory *trajectory)
 {
     BenchH5 *h5 = &trajectory->h5;

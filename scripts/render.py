@@ -131,6 +131,8 @@ def read_sequence(path, mesh):
                 not numpy.isin(obstacles[:, 0], (PLANE, SPHERE, BOX, CAPSULE)).all():
             raise ValueError("obstacles that are none")
         times = file["VTKHDF/Steps/Values"][()].ravel() if "Steps" in file["VTKHDF"] else [0]
+        if not len(times):
+            raise ValueError("no frames")
     return Sequence(low.astype(float), high.astype(float), list(obstacles), list(times), False)
 
 
@@ -205,6 +207,8 @@ def read_colours(paths, name):
             if name not in fields:
                 there = f"it has {', '.join(fields)}" if len(fields) else "it has none"
                 fail(f"{path}: has no field '{name}' ({there}): write it with shapebench run --fields", 3)
+            if not len(fields[name]):
+                raise ValueError(f"no values of '{name}'")
             rows, skip = 1 << 20, 1 + len(fields[name]) // 10**7
             for first in range(0, len(fields[name]), rows):
                 values = field_values(file, name, first, rows)

@@ -99,6 +99,24 @@ status=0
 "$render" floor.vtkhdf --colour strain -o none.png 2>said || status=$?
 [ "$status" -eq 3 ] && grep -q "has no field 'strain' (it has piece, speed)" said && ! [ -e none.png ] || lost
 
+# A damaged file, without frames or without values: one line, not a traceback.
+cp floor.vtkhdf empty.vtkhdf
+/usr/bin/python3 - <<'PYTHON'
+import h5py
+
+with h5py.File("empty.vtkhdf", "r+") as file:
+    del file.attrs["checksum"]
+    for name, kind in (("Steps/Values", "f8"), ("PointData/speed", "f4")):
+        del file["VTKHDF"][name]
+        file["VTKHDF"].create_dataset(name, (0,), kind)
+PYTHON
+for colour in "" "--colour speed"; do
+    status=0
+    # shellcheck disable=SC2086
+    "$render" empty.vtkhdf $colour -o none.png 2>said || status=$?
+    [ "$status" -eq 3 ] && [ "$(wc -l <said)" -eq 1 ] && ! [ -e none.png ] || lost
+done
+
 # A video of all frames; without ffmpeg a line that names it.
 status=0
 PATH=/none "$render" floor.vtkhdf --video none.mp4 2>said || status=$?
