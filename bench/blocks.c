@@ -11,12 +11,9 @@ typedef struct {
     int threads;
     int steps;    /* in a segment */
     int segments; /* in a block */
-    int chunk;    /* steps that are timed together: as many as fill chunk_seconds */
+    int chunk;    /* steps that are timed together: as many as fill bench_watch_span() */
+    BenchWatch watch;
 } Blocks;
-
-/* Long beside reading the clocks, and short beside the turns that a busy machine's programs take:
- * between them is time that nobody disturbs. A team's clocks are slower. */
-static const double chunk_seconds = 0.0002, team_chunk_seconds = 0.001;
 
 /* What steps took. */
 typedef struct {
@@ -27,7 +24,6 @@ typedef struct {
 /* What has been timed: all, and what nobody disturbed. */
 typedef struct {
     Sum all, good;
-    double lost; /* seconds of the wall that others took */
 } Tally;
 
 static void add(Sum *sum, int steps, double seconds, const SmLaps *laps)
@@ -42,16 +38,14 @@ static void add(Sum *sum, int steps, double seconds, const SmLaps *laps)
 static bool run_chunk(Blocks *blocks, int steps, bool clocks, bool cold, Tally *tally)
 {
     SmLaps laps;
-    BenchMoment start = bench_moment_start(blocks->threads);
+    bench_watch_start(&blocks->watch);
     if (clocks) sm_laps_start(&laps);
     for (int i = 0; i < steps; i++)
         blocks->timed.step(blocks->timed.subject, clocks ? &laps : NULL);
-    BenchMoment end = bench_moment_end(blocks->threads);
-    double seconds = end.wall - start.wall, lost = bench_moment_lost(&start, &end);
-    bool good = lost <= BENCH_LOST_LIMIT;
+    double seconds = bench_watch_stop(&blocks->watch);
+    bool good = blocks->watch.good;
     add(&tally->all, steps, seconds, clocks ? &laps : NULL);
     if (good && !cold) add(&tally->good, steps, seconds, clocks ? &laps : NULL);
-    tally->lost += lost * seconds;
     return good;
 }
 
@@ -67,8 +61,8 @@ static void run_segment(Blocks *blocks, int steps, bool clocks, Tally *tally)
 }
 
 /* One block, and more segments while less than half of it was undisturbed, up to as many again.
- * False: still less than half; then all of it counts. Adds what was lost to `tally`. */
-static bool run_block(Blocks *blocks, double *total, double stage[SM_STAGES], Tally *tally)
+ * False: still less than half; then all of it counts. */
+static bool run_block(Blocks *blocks, double *total, double stage[SM_STAGES])
 {
     Tally block = {0};
     double half = 0.5 * blocks->steps * blocks->segments;
@@ -79,15 +73,13 @@ static bool run_block(Blocks *blocks, double *total, double stage[SM_STAGES], Ta
     const Sum *sum = good ? &block.good : &block.all;
     if (total) *total = sum->seconds / sum->steps;
     for (int s = 0; stage && s < SM_STAGES; s++) stage[s] = sum->stage[s] / sum->steps;
-    tally->lost += block.lost;
-    tally->all.seconds += block.all.seconds;
     return good;
 }
 
 /* Warms up and finds how many steps and segments fill a block. */
 static void size_blocks(Blocks *blocks, double block_seconds)
 {
-    double step = INFINITY, chunk = blocks->threads == 1 ? chunk_seconds : team_chunk_seconds;
+    double step = INFINITY, chunk = bench_watch_span(blocks->threads);
     for (int i = 0; i < 4; i++) {
         Tally tally = {0};
         run_segment(blocks, i ? 2 : 1, false, &tally);
@@ -99,17 +91,14 @@ static void size_blocks(Blocks *blocks, double block_seconds)
     blocks->chunk = (int)fmin(fmax(ceil(chunk / step), 1), blocks->steps);
 }
 
-/* Both blocks of a repeat, up to three times while they are disturbed. */
-static bool run_repeat(Blocks *blocks, int r, int tries, BenchRow *row, Tally *tally)
+/* Both blocks of a repeat. False: one of them was disturbed. */
+static bool run_repeat(Blocks *blocks, int r, BenchRow *row)
 {
-    for (; tries > 0; tries--) {
-        bool good = true;
-        if (r % 2) good &= run_block(blocks, NULL, row->stage[r], tally);
-        good &= run_block(blocks, &row->total[r], NULL, tally);
-        if (r % 2 == 0) good &= run_block(blocks, NULL, row->stage[r], tally);
-        if (good) return true;
-    }
-    return false;
+    bool good = true;
+    if (r % 2) good &= run_block(blocks, NULL, row->stage[r]);
+    good &= run_block(blocks, &row->total[r], NULL);
+    if (r % 2 == 0) good &= run_block(blocks, NULL, row->stage[r]);
+    return good;
 }
 
 /* Medians, quartiles and shares from the repeats' samples. */
@@ -142,12 +131,12 @@ static void summarise(BenchRow *row)
     free(sample);
 }
 
-/* A row of which others took more than a quarter of the samples has no times. */
-static void find_busy(BenchRow *row, int disturbed, const Tally *tally, double stolen)
+/* A busy row has no times. */
+static void find_busy(const BenchWatch *watch, BenchRow *row)
 {
-    row->lost_percent = 100 * fmin(1, (tally->lost + stolen) / tally->all.seconds);
+    row->lost_percent = bench_watch_lost(watch);
     row->load = bench_moment_load();
-    row->busy = 4 * disturbed > row->repeats || stolen > 0.1 * tally->all.seconds;
+    row->busy = bench_watch_busy(watch);
     if (!row->busy) return;
     row->total_ms = row->total_low_ms = row->total_high_ms = NAN;
     row->fps = row->ns_per_particle_step = row->instruments_percent = NAN;
@@ -157,20 +146,20 @@ static void find_busy(BenchRow *row, int disturbed, const Tally *tally, double s
 void bench_time_blocks(const BenchTimed *timed, const BenchMeasureParams *params, BenchRow *row)
 {
     Blocks blocks = {.timed = *timed, .threads = params->threads, .chunk = 1};
-    Tally tally = {0};
-    int disturbed = 0;
+    blocks.watch = bench_watch(params->threads);
     size_blocks(&blocks, params->block_seconds > 0 ? params->block_seconds : 0.02);
     row->repeats = params->repeats > 0 ? params->repeats : 15;
     row->steps = blocks.steps * blocks.segments;
     row->total = sm_alloc((size_t)row->repeats, sizeof *row->total);
     row->stage = sm_alloc((size_t)row->repeats, sizeof *row->stage);
-    run_block(&blocks, NULL, NULL, &(Tally){0});
-    double stolen = bench_moment_stolen();
+    run_block(&blocks, NULL, NULL);
+    blocks.watch = bench_watch(params->threads);
     for (int r = 0; r < row->repeats; r++) {
-        disturbed += !run_repeat(&blocks, r, 2 * disturbed > r ? 1 : 3, row, &tally);
+        do blocks.watch.good = run_repeat(&blocks, r, row);
+        while (bench_watch_again(&blocks.watch));
         if (params->progress)
             bench_progress_show(params->progress, row->scene, (r + 1.0) / row->repeats);
     }
     summarise(row);
-    find_busy(row, disturbed, &tally, bench_moment_stolen() - stolen);
+    find_busy(&blocks.watch, row);
 }

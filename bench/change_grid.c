@@ -56,8 +56,9 @@ static void measured_line(const BenchRow *row, BenchGridLine *line)
     snprintf((*line)[PIECES], BENCH_GRID_TEXT, "%ld", c->pieces);
     const char *mark = bench_row_mark(row);
     strcpy((*line)[VERDICT], mark);
-    for (int column = SIMULATION; column <= SURFACE; column++) strcpy((*line)[column], mark);
-    if (!bench_row_timed(row)) return;
+    for (int column = SIMULATION; column <= SURFACE; column++)
+        strcpy((*line)[column], row->valid ? "BUSY" : mark);
+    if (!row->valid || bench_row_frames_busy(row)) return;
     pair_text(c->first_ms, c->last_ms, " -> ", false, (*line)[SIMULATION]);
     pair_text(c->change_ms, c->change_most_ms, " to ", false, (*line)[RESAMPLING]);
     bench_grid_number(c->follow_ms, (*line)[FOLLOWING]);

@@ -47,7 +47,8 @@ typedef struct {
     int side;
     int node[SPLIT]; /* of the leaves to be refined */
     SmCounts before;
-    long regions; /* made anew by the last change */
+    long regions;     /* made anew by the last change */
+    BenchWatch watch; /* of the samples */
 } Cube;
 
 const char *bench_change_kernel_name(int index, const char **group)
@@ -126,7 +127,7 @@ static void split_or_merge(Cube *cube, bool split)
 static double change(Cube *cube, Kind kind, int place)
 {
     cube->regions = 0;
-    double start = sm_now();
+    bench_watch_start(&cube->watch);
     if (kind == CUT) {
         add_square(cube, place, &begin(cube)->cut);
         cube->regions = oct_engine_end(cube->engine)->region_count;
@@ -134,7 +135,7 @@ static double change(Cube *cube, Kind kind, int place)
         split_or_merge(cube, true);
         split_or_merge(cube, false);
     }
-    return sm_now() - start;
+    return bench_watch_stop(&cube->watch);
 }
 
 /* The structure against one that is built from scratch. */
@@ -222,12 +223,14 @@ static double run_kind(BenchKernelRun *run, const Spec *spec, Cube *cube, double
     double typical = 0;
     row->threads = 1;
     if (check(cube, spec->kind, row->reason, sizeof row->reason)) {
+        cube->watch = bench_watch(1);
         for (int i = 0; i < samples; i++) {
             own[i] = -processor_ns();
             ns[i] = 1e9 * change(cube, spec->kind, i + 1);
             own[i] += processor_ns();
+            bench_watch_count(&cube->watch);
         }
-        bench_kernel_times(row, ns, samples);
+        bench_kernel_times(row, ns, samples, &cube->watch);
         typical = bench_spread(own, samples).median;
         note(run, spec, cube, typical, row);
         if (least_ns > 0) {

@@ -81,7 +81,8 @@ static const char help[] =
     "double-precision brute force, or for finite goals and linear momentum where that would take "
     "too long; the octree against its slow twins, resampling against a build from scratch); one "
     "that "
-    "fails has INVALID in place of its times.\v"
+    "fails has INVALID in place of its times, one of which other programs on the machine took too "
+    "much BUSY, and no verdict.\v"
     "Times are wall-clock medians over the repeats, with quartiles; kernels that are compared run "
     "in turn, sample by sample. A stage of a step comes from a run with clocks inside, less the "
     "time that reading them takes. One thread unless --threads says otherwise.\n" BENCH_EXIT_CODES;

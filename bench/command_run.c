@@ -380,6 +380,16 @@ static SmCode load(const Options *options, BenchScene *scene, RefMpu *given, SmM
     return SM_OK;
 }
 
+/* Steps are looked at together that take long beside looking. */
+static void end_span(BenchOutcome *outcome)
+{
+    if (!outcome->open_steps) return;
+    bench_watch_stop(&outcome->step.watch);
+    bench_mean_add(&outcome->step, outcome->open_seconds, outcome->open_steps);
+    outcome->open_seconds = 0;
+    outcome->open_steps = 0;
+}
+
 static SmCode run_step(BenchPlay *play, BenchRecording *recording, bool record,
                        BenchOutcome *outcome, SmError *error)
 {
@@ -388,10 +398,14 @@ static SmCode run_step(BenchPlay *play, BenchRecording *recording, bool record,
         SmCode code = bench_recording_step(recording, outcome->steps, true, error);
         if (code) return code;
     }
+    BenchMean *step = &outcome->step;
+    if (!outcome->open_steps) bench_watch_start(&step->watch);
     double start = sm_now();
     bench_play_advance(play, NULL);
-    outcome->seconds += sm_now() - start;
+    outcome->open_seconds += sm_now() - start;
+    outcome->open_steps++;
     outcome->steps++;
+    if (record || outcome->open_seconds >= bench_watch_span(step->watch.threads)) end_span(outcome);
     return SM_OK;
 }
 
@@ -411,13 +425,14 @@ static bool state_finite(const BenchPlay *play)
 /* What the scene changes before a frame. */
 static SmCode change(BenchPlay *play, BenchOutcome *outcome, SmError *error)
 {
-    double start = sm_now();
+    bench_watch_start(&outcome->change.watch);
     SmCode code = bench_play_change(play, error);
+    double seconds = bench_watch_stop(&outcome->change.watch);
     bool changed = false;
     for (int p = 0; p < play->cast.count; p++) changed |= play->changes[p].last.resampled;
     if (!changed) return code;
     outcome->changes++;
-    outcome->change_seconds += sm_now() - start;
+    bench_mean_add(&outcome->change, seconds, 1);
     return code;
 }
 
@@ -428,12 +443,14 @@ static SmCode run_frames(BenchPlay *play, BenchRecording *recording, const Optio
     const BenchScene *scene = play->cast.scene;
     BenchProgress progress;
     bench_progress_start(&progress, options->common.quiet);
-    *outcome = (BenchOutcome){.finite = true};
+    BenchMean none = {.watch = bench_watch(options->common.threads)};
+    *outcome = (BenchOutcome){.finite = true, .step = none, .change = none};
     SmCode code = recording ? bench_recording_frame(recording, error) : SM_OK;
     for (int f = 0; f < scene->frames && !code && outcome->finite; f++) {
         code = change(play, outcome, error);
         for (int s = 0; s < scene->steps_per_frame && !code; s++)
             code = run_step(play, recording, options->record, outcome, error);
+        end_span(outcome);
         if (code) break;
         outcome->finite = state_finite(play);
         if (recording && outcome->finite) code = bench_recording_frame(recording, error);

@@ -8,9 +8,7 @@
 #include "check.h"
 #include "room.h"
 
-/* A sample runs for at least so many seconds, but never more than so many steps. */
-static const double sample_seconds = 0.004;
-enum { MOST_STEPS = 64 };
+enum { MOST_STEPS = 64 }; /* in a sample */
 static const double brute_members = 5e7;
 static const double particle_bytes = 400; /* measured; brute force takes half as much again */
 
@@ -100,6 +98,7 @@ SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParam
         *cube = (BenchCube){0};
         return code;
     }
+    cube->watch = bench_watch(params->threads);
     cube->x = sm_alloc((size_t)cube->particles, sizeof *cube->x);
     cube->v = sm_alloc((size_t)cube->particles, sizeof *cube->v);
     type->get(cube->engine, SM_REST, cube->x);
@@ -138,21 +137,30 @@ static double cpu_now(void)
 
 /* Seconds a step, and CPU seconds; with `stage`, instrumented. The first step, which fills caches,
  * is not timed. */
-static double sample(BenchCube *cube, int steps, double stage[SM_STAGES], double *cpu)
+static double try_sample(BenchCube *cube, int steps, double stage[SM_STAGES], double *cpu)
 {
     SmLaps laps;
     restore(cube);
     cube->type->step(cube->engine, NULL);
-    double cpu_start = cpu_now(), start = sm_now();
+    double cpu_start = cpu_now();
+    bench_watch_start(&cube->watch);
     if (stage) sm_laps_start(&laps);
     for (int i = 0; i < steps; i++) cube->type->step(cube->engine, stage ? &laps : NULL);
-    double seconds = sm_now() - start;
+    double seconds = bench_watch_stop(&cube->watch);
     *cpu = (cpu_now() - cpu_start) / steps;
     for (int s = 0; stage && s < SM_STAGES; s++) {
         stage[s] = laps.seconds[s] / steps;
         cube->laps[s] = laps.count[s] / steps;
     }
     return seconds / steps;
+}
+
+static double sample(BenchCube *cube, double stage[SM_STAGES], double *cpu)
+{
+    double seconds;
+    do seconds = try_sample(cube, cube->steps, stage, cpu);
+    while (bench_watch_again(&cube->watch));
+    return seconds;
 }
 
 static void check_end(BenchCube *cube)
@@ -176,17 +184,18 @@ void bench_cubes_time(BenchCube *cubes, int count, int repeats, bool stages)
         c->total = sm_alloc((size_t)repeats, sizeof *c->total);
         c->cpu = sm_alloc((size_t)repeats, sizeof *c->cpu);
         if (stages) c->stage = sm_alloc((size_t)repeats, sizeof *c->stage);
-        double first = sample(c, 1, NULL, c->cpu); /* also warms up */
-        double step = fmin(first, sample(c, 1, NULL, c->cpu));
+        double first = try_sample(c, 1, NULL, c->cpu); /* also warms up */
+        double step = fmin(first, try_sample(c, 1, NULL, c->cpu));
         c->clock = stages ? sm_lap_seconds() : 0;
-        c->steps = (int)fmin(fmax(ceil(sample_seconds / step), 1), MOST_STEPS);
+        c->steps = bench_watch_steps(step, MOST_STEPS);
+        c->watch = bench_watch(c->watch.threads);
     }
     for (int r = 0; r < repeats; r++)
         for (int i = 0; i < count; i++) {
             BenchCube *c = &cubes[(r + i) % count]; /* no cube is always first */
             if (!c->valid) continue;
-            c->total[r] = sample(c, c->steps, NULL, &c->cpu[r]);
-            if (stages) sample(c, c->steps, c->stage[r], &unused);
+            c->total[r] = sample(c, NULL, &c->cpu[r]);
+            if (stages) sample(c, c->stage[r], &unused);
         }
     for (BenchCube *c = cubes; c < cubes + count; c++) {
         if (!c->valid) continue;

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 
 #include "../lib/engine.h"
+#include "moment.h"
 
 typedef struct {
     const SmEngineType *type;
@@ -17,6 +18,7 @@ typedef struct {
     long particles;
     double (*x)[3], (*v)[3]; /* [particles] the state that samples start from */
     int steps;               /* timed in a sample */
+    BenchWatch watch;        /* of the samples */
     bool valid;
     bool brute;       /* goals were held to brute force; else finite and momentum only */
     char reason[192]; /* why not valid */

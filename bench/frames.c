@@ -3,52 +3,47 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "moment.h"
 #include "spread.h"
 
-/* Seconds in every frame: the least of all rounds. */
+enum { SIMULATION, CHANGE, FOLLOW, SURFACE }; /* in the order of BenchChangeRow */
+
+/* Of every frame. */
 typedef struct {
     long frames;
-    double *simulation, *change, *follow, *surface;
+    double (*least)[BENCH_FRAME_PARTS]; /* seconds: the least of all rounds that nobody disturbed,
+                                         * or of all */
+    bool (*good)[BENCH_FRAME_PARTS];    /* a round was undisturbed */
     bool *changed;
+    BenchWatch watch; /* of what is under way */
 } Times;
 
-static Times make_times(long frames)
+static Times make_times(long frames, int threads)
 {
     size_t n = (size_t)frames;
-    Times t = {frames,
-               sm_alloc(n, sizeof(double)),
-               sm_alloc(n, sizeof(double)),
-               sm_alloc(n, sizeof(double)),
-               sm_alloc(n, sizeof(double)),
-               sm_alloc(n, sizeof(bool))};
+    Times t = {.frames = frames, .watch = bench_watch(threads)};
+    t.least = sm_alloc(n, sizeof *t.least);
+    t.good = sm_alloc(n, sizeof *t.good);
+    t.changed = sm_alloc(n, sizeof *t.changed);
     for (long f = 0; f < frames; f++)
-        t.simulation[f] = t.change[f] = t.follow[f] = t.surface[f] = INFINITY;
+        for (int p = 0; p < BENCH_FRAME_PARTS; p++) t.least[f][p] = INFINITY;
     return t;
-}
-
-static void keep_times(const Times *t, BenchChangeRow *row)
-{
-    row->time = sm_alloc((size_t)t->frames, sizeof *row->time);
-    for (long f = 0; f < t->frames; f++) {
-        row->time[f][0] = t->simulation[f];
-        row->time[f][1] = t->change[f];
-        row->time[f][2] = t->follow[f];
-        row->time[f][3] = t->surface[f];
-    }
 }
 
 static void free_times(Times *t)
 {
-    free(t->simulation);
-    free(t->change);
-    free(t->follow);
-    free(t->surface);
+    free(t->least);
+    free(t->good);
     free(t->changed);
 }
 
-static void keep_least(double *least, double seconds)
+static void keep_least(Times *times, long frame, int part, double seconds)
 {
-    *least = fmin(*least, seconds);
+    double *least = &times->least[frame][part];
+    bool *good = &times->good[frame][part];
+    if (*good && !times->watch.good) return;
+    *least = *good == times->watch.good ? fmin(*least, seconds) : seconds;
+    *good = times->watch.good;
 }
 
 /* What the frame's changes took, of all parts. */
@@ -66,20 +61,20 @@ static void note_changes(const BenchPlay *play, long frame, Times *times, BenchC
     long nodes = bench_cast_particles(&play->cast);
     if (nodes > row->most_nodes) row->most_nodes = nodes;
     if (added > row->most_added) row->most_added = added;
-    keep_least(&times->change[frame], resample);
-    keep_least(&times->follow[frame], follow);
+    keep_least(times, frame, CHANGE, resample);
+    keep_least(times, frame, FOLLOW, follow);
 }
 
 /* Moves the surfaces; seconds for one body. */
-static double move_surfaces(BenchPlay *play)
+static double move_surfaces(BenchPlay *play, BenchWatch *watch)
 {
     long vertices = 0;
     for (int p = 0; p < play->cast.count; p++)
         vertices += play->cast.part[p].body.instances * play->changes[p].surface.vertex_count;
     double(*point)[3] = sm_alloc((size_t)vertices, sizeof *point);
-    double start = sm_now();
+    bench_watch_start(watch);
     bench_play_points(play, point);
-    double seconds = sm_now() - start;
+    double seconds = bench_watch_stop(watch);
     free(point);
     return seconds / (double)play->cast.body->instances;
 }
@@ -87,27 +82,29 @@ static double move_surfaces(BenchPlay *play)
 static SmCode play_frame(BenchPlay *play, long frame, Times *times, BenchChangeRow *row,
                          SmError *error)
 {
+    bench_watch_start(&times->watch);
     SmCode code = bench_play_change(play, error);
+    bench_watch_stop(&times->watch);
     if (code) return code;
     note_changes(play, frame, times, row);
-    double start = sm_now();
+    bench_watch_start(&times->watch);
     for (int s = 0; s < play->cast.scene->steps_per_frame; s++) {
         bench_play_prepare(play);
         bench_play_advance(play, NULL);
     }
-    keep_least(&times->simulation[frame], sm_now() - start);
-    keep_least(&times->surface[frame], move_surfaces(play));
+    keep_least(times, frame, SIMULATION, bench_watch_stop(&times->watch));
+    keep_least(times, frame, SURFACE, move_surfaces(play, &times->watch));
     return SM_OK;
 }
 
 /* Median of a frame's seconds from .. to - 1, in ms, of those that changed where `changed` is set;
  * NaN of none. */
-static double median_ms(const Times *times, const double *seconds, long from, long to, bool changed)
+static double median_ms(const Times *times, int part, long from, long to, bool changed)
 {
     int count = 0;
     double *chosen = sm_alloc((size_t)times->frames, sizeof *chosen), median = NAN;
     for (long f = from; f < to; f++)
-        if (!changed || times->changed[f]) chosen[count++] = seconds[f];
+        if (!changed || times->changed[f]) chosen[count++] = times->least[f][part];
     if (count) median = 1e3 * bench_spread(chosen, count).median;
     free(chosen);
     return median;
@@ -123,15 +120,29 @@ static void summarise(const Times *times, BenchChangeRow *row)
         if (f < first) first = f;
         last = f + 1;
         row->changed++;
-        row->change_most_ms = fmax(row->change_most_ms, 1e3 * times->change[f]);
+        row->change_most_ms = fmax(row->change_most_ms, 1e3 * times->least[f][CHANGE]);
     }
     /* scenes that change from the first frame on, or to the last, still have a first and a last */
-    row->first_ms = median_ms(times, times->simulation, 0, first > 0 ? first : 1, false);
-    row->last_ms = median_ms(times, times->simulation,
-                             last < times->frames ? last : times->frames - 1, times->frames, false);
-    row->change_ms = median_ms(times, times->change, 0, times->frames, true);
-    row->follow_ms = median_ms(times, times->follow, 0, times->frames, true);
-    row->surface_ms = median_ms(times, times->surface, 0, times->frames, false);
+    row->first_ms = median_ms(times, SIMULATION, 0, first > 0 ? first : 1, false);
+    row->last_ms = median_ms(times, SIMULATION, last < times->frames ? last : times->frames - 1,
+                             times->frames, false);
+    row->change_ms = median_ms(times, CHANGE, 0, times->frames, true);
+    row->follow_ms = median_ms(times, FOLLOW, 0, times->frames, true);
+    row->surface_ms = median_ms(times, SURFACE, 0, times->frames, false);
+}
+
+/* Busy times are not to be told: of more than a quarter of the frames a part was disturbed in every
+ * round. */
+static void find_busy(Times *times, BenchChangeRow *row)
+{
+    for (long f = 0; f < times->frames; f++) {
+        times->watch.good = true;
+        for (int p = 0; p < BENCH_FRAME_PARTS; p++) times->watch.good &= times->good[f][p];
+        bench_watch_count(&times->watch);
+    }
+    if (!bench_watch_busy(&times->watch)) return;
+    row->first_ms = row->last_ms = row->change_ms = row->change_most_ms = NAN;
+    row->follow_ms = row->surface_ms = NAN;
 }
 
 static long count_triangles(const BenchPlay *play)
@@ -176,7 +187,7 @@ SmCode bench_frames_play(const BenchScene *scene, const BenchBody *body, const S
                          const BenchFramesParams *params, BenchChangeRow *row, BenchPlay *play,
                          SmError *error)
 {
-    Times times = make_times(scene->frames > 0 ? scene->frames : 1);
+    Times times = make_times(scene->frames > 0 ? scene->frames : 1, params->threads);
     SmCode code = SM_OK;
     *row = (BenchChangeRow){0};
     for (int round = 0; round < params->rounds && !code; round++) {
@@ -188,8 +199,10 @@ SmCode bench_frames_play(const BenchScene *scene, const BenchBody *body, const S
     }
     if (!code) {
         summarise(&times, row);
+        find_busy(&times, row);
         note_end(play, row);
-        keep_times(&times, row);
+        row->time = times.least;
+        times.least = NULL;
     }
     free_times(&times);
     return code;

@@ -8,7 +8,8 @@
 #include "row.h"
 
 typedef struct {
-    int threads, rounds; /* played so often: of every time the least counts */
+    int threads, rounds; /* played so often: of every time the least
+                          * counts, of the undisturbed where there are any */
     unsigned long seed;
     BenchProgress *progress; /* or NULL */
 } BenchFramesParams;

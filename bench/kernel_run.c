@@ -31,10 +31,19 @@ BenchKernel *bench_kernel_add(BenchKernelRun *run, const char *name, const char 
     return row;
 }
 
-void bench_kernel_times(BenchKernel *row, const double *ns, int samples)
+void bench_kernel_busy(BenchKernel *row, double lost_percent)
+{
+    row->busy = true;
+    snprintf(row->reason, sizeof row->reason,
+             "other programs took %.0f%% of its processors (load average %.1f)", lost_percent,
+             bench_moment_load());
+}
+
+void bench_kernel_times(BenchKernel *row, const double *ns, int samples, const BenchWatch *watch)
 {
     BenchSpread spread = bench_spread(ns, samples);
     row->valid = true;
+    if (bench_watch_busy(watch)) bench_kernel_busy(row, bench_watch_lost(watch));
     row->ns = spread.median;
     row->low = spread.low;
     row->high = spread.high;

@@ -3,6 +3,7 @@
 #define BENCH_KERNEL_RUN_H
 
 #include "kernels.h"
+#include "moment.h"
 
 typedef struct {
     const BenchKernelParams *params;
@@ -19,8 +20,12 @@ bool bench_kernel_chosen(const BenchKernelParams *params, const char *name, cons
 BenchKernel *bench_kernel_add(BenchKernelRun *run, const char *name, const char *group,
                               const char *item, long items);
 
-/* The row is valid: median and quartiles of these samples, ns an item. */
-void bench_kernel_times(BenchKernel *row, const double *ns, int samples);
+/* The row is valid: median and quartiles of these samples, ns an item; and busy where `watch`,
+ * which was kept of them, says so. */
+void bench_kernel_times(BenchKernel *row, const double *ns, int samples, const BenchWatch *watch);
+
+/* Marks a row busy, of which others took so much. */
+void bench_kernel_busy(BenchKernel *row, double lost_percent);
 
 /* The row's floor; `footprint` as in bench_floor(). */
 void bench_kernel_floor(const BenchKernelRun *run, BenchKernel *row, BenchWork work,

@@ -15,8 +15,19 @@ enum { COLUMNS = 20 };
 typedef struct {
     const char *name, *text; /* text NULL: a number */
     double number;           /* NaN: not given */
-    bool time;               /* INVALID, or null, in a row that is not valid */
+    bool time;               /* INVALID or BUSY, or null, in a row that has no times */
 } Cell;
+
+/* What stands for the check, and for the times of a row that has none. */
+static const char *mark(const BenchKernel *row)
+{
+    return !row->valid ? "INVALID" : row->busy ? "BUSY" : "VALID";
+}
+
+static bool timed(const BenchKernel *row)
+{
+    return row->valid && !row->busy;
+}
 
 static double share(const BenchKernel *row)
 {
@@ -44,8 +55,8 @@ static void fill_cells(const BenchKernel *row, Cell cell[COLUMNS])
         {.name = "ratio_to", .text = row->ratio_to},
         {.name = "ratio_wanted", .number = row->wanted},
         {.name = "verdict", .text = bench_kernel_verdict(row)},
-        {.name = "valid", .text = row->valid ? "VALID" : "INVALID"},
-        {.name = "note", .text = row->valid ? row->note : row->reason},
+        {.name = "valid", .text = mark(row)},
+        {.name = "note", .text = timed(row) ? row->note : row->reason},
     };
     memcpy(cell, cells, sizeof cells);
 }
@@ -62,8 +73,8 @@ static void write_csv(FILE *file, const BenchKernel *rows, int count)
             if (c) fputc(',', file);
             if (cell[c].text)
                 bench_csv_text(file, cell[c].text);
-            else if (cell[c].time && !rows[r].valid)
-                fputs("INVALID", file);
+            else if (cell[c].time && !timed(&rows[r]))
+                fputs(mark(&rows[r]), file);
             else
                 bench_csv_number(file, cell[c].number);
         }
@@ -78,7 +89,7 @@ static json_t *json_row(const BenchKernel *row)
     fill_cells(row, cell);
     for (int c = 0; c < COLUMNS; c++) {
         json_t *value = cell[c].text                  ? bench_json_text(cell[c].text)
-                        : cell[c].time && !row->valid ? json_null()
+                        : cell[c].time && !timed(row) ? json_null()
                                                       : bench_json_number(cell[c].number);
         if (!strcmp(cell[c].name, "valid")) {
             json_decref(value);
@@ -86,6 +97,7 @@ static json_t *json_row(const BenchKernel *row)
         }
         json_object_set_new(object, cell[c].name, value);
     }
+    json_object_set_new(object, "busy", json_boolean(row->busy));
     return object;
 }
 
@@ -179,9 +191,9 @@ static void fill_line(const BenchKernel *row, Line *line)
     snprintf(line->field[PER], FIELD_TEXT, "%s", row->item);
     number_text(row->at_most, line->field[AT_MOST]);
     snprintf(line->field[VERDICT], FIELD_TEXT, "%s", bench_kernel_verdict(row));
-    snprintf(line->field[NOTE], FIELD_TEXT, "%s", row->valid ? row->note : row->reason);
-    if (!row->valid) {
-        strcpy(line->field[NS], "INVALID");
+    snprintf(line->field[NOTE], FIELD_TEXT, "%s", timed(row) ? row->note : row->reason);
+    if (!timed(row)) {
+        strcpy(line->field[NS], mark(row));
         return;
     }
     char low[FIELD_TEXT], high[FIELD_TEXT];

@@ -160,6 +160,7 @@ static void set_ratio(const Run *run, const Spec *spec, const BenchCube *cube,
                       const BenchCube *base, BenchKernel *row)
 {
     if (!base->valid || !cube->valid) return;
+    if (bench_watch_busy(&base->watch)) bench_kernel_busy(row, bench_watch_lost(&base->watch));
     double *ratio = sm_alloc((size_t)cube->repeats, sizeof *ratio);
     row->wanted_least = spec->threads > 1;
     for (int r = 0; r < cube->repeats; r++) {
@@ -202,7 +203,7 @@ static void report_cube(Run *run, const Spec *spec, const BenchCube *cube)
     for (int r = 0; r < cube->repeats; r++)
         ns[r] = spec->stage == WHOLE_STEP ? bench_cube_ns(cube, r)
                                           : bench_cube_stage_ns(cube, (SmStage)spec->stage, r);
-    bench_kernel_times(row, ns, cube->repeats);
+    bench_kernel_times(row, ns, cube->repeats, &cube->watch);
     free(ns);
     double state = bench_state_bytes(precision_of(run, spec)) * (double)cube->particles;
     bench_kernel_floor(run, row, work_of(spec), state);
@@ -288,7 +289,7 @@ static void report_polar(Run *run, const Spec *spec, const BenchPolarResult *res
                  result->limit);
         return;
     }
-    bench_kernel_times(row, result->ns, run->params->repeats);
+    bench_kernel_times(row, result->ns, run->params->repeats, &result->watch);
     bench_kernel_floor(run, row, polar_work(spec->method, result->sweeps), 1e5);
     if (spec->method == BENCH_POLAR_COLD || spec->method == BENCH_POLAR_WARM)
         snprintf(row->note, sizeof row->note, "%.2f sweeps a matrix; paper: %s", result->sweeps,
@@ -345,7 +346,7 @@ static void report_surface(Run *run, const Spec *spec, const BenchSurface *surfa
         snprintf(row->reason, sizeof row->reason, "%s", kernel->reason);
         return;
     }
-    bench_kernel_times(row, kernel->ns, run->params->repeats);
+    bench_kernel_times(row, kernel->ns, run->params->repeats, &kernel->watch);
     judge_surface(run, spec->surface, surface, row);
 }
 
@@ -369,6 +370,7 @@ static void report_scene(Run *run, const Spec *spec, const BenchScene *scene, co
     if (!found->valid) return;
     double scale = 1e6 / (double)found->particles;
     row->valid = true;
+    if (found->busy) bench_kernel_busy(row, found->lost_percent);
     row->ns = found->ns_per_particle_step;
     row->low = scale * found->total_low_ms;
     row->high = scale * found->total_high_ms;
@@ -445,7 +447,7 @@ SmCode bench_kernels_run(const BenchKernelParams *params, const BenchCeilings *c
 const char *bench_kernel_verdict(const BenchKernel *row)
 {
     bool limit = isfinite(row->at_most), ratio = isfinite(row->wanted);
-    if (!limit && !ratio) return "";
+    if ((!limit && !ratio) || row->busy) return "";
     bool met = row->valid;
     if (limit) met = met && row->ns <= row->at_most;
     if (ratio)

@@ -13,7 +13,8 @@ typedef struct {
     int w, threads;
     long items; /* in a sample's unit of work: particles, matrices, ... */
     bool valid;
-    char reason[192];     /* why not valid */
+    bool busy;            /* others took the processors (moment.h): its times are not to be told */
+    char reason[192];     /* why not valid, or busy */
     double ns, low, high; /* an item (and step): median and quartiles over the repeats */
     double floor_ns;      /* no implementation is faster on this machine; work.h */
     char bound[8];        /* what sets the floor */
@@ -48,7 +49,8 @@ const char *bench_kernel_name(int index, const char **group);
 SmCode bench_kernels_run(const BenchKernelParams *params, const BenchCeilings *ceilings,
                          BenchKernel *rows, int *count, SmError *error);
 
-/* Was what the issue wants reached? "met", "missed", or "" where nothing is wanted. */
+/* Was what the issue wants reached? "met", "missed", or "" where nothing is wanted or the row
+ * is busy. */
 const char *bench_kernel_verdict(const BenchKernel *row);
 
 #endif

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 
 #include "ceilings.h"
+#include "moment.h"
 
 typedef enum {
     BENCH_POLAR_BATCH,  /* what the engines use, in batches of lanes; packing included */
@@ -25,7 +26,8 @@ typedef struct {
     double error; /* largest deviation of an entry of R from SVD's */
     double limit; /* allowed */
     double *ns;   /* [repeats] a matrix; NULL where not wanted or not valid. The caller's to free */
-    double sweeps; /* mean of a decomposition, Jacobi only */
+    BenchWatch watch; /* of the samples */
+    double sweeps;    /* mean of a decomposition, Jacobi only */
 } BenchPolarResult;
 
 /* Checks each wanted method on every matrix, then times them in turn. The batch is in the precision

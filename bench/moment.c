@@ -72,3 +72,74 @@ double bench_moment_stolen(void)
     if (file) fclose(file);
     return ticks / (double)sysconf(_SC_CLK_TCK);
 }
+
+BenchWatch bench_watch(int threads)
+{
+    return (BenchWatch){.threads = threads, .began = sm_now(), .stolen = bench_moment_stolen()};
+}
+
+void bench_watch_start(BenchWatch *watch)
+{
+    watch->start = bench_moment_start(watch->threads);
+}
+
+double bench_watch_stop(BenchWatch *watch)
+{
+    BenchMoment end = bench_moment_end(watch->threads);
+    double seconds = end.wall - watch->start.wall, lost = bench_moment_lost(&watch->start, &end);
+    watch->good = lost <= BENCH_LOST_LIMIT;
+    watch->seconds += seconds;
+    watch->lost += lost * seconds;
+    return seconds;
+}
+
+void bench_watch_count(BenchWatch *watch)
+{
+    watch->samples++;
+    watch->disturbed += !watch->good;
+    watch->tries = 0;
+}
+
+bool bench_watch_again(BenchWatch *watch)
+{
+    int most = 2 * watch->disturbed > watch->samples ? 1 : 3;
+    if (!watch->good && ++watch->tries < most) return true;
+    bench_watch_count(watch);
+    return false;
+}
+
+/* Seconds that the host took since the watch began. */
+static double taken(const BenchWatch *watch)
+{
+    return bench_moment_stolen() - watch->stolen;
+}
+
+bool bench_watch_busy(const BenchWatch *watch)
+{
+    return 4 * watch->disturbed > watch->samples || taken(watch) > 0.1 * (sm_now() - watch->began);
+}
+
+double bench_watch_lost(const BenchWatch *watch)
+{
+    double share = watch->seconds > 0 ? watch->lost / watch->seconds : 0;
+    return 100 * fmin(1, share + taken(watch) / fmax(sm_now() - watch->began, 1e-9));
+}
+
+void bench_mean_add(BenchMean *mean, double seconds, long count)
+{
+    bench_watch_count(&mean->watch);
+    if (!mean->watch.good) return;
+    mean->seconds += seconds;
+    mean->count += count;
+}
+
+double bench_watch_span(int threads)
+{
+    return threads == 1 ? 0.0002 : 0.001; /* a team's clocks are slower */
+}
+
+int bench_watch_steps(double seconds, int most)
+{
+    static const double sample_seconds = 0.001;
+    return (int)fmin(fmax(ceil(sample_seconds / seconds), 1), most);
+}

@@ -6,6 +6,8 @@
 #ifndef BENCH_MOMENT_H
 #define BENCH_MOMENT_H
 
+#include <stdbool.h>
+
 typedef struct {
     double wall, used; /* s: on the wall; processor time of the calling thread, or of a team's
                         * threads together the time for which they did not wait for one */
@@ -23,6 +25,62 @@ BenchMoment bench_moment_end(int threads);
 /* Share of the processor time that the threads could have had which they did not get, 0 to 1; 0 of
  * a team where the kernel does not count it. */
 double bench_moment_lost(const BenchMoment *from, const BenchMoment *to);
+
+/* A time that is sampled, again where others disturbed it: which samples count, and whether the
+ * time can be told at all. One rule for all that is timed:
+ *
+ *     BenchWatch watch = bench_watch(threads);
+ *     for each sample
+ *         do {
+ *             bench_watch_start(&watch);
+ *             seconds = ...; what is timed
+ *             bench_watch_stop(&watch);
+ *         } while (bench_watch_again(&watch));
+ */
+typedef struct {
+    int threads, samples, disturbed, tries;
+    bool good;            /* the last try: the caller may judge it otherwise */
+    double seconds, lost; /* on the wall, of all tries; what others took of it */
+    double began, stolen; /* when the watch began, and what the host had taken until then */
+    BenchMoment start;
+} BenchWatch;
+
+BenchWatch bench_watch(int threads);
+
+/* Around a try. Returns its seconds on the wall. */
+void bench_watch_start(BenchWatch *watch);
+double bench_watch_stop(BenchWatch *watch);
+
+/* Is the sample to be taken again? It is where it was disturbed, up to three times in all, and only
+ * once where half of those before stayed disturbed; otherwise it is counted. */
+bool bench_watch_again(BenchWatch *watch);
+
+/* Counts the last try as a sample where nothing can be done again. */
+void bench_watch_count(BenchWatch *watch);
+
+/* BUSY: more than a quarter of the samples stayed disturbed, or the host took a tenth of the
+ * processors. */
+bool bench_watch_busy(const BenchWatch *watch);
+
+/* What others took, in percent. */
+double bench_watch_lost(const BenchWatch *watch);
+
+/* The mean of what nobody disturbed, where nothing can be done again. */
+typedef struct {
+    BenchWatch watch;
+    double seconds;
+    long count;
+} BenchMean;
+
+/* Adds the watch's last try, in which `count` things took `seconds`. */
+void bench_mean_add(BenchMean *mean, double seconds, long count);
+
+/* Seconds that are long beside reading the clocks of so many threads, and short beside the turns
+ * that a busy machine's programs take: between them is time that nobody disturbs. */
+double bench_watch_span(int threads);
+
+/* Steps of so many seconds that make a sample: short beside the turns that other programs take. */
+int bench_watch_steps(double seconds, int most);
 
 /* The load average of the last minute: programs that run or wait to; NaN where it is not known. */
 double bench_moment_load(void);

@@ -127,6 +127,12 @@ static SmCode run_process(Session *session, const BenchTask *task, BenchBuild bu
     return code;
 }
 
+BenchBuild bench_rounds_build(int round, int turn)
+{
+    bool outer = turn == 0 || turn == BENCH_TURNS - 1;
+    return outer == (round % 2 == 0) ? BENCH_OLD : BENCH_NEW;
+}
+
 static void show(const Session *session, const BenchTask *task, int all)
 {
     bench_progress_show(session->rounds->progress, task->scene, (double)session->done / all);
@@ -137,9 +143,8 @@ static SmCode run_round(Session *session, const BenchTask *task, int round, Stat
                         SmError *error)
 {
     SmCode code = SM_OK;
-    for (int i = 0; i < 4 && !code; i++) {
-        bool outer = i == 0 || i == 3;
-        BenchBuild build = outer == (round % 2 == 0) ? BENCH_OLD : BENCH_NEW;
+    for (int i = 0; i < BENCH_TURNS && !code; i++) {
+        BenchBuild build = bench_rounds_build(round, i);
         show(session, task, all);
         session->done++;
         if (session->rounds->program[build] && state->there[build])
@@ -159,7 +164,7 @@ SmCode bench_rounds_run(const BenchRounds *rounds, BenchContests *all,
     for (int r = 0; r < rounds->rounds; r++)
         for (int t = 0; t < rounds->tasks && !code; t++)
             code = run_round(&session, &rounds->task[t], r, &state[t],
-                             4 * rounds->rounds * rounds->tasks, error);
+                             BENCH_TURNS * rounds->rounds * rounds->tasks, error);
     bench_progress_stop(rounds->progress);
     free(state);
     return code;

@@ -29,6 +29,11 @@ typedef struct {
     BenchProgress *progress;
 } BenchRounds;
 
+enum { BENCH_TURNS = 4 }; /* of a round */
+
+/* Whose turn it is. */
+BenchBuild bench_rounds_build(int round, int turn);
+
 /* Runs all rounds and adds what they measured. `machine` receives each build's environment, from
  * its first process. A scene that the old build does not have (its exit code says so, in the first
  * round) is left without old times, with the reason. Errors: SM_INPUT, SM_INVALID: a process that

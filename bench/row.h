@@ -2,12 +2,15 @@
 #ifndef BENCH_ROW_H
 #define BENCH_ROW_H
 
+#include <math.h>
+
 #include "../lib/engine.h"
 #include "elastic_found.h"
 
 enum { BENCH_FRAME_PARTS = 4 };
 
-/* What a scene that changes while it runs comes to, frame by frame (frames.h). */
+/* What a scene that changes while it runs comes to, frame by frame (frames.h). Where others took
+ * the processors all _ms are NaN. */
 typedef struct {
     long frames, changed; /* played; with a change: 0 of a scene that changes nothing */
     long first_nodes, most_nodes, last_nodes, most_added; /* of all bodies; added in a frame */
@@ -84,6 +87,12 @@ typedef struct {
 static inline const char *bench_row_mark(const BenchRow *row)
 {
     return !row->valid ? "INVALID" : row->busy ? "BUSY" : "VALID";
+}
+
+/* Did others take the processors from the frames? */
+static inline bool bench_row_frames_busy(const BenchRow *row)
+{
+    return row->change.frames > 0 && isnan(row->change.first_ms);
 }
 
 static inline bool bench_row_timed(const BenchRow *row)

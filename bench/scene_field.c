@@ -136,7 +136,15 @@ static void fill_curve(const BenchRow *row, int steps_per_frame, const char *nam
     size_t length = strlen(name);
     bool time = field->kind == MADE ? strcmp(name, "growth_percent") != 0
                                     : length > 3 && !strcmp(name + length - 3, "_ms");
-    if (time && row->busy) {
+    bool frames = !strcmp(name, "cost_growth") ||
+                  (field->kind == NUMBER && field->offset >= offsetof(BenchRow, change));
+    if (time && frames && bench_row_frames_busy(row)) {
+        curve->busy = true;
+        bench_curve_fail(curve, "others took its processors from its frames (load average %.1f)",
+                         row->load);
+        return;
+    }
+    if (time && !frames && row->busy) {
         curve->busy = true;
         bench_curve_fail(curve, "others took %.0f%% of its processors (load average %.1f)",
                          row->lost_percent, row->load);

@@ -1,5 +1,6 @@
 #include "summary.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -93,6 +94,10 @@ static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
 /* Nodes and surface at the end of a scene that has changed them. */
 static void print_changes(const BenchPlay *play, const BenchOutcome *outcome)
 {
+    char each[32] = "BUSY";
+    if (!bench_watch_busy(&outcome->change.watch))
+        snprintf(each, sizeof each, "%.4g ms each",
+                 1e3 * outcome->change.seconds / fmax((double)outcome->change.count, 1));
     long open = 0, pieces = 0, triangles = 0, left = 0;
     for (int p = 0; p < play->cast.count; p++) {
         SmMeshInfo info = sm_mesh_info(&play->changes[p].surface);
@@ -102,12 +107,10 @@ static void print_changes(const BenchPlay *play, const BenchOutcome *outcome)
         triangles += bodies * info.triangles;
         left += bodies * play->changes[p].left;
     }
-    printf(
-        "changes: %ld frame%s, %.4g ms each with the surface; in the end %ld nodes, and surfaces "
-        "of %ld triangles in %ld piece%s, ",
-        outcome->changes, outcome->changes == 1 ? "" : "s",
-        outcome->changes ? 1e3 * outcome->change_seconds / (double)outcome->changes : 0.0,
-        bench_cast_particles(&play->cast), triangles, pieces, pieces == 1 ? "" : "s");
+    printf("changes: %ld frame%s, %s with the surface; in the end %ld nodes, and surfaces "
+           "of %ld triangles in %ld piece%s, ",
+           outcome->changes, outcome->changes == 1 ? "" : "s", each,
+           bench_cast_particles(&play->cast), triangles, pieces, pieces == 1 ? "" : "s");
     if (open)
         printf("with %ld open or non-manifold edges\n", open);
     else
@@ -141,13 +144,17 @@ bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)
     }
     printf("%ld step%s of %g s: ", outcome->steps, outcome->steps == 1 ? "" : "s",
            runner->scene->params.h);
-    double steps = (double)outcome->steps;
-    if (valid && !outcome->steps)
-        printf("nothing timed\n");
-    else if (valid)
-        printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * outcome->seconds / steps,
-               1e9 * outcome->seconds / steps / (double)particles);
-    else
+    const BenchMean *step = &outcome->step;
+    double seconds = step->seconds / (double)step->count;
+    if (!valid)
         printf("INVALID\n");
+    else if (!outcome->steps)
+        printf("nothing timed\n");
+    else if (bench_watch_busy(&step->watch))
+        printf("BUSY: other programs took %.0f%% of its processors (load average %.1f)\n",
+               bench_watch_lost(&step->watch), bench_moment_load());
+    else
+        printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * seconds,
+               1e9 * seconds / (double)particles);
     return valid;
 }

@@ -2,14 +2,17 @@
 #ifndef BENCH_SUMMARY_H
 #define BENCH_SUMMARY_H
 
+#include "moment.h"
 #include "play.h"
 
 /* What the frames came to. */
 typedef struct {
     long steps;
-    double seconds;        /* in steps alone */
-    long changes;          /* frames in which cells were split or merged, or material cut */
-    double change_seconds; /* in those changes, surfaces included */
+    BenchMean step;      /* of steps alone */
+    double open_seconds; /* of the last `open_steps`, which are still to be added to it */
+    long open_steps;
+    long changes;     /* frames in which cells were split or merged, or material cut */
+    BenchMean change; /* of those changes, surfaces included */
     bool finite;
 } BenchOutcome;
 

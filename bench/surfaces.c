@@ -157,11 +157,11 @@ static double voxelise_once(const Statue *statue, BenchSurface *surface)
     SmVoxelParams params = {.fill = SM_SOLID, .cell = statue->voxels.cell};
     SmVoxels voxels;
     SmError error;
-    double start = sm_now();
+    struct BenchSurfaceTime *kernel = &surface->kernel[BENCH_VOXELISE];
+    bench_watch_start(&kernel->watch);
     SmCode code = sm_voxelise(&statue->mesh, &params, "statue", &voxels, &error);
-    double seconds = sm_now() - start;
+    double seconds = bench_watch_stop(&kernel->watch);
     if (code) {
-        struct BenchSurfaceTime *kernel = &surface->kernel[BENCH_VOXELISE];
         kernel->valid = false;
         snprintf(kernel->reason, sizeof kernel->reason, "%.100s", error.text);
         return 0;
@@ -170,11 +170,11 @@ static double voxelise_once(const Statue *statue, BenchSurface *surface)
     return seconds;
 }
 
-static double deform_once(Statue *statue, BenchSurfaceKernel kernel)
+static double deform_once(Statue *statue, BenchSurfaceKernel kernel, BenchWatch *watch)
 {
-    double start = sm_now();
+    bench_watch_start(watch);
     for (int i = 0; i < DEFORM_ROUNDS; i++) deform(statue, kernel);
-    return (sm_now() - start) / DEFORM_ROUNDS;
+    return bench_watch_stop(watch) / DEFORM_ROUNDS;
 }
 
 /* Nanoseconds an item of one run of a kernel. */
@@ -182,7 +182,16 @@ static double time_once(Statue *statue, BenchSurfaceKernel kernel, BenchSurface 
 {
     if (kernel == BENCH_VOXELISE)
         return 1e9 * voxelise_once(statue, surface) / (double)surface->triangles;
-    return 1e9 * deform_once(statue, kernel) / (double)surface->vertices;
+    return 1e9 * deform_once(statue, kernel, &surface->kernel[kernel].watch) /
+           (double)surface->vertices;
+}
+
+static double sample(Statue *statue, BenchSurfaceKernel kernel, BenchSurface *surface)
+{
+    double ns;
+    do ns = time_once(statue, kernel, surface);
+    while (bench_watch_again(&surface->kernel[kernel].watch));
+    return ns;
 }
 
 SmCode bench_surface_time(int threads, int repeats, BenchSurface *surface, SmError *error)
@@ -206,11 +215,12 @@ SmCode bench_surface_time(int threads, int repeats, BenchSurface *surface, SmErr
             check_voxels(&statue, surface);
         else
             check_turned(&statue, (BenchSurfaceKernel)k, surface);
+        surface->kernel[k].watch = bench_watch(k == BENCH_VOXELISE ? 1 : threads);
     }
     for (int r = 0; r < repeats; r++)
         for (int k = 0; k < BENCH_SURFACE_KERNELS; k++)
             if (surface->kernel[k].wanted && surface->kernel[k].valid)
-                surface->kernel[k].ns[r] = time_once(&statue, (BenchSurfaceKernel)k, surface);
+                surface->kernel[k].ns[r] = sample(&statue, (BenchSurfaceKernel)k, surface);
     sm_team_leave(before);
     free_statue(&statue);
     return SM_OK;

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "../lib/error.h"
+#include "moment.h"
 
 /* BENCH_CARRY is the surface animation of the octree (octree/surface.h), sampled by features. */
 typedef enum { BENCH_VOXELISE, BENCH_EMBED, BENCH_CARRY, BENCH_SURFACE_KERNELS } BenchSurfaceKernel;
@@ -18,6 +19,7 @@ typedef struct {
         bool wanted; /* set by the caller */
         bool valid;
         char reason[128];
+        BenchWatch watch; /* of the samples */
         double *ns; /* [repeats] a triangle, or a vertex, normal included; the caller's to free */
     } kernel[BENCH_SURFACE_KERNELS];
 } BenchSurface;

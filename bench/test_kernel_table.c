@@ -34,10 +34,10 @@ static void verdicts_follow_the_limits(void **state)
     assert_string_equal(bench_kernel_verdict(&row), "missed");
 }
 
-/* Two rows, the second not valid although its times are filled in. */
+/* Three rows, the second not valid and the third busy although their times are filled in. */
 static void write_rows(BenchKernelFormat format, char **text, size_t *size)
 {
-    BenchKernel rows[2] = {{.kernel = "good",
+    BenchKernel rows[3] = {{.kernel = "good",
                             .group = "a",
                             .item = "particle",
                             .precision = "single",
@@ -58,12 +58,16 @@ static void write_rows(BenchKernelFormat format, char **text, size_t *size)
     rows[1].ns = rows[1].low = rows[1].high = rows[1].floor_ns = 98765;
     strcpy(rows[1].kernel, "bad");
     strcpy(rows[1].reason, "it is \"wrong\"");
+    rows[2] = rows[1];
+    rows[2].valid = rows[2].busy = true;
+    strcpy(rows[2].kernel, "late");
+    strcpy(rows[2].reason, "others took it");
     FILE *file = open_memstream(text, size);
-    bench_kernels_write(file, format, rows, 2, &ceilings, &machine);
+    bench_kernels_write(file, format, rows, 3, &ceilings, &machine);
     fclose(file);
 }
 
-static void an_invalid_row_has_no_number(void **state)
+static void an_invalid_or_busy_row_has_no_number(void **state)
 {
     (void)state;
     for (int f = 0; bench_kernel_formats[f]; f++) {
@@ -88,6 +92,8 @@ static void formats_parse(void **state)
                            "\"with, a comma\"\n"));
     assert_non_null(strstr(text, "\nbad,a,single,1,,particle,10,INVALID,INVALID,INVALID,INVALID,L1,"
                                  "INVALID,20,INVALID,,,missed,INVALID,\"it is \"\"wrong\"\"\"\n"));
+    assert_non_null(strstr(text, "\nlate,a,single,1,,particle,10,BUSY,BUSY,BUSY,BUSY,L1,BUSY,20,"
+                                 "BUSY,,,,BUSY,others took it\n"));
     free(text);
     write_rows(BENCH_KERNELS_JSON, &text, &size);
     json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
@@ -98,6 +104,11 @@ static void formats_parse(void **state)
     assert_true(json_is_true(json_object_get(good, "valid")));
     assert_true(json_is_false(json_object_get(bad, "valid")));
     assert_true(json_is_null(json_object_get(bad, "ns")));
+    json_t *late = json_array_get(json_object_get(root, "kernels"), 2);
+    assert_true(json_is_true(json_object_get(late, "valid")));
+    assert_true(json_is_true(json_object_get(late, "busy")));
+    assert_true(json_is_null(json_object_get(late, "ns")));
+    assert_string_equal(json_string_value(json_object_get(late, "verdict")), "");
     assert_int_equal(json_array_size(json_object_get(root, "ceilings")), 2);
     assert_string_equal(
         json_string_value(json_object_get(json_object_get(root, "environment"), "cpu")),
@@ -110,8 +121,8 @@ static void formats_parse(void **state)
         bars += *c == '|';
         lines += *c == '\n';
     }
-    assert_int_equal(lines, 4);
-    assert_int_equal(bars, 4 * 14);
+    assert_int_equal(lines, 5);
+    assert_int_equal(bars, 5 * 14);
     free(text);
 }
 
@@ -119,7 +130,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(verdicts_follow_the_limits),
-        cmocka_unit_test(an_invalid_row_has_no_number),
+        cmocka_unit_test(an_invalid_or_busy_row_has_no_number),
         cmocka_unit_test(formats_parse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -189,6 +189,7 @@ static void set_speed_up(const BenchKernelRun *run, const Spec *spec, const Benc
                          const BenchTreeStep *base, BenchKernel *row)
 {
     if (!step->valid || !base || !base->valid) return;
+    if (bench_watch_busy(&base->watch)) bench_kernel_busy(row, bench_watch_lost(&base->watch));
     int repeats = run->params->repeats;
     double *ratio = sm_alloc((size_t)repeats, sizeof *ratio);
     for (int r = 0; r < repeats; r++) ratio[r] = base->total[r] / step->total[r];
@@ -214,7 +215,7 @@ static void report_step(BenchKernelRun *run, const Spec *spec, const BenchTreeSt
         ns[r] = spec->part == BENCH_TREE_WHOLE ? step->total[r] : step->part[r][spec->part];
         if (!whole) ns[r] /= (double)nodes;
     }
-    bench_kernel_times(row, ns, repeats);
+    bench_kernel_times(row, ns, repeats, &step->watch);
     free(ns);
     BenchWork work = work_of(spec->part, &step->counts);
     bench_kernel_floor(run, row, whole ? times(work, (double)nodes) : work, (double)step->bytes);
@@ -332,7 +333,7 @@ static void report_setup(BenchKernelRun *run, const Spec *spec, const BenchSampl
         return;
     }
     for (int r = 0; r < setup->samples; r++) setup->ns[r] /= (double)items;
-    bench_kernel_times(row, setup->ns, setup->samples);
+    bench_kernel_times(row, setup->ns, setup->samples, &setup->watch);
     bool structure = spec->kind == BENCH_SETUP_STRUCTURE;
     bench_kernel_floor(run, row, structure ? times(setup->work, (double)nodes) : setup->work,
                        setup->bytes);

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include "../lib/stage.h"
+#include "../lib/team.h"
 #include "tree_steps.h"
 
 static const double most_seconds = 2;
@@ -168,7 +169,7 @@ static double sample(const BenchSampled *body, BenchSetupKind kind, BenchPrecisi
     OctGraph graph = {0};
     OctRegions regions = {0};
     long engine = 0;
-    double start = sm_now();
+    bench_watch_start(&setup->watch);
     if (kind == BENCH_SETUP_DISTANCES) search(reach, setup->sources);
     if (kind == BENCH_SETUP_SAMPLING) make_tree(body, &tree);
     if (kind == BENCH_SETUP_GRAPH || kind == BENCH_SETUP_STRUCTURE)
@@ -176,7 +177,7 @@ static double sample(const BenchSampled *body, BenchSetupKind kind, BenchPrecisi
     if (kind == BENCH_SETUP_REGIONS || kind == BENCH_SETUP_STRUCTURE)
         make_regions(&body->tree, &body->graph, body->w, body->epsilon, &regions);
     if (kind == BENCH_SETUP_WHOLE) engine = set_up(body, precision);
-    double seconds = sm_now() - start;
+    double seconds = bench_watch_stop(&setup->watch);
     setup->engine_bytes = (double)engine;
     oct_tree_free(&tree);
     oct_graph_free(&graph);
@@ -205,8 +206,11 @@ void bench_setup_time(const BenchSampled *body, BenchSetupKind kind, BenchPrecis
     oct_reach_init(&reach, &body->graph);
     if (leaves <= LEAVES_WARMED) sample(body, kind, precision, setup, &reach);
     double start = sm_now(), user = user_seconds();
-    while (setup->samples < repeats && (setup->samples == 0 || sm_now() - start < most_seconds))
+    setup->watch = bench_watch(sm_team(0));
+    while (setup->samples < repeats && (setup->samples == 0 || sm_now() - start < most_seconds)) {
         setup->ns[setup->samples++] = 1e9 * sample(body, kind, precision, setup, &reach);
+        bench_watch_count(&setup->watch);
+    }
     double parts = kind == BENCH_SETUP_DISTANCES ? (double)setup->sources : 1;
     setup->user_ns = 1e9 * (user_seconds() - user) / (parts * (double)setup->samples);
     setup->bytes += setup->engine_bytes;

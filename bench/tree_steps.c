@@ -13,10 +13,7 @@
 #define bench_tree_step_free   SM_NAME(bench_tree_step_free)
 #define bench_tree_build       SM_NAME(bench_tree_build)
 
-/* A sample runs for at least so many seconds, but never more than so many steps: shorter than the
- * slices in which a busy machine takes the core away, so that most samples have none. */
-static const double sample_seconds = 0.001;
-enum { MOST_STEPS = 64 };
+enum { MOST_STEPS = 64 }; /* in a sample */
 
 /* Of goals, in finest cells; and of positions after a step with damping. */
 static const double tolerance = SM_REAL_BITS == 32 ? 5e-5 : 1e-10;
@@ -157,13 +154,21 @@ void bench_tree_step_free(BenchTreeStep *step)
 }
 
 /* Seconds a step. The first step, which fills caches, is not timed. */
-static double sample(const BenchTreeStep *step)
+static double try_sample(BenchTreeStep *step)
 {
     restore(step);
     oct_step(step->engine, NULL);
-    double start = sm_now();
+    bench_watch_start(&step->watch);
     for (int i = 0; i < step->steps; i++) oct_step(step->engine, NULL);
-    return (sm_now() - start) / step->steps;
+    return bench_watch_stop(&step->watch) / step->steps;
+}
+
+static double sample(BenchTreeStep *step)
+{
+    double seconds;
+    do seconds = try_sample(step);
+    while (bench_watch_again(&step->watch));
+    return seconds;
 }
 
 /* Of a stage in these parts of the step, less `clock` seconds a lap. */
@@ -175,16 +180,24 @@ static double stage_ns(const SmLaps *laps, int first, int last, SmStage stage, d
     return 1e9 * fmax(seconds, 0);
 }
 
-static void sample_parts(const BenchTreeStep *step, double clock, double part[BENCH_TREE_PARTS])
+static void try_laps(BenchTreeStep *step, SmLaps laps[OCT_PARTS])
 {
-    SmLaps laps[OCT_PARTS];
     restore(step);
     oct_step(step->engine, NULL);
     for (int p = 0; p < OCT_PARTS; p++) sm_laps_start(&laps[p]);
+    bench_watch_start(&step->watch);
     for (int i = 0; i < step->steps; i++) {
         laps[0].last = sm_now();
         oct_step_parts(step->engine, laps);
     }
+    bench_watch_stop(&step->watch);
+}
+
+static void sample_parts(BenchTreeStep *step, double clock, double part[BENCH_TREE_PARTS])
+{
+    SmLaps laps[OCT_PARTS];
+    do try_laps(step, laps);
+    while (bench_watch_again(&step->watch));
     const double ns[BENCH_TREE_PARTS] = {
         stage_ns(laps, OCT_MOMENTS_DEPTH, OCT_MOMENTS_DEPTH, SM_FAST_SUM, clock),
         stage_ns(laps, OCT_MOMENTS_BREADTH, OCT_MOMENTS_BREADTH, SM_FAST_SUM, clock),
@@ -211,10 +224,12 @@ void bench_tree_steps_time(BenchTreeStep *steps, int count, int repeats)
     for (BenchTreeStep *s = steps; s < steps + count; s++) {
         if (!s->valid) continue;
         s->steps = 1;
+        s->watch = bench_watch(s->threads);
         s->total = sm_alloc((size_t)repeats, sizeof *s->total);
         s->part = sm_alloc((size_t)repeats, sizeof *s->part);
-        double seconds = fmin(sample(s), sample(s)); /* also warms up */
-        s->steps = (int)fmin(fmax(ceil(sample_seconds / seconds), 1), MOST_STEPS);
+        double seconds = fmin(try_sample(s), try_sample(s)); /* also warms up */
+        s->steps = bench_watch_steps(seconds, MOST_STEPS);
+        s->watch = bench_watch(s->threads);
     }
     for (int r = 0; r < repeats; r++)
         for (int i = 0; i < count; i++) {

@@ -8,6 +8,7 @@
 
 #include "../octree/weights.h"
 #include "ceilings.h"
+#include "moment.h"
 #include "sampled.h"
 #include "tree_work.h"
 
@@ -39,6 +40,7 @@ typedef struct {
     void *engine;
     double (*x)[3], (*v)[3];
     int steps;
+    BenchWatch watch; /* of the samples */
 } BenchTreeStep;
 
 /* For each precision: fills `step` in from the caller's choices and checks the engine's goal

@@ -5,25 +5,67 @@
 # The slow program is build/shapebench linked once more: its calls of lsm_damp_f32() go through a
 # function that first waits for 5% of what the call takes. Nothing in the sources knows of it.
 #
+# With --replay it records a long series of samples of each scene and replays fifty comparisons of the
+# program with itself from it: the samples, in their order, are dealt out to builds and rounds as
+# `regress` does, and judged by the same code (bench/replay.c). Scenes of long steps take minutes each.
+#
 # usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]]     default: infant 10 10
+#        scripts/check_regress.sh --replay [SCENE...]          default: all but the three slowest
 # exit codes: 0 as it should be, 1 not caught or a false alarm, 2 not so called, 3 no build/shapebench (scripts/run makes it)
 set -u
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd) || exit 1
-scene=${1:-infant} rounds=${2:-10} times=${3:-10}
-revision=${REVISION:-HEAD}
 usage() {
-    echo "usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]]" >&2
+    echo "usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]] | --replay [SCENE...]" >&2
     exit 2
 }
+cd -- "$root" || exit 1
+[ -x build/shapebench ] || { echo "$0: no build/shapebench; scripts/run makes it" >&2 && exit 3; }
+scratch=$(mktemp -d) || exit 1
+trap 'rm -rf -- "$scratch" build/shapebench-slow build/shapebench-same' EXIT
+
+# Samples for fifty comparisons of seven rounds, so many in each turn of a build.
+record() {
+    build/shapebench tables --quiet --scene "$1" --repeats $((50 * 7 * 4 * $2)) --block 0.05 --overwrite \
+        -o "$scratch/series.h5" >/dev/null
+}
+
+replay() {
+    local start=$SECONDS took
+    record "$1" 1 || return 1
+    took=$((SECONDS - start))
+    if [ "$took" -lt 3 ]; then
+        record "$1" 5 || return 1
+    elif [ "$took" -lt 6 ]; then
+        record "$1" 2 || return 1
+    fi
+    build/replay 50 7 "$scratch/series.h5"
+}
+
+if [ "${1:-}" = --replay ]; then
+    shift
+    ninja -C build replay >/dev/null || exit 1
+    slowest=' hand-lattice-naive hand-lattice-plain hand-regular-jacobi '
+    if [ $# -eq 0 ]; then
+        for file in bench/scenes/*.cfg; do
+            scene=$(basename "$file" .cfg)
+            case $slowest in *" $scene "*) ;; *) set -- "$@" "$scene" ;; esac
+        done
+    fi
+    failed=0
+    for scene; do
+        if ! replay "$scene" >"$scratch/said"; then failed=1; fi
+        head -n 1 "$scratch/said"
+    done
+    exit "$failed"
+fi
+
+scene=${1:-infant} rounds=${2:-10} times=${3:-10}
+revision=${REVISION:-HEAD}
 case $scene in -*) usage ;; esac
 for number in "$rounds" "$times"; do
     case $number in *[!0-9]* | "") usage ;; esac
 done
 [ $# -le 3 ] || usage
-cd -- "$root" || exit 1
-[ -x build/shapebench ] || { echo "$0: no build/shapebench; scripts/run makes it" >&2 && exit 3; }
-scratch=$(mktemp -d) || exit 1
-trap 'rm -rf -- "$scratch" build/shapebench-slow build/shapebench-same' EXIT
 
 cat >"$scratch/slow.c" <<'C'
 #include <time.h>
