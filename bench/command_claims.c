@@ -8,6 +8,7 @@
 #include "draft.h"
 #include "option.h"
 #include "progress.h"
+#include "suggest.h"
 
 enum { KEY_PAPER = 0x2000, KEY_CLAIM, KEY_CLAIMS, KEY_QUICK, KEY_LIST, KEY_FORMAT };
 
@@ -100,12 +101,16 @@ static SmCode choose(const Options *options, BenchClaims *claims, SmError *error
         code = bench_claims_read(options->files.name[f], claims, error);
     if (code) return code;
     for (int n = 0; n < options->claims.count; n++) {
+        char near[BENCH_SUGGEST_TEXT];
+        BenchSuggestion meant = {.typed = options->claims.name[n]};
         bool known = false;
-        for (int c = 0; c < claims->count; c++)
-            known = known || !strcmp(claims->claim[c].name, options->claims.name[n]);
+        for (int c = 0; c < claims->count; c++) {
+            bench_suggest(&meant, claims->claim[c].name);
+            known = known || !strcmp(claims->claim[c].name, meant.typed);
+        }
         if (!known)
-            return sm_fail(error, SM_USAGE, "--claim: no claim '%.60s'; --list names them",
-                           options->claims.name[n]);
+            return sm_fail(error, SM_USAGE, "--claim: no claim '%.60s'; --list names them%s",
+                           meant.typed, bench_suggest_words(&meant, "", near));
     }
     int kept = 0;
     for (int c = 0; c < claims->count; c++)

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../lib/confine.h"
 #include "../lib/printable.h"
 #include "../lib/voxel.h"
 #include "body.h"
@@ -216,11 +217,25 @@ static SmCode cut_slice(const Options *options, const char *program)
     return code;
 }
 
+/* Said here, where strangers' meshes are looked at, and not in every run. */
+static void warn_of_freedom(const char *program)
+{
+    SmConfined can = sm_confinable();
+    if (can.calls && can.files) return;
+    fprintf(stderr,
+            "%s: this system cannot confine the process that reads a mesh: it %s%s%s; take care "
+            "with files that you do not trust\n",
+            program, can.files ? "" : "could open files outside of the mesh's folder (no Landlock)",
+            can.files || can.calls ? "" : " and ",
+            can.calls ? "" : "may make any system call (no seccomp)");
+}
+
 int bench_command_info(int argc, char **argv)
 {
     Options options = {.particles = 2000};
     bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS,
                         &options.common);
+    if (!options.common.quiet) warn_of_freedom(argv[0]);
     if (options.sliced) return (int)cut_slice(&options, argv[0]);
     SmCode code = SM_OK;
     json_t *list = json_array();

@@ -479,6 +479,13 @@ static SmCode reserve(const Options *options, const char *path, SmError *error)
 {
     char sidecar[BENCH_DRAFT_PATH + 8];
     if (options->no_output) return SM_OK;
+    size_t length = strlen(path);
+    if (length >= 5 && !strcmp(path + length - 5, ".xdmf"))
+        return sm_fail(
+            error, SM_USAGE,
+            "-o %.300s: readers take the trajectory, which is HDF5, for the XDMF that is "
+            "written beside it as NAME.xdmf: give a name that ends in .vtkhdf",
+            path);
     SmCode code = bench_draft_reserve(path, options->overwrite, error);
     snprintf(sidecar, sizeof sidecar, "%s.xdmf", path);
     return code ? code : bench_draft_reserve(sidecar, options->overwrite, error);

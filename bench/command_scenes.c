@@ -76,9 +76,11 @@ static SmCode print_scene(const char *name, SmError *error)
 {
     size_t size;
     const char *text = bench_scene_text(name, &size);
+    char near[BENCH_SUGGEST_TEXT];
     if (!text)
         return sm_fail(error, SM_USAGE,
-                       "'%.100s' is not a built-in scene; 'shapebench scenes' lists them", name);
+                       "'%.100s' is not a built-in scene; 'shapebench scenes' lists them%s", name,
+                       bench_scene_suggest(name, near));
     fwrite(text, 1, size, stdout);
     return SM_OK;
 }

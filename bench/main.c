@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "../lib/error.h"
+#include "../lib/printable.h"
 #include "command.h"
 #include "interrupt.h"
 #include "option.h"
@@ -81,16 +82,16 @@ static bool is_scene(const char *name)
 /* Scenes and files are run's arguments. */
 static void unknown_command(const char *name)
 {
-    BenchSuggestion meant = {.typed = name};
+    char shown[512];
+    snprintf(shown, sizeof shown, "%s", name);
+    sm_printable(shown);
+    BenchSuggestion meant = {.typed = shown};
     for (int i = 0; i < COMMANDS; i++) bench_suggest(&meant, commands[i].name);
     bool of_run = is_scene(name) || access(name, F_OK) == 0;
-    if (of_run) meant.name = name;
-    fprintf(stderr, "shapebench: unknown command '%s'; ", name);
-    if (meant.name)
-        fprintf(stderr, "did you mean '%s%s'? See", of_run ? "run " : "", meant.name);
-    else
-        fputs("see", stderr);
-    fputs(" 'shapebench --help'\n", stderr);
+    if (of_run) meant.name = shown;
+    char near[BENCH_SUGGEST_TEXT];
+    fprintf(stderr, "shapebench: unknown command '%s'%s%s 'shapebench --help'\n", shown,
+            bench_suggest_words(&meant, of_run ? "run " : "", near), meant.name ? " See" : "; see");
 }
 
 /* -h is --help, and so is the command help; 'help NAME' is 'NAME --help'. Returns how many words

@@ -123,7 +123,7 @@ static void suggest_options(const struct argp *argp, BenchSuggestion *meant)
 static void say_words(const struct argp *argp, const char *name, const char *words)
 {
     static const char unknown[] = "unrecognized option '--";
-    char line[512], typed[64];
+    char line[512], typed[64], near[BENCH_SUGGEST_TEXT];
     BenchSuggestion meant = {.typed = typed};
     int length = (int)strcspn(words, "\n");
     if (!strncmp(words, unknown, sizeof unknown - 1)) {
@@ -133,8 +133,7 @@ static void say_words(const struct argp *argp, const char *name, const char *wor
         bench_suggest(&meant, "help");
         bench_suggest(&meant, "version");
     }
-    snprintf(line, sizeof line, "%.*s%s%s%s", length, words, meant.name ? "; did you mean '--" : "",
-             meant.name ? meant.name : "", meant.name ? "'?" : "");
+    snprintf(line, sizeof line, "%.*s%s", length, words, bench_suggest_words(&meant, "--", near));
     say(name, line, (int)strlen(line), true);
 }
 

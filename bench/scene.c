@@ -12,7 +12,6 @@
 #include "config_file.h"
 #include "scene_check.h"
 #include "setting.h"
-#include "suggest.h"
 
 enum { BUILTIN_MAX = 64 };
 
@@ -356,13 +355,18 @@ SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *er
                        "%.100s: the ending of its name must say what it is: .cfg a scene, .obj, "
                        ".ply, .stl, .off or .glb a mesh",
                        name_or_path);
-    BenchSuggestion meant = {.typed = name_or_path};
-    for (const char *const *name = bench_scene_names(); *name; name++) bench_suggest(&meant, *name);
+    char near[BENCH_SUGGEST_TEXT];
     return sm_fail(error, SM_USAGE,
                    "'%.100s' is neither a built-in scene (list them with 'shapebench scenes') nor "
-                   "a scene file NAME.cfg%s%s%s",
-                   name_or_path, meant.name ? "; did you mean '" : "", meant.name ? meant.name : "",
-                   meant.name ? "'?" : "");
+                   "a scene file NAME.cfg%s",
+                   name_or_path, bench_scene_suggest(name_or_path, near));
+}
+
+const char *bench_scene_suggest(const char *typed, char text[BENCH_SUGGEST_TEXT])
+{
+    BenchSuggestion meant = {.typed = typed};
+    for (const char *const *name = bench_scene_names(); *name; name++) bench_suggest(&meant, *name);
+    return bench_suggest_words(&meant, "", text);
 }
 
 const char *const *bench_scene_names(void)

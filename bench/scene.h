@@ -7,6 +7,7 @@
 
 #include "../octree/engine.h"
 #include "../reference/meshless/engine.h"
+#include "suggest.h"
 
 enum { BENCH_NAME = 64, BENCH_PATH = 1024, BENCH_MAX = 64, BENCH_SETTLE_STEPS = 8 };
 
@@ -123,5 +124,8 @@ void bench_width_text(const OctWidth *width, char text[BENCH_WIDTH_TEXT]);
 
 /* Built-in scene names, in order, NULL-terminated. */
 const char *const *bench_scene_names(void);
+
+/* "; did you mean 'NAME'?" where a built-in scene's name is near, or "". Returns `text`. */
+const char *bench_scene_suggest(const char *typed, char text[BENCH_SUGGEST_TEXT]);
 
 #endif

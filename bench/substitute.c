@@ -14,8 +14,10 @@ void bench_substitute_add(const struct argp_state *state, char *text, BenchSubst
         bench_usage(state, "--mesh: given more than %d times", BENCH_SUBSTITUTES);
     char *name = list->scene[list->count];
     snprintf(name, BENCH_NAME, "%.*s", (int)(equals - text), text);
+    char near[BENCH_SUGGEST_TEXT];
     if (!bench_scene_text(name, NULL))
-        bench_usage(state, "--mesh: '%s' is not a built-in scene", name);
+        bench_usage(state, "--mesh: '%s' is not a built-in scene%s", name,
+                    bench_scene_suggest(name, near));
     list->file[list->count++] = equals + 1;
 }
 

@@ -1,5 +1,6 @@
 #include "suggest.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { LONGEST = 40, NEAR = 2 };
@@ -36,4 +37,13 @@ void bench_suggest(BenchSuggestion *suggestion, const char *name)
     if (suggestion->name && suggestion->changes <= changes) return;
     suggestion->name = name;
     suggestion->changes = changes;
+}
+
+const char *bench_suggest_words(const BenchSuggestion *suggestion, const char *prefix,
+                                char text[BENCH_SUGGEST_TEXT])
+{
+    text[0] = '\0';
+    if (suggestion->name)
+        snprintf(text, BENCH_SUGGEST_TEXT, "; did you mean '%s%s'?", prefix, suggestion->name);
+    return text;
 }

@@ -13,4 +13,10 @@ typedef struct {
  * O(product of the lengths). */
 void bench_suggest(BenchSuggestion *suggestion, const char *name);
 
+enum { BENCH_SUGGEST_TEXT = 560 };
+
+/* "; did you mean 'PREFIXNAME'?", or "" where nothing is near. Returns `text`. */
+const char *bench_suggest_words(const BenchSuggestion *suggestion, const char *prefix,
+                                char text[BENCH_SUGGEST_TEXT]);
+
 #endif

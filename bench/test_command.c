@@ -131,6 +131,8 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
         {"run beam-elastic --w 2", 2, "--w: a meshless body has no regions"},
         {"run lattice.cfg --w 32", 2, "--w: '32' is not a whole number from 1 to 31"},
         {"run tiny.cfg --mesh x=y", 2, "'x' is not a built-in scene"},
+        {"run tiny.cfg --mesh pengiun=y", 2, "did you mean 'penguin'?"},
+        {"run tiny.cfg -o film.xdmf", 2, "give a name that ends in .vtkhdf"},
     };
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }
@@ -143,6 +145,9 @@ static void mistakes_of_other_commands_are_too(void **state)
         {"info missing.obj", 3, "missing.obj"},
         {"info --format xml a.obj", 2, "'xml' is not one of text, json"},
         {"scenes no-such", 2, "'no-such' is not a built-in scene"},
+        {"scenes pengiun", 2, "did you mean 'penguin'? See"},
+        {"claims --claim stabel", 2, "did you mean 'stable'? See"},
+        {"tabl\033[31mes", 2, "unknown command 'tabl?[31mes'"},
         {"scenes --write-mesh a.obj", 2, "which shape?"},
         {"scenes penguin --write-mesh /no/such/a.obj", 4, "/no/such/a.obj"},
         {"scenes penguin --write-mesh /dev/null", 4, "it is there and not a regular file"},

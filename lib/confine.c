@@ -12,6 +12,7 @@
 #if __has_include(<linux/landlock.h>)
 #include <linux/landlock.h>
 #endif
+#include <linux/seccomp.h>
 #ifdef SHAPEBENCH_SECCOMP
 #include <seccomp.h>
 #endif
@@ -107,6 +108,21 @@ static bool confine_calls(void)
 }
 
 #endif
+
+/* Both kernel interfaces answer a question that sets nothing: the version, and a filter at no
+ * address. */
+SmConfined sm_confinable(void)
+{
+    SmConfined confinable = {false, false};
+#ifdef LANDLOCK_CREATE_RULESET_VERSION
+    confinable.files =
+        syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION) > 0;
+#endif
+#ifdef SHAPEBENCH_SECCOMP
+    confinable.calls = prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, NULL) < 0 && errno == EFAULT;
+#endif
+    return confinable;
+}
 
 SmConfined sm_confine(const char *folder, const char *file)
 {

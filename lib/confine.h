@@ -17,4 +17,7 @@ typedef struct {
  * the system for fails with EPERM. Never undone: for a child (child.h). */
 SmConfined sm_confine(const char *folder, const char *file);
 
+/* What sm_confine() would do here; nothing is changed. */
+SmConfined sm_confinable(void);
+
 #endif

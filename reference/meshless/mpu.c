@@ -154,8 +154,8 @@ static SmCode orient(RefMpu *mpu, SmError *error)
         return sm_fail(
             error, SM_INPUT,
             "the points' normals disagree about what is inside: only %d%% of them separate "
-            "it from outside; orient them, or give more where the body is thinner than they are "
-            "apart",
+            "it from outside; orient them, or give more (of a mesh --points) where the body is "
+            "thinner than they are apart",
             100 * (right > wrong ? right : wrong) / probes);
     for (long p = 0; p < mpu->points.count; p++)
         for (int d = 0; d < 3; d++) mpu->points.normal[p][d] *= -1;
