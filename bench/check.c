@@ -134,15 +134,19 @@ static bool all_finite(const double (*value)[3], long count)
     return sum == 0;
 }
 
-/* Adds the largest distance of two goals, in cells; of those that are `tied` apart. */
+/* Adds the largest distance of two goals, in cells; apart, that of those that are `tied` and not
+ * alike all the same. */
 static void find_goal_error(const double (*g)[3], const double (*exact)[3], const bool *tied,
                             long count, double cell, BenchDeviation *found)
 {
     for (long p = 0; p < count; p++) {
-        double square = 0, *error = tied[p] ? &found->tied_error : &found->goal_error;
+        double square = 0;
         for (int d = 0; d < 3; d++) square += (g[p][d] - exact[p][d]) * (g[p][d] - exact[p][d]);
-        *error = fmax(*error, sqrt(square) / cell);
-        found->tied += tied[p];
+        double error = sqrt(square) / cell;
+        bool out = tied[p] && !(error <= found->goal_tolerance);
+        double *worst = out ? &found->tied_error : &found->goal_error;
+        *worst = fmax(*worst, error);
+        found->tied += out;
     }
 }
 

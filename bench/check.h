@@ -39,7 +39,8 @@ typedef struct {
     double damping_tolerance; /* ... where it is largest of what is allowed there; 0: no damping */
     double motion_error;      /* bench_check_motion() of the step that was damped; 0: none was */
     long particles;           /* checked or left out */
-    long tied;                /* left out: in a region whose rotation is not unique */
+    long tied;                /* left out: beyond goal_tolerance, in a region whose rotation is not
+                               * unique */
     double tied_error;        /* of those; what they would add to goal_error */
     long blurred;         /* left out of damping's check: off by more than bench_check_step(), and
                            * tied or in a region whose inertia the precision does not
@@ -75,12 +76,13 @@ void bench_check_free(BenchCheck *check);
 
 /* Calls engine->goals() and compares; the state does not change.
  *
- * Particles of a region whose rotation is not unique to the precision are left out, and counted:
- * there rounding decides, or what the rotation was before. Of a region at rest goals are known to
- * about epsilon D, D cells being the body's largest distance from its middle; over the region's
- * hold (reference/condition.h) they may differ by as much as a turn by rounding moves them. Left
- * out are regions whose hold is below half of epsilon D / tolerance, but none that is held to an
- * eighth: where that would not do, the body is larger than the precision resolves, and is INVALID.
+ * Particles of a region whose rotation is not unique to the precision are left out, and counted,
+ * where their goals differ by more than the tolerance: there rounding decides, or what the rotation
+ * was before. Of a region at rest goals are known to about epsilon D, D cells being the body's
+ * largest distance from its middle; over the region's hold (reference/condition.h) they may differ
+ * by as much as a turn by rounding moves them. Such are regions whose hold is below half of epsilon
+ * D / tolerance, but none that is held to an eighth: where that would not do, the body is larger
+ * than the precision resolves, and is INVALID.
  */
 BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *type,
                                  SmEngine *engine);

@@ -120,8 +120,10 @@ static void ties_are_left_out(void **state)
     }
 }
 
-/* A body of which nothing could be checked is not valid. */
-static void nothing_but_ties_is_invalid(void **state)
+/* Pressed onto a line all regions can be turned about it. While the engine turns them as brute
+ * force does, all are checked; once it keeps other rotations from before, they are left out, and a
+ * body of which too little is left to check is not valid. */
+static void ties_that_differ_alone_are_left_out(void **state)
 {
     (void)state;
     for (int t = 0; t < TYPES; t++) {
@@ -130,9 +132,17 @@ static void nothing_but_ties_is_invalid(void **state)
         plate_create(types[t], 0, false, &plate);
         place(&plate, false, true);
         BenchDeviation found = check_plate(&plate);
-        assert_int_equal(found.tied, plate.count);
-        assert_false(bench_check_verdict(&found, sizeof reason, reason));
-        assert_non_null(strstr(reason, "not unique"));
+        assert_int_equal(found.tied, 0);
+        assert_true(bench_check_verdict(&found, sizeof reason, reason));
+        place(&plate, false, false);
+        place(&plate, false, true);
+        found = check_plate(&plate);
+        assert_true(found.tied >= plate.count / 4);
+        if (strcmp(types[t]->name, "octree") !=
+            0) { /* of the octree's nodes just a quarter end elsewhere */
+            assert_false(bench_check_verdict(&found, sizeof reason, reason));
+            assert_non_null(strstr(reason, "not unique"));
+        }
         plate_free(&plate);
     }
 }
@@ -492,7 +502,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ties_are_left_out),
-        cmocka_unit_test(nothing_but_ties_is_invalid),
+        cmocka_unit_test(ties_that_differ_alone_are_left_out),
         cmocka_unit_test(wrong_damping_is_invalid),
         cmocka_unit_test(what_is_not_resolved_is_compared),
         cmocka_unit_test(contacts_are_brute_forces),

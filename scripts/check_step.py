@@ -338,15 +338,35 @@ def total(members, share):
     return sum_
 
 
-def rigid_velocity(body, x, v):
+def angular_velocity(moments, turning, noise, thinnest):
+    """omega of eq. 14 from sum m~ d d^T and sum m~ d x v over M. Where `noise`, what rounding may do to inertia,
+    is a 64th of the least or more, rotations are damped a little, too, and about a line wholly: the rule of
+    lib/rigid_lanes.h, which says why. `thinnest` of the spread is no inertia."""
+    trace = np.trace(moments)
+    i = trace * np.eye(3) - moments
+    adjugate = np.stack([np.cross(i[1], i[2]), np.cross(i[2], i[0]), np.cross(i[0], i[1])])
+    over, more = i[0] @ adjugate[0], noise * np.trace(adjugate)
+    if over > thinnest * trace * np.trace(adjugate) + more:
+        turning = adjugate @ turning
+    else:
+        over, more = trace, noise
+    return turning / (over + more if 64 * more > over else over)
+
+
+def rounding(precision):
+    """Of numbers, and which share of a region's spread is no inertia to lib/rigid_lanes.h."""
+    return (2.0**-52, 1e-10) if precision == "double" else (2.0**-23, 1e-5)
+
+
+def rigid_velocity(body, x, v, cell, precision):
     """u_i of eq. 14."""
-    sum_ = np.zeros_like(v)
+    sum_, (epsilon, thinnest), at = np.zeros_like(v), rounding(precision), (x - x.mean(0)) / cell
     for r, share in zip(body.members, body.share):
-        m = body.weight[r][:, None]
-        c, vr = (m * x[r]).sum(0) / m.sum(), (m * v[r]).sum(0) / m.sum()
-        arm = x[r] - c
-        inertia = (m * arm**2).sum() * np.eye(3) - (m * arm).T @ arm
-        turn = np.linalg.pinv(inertia, 1e-9, hermitian=True) @ np.cross(arm, m * (v[r] - vr)).sum(0)
+        m = body.weight[r][:, None] / body.weight[r].sum()
+        c, vr = (m * at[r]).sum(0), (m * v[r]).sum(0)
+        arm = at[r] - c
+        turn = angular_velocity((m * arm).T @ arm, np.cross(arm, m * (v[r] - vr)).sum(0),
+                                8 * epsilon * (c @ c) + 1e-30, thinnest)
         sum_[r] += share * (vr + np.cross(turn, arm))
     return sum_ / total(body.members, body.share)
 
@@ -355,8 +375,7 @@ def unresolved(body, x, cell, precision):
     """Which particles have a region whose angular velocity the precision does not resolve: rounding of
     sums about the body's middle is not a small share of the least inertia, or may hide the inertia about
     the line of a thin region."""
-    single = precision != "double"
-    epsilon, thinnest = (2.0**-23, 1e-5) if single else (2.0**-52, 1e-10)
+    epsilon, thinnest = rounding(precision)
     at, found = (x - x.mean(0)) / cell, np.zeros(len(x), bool)
     for r in body.members:
         if len(r) == 1:
@@ -446,7 +465,7 @@ def check(group, body):
             if a["damping"] > 0 and step[s] % every == 0:
                 fastest = np.linalg.norm(v, axis=1).max(initial=0)
                 most[unresolved(body, x, cell, text(a["precision"]))] = 2 * a["damping"] * h * fastest / cell
-                v += a["damping"] * (rigid_velocity(body, x, v) - v)
+                v += a["damping"] * (rigid_velocity(body, x, v, cell, text(a["precision"])) - v)
             x = x + h * v
             open_ = free(x, alone, group["obstacles"][:], 1e-3 * cell)
             off = np.linalg.norm(x - group["x"][s + 1, own], axis=1) / cell

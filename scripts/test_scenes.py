@@ -158,7 +158,8 @@ class Scene:
         s["fill"] = "shell" if loose or self.often(0.3) else "solid"
         s["particles"] = round(self.log(8, self.most))
         s["instances"] = 1 if s["engine"] == "meshless" or self.often(0.5) else r.randint(2, 40)
-        s["particles"] = max(8, min(s["particles"], 10 * self.most // s["instances"]))
+        most = self.most if s["engine"] == "brute" else 10 * self.most # brute force is slow
+        s["particles"] = max(8, min(s["particles"], most // s["instances"]))
         s["spacing"] = r.choice([1.0, 1.2, 1.5, 3.0])
         if self.often(0.4):
             s["density"] = self.log(1, 1e4)
