@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "../lib/polar.h"
+#include "../lib/test_fields.h"
 #include "../octree/structure.h"
 #include "../octree/surface.h"
 #include "runner.h"
@@ -225,6 +226,7 @@ static double neighbours_bend_welded(int axis, double welded[FINGERS][FINGERS])
 static void fingers_move_independently(void **state)
 {
     (void)state;
+    if (!TEST_FIGURES) skip();
     static const char *const names[2] = {"hand-sampled-whole", "hand-sampled"};
     for (int i = 0; i < 4; i++) {
         Run run;
@@ -278,6 +280,7 @@ static double pinky_over_thumb(Run *run)
 static void a_pinky_is_soft_and_a_thumb_stiff(void **state)
 {
     (void)state;
+    if (!TEST_FIGURES) skip();
     Run run;
     find_scene("hand-stiffness", &run);
     double differing = pinky_over_thumb(&run);

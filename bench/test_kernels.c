@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "../fastlsm/fastlsm.h"
+#include "../lib/test_fields.h"
 #include "cubes.h"
 #include "kernel_table.h"
 #include "matrices.h"
@@ -204,6 +205,7 @@ static void octree_kernels_run_by_name(void **state)
 static void octree_setup_is_linear(void **state)
 {
     (void)state;
+    if (!TEST_FIGURES) skip();
     BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count;
     run_only((const char *const[]){"oct-setup-1e4", NULL}, rows, &count);

@@ -14,7 +14,7 @@
 #include "../octree/engine.h"
 #include "energy.h"
 
-enum { STEPS = 10000, MOST = 8 };
+enum { STEPS = TEST_FIGURES ? 10000 : 1000, MOST = 8 };
 
 static const SmEngineType *const engines[] = {&fastlsm_engine_f64, &octree_engine_f64,
                                               &fastlsm_engine_f32, &octree_engine_f32};
