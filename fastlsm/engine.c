@@ -330,7 +330,8 @@ static void begin_momentum(SmEngine *e)
     e->lsm->rounding = rests ? e->rounding : 0;
 }
 
-/* Of a body that has broken since the last time, pieces are found again, and keep what they have. */
+/* Of a body that has broken since the last time, pieces are found again, and keep what they have.
+ */
 static void keep_momentum(SmEngine *e)
 {
     bool broke = e->lsm->broken != e->divided_at;
