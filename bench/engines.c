@@ -5,7 +5,7 @@
 #include "../octree/engine.h"
 #include "../reference/brute.h"
 #include "../reference/meshless/engine.h"
-#include "runner.h"
+#include "play/runner.h"
 
 static const SmEngineType *const engines[] = {
     &fastlsm_engine_f32, &fastlsm_engine_f64, &octree_engine_f32,

@@ -6,12 +6,12 @@
 #include <unistd.h>
 
 #include "../lib/error.h"
-#include "../lib/printable.h"
-#include "command.h"
-#include "interrupt.h"
-#include "option.h"
-#include "scene.h"
-#include "suggest.h"
+#include "../lib/system/printable.h"
+#include "cli/command.h"
+#include "cli/interrupt.h"
+#include "cli/option.h"
+#include "cli/suggest.h"
+#include "scene/scene.h"
 
 static const BenchCommand commands[] = {
     {"tables", "measure a paper's table, checked, its values beside", bench_command_tables},

@@ -14,7 +14,7 @@ foreach(scene_file ${scene_files})
 endforeach()
 file(GENERATE OUTPUT ${CMAKE_BINARY_DIR}/builtin.c CONTENT
 "/* Made by bench/scenes.cmake from the files in bench/scenes. */
-#include \"${CMAKE_SOURCE_DIR}/bench/builtin.h\"
+#include \"${CMAKE_SOURCE_DIR}/bench/scene/builtin.h\"
 
 ${scene_arrays}
 const BenchBuiltin bench_builtin[] = {

@@ -3,12 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "blocks.h"
-#include "chain_sums.h"
-#include "corrections.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
+#include "sums/blocks.h"
+#include "sums/chain_sums.h"
+#include "sums/corrections.h"
 
 enum { SPARE_LISTS = 16 };  /* rows to spare in a layer, in sides: a few broken links' worth */
 enum { LAYER_PLANES = 8 };  /* that a chain along z runs through */

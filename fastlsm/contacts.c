@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/collide.h"
-#include "outline.h"
+#include "../lib/collide/collide.h"
+#include "lattice/outline.h"
 
 struct LsmContacts {
     Lsm *lsm;

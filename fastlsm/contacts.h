@@ -1,9 +1,9 @@
-/* contacts.h - collisions of FastLSM bodies (lib/collide.h): before a step finds the contacts,
- * after it answers them. */
+/* contacts.h - collisions of FastLSM bodies (lib/collide/collide.h): before a step finds the
+ * contacts, after it answers them. */
 #ifndef LSM_CONTACTS_H
 #define LSM_CONTACTS_H
 
-#include "crowd.h"
+#include "sums/crowd.h"
 
 #define LsmContacts         SM_NAME(LsmContacts)
 #define lsm_contacts_build  SM_NAME(lsm_contacts_build)

@@ -1,12 +1,12 @@
 /* damping.c - region damping (fastlsm eq. 14): each region's rigid velocity, averaged over the
  * regions of a particle, pulls the particle's velocity towards it. */
-#include "blocks_down.h"
-#include "chain_sums.h"
-#include "correct.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
-#include "summation.h"
+#include "sums/blocks_down.h"
+#include "sums/chain_sums.h"
+#include "sums/correct.h"
+#include "sums/summation.h"
 
 static void weigh(Lsm *lsm, int layer)
 {

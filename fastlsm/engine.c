@@ -5,15 +5,15 @@
 #include <string.h>
 
 #include "../lib/handles.h"
-#include "../lib/momentum.h"
+#include "../lib/simd/momentum.h"
 #include "build.h"
 #include "contacts.h"
-#include "crowd.h"
 #include "fastlsm.h"
 #include "fracture.h"
+#include "lattice/turn.h"
 #include "match.h"
 #include "step.h"
-#include "turn.h"
+#include "sums/crowd.h"
 
 struct SmEngine {
     Lsm *lsm;

@@ -10,14 +10,14 @@
  * finishes goal positions and integrates. */
 #include "fastlsm.h"
 
-#include "blocks_down.h"
 #include "build.h"
-#include "chain_sums.h"
-#include "correct.h"
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
-#include "summation.h"
+#include "sums/blocks_down.h"
+#include "sums/chain_sums.h"
+#include "sums/correct.h"
+#include "sums/summation.h"
 
 /* Rows of m~ x, which the bars sum. */
 static void weigh(Lsm *lsm, int layer)

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "blocks.h"
 #include "build.h"
+#include "sums/blocks.h"
 
 static real component(const Lsm *lsm, long slot, int d)
 {

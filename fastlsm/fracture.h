@@ -2,8 +2,8 @@
 #ifndef LSM_FRACTURE_H
 #define LSM_FRACTURE_H
 
-#include "../lib/cut.h"
-#include "../lib/momentum.h"
+#include "../lib/cut/cut.h"
+#include "../lib/simd/momentum.h"
 #include "state.h"
 
 #define lsm_break    SM_NAME(lsm_break)

@@ -3,7 +3,7 @@
 #ifndef LSM_MATCH_H
 #define LSM_MATCH_H
 
-#include "../lib/rotate_lanes.h"
+#include "../lib/simd/rotate_lanes.h"
 #include "state.h"
 
 /* Deep inside a solid regions are centred on their particle: nothing is offset. */

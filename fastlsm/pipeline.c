@@ -1,5 +1,5 @@
 #include "pipeline.h"
-#include "../lib/team.h"
+#include "../lib/system/team.h"
 
 #include <omp.h>
 #include <stdlib.h>

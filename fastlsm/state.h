@@ -13,9 +13,9 @@
 
 #include "../lib/engine.h"
 #include "../lib/integrate.h"
-#include "../lib/lanes.h"
-#include "chain.h"
-#include "ledger.h"
+#include "../lib/simd/lanes.h"
+#include "lattice/chain.h"
+#include "lattice/ledger.h"
 
 typedef struct {
     vec inverse_mass, offset[3]; /* 1 / M_r; c0_r - x0_r in cells */

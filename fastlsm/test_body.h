@@ -5,7 +5,7 @@
 #include "../lib/test_fields.h"
 #include "../reference/brute.h"
 #include "fastlsm.h"
-#include "random_bodies.h"
+#include "lattice/random_bodies.h"
 
 static const SmEngineType *const engines[2] = {&fastlsm_engine_f32, &fastlsm_engine_f64};
 

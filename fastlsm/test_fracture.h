@@ -3,10 +3,10 @@
 #ifndef LSM_TEST_FRACTURE_H
 #define LSM_TEST_FRACTURE_H
 
-#include "blocks.h"
 #include "build.h"
 #include "fracture.h"
 #include "step.h"
+#include "sums/blocks.h"
 #include "test_body.h"
 
 /* Goals, in cells: what the engine promises in single precision; rounding of sums in double. */

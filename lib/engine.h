@@ -12,11 +12,11 @@
 #include <stdbool.h>
 
 #include "boundary.h"
-#include "cut.h"
+#include "cut/cut.h"
 #include "error.h"
 #include "pieces.h"
 #include "stage.h"
-#include "voxel.h"
+#include "voxel/voxel.h"
 
 typedef enum { SM_SUM_FAST, SM_SUM_BARS, SM_SUM_NAIVE } SmSummation;
 typedef enum { SM_POLAR_FAST, SM_POLAR_JACOBI } SmPolarMethod;
@@ -38,8 +38,8 @@ typedef struct {
  * known to about 8 epsilon D^2. Single precision resolves it to a 64th for D up to about 130 times
  * the region's radius of gyration (w = 1: 150 cells in a solid, 90 in a stick of one cell). Farther
  * out regions turn less than eq. 14 says, and past ten times that hardly: the body's turning is
- * damped there, and its relative motions less (lib/rigid_lanes.h). In double precision that begins
- * at some 10^6 cells. */
+ * damped there, and its relative motions less (lib/simd/rigid_lanes.h). In double precision that
+ * begins at some 10^6 cells. */
 typedef struct {
     int w;               /* region half-width in cells, 1 or more; not the octree's */
     double h;            /* time step, s */

@@ -1,5 +1,5 @@
 #include "error.h"
-#include "printable.h"
+#include "system/printable.h"
 
 #include <stdarg.h>
 #include <stdint.h>

@@ -8,7 +8,7 @@
 #define SM_OBSTACLE_H
 
 #include "boundary.h"
-#include "lanes.h"
+#include "simd/lanes.h"
 
 /* A static obstacle in an engine's own units: lattice cells from its home origin. */
 typedef struct {

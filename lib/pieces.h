@@ -2,7 +2,7 @@
 #ifndef SM_PIECES_H
 #define SM_PIECES_H
 
-#include "mesh.h"
+#include "mesh/mesh.h"
 
 /* Pieces are numbered from 0 in the order of their first members. */
 typedef struct {

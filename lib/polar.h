@@ -24,8 +24,8 @@ double sm_polar_jacobi(const double A[9], double V[9], const double last[9], dou
  * along (start with the identity: eigenvectors). Returns the sweeps, whole or part of one. */
 double sm_jacobi(int n, double *S, double *V, double tolerance);
 
-/* `count` matrices by the batched, vectorised kernel that the engines use (lib/polar_lanes.h), for
- * tests and `shapebench kernels`. `last` may be NULL: the identity. Arrays are [count][9]. */
+/* `count` matrices by the batched, vectorised kernel that the engines use (lib/simd/polar_lanes.h),
+ * for tests and `shapebench kernels`. `last` may be NULL: the identity. Arrays are [count][9]. */
 void sm_polar_batch_f32(long count, const float *A, const float *last, float *R);
 void sm_polar_batch_f64(long count, const double *A, const double *last, double *R);
 

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "slit.h"
+#include "cut/slit.h"
 #include "test_draw.h"
 
 enum { NODES = 60 };

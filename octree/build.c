@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/momentum.h"
-#include "../lib/team.h"
+#include "../lib/simd/momentum.h"
+#include "../lib/system/team.h"
 #include "changing.h"
 #include "ghosts.h"
 #include "octree.h"

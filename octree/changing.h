@@ -3,7 +3,7 @@
 #define OCT_CHANGING_H
 
 #include "inherit.h"
-#include "reweigh.h"
+#include "region/reweigh.h"
 
 #define oct_changing_free  SM_NAME(oct_changing_free)
 #define oct_changing_bytes SM_NAME(oct_changing_bytes)

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/collide.h"
-#include "../lib/rotate_lanes.h"
-#include "outline.h"
+#include "../lib/collide/collide.h"
+#include "../lib/simd/rotate_lanes.h"
+#include "surface/outline.h"
 
 struct OctContacts {
     Oct *oct;

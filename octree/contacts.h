@@ -1,10 +1,10 @@
-/* contacts.h - collisions of octree bodies (lib/collide.h): before a step finds the contacts,
- * after it answers them. */
+/* contacts.h - collisions of octree bodies (lib/collide/collide.h): before a step finds the
+ * contacts, after it answers them. */
 #ifndef OCT_CONTACTS_H
 #define OCT_CONTACTS_H
 
+#include "change/structure.h"
 #include "octree.h"
-#include "structure.h"
 
 #define OctContacts          SM_NAME(OctContacts)
 #define oct_contacts_build   SM_NAME(oct_contacts_build)

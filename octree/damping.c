@@ -1,6 +1,6 @@
 /* damping.c - region damping by HF: each region's rigid velocity, averaged over the regions of a
  * node, pulls the node's velocity towards it (fastlsm eq. 14). */
-#include "../lib/rigid_lanes.h"
+#include "../lib/simd/rigid_lanes.h"
 #include "ghosts.h"
 #include "octree.h"
 

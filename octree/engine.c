@@ -5,17 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/momentum.h"
-#include "../lib/rotate_lanes.h"
-#include "../lib/team.h"
+#include "../lib/simd/momentum.h"
+#include "../lib/simd/rotate_lanes.h"
+#include "../lib/system/team.h"
+#include "change/head.h"
+#include "change/rebuild.h"
 #include "changing.h"
 #include "contacts.h"
-#include "frames.h"
-#include "head.h"
+#include "graph/frames.h"
 #include "held.h"
-#include "lists.h"
 #include "octree.h"
-#include "rebuild.h"
+#include "region/lists.h"
 
 struct SmEngine {
     OctHead head; /* first: oct_engine_structure() */

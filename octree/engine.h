@@ -10,9 +10,9 @@
 #define OCT_ENGINE_H
 
 #include "../lib/engine.h"
-#include "mass.h"
-#include "sampling.h"
-#include "weights.h"
+#include "region/weights.h"
+#include "tree/mass.h"
+#include "tree/sampling.h"
 
 enum { OCT_MAX_WIDTHS = 16, OCT_DEFAULT_LEVELS = 4 };
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "frames.h"
+#include "graph/frames.h"
 #include "octree.h"
 #include "slots.h"
 

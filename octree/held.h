@@ -3,8 +3,8 @@
 #define OCT_HELD_H
 
 #include "../lib/handles.h"
+#include "change/resample.h"
 #include "octree.h"
-#include "resample.h"
 
 #define OctHeld          SM_NAME(OctHeld)
 #define oct_held_free    SM_NAME(oct_held_free)

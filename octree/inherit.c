@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/rotate_lanes.h"
+#include "../lib/simd/rotate_lanes.h"
 #include "octree.h"
 
 static void rest_of(const Oct *oct, long leaf, double X[3])

@@ -19,8 +19,8 @@
 #ifndef OCT_INHERIT_H
 #define OCT_INHERIT_H
 
-#include "fit.h"
-#include "resample.h"
+#include "change/resample.h"
+#include "region/fit.h"
 #include "state.h"
 
 #define oct_inherit_keep  SM_NAME(oct_inherit_keep)

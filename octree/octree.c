@@ -16,8 +16,8 @@
 #include <string.h>
 
 #include "ghosts.h"
-#include "plastic.h"
-#include "thin.h"
+#include "region/plastic.h"
+#include "region/thin.h"
 
 /* m~ x of the simulation nodes; a node has no moments about itself. */
 static void weigh(OctTask *task, long first, long last)

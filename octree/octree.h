@@ -3,7 +3,7 @@
 #ifndef OCT_OCTREE_H
 #define OCT_OCTREE_H
 
-#include "resample.h"
+#include "change/resample.h"
 #include "state.h"
 
 #define oct_build      SM_NAME(oct_build)

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/rotate_lanes.h"
+#include "../lib/simd/rotate_lanes.h"
 #include "octree.h"
-#include "plastic.h"
+#include "region/plastic.h"
 
 /* Finest cells from the first node, which keeps all digits. */
 static double centre_of(const OctTree *tree, long node, int d)

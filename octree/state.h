@@ -11,10 +11,10 @@
 
 #include "../lib/engine.h"
 #include "../lib/integrate.h"
-#include "../lib/lanes.h"
-#include "breadth.h"
-#include "levels.h"
-#include "weights.h"
+#include "../lib/simd/lanes.h"
+#include "region/breadth.h"
+#include "region/weights.h"
+#include "tree/levels.h"
 
 typedef struct {
     OctWeighting weighting;

@@ -11,9 +11,9 @@
 
 #include "../lib/test_fields.h"
 #include "../reference/octree_goals.h"
-#include "random_trees.h"
-#include "structure.h"
+#include "change/structure.h"
 #include "test_engine_body.h"
+#include "tree/random_trees.h"
 
 static const double limit[2] = {5e-5, 1e-10}; /* finest cells */
 static const double jacobi_limit = 5e-6;      /* the method stops at off-diagonals of 1e-6 */

@@ -5,11 +5,11 @@
 #include "../lib/engine.h"
 #include "../lib/test_fields.h"
 #include "../reference/octree_goals.h"
-#include "frames.h"
 #include "ghosts.h"
+#include "graph/frames.h"
 #include "octree.h"
-#include "random_regions.h"
-#include "random_trees.h"
+#include "region/random_regions.h"
+#include "tree/random_trees.h"
 
 typedef struct {
     SmVoxels voxels;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/team.h"
+#include "../lib/system/team.h"
 #include "../lib/vector.h"
 #include "polar.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "../lib/handles.h"
-#include "../lib/team.h"
+#include "../lib/system/team.h"
 #include "brute.h"
 #include "obstacle.h"
 

@@ -1,15 +1,15 @@
-/* collide.h - the slow twin of lib/collide: every node against every cell, all from the
+/* collide.h - the slow twin of lib/collide/collide: every node against every cell, all from the
  * definitions. */
 #ifndef REF_COLLIDE_H
 #define REF_COLLIDE_H
 
-#include "../lib/collide.h"
+#include "../lib/collide/collide.h"
 
 typedef struct {
     int node, cell; /* as in SmCollideContact */
     double depth, out[3], weight[SM_COLLIDE_CORNERS];
     bool beyond; /* the node is out of the box of the cell's corners, as their axes reach beyond
-                  * them: lib/collide may miss it */
+                  * them: lib/collide/collide may miss it */
 } RefContact;
 
 /* `bodies` instances of a body at x, with frames as in sm_collide_find(). */
@@ -37,7 +37,7 @@ long ref_collide_find(const SmCollideRest *rest, const SmCollideParams *params, 
                       const double (*x)[3], const double (*frame)[9], RefContact **contact);
 
 /* Whether a node and a cell are so close in the material that they never collide
- * (lib/collide_rest.h). */
+ * (lib/collide/collide_rest.h). */
 bool ref_collide_near(const SmCollideRest *rest, int node, int cell);
 
 #endif

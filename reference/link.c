@@ -1,5 +1,5 @@
 #include "link.h"
-#include "../lib/team.h"
+#include "../lib/system/team.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #ifndef REF_LINK_H
 #define REF_LINK_H
 
-#include "../lib/voxel.h"
+#include "../lib/voxel/voxel.h"
 
 /* Bodies of no more particles are not worth waking threads for. */
 enum { REF_SERIAL = 500 };

@@ -5,7 +5,7 @@
 #ifndef REF_OCTREE_GOALS_H
 #define REF_OCTREE_GOALS_H
 
-#include "../octree/region.h"
+#include "../octree/region/region.h"
 #include "brute.h"
 
 typedef struct {

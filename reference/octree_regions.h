@@ -1,4 +1,4 @@
-/* octree_regions.h - the slow, readable twin of octree/graph.h, distance.h, sheaf.h
+/* octree_regions.h - the slow, readable twin of octree/graph/graph.h, distance.h, sheaf.h
  * and region.h.
  *
  * Everything as its definition says, over all pairs: O(leaves^2 * leaves) and more. Only tests and
@@ -6,7 +6,7 @@
 #ifndef REF_OCTREE_REGIONS_H
 #define REF_OCTREE_REGIONS_H
 
-#include "../octree/region.h"
+#include "../octree/region/region.h"
 
 /* Matrices over pairs of leaves, [leaves][leaves]. */
 typedef struct {

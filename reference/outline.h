@@ -1,9 +1,9 @@
-/* outline.h - a lattice as collisions see it (lib/collide_rest.h), from its cells one by one: the
- * twin of fastlsm/outline.h. */
+/* outline.h - a lattice as collisions see it (lib/collide/collide_rest.h), from its cells one by
+ * one: the twin of fastlsm/lattice/outline.h. */
 #ifndef REF_OUTLINE_H
 #define REF_OUTLINE_H
 
-#include "../lib/collide_rest.h"
+#include "../lib/collide/collide_rest.h"
 #include "link.h"
 
 typedef struct {

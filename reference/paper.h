@@ -47,7 +47,7 @@ const RefPaperRow *ref_paper_find(const char *paper, const char *scene);
 const RefPaperClaim *ref_paper_claims(int *count);
 const RefPaperClaim *ref_paper_claim(const char *paper, const char *name);
 
-/* Text of reference/claims.cfg, which bench/claim.h reads. */
+/* Text of reference/claims.cfg, which bench/claims/claim.h reads. */
 extern const char ref_claims_text[];
 
 /* The values in a column of the row, named as in papers.cfg ("particles"; of a change "added"),

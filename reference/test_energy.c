@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "../fastlsm/fastlsm.h"
-#include "../lib/collide.h"
+#include "../lib/collide/collide.h"
 #include "../lib/test_fields.h"
 #include "../octree/engine.h"
 #include "energy.h"

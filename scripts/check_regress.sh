@@ -7,7 +7,7 @@
 #
 # With --replay it records a long series of samples of each scene and replays fifty comparisons of the
 # program with itself from it: the samples, in their order, are dealt out to builds and rounds as
-# `regress` does, and judged by the same code (bench/replay.c). Scenes of long steps take minutes each.
+# `regress` does, and judged by the same code (bench/regress/replay.c). Scenes of long steps take minutes each.
 #
 # usage: scripts/check_regress.sh [SCENE [ROUNDS [TIMES]]]     default: infant 10 10
 #        scripts/check_regress.sh --replay [SCENE...]          default: all but the three slowest

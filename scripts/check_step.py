@@ -12,7 +12,7 @@ rest shapes of a plastic body begin at 1 with step 0 and flow from record to rec
 the yield to rounding, it may or may not). Prints the largest deviations in (finest) cells, of rest shapes
 in their unit; velocities count as what they move in a step, and are compared after the last step only,
 because the others hold the next step's pushes already. Where a step is damped, particles of regions whose
-inertia the precision does not resolve (unresolved() below, the rule of bench/check.h) may end elsewhere by
+inertia the precision does not resolve (unresolved() below, the rule of bench/check/check.h) may end elsewhere by
 more than the tolerance, by what damping does at most; they are counted and their deviation is given apart.
 Particles that follow a handle or end within a
 thousandth of a cell of an obstacle are compared in their goals only, and so is a record after which the next
@@ -341,7 +341,7 @@ def total(members, share):
 def angular_velocity(moments, turning, noise, thinnest):
     """omega of eq. 14 from sum m~ d d^T and sum m~ d x v over M. Where `noise`, what rounding may do to inertia,
     is a 64th of the least or more, rotations are damped a little, too, and about a line wholly: the rule of
-    lib/rigid_lanes.h, which says why. `thinnest` of the spread is no inertia."""
+    lib/simd/rigid_lanes.h, which says why. `thinnest` of the spread is no inertia."""
     trace = np.trace(moments)
     i = trace * np.eye(3) - moments
     adjugate = np.stack([np.cross(i[1], i[2]), np.cross(i[2], i[0]), np.cross(i[0], i[1])])
@@ -354,7 +354,7 @@ def angular_velocity(moments, turning, noise, thinnest):
 
 
 def rounding(precision):
-    """Of numbers, and which share of a region's spread is no inertia to lib/rigid_lanes.h."""
+    """Of numbers, and which share of a region's spread is no inertia to lib/simd/rigid_lanes.h."""
     return (2.0**-52, 1e-10) if precision == "double" else (2.0**-23, 1e-5)
 
 

@@ -29,7 +29,7 @@ except ImportError:
     sys.exit(77)
 
 SCRIPTS = os.path.dirname(os.path.abspath(__file__))
-TAIL = 64  # the checksum's line, bench/checksum.h
+TAIL = 64  # the checksum's line, bench/store/checksum.h
 MOST_MEMORY = 3 << 30  # bytes of address space; the readers' own libraries map most of one
 MOST_SECONDS = 60  # of processor time, and ten times as long by the clock
 MADE = {  # file: what makes it

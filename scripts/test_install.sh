@@ -51,7 +51,7 @@ check() {
 }
 
 cc=${CC:-cc}
-for header in "$prefix"/include/shapebench/*/*.h; do # each one must compile alone
+find "$prefix/include" -name "*.h" -print0 | while IFS= read -r -d "" header; do # each must compile alone
     "$cc" -std=c11 -Wall -Wextra -Werror -fsyntax-only -x c "$header"
 done
 read -ra flags < <(pkg-config --cflags --libs shapebench)

@@ -9,9 +9,9 @@
 
 #include "../../lib/handles.h"
 #include "../../lib/vector.h"
-#include "grip.h"
-#include "normal.h"
-#include "skin.h"
+#include "motion/grip.h"
+#include "motion/skin.h"
+#include "surface/normal.h"
 
 enum { MOST_POINTS = 128 };
 

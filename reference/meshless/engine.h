@@ -16,9 +16,9 @@
 #define REF_MESHLESS_ENGINE_H
 
 #include "../../lib/engine.h"
-#include "../../lib/mesh.h"
-#include "matrices.h"
-#include "mpu.h"
+#include "../../lib/mesh/mesh.h"
+#include "body/matrices.h"
+#include "surface/mpu.h"
 
 enum {
     REF_MESHLESS_POINTS = 12000,

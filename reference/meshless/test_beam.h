@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "body.h"
-#include "solver.h"
+#include "body/body.h"
+#include "solve/solver.h"
 
 static const RefMaterial steel = {.young = 1e7, .poisson = 0.3, .density = 1000};
 

@@ -8,10 +8,10 @@
 
 #include <cmocka.h>
 
-#include "../../lib/shape.h"
+#include "../../lib/shapes/shape.h"
 #include "../../lib/test_fields.h"
 #include "engine.h"
-#include "solver.h"
+#include "solve/solver.h"
 
 static const SmEngineType *const type = &ref_meshless_engine;
 

@@ -1,4 +1,4 @@
-"""A file that appears whole or not at all, by the rules of bench/draft.h."""
+"""A file that appears whole or not at all, by the rules of bench/store/draft.h."""
 import contextlib
 import os
 import stat

@@ -1,4 +1,4 @@
-"""Files that shapebench stored, opened only when they are whole: the reader of every script, as bench/h5.h's is
+"""Files that shapebench stored, opened only when they are whole: the reader of every script, as bench/store/h5.h's is
 that of every command."""
 import contextlib
 import functools
@@ -12,7 +12,7 @@ import h5py
 
 import interrupt
 
-CHECKSUM_LINE = 64  # bytes at the file's end (bench/checksum.h)
+CHECKSUM_LINE = 64  # bytes at the file's end (bench/store/checksum.h)
 CHECKSUM = re.compile(rb"\nshapebench: CRC-32 ([0-9a-f]{8}) of (\d{18}) bytes before\n")
 BLOCK = 1 << 24  # bytes read at once
 DEEPEST = 8  # groups in groups

@@ -1,0 +1,125 @@
+#include "ideal.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "../../reference/meshless/body/body.h"
+#include "../../reference/meshless/solve/modes.h"
+
+enum { ACROSS = 6, HELD = ACROSS * ACROSS, MODES = 18 };
+
+/* Points of the clamped end, in the middle of every octant's face, and the middle of the tip. */
+typedef struct {
+    double x[HELD + 1][3];
+} Ends;
+
+static Ends find_ends(double aspect)
+{
+    Ends ends;
+    for (int n = 0; n < HELD; n++) {
+        ends.x[n][0] = 0;
+        ends.x[n][1] = (n % ACROSS + 0.5) / ACROSS;
+        ends.x[n][2] = ((double)(n / ACROSS) + 0.5) / ACROSS;
+    }
+    ends.x[HELD][0] = aspect;
+    ends.x[HELD][1] = ends.x[HELD][2] = 0.5;
+    return ends;
+}
+
+static SmCode build(double aspect, double poisson, const Ends *ends, RefBody *body, SmError *error)
+{
+    RefBrick brick = {{0, 0, 0}, {aspect, 1, 1}};
+    RefField field = ref_field_brick(&brick);
+    RefBodyOptions options = {
+        .cell = 1.0 / ACROSS, .basis = REF_MLS_LINEAR, .material = {1, poisson, 1}};
+    return ref_body_build(&field, &options, HELD + 1, ends->x, body, error);
+}
+
+static void clamp(const RefBody *body, const Ends *ends, RefRows *rows, RefRows *tip)
+{
+    RefShape shape = ref_shape_create(&body->nodes);
+    for (int n = 0; n <= HELD; n++) {
+        ref_mls_at(&body->nodes, body->basis, ends->x[n], &shape);
+        for (int d = 0; d < 3; d++) ref_rows_displacement(n < HELD ? rows : tip, &shape, d);
+    }
+    ref_shape_free(&shape);
+}
+
+/* Under an acceleration along y: the mass matrix times 1, since shape functions add up to 1. */
+static SmCode find_sag(const RefBody *body, const RefRows *rows, const RefRows *tip, double *sag,
+                       SmError *error)
+{
+    RefSolver *solver;
+    SmCode code = ref_solver_create(&body->matrices, 0, rows, &solver, error);
+    if (code) return code;
+    size_t nodes = (size_t)body->nodes.count;
+    double *one = sm_alloc(nodes, sizeof *one), *weight = sm_alloc(nodes, sizeof *weight);
+    double *load = sm_alloc(3 * nodes, sizeof *load), *u = sm_alloc(3 * nodes, sizeof *u);
+    for (size_t n = 0; n < nodes; n++) one[n] = 1;
+    ref_sparse_apply(&body->matrices.mass, 1, one, weight);
+    for (size_t n = 0; n < nodes; n++) load[3 * n + 1] = weight[n];
+    ref_solver_solve(solver, load, NULL, u);
+    *sag = ref_rows_apply(tip, 1, u);
+    ref_solver_destroy(solver);
+    free(one);
+    free(weight);
+    free(load);
+    free(u);
+    return SM_OK;
+}
+
+/* Bending modes come in pairs, along y and z; those that leave the tip's middle where it is twist
+ * or stretch the beam. */
+static SmCode find_frequencies(const RefBody *body, const RefRows *rows, const RefRows *tip,
+                               double mass, double square[REF_BEAM_MODES], SmError *error)
+{
+    RefModes modes;
+    SmCode code = ref_modes_find(&body->matrices, rows, MODES, &modes, error);
+    if (code) return code;
+    size_t size = 3 * (size_t)modes.nodes;
+    double *u = sm_alloc(size, sizeof *u);
+    int bending = 0;
+    for (int k = 0; k < modes.count; k++) {
+        for (size_t i = 0; i < size; i++) u[i] = modes.shape[i * (size_t)modes.count + (size_t)k];
+        double side = hypot(ref_rows_apply(tip, 1, u), ref_rows_apply(tip, 2, u));
+        if (side * sqrt(mass) < 1) continue; /* 2 of a mode that bends */
+        if (bending % 2 == 0 && bending / 2 < REF_BEAM_MODES) square[bending / 2] = modes.lambda[k];
+        bending++;
+    }
+    free(u);
+    ref_modes_free(&modes);
+    if (bending >= 2 * REF_BEAM_MODES) return SM_OK;
+    return sm_fail(error, SM_INPUT, "the meshless beam has only %d modes of bending among its %d",
+                   bending, MODES);
+}
+
+static SmCode find_meshless(double aspect, double poisson, BenchIdeal *ideal, SmError *error)
+{
+    Ends ends = find_ends(aspect);
+    RefBody body;
+    SmCode code = build(aspect, poisson, &ends, &body, error);
+    if (code) return code;
+    RefRows rows = {0}, tip = {0};
+    clamp(&body, &ends, &rows, &tip);
+    code = find_sag(&body, &rows, &tip, &ideal->sag, error);
+    if (!code) code = find_frequencies(&body, &rows, &tip, aspect, ideal->square, error);
+    ideal->there = !code;
+    ref_rows_free(&rows);
+    ref_rows_free(&tip);
+    ref_body_free(&body);
+    return code;
+}
+
+SmCode bench_ideal_find(BenchModel model, double aspect, double poisson, BenchIdeal *ideal,
+                        SmError *error)
+{
+    *ideal = (BenchIdeal){0};
+    if (model == BENCH_MESHLESS)
+        return ref_solver_built ? find_meshless(aspect, poisson, ideal, error) : SM_OK;
+    RefBeam beam = {aspect, 1, poisson};
+    RefBeamTheory theory = model == BENCH_EULER ? REF_EULER : REF_TIMOSHENKO;
+    ideal->there = true;
+    ideal->sag = ref_beam_sag(&beam, theory);
+    ref_beam_frequencies(&beam, theory, ideal->square);
+    return SM_OK;
+}

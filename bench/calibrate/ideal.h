@@ -1,0 +1,28 @@
+/* ideal.h - what an elastic cantilever does, to which calibrate.h compares engines: by theory
+ * (reference/beam.h) and by the meshless reference (reference/meshless). */
+#ifndef BENCH_IDEAL_H
+#define BENCH_IDEAL_H
+
+#include <stdbool.h>
+
+#include "../../lib/error.h"
+#include "../../reference/beam.h"
+
+typedef enum { BENCH_EULER, BENCH_TIMOSHENKO, BENCH_MESHLESS, BENCH_MODELS } BenchModel;
+
+/* Of a square cantilever 1 thick, of Young's modulus and density 1. One `t` thick sags t^2 as far,
+ * and its squares of frequencies are 1 / t^2 of these. */
+typedef struct {
+    bool there;
+    double sag;                    /* of the tip, under an acceleration of 1 */
+    double square[REF_BEAM_MODES]; /* squares of angular frequencies of bending */
+} BenchIdeal;
+
+/* `aspect`: length over thickness, 3 or more. The meshless body is six octants thick, its end is
+ * held at as many points as octants end there; it is not `there` where the program was built
+ * without its libraries. SM_INPUT: the meshless body cannot be had. About 1 s for a meshless one of
+ * aspect 5, 2 s of 8, or it is free. */
+SmCode bench_ideal_find(BenchModel model, double aspect, double poisson, BenchIdeal *ideal,
+                        SmError *error);
+
+#endif

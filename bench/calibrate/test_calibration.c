@@ -1,0 +1,333 @@
+/* Plans, laws, recommendations and files of calibrations, on specimens whose laws are known. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../../lib/test_folder.h"
+#include "calibration_store.h"
+
+static const BenchCalibrationPlan sample_plan = {.scene = "beam",
+                                                 .engines = "both",
+                                                 .build = "this",
+                                                 .across = 5,
+                                                 .aspect = 8,
+                                                 .thickness = 0.1,
+                                                 .h = 1e-3,
+                                                 .density = 1000,
+                                                 .poisson = 0.3,
+                                                 .ws = 4,
+                                                 .epsilons = 2,
+                                                 .acrosses = 2,
+                                                 .aspects = 2,
+                                                 .steps = 2,
+                                                 .w = {1, 2, 5, 9},
+                                                 .epsilon = {0, 0.5},
+                                                 .other_across = {5, 10},
+                                                 .other_aspect = {4, 16},
+                                                 .step = {0.5, 2}};
+
+/* E = rho (a / h)^2 w (w + 1) (c + d w (w + 1) (a / t)^2); an epsilon doubles it. */
+static double two_terms(const BenchSpecimen *s, double c, double d)
+{
+    double speed = s->spacing / s->h, W = s->w * (s->w + 1.0), size = W * pow(s->spacing / 0.1, 2);
+    return 1000 * speed * speed * W * (c + d * size) * (s->epsilon > 0 ? 2 : 1);
+}
+
+/* All specimens of the plan, finished and valid, with a law's modulus. */
+static BenchCalibration *make(double c, double d)
+{
+    BenchCalibration *made = sm_alloc(1, sizeof *made);
+    BenchSpecimen *planned = sm_alloc(BENCH_CALIBRATION_SPECIMENS, sizeof *planned);
+    made->plan = sample_plan;
+    assert_int_equal(bench_calibration_plan(&made->plan, planned, NULL), SM_OK);
+    made->count = made->plan.specimens;
+    made->specimen = sm_alloc((size_t)made->count, sizeof *made->specimen);
+    for (long i = 0; i < made->count; i++) {
+        BenchSpecimen *s = &made->specimen[i];
+        *s = planned[i];
+        s->valid = true;
+        s->young = two_terms(s, c, d);
+        s->spread = 0.02;
+        s->loss[0] = 1e-6;
+        for (int y = 0; y < BENCH_YOUNGS; y++) s->young_timoshenko[y] = s->young * (1 + 0.005 * y);
+    }
+    free(planned);
+    bench_calibration_conclude(made);
+    return made;
+}
+
+static void let_go(BenchCalibration *made)
+{
+    bench_calibration_free(made);
+    free(made);
+}
+
+/* Of four w: both engines, one and two epsilons; another spacing for all (the scene's own is no
+ * other), other lengths and steps for the first, the middle and the last. */
+static void a_plan_makes_its_specimens(void **state)
+{
+    (void)state;
+    BenchCalibration *made = make(0.3, 0.1);
+    assert_int_equal(made->plan.specimens, 4 * 3 + 4 * 2 + 2 * 3 * 2 + 2 * 3 * 2);
+    const BenchSpecimen *s = made->specimen;
+    assert_string_equal(s[0].engine, "fastlsm");
+    assert_true(s[1].epsilon == 0 && s[2].epsilon == 0.5 && s[3].w == 2);
+    assert_false(s[3].wide || s[4].wide); /* 5 nodes through 5 cells; the lattice has 6 */
+    assert_true(s[6].wide && s[7].wide);
+    assert_true(s[12].across == 10 && fabs(s[12].spacing - 0.01) < 1e-15);
+    assert_string_equal(s[12].set, "spacing");
+    assert_true(s[20].aspect == 4 && s[22].w == 5 && s[24].w == 9 && s[26].aspect == 16);
+    assert_true(s[32].h == 5e-4 && s[43].h == 2e-3);
+    for (int i = 0; i < made->count; i++) assert_int_equal(s[i].index, i);
+    let_go(made);
+    BenchCalibrationPlan plan = sample_plan;
+    SmError error;
+    plan.w[1] = 2.5;
+    assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "--w: 2.5 is no whole number"));
+    plan = sample_plan;
+    strcpy(plan.engines, "octree");
+    assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_OK);
+    plan.ws = plan.epsilons = BENCH_CALIBRATION_VALUES;
+    for (int i = 0; i < BENCH_CALIBRATION_VALUES; i++)
+        plan.w[i] = i + 1, plan.epsilon[i] = 0.01 * i;
+    assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "specimens; 1 to 4096"));
+}
+
+static const BenchLaw *law_of(const BenchCalibration *made, const char *engine, const char *kind)
+{
+    for (int i = 0; i < made->laws; i++)
+        if (!strcmp(made->law[i].engine, engine) && !strcmp(made->law[i].kind, kind))
+            return &made->law[i];
+    fail_msg("no law %s of %s", kind, engine);
+    return NULL;
+}
+
+static void near_to(const double found[3], double wanted)
+{
+    assert_true(fabs(found[0] - wanted) < 1e-6);
+    assert_true(found[1] <= found[0] && found[0] <= found[2]);
+}
+
+static void two_terms_are_found_again(void **state)
+{
+    (void)state;
+    BenchCalibration *made = make(0.3, 0.1);
+    assert_int_equal(made->laws, 6);
+    for (int e = 0; e < 2; e++) {
+        const BenchLaw *law = law_of(made, e ? "octree" : "fastlsm", "two-term");
+        near_to(law->c, 0.3);
+        near_to(law->d, 0.1);
+        assert_true(law->scatter < 1e-9 && isnan(law->spacing[0]));
+        assert_int_equal(law->specimens, 4 + 4 + 6 + 6); /* the first epsilon's alone */
+    }
+    for (int i = 0; i < BENCH_FOUND; i++) assert_true(made->found[i][0]);
+    assert_non_null(strstr(made->found[0], "in 44 valid specimens of 44"));
+    assert_non_null(strstr(made->found[1], "fastlsm c = 0.300 (0.300 to 0.300)"));
+    assert_non_null(strstr(made->found[2], "from w 5"));
+    assert_non_null(strstr(made->found[2], "up to 2 times as stiff"));
+    let_go(made);
+}
+
+/* Specimens whose sag and frequencies disagree are described as they are: those of w 1 and 5 of a
+ * beam of 5 cells, while w 9 agrees. */
+static void what_is_apart_is_described_as_it_is(void **state)
+{
+    (void)state;
+    BenchCalibration *made = make(0.3, 0.1);
+    int apart = 0;
+    for (long i = 0; i < made->count; i++) {
+        BenchSpecimen *s = &made->specimen[i];
+        if (s->across != 5 || (s->w != 1 && s->w != 5)) continue;
+        s->spread = 0.2;
+        apart++;
+    }
+    bench_calibration_conclude(made);
+    char wanted[160];
+    snprintf(wanted, sizeof wanted,
+             "in %d specimens, whose regions are 0.6 to 2.2 times as wide as the beam is thick.",
+             apart);
+    if (!strstr(made->found[2], wanted)) fail_msg("%s", made->found[2]);
+    for (long i = 0; i < made->count; i++) made->specimen[i].spread = 0.02;
+    bench_calibration_conclude(made);
+    assert_non_null(strstr(made->found[2], "apart in 0 specimens."));
+    let_go(made);
+}
+
+/* E = 0.7 rho a^1.5 w^1.2 (L / t)^0.3 / h^2.1; a scatter widens the interval. */
+static void powers_are_found_again(void **state)
+{
+    (void)state;
+    for (int noisy = 0; noisy < 2; noisy++) {
+        BenchCalibration *made = make(0.3, 0.1);
+        for (long i = 0; i < made->count; i++) {
+            BenchSpecimen *s = &made->specimen[i];
+            s->young = 700 * pow(s->spacing, 1.5) * pow(s->w, 1.2) * pow(s->aspect, 0.3) /
+                       pow(s->h, 2.1) * (1 + noisy * 0.02 * (i % 3 - 1));
+        }
+        bench_calibration_conclude(made);
+        const BenchLaw *law = law_of(made, "fastlsm", "wide");
+        double width = law->step[2] - law->step[1];
+        assert_true(noisy ? width > 0.01 && law->step[1] < 2.1 && law->step[2] > 2.1
+                          : width < 1e-6);
+        if (!noisy) {
+            near_to(law->c, 0.7);
+            near_to(law->spacing, 1.5);
+            near_to(law->width, 1.2);
+            near_to(law->aspect, 0.3);
+            near_to(law->step, 2.1);
+        }
+        let_go(made);
+    }
+}
+
+static void nothing_is_concluded_from_nothing(void **state)
+{
+    (void)state;
+    BenchCalibration *made = make(0.3, 0.1);
+    long count = made->count;
+    made->count = 2;
+    bench_calibration_conclude(made);
+    assert_int_equal(made->laws, 0);
+    assert_true(made->found[0][0] && !made->found[1][0]);
+    for (long i = 0; i < count; i++) made->specimen[i].valid = false;
+    made->count = count;
+    bench_calibration_conclude(made);
+    assert_int_equal(made->laws, 0);
+    assert_true(!made->found[0][0] && !made->found[2][0]);
+    char sentence[BENCH_WORDS];
+    BenchYoung wish = {1e6, 1000, 1000, 0.1};
+    assert_int_equal(bench_advice_young(made->specimen, count, made->law, 0, &wish, sentence), -1);
+    assert_non_null(strstr(sentence, "no specimen of the grid is valid"));
+    made->count = 0;
+    bench_calibration_conclude(made);
+    assert_int_equal(made->laws, 0);
+    let_go(made);
+}
+
+static long advise(const BenchCalibration *made, double young, double density, char *sentence)
+{
+    BenchYoung wish = {young, density, made->plan.density, made->plan.thickness};
+    return bench_advice_young(made->specimen, made->count, made->law, made->laws, &wish, sentence);
+}
+
+static void a_modulus_has_its_w(void **state)
+{
+    (void)state;
+    char text[BENCH_WORDS];
+    BenchCalibration *made = make(0.3, 0.1);
+    double young = made->specimen[3].young; /* fastlsm w 2; the octree's is the same */
+    made->specimen[4].spread = 0.01;
+    assert_int_equal(advise(made, 1.05 * young, 1000, text), 4); /* the octree's is more elastic */
+    assert_non_null(strstr(text, "take octree with w 2 and epsilon 0"));
+    /* twice the density has twice the modulus */
+    assert_int_equal(advise(made, 2 * young, 2000, text), 4);
+    /* between two w: the time step goes with 1 / sqrt(E) */
+    assert_int_equal(advise(made, 1.25 * young, 1000, text), 3);
+    assert_non_null(strstr(text, "No w and epsilon is within 10%"));
+    char step[48];
+    snprintf(step, sizeof step, "A time step of %.4g s", 1e-3 / sqrt(1.25));
+    assert_non_null(strstr(text, step));
+    /* beyond all: a spacing that the law gives this modulus */
+    double beyond = 4 * made->specimen[11].young;
+    assert_int_equal(advise(made, beyond, 1000, text), 11);
+    const char *place = strstr(text, "about a spacing of ");
+    assert_non_null(place);
+    BenchSpecimen s = made->specimen[11];
+    s.spacing = strtod(place + strlen("about a spacing of "), NULL);
+    assert_true(fabs(two_terms(&s, 0.3, 0.1) / beyond - 1) < 0.03);
+    /* none that is thicker than the beam, or too fine for it */
+    advise(made, 1e12, 1000, text);
+    assert_null(strstr(text, "spacing of"));
+    advise(made, 1e-3, 1000, text);
+    assert_null(strstr(text, "spacing of"));
+    /* without a law no spacing is named */
+    made->laws = 0;
+    advise(made, beyond, 1000, text);
+    assert_null(strstr(text, "spacing of"));
+    made->specimen[4].valid = false;
+    assert_int_equal(advise(made, young, 1000, text), 3);
+    let_go(made);
+}
+
+static void a_calibration_comes_back(void **state)
+{
+    (void)state;
+    BenchCalibration *made = make(0.3, 0.1), *back = sm_alloc(1, sizeof *back);
+    SmError error;
+    made->specimen[5].valid = false;
+    strcpy(made->specimen[5].reason, "it broke");
+    made->specimen[5].young = NAN;
+    made->count = 7; /* one that was interrupted */
+    bench_calibration_conclude(made);
+    assert_int_equal(bench_calibration_store(path_in("a.h5"), made, &error), SM_OK);
+    if (bench_calibration_load(path_in("a.h5"), back, &error)) fail_msg("%s", error.text);
+    char what[240];
+    assert_true(bench_calibration_same(&made->plan, &back->plan, sizeof what, what));
+    assert_int_equal(back->count, 7);
+    assert_memory_equal(back->specimen, made->specimen, 7 * sizeof *made->specimen);
+    assert_int_equal(back->laws, made->laws);
+    assert_string_equal(back->found[1], made->found[1]);
+    back->plan.poisson = 0.25;
+    assert_false(bench_calibration_same(&made->plan, &back->plan, sizeof what, what));
+    assert_string_equal(what, "its poisson is 0.25, and here 0.3");
+    back->plan = made->plan;
+    back->plan.steps = 0;
+    assert_false(bench_calibration_same(&made->plan, &back->plan, sizeof what, what));
+    assert_non_null(strstr(what, "its step is 0 numbers"));
+    let_go(made);
+    let_go(back);
+}
+
+/* A file whose specimens or plan are another's is refused, as is one cut off. */
+static void foreign_files_are_refused(void **state)
+{
+    (void)state;
+    BenchCalibration *made = make(0.3, 0.1), *back = sm_alloc(1, sizeof *back);
+    SmError error;
+    made->specimen[2].w = 7;
+    assert_int_equal(bench_calibration_store(path_in("b.h5"), made, &error), SM_OK);
+    assert_int_equal(bench_calibration_load(path_in("b.h5"), back, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "specimen 2 is not one of its plan's"));
+    made->specimen[2].w = 1;
+    made->plan.specimens = 7;
+    assert_int_equal(bench_calibration_store(path_in("b.h5"), made, &error), SM_OK);
+    assert_int_equal(bench_calibration_load(path_in("b.h5"), back, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "its plan does not make 7 specimens"));
+    made->plan.specimens = 44;
+    made->plan.epsilon[1] = -1;
+    assert_int_equal(bench_calibration_store(path_in("b.h5"), made, &error), SM_OK);
+    assert_int_equal(bench_calibration_load(path_in("b.h5"), back, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "its plan has -1 as epsilon"));
+    assert_int_equal(truncate(path_in("b.h5"), 3000), 0);
+    assert_int_equal(bench_calibration_load(path_in("b.h5"), back, &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "b.h5: "));
+    assert_int_equal(bench_calibration_load(path_in("no.h5"), back, &error), SM_INPUT);
+    assert_int_equal(bench_calibration_store(path_in("no/b.h5"), made, &error), SM_OUTPUT);
+    let_go(made);
+    free(back);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plan_makes_its_specimens),
+        cmocka_unit_test(two_terms_are_found_again),
+        cmocka_unit_test(what_is_apart_is_described_as_it_is),
+        cmocka_unit_test(powers_are_found_again),
+        cmocka_unit_test(nothing_is_concluded_from_nothing),
+        cmocka_unit_test(a_modulus_has_its_w),
+        cmocka_unit_test(a_calibration_comes_back),
+        cmocka_unit_test(foreign_files_are_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,468 @@
+#include "check.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../lib/system/team.h"
+#include "../../octree/change/structure.h"
+#include "../../reference/condition.h"
+
+double bench_check_members(const BenchBody *body, int w)
+{
+    double side = 2.0 * w + 1, count = (double)body->voxels.particle_count;
+    return count * fmin(side * side * side, count);
+}
+
+static bool is_octree(const SmEngineType *type)
+{
+    return !strcmp(type->name, "octree");
+}
+
+double bench_check_room(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                        const SmEngine *engine)
+{
+    if (!is_octree(type)) return bench_check_members(body, scene->params.w);
+    const OctRegions *regions = &oct_engine_structure(engine)->regions;
+    double members = 0;
+    const OctTree *tree = &oct_engine_structure(engine)->tree;
+    for (long i = 0; i < tree->leaves; i++)
+        if (tree->node[i] >= 0) members += regions->size[i];
+    return members;
+}
+
+void bench_check_cells(const BenchCheck *check, const double (*x)[3], double (*cells)[3])
+{
+    const SmVoxels *voxels = &check->body->voxels;
+    for (long i = 0; i < check->count; i++)
+        for (int d = 0; d < 3; d++) cells[i][d] = (x[i][d] - voxels->origin[d]) / voxels->cell;
+}
+
+const RefRegions *bench_check_regions(const BenchCheck *check)
+{
+    return check->hierarchical ? &check->octree.regions : &check->regions;
+}
+
+void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                       const SmEngine *engine, BenchCheck *check)
+{
+    if (!is_octree(type)) {
+        bench_check_create(body, scene->params.w, check);
+        return;
+    }
+    const OctStructure *structure = oct_engine_structure(engine);
+    *check = (BenchCheck){.body = body,
+                          .count = structure->tree.live,
+                          .unique = structure->tree.live,
+                          .hierarchical = true,
+                          .plain = scene->octree.weighting == OCT_PLAIN};
+    size_t count = (size_t)check->count;
+    ref_tree_init(&structure->tree, &structure->regions, structure->mass, check->plain,
+                  &check->octree);
+    const OctOptions *options = &scene->octree;
+    check->octree.yield = options->yield;
+    check->octree.creep = options->creep * scene->params.h;
+    check->octree.most = options->most > 0 ? options->most : 1;
+    check->mass = sm_alloc(count, sizeof *check->mass);
+    check->weight = sm_alloc(count, sizeof *check->weight);
+    check->rest = sm_alloc(count, sizeof *check->rest);
+    memcpy(check->mass, check->octree.m, count * sizeof *check->mass);
+    memcpy(check->weight, check->octree.weight, count * sizeof *check->weight);
+    memcpy(check->rest, check->octree.x0, count * sizeof *check->rest);
+}
+
+int (*bench_check_parted(const BenchBody *body, long *count))[2]
+{
+    int(*pair)[2] = NULL;
+    RefLinks links;
+    long room = 0;
+    *count = 0;
+    ref_links_build(&body->voxels, NULL, 0, &links);
+    for (int p = 0; p < links.count; p++)
+        for (long n = links.start[p]; n < links.start[p + 1]; n++) {
+            int q = links.neighbour[n];
+            if (q < p || !sm_cut_crosses(body->cut, 0, body->x0[p], body->x0[q])) continue;
+            if (*count == room) {
+                room = 2 * room + 256;
+                pair = sm_realloc(pair, (size_t)room, sizeof *pair);
+            }
+            pair[*count][0] = p;
+            pair[(*count)++][1] = q;
+        }
+    ref_links_free(&links);
+    return pair;
+}
+
+void bench_check_create(const BenchBody *body, int w, BenchCheck *check)
+{
+    long count = body->voxels.particle_count;
+    *check = (BenchCheck){.body = body, .count = count};
+    long parted = 0;
+    int(*pair)[2] = body->cut ? bench_check_parted(body, &parted) : NULL;
+    ref_regions_build(&body->voxels, w, (const int(*)[2])pair, parted, &check->regions);
+    free(pair);
+    check->unique = ref_regions_unique(&check->regions);
+    check->mass = sm_alloc((size_t)count, sizeof *check->mass);
+    check->weight = sm_alloc((size_t)count, sizeof *check->weight);
+    check->rest = sm_alloc((size_t)count, sizeof *check->rest);
+    for (long p = 0; p < count; p++) {
+        long members = check->regions.start[p + 1] - check->regions.start[p];
+        check->mass[p] = body->mass ? body->mass[p] : 1;
+        check->weight[p] = check->mass[p] / (double)members;
+    }
+    bench_check_cells(check, (const double(*)[3])body->x0, check->rest);
+}
+
+void bench_check_free(BenchCheck *check)
+{
+    if (check->hierarchical)
+        ref_tree_free(&check->octree);
+    else
+        ref_regions_free(&check->regions);
+    free(check->mass);
+    free(check->weight);
+    free(check->rest);
+    *check = (BenchCheck){0};
+}
+
+static bool all_finite(const double (*value)[3], long count)
+{
+    double sum = 0; /* 0 times anything that is not finite is NaN */
+    for (long i = 0; i < count; i++) sum += 0 * value[i][0] + 0 * value[i][1] + 0 * value[i][2];
+    return sum == 0;
+}
+
+/* Adds the largest distance of two goals, in cells; apart, that of those that are `tied` and not
+ * alike all the same. */
+static void find_goal_error(const double (*g)[3], const double (*exact)[3], const bool *tied,
+                            long count, double cell, BenchDeviation *found)
+{
+    for (long p = 0; p < count; p++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++) square += (g[p][d] - exact[p][d]) * (g[p][d] - exact[p][d]);
+        double error = sqrt(square) / cell;
+        bool out = tied[p] && !(error <= found->goal_tolerance);
+        double *worst = out ? &found->tied_error : &found->goal_error;
+        *worst = fmax(*worst, error);
+        found->tied += out;
+    }
+}
+
+double bench_check_drift(const double (*x)[3], const double (*g)[3], const double *m, long count)
+{
+    double mass = 0, centre[3] = {0}, drift[3] = {0}, spread = 0;
+    for (long p = 0; p < count; p++) {
+        mass += m[p];
+        for (int d = 0; d < 3; d++) {
+            centre[d] += m[p] * x[p][d];
+            drift[d] += m[p] * (g[p][d] - x[p][d]);
+        }
+    }
+    for (long p = 0; p < count; p++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++) square += pow(x[p][d] - centre[d] / mass, 2);
+        spread += m[p] * sqrt(square);
+    }
+    double length = sqrt(drift[0] * drift[0] + drift[1] * drift[1] + drift[2] * drift[2]);
+    return spread > 0 ? length / spread : length;
+}
+
+/* The octree's, by the rest shapes S; with `flow` those become what a step leaves. Fills the
+ * regions' rotations R. */
+static void twin_goals(const BenchCheck *check, const double (*x)[3], double yield, bool flow,
+                       double (*S)[9], double (*R)[9], double (*exact)[3])
+{
+    const SmVoxels *voxels = &check->body->voxels;
+    size_t count = (size_t)check->count;
+    RefTreeBody twin = check->octree;
+    double(*at)[3] = sm_alloc(count, sizeof *at);
+    twin.yield = yield;
+    twin.S = S;
+    twin.R = R;
+    memset(R, 0, count * sizeof *R);
+    bench_check_cells(check, x, at);
+    for (size_t i = 0; i < count; i++)
+        for (int d = 0; d < 3; d++) R[i][4 * d] = 1;
+    ref_tree_goals(&twin, (const double(*)[3])at, flow, exact);
+    for (size_t i = 0; i < count; i++)
+        for (int d = 0; d < 3; d++) exact[i][d] = voxels->origin[d] + voxels->cell * exact[i][d];
+    free(at);
+}
+
+/* The twin's goals of one body, in mesh units. Ties go to the identity, as in a lattice. */
+static void exact_goals(const BenchCheck *check, const double (*x)[3], double (*S)[9],
+                        double (*R)[9], double (*exact)[3])
+{
+    if (check->hierarchical)
+        twin_goals(check, x, check->octree.yield, false, S, R, exact);
+    else
+        ref_goals(&check->regions, (const double(*)[3])check->body->x0, check->mass, x, exact);
+}
+
+/* Those of all instances, of an elastic octree the identity; NULL of a lattice. */
+static double (*rest_shapes(const BenchCheck *check, const SmEngineType *type, SmEngine *engine))[9]
+{
+    if (!check->hierarchical) return NULL;
+    long all = check->count * check->body->instances;
+    double(*S)[9] = sm_alloc((size_t)all, sizeof *S);
+    if (!type->get_shapes(engine, S))
+        for (long i = 0; i < all; i++) S[i][0] = S[i][4] = S[i][8] = 1;
+    return S;
+}
+
+void bench_check_turns(const BenchCheck *check, const SmEngineType *type, SmEngine *engine,
+                       const double (*x)[3], double (*R)[9])
+{
+    double(*S)[9] = rest_shapes(check, type, engine);
+    double(*unused)[3] = sm_alloc((size_t)check->count, sizeof *unused);
+    for (long first = 0; first < check->count * check->body->instances; first += check->count)
+        exact_goals(check, x + first, S + first, R + first, unused);
+    free(S);
+    free(unused);
+}
+
+/* Largest distance along an axis from the mean. */
+static double extent(const double (*x)[3], long count)
+{
+    double largest = 0;
+    for (int d = 0; d < 3; d++) {
+        double sum = 0;
+        for (long i = 0; i < count; i++) sum += x[i][d];
+        for (long i = 0; i < count; i++)
+            largest = fmax(largest, fabs(x[i][d] - sum / (double)count));
+    }
+    return largest;
+}
+
+void bench_check_tied(const BenchCheck *check, const char *precision, const double (*x)[3],
+                      bool *tied)
+{
+    const RefRegions *regions = bench_check_regions(check);
+    double(*at)[3] = sm_alloc((size_t)check->count, sizeof *at);
+    double tolerance = bench_check_tolerance(precision);
+    bench_check_cells(check, x, at);
+    double known =
+        0.5 * bench_check_epsilon(precision) * extent((const double(*)[3])at, check->count);
+    double least = fmin(0.125, known / tolerance);
+    double *hold = sm_alloc((size_t)check->count, sizeof *hold);
+#pragma omp parallel for num_threads(sm_team(0)) if (check->count > REF_SERIAL)
+    for (long r = 0; r < check->count; r++) {
+        RefCondition found;
+        ref_condition(regions, check->weight, (const double(*)[3])check->rest,
+                      (const double(*)[3])at, r, tolerance, &found);
+        hold[r] = found.hold;
+    }
+    memset(tied, 0, (size_t)check->count * sizeof *tied);
+    for (long r = 0; r < check->count; r++)
+        for (long n = regions->start[r]; n < regions->start[r + 1]; n++)
+            if (!(hold[r] >= least)) tied[regions->member[n]] = true;
+    free(hold);
+    free(at);
+}
+
+BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *type,
+                                 SmEngine *engine)
+{
+    long count = check->count, all = count * check->body->instances;
+    double(*x)[3] = sm_alloc((size_t)all, sizeof *x);
+    double(*v)[3] = sm_alloc((size_t)all, sizeof *v);
+    double(*g)[3] = sm_alloc((size_t)all, sizeof *g);
+    double(*exact)[3] = sm_alloc((size_t)count, sizeof *exact);
+    double(*S)[9] = rest_shapes(check, type, engine), (*R)[9] = NULL;
+    bool *tied = sm_alloc((size_t)count, sizeof *tied);
+    if (check->hierarchical) R = sm_alloc((size_t)count, sizeof *R);
+    type->goals(engine);
+    type->get(engine, SM_POSITION, x);
+    type->get(engine, SM_VELOCITY, v);
+    type->get(engine, SM_GOAL, g);
+    BenchDeviation result = {.particles = all,
+                             .goal_tolerance = bench_check_tolerance(type->precision),
+                             .plain = check->plain,
+                             .finite = all_finite((const double(*)[3])x, all) &&
+                                       all_finite((const double(*)[3])v, all) &&
+                                       all_finite((const double(*)[3])g, all)};
+    if (!result.finite) result.goal_error = result.momentum_error = INFINITY;
+    for (long first = 0; first < all && result.finite; first += count) {
+        const double(*at)[3] = (const double(*)[3])(x + first);
+        const double(*goal)[3] = (const double(*)[3])(g + first);
+        exact_goals(check, at, S ? S + first : NULL, R, exact);
+        bench_check_tied(check, type->precision, at, tied);
+        find_goal_error(goal, (const double(*)[3])exact, tied, count, check->body->voxels.cell,
+                        &result);
+        double drift = bench_check_drift(at, goal, check->mass, count);
+        result.momentum_error = fmax(result.momentum_error, drift);
+    }
+    free(x);
+    free(v);
+    free(g);
+    free(exact);
+    free(tied);
+    free(S);
+    free(R);
+    return result;
+}
+
+/* How far a region's shape is from the nearest of two that are both right. */
+static double shape_error(const double S[9], const double low[9], const double high[9])
+{
+    double worst[2] = {0};
+    for (int i = 0; i < 9; i++) {
+        worst[0] = fmax(worst[0], isfinite(S[i]) ? fabs(S[i] - low[i]) : INFINITY);
+        worst[1] = fmax(worst[1], isfinite(S[i]) ? fabs(S[i] - high[i]) : INFINITY);
+    }
+    return fmin(worst[0], worst[1]);
+}
+
+double bench_check_flow(const BenchCheck *check, BenchRunner *runner)
+{
+    const SmEngineType *type = runner->type;
+    if (!(check->hierarchical && check->octree.creep > 0)) return 0;
+    size_t count = (size_t)check->count, all = count * (size_t)check->body->instances;
+    double(*x)[3] = sm_alloc(all, sizeof *x), (*unused)[3] = sm_alloc(count, sizeof *unused);
+    double(*R)[9] = sm_alloc(count, sizeof *R);
+    double(*low)[9] = sm_alloc(count, sizeof *low), (*high)[9] = sm_alloc(count, sizeof *high);
+    double(*before)[9] = rest_shapes(check, type, runner->engine), worst = 0;
+    double slack = bench_check_tolerance(type->precision), yield = check->octree.yield;
+    type->get(runner->engine, SM_POSITION, x);
+    bench_runner_step(runner, NULL);
+    double(*after)[9] = rest_shapes(check, type, runner->engine);
+    for (size_t first = 0; first < all; first += count) {
+        const double(*at)[3] = (const double(*)[3])(x + first);
+        memcpy(low, before + first, count * sizeof *low);
+        memcpy(high, before + first, count * sizeof *high);
+        twin_goals(check, at, fmax(yield - slack, 0), true, low, R, unused);
+        twin_goals(check, at, yield + slack, true, high, R, unused);
+        for (size_t r = 0; r < count; r++)
+            worst = fmax(worst, shape_error(after[first + r], low[r], high[r]));
+    }
+    free(x);
+    free(unused);
+    free(R);
+    free(low);
+    free(high);
+    free(before);
+    free(after);
+    return worst / fmax(1, check->octree.creep);
+}
+
+double bench_check_epsilon(const char *precision)
+{
+    return strcmp(precision, "double") ? FLT_EPSILON : DBL_EPSILON;
+}
+
+double bench_check_tolerance(const char *precision)
+{
+    return strcmp(precision, "double") ? 5e-5 : 1e-10;
+}
+
+double bench_check_step(const char *precision)
+{
+    return strcmp(precision, "double") ? 1e-4 : 1e-9;
+}
+
+bool bench_check_keeps(double momentum_error, size_t size, char *reason)
+{
+    if (momentum_error <= BENCH_MOMENTUM_TOLERANCE) return true;
+    snprintf(reason, size, "linear momentum is off by %.3g; at most %g allowed", momentum_error,
+             BENCH_MOMENTUM_TOLERANCE);
+    return false;
+}
+
+bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason)
+{
+    if (!found->finite)
+        snprintf(reason, size, "positions, velocities or goals are not finite");
+    else if (!(found->goal_error <= found->goal_tolerance))
+        snprintf(reason, size, "goals are %.3g cells from brute force; at most %g allowed",
+                 found->goal_error, found->goal_tolerance);
+    else if (!(found->damping_error <= found->damping_tolerance))
+        snprintf(reason, size,
+                 "damped velocities are %.3g of the largest from brute force; at most %.2g allowed",
+                 found->damping_error, found->damping_tolerance);
+    else if (found->contacts_wrong > 0)
+        snprintf(reason, size, "%ld of %ld contacts are not those of brute force",
+                 found->contacts_wrong, found->contacts);
+    else if (found->pushed_wrong > 0)
+        snprintf(reason, size, "%ld particles meet obstacles otherwise than brute force has it",
+                 found->pushed_wrong);
+    else if (!(found->turn_error <= BENCH_TURN_TOLERANCE))
+        snprintf(
+            reason, size,
+            "cells that collide are turned %.3g otherwise than brute force; at most %g allowed",
+            found->turn_error, BENCH_TURN_TOLERANCE);
+    else if ((double)found->tied > BENCH_LEFT_OUT * (double)found->particles)
+        snprintf(reason, size,
+                 "%ld of %ld particles are in regions whose rotation is not unique; at most %g%% "
+                 "may be",
+                 found->tied, found->particles, 100 * BENCH_LEFT_OUT);
+    else
+        return true;
+    return false;
+}
+
+void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
+{
+    worst->finite = worst->finite && found->finite;
+    worst->goal_tolerance = found->goal_tolerance;
+    worst->goal_error = fmax(worst->goal_error, found->goal_error);
+    worst->momentum_error = fmax(worst->momentum_error, found->momentum_error);
+    worst->plain = found->plain;
+    worst->particles = found->particles;
+    if (found->tied > worst->tied) worst->tied = found->tied;
+    if (found->blurred > worst->blurred) worst->blurred = found->blurred;
+    worst->tied_error = fmax(worst->tied_error, found->tied_error);
+    worst->blurred_error = fmax(worst->blurred_error, found->blurred_error);
+    if (found->contact_nodes > worst->contact_nodes) worst->contact_nodes = found->contact_nodes;
+    if (found->contact_all > worst->contact_all) worst->contact_all = found->contact_all;
+    worst->obstacles |= found->obstacles;
+    worst->pushed += found->pushed;
+    worst->pushed_wrong += found->pushed_wrong;
+    worst->contacts += found->contacts;
+    worst->contacts_wrong += found->contacts_wrong;
+    worst->motion_error = fmax(worst->motion_error, found->motion_error);
+    worst->turn_error = fmax(worst->turn_error, found->turn_error);
+    if (found->damping_error * worst->damping_tolerance <
+        worst->damping_error * found->damping_tolerance)
+        return;
+    worst->damping_error = found->damping_error;
+    worst->damping_tolerance = found->damping_tolerance;
+}
+
+void bench_check_text(const BenchDeviation *found, size_t size, char *text)
+{
+    size_t used = (size_t)snprintf(
+        text, size, "goals within %.2g cells of brute force (allowed %.0e), momentum %s %.1g",
+        found->goal_error, found->goal_tolerance,
+        found->plain ? "not kept by plain weighting, off by" : "kept to", found->momentum_error);
+    if (found->drift.steps > 0 && used < size)
+        used +=
+            (size_t)snprintf(text + used, size - used,
+                             ", left alone for %ld steps it drifts by %.1g cells and %.1g radians "
+                             "a step in each",
+                             found->drift.steps, found->drift.linear, found->drift.angular);
+    if (found->damping_tolerance > 0 && used < size)
+        used += (size_t)snprintf(text + used, size - used,
+                                 ", damping within %.1g of the largest velocity (allowed %.0e)",
+                                 found->damping_error, found->damping_tolerance);
+    if (found->contact_nodes > 0 && used < size)
+        used += (size_t)snprintf(text + used, size - used,
+                                 ", contacts of %ld of %ld surface nodes right (%ld of %ld)",
+                                 found->contact_nodes, found->contact_all,
+                                 found->contacts - found->contacts_wrong, found->contacts);
+    if (found->obstacles && used < size)
+        used +=
+            (size_t)snprintf(text + used, size - used,
+                             ", %ld pushed out of obstacles as brute force has it", found->pushed);
+    if (found->tied && used < size)
+        used += (size_t)snprintf(text + used, size - used,
+                                 "; %ld particle%s of regions whose rotation is not unique "
+                                 "left out (within %.1g)",
+                                 found->tied, found->tied > 1 ? "s" : "", found->tied_error);
+    if (found->blurred > 0 && used < size)
+        snprintf(text + used, size - used,
+                 "; %ld left out of damping, whose regions' inertia the precision does not "
+                 "resolve (within %.1g cells a step)",
+                 found->blurred, found->blurred_error);
+}

@@ -1,0 +1,198 @@
+/* check.h - are the goals, the damping, the contacts and what obstacles do of an engine's present
+ * state right? Held to brute force in double precision: lattice engines to reference/brute.h, the
+ * octree to reference/octree_goals.h, both to reference/collide.h and reference/obstacle.h. A
+ * plastic body's goals are those of the rest shapes that it has; whether they flow as they should
+ * is a check of its own, over a step.
+ */
+#ifndef BENCH_CHECK_H
+#define BENCH_CHECK_H
+
+#include "../../reference/brute.h"
+#include "../../reference/octree_goals.h"
+#include "../measure/drift.h"
+#include "../play/runner.h"
+
+typedef struct {
+    const BenchBody *body; /* the caller's, kept */
+    long count;            /* particles that one body should have */
+    long unique;           /* different regions; of an octree all */
+    double *mass;          /* [count] */
+    double *weight;        /* [count] what particles count in region sums */
+    double (*rest)[3];     /* [count] rest positions, in cells */
+    bool hierarchical;     /* an octree's */
+    bool plain;            /* its weighting: momentum is measured, but need not be kept */
+    RefRegions regions;    /* of a lattice */
+    RefTreeBody octree;
+} BenchCheck;
+
+/* What was found, of all instances. */
+typedef struct {
+    bool finite; /* positions, velocities and goals */
+    double
+        goal_error; /* largest |g - brute force| over particles, in cells; infinite if not finite */
+    double goal_tolerance; /* what is allowed */
+    double momentum_error; /* |sum m g - sum m x| / sum m |x - centroid|, largest of all instances;
+                            * with plain weighting, too */
+    bool plain;            /* weighting, with which it need not be kept */
+    BenchDrift drift;      /* of momenta, left alone over many steps; filled in by the caller */
+    double damping_error;  /* |v - brute force| / largest |v| after damping, of the particle ... */
+    double damping_tolerance; /* ... where it is largest of what is allowed there; 0: no damping */
+    double motion_error;      /* bench_check_motion() of the step that was damped; 0: none was */
+    long particles;           /* checked or left out */
+    long tied;                /* left out: beyond goal_tolerance, in a region whose rotation is not
+                               * unique */
+    double tied_error;        /* of those; what they would add to goal_error */
+    long blurred;         /* left out of damping's check: off by more than bench_check_step(), and
+                           * tied or in a region whose inertia the precision does not
+                           * resolve */
+    double blurred_error; /* of those, how far the step takes them elsewhere, in cells */
+    long contact_nodes;   /* whose contacts were compared; 0: nothing collides */
+    long contact_all;     /* nodes at the surface of all bodies, which alone have any */
+    long contacts;        /* of those compared, the engine's or brute force's */
+    long contacts_wrong;  /* in one of the two only, or otherwise */
+    double turn_error;    /* of an octree's colliding cells, largest |R - brute force| */
+    bool obstacles;       /* a step against obstacles was compared: */
+    long pushed;          /* particles that brute force pushes out of them, */
+    long pushed_wrong;    /* and all that end it otherwise */
+} BenchDeviation;
+
+/* Region members that a check of this body would hold in memory, at most; 4 bytes each. Beyond
+ * BENCH_MOST_MEMBERS nothing is checked. */
+#define BENCH_MOST_MEMBERS 1e8
+double bench_check_members(const BenchBody *body, int w);
+
+/* The same of an engine on the scene's body, which for an octree is asked. */
+double bench_check_room(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                        const SmEngine *engine);
+
+/* Builds the reference's regions for a lattice engine: O(particles (2w+1)^3) time and memory. */
+void bench_check_create(const BenchBody *body, int w, BenchCheck *check);
+
+/* For any engine on the scene's body. The octree's regions are those of the engine, leaf by leaf
+ * (reference/octree_regions.h is their twin, in tests). */
+void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                       const SmEngine *engine, BenchCheck *check);
+void bench_check_free(BenchCheck *check);
+
+/* Calls engine->goals() and compares; the state does not change.
+ *
+ * Particles of a region whose rotation is not unique to the precision are left out, and counted,
+ * where their goals differ by more than the tolerance: there rounding decides, or what the rotation
+ * was before. Of a region at rest goals are known to about epsilon D, D cells being the body's
+ * largest distance from its middle; over the region's hold (reference/condition.h) they may differ
+ * by as much as a turn by rounding moves them. Such are regions whose hold is below half of epsilon
+ * D / tolerance, but none that is held to an eighth: where that would not do, the body is larger
+ * than the precision resolves, and is INVALID.
+ */
+BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *type,
+                                 SmEngine *engine);
+
+/* Adds the check of damping to `found`, if the scene has any: puts the state of `engine` into
+ * others built alike, but at no handles and obstacles, steps one, and compares velocities to eq.
+ * 14's in double precision from the same goals, which another one finds.
+ *
+ * What is allowed, of the largest velocity, is the rounding of the sums (lib/simd/rigid_lanes.h):
+ * with n = 8 epsilon D^2 / inertia, D from the body's middle to the region, and f = spread /
+ * inertia, it is 16 epsilon + k (n + 8 epsilon f + 4 sqrt(epsilon n f)) of a particle's worst
+ * region: of the inertia, of its inversion, and of omega x x - omega x c; and what double precision
+ * loses of g - x at large coordinates. Regions are not resolved where n is above 1/128, as the
+ * engine may damp less there, or f so large that it may take the region for a line, unless it is
+ * one; nor are those that the check of goals leaves out. Their particles may be as far off as the
+ * whole of damping moves them, 2 k; but they are left out, counted, and their error is given only
+ * if the step takes them elsewhere by more than bench_check_step(). scripts/check_step.py has the
+ * same rule for recorded steps. */
+void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
+                         SmEngine *engine, BenchDeviation *found);
+
+/* Adds the check of contacts, of bodies with each other and with themselves, to `found`, if the
+ * scene has any; calls engine->goals(). Cells are described anew, of an octree from the engine's
+ * structure; its cells' turns are held to regions' rotations where these are unique. Every contact
+ * of a node with a cell that either has must be the other's too, and alike in depth, direction and
+ * weights, unless it is so for a node within the tolerance of this one; what lib/collide/collide.h
+ * says may be missed may be. Of bodies of more than BENCH_CONTACT_PAIRS pairs of a node and a cell
+ * as many nodes are compared as make that: half of those from nodes that the engine has contacts
+ * of, the others spread over the surface. */
+void bench_check_contacts(const BenchCheck *check, const BenchScene *scene,
+                          const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
+
+/* Adds the check of obstacles to `found`, if the scene has any: the state of `engine` is stepped
+ * once with them and once without, at no handles and contacts, and the one must be what
+ * reference/obstacle.h makes of the other, within the rounding of coordinates, or of a particle
+ * that is elsewhere by no more than that. */
+void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
+                           const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
+
+/* A step without handles, obstacles and contacts: how far, in cells, a particle's end of it is from
+ * eqs. 1 (of an undamped body) and 2 of fastlsm in double precision from the engine's goals.
+ * Infinite if not finite. */
+double bench_check_motion(const BenchRunner *runner);
+
+/* Momentum's error of one body's goals, and whether it is small enough; says so otherwise. */
+double bench_check_drift(const double (*x)[3], const double (*g)[3], const double *m, long count);
+bool bench_check_keeps(double momentum_error, size_t size, char *reason);
+
+/* Goals, damping, contacts, obstacles and momentum of the runner's present state, and whether all
+ * are within their tolerances; `reason` says what is not. */
+bool bench_check_all(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *found,
+                     size_t size, char *reason);
+
+/* The same, motion, and that what handles hold is where they hold it (the runner has stepped, or
+ * nothing is held): of what is measured without a row. The state does not change. Where regions
+ * have more than BENCH_MOST_MEMBERS, goals are held to momentum alone. False, and `reason` says so.
+ */
+bool bench_check_runner(const BenchRunner *runner, size_t size, char *reason);
+
+/* Rotations of the regions of all instances at x (mesh units), an octree's; ties go to the
+ * identity. */
+void bench_check_turns(const BenchCheck *check, const SmEngineType *type, SmEngine *engine,
+                       const double (*x)[3], double (*R)[9]);
+
+/* Pairs of neighbours that the body's cut parts, found one by one; the caller frees. */
+int (*bench_check_parted(const BenchBody *body, long *count))[2];
+
+/* Runs one step of a plastic octree: the largest difference of a component of S from what eq. 10
+ * makes of the state before it. Where a stretch is at the yield to within rounding, either side of
+ * it is right; a creep above 1 scales rounding up and is divided out. 0 of an elastic body, which
+ * is not stepped. */
+double bench_check_flow(const BenchCheck *check, BenchRunner *runner);
+
+/* Marks the particles of one body at x (mesh units) whose goals rest on a rotation that is not
+ * unique to the precision; O(members). */
+void bench_check_tied(const BenchCheck *check, const char *precision, const double (*x)[3],
+                      bool *tied);
+
+/* The regions' members, whichever engine's. */
+const RefRegions *bench_check_regions(const BenchCheck *check);
+
+/* Positions of one body, from mesh units to cells. */
+void bench_check_cells(const BenchCheck *check, const double (*x)[3], double (*cells)[3]);
+
+/* Rounding of the precision: the distance from 1 to the next number. */
+double bench_check_epsilon(const char *precision);
+
+/* The tolerance of goal_error: 5e-5 cells in "single", 1e-10 in "double" precision. */
+double bench_check_tolerance(const char *precision);
+
+/* What damping may move a particle otherwise in a step where its regions are not resolved, without
+ * its being left out: 1e-4 cells in "single", 1e-9 in "double" precision. */
+double bench_check_step(const char *precision);
+
+/* Says in `reason` what is not finite or beyond its tolerance and returns false, or true; momentum
+ * is the caller's to judge (BENCH_MOMENTUM_TOLERANCE). Invalid is also a state of which more than
+ * BENCH_LEFT_OUT of the particles were left out of the check of goals. */
+bool bench_check_verdict(const BenchDeviation *found, size_t size, char *reason);
+
+/* Makes the worse of each of two findings `worst`, which is zero but for `finite` to begin with;
+ * contacts add up. */
+void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst);
+
+/* What was found for people: "goals within 2e-06 cells of brute force, ..." */
+void bench_check_text(const BenchDeviation *found, size_t size, char *text);
+
+#define BENCH_CONTACT_PAIRS      3e7
+#define BENCH_CONTACT_TOLERANCE  1e-6 /* cells; engines find contacts in double precision */
+#define BENCH_TURN_TOLERANCE     5e-4 /* engines keep rotations to 1/16384 */
+#define BENCH_MOMENTUM_TOLERANCE 1e-6
+#define BENCH_LEFT_OUT           0.25
+
+#endif

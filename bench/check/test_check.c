@@ -1,0 +1,517 @@
+/* The check of goals, damping and contacts: right engines stand it where rotations are not unique,
+ * and wrong damping and contacts do not. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../../fastlsm/fastlsm.h"
+#include "../play/runner.h"
+#include "check.h"
+
+enum { LONG = 24, WIDE = 6 };
+
+typedef struct {
+    BenchScene scene;
+    BenchBody body;
+    const SmEngineType *type;
+    SmEngine *engine;
+    long count;
+    double (*x)[3], (*v)[3];
+} Plate;
+
+static const SmEngineType *const types[] = {&fastlsm_engine_f32, &fastlsm_engine_f64,
+                                            &octree_engine_f32, &octree_engine_f64};
+enum { TYPES = sizeof types / sizeof *types };
+
+/* A plate of one cell's thickness, whose cells are no mesh units. */
+static void strip_create(const SmEngineType *type, int length, int wide, double damping,
+                         bool collide, Plate *plate)
+{
+    SmVoxels voxels;
+    SmCounts counts;
+    *plate = (Plate){.type = type, .scene.params = {.w = 1, .h = 0.01, .damping = damping}};
+    plate->scene.params.collide.self = collide;
+    plate->scene.octree.sampling.levels = 1;
+    plate->scene.octree.sampling.criteria_count = 1; /* uniform, to the finest cells */
+    sm_voxels_block(&voxels, length, wide, 1, 0.3);
+    voxels.origin[0] = 40;
+    static double home[1][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    plate->body = (BenchBody){.voxels = voxels, .instances = 1, .pose = home};
+    SmEngineParams params = bench_engine_params(&plate->scene, &plate->body, 1);
+    assert_int_equal(type->create(&voxels, &params, &plate->engine, NULL), SM_OK);
+    type->count(plate->engine, &counts);
+    plate->count = counts.particles;
+    plate->x = sm_alloc((size_t)plate->count, sizeof *plate->x);
+    plate->v = sm_alloc((size_t)plate->count, sizeof *plate->v);
+    plate->body.x0 = sm_alloc((size_t)plate->count, sizeof *plate->x);
+    type->get(plate->engine, SM_REST, plate->body.x0);
+}
+
+static void plate_create(const SmEngineType *type, double damping, bool collide, Plate *plate)
+{
+    strip_create(type, LONG, WIDE, damping, collide, plate);
+}
+
+static void plate_free(Plate *plate)
+{
+    plate->type->destroy(plate->engine);
+    sm_voxels_free(&plate->body.voxels);
+    free(plate->body.x0);
+    free(plate->x);
+    free(plate->v);
+}
+
+/* The plate turned by a right angle about y; if `fold`, first folded onto itself along the middle
+ * and pressed flat; if `press`, onto a line. */
+static void place(Plate *plate, bool fold, bool press)
+{
+    bool octree = !strcmp(plate->type->name, "octree"); /* whose nodes are in cells' middles */
+    double middle = 40 + 0.3 * (LONG / 2 + (octree ? 0.5 : 0));
+    unsigned seed = 3;
+    for (long p = 0; p < plate->count; p++) {
+        const double *x0 = plate->body.x0[p];
+        double along = x0[0] - middle, up = x0[2];
+        plate->x[p][0] = press || fold ? 0 : up;
+        plate->x[p][1] = x0[1];
+        plate->x[p][2] = press ? 0 : fold ? -fabs(along) : -along;
+        for (int d = 0; d < 3; d++) plate->v[p][d] = rand_r(&seed) / (double)RAND_MAX;
+    }
+    plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
+    plate->type->set(plate->engine, SM_VELOCITY, (const double(*)[3])plate->v);
+    plate->type->goals(plate->engine);
+}
+
+static BenchDeviation check_plate(Plate *plate)
+{
+    BenchCheck check;
+    bench_check_begin(&plate->scene, &plate->body, plate->type, plate->engine, &check);
+    BenchDeviation found = bench_check_state(&check, plate->type, plate->engine);
+    bench_check_damping(&check, &plate->scene, plate->type, plate->engine, &found);
+    bench_check_contacts(&check, &plate->scene, plate->type, plate->engine, &found);
+    bench_check_obstacles(&check, &plate->scene, plate->type, plate->engine, &found);
+    bench_check_free(&check);
+    return found;
+}
+
+/* Folded, the regions at the fold lie on lines, and only the engine knows how they were turned. */
+static void ties_are_left_out(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        char reason[160];
+        plate_create(types[t], 0, false, &plate);
+        place(&plate, false, false);
+        BenchDeviation found = check_plate(&plate);
+        assert_int_equal(found.tied, 0);
+        place(&plate, true, false);
+        found = check_plate(&plate);
+        if (!bench_check_verdict(&found, sizeof reason, reason))
+            fail_msg("%s, %s: %s", types[t]->name, types[t]->precision, reason);
+        assert_int_equal(found.particles, plate.count);
+        assert_true(found.tied >= WIDE && found.tied <= plate.count / 4);
+        plate_free(&plate);
+    }
+}
+
+/* Pressed onto a line all regions can be turned about it. While the engine turns them as brute
+ * force does, all are checked; once it keeps other rotations from before, they are left out, and a
+ * body of which too little is left to check is not valid. */
+static void ties_that_differ_alone_are_left_out(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        char reason[160];
+        plate_create(types[t], 0, false, &plate);
+        place(&plate, false, true);
+        BenchDeviation found = check_plate(&plate);
+        assert_int_equal(found.tied, 0);
+        assert_true(bench_check_verdict(&found, sizeof reason, reason));
+        place(&plate, false, false);
+        place(&plate, false, true);
+        found = check_plate(&plate);
+        assert_true(found.tied >= plate.count / 4);
+        if (strcmp(types[t]->name, "octree") !=
+            0) { /* of the octree's nodes just a quarter end elsewhere */
+            assert_false(bench_check_verdict(&found, sizeof reason, reason));
+            assert_non_null(strstr(reason, "not unique"));
+        }
+        plate_free(&plate);
+    }
+}
+
+/* Damps a little less than it is told to. */
+static const SmEngineType *honest;
+
+static SmCode slack_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
+                           SmError *error)
+{
+    SmEngineParams slack = *params;
+    slack.damping *= 0.999;
+    return honest->create(voxels, &slack, engine, error);
+}
+
+static void wrong_damping_is_invalid(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        char reason[160], text[384];
+        plate_create(types[t], 0.3, false, &plate);
+        place(&plate, false, false);
+        BenchDeviation found = check_plate(&plate);
+        if (!bench_check_verdict(&found, sizeof reason, reason))
+            fail_msg("%s, %s: %s", types[t]->name, types[t]->precision, reason);
+        assert_true(found.damping_tolerance > 0 && found.damping_tolerance < 1e-4);
+        assert_int_equal(found.blurred, 0);
+        bench_check_text(&found, sizeof text, text);
+        assert_non_null(strstr(text, ", damping within "));
+        SmEngineType slack = *types[t];
+        slack.create = slack_create;
+        honest = types[t];
+        plate.type = &slack;
+        found = check_plate(&plate);
+        assert_false(bench_check_verdict(&found, sizeof reason, reason));
+        if (!strstr(reason, "damped velocities are")) fail_msg("%s", reason);
+        plate_free(&plate);
+    }
+}
+
+/* Rolls the plate up in a spiral so narrow that it lies within itself. */
+static void roll(Plate *plate)
+{
+    unsigned seed = 5;
+    for (long p = 0; p < plate->count; p++) {
+        const double *x0 = plate->body.x0[p];
+        double angle = 9 * (x0[0] - 40) / (0.3 * LONG), out = 1 + 0.02 * angle + x0[2];
+        plate->x[p][0] = 40 + out * cos(angle);
+        plate->x[p][1] = x0[1] + 0.02 * rand_r(&seed) / (double)RAND_MAX;
+        plate->x[p][2] = -out * sin(angle);
+    }
+    plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
+}
+
+static void expect_valid(Plate *plate, BenchDeviation *found)
+{
+    char reason[160];
+    *found = check_plate(plate);
+    if (!bench_check_verdict(found, sizeof reason, reason))
+        fail_msg("%s, %s: %s", plate->type->name, plate->type->precision, reason);
+}
+
+static void contacts_are_brute_forces(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        BenchDeviation found;
+        char text[384];
+        plate_create(types[t], 0, true, &plate);
+        roll(&plate);
+        expect_valid(&plate, &found);
+        assert_int_equal(found.contact_nodes, plate.count); /* all are at the surface */
+        assert_int_equal(found.contact_all, plate.count);
+        assert_true(found.contacts > 30);
+        assert_true(found.turn_error < BENCH_TURN_TOLERANCE / 2);
+        bench_check_text(&found, sizeof text, text);
+        assert_non_null(strstr(text, ", contacts of "));
+        plate_free(&plate);
+    }
+}
+
+/* A row of cells that was turned one way and then another: how its regions, all lines, are turned
+ * about themselves is up to that. */
+static void lines_are_turned_by_their_past(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate row;
+        BenchDeviation found;
+        strip_create(types[t], LONG, 1, 0, true, &row);
+        place(&row, false, false);
+        for (long p = 0; p < row.count; p++) {
+            row.x[p][1] = row.body.x0[p][0];
+            row.x[p][2] = 0;
+        }
+        row.type->set(row.engine, SM_POSITION, (const double(*)[3])row.x);
+        row.type->goals(row.engine);
+        expect_valid(&row, &found);
+        assert_int_equal(found.tied, 0);
+        plate_free(&row);
+    }
+}
+
+/* Contacts of a place that is not where the particles are. */
+static long stale_contacts(SmEngine *engine, double (*turn)[9], SmContact **contact)
+{
+    SmCounts counts;
+    honest->count(engine, &counts);
+    double(*x)[3] = sm_alloc((size_t)counts.particles, sizeof *x);
+    honest->get(engine, SM_POSITION, x);
+    for (long p = 0; p < counts.particles; p++) x[p][p % 3] += 0.01;
+    honest->set(engine, SM_POSITION, (const double(*)[3])x);
+    long count = honest->contacts(engine, turn, contact);
+    for (long p = 0; p < counts.particles; p++) x[p][p % 3] -= 0.01;
+    honest->set(engine, SM_POSITION, (const double(*)[3])x);
+    free(x);
+    return count;
+}
+
+/* An engine whose contacts are wrong, in the way of `fault`. */
+static enum {
+    STALE,
+    LOST,
+    DEEPER,
+    ASIDE,
+    WEIGHED,
+    OTHER_CELL,
+    NO_CELL,
+    MADE_UP,
+    ALL_DEEPER,
+    TURNED,
+    FAULTS
+} fault;
+
+static long wrong_contacts(SmEngine *engine, double (*turn)[9], SmContact **contact)
+{
+    if (fault == STALE) return stale_contacts(engine, turn, contact);
+    long count = honest->contacts(engine, turn, contact);
+    SmContact *one = &(*contact)[count / 2];
+    assert_true(count > 10);
+    if (fault == LOST) *one = (*contact)[--count];
+    if (fault == DEEPER) one->depth += 1e-5;
+    if (fault == ASIDE) {
+        double out = one->out[0];
+        one->out[0] = one->out[2];
+        one->out[2] = -out;
+    }
+    if (fault == WEIGHED) one->weight[0] += 1e-4;
+    if (fault == OTHER_CELL) one->cell = (one->cell + 2 * WIDE) % (LONG * WIDE);
+    if (fault == NO_CELL) one->cell = one->particle - one->particle % (WIDE + 1) + LONG;
+    if (fault == MADE_UP) {
+        *contact = sm_realloc(*contact, (size_t)count + 1, sizeof **contact);
+        (*contact)[count] = (*contact)[0];
+        (*contact)[count++].particle = LONG / 2;
+    }
+    if (fault == TURNED) turn[7][0] += 1e-3;
+    for (long i = 0; i < count && fault == ALL_DEEPER; i++) (*contact)[i].depth += 1e-5;
+    return count;
+}
+
+static void wrong_contacts_are_invalid(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        BenchDeviation found;
+        char reason[160];
+        plate_create(types[t], 0, true, &plate);
+        roll(&plate);
+        SmEngineType wrong = *types[t];
+        wrong.contacts = wrong_contacts;
+        honest = types[t];
+        plate.type = &wrong;
+        for (int f = 0; f < FAULTS; f++) {
+            fault = f;
+            if (fault == TURNED && !strcmp(types[t]->name, "fastlsm")) continue;
+            found = check_plate(&plate);
+            if (bench_check_verdict(&found, sizeof reason, reason))
+                fail_msg("%s, %s: fault %d is not seen", wrong.name, wrong.precision, f);
+            if (!strstr(reason, "brute force")) fail_msg("fault %d: %s", f, reason);
+            assert_int_equal(found.turn_error > BENCH_TURN_TOLERANCE, fault == TURNED);
+            assert_true(fault == TURNED || found.contacts_wrong > 0);
+            assert_true(fault == ALL_DEEPER || fault == STALE || found.contacts_wrong <= 2);
+        }
+        plate_free(&plate);
+    }
+}
+
+/* Where there are too many pairs of nodes and cells, nodes with contacts are still among those
+ * that are compared. */
+static void of_many_bodies_a_sample_is_compared(void **state)
+{
+    (void)state;
+    enum { MANY = 36 };
+    static double home[MANY][3][4];
+    Plate plate;
+    char reason[160];
+    plate_create(&fastlsm_engine_f32, 0, false, &plate);
+    plate.type->destroy(plate.engine);
+    for (int i = 0; i < MANY; i++)
+        for (int d = 0; d < 3; d++) {
+            home[i][d][d] = 1;
+            home[i][d][3] = d == 2 ? i / 2 * 2 + 0.1 * (i % 2) : 0.05 * (i % 2); /* in pairs */
+        }
+    plate.scene.params.collide.bodies = true;
+    plate.body.pose = home;
+    plate.body.instances = MANY;
+    SmEngineParams params = bench_engine_params(&plate.scene, &plate.body, 1);
+    assert_int_equal(plate.type->create(&plate.body.voxels, &params, &plate.engine, NULL), SM_OK);
+    BenchDeviation found = check_plate(&plate);
+    if (!bench_check_verdict(&found, sizeof reason, reason)) fail_msg("%s", reason);
+    assert_int_equal(found.contact_all, MANY * plate.count);
+    assert_true(found.contact_nodes > 1000 && found.contact_nodes < found.contact_all);
+    assert_true(found.contacts > 1000);
+    SmEngineType wrong = *plate.type;
+    wrong.contacts = wrong_contacts;
+    honest = plate.type;
+    plate.type = &wrong;
+    fault = ALL_DEEPER;
+    found = check_plate(&plate);
+    assert_int_equal(found.contacts_wrong, found.contacts);
+    plate_free(&plate);
+}
+
+/* One of each kind in the way of the plate as place() turns it. */
+static void add_obstacles(Plate *plate)
+{
+    const SmObstacle all[] = {
+        {.kind = SM_PLANE, .a = {0, 0, -3}, .b = {0, 0, 1}, .friction = 0.3},
+        {.kind = SM_SPHERE, .a = {0.2, 0.9, 1}, .radius = 0.7, .friction = 0.1},
+        {.kind = SM_BOX, .a = {-0.1, -0.1, 2}, .b = {0.5, 1, 3}, .friction = 0.5},
+        {.kind = SM_CAPSULE, .a = {-1, 0.4, -1.5}, .b = {1, 0.7, -1.4}, .radius = 0.35},
+    };
+    plate->scene.obstacle_count = sizeof all / sizeof *all;
+    memcpy(plate->scene.obstacle, all, sizeof all);
+}
+
+/* Obstacles are not bound as they were given: one is a little nearer, or smoother. */
+static bool smoother;
+
+static void wrong_bound(SmEngine *engine, const SmBoundary *boundary)
+{
+    SmObstacle wrong[4];
+    SmBoundary other = *boundary;
+    memcpy(wrong, boundary->obstacle, (size_t)boundary->obstacle_count * sizeof *wrong);
+    if (smoother)
+        wrong[0].friction *= 0.9;
+    else
+        wrong[1].radius += 0.003; /* a hundredth of a cell */
+    other.obstacle = wrong;
+    honest->bound(engine, &other);
+}
+
+static void wrong_obstacles_are_invalid(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate plate;
+        BenchDeviation found;
+        char reason[160], text[384];
+        plate_create(types[t], 0.2, false, &plate);
+        add_obstacles(&plate);
+        place(&plate, false, false);
+        expect_valid(&plate, &found);
+        assert_true(found.obstacles && found.pushed > plate.count / 10);
+        assert_true(found.pushed < plate.count);
+        bench_check_text(&found, sizeof text, text);
+        assert_non_null(strstr(text, " pushed out of obstacles"));
+        SmEngineType wrong = *types[t];
+        wrong.bound = wrong_bound;
+        honest = types[t];
+        plate.type = &wrong;
+        for (int k = 0; k < 2; k++) {
+            smoother = k;
+            found = check_plate(&plate);
+            assert_false(bench_check_verdict(&found, sizeof reason, reason));
+            if (!strstr(reason, "meet obstacles otherwise")) fail_msg("%s", reason);
+            assert_true(found.pushed_wrong > 0 && found.pushed_wrong < found.pushed);
+        }
+        plate_free(&plate);
+    }
+}
+
+/* Of two findings the worse of each, and finite only if both are. */
+static void findings_add_up(void **state)
+{
+    (void)state;
+    BenchDeviation good = {.finite = true, .goal_error = 1e-6, .contacts = 7, .contact_nodes = 90},
+                   bad = {.goal_error = INFINITY, .tied = 3},
+                   odd = {.finite = true, .goal_error = 1e-7, .contacts = 2, .contacts_wrong = 1};
+    BenchDeviation worst = {.finite = true};
+    bench_check_merge(&good, &worst);
+    assert_true(worst.finite);
+    bench_check_merge(&bad, &worst);
+    assert_false(worst.finite);
+    bench_check_merge(&odd, &worst); /* a later good one mends nothing */
+    assert_false(worst.finite);
+    assert_true(isinf(worst.goal_error));
+    assert_int_equal(worst.tied, 3);
+    assert_int_equal(worst.contacts, 9);
+    assert_int_equal(worst.contacts_wrong, 1);
+    assert_int_equal(worst.contact_nodes, 90);
+}
+
+static void what_was_left_out_is_said(void **state)
+{
+    (void)state;
+    char text[512];
+    BenchDeviation found = {.finite = true,
+                            .goal_error = 2e-6,
+                            .goal_tolerance = 5e-5,
+                            .momentum_error = 0.02,
+                            .plain = true,
+                            .particles = 100,
+                            .tied = 12,
+                            .tied_error = 0.3,
+                            .blurred = 15,
+                            .blurred_error = 3e-4};
+    bench_check_text(&found, sizeof text, text);
+    assert_string_equal(text,
+                        "goals within 2e-06 cells of brute force (allowed 5e-05), momentum not "
+                        "kept by plain weighting, off by 0.02; 12 particles of regions whose "
+                        "rotation is not unique left out (within 0.3); 15 left out of damping, "
+                        "whose regions' inertia the precision does not resolve (within 0.0003 "
+                        "cells a step)");
+}
+
+/* Single precision does not resolve the inertia of a long strip's regions far from its middle. Only
+ * what that moves by more than a step's tolerance is left out, and it is said by how much. */
+static void what_is_not_resolved_is_compared(void **state)
+{
+    (void)state;
+    for (int t = 0; t < TYPES; t++) {
+        Plate strip;
+        char reason[160];
+        strip_create(types[t], 400, 1, 0.3, false, &strip);
+        for (long p = 0; p < strip.count; p++) {
+            for (int d = 0; d < 3; d++) strip.x[p][d] = strip.body.x0[p][d] + (d == 0 ? 7 : 0);
+            strip.v[p][0] = strip.v[p][2] = 0;
+            strip.v[p][1] = sin(0.05 * (double)p);
+        }
+        strip.type->set(strip.engine, SM_POSITION, (const double(*)[3])strip.x);
+        strip.type->set(strip.engine, SM_VELOCITY, (const double(*)[3])strip.v);
+        BenchDeviation found = check_plate(&strip);
+        if (!bench_check_verdict(&found, sizeof reason, reason))
+            fail_msg("%s, %s: %s", types[t]->name, types[t]->precision, reason);
+        assert_int_equal(found.blurred > 0, t == 0); /* an octree's frames are 64 cells long */
+        assert_true(found.blurred < found.particles && found.blurred_error < 1e-3);
+        assert_true(found.blurred == 0 || found.blurred_error > 1e-4);
+        plate_free(&strip);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ties_are_left_out),
+        cmocka_unit_test(ties_that_differ_alone_are_left_out),
+        cmocka_unit_test(wrong_damping_is_invalid),
+        cmocka_unit_test(what_is_not_resolved_is_compared),
+        cmocka_unit_test(contacts_are_brute_forces),
+        cmocka_unit_test(lines_are_turned_by_their_past),
+        cmocka_unit_test(wrong_contacts_are_invalid),
+        cmocka_unit_test(of_many_bodies_a_sample_is_compared),
+        cmocka_unit_test(wrong_obstacles_are_invalid),
+        cmocka_unit_test(findings_add_up),
+        cmocka_unit_test(what_was_left_out_is_said),
+    };
+    return cmocka_run_group_tests_name("check", tests, NULL, NULL);
+}

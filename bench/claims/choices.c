@@ -1,0 +1,233 @@
+#include "choices.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../octree/change/structure.h"
+#include "../../octree/graph/distance.h"
+
+static void choose(const BenchMeasure *measure, OctOptions *options)
+{
+    options->masses = measure->masses;
+    options->symmetry = measure->symmetry;
+    options->weighting = measure->weighting;
+    if (options->symmetry == OCT_ASYMMETRIC) options->form = OCT_ADJOINT;
+}
+
+/* Finds the scene, by its choices, and makes its body. */
+static SmCode prepare(const BenchMeasure *measure, BenchScene *scene, BenchBody *body,
+                      SmError *error)
+{
+    SmCode code = bench_scene_find(measure->scene, scene, error);
+    if (code) return code;
+    if (strcmp(scene->engine, "octree") != 0 || scene->instances != 1)
+        return sm_fail(error, SM_INPUT, "%.100s: one body in the octree is wanted", scene->file);
+    choose(measure, &scene->octree);
+    return bench_body_of_scene(scene, NULL, body, error);
+}
+
+/* ---- regions */
+
+/* Percent of all memberships of leaves in regions that are farther than (1 + epsilon) w from the
+ * region's own leaf. */
+static double beyond_percent(const OctStructure *s)
+{
+    const OctRegions *regions = &s->regions;
+    double members = 0, beyond = 0;
+    OctReach reach;
+    int *leaf = sm_alloc((size_t)s->tree.leaves, sizeof *leaf);
+    oct_reach_init(&reach, &s->graph);
+    for (int i = 0; i < s->tree.leaves; i++) {
+        double most = (1 + s->options.epsilon) * s->w[i];
+        members += regions->size[i];
+        if (regions->width[i] <= most) continue;
+        oct_reach_from(&reach, i, regions->width[i]);
+        oct_regions_leaves(&s->tree, regions, i, leaf);
+        for (int n = 0; n < regions->size[i]; n++) beyond += reach.distance[leaf[n]] > most;
+    }
+    oct_reach_free(&reach);
+    free(leaf);
+    return 100 * beyond / members;
+}
+
+static double region_field(const OctStructure *s, const char *field)
+{
+    if (!strcmp(field, "summation_nodes")) return s->regions.mean;
+    if (!strcmp(field, "most_summation")) return (double)s->regions.most;
+    if (!strcmp(field, "parts")) return (double)oct_structure_parts(s);
+    return beyond_percent(s);
+}
+
+void bench_choices_regions(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    (void)lab;
+    int quarters[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, quarters);
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    BenchBody body = {0};
+    SmError error;
+    bench_curve_begin(curve, "epsilon", measure->field);
+    SmCode code = prepare(measure, scene, &body, &error);
+    for (int c = 0; c < count && !code; c++) {
+        OctStructure s;
+        scene->octree.epsilon = 0.25 * quarters[c];
+        code = oct_structure_build(&body.voxels, &scene->octree, body.mass, &s, &error);
+        if (code) break;
+        double value = region_field(&s, measure->field);
+        bench_curve_add(curve, scene->octree.epsilon, value, value, value);
+        oct_structure_free(&s);
+    }
+    if (code) bench_curve_fail(curve, "%.180s", error.text);
+    bench_body_free(&body);
+    free(scene);
+}
+
+/* ---- growth */
+
+/* Nothing takes energy from the body, or gives it any; it starts bent, and trembles. */
+static void set_free(BenchScene *scene)
+{
+    scene->handle_count = scene->force_count = scene->obstacle_count = 0;
+    scene->cut_count = scene->touch_count = scene->view.level = 0;
+    scene->params.damping = 0;
+    scene->params.collide = (SmCollideParams){0};
+    memset(scene->params.gravity, 0, sizeof scene->params.gravity);
+    scene->bend = 0.7;
+    scene->kick = 0.02;
+}
+
+/* Of sum m v^2, its mean over so many steps. */
+static double mean_motion(BenchRunner *runner, const double *mass, long steps, double (*v)[3])
+{
+    double sum = 0;
+    for (long s = 0; s < steps; s++) {
+        bench_runner_step(runner, NULL);
+        runner->type->get(runner->engine, SM_VELOCITY, v);
+        for (long p = 0; p < runner->particles; p++)
+            for (int d = 0; d < 3; d++) sum += mass[p] * v[p][d] * v[p][d];
+    }
+    return sum / (double)steps;
+}
+
+static void add_growth(BenchRunner *runner, long steps, unsigned long seed, BenchCurve *curve)
+{
+    double *mass = sm_alloc((size_t)runner->particles, sizeof *mass);
+    double(*v)[3] = sm_alloc((size_t)runner->particles, sizeof *v);
+    runner->type->masses(runner->engine, mass);
+    bench_runner_disturb(runner, seed);
+    double first = mean_motion(runner, mass, steps / 10, v);
+    for (long s = 0; s < steps - 2 * (steps / 10); s++) bench_runner_step(runner, NULL);
+    double last = mean_motion(runner, mass, steps / 10, v);
+    bench_curve_check(curve, runner);
+    bench_curve_add(curve, 0, last / first, last / first, last / first);
+    free(mass);
+    free(v);
+}
+
+void bench_choices_growth(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    BenchBody body = {0};
+    BenchRunner runner;
+    SmError error;
+    bench_curve_begin(curve, "none", "kinetic energy, last tenth by first");
+    SmCode code = prepare(measure, scene, &body, &error);
+    if (!code) {
+        set_free(scene);
+        code = bench_runner_create(scene, &body, &octree_engine_f64, 1, &runner, &error);
+        if (!code) add_growth(&runner, lab->quick ? 2000 : 20000, lab->seed, curve);
+        bench_runner_free(&runner);
+    }
+    if (code) bench_curve_fail(curve, "%.180s", error.text);
+    bench_body_free(&body);
+    free(scene);
+}
+
+/* ---- placement */
+
+enum { ACROSS = 16, NODE = 4 }; /* finest cells: the beam's thickness, a node's edge */
+
+/* The scene `beam`, free, in nodes of NODE finest cells whose lattice begins `shift` of them off
+ * the beam's sides: those at the surface are then full only in part. */
+static void place_beam(const BenchMeasure *measure, int shift, BenchScene *scene)
+{
+    SmError error;
+    if (bench_scene_find("beam", scene, &error)) abort(); /* it is built in */
+    strcpy(scene->engine, "octree");
+    scene->handle_count = 0;
+    scene->voxel = (SmVoxelParams){.fill = SM_SOLID, .cell = 0.1 / ACROSS};
+    scene->octree.epsilon = 0.5;
+    scene->octree.width.edges = 1;
+    scene->octree.sampling = (OctSampling){
+        .levels = 3, .corner = {0, shift, shift}, .criteria = {{OCT_UNIFORM, .level = 1}}};
+    scene->octree.sampling.criteria_count = 1;
+    choose(measure, &scene->octree);
+}
+
+/* Of a small wave of bending, one period along the beam, cross-sections straight and upright to it,
+ * the share that the goal positions of one step take back: sum m u (x - g) / sum m u^2. */
+static double bending(const BenchBody *body, BenchRunner *runner)
+{
+    size_t count = (size_t)runner->particles;
+    double(*x)[3] = sm_alloc(count, sizeof *x), (*g)[3] = sm_alloc(count, sizeof *g);
+    double *mass = sm_alloc(count, sizeof *mass), taken = 0, all = 0;
+    double wave = 2 * M_PI / (body->high[0] - body->low[0]), size = 1e-3 * body->voxels.cell;
+    for (size_t i = 0; i < count; i++) {
+        const double *at = runner->x0[i];
+        double phase = wave * (at[0] - body->low[0]),
+               up = at[1] - (body->low[1] + body->high[1]) / 2;
+        x[i][0] = at[0] + size * wave * sin(phase) * up;
+        x[i][1] = at[1] + size * cos(phase);
+        x[i][2] = at[2];
+    }
+    runner->type->masses(runner->engine, mass);
+    runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])x);
+    runner->type->goals(runner->engine);
+    runner->type->get(runner->engine, SM_GOAL, g);
+    for (size_t i = 0; i < count; i++)
+        for (int d = 0; d < 3; d++) {
+            double moved = x[i][d] - runner->x0[i][d];
+            taken += mass[i] * moved * (x[i][d] - g[i][d]);
+            all += mass[i] * moved * moved;
+        }
+    free(x);
+    free(g);
+    free(mass);
+    return taken / all;
+}
+
+static double stiffness_at(const BenchMeasure *measure, int shift, BenchCurve *curve)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    BenchBody body;
+    BenchRunner runner;
+    SmError error;
+    double stiffness = NAN;
+    place_beam(measure, shift, scene);
+    SmCode code = bench_body_of_scene(scene, NULL, &body, &error);
+    if (!code) {
+        code = bench_runner_create(scene, &body, &octree_engine_f64, 1, &runner, &error);
+        if (!code) {
+            stiffness = bending(&body, &runner);
+            bench_curve_check(curve, &runner);
+        }
+        bench_runner_free(&runner);
+    }
+    if (code) bench_curve_fail(curve, "%.180s", error.text);
+    bench_body_free(&body);
+    free(scene);
+    return stiffness;
+}
+
+void bench_choices_placement(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    double least = INFINITY, most = 0;
+    (void)lab;
+    bench_curve_begin(curve, "none", "stiffness, most by least");
+    for (int shift = 0; shift < NODE && curve->valid; shift++) {
+        double stiffness = stiffness_at(measure, shift, curve);
+        least = fmin(least, stiffness);
+        most = fmax(most, stiffness);
+    }
+    bench_curve_add(curve, 0, most / least, most / least, most / least);
+}

@@ -1,0 +1,20 @@
+/* claim_store.h - findings in HDF5, with all that was measured for them. Schema: results/README.md.
+ */
+#ifndef BENCH_CLAIM_STORE_H
+#define BENCH_CLAIM_STORE_H
+
+#include "../measure/machine.h"
+#include "verdict.h"
+
+/* The layout written; raised with every change that a reader must know of. */
+enum { BENCH_CLAIM_SCHEMA = 2 };
+
+/* Where the lab's curve is in the file: its row's group if it is a row's, else its own. */
+void bench_claim_place(const BenchLab *lab, int curve, size_t size, char *place);
+
+/* Writes the findings, and of the lab every row and every curve that is no row's. The file appears
+ * whole or not at all. SM_OUTPUT names cause and remedy. */
+SmCode bench_claim_store(const char *path, const BenchFinding *findings, int count,
+                         const BenchLab *lab, const BenchMachine *machine, SmError *error);
+
+#endif

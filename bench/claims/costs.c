@@ -1,0 +1,356 @@
+#include "costs.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../fastlsm/fastlsm.h"
+#include "../../lib/system/team.h"
+#include "../../octree/change/resample.h"
+#include "../../octree/region/halves.h"
+#include "../../octree/region/sheaf.h"
+#include "../kernels/cubes.h"
+#include "../kernels/matrices.h"
+#include "../kernels/tree_steps.h"
+#include "../play/play.h"
+
+static int repeats_of(const BenchLab *lab)
+{
+    return lab->quick ? 9 : 31;
+}
+
+/* ---- steps of cubes */
+
+static void create_cubes(const BenchLab *lab, const SmEngineParams *params, const int *side,
+                         const int *w, int count, BenchCube *cubes, BenchCurve *curve)
+{
+    SmError error;
+    for (int c = 0; c < count && curve->valid; c++) {
+        SmEngineParams own = *params;
+        own.w = w[c];
+        if (bench_cube_create(side[c], &fastlsm_engine_f32, &own, lab->seed, &cubes[c], &error))
+            bench_curve_fail(curve, "%.180s", error.text);
+        else if (!cubes[c].valid)
+            bench_curve_fail(curve, "cube of side %d, w = %d: %s", side[c], w[c], cubes[c].reason);
+    }
+}
+
+static void check_cubes(const BenchCube *cubes, int count, BenchCurve *curve)
+{
+    for (int c = 0; c < count; c++)
+        if (!cubes[c].valid) bench_curve_fail(curve, "%s", cubes[c].reason);
+}
+
+/* Mean over a row of `side` particles of how many are within w. */
+static double mean_side(int side, int w)
+{
+    double reach = w < side ? w : side - 1;
+    return 2 * reach + 1 - reach * (reach + 1) / side;
+}
+
+/* The sums' share of the step in CPU time: of a stage alone there is only the time on the wall,
+ * which other work is in, too. */
+static void add_sums(BenchCurve *curve, double x, const BenchCube *cube, int points)
+{
+    size_t repeats = (size_t)cube->repeats;
+    double *share = sm_alloc(repeats, sizeof *share), *step = sm_alloc(repeats, sizeof *step);
+    for (int r = 0; r < cube->repeats; r++) {
+        double all = 0;
+        for (int s = 0; s < SM_STAGES; s++) all += bench_cube_stage_ns(cube, (SmStage)s, r);
+        share[r] = bench_cube_stage_ns(cube, SM_FAST_SUM, r) / all;
+        step[r] = bench_cube_cpu_ns(cube, r);
+    }
+    BenchInterval part = bench_curve_interval(share, cube->repeats, 0.5, points);
+    BenchInterval whole = bench_curve_interval(step, cube->repeats, BENCH_LOW, points);
+    bench_curve_add(curve, x, whole.value * part.value, whole.low * part.low,
+                    whole.high * part.high);
+    free(share);
+    free(step);
+}
+
+void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int w[BENCH_RANGE_POINTS], side[BENCH_RANGE_POINTS] = {0};
+    int count = bench_range_numbers(&measure->w, w),
+        repeats = repeats_of(lab) / (measure->summation == SM_SUM_NAIVE ? 6 : 1);
+    BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
+    const SmEngineParams params = {
+        .h = 0.01, .summation = measure->summation, .layout = measure->layout, .threads = 1};
+    for (int c = 0; c < count; c++) side[c] = lab->quick ? 20 : 32;
+    bench_curve_begin(curve, "mean side of a region, particles",
+                      "fast summation, ns/particle/step");
+    create_cubes(lab, &params, side, w, count, cubes, curve);
+    if (curve->valid) bench_cubes_time(cubes, count, repeats, true);
+    check_cubes(cubes, count, curve);
+    for (int c = 0; c < count && curve->valid; c++)
+        add_sums(curve, mean_side(side[c], w[c]), &cubes[c], count);
+    for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
+    free(cubes);
+}
+
+static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve *curve)
+{
+    int w[BENCH_RANGE_POINTS] = {0}, repeats = repeats_of(lab);
+    BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
+    const SmEngineParams params = {.h = 0.01, .damping = 0.1, .threads = 1};
+    for (int c = 0; c < count; c++) w[c] = 1;
+    create_cubes(lab, &params, side, w, count, cubes, curve);
+    if (curve->valid) bench_cubes_time(cubes, count, repeats, false);
+    check_cubes(cubes, count, curve);
+    double *ms = sm_alloc((size_t)repeats, sizeof *ms);
+    for (int c = 0; c < count && curve->valid; c++) {
+        double particles = (double)cubes[c].particles;
+        for (int r = 0; r < repeats; r++)
+            ms[r] = 1e-6 * bench_cube_cpu_ns(&cubes[c], r) * particles;
+        bench_curve_sample(curve, particles, ms, repeats, BENCH_LOW, count);
+    }
+    free(ms);
+    for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
+    free(cubes);
+}
+
+/* ---- steps of the octree on cubes */
+
+/* Of a step, or of its hierarchical sums alone: ms. */
+static double tree_ms(const BenchTreeStep *step, bool sums, int r)
+{
+    if (!sums) return step->total[r] / 1e6;
+    return (step->part[r][BENCH_TREE_DEPTH] + step->part[r][BENCH_TREE_BREADTH] +
+            step->part[r][BENCH_TREE_GOALS]) /
+           1e6;
+}
+
+static void time_trees(BenchLab *lab, BenchTreeStep *steps, int count, bool sums, BenchCurve *curve)
+{
+    int repeats = repeats_of(lab);
+    double *ms = sm_alloc((size_t)repeats, sizeof *ms);
+    for (int s = 0; s < count; s++) bench_tree_step_create_f32(&steps[s]);
+    bench_tree_steps_time_f32(steps, count, repeats);
+    for (int s = 0; s < count; s++) {
+        if (!steps[s].valid)
+            bench_curve_fail(curve, "octree of %ld nodes: %s", steps[s].body->tree.leaves,
+                             steps[s].reason);
+        for (int r = 0; r < repeats && curve->valid; r++) ms[r] = tree_ms(&steps[s], sums, r);
+        if (curve->valid)
+            bench_curve_sample(curve, (double)steps[s].body->tree.leaves, ms, repeats, BENCH_LOW,
+                               count);
+    }
+    for (int s = 0; s < count; s++) bench_tree_step_free_f32(&steps[s]);
+    free(ms);
+}
+
+static void octree_sizes(BenchLab *lab, const int *side, int count, bool sums, BenchCurve *curve)
+{
+    BenchSampled *body = sm_alloc((size_t)count, sizeof *body);
+    BenchTreeStep *steps = sm_alloc((size_t)count, sizeof *steps);
+    SmError error;
+    int made = 0;
+    for (; made < count && curve->valid; made++) {
+        if (bench_sampled_cube(side[made], &body[made], &error))
+            bench_curve_fail(curve, "%.180s", error.text);
+        steps[made] =
+            (BenchTreeStep){.body = &body[made], .parts = sums, .threads = 1, .seed = lab->seed};
+    }
+    if (curve->valid) time_trees(lab, steps, count, sums, curve);
+    for (int s = 0; s < made; s++) bench_sampled_free(&body[s]);
+    free(steps);
+    free(body);
+}
+
+void bench_costs_size(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int side[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, side);
+    bool octree = !strcmp(measure->engine, "octree"), sums = !strcmp(measure->field, "sums");
+    for (int c = 0; c < count && lab->quick; c++) side[c] = side[c] > 40 ? 40 : side[c];
+    while (count > 1 && side[count - 1] == side[count - 2]) count--;
+    bench_curve_begin(curve, octree ? "nodes" : "particles", sums ? "sums, ms/step" : "ms/step");
+    if (octree)
+        octree_sizes(lab, side, count, sums, curve);
+    else
+        lattice_sizes(lab, side, count, curve);
+}
+
+/* ---- single numbers */
+
+void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int repeats = repeats_of(lab);
+    BenchPolar method = !strncmp(measure->field, "cold", 4)   ? BENCH_POLAR_COLD
+                        : !strncmp(measure->field, "warm", 4) ? BENCH_POLAR_WARM
+                                                              : BENCH_POLAR_BATCH;
+    BenchPolarResult result[BENCH_POLARS] = {0};
+    result[method].wanted = true;
+    bench_matrices_time(BENCH_F32, repeats, lab->seed, result);
+    bench_curve_begin(curve, "-", measure->field);
+    const BenchPolarResult *found = &result[method];
+    if (!found->valid)
+        bench_curve_fail(curve, "rotations differ from the SVD's by %.3g; at most %g allowed",
+                         found->error, found->limit);
+    else if (strstr(measure->field, "sweeps"))
+        bench_curve_add(curve, 0, found->sweeps, found->sweeps, found->sweeps);
+    else
+        bench_curve_sample(curve, 0, found->ns, repeats, BENCH_LOW, 1);
+    free(found->ns);
+}
+
+/* Sweeps of a decomposition, mean over the steps of some frames from the start. */
+static double mean_sweeps(BenchPlay *play, int frames)
+{
+    double sum = 0;
+    const BenchRunner *runner = bench_play_runner(play);
+    int steps = frames * runner->scene->steps_per_frame;
+    for (int s = 0; s < steps; s++) {
+        SmCounts counts;
+        bench_play_prepare(play);
+        bench_play_advance(play, NULL);
+        runner->type->count(runner->engine, &counts);
+        sum += counts.jacobi_sweeps / steps;
+    }
+    return sum;
+}
+
+void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    BenchBody body = {0};
+    BenchPlay play;
+    SmError error;
+    SmCode code = bench_scene_find(measure->scene, scene, &error);
+    bench_curve_begin(curve, "-", "sweeps a decomposition");
+    scene->params.polar = SM_POLAR_JACOBI;
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, &error);
+    if (!code)
+        code = bench_play_create(scene, &body, &fastlsm_engine_f32, lab->threads, lab->seed, &play,
+                                 &error);
+    if (code)
+        bench_curve_fail(curve, "%.180s", error.text);
+    else {
+        double sweeps = mean_sweeps(&play, lab->quick ? 5 : 20);
+        bench_curve_check(curve, bench_play_runner(&play));
+        bench_curve_add(curve, 0, sweeps, sweeps, sweeps);
+        bench_play_free(&play);
+    }
+    bench_body_free(&body);
+    free(scene);
+}
+
+/* ---- resampling */
+
+/* An octree that is changed, and scratch for searches in it. */
+typedef struct {
+    OctStructure s;
+    OctReach reach;
+    OctSheaf sheaf;
+    int *below;
+} Resampled;
+
+static SmCode make_resampled(const BenchMeasure *measure, Resampled *of, SmError *error)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    BenchBody body;
+    SmCode code = bench_scene_find(measure->scene, scene, error);
+    if (!code && strcmp(scene->engine, "octree") != 0)
+        code = sm_fail(error, SM_INPUT, "'%.60s' is no octree: nothing is resampled", scene->name);
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
+    if (!code) {
+        code = oct_structure_build(&body.voxels, &scene->octree, NULL, &of->s, error);
+        bench_body_free(&body);
+    }
+    free(scene);
+    if (code) return code;
+    oct_resample_prepare(&of->s);
+    of->below = oct_tree_below(&of->s.tree); /* searches do not read it */
+    oct_reach_init(&of->reach, &of->s.graph);
+    oct_sheaf_init(&of->sheaf, &of->s.tree, &of->reach);
+    return SM_OK;
+}
+
+static void free_resampled(Resampled *of)
+{
+    oct_sheaf_free(&of->sheaf);
+    oct_reach_free(&of->reach);
+    oct_structure_free(&of->s);
+    free(of->below);
+}
+
+/* The leaves among the children of a node that can be split; returns how many. */
+static int leaves_below(const OctTree *tree, int node, int leaf[8])
+{
+    int count = 0;
+    for (int c = tree->child[node]; c < tree->child[node] + tree->children[node]; c++)
+        if (tree->children[c] == 0 && tree->size[c] > 2) leaf[count++] = c;
+    return count;
+}
+
+static void change_all(OctStructure *s, const int *node, int count, bool split)
+{
+    for (int n = 0; n < count; n++) {
+        SmCode code = (split ? oct_resample_split : oct_resample_merge)(s, node[n], NULL);
+        assert(!code); /* leaves that can be split, and then those */
+        (void)code;
+    }
+}
+
+/* Percent of the time of a change that the distances of the leaves searched take when they are
+ * found alone. */
+static double distance_percent(Resampled *of, int node)
+{
+    OctStructure *s = &of->s;
+    int leaves[8], leaf_count = leaves_below(&s->tree, node, leaves);
+    double start = sm_now();
+    change_all(s, leaves, leaf_count, true);
+    const OctChange *change = oct_resample_update(s);
+    double all = sm_now() - start;
+    oct_reach_grow(&of->reach, s->tree.leaves);
+    oct_sheaf_grow(&of->sheaf, s->tree.nodes, s->tree.leaves, of->below);
+    start = sm_now();
+    for (long from = 0; from < change->searched_count; from += OCT_SHEAF) {
+        int reaches[OCT_SHEAF];
+        const int *leaf = change->searched + from;
+        long left = change->searched_count - from, count = left < OCT_SHEAF ? left : OCT_SHEAF;
+        for (int lane = 0; lane < count; lane++)
+            reaches[lane] = oct_halves_reach(s->w[leaf[lane]], s->options.epsilon);
+        oct_sheaf_search(&of->sheaf, (int)count, leaf, reaches);
+    }
+    double search = sm_now() - start;
+    change_all(s, leaves, leaf_count, false);
+    oct_resample_update(s);
+    return 100 * search / all;
+}
+
+/* A parent of leaves that can be split, the one for this turn, or -1. */
+static int parent_of_leaves(const OctTree *tree, int turn, int turns)
+{
+    for (long n = 0; n < tree->live; n++) {
+        int leaf = (int)((n + (long)turn * tree->live / turns) % tree->live);
+        int node = tree->node[leaf];
+        if (tree->size[node] > 2 && tree->parent[node] >= 0) return tree->parent[node];
+    }
+    return -1;
+}
+
+void bench_costs_resampling(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    int repeats = repeats_of(lab);
+    double *percent = sm_alloc((size_t)repeats, sizeof *percent);
+    int *node = sm_alloc((size_t)repeats, sizeof *node);
+    SmError error;
+    Resampled *of = sm_alloc(1, sizeof *of);
+    bench_curve_begin(curve, "-", measure->field);
+    if (make_resampled(measure, of, &error))
+        bench_curve_fail(curve, "%.180s", error.text);
+    else {
+        for (int r = 0; r < repeats; r++) node[r] = parent_of_leaves(&of->s.tree, r, repeats);
+        if (node[0] < 0) bench_curve_fail(curve, "no leaf can be split");
+        for (int r = 0; r < repeats && curve->valid; r++) {
+            distance_percent(of, node[r]); /* warms up */
+            percent[r] = distance_percent(of, node[r]);
+        }
+        if (curve->valid) bench_curve_sample(curve, 0, percent, repeats, 0.5, 1);
+        free_resampled(of);
+    }
+    free(of);
+    free(node);
+    free(percent);
+}

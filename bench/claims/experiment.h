@@ -1,0 +1,155 @@
+/* experiment.h - what a claim can have measured, each giving a curve: points (x, y) with spread.
+ *
+ * Everything is checked before it counts: a curve that is not valid says why. y is the median of
+ * the repeats, of times of cubes and matrices the lower quartile, because other work on the machine
+ * only adds; of cubes on the lattice the time is CPU time. low..high is y's confidence interval,
+ * from order statistics (statistic.h), at a level at which all points of the curve hold at once
+ * with 95% (Bonferroni): what is taken of a curve may be any of them. It knows of the repeats, not
+ * of what would change from run to run. Where there are too few repeats for that level it is the
+ * extremes. Without repeats it is y alone: counts, what is deterministic, and times of scenes that
+ * change; of "sag" it is the extremes of the swing that is left. */
+#ifndef BENCH_EXPERIMENT_H
+#define BENCH_EXPERIMENT_H
+
+#include "../../lib/engine.h"
+#include "../measure/row.h"
+#include "../play/runner.h"
+#include "../regress/statistic.h"
+
+/* Which settings each takes beside those named here is an error.
+ *
+ * - scene: one point: `field` of the scene's row as `tables` measures it, or NAMES of
+ *   scene_field.h; `scene`, and `engine` in place of the scene's; `without` one of the scene's
+ *   settings, which then has its default: the octree's wanted nodes, bases or summation_nodes, or
+ *   the reach within which its cuts refine.
+ * - sums: ns a particle (the stage's share of a step's least CPU time) of fast summation with
+ *   `summation` and `layout` (default: the engine's choice; naive sums are lists) in a solid cube,
+ *   against the mean side of its regions (2w + 1 but for those at the surface); range `w`.
+ * - size: ms a step of solid cubes of n x n x n particles against their number; range `n`. `engine`
+ *   fastlsm, w = 1; or octree, whose `field` may be "sums": its hierarchical sums alone.
+ * - polar: one point, `field`: "cold-sweeps", "warm-sweeps" of the paper's Jacobi, "cold-ns",
+ *   "warm-ns", "fast-ns" (what the engines use) of matrices that turn and stretch.
+ * - sweeps: one point: Jacobi sweeps a decomposition of `scene` on fastlsm, each started from the
+ *   last step's eigenvectors; mean over its first 20 frames.
+ * - smoothing: how far, in cells and on average, a perturbed cross-section of a bar has spread
+ *   after two steps of smoothing (fastlsm Fig. 2), against w; range `w`.
+ * - blending: largest jump of the displacement gradient between neighbouring particles' goals, in a
+ *   bar that is bent and twisted by half a turn (fastlsm Fig. 3), against the number of clusters,
+ *   range `n`; `matching` lattice has a region for every particle instead.
+ * - sag: how deep the tip of a clamped beam hangs, in mesh units, against w; `scene`, range `w`.
+ * - resampling: `field` "distance-share": percent of the time of resampling `scene`'s octree, where
+ *   the leaves of one parent are split, which the distances of the leaves searched take when they
+ *   are found alone (octree section 5.3); median over places spread over the body. */
+typedef enum {
+    BENCH_TRY_NOTHING,
+    BENCH_TRY_SCENE,
+    BENCH_TRY_SUMS,
+    BENCH_TRY_SIZE,
+    BENCH_TRY_POLAR,
+    BENCH_TRY_SWEEPS,
+    BENCH_TRY_SMOOTHING,
+    BENCH_TRY_BLENDING,
+    BENCH_TRY_SAG,
+    BENCH_TRY_RESAMPLING,
+    BENCH_TRY_REGIONS,
+    BENCH_TRY_GROWTH,
+    BENCH_TRY_PLACEMENT,
+} BenchTry;
+
+typedef enum {
+    BENCH_WITHOUT_NOTHING,
+    BENCH_WITHOUT_NODES,
+    BENCH_WITHOUT_BASES,
+    BENCH_WITHOUT_SUMMATION_NODES,
+    BENCH_WITHOUT_REACH
+} BenchWithout;
+
+typedef enum { BENCH_BY_LATTICE, BENCH_BY_RIGID, BENCH_BY_LINEAR, BENCH_BY_QUADRATIC } BenchMatcher;
+
+/* Whole numbers from..to, `points` of them at even ratios, fewer where those fall together. */
+typedef struct {
+    int from, to, points;
+} BenchRange;
+
+typedef struct {
+    BenchTry experiment;
+    char scene[64], engine[24], field[32];
+    SmSummation summation;
+    SmLayout layout;
+    OctMassRule masses;
+    OctSymmetry symmetry;
+    OctWeighting weighting;
+    BenchMatcher matching;
+    BenchWithout without;
+    BenchRange w, n;
+} BenchMeasure;
+
+enum {
+    BENCH_CURVE_POINTS = 72,
+    BENCH_CURVE_NAME = 192,
+    BENCH_RANGE_POINTS = 24,
+    BENCH_MOST_W = 16
+};
+
+typedef struct {
+    char name[BENCH_CURVE_NAME]; /* what was measured, without a blank or '/': unique */
+    char x_name[40], y_name[64];
+    int points;
+    double x[BENCH_CURVE_POINTS], y[BENCH_CURVE_POINTS];
+    double low[BENCH_CURVE_POINTS], high[BENCH_CURVE_POINTS]; /* y's confidence interval */
+    bool valid;
+    bool busy;        /* not valid because others took the processors: nothing is wrong */
+    char reason[192]; /* why not valid */
+    int row;          /* of the lab's rows that it is from; -1: none */
+} BenchCurve;
+
+/* What has been measured so far: nothing is measured twice. Begins zeroed but for the choices. */
+typedef struct {
+    bool quick;  /* fewer repeats, smaller bodies */
+    int threads; /* of scenes; cubes and kernels are timed on one */
+    unsigned long seed;
+    int rows, curves;
+    BenchRow *row;         /* [rows] */
+    char (*row_name)[128]; /* [rows] scene, as the claims name it, engine, what is without */
+    BenchCurve *curve;     /* [curves]; some are only evidence, of no claim */
+} BenchLab;
+
+/* What is wrong with a measurement's settings, or NULL; the line stands until the next call. */
+const char *bench_experiment_fault(const BenchMeasure *measure);
+
+/* "nodes", "bases", "summation_nodes", "reach". */
+const char *bench_without_name(BenchWithout without);
+
+/* How many points its curve has at most. */
+int bench_experiment_points(const BenchMeasure *measure);
+
+/* The place in lab->curve of the measurement's curve, which is measured if it is not there. What
+ * cannot be measured (no such scene) is a curve that is not valid. */
+int bench_experiment(BenchLab *lab, const BenchMeasure *measure);
+
+void bench_lab_free(BenchLab *lab);
+
+/* Whole numbers of the range, rising; `number` is [BENCH_RANGE_POINTS]. Returns how many. */
+int bench_range_numbers(const BenchRange *range, int *number);
+
+/* For the experiments: an empty, valid curve; a point of it; its failure, the first of which
+ * counts. */
+void bench_curve_begin(BenchCurve *curve, const char *x_name, const char *y_name);
+void bench_curve_add(BenchCurve *curve, double x, double y, double low, double high);
+void bench_curve_fail(BenchCurve *curve, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* A point of repeats: their quantile `share` and its interval, of a curve of `points` points. */
+void bench_curve_sample(BenchCurve *curve, double x, const double *value, int count, double share,
+                        int points);
+
+/* That interval alone. */
+BenchInterval bench_curve_interval(const double *value, int count, double share, int points);
+
+/* Fails where the runner's engine is not right in its present state: bench_check_runner(). */
+void bench_curve_check(BenchCurve *curve, const BenchRunner *runner);
+
+/* Keeps a curve as evidence. */
+void bench_lab_keep(BenchLab *lab, const BenchCurve *curve);
+
+#endif

@@ -1,0 +1,253 @@
+#include "scene_field.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../measure/measure.h"
+#include "../play/runner.h"
+
+/* A field that is a member of the row, or one that is made of several. */
+typedef struct {
+    const char *name;
+    enum { WHOLE, NUMBER, MADE } kind;
+    size_t offset;
+} Field;
+
+#define WHOLE_FIELD(name, member)                                                                  \
+    {                                                                                              \
+        name, WHOLE, offsetof(BenchRow, member)                                                    \
+    }
+#define NUMBER_FIELD(name, member)                                                                 \
+    {                                                                                              \
+        name, NUMBER, offsetof(BenchRow, member)                                                   \
+    }
+
+static const Field fields[] = {
+    WHOLE_FIELD("particles", particles),
+    WHOLE_FIELD("regions", regions),
+    WHOLE_FIELD("triangles", triangles),
+    WHOLE_FIELD("bases", bases),
+    WHOLE_FIELD("parts", parts),
+    WHOLE_FIELD("splits", splits),
+    WHOLE_FIELD("unasked_splits", unasked_splits),
+    WHOLE_FIELD("bytes", bytes),
+    NUMBER_FIELD("summation_nodes", summation_nodes),
+    WHOLE_FIELD("last_particles", change.last_nodes),
+    WHOLE_FIELD("added", change.most_added),
+    WHOLE_FIELD("pieces", change.pieces),
+    NUMBER_FIELD("first_ms", change.first_ms),
+    NUMBER_FIELD("last_ms", change.last_ms),
+    NUMBER_FIELD("least_ms", change.change_ms),
+    NUMBER_FIELD("most_ms", change.change_most_ms),
+    NUMBER_FIELD("surface_ms", change.surface_ms),
+    {"total_ms", MADE, 0},
+    {"ns_per_particle_step", MADE, 0},
+    {"fps", MADE, 0},
+    {"frame_rate", MADE, 0},
+    {"stage_percent", MADE, 0},
+    {"thirds_percent", MADE, 0},
+    {"growth_percent", MADE, 0},
+    {"cost_growth", MADE, 0},
+};
+enum { FIELDS = sizeof fields / sizeof fields[0] };
+
+static const Field *find(const char *name)
+{
+    for (int f = 0; f < FIELDS; f++)
+        if (!strcmp(fields[f].name, name)) return &fields[f];
+    return NULL;
+}
+
+bool bench_scene_field_known(const char *name)
+{
+    return find(name) != NULL;
+}
+
+void bench_scene_field_names(size_t size, char *names)
+{
+    size_t used = 0;
+    for (int f = 0; f < FIELDS && used < size; f++)
+        used += (size_t)snprintf(names + used, size - used, "%s%s", f ? "|" : "", fields[f].name);
+}
+
+/* The share of some stages, given as bits, one of `points` shares. */
+static void add_share(const BenchRow *row, unsigned stages, int points, BenchCurve *curve)
+{
+    double *share = sm_alloc((size_t)row->repeats, sizeof *share), part = 0;
+    for (int r = 0; r < row->repeats; r++) {
+        double sum = 0;
+        for (int s = 0; s < SM_STAGES; s++) {
+            sum += row->stage[r][s];
+            if (stages >> s & 1) share[r] += row->stage[r][s];
+        }
+        share[r] *= 100 / sum;
+    }
+    for (int s = 0; s < SM_STAGES; s++)
+        if (stages >> s & 1) part += row->stage_ms[s];
+    BenchInterval found = bench_curve_interval(share, row->repeats, 0.5, points);
+    double percent = 100 * part / row->total_ms; /* a table's, whose shares add up */
+    bench_curve_add(curve, curve->points, percent, fmin(percent, found.low),
+                    fmax(percent, found.high));
+    free(share);
+}
+
+static void add_made(const BenchRow *row, int steps_per_frame, const char *name, BenchCurve *curve)
+{
+    static const unsigned thirds[] = {1U << SM_FAST_SUM | 1U << SM_SHAPE_MATCHING, 1U << SM_POLAR,
+                                      1U << SM_DAMPING};
+    const BenchChangeRow *change = &row->change;
+    double steps = !strcmp(name, "frame_rate") ? steps_per_frame : 1;
+    BenchInterval step = bench_curve_interval(row->total, row->repeats, 0.5, 1); /* s */
+    double each = 1e9 / (double)row->particles;
+    if (!strcmp(name, "total_ms"))
+        bench_curve_add(curve, 0, 1e3 * step.value, 1e3 * step.low, 1e3 * step.high);
+    else if (!strcmp(name, "ns_per_particle_step"))
+        bench_curve_add(curve, 0, each * step.value, each * step.low, each * step.high);
+    else if (!strcmp(name, "fps") || !strcmp(name, "frame_rate"))
+        bench_curve_add(curve, 0, 1 / step.value / steps, 1 / step.high / steps,
+                        1 / step.low / steps);
+    else if (!strcmp(name, "stage_percent"))
+        for (int s = 0; s < SM_STAGES; s++) add_share(row, 1U << s, SM_STAGES, curve);
+    else if (!strcmp(name, "thirds_percent"))
+        for (int t = 0; t < 3; t++) add_share(row, thirds[t], 3, curve);
+    else {
+        double value = !strcmp(name, "cost_growth")
+                           ? change->last_ms / change->first_ms
+                           : 100.0 * (double)change->most_added / (double)change->first_nodes;
+        bench_curve_add(curve, 0, value, value, value);
+    }
+}
+
+/* Fills the curve from a row; it has `steps_per_frame` of its scene. */
+static void fill_curve(const BenchRow *row, int steps_per_frame, const char *name,
+                       BenchCurve *curve)
+{
+    const Field *field = find(name);
+    char y_name[96];
+    snprintf(y_name, sizeof y_name, "%s of %.30s", name, row->scene);
+    bench_curve_begin(curve, "place in the list", y_name);
+    if (!row->valid) {
+        bench_curve_fail(curve, "%s is INVALID: %s", row->scene, row->reason);
+        return;
+    }
+    size_t length = strlen(name);
+    bool time = field->kind == MADE ? strcmp(name, "growth_percent") != 0
+                                    : length > 3 && !strcmp(name + length - 3, "_ms");
+    bool frames = !strcmp(name, "cost_growth") ||
+                  (field->kind == NUMBER && field->offset >= offsetof(BenchRow, change));
+    if (time && frames && bench_row_frames_busy(row)) {
+        curve->busy = true;
+        bench_curve_fail(curve, "others took its processors from its frames (load average %.1f)",
+                         row->load);
+        return;
+    }
+    if (time && !frames && row->busy) {
+        curve->busy = true;
+        bench_curve_fail(curve, "others took %.0f%% of its processors (load average %.1f)",
+                         row->lost_percent, row->load);
+        return;
+    }
+    if (field->kind == MADE) {
+        add_made(row, steps_per_frame, name, curve);
+        return;
+    }
+    double value;
+    long whole;
+    if (field->kind == WHOLE) {
+        memcpy(&whole, (const char *)row + field->offset, sizeof whole);
+        value = (double)whole;
+    } else
+        memcpy(&value, (const char *)row + field->offset, sizeof value);
+    bench_curve_add(curve, 0, value, value, value);
+}
+
+static SmCode measure_row(BenchLab *lab, BenchScene *scene, BenchRow *row, SmError *error)
+{
+    BenchBody body;
+    const SmEngineType *type;
+    const BenchMeasureParams params = {.repeats = lab->quick ? 5 : 0,
+                                       .block_seconds = lab->quick ? 0.005 : 0,
+                                       .threads = lab->threads,
+                                       .seed = lab->seed};
+    SmCode code = bench_engine_find(scene->engine, NULL, &type, error);
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
+    if (code) return code;
+    code = bench_measure(scene, &body, type, &params, row, error);
+    bench_body_free(&body);
+    return code;
+}
+
+/* The row of this name, or -1. */
+static int known_row(const BenchLab *lab, const char *name)
+{
+    for (int r = 0; r < lab->rows; r++)
+        if (!strcmp(lab->row_name[r], name)) return r;
+    return -1;
+}
+
+/* Takes the row over; returns its number. */
+static int keep_row(BenchLab *lab, const BenchRow *row, const char *name)
+{
+    size_t rows = (size_t)lab->rows + 1;
+    lab->row = sm_realloc(lab->row, rows, sizeof *lab->row);
+    lab->row_name = sm_realloc(lab->row_name, rows, sizeof *lab->row_name);
+    lab->row[lab->rows] = *row;
+    strcpy(lab->row_name[lab->rows], name);
+    return lab->rows++;
+}
+
+/* The setting has its default, and the scene says so in its name. */
+static void take_away(BenchScene *scene, BenchWithout without)
+{
+    size_t used = strlen(scene->name);
+    snprintf(scene->name + used, sizeof scene->name - used, " without %s",
+             bench_without_name(without));
+    switch (without) {
+    case BENCH_WITHOUT_NOTHING:
+        break;
+    case BENCH_WITHOUT_NODES:
+        scene->octree.sampling.nodes = 0;
+        break;
+    case BENCH_WITHOUT_BASES:
+        scene->octree.sampling.bases = 0;
+        break;
+    case BENCH_WITHOUT_SUMMATION_NODES:
+        scene->octree.summation_nodes = 0;
+        break;
+    case BENCH_WITHOUT_REACH:
+        for (int c = 0; c < scene->cut_count; c++) scene->cut[c].reach = 1;
+    }
+}
+
+void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    SmError error;
+    char name[sizeof *lab->row_name];
+    snprintf(name, sizeof name, "%s %s%s%s", measure->scene, measure->engine,
+             measure->without ? " without " : "",
+             measure->without ? bench_without_name(measure->without) : "");
+    int number = known_row(lab, name);
+    SmCode code = bench_scene_find(measure->scene, scene, &error);
+    if (!code && measure->engine[0])
+        snprintf(scene->engine, sizeof scene->engine, "%s", measure->engine);
+    if (!code && measure->without) take_away(scene, measure->without);
+    if (!code && number < 0) {
+        BenchRow row = {0};
+        code = measure_row(lab, scene, &row, &error);
+        if (code)
+            bench_row_free(&row);
+        else
+            number = keep_row(lab, &row, name);
+    }
+    if (code)
+        bench_curve_fail(curve, "%.180s", error.text);
+    else {
+        fill_curve(&lab->row[number], scene->steps_per_frame, measure->field, curve);
+        curve->row = number;
+    }
+    free(scene);
+}

@@ -1,0 +1,261 @@
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "../../lib/system/confine.h"
+#include "../../lib/system/printable.h"
+#include "../../lib/voxel/voxel.h"
+#include "../scene/body.h"
+#include "../scene/slice.h"
+#include "../store/draft.h"
+#include "command.h"
+#include "option.h"
+
+enum { KEY_FORMAT = 0x2000, KEY_PARTICLES, KEY_SLICE, FILES = 256 };
+
+typedef struct {
+    BenchCommon common;
+    const char *mesh[FILES];
+    int count;
+    long particles;
+    int json;
+    bool sliced, overwrite;
+    BenchSlice slice;
+    const char *output; /* of the slice */
+} Options;
+
+/* What is said of one mesh. */
+typedef struct {
+    SmMeshInfo mesh;
+    bool solid; /* can be simulated as a solid */
+    char verdict[512];
+    long particles, cells;
+    double cell;
+} Facts;
+
+static const char *const formats[] = {"text", "json", NULL};
+
+static const struct argp_option option_list[] = {
+    {"format", KEY_FORMAT, "FORMAT", 0, "text or json (default: text)", 1},
+    {"particles", KEY_PARTICLES, "N", 0,
+     "Particle count of the lattice that is tried (default: 2000)", 1},
+    {"slice", KEY_SLICE, "AXIS=SHARE", 0,
+     "Instead, of one mesh or of points with normals: the signed distance from the surface that "
+     "the "
+     "meshless engine makes of them, on the plane so far through their box (z=0.5), into --output",
+     2},
+    {"output", 'o', "FILE.h5", 0, "HDF5 file of the slice; scripts/plot_slice.py draws it", 2},
+    BENCH_OVERWRITE_OPTION(2),
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case KEY_FORMAT:
+        options->json = bench_option_choice(state, "--format", text, formats);
+        return 0;
+    case KEY_PARTICLES:
+        options->particles = bench_option_long(state, "--particles", text, 8, 1000000000);
+        return 0;
+    case KEY_SLICE:
+        options->sliced = true;
+        if (!bench_slice_parse(text, &options->slice))
+            bench_usage(state, "--slice: '%.40s' is not x=SHARE, y=SHARE or z=SHARE, 0 to 1", text);
+        return 0;
+    case 'o':
+        options->output = text;
+        return 0;
+    case BENCH_KEY_OVERWRITE:
+        options->overwrite = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (options->count == FILES) bench_usage(state, "at most %d meshes", FILES);
+        options->mesh[options->count++] = text;
+        return 0;
+    case ARGP_KEY_END:
+        if (!options->count) bench_usage(state, "which MESH?");
+        if (options->sliced != (options->output != NULL) || options->sliced < options->overwrite)
+            bench_usage(state, "--slice and --output go together, and --overwrite with both");
+        if (options->sliced && (options->count > 1 || options->json))
+            bench_usage(state, "--slice: of one mesh, without --format");
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const char help[] =
+    "Say what is in mesh files (OBJ, PLY, STL, OFF, glTF and what else Assimp reads, or "
+    "shape:NAME): triangles, vertices, components, edges that are open, shared by more than two "
+    "triangles or flipped, bounding box, volume (of closed ones), and whether it can be simulated "
+    "as a solid.\v"
+    "With several meshes each gets its say; the exit code is that of the last one that cannot be "
+    "read. --format json prints one array with an object for every mesh.\n" BENCH_EXIT_CODES;
+
+static const struct argp argp = {option_list, parse, "MESH...", help, NULL, NULL, NULL};
+
+static SmCode look(const char *name, long particles, Facts *facts, SmError *error)
+{
+    SmMesh mesh;
+    memset(facts, 0, sizeof *facts);
+    SmCode code = bench_mesh_load(name, &mesh, error);
+    if (code) return code;
+    facts->mesh = sm_mesh_info(&mesh);
+    SmVoxels voxels;
+    SmVoxelReport report;
+    SmError why;
+    SmVoxelParams params = {.fill = SM_SOLID, .particles = particles, .fewer = true};
+    facts->solid = !sm_voxelise_report(&mesh, &params, name, &voxels, &report, &why);
+    if (facts->solid) {
+        snprintf(facts->verdict, sizeof facts->verdict, "%s", sm_voxel_verdict(&report));
+        facts->particles = voxels.particle_count;
+        facts->cells = voxels.cell_count;
+        facts->cell = voxels.cell;
+        sm_voxels_free(&voxels);
+    } else {
+        const char *text = why.text;
+        size_t length = strlen(name);
+        if (!strncmp(text, name, length) && !strncmp(text + length, ": ", 2)) text += length + 2;
+        snprintf(facts->verdict, sizeof facts->verdict, "%s", text);
+    }
+    sm_mesh_free(&mesh);
+    return SM_OK;
+}
+
+static double box_volume(const SmMeshInfo *m)
+{
+    return (m->high[0] - m->low[0]) * (m->high[1] - m->low[1]) * (m->high[2] - m->low[2]);
+}
+
+static void print_volume(const SmMeshInfo *m)
+{
+    bool some = fabs(m->volume) > 1e-12 * box_volume(m); /* not rounding's sign */
+    if (isfinite(m->volume))
+        printf("  volume        %.6g%s\n", some ? m->volume : 0,
+               some && m->volume < 0 ? " (inside out)" : "");
+    else
+        printf("  volume        none: %s\n",
+               m->open_edges ? "the surface is open"
+                             : "the triangles do not agree which side is outside");
+}
+
+static void print_text(const char *name, const Facts *facts)
+{
+    const SmMeshInfo *m = &facts->mesh;
+    char shown[BENCH_PATH];
+    snprintf(shown, sizeof shown, "%s", name);
+    sm_printable(shown);
+    printf("%s\n", shown);
+    printf("  triangles     %ld\n", m->triangles);
+    printf("  vertices      %ld\n", m->vertices);
+    printf("  components    %ld\n", m->components);
+    printf("  watertight    %s", m->watertight ? "yes\n" : "no: ");
+    if (!m->watertight)
+        printf("%ld open edges, %ld edges of more than two triangles\n", m->open_edges,
+               m->nonmanifold_edges);
+    if (m->flipped_edges || m->degenerate || m->duplicates)
+        printf("  irregular     %ld flipped edges, %ld triangles without area, %ld duplicates\n",
+               m->flipped_edges, m->degenerate, m->duplicates);
+    printf("  bounding box  %.9g %.9g %.9g  to  %.9g %.9g %.9g\n", m->low[0], m->low[1], m->low[2],
+           m->high[0], m->high[1], m->high[2]);
+    printf("  size          %.6g x %.6g x %.6g\n", m->high[0] - m->low[0], m->high[1] - m->low[1],
+           m->high[2] - m->low[2]);
+    print_volume(m);
+    printf("  solid         %s: %s\n", facts->solid ? "yes" : "no", facts->verdict);
+    if (facts->solid)
+        printf("  lattice       %ld particles, %ld cells of %.6g\n", facts->particles, facts->cells,
+               facts->cell);
+}
+
+static json_t *vector(const double v[3])
+{
+    return json_pack("[f,f,f]", v[0], v[1], v[2]);
+}
+
+static json_t *to_json(const char *name, const Facts *facts)
+{
+    const SmMeshInfo *m = &facts->mesh;
+    json_t *text = json_string(name);
+    json_t *object = json_object();
+    json_object_set_new(object, "mesh", text ? text : json_string("(name is no UTF-8)"));
+    const struct {
+        const char *name;
+        long value;
+    } counts[] = {{"triangles", m->triangles},
+                  {"vertices", m->vertices},
+                  {"components", m->components},
+                  {"open_edges", m->open_edges},
+                  {"nonmanifold_edges", m->nonmanifold_edges},
+                  {"flipped_edges", m->flipped_edges},
+                  {"degenerate", m->degenerate},
+                  {"duplicates", m->duplicates},
+                  {"particles", facts->particles},
+                  {"cells", facts->cells}};
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
+        json_object_set_new(object, counts[i].name, json_integer(counts[i].value));
+    json_object_set_new(object, "watertight", json_boolean(m->watertight));
+    json_object_set_new(object, "low", vector(m->low));
+    json_object_set_new(object, "high", vector(m->high));
+    json_object_set_new(object, "volume", isfinite(m->volume) ? json_real(m->volume) : json_null());
+    json_object_set_new(object, "solid", json_boolean(facts->solid));
+    json_object_set_new(object, "verdict", json_string(facts->verdict));
+    json_object_set_new(object, "cell", json_real(facts->cell));
+    return object;
+}
+
+static SmCode cut_slice(const Options *options, const char *program)
+{
+    SmError error;
+    SmCode code = bench_draft_reserve(options->output, options->overwrite, &error);
+    if (!code) code = bench_slice_write(options->mesh[0], &options->slice, options->output, &error);
+    if (code)
+        bench_option_fail(program, &error);
+    else if (!options->common.quiet)
+        printf("wrote %s\n", options->output);
+    return code;
+}
+
+/* Said here, where strangers' meshes are looked at, and not in every run. */
+static void warn_of_freedom(const char *program)
+{
+    SmConfined can = sm_confinable();
+    if (can.calls && can.files) return;
+    fprintf(stderr,
+            "%s: this system cannot confine the process that reads a mesh: it %s%s%s; take care "
+            "with files that you do not trust\n",
+            program, can.files ? "" : "could open files outside of the mesh's folder (no Landlock)",
+            can.files || can.calls ? "" : " and ",
+            can.calls ? "" : "may make any system call (no seccomp)");
+}
+
+int bench_command_info(int argc, char **argv)
+{
+    Options options = {.particles = 2000};
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS,
+                        &options.common);
+    if (!options.common.quiet) warn_of_freedom(argv[0]);
+    if (options.sliced) return (int)cut_slice(&options, argv[0]);
+    SmCode code = SM_OK;
+    json_t *list = json_array();
+    for (int i = 0; i < options.count; i++) {
+        Facts facts;
+        SmError error;
+        SmCode failed = look(options.mesh[i], options.particles, &facts, &error);
+        if (failed) {
+            bench_option_fail(argv[0], &error);
+            code = failed;
+        } else if (options.json) {
+            json_array_append_new(list, to_json(options.mesh[i], &facts));
+        } else {
+            print_text(options.mesh[i], &facts);
+        }
+    }
+    if (options.json) {
+        json_dumpf(list, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+        putchar('\n');
+    }
+    json_decref(list);
+    return (int)code;
+}

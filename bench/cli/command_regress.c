@@ -1,0 +1,412 @@
+#define _GNU_SOURCE
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../../lib/stage.h"
+#include "../measure/measure.h"
+#include "../regress/counts.h"
+#include "../regress/regression.h"
+#include "../regress/revision.h"
+#include "../regress/samples.h"
+#include "../regress/statistic.h"
+#include "../scene/scene.h"
+#include "../store/draft.h"
+#include "command.h"
+#include "option.h"
+#include "process.h"
+
+enum {
+    KEY_BASELINE = 0x2000,
+    KEY_REVISION,
+    KEY_PAPER,
+    KEY_SCENE,
+    KEY_ROUNDS,
+    KEY_REPEATS,
+    KEY_BLOCK,
+    KEY_THRESHOLD,
+    KEY_FORMAT,
+    KEY_COUNTS
+};
+
+typedef struct {
+    BenchCommon common;
+    const char *baseline, *revision, *paper, *output;
+    BenchNames scenes;
+    int rounds, repeats;
+    double block, threshold; /* ms; a share, NaN: auto */
+    BenchRegressionFormat format;
+    bool counts, overwrite;
+} Options;
+
+static const struct argp_option option_list[] = {
+    {"baseline", KEY_BASELINE, "FILE.h5", 0,
+     "Compare with times that 'tables --repeats 201 --block 0.5 -o' (or other samples) stored, on "
+     "this machine",
+     1},
+    {"revision", KEY_REVISION, "REV", 0,
+     "Compare with this git revision, built in a temporary worktree and run interleaved", 1},
+    {"paper", KEY_PAPER, "NAME", 0,
+     "With --revision: the scenes of this paper's table: fastlsm (default), octree, meshless", 1},
+    {"scene", KEY_SCENE, "NAME|FILE", 0,
+     "Compare this scene only; may be repeated (default: all of the file, or of the paper)", 1},
+    {"rounds", KEY_ROUNDS, "N", 0,
+     "Rounds of two processes of each build and scene (default: 10 or as many as the test needs, "
+     "or "
+     "3 "
+     "beside a file)",
+     2},
+    {"repeats", KEY_REPEATS, "N", 0,
+     "Samples of every time in a process (default: 201; beside a file as there)", 2},
+    {"block", KEY_BLOCK, "MS", 0,
+     "Least milliseconds in a sample (default: 0.5; beside a file as there)", 2},
+    {"threshold", KEY_THRESHOLD, "auto|X", 0,
+     "Differences up to X (0.05: 5%) are 'same' (default: auto, as the build differs from itself)",
+     2},
+    {"counts", KEY_COUNTS, 0, 0,
+     "With --revision: also count each scene's instructions, which noise does not touch", 2},
+    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, json, junit or gbench (default: text)", 3},
+    {"output", 'o', "FILE", 0, "Write there (default: standard output)", 3},
+    BENCH_OVERWRITE_OPTION(3),
+    {0},
+};
+
+static const BenchOption options_taken[] = {
+    {KEY_BASELINE, BENCH_TO(TEXT, baseline), 0, 0, NULL},
+    {KEY_REVISION, BENCH_TO(TEXT, revision), 0, 0, NULL},
+    {KEY_PAPER, BENCH_TO(TEXT, paper), 0, 0, NULL},
+    {KEY_SCENE, BENCH_TO(NAMES, scenes), 0, 0, NULL},
+    {KEY_ROUNDS, BENCH_TO(INT, rounds), 1, 1000, NULL},
+    {KEY_REPEATS, BENCH_TO(INT, repeats), 1, 10000, NULL},
+    {KEY_BLOCK, BENCH_TO(REAL, block), 0.001, 60000, NULL},
+    {KEY_COUNTS, BENCH_TO(TRUE, counts), 0, 0, NULL},
+    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_regression_formats},
+    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    BENCH_OVERWRITE_TAKEN,
+    {0},
+};
+
+static void check_options(const Options *options, const struct argp_state *state)
+{
+    if (!options->baseline == !options->revision)
+        bench_usage(state, "compare with what? Say either --baseline FILE.h5 or --revision REV");
+    if (options->baseline && options->counts)
+        bench_usage(state, "--counts: a file has no instruction counts; use --revision");
+    if (options->baseline && options->paper)
+        bench_usage(state, "--paper: a file has its own scenes; choose of them with --scene");
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
+    switch (key) {
+    case KEY_THRESHOLD:
+        options->threshold =
+            strcmp(text, "auto") != 0 ? bench_option_real(state, "--threshold", text, 0, 10) : NAN;
+        return 0;
+    case ARGP_KEY_ARG:
+        bench_usage(state, "what is '%s'? Say --baseline FILE.h5 or --revision REV", text);
+    case ARGP_KEY_END:
+        check_options(options, state);
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const char help[] =
+    "Is this build slower than that one? Every scene is measured in fresh processes, each of which "
+    "checks it first: what is INVALID is not compared. The sample is a process, its value the 2% "
+    "quantile of its repeats, which other work on the machine hardly touches. A time is slower or "
+    "faster where the ratio of lower quartiles is beyond the threshold, its 95% bootstrap interval "
+    "does not hold 1, and Mann-Whitney's p, adjusted for all times that are compared, is below "
+    "0.01. The "
+    "threshold is what a build differs from itself by between processes of the same rounds, and at "
+    "least 2%, of a stage also 0.5% of the step; beside a file, which cannot be run interleaved, "
+    "it is wider, and at least 10%. "
+    "Scenes of a file are measured with the engine, precision and threads that it says.\v"
+    "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
+    " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; "
+    "7 nothing could be judged: all too noisy, or too few samples.";
+
+static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
+
+/* What one comparison holds. */
+typedef struct {
+    const Options *options;
+    BenchProgress progress;
+    BenchContests all;
+    BenchTask *task; /* [tasks] */
+    int tasks, rounds;
+    BenchRow *stored; /* rows of the file */
+    int stored_count;
+    BenchRevision revision;
+    char folder[BENCH_DRAFT_PATH], self[64];
+    BenchRegression found;
+} Session;
+
+static BenchTask *add_task(Session *session, const char *scene)
+{
+    session->task = sm_realloc(session->task, (size_t)session->tasks + 1, sizeof *session->task);
+    session->task[session->tasks] = (BenchTask){.scene = scene};
+    return &session->task[session->tasks++];
+}
+
+static const char *paper_of(const Options *options)
+{
+    return options->paper ? options->paper : "fastlsm";
+}
+
+/* The built-in scenes that are set beside rows of the paper's table. */
+static SmCode paper_tasks(Session *session, SmError *error)
+{
+    const char *paper = paper_of(session->options);
+    for (const char *const *name = bench_scene_names(); *name; name++) {
+        BenchScene scene;
+        if (bench_scene_find(*name, &scene, NULL) || strcmp(scene.paper, paper) != 0) continue;
+        if (scene.row[0]) add_task(session, *name);
+    }
+    if (session->tasks) return SM_OK;
+    return sm_fail(error, SM_USAGE,
+                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
+}
+
+/* As the row of the file was measured: as many repeats, of as many steps. */
+static void task_of_row(const BenchRow *row, BenchTask *task)
+{
+    task->engine = row->engine[0] ? row->engine : NULL;
+    task->precision = row->precision[0] ? row->precision : NULL;
+    task->threads = row->threads;
+    task->repeats = row->repeats;
+    if (row->valid && row->steps > 0)
+        task->block = 1e3 * bench_quantile(row->total, row->repeats, 0) * row->steps;
+}
+
+/* The scenes named, or all of the file. */
+static void file_tasks(Session *session)
+{
+    const Options *options = session->options;
+    for (int i = 0; i < session->stored_count; i++) {
+        const BenchRow *row = &session->stored[i];
+        bool there = options->scenes.count > 0;
+        for (int t = 0; t < session->tasks; t++) {
+            BenchScene scene;
+            BenchTask *task = &session->task[t];
+            bool same = !strcmp(task->scene, row->scene) ||
+                        (options->scenes.count && !bench_scene_find(task->scene, &scene, NULL) &&
+                         !strcmp(scene.name, row->scene));
+            if (same && options->scenes.count) task_of_row(row, task);
+            there |= same;
+        }
+        if (!there) task_of_row(row, add_task(session, row->scene));
+    }
+}
+
+/* Which scenes, and how long. */
+static SmCode choose_tasks(Session *session, SmError *error)
+{
+    const Options *options = session->options;
+    for (int i = 0; i < options->scenes.count; i++) add_task(session, options->scenes.name[i]);
+    if (options->baseline)
+        file_tasks(session);
+    else if (!options->scenes.count && paper_tasks(session, error))
+        return error->code;
+    for (int t = 0; t < session->tasks; t++) {
+        BenchTask *task = &session->task[t];
+        if (!task->threads) task->threads = options->common.threads;
+        if (options->repeats || !task->repeats)
+            task->repeats = options->repeats ? options->repeats : 201;
+        if (options->block > 0 || !(task->block > 0))
+            task->block = options->block > 0 ? options->block : 0.5;
+        task->block = fmin(fmax(task->block, 0.001), 60000);
+    }
+    return SM_OK;
+}
+
+/* Refuses, before anything is built, what could find nothing. */
+static SmCode choose_rounds(Session *session, SmError *error)
+{
+    const Options *options = session->options;
+    int times = session->tasks * BENCH_TIMES, least = bench_compare_rounds(times);
+    session->rounds = options->rounds ? options->rounds : options->baseline ? 3 : 10;
+    if (options->baseline || session->rounds >= least) return SM_OK;
+    if (!options->rounds) {
+        session->rounds = least;
+        return SM_OK;
+    }
+    return sm_fail(error, SM_USAGE,
+                   "--rounds %d: so few cannot show a difference in one of %d times: take at least "
+                   "--rounds %d, or fewer scenes",
+                   options->rounds, times, least);
+}
+
+/* As --baseline's help says; the samples that tables takes otherwise are too few and too short. */
+#define STORE "shapebench tables --repeats 201 --block 0.5 -o FILE.h5"
+
+static SmCode load_baseline(Session *session, const BenchMachine *here, SmError *error)
+{
+    const char *path = session->options->baseline;
+    BenchMachine *there = &session->found.machine[BENCH_OLD];
+    if (access(path, F_OK) != 0 && errno == ENOENT)
+        return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
+                       "no baseline: there is no %.200s; store one with " STORE, path);
+    SmCode code = bench_samples_load(path, &session->stored, &session->stored_count, there, error);
+    if (code) return code;
+    snprintf(session->found.baseline, sizeof session->found.baseline, "%.200s", path);
+    char differs[160];
+    if (bench_machine_same(there, here, sizeof differs, differs)) return SM_OK;
+    return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
+                   "no baseline: %.150s was measured on another machine (%s): "
+                   "store one here with " STORE,
+                   path, differs);
+}
+
+static SmCode build_revision(Session *session, SmError *error)
+{
+    const char *name = session->options->revision;
+    SmCode code =
+        bench_revision_build(name, session->folder, &session->progress, &session->revision, error);
+    snprintf(session->found.baseline, sizeof session->found.baseline, "revision %.100s (%.12s)",
+             name, session->revision.commit);
+    return code;
+}
+
+/* The stored rows of the scenes that were measured. */
+static void add_stored(Session *session)
+{
+    int measured = session->all.count;
+    for (int i = 0; i < session->stored_count; i++)
+        for (int c = 0; c < measured; c++)
+            if (!strcmp(session->all.contest[c].scene, session->stored[i].scene))
+                bench_contest_add(&session->all, BENCH_OLD, 0, &session->stored[i]);
+}
+
+static SmCode measure(Session *session, SmError *error)
+{
+    const Options *options = session->options;
+    BenchRegression *found = &session->found;
+    BenchRounds rounds = {
+        .program = {options->revision ? session->revision.program : NULL, session->self},
+        .paper = paper_of(options),
+        .task = session->task,
+        .tasks = session->tasks,
+        .rounds = session->rounds,
+        .seed = options->common.seed,
+        .folder = session->folder,
+        .progress = &session->progress};
+    SmCode code = bench_rounds_run(&rounds, &session->all, found->machine, error);
+    if (code) return code;
+    add_stored(session);
+    if (!options->counts) return SM_OK;
+    SmError why;
+    if (bench_counts_take(&rounds, &session->all, &found->counter, &why) == SM_OK) return SM_OK;
+    if (bench_process_caught()) return sm_fail(error, why.code, "%s", why.text);
+    bench_regression_remark(found, "no instruction counts: %s", why.text);
+    return SM_OK;
+}
+
+static void print_found(FILE *file, const void *what)
+{
+    const Session *session = what;
+    bench_regression_write(file, session->options->format, &session->found);
+}
+
+/* A draft that is not committed is discarded at the end. */
+static SmCode write_found(const Session *session, BenchDraft *draft, SmError *error)
+{
+    if (!session->options->output) {
+        print_found(stdout, session);
+        return SM_OK;
+    }
+    SmCode code = bench_draft_fill(draft, print_found, session, error);
+    return code ? code : bench_draft_commit(draft, error);
+}
+
+/* Measures, compares and writes; `exit_code` is the verdict's. */
+static SmCode compare(Session *session, BenchDraft *draft, int *exit_code, SmError *error)
+{
+    const Options *options = session->options;
+    BenchCompareParams params = {options->revision != NULL, session->rounds, options->threshold,
+                                 options->common.seed};
+    BenchRegression *found = &session->found;
+    double start = sm_now();
+    SmCode code = measure(session, error);
+    if (code) return code;
+    BenchComparison *list;
+    found->count = bench_compare(&session->all, &params, &list);
+    found->list = list;
+    found->params = &params;
+    found->seconds = sm_now() - start;
+    bench_regression_environment(found);
+    *exit_code = bench_comparisons_exit(list, found->count);
+    code = write_found(session, draft, error);
+    bench_comparisons_free(list, found->count);
+    return code;
+}
+
+static SmCode run(Session *session, BenchDraft *draft, const BenchMachine *here, int *exit_code,
+                  SmError *error)
+{
+    const Options *options = session->options;
+    SmCode code = options->baseline ? load_baseline(session, here, error) : SM_OK;
+    if (!code) code = choose_tasks(session, error);
+    if (!code) code = choose_rounds(session, error);
+    if (!code && options->revision) code = build_revision(session, error);
+    return code ? code : compare(session, draft, exit_code, error);
+}
+
+static SmCode make_scratch(Session *session, SmError *error)
+{
+    const char *base = getenv("TMPDIR");
+    if (!base || !base[0] || strlen(base) > 4000) base = "/tmp";
+    snprintf(session->folder, sizeof session->folder, "%.4000s/shapebench_XXXXXX", base);
+    if (mkdtemp(session->folder)) return SM_OK;
+    return bench_draft_fail(session->folder, errno, "", error);
+}
+
+static void remove_scratch(const Session *session)
+{
+    char path[BENCH_DRAFT_PATH];
+    DIR *folder = opendir(session->folder);
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        snprintf(path, sizeof path, "%.3800s/%.255s", session->folder, entry->d_name);
+        if (entry->d_name[0] != '.') unlink(path);
+    }
+    if (folder) closedir(folder);
+    rmdir(session->folder);
+}
+
+int bench_command_regress(int argc, char **argv)
+{
+    Options options = {.threshold = NAN};
+    BenchMachine here;
+    BenchDraft draft = {0};
+    SmError error;
+    int exit_code = SM_OK;
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
+    bench_machine_read(argc, argv, options.common.threads, &here);
+    Session *session = sm_alloc(1, sizeof *session);
+    session->options = &options;
+    snprintf(session->self, sizeof session->self, "/proc/%ld/exe", (long)getpid());
+    bench_process_catch();
+    bench_progress_start(&session->progress, options.common.quiet);
+    SmCode code = bench_draft_reserve(options.output, options.overwrite, &error);
+    if (!code && options.output) code = bench_draft_begin(options.output, &draft, &error);
+    if (!code) code = make_scratch(session, &error);
+    if (!code) {
+        code = run(session, &draft, &here, &exit_code, &error);
+        remove_scratch(session);
+    }
+    if (options.output && code) bench_draft_discard(&draft);
+    bench_contests_free(&session->all);
+    bench_rows_free(session->stored, session->stored_count);
+    free(session->task);
+    free(session);
+    if (code) bench_option_fail(argv[0], &error);
+    if (bench_process_caught()) return 128 + bench_process_caught();
+    return code ? (int)code : exit_code;
+}

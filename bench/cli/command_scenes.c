@@ -1,0 +1,126 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "../../lib/shapes/shape.h"
+#include "../scene/body.h"
+#include "../store/draft.h"
+#include "command.h"
+#include "option.h"
+
+enum { KEY_WRITE = 0x2000 };
+
+typedef struct {
+    BenchCommon common;
+    const char *name;  /* scene to print, or shape to write */
+    const char *write; /* mesh file to write */
+    bool overwrite;
+} Options;
+
+static const struct argp_option option_list[] = {
+    {"write-mesh", KEY_WRITE, "FILE.obj", 0,
+     "Write the mesh of the scene or shape NAME instead, as Wavefront OBJ", 1},
+    BENCH_OVERWRITE_OPTION(1),
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    switch (key) {
+    case KEY_WRITE:
+        options->write = text;
+        return 0;
+    case BENCH_KEY_OVERWRITE:
+        options->overwrite = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (options->name) bench_usage(state, "one NAME only, not also '%s'", text);
+        options->name = text;
+        return 0;
+    case ARGP_KEY_END:
+        if (options->write && !options->name) bench_usage(state, "--write-mesh: which shape?");
+        if (options->overwrite && !options->write)
+            bench_usage(state, "--overwrite goes with --write-mesh");
+        return 0;
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const char help[] =
+    "List the built-in scenes and shapes; with NAME, print that scene's file, which explains its "
+    "settings and can be copied, edited and run:\n"
+    "  shapebench scenes penguin > my.cfg\n"
+    "  shapebench run my.cfg\v" BENCH_EXIT_CODES;
+
+static const struct argp argp = {option_list, parse, "[NAME]", help, NULL, NULL, NULL};
+
+static SmCode list(SmError *error)
+{
+    puts("Scenes:");
+    for (const char *const *name = bench_scene_names(); *name; name++) {
+        BenchScene scene;
+        SmCode code = bench_scene_find(*name, &scene, error);
+        if (code) return code;
+        printf("  %-20s %s\n", *name, scene.title);
+    }
+    int count;
+    const SmShape *shape = sm_shapes(&count);
+    puts("\nShapes (mesh = \"shape:NAME\" in a scene file; --write-mesh exports one):");
+    for (int i = 0; i < count; i++)
+        printf("  %-16s %s (%ld triangles)\n", shape[i].name, shape[i].description,
+               shape[i].triangles);
+    return SM_OK;
+}
+
+static SmCode print_scene(const char *name, SmError *error)
+{
+    size_t size;
+    const char *text = bench_scene_text(name, &size);
+    char near[BENCH_SUGGEST_TEXT];
+    if (!text)
+        return sm_fail(error, SM_USAGE,
+                       "'%.100s' is not a built-in scene; 'shapebench scenes' lists them%s", name,
+                       bench_scene_suggest(name, near));
+    fwrite(text, 1, size, stdout);
+    return SM_OK;
+}
+
+static void print_mesh(FILE *file, const void *what)
+{
+    sm_mesh_print_obj(what, file);
+}
+
+static SmCode write_mesh(const Options *options, SmError *error)
+{
+    const char *name = options->name, *path = options->write;
+    SmMesh mesh;
+    BenchScene scene;
+    SmCode code = bench_draft_reserve(path, options->overwrite, error);
+    if (code) return code;
+    if (bench_scene_text(name, NULL)) {
+        code = bench_scene_find(name, &scene, error);
+        if (!code) code = bench_mesh_load(scene.mesh, &mesh, error);
+    } else {
+        code = sm_shape_mesh(name, &mesh, error);
+    }
+    if (code) return code;
+    code = bench_draft_write(path, print_mesh, &mesh, error);
+    sm_mesh_free(&mesh);
+    return code;
+}
+
+int bench_command_scenes(int argc, char **argv)
+{
+    Options options = {0};
+    bench_options_parse(&argp, argc, argv, &options, 0, &options.common);
+    SmError error;
+    SmCode code;
+    if (options.write)
+        code = write_mesh(&options, &error);
+    else if (options.name)
+        code = print_scene(options.name, &error);
+    else
+        code = list(&error);
+    if (code) bench_option_fail(argv[0], &error);
+    return (int)code;
+}

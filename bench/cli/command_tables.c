@@ -1,0 +1,333 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../reference/meshless/solve/solver.h"
+#include "../../reference/paper.h"
+#include "../measure/measure.h"
+#include "../play/runner.h"
+#include "../store/draft.h"
+#include "../store/store.h"
+#include "../table/table.h"
+#include "command.h"
+#include "option.h"
+#include "override.h"
+
+enum { KEY_PAPER = 0x2000, KEY_SCENE, KEY_FORMAT, KEY_REPEATS, KEY_BLOCK, KEY_EXPLAIN };
+
+typedef struct {
+    BenchCommon common;
+    BenchOverride chosen;
+    const char *paper, *output;
+    BenchNames given;
+    int repeats;
+    double block;
+    BenchFormat format;
+    bool overwrite, explain;
+} Options;
+
+/* A scene to measure, and the name that stood for it and others, or NULL. */
+typedef struct {
+    const char *scene, *stem;
+} Choice;
+
+typedef struct {
+    const Options *options;
+    Choice *scene; /* [count] */
+    int count;
+} Choices;
+
+static const struct argp_option option_list[] = {
+    {"paper", KEY_PAPER, "NAME", 0,
+     "The paper whose table to measure: fastlsm, octree or meshless (default: fastlsm and "
+     "meshless)",
+     1},
+    {"scene", KEY_SCENE, "NAME|FILE", 0,
+     "Measure this scene only, or the paper's scenes NAME-...; may be repeated", 1},
+    {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
+    {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 20)", 2},
+    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
+    {"explain", KEY_EXPLAIN, NULL, 0,
+     "Say below a text table all that stands behind each row, not only a line each", 3},
+    {"output", 'o', "FILE.h5", 0,
+     "Also store every sample, counts, validity and provenance in HDF5 (default: nothing stored)",
+     3},
+    BENCH_OVERWRITE_OPTION(3),
+    {0},
+};
+
+static const BenchOption options_taken[] = {
+    {KEY_PAPER, BENCH_TO(TEXT, paper), 0, 0, NULL},
+    {KEY_SCENE, BENCH_TO(NAMES, given), 0, 0, NULL},
+    {KEY_REPEATS, BENCH_TO(INT, repeats), 1, 10000, NULL},
+    {KEY_BLOCK, BENCH_TO(REAL, block), 0.001, 60000, NULL},
+    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
+    {KEY_EXPLAIN, BENCH_TO(TRUE, explain), 0, 0, NULL},
+    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
+    BENCH_OVERWRITE_TAKEN,
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    Options *options = state->input;
+    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &options->chosen;
+        return 0;
+    case ARGP_KEY_ARG:
+        bench_usage(state, "what is '%s'? Scenes are named with --scene", text);
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const char help[] =
+    "Measure the scenes of a paper's table and set the paper's values beside them. Every scene is "
+    "first checked on the very state that is timed: goal positions against double-precision brute "
+    "force, the octree's against sums over its regions' leaves (at most 5e-5 of a cell off in "
+    "single, 1e-10 in double precision), linear momentum "
+    "(sum m g = sum m x to 1e-6 of sum m |x - centroid|), counts, and that everything is finite. "
+    "Of a meshless body its shape functions, matrices, modes, and the frames that are timed. "
+    "A row that fails has INVALID in place of its times, one that other programs on the machine "
+    "left no undisturbed time has BUSY; what they took of the others is left out.\v"
+    "Times are medians over the repeats; the total is timed without clocks inside the step, stages "
+    "are the shares of a run with clocks, interleaved. 'faster' is the paper's total divided by "
+    "the "
+    "measured one, 'speed-up' the time of the table's first lattice row by the row's; csv and json "
+    "call them 'ratio' and 'speedup'.\n" BENCH_EXIT_CODES;
+
+static const struct argp argp = {option_list, parse, NULL, help, bench_override_children,
+                                 NULL,        NULL};
+
+/* Is it a built-in scene of the paper's for `row`, or, with NULL, for none, and does its name begin
+ * with `stem` and a dash, unless that is NULL? */
+static bool belongs(const char *name, const char *paper, const char *row, const char *stem)
+{
+    BenchScene scene;
+    size_t length = stem ? strlen(stem) : 0;
+    if (stem && (strncmp(name, stem, length) != 0 || name[length] != '-')) return false;
+    if (bench_scene_find(name, &scene, NULL) || strcmp(scene.paper, paper) != 0) return false;
+    return row ? !strcmp(scene.row, row) : !scene.row[0];
+}
+
+static void add_scene(Choices *chosen, const char *name, const char *stem)
+{
+    chosen->scene = sm_realloc(chosen->scene, (size_t)chosen->count + 1, sizeof *chosen->scene);
+    chosen->scene[chosen->count++] = (Choice){name, stem};
+}
+
+/* The scenes of a paper's table whose names begin with `stem` and a dash, or all: in the order of
+ * its rows, behind each those that only we have. */
+static void add_scenes(Choices *chosen, const char *paper, const char *stem)
+{
+    int count;
+    const RefPaperRow *rows = ref_paper_rows(&count);
+    for (int i = 0; i < count; i++) {
+        if (strcmp(rows[i].paper, paper) != 0) continue;
+        for (const char *const *name = bench_scene_names(); *name; name++) {
+            if (!belongs(*name, paper, rows[i].scene, stem)) continue;
+            add_scene(chosen, *name, stem);
+            for (const char *const *more = bench_scene_names(); *more; more++)
+                if (belongs(*more, paper, NULL, *name)) add_scene(chosen, *more, stem);
+        }
+    }
+}
+
+/* Is it a built-in scene of the paper's? */
+static bool of_paper(const char *name, const char *paper)
+{
+    BenchScene scene;
+    for (const char *const *known = bench_scene_names(); *known; known++)
+        if (!strcmp(*known, name))
+            return !bench_scene_find(name, &scene, NULL) && !strcmp(scene.paper, paper);
+    return false;
+}
+
+/* The tables that are regenerated when none is named. */
+static void add_default(Choices *chosen)
+{
+    add_scenes(chosen, "fastlsm", NULL);
+    if (ref_solver_built)
+        add_scenes(chosen, "meshless", NULL);
+    else if (!chosen->options->common.quiet)
+        fputs("shapebench tables: --paper meshless is left out: this program was built without "
+              "CHOLMOD and ARPACK\n",
+              stderr);
+}
+
+/* The scenes of the paper's table, or those that the names given stand for. */
+static SmCode choose_scenes(Choices *chosen, SmError *error)
+{
+    const Options *options = chosen->options;
+    const char *paper = options->paper ? options->paper : "fastlsm";
+    for (int i = 0; i < options->given.count; i++) {
+        const char *name = options->given.name[i];
+        int before = chosen->count;
+        add_scenes(chosen, paper, name);
+        if (chosen->count > before && !of_paper(name, paper)) continue;
+        chosen->count = before;
+        add_scene(chosen, name, NULL);
+    }
+    if (!options->given.count && options->paper) add_scenes(chosen, paper, NULL);
+    if (!options->given.count && !options->paper) add_default(chosen);
+    if (chosen->count) return SM_OK;
+    return sm_fail(error, SM_USAGE,
+                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
+}
+
+/* Fails where no scene is to be measured that `--mesh name=FILE` gives a mesh. */
+static SmCode check_substitute(const Choices *chosen, const char *name, SmError *error)
+{
+    for (int i = 0; i < chosen->count; i++) {
+        const Choice *choice = &chosen->scene[i];
+        BenchScene scene;
+        SmCode code = bench_scene_find(choice->scene, &scene, error);
+        if (code) return code;
+        if (!strcmp(scene.name, name) || (choice->stem && !strcmp(choice->stem, name)))
+            return SM_OK;
+    }
+    return sm_fail(error, SM_USAGE, "--mesh: '%s' is not measured: name it with --scene %s", name,
+                   name);
+}
+
+static SmCode check_substitutes(const Choices *chosen, SmError *error)
+{
+    const BenchSubstitutes *given = &chosen->options->chosen.substitutes;
+    SmCode code = SM_OK;
+    for (int i = 0; i < given->count && !code; i++)
+        code = check_substitute(chosen, given->scene[i], error);
+    return code;
+}
+
+static SmCode find_scene(const Options *options, const Choice *choice, BenchScene *scene,
+                         SmError *error)
+{
+    SmCode code = bench_scene_find(choice->scene, scene, error);
+    if (!code && options->chosen.engine)
+        snprintf(scene->engine, sizeof scene->engine, "%.23s", options->chosen.engine);
+    return code;
+}
+
+/* Names the rows (report.h), the meshless ones last; fails where a scene is not there. */
+static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
+{
+    Choice *last = sm_alloc((size_t)chosen->count, sizeof *last);
+    int meshless = 0, planned = 0;
+    SmCode code = SM_OK;
+    for (int i = 0; i < chosen->count && !code; i++) {
+        BenchScene scene;
+        code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
+        if (code) break;
+        bool later = !strcmp(scene.engine, "meshless");
+        *(later ? &last[meshless++] : &chosen->scene[planned++]) = chosen->scene[i];
+    }
+    for (int i = 0; i < meshless && !code; i++) chosen->scene[planned + i] = last[i];
+    for (int i = 0; i < chosen->count && !code; i++) {
+        BenchScene scene;
+        code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
+        bench_row_name(&scene, &rows[i]);
+    }
+    free(last);
+    return code;
+}
+
+static SmCode measure_scene(const Options *options, const Choice *choice, BenchProgress *progress,
+                            BenchRow *row, SmError *error)
+{
+    const BenchOverride *chosen = &options->chosen;
+    BenchScene scene;
+    const SmEngineType *type;
+    SmCode code = find_scene(options, choice, &scene, error);
+    if (code) return code;
+    code = bench_engine_find(scene.engine, chosen->precision, &type, error);
+    if (code) return code;
+    if (chosen->layout >= 0) scene.params.layout = (SmLayout)chosen->layout;
+    BenchBody body;
+    const char *substitute = bench_substitute_find(&chosen->substitutes, scene.name);
+    if (!substitute && choice->stem)
+        substitute = bench_substitute_find(&chosen->substitutes, choice->stem);
+    bench_progress_show(progress, scene.name, 0);
+    code = bench_body_of_scene(&scene, substitute, &body, error);
+    if (code) return code;
+    BenchMeasureParams params = {.repeats = options->repeats,
+                                 .block_seconds = options->block / 1e3,
+                                 .threads = options->common.threads,
+                                 .seed = options->common.seed,
+                                 .progress = progress};
+    code = bench_measure(&scene, &body, type, &params, row, error);
+    bench_body_free(&body);
+    return code;
+}
+
+/* Speed-ups of the octree paper's rows over their lattices. Returns how many of the rows measured
+ * are complete: a row waits for a lattice that is still to come. */
+static int compare_rows(BenchRow *rows, int measured, int count)
+{
+    int complete = 0;
+    bool waits = false;
+    for (int i = 0; i < measured; i++) {
+        if (!strcmp(rows[i].paper, "octree")) {
+            const BenchRow *lattice = bench_row_lattice(rows, measured, &rows[i]);
+            if (lattice) rows[i].speedup = lattice->total_ms / rows[i].total_ms;
+            for (int l = measured; l < count && !lattice; l++)
+                waits |= bench_row_measures(&rows[l], &rows[i]);
+        }
+        if (!waits) complete = i + 1;
+    }
+    return complete;
+}
+
+/* Rows are written as they are measured; those before an error stay. */
+static SmCode measure_all(const Choices *chosen, BenchRow *rows, BenchTable *table, SmError *error)
+{
+    const Options *options = chosen->options;
+    BenchProgress progress;
+    bench_progress_start(&progress, options->common.quiet);
+    SmCode code = SM_OK;
+    int measured = 0;
+    while (measured < chosen->count && !code) {
+        code = measure_scene(options, &chosen->scene[measured], &progress, &rows[measured], error);
+        bench_progress_stop(&progress);
+        if (!code) bench_table_rows(table, compare_rows(rows, ++measured, chosen->count));
+    }
+    if (code && table->format == BENCH_AS_JSON) return code;
+    bench_table_rows(table, measured);
+    bench_table_end(table);
+    return code;
+}
+
+static SmCode verdict(const BenchRow *rows, int count, SmError *error)
+{
+    for (int i = 0; i < count; i++)
+        if (!rows[i].valid)
+            return sm_fail(error, SM_INVALID, "%s is INVALID: %s", rows[i].scene, rows[i].reason);
+    return SM_OK;
+}
+
+int bench_command_tables(int argc, char **argv)
+{
+    Options options = {.repeats = 15, .block = 20};
+    Choices chosen = {.options = &options};
+    SmError error;
+    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
+    SmCode code = choose_scenes(&chosen, &error);
+    if (!code) code = check_substitutes(&chosen, &error);
+    BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
+    if (!code) code = bench_draft_reserve(options.output, options.overwrite, &error);
+    if (!code) code = plan_rows(&chosen, rows, &error);
+    BenchMachine machine;
+    bench_machine_read(argc, argv, options.common.threads, &machine);
+    BenchTable table = {
+        .format = options.format,
+        .explain = options.explain,
+        .report = {.file = stdout, .rows = rows, .count = chosen.count, .machine = &machine}};
+    if (!code) code = measure_all(&chosen, rows, &table, &error);
+    if (!code && options.output)
+        code = bench_store_rows(options.output, rows, chosen.count, &machine, &error);
+    if (!code) code = verdict(rows, chosen.count, &error);
+    bench_rows_free(rows, chosen.count);
+    free(chosen.scene);
+    if (code) bench_option_fail(argv[0], &error);
+    return (int)code;
+}

@@ -1,0 +1,43 @@
+/* process.h - other programs, started and waited for, and stopped when the user interrupts.
+ *
+ * A program runs in a process group of its own with all that it starts, so nothing of it outlives
+ * this one: a signal that ends (interrupt.h) stops the group, and the caller tidies up and ends. */
+#ifndef BENCH_PROCESS_H
+#define BENCH_PROCESS_H
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+#include "../../lib/error.h"
+
+/* From now on a signal is noted instead of ending the program; bench_process_caught() says which
+ * one came first, 0 for none. */
+void bench_process_catch(void);
+int bench_process_caught(void);
+
+/* What is called a few times a second while a program runs, or NULL. */
+typedef void (*BenchProcessTick)(void *context);
+
+typedef struct {
+    char *const *word;     /* NULL-terminated; word[0] is looked for in PATH */
+    const char *folder;    /* to run in; NULL: this one */
+    const char *output;    /* file for standard output and error together, or NULL: nowhere */
+    bool count;            /* count its instructions, if the kernel allows */
+    bool tidying;          /* also after a signal, and not stopped by one */
+    BenchProcessTick tick; /* with `context` */
+    void *context;
+} BenchProcess;
+
+typedef struct {
+    int status;          /* exit status, or 128 + signal */
+    double instructions; /* in user mode, of all its threads and children; NaN: not counted */
+} BenchProcessEnd;
+
+/* Runs it to its end. SM_INPUT: cannot be started, with the reason (not found); or interrupted, see
+ * bench_process_caught(). How it ended is no error. */
+SmCode bench_process_run(const BenchProcess *process, BenchProcessEnd *end, SmError *error);
+
+/* The last line of a file that is neither empty nor blank, cut to `size`; empty: none. */
+void bench_process_last_line(const char *path, size_t size, char *line);
+
+#endif

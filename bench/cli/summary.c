@@ -1,0 +1,160 @@
+#include "summary.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "../check/check.h"
+#include "../measure/tree_row.h"
+#include "../play/change_grid.h"
+
+static bool is_meshless(const BenchRunner *runner)
+{
+    return !strcmp(runner->type->name, "meshless");
+}
+
+/* Prints the last state's deviation from brute force; false: beyond the tolerance. */
+static bool print_deviation(const BenchRunner *runner)
+{
+    const BenchScene *scene = runner->scene;
+    SmCounts counts;
+    runner->type->count(runner->engine, &counts);
+    if (is_meshless(runner)) {
+        printf("deviation: not checked: the meshless body is a reference itself\n");
+        return true;
+    }
+    if (counts.broken && scene->params.strain_limit > 0) {
+        printf("deviation: not checked: %ld links are broken\n", counts.broken);
+        return true;
+    }
+    if (bench_check_room(scene, runner->body, runner->type, runner->engine) > BENCH_MOST_MEMBERS) {
+        printf("deviation: not checked: brute force would take too much memory\n");
+        return true;
+    }
+    BenchCheck check;
+    char text[512], reason[160];
+    bench_check_begin(scene, runner->body, runner->type, runner->engine, &check);
+    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
+    bench_check_damping(&check, scene, runner->type, runner->engine, &found);
+    bench_check_contacts(&check, scene, runner->type, runner->engine, &found);
+    bench_check_obstacles(&check, scene, runner->type, runner->engine, &found);
+    bench_check_text(&found, sizeof text, text);
+    printf("deviation: %s\n", text);
+    if (check.hierarchical && check.octree.creep > 0)
+        printf("deviation: of the rest shapes as they are; how they flowed is checked by 'tables', "
+               "and by scripts/check_step.py after --record nodes\n");
+    bench_check_free(&check);
+    if (bench_check_verdict(&found, sizeof reason, reason)) return true;
+    printf("deviation: %s\n", reason);
+    return false;
+}
+
+/* What the octree is: nodes beside those wanted, regions, and what holds together. */
+static void print_octree(const BenchRunner *runner)
+{
+    BenchRow row = {0};
+    bench_tree_row_fill(runner, &row);
+    printf("%s: octree, %s precision: ", runner->scene->name, runner->type->precision);
+    bench_tree_row_nodes(stdout, &row);
+    printf(" of %.6g\nregions: ", runner->body->voxels.cell);
+    bench_tree_row_widths(stdout, &row);
+    fputs(": ", stdout);
+    bench_tree_row_regions(stdout, &row);
+    fputs("\nthe body ", stdout);
+    bench_tree_row_body(stdout, &row);
+    putchar('\n');
+}
+
+static void print_meshless(const BenchRunner *runner, const SmCounts *counts)
+{
+    const RefMeshlessOptions *options = &runner->scene->meshless;
+    long points = ref_meshless_points(runner->engine, NULL);
+    printf("%s: meshless, %s precision: ", runner->scene->name, runner->type->precision);
+    if (points) printf("%ld given points and ", points);
+    printf("%ld particles carried by %ld nodes; Young's modulus %g, "
+           "Poisson's ratio %g, density %g, %.4g mesh units in a metre; built in %.3g s\n",
+           counts->particles, counts->regions, options->material.young, options->material.poisson,
+           options->material.density, runner->scene->metre, counts->build_seconds);
+}
+
+static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
+{
+    printf("%s: %s, %s precision: %ld particle%s, %ld unique region%s, w %d, cell %.6g\n",
+           runner->scene->name, runner->type->name, runner->type->precision, counts->particles,
+           counts->particles == 1 ? "" : "s", counts->regions, counts->regions == 1 ? "" : "s",
+           runner->scene->params.w, runner->body->voxels.cell);
+    if (!counts->broken || !runner->type->pieces) return;
+    SmPieces pieces;
+    runner->type->pieces(runner->engine, &pieces);
+    printf("the body is in %ld piece%s, with %ld of %ld links broken\n", pieces.count,
+           pieces.count == 1 ? "" : "s", counts->broken, counts->links + counts->broken);
+    sm_pieces_free(&pieces);
+}
+
+/* Nodes and surface at the end of a scene that has changed them. */
+static void print_changes(const BenchPlay *play, const BenchOutcome *outcome)
+{
+    char each[32] = "BUSY";
+    if (!bench_watch_busy(&outcome->change.watch))
+        snprintf(each, sizeof each, "%.4g ms each",
+                 1e3 * outcome->change.seconds / fmax((double)outcome->change.count, 1));
+    long open = 0, pieces = 0, triangles = 0, left = 0;
+    for (int p = 0; p < play->cast.count; p++) {
+        SmMeshInfo info = sm_mesh_info(&play->changes[p].surface);
+        long bodies = play->cast.part[p].body.instances;
+        open += bodies * (info.open_edges + info.nonmanifold_edges);
+        pieces += bodies * info.components;
+        triangles += bodies * info.triangles;
+        left += bodies * play->changes[p].left;
+    }
+    printf("changes: %ld frame%s, %s with the surface; in the end %ld nodes, and surfaces "
+           "of %ld triangles in %ld piece%s, ",
+           outcome->changes, outcome->changes == 1 ? "" : "s", each,
+           bench_cast_particles(&play->cast), triangles, pieces, pieces == 1 ? "" : "s");
+    if (open)
+        printf("with %ld open or non-manifold edges\n", open);
+    else
+        printf("watertight\n");
+    bench_change_left(stdout, "changes: ", left);
+}
+
+bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)
+{
+    const BenchRunner *runner = bench_play_runner(play);
+    long particles = bench_cast_particles(&play->cast);
+    SmCounts counts;
+    runner->type->count(runner->engine, &counts);
+    if (play->cast.count > 1)
+        printf("%s: %ld bodies, %ld nodes in all; the last that is touched:\n", runner->scene->name,
+               play->cast.body->instances, particles);
+    if (!strcmp(runner->type->name, "octree"))
+        print_octree(runner);
+    else if (is_meshless(runner))
+        print_meshless(runner, &counts);
+    else
+        print_lattice(runner, &counts);
+    if (bench_play_changes(play)) print_changes(play, outcome);
+    bool valid = outcome->finite;
+    for (int p = 0; p < play->cast.count && outcome->finite; p++) {
+        const BenchPart *part = &play->cast.part[p];
+        if (play->cast.count > 1)
+            printf(part->own ? "instance %ld: " : "%ld that share a structure: ",
+                   part->own ? part->instance[0] + 1 : part->body.instances);
+        valid &= print_deviation(&part->runner);
+    }
+    printf("%ld step%s of %g s: ", outcome->steps, outcome->steps == 1 ? "" : "s",
+           runner->scene->params.h);
+    const BenchMean *step = &outcome->step;
+    double seconds = step->seconds / (double)step->count;
+    if (!valid)
+        printf("INVALID\n");
+    else if (!outcome->steps)
+        printf("nothing timed\n");
+    else if (bench_watch_busy(&step->watch))
+        printf("BUSY: other programs took %.0f%% of its processors (load average %.1f)\n",
+               bench_watch_lost(&step->watch), bench_moment_load());
+    else
+        printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * seconds,
+               1e9 * seconds / (double)particles);
+    return valid;
+}

@@ -1,0 +1,23 @@
+/* summary.h - what a run came to, for people. */
+#ifndef BENCH_SUMMARY_H
+#define BENCH_SUMMARY_H
+
+#include "../measure/moment.h"
+#include "../play/play.h"
+
+/* What the frames came to. */
+typedef struct {
+    long steps;
+    BenchMean step;      /* of steps alone */
+    double open_seconds; /* of the last `open_steps`, which are still to be added to it */
+    long open_steps;
+    long changes;     /* frames in which cells were split or merged, or material cut */
+    BenchMean change; /* of those changes, surfaces included */
+    bool finite;
+} BenchOutcome;
+
+/* Says on standard output what was run, how exact it ended and how long it took; false, and no
+ * time, when it ended with goals beyond the tolerance or positions that are not finite. */
+bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome);
+
+#endif

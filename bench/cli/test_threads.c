@@ -1,0 +1,142 @@
+/* One number of threads everywhere: an engine's own in all it does, the program's in all else. */
+#include <omp.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "../../fastlsm/fastlsm.h"
+#include "../../lib/shapes/shape.h"
+#include "../../lib/system/team.h"
+#include "../../lib/test_fields.h"
+#include "../../lib/voxel/voxelise.h"
+#include "../../octree/change/resample.h"
+#include "../../reference/brute.h"
+#include "../../reference/meshless/engine.h"
+#include "../../reference/meshless/solve/solver.h"
+#include "test_program.h"
+
+/* Threads that the process has, and so the largest team of late: those of a team wait for the
+ * next. 0: the system does not say. */
+static int tasks(void)
+{
+    int count = 0;
+    DIR *list = opendir("/proc/self/task");
+    for (const struct dirent *entry; list && (entry = readdir(list));)
+        count += entry->d_name[0] != '.';
+    if (list) closedir(list);
+    return count;
+}
+
+static void make_cube(int side, SmVoxels *voxels)
+{
+    sm_voxels_init(voxels, side, side, side, 1.0 / side);
+    for (int k = 0; k < side; k++)
+        for (int j = 0; j < side; j++)
+            for (int i = 0; i < side; i++) sm_voxel_set(voxels, i, j, k);
+    sm_voxels_count(voxels);
+}
+
+/* Splits a leaf of an octree engine's body while it runs. */
+static void refine(SmEngine *engine)
+{
+    OctStructure *structure;
+    SmError error;
+    assert_int_equal(oct_engine_begin(engine, &structure, &error), SM_OK);
+    const OctTree *tree = &structure->tree;
+    long leaf = 0;
+    while (tree->size[tree->node[leaf]] < 2) leaf++;
+    assert_int_equal(oct_resample_split(structure, tree->node[leaf], &error), SM_OK);
+    oct_engine_end(engine);
+}
+
+static void use(const SmEngineType *type, const SmVoxels *voxels, SmEngineParams params)
+{
+    SmEngine *engine, *copy;
+    SmError error = {0};
+    SmCounts counts;
+    params.w = 1;
+    params.h = 0.01;
+    params.damping = 0.1;
+    params.threads = 1;
+    int before = tasks();
+    if (type->create(voxels, &params, &engine, &error)) fail_msg("%s", error.text);
+    type->count(engine, &counts);
+    if (type == &octree_engine_f32 && params.instances < 2) {
+        assert_true(counts.particles > 2000); /* smaller trees are searched by one thread anyway */
+        refine(engine);
+        long *order = sm_alloc((size_t)counts.particles + 7, sizeof *order);
+        assert_int_equal(oct_engine_rebuild(engine, &params, &copy, order, &error), SM_OK);
+        type->destroy(copy);
+        free(order);
+    }
+    type->step(engine, NULL);
+    type->goals(engine);
+    type->destroy(engine);
+    if (tasks() > before) fail_msg("%s: %d threads more", type->name, tasks() - before);
+}
+
+static void an_engine_of_one_thread_starts_no_other(void **state)
+{
+    (void)state;
+    SmVoxels cube, sites;
+    SmMesh penguin;
+    const SmVoxelParams few = {.fill = SM_SOLID, .particles = 400};
+    const OctOptions fine = {.sampling = {.levels = 1, .nodes = 2500}};
+    const SmCollideParams collide = {.self = true, .bodies = true};
+    int number = omp_get_max_threads();
+    if (!tasks()) skip();
+    omp_set_num_threads(1);
+    assert_int_equal(sm_shape_mesh("penguin", &penguin, NULL), SM_OK);
+    assert_int_equal(sm_voxelise(&penguin, &few, "penguin", &sites, NULL), SM_OK);
+    omp_set_num_threads(5);
+    make_cube(16, &cube);
+    use(&fastlsm_engine_f32, &cube, (SmEngineParams){.layout = SM_LAYOUT_LISTS});
+    use(&fastlsm_engine_f64, &cube, (SmEngineParams){.layout = SM_LAYOUT_BLOCKS});
+    use(&fastlsm_engine_f32, &cube, (SmEngineParams){.instances = 40, .collide = collide});
+    use(&octree_engine_f32, &cube, (SmEngineParams){.octree = &fine});
+    use(&octree_engine_f32, &cube,
+        (SmEngineParams){.octree = &fine, .instances = 2, .collide = collide});
+    use(&ref_brute_engine, &cube, (SmEngineParams){0});
+    assert_int_equal(omp_get_max_threads(), 5); /* the caller's number is its own */
+    const RefMeshlessOptions options = {
+        .mesh = &penguin, .points = 3000, .nodes = 300, .modes = 20, .material = {1e5, 0.3, 1000}};
+    if (ref_solver_built) use(&ref_meshless_engine, &sites, (SmEngineParams){.meshless = &options});
+    omp_set_num_threads(number);
+    sm_mesh_free(&penguin);
+    sm_voxels_free(&sites);
+    sm_voxels_free(&cube);
+}
+
+/* OpenMP's runtime ends the program where it is asked for so many anywhere: beyond SM_MOST_THREADS
+ * in any case, and here, where stacks find no room, from some hundreds on. */
+static void the_program_runs_on_the_number_it_is_given(void **state)
+{
+    (void)state;
+    static const char *const numbers[] = {"", "--threads 2"};
+    const char *room = TEST_FIGURES ? "ulimit -v 2000000;" : ""; /* sanitizers need more */
+    omp_set_num_threads(100000);
+    assert_int_equal(sm_team(0), SM_MOST_THREADS);
+    assert_int_equal(sm_team(SM_MOST_THREADS + 1), SM_MOST_THREADS);
+    omp_set_num_threads(1);
+    for (int i = 0; i < 2; i++) {
+        Result result;
+        char prefix[80], arguments[80];
+        snprintf(prefix, sizeof prefix, "%s OMP_NUM_THREADS=100000", room);
+        snprintf(arguments, sizeof arguments, "run flowers --no-output --frames 2 --steps 1 %s",
+                 numbers[i]);
+        run_with(prefix, arguments, &result);
+        if (result.code) fail_msg("%s: exit code %d: %s", numbers[i], result.code, result.err);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_engine_of_one_thread_starts_no_other),
+        cmocka_unit_test(the_program_runs_on_the_number_it_is_given),
+    };
+    return cmocka_run_group_tests_name("threads", tests, make_folder, remove_folder);
+}

@@ -1,0 +1,192 @@
+#include "ceilings.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "../../lib/error.h"
+#include "../../lib/stage.h"
+
+#ifdef __AVX512F__
+enum { REGISTER = 64 };
+#elif defined __AVX__
+enum { REGISTER = 32 };
+#else
+enum { REGISTER = 16 };
+#endif
+
+/* CHAINS independent sums hide the latency of an operation: 4 to 5 cycles, two a cycle. */
+enum { CHAINS = 12, STREAMS = 8, FLOATS = REGISTER / 4, DOUBLES = REGISTER / 8, TRIES = 5 };
+
+typedef float FloatVec __attribute__((vector_size(REGISTER)));
+typedef double DoubleVec __attribute__((vector_size(REGISTER)));
+
+/* One thread's share: a buffer in whole groups of STREAMS registers. */
+typedef struct {
+    FloatVec *buffer;
+    long groups;
+} Share;
+
+typedef void Work(const Share *share, long rounds);
+
+/* Keeps a result, and what memory holds, alive. */
+#define KEEP(value) __asm__ volatile("" ::"m"(value) : "memory")
+
+static void multiply_add_single(const Share *share, long rounds)
+{
+    (void)share;
+    FloatVec sum[CHAINS], factor = (FloatVec){0} + 0.999f, term = (FloatVec){0} + 0.001f;
+    for (int i = 0; i < CHAINS; i++) sum[i] = factor + (float)i;
+    for (long r = 0; r < rounds; r++)
+        for (int i = 0; i < CHAINS; i++) sum[i] = sum[i] * factor + term;
+    KEEP(sum);
+}
+
+static void multiply_add_double(const Share *share, long rounds)
+{
+    (void)share;
+    DoubleVec sum[CHAINS], factor = (DoubleVec){0} + 0.999, term = (DoubleVec){0} + 0.001;
+    for (int i = 0; i < CHAINS; i++) sum[i] = factor + (double)i;
+    for (long r = 0; r < rounds; r++)
+        for (int i = 0; i < CHAINS; i++) sum[i] = sum[i] * factor + term;
+    KEEP(sum);
+}
+
+/* A function of its own: sums whose address is taken would be stored at every addition. */
+static __attribute__((noinline)) FloatVec read_once(const FloatVec *at, long groups)
+{
+    FloatVec sum[STREAMS] = {{0}};
+    for (long g = 0; g < groups; g++, at += STREAMS)
+        for (int i = 0; i < STREAMS; i++) sum[i] += at[i];
+    for (int i = 1; i < STREAMS; i++) sum[0] += sum[i];
+    return sum[0];
+}
+
+static void read_buffer(const Share *share, long rounds)
+{
+    for (long r = 0; r < rounds; r++) {
+        FloatVec sum = read_once(share->buffer, share->groups);
+        KEEP(sum);
+    }
+}
+
+static void update_buffer(const Share *share, long rounds)
+{
+    for (long r = 0; r < rounds; r++) {
+        FloatVec *at = share->buffer;
+        for (long g = 0; g < share->groups; g++, at += STREAMS)
+            for (int i = 0; i < STREAMS; i++) at[i] = at[i] * 0.999f + 0.001f;
+        KEEP(*share->buffer);
+    }
+}
+
+static double run(Work *work, const Share *share, int threads, long rounds)
+{
+    double start = sm_now();
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (int t = 0; t < threads; t++) work(&share[t], rounds);
+    return sm_now() - start;
+}
+
+/* Rounds of all threads in a second, the best of TRIES runs that take `seconds` / 2 or more even at
+ * best: one that was interrupted says nothing about the length of a round. */
+static double best_rate(Work *work, const Share *share, int threads, double seconds)
+{
+    for (long rounds = 1;; rounds *= 2) {
+        double best = INFINITY;
+        for (int i = 0; i < TRIES && (i == 0 || best > seconds / 4); i++)
+            best = fmin(best, run(work, share, threads, rounds));
+        if (best >= seconds / 2 || rounds >= 1L << 40) return (double)rounds * threads / best;
+    }
+}
+
+/* Buffers of `bytes` a thread; written, because fresh pages all show the same zeros. */
+static void make_shares(double bytes, int threads, Share *share)
+{
+    const long group = STREAMS * REGISTER;
+    long groups = (long)(bytes / (double)group) + 1;
+    for (int t = 0; t < threads; t++)
+        share[t] = (Share){sm_alloc((size_t)groups, (size_t)group), groups};
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (int t = 0; t < threads; t++)
+        for (long i = 0; i < groups * STREAMS; i++) share[t].buffer[i] = (FloatVec){0} + 1;
+}
+
+static void measure_memory(const BenchCeilings *c, double seconds, BenchRates *rates)
+{
+    double n = rates->threads;
+    /* Half of a core's own caches; an eighth of the last one, which other programs fill too; and
+     * main memory by four times what that holds. */
+    const double bytes[BENCH_LEVELS] = {c->bytes[BENCH_L1] / 2, c->bytes[BENCH_L2] / 2,
+                                        c->bytes[BENCH_L3] / 8 / n, c->bytes[BENCH_L3] * 4 / n};
+    Share *share = sm_alloc((size_t)rates->threads, sizeof *share);
+    for (int level = 0; level < BENCH_LEVELS; level++) {
+        double size = fmax(bytes[level], level == BENCH_L3 ? 1.5 * c->bytes[BENCH_L2] : 0);
+        make_shares(size, rates->threads, share);
+        double whole = (double)share[0].groups * STREAMS * REGISTER;
+        rates->read[level] = whole * best_rate(read_buffer, share, rates->threads, seconds);
+        if (level == BENCH_DRAM)
+            rates->update = 2 * whole * best_rate(update_buffer, share, rates->threads, seconds);
+        for (int t = 0; t < rates->threads; t++) free(share[t].buffer);
+    }
+    free(share);
+}
+
+static void measure_rates(const BenchCeilings *c, int threads, double seconds, BenchRates *rates)
+{
+    Share *none = sm_alloc((size_t)threads, sizeof *none);
+    rates->threads = threads;
+    rates->flops[BENCH_F32] =
+        2.0 * CHAINS * FLOATS * best_rate(multiply_add_single, none, threads, seconds);
+    rates->flops[BENCH_F64] =
+        2.0 * CHAINS * DOUBLES * best_rate(multiply_add_double, none, threads, seconds);
+    free(none);
+    measure_memory(c, seconds, rates);
+}
+
+void bench_ceilings_measure(const BenchMachine *machine, int threads, double seconds,
+                            BenchCeilings *ceilings)
+{
+    const long known[] = {machine->l1_bytes, machine->l2_bytes, machine->l3_bytes};
+    const double usual[] = {32 << 10, 1 << 20, 32 << 20};
+    if (!(seconds > 0)) seconds = 0.01;
+    for (int i = 0; i < BENCH_DRAM; i++)
+        ceilings->bytes[i] = known[i] > 0 ? (double)known[i] : usual[i];
+    ceilings->bytes[BENCH_DRAM] = INFINITY;
+    measure_rates(ceilings, 1, seconds, &ceilings->one);
+    ceilings->all = ceilings->one;
+    if (threads < 2) return;
+    /* several threads reach no less than one; on a busy machine they may seem to */
+    BenchRates all;
+    measure_rates(ceilings, threads, seconds, &all);
+    for (int p = 0; p < BENCH_PRECISIONS; p++)
+        all.flops[p] = fmax(all.flops[p], ceilings->one.flops[p]);
+    for (int level = 0; level < BENCH_LEVELS; level++)
+        all.read[level] = fmax(all.read[level], ceilings->one.read[level]);
+    all.update = fmax(all.update, ceilings->one.update);
+    ceilings->all = all;
+}
+
+BenchRates bench_rates(const BenchCeilings *ceilings, int threads)
+{
+    BenchRates rates = threads > 1 ? ceilings->all : ceilings->one;
+    double share = (double)threads / rates.threads;
+    for (int p = 0; p < BENCH_PRECISIONS; p++) rates.flops[p] *= share;
+    for (int level = 0; level < BENCH_LEVELS; level++)
+        rates.read[level] *= level < BENCH_L3 ? share : fmin(share, 1);
+    rates.update *= fmin(share, 1);
+    rates.threads = threads;
+    return rates;
+}
+
+BenchLevel bench_level_of(const BenchCeilings *ceilings, double bytes, int threads)
+{
+    int level = 0;
+    while (bytes > ceilings->bytes[level] * (level < BENCH_L3 ? threads : 1)) level++;
+    return (BenchLevel)level;
+}
+
+const char *bench_level_name(BenchLevel level)
+{
+    static const char *const names[] = {"L1", "L2", "L3", "DRAM"};
+    return names[level];
+}

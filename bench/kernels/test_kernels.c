@@ -1,0 +1,284 @@
+/* Kernels against ceilings: figures are sane, checks can fail. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#include <cmocka.h>
+
+#include "../../fastlsm/fastlsm.h"
+#include "../../lib/test_fields.h"
+#include "../measure/spread.h"
+#include "cubes.h"
+#include "kernel_table.h"
+#include "matrices.h"
+
+static BenchMachine machine;
+static BenchCeilings ceilings;
+
+static int measure_ceilings(void **state)
+{
+    (void)state;
+    char name[] = "test";
+    char *argv[] = {name, NULL};
+    bench_machine_read(1, argv, 2, &machine);
+    bench_ceilings_measure(&machine, 2, 0.0005, &ceilings);
+    return 0;
+}
+
+static void ceilings_are_positive(void **state)
+{
+    (void)state;
+    const BenchRates *rates[] = {&ceilings.one, &ceilings.all};
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(rates[i]->threads, i + 1);
+        for (int p = 0; p < BENCH_PRECISIONS; p++)
+            assert_true(rates[i]->flops[p] > 0 && isfinite(rates[i]->flops[p]));
+        for (int level = 0; level < BENCH_LEVELS; level++)
+            assert_true(rates[i]->read[level] > 0 && isfinite(rates[i]->read[level]));
+        assert_true(rates[i]->update > 0 && isfinite(rates[i]->update));
+    }
+    for (int level = 1; level < BENCH_LEVELS; level++)
+        assert_true(ceilings.bytes[level] > ceilings.bytes[level - 1]);
+    BenchMachine unknown = {.cores = 1};
+    BenchCeilings guessed;
+    bench_ceilings_measure(&unknown, 1, 0.0001, &guessed);
+    assert_true(guessed.bytes[BENCH_L1] == 32 << 10);
+    assert_int_equal(guessed.all.threads, 1);
+}
+
+static void levels_hold_what_fits(void **state)
+{
+    (void)state;
+    for (int level = 0; level < BENCH_DRAM; level++) {
+        assert_int_equal(bench_level_of(&ceilings, ceilings.bytes[level], 1), level);
+        assert_int_equal(bench_level_of(&ceilings, ceilings.bytes[level] + 1, 1), level + 1);
+    }
+    assert_int_equal(bench_level_of(&ceilings, 2 * ceilings.bytes[BENCH_L1], 2), BENCH_L1);
+    assert_true(bench_rates(&ceilings, 4).flops[0] == 2 * ceilings.all.flops[0]);
+}
+
+static void floors_follow_the_work(void **state)
+{
+    (void)state;
+    /* one particle is its own region: 21 flops up, 21 down */
+    assert_true(bench_work_sums(SM_SUM_NAIVE, 3, 1).flops == 42);
+    for (int w = 2; w < 9; w++) {
+        double naive = bench_work_sums(SM_SUM_NAIVE, w, 64).flops;
+        double bars = bench_work_sums(SM_SUM_BARS, w, 64).flops;
+        double fast = bench_work_sums(SM_SUM_FAST, w, 64).flops;
+        assert_true(naive > bars && bars > fast);
+        assert_true(fast == bench_work_sums(SM_SUM_FAST, 2, 64).flops); /* O(1) */
+    }
+    BenchWork work = {.flops = 8};
+    const char *bound;
+    double floor_ns = bench_floor(&ceilings, &work, BENCH_F32, 1, 1e3, &bound);
+    assert_true(fabs(floor_ns * ceilings.one.flops[BENCH_F32] / 8e9 - 1) < 1e-12);
+    assert_string_equal(bound, "flops");
+    work = (BenchWork){.far_values = 8};
+    floor_ns = bench_floor(&ceilings, &work, BENCH_F64, 1, 1e12, &bound);
+    assert_true(fabs(floor_ns * ceilings.one.update / 64e9 - 1) < 1e-12);
+    assert_string_equal(bound, "DRAM");
+}
+
+static void the_spread_is_that_of_the_samples(void **state)
+{
+    (void)state;
+    const double value[] = {5, 1, 4, 2, 3};
+    BenchSpread spread = bench_spread(value, 5);
+    assert_true(spread.low == 2 && spread.median == 3 && spread.high == 4);
+}
+
+/* An engine whose goals are off by a thousandth of a cell. */
+static void get_wrong_goals(SmEngine *engine, SmField field, double (*values)[3])
+{
+    fastlsm_engine_f32.get(engine, field, values);
+    if (field == SM_GOAL) values[7][1] += 1e-3;
+}
+
+static void a_wrong_engine_is_not_timed(void **state)
+{
+    (void)state;
+    SmEngineType wrong = fastlsm_engine_f32;
+    wrong.get = get_wrong_goals;
+    SmEngineParams params = {.w = 1, .h = 0.01, .threads = 1};
+    BenchCube cube[2];
+    SmError error;
+    assert_int_equal(bench_cube_create(5, &wrong, &params, 1, &cube[0], &error), SM_OK);
+    assert_int_equal(bench_cube_create(5, &fastlsm_engine_f32, &params, 1, &cube[1], &error),
+                     SM_OK);
+    assert_int_equal(cube[0].particles, 125);
+    assert_false(cube[0].valid);
+    assert_non_null(strstr(cube[0].reason, "brute force"));
+    assert_true(cube[1].valid && cube[1].brute);
+    bench_cubes_time(cube, 2, 2, true);
+    assert_null(cube[0].total);
+    for (int r = 0; r < 2; r++) {
+        double all = 0;
+        assert_true(bench_cube_ns(&cube[1], r) > 0);
+        for (int s = 0; s < SM_STAGES; s++) all += bench_cube_stage_ns(&cube[1], (SmStage)s, r);
+        assert_true(all > 0);
+    }
+    for (int i = 0; i < 2; i++) bench_cube_free(&cube[i]);
+}
+
+static void every_polar_method_is_checked(void **state)
+{
+    (void)state;
+    for (int p = 0; p < BENCH_PRECISIONS; p++) {
+        BenchPolarResult result[BENCH_POLARS] = {{0}};
+        for (int m = 0; m < BENCH_POLARS; m++) result[m].wanted = true;
+        bench_matrices_time((BenchPrecision)p, 1, 3, result);
+        for (int m = 0; m < BENCH_POLARS; m++) {
+            assert_true(result[m].valid && result[m].error <= result[m].limit);
+            assert_true(result[m].ns[0] > 0);
+            free(result[m].ns);
+        }
+        /* a warm start saves sweeps where matrices move smoothly */
+        assert_true(result[BENCH_POLAR_WARM].sweeps < result[BENCH_POLAR_COLD].sweeps);
+    }
+}
+
+static void run_only(const char *const *only, BenchKernel *rows, int *count)
+{
+    BenchKernelParams params = {.only = only, .threads = 1, .repeats = 2, .seed = 1};
+    SmError error;
+    assert_int_equal(bench_kernels_run(&params, &ceilings, rows, count, &error), SM_OK);
+}
+
+static void only_what_is_named_runs(void **state)
+{
+    (void)state;
+    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    int count;
+    run_only((const char *const[]){"polar-fast", NULL}, rows, &count);
+    assert_int_equal(count, 1);
+    assert_string_equal(rows[0].kernel, "polar-fast");
+    assert_true(rows[0].valid && rows[0].ns > 0 && rows[0].floor_ns > 0);
+    run_only((const char *const[]){"scale-1e5", "penguin", NULL}, rows, &count);
+    assert_int_equal(count, 2); /* scale-1e4, to which it is compared, has no row */
+    assert_string_equal(rows[0].kernel, "penguin");
+    assert_string_equal(rows[1].kernel, "scale-1e5");
+    assert_true(rows[1].valid && rows[1].ratio > 0);
+    assert_int_equal(rows[1].items, 46 * 46 * 46);
+    assert_true(bench_kernel_known("polar") && bench_kernel_known("penguins"));
+    assert_false(bench_kernel_known("pol"));
+    int all = 0;
+    while (bench_kernel_name(all, NULL)) all++;
+    assert_true(all > 30 && all <= BENCH_KERNELS_MOST);
+    free(rows);
+}
+
+static void octree_kernels_run_by_name(void **state)
+{
+    (void)state;
+    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    int count, listed = 0;
+    const char *group;
+    run_only((const char *const[]){"oct-setup-1e3", "oct-hand-step", "oct-hand-damping",
+                                   "oct-hand-structure", NULL},
+             rows, &count);
+    assert_int_equal(count, 4);
+    const char *const names[] = {"oct-hand-damping", "oct-hand-step", "oct-hand-structure",
+                                 "oct-setup-1e3"};
+    for (int r = 0; r < count; r++) {
+        assert_string_equal(rows[r].kernel, names[r]);
+        assert_string_equal(rows[r].group, "octree");
+        assert_true(rows[r].valid && rows[r].ns > 0);
+        assert_true(rows[r].floor_ns > 0 && rows[r].floor_ns < rows[r].ns);
+        assert_true(*rows[r].note);
+    }
+    assert_true(labs(rows[0].items - 661) <= 1);
+    assert_true(rows[1].at_most == 60e3 && rows[2].at_most == 30e6);
+    assert_int_equal(rows[3].items, 1000);
+    for (int i = 0; bench_kernel_name(i, &group); i++) listed += !strcmp(group, "octree");
+    assert_true(bench_kernel_known("octree") && listed >= 30);
+    free(rows);
+}
+
+/* Set-up is asserted to be linear, whatever caches hold. */
+static void octree_setup_is_linear(void **state)
+{
+    (void)state;
+    if (!TEST_FIGURES) skip();
+    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    int count;
+    run_only((const char *const[]){"oct-setup-1e4", NULL}, rows, &count);
+    assert_int_equal(count, 1);
+    assert_true(rows[0].valid && rows[0].wanted == 2 && !rows[0].wanted_least);
+    assert_string_equal(rows[0].ratio_to, "oct-setup-1e3's user time");
+    assert_non_null(strstr(rows[0].note, "ns of user time"));
+    assert_true(rows[0].ratio > 0 && isfinite(rows[0].ratio));
+    assert_true(rows[0].busy || *bench_kernel_verdict(&rows[0]));
+    free(rows);
+}
+
+/* What a cut and a refinement cost is held to the same in the smallest body. */
+static void resampling_is_compared_with_the_smallest_body(void **state)
+{
+    (void)state;
+    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    int count;
+    run_only((const char *const[]){"oct-cut-1e4", "oct-refine-1e4", NULL}, rows, &count);
+    assert_int_equal(count, 2); /* those of 1e3, which they are compared with, have no rows */
+    static const char *const bases[] = {"oct-refine-1e3's CPU time", "oct-cut-1e3's CPU time"};
+    for (int r = 0; r < count; r++) {
+        if (!rows[r].valid) fail_msg("%s: %s", rows[r].kernel, rows[r].reason);
+        assert_string_equal(rows[r].group, "resampling");
+        assert_string_equal(rows[r].ratio_to, bases[r]);
+        assert_true(rows[r].ns > 0 && rows[r].floor_ns > 0 && rows[r].floor_ns < rows[r].ns);
+        assert_true(rows[r].wanted == 2 && rows[r].ratio > 0 && isfinite(rows[r].ratio));
+        assert_true(rows[r].busy || *bench_kernel_verdict(&rows[r]));
+        assert_non_null(strstr(rows[r].note, "in 10648 nodes"));
+    }
+    run_only((const char *const[]){"oct-cut-1e3", NULL}, rows, &count);
+    assert_int_equal(count, 1);
+    assert_true(rows[0].valid && isnan(rows[0].ratio));
+    assert_int_equal(rows[0].items, 1);
+    assert_true(bench_kernel_known("resampling") && bench_kernel_known("oct-refine-1e6"));
+    free(rows);
+}
+
+static int exit_code(const char *arguments)
+{
+    char command[512];
+    snprintf(command, sizeof command, "'%s/shapebench' kernels %s >/dev/null 2>&1", BINARY_DIR,
+             arguments);
+    int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static void the_command_has_exit_codes(void **state)
+{
+    (void)state;
+    assert_int_equal(exit_code("--only no-such-kernel"), 2);
+    assert_int_equal(exit_code("--format latex"), 2);
+    assert_int_equal(exit_code("polar"), 2);
+    assert_int_equal(exit_code("--list"), 0);
+    assert_int_equal(exit_code("--help"), 0);
+    assert_int_equal(exit_code("--only polar-fast --repeats 1 --format json --precision double"),
+                     0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ceilings_are_positive),
+        cmocka_unit_test(levels_hold_what_fits),
+        cmocka_unit_test(floors_follow_the_work),
+        cmocka_unit_test(the_spread_is_that_of_the_samples),
+        cmocka_unit_test(a_wrong_engine_is_not_timed),
+        cmocka_unit_test(every_polar_method_is_checked),
+        cmocka_unit_test(only_what_is_named_runs),
+        cmocka_unit_test(octree_kernels_run_by_name),
+        cmocka_unit_test(resampling_is_compared_with_the_smallest_body),
+        cmocka_unit_test(octree_setup_is_linear),
+        cmocka_unit_test(the_command_has_exit_codes),
+    };
+    return cmocka_run_group_tests(tests, measure_ceilings, NULL);
+}

@@ -1,0 +1,210 @@
+#define _GNU_SOURCE
+#include "machine.h"
+
+#include <assimp/version.h>
+#include <gsl/gsl_version.h>
+#include <jansson.h>
+#include <libconfig.h>
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/utsname.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "../cli/quote.h"
+#include "provenance.h"
+
+#define FIELD(kind, member) BENCH_FIELD(BenchMachine, kind, member)
+
+const BenchField *bench_machine_fields(int *count)
+{
+    static const BenchField fields[] = {
+        FIELD(BENCH_TEXT, git_commit), FIELD(BENCH_BOOL, git_dirty),
+        FIELD(BENCH_TEXT, version),    FIELD(BENCH_TEXT, compiler),
+        FIELD(BENCH_TEXT, flags),      FIELD(BENCH_TEXT, cpu),
+        FIELD(BENCH_TEXT, cpu_model),  FIELD(BENCH_TEXT, cpu_instructions),
+        FIELD(BENCH_LONG, l1_bytes),   FIELD(BENCH_LONG, l2_bytes),
+        FIELD(BENCH_LONG, l3_bytes),   FIELD(BENCH_INT, cores),
+        FIELD(BENCH_INT, threads),     FIELD(BENCH_TEXT, governor),
+        FIELD(BENCH_TEXT, kernel),     FIELD(BENCH_TEXT, libraries),
+        FIELD(BENCH_TEXT, hostname),   FIELD(BENCH_TEXT, utc),
+        FIELD(BENCH_TEXT, command),
+    };
+    *count = (int)(sizeof fields / sizeof fields[0]);
+    return fields;
+}
+
+/* The first line of a file without its newline, or "unknown". */
+static void read_line(const char *path, size_t size, char *line)
+{
+    FILE *file = fopen(path, "re");
+    if (!file || !fgets(line, (int)size, file)) snprintf(line, size, "unknown");
+    if (file) fclose(file);
+    line[strcspn(line, "\n")] = '\0';
+}
+
+/* Appends `words` to `text`, but only those that name instruction sets. */
+static void add_instructions(char *words, size_t size, char *text)
+{
+    static const char *const sets[] = {"sse", "ssse", "avx", "fma",  "f16c",
+                                       "bmi", "amx",  "sve", "asimd"};
+    size_t used = 0;
+    for (char *word; (word = strtok_r(words, " \t\n", &words)) && used < size;)
+        for (size_t s = 0; s < sizeof sets / sizeof *sets; s++)
+            if (!strncmp(word, sets[s], strlen(sets[s]))) {
+                used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", word);
+                break;
+            }
+}
+
+/* Of /proc/cpuinfo's first processor, on x86 and on ARM. */
+static void read_cpu(BenchMachine *machine)
+{
+    static const struct {
+        const char *key, *word; /* NULL: the value alone */
+    } parts[] = {
+        {"vendor_id", NULL},      {"cpu family", "family"},           {"model\t", "model"},
+        {"stepping", "stepping"}, {"CPU implementer", "implementer"}, {"CPU variant", "variant"},
+        {"CPU part", "part"},     {"CPU revision", "revision"}};
+    char line[8192], *model = machine->cpu_model;
+    size_t used = 0, room = sizeof machine->cpu_model;
+    FILE *file = fopen("/proc/cpuinfo", "re");
+    while (file && fgets(line, sizeof line, file) && line[0] != '\n') {
+        char *value = strchr(line, ':');
+        if (!value) continue;
+        value += 1 + strspn(value + 1, " ");
+        value[strcspn(value, "\n")] = '\0';
+        if (!strncmp(line, "model name", 10))
+            snprintf(machine->cpu, sizeof machine->cpu, "%.127s", value);
+        if (!strncmp(line, "flags", 5) || !strncmp(line, "Features", 8))
+            add_instructions(value, sizeof machine->cpu_instructions, machine->cpu_instructions);
+        for (size_t p = 0; p < sizeof parts / sizeof *parts && used < room; p++)
+            if (!strncmp(line, parts[p].key, strlen(parts[p].key)))
+                used += (size_t)snprintf(model + used, room - used, "%s%s%s%s", used ? " " : "",
+                                         parts[p].word ? parts[p].word : "",
+                                         parts[p].word ? " " : "", value);
+    }
+    if (file) fclose(file);
+    char *texts[] = {machine->cpu, machine->cpu_model, machine->cpu_instructions};
+    for (int t = 0; t < 3; t++)
+        if (!texts[t][0]) strcpy(texts[t], "unknown");
+}
+
+static bool known(const char *text)
+{
+    return text[0] && strcmp(text, "unknown") != 0;
+}
+
+bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t size, char *text)
+{
+    const char *const texts[][3] = {
+        {"", a->cpu, b->cpu},
+        {"", a->cpu_model, b->cpu_model},
+        {"instructions ", a->cpu_instructions, b->cpu_instructions},
+    };
+    const struct {
+        int level;
+        long a, b;
+    } cache[] = {{1, a->l1_bytes, b->l1_bytes},
+                 {2, a->l2_bytes, b->l2_bytes},
+                 {3, a->l3_bytes, b->l3_bytes}};
+    for (int t = 0; t < 3; t++)
+        if (known(texts[t][1]) && known(texts[t][2]) && strcmp(texts[t][1], texts[t][2]) != 0) {
+            snprintf(text, size, "%s%.*s; this is %.*s", texts[t][0], (int)size / 2 - 16,
+                     texts[t][1], (int)size / 2 - 16, texts[t][2]);
+            return false;
+        }
+    for (int c = 0; c < 3; c++)
+        if (cache[c].a && cache[c].b && cache[c].a != cache[c].b) {
+            snprintf(text, size, "an L%d cache of %ld KiB; this has %ld KiB", cache[c].level,
+                     cache[c].a / 1024, cache[c].b / 1024);
+            return false;
+        }
+    return true;
+}
+
+/* Linux lists processor 0's caches as index0, index1, ...; sizes are like "32K". */
+static void read_caches(BenchMachine *machine)
+{
+    long *bytes[] = {&machine->l1_bytes, &machine->l2_bytes, &machine->l3_bytes};
+    for (int index = 0; index < 16; index++) {
+        char path[96], level[16], type[32], size[32];
+        const char *folder = "/sys/devices/system/cpu/cpu0/cache/index";
+        snprintf(path, sizeof path, "%s%d/level", folder, index);
+        read_line(path, sizeof level, level);
+        snprintf(path, sizeof path, "%s%d/type", folder, index);
+        read_line(path, sizeof type, type);
+        snprintf(path, sizeof path, "%s%d/size", folder, index);
+        read_line(path, sizeof size, size);
+        int number = atoi(level);
+        if (number < 1 || number > 3 || strcmp(type, "Instruction") == 0) continue;
+        char *unit;
+        long value = strtol(size, &unit, 10);
+        *bytes[number - 1] = value * (*unit == 'K' ? 1024 : *unit == 'M' ? 1024 * 1024 : 1);
+    }
+}
+
+static void read_libraries(size_t size, char *text)
+{
+    unsigned major, minor, release;
+    H5get_libversion(&major, &minor, &release);
+    snprintf(text, size, "HDF5 %u.%u.%u, Assimp %u.%u.%u, GSL %s, libconfig %d.%d.%d, jansson %s",
+             major, minor, release, aiGetVersionMajor(), aiGetVersionMinor(), aiGetVersionPatch(),
+             gsl_version, LIBCONFIG_VER_MAJOR, LIBCONFIG_VER_MINOR, LIBCONFIG_VER_REVISION,
+             JANSSON_VERSION);
+}
+
+/* Joins the words; the first is the program and its command. What has no room becomes "...". */
+static void quote_command(int argc, char **argv, size_t size, char *text)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; i < argc && used < size; i++) {
+        if (i) text[used++] = ' ';
+        used += i ? bench_quote(argv[i], size - used, text + used)
+                  : (size_t)snprintf(text, size, "%s", argv[i]);
+    }
+    if (used >= size) strcpy(text + size - 4, "...");
+}
+
+static void read_system(BenchMachine *machine)
+{
+    struct utsname name;
+    if (uname(&name) == 0)
+        snprintf(machine->kernel, sizeof machine->kernel, "%.40s %.60s %.20s", name.sysname,
+                 name.release, name.machine);
+    else
+        snprintf(machine->kernel, sizeof machine->kernel, "unknown");
+    if (gethostname(machine->hostname, sizeof machine->hostname) != 0)
+        snprintf(machine->hostname, sizeof machine->hostname, "unknown");
+    machine->hostname[sizeof machine->hostname - 1] = '\0';
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set) == 0)
+        machine->cores = CPU_COUNT(&set);
+    else
+        machine->cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    read_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", sizeof machine->governor,
+              machine->governor);
+}
+
+void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machine)
+{
+    memset(machine, 0, sizeof *machine);
+    snprintf(machine->git_commit, sizeof machine->git_commit, "%s", SHAPEBENCH_GIT_COMMIT);
+    machine->git_dirty = SHAPEBENCH_GIT_DIRTY;
+    snprintf(machine->version, sizeof machine->version, "%s", SHAPEBENCH_VERSION);
+    snprintf(machine->compiler, sizeof machine->compiler, "%s", SHAPEBENCH_COMPILER);
+    snprintf(machine->flags, sizeof machine->flags, "%s", SHAPEBENCH_FLAGS);
+    machine->threads = threads;
+    read_cpu(machine);
+    read_caches(machine);
+    read_system(machine);
+    read_libraries(sizeof machine->libraries, machine->libraries);
+    quote_command(argc, argv, sizeof machine->command, machine->command);
+    time_t now = time(NULL);
+    struct tm utc;
+    gmtime_r(&now, &utc);
+    strftime(machine->utc, sizeof machine->utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
+}

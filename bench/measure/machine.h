@@ -1,0 +1,32 @@
+/* machine.h - what ran where: the provenance of every result. */
+#ifndef BENCH_MACHINE_H
+#define BENCH_MACHINE_H
+
+#include <stdbool.h>
+
+#include "../store/h5.h"
+
+/* Strings are "unknown" and numbers 0 where unknown. */
+typedef struct {
+    char git_commit[48], compiler[128], flags[512], cpu[128], governor[32], kernel[128];
+    char libraries[256], hostname[64], utc[32], command[1024], version[32];
+    char cpu_model[96];         /* what is behind that name: vendor, family, model, stepping */
+    char cpu_instructions[256]; /* sets that compilers use, of those that the kernel lists */
+    long l1_bytes, l2_bytes, l3_bytes; /* data caches of processor 0; L3 shared by several */
+    int cores;                         /* processors that this process may run on */
+    int threads;                       /* used */
+    bool git_dirty; /* sources were changed after the commit when the program was built */
+} BenchMachine;
+
+/* `argv` is the whole command line; it is stored quoted for a shell, and cut at its room with
+ * "...". Time is now. */
+void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machine);
+
+/* Are they of the same processor: name, model, caches and instructions? If not, `size` bytes of
+ * `text` say what differs. What a record does not hold is not held against it. */
+bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t size, char *text);
+
+/* The record's fields by name; `count` receives how many. */
+const BenchField *bench_machine_fields(int *count);
+
+#endif

@@ -1,0 +1,51 @@
+/* measure.h - one scene, one engine: checked against brute force, then timed, then checked again.
+ *
+ * How. The scene's disturbance is applied and its `settle` steps run; that state is the start of
+ * every timed segment, so that all repeats do the same work on a body in motion. The check compares
+ * the goal positions there, and again where the last segment ended. Then after a warm-up come
+ * `repeats` repeats of two blocks, one plain and one with laps, in turn first. A block is as many
+ * segments as fill block_seconds; a segment restores the start state and runs one step untimed,
+ * and then times up to BENCH_SEGMENT_STEPS steps, a fraction of a millisecond of them at a time.
+ * What other programs took some of (moment.h) is left out, and a block that is less than half
+ * undisturbed is run again; a row of which more than a quarter of the samples stay disturbed, or of
+ * whose processors the host took a tenth, is BUSY and has no times. The total is that of the plain
+ * blocks; stage times are the shares of the blocks with laps, times the total. */
+#ifndef BENCH_MEASURE_H
+#define BENCH_MEASURE_H
+
+#include "../cli/progress.h"
+#include "../scene/body.h"
+#include "row.h"
+
+enum { BENCH_SEGMENT_STEPS = 64 };
+
+typedef struct {
+    int repeats;          /* 0: 15 */
+    double block_seconds; /* 0: 0.02 */
+    int threads;
+    unsigned long seed;
+    BenchProgress *progress; /* or NULL */
+} BenchMeasureParams;
+
+/* Measures the scene's body on the engine. A failed check is no error: the row says why it is not
+ * valid. Errors are those of creating the engine, and SM_INPUT where regions are too many to
+ * be checked. The caller frees the row. */
+SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                     const BenchMeasureParams *params, BenchRow *row, SmError *error);
+
+/* Names the row: its scene and paper, engine, and how rotations and sums are found. */
+void bench_row_name(const BenchScene *scene, BenchRow *row);
+
+/* Is a row, of which only the name need be known, a lattice beside which the other's speed may be
+ * set? Of the same paper and rotations: code without low-level optimisation is compared with such
+ * code, optimised code with optimised code. Naive sums are nobody's measure. */
+bool bench_row_measures(const BenchRow *lattice, const BenchRow *row);
+
+/* The first valid one of the table that is of the same mesh, or NULL. */
+const BenchRow *bench_row_lattice(const BenchRow *rows, int count, const BenchRow *row);
+
+void bench_row_free(BenchRow *row);
+/* The array, too. */
+void bench_rows_free(BenchRow *rows, int count);
+
+#endif

@@ -1,0 +1,145 @@
+#include "moment.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "../../lib/stage.h"
+
+/* Seconds for which all threads of this process have waited for a processor. */
+static double waited(void)
+{
+    double sum = 0, one;
+    DIR *folder = opendir("/proc/self/task");
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        char path[300];
+        snprintf(path, sizeof path, "/proc/self/task/%.255s/schedstat", entry->d_name);
+        FILE *file = entry->d_name[0] == '.' ? NULL : fopen(path, "re");
+        if (!file) continue;
+        if (fscanf(file, "%*s %lf", &one) == 1) sum += 1e-9 * one;
+        fclose(file);
+    }
+    if (folder) closedir(folder);
+    return sum;
+}
+
+static double processor_time(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+BenchMoment bench_moment_start(int threads)
+{
+    BenchMoment now = {.threads = threads};
+    now.used = threads == 1 ? processor_time() : -waited();
+    now.wall = sm_now();
+    return now;
+}
+
+BenchMoment bench_moment_end(int threads)
+{
+    BenchMoment now = {.threads = threads, .wall = sm_now()};
+    now.used = threads == 1 ? processor_time() : -waited();
+    return now;
+}
+
+double bench_moment_lost(const BenchMoment *from, const BenchMoment *to)
+{
+    double wall = to->wall - from->wall, used = to->used - from->used;
+    if (!(wall > 0)) return 0;
+    double lost = from->threads == 1 ? 1 - used / wall : -used / (wall * fmax(from->threads, 1));
+    return fmin(fmax(lost, 0), 1);
+}
+
+double bench_moment_load(void)
+{
+    double load[1] = {NAN};
+    FILE *file = fopen("/proc/loadavg", "re");
+    if (file && fscanf(file, "%lf", load) != 1) load[0] = NAN;
+    if (file) fclose(file);
+    return load[0];
+}
+
+double bench_moment_stolen(void)
+{
+    double ticks = 0;
+    FILE *file = fopen("/proc/stat", "re");
+    if (file && fscanf(file, "cpu %*s %*s %*s %*s %*s %*s %*s %lf", &ticks) != 1) ticks = 0;
+    if (file) fclose(file);
+    return ticks / (double)sysconf(_SC_CLK_TCK);
+}
+
+BenchWatch bench_watch(int threads)
+{
+    return (BenchWatch){.threads = threads, .began = sm_now(), .stolen = bench_moment_stolen()};
+}
+
+void bench_watch_start(BenchWatch *watch)
+{
+    watch->start = bench_moment_start(watch->threads);
+}
+
+double bench_watch_stop(BenchWatch *watch)
+{
+    BenchMoment end = bench_moment_end(watch->threads);
+    double seconds = end.wall - watch->start.wall, lost = bench_moment_lost(&watch->start, &end);
+    watch->good = lost <= BENCH_LOST_LIMIT;
+    watch->seconds += seconds;
+    watch->lost += lost * seconds;
+    return seconds;
+}
+
+void bench_watch_count(BenchWatch *watch)
+{
+    watch->samples++;
+    watch->disturbed += !watch->good;
+    watch->tries = 0;
+}
+
+bool bench_watch_again(BenchWatch *watch)
+{
+    int most = 2 * watch->disturbed > watch->samples ? 1 : 3;
+    if (!watch->good && ++watch->tries < most) return true;
+    bench_watch_count(watch);
+    return false;
+}
+
+/* Seconds that the host took since the watch began. */
+static double taken(const BenchWatch *watch)
+{
+    return bench_moment_stolen() - watch->stolen;
+}
+
+bool bench_watch_busy(const BenchWatch *watch)
+{
+    return 4 * watch->disturbed > watch->samples || taken(watch) > 0.1 * (sm_now() - watch->began);
+}
+
+double bench_watch_lost(const BenchWatch *watch)
+{
+    double share = watch->seconds > 0 ? watch->lost / watch->seconds : 0;
+    return 100 * fmin(1, share + taken(watch) / fmax(sm_now() - watch->began, 1e-9));
+}
+
+void bench_mean_add(BenchMean *mean, double seconds, long count)
+{
+    bench_watch_count(&mean->watch);
+    if (!mean->watch.good) return;
+    mean->seconds += seconds;
+    mean->count += count;
+}
+
+double bench_watch_span(int threads)
+{
+    return threads == 1 ? 0.0002 : 0.001; /* a team's clocks are slower */
+}
+
+int bench_watch_steps(double seconds, int most)
+{
+    static const double sample_seconds = 0.001;
+    return (int)fmin(fmax(ceil(sample_seconds / seconds), 1), most);
+}

@@ -1,0 +1,294 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "../../reference/brute.h"
+#include "../play/runner.h"
+#include "blocks.h"
+#include "measure.h"
+
+static const char text[] = "mesh = \"shape:block\"; particles = 64; w = 1; damping = 0.2;\n"
+                           "bend = 0.5; twist = 0.5; kick = 0.05;";
+
+static SmCode measure_text(const char *scene_text, const SmEngineType *type, BenchRow *row)
+{
+    BenchScene scene;
+    BenchBody body;
+    SmError error;
+    if (bench_scene_parse(scene_text, strlen(scene_text), "tiny.cfg", &scene, &error))
+        fail_msg("%s", error.text);
+    if (bench_body_of_scene(&scene, NULL, &body, &error)) fail_msg("%s", error.text);
+    BenchMeasureParams params = {.repeats = 5, .block_seconds = 0.002, .threads = 1, .seed = 3};
+    SmCode code = bench_measure(&scene, &body, type, &params, row, &error);
+    bench_body_free(&body);
+    return code;
+}
+
+static SmCode measure(const SmEngineType *type, BenchRow *row)
+{
+    return measure_text(text, type, row);
+}
+
+static void a_right_engine_is_valid_and_timed(void **state)
+{
+    (void)state;
+    BenchRow row;
+    assert_int_equal(measure(&ref_brute_engine, &row), SM_OK);
+    if (!row.valid) fail_msg("%s", row.reason);
+    assert_int_equal(row.particles, 64);
+    assert_int_equal(row.repeats, 5);
+    if (row.busy) {
+        bench_row_free(&row);
+        skip();
+    }
+    assert_true(row.goal_error <= 1e-10 && row.momentum_error <= 1e-12);
+    assert_true(row.total_low_ms > 0 && row.total_low_ms <= row.total_ms);
+    assert_true(row.total_ms <= row.total_high_ms);
+    double sum = 0;
+    for (int s = 0; s < SM_STAGES; s++) sum += row.stage_ms[s];
+    assert_true(fabs(sum - row.total_ms) <= 1e-9 * row.total_ms); /* stages add up to the step */
+    assert_true(row.stage_ms[SM_POLAR] > 0 && row.stage_ms[SM_DAMPING] > 0);
+    assert_true(fabs(row.ns_per_particle_step - 1e6 * row.total_ms / 64) <
+                1e-6 * row.total_ms * 1e6);
+    for (int r = 0; r < row.repeats; r++) assert_true(row.total[r] > 0);
+    bench_row_free(&row);
+}
+
+/* The brute engine with a goal that is off: what `wrong` does to it. */
+static enum { SHIFT_ALL, SHIFT_ONE, POISON } wrong;
+static SmEngine *watched;
+
+static void wrong_get(SmEngine *engine, SmField field, double (*values)[3])
+{
+    ref_brute_engine.get(engine, field, values);
+    if (field != SM_GOAL) return;
+    SmCounts counts;
+    ref_brute_engine.count(engine, &counts);
+    watched = engine;
+    double cell = 0.2 / 3;
+    for (long i = 0; i < counts.particles && wrong == SHIFT_ALL; i++) values[i][0] += 1e-3 * cell;
+    if (wrong == SHIFT_ONE) values[11][1] += 1e-3 * cell;
+    if (wrong == POISON) values[11][2] = NAN;
+}
+
+/* Measures what is to be invalid for a reason with these words. */
+static void measure_invalid(const SmEngineType *type, const char *words, BenchRow *row)
+{
+    assert_int_equal(measure(type, row), SM_OK);
+    assert_false(row->valid);
+    if (!strstr(row->reason, words)) fail_msg("'%s' does not say '%s'", row->reason, words);
+}
+
+static void a_wrong_engine_is_invalid(void **state)
+{
+    (void)state;
+    SmEngineType type = ref_brute_engine;
+    type.get = wrong_get;
+    static const char *const reasons[] = {"cells from brute force", "cells from brute force",
+                                          "not finite"};
+    for (int w = SHIFT_ALL; w <= POISON; w++) {
+        BenchRow row;
+        wrong = w;
+        watched = NULL;
+        measure_invalid(&type, reasons[w], &row);
+        assert_non_null(watched);
+        if (wrong != POISON) assert_true(row.goal_error > 5e-4 && row.goal_error < 2e-3);
+        bench_row_free(&row);
+    }
+}
+
+static void wrong_count(SmEngine *engine, SmCounts *counts)
+{
+    ref_brute_engine.count(engine, counts);
+    counts->regions -= 1;
+}
+
+static void a_wrong_count_of_regions_is_invalid(void **state)
+{
+    (void)state;
+    SmEngineType type = ref_brute_engine;
+    type.count = wrong_count;
+    BenchRow row;
+    measure_invalid(&type, "unique regions", &row);
+    bench_row_free(&row);
+}
+
+/* The octree's nodes are held to their own twin, in either precision. */
+static void an_octree_is_valid_and_described(void **state)
+{
+    (void)state;
+    const SmEngineType *const types[] = {&octree_engine_f32, &octree_engine_f64};
+    for (int t = 0; t < 2; t++) {
+        BenchRow row;
+        assert_int_equal(measure(types[t], &row), SM_OK);
+        if (!row.valid) fail_msg("%s", row.reason);
+        assert_int_equal(row.cells, 27);
+        assert_int_equal(row.particles, row.regions);
+        assert_int_equal(row.parts, 1);
+        assert_int_equal(row.w, 0);
+        assert_true(row.bases >= 1 && row.bases <= row.particles);
+        assert_true(row.width_edges == 1 && row.width_cells == 0);
+        assert_true(row.summation_nodes >= 1 && row.summation_nodes <= (double)row.most_summation);
+        assert_true(fabs(row.fps * row.total_ms - 1000) < 1e-6);
+        assert_true(row.goal_error <= (t ? 1e-10 : 5e-5));
+        bench_row_free(&row);
+    }
+}
+
+/* Plain weighting is right without keeping momentum; by how much it does not is measured. */
+static void plain_weighting_loses_momentum_and_says_so(void **state)
+{
+    (void)state;
+    static const char *const weighting[] = {"conserving", "plain"};
+    for (int plain = 0; plain < 2; plain++) {
+        char scene[256];
+        BenchRow row;
+        snprintf(scene, sizeof scene,
+                 "mesh = \"shape:block\"; cells = 343; bend = 0.5; twist = 0.5; kick = 0.05;\n"
+                 "octree = { levels = 2; nodes = 150; weighting = \"%s\"; };",
+                 weighting[plain]);
+        assert_int_equal(measure_text(scene, &octree_engine_f64, &row), SM_OK);
+        if (!row.valid) fail_msg("%s", row.reason);
+        assert_int_equal(row.plain, plain);
+        if (plain ? !(row.momentum_error > 1e-4) : !(row.momentum_error <= 1e-12))
+            fail_msg("%s weighting: momentum off by %g", weighting[plain], row.momentum_error);
+        bench_row_free(&row);
+    }
+}
+
+/* Widths of places, how far regions reach, and what was wanted. */
+static void an_octrees_widths_and_wishes_are_in_its_row(void **state)
+{
+    (void)state;
+    BenchRow row;
+    static const char scene[] =
+        "mesh = \"shape:block\"; cells = 343; epsilon = 0.5; damping = 0.2; bend = 0.3;\n"
+        "octree = { levels = 2; bases = 3; nodes = 99; summation_nodes = 5;\n"
+        "           widths = ( { radius = 0.05; w = 0.0; } ); };";
+    assert_int_equal(measure_text(scene, &octree_engine_f64, &row), SM_OK);
+    if (!row.valid) fail_msg("%s", row.reason);
+    assert_true(row.wanted_nodes == 99 && row.wanted_bases == 3);
+    assert_true(row.bases > 3);
+    assert_true(row.local_nodes > 0 && row.local_nodes < row.particles);
+    assert_true(row.reached > 0 && row.reached < row.most_reached);
+    assert_true(row.most_reached <= 1.5 * row.width_edges * 4);
+    bench_row_free(&row);
+}
+
+static bool wrong_shapes(SmEngine *engine, double (*S)[9])
+{
+    bool plastic = octree_engine_f64.get_shapes(engine, S);
+    if (plastic) S[3][1] += 1e-6;
+    return plastic;
+}
+
+/* Plastic bodies are held to their rest shapes, and those to how they flow. */
+static void a_plastic_octree_is_checked(void **state)
+{
+    (void)state;
+    static const char scene[] =
+        "mesh = \"shape:block\"; cells = 343; epsilon = 0.5; damping = 0.2; squash = 0.3;\n"
+        "bend = 0.3; instances = 2; octree = { levels = 2; yield = 0.02; creep = 20.0; };";
+    SmEngineType wrong_type = octree_engine_f64;
+    wrong_type.get_shapes = wrong_shapes;
+    const SmEngineType *const types[] = {&octree_engine_f32, &octree_engine_f64, &wrong_type};
+    for (int t = 0; t < 3; t++) {
+        BenchRow row;
+        assert_int_equal(measure_text(scene, types[t], &row), SM_OK);
+        if (row.valid != (t < 2)) fail_msg("%s", row.reason);
+        bench_row_free(&row);
+    }
+}
+
+static void wrong_octree_get(SmEngine *engine, SmField field, double (*values)[3])
+{
+    octree_engine_f64.get(engine, field, values);
+    if (field == SM_GOAL) values[0][0] += 1e-3 * 0.2 / 3;
+}
+
+static void a_wrong_octree_is_invalid(void **state)
+{
+    (void)state;
+    SmEngineType type = octree_engine_f64;
+    type.get = wrong_octree_get;
+    BenchRow row;
+    measure_invalid(&type, "cells from brute force", &row);
+    assert_true(row.goal_error > 5e-4 && row.goal_error < 2e-3);
+    bench_row_free(&row);
+}
+
+/* A step that computes for 50 microseconds, and loses its processor for 2 milliseconds in every
+ * `every`-th: a thread that sleeps gets no processor time, as one has that waits for others. */
+typedef struct {
+    int every, steps;
+} Disturbed;
+
+static void restore_nothing(void *subject)
+{
+    (void)subject;
+}
+
+static void disturbed_step(void *subject, SmLaps *laps)
+{
+    Disturbed *disturbed = subject;
+    struct timespec start, now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &start);
+    do clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    while ((now.tv_sec - start.tv_sec) * 1000000000 + now.tv_nsec - start.tv_nsec < 50000);
+    if (++disturbed->steps % disturbed->every == 0)
+        nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+    sm_lap(laps, SM_POLAR);
+}
+
+static BenchRow measure_disturbed(int every)
+{
+    BenchRow row = {.valid = true, .particles = 1};
+    BenchMeasureParams params = {.repeats = 5, .block_seconds = 0.005, .threads = 1};
+    Disturbed disturbed = {.every = every};
+    bench_time_blocks(&(BenchTimed){&disturbed, restore_nothing, disturbed_step}, &params, &row);
+    return row;
+}
+
+static void what_others_took_is_left_out(void **state)
+{
+    (void)state;
+    BenchRow row = measure_disturbed(25); /* on average 130 microseconds a step */
+    assert_true(row.lost_percent > 30 && row.lost_percent <= 100);
+    if (!row.busy) assert_true(row.total_ms < 0.1 && row.stage_ms[SM_POLAR] < 0.1);
+    bench_row_free(&row);
+}
+
+static void a_row_without_undisturbed_time_is_busy_and_has_no_times(void **state)
+{
+    (void)state;
+    BenchRow row = measure_disturbed(1);
+    assert_true(row.busy && !bench_row_timed(&row));
+    assert_string_equal(bench_row_mark(&row), "BUSY");
+    assert_true(row.lost_percent > 90 && isnan(row.total_ms) && isnan(row.fps));
+    for (int r = 0; r < row.repeats; r++) assert_true(row.total[r] > 0); /* kept as they are */
+    bench_row_free(&row);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_right_engine_is_valid_and_timed),
+        cmocka_unit_test(a_wrong_engine_is_invalid),
+        cmocka_unit_test(a_wrong_count_of_regions_is_invalid),
+        cmocka_unit_test(an_octree_is_valid_and_described),
+        cmocka_unit_test(plain_weighting_loses_momentum_and_says_so),
+        cmocka_unit_test(an_octrees_widths_and_wishes_are_in_its_row),
+        cmocka_unit_test(a_plastic_octree_is_checked),
+        cmocka_unit_test(a_wrong_octree_is_invalid),
+        cmocka_unit_test(what_others_took_is_left_out),
+        cmocka_unit_test(a_row_without_undisturbed_time_is_busy_and_has_no_times),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

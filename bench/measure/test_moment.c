@@ -1,0 +1,92 @@
+/* What others take of a time: samples are taken again, and what cannot be measured is busy. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "../../lib/stage.h"
+#include "moment.h"
+
+/* The processor is somebody else's. */
+static void sleep_a_while(void)
+{
+    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+}
+
+/* A sample of `disturbed` tries that are disturbed before others are not. Whether these are, too,
+ * is up to the machine on which the test runs. Returns the tries. */
+static int take_sample(BenchWatch *watch, int disturbed, bool others_quiet)
+{
+    int tries = 0;
+    do {
+        bench_watch_start(watch);
+        if (tries < disturbed) sleep_a_while();
+        bench_watch_stop(watch);
+        if (tries < disturbed) assert_false(watch->good);
+        if (tries >= disturbed && others_quiet) watch->good = true;
+        tries++;
+    } while (bench_watch_again(watch));
+    return tries;
+}
+
+static void a_disturbed_sample_is_taken_again(void **state)
+{
+    (void)state;
+    BenchWatch watch = bench_watch(1);
+    assert_int_equal(take_sample(&watch, 0, true), 1);
+    assert_int_equal(take_sample(&watch, 2, true), 3);
+    assert_int_equal(watch.samples, 2);
+    assert_int_equal(watch.disturbed, 0);
+    assert_int_equal(take_sample(&watch, 5, true), 3);
+    assert_int_equal(watch.disturbed, 1);
+    assert_true(bench_watch_lost(&watch) > 50);
+}
+
+static void where_half_of_the_samples_stay_disturbed_none_is_taken_again(void **state)
+{
+    (void)state;
+    BenchWatch watch = bench_watch(1);
+    take_sample(&watch, 5, true);
+    assert_int_equal(take_sample(&watch, 5, true), 1);
+    assert_int_equal(watch.disturbed, 2);
+}
+
+static void more_than_a_quarter_of_disturbed_samples_is_busy(void **state)
+{
+    (void)state;
+    BenchWatch watch = bench_watch(1);
+    watch.stolen = INFINITY; /* whatever the host takes here */
+    for (int i = 0; i < 3; i++) take_sample(&watch, 0, true);
+    take_sample(&watch, 5, true);
+    assert_false(bench_watch_busy(&watch));
+    take_sample(&watch, 5, true);
+    assert_true(bench_watch_busy(&watch));
+}
+
+static void a_mean_leaves_out_what_was_disturbed(void **state)
+{
+    (void)state;
+    BenchMean mean = {.watch = bench_watch(1)};
+    mean.watch.good = true;
+    bench_mean_add(&mean, 0.5, 2);
+    mean.watch.good = false;
+    bench_mean_add(&mean, 100, 1);
+    assert_true(mean.seconds == 0.5);
+    assert_int_equal(mean.count, 2);
+    assert_true(bench_watch_busy(&mean.watch)); /* one of two */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_disturbed_sample_is_taken_again),
+        cmocka_unit_test(where_half_of_the_samples_stay_disturbed_none_is_taken_again),
+        cmocka_unit_test(more_than_a_quarter_of_disturbed_samples_is_busy),
+        cmocka_unit_test(a_mean_leaves_out_what_was_disturbed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,137 @@
+/* Memory that is asked for beforehand. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../../fastlsm/fastlsm.h"
+#include "../kernels/cubes.h"
+#include "../kernels/sampled.h"
+#include "../play/play.h"
+#include "room.h"
+
+static BenchScene scene_of_cube(const char *engine, long particles)
+{
+    BenchScene scene;
+    bench_scene_init(&scene);
+    strcpy(scene.mesh, "shape:block");
+    strcpy(scene.file, "cube.cfg");
+    strcpy(scene.engine, engine);
+    scene.voxel = (SmVoxelParams){SM_SOLID, 0, particles, false};
+    return scene;
+}
+
+static void make(const BenchScene *scene)
+{
+    SmMesh mesh;
+    BenchBody body;
+    BenchPlay play;
+    SmError error;
+    const SmEngineType *type;
+    if (bench_engine_find(scene->engine, NULL, &type, &error) ||
+        bench_mesh_load(scene->mesh, &mesh, &error) ||
+        bench_body_create(scene, &mesh, &body, &error) ||
+        bench_play_create(scene, &body, type, 1, 1, &play, &error))
+        _exit(1);
+}
+
+/* Most bytes that a process has held which makes the scene's engine, or does nothing. */
+static double held(const BenchScene *scene)
+{
+    int status;
+    struct rusage usage;
+    pid_t child = fork();
+    if (child == 0) {
+        if (scene) make(scene);
+        _exit(0);
+    }
+    assert_true(wait4(child, &status, 0, &usage) == child && status == 0);
+    return 1024.0 * (double)usage.ru_maxrss;
+}
+
+/* It refuses nothing that fits, nor lets everything pass; sanitizers hold more. */
+static void the_estimate_is_near_what_is_taken(void **state)
+{
+    (void)state;
+    const char *const engine[] = {"fastlsm", "brute", "octree"};
+    double before = held(NULL);
+    for (int i = 0; i < 3; i++) {
+        BenchScene scene = scene_of_cube(engine[i], 60000);
+        double bytes = held(&scene) - before, wanted = bench_room_wanted(&scene, 60000);
+        if (wanted > 1.3 * bytes || wanted < 0.2 * bytes)
+            fail_msg("%s: %.3g bytes were estimated, %.3g were taken", engine[i], wanted, bytes);
+    }
+}
+
+static void instances_and_wider_regions_take_more(void **state)
+{
+    (void)state;
+    BenchScene scene = scene_of_cube("fastlsm", 0);
+    double one = bench_room_wanted(&scene, 1000);
+    scene.instances = 100;
+    assert_true(bench_room_wanted(&scene, 1000) > 10 * one);
+    scene = scene_of_cube("brute", 0);
+    scene.params.w = 1;
+    one = bench_room_wanted(&scene, 1e6);
+    scene.params.w = 10;
+    assert_true(bench_room_wanted(&scene, 1e6) > 10 * one);
+    double solid = bench_room_wanted(&scene, 1e6);
+    scene.voxel.fill = SM_SHELL;
+    assert_true(bench_room_wanted(&scene, 1e6) < solid / 2);
+    scene.params.w = 64; /* no region has more members than there are particles */
+    assert_true(bench_room_wanted(&scene, 8) <= 8 * (450 + 8 * sizeof(int)));
+}
+
+static void what_does_not_fit_is_refused_at_once(void **state)
+{
+    (void)state;
+    SmError error;
+    double available = bench_room_available();
+    assert_true(available > 1e6 && isfinite(available)); /* on Linux */
+    BenchScene scene = scene_of_cube("fastlsm", 0);
+    assert_int_equal(bench_room_check(&scene, 1000, &error), SM_OK);
+    assert_int_equal(bench_room_check(&scene, available, &error), SM_MEMORY);
+    assert_non_null(strstr(error.text, "cube.cfg: "));
+    assert_non_null(strstr(error.text, " GB available: ask for fewer particles"));
+    SmMesh mesh;
+    BenchBody body;
+    scene.voxel.particles = (long)available;
+    assert_int_equal(bench_mesh_load(scene.mesh, &mesh, &error), SM_OK);
+    double start = sm_now();
+    assert_int_equal(bench_body_create(&scene, &mesh, &body, &error), SM_MEMORY);
+    assert_true(sm_now() - start < 2);
+}
+
+static void cubes_that_do_not_fit_are_refused(void **state)
+{
+    (void)state;
+    enum { SIDE = 20000 };
+    SmError error;
+    BenchCube cube;
+    BenchSampled body;
+    const SmEngineParams params = {.w = 1, .h = 0.01, .threads = 1};
+    assert_int_equal(bench_cube_create(SIDE, &fastlsm_engine_f32, &params, 1, &cube, &error),
+                     SM_MEMORY);
+    assert_memory_equal(error.text, "cube of side 20000: 8000000000000 particles on fastlsm", 54);
+    assert_null(cube.engine);
+    assert_int_equal(bench_sampled_cube(SIDE, &body, &error), SM_MEMORY);
+    assert_non_null(strstr(error.text, "particles on octree take about"));
+    assert_null(body.w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_estimate_is_near_what_is_taken),
+        cmocka_unit_test(instances_and_wider_regions_take_more),
+        cmocka_unit_test(what_does_not_fit_is_refused_at_once),
+        cmocka_unit_test(cubes_that_do_not_fit_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

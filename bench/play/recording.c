@@ -1,0 +1,155 @@
+#include "recording.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../octree/change/structure.h"
+
+static void release(BenchRecording *recording)
+{
+    sm_mesh_free(&recording->surface);
+    free(recording->point);
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++) free(recording->value[f]);
+    free(recording->x);
+    free(recording->v);
+    free(recording->g);
+    free(recording->S);
+    *recording = (BenchRecording){0};
+}
+
+static bool is_octree(const BenchRunner *runner)
+{
+    return !strcmp(runner->type->name, "octree");
+}
+
+static SmCode check(const BenchPlay *play, const BenchRunner *runner, BenchRecord record,
+                    SmError *error)
+{
+    const BenchBody *body = play->cast.body;
+    if ((double)body->instances * (double)body->mesh.vertex_count > 2e9)
+        return sm_fail(error, SM_INPUT, "%s: the surfaces of %ld instances have too many vertices",
+                       runner->scene->file, body->instances);
+    if (record == BENCH_RECORD_PARTICLES && is_octree(runner))
+        return sm_fail(error, SM_USAGE,
+                       "--record particles stores a lattice, and the octree has none: give "
+                       "--record nodes");
+    if (record == BENCH_RECORD_NODES && !is_octree(runner))
+        return sm_fail(error, SM_USAGE,
+                       "--record nodes stores an octree, and %s has none: give --record particles, "
+                       "or --engine octree",
+                       runner->type->name);
+    if (record && bench_play_changes(play))
+        return sm_fail(error, SM_USAGE,
+                       "--record stores bodies that stay as they are, and %s cuts or refines its "
+                       "own: leave --record out, and the surface is still written",
+                       runner->scene->file);
+    return SM_OK;
+}
+
+/* The surface at rest, and room for what is found of it. */
+static void take_surface(BenchRecording *recording)
+{
+    sm_mesh_free(&recording->surface);
+    recording->surface = bench_play_surface(recording->play);
+    size_t count = (size_t)recording->surface.vertex_count;
+    recording->point = sm_realloc(recording->point, count, sizeof *recording->point);
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++)
+        if (recording->fields & 1u << f)
+            recording->value[f] = sm_realloc(
+                recording->value[f], count * (size_t)bench_field_components[f], sizeof(float));
+}
+
+SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord record,
+                            BenchFields fields, const BenchMachine *machine,
+                            BenchRecording *recording, SmError *error)
+{
+    const BenchRunner *runner = bench_play_runner(play);
+    const BenchBody *body = runner->body;
+    SmCode code = check(play, runner, record, error);
+    if (!code) code = bench_fields_check(play, fields, error);
+    if (code) return code;
+    *recording =
+        (BenchRecording){.play = play, .runner = runner, .record = record, .fields = fields};
+    take_surface(recording);
+    size_t count = (size_t)runner->particles;
+    recording->x = sm_alloc(count, sizeof *recording->x);
+    recording->v = sm_alloc(count, sizeof *recording->v);
+    recording->g = sm_alloc(count, sizeof *recording->g);
+    if (is_octree(runner) && runner->scene->octree.creep > 0)
+        recording->S = sm_alloc(count, sizeof *recording->S);
+    SmEngineParams params = bench_engine_params(runner->scene, body, machine->threads);
+    SmBoundary boundary = bench_runner_boundary(runner);
+    BenchTrajectoryParams wanted = {
+        .path = path,
+        .surface = &recording->surface,
+        .machine = machine,
+        .scene = runner->scene->name,
+        .record = record,
+        .fields = fields,
+        .voxels = &body->voxels,
+        .structure = is_octree(runner) ? oct_engine_structure(runner->engine) : NULL,
+        .params = &params,
+        .mass = body->mass,
+        .engine = runner->type->name,
+        .precision = runner->type->precision,
+        .boundary = &boundary};
+    code = bench_trajectory_open(&wanted, &recording->trajectory, error);
+    if (code) release(recording);
+    return code;
+}
+
+double bench_recording_bytes(const BenchRecording *recording)
+{
+    const BenchScene *scene = recording->runner->scene;
+    double frames = scene->frames + 1.0, steps = (double)scene->frames * scene->steps_per_frame + 1;
+    double state = (sizeof *recording->x + sizeof *recording->v + sizeof *recording->g) *
+                   (double)recording->runner->particles;
+    if (recording->S) state *= 2;
+    return bench_trajectory_bytes(recording->trajectory, frames) +
+           (recording->record ? steps * state : 0);
+}
+
+SmCode bench_recording_frame(BenchRecording *recording, SmError *error)
+{
+    if (bench_play_split(recording->play)) {
+        take_surface(recording);
+        SmCode code = bench_trajectory_topology(recording->trajectory, &recording->surface, error);
+        if (code) return code;
+    }
+    const double(*point)[3] = (const double(*)[3])recording->point;
+    bench_play_points(recording->play, recording->point);
+    bench_fields_find(recording->play, recording->fields, &recording->surface, point,
+                      recording->value);
+    return bench_trajectory_frame(recording->trajectory, recording->play->time, point,
+                                  (const float *const *)recording->value, error);
+}
+
+SmCode bench_recording_step(BenchRecording *recording, long step, bool before, SmError *error)
+{
+    const BenchRunner *runner = recording->runner;
+    const SmEngineType *type = runner->type;
+    type->get(runner->engine, SM_POSITION, recording->x);
+    type->get(runner->engine, SM_VELOCITY, recording->v);
+    if (before) {
+        type->goals(runner->engine);
+        type->get(runner->engine, SM_GOAL, recording->g);
+    }
+    if (recording->S) type->get_shapes(runner->engine, recording->S);
+    return bench_trajectory_step(recording->trajectory, step, (const double(*)[3])recording->x,
+                                 (const double(*)[3])recording->v,
+                                 before ? (const double(*)[3])recording->g : NULL,
+                                 (const double(*)[9])recording->S, error);
+}
+
+SmCode bench_recording_close(BenchRecording *recording, SmError *error)
+{
+    SmCode code = bench_trajectory_close(recording->trajectory, error);
+    release(recording);
+    return code;
+}
+
+void bench_recording_abandon(BenchRecording *recording)
+{
+    bench_trajectory_abandon(recording->trajectory);
+    release(recording);
+}

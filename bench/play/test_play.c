@@ -1,0 +1,362 @@
+/* Scenes that change while they run: cut, touched, looked at. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../check/check.h"
+#include "fields.h"
+#include "frames.h"
+
+#define BEAM                                                                                       \
+    "mesh = \"shape:beam\"; particles = 3000; engine = \"octree\"; epsilon = 0.5; h = 0.01;\n"     \
+    "damping = 0.3; gravity = [0.0, -1.5, 0.0]; steps_per_frame = 1; frames = 60;\n"               \
+    "octree = { levels = 3; nodes = 200; edges = 1.0; };\n"                                        \
+    "handles = ( { box_low = (0, 0, 0); box_high = (0.1, 1, 1); } );\n"
+
+#define LOOSE_BEAM                                                                                 \
+    "mesh = \"shape:beam\"; particles = 3000; engine = \"octree\"; h = 0.01;\n"                    \
+    "steps_per_frame = 1; frames = 60; octree = { levels = 3; nodes = 200; edges = 0.5; };\n"
+
+typedef struct {
+    BenchScene scene;
+    BenchBody body;
+    BenchPlay play;
+    const SmEngineType *type;
+} Show;
+
+/* A scene of this text, with `cuts` added, its places in parts of the beam's box. */
+static void open_show(const char *text, const char *changes, int threads, Show *show)
+{
+    char all[2048];
+    SmError error = {0};
+    snprintf(all, sizeof all, "%s%s", text, changes);
+    if (bench_scene_parse(all, strlen(all), "show.cfg", &show->scene, &error) ||
+        bench_engine_find(show->scene.engine, "single", &show->type, &error) ||
+        bench_body_of_scene(&show->scene, NULL, &show->body, &error) ||
+        bench_play_create(&show->scene, &show->body, show->type, threads, 1, &show->play, &error))
+        fail_msg("%s", error.text);
+}
+
+static void close_show(Show *show)
+{
+    bench_play_free(&show->play);
+    bench_body_free(&show->body);
+}
+
+static void run_frame(Show *show)
+{
+    SmError error;
+    if (bench_play_change(&show->play, &error)) fail_msg("%s", error.text);
+    for (int s = 0; s < show->scene.steps_per_frame; s++) {
+        bench_play_prepare(&show->play);
+        bench_play_advance(&show->play, NULL);
+    }
+}
+
+/* The blade comes down across the beam's middle, from above it to below, in frames 2 to 20. */
+static void write_cut(const BenchBody *body, double at, double deep, int level, char text[512])
+{
+    double size[3], x = body->low[0] + at * (body->high[0] - body->low[0]);
+    for (int d = 0; d < 3; d++) size[d] = body->high[d] - body->low[d];
+    double from = body->high[1] + 0.3 * size[1], to = body->high[1] - deep * size[1];
+    double low = body->low[2] - 0.3 * size[2], high = body->high[2] + 0.3 * size[2];
+    snprintf(text, 512,
+             "cuts = ( { base_from = (%.9f, %.9f, %.9f); tip_from = (%.9f, %.9f, %.9f);\n"
+             "base_to = (%.9f, %.9f, %.9f); tip_to = (%.9f, %.9f, %.9f);\n"
+             "start = 0.02; stop = 0.2; level = %d; reach = 1.0; } );\n",
+             x, from, low, x, from, high, x, to, low, x, to, high, level);
+}
+
+static void beam_cut(double at, double deep, int level, char text[512])
+{
+    Show show;
+    open_show(BEAM, "", 1, &show);
+    write_cut(&show.body, at, deep, level, text);
+    close_show(&show);
+}
+
+/* How far the nodes just behind the middle have sunk, on average. */
+static double sunk(const Show *show)
+{
+    const BenchRunner *runner = &show->play.cast.part[0].runner;
+    double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x), sum = 0;
+    double length = show->body.high[0] - show->body.low[0];
+    long count = 0;
+    runner->type->get(runner->engine, SM_POSITION, x);
+    for (long p = 0; p < runner->particles; p++) {
+        double along = (runner->x0[p][0] - show->body.low[0]) / length;
+        if (along < 0.52 || along > 0.65) continue;
+        sum += runner->x0[p][1] - x[p][1];
+        count++;
+    }
+    free(x);
+    return sum / (double)count;
+}
+
+static void check_goals(Show *show)
+{
+    BenchRunner *runner = bench_play_runner(&show->play);
+    BenchCheck check;
+    char reason[160];
+    bench_check_begin(&show->scene, runner->body, runner->type, runner->engine, &check);
+    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
+    bench_check_damping(&check, &show->scene, runner->type, runner->engine, &found);
+    if (!bench_check_verdict(&found, sizeof reason, reason)) fail_msg("%s", reason);
+    bench_check_free(&check);
+}
+
+static void a_beam_cut_through_is_two_and_one_falls(void **state)
+{
+    (void)state;
+    Show show;
+    char cut[512];
+    beam_cut(0.5, 1.6, 3, cut);
+    open_show(BEAM, cut, 1, &show);
+    long first = bench_cast_particles(&show.play.cast);
+    for (int f = 0; f < 60; f++) {
+        run_frame(&show);
+        SmMeshInfo info = sm_mesh_info(&show.play.changes[0].surface);
+        if (info.open_edges) fail_msg("frame %d: %ld open edges", f, info.open_edges);
+    }
+    SmMeshInfo before = sm_mesh_info(&show.body.mesh),
+               after = sm_mesh_info(&show.play.changes[0].surface);
+    assert_in_range(after.components, 2, 4); /* perhaps with a shred */
+    assert_true(fabs(after.volume - before.volume) < 0.01 * before.volume);
+    assert_true(bench_cast_particles(&show.play.cast) > first + 20);
+    Show whole;
+    open_show(BEAM, "", 1, &whole);
+    for (int f = 0; f < 60; f++) run_frame(&whole);
+    if (!(sunk(&show) > sunk(&whole) + 0.03)) /* which only bends */
+        fail_msg("sunk by %g, uncut by %g", sunk(&show), sunk(&whole));
+    close_show(&whole);
+    check_goals(&show);
+    close_show(&show);
+}
+
+static void a_blade_that_misses_changes_nothing(void **state)
+{
+    (void)state;
+    Show show;
+    char cut[512];
+    beam_cut(1.5, 1.6, 3, cut);
+    open_show(BEAM, cut, 1, &show);
+    long first = bench_cast_particles(&show.play.cast), triangles = show.body.mesh.triangle_count;
+    for (int f = 0; f < 60; f++) run_frame(&show);
+    assert_int_equal(bench_cast_particles(&show.play.cast), first);
+    assert_int_equal(show.play.changes[0].surface.triangle_count, triangles);
+    close_show(&show);
+}
+
+/* A blade that stops half way leaves one body, and a slit. */
+static void a_notch_leaves_one_body(void **state)
+{
+    (void)state;
+    Show show;
+    char cut[512];
+    beam_cut(0.5, 0.4, 3, cut);
+    open_show(BEAM, cut, 1, &show);
+    for (int f = 0; f < 60; f++) run_frame(&show);
+    SmMeshInfo after = sm_mesh_info(&show.play.changes[0].surface);
+    assert_int_equal(after.components, 1);
+    assert_int_equal(after.open_edges, 0);
+    assert_true(after.triangles > show.body.mesh.triangle_count);
+    check_goals(&show);
+    close_show(&show);
+}
+
+/* Regions of 0.5 edges hold one node each: a cut changes none, but what lies across it are
+ * neighbours no more, and may touch. */
+static void contacts_follow_a_cut_that_changes_no_region(void **state)
+{
+    (void)state;
+    Show show;
+    char text[640] = "collide = { self = true; };\n", *cut = text + strlen(text);
+    beam_cut(0.5, 1.6, 3, cut);
+    char *refines = strstr(cut, "level = 3; reach = 1.0; ");
+    memset(refines, ' ', strlen("level = 3; reach = 1.0; "));
+    open_show(LOOSE_BEAM, text, 1, &show);
+    BenchRunner *runner = bench_play_runner(&show.play);
+    long first = runner->particles;
+    for (int f = 0; f < 30; f++) run_frame(&show);
+    assert_int_equal(runner->particles, first);
+    double(*x)[3] = sm_alloc((size_t)first, sizeof *x);
+    runner->type->get(runner->engine, SM_POSITION, x);
+    for (long p = 0; p < first; p++) x[p][0] *= 0.4; /* into each other */
+    runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])x);
+    free(x);
+    BenchCheck check;
+    BenchDeviation found = {.finite = true};
+    bench_check_begin(&show.scene, runner->body, runner->type, runner->engine, &check);
+    bench_check_contacts(&check, &show.scene, runner->type, runner->engine, &found);
+    assert_true(found.contacts > 0);
+    if (found.contacts_wrong)
+        fail_msg("%ld of %ld contacts are wrong", found.contacts_wrong, found.contacts);
+    bench_check_free(&check);
+    close_show(&show);
+}
+
+static void threads_do_not_matter(void **state)
+{
+    (void)state;
+    Show show[2];
+    char cut[512];
+    beam_cut(0.4, 1.6, 3, cut);
+    double(*x[2])[3];
+    for (int i = 0; i < 2; i++) {
+        open_show(BEAM, cut, 1 + 2 * i, &show[i]);
+        for (int f = 0; f < 45; f++) run_frame(&show[i]);
+        const BenchRunner *runner = &show[i].play.cast.part[0].runner;
+        x[i] = sm_alloc((size_t)runner->particles, sizeof(double[3]));
+        runner->type->get(runner->engine, SM_POSITION, x[i]);
+    }
+    long count = bench_cast_particles(&show[0].play.cast);
+    assert_int_equal(bench_cast_particles(&show[1].play.cast), count);
+    assert_memory_equal(x[0], x[1], (size_t)count * sizeof(double[3]));
+    for (int i = 0; i < 2; i++) {
+        free(x[i]);
+        close_show(&show[i]);
+    }
+}
+
+/* Of three instances the second is touched: it alone is refined, and comes back to what it was. */
+static void a_touch_refines_one_of_three(void **state)
+{
+    (void)state;
+    Show show;
+    open_show(BEAM,
+              "instances = 3; touches = ( { instance = 2; centre = (0.0, 0.0, 0.0);\n"
+              "radius = 10.0; level = 3; start = 0.05; stop = 0.2; hold = 0.1; } );\n",
+              1, &show);
+    assert_int_equal(show.play.cast.count, 2);
+    assert_int_equal(show.play.cast.part[0].body.instances, 2);
+    assert_true(show.play.cast.part[1].own);
+    long first = bench_cast_particles(&show.play.cast);
+    for (int f = 0; f < 60; f++) {
+        run_frame(&show);
+        long now = bench_cast_particles(&show.play.cast);
+        long shared = show.play.cast.part[0].runner.particles;
+        bool touched = show.play.time > 0.06 && show.play.time < 0.19;
+        if (touched) assert_true(now > first);
+        assert_int_equal(3 * shared, 2 * first);
+    }
+    assert_int_equal(bench_cast_particles(&show.play.cast), first);
+    check_goals(&show);
+    close_show(&show);
+}
+
+static void an_eye_refines_what_is_near(void **state)
+{
+    (void)state;
+    Show show;
+    open_show(BEAM,
+              "view = { eye_from = (0.0, 0.0, 100.0); eye_to = (0.0, 0.0, 0.1); start = 0.1;\n"
+              "stop = 0.3; near = 0.2; slack = 0.1; level = 3; };\n",
+              1, &show);
+    long first = bench_cast_particles(&show.play.cast);
+    run_frame(&show);
+    assert_int_equal(bench_cast_particles(&show.play.cast), first);
+    for (int f = 1; f < 60; f++) run_frame(&show);
+    assert_true(bench_cast_particles(&show.play.cast) > first);
+    check_goals(&show);
+    close_show(&show);
+}
+
+static void frames_are_timed_and_counted(void **state)
+{
+    (void)state;
+    Show show;
+    char cut[512];
+    BenchChangeRow row;
+    BenchPlay play;
+    beam_cut(0.5, 1.6, 3, cut);
+    open_show(BEAM, cut, 1, &show);
+    BenchFramesParams params = {.threads = 1, .rounds = 2, .seed = 1};
+    assert_int_equal(
+        bench_frames_play(&show.scene, &show.body, show.type, &params, &row, &play, NULL), SM_OK);
+    assert_int_equal(row.frames, 60);
+    assert_in_range(row.changed, 1, 35);
+    assert_int_equal(row.first_nodes, bench_cast_particles(&show.play.cast));
+    assert_int_equal(row.last_nodes, bench_cast_particles(&play.cast));
+    assert_true(row.most_nodes >= row.last_nodes && row.most_added > 0);
+    assert_int_equal(row.first_triangles, show.body.mesh.triangle_count);
+    assert_true(row.last_triangles > row.first_triangles && row.pieces >= 2);
+    assert_int_equal(row.open_edges, 0);
+    assert_true(row.first_ms > 0 && row.last_ms > 0 && row.surface_ms > 0 && row.follow_ms > 0);
+    assert_true(row.change_most_ms >= row.change_ms && row.change_ms > 0);
+    for (long f = 0; f < row.frames; f++) assert_true(row.time[f][0] > 0);
+    free(row.time);
+    bench_play_free(&play);
+    close_show(&show);
+}
+
+/* Runs a frame. The speed is how far its one step takes the points; returns the largest piece. */
+static double check_fields(Show *show)
+{
+    const BenchFields all = (1u << BENCH_POINT_FIELDS) - 1;
+    SmError error;
+    float *value[BENCH_POINT_FIELDS];
+    if (bench_play_change(&show->play, &error)) fail_msg("%s", error.text);
+    SmMesh rest = bench_play_surface(&show->play);
+    size_t count = (size_t)rest.vertex_count;
+    double(*before)[3] = sm_alloc(count, sizeof *before), (*point)[3] = sm_alloc(count, 24);
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++)
+        value[f] = sm_alloc(count * (size_t)bench_field_components[f], sizeof(float));
+    bench_play_points(&show->play, before);
+    bench_play_prepare(&show->play);
+    bench_play_advance(&show->play, NULL);
+    bench_play_points(&show->play, point);
+    bench_fields_find(&show->play, all, &rest, (const double(*)[3])point, value);
+    double h = show->scene.params.h, worst = 0, most = 0;
+    for (size_t v = 0; v < count; v++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++) {
+            square += (point[v][d] - before[v][d]) * (point[v][d] - before[v][d]) / (h * h);
+            assert_true(value[BENCH_DISPLACEMENT][3 * v + (size_t)d] ==
+                        (float)(point[v][d] - rest.position[v][d]));
+        }
+        worst = fmax(worst, fabs(sqrt(square) - value[BENCH_SPEED][v]));
+        most = fmax(most, value[BENCH_PIECE][v]);
+        assert_true(value[BENCH_LEVEL][v] >= 0 && value[BENCH_LEVEL][v] <= 3);
+    }
+    assert_true(worst < 1e-4); /* of single precision, over h */
+    for (int f = 0; f < BENCH_POINT_FIELDS; f++) free(value[f]);
+    free(before);
+    free(point);
+    sm_mesh_free(&rest);
+    return most;
+}
+
+static void fields_tell_of_speed_and_pieces(void **state)
+{
+    (void)state;
+    char cut[512];
+    Show show;
+    beam_cut(0.5, 1.6, 3, cut);
+    open_show(LOOSE_BEAM "kick = 0.02;\n", cut, 1, &show);
+    assert_true(check_fields(&show) == 0);
+    double pieces = 0;
+    for (int f = 1; f < 25; f++) pieces = check_fields(&show);
+    assert_true(pieces == 1);
+    close_show(&show);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_beam_cut_through_is_two_and_one_falls),
+        cmocka_unit_test(a_blade_that_misses_changes_nothing),
+        cmocka_unit_test(a_notch_leaves_one_body),
+        cmocka_unit_test(contacts_follow_a_cut_that_changes_no_region),
+        cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(a_touch_refines_one_of_three),
+        cmocka_unit_test(an_eye_refines_what_is_near),
+        cmocka_unit_test(frames_are_timed_and_counted),
+        cmocka_unit_test(fields_tell_of_speed_and_pieces),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,249 @@
+#include "comparison.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../lib/error.h"
+#include "../cli/command.h"
+#include "statistic.h"
+
+static const double least_interleaved = 0.02, least_apart = 0.10;
+
+/* Where code lies in memory moves a stage by some percent whenever anything is changed; what that
+ * is of a step nobody needs to know. */
+static const double least_of_step = 0.005;
+
+const char *bench_comparison_name(BenchComparisonVerdict verdict)
+{
+    static const char *const names[BENCH_COMPARISONS] = {
+        "faster", "same", "slower", "too noisy", "too few samples", "INVALID", "no baseline"};
+    return names[verdict];
+}
+
+/* Does the build have this time: finite and above 0 in every process? */
+static bool has_time(const BenchSide *side, int time)
+{
+    for (int i = 0; i < side->count; i++)
+        if (!isfinite(side->time[time][i]) || side->time[time][i] <= 0) return false;
+    return side->count > 0;
+}
+
+/* Where the builds did other work: what, and both. What an old file does not state (samples.h) is
+ * not judged. */
+static bool same_work(const BenchRow *a, const BenchRow *b, size_t size, char *reason)
+{
+    const struct {
+        const char *what;
+        double old, new;
+        bool stated;
+    } number[] = {
+        {"threads", a->threads, b->threads, a->threads > 0},
+        {"particles", (double)a->particles, (double)b->particles, a->particles > 0},
+        {"w", a->w, b->w, a->w > 0},
+        {"epsilon", a->epsilon, b->epsilon, isfinite(a->epsilon)},
+        {"h", a->h, b->h, isfinite(a->h)},
+    };
+    if (a->engine[0] && strcmp(a->engine, b->engine) != 0) {
+        snprintf(reason, size, "other work: engine %s, now %s", a->engine, b->engine);
+        return false;
+    }
+    if (a->precision[0] && strcmp(a->precision, b->precision) != 0) {
+        snprintf(reason, size, "other work: precision %s, now %s", a->precision, b->precision);
+        return false;
+    }
+    for (size_t i = 0; i < sizeof number / sizeof *number; i++)
+        if (number[i].stated && number[i].old != number[i].new) {
+            snprintf(reason, size, "other work: %s %.9g, now %.9g", number[i].what, number[i].old,
+                     number[i].new);
+            return false;
+        }
+    if (!a->input_hash || a->input_hash == b->input_hash) return true;
+    snprintf(reason, size, "other work: the mesh is another one");
+    return false;
+}
+
+/* Why nothing of this scene can be compared, if so. */
+static bool comparable(BenchComparison *result)
+{
+    static const char *const names[] = {"the baseline", "this build"};
+    const BenchSide *side = result->contest->side;
+    for (int b = BENCH_BUILDS - 1; b >= 0; b--) {
+        if (side[b].valid) continue;
+        result->verdict = BENCH_INCORRECT;
+        snprintf(result->reason, sizeof result->reason, "%s: %s", names[b], side[b].reason);
+        return false;
+    }
+    result->verdict = BENCH_NO_BASELINE;
+    if (side[BENCH_OLD].count == 0 || side[BENCH_NEW].count == 0) {
+        int missing = side[BENCH_OLD].count ? BENCH_NEW : BENCH_OLD;
+        snprintf(result->reason, sizeof result->reason, "%s has no such scene%s%s", names[missing],
+                 side[missing].reason[0] ? ": " : "", side[missing].reason);
+        return false;
+    }
+    return same_work(&side[BENCH_OLD].row, &side[BENCH_NEW].row, sizeof result->reason,
+                     result->reason);
+}
+
+static BenchTimes times_of(const BenchSide *side, int time)
+{
+    return (BenchTimes){side->time[time], side->round, side->count};
+}
+
+static void compare_interleaved(const BenchTimes *old, const BenchTimes *new,
+                                const BenchCompareParams *params, BenchComparison *result)
+{
+    size_t rounds = (size_t)params->rounds + 1;
+    double *left = sm_alloc(rounds, sizeof *left), *right = sm_alloc(rounds, sizeof *right);
+    BenchRatio ratio = bench_ratio_paired(old, new, params->rounds, params->seed);
+    int lefts = bench_round_best(old, params->rounds, left);
+    int rights = bench_round_best(new, params->rounds, right);
+    result->p = bench_mann_whitney(left, lefts, right, rights);
+    result->self[BENCH_OLD] = bench_self_noise(old, params->rounds, params->seed);
+    result->self[BENCH_NEW] = bench_self_noise(new, params->rounds, params->seed);
+    result->ratio = ratio.ratio, result->low = ratio.low, result->high = ratio.high;
+    free(left);
+    free(right);
+}
+
+static void compare_apart(const BenchTimes *old, const BenchTimes *new, int comparisons,
+                          const BenchCompareParams *params, BenchComparison *result)
+{
+    const BenchSide *side = result->contest->side;
+    const BenchSide *left = &side[BENCH_OLD], *right = &side[BENCH_NEW];
+    BenchRatio ratio = bench_ratio_apart(old, new, params->seed);
+    result->p = bench_mann_whitney(left->block[result->time], left->blocks,
+                                   right->block[result->time], right->blocks);
+    result->self[BENCH_OLD] = NAN;
+    result->self[BENCH_NEW] = bench_spread_noise(new, old->count, BENCH_NOISE_LEVEL, comparisons);
+    result->ratio = ratio.ratio, result->low = ratio.low, result->high = ratio.high;
+}
+
+static void measure(BenchComparison *result, int comparisons, const BenchCompareParams *params)
+{
+    const BenchSide *side = result->contest->side;
+    BenchTimes times[BENCH_BUILDS];
+    double low = params->interleaved ? BENCH_LOW : 0.5;
+    for (int b = 0; b < BENCH_BUILDS; b++) {
+        times[b] = times_of(&side[b], result->time);
+        result->ms[b] = 1e3 * bench_quantile(times[b].value, times[b].count, low);
+        result->outlier[b] = sm_alloc((size_t)times[b].count, sizeof(bool));
+        result->outliers[b] = bench_outliers(times[b].value, times[b].count, result->outlier[b]);
+    }
+    if (params->interleaved)
+        compare_interleaved(&times[BENCH_OLD], &times[BENCH_NEW], params, result);
+    else
+        compare_apart(&times[BENCH_OLD], &times[BENCH_NEW], comparisons, params, result);
+}
+
+/* Could the test call nothing different, whatever is measured? */
+static bool finds_nothing(int rounds, int comparisons)
+{
+    return bench_least_p(rounds) * comparisons >= BENCH_LEVEL;
+}
+
+static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
+                                    const BenchCompareParams *params)
+{
+    const BenchSide *side = result->contest->side;
+    double noise = fmax(result->self[BENCH_OLD], result->self[BENCH_NEW]); /* NaN: the other one */
+    double least = params->interleaved ? least_interleaved : least_apart;
+    double step = bench_quantile(side[BENCH_OLD].time[0], side[BENCH_OLD].count,
+                                 params->interleaved ? BENCH_LOW : 0.5);
+    least = fmax(least, least_of_step * 1e3 * step / result->ms[BENCH_OLD]);
+    double limit = isnan(params->threshold) ? BENCH_NOISE_LIMIT : params->threshold;
+    result->threshold = fmax(noise, isnan(params->threshold) ? least : params->threshold);
+    bool few = params->interleaved ? finds_nothing(params->rounds, comparisons)
+                                   : side[BENCH_NEW].count < BENCH_LEAST_PROCESSES;
+    if (few || isnan(noise)) return BENCH_TOO_FEW;
+    bool sure = result->adjusted < BENCH_LEVEL;
+    if (sure && result->ratio > 1 + result->threshold && result->low > 1) return BENCH_SLOWER;
+    if (sure && result->ratio < 1 / (1 + result->threshold) && result->high < 1)
+        return BENCH_FASTER;
+    return noise > limit ? BENCH_TOO_NOISY : BENCH_SAME;
+}
+
+/* An entry for each time that both builds have, or a single one that says why there is none. */
+static int list_times(const BenchContest *contest, BenchComparison *list)
+{
+    BenchComparison blank = {.contest = contest,
+                             .ms = {NAN, NAN},
+                             .ratio = NAN,
+                             .low = NAN,
+                             .high = NAN,
+                             .p = NAN,
+                             .adjusted = NAN,
+                             .self = {NAN, NAN},
+                             .threshold = NAN};
+    if (!comparable(&blank)) {
+        *list = blank;
+        return 1;
+    }
+    int count = 0;
+    blank.verdict = BENCH_SAME;
+    for (int t = 0; t < BENCH_TIMES; t++) {
+        if (!has_time(&contest->side[BENCH_OLD], t) || !has_time(&contest->side[BENCH_NEW], t))
+            continue;
+        list[count] = blank;
+        list[count++].time = t;
+    }
+    return count;
+}
+
+int bench_compare(const BenchContests *all, const BenchCompareParams *params,
+                  BenchComparison **list)
+{
+    int count = 0, tested = 0;
+    BenchComparison *result = sm_alloc((size_t)(all->count * BENCH_TIMES) + 1, sizeof *result);
+    for (int i = 0; i < all->count; i++) count += list_times(&all->contest[i], result + count);
+    double *p = sm_alloc((size_t)count, sizeof *p);
+    for (int i = 0; i < count; i++) {
+        if (result[i].verdict == BENCH_SAME) measure(&result[i], count, params);
+        p[i] = result[i].p;
+        tested += isfinite(p[i]);
+    }
+    bench_holm(p, count);
+    for (int i = 0; i < count; i++) {
+        result[i].adjusted = p[i];
+        if (result[i].verdict == BENCH_SAME) result[i].verdict = judge(&result[i], tested, params);
+    }
+    free(p);
+    *list = result;
+    return count;
+}
+
+void bench_comparisons_free(BenchComparison *list, int count)
+{
+    for (int i = 0; i < count; i++)
+        for (int b = 0; b < BENCH_BUILDS; b++) free(list[i].outlier[b]);
+    free(list);
+}
+
+int bench_compare_rounds(int comparisons)
+{
+    int rounds = 1;
+    while (finds_nothing(rounds, comparisons)) rounds++;
+    return rounds;
+}
+
+int bench_comparisons_rounds(const BenchComparison *list, int count,
+                             const BenchCompareParams *params)
+{
+    int rounds = params->rounds + 1, compared = 0;
+    if (!params->interleaved)
+        return rounds > BENCH_LEAST_PROCESSES / 2 ? rounds : BENCH_LEAST_PROCESSES / 2 + 1;
+    for (int i = 0; i < count; i++)
+        compared += list[i].verdict != BENCH_INCORRECT && list[i].verdict != BENCH_NO_BASELINE;
+    return rounds > bench_compare_rounds(compared) ? rounds : bench_compare_rounds(compared);
+}
+
+int bench_comparisons_exit(const BenchComparison *list, int count)
+{
+    bool had[BENCH_COMPARISONS] = {false};
+    for (int i = 0; i < count; i++) had[list[i].verdict] = true;
+    if (had[BENCH_INCORRECT]) return SM_INVALID;
+    if (had[BENCH_SLOWER]) return BENCH_EXIT_SLOWER;
+    if (had[BENCH_NO_BASELINE]) return BENCH_EXIT_NO_BASELINE;
+    return had[BENCH_SAME] || had[BENCH_FASTER] ? SM_OK : BENCH_EXIT_NOT_JUDGED;
+}

@@ -1,0 +1,54 @@
+/* contest.h - one scene measured on two builds, in several processes of each.
+ *
+ * The unit is a process: its repeats share one memory layout and one moment of the machine, and
+ * count as one value for each time, their 2% quantile. Other work on the machine only ever adds
+ * time, and to most repeats where it keeps every core busy: the low end is what the code needs, and
+ * differs by less than 1% between processes where medians differ by 20%. It is no minimum, which a
+ * longer run lowers. */
+#ifndef BENCH_CONTEST_H
+#define BENCH_CONTEST_H
+
+#include "../measure/row.h"
+
+typedef enum { BENCH_OLD, BENCH_NEW, BENCH_BUILDS } BenchBuild;
+
+/* The times of a step: the total, then each stage. */
+enum { BENCH_TIMES = 1 + SM_STAGES };
+
+/* "total", "fast_sum", "shape_matching", ... */
+const char *bench_time_name(int time);
+
+/* A scene on one build. */
+typedef struct {
+    BenchRow row;               /* of the first process, without samples */
+    int count;                  /* processes; 0: not measured */
+    int *round;                 /* [count] which round the process was of */
+    double *time[BENCH_TIMES];  /* [count] s a step; NaN or 0: the build has no such stage */
+    double *block[BENCH_TIMES]; /* [blocks] every repeat of every process, s a step */
+    int blocks;
+    bool valid;          /* all its processes' checks passed */
+    char reason[224];    /* why not valid, or why not measured */
+    double instructions; /* a step; NaN: not counted */
+} BenchSide;
+
+typedef struct {
+    char scene[64];
+    BenchSide side[BENCH_BUILDS];
+} BenchContest;
+
+/* Of all scenes. Begins zeroed. */
+typedef struct {
+    BenchContest *contest;
+    int count;
+} BenchContests;
+
+/* The contest of that scene, added where there is none. Pointers to contests from before are then
+ * no longer valid. */
+BenchContest *bench_contest_of(BenchContests *all, const char *scene);
+
+/* Adds a process's row, of which nothing is kept but copies. */
+void bench_contest_add(BenchContests *all, BenchBuild build, int round, const BenchRow *row);
+
+void bench_contests_free(BenchContests *all);
+
+#endif

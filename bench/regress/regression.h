@@ -1,0 +1,62 @@
+/* regression.h - what `regress` found, as text and for programs. */
+#ifndef BENCH_REGRESSION_H
+#define BENCH_REGRESSION_H
+
+#include <stdio.h>
+
+#include "../measure/machine.h"
+#include "comparison.h"
+
+enum { BENCH_REMARKS = 64, BENCH_REMARK = 320 };
+
+typedef struct {
+    const BenchComparison *list;
+    int count;
+    const BenchCompareParams *params;
+    BenchMachine machine[BENCH_BUILDS];
+    char baseline[256];  /* "FILE.h5", "revision NAME (COMMIT)" */
+    const char *counter; /* who counted instructions; NULL: nobody */
+    double seconds;      /* that it took */
+    char remark[BENCH_REMARKS][BENCH_REMARK];
+    int remarks;
+} BenchRegression;
+
+typedef enum {
+    BENCH_REGRESSION_TEXT,
+    BENCH_REGRESSION_MARKDOWN,
+    BENCH_REGRESSION_JSON,
+    BENCH_REGRESSION_JUNIT,
+    BENCH_REGRESSION_GBENCH
+} BenchRegressionFormat;
+
+/* "text", "markdown", "json", "junit", "gbench", NULL. */
+extern const char *const bench_regression_formats[];
+
+/* Adds a line for people; lines beyond the room are left out. */
+void bench_regression_remark(BenchRegression *found, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Remarks on all in which the builds' environments differ: compiler, flags, libraries, kernel,
+ * governor, cores; and uncommitted changes. What is unknown is not held against anyone. */
+void bench_regression_environment(BenchRegression *found);
+
+/* Writes what was found in a format. The last line of text is the verdict on all.
+ * json: {"schema": 1, "verdict", "exit_code", "baseline", "interleaved", "rounds", "comparisons":
+ *   [{"scene", "time", "verdict", "ratio", ..., "old": {"samples": [s], "outliers": [places]},
+ *   "new"}], "remarks", "environments"}. What is not known is null.
+ * junit: a test case for each time; slower is a failure, INVALID an error, what could not be judged
+ *   skipped.
+ * gbench: Google Benchmark's JSON, every process a repetition, "old/SCENE/TIME" and
+ * "new/SCENE/TIME"; its compare.py takes it as `compare.py filters FILE old new`. cpu_time is the
+ * wall time too. */
+void bench_regression_write(FILE *file, BenchRegressionFormat format, const BenchRegression *found);
+
+/* The formats for programs, behind bench_regression_write(). */
+void bench_regression_json(FILE *file, const BenchRegression *found);
+void bench_regression_gbench(FILE *file, const BenchRegression *found);
+void bench_regression_junit(FILE *file, const BenchRegression *found);
+
+/* The verdict on all in a line without an end. */
+void bench_regression_summary(const BenchRegression *found, size_t size, char *line);
+
+#endif

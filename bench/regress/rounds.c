@@ -1,0 +1,171 @@
+#include "rounds.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../cli/process.h"
+#include "../measure/measure.h"
+#include "samples.h"
+
+enum { PATH = BENCH_DRAFT_PATH, WORDS = 32 };
+
+static const char *const build_names[] = {"the baseline", "this build"};
+
+/* What has become of a task. */
+typedef struct {
+    bool there[BENCH_BUILDS]; /* which builds have it, as far as is known */
+    char reason[224];         /* why the old one has not */
+} State;
+
+typedef struct {
+    const BenchRounds *rounds;
+    BenchContests *all;
+    BenchMachine *machine;
+    bool measured[BENCH_BUILDS]; /* `machine` is known */
+    int done;                    /* processes */
+} Session;
+
+/* The words of a `tables` process; numbers are written into `number`. */
+static void make_words(const BenchRounds *rounds, const BenchTask *task, const char *program,
+                       const char *output, char number[4][32], const char *word[WORDS])
+{
+    int count = 0;
+    const struct {
+        const char *option, *value;
+    } option[] = {
+        {"--paper", rounds->paper},       {"--scene", task->scene}, {"--engine", task->engine},
+        {"--precision", task->precision}, {"--threads", number[0]}, {"--repeats", number[1]},
+        {"--block", number[2]},           {"--seed", number[3]},    {"-o", output},
+    };
+    snprintf(number[0], 32, "%d", task->threads > 0 ? task->threads : 1);
+    snprintf(number[1], 32, "%d", task->repeats);
+    snprintf(number[2], 32, "%.6g", task->block);
+    snprintf(number[3], 32, "%lu", rounds->seed);
+    word[count++] = program;
+    word[count++] = "tables";
+    word[count++] = "--quiet";
+    for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
+        if (!option[i].value) continue;
+        word[count++] = option[i].option;
+        word[count++] = option[i].value;
+    }
+    word[count] = NULL;
+}
+
+/* A scene that the old build cannot measure is no error: `state` keeps why. One that it could
+ * measure before is. */
+static SmCode failed(const BenchTask *task, BenchBuild build, int round, int status,
+                     const char *log, State *state, SmError *error)
+{
+    char line[sizeof state->reason];
+    bench_process_last_line(log, sizeof line, line);
+    bool crashed = status > 128 || status == 127;
+    if (build == BENCH_OLD && round == 0 && !crashed && status != SM_OUTPUT) {
+        memcpy(state->reason, line, sizeof line);
+        return SM_OK;
+    }
+    if (crashed)
+        return sm_fail(error, SM_INVALID, "%s crashed on scene %.60s (exit code %d): %.200s",
+                       build_names[build], task->scene, status, line);
+    SmCode code = status == SM_USAGE || status == SM_OUTPUT ? (SmCode)status : SM_INPUT;
+    return sm_fail(error, code, "%s cannot measure scene %.60s: %.250s", build_names[build],
+                   task->scene, line);
+}
+
+/* The scenes of a task that the old build has not say why; a task may be a file, whose name is not
+ * the scene's, or stand for several. */
+static void say_why(const State *state, BenchContest *contest)
+{
+    BenchSide *old = &contest->side[BENCH_OLD];
+    if (state->reason[0] && old->count == 0)
+        snprintf(old->reason, sizeof old->reason, "%s", state->reason);
+}
+
+static SmCode keep(Session *session, const State *state, BenchBuild build, int round,
+                   const char *path, SmError *error)
+{
+    BenchRow *rows;
+    BenchMachine machine;
+    int count;
+    SmError why;
+    SmCode code = bench_samples_load(path, &rows, &count, &machine, &why);
+    if (code)
+        return sm_fail(error, code, "what %s has measured cannot be used: %.300s",
+                       build_names[build], why.text);
+    for (int i = 0; i < count; i++) {
+        bench_contest_add(session->all, build, round, &rows[i]);
+        say_why(state, bench_contest_of(session->all, rows[i].scene));
+    }
+    bench_rows_free(rows, count);
+    if (!session->measured[build]) session->machine[build] = machine;
+    session->measured[build] = true;
+    return SM_OK;
+}
+
+static SmCode run_process(Session *session, const BenchTask *task, BenchBuild build, int round,
+                          State *state, SmError *error)
+{
+    const BenchRounds *rounds = session->rounds;
+    char output[PATH], log[PATH], number[4][32];
+    const char *word[WORDS];
+    snprintf(output, sizeof output, "%.4000s/rows.h5", rounds->folder);
+    snprintf(log, sizeof log, "%.4000s/process.txt", rounds->folder);
+    make_words(rounds, task, rounds->program[build], output, number, word);
+    BenchProcess process = {.word = (char *const *)word, .output = log};
+    BenchProcessEnd end;
+    SmCode code = bench_process_run(&process, &end, error);
+    if (code) return code;
+    /* an INVALID row is stored before the process says so; a scene that cannot run stores nothing
+     */
+    bool there = (end.status == SM_OK || end.status == SM_INVALID) && access(output, F_OK) == 0;
+    state->there[build] = there;
+    code = there ? keep(session, state, build, round, output, error)
+                 : failed(task, build, round, end.status, log, state, error);
+    unlink(output);
+    return code;
+}
+
+BenchBuild bench_rounds_build(int round, int turn)
+{
+    bool outer = turn == 0 || turn == BENCH_TURNS - 1;
+    return outer == (round % 2 == 0) ? BENCH_OLD : BENCH_NEW;
+}
+
+static void show(const Session *session, const BenchTask *task, int all)
+{
+    bench_progress_show(session->rounds->progress, task->scene, (double)session->done / all);
+}
+
+/* One round of one scene, of the builds that have it. */
+static SmCode run_round(Session *session, const BenchTask *task, int round, State *state, int all,
+                        SmError *error)
+{
+    SmCode code = SM_OK;
+    for (int i = 0; i < BENCH_TURNS && !code; i++) {
+        BenchBuild build = bench_rounds_build(round, i);
+        show(session, task, all);
+        session->done++;
+        if (session->rounds->program[build] && state->there[build])
+            code = run_process(session, task, build, round, state, error);
+    }
+    return code;
+}
+
+SmCode bench_rounds_run(const BenchRounds *rounds, BenchContests *all,
+                        BenchMachine machine[BENCH_BUILDS], SmError *error)
+{
+    Session session = {.rounds = rounds, .all = all, .machine = machine};
+    State *state = sm_alloc((size_t)rounds->tasks, sizeof *state);
+    for (int t = 0; t < rounds->tasks; t++)
+        state[t].there[BENCH_OLD] = state[t].there[BENCH_NEW] = true;
+    SmCode code = SM_OK;
+    for (int r = 0; r < rounds->rounds; r++)
+        for (int t = 0; t < rounds->tasks && !code; t++)
+            code = run_round(&session, &rounds->task[t], r, &state[t],
+                             BENCH_TURNS * rounds->rounds * rounds->tasks, error);
+    bench_progress_stop(rounds->progress);
+    free(state);
+    return code;
+}

@@ -1,0 +1,45 @@
+/* rounds.h - scenes measured in fresh processes, builds in turn.
+ *
+ * A round of a scene is four processes, old new new old, and the next one new old old new, so that
+ * what drifts slowly hits both builds alike; a round beside a stored file is two of the new one.
+ * Each process is `PROGRAM tables --scene NAME ...`, which checks the scene before it times it. */
+#ifndef BENCH_ROUNDS_H
+#define BENCH_ROUNDS_H
+
+#include "../cli/progress.h"
+#include "../measure/machine.h"
+#include "../store/draft.h"
+#include "contest.h"
+
+/* What to run for one scene; NULL or 0: as the program does of itself. */
+typedef struct {
+    const char *scene; /* as `tables --scene` takes it: may stand for several */
+    const char *engine, *precision;
+    int threads, repeats;
+    double block; /* ms */
+} BenchTask;
+
+typedef struct {
+    const char *program[BENCH_BUILDS]; /* old: NULL where the old times are stored */
+    const char *paper;
+    const BenchTask *task;
+    int tasks, rounds;
+    unsigned long seed;
+    const char *folder; /* for scratch files */
+    BenchProgress *progress;
+} BenchRounds;
+
+enum { BENCH_TURNS = 4 }; /* of a round */
+
+/* Whose turn it is. */
+BenchBuild bench_rounds_build(int round, int turn);
+
+/* Runs all rounds and adds what they measured. `machine` receives each build's environment, from
+ * its first process. A scene that the old build does not have (its exit code says so, in the first
+ * round) is left without old times, with the reason. Errors: SM_INPUT, SM_INVALID: a process that
+ * fails or crashes, with its line; a file of it that cannot be read; interrupted. SM_OUTPUT: the
+ * disk is full. */
+SmCode bench_rounds_run(const BenchRounds *rounds, BenchContests *all,
+                        BenchMachine machine[BENCH_BUILDS], SmError *error);
+
+#endif

@@ -1,0 +1,425 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+#include <jansson.h>
+
+#include "../../lib/error.h"
+#include "../../lib/test_folder.h"
+#include "../cli/command.h"
+#include "regression.h"
+
+enum { REPEATS = 20 };
+
+static gsl_rng *rng;
+
+static int start(void **state)
+{
+    rng = gsl_rng_alloc(gsl_rng_mt19937);
+    return make_folder(state);
+}
+
+static int end(void **state)
+{
+    gsl_rng_free(rng);
+    return remove_folder(state);
+}
+
+/* A process of a build whose damping takes `factor` times as long; `load` is the machine's. */
+static void add(BenchContests *all, BenchBuild build, int round, const char *scene, double factor,
+                double load)
+{
+    static double total[REPEATS], stage[REPEATS][SM_STAGES];
+    BenchRow row = {.w = 2,
+                    .threads = 1,
+                    .particles = 150,
+                    .valid = true,
+                    .repeats = REPEATS,
+                    .steps = 100,
+                    .total = total,
+                    .stage = stage,
+                    .input_hash = 5};
+    double process = load * exp(gsl_ran_gaussian(rng, 0.01));
+    snprintf(row.scene, sizeof row.scene, "%s", scene);
+    strcpy(row.engine, "fastlsm");
+    strcpy(row.precision, "single");
+    for (int r = 0; r < REPEATS; r++) {
+        total[r] = 0;
+        for (int s = 0; s < SM_STAGES; s++) {
+            double slowed = s == SM_DAMPING ? factor : 1;
+            stage[r][s] = 1e-5 * (s + 1) * slowed * process * exp(gsl_ran_exponential(rng, 0.02));
+            total[r] += stage[r][s];
+        }
+    }
+    stage[REPEATS - 1][SM_POLAR] *= 50; /* a preempted block */
+    bench_contest_add(all, build, round, &row);
+}
+
+static void play(BenchContests *all, const char *scene, int rounds, double factor, double drift)
+{
+    for (int r = 0; r < rounds; r++) {
+        double load = exp(gsl_ran_gaussian(rng, drift));
+        for (int i = 0; i < 4; i++) {
+            BenchBuild build = (i == 0 || i == 3) == (r % 2 == 0) ? BENCH_OLD : BENCH_NEW;
+            add(all, build, r, scene, build == BENCH_NEW ? factor : 1, load);
+        }
+    }
+}
+
+static BenchComparisonVerdict verdict_of(const BenchComparison *list, int count, const char *scene,
+                                         int time)
+{
+    for (int i = 0; i < count; i++)
+        if (!strcmp(list[i].contest->scene, scene) && list[i].time == time) return list[i].verdict;
+    fail_msg("no %s %s", scene, bench_time_name(time));
+    return BENCH_INCORRECT;
+}
+
+static void a_slower_stage_is_caught_and_no_other_blamed(void **state)
+{
+    (void)state;
+    for (int trial = 0; trial < 10; trial++) {
+        BenchContests all = {0};
+        BenchComparison *list;
+        play(&all, "slow", 10, 1.08, 0.02);
+        play(&all, "same", 10, 1, 0.02);
+        play(&all, "fast", 10, 0.8, 0.02);
+        const BenchCompareParams params = {true, 10, NAN, 1};
+        int count = bench_compare(&all, &params, &list);
+        assert_int_equal(count, 3 * BENCH_TIMES);
+        assert_int_equal(verdict_of(list, count, "slow", 1 + SM_DAMPING), BENCH_SLOWER);
+        assert_int_equal(verdict_of(list, count, "slow", 1 + SM_POLAR), BENCH_SAME);
+        assert_int_equal(verdict_of(list, count, "same", 1 + SM_DAMPING), BENCH_SAME);
+        assert_int_equal(verdict_of(list, count, "fast", 1 + SM_DAMPING), BENCH_FASTER);
+        assert_int_equal(bench_comparisons_exit(list, count), BENCH_EXIT_SLOWER);
+        bench_comparisons_free(list, count);
+        bench_contests_free(&all);
+    }
+}
+
+/* 60 comparisons of a build with itself, by scenes and stages 720 times, half of them on a
+ * machine whose load jumps: as good as no alarm. */
+static void a_build_against_itself_raises_no_alarm(void **state)
+{
+    (void)state;
+    int alarms = 0;
+    for (int trial = 0; trial < 60; trial++) {
+        BenchContests all = {0};
+        BenchComparison *list;
+        play(&all, "one", 8, 1, trial % 2 ? 0.3 : 0.02);
+        play(&all, "two", 8, 1, trial % 2 ? 0.3 : 0.02);
+        const BenchCompareParams params = {true, 8, NAN, (unsigned long)trial};
+        int count = bench_compare(&all, &params, &list);
+        int code = bench_comparisons_exit(list, count);
+        alarms += code != SM_OK && code != BENCH_EXIT_NOT_JUDGED;
+        bench_comparisons_free(list, count);
+        bench_contests_free(&all);
+    }
+    assert_in_range(alarms, 0, 1);
+}
+
+static void beside_a_file_the_threshold_is_wider(void **state)
+{
+    (void)state;
+    const BenchCompareParams params = {false, 5, NAN, 1};
+    int alarms = 0;
+    for (int trial = 0; trial < 30; trial++) {
+        BenchContests all = {0};
+        BenchComparison *list;
+        bool slow = trial == 0;
+        for (int i = 0; i < 10; i++) add(&all, BENCH_NEW, i / 2, "x", slow ? 1.5 : 1, 1);
+        add(&all, BENCH_OLD, 0, "x", 1, 1);
+        int count = bench_compare(&all, &params, &list);
+        assert_int_equal(count, BENCH_TIMES);
+        for (int i = 0; i < count; i++) assert_true(list[i].threshold >= 0.10);
+        if (slow)
+            assert_int_equal(verdict_of(list, count, "x", 1 + SM_DAMPING), BENCH_SLOWER);
+        else
+            alarms += bench_comparisons_exit(list, count) != SM_OK;
+        bench_comparisons_free(list, count);
+        bench_contests_free(&all);
+    }
+    assert_in_range(alarms, 0, 1);
+}
+
+static void a_threshold_given_rules(void **state)
+{
+    (void)state;
+    BenchContests all = {0};
+    BenchComparison *list;
+    play(&all, "slow", 8, 1.2, 0.02);
+    BenchCompareParams params = {true, 8, 0.5, 1};
+    int count = bench_compare(&all, &params, &list);
+    assert_int_equal(verdict_of(list, count, "slow", 1 + SM_DAMPING), BENCH_SAME);
+    bench_comparisons_free(list, count);
+    params.threshold = 0.0001; /* far below what can be seen: who is not slower is not known */
+    count = bench_compare(&all, &params, &list);
+    assert_int_equal(verdict_of(list, count, "slow", 1 + SM_DAMPING), BENCH_SLOWER);
+    assert_int_equal(verdict_of(list, count, "slow", 1 + SM_POLAR), BENCH_TOO_NOISY);
+    bench_comparisons_free(list, count);
+    bench_contests_free(&all);
+}
+
+static void what_cannot_be_compared_says_why(void **state)
+{
+    (void)state;
+    BenchContests all = {0};
+    BenchComparison *list;
+    play(&all, "few", 3, 2, 0.02);
+    play(&all, "wrong", 5, 2, 0.02);
+    play(&all, "other", 5, 2, 0.02);
+    for (int i = 0; i < 10; i++) add(&all, BENCH_NEW, i / 2, "young", 1, 1);
+    BenchSide *wrong = &bench_contest_of(&all, "wrong")->side[BENCH_NEW];
+    wrong->valid = false;
+    strcpy(wrong->reason, "goals are off by 1 cell");
+    bench_contest_of(&all, "other")->side[BENCH_OLD].row.particles = 149;
+    const BenchCompareParams params = {true, 3, NAN, 1};
+    int count = bench_compare(&all, &params, &list);
+    assert_int_equal(verdict_of(list, count, "few", 0), BENCH_TOO_FEW);
+    assert_int_equal(verdict_of(list, count, "wrong", 0), BENCH_INCORRECT);
+    assert_int_equal(verdict_of(list, count, "other", 0), BENCH_NO_BASELINE);
+    assert_int_equal(verdict_of(list, count, "young", 0), BENCH_NO_BASELINE);
+    assert_string_equal(list[BENCH_TIMES].reason, "this build: goals are off by 1 cell");
+    assert_string_equal(list[BENCH_TIMES + 1].reason, "other work: particles 149, now 150");
+    assert_int_equal(count, BENCH_TIMES + 3);
+    assert_int_equal(bench_comparisons_exit(list, count), SM_INVALID);
+    assert_int_equal(bench_comparisons_exit(list + BENCH_TIMES + 1, 2), BENCH_EXIT_NO_BASELINE);
+    bench_comparisons_free(list, count);
+    bench_contests_free(&all);
+}
+
+/* Where all is too noisy or too few, nothing is known to be not slower. */
+static void what_nobody_could_judge_is_not_ok(void **state)
+{
+    (void)state;
+    BenchContests all = {0};
+    BenchComparison *list;
+    char line[256];
+    play(&all, "few", 3, 1, 0.02);
+    const BenchCompareParams few = {true, 3, NAN, 1}, noisy = {true, 8, 0.0001, 1};
+    BenchRegression found = {.params = &few};
+    found.count = bench_compare(&all, &few, &list);
+    found.list = list;
+    assert_int_equal(bench_comparisons_exit(list, found.count), BENCH_EXIT_NOT_JUDGED);
+    bench_regression_summary(&found, sizeof line, line);
+    assert_non_null(strstr(line, "nothing could be judged, of 6 times; 6 could not"));
+    const BenchCompareParams beside = {false, 1, NAN, 1};
+    assert_non_null(strstr(line, "(0 too noisy, 6 too few samples): at least --rounds 7"));
+    assert_int_equal(bench_comparisons_rounds(list, found.count, &beside), 3);
+    list[2].verdict = BENCH_SAME;
+    assert_int_equal(bench_comparisons_exit(list, found.count), SM_OK);
+    list[2].verdict = BENCH_NO_BASELINE;
+    assert_int_equal(bench_comparisons_exit(list, found.count), BENCH_EXIT_NO_BASELINE);
+    bench_comparisons_free(list, found.count);
+    bench_contests_free(&all);
+    play(&all, "noisy", 8, 1, 0.02);
+    int count = bench_compare(&all, &noisy, &list);
+    assert_int_equal(verdict_of(list, count, "noisy", 0), BENCH_TOO_NOISY);
+    assert_int_equal(bench_comparisons_exit(list, count), BENCH_EXIT_NOT_JUDGED);
+    bench_comparisons_free(list, count);
+    bench_contests_free(&all);
+    assert_int_equal(bench_comparisons_exit(NULL, 0), BENCH_EXIT_NOT_JUDGED);
+}
+
+/* An epsilon of 0 is one, and not an epsilon that a file does not state. */
+static void epsilon_0_is_stated(void **state)
+{
+    (void)state;
+    const struct {
+        double old, new;
+        BenchComparisonVerdict verdict;
+    } cases[] = {{0, 0, BENCH_SAME},
+                 {0, 0.5, BENCH_NO_BASELINE},
+                 {0.5, 0, BENCH_NO_BASELINE},
+                 {NAN, 0.5, BENCH_SAME}};
+    for (int c = 0; c < 4; c++) {
+        BenchContests all = {0};
+        BenchComparison *list;
+        play(&all, "x", 8, 1, 0.02);
+        BenchSide *side = bench_contest_of(&all, "x")->side;
+        side[BENCH_OLD].row.epsilon = cases[c].old;
+        side[BENCH_NEW].row.epsilon = cases[c].new;
+        const BenchCompareParams params = {true, 8, 9, 1};
+        int count = bench_compare(&all, &params, &list);
+        assert_int_equal(verdict_of(list, count, "x", 0), cases[c].verdict);
+        if (c == 1) assert_string_equal(list[0].reason, "other work: epsilon 0, now 0.5");
+        bench_comparisons_free(list, count);
+        bench_contests_free(&all);
+    }
+}
+
+/* A stage that takes no time (no damping in the scene) or that an old build has not is left out. */
+static void a_stage_without_time_is_left_out(void **state)
+{
+    (void)state;
+    BenchContests all = {0};
+    BenchComparison *list;
+    play(&all, "x", 5, 0, 0.02);
+    const BenchCompareParams params = {true, 5, NAN, 1};
+    int count = bench_compare(&all, &params, &list);
+    assert_int_equal(count, BENCH_TIMES - 1);
+    for (int i = 0; i < count; i++) assert_int_not_equal(list[i].time, 1 + SM_DAMPING);
+    bench_comparisons_free(list, count);
+    bench_contests_free(&all);
+}
+
+/* What one comparison of three scenes looks like in a format, written to a file in the folder. */
+static void write_format(BenchRegressionFormat format, const char *name)
+{
+    BenchContests all = {0};
+    BenchComparison *list;
+    play(&all, "slow <&\"> \xc3\xa9", 7, 1.3, 0.02);
+    play(&all, "bad", 5, 1, 0.02);
+    add(&all, BENCH_NEW, 0, "young", 1, 1);
+    bench_contest_of(&all, "bad")->side[BENCH_NEW].valid = false;
+    strcpy(bench_contest_of(&all, "bad")->side[BENCH_NEW].reason, "1 < 2");
+    BenchSide *slow = bench_contest_of(&all, "slow <&\"> \xc3\xa9")->side;
+    slow[BENCH_OLD].instructions = 1000, slow[BENCH_NEW].instructions = 1100;
+    const BenchCompareParams params = {true, 7, NAN, 1};
+    BenchRegression *found = sm_alloc(1, sizeof *found);
+    found->count = bench_compare(&all, &params, &list);
+    found->list = list;
+    found->params = &params;
+    found->counter = "callgrind";
+    strcpy(found->baseline, "revision \"v1\" (abc)");
+    strcpy(found->machine[BENCH_OLD].compiler, "GNU 11");
+    strcpy(found->machine[BENCH_NEW].compiler, "GNU 12");
+    strcpy(found->machine[BENCH_OLD].flags, "-O2 -Werror -g");
+    strcpy(found->machine[BENCH_NEW].flags, "-O3 -g");
+    bench_regression_environment(found);
+    FILE *file = fopen(path_in(name), "w");
+    assert_non_null(file);
+    bench_regression_write(file, format, found);
+    fclose(file);
+    bench_comparisons_free(list, found->count);
+    bench_contests_free(&all);
+    free(found);
+}
+
+static void read_back(const char *name, size_t size, char *text)
+{
+    FILE *file = fopen(path_in(name), "r");
+    assert_non_null(file);
+    text[fread(text, 1, size - 1, file)] = '\0';
+    fclose(file);
+}
+
+static void text_and_markdown_end_in_the_verdict(void **state)
+{
+    (void)state;
+    static char text[16384];
+    static const char *const wanted[] = {
+        "Against revision \"v1\" (abc), interleaved: 7 rounds",
+        "compiler differs: GNU 11, now GNU 12",
+        "flags differ: only the baseline has -O2; only this build -O3",
+        "bad: this build: 1 < 2",
+        "young: the baseline has no such scene",
+        "INVALID: bad: this build: 1 < 2",
+        "slower",
+        "1.1000",
+        "0.0"};
+    for (int f = BENCH_REGRESSION_TEXT; f <= BENCH_REGRESSION_MARKDOWN; f++) {
+        write_format((BenchRegressionFormat)f, "out.txt");
+        read_back("out.txt", sizeof text, text);
+        for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+            if (!strstr(text, wanted[i])) fail_msg("no '%s' in\n%s", wanted[i], text);
+    }
+    assert_non_null(strstr(text, "| scene | time | old ms |"));
+    assert_non_null(strstr(text, "**INVALID: bad"));
+}
+
+static void json_holds_every_sample(void **state)
+{
+    (void)state;
+    write_format(BENCH_REGRESSION_JSON, "out.json");
+    json_t *root = json_load_file(path_in("out.json"), 0, NULL), *list;
+    assert_non_null(root);
+    list = json_object_get(root, "comparisons");
+    assert_int_equal(json_integer_value(json_object_get(root, "exit_code")), SM_INVALID);
+    assert_int_equal(json_array_size(list), BENCH_TIMES + 2);
+    json_t *damping = json_array_get(list, 1 + SM_DAMPING);
+    assert_string_equal(json_string_value(json_object_get(damping, "time")), "damping");
+    assert_string_equal(json_string_value(json_object_get(damping, "verdict")), "slower");
+    json_t *old = json_object_get(damping, "old");
+    assert_int_equal(json_array_size(json_object_get(old, "samples")), 14);
+    assert_true(json_number_value(json_object_get(old, "self_difference")) > 0);
+    json_t *total = json_object_get(json_array_get(list, 0), "new");
+    assert_true(json_number_value(json_object_get(total, "instructions")) == 1100);
+    json_t *bad = json_array_get(list, BENCH_TIMES);
+    assert_true(json_is_null(json_object_get(bad, "ratio")));
+    assert_string_equal(json_string_value(json_object_get(bad, "reason")), "this build: 1 < 2");
+    json_decref(root);
+}
+
+/* As its compare.py wants it: name, run_type, real_time, cpu_time, time_unit of every run. */
+static void gbench_holds_runs_and_aggregates(void **state)
+{
+    (void)state;
+    write_format(BENCH_REGRESSION_GBENCH, "out.json");
+    json_t *root = json_load_file(path_in("out.json"), 0, NULL), *one;
+    assert_non_null(root);
+    size_t i, runs = 0, aggregates = 0;
+    assert_true(json_is_object(json_object_get(root, "context")));
+    json_array_foreach(json_object_get(root, "benchmarks"), i, one)
+    {
+        const char *type = json_string_value(json_object_get(one, "run_type"));
+        const char *name = json_string_value(json_object_get(one, "name"));
+        const char *run = json_string_value(json_object_get(one, "run_name"));
+        assert_true(!strncmp(run, "old/slow", 8) || !strncmp(run, "new/slow", 8));
+        assert_memory_equal(name, run, strlen(run));
+        assert_true(json_is_number(json_object_get(one, "real_time")));
+        assert_true(json_is_number(json_object_get(one, "cpu_time")));
+        assert_string_equal(json_string_value(json_object_get(one, "time_unit")), "ns");
+        assert_int_equal(json_integer_value(json_object_get(one, "repetitions")), 14);
+        runs += !strcmp(type, "iteration");
+        aggregates += !strcmp(type, "aggregate");
+    }
+    assert_int_equal(runs, 2 * 14 * BENCH_TIMES);
+    assert_int_equal(aggregates, 2 * 4 * BENCH_TIMES);
+    json_decref(root);
+}
+
+/* Python reads the XML: well-formed, and the counts are those of the elements. */
+static void junit_is_xml(void **state)
+{
+    (void)state;
+    char command[1024];
+    write_format(BENCH_REGRESSION_JUNIT, "out.xml");
+    snprintf(
+        command, sizeof command,
+        "python3 -c 'import sys, xml.etree.ElementTree as e\n"
+        "s = e.parse(sys.argv[1]).getroot()[0]\n"
+        "n = lambda t: len(s.findall(\"testcase/\" + t))\n"
+        "assert [s.get(k) for k in (\"tests\", \"failures\", \"errors\", \"skipped\")] == "
+        "[str(len(s.findall(\"testcase\"))), str(n(\"failure\")), \"1\", str(n(\"skipped\"))]\n"
+        "assert n(\"failure\") >= 1 and n(\"error\") == 1 and n(\"skipped\") >= 1\n"
+        "assert s[0].get(\"classname\") == \"slow <&\\\"> \\u00e9\"' %s",
+        path_in("out.xml"));
+    assert_int_equal(system(command), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_slower_stage_is_caught_and_no_other_blamed),
+        cmocka_unit_test(a_build_against_itself_raises_no_alarm),
+        cmocka_unit_test(beside_a_file_the_threshold_is_wider),
+        cmocka_unit_test(a_threshold_given_rules),
+        cmocka_unit_test(what_cannot_be_compared_says_why),
+        cmocka_unit_test(what_nobody_could_judge_is_not_ok),
+        cmocka_unit_test(epsilon_0_is_stated),
+        cmocka_unit_test(a_stage_without_time_is_left_out),
+        cmocka_unit_test(text_and_markdown_end_in_the_verdict),
+        cmocka_unit_test(json_holds_every_sample),
+        cmocka_unit_test(gbench_holds_runs_and_aggregates),
+        cmocka_unit_test(junit_is_xml),
+    };
+    return cmocka_run_group_tests(tests, start, end);
+}

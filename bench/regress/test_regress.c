@@ -1,0 +1,360 @@
+/* `shapebench regress` as a user runs it: baselines of all kinds, other revisions, what goes wrong.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../../lib/test_folder.h"
+#include "../measure/measure.h"
+#include "../store/store.h"
+#include "samples.h"
+
+#define TINY "--scene tiny.cfg --repeats 5 --block 0.1 "
+
+typedef struct {
+    int code; /* exit code, or 1000 + signal */
+    char out[16384], err[4096];
+} Result;
+
+static void slurp(const char *name, char *text, size_t room)
+{
+    FILE *file = fopen(path_in(name), "r");
+    size_t size = file ? fread(text, 1, room - 1, file) : 0;
+    text[size] = '\0';
+    if (file) fclose(file);
+}
+
+/* Runs a command line in the test's folder, where `shapebench` is the program. */
+static void run(const char *line, Result *result)
+{
+    char command[4096];
+    snprintf(command, sizeof command,
+             "cd %s && export TMPDIR=\"$PWD/scratch\" && shapebench() { '%s/shapebench' \"$@\"; }; "
+             "(%s) >out 2>err",
+             folder, BINARY_DIR, line);
+    int status = system(command);
+    result->code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    slurp("out", result->out, sizeof result->out);
+    slurp("err", result->err, sizeof result->err);
+}
+
+static void expect(const char *line, int code, const char *wanted)
+{
+    Result result;
+    run(line, &result);
+    if (result.code != code || !(strstr(result.err, wanted) || strstr(result.out, wanted)))
+        fail_msg("%s: exit code %d (wanted %d, '%s')\n%s%s", line, result.code, code, wanted,
+                 result.out, result.err);
+    char *newline = strchr(result.err, '\n');
+    if (newline && newline[1]) fail_msg("%s: more than a line:\n%s", line, result.err);
+}
+
+/* A results file with a row of the tiny scene as it would be measured here, changed by the caller.
+ */
+static void row_of_tiny(BenchRow *row, BenchMachine *machine)
+{
+    static char *words[] = {"shapebench", "tables"};
+    BenchRow *rows;
+    int count;
+    SmError error;
+    char path[256];
+    snprintf(path, sizeof path, "%s", path_in("tiny.h5"));
+    assert_int_equal(bench_samples_load(path, &rows, &count, machine, &error), SM_OK);
+    assert_int_equal(count, 1);
+    *row = rows[0];
+    free(rows); /* its samples are the row's now */
+    bench_machine_read(2, words, 1, machine);
+}
+
+static void store(const char *name, BenchRow *row, const BenchMachine *machine)
+{
+    SmError error;
+    assert_int_equal(bench_store_rows(path_in(name), row, 1, machine, &error), SM_OK);
+}
+
+static int set_up(void **state)
+{
+    Result result;
+    if (make_folder(state)) return -1;
+    write_text("tiny.cfg",
+               "mesh = \"shape:block\"; particles = 64; w = 1; engine = \"brute\"; bend = 0.3;\n");
+    write_text("noise.h5", "no HDF5 at all\n");
+    run("mkdir scratch && shapebench tables " TINY "-o tiny.h5", &result);
+    return result.code;
+}
+
+static void usage(void **state)
+{
+    (void)state;
+    expect("shapebench regress", 2, "compare with what?");
+    expect("shapebench regress --baseline a --revision b", 2, "compare with what?");
+    expect("shapebench regress --baseline a --counts", 2, "--counts: a file has no");
+    expect("shapebench regress --baseline a --paper octree", 2, "--paper: a file has its own");
+    expect("shapebench regress --baseline a --format pdf", 2, "'pdf' is not one of text, markdown");
+    expect("shapebench regress --baseline a --threshold x", 2, "--threshold: 'x'");
+    expect("shapebench regress --baseline a --rounds 0", 2, "--rounds: '0'");
+    expect("shapebench regress a.h5", 2, "what is 'a.h5'?");
+    expect("shapebench regress --help", 0, "6 no baseline");
+    expect("shapebench regress --help | tr '\\n' ' '", 0, "7 nothing could be judged");
+}
+
+static void files_that_are_no_baseline(void **state)
+{
+    (void)state;
+    BenchRow row;
+    BenchMachine machine;
+    row_of_tiny(&row, &machine);
+    BenchMachine alien = machine;
+    strcpy(alien.cpu, "Another 9000");
+    store("alien.h5", &row, &alien);
+    alien = machine; /* of the same name */
+    strcpy(alien.cpu_model, "AuthenticAMD family 25 model 17 stepping 1, elsewhere");
+    store("family.h5", &row, &alien);
+    alien = machine;
+    alien.l3_bytes = 2 * machine.l3_bytes + 1024;
+    store("cache.h5", &row, &alien);
+    alien = machine;
+    strcpy(alien.cpu_instructions, "sse");
+    store("instructions.h5", &row, &alien);
+    expect("shapebench regress --baseline missing.h5", 6, "there is no missing.h5");
+    expect("shapebench regress --baseline noise.h5", 3, "not an HDF5 file, or cut off");
+    expect("head -c 3000 tiny.h5 >cut.h5; shapebench regress --baseline cut.h5", 3, "cut.h5");
+    expect("shapebench regress --baseline alien.h5", 6, "another machine (Another 9000; this is ");
+    expect("shapebench regress --baseline family.h5", 6,
+           "family 25 model 17 stepping 1, elsewhere; ");
+    expect("shapebench regress --baseline instructions.h5", 6, "(instructions sse; this is ");
+    if (machine.l3_bytes) expect("shapebench regress --baseline cache.h5", 6, "(an L3 cache of ");
+    expect(
+        "shapebench run tiny.cfg --frames 1 --quiet -o x.vtkhdf >x; shapebench regress --baseline "
+        "x.vtkhdf",
+        3, "not a shapebench results file");
+    bench_row_free(&row);
+}
+
+/* Changes the file by h5py: another schema, things that are missing. */
+static void alter(const char *name, const char *python)
+{
+    char command[1024];
+    snprintf(command, sizeof command,
+             "cd %s && cp tiny.h5 %s && /usr/bin/python3 -c 'import h5py\nf = h5py.File(\"%s\", "
+             "\"r+\")\ndel f.attrs[\"checksum\"]\nr = f[\"rows/000\"]\n%s'",
+             folder, name, name, python);
+    assert_int_equal(system(command), 0);
+}
+
+static void files_of_other_schemas(void **state)
+{
+    (void)state;
+    if (system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) skip();
+    alter("newer.h5", "f.attrs.modify(\"schema\", 99)");
+    expect("shapebench regress --baseline newer.h5 " TINY, 3, "its schema is 99 and this program");
+    alter("bare.h5", "del r[\"total\"]");
+    expect("shapebench regress --baseline bare.h5 " TINY, 3, "row 000: dataset 'total' is missing");
+    alter("zero.h5", "r[\"total\"][0] = 0");
+    expect("shapebench regress --baseline zero.h5 " TINY, 3, "dataset 'total' holds 0 s");
+    alter("many.h5", "f.attrs.modify(\"rows\", 2)");
+    expect("shapebench regress --baseline many.h5 " TINY, 3, "group '001' is missing");
+    alter("old.h5",
+          "f.attrs.modify(\"schema\", 1)\n"
+          "for k in list(r.attrs):\n"
+          "  if k not in (\"scene\", \"valid\", \"repeats\", \"stages\"): del r.attrs[k]\n"
+          "for k in list(f[\"machine\"].attrs): del f[\"machine\"].attrs[k]\n");
+    BenchRow *rows;
+    BenchMachine machine;
+    SmError error;
+    int count;
+    assert_int_equal(bench_samples_load(path_in("old.h5"), &rows, &count, &machine, &error), SM_OK);
+    assert_int_equal(count, 1);
+    assert_string_equal(rows[0].scene, "tiny");
+    assert_true(rows[0].total[0] > 0 && rows[0].particles == 0 && machine.cpu[0] == '\0');
+    bench_rows_free(rows, count);
+    expect("shapebench regress --baseline old.h5 --threshold 5 --rounds 3 " TINY, 0,
+           "Against old.h5");
+}
+
+static void beside_a_stored_file(void **state)
+{
+    (void)state;
+    BenchRow row;
+    BenchMachine machine;
+    row_of_tiny(&row, &machine);
+    expect("shapebench regress --baseline tiny.h5 --threshold 9 --rounds 3 " TINY, 0,
+           "not slower in ");
+    expect("shapebench regress --baseline tiny.h5 --rounds 1 " TINY, 7, "at least --rounds 3\n");
+    expect("shapebench regress --baseline none.h5 " TINY, 6,
+           "shapebench tables --repeats 201 --block 0.5 -o FILE.h5\n");
+    row.particles = 63;
+    store("other.h5", &row, &machine);
+    expect("shapebench regress --baseline other.h5 --rounds 1 " TINY, 6,
+           "other work: particles 63, now 64");
+    row.valid = false;
+    strcpy(row.reason, "goals are off");
+    store("invalid.h5", &row, &machine);
+    expect("shapebench regress --baseline invalid.h5 --rounds 1 " TINY, 1,
+           "INVALID: tiny: the baseline: goals are off");
+    bench_row_free(&row);
+    row_of_tiny(&row, &machine);
+    for (int r = 0; r < row.repeats; r++) {
+        row.total[r] /= 1000;
+        for (int s = 0; s < SM_STAGES; s++) row.stage[r][s] /= 1000;
+    }
+    store("fast.h5", &row, &machine);
+    expect("shapebench regress --baseline fast.h5 --rounds 4 --repeats 10 --threshold 1 " TINY, 5,
+           "SLOWER in ");
+    strcpy(row.scene, "gone");
+    store("gone.h5", &row, &machine);
+    expect("shapebench regress --baseline gone.h5 --rounds 1", 2, "cannot measure scene gone");
+    expect("shapebench regress --baseline gone.h5 --rounds 1 " TINY, 6,
+           "the baseline has no such scene");
+    bench_row_free(&row);
+}
+
+static void places_that_cannot_be_written(void **state)
+{
+    (void)state;
+    expect("shapebench regress --baseline tiny.h5 -o no/such/out.txt", 4, "no/such/out.txt");
+    expect("TMPDIR=/no/such shapebench regress --baseline tiny.h5", 4, "cannot write /no/such/");
+    expect("shapebench regress --baseline tiny.h5 --rounds 3 --threshold 9 " TINY "> /dev/full", 4,
+           "standard output cannot be written");
+    expect("shapebench regress --baseline tiny.h5 --rounds 1 " TINY "--format json -o out.json", 7,
+           "");
+    assert_int_equal(access(path_in("out.json"), F_OK), 0);
+}
+
+/* A repository whose CMakeLists.txt is this. */
+static void make_repository(const char *cmake)
+{
+    write_text("CMakeLists.txt", cmake);
+    write_text("program.c", "#include <stdlib.h>\n#include <unistd.h>\n"
+                            "int main(int n, char **v) { (void)n;\n"
+                            "return getenv(\"FAIL\") ? atoi(getenv(\"FAIL\")) : execv(\"" BINARY_DIR
+                            "/shapebench\", v); }\n");
+    Result result;
+    run("rm -rf repo && mkdir repo && mv CMakeLists.txt program.c repo && cp tiny.cfg repo && cd "
+        "repo "
+        "&& git init -q && git add . && git -c user.name=t -c user.email=t@t commit -qm t",
+        &result);
+    if (result.code) fail_msg("%s", result.err);
+}
+
+/* Its optional MPI is there by half. */
+static const char works[] = "cmake_minimum_required(VERSION 3.22)\nproject(p C)\n"
+                            "if(NOT CMAKE_DISABLE_FIND_PACKAGE_MPI)\nmessage(FATAL_ERROR \"MPI "
+                            "without headers\")\nendif()\n"
+                            "add_executable(shapebench program.c)\n";
+
+static void nothing_is_left_in_the_repository(void)
+{
+    expect("cd repo && git worktree list | wc -l", 0, "1\n");
+    expect("ls repo/build/regress | grep -c source", 1, "0\n");
+    expect("ls scratch | grep -q shapebench", 1, "");
+}
+
+/* The other revision is a program that becomes this one. */
+static void another_revision_is_built_and_measured(void **state)
+{
+    (void)state;
+    make_repository(works);
+    expect("cd repo && shapebench regress --revision HEAD --rounds 4 " TINY, 2,
+           "one of 6 times: take at least --rounds 7");
+    expect("ls repo", 0, "CMakeLists.txt\nprogram.c\ntiny.cfg"); /* nothing was built */
+    expect("cd repo && shapebench regress --revision HEAD --threshold 9 --rounds 7 " TINY, 0,
+           "Against revision HEAD (");
+    nothing_is_left_in_the_repository();
+    expect("cd repo && TMPDIR=/no/such shapebench regress --revision HEAD " TINY, 4,
+           "cannot write /no/such/shapebench_");
+    expect("cd repo && ls build/regress", 0, "lock"); /* and the program, which is used again: */
+    expect("cd repo && FAIL=2 shapebench regress --revision HEAD --rounds 7 " TINY, 6,
+           "the baseline has no such scene");
+    expect("cd repo && FAIL=2 shapebench regress --revision HEAD --rounds 7 --format json " TINY
+           "| grep -c '\"scene\":'",
+           0, "1\n"); /* once, by its own name and not the file's */
+    expect("cd repo && FAIL=139 shapebench regress --revision HEAD --rounds 7 " TINY, 1,
+           "the baseline crashed on scene tiny.cfg (exit code 139)");
+}
+
+static void revisions_that_cannot_be_had(void **state)
+{
+    (void)state;
+    expect("cd / && shapebench regress --revision HEAD", 3, "is in no git repository");
+    make_repository("message(FATAL_ERROR \"broken on purpose\")\n");
+    expect("cd repo && shapebench regress --revision no-such", 3, "has no revision 'no-such'");
+    expect("cd repo && shapebench regress --revision --help", 3, "has no revision '--help'");
+    expect("cd repo && shapebench regress --revision HEAD", 3, "HEAD does not build: ");
+    nothing_is_left_in_the_repository();
+    make_repository("cmake_minimum_required(VERSION 3.22)\nproject(p C)\n"
+                    "add_custom_target(shapebench)\n");
+    expect("cd repo && shapebench regress --revision HEAD", 3, "builds no program shapebench");
+    make_repository("cmake_minimum_required(VERSION 3.22)\nproject(p C)\nadd_executable(shapebench "
+                    "no.c)\n");
+    expect("cd repo && shapebench regress --revision HEAD", 3, "HEAD does not build: ");
+    nothing_is_left_in_the_repository();
+}
+
+static pid_t start_building(void)
+{
+    pid_t child = fork();
+    if (child == 0) {
+        if (chdir(path_in("repo")) || !freopen("../err", "w", stderr)) _exit(99);
+        execl(BINARY_DIR "/shapebench", "shapebench", "regress", "--revision", "HEAD",
+              (char *)NULL);
+        _exit(99);
+    }
+    return child;
+}
+
+static void interrupt(pid_t child)
+{
+    int status;
+    char said[4096];
+    kill(child, SIGINT);
+    waitpid(child, &status, 0);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
+    slurp("err", said, sizeof said);
+    assert_non_null(strstr(said, "interrupted; nothing is left behind"));
+}
+
+/* Ctrl-C in mid-build: what runs is stopped, the worktree goes, exit code 130. Of one that waits
+ * for it to end, before: the build goes on. */
+static void an_interrupt_leaves_nothing(void **state)
+{
+    (void)state;
+    make_repository("execute_process(COMMAND sleep 47.11)\n");
+    pid_t first = start_building();
+    for (int i = 0; i < 100 && system("pgrep -fx 'sleep 47.11' >/dev/null") != 0; i++)
+        usleep(100000);
+    pid_t second = start_building();
+    usleep(500000);
+    interrupt(second);
+    expect("cd repo && git worktree list | wc -l", 0, "2\n");
+    expect("ls repo/build/regress/*.source/CMakeLists.txt", 0, "CMakeLists.txt");
+    interrupt(first);
+    assert_int_not_equal(system("pgrep -fx 'sleep 47.11' >/dev/null"), 0);
+    nothing_is_left_in_the_repository();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(usage),
+        cmocka_unit_test(files_that_are_no_baseline),
+        cmocka_unit_test(files_of_other_schemas),
+        cmocka_unit_test(beside_a_stored_file),
+        cmocka_unit_test(places_that_cannot_be_written),
+        cmocka_unit_test(another_revision_is_built_and_measured),
+        cmocka_unit_test(revisions_that_cannot_be_had),
+        cmocka_unit_test(an_interrupt_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, set_up, remove_folder);
+}

@@ -1,0 +1,261 @@
+#include "body.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../lib/mesh/import.h"
+#include "../../lib/shapes/shape.h"
+#include "../../lib/system/file.h"
+#include "../../lib/system/printable.h"
+#include "../measure/room.h"
+#include "nearest.h"
+
+SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
+{
+    if (!strncmp(mesh, "shape:", 6)) return sm_shape_mesh(mesh + 6, result, error);
+    return sm_import(mesh, NULL, result, error);
+}
+
+/* Largest extent of the mesh's bounding box; above zero for a mesh that passed sm_mesh_check(). */
+static double bounds(const SmMesh *mesh, double low[3], double high[3])
+{
+    double extent = 0;
+    for (int d = 0; d < 3; d++) {
+        low[d] = INFINITY, high[d] = -INFINITY;
+        for (long i = 0; i < mesh->vertex_count; i++) {
+            low[d] = fmin(low[d], mesh->position[i][d]);
+            high[d] = fmax(high[d], mesh->position[i][d]);
+        }
+        extent = fmax(extent, high[d] - low[d]);
+    }
+    return extent;
+}
+
+/* Moves `mesh` to where `model` is. */
+static void fit(SmMesh *mesh, const SmMesh *model)
+{
+    double low[3], high[3], model_low[3], model_high[3];
+    double extent = bounds(mesh, low, high);
+    double scale = bounds(model, model_low, model_high) / extent;
+    for (long i = 0; i < mesh->vertex_count; i++)
+        for (int d = 0; d < 3; d++) {
+            double from = d == 1 ? low[d] : low[d] / 2 + high[d] / 2;
+            double to = d == 1 ? model_low[d] : (model_low[d] + model_high[d]) / 2;
+            mesh->position[i][d] = (mesh->position[i][d] - from) * scale + to;
+        }
+}
+
+SmCode bench_mesh_of_scene(const BenchScene *scene, const char *substitute, SmMesh *result,
+                           SmError *error)
+{
+    SmMesh model;
+    SmCode code = bench_mesh_load(scene->mesh, &model, error);
+    if (code || !substitute) {
+        *result = model;
+        return code;
+    }
+    code = sm_import(substitute, NULL, result, error);
+    if (!code) fit(result, &model);
+    sm_mesh_free(&model);
+    return code;
+}
+
+/* What stands for a body's height: of one that lies flat, its length. */
+static double height_of(const SmMesh *mesh, double low[3], double high[3])
+{
+    double extent = bounds(mesh, low, high), height = high[1] - low[1];
+    return height > 0.01 * extent ? height : extent;
+}
+
+void bench_mesh_name(const char *path, char name[BENCH_NAME])
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(name, BENCH_NAME, "%.*s", BENCH_NAME - 1, slash ? slash + 1 : path);
+    sm_printable(name);
+}
+
+void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene)
+{
+    bench_scene_init(scene);
+    bench_mesh_name(path, scene->name);
+    snprintf(scene->title, sizeof scene->title, "%s dropped on the ground", scene->name);
+    snprintf(scene->mesh, sizeof scene->mesh, "%s", path);
+    snprintf(scene->file, sizeof scene->file, "%s", path);
+    scene->voxel.fill = SM_SOLID;
+    scene->voxel.particles = 2000;
+    scene->voxel.fewer = true;
+    double low[3], high[3];
+    double height = height_of(mesh, low, high);
+    scene->params.gravity[1] = -9.81 * height;
+    scene->params.damping = 0.1;
+    scene->obstacle_count = 1;
+    scene->obstacle[0] = (SmObstacle){.kind = SM_PLANE, .b = {0, 1, 0}, .friction = 0.2};
+    for (int d = 0; d < 3; d++) scene->obstacle[0].a[d] = (low[d] + high[d]) / 2;
+    scene->obstacle[0].a[1] = low[1] - height / 2;
+}
+
+void bench_scene_hold(const SmMesh *mesh, BenchScene *scene)
+{
+    double low[3], high[3];
+    scene->metre = height_of(mesh, low, high);
+    snprintf(scene->title, sizeof scene->title, "%s held at its foot", scene->name);
+    scene->obstacle_count = 0;
+    scene->handle_count = 1;
+    scene->handle[0] = (BenchHandle){.select = {.high = {1, 0.1, 1}}};
+}
+
+void bench_scene_sample(BenchScene *scene)
+{
+    scene->voxel.particles = 35000;
+    scene->octree.epsilon = 0.5;
+}
+
+static void stand_instances(const BenchScene *scene, BenchBody *body)
+{
+    body->instances = scene->instances;
+    body->pose = sm_alloc((size_t)body->instances, sizeof *body->pose);
+    long columns = (long)ceil(sqrt((double)body->instances));
+    long rows = (body->instances + columns - 1) / columns;
+    double dx = scene->spacing * (body->high[0] - body->low[0]);
+    double dz = scene->spacing * (body->high[2] - body->low[2]);
+    for (long i = 0; i < body->instances; i++) {
+        for (int d = 0; d < 3; d++) body->pose[i][d][d] = 1;
+        body->pose[i][0][3] = dx * ((double)(i % columns) - (double)(columns - 1) / 2);
+        body->pose[i][2][3] = dz * ((double)(i / columns) - (double)(rows - 1) / 2);
+    }
+}
+
+/* Mass of each particle: an eighth of every material cell around it. */
+static void weigh_cells(double density, const SmVoxels *voxels, const int (*at)[3], double *mass)
+{
+    double eighth = density * voxels->cell * voxels->cell * voxels->cell / 8;
+    for (long p = 0; p < voxels->particle_count; p++)
+        for (int corner = 0; corner < 8; corner++)
+            if (sm_voxel_get(voxels, at[p][0] - (corner & 1), at[p][1] - (corner >> 1 & 1),
+                             at[p][2] - (corner >> 2)))
+                mass[p] += eighth;
+}
+
+static SmCode read_masses(const char *path, long count, double *mass, SmError *error)
+{
+    FILE *file = sm_file_open(path, NULL, error);
+    if (!file) return SM_INPUT;
+    long i = 0;
+    bool good = true;
+    while (i < count && good) {
+        good = fscanf(file, "%lf", &mass[i]) == 1 && mass[i] > 0 && mass[i] < 1e30;
+        i += good;
+    }
+    double extra;
+    bool over = good && fscanf(file, "%lf", &extra) == 1;
+    fclose(file);
+    if (good && !over) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "%s: value %ld: wanted %ld masses above 0 kg, one for each mesh vertex after "
+                   "equal positions are merged ('shapebench info' counts them)",
+                   path, i + 1, count);
+}
+
+/* Each particle has the mass given for the mesh vertex nearest to it. */
+static SmCode weigh_vertices(const char *path, BenchBody *body, SmError *error)
+{
+    double *given = sm_alloc((size_t)body->mesh.vertex_count, sizeof *given);
+    SmCode code = read_masses(path, body->mesh.vertex_count, given, error);
+    if (!code) {
+        BenchNearest nearest;
+        bench_nearest_create((const double(*)[3])body->mesh.position, body->mesh.vertex_count,
+                             &nearest);
+        for (long p = 0; p < body->voxels.particle_count; p++)
+            body->mass[p] = given[bench_nearest_find(&nearest, body->x0[p])];
+        bench_nearest_free(&nearest);
+    }
+    free(given);
+    return code;
+}
+
+static SmCode place_particles(const BenchScene *scene, BenchBody *body, SmError *error)
+{
+    const SmVoxels *voxels = &body->voxels;
+    size_t count = (size_t)voxels->particle_count;
+    int(*at)[3] = sm_alloc(count, sizeof *at);
+    sm_voxels_particles(voxels, at);
+    body->x0 = sm_alloc(count, sizeof *body->x0);
+    for (size_t p = 0; p < count; p++)
+        for (int d = 0; d < 3; d++) body->x0[p][d] = voxels->origin[d] + voxels->cell * at[p][d];
+    SmCode code = SM_OK;
+    if (scene->density > 0 || scene->vertex_mass[0]) body->mass = sm_alloc(count, sizeof(double));
+    if (scene->vertex_mass[0])
+        code = weigh_vertices(scene->vertex_mass, body, error);
+    else if (scene->density > 0)
+        weigh_cells(scene->density, voxels, (const int(*)[3])at, body->mass);
+    free(at);
+    return code;
+}
+
+static double log_off(const SmVoxels *voxels, long cells)
+{
+    return fabs(log((double)voxels->cell_count / (double)cells));
+}
+
+/* The lattice whose material cells are nearest to as many as wanted, of a few whose wanted
+ * particles approach them. */
+static SmCode voxelise_cells(const BenchScene *scene, const SmMesh *mesh, SmVoxels *voxels,
+                             SmError *error)
+{
+    SmVoxelParams params = {scene->voxel.fill, 0, scene->cells > 8 ? scene->cells : 8, false};
+    SmCode code = sm_voxelise(mesh, &params, scene->mesh, voxels, error);
+    for (int i = 0; i < 4 && !code && log_off(voxels, scene->cells) > 0.002; i++) {
+        SmVoxels next;
+        double share = (double)scene->cells / (double)voxels->cell_count;
+        params.particles = (long)rint(fmax((double)voxels->particle_count * share, 8));
+        if (sm_voxelise(mesh, &params, scene->mesh, &next, NULL)) break;
+        bool nearer = log_off(&next, scene->cells) < log_off(voxels, scene->cells);
+        sm_voxels_free(nearer ? voxels : &next);
+        if (!nearer) break;
+        *voxels = next;
+    }
+    return code;
+}
+
+SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error)
+{
+    *body = (BenchBody){.mesh = *mesh, .hash = sm_mesh_hash(mesh)};
+    *mesh = (SmMesh){0};
+    const SmMesh *m = &body->mesh;
+    bounds(m, body->low, body->high);
+    double start = sm_now(),
+           wishes = (double)(scene->cells ? scene->cells : scene->voxel.particles);
+    SmCode code = bench_room_check(scene, wishes, error); /* before minutes of voxelising */
+    if (!code)
+        code = scene->cells > 0 ? voxelise_cells(scene, m, &body->voxels, error)
+                                : sm_voxelise(m, &scene->voxel, scene->mesh, &body->voxels, error);
+    body->voxelise_seconds = sm_now() - start;
+    if (!code) code = bench_room_check(scene, (double)body->voxels.particle_count, error);
+    if (!code) {
+        stand_instances(scene, body);
+        code = place_particles(scene, body, error);
+    }
+    if (code) bench_body_free(body);
+    return code;
+}
+
+SmCode bench_body_of_scene(const BenchScene *scene, const char *substitute, BenchBody *body,
+                           SmError *error)
+{
+    SmMesh mesh;
+    *body = (BenchBody){0};
+    SmCode code = bench_mesh_of_scene(scene, substitute, &mesh, error);
+    return code ? code : bench_body_create(scene, &mesh, body, error);
+}
+
+void bench_body_free(BenchBody *body)
+{
+    sm_mesh_free(&body->mesh);
+    sm_voxels_free(&body->voxels);
+    free(body->x0);
+    free(body->mass);
+    free(body->pose);
+    *body = (BenchBody){0};
+}

@@ -1,0 +1,57 @@
+/* body.h - a scene's body: its mesh, lattice, masses and where its instances stand. */
+#ifndef BENCH_BODY_H
+#define BENCH_BODY_H
+
+#include "../../reference/meshless/surface/mpu.h"
+#include "scene.h"
+
+typedef struct {
+    SmMesh mesh;
+    const RefMpu *given; /* of points whose surface the mesh is, the caller's; NULL: a mesh alone */
+    SmVoxels voxels;
+    double low[3], high[3]; /* the mesh's bounding box */
+    double (*x0)[3];        /* [voxels.particle_count] rest positions, instance pose not applied */
+    double *mass;           /* [voxels.particle_count] kg; NULL: 1 each */
+    const SmCut *cut;       /* what of a lattice has been cut, the caller's; NULL: nothing */
+    long instances;
+    double (*pose)[3][4];    /* [instances] rest to initial position: translations */
+    double voxelise_seconds; /* wall clock */
+    unsigned long long hash; /* FNV-1a of the mesh's coordinates and indices */
+} BenchBody;
+
+/* Reads a mesh: "shape:NAME" or a mesh file. */
+SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error);
+
+/* Reads the scene's mesh; or, unless NULL, the mesh file `substitute` in its place: scaled evenly
+ * to the same largest extent, standing on the same height, centred on the same vertical axis, so
+ * that the scene's handles, obstacles and forces fit it. */
+SmCode bench_mesh_of_scene(const BenchScene *scene, const char *substitute, SmMesh *result,
+                           SmError *error);
+
+/* The name of a mesh alone: its file's, without the folder. */
+void bench_mesh_name(const char *path, char name[BENCH_NAME]);
+
+/* The scene that `shapebench run MESH` uses for a mesh alone: solid, about 2,000 particles (fewer
+ * where so many take too large a lattice), w 2,
+ * dropped from half its height onto a ground plane. Mesh units are unknown, so gravity is 9.81
+ * body heights per second squared: a body 70 units tall falls as one of 1 m does. */
+void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene);
+
+/* Makes it the octree's: a finer lattice, of 35,000 particles, epsilon 0.5; the rest is the
+ * octree's own defaults. */
+void bench_scene_sample(BenchScene *scene);
+
+/* Makes it the meshless engine's: held at its lowest tenth, gravity as before, no ground; the mesh
+ * is taken to be 1 m high. */
+void bench_scene_hold(const SmMesh *mesh, BenchScene *scene);
+
+/* Voxelises, and fills in the rest. Takes `mesh` over, also when it fails. Errors as sm_voxelise(),
+ * and SM_MEMORY when the scene's engine would not fit (room.h). */
+SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error);
+
+/* The same of bench_mesh_of_scene(). When it fails the body is zeroed. */
+SmCode bench_body_of_scene(const BenchScene *scene, const char *substitute, BenchBody *body,
+                           SmError *error);
+void bench_body_free(BenchBody *body);
+
+#endif

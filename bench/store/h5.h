@@ -1,0 +1,107 @@
+/* h5.h - HDF5 with one failure state instead of a check at every call.
+ *
+ * After a call has failed the later ones do nothing, so a writer or reader checks once at its end.
+ * HDF5 prints nothing itself; its deepest message is kept. */
+#ifndef BENCH_H5_H
+#define BENCH_H5_H
+
+#include <hdf5.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "../../lib/error.h"
+
+/* Attribute of every file that ends in its checksum (checksum.h). */
+#define BENCH_H5_CHECKSUM "checksum"
+
+typedef struct {
+    hid_t file;
+    bool failed;
+    int number;        /* errno of a write that failed (sink.h), else 0 */
+    hsize_t size;      /* of a file that is loaded: its datasets hold no more; 0: not known */
+    hsize_t found;     /* bytes of datasets so far */
+    char message[256]; /* what failed */
+} BenchH5;
+
+/* A member of a C record that is stored as an attribute of its own. Arrays of numbers become
+ * one-dimensional; texts are fixed-length UTF-8. */
+typedef enum {
+    BENCH_TEXT,   /* char[] */
+    BENCH_INT,    /* int */
+    BENCH_LONG,   /* long */
+    BENCH_BOOL,   /* bool, stored as 0 or 1 in 8 bits */
+    BENCH_HASH,   /* unsigned long long */
+    BENCH_DOUBLE, /* double */
+} BenchKind;
+
+typedef struct {
+    const char *name;
+    BenchKind kind;
+    size_t offset, size; /* in the record, bytes */
+} BenchField;
+
+#define BENCH_FIELD(record, kind, member)                                                          \
+    {                                                                                              \
+#member, kind, offsetof(record, member), sizeof(((record *)0)->member)                     \
+    }
+
+/* Creates (replacing an empty draft) or opens a file. After create `h5` must not move. */
+void bench_h5_create(BenchH5 *h5, const char *path);
+void bench_h5_open(BenchH5 *h5, const char *path);
+
+/* Closes the file and all that is open in it; true when everything since create went well. Twice
+ * does no harm. */
+bool bench_h5_close(BenchH5 *h5);
+
+/* Marks `h5` as failed with this message, unless it has failed before. */
+void bench_h5_fail(BenchH5 *h5, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Writing. `type` is the type in the file; the memory has its native form. */
+hid_t bench_h5_group(BenchH5 *h5, hid_t parent, const char *name);
+void bench_h5_numbers(BenchH5 *h5, hid_t object, const char *name, hid_t type, int count,
+                      const void *values); /* attribute; count 0: a scalar */
+void bench_h5_text(BenchH5 *h5, hid_t object, const char *name, const char *text);
+void bench_h5_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
+                     const void *record);
+void bench_h5_dataset(BenchH5 *h5, hid_t parent, const char *name, hid_t type, int rank,
+                      const hsize_t *size, const void *values);
+
+/* A dataset that grows along its first axis, which starts at 0 (size[0] is ignored). */
+hid_t bench_h5_growing(BenchH5 *h5, hid_t parent, const char *name, hid_t type, int rank,
+                       const hsize_t *size);
+/* Appends `rows` entries along the first axis. */
+void bench_h5_append(BenchH5 *h5, hid_t dataset, hsize_t rows, const void *values);
+/* One more name, in `parent`, of what the file has at `path`. */
+void bench_h5_link(BenchH5 *h5, const char *path, hid_t parent, const char *name);
+/* A dataset that is a part of another one in the file, of as many dimensions: a virtual one, no
+ * copy. */
+void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, const hsize_t *start,
+                   const hsize_t *size);
+
+/* Reading: wrong type, wrong size and absence are failures that name the thing, and so are datasets
+ * of a file that is loaded that hold more than it does, or lie in another one. */
+hid_t bench_h5_find_group(BenchH5 *h5, hid_t parent, const char *name);
+hid_t bench_h5_find_dataset(BenchH5 *h5, hid_t parent, const char *name, int rank,
+                            const hsize_t *size);
+void bench_h5_read(BenchH5 *h5, hid_t dataset, hid_t type, void *values);
+void bench_h5_read_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
+                          void *record);
+/* Fails unless the file's attributes are this `kind` ("shapebench results") and a `schema` from
+ * `oldest` to `newest`, this program's. */
+void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest);
+/* A text attribute into room of `size` bytes. */
+void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size, char *text);
+
+/* Has `write` write the record: the file appears whole or not at all (draft.h). SM_OUTPUT. */
+SmCode bench_h5_store(const char *path, void (*write)(BenchH5 *h5, void *record), void *record,
+                      SmError *error);
+
+/* Has `read` read the file into `record`. First its checksum is compared (a file from before there
+ * were any has none, and is read as it is), and then a child reads it, because damage can crash
+ * HDF5 or have it take any memory. SM_INPUT, with the file and what is wrong: no such file, a
+ * folder or pipe, not HDF5, cut off, damaged, or what `read` failed at; the caller then frees what
+ * it has made so far. */
+SmCode bench_h5_load(const char *path, void (*read)(BenchH5 *h5, void *record), void *record,
+                     SmError *error);
+
+#endif

@@ -1,0 +1,28 @@
+/* store.h - measured rows in HDF5, one file a run. Schema: results/README.md. */
+#ifndef BENCH_STORE_H
+#define BENCH_STORE_H
+
+#include "../measure/machine.h"
+#include "../measure/row.h"
+
+/* The layout written; raised with every change that a reader must know of. */
+enum { BENCH_STORE_SCHEMA = 4 };
+
+/* Writes one results file with all rows: every repeat's samples, counts, validity, provenance.
+ * The file appears whole or not at all (draft.h). SM_OUTPUT names cause and remedy. */
+SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
+                        const BenchMachine *machine, SmError *error);
+
+/* "fast_sum shape_matching ...": the columns of stages, in order; the attribute "stages". */
+void bench_store_stages(size_t size, char *names);
+
+/* One row, as group `index` of `parent`, in a file that holds other things too. */
+void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row);
+
+/* What of a row is stored as attributes: all but the samples, which are datasets. */
+const BenchField *bench_row_fields(int *count);
+
+/* Fails unless the open file says that it is a results file, of a schema from `oldest` to ours. */
+void bench_store_check_kind(BenchH5 *h5, int oldest);
+
+#endif

@@ -1,0 +1,240 @@
+#include "gap.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../octree/change/structure.h"
+#include "../check/check.h"
+#include "../play/play.h"
+
+static SmCode create(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,
+                     SmError *error)
+{
+    const SmEngineType *type;
+    SmCode code = bench_engine_find(scene->engine, "double", &type, error);
+    return code ? code : bench_runner_create(scene, body, type, 1, runner, error);
+}
+
+/* Goal positions of the deformed body; the caller frees them, and the runner. */
+static SmCode find_goals(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                         BenchRunner *runner, double (**goal)[3], SmError *error)
+{
+    SmCode code = bench_runner_create(scene, body, type, 1, runner, error);
+    if (code) return code;
+    *goal = sm_alloc((size_t)runner->particles, sizeof **goal);
+    bench_runner_disturb(runner, 1);
+    runner->type->goals(runner->engine);
+    runner->type->get(runner->engine, SM_GOAL, *goal);
+    return SM_OK;
+}
+
+/* The scene's body alone, deformed. */
+static void set_free(BenchScene *scene)
+{
+    scene->handle_count = scene->force_count = scene->obstacle_count = 0;
+    scene->kick = 0;
+    if (scene->bend == 0 && scene->twist == 0 && scene->squash == 0) scene->bend = 0.7;
+}
+
+static void compare_goals(const BenchRunner *runner, double cell, const double (*goal)[3],
+                          const double (*exact)[3], BenchGap *gap)
+{
+    double *mass = sm_alloc((size_t)runner->count, sizeof *mass), sum = 0, all = 0, most = 0;
+    runner->type->masses(runner->engine, mass);
+    for (long i = 0; i < runner->particles; i++) {
+        double square = 0, m = mass[i % runner->count];
+        for (int d = 0; d < 3; d++)
+            square += (goal[i][d] - exact[i][d]) * (goal[i][d] - exact[i][d]);
+        sum += m * square;
+        all += m;
+        most = fmax(most, square);
+    }
+    if (isfinite(sum)) {
+        gap->rms = sqrt(sum / all) / cell;
+        gap->most = sqrt(most) / cell;
+    } else {
+        snprintf(gap->why, sizeof gap->why, "goals are not finite");
+    }
+    free(mass);
+}
+
+/* Says why where the check fails. */
+static bool right(const BenchRunner *runner, const char *what, char why[BENCH_WHY])
+{
+    char reason[160];
+    if (bench_check_runner(runner, sizeof reason, reason)) return true;
+    snprintf(why, BENCH_WHY, "INVALID%s: %.*s", what, BENCH_WHY - 32, reason);
+    return false;
+}
+
+void bench_gap_goals(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                     BenchGap *gap)
+{
+    *gap = (BenchGap){.rms = NAN, .most = NAN};
+    BenchScene alone = *scene, exact = *scene;
+    set_free(&alone);
+    set_free(&exact);
+    exact.octree.epsilon = 0;
+    BenchRunner runner = {0}, twin = {0};
+    double(*goal)[3] = NULL, (*wanted)[3] = NULL;
+    SmError error;
+    SmCode code = find_goals(&alone, body, type, &runner, &goal, &error);
+    if (!code) code = find_goals(&exact, body, type, &twin, &wanted, &error);
+    if (code)
+        snprintf(gap->why, sizeof gap->why, "%.*s", BENCH_WHY - 1, error.text);
+    else if (right(&runner, "", gap->why) && right(&twin, " at epsilon 0", gap->why))
+        compare_goals(&runner, body->voxels.cell, (const double(*)[3])goal,
+                      (const double(*)[3])wanted, gap);
+    else
+        gap->invalid = true;
+    free(goal);
+    free(wanted);
+    bench_runner_free(&runner);
+    bench_runner_free(&twin);
+}
+
+/* Mass of what force k pushes. */
+static double pushed_mass(const BenchRunner *runner, int k)
+{
+    double *mass = sm_alloc((size_t)runner->count, sizeof *mass), sum = 0;
+    runner->type->masses(runner->engine, mass);
+    for (long n = 0; n < runner->push_count[k]; n++)
+        sum += mass[runner->push_particle[k][n] % runner->count];
+    free(mass);
+    return sum;
+}
+
+SmCode bench_push_find(const BenchScene *scene, const BenchBody *body, BenchPush *push,
+                       SmError *error)
+{
+    *push = (BenchPush){.count = scene->force_count};
+    BenchRunner runner;
+    SmCode code = create(scene, body, &runner, error);
+    if (code) return code;
+    for (int k = 0; k < push->count; k++) {
+        double share = (double)runner.push_count[k] / pushed_mass(&runner, k);
+        for (int d = 0; d < 3; d++) push->acceleration[k][d] = scene->force[k].force[d] * share;
+    }
+    bench_runner_free(&runner);
+    return SM_OK;
+}
+
+static void use_push(const BenchPush *push, BenchRunner *runner)
+{
+    double *mass = sm_alloc((size_t)runner->count, sizeof *mass);
+    runner->type->masses(runner->engine, mass);
+    for (int k = 0; k < push->count; k++)
+        for (long n = 0; n < runner->push_count[k]; n++)
+            for (int d = 0; d < 3; d++)
+                runner->push_impulse[k][n][d] = push->acceleration[k][d] * runner->scene->params.h *
+                                                mass[runner->push_particle[k][n] % runner->count];
+    free(mass);
+}
+
+/* Appends the frame's points; false if one is not finite. */
+static bool keep_frame(BenchPlay *play, long vertices, double (*all)[3], int frame, BenchPath *path)
+{
+    double(*to)[3] = path->point + (size_t)frame * (size_t)path->points, sum = 0;
+    bench_play_points(play, all);
+    for (long i = 0; i < path->points; i++) {
+        memcpy(to[i], all[i * vertices / path->points], sizeof *to);
+        sum += 0 * (to[i][0] + to[i][1] + to[i][2]);
+    }
+    return sum == 0;
+}
+
+static void play_frames(BenchPlay *play, BenchPath *path)
+{
+    const BenchPart *part = &play->cast.part[0];
+    long vertices = part->body.instances * play->changes[0].surface.vertex_count;
+    path->points = vertices < BENCH_PATH_POINTS ? vertices : BENCH_PATH_POINTS;
+    path->point = sm_alloc((size_t)path->frames * (size_t)path->points, sizeof *path->point);
+    double(*all)[3] = sm_alloc((size_t)vertices, sizeof *all);
+    bool finite = true;
+    int frame = 0;
+    for (; frame < path->frames && finite; frame++) {
+        for (int s = 0; s < play->cast.scene->steps_per_frame; s++) {
+            bench_play_prepare(play);
+            bench_play_advance(play, NULL);
+        }
+        finite = keep_frame(play, vertices, all, frame, path);
+    }
+    free(all);
+    if (finite) return;
+    snprintf(path->why, sizeof path->why, "the motion is not finite from frame %d on", frame);
+    path->points = 0;
+}
+
+void bench_path_record(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                       const BenchPush *push, int frames, unsigned long seed, BenchPath *path)
+{
+    *path = (BenchPath){.frames = frames};
+    SmError error;
+    BenchPlay play;
+    if (bench_play_create(scene, body, type, 1, seed, &play, &error)) {
+        snprintf(path->why, sizeof path->why, "%.*s", BENCH_WHY - 1, error.text);
+        return;
+    }
+    use_push(push, &play.cast.part[0].runner);
+    play_frames(&play, path);
+    if (path->points && !right(&play.cast.part[0].runner, "", path->why)) {
+        path->points = 0;
+        path->invalid = true;
+    }
+    bench_play_free(&play);
+}
+
+void bench_path_free(BenchPath *path)
+{
+    free(path->point);
+    *path = (BenchPath){0};
+}
+
+void bench_gap_path(const BenchPath *path, const BenchPath *full, double size, BenchGap *gap)
+{
+    *gap = (BenchGap){.rms = NAN, .most = NAN};
+    if (!path->points || !full->points) {
+        snprintf(gap->why, sizeof gap->why, "%s", path->points ? full->why : path->why);
+        gap->invalid = path->invalid || full->invalid;
+        return;
+    }
+    double sum = 0, most = 0;
+    size_t count = (size_t)path->frames * (size_t)path->points;
+    for (size_t i = 0; i < count; i++) {
+        double square = 0;
+        for (int d = 0; d < 3; d++)
+            square +=
+                (path->point[i][d] - full->point[i][d]) * (path->point[i][d] - full->point[i][d]);
+        sum += square;
+        most = fmax(most, square);
+    }
+    gap->rms = sqrt(sum / (double)count) / size;
+    gap->most = sqrt(most) / size;
+}
+
+double bench_body_size(const BenchBody *body)
+{
+    double size = 0;
+    for (int d = 0; d < 3; d++) size = fmax(size, body->high[d] - body->low[d]);
+    return size;
+}
+
+SmCode bench_width_mean(const BenchScene *scene, const BenchBody *body, double *cells,
+                        SmError *error)
+{
+    BenchRunner runner;
+    SmCode code = create(scene, body, &runner, error);
+    if (code) return code;
+    const OctStructure *s = oct_engine_structure(runner.engine);
+    double sum = 0, all = 0;
+    for (long i = 0; i < s->tree.leaves; i++) {
+        double edge = 0.5 * s->tree.size[s->tree.node[i]], rings = floor(0.5 * s->w[i] / edge);
+        sum += s->mass[i] * ((rings + 0.5) * edge - 0.5);
+        all += s->mass[i];
+    }
+    *cells = sum / all;
+    bench_runner_free(&runner);
+    return SM_OK;
+}

@@ -1,0 +1,427 @@
+/* A sweep's parts: ranges, plans, and the file. */
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../../lib/test_folder.h"
+#include "../cli/range.h"
+#include "front.h"
+#include "sweep.h"
+
+enum { POINT_BYTES = 1392 };
+
+/* A member new in point.h is to be stored (point.c), described (results/README.md), and filled
+ * here. */
+_Static_assert(sizeof(BenchPoint) == POINT_BYTES, "point.h has changed: see above");
+
+static void ranges_are_numbers(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        int count;
+        double value[12];
+    } cases[] = {
+        {"3", 1, {3}},
+        {"1:4", 4, {1, 2, 3, 4}},
+        {"0:1:0.1", 11, {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1}},
+        {"0:1:0.3", 4, {0, 0.3, 0.6, 0.9}},
+        {"1:2,4,6:8:2", 5, {1, 2, 4, 6, 8}},
+        {"0.75,1e0", 2, {0.75, 1}},
+        {"2:2", 1, {2}},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        double value[12];
+        int count;
+        SmError error;
+        if (bench_range_parse("--x", cases[c].text, 0, 10, 12, value, &count, &error))
+            fail_msg("%s: %s", cases[c].text, error.text);
+        assert_int_equal(count, cases[c].count);
+        assert_memory_equal(value, cases[c].value, (size_t)count * sizeof *value);
+    }
+}
+
+static void bad_ranges_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *words;
+    } cases[] = {
+        {"", "is not a range"},      {"8:1", "falls"},           {"0:1:0", "step 0"},
+        {"0:1:-1", "step -1"},       {"0:10:1e-9", "more than"}, {"0:1e9", "not from"},
+        {"1:2:3:4", "not a range"},  {"1:", "not a range"},      {"a", "not a range"},
+        {"1,,2", "not a range"},     {"nan", "not a range"},     {"0:inf", "not a range"},
+        {"-1:2", "-1 is not from"},  {"3,2", "2 follows 3"},     {"1:3,3", "3 follows 3"},
+        {"0:1:1e-320", "more than"}, {"1 2", "not a range"},     {"0:8:0.5", "more than 12"},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        double value[12];
+        int count;
+        SmError error = {0};
+        assert_int_equal(bench_range_parse("--x", cases[c].text, 0, 10, 12, value, &count, &error),
+                         SM_USAGE);
+        if (!strstr(error.text, cases[c].words) || strncmp(error.text, "--x: ", 5) != 0)
+            fail_msg("'%s': '%s' does not say '%s'", cases[c].text, error.text, cases[c].words);
+    }
+}
+
+/* w 1 and 2, epsilon 0, 0.5 and 1. */
+static BenchPlan make_plan(const char *engines)
+{
+    BenchPlan plan = {.ws = 2,
+                      .epsilons = 3,
+                      .w = {1, 2},
+                      .epsilon = {0, 0.5, 1},
+                      .repeats = 3,
+                      .frames = 5,
+                      .block_ms = 1,
+                      .threads = 1,
+                      .scene_hash = ~0ULL,
+                      .mesh_hash = 7,
+                      .size = 0.1};
+    strcpy(plan.scene, "hand");
+    strcpy(plan.engines, engines);
+    strcpy(plan.precision, "single");
+    strcpy(plan.width, "edges");
+    strcpy(plan.build, "0.1");
+    assert_int_equal(bench_plan_count(&plan, NULL), SM_OK);
+    return plan;
+}
+
+static void a_plan_makes_its_points(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *engines;
+        int points, w1; /* and where the second w begins */
+        const char *first;
+    } cases[] = {
+        {"both", 8, 4, "fastlsm"}, {"fastlsm", 2, 1, "fastlsm"}, {"octree", 6, 3, "octree"}};
+    for (int c = 0; c < 3; c++) {
+        BenchPlan plan = make_plan(cases[c].engines);
+        BenchPoint point = {0};
+        assert_int_equal(plan.points, cases[c].points);
+        bench_plan_point(&plan, cases[c].w1, &point);
+        assert_string_equal(point.engine, cases[c].first);
+        assert_true(point.w == 2 && point.epsilon == 0);
+        bench_plan_point(&plan, plan.points - 1, &point);
+        assert_true(point.epsilon == (c == 1 ? 0 : 1));
+    }
+    BenchPlan plan = make_plan("octree");
+    plan.w[0] = 0.75;
+    assert_int_equal(bench_plan_count(&plan, NULL), SM_OK);
+    strcpy(plan.engines, "both");
+    SmError error;
+    assert_int_equal(bench_plan_count(&plan, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "0.75 is no half-width of fastlsm"));
+    plan.ws = plan.epsilons = BENCH_PLAN_VALUES;
+    strcpy(plan.engines, "octree");
+    assert_int_equal(bench_plan_count(&plan, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "65536 points"));
+}
+
+static void plans_differ_in_words(void **state)
+{
+    (void)state;
+    char what[240];
+    BenchPlan mine = make_plan("both"), other = mine;
+    strcpy(other.mesh, "elsewhere/hand.obj"); /* the same by its hash */
+    assert_true(bench_plan_same(&mine, &other, sizeof what, what));
+    other.w[1] = 3;
+    assert_false(bench_plan_same(&mine, &other, sizeof what, what));
+    assert_string_equal(what, "its w is 2 numbers from 1 to 3, and here 2 from 1 to 2");
+    other = mine;
+    other.mesh_hash++;
+    assert_false(bench_plan_same(&mine, &other, sizeof what, what));
+    assert_non_null(strstr(what, "the mesh has changed"));
+    other = mine;
+    other.frames = 6;
+    assert_false(bench_plan_same(&mine, &other, sizeof what, what));
+    assert_string_equal(what, "its frames is 6, and here 5");
+    other = mine;
+    strcpy(other.build, "0.2");
+    assert_false(bench_plan_same(&mine, &other, sizeof what, what));
+    assert_string_equal(what, "its build is '0.2', and here '0.1'");
+}
+
+static BenchPoint make_point(const BenchPlan *plan, int index, double ms, double path, double hz)
+{
+    BenchPoint point = bench_point_none();
+    bench_plan_point(plan, index, &point);
+    point.valid = isfinite(ms);
+    point.particles = 295;
+    point.total_ms = ms;
+    point.total_low_ms = 0.95 * ms;
+    point.total_high_ms = 1.05 * ms;
+    point.path_rms = path;
+    point.path_most = 2 * path;
+    point.goal_rms = 0.02;
+    point.frequency = hz;
+    point.sag = 0.1;
+    point.samples = point.valid ? plan->repeats : 0;
+    for (int i = 0; i < point.samples; i++) point.sample[i] = 1e-3 * ms;
+    if (!point.valid) strcpy(point.reason, "goals are off");
+    strcpy(point.host, "here");
+    return point;
+}
+
+/* Three of the plan's eight points, one INVALID; the number in `first` is where it differs. */
+static BenchSweep make_sweep(double first)
+{
+    BenchSweep sweep = {.plan = make_plan("both")};
+    static char *arguments[] = {"shapebench sweep", "-o", "a b.h5"};
+    bench_machine_read(3, arguments, 1, &sweep.machine);
+    static const int order[] = {6, 1, 4};
+    for (int i = 0; i < 3; i++) {
+        BenchPoint point = make_point(&sweep.plan, order[i], order[i] == 4 ? NAN : first, 0.01, 12);
+        bench_sweep_add(&sweep, &point);
+    }
+    return sweep;
+}
+
+static void write_sweep(const char *path)
+{
+    BenchSweep sweep = make_sweep(1.5);
+    SmError error;
+    if (bench_sweep_store(path, &sweep, &error)) fail_msg("%s", error.text);
+    bench_sweep_free(&sweep);
+}
+
+static void a_sweep_comes_back(void **state)
+{
+    (void)state;
+    const char *path = path_in("sweep.h5");
+    BenchSweep expected = make_sweep(1.5), found;
+    SmError error;
+    write_sweep(path);
+    write_sweep(path); /* replaces */
+    assert_int_equal(entries(""), 1);
+    if (bench_sweep_load(path, &found, &error)) fail_msg("%s", error.text);
+    bench_front_mark(expected.point, expected.count);
+    assert_int_equal(found.count, 3);
+    char what[240];
+    assert_true(bench_plan_same(&found.plan, &expected.plan, sizeof what, what));
+    assert_int_equal(found.plan.scene_hash, ~0ULL);
+    assert_memory_equal(found.point, expected.point, 3 * sizeof *found.point);
+    assert_string_equal(found.machine.command, "shapebench sweep -o 'a b.h5'");
+    assert_true(found.point[0].index == 1 && found.point[2].index == 6);
+    assert_true(isnan(found.point[1].total_ms) && !found.point[1].valid);
+    assert_null(bench_sweep_find(&found, 2));
+    bench_sweep_free(&found);
+    bench_sweep_free(&expected);
+    unlink(path);
+}
+
+static void merging_adds_and_refuses(void **state)
+{
+    (void)state;
+    BenchSweep all = make_sweep(1.5), same = make_sweep(1.5), twice = make_sweep(1.6),
+               foreign = make_sweep(1.5), more = {.plan = all.plan};
+    BenchPoint point = make_point(&more.plan, 0, 3, 0, 9);
+    SmError error;
+    bench_sweep_add(&more, &point);
+    assert_int_equal(bench_sweep_merge(&all, &same, "same.h5", &error), SM_OK);
+    assert_int_equal(all.count, 3);
+    assert_int_equal(bench_sweep_merge(&all, &more, "more.h5", &error), SM_OK);
+    assert_int_equal(all.count, 4);
+    assert_int_equal(all.point[0].index, 0);
+    assert_int_equal(bench_sweep_merge(&all, &twice, "twice.h5", &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "twice.h5: its point 1 (octree, w 1, epsilon 0) was "
+                                       "measured twice"));
+    foreign.plan.scene_hash++;
+    assert_int_equal(bench_sweep_merge(&all, &foreign, "foreign.h5", &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "foreign.h5 is of another sweep"));
+    BenchSweep *each[] = {&all, &same, &twice, &foreign, &more};
+    for (int i = 0; i < 5; i++) bench_sweep_free(each[i]);
+}
+
+static void refuses(const char *path, const char *words)
+{
+    BenchSweep sweep;
+    SmError error = {0};
+    assert_int_equal(bench_sweep_load(path, &sweep, &error), SM_INPUT);
+    assert_null(sweep.point);
+    if (!strstr(error.text, words) || !strstr(error.text, path))
+        fail_msg("'%s' does not say '%s'", error.text, words);
+}
+
+static void foreign_and_cut_files(void **state)
+{
+    (void)state;
+    const char *path = path_in("bad.h5");
+    refuses(path, "No such file");
+    write_text("bad.h5", "this is no HDF5\n");
+    refuses(path, "not an HDF5 file");
+    hid_t other = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    H5Fclose(other);
+    refuses(path, "not a shapebench sweep file");
+    struct stat status;
+    for (int eighth = 7; eighth >= 0; eighth--) {
+        write_sweep(path);
+        assert_int_equal(stat(path, &status), 0);
+        assert_int_equal(truncate(path, status.st_size * eighth / 8), 0);
+        refuses(path, "not an HDF5 file, or cut off");
+    }
+    unlink(path);
+}
+
+static void set_int(hid_t object, const char *name, int value)
+{
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    assert_true(H5Awrite(attribute, H5T_NATIVE_INT, &value) >= 0);
+    H5Aclose(attribute);
+}
+static void set_plan(hid_t file, const char *name, int value)
+{
+    hid_t plan = H5Gopen2(file, "plan", H5P_DEFAULT);
+    set_int(plan, name, value);
+    H5Gclose(plan);
+}
+static void older(hid_t file)
+{
+    set_int(file, "schema", 0);
+}
+static void newer(hid_t file)
+{
+    set_int(file, "schema", BENCH_SWEEP_SCHEMA + 1);
+}
+static void more_points(hid_t file)
+{
+    set_plan(file, "points", 9);
+}
+static void many_values(hid_t file)
+{
+    set_plan(file, "ws", 1 << 30);
+}
+static void no_repeats(hid_t file)
+{
+    set_plan(file, "repeats", 0);
+}
+static void lose_column(hid_t file)
+{
+    assert_true(H5Ldelete(file, "points/sag", H5P_DEFAULT) >= 0);
+}
+static void lose_first(hid_t file)
+{
+    assert_true(H5Ldelete(file, "points/index", H5P_DEFAULT) >= 0);
+}
+static void short_column(hid_t file)
+{
+    lose_column(file);
+    hsize_t size = 2;
+    hid_t space = H5Screate_simple(1, &size, NULL);
+    H5Dclose(H5Dcreate2(file, "points/sag", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT,
+                        H5P_DEFAULT));
+    H5Sclose(space);
+}
+static void text_column(hid_t file)
+{
+    lose_column(file);
+    hsize_t size = 3;
+    hid_t space = H5Screate_simple(1, &size, NULL);
+    H5Dclose(
+        H5Dcreate2(file, "points/sag", H5T_C_S1, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    H5Sclose(space);
+}
+static void set_column(hid_t file, const char *name, const int value[3])
+{
+    hid_t column = H5Dopen2(file, name, H5P_DEFAULT);
+    assert_true(H5Dwrite(column, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0);
+    H5Dclose(column);
+}
+static void other_index(hid_t file)
+{
+    set_column(file, "points/index", (const int[]){1, 5, 6});
+}
+static void many_samples(hid_t file)
+{
+    set_column(file, "points/samples", (const int[]){3, 3, 1 << 30});
+}
+static void negative_samples(hid_t file)
+{
+    set_column(file, "points/samples", (const int[]){-1, 3, 3});
+}
+
+static void changed_files(void **state)
+{
+    (void)state;
+    static const struct {
+        void (*change)(hid_t file);
+        const char *words;
+    } cases[] = {
+        {older, "measure again"},
+        {newer, "use a newer shapebench"},
+        {more_points, "does not make 9 points"},
+        {many_values, "1073741824 values of w"},
+        {no_repeats, "0 repeats"},
+        {lose_column, "dataset 'sag' is missing"},
+        {lose_first, "dataset 'index' is missing"},
+        {short_column, "dataset 'sag' has the wrong size"},
+        {text_column, "dataset 'sag' has the wrong type"},
+        {other_index, "point 1 is not one of its plan's"},
+        {many_samples, "point 2 has 1073741824 samples"},
+        {negative_samples, "point 0 has -1 samples"},
+    };
+    const char *path = path_in("changed.h5");
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        write_sweep(path);
+        hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+        H5Adelete(file, BENCH_H5_CHECKSUM); /* as of a file from before there were any */
+        cases[c].change(file);
+        H5Fclose(file);
+        refuses(path, cases[c].words);
+    }
+    unlink(path);
+}
+
+/* In a child, whose limit on file sizes stands in for a full disk. */
+static void store_on_full_disk(const char *path)
+{
+    signal(SIGXFSZ, SIG_IGN);
+    struct rlimit bound = {4096, RLIM_INFINITY};
+    setrlimit(RLIMIT_FSIZE, &bound);
+    BenchSweep sweep = make_sweep(9);
+    SmError error = {0};
+    if (bench_sweep_store(path, &sweep, &error) != SM_OUTPUT) _exit(2);
+    _exit(strstr(error.text, "size limit") ? 0 : 3);
+}
+
+static void a_full_disk_keeps_what_was(void **state)
+{
+    (void)state;
+    const char *path = path_in("full.h5");
+    write_sweep(path);
+    pid_t child = fork();
+    if (child == 0) store_on_full_disk(path);
+    int status;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    BenchSweep sweep;
+    assert_int_equal(entries(""), 1); /* no draft */
+    assert_int_equal(bench_sweep_load(path, &sweep, NULL), SM_OK);
+    assert_true(sweep.point[0].total_ms == 1.5);
+    bench_sweep_free(&sweep);
+    unlink(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ranges_are_numbers),         cmocka_unit_test(bad_ranges_are_refused),
+        cmocka_unit_test(a_plan_makes_its_points),    cmocka_unit_test(plans_differ_in_words),
+        cmocka_unit_test(a_sweep_comes_back),         cmocka_unit_test(merging_adds_and_refuses),
+        cmocka_unit_test(foreign_and_cut_files),      cmocka_unit_test(changed_files),
+        cmocka_unit_test(a_full_disk_keeps_what_was),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,207 @@
+#include "explain.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "../../reference/paper.h"
+#include "../measure/elastic_row.h"
+#include "../measure/measure.h"
+#include "../measure/tree_row.h"
+#include "../play/change_grid.h"
+#include "grid.h"
+#include "step_grid.h"
+
+static const RefPaperRow *paper_of(const BenchRow *row)
+{
+    return row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
+}
+
+/* ---- one line a row */
+
+/* What others took, where it is worth a word. */
+static void print_lost(FILE *file, const BenchRow *row, const char *before)
+{
+    if (row->busy)
+        fprintf(file,
+                "%sBUSY: other programs took %.0f%% of its processors (load average %.1f): measure "
+                "again when they are done",
+                before, row->lost_percent, row->load);
+    else if (row->lost_percent >= 5)
+        fprintf(file, "%s%.0f%% lost to other programs, left out", before, row->lost_percent);
+}
+
+static void brief_row(FILE *file, const BenchRow *row, int width)
+{
+    char range[BENCH_GRID_TEXT];
+    fprintf(file, "  %-*s  ", width, row->scene);
+    if (!row->valid) {
+        fprintf(file, "INVALID: %s\n", row->reason);
+        return;
+    }
+    if (bench_row_of_elastic(row))
+        fprintf(file, "all %d checks hold", (int)BENCH_ELASTIC_CHECKS);
+    else
+        fprintf(file, "goals %.1e, drift %.0e%s", row->goal_error, row->drift,
+                row->plain ? " plain" : "");
+    if (row->left_out) fprintf(file, ", %ld left out", row->left_out);
+    print_lost(file, row, "; ");
+    if (row->busy) {
+        fputc('\n', file);
+        return;
+    }
+    bench_grid_range(row->total_low_ms, row->total_high_ms, range);
+    fprintf(file, "; %s ms\n", range);
+}
+
+void bench_explain_briefly(FILE *file, const BenchRow *rows, int count)
+{
+    int width = 0;
+    for (int r = 0; r < count; r++)
+        if ((int)strlen(rows[r].scene) > width) width = (int)strlen(rows[r].scene);
+    fputs("On the state that was timed: goals off in cells; left alone, drift of the velocity in "
+          "cells a\nstep, each step; then times' quartiles (more: --explain)\n",
+          file);
+    for (int r = 0; r < count; r++) {
+        brief_row(file, &rows[r], width);
+        bench_change_left(file, "    ", rows[r].change.left);
+    }
+}
+
+/* ---- all of a row */
+
+/* How far a count is from the paper's, in brackets; nothing where the paper has none. */
+static void print_difference(FILE *file, double count, double paper)
+{
+    if (isfinite(paper)) fprintf(file, " (%+.1f%% of the paper's)", 100 * (count / paper - 1));
+}
+
+static void print_counts(FILE *file, const BenchRow *row)
+{
+    const RefPaperRow *paper = paper_of(row);
+    bool elastic = bench_row_of_elastic(row);
+    fprintf(file, "    %ld %s", row->particles, elastic ? "points" : "particles");
+    if (paper) print_difference(file, (double)row->particles, paper->particles.value);
+    fprintf(file, ", %ld %s", row->regions, elastic ? "nodes" : "regions");
+    if (paper)
+        print_difference(file, (double)row->regions,
+                         elastic ? paper->nodes.value : paper->regions.value);
+    fputs(";\n", file);
+}
+
+static void print_stages(FILE *file, const BenchRow *row)
+{
+    static const char *const stages[SM_STAGES] = {"fast sum", "shape matching", "polar", "damping",
+                                                  "other"};
+    const RefPaperRow *paper = paper_of(row);
+    char number[BENCH_GRID_TEXT];
+    for (int s = 0; s < SM_STAGES; s++) {
+        bench_grid_number(row->stage_ms[s], number);
+        fprintf(file, "%s%s %s", s ? ", " : "    ms: ", stages[s], number);
+        if (!paper || !isfinite(paper->stage_ms[s].value)) continue;
+        bench_grid_number(paper->stage_ms[s].value, number);
+        fprintf(file, " (paper %s)", number);
+    }
+    bench_grid_number(row->ns_per_particle_step, number);
+    fprintf(file, "; %s ns a particle and step\n", number);
+}
+
+static void print_check(FILE *file, const BenchRow *row)
+{
+    fprintf(file, "  %s, %s in %s precision: %s: ", row->scene, row->engine, row->precision,
+            bench_row_mark(row));
+    if (!row->valid) {
+        fprintf(file, "%s\n", row->reason);
+        return;
+    }
+    print_lost(file, row, "");
+    if (row->busy) {
+        fprintf(file, ";\n    %s\n", row->found);
+        return;
+    }
+    if (row->lost_percent >= 5) fputs("; ", file);
+    fprintf(
+        file,
+        "%s;\n    quartiles %.4g to %.4g ms, %d repeats of %d step%s; stage clocks cost %.1f%%, "
+        "which the total is without (below 0: noise);\n",
+        row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
+        row->steps == 1 ? "" : "s", row->instruments_percent);
+    print_counts(file, row);
+    if (bench_row_of_elastic(row)) return;
+    print_stages(file, row);
+    fprintf(file, "    voxelised in %.3g ms, built in %.3g ms, %.4g bytes a particle\n",
+            1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,
+            (double)row->bytes / (double)row->particles);
+}
+
+/* The step's time as the octree paper groups it. */
+static void print_groups(FILE *file, const BenchRow *row)
+{
+    const RefPaperClaim *third = ref_paper_claim("octree", "hand-third");
+    double percent = 100 / row->total_ms;
+    fprintf(file,
+            "    summation and matching %.0f%%, polar %.0f%%, damping %.0f%%, other %.0f%% (paper, "
+            "regular sampling: %.0f/%.0f/%.0f)\n",
+            percent * (row->stage_ms[SM_FAST_SUM] + row->stage_ms[SM_SHAPE_MATCHING]),
+            percent * row->stage_ms[SM_POLAR], percent * row->stage_ms[SM_DAMPING],
+            percent * row->stage_ms[SM_OTHER], third->value.value, third->value.value,
+            third->value.value);
+}
+
+/* What an octree's row is made of. */
+static void print_octree(FILE *file, const BenchRow *row)
+{
+    const RefPaperRow *paper = paper_of(row);
+    fputs("    ", file);
+    bench_tree_row_nodes(file, row);
+    if (paper && isfinite(paper->bases.value))
+        fprintf(file, "; paper: %.0f from %.0f", paper->particles.value, paper->bases.value);
+    fputs(";\n    ", file);
+    bench_tree_row_widths(file, row);
+    fputs(";\n    ", file);
+    bench_tree_row_regions(file, row);
+    fputs(";\n    the body ", file);
+    bench_tree_row_body(file, row);
+    fputc('\n', file);
+    if (bench_row_timed(row)) print_groups(file, row);
+}
+
+/* How many times as fast as a lattice an octree of the same body is, like with like; the paper's 88
+ * is of an adaptive one, both without low-level optimisation. */
+static void print_speedups(FILE *file, const BenchRow *rows, int count)
+{
+    const RefPaperClaim *claim = ref_paper_claim("octree", "hand-speedup");
+    for (int r = 0; r < count; r++) {
+        const BenchRow *lattice = bench_row_lattice(rows, count, &rows[r]);
+        if (strcmp(rows[r].engine, "octree") != 0 || !lattice || !(rows[r].speedup > 0)) continue;
+        bool same = !strcmp(lattice->paper_row, "hand-lattice-plain") && rows[r].wanted_nodes > 0;
+        fprintf(file, "  %s is %.3g times as fast as %s, both with %s rotations", rows[r].scene,
+                rows[r].speedup, lattice->scene, rows[r].polar);
+        if (same) fprintf(file, " (paper, %s: %.0f times)", claim->place, claim->value.value);
+        fputc('\n', file);
+    }
+}
+
+static void print_notes(FILE *file, const BenchRow *rows, int count)
+{
+    for (int r = 0; r < count; r++) {
+        const RefPaperRow *paper = paper_of(&rows[r]);
+        if (paper && paper->note[0]) fprintf(file, "  %s, paper: %s\n", rows[r].scene, paper->note);
+    }
+}
+
+void bench_explain_rows(FILE *file, const BenchRow *rows, int count)
+{
+    for (int r = 0; r < count; r++) {
+        const BenchRow *row = &rows[r];
+        print_check(file, row);
+        bench_change_left(file, "    ", row->change.left);
+        if (row->change.frames)
+            fprintf(file, "    its surface has %ld triangles, at the end %ld in %ld piece%s\n",
+                    row->change.first_triangles, row->change.last_triangles, row->change.pieces,
+                    row->change.pieces == 1 ? "" : "s");
+        if (!strcmp(row->engine, "octree")) print_octree(file, row);
+        if (bench_row_of_elastic(row)) bench_elastic_row_text(file, row);
+    }
+    print_speedups(file, rows, count);
+    print_notes(file, rows, count);
+}

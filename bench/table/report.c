@@ -1,0 +1,78 @@
+#include "report.h"
+
+#include "../measure/elastic_row.h"
+#include "../play/change_grid.h"
+#include "explain.h"
+#include "step_grid.h"
+
+static void print_heading(const BenchReport *report, bool elastic)
+{
+    const BenchMachine *machine = report->machine;
+    if (elastic)
+        fprintf(report->file,
+                "Meshless bodies: times of one frame, median, on %s, one thread:\n"
+                "the modes' motion, and the points that it carries (skin).\n\n",
+                machine->cpu);
+    else
+        fprintf(report->file,
+                "Times of one step, median, stages in percent, on %s, %d thread%s.\n\n",
+                machine->cpu, machine->threads, machine->threads == 1 ? "" : "s");
+}
+
+static void begin_table(BenchReport *report, bool elastic)
+{
+    if (report->form == BENCH_GRID_PLAIN) print_heading(report, elastic);
+    (elastic ? bench_elastic_columns : bench_step_columns)(report->rows, report->count,
+                                                           report->form, &report->grid);
+    bench_grid_head(report->file, &report->grid, report->form);
+}
+
+/* What changes is told of below the table of steps that it belongs to. */
+static void write_changes(const BenchReport *report)
+{
+    BenchGrid grid;
+    bench_change_grid(report->rows, report->written, report->form, &grid);
+    if (!grid.lines) return;
+    fputc('\n', report->file);
+    if (report->form == BENCH_GRID_PLAIN)
+        fputs("While they change: nodes at first and at most; simulation is the time of a frame "
+              "before the\nfirst change and after the last.\n\n",
+              report->file);
+    bench_grid_whole(report->file, &grid, report->form);
+    bench_grid_free(&grid);
+}
+
+static void end_table(BenchReport *report)
+{
+    if (!report->written) return;
+    bench_grid_end(report->file, report->form);
+    if (!bench_row_of_elastic(&report->rows[report->written - 1])) write_changes(report);
+    bench_grid_free(&report->grid);
+}
+
+void bench_report_rows(BenchReport *report, int measured)
+{
+    for (; report->written < measured; report->written++) {
+        const BenchRow *row = &report->rows[report->written];
+        bool elastic = bench_row_of_elastic(row);
+        if (!report->written || bench_row_of_elastic(row - 1) != elastic) {
+            end_table(report);
+            if (report->written) fputc('\n', report->file);
+            begin_table(report, elastic);
+        }
+        report->grid.lines = 0;
+        (elastic ? bench_elastic_lines : bench_step_lines)(
+            report->rows, report->count, report->written, report->form, &report->grid);
+        bench_grid_lines(report->file, &report->grid, report->form);
+    }
+    fflush(report->file);
+}
+
+void bench_report_end(BenchReport *report, bool explain)
+{
+    end_table(report);
+    if (report->form != BENCH_GRID_PLAIN || !report->written) return;
+    fputc('\n', report->file);
+    (explain ? bench_explain_rows : bench_explain_briefly)(report->file, report->rows,
+                                                           report->written);
+}

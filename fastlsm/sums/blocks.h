@@ -1,0 +1,93 @@
+/* blocks.h - sums over regions in block form: box sums over SM_LANES lattice sites at a time.
+ *
+ * The moment chain of summation.h, but bars, plates and cubes are taken over every site of the box
+ * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
+ * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
+ * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
+ * summed anew at every RESTART-th row and plane, or rounding would add up. Along x lanes slide, and
+ * from w = FAR on prefixes are subtracted, O(1) too (blocks_far.h). Empty sites hold zero. A
+ * region whose box sum is not its exact sum (a gap, a corner, a broken link within its box) is
+ * made so by corrections (corrections.h) or summed by its lists instead, lane by lane. */
+#ifndef LSM_BLOCKS_H
+#define LSM_BLOCKS_H
+
+#include "../state.h"
+
+#define lsm_blocks_build   SM_NAME(lsm_blocks_build)
+#define lsm_blocks_at      SM_NAME(lsm_blocks_at)
+#define lsm_blocks_taken   SM_NAME(lsm_blocks_taken)
+#define lsm_blocks_regular SM_NAME(lsm_blocks_regular)
+#define lsm_blocks_share   SM_NAME(lsm_blocks_share)
+#define lsm_blocks_free    SM_NAME(lsm_blocks_free)
+#define lsm_blocks_bytes   SM_NAME(lsm_blocks_bytes)
+
+enum { RUNNING = 3, RESTART = 8 };
+
+/* Blocks that touch along x. A row may have several runs. */
+typedef struct {
+    int y, column; /* of the first block; columns are in blocks */
+    int first, count;
+    bool moves_y, moves_z; /* windows of its blocks move on from the row or plane before */
+} BlockRun;
+
+/* The runs of a row of a plane. */
+typedef struct {
+    const BlockRun *run;
+    int runs;
+} BlockRow;
+
+struct Blocks {
+    int width;          /* blocks across the lattice's box along x */
+    bool running;       /* sums along y and z are windows that move: O(1) */
+    bool streams;       /* what a step goes through does not stay in cache: it is asked for ahead */
+    int *plane_run;     /* [planes + 1] first run of each plane; runs rise in y, then x */
+    int *row_run;       /* [planes * rows + 1] the same of each row */
+    BlockRun *run;      /* and one more, where the blocks end */
+    int *place;         /* [blocks] the same in every plane: y * width + column */
+    int *along_z;       /* [blocks][side] the block at the same place in planes z - w .. z + w; the
+                           empty block (number `blocks`) where there is none */
+    uint64_t *passable; /* bitmap of the sites whose sums other sites' sums pass through */
+    uint16_t *site;     /* [blocks] the lanes that hold a particle, as bits */
+    bool *listed;       /* [blocks] lists or corrections read what this block brings down, and
+                           lists its particles: rows of them are needed */
+    bool *mixed;        /* [blocks] lists or corrections make the sums of some lanes exact */
+    real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until part 2 */
+    real *down_memory;
+    int threads;
+    long shared_bytes;
+    real **scratch;  /* [threads] rows of one plane, and windows */
+    BlockRow **held; /* [threads] what is in these rows (blocks_pass.h) */
+    real **window;   /* [threads] up, down: the z windows of a plane's places, [12] and [6] blocks
+                        each; none unless `running` */
+};
+
+/* What a pass does with the 12 sums of a group of blocks' regions that follow each other (shape
+ * matching: match.h); it writes what they bring down to `out`, where blocks are BLOCK values apart:
+ * 12 vectors each (q, Rz, Rx, Ry) or 6 (damping: omega, v_r - omega x c_r). */
+typedef void BlockSolve(Lsm *lsm, int layer, long block, int blocks, vec (*sum)[12], real *out,
+                        SmLaps *laps);
+
+/* The most blocks of a group. */
+enum { BLOCK_GROUP = 4 };
+
+/* Blocks, rows and neighbours of the lattice; sets lsm->blocks, slot, particle, layers. */
+void lsm_blocks_build(Lsm *lsm);
+
+/* The block of `column` in row y of plane z, or the empty block. */
+int lsm_blocks_at(const Lsm *lsm, int column, int y, int z);
+
+/* The sites of particle p's window (region.h) that its box sum takes, on the way up to the region
+ * and down to the particle: [(2w+1)^2] rows each. */
+void lsm_blocks_taken(const Lsm *lsm, long p, uint64_t *up, uint64_t *down);
+
+/* Is the box sum of particle p, whose members are `rows` (region.h), its region's sum? O(w^2). */
+bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows);
+
+/* Scratch and plane stores for lsm->threads threads. */
+void lsm_blocks_share(Lsm *lsm);
+
+void lsm_blocks_free(Blocks *box);
+
+long lsm_blocks_bytes(const Lsm *lsm);
+
+#endif

@@ -1,0 +1,350 @@
+#include "mesh.h"
+#include "../system/hash.h"
+#include "../vector.h"
+#include "edges.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double rounding_gap = 1e-7; /* of the box's longest side */
+static const double no_height = 1e-14;   /* of a triangle's longest edge */
+
+SmMesh sm_mesh_new(long vertices, long triangles)
+{
+    SmMesh mesh = {.vertex_count = vertices, .triangle_count = triangles};
+    mesh.position = sm_alloc((size_t)vertices, sizeof *mesh.position);
+    mesh.triangle = sm_alloc((size_t)triangles, sizeof *mesh.triangle);
+    return mesh;
+}
+
+void sm_mesh_free(SmMesh *mesh)
+{
+    free(mesh->position);
+    free(mesh->triangle);
+    *mesh = (SmMesh){0};
+}
+
+static void bounding_box(const SmMesh *mesh, double low[3], double high[3])
+{
+    for (int a = 0; a < 3; a++) {
+        low[a] = high[a] = mesh->vertex_count ? mesh->position[0][a] : 0;
+        for (long v = 1; v < mesh->vertex_count; v++) {
+            low[a] = fmin(low[a], mesh->position[v][a]);
+            high[a] = fmax(high[a], mesh->position[v][a]);
+        }
+    }
+}
+
+static double longest_side(const SmMesh *mesh, double low[3])
+{
+    double high[3];
+    bounding_box(mesh, low, high);
+    return fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
+}
+
+/* Union-find with the lowest member as the root of a set, so that results keep the order. */
+static int find_root(int *parent, int v)
+{
+    while (parent[v] != v) {
+        parent[v] = parent[parent[v]];
+        v = parent[v];
+    }
+    return v;
+}
+
+static void unite(int *parent, int a, int b)
+{
+    a = find_root(parent, a);
+    b = find_root(parent, b);
+    parent[a > b ? a : b] = a < b ? a : b;
+}
+
+static int *singletons(long count)
+{
+    int *parent = sm_alloc((size_t)count, sizeof *parent);
+    for (long v = 0; v < count; v++) parent[v] = (int)v;
+    return parent;
+}
+
+static uint64_t hash_words(const uint64_t word[3])
+{
+    uint64_t hash = 0x9e3779b97f4a7c15u;
+    for (int a = 0; a < 3; a++) {
+        hash = (hash ^ word[a]) * 0xff51afd7ed558ccdu;
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+static uint64_t table_mask(long entries)
+{
+    uint64_t size = 16;
+    while (size < 2 * (uint64_t)entries) size *= 2;
+    return size - 1;
+}
+
+/* Lets every vertex stand for the first one at its position. */
+static int *equal_positions(SmMesh *mesh)
+{
+    int *parent = singletons(mesh->vertex_count);
+    uint64_t mask = table_mask(mesh->vertex_count);
+    int *table = sm_alloc(mask + 1, sizeof *table); /* vertex + 1, or 0 */
+    for (long v = 0; v < mesh->vertex_count; v++) {
+        uint64_t word[3];
+        for (int a = 0; a < 3; a++) mesh->position[v][a] += 0.0; /* -0 becomes 0 */
+        memcpy(word, mesh->position[v], sizeof word);
+        uint64_t slot = hash_words(word) & mask;
+        for (; table[slot]; slot = (slot + 1) & mask)
+            if (!memcmp(mesh->position[table[slot] - 1], word, sizeof word)) break;
+        if (table[slot])
+            parent[v] = table[slot] - 1;
+        else
+            table[slot] = (int)v + 1;
+    }
+    free(table);
+    return parent;
+}
+
+/* Replaces vertices by their roots, then drops what sm_mesh_merge() says. */
+static void collapse(SmMesh *mesh, int *parent)
+{
+    int *number = sm_alloc((size_t)mesh->vertex_count, sizeof *number);
+    long triangles = 0, vertices = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        int corner[3];
+        for (int c = 0; c < 3; c++) corner[c] = find_root(parent, mesh->triangle[t][c]);
+        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+        for (int c = 0; c < 3; c++) number[corner[c]] = 1;
+        memcpy(mesh->triangle[triangles++], corner, sizeof corner);
+    }
+    for (long v = 0; v < mesh->vertex_count; v++) {
+        if (!number[v]) continue;
+        memmove(mesh->position[vertices], mesh->position[v], sizeof *mesh->position);
+        number[v] = (int)vertices++;
+    }
+    for (long t = 0; t < triangles; t++)
+        for (int c = 0; c < 3; c++) mesh->triangle[t][c] = number[mesh->triangle[t][c]];
+    free(number);
+    mesh->triangle_count = triangles;
+    mesh->vertex_count = vertices;
+    mesh->position = sm_realloc(mesh->position, (size_t)vertices, sizeof *mesh->position);
+    mesh->triangle = sm_realloc(mesh->triangle, (size_t)triangles, sizeof *mesh->triangle);
+}
+
+/* Boundary vertices hashed by grid cell, for neighbours nearer than a cell's side. */
+typedef struct {
+    const SmMesh *mesh;
+    double low[3], side;
+    uint64_t mask;
+    int *head, *next; /* vertex + 1, or 0: chains of one slot */
+} Grid;
+
+static uint64_t grid_slot(const Grid *grid, const double position[3], const int step[3])
+{
+    uint64_t word[3];
+    for (int a = 0; a < 3; a++)
+        word[a] = (uint64_t)((int64_t)((position[a] - grid->low[a]) / grid->side) + step[a]);
+    return hash_words(word) & grid->mask;
+}
+
+static void unite_near(const Grid *grid, int v, int *parent)
+{
+    enum { LONGEST_CHAIN = 64 }; /* bounds the cost where thousands crowd into one cell */
+    const double *p = grid->mesh->position[v];
+    for (int n = 0; n < 27; n++) {
+        int step[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+        int other = grid->head[grid_slot(grid, p, step)];
+        for (int k = 0; other && k < LONGEST_CHAIN; k++, other = grid->next[other - 1]) {
+            const double *q = grid->mesh->position[other - 1];
+            double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+            if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= grid->side * grid->side)
+                unite(parent, v, other - 1);
+        }
+    }
+}
+
+static int *near_positions(const SmMesh *mesh, const bool *boundary)
+{
+    int *parent = singletons(mesh->vertex_count);
+    Grid grid = {.mesh = mesh, .mask = table_mask(mesh->vertex_count)};
+    grid.side = rounding_gap * longest_side(mesh, grid.low);
+    grid.head = sm_alloc(grid.mask + 1, sizeof *grid.head);
+    grid.next = sm_alloc((size_t)mesh->vertex_count, sizeof *grid.next);
+    for (int v = 0; v < mesh->vertex_count; v++) {
+        if (!boundary[v]) continue;
+        unite_near(&grid, v, parent);
+        uint64_t slot = grid_slot(&grid, mesh->position[v], (int[3]){0, 0, 0});
+        grid.next[v] = grid.head[slot];
+        grid.head[slot] = v + 1;
+    }
+    free(grid.head);
+    free(grid.next);
+    return parent;
+}
+
+static SmMesh copy_mesh(const SmMesh *mesh)
+{
+    SmMesh copy = sm_mesh_new(mesh->vertex_count, mesh->triangle_count);
+    memcpy(copy.position, mesh->position, (size_t)mesh->vertex_count * sizeof *copy.position);
+    memcpy(copy.triangle, mesh->triangle, (size_t)mesh->triangle_count * sizeof *copy.triangle);
+    return copy;
+}
+
+static void close_rounding_gaps(SmMesh *mesh)
+{
+    if (!mesh->triangle_count) return;
+    bool *boundary = sm_alloc((size_t)mesh->vertex_count, sizeof *boundary);
+    SmEdgeCounts before = sm_edges_count(mesh, boundary);
+    if (before.open) {
+        SmMesh closed = copy_mesh(mesh);
+        int *parent = near_positions(mesh, boundary);
+        collapse(&closed, parent);
+        free(parent);
+        SmEdgeCounts after = sm_edges_count(&closed, NULL);
+        if (closed.triangle_count && !after.open && after.nonmanifold <= before.nonmanifold) {
+            SmMesh old = *mesh;
+            *mesh = closed;
+            closed = old;
+        }
+        sm_mesh_free(&closed);
+    }
+    free(boundary);
+}
+
+void sm_mesh_merge(SmMesh *mesh)
+{
+    int *parent = equal_positions(mesh);
+    collapse(mesh, parent);
+    free(parent);
+    close_rounding_gaps(mesh);
+}
+
+static long count_components(const SmMesh *mesh)
+{
+    int *parent = singletons(mesh->vertex_count);
+    bool *used = sm_alloc((size_t)mesh->vertex_count, sizeof *used);
+    long components = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        const int *corner = mesh->triangle[t];
+        unite(parent, corner[0], corner[1]);
+        unite(parent, corner[1], corner[2]);
+        used[corner[0]] = used[corner[1]] = used[corner[2]] = true;
+    }
+    for (long v = 0; v < mesh->vertex_count; v++) components += used[v] && parent[v] == v;
+    free(parent);
+    free(used);
+    return components;
+}
+
+static bool is_degenerate(double edge[3][3])
+{
+    double normal[3];
+    sm_cross(edge[0], edge[1], normal);
+    double longest =
+        fmax(sm_dot(edge[0], edge[0]), fmax(sm_dot(edge[1], edge[1]), sm_dot(edge[2], edge[2])));
+    return sqrt(sm_dot(normal, normal)) <= no_height * longest;
+}
+
+/* Volume about the box's centre, where a mesh far from the origin loses no digits. */
+static void measure_triangles(const SmMesh *mesh, SmMeshInfo *info)
+{
+    double six_volumes = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        double p[3][3], edge[3][3], normal[3];
+        for (int c = 0; c < 3; c++)
+            for (int a = 0; a < 3; a++)
+                p[c][a] = mesh->position[mesh->triangle[t][c]][a] -
+                          (0.5 * info->low[a] + 0.5 * info->high[a]);
+        for (int c = 0; c < 3; c++)
+            for (int a = 0; a < 3; a++) edge[c][a] = p[(c + 1) % 3][a] - p[c][a];
+        info->degenerate += is_degenerate(edge);
+        sm_cross(p[1], p[2], normal);
+        six_volumes += sm_dot(p[0], normal);
+    }
+    info->volume = six_volumes / 6;
+}
+
+SmMeshInfo sm_mesh_info(const SmMesh *mesh)
+{
+    SmMeshInfo info = {.triangles = mesh->triangle_count, .vertices = mesh->vertex_count};
+    SmEdgeCounts edges = sm_edges_count(mesh, NULL);
+    info.open_edges = edges.open;
+    info.nonmanifold_edges = edges.nonmanifold;
+    info.flipped_edges = edges.flipped;
+    info.watertight = mesh->triangle_count && !edges.open && !edges.nonmanifold;
+    info.components = count_components(mesh);
+    info.duplicates = sm_edges_duplicates(mesh);
+    bounding_box(mesh, info.low, info.high);
+    measure_triangles(mesh, &info);
+    if (edges.unbalanced) info.volume = NAN;
+    return info;
+}
+
+SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error)
+{
+    if (mesh->triangle_count < 1) return sm_fail(error, SM_INPUT, "%s: no triangles", name);
+    if (mesh->vertex_count > INT_MAX)
+        return sm_fail(error, SM_INPUT, "%s: %ld vertices are more than %d", name,
+                       mesh->vertex_count, INT_MAX);
+    for (long v = 0; v < mesh->vertex_count; v++)
+        for (int a = 0; a < 3; a++)
+            if (!isfinite(mesh->position[v][a]))
+                return sm_fail(error, SM_INPUT,
+                               "%s: the %c of a vertex is not a finite number (nan, inf or too "
+                               "large); correct it, or export the mesh again",
+                               name, "xyz"[a]);
+    for (long t = 0; t < mesh->triangle_count; t++)
+        for (int c = 0; c < 3; c++)
+            if (mesh->triangle[t][c] < 0 || mesh->triangle[t][c] >= mesh->vertex_count)
+                return sm_fail(error, SM_INPUT,
+                               "%s: a triangle names a vertex that is not there; export the mesh "
+                               "again",
+                               name);
+    double low[3], side = longest_side(mesh, low);
+    if (side == 0) return sm_fail(error, SM_INPUT, "%s: all vertices are at one point", name);
+    if (side < 1e-30 || side > 1e30)
+        return sm_fail(error, SM_INPUT, "%s: its size of %g is outside 1e-30 to 1e30; scale it",
+                       name, side);
+    return SM_OK;
+}
+
+unsigned long long sm_mesh_hash(const SmMesh *mesh)
+{
+    size_t vertices = (size_t)mesh->vertex_count, triangles = (size_t)mesh->triangle_count;
+    unsigned long long hash =
+        sm_hash_bytes(SM_HASH_START, mesh->position, vertices * sizeof *mesh->position);
+    return sm_hash_bytes(hash, mesh->triangle, triangles * sizeof *mesh->triangle);
+}
+
+void sm_mesh_print_obj(const SmMesh *mesh, FILE *file)
+{
+    for (long v = 0; v < mesh->vertex_count; v++) {
+        const double *p = mesh->position[v];
+        fprintf(file, "v %.17g %.17g %.17g\n", p[0], p[1], p[2]);
+    }
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        const int *corner = mesh->triangle[t];
+        fprintf(file, "f %ld %ld %ld\n", corner[0] + 1L, corner[1] + 1L, corner[2] + 1L);
+    }
+}
+
+double (*sm_mesh_normals(const SmMesh *mesh, double unit))[3]
+{
+    double(*normal)[3] = sm_alloc((size_t)mesh->vertex_count, sizeof *normal);
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        const int *corner = mesh->triangle[t];
+        double u[3], v[3], n[3];
+        for (int a = 0; a < 3; a++) {
+            double origin = mesh->position[corner[0]][a];
+            u[a] = (mesh->position[corner[1]][a] - origin) / unit;
+            v[a] = (mesh->position[corner[2]][a] - origin) / unit;
+        }
+        sm_cross(u, v, n);
+        for (int c = 0; c < 3; c++)
+            for (int a = 0; a < 3; a++) normal[corner[c]][a] += n[a];
+    }
+    return normal;
+}

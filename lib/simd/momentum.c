@@ -1,0 +1,402 @@
+#include "momentum.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../error.h"
+#include "../vector.h"
+#include "lanes.h"
+
+/* What is summed of every piece, with r = x - about: m r, m v, m r X v, the upper half of m r r^T,
+ * and m v^2. */
+enum { MASS_R, MASS_V = 3, MOMENT = 6, SPREAD = 9, ENERGY = 15, SUMS = MOMENTUM_SUMS };
+
+/* Runs are cut at RUN_BLOCKS blocks, over which sums are in `real`; RUNS_AT_ONCE are summed before
+ * they are added up in double precision. Rounding is the same whatever the threads. */
+enum { RUN_BLOCKS = 32, RUNS_AT_ONCE = 64 };
+
+/* What is over is expected to be over again: the share of it that the expectation gains each time,
+ * and the share of the expectation that stays. */
+static const double LEARNT = 0.125, LASTING = 0.97;
+
+typedef real RunSum[SM_LANES][SUMS];
+typedef double wide __attribute__((vector_size(SUMS * sizeof(double)), aligned(sizeof(double))));
+
+Momentum *momentum_build(long blocks, long bodies, bool abreast, int every, int threads)
+{
+    Momentum *m = sm_alloc(1, sizeof *m);
+    *m = (Momentum){
+        .bodies = bodies, .abreast = abreast, .every = every, .threads = threads, .age = 1};
+    m->sum = sm_alloc(RUNS_AT_ONCE, sizeof(RunSum));
+    momentum_room(m, blocks);
+    return m;
+}
+
+static long slots_of(const Momentum *m)
+{
+    return m->abreast ? m->blocks : m->blocks * SM_LANES;
+}
+
+static long all_blocks(const Momentum *m)
+{
+    return m->abreast ? m->blocks * ((m->bodies + SM_LANES - 1) / SM_LANES) : m->blocks;
+}
+
+void momentum_room(Momentum *m, long blocks)
+{
+    m->blocks = blocks;
+    size_t slots = (size_t)slots_of(m) + 1;
+    m->mass = sm_realloc(m->mass, slots, sizeof *m->mass);
+    m->label = sm_realloc(m->label, slots, sizeof *m->label);
+    m->frame = sm_realloc(m->frame, slots, sizeof *m->frame);
+    m->run = sm_realloc(m->run, (size_t)all_blocks(m) + 1, sizeof *m->run);
+    memset(m->mass, 0, slots * sizeof *m->mass);
+    memset(m->frame, 0, slots * sizeof *m->frame);
+    m->runs = 0;
+    momentum_forget(m);
+}
+
+/* A lane's piece, by its place in m->piece less that of the body, and frame. */
+typedef struct {
+    long piece, frame;
+} Lane;
+
+static void lanes_of(const Momentum *m, long block, Lane lane[SM_LANES])
+{
+    for (int l = 0; l < SM_LANES; l++) {
+        long slot = m->abreast ? block % m->blocks : block * SM_LANES + l, body = 0;
+        if (m->abreast) body = block / m->blocks * SM_LANES + l;
+        lane[l] = (Lane){body < m->bodies ? body * m->pieces + m->label[slot] : -1, m->frame[slot]};
+    }
+}
+
+/* An empty slot goes with one beside it, so that runs are long. */
+static void label_empty(Momentum *m)
+{
+    long slots = slots_of(m), first = 0;
+    while (first < slots - 1 && m->label[first] < 0) first++;
+    for (long slot = 0; slot < slots; slot++) {
+        if (m->label[slot] >= 0) continue;
+        long beside = slot < first ? first : slot - 1;
+        m->label[slot] = m->label[beside];
+        m->frame[slot] = m->frame[beside];
+    }
+}
+
+static bool all_the_same(const Lane lane[SM_LANES])
+{
+    for (int l = 1; l < SM_LANES; l++)
+        if (lane[l].piece != lane[0].piece || lane[l].frame != lane[0].frame) return false;
+    return true;
+}
+
+void momentum_divide(Momentum *m, long pieces)
+{
+    Lane here[SM_LANES], before[SM_LANES];
+    label_empty(m);
+    m->pieces = pieces;
+    if (m->bodies * pieces > m->piece_room) {
+        m->piece_room = m->bodies * pieces;
+        m->piece = sm_realloc(m->piece, (size_t)m->piece_room, sizeof *m->piece);
+    }
+    memset(m->piece, 0, (size_t)(m->bodies * pieces) * sizeof *m->piece);
+    for (long slot = 0; slot < slots_of(m); slot++)
+        for (long body = 0; body < m->bodies; body++)
+            m->piece[body * pieces + m->label[slot]].mass += (double)m->mass[slot];
+    m->runs = 0;
+    for (long block = 0; block < all_blocks(m); block++) {
+        lanes_of(m, block, here);
+        if (block == 0 || block - m->run[m->runs - 1].first == RUN_BLOCKS ||
+            memcmp(here, before, sizeof here) != 0)
+            m->run[m->runs++] = (MomentumRun){block, all_the_same(here) ? here[0].piece : -1};
+        memcpy(before, here, sizeof here);
+    }
+    m->run[m->runs].first = all_blocks(m);
+    momentum_forget(m);
+}
+
+void momentum_forget(Momentum *m)
+{
+    if (!m) return;
+    m->age++;
+    m->steps = 0;
+    m->begun = m->moving = false;
+}
+
+static bool is_known(const Momentum *m, const MomentumPiece *p)
+{
+    return p->since == m->age;
+}
+
+/* What a run's lanes are measured about and have too much. */
+typedef struct {
+    vec about[3], shift[3], push[3], turn[3];
+} Frame;
+
+/* Of one piece as numbers: [about, shift, push, turn][d]. */
+static void frame_values(const Momentum *m, const MomentumPiece *p, const double origin[3],
+                         real value[4][3])
+{
+    bool known = is_known(m, p);
+    for (int d = 0; d < 3; d++) {
+        value[0][d] = (real)(p->about[d] - origin[d]);
+        value[1][d] = known ? (real)p->shift[d] : 0;
+        value[2][d] = known ? (real)p->push[d] : 0;
+        value[3][d] = known ? (real)p->turn[d] : 0;
+    }
+}
+
+static const double *origin_of(const double (*origin)[3], const Lane *lane)
+{
+    static const double zero[3];
+    return origin ? origin[lane->frame] : zero;
+}
+
+/* Most runs are of one piece. */
+static void frame_of(const Momentum *m, const MomentumPiece *piece, const double (*origin)[3],
+                     long run, Frame *frame)
+{
+    vec *part[4] = {frame->about, frame->shift, frame->push, frame->turn};
+    real value[4][3], lanes[4][3][SM_LANES] = {0};
+    Lane lane[SM_LANES];
+    long same = m->run[run].piece;
+    lanes_of(m, m->run[run].first, lane);
+    if (same >= 0) frame_values(m, &piece[same], origin_of(origin, lane), value);
+    for (int l = 0; l < SM_LANES && same < 0; l++) {
+        if (lane[l].piece < 0) continue;
+        frame_values(m, &piece[lane[l].piece], origin_of(origin, &lane[l]), value);
+        for (int i = 0; i < 12; i++) lanes[i / 3][i % 3][l] = value[i / 3][i % 3];
+    }
+    for (int i = 0; i < 12; i++)
+        part[i / 3][i % 3] =
+            same >= 0 ? lanes_set(value[i / 3][i % 3]) : lanes_load(lanes[i / 3][i % 3]);
+}
+
+/* Corrects a block, and adds what it has to `sum`. */
+SM_INLINE void keep_block(const Frame *f, vec mass, real *x, real *v, vec sum[SUMS])
+{
+    vec r[3], u[3];
+    load3(x, r);
+    load3(v, u);
+    for (int d = 0; d < 3; d++) r[d] -= lanes_and(f->shift[d], mass > 0);
+    store3(x, r);
+    for (int d = 0; d < 3; d++) r[d] -= f->about[d];
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, g = (d + 2) % 3;
+        vec over = f->push[d] + (f->turn[e] * r[g] - f->turn[g] * r[e]);
+        u[d] -= lanes_and(over, mass > 0);
+    }
+    store3(v, u);
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, g = (d + 2) % 3;
+        vec here = mass * r[d], next = mass * r[e];
+        sum[MASS_R + d] += here;
+        sum[MASS_V + d] += mass * u[d];
+        sum[MOMENT + d] += next * u[g] - mass * r[g] * u[e];
+        sum[SPREAD + d] += here * r[d];
+        sum[SPREAD + 3 + d] += next * r[g];
+        sum[ENERGY] += mass * u[d] * u[d];
+    }
+}
+
+static void keep_run(const Momentum *m, const MomentumPiece *piece, const double (*origin)[3],
+                     long run, real *x, real *v, RunSum total)
+{
+    Frame frame;
+    vec sum[SUMS] = {{0}};
+    frame_of(m, piece, origin, run, &frame);
+    for (long block = m->run[run].first; block < m->run[run + 1].first; block++) {
+        vec mass = m->abreast ? lanes_set(m->mass[block % m->blocks])
+                              : lanes_load(m->mass + block * SM_LANES);
+        keep_block(&frame, mass, x + block * 3 * SM_LANES, v + block * 3 * SM_LANES, sum);
+    }
+    for (int part = 0; part < SUMS; part += SM_LANES) { /* to rows of lanes */
+        lanes_interleave(sum + part, SM_LANES);
+        for (int lane = 0; lane < SM_LANES; lane++)
+            lanes_store(total[lane] + part, sum[part + lane]);
+    }
+}
+
+/* omega of J omega = L, J the inertia of a spread S. What lies within a tenth of a cell of a line,
+ * or nearly, has no such inertia about it, and rounding does not tell how it turns there: that part
+ * of L, of a point all of it, goes to `lost`, and omega leaves it as it is. */
+static void angular_velocity(const double S[6], double mass, const double L[3], double omega[3],
+                             double lost[3])
+{
+    double trace = S[0] + S[1] + S[2], C[3][3], axis[3], det = 0, minors = 0;
+    double full[3][3] = {{S[0], S[5], S[4]}, {S[5], S[1], S[3]}, {S[4], S[3], S[2]}}, J[3][3];
+    int most = S[0] > S[1] ? (S[0] > S[2] ? 0 : 2) : (S[1] > S[2] ? 1 : 2);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) J[i][k] = (i == k ? trace : 0) - full[i][k];
+    for (int i = 0; i < 3; i++) sm_cross(J[(i + 1) % 3], J[(i + 2) % 3], C[i]);
+    for (int i = 0; i < 3; i++) det += J[0][i] * C[0][i];
+    for (int i = 0; i < 3; i++) minors += C[i][i]; /* det / minors: at most the least inertia */
+    bool solid = minors > 0 && det > 0.01 * mass * minors, point = !(trace > 0.01 * mass);
+    double length = point ? 1 : sqrt(sm_dot(full[most], full[most]));
+    for (int i = 0; i < 3; i++) axis[i] = full[most][i] / length;
+    for (int i = 0; i < 3; i++) {
+        lost[i] = solid ? 0 : point ? L[i] : sm_dot(axis, L) * axis[i];
+        omega[i] = solid ? sm_dot(C[i], L) / det : point ? 0 : (L[i] - lost[i]) / trace;
+    }
+}
+
+/* A piece's momenta: its centre, the velocity of that, and what turns about it. */
+typedef struct {
+    double place[3], velocity[3], spin[3], spread[6];
+} Momenta;
+
+static void momenta_of(const MomentumPiece *p, Momenta *is)
+{
+    const double *L = p->sum + MOMENT, *V = p->sum + MASS_V;
+    double off[3], inverse = 1 / p->mass;
+    for (int d = 0; d < 3; d++) {
+        off[d] = p->sum[MASS_R + d] * inverse;
+        is->velocity[d] = V[d] * inverse;
+        is->place[d] = p->about[d] + off[d];
+    }
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        is->spin[d] = L[d] - (off[e] * V[f] - off[f] * V[e]);
+        is->spread[d] = p->sum[SPREAD + d] - p->mass * off[d] * off[d];
+        is->spread[3 + d] = p->sum[SPREAD + 3 + d] - p->mass * off[e] * off[f];
+    }
+}
+
+/* Adds up a run's sums by pieces. */
+static void add_run(const Momentum *m, long run, RunSum total, MomentumPiece *piece)
+{
+    Lane of[SM_LANES];
+    long same = m->run[run].piece;
+    wide all = {0};
+    if (same < 0) lanes_of(m, m->run[run].first, of);
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        wide sum = __builtin_convertvector(load16(total[lane]), wide);
+        if (same >= 0)
+            all += sum;
+        else if (of[lane].piece >= 0)
+            *(wide *)piece[of[lane].piece].sum += sum;
+    }
+    if (same >= 0) *(wide *)piece[same].sum += all;
+}
+
+/* Sums of all pieces of a body, corrected where they are known; the first of them. */
+static MomentumPiece *measure(Momentum *m, long body, const double (*origin)[3], real *x, real *v,
+                              long *count)
+{
+    *count = m->abreast ? m->bodies * m->pieces : m->pieces;
+    MomentumPiece *piece = m->piece + (m->abreast ? 0 : body * *count);
+    RunSum *total = (RunSum *)m->sum;
+    for (long p = 0; p < *count; p++) memset(piece[p].sum, 0, sizeof piece->sum);
+    bool alone = m->threads == 1 || m->runs <= 4; /* a team of one costs more than it measures */
+    for (long first = 0; first < m->runs; first += RUNS_AT_ONCE) {
+        long end = m->runs - first < RUNS_AT_ONCE ? m->runs : first + RUNS_AT_ONCE;
+        for (long r = first; alone && r < end; r++)
+            keep_run(m, piece, origin, r, x, v, total[r - first]);
+        if (!alone) {
+#pragma omp parallel for schedule(static) num_threads(m->threads)
+            for (long r = first; r < end; r++)
+                keep_run(m, piece, origin, r, x, v, total[r - first]);
+        }
+        for (long r = first; r < end; r++) add_run(m, r, total[r - first], piece);
+    }
+    return piece;
+}
+
+void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, real *v)
+{
+    long count;
+    Momenta is;
+    if (is_known(m, m->piece + body * m->pieces)) return;
+    m->steps = 0; /* contacts may have ended in the last step, which was counted */
+    for (int time = 0; time < 2; time++) { /* about anywhere, then about the centre */
+        MomentumPiece *piece = measure(m, body, origin, x, v, &count);
+        for (MomentumPiece *p = piece; p < piece + count; p++) {
+            momenta_of(p, &is);
+            for (int d = 0; d < 3; d++) {
+                p->about[d] = rint(is.place[d]);
+                p->place[d] = is.place[d];
+                p->velocity[d] = is.velocity[d];
+                p->spin[d] = is.spin[d];
+                p->shift[d] = p->push[d] = p->turn[d] = p->drift[d] = p->twist[d] = 0;
+            }
+            p->since = time > 0 ? m->age : 0;
+            if (!(p->sum[ENERGY] == 0)) m->moving = true;
+        }
+    }
+    m->begun = true;
+}
+
+void momentum_pushed(Momentum *m, long body, long slot, const double x[3], const double dv[3],
+                     const real gravity[3])
+{
+    m->moving = true;
+    MomentumPiece *p = &m->piece[body * m->pieces + m->label[slot]];
+    double mass = (double)m->mass[slot], n = (double)m->steps, r[3], moment[3];
+    for (int d = 0; d < 3; d++) {
+        double change = mass * dv[d] / p->mass;
+        r[d] = x[d] - (p->place[d] + n * p->velocity[d] + (double)gravity[d] * n * (n + 1) / 2);
+        p->velocity[d] += change;
+        p->place[d] -= n * change; /* from where it would be here with this velocity */
+    }
+    sm_cross(r, dv, moment);
+    for (int d = 0; d < 3; d++) p->spin[d] += mass * moment[d];
+}
+
+void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, real *v,
+                   const real gravity[3])
+{
+    long count;
+    double n = (double)m->every;
+    MomentumPiece *piece = measure(m, body, origin, x, v, &count);
+    for (MomentumPiece *p = piece; p < piece + count; p++) {
+        Momenta is;
+        double over[3], lost[3], off[3], aside[3];
+        momenta_of(p, &is);
+        if (!(p->sum[ENERGY] == 0)) m->moving = true;
+        for (int d = 0; d < 3; d++) {
+            double fall = (double)gravity[d], fast;
+            p->place[d] += n * p->velocity[d] + fall * n * (n + 1) / 2;
+            p->velocity[d] += n * fall;
+            fast = is.velocity[d] - p->velocity[d];
+            over[d] = is.spin[d] - p->spin[d];
+            /* what was over the last times will be again */
+            p->drift[d] = LASTING * p->drift[d] + LEARNT * fast;
+            p->twist[d] = LASTING * p->twist[d] + LEARNT * over[d];
+            p->push[d] = fast + p->drift[d];
+            over[d] += p->twist[d];
+            p->shift[d] = is.place[d] - p->place[d];
+            double next = is.place[d] + n * is.velocity[d];
+            p->about[d] = rint(next);
+            off[d] = next - p->about[d];
+        }
+        angular_velocity(is.spread, p->mass, over, p->turn, lost);
+        for (int d = 0; d < 3; d++) p->spin[d] += lost[d];
+        for (int d = 0; d < 3 && lost[d] != 0; d++) p->twist[d] = 0;
+        sm_cross(p->turn, off, aside); /* it turns about the centre */
+        for (int d = 0; d < 3; d++) p->push[d] -= aside[d];
+    }
+}
+
+void momentum_shift(Momentum *m, long body, const double by[3])
+{
+    for (MomentumPiece *p = m->piece + body * m->pieces; p < m->piece + (body + 1) * m->pieces; p++)
+        for (int d = 0; d < 3; d++) {
+            p->place[d] -= by[d];
+            p->about[d] -= by[d];
+        }
+}
+
+long momentum_bytes(const Momentum *m)
+{
+    return (long)((size_t)slots_of(m) * (sizeof *m->mass + sizeof *m->label + sizeof *m->frame) +
+                  (size_t)m->piece_room * sizeof *m->piece + RUNS_AT_ONCE * sizeof(RunSum) +
+                  ((size_t)all_blocks(m) + 1) * sizeof *m->run);
+}
+
+void momentum_free(Momentum *m)
+{
+    if (!m) return;
+    void *all[] = {m->mass, m->label, m->frame, m->piece, m->run, m->sum, m};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+}

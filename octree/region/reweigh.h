@@ -1,0 +1,30 @@
+/* reweigh.h - the weights of a structure that has changed: only what the change touches. */
+#ifndef OCT_REWEIGH_H
+#define OCT_REWEIGH_H
+
+#include "../change/resample.h"
+#include "../tree/levels.h"
+#include "weights.h"
+
+/* Scratch; begins zeroed. */
+typedef struct {
+    OctLevels path;     /* nodes whose sums are to be found, by level */
+    unsigned mark;      /* marks that are less count for nothing */
+    unsigned *on_path;  /* [nodes] */
+    unsigned *below;    /* [nodes] whose leaves are all on the list */
+    unsigned *listed;   /* [leaves] */
+    long nodes, leaves; /* there is place for as many */
+    int *leaf;          /* [count] the list */
+    long count, room;
+} OctReweigh;
+
+/* Brings the weights up to date with a structure that has changed, whose regions must be symmetric,
+ * and lists in `scratch` the leaves whose M_i, weight or OctRegionRest is another: those whose
+ * region holds other leaves, and those whose region holds a leaf whose weight is another. M_i stays
+ * where it has moved by rounding alone. O(members of the listed regions and leaves below them). */
+void oct_reweigh(const OctStructure *structure, const OctChange *change, OctWeights *weights,
+                 OctReweigh *scratch);
+void oct_reweigh_free(OctReweigh *scratch);
+size_t oct_reweigh_bytes(const OctReweigh *scratch);
+
+#endif

@@ -1,0 +1,466 @@
+#include "matrices.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../../lib/vector.h"
+
+/* Walls of a sliver that miss its volume by more than this are no use. */
+static const double MOST_OPEN = 0.2;
+
+/* Products of pairs of shape functions, I <= J: lists of J for every I. */
+typedef struct {
+    long count;   /* nodes */
+    long *start;  /* [count + 1] */
+    int *partner; /* rising */
+    double *mass;
+    double (*gradient)[9]; /* int phi_I,a phi_J,b at 3 a + b */
+} Pairs;
+
+/* One octant: the nodes whose covers reach into it, and their functions at its points. */
+typedef struct {
+    int count;
+    int *node;   /* rising */
+    int *number; /* [nodes] in `node`, or -1 */
+    long points;
+    double *weight;    /* [points] */
+    double *value;     /* [count][4][points]: phi and its derivatives */
+    double (*mean)[4]; /* [nodes] of `value` over the octant */
+    double (*wall)[3]; /* [nodes] sums of phi over the octant's walls */
+} Local;
+
+void ref_matrices_free(RefMatrices *matrices)
+{
+    RefSparse *both[] = {&matrices->mass, &matrices->stiffness};
+    for (int n = 0; n < 2; n++) {
+        free(both[n]->start);
+        free(both[n]->row);
+        free(both[n]->value);
+        *both[n] = (RefSparse){0};
+    }
+}
+
+void ref_sparse_apply(const RefSparse *sparse, int width, const double *x, double *y)
+{
+    memset(y, 0, (size_t)sparse->columns * (size_t)width * sizeof *y);
+    for (int c = 0; c < sparse->columns; c++)
+        for (int e = sparse->start[c]; e < sparse->start[c + 1]; e++) {
+            int r = sparse->row[e];
+            for (int k = 0; k < width; k++) {
+                y[r * width + k] += sparse->value[e] * x[c * width + k];
+                if (r != c) y[c * width + k] += sparse->value[e] * x[r * width + k];
+            }
+        }
+}
+
+static int by_number(const void *a, const void *b)
+{
+    int x = *(const int *)a, y = *(const int *)b;
+    return (x > y) - (x < y);
+}
+
+/* Whether the cover of node n reaches into the box, by more than rounding. */
+static bool reaches(const RefNodes *nodes, int n, const double low[3], const double high[3])
+{
+    double reach = nodes->reach[n] * (1 - 1e-9);
+    for (int d = 0; d < 3; d++) {
+        double x = nodes->position[n][d];
+        if (x + reach <= low[d] || x - reach >= high[d]) return false;
+    }
+    return true;
+}
+
+/* Fills in the octant's nodes: those of the bins that it touches. `number` is -1 of all before. */
+static void find_nodes(const RefOctants *tree, const RefOctant *octant, const RefNodes *nodes,
+                       Local *local)
+{
+    double low[3], high[3], x[3];
+    long first[3], last[3];
+    for (int d = 0; d < 3; d++) {
+        low[d] = tree->origin[d] + tree->cell * octant->corner[d];
+        high[d] = low[d] + tree->cell * octant->size;
+        first[d] = (long)fmax(floor((low[d] - nodes->low[d]) / nodes->bin), 0);
+        last[d] = (long)fmin(floor((high[d] - nodes->low[d]) / nodes->bin), nodes->size[d] - 1);
+    }
+    local->count = 0;
+    for (long k = first[2]; k <= last[2]; k++)
+        for (long j = first[1]; j <= last[1]; j++)
+            for (long i = first[0]; i <= last[0]; i++) {
+                int near;
+                x[0] = nodes->low[0] + ((double)i + 0.5) * nodes->bin;
+                x[1] = nodes->low[1] + ((double)j + 0.5) * nodes->bin;
+                x[2] = nodes->low[2] + ((double)k + 0.5) * nodes->bin;
+                const int *member = ref_nodes_near(nodes, x, &near);
+                for (int n = 0; n < near; n++)
+                    if (local->number[member[n]] < 0 && reaches(nodes, member[n], low, high)) {
+                        local->number[member[n]] = 0;
+                        local->node[local->count++] = member[n];
+                    }
+            }
+    qsort(local->node, (size_t)local->count, sizeof *local->node, by_number);
+    for (int n = 0; n < local->count; n++) local->number[local->node[n]] = n;
+}
+
+static void forget_nodes(Local *local)
+{
+    for (int n = 0; n < local->count; n++) local->number[local->node[n]] = -1;
+}
+
+static long points_end(const RefOctants *tree, long o)
+{
+    return o + 1 < tree->count ? tree->octant[o + 1].first : tree->points;
+}
+
+static long walls_end(const RefOctants *tree, long o)
+{
+    return o + 1 < tree->count ? tree->octant[o + 1].first_wall : tree->walls;
+}
+
+/* Adds `count` rising numbers to a rising list of `*held`. */
+static int *merge(int *list, long *held, const int *number, int count)
+{
+    int *merged = sm_alloc((size_t)*held + (size_t)count, sizeof *merged);
+    long kept = 0, n = 0;
+    for (int b = 0; n < *held || b < count;) {
+        int next = n < *held ? list[n] : INT_MAX, other = b < count ? number[b] : INT_MAX;
+        merged[kept++] = next < other ? next : other;
+        n += next <= other;
+        b += other <= next;
+    }
+    free(list);
+    *held = kept;
+    return merged;
+}
+
+/* Nodes are partners where an octant knows both. */
+static void find_pairs(const RefOctants *tree, const RefNodes *nodes, Local *local, Pairs *pairs)
+{
+    size_t count = (size_t)nodes->count;
+    int **partner = sm_alloc(count, sizeof *partner);
+    long *held = sm_alloc(count, sizeof *held);
+    for (long o = 0; o < tree->count; o++) {
+        if (points_end(tree, o) == tree->octant[o].first) continue;
+        find_nodes(tree, tree->octant + o, nodes, local);
+        for (int a = 0; a < local->count; a++) {
+            int i = local->node[a];
+            partner[i] = merge(partner[i], held + i, local->node + a, local->count - a);
+        }
+        forget_nodes(local);
+    }
+    pairs->count = nodes->count;
+    pairs->start = sm_alloc(count + 1, sizeof *pairs->start);
+    for (size_t i = 0; i < count; i++) pairs->start[i + 1] = pairs->start[i] + held[i];
+    size_t all = (size_t)pairs->start[count];
+    pairs->partner = sm_alloc(all, sizeof *pairs->partner);
+    pairs->mass = sm_alloc(all, sizeof *pairs->mass);
+    pairs->gradient = sm_alloc(all, sizeof *pairs->gradient);
+    for (size_t i = 0; i < count; i++) {
+        if (held[i])
+            memcpy(pairs->partner + pairs->start[i], partner[i], (size_t)held[i] * sizeof(int));
+        free(partner[i]);
+    }
+    free(partner);
+    free(held);
+}
+
+/* The shape functions at the octant's points; false, and where, if one is not defined. */
+static bool evaluate(const RefOctants *tree, long o, const RefNodes *nodes, RefBasis basis,
+                     RefShape *shape, Local *local, const double **where)
+{
+    const RefPoint *point = tree->point + tree->octant[o].first;
+    local->points = points_end(tree, o) - tree->octant[o].first;
+    size_t values = (size_t)local->count * 4 * (size_t)local->points;
+    local->value = sm_realloc(local->value, values, sizeof(double));
+    memset(local->value, 0, values * sizeof(double));
+    local->weight = sm_realloc(local->weight, (size_t)local->points, sizeof(double));
+    for (long q = 0; q < local->points; q++) {
+        *where = point[q].x;
+        local->weight[q] = point[q].weight;
+        if (!ref_mls_at(nodes, basis, point[q].x, shape)) return false;
+        for (int n = 0; n < shape->count; n++) {
+            int at = local->number[shape->node[n]];
+            if (at < 0) continue; /* rounding: it only touches the octant */
+            double *value = local->value + 4 * at * local->points + q;
+            value[0] = shape->value[n];
+            for (int d = 0; d < 3; d++) value[(1 + d) * local->points] = shape->gradient[n][d];
+        }
+    }
+    return true;
+}
+
+/* The means of all functions over the octant's points, and the points' middle; returns the volume.
+ */
+static double take_means(const RefPoint *point, Local *local, double middle[3])
+{
+    double volume = 0;
+    memset(middle, 0, sizeof(double[3]));
+    for (long q = 0; q < local->points; q++) volume += local->weight[q];
+    for (long q = 0; q < local->points; q++)
+        for (int d = 0; d < 3; d++) middle[d] += local->weight[q] / volume * point[q].x[d];
+    for (int n = 0; n < local->count; n++)
+        for (int k = 0; k < 4; k++) {
+            const double *value = local->value + (4 * n + k) * local->points;
+            double sum = 0;
+            for (long q = 0; q < local->points; q++) sum += local->weight[q] * value[q];
+            local->mean[n][k] = sum / volume;
+        }
+    return volume;
+}
+
+/* Sums over the walls of what bounds an octant's share, for its mean gradients. */
+typedef struct {
+    double area[3], first[3][3]; /* area, and area times place from the points' middle */
+} Closure;
+
+/* The functions at a wall that too few nodes cover, along their slopes at
+ * the octant's point that is nearest: linear functions stay what they are. */
+static void extend(const RefPoint *point, const RefWall *wall, Local *local)
+{
+    long near = 0;
+    double least = INFINITY, way[3];
+    for (long q = 0; q < local->points; q++) {
+        for (int d = 0; d < 3; d++) way[d] = wall->x[d] - point[q].x[d];
+        if (sm_dot(way, way) >= least) continue;
+        least = sm_dot(way, way);
+        near = q;
+    }
+    for (int n = 0; n < local->count; n++) {
+        const double *value = local->value + 4 * n * local->points + near;
+        double phi = value[0];
+        for (int d = 0; d < 3; d++)
+            phi += value[(1 + d) * local->points] * (wall->x[d] - point[near].x[d]);
+        for (int d = 0; d < 3; d++) local->wall[n][d] += phi * wall->area[d];
+    }
+}
+
+static void sum_walls(const RefOctants *tree, long o, const RefNodes *nodes, RefBasis basis,
+                      const double middle[3], RefShape *shape, Local *local, Closure *closure)
+{
+    memset(local->wall, 0, (size_t)local->count * sizeof *local->wall);
+    for (long s = tree->octant[o].first_wall; s < walls_end(tree, o); s++) {
+        const RefWall *wall = tree->wall + s;
+        if (!ref_mls_at(nodes, basis, wall->x, shape))
+            extend(tree->point + tree->octant[o].first, wall, local);
+        for (int n = 0; n < shape->count; n++) {
+            int at = local->number[shape->node[n]];
+            for (int d = 0; at >= 0 && d < 3; d++)
+                local->wall[at][d] += shape->value[n] * wall->area[d];
+        }
+        for (int d = 0; d < 3; d++) {
+            closure->area[d] += wall->area[d];
+            for (int e = 0; e < 3; e++)
+                closure->first[d][e] += wall->area[d] * (wall->x[e] - middle[e]);
+        }
+    }
+}
+
+/* Gives the gradients at the octant's points the mean that the walls say, so that what they do sums
+ * up to the body's surface: then constant stress is in balance wherever shape functions are, and
+ * the patch test is passed (Chen, Wu, Yoon and You 2001; here the gradients keep how they vary in
+ * the octant, which leaves no soft modes). Where walls do not close, which is as well as the
+ * surface is cut, the rest is taken out, so that linear functions have their gradients exactly. */
+static void balance_gradients(const RefOctants *tree, long o, const RefNodes *nodes, RefBasis basis,
+                              RefShape *shape, Local *local)
+{
+    Closure closure = {{0}, {{0}}};
+    double middle[3], open[3][3], off = 0;
+    double volume = take_means(tree->point + tree->octant[o].first, local, middle);
+    sum_walls(tree, o, nodes, basis, middle, shape, local, &closure);
+    for (int d = 0; d < 3; d++)
+        for (int e = 0; e < 3; e++) {
+            open[d][e] = (d == e) - closure.first[d][e] / volume;
+            off = fmax(off, fabs(open[d][e]));
+        }
+    if (off > MOST_OPEN) return;
+    for (int n = 0; n < local->count; n++)
+        for (int d = 0; d < 3; d++) {
+            const double *mean = local->mean[n];
+            double *value = local->value + (4 * n + 1 + d) * local->points;
+            double change = (local->wall[n][d] - closure.area[d] * mean[0]) / volume - mean[1 + d];
+            for (int e = 0; e < 3; e++) change += open[d][e] * mean[1 + e];
+            for (long q = 0; q < local->points; q++) value[q] += change;
+        }
+}
+
+/* The ten products of functions i (times the points' weights) and j. */
+static void products(long points, const double *i, const double *j, double *sum)
+{
+    double m = 0, xx = 0, xy = 0, xz = 0, yx = 0, yy = 0, yz = 0, zx = 0, zy = 0, zz = 0;
+#pragma omp simd reduction(+ : m, xx, xy, xz, yx, yy, yz, zx, zy, zz)
+    for (long q = 0; q < points; q++) {
+        double x = j[points + q], y = j[2 * points + q], z = j[3 * points + q];
+        m += i[q] * j[q];
+        xx += i[points + q] * x;
+        xy += i[points + q] * y;
+        xz += i[points + q] * z;
+        yx += i[2 * points + q] * x;
+        yy += i[2 * points + q] * y;
+        yz += i[2 * points + q] * z;
+        zx += i[3 * points + q] * x;
+        zy += i[3 * points + q] * y;
+        zz += i[3 * points + q] * z;
+    }
+    const double all[10] = {m, xx, xy, xz, yx, yy, yz, zx, zy, zz};
+    memcpy(sum, all, sizeof all);
+}
+
+static void add_pairs(const Local *local, double *weighted, Pairs *pairs)
+{
+    for (int a = 0; a < local->count; a++) {
+        const double *row = local->value + 4 * a * local->points;
+        for (long n = 0; n < 4 * local->points; n++)
+            weighted[n] = row[n] * local->weight[n % local->points];
+        long at = pairs->start[local->node[a]];
+        for (int b = a; b < local->count; b++) {
+            double sum[10];
+            while (pairs->partner[at] != local->node[b]) at++;
+            products(local->points, weighted, local->value + 4 * b * local->points, sum);
+            pairs->mass[at] += sum[0];
+            for (int k = 0; k < 9; k++) pairs->gradient[at][k] += sum[1 + k];
+        }
+    }
+}
+
+static RefSparse sparse_create(long columns, long entries)
+{
+    return (RefSparse){.columns = (int)columns,
+                       .start = sm_alloc((size_t)columns + 1, sizeof(int)),
+                       .row = sm_alloc((size_t)entries, sizeof(int)),
+                       .value = sm_alloc((size_t)entries, sizeof(double))};
+}
+
+static void fill_mass(const Pairs *pairs, double density, RefSparse *mass)
+{
+    long all = pairs->start[pairs->count];
+    *mass = sparse_create(pairs->count, all);
+    for (long i = 0; i <= pairs->count; i++) mass->start[i] = (int)pairs->start[i];
+    for (long e = 0; e < all; e++) {
+        mass->row[e] = pairs->partner[e];
+        mass->value[e] = density * pairs->mass[e];
+    }
+}
+
+/* K_IJ,ab = lambda G_ab + mu (G_ba + delta_ab tr G), G_ab = int phi_I,a phi_J,b. Column 3 I + a has
+ * the rows 3 J + b: those of I itself from b = a on. */
+static void fill_stiffness(const Pairs *pairs, const RefMaterial *material, RefSparse *stiffness)
+{
+    double mu = material->young / (2 * (1 + material->poisson));
+    double lambda = 2 * mu * material->poisson / (1 - 2 * material->poisson);
+    *stiffness = sparse_create(3 * pairs->count, 9 * pairs->start[pairs->count] - 3 * pairs->count);
+    int at = 0;
+    for (long i = 0; i < pairs->count; i++)
+        for (int a = 0; a < 3; a++) {
+            stiffness->start[3 * i + a] = at;
+            for (long e = pairs->start[i]; e < pairs->start[i + 1]; e++) {
+                const double *G = pairs->gradient[e];
+                for (int b = pairs->partner[e] == i ? a : 0; b < 3; b++) {
+                    double value = lambda * G[3 * a + b] + mu * G[3 * b + a];
+                    if (a == b) value += mu * (G[0] + G[4] + G[8]);
+                    stiffness->row[at] = 3 * pairs->partner[e] + b;
+                    stiffness->value[at++] = value;
+                }
+            }
+        }
+    stiffness->start[3 * pairs->count] = at;
+}
+
+static SmCode check_material(const RefMaterial *material, SmError *error)
+{
+    if (!(material->young > 0 && isfinite(material->young)))
+        return sm_fail(error, SM_USAGE, "Young's modulus is %g; give one above 0", material->young);
+    if (!(material->poisson > -1 && material->poisson <= 0.4999))
+        return sm_fail(error, SM_USAGE,
+                       "Poisson's ratio is %g; give one above -1, up to 0.4999 (0.5 is material "
+                       "that cannot be compressed)",
+                       material->poisson);
+    if (!(material->density > 0 && isfinite(material->density)))
+        return sm_fail(error, SM_USAGE, "the density is %g; give one above 0", material->density);
+    return SM_OK;
+}
+
+static void local_create(const RefNodes *nodes, Local *local)
+{
+    *local = (Local){0};
+    local->node = sm_alloc((size_t)nodes->count, sizeof *local->node);
+    local->number = sm_alloc((size_t)nodes->count, sizeof *local->number);
+    local->mean = sm_alloc((size_t)nodes->count, sizeof *local->mean);
+    local->wall = sm_alloc((size_t)nodes->count, sizeof *local->wall);
+    for (long n = 0; n < nodes->count; n++) local->number[n] = -1;
+}
+
+static void local_free(Local *local)
+{
+    free(local->node);
+    free(local->number);
+    free(local->weight);
+    free(local->value);
+    free(local->mean);
+    free(local->wall);
+}
+
+static void pairs_free(Pairs *pairs)
+{
+    free(pairs->start);
+    free(pairs->partner);
+    free(pairs->mass);
+    free(pairs->gradient);
+}
+
+/* Every octant's share of the pairs' products. */
+static SmCode integrate(const RefOctants *tree, const RefNodes *nodes, RefBasis basis, Local *local,
+                        Pairs *pairs, SmError *error)
+{
+    RefShape shape = ref_shape_create(nodes);
+    double *weighted = NULL;
+    const double *where = NULL;
+    bool defined = true;
+    for (long o = 0; defined && o < tree->count; o++) {
+        if (points_end(tree, o) == tree->octant[o].first) continue;
+        find_nodes(tree, tree->octant + o, nodes, local);
+        defined = evaluate(tree, o, nodes, basis, &shape, local, &where);
+        if (defined) {
+            balance_gradients(tree, o, nodes, basis, &shape, local);
+            weighted = sm_realloc(weighted, 4 * (size_t)local->points, sizeof *weighted);
+            add_pairs(local, weighted, pairs);
+        }
+        forget_nodes(local);
+    }
+    free(weighted);
+    ref_shape_free(&shape);
+    if (defined) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "too few nodes cover the point (%g, %g, %g): the body is too thin there for its "
+                   "octants; give it more nodes, or larger covers",
+                   where[0], where[1], where[2]);
+}
+
+SmCode ref_matrices_build(const RefOctants *tree, const RefNodes *nodes, RefBasis basis,
+                          const RefMaterial *material, RefMatrices *matrices, SmError *error)
+{
+    Local local;
+    Pairs pairs = {0};
+    *matrices = (RefMatrices){0};
+    SmCode code = check_material(material, error);
+    if (code != SM_OK) return code;
+    local_create(nodes, &local);
+    find_pairs(tree, nodes, &local, &pairs);
+    for (long n = 0; code == SM_OK && n < nodes->count; n++)
+        if (pairs.start[n + 1] == pairs.start[n])
+            code = sm_fail(error, SM_INPUT,
+                           "the cover of the node at (%g, %g, %g) holds none of the body",
+                           nodes->position[n][0], nodes->position[n][1], nodes->position[n][2]);
+    if (9 * pairs.start[pairs.count] > INT_MAX)
+        code = sm_fail(error, SM_INPUT,
+                       "%ld nodes with %ld pairs of covers are too many: give the body fewer nodes",
+                       nodes->count, pairs.start[pairs.count]);
+    if (code == SM_OK) code = integrate(tree, nodes, basis, &local, &pairs, error);
+    if (code == SM_OK) {
+        fill_mass(&pairs, material->density, &matrices->mass);
+        fill_stiffness(&pairs, material, &matrices->stiffness);
+    }
+    pairs_free(&pairs);
+    local_free(&local);
+    return code;
+}

@@ -1,0 +1,40 @@
+/* skin.h - surface points carried by a meshless body: their shape functions, computed once.
+ *
+ * Points are grouped by octant into blocks that share their nodes, so that a block's weights are a
+ * dense matrix and a frame reads nothing but weights. They are single precision: positions are good
+ * to 1e-6 of the displacements. */
+#ifndef REF_SKIN_H
+#define REF_SKIN_H
+
+#include "../body/body.h"
+
+typedef struct {
+    int points, room; /* room: points rounded up to whole vectors */
+    int nodes;
+    long first, node, weight; /* where its points, nodes and weights begin */
+} RefSkinBlock;
+
+typedef struct {
+    long count;        /* points */
+    long *order;       /* [count] the caller's number of each, in the skin's order */
+    double (*rest)[3]; /* [count] in the skin's order */
+    long blocks;
+    RefSkinBlock *block;
+    int *node;
+    float *weight;    /* block by block, [room / 16][nodes][16] */
+    float (*near)[3]; /* scratch: displacements of a block's nodes */
+} RefSkin;
+
+/* Points that too few nodes cover move with the node nearest to them; `loose` (may be NULL)
+ * receives how many there are: none of those that ref_body_build() was shown. */
+void ref_skin_create(const RefBody *body, long count, const double (*x)[3], RefSkin *skin,
+                     long *loose);
+void ref_skin_free(RefSkin *skin);
+
+/* The points' positions, in the skin's order, from the nodes' displacements (motion.h, moved). */
+void ref_skin_place(const RefSkin *skin, const double (*moved)[3], double (*position)[3]);
+
+/* Adds to the nodes what a push at the skin's point `place` does to them. O(log blocks + nodes). */
+void ref_skin_push(const RefSkin *skin, long place, const double push[3], double (*nodes)[3]);
+
+#endif

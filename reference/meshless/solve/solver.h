@@ -1,0 +1,28 @@
+/* solver.h - solves with stiffness under linear constraints, by CHOLMOD. */
+#ifndef REF_SOLVER_H
+#define REF_SOLVER_H
+
+#include "../body/matrices.h"
+#include "rows.h"
+
+typedef struct RefSolver RefSolver;
+
+/* Whether this program was built with CHOLMOD and ARPACK; where it was not, this module and modes.h
+ * fail with SM_USAGE and a line that names the packages. */
+extern const bool ref_solver_built;
+
+/* Factorises K - shift M, shift at most 0, under `rows` (NULL: none). To a K that rigid motions
+ * make singular, A^T A times a stiffness is added, which changes no solution: rows that hold the
+ * body make it definite. Rows that follow from others are dropped. The solver keeps no pointer to
+ * its arguments. Errors (SM_INPUT): the matrix is singular. */
+SmCode ref_solver_create(const RefMatrices *matrices, double shift, const RefRows *rows,
+                         RefSolver **solver, SmError *error);
+void ref_solver_destroy(RefSolver *solver);
+
+/* x: (K - shift M) x = b - A^T multipliers, A x = target. `b` and `target` may be NULL: zero. */
+void ref_solver_solve(RefSolver *solver, const double *b, const double *target, double *x);
+
+/* Rows that count: those that do not follow from others. */
+int ref_solver_rank(const RefSolver *solver);
+
+#endif

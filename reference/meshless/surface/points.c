@@ -1,0 +1,284 @@
+#include "points.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "../../../lib/mesh/import.h"
+#include "../../../lib/system/file.h"
+#include "../../../lib/vector.h"
+
+enum { LINE = 1 << 20 };
+
+void ref_points_free(RefPoints *points)
+{
+    free(points->position);
+    free(points->normal);
+    free(points->as_given);
+    *points = (RefPoints){0};
+}
+
+typedef struct {
+    double x[3], n[3];
+} Oriented;
+
+static int by_position(const void *a, const void *b)
+{
+    const Oriented *p = a, *q = b;
+    for (int d = 0; d < 3; d++)
+        if (p->x[d] != q->x[d]) return p->x[d] < q->x[d] ? -1 : 1;
+    return 0;
+}
+
+static SmCode check(long count, const double (*position)[3], const double (*normal)[3],
+                    const char *name, SmError *error)
+{
+    for (long p = 0; p < count; p++) {
+        double length = sqrt(sm_dot(normal[p], normal[p])), size = 0;
+        for (int d = 0; d < 3; d++) size = fmax(size, fabs(position[p][d]));
+        if (!(isfinite(position[p][0] + position[p][1] + position[p][2]) && size < 1e30 &&
+              isfinite(length)))
+            return sm_fail(error, SM_INPUT,
+                           "%s: point %ld has a coordinate that is no number, or beyond 1e30", name,
+                           p + 1);
+        if (length > 0 && !(length > 0.5 && length < 1.5))
+            return sm_fail(error, SM_INPUT,
+                           "%s: point %ld has a normal of length %g, not 1: columns 4 to 6 must be "
+                           "its normal",
+                           name, p + 1, length);
+    }
+    return SM_OK;
+}
+
+/* Runs of equal positions become one point each. */
+static void merge(const Oriented *sorted, long count, RefPoints *points)
+{
+    for (long p = 0, end; p < count; p = end) {
+        double sum[3] = {0};
+        for (end = p; end < count && by_position(sorted + p, sorted + end) == 0; end++)
+            for (int d = 0; d < 3; d++) sum[d] += sorted[end].n[d];
+        if (!(sm_dot(sum, sum) > 1e-6) || !sm_normalize(sum)) continue;
+        points->merged += end - p - 1;
+        memcpy(points->position[points->count], sorted[p].x, sizeof sum);
+        memcpy(points->normal[points->count++], sum, sizeof sum);
+    }
+}
+
+/* Squares of lengths, areas and single precision (bench/scene/slice.h) must hold what the points
+ * span. */
+static SmCode check_span(const RefPoints *points, const char *name, SmError *error)
+{
+    double span = 0;
+    for (int d = 0; d < 3; d++) {
+        double low = INFINITY, high = -INFINITY;
+        for (long p = 0; p < points->count; p++) {
+            low = fmin(low, points->position[p][d]);
+            high = fmax(high, points->position[p][d]);
+        }
+        span = fmax(span, high - low);
+    }
+    if (span >= 1e-30) return SM_OK;
+    return sm_fail(error, SM_INPUT, "%s: the points span %g: give them in a unit that is smaller",
+                   name, span);
+}
+
+SmCode ref_points_create(long count, const double (*position)[3], const double (*normal)[3],
+                         const char *name, RefPoints *points, SmError *error)
+{
+    *points = (RefPoints){0};
+    SmCode code = check(count, position, normal, name, error);
+    if (code != SM_OK) return code;
+    Oriented *sorted = sm_alloc((size_t)count, sizeof *sorted);
+    for (long p = 0; p < count; p++)
+        for (int d = 0; d < 3; d++) {
+            sorted[p].x[d] = position[p][d] + 0.0; /* no -0 */
+            sorted[p].n[d] = normal[p][d];
+        }
+    qsort(sorted, (size_t)count, sizeof *sorted, by_position);
+    points->position = sm_alloc((size_t)count, sizeof *points->position);
+    points->normal = sm_alloc((size_t)count, sizeof *points->normal);
+    points->given = count;
+    points->as_given = sm_alloc((size_t)count, sizeof *points->as_given);
+    memcpy(points->as_given, position, (size_t)count * sizeof *position);
+    merge(sorted, count, points);
+    free(sorted);
+    if (points->count >= REF_LEAST_POINTS)
+        code = check_span(points, name, error);
+    else
+        code = sm_fail(error, SM_INPUT,
+                       "%s: %ld different points with normals are too few for a surface: %d or "
+                       "more",
+                       name, points->count, REF_LEAST_POINTS);
+    if (code) ref_points_free(points);
+    return code;
+}
+
+/* Up to six numbers of a line; how many. */
+static int numbers(const char *line, double number[6])
+{
+    int count = 0;
+    while (count < 6) {
+        char *end;
+        number[count] = strtod(line, &end);
+        if (end == line) break;
+        count++;
+        line = end + strspn(end, " \t,;");
+    }
+    return count;
+}
+
+/* The next line into `text`; false at the file's end, and with `error` for what is no line. */
+static bool next_line(FILE *file, const char *path, long line, char *text, SmError *error)
+{
+    if (!fgets(text, LINE, file)) {
+        if (ferror(file))
+            sm_fail(error, SM_INPUT, "%s: line %ld cannot be read: %s", path, line,
+                    strerror(errno));
+        return false;
+    }
+    size_t length = strlen(text);
+    if ((length > 0 && text[length - 1] == '\n') || (length < LINE - 1 && feof(file))) return true;
+    sm_fail(error, SM_INPUT, "%s: line %ld %s: not a file of points", path, line,
+            length < LINE - 1 ? "holds a zero byte" : "has over a million characters");
+    return false;
+}
+
+/* Six numbers of the line; false with `error` for others, and without for a line to be skipped. */
+static bool take_line(const char *text, const char *path, long line, bool first, double number[6],
+                      SmError *error)
+{
+    const char *begin = text + strspn(text, " \t\r\n");
+    if (*begin == 0 || *begin == '#') return false;
+    int found = numbers(begin, number);
+    if (found == 6) return true;
+    if (found != 1 || !first)
+        sm_fail(error, SM_INPUT,
+                found == 3
+                    ? "%s: line %ld has three numbers: the points have no normals; give them "
+                      "as x y z nx ny nz"
+                    : "%s: line %ld is not x y z nx ny nz",
+                path, line);
+    return false;
+}
+
+/* All lines, positions and normals in turn; NULL and a reason where one is wrong. */
+static double (*read_lines(FILE *file, const char *path, long *count, SmError *error))[3]
+{
+    double(*row)[3] = NULL, number[6];
+    char *text = sm_alloc(LINE, 1);
+    SmError why = {0};
+    long room = 0;
+    *count = 0;
+    for (long line = 1; next_line(file, path, line, text, &why); line++) {
+        if (!take_line(text, path, line, *count == 0, number, &why)) {
+            if (why.code) break;
+            continue;
+        }
+        if (*count == room) {
+            room = 2 * room + 1024;
+            row = sm_realloc(row, 2 * (size_t)room, sizeof *row);
+        }
+        memcpy(row[2 * (*count)++], number, sizeof number);
+    }
+    free(text);
+    if (!why.code && !row) sm_fail(&why, SM_INPUT, "%s: holds no points", path);
+    if (!why.code) return row;
+    free(row);
+    if (error) *error = why;
+    return NULL;
+}
+
+static SmCode read_text(const char *path, RefPoints *points, SmError *error)
+{
+    *points = (RefPoints){0};
+    FILE *file = sm_file_open(path, NULL, error);
+    if (!file) return SM_INPUT;
+    long count;
+    double(*row)[3] = read_lines(file, path, &count, error);
+    fclose(file);
+    if (!row) return SM_INPUT;
+    double(*position)[3] = sm_alloc((size_t)count, sizeof *position);
+    double(*normal)[3] = sm_alloc((size_t)count, sizeof *normal);
+    for (long p = 0; p < count; p++) {
+        memcpy(position[p], row[2 * p], sizeof *position);
+        memcpy(normal[p], row[2 * p + 1], sizeof *normal);
+    }
+    free(row);
+    SmCode code = ref_points_create(count, (const double(*)[3])position, (const double(*)[3])normal,
+                                    path, points, error);
+    free(position);
+    free(normal);
+    return code;
+}
+
+bool ref_points_text(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot &&
+           (!strcasecmp(dot, ".xyz") || !strcasecmp(dot, ".pts") || !strcasecmp(dot, ".txt"));
+}
+
+SmCode ref_points_read(const char *path, RefPoints *points, SmError *error)
+{
+    long count;
+    double(*position)[3], (*normal)[3];
+    if (ref_points_text(path)) return read_text(path, points, error);
+    *points = (RefPoints){0};
+    SmCode code = sm_import_points(path, NULL, &count, &position, &normal, error);
+    if (code != SM_OK) return code;
+    code = ref_points_create(count, (const double(*)[3])position, (const double(*)[3])normal, path,
+                             points, error);
+    free(position);
+    free(normal);
+    return code;
+}
+
+/* Twice the area's normal. */
+static void across(const SmMesh *mesh, long t, double normal[3])
+{
+    double edge[2][3];
+    for (int d = 0; d < 3; d++)
+        for (int e = 0; e < 2; e++)
+            edge[e][d] = mesh->position[mesh->triangle[t][e + 1]][d] -
+                         mesh->position[mesh->triangle[t][0]][d];
+    sm_cross(edge[0], edge[1], normal);
+}
+
+SmCode ref_points_of_mesh(const SmMesh *mesh, long count, RefPoints *points, SmError *error)
+{
+    double total = 0, due = 0, normal[3];
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        across(mesh, t, normal);
+        total += sqrt(sm_dot(normal, normal));
+    }
+    double(*x)[3] = sm_alloc((size_t)count + 1, sizeof *x);
+    double(*n)[3] = sm_alloc((size_t)count + 1, sizeof *n);
+    long made = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        across(mesh, t, normal);
+        due += sqrt(sm_dot(normal, normal)) / total * (double)count;
+        if (!sm_normalize(normal)) continue;
+        for (; made < (long)(due + 0.5) && made < count; made++) {
+            /* a sequence of low discrepancy (plastic number) in the triangle */
+            double u = fmod(0.5 + 0.7548776662466927 * (double)made, 1);
+            double v = fmod(0.5 + 0.5698402909980532 * (double)made, 1);
+            if (u + v > 1) {
+                u = 1 - u;
+                v = 1 - v;
+            }
+            const int *corner = mesh->triangle[t];
+            for (int d = 0; d < 3; d++)
+                x[made][d] = (1 - u - v) * mesh->position[corner[0]][d] +
+                             u * mesh->position[corner[1]][d] + v * mesh->position[corner[2]][d];
+            memcpy(n[made], normal, sizeof normal);
+        }
+    }
+    SmCode code = ref_points_create(made, (const double(*)[3])x, (const double(*)[3])n, "the mesh",
+                                    points, error);
+    free(x);
+    free(n);
+    return code;
+}
