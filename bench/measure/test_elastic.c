@@ -278,10 +278,14 @@ static void its_row_is_a_table_of_its_own(void **state)
     static char text[8192];
     BenchRow row = measure();
     assert_true(row.valid);
-    assert_true(row.particles > 2900 && row.elastic.modes == 24 && row.total_ms > 0);
+    assert_true(row.particles > 2900 && row.elastic.modes == 24);
     assert_true(labs(row.elastic.nodes - 180) < 60);
     double parts = row.stage_ms[SM_SHAPE_MATCHING] + row.stage_ms[SM_OTHER];
-    assert_true(fabs(parts - row.total_ms) < 1e-9 * row.total_ms + 1e-12);
+    if (row.busy) { /* other programs took the processors: there are no times to print */
+        bench_row_free(&row);
+        skip();
+    }
+    assert_true(row.total_ms > 0 && fabs(parts / row.total_ms - 1) < 1e-9);
     write_row(&row, BENCH_AS_MARKDOWN, text, sizeof text);
     assert_null(strstr(text, "regions"));
     assert_non_null(strstr(text, "| scene | points | nodes | modes | matrices s |"));

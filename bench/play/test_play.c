@@ -286,8 +286,11 @@ static void frames_are_timed_and_counted(void **state)
     assert_int_equal(row.first_triangles, show.body.mesh.triangle_count);
     assert_true(row.last_triangles > row.first_triangles && row.pieces >= 2);
     assert_int_equal(row.open_edges, 0);
-    assert_true(row.first_ms > 0 && row.last_ms > 0 && row.surface_ms > 0 && row.follow_ms > 0);
-    assert_true(row.change_most_ms >= row.change_ms && row.change_ms > 0);
+    if (!isnan(row.first_ms)) { /* not BUSY */
+        assert_true(row.first_ms > 0 && row.last_ms > 0);
+        assert_true(row.surface_ms > 0 && row.follow_ms > 0);
+        assert_true(row.change_most_ms >= row.change_ms && row.change_ms > 0);
+    }
     for (long f = 0; f < row.frames; f++) assert_true(row.time[f][0] > 0);
     free(row.time);
     bench_play_free(&play);
