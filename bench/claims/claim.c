@@ -53,7 +53,7 @@ static const BenchSetting measure_table[] = {
     WORDS(BenchMeasure, "masses", masses, 0, BENCH_MASSES),
     WORDS(BenchMeasure, "symmetry", symmetry, 0, BENCH_SYMMETRIES),
     WORDS(BenchMeasure, "weighting", weighting, 0, BENCH_WEIGHTINGS),
-    WORDS(BenchMeasure, "without", without, 0, "nothing|nodes|bases|summation_nodes|reach"),
+    WORDS(BenchMeasure, "without", without, 0, "nothing|nodes|bases|summation_nodes|reach|collide"),
     GROUP(BenchMeasure, "w", w, range_table),
     GROUP(BenchMeasure, "n", n, range_table),
     {0},

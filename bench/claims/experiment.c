@@ -220,7 +220,8 @@ const char *bench_experiment_fault(const BenchMeasure *measure)
 
 const char *bench_without_name(BenchWithout without)
 {
-    static const char *const names[] = {"nothing", "nodes", "bases", "summation_nodes", "reach"};
+    static const char *const names[] = {"nothing",         "nodes", "bases",
+                                        "summation_nodes", "reach", "collide"};
     return names[without];
 }
 

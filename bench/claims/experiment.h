@@ -20,8 +20,8 @@
  *
  * - scene: one point: `field` of the scene's row as `tables` measures it, or NAMES of
  *   scene_field.h; `scene`, and `engine` in place of the scene's; `without` one of the scene's
- *   settings, which then has its default: the octree's wanted nodes, bases or summation_nodes, or
- *   the reach within which its cuts refine.
+ *   settings, which then has its default: the octree's wanted nodes, bases or summation_nodes,
+ *   the reach within which its cuts refine, or collide, what bodies collide with.
  * - sums: ns a particle (the stage's share of a step's least CPU time) of fast summation with
  *   `summation` and `layout` (default: the engine's choice; naive sums are lists) in a solid cube,
  *   against the mean side of its regions (2w + 1 but for those at the surface); range `w`.
@@ -61,7 +61,8 @@ typedef enum {
     BENCH_WITHOUT_NODES,
     BENCH_WITHOUT_BASES,
     BENCH_WITHOUT_SUMMATION_NODES,
-    BENCH_WITHOUT_REACH
+    BENCH_WITHOUT_REACH,
+    BENCH_WITHOUT_COLLIDE
 } BenchWithout;
 
 typedef enum { BENCH_BY_LATTICE, BENCH_BY_RIGID, BENCH_BY_LINEAR, BENCH_BY_QUADRATIC } BenchMatcher;

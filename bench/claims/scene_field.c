@@ -219,6 +219,9 @@ static void take_away(BenchScene *scene, BenchWithout without)
         break;
     case BENCH_WITHOUT_REACH:
         for (int c = 0; c < scene->cut_count; c++) scene->cut[c].reach = 1;
+        break;
+    case BENCH_WITHOUT_COLLIDE:
+        scene->params.collide = (SmCollideParams){0};
     }
 }
 
