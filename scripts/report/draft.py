@@ -40,19 +40,28 @@ def check(path, overwrite):
     return target, stat.S_IMODE(mode)
 
 
+def create(target):
+    """A file that was not there, under a name of this process; nobody's link."""
+    for n in range(100):  # an older process of this number may have left some
+        try:
+            return open(f"{target}.{os.getpid()}{f'-{n}' if n else ''}.tmp", "xb")
+        except FileExistsError as error:
+            last = error
+    raise last
+
+
 @contextlib.contextmanager
 def begun(path, overwrite):
     """A new file to write bytes to; it takes its place when the body has ended well. Raises Refused and OSError."""
     target, mode = check(path, overwrite)
-    draft = f"{target}.{os.getpid()}.tmp"
-    with open(draft, "xb") as file:  # new: nobody's link
+    with create(target) as file:
         try:
             yield file
             file.flush()
             os.fsync(file.fileno())
             if mode is not None:
                 os.fchmod(file.fileno(), mode)
-            os.replace(draft, target)
+            os.replace(file.name, target)
         except BaseException:
-            os.remove(draft)
+            os.remove(file.name)
             raise

@@ -22,6 +22,7 @@ except ImportError as missing:
     print(f"skipped: {missing}; scripts/setup run installs it")
     sys.exit(77)
 
+import draft  # noqa: E402
 import main  # noqa: E402
 import sources  # noqa: E402
 import tables  # noqa: E402
@@ -345,6 +346,21 @@ class Report(unittest.TestCase):
                               timeout=300, env={**os.environ, "PYTHONPATH": self.folder})
         self.assertEqual((done.returncode, done.stderr), (130, "shapebench report: interrupted: nothing was written\n"))
         self.assertFalse(os.path.exists(self.at("none.html")))
+
+    def test_what_a_process_of_the_same_number_left_is_no_error(self):
+        left = [self.at(f"left.html.{os.getpid()}{more}.tmp") for more in ("", "-1")]
+        os.symlink(self.at("elsewhere"), left[0])
+        with open(left[1], "wb"):
+            pass
+        with draft.begun(self.at("left.html"), False) as file:
+            file.write(b"new")
+        with open(self.at("left.html"), "rb") as file:
+            self.assertEqual(file.read(), b"new")
+        self.assertFalse(os.path.exists(self.at("elsewhere")))
+        self.assertEqual(sorted(name for name in os.listdir(self.folder) if name.startswith("left.html.")),
+                         sorted(map(os.path.basename, left)))
+        for name in left:
+            os.remove(name)
 
     def test_a_place_that_cannot_be_written(self):
         done = shapebench("report", "-o", "/proc/none/page.html", self.rows)
