@@ -5,6 +5,7 @@
 #include "../octree/engine.h"
 #include "../reference/brute.h"
 #include "../reference/meshless/engine.h"
+#include "cli/suggest.h"
 #include "play/runner.h"
 
 static const SmEngineType *const engines[] = {
@@ -16,9 +17,11 @@ enum { ENGINES = sizeof engines / sizeof engines[0] };
 SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
                          SmError *error)
 {
-    char known[256] = "";
+    char known[256] = "", near[BENCH_SUGGEST_TEXT];
+    const char *names[ENGINES + 1] = {NULL};
     for (int i = 0; i < ENGINES; i++) {
         const SmEngineType *e = engines[i];
+        names[i] = e->name;
         if (!strcmp(e->name, name) && (!precision || !strcmp(e->precision, precision))) {
             *type = e;
             return SM_OK;
@@ -27,7 +30,7 @@ SmCode bench_engine_find(const char *name, const char *precision, const SmEngine
         snprintf(known + used, sizeof known - used, "%s%s (%s)", used ? ", " : "", e->name,
                  e->precision);
     }
-    return sm_fail(error, SM_USAGE, "no engine '%.32s'%s%s%s; there are: %s", name,
+    return sm_fail(error, SM_USAGE, "no engine '%.32s'%s%s%s; there are: %s%s", name,
                    precision ? " in " : "", precision ? precision : "",
-                   precision ? " precision" : "", known);
+                   precision ? " precision" : "", known, bench_suggest_among(name, names, near));
 }

@@ -113,12 +113,17 @@ static SmCode choose(const Options *options, BenchClaims *claims, SmError *error
                            meant.typed, bench_suggest_words(&meant, "", near));
     }
     int kept = 0;
+    BenchSuggestion paper = {.typed = options->paper};
+    for (int c = 0; c < claims->count && options->paper; c++)
+        bench_suggest(&paper, claims->claim[c].paper);
     for (int c = 0; c < claims->count; c++)
         if (chosen(options, &claims->claim[c])) claims->claim[kept++] = claims->claim[c];
+    char near[BENCH_SUGGEST_TEXT];
+    const char *words = bench_suggest_words(&paper, "", near);
     claims->count = kept;
     if (kept) return SM_OK;
-    return sm_fail(error, SM_USAGE, "--paper: '%.40s' has no such claim; --list names all",
-                   options->paper);
+    return sm_fail(error, SM_USAGE, "--paper: '%.40s' has no such claim; --list names all%s",
+                   options->paper, words);
 }
 
 static void list_claims(const BenchClaims *claims)

@@ -19,6 +19,7 @@ typedef struct {
     const char *mesh[FILES];
     int count;
     long particles;
+    const char *format;
     int json;
     bool sliced, overwrite;
     BenchSlice slice;
@@ -55,6 +56,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     Options *options = state->input;
     switch (key) {
     case KEY_FORMAT:
+        options->format = text;
         options->json = bench_option_choice(state, "--format", text, formats);
         return 0;
     case KEY_PARTICLES:
@@ -79,8 +81,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
         if (!options->count) bench_usage(state, "which MESH?");
         if (options->sliced != (options->output != NULL) || options->sliced < options->overwrite)
             bench_usage(state, "--slice and --output go together, and --overwrite with both");
-        if (options->sliced && (options->count > 1 || options->json))
-            bench_usage(state, "--slice: of one mesh, without --format");
+        if (options->sliced && (options->count > 1 || options->format || options->particles))
+            bench_usage(state, "--slice: of one mesh, without --format and --particles");
         return 0;
     }
     return ARGP_ERR_UNKNOWN;
@@ -232,11 +234,12 @@ static void warn_of_freedom(const char *program)
 
 int bench_command_info(int argc, char **argv)
 {
-    Options options = {.particles = 2000};
+    Options options = {0};
     bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS,
                         &options.common);
     if (!options.common.quiet) warn_of_freedom(argv[0]);
     if (options.sliced) return (int)cut_slice(&options, argv[0]);
+    if (!options.particles) options.particles = 2000;
     SmCode code = SM_OK;
     json_t *list = json_array();
     for (int i = 0; i < options.count; i++) {

@@ -5,6 +5,7 @@
 #include "../kernels/kernel_table.h"
 #include "command.h"
 #include "option.h"
+#include "suggest.h"
 
 enum {
     KEY_ONLY = 0x2000,
@@ -30,7 +31,7 @@ typedef struct {
 static const struct argp_option option_list[] = {
     {"only", KEY_ONLY, "NAME", 0, "Time this kernel or group only; may be repeated (see --list)",
      1},
-    {"list", KEY_LIST, 0, 0, "Print the names of all kernels and their groups, and end", 1},
+    {"list", KEY_LIST, 0, 0, "Alone: print the names of all kernels and their groups", 1},
     {"precision", KEY_PRECISION, "P", 0, "single or double (default: single)", 1},
     {"layout", KEY_LAYOUT, "L", 0, BENCH_LAYOUT_HELP, 1},
     {"scaling", KEY_SCALING, 0, 0,
@@ -42,10 +43,23 @@ static const struct argp_option option_list[] = {
     {0},
 };
 
+static const char *suggest(const char *typed, char text[BENCH_SUGGEST_TEXT])
+{
+    const char *name, *group;
+    BenchSuggestion meant = {.typed = typed};
+    for (int i = 0; (name = bench_kernel_name(i, &group)); i++) {
+        bench_suggest(&meant, name);
+        bench_suggest(&meant, group);
+    }
+    return bench_suggest_words(&meant, "", text);
+}
+
 static void add_only(const struct argp_state *state, Options *options, const char *name)
 {
+    char near[BENCH_SUGGEST_TEXT];
     if (!bench_kernel_known(name))
-        bench_usage(state, "--only: no kernel or group '%.40s'; --list names them", name);
+        bench_usage(state, "--only: no kernel or group '%.40s'; --list names them%s", name,
+                    suggest(name, near));
     if (options->only_count == ONLY_MOST) bench_usage(state, "--only: at most %d", ONLY_MOST);
     options->only[options->only_count++] = name;
 }
@@ -69,6 +83,10 @@ static error_t parse(int key, char *text, struct argp_state *state)
         return 0;
     case ARGP_KEY_ARG:
         bench_usage(state, "what is '%s'? Kernels are named with --only", text);
+    case ARGP_KEY_END:
+        if (((const Options *)state->input)->list && state->argc > 2)
+            bench_usage(state, "--list goes alone: it prints names and measures nothing");
+        return 0;
     }
     return ARGP_ERR_UNKNOWN;
 }
@@ -82,7 +100,7 @@ static const char help[] =
     "too long; the octree against its slow twins, resampling against a build from scratch); one "
     "that "
     "fails has INVALID in place of its times, one of which other programs on the machine took too "
-    "much BUSY, and no verdict.\v"
+    "much BUSY, and no verdict but of ratios of processor time.\v"
     "Times are wall-clock medians over the repeats, with quartiles; kernels that are compared run "
     "in turn, sample by sample. A stage of a step comes from a run with clocks inside, less the "
     "time that reading them takes. One thread unless --threads says otherwise.\n" BENCH_EXIT_CODES;

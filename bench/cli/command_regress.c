@@ -18,6 +18,7 @@
 #include "../store/draft.h"
 #include "command.h"
 #include "option.h"
+#include "suggest.h"
 #include "process.h"
 
 enum {
@@ -171,8 +172,10 @@ static SmCode paper_tasks(Session *session, SmError *error)
         if (scene.row[0]) add_task(session, *name);
     }
     if (session->tasks) return SM_OK;
+    char near[BENCH_SUGGEST_TEXT];
     return sm_fail(error, SM_USAGE,
-                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
+                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless%s", paper,
+                   bench_suggest_among(paper, bench_papers, near));
 }
 
 /* As the row of the file was measured: as many repeats, of as many steps. */

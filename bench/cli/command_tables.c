@@ -11,6 +11,7 @@
 #include "../table/table.h"
 #include "command.h"
 #include "option.h"
+#include "suggest.h"
 #include "override.h"
 
 enum { KEY_PAPER = 0x2000, KEY_SCENE, KEY_FORMAT, KEY_REPEATS, KEY_BLOCK, KEY_EXPLAIN };
@@ -172,8 +173,10 @@ static SmCode choose_scenes(Choices *chosen, SmError *error)
     if (!options->given.count && options->paper) add_scenes(chosen, paper, NULL);
     if (!options->given.count && !options->paper) add_default(chosen);
     if (chosen->count) return SM_OK;
+    char near[BENCH_SUGGEST_TEXT];
     return sm_fail(error, SM_USAGE,
-                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless", paper);
+                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless%s", paper,
+                   bench_suggest_among(paper, bench_papers, near));
 }
 
 /* Fails where no scene is to be measured that `--mesh name=FILE` gives a mesh. */

@@ -44,6 +44,7 @@ static error_t parse_common(int key, char *text, struct argp_state *state)
 
 const char *const bench_precisions[] = {"single", "double", NULL};
 const char *const bench_widths[] = {"edges", "cells", NULL};
+const char *const bench_papers[] = {"fastlsm", "octree", "meshless", NULL};
 const char *const bench_layouts[] = {"auto", "lists", "blocks", NULL};
 
 /* Where the system's BLAS is OpenBLAS, which has threads of its own. */
@@ -224,13 +225,14 @@ void bench_option_vector(const struct argp_state *state, const char *name, const
 int bench_option_choice(const struct argp_state *state, const char *name, const char *text,
                         const char *const *choices)
 {
-    char list[256] = "";
+    char list[256] = "", near[BENCH_SUGGEST_TEXT];
     for (int i = 0; choices[i]; i++) {
         if (!strcmp(text, choices[i])) return i;
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", choices[i]);
     }
-    bench_usage(state, "%s: '%s' is not %s%s", name, text, choices[1] ? "one of " : "", list);
+    bench_usage(state, "%s: '%s' is not %s%s%s", name, text, choices[1] ? "one of " : "", list,
+                bench_suggest_among(text, choices, near));
 }
 
 static void add_name(const struct argp_state *state, const char *option, const char *text,

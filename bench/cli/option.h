@@ -22,6 +22,7 @@ typedef struct {
 extern const char *const bench_precisions[];
 extern const char *const bench_widths[]; /* units of an octree's w: "edges", "cells" */
 extern const char *const bench_layouts[];
+extern const char *const bench_papers[]; /* that have tables */
 #define BENCH_LAYOUT_HELP "Fastlsm's sums: auto, lists, or blocks where it can"
 
 /* What an option does with its value in the command's record. */

@@ -47,3 +47,11 @@ const char *bench_suggest_words(const BenchSuggestion *suggestion, const char *p
         snprintf(text, BENCH_SUGGEST_TEXT, "; did you mean '%s%s'?", prefix, suggestion->name);
     return text;
 }
+
+const char *bench_suggest_among(const char *typed, const char *const *names,
+                                char text[BENCH_SUGGEST_TEXT])
+{
+    BenchSuggestion meant = {.typed = typed};
+    for (; *names; names++) bench_suggest(&meant, *names);
+    return bench_suggest_words(&meant, "", text);
+}

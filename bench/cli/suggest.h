@@ -19,4 +19,8 @@ enum { BENCH_SUGGEST_TEXT = 560 };
 const char *bench_suggest_words(const BenchSuggestion *suggestion, const char *prefix,
                                 char text[BENCH_SUGGEST_TEXT]);
 
+/* The same of what was typed in place of one of the NULL-terminated `names`. */
+const char *bench_suggest_among(const char *typed, const char *const *names,
+                                char text[BENCH_SUGGEST_TEXT]);
+
 #endif

@@ -235,6 +235,7 @@ static double run_kind(BenchKernelRun *run, const Spec *spec, Cube *cube, double
         note(run, spec, cube, typical, row);
         if (least_ns > 0) {
             row->ratio = typical / least_ns;
+            row->own_time = true;
             row->wanted = most_growth;
             snprintf(row->ratio_to, sizeof row->ratio_to, "%s's CPU time", specs[spec->kind].name);
         }

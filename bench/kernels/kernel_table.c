@@ -51,7 +51,7 @@ static void fill_cells(const BenchKernel *row, Cell cell[COLUMNS])
         {.name = "bound", .text = row->bound},
         {.name = "share_percent", .number = share(row), .time = true},
         {.name = "at_most_ns", .number = row->at_most},
-        {.name = "ratio", .number = row->ratio, .time = true},
+        {.name = "ratio", .number = row->ratio, .time = !(row->valid && row->own_time)},
         {.name = "ratio_to", .text = row->ratio_to},
         {.name = "ratio_wanted", .number = row->wanted},
         {.name = "verdict", .text = bench_kernel_verdict(row)},
@@ -192,6 +192,7 @@ static void fill_line(const BenchKernel *row, Line *line)
     number_text(row->at_most, line->field[AT_MOST]);
     snprintf(line->field[VERDICT], FIELD_TEXT, "%s", bench_kernel_verdict(row));
     snprintf(line->field[NOTE], FIELD_TEXT, "%s", timed(row) ? row->note : row->reason);
+    if (row->valid && (!row->busy || row->own_time)) fill_ratio(row, line);
     if (!timed(row)) {
         strcpy(line->field[NS], mark(row));
         return;
@@ -204,7 +205,6 @@ static void fill_line(const BenchKernel *row, Line *line)
     number_text(row->floor_ns, low);
     join(line->field[FLOOR], low, " ", row->bound);
     if (isfinite(share(row))) snprintf(line->field[SHARE], FIELD_TEXT, "%.0f%%", share(row));
-    fill_ratio(row, line);
 }
 
 static bool left(int field)

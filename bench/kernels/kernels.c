@@ -446,8 +446,9 @@ SmCode bench_kernels_run(const BenchKernelParams *params, const BenchCeilings *c
 
 const char *bench_kernel_verdict(const BenchKernel *row)
 {
-    bool limit = isfinite(row->at_most), ratio = isfinite(row->wanted);
-    if ((!limit && !ratio) || row->busy) return "";
+    bool limit = isfinite(row->at_most) && !row->busy;
+    bool ratio = isfinite(row->wanted) && (!row->busy || row->own_time);
+    if (!limit && !ratio) return "";
     bool met = row->valid;
     if (limit) met = met && row->ns <= row->at_most;
     if (ratio)

@@ -21,6 +21,8 @@ typedef struct {
     double at_most;       /* ns wanted */
     double ratio, wanted; /* to another row, and the ratio wanted */
     bool wanted_least;    /* `wanted` is a lower bound, else an upper one */
+    bool own_time;        /* the ratio is of processor time, which others hardly touch: it is told
+                           * and judged of a busy row, too */
     char ratio_to[32];    /* "1 thread", "single" */
     char note[128];
 } BenchKernel;
@@ -49,8 +51,8 @@ const char *bench_kernel_name(int index, const char **group);
 SmCode bench_kernels_run(const BenchKernelParams *params, const BenchCeilings *ceilings,
                          BenchKernel *rows, int *count, SmError *error);
 
-/* Was what the issue wants reached? "met", "missed", or "" where nothing is wanted or the row
- * is busy. */
+/* Was what the issue wants reached? "met", "missed", or "" where nothing is wanted, or only of
+ * times that are not to be told. */
 const char *bench_kernel_verdict(const BenchKernel *row);
 
 #endif

@@ -30,6 +30,10 @@ static void verdicts_follow_the_limits(void **state)
     assert_string_equal(bench_kernel_verdict(&row), "met");
     row.wanted_least = false;
     assert_string_equal(bench_kernel_verdict(&row), "missed");
+    row.busy = true;
+    assert_string_equal(bench_kernel_verdict(&row), "");
+    row.own_time = true; /* which others hardly touch */
+    assert_string_equal(bench_kernel_verdict(&row), "missed");
     row = (BenchKernel){.valid = false, .ns = 1, .at_most = 8, .wanted = NAN};
     assert_string_equal(bench_kernel_verdict(&row), "missed");
 }
@@ -77,6 +81,32 @@ static void an_invalid_or_busy_row_has_no_number(void **state)
         assert_non_null(strstr(text, "12.5"));
         assert_null(strstr(text, "98765"));
         assert_null(strstr(text, "98.8"));
+        free(text);
+    }
+}
+
+/* But the ratio, where it is of processor time, and its verdict. */
+static void a_busy_row_tells_what_others_do_not_touch(void **state)
+{
+    (void)state;
+    const BenchKernel row = {.kernel = "late",
+                             .valid = true,
+                             .busy = true,
+                             .own_time = true,
+                             .ns = 98765,
+                             .at_most = NAN,
+                             .ratio = 1.25,
+                             .wanted = 2,
+                             .ratio_to = "least's CPU time"};
+    for (int f = 0; bench_kernel_formats[f]; f++) {
+        char *text;
+        size_t size;
+        FILE *file = open_memstream(&text, &size);
+        bench_kernels_write(file, (BenchKernelFormat)f, &row, 1, &ceilings, &machine);
+        fclose(file);
+        assert_non_null(strstr(text, "1.25"));
+        assert_non_null(strstr(text, "met"));
+        assert_null(strstr(text, "98765"));
         free(text);
     }
 }
@@ -131,6 +161,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(verdicts_follow_the_limits),
         cmocka_unit_test(an_invalid_or_busy_row_has_no_number),
+        cmocka_unit_test(a_busy_row_tells_what_others_do_not_touch),
         cmocka_unit_test(formats_parse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

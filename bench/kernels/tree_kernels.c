@@ -345,6 +345,7 @@ static void set_growth(const Spec *spec, double user_ns, double least_ns, BenchK
 {
     if (!row->valid || !(least_ns > 0)) return;
     row->ratio = user_ns / least_ns;
+    row->own_time = true;
     row->wanted = spec->wanted;
     snprintf(row->ratio_to, sizeof row->ratio_to, "%s's user time", spec->base);
 }

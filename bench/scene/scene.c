@@ -364,9 +364,7 @@ SmCode bench_scene_find(const char *name_or_path, BenchScene *scene, SmError *er
 
 const char *bench_scene_suggest(const char *typed, char text[BENCH_SUGGEST_TEXT])
 {
-    BenchSuggestion meant = {.typed = typed};
-    for (const char *const *name = bench_scene_names(); *name; name++) bench_suggest(&meant, *name);
-    return bench_suggest_words(&meant, "", text);
+    return bench_suggest_among(typed, bench_scene_names(), text);
 }
 
 const char *const *bench_scene_names(void)

@@ -31,7 +31,7 @@ static SmCode check_region(const OctCriterion *c, SmError *error)
     return SM_OK;
 }
 
-static SmCode check(const OctSampling *s, SmError *error)
+static SmCode check(const OctSampling *s, long cells, SmError *error)
 {
     if (s->criteria_count < 0 || s->criteria_count > OCT_MAX_CRITERIA)
         return sm_fail(error, SM_INPUT, "octree sampling: %d criteria, but there can be 0 to %d",
@@ -39,6 +39,11 @@ static SmCode check(const OctSampling *s, SmError *error)
     if (s->nodes < 0 || s->bases < 0)
         return sm_fail(error, SM_INPUT, "octree sampling: %ld %s wanted, but it cannot be below 0",
                        s->nodes < 0 ? s->nodes : s->bases, s->nodes < 0 ? "nodes" : "base cells");
+    if (s->nodes > cells)
+        return sm_fail(error, SM_INPUT,
+                       "octree sampling: %ld nodes wanted, but there can be %ld, one of each finest "
+                       "cell: give at most so many, or smaller cells",
+                       s->nodes, cells);
     SmCode code = SM_OK;
     for (int c = 0; c < s->criteria_count && !code; c++) {
         const OctCriterion *criterion = &s->criteria[c];
@@ -171,7 +176,7 @@ SmCode oct_sampling_tree(const OctSampling *sampling, const SmVoxels *voxels, Oc
     OctTree whole;
     *tree = (OctTree){0};
     SmCode code = oct_tree_check(voxels, sampling->levels, error);
-    if (!code) code = check(sampling, error);
+    if (!code) code = check(sampling, voxels->cell_count, error);
     if (code) return code;
     code = place(sampling, voxels, corner, error);
     if (code) return code;

@@ -62,7 +62,7 @@ typedef struct {
  * time again for every place tried, at most 64 and fewer if there are more than OCT_PLACE_CELLS /
  * 64 cells. Errors (SM_INPUT), on which `tree` is zeroed: what oct_tree_build() says; a criterion's
  * level beyond 0..levels; a box or ball that is not finite, empty, or meets no material; wanted
- * numbers below 0; too many criteria. */
+ * numbers below 0, nodes more than cells; too many criteria. */
 SmCode oct_sampling_tree(const OctSampling *sampling, const SmVoxels *voxels, OctTree *tree,
                          OctSampleReport *report, SmError *error);
 

@@ -296,7 +296,9 @@ static void wanted_counts_are_reached(void **state)
         oct_tree_free(&t);
 
         long wanted = s.nodes;
-        s.nodes = v.cell_count + trial; /* more than there can be */
+        s.nodes = v.cell_count + 1 + trial; /* more than there can be */
+        assert_int_equal(oct_sampling_tree(&s, &v, &t, &r, NULL), SM_INPUT);
+        s.nodes = v.cell_count;
         assert_int_equal(oct_sampling_tree(&s, &v, &t, &r, NULL), SM_OK);
         assert_int_equal(t.leaves, v.cell_count);
         assert_int_equal(r.wanted_nodes, s.nodes);
@@ -450,6 +452,8 @@ static void what_cannot_be_sampled_is_refused(void **state)
     refuse(&s, "17 criteria");
     s = (OctSampling){.levels = 3, .nodes = -5};
     refuse(&s, "-5 nodes");
+    s = (OctSampling){.levels = 3, .nodes = 100000000};
+    refuse(&s, "100000000 nodes wanted, but there can be ");
     s = (OctSampling){.levels = 3, .bases = -7};
     refuse(&s, "-7 base cells");
     s = (OctSampling){.levels = 13};
