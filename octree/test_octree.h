@@ -148,7 +148,7 @@ static void twin_step(RefTreeBody *twin, const OctParams *params, bool damp, Bod
             body->v[i][d] += body->a[i][d] - body->x[i][d] + params->gravity[d];
     if (damp)
         ref_tree_rigid_velocity(twin, (const double(*)[3])body->x, (const double(*)[3])body->v,
-                                body->a);
+                                NULL, body->a);
     for (long i = 0; i < body->n; i++)
         for (int d = 0; d < 3; d++) {
             if (damp) body->v[i][d] += params->damping * (body->a[i][d] - body->v[i][d]);

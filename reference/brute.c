@@ -199,8 +199,31 @@ void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m
     free(match);
 }
 
-void ref_solve_inertia(double I[9], const double L[3], double omega[3])
+/* J^-1 L. What is all in one point does not turn. */
+static void solve_known(const double I[9], const double L[3], double noise, double thinnest,
+                        double omega[3])
 {
+    double C[3][3], trace = (I[0] + I[4] + I[8]) / 2; /* tr(S); C: I's adjugate */
+    for (int a = 0; a < 3; a++) sm_cross(I + (a + 1) % 3 * 3, I + (a + 2) % 3 * 3, C[a]);
+    double over = sm_dot(I, C[0]), trace_C = C[0][0] + C[1][1] + C[2][2], more = noise * trace_C;
+    bool solid = over > thinnest * trace * trace_C + more;
+    if (!solid) {
+        over = trace;
+        more = noise;
+    }
+    if (64 * more > over) over += more;
+    for (int a = 0; a < 3; a++) omega[a] = over > 0 ? (solid ? sm_dot(C[a], L) : L[a]) / over : 0;
+}
+
+void ref_solve_inertia(double I[9], const double L[3], const RefSums *sums, long r,
+                       const double c[3], double units, double omega[3])
+{
+    if (sums) {
+        double square = 0;
+        for (int a = 0; a < 3; a++) square += pow(c[a] - sums->origin[r][a], 2);
+        solve_known(I, L, 8 * sums->epsilon * square * units, sums->thinnest, omega);
+        return;
+    }
     double value[3], vector[9];
     gsl_matrix_view matrix = gsl_matrix_view_array(I, 3, 3);
     gsl_matrix_view vectors = gsl_matrix_view_array(vector, 3, 3);
@@ -234,7 +257,7 @@ static double extent(const RefRegions *regions, const double (*x)[3], long r, co
 /* v_r and omega_r of eq. 14 about c_r. X X^T with X = [d]x is |d|^2 1 - d d^T: positive
  * semidefinite, so the signs of eq. 14 stand as printed. */
 static void rigid_motion(const RefRegions *regions, const double *m, const double (*x)[3],
-                         const double (*v)[3], long r, Motion *motion)
+                         const double (*v)[3], const RefSums *sums, long r, Motion *motion)
 {
     double L[3] = {0}, I[9] = {0};
     weighted_mean(regions, m, x, r, motion->c);
@@ -257,16 +280,16 @@ static void rigid_motion(const RefRegions *regions, const double *m, const doubl
                 I[3 * a + b] += share * ((a == b ? square : 0) - d[a] * d[b]);
         }
     }
-    ref_solve_inertia(I, L, motion->omega);
+    ref_solve_inertia(I, L, sums, r, motion->c, 1 / (unit * unit), motion->omega);
     for (int a = 0; a < 3; a++) motion->omega[a] /= unit;
 }
 
 void ref_rigid_velocity(const RefRegions *regions, const double *m, const double (*x)[3],
-                        const double (*v)[3], double (*u)[3])
+                        const double (*v)[3], const RefSums *sums, double (*u)[3])
 {
     Motion *motion = sm_alloc((size_t)regions->count, sizeof *motion);
 #pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
-    for (long r = 0; r < regions->count; r++) rigid_motion(regions, m, x, v, r, motion + r);
+    for (long r = 0; r < regions->count; r++) rigid_motion(regions, m, x, v, sums, r, motion + r);
 #pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long i = 0; i < regions->count; i++) {
         double sum[3] = {0};

@@ -55,14 +55,26 @@ void ref_match_goals(const RefRegions *regions, const RefMatch *match, const dou
 void ref_goals(const RefRegions *regions, const double (*x0)[3], const double *m,
                const double (*x)[3], double (*g)[3]);
 
-/* u_i, the rigid velocity averaged over R_i (fastlsm eq. 14), for positions x, velocities v.
- * omega_r = pseudo-inverse(I_r) L_r: eigenvalues of I_r below 1e-10 of the largest count as 0. */
-void ref_rigid_velocity(const RefRegions *regions, const double *m, const double (*x)[3],
-                        const double (*v)[3], double (*u)[3]);
+/* How an engine sums up for eq. 14: in numbers of a precision, about origins. Where that does not
+ * know a region's inertia, the engine damps by the rule of lib/simd/rigid_lanes.h, which says why:
+ * with noise = 8 epsilon |c_r - origin_r|^2 and I over M_r, a region is solid if
+ * 1 / tr(I^-1) > thinnest tr(S) + noise, and then J = (1 + n) I with n = noise tr(I^-1), else
+ * J = tr(S) + noise; n and noise are left out where they are below a 64th of what they add to. */
+typedef struct {
+    const double (*origin)[3]; /* of the regions, lengths as x */
+    double epsilon, thinnest;
+} RefSums;
 
-/* omega = pseudo-inverse(I) L for a symmetric positive semidefinite I (destroyed), by the same
- * rule. */
-void ref_solve_inertia(double I[9], const double L[3], double omega[3]);
+/* u_i, the rigid velocity averaged over R_i (fastlsm eq. 14), for positions x, velocities v.
+ * omega_r = J_r^-1 L_r by that rule, or with `sums` NULL pseudo-inverse(I_r) L_r: eigenvalues of
+ * I_r below 1e-10 of the largest count as 0. */
+void ref_rigid_velocity(const RefRegions *regions, const double *m, const double (*x)[3],
+                        const double (*v)[3], const RefSums *sums, double (*u)[3]);
+
+/* omega of region r by the same rule, from its I (destroyed) and L about c, which are `units` times
+ * what they are over M_r. */
+void ref_solve_inertia(double I[9], const double L[3], const RefSums *sums, long r,
+                       const double c[3], double units, double omega[3]);
 
 /* The whole as an engine named "brute" behind the common interface. The first step is damped, then
  * every damping_every-th. A posed instance is matched to its posed rest shape. */

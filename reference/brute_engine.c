@@ -158,7 +158,7 @@ static void accelerate_body(const SmEngine *engine, Body *body, SmLaps *laps)
                 (body->g[p][a] - body->x[p][a]) / params->h + params->h * params->gravity[a];
     sm_lap(laps, SM_OTHER);
     if (!(params->damping > 0) || engine->steps % params->damping_every != 0) return;
-    ref_rigid_velocity(&body->regions, engine->mass, CONST(body->x), CONST(body->v), body->u);
+    ref_rigid_velocity(&body->regions, engine->mass, CONST(body->x), CONST(body->v), NULL, body->u);
     for (long p = 0; p < engine->count; p++)
         for (int a = 0; a < 3; a++)
             body->v[p][a] += params->damping * (body->u[p][a] - body->v[p][a]);

@@ -204,10 +204,9 @@ void ref_tree_goals(RefTreeBody *body, const double (*x)[3], bool flow, double (
 
 /* v_r and omega_r about c_r (fastlsm eq. 14). */
 static void rigid_motion(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
-                         long r, double c[3], double mean[3], double omega[3])
+                         const RefSums *sums, long r, double c[3], double mean[3], double omega[3])
 {
-    double L[3] = {0}, I[9] = {0};
-    region_mean(body, x, r, c);
+    double L[3] = {0}, I[9] = {0}, M = region_mean(body, x, r, c);
     region_mean(body, v, r, mean);
     for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
         int i = body->regions.member[n];
@@ -224,17 +223,17 @@ static void rigid_motion(const RefTreeBody *body, const double (*x)[3], const do
                 I[3 * a + b] += body->weight[i] * ((a == b ? square : 0) - d[a] * d[b]);
         }
     }
-    ref_solve_inertia(I, L, omega);
+    ref_solve_inertia(I, L, sums, r, c, M, omega);
 }
 
 void ref_tree_rigid_velocity(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
-                             double (*u)[3])
+                             const RefSums *sums, double (*u)[3])
 {
     const RefRegions *regions = &body->regions;
     memset(u, 0, (size_t)regions->count * sizeof *u);
     for (long r = 0; r < regions->count; r++) {
         double c[3], mean[3], omega[3];
-        rigid_motion(body, x, v, r, c, mean, omega);
+        rigid_motion(body, x, v, sums, r, c, mean, omega);
         for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
             int i = regions->member[n];
             double d[3] = {x[i][0] - c[0], x[i][1] - c[1], x[i][2] - c[2]}, turn[3];

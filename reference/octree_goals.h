@@ -31,8 +31,9 @@ void ref_tree_free(RefTreeBody *body);
  * |E - I| > yield, S <- (I + creep (E - I)) S, at most `most` from I, of volume 1. */
 void ref_tree_goals(RefTreeBody *body, const double (*x)[3], bool flow, double (*g)[3]);
 
-/* u_i = (1/M_i) sum of m_r (v_r + omega_r x (x_i - c_r)) over the regions that contain i. */
+/* u_i = (1/M_i) sum of m_r (v_r + omega_r x (x_i - c_r)) over the regions that contain i; omega_r
+ * and `sums` as in brute.h. */
 void ref_tree_rigid_velocity(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
-                             double (*u)[3]);
+                             const RefSums *sums, double (*u)[3]);
 
 #endif

@@ -358,7 +358,7 @@ static void rigid_velocity_of_rigid_motion_is_itself(void **state)
             body.v[p][0] = 3, body.v[p][1] = -1, body.v[p][2] = 0.5;
             add_cross(omega, body.x[p], 1, body.v[p]);
         }
-        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(body.v), body.g);
+        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(body.v), NULL, body.g);
         assert_near(CONST(body.g), CONST(body.v), body.count, 1e-11);
         body_free(&body);
     }
@@ -370,7 +370,7 @@ static void rigid_velocity_conserves_momentum(void **state)
     uint64_t seed = 19;
     for (int trial = 0; trial < 30; trial++) {
         Body body = body_create(&seed, 1 + trial % 3);
-        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(body.v), body.g);
+        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(body.v), NULL, body.g);
         double linear[3] = {0}, angular[3] = {0}, left = 0, right = 0;
         for (long p = 0; p < body.count; p++) {
             double d[3];
@@ -409,7 +409,7 @@ static void thin_bodies_turn_too(void **state)
             memcpy(all[p], body.v[p], sizeof all[p]);
             add_cross(spin, body.x[p], 1, all[p]); /* too thin to be felt */
         }
-        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(all), body.g);
+        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(all), NULL, body.g);
         assert_near(CONST(body.g), CONST(body.v), body.count, spins ? 1e-9 : 1e-5);
         free(all);
         body_free(&body);
@@ -430,7 +430,7 @@ static void crushed_bodies_stay_finite(void **state)
         body_goals(&body);
         for (long p = 0; p < body.count; p++)
             for (int a = 0; a < 3; a++) assert_true(isfinite(body.g[p][a]));
-        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(body.v), body.g);
+        ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(body.v), NULL, body.g);
         for (long p = 0; p < body.count; p++)
             for (int a = 0; a < 3; a++) assert_true(isfinite(body.g[p][a]));
         body_free(&body);

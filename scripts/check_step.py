@@ -13,7 +13,7 @@ the yield to rounding, it may or may not). Prints the largest deviations in (fin
 in their unit; velocities count as what they move in a step, and are compared after the last step only,
 because the others hold the next step's pushes already. Where a step is damped, particles of regions whose
 inertia the precision does not resolve (unresolved() below, the rule of bench/check/check.h) may end elsewhere by
-more than the tolerance, by what damping does at most; they are counted and their deviation is given apart.
+more than the tolerance, by what rounding does to damping; they are counted and their deviation is given apart.
 Particles that follow a handle or end within a
 thousandth of a cell of an obstacle are compared in their goals only, and so is a record after which the next
 step is missing; how many those are is said.
@@ -372,11 +372,12 @@ def rigid_velocity(body, x, v, cell, precision):
 
 
 def unresolved(body, x, cell, precision):
-    """Which particles have a region whose angular velocity the precision does not resolve: rounding of
-    sums about the body's middle is not a small share of the least inertia, or may hide the inertia about
-    the line of a thin region."""
+    """What rounding may make of particles' rigid velocities, relative, of those whose regions' inertia is not
+    128 times what rounding of sums about the body's middle may do to it, or that may be as thin as a line; 2
+    where rounding decides whether a region is solid: `known` of bench/check/check.h. An octree's sums may be
+    about nearer places (octree/graph/frames.h), and then rounding is less."""
     epsilon, thinnest = rounding(precision)
-    at, found = (x - x.mean(0)) / cell, np.zeros(len(x), bool)
+    at, found = (x - x.mean(0)) / cell, np.zeros(len(x))
     for r in body.members:
         if len(r) == 1:
             continue
@@ -387,12 +388,14 @@ def unresolved(body, x, cell, precision):
         moments = np.linalg.eigvalsh(spread * np.eye(3) - (m * arm).T @ arm)
         known = (moments > 1e-14 * spread).all()
         inertia = 1 / (1 / moments).sum() if known else 0
-        line = inertia < 1e-11 * spread
-        if line:
-            inertia = spread
         noise = 8 * epsilon * (c @ c)
-        if not noise < inertia / 128 or (not line and spread * thinnest > 0.25 * inertia):
-            found[r] = True
+        line = inertia <= 0.5 * (thinnest * spread + (noise if isinstance(body, Lattice) else 0))
+        if spread > 0 and (line or inertia >= 4 * (thinnest * spread + noise)):
+            known = noise / (spread + noise if line else inertia)
+            known *= 0 if known <= 1 / 128 else 2 if known < 1 / 32 else 1
+        else:
+            known = 2
+        found[r] = np.maximum(found[r], known)
     return found
 
 
@@ -461,10 +464,10 @@ def check(group, body):
                 note("S", np.where(np.abs(beyond) < tolerance, np.minimum(*off),
                                    np.where(beyond > 0, off[1], off[0])), max(1, body.creep))
             v = v + (g - x) / h + h * a["gravity"]
-            most = np.zeros(count)  # by which what is not resolved may be off
+            most = np.zeros(count)  # by which rounding may put it elsewhere
             if a["damping"] > 0 and step[s] % every == 0:
                 fastest = np.linalg.norm(v, axis=1).max(initial=0)
-                most[unresolved(body, x, cell, text(a["precision"]))] = 2 * a["damping"] * h * fastest / cell
+                most = unresolved(body, x, cell, text(a["precision"])) * a["damping"] * h * fastest / cell
                 v += a["damping"] * (rigid_velocity(body, x, v, cell, text(a["precision"])) - v)
             x = x + h * v
             open_ = free(x, alone, group["obstacles"][:], 1e-3 * cell)

@@ -462,7 +462,7 @@ void bench_check_text(const BenchDeviation *found, size_t size, char *text)
                                  found->tied, found->tied > 1 ? "s" : "", found->tied_error);
     if (found->blurred > 0 && used < size)
         snprintf(text + used, size - used,
-                 "; %ld left out of damping, whose regions' inertia the precision does not "
-                 "resolve (within %.1g cells a step)",
+                 "; %ld left out of damping, of whose regions rounding decides whether they turn "
+                 "(within %.1g cells a step)",
                  found->blurred, found->blurred_error);
 }

@@ -43,8 +43,7 @@ typedef struct {
                                * unique */
     double tied_error;        /* of those; what they would add to goal_error */
     long blurred;         /* left out of damping's check: off by more than bench_check_step(), and
-                           * tied or in a region whose inertia the precision does not
-                           * resolve */
+                           * tied or in a region of which rounding decides whether it is solid */
     double blurred_error; /* of those, how far the step takes them elsewhere, in cells */
     long contact_nodes;   /* whose contacts were compared; 0: nothing collides */
     long contact_all;     /* nodes at the surface of all bodies, which alone have any */
@@ -89,18 +88,19 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
 
 /* Adds the check of damping to `found`, if the scene has any: puts the state of `engine` into
  * others built alike, but at no handles and obstacles, steps one, and compares velocities to eq.
- * 14's in double precision from the same goals, which another one finds.
+ * 14's in double precision from the same goals, which another one finds. Where a precision does not
+ * know a region's inertia, eq. 14 is damped by the rule that engines have (brute.h, RefSums).
  *
- * What is allowed, of the largest velocity, is the rounding of the sums (lib/simd/rigid_lanes.h):
- * with n = 8 epsilon D^2 / inertia, D from the body's middle to the region, and f = spread /
- * inertia, it is 16 epsilon + k (n + 8 epsilon f + 4 sqrt(epsilon n f)) of a particle's worst
- * region: of the inertia, of its inversion, and of omega x x - omega x c; and what double precision
- * loses of g - x at large coordinates. Regions are not resolved where n is above 1/128, as the
- * engine may damp less there, or f so large that it may take the region for a line, unless it is
- * one; nor are those that the check of goals leaves out. Their particles may be as far off as the
- * whole of damping moves them, 2 k; but they are left out, counted, and their error is given only
- * if the step takes them elsewhere by more than bench_check_step(). scripts/check_step.py has the
- * same rule for recorded steps. */
+ * What is allowed, of the largest velocity, is 16 epsilon + k (known + 8 epsilon f +
+ * 4 sqrt(epsilon n f)) of a particle's worst region, and what double precision loses of g - x at
+ * large coordinates: the rounding of the inertia, of its inversion, and of omega x x - omega x c.
+ * With the rule's noise, n = noise / J and f = tr(S) / J for the least inertia J, and `known` is n;
+ * 2 n from 1/128 to 1/32, where it may be left out or not; and n f of what is no solid. Rounding
+ * decides alone which of the two a region is where 1 / tr(I^-1) is between half of the rule's bound
+ * and four times that. Those regions' particles, and those that the check of goals leaves out, may
+ * be as far off as the whole of damping moves them, 2 k; but they are left out, counted, and their
+ * error is given only if the step takes them elsewhere by more than bench_check_step().
+ * scripts/check_step.py has the same rule for recorded steps. */
 void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
                          SmEngine *engine, BenchDeviation *found);
 

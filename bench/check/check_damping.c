@@ -6,6 +6,8 @@
 
 #include "../../lib/system/team.h"
 #include "../../lib/vector.h"
+#include "../../octree/change/structure.h"
+#include "../../octree/graph/frames.h"
 #include "../../reference/condition.h"
 #include "../play/runner.h"
 #include "check.h"
@@ -16,64 +18,97 @@ static double length(const double v[3])
     return sqrt(sm_dot(v, v));
 }
 
-static void middle(const double (*x)[3], long count, double out[3])
+/* The frame of every leaf that lives, by rank, in an engine made for the structure of this one;
+ * returns how many there are. */
+static long tree_frames(const SmEngine *engine, int *frame)
 {
-    for (int d = 0; d < 3; d++) {
-        out[d] = 0;
-        for (long i = 0; i < count; i++) out[d] += x[i][d] / (double)count;
+    const OctStructure *s = oct_engine_structure(engine);
+    int *of = sm_alloc((size_t)s->tree.leaves, sizeof *of);
+    long frames = oct_frames_find(&s->tree, &s->regions, of), live = 0;
+    for (long leaf = 0; leaf < s->tree.leaves; leaf++)
+        if (s->tree.node[leaf] >= 0) frame[live++] = of[leaf];
+    free(of);
+    return frames;
+}
+
+/* Where the sums of each region count from in an engine made for one body at x (cells): from the
+ * middle of its frame of reference, or of the body. */
+static void find_origins(const BenchCheck *check, const SmEngine *engine, const double (*x)[3],
+                         double (*origin)[3])
+{
+    long count = check->count, frames = 1;
+    int *frame = sm_alloc((size_t)count, sizeof *frame); /* zeroed */
+    if (check->hierarchical) frames = tree_frames(engine, frame);
+    double(*sum)[4] = sm_alloc((size_t)frames, sizeof *sum);
+    for (long i = 0; i < count; i++) {
+        for (int d = 0; d < 3; d++) sum[frame[i]][d] += x[i][d];
+        sum[frame[i]][3]++;
     }
+    for (long i = 0; i < count; i++)
+        for (int d = 0; d < 3; d++) origin[i][d] = sum[frame[i]][d] / sum[frame[i]][3];
+    free(sum);
+    free(frame);
 }
 
-/* What rounding may make of a region's rigid velocity, relative; INFINITY: more than that. */
-static double region_rounding(const RefCondition *c, const double origin[3], double epsilon)
+/* What rounding may make of region r's rigid velocity, relative; INFINITY: anything. */
+static double region_rounding(const RefCondition *c, const RefSums *sums, long r)
 {
-    const double thinnest = epsilon > 1e-10 ? 1e-5 : 1e-10; /* lib/simd/rigid_lanes.h */
-    double square = 0, inertia = c->inertia;
-    for (int d = 0; d < 3; d++) square += (c->centre[d] - origin[d]) * (c->centre[d] - origin[d]);
-    bool line = inertia < 1e-11 * c->spread;
-    if (line) inertia = c->spread;
-    double share = 8 * epsilon * square / inertia, form = c->spread / inertia;
-    if (!(share < 1.0 / 128) || (!line && form * thinnest > 0.25)) return INFINITY;
-    return share + 8 * epsilon * form + 4 * sqrt(epsilon * share * form);
+    double epsilon = sums->epsilon, square = 0, inertia = c->inertia;
+    for (int d = 0; d < 3; d++) square += pow(c->centre[d] - sums->origin[r][d], 2);
+    double noise = 8 * epsilon * square, unsure = sums->thinnest * c->spread + noise;
+    bool line = inertia <= 0.5 * unsure;
+    if (!(c->spread > 0) || (!line && !(inertia >= 4 * unsure))) return INFINITY;
+    if (line) inertia = c->spread + noise;
+    double share = noise / inertia, form = c->spread / inertia;
+    bool maybe = !line && share > 1.0 / 128 && share < 1.0 / 32; /* a 64th, to rounding */
+    double known = line ? share * form : maybe ? 2 * share : share;
+    return known + 8 * epsilon * form + 4 * sqrt(epsilon * share * form);
 }
 
-/* The same of every particle of one body, of the worst region that holds it. */
-static void particle_rounding(const BenchCheck *check, const char *precision, const double (*x)[3],
+/* The same of every particle of one body at x (cells), of the worst region that holds it. */
+static void particle_rounding(const BenchCheck *check, const RefSums *sums, const double (*x)[3],
                               double *rounding)
 {
     const RefRegions *regions = bench_check_regions(check);
-    double(*at)[3] = sm_alloc((size_t)check->count, sizeof *at), origin[3];
     double *of = sm_alloc((size_t)check->count, sizeof *of);
-    bench_check_cells(check, x, at);
-    middle((const double(*)[3])at, check->count, origin);
 #pragma omp parallel for num_threads(sm_team(0)) if (check->count > REF_SERIAL)
     for (long r = 0; r < check->count; r++) {
         RefCondition found;
-        ref_condition(regions, check->weight, (const double(*)[3])check->rest,
-                      (const double(*)[3])at, r, 0, &found);
-        of[r] = region_rounding(&found, origin, bench_check_epsilon(precision));
+        ref_condition(regions, check->weight, (const double(*)[3])check->rest, x, r, 0, &found);
+        of[r] = region_rounding(&found, sums, r);
         if (regions->start[r + 1] - regions->start[r] == 1) of[r] = 0; /* it cannot turn */
     }
     for (long r = 0; r < check->count; r++)
         for (long n = regions->start[r]; n < regions->start[r + 1]; n++)
             rounding[regions->member[n]] = fmax(rounding[regions->member[n]], of[r]);
-    free(at);
     free(of);
 }
 
-/* u of eq. 14 of one body. */
-static void rigid_velocity(const BenchCheck *check, const double (*x)[3], const double (*v)[3],
-                           double (*u)[3])
+/* u of eq. 14 of one body, as an engine of this precision has it, and what rounding may make of it.
+ */
+static void rigid_velocity(const BenchCheck *check, const SmEngine *engine, const char *precision,
+                           const double (*x)[3], const double (*v)[3], double (*u)[3],
+                           double *rounding)
 {
+    double(*cells)[3] = sm_alloc((size_t)check->count, sizeof *cells);
+    double(*origin)[3] = sm_alloc((size_t)check->count, sizeof *origin);
+    double epsilon = bench_check_epsilon(precision);
+    const double(*at)[3] = (const double(*)[3])cells;
+    const RefSums sums = {(const double(*)[3])origin, epsilon, epsilon > 1e-10 ? 1e-5 : 1e-10};
+    bench_check_cells(check, x, cells);
+    find_origins(check, engine, at, origin);
     if (check->hierarchical)
-        ref_tree_rigid_velocity(&check->octree, x, v, u);
+        ref_tree_rigid_velocity(&check->octree, at, v, &sums, u);
     else
-        ref_rigid_velocity(&check->regions, check->mass, x, v, u);
+        ref_rigid_velocity(&check->regions, check->mass, at, v, &sums, u);
+    particle_rounding(check, &sums, at, rounding);
+    free(cells);
+    free(origin);
 }
 
 /* Compares one body's velocities; keeps the worst particle in `found`. */
-static void compare(const BenchCheck *check, const BenchScene *scene, const char *precision,
-                    const BenchStep *step, long first, BenchDeviation *found)
+static void compare(const BenchCheck *check, const BenchScene *scene, const SmEngine *engine,
+                    const char *precision, const BenchStep *step, long first, BenchDeviation *found)
 {
     double k = scene->params.damping, h = scene->params.h;
     double epsilon = bench_check_epsilon(precision);
@@ -83,9 +118,8 @@ static void compare(const BenchCheck *check, const BenchScene *scene, const char
     double(*u)[3] = sm_alloc(count, sizeof *u), *rounding = sm_alloc(count, sizeof *rounding);
     bool *tied = sm_alloc(count, sizeof *tied);
     double largest = 0, away = 0;
-    rigid_velocity(check, x, v, u);
+    rigid_velocity(check, engine, precision, x, v, u, rounding);
     bench_check_tied(check, precision, x, tied);
-    particle_rounding(check, precision, x, rounding);
     for (size_t p = 0; p < count; p++) {
         largest = fmax(largest, length(v[p]));
         away = fmax(away, length(x[p]));
@@ -141,7 +175,7 @@ void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const
     bool held = is_held_at_rest(check, type->precision, params.h, &step);
     if (held) found->damping_tolerance = 16 * bench_check_epsilon(type->precision);
     for (long first = 0; first < step.all && !held; first += check->count)
-        compare(check, scene, type->precision, &step, first, found);
+        compare(check, scene, engine, type->precision, &step, first, found);
     found->motion_error = bench_copy_motion(&step, &params) / check->body->voxels.cell;
     bench_copy_step_free(&step);
 }

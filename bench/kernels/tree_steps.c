@@ -90,7 +90,7 @@ static void step_twin(const RefTreeBody *twin, const double (*goal)[3], double (
     double(*u)[3] = sm_alloc((size_t)n, sizeof *u);
     for (long i = 0; i < n; i++)
         for (int d = 0; d < 3; d++) v[i][d] += goal[i][d] - x[i][d];
-    ref_tree_rigid_velocity(twin, (const double(*)[3])x, (const double(*)[3])v, u);
+    ref_tree_rigid_velocity(twin, (const double(*)[3])x, (const double(*)[3])v, NULL, u);
     for (long i = 0; i < n; i++)
         for (int d = 0; d < 3; d++) x[i][d] += v[i][d] + damping * (u[i][d] - v[i][d]);
     free(u);

@@ -76,7 +76,7 @@ static void rewrite(const unsigned char *data, size_t size)
         free(copy);
     }
     size_t new_size = 0;
-    char *copy = sm_ply_vertices_first(text, size, &new_size);
+    char *copy = sm_ply_ordered(text, size, &new_size);
     expect(!copy || new_size <= size + 1, "reordering adds more than the last newline");
     free(copy);
     free(text);

@@ -215,17 +215,16 @@ static char *rewritten(const char *path, const char *suffix, SmMeshFiles *files,
     size_t new_size = 0;
     char *text = read_text(path, size);
     char *ordered = NULL, *moved = NULL;
-    if (text && strcasecmp(suffix, "ply") == 0 && sm_ply_lacks_lines(text))
-        snprintf(files->altered, sizeof files->altered, "PLY: fewer lines than its header says");
     if (text && strcasecmp(suffix, "off") == 0 && sm_off_astray(text))
         snprintf(files->altered, sizeof files->altered, "OFF: a face names a vertex out of range");
-    if (text && strcasecmp(suffix, "ply") == 0)
-        ordered = sm_ply_vertices_first(text, *size, &new_size);
+    if (text && strcasecmp(suffix, "ply") == 0) ordered = sm_ply_ordered(text, *size, &new_size);
     if (ordered) {
         free(text);
         text = ordered;
         *size = new_size;
     }
+    if (text && strcasecmp(suffix, "ply") == 0 && sm_ply_lacks_lines(text))
+        snprintf(files->altered, sizeof files->altered, "PLY: fewer lines than its header says");
     if (text) moved = sm_recentre(text, *size, suffix, &new_size, offset);
     if (moved || !ordered) free(text);
     if (moved) *size = new_size;

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 #include "ply.h"
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +22,10 @@ typedef struct {
     Element element[ELEMENTS];
     int count, vertices; /* elements, and which of them holds the vertices: -1 none */
     bool ascii, big_endian;
+    bool words, lines; /* ASCII data are found by their words; they stand one of each line */
 } Ply;
+
+static const char blank[] = " \t\n\v\f\r";
 
 static int size_of(const char *type)
 {
@@ -84,9 +88,30 @@ static const char *read_header(const char *text, const char *end, Ply *ply)
     return NULL;
 }
 
+/* What follows so many words; NULL when the text ends before. */
+static const char *skip_words(const char *at, long count)
+{
+    for (; count > 0; count--) {
+        at += strspn(at, blank);
+        if (!*at) return NULL;
+        at += strcspn(at, blank);
+    }
+    return at;
+}
+
+static const char *skip_line_of_words(const Element *e, const char *at)
+{
+    for (int p = 0; p < e->properties && at; p++) {
+        long values = e->list[p] ? strtol(at, NULL, 10) : 1;
+        at = values < 0 || values >= INT_MAX ? NULL : skip_words(at, values + (e->list[p] > 0));
+    }
+    return at;
+}
+
 /* What follows one vertex, face or whatever it is; NULL when the file ends before. */
 static const char *skip_one(const Ply *ply, const Element *e, const char *at, const char *end)
 {
+    if (ply->words) return skip_line_of_words(e, at);
     if (ply->ascii) {
         const char *newline = memchr(at, '\n', (size_t)(end - at));
         return newline ? newline + 1 : at < end ? end : NULL;
@@ -116,8 +141,44 @@ static bool find_data(Ply *ply, const char *at, const char *end)
     return true;
 }
 
+/* Are the data as many words as the header says, no less and no more? Notes whether each element
+ * has a line of its own, and no other. */
+static bool find_words(Ply *ply, const char *data, const char *end)
+{
+    ply->words = ply->lines = true;
+    if (!find_data(ply, data, end)) return false;
+    const Element *last = &ply->element[ply->count - 1];
+    for (const Element *e = ply->element; e <= last && ply->lines; e++) {
+        const char *at = e->data;
+        for (long n = 0; n < e->count; n++) {
+            const char *first = at + strspn(at, blank), *after = skip_line_of_words(e, first);
+            const char *next = after + strspn(after, blank);
+            bool ends = !*next || memchr(after, '\n', (size_t)(next - after));
+            if (!ends || memchr(first, '\n', (size_t)(after - first))) ply->lines = false;
+            at = after;
+        }
+    }
+    return last->data_end + strspn(last->data_end, blank) == end;
+}
+
+/* A line of each. */
+static void write_lines(const Element *e, FILE *copy)
+{
+    const char *at = e->data;
+    for (long n = 0; n < e->count; n++) {
+        const char *after = skip_line_of_words(e, at);
+        for (at += strspn(at, blank); at < after; at++)
+            fputc(*at == '\n' || *at == '\r' ? ' ' : *at, copy);
+        fputc('\n', copy);
+    }
+}
+
 static void write_data(const Ply *ply, const Element *e, FILE *copy)
 {
+    if (ply->words) {
+        write_lines(e, copy);
+        return;
+    }
     size_t size = (size_t)(e->data_end - e->data);
     fwrite(e->data, 1, size, copy);
     if (ply->ascii && size && e->data_end[-1] != '\n') fputc('\n', copy);
@@ -136,12 +197,16 @@ static void write_copy(const Ply *ply, const char *text, const char *data, FILE 
         if (e != vertices) write_data(ply, e, copy);
 }
 
-char *sm_ply_vertices_first(const char *text, size_t size, size_t *new_size)
+char *sm_ply_ordered(const char *text, size_t size, size_t *new_size)
 {
     Ply ply;
-    const char *data = read_header(text, text + size, &ply);
+    const char *data = read_header(text, text + size, &ply), *end = text + size;
     char *copy = NULL;
-    if (!data || ply.vertices < 1 || !find_data(&ply, data, text + size)) return NULL;
+    if (!data || ply.vertices < 0) return NULL;
+    bool whole = ply.ascii && find_words(&ply, data, end);
+    if (!whole) ply.words = false;
+    if (ply.vertices == 0 && (!whole || ply.lines)) return NULL;
+    if (!whole && !find_data(&ply, data, end)) return NULL;
     FILE *file = open_memstream(&copy, new_size);
     if (!file) return NULL;
     write_copy(&ply, text, data, file);

@@ -1,7 +1,8 @@
-/* ply.h - PLY files that declare their faces before their vertices.
+/* ply.h - PLY files that declare their faces before their vertices, or do not give each a line.
  *
  * The format allows any order (Turk 1994), and libigl's tools write such files; Assimp 5.2 refuses
- * them with "Vertices should be declared before faces". */
+ * them with "Vertices should be declared before faces". Of ASCII files it reads one vertex or face
+ * of each line, whatever else is in it. */
 #ifndef SM_PLY_H
 #define SM_PLY_H
 
@@ -9,10 +10,11 @@
 #include <stddef.h>
 
 /* A copy of the PLY file `text` (ASCII or binary of either byte order, with a NUL after its `size`
- * bytes) with its vertices, header and data, moved before the other elements. NULL when they are
- * first already, when the text is not what its header promises, with more than 16 elements or 32
+ * bytes) with its vertices, header and data, moved before the other elements, and of ASCII data of
+ * just as many words as the header says a line of each. NULL when they are so already, when the
+ * text is not what its header promises, with more than 16 elements or 32
  * properties of one, or without memory. The caller frees it. O(size). */
-char *sm_ply_vertices_first(const char *text, size_t size, size_t *new_size);
+char *sm_ply_ordered(const char *text, size_t size, size_t *new_size);
 
 /* Whether an ASCII PLY file has fewer lines behind its header than elements in it: a file cut off,
  * of which Assimp repeats the last numbers. */

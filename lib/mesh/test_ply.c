@@ -52,15 +52,40 @@ static void test_ascii(void **state)
         snprintf(text + length, sizeof text - (size_t)length, "%s%s%s", faces, odd, vertices[i]);
         assert_tetrahedron(text, strlen(text), i ? 1000000.25 : 0);
         size_t size;
-        char *copy = sm_ply_vertices_first(text, strlen(text), &size);
+        char *copy = sm_ply_ordered(text, strlen(text), &size);
         assert_non_null(copy);
         assert_int_equal(size, strlen(text) + 1);
         const char *data = strstr(copy, "end_header\n") + 11;
         snprintf(expected, sizeof expected, "%s\n3 0 2 1\n", vertices[i]);
         assert_memory_equal(data, expected, strlen(vertices[i]) + 9);
-        assert_null(sm_ply_vertices_first(copy, size, &size));
+        assert_null(sm_ply_ordered(copy, size, &size));
         free(copy);
     }
+}
+
+/* Two to a line, and one over two lines: whatever the lines, the words say what is meant. */
+static void test_lines_do_not_matter(void **state)
+{
+    (void)state;
+    static const char start[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+                                "property float y\nproperty float z\nelement face 4\n"
+                                "property list uchar int vertex_indices\nend_header\n";
+    static const char *const data[] = {
+        "0 0 0 1 0 0\n0 1 0\t0 0 1\n3 0 2 1 3 0 1 3\n3 1 2 3 3 0 3 2\n",
+        "0 0 0\r\n1 0\r\n0\r\n0 1 0\r\n 0 0 1\r\n3 0 2\r\n 1\r\n3 0 1 3\r\n3 1 2 3\r\n3 0 3 2",
+        "0 0 0 1 0 0 0 1 0 0 0 1 3 0 2 1 3 0 1 3 3 1 2 3 3 0 3 2"};
+    char text[512];
+    size_t size;
+    for (size_t i = 0; i < sizeof data / sizeof *data; i++) {
+        snprintf(text, sizeof text, "%s%s", start, data[i]);
+        assert_tetrahedron(text, strlen(text), 0);
+        char *copy = sm_ply_ordered(text, strlen(text), &size);
+        assert_non_null(copy);
+        assert_null(sm_ply_ordered(copy, size, &size));
+        free(copy);
+    }
+    snprintf(text, sizeof text, "%s%s 9\n", start, data[0]); /* a word too many: left alone */
+    assert_null(sm_ply_ordered(text, strlen(text), &size));
 }
 
 static size_t make_binary(bool big, char bytes[512])
@@ -97,7 +122,7 @@ static void test_what_is_left_alone(void **state)
         char *cut = malloc(length + 1);
         memcpy(cut, bytes, length);
         cut[length] = 0;
-        assert_null(sm_ply_vertices_first(cut, length, &new_size));
+        assert_null(sm_ply_ordered(cut, length, &new_size));
         free(cut);
     }
     static const char *const texts[] = {
@@ -114,13 +139,14 @@ static void test_what_is_left_alone(void **state)
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nelement face 1\n"
         "property int x\nend_header\n1\n1\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
-        assert_null(sm_ply_vertices_first(texts[i], strlen(texts[i]), &new_size));
+        assert_null(sm_ply_ordered(texts[i], strlen(texts[i]), &new_size));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ascii),
+        cmocka_unit_test(test_lines_do_not_matter),
         cmocka_unit_test(test_binary),
         cmocka_unit_test(test_what_is_left_alone),
     };
