@@ -1,15 +1,14 @@
-/* build.c - bodies from a tree, its regions and masses; and what moves them as a whole. */
+#include "build.h"
+
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/simd/momentum.h"
 #include "../lib/system/team.h"
-#include "changing.h"
+#include "body_arrays.h"
+#include "dynamic_body.h"
 #include "ghosts.h"
-#include "octree.h"
-#include "slots.h"
+#include "positions.h"
 
 enum { BLOCKS_WORTH_A_THREAD = 128 };
 
@@ -50,7 +49,7 @@ static void share_blocks(Oct *oct, long blocks)
     oct->threads = threads;
     if (oct->instances == 1) oct->workers = 1;
     oct->share = sm_alloc((size_t)threads + 1, sizeof(long));
-    const OctSpan *span = oct->lists.span + oct->lists.carriers;
+    const OctSpan *span = oct->lists.span + oct->lists.prefixes;
     long all = 0, block = 0, before = 0, per_block = 20 * SM_LANES;
     for (long slot = 0; slot < blocks * SM_LANES; slot++) all += span[slot].count;
     all += per_block * blocks;
@@ -69,11 +68,11 @@ static void share_blocks(Oct *oct, long blocks)
 static void fill_rows(const OctTree *tree, const Oct *oct, OctRows *rows)
 {
     real *const array[2] = {rows->moment, rows->transform};
-    const OctBreadth *const lists[2] = {&oct->lists, oct_goal_breadth(oct)};
+    const OctSumLists *const lists[2] = {&oct->lists, oct_goal_lists(oct)};
     for (int d = 0; d < 3; d++) rows->moment[OCT_UNIT_ROW * OCT_ROW + 5 * d + 4] = 1;
     for (int a = 0; a < 2; a++)
-        for (long k = 0; k < lists[a]->carriers; k++)
-            oct_row_centre(tree, lists[a]->carrier[k], array[a] + oct_carrier_row(k) * OCT_ROW);
+        for (long k = 0; k < lists[a]->prefixes; k++)
+            oct_row_centre(tree, lists[a]->prefix[k], array[a] + oct_prefix_row(k) * OCT_ROW);
 }
 
 void oct_shape(Oct *oct, long body, const double (*S)[9])
@@ -107,18 +106,18 @@ static void start_at_rest(const OctTree *tree, Oct *oct)
     double(*rest)[3] = sm_alloc((size_t)tree->leaves, sizeof *rest);
     for (long leaf = 0; leaf < tree->leaves; leaf++)
         for (int d = 0; d < 3; d++) rest[leaf][d] = 0.5 * tree->centre[tree->node[leaf]][d];
-    for (long i = 0; i < oct->instances; i++) oct_place(oct, i, (const double(*)[3])rest);
+    for (long i = 0; i < oct->instances; i++) oct_set_positions(oct, i, (const double(*)[3])rest);
     free(rest);
 }
 
 static void build_lists(const OctTree *tree, const OctRegions *regions, Oct *oct)
 {
-    oct_breadth_build(tree, regions, &oct->lists);
+    oct_sum_lists_build(tree, regions, &oct->lists);
     if (oct->params.form != OCT_ADJOINT) return;
-    oct_breadth_transpose(tree, &oct->lists, &oct->goal_lists);
+    oct_sum_lists_transpose(tree, &oct->lists, &oct->goal_lists);
     long base = oct->lists.base > oct->goal_lists.base ? oct->lists.base : oct->goal_lists.base;
-    oct_breadth_rebase(&oct->lists, base);
-    oct_breadth_rebase(&oct->goal_lists, base);
+    oct_sum_lists_rebase(&oct->lists, base);
+    oct_sum_lists_rebase(&oct->goal_lists, base);
 }
 
 Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mass,
@@ -158,13 +157,14 @@ void oct_free(Oct *oct)
         void *all[] = {b->origin, b->x, b->v, b->g, b->last, b->stretch, b->plastic, b->inverse};
         for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
     }
-    oct_breadth_free(&oct->lists);
-    oct_breadth_free(&oct->goal_lists);
+    oct_sum_lists_free(&oct->lists);
+    oct_sum_lists_free(&oct->goal_lists);
     oct_levels_free(&oct->inner);
-    oct_changing_free(oct->changing);
+    oct_dynamic_body_free(oct->dynamic);
     oct_ghosts_free(oct);
-    void *all[] = {oct->thin,  oct->thin_of, oct->child,  oct->children, oct->row,  oct->live,
-                   oct->block, oct->share,   oct->spread, oct->rows,     oct->body, oct->obstacle};
+    void *all[] = {oct->collinear, oct->collinear_of, oct->child, oct->children,
+                   oct->row,       oct->live,         oct->block, oct->share,
+                   oct->spread,    oct->rows,         oct->body,  oct->obstacle};
     for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
     free(oct);
 }
@@ -173,11 +173,11 @@ long oct_bytes(const Oct *oct)
 {
     size_t blocks = (size_t)oct->block_room, lanes = blocks * SM_LANES;
     size_t row_count = (size_t)(oct->lists.base + oct->node_room);
-    size_t structure = oct_breadth_bytes(&oct->lists) + (size_t)oct->node_room * (sizeof(int) + 1) +
-                       oct_levels_bytes(&oct->inner) + lanes * sizeof(int) +
-                       blocks * (sizeof(OctConst) + sizeof(int) + 1) +
-                       (size_t)oct->thin_room * sizeof(OctThin);
-    if (oct->goal_lists.span) structure += oct_breadth_bytes(&oct->goal_lists);
+    size_t structure = oct_sum_lists_bytes(&oct->lists) +
+                       (size_t)oct->node_room * (sizeof(int) + 1) + oct_levels_bytes(&oct->inner) +
+                       lanes * sizeof(int) + blocks * (sizeof(OctConst) + sizeof(int) + 1) +
+                       (size_t)oct->collinear_room * sizeof(OctCollinear);
+    if (oct->goal_lists.span) structure += oct_sum_lists_bytes(&oct->goal_lists);
     size_t rows = (row_count * (2 * OCT_ROW + OCT_ROW_VELOCITY) + lanes * 3) * sizeof(real);
     size_t state = lanes * (9 * sizeof(real) + 6 * sizeof(short));
     if (oct->params.polar == SM_POLAR_JACOBI) state += lanes * 9 * sizeof(real);
@@ -185,64 +185,6 @@ long oct_bytes(const Oct *oct)
         structure += lanes * 6 * sizeof(real);
         state += lanes * 18 * sizeof(real);
     }
-    structure += oct_changing_bytes(oct->changing) + oct_ghosts_bytes(oct);
+    structure += oct_dynamic_body_bytes(oct->dynamic) + oct_ghosts_bytes(oct);
     return (long)(structure + (size_t)oct->workers * rows + (size_t)oct->instances * state);
-}
-
-/* Sums and counts of a body's coordinates by frame, from its origin, or of `x` from 0. */
-static void sum_frames(const Oct *oct, const OctState *b, const double (*x)[3], double (*sum)[4])
-{
-    memset(sum, 0, (size_t)oct->frames * sizeof *sum);
-    for (long leaf = 0; leaf < oct->leaves; leaf++) {
-        if (!oct_alive(oct, leaf)) continue;
-        double *to = sum[oct->frame ? oct->frame[leaf] : 0];
-        for (int d = 0; d < 3; d++) to[d] += x ? x[leaf][d] : (double)b->x[oct_index(leaf, d)];
-        to[3]++;
-    }
-}
-
-void oct_place(Oct *oct, long body, const double (*x)[3])
-{
-    OctState *b = &oct->body[body];
-    sum_frames(oct, b, x, oct->middle);
-    for (long f = 0; f < oct->frames; f++)
-        for (int d = 0; d < 3; d++) b->origin[f][d] = rint(oct->middle[f][d] / oct->middle[f][3]);
-    for (long leaf = 0; leaf < oct->leaves; leaf++)
-        for (int d = 0; d < 3 && oct_alive(oct, leaf); d++)
-            b->x[oct_index(leaf, d)] = (real)(x[leaf][d] - oct_origin(oct, b, leaf)[d]);
-}
-
-/* Slots without a leaf go back to the origin. */
-static void shift_leaves(const Oct *oct, OctState *b, const double (*shift)[4])
-{
-    for (long leaf = 0; leaf < oct->blocks * SM_LANES; leaf++)
-        for (int d = 0; d < 3; d++) {
-            real *x = &b->x[oct_index(leaf, d)], *v = &b->v[oct_index(leaf, d)];
-            if (oct_alive(oct, leaf))
-                *x -= (real)shift[oct->frame ? oct->frame[leaf] : 0][d];
-            else
-                *x = *v = 0;
-        }
-}
-
-void oct_recentre(Oct *oct)
-{
-    double farthest = 0;
-    for (OctState *b = oct->body; b < oct->body + oct->instances; b++) {
-        bool moves = false;
-        sum_frames(oct, b, NULL, oct->middle);
-        for (long f = 0; f < oct->frames; f++)
-            for (int d = 0; d < 3; d++) {
-                double middle = rint(oct->middle[f][d] / oct->middle[f][3]);
-                middle = fabs(middle) > 4 ? middle : 0; /* nor is a NaN a place */
-                oct->middle[f][d] = middle;
-                b->origin[f][d] += middle;
-                moves |= middle != 0;
-                farthest = fmax(farthest, fabs(middle));
-            }
-        if (moves) shift_leaves(oct, b, (const double(*)[4])oct->middle);
-    }
-    long since = oct->steps - oct->recentred;
-    oct->recentred = oct->steps;
-    oct->recentre = oct->steps + sm_recentre_after(since, farthest);
 }

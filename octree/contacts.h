@@ -4,7 +4,7 @@
 #define OCT_CONTACTS_H
 
 #include "change/structure.h"
-#include "octree.h"
+#include "state.h"
 
 #define OctContacts          SM_NAME(OctContacts)
 #define oct_contacts_build   SM_NAME(oct_contacts_build)

@@ -1,8 +1,9 @@
 /* damping.c - region damping by HF: each region's rigid velocity, averaged over the regions of a
  * node, pulls the node's velocity towards it (fastlsm eq. 14). */
+#include "damping.h"
+
 #include "../lib/simd/rigid_lanes.h"
 #include "ghosts.h"
-#include "octree.h"
 
 static void weigh(OctTask *task, long first, long last)
 {
@@ -41,7 +42,7 @@ static void sums_up(OctTask *task, long first, long last)
 
 SM_INLINE Row list_sum(const OctTask *task, long t)
 {
-    const OctBreadth *lists = &task->oct->lists;
+    const OctSumLists *lists = &task->oct->lists;
     const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
     Row sum[OCT_GROUP] = {{{{0}}}};
     for (; row < end; row += OCT_GROUP)
@@ -53,7 +54,7 @@ SM_INLINE Row list_sum(const OctTask *task, long t)
 static void sums_down(OctTask *task, long first, long last)
 {
     for (long k = first; k < last; k++)
-        row_keep(task->rows->transform + oct_carrier_row(k) * OCT_ROW, list_sum(task, k));
+        row_keep(task->rows->transform + oct_prefix_row(k) * OCT_ROW, list_sum(task, k));
 }
 
 /* omega and v - omega x c of every region, times m_r. */
@@ -67,7 +68,7 @@ static void solve(OctTask *task, long first, long last)
         const real *row[SM_LANES];
         vec padded[16], F[12], c[3], out[6];
         for (int lane = 0; lane < SM_LANES; lane++) {
-            row_store(sums[lane], list_sum(task, oct->lists.carriers + block * SM_LANES + lane));
+            row_store(sums[lane], list_sum(task, oct->lists.prefixes + block * SM_LANES + lane));
             row[lane] = sums[lane];
         }
         lanes_from_rows(row, padded);
@@ -98,7 +99,7 @@ static void velocities_up(OctTask *task, long first, long last)
     }
 }
 
-SM_INLINE vec8 list_velocity(const OctBreadth *lists, const real *velocity, long t)
+SM_INLINE vec8 list_velocity(const OctSumLists *lists, const real *velocity, long t)
 {
     const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
     vec8 sum[OCT_GROUP] = {{0}};
@@ -111,16 +112,16 @@ SM_INLINE vec8 list_velocity(const OctBreadth *lists, const real *velocity, long
 
 static void velocities_down(OctTask *task, long first, long last)
 {
-    const OctBreadth *lists = oct_goal_breadth(task->oct);
+    const OctSumLists *lists = oct_goal_lists(task->oct);
     real *velocity = task->rows->velocity;
     for (long k = first; k < last; k++)
-        store8(velocity + oct_carrier_row(k) * OCT_ROW_VELOCITY, list_velocity(lists, velocity, k));
+        store8(velocity + oct_prefix_row(k) * OCT_ROW_VELOCITY, list_velocity(lists, velocity, k));
 }
 
 static void slow(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;
-    const OctBreadth *lists = oct_goal_breadth(oct);
+    const OctSumLists *lists = oct_goal_lists(oct);
     for (long block = first; block < last; block++) {
         if (!oct->live[block]) continue;
         long at = block * 3 * SM_LANES;
@@ -128,7 +129,7 @@ static void slow(OctTask *task, long first, long last)
         for (int lane = 0; lane < SM_LANES; lane++)
             store8((real *)field + lane * OCT_ROW_VELOCITY,
                    list_velocity(lists, task->rows->velocity,
-                                 lists->carriers + block * SM_LANES + lane));
+                                 lists->prefixes + block * SM_LANES + lane));
         lanes_separate(field, 8);
         for (int i = 0; i < 6; i++) sum[i] = field[i / 3 * 4 + i % 3];
         load3(task->body->x + at, x);
@@ -151,6 +152,6 @@ void oct_damp(OctTask *task)
     oct_each_block(task, solve);
     oct_climb(task, velocities_up);
     oct_each_ghost(task, oct_ghosts_velocities);
-    oct_descend(task, oct_goal_breadth(task->oct), velocities_down);
+    oct_descend(task, oct_goal_lists(task->oct), velocities_down);
     oct_each_block(task, slow);
 }

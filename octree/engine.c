@@ -5,20 +5,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/csr.h"
 #include "../lib/simd/momentum.h"
 #include "../lib/simd/rotate_lanes.h"
 #include "../lib/system/team.h"
-#include "change/head.h"
-#include "change/rebuild.h"
-#include "changing.h"
+#include "change/engine_base.h"
+#include "change/structure.h"
 #include "contacts.h"
-#include "graph/frames.h"
-#include "held.h"
+#include "dynamic_body.h"
+#include "handle_nodes.h"
 #include "octree.h"
-#include "region/lists.h"
+#include "region/frames.h"
 
 struct SmEngine {
-    OctHead head; /* first: oct_engine_structure() */
+    OctEngineBase base; /* first: oct_engine_structure() */
     Oct *oct;
     long count;     /* nodes of one body */
     bool renumber;  /* leaf and number are to be found again */
@@ -27,7 +27,7 @@ struct SmEngine {
     long leaf_room; /* of `leaf`, `number` */
     double h;
     double (*pose)[3][4]; /* [instances] */
-    OctHeld held;
+    OctHandleNodes handle_nodes;
     OctContacts *contacts; /* NULL: nothing collides */
     Momentum *momentum;    /* of a weighting that keeps none: tells only what rests */
     bool divided;          /* its pieces are those of the present structure */
@@ -38,7 +38,7 @@ struct SmEngine {
 /* Finds the numbers of nodes again after a change. */
 static void renumber(SmEngine *e)
 {
-    const OctTree *tree = &e->head.structure.tree;
+    const OctTree *tree = &e->base.structure.tree;
     if (!e->renumber) return;
     e->renumber = false;
     if (tree->leaves > e->leaf_room) {
@@ -63,7 +63,7 @@ static long leaf_of(const SmEngine *e, long number)
 static void rest_position(const SmEngine *e, long body, long leaf, double x0[3])
 {
     double rest[3];
-    oct_structure_centre(&e->head.structure, leaf, rest);
+    oct_structure_centre(&e->base.structure, leaf, rest);
     sm_pose_apply((const double(*)[4])e->pose[body], rest, x0);
 }
 
@@ -82,12 +82,12 @@ static void get_node(const SmEngine *e, SmField field, long number, double value
 {
     const OctState *body = body_of(e, number);
     const real *from = field == SM_VELOCITY ? body->v : field == SM_GOAL ? body->g : body->x;
-    double cell = e->head.structure.cell;
+    double cell = e->base.structure.cell;
     for (int d = 0; d < 3; d++) {
         long leaf = leaf_of(e, number);
         double here = (double)from[oct_index(leaf, d)];
         value[d] = field == SM_VELOCITY ? (body->kick[d] + here) * cell / e->h
-                                        : e->head.structure.origin[d] +
+                                        : e->base.structure.origin[d] +
                                               cell * (oct_origin(e->oct, body, leaf)[d] + here);
     }
 }
@@ -132,13 +132,13 @@ static bool engine_set_shapes(SmEngine *e, const double (*S)[9])
 
 static void set_positions(SmEngine *e, const double (*values)[3])
 {
-    const OctStructure *s = &e->head.structure;
+    const OctStructure *s = &e->base.structure;
     double(*x)[3] = sm_alloc((size_t)e->oct->leaves, sizeof *x);
     for (long i = 0; i < e->oct->instances; i++) {
         for (long k = 0; k < e->count; k++)
             for (int d = 0; d < 3; d++)
                 x[leaf_of(e, k)][d] = (values[i * e->count + k][d] - s->origin[d]) / s->cell;
-        oct_place(e->oct, i, (const double(*)[3])x);
+        oct_set_positions(e->oct, i, (const double(*)[3])x);
     }
     free(x);
 }
@@ -153,7 +153,7 @@ static void engine_set(SmEngine *e, SmField field, const double (*values)[3])
         set_positions(e, values);
         return;
     }
-    double scale = e->h / e->head.structure.cell;
+    double scale = e->h / e->base.structure.cell;
     for (long number = 0; number < e->oct->instances * e->count; number++)
         for (int d = 0; d < 3; d++)
             body_of(e, number)->v[oct_index(leaf_of(e, number), d)] =
@@ -187,7 +187,7 @@ static void start_at_rest(SmEngine *e, const SmEngineParams *params)
 static void divide_momentum(SmEngine *e)
 {
     Momentum *m = e->momentum;
-    const OctStructure *s = &e->head.structure;
+    const OctStructure *s = &e->base.structure;
     momentum_room(m, e->oct->blocks);
     long slots = e->oct->blocks * SM_LANES, pieces;
     for (long slot = 0; slot < slots; slot++) m->label[slot] = -1;
@@ -208,7 +208,7 @@ static SmCode engine_begin(SmEngine *e, SmError *error)
                        "octree: %ld bodies share this engine's sampling, and cannot be resampled; "
                        "give a body that is to change an engine of its own",
                        e->oct->instances);
-    if (e->head.structure.options.symmetry != OCT_UNION)
+    if (e->base.structure.options.symmetry != OCT_UNION)
         return sm_fail(error, SM_USAGE,
                        "octree: only bodies of symmetry 'union' can be resampled; use it, or leave "
                        "the sampling as it is");
@@ -217,36 +217,36 @@ static SmCode engine_begin(SmEngine *e, SmError *error)
                        "octree: bodies of form 'adjoint' cannot be resampled; use 'hierarchical', "
                        "which is the same where regions are symmetric, as the engine's are");
     int team = sm_team_enter(e->oct->params.threads);
-    oct_resample_prepare(&e->head.structure);
+    oct_resample_prepare(&e->base.structure);
     sm_team_leave(team);
-    oct_prepare(e->oct, &e->head.structure);
+    oct_prepare(e->oct, &e->base.structure);
     return SM_OK;
 }
 
-/* Contacts do not move what is held. */
+/* Contacts do not move what is handle_nodes. */
 static void fix_held(SmEngine *e)
 {
-    long *fixed = sm_alloc((size_t)e->held.count, sizeof *fixed);
+    long *fixed = sm_alloc((size_t)e->handle_nodes.count, sizeof *fixed);
     renumber(e);
-    for (long i = 0; i < e->held.count; i++) {
-        const struct OctHeldNode *node = &e->held.node[i];
+    for (long i = 0; i < e->handle_nodes.count; i++) {
+        const struct OctHandleNode *node = &e->handle_nodes.node[i];
         fixed[i] = node->body * e->count + (e->number ? e->number[node->leaf] : node->leaf);
     }
-    oct_contacts_fix(e->contacts, e->held.count, fixed);
+    oct_contacts_fix(e->contacts, e->handle_nodes.count, fixed);
     free(fixed);
 }
 
 static const OctChange *engine_end(SmEngine *e)
 {
-    const OctChange *change = oct_resample_update(&e->head.structure);
-    oct_change(e->oct, &e->head.structure, change, e->held.count > 0);
-    oct_held_inherit(&e->held, &e->head.structure.tree, change);
-    e->count = e->head.structure.tree.live;
+    const OctChange *change = oct_resample_update(&e->base.structure);
+    oct_change(e->oct, &e->base.structure, change, e->handle_nodes.count > 0);
+    oct_handle_nodes_transfer(&e->handle_nodes, &e->base.structure.tree, change);
+    e->count = e->base.structure.tree.live;
     e->renumber = true;
     e->goals = e->divided = false;
     momentum_forget(e->momentum);
     if (e->contacts && change->region_count + change->edge_count > 0) {
-        oct_contacts_rebuild(e->contacts, &e->head.structure);
+        oct_contacts_rebuild(e->contacts, &e->base.structure);
         fix_held(e);
     }
     return change;
@@ -318,15 +318,15 @@ static SmCode engine_rebuild(SmEngine *e, const SmEngineParams *params, SmEngine
 /* Everything behind the structure, which is in its place. */
 static void complete(SmEngine *e, const OctOptions *options, const SmEngineParams *params)
 {
-    e->head.begin = engine_begin;
-    e->head.end = engine_end;
-    e->head.leaves = engine_leaves;
-    e->head.rebuild = engine_rebuild;
-    e->oct = build(&e->head.structure, options, params);
-    e->count = e->head.structure.tree.leaves;
+    e->base.begin = engine_begin;
+    e->base.end = engine_end;
+    e->base.leaves = engine_leaves;
+    e->base.rebuild = engine_rebuild;
+    e->oct = build(&e->base.structure, options, params);
+    e->count = e->base.structure.tree.leaves;
     e->h = params->h;
     start_at_rest(e, params);
-    e->contacts = oct_contacts_build(e->oct, &e->head.structure, &params->collide);
+    e->contacts = oct_contacts_build(e->oct, &e->base.structure, &params->collide);
     int every = options->weighting == OCT_CONSERVING ? 1 : 16;
     e->momentum = momentum_build(e->oct->blocks, e->oct->instances, false, every, e->oct->threads);
     divide_momentum(e);
@@ -342,10 +342,10 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     if (code) return code;
     int team = sm_team_enter(params->threads);
     SmEngine *e = sm_alloc(1, sizeof *e);
-    code = oct_structure_build(voxels, options, params->mass, &e->head.structure, error);
+    code = oct_structure_build(voxels, options, params->mass, &e->base.structure, error);
     if (!code) {
-        code = check_reach(&e->head.structure, error);
-        if (code) oct_structure_free(&e->head.structure);
+        code = check_reach(&e->base.structure, error);
+        if (code) oct_structure_free(&e->base.structure);
     }
     if (!code) complete(e, options, params);
     sm_team_leave(team);
@@ -366,9 +366,9 @@ static SmCode engine_rebuild(SmEngine *e, const SmEngineParams *params, SmEngine
         return sm_fail(error, SM_USAGE, "octree: bodies that share a structure do not change");
     SmEngine *made = sm_alloc(1, sizeof *made);
     int team = sm_team_enter(params->threads);
-    SmCode code = oct_structure_rebuild(&e->head.structure, params->mass, &made->head.structure,
+    SmCode code = oct_structure_rebuild(&e->base.structure, params->mass, &made->base.structure,
                                         &leaf, error);
-    if (!code) complete(made, &e->head.structure.options, params);
+    if (!code) complete(made, &e->base.structure.options, params);
     sm_team_leave(team);
     if (code) {
         free(made);
@@ -384,11 +384,11 @@ static SmCode engine_rebuild(SmEngine *e, const SmEngineParams *params, SmEngine
 static void engine_destroy(SmEngine *e)
 {
     if (!e) return;
-    oct_held_free(&e->held);
+    oct_handle_nodes_free(&e->handle_nodes);
     oct_contacts_free(e->contacts);
     momentum_free(e->momentum);
     oct_free(e->oct);
-    oct_structure_free(&e->head.structure);
+    oct_structure_free(&e->base.structure);
     free(e->pose);
     free(e->leaf);
     free(e->number);
@@ -398,7 +398,7 @@ static void engine_destroy(SmEngine *e)
 /* Does nothing but gravity act on the bodies? */
 static bool is_free(const SmEngine *e)
 {
-    return e->held.count == 0 && e->oct->obstacle_count == 0 &&
+    return e->handle_nodes.count == 0 && e->oct->obstacle_count == 0 &&
            !(e->contacts && oct_contacts_count(e->contacts) > 0);
 }
 
@@ -431,14 +431,15 @@ static void keep_momentum(SmEngine *e)
 static void engine_step(SmEngine *e, SmLaps *laps)
 {
     e->goals = false;
-    oct_held_note(&e->held, e->oct);
+    oct_handle_nodes_note(&e->handle_nodes, e->oct);
     begin_momentum(e);
     if (e->contacts) {
         oct_contacts_before(e->contacts);
         sm_lap(laps, SM_OTHER);
     }
     oct_step(e->oct, laps);
-    oct_held_move(&e->held, e->oct, &e->head.structure, (const double(*)[3][4])e->pose);
+    oct_handle_nodes_move(&e->handle_nodes, e->oct, &e->base.structure,
+                          (const double(*)[3][4])e->pose);
     if (e->contacts) oct_contacts_after(e->contacts);
     keep_momentum(e);
     if (e->oct->steps >= e->oct->recentre) oct_recentre(e->oct);
@@ -448,7 +449,7 @@ static void engine_step(SmEngine *e, SmLaps *laps)
 static long engine_contacts(SmEngine *e, double (*turn)[9], SmContact **contact)
 {
     *contact = NULL;
-    return e->contacts ? oct_contacts_list(e->contacts, e->head.structure.cell, turn, contact) : 0;
+    return e->contacts ? oct_contacts_list(e->contacts, e->base.structure.cell, turn, contact) : 0;
 }
 
 static void engine_push(SmEngine *e, long count, const long *particle, const double (*impulse)[3])
@@ -457,7 +458,7 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
     for (long i = 0; i < count; i++) {
         assert(particle[i] >= 0 && particle[i] < e->oct->instances * e->count);
         long leaf = leaf_of(e, particle[i]);
-        double scale = e->h / (e->head.structure.cell * e->head.structure.mass[leaf]), at[3], dv[3];
+        double scale = e->h / (e->base.structure.cell * e->base.structure.mass[leaf]), at[3], dv[3];
         OctState *body = body_of(e, particle[i]);
         for (int d = 0; d < 3; d++) {
             long index = oct_index(leaf, d);
@@ -475,12 +476,12 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
     Oct *oct = e->oct;
     renumber(e);
     momentum_forget(e->momentum);
-    sm_handles_set(&e->held.handles, boundary, e->oct->instances * e->count);
-    e->held.count = 0;
-    for (int i = 0; i < e->held.handles.count; i++)
-        for (long k = 0; k < e->held.handles.handle[i].count; k++) {
-            long number = e->held.handles.handle[i].particle[k];
-            oct_held_add(&e->held, number / e->count, (int)leaf_of(e, number), i);
+    sm_handles_set(&e->handle_nodes.handles, boundary, e->oct->instances * e->count);
+    e->handle_nodes.count = 0;
+    for (int i = 0; i < e->handle_nodes.handles.count; i++)
+        for (long k = 0; k < e->handle_nodes.handles.handle[i].count; k++) {
+            long number = e->handle_nodes.handles.handle[i].particle[k];
+            oct_handle_nodes_add(&e->handle_nodes, number / e->count, (int)leaf_of(e, number), i);
         }
     if (e->contacts) fix_held(e);
     if (!oct->obstacle || oct->obstacle_count != boundary->obstacle_count) {
@@ -489,19 +490,19 @@ static void engine_bound(SmEngine *e, const SmBoundary *boundary)
         oct->obstacle = sm_alloc((size_t)boundary->obstacle_count, sizeof *oct->obstacle);
     }
     for (int i = 0; i < boundary->obstacle_count; i++)
-        oct->obstacle[i] = obstacle_in_cells(&boundary->obstacle[i], e->head.structure.origin,
-                                             e->head.structure.cell);
+        oct->obstacle[i] = obstacle_in_cells(&boundary->obstacle[i], e->base.structure.origin,
+                                             e->base.structure.cell);
 }
 
 static void engine_masses(SmEngine *e, double *mass)
 {
     renumber(e);
-    for (long k = 0; k < e->count; k++) mass[k] = e->head.structure.mass[leaf_of(e, k)];
+    for (long k = 0; k < e->count; k++) mass[k] = e->base.structure.mass[leaf_of(e, k)];
 }
 
 static void engine_count(SmEngine *e, SmCounts *counts)
 {
-    const OctStructure *s = &e->head.structure;
+    const OctStructure *s = &e->base.structure;
     *counts = (SmCounts){
         .particles = e->oct->instances * e->count,
         .regions = e->count,
@@ -516,12 +517,12 @@ static void engine_count(SmEngine *e, SmCounts *counts)
 
 static long engine_region(SmEngine *e, long number, long *member, long room)
 {
-    const OctStructure *s = &e->head.structure;
+    const OctStructure *s = &e->base.structure;
     renumber(e);
     long i = leaf_of(e, number), first = number / e->count * e->count, count = s->regions.size[i];
     int *leaf = sm_alloc((size_t)count, sizeof *leaf);
     oct_regions_leaves(&s->tree, &s->regions, i, leaf);
-    oct_lists_sort(leaf, count);
+    sm_sort_ints(leaf, count);
     for (long k = 0; k < count && k < room; k++)
         member[k] = first + (e->number ? e->number[leaf[k]] : leaf[k]);
     free(leaf);

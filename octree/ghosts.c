@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "graph/frames.h"
-#include "octree.h"
-#include "slots.h"
+#include "body_arrays.h"
+#include "positions.h"
+#include "region/frames.h"
 
 /* ---- which rows need a ghost */
 
@@ -28,7 +28,7 @@ static int frame_of(const Search *s, int node)
     return s->frame[s->tree->leaf[node]];
 }
 
-static void search_list(Search *s, const OctBreadth *lists, const OctSpan *span, int frame)
+static void search_list(Search *s, const OctSumLists *lists, const OctSpan *span, int frame)
 {
     for (int *entry = lists->row + span->first; entry < lists->row + span->first + span->count;
          entry++) {
@@ -42,12 +42,12 @@ static void search_list(Search *s, const OctBreadth *lists, const OctSpan *span,
     }
 }
 
-static void search_lists(Search *s, const OctBreadth *lists)
+static void search_lists(Search *s, const OctSumLists *lists)
 {
-    for (long k = 0; k < lists->carriers; k++)
-        search_list(s, lists, &lists->span[k], frame_of(s, lists->carrier[k]));
+    for (long k = 0; k < lists->prefixes; k++)
+        search_list(s, lists, &lists->span[k], frame_of(s, lists->prefix[k]));
     for (long leaf = 0; leaf < lists->leaves; leaf++)
-        search_list(s, lists, &lists->span[lists->carriers + leaf], s->frame[leaf]);
+        search_list(s, lists, &lists->span[lists->prefixes + leaf], s->frame[leaf]);
 }
 
 static int compare(const void *a, const void *b)
@@ -69,8 +69,8 @@ static void add_ghosts(Oct *oct, Search *s)
             (OctGhost){.node = f->row, .from = frame_of(s, f->row), .to = f->frame};
     }
     oct->ghost_row = oct->lists.base;
-    oct_breadth_rebase(&oct->lists, oct->ghost_row + oct->ghosts);
-    if (oct->goal_lists.span) oct_breadth_rebase(&oct->goal_lists, oct->lists.base);
+    oct_sum_lists_rebase(&oct->lists, oct->ghost_row + oct->ghosts);
+    if (oct->goal_lists.span) oct_sum_lists_rebase(&oct->goal_lists, oct->lists.base);
     long ghost = -1;
     for (long i = 0; i < s->count; i++) {
         if (i == 0 || compare(&s->found[i], &s->found[i - 1]) != 0) ghost++;
@@ -112,7 +112,7 @@ void oct_ghosts_fill(Oct *oct, const OctTree *tree, const OctWeights *w)
     }
 }
 
-static void forget_ghosts(Oct *oct, OctBreadth *lists)
+static void forget_ghosts(Oct *oct, OctSumLists *lists)
 {
     for (long at = 0; at < lists->used; at++) {
         long ghost = lists->row[at] - oct->ghost_row;

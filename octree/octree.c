@@ -7,7 +7,7 @@
  *     breadth    every simulation node sums over the regions that contain it (octree eq. 8)
  *     move       v, damping, x (fastlsm eqs. 1, 14, 2)
  *
- * A breadth goes by breadth.h: first the carriers, from the roots down, then the leaves. With the
+ * A breadth goes by sum_lists.h: first the prefixes, from the roots down, then the leaves. With the
  * lists transposed the second is the adjoint of the first. */
 #include "octree.h"
 
@@ -15,9 +15,10 @@
 #include <omp.h>
 #include <string.h>
 
+#include "collinear_regions.h"
+#include "damping.h"
 #include "ghosts.h"
-#include "region/plastic.h"
-#include "region/thin.h"
+#include "plastic.h"
 
 /* m~ x of the simulation nodes; a node has no moments about itself. */
 static void weigh(OctTask *task, long first, long last)
@@ -56,7 +57,7 @@ static void moments_up(OctTask *task, long first, long last)
 /* The sum of list t about the centre of row `to`. */
 SM_INLINE Row list_moments(const OctTask *task, long t, long to)
 {
-    const OctBreadth *lists = &task->oct->lists;
+    const OctSumLists *lists = &task->oct->lists;
     const real *moment = task->rows->moment;
     const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
     Row centre = row_pads(row_load(moment + to * OCT_ROW));
@@ -70,7 +71,7 @@ SM_INLINE Row list_moments(const OctTask *task, long t, long to)
 static void moments_down(OctTask *task, long first, long last)
 {
     for (long k = first; k < last; k++) {
-        long row = oct_carrier_row(k);
+        long row = oct_prefix_row(k);
         row_keep(task->rows->moment + row * OCT_ROW, list_moments(task, k, row));
     }
     sm_lap(task->laps, SM_FAST_SUM);
@@ -84,7 +85,7 @@ SM_INLINE void region_sums(const OctTask *task, long block, vec S[16])
     const real *row[SM_LANES];
     for (int lane = 0; lane < SM_LANES; lane++) {
         long slot = block * SM_LANES + lane;
-        row_store(sums[lane], list_moments(task, oct->lists.carriers + slot, oct->row[slot]));
+        row_store(sums[lane], list_moments(task, oct->lists.prefixes + slot, oct->row[slot]));
         row[lane] = sums[lane];
     }
     lanes_from_rows(row, S);
@@ -142,7 +143,8 @@ static void match(OctTask *task, long first, long last)
         if (body->plastic) plastic_moments(body->plastic + block * 9 * SM_LANES, A);
         sm_lap(task->laps, SM_SHAPE_MATCHING);
         short *before = body->last + block * 6 * SM_LANES;
-        if (oct->thin_of[block] >= 0) thin_rotations(&oct->thin[oct->thin_of[block]], before, A);
+        if (oct->collinear_of[block] >= 0)
+            collinear_rotations(&oct->collinear[oct->collinear_of[block]], before, A);
         if (body->stretch)
             rotate_jacobi(A, before, body->stretch + block * 9 * SM_LANES, R);
         else
@@ -187,10 +189,10 @@ static void transforms_up(OctTask *task, long first, long last)
 
 static void transforms_down(OctTask *task, long first, long last)
 {
-    const OctBreadth *lists = oct_goal_breadth(task->oct);
+    const OctSumLists *lists = oct_goal_lists(task->oct);
     const real *transform = task->rows->transform;
     for (long k = first; k < last; k++) {
-        real *to = task->rows->transform + oct_carrier_row(k) * OCT_ROW;
+        real *to = task->rows->transform + oct_prefix_row(k) * OCT_ROW;
         Row from = row_from(row_pads(row_load(to))), linear = {0}, value = {0};
         const int *entry = lists->row + lists->span[k].first;
         for (int i = 0; i < lists->span[k].count; i++) {
@@ -207,14 +209,14 @@ static void transforms_down(OctTask *task, long first, long last)
 SM_INLINE void goal_sums(const OctTask *task, long block, vec sum[3])
 {
     const Oct *oct = task->oct;
-    const OctBreadth *lists = oct_goal_breadth(oct);
+    const OctSumLists *lists = oct_goal_lists(oct);
     const real *transform = task->rows->transform;
     real values[SM_LANES][OCT_ROW] __attribute__((aligned(64)));
     const real *row[SM_LANES];
     vec field[16];
     for (int lane = 0; lane < SM_LANES; lane++) {
         long slot = block * SM_LANES + lane;
-        const OctSpan *span = &lists->span[lists->carriers + slot];
+        const OctSpan *span = &lists->span[lists->prefixes + slot];
         const int *entry = lists->row + span->first, *end = entry + span->count;
         Row from = row_from(row_pads(row_load(transform + (long)oct->row[slot] * OCT_ROW)));
         Row value[OCT_GROUP] = {{{{0}}}};
@@ -281,7 +283,7 @@ static void step_body(OctTask *task)
     oct_climb(task, transforms_up);
     oct_each_ghost(task, oct_ghosts_transforms);
     next_part(task);
-    oct_descend(task, oct_goal_breadth(task->oct), transforms_down);
+    oct_descend(task, oct_goal_lists(task->oct), transforms_down);
     oct_each_block(task, move);
     if (task->oct->damp_now && !task->goals) oct_damp(task);
 }
@@ -342,7 +344,7 @@ static void step(Oct *oct, SmLaps *laps, bool apart)
     step_all(oct, false, laps, apart);
     for (long i = 0; i < oct->instances; i++) memset(oct->body[i].kick, 0, sizeof oct->body->kick);
     oct->steps++;
-    sm_lap(apart ? laps + OCT_PARTS - 1 : laps, SM_OTHER);
+    sm_lap(apart ? laps + OCT_STEP_PARTS - 1 : laps, SM_OTHER);
 }
 
 void oct_step(Oct *oct, SmLaps *laps)
@@ -350,7 +352,7 @@ void oct_step(Oct *oct, SmLaps *laps)
     step(oct, laps, false);
 }
 
-void oct_step_parts(Oct *oct, SmLaps laps[OCT_PARTS])
+void oct_step_parts(Oct *oct, SmLaps laps[OCT_STEP_PARTS])
 {
     assert(oct->instances == 1);
     step(oct, laps, true);

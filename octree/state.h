@@ -12,7 +12,7 @@
 #include "../lib/engine.h"
 #include "../lib/integrate.h"
 #include "../lib/simd/lanes.h"
-#include "region/breadth.h"
+#include "region/sum_lists.h"
 #include "region/weights.h"
 #include "tree/levels.h"
 
@@ -38,11 +38,11 @@ typedef struct {
     vec centre[3];               /* x0, finest cells from the tree's first node */
 } OctConst;
 
-/* The thin regions of a block (thin.h). */
+/* The collinear regions of a block (collinear_regions.h). */
 typedef struct {
     ivec lanes;
     vec axis[3];
-} OctThin;
+} OctCollinear;
 
 /* The row of a tree node once more, about the origin of another frame (ghosts.h). */
 typedef struct {
@@ -55,8 +55,8 @@ typedef struct {
  *     moments      sum m~ x            ; of m~ x (x0 - centre)^T the columns x, y, z
  *     transforms   value at the centre ; linear part, columns x, y, z
  *     damping      twelve sums
- * The pads of quarters 1 to 3 hold the node's centre (slots.h), x, y, z; that of quarter 0 is 0.
- * Row numbers are those of breadth.h. */
+ * The pads of quarters 1 to 3 hold the node's centre (body_arrays.h), x, y, z; that of quarter 0 is
+ * 0. Row numbers are those of sum_lists.h. */
 enum { OCT_ROW = 16, OCT_ROW_VELOCITY = 8 };
 
 /* Sums of one body while it is stepped. */
@@ -86,20 +86,20 @@ typedef struct {
     long block_room, node_room; /* there is place for as many */
     int levels, threads;
     double mass_unit;
-    OctBreadth lists, goal_lists; /* goal_lists.span is NULL where the same lists serve */
-    OctLevels inner;              /* tree nodes with children; of a fixed body rising */
-    int *child;                   /* [nodes] */
-    unsigned char *children;      /* [nodes] */
-    int *row;            /* [blocks * lanes] row of a slot, the spare one if it has no leaf */
-    unsigned char *live; /* [blocks] leaves in it */
-    OctConst *block;     /* [blocks] */
-    long thin_count;     /* blocks that have had thin regions */
-    long thin_room;
-    int *thin_of;                 /* [blocks] which of them, or -1 */
-    OctThin *thin;                /* [thin_count] */
-    real *spread;                 /* [blocks][6][lanes] rest moments of the regions, or NULL */
-    long *share;                  /* [threads + 1] first block of each thread */
-    struct OctChanging *changing; /* what is kept to change the body (changing.h), or NULL */
+    OctSumLists lists, goal_lists; /* goal_lists.span is NULL where the same lists serve */
+    OctLevels inner;               /* tree nodes with children; of a fixed body rising */
+    int *child;                    /* [nodes] */
+    unsigned char *children;       /* [nodes] */
+    int *row;             /* [blocks * lanes] row of a slot, the spare one if it has no leaf */
+    unsigned char *live;  /* [blocks] leaves in it */
+    OctConst *block;      /* [blocks] */
+    long collinear_count; /* blocks that have had collinear regions */
+    long collinear_room;
+    int *collinear_of;              /* [blocks] which of them, or -1 */
+    OctCollinear *collinear;        /* [collinear_count] */
+    real *spread;                   /* [blocks][6][lanes] rest moments of the regions, or NULL */
+    long *share;                    /* [threads + 1] first block of each thread */
+    struct OctDynamicBody *dynamic; /* what is kept to change the body (dynamic_body.h), or NULL */
 
     long frames;
     int *frame;             /* [slots] of every leaf; NULL: one for all */
@@ -127,7 +127,7 @@ typedef enum {
     OCT_MOMENTS_BREADTH,    /* regions' moments; matching */
     OCT_TRANSFORMS_DEPTH,   /* tree nodes' transforms */
     OCT_TRANSFORMS_BREADTH, /* goal positions; motion and damping */
-    OCT_PARTS
+    OCT_STEP_PARTS
 } OctStepPart;
 
 /* One thread's part in a pass over one body. */
@@ -158,8 +158,14 @@ SM_INLINE void oct_shift(const Oct *oct, const OctState *body, long block, vec s
             shift[d][lane] = (real)oct_origin(oct, body, block * SM_LANES + lane)[d];
 }
 
+/* Where component d of simulation node `leaf` is in x, v and g of a body. */
+static inline long oct_index(long leaf, int d)
+{
+    return (leaf / SM_LANES * 3 + d) * SM_LANES + leaf % SM_LANES;
+}
+
 /* The lists that goal positions and damping sum over. */
-static inline const OctBreadth *oct_goal_breadth(const Oct *oct)
+static inline const OctSumLists *oct_goal_lists(const Oct *oct)
 {
     return oct->goal_lists.span ? &oct->goal_lists : &oct->lists;
 }

@@ -12,7 +12,7 @@ static void wait_for_all(OctTask *task)
 #pragma omp barrier
 }
 
-void oct_each_block(OctTask *task, OctPart *part)
+void oct_each_block(OctTask *task, OctComponent *part)
 {
     const Oct *oct = task->oct;
     if (task->alone) wait_for_all(task);
@@ -22,7 +22,7 @@ void oct_each_block(OctTask *task, OctPart *part)
     wait_for_all(task);
 }
 
-static void run_level(OctTask *task, OctPart *part, long first, long last)
+static void run_level(OctTask *task, OctComponent *part, long first, long last)
 {
     if (last - first < ROWS_WORTH_SHARING) {
         if (first == last) return;
@@ -38,7 +38,7 @@ static void run_level(OctTask *task, OctPart *part, long first, long last)
     wait_for_all(task);
 }
 
-void oct_climb(OctTask *task, OctPart *part)
+void oct_climb(OctTask *task, OctComponent *part)
 {
     for (int level = task->oct->levels; level >= 0; level--) {
         const OctLevel *inner = &task->oct->inner.level[level];
@@ -47,13 +47,13 @@ void oct_climb(OctTask *task, OctPart *part)
     }
 }
 
-void oct_descend(OctTask *task, const OctBreadth *lists, OctPart *part)
+void oct_descend(OctTask *task, const OctSumLists *lists, OctComponent *part)
 {
     for (int level = 0; level <= lists->levels; level++)
         run_level(task, part, lists->level_first[level], lists->level_first[level + 1]);
 }
 
-void oct_each_ghost(OctTask *task, OctPart *part)
+void oct_each_ghost(OctTask *task, OctComponent *part)
 {
     run_level(task, part, 0, task->oct->ghosts);
 }

@@ -11,7 +11,7 @@
 
 #include "../lib/test_fields.h"
 #include "../reference/octree_goals.h"
-#include "change/structure.h"
+#include "engine.h"
 #include "test_engine_body.h"
 #include "tree/random_trees.h"
 

@@ -65,13 +65,13 @@ static void test_asymmetric(void **state)
     }
 }
 
-/* How often list t, with its carriers' lists, holds each leaf. */
-static void count_leaves(const OctTree *tree, const OctBreadth *lists, long t, int *count)
+/* How often list t, with its prefixes' lists, holds each leaf. */
+static void count_leaves(const OctTree *tree, const OctSumLists *lists, long t, int *count)
 {
     for (int i = 0; i < lists->span[t].count; i++) {
         long row = lists->row[lists->span[t].first + i], node = row - lists->base;
-        if (node < 0 && row >= OCT_CARRIER_ROW)
-            count_leaves(tree, lists, row - OCT_CARRIER_ROW, count);
+        if (node < 0 && row >= OCT_PREFIX_ROW)
+            count_leaves(tree, lists, row - OCT_PREFIX_ROW, count);
         if (node < 0) continue;
         for (long leaf = 0; leaf < tree->leaves; leaf++) {
             int n = tree->node[leaf];
@@ -90,11 +90,11 @@ static void test_lists(void **state)
     for (int trial = 0; trial < 24; trial++) {
         Body body;
         RefTreeBody twin;
-        OctBreadth lists, transposed;
+        OctSumLists lists, transposed;
         body_random(&seed, trial % 6, 6, trial % 2, &body);
         ref_tree_init(&body.tree, &body.regions, body.m, false, &twin);
-        oct_breadth_build(&body.tree, &body.regions, &lists);
-        oct_breadth_transpose(&body.tree, &lists, &transposed);
+        oct_sum_lists_build(&body.tree, &body.regions, &lists);
+        oct_sum_lists_transpose(&body.tree, &lists, &transposed);
         size_t n = (size_t)body.n;
         int *in = sm_alloc(n * n, sizeof(int)), *got = sm_alloc(2 * n, sizeof(int));
         for (size_t r = 0; r < n; r++)
@@ -102,8 +102,8 @@ static void test_lists(void **state)
                 in[r * n + (size_t)twin.regions.member[k]]++;
         for (size_t r = 0; r < n; r++) {
             memset(got, 0, 2 * n * sizeof(int));
-            count_leaves(&body.tree, &lists, lists.carriers + (long)r, got);
-            count_leaves(&body.tree, &transposed, transposed.carriers + (long)r, got + n);
+            count_leaves(&body.tree, &lists, lists.prefixes + (long)r, got);
+            count_leaves(&body.tree, &transposed, transposed.prefixes + (long)r, got + n);
             for (size_t i = 0; i < n; i++) {
                 assert_int_equal(got[i], in[r * n + i]);
                 assert_int_equal(got[n + i], in[i * n + r]);
@@ -112,8 +112,8 @@ static void test_lists(void **state)
         assert_true(lists.entries <= body.regions.first[n]);
         free(in);
         free(got);
-        oct_breadth_free(&lists);
-        oct_breadth_free(&transposed);
+        oct_sum_lists_free(&lists);
+        oct_sum_lists_free(&transposed);
         ref_tree_free(&twin);
         body_free(&body);
     }
@@ -434,7 +434,7 @@ static double dent(double creep, double *volume)
     for (int step = 0; step < 600; step++) {
         oct_step(oct, NULL);
         if (step >= 20) continue;
-        oct_place(oct, 0, (const double(*)[3])body.x);
+        oct_set_positions(oct, 0, (const double(*)[3])body.x);
         memset(oct->body->v, 0, (size_t)oct->blocks * 3 * SM_LANES * sizeof(real));
     }
     get_x(oct, body.a);

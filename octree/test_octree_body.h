@@ -6,8 +6,8 @@
 #include "../lib/test_fields.h"
 #include "../reference/octree_goals.h"
 #include "ghosts.h"
-#include "graph/frames.h"
 #include "octree.h"
+#include "region/frames.h"
 #include "region/random_regions.h"
 #include "tree/random_trees.h"
 
@@ -137,7 +137,7 @@ static inline Oct *create(const Body *body, OctParams params)
 {
     Oct *oct = oct_build(&body->tree, &body->regions, body->m, &params);
     for (long k = 0; k < oct->instances; k++) {
-        oct_place(oct, k, (const double(*)[3])body->x);
+        oct_set_positions(oct, k, (const double(*)[3])body->x);
         for (long i = 0; i < body->n; i++)
             for (int d = 0; d < 3; d++) oct->body[k].v[oct_index(i, d)] = (real)body->v[i][d];
     }

@@ -20,7 +20,7 @@ typedef struct {
 } RefTreeBody;
 
 /* Positions in finest cells from the corner of voxel (0,0,0); elastic. Leaf i is the i-th that
- * lives (resample.h), `m` is by leaf number. The caller frees. */
+ * lives (structure.h), `m` is by leaf number. The caller frees. */
 void ref_tree_init(const OctTree *tree, const OctRegions *regions, const double *m, bool plain,
                    RefTreeBody *body);
 void ref_tree_free(RefTreeBody *body);

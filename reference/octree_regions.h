@@ -1,5 +1,5 @@
-/* octree_regions.h - the slow, readable twin of octree/graph/graph.h, distance.h, sheaf.h
- * and region.h.
+/* octree_regions.h - the slow, readable twin of octree/graph/graph.h, distance.h,
+ * multi_source_search.h and region.h.
  *
  * Everything as its definition says, over all pairs: O(leaves^2 * leaves) and more. Only tests and
  * checks link it. */

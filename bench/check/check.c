@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../../lib/system/team.h"
-#include "../../octree/change/structure.h"
+#include "../../octree/engine.h"
 #include "../../reference/condition.h"
 
 double bench_check_members(const BenchBody *body, int w)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../octree/change/structure.h"
+#include "../../octree/engine.h"
 #include "../../octree/surface/outline.h"
 #include "../../reference/collide.h"
 #include "../../reference/condition.h"

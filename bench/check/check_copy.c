@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../octree/change/structure.h"
+#include "../../octree/engine.h"
 
 /* Where the engine has changed since it was made, as it would be built now. */
 static SmEngine *build_alike(const SmEngineParams *params, const BenchBody *body, SmEngine *engine,

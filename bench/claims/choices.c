@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../octree/change/structure.h"
+#include "../../octree/engine.h"
 #include "../../octree/graph/distance.h"
 
 static void choose(const BenchMeasure *measure, OctOptions *options)

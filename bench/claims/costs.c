@@ -7,9 +7,9 @@
 
 #include "../../fastlsm/fastlsm.h"
 #include "../../lib/system/team.h"
-#include "../../octree/change/resample.h"
-#include "../../octree/region/halves.h"
-#include "../../octree/region/sheaf.h"
+#include "../../octree/change/structure.h"
+#include "../../octree/region/multi_source_search.h"
+#include "../../octree/region/one_sided_regions.h"
 #include "../kernels/cubes.h"
 #include "../kernels/matrices.h"
 #include "../kernels/tree_steps.h"
@@ -241,7 +241,7 @@ void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *
 typedef struct {
     OctStructure s;
     OctReach reach;
-    OctSheaf sheaf;
+    OctSearch search;
     int *below;
 } Resampled;
 
@@ -262,13 +262,13 @@ static SmCode make_resampled(const BenchMeasure *measure, Resampled *of, SmError
     oct_resample_prepare(&of->s);
     of->below = oct_tree_below(&of->s.tree); /* searches do not read it */
     oct_reach_init(&of->reach, &of->s.graph);
-    oct_sheaf_init(&of->sheaf, &of->s.tree, &of->reach);
+    oct_search_init(&of->search, &of->s.tree, &of->reach);
     return SM_OK;
 }
 
 static void free_resampled(Resampled *of)
 {
-    oct_sheaf_free(&of->sheaf);
+    oct_search_free(&of->search);
     oct_reach_free(&of->reach);
     oct_structure_free(&of->s);
     free(of->below);
@@ -303,15 +303,15 @@ static double distance_percent(Resampled *of, int node)
     const OctChange *change = oct_resample_update(s);
     double all = sm_now() - start;
     oct_reach_grow(&of->reach, s->tree.leaves);
-    oct_sheaf_grow(&of->sheaf, s->tree.nodes, s->tree.leaves, of->below);
+    oct_search_grow(&of->search, s->tree.nodes, s->tree.leaves, of->below);
     start = sm_now();
-    for (long from = 0; from < change->searched_count; from += OCT_SHEAF) {
-        int reaches[OCT_SHEAF];
+    for (long from = 0; from < change->searched_count; from += OCT_SOURCES) {
+        int reaches[OCT_SOURCES];
         const int *leaf = change->searched + from;
-        long left = change->searched_count - from, count = left < OCT_SHEAF ? left : OCT_SHEAF;
+        long left = change->searched_count - from, count = left < OCT_SOURCES ? left : OCT_SOURCES;
         for (int lane = 0; lane < count; lane++)
-            reaches[lane] = oct_halves_reach(s->w[leaf[lane]], s->options.epsilon);
-        oct_sheaf_search(&of->sheaf, (int)count, leaf, reaches);
+            reaches[lane] = oct_one_sided_reach(s->w[leaf[lane]], s->options.epsilon);
+        oct_search_distances(&of->search, (int)count, leaf, reaches);
     }
     double search = sm_now() - start;
     change_all(s, leaves, leaf_count, false);

@@ -12,7 +12,7 @@
 
 #include "../../lib/polar.h"
 #include "../../lib/test_fields.h"
-#include "../../octree/change/structure.h"
+#include "../../octree/engine.h"
 #include "../../octree/surface/surface.h"
 #include "../play/runner.h"
 

@@ -12,7 +12,7 @@
 #include "../../lib/system/team.h"
 #include "../../lib/test_fields.h"
 #include "../../lib/voxel/voxelise.h"
-#include "../../octree/change/resample.h"
+#include "../../octree/engine.h"
 #include "../../reference/brute.h"
 #include "../../reference/meshless/engine.h"
 #include "../../reference/meshless/solve/solver.h"

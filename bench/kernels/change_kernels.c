@@ -7,8 +7,7 @@
 #include <time.h>
 
 #include "../../lib/stage.h"
-#include "../../octree/change/rebuild.h"
-#include "../../octree/change/resample.h"
+#include "../../octree/engine.h"
 #include "../measure/spread.h"
 #include "tree_work.h"
 

@@ -108,21 +108,21 @@ static void octree_work_is_counted(void **state)
 {
     (void)state;
     BenchSampled body;
-    OctBreadth lists;
+    OctSumLists lists;
     SmError error;
     assert_int_equal(bench_sampled_cube(16, &body, &error), SM_OK);
-    oct_breadth_build(&body.tree, &body.regions, &lists);
+    oct_sum_lists_build(&body.tree, &body.regions, &lists);
     BenchTreeCounts c = bench_tree_counts(&body.tree, &lists, &lists);
     double leaves = 16 * 16 * 16;
     assert_true(c.leaf_children == 1); /* a full octree of four levels */
     assert_true(c.inner_children == (512 + 64 + 8) / leaves);
     assert_true(c.inners == (512 + 64 + 8 + 1) / leaves);
     assert_true((c.leaf_entries + c.inner_entries) * leaves == (double)lists.entries);
-    assert_true((c.goal_entries + c.goal_carrier_entries) * leaves == (double)lists.entries);
+    assert_true((c.goal_entries + c.goal_prefix_entries) * leaves == (double)lists.entries);
     assert_true(bench_work_depth(&c).flops == 3 + 24 + 33 * c.inner_children);
     assert_true(bench_work_tree_step(&c).flops >
                 bench_work_tree_goals(&c).flops + bench_work_tree_damping(&c).flops);
-    oct_breadth_free(&lists);
+    oct_sum_lists_free(&lists);
     bench_sampled_free(&body);
 }
 

@@ -155,7 +155,7 @@ static void note_step(const Spec *spec, const BenchTreeStep *step, double ns_per
     char *note = row->note;
     size_t room = sizeof row->note;
     double entries = c->leaf_entries + c->inner_entries;
-    double goals = c->goal_entries + c->goal_carrier_entries;
+    double goals = c->goal_entries + c->goal_prefix_entries;
     double children = c->leaf_children + c->inner_children;
     switch (spec->part) {
     case BENCH_TREE_DEPTH:

@@ -50,7 +50,7 @@ static void disturb(BenchTreeStep *step, unsigned seed)
 static void restore(const BenchTreeStep *step)
 {
     Oct *oct = step->engine;
-    oct_place(oct, 0, (const double(*)[3])step->x);
+    oct_set_positions(oct, 0, (const double(*)[3])step->x);
     for (long leaf = 0; leaf < oct->leaves; leaf++)
         for (int d = 0; d < 3; d++) oct->body->v[oct_index(leaf, d)] = (real)step->v[leaf][d];
 }
@@ -134,7 +134,7 @@ void bench_tree_step_create(BenchTreeStep *step)
     Oct *oct = oct_build(&body->tree, &body->regions, body->mass, &params);
     step->engine = oct;
     step->valid = true;
-    step->counts = bench_tree_counts(&body->tree, &oct->lists, oct_goal_breadth(oct));
+    step->counts = bench_tree_counts(&body->tree, &oct->lists, oct_goal_lists(oct));
     step->bytes = oct_bytes(oct);
     step->x = sm_alloc((size_t)oct->leaves, sizeof *step->x);
     step->v = sm_alloc((size_t)oct->leaves, sizeof *step->v);
@@ -180,11 +180,11 @@ static double stage_ns(const SmLaps *laps, int first, int last, SmStage stage, d
     return 1e9 * fmax(seconds, 0);
 }
 
-static void try_laps(BenchTreeStep *step, SmLaps laps[OCT_PARTS])
+static void try_laps(BenchTreeStep *step, SmLaps laps[OCT_STEP_PARTS])
 {
     restore(step);
     oct_step(step->engine, NULL);
-    for (int p = 0; p < OCT_PARTS; p++) sm_laps_start(&laps[p]);
+    for (int p = 0; p < OCT_STEP_PARTS; p++) sm_laps_start(&laps[p]);
     bench_watch_start(&step->watch);
     for (int i = 0; i < step->steps; i++) {
         laps[0].last = sm_now();
@@ -195,7 +195,7 @@ static void try_laps(BenchTreeStep *step, SmLaps laps[OCT_PARTS])
 
 static void sample_parts(BenchTreeStep *step, double clock, double part[BENCH_TREE_PARTS])
 {
-    SmLaps laps[OCT_PARTS];
+    SmLaps laps[OCT_STEP_PARTS];
     do try_laps(step, laps);
     while (bench_watch_again(&step->watch));
     const double ns[BENCH_TREE_PARTS] = {

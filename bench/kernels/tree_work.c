@@ -7,8 +7,8 @@
 enum { INNER = 12 + 18 + 3, LEAF = 3 + 18 + 3, TRANSFORM = 9 + 3 + 18 + 3, VALUE = 3 + 18 + 3 };
 enum { ROW = 12, CENTRE = 3 };
 
-/* Rows of a range of lists: those of leaves, and those of inner nodes and carriers. */
-static void count_rows(const OctTree *tree, const OctBreadth *lists, long first, long last,
+/* Rows of a range of lists: those of leaves, and those of inner nodes and prefixes. */
+static void count_rows(const OctTree *tree, const OctSumLists *lists, long first, long last,
                        double *leaf, double *inner)
 {
     for (long t = first; t < last; t++)
@@ -22,13 +22,13 @@ static void count_rows(const OctTree *tree, const OctBreadth *lists, long first,
         }
 }
 
-BenchTreeCounts bench_tree_counts(const OctTree *tree, const OctBreadth *lists,
-                                  const OctBreadth *goals)
+BenchTreeCounts bench_tree_counts(const OctTree *tree, const OctSumLists *lists,
+                                  const OctSumLists *goals)
 {
     double n = (double)tree->leaves, leaves[3] = {0}, inners[3] = {0}, leaf_children = 0;
-    count_rows(tree, lists, 0, lists->carriers + lists->leaves, &leaves[0], &inners[0]);
-    count_rows(tree, goals, 0, goals->carriers, &leaves[1], &inners[1]);
-    count_rows(tree, goals, goals->carriers, goals->carriers + goals->leaves, &leaves[2],
+    count_rows(tree, lists, 0, lists->prefixes + lists->leaves, &leaves[0], &inners[0]);
+    count_rows(tree, goals, 0, goals->prefixes, &leaves[1], &inners[1]);
+    count_rows(tree, goals, goals->prefixes, goals->prefixes + goals->leaves, &leaves[2],
                &inners[2]);
     for (long l = 0; l < tree->leaves; l++) leaf_children += tree->parent[tree->node[l]] >= 0;
     double children = (double)(tree->nodes - tree->roots);
@@ -37,21 +37,21 @@ BenchTreeCounts bench_tree_counts(const OctTree *tree, const OctBreadth *lists,
                              .inner_children = (children - leaf_children) / n,
                              .leaf_entries = leaves[0] / n,
                              .inner_entries = inners[0] / n,
-                             .carriers = (double)lists->carriers / n,
-                             .goal_carrier_entries = (leaves[1] + inners[1]) / n,
+                             .prefixes = (double)lists->prefixes / n,
+                             .goal_prefix_entries = (leaves[1] + inners[1]) / n,
                              .goal_entries = (leaves[2] + inners[2]) / n,
-                             .goal_carriers = (double)goals->carriers / n};
+                             .goal_prefixes = (double)goals->prefixes / n};
 }
 
 /* What reading the lists takes: an entry is 4 bytes, where a list is 16. */
 static double region_list_bytes(const BenchTreeCounts *c)
 {
-    return 4 * (c->leaf_entries + c->inner_entries) + 16 * (1 + c->carriers);
+    return 4 * (c->leaf_entries + c->inner_entries) + 16 * (1 + c->prefixes);
 }
 
 static double goal_list_bytes(const BenchTreeCounts *c)
 {
-    return 4 * (c->goal_entries + c->goal_carrier_entries) + 16 * (1 + c->goal_carriers);
+    return 4 * (c->goal_entries + c->goal_prefix_entries) + 16 * (1 + c->goal_prefixes);
 }
 
 BenchWork bench_work_depth(const BenchTreeCounts *c)
@@ -65,20 +65,20 @@ BenchWork bench_work_depth(const BenchTreeCounts *c)
 
 BenchWork bench_work_breadth(const BenchTreeCounts *c)
 {
-    /* Regions' sums stay in registers for the matching; carriers' are written. */
+    /* Regions' sums stay in registers for the matching; prefixes' are written. */
     return (BenchWork){.flops = LEAF * c->leaf_entries + INNER * c->inner_entries,
                        .near_values = (3 + CENTRE) * c->leaf_entries +
-                                      (ROW + CENTRE) * c->inner_entries + ROW * c->carriers,
+                                      (ROW + CENTRE) * c->inner_entries + ROW * c->prefixes,
                        .far_bytes = region_list_bytes(c)};
 }
 
 BenchWork bench_work_tree_goals(const BenchTreeCounts *c)
 {
     double children = c->leaf_children + c->inner_children;
-    double whole = children + c->goal_carrier_entries;
+    double whole = children + c->goal_prefix_entries;
     return (BenchWork){.flops = TRANSFORM * whole + VALUE * c->goal_entries + 3,
                        .near_values = (ROW + CENTRE) * (whole + c->goal_entries) +
-                                      ROW * (c->inners + c->goal_carriers) + 1 + 3,
+                                      ROW * (c->inners + c->goal_prefixes) + 1 + 3,
                        .far_bytes = goal_list_bytes(c)};
 }
 
@@ -89,10 +89,10 @@ BenchWork bench_work_tree_damping(const BenchTreeCounts *c)
      * 12; reads c, writes 6; reads and writes x and v. */
     double children = c->leaf_children + c->inner_children;
     double up = children + c->leaf_entries + c->inner_entries;
-    double down = children + c->goal_entries + c->goal_carrier_entries;
+    double down = children + c->goal_entries + c->goal_prefix_entries;
     return (BenchWork){.flops = 18 + 96 + 6 + 24 + 12 * up + 6 * down,
-                       .near_values = 7 + 12 + 3 + 6 + 12 + 12 * (up + c->inners + c->carriers) +
-                                      6 * (down + c->inners + c->goal_carriers),
+                       .near_values = 7 + 12 + 3 + 6 + 12 + 12 * (up + c->inners + c->prefixes) +
+                                      6 * (down + c->inners + c->goal_prefixes),
                        .far_values = 12,
                        .far_bytes = region_list_bytes(c) + goal_list_bytes(c)};
 }

@@ -5,21 +5,21 @@
 #ifndef BENCH_TREE_WORK_H
 #define BENCH_TREE_WORK_H
 
-#include "../../octree/region/breadth.h"
+#include "../../octree/region/sum_lists.h"
 #include "work.h"
 
 /* Of a body, for each of its simulation nodes. */
 typedef struct {
     double inners;                        /* tree nodes with children */
     double leaf_children, inner_children; /* of those */
-    double leaf_entries, inner_entries;   /* lists of regions: what they name; carriers are inner */
-    double carriers;
-    double goal_entries, goal_carrier_entries, goal_carriers; /* lists of goal positions */
+    double leaf_entries, inner_entries;   /* lists of regions: what they name; prefixes are inner */
+    double prefixes;
+    double goal_entries, goal_prefix_entries, goal_prefixes; /* lists of goal positions */
 } BenchTreeCounts;
 
 /* `lists` sum over regions, `goals` over what contains a node. O(entries). */
-BenchTreeCounts bench_tree_counts(const OctTree *tree, const OctBreadth *lists,
-                                  const OctBreadth *goals);
+BenchTreeCounts bench_tree_counts(const OctTree *tree, const OctSumLists *lists,
+                                  const OctSumLists *goals);
 
 BenchWork bench_work_depth(const BenchTreeCounts *counts);
 BenchWork bench_work_breadth(const BenchTreeCounts *counts);

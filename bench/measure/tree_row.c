@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "../../octree/change/structure.h"
+#include "../../octree/engine.h"
 
 void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row)
 {

@@ -5,9 +5,7 @@
 #include <string.h>
 
 #include "../../lib/cut/sever.h"
-#include "../../octree/change/resample.h"
-#include "../../octree/surface/agree.h"
-#include "../../octree/tree/pieces.h"
+#include "../../octree/engine.h"
 #include "../scene/blades.h"
 #include "lattice_changes.h"
 
@@ -59,8 +57,8 @@ void bench_changes_free(BenchChanges *changes)
 {
     const BenchScene *scene = changes->part ? changes->part->runner.scene : NULL;
     for (int i = 0; scene && i < scene->cut_count; i++) sm_blade_free(&changes->blade[i]);
-    for (int i = 0; scene && i < scene->touch_count; i++) oct_detail_free(&changes->touch[i]);
-    oct_detail_free(&changes->view);
+    for (int i = 0; scene && i < scene->touch_count; i++) oct_refinement_free(&changes->touch[i]);
+    oct_refinement_free(&changes->view);
     sm_mesh_free(&changes->surface);
     sm_cut_free(&changes->cut);
     sm_embed_free(&changes->embedding);
@@ -194,9 +192,9 @@ static void refine_cut(BenchChanges *changes, double from, double to, OctStructu
 
 /* The wish of touch or eye number i (the eye's is one more than touches) at a time; false: none. */
 typedef struct {
-    OctTouch touch;
-    OctEye eye;
-    OctWish *wish; /* NULL: nothing is wished for now */
+    OctBallRefinement touch;
+    OctViewRefinement eye;
+    OctRefineCriterion *wish; /* NULL: nothing is wished for now */
     const void *what;
     double hold;
 } Wish;
@@ -212,7 +210,7 @@ static bool find_wish(BenchChanges *changes, int i, double time, Wish *wish)
         memcpy(wish->touch.centre, from->centre, sizeof from->centre);
         wish->touch.radius = from->radius;
         wish->touch.level = from->level;
-        wish->wish = now ? oct_touch_wish : NULL;
+        wish->wish = now ? oct_ball_criterion : NULL;
         wish->what = &wish->touch;
         wish->hold = from->hold;
         return true;
@@ -224,7 +222,7 @@ static bool find_wish(BenchChanges *changes, int i, double time, Wish *wish)
     wish->eye.near = view->near;
     wish->eye.slack = view->slack;
     wish->eye.level = view->level;
-    wish->wish = oct_eye_wish;
+    wish->wish = oct_view_criterion;
     wish->what = &wish->eye;
     return true;
 }
@@ -236,13 +234,14 @@ static bool refine_details(BenchChanges *changes, double time, OctStructure *s)
     bool any = false;
     for (int i = 0; i <= runner->scene->touch_count; i++) {
         Wish wish;
-        OctDetail *detail = i < runner->scene->touch_count ? &changes->touch[i] : &changes->view;
+        OctRefinement *detail =
+            i < runner->scene->touch_count ? &changes->touch[i] : &changes->view;
         if (!find_wish(changes, i, time, &wish)) continue;
         if (s)
-            any |= oct_detail_update(detail, s, wish.wish, wish.what, time, wish.hold) > 0;
+            any |= oct_refinement_update(detail, s, wish.wish, wish.what, time, wish.hold) > 0;
         else
-            any |= oct_detail_due(detail, oct_engine_structure(runner->engine), wish.wish,
-                                  wish.what, time, wish.hold);
+            any |= oct_refinement_due(detail, oct_engine_structure(runner->engine), wish.wish,
+                                      wish.what, time, wish.hold);
     }
     return any;
 }
@@ -253,7 +252,7 @@ static void retie(BenchChanges *changes, long count, const int *node, long first
 {
     const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
     OctCarrier carrier = {&changes->part->body.voxels, &s->tree, &s->graph, &s->cut};
-    oct_surface_retie(&changes->carried, &changes->surface, &carrier, count, node, first);
+    oct_surface_update(&changes->carried, &changes->surface, &carrier, count, node, first);
     oct_surface_agree(&changes->carried, &changes->surface, &carrier);
 }
 
@@ -263,11 +262,11 @@ static void sever(BenchChanges *changes)
     const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
     const OctSurface *carried = &changes->carried;
     SmPieces pieces;
-    oct_pieces_find(&s->tree, &s->graph, &pieces);
+    oct_graph_pieces(&s->tree, &s->graph, &pieces);
     if (pieces.count > 1) {
         int *piece = sm_alloc((size_t)carried->vertices, sizeof *piece);
         for (long v = 0; v < carried->vertices; v++)
-            piece[v] = pieces.piece[carried->rows.leaf[carried->rows.first[v]]];
+            piece[v] = pieces.piece[carried->rows.item[carried->rows.first[v]]];
         if (sm_sever(&changes->surface, piece)) retie(changes, 0, NULL, s->cut.triangles);
         free(piece);
     }
@@ -369,7 +368,7 @@ bool bench_changes_is_octree(const BenchChanges *changes)
 static int carrier_of(const BenchChanges *changes, long vertex)
 {
     if (is_octree(changes->part))
-        return changes->carried.rows.leaf[changes->carried.rows.first[vertex]];
+        return changes->carried.rows.item[changes->carried.rows.first[vertex]];
     const float *weight = changes->embedding.weight[vertex];
     int most = 0;
     for (int i = 1; i < 8; i++)
@@ -383,7 +382,7 @@ long bench_changes_pieces(const BenchChanges *changes, int *piece)
     SmPieces pieces = {.count = 1};
     if (is_octree(changes->part)) {
         const OctStructure *s = oct_engine_structure(runner->engine);
-        oct_pieces_find(&s->tree, &s->graph, &pieces);
+        oct_graph_pieces(&s->tree, &s->graph, &pieces);
     } else if (runner->type->pieces) {
         runner->type->pieces(runner->engine, &pieces);
     }

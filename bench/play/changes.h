@@ -6,8 +6,8 @@
 #include "../../lib/cut/blade.h"
 #include "../../lib/cut/slit.h"
 #include "../../lib/mesh/embed.h"
+#include "../../octree/change/refinement.h"
 #include "../../octree/surface/surface.h"
-#include "../../octree/tree/detail.h"
 #include "cast.h"
 
 /* What the last frame has changed, and the seconds that it took. */
@@ -24,7 +24,7 @@ typedef struct {
     OctSurface carried;    /* what carries it: an octree's nodes, */
     SmEmbedding embedding; /* or a lattice's particles */
     SmBlade blade[BENCH_MAX];
-    OctDetail touch[BENCH_MAX], view;
+    OctRefinement touch[BENCH_MAX], view;
     SmCut cut;     /* of a lattice; an octree's structure has it */
     SmSites sites; /* of a lattice that is cut */
     bool left;     /* a cut did not split the surface: it could not be done cleanly */

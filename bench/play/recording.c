@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../octree/change/structure.h"
+#include "../../octree/engine.h"
 
 static void release(BenchRecording *recording)
 {

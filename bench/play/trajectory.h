@@ -7,7 +7,7 @@
 #ifndef BENCH_TRAJECTORY_H
 #define BENCH_TRAJECTORY_H
 
-#include "../../octree/change/structure.h"
+#include "../../octree/engine.h"
 #include "../measure/machine.h"
 #include "fields.h"
 

@@ -4,8 +4,7 @@
 #define OCT_RANDOM_BATCHES_H
 
 #include "../tree/random_trees.h"
-#include "rebuild.h"
-#include "resample.h"
+#include "structure.h"
 
 /* Splits a few random leaves, some of their children too. */
 static inline void split_some(unsigned *seed, OctStructure *s, int count)

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../tree/random_trees.h"
-#include "resample.h"
+#include "structure.h"
 
 static inline double random_between(unsigned *seed, double low, double high)
 {

@@ -7,9 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../region/lists.h"
-#include "rebuild.h"
-#include "resample.h"
+#include "../../lib/csr.h"
+#include "structure.h"
 
 /* The node of another tree that is the same cell. */
 static inline int same_node(const OctTree *from, int node, const OctTree *to)
@@ -62,7 +61,7 @@ static inline void check_region(const OctStructure *s, long leaf, const OctStruc
         assert_true(n == 0 || r->member[r->first[leaf] + n] > r->member[r->first[leaf] + n - 1]);
         member[n] = same_node(&s->tree, r->member[r->first[leaf] + n], &want->tree);
     }
-    qsort(member, (size_t)count, sizeof *member, oct_lists_compare);
+    qsort(member, (size_t)count, sizeof *member, sm_compare_ints);
     assert_memory_equal(member, want->regions.member + first, (size_t)count * sizeof *member);
     assert_int_equal(r->width[leaf], want->regions.width[twin]);
     assert_int_equal(r->size[leaf], want->regions.size[twin]);

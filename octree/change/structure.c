@@ -1,12 +1,14 @@
 #include "structure.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../graph/frames.h"
-#include "../region/width.h"
-#include "resample.h"
+#include "../../lib/csr.h"
+#include "../region/frames.h"
+#include "../region/region_change.h"
+#include "width.h"
 
 /* Levels of splitting with which base cells are at most an eighth of the longest side. */
 static int default_levels(const SmVoxels *voxels)
@@ -86,7 +88,11 @@ static SmCode complete(const double *mass, const SmCut *cut, OctStructure *s, Sm
     oct_graph_build(tree, &s->voxels, &s->graph);
     oct_graph_cut(tree, &s->voxels, &s->cut, &s->graph);
     s->cut_known = s->cut.triangles;
-    SmCode code = oct_width_find(&s->options, s, error);
+    OctWidths widths;
+    SmCode code = oct_width_find(&s->options, tree, &s->graph, &s->voxels, &widths, error);
+    s->width = widths.width;
+    s->local_leaves = widths.local_leaves;
+    s->w = widths.w;
     if (!code)
         code = oct_regions_build(tree, &s->graph, s->w, s->options.epsilon, s->options.symmetry,
                                  &s->regions, error);
@@ -141,9 +147,206 @@ SmCode oct_structure_of_tree(const SmVoxels *voxels, const OctOptions *options, 
     return code;
 }
 
+/* The node of another tree over the same cells in the place of `node`. */
+static int same_node(const OctTree *from, int node, const OctTree *to)
+{
+    int found = oct_tree_at(to, oct_tree_level(from, node), oct_tree_low(from, node, 0),
+                            oct_tree_low(from, node, 1), oct_tree_low(from, node, 2));
+    assert(found >= 0 && to->size[found] == from->size[node]);
+    return found;
+}
+
+static SmCode same_tree(const OctStructure *s, OctTree *tree, SmError *error)
+{
+    OctTree whole;
+    SmCode code = oct_tree_build(&s->voxels, s->tree.levels, s->tree.corner, &whole, error);
+    if (code) return code;
+    unsigned char *split = sm_alloc((size_t)whole.nodes, 1);
+    for (int n = 0; n < s->tree.nodes; n++)
+        if (s->tree.size[n] > 0 && s->tree.children[n]) split[same_node(&s->tree, n, &whole)] = 1;
+    oct_tree_prune(&whole, split, tree);
+    free(split);
+    oct_tree_free(&whole);
+    return SM_OK;
+}
+
+SmCode oct_structure_rebuild(const OctStructure *s, const double *mass, OctStructure *fresh,
+                             int **leaf, SmError *error)
+{
+    OctTree tree;
+    OctOptions options = s->options;
+    options.width = s->width; /* which may have been searched for */
+    options.summation_nodes = 0;
+    if (s->local_leaves == 0) options.local_count = 0; /* refused where it holds no leaf */
+    SmCode code = same_tree(s, &tree, error);
+    if (!code)
+        code = oct_structure_of_tree(&s->voxels, &options, mass, &tree, &s->cut, fresh, error);
+    if (code) return code;
+    *leaf = sm_alloc((size_t)fresh->tree.leaves, sizeof **leaf);
+    for (long i = 0; i < fresh->tree.leaves; i++)
+        (*leaf)[i] = s->tree.leaf[same_node(&fresh->tree, fresh->tree.node[i], &s->tree)];
+    return SM_OK;
+}
+
+/* ---- change while it runs */
+
+typedef struct OctResample {
+    OctTreeChange tree;
+    OctGraphChange graph;
+    OctRegionChange region;
+    OctLeafQuery near;
+    int *coarse; /* [coarse_count] */
+    long coarse_count, coarse_room;
+    long leaf_space; /* of widths and masses */
+} OctResample;
+
+static void make_leaves(OctStructure *s, long to)
+{
+    long from = s->resample->leaf_space;
+    s->w = sm_widen(s->w, from, to, sizeof *s->w, 0);
+    s->mass = sm_widen(s->mass, from, to, sizeof *s->mass, 0);
+    s->resample->leaf_space = to;
+}
+
+void oct_resample_prepare(OctStructure *s)
+{
+    if (s->resample) return;
+    OctResample *r = sm_alloc(1, sizeof *r);
+    oct_tree_change_init(&r->tree, &s->tree, &s->voxels);
+    oct_graph_change_init(&r->graph, &s->tree, &s->voxels, &s->cut, &s->graph);
+    oct_region_change_init(&r->region, &s->tree, &s->graph, s->w, s->options.epsilon, r->tree.below,
+                           &s->regions);
+    oct_leaf_query_init(&r->near, &s->tree, &s->voxels);
+    r->leaf_space = s->tree.leaves;
+    s->resample = r;
+    make_leaves(s, sm_room_for(s->tree.leaves));
+}
+
+static void free_resample(OctStructure *s)
+{
+    OctResample *r = s->resample;
+    if (!r) return;
+    oct_tree_change_free(&r->tree);
+    oct_graph_change_free(&r->graph);
+    oct_region_change_free(&r->region);
+    oct_leaf_query_free(&r->near);
+    free(r->coarse);
+    free(r);
+    s->resample = NULL;
+}
+
+static size_t resample_bytes(const OctStructure *s)
+{
+    const OctResample *r = s->resample;
+    if (!r) return 0;
+    return sizeof *r + oct_tree_change_bytes(&r->tree) + oct_graph_change_bytes(&r->graph) +
+           oct_region_change_bytes(&r->region);
+}
+
+SmCode oct_resample_split(OctStructure *s, int node, SmError *error)
+{
+    oct_resample_prepare(s);
+    return oct_tree_change_split(&s->resample->tree, node, error);
+}
+
+SmCode oct_resample_merge(OctStructure *s, int node, SmError *error)
+{
+    oct_resample_prepare(s);
+    return oct_tree_change_merge(&s->resample->tree, node, error);
+}
+
+static int width_of(const OctStructure *s, int node, bool *local)
+{
+    return oct_width_of(&s->options, &s->width, &s->tree, &s->voxels, node, local);
+}
+
+/* Widths and masses of the leaves that a batch has removed and added. */
+static void weigh(OctStructure *s, const OctChange *change)
+{
+    bool local;
+    if (s->tree.leaves > s->resample->leaf_space) make_leaves(s, sm_room_for(s->tree.leaves));
+    for (long n = 0; n < change->removed_count; n++) {
+        OctRemoved gone = change->removed[n];
+        width_of(s, gone.node, &local);
+        s->local_leaves -= local;
+        s->w[gone.leaf] = 0;
+        s->mass[gone.leaf] = 0;
+    }
+    for (long n = 0; n < change->added_count; n++) {
+        OctAdded come = change->added[n];
+        s->w[come.leaf] = width_of(s, come.node, &local);
+        s->local_leaves += local;
+        s->mass[come.leaf] = oct_mass_of(&s->cell_mass, &s->tree, &s->voxels, come.node);
+    }
+    s->report.nodes = s->tree.live;
+}
+
+const OctChange *oct_resample_update(OctStructure *s)
+{
+    oct_resample_prepare(s);
+    OctResample *r = s->resample;
+    OctGraphChange *graph = &r->graph;
+    OctChange *change = &r->tree.change;
+    OctReach *reach = &r->region.reach;
+    oct_tree_change_settle(&r->tree);
+    weigh(s, change);
+    oct_graph_change_find(graph, change);
+    oct_region_change_grow(&r->region, s->w, r->tree.below);
+    oct_region_change_note(&r->region, graph->gone, graph->gone_count);
+    oct_region_change_mark(&r->region);
+    oct_graph_change_apply(graph, reach);
+    oct_region_change_note(&r->region, graph->come, graph->come_count);
+    change->edge_count = graph->gone_count + graph->come_count;
+    oct_graph_change_cut(graph, s->cut_known);
+    change->edge_count += graph->gone_count;
+    oct_region_change_note(&r->region, graph->gone, graph->gone_count);
+    oct_region_change_mark(&r->region);
+    oct_graph_change_apply(graph, reach);
+    s->cut_known = s->cut.triangles;
+    oct_region_change_update(&r->region, change);
+    return change;
+}
+
+/* Sorts nodes and drops what is there twice. */
+static long distinct(int *node, long count)
+{
+    long kept = 0;
+    qsort(node, (size_t)count, sizeof *node, sm_compare_ints);
+    for (long n = 0; n < count; n++)
+        if (kept == 0 || node[n] != node[kept - 1]) node[kept++] = node[n];
+    return kept;
+}
+
+long oct_resample_near_cut(OctStructure *s, long first, double distance, int level,
+                           const int **node)
+{
+    oct_resample_prepare(s);
+    OctResample *r = s->resample;
+    r->coarse_count = 0;
+    for (long t = first; t < s->cut.triangles; t++) {
+        double corner[3][3];
+        oct_graph_change_corners(&s->voxels, &s->cut, t, corner);
+        oct_leaf_query_triangle(&r->near, (const double(*)[3])corner, 2 * distance / s->cell, level,
+                                OCT_CELLS);
+        if (r->coarse_count + r->near.count > r->coarse_room) {
+            r->coarse_room = 2 * (r->coarse_count + r->near.count);
+            r->coarse = sm_realloc(r->coarse, (size_t)r->coarse_room, sizeof *r->coarse);
+        }
+        if (r->near.count > 0)
+            memcpy(r->coarse + r->coarse_count, r->near.node,
+                   (size_t)r->near.count * sizeof *r->coarse);
+        r->coarse_count += r->near.count;
+    }
+    r->coarse_count = r->coarse_count ? distinct(r->coarse, r->coarse_count) : 0;
+    *node = r->coarse;
+    return r->coarse_count;
+}
+
+/* ---- the end */
+
 void oct_structure_free(OctStructure *structure)
 {
-    oct_resample_free(structure);
+    free_resample(structure);
     oct_tree_free(&structure->tree);
     oct_graph_free(&structure->graph);
     oct_regions_free(&structure->regions);
@@ -158,7 +361,7 @@ void oct_structure_free(OctStructure *structure)
 size_t oct_structure_bytes(const OctStructure *structure)
 {
     const SmVoxels *v = &structure->voxels;
-    return oct_resample_bytes(structure) + oct_tree_bytes(&structure->tree) +
+    return resample_bytes(structure) + oct_tree_bytes(&structure->tree) +
            oct_graph_bytes(&structure->graph) + oct_regions_bytes(&structure->regions) +
            oct_mass_bytes(&structure->cell_mass, v) +
            (size_t)v->words * (size_t)v->size[1] * (size_t)v->size[2] * sizeof *v->bits +
@@ -171,10 +374,4 @@ long oct_structure_parts(const OctStructure *structure)
     long parts = oct_frames_groups(&structure->tree, &structure->regions, group);
     free(group);
     return parts;
-}
-
-/* The structure is the first member of every octree engine. */
-const OctStructure *oct_engine_structure(const SmEngine *engine)
-{
-    return (const OctStructure *)engine;
 }

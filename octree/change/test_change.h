@@ -43,15 +43,17 @@ static void check_constants(const Body *body, long i, const Oct *fresh, long j, 
         near((double)oct->spread[(i / SM_LANES * 6 + e) * SM_LANES + m] * plain,
              (double)fresh->spread[(j / SM_LANES * 6 + e) * SM_LANES + n],
              256 / (double)b->inverse_mass[n], "spread", trial, i);
-    OctThin none = {.lanes = {0}};
-    const OctThin *thin =
-        oct->thin_of[i / SM_LANES] < 0 ? &none : &oct->thin[oct->thin_of[i / SM_LANES]];
-    const OctThin *same =
-        fresh->thin_of[j / SM_LANES] < 0 ? &none : &fresh->thin[fresh->thin_of[j / SM_LANES]];
-    assert_int_equal(thin->lanes[m], same->lanes[n]);
+    OctCollinear none = {.lanes = {0}};
+    const OctCollinear *collinear = oct->collinear_of[i / SM_LANES] < 0
+                                        ? &none
+                                        : &oct->collinear[oct->collinear_of[i / SM_LANES]];
+    const OctCollinear *same = fresh->collinear_of[j / SM_LANES] < 0
+                                   ? &none
+                                   : &fresh->collinear[fresh->collinear_of[j / SM_LANES]];
+    assert_int_equal(collinear->lanes[m], same->lanes[n]);
     double along = 0, square = 0; /* either way along the line */
     for (int d = 0; d < 3; d++) {
-        along += (double)thin->axis[d][m] * (double)same->axis[d][n];
+        along += (double)collinear->axis[d][m] * (double)same->axis[d][n];
         square += (double)same->axis[d][n] * (double)same->axis[d][n];
     }
     near(fabs(along), square, 1, "axis", trial, i);

@@ -5,10 +5,10 @@
 
 #include "../../lib/engine.h"
 #include "../../lib/test_fields.h"
-#include "../changing.h"
+#include "../body_arrays.h"
+#include "../dynamic_body.h"
 #include "../ghosts.h"
 #include "../octree.h"
-#include "../slots.h"
 #include "random_batches.h"
 
 typedef struct {
@@ -47,7 +47,6 @@ static inline void body_random(unsigned *seed, int trial, int most, OctMassRule 
 static inline void body_free(Body *body)
 {
     oct_free(body->oct);
-    oct_resample_free(&body->structure);
     oct_structure_free(&body->structure);
     free(body->painted);
 }
@@ -142,7 +141,7 @@ static inline void put_rigid(Body *body, const Rigid *r)
         rigid_velocity(r, x[leaf], v);
         for (int d = 0; d < 3; d++) body->oct->body->v[oct_index(leaf, d)] = (real)v[d];
     }
-    oct_place(body->oct, 0, (const double(*)[3])x);
+    oct_set_positions(body->oct, 0, (const double(*)[3])x);
     free(x);
 }
 

@@ -30,7 +30,7 @@ static int *region_leaves(const OctStructure *s, long i)
 {
     int *leaf = sm_alloc((size_t)s->regions.size[i] + 1, sizeof *leaf);
     oct_regions_leaves(&s->tree, &s->regions, i, leaf);
-    qsort(leaf, (size_t)s->regions.size[i], sizeof *leaf, oct_lists_compare);
+    qsort(leaf, (size_t)s->regions.size[i], sizeof *leaf, sm_compare_ints);
     return leaf;
 }
 
@@ -75,7 +75,7 @@ static void forget(Before *b)
 }
 
 /* A list names those nodes whose `was` differs from `is` and is `value`; each once. */
-static void check_places(const OctPlace *list, long count, const OctTree *t, const bool *was,
+static void check_places(const OctNodeLevel *list, long count, const OctTree *t, const bool *was,
                          const bool *is, bool value)
 {
     long changed = 0;

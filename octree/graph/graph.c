@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "../../lib/system/team.h"
-#include "touch.h"
-#include "visible.h"
+#include "adjacency.h"
+#include "visibility.h"
 
 enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
 
@@ -27,9 +27,9 @@ static void add_pair(Pairs *pairs, int i, int j)
 
 /* Adds the neighbours of leaf i that are not joined to it, smaller ones and later ones of its
  * size. */
-static void search_around(const OctTree *tree, OctVisible *visible, Pairs *pairs, int i)
+static void search_around(const OctTree *tree, OctVisibility *visible, Pairs *pairs, int i)
 {
-    oct_visible_find(visible, i);
+    oct_visibility_find(visible, i);
     for (long n = visible->joined_count; n < visible->count; n++) {
         int j = visible->leaf[n];
         if (tree->size[tree->node[j]] < tree->size[tree->node[i]] || j > i) add_pair(pairs, i, j);
@@ -61,32 +61,32 @@ static void build_rows(long leaves, int (*pair)[2], long pairs, long **rows, int
     free(next);
 }
 
-static void join(const OctTree *tree, const OctTouch *touch, OctPlots *joined)
+static void join(const OctTree *tree, const OctAdjacency *touch, SmCsr *joined)
 {
     long *first;
     int *item;
     build_rows(tree->leaves, touch->pair, touch->count, &first, &item);
-    oct_plots_adopt(joined, tree->leaves, first, item, NULL);
+    sm_csr_adopt(joined, tree->leaves, first, item, NULL, 0);
 }
 
-void oct_graph_joined(const OctTree *tree, const SmVoxels *voxels, OctPlots *joined)
+void oct_graph_joined(const OctTree *tree, const SmVoxels *voxels, SmCsr *joined)
 {
-    OctTouch touch;
-    oct_touch_find(tree, voxels, &touch);
+    OctAdjacency touch;
+    oct_adjacency_find(tree, voxels, &touch);
     join(tree, &touch, joined);
-    oct_touch_free(&touch);
+    oct_adjacency_free(&touch);
 }
 
 /* Appends to the joined pairs the neighbours that are not joined. */
-static void add_unjoined(const OctTree *tree, OctTouch *touch)
+static void add_unjoined(const OctTree *tree, OctAdjacency *touch)
 {
-    OctPlots joined;
+    SmCsr joined;
     join(tree, touch, &joined);
 #pragma omp parallel num_threads(sm_team(0)) if (tree->leaves > SERIAL)
     {
-        OctVisible visible;
+        OctVisibility visible;
         Pairs own = {0};
-        oct_visible_init(&visible, tree, &joined, tree->leaves);
+        oct_visibility_init(&visible, tree, &joined, tree->leaves);
 #pragma omp for schedule(dynamic, 64)
         for (long l = 0; l < tree->leaves; l++)
             if (touch->open[l]) search_around(tree, &visible, &own, (int)l);
@@ -97,10 +97,10 @@ static void add_unjoined(const OctTree *tree, OctTouch *touch)
             memcpy(touch->pair + touch->count, own.pair, (size_t)own.count * sizeof *own.pair);
             touch->count += own.count;
         }
-        oct_visible_free(&visible);
+        oct_visibility_free(&visible);
         free(own.pair);
     }
-    oct_plots_free(&joined);
+    sm_csr_free(&joined);
 }
 
 static void measure_edges(const OctTree *tree, OctGraph *graph)
@@ -116,12 +116,12 @@ static void measure_edges(const OctTree *tree, OctGraph *graph)
 
 void oct_graph_build(const OctTree *tree, const SmVoxels *voxels, OctGraph *graph)
 {
-    OctTouch touch;
-    oct_touch_find(tree, voxels, &touch);
+    OctAdjacency touch;
+    oct_adjacency_find(tree, voxels, &touch);
     if (touch.any_open) add_unjoined(tree, &touch);
     *graph = (OctGraph){.leaves = tree->leaves};
     build_rows(tree->leaves, touch.pair, touch.count, &graph->first, &graph->to);
-    oct_touch_free(&touch);
+    oct_adjacency_free(&touch);
     measure_edges(tree, graph);
 }
 
@@ -162,4 +162,17 @@ void oct_graph_free(OctGraph *graph)
     free(graph->to);
     free(graph->length);
     memset(graph, 0, sizeof *graph);
+}
+
+void oct_graph_pieces(const OctTree *tree, const OctGraph *graph, SmPieces *pieces)
+{
+    unsigned char *absent = sm_alloc((size_t)tree->leaves, 1);
+    sm_pieces_init(tree->leaves, pieces);
+    for (long k = 0; k < tree->leaves; k++) {
+        absent[k] = tree->node[k] < 0;
+        for (long e = graph->first[k]; !absent[k] && e < oct_graph_end(graph, k); e++)
+            if (graph->to[e] > k) sm_pieces_link(pieces, k, graph->to[e]);
+    }
+    sm_pieces_finish(pieces, absent, tree->leaves);
+    free(absent);
 }

@@ -2,8 +2,9 @@
 #ifndef OCT_GRAPH_H
 #define OCT_GRAPH_H
 
+#include "../../lib/csr.h"
 #include "../../lib/cut/cut.h"
-#include "../region/plots.h"
+#include "../../lib/pieces.h"
 #include "../tree/tree.h"
 
 /* Undirected; every edge is stored at both ends. Numbers are leaf numbers (tree.h). */
@@ -24,8 +25,8 @@ static inline long oct_graph_end(const OctGraph *graph, long leaf)
 }
 
 /* Two leaves that touch (face, edge or corner) are joined where a material finest cell of one
- * touches a material finest cell of the other (touch.h). Leaves i, j whose centres are within the
- * larger of their sizes in the max norm are neighbours if j can be reached from i over joined
+ * touches a material finest cell of the other (adjacency.h). Leaves i, j whose centres are within
+ * the larger of their sizes in the max norm are neighbours if j can be reached from i over joined
  * leaves whose cells meet the box spanned by the two centres (both with their boundaries): material
  * that does not connect there is not connected, wherever the centres lie.
  *
@@ -44,8 +45,12 @@ void oct_graph_build(const OctTree *tree, const SmVoxels *voxels, OctGraph *grap
 void oct_graph_cut(const OctTree *tree, const SmVoxels *voxels, const SmCut *cut, OctGraph *graph);
 
 /* The joined leaves of every leaf. The caller frees. O(leaves). */
-void oct_graph_joined(const OctTree *tree, const SmVoxels *voxels, OctPlots *joined);
+void oct_graph_joined(const OctTree *tree, const SmVoxels *voxels, SmCsr *joined);
 void oct_graph_free(OctGraph *graph);
+
+/* Pieces of the leaves over the graph's edges; -1 for numbers that no leaf has. sm_pieces_sum() of
+ * the leaves' masses are the pieces' masses. The caller frees. O(edges). */
+void oct_graph_pieces(const OctTree *tree, const OctGraph *graph, SmPieces *pieces);
 
 /* Memory of the graph. */
 size_t oct_graph_bytes(const OctGraph *graph);

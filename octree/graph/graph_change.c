@@ -3,41 +3,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "touch.h"
+#include "adjacency.h"
 
-/* The graph's arrays are those of the plots. */
+/* The graph's arrays are those of the rows that change. */
 static void publish(OctGraphChange *c)
 {
-    OctGraph *graph = &c->s->graph;
+    OctGraph *graph = c->graph;
     graph->leaves = c->edges.rows;
     graph->edges = c->edges.live;
     graph->first = c->edges.first;
     graph->end = c->edges.end;
     graph->to = c->edges.item;
-    graph->length = c->edges.also;
+    graph->length = c->edges.value;
 }
 
-void oct_graph_change_init(OctGraphChange *c, OctStructure *structure)
+void oct_graph_change_init(OctGraphChange *c, const OctTree *tree, const SmVoxels *voxels,
+                           const SmCut *cut, OctGraph *graph)
 {
-    const OctTree *tree = &structure->tree;
-    OctGraph *graph = &structure->graph;
-    *c = (OctGraphChange){.s = structure, .leaf_space = oct_plots_room(tree->leaves)};
-    oct_graph_joined(tree, &structure->voxels, &c->joined);
-    oct_plots_adopt(&c->edges, tree->leaves, graph->first, graph->to, graph->length);
-    oct_plots_reserve(&c->joined);
-    oct_plots_reserve(&c->edges);
+    *c = (OctGraphChange){.tree = tree, .voxels = voxels, .cut = cut, .graph = graph};
+    c->leaf_space = sm_room_for(tree->leaves);
+    oct_graph_joined(tree, voxels, &c->joined);
+    sm_csr_adopt(&c->edges, tree->leaves, graph->first, graph->to, graph->length, sizeof(int));
+    sm_csr_reserve(&c->joined);
+    sm_csr_reserve(&c->edges);
     publish(c);
-    oct_visible_init(&c->visible, tree, &c->joined, c->leaf_space);
-    oct_near_init(&c->near, tree, &structure->voxels);
+    oct_visibility_init(&c->visible, tree, &c->joined, c->leaf_space);
+    oct_leaf_query_init(&c->near, tree, voxels);
     c->mark = sm_alloc((size_t)c->leaf_space, sizeof *c->mark);
 }
 
 void oct_graph_change_free(OctGraphChange *c)
 {
     free(c->edges.room);
-    oct_plots_free(&c->joined);
-    oct_visible_free(&c->visible);
-    oct_near_free(&c->near);
+    sm_csr_free(&c->joined);
+    oct_visibility_free(&c->visible);
+    oct_leaf_query_free(&c->near);
     free(c->gone);
     free(c->come);
     free(c->mark);
@@ -47,7 +47,7 @@ void oct_graph_change_free(OctGraphChange *c)
 
 size_t oct_graph_change_bytes(const OctGraphChange *c)
 {
-    return oct_plots_bytes(&c->joined) + oct_plots_bytes(&c->edges) +
+    return sm_csr_bytes(&c->joined) + sm_csr_bytes(&c->edges) +
            (size_t)c->leaf_space * (sizeof *c->mark + sizeof *c->visible.mark) +
            (size_t)(c->gone_room + c->come_room) * sizeof *c->gone +
            (size_t)c->around_room * sizeof *c->around;
@@ -55,13 +55,13 @@ size_t oct_graph_change_bytes(const OctGraphChange *c)
 
 static void grow(OctGraphChange *c)
 {
-    const OctTree *tree = &c->s->tree;
-    oct_plots_grow(&c->joined, tree->leaves);
-    oct_plots_grow(&c->edges, tree->leaves);
+    const OctTree *tree = c->tree;
+    sm_csr_grow(&c->joined, tree->leaves);
+    sm_csr_grow(&c->edges, tree->leaves);
     if (tree->leaves > c->leaf_space) {
-        long from = c->leaf_space, to = oct_plots_room(tree->leaves);
-        c->mark = oct_plots_widen(c->mark, from, to, sizeof *c->mark, 0);
-        c->visible.mark = oct_plots_widen(c->visible.mark, from, to, 1, 0);
+        long from = c->leaf_space, to = sm_room_for(tree->leaves);
+        c->mark = sm_widen(c->mark, from, to, sizeof *c->mark, 0);
+        c->visible.mark = sm_widen(c->visible.mark, from, to, 1, 0);
         c->leaf_space = to;
     }
     publish(c);
@@ -89,13 +89,13 @@ static int fresh_mark(OctGraphChange *c)
 /* What material touches does not depend on other leaves: only what is removed and added counts. */
 static void update_joined(OctGraphChange *c, const OctChange *batch)
 {
-    const OctTree *t = &c->s->tree;
+    const OctTree *t = c->tree;
     int added = fresh_mark(c);
     for (long r = 0; r < batch->removed_count; r++) {
         int leaf = batch->removed[r].leaf;
         for (long e = c->joined.first[leaf]; e < c->joined.end[leaf]; e++)
-            oct_plots_remove(&c->joined, c->joined.item[e], leaf);
-        oct_plots_resize(&c->joined, leaf, 0);
+            sm_csr_remove(&c->joined, c->joined.item[e], leaf);
+        sm_csr_resize(&c->joined, leaf, 0);
     }
     for (long a = 0; a < batch->added_count; a++) c->mark[batch->added[a].leaf] = added;
     for (long a = 0; a < batch->added_count; a++) {
@@ -104,22 +104,22 @@ static void update_joined(OctGraphChange *c, const OctChange *batch)
             low[d] = t->centre[node][d] - t->size[node] / 2;
             high[d] = low[d] + t->size[node];
         }
-        oct_near_box(&c->near, low, high, OCT_CELLS);
+        oct_leaf_query_box(&c->near, low, high, OCT_CELLS);
         for (long n = 0; n < c->near.count; n++) {
             int other = c->near.node[n];
-            if (other == node || !oct_touch_material(t, &c->s->voxels, node, other)) continue;
-            oct_plots_add(&c->joined, leaf, t->leaf[other], 0);
+            if (other == node || !oct_adjacency_material(t, c->voxels, node, other)) continue;
+            sm_csr_add(&c->joined, leaf, t->leaf[other], NULL);
             if (c->mark[t->leaf[other]] != added)
-                oct_plots_add(&c->joined, t->leaf[other], leaf, 0);
+                sm_csr_add(&c->joined, t->leaf[other], leaf, NULL);
         }
     }
 }
 
 /* Adds those leaves found near by to the list that are not marked so yet. */
-static void list_near(OctGraphChange *c, int mark)
+static void list_found(OctGraphChange *c, int mark)
 {
     for (long n = 0; n < c->near.count; n++) {
-        int leaf = c->s->tree.leaf[c->near.node[n]];
+        int leaf = c->tree->leaf[c->near.node[n]];
         if (c->mark[leaf] == mark) continue;
         c->mark[leaf] = mark;
         if (c->around_count == c->around_room) {
@@ -133,7 +133,7 @@ static void list_near(OctGraphChange *c, int mark)
 /* Lists the leaves that have a cell that was split or merged within their reach. */
 static void list_around(OctGraphChange *c, const OctChange *batch)
 {
-    const OctTree *t = &c->s->tree;
+    const OctTree *t = c->tree;
     int mark = fresh_mark(c);
     c->around_count = 0;
     for (long n = 0; n < batch->removed_count + batch->added_count; n++) {
@@ -145,18 +145,24 @@ static void list_around(OctGraphChange *c, const OctChange *batch)
             low[d] = t->centre[node][d] - t->size[node] / 2;
             high[d] = low[d] + t->size[node];
         }
-        oct_near_box(&c->near, low, high, OCT_REACHES);
-        list_near(c, mark);
+        oct_leaf_query_box(&c->near, low, high, OCT_REACHES);
+        list_found(c, mark);
     }
+}
+
+static int edge_length(const SmCsr *edges, long e)
+{
+    return ((const int *)edges->value)[e];
 }
 
 static int size_of(const OctGraphChange *c, int leaf)
 {
-    return c->s->tree.size[c->s->tree.node[leaf]];
+    return c->tree->size[c->tree->node[leaf]];
 }
 
-/* Of the pairs of leaf i with those no larger, of its own size the later ones, the leaf `other`. */
-static bool is_own(const OctGraphChange *c, int i, int other)
+/* Every pair is compared from its larger leaf, of two of one size from the earlier one: is it so
+ * with leaf i and the leaf `other`? */
+static bool is_sought(const OctGraphChange *c, int i, int other)
 {
     int own = size_of(c, i), size = size_of(c, other);
     return size < own || (size == own && other > i);
@@ -165,40 +171,40 @@ static bool is_own(const OctGraphChange *c, int i, int other)
 static bool is_cut(const OctGraphChange *c, long first, int leaf, int other)
 {
     double here[3], there[3];
-    if (first >= c->s->cut.triangles) return false;
-    oct_structure_centre(c->s, leaf, here);
-    oct_structure_centre(c->s, other, there);
-    return sm_cut_crosses(&c->s->cut, first, here, there);
+    if (first >= c->cut->triangles) return false;
+    oct_tree_centre(c->tree, c->voxels, c->tree->node[leaf], here);
+    oct_tree_centre(c->tree, c->voxels, c->tree->node[other], there);
+    return sm_cut_crosses(c->cut, first, here, there);
 }
 
 /* Compares the edges that leaf i has to those no larger with what it should have. A neighbour that
  * it had is not across the old cut; across the new one it is sought later. */
 static void compare(OctGraphChange *c, int i)
 {
-    const OctPlots *edges = &c->edges;
-    const OctVisible *visible = &c->visible;
+    const SmCsr *edges = &c->edges;
+    const OctVisibility *visible = &c->visible;
     int had = fresh_mark(c), stays = fresh_mark(c);
-    oct_visible_find(&c->visible, i);
+    oct_visibility_find(&c->visible, i);
     for (long e = edges->first[i]; e < edges->end[i]; e++) c->mark[edges->item[e]] = had;
     for (long n = 0; n < visible->count; n++) {
         int j = visible->leaf[n];
         if (c->mark[j] == had) {
             c->mark[j] = stays;
-        } else if (is_own(c, i, j) && !is_cut(c, 0, i, j)) {
-            int length = oct_tree_between(&c->s->tree, c->s->tree.node[i], c->s->tree.node[j]);
+        } else if (is_sought(c, i, j) && !is_cut(c, 0, i, j)) {
+            int length = oct_tree_between(c->tree, c->tree->node[i], c->tree->node[j]);
             note(&c->come, &c->come_count, &c->come_room, (OctEdge){i, j, length});
         }
     }
     for (long e = edges->first[i]; e < edges->end[i]; e++) {
         int j = edges->item[e];
-        if (c->mark[j] == had && c->s->tree.node[j] >= 0 && is_own(c, i, j))
-            note(&c->gone, &c->gone_count, &c->gone_room, (OctEdge){i, j, edges->also[e]});
+        if (c->mark[j] == had && c->tree->node[j] >= 0 && is_sought(c, i, j))
+            note(&c->gone, &c->gone_count, &c->gone_room, (OctEdge){i, j, edge_length(edges, e)});
     }
 }
 
 void oct_graph_change_find(OctGraphChange *c, const OctChange *batch)
 {
-    const OctTree *t = &c->s->tree;
+    const OctTree *t = c->tree;
     grow(c);
     c->gone_count = c->come_count = 0;
     update_joined(c, batch);
@@ -210,37 +216,38 @@ void oct_graph_change_find(OctGraphChange *c, const OctChange *batch)
             int other = c->edges.item[e];
             if (t->node[other] >= 0 || other > leaf)
                 note(&c->gone, &c->gone_count, &c->gone_room,
-                     (OctEdge){leaf, other, c->edges.also[e]});
+                     (OctEdge){leaf, other, edge_length(&c->edges, e)});
         }
     }
 }
 
-void oct_graph_change_corners(const OctStructure *s, long triangle, double corner[3][3])
+void oct_graph_change_corners(const SmVoxels *voxels, const SmCut *cut, long triangle,
+                              double corner[3][3])
 {
-    const int *vertex = s->cut.triangle[triangle];
+    const int *vertex = cut->triangle[triangle];
     for (int i = 0; i < 3; i++)
         for (int d = 0; d < 3; d++)
-            corner[i][d] = 2 * (s->cut.vertex[vertex[i]][d] - s->origin[d]) / s->cell;
+            corner[i][d] = 2 * (cut->vertex[vertex[i]][d] - voxels->origin[d]) / voxels->cell;
 }
 
 void oct_graph_change_cut(OctGraphChange *c, long first)
 {
     static const double margin = 1e-3; /* half finest cells: against rounding */
-    const OctStructure *s = c->s;
     int mark = fresh_mark(c);
     c->around_count = c->gone_count = c->come_count = 0;
-    for (long t = first; t < s->cut.triangles; t++) {
+    for (long t = first; t < c->cut->triangles; t++) {
         double corner[3][3];
-        oct_graph_change_corners(s, t, corner);
-        oct_near_triangle(&c->near, (const double(*)[3])corner, margin, INT_MAX, OCT_REACHES);
-        list_near(c, mark);
+        oct_graph_change_corners(c->voxels, c->cut, t, corner);
+        oct_leaf_query_triangle(&c->near, (const double(*)[3])corner, margin, INT_MAX, OCT_REACHES);
+        list_found(c, mark);
     }
     for (long n = 0; n < c->around_count; n++) {
         int i = c->around[n];
         for (long e = c->edges.first[i]; e < c->edges.end[i]; e++) {
             int j = c->edges.item[e];
-            if (is_own(c, i, j) && is_cut(c, first, i, j))
-                note(&c->gone, &c->gone_count, &c->gone_room, (OctEdge){i, j, c->edges.also[e]});
+            if (is_sought(c, i, j) && is_cut(c, first, i, j))
+                note(&c->gone, &c->gone_count, &c->gone_room,
+                     (OctEdge){i, j, edge_length(&c->edges, e)});
         }
     }
 }
@@ -257,15 +264,15 @@ static void note_rows(OctGraphChange *c, const OctEdge *edge, long count, int ma
 
 void oct_graph_change_apply(OctGraphChange *c, OctReach *reach)
 {
-    OctGraph *graph = &c->s->graph;
+    OctGraph *graph = c->graph;
     for (long n = 0; n < c->gone_count; n++) {
-        oct_plots_remove(&c->edges, c->gone[n].leaf, c->gone[n].other);
-        oct_plots_remove(&c->edges, c->gone[n].other, c->gone[n].leaf);
+        sm_csr_remove(&c->edges, c->gone[n].leaf, c->gone[n].other);
+        sm_csr_remove(&c->edges, c->gone[n].other, c->gone[n].leaf);
     }
     for (long n = 0; n < c->come_count; n++) {
         OctEdge edge = c->come[n];
-        oct_plots_add(&c->edges, edge.leaf, edge.other, edge.length);
-        oct_plots_add(&c->edges, edge.other, edge.leaf, edge.length);
+        sm_csr_add(&c->edges, edge.leaf, edge.other, &edge.length);
+        sm_csr_add(&c->edges, edge.other, edge.leaf, &edge.length);
         if (edge.length > graph->longest) graph->longest = edge.length;
     }
     publish(c);

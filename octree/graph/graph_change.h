@@ -1,5 +1,5 @@
 /* graph_change.h - the visibility graph brought up to date where leaves have changed or the cut has
- * grown (resample.h).
+ * grown (change/structure.h).
  *
  * A pair of leaves can become neighbours, or cease to be, only where the box between their centres
  * meets a cell that was split or merged: then that cell is within the size of the larger one's
@@ -7,21 +7,24 @@
 #ifndef OCT_GRAPH_CHANGE_H
 #define OCT_GRAPH_CHANGE_H
 
-#include "../change/resample.h"
-#include "../tree/near.h"
+#include "../tree/leaf_query.h"
+#include "../tree/tree_change.h"
 #include "distance.h"
-#include "visible.h"
+#include "visibility.h"
 
 typedef struct {
     int leaf, other, length;
 } OctEdge;
 
 typedef struct {
-    OctStructure *s;
-    OctPlots joined; /* leaves that every leaf is joined to, cut or not */
-    OctPlots edges;  /* of the graph, whose arrays these are */
-    OctVisible visible;
-    OctNear near;
+    const OctTree *tree;
+    const SmVoxels *voxels;
+    const SmCut *cut;
+    OctGraph *graph;
+    SmCsr joined; /* leaves that every leaf is joined to, cut or not */
+    SmCsr edges;  /* of the graph, whose arrays these are */
+    OctVisibility visible;
+    OctLeafQuery near;
     OctEdge *gone, *come; /* edges that are to be taken out and put in, each once */
     long gone_count, come_count;
     /* its own */
@@ -32,8 +35,9 @@ typedef struct {
     long around_count, around_room, gone_room, come_room;
 } OctGraphChange;
 
-/* Takes the arrays of the structure's graph over, which must stay where it is. O(nodes). */
-void oct_graph_change_init(OctGraphChange *change, OctStructure *structure);
+/* Takes the arrays of the graph over. All arguments must stay where they are. O(nodes). */
+void oct_graph_change_init(OctGraphChange *change, const OctTree *tree, const SmVoxels *voxels,
+                           const SmCut *cut, OctGraph *graph);
 void oct_graph_change_free(OctGraphChange *change); /* the graph stays whole */
 size_t oct_graph_change_bytes(const OctGraphChange *change);
 
@@ -49,6 +53,7 @@ void oct_graph_change_cut(OctGraphChange *change, long first);
 void oct_graph_change_apply(OctGraphChange *change, OctReach *reach);
 
 /* Corners of a triangle of the cut in half finest cells. */
-void oct_graph_change_corners(const OctStructure *structure, long triangle, double corner[3][3]);
+void oct_graph_change_corners(const SmVoxels *voxels, const SmCut *cut, long triangle,
+                              double corner[3][3]);
 
 #endif

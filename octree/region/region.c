@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/csr.h"
 #include "../../lib/system/team.h"
 #include "../graph/distance.h"
 #include "../tree/cover.h"
-#include "halves.h"
-#include "lists.h"
+#include "one_sided_regions.h"
 
 enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
 
@@ -29,52 +29,52 @@ static int *leaves_below(const OctTree *tree, int node, int *leaf)
 /* What a thread makes regions symmetric with. */
 typedef struct {
     const OctTree *tree;
-    const OctHalves *halves;
+    const OctOneSided *one_sided;
     const int *w;
     OctCover cover;
     OctReach reach;
     int *leaf; /* [leaves] */
 } Maker;
 
-/* Leaf j has what it owns and what it takes. */
+/* Its one-sided region and its reverse list. */
 static void unite(Maker *m, long j, int *width)
 {
-    const OctHalves *h = m->halves;
-    for (long n = h->first[j]; n < h->first[j + 1]; n++) oct_cover_put(&m->cover, h->member[n]);
-    for (long n = h->taken_first[j]; n < h->taken_first[j + 1]; n++) {
-        oct_cover_put(&m->cover, m->tree->node[h->taken[n]]);
-        if (h->distance[n] > *width) *width = h->distance[n];
+    const OctOneSided *o = m->one_sided;
+    for (long n = o->first[j]; n < o->first[j + 1]; n++) oct_cover_put(&m->cover, o->member[n]);
+    for (long n = o->reverse_first[j]; n < o->reverse_first[j + 1]; n++) {
+        oct_cover_put(&m->cover, m->tree->node[o->reverse[n]]);
+        if (o->distance[n] > *width) *width = o->distance[n];
     }
 }
 
-static bool owns(const Maker *m, int owner, int leaf)
+static bool holds(const Maker *m, int i, int leaf)
 {
-    long first = m->halves->first[owner], count = m->halves->first[owner + 1] - first;
-    return oct_cover_holds(m->tree, m->halves->member + first, count, leaf);
+    long first = m->one_sided->first[i], count = m->one_sided->first[i + 1] - first;
+    return oct_cover_holds(m->tree, m->one_sided->member + first, count, leaf);
 }
 
-/* Leaf j has of what it owns the leaves that own it. */
+/* Of its one-sided region the leaves that hold it. */
 static void intersect(Maker *m, long j, int *width)
 {
-    const OctHalves *h = m->halves;
+    const OctOneSided *o = m->one_sided;
     int *end = m->leaf;
-    for (long n = h->first[j]; n < h->first[j + 1]; n++)
-        end = leaves_below(m->tree, h->member[n], end);
+    for (long n = o->first[j]; n < o->first[j + 1]; n++)
+        end = leaves_below(m->tree, o->member[n], end);
     oct_reach_from(&m->reach, (int)j, *width);
     *width = 0;
     for (const int *leaf = m->leaf; leaf < end; leaf++) {
         int distance = m->reach.distance[*leaf];
-        if (distance > m->w[*leaf] && !owns(m, *leaf, (int)j)) continue;
+        if (distance > m->w[*leaf] && !holds(m, *leaf, (int)j)) continue;
         oct_cover_put(&m->cover, m->tree->node[*leaf]);
         if (distance > *width) *width = distance;
     }
 }
 
-static void make_region(Maker *m, OctSymmetry symmetry, long j, int *width, OctLists *member)
+static void make_region(Maker *m, OctSymmetry symmetry, long j, int *width, SmCsrParts *member)
 {
-    const OctHalves *h = m->halves;
-    if (symmetry == OCT_UNION && h->taken_first[j] == h->taken_first[j + 1]) {
-        oct_lists_add(member, j, h->member + h->first[j], h->first[j + 1] - h->first[j]);
+    const OctOneSided *o = m->one_sided;
+    if (symmetry == OCT_UNION && o->reverse_first[j] == o->reverse_first[j + 1]) {
+        sm_csr_parts_add(member, j, o->member + o->first[j], o->first[j + 1] - o->first[j]);
         return;
     }
     m->cover.count = 0;
@@ -83,17 +83,17 @@ static void make_region(Maker *m, OctSymmetry symmetry, long j, int *width, OctL
     else
         intersect(m, j, width);
     oct_cover_finish(&m->cover);
-    oct_lists_add(member, j, m->cover.list, m->cover.count);
+    sm_csr_parts_add(member, j, m->cover.list, m->cover.count);
 }
 
 static void make_regions(const OctTree *tree, const OctGraph *graph, const int *w,
-                         OctSymmetry symmetry, const OctHalves *h, OctRegions *regions)
+                         OctSymmetry symmetry, const OctOneSided *o, OctRegions *regions)
 {
-    OctLists member;
-    oct_lists_init(&member, tree->leaves);
+    SmCsrParts member;
+    sm_csr_parts_init(&member, tree->leaves);
 #pragma omp parallel num_threads(sm_team(0)) if (tree->leaves > SERIAL)
     {
-        Maker m = {.tree = tree, .halves = h, .w = w};
+        Maker m = {.tree = tree, .one_sided = o, .w = w};
         oct_cover_init(&m.cover, tree, tree->nodes);
         if (symmetry == OCT_INTERSECTION) {
             oct_reach_init(&m.reach, graph);
@@ -101,28 +101,28 @@ static void make_regions(const OctTree *tree, const OctGraph *graph, const int *
         }
 #pragma omp for schedule(dynamic)
         for (long block = 0; block < member.blocks; block++)
-            for (long j = oct_lists_from(block); j < oct_lists_to(&member, block); j++)
+            for (long j = sm_csr_parts_from(block); j < sm_csr_parts_to(&member, block); j++)
                 make_region(&m, symmetry, j, &regions->width[j], &member);
         oct_cover_free(&m.cover);
         oct_reach_free(&m.reach);
         free(m.leaf);
     }
-    oct_lists_pack(&member, &regions->first, &regions->member);
+    sm_csr_parts_join(&member, &regions->first, &regions->member);
 }
 
-/* What is owned is all there is where nobody takes anything. */
-static void join_halves(const OctTree *tree, const OctGraph *graph, const int *w,
-                        OctSymmetry symmetry, OctHalves *h, OctRegions *regions)
+/* One-sided regions are symmetric already where there are no asymmetric pairs. */
+static void make_symmetric(const OctTree *tree, const OctGraph *graph, const int *w,
+                           OctSymmetry symmetry, OctOneSided *o, OctRegions *regions)
 {
-    regions->width = h->width;
-    h->width = NULL;
-    if (symmetry != OCT_ASYMMETRIC && h->taken_first[tree->leaves] > 0) {
-        make_regions(tree, graph, w, symmetry, h, regions);
+    regions->width = o->width;
+    o->width = NULL;
+    if (symmetry != OCT_ASYMMETRIC && o->reverse_first[tree->leaves] > 0) {
+        make_regions(tree, graph, w, symmetry, o, regions);
     } else {
-        regions->first = h->first;
-        regions->member = h->member;
-        h->first = NULL;
-        h->member = NULL;
+        regions->first = o->first;
+        regions->member = o->member;
+        o->first = NULL;
+        o->member = NULL;
     }
 }
 
@@ -163,11 +163,11 @@ SmCode oct_regions_build(const OctTree *tree, const OctGraph *graph, const int *
     *regions = (OctRegions){0};
     SmCode code = check(tree, w, epsilon, error);
     if (code) return code;
-    OctHalves halves;
+    OctOneSided one_sided;
     int *below = oct_tree_below(tree);
-    oct_halves_build(tree, graph, w, epsilon, below, &halves);
-    join_halves(tree, graph, w, symmetry, &halves, regions);
-    oct_halves_free(&halves);
+    oct_one_sided_build(tree, graph, w, epsilon, below, &one_sided);
+    make_symmetric(tree, graph, w, symmetry, &one_sided, regions);
+    oct_one_sided_free(&one_sided);
     regions->leaves = tree->leaves;
     regions->size = sm_alloc((size_t)tree->leaves, sizeof *regions->size);
     for (long i = 0; i < tree->leaves; i++)

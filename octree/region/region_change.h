@@ -1,36 +1,40 @@
-/* region_change.h - regions brought up to date where distances or cells have changed (resample.h).
+/* region_change.h - regions brought up to date where distances or cells have changed
+ * (change/structure.h).
  *
- * What a leaf owns (halves.h) can change only if a path no longer than its reach uses an edge that
- * has gone or come: these leaves, and new ones, are searched again. What other leaves take changes
- * with what those own; nothing else does. */
+ * The one-sided region of a leaf (one_sided_regions.h) can change only if a path no longer than its
+ * reach uses an edge that has gone or come: these leaves, and new ones, are searched again. The
+ * reverse lists of other leaves change with the one-sided regions of those; nothing else does. */
 #ifndef OCT_REGION_CHANGE_H
 #define OCT_REGION_CHANGE_H
 
 #include <stdint.h>
 
-#include "../change/resample.h"
 #include "../graph/graph_change.h"
 #include "../tree/cover.h"
-#include "doubts.h"
-#include "halves.h"
+#include "one_sided_regions.h"
+#include "region.h"
 
 typedef struct {
-    OctStructure *s;
+    const OctTree *tree;
+    const OctGraph *graph;
+    OctRegions *regions;
+    const int *w; /* [leaves] widths */
+    double epsilon;
     OctReach reach;
-    OctSheaf sheaf;
-    OctPlots own;    /* summation nodes that every leaf owns, rising */
-    OctPlots taken;  /* leaves that it takes, and their distances */
-    OctPlots region; /* of the regions, whose arrays these are */
+    OctSearch search;
+    SmCsr one_sided; /* summation nodes of the one-sided regions, rising */
+    SmCsr reverse;   /* of every leaf: those that hold it though it does not hold them; distances */
+    SmCsr region;    /* of the regions, whose arrays these are */
     /* its own */
     OctCover cover;
-    int *own_width;         /* [leaf_space] largest distance of a leaf that is owned */
+    int *one_sided_width;   /* [leaf_space] largest distance of a leaf in the one-sided region */
     unsigned char *state;   /* [leaf_space] 0 between batches */
-    unsigned char *stirred; /* [node_space] leaves below it are others than before; 0 between */
+    unsigned char *altered; /* [node_space] leaves below it are others than before; 0 between */
     int *list;              /* [list_count] leaves to be searched again, then */
     long list_count, search_count; /* those whose regions change with them */
-    int *fresh;                    /* what the leaves searched own now */
+    int *fresh;                    /* one-sided regions of the leaves searched, as they are now */
     long *fresh_end;               /* [searched] */
-    OctDoubts doubts;              /* of owners by their numbers on the list */
+    OctPairs pairs;                /* of sources by their places on the list */
     struct OctSource *source;      /* [source_count] ends of edges */
     long source_count;
     struct OctOrder {
@@ -42,14 +46,17 @@ typedef struct {
     long list_room, fresh_room, fresh_end_room, source_room, region_room, order_room;
 } OctRegionChange;
 
-/* Takes the arrays of the structure's regions over, which must stay where it is. `below` is
- * oct_tree_below(). O(body). */
-void oct_region_change_init(OctRegionChange *change, OctStructure *structure, const int *below);
+/* Takes the arrays of the regions over; they, tree and graph must stay where they are. `w` and
+ * `epsilon` are what they were built of (oct_regions_build()), `below` is oct_tree_below().
+ * O(body).
+ */
+void oct_region_change_init(OctRegionChange *change, const OctTree *tree, const OctGraph *graph,
+                            const int *w, double epsilon, const int *below, OctRegions *regions);
 void oct_region_change_free(OctRegionChange *change); /* the regions stay whole */
 size_t oct_region_change_bytes(const OctRegionChange *change);
 
-/* Makes room for the leaves and nodes there are. */
-void oct_region_change_grow(OctRegionChange *change, const int *below);
+/* Begins an update: makes room for the leaves and nodes there are, whose widths are `w`. */
+void oct_region_change_grow(OctRegionChange *change, const int *w, const int *below);
 
 /* Notes edges that are to go, or that have come; then marks the leaves whose own distances those
  * noted can change, by the graph as it is, which has all of them. */
@@ -57,7 +64,7 @@ void oct_region_change_note(OctRegionChange *change, const OctEdge *edge, long c
 void oct_region_change_mark(OctRegionChange *change);
 
 /* Makes the regions what they should be, of the graph as it is, and lists in `batch` which hold
- * other leaves than before. The structure's `w` has the widths of the new leaves. */
+ * other leaves than before. */
 void oct_region_change_update(OctRegionChange *change, OctChange *batch);
 
 #endif

@@ -32,7 +32,7 @@ static void make_room(const OctTree *tree, OctWeights *w, OctReweigh *s)
         s->listed = grown(s->listed, &s->leaves, tree->leaves, sizeof *s->listed);
 }
 
-/* A mark that nothing bears. */
+/* A mark that no node or leaf has. */
 static void new_mark(OctReweigh *s)
 {
     if (++s->mark) return;
@@ -97,16 +97,14 @@ static void list_below(const OctTree *tree, int node, OctReweigh *s)
 }
 
 /* By symmetry the regions that contain a leaf are those of its own region's leaves. */
-static void list_region(const OctStructure *structure, long leaf, OctReweigh *s)
+static void list_region(const OctTree *tree, const OctRegions *r, long leaf, OctReweigh *s)
 {
-    const OctRegions *r = &structure->regions;
     for (long at = r->first[leaf]; at < oct_regions_end(r, leaf); at++)
-        list_below(&structure->tree, r->member[at], s);
+        list_below(tree, r->member[at], s);
 }
 
-static double find_reach(const OctStructure *structure, const OctWeights *w, long leaf)
+static double find_reach(const OctRegions *r, const OctWeights *w, long leaf)
 {
-    const OctRegions *r = &structure->regions;
     double reach = 0;
     for (long at = r->first[leaf]; at < oct_regions_end(r, leaf); at++)
         reach += w->below[r->member[at]];
@@ -115,40 +113,38 @@ static double find_reach(const OctStructure *structure, const OctWeights *w, lon
 
 /* M_i and weights of the leaves that the change names; lists whose regions hold those that have
  * another weight. */
-static void weigh_leaves(const OctStructure *structure, const OctChange *change, OctWeights *w,
-                         OctReweigh *s)
+static void weigh_leaves(const OctTree *tree, const OctRegions *regions, const OctChange *change,
+                         OctWeights *w, OctReweigh *s)
 {
-    const OctTree *tree = &structure->tree;
     const double rounding = 1e-14;
     for (long n = 0; n < change->added_count; n++) w->reach[change->added[n].leaf] = 0;
     for (long n = 0; n < change->region_count; n++) {
         int leaf = change->region[n];
-        double reach = find_reach(structure, w, leaf), before = w->reach[leaf];
+        double reach = find_reach(regions, w, leaf), before = w->reach[leaf];
         list(s, leaf);
         if (fabs(reach - before) <= rounding * reach) continue;
         w->reach[leaf] = reach;
         if (w->weighting == OCT_PLAIN && before > 0) continue; /* its weight is its mass */
         oct_weights_weigh(w, tree, leaf);
         add_parent(tree, tree->node[leaf], s);
-        list_region(structure, leaf, s);
+        list_region(tree, regions, leaf, s);
     }
 }
 
-void oct_reweigh(const OctStructure *structure, const OctChange *change, OctWeights *w,
-                 OctReweigh *s)
+void oct_reweigh(const OctTree *tree, const OctRegions *regions, const double *mass,
+                 const OctChange *change, OctWeights *w, OctReweigh *s)
 {
-    const OctTree *tree = &structure->tree;
     make_room(tree, w, s);
     s->count = 0;
     new_mark(s);
     for (long n = 0; n < change->added_count; n++) {
         const OctAdded *added = &change->added[n];
-        w->below[added->node] = structure->mass[added->leaf] / w->mass_unit;
+        w->below[added->node] = mass[added->leaf] / w->mass_unit;
         add_parent(tree, added->node, s);
     }
     climb(tree, w, s, sum_below);
     new_mark(s);
-    weigh_leaves(structure, change, w, s);
+    weigh_leaves(tree, regions, change, w, s);
     climb(tree, w, s, oct_weights_sum);
 }
 

@@ -2,8 +2,8 @@
 #ifndef OCT_REWEIGH_H
 #define OCT_REWEIGH_H
 
-#include "../change/resample.h"
 #include "../tree/levels.h"
+#include "../tree/tree_change.h"
 #include "weights.h"
 
 /* Scratch; begins zeroed. */
@@ -18,12 +18,13 @@ typedef struct {
     long count, room;
 } OctReweigh;
 
-/* Brings the weights up to date with a structure that has changed, whose regions must be symmetric,
- * and lists in `scratch` the leaves whose M_i, weight or OctRegionRest is another: those whose
- * region holds other leaves, and those whose region holds a leaf whose weight is another. M_i stays
- * where it has moved by rounding alone. O(members of the listed regions and leaves below them). */
-void oct_reweigh(const OctStructure *structure, const OctChange *change, OctWeights *weights,
-                 OctReweigh *scratch);
+/* Brings the weights up to date with what has changed of tree, regions and `mass` [leaves], kg; the
+ * regions must be symmetric; and lists in `scratch` the leaves whose M_i, weight or OctRegionRest
+ * is another: those whose region holds other leaves, and those whose region holds a leaf whose
+ * weight is another. M_i stays where it has moved by rounding alone. O(members of the listed
+ * regions and leaves below them). */
+void oct_reweigh(const OctTree *tree, const OctRegions *regions, const double *mass,
+                 const OctChange *change, OctWeights *weights, OctReweigh *scratch);
 void oct_reweigh_free(OctReweigh *scratch);
 size_t oct_reweigh_bytes(const OctReweigh *scratch);
 

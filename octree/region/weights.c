@@ -89,7 +89,7 @@ void oct_weights_region(const OctWeights *w, const OctTree *tree, const OctRegio
         rest->spread[d] = sum[4 + d] - sum[1 + d] * rest->offset[d];
         rest->spread[3 + d] = sum[7 + d] - sum[1 + e] * rest->offset[f];
     }
-    rest->thin = find_axis(rest->spread, sum[0], rest->axis);
+    rest->collinear = find_axis(rest->spread, sum[0], rest->axis);
 }
 
 void oct_weights_build(const OctTree *tree, const OctRegions *regions, const double *mass,

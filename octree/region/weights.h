@@ -35,8 +35,8 @@ typedef struct {
     double mass;      /* sum of the weights */
     double offset[3]; /* c0_r - x0_r */
     double spread[6]; /* sum of weight (x0 - c0_r)(x0 - c0_r)^T: xx yy zz yz zx xy */
-    bool thin;        /* the region's nodes lie on a line, or it has but one */
-    double axis[3];   /* of a thin region the line's direction, or 0; else 0 */
+    bool collinear;   /* the region's nodes lie on a line, or it has but one */
+    double axis[3];   /* of a collinear region the line's direction, or 0; else 0 */
 } OctRegionRest;
 
 /* `mass` is [leaves] kg, positive. O(members of the regions). The caller frees. */

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/csr.h"
 #include "../../lib/polar.h"
 #include "../../lib/system/team.h"
-#include "../region/lists.h"
 
 enum { FAR_EDGES = 64, CHUNK = 16 };
 
@@ -89,24 +89,26 @@ static void choose_all(const OctTree *tree, const OctGraph *graph, const unsigne
 {
     long *first;
     int *neighbour;
-    OctLists lists;
-    oct_lists_init(&lists, g->leaves);
+    SmCsrParts lists;
+    sm_csr_parts_init(&lists, g->leaves);
 #pragma omp parallel num_threads(sm_team(0))
     {
         OctReach reach = {0};
 #pragma omp for schedule(dynamic)
         for (long block = 0; block < lists.blocks; block++)
-            for (long k = oct_lists_from(block); k < oct_lists_to(&lists, block); k++) {
+            for (long k = sm_csr_parts_from(block); k < sm_csr_parts_to(&lists, block); k++) {
                 long count = 0;
                 Moments m;
                 if (!wanted[k]) continue;
                 const int *leaf = choose(tree, graph, &reach, k, &count, &g->reach[k], &m);
-                oct_lists_add(&lists, k, leaf, count);
+                sm_csr_parts_add(&lists, k, leaf, count);
             }
         oct_reach_free(&reach);
     }
-    oct_lists_pack(&lists, &first, &neighbour);
-    oct_rows_adopt(&g->rows, g->leaves, first, neighbour, 3 * sizeof(double));
+    sm_csr_parts_join(&lists, &first, &neighbour);
+    size_t size = 3 * sizeof(double);
+    sm_csr_adopt(&g->rows, g->leaves, first, neighbour, sm_alloc((size_t)first[g->leaves], size),
+                 size);
 }
 
 /* sum over the directions, spanned or not, of value^power v v^T. */
@@ -123,7 +125,7 @@ static void compose(const Moments *m, bool spanned, double power, double M[9])
 
 static void neighbour_moments(const OctTree *tree, const OctGradients *g, long k, Moments *m)
 {
-    find_moments(tree, k, g->rows.leaf + g->rows.first[k], g->rows.count[k], m);
+    find_moments(tree, k, g->rows.item + g->rows.first[k], g->rows.end[k] - g->rows.first[k], m);
 }
 
 /* What a share's direction goes through: of flat leaves nothing yet. */
@@ -151,8 +153,8 @@ static void share_out(const OctTree *tree, long k, const Moments *m, OctGradient
     double apply[9], (*share)[3] = g->rows.value;
     g->span[k] = (unsigned char)m->span;
     find_apply(m, apply);
-    for (long e = g->rows.first[k]; e < oct_rows_end(&g->rows, k); e++)
-        find_share(tree, k, g->rows.leaf[e], m, apply, g->cell, share[e]);
+    for (long e = g->rows.first[k]; e < g->rows.end[k]; e++)
+        find_share(tree, k, g->rows.item[e], m, apply, g->cell, share[e]);
 }
 
 /* Takes a leaf, by its moments, into the flat ones, where there is room for all leaves. */
@@ -222,7 +224,7 @@ void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsig
 
 void oct_gradients_free(OctGradients *gradients)
 {
-    oct_rows_free(&gradients->rows);
+    sm_csr_free(&gradients->rows);
     free(gradients->leaf);
     free(gradients->place);
     free(gradients->span);
@@ -235,7 +237,7 @@ void oct_gradients_free(OctGradients *gradients)
 void oct_gradients_grow(OctGradients *gradients, const OctTree *tree)
 {
     make_room(gradients, tree->leaves);
-    oct_rows_grow(&gradients->rows, tree->leaves);
+    sm_csr_grow(&gradients->rows, tree->leaves);
 }
 
 void oct_gradients_renew(OctGradients *gradients, const OctTree *tree, const OctGraph *graph,
@@ -249,7 +251,7 @@ void oct_gradients_renew(OctGradients *gradients, const OctTree *tree, const Oct
         g->place[leaf] = (int)g->count;
         g->leaf[g->count++] = leaf;
     }
-    oct_rows_set(&g->rows, leaf, count, neighbour);
+    sm_csr_set(&g->rows, leaf, count, neighbour);
     share_out(tree, leaf, &m, g);
     if (m.span < 3)
         add_flat(g, leaf, &m);
@@ -265,7 +267,7 @@ void oct_gradients_drop(OctGradients *gradients, int leaf)
     g->leaf[place] = g->leaf[--g->count];
     g->place[g->leaf[place]] = place;
     g->place[leaf] = -1;
-    oct_rows_set(&g->rows, leaf, 0, NULL);
+    sm_csr_set(&g->rows, leaf, 0, NULL);
     drop_flat(g, leaf);
 }
 
@@ -335,8 +337,8 @@ void oct_gradients_find(const OctGradients *gradients, const double (*x)[3], dou
         for (long n = 0; n < g->count; n++) {
             int k = g->leaf[n];
             double sum[9] = {0};
-            for (long e = g->rows.first[k]; e < oct_rows_end(&g->rows, k); e++)
-                add_moved(x[g->rows.leaf[e]], x[k], share[e], sum);
+            for (long e = g->rows.first[k]; e < g->rows.end[k]; e++)
+                add_moved(x[g->rows.item[e]], x[k], share[e], sum);
             memcpy(F[k], sum, sizeof sum);
         }
 #pragma omp for schedule(static)

@@ -2,8 +2,8 @@
 #ifndef OCT_GRADIENT_H
 #define OCT_GRADIENT_H
 
+#include "../../lib/csr.h"
 #include "../graph/distance.h"
-#include "../region/rows.h"
 
 /* A leaf whose neighbours span less than space. */
 typedef struct {
@@ -21,9 +21,9 @@ typedef struct {
 typedef struct {
     long leaves, count; /* of the tree; that are wanted */
     int *leaf;          /* [count] those wanted */
-    OctRows rows; /* of every leaf: its neighbours; double [3] share of each, 1 / mesh unit, of a
-                     flat leaf still to be inverted */
-    int *place;   /* [leaves] in `leaf`, or -1 */
+    SmCsr rows; /* of every leaf: its neighbours; double [3] share of each, 1 / mesh unit, of a
+                    flat leaf still to be inverted */
+    int *place; /* [leaves] in `leaf`, or -1 */
     unsigned char *span; /* [leaves] dimensions that the neighbours of those wanted span, 0 to 3 */
     int *reach;          /* [leaves] half finest cells: what is farther from a wanted one's centre,
                             in the max norm, makes no difference to it; 0: only its own edges do */

@@ -21,18 +21,10 @@
 
 #include <stdint.h>
 
-#include "../../lib/cut/cut.h"
 #include "../../lib/mesh/mesh.h"
+#include "../../lib/pieces.h"
 #include "gradient.h"
-
-/* What carries a surface: the octree of `voxels`, its graph, and what has been cut (or NULL), which
- * the graph's edges do not cross. */
-typedef struct {
-    const SmVoxels *voxels;
-    const OctTree *tree;
-    const OctGraph *graph;
-    const SmCut *cut;
-} OctCarrier;
+#include "skinning.h"
 
 typedef struct {
     long vertices;
@@ -40,14 +32,14 @@ typedef struct {
     double (*centre)[3]; /* [leaves] X_k, mesh units */
     double (*rest)[3];   /* [vertices] X */
     double (*normal)[3]; /* [vertices] at rest, of unit length or 0 */
-    OctRows rows;        /* of every vertex: the nodes that move it, the first the leaf it belongs
-                            to; float w_k of each, that of the first is what is missing to 1: 0 */
+    SmCsr rows;          /* of every vertex: the nodes that move it, the first the leaf it belongs
+                             to; float w_k of each, that of the first is what is missing to 1: 0 */
     double (*F)[9];      /* [leaves] of those that move a vertex, by the last oct_surface_move() */
     /* to tie vertices anew */
     float *reach;    /* [vertices] mesh units: how far the leaf that a vertex belongs to was looked
                         for, in the max norm; 0: it is the one that holds it; less: no leaf is seen
                         so far */
-    uint64_t *edges; /* [leaves] of those that move a vertex: which edges they have (tie.h) */
+    uint64_t *edges; /* [leaves] of those that move a vertex: which edges they have (skinning.h) */
     int *users;      /* [leaves] vertices that each moves */
     long leaves, leaf_room, vertex_room;
 } OctSurface;
@@ -61,13 +53,25 @@ void oct_surface_free(OctSurface *surface);
 
 /* Brings it up to date where tree, graph, cut and mesh have changed; what comes out is what
  * oct_surface_build() gives, but for the order of sums. `node` are the tree nodes of all leaves
- * that are new and of those that are no more (resample.h), `first` the cut's first triangle since
+ * that are new and of those that are no more (structure.h), `first` the cut's first triangle since
  * the last time. Vertices of the mesh keep their numbers and places, new ones follow (slit.h).
  * O(vertices + leaves that move one) for a look at each, O(triangles) for normals where there are
  * new vertices, and the work of building what is near a change; O(edges) if leaves there do not see
  * all of space. */
-void oct_surface_retie(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier,
-                       long count, const int *node, long first);
+void oct_surface_update(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier,
+                        long count, const int *node, long first);
+
+/* Moves vertices that follow the wrong side of a cut to the leaves of a neighbour on the surface
+ * (lib/cut/agree.h): neighbours on a surface should belong to leaves that no cut parts. `carrier`
+ * has a cut. To be called again after every oct_surface_update(). Returns how many. O(vertices +
+ * triangles), and a look at the cut for every edge of the surface between leaves that are no
+ * neighbours. */
+long oct_surface_agree(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier);
+
+/* The piece of leaves (oct_graph_pieces()) that every triangle follows, by the leaf that its first
+ * vertex belongs to, into piece[triangle_count]. */
+void oct_surface_pieces(const OctSurface *surface, const SmMesh *mesh, const SmPieces *pieces,
+                        int *piece);
 
 /* Vertex positions (and unit normals, unless NULL) from node positions x, all in mesh units. A
  * normal of a surface that has collapsed is 0, never NaN (while x is finite and within 1e60).

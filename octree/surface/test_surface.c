@@ -107,8 +107,8 @@ static void random_motion(unsigned *seed, double stretch, double A[3][3], double
 /* Do the neighbours of all nodes that move a vertex span that many dimensions? */
 static bool spans(const OctSurface *s, long v, int dimensions)
 {
-    for (long n = s->rows.first[v]; n < oct_rows_end(&s->rows, v); n++)
-        if (s->gradients.span[s->rows.leaf[n]] < dimensions) return false;
+    for (long n = s->rows.first[v]; n < s->rows.end[v]; n++)
+        if (s->gradients.span[s->rows.item[n]] < dimensions) return false;
     return true;
 }
 
@@ -180,8 +180,8 @@ static void weights_are_a_partition_of_unity(void **state)
         const float *weight = s->rows.value;
         for (long v = 0; v < s->vertices; v++) {
             double others = 0;
-            for (long n = s->rows.first[v] + 1; n < oct_rows_end(&s->rows, v); n++) {
-                assert_true(weight[n] > 0 && s->rows.leaf[n] != s->rows.leaf[s->rows.first[v]]);
+            for (long n = s->rows.first[v] + 1; n < s->rows.end[v]; n++) {
+                assert_true(weight[n] > 0 && s->rows.item[n] != s->rows.item[s->rows.first[v]]);
                 others += (double)weight[n];
             }
             /* its own weight is 1/8 of its most at least */
@@ -224,8 +224,8 @@ static void weights_of_a_lattice_are_the_kernel(void **state)
         }
         if (least < 1 || most > 15) continue;
         inner++;
-        const OctRows *rows = &body.surface.rows;
-        for (long n = rows->first[v] + 1; n < oct_rows_end(rows, v); n++)
+        const SmCsr *rows = &body.surface.rows;
+        for (long n = rows->first[v] + 1; n < rows->end[v]; n++)
             others += (double)((const float *)rows->value)[n];
         assert_true(fabs(others + own - 1) < 1e-6);
     }

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "../region/lists.h"
+#include "../../lib/csr.h"
 
 void oct_cover_init(OctCover *cover, const OctTree *tree, long nodes)
 {
@@ -45,7 +45,7 @@ void oct_cover_finish(OctCover *cover)
         if (parent >= 0) cover->in[parent] = 0;
     }
     cover->count = kept;
-    oct_lists_sort(cover->list, kept);
+    sm_sort_ints(cover->list, kept);
 }
 
 bool oct_cover_holds(const OctTree *tree, const int *member, long count, int leaf)

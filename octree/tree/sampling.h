@@ -21,9 +21,9 @@ typedef enum {
 
 /* Of OCT_FEATURES a cell is split if its material does not connect within it, or if its material
  * and that of a touching tree node of its size (a leaf or not) do not connect within the box around
- * both (parts.h). Then every leaf above the finest level is connected, and so are any two touching
- * leaves, within the box around the larger and the cell of its size that holds the smaller. Fine
- * gaps get fine cells, and material that only bends, swells or tapers gets none. */
+ * both (cell_components.h). Then every leaf above the finest level is connected, and so are any two
+ * touching leaves, within the box around the larger and the cell of its size that holds the
+ * smaller. Fine gaps get fine cells, and material that only bends, swells or tapers gets none. */
 typedef struct {
     OctCriterionKind kind;
     int level; /* the deepest that it splits to: 0 (base cells) to levels (finest cells) */
@@ -37,7 +37,7 @@ typedef struct {
     int levels;    /* a base cell is 2^levels finest cells wide */
     int corner[3]; /* of the base lattice, in finest cells; not used if bases is given */
     long bases;    /* wanted base cells: the lattice is put where there are nearest to that many
-                    * (place.h), of such places where the criteria give nearest to `nodes`; or 0 */
+                    * (base_grid.h), of such places where the criteria give nearest to `nodes`; or 0 */
     OctCriterion criteria[OCT_MAX_CRITERIA]; /* a cell is split if one of them asks for it */
     int criteria_count;
     bool balance; /* cells of leaves that touch differ by one level at most */

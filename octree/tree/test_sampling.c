@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "place.h"
+#include "base_grid.h"
 #include "random_trees.h"
 
 typedef struct {
@@ -406,7 +406,7 @@ static void the_base_lattice_is_put_where_its_count_is_nearest(void **state)
         }
         assert_int_equal(found, best);
         int corner[OCT_PLACES][3];
-        int count = oct_place(&v, s.levels, s.bases, OCT_PLACES, corner);
+        int count = oct_base_grid_find(&v, s.levels, s.bases, OCT_PLACES, corner);
         assert_int_equal(count, places < OCT_PLACES ? places : OCT_PLACES);
         sm_voxels_free(&v);
     }

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "../../lib/test_fields.h"
-#include "../change/structure.h"
+#include "../engine.h"
 
 enum { SIDE = 6, BODIES = 2 };
 

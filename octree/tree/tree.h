@@ -7,7 +7,7 @@
  * Nodes are stored level by level from the roots down, along the Morton curve within a level, so
  * that parents come before their children, siblings follow each other, and the nodes of one level
  * are one range; a tree that has been changed is in no order and has numbers that nothing bears
- * (resample.h). Lengths are whole numbers of half a finest cell, in which every centre-to-centre
+ * (structure.h). Lengths are whole numbers of half a finest cell, in which every centre-to-centre
  * length is exact (octree section 6). Positions count from the corner of voxel (0,0,0). */
 #ifndef OCT_TREE_H
 #define OCT_TREE_H

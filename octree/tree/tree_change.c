@@ -3,6 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/csr.h"
+#include "mass.h"
+
 /* `list` with room for one more entry. */
 #define ROOM(list, count, room)                                                                    \
     do {                                                                                           \
@@ -16,22 +19,22 @@ static void grow_nodes(OctTreeChange *c, long nodes)
 {
     OctTree *t = c->tree;
     if (nodes <= c->node_space) return;
-    long from = c->node_space, to = oct_plots_room(nodes);
+    long from = c->node_space, to = sm_room_for(nodes);
     t->centre = sm_realloc(t->centre, (size_t)to, sizeof *t->centre);
-    t->size = oct_plots_widen(t->size, from, to, sizeof *t->size, 0);
-    t->parent = oct_plots_widen(t->parent, from, to, sizeof *t->parent, -1);
-    t->child = oct_plots_widen(t->child, from, to, sizeof *t->child, -1);
-    t->children = oct_plots_widen(t->children, from, to, sizeof *t->children, 0);
-    t->material = oct_plots_widen(t->material, from, to, sizeof *t->material, 0);
-    t->leaf = oct_plots_widen(t->leaf, from, to, sizeof *t->leaf, -1);
-    c->below = oct_plots_widen(c->below, from, to, sizeof *c->below, 0);
-    c->place = oct_plots_widen(c->place, from, to, sizeof *c->place, 0);
+    t->size = sm_widen(t->size, from, to, sizeof *t->size, 0);
+    t->parent = sm_widen(t->parent, from, to, sizeof *t->parent, -1);
+    t->child = sm_widen(t->child, from, to, sizeof *t->child, -1);
+    t->children = sm_widen(t->children, from, to, sizeof *t->children, 0);
+    t->material = sm_widen(t->material, from, to, sizeof *t->material, 0);
+    t->leaf = sm_widen(t->leaf, from, to, sizeof *t->leaf, -1);
+    c->below = sm_widen(c->below, from, to, sizeof *c->below, 0);
+    c->place = sm_widen(c->place, from, to, sizeof *c->place, 0);
     c->node_space = to;
 }
 
 static void grow_leaves(OctTreeChange *c)
 {
-    c->leaf_space = oct_plots_room(c->tree->leaves);
+    c->leaf_space = sm_room_for(c->tree->leaves);
     c->tree->node = sm_realloc(c->tree->node, (size_t)c->leaf_space, sizeof *c->tree->node);
 }
 
@@ -64,7 +67,8 @@ size_t oct_tree_change_bytes(const OctTreeChange *c)
            (size_t)c->number_room * sizeof *c->number +
            (size_t)c->added_room * sizeof *c->change.added +
            (size_t)c->removed_room * sizeof *c->change.removed +
-           (size_t)(c->born_room + c->dead_room + c->inner_room + c->outer_room) * sizeof(OctPlace);
+           (size_t)(c->born_room + c->dead_room + c->inner_room + c->outer_room) *
+               sizeof(OctNodeLevel);
 }
 
 /* The numbers that the last batch gave away can be used from now on. */
@@ -239,7 +243,7 @@ static void settle_node(OctTreeChange *c, const OctTouched *was)
 {
     OctTree *t = c->tree;
     OctChange *to = &c->change;
-    OctPlace here = {was->node, was->level};
+    OctNodeLevel here = {was->node, was->level};
     bool there = t->size[was->node] > 0, inner = there && t->children[was->node] > 0;
     bool leaf = there && !inner;
     c->place[was->node] = 0;

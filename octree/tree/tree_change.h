@@ -1,8 +1,45 @@
-/* tree_change.h - cells of a tree split and merged, and what came of it (resample.h). */
+/* tree_change.h - cells of a tree split and merged, and what came of it (change/structure.h). */
 #ifndef OCT_TREE_CHANGE_H
 #define OCT_TREE_CHANGE_H
 
-#include "../change/resample.h"
+#include "tree.h"
+
+/* A leaf that is no more. */
+typedef struct {
+    int leaf, node; /* the node may live on (split), or be dead */
+    int into;       /* the new leaf whose cell holds its cell, or -1 if it was split */
+} OctRemoved;
+
+/* A leaf that was not there before. */
+typedef struct {
+    int leaf, node;
+    int from; /* the removed leaf whose cell holds its cell, or -1 if it was merged of several */
+} OctAdded;
+
+/* A tree node and its level. */
+typedef struct {
+    int node, level;
+} OctNodeLevel;
+
+/* What a batch has changed, net: a cell that was split and merged again in it is not named. A new
+ * leaf's number is never that of a leaf removed in the same batch. */
+typedef struct OctChange {
+    long removed_count, added_count;
+    OctRemoved *removed;
+    OctAdded *added;
+    long region_count;
+    int *region; /* leaves, new ones included, whose region holds other leaves than before: its list
+                  * of members is another, or leaves below a member are. Each once, in no order */
+    long searched_count;
+    const int *searched; /* leaves whose summation nodes were found anew (N_update, octree section
+                          * 5), those near each other together */
+    long edge_count;     /* edges of the graph that have gone or come */
+    long born_count, dead_count; /* tree nodes */
+    OctNodeLevel *born, *dead;
+    long inner_count, outer_count;
+    OctNodeLevel *inner; /* that have children now and had none, or were not there */
+    OctNodeLevel *outer; /* that had children and have none now, or are dead */
+} OctChange;
 
 /* A node touched in the batch: what it was before it, and the children that it has lost. */
 typedef struct {
@@ -18,7 +55,7 @@ typedef struct {
     const SmVoxels *voxels;
     int *below;                  /* [node_space] leaves below every node; of dead ones nothing */
     long node_space, leaf_space; /* numbers that the tree's arrays have room for */
-    OctChange change;            /* of the last batch; its regions are others' business */
+    OctChange change;            /* of the last batch; regions and edges are not filled in here */
     /* its own */
     bool open;           /* in a batch */
     OctTouched *touched; /* [touched_count] */
@@ -39,7 +76,7 @@ void oct_tree_change_init(OctTreeChange *change, OctTree *tree, const SmVoxels *
 void oct_tree_change_free(OctTreeChange *change);
 size_t oct_tree_change_bytes(const OctTreeChange *change);
 
-/* Split and merge as in resample.h; the first of a batch opens it. O(levels), and for cells that
+/* Split and merge as in structure.h; the first of a batch opens it. O(levels), and for cells that
  * are not full of material their finest cells / 64. */
 SmCode oct_tree_change_split(OctTreeChange *change, int node, SmError *error);
 SmCode oct_tree_change_merge(OctTreeChange *change, int node, SmError *error);

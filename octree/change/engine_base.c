@@ -1,0 +1,29 @@
+#include "engine_base.h"
+
+SmCode oct_engine_begin(SmEngine *engine, OctStructure **structure, SmError *error)
+{
+    OctEngineBase *base = (OctEngineBase *)engine;
+    *structure = &base->structure;
+    return base->begin(engine, error);
+}
+
+const OctChange *oct_engine_end(SmEngine *engine)
+{
+    return ((OctEngineBase *)engine)->end(engine);
+}
+
+const int *oct_engine_leaves(SmEngine *engine)
+{
+    return ((OctEngineBase *)engine)->leaves(engine);
+}
+
+SmCode oct_engine_rebuild(SmEngine *engine, const SmEngineParams *params, SmEngine **copy,
+                          long *order, SmError *error)
+{
+    return ((OctEngineBase *)engine)->rebuild(engine, params, copy, order, error);
+}
+
+const OctStructure *oct_engine_structure(const SmEngine *engine)
+{
+    return &((const OctEngineBase *)engine)->structure;
+}

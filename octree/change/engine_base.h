@@ -1,0 +1,55 @@
+/* engine_base.h - how an octree engine begins, in either precision, and what it offers beyond
+ * lib/engine.h: its structure, and resampling while it runs. */
+#ifndef OCT_ENGINE_BASE_H
+#define OCT_ENGINE_BASE_H
+
+#include "../../lib/engine.h"
+#include "structure.h"
+
+/* What an octree engine's bodies share (structure.h); it lives as long as the engine. */
+const OctStructure *oct_engine_structure(const SmEngine *engine);
+
+/* Resampling while it runs: oct_engine_begin(), then any number of oct_resample_split(), _merge()
+ * and _near_cut() of structure.h and of triangles added to the structure's cut, then
+ * oct_engine_end() in the place of oct_resample_update(): it brings everything up to date at the
+ * cost of what has changed, and says what has. The first begin costs O(body), once.
+ *
+ * New nodes start where the body has carried their cells, with the velocity that it has there
+ * (state_transfer.h). Where nothing is held, its linear momentum and its centre of mass stay; all
+ * other nodes stay where they are but for one small translation of the whole body. They inherit
+ * rotations and plastic shapes; children of a held node are held, and a node merged of any that
+ * was.
+ *
+ * Particles are then renumbered: particle p is the p-th of the leaves that live, in rising order of
+ * their numbers, oct_engine_leaves()[p]; SM_REST, masses and region() follow. Handles that are set
+ * again after a change must be given by the new numbers.
+ *
+ * Where nodes weigh as much as their cells' volume, a body's mass changes with its sampling, and
+ * momentum and centre of mass are left to what new nodes start with.
+ *
+ * Errors (SM_USAGE): several bodies share the engine; goal positions are summed by OCT_ADJOINT;
+ * regions are not symmetric by union. */
+SmCode oct_engine_begin(SmEngine *engine, OctStructure **structure, SmError *error);
+const OctChange *oct_engine_end(SmEngine *engine);
+
+/* An engine at rest on a structure built from scratch of the same cells and cut (structure.h): what
+ * a changed engine must equal. Its particle p is particle order[p] of `engine`; `order` is
+ * [particles]. `params` are those of the first create(), but may differ in what the structure does
+ * not depend on. Errors (SM_USAGE): several bodies share the engine. */
+SmCode oct_engine_rebuild(SmEngine *engine, const SmEngineParams *params, SmEngine **copy,
+                          long *order, SmError *error);
+
+/* Leaf number of every particle of one body, rising. Valid until the next change. */
+const int *oct_engine_leaves(SmEngine *engine);
+
+/* The first member of every octree engine. */
+typedef struct {
+    OctStructure structure;
+    SmCode (*begin)(SmEngine *engine, SmError *error);
+    const OctChange *(*end)(SmEngine *engine);
+    const int *(*leaves)(SmEngine *engine);
+    SmCode (*rebuild)(SmEngine *engine, const SmEngineParams *params, SmEngine **copy, long *order,
+                      SmError *error);
+} OctEngineBase;
+
+#endif

@@ -1,0 +1,137 @@
+#include "refinement.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+bool oct_ball_criterion(const void *what, const double centre[3], double half, int level,
+                        bool split)
+{
+    const OctBallRefinement *ball = what;
+    double square = 0;
+    (void)split;
+    if (level >= ball->level) return false;
+    for (int d = 0; d < 3; d++) {
+        double beyond = fmax(fabs(ball->centre[d] - centre[d]) - half, 0);
+        square += beyond * beyond;
+    }
+    return square <= ball->radius * ball->radius;
+}
+
+bool oct_view_criterion(const void *what, const double centre[3], double half, int level,
+                        bool split)
+{
+    const OctViewRefinement *view = what;
+    double square = 0, reach = ldexp(view->near, view->level - 1 - level);
+    if (level >= view->level) return false;
+    if (split) reach *= 1 + view->slack;
+    for (int d = 0; d < 3; d++) {
+        double beyond = fmax(fabs(view->eye[d] - centre[d]) - half, 0);
+        square += beyond * beyond;
+    }
+    return square <= reach * reach;
+}
+
+/* One look at a structure. */
+typedef struct {
+    OctRefinement *refinement;
+    const OctStructure *structure;
+    OctStructure *changed; /* the same, to be changed; or NULL */
+    OctRefineCriterion *criterion;
+    const void *what;
+    double time, hold;
+    long changes;
+} Look;
+
+static bool wanted(const Look *look, int node)
+{
+    const OctTree *tree = &look->structure->tree;
+    double cell = look->structure->cell, centre[3];
+    if (!look->criterion) return false;
+    for (int d = 0; d < 3; d++)
+        centre[d] = look->structure->origin[d] + 0.5 * cell * tree->centre[node][d];
+    return look->criterion(look->what, centre, 0.25 * cell * tree->size[node],
+                           oct_tree_level(tree, node), tree->children[node] > 0);
+}
+
+static void remember(OctRefinement *refinement, int node, double time)
+{
+    if (refinement->count == refinement->room) {
+        refinement->room = 2 * refinement->room + 64;
+        refinement->cell =
+            sm_realloc(refinement->cell, (size_t)refinement->room, sizeof *refinement->cell);
+    }
+    refinement->cell[refinement->count++] = (struct OctRefinedCell){node, time};
+}
+
+/* Splits what is wanted at a node and below it. */
+static void split_below(Look *look, int node)
+{
+    const OctTree *tree = &look->structure->tree;
+    if (oct_tree_level(tree, node) == tree->levels || !wanted(look, node)) return;
+    if (!tree->children[node]) {
+        look->changes++;
+        if (!look->changed) return;
+        SmCode code = oct_resample_split(look->changed, node, NULL);
+        assert(code == SM_OK);
+        (void)code;
+        remember(look->refinement, node, look->time);
+    }
+    for (int c = 0; c < tree->children[node]; c++) split_below(look, tree->child[node] + c);
+}
+
+static bool only_leaves(const OctTree *tree, int node)
+{
+    for (int c = 0; c < tree->children[node]; c++)
+        if (tree->children[tree->child[node] + c]) return false;
+    return true;
+}
+
+/* Merges what has not been wanted for long enough, from the smallest cells up. */
+static void merge_all(Look *look)
+{
+    OctRefinement *refinement = look->refinement;
+    for (long i = refinement->count - 1; i >= 0; i--) {
+        struct OctRefinedCell *cell = &refinement->cell[i];
+        bool still = wanted(look, cell->node);
+        if (still) cell->wanted = look->time;
+        if (still || look->time - cell->wanted < look->hold) continue;
+        if (!only_leaves(&look->structure->tree, cell->node)) continue;
+        look->changes++;
+        if (!look->changed) continue;
+        SmCode code = oct_resample_merge(look->changed, cell->node, NULL);
+        assert(code == SM_OK);
+        (void)code;
+        cell->node = -1;
+    }
+    long kept = 0;
+    for (long i = 0; i < refinement->count; i++)
+        if (refinement->cell[i].node >= 0) refinement->cell[kept++] = refinement->cell[i];
+    refinement->count = kept;
+}
+
+static long look_at(Look look)
+{
+    merge_all(&look);
+    for (int root = 0; root < look.structure->tree.roots; root++) split_below(&look, root);
+    return look.changes;
+}
+
+bool oct_refinement_due(OctRefinement *refinement, const OctStructure *structure,
+                        OctRefineCriterion *criterion, const void *what, double time, double hold)
+{
+    return look_at((Look){refinement, structure, NULL, criterion, what, time, hold, 0}) > 0;
+}
+
+long oct_refinement_update(OctRefinement *refinement, OctStructure *structure,
+                           OctRefineCriterion *criterion, const void *what, double time,
+                           double hold)
+{
+    return look_at((Look){refinement, structure, structure, criterion, what, time, hold, 0});
+}
+
+void oct_refinement_free(OctRefinement *refinement)
+{
+    free(refinement->cell);
+    *refinement = (OctRefinement){0};
+}

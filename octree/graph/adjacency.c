@@ -1,0 +1,194 @@
+#include "adjacency.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The 27 cells of one size in and around a cell, x fastest; MIDDLE is the cell itself. A cell is
+ * given as its tree node, as the larger leaf it lies in, or as -1 if there is no material. */
+enum { AROUND = 27, MIDDLE = 13 };
+
+typedef struct {
+    const OctTree *tree;
+    const SmVoxels *voxels;
+    OctAdjacency *touch;
+    long room; /* for pairs */
+} Walk;
+
+/* Material cells x .. x + 63 of a row, cell x in the lowest bit; those in from..to only. */
+static uint64_t window(const SmVoxels *v, const uint64_t *row, int x, int from, int to)
+{
+    int word = x >> 6, shift = x & 63;
+    uint64_t bits = 0;
+    if (word >= 0 && word < v->words) bits = row[word] >> shift;
+    if (shift && word + 1 >= 0 && word + 1 < v->words) bits |= row[word + 1] << (64 - shift);
+    int low = from - x, high = to - x;
+    if (low > 63 || high < 0) return 0;
+    if (low > 0) bits &= ~(uint64_t)0 << low;
+    if (high < 63) bits &= ((uint64_t)1 << (high + 1)) - 1;
+    return bits;
+}
+
+typedef struct {
+    int low[3], high[3]; /* finest cells, both within */
+} Box;
+
+static Box box_of(const OctTree *tree, const SmVoxels *voxels, int node)
+{
+    Box box;
+    for (int d = 0; d < 3; d++) {
+        int low = oct_tree_low(tree, node, d);
+        int high = low + tree->size[node] / 2 - 1, last = voxels->size[d] - 1;
+        box.low[d] = low > 0 ? low : 0;
+        box.high[d] = high < last ? high : last;
+    }
+    return box;
+}
+
+static const uint64_t *row_at(const SmVoxels *v, int j, int k)
+{
+    return v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+}
+
+/* Does a material cell of row (j, k) of box a touch one of box b? */
+static bool row_touches(const SmVoxels *v, int j, int k, const Box *a, const Box *b)
+{
+    for (int x = a->low[0]; x <= a->high[0]; x += 64) {
+        uint64_t cells = window(v, row_at(v, j, k), x, a->low[0], a->high[0]);
+        if (!cells) continue;
+        for (int z = k - 1; z <= k + 1; z++) {
+            if (z < b->low[2] || z > b->high[2]) continue;
+            for (int y = j - 1; y <= j + 1; y++) {
+                if (y < b->low[1] || y > b->high[1]) continue;
+                const uint64_t *row = row_at(v, y, z);
+                uint64_t near = window(v, row, x - 1, b->low[0], b->high[0]) |
+                                window(v, row, x, b->low[0], b->high[0]) |
+                                window(v, row, x + 1, b->low[0], b->high[0]);
+                if (cells & near) return true;
+            }
+        }
+    }
+    return false;
+}
+
+static bool is_full(const OctTree *t, int node)
+{
+    long wide = t->size[node] / 2;
+    return t->material[node] == wide * wide * wide;
+}
+
+bool oct_adjacency_material(const OctTree *tree, const SmVoxels *voxels, int node, int other)
+{
+    if (is_full(tree, node) && is_full(tree, other)) return true;
+    Box a = box_of(tree, voxels, node), b = box_of(tree, voxels, other);
+    for (int d = 0; d < 3; d++) {
+        if (a.low[d] < b.low[d] - 1) a.low[d] = b.low[d] - 1;
+        if (a.high[d] > b.high[d] + 1) a.high[d] = b.high[d] + 1;
+    }
+    for (int k = a.low[2]; k <= a.high[2]; k++)
+        for (int j = a.low[1]; j <= a.high[1]; j++)
+            if (row_touches(voxels, j, k, &a, &b)) return true;
+    return false;
+}
+
+static void add_pair(Walk *walk, int leaf, int other)
+{
+    OctAdjacency *touch = walk->touch;
+    if (touch->count == walk->room) {
+        walk->room = walk->room ? 2 * walk->room : 1024;
+        touch->pair = sm_realloc(touch->pair, (size_t)walk->room, sizeof *touch->pair);
+    }
+    touch->pair[touch->count][0] = leaf;
+    touch->pair[touch->count++][1] = other;
+}
+
+static void join_leaf(Walk *walk, int node, const int around[AROUND])
+{
+    const OctTree *t = walk->tree;
+    for (int d = 0; d < AROUND; d++) {
+        int other = around[d];
+        if (d == MIDDLE || other < 0) continue;
+        if (t->children[other]) {
+            walk->touch->open[t->leaf[node]] = 1;
+            continue;
+        }
+        bool same_size = t->size[other] == t->size[node], again = same_size && other < node;
+        for (int e = 0; e < d && !again; e++) again = around[e] == other;
+        if (again) continue;
+        if (oct_adjacency_material(t, walk->voxels, node, other))
+            add_pair(walk, t->leaf[node], t->leaf[other]);
+        else if (same_size)
+            walk->touch->open[t->leaf[node]] = 1;
+    }
+}
+
+/* Places on a line of four half cells, the second and third in the cell itself, that the half
+ * `half` of its neighbour `side` (0 below, 1 itself, 2 above) takes; -1 if it is off the line. */
+static int place(int side, int half)
+{
+    int at = 2 * side + half - 1;
+    return at <= 3 ? at : -1;
+}
+
+/* The 4^3 cells of half the size in and around an inner cell, x fastest. */
+static void halves(const OctTree *t, const int around[AROUND], int half[64])
+{
+    memset(half, -1, 64 * sizeof *half);
+    for (int d = 0; d < AROUND; d++) {
+        int cell = around[d];
+        if (cell < 0) continue;
+        int child = t->children[cell] ? t->child[cell] : cell;
+        for (int octant = 0; octant < 8; octant++) {
+            int found = cell;
+            if (t->children[cell]) {
+                if (child == t->child[cell] + t->children[cell]) break;
+                const int *c = t->centre[child], *p = t->centre[cell];
+                if (octant != ((c[0] > p[0]) | (c[1] > p[1]) << 1 | (c[2] > p[2]) << 2)) continue;
+                found = child++;
+            }
+            int x = place(d % 3, octant & 1), y = place(d / 3 % 3, octant >> 1 & 1),
+                z = place(d / 9, octant >> 2);
+            if (x >= 0 && y >= 0 && z >= 0) half[16 * z + 4 * y + x] = found;
+        }
+    }
+}
+
+/* Depth first, so that what is around a cell comes from what is around its parent. */
+static void visit(Walk *walk, int node, const int around[AROUND])
+{
+    const OctTree *t = walk->tree;
+    if (!t->children[node]) {
+        join_leaf(walk, node, around);
+        return;
+    }
+    int half[64], here[AROUND];
+    halves(t, around, half);
+    for (int at = 0; at < 8; at++) {
+        int x = at & 1, y = at >> 1 & 1, z = at >> 2;
+        for (int d = 0; d < AROUND; d++)
+            here[d] = half[16 * (z + d / 9) + 4 * (y + d / 3 % 3) + x + d % 3];
+        if (here[MIDDLE] >= 0) visit(walk, here[MIDDLE], here);
+    }
+}
+
+void oct_adjacency_find(const OctTree *tree, const SmVoxels *voxels, OctAdjacency *touch)
+{
+    *touch = (OctAdjacency){.open = sm_alloc((size_t)tree->leaves, 1)};
+    Walk walk = {tree, voxels, touch, 0};
+    int cells = 1 << tree->levels;
+    for (int root = 0; root < tree->roots; root++) {
+        int around[AROUND], low[3];
+        for (int d = 0; d < 3; d++) low[d] = oct_tree_low(tree, root, d);
+        for (int d = 0; d < AROUND; d++)
+            around[d] = oct_tree_at(tree, 0, low[0] + (d % 3 - 1) * cells,
+                                    low[1] + (d / 3 % 3 - 1) * cells, low[2] + (d / 9 - 1) * cells);
+        visit(&walk, root, around);
+    }
+    for (long l = 0; l < tree->leaves; l++) touch->any_open |= touch->open[l];
+}
+
+void oct_adjacency_free(OctAdjacency *touch)
+{
+    free(touch->pair);
+    free(touch->open);
+    memset(touch, 0, sizeof *touch);
+}

@@ -1,0 +1,183 @@
+#include "one_sided_regions.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../lib/csr.h"
+#include "../../lib/system/team.h"
+#include "../tree/cover.h"
+
+enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
+
+void oct_pairs_free(OctPairs *pairs)
+{
+    free(pairs->item);
+    free(pairs->distance);
+    *pairs = (OctPairs){0};
+}
+
+size_t oct_pairs_bytes(const OctPairs *pairs)
+{
+    return (size_t)pairs->room * sizeof *pairs->item +
+           (size_t)pairs->distance_room * sizeof *pairs->distance;
+}
+
+static void grow(OctPairs *p)
+{
+    if (p->count == p->room) {
+        p->room = 2 * p->room + OCT_SOURCES;
+        p->item = sm_realloc(p->item, (size_t)p->room, sizeof *p->item);
+    }
+    if (p->distances + OCT_SOURCES > p->distance_room) {
+        p->distance_room = 2 * (p->distances + OCT_SOURCES);
+        p->distance = sm_realloc(p->distance, (size_t)p->distance_room, sizeof *p->distance);
+    }
+}
+
+void oct_pairs_add(OctPairs *p, const OctSearch *s, int first, const int *w)
+{
+    for (long at = 0; at < s->leaves; at++) {
+        int leaf = s->leaf[at];
+        unsigned lanes = s->held[at] & oct_lanes_beyond(s->distance[at], w[leaf]);
+        if (!lanes) continue;
+        grow(p);
+        p->item[p->count++] = (struct OctPair){leaf, first, lanes};
+        for (; lanes; lanes &= lanes - 1)
+            p->distance[p->distances++] = s->distance[at][__builtin_ctz(lanes)];
+    }
+}
+
+typedef struct {
+    const OctTree *tree;
+    const OctGraph *graph;
+    const int *w;
+    double epsilon;
+    const int *below;
+    OctOneSided *one_sided;
+} Build;
+
+int oct_one_sided_reach(int w, double epsilon)
+{
+    double most = w + floor(epsilon * w);
+    return most < OCT_FAR / 2 ? (int)most : OCT_FAR / 2;
+}
+
+/* The one-sided regions of `count` leaves from number `from` on. */
+static void search(const Build *b, OctSearch *s, long from, int count, SmCsrParts *member,
+                   OctPairs *pairs)
+{
+    int leaf[OCT_SOURCES], reaches[OCT_SOURCES];
+    for (int lane = 0; lane < count; lane++) {
+        leaf[lane] = (int)from + lane;
+        reaches[lane] = oct_one_sided_reach(b->w[leaf[lane]], b->epsilon);
+    }
+    oct_search_find(s, count, leaf, b->w + from, reaches);
+    oct_pairs_add(pairs, s, (int)from, b->w);
+    for (int lane = 0; lane < count; lane++) {
+        b->one_sided->width[leaf[lane]] = s->width[lane];
+        sm_csr_parts_add(member, leaf[lane], oct_search_member(s, lane), s->members[lane]);
+    }
+}
+
+/* Leaves that follow each other in number are near each other, but for where a level ends. */
+static void search_block(const Build *b, OctSearch *s, long block, SmCsrParts *member,
+                         OctPairs *pairs)
+{
+    long to = sm_csr_parts_to(member, block);
+    for (long i = sm_csr_parts_from(block); i < to; i += OCT_SOURCES)
+        search(b, s, i, (int)(to - i < OCT_SOURCES ? to - i : OCT_SOURCES), member, pairs + block);
+}
+
+static void search_all(const Build *b, SmCsrParts *member, OctPairs *pairs)
+{
+    OctReach reach;
+    oct_reach_init(&reach, b->graph);
+#pragma omp parallel num_threads(sm_team(0)) if (b->tree->leaves > SERIAL)
+    {
+        OctSearch s;
+        oct_search_init(&s, b->tree, &reach);
+        oct_search_grow(&s, b->tree->nodes, b->tree->leaves, b->below);
+#pragma omp for schedule(dynamic)
+        for (long block = 0; block < member->blocks; block++)
+            search_block(b, &s, block, member, pairs);
+        oct_search_free(&s);
+    }
+    oct_reach_free(&reach);
+}
+
+/* Keeps, in place, the pairs that are asymmetric: those whose leaf does not hold the source. */
+static void keep_asymmetric(const Build *b, OctPairs *pairs)
+{
+    const OctOneSided *o = b->one_sided;
+    const int *distance = pairs->distance;
+    long count = pairs->count;
+    pairs->count = pairs->distances = 0;
+    for (long n = 0; n < count; n++) {
+        struct OctPair p = pairs->item[n];
+        long first = o->first[p.leaf], members = o->first[p.leaf + 1] - first;
+        unsigned kept = 0;
+        for (; p.lanes; p.lanes &= p.lanes - 1, distance++) {
+            int lane = __builtin_ctz(p.lanes);
+            if (oct_cover_holds(b->tree, o->member + first, members, p.first + lane)) continue;
+            kept |= 1u << lane;
+            pairs->distance[pairs->distances++] = *distance;
+        }
+        if (kept) pairs->item[pairs->count++] = (struct OctPair){p.leaf, p.first, kept};
+    }
+}
+
+/* Lists the asymmetric pairs, which were found by their sources, by the leaves that are held. */
+static void list_reverse(const OctPairs *pairs, long blocks, OctOneSided *o)
+{
+    long *next = sm_alloc((size_t)o->leaves, sizeof *next), *first = o->reverse_first;
+    for (long b = 0; b < blocks; b++)
+        for (long n = 0; n < pairs[b].count; n++)
+            first[pairs[b].item[n].leaf + 1] += __builtin_popcount(pairs[b].item[n].lanes);
+    for (long j = 0; j < o->leaves; j++) first[j + 1] += next[j] = first[j];
+    o->reverse = sm_alloc((size_t)first[o->leaves], sizeof *o->reverse);
+    o->distance = sm_alloc((size_t)first[o->leaves], sizeof *o->distance);
+    for (long b = 0; b < blocks; b++) {
+        const int *distance = pairs[b].distance;
+        for (long n = 0; n < pairs[b].count; n++) {
+            struct OctPair p = pairs[b].item[n];
+            for (; p.lanes; p.lanes &= p.lanes - 1) {
+                o->distance[next[p.leaf]] = *distance++;
+                o->reverse[next[p.leaf]++] = p.first + __builtin_ctz(p.lanes);
+            }
+        }
+    }
+    free(next);
+}
+
+void oct_one_sided_build(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,
+                         const int *below, OctOneSided *one_sided)
+{
+    Build b = {tree, graph, w, epsilon, below, one_sided};
+    SmCsrParts member;
+    size_t leaves = (size_t)tree->leaves;
+    *one_sided = (OctOneSided){.leaves = tree->leaves};
+    one_sided->width = sm_alloc(leaves, sizeof *one_sided->width);
+    one_sided->reverse_first = sm_alloc(leaves + 1, sizeof *one_sided->reverse_first);
+    sm_csr_parts_init(&member, tree->leaves);
+    long blocks = member.blocks;
+    OctPairs *pairs = sm_alloc((size_t)blocks, sizeof *pairs);
+    search_all(&b, &member, pairs);
+    sm_csr_parts_join(&member, &one_sided->first, &one_sided->member);
+#pragma omp parallel for schedule(dynamic) num_threads(sm_team(0)) if (tree->leaves > SERIAL)
+    for (long block = 0; block < blocks; block++) keep_asymmetric(&b, pairs + block);
+    list_reverse(pairs, blocks, one_sided);
+    for (long block = 0; block < blocks; block++) oct_pairs_free(pairs + block);
+    free(pairs);
+}
+
+void oct_one_sided_free(OctOneSided *one_sided)
+{
+    free(one_sided->first);
+    free(one_sided->member);
+    free(one_sided->width);
+    free(one_sided->reverse_first);
+    free(one_sided->reverse);
+    free(one_sided->distance);
+    memset(one_sided, 0, sizeof *one_sided);
+}

@@ -1,0 +1,54 @@
+/* one_sided_regions.h - regions before symmetry: what each leaf's own intervals put into its
+ * region, and where two leaves disagree (octree section 4.2).
+ *
+ * The one-sided region of leaf i is what multi_source_search.h finds: all leaves within w_i, and
+ * with them leaves up to its reach for the sake of a larger cell. Leaves i and j are an asymmetric
+ * pair where that of j holds i and that of i does not hold j; then their distance is more than w_i.
+ * The symmetric region of i is its one-sided region and the other leaves of such pairs (region.h).
+ */
+#ifndef OCT_ONE_SIDED_REGIONS_H
+#define OCT_ONE_SIDED_REGIONS_H
+
+#include "../graph/graph.h"
+#include "multi_source_search.h"
+
+typedef struct {
+    long leaves;
+    long *first;         /* [leaves + 1] */
+    int *member;         /* summation nodes: tree nodes, rising */
+    int *width;          /* [leaves] largest distance of a leaf in the region */
+    long *reverse_first; /* [leaves + 1] */
+    int *reverse;        /* of leaf i: leaves j that hold i though i does not hold them */
+    int *distance;       /* of these from i */
+} OctOneSided;
+
+/* `below` is oct_tree_below(). Widths and epsilon are in range (region.h). O(edges within reach
+ * of every leaf). The result does not depend on the number of threads. The caller frees. */
+void oct_one_sided_build(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,
+                         const int *below, OctOneSided *one_sided);
+void oct_one_sided_free(OctOneSided *one_sided);
+
+/* How far the search of a leaf of width w goes: w + floor(epsilon w). */
+int oct_one_sided_reach(int w, double epsilon);
+
+/* Pairs of leaves that may be asymmetric: the source of a search holds a leaf that is farther from
+ * it than that leaf's own width. Begins zeroed. */
+typedef struct {
+    struct OctPair {
+        int leaf;       /* the leaf that is held */
+        int first;      /* number of the search's source in lane 0, the others follow */
+        unsigned lanes; /* of the sources that hold it */
+    } * item;           /* [count] */
+    int *distance;      /* [distances] of every item's lanes in turn */
+    long count, distances;
+    long room, distance_room;
+} OctPairs;
+
+void oct_pairs_free(OctPairs *pairs);
+size_t oct_pairs_bytes(const OctPairs *pairs);
+
+/* Appends the pairs that the last search has found; w [leaves] are the widths of all leaves. 4
+ * bytes a lane, and 12 for all lanes of a leaf. */
+void oct_pairs_add(OctPairs *pairs, const OctSearch *search, int first, const int *w);
+
+#endif

@@ -1,0 +1,284 @@
+#include "cell_components.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int octant(const OctTree *tree, int node)
+{
+    const int *here = tree->centre[node], *above = tree->centre[tree->parent[node]];
+    return (here[0] > above[0]) | (here[1] > above[1]) << 1 | (here[2] > above[2]) << 2;
+}
+
+static int step_along(int direction, int axis)
+{
+    static const int power[3] = {1, 3, 9};
+    return direction / power[axis] % 3 - 1;
+}
+
+static int child_at(const OctCellComponents *p, int node, int which)
+{
+    int below = (1 << which) - 1;
+    if (node < 0 || !(p->octants[node] >> which & 1)) return -1;
+    return p->tree->child[node] + __builtin_popcount(p->octants[node] & below);
+}
+
+static void find_root_neighbours(OctCellComponents *p, int node)
+{
+    const OctTree *t = p->tree;
+    int wide = 1 << t->levels;
+    for (int d = 0; d < OCT_DIRECTIONS; d++) {
+        int at[3];
+        for (int a = 0; a < 3; a++) at[a] = oct_tree_low(t, node, a) + wide * step_along(d, a);
+        p->beside[node][d] = oct_tree_at(t, 0, at[0], at[1], at[2]);
+    }
+}
+
+/* A cell's neighbours are children of its parent or of the parent's neighbours. */
+static void find_neighbours(OctCellComponents *p, int node)
+{
+    int parent = p->tree->parent[node], mine = octant(p->tree, node);
+    for (int d = 0; d < OCT_DIRECTIONS; d++) {
+        int above = OCT_HERE, which = 0, power = 1;
+        for (int a = 0; a < 3; a++, power *= 3) {
+            int to = (mine >> a & 1) + step_along(d, a);
+            above += to < 0 ? -power : to > 1 ? power : 0;
+            which |= (to & 1) << a;
+        }
+        p->beside[node][d] = child_at(p, p->beside[parent][above], which);
+    }
+}
+
+/* Children of a cell that lie at its border in a direction. */
+static int facing(int direction)
+{
+    int mask = 0;
+    for (int o = 0; o < 8; o++) {
+        bool there = true;
+        for (int a = 0; a < 3; a++) {
+            int step = step_along(direction, a);
+            there = there && (step == 0 || (step > 0) == (o >> a & 1));
+        }
+        mask |= there << o;
+    }
+    return mask;
+}
+
+/* The finest cells of a 2 x 2 x 2 cell all touch, and so do those that face each other across its
+ * border: one part each, and contacts by masks. */
+static void build_lowest(OctCellComponents *p, int level)
+{
+    const OctTree *t = p->tree;
+    OctLayer *layer = &p->layer[level];
+    long from = t->level_first[level], n = t->level_first[level + 1] - from, contacts = 0;
+    layer->parts = n;
+    layer->first = sm_alloc((size_t)n + 1, sizeof *layer->first);
+    layer->node = sm_alloc((size_t)n, sizeof *layer->node);
+    layer->contact_first = sm_alloc((size_t)n + 1, sizeof *layer->contact_first);
+    layer->contact = sm_alloc((size_t)n * (OCT_DIRECTIONS - 1), sizeof *layer->contact);
+    int face[OCT_DIRECTIONS];
+    for (int d = 0; d < OCT_DIRECTIONS; d++) face[d] = facing(d);
+    for (long c = 0; c < n; c++) {
+        layer->first[c] = (int)c;
+        layer->node[c] = (int)(from + c);
+        layer->contact_first[c] = contacts;
+        for (int d = 0; d < OCT_DIRECTIONS; d++) {
+            int other = p->beside[from + c][d];
+            if (d == OCT_HERE || other < 0) continue;
+            if (p->octants[from + c] & face[d] && p->octants[other] & face[OCT_DIRECTIONS - 1 - d])
+                layer->contact[contacts++] = (int)(other - from);
+        }
+    }
+    layer->first[n] = (int)n;
+    layer->contact_first[n] = contacts;
+    layer->contact = sm_realloc(layer->contact, (size_t)contacts + 1, sizeof *layer->contact);
+}
+
+static int root_of(int *up, int i)
+{
+    while (up[i] != i) i = up[i] = up[up[i]];
+    return i;
+}
+
+/* The lower index becomes the root, so that roots come before what they stand for. */
+static void unite(int *up, int i, int j)
+{
+    i = root_of(up, i);
+    j = root_of(up, j);
+    up[i > j ? i : j] = i < j ? i : j;
+}
+
+/* Joins the parts below that touch within one cell; numbers the cells' parts. Returns for each part
+ * below the part it belongs to. */
+static int *join_parts(const OctTree *t, int level, const OctLayer *below, OctLayer *layer)
+{
+    long from = t->level_first[level], n = t->level_first[level + 1] - from;
+    int *up = sm_alloc((size_t)below->parts, sizeof *up);
+    for (int i = 0; i < below->parts; i++) up[i] = i;
+    for (int i = 0; i < below->parts; i++)
+        for (long c = below->contact_first[i]; c < below->contact_first[i + 1]; c++)
+            if (t->parent[below->node[below->contact[c]]] == t->parent[below->node[i]])
+                unite(up, i, below->contact[c]);
+    layer->first = sm_alloc((size_t)n + 1, sizeof *layer->first);
+    int *part = sm_alloc((size_t)below->parts, sizeof *part);
+    for (int i = 0; i < below->parts; i++) {
+        int root = root_of(up, i);
+        part[i] = root == i ? (int)layer->parts++ : part[root];
+        layer->first[t->parent[below->node[i]] - from + 1] = (int)layer->parts;
+    }
+    layer->node = sm_alloc((size_t)layer->parts, sizeof *layer->node);
+    for (int i = 0; i < below->parts; i++) layer->node[part[i]] = t->parent[below->node[i]];
+    free(up);
+    return part;
+}
+
+/* Parts below in the order of the parts they belong to. */
+static int *members_of(const int *part, const OctLayer *below, long parts, long *first)
+{
+    int *member = sm_alloc((size_t)below->parts, sizeof *member);
+    for (long i = 0; i < below->parts; i++) first[part[i] + 1]++;
+    for (long q = 0; q < parts; q++) first[q + 1] += first[q];
+    for (int i = 0; i < below->parts; i++) member[first[part[i]]++] = i;
+    memmove(first + 1, first, (size_t)parts * sizeof *first);
+    first[0] = 0;
+    return member;
+}
+
+static void join_contacts(const int *part, const OctLayer *below, OctLayer *layer)
+{
+    size_t parts = (size_t)layer->parts;
+    long contacts = 0, *first = sm_alloc(parts + 1, sizeof *first);
+    int *member = members_of(part, below, layer->parts, first);
+    int *seen = sm_alloc(parts, sizeof *seen); /* by which part, from 1 */
+    layer->contact_first = sm_alloc(parts + 1, sizeof *layer->contact_first);
+    layer->contact =
+        sm_alloc((size_t)below->contact_first[below->parts] + 1, sizeof *layer->contact);
+    for (int q = 0; q < layer->parts; q++) {
+        seen[q] = q + 1;
+        for (long m = first[q]; m < first[q + 1]; m++)
+            for (long c = below->contact_first[member[m]]; c < below->contact_first[member[m] + 1];
+                 c++) {
+                int other = part[below->contact[c]];
+                if (seen[other] == q + 1) continue;
+                seen[other] = q + 1;
+                layer->contact[contacts++] = other;
+            }
+        layer->contact_first[q + 1] = contacts;
+    }
+    layer->contact = sm_realloc(layer->contact, (size_t)contacts + 1, sizeof *layer->contact);
+    free(first);
+    free(member);
+    free(seen);
+}
+
+void oct_components_build(const OctTree *whole, OctCellComponents *parts)
+{
+    size_t inner = (size_t)whole->level_first[whole->levels];
+    *parts = (OctCellComponents){.tree = whole};
+    parts->octants = sm_alloc(inner, sizeof *parts->octants);
+    parts->beside = sm_alloc(inner, sizeof *parts->beside);
+    for (int n = (int)whole->roots; n < whole->nodes; n++)
+        parts->octants[whole->parent[n]] |= (unsigned char)(1 << octant(whole, n));
+    for (int n = 0; n < (int)inner; n++)
+        if (n < whole->roots)
+            find_root_neighbours(parts, n);
+        else
+            find_neighbours(parts, n);
+    build_lowest(parts, whole->levels - 1);
+    for (int l = whole->levels - 2; l >= 0; l--) {
+        int *part = join_parts(whole, l, &parts->layer[l + 1], &parts->layer[l]);
+        join_contacts(part, &parts->layer[l + 1], &parts->layer[l]);
+        free(part);
+    }
+}
+
+void oct_components_free(OctCellComponents *parts)
+{
+    for (int l = 0; l < OCT_MAX_LEVELS; l++) {
+        free(parts->layer[l].first);
+        free(parts->layer[l].node);
+        free(parts->layer[l].contact_first);
+        free(parts->layer[l].contact);
+    }
+    free(parts->octants);
+    free(parts->beside);
+    memset(parts, 0, sizeof *parts);
+}
+
+/* The cells of a box of up to 2 x 2 x 2 cells, and where their parts are in a list of them all. */
+typedef struct {
+    int cells, node[8], first[8], offset[8];
+    int parts;
+} Box;
+
+static Box box_around(const OctCellComponents *p, const OctLayer *layer, long from, int node,
+                      int direction)
+{
+    Box box = {0};
+    for (int s = 0; s < 8; s++) {
+        int to = OCT_HERE, power = 1;
+        bool twice = false;
+        for (int a = 0; a < 3; a++, power *= 3) {
+            int step = (s >> a & 1) * step_along(direction, a);
+            twice = twice || (s >> a & 1 && !step);
+            to += step * power;
+        }
+        int cell = p->beside[node][to];
+        if (twice || cell < 0) continue;
+        box.node[box.cells] = cell;
+        box.first[box.cells] = layer->first[cell - from];
+        box.offset[box.cells++] = box.parts;
+        box.parts += layer->first[cell - from + 1] - layer->first[cell - from];
+    }
+    return box;
+}
+
+static void unite_box(const OctLayer *layer, const Box *box, int *up)
+{
+    for (int i = 0; i < box->parts; i++) up[i] = i;
+    for (int b = 0; b < box->cells; b++) {
+        int end = b + 1 < box->cells ? box->offset[b + 1] : box->parts;
+        for (int i = box->offset[b]; i < end; i++) {
+            int part = box->first[b] + i - box->offset[b];
+            for (long c = layer->contact_first[part]; c < layer->contact_first[part + 1]; c++) {
+                int other = layer->contact[c];
+                for (int o = 0; o < b; o++)
+                    if (box->node[o] == layer->node[other])
+                        unite(up, i, box->offset[o] + other - box->first[o]);
+            }
+        }
+    }
+}
+
+static bool touch(const OctLayer *layer, int part, int other)
+{
+    for (long c = layer->contact_first[part]; c < layer->contact_first[part + 1]; c++)
+        if (layer->contact[c] == other) return true;
+    return false;
+}
+
+bool oct_components_weld(const OctCellComponents *p, int node, int direction)
+{
+    int level = oct_tree_level(p->tree, node), other = p->beside[node][direction];
+    const OctLayer *layer = &p->layer[level];
+    if (other < 0) return false;
+    long from = p->tree->level_first[level];
+    const int *mine = layer->first + (node - from), *theirs = layer->first + (other - from);
+    if (direction == OCT_HERE) return mine[1] - mine[0] > 1;
+    bool single = mine[1] - mine[0] == 1 && theirs[1] - theirs[0] == 1;
+    if (single && touch(layer, mine[0], theirs[0])) return false;
+    Box box = box_around(p, layer, from, node, direction);
+    int *up = sm_alloc((size_t)box.parts, sizeof *up), one = -1;
+    unite_box(layer, &box, up);
+    bool weld = false;
+    for (int b = 0; b < box.cells; b++) {
+        if (box.node[b] != node && box.node[b] != other) continue;
+        int end = b + 1 < box.cells ? box.offset[b + 1] : box.parts;
+        for (int i = box.offset[b]; i < end; i++) {
+            int root = root_of(up, i);
+            weld = weld || (one >= 0 && root != one);
+            one = root;
+        }
+    }
+    free(up);
+    return weld;
+}

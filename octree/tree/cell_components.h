@@ -1,0 +1,40 @@
+/* cell_components.h - how material connects inside cells of every size: where coarse cells would
+ * weld it.
+ *
+ * Finest cells connect where they share a face, an edge or a corner (FastLSM's rule: they share a
+ * particle). A part is a component of a cell's material that connects within the cell. */
+#ifndef OCT_CELL_COMPONENTS_H
+#define OCT_CELL_COMPONENTS_H
+
+#include "tree.h"
+
+enum { OCT_DIRECTIONS = 27, OCT_HERE = 13 }; /* (dx + 1) + 3 (dy + 1) + 9 (dz + 1) */
+
+/* The parts of one level's cells and which of them touch across the cells' borders. */
+typedef struct {
+    long parts;
+    int *first; /* [cells of the level + 1] first part of every cell */
+    int *node;  /* [parts] tree node */
+    long *contact_first;
+    int *contact; /* parts of other cells that touch this one */
+} OctLayer;
+
+typedef struct {
+    const OctTree *tree;
+    unsigned char *octants;        /* which children there are, bit x + 2 y + 4 z */
+    int (*beside)[OCT_DIRECTIONS]; /* the node of the same level there, or -1 */
+    OctLayer layer[OCT_MAX_LEVELS];
+} OctCellComponents;
+
+/* For the cells of all levels but the finest of a whole tree (oct_tree_build()), which must stay.
+ * O(nodes + contacts). The caller frees. */
+void oct_components_build(const OctTree *whole, OctCellComponents *parts);
+void oct_components_free(OctCellComponents *parts);
+
+/* Whether a cell as a leaf welds what does not connect there: for OCT_HERE, whether the cell has
+ * several parts; else whether the material of the cell and of the cell of its size in that
+ * direction does not connect within the box around both. A convex body is never welded. False
+ * where there is no cell in that direction. O(parts and contacts of the cells in the box). */
+bool oct_components_weld(const OctCellComponents *parts, int node, int direction);
+
+#endif
