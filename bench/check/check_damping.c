@@ -7,7 +7,7 @@
 #include "../../lib/system/team.h"
 #include "../../lib/vector.h"
 #include "../../octree/change/structure.h"
-#include "../../octree/graph/frames.h"
+#include "../../octree/region/frames.h"
 #include "../../reference/condition.h"
 #include "../play/runner.h"
 #include "check.h"
