@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "../../octree/change/structure.h"
-#include "../../octree/graph/frames.h"
+#include "../../octree/region/frames.h"
 #include "check.h"
 
 static const SmEngineType *const octrees[] = {&octree_engine_f32, &octree_engine_f64};
