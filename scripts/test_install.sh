@@ -1,63 +1,121 @@
 #!/usr/bin/env bash
-# Installs a build folder into a temporary prefix, then builds and runs a ten-line program against
-# what is there, with the shared library and with the static one. The paths are set as the README says.
+# Installs a build folder into a temporary prefix, then builds and runs the README's program against
+# what is there, with the shared library and with the static one, and the like in C++ and Python. The
+# paths are set as the README says.
 #
 # usage: scripts/test_install.sh BUILD_FOLDER
 set -eu
+here=$(dirname -- "$0")
 prefix=$(mktemp -d)
 trap 'rm -rf -- "$prefix"' EXIT
 build=${1:?BUILD_FOLDER missing}
 cmake --install "$build" --prefix "$prefix" >"$prefix/log" || { cat "$prefix/log"; exit 1; }
-export_line=$(sed -n 's/^ *export PKG_CONFIG_PATH=/export PKG_CONFIG_PATH=/p' "$(dirname -- "$0")/../README.md")
+export_line=$(sed -n 's/^ *export PKG_CONFIG_PATH=/export PKG_CONFIG_PATH=/p' "$here/../README.md")
 [ -n "$export_line" ] || { echo "no export PKG_CONFIG_PATH in README.md"; exit 1; }
 eval "${export_line//PREFIX/\$prefix}"
 for script in check_step.py render.py plots.py plot_calibration.py plot_slice.py plot_sweep.py report/main.py; do
-    cmp -s "$(dirname -- "$0")/$script" "$prefix/share/shapebench/$script" ||
+    cmp -s "$here/$script" "$prefix/share/shapebench/$script" ||
         { echo "not installed: $script"; exit 1; }
 done
-cat >"$prefix/program.c" <<'PROGRAM'
-#include <shapebench/fastlsm/fastlsm.h>
-#include <stdio.h>
-#include <stdlib.h>
 
-int main(void)
-{
-    SmVoxels block;
-    sm_voxels_init(&block, 2, 3, 4, 0.1);
-    for (int i = 0; i < 2 * 3 * 4; i++) sm_voxel_set(&block, i % 2, i / 2 % 3, i / 6);
-    sm_voxels_count(&block);
-
-    const SmEngineType *type = &fastlsm_engine_f32;
-    SmEngineParams params = {.w = 2, .h = 0.01, .gravity = {0, -10, 0}};
-    SmEngine *engine;
-    SmError error;
-    if (type->create(&block, &params, &engine, &error)) return fprintf(stderr, "%s\n", error.text), 1;
-    for (int step = 0; step < 10; step++) type->step(engine, NULL);
-    double(*x)[3] = calloc((size_t)block.particle_count, sizeof *x);
-    type->get(engine, SM_POSITION, x);
-    printf("%ld particles, the first at height %.4f\n", block.particle_count, x[0][1]);
-    free(x);
-    type->destroy(engine);
-    sm_voxels_free(&block);
-    return 0;
-}
-PROGRAM
+# One header, its functions and no others.
+headers=$(cd "$prefix/include" && find . -type f)
+[ "$headers" = ./shapebench.h ] || { echo "headers installed: $headers"; exit 1; }
+nm -D --defined-only "$prefix/lib/libshapebench.so" | awk '{print $3}' | sort >"$prefix/shown"
+grep -oE '\bsb_[a-z_]+\(' "$prefix/include/shapebench.h" | tr -d '(' | sort -u >"$prefix/declared"
+diff "$prefix/declared" <(grep -xFf "$prefix/declared" "$prefix/shown") ||
+    { echo "declared, but not in the library"; exit 1; }
+diff "$prefix/shown" <(grep -xFf "$prefix/declared" "$prefix/shown") ||
+    { echo "in the library, but not declared"; exit 1; }
 
 # After 10 steps of free fall a particle is at -g h^2 (1 + ... + 10) = -0.055.
 check() {
     local said
-    said=$("$prefix/program")
-    [ "$said" = "60 particles, the first at height -0.0550" ] || { echo "$1: $said"; exit 1; }
+    said=$("${@:2}")
+    [ "$said" = "the first particle at height -0.0550" ] || { echo "$1: $said"; exit 1; }
 }
 
 cc=${CC:-cc}
-find "$prefix/include" -name "*.h" -print0 | while IFS= read -r -d "" header; do # each must compile alone
-    "$cc" -std=c11 -Wall -Wextra -Werror -fsyntax-only -x c "$header"
-done
+sed -n '/^#include <shapebench.h>/,/^```/{/^```/!p}' "$here/../README.md" >"$prefix/program.c"
+"$cc" -std=c99 -Wall -Wextra -Werror -pedantic -fsyntax-only -x c "$prefix/include/shapebench.h"
 read -ra flags < <(pkg-config --cflags --libs shapebench)
-"$cc" -std=c11 -Wall -o "$prefix/program" "$prefix/program.c" "${flags[@]}"
-check "shared library"
+"$cc" -std=c11 -Wall -Wextra -o "$prefix/program" "$prefix/program.c" "${flags[@]}"
+check "shared library" "$prefix/program"
+
+if command -v c++ >"$prefix/log"; then
+    cat >"$prefix/program.cc" <<'PROGRAM'
+#include <shapebench.h>
+#include <cstdio>
+#include <vector>
+
+int main()
+{
+    sb_voxels *block = nullptr;
+    sb_body *body = nullptr;
+    sb_body_params params;
+    sb_body_counts counts;
+    const int cells[] = {2, 3, 4};
+    sb_body_params_init(&params, sizeof params);
+    params.gravity[1] = -10;
+    if (sb_voxels_make(cells, 0.1, nullptr, nullptr, &block, nullptr) != SB_OK) return 1;
+    if (sb_body_create(block, nullptr, &params, &body, nullptr) != SB_OK) return 1;
+    sb_body_step(body, 10, nullptr);
+    sb_body_count(body, &counts, sizeof counts, nullptr);
+    std::vector<double> x(3 * counts.particles);
+    sb_body_read(body, SB_POSITION, x.data(), counts.particles, nullptr);
+    std::printf("the first particle at height %.4f\n", x[1]);
+    sb_body_free(body);
+    sb_voxels_free(block);
+}
+PROGRAM
+    c++ -std=c++11 -Wall -Wextra -Werror -pedantic -o "$prefix/program++" "$prefix/program.cc" "${flags[@]}"
+    check "C++" "$prefix/program++"
+else
+    echo "no C++ compiler: not tested from C++"
+fi
+
+# The same through ctypes, with an octree; a struct of an older version's is its first members.
+cat >"$prefix/program.py" <<'PROGRAM'
+import ctypes as c
+import sys
+
+class Params(c.Structure):
+    _fields_ = [("size", c.c_size_t), ("engine", c.c_int), ("precision", c.c_int), ("w", c.c_int),
+                ("threads", c.c_int), ("h", c.c_double), ("gravity", c.c_double * 3)]
+
+class Error(c.Structure):
+    _fields_ = [("code", c.c_int), ("text", c.c_char * 512)]
+
+sb = c.CDLL(sys.argv[1])
+error, block, body, params = Error(), c.c_void_p(), c.c_void_p(), Params()
+def call(code):
+    if code:
+        sys.exit(error.text.decode())
+
+sb.sb_version_text.restype = c.c_char_p
+assert sb.sb_version_text().decode() == sys.argv[2]
+sb.sb_body_params_init(c.byref(params), c.c_size_t(c.sizeof(params)))
+params.engine, params.gravity[1] = 1, -10
+call(sb.sb_voxels_make((c.c_int * 3)(2, 3, 4), c.c_double(0.1), None, None, c.byref(block), c.byref(error)))
+call(sb.sb_body_create(block, None, c.byref(params), c.byref(body), c.byref(error)))
+count = (c.c_int64 * 1)()
+call(sb.sb_body_count(body, count, c.c_size_t(8), c.byref(error)))
+x, before = ((c.c_double * 3) * count[0])(), ((c.c_double * 3) * count[0])()
+call(sb.sb_body_read(body, 0, before, c.c_int64(count[0]), c.byref(error)))
+call(sb.sb_body_step(body, c.c_int64(10), c.byref(error)))
+call(sb.sb_body_read(body, 1, x, c.c_int64(count[0]), c.byref(error)))
+assert sb.sb_body_read(body, 1, x, c.c_int64(0), c.byref(error)) == 2 and b"room" in error.text
+print("the first particle at height %.4f" % (x[0][1] - before[0][1]))
+sb.sb_body_free(body)
+sb.sb_voxels_free(block)
+PROGRAM
+if command -v python3 >"$prefix/log"; then
+    check "Python" python3 "$prefix/program.py" "$prefix/lib/libshapebench.so" "$(pkg-config --modversion shapebench)"
+else
+    echo "no python3: not tested through ctypes"
+fi
+
 read -ra flags < <(pkg-config --cflags --libs --static shapebench)
 "$cc" -std=c11 -Wall -o "$prefix/program" "$prefix/program.c" "${flags[@]/#-lshapebench/-l:libshapebench.a}"
 unset LD_LIBRARY_PATH
-check "static library"
+check "static library" "$prefix/program"

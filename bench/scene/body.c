@@ -9,6 +9,7 @@
 #include "../../lib/shapes/shape.h"
 #include "../../lib/system/file.h"
 #include "../../lib/system/printable.h"
+#include "../../lib/voxel/weigh.h"
 #include "../measure/room.h"
 #include "nearest.h"
 
@@ -127,17 +128,6 @@ static void stand_instances(const BenchScene *scene, BenchBody *body)
     }
 }
 
-/* Mass of each particle: an eighth of every material cell around it. */
-static void weigh_cells(double density, const SmVoxels *voxels, const int (*at)[3], double *mass)
-{
-    double eighth = density * voxels->cell * voxels->cell * voxels->cell / 8;
-    for (long p = 0; p < voxels->particle_count; p++)
-        for (int corner = 0; corner < 8; corner++)
-            if (sm_voxel_get(voxels, at[p][0] - (corner & 1), at[p][1] - (corner >> 1 & 1),
-                             at[p][2] - (corner >> 2)))
-                mass[p] += eighth;
-}
-
 static SmCode read_masses(const char *path, long count, double *mass, SmError *error)
 {
     FILE *file = sm_file_open(path, NULL, error);
@@ -189,7 +179,7 @@ static SmCode place_particles(const BenchScene *scene, BenchBody *body, SmError 
     if (scene->vertex_mass[0])
         code = weigh_vertices(scene->vertex_mass, body, error);
     else if (scene->density > 0)
-        weigh_cells(scene->density, voxels, (const int(*)[3])at, body->mass);
+        sm_voxels_weigh(voxels, scene->density, body->mass);
     free(at);
     return code;
 }

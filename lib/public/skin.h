@@ -1,0 +1,67 @@
+/* skin.h - the surface of a body that an engine simulates: carried by the lattice's particles or
+ * the octree's nodes, and kept up to date with what cuts and resampling do to them. */
+#ifndef SM_SKIN_H
+#define SM_SKIN_H
+
+#include "../../octree/engine.h"
+#include "../../octree/surface/surface.h"
+#include "../cut/blade.h"
+#include "../mesh/embed.h"
+
+typedef struct {
+    /* the caller's, kept */
+    const SmEngineType *type;
+    SmEngine *engine;
+    const SmVoxels *voxels;
+    long instances;
+    const double (*x0)[3]; /* [particles] at rest, of a lattice that can be cut */
+
+    bool octree;           /* nodes carry it, not particles */
+    SmMesh surface;        /* of one body at rest, with all cuts; without vertices: none */
+    OctSurface carried;    /* what carries it: an octree's nodes, */
+    SmEmbedding embedding; /* or a lattice's particles */
+    SmCut cut;             /* of a lattice; an octree's structure has its own */
+    SmSites sites;         /* of a lattice that can be cut */
+    bool left;             /* a cut did not split the surface: it could not be done cleanly */
+    /* scratch: nodes as the engine counts them; by leaf or particle number */
+    double (*node)[3];
+    double (*rest)[3], (*x)[3], (*F)[9];
+    unsigned char *found, *absent;
+    long room;
+    OctReach search;
+} SmSkin;
+
+/* Ties `surface`, which becomes the skin's, to the engine's body, which is as it was created. `x0`
+ * are a lattice's particles at rest, before the pose of any instance, if it is to be cut; else
+ * NULL. O(vertices). */
+void sm_skin_create(const SmEngineType *type, SmEngine *engine, const SmVoxels *voxels,
+                    long instances, const double (*x0)[3], SmMesh surface, SmSkin *skin);
+void sm_skin_free(SmSkin *skin);
+
+/* What carries the material near a blade whose ends move from blade[0], blade[1] to blade[2],
+ * blade[3], for sm_blade_sweep(). Of a lattice, gradients are the least-squares fit to the
+ * neighbours that no cut parts; one instance. Valid until the body changes or the next call here;
+ * sm_skin_carried() ends its search. O(nodes) for a look at each. */
+SmCarriers sm_skin_carriers(SmSkin *skin, const double blade[4][3]);
+void sm_skin_carried(SmSkin *skin);
+
+/* Triangles of the body's cut so far. */
+long sm_skin_cut_triangles(const SmSkin *skin);
+
+/* The surface after an octree has changed, with the cut's triangles from number `first` on new. */
+void sm_skin_follow(SmSkin *skin, const OctChange *change, long first);
+
+/* Cuts a lattice's body, and the surface, by the triangles of skin->cut from number `first` on. */
+SmCode sm_skin_cut_lattice(SmSkin *skin, long first, SmError *error);
+
+/* The surfaces of all instances now, and unit normals unless NULL: [instances * vertices]. With
+ * `back` s the velocities of what carries them are followed so far back. */
+void sm_skin_points(SmSkin *skin, double back, double (*point)[3], double (*normal)[3]);
+
+/* Pieces of one body's material by particle. The caller frees. */
+void sm_skin_pieces(const SmSkin *skin, SmPieces *pieces);
+
+/* The leaf or particle that a vertex belongs to. */
+int sm_skin_carrier(const SmSkin *skin, long vertex);
+
+#endif
