@@ -108,6 +108,8 @@ typedef struct {
     const char *precision; /* "single" or "double" */
     bool by_cells;         /* params.w is the half-width of its regions, to SM_MOST_W */
     bool unstopped;        /* obstacles do not stop its bodies: callers refuse them */
+    bool refines;          /* particles are split, merged and cut while it runs (octree/engine.h) */
+    bool weighs_regions;   /* a region's misfit counts by its own particle's mass, not by 1 */
 
     /* Builds an engine at rest on `voxels` (copied; may be freed after). SM_INPUT when the body
      * or the parameters are beyond what the engine does. */
@@ -145,6 +147,13 @@ typedef struct {
     void (*masses)(SmEngine *engine, double *mass);
 
     void (*count)(SmEngine *engine, SmCounts *counts);
+
+    /* An engine at rest as `engine` would be built now. Its particle p is particle order[p] of
+     * `engine`; `order` is [particles]. `params` are those of create(), but may differ in what
+     * structures do not depend on. *copy is NULL where create() builds it. NULL of engines that
+     * stay as they were created. */
+    SmCode (*rebuild)(SmEngine *engine, const SmEngineParams *params, SmEngine **copy, long *order,
+                      SmError *error);
 
     /* Breaks what holds the body together across the cut's triangles from number `first` on, which
      * are in the rest position of the voxels, before any instance's pose. Allocates. SM_USAGE: the

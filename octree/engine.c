@@ -312,16 +312,12 @@ static Oct *build(const OctStructure *s, const OctOptions *options, const SmEngi
     return oct_build(&s->tree, &s->regions, s->mass, &own);
 }
 
-static SmCode engine_rebuild(SmEngine *e, const SmEngineParams *params, SmEngine **copy,
-                             long *order, SmError *error);
-
 /* Everything behind the structure, which is in its place. */
 static void complete(SmEngine *e, const OctOptions *options, const SmEngineParams *params)
 {
     e->base.begin = engine_begin;
     e->base.end = engine_end;
     e->base.leaves = engine_leaves;
-    e->base.rebuild = engine_rebuild;
     e->oct = build(&e->base.structure, options, params);
     e->count = e->base.structure.tree.leaves;
     e->h = params->h;
@@ -362,8 +358,8 @@ static SmCode engine_rebuild(SmEngine *e, const SmEngineParams *params, SmEngine
                              long *order, SmError *error)
 {
     int *leaf;
-    if (e->oct->instances > 1)
-        return sm_fail(error, SM_USAGE, "octree: bodies that share a structure do not change");
+    *copy = NULL;
+    if (!e->base.structure.resample) return SM_OK; /* it has never changed */
     SmEngine *made = sm_alloc(1, sizeof *made);
     int team = sm_team_enter(params->threads);
     SmCode code = oct_structure_rebuild(&e->base.structure, params->mass, &made->base.structure,
@@ -532,6 +528,8 @@ static long engine_region(SmEngine *e, long number, long *member, long room)
 const SmEngineType SM_NAME(octree_engine) = {
     .name = "octree",
     .precision = SM_REAL_BITS == 32 ? "single" : "double",
+    .refines = true,
+    .weighs_regions = true,
     .create = engine_create,
     .destroy = engine_destroy,
     .step = engine_step,
@@ -544,6 +542,7 @@ const SmEngineType SM_NAME(octree_engine) = {
     .set_shapes = engine_set_shapes,
     .masses = engine_masses,
     .count = engine_count,
+    .rebuild = engine_rebuild,
     .contacts = engine_contacts,
     .region = engine_region,
 };

@@ -32,7 +32,7 @@ static void weights(const SmEngineType *type, SmEngine *engine, Body *body)
     body->region = sm_alloc(count, sizeof(double));
     type->masses(engine, body->mass);
     for (long r = 0; r < body->count; r++) {
-        body->region[r] = strcmp(type->name, "octree") ? 1 : body->mass[r];
+        body->region[r] = type->weighs_regions ? body->mass[r] : 1;
         for (long k = body->start[r]; k < body->start[r + 1]; k++)
             reach[body->member[k]] += body->region[r];
     }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../engines.h"
 #include "../regress/statistic.h"
 
 static const double near_enough = 0.1, alike = 0.1; /* of a modulus */
@@ -265,7 +266,7 @@ long bench_advice_young(const BenchSpecimen *specimen, long count, const BenchLa
             100 * near_enough, wish->young, low * unit, high * unit);
     say(sentence, "For %.4g Pa at %.4g kg/m^3 %s %s with w %d", wish->young, wish->density,
         hit ? "take" : "the nearest is", s->engine, s->w);
-    if (!strcmp(s->engine, "octree")) say(sentence, " and epsilon %g", s->epsilon);
+    if (bench_engine(s->engine)->sampled) say(sentence, " and epsilon %g", s->epsilon);
     say(sentence,
         ", spacing %.3g m and time step %.3g s: %.3g Pa, sag and frequencies %.2g%% apart, loss "
         "factor "
@@ -280,12 +281,12 @@ void bench_advice_settings(const BenchSpecimen *s, const BenchYoung *wish, doubl
 {
     settings[0] = '\0';
     say(settings, "engine = \"%s\"; ", s->engine);
-    if (strcmp(s->engine, "octree") != 0)
-        say(settings, "w = %d; ", s->w);
-    else
+    if (bench_engine(s->engine)->sampled)
         say(settings,
             "epsilon = %.6g; octree = { edges = %d.0; criteria = ( { kind = \"uniform\"; } ); }; ",
             s->epsilon, s->w);
+    else
+        say(settings, "w = %d; ", s->w);
     say(settings, "cell = %.6g; h = %.6g; ", s->spacing, find_step(s, wish));
     if (damping > 0) say(settings, "damping = %.6g; ", damping);
     say(settings, "density = %.6g;", wish->density);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../check/check.h"
+#include "../engines.h"
 
 enum { MOST_STEPS = 10000, ENOUGH_STEPS = 1000, ENOUGH_TURNS = 9 };
 static const double slightly = 0.01; /* of gravity */
@@ -32,14 +33,9 @@ static BenchScene make_scene(const SmEngineType *type, double w, double epsilon,
     scene.params.damping = 0;
     scene.params.gravity[1] *= slightly;
     if (!clamped) scene.handle_count = 0;
-    if (!strcmp(type->name, "octree")) {
-        scene.octree.width = (OctWidth){.edges = w};
-        scene.octree.epsilon = epsilon;
-        scene.octree.sampling.criteria[0] = (OctCriterion){.kind = OCT_UNIFORM};
-        scene.octree.sampling.criteria_count = 1;
-    } else {
-        scene.params.w = (int)w;
-    }
+    bench_engine(type->name)->set_width(&scene, w, epsilon, false);
+    scene.octree.sampling.criteria[0] = (OctCriterion){.kind = OCT_UNIFORM};
+    scene.octree.sampling.criteria_count = 1;
     return scene;
 }
 

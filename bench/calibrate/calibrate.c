@@ -8,6 +8,7 @@
 
 #include "../check/check.h"
 #include "../cli/interrupt.h"
+#include "../engines.h"
 #include "../store/draft.h"
 #include "calibration_store.h"
 
@@ -114,7 +115,7 @@ static bool wants_range(const BenchCalibrationPlan *plan, const BenchSpecimen *s
     bool some =
         s->w == plan->w[0] || s->w == plan->w[plan->ws / 2] || s->w == plan->w[plan->ws - 1];
     return some && !strcmp(s->set, "grid") &&
-           (!strcmp(s->engine, "fastlsm") || s->epsilon == plan->epsilon[0]);
+           (!bench_engine(s->engine)->sampled || s->epsilon == plan->epsilon[0]);
 }
 
 static SmCode measure_all(const BenchCalibrate *run, BenchSpecimen *planned,

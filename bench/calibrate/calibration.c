@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/engine.h"
+#include "../engines.h"
 #include "../sweep/plan.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchCalibrationPlan, kind, member)
@@ -89,22 +89,21 @@ typedef struct {
 } List;
 
 /* One more, unless it is the scene's own. */
-static void add(List *list, const char *engine, int w, double epsilon, const char *set,
+static void add(List *list, const BenchEngine *engine, int w, double epsilon, const char *set,
                 double setting)
 {
     const BenchCalibrationPlan *plan = list->plan;
     BenchSpecimen s = bench_specimen_none();
-    bool lattice = !strcmp(engine, "fastlsm");
     s.index = list->count;
-    snprintf(s.engine, sizeof s.engine, "%s", engine);
+    snprintf(s.engine, sizeof s.engine, "%s", engine->type[0]->name);
     snprintf(s.set, sizeof s.set, "%s", set);
     s.w = w;
-    s.epsilon = lattice ? 0 : epsilon;
+    s.epsilon = engine->sampled ? epsilon : 0;
     s.across = !strcmp(set, "spacing") ? (int)setting : plan->across;
     s.aspect = !strcmp(set, "aspect") ? (int)setting : plan->aspect;
     s.h = !strcmp(set, "step") ? setting * plan->h : plan->h;
     s.spacing = plan->thickness / s.across;
-    s.wide = 2 * w + 1 > s.across + lattice;
+    s.wide = 2 * w + 1 > s.across + engine->type[0]->by_cells;
     if (strcmp(set, "grid") != 0 && s.across == plan->across && s.aspect == plan->aspect &&
         s.h == plan->h)
         return;
@@ -116,10 +115,10 @@ static void add(List *list, const char *engine, int w, double epsilon, const cha
 static void add_engines(List *list, int w, bool all, const char *set, double setting)
 {
     const BenchCalibrationPlan *plan = list->plan;
-    if (strcmp(plan->engines, "octree") != 0) add(list, "fastlsm", w, 0, set, setting);
-    if (!strcmp(plan->engines, "fastlsm")) return;
-    for (int e = 0; e < (all ? plan->epsilons : 1); e++)
-        add(list, "octree", w, plan->epsilon[e], set, setting);
+    const BenchEngine *engine;
+    for (int i = 0; (engine = bench_engine_planned(plan->engines, i)); i++)
+        for (int e = 0; e < (all && engine->sampled ? plan->epsilons : 1); e++)
+            add(list, engine, w, plan->epsilon[e], set, setting);
 }
 
 /* The first, middle and last w. */

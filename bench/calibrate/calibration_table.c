@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "../engines.h"
 #include "../table/export.h"
 #include "../table/grid.h"
 
@@ -42,7 +43,7 @@ static void add_line(BenchGrid *grid, bool meshless, const BenchSpecimen *s)
     int c = 0;
     strcpy((*line)[c++], s->engine);
     snprintf((*line)[c++], BENCH_GRID_TEXT, "%d", s->w);
-    number("%g", strcmp(s->engine, "octree") != 0 ? NAN : s->epsilon, (*line)[c++]);
+    number("%g", bench_engine(s->engine)->sampled ? s->epsilon : NAN, (*line)[c++]);
     number("%.4g", s->spacing, (*line)[c++]);
     number("%.4g", 1e3 * s->h, (*line)[c++]);
     number("%g", s->aspect, (*line)[c++]);

@@ -6,11 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../engines.h"
+
 #define FIELD(kind, member) BENCH_FIELD(BenchLaw, kind, member)
 
 enum { SETTINGS = 4 }; /* spacing, w, aspect, time step */
 
-static const char *const engines[] = {"fastlsm", "octree"};
 static const double same = 1e-9; /* of logarithms */
 
 const BenchField *bench_law_fields(int *count)
@@ -180,11 +181,12 @@ int bench_law_fit(const BenchSpecimen *specimen, long count, double thickness, d
 {
     static const char *const kinds[] = {"narrow", "wide", "two-term"};
     int laws = 0;
-    for (int e = 0; e < 2; e++)
+    const BenchEngine *engine;
+    for (int e = 0; (engine = bench_engine_planned(bench_engine_choices()[0], e)); e++)
         for (int kind = 0; kind < 3; kind++) {
             const BenchSpecimen **chosen;
-            int number = choose(specimen, count, engines[e], kind, &chosen);
-            law[laws] = make_law(engines[e], kinds[kind]);
+            int number = choose(specimen, count, engine->type[0]->name, kind, &chosen);
+            law[laws] = make_law(engine->type[0]->name, kinds[kind]);
             laws += kind < 2 ? fit_power(chosen, number, density, &law[laws])
                              : fit_terms(chosen, number, thickness, density, &law[laws]);
             free(chosen);

@@ -14,9 +14,10 @@
 #ifndef BENCH_LAW_H
 #define BENCH_LAW_H
 
+#include "../engines.h"
 #include "specimen.h"
 
-enum { BENCH_LAWS = 6 };
+enum { BENCH_LAWS = 3 * BENCH_MOST_PLANNED };
 
 /* An estimate is three numbers: its value and the ends of its 95% confidence interval (Student's
  * t). NaN: not fitted. */

@@ -13,7 +13,7 @@ enum { BENCH_YOUNGS = 1 + BENCH_TONES }; /* by sag, and by each frequency */
 /* Quantities that could not be had are NaN. */
 typedef struct {
     int index;          /* in the plan, from 0 */
-    char engine[12];    /* "fastlsm" or "octree" */
+    char engine[12];    /* a planned one (engines.h) */
     int w;              /* half-width of regions, cells */
     double epsilon;     /* of a lattice 0 */
     int across, aspect; /* cells through the beam; its length over its thickness */

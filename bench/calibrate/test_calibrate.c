@@ -15,6 +15,7 @@
 #include "../../lib/test_fields.h"
 #include "../../reference/beam.h"
 #include "../cli/test_program.h"
+#include "../engines.h"
 #include "../play/runner.h"
 #include "calibration_store.h"
 

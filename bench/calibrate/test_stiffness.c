@@ -12,6 +12,7 @@
 
 #include "../../lib/test_fields.h"
 #include "../../reference/meshless/solve/solver.h"
+#include "../engines.h"
 #include "specimen.h"
 
 enum { ASPECT = 6, ACROSS = 3 };

@@ -9,6 +9,7 @@
 #include "../../lib/system/team.h"
 #include "../../octree/engine.h"
 #include "../../reference/condition.h"
+#include "../engines.h"
 
 double bench_check_members(const BenchBody *body, int w)
 {
@@ -16,15 +17,16 @@ double bench_check_members(const BenchBody *body, int w)
     return count * fmin(side * side * side, count);
 }
 
-static bool is_octree(const SmEngineType *type)
+static double lattice_members(const BenchScene *scene, const BenchBody *body,
+                              const SmEngine *engine)
 {
-    return !strcmp(type->name, "octree");
+    (void)engine;
+    return bench_check_members(body, scene->params.w);
 }
 
-double bench_check_room(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                        const SmEngine *engine)
+static double tree_members(const BenchScene *scene, const BenchBody *body, const SmEngine *engine)
 {
-    if (!is_octree(type)) return bench_check_members(body, scene->params.w);
+    (void)scene, (void)body;
     const OctRegions *regions = &oct_engine_structure(engine)->regions;
     double members = 0;
     const OctTree *tree = &oct_engine_structure(engine)->tree;
@@ -45,13 +47,16 @@ const RefRegions *bench_check_regions(const BenchCheck *check)
     return check->hierarchical ? &check->octree.regions : &check->regions;
 }
 
-void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                       const SmEngine *engine, BenchCheck *check)
+static void begin_lattice(const BenchScene *scene, const BenchBody *body, const SmEngine *engine,
+                          BenchCheck *check)
 {
-    if (!is_octree(type)) {
-        bench_check_create(body, scene->params.w, check);
-        return;
-    }
+    (void)engine;
+    bench_check_create(body, scene->params.w, check);
+}
+
+static void begin_tree(const BenchScene *scene, const BenchBody *body, const SmEngine *engine,
+                       BenchCheck *check)
+{
     const OctStructure *structure = oct_engine_structure(engine);
     *check = (BenchCheck){.body = body,
                           .count = structure->tree.live,
@@ -71,6 +76,22 @@ void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmE
     memcpy(check->mass, check->octree.m, count * sizeof *check->mass);
     memcpy(check->weight, check->octree.weight, count * sizeof *check->weight);
     memcpy(check->rest, check->octree.x0, count * sizeof *check->rest);
+}
+
+const BenchTwin bench_lattice_twin = {lattice_members, begin_lattice};
+const BenchTwin bench_octree_twin = {tree_members, begin_tree};
+
+double bench_check_room(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                        const SmEngine *engine)
+{
+    const BenchTwin *twin = bench_engine(type->name)->twin;
+    return twin ? twin->members(scene, body, engine) : INFINITY;
+}
+
+void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
+                       const SmEngine *engine, BenchCheck *check)
+{
+    bench_engine(type->name)->twin->begin(scene, body, engine, check);
 }
 
 int (*bench_check_parted(const BenchBody *body, long *count))[2]

@@ -60,15 +60,25 @@ typedef struct {
 #define BENCH_MOST_MEMBERS 1e8
 double bench_check_members(const BenchBody *body, int w);
 
-/* The same of an engine on the scene's body, which for an octree is asked. */
+/* What an engine's goals are held to: all particles' regions by the scene's w in cells, or a
+ * tree's, leaf by leaf as the engine has them (reference/octree_regions.h is their twin, in tests).
+ * `members` says how many region members that holds in memory. */
+typedef struct {
+    double (*members)(const BenchScene *scene, const BenchBody *body, const SmEngine *engine);
+    void (*begin)(const BenchScene *scene, const BenchBody *body, const SmEngine *engine,
+                  BenchCheck *check);
+} BenchTwin;
+
+extern const BenchTwin bench_lattice_twin, bench_octree_twin;
+
+/* The members of the engine's twin; INFINITY of an engine that has none. */
 double bench_check_room(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                         const SmEngine *engine);
 
 /* Builds the reference's regions for a lattice engine: O(particles (2w+1)^3) time and memory. */
 void bench_check_create(const BenchBody *body, int w, BenchCheck *check);
 
-/* For any engine on the scene's body. The octree's regions are those of the engine, leaf by leaf
- * (reference/octree_regions.h is their twin, in tests). */
+/* For any engine on the scene's body that has a twin. */
 void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                        const SmEngine *engine, BenchCheck *check);
 void bench_check_free(BenchCheck *check);

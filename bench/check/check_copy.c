@@ -5,18 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../octree/engine.h"
-
 /* Where the engine has changed since it was made, as it would be built now. */
 static SmEngine *build_alike(const SmEngineParams *params, const BenchBody *body, SmEngine *engine,
                              const BenchCopy *copy)
 {
     const SmEngineType *type = copy->type;
-    SmEngine *made;
+    SmEngine *made = NULL;
     for (long p = 0; p < copy->all; p++) copy->order[p] = p;
-    bool changed = !strcmp(type->name, "octree") && oct_engine_structure(engine)->resample;
-    SmCode code = changed ? oct_engine_rebuild(engine, params, &made, copy->order, NULL)
-                          : type->create(&body->voxels, params, &made, NULL);
+    SmCode code = type->rebuild ? type->rebuild(engine, params, &made, copy->order, NULL) : SM_OK;
+    if (!code && !made) code = type->create(&body->voxels, params, &made, NULL);
     if (!code && body->cut) code = type->cut(made, body->cut, 0, NULL);
     assert(!code); /* as `engine` was */
     (void)code;

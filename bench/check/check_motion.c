@@ -6,6 +6,7 @@
 
 #include "../../lib/handles.h"
 #include "../../lib/vector.h"
+#include "../engines.h"
 #include "check.h"
 #include "check_copy.h"
 
@@ -108,6 +109,10 @@ static double drift(const BenchRunner *runner)
 bool bench_check_runner(const BenchRunner *runner, size_t size, char *reason)
 {
     double limit = bench_check_tolerance(runner->type->precision), motion = -1; /* not known */
+    if (!bench_engine(runner->type->name)->twin) {
+        snprintf(reason, size, "the engine %s has no twin to be held to", runner->type->name);
+        return false;
+    }
     double members = bench_check_room(runner->scene, runner->body, runner->type, runner->engine);
     bool plain = runner->scene->octree.weighting == OCT_PLAIN;
     if (members <= BENCH_MOST_MEMBERS) {

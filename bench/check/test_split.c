@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "../../lib/test_folder.h"
+#include "../engines.h"
 #include "../play/recording.h"
 
 #define SCENE                                                                                      \

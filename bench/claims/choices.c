@@ -6,6 +6,7 @@
 
 #include "../../octree/engine.h"
 #include "../../octree/graph/distance.h"
+#include "../engines.h"
 
 static void choose(const BenchMeasure *measure, OctOptions *options)
 {
@@ -21,7 +22,7 @@ static SmCode prepare(const BenchMeasure *measure, BenchScene *scene, BenchBody 
 {
     SmCode code = bench_scene_find(measure->scene, scene, error);
     if (code) return code;
-    if (strcmp(scene->engine, "octree") != 0 || scene->instances != 1)
+    if (!bench_engine(scene->engine)->sampled || scene->instances != 1)
         return sm_fail(error, SM_INPUT, "%.100s: one body in the octree is wanted", scene->file);
     choose(measure, &scene->octree);
     return bench_body_of_scene(scene, NULL, body, error);

@@ -10,6 +10,7 @@
 #include "../../octree/change/structure.h"
 #include "../../octree/region/multi_source_search.h"
 #include "../../octree/region/one_sided_regions.h"
+#include "../engines.h"
 #include "../kernels/cubes.h"
 #include "../kernels/matrices.h"
 #include "../kernels/tree_steps.h"
@@ -161,7 +162,7 @@ static void octree_sizes(BenchLab *lab, const int *side, int count, bool sums, B
 void bench_costs_size(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
 {
     int side[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, side);
-    bool octree = !strcmp(measure->engine, "octree"), sums = !strcmp(measure->field, "sums");
+    bool octree = bench_engine(measure->engine)->sampled, sums = !strcmp(measure->field, "sums");
     for (int c = 0; c < count && lab->quick; c++) side[c] = side[c] > 40 ? 40 : side[c];
     while (count > 1 && side[count - 1] == side[count - 2]) count--;
     bench_curve_begin(curve, octree ? "nodes" : "particles", sums ? "sums, ms/step" : "ms/step");
@@ -250,7 +251,7 @@ static SmCode make_resampled(const BenchMeasure *measure, Resampled *of, SmError
     BenchScene *scene = sm_alloc(1, sizeof *scene);
     BenchBody body;
     SmCode code = bench_scene_find(measure->scene, scene, error);
-    if (!code && strcmp(scene->engine, "octree") != 0)
+    if (!code && !bench_engine(scene->engine)->sampled)
         code = sm_fail(error, SM_INPUT, "'%.60s' is no octree: nothing is resampled", scene->name);
     if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
     if (!code) {

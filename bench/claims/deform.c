@@ -7,6 +7,7 @@
 
 #include "../../fastlsm/fastlsm.h"
 #include "../../reference/shape_matching.h"
+#include "../engines.h"
 #include "../kernels/block.h"
 #include "../play/play.h"
 

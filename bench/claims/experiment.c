@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../check/check.h"
+#include "../engines.h"
 #include "../measure/measure.h"
 #include "../measure/moment.h"
 #include "choices.h"
@@ -181,7 +182,8 @@ static const char *field_fault(const BenchMeasure *measure, const Kind *kind)
 {
     static char fault[400];
     char names[360] = "";
-    bool octree = !strcmp(measure->engine, "octree"), known = true;
+    const BenchEngine *engine = bench_engine(measure->engine);
+    bool known = true;
     if (measure->experiment == BENCH_TRY_SCENE) {
         known = bench_scene_field_known(measure->field);
         bench_scene_field_names(sizeof names, names);
@@ -192,9 +194,10 @@ static const char *field_fault(const BenchMeasure *measure, const Kind *kind)
     snprintf(fault, sizeof fault, "'field' is one of %s", names);
     if (!known) return fault;
     if (measure->experiment != BENCH_TRY_SIZE) return NULL;
-    if (!octree && strcmp(measure->engine, "fastlsm") != 0)
-        return "'engine' is \"fastlsm\" or \"octree\"";
-    return !octree && !strcmp(measure->field, "sums") ? "the field \"sums\" is the octree's" : NULL;
+    if (!engine->planned) return "'engine' is \"fastlsm\" or \"octree\"";
+    return !engine->sampled && !strcmp(measure->field, "sums")
+               ? "the field \"sums\" is the octree's"
+               : NULL;
 }
 
 const char *bench_experiment_fault(const BenchMeasure *measure)

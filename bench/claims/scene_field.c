@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../engines.h"
 #include "../measure/measure.h"
 #include "../play/runner.h"
 

@@ -14,6 +14,7 @@
 #include "../../lib/test_fields.h"
 #include "../../octree/engine.h"
 #include "../../octree/surface/surface.h"
+#include "../engines.h"
 #include "../play/runner.h"
 
 typedef struct {

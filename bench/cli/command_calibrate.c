@@ -7,6 +7,7 @@
 #include "../calibrate/calibrate.h"
 #include "../calibrate/calibration_store.h"
 #include "../calibrate/calibration_table.h"
+#include "../engines.h"
 #include "../sweep/plan.h"
 #include "command.h"
 #include "option.h"
@@ -39,7 +40,6 @@ typedef struct {
 } Options;
 
 static const double standard_density = 1000;
-static const char *const engine_choices[] = {"both", "fastlsm", "octree", NULL};
 
 static const struct argp_option option_list[] = {
     {"scene", KEY_SCENE, "NAME|FILE.cfg", 0,
@@ -73,7 +73,6 @@ static const struct argp_option option_list[] = {
 
 static const BenchOption options_taken[] = {
     {KEY_SCENE, BENCH_TO(TEXT, scene), 0, 0, NULL},
-    {KEY_ENGINE, BENCH_TO(CHOICE, engines), 0, 0, engine_choices},
     {KEY_W, BENCH_TO(TEXT, range[0]), 0, 0, NULL},
     {KEY_EPSILON, BENCH_TO(TEXT, range[1]), 0, 0, NULL},
     {KEY_ACROSS, BENCH_TO(TEXT, range[2]), 0, 0, NULL},
@@ -93,6 +92,10 @@ static error_t parse(int key, char *text, struct argp_state *state)
     Options *options = state->input;
     options->measuring |= (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o';
     if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
+    if (key == KEY_ENGINE) {
+        options->engines = bench_option_choice(state, "--engine", text, bench_engine_choices());
+        return 0;
+    }
     if (key == ARGP_KEY_END && options->density > 0 && isnan(options->young))
         bench_usage(state, "--density is that of --young's body: give both");
     return bench_option_shown(key, text, state, options->measuring, &options->file);
@@ -135,7 +138,7 @@ static SmCode run(Options *options, int argc, char **argv, BenchCalibration *cal
     if (strlen(options->scene) >= sizeof plan->file)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", options->scene);
     snprintf(plan->file, sizeof plan->file, "%s", options->scene);
-    strcpy(plan->engines, engine_choices[options->engines]);
+    strcpy(plan->engines, bench_engine_choices()[options->engines]);
     plan->density = standard_density;
     plan->poisson = options->poisson;
     plan->damping = options->damping;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../../reference/meshless/surface/outline.h"
+#include "../engines.h"
 #include "../play/recording.h"
 #include "../scene/points_file.h"
 #include "../store/draft.h"
@@ -235,22 +236,13 @@ static void apply_options(const Options *options, BenchScene *scene)
     if (options->steps) scene->steps_per_frame = options->steps;
 }
 
-static bool is_octree(const BenchScene *scene)
-{
-    return !strcmp(scene->engine, "octree");
-}
-
-static bool is_meshless(const BenchScene *scene)
-{
-    return !strcmp(scene->engine, "meshless");
-}
-
-static SmCode apply_meshless(const Options *options, BenchScene *scene, SmError *error)
+static SmCode apply_elastic(const Options *options, const BenchEngine *engine, BenchScene *scene,
+                            SmError *error)
 {
     RefMeshlessOptions *meshless = &scene->meshless;
     bool given = options->young > 0 || isfinite(options->poisson) || options->density > 0 ||
                  options->modes || options->points;
-    if (!is_meshless(scene))
+    if (!engine->elastic)
         return given ? sm_fail(error, SM_USAGE,
                                "--young, --poisson, --density, --modes and --points are a meshless "
                                "body's: add --engine meshless")
@@ -267,11 +259,11 @@ static SmCode apply_meshless(const Options *options, BenchScene *scene, SmError 
 }
 
 /* A lattice's w is a whole number, an octree's is not. */
-static SmCode apply_w(const Options *options, const SmEngineType *type, BenchScene *scene,
+static SmCode apply_w(const Options *options, const BenchEngine *engine, BenchScene *scene,
                       SmError *error)
 {
     const char *text = options->w;
-    if (options->width >= 0 && !(text && is_octree(scene)))
+    if (options->width >= 0 && !(text && engine->sampled))
         return sm_fail(error, SM_USAGE,
                        "--width says what an octree's --w counts: add %s, or leave it out",
                        text ? "--engine octree" : "--w");
@@ -279,14 +271,14 @@ static SmCode apply_w(const Options *options, const SmEngineType *type, BenchSce
     char *end;
     double w = strtod(text, &end);
     bool number = end != text && !*end;
-    if (is_octree(scene)) {
+    if (engine->sampled) {
         if (!number || !(w > 0 && w <= 1e6))
             return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a number above 0, to 1e6", text);
         scene->octree.width = options->width > 0 ? (OctWidth){.cells = w} : (OctWidth){.edges = w};
         scene->octree.summation_nodes = 0;
         return SM_OK;
     }
-    if (!type->by_cells)
+    if (!engine->type[0]->by_cells)
         return sm_fail(error, SM_USAGE, "--w: a %s body has no regions", scene->engine);
     if (!number || !(w >= 1 && w <= SM_MOST_W) || w != floor(w))
         return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a whole number from 1 to %d", text,
@@ -296,13 +288,14 @@ static SmCode apply_w(const Options *options, const SmEngineType *type, BenchSce
 }
 
 /* The octree's options are its own. */
-static SmCode apply_octree(const Options *options, BenchScene *scene, SmError *error)
+static SmCode apply_sampling(const Options *options, const BenchEngine *engine, BenchScene *scene,
+                             SmError *error)
 {
     OctOptions *octree = &scene->octree;
-    bool nodes = options->nodes && !is_meshless(scene);
-    if (!is_octree(scene) && (options->epsilon >= 0 || options->levels || nodes))
+    bool nodes = options->nodes && !engine->elastic;
+    if (!engine->sampled && (options->epsilon >= 0 || options->levels || nodes))
         return sm_fail(error, SM_USAGE,
-                       is_meshless(scene)
+                       engine->elastic
                            ? "--epsilon and --levels are the octree's: add --engine octree"
                            : "--epsilon, --levels and --nodes are the octree's: add --engine "
                              "octree");
@@ -332,11 +325,12 @@ static SmCode outline_points(const char *path, RefPoints *points, RefMpu *given,
 }
 
 /* A mesh, or for the meshless engine points. */
-static SmCode load_body(const Options *options, RefMpu *given, SmMesh *mesh, SmError *error)
+static SmCode load_body(const Options *options, const BenchEngine *engine, RefMpu *given,
+                        SmMesh *mesh, SmError *error)
 {
-    const char *name = options->scene, *engine = options->chosen.engine;
+    const char *name = options->scene;
     RefPoints points;
-    if (!engine || strcmp(engine, "meshless") != 0) return bench_mesh_load(name, mesh, error);
+    if (!engine->elastic) return bench_mesh_load(name, mesh, error);
     SmCode code = bench_points_or_mesh(name, &points, mesh, error);
     if (code || !points.count) return code;
     if (options->points) {
@@ -370,13 +364,13 @@ static SmCode load(const Options *options, BenchScene *scene, RefMpu *given, SmM
                        name);
     if (length >= BENCH_PATH)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", name);
-    SmCode code = load_body(options, given, mesh, error);
+    const char *chosen = options->chosen.engine;
+    const BenchEngine *engine = bench_engine(chosen ? chosen : "");
+    SmCode code = load_body(options, engine, given, mesh, error);
     if (code) return code;
     bench_scene_drop(mesh, name, scene);
-    if (options->chosen.engine && !strcmp(options->chosen.engine, "octree"))
-        bench_scene_sample(scene);
-    if (options->chosen.engine && !strcmp(options->chosen.engine, "meshless"))
-        bench_scene_hold(mesh, scene);
+    if (engine->sampled) bench_scene_sample(scene);
+    if (engine->elastic) bench_scene_hold(mesh, scene);
     return SM_OK;
 }
 
@@ -552,10 +546,11 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     SmCode code = load(options, &scene, &given, &mesh, error);
     if (code) return code;
     apply_options(options, &scene);
-    code = apply_octree(options, &scene, error);
-    if (!code) code = apply_meshless(options, &scene, error);
+    const BenchEngine *engine = bench_engine(scene.engine);
+    code = apply_sampling(options, engine, &scene, error);
+    if (!code) code = apply_elastic(options, engine, &scene, error);
     if (!code) code = bench_engine_find(scene.engine, options->chosen.precision, &type, error);
-    if (!code) code = apply_w(options, type, &scene, error);
+    if (!code) code = apply_w(options, engine, &scene, error);
     const char *path = output_path(options, &scene, room);
     if (!code) code = reserve(options, path, error);
     if (!code) code = bench_body_create(&scene, &mesh, &body, error);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../engines.h"
 #include "../sweep/front.h"
 #include "../sweep/recommend.h"
 #include "../sweep/sweep_run.h"
@@ -40,8 +41,6 @@ typedef struct {
     bool recommend, measuring; /* was an option given that says what to measure? */
     BenchWish wish;
 } Options;
-
-static const char *const engine_choices[] = {"both", "fastlsm", "octree", NULL};
 
 static const struct argp_option option_list[] = {
     {"scene", KEY_SCENE, "NAME|FILE.cfg", 0, "The scene to sweep (default: hand)", 1},
@@ -92,7 +91,6 @@ static void parse_shard(const struct argp_state *state, const char *text, BenchS
 
 static const BenchOption options_taken[] = {
     {KEY_SCENE, BENCH_TO(TEXT, scene), 0, 0, NULL},
-    {KEY_ENGINE, BENCH_TO(CHOICE, engines), 0, 0, engine_choices},
     {KEY_W, BENCH_TO(TEXT, w), 0, 0, NULL},
     {KEY_EPSILON, BENCH_TO(TEXT, epsilon), 0, 0, NULL},
     {KEY_WIDTH, BENCH_TO(CHOICE, width), 0, 0, bench_widths},
@@ -119,6 +117,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
         if (strlen(text) >= sizeof options->plan.mesh)
             bench_usage(state, "--mesh: the path '%.60s...' is too long", text);
         options->mesh = text;
+        return 0;
+    case KEY_ENGINE:
+        options->engines = bench_option_choice(state, "--engine", text, bench_engine_choices());
         return 0;
     case KEY_SHARD:
         parse_shard(state, text, &options->run);
@@ -150,13 +151,14 @@ static SmCode make_plan(Options *options, BenchPlan *plan, SmError *error)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", scene);
     snprintf(plan->file, sizeof plan->file, "%s", scene);
     if (options->mesh) snprintf(plan->mesh, sizeof plan->mesh, "%s", options->mesh);
-    strcpy(plan->engines, engine_choices[options->engines]);
+    strcpy(plan->engines, bench_engine_choices()[options->engines]);
     strcpy(plan->width, bench_widths[options->width]);
     strcpy(plan->precision, bench_precisions[options->precision]);
     plan->threads = options->common.threads;
     plan->seed = (long)options->common.seed;
-    SmCode code = bench_range_parse("--w", options->w, options->engines == 2 ? 0.01 : 1, 1000,
-                                    BENCH_PLAN_VALUES, plan->w, &plan->ws, error);
+    SmCode code =
+        bench_range_parse("--w", options->w, bench_engine(plan->engines)->sampled ? 0.01 : 1, 1000,
+                          BENCH_PLAN_VALUES, plan->w, &plan->ws, error);
     if (!code)
         code = bench_range_parse("--epsilon", options->epsilon, 0, 1000, BENCH_PLAN_VALUES,
                                  plan->epsilon, &plan->epsilons, error);

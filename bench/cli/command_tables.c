@@ -4,6 +4,7 @@
 
 #include "../../reference/meshless/solve/solver.h"
 #include "../../reference/paper.h"
+#include "../engines.h"
 #include "../measure/measure.h"
 #include "../play/runner.h"
 #include "../store/draft.h"

@@ -5,13 +5,9 @@
 #include <string.h>
 
 #include "../check/check.h"
+#include "../engines.h"
 #include "../measure/tree_row.h"
 #include "../play/change_grid.h"
-
-static bool is_meshless(const BenchRunner *runner)
-{
-    return !strcmp(runner->type->name, "meshless");
-}
 
 /* Prints the last state's deviation from brute force; false: beyond the tolerance. */
 static bool print_deviation(const BenchRunner *runner)
@@ -19,8 +15,8 @@ static bool print_deviation(const BenchRunner *runner)
     const BenchScene *scene = runner->scene;
     SmCounts counts;
     runner->type->count(runner->engine, &counts);
-    if (is_meshless(runner)) {
-        printf("deviation: not checked: the meshless body is a reference itself\n");
+    if (!bench_engine(runner->type->name)->twin) {
+        printf("deviation: not checked: the %s body is a reference itself\n", runner->type->name);
         return true;
     }
     if (counts.broken && scene->params.strain_limit > 0) {
@@ -49,9 +45,9 @@ static bool print_deviation(const BenchRunner *runner)
     return false;
 }
 
-/* What the octree is: nodes beside those wanted, regions, and what holds together. */
-static void print_octree(const BenchRunner *runner)
+void bench_summary_octree(const BenchRunner *runner, const SmCounts *counts)
 {
+    (void)counts;
     BenchRow row = {0};
     bench_tree_row_fill(runner, &row);
     printf("%s: octree, %s precision: ", runner->scene->name, runner->type->precision);
@@ -65,7 +61,7 @@ static void print_octree(const BenchRunner *runner)
     putchar('\n');
 }
 
-static void print_meshless(const BenchRunner *runner, const SmCounts *counts)
+void bench_summary_meshless(const BenchRunner *runner, const SmCounts *counts)
 {
     const RefMeshlessOptions *options = &runner->scene->meshless;
     long points = ref_meshless_points(runner->engine, NULL);
@@ -127,12 +123,8 @@ bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)
     if (play->cast.count > 1)
         printf("%s: %ld bodies, %ld nodes in all; the last that is touched:\n", runner->scene->name,
                play->cast.body->instances, particles);
-    if (!strcmp(runner->type->name, "octree"))
-        print_octree(runner);
-    else if (is_meshless(runner))
-        print_meshless(runner, &counts);
-    else
-        print_lattice(runner, &counts);
+    const BenchEngine *engine = bench_engine(runner->type->name);
+    (engine->describe ? engine->describe : print_lattice)(runner, &counts);
     if (bench_play_changes(play)) print_changes(play, outcome);
     bool valid = outcome->finite;
     for (int p = 0; p < play->cast.count && outcome->finite; p++) {

@@ -64,11 +64,11 @@ static void use(const SmEngineType *type, const SmVoxels *voxels, SmEngineParams
     int before = tasks();
     if (type->create(voxels, &params, &engine, &error)) fail_msg("%s", error.text);
     type->count(engine, &counts);
-    if (type == &octree_engine_f32 && params.instances < 2) {
+    if (type->rebuild && params.instances < 2) {
         assert_true(counts.particles > 2000); /* smaller trees are searched by one thread anyway */
         refine(engine);
         long *order = sm_alloc((size_t)counts.particles + 7, sizeof *order);
-        assert_int_equal(oct_engine_rebuild(engine, &params, &copy, order, &error), SM_OK);
+        assert_int_equal(type->rebuild(engine, &params, &copy, order, &error), SM_OK);
         type->destroy(copy);
         free(order);
     }

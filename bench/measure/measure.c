@@ -8,6 +8,7 @@
 
 #include "../../reference/paper.h"
 #include "../check/check.h"
+#include "../engines.h"
 #include "../play/frames.h"
 #include "blocks.h"
 #include "elastic_row.h"
@@ -105,7 +106,7 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
     bench_row_name(scene, row);
     snprintf(row->engine, sizeof row->engine, "%s", type->name);
     snprintf(row->precision, sizeof row->precision, "%s", type->precision);
-    if (strcmp(type->name, "octree") != 0) row->w = scene->params.w;
+    if (type->by_cells) row->w = scene->params.w;
     const RefPaperRow *paper = scene->row[0] ? ref_paper_find(scene->paper, scene->row) : NULL;
     row->paper_total_ms = paper ? paper->total_ms.value : NAN;
     for (int s = 0; s < SM_STAGES; s++)
@@ -288,7 +289,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
 
 bool bench_row_measures(const BenchRow *lattice, const BenchRow *row)
 {
-    return !strcmp(lattice->engine, "fastlsm") && !strcmp(lattice->paper, row->paper) &&
+    return bench_engine(lattice->engine)->yardstick && !strcmp(lattice->paper, row->paper) &&
            !strcmp(lattice->polar, row->polar) && strcmp(lattice->summation, "naive") != 0;
 }
 

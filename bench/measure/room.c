@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../engines.h"
+
 /* Of what is available; the rest is for results and for others. */
 #define SHARE 0.8
 
@@ -18,13 +20,25 @@ static double members(const BenchScene *scene, double particles)
     return particles * (shell ? along * along : along * along * along);
 }
 
+double bench_room_lattice(const BenchScene *scene, double particles)
+{
+    return (200 + 130 * ((double)scene->instances - 1)) * particles;
+}
+
+double bench_room_octree(const BenchScene *scene, double particles)
+{
+    (void)scene;
+    return 90 * particles;
+}
+
+double bench_room_brute(const BenchScene *scene, double particles)
+{
+    return (double)scene->instances * (450 * particles + sizeof(int) * members(scene, particles));
+}
+
 double bench_room_wanted(const BenchScene *scene, double particles)
 {
-    double instances = (double)scene->instances;
-    if (!strcmp(scene->engine, "octree")) return 90 * particles;
-    if (!strcmp(scene->engine, "brute"))
-        return instances * (450 * particles + sizeof(int) * members(scene, particles));
-    return (200 + 130 * (instances - 1)) * particles;
+    return bench_engine(scene->engine)->room(scene, particles);
 }
 
 /* The number behind `name` in the file, or, with an empty name, at its start; else INFINITY. */

@@ -8,6 +8,9 @@
 /* About the bytes that the scene's engine and instances take for a body of so many particles
  * (octree: vertices of the finest lattice): what solid boxes were measured to take. */
 double bench_room_wanted(const BenchScene *scene, double particles);
+double bench_room_lattice(const BenchScene *scene, double particles);
+double bench_room_octree(const BenchScene *scene, double particles);
+double bench_room_brute(const BenchScene *scene, double particles);
 
 /* Bytes that this process may still take: what Linux says is available, or what its control group
  * leaves, its cache of files given back, if that is less. INFINITY where neither is known. */

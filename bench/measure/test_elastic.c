@@ -14,6 +14,7 @@
 #include "../../reference/meshless/solve/solver.h"
 #include "../../reference/paper.h"
 #include "../check/elastic_check.h"
+#include "../engines.h"
 #include "../play/runner.h"
 #include "../store/store.h"
 #include "../table/table.h"

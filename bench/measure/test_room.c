@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "../../fastlsm/fastlsm.h"
+#include "../engines.h"
 #include "../kernels/cubes.h"
 #include "../kernels/sampled.h"
 #include "../play/play.h"

@@ -1,15 +1,15 @@
 #include "tree_row.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "../../octree/engine.h"
+#include "../engines.h"
 
 void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row)
 {
     row->summation_nodes = row->width_cells = row->width_edges = NAN;
     row->reached = row->most_reached = NAN;
-    if (strcmp(runner->type->name, "octree") != 0) return;
+    if (!bench_engine(runner->type->name)->structure) return;
     const BenchScene *scene = runner->scene;
     const OctStructure *s = oct_engine_structure(runner->engine);
     SmCounts counts;

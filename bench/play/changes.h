@@ -18,11 +18,14 @@ typedef struct {
     double resample_seconds, follow_seconds;
 } BenchChanged;
 
+typedef struct BenchCarrier BenchCarrier;
+
 typedef struct {
-    BenchPart *part;       /* the caller's, kept */
-    SmMesh surface;        /* of one body at rest, with all slits; points: no triangles */
-    OctSurface carried;    /* what carries it: an octree's nodes, */
-    SmEmbedding embedding; /* or a lattice's particles */
+    BenchPart *part;             /* the caller's, kept */
+    const BenchCarrier *carrier; /* its engine's */
+    SmMesh surface;              /* of one body at rest, with all slits; points: no triangles */
+    OctSurface carried;          /* what carries it: an octree's nodes, */
+    SmEmbedding embedding;       /* or a lattice's particles */
     SmBlade blade[BENCH_MAX];
     OctRefinement touch[BENCH_MAX], view;
     SmCut cut;     /* of a lattice; an octree's structure has it */
@@ -37,6 +40,33 @@ typedef struct {
     long room;
     OctReach search;
 } BenchChanges;
+
+/* What carries a body's surface, and how it is changed: an octree's leaves (octree_changes.c), a
+ * lattice's particles (lattice_changes.c). */
+struct BenchCarrier {
+    void (*tie)(BenchChanges *changes); /* the surface, at rest */
+
+    /* What carries the material near a blade, which is between two places in this frame (blades.h);
+     * until the body changes. */
+    SmCarriers (*near)(BenchChanges *changes, const double blade[4][3]);
+
+    /* All that is due between two times; fills changes->last. */
+    SmCode (*frame)(BenchChanges *changes, double from, double to, SmError *error);
+
+    /* Where an instance's surface is, of what bench_changes_nodes() has found. */
+    void (*move)(BenchChanges *changes, long instance, double (*point)[3]);
+
+    /* The leaf or particle that a vertex belongs to; and the pieces that these are in, which are
+     * left alone where they hang together. */
+    int (*at)(const BenchChanges *changes, long vertex);
+    void (*pieces)(const BenchRunner *runner, SmPieces *pieces);
+
+    /* Of each vertex of one body, into [surface.vertex_count]: the leaf's level, 0 of a base cell.
+     * NULL: there are none. */
+    void (*levels)(const BenchChanges *changes, int *level);
+};
+
+extern const BenchCarrier bench_octree_carrier, bench_lattice_carrier;
 
 /* Ties the part's surface. The part's handles and forces follow its changes. */
 void bench_changes_create(BenchPart *part, BenchChanges *changes);
@@ -55,11 +85,13 @@ SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmErro
  * `back` s the velocities of what carries them are followed so far back (not of given points). */
 void bench_changes_surface(BenchChanges *changes, double back, double (*point)[3]);
 
-bool bench_changes_is_octree(const BenchChanges *changes);
-
-/* Of what carries each vertex of one body: the piece of material, and of an octree the leaf's
- * level, 0 of a base cell; into [surface.vertex_count]. Returns how many pieces there are. */
+/* Of what carries each vertex of one body, into [surface.vertex_count]: the piece of material.
+ * Returns how many there are. */
 long bench_changes_pieces(const BenchChanges *changes, int *piece);
-void bench_changes_levels(const BenchChanges *changes, int *level);
+
+/* For carriers: into changes->node the places of the nodes of all instances, or where their
+ * velocities had them `back` s ago; and the blades moved, by which the cut grows. */
+void bench_changes_nodes(BenchChanges *changes, double back);
+void bench_changes_sweep(BenchChanges *changes, double from, double to, SmCut *cut);
 
 #endif

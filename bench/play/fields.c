@@ -9,7 +9,7 @@ const int bench_field_components[] = {3, 1, 1, 1, 1};
 SmCode bench_fields_check(const BenchPlay *play, BenchFields fields, SmError *error)
 {
     const BenchChanges *changes = play->changes;
-    if ((fields & 1u << BENCH_LEVEL) && !bench_changes_is_octree(changes))
+    if ((fields & 1u << BENCH_LEVEL) && !changes->carrier->levels)
         return sm_fail(error, SM_USAGE,
                        "--fields level is of an octree's leaves: leave it out, or give --engine "
                        "octree");
@@ -91,7 +91,7 @@ static void find_carriers(BenchPlay *play, BenchPointField field, float *value)
         if (field == BENCH_PIECE)
             count = bench_changes_pieces(changes, of);
         else
-            bench_changes_levels(changes, of);
+            changes->carrier->levels(changes, of);
         for (long k = 0; k < changes->part->body.instances; k++, pieces += count)
             for (long v = 0; v < vertices; v++) *value++ = (float)(pieces + of[v]);
         free(of);

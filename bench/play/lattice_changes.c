@@ -1,5 +1,4 @@
-#include "lattice_changes.h"
-
+/* What changes a lattice's body: blades; by particle number. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,8 +6,9 @@
 #include "../../lib/cut/sever.h"
 #include "../../octree/region/fit.h"
 #include "../scene/blades.h"
+#include "changes.h"
 
-void bench_lattice_tie(BenchChanges *changes)
+static void tie(BenchChanges *changes)
 {
     BenchPart *part = changes->part;
     sm_embed_create(&changes->surface, &part->body.voxels, &changes->embedding);
@@ -40,7 +40,10 @@ static void find_gradient(const BenchChanges *changes, long p, double F[9])
     oct_fit_solve(&fit, least, identity, F, L);
 }
 
-SmCarriers bench_lattice_carriers(BenchChanges *changes, const double blade[4][3])
+/* The particles near a blade, which is between two places in this frame (blades.h). Their gradients
+ * are the least-squares fit to the neighbours that no cut parts them from. Valid until the next
+ * call. O(particles) for a look at each. */
+static SmCarriers carriers_near(BenchChanges *changes, const double blade[4][3])
 {
     BenchRunner *runner = &changes->part->runner;
     double cell = changes->part->body.voxels.cell, reach = 3 * cell; /* a cell's middle is 0.87 */
@@ -91,7 +94,9 @@ static void split_surface(BenchChanges *changes, long first)
     changes->left |= result == SM_SLIT_LEFT;
 }
 
-SmCode bench_lattice_cut(BenchChanges *changes, long first, double start, SmError *error)
+/* Cuts the engine's body and the surface by the triangles of changes->cut from number `first` on,
+ * of which there are some; fills changes->last. `start` is when the frame's change began. */
+static SmCode cut_body(BenchChanges *changes, long first, double start, SmError *error)
 {
     const BenchRunner *runner = &changes->part->runner;
     SmCode code = runner->type->cut(runner->engine, &changes->cut, first, error);
@@ -102,3 +107,38 @@ SmCode bench_lattice_cut(BenchChanges *changes, long first, double start, SmErro
         .resampled = true, .resample_seconds = cut - start, .follow_seconds = sm_now() - cut};
     return SM_OK;
 }
+
+static SmCode change_frame(BenchChanges *changes, double from, double to, SmError *error)
+{
+    double start = sm_now();
+    long first = changes->cut.triangles;
+    if (!bench_blades_move(changes->part->runner.scene, from, to)) return SM_OK;
+    bench_changes_sweep(changes, from, to, &changes->cut);
+    if (changes->cut.triangles == first) return SM_OK;
+    return cut_body(changes, first, start, error);
+}
+
+static void move(BenchChanges *changes, long instance, double (*point)[3])
+{
+    const double(*node)[3] = (const double(*)[3])changes->node;
+    sm_embed_apply(&changes->embedding, node + instance * changes->part->runner.count, point, NULL);
+}
+
+/* The corner of the vertex's cell that counts most. */
+static int particle_at(const BenchChanges *changes, long vertex)
+{
+    const float *weight = changes->embedding.weight[vertex];
+    int most = 0;
+    for (int i = 1; i < 8; i++)
+        if (weight[i] > weight[most]) most = i;
+    return changes->embedding.corner[vertex][most];
+}
+
+static void find_pieces(const BenchRunner *runner, SmPieces *pieces)
+{
+    if (runner->type->pieces) runner->type->pieces(runner->engine, pieces);
+}
+
+const BenchCarrier bench_lattice_carrier = {
+    tie, carriers_near, change_frame, move, particle_at, find_pieces, NULL,
+};

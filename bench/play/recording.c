@@ -1,9 +1,8 @@
 #include "recording.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-#include "../../octree/engine.h"
+#include "../engines.h"
 
 static void release(BenchRecording *recording)
 {
@@ -17,11 +16,6 @@ static void release(BenchRecording *recording)
     *recording = (BenchRecording){0};
 }
 
-static bool is_octree(const BenchRunner *runner)
-{
-    return !strcmp(runner->type->name, "octree");
-}
-
 static SmCode check(const BenchPlay *play, const BenchRunner *runner, BenchRecord record,
                     SmError *error)
 {
@@ -29,11 +23,12 @@ static SmCode check(const BenchPlay *play, const BenchRunner *runner, BenchRecor
     if ((double)body->instances * (double)body->mesh.vertex_count > 2e9)
         return sm_fail(error, SM_INPUT, "%s: the surfaces of %ld instances have too many vertices",
                        runner->scene->file, body->instances);
-    if (record == BENCH_RECORD_PARTICLES && is_octree(runner))
+    bool tree = bench_engine(runner->type->name)->structure;
+    if (record == BENCH_RECORD_PARTICLES && tree)
         return sm_fail(error, SM_USAGE,
                        "--record particles stores a lattice, and the octree has none: give "
                        "--record nodes");
-    if (record == BENCH_RECORD_NODES && !is_octree(runner))
+    if (record == BENCH_RECORD_NODES && !tree)
         return sm_fail(error, SM_USAGE,
                        "--record nodes stores an octree, and %s has none: give --record particles, "
                        "or --engine octree",
@@ -75,10 +70,11 @@ SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord recor
     recording->x = sm_alloc(count, sizeof *recording->x);
     recording->v = sm_alloc(count, sizeof *recording->v);
     recording->g = sm_alloc(count, sizeof *recording->g);
-    if (is_octree(runner) && runner->scene->octree.creep > 0)
+    if (runner->type->get_shapes && runner->scene->octree.creep > 0)
         recording->S = sm_alloc(count, sizeof *recording->S);
     SmEngineParams params = bench_engine_params(runner->scene, body, machine->threads);
     SmBoundary boundary = bench_runner_boundary(runner);
+    const BenchEngine *engine = bench_engine(runner->type->name);
     BenchTrajectoryParams wanted = {
         .path = path,
         .surface = &recording->surface,
@@ -87,7 +83,7 @@ SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord recor
         .record = record,
         .fields = fields,
         .voxels = &body->voxels,
-        .structure = is_octree(runner) ? oct_engine_structure(runner->engine) : NULL,
+        .structure = engine->structure ? engine->structure(runner->engine) : NULL,
         .params = &params,
         .mass = body->mass,
         .engine = runner->type->name,

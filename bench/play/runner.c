@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../engines.h"
+
 SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *body, int threads)
 {
     SmEngineParams params = scene->params;
@@ -13,7 +15,8 @@ SmEngineParams bench_engine_params(const BenchScene *scene, const BenchBody *bod
     params.mass = body->mass;
     params.instances = body->instances;
     params.instance_pose = (const double(*)[3][4])body->pose;
-    if (scene->cut_count > 0 && params.strain_limit == 0 && strcmp(scene->engine, "octree") != 0)
+    if (scene->cut_count > 0 && params.strain_limit == 0 &&
+        !bench_engine(scene->engine)->type[0]->refines)
         params.strain_limit = INFINITY; /* it breaks where it is cut */
     return params;
 }
@@ -215,17 +218,16 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
 {
     *runner = (BenchRunner){.type = type, .scene = scene, .body = body};
     SmEngineParams params = bench_engine_params(scene, body, threads);
-    if (scene->octree.creep > 0 && strcmp(type->name, "octree") != 0)
+    if (scene->octree.creep > 0 && !type->get_shapes)
         return sm_fail(error, SM_INPUT,
                        "%s: a plastic body (octree.creep) needs the engine octree, and %s has none",
                        scene->file, type->name);
-    bool octree = !strcmp(type->name, "octree");
-    if ((scene->touch_count > 0 || scene->view.level > 0) && !octree)
+    if ((scene->touch_count > 0 || scene->view.level > 0) && !type->refines)
         return sm_fail(error, SM_INPUT,
                        "%s: 'touches' and 'view' refine octrees, and %s has none: use the engine "
                        "octree",
                        scene->file, type->name);
-    if (scene->cut_count > 0 && !octree && !type->cut)
+    if (scene->cut_count > 0 && !type->refines && !type->cut)
         return sm_fail(error, SM_INPUT,
                        "%s: 'cuts' need the engine fastlsm or octree, and %s has none", scene->file,
                        type->name);

@@ -25,11 +25,6 @@ typedef struct {
     long *push_first; /* [scene->force_count] particles of one body pushed at first */
 } BenchRunner;
 
-/* The engine of this name in "single" or "double" precision; NULL precision: the first that the
- * engine has. SM_USAGE lists what there is. */
-SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
-                         SmError *error);
-
 /* Is x, of the rest state, selected? */
 bool bench_select_has(const BenchSelect *select, const BenchBody *body, const double x[3]);
 

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "../check/check.h"
+#include "../engines.h"
 #include "play.h"
 
 #define BEAM                                                                                       \

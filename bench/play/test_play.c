@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "../check/check.h"
+#include "../engines.h"
 #include "fields.h"
 #include "frames.h"
 

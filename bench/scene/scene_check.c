@@ -1,7 +1,8 @@
 #include "scene_check.h"
 
 #include <math.h>
-#include <string.h>
+
+#include "../engines.h"
 
 static SmCode check_selection(BenchSelect *select, const char *what, int number,
                               const BenchScene *scene, SmError *error)
@@ -58,7 +59,6 @@ static SmCode check_octree(const BenchScene *scene, SmError *error)
 /* Cuts, touches and an eye that would change nothing: mistakes too. */
 static SmCode check_changes(BenchScene *scene, SmError *error)
 {
-    bool octree = !strcmp(scene->engine, "octree");
     for (int i = 0; i < scene->cut_count; i++) {
         BenchCut *cut = &scene->cut[i];
         if (!(cut->stop > cut->start))
@@ -85,7 +85,8 @@ static SmCode check_changes(BenchScene *scene, SmError *error)
     }
     if (scene->view.level > 0 && !(scene->view.near > 0))
         return sm_fail(error, SM_INPUT, "%s: 'view' needs 'near', a distance above 0", scene->file);
-    if ((scene->touch_count > 0 || scene->view.level > 0) && !octree)
+    if ((scene->touch_count > 0 || scene->view.level > 0) &&
+        !bench_engine(scene->engine)->type[0]->refines)
         return sm_fail(error, SM_INPUT,
                        "%s: 'touches' and 'view' refine octrees: give engine = \"octree\", not "
                        "\"%s\"",

@@ -7,6 +7,7 @@
 
 #include "../../octree/engine.h"
 #include "../check/check.h"
+#include "../engines.h"
 #include "../play/play.h"
 
 static SmCode create(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,

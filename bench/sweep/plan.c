@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/engine.h"
 #include "../../lib/system/hash.h"
+#include "../engines.h"
 #include "../scene/body.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchPlan, kind, member)
@@ -27,25 +27,40 @@ const BenchField *bench_plan_fields(int *count)
     return fields;
 }
 
-static bool has(const BenchPlan *plan, const char *engine)
+/* Points of one w and engine. */
+static int points_of(const BenchPlan *plan, const BenchEngine *engine)
 {
-    return !strcmp(plan->engines, "both") || !strcmp(plan->engines, engine);
+    return engine->sampled ? plan->epsilons : 1;
 }
 
 /* Points of one w. */
 static int points_of_w(const BenchPlan *plan)
 {
-    return has(plan, "fastlsm") + (has(plan, "octree") ? plan->epsilons : 0);
+    const BenchEngine *engine;
+    int points = 0;
+    for (int e = 0; (engine = bench_engine_planned(plan->engines, e)); e++)
+        points += points_of(plan, engine);
+    return points;
+}
+
+static SmCode check_w(const BenchPlan *plan, const SmEngineType *type, SmError *error)
+{
+    for (int i = 0; i < plan->ws && type->by_cells; i++)
+        if (plan->w[i] != floor(plan->w[i]) || plan->w[i] > SM_MOST_W)
+            return sm_fail(error, SM_USAGE,
+                           "--w: %g is no half-width of %s, which are whole numbers from 1 to "
+                           "%d; give --engine octree to sweep that alone",
+                           plan->w[i], type->name, SM_MOST_W);
+    return SM_OK;
 }
 
 SmCode bench_plan_count(BenchPlan *plan, SmError *error)
 {
-    for (int i = 0; i < plan->ws && has(plan, "fastlsm"); i++)
-        if (plan->w[i] != floor(plan->w[i]) || plan->w[i] > SM_MOST_W)
-            return sm_fail(error, SM_USAGE,
-                           "--w: %g is no half-width of fastlsm, which are whole numbers from 1 to "
-                           "%d; give --engine octree to sweep that alone",
-                           plan->w[i], SM_MOST_W);
+    const BenchEngine *engine;
+    for (int e = 0; (engine = bench_engine_planned(plan->engines, e)); e++) {
+        SmCode code = check_w(plan, engine->type[0], error);
+        if (code) return code;
+    }
     long points = (long)plan->ws * points_of_w(plan);
     if (points < 1) return sm_fail(error, SM_USAGE, "no points: no engine '%.11s'", plan->engines);
     if (points > BENCH_PLAN_POINTS)
@@ -69,11 +84,15 @@ void bench_plan_point(const BenchPlan *plan, int index, BenchPoint *point)
     int each = points_of_w(plan);
     assert(each > 0); /* bench_plan_count() has seen to it */
     int rest = index % each;
-    bool lattice = has(plan, "fastlsm") && rest == 0;
+    const BenchEngine *engine = bench_engine_planned(plan->engines, 0);
+    for (int e = 1; rest >= points_of(plan, engine); e++) {
+        rest -= points_of(plan, engine);
+        engine = bench_engine_planned(plan->engines, e);
+    }
     point->index = index;
     point->w = plan->w[index / each];
-    point->epsilon = lattice ? 0 : plan->epsilon[rest - has(plan, "fastlsm")];
-    snprintf(point->engine, sizeof point->engine, "%s", lattice ? "fastlsm" : "octree");
+    point->epsilon = engine->sampled ? plan->epsilon[rest] : 0;
+    snprintf(point->engine, sizeof point->engine, "%s", engine->type[0]->name);
 }
 
 static void say_numbers(const char *name, const double *mine, int my_count, const double *theirs,

@@ -14,7 +14,7 @@ typedef struct {
         file[1024]; /* the scene's name or file as given; empty: that of a mesh alone. Not stored */
     char scene[64]; /* its name */
     char mesh[1024];    /* of the user; empty: the scene's */
-    char engines[12];   /* "both", "fastlsm", "octree" */
+    char engines[12];   /* "both", or the one engine */
     char precision[12]; /* of what is timed */
     char width[12];     /* an octree's w: "edges" of each node's own cell, or finest "cells" */
     char
@@ -41,7 +41,7 @@ SmCode bench_plan_count(BenchPlan *plan, SmError *error);
 /* Is the body a mesh alone, dropped on the ground, rather than in the place of a scene's? */
 bool bench_plan_alone(const BenchPlan *plan);
 
-/* Engine, w and epsilon of a point: of every w in turn fastlsm, then the octree's epsilons. */
+/* Engine, w and epsilon of a point: of every w in turn all engines, of sampled ones all epsilons. */
 void bench_plan_point(const BenchPlan *plan, int index, BenchPoint *point);
 
 /* Is `theirs` the same as `mine`? If not, `what` says in what they differ first. */

@@ -11,7 +11,7 @@ enum { BENCH_POINT_SAMPLES = 64, BENCH_WHY = 120 };
 /* Quantities that could not be had are NaN, and the text beside them says why. */
 typedef struct {
     int index;          /* in the plan, from 0 */
-    char engine[12];    /* "fastlsm" or "octree" */
+    char engine[12];    /* a planned one (engines.h) */
     double w, epsilon;  /* of a lattice epsilon is 0 */
     bool valid;         /* all checks against brute force passed; otherwise all times are NaN */
     char reason[160];   /* why not; of a valid one: why it is BUSY, and has no times */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "../cli/quote.h"
-#include "../scene/scene.h"
+#include "../engines.h"
 #include "../table/grid.h"
 #include "front.h"
 
@@ -138,7 +138,7 @@ void bench_recommend_command(const BenchPlan *plan, const BenchPoint *point, siz
     bench_quote(alone ? plan->mesh : plan->file[0] ? plan->file : file, sizeof body, body);
     snprintf(mesh, sizeof mesh, "%s=%s", plan->scene, plan->mesh);
     bench_quote(mesh, sizeof word, word);
-    bool tree = !strcmp(point->engine, "octree"), cells = !strcmp(plan->width, "cells");
+    bool tree = bench_engine(point->engine)->sampled, cells = !strcmp(plan->width, "cells");
     if (tree)
         snprintf(epsilon, sizeof epsilon, "%s --epsilon %g", cells ? " --width cells" : "",
                  point->epsilon);
@@ -191,7 +191,7 @@ static void say_alike(FILE *file, const Choice *c)
 static void say_point(FILE *file, const BenchPlan *plan, const Choice *c, const BenchPoint *p)
 {
     char ms[BENCH_GRID_TEXT], command[3 * WORD];
-    bool tree = !strcmp(p->engine, "octree"), cells = !strcmp(plan->width, "cells");
+    bool tree = bench_engine(p->engine)->sampled, cells = !strcmp(plan->width, "cells");
     bench_grid_number(p->total_ms, ms);
     fprintf(file, "%s: ", c->engine);
     say_wish(file, c);
@@ -272,10 +272,9 @@ static void say_apart(FILE *file, const Choice *c)
 void bench_recommend(FILE *file, const BenchPlan *plan, const BenchPoint *point, long count,
                      const BenchWish *wish)
 {
-    static const char *const engines[] = {"fastlsm", "octree"};
-    for (int e = 0; e < 2; e++) {
-        if (strcmp(plan->engines, "both") != 0 && strcmp(plan->engines, engines[e]) != 0) continue;
-        Choice c = choose(point, count, engines[e], wish);
+    const BenchEngine *engine;
+    for (int e = 0; (engine = bench_engine_planned(plan->engines, e)); e++) {
+        Choice c = choose(point, count, engine->type[0]->name, wish);
         const BenchPoint *best = best_of(&c);
         if (!best) {
             say_none(file, &c);
@@ -283,7 +282,7 @@ void bench_recommend(FILE *file, const BenchPlan *plan, const BenchPoint *point,
         }
         say_point(file, plan, &c, best);
         say_alike(file, &c);
-        if (e) say_bought(file, &c);
+        if (engine->sampled) say_bought(file, &c);
         say_apart(file, &c);
     }
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "../engines.h"
 #include "../table/export.h"
 #include "../table/grid.h"
 
@@ -52,7 +53,7 @@ static void add_columns(BenchGrid *grid, const char *width)
 static void add_line(BenchGrid *grid, const BenchPoint *p)
 {
     BenchGridLine *line = bench_grid_add(grid);
-    bool tree = !strcmp(p->engine, "octree");
+    bool tree = bench_engine(p->engine)->sampled;
     int c = 0;
     strcpy((*line)[c++], p->engine);
     snprintf((*line)[c++], BENCH_GRID_TEXT, "%g", p->w);

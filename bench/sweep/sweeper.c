@@ -10,6 +10,7 @@
 #include "../../lib/system/hash.h"
 #include "../calibrate/beam.h"
 #include "../check/check.h"
+#include "../engines.h"
 #include "../measure/measure.h"
 
 /* Of a lattice's regions, where all were cubes: about half a minute of building. */
@@ -104,16 +105,7 @@ static BenchScene make_scene(const BenchSweeper *sweeper, const char *engine, do
 {
     BenchScene scene = sweeper->scene;
     snprintf(scene.engine, sizeof scene.engine, "%s", engine);
-    if (strcmp(engine, "octree") != 0) {
-        scene.params.w = (int)w;
-        return scene;
-    }
-    scene.params.summation = SM_SUM_FAST; /* it has only one way */
-    scene.params.polar = SM_POLAR_FAST;
-    scene.params.layout = SM_LAYOUT_AUTO;
-    bool edges = !strcmp(width, "edges");
-    scene.octree.width = edges ? (OctWidth){.edges = w} : (OctWidth){.cells = w};
-    scene.octree.epsilon = epsilon;
+    bench_engine(engine)->set_width(&scene, w, epsilon, strcmp(width, "edges") != 0);
     return scene;
 }
 
@@ -255,7 +247,7 @@ void bench_sweeper_measure(BenchSweeper *sweeper, const BenchPlan *plan, int ind
     double start = sm_now();
     *point = bench_point_none();
     bench_plan_point(plan, index, point);
-    bool tree = !strcmp(point->engine, "octree");
+    bool tree = bench_engine(point->engine)->sampled;
     int used = snprintf(what, sizeof what, "%s w %g", point->engine, point->w);
     if (tree) snprintf(what + used, sizeof what - (size_t)used, " eps %g", point->epsilon);
     bench_progress_show(progress, what, (double)index / plan->points);

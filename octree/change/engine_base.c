@@ -17,12 +17,6 @@ const int *oct_engine_leaves(SmEngine *engine)
     return ((OctEngineBase *)engine)->leaves(engine);
 }
 
-SmCode oct_engine_rebuild(SmEngine *engine, const SmEngineParams *params, SmEngine **copy,
-                          long *order, SmError *error)
-{
-    return ((OctEngineBase *)engine)->rebuild(engine, params, copy, order, error);
-}
-
 const OctStructure *oct_engine_structure(const SmEngine *engine)
 {
     return &((const OctEngineBase *)engine)->structure;

@@ -32,13 +32,6 @@ const OctStructure *oct_engine_structure(const SmEngine *engine);
 SmCode oct_engine_begin(SmEngine *engine, OctStructure **structure, SmError *error);
 const OctChange *oct_engine_end(SmEngine *engine);
 
-/* An engine at rest on a structure built from scratch of the same cells and cut (structure.h): what
- * a changed engine must equal. Its particle p is particle order[p] of `engine`; `order` is
- * [particles]. `params` are those of the first create(), but may differ in what the structure does
- * not depend on. Errors (SM_USAGE): several bodies share the engine. */
-SmCode oct_engine_rebuild(SmEngine *engine, const SmEngineParams *params, SmEngine **copy,
-                          long *order, SmError *error);
-
 /* Leaf number of every particle of one body, rising. Valid until the next change. */
 const int *oct_engine_leaves(SmEngine *engine);
 
@@ -48,8 +41,6 @@ typedef struct {
     SmCode (*begin)(SmEngine *engine, SmError *error);
     const OctChange *(*end)(SmEngine *engine);
     const int *(*leaves)(SmEngine *engine);
-    SmCode (*rebuild)(SmEngine *engine, const SmEngineParams *params, SmEngine **copy, long *order,
-                      SmError *error);
 } OctEngineBase;
 
 #endif

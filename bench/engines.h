@@ -1,0 +1,58 @@
+/* engines.h - the engines that there are, and what each says of itself to commands, checks and
+ * tables: nothing else asks for an engine's name.
+ *
+ * A new engine is its folder and a line of bench/engine_list.c. What a program that links the
+ * library needs to know of an engine stands in its SmEngineType (lib/engine.h), the rest here. */
+#ifndef BENCH_ENGINES_H
+#define BENCH_ENGINES_H
+
+#include "check/check.h"
+#include "play/changes.h"
+
+enum { BENCH_MOST_PLANNED = 4 };
+
+typedef struct {
+    const SmEngineType *type[2]; /* one a precision, the default first; NULL: there is no other */
+
+    /* Its regions are as wide as w edges of each node's own cell, or w finest cells, and may be
+     * wider by the share epsilon (octree section 4). Otherwise w is a whole number of cells. */
+    bool sampled;
+    bool elastic;   /* its parameters are the scene's group meshless */
+    bool planned;   /* sweep and calibrate plan points of it, by set_width() */
+    bool yardstick; /* what others' speed is set beside (bench_row_measures()) */
+
+    /* The scene's w and epsilon; `cells`: of a sampled engine w is in finest cells, else in edges.
+     * Only of planned engines. */
+    void (*set_width)(BenchScene *scene, double w, double epsilon, bool cells);
+
+    const BenchCarrier *carrier;                              /* of the surface */
+    const OctStructure *(*structure)(const SmEngine *engine); /* its tree, to record; NULL: none */
+
+    const BenchTwin *twin; /* of its goals; NULL: they are not those of shape matching */
+
+    /* What `run` says of it; NULL: its particles, regions and w. */
+    void (*describe)(const BenchRunner *runner, const SmCounts *counts);
+
+    /* Bytes that the engine takes for so many particles of the scene, about. */
+    double (*room)(const BenchScene *scene, double particles);
+} BenchEngine;
+
+extern const BenchEngine bench_fastlsm, bench_octree, bench_brute, bench_meshless;
+
+/* All engines, NULL at the end, in the order in which they are named and planned. */
+extern const BenchEngine *const bench_engine_list[];
+
+/* The engine of this name; one without a name, of which nothing is true, if there is none. */
+const BenchEngine *bench_engine(const char *name);
+
+/* Its type in "single" or "double" precision; NULL precision: the first that the engine has.
+ * SM_USAGE lists what there is. */
+SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
+                         SmError *error);
+
+/* Planned engine number i of those that a plan's word stands for, "both" or one's name; NULL behind
+ * the last. And the words, NULL-terminated. */
+const BenchEngine *bench_engine_planned(const char *engines, int i);
+const char *const *bench_engine_choices(void);
+
+#endif
