@@ -139,48 +139,29 @@ static void write_text(FILE *file, const BenchCalibration *calibration, const Be
     write_reasons(file, calibration);
 }
 
-/* A member that is an array of numbers becomes columns NAME_1, NAME_2, ... */
-static void csv_cell(FILE *file, const BenchField *field, const char *value)
-{
-    size_t many = field->kind == BENCH_DOUBLE ? field->size / sizeof(double) : 1;
-    for (size_t i = 0; i < many; i++) {
-        if (i) fputc(',', file);
-        if (value)
-            bench_csv_value(file, field, value + i * sizeof(double));
-        else if (many > 1)
-            fprintf(file, "%s_%zu", field->name, i + 1);
-        else
-            fputs(field->name, file);
-    }
-}
-
 static void write_csv(FILE *file, const BenchCalibration *calibration)
 {
     int count;
     const BenchField *fields = bench_specimen_fields(&count);
-    for (long i = -1; i < calibration->count; i++)
-        for (int f = 0; f < count; f++) {
-            const char *specimen = i < 0 ? NULL : (const char *)&calibration->specimen[i];
-            csv_cell(file, &fields[f], specimen ? specimen + fields[f].offset : NULL);
-            fputc(f < count - 1 ? ',' : '\n', file);
-        }
+    bench_csv_records(file, fields, count, calibration->specimen, sizeof *calibration->specimen,
+                      calibration->count);
 }
 
 static void write_json(FILE *file, const BenchCalibration *calibration)
 {
     int count;
+    json_t *root = json_object(), *found = json_array();
     const BenchField *fields = bench_specimen_fields(&count);
-    json_t *root = json_object(), *list = json_array(), *laws = json_array(), *found = json_array();
-    for (long i = 0; i < calibration->count; i++)
-        json_array_append_new(list, bench_json_record(fields, count, &calibration->specimen[i]));
+    json_object_set_new(root, "specimens",
+                        bench_json_records(fields, count, calibration->specimen,
+                                           sizeof *calibration->specimen, calibration->count));
     fields = bench_law_fields(&count);
-    for (int i = 0; i < calibration->laws; i++)
-        json_array_append_new(laws, bench_json_record(fields, count, &calibration->law[i]));
+    json_object_set_new(root, "laws",
+                        bench_json_records(fields, count, calibration->law,
+                                           sizeof *calibration->law, calibration->laws));
     for (int i = 0; i < BENCH_FOUND; i++)
         json_array_append_new(found, bench_json_text(calibration->found[i]));
     fields = bench_calibration_fields(&count);
-    json_object_set_new(root, "specimens", list);
-    json_object_set_new(root, "laws", laws);
     json_object_set_new(root, "found", found);
     json_object_set_new(root, "plan", bench_json_record(fields, count, &calibration->plan));
     json_object_set_new(root, "environment", bench_json_machine(&calibration->machine));

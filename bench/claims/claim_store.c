@@ -51,7 +51,7 @@ typedef struct {
 
 #define CURVE_FIELD(kind, name, member)                                                            \
     {                                                                                              \
-        name, kind, offsetof(StoredCurve, member), sizeof((StoredCurve *)0)->member                \
+        BENCH_FIELD_AS(StoredCurve, kind, member, name)                                            \
     }
 
 static const BenchField curve_fields[] = {

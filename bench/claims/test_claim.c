@@ -262,7 +262,7 @@ static void has_text(BenchH5 *h5, hid_t object, const char *name, const char *wa
 static void has_number(BenchH5 *h5, hid_t object, const char *name, int wanted)
 {
     int number = 0;
-    const BenchField field = {name, BENCH_INT, 0, sizeof number};
+    const BenchField field = BENCH_VARIABLE(name, BENCH_INT, number);
     bench_h5_read_fields(h5, object, &field, 1, &number);
     if (h5->failed) fail_msg("%s: %s", name, h5->message);
     assert_int_equal(number, wanted);
@@ -272,7 +272,7 @@ static void has_number(BenchH5 *h5, hid_t object, const char *name, int wanted)
 static double number_of(BenchH5 *h5, hid_t claim, const char *name, int value)
 {
     double numbers[BENCH_CLAIM_VALUES];
-    const BenchField field = {name, BENCH_DOUBLE, 0, sizeof numbers};
+    const BenchField field = BENCH_VARIABLE(name, BENCH_DOUBLE, numbers);
     bench_h5_read_fields(h5, claim, &field, 1, numbers);
     if (h5->failed) fail_msg("%s: %s", name, h5->message);
     return numbers[value];
@@ -294,8 +294,8 @@ static void open_stored(BenchH5 *h5)
 static void kinds_are_stored(BenchH5 *h5)
 {
     double ratio[3], unset;
-    const BenchField fields[] = {{"ratio", BENCH_DOUBLE, 0, sizeof ratio},
-                                 {"unset", BENCH_DOUBLE, 0, sizeof unset}};
+    const BenchField fields[] = {BENCH_VARIABLE("ratio", BENCH_DOUBLE, ratio),
+                                 BENCH_VARIABLE("unset", BENCH_DOUBLE, unset)};
     hid_t claim = bench_h5_find_group(h5, h5->file, "claims/002");
     has_text(h5, claim, "kind", "machine");
     has_text(h5, claim, "verdict", "measured");

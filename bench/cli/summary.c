@@ -7,7 +7,7 @@
 #include "../check/check.h"
 #include "../engines.h"
 #include "../measure/tree_row.h"
-#include "../play/change_grid.h"
+#include "../table/explain.h"
 
 /* Prints the last state's deviation from brute force; false: beyond the tolerance. */
 static bool print_deviation(const BenchRunner *runner)

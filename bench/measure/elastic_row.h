@@ -2,7 +2,6 @@
 #ifndef BENCH_ELASTIC_ROW_H
 #define BENCH_ELASTIC_ROW_H
 
-#include "../table/grid.h"
 #include "measure.h"
 
 /* As bench_measure(), whose part it is: what is timed is a frame as elastic.h has it, what is
@@ -12,11 +11,6 @@ SmCode bench_elastic_measure(const BenchScene *scene, const BenchBody *body,
 
 /* Whether the row is a meshless body's. */
 bool bench_row_of_elastic(const BenchRow *row);
-
-/* As bench_step_columns() and bench_step_lines() (step_grid.h). */
-void bench_elastic_columns(const BenchRow *rows, int count, BenchGridForm form, BenchGrid *grid);
-void bench_elastic_lines(const BenchRow *rows, int count, int r, BenchGridForm form,
-                         BenchGrid *grid);
 
 /* What the body is made of, behind the line of its check. */
 void bench_elastic_row_text(FILE *file, const BenchRow *row);

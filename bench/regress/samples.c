@@ -106,7 +106,7 @@ static void read_file(BenchH5 *h5, void *record)
 {
     File *file = record;
     int stored = 0, fields;
-    const BenchField field = {"rows", BENCH_INT, 0, sizeof stored};
+    const BenchField field = BENCH_VARIABLE("rows", BENCH_INT, stored);
     const BenchField *machine_fields = bench_machine_fields(&fields);
     bench_store_check_kind(h5, 1);
     bench_h5_read_fields(h5, h5->file, &field, 1, &stored);

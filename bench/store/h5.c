@@ -118,30 +118,35 @@ void bench_h5_text(BenchH5 *h5, hid_t object, const char *name, const char *text
     H5Tclose(type);
 }
 
-/* The type in the file of a field's numbers, and how many fit its member. */
-static hid_t number_type(const BenchField *field, int *count)
+int bench_h5_types(const BenchField *field, hid_t *file, hid_t *memory)
 {
-    size_t unit = sizeof(double);
-    hid_t type = H5T_IEEE_F64LE;
+    hid_t stored = H5T_IEEE_F64LE, native = H5T_NATIVE_DOUBLE;
     switch (field->kind) {
     case BENCH_INT:
-        type = H5T_STD_I32LE, unit = sizeof(int);
+        stored = H5T_STD_I32LE, native = H5T_NATIVE_INT;
         break;
     case BENCH_LONG:
-        type = H5T_STD_I64LE, unit = sizeof(long);
+        stored = H5T_STD_I64LE, native = H5T_NATIVE_LONG;
         break;
     case BENCH_BOOL:
-        type = H5T_STD_U8LE, unit = sizeof(bool);
+        stored = H5T_STD_U8LE, native = H5T_NATIVE_UINT8;
         break;
     case BENCH_HASH:
-        type = H5T_STD_U64LE, unit = sizeof(unsigned long long);
+        stored = H5T_STD_U64LE, native = H5T_NATIVE_ULLONG;
+        break;
+    case BENCH_TEXT:
+        stored = native = H5T_C_S1;
         break;
     case BENCH_DOUBLE:
-    case BENCH_TEXT:
         break;
     }
-    *count = (int)(field->size / unit);
-    return type;
+    *file = H5Tcopy(stored);
+    *memory = H5Tcopy(native);
+    for (int t = 0; t < 2 && field->kind == BENCH_TEXT; t++) {
+        H5Tset_size(t ? *memory : *file, field->size);
+        H5Tset_cset(t ? *memory : *file, H5T_CSET_UTF8);
+    }
+    return (int)(field->size / H5Tget_size(*memory));
 }
 
 void bench_h5_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
@@ -149,13 +154,16 @@ void bench_h5_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int co
 {
     for (int i = 0; i < count && !h5->failed; i++) {
         const char *value = (const char *)record + fields[i].offset;
+        if (!fields[i].name) continue;
         if (fields[i].kind == BENCH_TEXT) {
             bench_h5_text(h5, object, fields[i].name, value);
             continue;
         }
-        int numbers;
-        hid_t type = number_type(&fields[i], &numbers);
+        hid_t type, memory;
+        int numbers = bench_h5_types(&fields[i], &type, &memory);
         bench_h5_numbers(h5, object, fields[i].name, type, numbers == 1 ? 0 : numbers, value);
+        H5Tclose(type);
+        H5Tclose(memory);
     }
 }
 

@@ -10,6 +10,7 @@
 #include <stddef.h>
 
 #include "../../lib/error.h"
+#include "field.h"
 
 /* Attribute of every file that ends in its checksum (checksum.h). */
 #define BENCH_H5_CHECKSUM "checksum"
@@ -22,28 +23,6 @@ typedef struct {
     hsize_t found;     /* bytes of datasets so far */
     char message[256]; /* what failed */
 } BenchH5;
-
-/* A member of a C record that is stored as an attribute of its own. Arrays of numbers become
- * one-dimensional; texts are fixed-length UTF-8. */
-typedef enum {
-    BENCH_TEXT,   /* char[] */
-    BENCH_INT,    /* int */
-    BENCH_LONG,   /* long */
-    BENCH_BOOL,   /* bool, stored as 0 or 1 in 8 bits */
-    BENCH_HASH,   /* unsigned long long */
-    BENCH_DOUBLE, /* double */
-} BenchKind;
-
-typedef struct {
-    const char *name;
-    BenchKind kind;
-    size_t offset, size; /* in the record, bytes */
-} BenchField;
-
-#define BENCH_FIELD(record, kind, member)                                                          \
-    {                                                                                              \
-#member, kind, offsetof(record, member), sizeof(((record *)0)->member)                     \
-    }
 
 /* Creates (replacing an empty draft) or opens a file. After create `h5` must not move. */
 void bench_h5_create(BenchH5 *h5, const char *path);
@@ -61,8 +40,13 @@ hid_t bench_h5_group(BenchH5 *h5, hid_t parent, const char *name);
 void bench_h5_numbers(BenchH5 *h5, hid_t object, const char *name, hid_t type, int count,
                       const void *values); /* attribute; count 0: a scalar */
 void bench_h5_text(BenchH5 *h5, hid_t object, const char *name, const char *text);
+/* The members of a record as attributes: arrays of numbers become one-dimensional, texts
+ * fixed-length UTF-8; what has no name is left out. */
 void bench_h5_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
                      const void *record);
+/* The type of one of a field's values in the file and in memory, of a text its own; returns how
+ * many values it has. The caller closes both. */
+int bench_h5_types(const BenchField *field, hid_t *file, hid_t *memory);
 void bench_h5_dataset(BenchH5 *h5, hid_t parent, const char *name, hid_t type, int rank,
                       const hsize_t *size, const void *values);
 

@@ -54,40 +54,20 @@ void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size
     if (attribute >= 0) H5Aclose(attribute);
 }
 
-static hid_t memory_type(BenchKind kind, size_t *unit)
-{
-    switch (kind) {
-    case BENCH_INT:
-        *unit = sizeof(int);
-        return H5T_NATIVE_INT;
-    case BENCH_LONG:
-        *unit = sizeof(long);
-        return H5T_NATIVE_LONG;
-    case BENCH_BOOL:
-        *unit = sizeof(bool);
-        return H5T_NATIVE_UINT8;
-    case BENCH_HASH:
-        *unit = sizeof(unsigned long long);
-        return H5T_NATIVE_ULLONG;
-    default:
-        *unit = sizeof(double);
-        return H5T_NATIVE_DOUBLE;
-    }
-}
-
 static void read_numbers(BenchH5 *h5, hid_t object, const BenchField *field, void *value)
 {
-    size_t unit;
-    hid_t type = memory_type(field->kind, &unit);
-    hid_t attribute =
-        open_attribute(h5, object, field->name, field->kind, (int)(field->size / unit));
-    if (!h5->failed && H5Aread(attribute, type, value) < 0)
+    hid_t file, memory;
+    int count = bench_h5_types(field, &file, &memory);
+    hid_t attribute = open_attribute(h5, object, field->name, field->kind, count);
+    if (!h5->failed && H5Aread(attribute, memory, value) < 0)
         bench_h5_fail(h5, "attribute '%s' cannot be read", field->name);
     if (!h5->failed && field->kind == BENCH_BOOL) {
         unsigned char *flag = value; /* any other byte is no bool */
         *flag = *flag != 0;
     }
     if (attribute >= 0) H5Aclose(attribute);
+    H5Tclose(file);
+    H5Tclose(memory);
 }
 
 void bench_h5_read_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
@@ -95,6 +75,7 @@ void bench_h5_read_fields(BenchH5 *h5, hid_t object, const BenchField *fields, i
 {
     for (int i = 0; i < count && !h5->failed; i++) {
         char *value = (char *)record + fields[i].offset;
+        if (!fields[i].name) continue;
         if (fields[i].kind == BENCH_TEXT)
             bench_h5_read_text(h5, object, fields[i].name, fields[i].size, value);
         else
@@ -164,7 +145,7 @@ void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest)
 {
     char found[64] = "";
     int number = 0;
-    const BenchField field = {"schema", BENCH_INT, 0, sizeof number};
+    const BenchField field = BENCH_VARIABLE("schema", BENCH_INT, number);
     bench_h5_read_text(h5, h5->file, "kind", sizeof found, found);
     if (h5->failed || strcmp(found, kind) != 0) {
         snprintf(h5->message, sizeof h5->message, "it is HDF5, but not a %s file", kind);

@@ -4,113 +4,9 @@
 #include <string.h>
 
 #include "../../reference/paper.h"
-
-#define FIELD(kind, member) BENCH_FIELD(BenchRow, kind, member)
-#define COUNT(array)        ((int)(sizeof(array) / sizeof((array)[0])))
+#include "../table/quantity.h"
 
 static const char file_kind[] = "shapebench results";
-
-static const BenchField row_fields[] = {
-    FIELD(BENCH_TEXT, paper),
-    FIELD(BENCH_TEXT, paper_row),
-    FIELD(BENCH_TEXT, scene),
-    FIELD(BENCH_TEXT, engine),
-    FIELD(BENCH_TEXT, precision),
-    FIELD(BENCH_TEXT, polar),
-    FIELD(BENCH_TEXT, summation),
-    FIELD(BENCH_LONG, triangles),
-    FIELD(BENCH_LONG, particles),
-    FIELD(BENCH_LONG, regions),
-    FIELD(BENCH_LONG, instances),
-    FIELD(BENCH_INT, w),
-    FIELD(BENCH_INT, steps),
-    FIELD(BENCH_DOUBLE, epsilon),
-    FIELD(BENCH_DOUBLE, h),
-    FIELD(BENCH_DOUBLE, cell),
-    FIELD(BENCH_DOUBLE, damping),
-    FIELD(BENCH_INT, threads),
-    FIELD(BENCH_BOOL, valid),
-    FIELD(BENCH_BOOL, busy),
-    FIELD(BENCH_DOUBLE, lost_percent),
-    FIELD(BENCH_DOUBLE, load),
-    FIELD(BENCH_TEXT, reason),
-    FIELD(BENCH_TEXT, found),
-    FIELD(BENCH_DOUBLE, goal_error),
-    FIELD(BENCH_DOUBLE, momentum_error),
-    FIELD(BENCH_DOUBLE, drift),
-    FIELD(BENCH_DOUBLE, twist),
-    FIELD(BENCH_LONG, drift_steps),
-    FIELD(BENCH_LONG, left_out),
-    FIELD(BENCH_DOUBLE, goal_tolerance),
-    FIELD(BENCH_INT, repeats),
-    FIELD(BENCH_DOUBLE, stage_ms),
-    FIELD(BENCH_DOUBLE, total_ms),
-    FIELD(BENCH_DOUBLE, total_low_ms),
-    FIELD(BENCH_DOUBLE, total_high_ms),
-    FIELD(BENCH_DOUBLE, instruments_percent),
-    FIELD(BENCH_DOUBLE, ns_per_particle_step),
-    FIELD(BENCH_DOUBLE, voxelise_seconds),
-    FIELD(BENCH_DOUBLE, build_seconds),
-    FIELD(BENCH_LONG, bytes),
-    FIELD(BENCH_DOUBLE, fps),
-    FIELD(BENCH_DOUBLE, speedup),
-    FIELD(BENCH_DOUBLE, summation_nodes),
-    FIELD(BENCH_DOUBLE, width_cells),
-    FIELD(BENCH_DOUBLE, width_edges),
-    FIELD(BENCH_DOUBLE, wanted_summation),
-    FIELD(BENCH_LONG, most_summation),
-    FIELD(BENCH_LONG, bases),
-    FIELD(BENCH_LONG, cells),
-    FIELD(BENCH_LONG, parts),
-    FIELD(BENCH_DOUBLE, reached),
-    FIELD(BENCH_DOUBLE, most_reached),
-    FIELD(BENCH_LONG, wanted_nodes),
-    FIELD(BENCH_LONG, wanted_bases),
-    FIELD(BENCH_LONG, local_nodes),
-    FIELD(BENCH_LONG, welded_cells),
-    FIELD(BENCH_LONG, welded_pairs),
-    FIELD(BENCH_LONG, splits),
-    FIELD(BENCH_LONG, balance_splits),
-    FIELD(BENCH_LONG, unasked_splits),
-    FIELD(BENCH_BOOL, plain),
-    FIELD(BENCH_INT, masses),
-    FIELD(BENCH_INT, symmetry),
-    FIELD(BENCH_DOUBLE, paper_total_ms),
-    FIELD(BENCH_DOUBLE, paper_stage_ms),
-    FIELD(BENCH_LONG, change.frames),
-    FIELD(BENCH_LONG, change.changed),
-    FIELD(BENCH_LONG, change.first_nodes),
-    FIELD(BENCH_LONG, change.most_nodes),
-    FIELD(BENCH_LONG, change.last_nodes),
-    FIELD(BENCH_LONG, change.most_added),
-    FIELD(BENCH_DOUBLE, change.first_ms),
-    FIELD(BENCH_DOUBLE, change.last_ms),
-    FIELD(BENCH_DOUBLE, change.change_ms),
-    FIELD(BENCH_DOUBLE, change.change_most_ms),
-    FIELD(BENCH_DOUBLE, change.follow_ms),
-    FIELD(BENCH_DOUBLE, change.surface_ms),
-    FIELD(BENCH_LONG, change.first_triangles),
-    FIELD(BENCH_LONG, change.last_triangles),
-    FIELD(BENCH_LONG, change.pieces),
-    FIELD(BENCH_LONG, change.open_edges),
-    FIELD(BENCH_LONG, change.left),
-    FIELD(BENCH_HASH, input_hash),
-};
-
-/* In the group `elastic` of a row that has one. */
-#define ELASTIC(kind, member) BENCH_FIELD(BenchElasticRow, kind, member)
-static const BenchField elastic_fields[] = {
-    ELASTIC(BENCH_LONG, nodes),           ELASTIC(BENCH_LONG, modes),
-    ELASTIC(BENCH_DOUBLE, field_seconds), ELASTIC(BENCH_DOUBLE, matrix_seconds),
-    ELASTIC(BENCH_DOUBLE, mode_seconds),  ELASTIC(BENCH_DOUBLE, skin_seconds),
-    ELASTIC(BENCH_DOUBLE, found),
-};
-
-const BenchField *bench_row_fields(int *count)
-{
-    *count = COUNT(row_fields);
-    return row_fields;
-}
 
 void bench_store_stages(size_t size, char *names)
 {
@@ -139,13 +35,20 @@ static void write_paper(BenchH5 *h5, hid_t group, const BenchRow *row)
     bench_h5_numbers(h5, group, "paper_particles", H5T_IEEE_F64LE, 0, &paper->particles.value);
 }
 
+static void write_quantities(BenchH5 *h5, hid_t group, const BenchRow *row, bool elastic)
+{
+    for (int q = 0; q < bench_quantity_count; q++)
+        if (bench_quantities[q].elastic == elastic)
+            bench_h5_fields(h5, group, &bench_quantities[q].field, 1, row);
+}
+
 void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
 {
     char name[16], stages[128];
     snprintf(name, sizeof name, "%03d", index);
     bench_store_stages(sizeof stages, stages);
     hid_t group = bench_h5_group(h5, parent, name);
-    bench_h5_fields(h5, group, row_fields, COUNT(row_fields), row);
+    write_quantities(h5, group, row, false);
     bench_h5_text(h5, group, "stages", stages);
     write_paper(h5, group, row);
     hsize_t size[] = {(hsize_t)row->repeats, SM_STAGES};
@@ -156,7 +59,7 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
         bench_h5_dataset(h5, group, "frames", H5T_IEEE_F64LE, 2, frames, row->change.time);
     if (row->elastic.nodes) {
         hid_t elastic = bench_h5_group(h5, group, "elastic");
-        bench_h5_fields(h5, elastic, elastic_fields, COUNT(elastic_fields), &row->elastic);
+        write_quantities(h5, elastic, row, true);
         if (elastic >= 0) H5Gclose(elastic);
     }
     if (group >= 0) H5Gclose(group);

@@ -4,6 +4,7 @@
 
 #include "../measure/machine.h"
 #include "../measure/row.h"
+#include "h5.h"
 
 /* The layout written; raised with every change that a reader must know of. */
 enum { BENCH_STORE_SCHEMA = 4 };
@@ -18,9 +19,6 @@ void bench_store_stages(size_t size, char *names);
 
 /* One row, as group `index` of `parent`, in a file that holds other things too. */
 void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row);
-
-/* What of a row is stored as attributes: all but the samples, which are datasets. */
-const BenchField *bench_row_fields(int *count);
 
 /* Fails unless the open file says that it is a results file, of a schema from `oldest` to ours. */
 void bench_store_check_kind(BenchH5 *h5, int oldest);

@@ -16,6 +16,7 @@
 
 #include "../../lib/test_folder.h"
 #include "../measure/measure.h"
+#include "../table/quantity.h"
 #include "store.h"
 
 enum { ROWS = 2, FRAMES = 7, REPEATS = 7 };
@@ -53,11 +54,12 @@ static void fill_samples(BenchRow *row, int seed)
 
 static void fill_row(BenchRow *row, int seed)
 {
-    int count;
-    const BenchField *fields = bench_row_fields(&count);
     memset(row, 0, sizeof *row); /* its padding, too */
-    for (int f = 0; f < count; f++)
-        fill_field(&fields[f], 1 + f + seed * count, (char *)row + fields[f].offset);
+    for (int q = 0; q < bench_quantity_count; q++) {
+        const BenchField *field = &bench_quantities[q].field;
+        if (field->name && !bench_quantities[q].elastic)
+            fill_field(field, 1 + q + seed * bench_quantity_count, (char *)row + field->offset);
+    }
     row->repeats = REPEATS;
     row->change.frames = seed % 2 ? FRAMES : 0;
     row->paper_stage_ms[3] = NAN;
@@ -65,17 +67,15 @@ static void fill_row(BenchRow *row, int seed)
     fill_samples(row, seed);
 }
 
-/* A member of BenchRow that is new is to be stored (store.c) and described (results/README.md). */
+/* A member of BenchRow that is new is to be a quantity (quantity.c). */
 static void every_member_is_stored(void **state)
 {
     (void)state;
     enum { PADDING = 17 }; /* between members */
     const BenchRow *row = NULL;
-    int count;
-    const BenchField *fields = bench_row_fields(&count);
     size_t size = sizeof row->total + sizeof row->stage + sizeof row->change.time + PADDING;
-    for (int f = 0; f < count; f++) size += fields[f].size;
-    size += sizeof row->elastic; /* in a group of its own: test_elastic.c */
+    for (int q = 0; q < bench_quantity_count; q++)
+        if (bench_quantities[q].field.name) size += bench_quantities[q].field.size;
     assert_int_equal(size, sizeof *row);
 }
 
@@ -136,10 +136,9 @@ static void read_samples(BenchH5 *h5, hid_t group, BenchRow *row)
 /* All that the file holds. */
 static void read_file(BenchH5 *h5, BenchRow *rows, int *count, BenchMachine *machine)
 {
-    int fields, machine_fields;
-    const BenchField *field = bench_row_fields(&fields),
-                     *machine_field = bench_machine_fields(&machine_fields);
-    const BenchField stored = {"rows", BENCH_INT, 0, sizeof *count};
+    int machine_fields;
+    const BenchField *machine_field = bench_machine_fields(&machine_fields);
+    const BenchField stored = BENCH_VARIABLE("rows", BENCH_INT, *count);
     bench_store_check_kind(h5, BENCH_STORE_SCHEMA);
     bench_h5_read_fields(h5, h5->file, &stored, 1, count);
     bench_h5_read_fields(h5, bench_h5_find_group(h5, h5->file, "machine"), machine_field,
@@ -148,7 +147,9 @@ static void read_file(BenchH5 *h5, BenchRow *rows, int *count, BenchMachine *mac
         char name[32];
         snprintf(name, sizeof name, "rows/%03d", i);
         hid_t group = bench_h5_find_group(h5, h5->file, name);
-        bench_h5_read_fields(h5, group, field, fields, &rows[i]);
+        for (int q = 0; q < bench_quantity_count; q++)
+            if (!bench_quantities[q].elastic)
+                bench_h5_read_fields(h5, group, &bench_quantities[q].field, 1, &rows[i]);
         read_samples(h5, group, &rows[i]);
     }
 }
@@ -214,13 +215,17 @@ static void statuses_of_the_paper_are_stored(void **state)
             bench_h5_read_text(&h5, group, names[n], sizeof text, text);
             assert_string_equal(h5.failed ? h5.message : text, cases[c][2 + n]);
         }
-        double given[SM_STAGES + 1];
-        const BenchField more[] = {
-            {"paper_stage_percent", BENCH_DOUBLE, 0, SM_STAGES * sizeof *given},
-            {"paper_particles", BENCH_DOUBLE, SM_STAGES * sizeof *given, sizeof *given}};
-        bench_h5_read_fields(&h5, group, more, 2, given);
-        assert_true(c == 0 ? given[0] == 10 && given[1] == 19 : isnan(given[0]));
-        assert_true(given[SM_STAGES] == (c == 0 ? 2570 : 35000));
+        typedef struct {
+            double paper_stage_percent[SM_STAGES], paper_particles;
+        } Given;
+        Given given;
+        const BenchField more[] = {BENCH_FIELD(Given, BENCH_DOUBLE, paper_stage_percent),
+                                   BENCH_FIELD(Given, BENCH_DOUBLE, paper_particles)};
+        bench_h5_read_fields(&h5, group, more, 2, &given);
+        assert_true(c == 0
+                        ? given.paper_stage_percent[0] == 10 && given.paper_stage_percent[1] == 19
+                        : isnan(given.paper_stage_percent[0]));
+        assert_true(given.paper_particles == (c == 0 ? 2570 : 35000));
         bench_h5_close(&h5);
         bench_row_free(&row);
         unlink(path);

@@ -19,7 +19,7 @@ const BenchField *bench_point_fields(int *count)
         FIELD(BENCH_DOUBLE, total_ms),
         FIELD(BENCH_DOUBLE, total_low_ms),
         FIELD(BENCH_DOUBLE, total_high_ms),
-        FIELD(BENCH_DOUBLE, stage_ms),
+        {BENCH_FIELD_AS(BenchPoint, BENCH_DOUBLE, stage_ms, "stage_ms"), .stages = true},
         FIELD(BENCH_DOUBLE, build_seconds),
         FIELD(BENCH_LONG, bytes),
         FIELD(BENCH_DOUBLE, summation_nodes),

@@ -145,23 +145,7 @@ static void write_csv(FILE *file, const BenchSweep *sweep)
 {
     int count;
     const BenchField *fields = bench_point_fields(&count);
-    for (long i = -1; i < sweep->count; i++) {
-        for (int f = 0; f < count; f++) {
-            const char *value = i < 0 ? NULL : (const char *)&sweep->point[i] + fields[f].offset;
-            bool many = fields[f].kind == BENCH_DOUBLE && fields[f].size > sizeof(double);
-            if (f) fputc(',', file);
-            for (int s = 0; s < (many ? SM_STAGES : 1); s++) {
-                if (s) fputc(',', file);
-                if (i >= 0)
-                    bench_csv_value(file, &fields[f], value + (size_t)s * sizeof(double));
-                else if (many)
-                    fprintf(file, "%s_ms", sm_stage_name((SmStage)s));
-                else
-                    fputs(fields[f].name, file);
-            }
-        }
-        fputc('\n', file);
-    }
+    bench_csv_records(file, fields, count, sweep->point, sizeof *sweep->point, sweep->count);
 }
 
 static void write_json(FILE *file, const BenchSweep *sweep)
@@ -169,10 +153,10 @@ static void write_json(FILE *file, const BenchSweep *sweep)
     int points, plan;
     const BenchField *point_fields = bench_point_fields(&points);
     const BenchField *plan_fields = bench_plan_fields(&plan);
-    json_t *root = json_object(), *list = json_array();
-    for (long i = 0; i < sweep->count; i++)
-        json_array_append_new(list, bench_json_record(point_fields, points, &sweep->point[i]));
-    json_object_set_new(root, "points", list);
+    json_t *root = json_object();
+    json_object_set_new(
+        root, "points",
+        bench_json_records(point_fields, points, sweep->point, sizeof *sweep->point, sweep->count));
     json_object_set_new(root, "plan", bench_json_record(plan_fields, plan, &sweep->plan));
     json_object_set_new(root, "environment", bench_json_machine(&sweep->machine));
     bench_json_write(file, root);

@@ -5,49 +5,13 @@
 
 #include "../../lib/error.h"
 
-/* The type of one value in the file and in memory, and how many a member has. The caller closes
- * `*memory` and `*file`. */
-static int value_types(const BenchField *field, hid_t *file, hid_t *memory)
-{
-    hid_t stored = H5T_IEEE_F64LE, native = H5T_NATIVE_DOUBLE;
-    size_t unit = sizeof(double);
-    switch (field->kind) {
-    case BENCH_INT:
-        stored = H5T_STD_I32LE, native = H5T_NATIVE_INT, unit = sizeof(int);
-        break;
-    case BENCH_LONG:
-        stored = H5T_STD_I64LE, native = H5T_NATIVE_LONG, unit = sizeof(long);
-        break;
-    case BENCH_BOOL:
-        stored = H5T_STD_U8LE, native = H5T_NATIVE_UINT8, unit = sizeof(bool);
-        break;
-    case BENCH_HASH:
-        stored = H5T_STD_U64LE, native = H5T_NATIVE_ULLONG, unit = sizeof(unsigned long long);
-        break;
-    case BENCH_TEXT:
-        stored = native = H5T_C_S1, unit = field->size;
-        break;
-    case BENCH_DOUBLE:
-        break;
-    }
-    *file = H5Tcopy(stored);
-    *memory = H5Tcopy(native);
-    if (field->kind == BENCH_TEXT) {
-        H5Tset_size(*file, field->size);
-        H5Tset_cset(*file, H5T_CSET_UTF8);
-        H5Tset_size(*memory, field->size);
-        H5Tset_cset(*memory, H5T_CSET_UTF8);
-    }
-    return (int)(field->size / unit);
-}
-
 void bench_h5_columns(BenchH5 *h5, hid_t group, const BenchField *fields, int count,
                       const void *records, size_t size, long number)
 {
     for (int f = 0; f < count && !h5->failed; f++) {
         const BenchField *field = &fields[f];
         hid_t file, memory;
-        int values = value_types(field, &file, &memory);
+        int values = bench_h5_types(field, &file, &memory);
         char *column = sm_alloc((size_t)number, field->size);
         for (long r = 0; r < number; r++)
             memcpy(column + (size_t)r * field->size,
@@ -89,7 +53,7 @@ void bench_h5_read_columns(BenchH5 *h5, hid_t group, const BenchField *fields, i
     for (int f = 0; f < count && !h5->failed; f++) {
         const BenchField *field = &fields[f];
         hid_t file, memory;
-        int values = value_types(field, &file, &memory);
+        int values = bench_h5_types(field, &file, &memory);
         hsize_t shape[] = {(hsize_t)number, (hsize_t)values};
         hid_t dataset = bench_h5_find_dataset(h5, group, field->name, values > 1 ? 2 : 1, shape);
         check_type(h5, dataset, field, file);

@@ -7,13 +7,19 @@
 #include "../measure/elastic_row.h"
 #include "../measure/measure.h"
 #include "../measure/tree_row.h"
-#include "../play/change_grid.h"
 #include "grid.h"
-#include "step_grid.h"
+#include "row_grid.h"
 
 static const RefPaperRow *paper_of(const BenchRow *row)
 {
     return row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
+}
+
+void bench_change_left(FILE *file, const char *before, long left)
+{
+    if (left)
+        fprintf(file, "%sthe surface of %ld bod%s could not follow a cut everywhere\n", before,
+                left, left == 1 ? "y" : "ies");
 }
 
 /* ---- one line a row */

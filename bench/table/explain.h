@@ -14,4 +14,7 @@ void bench_explain_briefly(FILE *file, const BenchRow *rows, int count);
  * what is known of the paper's values. */
 void bench_explain_rows(FILE *file, const BenchRow *rows, int count);
 
+/* A line that says of how many bodies the surface could not follow a cut everywhere; none of 0. */
+void bench_change_left(FILE *file, const char *before, long left);
+
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../../lib/error.h"
+#include "../../lib/stage.h"
 #include "../../lib/system/printable.h"
 
 /* Whether a spreadsheet would take the text for a formula. */
@@ -38,7 +39,8 @@ void bench_csv_number(FILE *file, double value)
     if (isfinite(value)) fprintf(file, "%.9g", value);
 }
 
-void bench_csv_value(FILE *file, const BenchField *field, const void *value)
+/* A number of an array, or the value alone. */
+static void csv_value(FILE *file, const BenchField *field, const void *value)
 {
     switch (field->kind) {
     case BENCH_TEXT:
@@ -60,6 +62,57 @@ void bench_csv_value(FILE *file, const BenchField *field, const void *value)
         bench_csv_number(file, *(const double *)value);
         return;
     }
+}
+
+/* How many numbers the field's member has. */
+static int values_of(const BenchField *field)
+{
+    bool many = field->kind == BENCH_DOUBLE && field->size > sizeof(double);
+    return many ? (int)(field->size / sizeof(double)) : 1;
+}
+
+void bench_csv_cell(FILE *file, const BenchField *field, const void *record, const char *mark)
+{
+    const char *value = (const char *)record + field->offset;
+    if (mark && field->timed)
+        fputs(mark, file);
+    else if (field->given && !field->given(record))
+        return;
+    else if (field->text)
+        bench_csv_text(file, field->text(record));
+    else if (field->number)
+        bench_csv_number(file, field->number(record));
+    else
+        for (int i = 0; i < values_of(field); i++) {
+            if (i) fputc(',', file);
+            csv_value(file, field, value + (size_t)i * sizeof(double));
+        }
+}
+
+static void csv_title(FILE *file, const BenchField *field)
+{
+    for (int i = 0, count = values_of(field); i < count; i++) {
+        if (i) fputc(',', file);
+        if (field->stages)
+            fprintf(file, "%s_ms", sm_stage_name((SmStage)i));
+        else if (count > 1)
+            fprintf(file, "%s_%d", field->column, i + 1);
+        else
+            fputs(field->column, file);
+    }
+}
+
+void bench_csv_records(FILE *file, const BenchField *fields, int count, const void *records,
+                       size_t size, long number)
+{
+    for (long r = -1; r < number; r++)
+        for (int f = 0; f < count; f++) {
+            if (r < 0)
+                csv_title(file, &fields[f]);
+            else
+                bench_csv_cell(file, &fields[f], (const char *)records + (size_t)r * size, NULL);
+            fputc(f < count - 1 ? ',' : '\n', file);
+        }
 }
 
 json_t *bench_json_text(const char *text)
@@ -102,20 +155,39 @@ static json_t *json_value(const BenchField *field, const void *value)
         break;
     }
     const double *numbers = value;
-    size_t many = field->size / sizeof *numbers;
+    int many = values_of(field);
     if (many == 1) return bench_json_number(*numbers);
     json_t *list = json_array();
-    for (size_t i = 0; i < many; i++) json_array_append_new(list, bench_json_number(numbers[i]));
+    for (int i = 0; i < many; i++) json_array_append_new(list, bench_json_number(numbers[i]));
     return list;
+}
+
+json_t *bench_json_cell(const BenchField *field, const void *record, bool times)
+{
+    if ((field->timed && !times) || (field->given && !field->given(record))) return json_null();
+    if (field->number) return bench_json_number(field->number(record));
+    if (field->text && field->kind == BENCH_TEXT) return bench_json_text(field->text(record));
+    return json_value(field, (const char *)record + field->offset);
 }
 
 json_t *bench_json_record(const BenchField *fields, int count, const void *record)
 {
     json_t *object = json_object();
     for (int f = 0; f < count; f++)
-        json_object_set_new(object, fields[f].name,
-                            json_value(&fields[f], (const char *)record + fields[f].offset));
+        if (fields[f].column)
+            json_object_set_new(object, fields[f].column,
+                                bench_json_cell(&fields[f], record, true));
     return object;
+}
+
+json_t *bench_json_records(const BenchField *fields, int count, const void *records, size_t size,
+                           long number)
+{
+    json_t *list = json_array();
+    for (long r = 0; r < number; r++)
+        json_array_append_new(
+            list, bench_json_record(fields, count, (const char *)records + (size_t)r * size));
+    return list;
 }
 
 json_t *bench_json_machine(const BenchMachine *machine)

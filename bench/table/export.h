@@ -13,8 +13,14 @@ void bench_csv_text(FILE *file, const char *text);
 /* Nine digits; nothing where it is not finite. */
 void bench_csv_number(FILE *file, double value);
 
-/* A field's value; of an array of numbers the one at `value`. */
-void bench_csv_value(FILE *file, const BenchField *field, const void *value);
+/* A field of a record, of an array all numbers; nothing where it has no value. In place of times
+ * stands `mark`, unless that is NULL. */
+void bench_csv_cell(FILE *file, const BenchField *field, const void *record, const char *mark);
+
+/* A header line, then a line for each of `number` records of `size` bytes; all fields are columns.
+ */
+void bench_csv_records(FILE *file, const BenchField *fields, int count, const void *records,
+                       size_t size, long number);
 
 /* A string that may hold bytes that are no UTF-8 (a command line): those become '?'. */
 json_t *bench_json_text(const char *text);
@@ -22,8 +28,14 @@ json_t *bench_json_text(const char *text);
 /* Whole numbers as such; null where the value is not finite. */
 json_t *bench_json_number(double value);
 
-/* The fields of a record by name: arrays become lists, hashes sixteen hexadecimal digits. */
+/* A field of a record: an array becomes a list, a hash sixteen hexadecimal digits; null where it
+ * has no value, or is a time and the record has no `times`. */
+json_t *bench_json_cell(const BenchField *field, const void *record, bool times);
+
+/* A record's columns by name; and a list of records. */
 json_t *bench_json_record(const BenchField *fields, int count, const void *record);
+json_t *bench_json_records(const BenchField *fields, int count, const void *records, size_t size,
+                           long number);
 
 /* The object "environment": all fields of the machine. */
 json_t *bench_json_machine(const BenchMachine *machine);

@@ -1,9 +1,8 @@
 #include "report.h"
 
 #include "../measure/elastic_row.h"
-#include "../play/change_grid.h"
 #include "explain.h"
-#include "step_grid.h"
+#include "row_grid.h"
 
 static void print_heading(const BenchReport *report, bool elastic)
 {
@@ -19,19 +18,28 @@ static void print_heading(const BenchReport *report, bool elastic)
                 machine->cpu, machine->threads, machine->threads == 1 ? "" : "s");
 }
 
+static BenchTableKind table_of(const BenchReport *report, bool elastic)
+{
+    return elastic ? BENCH_TABLE_FRAMES : bench_row_steps(report->rows, report->count);
+}
+
 static void begin_table(BenchReport *report, bool elastic)
 {
     if (report->form == BENCH_GRID_PLAIN) print_heading(report, elastic);
-    (elastic ? bench_elastic_columns : bench_step_columns)(report->rows, report->count,
-                                                           report->form, &report->grid);
+    bench_row_columns(report->rows, report->count, table_of(report, elastic), report->form,
+                      &report->grid);
     bench_grid_head(report->file, &report->grid, report->form);
 }
 
 /* What changes is told of below the table of steps that it belongs to. */
 static void write_changes(const BenchReport *report)
 {
-    BenchGrid grid;
-    bench_change_grid(report->rows, report->written, report->form, &grid);
+    BenchGrid grid = {0};
+    for (int r = 0; r < report->written; r++) {
+        if (report->rows[r].change.frames == 0) continue;
+        if (!grid.lines) bench_row_columns(NULL, 0, BENCH_TABLE_CHANGES, report->form, &grid);
+        bench_row_lines(&report->rows[r], BENCH_TABLE_CHANGES, report->form, &grid);
+    }
     if (!grid.lines) return;
     fputc('\n', report->file);
     if (report->form == BENCH_GRID_PLAIN)
@@ -61,8 +69,7 @@ void bench_report_rows(BenchReport *report, int measured)
             begin_table(report, elastic);
         }
         report->grid.lines = 0;
-        (elastic ? bench_elastic_lines : bench_step_lines)(
-            report->rows, report->count, report->written, report->form, &report->grid);
+        bench_row_lines(row, table_of(report, elastic), report->form, &report->grid);
         bench_grid_lines(report->file, &report->grid, report->form);
     }
     fflush(report->file);

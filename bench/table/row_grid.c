@@ -1,0 +1,98 @@
+#include "row_grid.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "../measure/elastic_row.h"
+
+bool bench_row_of_octree(const BenchRow *row)
+{
+    return !strcmp(row->paper, "octree") || !strcmp(row->engine, "octree");
+}
+
+BenchTableKind bench_row_steps(const BenchRow *rows, int count)
+{
+    for (int r = 0; r < count; r++)
+        if (bench_row_of_octree(&rows[r])) return BENCH_TABLE_STEPS;
+    return BENCH_TABLE_LATTICES;
+}
+
+static bool shown(const BenchQuantity *quantity, BenchTableKind table, BenchGridForm form)
+{
+    return quantity->shown[table] >> form & 1;
+}
+
+void bench_row_columns(const BenchRow *rows, int count, BenchTableKind table, BenchGridForm form,
+                       BenchGrid *grid)
+{
+    for (int q = 0; q < bench_quantity_count; q++) {
+        const BenchQuantity *quantity = &bench_quantities[q];
+        bool terse = form == BENCH_GRID_PLAIN && quantity->terse;
+        if (shown(quantity, table, form))
+            bench_grid_column(grid, terse ? quantity->terse : quantity->title, quantity->left);
+    }
+    for (int r = 0; r < count; r++) {
+        int width = (int)strlen(rows[r].scene);
+        bool here = table != BENCH_TABLE_FRAMES || bench_row_of_elastic(&rows[r]);
+        if (here && width > grid->width[0]) grid->width[0] = width;
+    }
+}
+
+/* A member as it is. */
+static void plain_cell(const BenchField *field, const BenchRow *row, char *text)
+{
+    const char *value = (const char *)row + field->offset;
+    if (field->kind == BENCH_TEXT)
+        snprintf(text, BENCH_GRID_TEXT, "%s", value);
+    else if (field->kind == BENCH_INT)
+        snprintf(text, BENCH_GRID_TEXT, "%d", *(const int *)value);
+    else if (field->kind == BENCH_LONG)
+        snprintf(text, BENCH_GRID_TEXT, "%ld", *(const long *)value);
+    else
+        bench_grid_number(field->number ? field->number(row) : *(const double *)value, text);
+}
+
+/* What stands for the table's times of a row; NULL: they do. */
+static const char *time_mark(const BenchRow *row, BenchTableKind table)
+{
+    if (table != BENCH_TABLE_CHANGES) return bench_row_timed(row) ? NULL : bench_row_mark(row);
+    return !row->valid ? "INVALID" : bench_row_frames_busy(row) ? "BUSY" : NULL;
+}
+
+static void measured_line(const BenchRow *row, BenchTableKind table, BenchGridForm form,
+                          BenchGridLine *line)
+{
+    const char *mark = time_mark(row, table);
+    for (int q = 0, c = 0; q < bench_quantity_count; q++) {
+        const BenchQuantity *quantity = &bench_quantities[q];
+        if (!shown(quantity, table, form)) continue;
+        char *text = (*line)[c++];
+        if (mark && quantity->field.timed)
+            strcpy(text, quantity->dash && form == BENCH_GRID_PLAIN ? "-" : mark);
+        else if (quantity->cell)
+            quantity->cell(row, form, text);
+        else
+            plain_cell(&quantity->field, row, text);
+    }
+}
+
+static void paper_line(const RefPaperRow *paper, BenchTableKind table, BenchGridForm form,
+                       BenchGridLine *line)
+{
+    for (int q = 0, c = 0; q < bench_quantity_count; q++) {
+        const BenchQuantity *quantity = &bench_quantities[q];
+        if (!shown(quantity, table, form)) continue;
+        char *text = (*line)[c++];
+        const void *value = (const char *)paper + quantity->paper;
+        if (quantity->below) quantity->below(paper, value, form, text);
+    }
+}
+
+void bench_row_lines(const BenchRow *row, BenchTableKind table, BenchGridForm form, BenchGrid *grid)
+{
+    const RefPaperRow *paper = row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
+    measured_line(row, table, form, bench_grid_add(grid));
+    if (paper && (table != BENCH_TABLE_FRAMES || isfinite(paper->nodes.value)))
+        paper_line(paper, table, form, bench_grid_add(grid));
+}
