@@ -1,11 +1,12 @@
-/* test_body.h - a body, its arrays and engines, for the engine's tests. Include after cmocka. */
+/* test_body.h - a body, its arrays and engines, for the engine's tests. */
 #ifndef LSM_TEST_BODY_H
 #define LSM_TEST_BODY_H
 
 #include "../lib/test_fields.h"
+#include "../lib/test_frame.h"
+#include "../lib/voxel/test_bodies.h"
 #include "../reference/brute.h"
 #include "fastlsm.h"
-#include "lattice/random_bodies.h"
 
 static const SmEngineType *const engines[2] = {&fastlsm_engine_f32, &fastlsm_engine_f64};
 

@@ -1,15 +1,8 @@
 /* What happens around the step - handles, obstacles, pushes, instances, fracture, long journeys -
  * beside the brute-force engine. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "test_body.h"
+
+#include "../lib/test_frame.h"
 
 /* Both engines from the same state, `steps` steps; the largest difference in cells. */
 static double race(int precision, Body *body, SmEngineParams params, const SmBoundary *boundary,
@@ -76,9 +69,8 @@ static void block(Body *body, int x, int y, int z)
 
 static const double limit[2] = {2e-3, 1e-9}; /* tens of steps magnify single precision's rounding */
 
-static void test_handles(void **state)
+TEST(test_handles)
 {
-    (void)state;
     for (int precision = 0; precision < 2; precision++)
         for (int layout = 1; layout <= 2; layout++) {
             Body body;
@@ -100,9 +92,8 @@ static void test_handles(void **state)
         }
 }
 
-static void test_obstacles(void **state)
+TEST(test_obstacles)
 {
-    (void)state;
     const SmObstacle obstacle[4] = {
         {.kind = SM_PLANE, .a = {0, -0.1, 0}, .b = {0, 1, 0}, .friction = 0.3},
         {.kind = SM_SPHERE, .a = {1, 0.3, 1}, .radius = 0.7, .friction = 0.1},
@@ -122,9 +113,8 @@ static void test_obstacles(void **state)
         }
 }
 
-static void test_instances(void **state)
+TEST(test_instances)
 {
-    (void)state;
     double pose[19][3][4];
     for (int i = 0; i < 19; i++) {
         double c = cos(i), s = sin(i),
@@ -226,9 +216,8 @@ static void check_steps(const SmEngineType *type, SmEngine *crowd, Body *body,
 
 /* Bodies of one layer of lists and of many, of every kind of shape: an instance moves as the body
  * does alone. */
-static void test_instances_alone(void **state)
+TEST(test_instances_alone)
 {
-    (void)state;
     unsigned seed = 12;
     for (int trial = 0; trial < (TEST_FIGURES ? 24 : 12); trial++) {
         Body body;
@@ -258,9 +247,8 @@ static void test_instances_alone(void **state)
 }
 
 /* Breaking while it runs equals the reference, which builds all regions anew. */
-static void test_fracture(void **state)
+TEST(test_fracture)
 {
-    (void)state;
     for (int trial = 0; trial < 8; trial++) {
         Body body;
         block(&body, 12, 4, 3);
@@ -283,9 +271,8 @@ static void test_fracture(void **state)
 
 /* A long block, which the engine turns inside, cut across by a plane: two pieces that fall apart,
  * each with its own mass; a body that was not made for it says so. */
-static void test_cut(void **state)
+TEST(test_cut)
 {
-    (void)state;
     for (int trial = 0; trial < 12; trial++) {
         Body body;
         int axis = trial / 2 % 3, size[3] = {4, 4, 4};
@@ -349,9 +336,8 @@ static void test_cut(void **state)
 }
 
 /* Falling 10,000 cells far, goals stay as exact as at home. */
-static void test_journey(void **state)
+TEST(test_journey)
 {
-    (void)state;
     Body body;
     block(&body, 9, 4, 3);
     SmEngineParams params = {.w = 2, .h = 0.01, .gravity = {0, -981, 0}};
@@ -370,9 +356,8 @@ static void test_journey(void **state)
     body_free(&body);
 }
 
-static void test_bad_parameters(void **state)
+TEST(test_bad_parameters)
 {
-    (void)state;
     Body body;
     block(&body, 2, 2, 2);
     const double nothing[27] = {0};
@@ -398,9 +383,8 @@ static void test_bad_parameters(void **state)
 }
 
 /* The unit of mass changes nothing: neither a grain nor a mountain leaves the fast path's range. */
-static void test_mass_unit(void **state)
+TEST(test_mass_unit)
 {
-    (void)state;
     const double unit[3] = {1e-25, 1, 1e25};
     for (int trial = 0; trial < 6; trial++) {
         Body body;
@@ -425,16 +409,4 @@ static void test_mass_unit(void **state)
         ref_brute_engine.destroy(slow);
         body_free(&body);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_handles),   cmocka_unit_test(test_obstacles),
-        cmocka_unit_test(test_instances), cmocka_unit_test(test_instances_alone),
-        cmocka_unit_test(test_cut),       cmocka_unit_test(test_fracture),
-        cmocka_unit_test(test_journey),   cmocka_unit_test(test_bad_parameters),
-        cmocka_unit_test(test_mass_unit),
-    };
-    return cmocka_run_group_tests_name("fastlsm_engine", tests, NULL, NULL);
 }

@@ -1,15 +1,7 @@
 /* Holds the engine to its brute-force twin and to the invariants of shape matching. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "test_body.h"
+
+#include "../lib/test_frame.h"
 
 /* Largest deviations of goal positions allowed, in cells: what `shapebench tables` allows a row in
  * single precision (coordinates of 30 cells carry 2e-6, a region 12 cells across turns that into
@@ -43,9 +35,8 @@ static void check_goals(int precision, SmSummation summation, SmPolarMethod pola
     engines[precision]->destroy(engine);
 }
 
-static void test_goals(void **state)
+TEST(test_goals)
 {
-    (void)state;
     unsigned seed = 1;
     for (int trial = 0; trial < (TEST_FIGURES ? 360 : 72); trial++) {
         Body body;
@@ -59,9 +50,8 @@ static void test_goals(void **state)
 
 /* Wide regions in list form, whose sums run over chains: random shapes; bodies of several layers; a
  * particle so heavy that its rounding must not stay behind in a sum. */
-static void test_wide_lists(void **state)
+TEST(test_wide_lists)
 {
-    (void)state;
     unsigned seed = 8;
     for (int trial = 0; trial < 60; trial++) {
         Body body;
@@ -85,9 +75,8 @@ static void test_wide_lists(void **state)
 
 /* At rest, two tall walls a cell apart and joined at the foot: a block's box sum takes both, and
  * hundreds of particles of the other are taken from it again. */
-static void test_wide_corrections(void **state)
+TEST(test_wide_corrections)
 {
-    (void)state;
     for (int precision = 0; precision < 2; precision++) {
         Body body;
         sm_voxels_init(&body.voxels, 3, 60, 12, 0.25);
@@ -104,9 +93,8 @@ static void test_wide_corrections(void **state)
 }
 
 /* Every member list against breadth-first search. */
-static void test_regions(void **state)
+TEST(test_regions)
 {
-    (void)state;
     unsigned seed = 2;
     for (int trial = 0; trial < 60; trial++) {
         Body body;
@@ -131,9 +119,8 @@ static void test_regions(void **state)
 }
 
 /* Whole steps, damping and gravity included, beside the brute-force engine. */
-static void test_steps(void **state)
+TEST(test_steps)
 {
-    (void)state;
     unsigned seed = 3;
     for (int trial = 0; trial < 72; trial++) {
         Body body;
@@ -166,9 +153,8 @@ static void test_steps(void **state)
     }
 }
 
-static void test_momentum(void **state)
+TEST(test_momentum)
 {
-    (void)state;
     unsigned seed = 4;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -204,9 +190,8 @@ static void test_momentum(void **state)
 }
 
 /* A rigidly moving body is left alone, and so is a resting one. */
-static void test_rigid(void **state)
+TEST(test_rigid)
 {
-    (void)state;
     unsigned seed = 5;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -235,9 +220,8 @@ static void test_rigid(void **state)
 }
 
 /* Crushed flat, inverted, blown up, or all in one point: it comes back to rest, never a NaN. */
-static void test_recovery(void **state)
+TEST(test_recovery)
 {
-    (void)state;
     const double crush[5][3] = {{1, 1, 0}, {-1, 1, 1}, {1000, 1000, 1000}, {0, 0, 0}, {1, 0, 0}};
     for (int trial = 0; trial < 20; trial++) {
         Body body;
@@ -287,9 +271,8 @@ static void check_threads(Body *body, int w, SmLayout layout, int most)
     }
 }
 
-static void test_threads(void **state)
+TEST(test_threads)
 {
-    (void)state;
     for (int trial = 0; trial < 16; trial++) {
         unsigned seed = 7;
         Body body;
@@ -303,20 +286,4 @@ static void test_threads(void **state)
         check_threads(&body, w, wide ? SM_LAYOUT_BLOCKS : (SmLayout)(1 + trial % 2), wide ? 8 : 5);
         body_free(&body);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_goals),
-        cmocka_unit_test(test_wide_lists),
-        cmocka_unit_test(test_wide_corrections),
-        cmocka_unit_test(test_regions),
-        cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_momentum),
-        cmocka_unit_test(test_rigid),
-        cmocka_unit_test(test_recovery),
-        cmocka_unit_test(test_threads),
-    };
-    return cmocka_run_group_tests_name("fastlsm", tests, NULL, NULL);
 }

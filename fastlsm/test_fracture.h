@@ -1,5 +1,5 @@
 /* test_fracture.h - breaking links beside the brute-force regions and beside a rebuild, in the
- * precision of the file that includes it. Include after cmocka. */
+ * precision of the file that includes it. */
 #ifndef LSM_TEST_FRACTURE_H
 #define LSM_TEST_FRACTURE_H
 
@@ -212,9 +212,8 @@ static void compare_steps(Lsm *lsm, Lsm *twin, const Body *body, int trial)
     assert_close(body, spins ? 1e-2 : limit, "a rebuild's step", trial);
 }
 
-static void test_equal_to_rebuild(void **state)
+TEST(test_equal_to_rebuild)
 {
-    (void)state;
     unsigned seed = 5;
     int rebuilt = 0;
     for (int trial = 0; trial < TRIALS; trial++) {
@@ -261,9 +260,8 @@ static void random_cut(unsigned *seed, const Body *body, SmCut *cut)
     sm_cut_triangle(cut, (int[3]){last, last - 1, last - 2});
 }
 
-static void test_cut_breaks_what_it_crosses(void **state)
+TEST(test_cut_breaks_what_it_crosses)
 {
-    (void)state;
     unsigned seed = 9;
     long broken = 0;
     for (int trial = 0; trial < TRIALS / 3; trial++) {
@@ -330,9 +328,8 @@ static void work(int cells, int w, SmLayout layout, long searched[2])
     body_free(&body);
 }
 
-static void test_local(void **state)
+TEST(test_local)
 {
-    (void)state;
     for (int trial = 0; trial < 4; trial++) {
         long small[2], large[2];
         SmLayout layout = trial % 2 ? SM_LAYOUT_BLOCKS : SM_LAYOUT_LISTS;
@@ -347,9 +344,8 @@ static void test_local(void **state)
 }
 
 /* A body that breaks link by link into single particles is seldom rebuilt. */
-static void test_crumble(void **state)
+TEST(test_crumble)
 {
-    (void)state;
     for (int trial = 0; trial < 4; trial++) {
         Body body;
         full_box(7, &body);
@@ -377,9 +373,8 @@ static void test_crumble(void **state)
 }
 
 /* After a cut two threads give the bits of one. */
-static void test_threads(void **state)
+TEST(test_threads)
 {
-    (void)state;
     for (int layout = SM_LAYOUT_LISTS; layout <= SM_LAYOUT_BLOCKS; layout++) {
         Body body;
         Lsm *lsm[2];
@@ -409,18 +404,6 @@ static void test_threads(void **state)
         lsm_free(lsm[1]);
         body_free(&body);
     }
-}
-
-static int test_all(const char *name)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_equal_to_rebuild),
-        cmocka_unit_test(test_cut_breaks_what_it_crosses),
-        cmocka_unit_test(test_local),
-        cmocka_unit_test(test_crumble),
-        cmocka_unit_test(test_threads),
-    };
-    return cmocka_run_group_tests_name(name, tests, NULL, NULL);
 }
 
 #endif

@@ -1,15 +1,8 @@
 /* Rows that change in one array against lists kept apart; sorting of short and long lists. */
 #include "csr.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#include "../fastlsm/lattice/random_bodies.h"
+#include "test_frame.h"
+#include "voxel/test_bodies.h"
 
 enum { MOST = 64, ROWS = 40 };
 
@@ -67,9 +60,8 @@ static void adopt_empty_rows(SmCsr *csr, long count, bool values)
                  values ? sm_alloc(1, sizeof(int)) : NULL, values ? sizeof(int) : 0);
 }
 
-static void lists_stay_what_they_are_while_others_change(void **state)
+TEST(lists_stay_what_they_are_while_others_change)
 {
-    (void)state;
     unsigned seed = 21;
     for (int values = 0; values < 2; values++) {
         SmCsr csr;
@@ -88,9 +80,8 @@ static void lists_stay_what_they_are_while_others_change(void **state)
 }
 
 /* Lists that take turns in growing leave gaps behind, which are closed in time. */
-static void gaps_do_not_pile_up(void **state)
+TEST(gaps_do_not_pile_up)
 {
-    (void)state;
     SmCsr csr;
     enum { LONG = 400 };
     adopt_empty_rows(&csr, ROWS, false);
@@ -102,9 +93,8 @@ static void gaps_do_not_pile_up(void **state)
     sm_csr_free(&csr);
 }
 
-static void lists_are_sorted(void **state)
+TEST(lists_are_sorted)
 {
-    (void)state;
     enum { LONGEST = 500 };
     unsigned seed = 3;
     for (int trial = 0; trial < 2000; trial++) {
@@ -115,14 +105,4 @@ static void lists_are_sorted(void **state)
         sm_sort_ints(item, count);
         assert_memory_equal(item, sorted, sizeof item[0] * (size_t)count);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists_stay_what_they_are_while_others_change),
-        cmocka_unit_test(gaps_do_not_pile_up),
-        cmocka_unit_test(lists_are_sorted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

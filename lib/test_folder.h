@@ -1,14 +1,13 @@
-/* test_folder.h - a folder of the test's own, for files that it writes. Include after cmocka.
+/* test_folder.h - a folder of the test's own, for files that it writes.
  *
- * make_folder() and remove_folder() are the group's set-up and tear-down; between them the folder
- * is there, and afterwards nothing in it. */
+ * make_folder() and remove_folder() are the group's fixture, unless the file names another, which
+ * calls them: between them the folder is there, and afterwards nothing in it. */
 #ifndef SM_TEST_FOLDER_H
 #define SM_TEST_FOLDER_H
 
 #include <dirent.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+
+#include "test_frame.h"
 
 static char folder[] = "/tmp/shapebench_test_XXXXXX";
 
@@ -25,6 +24,8 @@ static inline int remove_folder(void **state)
     snprintf(command, sizeof command, "rm -rf %s", folder);
     return system(command);
 }
+
+TEST_GROUP(make_folder, remove_folder)
 
 /* Where `name` is in the folder; stands until the next call. */
 static inline const char *path_in(const char *name)

@@ -1,35 +1,27 @@
 /* What hangs together, against a search from every member. */
 #include "pieces.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "cut/slit.h"
-#include "test_draw.h"
+#include "test_frame.h"
+#include "test_random.h"
+
+static unsigned seed = 1;
 
 enum { NODES = 60 };
 
 /* Reach of all pairs over random links, some nodes absent. */
-static void random_links_make_the_pieces_that_they_should(void **state)
+TEST(random_links_make_the_pieces_that_they_should)
 {
-    (void)state;
     for (int trial = 0; trial < 200; trial++) {
         static bool reach[NODES][NODES];
         unsigned char absent[NODES];
         SmPieces pieces;
         memset(reach, 0, sizeof reach);
-        for (int p = 0; p < NODES; p++) absent[p] = draw() % 5 == 0;
+        for (int p = 0; p < NODES; p++) absent[p] = random_int(&seed, 5) == 0;
         sm_pieces_init(NODES, &pieces);
         for (int p = 0; p < NODES; p++) reach[p][p] = true;
         for (int n = 0; n < trial % 60; n++) {
-            unsigned p = draw() % NODES, q = draw() % NODES;
+            int p = random_int(&seed, NODES), q = random_int(&seed, NODES);
             if (absent[p] || absent[q]) continue;
             reach[p][q] = reach[q][p] = true;
             sm_pieces_link(&pieces, p, q);
@@ -59,9 +51,8 @@ static void random_links_make_the_pieces_that_they_should(void **state)
 }
 
 /* A box of 2 x 1 x 1 cut at x = 0.5. */
-static void a_box_cut_through_has_two_pieces(void **state)
+TEST(a_box_cut_through_has_two_pieces)
 {
-    (void)state;
     static const int face[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                    {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     SmMesh mesh = sm_mesh_new(8, 12);
@@ -86,13 +77,4 @@ static void a_box_cut_through_has_two_pieces(void **state)
     sm_pieces_free(&pieces);
     sm_cut_free(&cut);
     sm_mesh_free(&mesh);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_links_make_the_pieces_that_they_should),
-        cmocka_unit_test(a_box_cut_through_has_two_pieces),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,28 +1,15 @@
 /* Holds every polar decomposition to GSL's on all classes of matrices. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../reference/polar.h"
 #include "polar.h"
+#include "test_frame.h"
+#include "test_random.h"
 
 static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-
-static double unit(unsigned *seed)
-{
-    return 2 * (rand_r(seed) / (double)RAND_MAX) - 1;
-}
 
 static void random_rotation(unsigned *seed, double R[9])
 {
     double A[9];
-    for (int i = 0; i < 9; i++) A[i] = unit(seed);
+    for (int i = 0; i < 9; i++) A[i] = random_between(seed, -1, 1);
     ref_polar(A, NULL, R);
 }
 
@@ -116,9 +103,8 @@ static const double accuracy[METHODS] = {3e-5, 1e-11, 1e-11, 1e-5, 1e-11},
                     proper[METHODS] = {3e-5, 1e-11, 1e-13, 1e-5, 1e-11};
 
 /* Well-conditioned matrices, reflected and flat ones among them, at many scales. */
-static void test_unique(void **state)
+TEST(test_unique)
 {
-    (void)state;
     const double stretch[6][3] = {{1, 1, 1},      {2, 1, 0.5}, {1, 0.9, 0},
                                   {1, 0.8, -0.3}, {5, 1, 0.2}, {1, 0.3, 0.3}};
     const double scale[5] = {1, 1e-6, 1e6, 1e-12, 1e12};
@@ -138,13 +124,12 @@ static void test_unique(void **state)
 
 /* Of what is flat and narrow, or folded, rounding may turn the thin directions, but no more than it
  * must, and not the long one. */
-static void test_narrow(void **state)
+TEST(test_narrow)
 {
-    (void)state;
     unsigned seed = 8;
     for (int trial = 0; trial < 6000; trial++) {
         double A[9], R[9], best[9], off[9], moved[9], long_way = 0;
-        double width = exp(-4 * (trial % 100) / 100.0), thin = width * unit(&seed);
+        double width = exp(-4 * (trial % 100) / 100.0), thin = width * random_between(&seed, -1, 1);
         compose(&seed, (double[3]){1, width, thin > -0.7 * width ? thin : 0}, 1, A);
         for (int i = 0; i < 9; i++) A[i] = (double)(float)A[i];
         ref_polar(A, identity, best);
@@ -160,9 +145,8 @@ static void test_narrow(void **state)
 }
 
 /* No class of matrix gives anything but a proper rotation, and none a worse one than it must. */
-static void test_degenerate(void **state)
+TEST(test_degenerate)
 {
-    (void)state;
     const double stretch[7][3] = {{0, 0, 0},  {1, 0, 0},    {1, 1e-4, 0},    {1, 0.5, -0.5},
                                   {1, 1, -1}, {1, 1, 1e-9}, {1, 1e-3, -1e-3}};
     const double scale[6] = {1, 1e-12, 1e12, 1e-30, 1e30, 1e-38};
@@ -182,9 +166,8 @@ static void test_degenerate(void **state)
 }
 
 /* Where nothing is known the last rotation stays; where one axis is, the nearest turn to it. */
-static void test_last(void **state)
+TEST(test_last)
 {
-    (void)state;
     unsigned seed = 3;
     for (int trial = 0; trial < 300; trial++) {
         double zero[9] = {0}, A[9], R[9], best[9], last[9], one[3] = {1, 0, 0};
@@ -202,12 +185,12 @@ static void test_last(void **state)
 }
 
 /* A batch gives each matrix what it gets alone, whatever its length. */
-static void test_batches(void **state)
+TEST(test_batches)
 {
-    (void)state;
     unsigned seed = 4;
     float A[37 * 9], R[37 * 9], alone[9];
-    for (int i = 0; i < 37 * 9; i++) A[i] = (float)((i % 9 % 4 == 0) + 0.3 * unit(&seed));
+    for (int i = 0; i < 37 * 9; i++)
+        A[i] = (float)((i % 9 % 4 == 0) + 0.3 * random_between(&seed, -1, 1));
     for (long count = 0; count <= 37; count += 12) {
         memset(R, 0, sizeof R);
         sm_polar_batch_f32(count, A, NULL, R);
@@ -221,9 +204,8 @@ static void test_batches(void **state)
 
 /* A warm start needs fewer sweeps than a cold one when a matrix changes slowly, and is as exact
  * after many steps, whose eigenvectors are kept in single precision. */
-static void test_warm_start(void **state)
+TEST(test_warm_start)
 {
-    (void)state;
     unsigned seed = 5;
     double stretch[3] = {1.3, 1, 0.8}, A[9], V[9], R[9], best[9], cold = 0, warm = 0;
     compose(&seed, stretch, 1, A);
@@ -231,7 +213,7 @@ static void test_warm_start(void **state)
     for (int step = 0; step < 2000; step++) {
         double fresh[9];
         memcpy(fresh, identity, sizeof fresh);
-        for (int i = 0; i < 9; i++) A[i] += 1e-4 * unit(&seed);
+        for (int i = 0; i < 9; i++) A[i] += 1e-4 * random_between(&seed, -1, 1);
         cold += sm_polar_jacobi(A, fresh, identity, 1e-6, R);
         warm += sm_polar_jacobi(A, V, identity, 1e-6, R);
         sm_polar_jacobi(A, V, identity, 1e-13, R);
@@ -240,14 +222,4 @@ static void test_warm_start(void **state)
     ref_polar(A, identity, best);
     assert_true(warm < cold);
     assert_true(distance(R, best) < 1e-11);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_unique),     cmocka_unit_test(test_narrow),
-        cmocka_unit_test(test_degenerate), cmocka_unit_test(test_last),
-        cmocka_unit_test(test_batches),    cmocka_unit_test(test_warm_start),
-    };
-    return cmocka_run_group_tests_name("polar", tests, NULL, NULL);
 }

@@ -1,19 +1,11 @@
 /* The octree behind the common interface, in both precisions: units, handles, obstacles, pushes,
  * instances, masses; what it refuses. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../lib/test_fields.h"
+#include "../lib/test_frame.h"
 #include "../reference/octree_goals.h"
 #include "engine.h"
 #include "test_engine_body.h"
-#include "tree/random_trees.h"
+#include "tree/test_trees.h"
 
 static const double limit[2] = {5e-5, 1e-10}; /* finest cells */
 static const double jacobi_limit = 5e-6;      /* the method stops at off-diagonals of 1e-6 */
@@ -29,9 +21,8 @@ static void shake(const SmEngineType *type, SmEngine *engine, long n, double (*x
     type->get(engine, SM_POSITION, x);
 }
 
-static void goals_are_the_twins(void **state)
+TEST(goals_are_the_twins)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     for (int trial = 0; trial < 24; trial++) {
@@ -75,9 +66,8 @@ static void goals_are_the_twins(void **state)
     sm_voxels_free(&voxels);
 }
 
-static void regions_are_the_leaves_and_symmetric(void **state)
+TEST(regions_are_the_leaves_and_symmetric)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     OctOptions options = {.epsilon = 0.5, .sampling = {.levels = 2, .nodes = 90}};
@@ -107,9 +97,8 @@ static void regions_are_the_leaves_and_symmetric(void **state)
 }
 
 /* Held nodes are where their handle puts them, with the velocity of getting there. */
-static void handles_hold(void **state)
+TEST(handles_hold)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     for (int precision = 0; precision < 2; precision++) {
@@ -150,9 +139,8 @@ static void handles_hold(void **state)
 }
 
 /* A body that falls a long way does not go through the ground. */
-static void obstacles_stop(void **state)
+TEST(obstacles_stop)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     const SmObstacle ground = {.kind = SM_PLANE, .a = {0, -60, 0}, .b = {0, 1, 0}, .friction = 0.5};
@@ -180,9 +168,8 @@ static void obstacles_stop(void **state)
 }
 
 /* Impulses are momentum, whatever the node weighs, and a step keeps it. */
-static void pushes_are_momentum(void **state)
+TEST(pushes_are_momentum)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     for (int precision = 0; precision < 2; precision++) {
@@ -217,9 +204,8 @@ static void pushes_are_momentum(void **state)
 }
 
 /* Masses of the lattice's vertices come down to the leaves, none lost. */
-static void masses_come_from_the_vertices(void **state)
+TEST(masses_come_from_the_vertices)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     size_t count = (size_t)voxels.particle_count;
@@ -250,9 +236,8 @@ static void masses_come_from_the_vertices(void **state)
 }
 
 /* Turned and moved instances rest where their poses put them, and stay there. */
-static void instances_rest_in_their_poses(void **state)
+TEST(instances_rest_in_their_poses)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     double pose[5][3][4];
@@ -294,9 +279,8 @@ static void instances_rest_in_their_poses(void **state)
 }
 
 /* A plank of 64 base cells as the engine would choose them. */
-static void few_nodes_get_large_base_cells(void **state)
+TEST(few_nodes_get_large_base_cells)
 {
-    (void)state;
     SmVoxels voxels;
     sm_voxels_block(&voxels, 64, 64, 8, 0.1);
     static const int wanted[] = {64, 16, 4, 1};
@@ -311,9 +295,8 @@ static void few_nodes_get_large_base_cells(void **state)
     sm_voxels_free(&voxels);
 }
 
-static void other_choices_are_not_resampled(void **state)
+TEST(other_choices_are_not_resampled)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     for (int symmetry = 0; symmetry < 3; symmetry++) {
@@ -333,9 +316,8 @@ static void other_choices_are_not_resampled(void **state)
     sm_voxels_free(&voxels);
 }
 
-static void refuses_what_it_does_not_do(void **state)
+TEST(refuses_what_it_does_not_do)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     const double masses[1] = {-1};
@@ -377,9 +359,8 @@ static void refuses_what_it_does_not_do(void **state)
 }
 
 /* Single precision has not the digits for what is far apart and yet in one region. */
-static void regions_may_not_reach_further_than_the_digits(void **state)
+TEST(regions_may_not_reach_further_than_the_digits)
 {
-    (void)state;
     SmVoxels voxels;
     SmEngine *engine;
     SmError error;
@@ -394,22 +375,4 @@ static void regions_may_not_reach_further_than_the_digits(void **state)
             if (!code) engines[precision]->destroy(engine);
         }
     sm_voxels_free(&voxels);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(goals_are_the_twins),
-        cmocka_unit_test(regions_are_the_leaves_and_symmetric),
-        cmocka_unit_test(handles_hold),
-        cmocka_unit_test(obstacles_stop),
-        cmocka_unit_test(pushes_are_momentum),
-        cmocka_unit_test(masses_come_from_the_vertices),
-        cmocka_unit_test(instances_rest_in_their_poses),
-        cmocka_unit_test(few_nodes_get_large_base_cells),
-        cmocka_unit_test(other_choices_are_not_resampled),
-        cmocka_unit_test(refuses_what_it_does_not_do),
-        cmocka_unit_test(regions_may_not_reach_further_than_the_digits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

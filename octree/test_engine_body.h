@@ -1,8 +1,8 @@
-/* test_engine_body.h - the body that the engine is tested with, in both precisions. Include it
- * after cmocka.h. */
+/* test_engine_body.h - the body that the engine is tested with, in both precisions. */
 #ifndef OCT_TEST_ENGINE_BODY_H
 #define OCT_TEST_ENGINE_BODY_H
 
+#include "../lib/test_frame.h"
 #include "engine.h"
 
 static const SmEngineType *const engines[2] = {&octree_engine_f32, &octree_engine_f64};

@@ -1,15 +1,5 @@
 /* test_octree.h - holds the octree engine to its twins and to the invariants of shape matching, in
  * the precision that the including file has chosen. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../fastlsm/fastlsm.h"
 #include "test_octree_body.h"
 
@@ -36,9 +26,8 @@ static void check_goals(Body *body, OctParams params, int trial)
     oct_free(oct);
 }
 
-static void test_goals(void **state)
+TEST(test_goals)
 {
-    (void)state;
     unsigned seed = 1;
     for (int trial = 0; trial < 240; trial++) {
         Body body;
@@ -53,9 +42,8 @@ static void test_goals(void **state)
 }
 
 /* The adjoint sums over the regions that contain a node even where these are not its own. */
-static void test_asymmetric(void **state)
+TEST(test_asymmetric)
 {
-    (void)state;
     unsigned seed = 2;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -83,9 +71,8 @@ static void count_leaves(const OctTree *tree, const OctSumLists *lists, long t, 
 
 /* Every list against the explicit leaves of its region, and transposed against the regions that
  * contain a leaf. */
-static void test_lists(void **state)
+TEST(test_lists)
 {
-    (void)state;
     unsigned seed = 3;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -120,9 +107,8 @@ static void test_lists(void **state)
 }
 
 /* What no region holds together is found again to the same digits however far it drifts. */
-static void test_drifted(void **state)
+TEST(test_drifted)
 {
-    (void)state;
     unsigned seed = 12;
     long apart = 0;
     for (int trial = 0; trial < 48; trial++) {
@@ -194,9 +180,8 @@ static long check_steps(Body *body, int trial, double damping)
     return ghosts;
 }
 
-static void test_steps(void **state)
+TEST(test_steps)
 {
-    (void)state;
     unsigned seed = 4;
     for (int trial = 0; trial < 48; trial++) {
         Body body;
@@ -226,9 +211,8 @@ static void thread_body(unsigned *seed, int length, Body *body)
 }
 
 /* In single precision coordinates of a thousand cells have not the digits that goals must have. */
-static void test_wide(void **state)
+TEST(test_wide)
 {
-    (void)state;
     unsigned seed = 13;
     long ghosts = 0;
     for (int trial = 0; trial < 24; trial++) {
@@ -245,9 +229,8 @@ static void test_wide(void **state)
     assert_true(ghosts > 1000);
 }
 
-static void test_momentum(void **state)
+TEST(test_momentum)
 {
-    (void)state;
     unsigned seed = 5;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -280,9 +263,8 @@ static void test_momentum(void **state)
 }
 
 /* A rigidly moving body is left alone, and so is a resting one. */
-static void test_rigid(void **state)
+TEST(test_rigid)
 {
-    (void)state;
     unsigned seed = 6;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -326,9 +308,8 @@ static void block_body(unsigned *seed, int side, double split, Body *body)
 }
 
 /* Crushed flat, inverted, blown up, or all in one point: it comes back to rest, never a NaN. */
-static void test_recovery(void **state)
+TEST(test_recovery)
 {
-    (void)state;
     const double crush[5][3] = {{1, 1, 0}, {-1, 1, 1}, {1000, 1000, 1000}, {0, 0, 0}, {1, 0, 0}};
     for (int trial = 0; trial < 15; trial++) {
         Body body;
@@ -363,9 +344,8 @@ static void test_recovery(void **state)
     }
 }
 
-static void test_threads(void **state)
+TEST(test_threads)
 {
-    (void)state;
     for (int trial = 0; trial < 4; trial++) {
         Body body;
         unsigned seed = 8;
@@ -390,9 +370,8 @@ static void test_threads(void **state)
 }
 
 /* Each of several bodies moves as it would alone. */
-static void test_instances(void **state)
+TEST(test_instances)
 {
-    (void)state;
     Body body;
     unsigned seed = 9;
     block_body(&seed, 8, 0.6, &body);
@@ -460,9 +439,8 @@ static double dent(double creep, double *volume)
     return 1 - (high - low) / (rest_high - rest_low);
 }
 
-static void test_plastic(void **state)
+TEST(test_plastic)
 {
-    (void)state;
     double volume, elastic = dent(0, &volume), plastic = dent(0.1, &volume);
     if (!(fabs(elastic) < 1e-3)) fail_msg("an elastic block keeps a dent of %g", elastic);
     if (!(plastic > 0.1)) fail_msg("a plastic block keeps a dent of %g only", plastic);
@@ -471,9 +449,8 @@ static void test_plastic(void **state)
 
 /* The octree and FastLSM engines give the same goal positions: same nodes and neighbours, equal
  * masses, epsilon 0. The regions of each are its own; the octree's hold inner nodes of the tree. */
-static void test_fastlsm(void **state)
+TEST(test_fastlsm)
 {
-    (void)state;
     const SmEngineType *type = SINGLE ? &fastlsm_engine_f32 : &fastlsm_engine_f64;
     unsigned seed = 11;
     long inner = 0;
@@ -507,18 +484,4 @@ static void test_fastlsm(void **state)
         sm_voxels_free(&cells);
     }
     assert_true(inner > 10000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_goals),     cmocka_unit_test(test_asymmetric),
-        cmocka_unit_test(test_drifted),   cmocka_unit_test(test_wide),
-        cmocka_unit_test(test_lists),     cmocka_unit_test(test_steps),
-        cmocka_unit_test(test_momentum),  cmocka_unit_test(test_rigid),
-        cmocka_unit_test(test_recovery),  cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_instances), cmocka_unit_test(test_plastic),
-        cmocka_unit_test(test_fastlsm),
-    };
-    return cmocka_run_group_tests_name("octree", tests, NULL, NULL);
 }

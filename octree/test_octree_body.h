@@ -1,15 +1,16 @@
-/* test_octree_body.h - a random body in one precision and its twin. Include after cmocka. */
+/* test_octree_body.h - a random body in one precision and its twin. */
 #ifndef OCT_TEST_OCTREE_BODY_H
 #define OCT_TEST_OCTREE_BODY_H
 
 #include "../lib/engine.h"
 #include "../lib/test_fields.h"
+#include "../lib/test_frame.h"
 #include "../reference/octree_goals.h"
 #include "ghosts.h"
 #include "octree.h"
 #include "region/frames.h"
-#include "region/random_regions.h"
-#include "tree/random_trees.h"
+#include "region/test_regions.h"
+#include "tree/test_trees.h"
 
 typedef struct {
     SmVoxels voxels;

@@ -1,18 +1,11 @@
 /* Theory of beams: limits, and what modes must fulfil. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "beam.h"
 
+#include "../lib/test_frame.h"
+
 /* A slender beam does not shear; a thick one is softer, the more so in higher modes. */
-static void timoshenko_tends_to_euler(void **state)
+TEST(timoshenko_tends_to_euler)
 {
-    (void)state;
     double before[REF_BEAM_MODES] = {0};
     for (int length = 3; length <= 3000; length *= 10) {
         RefBeam beam = {length, 1, 0.3};
@@ -33,9 +26,8 @@ static void timoshenko_tends_to_euler(void **state)
 
 /* omega^2 of the first mode times the sag under a load is 12.36 / 8 of it (Euler and Bernoulli);
  * lengths and thicknesses scale. */
-static void sag_and_frequency_belong_together(void **state)
+TEST(sag_and_frequency_belong_together)
 {
-    (void)state;
     double square[2][REF_BEAM_MODES];
     RefBeam beam = {10, 1, 0.3}, larger = {20, 2, 0.3};
     ref_beam_frequencies(&beam, REF_EULER, square[0]);
@@ -52,9 +44,8 @@ static void sag_and_frequency_belong_together(void **state)
 }
 
 /* Held at the clamp, 2 at the tip, no moment there, and orthogonal. */
-static void modes_fulfil_their_ends(void **state)
+TEST(modes_fulfil_their_ends)
 {
-    (void)state;
     enum { PARTS = 2000 };
     double product[REF_BEAM_MODES][REF_BEAM_MODES] = {{0}}, slope;
     for (int k = 0; k < REF_BEAM_MODES; k++) {
@@ -71,14 +62,4 @@ static void modes_fulfil_their_ends(void **state)
                                  ref_beam_shape(b, (n + 0.5) / PARTS, &slope) / PARTS;
     for (int a = 0; a < REF_BEAM_MODES; a++)
         for (int b = 0; b < REF_BEAM_MODES; b++) assert_true(fabs(product[a][b] - (a == b)) < 1e-4);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(timoshenko_tends_to_euler),
-        cmocka_unit_test(sag_and_frequency_belong_together),
-        cmocka_unit_test(modes_fulfil_their_ends),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

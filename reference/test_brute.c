@@ -1,15 +1,8 @@
 /* Regions on shapes whose answer is known, and what the brute-force sums must conserve. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "brute.h"
+
+#include "../lib/test_frame.h"
+#include "../lib/test_random.h"
 
 /* A lattice from a picture: layers of rows of cells, '#' is material. */
 static SmVoxels picture(int nx, int ny, int nz, const char *cells)
@@ -23,23 +16,17 @@ static SmVoxels picture(int nx, int ny, int nz, const char *cells)
     return voxels;
 }
 
-static double uniform(uint64_t *state)
-{
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*state >> 11) * 0x1p-53;
-}
-
-static SmVoxels random_shape(uint64_t *state)
+static SmVoxels random_shape(unsigned *seed)
 {
     SmVoxels voxels;
-    sm_voxels_init(&voxels, 3 + (int)(5 * uniform(state)), 2 + (int)(4 * uniform(state)),
-                   2 + (int)(4 * uniform(state)), 1.0);
-    double fill = 0.25 + 0.6 * uniform(state);
+    sm_voxels_init(&voxels, 3 + random_int(seed, 5), 2 + random_int(seed, 4),
+                   2 + random_int(seed, 4), 1.0);
+    double fill = 0.25 + 0.6 * random_unit(seed);
     sm_voxel_set(&voxels, 0, 0, 0);
     for (int k = 0; k < voxels.size[2]; k++)
         for (int j = 0; j < voxels.size[1]; j++)
             for (int i = 0; i < voxels.size[0]; i++)
-                if (uniform(state) < fill) sm_voxel_set(&voxels, i, j, k);
+                if (random_unit(seed) < fill) sm_voxel_set(&voxels, i, j, k);
     sm_voxels_count(&voxels);
     return voxels;
 }
@@ -73,9 +60,8 @@ static int clipped(int at, int cells, int w)
     return high - low + 1;
 }
 
-static void full_block_has_clipped_cubes(void **state)
+TEST(full_block_has_clipped_cubes)
 {
-    (void)state;
     SmVoxels voxels;
     sm_voxels_block(&voxels, 4, 3, 5, 1.0);
     int(*c)[3] = sm_alloc((size_t)voxels.particle_count, sizeof *c);
@@ -97,9 +83,8 @@ static void full_block_has_clipped_cubes(void **state)
 }
 
 /* Ranges [i - w, i + w] cut to [0, 4] and to [0, 2]: 5, 5, 3, 1 and 3, 1, 1, 1 different ones. */
-static void unique_regions_of_a_block(void **state)
+TEST(unique_regions_of_a_block)
 {
-    (void)state;
     SmVoxels voxels;
     sm_voxels_block(&voxels, 4, 2, 2, 1.0);
     static const long along[] = {5, 5, 3, 1}, across[] = {3, 1, 1, 1};
@@ -114,9 +99,8 @@ static void unique_regions_of_a_block(void **state)
 }
 
 /* Two cells that touch in an edge or a vertex only share its particles, hence are joined there. */
-static void cells_joined_at_an_edge_or_a_vertex(void **state)
+TEST(cells_joined_at_an_edge_or_a_vertex)
 {
-    (void)state;
     SmVoxels edge = picture(2, 2, 1,
                             "#."
                             ".#");
@@ -144,9 +128,8 @@ static void cells_joined_at_an_edge_or_a_vertex(void **state)
     sm_voxels_free(&vertex);
 }
 
-static void one_cell_gap_is_not_jumped(void **state)
+TEST(one_cell_gap_is_not_jumped)
 {
-    (void)state;
     SmVoxels bars = picture(5, 3, 1,
                             "#####"
                             "....."
@@ -160,9 +143,8 @@ static void one_cell_gap_is_not_jumped(void **state)
 }
 
 /* Arms of a U: from tip to tip it is 5 steps down, 2 across at the foot, and up again. */
-static void u_shape_goes_round(void **state)
+TEST(u_shape_goes_round)
 {
-    (void)state;
     SmVoxels u = picture(3, 5, 1,
                          "###"
                          "#.#"
@@ -180,9 +162,8 @@ static void u_shape_goes_round(void **state)
     sm_voxels_free(&u);
 }
 
-static void broken_links_part_neighbours(void **state)
+TEST(broken_links_part_neighbours)
 {
-    (void)state;
     SmVoxels bar;
     sm_voxels_block(&bar, 3, 1, 1, 1.0);
     int(*broken)[2] = sm_alloc(16, sizeof *broken);
@@ -205,10 +186,9 @@ static void broken_links_part_neighbours(void **state)
     sm_voxels_free(&bar);
 }
 
-static void membership_is_symmetric(void **state)
+TEST(membership_is_symmetric)
 {
-    (void)state;
-    uint64_t seed = 7;
+    unsigned seed = 7;
     for (int trial = 0; trial < 60; trial++) {
         SmVoxels voxels = random_shape(&seed);
         RefRegions regions;
@@ -232,7 +212,7 @@ typedef struct {
     double (*x0)[3], (*x)[3], (*v)[3], (*g)[3], *m;
 } Body;
 
-static Body body_create(uint64_t *seed, int w)
+static Body body_create(unsigned *seed, int w)
 {
     Body body = {.voxels = random_shape(seed)};
     size_t count = (size_t)body.voxels.particle_count;
@@ -246,11 +226,11 @@ static Body body_create(uint64_t *seed, int w)
     body.g = sm_alloc(count, sizeof *body.g);
     body.m = sm_alloc(count, sizeof *body.m);
     for (size_t p = 0; p < count; p++) {
-        body.m[p] = 0.5 + uniform(seed);
+        body.m[p] = 0.5 + random_unit(seed);
         for (int a = 0; a < 3; a++) {
             body.x0[p][a] = c[p][a];
-            body.x[p][a] = c[p][a] + uniform(seed) - 0.5;
-            body.v[p][a] = uniform(seed) - 0.5;
+            body.x[p][a] = c[p][a] + random_between(seed, -0.5, 0.5);
+            body.v[p][a] = random_between(seed, -0.5, 0.5);
         }
     }
     free(c);
@@ -287,10 +267,10 @@ static void assert_near(const double (*a)[3], const double (*b)[3], long count, 
         for (int k = 0; k < 3; k++) assert_true(fabs(a[p][k] - b[p][k]) <= tolerance);
 }
 
-static void rotation_from(uint64_t *seed, double R[3][3])
+static void rotation_from(unsigned *seed, double R[3][3])
 {
     double q[4], length = 0;
-    for (int k = 0; k < 4; k++) q[k] = uniform(seed) - 0.5, length += q[k] * q[k];
+    for (int k = 0; k < 4; k++) q[k] = random_between(seed, -0.5, 0.5), length += q[k] * q[k];
     for (int k = 0; k < 4; k++) q[k] /= sqrt(length);
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) {
@@ -300,15 +280,14 @@ static void rotation_from(uint64_t *seed, double R[3][3])
         }
 }
 
-static void rigid_motion_is_reproduced(void **state)
+TEST(rigid_motion_is_reproduced)
 {
-    (void)state;
-    uint64_t seed = 11;
+    unsigned seed = 11;
     for (int trial = 0; trial < 30; trial++) {
         Body body = body_create(&seed, 1 + trial % 3);
         double R[3][3], shift[3];
         rotation_from(&seed, R);
-        for (int a = 0; a < 3; a++) shift[a] = 20 * uniform(&seed);
+        for (int a = 0; a < 3; a++) shift[a] = 20 * random_unit(&seed);
         body_goals(&body); /* deformed: something else first */
         memcpy(body.x, body.x0, (size_t)body.count * sizeof *body.x);
         body_goals(&body);
@@ -324,10 +303,9 @@ static void rigid_motion_is_reproduced(void **state)
 }
 
 /* sum m g = sum m x and sum m x cross g = 0: then a step changes neither momentum. */
-static void goals_conserve_momentum(void **state)
+TEST(goals_conserve_momentum)
 {
-    (void)state;
-    uint64_t seed = 13;
+    unsigned seed = 13;
     for (int trial = 0; trial < 40; trial++) {
         Body body = body_create(&seed, 1 + trial % 3);
         body_goals(&body);
@@ -347,13 +325,12 @@ static void goals_conserve_momentum(void **state)
     }
 }
 
-static void rigid_velocity_of_rigid_motion_is_itself(void **state)
+TEST(rigid_velocity_of_rigid_motion_is_itself)
 {
-    (void)state;
-    uint64_t seed = 17;
+    unsigned seed = 17;
     for (int trial = 0; trial < 30; trial++) {
         Body body = body_create(&seed, 1 + trial % 3);
-        const double omega[3] = {uniform(&seed), -uniform(&seed), 2 * uniform(&seed)};
+        const double omega[3] = {random_unit(&seed), -random_unit(&seed), 2 * random_unit(&seed)};
         for (long p = 0; p < body.count; p++) {
             body.v[p][0] = 3, body.v[p][1] = -1, body.v[p][2] = 0.5;
             add_cross(omega, body.x[p], 1, body.v[p]);
@@ -364,10 +341,9 @@ static void rigid_velocity_of_rigid_motion_is_itself(void **state)
     }
 }
 
-static void rigid_velocity_conserves_momentum(void **state)
+TEST(rigid_velocity_conserves_momentum)
 {
-    (void)state;
-    uint64_t seed = 19;
+    unsigned seed = 19;
     for (int trial = 0; trial < 30; trial++) {
         Body body = body_create(&seed, 1 + trial % 3);
         ref_rigid_velocity(&body.regions, body.m, CONST(body.x), CONST(body.v), NULL, body.g);
@@ -391,11 +367,10 @@ static void rigid_velocity_conserves_momentum(void **state)
 
 /* A rod along x, `thickness` across, that turns as a whole: about its own axis, too, for as long as
  * I_r's least eigenvalue (thickness^2 of the largest) is above the threshold. */
-static void thin_bodies_turn_too(void **state)
+TEST(thin_bodies_turn_too)
 {
-    (void)state;
     static const double thickness[] = {1e-1, 1e-3, 1e-7, 0};
-    uint64_t seed = 29;
+    unsigned seed = 29;
     for (int n = 0; n < 4; n++) {
         Body body = body_create(&seed, 9);
         bool spins = thickness[n] > 1e-5;
@@ -417,10 +392,9 @@ static void thin_bodies_turn_too(void **state)
 }
 
 /* Crushed to a plane, a line, a point, or turned inside out; far away; huge: all stay finite. */
-static void crushed_bodies_stay_finite(void **state)
+TEST(crushed_bodies_stay_finite)
 {
-    (void)state;
-    uint64_t seed = 23;
+    unsigned seed = 23;
     const double scale[][3] = {{1, 1, 0},    {1, 0, 0},          {0, 0, 0},         {-1, 1, 1},
                                {-1, -1, -1}, {1000, 1000, 1000}, {1e-200, 1, 1e90}, {1e150, 1, 1}};
     for (size_t n = 0; n < sizeof scale / sizeof *scale; n++) {
@@ -435,24 +409,4 @@ static void crushed_bodies_stay_finite(void **state)
             for (int a = 0; a < 3; a++) assert_true(isfinite(body.g[p][a]));
         body_free(&body);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(full_block_has_clipped_cubes),
-        cmocka_unit_test(unique_regions_of_a_block),
-        cmocka_unit_test(cells_joined_at_an_edge_or_a_vertex),
-        cmocka_unit_test(one_cell_gap_is_not_jumped),
-        cmocka_unit_test(u_shape_goes_round),
-        cmocka_unit_test(broken_links_part_neighbours),
-        cmocka_unit_test(membership_is_symmetric),
-        cmocka_unit_test(rigid_motion_is_reproduced),
-        cmocka_unit_test(goals_conserve_momentum),
-        cmocka_unit_test(rigid_velocity_of_rigid_motion_is_itself),
-        cmocka_unit_test(rigid_velocity_conserves_momentum),
-        cmocka_unit_test(thin_bodies_turn_too),
-        cmocka_unit_test(crushed_bodies_stay_finite),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

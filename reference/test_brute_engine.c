@@ -1,26 +1,12 @@
 /* The brute-force engine through the common interface: what a step does, and to whom. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../lib/test_fields.h"
+#include "../lib/test_frame.h"
+#include "../lib/test_random.h"
 #include "brute.h"
 
 #define CONST(array) ((const double(*)[3])(array))
 
 static const SmEngineType *const type = &ref_brute_engine;
-
-static double uniform(uint64_t *state)
-{
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*state >> 11) * 0x1p-53 - 0.5;
-}
 
 static SmEngine *create(int nx, int ny, int nz, const SmEngineParams *params)
 {
@@ -48,14 +34,14 @@ static double (*field(SmEngine *engine, SmField name))[3]
     return values;
 }
 
-static void shake(SmEngine *engine, uint64_t seed)
+static void shake(SmEngine *engine, unsigned seed)
 {
     long count = particles(engine);
     double(*x)[3] = field(engine, SM_POSITION), (*v)[3] = field(engine, SM_VELOCITY);
     for (long p = 0; p < count; p++)
         for (int a = 0; a < 3; a++) {
-            x[p][a] += 0.5 * uniform(&seed);
-            v[p][a] += uniform(&seed);
+            x[p][a] += 0.5 * random_between(&seed, -0.5, 0.5);
+            v[p][a] += random_between(&seed, -0.5, 0.5);
         }
     type->set(engine, SM_POSITION, CONST(x));
     type->set(engine, SM_VELOCITY, CONST(v));
@@ -63,9 +49,8 @@ static void shake(SmEngine *engine, uint64_t seed)
     free(v);
 }
 
-static void a_body_falls_as_one(void **state)
+TEST(a_body_falls_as_one)
 {
-    (void)state;
     const SmEngineParams params = {.w = 2, .h = 0.01, .gravity = {0, -9.81, 1}, .damping = 0.5};
     SmEngine *engine = create(3, 2, 2, &params);
     const int steps = 20;
@@ -92,12 +77,11 @@ static void momenta(SmEngine *engine, const double *m, double linear[3], double 
     free(v);
 }
 
-static void steps_conserve_momentum(void **state)
+TEST(steps_conserve_momentum)
 {
-    (void)state;
     double m[60], linear[2][3], angular[2][3];
-    uint64_t seed = 3;
-    for (int p = 0; p < 60; p++) m[p] = 1 + uniform(&seed);
+    unsigned seed = 3;
+    for (int p = 0; p < 60; p++) m[p] = 1 + random_between(&seed, -0.5, 0.5);
     const SmEngineParams params = {.w = 1, .h = 0.1, .damping = 0.3, .mass = m};
     SmEngine *engine = create(4, 3, 2, &params);
     double masses[60];
@@ -116,9 +100,8 @@ static void steps_conserve_momentum(void **state)
 
 /* Energy after one step with and without damping, and on the steps that damping_every leaves out.
  */
-static void damping_takes_energy_when_due(void **state)
+TEST(damping_takes_energy_when_due)
 {
-    (void)state;
     const SmEngineParams none = {.w = 1, .h = 0.1};
     SmEngineParams third = none, every = none;
     third.damping = every.damping = 0.8;
@@ -146,9 +129,8 @@ static void damping_takes_energy_when_due(void **state)
     for (int e = 0; e < 3; e++) type->destroy(engine[e]);
 }
 
-static void handles_hold_what_they_name(void **state)
+TEST(handles_hold_what_they_name)
 {
-    (void)state;
     const SmEngineParams params = {.w = 1, .h = 0.02, .gravity = {0, -5, 0}, .damping = 0.2};
     SmEngine *engine = create(4, 1, 1, &params);
     static const long pinned[] = {0, 5, 10, 15}, moving[] = {4, 19};
@@ -179,9 +161,8 @@ static void handles_hold_what_they_name(void **state)
     type->destroy(engine);
 }
 
-static void a_dropped_body_comes_to_rest_on_the_ground(void **state)
+TEST(a_dropped_body_comes_to_rest_on_the_ground)
 {
-    (void)state;
     const SmEngineParams params = {.w = 2, .h = 0.02, .gravity = {0, -9.81, 0}, .damping = 0.1};
     SmEngine *engine = create(2, 2, 2, &params);
     const SmObstacle ground = {SM_PLANE, {0, -0.5, 0}, {0, 1, 0}, 0, 0.3};
@@ -202,9 +183,8 @@ static void a_dropped_body_comes_to_rest_on_the_ground(void **state)
     type->destroy(engine);
 }
 
-static void a_push_is_an_impulse(void **state)
+TEST(a_push_is_an_impulse)
 {
-    (void)state;
     double m[27];
     for (int p = 0; p < 27; p++) m[p] = 4;
     const SmEngineParams params = {.w = 1, .h = 0.1, .mass = m, .instances = 2};
@@ -221,9 +201,8 @@ static void a_push_is_an_impulse(void **state)
 }
 
 /* Two posed instances move as two engines would, one of them turned. */
-static void instances_are_independent(void **state)
+TEST(instances_are_independent)
 {
-    (void)state;
     const double pose[2][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
                                   {{0, -1, 0, 10}, {1, 0, 0, 0}, {0, 0, 1, -3}}};
     const SmEngineParams one = {.w = 1, .h = 0.05, .damping = 0.1};
@@ -257,9 +236,8 @@ static void instances_are_independent(void **state)
 
 /* A bar of 4 cells pulled apart across its third: the engine's regions are those of a body built
  * without the links that are too long now. The other instance stays whole. */
-static void stretched_links_break(void **state)
+TEST(stretched_links_break)
 {
-    (void)state;
     const SmEngineParams params = {.w = 1, .h = 0.01, .strain_limit = 1.5, .instances = 2};
     SmEngine *engine = create(4, 1, 1, &params);
     SmCounts before, after;
@@ -312,9 +290,8 @@ static void stretched_links_break(void **state)
     type->destroy(engine);
 }
 
-static void goals_change_nothing_else(void **state)
+TEST(goals_change_nothing_else)
 {
-    (void)state;
     const SmEngineParams params = {.w = 2, .h = 0.1, .damping = 0.2};
     SmEngine *engine = create(3, 3, 2, &params);
     shake(engine, 21);
@@ -338,9 +315,8 @@ static void goals_change_nothing_else(void **state)
     type->destroy(engine);
 }
 
-static void any_thread_count_gives_the_same_bits(void **state)
+TEST(any_thread_count_gives_the_same_bits)
 {
-    (void)state;
     double(*x[3])[3];
     for (int t = 0; t < 3; t++) {
         const SmEngineParams params = {.w = 2, .h = 0.1, .damping = 0.2, .threads = t + 1};
@@ -354,9 +330,8 @@ static void any_thread_count_gives_the_same_bits(void **state)
     for (int t = 0; t < 3; t++) free(x[t]);
 }
 
-static void laps_have_no_gaps(void **state)
+TEST(laps_have_no_gaps)
 {
-    (void)state;
     const SmEngineParams params = {.w = 2, .h = 0.1, .damping = 0.2};
     SmEngine *engine = create(8, 8, 8, &params);
     SmLaps laps;
@@ -371,9 +346,8 @@ static void laps_have_no_gaps(void **state)
     type->destroy(engine);
 }
 
-static void bad_parameters_are_refused(void **state)
+TEST(bad_parameters_are_refused)
 {
-    (void)state;
     double negative[8] = {1, 1, 1, -1, 1, 1, 1, 1};
     const SmEngineParams good = {.w = 1, .h = 0.1};
     SmEngineParams bad[9] = {good, good, good, good, good, good, good, good, good};
@@ -401,23 +375,4 @@ static void bad_parameters_are_refused(void **state)
     }
     sm_voxels_free(&voxels);
     sm_voxels_free(&empty);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_body_falls_as_one),
-        cmocka_unit_test(steps_conserve_momentum),
-        cmocka_unit_test(damping_takes_energy_when_due),
-        cmocka_unit_test(handles_hold_what_they_name),
-        cmocka_unit_test(a_dropped_body_comes_to_rest_on_the_ground),
-        cmocka_unit_test(a_push_is_an_impulse),
-        cmocka_unit_test(instances_are_independent),
-        cmocka_unit_test(stretched_links_break),
-        cmocka_unit_test(goals_change_nothing_else),
-        cmocka_unit_test(any_thread_count_gives_the_same_bits),
-        cmocka_unit_test(laps_have_no_gaps),
-        cmocka_unit_test(bad_parameters_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

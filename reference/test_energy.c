@@ -1,16 +1,8 @@
 /* Energy in collisions, of both engines: it never grows. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../fastlsm/fastlsm.h"
 #include "../lib/collide/collide.h"
 #include "../lib/test_fields.h"
+#include "../lib/test_frame.h"
 #include "../octree/engine.h"
 #include "energy.h"
 
@@ -96,9 +88,8 @@ static long run(Trial *t, long steps, double swing, RefEnergy *last)
 }
 
 /* What the energy is by itself: kept by a body that swings and turns. */
-static void test_kept(void **state)
+TEST(test_kept)
 {
-    (void)state;
     for (int e = 0; e < ENGINES; e++) {
         Trial t;
         RefEnergy last;
@@ -126,9 +117,8 @@ static void momentum(Trial *t, double p[3])
 }
 
 /* Two blocks fly at each other, not quite in line, and apart again. */
-static void test_head_on(void **state)
+TEST(test_head_on)
 {
-    (void)state;
     for (int e = 0; e < ENGINES; e++) {
         Trial t;
         RefEnergy last;
@@ -153,9 +143,8 @@ static void test_head_on(void **state)
 }
 
 /* The arms of a C clap together. */
-static void test_fold(void **state)
+TEST(test_fold)
 {
-    (void)state;
     for (int e = 0; e < ENGINES; e++) {
         Trial t;
         RefEnergy last;
@@ -176,9 +165,8 @@ static void test_fold(void **state)
 }
 
 /* Blocks fall on each other and come to rest as a pile that stands. */
-static void test_pile(void **state)
+TEST(test_pile)
 {
-    (void)state;
     static const SmObstacle ground = {
         .kind = SM_PLANE, .a = {0, -0.5, 0}, .b = {0, 1, 0}, .friction = 0.3};
     for (int e = 0; e < ENGINES; e++) {
@@ -239,17 +227,15 @@ static void throw_at_plate(const SmEngineType *type, int w, int turn)
     end(&t);
 }
 
-static void test_plates(void **state)
+TEST(test_plates)
 {
-    (void)state;
     for (int e = 0; e < ENGINES; e++)
         for (int turn = 0; turn < 3; turn++) throw_at_plate(engines[e], 1 + turn, turn);
 }
 
 /* Obstacles one cell thick: a wall, a bar, a ball; the body comes to one side and stays there. */
-static void test_obstacles(void **state)
+TEST(test_obstacles)
 {
-    (void)state;
     static const SmObstacle obstacle[3] = {
         {.kind = SM_BOX, .a = {-5e3, -5e3, 6}, .b = {5e3, 5e3, 7}},
         {.kind = SM_PLANE, .a = {0, 0, 6}, .b = {0, 0, -1}},
@@ -279,9 +265,8 @@ static void test_obstacles(void **state)
 }
 
 /* A step gives the same bits for any number of threads. */
-static void test_threads(void **state)
+TEST(test_threads)
 {
-    (void)state;
     for (int e = 0; e < ENGINES; e++) {
         double(*x[2])[3];
         long n = 0;
@@ -306,15 +291,4 @@ static void test_threads(void **state)
         free(x[0]);
         free(x[1]);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kept),    cmocka_unit_test(test_head_on),
-        cmocka_unit_test(test_fold),    cmocka_unit_test(test_pile),
-        cmocka_unit_test(test_plates),  cmocka_unit_test(test_obstacles),
-        cmocka_unit_test(test_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,7 @@
 /* Each obstacle: which way out, what becomes of the velocity. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "obstacle.h"
+
+#include "../lib/test_frame.h"
 
 typedef struct {
     SmObstacle obstacle;
@@ -57,9 +51,8 @@ static const Case cases[] = {
      {1, -1, 0}},
 };
 
-static void particles_leave_by_the_nearest_way(void **state)
+TEST(particles_leave_by_the_nearest_way)
 {
-    (void)state;
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         Case c = cases[n];
         assert_int_equal(ref_obstacle_push_out(&c.obstacle, c.x, c.v), c.inside);
@@ -68,10 +61,4 @@ static void particles_leave_by_the_nearest_way(void **state)
             assert_true(fabs(c.v[a] - c.slowed[a]) < 1e-15);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(particles_leave_by_the_nearest_way)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

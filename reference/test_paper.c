@@ -1,19 +1,10 @@
 /* The papers' values hang together: derived ones follow from quoted ones. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "paper.h"
 
-static void table_1_has_its_rows(void **state)
+#include "../lib/test_frame.h"
+
+TEST(table_1_has_its_rows)
 {
-    (void)state;
     static const char *const scenes[] = {"penguin", "statue-solid", "statue-shell", "infant"};
     static const double totals[] = {0.28, 167.83, 48.47, 4.99};
     static const double regions[] = {130, 57626, 19959, 2506};
@@ -34,9 +25,8 @@ static void table_1_has_its_rows(void **state)
 }
 
 /* Milliseconds and percents agree to a unit of the last printed digit, or are marked damaged. */
-static void stages_add_up(void **state)
+TEST(stages_add_up)
 {
-    (void)state;
     int count;
     const RefPaperRow *row = ref_paper_rows(&count);
     for (int n = 0; n < count; n++, row++) {
@@ -63,9 +53,8 @@ static void stages_add_up(void **state)
     assert_true(isnan(ref_paper_find("fastlsm", "penguin")->stage_ms[SM_DAMPING].value));
 }
 
-static void costs_per_particle_follow_from_the_table(void **state)
+TEST(costs_per_particle_follow_from_the_table)
 {
-    (void)state;
     static const char *const pairs[][2] = {{"penguin", "penguin-particle"},
                                            {"statue-solid", "solid-particle"},
                                            {"statue-shell", "shell-particle"},
@@ -81,9 +70,8 @@ static void costs_per_particle_follow_from_the_table(void **state)
 }
 
 /* Milliseconds are those of the frames per second, and so are the speed-ups. */
-static void the_hand_has_its_rows(void **state)
+TEST(the_hand_has_its_rows)
 {
-    (void)state;
     static const char *const scenes[] = {"hand-lattice", "hand-lattice-plain", "hand-regular",
                                          "hand-sampled"};
     double plain = ref_paper_find("octree", "hand-lattice-plain")->fps.value;
@@ -104,9 +92,8 @@ static void the_hand_has_its_rows(void **state)
 }
 
 /* Scenes that change say what becomes of them, in numbers that agree. */
-static void changing_scenes_have_an_end(void **state)
+TEST(changing_scenes_have_an_end)
 {
-    (void)state;
     const RefPaperRow *liver = ref_paper_find("octree", "liver");
     const RefPaperRow *flowers = ref_paper_find("octree", "flowers");
     assert_true(liver->last_particles.value > 3 * liver->particles.value);
@@ -119,9 +106,8 @@ static void changing_scenes_have_an_end(void **state)
 }
 
 /* A rate that is second-hand makes the time that is derived from it so, and the other way round. */
-static void a_step_is_as_sound_as_its_source(void **state)
+TEST(a_step_is_as_sound_as_its_source)
 {
-    (void)state;
     static const struct {
         const char *paper, *scene;
         RefStatus status;
@@ -134,9 +120,8 @@ static void a_step_is_as_sound_as_its_source(void **state)
                          cases[c].status);
 }
 
-static void claims_are_complete(void **state)
+TEST(claims_are_complete)
 {
-    (void)state;
     int count, kinds[4] = {0};
     const RefPaperClaim *claim = ref_paper_claims(&count);
     for (int n = 0; n < count; n++) {
@@ -149,18 +134,4 @@ static void claims_are_complete(void **state)
     assert_true(ref_paper_claim("fastlsm", "warm-polar")->value.value == 450);
     assert_string_equal(ref_status_name(REF_SECOND_HAND), "second-hand");
     assert_null(ref_paper_claim("fastlsm", "nothing"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(table_1_has_its_rows),
-        cmocka_unit_test(stages_add_up),
-        cmocka_unit_test(costs_per_particle_follow_from_the_table),
-        cmocka_unit_test(the_hand_has_its_rows),
-        cmocka_unit_test(changing_scenes_have_an_end),
-        cmocka_unit_test(a_step_is_as_sound_as_its_source),
-        cmocka_unit_test(claims_are_complete),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

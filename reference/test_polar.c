@@ -1,23 +1,11 @@
 /* The rotation's defining properties on every class of 3x3 matrix. */
 #include <float.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
-#include <cmocka.h>
-
+#include "../lib/test_frame.h"
+#include "../lib/test_random.h"
 #include "polar.h"
 
-static uint64_t seed = 1;
-
-static double uniform(void)
-{
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return (double)(seed >> 11) * 0x1p-53 - 0.5;
-}
+static unsigned seed = 1;
 
 static void multiply(const double A[9], const double B[9], double C[9])
 {
@@ -58,8 +46,9 @@ static void turn(const double axis[3], double angle, double R[9])
 
 static void random_rotation(double R[9])
 {
-    const double axis[3] = {uniform(), uniform(), uniform()};
-    turn(axis, 6.3 * uniform(), R);
+    const double axis[3] = {random_between(&seed, -0.5, 0.5), random_between(&seed, -0.5, 0.5),
+                            random_between(&seed, -0.5, 0.5)};
+    turn(axis, 6.3 * random_between(&seed, -0.5, 0.5), R);
 }
 
 /* U diag(s) V^T with random rotations. */
@@ -95,9 +84,13 @@ static void assert_best(const double A[9], const double R[9])
         for (int b = 0; b < a; b++) assert_true(fabs(S[3 * a + b] - S[3 * b + a]) < 1e-13);
     double best = trace_of_product(R, scaled);
     for (int trial = 0; trial < 40; trial++) {
-        const double axis[3] = {uniform(), uniform(), uniform()};
+        const double axis[3] = {random_between(&seed, -0.5, 0.5), random_between(&seed, -0.5, 0.5),
+                                random_between(&seed, -0.5, 0.5)};
         double Q[9], near[9];
-        turn(axis, trial < 20 ? 6.3 * uniform() : 0.01 * uniform(), Q);
+        turn(axis,
+             trial < 20 ? 6.3 * random_between(&seed, -0.5, 0.5)
+                        : 0.01 * random_between(&seed, -0.5, 0.5),
+             Q);
         multiply(Q, R, near);
         assert_true(trace_of_product(near, scaled) <= best + 1e-13);
     }
@@ -125,27 +118,27 @@ static void check(const double A[9], const double last[9])
     assert_memory_equal(R, again, sizeof R);
 }
 
-static void random_matrices_of_any_scale(void **state)
+TEST(random_matrices_of_any_scale)
 {
-    (void)state;
     static const double scale[] = {1, 1e-300, 1e-150, 1e-30, 1e-6, 1e6, 1e30, 1e150, 1e300};
     for (int trial = 0; trial < 9000; trial++) {
         double A[9];
-        for (int n = 0; n < 9; n++) A[n] = scale[trial % 9] * uniform();
+        for (int n = 0; n < 9; n++) A[n] = scale[trial % 9] * random_between(&seed, -0.5, 0.5);
         check(A, NULL);
     }
     double A[9];
     for (int trial = 0; trial < 2000; trial++) { /* entries of very different size */
-        for (int n = 0; n < 9; n++) A[n] = ldexp(uniform(), (int)(300 * uniform()));
+        for (int n = 0; n < 9; n++)
+            A[n] = ldexp(random_between(&seed, -0.5, 0.5),
+                         (int)(300 * random_between(&seed, -0.5, 0.5)));
         check(A, NULL);
     }
 }
 
-static void upright_and_reflected(void **state)
+TEST(upright_and_reflected)
 {
-    (void)state;
     for (int trial = 0; trial < 3000; trial++) {
-        double A[9], R[9], small = 0.01 + fabs(uniform());
+        double A[9], R[9], small = 0.01 + fabs(random_between(&seed, -0.5, 0.5));
         random_matrix(2 + small, 1 + small, small, A);
         check(A, NULL);
         ref_polar(A, NULL, R);
@@ -159,9 +152,8 @@ static void upright_and_reflected(void **state)
     }
 }
 
-static void a_rotation_is_its_own(void **state)
+TEST(a_rotation_is_its_own)
 {
-    (void)state;
     for (int trial = 0; trial < 500; trial++) {
         double Q[9], R[9];
         random_rotation(Q);
@@ -177,9 +169,10 @@ static void another_best(const double s[3], const double U[9], const double V[9]
     double P[9], T[9], UP[9];
     const double x_axis[3] = {1, 0, 0};
     if (s[0] + s[2] > 0) {
-        turn(x_axis, 6.3 * uniform(), P);
+        turn(x_axis, 6.3 * random_between(&seed, -0.5, 0.5), P);
     } else {
-        double n[3] = {uniform(), uniform(), uniform()};
+        double n[3] = {random_between(&seed, -0.5, 0.5), random_between(&seed, -0.5, 0.5),
+                       random_between(&seed, -0.5, 0.5)};
         double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
         for (int k = 0; k < 9; k++)
             P[k] = ((k % 4 == 0) - 2 * n[k / 3] * n[k % 3] / square) * (k % 3 == 2 ? -1 : 1);
@@ -189,9 +182,8 @@ static void another_best(const double s[3], const double U[9], const double V[9]
     multiply(UP, T, Q);
 }
 
-static void ties_go_to_the_last_rotation(void **state)
+TEST(ties_go_to_the_last_rotation)
 {
-    (void)state;
     static const double tied[][3] = {{2, 0, 0}, {1, 0.5, -0.5}, {1, 1, -1}, {3, 1e-17, 1e-18}};
     for (int trial = 0; trial < 400; trial++) {
         const double *s = tied[trial % 4];
@@ -215,9 +207,8 @@ static void ties_go_to_the_last_rotation(void **state)
     }
 }
 
-static void rank_two_is_no_tie(void **state)
+TEST(rank_two_is_no_tie)
 {
-    (void)state;
     for (int trial = 0; trial < 500; trial++) {
         double A[9], R[9], other[9], last[9];
         random_matrix(1, trial % 2 ? 1 : 0.3, 0, A);
@@ -229,9 +220,8 @@ static void rank_two_is_no_tie(void **state)
     }
 }
 
-static void special_matrices(void **state)
+TEST(special_matrices)
 {
-    (void)state;
     static const double cases[][9] = {
         {1, 0, 0, 0, 1, 0, 0, 0, 1},           {-1, 0, 0, 0, -1, 0, 0, 0, -1},
         {1, 1, 1, 1, 1, 1, 1, 1, 1},           {0, 1, 0, 0, 0, 0, 0, 0, 0},
@@ -243,12 +233,11 @@ static void special_matrices(void **state)
 }
 
 /* Small whole numbers, repeated rows: every rank and many equal singular values. */
-static void whole_numbers(void **state)
+TEST(whole_numbers)
 {
-    (void)state;
     for (int trial = 0; trial < 20000; trial++) {
         double A[9], R[9];
-        for (int n = 0; n < 9; n++) A[n] = (int)(5 * uniform());
+        for (int n = 0; n < 9; n++) A[n] = (int)(5 * random_between(&seed, -0.5, 0.5));
         if (trial % 2) memcpy(A + 6, A + 3, 3 * sizeof *A);
         ref_polar(A, NULL, R);
         assert_rotation(R);
@@ -256,9 +245,8 @@ static void whole_numbers(void **state)
     }
 }
 
-static void zero_and_non_finite_keep_the_last(void **state)
+TEST(zero_and_non_finite_keep_the_last)
 {
-    (void)state;
     double last[9], R[9];
     random_rotation(last);
     double A[9] = {0};
@@ -277,28 +265,11 @@ static void zero_and_non_finite_keep_the_last(void **state)
 }
 
 /* `last` maps the only direction the wrong way: every choice is as far. Still a proper rotation. */
-static void a_tie_of_ties(void **state)
+TEST(a_tie_of_ties)
 {
-    (void)state;
     static const double A[9] = {1, 0, 0, 0, 0, 0, 0, 0, 0};
     static const double last[9] = {-1, 0, 0, 0, -1, 0, 0, 0, 1};
     check(A, last);
     static const double minus[9] = {-1, 0, 0, 0, -1, 0, 0, 0, -1};
     check(minus, last);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_matrices_of_any_scale),
-        cmocka_unit_test(upright_and_reflected),
-        cmocka_unit_test(a_rotation_is_its_own),
-        cmocka_unit_test(ties_go_to_the_last_rotation),
-        cmocka_unit_test(rank_two_is_no_tie),
-        cmocka_unit_test(special_matrices),
-        cmocka_unit_test(whole_numbers),
-        cmocka_unit_test(zero_and_non_finite_keep_the_last),
-        cmocka_unit_test(a_tie_of_ties),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

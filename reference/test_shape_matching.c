@@ -1,12 +1,6 @@
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
+#include "../lib/test_frame.h"
 #include "polar.h"
 #include "shape_matching.h"
 
@@ -57,9 +51,8 @@ static double miss(RefShapeFit fit, int parts)
     return largest((const double(*)[3])g, (const double(*)[3])x);
 }
 
-static void linear_matching_meets_affine_motions(void **state)
+TEST(linear_matching_meets_affine_motions)
 {
-    (void)state;
     fill();
     move(0);
     assert_true(miss((RefShapeFit){REF_LINEAR, 1, false}, 1) < 1e-12);
@@ -68,9 +61,8 @@ static void linear_matching_meets_affine_motions(void **state)
     assert_true(miss((RefShapeFit){REF_RIGID, 1, false}, 1) > 0.1);
 }
 
-static void quadratic_matching_meets_quadratic_motions(void **state)
+TEST(quadratic_matching_meets_quadratic_motions)
 {
-    (void)state;
     fill();
     move(1);
     assert_true(miss((RefShapeFit){REF_QUADRATIC, 1, false}, 1) < 1e-11);
@@ -90,9 +82,8 @@ static void apply(double (*at)[3])
     }
 }
 
-static void every_matching_turns_with_the_body(void **state)
+TEST(every_matching_turns_with_the_body)
 {
-    (void)state;
     const RefShapeFit fits[] = {
         {REF_RIGID, 1, false}, {REF_LINEAR, 0.8, true}, {REF_QUADRATIC, 0.6, false}};
     for (int f = 0; f < 3; f++) {
@@ -124,9 +115,8 @@ static double volume_ratio(void)
     return det;
 }
 
-static void linear_matching_keeps_volume_where_asked(void **state)
+TEST(linear_matching_keeps_volume_where_asked)
 {
-    (void)state;
     fill();
     move(0);
     goals((RefShapeFit){REF_LINEAR, 1, true}, 1, 0);
@@ -135,9 +125,8 @@ static void linear_matching_keeps_volume_where_asked(void **state)
     assert_true(fabs(volume_ratio() - 1) > 0.1);
 }
 
-static void flat_clusters_are_fitted_in_their_span(void **state)
+TEST(flat_clusters_are_fitted_in_their_span)
 {
-    (void)state;
     fill();
     for (int p = 0; p < COUNT; p++) x0[p][1] = 0;
     memcpy(x, x0, sizeof x);
@@ -147,9 +136,8 @@ static void flat_clusters_are_fitted_in_their_span(void **state)
     assert_true(miss((RefShapeFit){REF_LINEAR, 1, true}, 2) < 1e-11); /* no volume to keep */
 }
 
-static void slabs_cover_all_and_overlap(void **state)
+TEST(slabs_cover_all_and_overlap)
 {
-    (void)state;
     RefRegions clusters;
     fill();
     ref_shape_slabs(COUNT, (const double(*)[3])x0, 2, 4, 0.25, &clusters);
@@ -162,17 +150,4 @@ static void slabs_cover_all_and_overlap(void **state)
     assert_int_equal(clusters.start[1], NX * NY * 3); /* layers at 0, 0.5, 1; it ends at 1.25 */
     assert_true(twice > 0 && twice < COUNT);
     ref_regions_free(&clusters);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(linear_matching_meets_affine_motions),
-        cmocka_unit_test(quadratic_matching_meets_quadratic_motions),
-        cmocka_unit_test(every_matching_turns_with_the_body),
-        cmocka_unit_test(linear_matching_keeps_volume_where_asked),
-        cmocka_unit_test(flat_clusters_are_fitted_in_their_span),
-        cmocka_unit_test(slabs_cover_all_and_overlap),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,12 @@
 /* Calibrations as a user runs them: whole, interrupted, the other way round; and mistakes. */
 #define _GNU_SOURCE
-#include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
 #include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
 #include "../../reference/beam.h"
 #include "../cli/test_program.h"
 #include "../engines.h"
@@ -71,9 +65,8 @@ static void load(const char *name, BenchCalibration *calibration)
     if (bench_calibration_load(path_in(name), calibration, &error)) fail_msg("%s", error.text);
 }
 
-static void a_specimen_has_its_figures(void **state)
+TEST(a_specimen_has_its_figures)
 {
-    (void)state;
     BenchCalibration *c = sm_alloc(1, sizeof *c);
     load("whole.h5", c);
     assert_true(c->plan.across == 2 && c->plan.aspect == 3 && c->plan.h == 1e-3);
@@ -94,9 +87,8 @@ static void a_specimen_has_its_figures(void **state)
 
 /* Interrupted as soon as a specimen is stored; what is there is not measured again, and the whole
  * is the same to the last bit but for the time that it took. */
-static void an_interrupted_calibration_goes_on(void **state)
+TEST(an_interrupted_calibration_goes_on)
 {
-    (void)state;
     char said[512];
     assert_int_equal(interrupt(SMALL " -o part.h5", "part.h5"), 128 + SIGINT);
     slurp("err", said, sizeof said);
@@ -120,9 +112,8 @@ static void an_interrupted_calibration_goes_on(void **state)
     free(whole);
 }
 
-static void tables_in_every_format(void **state)
+TEST(tables_in_every_format)
 {
-    (void)state;
     runs("calibrate whole.h5 --young 1e6");
     assert_non_null(strstr(result.out, "4 of 4 specimens"));
     assert_non_null(strstr(result.out, "An elastic beam behaves alike: in 4 valid"));
@@ -192,9 +183,8 @@ static double sag_of(const char *name)
 
 /* What is printed for a wish is all that a scene needs to have it: a beam of these settings sags as
  * an elastic one does. Without the density, which is one of them, a lattice's does not. */
-static void the_settings_printed_have_the_modulus(void **state)
+TEST(the_settings_printed_have_the_modulus)
 {
-    (void)state;
     const RefBeam beam = {15 * CELL, 5 * CELL, 0.3};
     const double young = 1.3e6, density = 800, gravity = 2;
     double wanted = ref_beam_sag(&beam, REF_TIMOSHENKO) * density * gravity / young;
@@ -224,9 +214,8 @@ static void the_settings_printed_have_the_modulus(void **state)
 }
 
 /* With all of the relative motion damped away at every step a beam does not swing. */
-static void a_beam_that_does_not_swing_is_invalid(void **state)
+TEST(a_beam_that_does_not_swing_is_invalid)
 {
-    (void)state;
     run("calibrate --scene small.cfg --w 2 --engine fastlsm --across none --aspect none --step "
         "none --damping 1 -o bad.h5",
         &result);
@@ -242,9 +231,8 @@ static void a_beam_that_does_not_swing_is_invalid(void **state)
     free(bad);
 }
 
-static void mistakes_are_one_line(void **state)
+TEST(mistakes_are_one_line)
 {
-    (void)state;
     static const Mistake cases[] = {
         {"calibrate --w 3:1", 2, "--w: 3:1 falls"},
         {"calibrate --density 800", 2, "--density is that of --young's body: give both"},
@@ -281,15 +269,4 @@ static void mistakes_are_one_line(void **state)
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_specimen_has_its_figures),
-        cmocka_unit_test(an_interrupted_calibration_goes_on),
-        cmocka_unit_test(tables_in_every_format),
-        cmocka_unit_test(the_settings_printed_have_the_modulus),
-        cmocka_unit_test(a_beam_that_does_not_swing_is_invalid),
-        cmocka_unit_test(mistakes_are_one_line),
-    };
-    return cmocka_run_group_tests(tests, set_up, remove_folder);
-}
+TEST_GROUP(set_up, remove_folder)

@@ -1,17 +1,8 @@
 /* Plans, laws, recommendations and files of calibrations, on specimens whose laws are known. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "calibration_store.h"
 
 static const BenchCalibrationPlan sample_plan = {.scene = "beam",
@@ -72,9 +63,8 @@ static void let_go(BenchCalibration *made)
 
 /* Of four w: both engines, one and two epsilons; another spacing for all (the scene's own is no
  * other), other lengths and steps for the first, the middle and the last. */
-static void a_plan_makes_its_specimens(void **state)
+TEST(a_plan_makes_its_specimens)
 {
-    (void)state;
     BenchCalibration *made = make(0.3, 0.1);
     assert_int_equal(made->plan.specimens, 4 * 3 + 4 * 2 + 2 * 3 * 2 + 2 * 3 * 2);
     const BenchSpecimen *s = made->specimen;
@@ -118,9 +108,8 @@ static void near_to(const double found[3], double wanted)
     assert_true(found[1] <= found[0] && found[0] <= found[2]);
 }
 
-static void two_terms_are_found_again(void **state)
+TEST(two_terms_are_found_again)
 {
-    (void)state;
     BenchCalibration *made = make(0.3, 0.1);
     assert_int_equal(made->laws, 6);
     for (int e = 0; e < 2; e++) {
@@ -140,9 +129,8 @@ static void two_terms_are_found_again(void **state)
 
 /* Specimens whose sag and frequencies disagree are described as they are: those of w 1 and 5 of a
  * beam of 5 cells, while w 9 agrees. */
-static void what_is_apart_is_described_as_it_is(void **state)
+TEST(what_is_apart_is_described_as_it_is)
 {
-    (void)state;
     BenchCalibration *made = make(0.3, 0.1);
     int apart = 0;
     for (long i = 0; i < made->count; i++) {
@@ -164,9 +152,8 @@ static void what_is_apart_is_described_as_it_is(void **state)
 }
 
 /* E = 0.7 rho a^1.5 w^1.2 (L / t)^0.3 / h^2.1; a scatter widens the interval. */
-static void powers_are_found_again(void **state)
+TEST(powers_are_found_again)
 {
-    (void)state;
     for (int noisy = 0; noisy < 2; noisy++) {
         BenchCalibration *made = make(0.3, 0.1);
         for (long i = 0; i < made->count; i++) {
@@ -190,9 +177,8 @@ static void powers_are_found_again(void **state)
     }
 }
 
-static void nothing_is_concluded_from_nothing(void **state)
+TEST(nothing_is_concluded_from_nothing)
 {
-    (void)state;
     BenchCalibration *made = make(0.3, 0.1);
     long count = made->count;
     made->count = 2;
@@ -220,9 +206,8 @@ static long advise(const BenchCalibration *made, double young, double density, c
     return bench_advice_young(made->specimen, made->count, made->law, made->laws, &wish, sentence);
 }
 
-static void a_modulus_has_its_w(void **state)
+TEST(a_modulus_has_its_w)
 {
-    (void)state;
     char text[BENCH_WORDS];
     BenchCalibration *made = make(0.3, 0.1);
     double young = made->specimen[3].young; /* fastlsm w 2; the octree's is the same */
@@ -259,9 +244,8 @@ static void a_modulus_has_its_w(void **state)
     let_go(made);
 }
 
-static void a_calibration_comes_back(void **state)
+TEST(a_calibration_comes_back)
 {
-    (void)state;
     BenchCalibration *made = make(0.3, 0.1), *back = sm_alloc(1, sizeof *back);
     SmError error;
     made->specimen[5].valid = false;
@@ -289,9 +273,8 @@ static void a_calibration_comes_back(void **state)
 }
 
 /* A file whose specimens or plan are another's is refused, as is one cut off. */
-static void foreign_files_are_refused(void **state)
+TEST(foreign_files_are_refused)
 {
-    (void)state;
     BenchCalibration *made = make(0.3, 0.1), *back = sm_alloc(1, sizeof *back);
     SmError error;
     made->specimen[2].w = 7;
@@ -315,19 +298,4 @@ static void foreign_files_are_refused(void **state)
     assert_int_equal(bench_calibration_store(path_in("no/b.h5"), made, &error), SM_OUTPUT);
     let_go(made);
     free(back);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_plan_makes_its_specimens),
-        cmocka_unit_test(two_terms_are_found_again),
-        cmocka_unit_test(what_is_apart_is_described_as_it_is),
-        cmocka_unit_test(powers_are_found_again),
-        cmocka_unit_test(nothing_is_concluded_from_nothing),
-        cmocka_unit_test(a_modulus_has_its_w),
-        cmocka_unit_test(a_calibration_comes_back),
-        cmocka_unit_test(foreign_files_are_refused),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,16 +1,7 @@
 /* Young's modulus of beams that have a known one, through the measurement that engines go through:
  * theory's own modes behind the engines' interface, and the meshless reference. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
 #include "../../reference/meshless/solve/solver.h"
 #include "../engines.h"
 #include "specimen.h"
@@ -194,9 +185,8 @@ static void near_to(double value, double wanted, double share)
 }
 
 /* Theory's beam has its own modulus, by the sag and by every frequency, and its own loss. */
-static void a_beam_gives_its_modulus_back(void **state)
+TEST(a_beam_gives_its_modulus_back)
 {
-    (void)state;
     for (int lossy = 0; lossy < 2; lossy++) {
         wire.young = lossy ? 3e5 : 2e6;
         wire.loss = lossy ? 0.02 : 0;
@@ -214,9 +204,8 @@ static void a_beam_gives_its_modulus_back(void **state)
     wire.loss = 0;
 }
 
-static void what_is_not_in_proportion_is_seen(void **state)
+TEST(what_is_not_in_proportion_is_seen)
 {
-    (void)state;
     wire.young = 2e6;
     wire.grows = 4; /* 4% stiffer at a sag of a tenth, 16% at a fifth */
     BenchCantileverOptions options = options_of(5e-4);
@@ -225,9 +214,8 @@ static void what_is_not_in_proportion_is_seen(void **state)
     wire.grows = 0;
 }
 
-static void a_beam_that_does_not_swing_has_no_figures(void **state)
+TEST(a_beam_that_does_not_swing_has_no_figures)
 {
-    (void)state;
     wire.young = 2e6;
     wire.breaks = true;
     BenchCantileverOptions options = options_of(5e-4);
@@ -239,9 +227,8 @@ static void a_beam_that_does_not_swing_has_no_figures(void **state)
 }
 
 /* Figures of a point that is not valid are nobody's. */
-static void an_invalid_specimen_has_no_modulus(void **state)
+TEST(an_invalid_specimen_has_no_modulus)
 {
-    (void)state;
     BenchIdeal ideal[BENCH_MODELS] = {{0}};
     assert_int_equal(bench_ideal_find(BENCH_EULER, ASPECT, 0.3, &ideal[0], NULL), SM_OK);
     assert_int_equal(bench_ideal_find(BENCH_TIMOSHENKO, ASPECT, 0.3, &ideal[1], NULL), SM_OK);
@@ -251,9 +238,8 @@ static void an_invalid_specimen_has_no_modulus(void **state)
 }
 
 /* The three models of one elastic beam differ by what thin beams leave out, and by octants. */
-static void models_agree(void **state)
+TEST(models_agree)
 {
-    (void)state;
     BenchIdeal ideal[BENCH_MODELS];
     for (int m = 0; m < BENCH_MODELS; m++)
         assert_int_equal(bench_ideal_find((BenchModel)m, ASPECT, 0.3, &ideal[m], NULL), SM_OK);
@@ -267,9 +253,8 @@ static void models_agree(void **state)
 
 /* The meshless reference, as an engine of few modes that holds its root at four points, has its own
  * modulus to a tenth; its implicit step loses something. */
-static void the_reference_gives_its_modulus_back(void **state)
+TEST(the_reference_gives_its_modulus_back)
 {
-    (void)state;
     if (!ref_solver_built || !TEST_FIGURES) skip();
     BenchCantileverOptions options = options_of(2e-2);
     strcpy(options.engine, "meshless");
@@ -283,9 +268,8 @@ static void the_reference_gives_its_modulus_back(void **state)
 
 /* A soft lattice beam is an elastic one: sag and frequencies agree; a shorter step makes it stiffer
  * with its inverse square. */
-static void a_lattice_is_elastic(void **state)
+TEST(a_lattice_is_elastic)
 {
-    (void)state;
     BenchSpecimen s[2];
     const SmEngineType *type;
     assert_int_equal(bench_engine_find("fastlsm", "double", &type, NULL), SM_OK);
@@ -298,18 +282,4 @@ static void a_lattice_is_elastic(void **state)
         assert_true(fabs(found.loss[0]) < 1e-5 && found.linear_to >= 0.1);
     }
     near_to(s[1].young, 4 * s[0].young, 1e-3);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_beam_gives_its_modulus_back),
-        cmocka_unit_test(what_is_not_in_proportion_is_seen),
-        cmocka_unit_test(a_beam_that_does_not_swing_has_no_figures),
-        cmocka_unit_test(an_invalid_specimen_has_no_modulus),
-        cmocka_unit_test(models_agree),
-        cmocka_unit_test(the_reference_gives_its_modulus_back),
-        cmocka_unit_test(a_lattice_is_elastic),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

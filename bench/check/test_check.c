@@ -1,16 +1,8 @@
 /* The check of goals, damping and contacts: right engines stand it where rotations are not unique,
  * and wrong damping and contacts do not. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../fastlsm/fastlsm.h"
+#include "../../lib/test_frame.h"
+#include "../../lib/test_random.h"
 #include "../play/runner.h"
 #include "check.h"
 
@@ -80,7 +72,7 @@ static void place(Plate *plate, bool fold, bool press)
         plate->x[p][0] = press || fold ? 0 : up;
         plate->x[p][1] = x0[1];
         plate->x[p][2] = press ? 0 : fold ? -fabs(along) : -along;
-        for (int d = 0; d < 3; d++) plate->v[p][d] = rand_r(&seed) / (double)RAND_MAX;
+        for (int d = 0; d < 3; d++) plate->v[p][d] = random_unit(&seed);
     }
     plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
     plate->type->set(plate->engine, SM_VELOCITY, (const double(*)[3])plate->v);
@@ -100,9 +92,8 @@ static BenchDeviation check_plate(Plate *plate)
 }
 
 /* Folded, the regions at the fold lie on lines, and only the engine knows how they were turned. */
-static void ties_are_left_out(void **state)
+TEST(ties_are_left_out)
 {
-    (void)state;
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         char reason[160];
@@ -123,9 +114,8 @@ static void ties_are_left_out(void **state)
 /* Pressed onto a line all regions can be turned about it. While the engine turns them as brute
  * force does, all are checked; once it keeps other rotations from before, they are left out, and a
  * body of which too little is left to check is not valid. */
-static void ties_that_differ_alone_are_left_out(void **state)
+TEST(ties_that_differ_alone_are_left_out)
 {
-    (void)state;
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         char reason[160];
@@ -158,9 +148,8 @@ static SmCode slack_create(const SmVoxels *voxels, const SmEngineParams *params,
     return honest->create(voxels, &slack, engine, error);
 }
 
-static void wrong_damping_is_invalid(void **state)
+TEST(wrong_damping_is_invalid)
 {
-    (void)state;
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         char reason[160], text[384];
@@ -192,7 +181,7 @@ static void roll(Plate *plate)
         const double *x0 = plate->body.x0[p];
         double angle = 9 * (x0[0] - 40) / (0.3 * LONG), out = 1 + 0.02 * angle + x0[2];
         plate->x[p][0] = 40 + out * cos(angle);
-        plate->x[p][1] = x0[1] + 0.02 * rand_r(&seed) / (double)RAND_MAX;
+        plate->x[p][1] = x0[1] + random_between(&seed, 0, 0.02);
         plate->x[p][2] = -out * sin(angle);
     }
     plate->type->set(plate->engine, SM_POSITION, (const double(*)[3])plate->x);
@@ -206,9 +195,8 @@ static void expect_valid(Plate *plate, BenchDeviation *found)
         fail_msg("%s, %s: %s", plate->type->name, plate->type->precision, reason);
 }
 
-static void contacts_are_brute_forces(void **state)
+TEST(contacts_are_brute_forces)
 {
-    (void)state;
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         BenchDeviation found;
@@ -228,9 +216,8 @@ static void contacts_are_brute_forces(void **state)
 
 /* A row of cells that was turned one way and then another: how its regions, all lines, are turned
  * about themselves is up to that. */
-static void lines_are_turned_by_their_past(void **state)
+TEST(lines_are_turned_by_their_past)
 {
-    (void)state;
     for (int t = 0; t < TYPES; t++) {
         Plate row;
         BenchDeviation found;
@@ -305,9 +292,8 @@ static long wrong_contacts(SmEngine *engine, double (*turn)[9], SmContact **cont
     return count;
 }
 
-static void wrong_contacts_are_invalid(void **state)
+TEST(wrong_contacts_are_invalid)
 {
-    (void)state;
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         BenchDeviation found;
@@ -335,9 +321,8 @@ static void wrong_contacts_are_invalid(void **state)
 
 /* Where there are too many pairs of nodes and cells, nodes with contacts are still among those
  * that are compared. */
-static void of_many_bodies_a_sample_is_compared(void **state)
+TEST(of_many_bodies_a_sample_is_compared)
 {
-    (void)state;
     enum { MANY = 36 };
     static double home[MANY][3][4];
     Plate plate;
@@ -398,9 +383,8 @@ static void wrong_bound(SmEngine *engine, const SmBoundary *boundary)
     honest->bound(engine, &other);
 }
 
-static void wrong_obstacles_are_invalid(void **state)
+TEST(wrong_obstacles_are_invalid)
 {
-    (void)state;
     for (int t = 0; t < TYPES; t++) {
         Plate plate;
         BenchDeviation found;
@@ -429,9 +413,8 @@ static void wrong_obstacles_are_invalid(void **state)
 }
 
 /* Of two findings the worse of each, and finite only if both are. */
-static void findings_add_up(void **state)
+TEST(findings_add_up)
 {
-    (void)state;
     BenchDeviation good = {.finite = true, .goal_error = 1e-6, .contacts = 7, .contact_nodes = 90},
                    bad = {.goal_error = INFINITY, .tied = 3},
                    odd = {.finite = true, .goal_error = 1e-7, .contacts = 2, .contacts_wrong = 1};
@@ -449,9 +432,8 @@ static void findings_add_up(void **state)
     assert_int_equal(worst.contact_nodes, 90);
 }
 
-static void what_was_left_out_is_said(void **state)
+TEST(what_was_left_out_is_said)
 {
-    (void)state;
     char text[512];
     BenchDeviation found = {.finite = true,
                             .goal_error = 2e-6,
@@ -486,9 +468,8 @@ static void get_other_ends(SmEngine *engine, SmField field, double (*values)[3])
 
 /* Single precision does not know the inertia of a long strip's regions far from its middle, and
  * what an engine does there is known all the same: none is left out, and what is wrong is found. */
-static void what_is_not_resolved_is_compared(void **state)
+TEST(what_is_not_resolved_is_compared)
 {
-    (void)state;
     for (int t = 0; t < TYPES; t++) {
         Plate strip;
         char reason[160];
@@ -513,22 +494,4 @@ static void what_is_not_resolved_is_compared(void **state)
         if (!strstr(reason, "damped velocities are")) fail_msg("%s", reason);
         plate_free(&strip);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ties_are_left_out),
-        cmocka_unit_test(ties_that_differ_alone_are_left_out),
-        cmocka_unit_test(wrong_damping_is_invalid),
-        cmocka_unit_test(what_is_not_resolved_is_compared),
-        cmocka_unit_test(contacts_are_brute_forces),
-        cmocka_unit_test(lines_are_turned_by_their_past),
-        cmocka_unit_test(wrong_contacts_are_invalid),
-        cmocka_unit_test(of_many_bodies_a_sample_is_compared),
-        cmocka_unit_test(wrong_obstacles_are_invalid),
-        cmocka_unit_test(findings_add_up),
-        cmocka_unit_test(what_was_left_out_is_said),
-    };
-    return cmocka_run_group_tests_name("check", tests, NULL, NULL);
 }

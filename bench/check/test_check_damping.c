@@ -1,15 +1,6 @@
 /* The check of octrees that single precision is hard put to: right engines stand it in every state.
  */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "../../octree/change/structure.h"
 #include "../../octree/region/frames.h"
 #include "check.h"
@@ -19,9 +10,8 @@ static const SmEngineType *const octrees[] = {&octree_engine_f32, &octree_engine
 /* Regions of 0.75 edges leave the hand in 121 parts, many of them pairs of nodes, which turn about
  * their axis as they last did: goals are found again only to a rounding of coordinates, which is
  * more than damping may be off once the hand moves slowly. */
-static void parts_are_damped_right(void **state)
+TEST(parts_are_damped_right)
 {
-    (void)state;
     for (int t = 0; t < 2; t++) {
         BenchScene scene;
         BenchBody body;
@@ -92,9 +82,8 @@ static void trial_end(Trial *t)
 
 /* The parts that no region joins, put as far apart as they drift in many thousand steps, each with
  * a speed of its own. */
-static void parts_far_apart_are_right(void **state)
+TEST(parts_far_apart_are_right)
 {
-    (void)state;
     for (int t = 0; t < 2; t++) {
         Trial trial;
         trial_begin("hand-sampled", 0, octrees[t], &trial);
@@ -123,9 +112,8 @@ static void parts_far_apart_are_right(void **state)
 }
 
 /* Base cells of 4096 finest ones, whatever of them is filled. */
-static void many_levels_are_right(void **state)
+TEST(many_levels_are_right)
 {
-    (void)state;
     static const char *const scenes[] = {"block", "penguin"};
     for (int n = 0; n < 4; n++) {
         Trial trial;
@@ -134,14 +122,4 @@ static void many_levels_are_right(void **state)
         trial_steps(&trial, 5);
         trial_end(&trial);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_are_damped_right),
-        cmocka_unit_test(parts_far_apart_are_right),
-        cmocka_unit_test(many_levels_are_right),
-    };
-    return cmocka_run_group_tests_name("check_damping", tests, NULL, NULL);
 }

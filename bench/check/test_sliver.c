@@ -1,26 +1,17 @@
 /* Bodies of many thin parts, dropped: goals are found again in every state that they pass. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "check.h"
 
-static double unit(unsigned *seed)
-{
-    return 2 * (rand_r(seed) / (double)RAND_MAX) - 1;
-}
+#include "../../lib/test_frame.h"
+#include "../../lib/test_random.h"
 
 /* A triangle of a base `width` wide about `foot` and a tip `way` from there. */
 static void add_sliver(SmMesh *mesh, unsigned *seed, const double foot[3], const double way[3],
                        double width)
 {
-    double side[3], to[3] = {unit(seed), unit(seed), unit(seed)}, square = 0;
+    double side[3],
+        to[3] = {random_between(seed, -1, 1), random_between(seed, -1, 1),
+                 random_between(seed, -1, 1)},
+        square = 0;
     long v = 3 * mesh->triangle_count;
     for (int d = 0; d < 3; d++) {
         side[d] = way[(d + 1) % 3] * to[(d + 2) % 3] - way[(d + 2) % 3] * to[(d + 1) % 3];
@@ -49,7 +40,9 @@ static SmMesh fan(unsigned seed, int count, double width)
 {
     SmMesh mesh = new_slivers(count);
     for (int i = 0; i < count; i++) {
-        const double way[3] = {unit(&seed), fabs(unit(&seed)) + 0.01, unit(&seed)};
+        const double way[3] = {random_between(&seed, -1, 1),
+                               fabs(random_between(&seed, -1, 1)) + 0.01,
+                               random_between(&seed, -1, 1)};
         add_sliver(&mesh, &seed, (double[3]){0}, way, width);
     }
     return mesh;
@@ -60,8 +53,10 @@ static SmMesh scattered(unsigned seed, int count, double width)
 {
     SmMesh mesh = new_slivers(count);
     for (int i = 0; i < count; i++) {
-        const double foot[3] = {unit(&seed), unit(&seed), unit(&seed)};
-        const double way[3] = {unit(&seed), unit(&seed), unit(&seed)};
+        const double foot[3] = {random_between(&seed, -1, 1), random_between(&seed, -1, 1),
+                                random_between(&seed, -1, 1)};
+        const double way[3] = {random_between(&seed, -1, 1), random_between(&seed, -1, 1),
+                               random_between(&seed, -1, 1)};
         add_sliver(&mesh, &seed, foot, way, width);
     }
     return mesh;
@@ -73,12 +68,16 @@ static SmMesh plant(unsigned seed, int stems)
     enum { PIECES = 12 };
     SmMesh mesh = new_slivers(2L * stems * PIECES);
     for (int s = 0; s < stems; s++) {
-        double at[3] = {0.1 * unit(&seed), 0, 0.1 * unit(&seed)}, along[3];
-        for (int d = 0; d < 3; d++) along[d] = d == 1 ? 0.1 : 0.05 * unit(&seed);
+        double at[3] = {0.1 * random_between(&seed, -1, 1), 0, 0.1 * random_between(&seed, -1, 1)},
+               along[3];
+        for (int d = 0; d < 3; d++) along[d] = d == 1 ? 0.1 : 0.05 * random_between(&seed, -1, 1);
         for (int p = 0; p < PIECES; p++) {
             add_sliver(&mesh, &seed, at, along, 0.02);
-            for (int d = 0; d < 3; d++) at[d] += 0.9 * along[d] + 0.005 * unit(&seed);
-            const double leaf[3] = {0.2 * unit(&seed), 0.1 * unit(&seed), 0.2 * unit(&seed)};
+            for (int d = 0; d < 3; d++)
+                at[d] += 0.9 * along[d] + 0.005 * random_between(&seed, -1, 1);
+            const double leaf[3] = {0.2 * random_between(&seed, -1, 1),
+                                    0.1 * random_between(&seed, -1, 1),
+                                    0.2 * random_between(&seed, -1, 1)};
             add_sliver(&mesh, &seed, at, leaf, 0.03);
         }
     }
@@ -114,18 +113,11 @@ static void drop(SmMesh mesh, const char *name)
     bench_body_free(&body);
 }
 
-static void what_is_thin_is_as_exact_as_its_check(void **state)
+TEST(what_is_thin_is_as_exact_as_its_check)
 {
-    (void)state;
     drop(fan(1, 12, 0.01), "spray");
     drop(fan(2, 20, 1e-4), "needles");
     drop(scattered(3, 20, 0.02), "few slivers");
     drop(scattered(4, 60, 0.01), "slivers");
     drop(plant(5, 6), "plant");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_thin_is_as_exact_as_its_check)};
-    return cmocka_run_group_tests_name("sliver", tests, NULL, NULL);
 }

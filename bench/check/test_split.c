@@ -1,15 +1,6 @@
 /* Surfaces that cross themselves, split as far as that goes while they are recorded. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "../engines.h"
 #include "../play/recording.h"
 
@@ -95,23 +86,12 @@ static void what_is_recorded_is_the_surface_that_is_there(const char *engine)
     bench_body_free(&show.body);
 }
 
-static void of_an_octree(void **state)
+TEST(of_an_octree)
 {
-    (void)state;
     what_is_recorded_is_the_surface_that_is_there("octree");
 }
 
-static void of_a_lattice(void **state)
+TEST(of_a_lattice)
 {
-    (void)state;
     what_is_recorded_is_the_surface_that_is_there("fastlsm");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_an_octree),
-        cmocka_unit_test(of_a_lattice),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

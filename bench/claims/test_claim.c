@@ -1,15 +1,8 @@
 #define _GNU_SOURCE
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "../store/h5.h"
 #include "claim_store.h"
 #include "claim_table.h"
@@ -38,9 +31,8 @@ static const char *with(const char *old, const char *new)
     return text;
 }
 
-static void a_claim_is_read_whole(void **state)
+TEST(a_claim_is_read_whole)
 {
-    (void)state;
     BenchClaims claims = {0};
     SmError error;
     assert_int_equal(parse(good, &claims, &error), SM_OK);
@@ -56,9 +48,8 @@ static void a_claim_is_read_whole(void **state)
     bench_claims_free(&claims);
 }
 
-static void values_come_from_the_papers(void **state)
+TEST(values_come_from_the_papers)
 {
-    (void)state;
     BenchClaims claims = {0};
     SmError error;
     const char *number =
@@ -77,9 +68,8 @@ static void values_come_from_the_papers(void **state)
     bench_claims_free(&claims);
 }
 
-static void mistakes_are_named_with_their_line(void **state)
+TEST(mistakes_are_named_with_their_line)
 {
-    (void)state;
     const struct {
         const char *old, *new, *line, *says;
     } cases[] = {
@@ -135,9 +125,8 @@ static void mistakes_are_named_with_their_line(void **state)
     }
 }
 
-static void a_name_is_there_once_and_curves_have_points(void **state)
+TEST(a_name_is_there_once_and_curves_have_points)
 {
-    (void)state;
     BenchClaims claims = {0};
     SmError error;
     assert_int_equal(parse(good, &claims, &error), SM_OK);
@@ -168,9 +157,8 @@ static bool place_is_known(const char *paper, const char *place)
     return sscanf(place, ".%d%n", &sub, &used) == 1 && !place[used] && sub >= 1 && sub <= 3;
 }
 
-static void the_programs_own_claims_are_sound(void **state)
+TEST(the_programs_own_claims_are_sound)
 {
-    (void)state;
     BenchClaims claims = {0};
     SmError error;
     int kinds[BENCH_CLAIM_KINDS] = {0};
@@ -311,9 +299,8 @@ static void kinds_are_stored(BenchH5 *h5)
     assert_true(unset == 593 && isnan(ratio[0]));
 }
 
-static void findings_are_stored(void **state)
+TEST(findings_are_stored)
 {
-    (void)state;
     BenchH5 h5;
     open_stored(&h5);
     has_number(&h5, h5.file, "claims", FINDINGS);
@@ -338,9 +325,8 @@ static void findings_are_stored(void **state)
     assert_true(bench_h5_close(&h5));
 }
 
-static void curves_are_stored(void **state)
+TEST(curves_are_stored)
 {
-    (void)state;
     BenchH5 h5;
     open_stored(&h5);
     hid_t curve = bench_h5_find_group(&h5, h5.file, "curves/sag.beam.w1-3.3");
@@ -359,9 +345,8 @@ static void curves_are_stored(void **state)
     assert_true(bench_h5_close(&h5));
 }
 
-static void a_place_that_cannot_be_written_is_named(void **state)
+TEST(a_place_that_cannot_be_written_is_named)
 {
-    (void)state;
     SmError error;
     fill();
     assert_int_equal(bench_claim_store("/nowhere/x.h5", findings, FINDINGS, &lab, &machine, &error),
@@ -382,9 +367,8 @@ static char *written(BenchFormat format)
     return text;
 }
 
-static void tables_say_all(void **state)
+TEST(tables_say_all)
 {
-    (void)state;
     static const struct {
         BenchFormat format;
         const char *has[3];
@@ -409,20 +393,4 @@ static void tables_say_all(void **state)
             if (!strstr(text, cases[c].has[h])) fail_msg("%s in:\n%s", cases[c].has[h], text);
         free(text);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_claim_is_read_whole),
-        cmocka_unit_test(values_come_from_the_papers),
-        cmocka_unit_test(mistakes_are_named_with_their_line),
-        cmocka_unit_test(a_name_is_there_once_and_curves_have_points),
-        cmocka_unit_test(the_programs_own_claims_are_sound),
-        cmocka_unit_test(findings_are_stored),
-        cmocka_unit_test(curves_are_stored),
-        cmocka_unit_test(a_place_that_cannot_be_written_is_named),
-        cmocka_unit_test(tables_say_all),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

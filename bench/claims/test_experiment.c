@@ -1,13 +1,6 @@
 #define _GNU_SOURCE
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "choices.h"
 #include "deform.h"
 #include "scene_field.h"
@@ -17,9 +10,8 @@ static BenchLab quick_lab(void)
     return (BenchLab){.quick = true, .threads = 1, .seed = 1};
 }
 
-static void ranges_are_even_and_rise(void **state)
+TEST(ranges_are_even_and_rise)
 {
-    (void)state;
     int number[BENCH_RANGE_POINTS];
     assert_int_equal(bench_range_numbers(&(BenchRange){1, 8, 4}, number), 4);
     const int doubled[] = {1, 2, 4, 8};
@@ -30,9 +22,8 @@ static void ranges_are_even_and_rise(void **state)
     assert_int_equal(number[0], 7);
 }
 
-static void smoothing_reaches_four_widths_and_is_measured_once(void **state)
+TEST(smoothing_reaches_four_widths_and_is_measured_once)
 {
-    (void)state;
     BenchLab lab = quick_lab();
     BenchMeasure measure = {.experiment = BENCH_TRY_SMOOTHING, .w = {1, 3, 3}};
     int curve = bench_experiment(&lab, &measure), curves = lab.curves;
@@ -56,9 +47,8 @@ static void smoothing_reaches_four_widths_and_is_measured_once(void **state)
 }
 
 /* The bar of the widest regions has cells that nothing reaches, too. */
-static void the_widest_profile_ends_in_nothing(void **state)
+TEST(the_widest_profile_ends_in_nothing)
 {
-    (void)state;
     BenchLab lab = quick_lab();
     BenchMeasure measure = {.experiment = BENCH_TRY_SMOOTHING, .w = {16, 16, 1}};
     assert_true(lab.curves == 0 && bench_experiment(&lab, &measure) == 1);
@@ -70,9 +60,8 @@ static void the_widest_profile_ends_in_nothing(void **state)
 }
 
 /* An interval for all points together is wider than one for each. */
-static void intervals_are_for_all_points(void **state)
+TEST(intervals_are_for_all_points)
 {
-    (void)state;
     double value[15];
     BenchCurve curve;
     for (int i = 0; i < 15; i++) value[i] = 1 + i;
@@ -84,9 +73,8 @@ static void intervals_are_for_all_points(void **state)
 }
 
 /* A gradient that jumps at one plane by a known amount. */
-static void jumps_are_found(void **state)
+TEST(jumps_are_found)
 {
-    (void)state;
     enum { N = 5 };
     double g[N * N * N][3];
     for (int p = 0; p < N * N * N; p++) {
@@ -99,9 +87,8 @@ static void jumps_are_found(void **state)
     assert_true(fabs(bench_deform_jump(size, (const double(*)[3])g) - 0.75) < 1e-12);
 }
 
-static void the_bar_bends_and_twists_by_half_a_turn(void **state)
+TEST(the_bar_bends_and_twists_by_half_a_turn)
 {
-    (void)state;
     const double along = 40, radius = along / M_PI;
     double a[3], b[3];
     bench_deform_place((const double[3]){0, 0, -along / 2}, along, a);
@@ -113,9 +100,8 @@ static void the_bar_bends_and_twists_by_half_a_turn(void **state)
     assert_true(b[0] == 1 && b[1] == 2 && b[2] == 0);
 }
 
-static void scenes_give_their_fields(void **state)
+TEST(scenes_give_their_fields)
 {
-    (void)state;
     BenchLab lab = quick_lab();
     BenchMeasure measure = {.experiment = BENCH_TRY_SCENE};
     strcpy(measure.scene, "penguin");
@@ -138,9 +124,8 @@ static void scenes_give_their_fields(void **state)
     bench_lab_free(&lab);
 }
 
-static void what_cannot_be_measured_is_not_valid(void **state)
+TEST(what_cannot_be_measured_is_not_valid)
 {
-    (void)state;
     BenchLab lab = quick_lab();
     BenchMeasure measure = {.experiment = BENCH_TRY_SCENE};
     strcpy(measure.scene, "no-such-scene");
@@ -155,9 +140,8 @@ static void what_cannot_be_measured_is_not_valid(void **state)
     bench_lab_free(&lab);
 }
 
-static void cubes_of_both_engines_are_timed(void **state)
+TEST(cubes_of_both_engines_are_timed)
 {
-    (void)state;
     BenchLab lab = quick_lab();
     BenchMeasure measure = {.experiment = BENCH_TRY_SIZE, .n = {6, 10, 3}};
     for (int engine = 0; engine < 2; engine++) {
@@ -173,9 +157,8 @@ static void cubes_of_both_engines_are_timed(void **state)
 }
 
 /* The searches alone are a part of a change. */
-static void searches_are_a_part_of_resampling(void **state)
+TEST(searches_are_a_part_of_resampling)
 {
-    (void)state;
     BenchLab lab = quick_lab();
     BenchMeasure measure = {
         .experiment = BENCH_TRY_RESAMPLING, .scene = "liver", .field = "distance-share"};
@@ -200,9 +183,8 @@ static BenchCurve choice(BenchLab *lab, BenchMeasure measure, const char *scene,
 
 /* Only union takes in what lies beyond (1 + epsilon) w, and only without symmetry does epsilon make
  * regions' lists shorter. */
-static void regions_are_measured_by_their_symmetry(void **state)
+TEST(regions_are_measured_by_their_symmetry)
 {
-    (void)state;
     BenchLab lab = quick_lab();
     for (int s = 0; s < 3; s++) {
         BenchMeasure measure = {
@@ -224,9 +206,8 @@ static void regions_are_measured_by_their_symmetry(void **state)
 
 /* By volume a beam is as thick as the cells that it touches: five instead of four, (5/4)^2 as
  * stiff. */
-static void stiffness_by_volume_depends_on_the_place(void **state)
+TEST(stiffness_by_volume_depends_on_the_place)
 {
-    (void)state;
     BenchLab lab = quick_lab();
     BenchMeasure measure = {.experiment = BENCH_TRY_PLACEMENT};
     double material = choice(&lab, measure, "", "").y[0];
@@ -237,33 +218,12 @@ static void stiffness_by_volume_depends_on_the_place(void **state)
     bench_lab_free(&lab);
 }
 
-static void energy_stays_but_with_plain_weights(void **state)
+TEST(energy_stays_but_with_plain_weights)
 {
-    (void)state;
     BenchLab lab = quick_lab();
     BenchMeasure measure = {.experiment = BENCH_TRY_GROWTH};
     assert_true(fabs(choice(&lab, measure, "hand-sampled-whole", "").y[0] - 1) < 0.05);
     measure.weighting = OCT_PLAIN;
     assert_true(choice(&lab, measure, "hand-sampled-whole", "").y[0] > 1.5);
     bench_lab_free(&lab);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ranges_are_even_and_rise),
-        cmocka_unit_test(smoothing_reaches_four_widths_and_is_measured_once),
-        cmocka_unit_test(the_widest_profile_ends_in_nothing),
-        cmocka_unit_test(intervals_are_for_all_points),
-        cmocka_unit_test(jumps_are_found),
-        cmocka_unit_test(the_bar_bends_and_twists_by_half_a_turn),
-        cmocka_unit_test(scenes_give_their_fields),
-        cmocka_unit_test(what_cannot_be_measured_is_not_valid),
-        cmocka_unit_test(cubes_of_both_engines_are_timed),
-        cmocka_unit_test(searches_are_a_part_of_resampling),
-        cmocka_unit_test(regions_are_measured_by_their_symmetry),
-        cmocka_unit_test(stiffness_by_volume_depends_on_the_place),
-        cmocka_unit_test(energy_stays_but_with_plain_weights),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

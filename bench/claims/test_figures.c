@@ -1,17 +1,8 @@
 /* What the octree paper's figures show, in numbers: fingers that move apart, a soft pinky and a
  * stiff thumb, a dent that stays, flowers that share their structure. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../lib/polar.h"
 #include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
 #include "../../octree/engine.h"
 #include "../../octree/surface/surface.h"
 #include "../engines.h"
@@ -224,9 +215,8 @@ static double neighbours_bend_welded(int axis, double welded[FINGERS][FINGERS])
 
 /* Pulling a fingertip carries the fingers next to it along, as the palm is soft, but hardly bends
  * them; where cells of one size weld fingers, here index to middle and ring to pinky, they bend. */
-static void fingers_move_independently(void **state)
+TEST(fingers_move_independently)
 {
-    (void)state;
     if (!TEST_FIGURES) skip();
     static const char *const names[2] = {"hand-sampled-whole", "hand-sampled"};
     for (int i = 0; i < 4; i++) {
@@ -278,9 +268,8 @@ static double pinky_over_thumb(Run *run)
 }
 
 /* Under forces that move both alike while their widths are equal. */
-static void a_pinky_is_soft_and_a_thumb_stiff(void **state)
+TEST(a_pinky_is_soft_and_a_thumb_stiff)
 {
-    (void)state;
     if (!TEST_FIGURES) skip();
     Run run;
     find_scene("hand-stiffness", &run);
@@ -335,9 +324,8 @@ static void drop(const char *name, double *hit, double *dent, double *volume)
     bench_body_free(&run.body);
 }
 
-static void a_dent_stays_where_it_is_plastic(void **state)
+TEST(a_dent_stays_where_it_is_plastic)
 {
-    (void)state;
     double hit, dent, volume;
     drop("block-elastic", &hit, &dent, &volume);
     assert_true(hit > 0.1 && dent < 0.01);
@@ -356,9 +344,8 @@ static SmCounts counts_of(Run *run)
 }
 
 /* Tree, graph, regions and lists are there once: thirty-nine more flowers cost their state. */
-static void flowers_share_their_structure(void **state)
+TEST(flowers_share_their_structure)
 {
-    (void)state;
     Run run;
     find_scene("flowers", &run);
     run.scene.instances = 1;
@@ -386,15 +373,4 @@ static void flowers_share_their_structure(void **state)
     assert_true(most > 0.01); /* the wind moves them, all alike */
     end(&run);
     bench_body_free(&run.body);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fingers_move_independently),
-        cmocka_unit_test(a_pinky_is_soft_and_a_thumb_stiff),
-        cmocka_unit_test(a_dent_stays_where_it_is_plastic),
-        cmocka_unit_test(flowers_share_their_structure),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,20 +1,13 @@
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
+#include "../../lib/test_frame.h"
 #include "fit.h"
 #include "verdict.h"
 
 /* ---- fits */
 
-static void powers_are_fitted_exactly(void **state)
+TEST(powers_are_fitted_exactly)
 {
-    (void)state;
     double x[6], y[6];
     BenchFit fit;
     for (int i = 0; i < 6; i++) {
@@ -28,9 +21,8 @@ static void powers_are_fitted_exactly(void **state)
 
 /* Worked by hand: ln x = 0, 1, 2, ln y = 0, 2, 3: slope 1.5, residuals (-1, 2, -1) / 6, variance of
  * the slope (1/6) / 1 / 2 = 1/12; t of one degree of freedom is 12.7062. */
-static void intervals_are_students(void **state)
+TEST(intervals_are_students)
 {
-    (void)state;
     const double x[] = {1, exp(1), exp(2)}, y[] = {1, exp(2), exp(3)};
     BenchFit fit;
     assert_true(bench_fit_power(x, y, 3, &fit));
@@ -39,9 +31,8 @@ static void intervals_are_students(void **state)
     assert_true(fabs(fit.exponent - fit.low - (fit.high - fit.exponent)) < 1e-9);
 }
 
-static void what_has_no_power_is_not_fitted(void **state)
+TEST(what_has_no_power_is_not_fitted)
 {
-    (void)state;
     const double x[] = {1, 2, 3}, y[] = {1, 0, 3}, same[] = {2, 2, 2}, good[] = {1, 2, 3};
     BenchFit fit;
     assert_false(bench_fit_power(x, y, 3, &fit));
@@ -90,9 +81,8 @@ static BenchVerdict verdict_of(const BenchClaim *claim, double measured, double 
     return finding.verdict;
 }
 
-static void each_test_has_its_edges(void **state)
+TEST(each_test_has_its_edges)
 {
-    (void)state;
     const struct {
         BenchTest test;
         double tolerance, in, out;
@@ -117,9 +107,8 @@ static void each_test_has_its_edges(void **state)
 }
 
 /* The exponent of naive sums: 2.90, from 2.69 to 3.12, wanted 3 within 0.25. */
-static void an_interval_beyond_the_band_is_no_contradiction(void **state)
+TEST(an_interval_beyond_the_band_is_no_contradiction)
 {
-    (void)state;
     const struct {
         double value, low, high;
         BenchVerdict expected, different;
@@ -149,9 +138,8 @@ static void an_interval_beyond_the_band_is_no_contradiction(void **state)
 }
 
 /* The largest estimate is the luckiest one; what holds is where an interval begins. */
-static void the_largest_is_not_the_luckiest(void **state)
+TEST(the_largest_is_not_the_luckiest)
 {
-    (void)state;
     const double y[] = {100, 104, 97};
     BenchCurve curve = curve_with(3, y, 2);
     BenchClaim claim = claim_of(BENCH_IS_AT_LEAST, 100, 0);
@@ -168,9 +156,8 @@ static void the_largest_is_not_the_luckiest(void **state)
 }
 
 /* A step between points whose intervals overlap contradicts nothing. */
-static void a_trend_is_contradicted_by_what_is_apart(void **state)
+TEST(a_trend_is_contradicted_by_what_is_apart)
 {
-    (void)state;
     const double rising[] = {1, 2, 4}, nearly[] = {1, 2, 1.99}, wavy[] = {1, 2, 1.5};
     const struct {
         const double *y;
@@ -196,9 +183,8 @@ static void a_trend_is_contradicted_by_what_is_apart(void **state)
     }
 }
 
-static void the_verdict_follows_what_is_expected(void **state)
+TEST(the_verdict_follows_what_is_expected)
 {
-    (void)state;
     BenchClaim claim = claim_of(BENCH_IS_NEAR, 100, 0.1);
     strcpy(claim.because, "of the weather");
     claim.expect = BENCH_DIFFERS;
@@ -218,9 +204,8 @@ static void the_verdict_follows_what_is_expected(void **state)
 }
 
 /* A speed is never reproduced, whatever the machine. */
-static void a_machines_speed_is_a_ratio(void **state)
+TEST(a_machines_speed_is_a_ratio)
 {
-    (void)state;
     const struct {
         BenchTest test;
         double measured, ratio;
@@ -246,9 +231,8 @@ static void a_machines_speed_is_a_ratio(void **state)
     }
 }
 
-static void what_is_set_is_counted(void **state)
+TEST(what_is_set_is_counted)
 {
-    (void)state;
     const double right = 101, wrong = 90, free = 60;
     BenchClaim claim = claim_of(BENCH_IS_NEAR, 100, 0.02);
     BenchCurve good = curve_with(1, &right, 0), bad = curve_with(1, &wrong, 0),
@@ -268,9 +252,8 @@ static void what_is_set_is_counted(void **state)
     assert_false(bench_verdict_all(&finding, 1));
 }
 
-static void what_failed_its_check_says_nothing(void **state)
+TEST(what_failed_its_check_says_nothing)
 {
-    (void)state;
     const double y[] = {100};
     BenchClaim claim = claim_of(BENCH_IS_NEAR, 100, 0.1);
     BenchCurve bad = curve_of(1, y), good = bad;
@@ -286,9 +269,8 @@ static void what_failed_its_check_says_nothing(void **state)
     assert_int_equal(finding.verdict, BENCH_INVALID);
 }
 
-static void times_that_others_took_are_not_judged(void **state)
+TEST(times_that_others_took_are_not_judged)
 {
-    (void)state;
     const double y[] = {100};
     BenchClaim claim = claim_of(BENCH_IS_NEAR, 100, 0.1);
     BenchCurve busy = curve_of(1, y), good = busy;
@@ -306,9 +288,8 @@ static void times_that_others_took_are_not_judged(void **state)
     }
 }
 
-static void exponents_gains_and_trends_are_of_curves(void **state)
+TEST(exponents_gains_and_trends_are_of_curves)
 {
-    (void)state;
     const double cubes[] = {2, 16.4, 53, 129}, falling[] = {4, 3, 2.5, 1}, wavy[] = {1, 3, 2, 4};
     BenchCurve rise = curve_of(4, cubes), fall = curve_of(4, falling), wave = curve_of(4, wavy);
     BenchClaim claim = claim_of(BENCH_LIES_INSIDE, 3, 0.25);
@@ -345,9 +326,8 @@ static void exponents_gains_and_trends_are_of_curves(void **state)
     assert_int_equal(finding.verdict, BENCH_NOT_REPRODUCED);
 }
 
-static void one_curve_is_divided_by_another(void **state)
+TEST(one_curve_is_divided_by_another)
 {
-    (void)state;
     const double a[] = {10, 30}, b[] = {5, 10}, three[] = {1, 2, 3};
     BenchCurve up = curve_of(2, a), down = curve_of(2, b), other = curve_of(3, three);
     BenchClaim claim = claim_of(BENCH_IS_AT_LEAST, 2, 0);
@@ -360,9 +340,8 @@ static void one_curve_is_divided_by_another(void **state)
     assert_int_equal(finding.verdict, BENCH_INVALID);
 }
 
-static void lists_are_held_value_by_value(void **state)
+TEST(lists_are_held_value_by_value)
 {
-    (void)state;
     const double y[] = {10, 20, 70};
     BenchCurve curve = curve_of(3, y);
     BenchClaim claim = claim_of(BENCH_IS_WITHIN, 12, 3);
@@ -380,9 +359,8 @@ static void lists_are_held_value_by_value(void **state)
     assert_int_equal(finding.verdict, BENCH_NOT_REPRODUCED);
 }
 
-static void words_are_short_and_whole(void **state)
+TEST(words_are_short_and_whole)
 {
-    (void)state;
     const double y[] = {2.944};
     BenchCurve curve = curve_of(1, y);
     BenchClaim claim = claim_of(BENCH_LIES_INSIDE, 3, 0.25);
@@ -403,27 +381,4 @@ static void words_are_short_and_whole(void **state)
     claim.value[2] = NAN;
     bench_verdict_paper(&claim, sizeof text, text);
     assert_string_equal(text, "3/0.500/-");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(powers_are_fitted_exactly),
-        cmocka_unit_test(intervals_are_students),
-        cmocka_unit_test(what_has_no_power_is_not_fitted),
-        cmocka_unit_test(each_test_has_its_edges),
-        cmocka_unit_test(an_interval_beyond_the_band_is_no_contradiction),
-        cmocka_unit_test(the_largest_is_not_the_luckiest),
-        cmocka_unit_test(a_trend_is_contradicted_by_what_is_apart),
-        cmocka_unit_test(the_verdict_follows_what_is_expected),
-        cmocka_unit_test(a_machines_speed_is_a_ratio),
-        cmocka_unit_test(what_is_set_is_counted),
-        cmocka_unit_test(what_failed_its_check_says_nothing),
-        cmocka_unit_test(times_that_others_took_are_not_judged),
-        cmocka_unit_test(exponents_gains_and_trends_are_of_curves),
-        cmocka_unit_test(one_curve_is_divided_by_another),
-        cmocka_unit_test(lists_are_held_value_by_value),
-        cmocka_unit_test(words_are_short_and_whole),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

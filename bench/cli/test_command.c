@@ -1,20 +1,12 @@
 /* The program as a user runs it: exit codes, single lines, files. */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
+#include "../../lib/test_frame.h"
 #include "test_program.h"
 
 static bool there(const char *name)
@@ -54,9 +46,8 @@ static int set_up(void **state)
     return 0;
 }
 
-static void mistakes_are_one_line_and_an_exit_code(void **state)
+TEST(mistakes_are_one_line_and_an_exit_code)
 {
-    (void)state;
     static const Mistake cases[] = {
         {"--frobnicate", 2, "unrecognized option '--frobnicate'; see 'shapebench --help'"},
         {"frobnicate", 2, "unknown command 'frobnicate'; see 'shapebench --help'"},
@@ -140,9 +131,8 @@ static void mistakes_are_one_line_and_an_exit_code(void **state)
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }
 
-static void mistakes_of_other_commands_are_too(void **state)
+TEST(mistakes_of_other_commands_are_too)
 {
-    (void)state;
     static const Mistake cases[] = {
         {"info", 2, "which MESH?"},
         {"info missing.obj", 3, "missing.obj"},
@@ -179,9 +169,8 @@ static void mistakes_of_other_commands_are_too(void **state)
     make_mistakes(cases, sizeof cases / sizeof cases[0]);
 }
 
-static void help_is_everywhere(void **state)
+TEST(help_is_everywhere)
 {
-    (void)state;
     static const char *const commands[] = {"",      "run",   "tables",    "info",
                                            "sweep", "merge", "calibrate", "scenes"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
@@ -213,9 +202,8 @@ static void help_is_everywhere(void **state)
     assert_memory_equal(result.out, "shapebench ", 11);
 }
 
-static void a_scene_can_be_copied_and_run(void **state)
+TEST(a_scene_can_be_copied_and_run)
 {
-    (void)state;
     Result result;
     run("scenes", &result);
     assert_non_null(strstr(result.out, "penguin"));
@@ -230,9 +218,8 @@ static void a_scene_can_be_copied_and_run(void **state)
     assert_true(there("mine.vtkhdf") && there("mine.vtkhdf.xdmf"));
 }
 
-static void a_path_may_be_as_long_as_the_system_has_it(void **state)
+TEST(a_path_may_be_as_long_as_the_system_has_it)
 {
-    (void)state;
     Result result;
     run_with("D=$(printf %0200d 0); P=$D/$D/$D/$D/$D/$D; mkdir -p $P;",
              "run tiny.cfg --frames 0 -o $P/a.vtkhdf && { ls $P; rm -r $D; }", &result);
@@ -241,9 +228,8 @@ static void a_path_may_be_as_long_as_the_system_has_it(void **state)
     if (!last) fail_msg("written elsewhere: %s", result.out);
 }
 
-static void a_mesh_alone_can_be_run(void **state)
+TEST(a_mesh_alone_can_be_run)
 {
-    (void)state;
     Result result;
     run("scenes block --write-mesh block.obj", &result);
     assert_int_equal(result.code, 0);
@@ -274,9 +260,8 @@ static void a_mesh_alone_can_be_run(void **state)
     assert_false(there("block.vtkhdf"));
 }
 
-static void tables_measure_a_scene(void **state)
+TEST(tables_measure_a_scene)
 {
-    (void)state;
     Result result;
     run("tables --scene tiny.cfg --repeats 3 --block 1 --format csv -o rows.h5", &result);
     if (result.code) fail_msg("%s", result.err);
@@ -294,9 +279,8 @@ static void tables_measure_a_scene(void **state)
 }
 
 /* An octree's options, and its mesh alone: what was made is said. */
-static void an_octree_can_be_run(void **state)
+TEST(an_octree_can_be_run)
 {
-    (void)state;
     Result result;
     run("scenes block --write-mesh block.obj", &result);
     run("run block.obj --engine octree --epsilon 0.5 --particles 500 --levels 2 --nodes 120 "
@@ -340,9 +324,8 @@ static void an_octree_can_be_run(void **state)
 }
 
 /* Its table: speed-ups over the lattice, summation nodes, both held to their twins. */
-static void tables_set_the_octree_beside_the_lattice(void **state)
+TEST(tables_set_the_octree_beside_the_lattice)
 {
-    (void)state;
     Result result;
     run("tables --paper octree --scene lattice.cfg --scene tree.cfg --repeats 2 --block 1 "
         "--format json",
@@ -375,9 +358,8 @@ static void tables_set_the_octree_beside_the_lattice(void **state)
 }
 
 /* What was measured before a scene that cannot be stays; a scene that is not there stops all. */
-static void rows_before_an_error_are_kept(void **state)
+TEST(rows_before_an_error_are_kept)
 {
-    (void)state;
     Result result;
     run("tables --scene tiny.cfg --scene wide.cfg --repeats 1 --block 1", &result);
     assert_int_equal(result.code, 3);
@@ -405,9 +387,8 @@ static const char own_claims[] =
     "    test = \"near\"; measure = { experiment = \"scene\"; scene = \"./no.cfg\";\n"
     "    field = \"particles\"; }; } );\n";
 
-static void claims_of_ones_own_decide_the_exit_code(void **state)
+TEST(claims_of_ones_own_decide_the_exit_code)
 {
-    (void)state;
     Result result;
     write_text("own.cfg", own_claims);
     run("claims --claims own.cfg --claim few --quick -o few.h5", &result);
@@ -424,9 +405,8 @@ static void claims_of_ones_own_decide_the_exit_code(void **state)
     assert_non_null(strstr(result.err, "own.cfg:2: 'few' of 'mine' is there already"));
 }
 
-static void a_full_disk_is_an_error(void **state)
+TEST(a_full_disk_is_an_error)
 {
-    (void)state;
     char command[512];
     snprintf(command, sizeof command, "'%s/shapebench' scenes penguin >/dev/full 2>%s/err",
              BINARY_DIR, folder);
@@ -435,9 +415,8 @@ static void a_full_disk_is_an_error(void **state)
 }
 
 /* Told beforehand that its file would be huge; interrupted in mid-run, it leaves none. */
-static void a_huge_file_is_announced_and_an_interrupt_leaves_nothing(void **state)
+TEST(a_huge_file_is_announced_and_an_interrupt_leaves_nothing)
 {
-    (void)state;
     pid_t child = fork();
     if (child == 0) {
         if (chdir(folder) || !freopen("err", "w", stderr)) _exit(99);
@@ -460,22 +439,4 @@ static void a_huge_file_is_announced_and_an_interrupt_leaves_nothing(void **stat
     assert_int_not_equal(system(command), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mistakes_are_one_line_and_an_exit_code),
-        cmocka_unit_test(mistakes_of_other_commands_are_too),
-        cmocka_unit_test(help_is_everywhere),
-        cmocka_unit_test(a_scene_can_be_copied_and_run),
-        cmocka_unit_test(a_path_may_be_as_long_as_the_system_has_it),
-        cmocka_unit_test(a_mesh_alone_can_be_run),
-        cmocka_unit_test(tables_measure_a_scene),
-        cmocka_unit_test(an_octree_can_be_run),
-        cmocka_unit_test(tables_set_the_octree_beside_the_lattice),
-        cmocka_unit_test(rows_before_an_error_are_kept),
-        cmocka_unit_test(claims_of_ones_own_decide_the_exit_code),
-        cmocka_unit_test(a_full_disk_is_an_error),
-        cmocka_unit_test(a_huge_file_is_announced_and_an_interrupt_leaves_nothing),
-    };
-    return cmocka_run_group_tests(tests, set_up, remove_folder);
-}
+TEST_GROUP(set_up, remove_folder)

@@ -4,21 +4,13 @@
 #include <errno.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "../table/export.h"
 #include "command.h"
 #include "test_program.h"
@@ -33,9 +25,8 @@ static void assert_refused(const char *arguments, const char *wanted)
                  wanted, result.err);
 }
 
-static void pipes_and_devices_are_refused_at_once(void **state)
+TEST(pipes_and_devices_are_refused_at_once)
 {
-    (void)state;
     static const char *const ends[] = {".cfg", ".xyz", ".ply", ".obj", ".h5"};
     static const char *const commands[] = {"run pipe.cfg",
                                            "run zero.cfg",
@@ -65,9 +56,8 @@ static void pipes_and_devices_are_refused_at_once(void **state)
 }
 
 /* Points without an end of line, in a file that takes no room on disk. */
-static void lines_have_an_end(void **state)
+TEST(lines_have_an_end)
 {
-    (void)state;
     write_text("sparse.xyz", "0 0 0 0 0 1\n");
     assert_int_equal(truncate(path_in("sparse.xyz"), (off_t)1 << 40), 0);
     assert_refused("run sparse.xyz --engine meshless", "line 2 holds a zero byte");
@@ -78,9 +68,8 @@ static void lines_have_an_end(void **state)
     assert_refused("run long.xyz --engine meshless", "line 1 has over a million characters");
 }
 
-static void points_are_told_of_the_engine_that_takes_them(void **state)
+TEST(points_are_told_of_the_engine_that_takes_them)
 {
-    (void)state;
     write_text("cloud.ply", "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\n"
                             "property float y\nproperty float z\nend_header\n0 0 0\n1 1 1\n");
     write_text("cloud.txt", "0 0 0 0 0 1\n");
@@ -90,9 +79,8 @@ static void points_are_told_of_the_engine_that_takes_them(void **state)
 }
 
 /* One sliver across its box, of which 35,000 particles would need too large a lattice. */
-static void a_default_is_never_refused(void **state)
+TEST(a_default_is_never_refused)
 {
-    (void)state;
     Result result;
     write_text("sliver.obj", "v 0 0 0\nv 1 0.3 0.2\nv 1 0.3001 0.2\nf 1 2 3\n");
     run("run sliver.obj --engine octree --shell --no-output --frames 0", &result);
@@ -114,9 +102,8 @@ static void assert_shown_safely(const char *arguments, int code, const char *wan
                  code, wanted, result.out, result.err);
 }
 
-static void no_escape_code_of_a_file_reaches_the_terminal(void **state)
+TEST(no_escape_code_of_a_file_reaches_the_terminal)
 {
-    (void)state;
     static const char mesh[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                                "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
     write_text("\x1b[31mred.obj", mesh);
@@ -138,9 +125,8 @@ static void no_escape_code_of_a_file_reaches_the_terminal(void **state)
     assert_shown_safely("run penguin --polar '\x1b[31m'", 2, "?[31m");
 }
 
-static void no_cell_is_a_formula(void **state)
+TEST(no_cell_is_a_formula)
 {
-    (void)state;
     static const char *const cells[][2] = {{"=1+1", "\"'=1+1\""},
                                            {"@SUM(A1)", "\"'@SUM(A1)\""},
                                            {"+1", "+1"},
@@ -175,9 +161,8 @@ static void take_landlock_away(void)
     assert_int_equal(prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter), 0);
 }
 
-static void info_says_what_a_kernel_cannot_confine(void **state)
+TEST(info_says_what_a_kernel_cannot_confine)
 {
-    (void)state;
     write_text("point.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     pid_t child = fork();
     assert_true(child >= 0);
@@ -198,18 +183,4 @@ static void info_says_what_a_kernel_cannot_confine(void **state)
     slurp("said", said, sizeof said);
     if (!strstr(said, "could open files outside of the mesh's folder (no Landlock)"))
         fail_msg("%s", said);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pipes_and_devices_are_refused_at_once),
-        cmocka_unit_test(lines_have_an_end),
-        cmocka_unit_test(points_are_told_of_the_engine_that_takes_them),
-        cmocka_unit_test(a_default_is_never_refused),
-        cmocka_unit_test(no_escape_code_of_a_file_reaches_the_terminal),
-        cmocka_unit_test(no_cell_is_a_formula),
-        cmocka_unit_test(info_says_what_a_kernel_cannot_confine),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,9 +1,8 @@
-/* test_program.h - the program as a user runs it, in the test's folder. Include after cmocka. */
+/* test_program.h - the program as a user runs it, in the test's folder. */
 #ifndef BENCH_TEST_PROGRAM_H
 #define BENCH_TEST_PROGRAM_H
 
 #include <signal.h>
-#include <stdbool.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>

@@ -1,16 +1,11 @@
 /* One number of threads everywhere: an engine's own in all it does, the program's in all else. */
 #include <omp.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "../../fastlsm/fastlsm.h"
 #include "../../lib/shapes/shape.h"
 #include "../../lib/system/team.h"
 #include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
 #include "../../lib/voxel/voxelise.h"
 #include "../../octree/engine.h"
 #include "../../reference/brute.h"
@@ -78,9 +73,8 @@ static void use(const SmEngineType *type, const SmVoxels *voxels, SmEngineParams
     if (tasks() > before) fail_msg("%s: %d threads more", type->name, tasks() - before);
 }
 
-static void an_engine_of_one_thread_starts_no_other(void **state)
+TEST(an_engine_of_one_thread_starts_no_other)
 {
-    (void)state;
     SmVoxels cube, sites;
     SmMesh penguin;
     const SmVoxelParams few = {.fill = SM_SOLID, .particles = 400};
@@ -112,9 +106,8 @@ static void an_engine_of_one_thread_starts_no_other(void **state)
 
 /* OpenMP's runtime ends the program where it is asked for so many anywhere: beyond SM_MOST_THREADS
  * in any case, and here, where stacks find no room, from some hundreds on. */
-static void the_program_runs_on_the_number_it_is_given(void **state)
+TEST(the_program_runs_on_the_number_it_is_given)
 {
-    (void)state;
     static const char *const numbers[] = {"", "--threads 2"};
     const char *room = TEST_FIGURES ? "ulimit -v 2000000;" : ""; /* sanitizers need more */
     omp_set_num_threads(100000);
@@ -130,13 +123,4 @@ static void the_program_runs_on_the_number_it_is_given(void **state)
         run_with(prefix, arguments, &result);
         if (result.code) fail_msg("%s: exit code %d: %s", numbers[i], result.code, result.err);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_engine_of_one_thread_starts_no_other),
-        cmocka_unit_test(the_program_runs_on_the_number_it_is_given),
-    };
-    return cmocka_run_group_tests_name("threads", tests, make_folder, remove_folder);
 }

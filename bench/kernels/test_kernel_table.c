@@ -1,24 +1,15 @@
 /* Timed kernels as tables: verdicts, rows without numbers, formats that parse. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
+#include "../../lib/test_frame.h"
 #include "kernel_table.h"
 
 static const BenchMachine machine = {.cpu = "Test CPU", .cores = 2};
 static const BenchCeilings ceilings = {.one = {.threads = 1}, .all = {.threads = 2}};
 
-static void verdicts_follow_the_limits(void **state)
+TEST(verdicts_follow_the_limits)
 {
-    (void)state;
     BenchKernel row = {.valid = true, .ns = 8, .at_most = NAN, .wanted = NAN};
     assert_string_equal(bench_kernel_verdict(&row), "");
     row.at_most = 8;
@@ -71,9 +62,8 @@ static void write_rows(BenchKernelFormat format, char **text, size_t *size)
     fclose(file);
 }
 
-static void an_invalid_or_busy_row_has_no_number(void **state)
+TEST(an_invalid_or_busy_row_has_no_number)
 {
-    (void)state;
     for (int f = 0; bench_kernel_formats[f]; f++) {
         char *text;
         size_t size;
@@ -86,9 +76,8 @@ static void an_invalid_or_busy_row_has_no_number(void **state)
 }
 
 /* But the ratio, where it is of processor time, and its verdict. */
-static void a_busy_row_tells_what_others_do_not_touch(void **state)
+TEST(a_busy_row_tells_what_others_do_not_touch)
 {
-    (void)state;
     const BenchKernel row = {.kernel = "late",
                              .valid = true,
                              .busy = true,
@@ -111,9 +100,8 @@ static void a_busy_row_tells_what_others_do_not_touch(void **state)
     }
 }
 
-static void formats_parse(void **state)
+TEST(formats_parse)
 {
-    (void)state;
     char *text;
     size_t size;
     write_rows(BENCH_KERNELS_CSV, &text, &size);
@@ -154,15 +142,4 @@ static void formats_parse(void **state)
     assert_int_equal(lines, 5);
     assert_int_equal(bars, 5 * 14);
     free(text);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(verdicts_follow_the_limits),
-        cmocka_unit_test(an_invalid_or_busy_row_has_no_number),
-        cmocka_unit_test(a_busy_row_tells_what_others_do_not_touch),
-        cmocka_unit_test(formats_parse),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,9 @@
 /* Kernels against ceilings: figures are sane, checks can fail. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
-
-#include <cmocka.h>
 
 #include "../../fastlsm/fastlsm.h"
 #include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
 #include "../measure/spread.h"
 #include "cubes.h"
 #include "kernel_table.h"
@@ -31,9 +22,8 @@ static int measure_ceilings(void **state)
     return 0;
 }
 
-static void ceilings_are_positive(void **state)
+TEST(ceilings_are_positive)
 {
-    (void)state;
     const BenchRates *rates[] = {&ceilings.one, &ceilings.all};
     for (int i = 0; i < 2; i++) {
         assert_int_equal(rates[i]->threads, i + 1);
@@ -52,9 +42,8 @@ static void ceilings_are_positive(void **state)
     assert_int_equal(guessed.all.threads, 1);
 }
 
-static void levels_hold_what_fits(void **state)
+TEST(levels_hold_what_fits)
 {
-    (void)state;
     for (int level = 0; level < BENCH_DRAM; level++) {
         assert_int_equal(bench_level_of(&ceilings, ceilings.bytes[level], 1), level);
         assert_int_equal(bench_level_of(&ceilings, ceilings.bytes[level] + 1, 1), level + 1);
@@ -63,9 +52,8 @@ static void levels_hold_what_fits(void **state)
     assert_true(bench_rates(&ceilings, 4).flops[0] == 2 * ceilings.all.flops[0]);
 }
 
-static void floors_follow_the_work(void **state)
+TEST(floors_follow_the_work)
 {
-    (void)state;
     /* one particle is its own region: 21 flops up, 21 down */
     assert_true(bench_work_sums(SM_SUM_NAIVE, 3, 1).flops == 42);
     for (int w = 2; w < 9; w++) {
@@ -86,9 +74,8 @@ static void floors_follow_the_work(void **state)
     assert_string_equal(bound, "DRAM");
 }
 
-static void the_spread_is_that_of_the_samples(void **state)
+TEST(the_spread_is_that_of_the_samples)
 {
-    (void)state;
     const double value[] = {5, 1, 4, 2, 3};
     BenchSpread spread = bench_spread(value, 5);
     assert_true(spread.low == 2 && spread.median == 3 && spread.high == 4);
@@ -101,9 +88,8 @@ static void get_wrong_goals(SmEngine *engine, SmField field, double (*values)[3]
     if (field == SM_GOAL) values[7][1] += 1e-3;
 }
 
-static void a_wrong_engine_is_not_timed(void **state)
+TEST(a_wrong_engine_is_not_timed)
 {
-    (void)state;
     SmEngineType wrong = fastlsm_engine_f32;
     wrong.get = get_wrong_goals;
     SmEngineParams params = {.w = 1, .h = 0.01, .threads = 1};
@@ -127,9 +113,8 @@ static void a_wrong_engine_is_not_timed(void **state)
     for (int i = 0; i < 2; i++) bench_cube_free(&cube[i]);
 }
 
-static void every_polar_method_is_checked(void **state)
+TEST(every_polar_method_is_checked)
 {
-    (void)state;
     for (int p = 0; p < BENCH_PRECISIONS; p++) {
         BenchPolarResult result[BENCH_POLARS] = {{0}};
         for (int m = 0; m < BENCH_POLARS; m++) result[m].wanted = true;
@@ -151,9 +136,8 @@ static void run_only(const char *const *only, BenchKernel *rows, int *count)
     assert_int_equal(bench_kernels_run(&params, &ceilings, rows, count, &error), SM_OK);
 }
 
-static void only_what_is_named_runs(void **state)
+TEST(only_what_is_named_runs)
 {
-    (void)state;
     BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count;
     run_only((const char *const[]){"polar-fast", NULL}, rows, &count);
@@ -174,9 +158,8 @@ static void only_what_is_named_runs(void **state)
     free(rows);
 }
 
-static void octree_kernels_run_by_name(void **state)
+TEST(octree_kernels_run_by_name)
 {
-    (void)state;
     BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count, listed = 0;
     const char *group;
@@ -202,9 +185,8 @@ static void octree_kernels_run_by_name(void **state)
 }
 
 /* Set-up is asserted to be linear, whatever caches hold. */
-static void octree_setup_is_linear(void **state)
+TEST(octree_setup_is_linear)
 {
-    (void)state;
     if (!TEST_FIGURES) skip();
     BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count;
@@ -219,9 +201,8 @@ static void octree_setup_is_linear(void **state)
 }
 
 /* What a cut and a refinement cost is held to the same in the smallest body. */
-static void resampling_is_compared_with_the_smallest_body(void **state)
+TEST(resampling_is_compared_with_the_smallest_body)
 {
-    (void)state;
     BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count;
     run_only((const char *const[]){"oct-cut-1e4", "oct-refine-1e4", NULL}, rows, &count);
@@ -253,9 +234,8 @@ static int exit_code(const char *arguments)
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-static void the_command_has_exit_codes(void **state)
+TEST(the_command_has_exit_codes)
 {
-    (void)state;
     assert_int_equal(exit_code("--only no-such-kernel"), 2);
     assert_int_equal(exit_code("--format latex"), 2);
     assert_int_equal(exit_code("polar"), 2);
@@ -265,20 +245,4 @@ static void the_command_has_exit_codes(void **state)
                      0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ceilings_are_positive),
-        cmocka_unit_test(levels_hold_what_fits),
-        cmocka_unit_test(floors_follow_the_work),
-        cmocka_unit_test(the_spread_is_that_of_the_samples),
-        cmocka_unit_test(a_wrong_engine_is_not_timed),
-        cmocka_unit_test(every_polar_method_is_checked),
-        cmocka_unit_test(only_what_is_named_runs),
-        cmocka_unit_test(octree_kernels_run_by_name),
-        cmocka_unit_test(resampling_is_compared_with_the_smallest_body),
-        cmocka_unit_test(octree_setup_is_linear),
-        cmocka_unit_test(the_command_has_exit_codes),
-    };
-    return cmocka_run_group_tests(tests, measure_ceilings, NULL);
-}
+TEST_GROUP(measure_ceilings, NULL)

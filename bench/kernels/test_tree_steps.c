@@ -1,15 +1,6 @@
 /* Steps and set-up of the octree that are timed: wrong ones are found, and what they do is counted.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "tree_setup.h"
 #include "tree_steps.h"
 #include "tree_work.h"
@@ -26,9 +17,8 @@ static void lose_member(BenchSampled *body)
     r->size[0]--;
 }
 
-static void a_wrong_octree_step_is_not_timed(void **state)
+TEST(a_wrong_octree_step_is_not_timed)
 {
-    (void)state;
     BenchSampled body;
     SmError error;
     assert_int_equal(bench_sampled_cube(6, &body, &error), SM_OK);
@@ -55,9 +45,8 @@ static void a_wrong_octree_step_is_not_timed(void **state)
 }
 
 /* Cubes that are held to the twins, and to what regular trees are. */
-static void a_wrong_octree_setup_is_not_timed(void **state)
+TEST(a_wrong_octree_setup_is_not_timed)
 {
-    (void)state;
     for (int side = 6; side <= 12; side += 6) {
         BenchSampled body;
         BenchSetup setup;
@@ -81,9 +70,8 @@ static void a_wrong_octree_setup_is_not_timed(void **state)
     }
 }
 
-static void wrong_distances_are_found(void **state)
+TEST(wrong_distances_are_found)
 {
-    (void)state;
     BenchSampled body;
     OctReach reach;
     SmError error;
@@ -104,9 +92,8 @@ static void wrong_distances_are_found(void **state)
 }
 
 /* One base cell, split down to the finest. */
-static void octree_work_is_counted(void **state)
+TEST(octree_work_is_counted)
 {
-    (void)state;
     BenchSampled body;
     OctSumLists lists;
     SmError error;
@@ -124,15 +111,4 @@ static void octree_work_is_counted(void **state)
                 bench_work_tree_goals(&c).flops + bench_work_tree_damping(&c).flops);
     oct_sum_lists_free(&lists);
     bench_sampled_free(&body);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_wrong_octree_step_is_not_timed),
-        cmocka_unit_test(a_wrong_octree_setup_is_not_timed),
-        cmocka_unit_test(wrong_distances_are_found),
-        cmocka_unit_test(octree_work_is_counted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

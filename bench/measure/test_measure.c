@@ -1,14 +1,6 @@
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 #include <time.h>
 
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "../../reference/brute.h"
 #include "../play/runner.h"
 #include "blocks.h"
@@ -36,9 +28,8 @@ static SmCode measure(const SmEngineType *type, BenchRow *row)
     return measure_text(text, type, row);
 }
 
-static void a_right_engine_is_valid_and_timed(void **state)
+TEST(a_right_engine_is_valid_and_timed)
 {
-    (void)state;
     BenchRow row;
     assert_int_equal(measure(&ref_brute_engine, &row), SM_OK);
     if (!row.valid) fail_msg("%s", row.reason);
@@ -86,9 +77,8 @@ static void measure_invalid(const SmEngineType *type, const char *words, BenchRo
     if (!strstr(row->reason, words)) fail_msg("'%s' does not say '%s'", row->reason, words);
 }
 
-static void a_wrong_engine_is_invalid(void **state)
+TEST(a_wrong_engine_is_invalid)
 {
-    (void)state;
     SmEngineType type = ref_brute_engine;
     type.get = wrong_get;
     static const char *const reasons[] = {"cells from brute force", "cells from brute force",
@@ -110,9 +100,8 @@ static void wrong_count(SmEngine *engine, SmCounts *counts)
     counts->regions -= 1;
 }
 
-static void a_wrong_count_of_regions_is_invalid(void **state)
+TEST(a_wrong_count_of_regions_is_invalid)
 {
-    (void)state;
     SmEngineType type = ref_brute_engine;
     type.count = wrong_count;
     BenchRow row;
@@ -121,9 +110,8 @@ static void a_wrong_count_of_regions_is_invalid(void **state)
 }
 
 /* The octree's nodes are held to their own twin, in either precision. */
-static void an_octree_is_valid_and_described(void **state)
+TEST(an_octree_is_valid_and_described)
 {
-    (void)state;
     const SmEngineType *const types[] = {&octree_engine_f32, &octree_engine_f64};
     for (int t = 0; t < 2; t++) {
         BenchRow row;
@@ -143,9 +131,8 @@ static void an_octree_is_valid_and_described(void **state)
 }
 
 /* Plain weighting is right without keeping momentum; by how much it does not is measured. */
-static void plain_weighting_loses_momentum_and_says_so(void **state)
+TEST(plain_weighting_loses_momentum_and_says_so)
 {
-    (void)state;
     static const char *const weighting[] = {"conserving", "plain"};
     for (int plain = 0; plain < 2; plain++) {
         char scene[256];
@@ -164,9 +151,8 @@ static void plain_weighting_loses_momentum_and_says_so(void **state)
 }
 
 /* Widths of places, how far regions reach, and what was wanted. */
-static void an_octrees_widths_and_wishes_are_in_its_row(void **state)
+TEST(an_octrees_widths_and_wishes_are_in_its_row)
 {
-    (void)state;
     BenchRow row;
     static const char scene[] =
         "mesh = \"shape:block\"; cells = 343; epsilon = 0.5; damping = 0.2; bend = 0.3;\n"
@@ -190,9 +176,8 @@ static bool wrong_shapes(SmEngine *engine, double (*S)[9])
 }
 
 /* Plastic bodies are held to their rest shapes, and those to how they flow. */
-static void a_plastic_octree_is_checked(void **state)
+TEST(a_plastic_octree_is_checked)
 {
-    (void)state;
     static const char scene[] =
         "mesh = \"shape:block\"; cells = 343; epsilon = 0.5; damping = 0.2; squash = 0.3;\n"
         "bend = 0.3; instances = 2; octree = { levels = 2; yield = 0.02; creep = 20.0; };";
@@ -213,9 +198,8 @@ static void wrong_octree_get(SmEngine *engine, SmField field, double (*values)[3
     if (field == SM_GOAL) values[0][0] += 1e-3 * 0.2 / 3;
 }
 
-static void a_wrong_octree_is_invalid(void **state)
+TEST(a_wrong_octree_is_invalid)
 {
-    (void)state;
     SmEngineType type = octree_engine_f64;
     type.get = wrong_octree_get;
     BenchRow row;
@@ -256,39 +240,20 @@ static BenchRow measure_disturbed(int every)
     return row;
 }
 
-static void what_others_took_is_left_out(void **state)
+TEST(what_others_took_is_left_out)
 {
-    (void)state;
     BenchRow row = measure_disturbed(25); /* on average 130 microseconds a step */
     assert_true(row.lost_percent > 30 && row.lost_percent <= 100);
     if (!row.busy) assert_true(row.total_ms < 0.1 && row.stage_ms[SM_POLAR] < 0.1);
     bench_row_free(&row);
 }
 
-static void a_row_without_undisturbed_time_is_busy_and_has_no_times(void **state)
+TEST(a_row_without_undisturbed_time_is_busy_and_has_no_times)
 {
-    (void)state;
     BenchRow row = measure_disturbed(1);
     assert_true(row.busy && !bench_row_timed(&row));
     assert_string_equal(bench_row_mark(&row), "BUSY");
     assert_true(row.lost_percent > 90 && isnan(row.total_ms) && isnan(row.fps));
     for (int r = 0; r < row.repeats; r++) assert_true(row.total[r] > 0); /* kept as they are */
     bench_row_free(&row);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_right_engine_is_valid_and_timed),
-        cmocka_unit_test(a_wrong_engine_is_invalid),
-        cmocka_unit_test(a_wrong_count_of_regions_is_invalid),
-        cmocka_unit_test(an_octree_is_valid_and_described),
-        cmocka_unit_test(plain_weighting_loses_momentum_and_says_so),
-        cmocka_unit_test(an_octrees_widths_and_wishes_are_in_its_row),
-        cmocka_unit_test(a_plastic_octree_is_checked),
-        cmocka_unit_test(a_wrong_octree_is_invalid),
-        cmocka_unit_test(what_others_took_is_left_out),
-        cmocka_unit_test(a_row_without_undisturbed_time_is_busy_and_has_no_times),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

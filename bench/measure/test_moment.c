@@ -1,14 +1,8 @@
 /* What others take of a time: samples are taken again, and what cannot be measured is busy. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <time.h>
 
-#include <cmocka.h>
-
 #include "../../lib/stage.h"
+#include "../../lib/test_frame.h"
 #include "moment.h"
 
 /* The processor is somebody else's. */
@@ -33,9 +27,8 @@ static int take_sample(BenchWatch *watch, int disturbed, bool others_quiet)
     return tries;
 }
 
-static void a_disturbed_sample_is_taken_again(void **state)
+TEST(a_disturbed_sample_is_taken_again)
 {
-    (void)state;
     BenchWatch watch = bench_watch(1);
     assert_int_equal(take_sample(&watch, 0, true), 1);
     assert_int_equal(take_sample(&watch, 2, true), 3);
@@ -46,18 +39,16 @@ static void a_disturbed_sample_is_taken_again(void **state)
     assert_true(bench_watch_lost(&watch) > 50);
 }
 
-static void where_half_of_the_samples_stay_disturbed_none_is_taken_again(void **state)
+TEST(where_half_of_the_samples_stay_disturbed_none_is_taken_again)
 {
-    (void)state;
     BenchWatch watch = bench_watch(1);
     take_sample(&watch, 5, true);
     assert_int_equal(take_sample(&watch, 5, true), 1);
     assert_int_equal(watch.disturbed, 2);
 }
 
-static void more_than_a_quarter_of_disturbed_samples_is_busy(void **state)
+TEST(more_than_a_quarter_of_disturbed_samples_is_busy)
 {
-    (void)state;
     BenchWatch watch = bench_watch(1);
     watch.stolen = INFINITY; /* whatever the host takes here */
     for (int i = 0; i < 3; i++) take_sample(&watch, 0, true);
@@ -67,9 +58,8 @@ static void more_than_a_quarter_of_disturbed_samples_is_busy(void **state)
     assert_true(bench_watch_busy(&watch));
 }
 
-static void a_mean_leaves_out_what_was_disturbed(void **state)
+TEST(a_mean_leaves_out_what_was_disturbed)
 {
-    (void)state;
     BenchMean mean = {.watch = bench_watch(1)};
     mean.watch.good = true;
     bench_mean_add(&mean, 0.5, 2);
@@ -78,15 +68,4 @@ static void a_mean_leaves_out_what_was_disturbed(void **state)
     assert_true(mean.seconds == 0.5);
     assert_int_equal(mean.count, 2);
     assert_true(bench_watch_busy(&mean.watch)); /* one of two */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_disturbed_sample_is_taken_again),
-        cmocka_unit_test(where_half_of_the_samples_stay_disturbed_none_is_taken_again),
-        cmocka_unit_test(more_than_a_quarter_of_disturbed_samples_is_busy),
-        cmocka_unit_test(a_mean_leaves_out_what_was_disturbed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

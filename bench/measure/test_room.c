@@ -1,16 +1,10 @@
 /* Memory that is asked for beforehand. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../fastlsm/fastlsm.h"
+#include "../../lib/test_frame.h"
 #include "../engines.h"
 #include "../kernels/cubes.h"
 #include "../kernels/sampled.h"
@@ -57,9 +51,8 @@ static double held(const BenchScene *scene)
 }
 
 /* It refuses nothing that fits, nor lets everything pass; sanitizers hold more. */
-static void the_estimate_is_near_what_is_taken(void **state)
+TEST(the_estimate_is_near_what_is_taken)
 {
-    (void)state;
     const char *const engine[] = {"fastlsm", "brute", "octree"};
     double before = held(NULL);
     for (int i = 0; i < 3; i++) {
@@ -70,9 +63,8 @@ static void the_estimate_is_near_what_is_taken(void **state)
     }
 }
 
-static void instances_and_wider_regions_take_more(void **state)
+TEST(instances_and_wider_regions_take_more)
 {
-    (void)state;
     BenchScene scene = scene_of_cube("fastlsm", 0);
     double one = bench_room_wanted(&scene, 1000);
     scene.instances = 100;
@@ -89,9 +81,8 @@ static void instances_and_wider_regions_take_more(void **state)
     assert_true(bench_room_wanted(&scene, 8) <= 8 * (450 + 8 * sizeof(int)));
 }
 
-static void what_does_not_fit_is_refused_at_once(void **state)
+TEST(what_does_not_fit_is_refused_at_once)
 {
-    (void)state;
     SmError error;
     double available = bench_room_available();
     assert_true(available > 1e6 && isfinite(available)); /* on Linux */
@@ -109,9 +100,8 @@ static void what_does_not_fit_is_refused_at_once(void **state)
     assert_true(sm_now() - start < 2);
 }
 
-static void cubes_that_do_not_fit_are_refused(void **state)
+TEST(cubes_that_do_not_fit_are_refused)
 {
-    (void)state;
     enum { SIDE = 20000 };
     SmError error;
     BenchCube cube;
@@ -124,15 +114,4 @@ static void cubes_that_do_not_fit_are_refused(void **state)
     assert_int_equal(bench_sampled_cube(SIDE, &body, &error), SM_MEMORY);
     assert_non_null(strstr(error.text, "particles on octree take about"));
     assert_null(body.w);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_estimate_is_near_what_is_taken),
-        cmocka_unit_test(instances_and_wider_regions_take_more),
-        cmocka_unit_test(what_does_not_fit_is_refused_at_once),
-        cmocka_unit_test(cubes_that_do_not_fit_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,5 @@
 /* Scenes that cut lattices: what comes off falls, and no cut does harm. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "../check/check.h"
 #include "../engines.h"
 #include "play.h"
@@ -117,9 +107,8 @@ static double stretched(const Run *run)
 }
 
 /* Two pieces of the surface: volumes add up, and the one that nothing holds has fallen. */
-static void cut_through(void **state)
+TEST(cut_through)
 {
-    (void)state;
     Run run;
     play(BEAM "cuts = ( " BLADE("0.1", "0.15", "0.05", "-0.3", "0.05", "0.25") " );", 50, &run);
     assert_int_equal(check(&run), 2);
@@ -148,9 +137,8 @@ static void cut_through(void **state)
 }
 
 /* A blade that does not come near, or goes round about the beam: nothing happens at all. */
-static void miss(void **state)
+TEST(miss)
 {
-    (void)state;
     Run run, without;
     play(BEAM "cuts = ( " BLADE("0.5", "0.5", "0.5", "-0.5", "0", "0.05") " );", 10, &run);
     play(BEAM, 10, &without);
@@ -164,9 +152,8 @@ static void miss(void **state)
 }
 
 /* Along its upper face, into it and out again, across and back, and twice. */
-static void graze(void **state)
+TEST(graze)
 {
-    (void)state;
     const char *text[] = {
         BEAM "cuts = ( " BLADE("-0.2", "0.1", "0.2", "0.1", "0", "0.05") " );",
         BEAM "cuts = ( " BLADE("0.0", "0.15", "0.0", "0.04", "0", "0.05") ");",
@@ -188,23 +175,11 @@ static void graze(void **state)
     }
 }
 
-static void wrong_engine(void **state)
+TEST(wrong_engine)
 {
-    (void)state;
     Run run;
     SmError error;
     assert_int_equal(start(BEAM "cuts = ( { stop = 1; } );", "brute", &run, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "cut.cfg: 'cuts' need the engine fastlsm or octree"));
     bench_body_free(&run.body);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cut_through),
-        cmocka_unit_test(miss),
-        cmocka_unit_test(graze),
-        cmocka_unit_test(wrong_engine),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

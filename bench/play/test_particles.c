@@ -1,16 +1,10 @@
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
-#include "../../fastlsm/lattice/random_bodies.h"
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
+#include "../../lib/test_random.h"
+#include "../../lib/voxel/test_bodies.h"
 #include "../../reference/brute.h"
 #include "trajectory.h"
 
@@ -40,22 +34,16 @@ static void make_lattice(SmVoxels *voxels)
 }
 
 /* Uniform in -1..1, the same every time. */
-static double noise(unsigned *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / (1 << 23) - 1;
-}
-
 static void disturb(const SmEngineType *type, SmEngine *engine, long count, double cell)
 {
     unsigned seed = 7;
     double(*field)[3] = sm_alloc((size_t)count, sizeof *field);
     type->get(engine, SM_POSITION, field);
     for (long p = 0; p < count; p++)
-        for (int a = 0; a < 3; a++) field[p][a] += 0.2 * cell * noise(&seed);
+        for (int a = 0; a < 3; a++) field[p][a] += 0.2 * cell * random_between(&seed, -1, 1);
     type->set(engine, SM_POSITION, (const double(*)[3])field);
     for (long p = 0; p < count; p++)
-        for (int a = 0; a < 3; a++) field[p][a] = 3 * cell * noise(&seed);
+        for (int a = 0; a < 3; a++) field[p][a] = 3 * cell * random_between(&seed, -1, 1);
     type->set(engine, SM_VELOCITY, (const double(*)[3])field);
     free(field);
 }
@@ -145,17 +133,15 @@ static int check_file(void)
     return WEXITSTATUS(status);
 }
 
-static void free_body(void **state)
+TEST(free_body)
 {
-    (void)state;
     SmEngineParams params = {.w = 1, .h = 0.01, .gravity = {0, -9.81, 0}, .threads = 1};
     record_lattice(&params, NULL, false);
     assert_int_equal(check_file(), 0);
 }
 
-static void damped_masses_and_instances(void **state)
+TEST(damped_masses_and_instances)
 {
-    (void)state;
     static const double pose[2][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
                                          {{0, -1, 0, 5}, {1, 0, 0, 0}, {0, 0, 1, 2}}};
     SmEngineParams params = {.w = 2,
@@ -169,9 +155,8 @@ static void damped_masses_and_instances(void **state)
     assert_int_equal(check_file(), 0);
 }
 
-static void held_and_obstructed(void **state)
+TEST(held_and_obstructed)
 {
-    (void)state;
     static const long particle[] = {0, 1, 2};
     const SmHandle pin = {3, particle, {{1, 0, 0, 0.01}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     const SmObstacle plane = {SM_PLANE, {0, 0.2, 0}, {0, 1, 0}, 0, 0.5};
@@ -223,9 +208,8 @@ static void record_octree(const SmEngineType *type, int kind, SmEngineParams *en
     sm_voxels_free(&voxels);
 }
 
-static void octrees(void **state)
+TEST(octrees)
 {
-    (void)state;
     static const double pose[2][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
                                          {{0, -1, 0, 5}, {1, 0, 0, 0}, {0, 0, 1, 2}}};
     OctOptions options = {0};
@@ -247,9 +231,8 @@ static void octrees(void **state)
     }
 }
 
-static void octree_held_in_single_precision(void **state)
+TEST(octree_held_in_single_precision)
 {
-    (void)state;
     static const long particle[] = {0, 1, 2};
     const SmHandle pin = {3, particle, {{1, 0, 0, 0.01}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     const SmObstacle plane = {SM_PLANE, {0, 0.2, 0}, {0, 1, 0}, 0, 0.5};
@@ -305,9 +288,8 @@ static void corrupt_whole(const char *name, hsize_t at, int amount)
 }
 
 /* Regions that are not those of their widths, distances and tree. */
-static void octree_corrupted(void **state)
+TEST(octree_corrupted)
 {
-    (void)state;
     OctOptions options = {0};
     SmEngineParams params = {.h = 0.01, .threads = 1};
     static const struct {
@@ -334,9 +316,8 @@ static void octree_corrupted(void **state)
 }
 
 /* Rest shapes flow from record to record, in either precision, to the most that is allowed. */
-static void plastic_octrees(void **state)
+TEST(plastic_octrees)
 {
-    (void)state;
     static const SmEngineType *const types[] = {&octree_engine_f64, &octree_engine_f32};
     for (int t = 0; t < 2; t++) {
         OctOptions options = {.yield = 0.02, .creep = 20, .most = t ? 0 : 0.05};
@@ -348,9 +329,8 @@ static void plastic_octrees(void **state)
     assert_int_equal(check_file(), 1);
 }
 
-static void corrupted(void **state)
+TEST(corrupted)
 {
-    (void)state;
     static const struct {
         const char *name;
         int record;
@@ -368,9 +348,8 @@ static void corrupted(void **state)
     }
 }
 
-static void broken_links_are_not_checked(void **state)
+TEST(broken_links_are_not_checked)
 {
-    (void)state;
     SmEngineParams params = {.w = 1, .h = 0.01, .strain_limit = 1.01, .threads = 1};
     record_lattice(&params, NULL, false);
     assert_int_equal(check_file(), 2);
@@ -379,26 +358,10 @@ static void broken_links_are_not_checked(void **state)
     assert_int_equal(check_file(), 0);
 }
 
-static void no_trajectory(void **state)
+TEST(no_trajectory)
 {
-    (void)state;
     write_text("steps.h5", "no HDF5\n");
     assert_int_equal(check_file(), 3);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(free_body),
-        cmocka_unit_test(damped_masses_and_instances),
-        cmocka_unit_test(held_and_obstructed),
-        cmocka_unit_test(corrupted),
-        cmocka_unit_test(no_trajectory),
-        cmocka_unit_test(broken_links_are_not_checked),
-        cmocka_unit_test(octrees),
-        cmocka_unit_test(octree_held_in_single_precision),
-        cmocka_unit_test(octree_corrupted),
-        cmocka_unit_test(plastic_octrees),
-    };
-    return cmocka_run_group_tests(tests, make_file_name, remove_folder);
-}
+TEST_GROUP(make_file_name, remove_folder)

@@ -1,13 +1,5 @@
 /* Scenes that change while they run: cut, touched, looked at. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "../check/check.h"
 #include "../engines.h"
 #include "fields.h"
@@ -111,9 +103,8 @@ static void check_goals(Show *show)
     bench_check_free(&check);
 }
 
-static void a_beam_cut_through_is_two_and_one_falls(void **state)
+TEST(a_beam_cut_through_is_two_and_one_falls)
 {
-    (void)state;
     Show show;
     char cut[512];
     beam_cut(0.5, 1.6, 3, cut);
@@ -139,9 +130,8 @@ static void a_beam_cut_through_is_two_and_one_falls(void **state)
     close_show(&show);
 }
 
-static void a_blade_that_misses_changes_nothing(void **state)
+TEST(a_blade_that_misses_changes_nothing)
 {
-    (void)state;
     Show show;
     char cut[512];
     beam_cut(1.5, 1.6, 3, cut);
@@ -154,9 +144,8 @@ static void a_blade_that_misses_changes_nothing(void **state)
 }
 
 /* A blade that stops half way leaves one body, and a slit. */
-static void a_notch_leaves_one_body(void **state)
+TEST(a_notch_leaves_one_body)
 {
-    (void)state;
     Show show;
     char cut[512];
     beam_cut(0.5, 0.4, 3, cut);
@@ -172,9 +161,8 @@ static void a_notch_leaves_one_body(void **state)
 
 /* Regions of 0.5 edges hold one node each: a cut changes none, but what lies across it are
  * neighbours no more, and may touch. */
-static void contacts_follow_a_cut_that_changes_no_region(void **state)
+TEST(contacts_follow_a_cut_that_changes_no_region)
 {
-    (void)state;
     Show show;
     char text[640] = "collide = { self = true; };\n", *cut = text + strlen(text);
     beam_cut(0.5, 1.6, 3, cut);
@@ -201,9 +189,8 @@ static void contacts_follow_a_cut_that_changes_no_region(void **state)
     close_show(&show);
 }
 
-static void threads_do_not_matter(void **state)
+TEST(threads_do_not_matter)
 {
-    (void)state;
     Show show[2];
     char cut[512];
     beam_cut(0.4, 1.6, 3, cut);
@@ -225,9 +212,8 @@ static void threads_do_not_matter(void **state)
 }
 
 /* Of three instances the second is touched: it alone is refined, and comes back to what it was. */
-static void a_touch_refines_one_of_three(void **state)
+TEST(a_touch_refines_one_of_three)
 {
-    (void)state;
     Show show;
     open_show(BEAM,
               "instances = 3; touches = ( { instance = 2; centre = (0.0, 0.0, 0.0);\n"
@@ -250,9 +236,8 @@ static void a_touch_refines_one_of_three(void **state)
     close_show(&show);
 }
 
-static void an_eye_refines_what_is_near(void **state)
+TEST(an_eye_refines_what_is_near)
 {
-    (void)state;
     Show show;
     open_show(BEAM,
               "view = { eye_from = (0.0, 0.0, 100.0); eye_to = (0.0, 0.0, 0.1); start = 0.1;\n"
@@ -267,9 +252,8 @@ static void an_eye_refines_what_is_near(void **state)
     close_show(&show);
 }
 
-static void frames_are_timed_and_counted(void **state)
+TEST(frames_are_timed_and_counted)
 {
-    (void)state;
     Show show;
     char cut[512];
     BenchChangeRow row;
@@ -335,9 +319,8 @@ static double check_fields(Show *show)
     return most;
 }
 
-static void fields_tell_of_speed_and_pieces(void **state)
+TEST(fields_tell_of_speed_and_pieces)
 {
-    (void)state;
     char cut[512];
     Show show;
     beam_cut(0.5, 1.6, 3, cut);
@@ -347,20 +330,4 @@ static void fields_tell_of_speed_and_pieces(void **state)
     for (int f = 1; f < 25; f++) pieces = check_fields(&show);
     assert_true(pieces == 1);
     close_show(&show);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_beam_cut_through_is_two_and_one_falls),
-        cmocka_unit_test(a_blade_that_misses_changes_nothing),
-        cmocka_unit_test(a_notch_leaves_one_body),
-        cmocka_unit_test(contacts_follow_a_cut_that_changes_no_region),
-        cmocka_unit_test(threads_do_not_matter),
-        cmocka_unit_test(a_touch_refines_one_of_three),
-        cmocka_unit_test(an_eye_refines_what_is_near),
-        cmocka_unit_test(frames_are_timed_and_counted),
-        cmocka_unit_test(fields_tell_of_speed_and_pieces),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,7 @@
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "../../reference/brute.h"
 #include "runner.h"
 
@@ -52,9 +44,8 @@ static bool low(const Run *run, long p)
     return run->body.x0[p][1] < (run->body.low[1] + run->body.high[1]) / 2;
 }
 
-static void pins_hold_and_the_rest_sags(void **state)
+TEST(pins_hold_and_the_rest_sags)
 {
-    (void)state;
     Run run;
     start(BODY "gravity = (0, -9.81, 0);\n"
                "handles = ({ box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 0.5, 1.0]; });",
@@ -71,9 +62,8 @@ static void pins_hold_and_the_rest_sags(void **state)
     end(&run);
 }
 
-static void handles_move_turn_and_let_go(void **state)
+TEST(handles_move_turn_and_let_go)
 {
-    (void)state;
     Run run;
     start(BODY "handles = ({ box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 0.5, 1.0];\n"
                "  velocity = (0.5, 0, 0); axis = (0, 1, 0); rate = 2.0; stop = 0.1; });",
@@ -101,9 +91,8 @@ static void handles_move_turn_and_let_go(void **state)
 
 /* A force on all particles for half the time moves the centre as Newton says: the engine's
  * internal forces cancel. */
-static void forces_push_while_they_last(void **state)
+TEST(forces_push_while_they_last)
 {
-    (void)state;
     Run run;
     start(BODY "forces = ({ box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 1.0, 1.0];\n"
                "  force = [0.0, 0.0, 2.0]; start = 0.0; stop = 0.095; });",
@@ -116,9 +105,8 @@ static void forces_push_while_they_last(void **state)
     end(&run);
 }
 
-static void disturbance_depends_on_the_seed_alone(void **state)
+TEST(disturbance_depends_on_the_seed_alone)
 {
-    (void)state;
     Run run;
     start(BODY "instances = 2; bend = 0.5; squash = 0.1; kick = 0.1;", &run);
     assert_int_equal(run.runner.particles, 128);
@@ -141,9 +129,8 @@ static void disturbance_depends_on_the_seed_alone(void **state)
     end(&run);
 }
 
-static void selecting_nothing_is_an_error(void **state)
+TEST(selecting_nothing_is_an_error)
 {
-    (void)state;
     Run run;
     SmError error;
     const char *text = BODY "handles = ({ sphere_centre = (9, 9, 9); sphere_radius = 0.1; });";
@@ -156,9 +143,8 @@ static void selecting_nothing_is_an_error(void **state)
     bench_body_free(&run.body);
 }
 
-static void density_weighs_the_material(void **state)
+TEST(density_weighs_the_material)
 {
-    (void)state;
     Run run;
     start(BODY "density = 1000;", &run);
     double sum = 0, cell = run.body.voxels.cell;
@@ -169,9 +155,8 @@ static void density_weighs_the_material(void **state)
 }
 
 /* A file of masses, one for each vertex of the mesh: light below, heavy above. */
-static void vertex_masses_go_to_the_nearest_particles(void **state)
+TEST(vertex_masses_go_to_the_nearest_particles)
 {
-    (void)state;
     const char *path = path_in("masses.txt");
     char text[512];
     SmMesh mesh;
@@ -199,9 +184,8 @@ static void vertex_masses_go_to_the_nearest_particles(void **state)
 
 /* A mesh alone drops onto a plane below it under gravity of its own size; a mesh in a scene's
  * place is brought to the size and place of the scene's. */
-static void any_units_drop_and_fit(void **state)
+TEST(any_units_drop_and_fit)
 {
-    (void)state;
     SmMesh mesh, fitted;
     SmError error;
     assert_int_equal(bench_mesh_load("shape:block", &mesh, &error), SM_OK);
@@ -231,19 +215,4 @@ static void any_units_drop_and_fit(void **state)
     sm_mesh_free(&mesh);
     sm_mesh_free(&model);
     sm_mesh_free(&fitted);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pins_hold_and_the_rest_sags),
-        cmocka_unit_test(handles_move_turn_and_let_go),
-        cmocka_unit_test(forces_push_while_they_last),
-        cmocka_unit_test(disturbance_depends_on_the_seed_alone),
-        cmocka_unit_test(selecting_nothing_is_an_error),
-        cmocka_unit_test(density_weighs_the_material),
-        cmocka_unit_test(vertex_masses_go_to_the_nearest_particles),
-        cmocka_unit_test(any_units_drop_and_fit),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,18 +1,11 @@
 #define _GNU_SOURCE
 #include <malloc.h>
-#include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "../cli/test_program.h"
 #include "../store/draft.h"
 #include "trajectory.h"
@@ -118,9 +111,8 @@ static void check_points(hid_t file, const SmMesh *sheet, size_t bytes)
             for (int a = 0; a < 3; a++) assert_true(point[f][p][a] == moved(sheet, f, p, a));
 }
 
-static void frames_round_trip(void **state)
+TEST(frames_round_trip)
 {
-    (void)state;
     for (int far = 0; far < 2; far++) {
         const char *path = path_in("sheet.vtkhdf");
         SmError error = {0};
@@ -151,9 +143,8 @@ static void frames_round_trip(void **state)
 
 /* A surface that loses its last row of triangles after two frames and gets it back after three:
  * every frame with its own points, triangles and place in the file. */
-static void topology_may_change(void **state)
+TEST(topology_may_change)
 {
-    (void)state;
     enum { ROW = 2 * (SIDE - 1) };
     const char *path = path_in("cut.vtkhdf");
     SmMesh sheet;
@@ -206,9 +197,8 @@ static void topology_may_change(void **state)
 
 /* A sheet pulled to 1.5 times its length along x, pressed to 0.4 of it along y and turned about z:
  * the larger of the two is what is told, wherever it is. */
-static void strain_is_the_largest_stretch(void **state)
+TEST(strain_is_the_largest_stretch)
 {
-    (void)state;
     float strain[POINTS];
     double point[POINTS][3];
     const double pull[2][2] = {{1.5, 0.8}, {1.5, 0.4}}, wanted[2] = {0.5, 0.6};
@@ -231,9 +221,8 @@ static void strain_is_the_largest_stretch(void **state)
 
 /* Values of every point and frame, each frame's also under a name of its own, which the sidecar
  * has. */
-static void fields_are_stored(void **state)
+TEST(fields_are_stored)
 {
-    (void)state;
     static float speed[POINTS], displacement[3 * POINTS], got[2 * POINTS], part[3 * POINTS];
     const float *value[BENCH_POINT_FIELDS] = {
         [BENCH_DISPLACEMENT] = displacement, [BENCH_SPEED] = speed};
@@ -275,9 +264,8 @@ static void fields_are_stored(void **state)
 }
 
 /* What the bodies met lies in the file, recorded particles or not. */
-static void obstacles_are_stored(void **state)
+TEST(obstacles_are_stored)
 {
-    (void)state;
     const SmObstacle obstacle[2] = {
         {.kind = SM_PLANE, .a = {1, 2, 3}, .b = {0, 1, 0}, .friction = 0.25},
         {.kind = SM_CAPSULE, .a = {4, 5, 6}, .b = {7, 8, 9}, .radius = 0.5}};
@@ -303,9 +291,8 @@ static void obstacles_are_stored(void **state)
 }
 
 /* The sidecar is well-formed with a scene's name and a file's name of odd characters. */
-static void sidecar_is_xml(void **state)
+TEST(sidecar_is_xml)
 {
-    (void)state;
     if (!have_python("xml.etree.ElementTree")) {
         print_message("[  NOTE    ] no /usr/bin/python3: sidecar not parsed\n");
         skip();
@@ -326,9 +313,8 @@ static void sidecar_is_xml(void **state)
     assert_int_equal(system(command), 0);
 }
 
-static void bad_targets(void **state)
+TEST(bad_targets)
 {
-    (void)state;
     SmError error = {0};
     int before = entries("");
     assert_int_equal(write_sheet(path_in("missing/a.h5"), 0, 1, &error), SM_OUTPUT);
@@ -340,9 +326,8 @@ static void bad_targets(void **state)
 }
 
 /* A sidecar that cannot be written is found before the simulation. */
-static void blocked_sidecar(void **state)
+TEST(blocked_sidecar)
 {
-    (void)state;
     char command[300];
     snprintf(command, sizeof command, "mkdir %s", path_in("b.h5.xdmf"));
     assert_int_equal(system(command), 0);
@@ -359,9 +344,8 @@ static void blocked_sidecar(void **state)
     assert_int_equal(rmdir(path_in("b.h5.xdmf")), 0);
 }
 
-static void abandoned(void **state)
+TEST(abandoned)
 {
-    (void)state;
     SmMesh sheet;
     make_sheet(0, &sheet);
     BenchTrajectoryParams params = sheet_params(path_in("gone.h5"), &sheet);
@@ -403,9 +387,8 @@ static void write_until(int number)
     assert_int_not_equal(access(path_in("killed.h5.xdmf"), F_OK), 0);
 }
 
-static void killed_writer(void **state)
+TEST(killed_writer)
 {
-    (void)state;
     char command[300];
     write_until(SIGTERM);
     assert_int_equal(entries(".tmp"), 0);
@@ -440,9 +423,8 @@ static void write_with_limit(long limit)
     assert_int_equal(unlink(path_in("stderr")), 0);
 }
 
-static void full_disk(void **state)
+TEST(full_disk)
 {
-    (void)state;
     int before = entries("");
     for (long limit = 0; limit < 300000; limit = 2 * limit + 700) write_with_limit(limit);
     assert_int_equal(entries(""), before);
@@ -450,21 +432,11 @@ static void full_disk(void **state)
 
 /* Memory that has been freed is overwritten here, so that whoever looks at it again crashes: HDF5
  * is no part of what sanitizers see. */
-int main(void)
+/* Memory that nobody has set is not zero. */
+static int set_up(void **state)
 {
     mallopt(M_PERTURB, 0x5a);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_round_trip),
-        cmocka_unit_test(topology_may_change),
-        cmocka_unit_test(obstacles_are_stored),
-        cmocka_unit_test(strain_is_the_largest_stretch),
-        cmocka_unit_test(fields_are_stored),
-        cmocka_unit_test(sidecar_is_xml),
-        cmocka_unit_test(bad_targets),
-        cmocka_unit_test(blocked_sidecar),
-        cmocka_unit_test(abandoned),
-        cmocka_unit_test(killed_writer),
-        cmocka_unit_test(full_disk),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return make_folder(state);
 }
+
+TEST_GROUP(set_up, remove_folder)

@@ -1,18 +1,11 @@
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <jansson.h>
 
 #include "../../lib/error.h"
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "../cli/command.h"
 #include "regression.h"
 
@@ -82,9 +75,8 @@ static BenchComparisonVerdict verdict_of(const BenchComparison *list, int count,
     return BENCH_INCORRECT;
 }
 
-static void a_slower_stage_is_caught_and_no_other_blamed(void **state)
+TEST(a_slower_stage_is_caught_and_no_other_blamed)
 {
-    (void)state;
     for (int trial = 0; trial < 10; trial++) {
         BenchContests all = {0};
         BenchComparison *list;
@@ -106,9 +98,8 @@ static void a_slower_stage_is_caught_and_no_other_blamed(void **state)
 
 /* 60 comparisons of a build with itself, by scenes and stages 720 times, half of them on a
  * machine whose load jumps: as good as no alarm. */
-static void a_build_against_itself_raises_no_alarm(void **state)
+TEST(a_build_against_itself_raises_no_alarm)
 {
-    (void)state;
     int alarms = 0;
     for (int trial = 0; trial < 60; trial++) {
         BenchContests all = {0};
@@ -125,9 +116,8 @@ static void a_build_against_itself_raises_no_alarm(void **state)
     assert_in_range(alarms, 0, 1);
 }
 
-static void beside_a_file_the_threshold_is_wider(void **state)
+TEST(beside_a_file_the_threshold_is_wider)
 {
-    (void)state;
     const BenchCompareParams params = {false, 5, NAN, 1};
     int alarms = 0;
     for (int trial = 0; trial < 30; trial++) {
@@ -149,9 +139,8 @@ static void beside_a_file_the_threshold_is_wider(void **state)
     assert_in_range(alarms, 0, 1);
 }
 
-static void a_threshold_given_rules(void **state)
+TEST(a_threshold_given_rules)
 {
-    (void)state;
     BenchContests all = {0};
     BenchComparison *list;
     play(&all, "slow", 8, 1.2, 0.02);
@@ -167,9 +156,8 @@ static void a_threshold_given_rules(void **state)
     bench_contests_free(&all);
 }
 
-static void what_cannot_be_compared_says_why(void **state)
+TEST(what_cannot_be_compared_says_why)
 {
-    (void)state;
     BenchContests all = {0};
     BenchComparison *list;
     play(&all, "few", 3, 2, 0.02);
@@ -196,9 +184,8 @@ static void what_cannot_be_compared_says_why(void **state)
 }
 
 /* Where all is too noisy or too few, nothing is known to be not slower. */
-static void what_nobody_could_judge_is_not_ok(void **state)
+TEST(what_nobody_could_judge_is_not_ok)
 {
-    (void)state;
     BenchContests all = {0};
     BenchComparison *list;
     char line[256];
@@ -229,9 +216,8 @@ static void what_nobody_could_judge_is_not_ok(void **state)
 }
 
 /* An epsilon of 0 is one, and not an epsilon that a file does not state. */
-static void epsilon_0_is_stated(void **state)
+TEST(epsilon_0_is_stated)
 {
-    (void)state;
     const struct {
         double old, new;
         BenchComparisonVerdict verdict;
@@ -256,9 +242,8 @@ static void epsilon_0_is_stated(void **state)
 }
 
 /* A stage that takes no time (no damping in the scene) or that an old build has not is left out. */
-static void a_stage_without_time_is_left_out(void **state)
+TEST(a_stage_without_time_is_left_out)
 {
-    (void)state;
     BenchContests all = {0};
     BenchComparison *list;
     play(&all, "x", 5, 0, 0.02);
@@ -311,9 +296,8 @@ static void read_back(const char *name, size_t size, char *text)
     fclose(file);
 }
 
-static void text_and_markdown_end_in_the_verdict(void **state)
+TEST(text_and_markdown_end_in_the_verdict)
 {
-    (void)state;
     static char text[16384];
     static const char *const wanted[] = {
         "Against revision \"v1\" (abc), interleaved: 7 rounds",
@@ -335,9 +319,8 @@ static void text_and_markdown_end_in_the_verdict(void **state)
     assert_non_null(strstr(text, "**INVALID: bad"));
 }
 
-static void json_holds_every_sample(void **state)
+TEST(json_holds_every_sample)
 {
-    (void)state;
     write_format(BENCH_REGRESSION_JSON, "out.json");
     json_t *root = json_load_file(path_in("out.json"), 0, NULL), *list;
     assert_non_null(root);
@@ -359,9 +342,8 @@ static void json_holds_every_sample(void **state)
 }
 
 /* As its compare.py wants it: name, run_type, real_time, cpu_time, time_unit of every run. */
-static void gbench_holds_runs_and_aggregates(void **state)
+TEST(gbench_holds_runs_and_aggregates)
 {
-    (void)state;
     write_format(BENCH_REGRESSION_GBENCH, "out.json");
     json_t *root = json_load_file(path_in("out.json"), 0, NULL), *one;
     assert_non_null(root);
@@ -387,9 +369,8 @@ static void gbench_holds_runs_and_aggregates(void **state)
 }
 
 /* Python reads the XML: well-formed, and the counts are those of the elements. */
-static void junit_is_xml(void **state)
+TEST(junit_is_xml)
 {
-    (void)state;
     char command[1024];
     write_format(BENCH_REGRESSION_JUNIT, "out.xml");
     snprintf(
@@ -405,21 +386,4 @@ static void junit_is_xml(void **state)
     assert_int_equal(system(command), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_slower_stage_is_caught_and_no_other_blamed),
-        cmocka_unit_test(a_build_against_itself_raises_no_alarm),
-        cmocka_unit_test(beside_a_file_the_threshold_is_wider),
-        cmocka_unit_test(a_threshold_given_rules),
-        cmocka_unit_test(what_cannot_be_compared_says_why),
-        cmocka_unit_test(what_nobody_could_judge_is_not_ok),
-        cmocka_unit_test(epsilon_0_is_stated),
-        cmocka_unit_test(a_stage_without_time_is_left_out),
-        cmocka_unit_test(text_and_markdown_end_in_the_verdict),
-        cmocka_unit_test(json_holds_every_sample),
-        cmocka_unit_test(gbench_holds_runs_and_aggregates),
-        cmocka_unit_test(junit_is_xml),
-    };
-    return cmocka_run_group_tests(tests, start, end);
-}
+TEST_GROUP(start, end)

@@ -1,17 +1,8 @@
 /* Instructions a step, of two programs that stand for builds. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "counts.h"
 
 /* A program whose start takes 10^5 rounds of a loop and each step WORK; with the step -1 it dies.
@@ -62,9 +53,8 @@ static SmCode count(const char *old, const char *new, double counted[BENCH_BUILD
     return code;
 }
 
-static void a_step_is_counted_and_the_start_is_not(void **state)
+TEST(a_step_is_counted_and_the_start_is_not)
 {
-    (void)state;
     double counted[BENCH_BUILDS];
     SmError error;
     compile("old", 10000);
@@ -78,9 +68,8 @@ static void a_step_is_counted_and_the_start_is_not(void **state)
     assert_true(fabs(counted[BENCH_NEW] / counted[BENCH_OLD] - 1.05) < 0.001);
 }
 
-static void a_program_that_cannot_be_counted_is_a_line(void **state)
+TEST(a_program_that_cannot_be_counted_is_a_line)
 {
-    (void)state;
     double counted[BENCH_BUILDS];
     SmError error;
     compile("old", -1);
@@ -89,13 +78,4 @@ static void a_program_that_cannot_be_counted_is_a_line(void **state)
     if (!strstr(error.text, "-DSHAPEBENCH_NATIVE=OFF") &&
         !strstr(error.text, "cannot be simulated") && !strstr(error.text, "valgrind"))
         fail_msg("%s", error.text);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_step_is_counted_and_the_start_is_not),
-        cmocka_unit_test(a_program_that_cannot_be_counted_is_a_line),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

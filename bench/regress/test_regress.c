@@ -1,21 +1,12 @@
 /* `shapebench regress` as a user runs it: baselines of all kinds, other revisions, what goes wrong.
  */
-#include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "../measure/measure.h"
 #include "../store/store.h"
 #include "samples.h"
@@ -94,9 +85,8 @@ static int set_up(void **state)
     return result.code;
 }
 
-static void usage(void **state)
+TEST(usage)
 {
-    (void)state;
     expect("shapebench regress", 2, "compare with what?");
     expect("shapebench regress --baseline a --revision b", 2, "compare with what?");
     expect("shapebench regress --baseline a --counts", 2, "--counts: a file has no");
@@ -109,9 +99,8 @@ static void usage(void **state)
     expect("shapebench regress --help | tr '\\n' ' '", 0, "7 nothing could be judged");
 }
 
-static void files_that_are_no_baseline(void **state)
+TEST(files_that_are_no_baseline)
 {
-    (void)state;
     BenchRow row;
     BenchMachine machine;
     row_of_tiny(&row, &machine);
@@ -153,9 +142,8 @@ static void alter(const char *name, const char *python)
     assert_int_equal(system(command), 0);
 }
 
-static void files_of_other_schemas(void **state)
+TEST(files_of_other_schemas)
 {
-    (void)state;
     if (system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) skip();
     alter("newer.h5", "f.attrs.modify(\"schema\", 99)");
     expect("shapebench regress --baseline newer.h5 " TINY, 3, "its schema is 99 and this program");
@@ -183,9 +171,8 @@ static void files_of_other_schemas(void **state)
            "Against old.h5");
 }
 
-static void beside_a_stored_file(void **state)
+TEST(beside_a_stored_file)
 {
-    (void)state;
     BenchRow row;
     BenchMachine machine;
     row_of_tiny(&row, &machine);
@@ -220,9 +207,8 @@ static void beside_a_stored_file(void **state)
     bench_row_free(&row);
 }
 
-static void places_that_cannot_be_written(void **state)
+TEST(places_that_cannot_be_written)
 {
-    (void)state;
     expect("shapebench regress --baseline tiny.h5 -o no/such/out.txt", 4, "no/such/out.txt");
     expect("TMPDIR=/no/such shapebench regress --baseline tiny.h5", 4, "cannot write /no/such/");
     expect("shapebench regress --baseline tiny.h5 --rounds 3 --threshold 9 " TINY "> /dev/full", 4,
@@ -262,9 +248,8 @@ static void nothing_is_left_in_the_repository(void)
 }
 
 /* The other revision is a program that becomes this one. */
-static void another_revision_is_built_and_measured(void **state)
+TEST(another_revision_is_built_and_measured)
 {
-    (void)state;
     make_repository(works);
     expect("cd repo && shapebench regress --revision HEAD --rounds 4 " TINY, 2,
            "one of 6 times: take at least --rounds 7");
@@ -284,9 +269,8 @@ static void another_revision_is_built_and_measured(void **state)
            "the baseline crashed on scene tiny.cfg (exit code 139)");
 }
 
-static void revisions_that_cannot_be_had(void **state)
+TEST(revisions_that_cannot_be_had)
 {
-    (void)state;
     expect("cd / && shapebench regress --revision HEAD", 3, "is in no git repository");
     make_repository("message(FATAL_ERROR \"broken on purpose\")\n");
     expect("cd repo && shapebench regress --revision no-such", 3, "has no revision 'no-such'");
@@ -327,9 +311,8 @@ static void interrupt(pid_t child)
 
 /* Ctrl-C in mid-build: what runs is stopped, the worktree goes, exit code 130. Of one that waits
  * for it to end, before: the build goes on. */
-static void an_interrupt_leaves_nothing(void **state)
+TEST(an_interrupt_leaves_nothing)
 {
-    (void)state;
     make_repository("execute_process(COMMAND sleep 47.11)\n");
     pid_t first = start_building();
     for (int i = 0; i < 100 && system("pgrep -fx 'sleep 47.11' >/dev/null") != 0; i++)
@@ -344,17 +327,4 @@ static void an_interrupt_leaves_nothing(void **state)
     nothing_is_left_in_the_repository();
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(usage),
-        cmocka_unit_test(files_that_are_no_baseline),
-        cmocka_unit_test(files_of_other_schemas),
-        cmocka_unit_test(beside_a_stored_file),
-        cmocka_unit_test(places_that_cannot_be_written),
-        cmocka_unit_test(another_revision_is_built_and_measured),
-        cmocka_unit_test(revisions_that_cannot_be_had),
-        cmocka_unit_test(an_interrupt_leaves_nothing),
-    };
-    return cmocka_run_group_tests(tests, set_up, remove_folder);
-}
+TEST_GROUP(set_up, remove_folder)

@@ -1,18 +1,10 @@
 /* Results files that cannot be read: each is one line that names it and says why. */
 #define _GNU_SOURCE
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "../measure/measure.h"
 #include "../store/store.h"
 #include "samples.h"
@@ -36,9 +28,8 @@ static void write_file(const char *path)
     for (int i = 0; i < ROWS; i++) bench_row_free(&rows[i]);
 }
 
-static void a_whole_file_is_read(void **state)
+TEST(a_whole_file_is_read)
 {
-    (void)state;
     BenchRow *rows;
     BenchMachine machine;
     SmError error;
@@ -67,9 +58,8 @@ static void refuses(const char *path, const char *words)
     if (!strstr(error.text, words)) fail_msg("'%s' does not say '%s'", error.text, words);
 }
 
-static void foreign_files(void **state)
+TEST(foreign_files)
 {
-    (void)state;
     const char *path = path_in("foreign.h5");
     refuses(path, "No such file");
     write_text("foreign.h5", "this is no HDF5\n");
@@ -84,9 +74,8 @@ static void foreign_files(void **state)
     unlink(path);
 }
 
-static void truncated_file(void **state)
+TEST(truncated_file)
 {
-    (void)state;
     const char *path = path_in("cut.h5");
     struct stat status;
     for (int eighth = 7; eighth >= 0; eighth--) {
@@ -172,9 +161,8 @@ static void long_text(hid_t file)
     H5Gclose(group);
 }
 
-static void damaged_files(void **state)
+TEST(damaged_files)
 {
-    (void)state;
     refuses_changed(older, "measure again");
     refuses_changed(newer, "newer shapebench");
     refuses_changed(more_rows, "it states 1073741824 rows");
@@ -185,15 +173,4 @@ static void damaged_files(void **state)
     refuses_changed(negative_repeats, "row 001: repeats is -1");
     refuses_changed(text_for_number, "row 001: attribute 'w' has the wrong type");
     refuses_changed(long_text, "attribute 'engine' cannot be read or is too long");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_whole_file_is_read),
-        cmocka_unit_test(foreign_files),
-        cmocka_unit_test(truncated_file),
-        cmocka_unit_test(damaged_files),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,14 +1,8 @@
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
 
-#include <cmocka.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
+#include "../../lib/test_frame.h"
 #include "statistic.h"
 
 static void near(double value, double wanted, double relative)
@@ -18,9 +12,8 @@ static void near(double value, double wanted, double relative)
 }
 
 /* The values wanted are those of scipy 1.10.1's mannwhitneyu(), two-sided. */
-static void mann_whitney_is_scipys(void **state)
+TEST(mann_whitney_is_scipys)
 {
-    (void)state;
     const double males[] = {19, 22, 16, 29, 24}, females[] = {20, 11, 17, 12};
     near(bench_mann_whitney(males, 5, females, 4), 0.1111111111111111, 1e-12);
     near(bench_mann_whitney(females, 4, males, 5), 0.1111111111111111, 1e-12);
@@ -35,9 +28,8 @@ static void mann_whitney_is_scipys(void **state)
     near(bench_mann_whitney(e, 45, f, 30), 0.5199137884327018, 1e-9); /* many: approximate */
 }
 
-static void mann_whitney_of_next_to_nothing_is_1(void **state)
+TEST(mann_whitney_of_next_to_nothing_is_1)
 {
-    (void)state;
     const double one[] = {1, 1, 1}, two[] = {2};
     assert_true(bench_mann_whitney(one, 3, one, 3) == 1);
     assert_true(bench_mann_whitney(one, 0, one, 3) == 1);
@@ -45,9 +37,8 @@ static void mann_whitney_of_next_to_nothing_is_1(void **state)
 }
 
 /* R's p.adjust(c(0.01, 0.04, 0.03, 0.005), "holm"). */
-static void holm_is_rs(void **state)
+TEST(holm_is_rs)
 {
-    (void)state;
     double p[] = {0.01, NAN, 0.04, 0.03, 0.005};
     bench_holm(p, 5);
     near(p[0], 0.03, 1e-12);
@@ -57,9 +48,8 @@ static void holm_is_rs(void **state)
     near(p[4], 0.02, 1e-12);
 }
 
-static void outliers_are_beyond_tukeys_outer_fences(void **state)
+TEST(outliers_are_beyond_tukeys_outer_fences)
 {
-    (void)state;
     /* quartiles 3.25 and 7.75 of the values 1..10: fences at -10.25 and 21.25 */
     const double value[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, far[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 22};
     bool flag[10];
@@ -72,9 +62,8 @@ static void outliers_are_beyond_tukeys_outer_fences(void **state)
 
 /* Order statistics of the median from tables (Conover, Practical Nonparametric Statistics): of 9
  * the 2nd and 8th, of 15 the 4th and 12th, of 20 the 6th and 15th; of 5 there is no 95%. */
-static void intervals_are_order_statistics(void **state)
+TEST(intervals_are_order_statistics)
 {
-    (void)state;
     const int cases[][3] = {{5, 1, 5}, {6, 1, 6}, {9, 2, 8}, {15, 4, 12}, {20, 6, 15}, {1, 1, 1}};
     double value[20];
     for (int i = 0; i < 20; i++) value[i] = 1 + i;
@@ -87,9 +76,8 @@ static void intervals_are_order_statistics(void **state)
 }
 
 /* At least as often as said, and not much more often. */
-static void intervals_hold_as_often_as_said(void **state)
+TEST(intervals_hold_as_often_as_said)
 {
-    (void)state;
     enum { TRIALS = 2000, SAMPLES = 31 };
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     gsl_rng_set(rng, 5);
@@ -130,9 +118,8 @@ static void load_of(gsl_rng *rng, double drift, double load[ROUNDS])
 
 /* The interval holds the true ratio in most cases (percentiles of a quartile of few rounds are
  * rather narrow), and is the same for the same seed. */
-static void the_interval_holds_the_ratio(void **state)
+TEST(the_interval_holds_the_ratio)
 {
-    (void)state;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     int held = 0, apart = 0;
     enum { TRIALS = 100 };
@@ -157,9 +144,8 @@ static void the_interval_holds_the_ratio(void **state)
 }
 
 /* Two builds that are one differ by less than the noise that is found, nearly always. */
-static void noise_bounds_what_one_build_differs_by(void **state)
+TEST(noise_bounds_what_one_build_differs_by)
 {
-    (void)state;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     int beyond = 0, beyond_spread = 0;
     for (int i = 0; i < 100; i++) {
@@ -188,9 +174,8 @@ static void noise_bounds_what_one_build_differs_by(void **state)
     assert_true(isnan(bench_spread_noise(&times, 1, 0.01, 1)));
 }
 
-static void a_round_counts_with_its_best(void **state)
+TEST(a_round_counts_with_its_best)
 {
-    (void)state;
     const double value[] = {3, 2, 7, 5, 6};
     const int group[] = {0, 0, 2, 2, 2};
     const BenchTimes times = {value, group, 5};
@@ -199,20 +184,4 @@ static void a_round_counts_with_its_best(void **state)
     assert_true(best[0] == 2 && best[1] == 5);
     const double low[] = {1, 2, 3, 4, 5}, high[] = {6, 7, 8, 9, 10};
     near(bench_least_p(5), bench_mann_whitney(low, 5, high, 5), 1e-9);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mann_whitney_is_scipys),
-        cmocka_unit_test(mann_whitney_of_next_to_nothing_is_1),
-        cmocka_unit_test(holm_is_rs),
-        cmocka_unit_test(intervals_are_order_statistics),
-        cmocka_unit_test(intervals_hold_as_often_as_said),
-        cmocka_unit_test(outliers_are_beyond_tukeys_outer_fences),
-        cmocka_unit_test(the_interval_holds_the_ratio),
-        cmocka_unit_test(noise_bounds_what_one_build_differs_by),
-        cmocka_unit_test(a_round_counts_with_its_best),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
 
-#include <cmocka.h>
 
 #include "nearest.h"
+
+#include "../../lib/test_frame.h"
+#include "../../lib/test_random.h"
 
 static double square(const double a[3], const double b[3])
 {
@@ -16,20 +13,19 @@ static double square(const double a[3], const double b[3])
 }
 
 /* The tree's answer is as near as the nearest of all, ties to the lower number. */
-static void agrees_with_looking_at_all(void **state)
+TEST(agrees_with_looking_at_all)
 {
-    (void)state;
     static double point[400][3];
-    srand(7);
+    unsigned seed = 7;
     for (long count = 1; count <= 400; count += count < 20 ? 1 : 95) {
         int grid = count % 2 ? 5 : 1000; /* a coarse grid has many equal coordinates */
         for (long i = 0; i < count; i++)
-            for (int d = 0; d < 3; d++) point[i][d] = rand() % grid;
+            for (int d = 0; d < 3; d++) point[i][d] = random_int(&seed, grid);
         BenchNearest nearest;
         bench_nearest_create((const double(*)[3])point, count, &nearest);
         for (int trial = 0; trial < 200; trial++) {
             double place[3];
-            for (int d = 0; d < 3; d++) place[d] = rand() % (2 * grid) - grid / 2;
+            for (int d = 0; d < 3; d++) place[d] = random_int(&seed, 2 * grid) - grid / 2;
             long best = 0;
             for (long i = 1; i < count; i++)
                 if (square(point[i], place) < square(point[best], place)) best = i;
@@ -37,10 +33,4 @@ static void agrees_with_looking_at_all(void **state)
         }
         bench_nearest_free(&nearest);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(agrees_with_looking_at_all)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,25 +1,12 @@
 /* Points as bodies, by the program: good ones run, bad ones are one clear line; the settings of
  * meshless bodies in scene files and options; slices. Real clouds where SHAPEBENCH_MESHES names
  * their folder. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 #include <hdf5.h>
 
+#include "../../lib/test_frame.h"
+#include "../../lib/test_random.h"
 #include "../../reference/meshless/solve/solver.h"
 #include "../cli/test_program.h"
-
-static double noise(double size)
-{
-    return size * (2 * (rand() / (RAND_MAX + 1.0)) - 1);
-}
 
 /* What is written of a ball's `count` points. */
 typedef struct {
@@ -31,13 +18,14 @@ typedef struct {
 
 static void write_points(FILE *file, const Ball *ball)
 {
-    srand(5);
+    unsigned seed = 5;
     for (int n = 0; n < ball->count * ball->copies; n++) {
         double share = (n % ball->count + 0.5) / ball->count,
                up = ball->from + (1 - ball->from) * share;
         double turn = 2.399963229728653 * (n % ball->count), side = sqrt(1 - up * up);
         double normal[3] = {side * cos(turn), up, side * sin(turn)};
-        for (int d = 0; d < 3; d++) fprintf(file, "%.9g ", normal[d] + noise(ball->noise));
+        for (int d = 0; d < 3; d++)
+            fprintf(file, "%.9g ", normal[d] + ball->noise * random_between(&seed, -1, 1));
         for (int d = 0; d < 3 && !ball->bare; d++)
             fprintf(file, "%.9g ", ball->inner ? -normal[d] : normal[d]);
         fputc('\n', file);
@@ -85,9 +73,8 @@ static void assert_runs(const char *name)
     assert_int_equal(entries(".tmp"), 0);
 }
 
-static void clouds_run(void **state)
+TEST(clouds_run)
 {
-    (void)state;
     needs_solver();
     write_text_ball("ball.xyz", &(Ball){600, 1, 0, -1, false, false});
     write_ply_ball("ball.ply", &(Ball){600, 1, 0, -1, false, false});
@@ -114,9 +101,8 @@ static void read_all(hid_t file, const char *name, hid_t type, size_t bytes, voi
 }
 
 /* All given points, doubles too, are carried and written in their order, as cells of one corner. */
-static void given_points_are_written_as_they_are_given(void **state)
+TEST(given_points_are_written_as_they_are_given)
 {
-    (void)state;
     needs_solver();
     Result result;
     char text[4096];
@@ -152,9 +138,8 @@ static void given_points_are_written_as_they_are_given(void **state)
 }
 
 /* A plate 50 times as wide as it is thick: sides are told apart by points as near to each other. */
-static void a_thin_mesh_says_how_many_points_would_do(void **state)
+TEST(a_thin_mesh_says_how_many_points_would_do)
 {
-    (void)state;
     needs_solver();
     write_text(
         "plate.obj",
@@ -168,9 +153,8 @@ static void a_thin_mesh_says_how_many_points_would_do(void **state)
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }
 
-static void bad_clouds_are_one_clear_line(void **state)
+TEST(bad_clouds_are_one_clear_line)
 {
-    (void)state;
     write_text_ball("bare.xyz", &(Ball){600, 1, 0, -1, true, false});
     write_ply_ball("bare.ply", &(Ball){600, 1, 0, -1, true, false});
     write_text_ball("few.xyz", &(Ball){20, 1, 0, -1, false, false});
@@ -192,9 +176,8 @@ static void bad_clouds_are_one_clear_line(void **state)
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }
 
-static void wrong_options_are_said(void **state)
+TEST(wrong_options_are_said)
 {
-    (void)state;
     static const Mistake mistakes[] = {
         {"run penguin --young 1e5", 2, "add --engine meshless"},
         {"run shape:bar --engine meshless --poisson 0.5", 2, "--poisson: '0.5'"},
@@ -225,9 +208,8 @@ static void write_scene(const char *name, const char *material)
     write_text(name, text);
 }
 
-static void settings_are_read_and_options_come_first(void **state)
+TEST(settings_are_read_and_options_come_first)
 {
-    (void)state;
     needs_solver();
     Result result;
     write_scene("bar.cfg", "young = 2e6; poisson = 0.25; density = 1500.0;\n"
@@ -245,9 +227,8 @@ static void settings_are_read_and_options_come_first(void **state)
     assert_non_null(strstr(result.out, ",bar,meshless,"));
 }
 
-static void wrong_settings_have_a_line(void **state)
+TEST(wrong_settings_have_a_line)
 {
-    (void)state;
     write_scene("stiff.cfg", "young = 1e5;\npoisson = 0.5;");
     write_scene("light.cfg", "density = 0.0;");
     write_scene("few.cfg", "\n\npoints = 10;");
@@ -263,9 +244,8 @@ static void wrong_settings_have_a_line(void **state)
     make_mistakes(mistakes, sizeof mistakes / sizeof *mistakes);
 }
 
-static void slices_are_written(void **state)
+TEST(slices_are_written)
 {
-    (void)state;
     Result result;
     write_text_ball("ball.xyz", &(Ball){600, 1, 0, -1, false, false});
     run("info ball.xyz --slice y=0.25 -o slice.h5", &result);
@@ -292,9 +272,8 @@ static void slices_are_written(void **state)
 }
 
 /* Clouds of others: those with normals run, the others are refused. */
-static void real_clouds(void **state)
+TEST(real_clouds)
 {
-    (void)state;
     needs_solver();
     const char *meshes = getenv("SHAPEBENCH_MESHES");
     char command[1024];
@@ -313,20 +292,4 @@ static void real_clouds(void **state)
     run("run bunny_points.pts --engine meshless", &result);
     assert_int_equal(result.code, 3);
     assert_non_null(strstr(result.err, "the points have no normals"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clouds_run),
-        cmocka_unit_test(given_points_are_written_as_they_are_given),
-        cmocka_unit_test(a_thin_mesh_says_how_many_points_would_do),
-        cmocka_unit_test(bad_clouds_are_one_clear_line),
-        cmocka_unit_test(wrong_options_are_said),
-        cmocka_unit_test(settings_are_read_and_options_come_first),
-        cmocka_unit_test(wrong_settings_have_a_line),
-        cmocka_unit_test(slices_are_written),
-        cmocka_unit_test(real_clouds),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,15 +1,7 @@
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "scene.h"
 
 #define BODY "mesh = \"shape:block\";\nparticles = 100;\n"
@@ -19,9 +11,8 @@ static SmCode parse(const char *text, BenchScene *scene, SmError *error)
     return bench_scene_parse(text, strlen(text), "dir/my.cfg", scene, error);
 }
 
-static void reads_every_kind_of_setting(void **state)
+TEST(reads_every_kind_of_setting)
 {
-    (void)state;
     BenchScene scene;
     SmError error;
     const char *text = BODY
@@ -58,9 +49,8 @@ static void reads_every_kind_of_setting(void **state)
     assert_true(scene.params.strain_limit == 0 && scene.kick == 0);
 }
 
-static void an_octree_has_a_group_of_settings(void **state)
+TEST(an_octree_has_a_group_of_settings)
 {
-    (void)state;
     BenchScene scene;
     SmError error;
     const char *text = "mesh = \"a.obj\"; cells = 3000; engine = \"octree\"; epsilon = 0.5;\n"
@@ -99,9 +89,8 @@ static void an_octree_has_a_group_of_settings(void **state)
 
 #define OCTREE BODY "engine = \"octree\";"
 
-static void changes_while_it_runs(void **state)
+TEST(changes_while_it_runs)
 {
-    (void)state;
     static const char text[] =
         "mesh = \"shape:liver\"; particles = 100; engine = \"octree\"; instances = 1;\n"
         "cuts = ( { base_from = (1, 2, 3); tip_to = (4, 5, 6); start = 0.5; stop = 2; level = 3; "
@@ -140,9 +129,8 @@ static void expect_lines(const Mistake *cases, size_t count)
     }
 }
 
-static void errors_name_file_line_and_remedy(void **state)
+TEST(errors_name_file_line_and_remedy)
 {
-    (void)state;
     static const Mistake cases[] = {
         {BODY "damping_k = 1;", "dir/my.cfg:3: unknown setting 'damping_k'; known: title, paper,"},
         {BODY "w = 2.5;", "dir/my.cfg:3: 'w' must be a whole number from 1 to 31"},
@@ -182,9 +170,8 @@ static void errors_name_file_line_and_remedy(void **state)
     expect_lines(cases, sizeof cases / sizeof cases[0]);
 }
 
-static void errors_in_an_octree_are_named(void **state)
+TEST(errors_in_an_octree_are_named)
 {
-    (void)state;
     static const Mistake cases[] = {
         {BODY "octree = 3;", "dir/my.cfg:3: 'octree' must be a group"},
         {BODY "octree = { level = 3; };", "dir/my.cfg:3: unknown setting 'level'; known: levels"},
@@ -208,9 +195,8 @@ static void errors_in_an_octree_are_named(void **state)
     expect_lines(cases, sizeof cases / sizeof cases[0]);
 }
 
-static void errors_in_changes_are_named(void **state)
+TEST(errors_in_changes_are_named)
 {
-    (void)state;
     static const Mistake cases[] = {
         {BODY "cuts = ( { start = 1; stop = 1; } );", "dir/my.cfg: cut 1 ends before it begins"},
         {BODY "instances = 2; cuts = ( { stop = 1; } );", "'cuts' and 'view' are of a body alone"},
@@ -225,9 +211,8 @@ static void errors_in_changes_are_named(void **state)
     expect_lines(cases, sizeof cases / sizeof cases[0]);
 }
 
-static void refuses_zero_bytes_and_huge_files(void **state)
+TEST(refuses_zero_bytes_and_huge_files)
 {
-    (void)state;
     BenchScene scene;
     SmError error;
     static const char zero[] = "w = 2;\n\0w = 3;";
@@ -243,9 +228,8 @@ static void refuses_zero_bytes_and_huge_files(void **state)
     free(huge);
 }
 
-static void too_many_obstacles_are_an_error(void **state)
+TEST(too_many_obstacles_are_an_error)
 {
-    (void)state;
     char text[16384] = BODY "spheres = (";
     for (int i = 0; i < 65; i++) strcat(text, i ? ", { radius = 1; }" : "{ radius = 1; }");
     strcat(text, ");");
@@ -260,9 +244,8 @@ static void too_many_obstacles_are_an_error(void **state)
     assert_non_null(strstr(error.text, "more than 64 planes, spheres, boxes and capsules"));
 }
 
-static void every_built_in_scene_parses(void **state)
+TEST(every_built_in_scene_parses)
 {
-    (void)state;
     int count = 0;
     for (const char *const *name = bench_scene_names(); *name; name++, count++) {
         BenchScene scene;
@@ -279,9 +262,8 @@ static void every_built_in_scene_parses(void **state)
 }
 
 /* Cut anywhere, a scene file is a scene or an error line, never a crash. */
-static void every_prefix_is_handled(void **state)
+TEST(every_prefix_is_handled)
 {
-    (void)state;
     size_t size;
     const char *text = bench_scene_text("penguins", &size);
     for (size_t cut = 0; cut <= size; cut++) {
@@ -297,9 +279,8 @@ static void every_prefix_is_handled(void **state)
     }
 }
 
-static void paths_are_relative_to_the_file(void **state)
+TEST(paths_are_relative_to_the_file)
 {
-    (void)state;
     const char *path =
         write_text("own.cfg", "mesh = \"part/a.obj\"; vertex_mass = \"/abs/m.txt\"; cell = 0.5;");
     BenchScene scene;
@@ -316,22 +297,4 @@ static void paths_are_relative_to_the_file(void **state)
     assert_non_null(strstr(error.text, "no such file"));
     assert_int_equal(bench_scene_find("no-such-scene", &scene, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "shapebench scenes"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_every_kind_of_setting),
-        cmocka_unit_test(an_octree_has_a_group_of_settings),
-        cmocka_unit_test(changes_while_it_runs),
-        cmocka_unit_test(errors_name_file_line_and_remedy),
-        cmocka_unit_test(errors_in_an_octree_are_named),
-        cmocka_unit_test(errors_in_changes_are_named),
-        cmocka_unit_test(refuses_zero_bytes_and_huge_files),
-        cmocka_unit_test(too_many_obstacles_are_an_error),
-        cmocka_unit_test(every_built_in_scene_parses),
-        cmocka_unit_test(every_prefix_is_handled),
-        cmocka_unit_test(paths_are_relative_to_the_file),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,16 +1,7 @@
 /* Damaged files: what is changed in a stored file is noticed before anything of it is believed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../lib/system/child.h"
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "h5.h"
 
 enum { NUMBERS = 500 };
@@ -66,9 +57,8 @@ static void refuses(const char *name, void (*read)(BenchH5 *h5, void *record), c
         fail_msg("'%s' does not say '%s'", error.text, words);
 }
 
-static void every_flipped_bit_is_noticed(void **state)
+TEST(every_flipped_bit_is_noticed)
 {
-    (void)state;
     size_t size;
     unsigned char *bytes = store("whole.h5", &size);
     loads("whole.h5");
@@ -81,9 +71,8 @@ static void every_flipped_bit_is_noticed(void **state)
     free(bytes);
 }
 
-static void what_is_cut_off_is_noticed(void **state)
+TEST(what_is_cut_off_is_noticed)
 {
-    (void)state;
     size_t size;
     unsigned char *bytes = store("whole.h5", &size);
     for (size_t cut = 1; cut < size; cut += cut < 70 ? 9 : size / 10) {
@@ -104,9 +93,8 @@ static void write_old(const char *name, void (*change)(hid_t file))
     H5Fclose(file);
 }
 
-static void what_others_write_is_noticed_but_old_files_are_read(void **state)
+TEST(what_others_write_is_noticed_but_old_files_are_read)
 {
-    (void)state;
     size_t size;
     free(store("changed.h5", &size));
     hid_t file = H5Fopen(path_in("changed.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
@@ -150,9 +138,8 @@ static void link_elsewhere(hid_t file)
     H5Lcreate_external("/dev/zero", "many", file, "many", H5P_DEFAULT, H5P_DEFAULT);
 }
 
-static void what_is_not_in_the_file_is_not_read(void **state)
+TEST(what_is_not_in_the_file_is_not_read)
 {
-    (void)state;
     write_old("hole.h5", replace_by_hole);
     refuses("hole.h5", read_hole, "'many' holds more than the file does");
     write_old("old.h5", NULL);
@@ -175,24 +162,11 @@ static void take_memory(BenchH5 *h5, void *record)
     free(sm_alloc((size_t)1 << 32, 1));
 }
 
-static void damage_ends_a_child_only(void **state)
+TEST(damage_ends_a_child_only)
 {
-    (void)state;
     size_t size;
     free(store("whole.h5", &size));
     refuses("whole.h5", crash, "crashes");
     if (!SM_CHILD_LIMITS_MEMORY) return;
     refuses("whole.h5", take_memory, "takes more memory");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_flipped_bit_is_noticed),
-        cmocka_unit_test(what_is_cut_off_is_noticed),
-        cmocka_unit_test(what_others_write_is_noticed_but_old_files_are_read),
-        cmocka_unit_test(what_is_not_in_the_file_is_not_read),
-        cmocka_unit_test(damage_ends_a_child_only),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

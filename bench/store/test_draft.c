@@ -1,19 +1,11 @@
 /* What a file that is written may be, and what is left when the writer ends early. */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "../cli/interrupt.h"
 #include "draft.h"
 
@@ -64,9 +56,8 @@ static void stays_a_link(const char *name)
     assert_true(S_ISLNK(status.st_mode));
 }
 
-static void a_link_stays_and_its_target_is_written(void **state)
+TEST(a_link_stays_and_its_target_is_written)
 {
-    (void)state;
     assert_int_equal(mkdir(path_in("far"), 0777), 0);
     write_text("far/real", "old");
     assert_int_equal(chmod(path_in("far/real"), 0640), 0);
@@ -87,9 +78,8 @@ static void a_link_stays_and_its_target_is_written(void **state)
     refused(path_in("round"), "symbolic links");
 }
 
-static void what_is_no_file_is_refused(void **state)
+TEST(what_is_no_file_is_refused)
 {
-    (void)state;
     refused("/dev/null", "not a regular file");
     refused(folder, "not a regular file");
     assert_int_equal(mkfifo(path_in("pipe"), 0666), 0);
@@ -112,9 +102,8 @@ static void what_is_no_file_is_refused(void **state)
 }
 
 /* Also from root, whom the kernel lets write them. */
-static void what_is_write_protected_is_refused(void **state)
+TEST(what_is_write_protected_is_refused)
 {
-    (void)state;
     write_text("protected", "old");
     assert_int_equal(chmod(path_in("protected"), 0444), 0);
     refused(path_in("protected"), "write-protected");
@@ -124,9 +113,8 @@ static void what_is_write_protected_is_refused(void **state)
 }
 
 /* Somebody else's link under the draft's name would send our bytes where it points. */
-static void a_draft_is_a_new_file(void **state)
+TEST(a_draft_is_a_new_file)
 {
-    (void)state;
     char name[64];
     write_text("precious", "precious");
     snprintf(name, sizeof name, "mine.%ld.tmp", (long)getpid());
@@ -138,9 +126,8 @@ static void a_draft_is_a_new_file(void **state)
     unlink(path_in(name));
 }
 
-static void a_file_that_is_there_is_replaced_only_when_asked(void **state)
+TEST(a_file_that_is_there_is_replaced_only_when_asked)
 {
-    (void)state;
     SmError error = {0};
     write_text("results", "old");
     assert_int_equal(bench_draft_reserve(NULL, false, &error), SM_OK);
@@ -179,9 +166,8 @@ static void while_one_program_writes(const char *name, int number)
     close(ends[1]);
 }
 
-static void two_programs_do_not_write_one_file(void **state)
+TEST(two_programs_do_not_write_one_file)
 {
-    (void)state;
     while_one_program_writes("sweep", SIGTERM);
     assert_int_equal(entries(".lock"), 0);
     while_one_program_writes("sweep", SIGKILL); /* its lock file stays, its lock does not */
@@ -212,9 +198,8 @@ static int end_of_writer(int number)
     return WEXITSTATUS(status);
 }
 
-static void no_signal_leaves_a_draft(void **state)
+TEST(no_signal_leaves_a_draft)
 {
-    (void)state;
     int count = entries("");
     for (int i = 0; i < BENCH_INTERRUPT_SIGNALS; i++)
         assert_int_equal(end_of_writer(bench_interrupt_signals[i]),
@@ -223,18 +208,4 @@ static void no_signal_leaves_a_draft(void **state)
     assert_int_equal(end_of_writer(SIGXFSZ), SM_MEMORY); /* a write that fails is told instead */
     assert_int_equal(end_of_writer(0), SM_MEMORY);
     assert_int_equal(entries(""), count);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_link_stays_and_its_target_is_written),
-        cmocka_unit_test(what_is_no_file_is_refused),
-        cmocka_unit_test(what_is_write_protected_is_refused),
-        cmocka_unit_test(a_draft_is_a_new_file),
-        cmocka_unit_test(a_file_that_is_there_is_replaced_only_when_asked),
-        cmocka_unit_test(two_programs_do_not_write_one_file),
-        cmocka_unit_test(no_signal_leaves_a_draft),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,20 +1,13 @@
 #define _GNU_SOURCE
 #include <errno.h>
-#include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "../measure/measure.h"
 #include "../table/quantity.h"
 #include "store.h"
@@ -68,9 +61,8 @@ static void fill_row(BenchRow *row, int seed)
 }
 
 /* A member of BenchRow that is new is to be a quantity (quantity.c). */
-static void every_member_is_stored(void **state)
+TEST(every_member_is_stored)
 {
-    (void)state;
     enum { PADDING = 17 }; /* between members */
     const BenchRow *row = NULL;
     size_t size = sizeof row->total + sizeof row->stage + sizeof row->change.time + PADDING;
@@ -166,9 +158,8 @@ static void read_back(const char *path, BenchRow *rows, int wanted, BenchMachine
     assert_int_equal(count, wanted);
 }
 
-static void round_trip(void **state)
+TEST(round_trip)
 {
-    (void)state;
     const char *path = path_in("rows.h5");
     BenchRow rows[ROWS], expected[ROWS];
     BenchMachine machine, now;
@@ -188,9 +179,8 @@ static void round_trip(void **state)
 }
 
 /* One of the paper's numbers is misprinted; of the hand's, the rate is not from the paper. */
-static void statuses_of_the_paper_are_stored(void **state)
+TEST(statuses_of_the_paper_are_stored)
 {
-    (void)state;
     static const char *const cases[][5] = {
         {"fastlsm", "infant", "quoted", "quoted", "quoted damaged quoted quoted derived"},
         {"octree", "hand-regular", "derived", "second-hand", "quoted quoted quoted quoted quoted"},
@@ -232,9 +222,8 @@ static void statuses_of_the_paper_are_stored(void **state)
     }
 }
 
-static void no_rows(void **state)
+TEST(no_rows)
 {
-    (void)state;
     const char *path = path_in("none.h5");
     BenchRow rows[ROWS];
     BenchMachine machine;
@@ -245,9 +234,8 @@ static void no_rows(void **state)
     unlink(path);
 }
 
-static void machine_is_described(void **state)
+TEST(machine_is_described)
 {
-    (void)state;
     static char *arguments[] = {"shapebench run", "a b", "it's", "", "plain-1.5"};
     BenchMachine machine;
     bench_machine_read(5, arguments, 3, &machine);
@@ -261,9 +249,8 @@ static void machine_is_described(void **state)
     assert_true(machine.compiler[0] && machine.flags[0] && machine.cpu[0] && machine.hostname[0]);
 }
 
-static void long_command_is_cut(void **state)
+TEST(long_command_is_cut)
 {
-    (void)state;
     static char word[3000], *arguments[] = {"shapebench", word};
     BenchMachine machine;
     memset(word, '\'', sizeof word - 1);
@@ -284,9 +271,8 @@ static void cannot_store(const char *path, const char *words)
     assert_int_equal(entries(""), before);
 }
 
-static void unwritable_targets(void **state)
+TEST(unwritable_targets)
 {
-    (void)state;
     const char *path = path_in("missing/rows.h5");
     cannot_store(path, "create the folder");
     cannot_store("/dev/null", "not a regular file");
@@ -320,9 +306,8 @@ static void store_in_locked_folder(void)
     if (!strstr(error.text, "a folder that you may write to")) _exit(4);
 }
 
-static void locked_folder(void **state)
+TEST(locked_folder)
 {
-    (void)state;
     const char *path = path_in("locked");
     assert_int_equal(chmod(folder, 0755), 0);
     assert_int_equal(mkdir(path, 0555), 0);
@@ -350,9 +335,8 @@ static void store_with_limits(void)
     if (store_file(path, NULL) != SM_OK) _exit(5);
 }
 
-static void full_disk(void **state)
+TEST(full_disk)
 {
-    (void)state;
     const char *path = path_in("full.h5");
     in_child(store_with_limits);
     BenchRow rows[ROWS];
@@ -361,20 +345,4 @@ static void full_disk(void **state)
     read_back(path, rows, ROWS, &machine);
     for (int i = 0; i < ROWS; i++) bench_row_free(&rows[i]);
     unlink(path);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_member_is_stored),
-        cmocka_unit_test(round_trip),
-        cmocka_unit_test(statuses_of_the_paper_are_stored),
-        cmocka_unit_test(no_rows),
-        cmocka_unit_test(machine_is_described),
-        cmocka_unit_test(long_command_is_cut),
-        cmocka_unit_test(unwritable_targets),
-        cmocka_unit_test(locked_folder),
-        cmocka_unit_test(full_disk),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

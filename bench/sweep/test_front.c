@@ -1,15 +1,5 @@
 /* The front of a sweep, and what it recommends. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "front.h"
 #include "recommend.h"
 
@@ -36,9 +26,8 @@ static BenchPoint make_point(int index, double ms, double path, double hz)
     return point;
 }
 
-static void the_front_is_marked(void **state)
+TEST(the_front_is_marked)
 {
-    (void)state;
     BenchPoint point[] = {
         make_point(0, 4, 0, 1),       /* on it: nothing deviates less */
         make_point(1, 5, 0, 1),       /* dearer, and no better */
@@ -55,9 +44,8 @@ static void the_front_is_marked(void **state)
 }
 
 /* Whichever of two costs that differ by less than their spread comes out lower, the front stays. */
-static void noise_does_not_move_the_front(void **state)
+TEST(noise_does_not_move_the_front)
 {
-    (void)state;
     for (int run = 0; run < 2; run++) {
         BenchPoint point[] = {
             make_point(0, run ? 2.05 : 2, 0.01, 1), make_point(1, run ? 2 : 2.05, 0.02, 1),
@@ -75,9 +63,8 @@ static void noise_does_not_move_the_front(void **state)
     }
 }
 
-static void recommendations_meet_the_wish(void **state)
+TEST(recommendations_meet_the_wish)
 {
-    (void)state;
     BenchPoint point[] = {
         make_point(0, 4, 0, 10),      make_point(1, 1, 0.03, 20),    make_point(2, 2, 0.008, 21),
         make_point(3, 1.5, 0.02, 40), make_point(4, NAN, 0.001, 30), make_point(5, 0.1, NAN, 20),
@@ -103,9 +90,8 @@ static void recommendations_meet_the_wish(void **state)
 }
 
 /* What costs the same within its quartiles is chosen by what it does, in every run alike. */
-static void noise_does_not_choose(void **state)
+TEST(noise_does_not_choose)
 {
-    (void)state;
     const BenchWish any = {NAN, NAN, NAN};
     for (int run = 0; run < 2; run++) {
         BenchPoint lattice[] = {make_point(0, run ? 4.1 : 4, 0, 10),
@@ -119,9 +105,8 @@ static void noise_does_not_choose(void **state)
     }
 }
 
-static void what_is_recommended_can_be_run(void **state)
+TEST(what_is_recommended_can_be_run)
 {
-    (void)state;
     BenchPlan plan = {.engines = "both", .scene = "hand", .width = "edges"};
     BenchPoint point[] = {make_point(0, 4, 0, 10), make_point(1, 1, 0.08, 20),
                           make_point(2, 2, 0.04, 21)};
@@ -157,16 +142,4 @@ static void what_is_recommended_can_be_run(void **state)
     bench_recommend_command(&plan, &point[0], sizeof command, command);
     assert_string_equal(command, "shapebench run hand --mesh 'hand=it'\\''s a hand.obj' "
                                  "--engine fastlsm --w 1 --precision double");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_front_is_marked),
-        cmocka_unit_test(noise_does_not_move_the_front),
-        cmocka_unit_test(recommendations_meet_the_wish),
-        cmocka_unit_test(noise_does_not_choose),
-        cmocka_unit_test(what_is_recommended_can_be_run),
-    };
-    return cmocka_run_group_tests_name("front", tests, NULL, NULL);
 }

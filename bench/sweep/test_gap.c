@@ -1,15 +1,6 @@
 /* How far apart two ways to simulate a scene are, and how stiff a beam is. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../fastlsm/fastlsm.h"
+#include "../../lib/test_frame.h"
 #include "../../reference/brute.h"
 #include "../calibrate/beam.h"
 #include "gap.h"
@@ -31,9 +22,8 @@ static BenchBody make_body(const BenchScene *scene)
     return body;
 }
 
-static void paths_are_compared_point_by_point(void **state)
+TEST(paths_are_compared_point_by_point)
 {
-    (void)state;
     double a[4][3] = {{0}}, b[4][3] = {{0}};
     b[1][2] = 3;
     b[3][0] = 4;
@@ -51,9 +41,8 @@ static void paths_are_compared_point_by_point(void **state)
 
 /* A force on all of a free body accelerates it as one, whatever its particles and masses are: also
  * where the scene's engine is the octree, whose nodes each have the force. */
-static void forces_push_every_engine_alike(void **state)
+TEST(forces_push_every_engine_alike)
 {
-    (void)state;
     static const char *const engines[] = {"fastlsm", "octree"};
     for (int e = 0; e < 2; e++) {
         char text[512];
@@ -88,9 +77,8 @@ static void forces_push_every_engine_alike(void **state)
     }
 }
 
-static void goals_deviate_with_epsilon(void **state)
+TEST(goals_deviate_with_epsilon)
 {
-    (void)state;
     BenchScene scene = make_scene("mesh = \"shape:hand\"; particles = 2000; engine = \"octree\";\n"
                                   "handles = ( { box_low = [0.0, 0.0, 0.0];\n"
                                   "              box_high = [1.0, 0.2, 1.0]; } );\n");
@@ -122,9 +110,8 @@ static void goals_deviate_with_epsilon(void **state)
 
 /* Nodes in all cells of the beam, with exact regions, are as stiff as a lattice; wider regions and
  * a larger epsilon are stiffer. */
-static void beams_get_stiffer(void **state)
+TEST(beams_get_stiffer)
 {
-    (void)state;
     BenchBeam lattice, exact, wide, wider;
     bench_beam_measure(&fastlsm_engine_f64, 4, 0, &lattice);
     bench_beam_measure(&octree_engine_f64, 4, 0, &exact);
@@ -193,9 +180,8 @@ static SmEngineType wrong_type(const SmEngineType *type, Fault what)
     return wrong;
 }
 
-static void wrong_kernels_make_no_beams(void **state)
+TEST(wrong_kernels_make_no_beams)
 {
-    (void)state;
     static const SmEngineType *const types[] = {&fastlsm_engine_f64, &octree_engine_f64};
     for (int f = 0; f < FAULTS; f++) {
         SmEngineType wrong = wrong_type(types[f % 2], (Fault)f);
@@ -207,9 +193,8 @@ static void wrong_kernels_make_no_beams(void **state)
     }
 }
 
-static void wrong_kernels_have_no_gaps(void **state)
+TEST(wrong_kernels_have_no_gaps)
 {
-    (void)state;
     BenchScene scene = make_scene("mesh = \"shape:hand\"; particles = 1000; engine = \"octree\";\n"
                                   "gravity = [0.0, -1.0, 0.0]; damping = 0.1; h = 0.01;\n"
                                   "handles = ( { box_low = [0.0, 0.0, 0.0];\n"
@@ -237,9 +222,8 @@ static void wrong_kernels_have_no_gaps(void **state)
 }
 
 /* The path of a lattice, step by step, is the brute-force engine's. */
-static void paths_are_brute_forces(void **state)
+TEST(paths_are_brute_forces)
 {
-    (void)state;
     BenchScene scene = make_scene("mesh = \"shape:hand\"; particles = 400; w = 2; h = 0.01;\n"
                                   "gravity = [0.0, -1.0, 0.0]; damping = 0.1; bend = 0.5;\n"
                                   "handles = ( { box_low = [0.0, 0.0, 0.0];\n"
@@ -261,18 +245,4 @@ static void paths_are_brute_forces(void **state)
     bench_path_free(&path);
     bench_path_free(&twin);
     bench_body_free(&body);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(paths_are_compared_point_by_point),
-        cmocka_unit_test(forces_push_every_engine_alike),
-        cmocka_unit_test(goals_deviate_with_epsilon),
-        cmocka_unit_test(beams_get_stiffer),
-        cmocka_unit_test(wrong_kernels_make_no_beams),
-        cmocka_unit_test(wrong_kernels_have_no_gaps),
-        cmocka_unit_test(paths_are_brute_forces),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

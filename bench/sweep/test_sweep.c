@@ -1,19 +1,12 @@
 /* A sweep's parts: ranges, plans, and the file. */
-#include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_folder.h"
+#include "../../lib/test_frame.h"
 #include "../cli/range.h"
 #include "front.h"
 #include "sweep.h"
@@ -24,9 +17,8 @@ enum { POINT_BYTES = 1392 };
  * here. */
 _Static_assert(sizeof(BenchPoint) == POINT_BYTES, "point.h has changed: see above");
 
-static void ranges_are_numbers(void **state)
+TEST(ranges_are_numbers)
 {
-    (void)state;
     static const struct {
         const char *text;
         int count;
@@ -51,9 +43,8 @@ static void ranges_are_numbers(void **state)
     }
 }
 
-static void bad_ranges_are_refused(void **state)
+TEST(bad_ranges_are_refused)
 {
-    (void)state;
     static const struct {
         const char *text, *words;
     } cases[] = {
@@ -98,9 +89,8 @@ static BenchPlan make_plan(const char *engines)
     return plan;
 }
 
-static void a_plan_makes_its_points(void **state)
+TEST(a_plan_makes_its_points)
 {
-    (void)state;
     static const struct {
         const char *engines;
         int points, w1; /* and where the second w begins */
@@ -130,9 +120,8 @@ static void a_plan_makes_its_points(void **state)
     assert_non_null(strstr(error.text, "65536 points"));
 }
 
-static void plans_differ_in_words(void **state)
+TEST(plans_differ_in_words)
 {
-    (void)state;
     char what[240];
     BenchPlan mine = make_plan("both"), other = mine;
     strcpy(other.mesh, "elsewhere/hand.obj"); /* the same by its hash */
@@ -197,9 +186,8 @@ static void write_sweep(const char *path)
     bench_sweep_free(&sweep);
 }
 
-static void a_sweep_comes_back(void **state)
+TEST(a_sweep_comes_back)
 {
-    (void)state;
     const char *path = path_in("sweep.h5");
     BenchSweep expected = make_sweep(1.5), found;
     SmError error;
@@ -222,9 +210,8 @@ static void a_sweep_comes_back(void **state)
     unlink(path);
 }
 
-static void merging_adds_and_refuses(void **state)
+TEST(merging_adds_and_refuses)
 {
-    (void)state;
     BenchSweep all = make_sweep(1.5), same = make_sweep(1.5), twice = make_sweep(1.6),
                foreign = make_sweep(1.5), more = {.plan = all.plan};
     BenchPoint point = make_point(&more.plan, 0, 3, 0, 9);
@@ -255,9 +242,8 @@ static void refuses(const char *path, const char *words)
         fail_msg("'%s' does not say '%s'", error.text, words);
 }
 
-static void foreign_and_cut_files(void **state)
+TEST(foreign_and_cut_files)
 {
-    (void)state;
     const char *path = path_in("bad.h5");
     refuses(path, "No such file");
     write_text("bad.h5", "this is no HDF5\n");
@@ -352,9 +338,8 @@ static void negative_samples(hid_t file)
     set_column(file, "points/samples", (const int[]){-1, 3, 3});
 }
 
-static void changed_files(void **state)
+TEST(changed_files)
 {
-    (void)state;
     static const struct {
         void (*change)(hid_t file);
         const char *words;
@@ -396,9 +381,8 @@ static void store_on_full_disk(const char *path)
     _exit(strstr(error.text, "size limit") ? 0 : 3);
 }
 
-static void a_full_disk_keeps_what_was(void **state)
+TEST(a_full_disk_keeps_what_was)
 {
-    (void)state;
     const char *path = path_in("full.h5");
     write_sweep(path);
     pid_t child = fork();
@@ -412,16 +396,4 @@ static void a_full_disk_keeps_what_was(void **state)
     assert_true(sweep.point[0].total_ms == 1.5);
     bench_sweep_free(&sweep);
     unlink(path);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ranges_are_numbers),         cmocka_unit_test(bad_ranges_are_refused),
-        cmocka_unit_test(a_plan_makes_its_points),    cmocka_unit_test(plans_differ_in_words),
-        cmocka_unit_test(a_sweep_comes_back),         cmocka_unit_test(merging_adds_and_refuses),
-        cmocka_unit_test(foreign_and_cut_files),      cmocka_unit_test(changed_files),
-        cmocka_unit_test(a_full_disk_keeps_what_was),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

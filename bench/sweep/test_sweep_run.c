@@ -1,16 +1,11 @@
 /* Sweeps as a user runs them: whole, interrupted, in shards, by mpirun; and mistakes. */
 #define _GNU_SOURCE
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
+#include "../../lib/test_frame.h"
 #include "../cli/test_program.h"
 #include "sweep.h"
 #include "sweep_table.h"
@@ -84,9 +79,8 @@ static void equals_whole(const char *name)
     bench_sweep_free(&other);
 }
 
-static void a_point_has_its_figures(void **state)
+TEST(a_point_has_its_figures)
 {
-    (void)state;
     BenchSweep sweep;
     load("whole.h5", &sweep);
     assert_int_equal(sweep.plan.points, 3);
@@ -115,9 +109,8 @@ static void a_point_has_its_figures(void **state)
 }
 
 /* Interrupted as soon as a point is stored, and again, until nothing is left. */
-static void an_interrupted_sweep_goes_on(void **state)
+TEST(an_interrupted_sweep_goes_on)
 {
-    (void)state;
     char said[512];
     assert_int_equal(interrupt(SMALL " -o part.h5", "part.h5"), 128 + SIGINT);
     slurp("err", said, sizeof said);
@@ -138,9 +131,8 @@ static void an_interrupted_sweep_goes_on(void **state)
     bench_sweep_free(&part);
 }
 
-static void shards_merge_to_the_whole(void **state)
+TEST(shards_merge_to_the_whole)
 {
-    (void)state;
     Result *result = malloc(sizeof *result);
     runs(SMALL " --shard 1/2 -o one.h5");
     runs(SMALL " --shard 2/2 -o two.h5");
@@ -165,9 +157,8 @@ static void shards_merge_to_the_whole(void **state)
     free(result);
 }
 
-static void other_options_do_not_mix(void **state)
+TEST(other_options_do_not_mix)
 {
-    (void)state;
     static const Mistake cases[] = {
         {SMALL " --seed 5 -o whole.h5", 3,
          "whole.h5 holds another sweep: its seed is 1, and here 5"},
@@ -185,9 +176,8 @@ static void other_options_do_not_mix(void **state)
     equals_whole("whole.h5");
 }
 
-static void mistakes_are_one_line(void **state)
+TEST(mistakes_are_one_line)
 {
-    (void)state;
     static const Mistake cases[] = {
         {"sweep --w 8:1", 2, "--w: 8:1 falls"},
         {"sweep --w 0:8", 2, "--w: 0 is not from 1 to 1000"},
@@ -215,9 +205,8 @@ static void mistakes_are_one_line(void **state)
 }
 
 /* A handle that holds lattice vertices on a face, and no node's centre. */
-static void a_point_that_cannot_be_is_invalid(void **state)
+TEST(a_point_that_cannot_be_is_invalid)
 {
-    (void)state;
     Result *result = malloc(sizeof *result);
     run("sweep --scene held.cfg --w 7 --epsilon 0 --frames 2 --repeats 1 --block 0.1 -o held.h5",
         result);
@@ -237,9 +226,8 @@ static void a_point_that_cannot_be_is_invalid(void **state)
 }
 
 /* The command that is recommended has the w and the epsilon recommended. */
-static void a_recommended_command_gives_that_w(void **state)
+TEST(a_recommended_command_gives_that_w)
 {
-    (void)state;
     static const char *const wanted[] = {", w 6, cell ",
                                          "regions: w = 6 x the node's edge, epsilon 0"};
     Result *result = malloc(sizeof *result);
@@ -263,9 +251,8 @@ static void a_recommended_command_gives_that_w(void **state)
     free(result);
 }
 
-static void tables_in_every_format(void **state)
+TEST(tables_in_every_format)
 {
-    (void)state;
     Result *result = malloc(sizeof *result);
     run("sweep whole.h5 --deviation 100", result);
     assert_int_equal(result->code, 0);
@@ -310,9 +297,8 @@ static void a_rank_that_cannot_stops_no_other(Result *result)
 }
 
 /* Two ranks do the same as one. Without MPI a launch of two is refused in a line. */
-static void ranks_share_the_work(void **state)
+TEST(ranks_share_the_work)
 {
-    (void)state;
     Result *result = malloc(sizeof *result);
     if (system("command -v mpirun >/dev/null 2>&1") != 0) {
         free(result);
@@ -338,9 +324,8 @@ static void ranks_share_the_work(void **state)
 }
 
 /* Points of two machines cannot be set beside each other without a word. */
-static void several_hosts_are_said(void **state)
+TEST(several_hosts_are_said)
 {
-    (void)state;
     static char text[8192];
     BenchSweep sweep = {.plan = {.width = "edges"}};
     for (int i = 0; i < 2; i++) {
@@ -356,19 +341,4 @@ static void several_hosts_are_said(void **state)
     bench_sweep_free(&sweep);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_point_has_its_figures),
-        cmocka_unit_test(an_interrupted_sweep_goes_on),
-        cmocka_unit_test(shards_merge_to_the_whole),
-        cmocka_unit_test(other_options_do_not_mix),
-        cmocka_unit_test(mistakes_are_one_line),
-        cmocka_unit_test(a_point_that_cannot_be_is_invalid),
-        cmocka_unit_test(a_recommended_command_gives_that_w),
-        cmocka_unit_test(tables_in_every_format),
-        cmocka_unit_test(ranks_share_the_work),
-        cmocka_unit_test(several_hosts_are_said),
-    };
-    return cmocka_run_group_tests(tests, set_up, remove_folder);
-}
+TEST_GROUP(set_up, remove_folder)

@@ -1,15 +1,7 @@
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
+#include "../../lib/test_frame.h"
 #include "../measure/measure.h"
 #include "table.h"
 
@@ -124,9 +116,8 @@ static char *print(BenchFormat format)
     return write_rows(format, rows, 2, false, true);
 }
 
-static void csv_is_the_stable_interface(void **state)
+TEST(csv_is_the_stable_interface)
 {
-    (void)state;
     char *text = print(BENCH_AS_CSV);
     char wanted[1024];
     snprintf(wanted, sizeof wanted, "%s%s%s", header,
@@ -139,9 +130,8 @@ static void csv_is_the_stable_interface(void **state)
     free(text);
 }
 
-static void json_has_the_same_columns(void **state)
+TEST(json_has_the_same_columns)
 {
-    (void)state;
     char *text = print(BENCH_AS_JSON);
     json_t *root = json_loads(text, 0, NULL);
     assert_non_null(root);
@@ -175,9 +165,8 @@ static void json_has_the_same_columns(void **state)
     free(text);
 }
 
-static void an_invalid_row_never_shows_a_time(void **state)
+TEST(an_invalid_row_never_shows_a_time)
 {
-    (void)state;
     for (BenchFormat format = BENCH_AS_TEXT; format <= BENCH_AS_JSON; format++) {
         char *text = print(format);
         assert_null(strstr(text, "777"));
@@ -186,9 +175,8 @@ static void an_invalid_row_never_shows_a_time(void **state)
     }
 }
 
-static void text_sets_the_paper_beside_the_measured(void **state)
+TEST(text_sets_the_paper_beside_the_measured)
 {
-    (void)state;
     char *text = print(BENCH_AS_TEXT);
     static const char *const wanted[] = {"penguin",
                                          "  paper",
@@ -208,9 +196,8 @@ static void text_sets_the_paper_beside_the_measured(void **state)
     free(text);
 }
 
-static void all_that_is_known_is_explained_when_asked_for(void **state)
+TEST(all_that_is_known_is_explained_when_asked_for)
 {
-    (void)state;
     static const char *const wanted[] = {
         "VALID: goals within 2e-06",   "fast sum 0.00200 (paper 0.0300)",
         "93.2 ns a particle and step", "150 particles (+0.0% of the paper's)",
@@ -225,9 +212,8 @@ static void all_that_is_known_is_explained_when_asked_for(void **state)
 }
 
 /* Every format; a scene that changes and a meshless one have tables of their own. */
-static void a_table_is_the_same_when_its_rows_come_one_by_one(void **state)
+TEST(a_table_is_the_same_when_its_rows_come_one_by_one)
 {
-    (void)state;
     BenchRow rows[5];
     make_rows(rows);
     fill_octree_row(&rows[2]);
@@ -246,9 +232,8 @@ static void a_table_is_the_same_when_its_rows_come_one_by_one(void **state)
 }
 
 /* What has been measured is there at once, but for JSON, which is one document. */
-static void a_row_is_written_when_it_is_measured(void **state)
+TEST(a_row_is_written_when_it_is_measured)
 {
-    (void)state;
     BenchRow rows[2];
     make_rows(rows);
     BenchMachine machine = {.threads = 1};
@@ -270,9 +255,8 @@ static void a_row_is_written_when_it_is_measured(void **state)
     }
 }
 
-static void text_fits_100_characters(void **state)
+TEST(text_fits_100_characters)
 {
-    (void)state;
     BenchRow rows[3];
     make_rows(rows);
     fill_octree_row(&rows[2]);
@@ -294,9 +278,8 @@ static void text_fits_100_characters(void **state)
     }
 }
 
-static void markdown_and_latex_escape(void **state)
+TEST(markdown_and_latex_escape)
 {
-    (void)state;
     char *text = print(BENCH_AS_MARKDOWN);
     assert_non_null(strstr(text, "| a_b,\"c\"&50%\\|x | 150 |"));
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
@@ -313,9 +296,8 @@ static void markdown_and_latex_escape(void **state)
 }
 
 /* A table with an octree's row has its columns, and says of what it is made. */
-static void an_octree_has_columns_of_its_own(void **state)
+TEST(an_octree_has_columns_of_its_own)
 {
-    (void)state;
     BenchRow row;
     static const char *const wanted[] = {
         "speedup",
@@ -353,9 +335,8 @@ static void an_octree_has_columns_of_its_own(void **state)
 }
 
 /* Optimised code beside optimised code, of the same body; naive sums beside nothing. */
-static void like_is_compared_with_like(void **state)
+TEST(like_is_compared_with_like)
 {
-    (void)state;
     enum { ROWS = 6, FAST = 0, PLAIN = 2, SAMPLED = 4, JACOBI = 5 };
     static const struct {
         const char *scene, *engine, *polar, *summation;
@@ -395,9 +376,8 @@ static void like_is_compared_with_like(void **state)
 }
 
 /* A row that changes has a line in a second table, the paper's below, and its columns in CSV. */
-static void what_changes_has_a_table_of_its_own(void **state)
+TEST(what_changes_has_a_table_of_its_own)
 {
-    (void)state;
     BenchRow row = {.particles = 501,
                     .valid = true,
                     .total_ms = 0.05,
@@ -451,9 +431,8 @@ static void what_changes_has_a_table_of_its_own(void **state)
 }
 
 /* Surfaces that a cut did not split are told of, whether the row is valid or not. */
-static void what_a_surface_could_not_follow_is_said(void **state)
+TEST(what_a_surface_could_not_follow_is_said)
 {
-    (void)state;
     for (int valid = 1; valid >= 0; valid--)
         for (long left = 0; left < 3; left++) {
             static const char *const wanted[] = {NULL, "\n    the surface of 1 body could not ",
@@ -467,24 +446,4 @@ static void what_a_surface_could_not_follow_is_said(void **state)
                 assert_null(strstr(text, "could not follow"));
             free(text);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(csv_is_the_stable_interface),
-        cmocka_unit_test(json_has_the_same_columns),
-        cmocka_unit_test(an_invalid_row_never_shows_a_time),
-        cmocka_unit_test(text_sets_the_paper_beside_the_measured),
-        cmocka_unit_test(all_that_is_known_is_explained_when_asked_for),
-        cmocka_unit_test(a_table_is_the_same_when_its_rows_come_one_by_one),
-        cmocka_unit_test(a_row_is_written_when_it_is_measured),
-        cmocka_unit_test(text_fits_100_characters),
-        cmocka_unit_test(markdown_and_latex_escape),
-        cmocka_unit_test(an_octree_has_columns_of_its_own),
-        cmocka_unit_test(like_is_compared_with_like),
-        cmocka_unit_test(what_changes_has_a_table_of_its_own),
-        cmocka_unit_test(what_a_surface_could_not_follow_is_said),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

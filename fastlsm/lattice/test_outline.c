@@ -1,15 +1,8 @@
 /* A lattice as collisions see it, held to its twin. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
+#include "../../lib/voxel/test_bodies.h"
 #include "../../reference/outline.h"
 #include "outline.h"
-#include "random_bodies.h"
 
 static void same_ints(const int *a, const int *b, long count)
 {
@@ -48,9 +41,8 @@ static void same(const SmCollideRest *a, const SmCollideRest *b)
 }
 
 /* What the engine makes of a lattice with broken links is what its cells say one by one. */
-static void it_is_that_of_the_cells(void **state)
+TEST(it_is_that_of_the_cells)
 {
-    (void)state;
     unsigned seed = 17;
     long gone = 0, broken = 0;
     for (int round = 0; round < 60; round++) {
@@ -74,12 +66,4 @@ static void it_is_that_of_the_cells(void **state)
         free(pair);
     }
     if (broken < 300 || gone < 100) fail_msg("%ld links, %ld cells", broken, gone);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_that_of_the_cells),
-    };
-    return cmocka_run_group_tests_name("outline", tests, NULL, NULL);
 }

@@ -1,20 +1,12 @@
 /* Holds collisions to their slow twin on random irregular bodies, and the response to its laws. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../fastlsm/lattice/outline.h"
-#include "../../fastlsm/lattice/random_bodies.h"
-#include "../../octree/change/random_batches.h"
+#include "../../octree/change/test_batches.h"
 #include "../../octree/surface/outline.h"
 #include "../../reference/collide.h"
 #include "../test_fields.h"
+#include "../test_frame.h"
 #include "../vector.h"
+#include "../voxel/test_bodies.h"
 #include "collide_parts.h"
 #include "collide_ways.h"
 
@@ -197,9 +189,8 @@ static long same_contacts(const Body *body, const SmCollideParams *params)
     return at;
 }
 
-static void test_twin(void **state)
+TEST(test_twin)
 {
-    (void)state;
     unsigned seed = 5;
     long contacts = 0, self = 0;
     for (int round = 0; round < 60; round++) {
@@ -215,9 +206,8 @@ static void test_twin(void **state)
 
 /* Parts that are joined have no node and cell that may collide, and what a search says of a node
  * and a cell is what the twin says. */
-static void test_parts(void **state)
+TEST(test_parts)
 {
-    (void)state;
     unsigned seed = 15;
     long joined = 0, far = 0;
     for (int round = 0; round < 40; round++) {
@@ -255,9 +245,8 @@ static void test_parts(void **state)
 }
 
 /* At rest nothing touches, whatever the shape. */
-static void test_rest(void **state)
+TEST(test_rest)
 {
-    (void)state;
     unsigned seed = 9;
     for (int round = 0; round < 40; round++) {
         Body body;
@@ -322,9 +311,8 @@ static void check_response(unsigned *seed, const Body *body)
     sm_collide_free(c);
 }
 
-static void test_response(void **state)
+TEST(test_response)
 {
-    (void)state;
     unsigned seed = 21;
     for (int round = 0; round < 30; round++) {
         Body body;
@@ -335,9 +323,8 @@ static void test_response(void **state)
 }
 
 /* Fixed nodes get nothing, and the others all the more. */
-static void test_fixed(void **state)
+TEST(test_fixed)
 {
-    (void)state;
     unsigned seed = 33;
     Body body;
     do { /* one with contacts */
@@ -372,9 +359,8 @@ static void test_fixed(void **state)
 }
 
 /* The same bits from any number of threads, and from a description given later. */
-static void test_threads(void **state)
+TEST(test_threads)
 {
-    (void)state;
     unsigned seed = 41;
     for (int round = 0; round < 12; round++) {
         Body body, other;
@@ -400,9 +386,8 @@ static void test_threads(void **state)
 }
 
 /* Positions that are not finite, or far apart, find nothing and hang nothing. */
-static void test_wild(void **state)
+TEST(test_wild)
 {
-    (void)state;
     static const double wild[] = {NAN, INFINITY, -INFINITY, 1e300, -1e12, 1e9};
     unsigned seed = 51;
     for (int round = 0; round < 24; round++) {
@@ -420,9 +405,8 @@ static void test_wild(void **state)
 }
 
 /* Bodies that move: what is found does not depend on where they have been before. */
-static void test_moves(void **state)
+TEST(test_moves)
 {
-    (void)state;
     unsigned seed = 71;
     long found = 0;
     for (int round = 0; round < 12; round++) {
@@ -455,15 +439,4 @@ static void test_moves(void **state)
         body_free(&body);
     }
     assert_true(found > 1000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moves), cmocka_unit_test(test_twin),
-        cmocka_unit_test(test_rest),  cmocka_unit_test(test_response),
-        cmocka_unit_test(test_fixed), cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_wild),  cmocka_unit_test(test_parts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

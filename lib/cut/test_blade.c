@@ -1,21 +1,14 @@
 /* A blade through bodies at rest, deformed, moving and nowhere near. */
 #include "blade.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../error.h"
 #include "../mesh/mesh.h"
-#include "../test_draw.h"
+#include "../test_frame.h"
+#include "../test_random.h"
 #include "../vector.h"
 #include "test_area.h"
+
+static unsigned seed = 1;
 
 enum { SIDE = 11, NODES = SIDE * SIDE * SIDE };
 
@@ -106,18 +99,18 @@ static void assert_disc(const SmCut *cut)
     assert_int_equal(cut->vertices - edges + cut->triangles, 1);
 }
 
-static void what_it_sweeps_over_is_cut_where_it_was_at_rest(void **state)
+TEST(what_it_sweeps_over_is_cut_where_it_was_at_rest)
 {
-    (void)state;
     for (int trial = 0; trial < 20; trial++) {
         Cutting t;
         double A[9], shift[3], end[4][3];
-        for (int i = 0; i < 9; i++) A[i] = (i % 4 == 0) + (trial ? uniform(-0.3, 0.3) : 0);
-        for (int d = 0; d < 3; d++) shift[d] = trial ? uniform(-20, 20) : 0;
+        for (int i = 0; i < 9; i++)
+            A[i] = (i % 4 == 0) + (trial ? random_between(&seed, -0.3, 0.3) : 0);
+        for (int d = 0; d < 3; d++) shift[d] = trial ? random_between(&seed, -20, 20) : 0;
         start_cutting(&t);
         deform(t.body, A, shift, 0);
         for (int n = 0; n < 4; n++) { /* within the body at rest, and there now */
-            double X[3] = {n % 2 ? 8 : 2, n / 2 ? 8 : 2, uniform(4, 6)};
+            double X[3] = {n % 2 ? 8 : 2, n / 2 ? 8 : 2, random_between(&seed, 4, 6)};
             carry(A, shift, X, end[n]);
         }
         assert_int_equal(sweep(&t, end[0], end[1]), 0);
@@ -141,9 +134,8 @@ static void what_it_sweeps_over_is_cut_where_it_was_at_rest(void **state)
 
 /* The body turns, bends and drifts while the blade goes through it in many small frames: one sheet
  * without a gap, and nodes on its two sides are parted. */
-static void frames_join_on_however_the_body_moves(void **state)
+TEST(frames_join_on_however_the_body_moves)
 {
-    (void)state;
     Cutting t;
     start_cutting(&t);
     enum { FRAMES = 60 };
@@ -175,9 +167,8 @@ static void frames_join_on_however_the_body_moves(void **state)
 }
 
 /* The blade stands in the world and the body goes through it. */
-static void a_body_moving_through_a_blade_is_cut(void **state)
+TEST(a_body_moving_through_a_blade_is_cut)
 {
-    (void)state;
     Cutting t;
     start_cutting(&t);
     for (int f = 0; f <= 40; f++) {
@@ -193,9 +184,8 @@ static void a_body_moving_through_a_blade_is_cut(void **state)
 
 /* Far away, standing still, of no length, lifted and set down elsewhere, in and out and in again.
  */
-static void what_is_not_swept_is_not_cut(void **state)
+TEST(what_is_not_swept_is_not_cut)
 {
-    (void)state;
     Cutting t;
     start_cutting(&t);
     for (int f = 0; f < 10; f++)
@@ -218,9 +208,8 @@ static void what_is_not_swept_is_not_cut(void **state)
 }
 
 /* Back the way it came it cuts nothing, and nothing twice when it comes again; aside it does. */
-static void a_blade_that_is_drawn_back_waits(void **state)
+TEST(a_blade_that_is_drawn_back_waits)
 {
-    (void)state;
     static const struct {
         double y, z;
         bool cuts;
@@ -238,20 +227,21 @@ static void a_blade_that_is_drawn_back_waits(void **state)
 }
 
 /* Collapsed, turned inside out, nowhere: whatever comes is finite and short. */
-static void broken_bodies_do_no_harm(void **state)
+TEST(broken_bodies_do_no_harm)
 {
-    (void)state;
     Cutting t;
     start_cutting(&t);
     for (int f = 0; f < 60; f++) {
         double A[9];
-        for (int i = 0; i < 9; i++) A[i] = f % 3 ? uniform(-2, 2) : 0;
-        deform(t.body, A, origin, uniform(-3, 3));
+        for (int i = 0; i < 9; i++) A[i] = f % 3 ? random_between(&seed, -2, 2) : 0;
+        deform(t.body, A, origin, random_between(&seed, -3, 3));
         for (int n = 0; n < 30 && f % 5 == 0; n++)
-            t.body->position[draw() % NODES][draw() % 3] = n % 2 ? NAN : INFINITY;
-        for (int n = 0; n < 30 && f % 5 == 1; n++) t.body->F[draw() % NODES][draw() % 9] = NAN;
+            t.body->position[random_int(&seed, NODES)][random_int(&seed, 3)] =
+                n % 2 ? NAN : INFINITY;
+        for (int n = 0; n < 30 && f % 5 == 1; n++)
+            t.body->F[random_int(&seed, NODES)][random_int(&seed, 9)] = NAN;
         double end[2][3];
-        for (int i = 0; i < 6; i++) end[i / 3][i % 3] = uniform(-10, 20);
+        for (int i = 0; i < 6; i++) end[i / 3][i % 3] = random_between(&seed, -10, 20);
         sweep(&t, end[0], end[1]);
     }
     for (long k = 0; k < t.cut.triangles; k++)
@@ -262,17 +252,4 @@ static void broken_bodies_do_no_harm(void **state)
             assert_true(sm_dot(d, d) <= 16 * (1 + 1e-12));
         }
     stop_cutting(&t);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_it_sweeps_over_is_cut_where_it_was_at_rest),
-        cmocka_unit_test(frames_join_on_however_the_body_moves),
-        cmocka_unit_test(a_body_moving_through_a_blade_is_cut),
-        cmocka_unit_test(what_is_not_swept_is_not_cut),
-        cmocka_unit_test(a_blade_that_is_drawn_back_waits),
-        cmocka_unit_test(broken_bodies_do_no_harm),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

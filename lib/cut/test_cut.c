@@ -2,15 +2,10 @@
  * along edges, through vertices, in the plane. */
 #include "cut.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "../test_frame.h"
+#include "../test_random.h"
 
-#include <cmocka.h>
-
-#include "../test_draw.h"
+static unsigned seed = 1;
 
 /* A sheet of side x side squares over the unit square, z = height(x, y). */
 static void sheet(SmCut *cut, int side, double (*height)(double, double))
@@ -71,17 +66,16 @@ static bool crosses_any(const SmCut *cut, const double a[3], const double b[3])
     return false;
 }
 
-static void random_segments_cross_what_they_cross(void **state)
+TEST(random_segments_cross_what_they_cross)
 {
-    (void)state;
     SmCut cut;
     long crossed = 0;
     sheet(&cut, 7, hill);
     for (int trial = 0; trial < 20000; trial++) {
         double a[3], b[3], length = trial % 3 ? 0.15 : 1;
         for (int d = 0; d < 3; d++) {
-            a[d] = uniform(-0.1, 1.1) - (d == 2 ? 0.5 : 0);
-            b[d] = a[d] + length * uniform(-0.5, 0.5);
+            a[d] = random_between(&seed, -0.1, 1.1) - (d == 2 ? 0.5 : 0);
+            b[d] = a[d] + length * random_between(&seed, -0.5, 0.5);
         }
         bool expected = crosses_any(&cut, a, b);
         crossed += expected;
@@ -94,9 +88,8 @@ static void random_segments_cross_what_they_cross(void **state)
 
 /* Segments straight through vertices, edges and diagonals of a sheet, none of which gets through;
  * and segments that touch it from one side or lie in it, which cross nothing. */
-static void nothing_slips_through_where_triangles_meet(void **state)
+TEST(nothing_slips_through_where_triangles_meet)
 {
-    (void)state;
     SmCut cut;
     sheet(&cut, 4, flat);
     for (int j = 1; j < 16; j++)
@@ -111,9 +104,8 @@ static void nothing_slips_through_where_triangles_meet(void **state)
     sm_cut_free(&cut);
 }
 
-static void only_later_triangles_are_asked(void **state)
+TEST(only_later_triangles_are_asked)
 {
-    (void)state;
     SmCut cut;
     sheet(&cut, 1, flat);
     const double a[3] = {0.7, 0.2, -1}, b[3] = {0.7, 0.2, 1};
@@ -127,15 +119,15 @@ static void only_later_triangles_are_asked(void **state)
 }
 
 /* Triangles and segments that lie in one plane but for rounding, apart from each other. */
-static void what_lies_in_the_plane_of_a_far_triangle_is_not_cut(void **state)
+TEST(what_lies_in_the_plane_of_a_far_triangle_is_not_cut)
 {
-    (void)state;
     long apart = 0;
     for (int trial = 0; trial < 20000; trial++) {
         SmCut cut;
         double place[5][3], low = INFINITY, high = -INFINITY, least = INFINITY, most = -INFINITY;
         for (int i = 0; i < 5; i++) {
-            double along = floor(uniform(0, 6)), up = floor(uniform(0, 8));
+            double along = floor(random_between(&seed, 0, 6)),
+                   up = floor(random_between(&seed, 0, 8));
             place[i][0] = -0.39788157 + 0.98360069 * 2 * along;
             place[i][1] = 3.68959300 - 0.98360069 * along;
             place[i][2] = 1.28073174 + 0.98360069 * up;
@@ -151,15 +143,4 @@ static void what_lies_in_the_plane_of_a_far_triangle_is_not_cut(void **state)
         apart++;
     }
     assert_true(apart > 1000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_segments_cross_what_they_cross),
-        cmocka_unit_test(nothing_slips_through_where_triangles_meet),
-        cmocka_unit_test(only_later_triangles_are_asked),
-        cmocka_unit_test(what_lies_in_the_plane_of_a_far_triangle_is_not_cut),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,11 @@
 /* Outlines filled with triangles: every side once, the area, three corners each. */
 #include "outline.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../error.h"
-#include "../test_draw.h"
+#include "../test_frame.h"
+#include "../test_random.h"
+
+static unsigned seed = 1;
 
 enum { MOST = 200 };
 
@@ -28,9 +21,10 @@ static void add_ring(Rings *r, int count, const double c[2], double least, doubl
 {
     int from = r->first[r->rings];
     for (int i = 0; i < count; i++) {
-        double turn = (r->rings ? -2 : 2) * acos(-1) * i / count, away = uniform(least, most);
-        r->at[from + i][0] = c[0] + away * cos(turn) + uniform(-shift, shift);
-        r->at[from + i][1] = c[1] + away * sin(turn) + uniform(-shift, shift);
+        double turn = (r->rings ? -2 : 2) * acos(-1) * i / count,
+               away = random_between(&seed, least, most);
+        r->at[from + i][0] = c[0] + away * cos(turn) + random_between(&seed, -shift, shift);
+        r->at[from + i][1] = c[1] + away * sin(turn) + random_between(&seed, -shift, shift);
     }
     r->first[++r->rings] = from + count;
 }
@@ -92,15 +86,14 @@ static long fill(const Rings *r, double slack)
 }
 
 /* Rings well apart: every one of the triangles has an area. */
-static void rings_with_holes_are_filled(void **state)
+TEST(rings_with_holes_are_filled)
 {
-    (void)state;
     for (int trial = 0; trial < 500; trial++) {
         Rings r = {0};
-        add_ring(&r, 3 + (int)(draw() % 40), (double[2]){0, 0}, 4, 9, 0);
+        add_ring(&r, 3 + random_int(&seed, 40), (double[2]){0, 0}, 4, 9, 0);
         if (r.first[1] >= 12)
             for (int h = 0; h < 4 && trial % 3; h++)
-                add_ring(&r, 3 + (int)(draw() % 12), (double[2]){h % 2 - 0.5, h / 2 - 0.5}, 0.1,
+                add_ring(&r, 3 + random_int(&seed, 12), (double[2]){h % 2 - 0.5, h / 2 - 0.5}, 0.1,
                          0.4, 0);
         long count = fill(&r, 1e-10);
         assert_int_equal(count, sm_outline_triangles(r.first[r.rings], r.rings));
@@ -109,18 +102,17 @@ static void rings_with_holes_are_filled(void **state)
 
 /* Holes with hardly any width, rings that touch or nearly cross, points in one place, all in one
  * line: filled, or said not to be. */
-static void outlines_as_thin_as_rounding_do_no_harm(void **state)
+TEST(outlines_as_thin_as_rounding_do_no_harm)
 {
-    (void)state;
     long filled = 0;
     for (int trial = 0; trial < 20000; trial++) {
         Rings r = {0};
-        double slack = trial % 2 ? 1e-10 : 1e-3, tiny = pow(10, uniform(-14, -2));
-        int kind = (int)(draw() % 4);
-        add_ring(&r, 3 + (int)(draw() % 8), (double[2]){0, 0}, 1, 1 + (kind == 1), tiny);
-        for (int h = (int)(draw() % 4); h > 0; h--) {
-            double c[2] = {uniform(-1, 1), uniform(-1, 1)};
-            add_ring(&r, 1 + (int)(draw() % 5), c, kind == 2 ? 0 : tiny, kind == 2 ? 0.3 : tiny,
+        double slack = trial % 2 ? 1e-10 : 1e-3, tiny = pow(10, random_between(&seed, -14, -2));
+        int kind = random_int(&seed, 4);
+        add_ring(&r, 3 + random_int(&seed, 8), (double[2]){0, 0}, 1, 1 + (kind == 1), tiny);
+        for (int h = random_int(&seed, 4); h > 0; h--) {
+            double c[2] = {random_between(&seed, -1, 1), random_between(&seed, -1, 1)};
+            add_ring(&r, 1 + random_int(&seed, 5), c, kind == 2 ? 0 : tiny, kind == 2 ? 0.3 : tiny,
                      tiny);
         }
         if (kind == 3)
@@ -132,9 +124,8 @@ static void outlines_as_thin_as_rounding_do_no_harm(void **state)
 
 /* A hole whose points lie in two places, but for rounding, beside the outside: filling it leaves a
  * spike to and fro between two points, which is no triangle. */
-static void a_spike_is_no_triangle(void **state)
+TEST(a_spike_is_no_triangle)
 {
-    (void)state;
     const Rings r = {2,
                      {0, 4, 11},
                      {{1.6666666666615686, -4.697773456573486e-12},
@@ -149,14 +140,4 @@ static void a_spike_is_no_triangle(void **state)
                       {-0.66666666667170049, 0.33333333333664422},
                       {-0.33333333333322746, 0.33333333334260012}}};
     assert_int_equal(fill(&r, 1.5e-5), sm_outline_triangles(11, 2) - 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rings_with_holes_are_filled),
-        cmocka_unit_test(a_spike_is_no_triangle),
-        cmocka_unit_test(outlines_as_thin_as_rounding_do_no_harm),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,11 @@
 /* Surfaces taken apart between pieces of material: closed again on every side. */
 #include "sever.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
 #include "../shapes/shape.h"
-#include "../test_draw.h"
+#include "../test_frame.h"
+#include "../test_random.h"
+
+static unsigned seed = 1;
 
 static SmMesh shape(const char *name)
 {
@@ -37,9 +31,8 @@ static void check_closed(const SmMesh *mesh)
     assert_int_equal(info.flipped_edges, 0);
 }
 
-static void slabs_of_shapes_are_closed_pieces(void **state)
+TEST(slabs_of_shapes_are_closed_pieces)
 {
-    (void)state;
     static const char *const names[] = {"beam", "liver", "hand", "flower", "penguin"};
     for (int n = 0; n < 5; n++)
         for (int axis = 0; axis < 3; axis++) {
@@ -65,13 +58,12 @@ static void slabs_of_shapes_are_closed_pieces(void **state)
         }
 }
 
-static void any_pieces_leave_a_closed_surface(void **state)
+TEST(any_pieces_leave_a_closed_surface)
 {
-    (void)state;
     for (int trial = 0; trial < 50; trial++) {
         SmMesh mesh = shape(trial % 2 ? "block" : "beam");
         int *piece = sm_alloc((size_t)mesh.vertex_count, sizeof *piece);
-        for (long v = 0; v < mesh.vertex_count; v++) piece[v] = draw() % (unsigned)(2 + trial) == 0;
+        for (long v = 0; v < mesh.vertex_count; v++) piece[v] = random_int(&seed, 2 + trial) == 0;
         sm_sever(&mesh, piece);
         check_closed(&mesh);
         free(piece);
@@ -79,9 +71,8 @@ static void any_pieces_leave_a_closed_surface(void **state)
     }
 }
 
-static void one_piece_is_left_alone(void **state)
+TEST(one_piece_is_left_alone)
 {
-    (void)state;
     SmMesh mesh = shape("beam");
     long triangles = mesh.triangle_count, vertices = mesh.vertex_count;
     int *piece = sm_alloc((size_t)vertices, sizeof *piece);
@@ -93,9 +84,8 @@ static void one_piece_is_left_alone(void **state)
 }
 
 /* A hole that is there stays one: only what goes is closed. */
-static void open_surfaces_stay_open(void **state)
+TEST(open_surfaces_stay_open)
 {
-    (void)state;
     SmMesh mesh = shape("beam");
     mesh.triangle_count -= 1;
     int *piece = slabs(&mesh, 0, (sm_mesh_info(&mesh).high[0] - sm_mesh_info(&mesh).low[0]) / 3.1);
@@ -103,15 +93,4 @@ static void open_surfaces_stay_open(void **state)
     assert_in_range(sm_mesh_info(&mesh).open_edges, 1, 3);
     free(piece);
     sm_mesh_free(&mesh);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slabs_of_shapes_are_closed_pieces),
-        cmocka_unit_test(any_pieces_leave_a_closed_surface),
-        cmocka_unit_test(one_piece_is_left_alone),
-        cmocka_unit_test(open_surfaces_stay_open),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

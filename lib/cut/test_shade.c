@@ -1,33 +1,21 @@
 /* What a triangle hides is what sm_cut_crosses() says is beyond it. */
 #include "shade.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
-static double draw(unsigned *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return *seed / 4294967296.0 * 2 - 1;
-}
+#include "../test_frame.h"
+#include "../test_random.h"
 
 static void draw_point(unsigned *seed, double point[3])
 {
-    for (int d = 0; d < 3; d++) point[d] = draw(seed);
+    for (int d = 0; d < 3; d++) point[d] = random_between(seed, -1, 1);
 }
 
-static void every_segment_to_a_hidden_box_crosses(void **state)
+TEST(every_segment_to_a_hidden_box_crosses)
 {
-    (void)state;
     unsigned seed = 7;
     long hidden = 0;
     for (int round = 0; round < 20000; round++) {
         SmCut cut;
-        double x[3], centre[3], half = 0.1 * (1 + draw(&seed));
+        double x[3], centre[3], half = 0.1 * (1 + random_between(&seed, -1, 1));
         int number[3];
         sm_cut_init(&cut, 0.5);
         for (int i = 0; i < 3; i++) {
@@ -43,7 +31,8 @@ static void every_segment_to_a_hidden_box_crosses(void **state)
         for (int n = 0; n < 16 && hides; n++) {
             double to[3];
             for (int d = 0; d < 3; d++)
-                to[d] = centre[d] + half * (n < 8 ? (n >> d & 1 ? 1 : -1) : draw(&seed));
+                to[d] = centre[d] +
+                        half * (n < 8 ? (n >> d & 1 ? 1 : -1) : random_between(&seed, -1, 1));
             assert_true(sm_cut_crosses(&cut, 0, x, to));
             assert_true(sm_cut_crosses_one(&cut, triangle, x, to));
             assert_int_equal(sm_cut_crossed(&cut, 0, x, to), triangle);
@@ -53,9 +42,8 @@ static void every_segment_to_a_hidden_box_crosses(void **state)
     assert_true(hidden > 100);
 }
 
-static void a_box_in_full_view_is_not_hidden(void **state)
+TEST(a_box_in_full_view_is_not_hidden)
 {
-    (void)state;
     SmCut cut;
     const double corner[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, x[3] = {0.25, 0.25, -0.01};
     int number[3];
@@ -67,13 +55,4 @@ static void a_box_in_full_view_is_not_hidden(void **state)
     assert_false(sm_shade_hides(&cut, triangle, x, (double[3]){0.25, 0.25, -1}, 0.5));  /* behind */
     assert_false(sm_shade_hides(&cut, triangle, x, (double[3]){90, 0.25, 1}, 0.5));     /* aside */
     sm_cut_free(&cut);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_segment_to_a_hidden_box_crosses),
-        cmocka_unit_test(a_box_in_full_view_is_not_hidden),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,21 +1,14 @@
 /* Surfaces split by cuts: random ones through random solids, and the awkward ones. */
 #include "slit.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../shapes/polygonise.h"
-#include "../test_draw.h"
+#include "../test_frame.h"
+#include "../test_random.h"
 #include "../vector.h"
 #include "../voxel/overlap.h"
 #include "test_area.h"
+
+static unsigned seed = 1;
 
 static long cleared; /* triangles that were far from a cut, and had to stay */
 
@@ -41,8 +34,8 @@ static SmMesh blob(void)
     for (int i = 0; i < 4; i++) {
         double centre[3], size[3];
         for (int d = 0; d < 3; d++) {
-            centre[d] = uniform(3, 7);
-            size[d] = uniform(1, 3);
+            centre[d] = random_between(&seed, 3, 7);
+            size[d] = random_between(&seed, 1, 3);
         }
         SmPrimitive ball = sm_primitive(SM_ELLIPSOID, 0.5, centre, size);
         sm_implicit_add(&solid, &ball);
@@ -206,33 +199,33 @@ static void random_frame(double c[3], double u[3], double v[3])
 {
     double w[3];
     for (int d = 0; d < 3; d++) {
-        c[d] = uniform(1, 9);
-        u[d] = uniform(-1, 1);
-        v[d] = uniform(-1, 1);
+        c[d] = random_between(&seed, 1, 9);
+        u[d] = random_between(&seed, -1, 1);
+        v[d] = random_between(&seed, -1, 1);
     }
     sm_cross(u, v, w);
     sm_cross(w, u, v);
     sm_normalize(u);
     sm_normalize(v);
-    double along = uniform(1, 20), across = uniform(1, 20);
+    double along = random_between(&seed, 1, 20), across = random_between(&seed, 1, 20);
     for (int d = 0; d < 3; d++) {
         u[d] *= along;
         v[d] *= across;
     }
 }
 
-static void random_cuts_leave_closed_surfaces(void **state)
+TEST(random_cuts_leave_closed_surfaces)
 {
-    (void)state;
     long closed = 0;
     for (int trial = 0; trial < 120; trial++) {
         SmMesh mesh = trial % 4 ? cube() : blob();
         SmCut cut;
         sm_cut_init(&cut, 2);
         for (int n = 0; n < 8; n++) {
-            double c[3], u[3], v[3], bend = n % 2 ? uniform(-10, 10) : 0;
+            double c[3], u[3], v[3], bend = n % 2 ? random_between(&seed, -10, 10) : 0;
             random_frame(c, u, v);
-            long first = sheet(&cut, 1 + (int)draw() % 8, 1 + (int)draw() % 8, c, u, v, bend);
+            long first =
+                sheet(&cut, 1 + random_int(&seed, 8), 1 + random_int(&seed, 8), c, u, v, bend);
             closed += split(&mesh, &cut, first) == SM_SLIT_CLOSED;
         }
         sm_cut_free(&cut);
@@ -247,9 +240,8 @@ static long count_pieces(const SmMesh *mesh)
     return sm_mesh_info(mesh).components;
 }
 
-static void cuts_right_through_leave_the_pieces_that_they_should(void **state)
+TEST(cuts_right_through_leave_the_pieces_that_they_should)
 {
-    (void)state;
     SmMesh mesh = cube();
     SmCut cut;
     sm_cut_init(&cut, 2);
@@ -271,15 +263,15 @@ static void cuts_right_through_leave_the_pieces_that_they_should(void **state)
 
 /* Row by row, each going on where the one before stopped: its front opens, nothing else changes,
  * and the last one parts the cube. */
-static void a_cut_goes_on_from_its_front(void **state)
+TEST(a_cut_goes_on_from_its_front)
 {
-    (void)state;
     for (int turn = 0; turn < 20; turn++) {
         SmMesh mesh = cube();
         SmCut cut;
         sm_cut_init(&cut, 2);
         enum { WIDE = 7, ROWS = 12 };
-        double tilt = turn == 0 ? 0 : uniform(-0.5, 0.5), wave = turn < 2 ? 0 : uniform(0, 1);
+        double tilt = turn == 0 ? 0 : random_between(&seed, -0.5, 0.5),
+               wave = turn < 2 ? 0 : random_between(&seed, 0, 1);
         for (int row = 0; row <= ROWS; row++) {
             long first = cut.triangles;
             for (int i = 0; i <= WIDE; i++) {
@@ -303,9 +295,8 @@ static void a_cut_goes_on_from_its_front(void **state)
 
 /* The same sheet again and again; a flat one, which lies in its own sides, and one through the
  * cube's corners and edges. */
-static void a_cut_may_be_repeated(void **state)
+TEST(a_cut_may_be_repeated)
 {
-    (void)state;
     const double c[3] = {5, 5, 5};
     const double v[3] = {0, 14, 0};
     const double way[4][3] = {{14, 0, 0}, {20, 0, 20}, {10, 0, 0}, {10, 0, 10}};
@@ -323,9 +314,8 @@ static void a_cut_may_be_repeated(void **state)
 }
 
 /* In a face's plane, along an edge, through a corner, beside it, and far away. */
-static void grazing_cuts_do_no_harm(void **state)
+TEST(grazing_cuts_do_no_harm)
 {
-    (void)state;
     const double where[6][3] = {{5, 5, 10},   {5, 5, 0},      {0, 0, 5},
                                 {10, 10, 10}, {5, 5, 10.001}, {500, 0, 0}};
     const double ways[3][2][3] = {
@@ -345,9 +335,8 @@ static void grazing_cuts_do_no_harm(void **state)
 }
 
 /* A sheet that does not reach the surface leaves a flat hollow in the material. */
-static void a_cut_within_the_material_is_a_hollow(void **state)
+TEST(a_cut_within_the_material_is_a_hollow)
 {
-    (void)state;
     SmMesh mesh = cube();
     SmCut cut;
     sm_cut_init(&cut, 2);
@@ -361,9 +350,8 @@ static void a_cut_within_the_material_is_a_hollow(void **state)
 }
 
 /* Triangles without area, three on an edge, folded ones, a Moebius band of them. */
-static void odd_sheets_are_cut_triangle_by_triangle(void **state)
+TEST(odd_sheets_are_cut_triangle_by_triangle)
 {
-    (void)state;
     for (int kind = 0; kind < 4; kind++) {
         SmMesh mesh = cube();
         SmCut cut;
@@ -381,9 +369,8 @@ static void odd_sheets_are_cut_triangle_by_triangle(void **state)
     }
 }
 
-static void everything_into_small_cubes(void **state)
+TEST(everything_into_small_cubes)
 {
-    (void)state;
     SmMesh mesh = cube();
     SmCut cut;
     sm_cut_init(&cut, 2);
@@ -402,9 +389,8 @@ static void everything_into_small_cubes(void **state)
 
 /* Some triangles of the surface: with a corner twice or three times, those of others again or
  * turned over, of no area, as thin as rounding. Split or left, never harmed. */
-static void triangles_that_should_not_be_do_no_harm(void **state)
+TEST(triangles_that_should_not_be_do_no_harm)
 {
-    (void)state;
     const double c[3] = {5, 5, 4.9}, u[3] = {30, 0, 1}, v[3] = {0, 30, 1};
     for (int kind = 0; kind < 6; kind++)
         for (int many = 1; many < 60; many += 29) {
@@ -438,9 +424,8 @@ static void triangles_that_should_not_be_do_no_harm(void **state)
 
 /* Inside out: closed, and inside out still. Open, or two that cross: split along the cut, or
  * closed where that is possible; never harmed. */
-static void surfaces_that_are_not_solid_are_split_too(void **state)
+TEST(surfaces_that_are_not_solid_are_split_too)
 {
-    (void)state;
     const double c[3] = {5, 5, 4}, u[3] = {12, 0, 1}, v[3] = {0, 12, 1};
     for (int kind = 0; kind < 4; kind++) {
         SmMesh mesh = cube();
@@ -473,21 +458,4 @@ static void surfaces_that_are_not_solid_are_split_too(void **state)
         sm_cut_free(&cut);
         sm_mesh_free(&mesh);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_cuts_leave_closed_surfaces),
-        cmocka_unit_test(cuts_right_through_leave_the_pieces_that_they_should),
-        cmocka_unit_test(a_cut_goes_on_from_its_front),
-        cmocka_unit_test(a_cut_may_be_repeated),
-        cmocka_unit_test(grazing_cuts_do_no_harm),
-        cmocka_unit_test(a_cut_within_the_material_is_a_hollow),
-        cmocka_unit_test(odd_sheets_are_cut_triangle_by_triangle),
-        cmocka_unit_test(everything_into_small_cubes),
-        cmocka_unit_test(triangles_that_should_not_be_do_no_harm),
-        cmocka_unit_test(surfaces_that_are_not_solid_are_split_too),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,20 +1,12 @@
 #include "embed.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-#include <math.h>
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "../cut/embed_cut.h"
 #include "../cut/slit.h"
 #include "../pieces.h"
 #include "../shapes/shape.h"
+#include "../test_frame.h"
 #include "../vector.h"
 #include "../voxel/voxelise.h"
 
@@ -111,9 +103,8 @@ static double identity[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 static const double nowhere[3] = {0, 0, 0};
 
 /* Weights are single precision, relative to the cell: 1e-7 of 0.5, far from the origin too. */
-static void test_rest(void **state)
+TEST(test_rest)
 {
-    (void)state;
     const double offsets[] = {0, 5e6};
     for (int o = 0; o < 2; o++) {
         SmVoxels voxels = block(offsets[o]);
@@ -145,9 +136,8 @@ static void cofactors(double f[3][3], double result[3][3])
         }
 }
 
-static void test_affine(void **state)
+TEST(test_affine)
 {
-    (void)state;
     double f[3][3] = {{1.5, 0.4, -0.2}, {0.1, 0.7, 0.9}, {-0.6, 0.3, 1.1}}, cofactor[3][3];
     const double t[3] = {3, -2, 10};
     SmVoxels voxels = block(0);
@@ -172,9 +162,8 @@ static void test_affine(void **state)
 }
 
 /* Crushed to a line or a point, tangents are parallel or nothing. */
-static void test_degenerate_cell(void **state)
+TEST(test_degenerate_cell)
 {
-    (void)state;
     double line[3][3] = {{1, 0.5, 0.25}, {2, 1, 0.5}, {-1, -0.5, -0.25}}, point[3][3] = {{0}};
     SmVoxels voxels = block(0);
     Case c = make_case(voxels, sphere(&voxels));
@@ -190,9 +179,8 @@ static void test_degenerate_cell(void **state)
 }
 
 /* Vertices on and beyond the box's sides, in the notch, and far away go to the nearest material. */
-static void test_outside(void **state)
+TEST(test_outside)
 {
-    (void)state;
     const double place[][3] = {{-1e-9, 1, 1}, {2, 1, 1},      {1, 2 + 1e-9, 2 + 1e-9},
                                {0, 0, 0},     {1.75, 1.5, 1}, {1.75, 1.5 + 1e-9, 1},
                                {1.9, 1.6, 1}, {-20, 1, 1},    {1, 1, 30}};
@@ -212,9 +200,8 @@ static void test_outside(void **state)
     free_case(&c);
 }
 
-static void test_thread_counts(void **state)
+TEST(test_thread_counts)
 {
-    (void)state;
     double f[3][3] = {{1.5, 0.4, -0.2}, {0.1, 0.7, 0.9}, {-0.6, 0.3, 1.1}};
     SmVoxels voxels = block(0);
     Case c = make_case(voxels, sphere(&voxels));
@@ -398,9 +385,8 @@ static void assert_pieces(const Sliced *s, long pieces)
 }
 
 /* Halves that move apart stay whole and rigid; a second cut in the same place does no harm. */
-static void test_cut_halves(void **state)
+TEST(test_cut_halves)
 {
-    (void)state;
     const double normals[][3] = {{1, 0, 0}, {1, 0.3, -0.2}, {1, -2, 0.7}};
     for (int k = 0; k < 3; k++) {
         const double at[3] = {0.0217 + 0.03 * k, 0.05, 0.001};
@@ -416,9 +402,8 @@ static void test_cut_halves(void **state)
 }
 
 /* A cut through a part, one beside the beam, and none: all that sees its cell stays as it was. */
-static void test_cut_untouched(void **state)
+TEST(test_cut_untouched)
 {
-    (void)state;
     const double places[][3] = {{0.1, 0.1, 0}, {0.1, 0.9, 0}}, across[3] = {1, 0.1, 0};
     for (int k = 0; k < 2; k++) {
         Sliced s;
@@ -453,9 +438,8 @@ static void test_cut_untouched(void **state)
 
 /* A slice about one layer of particles turns with it. Cut along the other axes too, into rows of
  * particles and single ones, pieces follow wherever these are carried. */
-static void test_cut_thin(void **state)
+TEST(test_cut_thin)
 {
-    (void)state;
     Sliced s;
     start_sliced(&s);
     const double *origin = s.c.voxels.origin, cell = s.c.voxels.cell;
@@ -472,19 +456,4 @@ static void test_cut_thin(void **state)
         assert_true(s.c.embedding.flat_count > 0);
     }
     free_sliced(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rest),
-        cmocka_unit_test(test_affine),
-        cmocka_unit_test(test_degenerate_cell),
-        cmocka_unit_test(test_outside),
-        cmocka_unit_test(test_thread_counts),
-        cmocka_unit_test(test_cut_halves),
-        cmocka_unit_test(test_cut_untouched),
-        cmocka_unit_test(test_cut_thin),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,24 +1,15 @@
 #include "../stage.h"
 #include "../system/child.h"
 #include "../system/confine.h"
+#include "../test_frame.h"
 #include "import.h"
 #include "off.h"
 #include "reply.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -66,9 +57,8 @@ static int open_descriptors(void)
 static const char tetrahedron_off[] = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
                                       "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 
-static void test_formats(void **state)
+TEST(test_formats)
 {
-    (void)state;
     static const char ply[] =
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\n"
         "property double z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
@@ -86,9 +76,8 @@ static void test_formats(void **state)
 }
 
 /* An L-shaped prism of n-gons, one with corners on its straight sides. */
-static void test_polygons(void **state)
+TEST(test_polygons)
 {
-    (void)state;
     static const char obj[] =
         "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n"
         "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\nv 1 0 0\nv 1 0 1\n"
@@ -101,9 +90,8 @@ static void test_polygons(void **state)
     assert_near(info.volume, 3, 1e-6);
 }
 
-static void test_far_from_origin(void **state)
+TEST(test_far_from_origin)
 {
-    (void)state;
     static const char *const text[][2] = {
         {"far.obj", "v %1$.4f %2$.4f 0\nv %3$.4f %2$.4f 0 0.5 0.5 0.5\nv %1$.4f %4$.4f 0\n"
                     "v %1$.4f %2$.4f 0.01\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"},
@@ -127,9 +115,8 @@ static void test_far_from_origin(void **state)
 }
 
 /* Two nodes use one mesh; one moves it, the other mirrors it. */
-static void test_node_transforms(void **state)
+TEST(test_node_transforms)
 {
-    (void)state;
     char text[4096];
     static const char geometry[] =
         "<library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"pa\" "
@@ -158,9 +145,8 @@ static void test_node_transforms(void **state)
     assert_near(info.high[1], 6, 1e-6);
 }
 
-static void test_unusable_files(void **state)
+TEST(test_unusable_files)
 {
-    (void)state;
     expect_error(path_in("missing.obj"), NULL, "no such file");
     expect_error(folder, NULL, "is a directory");
     expect_error("/dev/null", NULL, "is a pipe or device");
@@ -186,9 +172,8 @@ static void test_unusable_files(void **state)
 }
 
 /* Truncated at every length, a mesh is read or refused; nothing crashes through. */
-static void test_truncated(void **state)
+TEST(test_truncated)
 {
-    (void)state;
     for (size_t length = 1; length < sizeof tetrahedron_off; length += 6) {
         const char *path = write_bytes("cut.off", tetrahedron_off, length);
         SmMesh mesh;
@@ -221,9 +206,8 @@ static void write_gltf(const char *name, const char *uri, const char *buffer, un
     write_text(name, text);
 }
 
-static void no_file_beyond_the_folder_is_read(void **state)
+TEST(no_file_beyond_the_folder_is_read)
 {
-    (void)state;
     char inner[300], outer[320];
     snprintf(inner, sizeof inner, "%s", path_in("inner"));
     assert_int_equal(mkdir(inner, 0700), 0);
@@ -246,9 +230,8 @@ static void no_file_beyond_the_folder_is_read(void **state)
 }
 
 /* A mesh of 100,000 triangles, used 100 times: 10 million in a file of a megabyte. */
-static void parts_used_again_and_again_are_counted_first(void **state)
+TEST(parts_used_again_and_again_are_counted_first)
 {
-    (void)state;
     FILE *file = fopen(path_in("many.dae"), "w");
     fputs("<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
           "version=\"1.4.1\"><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
@@ -272,9 +255,8 @@ static void parts_used_again_and_again_are_counted_first(void **state)
     expect_error(path_in("many.dae"), NULL, "it uses its parts so often");
 }
 
-static void numbers_that_the_importer_alters_are_refused(void **state)
+TEST(numbers_that_the_importer_alters_are_refused)
 {
-    (void)state;
     static const char start[] =
         "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n";
     static const char *const last[] = {"3 0 3 4\n", "3 0 3 -1\n", "3 0 3 4294967298\n", ""};
@@ -317,9 +299,8 @@ static int body_confined(void *argument, int reply)
     return !sm_child_write(reply, found, sizeof found);
 }
 
-static void a_confined_child_can_only_read(void **state)
+TEST(a_confined_child_can_only_read)
 {
-    (void)state;
     write_text("inside", "text");
     SmChildLimits limits = {20, 256};
     SmChildResult result = sm_child_run(body_confined, folder, &limits);
@@ -400,9 +381,8 @@ static SmChildResult run_child(SmChildBody body, void *argument, double seconds)
     return result;
 }
 
-static void test_child_ends(void **state)
+TEST(test_child_ends)
 {
-    (void)state;
     char word[] = "words";
     SmChildResult result = run_child(body_echo, word, 20);
     assert_int_equal(result.end, SM_CHILD_REPLIED);
@@ -424,9 +404,8 @@ static void test_child_ends(void **state)
     free(result.reply);
 }
 
-static void test_child_limits(void **state)
+TEST(test_child_limits)
 {
-    (void)state;
     SmChildResult result = run_child(body_sleep, NULL, 0.2);
     assert_int_equal(result.end, SM_CHILD_TOO_LONG);
     free(result.reply);
@@ -438,18 +417,16 @@ static void test_child_limits(void **state)
     free(result.reply);
 }
 
-static void test_child_without_memory(void **state)
+TEST(test_child_without_memory)
 {
-    (void)state;
     if (!SM_CHILD_LIMITS_MEMORY) skip();
     SmChildResult result = run_child(body_hungry, NULL, 20);
     assert_int_equal(result.end, SM_CHILD_TOO_LARGE);
     free(result.reply);
 }
 
-static void test_import_limits(void **state)
+TEST(test_import_limits)
 {
-    (void)state;
     FILE *file = fopen(path_in("long.obj"), "w");
     assert_non_null(file);
     for (int i = 0; i < 200000; i++) fprintf(file, "v %d 0 1\n", i);
@@ -460,9 +437,8 @@ static void test_import_limits(void **state)
         expect_error(path_in("long.obj"), &(SmImportLimits){0, 2}, "more than 2 MB");
 }
 
-static void test_parent_ignores_children(void **state)
+TEST(test_parent_ignores_children)
 {
-    (void)state;
     void (*old)(int) = signal(SIGCHLD, SIG_IGN);
     SmMeshInfo info = import_info(write_text("a.off", tetrahedron_off));
     signal(SIGCHLD, old);
@@ -470,9 +446,8 @@ static void test_parent_ignores_children(void **state)
 }
 
 /* Children forked by many threads at once neither hold up nor disturb one another. */
-static void test_parallel_imports(void **state)
+TEST(test_parallel_imports)
 {
-    (void)state;
     const char *path = write_text("a.off", tetrahedron_off);
     int before = open_descriptors(), good = 0;
 #pragma omp parallel for num_threads(4) reduction(+ : good)
@@ -486,9 +461,8 @@ static void test_parallel_imports(void **state)
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
 }
 
-static void test_broken_replies(void **state)
+TEST(test_broken_replies)
 {
-    (void)state;
     unsigned char reply[sizeof(SmReplyHeader) + 64] = {0};
     SmReplyHeader header = {.magic = SM_REPLY_MAGIC, .vertex_count = 1, .triangle_count = 1};
     SmReplyHeader bad[6];
@@ -515,9 +489,8 @@ static void test_broken_replies(void **state)
                         "f: a triangle names a vertex that is not there; export the mesh again");
 }
 
-static void test_shared_meshes(void **state)
+TEST(test_shared_meshes)
 {
-    (void)state;
     static const struct {
         const char *name;
         long triangles, components, open, nonmanifold, flipped, duplicates;
@@ -546,29 +519,4 @@ static void test_shared_meshes(void **state)
         assert_int_equal(info.flipped_edges, expected[i].flipped);
         assert_int_equal(info.duplicates, expected[i].duplicates);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_polygons),
-        cmocka_unit_test(test_far_from_origin),
-        cmocka_unit_test(test_node_transforms),
-        cmocka_unit_test(test_unusable_files),
-        cmocka_unit_test(test_truncated),
-        cmocka_unit_test(no_file_beyond_the_folder_is_read),
-        cmocka_unit_test(parts_used_again_and_again_are_counted_first),
-        cmocka_unit_test(numbers_that_the_importer_alters_are_refused),
-        cmocka_unit_test(a_confined_child_can_only_read),
-        cmocka_unit_test(test_child_ends),
-        cmocka_unit_test(test_child_limits),
-        cmocka_unit_test(test_child_without_memory),
-        cmocka_unit_test(test_import_limits),
-        cmocka_unit_test(test_parent_ignores_children),
-        cmocka_unit_test(test_parallel_imports),
-        cmocka_unit_test(test_broken_replies),
-        cmocka_unit_test(test_shared_meshes),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

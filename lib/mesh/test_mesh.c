@@ -1,19 +1,10 @@
 #include "mesh.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "../test_folder.h"
+#include "../test_frame.h"
 
 /* cmocka's assert_float_equal() compares in single precision. */
 static void assert_near(double value, double expected, double tolerance)
@@ -52,9 +43,8 @@ static void add_triangle(SmMesh *mesh, int a, int b, int c)
     memcpy(mesh->triangle[count - 1], (int[3]){a, b, c}, sizeof *mesh->triangle);
 }
 
-static void test_info_of_cube(void **state)
+TEST(test_info_of_cube)
 {
-    (void)state;
     SmMesh mesh = cube();
     SmMeshInfo info = sm_mesh_info(&mesh);
     assert_int_equal(info.triangles, 12);
@@ -68,9 +58,8 @@ static void test_info_of_cube(void **state)
     assert_null(mesh.position);
 }
 
-static void test_info_of_defects(void **state)
+TEST(test_info_of_defects)
 {
-    (void)state;
     SmMesh mesh = cube();
     mesh.triangle_count = 11;
     SmMeshInfo info = sm_mesh_info(&mesh);
@@ -94,9 +83,8 @@ static void test_info_of_defects(void **state)
 }
 
 /* Of what is open, or turned two ways, the sum over triangles depends on where it lies. */
-static void test_volume_only_where_triangles_bound_one(void **state)
+TEST(test_volume_only_where_triangles_bound_one)
 {
-    (void)state;
     SmMesh mesh = cube();
     mesh.triangle_count = 11;
     assert_true(isnan(sm_mesh_info(&mesh).volume));
@@ -115,9 +103,8 @@ static void test_volume_only_where_triangles_bound_one(void **state)
     sm_mesh_free(&mesh);
 }
 
-static void test_merge_drops(void **state)
+TEST(test_merge_drops)
 {
-    (void)state;
     SmMesh mesh = loose_cube();
     add_triangle(&mesh, 0, 1, 1);
     mesh.position = sm_realloc(mesh.position, 38, sizeof *mesh.position);
@@ -140,9 +127,8 @@ static void test_merge_drops(void **state)
 }
 
 /* Every corner rounded its own way: merged when that closes the mesh, else not. */
-static void test_merge_closes_rounding_gaps(void **state)
+TEST(test_merge_closes_rounding_gaps)
 {
-    (void)state;
     SmMesh mesh = loose_cube();
     for (int v = 0; v < 36; v++) mesh.position[v][v % 3] += 1e-9 * (v % 7);
     sm_mesh_merge(&mesh);
@@ -158,9 +144,8 @@ static void test_merge_closes_rounding_gaps(void **state)
     sm_mesh_free(&mesh);
 }
 
-static void test_components_and_degenerate(void **state)
+TEST(test_components_and_degenerate)
 {
-    (void)state;
     SmMesh mesh = sm_mesh_new(9, 3);
     for (int v = 0; v < 9; v++) {
         mesh.position[v][0] = 10 * (v / 3) + v % 3;
@@ -174,9 +159,8 @@ static void test_components_and_degenerate(void **state)
     sm_mesh_free(&mesh);
 }
 
-static void test_volume_far_away(void **state)
+TEST(test_volume_far_away)
 {
-    (void)state;
     SmMesh mesh = cube();
     for (int v = 0; v < 8; v++)
         for (int a = 0; a < 3; a++) mesh.position[v][a] = 5e6 + 0.5 - mesh.position[v][a];
@@ -186,9 +170,8 @@ static void test_volume_far_away(void **state)
 }
 
 /* A fan of 20,000 triangles around one vertex must not cost its square. */
-static void test_fan_is_cheap(void **state)
+TEST(test_fan_is_cheap)
 {
-    (void)state;
     enum { N = 20000 };
     SmMesh mesh = sm_mesh_new(N + 1, N);
     for (int i = 0; i < N; i++) {
@@ -211,9 +194,8 @@ static void expect_refusal(SmMesh *mesh, const char *part)
     assert_non_null(strstr(error.text, part));
 }
 
-static void test_check(void **state)
+TEST(test_check)
 {
-    (void)state;
     SmMesh mesh = cube();
     assert_int_equal(sm_mesh_check(&mesh, "some.obj", NULL), SM_OK);
     mesh.triangle_count = 0;
@@ -236,9 +218,8 @@ static void test_check(void **state)
     sm_mesh_free(&mesh);
 }
 
-static void test_print_obj(void **state)
+TEST(test_print_obj)
 {
-    (void)state;
     SmMesh mesh = cube();
     mesh.position[0][0] = 1.0 / 3;
     FILE *file = tmpfile();
@@ -258,21 +239,4 @@ static void test_print_obj(void **state)
     assert_int_equal(fscanf(file, " %lf", &p[0]), EOF);
     fclose(file);
     sm_mesh_free(&mesh);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_info_of_cube),
-        cmocka_unit_test(test_info_of_defects),
-        cmocka_unit_test(test_merge_drops),
-        cmocka_unit_test(test_merge_closes_rounding_gaps),
-        cmocka_unit_test(test_components_and_degenerate),
-        cmocka_unit_test(test_volume_far_away),
-        cmocka_unit_test(test_volume_only_where_triangles_bound_one),
-        cmocka_unit_test(test_fan_is_cheap),
-        cmocka_unit_test(test_check),
-        cmocka_unit_test(test_print_obj),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,17 +1,7 @@
 /* PLY files with their faces first: reordered they say the same, and what is not one is left. */
+#include "../test_frame.h"
 #include "import.h"
 #include "ply.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "../test_folder.h"
 
@@ -39,9 +29,8 @@ static void assert_tetrahedron(const char *bytes, size_t size, double low)
 }
 
 /* Without a last newline, which then ends up in the middle; near the origin and far from it. */
-static void test_ascii(void **state)
+TEST(test_ascii)
 {
-    (void)state;
     static const char faces[] = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", odd[] = "7 2 5 6\n8 0\n";
     static const char *const vertices[2] = {
         "0 0 0\n1 0 0\n0 1 0\n0 0 1",
@@ -64,9 +53,8 @@ static void test_ascii(void **state)
 }
 
 /* Two to a line, and one over two lines: whatever the lines, the words say what is meant. */
-static void test_lines_do_not_matter(void **state)
+TEST(test_lines_do_not_matter)
 {
-    (void)state;
     static const char start[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
                                 "property float y\nproperty float z\nelement face 4\n"
                                 "property list uchar int vertex_indices\nend_header\n";
@@ -103,9 +91,8 @@ static size_t make_binary(bool big, char bytes[512])
     return size + 48;
 }
 
-static void test_binary(void **state)
+TEST(test_binary)
 {
-    (void)state;
     for (int big = 0; big < 2; big++) {
         char bytes[512];
         assert_tetrahedron(bytes, make_binary(big, bytes), 0);
@@ -113,9 +100,8 @@ static void test_binary(void **state)
 }
 
 /* Cut off anywhere, or with a header that promises too much: no copy and no crash. */
-static void test_what_is_left_alone(void **state)
+TEST(test_what_is_left_alone)
 {
-    (void)state;
     char bytes[512];
     size_t size = make_binary(false, bytes), new_size;
     for (size_t length = 0; length < size; length++) {
@@ -140,15 +126,4 @@ static void test_what_is_left_alone(void **state)
         "property int x\nend_header\n1\n1\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         assert_null(sm_ply_ordered(texts[i], strlen(texts[i]), &new_size));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ascii),
-        cmocka_unit_test(test_lines_do_not_matter),
-        cmocka_unit_test(test_binary),
-        cmocka_unit_test(test_what_is_left_alone),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

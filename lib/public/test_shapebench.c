@@ -1,15 +1,7 @@
 /* The public face, against what is behind it, and against misuse. */
 #include "shapebench.h"
 
-#include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #include "../../fastlsm/fastlsm.h"
 #include "../../octree/change/structure.h"
@@ -19,6 +11,7 @@
 #include "../mesh/import.h"
 #include "../shapes/shape.h"
 #include "../test_folder.h"
+#include "../test_frame.h"
 #include "../voxel/weigh.h"
 
 #define OK(call) assert_int_equal(call, SB_OK)
@@ -116,9 +109,8 @@ static double *read_field(sb_body *body, int field)
     return values;
 }
 
-static void the_library_says_what_it_is(void **state)
+TEST(the_library_says_what_it_is)
 {
-    (void)state;
     char text[32];
     snprintf(text, sizeof text, "%d.%d.%d", sb_version() / 10000, sb_version() / 100 % 100,
              sb_version() % 100);
@@ -158,9 +150,8 @@ static void compare_meshes(const sb_mesh *mesh, const SmMesh *inner)
     free(triangle);
 }
 
-static void meshes_are_those_inside(void **state)
+TEST(meshes_are_those_inside)
 {
-    (void)state;
     const char *path = path_in("penguin.obj");
     FILE *stream = fopen(path, "w");
     assert_non_null(stream);
@@ -182,9 +173,8 @@ static void meshes_are_those_inside(void **state)
     sb_mesh_free(mesh);
 }
 
-static void voxels_are_those_inside(void **state)
+TEST(voxels_are_those_inside)
 {
-    (void)state;
     SmMesh mesh;
     SmVoxels inner;
     sm_shape_mesh("penguin", &mesh, NULL);
@@ -350,17 +340,15 @@ static void compare_motion(int engine, int precision)
     free(normal);
 }
 
-static void bodies_move_as_their_engines_do(void **state)
+TEST(bodies_move_as_their_engines_do)
 {
-    (void)state;
     for (int engine = SB_FASTLSM; engine <= SB_OCTREE; engine++)
         for (int precision = SB_SINGLE; precision <= SB_DOUBLE; precision++)
             compare_motion(engine, precision);
 }
 
-static void what_is_written_is_read(void **state)
+TEST(what_is_written_is_read)
 {
-    (void)state;
     sb_voxels *voxels = block_of(3, 4, 5);
     sb_body_params params = params_of(SB_OCTREE);
     sb_octree_params octree;
@@ -477,9 +465,8 @@ static void cut_through(int engine, int by_blade)
     sb_mesh_free(mesh);
 }
 
-static void a_cut_takes_a_body_apart(void **state)
+TEST(a_cut_takes_a_body_apart)
 {
-    (void)state;
     for (int engine = SB_FASTLSM; engine <= SB_OCTREE; engine++)
         for (int by_blade = 0; by_blade < 2; by_blade++) cut_through(engine, by_blade);
 }
@@ -502,9 +489,8 @@ static void check_held(sb_body *body, double y)
     free(x);
 }
 
-static void details_come_and_go_and_handles_follow(void **state)
+TEST(details_come_and_go_and_handles_follow)
 {
-    (void)state;
     sb_voxels *voxels = block_of(8, 8, 8);
     sb_body_params params = params_of(SB_OCTREE);
     sb_octree_params octree;
@@ -553,9 +539,8 @@ static void details_come_and_go_and_handles_follow(void **state)
 
 /* ---- collisions */
 
-static void instances_collide_as_in_their_engine(void **state)
+TEST(instances_collide_as_in_their_engine)
 {
-    (void)state;
     static const double pose[2][12] = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0},
                                        {1, 0, 0, 0.11, 0, 1, 0, 0.35, 0, 0, 1, 0.07}};
     SmVoxels inner;
@@ -609,9 +594,8 @@ static void instances_collide_as_in_their_engine(void **state)
 
 /* ---- versions, threads, misuse */
 
-static void structs_of_other_versions_are_understood(void **state)
+TEST(structs_of_other_versions_are_understood)
 {
-    (void)state;
     struct {
         sb_body_params known;
         double new_member;
@@ -656,9 +640,8 @@ static void *fall(void *of)
     return x;
 }
 
-static void bodies_move_in_threads_of_their_own(void **state)
+TEST(bodies_move_in_threads_of_their_own)
 {
-    (void)state;
     sb_voxels *voxels = block_of(9, 9, 9);
     double *alone = fall(voxels);
     pthread_t thread[3];
@@ -673,9 +656,8 @@ static void bodies_move_in_threads_of_their_own(void **state)
     sb_voxels_free(voxels);
 }
 
-static void misuse_of_meshes_and_voxels_is_refused(void **state)
+TEST(misuse_of_meshes_and_voxels_is_refused)
 {
-    (void)state;
     sb_error error;
     sb_mesh *mesh = (sb_mesh *)&error;
     sb_voxels *voxels;
@@ -719,9 +701,8 @@ static void misuse_of_meshes_and_voxels_is_refused(void **state)
     sb_mesh_free(mesh);
 }
 
-static void parameters_out_of_range_are_refused(void **state)
+TEST(parameters_out_of_range_are_refused)
 {
-    (void)state;
     sb_error error;
     sb_body *body = NULL;
     sb_voxels *voxels = block_of(2, 2, 2);
@@ -769,9 +750,8 @@ static void parameters_out_of_range_are_refused(void **state)
     sb_voxels_free(voxels);
 }
 
-static void misuse_of_a_body_is_refused(void **state)
+TEST(misuse_of_a_body_is_refused)
 {
-    (void)state;
     static const double nan3[3] = {NAN, 0, 0}, mirror[12] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     static const double far_off[9] = {0, 0, 0, 1e6, 0, 0, 0, 1e6, 0};
     static const double close_by[9] = {0, 0, 0, 0.1, 0, 0, 0, 0.1, 0};
@@ -854,24 +834,4 @@ static void misuse_of_a_body_is_refused(void **state)
     sb_voxels_free(voxels);
     free(before);
     free(after);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_library_says_what_it_is),
-        cmocka_unit_test(meshes_are_those_inside),
-        cmocka_unit_test(voxels_are_those_inside),
-        cmocka_unit_test(bodies_move_as_their_engines_do),
-        cmocka_unit_test(what_is_written_is_read),
-        cmocka_unit_test(a_cut_takes_a_body_apart),
-        cmocka_unit_test(details_come_and_go_and_handles_follow),
-        cmocka_unit_test(instances_collide_as_in_their_engine),
-        cmocka_unit_test(structs_of_other_versions_are_understood),
-        cmocka_unit_test(bodies_move_in_threads_of_their_own),
-        cmocka_unit_test(misuse_of_meshes_and_voxels_is_refused),
-        cmocka_unit_test(parameters_out_of_range_are_refused),
-        cmocka_unit_test(misuse_of_a_body_is_refused),
-    };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

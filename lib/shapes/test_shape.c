@@ -1,18 +1,9 @@
 /* Procedural shapes: closed, of one piece, of the wanted count, recognisable where that can be
  * counted (fingers), and the same every time; the stages beneath them on solids with known sizes.
  */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../system/hash.h"
 #include "../test_fields.h"
+#include "../test_frame.h"
 #include "../voxel/voxel.h"
 #include "decimate.h"
 #include "polygonise.h"
@@ -47,17 +38,15 @@ static long euler(const SmMesh *mesh) /* of a closed mesh: 3 triangles = 2 edges
     return mesh->vertex_count - mesh->triangle_count / 2;
 }
 
-static void test_the_papers_triangle_counts(void **state)
+TEST(test_the_papers_triangle_counts)
 {
-    (void)state;
     assert_int_equal(sm_shape_find("penguin")->triangles, 9874);
     assert_int_equal(sm_shape_find("statue")->triangles, 200000);
     assert_int_equal(sm_shape_find("infant")->triangles, 16844);
 }
 
-static void test_sizes(void **state)
+TEST(test_sizes)
 {
-    (void)state;
     if (!TEST_FIGURES) skip();
     static const struct {
         const char *name;
@@ -109,9 +98,8 @@ static void assert_sound(const SmShape *shape, const SmMesh *mesh)
 
 /* The same bits on every machine and from every compiler: else a result from elsewhere is one of
  * another body. Where a shape is changed on purpose, its hashes are, too. */
-static void test_shapes_are_closed_and_have_the_same_bits_everywhere(void **state)
+TEST(test_shapes_are_closed_and_have_the_same_bits_everywhere)
 {
-    (void)state;
     static const struct {
         const char *name;
         unsigned long long mesh, lattice;
@@ -144,9 +132,8 @@ static void test_shapes_are_closed_and_have_the_same_bits_everywhere(void **stat
     }
 }
 
-static void test_sines_are_exact_to_their_last_bit(void **state)
+TEST(test_sines_are_exact_to_their_last_bit)
 {
-    (void)state;
     for (int n = -3000; n <= 3000; n++) {
         double angle = n < 0 ? 0.0021 * n : 333.3 * n;
         assert_float_equal(sm_sin(angle), sin(angle), 2.3e-16);
@@ -176,9 +163,8 @@ static int pieces_above(const SmMesh *mesh, double y)
     return pieces;
 }
 
-static void test_fingers_are_separate(void **state)
+TEST(test_fingers_are_separate)
 {
-    (void)state;
     SmMesh hand = make("hand");
     SmMeshInfo info = sm_mesh_info(&hand);
     double top = info.high[1];
@@ -189,9 +175,8 @@ static void test_fingers_are_separate(void **state)
     sm_mesh_free(&hand);
 }
 
-static void test_unknown_name(void **state)
+TEST(test_unknown_name)
 {
-    (void)state;
     SmMesh mesh;
     SmError error;
     assert_null(sm_shape_find("teapot"));
@@ -212,9 +197,8 @@ static SmMesh ball_mesh(double cell)
     return mesh;
 }
 
-static void test_polygonised_ball(void **state)
+TEST(test_polygonised_ball)
 {
-    (void)state;
     SmMesh mesh = ball_mesh(0.1);
     SmMeshInfo info = sm_mesh_info(&mesh);
     assert_true(info.watertight);
@@ -228,9 +212,8 @@ static void test_polygonised_ball(void **state)
     sm_mesh_free(&mesh);
 }
 
-static void test_decimation_keeps_shape_and_topology(void **state)
+TEST(test_decimation_keeps_shape_and_topology)
 {
-    (void)state;
     SmMesh mesh = ball_mesh(0.05);
     sm_decimate(&mesh, 1000);
     assert_int_equal(mesh.triangle_count, 1000);
@@ -244,9 +227,8 @@ static void test_decimation_keeps_shape_and_topology(void **state)
 }
 
 /* The distance functions against a search over the surface, in all sorts of directions. */
-static void test_ellipsoid_is_a_distance(void **state)
+TEST(test_ellipsoid_is_a_distance)
 {
-    (void)state;
     SmImplicit solid = {0};
     double r[3] = {0.5, 0.04, 0.2};
     SmPrimitive egg = sm_primitive(SM_ELLIPSOID, 0, (double[]){0, 0, 0}, r);
@@ -269,9 +251,8 @@ static void test_ellipsoid_is_a_distance(void **state)
     sm_implicit_free(&solid);
 }
 
-static void test_pruning_changes_no_bit(void **state)
+TEST(test_pruning_changes_no_bit)
 {
-    (void)state;
     SmImplicit solid = {0};
     int active[60], kept[60], kept_count;
     for (int i = 0; i < 60; i++) {
@@ -303,21 +284,4 @@ static void test_pruning_changes_no_bit(void **state)
     }
     assert_true(saved > 200 * 30); /* most do not matter in a small ball */
     sm_implicit_free(&solid);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_papers_triangle_counts),
-        cmocka_unit_test(test_sizes),
-        cmocka_unit_test(test_shapes_are_closed_and_have_the_same_bits_everywhere),
-        cmocka_unit_test(test_sines_are_exact_to_their_last_bit),
-        cmocka_unit_test(test_fingers_are_separate),
-        cmocka_unit_test(test_unknown_name),
-        cmocka_unit_test(test_polygonised_ball),
-        cmocka_unit_test(test_decimation_keeps_shape_and_topology),
-        cmocka_unit_test(test_ellipsoid_is_a_distance),
-        cmocka_unit_test(test_pruning_changes_no_bit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

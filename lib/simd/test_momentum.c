@@ -1,19 +1,10 @@
 /* Free bodies of every engine keep their place, their linear and their angular momentum. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../fastlsm/fastlsm.h"
-#include "../../fastlsm/lattice/random_bodies.h"
 #include "../../octree/engine.h"
 #include "../test_fields.h"
+#include "../test_frame.h"
 #include "../vector.h"
+#include "../voxel/test_bodies.h"
 
 static const SmEngineType *const types[4] = {&fastlsm_engine_f32, &fastlsm_engine_f64,
                                              &octree_engine_f32, &octree_engine_f64};
@@ -140,9 +131,8 @@ static double difference(const double a[3], const double b[3])
     return most;
 }
 
-static void at_rest_in_empty_space_a_body_stays_where_it_is(void **state)
+TEST(at_rest_in_empty_space_a_body_stays_where_it_is)
 {
-    (void)state;
     unsigned seed = 16;
     for (int trial = 0; trial < 16; trial++) {
         Free f;
@@ -209,9 +199,8 @@ static void check_piece(const Free *f, const Sums *expected, int piece, double m
              f->type->name, f->type->precision, now.particles, f->n, linear, angular, off);
 }
 
-static void a_thrown_spinning_bending_body_keeps_its_momenta(void **state)
+TEST(a_thrown_spinning_bending_body_keeps_its_momenta)
 {
-    (void)state;
     unsigned seed = 61;
     const int steps = 600;
     for (int trial = 0; trial < 16; trial++) {
@@ -291,9 +280,8 @@ static Sums *disturb(unsigned *seed, Free *f, int kind)
     return sums;
 }
 
-static void what_acts_from_outside_between_steps_is_kept(void **state)
+TEST(what_acts_from_outside_between_steps_is_kept)
 {
-    (void)state;
     unsigned seed = 23;
     for (int trial = 0; trial < 16; trial++) {
         Free f;
@@ -312,14 +300,4 @@ static void what_acts_from_outside_between_steps_is_kept(void **state)
         }
         free_free(&f);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(at_rest_in_empty_space_a_body_stays_where_it_is),
-        cmocka_unit_test(a_thrown_spinning_bending_body_keeps_its_momenta),
-        cmocka_unit_test(what_acts_from_outside_between_steps_is_kept),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

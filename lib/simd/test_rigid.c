@@ -1,17 +1,10 @@
 /* Damping where single precision does not resolve it: on long thin bodies the moments about the
  * body's origin drown the regions' own, and still damping may only take energy. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
 #include "../../fastlsm/fastlsm.h"
 #include "../../octree/engine.h"
 #include "../test_fields.h"
+#include "../test_frame.h"
+#include "../test_random.h"
 
 typedef struct {
     const SmEngineType *type;
@@ -22,7 +15,7 @@ typedef struct {
 
 static double noise(unsigned *seed)
 {
-    return 2 * (rand_r(seed) / (double)RAND_MAX) - 1;
+    return random_between(seed, -1, 1);
 }
 
 static double kinetic(const Stick *s)
@@ -114,30 +107,17 @@ static void takes_energy(const SmEngineType *type, SmLayout layout, double dampi
     }
 }
 
-static void octree_damping_takes_energy(void **state)
+TEST(octree_damping_takes_energy)
 {
-    (void)state;
     takes_energy(&octree_engine_f32, SM_LAYOUT_AUTO, 0.3);
 }
 
-static void list_damping_takes_energy(void **state)
+TEST(list_damping_takes_energy)
 {
-    (void)state;
     takes_energy(&fastlsm_engine_f32, SM_LAYOUT_LISTS, 0.3);
 }
 
-static void block_damping_takes_energy(void **state)
+TEST(block_damping_takes_energy)
 {
-    (void)state;
     takes_energy(&fastlsm_engine_f32, SM_LAYOUT_BLOCKS, 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(octree_damping_takes_energy),
-        cmocka_unit_test(list_damping_takes_energy),
-        cmocka_unit_test(block_damping_takes_energy),
-    };
-    return cmocka_run_group_tests_name("rigid", tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* Cells, particles and their numbers. */
 #include "voxel.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
+#include "../test_frame.h"
+#include "../test_random.h"
 
-#include <cmocka.h>
-
-#include "../test_draw.h"
+static unsigned seed = 1;
 
 static bool is_vertex(const SmVoxels *v, int i, int j, int k)
 {
@@ -40,40 +36,29 @@ static void check_particles(SmVoxels *v)
     free(coordinate);
 }
 
-static void random_cells_have_the_particles_of_a_plain_walk(void **state)
+TEST(random_cells_have_the_particles_of_a_plain_walk)
 {
-    (void)state;
     const int widths[] = {1, 2, 63, 64, 65, 127, 128, 129};
     for (int trial = 0; trial < 160; trial++) {
         SmVoxels v;
-        int nx = widths[trial % 8], ny = 1 + (int)(draw() % 5), nz = 1 + (int)(draw() % 5);
+        int nx = widths[trial % 8], ny = 1 + random_int(&seed, 5), nz = 1 + random_int(&seed, 5);
         sm_voxels_init(&v, nx, ny, nz, 0.5);
-        uint32_t sparse = 1 + draw() % 8;
+        int sparse = 1 + random_int(&seed, 8);
         for (int k = 0; k < nz; k++)
             for (int j = 0; j < ny; j++)
                 for (int i = 0; i < nx; i++)
-                    if (draw() % sparse == 0) sm_voxel_set(&v, i, j, k);
+                    if (random_int(&seed, sparse) == 0) sm_voxel_set(&v, i, j, k);
         check_particles(&v);
         sm_voxels_free(&v);
         assert_null(v.bits);
     }
 }
 
-static void an_empty_lattice_has_no_particles(void **state)
+TEST(an_empty_lattice_has_no_particles)
 {
-    (void)state;
     SmVoxels v;
     sm_voxels_init(&v, 64, 3, 2, 1);
     check_particles(&v);
     assert_int_equal(v.particle_count, 0);
     sm_voxels_free(&v);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_cells_have_the_particles_of_a_plain_walk),
-        cmocka_unit_test(an_empty_lattice_has_no_particles),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

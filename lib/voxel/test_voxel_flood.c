@@ -1,14 +1,10 @@
 /* The flood fill by words, against one of single cells. */
 #include "voxel_flood.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
+#include "../test_frame.h"
+#include "../test_random.h"
 
-#include <cmocka.h>
-
-#include "../test_draw.h"
+static unsigned seed = 1;
 
 /* One cell at a time: what a flood fill is. */
 static void plain_flood(const SmVoxels *v, SmVoxels *result)
@@ -37,20 +33,19 @@ static void plain_flood(const SmVoxels *v, SmVoxels *result)
     free(stack);
 }
 
-static void flood_fills_like_a_flood_of_single_cells(void **state)
+TEST(flood_fills_like_a_flood_of_single_cells)
 {
-    (void)state;
     const int widths[] = {1, 3, 20, 63, 64, 65, 128, 130};
     for (int trial = 0; trial < 240; trial++) {
-        int nx = widths[trial % 8], ny = 1 + (int)(draw() % 14), nz = 1 + (int)(draw() % 14);
+        int nx = widths[trial % 8], ny = 1 + random_int(&seed, 14), nz = 1 + random_int(&seed, 14);
         SmVoxels v, plain;
         sm_voxels_init(&v, nx, ny, nz, 1);
         sm_voxels_init(&plain, nx, ny, nz, 1);
-        uint32_t percent = 20 + draw() % 60;
+        int percent = 20 + random_int(&seed, 60);
         for (int k = 0; k < nz; k++)
             for (int j = 0; j < ny; j++)
                 for (int i = 0; i < nx; i++)
-                    if (draw() % 100 < percent) sm_voxel_set(&v, i, j, k);
+                    if (random_int(&seed, 100) < percent) sm_voxel_set(&v, i, j, k);
         plain_flood(&v, &plain);
         sm_voxel_flood(&v);
         size_t words = (size_t)v.words * (size_t)ny * (size_t)nz;
@@ -58,12 +53,4 @@ static void flood_fills_like_a_flood_of_single_cells(void **state)
         sm_voxels_free(&v);
         sm_voxels_free(&plain);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(flood_fills_like_a_flood_of_single_cells),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,10 @@
 /* The cells that triangles touch, against the separating axis test of every cell. */
 #include "voxel_surface.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
+#include "../test_frame.h"
+#include "../test_random.h"
 
-#include <cmocka.h>
-
-#include "../test_draw.h"
+static unsigned seed = 1;
 
 /* Separating axes: whether the triangle meets the cube at `low` of edge `edge`. */
 static bool meets(double p[3][3], const double low[3], double edge)
@@ -67,16 +61,16 @@ static void check_surface(const SmMesh *m, const SmVoxels *v)
             }
 }
 
-static void random_triangles_mark_what_separating_axes_say(void **state)
+TEST(random_triangles_mark_what_separating_axes_say)
 {
-    (void)state;
     for (int trial = 0; trial < 600; trial++) {
-        int triangles = 1 + (int)(draw() % 4);
+        int triangles = 1 + random_int(&seed, 4);
         SmMesh m = sm_mesh_new(3L * triangles, triangles);
         double scale = trial % 3 == 0 ? 1.5 : 9, far = trial % 5 == 0 ? 5e6 : 0;
         for (int i = 0; i < 3 * triangles; i++) {
             for (int d = 0; d < 3; d++) {
-                m.position[i][d] = far + uniform(0, d == trial % 4 ? scale / 3 : scale);
+                m.position[i][d] =
+                    far + random_between(&seed, 0, d == trial % 4 ? scale / 3 : scale);
                 if (trial % 4 == 0) m.position[i][d] = round(m.position[i][d]);
             }
             m.triangle[i / 3][i % 3] = i;
@@ -90,12 +84,4 @@ static void random_triangles_mark_what_separating_axes_say(void **state)
         sm_voxels_free(&v);
         sm_mesh_free(&m);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_triangles_mark_what_separating_axes_say),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

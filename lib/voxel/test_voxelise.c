@@ -4,19 +4,13 @@
 #include <dirent.h>
 #include <float.h>
 #include <limits.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #include "../mesh/import.h"
 #include "../stage.h"
-#include "../test_draw.h"
+#include "../test_frame.h"
+#include "../test_random.h"
+
+static unsigned seed = 1;
 
 #ifdef __SANITIZE_ADDRESS__
 #define PEAK_MEGABYTES 1000 /* freed memory is quarantined */
@@ -131,9 +125,8 @@ static double centre_distance(const SmVoxels *v, int i, int j, int k)
     return sqrt(sum);
 }
 
-static void a_ball_is_filled_and_no_more(void **state)
+TEST(a_ball_is_filled_and_no_more)
 {
-    (void)state;
     SmMesh m = ball(1, 60, 90, 0);
     SmVoxelReport report;
     SmVoxels v = made(&m, SM_SOLID, 0.05, &report);
@@ -151,9 +144,8 @@ static void a_ball_is_filled_and_no_more(void **state)
     sm_mesh_free(&m);
 }
 
-static void bad_balls_are_the_same_solid(void **state)
+TEST(bad_balls_are_the_same_solid)
 {
-    (void)state;
     SmMesh m = ball(1, 120, 180, 0);
     SmVoxels good = made(&m, SM_SOLID, 0.09, NULL), v;
     SmVoxelReport report;
@@ -199,9 +191,8 @@ static void bad_balls_are_the_same_solid(void **state)
     sm_mesh_free(&m);
 }
 
-static void wide_holes_are_bridged(void **state)
+TEST(wide_holes_are_bridged)
 {
-    (void)state;
     /* Without its first rings of triangles the ball is open above z = cos(pi / 6). */
     int rings = 60, steps = 90, gone = 10;
     SmMesh open = ball(1, rings, steps, 0);
@@ -224,9 +215,8 @@ static void wide_holes_are_bridged(void **state)
     sm_mesh_free(&open);
 }
 
-static void faces_on_cell_boundaries_are_not_doubled(void **state)
+TEST(faces_on_cell_boundaries_are_not_doubled)
 {
-    (void)state;
     SmMesh m = box(0, 0, 0, 10, 10, 10);
     SmVoxels v = made(&m, SM_SHELL, 1, NULL);
     assert_int_equal(v.cell_count, 1000 - 512);
@@ -249,9 +239,8 @@ static void faces_on_cell_boundaries_are_not_doubled(void **state)
     sm_mesh_free(&m);
 }
 
-static void a_flat_square_is_one_cell_thick(void **state)
+TEST(a_flat_square_is_one_cell_thick)
 {
-    (void)state;
     for (int axis = 0; axis < 3; axis++) {
         SmMesh m = sm_mesh_new(4, 2);
         for (int i = 0; i < 4; i++) {
@@ -272,9 +261,8 @@ static void a_flat_square_is_one_cell_thick(void **state)
     }
 }
 
-static void a_torus_keeps_its_hole(void **state)
+TEST(a_torus_keeps_its_hole)
 {
-    (void)state;
     SmMesh m = torus(2, 0.5, 120, 40);
     SmVoxels v = made(&m, SM_SOLID, 0.1, NULL);
     for (int k = 0; k < v.size[2]; k++)
@@ -293,15 +281,14 @@ static SmMesh soup(int triangles)
 {
     SmMesh m = sm_mesh_new(3L * triangles, triangles);
     for (int i = 0; i < 3 * triangles; i++) {
-        for (int d = 0; d < 3; d++) m.position[i][d] = uniform(0, 1);
+        for (int d = 0; d < 3; d++) m.position[i][d] = random_between(&seed, 0, 1);
         m.triangle[i / 3][i % 3] = i;
     }
     return m;
 }
 
-static void a_soup_has_no_inside(void **state)
+TEST(a_soup_has_no_inside)
 {
-    (void)state;
     SmMesh m = soup(100);
     SmVoxelParams params = {.fill = SM_SOLID, .particles = 3000};
     SmVoxels v;
@@ -316,9 +303,8 @@ static void a_soup_has_no_inside(void **state)
     sm_mesh_free(&m);
 }
 
-static void wanted_particle_counts_are_met(void **state)
+TEST(wanted_particle_counts_are_met)
 {
-    (void)state;
     const struct {
         SmFill fill;
         long particles;
@@ -356,9 +342,8 @@ static void expect_error(const SmMesh *m, SmFill fill, double cell, long particl
     assert_null(v.bits);
 }
 
-static void absurd_input_is_an_error(void **state)
+TEST(absurd_input_is_an_error)
 {
-    (void)state;
     SmMesh m = ball(1, 10, 10, 0), none = {0};
     const double cells[] = {0, -1, NAN, INFINITY, 1e-12, 1e-300, DBL_MIN, 1e300, 1e-4};
     for (size_t c = 0; c < sizeof cells / sizeof *cells; c++)
@@ -374,9 +359,8 @@ static void absurd_input_is_an_error(void **state)
     sm_mesh_free(&m);
 }
 
-static void few_particles_are_one_cell(void **state)
+TEST(few_particles_are_one_cell)
 {
-    (void)state;
     SmMesh m = ball(1, 10, 10, 0);
     for (long wanted = 1; wanted <= 8; wanted++) {
         SmVoxelParams params = {.fill = SM_SOLID, .particles = wanted};
@@ -399,9 +383,8 @@ static long peak_megabytes(void)
     return kilobytes / 1024;
 }
 
-static void a_hundred_million_cells_fit(void **state)
+TEST(a_hundred_million_cells_fit)
 {
-    (void)state;
     SmMesh m = ball(1, 200, 300, 0);
     SmVoxels v = made(&m, SM_SOLID, 2.0 / 465, NULL);
     assert_true((double)v.size[0] * v.size[1] * v.size[2] >= 1e8);
@@ -448,9 +431,8 @@ static void check_file(const char *path, const char *name)
     sm_mesh_free(&m);
 }
 
-static void meshes_made_by_others_have_a_verdict(void **state)
+TEST(meshes_made_by_others_have_a_verdict)
 {
-    (void)state;
     const char *folder = getenv("SHAPEBENCH_MESHES");
     if (!folder) folder = SOURCE_DIR "/../shared/meshes";
     DIR *listing = opendir(folder);
@@ -462,23 +444,4 @@ static void meshes_made_by_others_have_a_verdict(void **state)
         check_file(path, entry->d_name);
     }
     closedir(listing);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_hundred_million_cells_fit), /* first: it measures the peak memory */
-        cmocka_unit_test(a_ball_is_filled_and_no_more),
-        cmocka_unit_test(bad_balls_are_the_same_solid),
-        cmocka_unit_test(wide_holes_are_bridged),
-        cmocka_unit_test(faces_on_cell_boundaries_are_not_doubled),
-        cmocka_unit_test(a_flat_square_is_one_cell_thick),
-        cmocka_unit_test(a_torus_keeps_its_hole),
-        cmocka_unit_test(a_soup_has_no_inside),
-        cmocka_unit_test(wanted_particle_counts_are_met),
-        cmocka_unit_test(few_particles_are_one_cell),
-        cmocka_unit_test(absurd_input_is_an_error),
-        cmocka_unit_test(meshes_made_by_others_have_a_verdict),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,5 @@
 /* test_change.h - bodies that are resampled while they run, in the precision that the including
  * file has chosen. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "test_change_body.h"
 
 #define SINGLE (SM_REAL_BITS == 32)
@@ -157,9 +147,8 @@ static OctParams random_params(int trial)
     return params;
 }
 
-static void test_rebuilt(void **state)
+TEST(test_rebuilt)
 {
-    (void)state;
     unsigned seed = 1;
     for (int trial = 0; trial < 60; trial++) {
         Body body;
@@ -201,9 +190,8 @@ static void check_rigid(const Body *body, const Rigid *r, bool stepped, int tria
 }
 
 /* A rigidly moving body goes on so when it is resampled, and so does one at rest. */
-static void test_rigid(void **state)
+TEST(test_rigid)
 {
-    (void)state;
     unsigned seed = 2;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -248,9 +236,8 @@ static Sums sums(const Body *body)
 }
 
 /* Momentum and centre of mass stay whatever the body does. */
-static void test_momentum(void **state)
+TEST(test_momentum)
 {
-    (void)state;
     unsigned seed = 3;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -287,9 +274,8 @@ static double (*snapshot(const Body *body))[6]
 
 /* By volume a body weighs less once cells that are not full are split: what the change does not
  * touch stays where it is, and is given no velocity for what is gone. */
-static void test_volume(void **state)
+TEST(test_volume)
 {
-    (void)state;
     unsigned seed = 8;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -321,9 +307,8 @@ static void test_volume(void **state)
 
 /* Leaves that are split and merged again have the state that they had; all others always kept it.
  */
-static void test_back(void **state)
+TEST(test_back)
 {
-    (void)state;
     unsigned seed = 5;
     for (int trial = 0; trial < 24; trial++) {
         Body body;
@@ -388,9 +373,8 @@ static void split_all(OctStructure *s)
 }
 
 /* All the way down and up: blocks without a leaf, one leaf alone, states that stay finite. */
-static void test_extremes(void **state)
+TEST(test_extremes)
 {
-    (void)state;
     unsigned seed = 6;
     for (int trial = 0; trial < 12; trial++) {
         Body body;
@@ -418,9 +402,8 @@ static void test_extremes(void **state)
 }
 
 /* Any number of threads gives the same bits. */
-static void test_threads(void **state)
+TEST(test_threads)
 {
-    (void)state;
     double(*kept)[6] = NULL;
     for (int threads = 1; threads <= 3; threads += 2) {
         unsigned seed = 7;
@@ -453,15 +436,4 @@ static void test_threads(void **state)
         sm_voxels_free(&voxels);
     }
     free(kept);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rebuilt),  cmocka_unit_test(test_rigid),
-        cmocka_unit_test(test_momentum), cmocka_unit_test(test_back),
-        cmocka_unit_test(test_extremes), cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_volume),
-    };
-    return cmocka_run_group_tests_name("change", tests, NULL, NULL);
 }

@@ -1,5 +1,4 @@
-/* test_change_body.h - bodies to be resampled, in one precision, and what moves them. Include after
- * cmocka. */
+/* test_change_body.h - bodies to be resampled, in one precision, and what moves them. */
 #ifndef OCT_TEST_CHANGE_BODY_H
 #define OCT_TEST_CHANGE_BODY_H
 
@@ -9,7 +8,7 @@
 #include "../dynamic_body.h"
 #include "../ghosts.h"
 #include "../octree.h"
-#include "random_batches.h"
+#include "test_batches.h"
 
 typedef struct {
     OctStructure structure;

@@ -1,18 +1,9 @@
 /* Octree engines that are resampled behind the common interface, in both precisions: numbers of
  * particles, handles, cuts; what cannot be resampled. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
 #include "../engine.h"
-#include "random_batches.h"
+#include "test_batches.h"
 
 static const SmEngineType *const engines[2] = {&octree_engine_f32, &octree_engine_f64};
 static const double limit[2] = {5e-5, 1e-10};
@@ -113,9 +104,8 @@ static void check_regions(const SmEngineType *type, SmEngine *engine)
     free(in);
 }
 
-static void particles_are_the_leaves(void **state)
+TEST(particles_are_the_leaves)
 {
-    (void)state;
     for (int precision = 0; precision < 2; precision++) {
         const SmEngineType *type = engines[precision];
         SmEngine *engine = make_bar(precision, 0);
@@ -131,9 +121,8 @@ static void particles_are_the_leaves(void **state)
 }
 
 /* Rest shapes of plastic bodies follow, and can be set. */
-static void shapes_follow(void **state)
+TEST(shapes_follow)
 {
-    (void)state;
     for (int precision = 0; precision < 2; precision++) {
         const SmEngineType *type = engines[precision];
         SmEngine *engine = make_bar(precision, 10);
@@ -192,9 +181,8 @@ static void check_held(const SmEngineType *type, SmEngine *engine, double up, do
     free(x);
 }
 
-static void heirs_are_held(void **state)
+TEST(heirs_are_held)
 {
-    (void)state;
     for (int precision = 0; precision < 2; precision++) {
         const SmEngineType *type = engines[precision];
         SmEngine *engine = make_bar(precision, 0);
@@ -219,9 +207,8 @@ static void heirs_are_held(void **state)
 }
 
 /* A plane through the bar: what is pushed on one side moves, the other stays. */
-static void a_cut_parts(void **state)
+TEST(a_cut_parts)
 {
-    (void)state;
     for (int precision = 0; precision < 2; precision++) {
         const SmEngineType *type = engines[precision];
         SmEngine *engine = make_bar(precision, 0);
@@ -255,9 +242,8 @@ static void a_cut_parts(void **state)
     }
 }
 
-static void refuses_what_cannot_change(void **state)
+TEST(refuses_what_cannot_change)
 {
-    (void)state;
     SmVoxels voxels;
     sm_voxels_block(&voxels, 6, 6, 6, 0.5);
     for (int trial = 0; trial < 4; trial++) {
@@ -275,16 +261,4 @@ static void refuses_what_cannot_change(void **state)
         type->destroy(engine);
     }
     sm_voxels_free(&voxels);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(particles_are_the_leaves),
-        cmocka_unit_test(shapes_follow),
-        cmocka_unit_test(heirs_are_held),
-        cmocka_unit_test(a_cut_parts),
-        cmocka_unit_test(refuses_what_cannot_change),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

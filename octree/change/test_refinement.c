@@ -1,14 +1,7 @@
 /* Cells split for a ball or a viewer, and merged again when it has been gone for long enough. */
 #include "refinement.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "structure.h"
 
 enum { SIDE = 32, LEVELS = 4 };
@@ -61,9 +54,8 @@ static long update(OctRefinement *refinement, OctStructure *s, OctRefineCriterio
     return changes;
 }
 
-static void a_touch_refines_while_it_lasts(void **state)
+TEST(a_touch_refines_while_it_lasts)
 {
-    (void)state;
     OctStructure s;
     OctRefinement refinement = {0};
     OctBallRefinement ball = {{8, 16, 8}, 1.2, LEVELS};
@@ -94,9 +86,8 @@ static void a_touch_refines_while_it_lasts(void **state)
 
 /* A viewer that comes near and goes away: levels as its distances say, and each cell split and
  * merged once. */
-static void an_eye_refines_by_distance(void **state)
+TEST(an_eye_refines_by_distance)
 {
-    (void)state;
     OctStructure s;
     OctRefinement refinement = {0};
     OctViewRefinement view = {.near = 2, .slack = 0.2, .level = LEVELS};
@@ -127,9 +118,8 @@ static void an_eye_refines_by_distance(void **state)
 }
 
 /* What the view sees at the edge of a distance does not come and go with it. */
-static void an_edge_does_not_flicker(void **state)
+TEST(an_edge_does_not_flicker)
 {
-    (void)state;
     OctStructure s;
     OctRefinement refinement = {0};
     OctViewRefinement view = {.near = 2, .slack = 0.2, .level = LEVELS};
@@ -142,14 +132,4 @@ static void an_edge_does_not_flicker(void **state)
     }
     oct_refinement_free(&refinement);
     oct_structure_free(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_touch_refines_while_it_lasts),
-        cmocka_unit_test(an_eye_refines_by_distance),
-        cmocka_unit_test(an_edge_does_not_flicker),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

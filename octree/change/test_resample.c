@@ -1,16 +1,9 @@
 /* A structure changed step by step against one built from scratch. */
 #include <limits.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
-
-#include "random_changes.h"
-#include "rebuilt.h"
+#include "../../lib/test_frame.h"
+#include "test_changes.h"
+#include "test_rebuilt.h"
 
 enum { SEQUENCES = 1500, BATCHES = 5, LEAVES = 100 };
 
@@ -187,9 +180,8 @@ static void check_change(const Before *b, const OctStructure *s, const OctChange
     check_changed_regions(b, s, c);
 }
 
-static void any_sequence_ends_where_a_build_from_scratch_does(void **state)
+TEST(any_sequence_ends_where_a_build_from_scratch_does)
 {
-    (void)state;
     unsigned seed = 11;
     for (int trial = 0; trial < SEQUENCES; trial++) {
         OctStructure s;
@@ -223,9 +215,8 @@ static void merge_all_new(OctStructure *s, const OctTree *before)
 }
 
 /* In one batch or several, to any depth. */
-static void refining_and_coarsening_gives_the_old_structure_back(void **state)
+TEST(refining_and_coarsening_gives_the_old_structure_back)
 {
-    (void)state;
     unsigned seed = 12;
     for (int trial = 0; trial < 150; trial++) {
         OctStructure s, before;
@@ -265,9 +256,8 @@ static void block_structure(int wide, int levels, const OctOptions *options, Oct
     sm_voxels_free(&v);
 }
 
-static void cutting_everything_leaves_single_nodes(void **state)
+TEST(cutting_everything_leaves_single_nodes)
 {
-    (void)state;
     OctStructure s;
     const OctOptions options = {.epsilon = 0.5, .width = {.edges = 1.5}};
     block_structure(12, 2, &options, &s);
@@ -287,9 +277,8 @@ static void cutting_everything_leaves_single_nodes(void **state)
 }
 
 /* Misses, has no area, or comes a second time: no edge goes and no region changes. */
-static void a_cut_of_nothing_changes_nothing(void **state)
+TEST(a_cut_of_nothing_changes_nothing)
 {
-    (void)state;
     OctStructure s;
     const OctOptions options = {.epsilon = 0.5, .width = {.edges = 1}};
     block_structure(8, 2, &options, &s);
@@ -337,9 +326,8 @@ static bool clips(const double corner[3][3], const double centre[3], double half
 }
 
 /* Of leaves coarser than a level, those near enough to new triangles and no other. */
-static void leaves_near_a_cut_are_those_that_it_comes_near(void **state)
+TEST(leaves_near_a_cut_are_those_that_it_comes_near)
 {
-    (void)state;
     unsigned seed = 13;
     for (int trial = 0; trial < 300; trial++) {
         OctStructure s;
@@ -374,9 +362,8 @@ static void leaves_near_a_cut_are_those_that_it_comes_near(void **state)
     }
 }
 
-static void surroundings_of_a_cut_are_refined_in_one_batch(void **state)
+TEST(surroundings_of_a_cut_are_refined_in_one_batch)
 {
-    (void)state;
     OctStructure s;
     const int *node;
     const OctOptions options = {.epsilon = 0.5, .width = {.edges = 1}};
@@ -398,9 +385,8 @@ static void surroundings_of_a_cut_are_refined_in_one_batch(void **state)
     oct_structure_free(&s);
 }
 
-static void what_cannot_be_split_or_merged_is_refused(void **state)
+TEST(what_cannot_be_split_or_merged_is_refused)
 {
-    (void)state;
     OctStructure s;
     SmError error;
     const OctOptions options = {.epsilon = 0.5, .width = {.edges = 1}};
@@ -426,18 +412,4 @@ static void what_cannot_be_split_or_merged_is_refused(void **state)
     oct_resample_update(&s);
     check(&s, NULL);
     oct_structure_free(&s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_sequence_ends_where_a_build_from_scratch_does),
-        cmocka_unit_test(refining_and_coarsening_gives_the_old_structure_back),
-        cmocka_unit_test(cutting_everything_leaves_single_nodes),
-        cmocka_unit_test(a_cut_of_nothing_changes_nothing),
-        cmocka_unit_test(leaves_near_a_cut_are_those_that_it_comes_near),
-        cmocka_unit_test(surroundings_of_a_cut_are_refined_in_one_batch),
-        cmocka_unit_test(what_cannot_be_split_or_merged_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,10 @@
 /* Widths of regions: given, local, and found for as many summation nodes as are wanted. */
 #include "width.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
 #include <time.h>
 
-#include <cmocka.h>
-
 #include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
 #include "../test_engine_body.h"
 
 /* Wide regions on one arm, narrow ones on the other: the same pull bends them differently. */
@@ -46,9 +40,8 @@ static double tip_moved(const SmVoxels *voxels, const OctOptions *options, doubl
     return moved;
 }
 
-static void wide_regions_are_stiff(void **state)
+TEST(wide_regions_are_stiff)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     OctOptions options = {
@@ -61,9 +54,8 @@ static void wide_regions_are_stiff(void **state)
     sm_voxels_free(&voxels);
 }
 
-static void a_width_is_found_for_summation_nodes(void **state)
+TEST(a_width_is_found_for_summation_nodes)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     OctOptions options = {
@@ -85,9 +77,8 @@ static void a_width_is_found_for_summation_nodes(void **state)
 }
 
 /* The search costs no more than the few region builds that it says. */
-static void a_width_is_found_by_few_builds(void **state)
+TEST(a_width_is_found_by_few_builds)
 {
-    (void)state;
     SmVoxels voxels;
     OctStructure s;
     sm_voxels_init(&voxels, 20, 20, 20, 1);
@@ -111,9 +102,8 @@ static void a_width_is_found_by_few_builds(void **state)
 }
 
 /* Regions of single nodes hold nothing together. */
-static void parts_are_counted(void **state)
+TEST(parts_are_counted)
 {
-    (void)state;
     SmVoxels voxels;
     make_voxels(&voxels);
     OctOptions options = {.width = {.cells = 0.5}, .sampling = {.levels = 2, .nodes = 90}};
@@ -127,15 +117,4 @@ static void parts_are_counted(void **state)
         octree_engine_f32.destroy(engine);
     }
     sm_voxels_free(&voxels);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wide_regions_are_stiff),
-        cmocka_unit_test(a_width_is_found_for_summation_nodes),
-        cmocka_unit_test(a_width_is_found_by_few_builds),
-        cmocka_unit_test(parts_are_counted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

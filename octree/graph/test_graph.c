@@ -1,16 +1,11 @@
 /* The visibility graph against its definition over all pairs, and Bucket-Moore against Dijkstra. */
 #include "graph.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
 #include <omp.h>
 
+#include "../../lib/test_frame.h"
 #include "../../reference/octree_regions.h"
-#include "../tree/random_trees.h"
+#include "../tree/test_trees.h"
 #include "distance.h"
 
 enum { TRIALS = 600, LEAVES = 160 };
@@ -60,9 +55,8 @@ static void check_distances(unsigned *seed, const OctGraph *g, const RefOctree *
     oct_reach_free(&reach);
 }
 
-static void random_graphs_are_as_defined_and_distances_as_dijkstra_s(void **state)
+TEST(random_graphs_are_as_defined_and_distances_as_dijkstra_s)
 {
-    (void)state;
     unsigned seed = 3;
     for (int trial = 0; trial < TRIALS; trial++) {
         SmVoxels v;
@@ -82,9 +76,8 @@ static void random_graphs_are_as_defined_and_distances_as_dijkstra_s(void **stat
 }
 
 /* Random graphs of long and short edges, which no tree would have. */
-static void bucket_moore_is_dijkstra_on_any_graph(void **state)
+TEST(bucket_moore_is_dijkstra_on_any_graph)
 {
-    (void)state;
     unsigned seed = 4;
     for (int trial = 0; trial < TRIALS; trial++) {
         enum { MOST = 40 };
@@ -149,9 +142,8 @@ static long distance_between(const OctTree *t, const OctGraph *g, const int a[3]
 
 /* Two fingers, one finest cell apart, of leaves eight finest cells wide that touch; the palm joins
  * them at the far end. Leaf centres lie in the fingers or outside them, whichever way. */
-static void a_gap_thinner_than_a_leaf_is_a_gap(void **state)
+TEST(a_gap_thinner_than_a_leaf_is_a_gap)
 {
-    (void)state;
     for (int gap = 0; gap < 2; gap++)
         for (int thick = 1; thick < 8; thick++) {
             SmVoxels v;
@@ -197,9 +189,8 @@ static bool find_sides(const SmVoxels *v, const OctTree *t, int at, int *side)
     return true;
 }
 
-static void bodies_apart_are_never_joined(void **state)
+TEST(bodies_apart_are_never_joined)
 {
-    (void)state;
     unsigned seed = 5;
     int apart = 0;
     for (int trial = 0; trial < 300; trial++) {
@@ -250,9 +241,8 @@ static void check_far_distances(const OctGraph *g)
     free(distance);
 }
 
-static void graphs_are_equal_for_any_number_of_threads(void **state)
+TEST(graphs_are_equal_for_any_number_of_threads)
 {
-    (void)state;
     unsigned seed = 6;
     int before = omp_get_max_threads();
     SmVoxels v;
@@ -276,16 +266,4 @@ static void graphs_are_equal_for_any_number_of_threads(void **state)
     oct_graph_free(&many);
     oct_tree_free(&t);
     sm_voxels_free(&v);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_graphs_are_as_defined_and_distances_as_dijkstra_s),
-        cmocka_unit_test(bucket_moore_is_dijkstra_on_any_graph),
-        cmocka_unit_test(a_gap_thinner_than_a_leaf_is_a_gap),
-        cmocka_unit_test(bodies_apart_are_never_joined),
-        cmocka_unit_test(graphs_are_equal_for_any_number_of_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,6 @@
 /* Affine motions of groups of nodes, where they span space and where they do not. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include "../../fastlsm/lattice/random_bodies.h"
+#include "../../lib/test_frame.h"
+#include "../../lib/voxel/test_bodies.h"
 #include "fit.h"
 
 enum { NODES = 12 };
@@ -41,9 +34,8 @@ static void check(const double a[9], const double b[9])
         if (!(fabs(a[i] - b[i]) < 1e-11)) fail_msg("entry %d is %g, not %g", i, a[i], b[i]);
 }
 
-static void affine_motions_of_space_are_exact(void **state)
+TEST(affine_motions_of_space_are_exact)
 {
-    (void)state;
     unsigned seed = 1;
     for (int trial = 0; trial < 50; trial++) {
         double F[9], L[9], f[9], l[9];
@@ -72,9 +64,8 @@ static void rigid_motion(const double w[3], double F[9], double L[9])
         }
 }
 
-static void rigid_motions_of_a_plane_are_exact(void **state)
+TEST(rigid_motions_of_a_plane_are_exact)
 {
-    (void)state;
     unsigned seed = 2;
     double F[9], L[9], f[9], l[9];
     OctFit fit = {0};
@@ -86,9 +77,8 @@ static void rigid_motions_of_a_plane_are_exact(void **state)
 }
 
 /* Along the line as it moves, beyond it as `last` turned, without a turn of its own about it. */
-static void a_line_keeps_its_turn(void **state)
+TEST(a_line_keeps_its_turn)
 {
-    (void)state;
     unsigned seed = 3;
     double F[9], L[9], f[9], l[9], along[3], turned[3];
     OctFit fit = {0};
@@ -104,9 +94,8 @@ static void a_line_keeps_its_turn(void **state)
     assert_true(fabs(about) < 1e-12);
 }
 
-static void one_node_has_the_last_rotation(void **state)
+TEST(one_node_has_the_last_rotation)
 {
-    (void)state;
     double F[9], L[9], f[9], l[9];
     const double none[9] = {0}, X[3] = {1, 2, 3}, x[3] = {4, 5, 6}, v[3] = {7, 8, 9};
     OctFit fit = {0};
@@ -115,15 +104,4 @@ static void one_node_has_the_last_rotation(void **state)
     assert_int_equal(oct_fit_solve(&fit, 0.1, F, f, l), 0);
     check(f, F);
     check(l, none);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(affine_motions_of_space_are_exact),
-        cmocka_unit_test(rigid_motions_of_a_plane_are_exact),
-        cmocka_unit_test(a_line_keeps_its_turn),
-        cmocka_unit_test(one_node_has_the_last_rotation),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,9 @@
 /* What several leaves own, found at once, against the slow twin of each alone. */
 #include "multi_source_search.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "../../reference/octree_regions.h"
-#include "../tree/random_trees.h"
+#include "../tree/test_trees.h"
 #include "one_sided_regions.h"
 
 enum { TRIALS = 400, LEAVES = 200 };
@@ -118,9 +112,8 @@ static void check_sheaf(Both *b, unsigned *seed)
     for (int n = 0; n < count; n++) check_lane(b, n, leaf[n], reach[n]);
 }
 
-static void a_sheaf_owns_what_its_leaves_do(void **state)
+TEST(a_sheaf_owns_what_its_leaves_do)
 {
-    (void)state;
     unsigned seed = 11;
     for (int trial = 0; trial < TRIALS; trial++) {
         SmVoxels v;
@@ -137,12 +130,4 @@ static void a_sheaf_owns_what_its_leaves_do(void **state)
         oct_tree_free(&t);
         sm_voxels_free(&v);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sheaf_owns_what_its_leaves_do),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

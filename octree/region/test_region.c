@@ -2,18 +2,12 @@
 #include "region.h"
 
 #include <limits.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <string.h>
 
-#include <cmocka.h>
 #include <omp.h>
 
+#include "../../lib/test_frame.h"
 #include "../../reference/octree_regions.h"
-#include "../tree/random_trees.h"
+#include "../tree/test_trees.h"
 
 enum { TRIALS = 600, LEAVES = 130 };
 
@@ -121,9 +115,8 @@ static void check_trial(unsigned *seed, int trial, const SmVoxels *v, const OctT
     oct_graph_free(&g);
 }
 
-static void random_regions_are_as_defined(void **state)
+TEST(random_regions_are_as_defined)
 {
-    (void)state;
     unsigned seed = 7;
     for (int trial = 0; trial < TRIALS; trial++) {
         SmVoxels v;
@@ -156,9 +149,8 @@ static void assert_region(const OctTree *t, const OctRegions *r, int i, int widt
     assert_int_equal(r->width[i], width);
 }
 
-static void a_row_has_the_regions_found_by_hand(void **state)
+TEST(a_row_has_the_regions_found_by_hand)
 {
-    (void)state;
     SmVoxels v;
     OctTree t;
     OctGraph g;
@@ -200,9 +192,8 @@ static void a_row_has_the_regions_found_by_hand(void **state)
     sm_voxels_free(&v);
 }
 
-static void widths_and_epsilon_out_of_range_are_refused(void **state)
+TEST(widths_and_epsilon_out_of_range_are_refused)
 {
-    (void)state;
     SmVoxels v;
     OctTree t;
     OctGraph g;
@@ -229,9 +220,8 @@ static void widths_and_epsilon_out_of_range_are_refused(void **state)
     sm_voxels_free(&v);
 }
 
-static void regions_are_equal_for_any_number_of_threads(void **state)
+TEST(regions_are_equal_for_any_number_of_threads)
 {
-    (void)state;
     unsigned seed = 8;
     int before = omp_get_max_threads();
     for (int trial = 0; trial < 4; trial++) {
@@ -262,15 +252,4 @@ static void regions_are_equal_for_any_number_of_threads(void **state)
         oct_tree_free(&t);
         sm_voxels_free(&v);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_regions_are_as_defined),
-        cmocka_unit_test(a_row_has_the_regions_found_by_hand),
-        cmocka_unit_test(widths_and_epsilon_out_of_range_are_refused),
-        cmocka_unit_test(regions_are_equal_for_any_number_of_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

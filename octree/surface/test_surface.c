@@ -1,17 +1,10 @@
 #include "surface.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-#include <math.h>
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "../tree/random_trees.h"
+#include "../../lib/test_frame.h"
 #include "../tree/sampling.h"
+#include "../tree/test_trees.h"
 
 typedef struct {
     SmVoxels voxels;
@@ -150,9 +143,8 @@ static long compare_motion(unsigned *seed, double stretch, int dimensions, Body 
     return compared;
 }
 
-static void exact_for_rigid_and_affine_motions(void **state)
+TEST(exact_for_rigid_and_affine_motions)
 {
-    (void)state;
     unsigned seed = 1;
     long rigid = 0, affine = 0, all = 0;
     for (int trial = 0; trial < 120; trial++) {
@@ -169,9 +161,8 @@ static void exact_for_rigid_and_affine_motions(void **state)
 }
 
 /* Weights add up to 1, each node once, the own leaf always among them; at rest nothing moves. */
-static void weights_are_a_partition_of_unity(void **state)
+TEST(weights_are_a_partition_of_unity)
 {
-    (void)state;
     unsigned seed = 2;
     for (int trial = 0; trial < 60; trial++) {
         Body body;
@@ -196,9 +187,8 @@ static void weights_are_a_partition_of_unity(void **state)
 }
 
 /* Leaves of one size fill a block: the weights are products of the kernel, none is rescaled. */
-static void weights_of_a_lattice_are_the_kernel(void **state)
+TEST(weights_of_a_lattice_are_the_kernel)
 {
-    (void)state;
     unsigned seed = 3;
     Body body;
     OctTree whole;
@@ -257,9 +247,8 @@ static double along(const Body *body, const double at[3], int d)
     return (at[d] - body->voxels.origin[d]) / body->voxels.cell;
 }
 
-static void fingers_move_alone(void **state)
+TEST(fingers_move_alone)
 {
-    (void)state;
     unsigned seed = 4;
     Body body;
     make_fingers(&seed, &body);
@@ -325,9 +314,8 @@ static double largest_step(unsigned line, const Body *source, long count)
 
 /* A full block of leaves of 1 to 8 cells, each node moved by half a cell at random: eight times
  * shorter steps along a line are eight times shorter on the moved surface, so there is no jump. */
-static void continuous_across_leaves_of_all_sizes(void **state)
+TEST(continuous_across_leaves_of_all_sizes)
 {
-    (void)state;
     for (unsigned seed = 1; seed <= 3; seed++) {
         Body body;
         unsigned random = seed;
@@ -347,9 +335,8 @@ static void continuous_across_leaves_of_all_sizes(void **state)
     }
 }
 
-static void any_number_of_threads_gives_the_same_bits(void **state)
+TEST(any_number_of_threads_gives_the_same_bits)
 {
-    (void)state;
     unsigned seed = 6;
     Body body;
     make_body(&seed, 2, 2000, &body);
@@ -372,9 +359,8 @@ static void any_number_of_threads_gives_the_same_bits(void **state)
 }
 
 /* One cell, and a row of them: no neighbours, and neighbours on a line. */
-static void few_nodes(void **state)
+TEST(few_nodes)
 {
-    (void)state;
     for (int cells = 1; cells <= 5; cells += 4) {
         Body body;
         unsigned seed = 7;
@@ -402,18 +388,4 @@ static void few_nodes(void **state)
                 assert_true(isfinite(body.position[v][d]) && fabs(body.normal[v][d]) <= 1 + 1e-12);
         free_body(&body);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exact_for_rigid_and_affine_motions),
-        cmocka_unit_test(weights_are_a_partition_of_unity),
-        cmocka_unit_test(weights_of_a_lattice_are_the_kernel),
-        cmocka_unit_test(fingers_move_alone),
-        cmocka_unit_test(continuous_across_leaves_of_all_sizes),
-        cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
-        cmocka_unit_test(few_nodes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,10 @@
 /* A surface tied anew after every change against one tied from scratch; and which side of a cut
  * vertices follow. */
-
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../lib/cut/slit.h"
 #include "../../lib/shapes/shape.h"
+#include "../../lib/test_frame.h"
 #include "../change/structure.h"
-#include "../tree/random_trees.h"
+#include "../tree/test_trees.h"
 #include "surface.h"
 
 enum { SEQUENCES = 50, BATCHES = 6, FIRST_VERTICES = 150 };
@@ -115,9 +106,8 @@ static void retie(OctSurface *surface, const SmMesh *mesh, const OctStructure *s
     free(node);
 }
 
-static void tied_anew_is_tied_from_scratch(void **state)
+TEST(tied_anew_is_tied_from_scratch)
 {
-    (void)state;
     unsigned seed = 5;
     for (int trial = 0; trial < SEQUENCES; trial++) {
         OctStructure s;
@@ -252,9 +242,8 @@ static void count_pieces(const OctStructure *s, const OctSurface *surface, const
 
 /* A plane somewhere through a block of large and small leaves, often through the middle of cells:
  * one half moves away, and every vertex goes or stays with its own half. */
-static void both_sides_of_a_cut_follow_their_own(void **state)
+TEST(both_sides_of_a_cut_follow_their_own)
 {
-    (void)state;
     for (unsigned trial = 1; trial <= 40; trial++) {
         unsigned seed = trial;
         SmVoxels voxels;
@@ -308,9 +297,8 @@ static void mislead(OctSurface *s, long v, long as)
 }
 
 /* Some vertices next to a cut are tied to the other side: they come back, and no others move. */
-static void a_few_on_the_wrong_side_go_with_the_many(void **state)
+TEST(a_few_on_the_wrong_side_go_with_the_many)
 {
-    (void)state;
     OctStructure s;
     OctSurface surface;
     OctTree tree;
@@ -344,14 +332,4 @@ static void a_few_on_the_wrong_side_go_with_the_many(void **state)
     oct_structure_free(&s);
     sm_voxels_free(&voxels);
     sm_mesh_free(&mesh);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tied_anew_is_tied_from_scratch),
-        cmocka_unit_test(both_sides_of_a_cut_follow_their_own),
-        cmocka_unit_test(a_few_on_the_wrong_side_go_with_the_many),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,15 +2,9 @@
  */
 #include "sampling.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../lib/test_frame.h"
 #include "base_grid.h"
-#include "random_trees.h"
+#include "test_trees.h"
 
 typedef struct {
     int low[3], high[3]; /* finest cells, high not included */
@@ -130,9 +124,8 @@ static OctSampling random_place(unsigned *seed)
     return s;
 }
 
-static void features_leave_no_weld(void **state)
+TEST(features_leave_no_weld)
 {
-    (void)state;
     unsigned seed = 5;
     long welds_without = 0, unbalanced = 0;
     for (int trial = 0; trial < 240; trial++) {
@@ -164,9 +157,8 @@ static void features_leave_no_weld(void **state)
 
 /* Without a level to go down to, no criterion splits; one that goes down part of the way leaves the
  * cells at its level. */
-static void criteria_stop_at_their_level(void **state)
+TEST(criteria_stop_at_their_level)
 {
-    (void)state;
     unsigned seed = 6;
     for (int trial = 0; trial < 60; trial++) {
         SmVoxels v;
@@ -194,9 +186,8 @@ static bool at_surface(const SmVoxels *v, int i, int j, int k)
              sm_voxel_get(v, i, j, k - 1) && sm_voxel_get(v, i, j, k + 1));
 }
 
-static void the_surface_gets_finest_cells(void **state)
+TEST(the_surface_gets_finest_cells)
 {
-    (void)state;
     unsigned seed = 7;
     for (int trial = 0; trial < 60; trial++) {
         SmVoxels v;
@@ -250,9 +241,8 @@ static void check_region(const SmVoxels *v, const OctTree *t, const OctCriterion
     }
 }
 
-static void regions_of_interest_are_fine(void **state)
+TEST(regions_of_interest_are_fine)
 {
-    (void)state;
     unsigned seed = 8;
     for (int trial = 0; trial < 100; trial++) {
         SmVoxels v;
@@ -279,9 +269,8 @@ static void regions_of_interest_are_fine(void **state)
 }
 
 /* A split adds 7 leaves at most, so that the nearest count is at most 3 off. */
-static void wanted_counts_are_reached(void **state)
+TEST(wanted_counts_are_reached)
 {
-    (void)state;
     unsigned seed = 9;
     for (int trial = 0; trial < 200; trial++) {
         SmVoxels v;
@@ -329,9 +318,8 @@ static void wanted_counts_are_reached(void **state)
 }
 
 /* Two bars, a cell apart, on a plate. */
-static void a_gap_of_one_cell_is_resolved(void **state)
+TEST(a_gap_of_one_cell_is_resolved)
 {
-    (void)state;
     SmVoxels v;
     OctTree t;
     sm_voxels_init(&v, 17, 32, 8, 1);
@@ -355,9 +343,8 @@ static void a_gap_of_one_cell_is_resolved(void **state)
 }
 
 /* Balls bend everywhere and have nothing to weld. */
-static void a_convex_body_stays_coarse(void **state)
+TEST(a_convex_body_stays_coarse)
 {
-    (void)state;
     unsigned seed = 10;
     for (int trial = 0; trial < 40; trial++) {
         double radius = 2 + 12 * random_unit(&seed), centre[3];
@@ -383,9 +370,8 @@ static void a_convex_body_stays_coarse(void **state)
     }
 }
 
-static void the_base_lattice_is_put_where_its_count_is_nearest(void **state)
+TEST(the_base_lattice_is_put_where_its_count_is_nearest)
 {
-    (void)state;
     unsigned seed = 11;
     for (int trial = 0; trial < 30; trial++) {
         SmVoxels v;
@@ -425,9 +411,8 @@ static void refuse(const OctSampling *s, const char *says)
     sm_voxels_free(&v);
 }
 
-static void what_cannot_be_sampled_is_refused(void **state)
+TEST(what_cannot_be_sampled_is_refused)
 {
-    (void)state;
     OctSampling s = {.levels = 3, .criteria_count = 1};
     OctCriterion *c = &s.criteria[0];
     *c = (OctCriterion){.kind = OCT_UNIFORM, .level = 4};
@@ -458,20 +443,4 @@ static void what_cannot_be_sampled_is_refused(void **state)
     refuse(&s, "-7 base cells");
     s = (OctSampling){.levels = 13};
     refuse(&s, "levels = 13");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(features_leave_no_weld),
-        cmocka_unit_test(criteria_stop_at_their_level),
-        cmocka_unit_test(the_surface_gets_finest_cells),
-        cmocka_unit_test(regions_of_interest_are_fine),
-        cmocka_unit_test(wanted_counts_are_reached),
-        cmocka_unit_test(a_gap_of_one_cell_is_resolved),
-        cmocka_unit_test(a_convex_body_stays_coarse),
-        cmocka_unit_test(the_base_lattice_is_put_where_its_count_is_nearest),
-        cmocka_unit_test(what_cannot_be_sampled_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,6 @@
 /* Rest shapes of plastic bodies through the common interface: read, and put into another engine. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
 #include "../engine.h"
 
 enum { SIDE = 6, BODIES = 2 };
@@ -53,9 +45,8 @@ static double determinant(const double S[9])
            S[2] * (S[3] * S[7] - S[4] * S[6]);
 }
 
-static void shapes_go_from_engine_to_engine(void **state)
+TEST(shapes_go_from_engine_to_engine)
 {
-    (void)state;
     for (int precision = 0; precision < 2; precision++) {
         const SmEngineType *type = engines[precision];
         double limit = precision ? 1e-12 : 1e-5, change = 0;
@@ -96,9 +87,8 @@ static void shapes_go_from_engine_to_engine(void **state)
     }
 }
 
-static void elastic_bodies_have_none(void **state)
+TEST(elastic_bodies_have_none)
 {
-    (void)state;
     for (int precision = 0; precision < 2; precision++) {
         long n;
         SmEngine *engine = make(engines[precision], 0, &n);
@@ -108,13 +98,4 @@ static void elastic_bodies_have_none(void **state)
         engines[precision]->destroy(engine);
         free(S);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shapes_go_from_engine_to_engine),
-        cmocka_unit_test(elastic_bodies_have_none),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,8 @@
 /* Trees on random shapes: what every one of them keeps, against walks over all finest cells. */
 #include "tree.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#include "random_trees.h"
+#include "../../lib/test_frame.h"
+#include "test_trees.h"
 
 /* Does the node's cell hold finest cell `at`? */
 static bool holds(const OctTree *t, long n, const int at[3])
@@ -72,9 +66,8 @@ static void check_cells(const SmVoxels *v, const OctTree *t)
     free(found);
 }
 
-static void random_trees_hold_every_cell_once(void **state)
+TEST(random_trees_hold_every_cell_once)
 {
-    (void)state;
     unsigned seed = 1;
     for (int trial = 0; trial < 300; trial++) {
         SmVoxels v;
@@ -97,9 +90,8 @@ static void random_trees_hold_every_cell_once(void **state)
 }
 
 /* The base lattice's corner counts only modulo a base cell. */
-static void corners_are_counted_below_the_first_voxel(void **state)
+TEST(corners_are_counted_below_the_first_voxel)
 {
-    (void)state;
     unsigned seed = 2;
     SmVoxels v;
     random_body(&seed, 5, 9, &v);
@@ -120,9 +112,8 @@ static void corners_are_counted_below_the_first_voxel(void **state)
 }
 
 /* Only the ranges of levels count, so that a pruned tree of a pruned tree is one too. */
-static void pruning_again_is_pruning_once(void **state)
+TEST(pruning_again_is_pruning_once)
 {
-    (void)state;
     unsigned seed = 3;
     SmVoxels v;
     OctTree whole, once, again;
@@ -141,9 +132,8 @@ static void pruning_again_is_pruning_once(void **state)
     sm_voxels_free(&v);
 }
 
-static void what_cannot_be_a_tree_is_refused(void **state)
+TEST(what_cannot_be_a_tree_is_refused)
 {
-    (void)state;
     const int corner[3] = {0};
     SmVoxels v;
     OctTree t;
@@ -168,15 +158,4 @@ static void what_cannot_be_a_tree_is_refused(void **state)
     assert_non_null(strstr(error.text, "along x"));
     assert_null(t.centre);
     sm_voxels_free(&v);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_trees_hold_every_cell_once),
-        cmocka_unit_test(corners_are_counted_below_the_first_voxel),
-        cmocka_unit_test(pruning_again_is_pruning_once),
-        cmocka_unit_test(what_cannot_be_a_tree_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

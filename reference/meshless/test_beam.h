@@ -1,11 +1,8 @@
-/* test_beam.h - bricks as meshless bodies, for the tests. Include after cmocka. */
+/* test_beam.h - bricks as meshless bodies, for the tests. */
 #ifndef REF_TEST_BEAM_H
 #define REF_TEST_BEAM_H
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
+#include "../../lib/test_frame.h"
 #include "body/body.h"
 #include "solve/solver.h"
 

@@ -1,15 +1,7 @@
 /* The meshless engine behind engine.h: rest, falling, pushes, handles, and what it refuses. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "../../lib/shapes/shape.h"
 #include "../../lib/test_fields.h"
+#include "../../lib/test_frame.h"
 #include "engine.h"
 #include "solve/solver.h"
 
@@ -82,9 +74,8 @@ static double (*field(SmEngine *engine, SmField which))[3]
 }
 
 /* A body at rest stays; one that falls is where h^2 g n (n + 1) / 2 says, undeformed. */
-static void rest_and_fall(void **state)
+TEST(rest_and_fall)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     for (int falls = 0; falls < 2; falls++) {
         Scene scene = scene_create();
@@ -108,9 +99,8 @@ static void rest_and_fall(void **state)
 
 /* Pushes on all particles of a speed times their mass give the body that speed, once it no longer
  * swings; and a little turning, for vertices are not spread as the mass is. */
-static void pushes(void **state)
+TEST(pushes)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     Scene scene = scene_create();
     SmEngine *engine;
@@ -140,9 +130,8 @@ static void pushes(void **state)
 }
 
 /* A handle on everything that turns by 60 degrees takes the body with it. */
-static void handles(void **state)
+TEST(handles)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     Scene scene = scene_create();
     SmEngine *engine;
@@ -177,9 +166,8 @@ static void handles(void **state)
 
 /* Handles that hold others, as many as before, on one side of the body and the other in turn: each
  * takes the points along that it grips. */
-static void handles_that_change(void **state)
+TEST(handles_that_change)
 {
-    (void)state;
     enum { HELD = 30 };
     if (!ref_solver_built) skip();
     Scene scene = scene_create();
@@ -228,9 +216,8 @@ static long slab(SmEngine *engine, double to, double x, long *particle, long *ti
 
 /* A cantilever of 64 modes sags under its weight as Timoshenko's beam does, and stays in its clamp.
  */
-static void cantilever(void **state)
+TEST(cantilever)
 {
-    (void)state;
     if (!ref_solver_built || !TEST_FIGURES) skip();
     static const double root = 1, length = 9, g = 1e-3;
     Scene scene = beam_create(length, 1000);
@@ -263,9 +250,8 @@ static void cantilever(void **state)
 }
 
 /* A small squash comes back as it was set; so does a speed. */
-static void set_and_get(void **state)
+TEST(set_and_get)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     Scene scene = scene_create();
     SmEngine *engine;
@@ -287,9 +273,8 @@ static void set_and_get(void **state)
     scene_free(&scene);
 }
 
-static void what_is_refused(void **state)
+TEST(what_is_refused)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     Scene scene = scene_create();
     SmEngine *engine;
@@ -320,9 +305,8 @@ static void what_is_refused(void **state)
 }
 
 /* A plate 50 times as wide as it is thick, whose sides 12,000 points do not tell apart. */
-static void a_thin_mesh_gets_more_points(void **state)
+TEST(a_thin_mesh_gets_more_points)
 {
-    (void)state;
     Scene scene = beam_create(1, 0);
     SmError error = {0};
     RefMpu mpu;
@@ -339,15 +323,4 @@ static void a_thin_mesh_gets_more_points(void **state)
     assert_int_equal(ref_meshless_field(&options, &mpu, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "take 24000 (run --points"));
     scene_free(&scene);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rest_and_fall),   cmocka_unit_test(pushes),
-        cmocka_unit_test(handles),         cmocka_unit_test(handles_that_change),
-        cmocka_unit_test(cantilever),      cmocka_unit_test(set_and_get),
-        cmocka_unit_test(what_is_refused), cmocka_unit_test(a_thin_mesh_gets_more_points),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,5 @@
 /* Rigid motions, masses, the energy of plain strains, and the patch test. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../../lib/test_frame.h"
 #include "../../../lib/vector.h"
 #include "../test_beam.h"
 
@@ -36,9 +30,8 @@ static double energy(const RefBody *body, const double *u)
 }
 
 /* Translations and small turns have no energy; the mass of a translation is the body's. */
-static void rigid_motions(void **state)
+TEST(rigid_motions)
 {
-    (void)state;
     static const double turns[4][9] = {{0},
                                        {0, -1, 0, 1, 0, 0, 0, 0, 0},
                                        {0, 0, 1, 0, 0, 0, -1, 0, 0},
@@ -63,9 +56,8 @@ static void rigid_motions(void **state)
 }
 
 /* Plain strains have the energy that the material's law says, for both bases. */
-static void energy_of_plain_strains(void **state)
+TEST(energy_of_plain_strains)
 {
-    (void)state;
     static const double none[3] = {0},
                         strain[9] = {1e-3, 2e-3, 0, 2e-3, -5e-4, 4e-4, 0, 4e-4, 2e-4};
     for (int basis = 0; basis < 2; basis++) {
@@ -180,9 +172,8 @@ static double patch_error(const Patch *patch)
 /* Gradients balanced by the octants' walls leave rounding alone where walls carry the tractions;
  * where finer points do, the walls' own error, which falls with their number. Bricks that octants
  * do not fit are as good as their edges are cut. */
-static void patch_test(void **state)
+TEST(patch_test)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const struct {
         Patch patch;
@@ -202,9 +193,8 @@ static void patch_test(void **state)
     }
 }
 
-static void materials_out_of_range(void **state)
+TEST(materials_out_of_range)
 {
-    (void)state;
     static const RefMaterial wrong[] = {{0, 0.3, 1}, {-1, 0.3, 1},      {NAN, 0.3, 1},
                                         {1, 0.5, 1}, {1, -1, 1},        {1, NAN, 1},
                                         {1, 0.3, 0}, {1, 0.3, INFINITY}};
@@ -222,9 +212,8 @@ static void materials_out_of_range(void **state)
 
 /* A plate of one layer of octants has its nodes in a plane; a node beside the body holds none of
  * it. */
-static void bodies_that_have_no_matrices(void **state)
+TEST(bodies_that_have_no_matrices)
 {
-    (void)state;
     RefBrick plate = {{0, 0, 0}, {2, 2, 0.25}};
     RefField field = ref_field_brick(&plate);
     RefBody body;
@@ -240,16 +229,4 @@ static void bodies_that_have_no_matrices(void **state)
         SM_INPUT);
     assert_non_null(strstr(error.text, "holds none of the body"));
     ref_body_free(&body);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rigid_motions),
-        cmocka_unit_test(energy_of_plain_strains),
-        cmocka_unit_test(patch_test),
-        cmocka_unit_test(materials_out_of_range),
-        cmocka_unit_test(bodies_that_have_no_matrices),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

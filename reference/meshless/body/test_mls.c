@@ -1,22 +1,13 @@
 /* clang-format off */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
 /* clang-format on */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "../../../lib/test_frame.h"
+#include "../../../lib/test_random.h"
 #include "../solve/rows.h"
 #include "mls.h"
 
 #define CONST(array) ((const double(*)[3])(array))
 
-static double uniform(void)
-{
-    return rand() / (RAND_MAX + 1.0);
-}
+static unsigned seed = 1;
 
 /* Nodes at x whose covers all reach as far. */
 static RefNodes nodes_at(long count, const double (*x)[3], double reach)
@@ -40,7 +31,7 @@ static RefNodes shaken(int side, double shake, double alpha)
     for (long n = 0; n < count; n++) {
         long at[3] = {n % side, n / side % side, n / side / side};
         for (int d = 0; d < 3; d++)
-            x[n][d] = ((double)at[d] + 0.5 + shake * (2 * uniform() - 1)) / side;
+            x[n][d] = ((double)at[d] + 0.5 + shake * (random_between(&seed, -1, 1))) / side;
     }
     RefNodes nodes = nodes_at(count, CONST(x), alpha / 2 / side);
     free(x);
@@ -87,7 +78,7 @@ static void reproduces(RefBasis basis, double alpha, double margin)
         RefNodes nodes = shaken(6, 0.3, alpha);
         for (int n = 0; n < 100; n++) {
             double x[3];
-            for (int d = 0; d < 3; d++) x[d] = margin + (1 - 2 * margin) * uniform();
+            for (int d = 0; d < 3; d++) x[d] = margin + (1 - 2 * margin) * random_unit(&seed);
             assert_int_equal(ref_mls_cover(&nodes, basis, 1, CONST(&x)), 0);
             check_reproduction(&nodes, basis, x);
         }
@@ -95,23 +86,20 @@ static void reproduces(RefBasis basis, double alpha, double margin)
     }
 }
 
-static void linear_fields_to_1e_10(void **state)
+TEST(linear_fields_to_1e_10)
 {
-    (void)state;
     reproduces(REF_MLS_LINEAR, 3, 0);
     reproduces(REF_MLS_LINEAR, 5, 0);
 }
 
-static void quadratic_fields_to_1e_10(void **state)
+TEST(quadratic_fields_to_1e_10)
 {
-    (void)state;
     reproduces(REF_MLS_QUADRATIC, 6, 0);
 }
 
 /* Gradients are the slopes of the values, also of single functions. */
-static void gradients_are_slopes(void **state)
+TEST(gradients_are_slopes)
 {
-    (void)state;
     RefNodes nodes = shaken(5, 0.2, 6);
     RefShape at = ref_shape_create(&nodes), ahead = ref_shape_create(&nodes);
     double x[3] = {0.43, 0.52, 0.47}, step = 1e-6;
@@ -132,9 +120,8 @@ static void gradients_are_slopes(void **state)
 }
 
 /* Far away, with three nodes, and with nodes in a plane there are no shape functions. */
-static void too_few_covers(void **state)
+TEST(too_few_covers)
 {
-    (void)state;
     static const double x[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 0.5, 1}};
     static const double middle[3] = {0.5, 0.5, 0.1}, far[3] = {9, 0, 0};
     for (int count = 0; count <= 5; count++) {
@@ -149,9 +136,8 @@ static void too_few_covers(void **state)
 }
 
 /* Enlarged covers mend a point outside all covers, but not nodes in a plane. */
-static void covers_grow_where_that_helps(void **state)
+TEST(covers_grow_where_that_helps)
 {
-    (void)state;
     double corner[3] = {0, 0, 0};
     RefNodes nodes = shaken(4, 0, 3);
     RefShape shape = ref_shape_create(&nodes);
@@ -166,9 +152,8 @@ static void covers_grow_where_that_helps(void **state)
 }
 
 /* A rigid turn by a small angle displaces every point as it should. */
-static void rows_of_a_turn(void **state)
+TEST(rows_of_a_turn)
 {
-    (void)state;
     static const double turn[3] = {0.1, -0.2, 0.3}, x[3] = {0.3, 0.6, 0.45};
     RefNodes nodes = shaken(5, 0.3, 5);
     RefShape shape = ref_shape_create(&nodes);
@@ -189,14 +174,4 @@ static void rows_of_a_turn(void **state)
     ref_rows_free(&rows);
     ref_shape_free(&shape);
     ref_nodes_free(&nodes);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(linear_fields_to_1e_10),       cmocka_unit_test(quadratic_fields_to_1e_10),
-        cmocka_unit_test(gradients_are_slopes),         cmocka_unit_test(too_few_covers),
-        cmocka_unit_test(covers_grow_where_that_helps), cmocka_unit_test(rows_of_a_turn),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

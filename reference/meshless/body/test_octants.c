@@ -1,14 +1,7 @@
 /* Balance, classes and volumes of the octants of bricks and a ball. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "nodes.h"
+
+#include "../../../lib/test_frame.h"
 
 static double ball_at(const void *body, const double x[3], double gradient[3])
 {
@@ -30,9 +23,8 @@ static RefOctants octants_of(const RefField *field, double cell, int coarser)
 }
 
 /* No terminal octant touches one across a face or an edge that is two levels finer. */
-static void one_level_at_faces_and_edges(void **state)
+TEST(one_level_at_faces_and_edges)
 {
-    (void)state;
     RefOctants octants = octants_of(&ball, 0.05, 3);
     int sizes = 0;
     for (long o = 0; o < octants.count; o++) {
@@ -53,9 +45,8 @@ static void one_level_at_faces_and_edges(void **state)
 }
 
 /* Classes by what the samples of an octant say, and points inside, whose weights are its share. */
-static void classes_of_a_ball(void **state)
+TEST(classes_of_a_ball)
 {
-    (void)state;
     RefOctants octants = octants_of(&ball, 0.21, 1);
     for (long o = 0; o < octants.count; o++) {
         const RefOctant *octant = octants.octant + o;
@@ -83,9 +74,8 @@ static void classes_of_a_ball(void **state)
 }
 
 /* Volumes converge with the square of the octants' size. */
-static void volumes(void **state)
+TEST(volumes)
 {
-    (void)state;
     double off[2], wanted = 4 * acos(-1) / 3;
     for (int n = 0; n < 2; n++) {
         RefOctants octants = octants_of(&ball, n ? 0.11 : 0.22, 1);
@@ -105,9 +95,8 @@ static void volumes(void **state)
 }
 
 /* Every node is in the body and stands alone; those of octants cut outside are on the surface. */
-static void nodes_of_a_ball(void **state)
+TEST(nodes_of_a_ball)
 {
-    (void)state;
     RefOctants octants = octants_of(&ball, 0.21, 1);
     RefNodes nodes;
     ref_nodes_place(&ball, &octants, 3, &nodes);
@@ -130,9 +119,8 @@ static void nodes_of_a_ball(void **state)
     ref_octants_free(&octants);
 }
 
-static void what_has_no_octants(void **state)
+TEST(what_has_no_octants)
 {
-    (void)state;
     RefBrick brick = {{0, 0, 0}, {1, 1, 1}};
     RefField field = ref_field_brick(&brick);
     RefOctantOptions options = {.cell = 1e-9, .split = 1, .gauss = 2, .clip = 1};
@@ -148,16 +136,4 @@ static void what_has_no_octants(void **state)
     options.cell = 0.3;
     assert_int_equal(ref_octants_build(&empty, &options, &octants, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "normals"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_level_at_faces_and_edges),
-        cmocka_unit_test(classes_of_a_ball),
-        cmocka_unit_test(volumes),
-        cmocka_unit_test(nodes_of_a_ball),
-        cmocka_unit_test(what_has_no_octants),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

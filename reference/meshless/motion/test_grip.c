@@ -1,11 +1,5 @@
 /* Bodies that handles grip at many points: their modes, and where moved handles take the points. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../../lib/test_frame.h"
 #include "../../../lib/vector.h"
 #include "../test_beam.h"
 #include "grip.h"
@@ -56,9 +50,8 @@ static void held_free(Held *held)
 }
 
 /* M-orthonormal, rising, six of them rigid. */
-static void modes_of_a_held_body(void **state)
+TEST(modes_of_a_held_body)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     Held held = held_create(2, 24);
     const RefModes *modes = &held.modes;
@@ -102,9 +95,8 @@ static double miss(const Held *held, int grips, const double (*pose)[3][4])
 
 /* One end goes up and is turned about the beam by half a circle and more, the other is turned a
  * little and led away: under gravity all points are where they should be, at every step. */
-static void moved_handles_are_met(void **state)
+TEST(moved_handles_are_met)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     Held held = held_create(2, 24);
     static const double g[3] = {0, -9.81, 0}, nowhere[3] = {0};
@@ -125,9 +117,8 @@ static void moved_handles_are_met(void **state)
 }
 
 /* Points of a handle that do not say how it is turned are bound one by one; the body hangs. */
-static void a_handle_of_one_point(void **state)
+TEST(a_handle_of_one_point)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const double g[3] = {0, -1, 0}, nowhere[3] = {0};
     static const double still[1][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
@@ -146,9 +137,8 @@ static void a_handle_of_one_point(void **state)
 }
 
 /* A motion taken over by other modes is where it was, and as fast. */
-static void taken_over(void **state)
+TEST(taken_over)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const double nowhere[3] = {0}, h = 0.01;
     Held held = held_create(1, 24);
@@ -175,15 +165,4 @@ static void taken_over(void **state)
     ref_motion_free(&after);
     ref_modes_free(&modes);
     held_free(&held);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_of_a_held_body),
-        cmocka_unit_test(moved_handles_are_met),
-        cmocka_unit_test(a_handle_of_one_point),
-        cmocka_unit_test(taken_over),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

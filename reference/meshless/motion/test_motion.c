@@ -1,11 +1,5 @@
 /* Warping, energy, sag and constraints of beams that move. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../../lib/test_frame.h"
 #include "../../../lib/vector.h"
 #include "../test_beam.h"
 #include "motion.h"
@@ -81,9 +75,8 @@ static double middle_line(const Beam *beam)
 }
 
 /* Rt is the mean of exp([s w]x) over s; its slope that of finite differences; R turns by |w|. */
-static void rotations(void **state)
+TEST(rotations)
 {
-    (void)state;
     static const double scale[] = {0, 1e-9, 0.05, 0.19, 0.21, 1, 3, 6};
     for (size_t n = 0; n < sizeof scale / sizeof *scale; n++) {
         double w[3] = {0.36 * scale[n], -0.48 * scale[n], 0.8 * scale[n]}, v[3] = {0.7, -1.1, 0.4};
@@ -114,9 +107,8 @@ static void rotations(void **state)
 
 /* Modes that turn a beam by 90 degrees: warping keeps its length, where linear modes stretch it by
  * 86%. */
-static void a_turned_beam_keeps_its_length(void **state)
+TEST(a_turned_beam_keeps_its_length)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const RefDamping none = {0};
     Beam beam = beam_create(false, &none);
@@ -144,9 +136,8 @@ static void a_turned_beam_keeps_its_length(void **state)
 /* A clamped beam in its first mode, its end turned by 45 and by 90 degrees: it gets shorter by 3%
  * and by 12%, which is beyond the 5% that a turn of the whole keeps. Linear modes make it longer,
  * by a sixth and by more than a half. */
-static void a_bent_beam(void **state)
+TEST(a_bent_beam)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const RefDamping none = {0};
     static const double most[2] = {0.05, 0.13}, linear[2] = {0.15, 0.5};
@@ -170,9 +161,8 @@ static void a_bent_beam(void **state)
 
 /* Held by one orientation alone, which turns by 90 degrees, a free beam turns with it and keeps its
  * length. */
-static void an_orientation_turns_a_beam(void **state)
+TEST(an_orientation_turns_a_beam)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const RefDamping some = {0.5, 1e-2};
     Beam beam = beam_create(false, &some);
@@ -200,9 +190,8 @@ static void arc_point(double k, double s, double x[3])
 
 /* Such an arc, alone as a mode, is where motion.h says, and that line is shorter than s. Nodes
  * above and below the middle line have it between them. */
-static void an_arc_is_shorter(void **state)
+TEST(an_arc_is_shorter)
 {
-    (void)state;
     static const RefDamping none = {0};
     static const double shorter[2] = {0.050, 0.172}; /* its end turned by 45 and 90 degrees */
     RefBodyOptions options = {.cell = cell, .basis = REF_MLS_LINEAR, .material = steel};
@@ -248,9 +237,8 @@ static void an_arc_is_shorter(void **state)
 }
 
 /* Thrown while it spins and swings, a free body's centre of mass follows its parabola. */
-static void a_thrown_body_follows_its_parabola(void **state)
+TEST(a_thrown_body_follows_its_parabola)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const RefDamping some = {0, 1e-3};
     static const double g[3] = {0, -9.81, 0}, h = 0.01;
@@ -286,9 +274,8 @@ static void a_thrown_body_follows_its_parabola(void **state)
     beam_free(&beam);
 }
 
-static void energy_never_grows(void **state)
+TEST(energy_never_grows)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const RefDamping dampings[2] = {{0, 0}, {0.5, 1e-3}};
     for (int n = 0; n < 2; n++) {
@@ -307,9 +294,8 @@ static void energy_never_grows(void **state)
 }
 
 /* A little gravity bends it as the static solve of all nodes does. */
-static void sag(void **state)
+TEST(sag)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const RefDamping strong = {2, 0};
     static const double g[3] = {0, -0.01, 0}, end[3] = {7.9, 0.5, 0.5};
@@ -327,9 +313,8 @@ static void sag(void **state)
 
 /* One end stays, the other is led away and turned by 90 degrees: both constraints hold at every
  * step. */
-static void constraints_hold(void **state)
+TEST(constraints_hold)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const RefDamping some = {1, 1e-3};
     static const double ends[2][3] = {{0, 0.5, 0.5}, {8, 0.5, 0.5}};
@@ -363,9 +348,8 @@ static void constraints_hold(void **state)
 }
 
 /* One point in two places, and more constraints than modes: nothing blows up. */
-static void constraints_that_cannot_hold(void **state)
+TEST(constraints_that_cannot_hold)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const RefDamping some = {1, 1e-3};
     Beam beam = beam_create(false, &some);
@@ -382,16 +366,4 @@ static void constraints_that_cannot_hold(void **state)
         for (int k = 0; k < MODES; k++) assert_true(fabs(beam.motion.z[k]) < 1e4);
     }
     beam_free(&beam);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rotations),          cmocka_unit_test(a_turned_beam_keeps_its_length),
-        cmocka_unit_test(a_bent_beam),        cmocka_unit_test(an_orientation_turns_a_beam),
-        cmocka_unit_test(an_arc_is_shorter),  cmocka_unit_test(a_thrown_body_follows_its_parabola),
-        cmocka_unit_test(energy_never_grows), cmocka_unit_test(sag),
-        cmocka_unit_test(constraints_hold),   cmocka_unit_test(constraints_that_cannot_hold),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

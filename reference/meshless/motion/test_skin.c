@@ -1,35 +1,25 @@
 /* Surface points beside the shape functions themselves. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../../lib/test_frame.h"
+#include "../../../lib/test_random.h"
 #include "../test_beam.h"
 #include "skin.h"
 
-static double uniform(void)
+TEST(points_follow_their_shape_functions)
 {
-    return rand() / (RAND_MAX + 1.0);
-}
-
-static void points_follow_their_shape_functions(void **state)
-{
-    (void)state;
     enum { POINTS = 3000 };
+    unsigned seed = 1;
     static const double size[3] = {2, 1.1, 0.9};
     RefBodyOptions options = {
         .cell = 0.23, .coarser = 1, .basis = REF_MLS_LINEAR, .material = steel};
     double(*x)[3] = sm_alloc(POINTS, sizeof *x), (*now)[3] = sm_alloc(POINTS, sizeof *now);
     for (int p = 0; p < POINTS; p++) { /* on all faces */
-        for (int d = 0; d < 3; d++) x[p][d] = size[d] * uniform();
+        for (int d = 0; d < 3; d++) x[p][d] = size[d] * random_unit(&seed);
         x[p][p % 3] = p % 2 ? 0 : size[p % 3];
     }
     RefBody body = brick_body_showing(size, &options, POINTS, (const double(*)[3])x);
     double(*moved)[3] = sm_alloc((size_t)body.nodes.count, sizeof *moved);
     for (long n = 0; n < body.nodes.count; n++)
-        for (int d = 0; d < 3; d++) moved[n][d] = uniform() - 0.5;
+        for (int d = 0; d < 3; d++) moved[n][d] = random_between(&seed, -0.5, 0.5);
     RefSkin skin;
     long loose = -1;
     ref_skin_create(&body, POINTS, (const double(*)[3])x, &skin, &loose);
@@ -62,10 +52,4 @@ static void points_follow_their_shape_functions(void **state)
     free(seen);
     free(x);
     free(now);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(points_follow_their_shape_functions)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

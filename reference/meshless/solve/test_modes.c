@@ -1,11 +1,5 @@
 /* Natural modes and static deflections of beams, beside the theory of Timoshenko's beam. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "../../../lib/test_frame.h"
 #include "../test_beam.h"
 #include "modes.h"
 
@@ -45,9 +39,8 @@ static void theory(bool clamped, int count, double *omega)
 }
 
 /* The theory holds for slender beams: the third mode of this one is off by 0.3%. */
-static void the_theory_is_that_of_slender_beams(void **state)
+TEST(the_theory_is_that_of_slender_beams)
 {
-    (void)state;
     static const double beta[2][3] = {{4.73004, 7.85320, 10.99561}, {1.87510, 4.69409, 7.85476}};
     for (int clamped = 0; clamped < 2; clamped++) {
         double omega[3], slender = sqrt(steel.young / 12 / steel.density);
@@ -119,9 +112,8 @@ static void check_modes(const RefBody *body, const RefModes *modes)
     free(Kx);
 }
 
-static void six_zeros_and_orthonormal(void **state)
+TEST(six_zeros_and_orthonormal)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     for (int quadratic = 0; quadratic < 2; quadratic++) {
         RefBodyOptions options = {.cell = 0.23,
@@ -158,9 +150,8 @@ static void errors(double cell, bool clamped, double error[2])
 
 /* Errors of beams two, three and four octants wide; they fall faster than with the square of the
  * octants' size. The theory's own error is 0.05%. */
-static void beams_converge(void **state)
+TEST(beams_converge)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     static const double cell[3] = {1.0 / 2, 1.0 / 3, 1.0 / 4};
     for (int clamped = 0; clamped < 2; clamped++) {
@@ -219,9 +210,8 @@ static void hold_root(const RefBody *body, double P, RefRows *rows, double *targ
 }
 
 /* The tip moves by 0.0089 in theory. */
-static void cantilever(void **state)
+TEST(cantilever)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     const double P = 1000 * WIDTH, size[3] = {L, D, WIDTH};
     RefBodyOptions options = {.cell = 1.5, .basis = REF_MLS_LINEAR, .material = {E, NU, 1}};
@@ -254,9 +244,8 @@ static void cantilever(void **state)
 
 /* A free body cannot be solved for, nor one held at a point; too many modes and none are refused.
  */
-static void what_has_no_solution(void **state)
+TEST(what_has_no_solution)
 {
-    (void)state;
     if (!ref_solver_built) skip();
     RefBody body = beam(0.5);
     RefSolver *solver;
@@ -276,16 +265,4 @@ static void what_has_no_solution(void **state)
     ref_rows_free(&rows);
     ref_shape_free(&shape);
     ref_body_free(&body);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_theory_is_that_of_slender_beams),
-        cmocka_unit_test(six_zeros_and_orthonormal),
-        cmocka_unit_test(beams_converge),
-        cmocka_unit_test(cantilever),
-        cmocka_unit_test(what_has_no_solution),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,10 @@
 /* The surface of a brick as a mesh. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "outline.h"
 
-static void a_brick_is_closed_and_has_its_volume(void **state)
+#include "../../../lib/test_frame.h"
+
+TEST(a_brick_is_closed_and_has_its_volume)
 {
-    (void)state;
     RefBrick brick = {{-1, 0, 2}, {1.3, 0.9, 2.5}};
     RefField field = ref_field_brick(&brick);
     SmMesh mesh;
@@ -32,21 +25,11 @@ static double outside_at(const void *body, const double x[3], double gradient[3]
     return 1;
 }
 
-static void nothing_inside(void **state)
+TEST(nothing_inside)
 {
-    (void)state;
     RefField field = {outside_at, NULL, {0, 0, 0}, {1, 1, 1}};
     SmMesh mesh;
     SmError error = {0};
     assert_int_equal(ref_outline(&field, 10, &mesh, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "nothing"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_brick_is_closed_and_has_its_volume),
-        cmocka_unit_test(nothing_inside),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

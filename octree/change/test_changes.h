@@ -1,18 +1,11 @@
-/* random_changes.h - random structures, and splits, merges and cuts of them, for tests; same seed,
- * same changes. cmocka.h and what it needs come before. */
-#ifndef OCT_RANDOM_CHANGES_H
-#define OCT_RANDOM_CHANGES_H
+/* test_changes.h - random structures, and splits, merges and cuts of them; same seed, same
+ * changes. */
+#ifndef OCT_TEST_CHANGES_H
+#define OCT_TEST_CHANGES_H
 
-#include <math.h>
-#include <string.h>
-
-#include "../tree/random_trees.h"
+#include "../../lib/test_frame.h"
+#include "../tree/test_trees.h"
 #include "structure.h"
-
-static inline double random_between(unsigned *seed, double low, double high)
-{
-    return low + (high - low) * random_unit(seed);
-}
 
 static inline void random_options(unsigned *seed, OctOptions *options)
 {

@@ -1,6 +1,6 @@
-/* random_regions.h - symmetric regions by the max norm, for tests that want no graph. */
-#ifndef OCT_RANDOM_REGIONS_H
-#define OCT_RANDOM_REGIONS_H
+/* test_regions.h - symmetric regions by the max norm, for tests that want no graph. */
+#ifndef OCT_TEST_REGIONS_H
+#define OCT_TEST_REGIONS_H
 
 #include <stdlib.h>
 #include <string.h>

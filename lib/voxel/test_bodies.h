@@ -1,21 +1,11 @@
-/* random_bodies.h - irregular voxel shapes and deformations for tests; same seed, same body. */
-#ifndef LSM_RANDOM_BODIES_H
-#define LSM_RANDOM_BODIES_H
+/* test_bodies.h - irregular voxel shapes and deformations for tests; same seed, same body. */
+#ifndef SM_TEST_BODIES_H
+#define SM_TEST_BODIES_H
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "../../lib/voxel/voxel.h"
-
-static inline double random_unit(unsigned *seed) /* 0..1 */
-{
-    return rand_r(seed) / (double)RAND_MAX;
-}
-
-static inline int random_int(unsigned *seed, int below)
-{
-    return (int)(random_unit(seed) * below) % below;
-}
+#include "../test_random.h"
+#include "voxel.h"
 
 /* Kinds: 0 sparse noise, 1 dense noise, 2 a box with holes, 3 a random walk's trail (thin, with
  * gaps of one cell), 4 a sheet of one cell with cuts, 5 a full box. Never empty. */

@@ -1,13 +1,9 @@
-/* rebuilt.h - a changed structure against one built from scratch, for tests. cmocka.h and what it
- * needs come before. */
-#ifndef OCT_REBUILT_H
-#define OCT_REBUILT_H
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+/* test_rebuilt.h - a changed structure against one built from scratch. */
+#ifndef OCT_TEST_REBUILT_H
+#define OCT_TEST_REBUILT_H
 
 #include "../../lib/csr.h"
+#include "../../lib/test_frame.h"
 #include "structure.h"
 
 /* The node of another tree that is the same cell. */

@@ -1,8 +1,8 @@
-/* random_trees.h - irregular octrees for tests; same seed, same tree. */
-#ifndef OCT_RANDOM_TREES_H
-#define OCT_RANDOM_TREES_H
+/* test_trees.h - irregular octrees for tests; same seed, same tree. */
+#ifndef OCT_TEST_TREES_H
+#define OCT_TEST_TREES_H
 
-#include "../../fastlsm/lattice/random_bodies.h"
+#include "../../lib/voxel/test_bodies.h"
 #include "tree.h"
 
 #include <stdlib.h>

@@ -1,10 +1,11 @@
-/* random_batches.h - random changes of a structure, and the same structure built from scratch, for
- * tests. Include after cmocka. */
-#ifndef OCT_RANDOM_BATCHES_H
-#define OCT_RANDOM_BATCHES_H
+/* test_batches.h - random changes of a structure. */
+#ifndef OCT_TEST_BATCHES_H
+#define OCT_TEST_BATCHES_H
 
-#include "../tree/random_trees.h"
+#include "../../lib/test_frame.h"
+#include "../tree/test_trees.h"
 #include "structure.h"
+#include "test_rebuilt.h"
 
 /* Splits a few random leaves, some of their children too. */
 static inline void split_some(unsigned *seed, OctStructure *s, int count)
@@ -62,23 +63,12 @@ static inline void random_batch(unsigned *seed, OctStructure *s, int most)
     if (kind == 3) cut_some(seed, s);
 }
 
-/* The structure of the same split cells and cut from scratch. The caller frees. */
-static inline void rebuild(const OctStructure *s, const double *mass, OctStructure *fresh)
-{
-    int *leaf;
-    assert_int_equal(oct_structure_rebuild(s, mass, fresh, &leaf, NULL), SM_OK);
-    free(leaf);
-}
-
 /* The leaf of another structure of the same cells that has the cell of leaf `leaf`. */
 static inline long same_leaf(const OctStructure *s, long leaf, const OctStructure *other)
 {
-    int node = s->tree.node[leaf], at[3];
-    for (int d = 0; d < 3; d++) at[d] = oct_tree_low(&s->tree, node, d);
-    int same = oct_tree_at(&other->tree, oct_tree_level(&s->tree, node), at[0], at[1], at[2]);
-    assert_true(same >= 0 && other->tree.leaf[same] >= 0);
-    assert_memory_equal(other->tree.centre[same], s->tree.centre[node], sizeof(int[3]));
-    return other->tree.leaf[same];
+    int same = other->tree.leaf[same_node(&s->tree, s->tree.node[leaf], &other->tree)];
+    assert_true(same >= 0);
+    return same;
 }
 
 #endif

@@ -1,0 +1,58 @@
+/* test_frame.h - the frame of a unit test: cmocka, the standard headers that nearly every test
+ * needs, and main(), which runs the tests of the file in their order.
+ *
+ *     TEST(a_box_has_its_volume)
+ *     {
+ *         assert_int_equal(...);
+ *     }
+ */
+#ifndef SM_TEST_FRAME_H
+#define SM_TEST_FRAME_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static struct CMUnitTest test_list[64]; /* cmocka passes over entries that are empty */
+static CMFixtureFunction test_set_up, test_tear_down;
+
+static inline void test_enlist(struct CMUnitTest test)
+{
+    size_t room = sizeof test_list / sizeof *test_list, n = 0;
+    while (n < room && test_list[n].name) n++;
+    if (n == room) abort();
+    test_list[n] = test;
+}
+
+/* Defines a test. */
+#define TEST(name)                                                                                 \
+    static void name(void **state);                                                                \
+    __attribute__((constructor)) static void enlist_##name(void)                                   \
+    {                                                                                              \
+        test_enlist((struct CMUnitTest)cmocka_unit_test(name));                                    \
+    }                                                                                              \
+    static void name(void **state __attribute__((unused)))
+
+/* What cmocka calls before the file's first test and after its last. A later one takes the place of
+ * an earlier one, so that of test_folder.h. */
+#define TEST_GROUP(set_up, tear_down)                                                              \
+    __attribute__((constructor)) static void test_group_##set_up(void)                             \
+    {                                                                                              \
+        test_set_up = set_up;                                                                      \
+        test_tear_down = tear_down;                                                                \
+    }
+
+int main(void)
+{
+    return cmocka_run_group_tests_name("tests", test_list, test_set_up, test_tear_down);
+}
+
+#endif
