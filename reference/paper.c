@@ -11,7 +11,7 @@
 
 #include "../lib/error.h"
 
-extern const char ref_papers_text[]; /* papers.cmake makes it of papers.cfg */
+extern const char ref_papers_text[]; /* scripts/embed.cmake makes it of papers.cfg */
 
 static struct {
     int row_count, claim_count;

@@ -1,13 +1,10 @@
-/* builtin.h - the scene files of bench/scenes/, compiled in by bench/scenes.cmake. */
+/* builtin.h - the scene files of bench/scenes/, compiled in by scripts/embed.cmake. */
 #ifndef BENCH_BUILTIN_H
 #define BENCH_BUILTIN_H
-
-#include <stddef.h>
 
 typedef struct {
     const char *name; /* "penguin" */
     const char *text; /* the file's text, zero-terminated */
-    size_t size;      /* without the zero */
 } BenchBuiltin;
 
 /* In alphabetical order; ends with an entry without a name. */

@@ -332,7 +332,7 @@ const char *bench_scene_text(const char *name, size_t *size)
 {
     for (const BenchBuiltin *scene = bench_builtin; scene->name; scene++)
         if (!strcmp(scene->name, name)) {
-            if (size) *size = scene->size;
+            if (size) *size = strlen(scene->text);
             return scene->text;
         }
     return NULL;

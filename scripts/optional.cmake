@@ -1,0 +1,77 @@
+# What the program can do without: each library, the line that says what goes without it, and the
+# sources that it decides about.
+
+# Makes the target `name`, to be linked where the library is used. Where `program` compiles and links
+# with the include folders and libraries given (packages come without their headers, or without what
+# they need), the target carries them, has_<name> is set, and the source of USED_BY is compiled with
+# its definition; else the target is empty and `without` is said.
+function(optional_library name program without)
+  cmake_parse_arguments(PARSE_ARGV 3 of "" "" "INCLUDES;LIBRARIES;USED_BY")
+  add_library(${name} INTERFACE)
+  unset(works CACHE) # try_compile keeps its result there
+  if(NOT "${of_INCLUDES};${of_LIBRARIES};" MATCHES "-NOTFOUND;")
+    set(probe ${CMAKE_BINARY_DIR}/CMakeFiles/probe_${name})
+    file(WRITE ${probe}.c "${program}\n")
+    try_compile(works ${probe} ${probe}.c CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${of_INCLUDES}"
+      LINK_LIBRARIES ${of_LIBRARIES})
+  endif()
+  set(has_${name} ${works} PARENT_SCOPE)
+  if(NOT works)
+    message(STATUS "${without}")
+    return()
+  endif()
+  target_include_directories(${name} SYSTEM INTERFACE ${of_INCLUDES})
+  target_link_libraries(${name} INTERFACE ${of_LIBRARIES})
+  if(of_USED_BY)
+    list(POP_FRONT of_USED_BY source)
+    set_source_files_properties(${source} PROPERTIES COMPILE_DEFINITIONS ${of_USED_BY})
+  endif()
+endfunction()
+
+pkg_search_module(MPI QUIET mpi-c ompi-c mpich)
+optional_library(mpi [[
+#include <mpi.h>
+int main(void) { return MPI_Init(0, 0); }]]
+  "No MPI: 'mpirun shapebench sweep' will refuse; sweep --shard and merge do without (libopenmpi-dev openmpi-bin)"
+  INCLUDES ${MPI_INCLUDE_DIRS} LIBRARIES ${MPI_LINK_LIBRARIES}
+  USED_BY bench/measure/ranks.c SHAPEBENCH_MPI)
+
+pkg_check_modules(CMOCKA QUIET cmocka)
+optional_library(cmocka [[
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+int main(void) { return cmocka_run_group_tests((const struct CMUnitTest *)0, 0, 0); }]]
+  "No unit tests: install libcmocka-dev"
+  INCLUDES ${CMOCKA_INCLUDE_DIRS} LIBRARIES ${CMOCKA_LINK_LIBRARIES})
+
+pkg_check_modules(ARPACK QUIET arpack)
+find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse)
+find_library(CHOLMOD_LIBRARY cholmod)
+find_library(LAPACK_LIBRARY lapack)
+optional_library(modes [[ /* those of reference/meshless/solve/solver.h */
+#include <arpack.h>
+#include <cholmod.h>
+void dpstrf_(void);
+int main(void) { dpstrf_(); return dsaupd_c != 0 && cholmod_start(0); }]]
+  "No meshless bodies: install libsuitesparse-dev, libarpack2-dev, liblapack-dev"
+  INCLUDES ${ARPACK_INCLUDE_DIRS} ${CHOLMOD_INCLUDE}
+  LIBRARIES ${ARPACK_LINK_LIBRARIES} ${CHOLMOD_LIBRARY} ${LAPACK_LIBRARY})
+if(has_modes) # sources that are not compiled
+  set(sources_left_out modes_absent)
+else()
+  set(sources_left_out modes|solver)
+endif()
+
+pkg_check_modules(SECCOMP QUIET libseccomp)
+optional_library(seccomp [[
+#include <seccomp.h>
+int main(void) { return seccomp_load(seccomp_init(SCMP_ACT_ALLOW)); }]]
+  "No filter of what the mesh importer asks the system for: install libseccomp-dev"
+  INCLUDES ${SECCOMP_INCLUDE_DIRS} LIBRARIES ${SECCOMP_LINK_LIBRARIES}
+  USED_BY lib/system/confine.c SHAPEBENCH_SECCOMP)
+if(has_seccomp)
+  set(pc_seccomp ", libseccomp") # shapebench.pc.in
+endif()

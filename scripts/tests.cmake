@@ -1,0 +1,112 @@
+# What ctest runs: unit tests or fuzz targets and style checks, and the programs of scripts/.
+set(folders lib fastlsm octree reference bench)
+enable_testing()
+
+# A test is test_<noun>.c beside its module, linked with everything.
+function(add_unit_test source)
+  get_filename_component(noun ${source} NAME_WE)
+  file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${source})
+  string(REGEX REPLACE "^(reference/)?([a-z]+)/.*" "\\2" folder ${folder})
+  if(folder MATCHES "^test_")
+    set(folder reference)
+  endif()
+  string(REGEX REPLACE "^test_" "${folder}_" name ${noun})
+  if(NOT name MATCHES "${SHAPEBENCH_TESTS}")
+    return()
+  endif()
+  add_executable(test_${name} ${source})
+  target_link_libraries(test_${name} PRIVATE shapebench_flags cmocka shapebench_bench)
+  target_compile_definitions(test_${name} PRIVATE
+    SOURCE_DIR="${CMAKE_SOURCE_DIR}" BINARY_DIR="${CMAKE_BINARY_DIR}")
+  add_test(NAME ${name} COMMAND test_${name})
+  set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+endfunction()
+
+# A fuzz target is fuzz_<noun>.c beside its module. One that asks for SHAPEBENCH_FUZZ_SUFFIX takes
+# whole files then, and is run again for each of these formats. The seeds, if any, are in
+# <test>.seeds/ in the build folder, where what it finds is added.
+function(add_fuzz_test source)
+  get_filename_component(target ${source} NAME_WE)
+  add_executable(${target} ${source})
+  target_compile_definitions(${target} PRIVATE SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+  target_link_libraries(${target} PRIVATE shapebench_flags shapebench_bench)
+  file(STRINGS ${source} takes_files REGEX SHAPEBENCH_FUZZ_SUFFIX)
+  set(formats "")
+  if(takes_files)
+    set(formats _obj _off _ply _stl)
+  endif()
+  foreach(format IN ITEMS "" ${formats})
+    set(name ${target}${format})
+    file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/${name}.seeds)
+    add_test(NAME ${name} COMMAND ${target} -max_total_time=${SHAPEBENCH_FUZZ_SECONDS} -timeout=20
+      -max_len=4096 -verbosity=0 -print_final_stats=1 ${name}.seeds)
+    set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+    if(format)
+      string(REPLACE _ . suffix ${format})
+      set_tests_properties(${name} PROPERTIES ENVIRONMENT SHAPEBENCH_FUZZ_SUFFIX=${suffix})
+    endif()
+  endforeach()
+endfunction()
+
+# Formatting of every C file, and clang-tidy's checks (.clang-tidy) of every one but the tests.
+function(add_style_tests)
+  find_program(CLANG_FORMAT clang-format REQUIRED)
+  find_program(CLANG_TIDY clang-tidy REQUIRED)
+  foreach(folder ${folders})
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.c)
+    file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${folder}/*.h)
+    add_test(NAME format_${folder} COMMAND ${CLANG_FORMAT} --dry-run -Werror ${sources} ${headers})
+    list(FILTER sources EXCLUDE REGEX "/test_[a-z0-9_]*\\.c$")
+    foreach(source ${sources})
+      file(RELATIVE_PATH name ${CMAKE_SOURCE_DIR} ${source})
+      add_test(NAME tidy_${name} COMMAND ${CLANG_TIDY} --quiet -p ${CMAKE_BINARY_DIR} ${source})
+    endforeach()
+  endforeach()
+endfunction()
+
+# Calls `command` for every source <folder>/<prefix>_<noun>.c.
+function(add_each prefix command)
+  foreach(folder ${folders})
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/${prefix}_*.c)
+    foreach(source ${sources})
+      cmake_language(CALL ${command} ${source})
+    endforeach()
+  endforeach()
+endfunction()
+
+if(SHAPEBENCH_FUZZ)
+  add_each(fuzz add_fuzz_test)
+  add_style_tests()
+elseif(has_cmocka)
+  add_each(test add_unit_test)
+endif()
+# A test that is a program of scripts/, skipped where something that it needs is absent.
+function(add_script_test name script)
+  add_test(NAME ${name} COMMAND ${CMAKE_SOURCE_DIR}/scripts/${script} ${ARGN})
+  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
+endfunction()
+
+if(NOT SHAPEBENCH_SANITIZE)
+  foreach(plot sweep slice calibration)
+    add_script_test(plot_${plot} test_plot_${plot}.sh ${CMAKE_BINARY_DIR})
+  endforeach()
+  add_script_test(optional test_optional.sh)
+  add_script_test(setup test_setup.sh)
+  add_script_test(install test_install.sh ${CMAKE_BINARY_DIR})
+  add_script_test(render test_render.sh $<TARGET_FILE:shapebench>)
+  foreach(what brute_force damage writers scenes) # more on request: --particles, --rounds, --seconds
+    add_script_test(${what} test_${what}.py $<TARGET_FILE:shapebench>)
+  endforeach()
+  add_script_test(report report/test_report.py $<TARGET_FILE:shapebench>)
+endif()
+
+# These start first, so that none is alone in the end.
+get_property(tests DIRECTORY PROPERTY TESTS)
+foreach(test bench_calibrate bench_regress fastlsm_fastlsm bench_kernels bench_sweep_run meshless_engine
+        bench_points octree_octree_f64 fastlsm_fracture fastlsm_fracture_f64 octree_octree
+        render brute_force damage writers scenes report install)
+  if(test IN_LIST tests)
+    set_tests_properties(${test} PROPERTIES COST 1)
+  endif()
+endforeach()
