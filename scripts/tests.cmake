@@ -2,7 +2,8 @@
 set(folders lib fastlsm octree reference bench)
 enable_testing()
 
-# A test is test_<noun>.c beside its module, linked with everything.
+# A test is test_<noun>.c beside its module, linked with everything. One that speaks of SM_REAL_BITS
+# is compiled in both precisions: <name> and <name>_f64.
 function(add_unit_test source)
   get_filename_component(noun ${source} NAME_WE)
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${source})
@@ -10,16 +11,23 @@ function(add_unit_test source)
   if(folder MATCHES "^test_")
     set(folder reference)
   endif()
-  string(REGEX REPLACE "^test_" "${folder}_" name ${noun})
-  if(NOT name MATCHES "${SHAPEBENCH_TESTS}")
-    return()
-  endif()
-  add_executable(test_${name} ${source})
-  target_link_libraries(test_${name} PRIVATE shapebench_flags cmocka shapebench_bench)
-  target_compile_definitions(test_${name} PRIVATE
-    SOURCE_DIR="${CMAKE_SOURCE_DIR}" BINARY_DIR="${CMAKE_BINARY_DIR}")
-  add_test(NAME ${name} COMMAND test_${name})
-  set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+  string(REGEX REPLACE "^test_" "${folder}_" noun ${noun})
+  file(STRINGS ${source} in_both_precisions REGEX SM_REAL_BITS)
+  foreach(suffix IN ITEMS "" _f64)
+    set(name ${noun}${suffix})
+    if((suffix AND NOT in_both_precisions) OR NOT name MATCHES "${SHAPEBENCH_TESTS}")
+      continue()
+    endif()
+    add_executable(test_${name} ${source})
+    target_link_libraries(test_${name} PRIVATE shapebench_flags cmocka shapebench_bench)
+    target_compile_definitions(test_${name} PRIVATE
+      SOURCE_DIR="${CMAKE_SOURCE_DIR}" BINARY_DIR="${CMAKE_BINARY_DIR}")
+    if(in_both_precisions)
+      target_compile_definitions(test_${name} PRIVATE SM_REAL_BITS=$<IF:$<BOOL:${suffix}>,64,32>)
+    endif()
+    add_test(NAME ${name} COMMAND test_${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+  endforeach()
 endfunction()
 
 # A fuzz target is fuzz_<noun>.c beside its module. One that asks for SHAPEBENCH_FUZZ_SUFFIX takes

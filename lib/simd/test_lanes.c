@@ -1,0 +1,208 @@
+/* Operations on lanes against what they do to one lane after the other, in both precisions
+ * (SM_REAL_BITS). */
+#include "lanes.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "../test_frame.h"
+#include "../test_random.h"
+
+enum { TRIALS = 200 };
+
+static vec random_vec(unsigned *seed)
+{
+    vec v;
+    for (int i = 0; i < SM_LANES; i++) v[i] = (real)random_between(seed, -1, 1);
+    return v;
+}
+
+/* The same bits, so that a zero's sign counts. */
+static void check(vec found, vec wanted)
+{
+    assert_memory_equal(&found, &wanted, sizeof found);
+}
+
+static void number(real *p, int count)
+{
+    for (int i = 0; i < count; i++) p[i] = (real)(i + 1);
+}
+
+TEST(loads_and_stores_take_any_alignment)
+{
+    real from[4 * SM_LANES + 16], to[4 * SM_LANES + 16];
+    number(from, 4 * SM_LANES + 16);
+    for (int at = 0; at < SM_LANES; at++) {
+        vec row[3];
+        load3(from + at, row);
+        for (int d = 0; d < 3; d++)
+            for (int i = 0; i < SM_LANES; i++) assert_true(row[d][i] == at + d * SM_LANES + i + 1);
+        memset(to, 0, sizeof to);
+        store3(to + at, row);
+        assert_memory_equal(to + at, from + at, 3 * SM_LANES * sizeof *to);
+        assert_true(to[at + 3 * SM_LANES] == 0 && (at == 0 || to[at - 1] == 0));
+        store4(to + at, load4(from));
+        store8(to + at + 4, load8(from + 4));
+        store16(to + at + 12, load16(from + 12));
+        assert_memory_equal(to + at, from, 28 * sizeof *to);
+    }
+}
+
+TEST(vectors_are_set_numbered_and_copied)
+{
+    vec from[16], to[16] = {0};
+    for (int i = 0; i < 16; i++) from[i] = lanes_number() + lanes_set((real)i);
+    for (int i = 0; i < 16; i++)
+        for (int lane = 0; lane < SM_LANES; lane++) assert_true(from[i][lane] == i + lane);
+    lanes_copy(7, from, to);
+    assert_memory_equal(to, from, 7 * sizeof *to);
+    check(to[7], lanes_set(0));
+}
+
+TEST(masks_choose_lanes)
+{
+    unsigned seed = 1;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        unsigned lanes = (unsigned)random_int(&seed, LANES_ALL + 1);
+        vec yes = random_vec(&seed), no = random_vec(&seed), chosen, kept;
+        ivec mask;
+        for (int i = 0; i < SM_LANES; i++) {
+            bool set = lanes >> i & 1;
+            mask[i] = -(lane_int)set;
+            chosen[i] = set ? yes[i] : no[i];
+            kept[i] = set ? yes[i] : 0;
+        }
+        check(lanes_choose(lanes, yes, no), chosen);
+        check(lanes_select(mask, yes, no), chosen);
+        check(lanes_keep(lanes, yes), kept);
+        check(lanes_and(yes, mask), kept);
+        assert_int_equal(lanes_any(mask) != 0, lanes != 0);
+    }
+    for (int i = 0; i < SM_LANES; i++) { /* a single lane */
+        ivec mask = {0};
+        mask[i] = -1;
+        assert_true(lanes_any(mask));
+    }
+    assert_false(lanes_any((ivec){0}));
+}
+
+TEST(lanes_are_compared)
+{
+    unsigned seed = 2;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        vec a = random_vec(&seed), b = random_vec(&seed), most, size;
+        unsigned below = 0;
+        b[trial % SM_LANES] = a[trial % SM_LANES];
+        for (int i = 0; i < SM_LANES; i++) {
+            below |= (unsigned)(a[i] < b[i]) << i;
+            most[i] = a[i] > b[i] ? a[i] : b[i];
+            size[i] = a[i] < 0 ? -a[i] : a[i];
+        }
+        check(lanes_max(a, b), most);
+        check(lanes_abs(a), size);
+        assert_int_equal(lanes_below(a, b), below);
+        a[trial % SM_LANES] = (real)NAN; /* not below, and nothing is below it */
+        below &= ~(1u << trial % SM_LANES);
+        assert_int_equal(lanes_below(a, b), below);
+        assert_int_equal(lanes_below(b, a) >> trial % SM_LANES & 1, 0);
+    }
+    check(lanes_abs(lanes_set(-(real)0)), lanes_set(0));
+}
+
+/* Relative errors as lanes.h promises them, over the magnitudes of ten decades. */
+TEST(roots_and_inverses_are_as_exact_as_promised)
+{
+    unsigned seed = 3;
+    const double rough = SM_REAL_BITS == 32 ? 1e-4 : 1e-8, last = 2 * (double)SM_EPSILON;
+    for (int trial = 0; trial < 10 * TRIALS; trial++) {
+        vec v;
+        for (int i = 0; i < SM_LANES; i++) v[i] = (real)pow(10, random_between(&seed, -5, 5));
+        vec root = lanes_sqrt(v), rough_root = lanes_rough_root(v);
+        vec inverse = lanes_inverse(v), rough_inverse = lanes_rough_inverse(-v);
+        for (int i = 0; i < SM_LANES; i++) {
+            double x = (double)v[i], s = sqrt(x);
+            assert_true(root[i] == (real)s);
+            assert_true(fabs((double)rough_root[i] - s) <= 1e-4 * s);
+            assert_true(fabs((double)inverse[i] * x - 1) <= last);
+            assert_true(fabs(-(double)rough_inverse[i] * x - 1) <= rough);
+        }
+    }
+    check(lanes_sqrt(lanes_set(0)), lanes_set(0));
+}
+
+static void check_slide(vec slid, int o)
+{
+    for (int i = 0; i < SM_LANES; i++) assert_true(slid[i] == o + i);
+}
+
+TEST(vectors_slide_by_any_number_of_lanes)
+{
+    vec low = lanes_number(), high = low + SM_LANES;
+    for (volatile int o = 0; o <= SM_LANES; o++) check_slide(lanes_slide(low, high, o), o);
+    check_slide(lanes_slide(low, high, 0), 0); /* constants have an instruction of their own */
+    check_slide(lanes_slide(low, high, 1), 1);
+    check_slide(lanes_slide(low, high, 2), 2);
+    check_slide(lanes_slide(low, high, 3), 3);
+    check_slide(lanes_slide(low, high, SM_LANES / 2), SM_LANES / 2);
+    check_slide(lanes_slide(low, high, SM_LANES - 2), SM_LANES - 2);
+    check_slide(lanes_slide(low, high, SM_LANES - 1), SM_LANES - 1);
+    check_slide(lanes_slide(low, high, SM_LANES), SM_LANES);
+}
+
+/* An array between two pages that nobody may read. */
+TEST(half_vectors_read_what_is_asked_for_alone)
+{
+    enum { HALF = SM_LANES / 2 };
+    size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    char *pages = mmap(NULL, 3 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_true(pages != MAP_FAILED);
+    assert_int_equal(mprotect(pages, page, PROT_NONE), 0);
+    assert_int_equal(mprotect(pages + 2 * page, page, PROT_NONE), 0);
+    real *first = (real *)(pages + page), *end = (real *)(pages + 2 * page);
+    number(first, (int)(end - first));
+    for (int out = 0; out <= HALF; out++) { /* lanes beyond the end, or before the start */
+        const unsigned all = (1u << HALF) - 1;
+        unsigned inside = all >> out, after = all << out & all;
+        half_vec low = half_load(end - HALF + out, inside), high = half_load(first - out, after);
+        for (int i = 0; i < HALF; i++) {
+            real at_end = i + out < HALF ? end[i + out - HALF] : 0;
+            assert_true(low[i] == at_end);
+            assert_true(high[i] == (i >= out ? first[i - out] : 0));
+        }
+        vec joined = lanes_join(low, high);
+        for (int i = 0; i < SM_LANES; i++)
+            assert_true(joined[i] == (i < HALF ? low[i] : high[i - HALF]));
+    }
+    munmap(pages, 3 * page);
+}
+
+TEST(interleaved_vectors_are_rows_of_lanes)
+{
+    for (int n = 1; n <= SM_LANES; n *= 2) {
+        vec m[16], was[16];
+        real row[16 * SM_LANES];
+        for (int i = 0; i < n; i++) was[i] = m[i] = lanes_number() * 100 + lanes_set((real)i);
+        lanes_interleave(m, n);
+        memcpy(row, m, sizeof *m * (size_t)n);
+        for (int i = 0; i < n * SM_LANES; i++) assert_true(row[i] == i / n * 100 + i % n);
+        lanes_separate(m, n);
+        assert_memory_equal(m, was, sizeof *m * (size_t)n);
+    }
+}
+
+TEST(rows_are_gathered_and_scattered)
+{
+    real memory[SM_LANES][19], back[SM_LANES][16], *to[SM_LANES];
+    const real *from[SM_LANES];
+    vec field[16];
+    for (int i = 0; i < SM_LANES; i++) {
+        for (int f = 0; f < 16; f++) memory[i][f + i % 4] = (real)(100 * i + f);
+        from[i] = memory[i] + i % 4; /* at any alignment */
+        to[i] = back[SM_LANES - 1 - i];
+    }
+    lanes_from_rows(from, field);
+    for (int f = 0; f < 16; f++)
+        for (int i = 0; i < SM_LANES; i++) assert_true(field[f][i] == 100 * i + f);
+    lanes_to_rows(field, to);
+    for (int i = 0; i < SM_LANES; i++) assert_memory_equal(to[i], from[i], sizeof *back);
+}
