@@ -2,6 +2,7 @@
 #include "engine.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -201,7 +202,40 @@ static void divide_momentum(SmEngine *e)
     e->divided = true;
 }
 
-static SmCode engine_begin(SmEngine *e, SmError *error)
+/* Goals are to be right to 5e-5 finest cells: some hundred roundings of a coordinate within a
+ * region must be no more. */
+enum { MOST_REACH = 256 };
+
+static SmCode check_reach(const OctStructure *s, SmError *error)
+{
+    if (SM_REAL_BITS == 64 || s->regions.most_width <= 2 * MOST_REACH) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "octree: regions reach %g finest cells, and single precision has the digits for "
+                   "%d: take narrower regions, larger cells, fewer levels, or double precision",
+                   0.5 * s->regions.most_width, MOST_REACH);
+}
+
+/* The same of a whole body, which has one origin once it changes (ghosts.h). */
+static SmCode check_width(const OctStructure *s, SmError *error)
+{
+    const OctTree *tree = &s->tree;
+    int low[3] = {INT_MAX, INT_MAX, INT_MAX}, high[3] = {INT_MIN, INT_MIN, INT_MIN}, wide = 0;
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        for (int d = 0; d < 3 && tree->node[leaf] >= 0; d++) {
+            int at = tree->centre[tree->node[leaf]][d]; /* half finest cells */
+            if (at < low[d]) low[d] = at;
+            if (at > high[d]) high[d] = at;
+            if (high[d] - low[d] > wide) wide = high[d] - low[d];
+        }
+    if (SM_REAL_BITS == 64 || wide <= 4 * MOST_REACH) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "octree: the body is %d finest cells wide, and of a body that is cut or refined "
+                   "single precision has the digits for %d: take larger cells, fewer levels, or "
+                   "double precision",
+                   wide / 2, 2 * MOST_REACH);
+}
+
+static SmCode engine_may_change(SmEngine *e, SmError *error)
 {
     if (e->oct->instances > 1)
         return sm_fail(error, SM_USAGE,
@@ -216,6 +250,13 @@ static SmCode engine_begin(SmEngine *e, SmError *error)
         return sm_fail(error, SM_USAGE,
                        "octree: bodies of form 'adjoint' cannot be resampled; use 'hierarchical', "
                        "which is the same where regions are symmetric, as the engine's are");
+    return e->oct->dynamic ? SM_OK : check_width(&e->base.structure, error);
+}
+
+static SmCode engine_begin(SmEngine *e, SmError *error)
+{
+    SmCode code = engine_may_change(e, error);
+    if (code) return code;
     int team = sm_team_enter(e->oct->params.threads);
     oct_resample_prepare(&e->base.structure);
     sm_team_leave(team);
@@ -283,18 +324,6 @@ static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmErro
     return SM_OK;
 }
 
-/* Goals are to be right to 5e-5 finest cells: some hundred roundings of a coordinate within a
- * region must be no more. */
-static SmCode check_reach(const OctStructure *s, SmError *error)
-{
-    enum { MOST = 256 };
-    if (SM_REAL_BITS == 64 || s->regions.most_width <= 2 * MOST) return SM_OK;
-    return sm_fail(error, SM_INPUT,
-                   "octree: regions reach %g finest cells, and single precision has the digits for "
-                   "%d: take narrower regions, larger cells, fewer levels, or double precision",
-                   0.5 * s->regions.most_width, MOST);
-}
-
 static Oct *build(const OctStructure *s, const OctOptions *options, const SmEngineParams *params)
 {
     OctParams own = {.weighting = options->weighting,
@@ -315,6 +344,7 @@ static Oct *build(const OctStructure *s, const OctOptions *options, const SmEngi
 /* Everything behind the structure, which is in its place. */
 static void complete(SmEngine *e, const OctOptions *options, const SmEngineParams *params)
 {
+    e->base.may = engine_may_change;
     e->base.begin = engine_begin;
     e->base.end = engine_end;
     e->base.leaves = engine_leaves;

@@ -24,7 +24,8 @@
 void oct_ghosts_build(Oct *oct, const OctTree *tree, const OctRegions *regions);
 void oct_ghosts_fill(Oct *oct, const OctTree *tree, const OctWeights *weights);
 
-/* Makes one frame of all, so that lists may be replaced. O(body). */
+/* Makes one frame of all, so that lists may be replaced: goals are then as exact as the whole
+ * body's coordinates (engine_base.h says how wide it may be). O(body). */
 void oct_ghosts_merge(Oct *oct);
 
 void oct_ghosts_free(Oct *oct);

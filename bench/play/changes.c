@@ -12,6 +12,15 @@ bool bench_changes_any(const BenchPart *part)
     return part->own || scene->cut_count > 0 || scene->view.level > 0;
 }
 
+SmCode bench_changes_check(const BenchPart *part, SmError *error)
+{
+    const BenchCarrier *carrier = bench_engine(part->runner.type->name)->carrier;
+    if (!carrier->may_change || !bench_changes_any(part)) return SM_OK;
+    SmError why;
+    SmCode code = carrier->may_change(part->runner.engine, &why);
+    return code ? sm_fail(error, code, "%s: %s", part->runner.scene->file, why.text) : SM_OK;
+}
+
 void bench_changes_create(BenchPart *part, BenchChanges *changes)
 {
     const SmMesh *mesh = &part->body.mesh;

@@ -64,6 +64,9 @@ struct BenchCarrier {
     /* Of each vertex of one body, into [surface.vertex_count]: the leaf's level, 0 of a base cell.
      * NULL: there are none. */
     void (*levels)(const BenchChanges *changes, int *level);
+
+    /* What keeps the body from being changed, before anything runs; NULL: nothing. */
+    SmCode (*may_change)(SmEngine *engine, SmError *error);
 };
 
 extern const BenchCarrier bench_octree_carrier, bench_lattice_carrier;
@@ -77,6 +80,9 @@ void bench_changes_room(BenchChanges *changes, long nodes);
 
 /* Can the scene change this part at all? */
 bool bench_changes_any(const BenchPart *part);
+
+/* If it can, does the engine let it? To be asked before anything runs. */
+SmCode bench_changes_check(const BenchPart *part, SmError *error);
 
 /* All that is due between two times, before the steps of that frame; fills `last`. */
 SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmError *error);

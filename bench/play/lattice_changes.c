@@ -140,5 +140,5 @@ static void find_pieces(const BenchRunner *runner, SmPieces *pieces)
 }
 
 const BenchCarrier bench_lattice_carrier = {
-    tie, carriers_near, change_frame, move, particle_at, find_pieces, NULL,
+    tie, carriers_near, change_frame, move, particle_at, find_pieces, NULL, NULL,
 };

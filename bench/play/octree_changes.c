@@ -241,5 +241,6 @@ static void find_levels(const BenchChanges *changes, int *level)
 }
 
 const BenchCarrier bench_octree_carrier = {
-    tie, carriers_near, change_frame, move, leaf_at, find_pieces, find_levels,
+    tie,     carriers_near, change_frame, move,
+    leaf_at, find_pieces,   find_levels,  oct_engine_may_change,
 };

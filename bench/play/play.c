@@ -8,6 +8,12 @@ SmCode bench_play_create(const BenchScene *scene, const BenchBody *body, const S
     *play = (BenchPlay){0};
     SmCode code = bench_cast_create(scene, body, type, threads, &play->cast, error);
     if (code) return code;
+    for (int i = 0; i < play->cast.count && !code; i++)
+        code = bench_changes_check(&play->cast.part[i], error);
+    if (code) {
+        bench_cast_free(&play->cast);
+        return code;
+    }
     play->changes = sm_alloc((size_t)play->cast.count, sizeof *play->changes);
     for (int i = 0; i < play->cast.count; i++)
         bench_changes_create(&play->cast.part[i], &play->changes[i]);

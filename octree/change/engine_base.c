@@ -1,5 +1,10 @@
 #include "engine_base.h"
 
+SmCode oct_engine_may_change(SmEngine *engine, SmError *error)
+{
+    return ((OctEngineBase *)engine)->may(engine, error);
+}
+
 SmCode oct_engine_begin(SmEngine *engine, OctStructure **structure, SmError *error)
 {
     OctEngineBase *base = (OctEngineBase *)engine;

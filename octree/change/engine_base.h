@@ -27,9 +27,18 @@ const OctStructure *oct_engine_structure(const SmEngine *engine);
  * Where nodes weigh as much as their cells' volume, a body's mass changes with its sampling, and
  * momentum and centre of mass are left to what new nodes start with.
  *
- * Errors (SM_USAGE): several bodies share the engine; goal positions are summed by OCT_ADJOINT;
- * regions are not symmetric by union. */
+ * A body that changes counts all of its coordinates from one origin, no longer from one for every
+ * part or 64 cells of it (frames.h). In single precision goals are so right up to 512 finest cells
+ * across; parts that a cut leaves to drift further apart than that lose digits, and the check of
+ * goals says so.
+ *
+ * Errors: several bodies share the engine; goal positions are summed by OCT_ADJOINT; regions are
+ * not symmetric by union (SM_USAGE); in single precision a body more than 512 finest cells wide at
+ * rest (SM_INPUT). */
 SmCode oct_engine_begin(SmEngine *engine, OctStructure **structure, SmError *error);
+
+/* The same errors, before anything runs. O(leaves). */
+SmCode oct_engine_may_change(SmEngine *engine, SmError *error);
 const OctChange *oct_engine_end(SmEngine *engine);
 
 /* Leaf number of every particle of one body, rising. Valid until the next change. */
@@ -38,6 +47,7 @@ const int *oct_engine_leaves(SmEngine *engine);
 /* The first member of every octree engine. */
 typedef struct {
     OctStructure structure;
+    SmCode (*may)(SmEngine *engine, SmError *error);
     SmCode (*begin)(SmEngine *engine, SmError *error);
     const OctChange *(*end)(SmEngine *engine);
     const int *(*leaves)(SmEngine *engine);
