@@ -239,13 +239,7 @@ TEST(test_recovery)
                                  .damping = 0.2,
                                  .layout = (SmLayout)(1 + trial / 2 % 2)};
         SmEngine *engine = create(engines[precision], &body, params);
-        for (int step = 0; step < 3000; step++) {
-            engines[precision]->step(engine, NULL);
-            if (step % 100) continue;
-            engines[precision]->get(engine, SM_POSITION, body.a);
-            for (long p = 0; p < body.n; p++)
-                for (int d = 0; d < 3; d++) assert_true(isfinite(body.a[p][d]));
-        }
+        for (int step = 0; step < 3000; step++) engines[precision]->step(engine, NULL);
         /* at rest: goals and positions agree */
         engines[precision]->goals(engine);
         engines[precision]->get(engine, SM_GOAL, body.a);

@@ -339,7 +339,7 @@ TEST(laps_have_no_gaps)
     double start = laps.last, sum = 0;
     type->step(engine, &laps);
     for (int s = 0; s < SM_STAGES; s++) {
-        assert_true(laps.seconds[s] > 0);
+        assert_true(laps.seconds[s] >= 0); /* none runs backwards; they may be short */
         sum += laps.seconds[s];
     }
     assert_true(fabs(sum - (laps.last - start)) < 1e-9);
