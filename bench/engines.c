@@ -9,7 +9,9 @@
 #include "../reference/meshless/engine.h"
 #include "cli/suggest.h"
 #include "cli/summary.h"
+#include "measure/elastic_row.h"
 #include "measure/room.h"
+#include "measure/tree_row.h"
 
 enum { TYPES = 2, MOST = 16 };
 
@@ -34,6 +36,7 @@ const BenchEngine bench_fastlsm = {.type = {&fastlsm_engine_f32, &fastlsm_engine
                                    .set_width = set_cells,
                                    .carrier = &bench_lattice_carrier,
                                    .twin = &bench_lattice_twin,
+                                   .checker = &bench_matching_checker,
                                    .room = bench_room_lattice};
 
 const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f64},
@@ -42,6 +45,8 @@ const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f6
                                   .set_width = set_octree,
                                   .carrier = &bench_octree_carrier,
                                   .twin = &bench_octree_twin,
+                                  .checker = &bench_matching_checker,
+                                  .explain = bench_tree_row_explain,
                                   .describe = bench_summary_octree,
                                   .structure = oct_engine_structure,
                                   .room = bench_room_octree};
@@ -49,12 +54,15 @@ const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f6
 const BenchEngine bench_brute = {.type = {&ref_brute_engine},
                                  .carrier = &bench_lattice_carrier,
                                  .twin = &bench_lattice_twin,
+                                 .checker = &bench_matching_checker,
                                  .room = bench_room_brute};
 
 const BenchEngine bench_meshless = {.type = {&ref_meshless_engine},
                                     .elastic = true,
                                     .carrier = &bench_lattice_carrier,
                                     .describe = bench_summary_meshless,
+                                    .measure = bench_elastic_measure,
+                                    .explain = bench_elastic_row_text,
                                     .room = bench_room_lattice};
 
 const BenchEngine *bench_engine(const char *name)

@@ -7,6 +7,8 @@
 #define BENCH_ENGINES_H
 
 #include "check/check.h"
+#include "measure/checker.h"
+#include "measure/measure.h"
 #include "play/changes.h"
 
 enum { BENCH_MOST_PLANNED = 4 };
@@ -29,6 +31,13 @@ typedef struct {
     const OctStructure *(*structure)(const SmEngine *engine); /* its tree, to record; NULL: none */
 
     const BenchTwin *twin; /* of its goals; NULL: they are not those of shape matching */
+
+    const BenchChecker *checker; /* of what bench_measure() measures */
+
+    /* Measures in its place, which has named the row; NULL: it does. */
+    SmCode (*measure)(const BenchScene *scene, const BenchBody *body,
+                      const BenchMeasureParams *params, BenchRow *row, SmError *error);
+    void (*explain)(FILE *file, const BenchRow *row); /* more of a row; NULL: nothing */
 
     /* What `run` says of it; NULL: its particles, regions and w. */
     void (*describe)(const BenchRunner *runner, const SmCounts *counts);

@@ -12,8 +12,8 @@
 #include "../table/table.h"
 #include "command.h"
 #include "option.h"
-#include "suggest.h"
 #include "override.h"
+#include "suggest.h"
 
 enum { KEY_PAPER = 0x2000, KEY_SCENE, KEY_FORMAT, KEY_REPEATS, KEY_BLOCK, KEY_EXPLAIN };
 
@@ -223,7 +223,7 @@ static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
         BenchScene scene;
         code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
         if (code) break;
-        bool later = !strcmp(scene.engine, "meshless");
+        bool later = bench_engine(scene.engine)->elastic;
         *(later ? &last[meshless++] : &chosen->scene[planned++]) = chosen->scene[i];
     }
     for (int i = 0; i < meshless && !code; i++) chosen->scene[planned + i] = last[i];
@@ -271,7 +271,7 @@ static int compare_rows(BenchRow *rows, int measured, int count)
     int complete = 0;
     bool waits = false;
     for (int i = 0; i < measured; i++) {
-        if (!strcmp(rows[i].paper, "octree")) {
+        if (bench_engine(rows[i].paper)->sampled) {
             const BenchRow *lattice = bench_row_lattice(rows, measured, &rows[i]);
             if (lattice) rows[i].speedup = lattice->total_ms / rows[i].total_ms;
             for (int l = measured; l < count && !lattice; l++)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../check/elastic_check.h"
+#include "../engines.h"
 #include "blocks.h"
 
 /* The state that every timed segment starts from. */
@@ -87,7 +88,7 @@ SmCode bench_elastic_measure(const BenchScene *scene, const BenchBody *body,
 
 bool bench_row_of_elastic(const BenchRow *row)
 {
-    return !strcmp(row->engine, "meshless");
+    return bench_engine(row->engine)->elastic;
 }
 
 void bench_elastic_row_text(FILE *file, const BenchRow *row)

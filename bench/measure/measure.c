@@ -7,11 +7,9 @@
 #include <string.h>
 
 #include "../../reference/paper.h"
-#include "../check/check.h"
 #include "../engines.h"
 #include "../play/frames.h"
 #include "blocks.h"
-#include "elastic_row.h"
 #include "tree_row.h"
 
 /* The state of one part that every timed segment starts from. */
@@ -113,7 +111,7 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
         row->paper_stage_ms[s] = paper ? paper->stage_ms[s].value : NAN;
 }
 
-static __attribute__((format(printf, 2, 3))) void invalidate(BenchRow *row, const char *format, ...)
+void bench_row_invalidate(BenchRow *row, const char *format, ...)
 {
     va_list values;
     va_start(values, format);
@@ -122,169 +120,89 @@ static __attribute__((format(printf, 2, 3))) void invalidate(BenchRow *row, cons
     row->valid = false;
 }
 
-/* `worst` keeps the larger of all checks' findings. */
-static void check_state(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *worst,
-                        BenchRow *row)
-{
-    char reason[sizeof row->reason];
-    BenchDeviation found;
-    if (!bench_check_all(check, runner, &found, sizeof reason, reason))
-        invalidate(row, "%s", reason);
-    bench_check_merge(&found, worst);
-    row->goal_error = worst->goal_error;
-    row->momentum_error = worst->momentum_error;
-    row->left_out = worst->blurred > worst->tied ? worst->blurred : worst->tied;
-    bench_check_text(worst, sizeof row->found, row->found);
-}
-
-/* Are the momenta of the body, left alone as it is now, kept over many steps? */
-static void check_drift(const BenchRunner *runner, BenchDeviation *worst, BenchRow *row)
-{
-    double most = bench_drift_most(runner->type->precision);
-    BenchDrift drift = bench_drift(runner);
-    if (drift.steps > worst->drift.steps) worst->drift.steps = drift.steps;
-    row->drift = worst->drift.linear = fmax(worst->drift.linear, drift.linear);
-    row->twist = worst->drift.angular = fmax(worst->drift.angular, drift.angular);
-    row->drift_steps = worst->drift.steps;
-    bench_check_text(worst, sizeof row->found, row->found);
-    if (worst->plain || (drift.linear <= most && drift.angular <= most)) return;
-    invalidate(
-        row,
-        "left alone for %ld steps it drifts by %.3g cells and %.3g radians a step in each; at "
-        "most %g allowed",
-        drift.steps, drift.linear, drift.angular, most);
-}
-
-/* Of a plastic octree: do its rest shapes flow as they should in the step that follows? */
-static void check_flow(const BenchCheck *check, BenchRunner *runner, BenchRow *row)
-{
-    double error = bench_check_flow(check, runner);
-    if (!(error <= row->goal_tolerance))
-        invalidate(row, "rest shapes flow %.3g otherwise than brute force; at most %g allowed",
-                   error, row->goal_tolerance);
-}
-
-static void check_counts(const BenchCheck *check, const BenchRunner *runner, BenchRow *row)
-{
-    SmCounts counts;
-    runner->type->count(runner->engine, &counts);
-    row->particles += counts.particles;
-    row->regions = counts.regions;
-    row->bytes += counts.bytes;
-    row->build_seconds += counts.build_seconds;
-    long particles = check->count * check->body->instances;
-    if (counts.particles != particles)
-        invalidate(row, "the engine has %.0f particles, its twin %.0f", (double)counts.particles,
-                   (double)particles);
-    if (counts.broken == 0 && counts.regions != check->unique)
-        invalidate(row, "the engine has %.0f unique regions, brute force %.0f",
-                   (double)counts.regions, (double)check->unique);
-}
-
-static SmCode check_room(const BenchRunner *runner, SmError *error)
-{
-    const BenchScene *scene = runner->scene;
-    double members = bench_check_room(scene, runner->body, runner->type, runner->engine);
-    if (members <= BENCH_MOST_MEMBERS) return SM_OK;
-    return sm_fail(
-        error, SM_INPUT,
-        "%s: regions with %.3g members take too much memory to be checked by brute force "
-        "(at most %g): take narrower ones",
-        scene->file, members, BENCH_MOST_MEMBERS);
-}
-
-/* A check of every part as it is now. */
-static BenchCheck *begin_checks(const BenchPlay *play)
-{
-    BenchCheck *check = sm_alloc((size_t)play->cast.count, sizeof *check);
-    for (int p = 0; p < play->cast.count; p++) {
-        const BenchRunner *runner = &play->cast.part[p].runner;
-        bench_check_begin(runner->scene, runner->body, runner->type, runner->engine, &check[p]);
-    }
-    return check;
-}
-
-static void check_states(const BenchCheck *check, const BenchPlay *play, BenchDeviation *worst,
-                         BenchRow *row)
-{
-    for (int p = 0; p < play->cast.count; p++)
-        check_state(&check[p], &play->cast.part[p].runner, worst, row);
-}
-
-static void free_checks(BenchCheck *check, const BenchPlay *play)
-{
-    for (int p = 0; p < play->cast.count; p++) bench_check_free(&check[p]);
-    free(check);
-}
-
 /* Plays a scene that changes from its beginning to its end, and checks what it has become. */
 static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                           const BenchMeasureParams *params, BenchDeviation *worst, BenchRow *row,
+                           const BenchMeasureParams *params, void *worst, BenchRow *row,
                            SmError *error)
 {
+    const BenchChecker *checker = bench_engine(type->name)->checker;
     enum { ROUNDS = 3 };
     BenchFramesParams frames = {params->threads, ROUNDS, params->seed, params->progress};
     BenchPlay play;
     SmCode code = bench_frames_play(scene, body, type, &frames, &row->change, &play, error);
     if (code) return code;
-    BenchCheck *check = begin_checks(&play);
-    check_states(check, &play, worst, row);
-    free_checks(check, &play);
+    void *check = checker->begin(&play);
+    checker->state(check, &play, worst, row);
+    checker->free(check);
     bench_play_free(&play);
     const BenchChangeRow *change = &row->change;
     SmMeshInfo before = sm_mesh_info(&body->mesh);
     bool closed = before.open_edges + before.nonmanifold_edges == 0;
-    if (change->changed == 0) invalidate(row, "no frame has changed anything");
+    if (change->changed == 0) bench_row_invalidate(row, "no frame has changed anything");
     if (closed && change->open_edges > 0)
-        invalidate(row, "the surface has %ld open edges", change->open_edges);
+        bench_row_invalidate(row, "the surface has %ld open edges", change->open_edges);
     return SM_OK;
 }
 
-static void measure_start(Trial *trial, const BenchMeasureParams *params, BenchDeviation *worst,
-                          BenchRow *row)
+/* What the engines hold, of all parts. */
+static void count(const BenchPlay *play, BenchRow *row)
 {
-    BenchCheck *check = begin_checks(&trial->play);
+    row->particles = row->bytes = 0;
+    for (int p = 0; p < play->cast.count; p++) {
+        const BenchRunner *runner = &play->cast.part[p].runner;
+        SmCounts counts;
+        runner->type->count(runner->engine, &counts);
+        row->particles += counts.particles;
+        row->regions = counts.regions;
+        row->bytes += counts.bytes;
+        row->build_seconds += counts.build_seconds;
+    }
+}
+
+static void measure_start(Trial *trial, const BenchChecker *checker,
+                          const BenchMeasureParams *params, void *worst, BenchRow *row)
+{
+    void *check = checker->begin(&trial->play);
     bench_tree_row_fill(bench_play_runner(&trial->play), row);
     row->instances = trial->play.cast.body->instances;
-    row->particles = row->bytes = 0;
-    for (int p = 0; p < trial->play.cast.count; p++)
-        check_counts(&check[p], &trial->play.cast.part[p].runner, row);
+    count(&trial->play, row);
+    if (checker->counts) checker->counts(check, &trial->play, row);
     for (int i = 0; i < trial->play.cast.scene->settle; i++) step(trial, NULL);
-    check_states(check, &trial->play, worst, row);
+    checker->state(check, &trial->play, worst, row);
     save(trial);
     bench_time_blocks(&(BenchTimed){trial, restore, step}, params, row);
-    check_states(check, &trial->play, worst, row);
-    for (int p = 0; p < trial->play.cast.count; p++)
-        check_flow(&check[p], &trial->play.cast.part[p].runner, row);
-    for (int p = 0; p < trial->play.cast.count; p++)
-        check_drift(&trial->play.cast.part[p].runner, worst, row);
-    free_checks(check, &trial->play);
+    checker->state(check, &trial->play, worst, row);
+    if (checker->end) checker->end(check, &trial->play, worst, row);
+    checker->free(check);
 }
 
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error)
 {
-    if (!strcmp(type->name, "meshless")) {
+    const BenchEngine *engine = bench_engine(type->name);
+    if (engine->measure) {
         name_row(scene, body, type, params, row);
-        return bench_elastic_measure(scene, body, params, row, error);
+        return engine->measure(scene, body, params, row, error);
     }
+    const BenchChecker *checker = engine->checker;
     Trial trial = {0};
-    BenchDeviation worst = {.finite = true};
     SmCode code =
         bench_play_create(scene, body, type, params->threads, params->seed, &trial.play, error);
     if (code) return code;
-    for (int p = 0; p < trial.play.cast.count && !code; p++)
-        code = check_room(&trial.play.cast.part[p].runner, error);
+    if (checker->room) code = checker->room(&trial.play, error);
     if (code) {
         free_trial(&trial);
         return code;
     }
     name_row(scene, body, type, params, row);
     if (params->progress) bench_progress_show(params->progress, row->scene, 0);
-    measure_start(&trial, params, &worst, row);
+    void *worst = sm_alloc(1, checker->size);
+    measure_start(&trial, checker, params, worst, row);
     bool changes = bench_play_changes(&trial.play);
     free_trial(&trial);
-    return changes ? play_changes(scene, body, type, params, &worst, row, error) : SM_OK;
+    if (changes) code = play_changes(scene, body, type, params, worst, row, error);
+    free(worst);
+    return code;
 }
 
 bool bench_row_measures(const BenchRow *lattice, const BenchRow *row)

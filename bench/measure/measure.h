@@ -33,6 +33,10 @@ typedef struct {
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                      const BenchMeasureParams *params, BenchRow *row, SmError *error);
 
+/* Says why the row is not valid, unless it says so already. */
+void bench_row_invalidate(BenchRow *row, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
 /* Names the row: its scene and paper, engine, and how rotations and sums are found. */
 void bench_row_name(const BenchScene *scene, BenchRow *row);
 

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "../../octree/engine.h"
+#include "../../reference/paper.h"
 #include "../engines.h"
 
 void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row)
@@ -103,4 +104,35 @@ void bench_tree_row_body(FILE *file, const BenchRow *row)
         fprintf(file, "; coarse nodes weld what does not touch: %ld inside, %ld pairs",
                 row->welded_cells, row->welded_pairs);
     fprintf(file, "; %.3g MB", 1e-6 * (double)row->bytes);
+}
+
+/* The step's time as the octree paper groups it. */
+static void print_groups(FILE *file, const BenchRow *row)
+{
+    const RefPaperClaim *third = ref_paper_claim("octree", "hand-third");
+    double percent = 100 / row->total_ms;
+    fprintf(file,
+            "    summation and matching %.0f%%, polar %.0f%%, damping %.0f%%, other %.0f%% (paper, "
+            "regular sampling: %.0f/%.0f/%.0f)\n",
+            percent * (row->stage_ms[SM_FAST_SUM] + row->stage_ms[SM_SHAPE_MATCHING]),
+            percent * row->stage_ms[SM_POLAR], percent * row->stage_ms[SM_DAMPING],
+            percent * row->stage_ms[SM_OTHER], third->value.value, third->value.value,
+            third->value.value);
+}
+
+void bench_tree_row_explain(FILE *file, const BenchRow *row)
+{
+    const RefPaperRow *paper = row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
+    fputs("    ", file);
+    bench_tree_row_nodes(file, row);
+    if (paper && isfinite(paper->bases.value))
+        fprintf(file, "; paper: %.0f from %.0f", paper->particles.value, paper->bases.value);
+    fputs(";\n    ", file);
+    bench_tree_row_widths(file, row);
+    fputs(";\n    ", file);
+    bench_tree_row_regions(file, row);
+    fputs(";\n    the body ", file);
+    bench_tree_row_body(file, row);
+    fputc('\n', file);
+    if (bench_row_timed(row)) print_groups(file, row);
 }

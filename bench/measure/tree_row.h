@@ -21,4 +21,7 @@ void bench_tree_row_regions(FILE *file, const BenchRow *row); /* summation nodes
  * it. */
 void bench_tree_row_body(FILE *file, const BenchRow *row);
 
+/* All of that, beside the paper's, and the step's time as the octree paper groups it. */
+void bench_tree_row_explain(FILE *file, const BenchRow *row);
+
 #endif

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "../../reference/paper.h"
+#include "../engines.h"
 #include "../measure/elastic_row.h"
 #include "../measure/measure.h"
-#include "../measure/tree_row.h"
 #include "grid.h"
 #include "row_grid.h"
 
@@ -139,38 +139,6 @@ static void print_check(FILE *file, const BenchRow *row)
             (double)row->bytes / (double)row->particles);
 }
 
-/* The step's time as the octree paper groups it. */
-static void print_groups(FILE *file, const BenchRow *row)
-{
-    const RefPaperClaim *third = ref_paper_claim("octree", "hand-third");
-    double percent = 100 / row->total_ms;
-    fprintf(file,
-            "    summation and matching %.0f%%, polar %.0f%%, damping %.0f%%, other %.0f%% (paper, "
-            "regular sampling: %.0f/%.0f/%.0f)\n",
-            percent * (row->stage_ms[SM_FAST_SUM] + row->stage_ms[SM_SHAPE_MATCHING]),
-            percent * row->stage_ms[SM_POLAR], percent * row->stage_ms[SM_DAMPING],
-            percent * row->stage_ms[SM_OTHER], third->value.value, third->value.value,
-            third->value.value);
-}
-
-/* What an octree's row is made of. */
-static void print_octree(FILE *file, const BenchRow *row)
-{
-    const RefPaperRow *paper = paper_of(row);
-    fputs("    ", file);
-    bench_tree_row_nodes(file, row);
-    if (paper && isfinite(paper->bases.value))
-        fprintf(file, "; paper: %.0f from %.0f", paper->particles.value, paper->bases.value);
-    fputs(";\n    ", file);
-    bench_tree_row_widths(file, row);
-    fputs(";\n    ", file);
-    bench_tree_row_regions(file, row);
-    fputs(";\n    the body ", file);
-    bench_tree_row_body(file, row);
-    fputc('\n', file);
-    if (bench_row_timed(row)) print_groups(file, row);
-}
-
 /* How many times as fast as a lattice an octree of the same body is, like with like; the paper's 88
  * is of an adaptive one, both without low-level optimisation. */
 static void print_speedups(FILE *file, const BenchRow *rows, int count)
@@ -178,7 +146,7 @@ static void print_speedups(FILE *file, const BenchRow *rows, int count)
     const RefPaperClaim *claim = ref_paper_claim("octree", "hand-speedup");
     for (int r = 0; r < count; r++) {
         const BenchRow *lattice = bench_row_lattice(rows, count, &rows[r]);
-        if (strcmp(rows[r].engine, "octree") != 0 || !lattice || !(rows[r].speedup > 0)) continue;
+        if (!bench_engine(rows[r].engine)->sampled || !lattice || !(rows[r].speedup > 0)) continue;
         bool same = !strcmp(lattice->paper_row, "hand-lattice-plain") && rows[r].wanted_nodes > 0;
         fprintf(file, "  %s is %.3g times as fast as %s, both with %s rotations", rows[r].scene,
                 rows[r].speedup, lattice->scene, rows[r].polar);
@@ -205,8 +173,8 @@ void bench_explain_rows(FILE *file, const BenchRow *rows, int count)
             fprintf(file, "    its surface has %ld triangles, at the end %ld in %ld piece%s\n",
                     row->change.first_triangles, row->change.last_triangles, row->change.pieces,
                     row->change.pieces == 1 ? "" : "s");
-        if (!strcmp(row->engine, "octree")) print_octree(file, row);
-        if (bench_row_of_elastic(row)) bench_elastic_row_text(file, row);
+        const BenchEngine *engine = bench_engine(row->engine);
+        if (engine->explain) engine->explain(file, row);
     }
     print_speedups(file, rows, count);
     print_notes(file, rows, count);

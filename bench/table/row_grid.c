@@ -4,11 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../engines.h"
 #include "../measure/elastic_row.h"
 
 bool bench_row_of_octree(const BenchRow *row)
 {
-    return !strcmp(row->paper, "octree") || !strcmp(row->engine, "octree");
+    return bench_engine(row->paper)->sampled || bench_engine(row->engine)->sampled;
 }
 
 BenchTableKind bench_row_steps(const BenchRow *rows, int count)

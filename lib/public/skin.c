@@ -18,7 +18,7 @@ void sm_skin_create(const SmEngineType *type, SmEngine *engine, const SmVoxels *
                      .voxels = voxels,
                      .instances = instances,
                      .x0 = x0,
-                     .octree = type == &octree_engine_f32 || type == &octree_engine_f64,
+                     .octree = type->refines,
                      .surface = surface};
     sm_cut_init(&skin->cut, 2 * voxels->cell);
     if (x0) sm_sites_init(voxels, &skin->sites);

@@ -1,0 +1,33 @@
+/* checker.h - what holds a row to be right: an engine's check of what is measured, before and after
+ * the clock runs. */
+#ifndef BENCH_CHECKER_H
+#define BENCH_CHECKER_H
+
+#include "../play/play.h"
+#include "row.h"
+
+typedef struct {
+    size_t size; /* of `worst`: what was found of all states of a row, zeroed to begin with */
+
+    /* SM_INPUT: the check would take too much memory. May be NULL. */
+    SmCode (*room)(const BenchPlay *play, SmError *error);
+
+    /* What the check needs of the bodies as they are now; begun anew when they have changed. */
+    void *(*begin)(BenchPlay *play);
+
+    /* Of the bodies at rest: do the engines have what they should? May be NULL. */
+    void (*counts)(void *check, BenchPlay *play, BenchRow *row);
+
+    /* Of the present state, which stays: row->found says what all states came to, and a row that is
+     * wrong is made invalid. */
+    void (*state)(void *check, BenchPlay *play, void *worst, BenchRow *row);
+
+    /* What takes steps, in the end. May be NULL. */
+    void (*end)(void *check, BenchPlay *play, void *worst, BenchRow *row);
+    void (*free)(void *check);
+} BenchChecker;
+
+/* Goals, damping, contacts, obstacles, momentum, plastic flow (check.h): of engines with a twin. */
+extern const BenchChecker bench_matching_checker;
+
+#endif

@@ -1,0 +1,138 @@
+/* How rows of shape matching are checked: against brute force (check.h), and that momenta stay. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "../check/check.h"
+#include "checker.h"
+#include "measure.h"
+
+/* `worst` keeps the larger of all checks' findings. */
+static void check_state(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *worst,
+                        BenchRow *row)
+{
+    char reason[sizeof row->reason];
+    BenchDeviation found;
+    if (!bench_check_all(check, runner, &found, sizeof reason, reason))
+        bench_row_invalidate(row, "%s", reason);
+    if (worst->particles == 0) worst->finite = true; /* the first state */
+    bench_check_merge(&found, worst);
+    row->goal_error = worst->goal_error;
+    row->momentum_error = worst->momentum_error;
+    row->left_out = worst->blurred > worst->tied ? worst->blurred : worst->tied;
+    bench_check_text(worst, sizeof row->found, row->found);
+}
+
+/* Are the momenta of the body, left alone as it is now, kept over many steps? */
+static void check_drift(const BenchRunner *runner, BenchDeviation *worst, BenchRow *row)
+{
+    double most = bench_drift_most(runner->type->precision);
+    BenchDrift drift = bench_drift(runner);
+    if (drift.steps > worst->drift.steps) worst->drift.steps = drift.steps;
+    row->drift = worst->drift.linear = fmax(worst->drift.linear, drift.linear);
+    row->twist = worst->drift.angular = fmax(worst->drift.angular, drift.angular);
+    row->drift_steps = worst->drift.steps;
+    bench_check_text(worst, sizeof row->found, row->found);
+    if (worst->plain || (drift.linear <= most && drift.angular <= most)) return;
+    bench_row_invalidate(
+        row,
+        "left alone for %ld steps it drifts by %.3g cells and %.3g radians a step in each; at "
+        "most %g allowed",
+        drift.steps, drift.linear, drift.angular, most);
+}
+
+/* Of a plastic octree: do its rest shapes flow as they should in the step that follows? */
+static void check_flow(const BenchCheck *check, BenchRunner *runner, BenchRow *row)
+{
+    double error = bench_check_flow(check, runner);
+    if (!(error <= row->goal_tolerance))
+        bench_row_invalidate(row,
+                             "rest shapes flow %.3g otherwise than brute force; at most %g allowed",
+                             error, row->goal_tolerance);
+}
+
+static void check_counts(const BenchCheck *check, const BenchRunner *runner, BenchRow *row)
+{
+    SmCounts counts;
+    runner->type->count(runner->engine, &counts);
+    long particles = check->count * check->body->instances;
+    if (counts.particles != particles)
+        bench_row_invalidate(row, "the engine has %.0f particles, its twin %.0f",
+                             (double)counts.particles, (double)particles);
+    if (counts.broken == 0 && counts.regions != check->unique)
+        bench_row_invalidate(row, "the engine has %.0f unique regions, brute force %.0f",
+                             (double)counts.regions, (double)check->unique);
+}
+
+static SmCode check_room(const BenchRunner *runner, SmError *error)
+{
+    const BenchScene *scene = runner->scene;
+    double members = bench_check_room(scene, runner->body, runner->type, runner->engine);
+    if (members <= BENCH_MOST_MEMBERS) return SM_OK;
+    return sm_fail(
+        error, SM_INPUT,
+        "%s: regions with %.3g members take too much memory to be checked by brute force "
+        "(at most %g): take narrower ones",
+        scene->file, members, BENCH_MOST_MEMBERS);
+}
+
+/* A check of every part as it is now. */
+typedef struct {
+    BenchCheck *part; /* [count] */
+    int count;
+} Checks;
+
+static SmCode room(const BenchPlay *play, SmError *error)
+{
+    SmCode code = SM_OK;
+    for (int p = 0; p < play->cast.count && !code; p++)
+        code = check_room(&play->cast.part[p].runner, error);
+    return code;
+}
+
+static void *begin(BenchPlay *play)
+{
+    Checks *checks = sm_alloc(1, sizeof *checks);
+    checks->count = play->cast.count;
+    checks->part = sm_alloc((size_t)checks->count, sizeof *checks->part);
+    for (int p = 0; p < checks->count; p++) {
+        const BenchRunner *runner = &play->cast.part[p].runner;
+        bench_check_begin(runner->scene, runner->body, runner->type, runner->engine,
+                          &checks->part[p]);
+    }
+    return checks;
+}
+
+static void counts(void *check, BenchPlay *play, BenchRow *row)
+{
+    const Checks *checks = check;
+    for (int p = 0; p < checks->count; p++)
+        check_counts(&checks->part[p], &play->cast.part[p].runner, row);
+}
+
+static void state(void *check, BenchPlay *play, void *worst, BenchRow *row)
+{
+    const Checks *checks = check;
+    for (int p = 0; p < checks->count; p++)
+        check_state(&checks->part[p], &play->cast.part[p].runner, worst, row);
+}
+
+static void end(void *check, BenchPlay *play, void *worst, BenchRow *row)
+{
+    const Checks *checks = check;
+    for (int p = 0; p < checks->count; p++)
+        check_flow(&checks->part[p], &play->cast.part[p].runner, row);
+    for (int p = 0; p < checks->count; p++) check_drift(&play->cast.part[p].runner, worst, row);
+}
+
+static void let_go(void *check)
+{
+    Checks *checks = check;
+    for (int p = 0; p < checks->count; p++) bench_check_free(&checks->part[p]);
+    free(checks->part);
+    free(checks);
+}
+
+const BenchChecker bench_matching_checker = {
+    sizeof(BenchDeviation), room, begin, counts, state, end, let_go,
+};

@@ -1,0 +1,233 @@
+/* What a new engine touches: it says what it is in an SmEngineType and a BenchEngine, stands in a
+ * line of the list of engines, and runs, is checked and has its row in every format. This one's
+ * particles hang on springs, each on its own to where it rests. */
+#include "../../lib/test_folder.h"
+#include "../engines.h"
+#include "../store/store.h"
+#include "../table/table.h"
+#include "room.h"
+
+/* ---- the engine */
+
+struct SmEngine {
+    long count;
+    double h, gravity[3];
+    double (*rest)[3], (*x)[3], (*v)[3];
+};
+
+static const double stiffness = 100; /* 1/s^2 */
+static double fault;                 /* added to a spring's acceleration */
+
+static void toy_destroy(SmEngine *e)
+{
+    free(e->rest);
+    free(e->x);
+    free(e->v);
+    free(e);
+}
+
+static SmCode toy_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **engine,
+                         SmError *error)
+{
+    SmCode code = sm_engine_check(voxels, params, error);
+    if (code) return code;
+    if (params->instances > 1) return sm_fail(error, SM_INPUT, "springs hold one body");
+    SmEngine *e = sm_alloc(1, sizeof *e);
+    size_t count = (size_t)voxels->particle_count;
+    int(*at)[3] = sm_alloc(count, sizeof *at);
+    *e = (SmEngine){voxels->particle_count, params->h, {0}, NULL, NULL, NULL};
+    memcpy(e->gravity, params->gravity, sizeof e->gravity);
+    e->rest = sm_alloc(count, sizeof *e->rest);
+    e->x = sm_alloc(count, sizeof *e->x);
+    e->v = sm_alloc(count, sizeof *e->v);
+    sm_voxels_particles(voxels, at);
+    for (size_t p = 0; p < count; p++)
+        for (int d = 0; d < 3; d++)
+            e->x[p][d] = e->rest[p][d] = voxels->origin[d] + voxels->cell * at[p][d];
+    free(at);
+    *engine = e;
+    return SM_OK;
+}
+
+static void toy_step(SmEngine *e, SmLaps *laps)
+{
+    for (long p = 0; p < e->count; p++)
+        for (int d = 0; d < 3; d++) {
+            double pull = stiffness * (e->rest[p][d] - e->x[p][d]) + fault;
+            e->v[p][d] += e->h * (pull + e->gravity[d]);
+            e->x[p][d] += e->h * e->v[p][d];
+        }
+    sm_lap(laps, SM_OTHER);
+}
+
+static void toy_goals(SmEngine *e)
+{
+    (void)e;
+}
+
+static double (*field_of(SmEngine *e, SmField field))[3]
+{
+    return field == SM_POSITION ? e->x : field == SM_VELOCITY ? e->v : e->rest;
+}
+
+static void toy_get(SmEngine *e, SmField field, double (*values)[3])
+{
+    memcpy(values, field_of(e, field), (size_t)e->count * sizeof *values);
+}
+
+static void toy_set(SmEngine *e, SmField field, const double (*values)[3])
+{
+    memcpy(field_of(e, field), values, (size_t)e->count * sizeof *values);
+}
+
+static void toy_bound(SmEngine *e, const SmBoundary *boundary)
+{
+    (void)e, (void)boundary;
+}
+
+static void toy_count(SmEngine *e, SmCounts *counts)
+{
+    *counts = (SmCounts){.particles = e->count, .regions = e->count, .bytes = 72 * e->count};
+}
+
+static const SmEngineType toy_type = {.name = "springs",
+                                      .precision = "double",
+                                      .unstopped = true,
+                                      .create = toy_create,
+                                      .destroy = toy_destroy,
+                                      .step = toy_step,
+                                      .goals = toy_goals,
+                                      .get = toy_get,
+                                      .set = toy_set,
+                                      .bound = toy_bound,
+                                      .count = toy_count};
+
+/* ---- its check: a step beside the formula */
+
+static void *toy_begin(BenchPlay *play)
+{
+    return play;
+}
+
+static void toy_state(void *check, BenchPlay *play, void *worst, BenchRow *row)
+{
+    BenchRunner *runner = bench_play_runner(play);
+    size_t count = (size_t)runner->particles;
+    double(*x)[3] = sm_alloc(count, sizeof *x), (*v)[3] = sm_alloc(count, sizeof *v);
+    double(*to)[3] = sm_alloc(count, sizeof *to), *most = worst, h = runner->scene->params.h;
+    toy_get(runner->engine, SM_POSITION, x);
+    toy_get(runner->engine, SM_VELOCITY, v);
+    toy_step(runner->engine, NULL);
+    toy_get(runner->engine, SM_POSITION, to);
+    for (size_t p = 0; p < count; p++)
+        for (int d = 0; d < 3; d++) {
+            double pull = 100 * (runner->x0[p][d] - x[p][d]) + runner->scene->params.gravity[d];
+            *most = fmax(*most, fabs(to[p][d] - x[p][d] - h * (v[p][d] + h * pull)));
+        }
+    toy_set(runner->engine, SM_POSITION, (const double(*)[3])x);
+    toy_set(runner->engine, SM_VELOCITY, (const double(*)[3])v);
+    row->goal_error = *most;
+    snprintf(row->found, sizeof row->found, "a step within %.1g of the formula", *most);
+    if (!(*most <= 1e-12)) bench_row_invalidate(row, "a step is %.3g from the formula", *most);
+    free(x);
+    free(v);
+    free(to);
+    (void)check;
+}
+
+static void toy_free(void *check)
+{
+    (void)check;
+}
+
+static const BenchChecker toy_checker = {sizeof(double), NULL, toy_begin, NULL,
+                                         toy_state,      NULL, toy_free};
+
+static const BenchEngine toy = {.type = {&toy_type},
+                                .carrier = &bench_lattice_carrier,
+                                .checker = &toy_checker,
+                                .room = bench_room_lattice};
+
+/* ---- the registry */
+
+const BenchEngine *const bench_engine_list[] = {&bench_fastlsm,  &bench_octree, &bench_brute,
+                                                &bench_meshless, &toy,          NULL};
+
+/* ---- tests */
+
+static BenchRow measure(void)
+{
+    static const char text[] = "mesh = \"shape:bar\"; particles = 200; engine = \"springs\";\n"
+                               "gravity = [0.0, -9.81, 0.0]; twist = 0.5;\n";
+    BenchScene scene;
+    BenchBody body;
+    BenchRow row;
+    SmError error;
+    const SmEngineType *type;
+    BenchMeasureParams params = {.repeats = 2, .block_seconds = 1e-4, .threads = 1};
+    if (bench_scene_parse(text, strlen(text), "toy.cfg", &scene, &error) ||
+        bench_engine_find(scene.engine, NULL, &type, &error) ||
+        bench_body_of_scene(&scene, NULL, &body, &error) ||
+        bench_measure(&scene, &body, type, &params, &row, &error))
+        fail_msg("%s", error.text);
+    bench_body_free(&body);
+    row.busy = false; /* whatever else runs: what its times are is not looked at */
+    return row;
+}
+
+static void assert_written(const BenchRow *row, BenchFormat format, const char *wanted)
+{
+    char text[8192] = "";
+    BenchMachine machine = {.threads = 1};
+    FILE *file = fmemopen(text, sizeof text, "w");
+    BenchTable table = {.format = format,
+                        .explain = true,
+                        .report = {.file = file, .rows = row, .count = 1, .machine = &machine}};
+    bench_table_rows(&table, 1);
+    bench_table_end(&table);
+    fclose(file);
+    if (!strstr(text, wanted)) fail_msg("no '%s' in:\n%s", wanted, text);
+}
+
+TEST(its_row_is_in_every_format)
+{
+    BenchRow row = measure();
+    BenchMachine machine = {.threads = 1};
+    SmError error;
+    BenchH5 h5;
+    char engine[24] = "";
+    if (!row.valid) fail_msg("%s", row.reason);
+    assert_string_equal(row.engine, "springs");
+    assert_int_equal(row.w, 0);
+    assert_written(&row, BENCH_AS_TEXT, "VALID: a step within");
+    assert_written(&row, BENCH_AS_MARKDOWN, "| toy |");
+    assert_written(&row, BENCH_AS_LATEX, "toy &");
+    assert_written(&row, BENCH_AS_CSV, ",toy,springs,");
+    assert_written(&row, BENCH_AS_JSON, "\"engine\": \"springs\"");
+    assert_int_equal(bench_store_rows(path_in("rows.h5"), &row, 1, &machine, &error), SM_OK);
+    bench_h5_open(&h5, path_in("rows.h5"));
+    hid_t group = bench_h5_find_group(&h5, bench_h5_find_group(&h5, h5.file, "rows"), "000");
+    bench_h5_read_text(&h5, group, "engine", sizeof engine, engine);
+    if (!bench_h5_close(&h5)) fail_msg("%s", h5.message);
+    assert_string_equal(engine, "springs");
+    bench_row_free(&row);
+}
+
+TEST(its_check_finds_what_is_wrong)
+{
+    fault = 0.1;
+    BenchRow row = measure();
+    fault = 0;
+    assert_false(row.valid);
+    assert_non_null(strstr(row.reason, "from the formula"));
+    assert_written(&row, BENCH_AS_TEXT, "INVALID: a step is");
+    bench_row_free(&row);
+}
+
+TEST(it_is_named_with_the_others)
+{
+    const SmEngineType *type;
+    SmError error;
+    assert_int_equal(bench_engine_find("spring", NULL, &type, &error), SM_USAGE);
+    assert_non_null(strstr(error.text, "meshless (double), springs (double)"));
+}
