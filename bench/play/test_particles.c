@@ -184,7 +184,7 @@ static void choose_octree(const SmVoxels *voxels, OctOptions *options)
     }
 }
 
-/* Records a body of kind `kind` (random_bodies.h) in an octree engine. */
+/* Records a body of kind `kind` (lib/voxel/test_bodies.h) in an octree engine. */
 static void record_octree(const SmEngineType *type, int kind, SmEngineParams *engine,
                           OctOptions *options, const SmBoundary *boundary)
 {
