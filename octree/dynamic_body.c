@@ -123,8 +123,8 @@ static void change_leaves(Oct *oct, const OctStructure *structure, const OctChan
 static void fill_slots(Oct *oct, const OctStructure *structure, OctDynamicBody *c)
 {
     OctRegionRest rest;
-    for (long n = 0; n < c->reweigh.count; n++) {
-        int leaf = c->reweigh.leaf[n];
+    for (long n = 0; n < c->weights_change.count; n++) {
+        int leaf = c->weights_change.leaf[n];
         oct_weights_region(&c->weights, &structure->tree, &structure->regions, leaf, &rest);
         oct_slot_fill(oct, &structure->tree, &c->weights, leaf, &rest);
     }
@@ -145,7 +145,7 @@ static void find_inverses(Oct *oct, const OctChange *change, OctDynamicBody *c)
         memset(c->dirty, 0, (size_t)c->blocks * sizeof *c->dirty);
         c->changes = 1;
     }
-    for (long n = 0; n < c->reweigh.count; n++) mark(oct, c, c->reweigh.leaf[n]);
+    for (long n = 0; n < c->weights_change.count; n++) mark(oct, c, c->weights_change.leaf[n]);
     for (long n = 0; n < change->removed_count; n++) mark(oct, c, change->removed[n].leaf);
 }
 
@@ -156,8 +156,8 @@ void oct_change(Oct *oct, const OctStructure *structure, const OctChange *change
     make_room(oct, &structure->tree, c);
     change_nodes(oct, &structure->tree, change, c);
     change_leaves(oct, structure, change, c);
-    oct_reweigh(&structure->tree, &structure->regions, structure->mass, change, &c->weights,
-                &c->reweigh);
+    oct_weights_change(&structure->tree, &structure->regions, structure->mass, change, &c->weights,
+                       &c->weights_change);
     fill_slots(oct, structure, c);
     bool free = !held && structure->options.masses == OCT_MATERIAL;
     oct_transfer_start(oct, change, c->weights.below, c->mass, free, &c->transfer);
@@ -168,7 +168,7 @@ void oct_dynamic_body_free(OctDynamicBody *c)
 {
     if (!c) return;
     oct_weights_free(&c->weights);
-    oct_reweigh_free(&c->reweigh);
+    oct_weights_change_free(&c->weights_change);
     oct_transfer_free(&c->transfer);
     free(c->slot);
     free(c->place);
@@ -179,8 +179,8 @@ void oct_dynamic_body_free(OctDynamicBody *c)
 size_t oct_dynamic_body_bytes(const OctDynamicBody *c)
 {
     if (!c) return 0;
-    return sizeof *c + oct_weights_bytes(&c->weights) + oct_reweigh_bytes(&c->reweigh) +
-           oct_transfer_bytes(&c->transfer) +
+    return sizeof *c + oct_weights_bytes(&c->weights) +
+           oct_weights_change_bytes(&c->weights_change) + oct_transfer_bytes(&c->transfer) +
            (size_t)c->nodes * (sizeof *c->slot + sizeof *c->place) +
            (size_t)c->blocks * sizeof *c->dirty;
 }

@@ -3,7 +3,7 @@
 #define OCT_DYNAMIC_BODY_H
 
 #include "change/structure.h"
-#include "region/reweigh.h"
+#include "region/weights_change.h"
 #include "state_transfer.h"
 
 #define oct_prepare            SM_NAME(oct_prepare)
@@ -14,7 +14,7 @@
 typedef struct OctDynamicBody {
     double mass; /* of the body, in mass_unit */
     OctWeights weights;
-    OctReweigh reweigh;
+    OctWeightsChange weights_change;
     OctTransfer transfer;
     long nodes;      /* there is place for as many */
     int *slot;       /* [nodes] leaf of a tree node, or -1 */

@@ -14,7 +14,7 @@
 #include "../lib/simd/lanes.h"
 #include "region/sum_lists.h"
 #include "region/weights.h"
-#include "tree/levels.h"
+#include "tree/tree.h"
 
 typedef struct {
     OctWeighting weighting;

@@ -375,7 +375,7 @@ def unresolved(body, x, cell, precision):
     """What rounding may make of particles' rigid velocities, relative, of those whose regions' inertia is not
     128 times what rounding of sums about the body's middle may do to it, or that may be as thin as a line; 2
     where rounding decides whether a region is solid: `known` of bench/check/check.h. An octree's sums may be
-    about nearer places (octree/graph/frames.h), and then rounding is less."""
+    about nearer places (octree/region/frames.h), and then rounding is less."""
     epsilon, thinnest = rounding(precision)
     at, found = (x - x.mean(0)) / cell, np.zeros(len(x))
     for r in body.members:

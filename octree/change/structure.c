@@ -194,7 +194,7 @@ typedef struct OctResample {
     OctTreeChange tree;
     OctGraphChange graph;
     OctRegionChange region;
-    OctLeafQuery near;
+    OctLeafQuery query;
     int *coarse; /* [coarse_count] */
     long coarse_count, coarse_room;
     long leaf_space; /* of widths and masses */
@@ -216,7 +216,7 @@ void oct_resample_prepare(OctStructure *s)
     oct_graph_change_init(&r->graph, &s->tree, &s->voxels, &s->cut, &s->graph);
     oct_region_change_init(&r->region, &s->tree, &s->graph, s->w, s->options.epsilon, r->tree.below,
                            &s->regions);
-    oct_leaf_query_init(&r->near, &s->tree, &s->voxels);
+    oct_leaf_query_init(&r->query, &s->tree, &s->voxels);
     r->leaf_space = s->tree.leaves;
     s->resample = r;
     make_leaves(s, sm_room_for(s->tree.leaves));
@@ -229,7 +229,7 @@ static void free_resample(OctStructure *s)
     oct_tree_change_free(&r->tree);
     oct_graph_change_free(&r->graph);
     oct_region_change_free(&r->region);
-    oct_leaf_query_free(&r->near);
+    oct_leaf_query_free(&r->query);
     free(r->coarse);
     free(r);
     s->resample = NULL;
@@ -326,16 +326,16 @@ long oct_resample_near_cut(OctStructure *s, long first, double distance, int lev
     for (long t = first; t < s->cut.triangles; t++) {
         double corner[3][3];
         oct_graph_change_corners(&s->voxels, &s->cut, t, corner);
-        oct_leaf_query_triangle(&r->near, (const double(*)[3])corner, 2 * distance / s->cell, level,
-                                OCT_CELLS);
-        if (r->coarse_count + r->near.count > r->coarse_room) {
-            r->coarse_room = 2 * (r->coarse_count + r->near.count);
+        oct_leaf_query_triangle(&r->query, (const double(*)[3])corner, 2 * distance / s->cell,
+                                level, OCT_CELLS);
+        if (r->coarse_count + r->query.count > r->coarse_room) {
+            r->coarse_room = 2 * (r->coarse_count + r->query.count);
             r->coarse = sm_realloc(r->coarse, (size_t)r->coarse_room, sizeof *r->coarse);
         }
-        if (r->near.count > 0)
-            memcpy(r->coarse + r->coarse_count, r->near.node,
-                   (size_t)r->near.count * sizeof *r->coarse);
-        r->coarse_count += r->near.count;
+        if (r->query.count > 0)
+            memcpy(r->coarse + r->coarse_count, r->query.node,
+                   (size_t)r->query.count * sizeof *r->coarse);
+        r->coarse_count += r->query.count;
     }
     r->coarse_count = r->coarse_count ? distinct(r->coarse, r->coarse_count) : 0;
     *node = r->coarse;

@@ -10,7 +10,7 @@ enum { AROUND = 27, MIDDLE = 13 };
 typedef struct {
     const OctTree *tree;
     const SmVoxels *voxels;
-    OctAdjacency *touch;
+    OctAdjacency *adjacency;
     long room; /* for pairs */
 } Walk;
 
@@ -92,13 +92,13 @@ bool oct_adjacency_material(const OctTree *tree, const SmVoxels *voxels, int nod
 
 static void add_pair(Walk *walk, int leaf, int other)
 {
-    OctAdjacency *touch = walk->touch;
-    if (touch->count == walk->room) {
+    OctAdjacency *adjacency = walk->adjacency;
+    if (adjacency->count == walk->room) {
         walk->room = walk->room ? 2 * walk->room : 1024;
-        touch->pair = sm_realloc(touch->pair, (size_t)walk->room, sizeof *touch->pair);
+        adjacency->pair = sm_realloc(adjacency->pair, (size_t)walk->room, sizeof *adjacency->pair);
     }
-    touch->pair[touch->count][0] = leaf;
-    touch->pair[touch->count++][1] = other;
+    adjacency->pair[adjacency->count][0] = leaf;
+    adjacency->pair[adjacency->count++][1] = other;
 }
 
 static void join_leaf(Walk *walk, int node, const int around[AROUND])
@@ -108,7 +108,7 @@ static void join_leaf(Walk *walk, int node, const int around[AROUND])
         int other = around[d];
         if (d == MIDDLE || other < 0) continue;
         if (t->children[other]) {
-            walk->touch->open[t->leaf[node]] = 1;
+            walk->adjacency->open[t->leaf[node]] = 1;
             continue;
         }
         bool same_size = t->size[other] == t->size[node], again = same_size && other < node;
@@ -117,7 +117,7 @@ static void join_leaf(Walk *walk, int node, const int around[AROUND])
         if (oct_adjacency_material(t, walk->voxels, node, other))
             add_pair(walk, t->leaf[node], t->leaf[other]);
         else if (same_size)
-            walk->touch->open[t->leaf[node]] = 1;
+            walk->adjacency->open[t->leaf[node]] = 1;
     }
 }
 
@@ -170,10 +170,10 @@ static void visit(Walk *walk, int node, const int around[AROUND])
     }
 }
 
-void oct_adjacency_find(const OctTree *tree, const SmVoxels *voxels, OctAdjacency *touch)
+void oct_adjacency_find(const OctTree *tree, const SmVoxels *voxels, OctAdjacency *adjacency)
 {
-    *touch = (OctAdjacency){.open = sm_alloc((size_t)tree->leaves, 1)};
-    Walk walk = {tree, voxels, touch, 0};
+    *adjacency = (OctAdjacency){.open = sm_alloc((size_t)tree->leaves, 1)};
+    Walk walk = {tree, voxels, adjacency, 0};
     int cells = 1 << tree->levels;
     for (int root = 0; root < tree->roots; root++) {
         int around[AROUND], low[3];
@@ -183,12 +183,12 @@ void oct_adjacency_find(const OctTree *tree, const SmVoxels *voxels, OctAdjacenc
                                     low[1] + (d / 3 % 3 - 1) * cells, low[2] + (d / 9 - 1) * cells);
         visit(&walk, root, around);
     }
-    for (long l = 0; l < tree->leaves; l++) touch->any_open |= touch->open[l];
+    for (long l = 0; l < tree->leaves; l++) adjacency->any_open |= adjacency->open[l];
 }
 
-void oct_adjacency_free(OctAdjacency *touch)
+void oct_adjacency_free(OctAdjacency *adjacency)
 {
-    free(touch->pair);
-    free(touch->open);
-    memset(touch, 0, sizeof *touch);
+    free(adjacency->pair);
+    free(adjacency->open);
+    memset(adjacency, 0, sizeof *adjacency);
 }

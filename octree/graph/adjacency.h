@@ -21,10 +21,10 @@ typedef struct {
 /* `tree` must be a tree over `voxels`. The caller frees. Every pair is found once, from the smaller
  * leaf, among the 26 cells of its size around it. O(nodes), and the finest cells on the boundary of
  * coarse leaves that do not touch. */
-void oct_adjacency_find(const OctTree *tree, const SmVoxels *voxels, OctAdjacency *touch);
+void oct_adjacency_find(const OctTree *tree, const SmVoxels *voxels, OctAdjacency *adjacency);
 
 /* Do the cells of two leaves, which touch, have material that touches? Both are tree nodes. */
 bool oct_adjacency_material(const OctTree *tree, const SmVoxels *voxels, int node, int other);
-void oct_adjacency_free(OctAdjacency *touch);
+void oct_adjacency_free(OctAdjacency *adjacency);
 
 #endif

@@ -27,11 +27,11 @@ static void add_pair(Pairs *pairs, int i, int j)
 
 /* Adds the neighbours of leaf i that are not joined to it, smaller ones and later ones of its
  * size. */
-static void search_around(const OctTree *tree, OctVisibility *visible, Pairs *pairs, int i)
+static void search_around(const OctTree *tree, OctVisibility *search, Pairs *pairs, int i)
 {
-    oct_visibility_find(visible, i);
-    for (long n = visible->joined_count; n < visible->count; n++) {
-        int j = visible->leaf[n];
+    oct_visibility_find(search, i);
+    for (long n = search->joined_count; n < search->count; n++) {
+        int j = search->leaf[n];
         if (tree->size[tree->node[j]] < tree->size[tree->node[i]] || j > i) add_pair(pairs, i, j);
     }
 }
@@ -61,43 +61,44 @@ static void build_rows(long leaves, int (*pair)[2], long pairs, long **rows, int
     free(next);
 }
 
-static void join(const OctTree *tree, const OctAdjacency *touch, SmCsr *joined)
+static void join(const OctTree *tree, const OctAdjacency *adjacency, SmCsr *joined)
 {
     long *first;
     int *item;
-    build_rows(tree->leaves, touch->pair, touch->count, &first, &item);
+    build_rows(tree->leaves, adjacency->pair, adjacency->count, &first, &item);
     sm_csr_adopt(joined, tree->leaves, first, item, NULL, 0);
 }
 
 void oct_graph_joined(const OctTree *tree, const SmVoxels *voxels, SmCsr *joined)
 {
-    OctAdjacency touch;
-    oct_adjacency_find(tree, voxels, &touch);
-    join(tree, &touch, joined);
-    oct_adjacency_free(&touch);
+    OctAdjacency adjacency;
+    oct_adjacency_find(tree, voxels, &adjacency);
+    join(tree, &adjacency, joined);
+    oct_adjacency_free(&adjacency);
 }
 
 /* Appends to the joined pairs the neighbours that are not joined. */
-static void add_unjoined(const OctTree *tree, OctAdjacency *touch)
+static void add_unjoined(const OctTree *tree, OctAdjacency *adjacency)
 {
     SmCsr joined;
-    join(tree, touch, &joined);
+    join(tree, adjacency, &joined);
 #pragma omp parallel num_threads(sm_team(0)) if (tree->leaves > SERIAL)
     {
-        OctVisibility visible;
+        OctVisibility search;
         Pairs own = {0};
-        oct_visibility_init(&visible, tree, &joined, tree->leaves);
+        oct_visibility_init(&search, tree, &joined, tree->leaves);
 #pragma omp for schedule(dynamic, 64)
         for (long l = 0; l < tree->leaves; l++)
-            if (touch->open[l]) search_around(tree, &visible, &own, (int)l);
+            if (adjacency->open[l]) search_around(tree, &search, &own, (int)l);
 #pragma omp critical
         if (own.count > 0) {
-            size_t count = (size_t)(touch->count + own.count);
-            touch->pair = sm_realloc(touch->pair, count, sizeof *touch->pair);
-            memcpy(touch->pair + touch->count, own.pair, (size_t)own.count * sizeof *own.pair);
-            touch->count += own.count;
+            size_t count = (size_t)(adjacency->count + own.count);
+            adjacency->pair = sm_realloc(adjacency->pair, count, sizeof *adjacency->pair);
+            memcpy(adjacency->pair + adjacency->count, own.pair,
+                   (size_t)own.count * sizeof *own.pair);
+            adjacency->count += own.count;
         }
-        oct_visibility_free(&visible);
+        oct_visibility_free(&search);
         free(own.pair);
     }
     sm_csr_free(&joined);
@@ -116,12 +117,12 @@ static void measure_edges(const OctTree *tree, OctGraph *graph)
 
 void oct_graph_build(const OctTree *tree, const SmVoxels *voxels, OctGraph *graph)
 {
-    OctAdjacency touch;
-    oct_adjacency_find(tree, voxels, &touch);
-    if (touch.any_open) add_unjoined(tree, &touch);
+    OctAdjacency adjacency;
+    oct_adjacency_find(tree, voxels, &adjacency);
+    if (adjacency.any_open) add_unjoined(tree, &adjacency);
     *graph = (OctGraph){.leaves = tree->leaves};
-    build_rows(tree->leaves, touch.pair, touch.count, &graph->first, &graph->to);
-    oct_adjacency_free(&touch);
+    build_rows(tree->leaves, adjacency.pair, adjacency.count, &graph->first, &graph->to);
+    oct_adjacency_free(&adjacency);
     measure_edges(tree, graph);
 }
 

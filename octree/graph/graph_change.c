@@ -27,8 +27,8 @@ void oct_graph_change_init(OctGraphChange *c, const OctTree *tree, const SmVoxel
     sm_csr_reserve(&c->joined);
     sm_csr_reserve(&c->edges);
     publish(c);
-    oct_visibility_init(&c->visible, tree, &c->joined, c->leaf_space);
-    oct_leaf_query_init(&c->near, tree, voxels);
+    oct_visibility_init(&c->visibility, tree, &c->joined, c->leaf_space);
+    oct_leaf_query_init(&c->query, tree, voxels);
     c->mark = sm_alloc((size_t)c->leaf_space, sizeof *c->mark);
 }
 
@@ -36,8 +36,8 @@ void oct_graph_change_free(OctGraphChange *c)
 {
     free(c->edges.room);
     sm_csr_free(&c->joined);
-    oct_visibility_free(&c->visible);
-    oct_leaf_query_free(&c->near);
+    oct_visibility_free(&c->visibility);
+    oct_leaf_query_free(&c->query);
     free(c->gone);
     free(c->come);
     free(c->mark);
@@ -48,7 +48,7 @@ void oct_graph_change_free(OctGraphChange *c)
 size_t oct_graph_change_bytes(const OctGraphChange *c)
 {
     return sm_csr_bytes(&c->joined) + sm_csr_bytes(&c->edges) +
-           (size_t)c->leaf_space * (sizeof *c->mark + sizeof *c->visible.mark) +
+           (size_t)c->leaf_space * (sizeof *c->mark + sizeof *c->visibility.mark) +
            (size_t)(c->gone_room + c->come_room) * sizeof *c->gone +
            (size_t)c->around_room * sizeof *c->around;
 }
@@ -61,7 +61,7 @@ static void grow(OctGraphChange *c)
     if (tree->leaves > c->leaf_space) {
         long from = c->leaf_space, to = sm_room_for(tree->leaves);
         c->mark = sm_widen(c->mark, from, to, sizeof *c->mark, 0);
-        c->visible.mark = sm_widen(c->visible.mark, from, to, 1, 0);
+        c->visibility.mark = sm_widen(c->visibility.mark, from, to, 1, 0);
         c->leaf_space = to;
     }
     publish(c);
@@ -104,9 +104,9 @@ static void update_joined(OctGraphChange *c, const OctChange *batch)
             low[d] = t->centre[node][d] - t->size[node] / 2;
             high[d] = low[d] + t->size[node];
         }
-        oct_leaf_query_box(&c->near, low, high, OCT_CELLS);
-        for (long n = 0; n < c->near.count; n++) {
-            int other = c->near.node[n];
+        oct_leaf_query_box(&c->query, low, high, OCT_CELLS);
+        for (long n = 0; n < c->query.count; n++) {
+            int other = c->query.node[n];
             if (other == node || !oct_adjacency_material(t, c->voxels, node, other)) continue;
             sm_csr_add(&c->joined, leaf, t->leaf[other], NULL);
             if (c->mark[t->leaf[other]] != added)
@@ -118,8 +118,8 @@ static void update_joined(OctGraphChange *c, const OctChange *batch)
 /* Adds those leaves found near by to the list that are not marked so yet. */
 static void list_found(OctGraphChange *c, int mark)
 {
-    for (long n = 0; n < c->near.count; n++) {
-        int leaf = c->tree->leaf[c->near.node[n]];
+    for (long n = 0; n < c->query.count; n++) {
+        int leaf = c->tree->leaf[c->query.node[n]];
         if (c->mark[leaf] == mark) continue;
         c->mark[leaf] = mark;
         if (c->around_count == c->around_room) {
@@ -145,7 +145,7 @@ static void list_around(OctGraphChange *c, const OctChange *batch)
             low[d] = t->centre[node][d] - t->size[node] / 2;
             high[d] = low[d] + t->size[node];
         }
-        oct_leaf_query_box(&c->near, low, high, OCT_REACHES);
+        oct_leaf_query_box(&c->query, low, high, OCT_REACHES);
         list_found(c, mark);
     }
 }
@@ -182,12 +182,12 @@ static bool is_cut(const OctGraphChange *c, long first, int leaf, int other)
 static void compare(OctGraphChange *c, int i)
 {
     const SmCsr *edges = &c->edges;
-    const OctVisibility *visible = &c->visible;
+    const OctVisibility *visibility = &c->visibility;
     int had = fresh_mark(c), stays = fresh_mark(c);
-    oct_visibility_find(&c->visible, i);
+    oct_visibility_find(&c->visibility, i);
     for (long e = edges->first[i]; e < edges->end[i]; e++) c->mark[edges->item[e]] = had;
-    for (long n = 0; n < visible->count; n++) {
-        int j = visible->leaf[n];
+    for (long n = 0; n < visibility->count; n++) {
+        int j = visibility->leaf[n];
         if (c->mark[j] == had) {
             c->mark[j] = stays;
         } else if (is_sought(c, i, j) && !is_cut(c, 0, i, j)) {
@@ -238,7 +238,8 @@ void oct_graph_change_cut(OctGraphChange *c, long first)
     for (long t = first; t < c->cut->triangles; t++) {
         double corner[3][3];
         oct_graph_change_corners(c->voxels, c->cut, t, corner);
-        oct_leaf_query_triangle(&c->near, (const double(*)[3])corner, margin, INT_MAX, OCT_REACHES);
+        oct_leaf_query_triangle(&c->query, (const double(*)[3])corner, margin, INT_MAX,
+                                OCT_REACHES);
         list_found(c, mark);
     }
     for (long n = 0; n < c->around_count; n++) {

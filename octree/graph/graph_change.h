@@ -23,8 +23,8 @@ typedef struct {
     OctGraph *graph;
     SmCsr joined; /* leaves that every leaf is joined to, cut or not */
     SmCsr edges;  /* of the graph, whose arrays these are */
-    OctVisibility visible;
-    OctLeafQuery near;
+    OctVisibility visibility;
+    OctLeafQuery query;
     OctEdge *gone, *come; /* edges that are to be taken out and put in, each once */
     long gone_count, come_count;
     /* its own */

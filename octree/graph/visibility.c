@@ -12,22 +12,22 @@ enum {
 
 typedef struct OctCandidate Candidate;
 
-void oct_visibility_init(OctVisibility *visible, const OctTree *tree, const SmCsr *joined,
+void oct_visibility_init(OctVisibility *search, const OctTree *tree, const SmCsr *joined,
                          long leaves)
 {
-    *visible = (OctVisibility){.tree = tree, .joined = joined};
-    visible->mark = sm_alloc((size_t)leaves, 1);
+    *search = (OctVisibility){.tree = tree, .joined = joined};
+    search->mark = sm_alloc((size_t)leaves, 1);
 }
 
-void oct_visibility_free(OctVisibility *visible)
+void oct_visibility_free(OctVisibility *search)
 {
-    free(visible->mark);
-    free(visible->leaf);
-    free(visible->found);
-    free(visible->outside);
-    free(visible->tried);
-    free(visible->candidate);
-    *visible = (OctVisibility){0};
+    free(search->mark);
+    free(search->leaf);
+    free(search->found);
+    free(search->outside);
+    free(search->tried);
+    free(search->candidate);
+    *search = (OctVisibility){0};
 }
 
 /* Every list holds leaves that were found. */

@@ -23,12 +23,12 @@ typedef struct {
 } OctVisibility;
 
 /* `leaves` is how many leaf numbers the scratch is good for. The caller frees. */
-void oct_visibility_init(OctVisibility *visible, const OctTree *tree, const SmCsr *joined,
+void oct_visibility_init(OctVisibility *search, const OctTree *tree, const SmCsr *joined,
                          long leaves);
-void oct_visibility_free(OctVisibility *visible);
+void oct_visibility_free(OctVisibility *search);
 
 /* Finds the neighbours of leaf i that are no larger than it. O(leaves whose cells are within its
  * size of its centre, and what they are joined to). */
-void oct_visibility_find(OctVisibility *visible, int i);
+void oct_visibility_find(OctVisibility *search, int i);
 
 #endif

@@ -151,13 +151,13 @@ static void search_around(Search *s, double distance)
             }
 }
 
-/* The leaf that holds a vertex, or the nearest material; its place becomes `tie->q`. */
-static int find_home(const OctCarrier *c, const double X[3], OctSkin *tie)
+/* The leaf that holds a vertex, or the nearest material; its place becomes `skin->q`. */
+static int find_home(const OctCarrier *c, const double X[3], OctSkin *skin)
 {
     int cell[3];
-    for (int d = 0; d < 3; d++) tie->q[d] = (X[d] - c->voxels->origin[d]) / c->voxels->cell;
-    sm_nearest_cell(c->voxels, tie->q, cell);
-    for (int d = 0; d < 3; d++) tie->q[d] = 2 * fmin(fmax(tie->q[d], cell[d]), cell[d] + 1);
+    for (int d = 0; d < 3; d++) skin->q[d] = (X[d] - c->voxels->origin[d]) / c->voxels->cell;
+    sm_nearest_cell(c->voxels, skin->q, cell);
+    for (int d = 0; d < 3; d++) skin->q[d] = 2 * fmin(fmax(skin->q[d], cell[d]), cell[d] + 1);
     return oct_tree_find(c->tree, cell[0], cell[1], cell[2]);
 }
 
@@ -175,24 +175,24 @@ static double find_reach(const OctCarrier *c, const double X[3], double searched
     return (outside + searched) * 0.5 * c->voxels->cell * (1 + 1e-6);
 }
 
-static void take(const Search *s, OctSkin *tie)
+static void take(const Search *s, OctSkin *skin)
 {
     const OctCarrier *c = s->view->carrier;
-    double reach = find_reach(c, s->view->X, s->distance, tie->q);
-    if (s->best >= 0) tie->own = c->tree->leaf[s->best];
-    tie->reach = (float)(s->best >= 0 ? reach : -reach);
+    double reach = find_reach(c, s->view->X, s->distance, skin->q);
+    if (s->best >= 0) skin->own = c->tree->leaf[s->best];
+    skin->reach = (float)(s->best >= 0 ? reach : -reach);
 }
 
 /* The leaf that a vertex belongs to, and how far it was looked for. */
-static void find_own(View *view, int home, OctSkin *tie)
+static void find_own(View *view, int home, OctSkin *skin)
 {
     const OctCarrier *c = view->carrier;
-    tie->own = c->tree->leaf[home];
-    tie->reach = 0;
+    skin->own = c->tree->leaf[home];
+    skin->reach = 0;
     if (sees(view, home)) return;
-    Search s = {.view = view, .q = tie->q, .best = -1};
+    Search s = {.view = view, .q = skin->q, .best = -1};
     search_around(&s, farthest(c));
-    take(&s, tie);
+    take(&s, skin);
 }
 
 /* w_k at place q, not yet made to add up to 1: along each axis 1 at the node, 1/2 at its cell's
@@ -208,15 +208,15 @@ static double weigh(const OctTree *tree, int leaf, const double q[3])
     return weight;
 }
 
-static void add(OctSkin *tie, int leaf, double weight)
+static void add(OctSkin *skin, int leaf, double weight)
 {
-    if (tie->count == tie->room) {
-        tie->room = 2 * tie->room + 32;
-        tie->leaf = sm_realloc(tie->leaf, (size_t)tie->room, sizeof *tie->leaf);
-        tie->weight = sm_realloc(tie->weight, (size_t)tie->room, sizeof *tie->weight);
+    if (skin->count == skin->room) {
+        skin->room = 2 * skin->room + 32;
+        skin->leaf = sm_realloc(skin->leaf, (size_t)skin->room, sizeof *skin->leaf);
+        skin->weight = sm_realloc(skin->weight, (size_t)skin->room, sizeof *skin->weight);
     }
-    tie->leaf[tie->count] = leaf;
-    tie->weight[tie->count++] = (float)weight;
+    skin->leaf[skin->count] = leaf;
+    skin->weight[skin->count++] = (float)weight;
 }
 
 /* The sum of the neighbours' numbers, mixed (splitmix64, Steele et al. 2014): in any order. */
@@ -233,66 +233,66 @@ uint64_t oct_skin_edges(const OctGraph *graph, int leaf)
 }
 
 /* The neighbours that move the vertex beside its own leaf. */
-static void find_others(View *view, OctSkin *tie)
+static void find_others(View *view, OctSkin *skin)
 {
     const OctCarrier *c = view->carrier;
-    double own = weigh(c->tree, tie->own, tie->q), sum = own;
-    tie->count = 0;
-    add(tie, tie->own, 0);
-    for (long e = c->graph->first[tie->own]; e < oct_graph_end(c->graph, tie->own); e++) {
+    double own = weigh(c->tree, skin->own, skin->q), sum = own;
+    skin->count = 0;
+    add(skin, skin->own, 0);
+    for (long e = c->graph->first[skin->own]; e < oct_graph_end(c->graph, skin->own); e++) {
         int leaf = c->graph->to[e];
-        double weight = weigh(c->tree, leaf, tie->q);
+        double weight = weigh(c->tree, leaf, skin->q);
         if (!(weight > 1e-9 * own) || !sees(view, c->tree->node[leaf])) continue;
-        add(tie, leaf, weight);
+        add(skin, leaf, weight);
         sum += weight;
     }
-    for (long n = 1; n < tie->count; n++) tie->weight[n] = (float)((double)tie->weight[n] / sum);
+    for (long n = 1; n < skin->count; n++) skin->weight[n] = (float)((double)skin->weight[n] / sum);
 }
 
-void oct_skin_find(const OctCarrier *c, const double X[3], OctSkin *tie)
+void oct_skin_find(const OctCarrier *c, const double X[3], OctSkin *skin)
 {
     View view = {.carrier = c, .X = X};
-    find_own(&view, find_home(c, X, tie), tie);
-    find_others(&view, tie);
+    find_own(&view, find_home(c, X, skin), skin);
+    find_others(&view, skin);
 }
 
 /* Goes on from what a search has found where new leaves have come; false where it is not known what
  * it found. */
-static bool look_again(View *view, int home, long count, const int *node, OctSkin *tie)
+static bool look_again(View *view, int home, long count, const int *node, OctSkin *skin)
 {
     const OctTree *tree = view->carrier->tree;
-    int own = tree->node[tie->own];
-    bool seen = tie->reach >= 0;
-    if ((tie->reach <= 0) != (own == home)) return false;
-    if (tie->reach == 0) return sees(view, home);
-    Search s = {.view = view, .q = tie->q, .best = -1, .distance = farthest(view->carrier)};
+    int own = tree->node[skin->own];
+    bool seen = skin->reach >= 0;
+    if ((skin->reach <= 0) != (own == home)) return false;
+    if (skin->reach == 0) return sees(view, home);
+    Search s = {.view = view, .q = skin->q, .best = -1, .distance = farthest(view->carrier)};
     if (seen) {
-        OctSkin known = *tie;
+        OctSkin known = *skin;
         s.best = own;
-        s.distance = distance_to(tree, own, tie->q);
+        s.distance = distance_to(tree, own, skin->q);
         take(&s, &known);
-        if (known.reach != tie->reach) return false;
+        if (known.reach != skin->reach) return false;
     }
     for (long n = 0; n < count; n++) {
         if (node[n] == home) return false;
-        if (tree->size[node[n]] > 0) look_at(&s, node[n], distance_to(tree, node[n], tie->q));
+        if (tree->size[node[n]] > 0) look_at(&s, node[n], distance_to(tree, node[n], skin->q));
     }
-    take(&s, tie);
+    take(&s, skin);
     return true;
 }
 
 void oct_skin_update(const OctCarrier *c, const double X[3], long count, const int *node,
-                     OctSkin *tie)
+                     OctSkin *skin)
 {
     View view = {.carrier = c, .X = X};
-    int home = find_home(c, X, tie);
-    if (!look_again(&view, home, count, node, tie)) find_own(&view, home, tie);
-    find_others(&view, tie);
+    int home = find_home(c, X, skin);
+    if (!look_again(&view, home, count, node, skin)) find_own(&view, home, skin);
+    find_others(&view, skin);
 }
 
-void oct_skin_free(OctSkin *tie)
+void oct_skin_free(OctSkin *skin)
 {
-    free(tie->leaf);
-    free(tie->weight);
-    *tie = (OctSkin){0};
+    free(skin->leaf);
+    free(skin->weight);
+    *skin = (OctSkin){0};
 }

@@ -16,7 +16,7 @@ typedef struct {
     const SmCut *cut;
 } OctCarrier;
 
-/* A vertex on its way to being tied; `leaf` and `weight` have room for all leaves that can move
+/* The leaves that move one vertex; `leaf` and `weight` have room for all leaves that can move
  * one. */
 typedef struct {
     double q[3]; /* its place, or the nearest in the material, half finest cells */
@@ -27,17 +27,17 @@ typedef struct {
     float *weight;
 } OctSkin;
 
-void oct_skin_free(OctSkin *tie);
+void oct_skin_free(OctSkin *skin);
 
-/* Finds the leaves that move a vertex at X, the one it belongs to first, and their weights. `tie`
+/* Finds the leaves that move a vertex at X, the one it belongs to first, and their weights. `skin`
  * is zeroed at first, and used for any number of vertices. */
-void oct_skin_find(const OctCarrier *carrier, const double X[3], OctSkin *tie);
+void oct_skin_find(const OctCarrier *carrier, const double X[3], OctSkin *skin);
 
-/* The same of a vertex that belongs to leaf tie->own by its tie->reach, where only those leaves are
- * new whose tree nodes are among `node`, its own leaf is there and what is new of the cut does not
- * come between. What was found before is not looked for again. */
+/* The same of a vertex that belongs to leaf skin->own by its skin->reach, where only those leaves
+ * are new whose tree nodes are among `node`, its own leaf is there and what is new of the cut does
+ * not come between. What was found before is not looked for again. */
 void oct_skin_update(const OctCarrier *carrier, const double X[3], long count, const int *node,
-                     OctSkin *tie);
+                     OctSkin *skin);
 
 /* A number that tells one set of edges of a leaf from another. */
 uint64_t oct_skin_edges(const OctGraph *graph, int leaf);

@@ -56,15 +56,15 @@ static void tie_all(const OctCarrier *c, OctSurface *s)
     sm_csr_parts_init(&lists, s->vertices);
 #pragma omp parallel num_threads(sm_team(0))
     {
-        OctSkin tie = {0};
+        OctSkin skin = {0};
 #pragma omp for schedule(dynamic)
         for (long block = 0; block < lists.blocks; block++)
             for (long v = sm_csr_parts_from(block); v < sm_csr_parts_to(&lists, block); v++) {
-                oct_skin_find(c, s->rest[v], &tie);
-                sm_csr_parts_add(&lists, v, tie.leaf, tie.count);
-                s->reach[v] = tie.reach;
+                oct_skin_find(c, s->rest[v], &skin);
+                sm_csr_parts_add(&lists, v, skin.leaf, skin.count);
+                s->reach[v] = skin.reach;
             }
-        oct_skin_free(&tie);
+        oct_skin_free(&skin);
     }
     sm_csr_parts_join(&lists, &first, &leaf);
     sm_csr_adopt(&s->rows, s->vertices, first, leaf,
@@ -72,13 +72,13 @@ static void tie_all(const OctCarrier *c, OctSurface *s)
     float *weight = s->rows.value;
 #pragma omp parallel num_threads(sm_team(0))
     {
-        OctSkin tie = {0};
+        OctSkin skin = {0};
 #pragma omp for schedule(dynamic, SM_CSR_BLOCK)
         for (long v = 0; v < s->vertices; v++) {
-            oct_skin_find(c, s->rest[v], &tie);
-            memcpy(weight + s->rows.first[v], tie.weight, (size_t)tie.count * sizeof *weight);
+            oct_skin_find(c, s->rest[v], &skin);
+            memcpy(weight + s->rows.first[v], skin.weight, (size_t)skin.count * sizeof *weight);
         }
-        oct_skin_free(&tie);
+        oct_skin_free(&skin);
     }
 }
 
@@ -320,22 +320,22 @@ static void count_user(Change *change, int leaf)
     change->fresh[change->fresh_count++] = leaf;
 }
 
-static void tie_vertex(Change *change, long v, Need need, OctSkin *tie)
+static void tie_vertex(Change *change, long v, Need need, OctSkin *skin)
 {
     OctSurface *s = change->s;
     for (long n = s->rows.first[v]; n < s->rows.end[v]; n++) s->users[s->rows.item[n]]--;
     if (need == ALL) {
-        oct_skin_find(change->carrier, s->rest[v], tie);
+        oct_skin_find(change->carrier, s->rest[v], skin);
     } else {
-        tie->own = s->rows.item[s->rows.first[v]];
-        tie->reach = s->reach[v];
-        oct_skin_update(change->carrier, s->rest[v], change->count, change->node, tie);
+        skin->own = s->rows.item[s->rows.first[v]];
+        skin->reach = s->reach[v];
+        oct_skin_update(change->carrier, s->rest[v], change->count, change->node, skin);
     }
-    sm_csr_set(&s->rows, v, tie->count, tie->leaf);
-    memcpy((float *)s->rows.value + s->rows.first[v], tie->weight,
-           (size_t)tie->count * sizeof(float));
-    s->reach[v] = tie->reach;
-    for (long n = 0; n < tie->count; n++) count_user(change, tie->leaf[n]);
+    sm_csr_set(&s->rows, v, skin->count, skin->leaf);
+    memcpy((float *)s->rows.value + s->rows.first[v], skin->weight,
+           (size_t)skin->count * sizeof(float));
+    s->reach[v] = skin->reach;
+    for (long n = 0; n < skin->count; n++) count_user(change, skin->leaf[n]);
 }
 
 /* Gradients: first go those not wanted any more, and with them all of leaves that are no more. */
@@ -369,7 +369,7 @@ void oct_surface_update(OctSurface *surface, const SmMesh *mesh, const OctCarrie
         .s = surface, .carrier = carrier, .first = first, .count = count, .node = node};
     long triangles = carrier->cut ? carrier->cut->triangles - first : 0;
     long before = surface->vertices;
-    OctSkin tie = {0};
+    OctSkin skin = {0};
     boxes_init(&change.cells, count);
     boxes_init(&change.sheets, triangles);
     for (long n = 0; n < count; n++) add_cell(&change, node[n]);
@@ -379,10 +379,10 @@ void oct_surface_update(OctSurface *surface, const SmMesh *mesh, const OctCarrie
     grow(surface, mesh, carrier, count, node);
     for (long v = 0; v < surface->vertices; v++) {
         Need need = v >= before ? ALL : find_need(&change, v);
-        if (need != NOTHING) tie_vertex(&change, v, need, &tie);
+        if (need != NOTHING) tie_vertex(&change, v, need, &skin);
     }
     renew_gradients(&change);
-    oct_skin_free(&tie);
+    oct_skin_free(&skin);
     boxes_free(&change.cells);
     boxes_free(&change.sheets);
     free(change.other);

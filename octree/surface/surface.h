@@ -35,7 +35,7 @@ typedef struct {
     SmCsr rows;          /* of every vertex: the nodes that move it, the first the leaf it belongs
                              to; float w_k of each, that of the first is what is missing to 1: 0 */
     double (*F)[9];      /* [leaves] of those that move a vertex, by the last oct_surface_move() */
-    /* to tie vertices anew */
+    /* to bring vertices up to date */
     float *reach;    /* [vertices] mesh units: how far the leaf that a vertex belongs to was looked
                         for, in the max norm; 0: it is the one that holds it; less: no leaf is seen
                         so far */

@@ -1,5 +1,5 @@
-/* A surface tied anew after every change against one tied from scratch; and which side of a cut
- * vertices follow. */
+/* A surface brought up to date after every change against one built from scratch; and which side of
+ * a cut vertices follow. */
 #include "../../lib/cut/slit.h"
 #include "../../lib/shapes/shape.h"
 #include "../../lib/test_frame.h"
@@ -94,8 +94,8 @@ static void assert_same(const OctSurface *s, const OctSurface *want)
     }
 }
 
-static void retie(OctSurface *surface, const SmMesh *mesh, const OctStructure *s,
-                  const OctChange *change, long first)
+static void update(OctSurface *surface, const SmMesh *mesh, const OctStructure *s,
+                   const OctChange *change, long first)
 {
     OctCarrier c = carrier(s);
     long count = 0;
@@ -122,7 +122,7 @@ TEST(tied_anew_is_tied_from_scratch)
             for (int n = random_int(&seed, 4); n >= 0; n--) random_change(&seed, &s);
             const OctChange *change = oct_resample_update(&s);
             if (batch % 2) add_vertices(&seed, &s, 20, &mesh);
-            retie(&surface, &mesh, &s, change, first);
+            update(&surface, &mesh, &s, change, first);
             oct_surface_build(&mesh, &c, &want);
             assert_same(&surface, &want);
             oct_surface_free(&want);
@@ -263,7 +263,7 @@ TEST(both_sides_of_a_cut_follow_their_own)
         add_plane(&s.cut, level, tilt);
         refine(&s);
         assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1), SM_SLIT_CLOSED);
-        retie(&surface, &mesh, &s, oct_resample_update(&s), 0);
+        update(&surface, &mesh, &s, oct_resample_update(&s), 0);
         part(&surface, &s.tree, level, tilt);
         count_pieces(&s, &surface, &mesh, level, tilt);
         oct_surface_free(&surface);
@@ -286,7 +286,7 @@ static SmMesh fine_box(void)
     return mesh;
 }
 
-/* Ties a vertex as another one is. */
+/* Makes a vertex follow the leaf of another. */
 static void mislead(OctSurface *s, long v, long as)
 {
     int leaf = s->rows.item[s->rows.first[as]];
@@ -296,7 +296,7 @@ static void mislead(OctSurface *s, long v, long as)
     s->users[leaf]++;
 }
 
-/* Some vertices next to a cut are tied to the other side: they come back, and no others move. */
+/* Some vertices next to a cut follow the other side: they come back, and no others move. */
 TEST(a_few_on_the_wrong_side_go_with_the_many)
 {
     OctStructure s;
@@ -315,7 +315,7 @@ TEST(a_few_on_the_wrong_side_go_with_the_many)
     add_plane(&s.cut, level, 0);
     refine(&s);
     assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1), SM_SLIT_CLOSED);
-    retie(&surface, &mesh, &s, oct_resample_update(&s), 0);
+    update(&surface, &mesh, &s, oct_resample_update(&s), 0);
     assert_int_equal(oct_surface_agree(&surface, &mesh, &c), 0);
     long misled = 0, below = 0;
     while (surface.rest[below][2] > level - 1 || surface.rest[below][2] < level - 3) below++;

@@ -14,17 +14,17 @@ typedef struct {
     OctLeafQueryKind kind;
 } Place;
 
-void oct_leaf_query_init(OctLeafQuery *near, const OctTree *tree, const SmVoxels *voxels)
+void oct_leaf_query_init(OctLeafQuery *query, const OctTree *tree, const SmVoxels *voxels)
 {
-    *near = (OctLeafQuery){.tree = tree};
+    *query = (OctLeafQuery){.tree = tree};
     for (int d = 0; d < 3; d++)
-        near->wide[d] = ((voxels->size[d] - tree->corner[d] - 1) >> tree->levels) + 1;
+        query->wide[d] = ((voxels->size[d] - tree->corner[d] - 1) >> tree->levels) + 1;
 }
 
-void oct_leaf_query_free(OctLeafQuery *near)
+void oct_leaf_query_free(OctLeafQuery *query)
 {
-    free(near->node);
-    *near = (OctLeafQuery){0};
+    free(query->node);
+    *query = (OctLeafQuery){0};
 }
 
 static bool meets(const Place *place, const double centre[3], double half)
@@ -46,49 +46,49 @@ static bool node_meets(const OctTree *tree, const Place *place, int node)
     return meets(place, centre, half);
 }
 
-static void add(OctLeafQuery *near, int node)
+static void add(OctLeafQuery *query, int node)
 {
-    if (near->count == near->room) {
-        near->room = 2 * near->room + 256;
-        near->node = sm_realloc(near->node, (size_t)near->room, sizeof *near->node);
+    if (query->count == query->room) {
+        query->room = 2 * query->room + 256;
+        query->node = sm_realloc(query->node, (size_t)query->room, sizeof *query->node);
     }
-    near->node[near->count++] = node;
+    query->node[query->count++] = node;
 }
 
 /* A level has at most 8 siblings waiting, so the stack is as deep as the levels. */
-static void visit(OctLeafQuery *near, const Place *place, int root)
+static void visit(OctLeafQuery *query, const Place *place, int root)
 {
-    const OctTree *t = near->tree;
+    const OctTree *t = query->tree;
     int stack[8 * (OCT_MAX_LEVELS + 1)], count = 1;
     stack[0] = root;
     while (count > 0) {
         int node = stack[--count];
         if (t->size[node] < (t->children[node] ? 2 : 1) * place->least) continue;
         if (!node_meets(t, place, node)) continue;
-        if (!t->children[node]) add(near, node);
+        if (!t->children[node]) add(query, node);
         for (int c = 0; c < t->children[node]; c++) stack[count++] = t->child[node] + c;
     }
 }
 
 /* Base cells along axis d whose reach meets the place: from[d] .. to[d]. */
-static void find_bases(const OctLeafQuery *near, const Place *place, int from[3], int to[3])
+static void find_bases(const OctLeafQuery *query, const Place *place, int from[3], int to[3])
 {
-    const OctTree *t = near->tree;
+    const OctTree *t = query->tree;
     double size = 2 << t->levels, more = place->kind == OCT_REACHES ? size / 2 : 0;
     for (int d = 0; d < 3; d++) {
-        double corner = 2.0 * t->corner[d], last = near->wide[d] - 1;
+        double corner = 2.0 * t->corner[d], last = query->wide[d] - 1;
         from[d] = (int)fmax(0, fmin(last + 1, ceil((place->low[d] - more - corner) / size) - 1));
         to[d] = (int)fmin(last, fmax(-1, floor((place->high[d] + more - corner) / size)));
     }
 }
 
-static void search(OctLeafQuery *near, const Place *place)
+static void search(OctLeafQuery *query, const Place *place)
 {
-    const OctTree *t = near->tree;
+    const OctTree *t = query->tree;
     int from[3], to[3], at[3], wide = 1 << t->levels;
     double grown = place->kind == OCT_REACHES ? 2 * wide : wide;
-    near->count = 0;
-    find_bases(near, place, from, to);
+    query->count = 0;
+    find_bases(query, place, from, to);
     for (at[2] = from[2]; at[2] <= to[2]; at[2]++)
         for (at[1] = from[1]; at[1] <= to[1]; at[1]++)
             for (at[0] = from[0]; at[0] <= to[0]; at[0]++) {
@@ -100,11 +100,11 @@ static void search(OctLeafQuery *near, const Place *place)
                 }
                 if (!meets(place, centre, grown)) continue;
                 int root = oct_tree_at(t, 0, low[0], low[1], low[2]);
-                if (root >= 0) visit(near, place, root);
+                if (root >= 0) visit(query, place, root);
             }
 }
 
-void oct_leaf_query_box(OctLeafQuery *near, const int low[3], const int high[3],
+void oct_leaf_query_box(OctLeafQuery *query, const int low[3], const int high[3],
                         OctLeafQueryKind kind)
 {
     Place place = {.kind = kind};
@@ -112,18 +112,18 @@ void oct_leaf_query_box(OctLeafQuery *near, const int low[3], const int high[3],
         place.low[d] = low[d];
         place.high[d] = high[d];
     }
-    search(near, &place);
+    search(query, &place);
 }
 
-void oct_leaf_query_triangle(OctLeafQuery *near, const double corner[3][3], double margin,
+void oct_leaf_query_triangle(OctLeafQuery *query, const double corner[3][3], double margin,
                              int level, OctLeafQueryKind kind)
 {
-    int levels = near->tree->levels;
+    int levels = query->tree->levels;
     Place place = {.corner = corner, .margin = margin, .kind = kind};
     place.least = (4 << levels) >> (level <= levels ? level : levels + 1);
     for (int d = 0; d < 3; d++) {
         place.low[d] = fmin(corner[0][d], fmin(corner[1][d], corner[2][d])) - margin;
         place.high[d] = fmax(corner[0][d], fmax(corner[1][d], corner[2][d])) + margin;
     }
-    search(near, &place);
+    search(query, &place);
 }

@@ -16,16 +16,16 @@ typedef struct {
 } OctLeafQuery;
 
 /* The voxels are those of the tree. The caller frees. */
-void oct_leaf_query_init(OctLeafQuery *near, const OctTree *tree, const SmVoxels *voxels);
-void oct_leaf_query_free(OctLeafQuery *near);
+void oct_leaf_query_init(OctLeafQuery *query, const OctTree *tree, const SmVoxels *voxels);
+void oct_leaf_query_free(OctLeafQuery *query);
 
 /* Leaves at a box, half finest cells. O(those found, levels, and base cells met * log roots). */
-void oct_leaf_query_box(OctLeafQuery *near, const int low[3], const int high[3],
+void oct_leaf_query_box(OctLeafQuery *query, const int low[3], const int high[3],
                         OctLeafQueryKind kind);
 
 /* Leaves of a level below `level` at a triangle, in half finest cells, thickened by `margin` in the
  * max norm. O(those found and base cells of its box). */
-void oct_leaf_query_triangle(OctLeafQuery *near, const double corner[3][3], double margin,
+void oct_leaf_query_triangle(OctLeafQuery *query, const double corner[3][3], double margin,
                              int level, OctLeafQueryKind kind);
 
 #endif

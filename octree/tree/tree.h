@@ -99,4 +99,22 @@ static inline int oct_tree_low(const OctTree *tree, int node, int d)
     return (tree->centre[node][d] - tree->size[node] / 2) / 2;
 }
 
+/* Lists of tree nodes, one for every level of the tree, that grow. */
+typedef struct {
+    int *node; /* [count] */
+    long count, room;
+} OctLevel;
+
+/* Begins zeroed; oct_levels_free() ends it. */
+typedef struct {
+    OctLevel level[OCT_MAX_LEVELS + 1];
+} OctLevels;
+
+/* Amortised O(1). */
+void oct_levels_add(OctLevels *levels, int level, int node);
+
+/* Memory of the lists. */
+size_t oct_levels_bytes(const OctLevels *levels);
+void oct_levels_free(OctLevels *levels);
+
 #endif

@@ -1,4 +1,4 @@
-#include "reweigh.h"
+#include "weights_change.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@ static void *grown(void *old, long *room, long wanted, size_t size)
     return array;
 }
 
-static void make_room(const OctTree *tree, OctWeights *w, OctReweigh *s)
+static void make_room(const OctTree *tree, OctWeights *w, OctWeightsChange *s)
 {
     if (tree->nodes > w->nodes) {
         long nodes = w->nodes;
@@ -33,7 +33,7 @@ static void make_room(const OctTree *tree, OctWeights *w, OctReweigh *s)
 }
 
 /* A mark that no node or leaf has. */
-static void new_mark(OctReweigh *s)
+static void new_mark(OctWeightsChange *s)
 {
     if (++s->mark) return;
     memset(s->on_path, 0, (size_t)s->nodes * sizeof *s->on_path);
@@ -42,7 +42,7 @@ static void new_mark(OctReweigh *s)
     s->mark = 1;
 }
 
-static void add_parent(const OctTree *tree, long node, OctReweigh *s)
+static void add_parent(const OctTree *tree, long node, OctWeightsChange *s)
 {
     int parent = tree->parent[node];
     if (parent < 0 || s->on_path[parent] == s->mark) return;
@@ -58,7 +58,7 @@ static void sum_below(OctWeights *w, const OctTree *tree, long node)
 }
 
 /* From the deepest level up: the sums of what has been added to the path, and of all above. */
-static void climb(const OctTree *tree, OctWeights *w, OctReweigh *s,
+static void climb(const OctTree *tree, OctWeights *w, OctWeightsChange *s,
                   void (*sum)(OctWeights *w, const OctTree *tree, long node))
 {
     for (int level = tree->levels; level >= 0; level--) {
@@ -71,7 +71,7 @@ static void climb(const OctTree *tree, OctWeights *w, OctReweigh *s,
     }
 }
 
-static void list(OctReweigh *s, int leaf)
+static void list(OctWeightsChange *s, int leaf)
 {
     if (s->listed[leaf] == s->mark) return;
     s->listed[leaf] = s->mark;
@@ -83,7 +83,7 @@ static void list(OctReweigh *s, int leaf)
 }
 
 /* A node has at most 8 children, and those of one node of every level wait. */
-static void list_below(const OctTree *tree, int node, OctReweigh *s)
+static void list_below(const OctTree *tree, int node, OctWeightsChange *s)
 {
     int stack[8 * (OCT_MAX_LEVELS + 1)], count = 0;
     stack[count++] = node;
@@ -97,7 +97,7 @@ static void list_below(const OctTree *tree, int node, OctReweigh *s)
 }
 
 /* By symmetry the regions that contain a leaf are those of its own region's leaves. */
-static void list_region(const OctTree *tree, const OctRegions *r, long leaf, OctReweigh *s)
+static void list_region(const OctTree *tree, const OctRegions *r, long leaf, OctWeightsChange *s)
 {
     for (long at = r->first[leaf]; at < oct_regions_end(r, leaf); at++)
         list_below(tree, r->member[at], s);
@@ -114,7 +114,7 @@ static double find_reach(const OctRegions *r, const OctWeights *w, long leaf)
 /* M_i and weights of the leaves that the change names; lists whose regions hold those that have
  * another weight. */
 static void weigh_leaves(const OctTree *tree, const OctRegions *regions, const OctChange *change,
-                         OctWeights *w, OctReweigh *s)
+                         OctWeights *w, OctWeightsChange *s)
 {
     const double rounding = 1e-14;
     for (long n = 0; n < change->added_count; n++) w->reach[change->added[n].leaf] = 0;
@@ -131,8 +131,8 @@ static void weigh_leaves(const OctTree *tree, const OctRegions *regions, const O
     }
 }
 
-void oct_reweigh(const OctTree *tree, const OctRegions *regions, const double *mass,
-                 const OctChange *change, OctWeights *w, OctReweigh *s)
+void oct_weights_change(const OctTree *tree, const OctRegions *regions, const double *mass,
+                        const OctChange *change, OctWeights *w, OctWeightsChange *s)
 {
     make_room(tree, w, s);
     s->count = 0;
@@ -148,17 +148,17 @@ void oct_reweigh(const OctTree *tree, const OctRegions *regions, const double *m
     climb(tree, w, s, oct_weights_sum);
 }
 
-void oct_reweigh_free(OctReweigh *s)
+void oct_weights_change_free(OctWeightsChange *s)
 {
     oct_levels_free(&s->path);
     free(s->on_path);
     free(s->below);
     free(s->listed);
     free(s->leaf);
-    *s = (OctReweigh){0};
+    *s = (OctWeightsChange){0};
 }
 
-size_t oct_reweigh_bytes(const OctReweigh *s)
+size_t oct_weights_change_bytes(const OctWeightsChange *s)
 {
     return oct_levels_bytes(&s->path) + (size_t)s->nodes * (sizeof *s->on_path + sizeof *s->below) +
            (size_t)s->leaves * sizeof *s->listed + (size_t)s->room * sizeof *s->leaf;

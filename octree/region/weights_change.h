@@ -1,8 +1,8 @@
-/* reweigh.h - the weights of a structure that has changed: only what the change touches. */
-#ifndef OCT_REWEIGH_H
-#define OCT_REWEIGH_H
+/* weights_change.h - the weights of a structure that has changed: only what the change touches. */
+#ifndef OCT_WEIGHTS_CHANGE_H
+#define OCT_WEIGHTS_CHANGE_H
 
-#include "../tree/levels.h"
+#include "../tree/tree.h"
 #include "../tree/tree_change.h"
 #include "weights.h"
 
@@ -16,16 +16,16 @@ typedef struct {
     long nodes, leaves; /* there is place for as many */
     int *leaf;          /* [count] the list */
     long count, room;
-} OctReweigh;
+} OctWeightsChange;
 
 /* Brings the weights up to date with what has changed of tree, regions and `mass` [leaves], kg; the
  * regions must be symmetric; and lists in `scratch` the leaves whose M_i, weight or OctRegionRest
  * is another: those whose region holds other leaves, and those whose region holds a leaf whose
  * weight is another. M_i stays where it has moved by rounding alone. O(members of the listed
  * regions and leaves below them). */
-void oct_reweigh(const OctTree *tree, const OctRegions *regions, const double *mass,
-                 const OctChange *change, OctWeights *weights, OctReweigh *scratch);
-void oct_reweigh_free(OctReweigh *scratch);
-size_t oct_reweigh_bytes(const OctReweigh *scratch);
+void oct_weights_change(const OctTree *tree, const OctRegions *regions, const double *mass,
+                        const OctChange *change, OctWeights *weights, OctWeightsChange *scratch);
+void oct_weights_change_free(OctWeightsChange *scratch);
+size_t oct_weights_change_bytes(const OctWeightsChange *scratch);
 
 #endif
