@@ -153,7 +153,7 @@ void sm_csr_add(SmCsr *csr, long row, int item, const void *value)
     if (csr->size) memcpy(value_at(csr, csr->first[row] + count), value, csr->size);
 }
 
-/* Looks at all of them: nobody can foresee where it is. */
+/* Looks at all of them: a branch at each would be mispredicted. */
 long sm_csr_find(const SmCsr *csr, long row, int item)
 {
     const int *from = csr->item + csr->first[row];
@@ -224,7 +224,7 @@ int sm_compare_ints(const void *a, const void *b)
 enum { FEW = 192 };
 
 /* Every number goes to the place that those less than it, and equal ones before it, leave: no
- * branch that nobody can foresee, and many comparisons at once. */
+ * unpredictable branches, and many comparisons at once. */
 static void sort_few(int *restrict item, int count)
 {
     int place[FEW], from[FEW];

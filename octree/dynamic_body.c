@@ -84,9 +84,9 @@ static void change_nodes(Oct *oct, const OctTree *tree, const OctChange *change,
         oct->child[change->outer[n].node] = -1;
         oct->children[change->outer[n].node] = 0;
     }
-    for (long n = 0; n < change->dead_count; n++) c->slot[change->dead[n].node] = -1;
-    for (long n = 0; n < change->born_count; n++) {
-        int node = change->born[n].node;
+    for (long n = 0; n < change->deleted_count; n++) c->slot[change->deleted[n].node] = -1;
+    for (long n = 0; n < change->created_count; n++) {
+        int node = change->created[n].node;
         c->slot[node] = -1;
         copy_children(oct, tree, node);
         if (tree->parent[node] >= 0) copy_children(oct, tree, tree->parent[node]);

@@ -230,7 +230,7 @@ SM_INLINE void goal_sums(const OctTask *task, long block, vec sum[3])
     for (int i = 0; i < 3; i++) sum[i] = (field[i] + field[4 + i]) + (field[8 + i] + field[12 + i]);
 }
 
-/* Eqs. 1 and 2 (fastlsm); x waits where damping follows. */
+/* Eqs. 1 and 2 (fastlsm); x is moved later where damping follows. */
 static void move(OctTask *task, long first, long last)
 {
     const Oct *oct = task->oct;

@@ -1,11 +1,12 @@
 /* state.h - what the octree engine holds, in one precision.
  *
  * Inside, lengths are finest cells from movable origins (frames.h) and velocities are finest cells
- * per step. Simulation nodes live in slots, slot = leaf number; SM_LANES slots are a block, and a
- * block's coordinates are stored as x[3][lanes]. A slot without a leaf, be it beyond the last one
- * or of a number that nothing bears, weighs nothing and matches the unit row, so that no lane is a
- * special case; what it sums goes to a spare row, and it stays near the origin. Region r is that of
- * simulation node r. */
+ * per step. Simulation nodes are stored in slots, slot = leaf number; SM_LANES slots are a block,
+ * and a block's coordinates are stored as x[3][lanes]. A slot without a leaf, beyond the last one
+ * or of a number not in use, has no mass and matches the unit row, so that no lane is a special
+ * case; its sums go to a spare row, and it stays near the origin. Region r is that of simulation
+ * node r.
+ */
 #ifndef OCT_STATE_H
 #define OCT_STATE_H
 
@@ -80,7 +81,7 @@ typedef struct {
 
 typedef struct {
     OctParams params;
-    long leaves, nodes; /* numbers; of a fixed body all of them are borne */
+    long leaves, nodes; /* numbers; of a fixed body all are in use */
     long alive;         /* leaves */
     long blocks;
     long block_room, node_room; /* there is place for as many */

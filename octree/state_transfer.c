@@ -42,7 +42,7 @@ static void add_leaf(Walk *w, long leaf)
     oct_fit_add(&w->fit, mass, X, x, v);
 }
 
-/* A node has at most 8 children, and those of one node of every level wait. */
+/* A node has at most 8 children, and those of one node of every level are on the stack. */
 static void add_node(Walk *w, int node)
 {
     int stack[8 * (OCT_MAX_LEVELS + 1)], count = 0;

@@ -20,9 +20,9 @@ const OctStructure *oct_engine_structure(const SmEngine *engine);
  * rotations and plastic shapes; children of a held node are held, and a node merged of any that
  * was.
  *
- * Particles are then renumbered: particle p is the p-th of the leaves that live, in rising order of
- * their numbers, oct_engine_leaves()[p]; SM_REST, masses and region() follow. Handles that are set
- * again after a change must be given by the new numbers.
+ * Particles are then renumbered: particle p is the p-th of the leaves that there are, in rising
+ * order of their numbers, oct_engine_leaves()[p]; SM_REST, masses and region() follow. Handles that
+ * are set again after a change must be given by the new numbers.
  *
  * Where nodes weigh as much as their cells' volume, a body's mass changes with its sampling, and
  * momentum and centre of mass are left to what new nodes start with.

@@ -7,12 +7,13 @@
  * changes and what is around it: the searches of the regions that reach it, O(levels + log roots)
  * for a cell.
  *
- * Numbers. A tree node and a leaf keep theirs as long as they live. Those of dead ones are handed
- * out again, but not before the next batch; siblings follow each other. In OctTree `nodes` and
- * `leaves` count the numbers handed out, `live` the leaves that live; of a dead leaf node[] is -1,
- * of a dead node size[] is 0 (its centre stays until the number is used again). Roots never die. In
- * a changed tree nodes are in no order and level_first[] says nothing; the lists of graph and
- * regions have ends of their own (oct_graph_end(), oct_regions_end()).
+ * Numbers. A tree node and a leaf keep theirs as long as they are there. Numbers of deleted ones
+ * are used again, but not before the next batch; siblings follow each other. In OctTree `nodes` and
+ * `leaves` count the numbers in use and those to be used again, `live` the leaves that there are;
+ * of a deleted leaf node[] is -1, of a deleted node size[] is 0 (its centre stays until the number
+ * is used again). Roots are never deleted. In a changed tree nodes are in no order and
+ * level_first[] is not valid; the lists of graph and regions have ends of their own
+ * (oct_graph_end(), oct_regions_end()).
  *
  * A batch is any number of splits, merges and triangles added to the structure's cut, then one
  * oct_resample_update(). Between the first of them and the update only tree nodes, their sizes,

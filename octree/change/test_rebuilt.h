@@ -64,7 +64,7 @@ static inline void check_region(const OctStructure *s, long leaf, const OctStruc
     free(member);
 }
 
-/* Numbers that live are used once, dead ones say so. */
+/* Numbers in use are used once, deleted ones are marked as such. */
 static inline void check_numbers(const OctTree *t)
 {
     long live = 0;

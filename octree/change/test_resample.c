@@ -96,8 +96,8 @@ static void check_nodes(const Before *b, const OctStructure *s, const OctChange 
         was[n] = n < b->nodes && b->size[n] > 0;
         is[n] = t->size[n] > 0;
     }
-    check_places(c->born, c->born_count, t, was, is, true);
-    check_places(c->dead, c->dead_count, t, was, is, false);
+    check_places(c->created, c->created_count, t, was, is, true);
+    check_places(c->deleted, c->deleted_count, t, was, is, false);
     for (long n = 0; n < t->nodes; n++) {
         was[n] = n < b->nodes && b->inner[n];
         is[n] = t->size[n] > 0 && t->children[n];
@@ -408,7 +408,7 @@ TEST(what_cannot_be_split_or_merged_is_refused)
     assert_int_equal(oct_resample_merge(&s, 0, &error), SM_USAGE);
     assert_int_equal(oct_resample_merge(&s, finest, &error), SM_USAGE);
     assert_int_equal(oct_resample_merge(&s, child, &error), SM_OK);
-    assert_int_equal(oct_resample_split(&s, finest, &error), SM_USAGE); /* dead */
+    assert_int_equal(oct_resample_split(&s, finest, &error), SM_USAGE); /* deleted */
     oct_resample_update(&s);
     check(&s, NULL);
     oct_structure_free(&s);

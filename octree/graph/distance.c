@@ -67,7 +67,7 @@ static long spread(OctReach *reach, int leaf, int k, int most, int place, long e
     }
     struct OctEntry *nearer = reach->entry + entries; /* the lengths in the place of `before` */
     const int *restrict to = g->to, *restrict length = g->length, *restrict known = reach->distance;
-    for (long e = g->first[leaf]; e < end; e++) { /* nobody can foresee which: no branch */
+    for (long e = g->first[leaf]; e < end; e++) { /* it cannot be predicted which: no branch */
         int d = k + length[e];
         *nearer = (struct OctEntry){to[e], length[e]};
         nearer += (d < known[to[e]]) & (d <= most);

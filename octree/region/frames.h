@@ -12,7 +12,7 @@
 enum { OCT_FRAME_WIDEST = 128, OCT_FRAME_EDGE = 64 };
 
 /* Groups of leaves that no region holds together: the group of each into group[leaves], numbered
- * from 0; -1 for numbers that no leaf bears. Returns how many. O(nodes + members). */
+ * from 0; -1 for numbers not in use. Returns how many. O(nodes + members). */
 long oct_frames_groups(const OctTree *tree, const OctRegions *regions, int *group);
 
 /* The frame of every leaf alike. All leaves below a member of a region are in one frame, and all of

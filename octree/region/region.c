@@ -13,7 +13,7 @@
 enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
 
 /* Puts the leaves below a node from `leaf` on; returns the end. A node is smaller than its children
- * and a level has at most 8 siblings waiting, so the stack is as deep as the levels. */
+ * and a level has at most 8 siblings on the stack, so the stack is as deep as the levels. */
 static int *leaves_below(const OctTree *tree, int node, int *leaf)
 {
     int stack[8 * (OCT_MAX_LEVELS + 1)], count = 1;

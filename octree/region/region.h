@@ -6,7 +6,7 @@
 
 /* What becomes of an asymmetric pair of leaves i and j, where the intervals of i put j in R_i and
  * those of j do not put i in R_j (one_sided_regions.h), as where w_i > (1 + epsilon) w_j. Of what
- * octree section 4.2 asks, one thing has to give way: */
+ * octree section 4.2 asks, one demand cannot be met then: */
 typedef enum {
     OCT_UNION,        /* each is in the other's region: some lie beyond (1 + epsilon) w of it */
     OCT_INTERSECTION, /* neither is: some within w of a node are not in its region */

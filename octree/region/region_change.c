@@ -176,7 +176,7 @@ static bool holds(const OctRegionChange *c, int i, int leaf)
 }
 
 /* Where leaf i held leaf k, which is not searched, and does not any more: i leaves the reverse list
- * of k; and where k holds i, k comes to that of i. Leaf i is in a lane of the search, or dead if
+ * of k; and where k holds i, k comes to that of i. Leaf i is in a lane of the search, or deleted if
  * `lane` is below 0. */
 static void lose(OctRegionChange *c, int i, int k, int lane)
 {
@@ -207,7 +207,7 @@ static void lose_all(OctRegionChange *c, int i, int lane)
 }
 
 /* Keeps of the reverse list of leaf i, which has just been searched, what still holds: the others
- * are searched too, or dead, or i holds them now. */
+ * are searched too, or deleted, or i holds them now. */
 static void keep_reverse(OctRegionChange *c, int i, int lane)
 {
     long first = c->reverse.first[i], end = c->reverse.end[i], kept = first;

@@ -82,7 +82,7 @@ static void list(OctWeightsChange *s, int leaf)
     s->leaf[s->count++] = leaf;
 }
 
-/* A node has at most 8 children, and those of one node of every level wait. */
+/* A node has at most 8 children, and those of one node of every level are on the stack. */
 static void list_below(const OctTree *tree, int node, OctWeightsChange *s)
 {
     int stack[8 * (OCT_MAX_LEVELS + 1)], count = 0;

@@ -9,7 +9,7 @@
 /* Scratch; begins zeroed. */
 typedef struct {
     OctLevels path;     /* nodes whose sums are to be found, by level */
-    unsigned mark;      /* marks that are less count for nothing */
+    unsigned mark;      /* smaller marks are not valid */
     unsigned *on_path;  /* [nodes] */
     unsigned *below;    /* [nodes] whose leaves are all on the list */
     unsigned *listed;   /* [leaves] */

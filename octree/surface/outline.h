@@ -1,5 +1,5 @@
 /* outline.h - an octree body as collisions see it (lib/collide/collide_rest.h): nodes are the
- * leaves that live, each carries its own cell, the rest graph is the visibility graph. Lengths are
+ * leaves, each carries its own cell, the rest graph is the visibility graph. Lengths are
  * finest cells. */
 #ifndef OCT_OUTLINE_H
 #define OCT_OUTLINE_H
@@ -9,7 +9,7 @@
 
 typedef struct {
     SmCollideRest rest;
-    int *leaf; /* [rest.nodes] a node's leaf, those that live, rising */
+    int *leaf; /* [rest.nodes] a node's leaf, rising */
     long leaves;
     struct OctOutlined {
         int centre[3], half, number; /* half finest cells; its node */

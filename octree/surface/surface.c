@@ -234,8 +234,8 @@ static bool parted(const Change *change, const double a[3], const double b[3])
            sm_cut_crosses(change->carrier->cut, change->first, a, b);
 }
 
-/* A cell and as much around it as edges to its leaf can go beyond the reach of others. Cells of
- * dead nodes lie in those of new leaves. */
+/* The box around a cell within which edges to its leaf can lie. Cells of deleted nodes lie in those
+ * of new leaves. */
 static void add_cell(Change *change, int node)
 {
     const OctCarrier *c = change->carrier;
@@ -288,9 +288,9 @@ static void compare_edges(Change *change)
 /* What a vertex needs, so that the right leaves move it by the right weights. */
 typedef enum { NOTHING, OTHERS, ALL } Need;
 
-/* Of leaves that it looked at and did not come to belong to, none comes into question without being
- * new: a cut only ever grows. So what cannot see the leaf that it belongs to has nothing to lose
- * there, and what can and still does needs no search. */
+/* A cut only ever grows, so that only new leaves can become visible to a vertex. One that does not
+ * see the leaf that it belongs to cannot lose sight of it, and one that still sees it needs no
+ * search. */
 static Need find_need(const Change *change, long v)
 {
     const OctSurface *s = change->s;

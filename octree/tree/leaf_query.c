@@ -55,7 +55,7 @@ static void add(OctLeafQuery *query, int node)
     query->node[query->count++] = node;
 }
 
-/* A level has at most 8 siblings waiting, so the stack is as deep as the levels. */
+/* A level has at most 8 siblings on the stack, so the stack is as deep as the levels. */
 static void visit(OctLeafQuery *query, const Place *place, int root)
 {
     const OctTree *t = query->tree;

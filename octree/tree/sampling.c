@@ -40,10 +40,11 @@ static SmCode check(const OctSampling *s, long cells, SmError *error)
         return sm_fail(error, SM_INPUT, "octree sampling: %ld %s wanted, but it cannot be below 0",
                        s->nodes < 0 ? s->nodes : s->bases, s->nodes < 0 ? "nodes" : "base cells");
     if (s->nodes > cells)
-        return sm_fail(error, SM_INPUT,
-                       "octree sampling: %ld nodes wanted, but there can be %ld, one of each finest "
-                       "cell: give at most so many, or smaller cells",
-                       s->nodes, cells);
+        return sm_fail(
+            error, SM_INPUT,
+            "octree sampling: %ld nodes wanted, but there can be %ld, one of each finest "
+            "cell: give at most so many, or smaller cells",
+            s->nodes, cells);
     SmCode code = SM_OK;
     for (int c = 0; c < s->criteria_count && !code; c++) {
         const OctCriterion *criterion = &s->criteria[c];
@@ -275,7 +276,7 @@ static bool split_other(Splitter *splitter)
     return split_next(s, &s->others);
 }
 
-/* Takes back all splits but the first `splits`. The queues are then of no use. */
+/* Takes back all splits but the first `splits`. The queues are not valid after. */
 static void undo(Splitter *splitter, long splits)
 {
     while (splitter->splits > splits) {

@@ -6,7 +6,7 @@
  *
  * Nodes are stored level by level from the roots down, along the Morton curve within a level, so
  * that parents come before their children, siblings follow each other, and the nodes of one level
- * are one range; a tree that has been changed is in no order and has numbers that nothing bears
+ * are one range; a tree that has been changed is in no order and has numbers that are not in use
  * (structure.h). Lengths are whole numbers of half a finest cell, in which every centre-to-centre
  * length is exact (octree section 6). Positions count from the corner of voxel (0,0,0). */
 #ifndef OCT_TREE_H
@@ -20,12 +20,12 @@ typedef struct {
     int levels;    /* of splitting there can be; a finest cell has level `levels` */
     int corner[3]; /* of the base lattice, in finest cells */
     long roots, nodes, leaves;
-    long live;               /* leaves that live; as many as there are until the tree is changed */
-    long *level_first;       /* [levels + 2] first node of every level; its last entry is `nodes` */
-    int (*centre)[3];        /* [nodes] half finest cells */
-    int *size;               /* [nodes] edge length, half finest cells: 2 << (levels - level) */
-    int *parent;             /* [nodes] or -1 for a root */
-    int *child;              /* [nodes] first child, or -1 for a leaf */
+    long live;         /* leaves that there are; as many as there are until the tree is changed */
+    long *level_first; /* [levels + 2] first node of every level; its last entry is `nodes` */
+    int (*centre)[3];  /* [nodes] half finest cells */
+    int *size;         /* [nodes] edge length, half finest cells: 2 << (levels - level) */
+    int *parent;       /* [nodes] or -1 for a root */
+    int *child;        /* [nodes] first child, or -1 for a leaf */
     unsigned char *children; /* [nodes] how many follow each other from there, 0 for a leaf */
     long *material;          /* [nodes] finest cells of material in it */
     int *leaf;               /* [nodes] number of its simulation node, or -1 */
@@ -44,7 +44,7 @@ SmCode oct_tree_build(const SmVoxels *voxels, int levels, const int corner[3], O
                       SmError *error);
 
 /* The part of `whole` (any tree) whose inner cells are those with split[node] set and all their
- * ancestors set too; what is marked below a cell that is not counts for nothing. The caller
+ * ancestors set too; what is marked below a cell that is not has no effect. The caller
  * frees. O(nodes of whole). */
 void oct_tree_prune(const OctTree *whole, const unsigned char *split, OctTree *tree);
 

@@ -52,9 +52,9 @@ void oct_tree_change_init(OctTreeChange *c, OctTree *tree, const SmVoxels *voxel
 void oct_tree_change_free(OctTreeChange *c)
 {
     OctChange *change = &c->change;
-    void *all[] = {c->below,     c->touched,      c->place,      c->waiting,
-                   c->number,    change->removed, change->added, change->born,
-                   change->dead, change->inner,   change->outer, change->region};
+    void *all[] = {c->below,        c->touched,      c->place,      c->waiting,
+                   c->number,       change->removed, change->added, change->created,
+                   change->deleted, change->inner,   change->outer, change->region};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     *c = (OctTreeChange){0};
 }
@@ -67,12 +67,12 @@ size_t oct_tree_change_bytes(const OctTreeChange *c)
            (size_t)c->number_room * sizeof *c->number +
            (size_t)c->added_room * sizeof *c->change.added +
            (size_t)c->removed_room * sizeof *c->change.removed +
-           (size_t)(c->born_room + c->dead_room + c->inner_room + c->outer_room) *
+           (size_t)(c->created_room + c->deleted_room + c->inner_room + c->outer_room) *
                sizeof(OctNodeLevel);
 }
 
-/* The numbers that the last batch gave away can be used from now on. */
-static void open(OctTreeChange *c)
+/* The numbers that the last batch has freed can be used from now on. */
+static void begin_batch(OctTreeChange *c)
 {
     if (c->open) return;
     OctChange *change = &c->change;
@@ -87,7 +87,7 @@ static void open(OctTreeChange *c)
     }
     c->waiting_count = c->touched_count = 0;
     change->removed_count = change->added_count = 0;
-    change->born_count = change->dead_count = change->inner_count = change->outer_count = 0;
+    change->created_count = change->deleted_count = change->inner_count = change->outer_count = 0;
     c->open = true;
 }
 
@@ -121,7 +121,7 @@ static int take_group(OctTreeChange *c, int count)
     return first;
 }
 
-static void be_leaf(OctTree *t, int node, int parent)
+static void init_leaf(OctTree *t, int node, int parent)
 {
     t->parent[node] = parent;
     t->size[node] = t->size[parent] / 2;
@@ -148,21 +148,21 @@ static void make_children(OctTreeChange *c, int node)
     for (int i = 0; i < count; i++) {
         for (int d = 0; d < 3; d++)
             t->centre[first + i][d] = t->centre[node][d] + (which[i] >> d & 1 ? wide : -wide);
-        be_leaf(t, first + i, node);
+        init_leaf(t, first + i, node);
         t->material[first + i] = material[i];
         touch(c, first + i, false);
     }
 }
 
-/* Gives a node the children back that it was merged of. */
-static void take_back(OctTreeChange *c, OctTouched *touched)
+/* A node that was merged in this batch has its children again. */
+static void restore_children(OctTreeChange *c, OctTouched *touched)
 {
     OctTree *t = c->tree;
     t->child[touched->node] = touched->child;
     t->children[touched->node] = touched->children;
     touched->children = 0;
     for (int i = 0; i < t->children[touched->node]; i++)
-        be_leaf(t, t->child[touched->node] + i, touched->node);
+        init_leaf(t, t->child[touched->node] + i, touched->node);
 }
 
 static void count_below(OctTreeChange *c, int node, int more)
@@ -170,7 +170,7 @@ static void count_below(OctTreeChange *c, int node, int more)
     for (; node >= 0; node = c->tree->parent[node]) c->below[node] += more;
 }
 
-static bool lives(const OctTree *t, int node)
+static bool exists(const OctTree *t, int node)
 {
     return node >= 0 && node < t->nodes && t->size[node] > 0;
 }
@@ -178,7 +178,7 @@ static bool lives(const OctTree *t, int node)
 SmCode oct_tree_change_split(OctTreeChange *c, int node, SmError *error)
 {
     OctTree *t = c->tree;
-    if (!lives(t, node) || t->children[node])
+    if (!exists(t, node) || t->children[node])
         return sm_fail(error, SM_USAGE,
                        "octree: node %d cannot be split: there is no such leaf; give the tree "
                        "node of one",
@@ -188,11 +188,11 @@ SmCode oct_tree_change_split(OctTreeChange *c, int node, SmError *error)
                        "octree: node %d cannot be split: it is a finest cell; sample with more "
                        "levels or smaller cells",
                        node);
-    open(c);
+    begin_batch(c);
     OctTouched *touched = touch(c, node, true);
     t->leaf[node] = -1;
     if (touched->children)
-        take_back(c, touched);
+        restore_children(c, touched);
     else
         make_children(c, node);
     for (int i = 0; i < t->children[node]; i++) c->below[t->child[node] + i] = 1;
@@ -203,14 +203,14 @@ SmCode oct_tree_change_split(OctTreeChange *c, int node, SmError *error)
 SmCode oct_tree_change_merge(OctTreeChange *c, int node, SmError *error)
 {
     OctTree *t = c->tree;
-    bool can = lives(t, node) && t->children[node];
+    bool can = exists(t, node) && t->children[node];
     for (int i = 0; can && i < t->children[node]; i++) can = !t->children[t->child[node] + i];
     if (!can)
         return sm_fail(error, SM_USAGE,
                        "octree: the children of node %d cannot be merged: there are none, or not "
                        "all are leaves; merge from the leaves up",
                        node);
-    open(c);
+    begin_batch(c);
     int first = t->child[node], count = t->children[node];
     for (int i = 0; i < count; i++) {
         touch(c, first + i, true);
@@ -238,7 +238,7 @@ static int number_leaf(OctTreeChange *c, int node)
     return leaf;
 }
 
-/* What has become of one node. Children that it has lost for good wait to be used again. */
+/* The net change of one node. The numbers of children that it has lost are to be used again. */
 static void settle_node(OctTreeChange *c, const OctTouched *was)
 {
     OctTree *t = c->tree;
@@ -265,12 +265,12 @@ static void settle_node(OctTreeChange *c, const OctTouched *was)
         to->added[to->added_count++] = (OctAdded){-1, was->node, -1};
     }
     if (there != was->there) {
-        ROOM(to->born, to->born_count, c->born_room);
-        ROOM(to->dead, to->dead_count, c->dead_room);
+        ROOM(to->created, to->created_count, c->created_room);
+        ROOM(to->deleted, to->deleted_count, c->deleted_room);
         if (there)
-            to->born[to->born_count++] = here;
+            to->created[to->created_count++] = here;
         else
-            to->dead[to->dead_count++] = here;
+            to->deleted[to->deleted_count++] = here;
     }
     if (inner != was->inner) {
         ROOM(to->inner, to->inner_count, c->inner_room);
@@ -310,7 +310,7 @@ static void pair_leaves(OctTreeChange *c)
 void oct_tree_change_settle(OctTreeChange *c)
 {
     OctChange *to = &c->change;
-    open(c);
+    begin_batch(c);
     for (long n = 0; n < c->touched_count; n++) settle_node(c, c->touched + n);
     for (long a = 0; a < to->added_count; a++)
         to->added[a].leaf = number_leaf(c, to->added[a].node);

@@ -4,13 +4,13 @@
 
 #include "tree.h"
 
-/* A leaf that is no more. */
+/* A removed leaf. */
 typedef struct {
-    int leaf, node; /* the node may live on (split), or be dead */
+    int leaf, node; /* the node is still there (split), or deleted */
     int into;       /* the new leaf whose cell holds its cell, or -1 if it was split */
 } OctRemoved;
 
-/* A leaf that was not there before. */
+/* A new leaf. */
 typedef struct {
     int leaf, node;
     int from; /* the removed leaf whose cell holds its cell, or -1 if it was merged of several */
@@ -34,26 +34,27 @@ typedef struct OctChange {
     const int *searched; /* leaves whose summation nodes were found anew (N_update, octree section
                           * 5), those near each other together */
     long edge_count;     /* edges of the graph that have gone or come */
-    long born_count, dead_count; /* tree nodes */
-    OctNodeLevel *born, *dead;
+    long created_count, deleted_count; /* tree nodes */
+    OctNodeLevel *created, *deleted;
     long inner_count, outer_count;
     OctNodeLevel *inner; /* that have children now and had none, or were not there */
-    OctNodeLevel *outer; /* that had children and have none now, or are dead */
+    OctNodeLevel *outer; /* that had children and have none now, or are deleted */
 } OctChange;
 
 /* A node touched in the batch: what it was before it, and the children that it has lost. */
 typedef struct {
     int node, level;
-    int leaf;               /* number before the batch, or -1 */
-    bool there, inner;      /* before the batch */
-    int child;              /* first of the children it was merged of in this batch, */
-    unsigned char children; /* which wait to be taken back or given away; 0: none */
+    int leaf;          /* number before the batch, or -1 */
+    bool there, inner; /* before the batch */
+    int child;         /* first of the children it was merged of in this batch, */
+    unsigned char
+        children; /* which are either used again by a split or freed in the end; 0: none */
 } OctTouched;
 
 typedef struct {
     OctTree *tree;
     const SmVoxels *voxels;
-    int *below;                  /* [node_space] leaves below every node; of dead ones nothing */
+    int *below; /* [node_space] leaves below every node; of deleted ones not valid */
     long node_space, leaf_space; /* numbers that the tree's arrays have room for */
     OctChange change;            /* of the last batch; regions and edges are not filled in here */
     /* its own */
@@ -63,12 +64,12 @@ typedef struct {
     int *place;        /* [node_space] 1 + which of `touched` a node is, or 0 */
     int group[9];      /* first node of a free group of so many siblings, or -1; the next is its
                         * `parent` */
-    int (*waiting)[2]; /* [waiting_count] groups that the last batch gave away: first, count */
+    int (*waiting)[2]; /* [waiting_count] groups that the last batch has freed: first, count */
     long waiting_count;
     int *number; /* [number_count] free leaf numbers */
     long number_count;
     long touched_room, waiting_room, number_room;
-    long added_room, removed_room, born_room, dead_room, inner_room, outer_room;
+    long added_room, removed_room, created_room, deleted_room, inner_room, outer_room;
 } OctTreeChange;
 
 /* Tree and voxels must stay where they are. O(nodes). The caller frees. */
