@@ -90,63 +90,65 @@ static bool touches_part(const BenchPart *part, const BenchTouch *touch)
     return part->own && part->instance[0] + 1 == touch->instance;
 }
 
-/* The wish of touch or eye number i (the eye's is one more than touches) at a time; false: none. */
+/* The criterion of touch number i at a time, or after the last touch that of the view; false: there
+ * is none. */
 typedef struct {
-    OctBallRefinement touch;
-    OctViewRefinement eye;
-    OctRefineCriterion *wish; /* NULL: nothing is wished for now */
+    OctBallRefinement ball;
+    OctViewRefinement view;
+    OctRefineCriterion *asks; /* NULL: nothing is to be split now */
     const void *what;
     double hold;
-} Wish;
+} Criterion;
 
-static bool find_wish(BenchChanges *changes, int i, double time, Wish *wish)
+static bool find_criterion(BenchChanges *changes, int i, double time, Criterion *criterion)
 {
     const BenchScene *scene = changes->part->runner.scene;
-    *wish = (Wish){0};
+    *criterion = (Criterion){0};
     if (i < scene->touch_count) {
         const BenchTouch *from = &scene->touch[i];
         if (!touches_part(changes->part, from)) return false;
         bool now = time >= from->start && (from->stop <= 0 || time < from->stop);
-        memcpy(wish->touch.centre, from->centre, sizeof from->centre);
-        wish->touch.radius = from->radius;
-        wish->touch.level = from->level;
-        wish->wish = now ? oct_ball_criterion : NULL;
-        wish->what = &wish->touch;
-        wish->hold = from->hold;
+        memcpy(criterion->ball.centre, from->centre, sizeof from->centre);
+        criterion->ball.radius = from->radius;
+        criterion->ball.level = from->level;
+        criterion->asks = now ? oct_ball_criterion : NULL;
+        criterion->what = &criterion->ball;
+        criterion->hold = from->hold;
         return true;
     }
     const BenchView *view = &scene->view;
     if (view->level == 0) return false;
     double share = bench_share_of(time, view->start, view->stop);
-    bench_between(view->eye_from, view->eye_to, share, wish->eye.eye);
-    wish->eye.near = view->near;
-    wish->eye.slack = view->slack;
-    wish->eye.level = view->level;
-    wish->wish = oct_view_criterion;
-    wish->what = &wish->eye;
+    bench_between(view->eye_from, view->eye_to, share, criterion->view.eye);
+    criterion->view.near = view->near;
+    criterion->view.slack = view->slack;
+    criterion->view.level = view->level;
+    criterion->asks = oct_view_criterion;
+    criterion->what = &criterion->view;
     return true;
 }
 
-/* Does touches and the eye; with `s` NULL only says whether there is anything to do. */
-static bool refine_details(BenchChanges *changes, double time, OctStructure *s)
+/* Refines by touches and view; with `s` NULL only says whether there is anything to do. */
+static bool refine(BenchChanges *changes, double time, OctStructure *s)
 {
     const BenchRunner *runner = &changes->part->runner;
     bool any = false;
     for (int i = 0; i <= runner->scene->touch_count; i++) {
-        Wish wish;
-        OctRefinement *detail =
+        Criterion criterion;
+        OctRefinement *refinement =
             i < runner->scene->touch_count ? &changes->touch[i] : &changes->view;
-        if (!find_wish(changes, i, time, &wish)) continue;
+        if (!find_criterion(changes, i, time, &criterion)) continue;
         if (s)
-            any |= oct_refinement_update(detail, s, wish.wish, wish.what, time, wish.hold) > 0;
+            any |= oct_refinement_update(refinement, s, criterion.asks, criterion.what, time,
+                                         criterion.hold) > 0;
         else
-            any |= oct_refinement_due(detail, oct_engine_structure(runner->engine), wish.wish,
-                                      wish.what, time, wish.hold);
+            any |= oct_refinement_due(refinement, oct_engine_structure(runner->engine),
+                                      criterion.asks, criterion.what, time, criterion.hold);
     }
     return any;
 }
 
-static void retie(BenchChanges *changes, long count, const int *node, long first)
+static void update_surface(BenchChanges *changes, long count, const int *node, long first)
 {
     const OctStructure *s = oct_engine_structure(changes->part->runner.engine);
     OctCarrier carrier = {&changes->part->body.voxels, &s->tree, &s->graph, &s->cut};
@@ -165,7 +167,7 @@ static void sever(BenchChanges *changes)
         int *piece = sm_alloc((size_t)carried->vertices, sizeof *piece);
         for (long v = 0; v < carried->vertices; v++)
             piece[v] = pieces.piece[carried->rows.item[carried->rows.first[v]]];
-        if (sm_sever(&changes->surface, piece)) retie(changes, 0, NULL, s->cut.triangles);
+        if (sm_sever(&changes->surface, piece)) update_surface(changes, 0, NULL, s->cut.triangles);
         free(piece);
     }
     sm_pieces_free(&pieces);
@@ -184,7 +186,7 @@ static void follow(BenchChanges *changes, const OctChange *change, long first)
     int *node = sm_alloc((size_t)(change->removed_count + change->added_count), sizeof *node);
     for (long i = 0; i < change->removed_count; i++) node[count++] = change->removed[i].node;
     for (long i = 0; i < change->added_count; i++) node[count++] = change->added[i].node;
-    retie(changes, count, node, first);
+    update_surface(changes, count, node, first);
     sever(changes);
     free(node);
     changes->last.follow_seconds = sm_now() - start;
@@ -193,8 +195,7 @@ static void follow(BenchChanges *changes, const OctChange *change, long first)
 static SmCode change_frame(BenchChanges *changes, double from, double to, SmError *error)
 {
     BenchRunner *runner = &changes->part->runner;
-    if (!bench_blades_move(runner->scene, from, to) && !refine_details(changes, to, NULL))
-        return SM_OK;
+    if (!bench_blades_move(runner->scene, from, to) && !refine(changes, to, NULL)) return SM_OK;
     OctStructure *s;
     double start = sm_now();
     SmCode code = oct_engine_begin(runner->engine, &s, error);
@@ -202,7 +203,7 @@ static SmCode change_frame(BenchChanges *changes, double from, double to, SmErro
     long first = s->cut.triangles, before = runner->particles;
     bench_changes_sweep(changes, from, to, &s->cut);
     if (s->cut.triangles > first) refine_cut(changes, from, to, s, first);
-    refine_details(changes, to, s);
+    refine(changes, to, s);
     const OctChange *change = oct_engine_end(runner->engine);
     changes->last.resample_seconds = sm_now() - start;
     changes->last.resampled = change->region_count + change->edge_count > 0;

@@ -210,7 +210,7 @@ long sm_skin_cut_triangles(const SmSkin *skin)
     return skin->octree ? oct_engine_structure(skin->engine)->cut.triangles : skin->cut.triangles;
 }
 
-static void retie(SmSkin *skin, long count, const int *node, long first)
+static void update(SmSkin *skin, long count, const int *node, long first)
 {
     const OctStructure *s = oct_engine_structure(skin->engine);
     OctCarrier carrier = {skin->voxels, &s->tree, &s->graph, &s->cut};
@@ -251,11 +251,11 @@ void sm_skin_follow(SmSkin *skin, const OctChange *change, long first)
     int *node = sm_alloc((size_t)(change->removed_count + change->added_count), sizeof *node);
     for (long i = 0; i < change->removed_count; i++) node[count++] = change->removed[i].node;
     for (long i = 0; i < change->added_count; i++) node[count++] = change->added[i].node;
-    retie(skin, count, node, first);
+    update(skin, count, node, first);
     free(node);
     SmPieces pieces;
     oct_graph_pieces(&s->tree, &s->graph, &pieces);
-    if (sever(skin, &pieces, skin->carried.vertices)) retie(skin, 0, NULL, s->cut.triangles);
+    if (sever(skin, &pieces, skin->carried.vertices)) update(skin, 0, NULL, s->cut.triangles);
     sm_pieces_free(&pieces);
 }
 
