@@ -41,7 +41,8 @@ SmCode bench_plan_count(BenchPlan *plan, SmError *error);
 /* Is the body a mesh alone, dropped on the ground, rather than in the place of a scene's? */
 bool bench_plan_alone(const BenchPlan *plan);
 
-/* Engine, w and epsilon of a point: of every w in turn all engines, of sampled ones all epsilons. */
+/* Engine, w and epsilon of a point: of every w in turn all engines, of sampled ones all epsilons.
+ */
 void bench_plan_point(const BenchPlan *plan, int index, BenchPoint *point);
 
 /* Is `theirs` the same as `mine`? If not, `what` says in what they differ first. */
