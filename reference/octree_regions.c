@@ -147,8 +147,8 @@ static void traverse(const Traversal *t, long node)
     for (long c = 0; c < t->tree->children[node]; c++) traverse(t, t->tree->child[node] + c);
 }
 
-void ref_octree_own(const OctTree *tree, const bool *below, const long *distance, double w,
-                    double most, bool *taken)
+void ref_octree_one_sided(const OctTree *tree, const bool *below, const long *distance, double w,
+                          double most, bool *taken)
 {
     Traversal t = {tree, below, distance, w, most, taken};
     memset(taken, 0, (size_t)tree->nodes * sizeof *taken);
@@ -162,7 +162,8 @@ void ref_octree_regions(const OctTree *tree, const RefOctree *ref, const int *w,
     bool *below = ref_octree_below(tree), *taken = sm_alloc((size_t)tree->nodes, sizeof *taken);
     memset(member, 0, (size_t)leaves * (size_t)leaves * sizeof *member);
     for (long i = 0; i < leaves; i++) {
-        ref_octree_own(tree, below, ref->distance + i * leaves, w[i], (1 + epsilon) * w[i], taken);
+        ref_octree_one_sided(tree, below, ref->distance + i * leaves, w[i], (1 + epsilon) * w[i],
+                             taken);
         for (long n = 0; n < tree->nodes; n++)
             for (long l = 0; l < leaves && taken[n]; l++)
                 member[i * leaves + l] |= below[n * leaves + l];

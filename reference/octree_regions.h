@@ -33,7 +33,7 @@ bool *ref_octree_below(const OctTree *tree);
 
 /* taken[n]: does the leaf that has these distances put tree node n in, as the intervals of the
  * leaves below it say? A leaf within w is in, one beyond `most` is not. `taken` is [nodes]. */
-void ref_octree_own(const OctTree *tree, const bool *below, const long *distance, double w,
-                    double most, bool *taken);
+void ref_octree_one_sided(const OctTree *tree, const bool *below, const long *distance, double w,
+                          double most, bool *taken);
 
 #endif

@@ -1,4 +1,4 @@
-/* What several leaves own, found at once, against the slow twin of each alone. */
+/* The one-sided regions of several leaves, found at once, against the slow twin of each alone. */
 #include "multi_source_search.h"
 
 #include "../../lib/test_frame.h"
@@ -18,7 +18,7 @@ typedef struct {
     int *length;        /* [leaves][leaves] of the edges, 0 where there is none */
     bool *below_matrix; /* [nodes][leaves] */
     long *distance;     /* [leaves] of the leaf in hand */
-    bool *taken;        /* [nodes] */
+    bool *member;       /* [nodes] */
 } Both;
 
 static int *edge_matrix(const OctGraph *g)
@@ -43,25 +43,25 @@ static void both_init(Both *b, unsigned *seed, const OctTree *t, const OctGraph 
     b->length = edge_matrix(g);
     b->below_matrix = ref_octree_below(t);
     b->distance = sm_alloc((size_t)t->leaves, sizeof *b->distance);
-    b->taken = sm_alloc((size_t)t->nodes, sizeof *b->taken);
+    b->member = sm_alloc((size_t)t->nodes, sizeof *b->member);
 }
 
 static void both_free(Both *b)
 {
     oct_search_free(&b->search);
     oct_reach_free(&b->reach);
-    void *all[] = {b->w, b->below, b->length, b->below_matrix, b->distance, b->taken};
+    void *all[] = {b->w, b->below, b->length, b->below_matrix, b->distance, b->member};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
-/* Leaves: who is owned, how far they are, and how far the farthest one is. */
-static void check_leaves(const Both *b, int lane, int reach, const bool *owned)
+/* Leaves: which are held, how far they are, and how far the farthest one is. */
+static void check_leaves(const Both *b, int lane, int reach, const bool *held)
 {
     const OctSearch *s = &b->search;
     long width = 0;
     for (int l = 0; l < b->tree->leaves; l++) {
         long distance = b->distance[l];
-        assert_int_equal(oct_search_holds(s, lane, l), owned[l]);
+        assert_int_equal(oct_search_holds(s, lane, l), held[l]);
         int at = s->leaf_at[l];
         if (distance >= 0 && distance <= reach)
             assert_int_equal(s->distance[at][lane], distance);
@@ -70,7 +70,7 @@ static void check_leaves(const Both *b, int lane, int reach, const bool *owned)
         if (at >= 0)
             assert_int_equal(oct_lanes_beyond(s->distance[at], reach) >> lane & 1,
                              s->distance[at][lane] > reach);
-        if (owned[l] && distance > width) width = distance;
+        if (held[l] && distance > width) width = distance;
     }
     assert_int_equal(s->width[lane], width);
 }
@@ -79,24 +79,24 @@ static void check_lane(Both *b, int lane, int leaf, int reach)
 {
     const OctSearch *s = &b->search;
     const OctTree *t = b->tree;
-    bool *owned = sm_alloc((size_t)t->leaves, sizeof *owned);
+    bool *held = sm_alloc((size_t)t->leaves, sizeof *held);
     long members = 0;
     ref_octree_dijkstra(b->length, t->leaves, leaf, b->distance);
-    ref_octree_own(t, b->below_matrix, b->distance, b->w[leaf], (1 + b->epsilon) * b->w[leaf],
-                   b->taken);
+    ref_octree_one_sided(t, b->below_matrix, b->distance, b->w[leaf], (1 + b->epsilon) * b->w[leaf],
+                         b->member);
     for (long n = 0; n < t->nodes; n++) {
-        if (!b->taken[n]) continue;
+        if (!b->member[n]) continue;
         assert_true(members < s->members[lane]);
         assert_int_equal(oct_search_member(s, lane)[members++], n);
-        for (long l = 0; l < t->leaves; l++) owned[l] |= b->below_matrix[n * t->leaves + l];
+        for (long l = 0; l < t->leaves; l++) held[l] |= b->below_matrix[n * t->leaves + l];
     }
     assert_int_equal(s->members[lane], members);
-    check_leaves(b, lane, reach, owned);
-    free(owned);
+    check_leaves(b, lane, reach, held);
+    free(held);
 }
 
 /* A run of leaves, which are near each other, or leaves from anywhere. */
-static void check_sheaf(Both *b, unsigned *seed)
+static void check_search(Both *b, unsigned *seed)
 {
     long leaves = b->tree->leaves;
     int count = 1 + random_int(seed, leaves < OCT_SOURCES ? (int)leaves : OCT_SOURCES);
@@ -112,7 +112,7 @@ static void check_sheaf(Both *b, unsigned *seed)
     for (int n = 0; n < count; n++) check_lane(b, n, leaf[n], reach[n]);
 }
 
-TEST(a_sheaf_owns_what_its_leaves_do)
+TEST(a_search_finds_what_its_leaves_find_alone)
 {
     unsigned seed = 11;
     for (int trial = 0; trial < TRIALS; trial++) {
@@ -123,7 +123,7 @@ TEST(a_sheaf_owns_what_its_leaves_do)
         random_small_tree(&seed, trial, LEAVES, &v, &t);
         oct_graph_build(&t, &v, &g);
         both_init(&b, &seed, &t, &g);
-        for (int n = 0; n < 4; n++) check_sheaf(&b, &seed);
+        for (int n = 0; n < 4; n++) check_search(&b, &seed);
         both_free(&b);
         oct_graph_free(&g);
         oct_tree_free(&t);
