@@ -9,13 +9,22 @@
 #include "../play/runner.h"
 #include "../store/draft.h"
 #include "../store/store.h"
+#include "../table/quantity.h"
 #include "../table/table.h"
 #include "command.h"
 #include "option.h"
 #include "override.h"
 #include "suggest.h"
 
-enum { KEY_PAPER = 0x2000, KEY_SCENE, KEY_FORMAT, KEY_REPEATS, KEY_BLOCK, KEY_EXPLAIN };
+enum {
+    KEY_PAPER = 0x2000,
+    KEY_SCENE,
+    KEY_FORMAT,
+    KEY_REPEATS,
+    KEY_BLOCK,
+    KEY_EXPLAIN,
+    KEY_COLUMNS
+};
 
 typedef struct {
     BenchCommon common;
@@ -25,7 +34,7 @@ typedef struct {
     int repeats;
     double block;
     BenchFormat format;
-    bool overwrite, explain;
+    bool overwrite, explain, columns;
 } Options;
 
 /* A scene to measure, and the name that stood for it and others, or NULL. */
@@ -55,6 +64,8 @@ static const struct argp_option option_list[] = {
      "Also store every sample, counts, validity and provenance in HDF5 (default: nothing stored)",
      3},
     BENCH_OVERWRITE_OPTION(3),
+    {"columns", KEY_COLUMNS, NULL, 0,
+     "Measure nothing; list the columns of csv, json and FILE.h5 as results/README.md has them", 4},
     {0},
 };
 
@@ -65,6 +76,7 @@ static const BenchOption options_taken[] = {
     {KEY_BLOCK, BENCH_TO(REAL, block), 0.001, 60000, NULL},
     {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
     {KEY_EXPLAIN, BENCH_TO(TRUE, explain), 0, 0, NULL},
+    {KEY_COLUMNS, BENCH_TO(TRUE, columns), 0, 0, NULL},
     {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
     BENCH_OVERWRITE_TAKEN,
     {0},
@@ -315,6 +327,10 @@ int bench_command_tables(int argc, char **argv)
     Choices chosen = {.options = &options};
     SmError error;
     bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
+    if (options.columns) {
+        bench_quantities_document(stdout);
+        return SM_OK;
+    }
     SmCode code = choose_scenes(&chosen, &error);
     if (!code) code = check_substitutes(&chosen, &error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);

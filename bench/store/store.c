@@ -65,6 +65,20 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
     if (group >= 0) H5Gclose(group);
 }
 
+/* What each attribute of a row is, for readers: "median of a step [ms]". */
+static void write_columns(BenchH5 *h5)
+{
+    hid_t columns = bench_h5_group(h5, h5->file, "columns");
+    hid_t elastic = bench_h5_group(h5, columns, "elastic");
+    for (int q = 0; q < bench_quantity_count; q++) {
+        const BenchField *field = &bench_quantities[q].field;
+        char text[512];
+        if (!field->name) continue;
+        snprintf(text, sizeof text, field->unit ? "%s [%s]" : "%s", field->meaning, field->unit);
+        bench_h5_text(h5, bench_quantities[q].elastic ? elastic : columns, field->name, text);
+    }
+}
+
 /* What a file is to hold. */
 typedef struct {
     const BenchRow *rows;
@@ -82,6 +96,7 @@ static void write_file(BenchH5 *h5, void *record)
     bench_h5_numbers(h5, h5->file, "rows", H5T_STD_I32LE, 0, &file->count);
     hid_t group = bench_h5_group(h5, h5->file, "machine");
     bench_h5_fields(h5, group, machine_fields, machine_count, file->machine);
+    write_columns(h5);
     group = bench_h5_group(h5, h5->file, "rows");
     for (int i = 0; i < file->count; i++) bench_store_row(h5, group, i, &file->rows[i]);
 }

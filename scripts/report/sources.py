@@ -4,6 +4,7 @@ Layouts are those of results/README.md: measurements ("shapebench results"), cla
 sweeps ("shapebench sweep") and calibrations ("shapebench calibration")."""
 import math
 import os
+import re
 
 import numpy as np
 
@@ -57,7 +58,7 @@ class Source:
     def __init__(self, path, kind, machine):
         self.path, self.kind, self.machine = path, kind, machine
         self.name = os.path.basename(path)
-        self.rows, self.claims, self.curves = [], [], {}
+        self.rows, self.claims, self.curves, self.meanings = [], [], {}, {}
         self.plan, self.point = None, None
         self.specimen, self.law, self.found = None, None, []
 
@@ -116,7 +117,17 @@ def read_row(group):
     return row
 
 
+def read_meanings(file):
+    """What each attribute of a row is, and its unit, as the file says; older files do not."""
+    said = attributes(file["columns"]) if "columns" in file else {}
+    if "columns" in file:
+        said |= {f"elastic/{name}": text for name, text in attributes(file["columns/elastic"]).items()}
+    demand(said, said, str)
+    return {name: re.fullmatch(r"(.*?)(?: \[([^][]*)\])?", text, re.DOTALL).groups("") for name, text in said.items()}
+
+
 def read_rows(source, file):
+    source.meanings = read_meanings(file)
     source.rows = [read_row(file["rows"][name]) for name in sorted(file["rows"])]
 
 

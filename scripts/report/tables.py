@@ -5,8 +5,9 @@ from drawing import DOUBTS, number
 
 
 class Table:
-    def __init__(self, title, headings, note=""):
+    def __init__(self, title, headings, note="", folded=False):
         self.title, self.headings, self.note = title, headings, note
+        self.folded = folded  # only its title is seen at first
         self.lines = []  # (class, cells)
 
     def add(self, cells, kind=""):
@@ -125,6 +126,29 @@ def changing(source):
     return table
 
 
+def told(value):
+    """An attribute of a row; nothing of an array, which is another table's."""
+    if isinstance(value, int) and value > 1 << 53:  # a hash
+        return f"{value:016x}"
+    return number(value) if isinstance(value, (int, float)) else value if isinstance(value, str) else ""
+
+
+def everything(source):
+    """All numbers and texts of every valid row, named and explained by the file itself: what the other tables leave
+    out is here, and so is what is new."""
+    rows = [row for row in source.rows if row["valid"]]
+    if not rows or not source.meanings:
+        return None
+    table = Table(f"All that was stored, {source.name}", ["quantity", "unit"] + [row["scene"] for row in rows]
+                  + ["what it is"], folded=True)
+    for name, (meaning, unit) in source.meanings.items():
+        group, _, own = name.rpartition("/")
+        values = [told((row.get(group, {}) if group else row).get(own)) for row in rows]
+        if any(values):
+            table.add([name, unit] + values + [meaning])
+    return table
+
+
 ENVIRONMENT = [("cpu", "processor"), ("cores", "cores"), ("threads", "threads"), ("l1_bytes", "L1 bytes"),
                ("l2_bytes", "L2 bytes"), ("l3_bytes", "L3 bytes"), ("governor", "governor"), ("kernel", "system"),
                ("hostname", "host"), ("compiler", "compiler"), ("flags", "flags"), ("libraries", "libraries"),
@@ -147,5 +171,6 @@ def all_tables(sources):
     made = []
     for source in sources:
         if source.rows:
-            made += [table for table in (measured(source), changing(source), elastic(source)) if table]
+            made += [table for table in (measured(source), changing(source), elastic(source),
+                                              everything(source)) if table]
     return made

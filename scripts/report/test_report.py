@@ -18,6 +18,7 @@ try:
     import h5py
     import jinja2  # noqa: F401
     import matplotlib  # noqa: F401
+    import numpy as np
 except ImportError as missing:
     print(f"skipped: {missing}; scripts/setup run installs it")
     sys.exit(77)
@@ -117,6 +118,26 @@ class Report(unittest.TestCase):
             self.assertIn(file["machine"].attrs["git_commit"].decode(), page.text)
         self.assertIn("VALID", page.text)
         self.assertGreaterEqual(page.figures, 2)
+
+    def test_what_the_page_does_not_know_is_named_by_the_file(self):
+        def change(file):
+            file["columns"].attrs["novelty"] = np.bytes_("what nobody has heard of [furlongs]")
+            file["rows/000"].attrs["novelty"] = 42.5
+
+        page = self.page(self.copy("novelty.h5", change))
+        self.assertRegex(page.text, r"novelty\s*furlongs\s*42.5\s*what nobody has heard of\n")
+
+    def test_files_without_meanings_are_read(self):
+        def change(file):
+            del file["columns"]
+
+        self.assertNotIn("All that was stored", self.page(self.copy("older.h5", change)).text)
+
+    def test_a_meaning_that_is_no_text_is_refused(self):
+        def change(file):
+            file["columns"].attrs["total_ms"] = 5
+
+        self.refused(self.copy("meaning.h5", change), "'total_ms'")
 
     def test_an_invalid_row_has_no_times(self):
         def spoil(file):
