@@ -144,7 +144,7 @@ static void write_csv(FILE *file, const BenchCalibration *calibration)
     int count;
     const BenchField *fields = bench_specimen_fields(&count);
     bench_csv_records(file, fields, count, calibration->specimen, sizeof *calibration->specimen,
-                      calibration->count);
+                      calibration->count, NULL);
 }
 
 static void write_json(FILE *file, const BenchCalibration *calibration)

@@ -5,18 +5,9 @@
 #include <string.h>
 
 #include "../table/export.h"
+#include "../table/grid.h"
 
 const char *const bench_kernel_formats[] = {"text", "markdown", "csv", "json", NULL};
-
-/* ---- for programs */
-
-enum { COLUMNS = 20 };
-
-typedef struct {
-    const char *name, *text; /* text NULL: a number */
-    double number;           /* NaN: not given */
-    bool time;               /* INVALID or BUSY, or null, in a row that has no times */
-} Cell;
 
 /* What stands for the check, and for the times of a row that has none. */
 static const char *mark(const BenchKernel *row)
@@ -29,74 +20,84 @@ static bool timed(const BenchKernel *row)
     return row->valid && !row->busy;
 }
 
-static double share(const BenchKernel *row)
+static bool has_times(const void *record)
 {
+    return timed(record);
+}
+
+/* One of processor time is told of a busy row, too. */
+static bool has_ratio(const void *record)
+{
+    const BenchKernel *row = record;
+    return timed(row) || (row->valid && row->own_time);
+}
+
+static double share(const void *record)
+{
+    const BenchKernel *row = record;
     return 100 * row->floor_ns / row->ns;
 }
 
-static void fill_cells(const BenchKernel *row, Cell cell[COLUMNS])
+static bool has_w(const void *record)
 {
-    const Cell cells[COLUMNS] = {
-        {.name = "kernel", .text = row->kernel},
-        {.name = "group", .text = row->group},
-        {.name = "precision", .text = row->precision},
-        {.name = "threads", .number = row->threads},
-        {.name = "w", .number = row->w > 0 ? row->w : NAN},
-        {.name = "item", .text = row->item},
-        {.name = "items", .number = (double)row->items},
-        {.name = "ns", .number = row->ns, .time = true},
-        {.name = "ns_low", .number = row->low, .time = true},
-        {.name = "ns_high", .number = row->high, .time = true},
-        {.name = "floor_ns", .number = row->floor_ns, .time = true},
-        {.name = "bound", .text = row->bound},
-        {.name = "share_percent", .number = share(row), .time = true},
-        {.name = "at_most_ns", .number = row->at_most},
-        {.name = "ratio", .number = row->ratio, .time = !(row->valid && row->own_time)},
-        {.name = "ratio_to", .text = row->ratio_to},
-        {.name = "ratio_wanted", .number = row->wanted},
-        {.name = "verdict", .text = bench_kernel_verdict(row)},
-        {.name = "valid", .text = mark(row)},
-        {.name = "note", .text = timed(row) ? row->note : row->reason},
-    };
-    memcpy(cell, cells, sizeof cells);
+    return ((const BenchKernel *)record)->w > 0;
 }
 
-static void write_csv(FILE *file, const BenchKernel *rows, int count)
+static const char *verdict_text(const void *record)
 {
-    Cell cell[COLUMNS];
-    fill_cells(&(BenchKernel){0}, cell);
-    for (int c = 0; c < COLUMNS; c++) fprintf(file, "%s%s", c ? "," : "", cell[c].name);
-    fputc('\n', file);
-    for (int r = 0; r < count; r++) {
-        fill_cells(&rows[r], cell);
-        for (int c = 0; c < COLUMNS; c++) {
-            if (c) fputc(',', file);
-            if (cell[c].text)
-                bench_csv_text(file, cell[c].text);
-            else if (cell[c].time && !timed(&rows[r]))
-                fputs(mark(&rows[r]), file);
-            else
-                bench_csv_number(file, cell[c].number);
-        }
-        fputc('\n', file);
-    }
+    return bench_kernel_verdict(record);
 }
+
+static const char *mark_text(const void *record)
+{
+    return mark(record);
+}
+
+static const char *note_text(const void *record)
+{
+    const BenchKernel *row = record;
+    return timed(row) ? row->note : row->reason;
+}
+
+/* ---- for programs */
+
+#define FIELD(kind, member) BENCH_FIELD(BenchKernel, kind, member)
+#define FIELD_AS(kind, member, title)                                                              \
+    {                                                                                              \
+        BENCH_FIELD_AS(BenchKernel, kind, member, title)                                           \
+    }
+#define TIME(member, title)                                                                        \
+    {                                                                                              \
+        BENCH_FIELD_AS(BenchKernel, BENCH_DOUBLE, member, title), .timed = has_times               \
+    }
+
+static const BenchField fields[] = {
+    FIELD(BENCH_TEXT, kernel),
+    FIELD(BENCH_TEXT, group),
+    FIELD(BENCH_TEXT, precision),
+    FIELD(BENCH_INT, threads),
+    {BENCH_FIELD_AS(BenchKernel, BENCH_INT, w, "w"), .given = has_w},
+    FIELD(BENCH_TEXT, item),
+    FIELD(BENCH_LONG, items),
+    TIME(ns, "ns"),
+    TIME(low, "ns_low"),
+    TIME(high, "ns_high"),
+    TIME(floor_ns, "floor_ns"),
+    FIELD(BENCH_TEXT, bound),
+    {.kind = BENCH_DOUBLE, .column = "share_percent", .number = share, .timed = has_times},
+    FIELD_AS(BENCH_DOUBLE, at_most, "at_most_ns"),
+    {BENCH_FIELD_AS(BenchKernel, BENCH_DOUBLE, ratio, "ratio"), .timed = has_ratio},
+    FIELD(BENCH_TEXT, ratio_to),
+    FIELD_AS(BENCH_DOUBLE, wanted, "ratio_wanted"),
+    {.kind = BENCH_TEXT, .column = "verdict", .text = verdict_text},
+    {BENCH_FIELD_AS(BenchKernel, BENCH_BOOL, valid, "valid"), .text = mark_text},
+    {.kind = BENCH_TEXT, .column = "note", .text = note_text},
+};
+enum { COLUMNS = sizeof fields / sizeof fields[0] };
 
 static json_t *json_row(const BenchKernel *row)
 {
-    Cell cell[COLUMNS];
-    json_t *object = json_object();
-    fill_cells(row, cell);
-    for (int c = 0; c < COLUMNS; c++) {
-        json_t *value = cell[c].text                  ? bench_json_text(cell[c].text)
-                        : cell[c].time && !timed(row) ? json_null()
-                                                      : bench_json_number(cell[c].number);
-        if (!strcmp(cell[c].name, "valid")) {
-            json_decref(value);
-            value = json_boolean(row->valid);
-        }
-        json_object_set_new(object, cell[c].name, value);
-    }
+    json_t *object = bench_json_record(fields, COLUMNS, row);
     json_object_set_new(object, "busy", json_boolean(row->busy));
     return object;
 }
@@ -131,104 +132,76 @@ static void write_json(FILE *file, const BenchKernel *rows, int count,
 
 /* ---- for people */
 
-enum {
-    KERNEL,
-    PRECISION,
-    THREADS,
-    W,
-    PER,
-    NS,
-    QUARTILES,
-    FLOOR,
-    SHARE,
-    AT_MOST,
-    RATIO,
-    VERDICT,
-    NOTE,
-    FIELDS,
-    FIELD_TEXT = 224
-};
-
-typedef struct {
-    char field[FIELDS][FIELD_TEXT];
-} Line;
-
-static const Line heading = {{"kernel", "precision", "threads", "w", "per", "ns", "quartiles",
-                              "floor", "share", "at most", "ratio", "verdict", "note"}};
-
-/* Three significant digits without an exponent. */
-static void number_text(double value, char text[FIELD_TEXT])
+static void join(char *text, const char *a, const char *between, const char *b)
 {
-    int digits = value > 0 ? 2 - (int)floor(log10(value)) : 0;
-    if (isfinite(value))
-        snprintf(text, FIELD_TEXT, "%.*f", digits < 0 ? 0 : digits > 9 ? 9 : digits, value);
+    snprintf(text, BENCH_GRID_TEXT, "%.60s%.20s%.120s", a, between, b);
 }
 
-static void join(char text[FIELD_TEXT], const char *a, const char *between, const char *b)
+/* "" where the number is not given. */
+static void number_text(double value, char *text)
 {
-    snprintf(text, FIELD_TEXT, "%.60s%.20s%.120s", a, between, b);
+    bench_grid_number(value, text);
+    if (!isfinite(value)) text[0] = '\0';
 }
 
-static void fill_ratio(const BenchKernel *row, Line *line)
+static void ratio_text(const BenchKernel *row, char *text)
 {
-    char ratio[FIELD_TEXT], wanted[FIELD_TEXT] = "";
+    char ratio[BENCH_GRID_TEXT], wanted[BENCH_GRID_TEXT];
     if (!isfinite(row->ratio)) return;
     number_text(row->ratio, ratio);
-    join(line->field[RATIO], ratio, row->wanted_least ? "x as fast as " : " of ", row->ratio_to);
+    join(text, ratio, row->wanted_least ? "x as fast as " : " of ", row->ratio_to);
     if (!isfinite(row->wanted)) return;
     number_text(row->wanted, wanted);
-    strcpy(ratio, line->field[RATIO]);
-    join(line->field[RATIO], ratio, row->wanted_least ? ", at least " : ", at most ", wanted);
+    strcpy(ratio, text);
+    join(text, ratio, row->wanted_least ? ", at least " : ", at most ", wanted);
 }
 
-static void fill_line(const BenchKernel *row, Line *line)
+enum { KERNEL, PRECISION, THREADS, W, PER, NS, QUARTILES, FLOOR, SHARE, AT_MOST, RATIO };
+
+static const char *const headings[] = {"kernel", "precision", "threads", "w",     "per",
+                                       "ns",     "quartiles", "floor",   "share", "at most",
+                                       "ratio",  "verdict",   "note"};
+
+/* Of a row that has times. */
+static void fill_times(const BenchKernel *row, BenchGridLine *line)
 {
-    memset(line, 0, sizeof *line);
-    snprintf(line->field[KERNEL], FIELD_TEXT, "%s", row->kernel);
-    snprintf(line->field[PRECISION], FIELD_TEXT, "%s", row->precision);
-    snprintf(line->field[THREADS], FIELD_TEXT, "%d", row->threads);
-    if (row->w) snprintf(line->field[W], FIELD_TEXT, "%d", row->w);
-    snprintf(line->field[PER], FIELD_TEXT, "%s", row->item);
-    number_text(row->at_most, line->field[AT_MOST]);
-    snprintf(line->field[VERDICT], FIELD_TEXT, "%s", bench_kernel_verdict(row));
-    snprintf(line->field[NOTE], FIELD_TEXT, "%s", timed(row) ? row->note : row->reason);
-    if (row->valid && (!row->busy || row->own_time)) fill_ratio(row, line);
-    if (!timed(row)) {
-        strcpy(line->field[NS], mark(row));
-        return;
-    }
-    char low[FIELD_TEXT], high[FIELD_TEXT];
-    number_text(row->ns, line->field[NS]);
+    char low[BENCH_GRID_TEXT], high[BENCH_GRID_TEXT];
+    number_text(row->ns, (*line)[NS]);
     number_text(row->low, low);
     number_text(row->high, high);
-    join(line->field[QUARTILES], low, "..", high);
+    join((*line)[QUARTILES], low, "..", high);
     number_text(row->floor_ns, low);
-    join(line->field[FLOOR], low, " ", row->bound);
-    if (isfinite(share(row))) snprintf(line->field[SHARE], FIELD_TEXT, "%.0f%%", share(row));
+    join((*line)[FLOOR], low, " ", row->bound);
+    if (isfinite(share(row))) snprintf((*line)[SHARE], BENCH_GRID_TEXT, "%.0f%%", share(row));
 }
 
-static bool left(int field)
+static void add_line(BenchGrid *grid, const BenchKernel *row)
 {
-    return field == KERNEL || field == PRECISION || field == PER || field >= RATIO;
+    BenchGridLine *line = bench_grid_add(grid);
+    strcpy((*line)[KERNEL], row->kernel);
+    strcpy((*line)[PRECISION], row->precision);
+    snprintf((*line)[THREADS], BENCH_GRID_TEXT, "%d", row->threads);
+    if (has_w(row)) snprintf((*line)[W], BENCH_GRID_TEXT, "%d", row->w);
+    strcpy((*line)[PER], row->item);
+    number_text(row->at_most, (*line)[AT_MOST]);
+    strcpy((*line)[RATIO + 1], bench_kernel_verdict(row));
+    strcpy((*line)[RATIO + 2], note_text(row));
+    if (has_ratio(row)) ratio_text(row, (*line)[RATIO]);
+    if (timed(row))
+        fill_times(row, line);
+    else
+        strcpy((*line)[NS], mark(row));
 }
 
-static void widen(const Line *line, int width[FIELDS])
+static BenchGrid make_grid(const BenchKernel *rows, int count)
 {
-    for (int f = 0; f < FIELDS; f++) {
-        int length = (int)strlen(line->field[f]);
-        if (length > width[f]) width[f] = length;
-    }
-}
-
-static void print_line(FILE *file, const Line *line, const int width[FIELDS])
-{
-    char text[FIELDS * (FIELD_TEXT + 2) + 1];
-    int used = 0;
-    for (int f = 0; f < FIELDS; f++)
-        used += snprintf(text + used, sizeof text - (size_t)used, "%s%*s", f ? "  " : "",
-                         left(f) ? -width[f] : width[f], line->field[f]);
-    while (used > 0 && text[used - 1] == ' ') text[--used] = '\0';
-    fprintf(file, "%s\n", text);
+    BenchGrid grid = {0};
+    for (int c = 0; c < (int)(sizeof headings / sizeof headings[0]); c++)
+        bench_grid_column(&grid, headings[c],
+                          c == KERNEL || c == PRECISION || c == PER || c >= RATIO);
+    for (int r = 0; r < count; r++) add_line(&grid, &rows[r]);
+    bench_grid_fit(&grid);
+    return grid;
 }
 
 static void print_rates(FILE *file, const BenchRates *rates)
@@ -242,16 +215,8 @@ static void print_rates(FILE *file, const BenchRates *rates)
     fprintf(file, " GB/s; update in DRAM %.0f GB/s\n", rates->update / 1e9);
 }
 
-static void write_text(FILE *file, const BenchKernel *rows, int count,
-                       const BenchCeilings *ceilings, const BenchMachine *machine)
+static void print_ceilings(FILE *file, const BenchCeilings *ceilings, const BenchMachine *machine)
 {
-    int width[FIELDS] = {0};
-    Line line;
-    widen(&heading, width);
-    for (int r = 0; r < count; r++) {
-        fill_line(&rows[r], &line);
-        widen(&line, width);
-    }
     fprintf(file, "Ceilings measured now, on %s:\n", machine->cpu);
     print_rates(file, &ceilings->one);
     if (ceilings->all.threads > 1) print_rates(file, &ceilings->all);
@@ -259,51 +224,33 @@ static void write_text(FILE *file, const BenchKernel *rows, int count,
         "\nTimes in ns, medians; those of steps in each step. The floor is the least time that the "
         "ceilings\nallow, with what sets it; the share is floor / time.\n\n",
         file);
-    print_line(file, &heading, width);
-    for (int r = 0; r < count; r++) {
-        if (r && strcmp(rows[r].group, rows[r - 1].group) != 0) fputc('\n', file);
-        fill_line(&rows[r], &line);
-        print_line(file, &line, width);
-    }
 }
 
-static void markdown_line(FILE *file, const Line *line)
+/* As text with an empty line between groups. */
+static void write_people(FILE *file, BenchKernelFormat format, const BenchKernel *rows, int count,
+                         const BenchCeilings *ceilings, const BenchMachine *machine)
 {
-    for (int f = 0; f < FIELDS; f++) {
-        fputs("| ", file);
-        for (const char *c = line->field[f]; *c; c++) fprintf(file, *c == '|' ? "\\%c" : "%c", *c);
-        fputc(' ', file);
-    }
-    fputs("|\n", file);
-}
-
-static void write_markdown(FILE *file, const BenchKernel *rows, int count)
-{
-    Line line;
-    markdown_line(file, &heading);
-    for (int f = 0; f < FIELDS; f++) fputs(left(f) ? "| --- " : "| ---: ", file);
-    fputs("|\n", file);
+    bool text = format == BENCH_KERNELS_TEXT;
+    BenchGridForm form = text ? BENCH_GRID_PLAIN : BENCH_GRID_MARKDOWN;
+    BenchGrid grid = make_grid(rows, count), one = grid;
+    if (text) print_ceilings(file, ceilings, machine);
+    bench_grid_head(file, &grid, form);
+    one.lines = 1;
     for (int r = 0; r < count; r++) {
-        fill_line(&rows[r], &line);
-        markdown_line(file, &line);
+        if (text && r && strcmp(rows[r].group, rows[r - 1].group) != 0) fputc('\n', file);
+        one.line = &grid.line[r];
+        bench_grid_lines(file, &one, form);
     }
+    bench_grid_free(&grid);
 }
 
 void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernel *rows, int count,
                          const BenchCeilings *ceilings, const BenchMachine *machine)
 {
-    switch (format) {
-    case BENCH_KERNELS_TEXT:
-        write_text(file, rows, count, ceilings, machine);
-        break;
-    case BENCH_KERNELS_MARKDOWN:
-        write_markdown(file, rows, count);
-        break;
-    case BENCH_KERNELS_CSV:
-        write_csv(file, rows, count);
-        break;
-    case BENCH_KERNELS_JSON:
+    if (format == BENCH_KERNELS_CSV)
+        bench_csv_records(file, fields, COLUMNS, rows, sizeof *rows, count, mark_text);
+    else if (format == BENCH_KERNELS_JSON)
         write_json(file, rows, count, ceilings, machine);
-        break;
-    }
+    else
+        write_people(file, format, rows, count, ceilings, machine);
 }

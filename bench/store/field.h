@@ -22,7 +22,8 @@ typedef struct {
     const char *column;  /* in CSV and JSON; NULL: not there. Of an array CSV has a column for each
                           * number: those of stages by name ("fast_sum_ms"), others NAME_1, ... */
     bool stages;         /* an array of SM_STAGES milliseconds */
-    bool timed;          /* in a record without times its mark stands there, in JSON null */
+    bool (*timed)(const void *record);       /* of a time: does the record have it? If not, its mark
+                                              * stands there, in JSON null */
     bool (*given)(const void *record);       /* is there a value? NULL: always */
     double (*number)(const void *record);    /* the value, where it is not in the record */
     const char *(*text)(const void *record); /* the same of a text; of a BENCH_BOOL as CSV has it */

@@ -145,7 +145,7 @@ static void write_csv(FILE *file, const BenchSweep *sweep)
 {
     int count;
     const BenchField *fields = bench_point_fields(&count);
-    bench_csv_records(file, fields, count, sweep->point, sizeof *sweep->point, sweep->count);
+    bench_csv_records(file, fields, count, sweep->point, sizeof *sweep->point, sweep->count, NULL);
 }
 
 static void write_json(FILE *file, const BenchSweep *sweep)

@@ -74,7 +74,7 @@ static int values_of(const BenchField *field)
 void bench_csv_cell(FILE *file, const BenchField *field, const void *record, const char *mark)
 {
     const char *value = (const char *)record + field->offset;
-    if (mark && field->timed)
+    if (field->timed && !field->timed(record))
         fputs(mark, file);
     else if (field->given && !field->given(record))
         return;
@@ -103,16 +103,19 @@ static void csv_title(FILE *file, const BenchField *field)
 }
 
 void bench_csv_records(FILE *file, const BenchField *fields, int count, const void *records,
-                       size_t size, long number)
+                       size_t size, long number, const char *(*mark)(const void *record))
 {
-    for (long r = -1; r < number; r++)
+    for (int f = 0; f < count; f++) {
+        csv_title(file, &fields[f]);
+        fputc(f < count - 1 ? ',' : '\n', file);
+    }
+    for (long r = 0; r < number; r++) {
+        const char *record = (const char *)records + (size_t)r * size;
         for (int f = 0; f < count; f++) {
-            if (r < 0)
-                csv_title(file, &fields[f]);
-            else
-                bench_csv_cell(file, &fields[f], (const char *)records + (size_t)r * size, NULL);
+            bench_csv_cell(file, &fields[f], record, mark ? mark(record) : NULL);
             fputc(f < count - 1 ? ',' : '\n', file);
         }
+    }
 }
 
 json_t *bench_json_text(const char *text)
@@ -162,9 +165,10 @@ static json_t *json_value(const BenchField *field, const void *value)
     return list;
 }
 
-json_t *bench_json_cell(const BenchField *field, const void *record, bool times)
+json_t *bench_json_cell(const BenchField *field, const void *record)
 {
-    if ((field->timed && !times) || (field->given && !field->given(record))) return json_null();
+    if ((field->timed && !field->timed(record)) || (field->given && !field->given(record)))
+        return json_null();
     if (field->number) return bench_json_number(field->number(record));
     if (field->text && field->kind == BENCH_TEXT) return bench_json_text(field->text(record));
     return json_value(field, (const char *)record + field->offset);
@@ -175,8 +179,7 @@ json_t *bench_json_record(const BenchField *fields, int count, const void *recor
     json_t *object = json_object();
     for (int f = 0; f < count; f++)
         if (fields[f].column)
-            json_object_set_new(object, fields[f].column,
-                                bench_json_cell(&fields[f], record, true));
+            json_object_set_new(object, fields[f].column, bench_json_cell(&fields[f], record));
     return object;
 }
 

@@ -13,14 +13,14 @@ void bench_csv_text(FILE *file, const char *text);
 /* Nine digits; nothing where it is not finite. */
 void bench_csv_number(FILE *file, double value);
 
-/* A field of a record, of an array all numbers; nothing where it has no value. In place of times
- * stands `mark`, unless that is NULL. */
+/* A field of a record, of an array all numbers; nothing where it has no value, and `mark` in place
+ * of a time that it has not. */
 void bench_csv_cell(FILE *file, const BenchField *field, const void *record, const char *mark);
 
 /* A header line, then a line for each of `number` records of `size` bytes; all fields are columns.
- */
+ * `mark` returns what stands in place of a record's times; NULL: they always have them. */
 void bench_csv_records(FILE *file, const BenchField *fields, int count, const void *records,
-                       size_t size, long number);
+                       size_t size, long number, const char *(*mark)(const void *record));
 
 /* A string that may hold bytes that are no UTF-8 (a command line): those become '?'. */
 json_t *bench_json_text(const char *text);
@@ -29,8 +29,8 @@ json_t *bench_json_text(const char *text);
 json_t *bench_json_number(double value);
 
 /* A field of a record: an array becomes a list, a hash sixteen hexadecimal digits; null where it
- * has no value, or is a time and the record has no `times`. */
-json_t *bench_json_cell(const BenchField *field, const void *record, bool times);
+ * has no value, or is a time that the record has not. */
+json_t *bench_json_cell(const BenchField *field, const void *record);
 
 /* A record's columns by name; and a list of records. */
 json_t *bench_json_record(const BenchField *fields, int count, const void *record);

@@ -141,14 +141,19 @@ void bench_grid_end(FILE *file, BenchGridForm form)
     if (form == BENCH_GRID_LATEX) fputs("\\hline\n\\end{tabular}\n", file);
 }
 
-void bench_grid_whole(FILE *file, const BenchGrid *grid, BenchGridForm form)
+void bench_grid_fit(BenchGrid *grid)
 {
-    BenchGrid fitted = *grid;
     for (int l = 0; l < grid->lines; l++)
         for (int c = 0; c < grid->columns; c++) {
             int length = (int)strlen(grid->line[l][c]);
-            if (length > fitted.width[c]) fitted.width[c] = length;
+            if (length > grid->width[c]) grid->width[c] = length;
         }
+}
+
+void bench_grid_whole(FILE *file, const BenchGrid *grid, BenchGridForm form)
+{
+    BenchGrid fitted = *grid;
+    bench_grid_fit(&fitted);
     bench_grid_head(file, &fitted, form);
     bench_grid_lines(file, &fitted, form);
     bench_grid_end(file, form);

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { BENCH_GRID_COLUMNS = 20, BENCH_GRID_TEXT = 96 };
+enum { BENCH_GRID_COLUMNS = 20, BENCH_GRID_TEXT = 224 };
 
 /* Cells of a line, by column. */
 typedef char BenchGridLine[BENCH_GRID_COLUMNS][BENCH_GRID_TEXT];
@@ -26,6 +26,9 @@ typedef enum { BENCH_GRID_PLAIN, BENCH_GRID_MARKDOWN, BENCH_GRID_LATEX } BenchGr
 void bench_grid_column(BenchGrid *grid, const char *heading, bool left);
 BenchGridLine *bench_grid_add(BenchGrid *grid);
 void bench_grid_free(BenchGrid *grid);
+
+/* Columns as wide as what is in them. */
+void bench_grid_fit(BenchGrid *grid);
 
 /* The whole table: as text with columns as wide as they need be, as GitHub's Markdown, or as a
  * LaTeX tabular. */

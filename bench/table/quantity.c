@@ -16,6 +16,11 @@ static bool meshless(const void *record)
     return ((const BenchRow *)record)->elastic.nodes > 0;
 }
 
+static bool timed(const void *record)
+{
+    return bench_row_timed(record);
+}
+
 static double ratio(const void *record)
 {
     const BenchRow *row = record;
@@ -246,7 +251,7 @@ enum { PAGE = 1 << BENCH_GRID_MARKDOWN | LATEX, EVERY = TEXT | PAGE };
     PLACE(type, elastic.member)
 #define OCTREE(type, member) .of = "octree", STORED(type, member)
 #define COLUMN(title)        .field.column = title
-#define TIME(title)          .field.column = title, .field.timed = true
+#define TIME(title)          .field.column = title, .field.timed = timed
 #define STAGE(stage, title)  PLACE(DOUBLE, stage_ms[stage]), TIME(title)
 #define MEANS(unit_, words)  .field.unit = unit_, .field.meaning = words
 #define PAPER(member, how)   .paper = offsetof(RefPaperRow, member), .below = how
@@ -269,9 +274,9 @@ const BenchQuantity bench_quantities[] = {
     {PLACE(LONG, particles), .title = "points", FRAMES = EVERY, PAPER(particles, count_below)},
     {PLACE(LONG, elastic.nodes), .title = "nodes", FRAMES = EVERY, PAPER(nodes, count_below)},
     {PLACE(LONG, elastic.modes), .title = "modes", FRAMES = EVERY, PAPER(modes, count_below)},
-    {PLACE(DOUBLE, elastic.matrix_seconds), .field.timed = true, .title = "matrices s",
+    {PLACE(DOUBLE, elastic.matrix_seconds), .field.timed = timed, .title = "matrices s",
      FRAMES = EVERY, .dash = true, PAPER(matrix_s, bound_below)},
-    {PLACE(DOUBLE, elastic.mode_seconds), .field.timed = true, .title = "modes s", FRAMES = EVERY,
+    {PLACE(DOUBLE, elastic.mode_seconds), .field.timed = timed, .title = "modes s", FRAMES = EVERY,
      .dash = true, PAPER(mode_s, bound_below)},
     {STORED(LONG, regions), COLUMN("regions"),
      MEANS(NULL, "unique ones of one instance; of a meshless body nodes"), .title = "regions",
@@ -299,16 +304,16 @@ const BenchQuantity bench_quantities[] = {
     {STAGE(SM_OTHER, "other_ms"), MEANS("ms", "of a meshless body the points that its modes carry"),
      .title = "other", BOTH_STEPS, .dash = true, .cell = other_cell,
      PAPER(stage_ms[SM_OTHER], stage_below)},
-    {PLACE(DOUBLE, stage_ms[SM_SHAPE_MATCHING]), .field.timed = true, .title = "motion ms",
+    {PLACE(DOUBLE, stage_ms[SM_SHAPE_MATCHING]), .field.timed = timed, .title = "motion ms",
      .terse = "motion", FRAMES = EVERY, .dash = true, .cell = match_cell, .below = dash_below},
-    {PLACE(DOUBLE, stage_ms[SM_OTHER]), .field.timed = true, .title = "skin ms", .terse = "skin",
+    {PLACE(DOUBLE, stage_ms[SM_OTHER]), .field.timed = timed, .title = "skin ms", .terse = "skin",
      FRAMES = EVERY, .dash = true, .cell = other_cell, .below = dash_below},
     {STORED(DOUBLE, stage_ms),
      MEANS("ms", "of each stage: its share of the instrumented run times `total_ms`")},
     {STORED(DOUBLE, total_ms), TIME("total_ms"),
      MEANS("ms", "median of a step, or of a meshless body's frame"), .title = "total ms",
      BOTH_STEPS, PAPER(total_ms, step_below)},
-    {PLACE(DOUBLE, total_ms), .field.timed = true, .title = "frame ms", FRAMES = EVERY,
+    {PLACE(DOUBLE, total_ms), .field.timed = timed, .title = "frame ms", FRAMES = EVERY,
      PAPER(total_ms, number_below)},
     {STORED(DOUBLE, ns_per_particle_step), TIME("ns_per_particle_step"),
      MEANS("ns", "the median a particle"), .title = "ns/particle/step", LATTICES = PAGE,

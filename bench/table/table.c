@@ -17,17 +17,16 @@ static void write_csv(BenchReport *report, int measured)
 {
     for (int r = report->written ? report->written : -1; r < measured; r++) {
         const BenchRow *row = r < 0 ? NULL : &report->rows[r];
-        const char *mark = row && !bench_row_timed(row) ? bench_row_mark(row) : NULL;
         for (int q = 0, columns = 0; q < bench_quantity_count; q++) {
             const BenchQuantity *quantity = &bench_quantities[q];
             if (!quantity->field.column) continue;
             if (columns++) fputc(',', report->file);
             if (!row)
                 fputs(quantity->field.column, report->file);
-            else if (quantity->samples && !mark)
+            else if (quantity->samples && bench_row_timed(row))
                 csv_samples(report->file, row);
             else
-                bench_csv_cell(report->file, &quantity->field, row, mark);
+                bench_csv_cell(report->file, &quantity->field, row, bench_row_mark(row));
         }
         fputc('\n', report->file);
     }
@@ -48,9 +47,8 @@ static json_t *json_samples(const BenchRow *row)
 static json_t *json_cell(const BenchQuantity *quantity, const BenchRow *row)
 {
     const BenchField *field = &quantity->field;
-    bool times = bench_row_timed(row);
-    if (quantity->samples && times) return json_samples(row);
-    json_t *value = bench_json_cell(field, row, times), *as = NULL;
+    if (quantity->samples && bench_row_timed(row)) return json_samples(row);
+    json_t *value = bench_json_cell(field, row), *as = NULL;
     if (json_is_integer(value) && (field->kind == BENCH_DOUBLE || field->given))
         as = json_real((double)json_integer_value(value));
     if (json_is_boolean(value) && !field->text) as = json_integer(json_is_true(value));
