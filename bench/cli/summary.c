@@ -96,12 +96,12 @@ static void print_changes(const BenchPlay *play, const BenchOutcome *outcome)
                  1e3 * outcome->change.seconds / fmax((double)outcome->change.count, 1));
     long open = 0, pieces = 0, triangles = 0, left = 0;
     for (int p = 0; p < play->cast.count; p++) {
-        SmMeshInfo info = sm_mesh_info(&play->changes[p].surface);
+        SmMeshInfo info = sm_mesh_info(&play->changes[p].skin.surface);
         long bodies = play->cast.part[p].body.instances;
         open += bodies * (info.open_edges + info.nonmanifold_edges);
         pieces += bodies * info.components;
         triangles += bodies * info.triangles;
-        left += bodies * play->changes[p].left;
+        left += bodies * play->changes[p].skin.left;
     }
     printf("changes: %ld frame%s, %s with the surface; in the end %ld nodes, and surfaces "
            "of %ld triangles in %ld piece%s, ",

@@ -28,14 +28,19 @@ void bench_changes_create(BenchPart *part, BenchChanges *changes)
     *changes = (BenchChanges){.part = part};
     long vertices = points ? points->given : mesh->vertex_count;
     long triangles = points ? 0 : mesh->triangle_count;
-    changes->surface = sm_mesh_new(vertices, triangles);
-    memcpy(changes->surface.position, points ? points->as_given : mesh->position,
+    SmMesh surface = sm_mesh_new(vertices, triangles);
+    memcpy(surface.position, points ? points->as_given : mesh->position,
            (size_t)vertices * sizeof *mesh->position);
-    memcpy(changes->surface.triangle, mesh->triangle, (size_t)triangles * sizeof *mesh->triangle);
-    for (int i = 0; i < part->runner.scene->cut_count; i++) sm_blade_init(&changes->blade[i]);
-    sm_cut_init(&changes->cut, 2 * part->body.voxels.cell);
-    changes->carrier = bench_engine(part->runner.type->name)->carrier;
-    if (!points) changes->carrier->tie(changes);
+    memcpy(surface.triangle, mesh->triangle, (size_t)triangles * sizeof *mesh->triangle);
+    const BenchRunner *runner = &part->runner;
+    for (int i = 0; i < runner->scene->cut_count; i++) sm_blade_init(&changes->blade[i]);
+    changes->carrier = bench_engine(runner->type->name)->carrier;
+    bool cut_lattice = runner->scene->cut_count > 0 && !runner->type->refines;
+    sm_skin_create(runner->type, runner->engine, &part->body.voxels, part->body.instances,
+                   cut_lattice ? (const double(*)[3])runner->x0 : NULL,
+                   points ? (SmMesh){0} : surface, &changes->skin);
+    if (points) changes->skin.surface = surface;
+    if (cut_lattice) part->body.cut = &changes->skin.cut;
 }
 
 void bench_changes_free(BenchChanges *changes)
@@ -44,44 +49,8 @@ void bench_changes_free(BenchChanges *changes)
     for (int i = 0; scene && i < scene->cut_count; i++) sm_blade_free(&changes->blade[i]);
     for (int i = 0; scene && i < scene->touch_count; i++) oct_refinement_free(&changes->touch[i]);
     oct_refinement_free(&changes->view);
-    sm_mesh_free(&changes->surface);
-    sm_cut_free(&changes->cut);
-    sm_embed_free(&changes->embedding);
-    sm_sites_free(&changes->sites);
-    oct_surface_free(&changes->carried);
-    free(changes->node);
-    free(changes->rest);
-    free(changes->x);
-    free(changes->F);
-    free(changes->found);
-    free(changes->absent);
+    sm_skin_free(&changes->skin);
     *changes = (BenchChanges){0};
-}
-
-void bench_changes_room(BenchChanges *changes, long nodes)
-{
-    if (nodes <= changes->room) return;
-    changes->room = 2 * nodes;
-    size_t room = (size_t)changes->room;
-    changes->node = sm_realloc(changes->node, room, sizeof *changes->node);
-    changes->rest = sm_realloc(changes->rest, room, sizeof *changes->rest);
-    changes->x = sm_realloc(changes->x, room, sizeof *changes->x);
-    changes->F = sm_realloc(changes->F, room, sizeof *changes->F);
-    changes->found = sm_realloc(changes->found, room, 1);
-    changes->absent = sm_realloc(changes->absent, room, 1);
-}
-
-void bench_changes_nodes(BenchChanges *changes, double back)
-{
-    const BenchRunner *runner = &changes->part->runner;
-    bench_changes_room(changes, runner->particles);
-    runner->type->get(runner->engine, SM_POSITION, changes->node);
-    if (back == 0) return;
-    double(*v)[3] = sm_alloc((size_t)runner->particles, sizeof *v);
-    runner->type->get(runner->engine, SM_VELOCITY, v);
-    for (long p = 0; p < runner->particles; p++)
-        for (int d = 0; d < 3; d++) changes->node[p][d] -= back * v[p][d];
-    free(v);
 }
 
 void bench_changes_sweep(BenchChanges *changes, double from, double to, SmCut *cut)
@@ -90,48 +59,60 @@ void bench_changes_sweep(BenchChanges *changes, double from, double to, SmCut *c
     for (int i = 0; i < scene->cut_count; i++) {
         double blade[4][3];
         if (!bench_blade_moves(&scene->cut[i], from, to, blade)) continue;
-        SmCarriers carriers = changes->carrier->near(changes, (const double(*)[3])blade);
+        SmCarriers carriers = sm_skin_carriers(&changes->skin, (const double(*)[3])blade);
         if (!changes->blade[i].down)
             sm_blade_sweep(&changes->blade[i], blade[0], blade[1], &carriers, cut);
         sm_blade_sweep(&changes->blade[i], blade[2], blade[3], &carriers, cut);
-        oct_reach_free(&changes->search);
+        sm_skin_carried(&changes->skin);
     }
 }
 
 SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmError *error)
 {
-    long vertices = changes->surface.vertex_count, triangles = changes->surface.triangle_count;
+    long vertices = changes->skin.surface.vertex_count,
+         triangles = changes->skin.surface.triangle_count;
     changes->last = (BenchChanged){0};
     SmCode code = changes->carrier->frame(changes, from, to, error);
     /* what has been split has vertices more, what lay in a gap triangles less; this may be so too
      * where sm_slit() has left some of it */
-    changes->last.slit =
-        changes->surface.vertex_count != vertices || changes->surface.triangle_count != triangles;
+    changes->last.slit = changes->skin.surface.vertex_count != vertices ||
+                         changes->skin.surface.triangle_count != triangles;
     return code;
+}
+
+/* Places of the nodes of all instances where their velocities had them `back` s ago. The caller
+ * frees them. */
+static double (*nodes_back(const BenchRunner *runner, double back))[3]
+{
+    size_t count = (size_t)runner->particles;
+    double(*x)[3] = sm_alloc(count, sizeof *x), (*v)[3] = sm_alloc(count, sizeof *v);
+    runner->type->get(runner->engine, SM_POSITION, x);
+    runner->type->get(runner->engine, SM_VELOCITY, v);
+    for (size_t p = 0; p < count; p++)
+        for (int d = 0; d < 3; d++) x[p][d] -= back * v[p][d];
+    free(v);
+    return x;
 }
 
 void bench_changes_surface(BenchChanges *changes, double back, double (*point)[3])
 {
-    BenchPart *part = changes->part;
-    BenchRunner *runner = &part->runner;
-    long vertices = changes->surface.vertex_count;
+    const BenchPart *part = changes->part;
     if (part->body.given) {
-        ref_meshless_points(runner->engine, point);
+        ref_meshless_points(part->runner.engine, point);
         return;
     }
-    bench_changes_nodes(changes, back);
-    for (long k = 0; k < part->body.instances; k++, point += vertices)
-        changes->carrier->move(changes, k, point);
+    double(*node)[3] = back == 0 ? NULL : nodes_back(&part->runner, back);
+    sm_skin_points(&changes->skin, (const double(*)[3])node, point, NULL);
+    free(node);
 }
 
 long bench_changes_pieces(const BenchChanges *changes, int *piece)
 {
-    const BenchRunner *runner = &changes->part->runner;
-    SmPieces pieces = {.count = 1};
-    changes->carrier->pieces(runner, &pieces);
-    for (long v = 0; v < changes->surface.vertex_count; v++)
-        piece[v] = pieces.piece ? pieces.piece[changes->carrier->at(changes, v)] : 0;
+    SmPieces pieces;
+    sm_skin_pieces(&changes->skin, &pieces);
+    for (long v = 0; v < changes->skin.surface.vertex_count; v++)
+        piece[v] = pieces.piece[sm_skin_carrier(&changes->skin, v)];
     long count = pieces.count;
-    if (pieces.piece) sm_pieces_free(&pieces);
+    sm_pieces_free(&pieces);
     return count;
 }

@@ -13,7 +13,7 @@ SmCode bench_fields_check(const BenchPlay *play, BenchFields fields, SmError *er
         return sm_fail(error, SM_USAGE,
                        "--fields level is of an octree's leaves: leave it out, or give --engine "
                        "octree");
-    if ((fields & ~(1u << BENCH_DISPLACEMENT)) && !changes->surface.triangle_count)
+    if ((fields & ~(1u << BENCH_DISPLACEMENT)) && !changes->skin.surface.triangle_count)
         return sm_fail(error, SM_USAGE,
                        "--fields: points without triangles have only a displacement");
     return SM_OK;
@@ -69,7 +69,7 @@ static void find_speed(BenchPlay *play, const SmMesh *rest, const double (*point
     for (int i = 0; i < play->cast.count; i++) {
         BenchChanges *changes = &play->changes[i];
         bench_changes_surface(changes, h, at);
-        at += changes->part->body.instances * changes->surface.vertex_count;
+        at += changes->part->body.instances * changes->skin.surface.vertex_count;
     }
     for (long v = 0; v < rest->vertex_count; v++) {
         double square = 0;
@@ -85,7 +85,7 @@ static void find_carriers(BenchPlay *play, BenchPointField field, float *value)
     long pieces = 0;
     for (int i = 0; i < play->cast.count; i++) {
         BenchChanges *changes = &play->changes[i];
-        long vertices = changes->surface.vertex_count;
+        long vertices = changes->skin.surface.vertex_count;
         int *of = sm_alloc((size_t)vertices, sizeof *of);
         long count = 0;
         if (field == BENCH_PIECE)

@@ -70,7 +70,7 @@ static double move_surfaces(BenchPlay *play, BenchWatch *watch)
 {
     long vertices = 0;
     for (int p = 0; p < play->cast.count; p++)
-        vertices += play->cast.part[p].body.instances * play->changes[p].surface.vertex_count;
+        vertices += play->cast.part[p].body.instances * play->changes[p].skin.surface.vertex_count;
     double(*point)[3] = sm_alloc((size_t)vertices, sizeof *point);
     bench_watch_start(watch);
     bench_play_points(play, point);
@@ -149,7 +149,8 @@ static long count_triangles(const BenchPlay *play)
 {
     long triangles = 0;
     for (int p = 0; p < play->cast.count; p++)
-        triangles += play->cast.part[p].body.instances * play->changes[p].surface.triangle_count;
+        triangles +=
+            play->cast.part[p].body.instances * play->changes[p].skin.surface.triangle_count;
     return triangles;
 }
 
@@ -158,11 +159,11 @@ static void note_end(const BenchPlay *play, BenchChangeRow *row)
     row->last_nodes = bench_cast_particles(&play->cast);
     row->last_triangles = count_triangles(play);
     for (int p = 0; p < play->cast.count; p++) {
-        SmMeshInfo info = sm_mesh_info(&play->changes[p].surface);
+        SmMeshInfo info = sm_mesh_info(&play->changes[p].skin.surface);
         long bodies = play->cast.part[p].body.instances;
         row->pieces += bodies * info.components;
         row->open_edges += bodies * (info.open_edges + info.nonmanifold_edges);
-        row->left += bodies * play->changes[p].left;
+        row->left += bodies * play->changes[p].skin.left;
     }
 }
 

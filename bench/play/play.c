@@ -63,14 +63,14 @@ SmMesh bench_play_surface(const BenchPlay *play)
 {
     long vertices = 0, triangles = 0;
     for (int i = 0; i < play->cast.count; i++) {
-        const SmMesh *surface = &play->changes[i].surface;
+        const SmMesh *surface = &play->changes[i].skin.surface;
         vertices += play->cast.part[i].body.instances * surface->vertex_count;
         triangles += play->cast.part[i].body.instances * surface->triangle_count;
     }
     SmMesh all = sm_mesh_new(vertices, triangles);
     long vertex = 0, triangle = 0;
     for (int i = 0; i < play->cast.count; i++) {
-        const SmMesh *surface = &play->changes[i].surface;
+        const SmMesh *surface = &play->changes[i].skin.surface;
         const BenchBody *body = &play->cast.part[i].body;
         for (long k = 0; k < body->instances; k++) {
             for (long v = 0; v < surface->vertex_count; v++)
@@ -90,7 +90,7 @@ void bench_play_points(BenchPlay *play, double (*point)[3])
 {
     for (int i = 0; i < play->cast.count; i++) {
         bench_changes_surface(&play->changes[i], 0, point);
-        point += play->cast.part[i].body.instances * play->changes[i].surface.vertex_count;
+        point += play->cast.part[i].body.instances * play->changes[i].skin.surface.vertex_count;
     }
 }
 

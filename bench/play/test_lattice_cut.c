@@ -36,7 +36,7 @@ static SmCode start(const char *text, const char *engine, Run *run, SmError *err
 
 static const SmMesh *surface(const Run *run)
 {
-    return &run->play.changes[0].surface;
+    return &run->play.changes[0].skin.surface;
 }
 
 static void play(const char *text, int frames, Run *run)
@@ -78,7 +78,7 @@ static long check(Run *run)
     bench_check_free(&check);
     SmMeshInfo info = sm_mesh_info(surface(run));
     assert_int_equal(info.open_edges + info.nonmanifold_edges, 0);
-    assert_false(run->play.changes[0].left);
+    assert_false(run->play.changes[0].skin.left);
     for (long v = 0; v < surface(run)->vertex_count; v++)
         for (int d = 0; d < 3; d++) assert_true(fabs(run->point[v][d]) < 10);
     runner->type->pieces(runner->engine, &pieces);

@@ -112,11 +112,11 @@ TEST(a_beam_cut_through_is_two_and_one_falls)
     long first = bench_cast_particles(&show.play.cast);
     for (int f = 0; f < 60; f++) {
         run_frame(&show);
-        SmMeshInfo info = sm_mesh_info(&show.play.changes[0].surface);
+        SmMeshInfo info = sm_mesh_info(&show.play.changes[0].skin.surface);
         if (info.open_edges) fail_msg("frame %d: %ld open edges", f, info.open_edges);
     }
     SmMeshInfo before = sm_mesh_info(&show.body.mesh),
-               after = sm_mesh_info(&show.play.changes[0].surface);
+               after = sm_mesh_info(&show.play.changes[0].skin.surface);
     assert_in_range(after.components, 2, 4); /* perhaps with a shred */
     assert_true(fabs(after.volume - before.volume) < 0.01 * before.volume);
     assert_true(bench_cast_particles(&show.play.cast) > first + 20);
@@ -139,7 +139,7 @@ TEST(a_blade_that_misses_changes_nothing)
     long first = bench_cast_particles(&show.play.cast), triangles = show.body.mesh.triangle_count;
     for (int f = 0; f < 60; f++) run_frame(&show);
     assert_int_equal(bench_cast_particles(&show.play.cast), first);
-    assert_int_equal(show.play.changes[0].surface.triangle_count, triangles);
+    assert_int_equal(show.play.changes[0].skin.surface.triangle_count, triangles);
     close_show(&show);
 }
 
@@ -151,7 +151,7 @@ TEST(a_notch_leaves_one_body)
     beam_cut(0.5, 0.4, 3, cut);
     open_show(BEAM, cut, 1, &show);
     for (int f = 0; f < 60; f++) run_frame(&show);
-    SmMeshInfo after = sm_mesh_info(&show.play.changes[0].surface);
+    SmMeshInfo after = sm_mesh_info(&show.play.changes[0].skin.surface);
     assert_int_equal(after.components, 1);
     assert_int_equal(after.open_edges, 0);
     assert_true(after.triangles > show.body.mesh.triangle_count);

@@ -29,25 +29,3 @@ bool bench_blades_move(const BenchScene *scene, double from, double to)
         if (to >= scene->cut[i].start && from <= scene->cut[i].stop) return true;
     return false;
 }
-
-double bench_blade_square(const double place[3], const double a[3], const double b[3])
-{
-    double along[3], to[3], length = 0, dot = 0, square = 0;
-    for (int d = 0; d < 3; d++) {
-        along[d] = b[d] - a[d];
-        to[d] = place[d] - a[d];
-        length += along[d] * along[d];
-        dot += along[d] * to[d];
-    }
-    double share = length > 0 ? fmin(fmax(dot / length, 0), 1) : 0;
-    for (int d = 0; d < 3; d++) square += (to[d] - share * along[d]) * (to[d] - share * along[d]);
-    return square;
-}
-
-double bench_blade_stroke(const double blade[4][3])
-{
-    double square = 0;
-    for (int end = 0; end < 2; end++)
-        square = fmax(square, bench_blade_square(blade[end], blade[end + 2], blade[end + 2]));
-    return sqrt(square);
-}

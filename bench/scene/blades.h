@@ -15,10 +15,4 @@ bool bench_blade_moves(const BenchCut *cut, double from, double to, double blade
 /* Is any of them in use? */
 bool bench_blades_move(const BenchScene *scene, double from, double to);
 
-/* How far a place is from the segment from a to b, squared. */
-double bench_blade_square(const double place[3], const double a[3], const double b[3]);
-
-/* How far an end is from where the blade will be, the larger of the two. */
-double bench_blade_stroke(const double blade[4][3]);
-
 #endif

@@ -149,7 +149,7 @@ static bool keep_frame(BenchPlay *play, long vertices, double (*all)[3], int fra
 static void play_frames(BenchPlay *play, BenchPath *path)
 {
     const BenchPart *part = &play->cast.part[0];
-    long vertices = part->body.instances * play->changes[0].surface.vertex_count;
+    long vertices = part->body.instances * play->changes[0].skin.surface.vertex_count;
     path->points = vertices < BENCH_PATH_POINTS ? vertices : BENCH_PATH_POINTS;
     path->point = sm_alloc((size_t)path->frames * (size_t)path->points, sizeof *path->point);
     double(*all)[3] = sm_alloc((size_t)vertices, sizeof *all);

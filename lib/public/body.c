@@ -267,7 +267,7 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
         free(made);
         return sm_done(failed, &why, error);
     }
-    complete(made, voxels, surface, p.engine == SB_FASTLSM && inner.strain_limit > 0);
+    complete(made, voxels, surface, inner.strain_limit > 0 && !made->type->refines);
     *body = made;
     return sm_done(SM_OK, NULL, error);
 }

@@ -133,7 +133,8 @@ static int cut_lattice(sb_body *body, long first, sb_error *error)
     SmError why;
     if (body->skin.cut.triangles == first) return sm_done(SM_OK, NULL, error);
     int team = sm_team_enter(body->threads);
-    SmCode code = sm_skin_cut_lattice(&body->skin, first, &why);
+    SmCode code = body->type->cut(body->engine, &body->skin.cut, first, &why);
+    if (!code) sm_skin_follow_cut(&body->skin, first);
     sm_team_leave(team);
     return sm_done(code, &why, error);
 }
@@ -425,7 +426,7 @@ int sb_body_read_surface(sb_body *body, double *position, double *normal, int64_
                               "position", error);
     if (code) return code;
     int team = sm_team_enter(body->threads);
-    sm_skin_points(&body->skin, 0, (double(*)[3])position, (double(*)[3])normal);
+    sm_skin_points(&body->skin, NULL, (double(*)[3])position, (double(*)[3])normal);
     sm_team_leave(team);
     return sm_done(SM_OK, NULL, error);
 }

@@ -61,33 +61,25 @@ static void make_room(SmSkin *skin, long nodes)
     skin->absent = sm_realloc(skin->absent, room, 1);
 }
 
-/* Places of the nodes of all instances, or where their velocities had them `back` s ago. Returns
- * how many there are. */
-static long get_nodes(SmSkin *skin, double back)
+/* Places of the nodes of all instances. Returns how many there are. */
+static long get_nodes(SmSkin *skin)
 {
     SmCounts counts;
     skin->type->count(skin->engine, &counts);
-    make_room(skin, counts.particles);
+    long leaves = skin->octree ? oct_engine_structure(skin->engine)->tree.leaves : 0;
+    make_room(skin, leaves > counts.particles ? leaves : counts.particles);
     skin->type->get(skin->engine, SM_POSITION, skin->node);
-    if (back == 0) return counts.particles;
-    double(*v)[3] = sm_alloc((size_t)counts.particles, sizeof *v);
-    skin->type->get(skin->engine, SM_VELOCITY, v);
-    for (long p = 0; p < counts.particles; p++)
-        for (int d = 0; d < 3; d++) skin->node[p][d] -= back * v[p][d];
-    free(v);
     return counts.particles;
 }
 
-/* What get_nodes() found of an instance's nodes, into skin->x by leaf number. */
-static void place_leaves(SmSkin *skin, long first, long count)
+/* An instance's nodes into skin->x by leaf number. */
+static void place_leaves(SmSkin *skin, const double (*node)[3], long count)
 {
     const OctStructure *s = oct_engine_structure(skin->engine);
     const int *leaf = oct_engine_leaves(skin->engine);
-    make_room(skin, s->tree.leaves);
     for (long l = 0; l < s->tree.leaves; l++)
         for (int d = 0; d < 3; d++) skin->x[l][d] = NAN;
-    for (long p = 0; p < count; p++)
-        memcpy(skin->x[leaf[p]], skin->node[first + p], sizeof *skin->x);
+    for (long p = 0; p < count; p++) memcpy(skin->x[leaf[p]], node[p], sizeof *skin->x);
 }
 
 /* ---- what carries the material about a blade */
@@ -131,7 +123,8 @@ static SmCarriers octree_carriers(SmSkin *skin, const double blade[4][3])
 {
     const OctStructure *s = oct_engine_structure(skin->engine);
     double widest = 0;
-    place_leaves(skin, 0, get_nodes(skin, 0));
+    long count = get_nodes(skin);
+    place_leaves(skin, (const double(*)[3])skin->node, count);
     for (long l = 0; l < s->tree.leaves; l++)
         if (s->tree.node[l] >= 0)
             widest = fmax(widest, 0.5 * s->cell * s->tree.size[s->tree.node[l]]);
@@ -178,7 +171,7 @@ static SmCarriers lattice_carriers(SmSkin *skin, const double blade[4][3])
 {
     double cell = skin->voxels->cell, reach = 3 * cell; /* a cell's middle is 0.87 */
     double far = stroke_of(blade) + 2 * reach;
-    long count = get_nodes(skin, 0);
+    long count = get_nodes(skin);
     for (long p = 0; p < count; p++) {
         double square = square_from(skin->node[p], blade[2], blade[3]);
         skin->absent[p] = !(square < far * far);
@@ -259,11 +252,10 @@ void sm_skin_follow(SmSkin *skin, const OctChange *change, long first)
     sm_pieces_free(&pieces);
 }
 
-SmCode sm_skin_cut_lattice(SmSkin *skin, long first, SmError *error)
+void sm_skin_follow_cut(SmSkin *skin, long first)
 {
     const SmCut *cut = &skin->cut;
-    SmCode code = skin->type->cut(skin->engine, cut, first, error);
-    if (code || skin->surface.vertex_count == 0) return code;
+    if (skin->surface.vertex_count == 0) return;
     SmPieces pieces;
     skin->type->pieces(skin->engine, &pieces);
     skin->left |= sm_slit(&skin->surface, cut, first, skin->voxels->cell) == SM_SLIT_LEFT;
@@ -272,21 +264,20 @@ SmCode sm_skin_cut_lattice(SmSkin *skin, long first, SmError *error)
         sm_embed_cut(&skin->embedding, &skin->surface, &skin->sites, cut, cut->triangles,
                      pieces.piece);
     sm_pieces_free(&pieces);
-    return SM_OK;
 }
 
 /* ---- reading */
 
-void sm_skin_points(SmSkin *skin, double back, double (*point)[3], double (*normal)[3])
+void sm_skin_points(SmSkin *skin, const double (*node)[3], double (*point)[3], double (*normal)[3])
 {
-    long count = get_nodes(skin, back) / skin->instances, vertices = skin->surface.vertex_count;
-    for (long k = 0; k < skin->instances; k++, point += vertices) {
+    long count = get_nodes(skin) / skin->instances, vertices = skin->surface.vertex_count;
+    if (!node) node = (const double(*)[3])skin->node;
+    for (long k = 0; k < skin->instances; k++, node += count, point += vertices) {
         if (skin->octree) {
-            place_leaves(skin, k * count, count);
+            place_leaves(skin, node, count);
             oct_surface_move(&skin->carried, (const double(*)[3])skin->x, point, normal);
         } else {
-            sm_embed_apply(&skin->embedding, (const double(*)[3])(skin->node + k * count), point,
-                           normal);
+            sm_embed_apply(&skin->embedding, node, point, normal);
         }
         if (normal) normal += vertices;
     }
@@ -297,7 +288,12 @@ void sm_skin_pieces(const SmSkin *skin, SmPieces *pieces)
     if (skin->octree) {
         const OctStructure *s = oct_engine_structure(skin->engine);
         oct_graph_pieces(&s->tree, &s->graph, pieces);
-    } else {
+    } else if (skin->type->pieces) {
         skin->type->pieces(skin->engine, pieces);
+    } else { /* always in one */
+        SmCounts counts;
+        skin->type->count(skin->engine, &counts);
+        long own = counts.particles / skin->instances;
+        *pieces = (SmPieces){1, sm_alloc((size_t)own, sizeof *pieces->piece)};
     }
 }

@@ -51,14 +51,14 @@ long sm_skin_cut_triangles(const SmSkin *skin);
 /* The surface after an octree has changed, with the cut's triangles from number `first` on new. */
 void sm_skin_follow(SmSkin *skin, const OctChange *change, long first);
 
-/* Cuts a lattice's body, and the surface, by the triangles of skin->cut from number `first` on. */
-SmCode sm_skin_cut_lattice(SmSkin *skin, long first, SmError *error);
+/* The same after a lattice has been cut by the triangles of skin->cut from number `first` on. */
+void sm_skin_follow_cut(SmSkin *skin, long first);
 
-/* The surfaces of all instances now, and unit normals unless NULL: [instances * vertices]. With
- * `back` s the velocities of what carries them are followed so far back. */
-void sm_skin_points(SmSkin *skin, double back, double (*point)[3], double (*normal)[3]);
+/* The surfaces of all instances, and unit normals unless NULL: [instances * vertices]. `node` are
+ * places of what carries them, as the engine counts them; NULL: where these are now. */
+void sm_skin_points(SmSkin *skin, const double (*node)[3], double (*point)[3], double (*normal)[3]);
 
-/* Pieces of one body's material by particle. The caller frees. */
+/* Pieces of one body's material by particle, of an octree by leaf. The caller frees. */
 void sm_skin_pieces(const SmSkin *skin, SmPieces *pieces);
 
 /* The leaf or particle that a vertex belongs to. */
