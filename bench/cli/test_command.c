@@ -339,9 +339,11 @@ TEST(tables_set_the_octree_beside_the_lattice)
         total[r] = json_real_value(json_object_get(row, "total_ms"));
         double fps = json_real_value(json_object_get(row, "fps")),
                speedup = json_real_value(json_object_get(row, "speedup"));
-        assert_true(fps * total[r] > 999.99 && fps * total[r] < 1000.01);
-        assert_true(speedup * total[r] > 0.9999 * total[0]);
-        assert_true(speedup * total[r] < 1.0001 * total[0]);
+        if (total[r] > 0) assert_true(fps * total[r] > 999.99 && fps * total[r] < 1000.01);
+        if (total[0] > 0 && total[r] > 0) { /* neither is BUSY */
+            assert_true(speedup * total[r] > 0.9999 * total[0]);
+            assert_true(speedup * total[r] < 1.0001 * total[0]);
+        }
         assert_true(json_is_null(json_object_get(row, "summation_nodes")) == (r == 0));
         assert_true(json_is_true(json_object_get(row, "valid")));
     }
