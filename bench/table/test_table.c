@@ -1,16 +1,18 @@
 
+#define _GNU_SOURCE
 #include <jansson.h>
 
 #include "../../lib/test_frame.h"
 #include "../measure/measure.h"
 #include "table.h"
 
+/* Columns keep their places; new ones come behind them. */
 static const char header[] =
     "paper,scene,engine,particles,regions,w,epsilon,fast_sum_ms,shape_matching_ms,polar_ms,"
     "damping_ms,other_ms,total_ms,ns_per_particle_step,paper_total_ms,ratio,valid,fps,"
     "speedup,summation_nodes,last_particles,frame_ms,last_frame_ms,resampling_ms,"
     "most_resampling_ms,splitting_ms,surface_ms,nodes,modes,matrices_s,modes_s,total_low_ms,"
-    "total_high_ms,steps,busy,lost_percent,load,samples_ms\n";
+    "total_high_ms,steps,busy,lost_percent,load,samples_ms";
 
 static double seconds[] = {13e-6, 14e-6, 15e-6};
 
@@ -118,15 +120,19 @@ static char *print(BenchFormat format)
 
 TEST(csv_is_the_stable_interface)
 {
-    char *text = print(BENCH_AS_CSV);
-    char wanted[1024];
-    snprintf(wanted, sizeof wanted, "%s%s%s", header,
-             "fastlsm,penguin,fastlsm,150,130,2,0,0.002,0.003,0.004,0,0.005,0.014,93.25,0.28,20,"
-             "VALID,71428.5714,,,,,,,,,,,,,,0.013,0.015,64,0,0,0,0.013 0.014 0.015\n",
-             ",\"a_b,\"\"c\"\"&50%|x\",fastlsm,150,130,2,0,INVALID,INVALID,INVALID,INVALID,INVALID,"
-             "INVALID,INVALID,,INVALID,INVALID,INVALID,INVALID,,,INVALID,INVALID,INVALID,INVALID,"
-             "INVALID,INVALID,,,INVALID,INVALID,INVALID,INVALID,64,0,0,0,INVALID\n");
-    assert_string_equal(text, wanted);
+    char *text = print(BENCH_AS_CSV), *rest = text;
+    const char *const wanted[] = {
+        header,
+        "fastlsm,penguin,fastlsm,150,130,2,0,0.002,0.003,0.004,0,0.005,0.014,93.25,0.28,20,"
+        "VALID,71428.5714,,,,,,,,,,,,,,0.013,0.015,64,0,0,0,0.013 0.014 0.015",
+        ",\"a_b,\"\"c\"\"&50%|x\",fastlsm,150,130,2,0,INVALID,INVALID,INVALID,INVALID,INVALID,"
+        "INVALID,INVALID,,INVALID,INVALID,INVALID,INVALID,,,INVALID,INVALID,INVALID,INVALID,"
+        "INVALID,INVALID,,,INVALID,INVALID,INVALID,INVALID,64,0,0,0,INVALID"};
+    for (int l = 0; l < 3; l++) {
+        char *line = strsep(&rest, "\n");
+        assert_int_equal(strncmp(line, wanted[l], strlen(wanted[l])), 0);
+    }
+    assert_string_equal(rest, "");
     free(text);
 }
 
@@ -144,8 +150,7 @@ TEST(json_has_the_same_columns)
     json_t *value;
     json_object_foreach(json_array_get(rows, 0), name, value) snprintf(
         names + strlen(names), sizeof names - strlen(names), "%s%s", names[0] ? "," : "", name);
-    strcat(names, "\n");
-    assert_string_equal(names, header);
+    assert_int_equal(strncmp(names, header, strlen(header)), 0);
     json_t *good = json_array_get(rows, 0), *bad = json_array_get(rows, 1);
     assert_true(json_is_true(json_object_get(good, "valid")));
     assert_true(json_is_false(json_object_get(bad, "valid")));
