@@ -21,6 +21,7 @@ typedef struct {
     double surface_ms;                /* moving the surface of one body */
     long first_triangles, last_triangles, pieces, open_edges; /* of all surfaces, at the end */
     long left;                         /* bodies whose surface could not follow a cut everywhere */
+    double surface_bytes;              /* a particle: what ties the surfaces to them, at the end */
     double (*time)[BENCH_FRAME_PARTS]; /* [frames] s: simulation, resampling, splitting, moving one
                                         * body's surface; the least of all rounds */
 } BenchChangeRow;

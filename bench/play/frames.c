@@ -154,10 +154,24 @@ static long count_triangles(const BenchPlay *play)
     return triangles;
 }
 
+/* What ties the surfaces to the bodies, over the particles of one instance of each. */
+static double surface_bytes(const BenchPlay *play)
+{
+    double bytes = 0, particles = 0;
+    for (int p = 0; p < play->cast.count; p++) {
+        const BenchPart *part = &play->cast.part[p];
+        bytes += (double)sm_embed_bytes(&play->changes[p].skin.embedding);
+        bytes += (double)oct_surface_bytes(&play->changes[p].skin.carried);
+        particles += (double)(part->runner.particles / part->body.instances);
+    }
+    return bytes / particles;
+}
+
 static void note_end(const BenchPlay *play, BenchChangeRow *row)
 {
     row->last_nodes = bench_cast_particles(&play->cast);
     row->last_triangles = count_triangles(play);
+    row->surface_bytes = surface_bytes(play);
     for (int p = 0; p < play->cast.count; p++) {
         SmMeshInfo info = sm_mesh_info(&play->changes[p].skin.surface);
         long bodies = play->cast.part[p].body.instances;

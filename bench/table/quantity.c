@@ -454,6 +454,9 @@ const BenchQuantity bench_quantities[] = {
     {.samples = true,
      TIME("samples_ms"),
      MEANS("ms", "every sample; in files the dataset `total`, in seconds")},
+    {CHANGE(DOUBLE, surface_bytes), COLUMN("surface_bytes"),
+     MEANS("bytes a particle", "what ties the surfaces to the bodies' particles, in the end"),
+     .title = "surface bytes/particle", CHANGES = PAGE},
     {.title = "check", BOTH_STEPS, CHANGES = PAGE, .left = true, .cell = verdict_cell},
 };
 

@@ -97,6 +97,14 @@ void sm_embed_free(SmEmbedding *embedding)
     *embedding = (SmEmbedding){0};
 }
 
+size_t sm_embed_bytes(const SmEmbedding *embedding)
+{
+    size_t vertex = sizeof *embedding->corner + sizeof *embedding->weight +
+                    sizeof *embedding->tangent_u + sizeof *embedding->tangent_v;
+    return (size_t)embedding->vertex_count * vertex +
+           (size_t)embedding->flat_count * sizeof *embedding->flat;
+}
+
 /* Sum of w_i (x_i - x_0). The fourth lane pads a position to a vector register. */
 static inline void blend(const float weight[8], const double difference[8][4], double sum[4])
 {
