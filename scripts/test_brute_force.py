@@ -33,9 +33,12 @@ def record(program, scene, text, options, folder):
     """Records the scene's first steps; returns the file, or None and why it is left out."""
     path = Path(folder, f"{scene}-{options.precision or 'default'}.vtkhdf")
     what = "nodes" if 'engine = "octree"' in text else "particles"
-    precision = ["--precision", options.precision] if options.precision else []
+    more = ["--precision", options.precision] if options.precision else []
+    nodes, fewer = re.search(r"^ *nodes = (\d+);", text, re.M), options.particles // 4
+    if nodes and fewer < int(nodes[1]):  # as many as the scene's cannot be had of so few cells
+        more += ["--nodes", str(fewer)]
     ran = subprocess.run([program, "run", scene, "--record", what, "--particles", str(options.particles), "--frames",
-                          str(options.frames), "--steps", "1", "--quiet", "--output", path, *precision],
+                          str(options.frames), "--steps", "1", "--quiet", "--output", path, *more],
                          capture_output=True, text=True)
     if ran.returncode == 2:
         return None, ran.stderr.strip()

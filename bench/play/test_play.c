@@ -272,7 +272,9 @@ TEST(frames_are_timed_and_counted)
     assert_true(row.last_triangles > row.first_triangles && row.pieces >= 2);
     assert_int_equal(row.open_edges, 0);
     /* At least place, normal and reach of every vertex, and a node and its weight. */
-    double vertices = (double)bench_play_surface(&play).vertex_count;
+    SmMesh surface = bench_play_surface(&play);
+    double vertices = (double)surface.vertex_count;
+    sm_mesh_free(&surface);
     assert_true(row.surface_bytes * (double)row.last_nodes > vertices * (24 + 24 + 4 + 4 + 4));
     if (!isnan(row.first_ms)) { /* not BUSY */
         assert_true(row.first_ms > 0 && row.last_ms > 0);
