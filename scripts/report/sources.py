@@ -6,6 +6,7 @@ import math
 import os
 import re
 
+import h5py
 import numpy as np
 
 import stored
@@ -49,7 +50,9 @@ def plain(value):
 
 
 def attributes(node):
-    return {name: plain(value) for name, value in node.attrs.items()}
+    """By number: a signal in h5py's own loop over names, which HDF5 calls back, ends as a SystemError."""
+    names = [h5py.h5a.open(node.id, index=n).name.decode() for n in range(h5py.h5a.get_num_attrs(node.id))]
+    return {name: plain(node.attrs[name]) for name in names}
 
 
 class Source:
