@@ -18,8 +18,8 @@
 #include "../store/draft.h"
 #include "command.h"
 #include "option.h"
-#include "suggest.h"
 #include "process.h"
+#include "suggest.h"
 
 enum {
     KEY_BASELINE = 0x2000,
