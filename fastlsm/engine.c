@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/handles.h"
+#include "../lib/boundary.h"
 #include "../lib/simd/momentum.h"
 #include "build.h"
 #include "contacts.h"
@@ -317,7 +317,7 @@ static void move_held(SmEngine *e)
 /* Does nothing but gravity act on the body? */
 static bool is_free(const SmEngine *e)
 {
-    return e->handles.held == 0 && e->lsm->obstacle_count == 0 &&
+    return e->handles.particles == 0 && e->lsm->obstacle_count == 0 &&
            !(e->contacts && lsm_contacts_count(e->contacts) > 0);
 }
 
@@ -468,7 +468,7 @@ static void copy_obstacles(Lsm *lsm, const SmBoundary *boundary)
 
 static void fix_held(SmEngine *e)
 {
-    long at = 0, *held = sm_alloc((size_t)e->handles.held, sizeof *held);
+    long at = 0, *held = sm_alloc((size_t)e->handles.particles, sizeof *held);
     for (int i = 0; i < e->handles.count; i++)
         for (long k = 0; k < e->handles.handle[i].count; k++) {
             long number = e->handles.handle[i].particle[k];

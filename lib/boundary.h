@@ -1,7 +1,5 @@
-/* boundary.h - what holds or stops particles: handles, pins, planes, obstacles.
- *
- * Engines call the precision-specific functions in nodes.h; this header is the description only.
- * Lengths in mesh units, times in seconds. */
+/* boundary.h - what holds or stops particles: handles, pins, planes, obstacles; and an engine's
+ * copy of its handles. Lengths in mesh units, times in seconds. */
 #ifndef SM_BOUNDARY_H
 #define SM_BOUNDARY_H
 
@@ -33,5 +31,23 @@ typedef struct {
     int obstacle_count;
     const SmObstacle *obstacle;
 } SmBoundary;
+
+/* An engine's own copy of the handles that it was given. */
+typedef struct {
+    int count;
+    SmHandle *handle; /* [count] */
+    long particles;   /* of all handles */
+    /* [particles] for the engine: where they were before the step, handle by handle */
+    double (*before)[3];
+} SmHandles;
+
+/* Copies the boundary's handles; their particles must be 0 .. particles - 1. Where they hold the
+ * same particles as before, only the poses are copied: O(particles), and nothing is allocated.
+ * Returns whether they hold others. `own` begins zeroed; sm_handles_free() ends it. */
+bool sm_handles_set(SmHandles *own, const SmBoundary *boundary, long particles);
+void sm_handles_free(SmHandles *own);
+
+/* to = pose * (from, 1). */
+void sm_pose_apply(const double pose[3][4], const double from[3], double to[3]);
 
 #endif

@@ -3,7 +3,7 @@
  * A particle inside goes to the nearest point of the surface, loses the velocity that leads inwards
  * and the share `friction` of the tangential one. One that moves by less than half an obstacle's
  * thickness in a step does not get through it; a plane has no far side (collide.h has the speed of
- * a body). Twin: reference/obstacle.c. */
+ * a body). Twin: reference/brute_obstacle.c. */
 #ifndef SM_OBSTACLE_H
 #define SM_OBSTACLE_H
 

@@ -2,8 +2,6 @@
 
 #include <stdlib.h>
 
-#include "vector.h"
-
 void sm_pieces_init(long nodes, SmPieces *pieces)
 {
     pieces->piece = sm_alloc((size_t)nodes, sizeof *pieces->piece);
@@ -17,15 +15,16 @@ void sm_pieces_again(long nodes, SmPieces *pieces)
 }
 
 /* Until they are numbered, pieces are a forest whose roots are their lowest members. */
-static int root(int *piece, int p)
+int sm_pieces_first(SmPieces *pieces, long p)
 {
-    while (piece[p] != p) p = piece[p] = piece[piece[p]];
-    return p;
+    int *piece = pieces->piece, root = (int)p;
+    while (piece[root] != root) root = piece[root] = piece[piece[root]];
+    return root;
 }
 
 void sm_pieces_link(SmPieces *pieces, long p, long q)
 {
-    int a = root(pieces->piece, (int)p), b = root(pieces->piece, (int)q);
+    int a = sm_pieces_first(pieces, p), b = sm_pieces_first(pieces, q);
     pieces->piece[a > b ? a : b] = a > b ? b : a;
 }
 
@@ -40,40 +39,11 @@ void sm_pieces_finish(SmPieces *pieces, const unsigned char *absent, long nodes)
     }
 }
 
-void sm_pieces_of_mesh(const SmMesh *mesh, SmPieces *pieces)
-{
-    int *first = sm_alloc((size_t)mesh->vertex_count, sizeof *first); /* triangle at it, + 1 */
-    sm_pieces_init(mesh->triangle_count, pieces);
-    for (long t = 0; t < mesh->triangle_count; t++)
-        for (int i = 0; i < 3; i++) {
-            int *triangle = &first[mesh->triangle[t][i]];
-            if (*triangle > 0)
-                sm_pieces_link(pieces, *triangle - 1, t);
-            else
-                *triangle = (int)t + 1;
-        }
-    free(first);
-    sm_pieces_finish(pieces, NULL, mesh->triangle_count);
-}
-
 void sm_pieces_sum(const SmPieces *pieces, long members, const double *value, double *sum)
 {
     for (long n = 0; n < pieces->count; n++) sum[n] = 0;
     for (long p = 0; p < members; p++)
         if (pieces->piece[p] >= 0) sum[pieces->piece[p]] += value[p];
-}
-
-void sm_pieces_volumes(const SmPieces *pieces, const SmMesh *mesh, double *volume)
-{
-    for (long n = 0; n < pieces->count; n++) volume[n] = 0;
-    const double *o = mesh->position[0];
-    for (long t = 0; t < mesh->triangle_count; t++) {
-        double p[3][3], cross[3];
-        for (int i = 0; i < 3; i++)
-            for (int d = 0; d < 3; d++) p[i][d] = mesh->position[mesh->triangle[t][i]][d] - o[d];
-        sm_cross(p[1], p[2], cross);
-        volume[pieces->piece[t]] += sm_dot(p[0], cross) / 6;
-    }
 }
 
 void sm_pieces_free(SmPieces *pieces)

@@ -1,8 +1,8 @@
-/* pieces.h - what hangs together: nodes over their links, and the parts of a surface. */
+/* pieces.h - what hangs together: nodes over their links. */
 #ifndef SM_PIECES_H
 #define SM_PIECES_H
 
-#include "mesh/mesh.h"
+#include "error.h"
 
 /* Pieces are numbered from 0 in the order of their first members. */
 typedef struct {
@@ -18,15 +18,11 @@ void sm_pieces_again(long nodes, SmPieces *pieces);
 void sm_pieces_link(SmPieces *pieces, long p, long q);
 void sm_pieces_finish(SmPieces *pieces, const unsigned char *absent, long nodes);
 
-/* Pieces of a surface's triangles, those that share vertices. */
-void sm_pieces_of_mesh(const SmMesh *mesh, SmPieces *pieces);
+/* The first node of p's piece so far, before they are numbered. */
+int sm_pieces_first(SmPieces *pieces, long p);
 
 /* Sums `value` of all members of every piece into sum[count]: with masses, the pieces' masses. */
 void sm_pieces_sum(const SmPieces *pieces, long members, const double *value, double *sum);
-
-/* Signed volume between every piece of a surface and the origin, into volume[count]: what a closed
- * piece holds. A hollow is a piece of its own, of negative volume. */
-void sm_pieces_volumes(const SmPieces *pieces, const SmMesh *mesh, double *volume);
 
 void sm_pieces_free(SmPieces *pieces);
 

@@ -1,9 +1,10 @@
 /* What hangs together, against a search from every member. */
 #include "pieces.h"
 
-#include "cut/slit.h"
+#include "cut/cut_surface.h"
 #include "test_frame.h"
 #include "test_random.h"
+#include "test_volumes.h"
 
 static unsigned seed = 1;
 
@@ -66,12 +67,12 @@ TEST(a_box_cut_through_has_two_pieces)
         sm_cut_vertex(&cut, (double[3]){0.5, n % 2 ? 3 : -1, n / 2 ? 3 : -1});
     sm_cut_triangle(&cut, (int[3]){0, 1, 3});
     sm_cut_triangle(&cut, (int[3]){0, 3, 2});
-    assert_int_equal(sm_slit(&mesh, &cut, 0, 0.1), SM_SLIT_CLOSED);
+    assert_int_equal(sm_cut_surface(&mesh, &cut, 0, 0.1), SM_CUT_CLOSED);
     SmPieces pieces;
-    sm_pieces_of_mesh(&mesh, &pieces);
+    sm_mesh_pieces(&mesh, &pieces);
     assert_int_equal(pieces.count, 2);
     double volume[2];
-    sm_pieces_volumes(&pieces, &mesh, volume);
+    sm_mesh_piece_volumes(&mesh, &pieces, volume);
     assert_true(fabs(fmin(volume[0], volume[1]) - 0.5) < 1e-4);
     assert_true(fabs(fmax(volume[0], volume[1]) - 1.5) < 1e-4);
     sm_pieces_free(&pieces);

@@ -1,5 +1,5 @@
 /* Holds every polar decomposition to GSL's on all classes of matrices. */
-#include "../reference/polar.h"
+#include "../reference/svd_polar.h"
 #include "polar.h"
 #include "test_frame.h"
 #include "test_random.h"

@@ -7,7 +7,7 @@
 
 #include "../lib/system/team.h"
 #include "../lib/vector.h"
-#include "polar.h"
+#include "svd_polar.h"
 
 static int compare_ints(const void *a, const void *b)
 {

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/handles.h"
+#include "../lib/boundary.h"
 #include "../lib/system/team.h"
 #include "brute.h"
-#include "obstacle.h"
+#include "brute_obstacle.h"
 
 typedef struct {
     RefLinks links;

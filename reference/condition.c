@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "polar.h"
+#include "svd_polar.h"
 
 /* Second moments of a region over its mass. */
 typedef struct {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "polar.h"
+#include "svd_polar.h"
 
 typedef struct {
     long count;                    /* of one body */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "../lib/vector.h"
-#include "polar.h"
+#include "svd_polar.h"
 
 /* Appends the leaves below a tree node, by rank; returns how many there are then. */
 static long append_leaves(const OctTree *tree, const int *rank, long node, int *member, long count)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "polar.h"
+#include "svd_polar.h"
 
 enum { COLUMNS = 9 };
 

@@ -1,8 +1,8 @@
 
 
 #include "../lib/test_frame.h"
-#include "polar.h"
 #include "shape_matching.h"
+#include "svd_polar.h"
 
 enum { NX = 4, NY = 3, NZ = 9, COUNT = NX * NY * NZ };
 

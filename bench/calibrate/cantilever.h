@@ -8,7 +8,7 @@
 #ifndef BENCH_CANTILEVER_H
 #define BENCH_CANTILEVER_H
 
-#include "../../reference/beam.h"
+#include "../../reference/beam_theory.h"
 #include "../play/runner.h"
 
 typedef struct {

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "../../lib/error.h"
-#include "../../reference/beam.h"
+#include "../../reference/beam_theory.h"
 
 typedef enum { BENCH_EULER, BENCH_TIMOSHENKO, BENCH_MESHLESS, BENCH_MODELS } BenchModel;
 

@@ -7,7 +7,7 @@
 
 #include "../../lib/test_fields.h"
 #include "../../lib/test_frame.h"
-#include "../../reference/beam.h"
+#include "../../reference/beam_theory.h"
 #include "../cli/test_program.h"
 #include "../engines.h"
 #include "../play/runner.h"

@@ -6,16 +6,16 @@
 
 #include "../../octree/engine.h"
 #include "../../octree/surface/outline.h"
-#include "../../reference/collide.h"
+#include "../../reference/brute_collide.h"
+#include "../../reference/collision_lattice.h"
 #include "../../reference/condition.h"
-#include "../../reference/outline.h"
 #include "check.h"
 
 /* Both sides of the comparison. */
 typedef struct {
     const BenchCheck *check;
     SmCollideRest rest;
-    RefOutline lattice;
+    RefCollisionLattice lattice;
     OctOutline octree;
     RefCollide *twin;
     long all;           /* nodes of all bodies */
@@ -42,7 +42,7 @@ static void describe(const SmEngine *engine, Contacts *c)
     }
     long parted = 0;
     int(*pair)[2] = check->body->cut ? bench_check_parted(check->body, &parted) : NULL;
-    ref_outline_build(&check->body->voxels, (const int(*)[2])pair, parted, &c->lattice);
+    ref_collision_lattice_build(&check->body->voxels, (const int(*)[2])pair, parted, &c->lattice);
     c->rest = c->lattice.rest;
     free(pair);
 }
@@ -69,7 +69,7 @@ static void begin(const BenchCheck *check, const BenchScene *scene, const SmEngi
 static void end(Contacts *c)
 {
     ref_collide_free(c->twin);
-    ref_outline_free(&c->lattice);
+    ref_collision_lattice_free(&c->lattice);
     oct_outline_free(&c->octree);
     free(c->x);
     free(c->turn);

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../reference/obstacle.h"
+#include "../../reference/brute_obstacle.h"
 #include "check.h"
 #include "check_copy.h"
 

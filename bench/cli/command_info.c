@@ -5,7 +5,7 @@
 
 #include "../../lib/system/confine.h"
 #include "../../lib/system/printable.h"
-#include "../../lib/voxel/voxel.h"
+#include "../../lib/voxel/voxelise.h"
 #include "../scene/body.h"
 #include "../scene/slice.h"
 #include "../store/draft.h"

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../reference/meshless/surface/outline.h"
+#include "../../reference/meshless/surface/surface_nets.h"
 #include "../engines.h"
 #include "../play/recording.h"
 #include "../scene/points_file.h"
@@ -318,7 +318,7 @@ static SmCode outline_points(const char *path, RefPoints *points, RefMpu *given,
     SmCode code = ref_mpu_build(points, NULL, given, &why);
     if (!code) {
         RefField field = ref_mpu_field(given);
-        code = ref_outline(&field, CELLS, mesh, &why);
+        code = ref_surface_nets(&field, CELLS, mesh, &why);
         if (code) ref_mpu_free(given);
     }
     return code ? sm_fail(error, code, "%s: %s", path, why.text) : SM_OK;

@@ -7,7 +7,7 @@
 #include "../../lib/error.h"
 #include "../../lib/polar.h"
 #include "../../lib/stage.h"
-#include "../../reference/polar.h"
+#include "../../reference/svd_polar.h"
 
 /* Steps of the motion that a sample runs through. */
 enum { FRAMES = 8, N = BENCH_MATRICES };

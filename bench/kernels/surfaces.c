@@ -9,7 +9,7 @@
 #include "../../lib/shapes/shape.h"
 #include "../../lib/stage.h"
 #include "../../lib/system/team.h"
-#include "../../lib/voxel/voxel.h"
+#include "../../lib/voxel/voxelise.h"
 #include "../../octree/surface/surface.h"
 #include "../../octree/tree/sampling.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/handles.h"
+#include "../../lib/boundary.h"
 #include "../../lib/vector.h"
 #include "../play/runner.h"
 

@@ -74,7 +74,7 @@ SmCode bench_changes_frame(BenchChanges *changes, double from, double to, SmErro
     changes->last = (BenchChanged){0};
     SmCode code = changes->carrier->frame(changes, from, to, error);
     /* what has been split has vertices more, what lay in a gap triangles less; this may be so too
-     * where sm_slit() has left some of it */
+     * where sm_cut_surface() has left some of it */
     changes->last.slit = changes->skin.surface.vertex_count != vertices ||
                          changes->skin.surface.triangle_count != triangles;
     return code;

@@ -1,5 +1,6 @@
 /* Scenes that cut lattices: what comes off falls, and no cut does harm. */
 #include "../../lib/test_frame.h"
+#include "../../lib/test_volumes.h"
 #include "../check/check.h"
 #include "../engines.h"
 #include "play.h"
@@ -116,9 +117,9 @@ TEST(cut_through)
     assert_true(stretched(&run) < 0.5);
     SmPieces pieces;
     double volume[2], low[2] = {INFINITY, INFINITY}, before = 0.008;
-    sm_pieces_of_mesh(surface(&run), &pieces);
+    sm_mesh_pieces(surface(&run), &pieces);
     assert_int_equal(pieces.count, 2);
-    sm_pieces_volumes(&pieces, surface(&run), volume);
+    sm_mesh_piece_volumes(surface(&run), &pieces, volume);
     for (int p = 0; p < 2; p++) assert_true(volume[p] > 0.2 * before);
     assert_true(fabs(volume[0] + volume[1] - before) < 1e-3 * before);
     const SmMesh *mesh = surface(&run);

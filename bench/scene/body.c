@@ -9,7 +9,7 @@
 #include "../../lib/shapes/shape.h"
 #include "../../lib/system/file.h"
 #include "../../lib/system/printable.h"
-#include "../../lib/voxel/weigh.h"
+#include "../../lib/voxel/voxelise.h"
 #include "../measure/room.h"
 #include "nearest.h"
 

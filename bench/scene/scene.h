@@ -5,6 +5,7 @@
 #ifndef BENCH_SCENE_H
 #define BENCH_SCENE_H
 
+#include "../../lib/voxel/voxelise.h"
 #include "../../octree/engine.h"
 #include "../../reference/meshless/engine.h"
 #include "../cli/suggest.h"

@@ -1,9 +1,9 @@
-/* outline.h - a lattice as collisions see it (lib/collide/collide_rest.h): nodes are particles,
+/* outline.h - a lattice as collisions see it (lib/collide/rest.h): nodes are particles,
  * cells hang on their eight corners, the rest graph is the links. */
 #ifndef LSM_OUTLINE_H
 #define LSM_OUTLINE_H
 
-#include "../../lib/collide/collide_rest.h"
+#include "../../lib/collide/rest.h"
 #include "lattice.h"
 
 typedef struct {

@@ -1,7 +1,7 @@
 /* A lattice as collisions see it, held to its twin. */
 #include "../../lib/test_frame.h"
 #include "../../lib/voxel/test_bodies.h"
-#include "../../reference/outline.h"
+#include "../../reference/collision_lattice.h"
 #include "outline.h"
 
 static void same_ints(const int *a, const int *b, long count)
@@ -49,17 +49,17 @@ TEST(it_is_that_of_the_cells)
         SmVoxels voxels;
         LsmLattice lattice;
         LsmOutline outline;
-        RefOutline exact;
+        RefCollisionLattice exact;
         random_body(&seed, round % 6, 8, &voxels);
         lsm_lattice_build(&voxels, &lattice);
         int(*pair)[2] = sm_alloc((size_t)lattice.count * LSM_RING, sizeof *pair);
         long count = break_some(&seed, &lattice, pair);
         lsm_outline_build(&lattice, NULL, &outline);
-        ref_outline_build(&voxels, (const int(*)[2])pair, count, &exact);
+        ref_collision_lattice_build(&voxels, (const int(*)[2])pair, count, &exact);
         same(&outline.rest, &exact.rest);
         gone += voxels.cell_count - outline.rest.cells;
         broken += count;
-        ref_outline_free(&exact);
+        ref_collision_lattice_free(&exact);
         lsm_outline_free(&outline);
         lsm_lattice_free(&lattice);
         sm_voxels_free(&voxels);

@@ -8,8 +8,8 @@
 #include "../error.h"
 #include "../system/team.h"
 #include "../vector.h"
-#include "collide_pairs.h"
-#include "collide_ways.h"
+#include "pairs.h"
+#include "rest.h"
 
 /* What one thread found. */
 typedef struct {
@@ -18,10 +18,10 @@ typedef struct {
 } Found;
 
 struct SmCollideWork {
-    SmCollideParts parts;
-    SmCollideWays ways;
+    SmCollidePatches patches;
+    SmCollidePaths paths;
     SmCollidePairs pairs;
-    SmCollideBox *cell_box, *node_box; /* [bodies * parts] of those in pairs */
+    SmCollideBox *cell_box, *node_box; /* [bodies * patches] of those in pairs */
     SmCollideBox *box;                 /* [bodies * cells of the shape] of their cells */
     Found *found;                      /* [threads] */
     int *place;                        /* [bodies * nodes] in SmCollide.node, or -1 */
@@ -142,17 +142,17 @@ static bool holds(const SmCollideBox *box, const double p[3])
            p[1] <= box->high[1] && p[2] >= box->low[2] && p[2] <= box->high[2];
 }
 
-/* Boxes of a part's cells, with the solid round of nodes, and of its nodes. */
-static void find_boxes(SmCollide *c, const double (*x)[3], const double (*frame)[9], long part)
+/* Boxes of a patch's cells, with the solid round of nodes, and of its nodes. */
+static void find_boxes(SmCollide *c, const double (*x)[3], const double (*frame)[9], long patch)
 {
     SmCollideWork *work = c->work;
-    const SmCollideParts *parts = &work->parts;
-    long b = part / parts->count, p = part % parts->count, first = b * c->shape.nodes;
+    const SmCollidePatches *patches = &work->patches;
+    long b = patch / patches->count, p = patch % patches->count, first = b * c->shape.nodes;
     double middle[3], F[9], half[3];
     SmCollideBox cells = sm_collide_no_box(), nodes = sm_collide_no_box();
-    for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
-        const SmCollideCell *cell = &c->shape.cell[parts->cell[i]];
-        SmCollideBox *box = &work->box[b * c->shape.cell_count + parts->cell[i]];
+    for (long i = patches->cell_first[p]; i < patches->cell_first[p + 1]; i++) {
+        const SmCollideCell *cell = &c->shape.cell[patches->cell[i]];
+        SmCollideBox *box = &work->box[b * c->shape.cell_count + patches->cell[i]];
         *box = sm_collide_no_box();
         find_frame(cell, x + first, frame ? frame + first : NULL, middle, F);
         if (!extents(c, cell, F, half)) continue;
@@ -162,10 +162,10 @@ static void find_boxes(SmCollide *c, const double (*x)[3], const double (*frame)
         }
         sm_collide_widen(&cells, box->low, box->high);
     }
-    for (long i = parts->node_first[p]; i < parts->node_first[p + 1]; i++)
-        sm_collide_widen(&nodes, x[first + parts->node[i]], x[first + parts->node[i]]);
-    work->cell_box[part] = cells;
-    work->node_box[part] = nodes;
+    for (long i = patches->node_first[p]; i < patches->node_first[p + 1]; i++)
+        sm_collide_widen(&nodes, x[first + patches->node[i]], x[first + patches->node[i]]);
+    work->cell_box[patch] = cells;
+    work->node_box[patch] = nodes;
 }
 
 /* A node in the box of the cell at place k of body b. */
@@ -186,22 +186,22 @@ static void test_node(const SmCollide *c, const double (*x)[3], const double (*f
     found->count++;
 }
 
-/* The cells of one part against the nodes of another. */
-static void test_parts(const SmCollide *c, const double (*x)[3], const double (*frame)[9],
-                       long with_cells, long with_nodes, Found *found)
+/* The cells of one patch against the nodes of another. */
+static void test_patches(const SmCollide *c, const double (*x)[3], const double (*frame)[9],
+                         long with_cells, long with_nodes, Found *found)
 {
     const SmCollideWork *work = c->work;
-    const SmCollideParts *parts = &work->parts;
+    const SmCollidePatches *patches = &work->patches;
     const SmCollideBox *nodes = &work->node_box[with_nodes];
-    long b = with_cells / parts->count, p = with_cells % parts->count;
-    long q = with_nodes % parts->count, first = with_nodes / parts->count * c->shape.nodes;
+    long b = with_cells / patches->count, p = with_cells % patches->count;
+    long q = with_nodes % patches->count, first = with_nodes / patches->count * c->shape.nodes;
     if (!sm_collide_overlap(&work->cell_box[with_cells], nodes)) return;
-    for (long i = parts->cell_first[p]; i < parts->cell_first[p + 1]; i++) {
-        const SmCollideBox *box = &work->box[b * c->shape.cell_count + parts->cell[i]];
+    for (long i = patches->cell_first[p]; i < patches->cell_first[p + 1]; i++) {
+        const SmCollideBox *box = &work->box[b * c->shape.cell_count + patches->cell[i]];
         if (!sm_collide_overlap(box, nodes)) continue;
-        for (long n = parts->node_first[q]; n < parts->node_first[q + 1]; n++)
-            if (holds(box, x[first + parts->node[n]]))
-                test_node(c, x, frame, (int)(first + parts->node[n]), b, parts->cell[i], found);
+        for (long n = patches->node_first[q]; n < patches->node_first[q + 1]; n++)
+            if (holds(box, x[first + patches->node[n]]))
+                test_node(c, x, frame, (int)(first + patches->node[n]), b, patches->cell[i], found);
     }
 }
 
@@ -256,7 +256,7 @@ static void join(SmCollide *c)
         for (long i = 0; i < work->found[t].count; i++) {
             const SmCollideContact *contact = &work->found[t].contact[i];
             if (contact->place &&
-                !sm_collide_may(&work->ways, &c->shape, contact->node % (int)c->shape.nodes,
+                !sm_collide_may(&work->paths, &c->shape, contact->node % (int)c->shape.nodes,
                                 contact->cell % c->shape.cell_count))
                 continue;
             c->contact[c->contact_count] = *contact;
@@ -270,14 +270,14 @@ void sm_collide_find(SmCollide *c, const double (*x)[3], const double (*frame)[9
     const SmCollidePairs *pairs = &work->pairs;
     sm_collide_pairs_find(&work->pairs, c->shape.nodes, x);
 #pragma omp parallel for schedule(static) num_threads(c->threads) if (c->threads > 1)
-    for (long i = 0; i < pairs->part_count; i++) find_boxes(c, x, frame, pairs->part[i]);
+    for (long i = 0; i < pairs->patch_count; i++) find_boxes(c, x, frame, pairs->patch[i]);
 #pragma omp parallel for schedule(static) num_threads(c->threads) if (c->threads > 1)
     for (int t = 0; t < c->threads; t++) {
         work->found[t].count = 0;
         for (long i = pairs->count * t / c->threads; i < pairs->count * (t + 1) / c->threads; i++) {
             int a = pairs->pair[i][0], b = pairs->pair[i][1];
-            test_parts(c, x, frame, a, b, &work->found[t]);
-            if (a != b) test_parts(c, x, frame, b, a, &work->found[t]);
+            test_patches(c, x, frame, a, b, &work->found[t]);
+            if (a != b) test_patches(c, x, frame, b, a, &work->found[t]);
         }
     }
     join(c);
@@ -381,14 +381,14 @@ static void work_build(SmCollide *c)
     work->found = sm_alloc((size_t)c->threads, sizeof *work->found);
     work->place = sm_alloc(all, sizeof *work->place);
     work->fixed = sm_alloc(all, 1);
-    sm_collide_parts_build(&c->shape, &work->parts);
-    sm_collide_ways_start(&work->ways, &c->shape);
-    size_t parts = (size_t)(c->bodies * work->parts.count);
-    work->cell_box = sm_alloc(parts, sizeof *work->cell_box);
-    work->node_box = sm_alloc(parts, sizeof *work->node_box);
+    sm_collide_patches_build(&c->shape, &work->patches);
+    sm_collide_paths_start(&work->paths, &c->shape);
+    size_t patches = (size_t)(c->bodies * work->patches.count);
+    work->cell_box = sm_alloc(patches, sizeof *work->cell_box);
+    work->node_box = sm_alloc(patches, sizeof *work->node_box);
     work->box = sm_alloc((size_t)(c->bodies * c->shape.cell_count), sizeof *work->box);
     memset(work->place, -1, all * sizeof *work->place);
-    sm_collide_pairs_init(&work->pairs, &work->parts, &c->params, c->bodies);
+    sm_collide_pairs_init(&work->pairs, &work->patches, &c->params, c->bodies);
 }
 
 static void work_free(SmCollide *c)
@@ -398,8 +398,8 @@ static void work_free(SmCollide *c)
     void *all[] = {work->found,  work->place,        work->fixed,    work->fixed_node, work->box,
                    work->before, work->inverse_mass, work->cell_box, work->node_box,   work};
     sm_collide_pairs_free(&work->pairs);
-    sm_collide_parts_free(&work->parts);
-    sm_collide_ways_free(&work->ways);
+    sm_collide_patches_free(&work->patches);
+    sm_collide_paths_free(&work->paths);
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
@@ -471,11 +471,11 @@ long sm_collide_bytes(const SmCollide *c)
 {
     const SmCollideWork *work = c->work;
     size_t bytes = (size_t)(c->bodies * c->shape.nodes) * (sizeof(int) + 1) +
-                   (size_t)(c->bodies * work->parts.count) * 2 * sizeof(SmCollideBox) +
+                   (size_t)(c->bodies * work->patches.count) * 2 * sizeof(SmCollideBox) +
                    (size_t)(c->bodies * c->shape.cell_count) * sizeof(SmCollideBox) +
                    (size_t)work->contact_room * 2 * sizeof *c->contact +
                    (size_t)work->node_room * (sizeof(int) + sizeof(double) + 2 * sizeof *c->v);
     return (long)bytes + sm_collide_pairs_bytes(&work->pairs) +
-           sm_collide_parts_bytes(&work->parts) + sm_collide_ways_bytes(&work->ways) +
+           sm_collide_patches_bytes(&work->patches) + sm_collide_paths_bytes(&work->paths) +
            sm_collide_shape_bytes(&c->shape);
 }

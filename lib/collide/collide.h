@@ -1,12 +1,12 @@
 /* collide.h - bodies collide with each other and with themselves.
  *
  * Method (octree section on collisions; Teschner et al. 2003): a rest distance field, flooded from
- * the outer faces (collide_rest.h), rides on the cells. Every cell near the surface looks up the
+ * the outer faces (rest.h), rides on the cells. Every cell near the surface looks up the
  * surface's nodes in its box; in place of a spatial hash, parts of the surface do that in pairs
- * (collide_pairs.h), which leaves out nearly all that a hash finds: neighbours in the material. A
+ * (pairs.h), which leaves out nearly all that a hash finds: neighbours in the material. A
  * node inside a cell is at a rest position there, which says how deep it is and which way is out.
  * It makes one contact with every cell that holds it. A node and a cell that the material joins by
- * a short way never collide (collide_ways.h).
+ * a short way never collide (rest.h).
  *
  * Engines call, in every step:
  *     sm_collide_find(c, x, frame)                    contacts of the positions before the step
@@ -36,7 +36,7 @@
  * may fly at 0.15 times that thickness a step (SM_COLLIDE_SPEED), so at 0.15 cells against a wall
  * one cell thick. The same holds for obstacles (obstacle.h), but for planes, which have no limit.
  *
- * Only parts of surfaces (collide_parts.h) whose boxes meet, of bodies whose boxes meet or of one
+ * Only parts of surfaces (patches.h) whose boxes meet, of bodies whose boxes meet or of one
  * body where the material does not hold them together, look for contacts. A cell counts as the
  * parallelepiped of its axes; where its corners are so bent that this reaches beyond them by more
  * than a tenth of an edge, contacts in what reaches beyond may be missed.
@@ -46,12 +46,12 @@
  * may, for their nodes and cells where the material does not hold them together, and O(carriers)
  * for each contact; once for every node and cell of one body that meet and are neither far apart at
  * rest nor neighbours, what a search of the material between them costs. It allocates nothing once
- * its arrays have grown. Twin: reference/collide.c. */
+ * its arrays have grown. Twin: reference/brute_collide.c. */
 #ifndef SM_COLLIDE_H
 #define SM_COLLIDE_H
 
 #include "../engine.h"
-#include "collide_rest.h"
+#include "rest.h"
 
 #define SM_COLLIDE_PUSH 0.25 /* share of the depth that is pushed out in a step, at most */
 #define SM_COLLIDE_KEPT 0.98 /* share of what is in the bank that lasts to the next step */

@@ -2,13 +2,13 @@
 #include "../../fastlsm/lattice/outline.h"
 #include "../../octree/change/test_batches.h"
 #include "../../octree/surface/outline.h"
-#include "../../reference/collide.h"
+#include "../../reference/brute_collide.h"
 #include "../test_fields.h"
 #include "../test_frame.h"
 #include "../vector.h"
 #include "../voxel/test_bodies.h"
-#include "collide_parts.h"
-#include "collide_ways.h"
+#include "patches.h"
+#include "rest.h"
 
 enum { BODIES = 3 };
 
@@ -214,30 +214,31 @@ TEST(test_parts)
         Body body;
         any_body(&seed, round % 2 > 0, &body);
         SmCollideShape shape;
-        SmCollideParts parts;
-        SmCollideWays ways = {0};
+        SmCollidePatches patches;
+        SmCollidePaths paths = {0};
         sm_collide_shape_build(body.rest, &shape);
-        sm_collide_parts_build(&shape, &parts);
-        sm_collide_ways_start(&ways, &shape);
-        for (long a = 0; a < parts.count; a++)
-            for (long j = parts.joined_first[a]; j < parts.joined_first[a + 1]; j++, joined++) {
-                int b = parts.joined[j];
-                assert_true(sm_collide_parts_joined(&parts, b, a));
-                for (long i = parts.node_first[a]; i < parts.node_first[a + 1]; i++)
-                    for (long k = parts.cell_first[b]; k < parts.cell_first[b + 1]; k++)
-                        assert_false(sm_collide_may(&ways, &shape, parts.node[i], parts.cell[k]));
+        sm_collide_patches_build(&shape, &patches);
+        sm_collide_paths_start(&paths, &shape);
+        for (long a = 0; a < patches.count; a++)
+            for (long j = patches.joined_first[a]; j < patches.joined_first[a + 1]; j++, joined++) {
+                int b = patches.joined[j];
+                assert_true(sm_collide_patches_joined(&patches, b, a));
+                for (long i = patches.node_first[a]; i < patches.node_first[a + 1]; i++)
+                    for (long k = patches.cell_first[b]; k < patches.cell_first[b + 1]; k++)
+                        assert_false(
+                            sm_collide_may(&paths, &shape, patches.node[i], patches.cell[k]));
             }
         for (int n = 0; n < 3 && shape.surface_count; n++) {
             int node = shape.surface[random_int(&seed, (int)shape.surface_count)];
             int k = random_int(&seed, (int)shape.cell_count);
-            bool may = sm_collide_may(&ways, &shape, node, k);
+            bool may = sm_collide_may(&paths, &shape, node, k);
             SmCollideRelation told = sm_collide_relation(&shape, node, k);
             assert_int_equal(may, !ref_collide_near(body.rest, node, shape.cell[k].number));
             assert_true(told == SM_COLLIDE_UNKNOWN || (told == SM_COLLIDE_MAY) == may);
             far += may;
         }
-        sm_collide_ways_free(&ways);
-        sm_collide_parts_free(&parts);
+        sm_collide_paths_free(&paths);
+        sm_collide_patches_free(&patches);
         sm_collide_shape_free(&shape);
         body_free(&body);
     }

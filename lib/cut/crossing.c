@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "orient.h"
+#include "../predicates.h"
 
 enum { CHUNK = 16 }; /* triangles of the solid whose common box is looked at first */
 

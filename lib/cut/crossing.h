@@ -1,10 +1,10 @@
 /* crossing.h - where the triangles of a surface meet those of a solid.
  *
  * Both are taken in general position: no vertex lies in a triangle's plane, no edges touch.
- * Whatever meets is then one edge passing through one triangle, decided exactly (orient.h), so that
- * neighbours agree on it. Surface and solid share one numbering: vertices of the surface, of the
- * solid, then the points where an edge meets a triangle; and faces, the surface's triangles near
- * the solid (`candidate`) and then the solid's triangles. */
+ * Whatever meets is then one edge passing through one triangle, decided exactly (predicates.h), so
+ * that neighbours agree on it. Surface and solid share one numbering: vertices of the surface, of
+ * the solid, then the points where an edge meets a triangle; and faces, the surface's triangles
+ * near the solid (`candidate`) and then the solid's triangles. */
 #ifndef SM_CROSSING_H
 #define SM_CROSSING_H
 

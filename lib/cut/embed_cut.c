@@ -6,8 +6,8 @@
 
 #include "../polar.h"
 #include "../vector.h"
-#include "../voxel/nearest_cell.h"
-#include "agree.h"
+#include "../voxel/voxel.h"
+#include "side_consistency.h"
 
 enum { CARRIERS = 8, MOST_REACH = 2, MOST_SIDE = 2 * MOST_REACH + 2 };
 
@@ -336,7 +336,7 @@ void sm_embed_cut(SmEmbedding *embedding, const SmMesh *mesh, const SmSites *sit
     sm_embed_grow(embedding, mesh, sites, (const double(*)[3])t.normal);
     for (long v = 0; v < mesh->vertex_count; v++)
         if (is_parted(&t, v, v < before ? first : 0, v < before ? &fresh : &all)) tie(&t, v);
-    sm_agree(mesh, agree, follow, &t);
+    sm_make_sides_consistent(mesh, agree, follow, &t);
     free(t.normal);
     free(t.flat);
 }

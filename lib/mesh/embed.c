@@ -8,7 +8,7 @@
 #include "../polar.h"
 #include "../system/team.h"
 #include "../vector.h"
-#include "../voxel/nearest_cell.h"
+#include "../voxel/voxel.h"
 
 /* U and V with U x V = N, orthonormal; zero when N is. */
 void sm_embed_tangents(const double sum[3], double u[3], double v[3])

@@ -3,7 +3,7 @@
  * With SHAPEBENCH_FUZZ_SUFFIX set (say ".obj") the bytes are a mesh file instead and go through the
  * importer's process too. */
 #include "import.h"
-#include "ply.h"
+#include "mesh_text.h"
 #include "polygon.h"
 #include "recentre.h"
 #include "reply.h"

@@ -2,8 +2,7 @@
 #include "../system/child.h"
 #include "../system/confine.h"
 #include "mesh_files.h"
-#include "off.h"
-#include "ply.h"
+#include "mesh_text.h"
 #include "polygon.h"
 #include "recentre.h"
 #include "reply.h"
@@ -208,14 +207,14 @@ static char *read_text(const char *path, size_t *size)
     return text;
 }
 
-/* The file's bytes where Assimp needs other ones (ply.h, recentre.h), or NULL. */
+/* The file's bytes where Assimp needs other ones (mesh_text.h, recentre.h), or NULL. */
 static char *rewritten(const char *path, const char *suffix, SmMeshFiles *files, double offset[3])
 {
     size_t *size = &files->size;
     size_t new_size = 0;
     char *text = read_text(path, size);
     char *ordered = NULL, *moved = NULL;
-    if (text && strcasecmp(suffix, "off") == 0 && sm_off_astray(text))
+    if (text && strcasecmp(suffix, "off") == 0 && sm_off_out_of_range(text))
         snprintf(files->altered, sizeof files->altered, "OFF: a face names a vertex out of range");
     if (text && strcasecmp(suffix, "ply") == 0) ordered = sm_ply_ordered(text, *size, &new_size);
     if (ordered) {

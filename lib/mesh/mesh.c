@@ -1,13 +1,13 @@
 #include "mesh.h"
-#include "../system/hash.h"
-#include "../vector.h"
-#include "edges.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "../system/hash.h"
+#include "../vector.h"
 
 static const double rounding_gap = 1e-7; /* of the box's longest side */
 static const double no_height = 1e-14;   /* of a triangle's longest edge */
@@ -45,29 +45,154 @@ static double longest_side(const SmMesh *mesh, double low[3])
     return fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
 }
 
-/* Union-find with the lowest member as the root of a set, so that results keep the order. */
-static int find_root(int *parent, int v)
+/* ---- how triangles meet along edges */
+
+typedef struct {
+    long open;        /* used by one triangle */
+    long nonmanifold; /* used by more than two */
+    long flipped;     /* used by two that run along it the same way */
+    long unbalanced;  /* used more often one way than the other, as are all of the first and third
+                       * kind: where there is none, the triangles bound a volume */
+} EdgeCounts;
+
+/* Pairs of numbers in buckets by vertex: the lower end of an edge, the lowest corner of a
+ * triangle. Buckets are short, so sorting each is linear in all. */
+typedef struct {
+    size_t *start; /* [vertex_count + 1] */
+    int (*pair)[2];
+} Buckets;
+
+static int compare_pairs(const void *left, const void *right)
 {
-    while (parent[v] != v) {
-        parent[v] = parent[parent[v]];
-        v = parent[v];
+    const int *a = left, *b = right;
+    int first = (a[0] > b[0]) - (a[0] < b[0]);
+    return first ? first : (a[1] > b[1]) - (a[1] < b[1]);
+}
+
+static void sort_pairs(int (*pair)[2], size_t count)
+{
+    if (count > 24) {
+        qsort(pair, count, sizeof *pair, compare_pairs);
+        return;
     }
-    return v;
+    for (size_t i = 1; i < count; i++) {
+        int moved[2] = {pair[i][0], pair[i][1]};
+        size_t j = i;
+        for (; j > 0 && compare_pairs(pair[j - 1], moved) > 0; j--)
+            memcpy(pair[j], pair[j - 1], sizeof moved);
+        memcpy(pair[j], moved, sizeof moved);
+    }
 }
 
-static void unite(int *parent, int a, int b)
+/* start[v] holds the count of bucket v; makes it the end of the bucket, so that filling
+ * backwards leaves it at the beginning. */
+static void open_buckets(Buckets *buckets, long vertex_count)
 {
-    a = find_root(parent, a);
-    b = find_root(parent, b);
-    parent[a > b ? a : b] = a < b ? a : b;
+    size_t sum = 0;
+    for (long v = 0; v < vertex_count; v++) {
+        sum += buckets->start[v];
+        buckets->start[v] = sum;
+    }
+    buckets->start[vertex_count] = sum;
+    buckets->pair = sm_alloc(sum, sizeof *buckets->pair);
 }
 
-static int *singletons(long count)
+static void sort_buckets(Buckets *buckets, long vertex_count)
 {
-    int *parent = sm_alloc((size_t)count, sizeof *parent);
-    for (long v = 0; v < count; v++) parent[v] = (int)v;
-    return parent;
+    for (long v = 0; v < vertex_count; v++)
+        sort_pairs(buckets->pair + buckets->start[v], buckets->start[v + 1] - buckets->start[v]);
 }
+
+static void free_buckets(Buckets *buckets)
+{
+    free(buckets->start);
+    free(buckets->pair);
+}
+
+/* Edges in the bucket of their lower end as (higher end, direction). */
+static Buckets bucket_edges(const SmMesh *mesh)
+{
+    Buckets buckets = {.start = sm_alloc((size_t)mesh->vertex_count + 1, sizeof(size_t))};
+    for (int filling = 0; filling < 2; filling++) {
+        for (long t = 0; t < mesh->triangle_count; t++) {
+            for (int c = 0; c < 3; c++) {
+                int a = mesh->triangle[t][c], b = mesh->triangle[t][(c + 1) % 3];
+                if (a == b) continue;
+                int low = a < b ? a : b;
+                if (!filling) {
+                    buckets.start[low]++;
+                    continue;
+                }
+                int *pair = buckets.pair[--buckets.start[low]];
+                pair[0] = a < b ? b : a;
+                pair[1] = a < b;
+            }
+        }
+        if (!filling) open_buckets(&buckets, mesh->vertex_count);
+    }
+    sort_buckets(&buckets, mesh->vertex_count);
+    return buckets;
+}
+
+/* Counts the edges of each kind; an edge from a vertex to itself is not counted. `boundary`
+ * ([vertex_count], or NULL) gets true for the ends of open edges and is left alone elsewhere.
+ * O(triangles), but n log n in the triangles around one vertex. */
+static EdgeCounts count_edges(const SmMesh *mesh, bool *boundary)
+{
+    EdgeCounts counts = {0};
+    Buckets buckets = bucket_edges(mesh);
+    for (long v = 0; v < mesh->vertex_count; v++) {
+        size_t end = buckets.start[v + 1];
+        for (size_t i = buckets.start[v], next; i < end; i = next) {
+            const int *pair = buckets.pair[i];
+            long up = pair[1]; /* how often from the lower end to the higher */
+            for (next = i + 1; next < end && buckets.pair[next][0] == pair[0];)
+                up += buckets.pair[next++][1];
+            if (next - i == 1) {
+                counts.open++;
+                if (boundary) boundary[v] = boundary[pair[0]] = true;
+            }
+            counts.nonmanifold += next - i > 2;
+            counts.unbalanced += 2 * up != (long)(next - i);
+            counts.flipped += next - i == 2 && pair[1] == buckets.pair[i + 1][1];
+        }
+    }
+    free_buckets(&buckets);
+    return counts;
+}
+
+static void sort_corners(const int triangle[3], int corner[3])
+{
+    int a = triangle[0], b = triangle[1], c = triangle[2];
+    corner[0] = a < b ? (a < c ? a : c) : (b < c ? b : c);
+    corner[2] = a > b ? (a > c ? a : c) : (b > c ? b : c);
+    corner[1] = (int)((long)a + b + c - corner[0] - corner[2]);
+}
+
+/* Triangles whose three corners an earlier one has too, in any order. Same cost. */
+static long count_duplicates(const SmMesh *mesh)
+{
+    Buckets buckets = {.start = sm_alloc((size_t)mesh->vertex_count + 1, sizeof(size_t))};
+    int corner[3];
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        sort_corners(mesh->triangle[t], corner);
+        buckets.start[corner[0]]++;
+    }
+    open_buckets(&buckets, mesh->vertex_count);
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        sort_corners(mesh->triangle[t], corner);
+        memcpy(buckets.pair[--buckets.start[corner[0]]], corner + 1, 2 * sizeof(int));
+    }
+    sort_buckets(&buckets, mesh->vertex_count);
+    long duplicates = 0;
+    for (long v = 0; v < mesh->vertex_count; v++)
+        for (size_t i = buckets.start[v] + 1; i < buckets.start[v + 1]; i++)
+            duplicates += compare_pairs(buckets.pair[i - 1], buckets.pair[i]) == 0;
+    free_buckets(&buckets);
+    return duplicates;
+}
+
+/* ---- merging of vertices */
 
 static uint64_t hash_words(const uint64_t word[3])
 {
@@ -87,9 +212,10 @@ static uint64_t table_mask(long entries)
 }
 
 /* Lets every vertex stand for the first one at its position. */
-static int *equal_positions(SmMesh *mesh)
+static SmPieces equal_positions(SmMesh *mesh)
 {
-    int *parent = singletons(mesh->vertex_count);
+    SmPieces same;
+    sm_pieces_init(mesh->vertex_count, &same);
     uint64_t mask = table_mask(mesh->vertex_count);
     int *table = sm_alloc(mask + 1, sizeof *table); /* vertex + 1, or 0 */
     for (long v = 0; v < mesh->vertex_count; v++) {
@@ -100,22 +226,22 @@ static int *equal_positions(SmMesh *mesh)
         for (; table[slot]; slot = (slot + 1) & mask)
             if (!memcmp(mesh->position[table[slot] - 1], word, sizeof word)) break;
         if (table[slot])
-            parent[v] = table[slot] - 1;
+            sm_pieces_link(&same, v, table[slot] - 1);
         else
             table[slot] = (int)v + 1;
     }
     free(table);
-    return parent;
+    return same;
 }
 
-/* Replaces vertices by their roots, then drops what sm_mesh_merge() says. */
-static void collapse(SmMesh *mesh, int *parent)
+/* Replaces vertices by the first of their piece, then drops what sm_mesh_merge() says. */
+static void collapse(SmMesh *mesh, SmPieces *same)
 {
     int *number = sm_alloc((size_t)mesh->vertex_count, sizeof *number);
     long triangles = 0, vertices = 0;
     for (long t = 0; t < mesh->triangle_count; t++) {
         int corner[3];
-        for (int c = 0; c < 3; c++) corner[c] = find_root(parent, mesh->triangle[t][c]);
+        for (int c = 0; c < 3; c++) corner[c] = sm_pieces_first(same, mesh->triangle[t][c]);
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
         for (int c = 0; c < 3; c++) number[corner[c]] = 1;
         memcpy(mesh->triangle[triangles++], corner, sizeof corner);
@@ -150,7 +276,7 @@ static uint64_t grid_slot(const Grid *grid, const double position[3], const int 
     return hash_words(word) & grid->mask;
 }
 
-static void unite_near(const Grid *grid, int v, int *parent)
+static void unite_near(const Grid *grid, int v, SmPieces *same)
 {
     enum { LONGEST_CHAIN = 64 }; /* bounds the cost where thousands crowd into one cell */
     const double *p = grid->mesh->position[v];
@@ -161,31 +287,32 @@ static void unite_near(const Grid *grid, int v, int *parent)
             const double *q = grid->mesh->position[other - 1];
             double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
             if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= grid->side * grid->side)
-                unite(parent, v, other - 1);
+                sm_pieces_link(same, v, other - 1);
         }
     }
 }
 
-static int *near_positions(const SmMesh *mesh, const bool *boundary)
+static SmPieces near_positions(const SmMesh *mesh, const bool *boundary)
 {
-    int *parent = singletons(mesh->vertex_count);
+    SmPieces same;
+    sm_pieces_init(mesh->vertex_count, &same);
     Grid grid = {.mesh = mesh, .mask = table_mask(mesh->vertex_count)};
     grid.side = rounding_gap * longest_side(mesh, grid.low);
     grid.head = sm_alloc(grid.mask + 1, sizeof *grid.head);
     grid.next = sm_alloc((size_t)mesh->vertex_count, sizeof *grid.next);
     for (int v = 0; v < mesh->vertex_count; v++) {
         if (!boundary[v]) continue;
-        unite_near(&grid, v, parent);
+        unite_near(&grid, v, &same);
         uint64_t slot = grid_slot(&grid, mesh->position[v], (int[3]){0, 0, 0});
         grid.next[v] = grid.head[slot];
         grid.head[slot] = v + 1;
     }
     free(grid.head);
     free(grid.next);
-    return parent;
+    return same;
 }
 
-static SmMesh copy_mesh(const SmMesh *mesh)
+SmMesh sm_mesh_copy(const SmMesh *mesh)
 {
     SmMesh copy = sm_mesh_new(mesh->vertex_count, mesh->triangle_count);
     memcpy(copy.position, mesh->position, (size_t)mesh->vertex_count * sizeof *copy.position);
@@ -197,13 +324,13 @@ static void close_rounding_gaps(SmMesh *mesh)
 {
     if (!mesh->triangle_count) return;
     bool *boundary = sm_alloc((size_t)mesh->vertex_count, sizeof *boundary);
-    SmEdgeCounts before = sm_edges_count(mesh, boundary);
+    EdgeCounts before = count_edges(mesh, boundary);
     if (before.open) {
-        SmMesh closed = copy_mesh(mesh);
-        int *parent = near_positions(mesh, boundary);
-        collapse(&closed, parent);
-        free(parent);
-        SmEdgeCounts after = sm_edges_count(&closed, NULL);
+        SmMesh closed = sm_mesh_copy(mesh);
+        SmPieces same = near_positions(mesh, boundary);
+        collapse(&closed, &same);
+        sm_pieces_free(&same);
+        EdgeCounts after = count_edges(&closed, NULL);
         if (closed.triangle_count && !after.open && after.nonmanifold <= before.nonmanifold) {
             SmMesh old = *mesh;
             *mesh = closed;
@@ -216,26 +343,34 @@ static void close_rounding_gaps(SmMesh *mesh)
 
 void sm_mesh_merge(SmMesh *mesh)
 {
-    int *parent = equal_positions(mesh);
-    collapse(mesh, parent);
-    free(parent);
+    SmPieces same = equal_positions(mesh);
+    collapse(mesh, &same);
+    sm_pieces_free(&same);
     close_rounding_gaps(mesh);
+}
+
+void sm_mesh_pieces(const SmMesh *mesh, SmPieces *pieces)
+{
+    int *first = sm_alloc((size_t)mesh->vertex_count, sizeof *first); /* triangle at it, + 1 */
+    sm_pieces_init(mesh->triangle_count, pieces);
+    for (long t = 0; t < mesh->triangle_count; t++)
+        for (int i = 0; i < 3; i++) {
+            int *triangle = &first[mesh->triangle[t][i]];
+            if (*triangle > 0)
+                sm_pieces_link(pieces, *triangle - 1, t);
+            else
+                *triangle = (int)t + 1;
+        }
+    free(first);
+    sm_pieces_finish(pieces, NULL, mesh->triangle_count);
 }
 
 static long count_components(const SmMesh *mesh)
 {
-    int *parent = singletons(mesh->vertex_count);
-    bool *used = sm_alloc((size_t)mesh->vertex_count, sizeof *used);
-    long components = 0;
-    for (long t = 0; t < mesh->triangle_count; t++) {
-        const int *corner = mesh->triangle[t];
-        unite(parent, corner[0], corner[1]);
-        unite(parent, corner[1], corner[2]);
-        used[corner[0]] = used[corner[1]] = used[corner[2]] = true;
-    }
-    for (long v = 0; v < mesh->vertex_count; v++) components += used[v] && parent[v] == v;
-    free(parent);
-    free(used);
+    SmPieces pieces;
+    sm_mesh_pieces(mesh, &pieces);
+    long components = pieces.count;
+    sm_pieces_free(&pieces);
     return components;
 }
 
@@ -270,13 +405,13 @@ static void measure_triangles(const SmMesh *mesh, SmMeshInfo *info)
 SmMeshInfo sm_mesh_info(const SmMesh *mesh)
 {
     SmMeshInfo info = {.triangles = mesh->triangle_count, .vertices = mesh->vertex_count};
-    SmEdgeCounts edges = sm_edges_count(mesh, NULL);
+    EdgeCounts edges = count_edges(mesh, NULL);
     info.open_edges = edges.open;
     info.nonmanifold_edges = edges.nonmanifold;
     info.flipped_edges = edges.flipped;
     info.watertight = mesh->triangle_count && !edges.open && !edges.nonmanifold;
     info.components = count_components(mesh);
-    info.duplicates = sm_edges_duplicates(mesh);
+    info.duplicates = count_duplicates(mesh);
     bounding_box(mesh, info.low, info.high);
     measure_triangles(mesh, &info);
     if (edges.unbalanced) info.volume = NAN;

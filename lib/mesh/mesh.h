@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "../error.h"
+#include "../pieces.h"
 
 typedef struct {
     long vertex_count, triangle_count;
@@ -32,6 +32,9 @@ typedef struct {
 
 /* A mesh of zeros, for the caller to fill in and to free. */
 SmMesh sm_mesh_new(long vertices, long triangles);
+
+/* The caller frees the copy. */
+SmMesh sm_mesh_copy(const SmMesh *mesh);
 
 /* Frees the arrays and zeroes the struct; a zeroed mesh is allowed. */
 void sm_mesh_free(SmMesh *mesh);
@@ -62,5 +65,8 @@ unsigned long long sm_mesh_hash(const SmMesh *mesh);
 
 /* Prints Wavefront OBJ with all digits; ask ferror() whether the file took it. */
 void sm_mesh_print_obj(const SmMesh *mesh, FILE *file);
+
+/* Pieces of the surface by triangle: those that share vertices. The caller frees. */
+void sm_mesh_pieces(const SmMesh *mesh, SmPieces *pieces);
 
 #endif

@@ -2,8 +2,8 @@
 
 #include <omp.h>
 
+#include "../cut/cut_surface.h"
 #include "../cut/embed_cut.h"
-#include "../cut/slit.h"
 #include "../pieces.h"
 #include "../shapes/shape.h"
 #include "../test_frame.h"
@@ -273,7 +273,7 @@ static void find_pieces(const Sliced *s, SmPieces *pieces)
 }
 
 /* Cuts along a square about `at`, which reaches `reach` cells. */
-static SmSlitResult slice(Sliced *s, const double at[3], const double normal[3], double reach)
+static SmCutResult slice(Sliced *s, const double at[3], const double normal[3], double reach)
 {
     double n[3] = {normal[0], normal[1], normal[2]}, u[3], v[3];
     long first = s->cut.triangles, base = s->cut.vertices;
@@ -288,7 +288,7 @@ static SmSlitResult slice(Sliced *s, const double at[3], const double normal[3],
     }
     sm_cut_triangle(&s->cut, (int[3]){(int)base, (int)base + 1, (int)base + 3});
     sm_cut_triangle(&s->cut, (int[3]){(int)base, (int)base + 3, (int)base + 2});
-    SmSlitResult result = sm_slit(&s->c.mesh, &s->cut, first, s->c.voxels.cell);
+    SmCutResult result = sm_cut_surface(&s->c.mesh, &s->cut, first, s->c.voxels.cell);
     SmPieces pieces;
     find_pieces(s, &pieces);
     sm_embed_cut(&s->c.embedding, &s->c.mesh, &s->sites, &s->cut, first, pieces.piece);
@@ -302,7 +302,7 @@ static SmSlitResult slice(Sliced *s, const double at[3], const double normal[3],
 /* The same right through, remembered as a plane. */
 static void slice_through(Sliced *s, const double at[3], const double normal[3])
 {
-    assert_int_equal(slice(s, at, normal, 60), SM_SLIT_CLOSED);
+    assert_int_equal(slice(s, at, normal, 60), SM_CUT_CLOSED);
     memcpy(s->at[s->planes], at, sizeof s->at[0]);
     memcpy(s->normal[s->planes++], normal, sizeof s->normal[0]);
 }

@@ -3,7 +3,7 @@
 #include "../system/confine.h"
 #include "../test_frame.h"
 #include "import.h"
-#include "off.h"
+#include "mesh_text.h"
 #include "reply.h"
 
 #include <dirent.h>
@@ -270,7 +270,7 @@ TEST(numbers_that_the_importer_alters_are_refused)
         char text[256];
         snprintf(text, sizeof text, "%s4 4 0\n1 5 3\n2 7 9\n3 1 2\n4 4 4\n%s%s", keyword[i],
                  "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 ", i % 2 ? "4\n" : "2\n");
-        assert_true(sm_off_astray(text) == (i % 2 == 1));
+        assert_true(sm_off_out_of_range(text) == (i % 2 == 1));
         if (i == 0) assert_int_equal(import_info(write_text("whole.off", text)).triangles, 4);
     }
     write_gltf("last.gltf", "last.bin", "last.bin", 9);

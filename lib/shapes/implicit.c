@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "../error.h"
-#include "turn.h"
+#include "sine.h"
 
 static const double nowhere = 1e9; /* value of the empty solid */
 

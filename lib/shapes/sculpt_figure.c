@@ -1,7 +1,7 @@
 #include <math.h>
 
 #include "sculpt.h"
-#include "turn.h"
+#include "sine.h"
 
 /* A cartoon penguin, 1.0 tall. */
 static void penguin_feet(SmImplicit *solid)

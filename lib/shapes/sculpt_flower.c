@@ -1,7 +1,7 @@
 #include <math.h>
 
 #include "sculpt.h"
-#include "turn.h"
+#include "sine.h"
 
 static const double head[3] = {0.012, 0.325, 0.012};
 static const double tilt = 0.85; /* of the head, from looking up towards looking ahead */

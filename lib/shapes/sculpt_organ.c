@@ -1,5 +1,5 @@
 #include "sculpt.h"
-#include "turn.h"
+#include "sine.h"
 
 /* A left hand seen from its palm (+z), the fingers along y. */
 static void finger(SmImplicit *solid, SmPoint root, double length, double spread, double radius)

@@ -1,7 +1,7 @@
 #include <math.h>
 
 #include "sculpt.h"
-#include "turn.h"
+#include "sine.h"
 
 /* A laughing monk in a robe, holding an ingot over his head, on a lotus plinth: 1.98 tall. */
 

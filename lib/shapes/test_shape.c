@@ -4,11 +4,11 @@
 #include "../system/hash.h"
 #include "../test_fields.h"
 #include "../test_frame.h"
-#include "../voxel/voxel.h"
+#include "../voxel/voxelise.h"
 #include "decimate.h"
 #include "polygonise.h"
 #include "shape.h"
-#include "turn.h"
+#include "sine.h"
 
 static SmMesh make(const char *name)
 {

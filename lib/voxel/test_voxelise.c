@@ -1,5 +1,5 @@
 /* From meshes to lattices: known volumes, bad meshes, wanted counts, limits. */
-#include "voxel.h"
+#include "voxelise.h"
 
 #include <dirent.h>
 #include <float.h>

@@ -1,10 +1,10 @@
-/* outline.h - an octree body as collisions see it (lib/collide/collide_rest.h): nodes are the
+/* outline.h - an octree body as collisions see it (lib/collide/rest.h): nodes are the
  * leaves, each carries its own cell, the rest graph is the visibility graph. Lengths are
  * finest cells. */
 #ifndef OCT_OUTLINE_H
 #define OCT_OUTLINE_H
 
-#include "../../lib/collide/collide_rest.h"
+#include "../../lib/collide/rest.h"
 #include "../change/structure.h"
 
 typedef struct {

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/cut/shade.h"
-#include "../../lib/voxel/nearest_cell.h"
+#include "../../lib/cut/cut.h"
+#include "../../lib/voxel/voxel.h"
 
 enum { SHADES = 16 };
 
@@ -67,7 +67,7 @@ static bool is_hidden(View *view, int node)
     double centre[3], half = 0.25 * c->voxels->cell * c->tree->size[node];
     centre_of(c, node, centre);
     for (int n = 0; n < view->shades; n++)
-        if (sm_shade_hides(c->cut, view->shade[n], view->X, centre, half)) {
+        if (sm_cut_hides(c->cut, view->shade[n], view->X, centre, half)) {
             to_front(view, n);
             return true;
         }

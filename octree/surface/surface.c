@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "../../lib/csr.h"
-#include "../../lib/cut/agree.h"
+#include "../../lib/cut/side_consistency.h"
 #include "../../lib/system/team.h"
 #include "../../lib/vector.h"
 #include "skinning.h"
@@ -439,7 +439,7 @@ static void follow(void *carriers, long v, long u)
 
 long oct_surface_agree(OctSurface *s, const SmMesh *mesh, const OctCarrier *carrier)
 {
-    return sm_agree(mesh, agree, follow, &(Carriers){s, carrier});
+    return sm_make_sides_consistent(mesh, agree, follow, &(Carriers){s, carrier});
 }
 
 void oct_surface_pieces(const OctSurface *surface, const SmMesh *mesh, const SmPieces *pieces,

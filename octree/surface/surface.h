@@ -55,18 +55,18 @@ size_t oct_surface_bytes(const OctSurface *surface); /* of what it holds; 0 of a
 /* Brings it up to date where tree, graph, cut and mesh have changed; what comes out is what
  * oct_surface_build() gives, but for the order of sums. `node` are the tree nodes of all leaves
  * that are new and of those that are no more (structure.h), `first` the cut's first triangle since
- * the last time. Vertices of the mesh keep their numbers and places, new ones follow (slit.h).
- * O(vertices + leaves that move one) for a look at each, O(triangles) for normals where there are
- * new vertices, and the work of building what is near a change; O(edges) if leaves there do not see
- * all of space. */
+ * the last time. Vertices of the mesh keep their numbers and places, new ones follow
+ * (cut_surface.h). O(vertices + leaves that move one) for a look at each, O(triangles) for normals
+ * where there are new vertices, and the work of building what is near a change; O(edges) if leaves
+ * there do not see all of space. */
 void oct_surface_update(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier,
                         long count, const int *node, long first);
 
 /* Moves vertices that follow the wrong side of a cut to the leaves of a neighbour on the surface
- * (lib/cut/agree.h): neighbours on a surface should belong to leaves that no cut parts. `carrier`
- * has a cut. To be called again after every oct_surface_update(). Returns how many. O(vertices +
- * triangles), and a look at the cut for every edge of the surface between leaves that are no
- * neighbours. */
+ * (lib/cut/side_consistency.h): neighbours on a surface should belong to leaves that no cut parts.
+ * `carrier` has a cut. To be called again after every oct_surface_update(). Returns how many.
+ * O(vertices + triangles), and a look at the cut for every edge of the surface between leaves that
+ * are no neighbours. */
 long oct_surface_agree(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier);
 
 /* The piece of leaves (oct_graph_pieces()) that every triangle follows, by the leaf that its first

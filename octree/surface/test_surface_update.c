@@ -1,8 +1,9 @@
 /* A surface brought up to date after every change against one built from scratch; and which side of
  * a cut vertices follow. */
-#include "../../lib/cut/slit.h"
+#include "../../lib/cut/cut_surface.h"
 #include "../../lib/shapes/shape.h"
 #include "../../lib/test_frame.h"
+#include "../../lib/test_volumes.h"
 #include "../change/structure.h"
 #include "../tree/test_trees.h"
 #include "surface.h"
@@ -209,7 +210,7 @@ static void count_pieces(const OctStructure *s, const OctSurface *surface, const
     double mass[2], volume[2];
     int *piece = sm_alloc((size_t)mesh->triangle_count, sizeof *piece), below = -1;
     oct_graph_pieces(&s->tree, &s->graph, &nodes);
-    sm_pieces_of_mesh(mesh, &parts);
+    sm_mesh_pieces(mesh, &parts);
     assert_int_equal(nodes.count, 2);
     assert_int_equal(parts.count, 2);
     for (long k = 0; k < s->tree.leaves; k++) {
@@ -230,7 +231,7 @@ static void count_pieces(const OctStructure *s, const OctSurface *surface, const
         assert_int_equal(parts.piece[t] == parts.piece[0], piece[t] == piece[0]);
     }
     sm_pieces_sum(&nodes, s->tree.leaves, s->mass, mass);
-    sm_pieces_volumes(&parts, mesh, volume);
+    sm_mesh_piece_volumes(mesh, &parts, volume);
     assert_true(fabs(mass[0] + mass[1] - 4096) < 1e-9);
     assert_true(fabs(volume[0] + volume[1] - 4096) < 0.05);
     double under = volume[parts.piece[0] == 0 && piece[0] == below ? 0 : 1];
@@ -262,7 +263,7 @@ TEST(both_sides_of_a_cut_follow_their_own)
         oct_surface_build(&mesh, &c, &surface);
         add_plane(&s.cut, level, tilt);
         refine(&s);
-        assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1), SM_SLIT_CLOSED);
+        assert_int_equal(sm_cut_surface(&mesh, &s.cut, 0, 1), SM_CUT_CLOSED);
         update(&surface, &mesh, &s, oct_resample_update(&s), 0);
         part(&surface, &s.tree, level, tilt);
         count_pieces(&s, &surface, &mesh, level, tilt);
@@ -314,7 +315,7 @@ TEST(a_few_on_the_wrong_side_go_with_the_many)
     oct_surface_build(&mesh, &c, &surface);
     add_plane(&s.cut, level, 0);
     refine(&s);
-    assert_int_equal(sm_slit(&mesh, &s.cut, 0, 1), SM_SLIT_CLOSED);
+    assert_int_equal(sm_cut_surface(&mesh, &s.cut, 0, 1), SM_CUT_CLOSED);
     update(&surface, &mesh, &s, oct_resample_update(&s), 0);
     assert_int_equal(oct_surface_agree(&surface, &mesh, &c), 0);
     long misled = 0, below = 0;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../../lib/voxel/overlap.h"
+#include "../../lib/predicates.h"
 
 /* A place: a box, and perhaps a triangle in it, half finest cells. */
 typedef struct {

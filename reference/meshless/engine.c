@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/handles.h"
+#include "../../lib/boundary.h"
 #include "../../lib/vector.h"
 #include "motion/grip.h"
 #include "motion/skin.h"
-#include "surface/normal.h"
+#include "solve/least_squares.h"
 
 enum { MOST_POINTS = 128 };
 
@@ -262,10 +262,10 @@ static void project(const SmEngine *engine, const double (*u)[3], double *amplit
                 const double *psi = motion->row + ((size_t)shape.node[n] * 6 + d) * modes;
                 for (size_t k = 0; k < modes; k++) row[k] += shape.value[n] * psi[k];
             }
-            ref_normal_add((int)modes, row, u[p][d], 1, N, amplitude);
+            ref_least_squares_add((int)modes, row, u[p][d], 1, N, amplitude);
         }
     }
-    ref_normal_solve((int)modes, 0, N, amplitude);
+    ref_least_squares_solve((int)modes, 0, N, amplitude);
     ref_shape_free(&shape);
     free(row);
     free(N);

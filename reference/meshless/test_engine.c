@@ -2,6 +2,7 @@
 #include "../../lib/shapes/shape.h"
 #include "../../lib/test_fields.h"
 #include "../../lib/test_frame.h"
+#include "../../lib/voxel/voxelise.h"
 #include "engine.h"
 #include "solve/solver.h"
 

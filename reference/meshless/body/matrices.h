@@ -26,7 +26,7 @@ typedef struct {
 /* Linear elasticity, isotropic, over the tree's integration points. Eq. 18 as printed lacks the
  * half of Green's strain; this is the usual one. Shape functions are no polynomials, so that Gauss
  * points alone miss the patch test by 3% (eight in each eighth of an octant); here their gradients
- * have in every octant the mean that the octant's walls say (walls.h), which passes it to
+ * have in every octant the mean that the octant's walls say (octants.h), which passes it to
  * rounding where octants' faces are the body's, and elsewhere as well as its surface is cut.
  * O(points * covers^2). The caller frees. Errors: SM_USAGE, a material out of range; SM_INPUT, a
  * point that too few nodes cover (ref_mls_cover() mends that), or a stiffness of more than 2^31

@@ -1,11 +1,11 @@
 #include "octants.h"
 
+#include <gsl/gsl_integration.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "clip.h"
-#include "walls.h"
+#include "../../../lib/vector.h"
 
 void ref_octants_free(RefOctants *tree)
 {
@@ -41,6 +41,371 @@ double ref_octants_volume(const RefOctants *tree)
     for (long p = 0; p < tree->points; p++) volume += tree->point[p].weight;
     return volume;
 }
+
+/* ---- integration points in what of an octant lies inside a body (meshless section 4.1.2) */
+
+enum { SHARP = 3 }; /* how often a smallest part is split for an edge of the body */
+
+typedef struct {
+    const RefField *field;
+    const RefOctantOptions *options;
+    double at[4], weight[4]; /* Gauss, on -1/2..1/2, weights of sum 1 */
+    RefOctants *tree;
+    double volume;
+} Clip;
+
+/* Gauss points and weights of sum 1 on -1/2..1/2. */
+static void gauss_rule(int order, double *at, double *weight)
+{
+    gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc((size_t)order);
+    for (int n = 0; n < order; n++)
+        gsl_integration_glfixed_point(-0.5, 0.5, (size_t)n, at + n, weight + n, table);
+    gsl_integration_glfixed_table_free(table);
+}
+
+/* Half the diagonal, with room for a field that grows faster than the distance. */
+static double reach(double edge, const double gradient[3])
+{
+    double slope = sqrt(sm_dot(gradient, gradient));
+    return 0.5 * sqrt(3) * edge * fmax(slope, 1);
+}
+
+/* -1: a cube is surely inside, 1: surely outside, 0: it may be cut. */
+static int side_of(const RefField *field, const double centre[3], double edge)
+{
+    double gradient[3], value = ref_field_at(field, centre, gradient);
+    if (fabs(value) < reach(edge, gradient)) return 0;
+    return value < 0 ? -1 : 1;
+}
+
+static void append_point(Clip *clip, const double x[3], double weight)
+{
+    RefOctants *tree = clip->tree;
+    if (tree->points == tree->point_room) {
+        tree->point_room = 2 * tree->point_room + 64;
+        tree->point = sm_realloc(tree->point, (size_t)tree->point_room, sizeof *tree->point);
+    }
+    tree->point[tree->points++] = (RefPoint){{x[0], x[1], x[2]}, weight};
+    clip->volume += weight;
+}
+
+static void gauss_cube(Clip *clip, const double centre[3], double edge)
+{
+    int order = clip->options->gauss;
+    double volume = edge * edge * edge;
+    for (int n = 0; n < order * order * order; n++) {
+        int which[3] = {n % order, n / order % order, n / (order * order)};
+        double x[3], weight = volume;
+        for (int d = 0; d < 3; d++) {
+            x[d] = centre[d] + edge * clip->at[which[d]];
+            weight *= clip->weight[which[d]];
+        }
+        append_point(clip, x, weight);
+    }
+}
+
+static void append_wall(RefOctants *tree, const RefWall *wall)
+{
+    if (tree->walls == tree->wall_room) {
+        tree->wall_room = 2 * tree->wall_room + 64;
+        tree->wall = sm_realloc(tree->wall, (size_t)tree->wall_room, sizeof *tree->wall);
+    }
+    tree->wall[tree->walls++] = *wall;
+}
+
+/* What of a cube lies on the inner side of a plane: its volume and the plane's part in it. */
+typedef struct {
+    double volume, middle[3];
+    RefWall wall;
+    int ends; /* the plane's points in the outermost columns that it cuts */
+    double end[4][3];
+} CubeShare;
+
+/* Where value + gradient . (x - centre) < 0: columns along the axis that the gradient is closest
+ * to, each cut exactly. */
+static CubeShare below_plane(const double centre[3], double edge, double value,
+                             const double gradient[3])
+{
+    enum { SIDE = 4 };
+    CubeShare share = {.wall.surface = true};
+    double moment[3] = {0}, surface[3] = {0}, sum = 0;
+    int up = 0, cut = 0;
+    for (int d = 1; d < 3; d++)
+        if (fabs(gradient[d]) > fabs(gradient[up])) up = d;
+    for (int n = 0; n < SIDE * SIDE; n++) {
+        double from[3] = {0}, low = -0.5 * edge, high = 0.5 * edge;
+        from[(up + 1) % 3] = ((n % SIDE + 0.5) / SIDE - 0.5) * edge;
+        from[(up + 2) % 3] = ((n / SIDE + 0.5) / SIDE - 0.5) * edge;
+        double level = -(value + sm_dot(gradient, from)) / gradient[up];
+        if (level > low && level < high) {
+            from[up] = level;
+            for (int d = 0; d < 3; d++) surface[d] += from[d];
+            cut++;
+            bool outermost =
+                (n % SIDE == 0 || n % SIDE == SIDE - 1) && (n / SIDE == 0 || n / SIDE == SIDE - 1);
+            for (int d = 0; outermost && d < 3; d++) share.end[share.ends][d] = centre[d] + from[d];
+            share.ends += outermost;
+        }
+        *(gradient[up] > 0 ? &high : &low) = fmin(fmax(level, low), high);
+        from[up] = (low + high) / 2;
+        sum += high - low;
+        for (int d = 0; d < 3; d++) moment[d] += (high - low) * from[d];
+    }
+    share.volume = sum / (SIDE * SIDE) * edge * edge;
+    for (int d = 0; d < 3; d++) {
+        share.middle[d] = centre[d] + (sum > 0 ? moment[d] / sum : 0);
+        share.wall.x[d] = centre[d] + (cut ? surface[d] / cut : 0);
+        share.wall.area[d] = cut * edge * edge / (SIDE * SIDE) * gradient[d] / fabs(gradient[up]);
+    }
+    return share;
+}
+
+static void clip_cube(Clip *clip, const double centre[3], double edge, int depth);
+
+static void split_cube(Clip *clip, const double centre[3], double edge, int depth)
+{
+    for (int which = 0; which < 8; which++) {
+        double x[3];
+        for (int d = 0; d < 3; d++) x[d] = centre[d] + ((which >> d & 1) - 0.5) * 0.5 * edge;
+        clip_cube(clip, x, edge / 2, depth + 1);
+    }
+}
+
+/* Whether a smallest part is to be split all the same, up to SHARP times: the surface runs
+ * otherwise at the points x, which are the outermost on the part's tangent plane, so that an edge
+ * of the body is near. */
+static bool is_sharp(const RefField *field, int count, const double (*x)[3],
+                     const double gradient[3])
+{
+    for (int n = 0; n < count; n++) {
+        double there[3];
+        ref_field_at(field, x[n], there);
+        double lengths = sqrt(sm_dot(gradient, gradient) * sm_dot(there, there));
+        if (sm_dot(gradient, there) < 0.8 * lengths) return true;
+    }
+    return false;
+}
+
+/* A part `depth` levels below the Gauss parts. It is cut if its tangent plane cuts it, so that a
+ * face of the body that is a face of the part leaves the part whole. */
+static void clip_cube(Clip *clip, const double centre[3], double edge, int depth)
+{
+    double gradient[3], value = ref_field_at(clip->field, centre, gradient);
+    double corner = 0.5 * edge * (fabs(gradient[0]) + fabs(gradient[1]) + fabs(gradient[2]));
+    bool cut = fabs(value) < corner * (1 - 1e-9);
+    if (!cut && value >= 0) return;
+    if (!cut && depth == 0) {
+        gauss_cube(clip, centre, edge);
+    } else if (!cut) {
+        append_point(clip, centre, edge * edge * edge);
+    } else if (depth < clip->options->clip) {
+        split_cube(clip, centre, edge, depth);
+    } else {
+        CubeShare share = below_plane(centre, edge, value, gradient);
+        if (!clip->options->rough && depth < clip->options->clip + SHARP &&
+            is_sharp(clip->field, share.ends, (const double(*)[3])share.end, gradient)) {
+            split_cube(clip, centre, edge, depth);
+            return;
+        }
+        if (share.volume > 1e-9 * edge * edge * edge)
+            append_point(clip, share.middle, share.volume);
+        if (!clip->options->rough) append_wall(clip->tree, &share.wall);
+    }
+}
+
+/* Appends an octant's points to the tree's, and the walls of the surface in it, and returns their
+ * volume. The octant is split `options->split` times into parts of gauss^3 points each; a part that
+ * is cut is split up to `options->clip` times more and then has one point a piece: its middle, or,
+ * of one that is cut, the middle of what lies below the field's tangent plane, whose part in it is
+ * a wall. */
+static double clip_octant(const RefField *field, const RefOctantOptions *options,
+                          const double centre[3], double edge, RefOctants *tree)
+{
+    Clip clip = {.field = field, .options = options, .tree = tree};
+    gauss_rule(options->gauss, clip.at, clip.weight);
+    int parts = 1 << options->split;
+    for (int n = 0; n < parts * parts * parts; n++) {
+        double x[3] = {n % parts, n / parts % parts, n / (parts * parts)};
+        for (int d = 0; d < 3; d++) x[d] = centre[d] + ((x[d] + 0.5) / parts - 0.5) * edge;
+        clip_cube(&clip, x, edge / parts, 0);
+    }
+    return clip.volume;
+}
+
+/* ---- what bounds an octant's share of a body: points on its faces and on the surface in it.
+ *
+ * By the divergence theorem they give the mean gradient of a function over the share from its
+ * values alone. Two octants that touch have the same points on the face between them, so that sums
+ * of such means over the body leave nothing but its surface: integration by parts holds in the sums
+ * as it does in integrals (matrices.h). */
+
+typedef struct {
+    const RefField *field;
+    const RefOctantOptions *options;
+    int order[2];                  /* Gauss points a direction: inside, in the surface */
+    double at[2][4], weight[2][4]; /* on -1/2..1/2, weights of sum 1 */
+    int axis, out;                 /* the face's normal is `out`, 1 or -1, along the axis */
+    bool surface;                  /* whether the present part lies in the body's surface */
+    RefOctants *tree;
+} Face;
+
+/* `across` and `along` are measured from the centre along the face's two axes. */
+static void append_face(const Face *face, const double centre[3], double across, double along,
+                        double size)
+{
+    RefWall wall = {.x = {centre[0], centre[1], centre[2]}, .surface = face->surface};
+    wall.x[(face->axis + 1) % 3] += across;
+    wall.x[(face->axis + 2) % 3] += along;
+    wall.area[face->axis] = face->out * size;
+    append_wall(face->tree, &wall);
+}
+
+static void gauss_square(const Face *face, const double centre[3], double edge)
+{
+    int order = face->order[face->surface];
+    const double *at = face->at[face->surface], *weight = face->weight[face->surface];
+    for (int n = 0; n < order * order; n++)
+        append_face(face, centre, edge * at[n % order], edge * at[n / order],
+                    edge * edge * weight[n % order] * weight[n / order]);
+}
+
+/* What of a square lies on the inner side of a line, and the line's ends; from the square's centre.
+ */
+typedef struct {
+    double area, middle[2];
+    int ends;
+    double end[2][2];
+} SquareShare;
+
+/* Where value + slope . (x - centre) < 0: strips along the axis that the slope is closest to, each
+ * cut exactly. */
+static SquareShare below_line(double edge, double value, const double slope[2])
+{
+    enum { STRIPS = 4 };
+    SquareShare share = {0};
+    int up = fabs(slope[1]) > fabs(slope[0]);
+    double sum = 0;
+    for (int n = 0; n < STRIPS; n++) {
+        double from = ((n + 0.5) / STRIPS - 0.5) * edge, low = -0.5 * edge, high = 0.5 * edge;
+        double level = -(value + slope[!up] * from) / slope[up];
+        if (level > low && level < high && (n == 0 || n == STRIPS - 1)) {
+            share.end[share.ends][up] = level;
+            share.end[share.ends++][!up] = from;
+        }
+        *(slope[up] > 0 ? &high : &low) = fmin(fmax(level, low), high);
+        sum += high - low;
+        share.middle[up] += (high - low) * (low + high) / 2;
+        share.middle[!up] += (high - low) * from;
+    }
+    for (int d = 0; d < 2 && sum > 0; d++) share.middle[d] /= sum;
+    share.area = sum / STRIPS * edge;
+    return share;
+}
+
+static void clip_square(Face *face, const double centre[3], double edge, int depth);
+
+static void split_square(Face *face, const double centre[3], double edge, int depth)
+{
+    for (int which = 0; which < 4; which++) {
+        double x[3] = {centre[0], centre[1], centre[2]};
+        x[(face->axis + 1) % 3] += ((which & 1) - 0.5) * 0.5 * edge;
+        x[(face->axis + 2) % 3] += ((which >> 1) - 0.5) * 0.5 * edge;
+        clip_square(face, x, edge / 2, depth + 1);
+    }
+}
+
+static void cut_square(Face *face, const double centre[3], double edge, int depth, double value,
+                       const double gradient[3])
+{
+    double slope[2] = {gradient[(face->axis + 1) % 3], gradient[(face->axis + 2) % 3]};
+    SquareShare share = below_line(edge, value, slope);
+    double end[2][3];
+    for (int n = 0; n < share.ends; n++) {
+        memcpy(end[n], centre, sizeof end[n]);
+        end[n][(face->axis + 1) % 3] += share.end[n][0];
+        end[n][(face->axis + 2) % 3] += share.end[n][1];
+    }
+    int clip = face->options->clip;
+    if (depth < clip || (depth < clip + SHARP &&
+                         is_sharp(face->field, share.ends, (const double(*)[3])end, gradient)))
+        split_square(face, centre, edge, depth);
+    else if (share.area > 1e-9 * edge * edge)
+        append_face(face, centre, share.middle[0], share.middle[1], share.area);
+}
+
+/* A square `depth` levels below the Gauss parts, as clip_cube() cuts a cube. One that lies in the
+ * surface is inside. */
+static void clip_square(Face *face, const double centre[3], double edge, int depth)
+{
+    double gradient[3], value = ref_field_at(face->field, centre, gradient);
+    double corner =
+        0.5 * edge * (fabs(gradient[(face->axis + 1) % 3]) + fabs(gradient[(face->axis + 2) % 3]));
+    bool cut = fabs(value) < corner * (1 - 1e-9);
+    if (!cut && value > 1e-9 * edge) return;
+    face->surface = !cut && value > -1e-9 * edge;
+    if (cut)
+        cut_square(face, centre, edge, depth, value, gradient);
+    else if (depth == 0)
+        gauss_square(face, centre, edge);
+    else
+        append_face(face, centre, 0, 0, edge * edge);
+}
+
+/* A face that is whole an octant's: its parts, or all Gauss points where the surface is far. */
+static void whole_face(Face *face, const double centre[3], double edge)
+{
+    int parts = 1 << face->options->split, side = side_of(face->field, centre, edge);
+    for (int n = 0; side <= 0 && n < parts * parts; n++) {
+        double x[3] = {centre[0], centre[1], centre[2]};
+        x[(face->axis + 1) % 3] += ((n % parts + 0.5) / parts - 0.5) * edge;
+        x[(face->axis + 2) % 3] += ((n / parts + 0.5) / parts - 0.5) * edge;
+        face->surface = false;
+        if (side < 0)
+            gauss_square(face, x, edge / parts);
+        else
+            clip_square(face, x, edge / parts, 0);
+    }
+}
+
+/* One face of an octant: whole, or in quarters where it touches smaller octants. */
+static void split_face(Face *face, const RefOctant *octant)
+{
+    const RefOctants *tree = face->tree;
+    int a = (face->axis + 1) % 3, b = (face->axis + 2) % 3, place[3], size = octant->size;
+    for (int d = 0; d < 3; d++) place[d] = octant->corner[d];
+    place[face->axis] += face->out > 0 ? size : -1;
+    int other = ref_octants_at(tree, place);
+    int pieces = other >= 0 && tree->octant[other].size < size ? 2 : 1;
+    for (int n = 0; n < pieces * pieces; n++) {
+        double centre[3];
+        ref_octants_centre(tree, octant, centre);
+        centre[face->axis] += face->out * 0.5 * size * tree->cell;
+        centre[a] += ((n % pieces + 0.5) / pieces - 0.5) * size * tree->cell;
+        centre[b] += ((n / pieces + 0.5) / pieces - 0.5) * size * tree->cell;
+        whole_face(face, centre, size * tree->cell / pieces);
+    }
+}
+
+/* Appends the six faces of terminal octant `o` to the tree's walls, as far as they are inside:
+ * Gauss points on the faces of the parts of above, one a direction more than these have, and two
+ * more in the body's surface, four at most; those of the finer octant where it touches smaller
+ * ones; what the field's tangent plane cuts is split and then cut along a line. */
+static void wall_faces(const RefField *field, const RefOctantOptions *options, long o,
+                       RefOctants *tree)
+{
+    Face face = {.field = field, .options = options, .tree = tree};
+    for (int n = 0; n < 2; n++) {
+        face.order[n] = options->gauss + 1 + n < 4 ? options->gauss + 1 + n : 4;
+        gauss_rule(face.order[n], face.at[n], face.weight[n]);
+    }
+    for (int side = 0; side < 6; side++) {
+        face.axis = side / 2;
+        face.out = side % 2 ? 1 : -1;
+        split_face(&face, tree->octant + o);
+    }
+}
+
+/* ---- the tree */
 
 static void split(RefOctants *tree, long at)
 {
@@ -79,7 +444,7 @@ static bool refine(const RefField *field, const RefOctantOptions *options, RefOc
         if (octant.size == 1 || outside_box(field, tree, &octant)) continue;
         ref_octants_centre(tree, &octant, centre);
         double edge = tree->cell * octant.size;
-        bool cut = ref_clip_side(field, centre, edge) == 0;
+        bool cut = side_of(field, centre, edge) == 0;
         bool inside = ref_field_at(field, centre, NULL) < 0;
         if (!cut && (!inside || octant.size <= 1 << options->coarser)) continue;
         if (tree->count + 8 > REF_MOST_OCTANTS) return false;
@@ -126,10 +491,9 @@ static void classify(const RefField *field, const RefOctantOptions *options, Ref
         octant->kind = REF_EXTERIOR;
         if (octant->child >= 0 || outside_box(field, tree, octant)) continue;
         ref_octants_centre(tree, octant, centre);
-        double volume = ref_clip_cell(field, options, centre, edge, tree);
+        double volume = clip_octant(field, options, centre, edge, tree);
         octant->share = volume / (edge * edge * edge);
-        if (!options->rough && tree->points > octant->first)
-            ref_walls_of_faces(field, options, at, tree);
+        if (!options->rough && tree->points > octant->first) wall_faces(field, options, at, tree);
         if (octant->share > 1 - 1e-9)
             octant->kind = REF_INTERIOR;
         else if (octant->share > 0)

@@ -30,7 +30,8 @@ typedef struct {
     double x[3], weight; /* weight: volume */
 } RefPoint;
 
-/* A point on what bounds the share of an octant that is inside (walls.h). */
+/* A point on what bounds the share of an octant that is inside: its faces, as far as they are, and
+ * the surface in it. */
 typedef struct {
     double x[3], area[3]; /* area: times the normal that points out of the share */
     bool surface;         /* of the body; otherwise shared with another octant */

@@ -2,7 +2,6 @@
 /* clang-format on */
 #include "../../../lib/test_frame.h"
 #include "../../../lib/test_random.h"
-#include "../solve/rows.h"
 #include "mls.h"
 
 #define CONST(array) ((const double(*)[3])(array))

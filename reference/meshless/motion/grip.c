@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../../lib/handles.h"
+#include "../../../lib/boundary.h"
 #include "../../../lib/vector.h"
-#include "../surface/normal.h"
+#include "../solve/least_squares.h"
 #include "rotation.h"
 
 /* Functions that are to become modes, [unknowns] each, M-orthonormal so far. */
@@ -273,7 +273,7 @@ static double *frame_of(const RefBody *body, const RefGrip *grip, const RefMotio
     for (size_t k = 0; k < modes; k++) {
         double matrix[9], turn[3] = {moment[k], moment[modes + k], moment[2 * modes + k]};
         memcpy(matrix, inertia, sizeof matrix);
-        ref_normal_solve(3, 0, matrix, turn);
+        ref_least_squares_solve(3, 0, matrix, turn);
         for (size_t d = 0; d < 3; d++) moment[d * modes + k] = turn[d];
     }
     ref_shape_free(&shape);

@@ -3,7 +3,7 @@
 #define REF_SOLVER_H
 
 #include "../body/matrices.h"
-#include "rows.h"
+#include "../body/mls.h"
 
 typedef struct RefSolver RefSolver;
 

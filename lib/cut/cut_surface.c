@@ -1,0 +1,116 @@
+#include "cut_surface.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../vector.h"
+#include "cut_solid.h"
+
+/* Of a cell: what a cut takes away, and what does not matter. */
+static const double thickness = 1e-4, slack = 1e-10;
+
+enum { TRIES = 5 };
+
+static bool is_inside_out(const SmMesh *mesh)
+{
+    double volume = 0;
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        double u[3], v[3], w[3], cross[3];
+        const double *o = mesh->position[0];
+        for (int d = 0; d < 3; d++) {
+            u[d] = mesh->position[mesh->triangle[t][0]][d] - o[d];
+            v[d] = mesh->position[mesh->triangle[t][1]][d] - o[d];
+            w[d] = mesh->position[mesh->triangle[t][2]][d] - o[d];
+        }
+        sm_cross(v, w, cross);
+        volume += sm_dot(u, cross);
+    }
+    return volume < 0;
+}
+
+typedef struct {
+    SmMesh *mesh;
+    const SmCut *cut;
+    double cell;
+    bool inside_out;
+    bool tear; /* it is open already, and may come to be more so */
+} Slit;
+
+/* Takes the solid for triangles first .. last - 1 away. What tears undoes itself, unless it may. */
+static SmSubtractResult carve_once(const Slit *s, long first, long last, unsigned seed,
+                                   const SmSubtractOptions *options)
+{
+    SmMesh solid;
+    SmCutSolidOptions wedge = {thickness * s->cell, seed};
+    if (!sm_cut_solid_make(s->cut, first, last, &wedge, &solid)) return SM_SUBTRACT_FAILED;
+    SmMesh before = s->tear ? (SmMesh){0} : sm_mesh_copy(s->mesh);
+    SmSubtractResult result = sm_mesh_subtract(s->mesh, &solid, options);
+    if (result == SM_SUBTRACT_TORN && !s->tear) {
+        sm_mesh_free(s->mesh);
+        *s->mesh = before;
+        before = (SmMesh){0};
+        result = SM_SUBTRACT_FAILED;
+    }
+    sm_mesh_free(&before);
+    sm_mesh_free(&solid);
+    return result;
+}
+
+/* One solid for triangles first .. last - 1, with other random moves where it fails; and where the
+ * surface may tear at last without closing. */
+static SmCutResult carve(const Slit *s, long first, long last)
+{
+    static const SmCutResult meaning[] = {SM_CUT_MISSED, SM_CUT_CLOSED, SM_CUT_OPEN};
+    SmSubtractOptions options = {s->inside_out, true, slack * s->cell};
+    for (int try = 0; try < (s->tear ? 2 : 1) * TRIES; try++) {
+        options.close = try < TRIES;
+        SmSubtractResult result =
+            carve_once(s, first, last, (unsigned)(first * 2 * TRIES + try), &options);
+        if (result != SM_SUBTRACT_FAILED) return meaning[result];
+    }
+    return SM_CUT_INCOMPLETE;
+}
+
+static bool has_area(const SmCut *cut, long t, double least)
+{
+    double u[3], v[3], normal[3];
+    for (int d = 0; d < 3; d++) {
+        u[d] = cut->vertex[cut->triangle[t][1]][d] - cut->vertex[cut->triangle[t][0]][d];
+        v[d] = cut->vertex[cut->triangle[t][2]][d] - cut->vertex[cut->triangle[t][0]][d];
+    }
+    sm_cross(u, v, normal);
+    return sqrt(sm_dot(normal, normal)) > least;
+}
+
+/* A solid for every triangle: they overlap, and each is simple. */
+static SmCutResult carve_each(const Slit *s, long first)
+{
+    SmCutResult worst = SM_CUT_MISSED;
+    bool left = false;
+    for (long t = first; t < s->cut->triangles; t++) {
+        SmCutResult result = carve(s, t, t + 1);
+        if (result == SM_CUT_INCOMPLETE)
+            left |= has_area(s->cut, t, 0.01 * s->cell * s->cell);
+        else if (result > worst)
+            worst = result;
+    }
+    return left ? SM_CUT_INCOMPLETE : worst;
+}
+
+static bool is_closed(const SmMesh *mesh)
+{
+    SmMeshInfo info = sm_mesh_info(mesh);
+    return info.open_edges == 0;
+}
+
+SmCutResult sm_cut_surface(SmMesh *mesh, const SmCut *cut, long first, double cell)
+{
+    Slit s = {mesh, cut, cell, is_inside_out(mesh), false};
+    SmCutResult result = carve(&s, first, cut->triangles);
+    if (result == SM_CUT_INCOMPLETE && cut->triangles > first && !is_closed(mesh)) {
+        s.tear = true;
+        result = carve(&s, first, cut->triangles);
+    }
+    if (result == SM_CUT_INCOMPLETE) result = carve_each(&s, first);
+    return result;
+}

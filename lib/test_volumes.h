@@ -1,0 +1,23 @@
+/* test_volumes.h - what the pieces of a surface hold. */
+#ifndef SM_TEST_VOLUMES_H
+#define SM_TEST_VOLUMES_H
+
+#include "mesh/mesh.h"
+#include "vector.h"
+
+/* Signed volume between every piece of the surface and the origin, into volume[count]: what a
+ * closed piece holds. A hollow is a piece of its own, of negative volume. */
+static inline void sm_mesh_piece_volumes(const SmMesh *mesh, const SmPieces *pieces, double *volume)
+{
+    for (long n = 0; n < pieces->count; n++) volume[n] = 0;
+    const double *o = mesh->position[0];
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        double p[3][3], cross[3];
+        for (int i = 0; i < 3; i++)
+            for (int d = 0; d < 3; d++) p[i][d] = mesh->position[mesh->triangle[t][i]][d] - o[d];
+        sm_cross(p[1], p[2], cross);
+        volume[pieces->piece[t]] += sm_dot(p[0], cross) / 6;
+    }
+}
+
+#endif

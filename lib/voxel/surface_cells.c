@@ -1,0 +1,165 @@
+#include "surface_cells.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* How near counts as touching, in cells: more than the rounding of 2^31 cells along an axis. */
+#define TOUCH 1e-6
+
+typedef struct {
+    double low, high;
+} Span;
+
+typedef struct {
+    int count;
+    double point[5][2]; /* x, y of a triangle cut by two planes */
+} Polygon;
+
+/* As fmin() and fmax(), which GCC does not inline for fear of NaN; there is none here. */
+static inline double least(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double greatest(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static inline int cell_of(double x, int n)
+{
+    if (!(x >= 0)) return 0;
+    return x < n ? (int)x : n - 1;
+}
+
+/* The cells that the three coordinates touch along one axis, first and last. */
+static inline void touched(double a, double b, double c, int n, int *first, int *last)
+{
+    *first = cell_of(least(a, least(b, c)) - TOUCH, n);
+    *last = cell_of(greatest(a, greatest(b, c)) + TOUCH, n);
+}
+
+static inline void set_cells(SmVoxels *v, int first, int last, int j, int k)
+{
+    uint64_t *row = v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+    uint64_t head = ~(uint64_t)0 << (first & 63), tail = ~(uint64_t)0 >> (63 - (last & 63));
+    int from = first >> 6, to = last >> 6;
+    if (from == to) {
+        row[from] |= head & tail;
+        return;
+    }
+    row[from] |= head;
+    for (int w = from + 1; w < to; w++) row[w] = ~(uint64_t)0;
+    row[to] |= tail;
+}
+
+/* The part of the triangle with low <= z <= high, by Sutherland and Hodgman's clipping. */
+static void cut_layer(const double *corner[3], double low, double high, Polygon *polygon)
+{
+    double ring[4][3];
+    int count = 0;
+    for (int e = 0; e < 3; e++) {
+        const double *a = corner[e], *b = corner[(e + 1) % 3];
+        if (a[2] >= low) {
+            for (int d = 0; d < 3; d++) ring[count][d] = a[d];
+            count++;
+        }
+        if ((a[2] >= low) == (b[2] >= low)) continue;
+        double t = (low - a[2]) / (b[2] - a[2]);
+        for (int d = 0; d < 2; d++) ring[count][d] = a[d] + t * (b[d] - a[d]);
+        ring[count++][2] = low;
+    }
+    polygon->count = 0;
+    for (int e = 0; e < count; e++) {
+        const double *a = ring[e], *b = ring[(e + 1) % count];
+        if (a[2] <= high) {
+            for (int d = 0; d < 2; d++) polygon->point[polygon->count][d] = a[d];
+            polygon->count++;
+        }
+        if ((a[2] <= high) == (b[2] <= high)) continue;
+        double t = (high - a[2]) / (b[2] - a[2]);
+        for (int d = 0; d < 2; d++) polygon->point[polygon->count][d] = a[d] + t * (b[d] - a[d]);
+        polygon->count++;
+    }
+}
+
+static inline void widen(Span *span, double x)
+{
+    span->low = least(span->low, x);
+    span->high = greatest(span->high, x);
+}
+
+/* Widens the x span of each row first..last by the part of the edge a-b that lies in the row. */
+static void walk_edge(const double *a, const double *b, int first, int last, Span *row)
+{
+    if (a[1] > b[1]) {
+        const double *swap = a;
+        a = b;
+        b = swap;
+    }
+    int from = (int)greatest(floor(a[1] - TOUCH), first),
+        to = (int)least(floor(b[1] + TOUCH), last);
+    double rise = b[1] - a[1];
+    if (from == to || rise < TOUCH) {
+        for (int j = from; j <= to; j++) {
+            widen(&row[j - first], a[0]);
+            widen(&row[j - first], b[0]);
+        }
+        return;
+    }
+    double slope = (b[0] - a[0]) / rise;
+    for (int j = from; j <= to; j++) {
+        double y0 = greatest(a[1], j == first ? a[1] : j - TOUCH);
+        double y1 = least(b[1], j == last ? b[1] : j + 1 + TOUCH);
+        widen(&row[j - first], a[0] + (y0 - a[1]) * slope);
+        widen(&row[j - first], a[0] + (y1 - a[1]) * slope);
+    }
+}
+
+/* Sets the cells of layer k, rows first..last, that the polygon touches. The part of a convex
+ * polygon inside a row of cells touches exactly the cells of its extent along x. */
+static void set_layer(SmVoxels *v, const Polygon *polygon, int k, int first, int last, Span *row)
+{
+    for (int j = first; j <= last; j++) row[j - first] = (Span){INFINITY, -INFINITY};
+    for (int e = 0; e < polygon->count; e++)
+        walk_edge(polygon->point[e], polygon->point[(e + 1) % polygon->count], first, last, row);
+    for (int j = first; j <= last; j++) {
+        Span *span = &row[j - first];
+        if (span->low > span->high) continue;
+        set_cells(v, cell_of(span->low - TOUCH, v->size[0]),
+                  cell_of(span->high + TOUCH, v->size[0]), j, k);
+    }
+}
+
+static void set_triangle(SmVoxels *v, const double *corner[3], Span *row)
+{
+    int first[3], last[3], long_axes = 0;
+    for (int d = 0; d < 3; d++) {
+        touched(corner[0][d], corner[1][d], corner[2][d], v->size[d], &first[d], &last[d]);
+        long_axes += first[d] < last[d];
+    }
+    /* Along a single row of cells the box of the triangle is exact. */
+    if (long_axes < 2) {
+        for (int k = first[2]; k <= last[2]; k++)
+            for (int j = first[1]; j <= last[1]; j++) set_cells(v, first[0], last[0], j, k);
+        return;
+    }
+    Polygon polygon;
+    for (int k = first[2]; k <= last[2]; k++) {
+        double low = k == first[2] ? -INFINITY : k - TOUCH;
+        double high = k == last[2] ? INFINITY : k + 1 + TOUCH;
+        cut_layer(corner, low, high, &polygon);
+        set_layer(v, &polygon, k, first[1], last[1], row);
+    }
+}
+
+void sm_surface_cells(const SmMesh *mesh, const double (*point)[3], SmVoxels *voxels)
+{
+    Span *row = sm_alloc((size_t)voxels->size[1], sizeof *row);
+    for (long t = 0; t < mesh->triangle_count; t++) {
+        const int *corner = mesh->triangle[t];
+        const double *at[3] = {point[corner[0]], point[corner[1]], point[corner[2]]};
+        set_triangle(voxels, at, row);
+    }
+    free(row);
+}

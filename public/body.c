@@ -1,0 +1,644 @@
+/* body.c - bodies of shapebench.h: creation, steps, reading and writing, handles and obstacles;
+ * change.c has what changes them. */
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../fastlsm/fastlsm.h"
+#include "../lib/boundary.h"
+#include "../lib/system/team.h"
+#include "inner.h"
+
+const char *sb_engine_name(int engine)
+{
+    static const char *const name[] = {"fastlsm", "octree", "brute", "meshless"};
+    return engine >= SB_FASTLSM && engine <= SB_MESHLESS ? name[engine] : NULL;
+}
+
+int sb_engine_available(int engine)
+{
+    return engine == SB_FASTLSM || engine == SB_OCTREE;
+}
+
+/* ---- creation */
+
+void sb_body_params_init(sb_body_params *params, size_t size)
+{
+    static const sb_body_params defaults = {.w = 2, .h = 0.01, .damping_every = 1, .instances = 1};
+    sm_give_defaults(&defaults, sizeof defaults, params, size);
+}
+
+void sb_octree_params_init(sb_octree_params *params, size_t size)
+{
+    static const sb_octree_params defaults;
+    sm_give_defaults(&defaults, sizeof defaults, params, size);
+}
+
+static int check_choices(const sb_body_params *p, sb_error *error)
+{
+    int code = SB_OK;
+    if (!sb_engine_name(p->engine))
+        return sm_refuse(error, SB_USAGE, "'engine' is %d: there is no such engine", p->engine);
+    if (!sb_engine_available(p->engine))
+        return sm_refuse(error, SB_INPUT,
+                         "the engine %s is not in this library, but in the program shapebench: use "
+                         "SB_FASTLSM or SB_OCTREE",
+                         sb_engine_name(p->engine));
+    if (!code) code = sm_check_range(p->precision, SB_SINGLE, SB_DOUBLE, "precision", error);
+    if (!code) code = sm_check_range(p->summation, SB_SUM_FAST, SB_SUM_NAIVE, "summation", error);
+    if (!code) code = sm_check_range(p->polar, SB_POLAR_FAST, SB_POLAR_JACOBI, "polar", error);
+    if (!code) code = sm_check_range(p->layout, SB_LAYOUT_AUTO, SB_LAYOUT_BLOCKS, "layout", error);
+    if (!code) code = sm_check_range(p->threads, 0, SM_MOST_THREADS, "threads", error);
+    if (!code) code = sm_check_range(p->damping_every, 0, INT_MAX, "damping_every", error);
+    if (!code) code = sm_check_range((double)p->instances, 0, INT_MAX, "instances", error);
+    return code;
+}
+
+/* A rotation to 1e-6, and a translation that is not far off. */
+static int check_pose(const double *pose, double far, sb_error *error)
+{
+    int code = sm_check_finite(pose, 12, fmax(far, 2), "pose", error);
+    for (int i = 0; i < 9 && !code; i++) {
+        const double *a = pose + i / 3 * 4, *b = pose + i % 3 * 4;
+        double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        if (!(fabs(dot - (i / 3 == i % 3)) <= 1e-6)) code = SB_USAGE;
+    }
+    double turned = 0;
+    for (int d = 0; d < 3 && !code; d++)
+        turned += pose[d] * (pose[4 + (d + 1) % 3] * pose[8 + (d + 2) % 3] -
+                             pose[4 + (d + 2) % 3] * pose[8 + (d + 1) % 3]);
+    if (!code && turned > 0) return SB_OK;
+    return sm_refuse(
+        error, SB_USAGE,
+        "'pose' is no rigid motion: twelve finite numbers, three rows of a rotation and "
+        "a translation of at most %g",
+        far);
+}
+
+static int check_sizes(const sb_body_params *p, const SmVoxels *voxels, sb_error *error)
+{
+    const double cell = voxels->cell, particles = (double)voxels->particle_count;
+    double bodies = p->instances > 1 ? (double)p->instances : 1;
+    int code = SB_OK;
+    if (!(p->h > 0 && p->h <= 1e6))
+        return sm_refuse(error, SB_USAGE, "'h' is %g: a time step in seconds, above 0", p->h);
+    for (int d = 0; d < 3; d++)
+        if (!(fabs(p->gravity[d]) * p->h * p->h <= SB_FAR * cell))
+            return sm_refuse(error, SB_USAGE,
+                             "'gravity' is %g: a body would fly farther than 1e9 cells in a step",
+                             p->gravity[d]);
+    if (bodies * particles > 500e6)
+        return sm_refuse(error, SB_INPUT,
+                         "%g instances of %g particles: 500 million in all at most", bodies,
+                         particles);
+    if (p->cuttable && bodies > 1)
+        return sm_refuse(error, SB_INPUT,
+                         "'cuttable': instances share what would be cut: give one "
+                         "body of its own to each");
+    for (int64_t i = 0; p->pose && i < (int64_t)bodies && !code; i++)
+        code = check_pose(p->pose + 12 * i, SB_FAR * cell, error);
+    return code;
+}
+
+static int take_criteria(const sb_octree_params *p, OctOptions *to, sb_error *error)
+{
+    int code = sm_check_range(p->criteria_count, 0, OCT_MAX_CRITERIA, "criteria_count", error);
+    for (int i = 0; i < p->criteria_count && !code; i++) {
+        const sb_criterion *from = &p->criteria[i];
+        OctCriterion *c = &to->sampling.criteria[i];
+        code = sm_check_range(from->kind, SB_CELLS_ALL, SB_CELLS_SPHERE, "kind", error);
+        *c = (OctCriterion){.kind = (OctCriterionKind)from->kind, .level = from->level};
+        c->radius = from->radius;
+        memcpy(c->low, from->low, sizeof c->low);
+        memcpy(c->high, from->high, sizeof c->high);
+        memcpy(c->centre, from->centre, sizeof c->centre);
+    }
+    to->sampling.criteria_count = p->criteria_count;
+    return code;
+}
+
+static int take_widths(const sb_octree_params *p, OctOptions *to, sb_error *error)
+{
+    int code = sm_check_range(p->width_count, 0, OCT_MAX_WIDTHS, "width_count", error);
+    for (int i = 0; i < p->width_count && !code; i++) {
+        const sb_local_width *from = &p->widths[i];
+        OctLocalWidth *w = &to->local[i];
+        *w = (OctLocalWidth){.width = {from->cells, from->edges}, .radius = from->radius};
+        memcpy(w->low, from->low, sizeof w->low);
+        memcpy(w->high, from->high, sizeof w->high);
+        memcpy(w->centre, from->centre, sizeof w->centre);
+        code = sm_check_finite(&from->cells, 12, 1e30, "widths", error);
+    }
+    to->local_count = p->width_count;
+    return code;
+}
+
+static int take_octree(const sb_octree_params *from, OctOptions *to, sb_error *error)
+{
+    sb_octree_params p = {0};
+    int code = from ? sm_take_params(from, &p, sizeof p, "sb_octree_params", error) : SB_OK;
+    if (!code) code = sm_check_range(p.levels, 0, OCT_MAX_LEVELS, "levels", error);
+    if (!code) code = sm_check_range((double)p.nodes, 0, 1e9, "nodes", error);
+    if (!code) code = sm_check_range((double)p.bases, 0, 1e9, "bases", error);
+    for (int d = 0; d < 3 && !code; d++)
+        code = sm_check_range(p.corner[d], -OCT_MAX_WIDE, OCT_MAX_WIDE, "corner", error);
+    if (!code) code = sm_check_range(p.mass_rule, 0, SB_MASS_VOLUME, "mass_rule", error);
+    if (!code) code = sm_check_range(p.symmetry, 0, SB_SYMMETRY_NONE, "symmetry", error);
+    if (!code) code = sm_check_range(p.weighting, 0, SB_WEIGHT_PLAIN, "weighting", error);
+    if (!code) code = sm_check_range(p.goals, 0, SB_GOALS_ADJOINT, "goals", error);
+    if (code) return code;
+    *to = (OctOptions){.sampling = {.levels = p.levels,
+                                    .nodes = p.nodes,
+                                    .bases = p.bases,
+                                    .balance = p.balance != 0},
+                       .epsilon = p.epsilon,
+                       .width = {p.width_cells, p.width_edges},
+                       .summation_nodes = p.summation_nodes,
+                       .masses = (OctMassRule)p.mass_rule,
+                       .symmetry = (OctSymmetry)p.symmetry,
+                       .weighting = (OctWeighting)p.weighting,
+                       .form = (OctGoalForm)p.goals,
+                       .yield = p.yield,
+                       .creep = p.creep,
+                       .most = p.most};
+    memcpy(to->sampling.corner, p.corner, sizeof to->sampling.corner);
+    code = take_criteria(&p, to, error);
+    return code ? code : take_widths(&p, to, error);
+}
+
+static const SmEngineType *type_of(const sb_body_params *p)
+{
+    if (p->engine == SB_OCTREE)
+        return p->precision == SB_SINGLE ? &octree_engine_f32 : &octree_engine_f64;
+    return p->precision == SB_SINGLE ? &fastlsm_engine_f32 : &fastlsm_engine_f64;
+}
+
+static SmEngineParams engine_params(const sb_body_params *p, const OctOptions *octree)
+{
+    SmEngineParams to = {.w = p->w,
+                         .h = p->h,
+                         .damping = p->damping,
+                         .damping_every = p->damping_every,
+                         .strain_limit = p->strain_limit,
+                         .summation = (SmSummation)p->summation,
+                         .polar = (SmPolarMethod)p->polar,
+                         .layout = (SmLayout)p->layout,
+                         .threads = p->threads,
+                         .mass = p->mass,
+                         .instances = p->instances > 1 ? p->instances : 1,
+                         .instance_pose = (const double(*)[3][4])p->pose,
+                         .octree = octree,
+                         .collide = {.self = p->collide_self != 0,
+                                     .bodies = p->collide_instances != 0,
+                                     .friction = p->collide_friction}};
+    memcpy(to.gravity, p->gravity, sizeof to.gravity);
+    if (p->cuttable && p->engine == SB_FASTLSM && to.strain_limit == 0)
+        to.strain_limit = INFINITY; /* it breaks where it is cut */
+    return to;
+}
+
+static void copy_voxels(const SmVoxels *from, SmVoxels *to)
+{
+    size_t words = (size_t)from->words * (size_t)from->size[1] * (size_t)from->size[2];
+    *to = *from;
+    to->bits = sm_alloc(words, sizeof *to->bits);
+    memcpy(to->bits, from->bits, words * sizeof *to->bits);
+}
+
+/* Everything beside the engine, which is there. */
+static void complete(sb_body *body, const sb_voxels *voxels, const sb_mesh *surface, bool lattice)
+{
+    copy_voxels(&voxels->voxels, &body->voxels);
+    sm_count_particles(body);
+    if (lattice) {
+        body->x0 = sm_alloc((size_t)body->particles, sizeof *body->x0);
+        sb_voxels_read_particles(voxels, body->x0[0], body->particles, NULL);
+    }
+    int team = sm_team_enter(body->threads);
+    sm_skin_create(body->type, body->engine, &body->voxels, body->instances,
+                   (const double(*)[3])body->x0,
+                   surface ? sm_mesh_copy(&surface->mesh) : (SmMesh){0}, &body->skin);
+    sm_team_leave(team);
+}
+
+int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_body_params *params,
+                   sb_body **body, sb_error *error)
+{
+    sb_body_params p;
+    OctOptions octree;
+    SmError why;
+    int code = sm_check_given(body, "body", error);
+    if (code) return code;
+    *body = NULL;
+    sb_body_params_init(&p, sizeof p);
+    code = sm_check_handle(voxels, SB_IS_VOXELS, error);
+    if (!code && surface) code = sm_check_handle(surface, SB_IS_MESH, error);
+    if (!code) code = sm_take_params(params, &p, sizeof p, "sb_body_params", error);
+    if (!code) code = check_choices(&p, error);
+    if (!code) code = check_sizes(&p, &voxels->voxels, error);
+    if (!code) code = take_octree(p.octree, &octree, error);
+    if (code) return code;
+    SmEngineParams inner = engine_params(&p, &octree);
+    sb_body *made = sm_alloc(1, sizeof *made);
+    *made = (sb_body){.kind = SB_IS_BODY,
+                      .type = type_of(&p),
+                      .h = p.h,
+                      .threads = p.threads,
+                      .instances = inner.instances};
+    SmCode failed = made->type->create(&voxels->voxels, &inner, &made->engine, &why);
+    if (failed) {
+        free(made);
+        return sm_done(failed, &why, error);
+    }
+    complete(made, voxels, surface, inner.strain_limit > 0 && !made->type->refines);
+    *body = made;
+    return sm_done(SM_OK, NULL, error);
+}
+
+void sb_body_free(sb_body *body)
+{
+    if (sm_check_handle(body, SB_IS_BODY, NULL)) return;
+    body->type->destroy(body->engine);
+    sm_skin_free(&body->skin);
+    sm_voxels_free(&body->voxels);
+    for (int i = 0; i < body->handle_count; i++) free((void *)(uintptr_t)body->handle[i].particle);
+    for (int i = 0; i < body->blade_count; i++) sm_blade_free(&body->blade[i].blade);
+    for (int i = 0; i < body->detail_count; i++) oct_refinement_free(&body->detail[i]);
+    free(body->handle);
+    free(body->obstacle);
+    free(body->blade);
+    free(body->detail);
+    free(body->x0);
+    body->kind = 0;
+    free(body);
+}
+
+/* ---- steps and counts */
+
+/* Gives what holds and stops particles to the engine. */
+static void bind(sb_body *body)
+{
+    SmHandle *handle = sm_alloc((size_t)body->handle_count, sizeof *handle);
+    SmObstacle *obstacle = sm_alloc((size_t)body->obstacle_count, sizeof *obstacle);
+    SmBoundary boundary = {0, handle, 0, obstacle};
+    for (int i = 0; i < body->handle_count; i++)
+        if (body->handle[i].count) handle[boundary.handle_count++] = body->handle[i];
+    for (int i = 0; i < body->obstacle_count; i++)
+        if (!body->obstacle[i].gone)
+            obstacle[boundary.obstacle_count++] = body->obstacle[i].obstacle;
+    body->type->bound(body->engine, &boundary);
+    body->bind = false;
+    free(handle);
+    free(obstacle);
+}
+
+int sb_body_step(sb_body *body, int64_t steps, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code && steps < 0)
+        code = sm_refuse(error, SB_USAGE, "'steps' is %lld: it is 0 or more", (long long)steps);
+    if (code) return code;
+    if (body->bind) bind(body);
+    for (int64_t step = 0; step < steps; step++) body->type->step(body->engine, NULL);
+    body->steps += steps;
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_body_count(const sb_body *body, sb_body_counts *counts, size_t size, sb_error *error)
+{
+    SmCounts from;
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = sm_check_given(counts, "counts", error);
+    if (code) return code;
+    body->type->count(body->engine, &from);
+    sb_body_counts all = {.particles = from.particles,
+                          .instances = body->instances,
+                          .steps = body->steps,
+                          .time = (double)body->steps * body->h,
+                          .regions = from.regions,
+                          .links = from.links,
+                          .broken = from.broken,
+                          .contacts = from.contacts,
+                          .bytes = from.bytes,
+                          .build_seconds = from.build_seconds,
+                          .summation_nodes = from.summation_nodes,
+                          .cut_triangles = sm_skin_cut_triangles(&body->skin),
+                          .surface_vertices = body->skin.surface.vertex_count,
+                          .surface_triangles = body->skin.surface.triangle_count,
+                          .surface_incomplete = body->skin.left};
+    sm_give(&all, sizeof all, counts, size);
+    return sm_done(SM_OK, NULL, error);
+}
+
+/* ---- particles */
+
+int sb_body_read(sb_body *body, int field, double *values, int64_t room, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = sm_check_range(field, SB_REST, SB_GOAL, "field", error);
+    if (!code) code = sm_check_array(values, room, body->particles, "values", error);
+    if (code) return code;
+    if (field == SB_GOAL) body->type->goals(body->engine);
+    body->type->get(body->engine, (SmField)field, (double(*)[3])values);
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_body_write(sb_body *body, int field, const double *values, int64_t count, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = sm_check_range(field, SB_POSITION, SB_VELOCITY, "field", error);
+    if (!code && count != body->particles)
+        code = sm_refuse(error, SB_USAGE, "'count' is %lld, and the body has %ld particles",
+                         (long long)count, body->particles);
+    if (code) return code;
+    double far = SB_FAR * body->voxels.cell;
+    code = sm_check_finite(values, 3 * count, field == SB_POSITION ? far : far / body->h, "values",
+                           error);
+    if (code) return code;
+    body->type->set(body->engine, (SmField)field, (const double(*)[3])values);
+    return sm_done(SM_OK, NULL, error);
+}
+
+static int check_particles(const sb_body *body, int64_t count, const int64_t *particle,
+                           sb_error *error)
+{
+    int code = SB_OK;
+    if (count < 0)
+        return sm_refuse(error, SB_USAGE, "'count' is %lld: it is 0 or more", (long long)count);
+    if (count > 0) code = sm_check_given(particle, "particle", error);
+    for (int64_t i = 0; i < count && !code; i++)
+        if (particle[i] < 0 || particle[i] >= body->particles)
+            code = sm_refuse(error, SB_USAGE, "there is no particle %lld: they are 0 to %ld",
+                             (long long)particle[i], body->particles - 1);
+    return code;
+}
+
+/* No impulse is to make a particle faster than may be written. */
+static int check_impulses(const sb_body *body, int64_t count, const int64_t *particle,
+                          const double *impulse, sb_error *error)
+{
+    long own = body->particles / body->instances;
+    int code = sm_check_finite(impulse, 3 * count, 1e300, "impulse", error);
+    if (code) return code;
+    double *mass = sm_alloc((size_t)own, sizeof *mass), far = SB_FAR * body->voxels.cell / body->h;
+    body->type->masses(body->engine, mass);
+    for (int64_t i = 0; i < 3 * count && !code; i++)
+        if (!(fabs(impulse[i]) <= far * mass[particle[i / 3] % own]))
+            code = sm_refuse(error, SB_USAGE,
+                             "impulse %lld is %g, on %g kg: faster than 1e9 cells in a step",
+                             (long long)(i / 3), impulse[i], mass[particle[i / 3] % own]);
+    free(mass);
+    return code;
+}
+
+int sb_body_push(sb_body *body, int64_t count, const int64_t *particle, const double *impulse,
+                 sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = check_particles(body, count, particle, error);
+    if (!code && count > 0) code = check_impulses(body, count, particle, impulse, error);
+    if (code) return code;
+    body->type->push(body->engine, count, (const long *)particle, (const double(*)[3])impulse);
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_body_read_masses(sb_body *body, double *mass, int64_t room, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = sm_check_array(mass, room, body->particles / body->instances, "mass", error);
+    if (code) return code;
+    body->type->masses(body->engine, mass);
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_body_read_region(sb_body *body, int64_t particle, int64_t *member, int64_t room,
+                        int64_t *count, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = check_particles(body, 1, &particle, error);
+    if (!code) code = sm_check_list(member, room, count, "member", error);
+    if (code) return code;
+    *count = body->type->region(body->engine, particle, (long *)member, room);
+    return sm_done(SM_OK, NULL, error);
+}
+
+static int check_plastic(bool plastic, sb_error *error)
+{
+    if (plastic) return sm_done(SM_OK, NULL, error);
+    return sm_refuse(error, SB_USAGE,
+                     "the body is elastic and keeps no shapes: create it as an "
+                     "octree with 'creep' above 0");
+}
+
+int sb_body_read_shapes(sb_body *body, double *shape, int64_t room, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = sm_check_array(shape, room, body->particles, "shape", error);
+    if (code) return code;
+    return check_plastic(
+        body->type->get_shapes && body->type->get_shapes(body->engine, (double(*)[9])shape), error);
+}
+
+int sb_body_write_shapes(sb_body *body, const double *shape, int64_t count, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code && count != body->particles)
+        code = sm_refuse(error, SB_USAGE, "'count' is %lld, and the body has %ld particles",
+                         (long long)count, body->particles);
+    if (!code) code = sm_check_finite(shape, 9 * count, 1e3, "shape", error);
+    if (code) return code;
+    return check_plastic(body->type->set_shapes &&
+                             body->type->set_shapes(body->engine, (const double(*)[9])shape),
+                         error);
+}
+
+/* Particles between the corners, or, with a radius of 0 or more, in the ball about `low`. */
+static void select_particles(sb_body *body, const double low[3], const double high[3],
+                             double radius, int64_t *particle, int64_t room, int64_t *count)
+{
+    double(*rest)[3] = sm_alloc((size_t)body->particles, sizeof *rest);
+    body->type->get(body->engine, SM_REST, rest);
+    *count = 0;
+    for (long p = 0; p < body->particles; p++) {
+        bool inside = true;
+        double square = 0;
+        for (int d = 0; d < 3; d++) {
+            square += (rest[p][d] - low[d]) * (rest[p][d] - low[d]);
+            if (high) inside &= rest[p][d] >= low[d] && rest[p][d] <= high[d];
+        }
+        if (!high) inside = square <= radius * radius;
+        if (inside && *count < room) particle[*count] = p;
+        *count += inside;
+    }
+    free(rest);
+}
+
+int sb_body_select_box(sb_body *body, const double low[3], const double high[3], int64_t *particle,
+                       int64_t room, int64_t *count, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = sm_check_finite(low, 3, INFINITY, "low", error);
+    if (!code) code = sm_check_finite(high, 3, INFINITY, "high", error);
+    if (!code) code = sm_check_list(particle, room, count, "particle", error);
+    if (code) return code;
+    select_particles(body, low, high, 0, particle, room, count);
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_body_select_ball(sb_body *body, const double centre[3], double radius, int64_t *particle,
+                        int64_t room, int64_t *count, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = sm_check_finite(centre, 3, 1e30, "centre", error);
+    if (!code) code = sm_check_range(radius, 0, INFINITY, "radius", error);
+    if (!code) code = sm_check_list(particle, room, count, "particle", error);
+    if (code) return code;
+    select_particles(body, centre, NULL, radius, particle, room, count);
+    return sm_done(SM_OK, NULL, error);
+}
+
+/* ---- handles and obstacles */
+
+static int check_unheld(const sb_body *body, int64_t count, const int64_t *particle,
+                        sb_error *error)
+{
+    int code = SB_OK;
+    unsigned char *held = sm_alloc((size_t)body->particles, 1);
+    for (int i = 0; i < body->handle_count; i++)
+        for (long k = 0; k < body->handle[i].count; k++) held[body->handle[i].particle[k]] = 1;
+    for (int64_t k = 0; k < count && !code; k++) {
+        if (held[particle[k]])
+            code = sm_refuse(error, SB_USAGE, "particle %lld is held already, or given twice",
+                             (long long)particle[k]);
+        held[particle[k]] = 1;
+    }
+    free(held);
+    return code;
+}
+
+int sb_body_add_handle(sb_body *body, int64_t count, const int64_t *particle, int *handle,
+                       sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = sm_check_given(handle, "handle", error);
+    if (!code) code = check_particles(body, count, particle, error);
+    if (!code && count == 0) code = sm_refuse(error, SB_USAGE, "a handle of no particles");
+    if (!code) code = check_unheld(body, count, particle, error);
+    if (code) return code;
+    long *own = sm_alloc((size_t)count, sizeof *own);
+    memcpy(own, particle, (size_t)count * sizeof *own);
+    *handle = body->handle_count++;
+    body->handle = sm_realloc(body->handle, (size_t)body->handle_count, sizeof *body->handle);
+    body->handle[*handle] = (SmHandle){
+        .count = count, .particle = own, .pose = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+    body->bind = true;
+    return sm_done(SM_OK, NULL, error);
+}
+
+static int find_handle(sb_body *body, int handle, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (code) return code;
+    if (handle >= 0 && handle < body->handle_count && body->handle[handle].particle) return SB_OK;
+    return sm_refuse(error, SB_USAGE, "there is no handle %d", handle);
+}
+
+int sb_body_move_handle(sb_body *body, int handle, const double pose[12], sb_error *error)
+{
+    int code = find_handle(body, handle, error);
+    if (!code) code = sm_check_given(pose, "pose", error);
+    if (!code) code = check_pose(pose, SB_FAR * body->voxels.cell, error);
+    if (code) return code;
+    memcpy(body->handle[handle].pose, pose, sizeof body->handle[handle].pose);
+    body->bind = true;
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_body_remove_handle(sb_body *body, int handle, sb_error *error)
+{
+    int code = find_handle(body, handle, error);
+    if (code) return code;
+    free((void *)(uintptr_t)body->handle[handle].particle);
+    body->handle[handle] = (SmHandle){0};
+    body->bind = true;
+    return sm_done(SM_OK, NULL, error);
+}
+
+static int add_obstacle(sb_body *body, const SmObstacle *o, int *obstacle, sb_error *error)
+{
+    double far = SB_FAR * body->voxels.cell;
+    int code = sm_check_given(obstacle, "obstacle", error);
+    if (!code) code = sm_check_finite(o->a, 3, far, "place", error);
+    if (!code) code = sm_check_finite(o->b, 3, fmax(far, 2), "place", error);
+    if (!code) code = sm_check_range(o->radius, 0, far, "radius", error);
+    if (!code) code = sm_check_range(o->friction, 0, 1, "friction", error);
+    if (code) return code;
+    *obstacle = body->obstacle_count++;
+    body->obstacle =
+        sm_realloc(body->obstacle, (size_t)body->obstacle_count, sizeof *body->obstacle);
+    body->obstacle[*obstacle] = (SbObstacle){false, *o};
+    body->bind = true;
+    return sm_done(SM_OK, NULL, error);
+}
+
+static int check_place(sb_body *body, const double *a, const double *b, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (!code) code = sm_check_finite(a, 3, 1e30, "place", error);
+    return code ? code : sm_check_finite(b, 3, 1e30, "place", error);
+}
+
+int sb_body_add_plane(sb_body *body, const double point[3], const double normal[3], double friction,
+                      int *obstacle, sb_error *error)
+{
+    int code = check_place(body, point, normal, error);
+    if (code) return code;
+    double length = hypot(hypot(normal[0], normal[1]), normal[2]);
+    if (!(length > 0))
+        return sm_refuse(error, SB_USAGE, "'normal' is 0: it leads to the free side");
+    SmObstacle o = {SM_PLANE, {point[0], point[1], point[2]}, {0}, 0, friction};
+    for (int d = 0; d < 3; d++) o.b[d] = normal[d] / length;
+    return add_obstacle(body, &o, obstacle, error);
+}
+
+int sb_body_add_sphere(sb_body *body, const double centre[3], double radius, double friction,
+                       int *obstacle, sb_error *error)
+{
+    int code = check_place(body, centre, centre, error);
+    if (code) return code;
+    SmObstacle o = {SM_SPHERE, {centre[0], centre[1], centre[2]}, {0}, radius, friction};
+    return add_obstacle(body, &o, obstacle, error);
+}
+
+int sb_body_add_box(sb_body *body, const double low[3], const double high[3], double friction,
+                    int *obstacle, sb_error *error)
+{
+    int code = check_place(body, low, high, error);
+    for (int d = 0; d < 3 && !code; d++)
+        if (!(low[d] < high[d]))
+            code = sm_refuse(error, SB_USAGE, "the box is empty: 'low' must be below 'high'");
+    if (code) return code;
+    SmObstacle o = {SM_BOX, {low[0], low[1], low[2]}, {high[0], high[1], high[2]}, 0, friction};
+    return add_obstacle(body, &o, obstacle, error);
+}
+
+int sb_body_add_capsule(sb_body *body, const double a[3], const double b[3], double radius,
+                        double friction, int *obstacle, sb_error *error)
+{
+    int code = check_place(body, a, b, error);
+    if (code) return code;
+    SmObstacle o = {SM_CAPSULE, {a[0], a[1], a[2]}, {b[0], b[1], b[2]}, radius, friction};
+    return add_obstacle(body, &o, obstacle, error);
+}
+
+int sb_body_remove_obstacle(sb_body *body, int obstacle, sb_error *error)
+{
+    int code = sm_check_handle(body, SB_IS_BODY, error);
+    if (code) return code;
+    if (obstacle < 0 || obstacle >= body->obstacle_count || body->obstacle[obstacle].gone)
+        return sm_refuse(error, SB_USAGE, "there is no obstacle %d", obstacle);
+    body->obstacle[obstacle].gone = true;
+    body->bind = true;
+    return sm_done(SM_OK, NULL, error);
+}

@@ -1,0 +1,330 @@
+/* geometry.c - the library's own functions, meshes and voxels of shapebench.h. */
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../lib/mesh/import.h"
+#include "../lib/shapes/shape.h"
+#include "../lib/system/printable.h"
+#include "../lib/voxel/voxelise.h"
+#include "inner.h"
+
+_Static_assert(sizeof(long) == sizeof(int64_t), "numbers of particles go through as they are");
+_Static_assert((int)SB_USAGE == SM_USAGE && (int)SB_INPUT == SM_INPUT &&
+                   (int)SB_MEMORY == SM_MEMORY,
+               "codes go through as they are");
+
+/* ---- the library */
+
+int sb_version(void)
+{
+    return SHAPEBENCH_VERSION;
+}
+
+#define TEXT(number)   #number
+#define DIGITS(number) TEXT(number)
+
+const char *sb_version_text(void)
+{
+    return DIGITS(SHAPEBENCH_VERSION_MAJOR) "." DIGITS(SHAPEBENCH_VERSION_MINOR) "." DIGITS(
+        SHAPEBENCH_VERSION_PATCH);
+}
+
+/* ---- meshes */
+
+void sb_load_params_init(sb_load_params *params, size_t size)
+{
+    static const sb_load_params defaults;
+    sm_give_defaults(&defaults, sizeof defaults, params, size);
+}
+
+static int finish_mesh(SmCode code, const SmError *why, SmMesh *mesh, sb_mesh **result,
+                       sb_error *error)
+{
+    if (code) return sm_done(code, why, error);
+    *result = sm_alloc(1, sizeof **result);
+    **result = (sb_mesh){SB_IS_MESH, *mesh};
+    return sm_done(SM_OK, why, error);
+}
+
+/* *result is NULL from here on. */
+static int begin(void *result, const char *name, sb_error *error)
+{
+    int code = sm_check_given(result, name, error);
+    if (!code) memset(result, 0, sizeof(void *));
+    return code;
+}
+
+int sb_mesh_load(const char *path, const sb_load_params *params, sb_mesh **mesh, sb_error *error)
+{
+    sb_load_params p = {0};
+    SmMesh made;
+    SmError why;
+    int code = begin(mesh, "mesh", error);
+    if (!code) code = sm_check_given(path, "path", error);
+    if (!code && params) code = sm_take_params(params, &p, sizeof p, "sb_load_params", error);
+    if (!code) code = sm_check_range(p.seconds, 0, 1e6, "seconds", error);
+    if (!code) code = sm_check_range(p.megabytes, 0, 1e6, "megabytes", error);
+    if (code) return code;
+    SmImportLimits limits = {p.seconds, p.megabytes};
+    SmCode inner = sm_import(path, &limits, &made, &why);
+    return finish_mesh(inner, &why, &made, mesh, error);
+}
+
+static SmCode merge(SmMesh *mesh, SmError *why)
+{
+    SmCode code = sm_mesh_check(mesh, "mesh", why);
+    if (!code) {
+        sm_mesh_merge(mesh);
+        if (mesh->triangle_count < 1)
+            code = sm_fail(why, SM_INPUT, "mesh: every triangle has two corners in one place");
+    }
+    if (code) sm_mesh_free(mesh);
+    return code;
+}
+
+int sb_mesh_make(int64_t vertices, const double *position, int64_t triangles, const int *triangle,
+                 sb_mesh **mesh, sb_error *error)
+{
+    SmError why;
+    int code = begin(mesh, "mesh", error);
+    if (!code) code = sm_check_range((double)vertices, 1, INT_MAX, "vertices", error);
+    if (!code) code = sm_check_range((double)triangles, 1, INT_MAX, "triangles", error);
+    if (!code) code = sm_check_given(position, "position", error);
+    if (!code) code = sm_check_given(triangle, "triangle", error);
+    if (code) return code;
+    SmMesh made = sm_mesh_new(vertices, triangles);
+    memcpy(made.position, position, (size_t)vertices * sizeof *made.position);
+    memcpy(made.triangle, triangle, (size_t)triangles * sizeof *made.triangle);
+    SmCode inner = merge(&made, &why);
+    return finish_mesh(inner, &why, &made, mesh, error);
+}
+
+int sb_mesh_shape(const char *name, sb_mesh **mesh, sb_error *error)
+{
+    SmMesh made;
+    SmError why;
+    int code = begin(mesh, "mesh", error);
+    if (!code) code = sm_check_given(name, "name", error);
+    if (code) return code;
+    SmCode inner = sm_shape_mesh(name, &made, &why);
+    return finish_mesh(inner, &why, &made, mesh, error);
+}
+
+const char *sb_shape_name(int number)
+{
+    int count;
+    const SmShape *shapes = sm_shapes(&count);
+    return number >= 0 && number < count ? shapes[number].name : NULL;
+}
+
+int sb_mesh_measure(const sb_mesh *mesh, sb_mesh_facts *facts, size_t size, sb_error *error)
+{
+    int code = sm_check_handle(mesh, SB_IS_MESH, error);
+    if (!code) code = sm_check_given(facts, "facts", error);
+    if (code) return code;
+    SmMeshInfo info = sm_mesh_info(&mesh->mesh);
+    sb_mesh_facts all = {.vertices = info.vertices,
+                         .triangles = info.triangles,
+                         .components = info.components,
+                         .open_edges = info.open_edges,
+                         .nonmanifold_edges = info.nonmanifold_edges,
+                         .flipped_edges = info.flipped_edges,
+                         .degenerate = info.degenerate,
+                         .duplicates = info.duplicates,
+                         .watertight = info.watertight,
+                         .volume = info.volume};
+    memcpy(all.low, info.low, sizeof all.low);
+    memcpy(all.high, info.high, sizeof all.high);
+    sm_give(&all, sizeof all, facts, size);
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_mesh_read_vertices(const sb_mesh *mesh, double *position, int64_t room, sb_error *error)
+{
+    int code = sm_check_handle(mesh, SB_IS_MESH, error);
+    if (!code) code = sm_check_array(position, room, mesh->mesh.vertex_count, "position", error);
+    if (code) return code;
+    memcpy(position, mesh->mesh.position,
+           (size_t)mesh->mesh.vertex_count * sizeof *mesh->mesh.position);
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_mesh_read_triangles(const sb_mesh *mesh, int *triangle, int64_t room, sb_error *error)
+{
+    int code = sm_check_handle(mesh, SB_IS_MESH, error);
+    if (!code) code = sm_check_array(triangle, room, mesh->mesh.triangle_count, "triangle", error);
+    if (code) return code;
+    memcpy(triangle, mesh->mesh.triangle,
+           (size_t)mesh->mesh.triangle_count * sizeof *mesh->mesh.triangle);
+    return sm_done(SM_OK, NULL, error);
+}
+
+void sb_mesh_free(sb_mesh *mesh)
+{
+    if (sm_check_handle(mesh, SB_IS_MESH, NULL)) return;
+    sm_mesh_free(&mesh->mesh);
+    mesh->kind = 0;
+    free(mesh);
+}
+
+/* ---- voxels */
+
+void sb_voxel_params_init(sb_voxel_params *params, size_t size)
+{
+    static const sb_voxel_params defaults = {.fill = SB_SOLID};
+    sm_give_defaults(&defaults, sizeof defaults, params, size);
+}
+
+int sb_voxels_of_mesh(const sb_mesh *mesh, const sb_voxel_params *params, sb_voxels **voxels,
+                      sb_error *error)
+{
+    sb_voxel_params p = {0};
+    int code = begin(voxels, "voxels", error);
+    if (!code) code = sm_check_handle(mesh, SB_IS_MESH, error);
+    if (!code) code = sm_take_params(params, &p, sizeof p, "sb_voxel_params", error);
+    if (!code) code = sm_check_range(p.fill, SB_SOLID, SB_SHELL, "fill", error);
+    if (!code && p.particles == 0 && !(p.cell > 0))
+        code = sm_refuse(error, SB_USAGE,
+                         "'particles' is 0 and 'cell' is %g: give one of them, above 0", p.cell);
+    if (code) return code;
+    SmVoxelParams inner = {p.fill == SB_SHELL ? SM_SHELL : SM_SOLID, p.cell, p.particles,
+                           p.fewer != 0};
+    SmError why;
+    sb_voxels *made = sm_alloc(1, sizeof *made);
+    made->kind = SB_IS_VOXELS;
+    SmCode failed =
+        sm_voxelise_report(&mesh->mesh, &inner, "mesh", &made->voxels, &made->report, &why);
+    if (failed)
+        free(made);
+    else
+        *voxels = made;
+    return sm_done(failed, &why, error);
+}
+
+static int check_lattice(const int cells[3], double cell, const double *origin, sb_error *error)
+{
+    const double most = 2147483648.0, bytes = 512.0 * 1024 * 1024;
+    int code = sm_check_given(cells, "cells", error);
+    for (int d = 0; d < 3 && !code; d++)
+        code = sm_check_range(cells[d], 1, INT_MAX - 64, "cells", error);
+    if (!code) code = sm_check_range(cell, 1e-30, 1e30, "cell", error);
+    if (!code && origin) code = sm_check_finite(origin, 3, 1e30, "origin", error);
+    if (code) return code;
+    double rows = (double)cells[1] * cells[2];
+    if (rows * cells[0] <= most && rows * (cells[0] / 64 + 1) * 8 <= bytes) return SB_OK;
+    return sm_refuse(error, SB_INPUT, "a lattice of %d x %d x %d cells is too large: 2^31 at most",
+                     cells[0], cells[1], cells[2]);
+}
+
+static int64_t cells_of(const SmVoxels *v)
+{
+    return (int64_t)v->size[0] * v->size[1] * v->size[2];
+}
+
+/* A cell by its place in an array over the lattice, x fastest. */
+static void find_cell(const SmVoxels *v, int64_t at, int cell[3])
+{
+    cell[0] = (int)(at % v->size[0]);
+    cell[1] = (int)(at / v->size[0] % v->size[1]);
+    cell[2] = (int)(at / v->size[0] / v->size[1]);
+}
+
+int sb_voxels_make(const int cells[3], double cell, const double origin[3], const uint8_t *filled,
+                   sb_voxels **voxels, sb_error *error)
+{
+    int code = begin(voxels, "voxels", error);
+    if (!code) code = check_lattice(cells, cell, origin, error);
+    if (code) return code;
+    SmVoxels v;
+    sm_voxels_init(&v, cells[0], cells[1], cells[2], cell);
+    if (origin) memcpy(v.origin, origin, sizeof v.origin);
+    for (int64_t at = 0; at < cells_of(&v); at++) {
+        int c[3];
+        find_cell(&v, at, c);
+        if (!filled || filled[at]) sm_voxel_set(&v, c[0], c[1], c[2]);
+    }
+    sm_voxels_count(&v);
+    if (v.cell_count < 1 || v.particle_count > INT_MAX) {
+        code = sm_refuse(error, SB_INPUT, "%lld cells of material with %lld particles: 1 to %d",
+                         (long long)v.cell_count, (long long)v.particle_count, INT_MAX);
+        sm_voxels_free(&v);
+        return code;
+    }
+    *voxels = sm_alloc(1, sizeof **voxels);
+    **voxels = (sb_voxels){.kind = SB_IS_VOXELS, .voxels = v};
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_voxels_measure(const sb_voxels *voxels, sb_voxel_facts *facts, size_t size, sb_error *error)
+{
+    int code = sm_check_handle(voxels, SB_IS_VOXELS, error);
+    if (!code) code = sm_check_given(facts, "facts", error);
+    if (code) return code;
+    const SmVoxels *v = &voxels->voxels;
+    sb_voxel_facts all = {.inside = (int)voxels->report.inside,
+                          .cell = v->cell,
+                          .material = v->cell_count,
+                          .particles = v->particle_count,
+                          .shell_cells = voxels->report.shell_cells,
+                          .flooded_cells = voxels->report.flood_cells,
+                          .voted_cells = voxels->report.vote_cells};
+    memcpy(all.cells, v->size, sizeof all.cells);
+    memcpy(all.origin, v->origin, sizeof all.origin);
+    sm_give(&all, sizeof all, facts, size);
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_voxels_read_cells(const sb_voxels *voxels, uint8_t *filled, int64_t room, sb_error *error)
+{
+    int code = sm_check_handle(voxels, SB_IS_VOXELS, error);
+    if (code) return code;
+    const SmVoxels *v = &voxels->voxels;
+    code = sm_check_array(filled, room, cells_of(v), "filled", error);
+    if (code) return code;
+    for (int64_t at = 0; at < cells_of(v); at++) {
+        int c[3];
+        find_cell(v, at, c);
+        filled[at] = sm_voxel_get(v, c[0], c[1], c[2]);
+    }
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_voxels_read_particles(const sb_voxels *voxels, double *position, int64_t room,
+                             sb_error *error)
+{
+    int code = sm_check_handle(voxels, SB_IS_VOXELS, error);
+    if (code) return code;
+    const SmVoxels *v = &voxels->voxels;
+    code = sm_check_array(position, room, v->particle_count, "position", error);
+    if (code) return code;
+    int(*at)[3] = sm_alloc((size_t)v->particle_count, sizeof *at);
+    sm_voxels_particles(v, at);
+    for (long p = 0; p < v->particle_count; p++)
+        for (int d = 0; d < 3; d++) position[3 * p + d] = v->origin[d] + v->cell * at[p][d];
+    free(at);
+    return sm_done(SM_OK, NULL, error);
+}
+
+int sb_voxels_weigh(const sb_voxels *voxels, double density, double *mass, int64_t room,
+                    sb_error *error)
+{
+    int code = sm_check_handle(voxels, SB_IS_VOXELS, error);
+    if (!code) code = sm_check_array(mass, room, voxels->voxels.particle_count, "mass", error);
+    if (!code && !(density > 0 && isfinite(density)))
+        code = sm_refuse(error, SB_USAGE, "'density' is %g: it is above 0", density);
+    if (code) return code;
+    sm_voxels_weigh(&voxels->voxels, density, mass);
+    return sm_done(SM_OK, NULL, error);
+}
+
+void sb_voxels_free(sb_voxels *voxels)
+{
+    if (sm_check_handle(voxels, SB_IS_VOXELS, NULL)) return;
+    sm_voxels_free(&voxels->voxels);
+    voxels->kind = 0;
+    free(voxels);
+}

@@ -1,0 +1,122 @@
+#include "inner.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "../lib/system/printable.h"
+
+int sm_refuse(sb_error *error, int code, const char *format, ...)
+{
+    if (!error) return code;
+    error->code = code;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->text, sizeof error->text, format, arguments);
+    va_end(arguments);
+    sm_printable(error->text);
+    return code;
+}
+
+int sm_done(SmCode code, const SmError *from, sb_error *error)
+{
+    if (code) return sm_refuse(error, (int)code, "%s", from->text);
+    if (error) error->code = SB_OK, error->text[0] = 0;
+    return SB_OK;
+}
+
+int sm_check_given(const void *pointer, const char *name, sb_error *error)
+{
+    if (pointer) return SB_OK;
+    return sm_refuse(error, SB_USAGE, "'%s' is NULL: it must be given", name);
+}
+
+int sm_check_handle(const void *handle, SbKind kind, sb_error *error)
+{
+    const char *name = kind == SB_IS_MESH     ? "sb_mesh"
+                       : kind == SB_IS_VOXELS ? "sb_voxels"
+                                              : "sb_body";
+    if (!handle) return sm_refuse(error, SB_USAGE, "the %s is NULL: create one first", name);
+    SbKind found;
+    memcpy(&found, handle, sizeof found);
+    if (found == kind) return SB_OK;
+    return sm_refuse(error, SB_USAGE, "what is given as %s is none: a handle of another kind?",
+                     name);
+}
+
+int sm_check_finite(const double *value, int64_t count, double most, const char *name,
+                    sb_error *error)
+{
+    int code = sm_check_given(value, name, error);
+    for (int64_t i = 0; i < count && !code; i++)
+        if (!(fabs(value[i]) <= most))
+            code = sm_refuse(error, SB_USAGE, "'%s' holds %g at %lld: give numbers of at most %g",
+                             name, value[i], (long long)i, most);
+    return code;
+}
+
+int sm_check_array(const void *array, int64_t room, int64_t wanted, const char *name,
+                   sb_error *error)
+{
+    int code = wanted > 0 ? sm_check_given(array, name, error) : SB_OK;
+    if (code || room >= wanted) return code;
+    return sm_refuse(error, SB_USAGE, "'%s' has room for %lld entries, and %lld are needed", name,
+                     (long long)room, (long long)wanted);
+}
+
+int sm_check_range(double value, double least, double most, const char *name, sb_error *error)
+{
+    if (value >= least && value <= most) return SB_OK;
+    return sm_refuse(error, SB_USAGE, "'%s' is %g: it is from %g to %g", name, value, least, most);
+}
+
+enum { MOST_PARAMS = 1 << 16 }; /* bytes: no struct will have so many */
+
+int sm_take_params(const void *from, void *to, size_t size, const char *name, sb_error *error)
+{
+    size_t given;
+    int code = sm_check_given(from, name, error);
+    if (code) return code;
+    memcpy(&given, from, sizeof given);
+    if (given < sizeof given || given > MOST_PARAMS)
+        return sm_refuse(error, SB_USAGE, "'%s' has a size of %zu: call %s_init() first", name,
+                         given, name);
+    for (size_t i = size; i < given; i++)
+        if (((const unsigned char *)from)[i])
+            return sm_refuse(error, SB_USAGE,
+                             "'%s' asks for what this library, version %s, does not have: link a "
+                             "newer one",
+                             name, sb_version_text());
+    memcpy(to, from, given < size ? given : size);
+    return SB_OK;
+}
+
+void sm_give(const void *from, size_t size, void *to, size_t room)
+{
+    memcpy(to, from, room < size ? room : size);
+    if (room > size) memset((char *)to + size, 0, room - size);
+}
+
+void sm_give_defaults(const void *from, size_t size, void *to, size_t room)
+{
+    if (!to || room < sizeof room) return;
+    sm_give(from, size, to, room);
+    memcpy(to, &room, sizeof room);
+}
+
+int sm_check_list(const void *list, int64_t room, const int64_t *count, const char *name,
+                  sb_error *error)
+{
+    int code = sm_check_given(count, "count", error);
+    if (!code && room < 0)
+        code = sm_refuse(error, SB_USAGE, "'room' is %lld: it is 0 or more", (long long)room);
+    return code ? code : sm_check_array(list, room, room, name, error);
+}
+
+void sm_count_particles(sb_body *body)
+{
+    SmCounts counts;
+    body->type->count(body->engine, &counts);
+    body->particles = counts.particles;
+}

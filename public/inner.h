@@ -1,0 +1,90 @@
+/* inner.h - what is behind the handles of shapebench.h, and how their functions check arguments. */
+#ifndef SM_INNER_H
+#define SM_INNER_H
+
+#include "../lib/cut/blade.h"
+#include "../lib/voxel/voxelise.h"
+#include "../octree/change/refinement.h"
+#include "shapebench.h"
+#include "skin.h"
+
+/* What a handle must begin with: one of another kind is noticed before it is used. */
+typedef enum { SB_IS_MESH = 0x73624d31, SB_IS_VOXELS = 0x73625631, SB_IS_BODY = 0x73624231 } SbKind;
+
+struct sb_mesh {
+    SbKind kind;
+    SmMesh mesh;
+};
+
+struct sb_voxels {
+    SbKind kind;
+    SmVoxels voxels;
+    SmVoxelReport report;
+};
+
+/* A blade, and down to which level an octree's cells within reach of its cut are split. */
+typedef struct {
+    SmBlade blade;
+    int level;
+    double reach;
+} SbBlade;
+
+typedef struct {
+    bool gone; /* was removed */
+    SmObstacle obstacle;
+} SbObstacle;
+
+#define SB_FAR 1e9 /* cells: farther off, or faster in a step, is a mistake */
+
+struct sb_body {
+    SbKind kind;
+    const SmEngineType *type;
+    SmEngine *engine;
+    SmVoxels voxels;
+    SmSkin skin;
+    double (*x0)[3]; /* [particles] of a lattice that can be cut, or NULL */
+    int threads;
+    double h;
+    int64_t steps;
+    long particles, instances;
+    /* what was added, by number; handles that were removed have no particles */
+    int handle_count, obstacle_count, blade_count, detail_count;
+    SmHandle *handle; /* their particles are the body's */
+    SbObstacle *obstacle;
+    SbBlade *blade;
+    OctRefinement *detail;
+    bool bind; /* handles or obstacles are to be given to the engine */
+};
+
+/* Checks of arguments: SB_OK, or SB_USAGE and a line. Arrays may be NULL where nothing is wanted of
+ * them; of numbers, NaN is out of every range. */
+int sm_check_handle(const void *handle, SbKind kind, sb_error *error);
+int sm_check_given(const void *pointer, const char *name, sb_error *error);
+int sm_check_finite(const double *value, int64_t count, double most, const char *name,
+                    sb_error *error);
+int sm_check_array(const void *array, int64_t room, int64_t wanted, const char *name,
+                   sb_error *error);
+/* A list of which at most `room` entries are written. */
+int sm_check_list(const void *list, int64_t room, const int64_t *count, const char *name,
+                  sb_error *error);
+int sm_check_range(double value, double least, double most, const char *name, sb_error *error);
+
+/* Asks the engine how many particles there are. */
+void sm_count_particles(sb_body *body);
+
+/* Ends a call: what went wrong inside, or SB_OK. */
+int sm_done(SmCode code, const SmError *from, sb_error *error);
+
+/* Writes the line and returns the code. */
+int sm_refuse(sb_error *error, int code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Copies a caller's struct, whose first member is its size, over `to`, which holds the defaults of
+ * a struct of `size`. */
+int sm_take_params(const void *from, void *to, size_t size, const char *name, sb_error *error);
+
+/* Fills the first `room` bytes of a caller's struct; with defaults its first member is `room`. */
+void sm_give(const void *from, size_t size, void *to, size_t room);
+void sm_give_defaults(const void *from, size_t size, void *to, size_t room);
+
+#endif

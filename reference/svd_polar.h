@@ -1,0 +1,12 @@
+/* svd_polar.h - polar decomposition by GSL's singular value decomposition. */
+#ifndef REF_SVD_POLAR_H
+#define REF_SVD_POLAR_H
+
+/* The proper rotation R nearest to A (maximises tr(R^T A)): R = V diag(1, 1, det) U^T. Where it is
+ * not unique (two smallest singular values sum to zero) the one nearest to `last`, or the identity
+ * where `last` is NULL (`last` is a proper rotation; where it is equally far from all of them, one
+ * that depends on A only). Any A: at zero, and where an entry is not finite, R is `last`. Row-major
+ * 3x3; R may be A or `last`. */
+void ref_polar(const double A[9], const double last[9], double R[9]);
+
+#endif
