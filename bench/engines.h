@@ -2,14 +2,24 @@
  * tables: nothing else asks for an engine's name.
  *
  * A new engine is its folder and a line of bench/engine_list.c. What a program that links the
- * library needs to know of an engine stands in its SmEngineType (lib/engine.h), the rest here. */
+ * library needs to know of an engine stands in its SmEngineType (lib/engine.h), the rest here, in
+ * terms of the subjects that use it: each gives its own record, and this header needs none. */
 #ifndef BENCH_ENGINES_H
 #define BENCH_ENGINES_H
 
-#include "check/check.h"
-#include "measure/checker.h"
-#include "measure/measure.h"
-#include "play/changes.h"
+#include <stdio.h>
+
+#include "../lib/engine.h"
+
+typedef struct OctStructure OctStructure;             /* octree/change/structure.h */
+typedef struct BenchScene BenchScene;                 /* scene/scene.h */
+typedef struct BenchBody BenchBody;                   /* scene/body.h */
+typedef struct BenchRunner BenchRunner;               /* play/runner.h */
+typedef struct BenchCarrier BenchCarrier;             /* play/changes.h */
+typedef struct BenchTwin BenchTwin;                   /* check/check.h */
+typedef struct BenchChecker BenchChecker;             /* measure/checker.h */
+typedef struct BenchMeasureParams BenchMeasureParams; /* measure/measure.h */
+typedef struct BenchRow BenchRow;                     /* measure/row.h */
 
 enum { BENCH_MOST_PLANNED = 4 };
 

@@ -8,10 +8,10 @@
 #include "../lib/error.h"
 #include "../lib/system/printable.h"
 #include "cli/command.h"
-#include "cli/interrupt.h"
 #include "cli/option.h"
-#include "cli/suggest.h"
 #include "scene/scene.h"
+#include "system/interrupt.h"
+#include "system/suggest.h"
 
 static const BenchCommand commands[] = {
     {"tables", "measure a paper's table, checked, its values beside", bench_command_tables},

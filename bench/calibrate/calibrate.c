@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include "../check/check.h"
-#include "../cli/interrupt.h"
 #include "../engines.h"
 #include "../store/draft.h"
+#include "../system/interrupt.h"
 #include "calibration_store.h"
 
 static void measure(BenchCantilever *beam, bool range, BenchSpecimen *specimen)

@@ -3,7 +3,7 @@
 #ifndef BENCH_CALIBRATE_H
 #define BENCH_CALIBRATE_H
 
-#include "../cli/progress.h"
+#include "../system/progress.h"
 #include "calibration.h"
 
 typedef struct {

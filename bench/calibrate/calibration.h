@@ -8,7 +8,7 @@
 #ifndef BENCH_CALIBRATION_H
 #define BENCH_CALIBRATION_H
 
-#include "../measure/machine.h"
+#include "../system/machine.h"
 #include "advice.h"
 #include "specimen.h"
 

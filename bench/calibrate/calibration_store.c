@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../table/column.h"
+#include "../store/h5.h"
 
 static const char file_kind[] = "shapebench calibration";
 

@@ -63,7 +63,7 @@ double bench_check_members(const BenchBody *body, int w);
 /* What an engine's goals are held to: all particles' regions by the scene's w in cells, or a
  * tree's, leaf by leaf as the engine has them (reference/octree_regions.h is their twin, in tests).
  * `members` says how many region members that holds in memory. */
-typedef struct {
+typedef struct BenchTwin {
     double (*members)(const BenchScene *scene, const BenchBody *body, const SmEngine *engine);
     void (*begin)(const BenchScene *scene, const BenchBody *body, const SmEngine *engine,
                   BenchCheck *check);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../store/store.h"
+#include "../table/row_store.h"
 #include "fit.h"
 
 static const char file_kind[] = "shapebench claims";

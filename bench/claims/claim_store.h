@@ -3,7 +3,7 @@
 #ifndef BENCH_CLAIM_STORE_H
 #define BENCH_CLAIM_STORE_H
 
-#include "../measure/machine.h"
+#include "../system/machine.h"
 #include "verdict.h"
 
 /* The layout written; raised with every change that a reader must know of. */

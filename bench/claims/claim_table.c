@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "../table/export.h"
+#include "../store/export.h"
 #include "../table/grid.h"
 
 /* ---- for people */

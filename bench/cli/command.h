@@ -2,9 +2,6 @@
 #ifndef BENCH_COMMAND_H
 #define BENCH_COMMAND_H
 
-/* Those of `regress` alone. */
-enum { BENCH_EXIT_SLOWER = 5, BENCH_EXIT_NO_BASELINE = 6, BENCH_EXIT_NOT_JUDGED = 7 };
-
 /* Exit codes as every command's help prints them; error.h has them as SmCode. */
 #define BENCH_EXIT_CODES                                                                           \
     "Exit codes: 0 done; 1 a correctness check failed (INVALID); 2 unknown option or value out "   \

@@ -5,10 +5,10 @@
 #include "../claims/claim_store.h"
 #include "../claims/claim_table.h"
 #include "../store/draft.h"
+#include "../system/progress.h"
+#include "../system/suggest.h"
 #include "command.h"
 #include "option.h"
-#include "progress.h"
-#include "suggest.h"
 
 enum { KEY_PAPER = 0x2000, KEY_CLAIM, KEY_CLAIMS, KEY_QUICK, KEY_LIST, KEY_FORMAT };
 

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "../kernels/kernel_table.h"
+#include "../system/suggest.h"
 #include "command.h"
 #include "option.h"
-#include "suggest.h"
 
 enum {
     KEY_ONLY = 0x2000,

@@ -16,10 +16,10 @@
 #include "../regress/statistic.h"
 #include "../scene/scene.h"
 #include "../store/draft.h"
+#include "../system/process.h"
+#include "../system/suggest.h"
 #include "command.h"
 #include "option.h"
-#include "process.h"
-#include "suggest.h"
 
 enum {
     KEY_BASELINE = 0x2000,

@@ -8,10 +8,10 @@
 #include "../play/recording.h"
 #include "../scene/points_file.h"
 #include "../store/draft.h"
+#include "../system/progress.h"
 #include "command.h"
 #include "option.h"
 #include "override.h"
-#include "progress.h"
 #include "summary.h"
 
 enum {

@@ -8,13 +8,13 @@
 #include "../measure/measure.h"
 #include "../play/runner.h"
 #include "../store/draft.h"
-#include "../store/store.h"
+#include "../system/suggest.h"
 #include "../table/quantity.h"
+#include "../table/row_store.h"
 #include "../table/table.h"
 #include "command.h"
 #include "option.h"
 #include "override.h"
-#include "suggest.h"
 
 enum {
     KEY_PAPER = 0x2000,

@@ -9,8 +9,8 @@
 
 #include "../../lib/system/printable.h"
 #include "../../lib/system/team.h"
+#include "../system/suggest.h"
 #include "provenance.h"
-#include "suggest.h"
 
 const char *argp_program_version = "shapebench " SHAPEBENCH_VERSION;
 

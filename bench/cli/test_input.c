@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "../../lib/test_frame.h"
-#include "../table/export.h"
+#include "../store/export.h"
 #include "command.h"
 #include "test_program.h"
 

@@ -5,7 +5,7 @@
 #ifndef BENCH_CEILINGS_H
 #define BENCH_CEILINGS_H
 
-#include "../measure/machine.h"
+#include "../system/machine.h"
 
 typedef enum { BENCH_L1, BENCH_L2, BENCH_L3, BENCH_DRAM, BENCH_LEVELS } BenchLevel;
 typedef enum { BENCH_F32, BENCH_F64, BENCH_PRECISIONS } BenchPrecision;

@@ -6,7 +6,7 @@
 #include <time.h>
 
 #include "../check/check.h"
-#include "../measure/room.h"
+#include "../scene/room.h"
 
 enum { MOST_STEPS = 64 }; /* in a sample */
 static const double brute_members = 5e7;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../table/export.h"
+#include "../store/export.h"
 #include "../table/grid.h"
 
 const char *const bench_kernel_formats[] = {"text", "markdown", "csv", "json", NULL};

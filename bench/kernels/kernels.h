@@ -2,7 +2,7 @@
 #ifndef BENCH_KERNELS_H
 #define BENCH_KERNELS_H
 
-#include "../cli/progress.h"
+#include "../system/progress.h"
 #include "ceilings.h"
 #include "work.h"
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "../../lib/shapes/shape.h"
-#include "../measure/room.h"
+#include "../scene/room.h"
 
 /* Of the hand's solid lattice; the second has 35,000 material cells. */
 enum { PARTICLES = 35000, REGULAR_PARTICLES = 41400, BASES = 28, NODES = 661, LEVELS = 4 };

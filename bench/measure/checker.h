@@ -6,7 +6,7 @@
 #include "../play/play.h"
 #include "row.h"
 
-typedef struct {
+typedef struct BenchChecker {
     size_t size; /* of `worst`: what was found of all states of a row, zeroed to begin with */
 
     /* SM_INPUT: the check would take too much memory. May be NULL. */

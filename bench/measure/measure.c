@@ -7,9 +7,11 @@
 #include <string.h>
 
 #include "../../reference/paper.h"
+#include "../check/check.h"
 #include "../engines.h"
-#include "../play/frames.h"
 #include "blocks.h"
+#include "change_row.h"
+#include "checker.h"
 #include "tree_row.h"
 
 /* The state of one part that every timed segment starts from. */
@@ -127,9 +129,9 @@ static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const
 {
     const BenchChecker *checker = bench_engine(type->name)->checker;
     enum { ROUNDS = 3 };
-    BenchFramesParams frames = {params->threads, ROUNDS, params->seed, params->progress};
+    BenchChangeRowParams frames = {params->threads, ROUNDS, params->seed, params->progress};
     BenchPlay play;
-    SmCode code = bench_frames_play(scene, body, type, &frames, &row->change, &play, error);
+    SmCode code = bench_change_row_measure(scene, body, type, &frames, &row->change, &play, error);
     if (code) return code;
     void *check = checker->begin(&play);
     checker->state(check, &play, worst, row);

@@ -13,13 +13,13 @@
 #ifndef BENCH_MEASURE_H
 #define BENCH_MEASURE_H
 
-#include "../cli/progress.h"
 #include "../scene/body.h"
+#include "../system/progress.h"
 #include "row.h"
 
 enum { BENCH_SEGMENT_STEPS = 64 };
 
-typedef struct {
+typedef struct BenchMeasureParams {
     int repeats;          /* 0: 15 */
     double block_seconds; /* 0: 0.02 */
     int threads;

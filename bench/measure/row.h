@@ -9,7 +9,7 @@
 
 enum { BENCH_FRAME_PARTS = 4 };
 
-/* What a scene that changes while it runs comes to, frame by frame (frames.h). Where others took
+/* What a scene that changes while it runs comes to, frame by frame (change_row.h). Where others took
  * the processors all _ms are NaN. */
 typedef struct {
     long frames, changed; /* played; with a change: 0 of a scene that changes nothing */
@@ -33,7 +33,7 @@ typedef struct {
     double found[BENCH_ELASTIC_CHECKS]; /* in the order of elastic_found.h */
 } BenchElasticRow;
 
-typedef struct {
+typedef struct BenchRow {
     char paper[24], paper_row[24]; /* row of the paper set beside it; empty: none */
     char scene[64], engine[24], precision[12];
     char polar[12], summation[12]; /* "fast" or "jacobi"; "fast", "bars" or "naive" */

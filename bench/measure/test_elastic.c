@@ -7,7 +7,7 @@
 #include "../check/elastic_check.h"
 #include "../engines.h"
 #include "../play/runner.h"
-#include "../store/store.h"
+#include "../table/row_store.h"
 #include "../table/table.h"
 #include "elastic_row.h"
 

@@ -3,9 +3,12 @@
  * particles hang on springs, each on its own to where it rests. */
 #include "../../lib/test_folder.h"
 #include "../engines.h"
-#include "../store/store.h"
+#include "../play/changes.h"
+#include "../scene/room.h"
+#include "../table/row_store.h"
 #include "../table/table.h"
-#include "room.h"
+#include "checker.h"
+#include "measure.h"
 
 /* ---- the engine */
 

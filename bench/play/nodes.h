@@ -3,6 +3,7 @@
 #ifndef BENCH_NODES_H
 #define BENCH_NODES_H
 
+#include "../store/h5.h"
 #include "trajectory.h"
 
 /* Writes parameters, tree, leaves, visibility edges and regions. */

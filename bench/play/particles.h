@@ -3,6 +3,7 @@
 #ifndef BENCH_PARTICLES_H
 #define BENCH_PARTICLES_H
 
+#include "../store/h5.h"
 #include "trajectory.h"
 
 typedef struct {

@@ -3,7 +3,7 @@
 #ifndef BENCH_RECORDING_H
 #define BENCH_RECORDING_H
 
-#include "../measure/machine.h"
+#include "../system/machine.h"
 #include "fields.h"
 #include "play.h"
 #include "trajectory.h"

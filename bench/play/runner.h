@@ -4,7 +4,7 @@
 
 #include "../scene/body.h"
 
-typedef struct {
+typedef struct BenchRunner {
     const SmEngineType *type;
     SmEngine *engine;
     const BenchScene *scene; /* the caller's, kept */

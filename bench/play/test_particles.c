@@ -6,6 +6,7 @@
 #include "../../lib/test_random.h"
 #include "../../lib/voxel/test_bodies.h"
 #include "../../reference/brute.h"
+#include "../store/h5.h"
 #include "trajectory.h"
 
 /* Steps of the brute-force engine and of the octree in C, recomputed from the file alone by

@@ -2,8 +2,8 @@
 #include "../../lib/test_frame.h"
 #include "../check/check.h"
 #include "../engines.h"
+#include "../measure/change_row.h"
 #include "fields.h"
-#include "frames.h"
 
 #define BEAM                                                                                       \
     "mesh = \"shape:beam\"; particles = 3000; engine = \"octree\"; epsilon = 0.5; h = 0.01;\n"     \
@@ -260,9 +260,9 @@ TEST(frames_are_timed_and_counted)
     BenchPlay play;
     beam_cut(0.5, 1.6, 3, cut);
     open_show(BEAM, cut, 1, &show);
-    BenchFramesParams params = {.threads = 1, .rounds = 2, .seed = 1};
+    BenchChangeRowParams params = {.threads = 1, .rounds = 2, .seed = 1};
     assert_int_equal(
-        bench_frames_play(&show.scene, &show.body, show.type, &params, &row, &play, NULL), SM_OK);
+        bench_change_row_measure(&show.scene, &show.body, show.type, &params, &row, &play, NULL), SM_OK);
     assert_int_equal(row.frames, 60);
     assert_in_range(row.changed, 1, 35);
     assert_int_equal(row.first_nodes, bench_cast_particles(&show.play.cast));

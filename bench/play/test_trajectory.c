@@ -8,6 +8,7 @@
 #include "../../lib/test_frame.h"
 #include "../cli/test_program.h"
 #include "../store/draft.h"
+#include "../store/h5.h"
 #include "trajectory.h"
 
 enum { FRAMES = 5, SIDE = 12, POINTS = SIDE * SIDE, TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1) };

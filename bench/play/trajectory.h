@@ -8,7 +8,7 @@
 #define BENCH_TRAJECTORY_H
 
 #include "../../octree/engine.h"
-#include "../measure/machine.h"
+#include "../system/machine.h"
 #include "fields.h"
 
 typedef struct BenchTrajectory BenchTrajectory;

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "../table/export.h"
+#include "../store/export.h"
 
 /* The data item of an HDF5 dataset: dimensions, type, file and place. */
 static void write_item(FILE *file, const BenchXdmf *xdmf, const char *attributes, const char *place)

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "../../lib/error.h"
-#include "../cli/command.h"
 #include "statistic.h"
 
 static const double least_interleaved = 0.02, least_apart = 0.10;

@@ -69,7 +69,10 @@ int bench_compare_rounds(int comparisons);
 int bench_comparisons_rounds(const BenchComparison *list, int count,
                              const BenchCompareParams *params);
 
-/* What they come to, as an exit code (command.h): SM_INVALID where anything is INVALID, else
+/* Exit codes of `regress` alone. */
+enum { BENCH_EXIT_SLOWER = 5, BENCH_EXIT_NO_BASELINE = 6, BENCH_EXIT_NOT_JUDGED = 7 };
+
+/* What they come to, as an exit code: SM_INVALID where anything is INVALID, else
  * BENCH_EXIT_SLOWER, else BENCH_EXIT_NO_BASELINE where anything lacks one, else SM_OK where any
  * time is the same or faster, else BENCH_EXIT_NOT_JUDGED: nothing could be said of any. */
 int bench_comparisons_exit(const BenchComparison *list, int count);

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../cli/process.h"
 #include "../scene/scene.h"
+#include "../system/process.h"
 
 enum { PATH = BENCH_DRAFT_PATH, WORDS = 32 };
 

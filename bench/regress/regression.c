@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "../../lib/error.h"
-#include "../cli/command.h"
 #include "../table/grid.h"
 
 const char *const bench_regression_formats[] = {"text",  "markdown", "json",

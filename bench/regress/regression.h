@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "../measure/machine.h"
+#include "../system/machine.h"
 #include "comparison.h"
 
 enum { BENCH_REMARKS = 64, BENCH_REMARK = 320 };

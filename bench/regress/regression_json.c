@@ -4,7 +4,7 @@
 
 #include <gsl/gsl_statistics.h>
 
-#include "../table/export.h"
+#include "../store/export.h"
 #include "regression.h"
 #include "statistic.h"
 

@@ -1,7 +1,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "../table/export.h"
+#include "../store/export.h"
 #include "regression.h"
 
 /* What the verdict is to JUnit; NULL: passed. */

@@ -11,7 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../cli/command.h"
 #include "../measure/measure.h"
 #include "comparison.h"
 #include "rounds.h"

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "../../lib/system/hash.h"
-#include "../cli/process.h"
+#include "../system/process.h"
 
 enum { PATH = BENCH_DRAFT_PATH, WORDS = 24, SETTING = 512 };
 

@@ -7,8 +7,8 @@
 #ifndef BENCH_REVISION_H
 #define BENCH_REVISION_H
 
-#include "../cli/progress.h"
 #include "../store/draft.h"
+#include "../system/progress.h"
 
 typedef struct {
     char commit[64];

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../cli/process.h"
 #include "../measure/measure.h"
+#include "../system/process.h"
 #include "samples.h"
 
 enum { PATH = BENCH_DRAFT_PATH, WORDS = 32 };

@@ -6,9 +6,9 @@
 #ifndef BENCH_ROUNDS_H
 #define BENCH_ROUNDS_H
 
-#include "../cli/progress.h"
-#include "../measure/machine.h"
 #include "../store/draft.h"
+#include "../system/machine.h"
+#include "../system/progress.h"
 #include "contest.h"
 
 /* What to run for one scene; NULL or 0: as the program does of itself. */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../measure/measure.h"
-#include "../store/store.h"
+#include "../table/row_store.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchRow, kind, member)
 #define COUNT(array)        ((int)(sizeof(array) / sizeof((array)[0])))

@@ -5,8 +5,8 @@
 #ifndef BENCH_SAMPLES_H
 #define BENCH_SAMPLES_H
 
-#include "../measure/machine.h"
 #include "../measure/row.h"
+#include "../system/machine.h"
 
 /* Reads `path`. Rows have scene, valid, repeats, total and stage; of paper, engine, precision,
  * reason, particles, regions, w, steps, epsilon, h, threads, input_hash and the machine what the

@@ -6,7 +6,6 @@
 #include "../../lib/error.h"
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
-#include "../cli/command.h"
 #include "regression.h"
 
 enum { REPEATS = 20 };

@@ -8,7 +8,7 @@
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
 #include "../measure/measure.h"
-#include "../store/store.h"
+#include "../table/row_store.h"
 #include "samples.h"
 
 #define TINY "--scene tiny.cfg --repeats 5 --block 0.1 "

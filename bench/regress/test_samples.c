@@ -6,7 +6,7 @@
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
 #include "../measure/measure.h"
-#include "../store/store.h"
+#include "../table/row_store.h"
 #include "samples.h"
 
 enum { ROWS = 2, REPEATS = 7 };

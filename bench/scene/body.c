@@ -10,8 +10,8 @@
 #include "../../lib/system/file.h"
 #include "../../lib/system/printable.h"
 #include "../../lib/voxel/voxelise.h"
-#include "../measure/room.h"
 #include "nearest.h"
+#include "room.h"
 
 SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
 {

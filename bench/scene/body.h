@@ -5,7 +5,7 @@
 #include "../../reference/meshless/surface/mpu.h"
 #include "scene.h"
 
-typedef struct {
+typedef struct BenchBody {
     SmMesh mesh;
     const RefMpu *given; /* of points whose surface the mesh is, the caller's; NULL: a mesh alone */
     SmVoxels voxels;

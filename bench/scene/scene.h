@@ -8,7 +8,7 @@
 #include "../../lib/voxel/voxelise.h"
 #include "../../octree/engine.h"
 #include "../../reference/meshless/engine.h"
-#include "../cli/suggest.h"
+#include "../system/suggest.h"
 
 enum { BENCH_NAME = 64, BENCH_PATH = 1024, BENCH_MAX = 64, BENCH_SETTLE_STEPS = 8 };
 
@@ -66,7 +66,7 @@ typedef struct {
     int level; /* 0: no eye */
 } BenchView;
 
-typedef struct {
+typedef struct BenchScene {
     char name[BENCH_NAME];
     char title[160];
     char paper[24], row[24]; /* the paper's table row that it regenerates; empty: none */

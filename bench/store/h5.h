@@ -62,6 +62,12 @@ void bench_h5_link(BenchH5 *h5, const char *path, hid_t parent, const char *name
 void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, const hsize_t *start,
                    const hsize_t *size);
 
+/* An array of `number` records of `size` bytes as one dataset a member, so that a reader has
+ * tables: group/member is [number], or [number][n] of a member that is an array. Texts become
+ * fixed-length UTF-8, as long as the member. */
+void bench_h5_columns(BenchH5 *h5, hid_t group, const BenchField *fields, int count,
+                      const void *records, size_t size, long number);
+
 /* Reading: wrong type, wrong size and absence are failures that name the thing, and so are datasets
  * of a file that is loaded that hold more than it does, or lie in another one. */
 hid_t bench_h5_find_group(BenchH5 *h5, hid_t parent, const char *name);
@@ -75,6 +81,12 @@ void bench_h5_read_fields(BenchH5 *h5, hid_t object, const BenchField *fields, i
 void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest);
 /* A text attribute into room of `size` bytes. */
 void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size, char *text);
+
+/* Reads `number` records back. Members that `fields` leaves out stay. */
+void bench_h5_read_columns(BenchH5 *h5, hid_t group, const BenchField *fields, int count,
+                           void *records, size_t size, long number);
+/* How many there are: the first axis of the first field's dataset, at most `most`. */
+long bench_h5_records(BenchH5 *h5, hid_t group, const BenchField *fields, long most);
 
 /* Has `write` write the record: the file appears whole or not at all (draft.h). SM_OUTPUT. */
 SmCode bench_h5_store(const char *path, void (*write)(BenchH5 *h5, void *record), void *record,

@@ -6,7 +6,7 @@
 
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
-#include "../cli/interrupt.h"
+#include "../system/interrupt.h"
 #include "draft.h"
 
 static void print(FILE *file, const void *what)

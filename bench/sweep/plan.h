@@ -4,7 +4,7 @@
 #define BENCH_PLAN_H
 
 #include "../../lib/error.h"
-#include "../measure/machine.h"
+#include "../system/machine.h"
 #include "point.h"
 
 enum { BENCH_PLAN_VALUES = 256, BENCH_PLAN_POINTS = 10000 };

@@ -3,8 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "../cli/quote.h"
 #include "../engines.h"
+#include "../scene/scene.h"
+#include "../system/quote.h"
 #include "../table/grid.h"
 #include "front.h"
 

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../store/store.h"
-#include "../table/column.h"
+#include "../store/h5.h"
+#include "../table/row_store.h"
 #include "front.h"
 
 static const char file_kind[] = "shapebench sweep";

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../cli/interrupt.h"
 #include "../store/draft.h"
+#include "../system/interrupt.h"
 #include "sweeper.h"
 
 /* What rank 0 tells the others at the start. */

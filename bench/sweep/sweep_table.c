@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "../engines.h"
-#include "../table/export.h"
+#include "../store/export.h"
 #include "../table/grid.h"
 
 enum { REASONS = 8 };

@@ -3,8 +3,8 @@
 #ifndef BENCH_SWEEPER_H
 #define BENCH_SWEEPER_H
 
-#include "../cli/progress.h"
 #include "../scene/body.h"
+#include "../system/progress.h"
 #include "gap.h"
 #include "plan.h"
 

@@ -3,8 +3,8 @@
 #ifndef BENCH_REPORT_H
 #define BENCH_REPORT_H
 
-#include "../measure/machine.h"
 #include "../measure/row.h"
+#include "../system/machine.h"
 #include "grid.h"
 
 typedef struct {

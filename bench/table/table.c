@@ -1,6 +1,6 @@
 #include "table.h"
 
-#include "export.h"
+#include "../store/export.h"
 #include "quantity.h"
 
 const char *const bench_format_names[] = {"text", "markdown", "csv", "latex", "json", NULL};

@@ -193,13 +193,6 @@ json_t *bench_json_records(const BenchField *fields, int count, const void *reco
     return list;
 }
 
-json_t *bench_json_machine(const BenchMachine *machine)
-{
-    int count;
-    const BenchField *fields = bench_machine_fields(&count);
-    return bench_json_record(fields, count, machine);
-}
-
 void bench_json_write(FILE *file, json_t *root)
 {
     json_dumpf(root, file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));

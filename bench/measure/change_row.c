@@ -1,10 +1,10 @@
-#include "frames.h"
+#include "change_row.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "../measure/moment.h"
-#include "../measure/spread.h"
+#include "moment.h"
+#include "spread.h"
 
 enum { SIMULATION, CHANGE, FOLLOW, SURFACE }; /* in the order of BenchChangeRow */
 
@@ -181,8 +181,8 @@ static void note_end(const BenchPlay *play, BenchChangeRow *row)
     }
 }
 
-static SmCode play_round(BenchPlay *play, int round, const BenchFramesParams *params, Times *times,
-                         BenchChangeRow *row, SmError *error)
+static SmCode play_round(BenchPlay *play, int round, const BenchChangeRowParams *params,
+                         Times *times, BenchChangeRow *row, SmError *error)
 {
     const BenchScene *scene = play->cast.scene;
     SmCode code = SM_OK;
@@ -198,9 +198,9 @@ static SmCode play_round(BenchPlay *play, int round, const BenchFramesParams *pa
     return code;
 }
 
-SmCode bench_frames_play(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                         const BenchFramesParams *params, BenchChangeRow *row, BenchPlay *play,
-                         SmError *error)
+SmCode bench_change_row_measure(const BenchScene *scene, const BenchBody *body,
+                                const SmEngineType *type, const BenchChangeRowParams *params,
+                                BenchChangeRow *row, BenchPlay *play, SmError *error)
 {
     Times times = make_times(scene->frames > 0 ? scene->frames : 1, params->threads);
     SmCode code = SM_OK;

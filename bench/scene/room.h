@@ -3,7 +3,7 @@
 #ifndef BENCH_ROOM_H
 #define BENCH_ROOM_H
 
-#include "../scene/scene.h"
+#include "scene.h"
 
 /* About the bytes that the scene's engine and instances take for a body of so many particles
  * (octree: vertices of the finest lattice): what solid boxes were measured to take. */

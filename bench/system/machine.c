@@ -3,6 +3,7 @@
 
 #include <assimp/version.h>
 #include <gsl/gsl_version.h>
+#include <hdf5.h>
 #include <jansson.h>
 #include <libconfig.h>
 #include <sched.h>
@@ -13,8 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "../cli/quote.h"
 #include "provenance.h"
+#include "quote.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchMachine, kind, member)
 
@@ -207,4 +208,11 @@ void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machin
     struct tm utc;
     gmtime_r(&now, &utc);
     strftime(machine->utc, sizeof machine->utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
+}
+
+json_t *bench_json_machine(const BenchMachine *machine)
+{
+    int count;
+    const BenchField *fields = bench_machine_fields(&count);
+    return bench_json_record(fields, count, machine);
 }

@@ -9,8 +9,8 @@
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
 #include "../measure/measure.h"
-#include "../table/quantity.h"
-#include "store.h"
+#include "quantity.h"
+#include "row_store.h"
 
 enum { ROWS = 2, FRAMES = 7, REPEATS = 7 };
 

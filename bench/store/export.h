@@ -1,11 +1,11 @@
-/* export.h - texts, numbers, records, and where they are from, as CSV, JSON and XML take them. */
+/* export.h - texts, numbers and records as CSV, JSON and XML take them. */
 #ifndef BENCH_EXPORT_H
 #define BENCH_EXPORT_H
 
 #include <jansson.h>
 #include <stdio.h>
 
-#include "../measure/machine.h"
+#include "field.h"
 
 /* RFC 4180: quoted where it must be, with quotes doubled. */
 void bench_csv_text(FILE *file, const char *text);
@@ -36,9 +36,6 @@ json_t *bench_json_cell(const BenchField *field, const void *record);
 json_t *bench_json_record(const BenchField *fields, int count, const void *record);
 json_t *bench_json_records(const BenchField *fields, int count, const void *records, size_t size,
                            long number);
-
-/* The object "environment": all fields of the machine. */
-json_t *bench_json_machine(const BenchMachine *machine);
 
 /* Writes it, nine digits a number, with an end of line, and frees it. */
 void bench_json_write(FILE *file, json_t *root);

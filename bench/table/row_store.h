@@ -1,10 +1,10 @@
-/* store.h - measured rows in HDF5, one file a run. Schema: results/README.md. */
-#ifndef BENCH_STORE_H
-#define BENCH_STORE_H
+/* row_store.h - measured rows in HDF5, one file a run. Schema: results/README.md. */
+#ifndef BENCH_ROW_STORE_H
+#define BENCH_ROW_STORE_H
 
-#include "../measure/machine.h"
 #include "../measure/row.h"
-#include "h5.h"
+#include "../store/h5.h"
+#include "../system/machine.h"
 
 /* The layout written; raised with every change that a reader must know of. */
 enum { BENCH_STORE_SCHEMA = 4 };

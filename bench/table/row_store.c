@@ -1,10 +1,10 @@
-#include "store.h"
+#include "row_store.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "../../reference/paper.h"
-#include "../table/quantity.h"
+#include "quantity.h"
 
 static const char file_kind[] = "shapebench results";
 

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "../store/h5.h"
+#include "../store/export.h"
 
 /* Strings are "unknown" and numbers 0 where unknown. */
 typedef struct {
@@ -28,5 +28,8 @@ bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t siz
 
 /* The record's fields by name; `count` receives how many. */
 const BenchField *bench_machine_fields(int *count);
+
+/* All of them: the object "environment" of JSON. */
+json_t *bench_json_machine(const BenchMachine *machine);
 
 #endif

@@ -1,0 +1,63 @@
+/* What each engine says of itself. */
+#include "../fastlsm/fastlsm.h"
+#include "../octree/engine.h"
+#include "../reference/brute.h"
+#include "../reference/meshless/engine.h"
+#include "check/check.h"
+#include "cli/summary.h"
+#include "engines.h"
+#include "measure/checker.h"
+#include "measure/elastic_row.h"
+#include "measure/tree_row.h"
+#include "play/changes.h"
+#include "scene/room.h"
+
+static void set_cells(BenchScene *scene, double w, double epsilon, bool cells)
+{
+    (void)epsilon, (void)cells;
+    scene->params.w = (int)w;
+}
+
+static void set_octree(BenchScene *scene, double w, double epsilon, bool cells)
+{
+    scene->params.summation = SM_SUM_FAST; /* it has only one way */
+    scene->params.polar = SM_POLAR_FAST;
+    scene->params.layout = SM_LAYOUT_AUTO;
+    scene->octree.width = cells ? (OctWidth){.cells = w} : (OctWidth){.edges = w};
+    scene->octree.epsilon = epsilon;
+}
+
+const BenchEngine bench_fastlsm = {.type = {&fastlsm_engine_f32, &fastlsm_engine_f64},
+                                   .planned = true,
+                                   .yardstick = true,
+                                   .set_width = set_cells,
+                                   .carrier = &bench_lattice_carrier,
+                                   .twin = &bench_lattice_twin,
+                                   .checker = &bench_matching_checker,
+                                   .room = bench_room_lattice};
+
+const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f64},
+                                  .sampled = true,
+                                  .planned = true,
+                                  .set_width = set_octree,
+                                  .carrier = &bench_octree_carrier,
+                                  .twin = &bench_octree_twin,
+                                  .checker = &bench_matching_checker,
+                                  .explain = bench_tree_row_explain,
+                                  .describe = bench_summary_octree,
+                                  .structure = oct_engine_structure,
+                                  .room = bench_room_octree};
+
+const BenchEngine bench_brute = {.type = {&ref_brute_engine},
+                                 .carrier = &bench_lattice_carrier,
+                                 .twin = &bench_lattice_twin,
+                                 .checker = &bench_matching_checker,
+                                 .room = bench_room_brute};
+
+const BenchEngine bench_meshless = {.type = {&ref_meshless_engine},
+                                    .elastic = true,
+                                    .carrier = &bench_lattice_carrier,
+                                    .describe = bench_summary_meshless,
+                                    .measure = bench_elastic_measure,
+                                    .explain = bench_elastic_row_text,
+                                    .room = bench_room_lattice};
