@@ -12,18 +12,19 @@
 #include "../system/interrupt.h"
 #include "calibration_store.h"
 
-static void measure(BenchCantilever *beam, bool range, BenchSpecimen *specimen)
+static void measure(BenchCantilever *cantilever, bool range, BenchSpecimen *specimen)
 {
     BenchStiffness found;
-    specimen->particles = beam->runner.particles;
-    bench_stiffness_measure(beam, &found);
+    specimen->particles = cantilever->runner.particles;
+    bench_stiffness_measure(cantilever, &found);
     if (found.why[0]) {
         snprintf(specimen->reason, sizeof specimen->reason, "%s", found.why);
         return;
     }
-    specimen->valid = bench_check_runner(&beam->runner, sizeof specimen->reason, specimen->reason);
+    specimen->valid =
+        bench_check_runner(&cantilever->runner, sizeof specimen->reason, specimen->reason);
     if (!specimen->valid) return;
-    if (range) bench_stiffness_range(beam, &found);
+    if (range) bench_stiffness_range(cantilever, &found);
     memcpy(specimen->frequency, found.frequency, sizeof found.frequency);
     memcpy(specimen->loss, found.loss, sizeof found.loss);
     specimen->load = found.load;
@@ -45,19 +46,19 @@ void bench_calibrate_measure(const BenchCalibrationPlan *plan, const BenchIdeal 
                                       .h = specimen->h,
                                       .density = plan->density};
     snprintf(options.engine, sizeof options.engine, "%s", specimen->engine);
-    BenchCantilever *beam = sm_alloc(1, sizeof *beam);
+    BenchCantilever *cantilever = sm_alloc(1, sizeof *cantilever);
     const SmEngineType *type;
     SmError error;
     double start = sm_now();
     SmCode code = bench_engine_find(options.engine, "double", &type, &error);
-    if (!code) code = bench_cantilever_create(&options, type, beam, &error);
+    if (!code) code = bench_cantilever_create(&options, type, cantilever, &error);
     if (code)
         snprintf(specimen->reason, sizeof specimen->reason, "%.*s",
                  (int)sizeof specimen->reason - 1, error.text);
     else
-        measure(beam, range, specimen);
-    bench_cantilever_free(beam);
-    free(beam);
+        measure(cantilever, range, specimen);
+    bench_cantilever_free(cantilever);
+    free(cantilever);
     bench_specimen_judge(ideal, plan->thickness, plan->density, specimen);
     specimen->wall = sm_now() - start;
 }

@@ -4,9 +4,9 @@
 #ifndef BENCH_SPECIMEN_H
 #define BENCH_SPECIMEN_H
 
+#include "../beam/stiffness.h"
 #include "../store/h5.h"
 #include "ideal.h"
-#include "stiffness.h"
 
 enum { BENCH_YOUNGS = 1 + BENCH_TONES }; /* by sag, and by each frequency */
 

@@ -7,6 +7,7 @@
 
 #include "../../fastlsm/fastlsm.h"
 #include "../../reference/shape_matching.h"
+#include "../beam/clamped_beam.h"
 #include "../engines.h"
 #include "../kernels/block.h"
 #include "../play/play.h"
@@ -186,26 +187,6 @@ static SmCode prepare(const char *name, Hanging *hanging, SmError *error)
     return code ? code : bench_body_of_scene(scene, NULL, &hanging->body, error);
 }
 
-/* How deep the tip hangs: the mean over the particles farthest along the body's longest axis. */
-static double tip_depth(const Hanging *hanging, const BenchRunner *runner)
-{
-    const SmVoxels *voxels = &hanging->body.voxels;
-    int axis = 0;
-    for (int d = 1; d < 3; d++)
-        if (voxels->size[d] > voxels->size[axis]) axis = d;
-    double end = -INFINITY, sum = 0, count = 0;
-    double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x);
-    runner->type->get(runner->engine, SM_POSITION, x);
-    for (long p = 0; p < runner->count; p++) end = fmax(end, runner->x0[p][axis]);
-    for (long p = 0; p < runner->count; p++) {
-        if (runner->x0[p][axis] < end - 0.5 * voxels->cell) continue;
-        for (int d = 0; d < 3; d++) sum += (x[p][d] - runner->x0[p][d]) * hanging->down[d];
-        count++;
-    }
-    free(x);
-    return sum / count;
-}
-
 /* Plays the scene to its end; the depth is the middle of its last quarter's. */
 static void hang(BenchLab *lab, const Hanging *hanging, BenchCurve *curve)
 {
@@ -218,19 +199,22 @@ static void hang(BenchLab *lab, const Hanging *hanging, BenchCurve *curve)
         bench_curve_fail(curve, "%.180s", error.text);
         return;
     }
-    const BenchRunner *runner = bench_play_runner(&play);
+    BenchClampedBeam beam;
+    bench_clamped_beam_create(bench_play_runner(&play), &beam);
     double *depth = sm_alloc((size_t)last, sizeof *depth);
     for (int f = 0; f < frames; f++) {
         for (int s = 0; s < scene->steps_per_frame; s++) {
             bench_play_prepare(&play);
             bench_play_advance(&play, NULL);
         }
-        if (f >= frames - last) depth[f - (frames - last)] = tip_depth(hanging, runner);
+        if (f >= frames - last)
+            depth[f - (frames - last)] = bench_clamped_beam_tip(&beam, hanging->down);
     }
-    bench_curve_check(curve, runner);
+    bench_curve_check(curve, beam.runner);
     bench_curve_add(curve, scene->params.w, bench_quantile(depth, last, 0.5),
                     bench_quantile(depth, last, 0), bench_quantile(depth, last, 1));
     free(depth);
+    bench_clamped_beam_free(&beam);
     bench_play_free(&play);
 }
 

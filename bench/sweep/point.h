@@ -29,7 +29,7 @@ typedef struct {
 
     double goal_rms, goal_most; /* gap.h: goals from those of epsilon 0, cells */
     char goal_why[BENCH_WHY];
-    double relaxation, sag, frequency; /* beam.h: share a step; of the length; Hz */
+    double relaxation, sag, frequency; /* swing.h: share a step; of the length; Hz */
     char beam_why[BENCH_WHY];
     int full_w;                 /* the half-width of the full resolution beside it; 0: none */
     double path_rms, path_most; /* gap.h: surface from that one's, of the body's size */

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "../../lib/system/hash.h"
-#include "../calibrate/beam.h"
+#include "../beam/swing.h"
 #include "../check/check.h"
 #include "../engines.h"
 #include "../measure/measure.h"
@@ -178,8 +178,8 @@ static const SmEngineType *exact_type(const char *engine)
 
 static void measure_beam(BenchPoint *point)
 {
-    BenchBeam beam;
-    bench_beam_measure(exact_type(point->engine), point->w, point->epsilon, &beam);
+    BenchSwing beam;
+    bench_swing_measure(exact_type(point->engine), point->w, point->epsilon, &beam);
     if (beam.invalid) invalidate(point, "beam", beam.why);
     point->relaxation = beam.relaxation;
     point->sag = beam.sag;

@@ -1,5 +1,5 @@
 /* sweeper.h - measures the points of a sweep: the scene and body that they share, and for each
- * point its cost (measure.h), its stiffness (beam.h) and its gaps (gap.h). */
+ * point its cost (measure.h), its stiffness (swing.h) and its gaps (gap.h). */
 #ifndef BENCH_SWEEPER_H
 #define BENCH_SWEEPER_H
 

@@ -3,8 +3,7 @@
 #ifndef BENCH_STIFFNESS_H
 #define BENCH_STIFFNESS_H
 
-#include "../sweep/point.h"
-#include "cantilever.h"
+#include "clamped_beam.h"
 
 enum { BENCH_TONES = 3 };
 
@@ -16,21 +15,21 @@ typedef struct {
     double unrest;    /* rms acceleration left there, of `load`: below BENCH_REST */
     double linear_to; /* of sags of 5, 10, 20 and 40% of the length, the largest that is, as are all
                        * before it, within 5% of what is in proportion to `load`; 0: none */
-    char why[BENCH_WHY]; /* why not, and then all are NaN; or empty */
+    char why[120];    /* why not, and then all are NaN; or empty */
 } BenchStiffness;
 
 #define BENCH_REST 5e-4
 
 /* Measures the beam, which is left bent. Every mode is let go from theory's shape, a 10,000th of
- * the length high, and its share of the motion is heard for 5 periods of the first, 10 of the
+ * the length high, and its share of the motion is recorded for 5 periods of the first, 10 of the
  * others: the frequency is where its spectrum, under Hann's window, is highest; the loss is how
  * much lower it is of the second half than of the first. The sag is that at rest: critical drag
  * relaxes the first mode, and all others as fast. O(steps in some ten periods of the first mode). A
  * beam that does not swing, or does not come to rest in 30 periods, has no figures. */
-void bench_stiffness_measure(BenchCantilever *beam, BenchStiffness *found);
+void bench_stiffness_measure(BenchCantilever *cantilever, BenchStiffness *found);
 
 /* Finds `linear_to` of a beam that has been measured and is still as that left it. An elastic
  * beam's own sag leaves proportion by 5% at 26% of its length (elastica), for it gets shorter. */
-void bench_stiffness_range(BenchCantilever *beam, BenchStiffness *found);
+void bench_stiffness_range(BenchCantilever *cantilever, BenchStiffness *found);
 
 #endif

@@ -14,12 +14,12 @@ static const double sags[LOADS] = {0.05, 0.1, 0.2, 0.4};
 static const double weight_over_first = 12.362363 / 8; /* omega^2 sag / load in theory */
 static const double two_pi = 6.283185307179586;
 
-/* A mode's share of the motion, step by step. */
+/* A mode's height, step by step. */
 typedef struct {
     long count, room;
     double *value;
     double turns; /* a step: its frequency by passages through zero */
-} Sound;
+} Record;
 
 /* None of it had: NaN everywhere. */
 static BenchStiffness have_none(void)
@@ -29,30 +29,31 @@ static BenchStiffness have_none(void)
     return none;
 }
 
-static void keep(Sound *sound, double value)
+static void keep(Record *record, double value)
 {
-    if (sound->count == sound->room) {
-        sound->room = 2 * sound->room + 1024;
-        sound->value = sm_realloc(sound->value, (size_t)sound->room, sizeof *sound->value);
+    if (record->count == record->room) {
+        record->room = 2 * record->room + 1024;
+        record->value = sm_realloc(record->value, (size_t)record->room, sizeof *record->value);
     }
-    sound->value[sound->count++] = value;
+    record->value[record->count++] = value;
 }
 
-/* Lets the mode go and listens until it has passed through zero often enough. */
-static bool listen(BenchCantilever *beam, int mode, Sound *sound)
+/* Lets the mode go and records it until it has passed through zero often enough. */
+static bool record_mode(BenchCantilever *cantilever, int mode, Record *record)
 {
+    BenchClampedBeam *beam = &cantilever->beam;
     double before = height * beam->length, first = 0;
     int passed = 0;
-    bench_cantilever_bend(beam, mode, before);
-    sound->count = 0;
-    while (sound->count < MOST_STEPS && isfinite(before)) {
-        keep(sound, before);
-        bench_cantilever_step(beam, 0, 0);
-        double now = bench_cantilever_mode(beam, mode);
+    bench_cantilever_bend(cantilever, mode, before);
+    record->count = 0;
+    while (record->count < MOST_STEPS && isfinite(before)) {
+        keep(record, before);
+        bench_clamped_beam_step(beam, 0, 0);
+        double now = bench_clamped_beam_rise(beam, cantilever->share[mode]);
         if ((before > 0) != (now > 0)) {
-            double at = (double)sound->count - 1 + before / (before - now);
+            double at = (double)record->count - 1 + before / (before - now);
             if (passed == 0) first = at;
-            sound->turns = passed / (2 * (at - first));
+            record->turns = passed / (2 * (at - first));
             if (passed++ == 2 * periods[mode]) return true;
         }
         before = now;
@@ -107,55 +108,57 @@ static double fall(const double *value, long count, double turns)
 }
 
 /* A tone that loses nothing falls, too, by the window's leakage: that is taken off. */
-static void hear(const BenchCantilever *beam, const Sound *sound, int mode, BenchStiffness *found)
+static void analyse(const BenchCantilever *cantilever, const Record *record, int mode,
+                    BenchStiffness *found)
 {
-    Part whole = {sound->value, sound->count};
-    double turns = peak(&whole, sound->turns);
-    double *pure = sm_alloc((size_t)sound->count, sizeof *pure);
-    for (long n = 0; n < sound->count; n++) pure[n] = cos(two_pi * turns * (double)n);
-    double lost = fall(sound->value, sound->count, turns) - fall(pure, sound->count, turns);
+    Part whole = {record->value, record->count};
+    double turns = peak(&whole, record->turns);
+    double *pure = sm_alloc((size_t)record->count, sizeof *pure);
+    for (long n = 0; n < record->count; n++) pure[n] = cos(two_pi * turns * (double)n);
+    double lost = fall(record->value, record->count, turns) - fall(pure, record->count, turns);
     free(pure);
-    found->frequency[mode] = turns / beam->scene.params.h;
-    found->loss[mode] = lost / (two_pi / 2 * turns * (double)(sound->count / 2));
+    found->frequency[mode] = turns / cantilever->scene.params.h;
+    found->loss[mode] = lost / (two_pi / 2 * turns * (double)(record->count / 2));
 }
 
 /* Until it is at rest under the load; `omega` is that of the first mode. */
-static bool relax(BenchCantilever *beam, double load, double omega, double *unrest)
+static bool relax(BenchCantilever *cantilever, double load, double omega, double *unrest)
 {
-    double h = beam->scene.params.h, rate = fmin(2 * omega, 0.5 / h);
+    double h = cantilever->scene.params.h, rate = fmin(2 * omega, 0.5 / h);
     long look = (long)ceil(two_pi / (omega * h) / LOOKS);
     for (int i = 0; i < MOST_PERIODS * LOOKS; i++) {
-        for (long step = 0; step < look; step++) bench_cantilever_step(beam, -load, rate);
-        *unrest = bench_cantilever_unrest(beam, -load);
+        for (long step = 0; step < look; step++)
+            bench_clamped_beam_step(&cantilever->beam, -load, rate);
+        *unrest = bench_cantilever_unrest(cantilever, -load);
         if (*unrest < BENCH_REST) return true;
     }
     return false;
 }
 
-static bool sink(BenchCantilever *beam, BenchStiffness *found)
+static bool settle(BenchCantilever *cantilever, BenchStiffness *found)
 {
     double omega = two_pi * found->frequency[0];
-    found->load = omega * omega * small_sag * beam->length / weight_over_first;
-    bench_cantilever_bend(beam, 0, -small_sag * beam->length);
-    if (!relax(beam, found->load, omega, &found->unrest)) return false;
-    found->sag = -bench_cantilever_tip(beam) / beam->length;
+    found->load = omega * omega * small_sag * cantilever->beam.length / weight_over_first;
+    bench_cantilever_bend(cantilever, 0, -small_sag * cantilever->beam.length);
+    if (!relax(cantilever, found->load, omega, &found->unrest)) return false;
+    found->sag = bench_cantilever_sag(cantilever);
     return found->sag > 0;
 }
 
-void bench_stiffness_measure(BenchCantilever *beam, BenchStiffness *found)
+void bench_stiffness_measure(BenchCantilever *cantilever, BenchStiffness *found)
 {
     *found = have_none();
-    Sound sound = {0};
+    Record record = {0};
     for (int k = 0; k < BENCH_TONES && !found->why[0]; k++) {
-        if (listen(beam, k, &sound))
-            hear(beam, &sound, k, found);
+        if (record_mode(cantilever, k, &record))
+            analyse(cantilever, &record, k, found);
         else
             snprintf(found->why, sizeof found->why,
                      "mode %d does not swing to and fro %d times in %d steps", k + 1, periods[k],
                      MOST_STEPS);
     }
-    free(sound.value);
-    if (!found->why[0] && !sink(beam, found))
+    free(record.value);
+    if (!found->why[0] && !settle(cantilever, found))
         snprintf(found->why, sizeof found->why,
                  "it is not at rest after %d periods: %.2g of its weight is left over",
                  MOST_PERIODS, found->unrest);
@@ -166,14 +169,14 @@ void bench_stiffness_measure(BenchCantilever *beam, BenchStiffness *found)
     }
 }
 
-void bench_stiffness_range(BenchCantilever *beam, BenchStiffness *found)
+void bench_stiffness_range(BenchCantilever *cantilever, BenchStiffness *found)
 {
     double omega = two_pi * found->frequency[0];
     for (int i = 0; i < LOADS && !found->why[0]; i++) {
         double load = found->load * sags[i] / found->sag, unrest;
         if (i == 0) found->linear_to = 0;
-        if (!relax(beam, load, omega, &unrest)) return;
-        double sag = -bench_cantilever_tip(beam) / beam->length;
+        if (!relax(cantilever, load, omega, &unrest)) return;
+        double sag = bench_cantilever_sag(cantilever);
         if (!(fabs(sag / sags[i] - 1) <= proportional)) return;
         found->linear_to = sags[i];
     }

@@ -1,4 +1,4 @@
-/* beam.h - how stiff an engine is at a region width and an epsilon: three figures of one beam.
+/* swing.h - how stiff an engine is at a region width and an epsilon: three figures of one beam.
  *
  * The beam is the scene `beam`'s, 0.8 m long and 0.1 m thick, in double precision and without
  * damping; an octree samples it regularly, a node in every finest cell, so that w is the same in
@@ -19,24 +19,23 @@
  * step, are held to double-precision brute force (bench_check_runner()), and sag and frequency to
  * each other: whatever the stiffness, sag (2 pi f)^2 / g of a clamped beam is 1.236 where it only
  * shears and 1.545 where it only bends (Euler and Bernoulli: 1.8751^4 / 8), between which all of
- * Timoshenko's beams lie. BENCH_BEAM_LEAST and _MOST leave a tenth for what is no slender beam. */
-#ifndef BENCH_BEAM_H
-#define BENCH_BEAM_H
+ * Timoshenko's beams lie. BENCH_SWING_LEAST and _MOST leave a tenth for what is no slender beam. */
+#ifndef BENCH_SWING_H
+#define BENCH_SWING_H
 
 #include "../../lib/engine.h"
-#include "../sweep/point.h"
 
 typedef struct {
     double relaxation, sag, frequency; /* NaN: `why` */
     bool invalid;                      /* the check failed: none of the three is there */
-    char why[BENCH_WHY];               /* empty where all could be had */
-} BenchBeam;
+    char why[120];                     /* empty where all could be had */
+} BenchSwing;
 
-#define BENCH_BEAM_LEAST 1.11
-#define BENCH_BEAM_MOST  1.70
+#define BENCH_SWING_LEAST 1.11
+#define BENCH_SWING_MOST  1.70
 
 /* `type` is fastlsm (w a whole number) or the octree in double precision. Deterministic. About 0.1
  * to 1 s. */
-void bench_beam_measure(const SmEngineType *type, double w, double epsilon, BenchBeam *beam);
+void bench_swing_measure(const SmEngineType *type, double w, double epsilon, BenchSwing *found);
 
 #endif
