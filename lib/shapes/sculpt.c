@@ -1,15 +1,11 @@
 #include "sculpt.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../error.h"
-
-static SmPrimitive egg(SmPoint centre, SmPoint radii, double k)
-{
-    return sm_primitive(SM_ELLIPSOID, k, (double[]){centre.x, centre.y, centre.z},
-                        (double[]){radii.x, radii.y, radii.z});
-}
 
 static SmPrimitive limb(SmPoint from, SmPoint to, double from_radius, double to_radius, double k)
 {
@@ -17,42 +13,6 @@ static SmPrimitive limb(SmPoint from, SmPoint to, double from_radius, double to_
                                     (double[]){from_radius, to_radius, 0});
     made.tip[0] = to.x, made.tip[1] = to.y, made.tip[2] = to.z;
     return made;
-}
-
-void sm_sculpt_pair(SmImplicit *solid, const SmPrimitive *primitive)
-{
-    SmPrimitive mirrored = *primitive;
-    sm_implicit_add(solid, primitive);
-    mirrored.centre[0] = -mirrored.centre[0];
-    mirrored.tip[0] = -mirrored.tip[0];
-    for (int row = 0; row < 3; row++) mirrored.axis[row][0] = -mirrored.axis[row][0];
-    if (primitive->centre[0] != 0 || primitive->tip[0] != 0) sm_implicit_add(solid, &mirrored);
-}
-
-void sm_sculpt_egg(SmImplicit *solid, SmPoint centre, SmPoint radii, double k)
-{
-    SmPrimitive made = egg(centre, radii, k);
-    sm_implicit_add(solid, &made);
-}
-
-void sm_sculpt_eggs(SmImplicit *solid, SmPoint centre, SmPoint radii, double k)
-{
-    SmPrimitive made = egg(centre, radii, k);
-    sm_sculpt_pair(solid, &made);
-}
-
-void sm_sculpt_limb(SmImplicit *solid, SmPoint from, SmPoint to, double from_radius,
-                    double to_radius, double k)
-{
-    SmPrimitive made = limb(from, to, from_radius, to_radius, k);
-    sm_implicit_add(solid, &made);
-}
-
-void sm_sculpt_limbs(SmImplicit *solid, SmPoint from, SmPoint to, double from_radius,
-                     double to_radius, double k)
-{
-    SmPrimitive made = limb(from, to, from_radius, to_radius, k);
-    sm_sculpt_pair(solid, &made);
 }
 
 static double catmull_rom(double a, double b, double c, double d, double t)
@@ -88,7 +48,7 @@ void sm_sculpt_tube(SmImplicit *solid, int count, const SmPoint *point, double f
 }
 
 void sm_sculpt_relief(SmImplicit *solid, int base, int count, const SmPoint *point, SmPoint ray,
-                      double radius, double k, int cut)
+                      double radius, double k)
 {
     int chain = solid->count + 1, pieces = 5 * (count - 1);
     SmPoint last = {0, 0, 0};
@@ -97,7 +57,7 @@ void sm_sculpt_relief(SmImplicit *solid, int base, int count, const SmPoint *poi
         SmPoint to = {from.x + ray.x, from.y + ray.y, from.z + ray.z};
         SmPoint next = sm_sculpt_cast(solid, base, from, to);
         SmPrimitive piece = limb(last, next, radius, radius, k);
-        piece.cut = cut;
+        piece.cut = 1;
         piece.chain = chain;
         if (i > 0) sm_implicit_add(solid, &piece);
         last = next;
@@ -119,4 +79,47 @@ SmPoint sm_sculpt_cast(const SmImplicit *solid, int base, SmPoint from, SmPoint 
     }
     free(active);
     return walked < length ? (SmPoint){p[0], p[1], p[2]} : to;
+}
+
+static void add_primitive(SmImplicit *solid, const SmStroke *s)
+{
+    SmPrimitive made = sm_primitive(s->kind, s->blend, s->centre, s->size);
+    made.cut = s->cut;
+    made.rounding = s->rounding;
+    memcpy(made.tip, s->tip, sizeof made.tip);
+    for (int n = 0; n < 2; n++)
+        if (s->turn[n].angle != 0) sm_primitive_turn(&made, s->turn[n].axis, s->turn[n].angle);
+    sm_implicit_add(solid, &made);
+    if (s->form != SM_PAIR || (made.centre[0] == 0 && made.tip[0] == 0)) return;
+    made.centre[0] = -made.centre[0];
+    made.tip[0] = -made.tip[0];
+    for (int row = 0; row < 3; row++) made.axis[row][0] = -made.axis[row][0];
+    sm_implicit_add(solid, &made);
+}
+
+enum { MOST_POINTS = 8 };
+
+static void add_mirrored_tube(SmImplicit *solid, const SmStroke *s)
+{
+    SmPoint mirrored[MOST_POINTS] = {{0}};
+    assert(s->count > 1 && s->count <= MOST_POINTS);
+    for (int i = 0; i < s->count; i++)
+        mirrored[i] = (SmPoint){-s->point[i].x, s->point[i].y, s->point[i].z};
+    sm_sculpt_tube(solid, s->count, mirrored, s->size[0], s->size[1], s->blend, s->cut);
+}
+
+void sm_sculpt(SmImplicit *solid, int count, const SmStroke *stroke)
+{
+    int base = solid->count;
+    for (const SmStroke *s = stroke; s < stroke + count; s++) {
+        if (s->form != SM_RELIEF || s == stroke || s[-1].form != SM_RELIEF) base = solid->count;
+        if (s->form == SM_TUBES) add_mirrored_tube(solid, s);
+        if (s->form == SM_RELIEF)
+            sm_sculpt_relief(solid, base, s->count, s->point, (SmPoint){0, 0, -s->point->z},
+                             s->size[0], s->blend);
+        else if (s->form == SM_TUBE || s->form == SM_TUBES)
+            sm_sculpt_tube(solid, s->count, s->point, s->size[0], s->size[1], s->blend, s->cut);
+        else
+            add_primitive(solid, s);
+    }
 }

@@ -28,157 +28,128 @@ static void drape(SmImplicit *solid, int base, int count, const double (*path)[2
     sm_sculpt_tube(solid, casts, point, from_radius, to_radius, k, 0);
 }
 
-static void drum(SmImplicit *solid, double y, double radius, double half, double k)
-{
-    SmPrimitive made = sm_primitive(SM_DRUM, k, (double[]){0, y, 0}, (double[]){radius, half, 0});
-    made.rounding = 0.4 * half;
-    sm_implicit_add(solid, &made);
-}
+#define DRUM(y, radius, half, k)                                                                   \
+    STROKE(SM_ONE, SM_DRUM, 0, 0, y, 0, radius, half, 0, k, .rounding = 0.4 * (half))
+
+static const SmStroke plinth_drums[] = {
+    DRUM(0.035, 0.400, 0.035, 0),
+    DRUM(0.085, 0.365, 0.025, 0.01),
+    DRUM(0.170, 0.325, 0.082, 0.02),
+    DRUM(0.255, 0.345, 0.024, 0.02),
+};
 
 static void lotus_ring(SmImplicit *solid, int count, double phase, double radius, double y,
                        double lean, SmPoint size)
 {
     for (int i = 0; i < count; i++) {
         double angle = 2 * M_PI * (i + phase) / count;
-        SmPrimitive petal = sm_primitive(
-            SM_ELLIPSOID, 0.014, (double[]){radius * sm_sin(angle), y, radius * sm_cos(angle)},
-            (double[]){size.x, size.y, size.z});
-        sm_primitive_turn(&petal, 0, lean);
-        sm_primitive_turn(&petal, 1, angle);
-        sm_implicit_add(solid, &petal);
+        SmStroke petal = EGG(radius * sm_sin(angle), y, radius * sm_cos(angle), size.x, size.y,
+                             size.z, 0.014, .turn = {{0, lean}, {1, angle}});
+        sm_sculpt(solid, 1, &petal);
     }
 }
 
 static void plinth(SmImplicit *solid)
 {
-    drum(solid, 0.035, 0.400, 0.035, 0);
-    drum(solid, 0.085, 0.365, 0.025, 0.01);
-    drum(solid, 0.170, 0.325, 0.082, 0.02);
-    drum(solid, 0.255, 0.345, 0.024, 0.02);
+    SCULPT(solid, plinth_drums);
     lotus_ring(solid, 18, 0.0, 0.325, 0.135, -0.5, (SmPoint){0.052, 0.055, 0.024});
     lotus_ring(solid, 18, 0.5, 0.325, 0.205, 0.5, (SmPoint){0.052, 0.055, 0.024});
     for (int i = 0; i < 60; i++) {
         double angle = 2 * M_PI * i / 60;
-        sm_sculpt_egg(solid, (SmPoint){0.384 * sm_sin(angle), 0.078, 0.384 * sm_cos(angle)},
-                      (SmPoint){0.014, 0.014, 0.014}, 0.004);
+        SmStroke bead =
+            EGG(0.384 * sm_sin(angle), 0.078, 0.384 * sm_cos(angle), 0.014, 0.014, 0.014, 0.004);
+        sm_sculpt(solid, 1, &bead);
     }
 }
 
-static void body(SmImplicit *solid)
-{
-    sm_sculpt_limb(solid, (SmPoint){0, 0.40, 0}, (SmPoint){0, 0.76, 0}, 0.235, 0.255, 0.02);
-    sm_sculpt_limbs(solid, (SmPoint){0.11, 0.40, 0.05}, (SmPoint){0.12, 0.70, 0.05}, 0.155, 0.16,
-                    0.08);
-    sm_sculpt_egg(solid, (SmPoint){0, 0.295, 0.01}, (SmPoint){0.305, 0.055, 0.265}, 0.10);
-    sm_sculpt_egg(solid, (SmPoint){0, 0.93, 0.075}, (SmPoint){0.290, 0.265, 0.255}, 0.06);
-    sm_sculpt_egg(solid, (SmPoint){0, 1.17, 0.0}, (SmPoint){0.245, 0.20, 0.18}, 0.12);
-    sm_sculpt_limbs(solid, (SmPoint){0.08, 1.30, -0.02}, (SmPoint){0.225, 1.265, -0.01}, 0.09,
-                    0.085, 0.08);
-}
+static const SmStroke body[] = {
+    LIMB(0, 0.40, 0, 0, 0.76, 0, 0.235, 0.255, 0.02),
+    LIMBS(0.11, 0.40, 0.05, 0.12, 0.70, 0.05, 0.155, 0.16, 0.08),
+    EGG(0, 0.295, 0.01, 0.305, 0.055, 0.265, 0.10),
+    EGG(0, 0.93, 0.075, 0.290, 0.265, 0.255, 0.06),
+    EGG(0, 1.17, 0.0, 0.245, 0.20, 0.18, 0.12),
+    LIMBS(0.08, 1.30, -0.02, 0.225, 1.265, -0.01, 0.09, 0.085, 0.08),
+};
 
-static void chest(SmImplicit *solid)
-{
-    sm_sculpt_eggs(solid, (SmPoint){0.095, 1.205, 0.135}, (SmPoint){0.105, 0.075, 0.06}, 0.03);
-    sm_sculpt_eggs(solid, (SmPoint){0.115, 1.185, 0.192}, (SmPoint){0.012, 0.012, 0.012}, 0.006);
-    SmPrimitive navel = sm_primitive(SM_ELLIPSOID, 0.03, (double[]){0, 0.90, 0.335},
-                                     (double[]){0.022, 0.017, 0.03});
-    navel.cut = 1;
-    sm_implicit_add(solid, &navel);
-    sm_sculpt_tube(solid, 3,
-                   (SmPoint[]){{0.14, 1.075, 0.26}, {0, 1.055, 0.295}, {-0.14, 1.075, 0.26}}, 0.012,
-                   0.012, 0.03, 1); /* crease over the belly */
-}
+static const SmStroke chest[] = {
+    EGGS(0.095, 1.205, 0.135, 0.105, 0.075, 0.06, 0.03),
+    EGGS(0.115, 1.185, 0.192, 0.012, 0.012, 0.012, 0.006),
+    PIT(0, 0.90, 0.335, 0.022, 0.017, 0.03, 0.03),
+    GROOVE(0.012, 0.012, 0.03, {0.14, 1.075, 0.26}, {0, 1.055, 0.295},
+           {-0.14, 1.075, 0.26}), /* crease over the belly */
+};
 
-static void head(SmImplicit *solid)
-{
-    sm_sculpt_egg(solid, (SmPoint){0, 1.555, 0.02}, (SmPoint){0.135, 0.150, 0.142}, 0.03);
-    sm_sculpt_limb(solid, (SmPoint){0, 1.30, 0.0}, (SmPoint){0, 1.45, 0.015}, 0.11, 0.10, 0.04);
-    sm_sculpt_eggs(solid, (SmPoint){0.066, 1.487, 0.085}, (SmPoint){0.075, 0.065, 0.07}, 0.03);
-    sm_sculpt_egg(solid, (SmPoint){0, 1.405, 0.075}, (SmPoint){0.105, 0.042, 0.075}, 0.02);
-    sm_sculpt_egg(solid, (SmPoint){0, 1.432, 0.125}, (SmPoint){0.045, 0.032, 0.04}, 0.02);
-    sm_sculpt_egg(solid, (SmPoint){0, 1.530, 0.172}, (SmPoint){0.026, 0.032, 0.028}, 0.015);
-    sm_sculpt_eggs(solid, (SmPoint){0.026, 1.518, 0.163}, (SmPoint){0.017, 0.015, 0.018}, 0.008);
-    SmPrimitive socket = sm_primitive(SM_ELLIPSOID, 0.02, (double[]){0.056, 1.576, 0.170},
-                                      (double[]){0.030, 0.017, 0.020});
-    socket.cut = 1;
-    sm_sculpt_pair(solid, &socket);
-    sm_sculpt_eggs(solid, (SmPoint){0.054, 1.566, 0.132}, (SmPoint){0.026, 0.017, 0.018}, 0.005);
-    static const SmPoint lid[3] = {
-        {0.030, 1.566, 0.158}, {0.056, 1.578, 0.156}, {0.082, 1.566, 0.140}};
-    static const SmPoint brow[3] = {
-        {0.024, 1.606, 0.152}, {0.060, 1.622, 0.143}, {0.098, 1.590, 0.118}};
-    for (int side = -1; side <= 1; side += 2) {
-        SmPoint l[3], b[3];
-        for (int i = 0; i < 3; i++) {
-            l[i] = (SmPoint){side * lid[i].x, lid[i].y, lid[i].z};
-            b[i] = (SmPoint){side * brow[i].x, brow[i].y, brow[i].z};
-        }
-        sm_sculpt_tube(solid, 3, l, 0.005, 0.005, 0.004, 1);
-        sm_sculpt_tube(solid, 3, b, 0.010, 0.007, 0.010, 0);
-    }
-    static const SmPoint smile[5] = {{0.072, 1.497, 0.150},
-                                     {0.042, 1.472, 0.160},
-                                     {0, 1.464, 0.164},
-                                     {-0.042, 1.472, 0.160},
-                                     {-0.072, 1.497, 0.150}};
-    sm_sculpt_tube(solid, 5, smile, 0.011, 0.011, 0.008, 1);
-    sm_sculpt_tube(solid, 3,
-                   (SmPoint[]){{0.045, 1.453, 0.150}, {0, 1.443, 0.160}, {-0.045, 1.453, 0.150}},
-                   0.010, 0.010, 0.008, 0);
-}
+static const SmStroke feet[] = {
+    LIMBS(0.10, 0.30, 0.20, 0.125, 0.292, 0.285, 0.042, 0.032, 0.01),
+};
 
-static void ears(SmImplicit *solid)
-{
-    SmPrimitive ear = sm_primitive(SM_ELLIPSOID, 0.01, (double[]){0.140, 1.545, 0.01},
-                                   (double[]){0.018, 0.065, 0.040});
-    sm_primitive_turn(&ear, 1, 0.35);
-    sm_sculpt_pair(solid, &ear);
-    ear.cut = 1;
-    ear.centre[0] = 0.158, ear.centre[2] = 0.022;
-    ear.size[0] = 0.012, ear.size[1] = 0.042, ear.size[2] = 0.020, ear.blend = 0.006;
-    sm_sculpt_pair(solid, &ear);
-    sm_sculpt_eggs(solid, (SmPoint){0.146, 1.462, 0.018}, (SmPoint){0.017, 0.045, 0.022}, 0.012);
-}
+static const SmStroke head_and_ingot[] = {
+    EGG(0, 1.555, 0.02, 0.135, 0.150, 0.142, 0.03),
+    LIMB(0, 1.30, 0.0, 0, 1.45, 0.015, 0.11, 0.10, 0.04),
+    EGGS(0.066, 1.487, 0.085, 0.075, 0.065, 0.07, 0.03),
+    EGG(0, 1.405, 0.075, 0.105, 0.042, 0.075, 0.02),
+    EGG(0, 1.432, 0.125, 0.045, 0.032, 0.04, 0.02),
+    EGG(0, 1.530, 0.172, 0.026, 0.032, 0.028, 0.015),
+    EGGS(0.026, 1.518, 0.163, 0.017, 0.015, 0.018, 0.008),
+    PITS(0.056, 1.576, 0.170, 0.030, 0.017, 0.020, 0.02),
+    EGGS(0.054, 1.566, 0.132, 0.026, 0.017, 0.018, 0.005),
+    /* lids and brows */
+    GROOVE(0.005, 0.005, 0.004, {-0.030, 1.566, 0.158}, {-0.056, 1.578, 0.156},
+           {-0.082, 1.566, 0.140}),
+    TUBE(0.010, 0.007, 0.010, {-0.024, 1.606, 0.152}, {-0.060, 1.622, 0.143},
+         {-0.098, 1.590, 0.118}),
+    GROOVE(0.005, 0.005, 0.004, {0.030, 1.566, 0.158}, {0.056, 1.578, 0.156},
+           {0.082, 1.566, 0.140}),
+    TUBE(0.010, 0.007, 0.010, {0.024, 1.606, 0.152}, {0.060, 1.622, 0.143}, {0.098, 1.590, 0.118}),
+    /* smile and lip */
+    GROOVE(0.011, 0.011, 0.008, {0.072, 1.497, 0.150}, {0.042, 1.472, 0.160}, {0, 1.464, 0.164},
+           {-0.042, 1.472, 0.160}, {-0.072, 1.497, 0.150}),
+    TUBE(0.010, 0.010, 0.008, {0.045, 1.453, 0.150}, {0, 1.443, 0.160}, {-0.045, 1.453, 0.150}),
+    /* ears */
+    EGGS(0.140, 1.545, 0.01, 0.018, 0.065, 0.040, 0.01, .turn = {{1, 0.35}}),
+    PITS(0.158, 1.545, 0.022, 0.012, 0.042, 0.020, 0.006, .turn = {{1, 0.35}}),
+    EGGS(0.146, 1.462, 0.018, 0.017, 0.045, 0.022, 0.012),
+    /* ingot */
+    EGG(0, 1.865, 0.04, 0.155, 0.045, 0.085, 0.006),
+    EGG(0, 1.905, 0.04, 0.078, 0.075, 0.062, 0.012),
+    LIMBS(0.09, 1.875, 0.04, 0.165, 1.925, 0.04, 0.045, 0.020, 0.02),
+};
+
+/* Hollow from below, as a cast statue is. The shell of a flat underside would be level and one cell
+ * thick, so that a particle and the one above it had the same region; FastLSM's shell has no such
+ * pairs (Table 1: 19,959 regions of as many particles). */
+static const SmStroke hollow[] = {
+    STROKE(SM_ONE, SM_CONE, 1, 0, -0.10, 0, 0.36, 0.05, 0, 0.01, .tip = {0, 0.50, 0}),
+};
+
+#define FINGER(z)                                                                                  \
+    LIMBS(0.192, 1.845, z, 0.190, 1.890, (z) + 0.002, 0.0135, 0.0125, 0.005),                      \
+        LIMBS(0.190, 1.890, (z) + 0.002, 0.150, 1.915, (z) + 0.004, 0.0135, 0.0125, 0.005)
+
+static const SmStroke arm[] = {
+    LIMBS(0.235, 1.27, 0.0, 0.328, 1.50, 0.01, 0.088, 0.070, 0.06),
+    LIMBS(0.328, 1.50, 0.01, 0.205, 1.775, 0.035, 0.062, 0.044, 0.02),
+    EGGS(0.185, 1.825, 0.035, 0.036, 0.058, 0.048, 0.02),
+    FINGER(0.082),
+    FINGER(0.082 - 0.028 * 1),
+    FINGER(0.082 - 0.028 * 2),
+    FINGER(0.082 - 0.028 * 3),
+    LIMBS(0.175, 1.81, 0.07, 0.130, 1.845, 0.098, 0.017, 0.014, 0.008),
+    /* wide sleeves, fallen back to the elbows */
+    LIMBS(0.322, 1.505, 0.008, 0.305, 1.40, -0.005, 0.080, 0.088, 0.03),
+    LIMBS(0.310, 1.44, -0.02, 0.300, 1.08, -0.04, 0.080, 0.045, 0.04),
+};
 
 static void arms(SmImplicit *solid)
 {
-    SmPoint shoulder = {0.235, 1.27, 0.0}, elbow = {0.328, 1.50, 0.01},
-            wrist = {0.205, 1.775, 0.035};
-    sm_sculpt_limbs(solid, shoulder, elbow, 0.088, 0.070, 0.06);
-    sm_sculpt_limbs(solid, elbow, wrist, 0.062, 0.044, 0.02);
-    sm_sculpt_eggs(solid, (SmPoint){0.185, 1.825, 0.035}, (SmPoint){0.036, 0.058, 0.048}, 0.02);
-    for (int i = 0; i < 4; i++) {
-        double z = 0.082 - 0.028 * i;
-        SmPoint joint[3] = {
-            {0.192, 1.845, z}, {0.190, 1.890, z + 0.002}, {0.150, 1.915, z + 0.004}};
-        for (int j = 0; j < 2; j++)
-            sm_sculpt_limbs(solid, joint[j], joint[j + 1], 0.0135, 0.0125, 0.005);
-    }
-    sm_sculpt_limbs(solid, (SmPoint){0.175, 1.81, 0.07}, (SmPoint){0.130, 1.845, 0.098}, 0.017,
-                    0.014, 0.008);
-    /* Wide sleeves, fallen back to the elbows. */
-    sm_sculpt_limbs(solid, (SmPoint){0.322, 1.505, 0.008}, (SmPoint){0.305, 1.40, -0.005}, 0.080,
-                    0.088, 0.03);
-    sm_sculpt_limbs(solid, (SmPoint){0.310, 1.44, -0.02}, (SmPoint){0.300, 1.08, -0.04}, 0.080,
-                    0.045, 0.04);
+    SCULPT(solid, arm);
     for (int i = 0; i < 6; i++) {
         double along = i / 5.0;
-        SmPrimitive fold = sm_primitive(
-            SM_RING, 0.014,
-            (double[]){0.318 - 0.05 * along, 1.535 - 0.20 * along, 0.006 - 0.01 * along},
-            (double[]){0.076 + 0.016 * along, 0.011, 0});
-        sm_primitive_turn(&fold, 2, -0.45 + (i % 2 ? 0.12 : -0.08));
-        sm_primitive_turn(&fold, 0, i % 2 ? 0.10 : -0.12);
-        sm_sculpt_pair(solid, &fold);
+        SmStroke fold = RINGS(
+            0.318 - 0.05 * along, 1.535 - 0.20 * along, 0.006 - 0.01 * along, 0.076 + 0.016 * along,
+            0.011, 0.014, .turn = {{2, -0.45 + (i % 2 ? 0.12 : -0.08)}, {0, i % 2 ? 0.10 : -0.12}});
+        sm_sculpt(solid, 1, &fold);
     }
-}
-
-static void ingot(SmImplicit *solid)
-{
-    sm_sculpt_egg(solid, (SmPoint){0, 1.865, 0.04}, (SmPoint){0.155, 0.045, 0.085}, 0.006);
-    sm_sculpt_egg(solid, (SmPoint){0, 1.905, 0.04}, (SmPoint){0.078, 0.075, 0.062}, 0.012);
-    sm_sculpt_limbs(solid, (SmPoint){0.09, 1.875, 0.04}, (SmPoint){0.165, 1.925, 0.04}, 0.045,
-                    0.020, 0.02);
 }
 
 static void skirt_folds(SmImplicit *solid, int base)
@@ -244,15 +215,17 @@ static void borders(SmImplicit *solid, int base)
         drape(solid, base, 5, (const double(*)[2])path, 0.027, 0.027, 0.008);
     }
     SmPoint knot = on_robe(solid, base, 0, 0.672);
-    sm_sculpt_egg(solid, knot, (SmPoint){0.040, 0.036, 0.045}, 0.008);
+    SmStroke round = EGG(knot.x, knot.y, knot.z, 0.040, 0.036, 0.045, 0.008);
+    sm_sculpt(solid, 1, &round);
     for (int side = -1; side <= 1; side += 2) {
         double path[4][2] = {{0.05 * side, 0.66},
                              {0.16 * side, 0.59},
                              {0.17 * side, 0.50},
                              {(0.20 + 0.04 * side) * side, 0.41}};
         drape(solid, base, 4, (const double(*)[2])path, 0.020, 0.027, 0.006);
-        SmPoint loop = {knot.x + 0.055 * side, knot.y + 0.012, knot.z - 0.01};
-        sm_sculpt_egg(solid, loop, (SmPoint){0.042, 0.024, 0.028}, 0.006);
+        SmStroke loop =
+            EGG(knot.x + 0.055 * side, knot.y + 0.012, knot.z - 0.01, 0.042, 0.024, 0.028, 0.006);
+        sm_sculpt(solid, 1, &loop);
     }
 }
 
@@ -266,38 +239,24 @@ static void beads(SmImplicit *solid, int base)
         SmPoint from = sm_sculpt_curve(7, string, i / 5.0), to = {from.x, from.y, 0};
         SmPoint at = sm_sculpt_cast(solid, base, from, to);
         double r = i == 15 ? 0.026 : 0.0165;
-        sm_sculpt_egg(solid, (SmPoint){at.x, at.y, at.z + 0.2 * r}, (SmPoint){r, r, r}, 0.003);
+        SmStroke bead = EGG(at.x, at.y, at.z + 0.2 * r, r, r, r, 0.003);
+        sm_sculpt(solid, 1, &bead);
     }
-}
-
-/* Hollow from below, as a cast statue is. The shell of a flat underside would be level and one cell
- * thick, so that a particle and the one above it had the same region; FastLSM's shell has no such
- * pairs (Table 1: 19,959 regions of as many particles). */
-static void hollow(SmImplicit *solid)
-{
-    SmPrimitive cavity =
-        sm_primitive(SM_CONE, 0.01, (double[]){0, -0.10, 0}, (double[]){0.36, 0.05, 0});
-    cavity.tip[1] = 0.50;
-    cavity.cut = 1;
-    sm_implicit_add(solid, &cavity);
 }
 
 void sm_sculpt_statue(SmImplicit *solid)
 {
-    body(solid);
+    SCULPT(solid, body);
     int base = solid->count;
-    chest(solid);
+    SCULPT(solid, chest);
     int skin = solid->count;
     plinth(solid);
     skirt_folds(solid, base);
     back_folds(solid, base);
     borders(solid, base);
-    sm_sculpt_limbs(solid, (SmPoint){0.10, 0.30, 0.20}, (SmPoint){0.125, 0.292, 0.285}, 0.042,
-                    0.032, 0.01); /* feet */
+    SCULPT(solid, feet);
     arms(solid);
-    head(solid);
-    ears(solid);
-    ingot(solid);
+    SCULPT(solid, head_and_ingot);
     beads(solid, skin);
-    hollow(solid);
+    SCULPT(solid, hollow);
 }
