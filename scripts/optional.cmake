@@ -32,9 +32,9 @@ pkg_search_module(MPI QUIET mpi-c ompi-c mpich)
 optional_library(mpi [[
 #include <mpi.h>
 int main(void) { return MPI_Init(0, 0); }]]
-  "No MPI: 'mpirun shapebench sweep' will refuse; sweep --shard and merge do without (libopenmpi-dev openmpi-bin)"
+  "No MPI: 'mpirun shapebench' will refuse; --shard and merge do without (libopenmpi-dev openmpi-bin)"
   INCLUDES ${MPI_INCLUDE_DIRS} LIBRARIES ${MPI_LINK_LIBRARIES}
-  USED_BY bench/measure/ranks.c SHAPEBENCH_MPI)
+  USED_BY bench/campaign/ranks.c SHAPEBENCH_MPI)
 
 pkg_check_modules(CMOCKA QUIET cmocka)
 optional_library(cmocka [[

@@ -40,14 +40,9 @@ static int gather(const BenchSpecimen *specimen, long count, int wide,
     return number;
 }
 
-static const double *best_young(const BenchSpecimen *s)
-{
-    return isfinite(s->young_meshless[0]) ? s->young_meshless : s->young_timoshenko;
-}
-
 static double first_gap(const BenchSpecimen *s)
 {
-    return 100 * fabs(best_young(s)[1] / best_young(s)[0] - 1);
+    return 100 * fabs(bench_specimen_youngs(s)[1] / bench_specimen_youngs(s)[0] - 1);
 }
 
 static double theory_gap(const BenchSpecimen *s)

@@ -5,26 +5,51 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../campaign/campaign_run.h"
+#include "../check/check.h"
 #include "../engines.h"
-#include "../sweep/plan.h"
+#include "../store/h5.h"
 
-#define FIELD(kind, member) BENCH_FIELD(BenchCalibrationPlan, kind, member)
+#define FIELD(type, member)  BENCH_FIELD_AS(BenchCalibrationPlan, BENCH_##type, member, #member)
+#define MEANS(of_what, what) BENCH_MEANS(of_what, what)
+#define LIST(name, member, counter, least, low, high)                                              \
+    {                                                                                              \
+        name, "--" name, offsetof(BenchCalibrationPlan, member),                                   \
+            offsetof(BenchCalibrationPlan, counter), least, BENCH_CALIBRATION_VALUES, low, high    \
+    }
 
 enum { SHORTEST = 3, MOST_ASPECT = 100 };
 
-const BenchField *bench_calibration_fields(int *count)
-{
-    static const BenchField fields[] = {
-        FIELD(BENCH_TEXT, scene),     FIELD(BENCH_TEXT, engines),   FIELD(BENCH_TEXT, build),
-        FIELD(BENCH_INT, across),     FIELD(BENCH_INT, aspect),     FIELD(BENCH_DOUBLE, thickness),
-        FIELD(BENCH_DOUBLE, h),       FIELD(BENCH_DOUBLE, density), FIELD(BENCH_DOUBLE, poisson),
-        FIELD(BENCH_DOUBLE, damping), FIELD(BENCH_BOOL, meshless),  FIELD(BENCH_INT, specimens),
-        FIELD(BENCH_INT, ws),         FIELD(BENCH_INT, epsilons),   FIELD(BENCH_INT, acrosses),
-        FIELD(BENCH_INT, aspects),    FIELD(BENCH_INT, steps),
-    };
-    *count = (int)(sizeof fields / sizeof fields[0]);
-    return fields;
-}
+static const BenchField plan_fields[] = {
+    {FIELD(TEXT, scene), MEANS(NULL, "whose beam it is")},
+    {FIELD(TEXT, engines), MEANS(NULL, "\"both\", \"fastlsm\" or \"octree\"")},
+    {FIELD(TEXT, build), MEANS(NULL, "as of a sweep")},
+    {FIELD(INT, across), MEANS("cells", "through the scene's beam")},
+    {FIELD(INT, aspect), MEANS(NULL, "its length over its thickness")},
+    {FIELD(DOUBLE, thickness), MEANS("m", "of it")},
+    {FIELD(DOUBLE, h), MEANS("s", "its time step")},
+    {FIELD(DOUBLE, density), MEANS("kg/m^3", "of every specimen")},
+    {FIELD(DOUBLE, poisson), MEANS(NULL, "Poisson's ratio taken for the elastic body")},
+    {FIELD(DOUBLE, damping), MEANS(NULL, "share k of region damping")},
+    {FIELD(BOOL, meshless),
+     MEANS(NULL, "1: the meshless reference is there, otherwise theory stands alone")},
+    {FIELD(INT, specimens), MEANS(NULL, "planned")},
+    {FIELD(INT, ws), MEANS(NULL, "length of the list `w`")},
+    {FIELD(INT, epsilons), MEANS(NULL, "of `epsilon`")},
+    {FIELD(INT, acrosses), MEANS(NULL, "of `across`")},
+    {FIELD(INT, aspects), MEANS(NULL, "of `aspect`")},
+    {FIELD(INT, steps), MEANS(NULL, "of `step`")},
+};
+
+static const int plan_field_count = sizeof plan_fields / sizeof plan_fields[0];
+
+const BenchCampaignList bench_calibration_lists[BENCH_CALIBRATION_LISTS] = {
+    LIST("w", w, ws, 1, 1, SM_MOST_W),
+    LIST("epsilon", epsilon, epsilons, 1, 0, 4),
+    LIST("across", other_across, acrosses, 0, 1, BENCH_MOST_ACROSS),
+    LIST("aspect", other_aspect, aspects, 0, SHORTEST, MOST_ASPECT),
+    LIST("step", step, steps, 0, 0.001, 1000),
+};
 
 /* ---- the beam */
 
@@ -83,18 +108,26 @@ SmCode bench_calibration_beam(BenchCalibrationPlan *plan, SmError *error)
 /* ---- its specimens */
 
 typedef struct {
-    BenchCalibrationPlan *plan;
-    BenchSpecimen *specimen; /* or NULL */
-    int count;
+    const BenchCalibrationPlan *plan;
+    BenchSpecimen *specimen; /* of the index `wanted`, if any */
+    int wanted, count;
 } List;
+
+static void use_settings(const BenchSpecimen *from, BenchSpecimen *to)
+{
+    for (int f = 0; f < bench_specimen_field_count; f++) {
+        const BenchField *field = &bench_specimen_fields[f];
+        if (field->given_by_plan)
+            memcpy((char *)to + field->offset, (const char *)from + field->offset, field->size);
+    }
+}
 
 /* One more, unless it is the scene's own. */
 static void add(List *list, const BenchEngine *engine, int w, double epsilon, const char *set,
                 double setting)
 {
     const BenchCalibrationPlan *plan = list->plan;
-    BenchSpecimen s = bench_specimen_none();
-    s.index = list->count;
+    BenchSpecimen s = {0};
     snprintf(s.engine, sizeof s.engine, "%s", engine->type[0]->name);
     snprintf(s.set, sizeof s.set, "%s", set);
     s.w = w;
@@ -107,9 +140,7 @@ static void add(List *list, const BenchEngine *engine, int w, double epsilon, co
     if (strcmp(set, "grid") != 0 && s.across == plan->across && s.aspect == plan->aspect &&
         s.h == plan->h)
         return;
-    if (list->specimen && list->count < BENCH_CALIBRATION_SPECIMENS)
-        list->specimen[list->count] = s;
-    list->count++;
+    if (list->count++ == list->wanted) use_settings(&s, list->specimen);
 }
 
 static void add_engines(List *list, int w, bool all, const char *set, double setting)
@@ -139,76 +170,200 @@ static SmCode check_whole(const char *name, const double *value, int count, SmEr
     return SM_OK;
 }
 
-SmCode bench_calibration_plan(BenchCalibrationPlan *plan, BenchSpecimen *specimen, SmError *error)
+static void list_all(List *list)
+{
+    const BenchCalibrationPlan *plan = list->plan;
+    for (int i = 0; i < plan->ws; i++) add_engines(list, (int)plan->w[i], true, "grid", 0);
+    for (int a = 0; a < plan->acrosses; a++)
+        for (int i = 0; i < plan->ws; i++)
+            add_engines(list, (int)plan->w[i], false, "spacing", plan->other_across[a]);
+    for (int a = 0; a < plan->aspects; a++) add_some(list, "aspect", plan->other_aspect[a]);
+    for (int s = 0; s < plan->steps; s++) add_some(list, "step", plan->step[s]);
+}
+
+SmCode bench_calibration_count(BenchCalibrationPlan *plan, SmError *error)
 {
     SmCode code = check_whole("--w", plan->w, plan->ws, error);
     if (!code) code = check_whole("--across", plan->other_across, plan->acrosses, error);
     if (!code) code = check_whole("--aspect", plan->other_aspect, plan->aspects, error);
     if (code) return code;
-    List list = {plan, specimen, 0};
-    for (int i = 0; i < plan->ws; i++) add_engines(&list, (int)plan->w[i], true, "grid", 0);
-    for (int a = 0; a < plan->acrosses; a++)
-        for (int i = 0; i < plan->ws; i++)
-            add_engines(&list, (int)plan->w[i], false, "spacing", plan->other_across[a]);
-    for (int a = 0; a < plan->aspects; a++) add_some(&list, "aspect", plan->other_aspect[a]);
-    for (int s = 0; s < plan->steps; s++) add_some(&list, "step", plan->step[s]);
+    List list = {plan, NULL, -1, 0};
+    if (plan->across >= 1) list_all(&list);
     plan->specimens = list.count;
     if (list.count >= 1 && list.count <= BENCH_CALIBRATION_SPECIMENS) return SM_OK;
     return sm_fail(error, SM_USAGE, "the options make %d specimens; 1 to %d can be", list.count,
                    BENCH_CALIBRATION_SPECIMENS);
 }
 
-void bench_calibration_lists(BenchCalibrationPlan *plan,
-                             BenchCalibrationList list[BENCH_CALIBRATION_LISTS])
+/* ---- what follows from them */
+
+BenchConclusion bench_calibration_conclude(const BenchCampaign *calibration)
 {
-    const BenchCalibrationList all[BENCH_CALIBRATION_LISTS] = {
-        {"w", "--w", 1, SM_MOST_W, plan->w, &plan->ws},
-        {"epsilon", "--epsilon", 0, 4, plan->epsilon, &plan->epsilons},
-        {"across", "--across", 1, BENCH_MOST_ACROSS, plan->other_across, &plan->acrosses},
-        {"aspect", "--aspect", SHORTEST, MOST_ASPECT, plan->other_aspect, &plan->aspects},
-        {"step", "--step", 0.001, 1000, plan->step, &plan->steps},
-    };
-    memcpy(list, all, sizeof all);
+    const BenchCalibrationPlan *plan = calibration->plan;
+    BenchConclusion c = {0};
+    c.laws = bench_law_fit(calibration->point, calibration->count, plan->thickness, plan->density,
+                           c.law);
+    bench_advice_found(calibration->point, calibration->count, c.law, c.laws, c.found);
+    return c;
 }
 
-bool bench_calibration_same(const BenchCalibrationPlan *mine, const BenchCalibrationPlan *theirs,
-                            size_t size, char *what)
+static void write_laws(BenchH5 *h5, const BenchCampaign *calibration)
 {
-    int count;
-    BenchCalibrationPlan one = *mine, other = *theirs;
-    BenchCalibrationList my[BENCH_CALIBRATION_LISTS], their[BENCH_CALIBRATION_LISTS];
-    bench_calibration_lists(&one, my);
-    bench_calibration_lists(&other, their);
-    for (int l = 0; l < BENCH_CALIBRATION_LISTS; l++)
-        if (!bench_plan_numbers_same(my[l].name, my[l].value, *my[l].count, their[l].value,
-                                     *their[l].count, size, what))
-            return false;
-    const BenchField *fields = bench_calibration_fields(&count);
-    return bench_plan_fields_same(fields, count, mine, theirs, size, what);
+    BenchConclusion c = bench_calibration_conclude(calibration);
+    hid_t group = bench_h5_group(h5, h5->file, "laws");
+    bench_h5_columns(h5, group, bench_law_fields, bench_law_field_count, c.law, sizeof *c.law,
+                     c.laws);
+    for (int i = 0; i < BENCH_FOUND; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "found_%d", i + 1);
+        bench_h5_text(h5, group, name, c.found[i]);
+    }
 }
 
-void bench_calibration_add(BenchCalibration *calibration, const BenchSpecimen *specimen)
+/* ---- how they are measured */
+
+static void measure_beam(BenchCantilever *beam, bool range, BenchSpecimen *specimen)
 {
-    long place = calibration->count++;
-    calibration->specimen = sm_realloc(calibration->specimen, (size_t)calibration->count,
-                                       sizeof *calibration->specimen);
-    for (; place > 0 && calibration->specimen[place - 1].index > specimen->index; place--)
-        calibration->specimen[place] = calibration->specimen[place - 1];
-    calibration->specimen[place] = *specimen;
-    bench_calibration_conclude(calibration);
+    BenchStiffness found;
+    specimen->particles = beam->runner.particles;
+    bench_stiffness_measure(beam, &found);
+    if (found.why[0]) {
+        snprintf(specimen->reason, sizeof specimen->reason, "%s", found.why);
+        return;
+    }
+    specimen->valid = bench_check_runner(&beam->runner, sizeof specimen->reason, specimen->reason);
+    if (!specimen->valid) return;
+    if (range) bench_stiffness_range(beam, &found);
+    memcpy(specimen->frequency, found.frequency, sizeof found.frequency);
+    memcpy(specimen->loss, found.loss, sizeof found.loss);
+    specimen->load = found.load;
+    specimen->sag = found.sag;
+    specimen->unrest = found.unrest;
+    specimen->linear_to = found.linear_to;
 }
 
-void bench_calibration_conclude(BenchCalibration *calibration)
+void bench_calibration_measure(const BenchCalibrationPlan *plan,
+                               const BenchIdeal ideal[BENCH_MODELS], bool range,
+                               BenchSpecimen *specimen)
 {
-    const BenchCalibrationPlan *plan = &calibration->plan;
-    calibration->laws = bench_law_fit(calibration->specimen, calibration->count, plan->thickness,
-                                      plan->density, calibration->law);
-    bench_advice_found(calibration->specimen, calibration->count, calibration->law,
-                       calibration->laws, calibration->found);
+    BenchCantileverOptions options = {.w = specimen->w,
+                                      .epsilon = specimen->epsilon,
+                                      .damping = plan->damping,
+                                      .across = specimen->across,
+                                      .along = specimen->across * specimen->aspect,
+                                      .root = (int)ceil(2 * specimen->w * (1 + specimen->epsilon)),
+                                      .cell = specimen->spacing,
+                                      .h = specimen->h,
+                                      .density = plan->density};
+    snprintf(options.engine, sizeof options.engine, "%s", specimen->engine);
+    BenchCantilever *beam = sm_alloc(1, sizeof *beam);
+    const SmEngineType *type;
+    SmError error;
+    double start = sm_now();
+    SmCode code = bench_engine_find(options.engine, "double", &type, &error);
+    if (!code) code = bench_cantilever_create(&options, type, beam, &error);
+    if (code)
+        snprintf(specimen->reason, sizeof specimen->reason, "%.*s",
+                 (int)sizeof specimen->reason - 1, error.text);
+    else
+        measure_beam(beam, range, specimen);
+    bench_cantilever_free(beam);
+    free(beam);
+    bench_specimen_judge(ideal, plan->thickness, plan->density, specimen);
+    specimen->wall = sm_now() - start;
 }
 
-void bench_calibration_free(BenchCalibration *calibration)
+/* What elastic beams of one aspect do, found when it is first asked for. */
+typedef struct {
+    int aspect;
+    BenchIdeal ideal[BENCH_MODELS];
+} Ideals;
+
+static SmCode find_ideals(const BenchCalibrationPlan *plan, int aspect, Ideals *ideals,
+                          SmError *error)
 {
-    free(calibration->specimen);
-    memset(calibration, 0, sizeof *calibration);
+    if (ideals->aspect == aspect) return SM_OK;
+    SmCode code = SM_OK;
+    for (int m = 0; m < BENCH_MODELS && !code; m++)
+        code = bench_ideal_find((BenchModel)m, aspect, plan->poisson, &ideals->ideal[m], error);
+    ideals->aspect = code ? 0 : aspect;
+    return code;
 }
+
+/* The scene's own beam at the first, middle and last w and the first epsilon: where the range is
+ * looked for. */
+static bool wants_range(const BenchCalibrationPlan *plan, const BenchSpecimen *s)
+{
+    bool some =
+        s->w == plan->w[0] || s->w == plan->w[plan->ws / 2] || s->w == plan->w[plan->ws - 1];
+    return some && !strcmp(s->set, "grid") &&
+           (!bench_engine(s->engine)->sampled || s->epsilon == plan->epsilon[0]);
+}
+
+static SmCode begin(BenchCampaign *campaign, const BenchCampaignRun *run, void **work,
+                    SmError *error)
+{
+    (void)campaign, (void)run, (void)error;
+    *work = sm_alloc(1, sizeof(Ideals));
+    return SM_OK;
+}
+
+static SmCode measure(void *work, const BenchCampaign *campaign, void *point, SmError *error)
+{
+    Ideals *ideals = work;
+    const BenchCalibrationPlan *plan = campaign->plan;
+    BenchSpecimen *s = point;
+    SmCode code = find_ideals(plan, s->aspect, ideals, error);
+    if (!code) bench_calibration_measure(plan, ideals->ideal, wants_range(plan, s), s);
+    return code;
+}
+
+/* ---- the campaign */
+
+static SmCode count(void *plan, SmError *error)
+{
+    return bench_calibration_count(plan, error);
+}
+
+static void plan_point(const void *plan, int index, void *point)
+{
+    list_all(&(List){plan, point, index, 0});
+}
+
+static void say(const void *point, size_t size, char *text)
+{
+    const BenchSpecimen *s = point;
+    snprintf(text, size, "%s with w %d, epsilon %g, %d cells thick", s->engine, s->w, s->epsilon,
+             s->across);
+}
+
+static const char *fault(const void *point)
+{
+    const BenchSpecimen *s = point;
+    return s->valid ? NULL : s->reason;
+}
+
+const BenchCampaignType bench_calibration_type = {
+    .command = "calibrate",
+    .name = "calibration",
+    .point = "specimen",
+    .another = "another calibration",
+    .schema = 1,
+    .plan_size = sizeof(BenchCalibrationPlan),
+    .point_size = sizeof(BenchSpecimen),
+    .plan = plan_fields,
+    .points = bench_specimen_fields,
+    .plan_fields = &plan_field_count,
+    .point_fields = &bench_specimen_field_count,
+    .list = bench_calibration_lists,
+    .lists = BENCH_CALIBRATION_LISTS,
+    .planned = offsetof(BenchCalibrationPlan, specimens),
+    .count = count,
+    .plan_point = plan_point,
+    .say = say,
+    .fault = fault,
+    .begin = begin,
+    .measure = measure,
+    .end = free,
+    .write = write_laws,
+};

@@ -12,6 +12,6 @@
  * also has the laws, what was found in sentences, and the reasons; markdown and latex have the laws
  * as a second table. JSON: {"specimens": [...], "laws": [...], "found": [...], "plan": {...},
  * "environment": {...}}. */
-void bench_calibration_table(FILE *file, BenchFormat format, const BenchCalibration *calibration);
+void bench_calibration_table(FILE *file, BenchFormat format, const BenchCampaign *calibration);
 
 #endif

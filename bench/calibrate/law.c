@@ -3,28 +3,67 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_multifit.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../engines.h"
+#include "../table/grid.h"
 
-#define FIELD(kind, member) BENCH_FIELD(BenchLaw, kind, member)
+#define FIELD(type, member)  BENCH_FIELD_AS(BenchLaw, BENCH_##type, member, #member)
+#define MEANS(of_what, what) BENCH_MEANS(of_what, what)
 
 enum { SETTINGS = 4 }; /* spacing, w, aspect, time step */
 
 static const double same = 1e-9; /* of logarithms */
 
-const BenchField *bench_law_fields(int *count)
+/* ---- its members */
+
+static void estimate(const double value[3], char *text)
 {
-    static const BenchField fields[] = {
-        FIELD(BENCH_TEXT, engine),    FIELD(BENCH_TEXT, kind),     FIELD(BENCH_INT, specimens),
-        FIELD(BENCH_DOUBLE, scatter), FIELD(BENCH_DOUBLE, c),      FIELD(BENCH_DOUBLE, spacing),
-        FIELD(BENCH_DOUBLE, width),   FIELD(BENCH_DOUBLE, aspect), FIELD(BENCH_DOUBLE, step),
-        FIELD(BENCH_DOUBLE, d),
-    };
-    *count = (int)(sizeof fields / sizeof fields[0]);
-    return fields;
+    if (isnan(value[0]))
+        strcpy(text, "-");
+    else
+        snprintf(text, BENCH_GRID_TEXT, "%.4g (%.4g to %.4g)", value[0], value[1], value[2]);
 }
+
+#define ESTIMATE(member)                                                                           \
+    static void member##_cell(const void *record, char *text)                                      \
+    {                                                                                              \
+        estimate(((const BenchLaw *)record)->member, text);                                        \
+    }
+ESTIMATE(c)
+ESTIMATE(spacing)
+ESTIMATE(width)
+ESTIMATE(aspect)
+ESTIMATE(step)
+ESTIMATE(d)
+
+const BenchField bench_law_fields[] = {
+    {FIELD(TEXT, engine), MEANS(NULL, "fastlsm or octree"), .title = "engine", .left = true},
+    {FIELD(TEXT, kind), MEANS(NULL, "\"narrow\" and \"wide\" (powers), \"two-term\""),
+     .title = "law", .left = true},
+    {FIELD(INT, specimens), MEANS(NULL, "fitted, at the first epsilon"), .title = "specimens"},
+    {FIELD(DOUBLE, scatter), MEANS("of E", "root mean square of E's deviation")},
+    {FIELD(DOUBLE, c),
+     MEANS(NULL, "value and 95% interval, as of all below; E = c rho spacing^p w^q aspect^s / h^r, "
+                 "or E = rho (spacing/h)^2 w(w+1) (c + d w(w+1) (spacing/thickness)^2)"),
+     BENCH_CELL("c", c_cell)},
+    {FIELD(DOUBLE, spacing), MEANS(NULL, "p"), BENCH_CELL("spacing^p", spacing_cell)},
+    {FIELD(DOUBLE, width), MEANS(NULL, "q"), BENCH_CELL("w^q", width_cell)},
+    {FIELD(DOUBLE, aspect), MEANS(NULL, "s"), BENCH_CELL("aspect^s", aspect_cell)},
+    {FIELD(DOUBLE, step), MEANS(NULL, "r"), BENCH_CELL("1/h^r", step_cell)},
+    {FIELD(DOUBLE, d), MEANS(NULL, "of the two terms"), BENCH_CELL("d", d_cell)},
+    {.kind = BENCH_DOUBLE,
+     .offset = offsetof(BenchLaw, scatter),
+     .title = "off by %",
+     .format = "%.2g",
+     .scale = 100},
+};
+
+const int bench_law_field_count = sizeof bench_law_fields / sizeof bench_law_fields[0];
+
+/* ---- the fit */
 
 static BenchLaw make_law(const char *engine, const char *kind)
 {

@@ -31,7 +31,8 @@ typedef struct {
     double d[3];                                     /* of the two terms */
 } BenchLaw;
 
-const BenchField *bench_law_fields(int *count);
+extern const BenchField bench_law_fields[];
+extern const int bench_law_field_count;
 
 /* Fits what can be fitted: a kind with too few specimens, or whose settings do not differ, is left
  * out, and a setting that does not differ has its exponent NaN. Returns how many laws. */

@@ -1,61 +1,147 @@
 #include "specimen.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
-#define FIELD(kind, member) BENCH_FIELD(BenchSpecimen, kind, member)
+#include "../engines.h"
+#include "../table/grid.h"
 
-const BenchField *bench_specimen_fields(int *count)
+#define FIELD(type, member)  BENCH_FIELD_AS(BenchSpecimen, BENCH_##type, member, #member)
+#define MEANS(of_what, what) BENCH_MEANS(of_what, what)
+#define GIVEN                .given_by_plan = true
+
+/* ---- cells of the table for people */
+
+const double *bench_specimen_youngs(const BenchSpecimen *s)
 {
-    static const BenchField fields[] = {
-        FIELD(BENCH_INT, index),
-        FIELD(BENCH_TEXT, engine),
-        FIELD(BENCH_INT, w),
-        FIELD(BENCH_DOUBLE, epsilon),
-        FIELD(BENCH_INT, across),
-        FIELD(BENCH_INT, aspect),
-        FIELD(BENCH_DOUBLE, spacing),
-        FIELD(BENCH_DOUBLE, h),
-        FIELD(BENCH_TEXT, set),
-        FIELD(BENCH_BOOL, wide),
-        FIELD(BENCH_BOOL, valid),
-        FIELD(BENCH_TEXT, reason),
-        FIELD(BENCH_LONG, particles),
-        FIELD(BENCH_DOUBLE, frequency),
-        FIELD(BENCH_DOUBLE, loss),
-        FIELD(BENCH_DOUBLE, load),
-        FIELD(BENCH_DOUBLE, sag),
-        FIELD(BENCH_DOUBLE, unrest),
-        FIELD(BENCH_DOUBLE, linear_to),
-        FIELD(BENCH_DOUBLE, young),
-        FIELD(BENCH_DOUBLE, spread),
-        FIELD(BENCH_DOUBLE, young_euler),
-        FIELD(BENCH_DOUBLE, young_timoshenko),
-        FIELD(BENCH_DOUBLE, young_meshless),
-        FIELD(BENCH_DOUBLE, wall),
-    };
-    *count = (int)(sizeof fields / sizeof fields[0]);
-    return fields;
+    return isfinite(s->young_meshless[0]) ? s->young_meshless : s->young_timoshenko;
 }
+
+static void modulus(double value, char *text)
+{
+    if (isfinite(value))
+        snprintf(text, BENCH_GRID_TEXT, "%.3e", value);
+    else
+        strcpy(text, "-");
+}
+
+static void epsilon_cell(const void *record, char *text)
+{
+    const BenchSpecimen *s = record;
+    if (bench_engine(s->engine)->sampled)
+        snprintf(text, BENCH_GRID_TEXT, "%g", s->epsilon);
+    else
+        strcpy(text, "-");
+}
+
+static void wide_cell(const void *record, char *text)
+{
+    strcpy(text, ((const BenchSpecimen *)record)->wide ? "wide" : "narrow");
+}
+
+static void young_cell(const void *record, char *text)
+{
+    const BenchSpecimen *s = record;
+    if (s->valid)
+        modulus(s->young, text);
+    else
+        strcpy(text, "INVALID");
+}
+
+#define BY_CELL(name, number)                                                                      \
+    static void name(const void *record, char *text)                                               \
+    {                                                                                              \
+        modulus(bench_specimen_youngs(record)[number], text);                                      \
+    }
+BY_CELL(sag_cell, 0)
+BY_CELL(first_cell, 1)
+BY_CELL(second_cell, 2)
+BY_CELL(third_cell, 3)
+
+static void theory_cell(const void *record, char *text)
+{
+    modulus(((const BenchSpecimen *)record)->young_timoshenko[0], text);
+}
+
+static void frequency_cell(const void *record, char *text)
+{
+    bench_grid_number(((const BenchSpecimen *)record)->frequency[0], text);
+}
+
+static void loss_cell(const void *record, char *text)
+{
+    double loss = ((const BenchSpecimen *)record)->loss[0];
+    if (isnan(loss))
+        strcpy(text, "-");
+    else
+        snprintf(text, BENCH_GRID_TEXT, "%.0e", loss);
+}
+
+/* ---- all members */
+
+const BenchField bench_specimen_fields[] = {
+    {FIELD(INT, index), MEANS(NULL, "place in the plan")},
+    {FIELD(TEXT, engine), MEANS(NULL, "fastlsm or octree"), GIVEN, .title = "engine", .left = true},
+    {FIELD(INT, w), MEANS("cells", "half-width of regions"), GIVEN, .title = "w"},
+    {FIELD(DOUBLE, epsilon), MEANS(NULL, "of a lattice 0"), GIVEN,
+     BENCH_CELL("epsilon", epsilon_cell)},
+    {FIELD(INT, across), MEANS("cells", "through the beam"), GIVEN},
+    {FIELD(INT, aspect), MEANS(NULL, "its length over its thickness"), GIVEN},
+    {FIELD(DOUBLE, spacing), MEANS("mesh units", "edge of a cell"), GIVEN, .title = "spacing",
+     .format = "%.4g"},
+    {FIELD(DOUBLE, h), MEANS("s", "time step"), GIVEN, .title = "h ms", .format = "%.4g",
+     .scale = 1e3},
+    {.kind = BENCH_INT, .offset = offsetof(BenchSpecimen, aspect), .title = "aspect"},
+    {FIELD(TEXT, set),
+     MEANS(NULL, "why it is there: \"grid\", or what differs from the scene's beam: \"spacing\", "
+                 "\"aspect\", \"step\""),
+     GIVEN},
+    {FIELD(BOOL, wide), MEANS(NULL, "regions (2 w + 1 particles) are wider than the beam is thick"),
+     GIVEN, .title = "regions", .left = true, .cell = wide_cell},
+    {FIELD(BOOL, valid),
+     MEANS(NULL, "as it sags, goals and a whole step are as brute force has them, and it is at "
+                 "rest; quantities of an invalid one are NaN")},
+    {FIELD(TEXT, reason), MEANS(NULL, "why it is not valid")},
+    {BENCH_CELL("E Pa", young_cell)},
+    {BENCH_CELL("by sag", sag_cell)},
+    {BENCH_CELL("by f1", first_cell)},
+    {BENCH_CELL("by f2", second_cell)},
+    {BENCH_CELL("by f3", third_cell)},
+    {.kind = BENCH_DOUBLE,
+     .offset = offsetof(BenchSpecimen, spread),
+     .title = "apart %",
+     .format = "%.1f",
+     .scale = 100},
+    {BENCH_CELL("theory", theory_cell)},
+    {FIELD(LONG, particles), MEANS(NULL, "with those that are held")},
+    {FIELD(DOUBLE, frequency), MEANS("Hz", "of the first modes of bending"),
+     BENCH_CELL("f1 Hz", frequency_cell)},
+    {FIELD(DOUBLE, loss), MEANS(NULL, "loss factor of each"), BENCH_CELL("loss factor", loss_cell)},
+    {FIELD(DOUBLE, load), MEANS("m/s^2", "under which it sags")},
+    {FIELD(DOUBLE, sag), MEANS("of the length", "of the tip")},
+    {FIELD(DOUBLE, unrest),
+     MEANS("of the load", "acceleration left, root mean square: at most 5e-4")},
+    {FIELD(DOUBLE, linear_to),
+     MEANS("of the length", "largest of sags of 5, 10, 20, 40% in proportion to the load within "
+                            "5%; NaN: not looked for"),
+     .title = "linear to %", .format = "%g", .scale = 100},
+    {FIELD(DOUBLE, young),
+     MEANS("Pa", "of the elastic body that behaves alike: geometric mean by sag and first "
+                 "frequency, by the meshless beam (or Timoshenko's)")},
+    {FIELD(DOUBLE, spread), MEANS(NULL, "largest over least of all four, less 1")},
+    {FIELD(DOUBLE, young_euler), MEANS("Pa", "by the sag, and by each frequency")},
+    {FIELD(DOUBLE, young_timoshenko), MEANS("Pa", "the same")},
+    {FIELD(DOUBLE, young_meshless), MEANS("Pa", "the same")},
+    {FIELD(DOUBLE, wall), MEANS("s", "that it took")},
+};
+
+const int bench_specimen_field_count =
+    sizeof bench_specimen_fields / sizeof bench_specimen_fields[0];
 
 static void forget(double young[BENCH_YOUNGS])
 {
     for (int i = 0; i < BENCH_YOUNGS; i++) young[i] = NAN;
-}
-
-BenchSpecimen bench_specimen_none(void)
-{
-    BenchSpecimen none = {.load = NAN,
-                          .sag = NAN,
-                          .unrest = NAN,
-                          .linear_to = NAN,
-                          .young = NAN,
-                          .spread = NAN,
-                          .wall = NAN};
-    for (int k = 0; k < BENCH_TONES; k++) none.frequency[k] = none.loss[k] = NAN;
-    forget(none.young_euler);
-    forget(none.young_timoshenko);
-    forget(none.young_meshless);
-    return none;
 }
 
 void bench_specimen_judge(const BenchIdeal ideal[BENCH_MODELS], double thickness, double density,

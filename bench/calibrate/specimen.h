@@ -1,43 +1,41 @@
 /* specimen.h - one point of a calibration: an engine, w, epsilon, spacing and time step on one
  * beam, what was measured of it, and the elastic body that behaves alike. `shapebench calibrate`
- * prints it and the calibration's file stores it (results/README.md). */
+ * prints it and the calibration's file stores it. What the members are, with their units, is said
+ * in specimen.c once, for all of these and for results/README.md. */
 #ifndef BENCH_SPECIMEN_H
 #define BENCH_SPECIMEN_H
 
+#include "../../lib/error.h"
 #include "../beam/stiffness.h"
-#include "../store/h5.h"
+#include "../store/field.h"
 #include "ideal.h"
 
 enum { BENCH_YOUNGS = 1 + BENCH_TONES }; /* by sag, and by each frequency */
 
 /* Quantities that could not be had are NaN. */
 typedef struct {
-    int index;          /* in the plan, from 0 */
-    char engine[12];    /* a planned one (engines.h) */
-    int w;              /* half-width of regions, cells */
-    double epsilon;     /* of a lattice 0 */
-    int across, aspect; /* cells through the beam; its length over its thickness */
-    double spacing, h;  /* edge of a cell, mesh units; time step, s */
-    char
-        set[12]; /* why it is there: "grid", or what differs from it: "spacing", "aspect", "step" */
-    bool wide;   /* regions are wider than the beam is thick: 2 w + 1 particles */
-    bool valid;  /* checked against brute force, and at rest; otherwise nothing is known */
-    char reason[160]; /* why not */
+    int index;
+    char engine[12]; /* a planned one (engines.h) */
+    int w;
+    double epsilon;
+    int across, aspect;
+    double spacing, h;
+    char set[12];
+    bool wide, valid;
+    char reason[160];
     long particles;
     double frequency[BENCH_TONES], loss[BENCH_TONES]; /* stiffness.h, as all up to linear_to */
-    double load, sag, unrest, linear_to;              /* linear_to NaN: not looked for */
-    double young;  /* Pa where lengths are m: of the elastic body that behaves alike, the geometric
-                    * mean  of what the sag and the first frequency say, by the reference, which is
-                    * the  meshless one, or without it Timoshenko's */
-    double spread; /* largest over least of what sag and frequencies say, less 1 */
+    double load, sag, unrest, linear_to;
+    double young, spread;
     double young_euler[BENCH_YOUNGS], young_timoshenko[BENCH_YOUNGS], young_meshless[BENCH_YOUNGS];
-    double wall; /* seconds that it took */
+    double wall;
 } BenchSpecimen;
 
-const BenchField *bench_specimen_fields(int *count);
+extern const BenchField bench_specimen_fields[];
+extern const int bench_specimen_field_count;
 
-/* With its settings zeroed and every quantity NaN. */
-BenchSpecimen bench_specimen_none(void);
+/* The moduli by the reference: the meshless one, or without it Timoshenko's. */
+const double *bench_specimen_youngs(const BenchSpecimen *specimen);
 
 /* Fills in the moduli from what was measured on a beam `thickness` thick, of that density. */
 void bench_specimen_judge(const BenchIdeal ideal[BENCH_MODELS], double thickness, double density,

@@ -11,7 +11,7 @@
 #include "../cli/test_program.h"
 #include "../engines.h"
 #include "../play/runner.h"
-#include "calibration_store.h"
+#include "calibration.h"
 
 /* A short beam of two cells through; three specimens, and one with another step. */
 #define SMALL                                                                                      \
@@ -59,34 +59,49 @@ static int set_up(void **state)
     return 0;
 }
 
-static void load(const char *name, BenchCalibration *calibration)
+static void load(const char *name, BenchCampaign *calibration)
 {
     SmError error;
-    if (bench_calibration_load(path_in(name), calibration, &error)) fail_msg("%s", error.text);
+    if (bench_campaign_load(path_in(name), &bench_calibration_type, calibration, &error))
+        fail_msg("%s", error.text);
 }
 
 TEST(a_specimen_has_its_figures)
 {
-    BenchCalibration *c = sm_alloc(1, sizeof *c);
-    load("whole.h5", c);
-    assert_true(c->plan.across == 2 && c->plan.aspect == 3 && c->plan.h == 1e-3);
-    assert_int_equal(c->count, 4);
+    BenchCampaign c;
+    load("whole.h5", &c);
+    const BenchCalibrationPlan *plan = c.plan;
+    const BenchSpecimen *specimen = c.point;
+    assert_true(plan->across == 2 && plan->aspect == 3 && plan->h == 1e-3);
+    assert_int_equal(c.count, 4);
     for (int i = 0; i < 4; i++) {
-        const BenchSpecimen *s = &c->specimen[i];
+        const BenchSpecimen *s = &specimen[i];
         assert_true(s->valid && s->unrest < BENCH_REST && s->particles > 0 && s->wall > 0);
         assert_true(s->sag > 9e-4 && s->sag < 1.1e-3 && s->spread < 0.5);
         assert_true(fabs(s->young_timoshenko[1] / s->young_timoshenko[0] - 1) < 0.03);
-        assert_int_equal(isfinite(s->young_meshless[0]), c->plan.meshless);
+        assert_int_equal(isfinite(s->young_meshless[0]), plan->meshless);
     }
-    assert_true(c->specimen[1].young > 2 * c->specimen[0].young);
-    assert_true(fabs(c->specimen[0].young / c->specimen[2].young - 4) < 1e-3); /* twice the step */
-    assert_true(c->specimen[0].linear_to >= 0.1 && isnan(c->specimen[2].linear_to));
-    bench_calibration_free(c);
-    free(c);
+    assert_true(specimen[1].young > 2 * specimen[0].young);
+    assert_true(fabs(specimen[0].young / specimen[2].young - 4) < 1e-3); /* twice the step */
+    assert_true(specimen[0].linear_to >= 0.1 && isnan(specimen[2].linear_to));
+    bench_campaign_free(&c);
 }
 
-/* Interrupted as soon as a specimen is stored; what is there is not measured again, and the whole
- * is the same to the last bit but for the time that it took. */
+/* The file has all specimens of whole.h5, the same to the last bit but for the time they took. */
+static void equals_whole(const char *name)
+{
+    BenchCampaign whole, other;
+    load("whole.h5", &whole);
+    load(name, &other);
+    assert_int_equal(other.count, whole.count);
+    BenchSpecimen *ours = other.point, *theirs = whole.point;
+    for (int i = 0; i < whole.count; i++) ours[i].wall = theirs[i].wall;
+    assert_memory_equal(ours, theirs, 4 * sizeof *ours);
+    bench_campaign_free(&whole);
+    bench_campaign_free(&other);
+}
+
+/* Interrupted as soon as a specimen is stored; what is there is not measured again. */
 TEST(an_interrupted_calibration_goes_on)
 {
     char said[512];
@@ -94,22 +109,53 @@ TEST(an_interrupted_calibration_goes_on)
     slurp("err", said, sizeof said);
     assert_non_null(strstr(said, "interrupted: part.h5 keeps the specimens that are finished"));
     assert_int_equal(entries(".tmp"), 0);
-    BenchCalibration *part = sm_alloc(1, sizeof *part), *whole = sm_alloc(1, sizeof *whole);
-    load("part.h5", part);
-    assert_in_range(part->count, 1, 3);
-    double took = part->specimen[0].wall;
-    bench_calibration_free(part);
-    runs(SMALL " -o part.h5");
-    load("part.h5", part);
-    load("whole.h5", whole);
-    assert_int_equal(part->count, whole->count);
-    assert_true(part->specimen[0].wall == took);
-    for (int i = 0; i < whole->count; i++) part->specimen[i].wall = whole->specimen[i].wall;
-    assert_memory_equal(part->specimen, whole->specimen, 4 * sizeof *whole->specimen);
-    bench_calibration_free(part);
-    bench_calibration_free(whole);
-    free(part);
-    free(whole);
+    BenchCampaign part;
+    load("part.h5", &part);
+    assert_in_range(part.count, 1, 3);
+    double took = ((BenchSpecimen *)part.point)->wall;
+    bench_campaign_free(&part);
+    runs(SMALL " --resume -o part.h5");
+    equals_whole("part.h5");
+    load("part.h5", &part);
+    assert_true(((BenchSpecimen *)part.point)->wall == took);
+    bench_campaign_free(&part);
+}
+
+/* As three tasks of a job array. */
+TEST(shards_merge_to_the_whole)
+{
+    setenv("SLURM_ARRAY_TASK_COUNT", "3", 1);
+    setenv("SLURM_ARRAY_TASK_MIN", "5", 1);
+    runs(SMALL " --shard 3/3 -o three.h5");
+    setenv("SLURM_ARRAY_TASK_ID", "5", 1);
+    runs(SMALL " --shard auto -o one.h5");
+    setenv("SLURM_ARRAY_TASK_ID", "6", 1);
+    runs(SMALL " --shard auto -o two.h5");
+    runs("merge some.h5 three.h5 one.h5");
+    assert_string_equal(result.out, "some.h5: 3 of 4 specimens\n"
+                                    "missing: 1, the first fastlsm with w 2, epsilon 0, 2 cells "
+                                    "thick\n");
+    runs("merge all.h5 three.h5 one.h5 two.h5");
+    assert_string_equal(result.out, "all.h5: 4 of 4 specimens\n");
+    equals_whole("all.h5");
+    runs("calibrate some.h5");
+    run("merge --overwrite all.h5 one.h5 noise.h5", &result);
+    assert_int_equal(result.code, 3);
+    equals_whole("all.h5");
+}
+
+/* Two ranks do the same as one. */
+TEST(ranks_share_the_work)
+{
+    if (system("command -v mpirun >/dev/null 2>&1") != 0) {
+        print_message("no mpirun here: not tested\n");
+        skip();
+    }
+    run_with("ASAN_OPTIONS=detect_leaks=0 mpirun --allow-run-as-root --oversubscribe -n 2",
+             SMALL " -o ranks.h5", &result);
+    if (strstr(result.err, "built without MPI")) return;
+    if (result.code) fail_msg("%d: %s", result.code, result.err);
+    equals_whole("ranks.h5");
 }
 
 TEST(tables_in_every_format)
@@ -222,13 +268,12 @@ TEST(a_beam_that_does_not_swing_is_invalid)
     assert_int_equal(result.code, 1);
     assert_non_null(strstr(result.err, "1 of 1 specimens are INVALID"));
     assert_non_null(strstr(result.out, "INVALID"));
-    BenchCalibration *bad = sm_alloc(1, sizeof *bad);
-    load("bad.h5", bad);
-    const BenchSpecimen *s = bad->specimen;
+    BenchCampaign bad;
+    load("bad.h5", &bad);
+    const BenchSpecimen *s = bad.point;
     assert_true(!s->valid && s->reason[0] && isnan(s->young) && isnan(s->frequency[0]) &&
                 isnan(s->sag));
-    bench_calibration_free(bad);
-    free(bad);
+    bench_campaign_free(&bad);
 }
 
 TEST(mistakes_are_one_line)
@@ -253,6 +298,8 @@ TEST(mistakes_are_one_line)
         {"calibrate --scene penguin", 3, "its body is no beam"},
         {"calibrate --scene block", 3, "its body is no beam"},
         {"calibrate --scene fine.cfg", 3, "its beam is 100 cells thick; 1 to 64 can be"},
+        {"calibrate --shard 0/2", 2, "--shard: '0/2' is not I/N"},
+        {"calibrate whole.h5 --shard 1/2", 2, "whole.h5 alone is shown as it is"},
         {"calibrate a.h5 b.h5", 2, "what is 'b.h5'?"},
         {"calibrate whole.h5 --w 3", 2, "whole.h5 alone is shown as it is"},
         {"calibrate whole.h5 -o x.h5", 2, "whole.h5 alone is shown as it is"},

@@ -3,7 +3,7 @@
 
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
-#include "calibration_store.h"
+#include "calibration.h"
 
 static const BenchCalibrationPlan sample_plan = {.scene = "beam",
                                                  .engines = "both",
@@ -32,41 +32,75 @@ static double two_terms(const BenchSpecimen *s, double c, double d)
     return 1000 * speed * speed * W * (c + d * size) * (s->epsilon > 0 ? 2 : 1);
 }
 
-/* All specimens of the plan, finished and valid, with a law's modulus. */
-static BenchCalibration *make(double c, double d)
+/* A calibration, and what follows from it. */
+typedef struct {
+    BenchCampaign campaign;
+    BenchCalibrationPlan *plan;
+    BenchSpecimen *specimen;
+    long count;
+    BenchConclusion its;
+} Made;
+
+static void conclude(Made *made)
 {
-    BenchCalibration *made = sm_alloc(1, sizeof *made);
-    BenchSpecimen *planned = sm_alloc(BENCH_CALIBRATION_SPECIMENS, sizeof *planned);
-    made->plan = sample_plan;
-    assert_int_equal(bench_calibration_plan(&made->plan, planned, NULL), SM_OK);
-    made->count = made->plan.specimens;
+    made->campaign.count = made->count;
+    made->its = bench_calibration_conclude(&made->campaign);
+}
+
+/* All specimens of the plan, finished and valid, with a law's modulus. */
+static Made *make(double c, double d)
+{
+    Made *made = sm_alloc(1, sizeof *made);
+    made->campaign = bench_campaign_create(&bench_calibration_type);
+    made->plan = made->campaign.plan;
+    *made->plan = sample_plan;
+    assert_int_equal(bench_calibration_count(made->plan, NULL), SM_OK);
+    made->count = made->plan->specimens;
     made->specimen = sm_alloc((size_t)made->count, sizeof *made->specimen);
-    for (long i = 0; i < made->count; i++) {
+    for (int i = 0; i < made->count; i++) {
         BenchSpecimen *s = &made->specimen[i];
-        *s = planned[i];
+        bench_campaign_point(&made->campaign, i, s);
         s->valid = true;
         s->young = two_terms(s, c, d);
         s->spread = 0.02;
         s->loss[0] = 1e-6;
         for (int y = 0; y < BENCH_YOUNGS; y++) s->young_timoshenko[y] = s->young * (1 + 0.005 * y);
     }
-    free(planned);
-    bench_calibration_conclude(made);
+    made->campaign.point = made->specimen;
+    conclude(made);
     return made;
 }
 
-static void let_go(BenchCalibration *made)
+static void let_go(Made *made)
 {
-    bench_calibration_free(made);
+    bench_campaign_free(&made->campaign);
     free(made);
+}
+
+static SmCode store(const char *name, Made *made, SmError *error)
+{
+    made->campaign.count = made->count;
+    return bench_campaign_store(path_in(name), &made->campaign, error);
+}
+
+static SmCode load(const char *name, Made *made, SmError *error)
+{
+    SmCode code =
+        bench_campaign_load(path_in(name), &bench_calibration_type, &made->campaign, error);
+    if (code) return code;
+    made->plan = made->campaign.plan;
+    made->specimen = made->campaign.point;
+    made->count = made->campaign.count;
+    conclude(made);
+    return code;
 }
 
 /* Of four w: both engines, one and two epsilons; another spacing for all (the scene's own is no
  * other), other lengths and steps for the first, the middle and the last. */
 TEST(a_plan_makes_its_specimens)
 {
-    BenchCalibration *made = make(0.3, 0.1);
-    assert_int_equal(made->plan.specimens, 4 * 3 + 4 * 2 + 2 * 3 * 2 + 2 * 3 * 2);
+    Made *made = make(0.3, 0.1);
+    assert_int_equal(made->plan->specimens, 4 * 3 + 4 * 2 + 2 * 3 * 2 + 2 * 3 * 2);
     const BenchSpecimen *s = made->specimen;
     assert_string_equal(s[0].engine, "fastlsm");
     assert_true(s[1].epsilon == 0 && s[2].epsilon == 0.5 && s[3].w == 2);
@@ -81,23 +115,23 @@ TEST(a_plan_makes_its_specimens)
     BenchCalibrationPlan plan = sample_plan;
     SmError error;
     plan.w[1] = 2.5;
-    assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_USAGE);
+    assert_int_equal(bench_calibration_count(&plan, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "--w: 2.5 is no whole number"));
     plan = sample_plan;
     strcpy(plan.engines, "octree");
-    assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_OK);
+    assert_int_equal(bench_calibration_count(&plan, &error), SM_OK);
     plan.ws = plan.epsilons = BENCH_CALIBRATION_VALUES;
     for (int i = 0; i < BENCH_CALIBRATION_VALUES; i++)
         plan.w[i] = i + 1, plan.epsilon[i] = 0.01 * i;
-    assert_int_equal(bench_calibration_plan(&plan, NULL, &error), SM_USAGE);
+    assert_int_equal(bench_calibration_count(&plan, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "specimens; 1 to 4096"));
 }
 
-static const BenchLaw *law_of(const BenchCalibration *made, const char *engine, const char *kind)
+static const BenchLaw *law_of(const Made *made, const char *engine, const char *kind)
 {
-    for (int i = 0; i < made->laws; i++)
-        if (!strcmp(made->law[i].engine, engine) && !strcmp(made->law[i].kind, kind))
-            return &made->law[i];
+    for (int i = 0; i < made->its.laws; i++)
+        if (!strcmp(made->its.law[i].engine, engine) && !strcmp(made->its.law[i].kind, kind))
+            return &made->its.law[i];
     fail_msg("no law %s of %s", kind, engine);
     return NULL;
 }
@@ -110,8 +144,8 @@ static void near_to(const double found[3], double wanted)
 
 TEST(two_terms_are_found_again)
 {
-    BenchCalibration *made = make(0.3, 0.1);
-    assert_int_equal(made->laws, 6);
+    Made *made = make(0.3, 0.1);
+    assert_int_equal(made->its.laws, 6);
     for (int e = 0; e < 2; e++) {
         const BenchLaw *law = law_of(made, e ? "octree" : "fastlsm", "two-term");
         near_to(law->c, 0.3);
@@ -119,11 +153,11 @@ TEST(two_terms_are_found_again)
         assert_true(law->scatter < 1e-9 && isnan(law->spacing[0]));
         assert_int_equal(law->specimens, 4 + 4 + 6 + 6); /* the first epsilon's alone */
     }
-    for (int i = 0; i < BENCH_FOUND; i++) assert_true(made->found[i][0]);
-    assert_non_null(strstr(made->found[0], "in 44 valid specimens of 44"));
-    assert_non_null(strstr(made->found[1], "fastlsm c = 0.300 (0.300 to 0.300)"));
-    assert_non_null(strstr(made->found[2], "from w 5"));
-    assert_non_null(strstr(made->found[2], "up to 2 times as stiff"));
+    for (int i = 0; i < BENCH_FOUND; i++) assert_true(made->its.found[i][0]);
+    assert_non_null(strstr(made->its.found[0], "in 44 valid specimens of 44"));
+    assert_non_null(strstr(made->its.found[1], "fastlsm c = 0.300 (0.300 to 0.300)"));
+    assert_non_null(strstr(made->its.found[2], "from w 5"));
+    assert_non_null(strstr(made->its.found[2], "up to 2 times as stiff"));
     let_go(made);
 }
 
@@ -131,7 +165,7 @@ TEST(two_terms_are_found_again)
  * beam of 5 cells, while w 9 agrees. */
 TEST(what_is_apart_is_described_as_it_is)
 {
-    BenchCalibration *made = make(0.3, 0.1);
+    Made *made = make(0.3, 0.1);
     int apart = 0;
     for (long i = 0; i < made->count; i++) {
         BenchSpecimen *s = &made->specimen[i];
@@ -139,15 +173,15 @@ TEST(what_is_apart_is_described_as_it_is)
         s->spread = 0.2;
         apart++;
     }
-    bench_calibration_conclude(made);
+    conclude(made);
     char wanted[160];
     snprintf(wanted, sizeof wanted,
              "in %d specimens, whose regions are 0.6 to 2.2 times as wide as the beam is thick.",
              apart);
-    if (!strstr(made->found[2], wanted)) fail_msg("%s", made->found[2]);
+    if (!strstr(made->its.found[2], wanted)) fail_msg("%s", made->its.found[2]);
     for (long i = 0; i < made->count; i++) made->specimen[i].spread = 0.02;
-    bench_calibration_conclude(made);
-    assert_non_null(strstr(made->found[2], "apart in 0 specimens."));
+    conclude(made);
+    assert_non_null(strstr(made->its.found[2], "apart in 0 specimens."));
     let_go(made);
 }
 
@@ -155,13 +189,13 @@ TEST(what_is_apart_is_described_as_it_is)
 TEST(powers_are_found_again)
 {
     for (int noisy = 0; noisy < 2; noisy++) {
-        BenchCalibration *made = make(0.3, 0.1);
+        Made *made = make(0.3, 0.1);
         for (long i = 0; i < made->count; i++) {
             BenchSpecimen *s = &made->specimen[i];
             s->young = 700 * pow(s->spacing, 1.5) * pow(s->w, 1.2) * pow(s->aspect, 0.3) /
                        pow(s->h, 2.1) * (1 + noisy * 0.02 * (i % 3 - 1));
         }
-        bench_calibration_conclude(made);
+        conclude(made);
         const BenchLaw *law = law_of(made, "fastlsm", "wide");
         double width = law->step[2] - law->step[1];
         assert_true(noisy ? width > 0.01 && law->step[1] < 2.1 && law->step[2] > 2.1
@@ -179,37 +213,39 @@ TEST(powers_are_found_again)
 
 TEST(nothing_is_concluded_from_nothing)
 {
-    BenchCalibration *made = make(0.3, 0.1);
+    Made *made = make(0.3, 0.1);
     long count = made->count;
     made->count = 2;
-    bench_calibration_conclude(made);
-    assert_int_equal(made->laws, 0);
-    assert_true(made->found[0][0] && !made->found[1][0]);
+    conclude(made);
+    assert_int_equal(made->its.laws, 0);
+    assert_true(made->its.found[0][0] && !made->its.found[1][0]);
     for (long i = 0; i < count; i++) made->specimen[i].valid = false;
     made->count = count;
-    bench_calibration_conclude(made);
-    assert_int_equal(made->laws, 0);
-    assert_true(!made->found[0][0] && !made->found[2][0]);
+    conclude(made);
+    assert_int_equal(made->its.laws, 0);
+    assert_true(!made->its.found[0][0] && !made->its.found[2][0]);
     char sentence[BENCH_WORDS];
     BenchYoung wish = {1e6, 1000, 1000, 0.1};
-    assert_int_equal(bench_advice_young(made->specimen, count, made->law, 0, &wish, sentence), -1);
+    assert_int_equal(bench_advice_young(made->specimen, count, made->its.law, 0, &wish, sentence),
+                     -1);
     assert_non_null(strstr(sentence, "no specimen of the grid is valid"));
     made->count = 0;
-    bench_calibration_conclude(made);
-    assert_int_equal(made->laws, 0);
+    conclude(made);
+    assert_int_equal(made->its.laws, 0);
     let_go(made);
 }
 
-static long advise(const BenchCalibration *made, double young, double density, char *sentence)
+static long advise(const Made *made, double young, double density, char *sentence)
 {
-    BenchYoung wish = {young, density, made->plan.density, made->plan.thickness};
-    return bench_advice_young(made->specimen, made->count, made->law, made->laws, &wish, sentence);
+    BenchYoung wish = {young, density, made->plan->density, made->plan->thickness};
+    return bench_advice_young(made->specimen, made->count, made->its.law, made->its.laws, &wish,
+                              sentence);
 }
 
 TEST(a_modulus_has_its_w)
 {
     char text[BENCH_WORDS];
-    BenchCalibration *made = make(0.3, 0.1);
+    Made *made = make(0.3, 0.1);
     double young = made->specimen[3].young; /* fastlsm w 2; the octree's is the same */
     made->specimen[4].spread = 0.01;
     assert_int_equal(advise(made, 1.05 * young, 1000, text), 4); /* the octree's is more elastic */
@@ -236,7 +272,7 @@ TEST(a_modulus_has_its_w)
     advise(made, 1e-3, 1000, text);
     assert_null(strstr(text, "spacing of"));
     /* without a law no spacing is named */
-    made->laws = 0;
+    made->its.laws = 0;
     advise(made, beyond, 1000, text);
     assert_null(strstr(text, "spacing of"));
     made->specimen[4].valid = false;
@@ -246,27 +282,27 @@ TEST(a_modulus_has_its_w)
 
 TEST(a_calibration_comes_back)
 {
-    BenchCalibration *made = make(0.3, 0.1), *back = sm_alloc(1, sizeof *back);
+    Made *made = make(0.3, 0.1), *back = sm_alloc(1, sizeof *back);
     SmError error;
     made->specimen[5].valid = false;
     strcpy(made->specimen[5].reason, "it broke");
     made->specimen[5].young = NAN;
     made->count = 7; /* one that was interrupted */
-    bench_calibration_conclude(made);
-    assert_int_equal(bench_calibration_store(path_in("a.h5"), made, &error), SM_OK);
-    if (bench_calibration_load(path_in("a.h5"), back, &error)) fail_msg("%s", error.text);
+    conclude(made);
+    assert_int_equal(store("a.h5", made, &error), SM_OK);
+    if (load("a.h5", back, &error)) fail_msg("%s", error.text);
     char what[240];
-    assert_true(bench_calibration_same(&made->plan, &back->plan, sizeof what, what));
+    assert_true(bench_campaign_same(&made->campaign, &back->campaign, sizeof what, what));
     assert_int_equal(back->count, 7);
     assert_memory_equal(back->specimen, made->specimen, 7 * sizeof *made->specimen);
-    assert_int_equal(back->laws, made->laws);
-    assert_string_equal(back->found[1], made->found[1]);
-    back->plan.poisson = 0.25;
-    assert_false(bench_calibration_same(&made->plan, &back->plan, sizeof what, what));
+    assert_int_equal(back->its.laws, made->its.laws);
+    assert_string_equal(back->its.found[1], made->its.found[1]);
+    back->plan->poisson = 0.25;
+    assert_false(bench_campaign_same(&made->campaign, &back->campaign, sizeof what, what));
     assert_string_equal(what, "its poisson is 0.25, and here 0.3");
-    back->plan = made->plan;
-    back->plan.steps = 0;
-    assert_false(bench_calibration_same(&made->plan, &back->plan, sizeof what, what));
+    *back->plan = *made->plan;
+    back->plan->steps = 0;
+    assert_false(bench_campaign_same(&made->campaign, &back->campaign, sizeof what, what));
     assert_non_null(strstr(what, "its step is 0 numbers"));
     let_go(made);
     let_go(back);
@@ -275,27 +311,27 @@ TEST(a_calibration_comes_back)
 /* A file whose specimens or plan are another's is refused, as is one cut off. */
 TEST(foreign_files_are_refused)
 {
-    BenchCalibration *made = make(0.3, 0.1), *back = sm_alloc(1, sizeof *back);
+    Made *made = make(0.3, 0.1), *back = sm_alloc(1, sizeof *back);
     SmError error;
     made->specimen[2].w = 7;
-    assert_int_equal(bench_calibration_store(path_in("b.h5"), made, &error), SM_OK);
-    assert_int_equal(bench_calibration_load(path_in("b.h5"), back, &error), SM_INPUT);
+    assert_int_equal(store("b.h5", made, &error), SM_OK);
+    assert_int_equal(load("b.h5", back, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "specimen 2 is not one of its plan's"));
     made->specimen[2].w = 1;
-    made->plan.specimens = 7;
-    assert_int_equal(bench_calibration_store(path_in("b.h5"), made, &error), SM_OK);
-    assert_int_equal(bench_calibration_load(path_in("b.h5"), back, &error), SM_INPUT);
+    made->plan->specimens = 7;
+    assert_int_equal(store("b.h5", made, &error), SM_OK);
+    assert_int_equal(load("b.h5", back, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "its plan does not make 7 specimens"));
-    made->plan.specimens = 44;
-    made->plan.epsilon[1] = -1;
-    assert_int_equal(bench_calibration_store(path_in("b.h5"), made, &error), SM_OK);
-    assert_int_equal(bench_calibration_load(path_in("b.h5"), back, &error), SM_INPUT);
+    made->plan->specimens = 44;
+    made->plan->epsilon[1] = -1;
+    assert_int_equal(store("b.h5", made, &error), SM_OK);
+    assert_int_equal(load("b.h5", back, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "its plan has -1 as epsilon"));
     assert_int_equal(truncate(path_in("b.h5"), 3000), 0);
-    assert_int_equal(bench_calibration_load(path_in("b.h5"), back, &error), SM_INPUT);
+    assert_int_equal(load("b.h5", back, &error), SM_INPUT);
     assert_non_null(strstr(error.text, "b.h5: "));
-    assert_int_equal(bench_calibration_load(path_in("no.h5"), back, &error), SM_INPUT);
-    assert_int_equal(bench_calibration_store(path_in("no/b.h5"), made, &error), SM_OUTPUT);
+    assert_int_equal(load("no.h5", back, &error), SM_INPUT);
+    assert_int_equal(store("no/b.h5", made, &error), SM_OUTPUT);
     let_go(made);
     free(back);
 }

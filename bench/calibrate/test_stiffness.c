@@ -165,7 +165,8 @@ static BenchStiffness measure(const BenchCantileverOptions *options, const SmEng
 
 static BenchSpecimen judge(const BenchStiffness *found, bool meshless)
 {
-    BenchSpecimen s = bench_specimen_none();
+    BenchSpecimen s;
+    bench_record_none(bench_specimen_fields, bench_specimen_field_count, &s, sizeof s);
     BenchIdeal ideal[BENCH_MODELS] = {{0}};
     s.aspect = ASPECT;
     s.valid = true;
@@ -232,7 +233,8 @@ TEST(an_invalid_specimen_has_no_modulus)
     BenchIdeal ideal[BENCH_MODELS] = {{0}};
     assert_int_equal(bench_ideal_find(BENCH_EULER, ASPECT, 0.3, &ideal[0], NULL), SM_OK);
     assert_int_equal(bench_ideal_find(BENCH_TIMOSHENKO, ASPECT, 0.3, &ideal[1], NULL), SM_OK);
-    BenchSpecimen s = bench_specimen_none();
+    BenchSpecimen s;
+    bench_record_none(bench_specimen_fields, bench_specimen_field_count, &s, sizeof s);
     bench_specimen_judge(ideal, thickness, density, &s);
     assert_true(isnan(s.young) && isnan(s.spread) && isnan(s.young_euler[0]));
 }

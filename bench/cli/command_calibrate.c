@@ -4,11 +4,10 @@
 #include <string.h>
 
 #include "../../reference/meshless/solve/solver.h"
-#include "../calibrate/calibrate.h"
-#include "../calibrate/calibration_store.h"
+#include "../calibrate/calibration.h"
 #include "../calibrate/calibration_table.h"
+#include "../campaign/campaign_run.h"
 #include "../engines.h"
-#include "../sweep/plan.h"
 #include "command.h"
 #include "option.h"
 #include "range.h"
@@ -34,7 +33,7 @@ typedef struct {
     const char *range[BENCH_CALIBRATION_LISTS]; /* in the plan's order */
     int engines;                                /* in the list below */
     double damping, poisson, density, young;
-    BenchCalibrate run;
+    BenchCampaignRun run;
     BenchFormat format;
     bool measuring; /* was an option given that says what to measure? */
 } Options;
@@ -62,6 +61,7 @@ static const struct argp_option option_list[] = {
      "Store every specimen as it is finished; if the file is there, go on with it (default: "
      "nothing stored)",
      3},
+    BENCH_CAMPAIGN_OPTIONS("specimen", 3),
     {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
     {"density", KEY_DENSITY, "RHO", 0, "kg a cubic unit, of the wish (default: 1000)", 4},
     {"young", KEY_YOUNG, "E", 0,
@@ -81,6 +81,7 @@ static const BenchOption options_taken[] = {
     {KEY_DAMPING, BENCH_TO(REAL, damping), 0, 1, NULL},
     {KEY_POISSON, BENCH_TO(REAL, poisson), -0.5, 0.49, NULL},
     {'o', BENCH_TO(TEXT, run.output), 0, 0, NULL},
+    BENCH_CAMPAIGN_TAKEN,
     {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
     {KEY_DENSITY, BENCH_TO(REAL, density), 1e-6, 1e9, NULL},
     {KEY_YOUNG, BENCH_TO(REAL, young), 1e-6, 1e18, NULL},
@@ -90,7 +91,8 @@ static const BenchOption options_taken[] = {
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
-    options->measuring |= (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o';
+    options->measuring |=
+        (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o' || bench_option_of_campaign(key);
     if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
     if (key == KEY_ENGINE) {
         options->engines = bench_option_choice(state, "--engine", text, bench_engine_choices());
@@ -119,22 +121,23 @@ static const struct argp argp = {option_list, parse, "[FILE.h5]", help, NULL, NU
 
 static SmCode read_lists(const Options *options, BenchCalibrationPlan *plan, SmError *error)
 {
-    BenchCalibrationList list[BENCH_CALIBRATION_LISTS];
-    bench_calibration_lists(plan, list);
     SmCode code = SM_OK;
     for (int l = 0; l < BENCH_CALIBRATION_LISTS && !code; l++) {
-        bool optional = l > 1;
-        if (optional && !strcmp(options->range[l], "none")) continue;
-        code = bench_range_parse(list[l].option, options->range[l], list[l].low, list[l].high,
-                                 BENCH_CALIBRATION_VALUES, list[l].value, list[l].count, error);
+        const BenchCampaignList *list = &bench_calibration_lists[l];
+        if (!list->least && !strcmp(options->range[l], "none")) continue;
+        char *at = (char *)plan;
+        code = bench_range_parse(list->option, options->range[l], list->low, list->high, list->most,
+                                 (double *)(void *)(at + list->value),
+                                 (int *)(void *)(at + list->count), error);
     }
     return code;
 }
 
-static SmCode run(Options *options, int argc, char **argv, BenchCalibration *calibration,
+static SmCode run(Options *options, int argc, char **argv, BenchCampaign *calibration,
                   SmError *error)
 {
-    BenchCalibrationPlan *plan = &calibration->plan;
+    *calibration = bench_campaign_create(&bench_calibration_type);
+    BenchCalibrationPlan *plan = calibration->plan;
     if (strlen(options->scene) >= sizeof plan->file)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", options->scene);
     snprintf(plan->file, sizeof plan->file, "%s", options->scene);
@@ -145,53 +148,41 @@ static SmCode run(Options *options, int argc, char **argv, BenchCalibration *cal
     plan->meshless = ref_solver_built;
     SmCode code = read_lists(options, plan, error);
     if (!code) code = bench_calibration_beam(plan, error);
-    if (!code) code = bench_calibration_plan(plan, NULL, error);
+    if (!code) code = bench_calibration_count(plan, error);
     if (code) return code;
     bench_machine_read(argc, argv, 1, &calibration->machine);
-    bench_plan_build(&calibration->machine, sizeof plan->build, plan->build);
+    bench_campaign_build(&calibration->machine, sizeof plan->build, plan->build);
     options->run.quiet = options->common.quiet;
     if (!ref_solver_built && !options->run.quiet)
         fprintf(stderr,
                 "%s: built without CHOLMOD and ARPACK: the meshless reference is left out, theory "
                 "stands alone\n",
                 argv[0]);
-    return bench_calibrate(&options->run, calibration, error);
+    return bench_campaign_run(&options->run, calibration, error);
 }
 
-static SmCode verdict(const BenchCalibration *calibration, SmError *error)
-{
-    long invalid = 0;
-    const BenchSpecimen *first = NULL;
-    for (long i = calibration->count - 1; i >= 0; i--)
-        if (!calibration->specimen[i].valid) invalid++, first = &calibration->specimen[i];
-    if (!first) return SM_OK;
-    return sm_fail(error, SM_INVALID,
-                   "%ld of %ld specimens are INVALID, the first %s with w %d, epsilon %g: %s",
-                   invalid, calibration->count, first->engine, first->w, first->epsilon,
-                   first->reason);
-}
-
-static void advise(const Options *options, const BenchCalibration *calibration)
+static void advise(const Options *options, const BenchCampaign *calibration)
 {
     char sentence[BENCH_WORDS], settings[BENCH_WORDS];
-    const BenchCalibrationPlan *plan = &calibration->plan;
+    const BenchCalibrationPlan *plan = calibration->plan;
+    BenchConclusion conclusion = bench_calibration_conclude(calibration);
     double density = options->density > 0 ? options->density : standard_density;
     BenchYoung wish = {options->young, density, plan->density, plan->thickness};
-    long best = bench_advice_young(calibration->specimen, calibration->count, calibration->law,
-                                   calibration->laws, &wish, sentence);
+    long best = bench_advice_young(calibration->point, calibration->count, conclusion.law,
+                                   conclusion.laws, &wish, sentence);
     bool table = options->format == BENCH_AS_CSV || options->format == BENCH_AS_JSON;
     FILE *file = table ? stderr : stdout;
     fprintf(file, "%s%s\n", table ? "" : "\n", sentence);
     if (best < 0) return;
-    bench_advice_settings(&calibration->specimen[best], &wish, plan->damping, settings);
+    bench_advice_settings(bench_campaign_at(calibration, best), &wish, plan->damping, settings);
     fprintf(file, "The scene's settings that hit it, of which density is one:\n    %s\n", settings);
 }
 
-static SmCode show(const Options *options, const BenchCalibration *calibration, SmError *error)
+static SmCode show(const Options *options, const BenchCampaign *calibration, SmError *error)
 {
     bench_calibration_table(stdout, options->format, calibration);
     if (!isnan(options->young)) advise(options, calibration);
-    return verdict(calibration, error);
+    return bench_campaign_verdict(calibration, error);
 }
 
 int bench_command_calibrate(int argc, char **argv)
@@ -200,15 +191,18 @@ int bench_command_calibrate(int argc, char **argv)
                        .range = {"1:10", "0:1:0.25", "3,4,7", "5,12", "0.5,2"},
                        .poisson = 0.3,
                        .young = NAN};
-    BenchCalibration *calibration = sm_alloc(1, sizeof *calibration);
+    BenchRanks ranks;
+    BenchCampaign calibration = {0};
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS,
-                        &options.common);
-    SmCode code = options.file ? bench_calibration_load(options.file, calibration, &error)
-                               : run(&options, argc, argv, calibration, &error);
-    if (!code) code = show(&options, calibration, &error);
-    if (code) bench_option_fail(argv[0], &error);
-    bench_calibration_free(calibration);
-    free(calibration);
-    return (int)code;
+    options.run.ranks = &ranks;
+    SmCode code = bench_ranks_start(&ranks, &error);
+    if (!code) {
+        bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS,
+                            &options.common);
+        code = options.file ? bench_campaign_load(options.file, &bench_calibration_type,
+                                                  &calibration, &error)
+                            : run(&options, argc, argv, &calibration, &error);
+    }
+    if (!code && ranks.rank == 0) code = show(&options, &calibration, &error);
+    return bench_campaign_end(argv[0], &ranks, &calibration, code, &error);
 }

@@ -1,8 +1,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "../campaign/campaign.h"
 #include "../store/draft.h"
-#include "../sweep/sweep.h"
 #include "command.h"
 #include "option.h"
 
@@ -37,57 +37,60 @@ static error_t parse(int key, char *text, struct argp_state *state)
 }
 
 static const char help[] =
-    "Put shards of a sweep (shapebench sweep --shard I/N -o IN.h5) into one file. They must be of "
-    "one scene, mesh, build and set of options; a point in two of them must be the same in both.\v"
-    "OUT.h5 comes first, and is a new file (or give --overwrite). What is missing is said, and "
-    "'sweep -o OUT.h5' with the same options measures it.\n" BENCH_EXIT_CODES;
+    "Put shards of a sweep, a calibration or claims (shapebench sweep --shard I/N -o IN.h5) into "
+    "one file. They must be of one scene, mesh, build and set of options; a point in two of them "
+    "must be the same in both.\v"
+    "OUT.h5 comes first, and is a new file (or give --overwrite). What is missing is said, and the "
+    "command that made the shards, with the same options and -o OUT.h5 --resume, measures "
+    "it.\n" BENCH_EXIT_CODES;
 
 static const struct argp argp = {option_list, parse, "OUT.h5 IN.h5...", help, NULL, NULL, NULL};
 
-static SmCode merge(const Options *options, BenchSweep *all, SmError *error)
+static SmCode merge(const Options *options, BenchCampaign *all, SmError *error)
 {
     SmCode code = bench_draft_reserve(options->output, options->overwrite, error);
-    if (!code) code = bench_sweep_load(options->input[0], all, error);
+    if (!code) code = bench_campaign_load(options->input[0], NULL, all, error);
     for (int i = 1; i < options->inputs && !code; i++) {
-        BenchSweep next;
-        code = bench_sweep_load(options->input[i], &next, error);
+        BenchCampaign next;
+        code = bench_campaign_load(options->input[i], NULL, &next, error);
         if (code) break;
-        code = bench_sweep_merge(all, &next, options->input[i], error);
-        bench_sweep_free(&next);
+        code = bench_campaign_merge(all, &next, options->input[i], error);
+        bench_campaign_free(&next);
     }
     return code;
 }
 
-static void say_missing(const Options *options, const BenchSweep *all)
+static void say_missing(const Options *options, const BenchCampaign *all)
 {
-    long missing = all->plan.points - all->count;
-    printf("%s: %ld of %d points\n", options->output, all->count, all->plan.points);
-    for (int i = 0; i < all->plan.points && missing; i++) {
-        if (bench_sweep_find(all, i)) continue;
-        BenchPoint point;
-        bench_plan_point(&all->plan, i, &point);
-        printf("missing: %ld, the first %s with w %g, epsilon %g\n", missing, point.engine, point.w,
-               point.epsilon);
-        return;
-    }
+    const BenchCampaignType *type = all->type;
+    int planned = bench_campaign_planned(all), first = 0;
+    printf("%s: %ld of %d %ss\n", options->output, all->count, planned, type->point);
+    if (all->count == planned) return;
+    while (bench_campaign_find(all, first)) first++;
+    void *point = sm_alloc(1, type->point_size);
+    char what[BENCH_CAMPAIGN_TEXT];
+    bench_campaign_point(all, first, point);
+    type->say(point, sizeof what, what);
+    printf("missing: %ld, the first %s\n", planned - all->count, what);
+    free(point);
 }
 
 int bench_command_merge(int argc, char **argv)
 {
     Options options = {.input = sm_alloc((size_t)argc, sizeof *options.input)};
-    BenchSweep all = {0};
+    BenchCampaign all = {0};
     SmError error;
     bench_options_parse(&argp, argc, argv, &options, 0, &options.common);
     SmCode code = merge(&options, &all, &error);
     if (!code) {
-        bench_machine_read(argc, argv, all.plan.threads, &all.machine);
-        code = bench_sweep_store(options.output, &all, &error);
+        bench_machine_read(argc, argv, all.machine.threads, &all.machine);
+        code = bench_campaign_store(options.output, &all, &error);
     }
     if (code)
         bench_option_fail(argv[0], &error);
     else
         say_missing(&options, &all);
-    bench_sweep_free(&all);
+    bench_campaign_free(&all);
     free(options.input);
     return (int)code;
 }

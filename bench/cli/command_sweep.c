@@ -3,10 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../campaign/campaign_run.h"
 #include "../engines.h"
 #include "../sweep/front.h"
 #include "../sweep/recommend.h"
-#include "../sweep/sweep_run.h"
+#include "../sweep/sweep.h"
 #include "../sweep/sweep_table.h"
 #include "command.h"
 #include "option.h"
@@ -23,7 +24,6 @@ enum {
     KEY_REPEATS,
     KEY_BLOCK,
     KEY_FRAMES,
-    KEY_SHARD,
     KEY_FORMAT,
     KEY_RECOMMEND,
     KEY_STIFFNESS,
@@ -36,7 +36,7 @@ typedef struct {
     const char *scene, *mesh, *file, *w, *epsilon;
     int engines, width, precision; /* in the lists below */
     BenchPlan plan;
-    BenchSweepRun run;
+    BenchCampaignRun run;
     BenchFormat format;
     bool recommend, measuring; /* was an option given that says what to measure? */
     BenchWish wish;
@@ -65,8 +65,7 @@ static const struct argp_option option_list[] = {
      "Store every point as it is finished; if the file is there, go on with it (default: nothing "
      "stored)",
      3},
-    {"shard", KEY_SHARD, "I/N", 0,
-     "Measure only every N-th point, from the I-th on; put the files together with 'merge'", 3},
+    BENCH_CAMPAIGN_OPTIONS("point", 3),
     {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
     {"recommend", KEY_RECOMMEND, 0, 0,
      "Say which w and epsilon of each engine to take, for --budget, --deviation and --stiffness "
@@ -79,16 +78,6 @@ static const struct argp_option option_list[] = {
     {0},
 };
 
-static void parse_shard(const struct argp_state *state, const char *text, BenchSweepRun *run)
-{
-    char end;
-    bool good = sscanf(text, "%d/%d%c", &run->shard, &run->shards, &end) == 2 && run->shard >= 1 &&
-                run->shards <= BENCH_PLAN_POINTS && run->shard <= run->shards;
-    if (!good)
-        bench_usage(state, "--shard: '%.40s' is not I/N with I from 1 to N, and N at most %d", text,
-                    BENCH_PLAN_POINTS);
-}
-
 static const BenchOption options_taken[] = {
     {KEY_SCENE, BENCH_TO(TEXT, scene), 0, 0, NULL},
     {KEY_W, BENCH_TO(TEXT, w), 0, 0, NULL},
@@ -99,6 +88,7 @@ static const BenchOption options_taken[] = {
     {KEY_BLOCK, BENCH_TO(REAL, plan.block_ms), 0.001, 60000, NULL},
     {KEY_FRAMES, BENCH_TO(INT, plan.frames), 1, 10000, NULL},
     {'o', BENCH_TO(TEXT, run.output), 0, 0, NULL},
+    BENCH_CAMPAIGN_TAKEN,
     {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
     {KEY_RECOMMEND, BENCH_TO(TRUE, recommend), 0, 0, NULL},
     {KEY_STIFFNESS, BENCH_TO(REAL, wish.stiffness), 1e-6, 1e6, NULL},
@@ -110,7 +100,8 @@ static const BenchOption options_taken[] = {
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     Options *options = state->input;
-    options->measuring |= (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o';
+    options->measuring |=
+        (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o' || bench_option_of_campaign(key);
     if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
     switch (key) {
     case KEY_MESH:
@@ -120,9 +111,6 @@ static error_t parse(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_ENGINE:
         options->engines = bench_option_choice(state, "--engine", text, bench_engine_choices());
-        return 0;
-    case KEY_SHARD:
-        parse_shard(state, text, &options->run);
         return 0;
     }
     return bench_option_shown(key, text, state, options->measuring, &options->file);
@@ -165,20 +153,7 @@ static SmCode make_plan(Options *options, BenchPlan *plan, SmError *error)
     return code ? code : bench_plan_count(plan, error);
 }
 
-static SmCode verdict(const BenchSweep *sweep, SmError *error)
-{
-    long invalid = 0;
-    const BenchPoint *first = NULL;
-    for (long i = sweep->count - 1; i >= 0; i--)
-        if (!sweep->point[i].valid) invalid++, first = &sweep->point[i];
-    if (!first) return SM_OK;
-    return sm_fail(error, SM_INVALID,
-                   "%ld of %ld points are INVALID, the first %s with w %g %s, epsilon %g: %s",
-                   invalid, sweep->count, first->engine, first->w, sweep->plan.width,
-                   first->epsilon, first->reason);
-}
-
-static SmCode show(const Options *options, BenchSweep *sweep, SmError *error)
+static SmCode show(const Options *options, BenchCampaign *sweep, SmError *error)
 {
     bench_front_mark(sweep->point, sweep->count);
     bench_sweep_table(stdout, options->format, sweep);
@@ -187,20 +162,22 @@ static SmCode show(const Options *options, BenchSweep *sweep, SmError *error)
     if (options->recommend || wished) {
         bool table = options->format == BENCH_AS_CSV || options->format == BENCH_AS_JSON;
         if (!table) putchar('\n');
-        bench_recommend(table ? stderr : stdout, &sweep->plan, sweep->point, sweep->count, wish);
+        bench_recommend(table ? stderr : stdout, sweep->plan, sweep->point, sweep->count, wish);
     }
-    return verdict(sweep, error);
+    return bench_campaign_verdict(sweep, error);
 }
 
-static SmCode run(Options *options, int argc, char **argv, BenchSweep *sweep, SmError *error)
+static SmCode run(Options *options, int argc, char **argv, BenchCampaign *sweep, SmError *error)
 {
-    sweep->plan = options->plan;
-    SmCode code = make_plan(options, &sweep->plan, error);
+    *sweep = bench_campaign_create(&bench_sweep_type);
+    BenchPlan *plan = sweep->plan;
+    *plan = options->plan;
+    SmCode code = make_plan(options, plan, error);
     if (code) return code;
     bench_machine_read(argc, argv, options->common.threads, &sweep->machine);
-    bench_plan_build(&sweep->machine, sizeof sweep->plan.build, sweep->plan.build);
+    bench_campaign_build(&sweep->machine, sizeof plan->build, plan->build);
     options->run.quiet = options->common.quiet;
-    return bench_sweep_run(&options->run, sweep, error);
+    return bench_campaign_run(&options->run, sweep, error);
 }
 
 int bench_command_sweep(int argc, char **argv)
@@ -208,23 +185,17 @@ int bench_command_sweep(int argc, char **argv)
     Options options = {.w = "1:8",
                        .epsilon = "0:1:0.1",
                        .plan = {.repeats = 9, .block_ms = 10, .frames = 50},
-                       .run = {.shard = 1, .shards = 1},
                        .wish = {NAN, NAN, NAN}};
     BenchRanks ranks;
-    BenchSweep sweep = {0};
+    BenchCampaign sweep = {0};
     SmError error;
     options.run.ranks = &ranks;
     SmCode code = bench_ranks_start(&ranks, &error);
     if (!code) {
         bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
-        code = options.file ? bench_sweep_load(options.file, &sweep, &error)
+        code = options.file ? bench_campaign_load(options.file, &bench_sweep_type, &sweep, &error)
                             : run(&options, argc, argv, &sweep, &error);
     }
     if (!code && ranks.rank == 0) code = show(&options, &sweep, &error);
-    if (code && ranks.rank == 0) bench_option_fail(argv[0], &error);
-    bench_sweep_free(&sweep);
-    if (ranks.rank > 0) code = SM_OK; /* the first rank says it for all */
-    if (code == SM_OUTPUT) bench_ranks_abort(&ranks, code);
-    bench_ranks_stop(&ranks);
-    return (int)code;
+    return bench_campaign_end(argv[0], &ranks, &sweep, code, &error);
 }

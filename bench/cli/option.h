@@ -68,6 +68,29 @@ enum { BENCH_KEY_OVERWRITE = 0x3000 };
         BENCH_KEY_OVERWRITE, BENCH_TO(TRUE, overwrite), 0, 0, NULL                                 \
     }
 
+/* What every campaign (campaign_run.h) has, whose Options have a BenchCampaignRun `run`. */
+enum { BENCH_KEY_SHARD = 0x3100, BENCH_KEY_RESUME };
+#define BENCH_CAMPAIGN_OPTIONS(point, group)                                                       \
+    {"shard",                                                                                      \
+     BENCH_KEY_SHARD,                                                                              \
+     "I/N|auto",                                                                                   \
+     0,                                                                                            \
+     "Measure only every N-th " point ", from the I-th on; auto: those of a task of a Slurm job "  \
+     "array (SLURM_ARRAY_TASK_ID and _COUNT); put the files together with 'merge'",                \
+     group},                                                                                       \
+    {                                                                                              \
+        "resume", BENCH_KEY_RESUME, 0, 0, "Go on with FILE.h5 if it is there", group               \
+    }
+#define BENCH_CAMPAIGN_TAKEN                                                                       \
+    {BENCH_KEY_SHARD, BENCH_TO(TEXT, run.shard), 0, 0, NULL},                                      \
+    {                                                                                              \
+        BENCH_KEY_RESUME, BENCH_TO(TRUE, run.resume), 0, 0, NULL                                   \
+    }
+static inline bool bench_option_of_campaign(int key)
+{
+    return key == BENCH_KEY_SHARD || key == BENCH_KEY_RESUME;
+}
+
 /* Puts the value of the option `key` of the command's `list` into the record, which is the state's
  * input, as `options` has it; false where it is none of these. Both end with {0}. */
 bool bench_option_take(const struct argp_option *list, const BenchOption *options, int key,

@@ -105,16 +105,17 @@ static void csv_title(FILE *file, const BenchField *field)
 void bench_csv_records(FILE *file, const BenchField *fields, int count, const void *records,
                        size_t size, long number, const char *(*mark)(const void *record))
 {
-    for (int f = 0; f < count; f++) {
-        csv_title(file, &fields[f]);
-        fputc(f < count - 1 ? ',' : '\n', file);
-    }
-    for (long r = 0; r < number; r++) {
-        const char *record = (const char *)records + (size_t)r * size;
-        for (int f = 0; f < count; f++) {
-            bench_csv_cell(file, &fields[f], record, mark ? mark(record) : NULL);
-            fputc(f < count - 1 ? ',' : '\n', file);
+    for (long r = -1; r < number; r++) {
+        const char *record = r < 0 ? NULL : (const char *)records + (size_t)r * size;
+        for (int f = 0, columns = 0; f < count; f++) {
+            if (!fields[f].column) continue;
+            if (columns++) fputc(',', file);
+            if (record)
+                bench_csv_cell(file, &fields[f], record, mark ? mark(record) : NULL);
+            else
+                csv_title(file, &fields[f]);
         }
+        fputc('\n', file);
     }
 }
 

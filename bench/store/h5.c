@@ -267,11 +267,18 @@ void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, co
     H5Tclose(type);
 }
 
+/* Of a column: one number a record, or several. */
+static int rank_of(const BenchField *field, int values)
+{
+    return field->series || values > 1 ? 2 : 1;
+}
+
 void bench_h5_columns(BenchH5 *h5, hid_t group, const BenchField *fields, int count,
                       const void *records, size_t size, long number)
 {
     for (int f = 0; f < count && !h5->failed; f++) {
         const BenchField *field = &fields[f];
+        if (!field->name) continue;
         hid_t file, memory;
         int values = bench_h5_types(field, &file, &memory);
         char *column = sm_alloc((size_t)number, field->size);
@@ -279,7 +286,7 @@ void bench_h5_columns(BenchH5 *h5, hid_t group, const BenchField *fields, int co
             memcpy(column + (size_t)r * field->size,
                    (const char *)records + (size_t)r * size + field->offset, field->size);
         hsize_t shape[] = {(hsize_t)number, (hsize_t)values};
-        bench_h5_dataset(h5, group, field->name, file, values > 1 ? 2 : 1, shape, column);
+        bench_h5_dataset(h5, group, field->name, file, rank_of(field, values), shape, column);
         free(column);
         H5Tclose(file);
         H5Tclose(memory);
@@ -476,10 +483,12 @@ void bench_h5_read_columns(BenchH5 *h5, hid_t group, const BenchField *fields, i
 {
     for (int f = 0; f < count && !h5->failed; f++) {
         const BenchField *field = &fields[f];
+        if (!field->name) continue;
         hid_t file, memory;
         int values = bench_h5_types(field, &file, &memory);
         hsize_t shape[] = {(hsize_t)number, (hsize_t)values};
-        hid_t dataset = bench_h5_find_dataset(h5, group, field->name, values > 1 ? 2 : 1, shape);
+        hid_t dataset =
+            bench_h5_find_dataset(h5, group, field->name, rank_of(field, values), shape);
         check_type(h5, dataset, field, file);
         if (!h5->failed) {
             char *column = sm_alloc((size_t)number, field->size);

@@ -3,29 +3,51 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/system/hash.h"
 #include "../engines.h"
 #include "../scene/body.h"
 
-#define FIELD(kind, member) BENCH_FIELD(BenchPlan, kind, member)
+#define FIELD(type, member)  BENCH_FIELD_AS(BenchPlan, BENCH_##type, member, #member)
+#define MEANS(of_what, what) BENCH_MEANS(of_what, what)
 
-const BenchField *bench_plan_fields(int *count)
-{
-    static const BenchField fields[] = {
-        FIELD(BENCH_TEXT, scene),      FIELD(BENCH_TEXT, mesh),      FIELD(BENCH_TEXT, engines),
-        FIELD(BENCH_TEXT, precision),  FIELD(BENCH_TEXT, width),     FIELD(BENCH_TEXT, build),
-        FIELD(BENCH_HASH, scene_hash), FIELD(BENCH_HASH, mesh_hash), FIELD(BENCH_INT, repeats),
-        FIELD(BENCH_DOUBLE, block_ms), FIELD(BENCH_INT, frames),     FIELD(BENCH_INT, steps),
-        FIELD(BENCH_INT, threads),     FIELD(BENCH_LONG, seed),      FIELD(BENCH_DOUBLE, size),
-        FIELD(BENCH_DOUBLE, cell),     FIELD(BENCH_INT, points),     FIELD(BENCH_INT, ws),
-        FIELD(BENCH_INT, epsilons),
-    };
-    *count = (int)(sizeof fields / sizeof fields[0]);
-    return fields;
-}
+const BenchField bench_plan_fields[] = {
+    {FIELD(TEXT, scene), MEANS(NULL, "that is swept")},
+    {FIELD(TEXT, mesh),
+     MEANS(NULL, "the user's mesh file in its place (empty: none); may differ between files of one "
+                 "sweep, `mesh_hash` may not"),
+     .may_differ = true},
+    {FIELD(TEXT, engines), MEANS(NULL, "\"both\", \"fastlsm\" or \"octree\"")},
+    {FIELD(TEXT, precision), MEANS(NULL, "of what is timed")},
+    {FIELD(TEXT, width),
+     MEANS(NULL, "what an octree's w counts: \"edges\" of each node's own cell, or finest "
+                 "\"cells\"")},
+    {FIELD(TEXT, build),
+     MEANS(NULL, "version, commit, compiler, flags; where sources were changed after the commit, "
+                 "the program's hash")},
+    {FIELD(HASH, scene_hash), MEANS(NULL, "FNV-1a of the scene's settings")},
+    {FIELD(HASH, mesh_hash), MEANS(NULL, "FNV-1a of the mesh's coordinates and indices")},
+    {FIELD(INT, repeats), MEANS(NULL, "samples of every time")},
+    {FIELD(DOUBLE, block_ms), MEANS("ms", "least time in a sample")},
+    {FIELD(INT, frames), MEANS(NULL, "of the motion that is compared")},
+    {FIELD(INT, steps), MEANS(NULL, "a frame")},
+    {FIELD(INT, threads), MEANS(NULL, "used")},
+    {FIELD(LONG, seed), MEANS(NULL, "of what is drawn by chance")},
+    {FIELD(DOUBLE, size), MEANS("mesh units", "largest extent of the body")},
+    {FIELD(DOUBLE, cell), MEANS("mesh units", "its finest cell")},
+    {FIELD(INT, points),
+     MEANS(NULL, "planned: of every w comes fastlsm, then the octree's epsilons")},
+    {FIELD(INT, ws), MEANS(NULL, "numbers of w")},
+    {FIELD(INT, epsilons), MEANS(NULL, "numbers of epsilon")},
+};
+
+const int bench_plan_field_count = sizeof bench_plan_fields / sizeof bench_plan_fields[0];
+
+const BenchCampaignList bench_plan_lists[BENCH_PLAN_LISTS] = {
+    {"w", "--w", offsetof(BenchPlan, w), offsetof(BenchPlan, ws), 1, BENCH_PLAN_VALUES, 0.01, 1000},
+    {"epsilon", "--epsilon", offsetof(BenchPlan, epsilon), offsetof(BenchPlan, epsilons), 1,
+     BENCH_PLAN_VALUES, 0, 1000},
+};
 
 /* Points of one w and engine. */
 static int points_of(const BenchPlan *plan, const BenchEngine *engine)
@@ -68,6 +90,9 @@ SmCode bench_plan_count(BenchPlan *plan, SmError *error)
                        "--w and --epsilon make %ld points, and a sweep has %d at most: take larger "
                        "steps, or several files",
                        points, BENCH_PLAN_POINTS);
+    if (plan->repeats < 1 || plan->repeats > BENCH_POINT_SAMPLES)
+        return sm_fail(error, SM_USAGE, "%d repeats; 1 to %d can be", plan->repeats,
+                       BENCH_POINT_SAMPLES);
     plan->points = (int)points;
     return SM_OK;
 }
@@ -93,98 +118,4 @@ void bench_plan_point(const BenchPlan *plan, int index, BenchPoint *point)
     point->w = plan->w[index / each];
     point->epsilon = engine->sampled ? plan->epsilon[rest] : 0;
     snprintf(point->engine, sizeof point->engine, "%s", engine->type[0]->name);
-}
-
-static void say_numbers(const char *name, const double *mine, int my_count, const double *theirs,
-                        int their_count, size_t size, char *what)
-{
-    snprintf(what, size, "its %s is %d numbers from %g to %g, and here %d from %g to %g", name,
-             their_count, their_count ? theirs[0] : NAN,
-             their_count ? theirs[their_count - 1] : NAN, my_count, my_count ? mine[0] : NAN,
-             my_count ? mine[my_count - 1] : NAN);
-}
-
-static void say_field(const BenchField *field, const void *mine, const void *theirs, size_t size,
-                      char *what)
-{
-    switch (field->kind) {
-    case BENCH_TEXT:
-        snprintf(what, size, "its %s is '%.90s', and here '%.90s'", field->name,
-                 (const char *)theirs, (const char *)mine);
-        break;
-    case BENCH_DOUBLE:
-        snprintf(what, size, "its %s is %g, and here %g", field->name, *(const double *)theirs,
-                 *(const double *)mine);
-        break;
-    case BENCH_INT:
-        snprintf(what, size, "its %s is %d, and here %d", field->name, *(const int *)theirs,
-                 *(const int *)mine);
-        break;
-    case BENCH_LONG:
-        snprintf(what, size, "its %s is %ld, and here %ld", field->name, *(const long *)theirs,
-                 *(const long *)mine);
-        break;
-    case BENCH_HASH:
-    case BENCH_BOOL:
-        snprintf(what, size, "its %s differs: the %s has changed", field->name,
-                 strcmp(field->name, "mesh_hash") != 0 ? "scene" : "mesh");
-        break;
-    }
-}
-
-bool bench_plan_numbers_same(const char *name, const double *mine, int my_count,
-                             const double *theirs, int their_count, size_t size, char *what)
-{
-    bool same = my_count == their_count && !memcmp(mine, theirs, sizeof *mine * (size_t)my_count);
-    if (!same) say_numbers(name, mine, my_count, theirs, their_count, size, what);
-    return same;
-}
-
-bool bench_plan_fields_same(const BenchField *fields, int count, const void *mine,
-                            const void *theirs, size_t size, char *what)
-{
-    for (int f = 0; f < count; f++) {
-        const BenchField *field = &fields[f];
-        const char *a = (const char *)mine + field->offset,
-                   *b = (const char *)theirs + field->offset;
-        bool text = field->kind == BENCH_TEXT;
-        /* where a mesh lies is not what it is */
-        if (!strcmp(field->name, "mesh")) continue;
-        if (text ? !strcmp(a, b) : !memcmp(a, b, field->size)) continue;
-        say_field(field, a, b, size, what);
-        return false;
-    }
-    return true;
-}
-
-bool bench_plan_same(const BenchPlan *mine, const BenchPlan *theirs, size_t size, char *what)
-{
-    int count;
-    const BenchField *fields = bench_plan_fields(&count);
-    return bench_plan_numbers_same("w", mine->w, mine->ws, theirs->w, theirs->ws, size, what) &&
-           bench_plan_numbers_same("epsilon", mine->epsilon, mine->epsilons, theirs->epsilon,
-                                   theirs->epsilons, size, what) &&
-           bench_plan_fields_same(fields, count, mine, theirs, size, what);
-}
-
-/* Of this program's file; 0 if it cannot be read. */
-static unsigned long long hash_program(void)
-{
-    FILE *file = fopen("/proc/self/exe", "rbe");
-    if (!file) return 0;
-    unsigned long long hash = SM_HASH_START;
-    char *bytes = sm_alloc(1 << 16, 1);
-    for (size_t got; (got = fread(bytes, 1, 1 << 16, file)) > 0;)
-        hash = sm_hash_bytes(hash, bytes, got);
-    fclose(file);
-    free(bytes);
-    return hash;
-}
-
-void bench_plan_build(const BenchMachine *machine, size_t size, char *build)
-{
-    char changed[32] = "";
-    if (machine->git_dirty) snprintf(changed, sizeof changed, " changed %016llx", hash_program());
-    snprintf(build, size, "%s %.16s%s, %s %s", machine->version, machine->git_commit, changed,
-             machine->compiler, machine->flags);
 }

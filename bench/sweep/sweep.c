@@ -4,208 +4,341 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
-#include "../store/h5.h"
-#include "../table/row_store.h"
+#include "../../lib/system/hash.h"
+#include "../beam/swing.h"
+#include "../campaign/campaign_run.h"
+#include "../check/check.h"
+#include "../engines.h"
+#include "../measure/measure.h"
 #include "front.h"
+#include "gap.h"
 
-static const char file_kind[] = "shapebench sweep";
+/* What the points share. */
+typedef struct {
+    BenchScene scene; /* without what is not swept */
+    BenchBody body;
+    BenchPush push;
+    BenchPath full;     /* of the last full resolution */
+    int full_w;         /* its half-width, 0: none yet */
+    char left_out[160]; /* of the scene: "cuts, touches"; or empty */
+    int rank;           /* of the points measured here */
+} Sweeper;
 
-/* Where the point of this index is, or would be. */
-static long place_of(const BenchSweep *sweep, int index)
+/* Of a lattice's regions, where all were cubes: about half a minute of building. */
+static const double most_members = 5e9;
+
+static void leave_out(Sweeper *sweeper, bool there, const char *what)
 {
-    long low = 0, high = sweep->count;
-    while (low < high) {
-        long middle = (low + high) / 2;
-        if (sweep->point[middle].index < index)
-            low = middle + 1;
-        else
-            high = middle;
+    if (!there) return;
+    size_t used = strlen(sweeper->left_out);
+    snprintf(sweeper->left_out + used, sizeof sweeper->left_out - used, "%s%s", used ? ", " : "",
+             what);
+}
+
+/* Keeps of the scene what is swept. */
+static void reduce(Sweeper *sweeper)
+{
+    BenchScene *scene = &sweeper->scene;
+    OctOptions *octree = &scene->octree;
+    leave_out(sweeper, scene->cut_count > 0, "cuts");
+    leave_out(sweeper, scene->touch_count > 0, "touches");
+    leave_out(sweeper, scene->view.level > 0, "the eye");
+    leave_out(sweeper, scene->params.strain_limit > 0, "links that break");
+    leave_out(sweeper, octree->creep > 0, "plasticity");
+    leave_out(sweeper, octree->local_count > 0, "widths of places");
+    leave_out(sweeper, scene->instances > 1, "all instances but one");
+    scene->cut_count = scene->touch_count = 0;
+    scene->view = (BenchView){0};
+    scene->params.strain_limit = 0;
+    octree->yield = octree->creep = octree->most = 0;
+    octree->local_count = 0;
+    octree->summation_nodes = 0;
+    scene->instances = 1;
+}
+
+/* Of all settings, wherever the scene and its mesh lie. */
+static unsigned long long hash_scene(const BenchScene *scene)
+{
+    BenchScene *copy = sm_alloc(1, sizeof *copy);
+    memcpy(copy, scene, sizeof *copy);
+    memset(copy->file, 0, sizeof copy->file);
+    memset(copy->mesh, 0, sizeof copy->mesh);
+    memset(copy->name, 0, sizeof copy->name);
+    memset(copy->title, 0, sizeof copy->title);
+    unsigned long long hash = sm_hash_bytes(SM_HASH_START, copy, sizeof *copy);
+    free(copy);
+    return hash;
+}
+
+static SmCode load(const BenchPlan *plan, BenchScene *scene, SmMesh *mesh, SmError *error)
+{
+    if (plan->file[0]) {
+        SmCode code = bench_scene_find(plan->file, scene, error);
+        return code ? code
+                    : bench_mesh_of_scene(scene, plan->mesh[0] ? plan->mesh : NULL, mesh, error);
     }
-    return low;
-}
-
-const BenchPoint *bench_sweep_find(const BenchSweep *sweep, int index)
-{
-    long place = place_of(sweep, index);
-    bool there = place < sweep->count && sweep->point[place].index == index;
-    return there ? &sweep->point[place] : NULL;
-}
-
-void bench_sweep_add(BenchSweep *sweep, const BenchPoint *point)
-{
-    long place = place_of(sweep, point->index);
-    sweep->point = sm_realloc(sweep->point, (size_t)sweep->count + 1, sizeof *sweep->point);
-    memmove(sweep->point + place + 1, sweep->point + place,
-            (size_t)(sweep->count - place) * sizeof *sweep->point);
-    sweep->point[place] = *point;
-    sweep->count++;
-}
-
-void bench_sweep_free(BenchSweep *sweep)
-{
-    free(sweep->point);
-    *sweep = (BenchSweep){0};
-}
-
-/* sample[] of every point as one table. */
-static void write_samples(BenchH5 *h5, hid_t group, const BenchSweep *sweep)
-{
-    size_t repeats = (size_t)sweep->plan.repeats;
-    double *sample = sm_alloc((size_t)sweep->count * repeats, sizeof *sample);
-    for (long i = 0; i < sweep->count; i++)
-        memcpy(sample + (size_t)i * repeats, sweep->point[i].sample, repeats * sizeof *sample);
-    hsize_t size[] = {(hsize_t)sweep->count, repeats};
-    bench_h5_dataset(h5, group, "sample", H5T_IEEE_F64LE, 2, size, sample);
-    free(sample);
-}
-
-static void write_file(BenchH5 *h5, void *record)
-{
-    const BenchSweep *sweep = record;
-    int schema = BENCH_SWEEP_SCHEMA, machine_count, plan_count, point_count;
-    char stages[128];
-    const BenchPlan *plan = &sweep->plan;
-    const BenchField *machine_fields = bench_machine_fields(&machine_count);
-    const BenchField *plan_fields = bench_plan_fields(&plan_count);
-    const BenchField *point_fields = bench_point_fields(&point_count);
-    bench_h5_text(h5, h5->file, "kind", file_kind);
-    bench_h5_numbers(h5, h5->file, "schema", H5T_STD_I32LE, 0, &schema);
-    hid_t group = bench_h5_group(h5, h5->file, "machine");
-    bench_h5_fields(h5, group, machine_fields, machine_count, &sweep->machine);
-    group = bench_h5_group(h5, h5->file, "plan");
-    bench_h5_fields(h5, group, plan_fields, plan_count, plan);
-    hsize_t ws = (hsize_t)plan->ws, epsilons = (hsize_t)plan->epsilons;
-    bench_h5_dataset(h5, group, "w", H5T_IEEE_F64LE, 1, &ws, plan->w);
-    bench_h5_dataset(h5, group, "epsilon", H5T_IEEE_F64LE, 1, &epsilons, plan->epsilon);
-    group = bench_h5_group(h5, h5->file, "points");
-    bench_store_stages(sizeof stages, stages);
-    bench_h5_text(h5, group, "stages", stages);
-    bench_h5_columns(h5, group, point_fields, point_count, sweep->point, sizeof *sweep->point,
-                     sweep->count);
-    write_samples(h5, group, sweep);
-}
-
-SmCode bench_sweep_store(const char *path, BenchSweep *sweep, SmError *error)
-{
-    bench_front_mark(sweep->point, sweep->count);
-    return bench_h5_store(path, write_file, sweep, error);
-}
-
-static void read_numbers(BenchH5 *h5, hid_t group, const char *name, int count, double *values)
-{
-    hsize_t size = (hsize_t)count;
-    if (!h5->failed && (count < 1 || count > BENCH_PLAN_VALUES))
-        bench_h5_fail(h5, "its plan has %d values of %s", count, name);
-    hid_t dataset = bench_h5_find_dataset(h5, group, name, 1, &size);
-    bench_h5_read(h5, dataset, H5T_NATIVE_DOUBLE, values);
-}
-
-static void read_plan(BenchH5 *h5, BenchPlan *plan)
-{
-    int count;
-    const BenchField *fields = bench_plan_fields(&count);
-    hid_t group = bench_h5_find_group(h5, h5->file, "plan");
-    bench_h5_read_fields(h5, group, fields, count, plan);
-    read_numbers(h5, group, "w", plan->ws, plan->w);
-    read_numbers(h5, group, "epsilon", plan->epsilons, plan->epsilon);
-    int points = plan->points;
-    SmError error;
-    if (!h5->failed && (bench_plan_count(plan, &error) || plan->points != points || points < 1))
-        bench_h5_fail(h5, "its plan does not make %d points", points);
-    if (!h5->failed && (plan->repeats < 1 || plan->repeats > BENCH_POINT_SAMPLES))
-        bench_h5_fail(h5, "its plan has %d repeats", plan->repeats);
-}
-
-/* Every point must be one of the plan's, in order, with no more samples than there is room for. */
-static void check_points(BenchH5 *h5, const BenchSweep *sweep)
-{
-    for (long i = 0; i < sweep->count && !h5->failed; i++) {
-        const BenchPoint *p = &sweep->point[i];
-        BenchPoint planned = {0};
-        bool inside =
-            p->index >= 0 && p->index < sweep->plan.points && (i == 0 || p->index > p[-1].index);
-        if (inside) bench_plan_point(&sweep->plan, p->index, &planned);
-        if (!inside || strcmp(planned.engine, p->engine) != 0 || planned.w != p->w ||
-            planned.epsilon != p->epsilon)
-            bench_h5_fail(h5, "point %ld is not one of its plan's", i);
-        if (p->samples < 0 || p->samples > sweep->plan.repeats)
-            bench_h5_fail(h5, "point %ld has %d samples", i, p->samples);
-    }
-}
-
-static void read_samples(BenchH5 *h5, hid_t group, BenchSweep *sweep)
-{
-    size_t repeats = (size_t)sweep->plan.repeats;
-    hsize_t size[] = {(hsize_t)sweep->count, repeats};
-    hid_t dataset = bench_h5_find_dataset(h5, group, "sample", 2, size);
-    if (h5->failed) return;
-    double *sample = sm_alloc((size_t)sweep->count * repeats, sizeof *sample);
-    bench_h5_read(h5, dataset, H5T_NATIVE_DOUBLE, sample);
-    for (long i = 0; i < sweep->count; i++)
-        memcpy(sweep->point[i].sample, sample + (size_t)i * repeats, repeats * sizeof *sample);
-    free(sample);
-}
-
-static void read_file(BenchH5 *h5, void *record)
-{
-    BenchSweep *sweep = record;
-    int machine_count, count;
-    const BenchField *machine_fields = bench_machine_fields(&machine_count);
-    const BenchField *fields = bench_point_fields(&count);
-    bench_h5_check_kind(h5, file_kind, BENCH_SWEEP_SCHEMA, BENCH_SWEEP_SCHEMA);
-    hid_t group = bench_h5_find_group(h5, h5->file, "machine");
-    bench_h5_read_fields(h5, group, machine_fields, machine_count, &sweep->machine);
-    read_plan(h5, &sweep->plan);
-    group = bench_h5_find_group(h5, h5->file, "points");
-    long number = bench_h5_records(h5, group, fields, BENCH_PLAN_POINTS);
-    if (h5->failed) return;
-    sweep->count = number;
-    sweep->point = sm_alloc((size_t)number, sizeof *sweep->point);
-    for (long i = 0; i < number; i++) sweep->point[i] = bench_point_none();
-    bench_h5_read_columns(h5, group, fields, count, sweep->point, sizeof *sweep->point, number);
-    read_samples(h5, group, sweep);
-    check_points(h5, sweep);
-}
-
-SmCode bench_sweep_load(const char *path, BenchSweep *sweep, SmError *error)
-{
-    *sweep = (BenchSweep){0};
-    SmCode code = bench_h5_load(path, read_file, sweep, error);
-    if (code) bench_sweep_free(sweep);
+    SmCode code = bench_mesh_load(plan->mesh, mesh, error);
+    if (!code) bench_scene_drop(mesh, plan->mesh, scene);
     return code;
 }
 
-/* Bit for bit, but for the mark of a front, which depends on the other points. */
-static bool same_point(const BenchPoint *a, const BenchPoint *b)
+static SmCode begin(BenchCampaign *campaign, const BenchCampaignRun *run, void **work,
+                    SmError *error)
 {
-    int count;
-    const BenchField *fields = bench_point_fields(&count);
-    for (int f = 0; f < count; f++) {
-        const char *left = (const char *)a + fields[f].offset,
-                   *right = (const char *)b + fields[f].offset;
-        if (!strcmp(fields[f].name, "front")) continue;
-        if (fields[f].kind == BENCH_TEXT ? strcmp(left, right) != 0
-                                         : memcmp(left, right, fields[f].size) != 0)
-            return false;
-    }
-    return !memcmp(a->sample, b->sample, (size_t)a->samples * sizeof *a->sample);
-}
-
-SmCode bench_sweep_merge(BenchSweep *into, const BenchSweep *from, const char *path, SmError *error)
-{
-    char what[240];
-    if (!bench_plan_same(&into->plan, &from->plan, sizeof what, what))
-        return sm_fail(error, SM_INPUT, "%.200s is of another sweep: %s", path, what);
-    for (long i = 0; i < from->count; i++) {
-        const BenchPoint *point = &from->point[i], *there = bench_sweep_find(into, point->index);
-        if (!there)
-            bench_sweep_add(into, point);
-        else if (!same_point(there, point))
-            return sm_fail(error, SM_INPUT,
-                           "%.200s: its point %d (%s, w %g, epsilon %g) was measured twice, here "
-                           "and in a file before it, and the two differ: leave one file out",
-                           path, point->index, point->engine, point->w, point->epsilon);
-    }
+    BenchPlan *plan = campaign->plan;
+    Sweeper *sweeper = *work = sm_alloc(1, sizeof *sweeper);
+    SmMesh mesh;
+    sweeper->rank = run->ranks->rank;
+    SmCode code = load(plan, &sweeper->scene, &mesh, error);
+    if (code) return code;
+    reduce(sweeper);
+    code = bench_body_create(&sweeper->scene, &mesh, &sweeper->body, error);
+    if (!code) code = bench_push_find(&sweeper->scene, &sweeper->body, &sweeper->push, error);
+    if (code) return code;
+    snprintf(plan->scene, sizeof plan->scene, "%s", sweeper->scene.name);
+    plan->scene_hash = hash_scene(&sweeper->scene);
+    plan->mesh_hash = sweeper->body.hash;
+    plan->steps = sweeper->scene.steps_per_frame;
+    plan->size = bench_body_size(&sweeper->body);
+    plan->cell = sweeper->body.voxels.cell;
+    if (sweeper->left_out[0] && !run->quiet)
+        fprintf(stderr, "shapebench sweep: left out of the scene: %s\n", sweeper->left_out);
     return SM_OK;
 }
+
+static void end(void *work)
+{
+    Sweeper *sweeper = work;
+    bench_body_free(&sweeper->body);
+    bench_path_free(&sweeper->full);
+    free(sweeper);
+}
+
+static BenchScene make_scene(const Sweeper *sweeper, const char *engine, double w, double epsilon,
+                             const char *width)
+{
+    BenchScene scene = sweeper->scene;
+    snprintf(scene.engine, sizeof scene.engine, "%s", engine);
+    bench_engine(engine)->set_width(&scene, w, epsilon, strcmp(width, "edges") != 0);
+    return scene;
+}
+
+static void keep_row(const BenchRow *row, BenchPoint *point)
+{
+    point->valid = row->valid;
+    snprintf(point->reason, sizeof point->reason, "%s", row->reason);
+    point->particles = row->particles;
+    point->regions = row->regions;
+    point->bytes = row->bytes;
+    point->summation_nodes = row->summation_nodes;
+    point->most_summation = row->most_summation;
+    point->parts = row->parts;
+    point->goal_error = row->goal_error;
+    if (row->valid && row->busy)
+        snprintf(point->reason, sizeof point->reason,
+                 "others took %.0f%% of its processors (load average %.1f)", row->lost_percent,
+                 row->load);
+    if (!bench_row_timed(row)) return; /* no times of what is not right, or was disturbed */
+    point->total_ms = row->total_ms;
+    point->total_low_ms = row->total_low_ms;
+    point->total_high_ms = row->total_high_ms;
+    memcpy(point->stage_ms, row->stage_ms, sizeof point->stage_ms);
+    point->build_seconds = row->build_seconds;
+    point->samples = row->repeats;
+    memcpy(point->sample, row->total, (size_t)row->repeats * sizeof *row->total);
+}
+
+static void measure_cost(Sweeper *sweeper, const BenchPlan *plan, const BenchScene *scene,
+                         BenchPoint *point)
+{
+    const SmEngineType *type;
+    SmError error;
+    BenchRow row = {0};
+    BenchMeasureParams params = {.repeats = plan->repeats,
+                                 .block_seconds = plan->block_ms / 1e3,
+                                 .threads = plan->threads,
+                                 .seed = (unsigned long)plan->seed};
+    SmCode code = bench_engine_find(scene->engine, plan->precision, &type, &error);
+    if (!code) code = bench_measure(scene, &sweeper->body, type, &params, &row, &error);
+    if (code)
+        snprintf(point->reason, sizeof point->reason, "%.159s", error.text);
+    else
+        keep_row(&row, point);
+    bench_row_free(&row);
+}
+
+/* No times of what is not right (point.h); `why` begins with INVALID. */
+static void invalidate(BenchPoint *point, const char *what, const char *why)
+{
+    const BenchPoint none = bench_point_none();
+    if (point->valid || !point->reason[0])
+        snprintf(point->reason, sizeof point->reason, "%s%.*s", what, BENCH_WHY,
+                 why + strlen("INVALID"));
+    point->valid = false;
+    point->total_ms = point->total_low_ms = point->total_high_ms = point->build_seconds = NAN;
+    point->samples = 0;
+    memcpy(point->stage_ms, none.stage_ms, sizeof point->stage_ms);
+    memcpy(point->sample, none.sample, sizeof point->sample);
+}
+
+/* In double precision, in which engines all are; it is asked for by name. */
+static const SmEngineType *exact_type(const char *engine)
+{
+    const SmEngineType *type;
+    SmError error;
+    if (bench_engine_find(engine, "double", &type, &error)) abort(); /* a plan has no others */
+    return type;
+}
+
+static void measure_beam(BenchPoint *point)
+{
+    BenchSwing beam;
+    bench_swing_measure(exact_type(point->engine), point->w, point->epsilon, &beam);
+    if (beam.invalid) invalidate(point, "beam", beam.why);
+    point->relaxation = beam.relaxation;
+    point->sag = beam.sag;
+    point->frequency = beam.frequency;
+    snprintf(point->beam_why, sizeof point->beam_why, "%s", beam.why);
+}
+
+/* The lattice's motion at this half-width. */
+static void find_full(Sweeper *sweeper, const BenchPlan *plan, int w)
+{
+    if (sweeper->full_w == w) return;
+    bench_path_free(&sweeper->full);
+    sweeper->full_w = w;
+    double members = bench_check_members(&sweeper->body, w);
+    if (members > most_members) {
+        snprintf(sweeper->full.why, sizeof sweeper->full.why,
+                 "full resolution: regions of w %d would have %.3g members, and take minutes", w,
+                 members);
+        return;
+    }
+    BenchScene scene = make_scene(sweeper, "fastlsm", w, 0, plan->width);
+    bench_path_record(&scene, &sweeper->body, exact_type("fastlsm"), &sweeper->push, plan->frames,
+                      (unsigned long)plan->seed, &sweeper->full);
+}
+
+static void measure_gaps(Sweeper *sweeper, const BenchPlan *plan, const BenchScene *scene,
+                         BenchPoint *point)
+{
+    BenchGap gap;
+    bench_gap_goals(scene, &sweeper->body, exact_type(point->engine), &gap);
+    if (gap.invalid) invalidate(point, "goals", gap.why);
+    point->goal_rms = gap.rms;
+    point->goal_most = gap.most;
+    snprintf(point->goal_why, sizeof point->goal_why, "%s", gap.why);
+    SmError error;
+    if (bench_width_mean(scene, &sweeper->body, &point->width_cells, &error)) {
+        snprintf(point->path_why, sizeof point->path_why, "%.*s", BENCH_WHY - 1, error.text);
+        return;
+    }
+    point->full_w = (int)fmax(1, rint(fmin(point->width_cells, 1e6)));
+    find_full(sweeper, plan, point->full_w);
+    BenchPath path;
+    bench_path_record(scene, &sweeper->body, exact_type(point->engine), &sweeper->push,
+                      plan->frames, (unsigned long)plan->seed, &path);
+    bench_gap_path(&path, &sweeper->full, plan->size, &gap);
+    if (gap.invalid) invalidate(point, "path", gap.why);
+    bench_path_free(&path);
+    point->path_rms = gap.rms;
+    point->path_most = gap.most;
+    snprintf(point->path_why, sizeof point->path_why, "%s", gap.why);
+}
+
+/* A lattice has exactly the regions asked for, in every cell. */
+static void be_exact(BenchPoint *point)
+{
+    point->width_cells = point->w;
+    point->full_w = (int)point->w;
+    point->goal_rms = point->goal_most = point->path_rms = point->path_most = 0;
+}
+
+static void stamp(BenchPoint *point)
+{
+    if (gethostname(point->host, sizeof point->host)) strcpy(point->host, "unknown");
+    point->host[sizeof point->host - 1] = '\0';
+    time_t now = time(NULL);
+    struct tm utc;
+    gmtime_r(&now, &utc);
+    strftime(point->utc, sizeof point->utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
+}
+
+static SmCode measure(void *work, const BenchCampaign *campaign, void *record, SmError *error)
+{
+    (void)error;
+    Sweeper *sweeper = work;
+    const BenchPlan *plan = campaign->plan;
+    BenchPoint *point = record;
+    double start = sm_now();
+    BenchScene scene = make_scene(sweeper, point->engine, point->w, point->epsilon, plan->width);
+    measure_cost(sweeper, plan, &scene, point);
+    measure_beam(point);
+    if (bench_engine(point->engine)->sampled)
+        measure_gaps(sweeper, plan, &scene, point);
+    else
+        be_exact(point);
+    stamp(point);
+    point->rank = sweeper->rank;
+    point->wall = sm_now() - start;
+    return SM_OK;
+}
+
+/* ---- the campaign */
+
+static SmCode count(void *plan, SmError *error)
+{
+    return bench_plan_count(plan, error);
+}
+
+static void plan_point(const void *plan, int index, void *point)
+{
+    bench_plan_point(plan, index, point);
+}
+
+static void say(const void *point, size_t size, char *text)
+{
+    const BenchPoint *p = point;
+    snprintf(text, size, "%s with w %g, epsilon %g", p->engine, p->w, p->epsilon);
+}
+
+static const char *fault(const void *point)
+{
+    const BenchPoint *p = point;
+    return p->valid ? NULL : p->reason;
+}
+
+static void conclude(BenchCampaign *campaign)
+{
+    bench_front_mark(campaign->point, campaign->count);
+}
+
+const BenchCampaignType bench_sweep_type = {
+    .command = "sweep",
+    .name = "sweep",
+    .point = "point",
+    .another = "another sweep",
+    .schema = 1,
+    .plan_size = sizeof(BenchPlan),
+    .point_size = sizeof(BenchPoint),
+    .plan = bench_plan_fields,
+    .points = bench_point_fields,
+    .plan_fields = &bench_plan_field_count,
+    .point_fields = &bench_point_field_count,
+    .list = bench_plan_lists,
+    .lists = BENCH_PLAN_LISTS,
+    .planned = offsetof(BenchPlan, points),
+    .series = offsetof(BenchPlan, repeats),
+    .used = offsetof(BenchPoint, samples),
+    .count = count,
+    .plan_point = plan_point,
+    .say = say,
+    .fault = fault,
+    .begin = begin,
+    .measure = measure,
+    .end = end,
+    .conclude = conclude,
+};

@@ -1,37 +1,14 @@
-/* sweep.h - the points of a sweep that are finished, and the HDF5 file that holds them. Schema:
- * results/README.md. */
+/* sweep.h - a sweep: a campaign (campaign.h) whose plan is a BenchPlan and whose points are
+ * BenchPoints. Each is measured in the scene and body that they share: its cost (measure.h), its
+ * stiffness (swing.h) and its gaps (gap.h). The file's schema: results/README.md.
+ *
+ * One body is swept, elastic and whole: what cuts, breaks, touches or looks at it, plasticity,
+ * further instances and widths of places are left out of the scene, and a remark names them. */
 #ifndef BENCH_SWEEP_H
 #define BENCH_SWEEP_H
 
 #include "plan.h"
 
-/* The layout written; raised with every change that a reader must know of. */
-enum { BENCH_SWEEP_SCHEMA = 1 };
-
-typedef struct {
-    BenchPlan plan;
-    BenchMachine machine; /* where and how the sweep was begun, or merged */
-    long count;
-    BenchPoint *point; /* [count] by rising index */
-} BenchSweep;
-
-/* The point of this index, or NULL. */
-const BenchPoint *bench_sweep_find(const BenchSweep *sweep, int index);
-
-/* Adds a point of an index that is not there yet. */
-void bench_sweep_add(BenchSweep *sweep, const BenchPoint *point);
-
-/* Marks the front and writes all of it: the file appears whole or not at all (draft.h). */
-SmCode bench_sweep_store(const char *path, BenchSweep *sweep, SmError *error);
-
-/* Reads a file back; the caller frees the sweep. SM_INPUT: no such file, not HDF5, cut off, no
- * sweep, another schema, something missing, of a wrong size, or beside the plan. */
-SmCode bench_sweep_load(const char *path, BenchSweep *sweep, SmError *error);
-void bench_sweep_free(BenchSweep *sweep);
-
-/* Adds the points of `from` (read from `path`) to `into`. A point that is in both must be the same
- * to the last bit. SM_INPUT: it is not, or the plans differ. */
-SmCode bench_sweep_merge(BenchSweep *into, const BenchSweep *from, const char *path,
-                         SmError *error);
+extern const BenchCampaignType bench_sweep_type;
 
 #endif

@@ -12,6 +12,6 @@
  * null; other quantities that could not be had are "-", empty or null. The reasons follow the text
  * form, each once, and a line where points were measured on several hosts. JSON: {"points": [...],
  * "plan": {...}, "environment": {...}}. */
-void bench_sweep_table(FILE *file, BenchFormat format, const BenchSweep *sweep);
+void bench_sweep_table(FILE *file, BenchFormat format, const BenchCampaign *sweep);
 
 #endif

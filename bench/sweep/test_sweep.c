@@ -7,6 +7,7 @@
 
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
+#include "../campaign/campaign_run.h"
 #include "../cli/range.h"
 #include "front.h"
 #include "sweep.h"
@@ -66,6 +67,51 @@ TEST(bad_ranges_are_refused)
     }
 }
 
+static void set(const char *name, const char *value)
+{
+    if (value)
+        setenv(name, value, 1);
+    else
+        unsetenv(name);
+}
+
+TEST(shards_are_those_of_a_job_array)
+{
+    static const struct {
+        const char *id, *count, *least, *step;
+        int shard; /* 0: none, and the words */
+        const char *words;
+    } cases[] = {
+        {"1", "4", "1", NULL, 1, NULL},
+        {"9", "4", "0", "3", 4, NULL},
+        {"7", "3", "5", "1", 3, NULL},
+        {NULL, "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is not set"},
+        {"1", NULL, "1", NULL, 0, "SLURM_ARRAY_TASK_COUNT is not set"},
+        {"1", "4", NULL, NULL, 0, "SLURM_ARRAY_TASK_MIN is not set"},
+        {"1", "0", "1", NULL, 0, "SLURM_ARRAY_TASK_COUNT is '0'"},
+        {"one", "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is 'one'"},
+        {"", "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is ''"},
+        {"-1", "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is '-1'"},
+        {"2", "4", "0", "3", 0, "task 2 is none of 4 in even steps of 3 from 0 on"},
+        {"5", "4", "1", NULL, 0, "task 5 is none of 4"},
+        {"1", "4", "2", NULL, 0, "task 1 is none of 4"},
+        {"1", "99999999999999999999", "1", NULL, 0, "SLURM_ARRAY_TASK_COUNT is '99999"},
+        {"1", "20000", "1", NULL, 0, "at most 10000"},
+    };
+    int shard, shards;
+    SmError error;
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        set("SLURM_ARRAY_TASK_ID", cases[c].id);
+        set("SLURM_ARRAY_TASK_COUNT", cases[c].count);
+        set("SLURM_ARRAY_TASK_MIN", cases[c].least);
+        set("SLURM_ARRAY_TASK_STEP", cases[c].step);
+        SmCode code = bench_shard_parse("auto", &shard, &shards, &error);
+        assert_int_equal(code, cases[c].shard ? SM_OK : SM_USAGE);
+        if (code && !strstr(error.text, cases[c].words)) fail_msg("%zu: %s", c, error.text);
+        if (!code) assert_int_equal(shard, cases[c].shard);
+    }
+}
+
 /* w 1 and 2, epsilon 0, 0.5 and 1. */
 static BenchPlan make_plan(const char *engines)
 {
@@ -120,29 +166,6 @@ TEST(a_plan_makes_its_points)
     assert_non_null(strstr(error.text, "65536 points"));
 }
 
-TEST(plans_differ_in_words)
-{
-    char what[240];
-    BenchPlan mine = make_plan("both"), other = mine;
-    strcpy(other.mesh, "elsewhere/hand.obj"); /* the same by its hash */
-    assert_true(bench_plan_same(&mine, &other, sizeof what, what));
-    other.w[1] = 3;
-    assert_false(bench_plan_same(&mine, &other, sizeof what, what));
-    assert_string_equal(what, "its w is 2 numbers from 1 to 3, and here 2 from 1 to 2");
-    other = mine;
-    other.mesh_hash++;
-    assert_false(bench_plan_same(&mine, &other, sizeof what, what));
-    assert_non_null(strstr(what, "the mesh has changed"));
-    other = mine;
-    other.frames = 6;
-    assert_false(bench_plan_same(&mine, &other, sizeof what, what));
-    assert_string_equal(what, "its frames is 6, and here 5");
-    other = mine;
-    strcpy(other.build, "0.2");
-    assert_false(bench_plan_same(&mine, &other, sizeof what, what));
-    assert_string_equal(what, "its build is '0.2', and here '0.1'");
-}
-
 static BenchPoint make_point(const BenchPlan *plan, int index, double ms, double path, double hz)
 {
     BenchPoint point = bench_point_none();
@@ -164,79 +187,125 @@ static BenchPoint make_point(const BenchPlan *plan, int index, double ms, double
     return point;
 }
 
-/* Three of the plan's eight points, one INVALID; the number in `first` is where it differs. */
-static BenchSweep make_sweep(double first)
+static BenchPoint *at(const BenchCampaign *sweep, long i)
 {
-    BenchSweep sweep = {.plan = make_plan("both")};
+    return bench_campaign_at(sweep, i);
+}
+
+static BenchPlan *plan_of(const BenchCampaign *sweep)
+{
+    return sweep->plan;
+}
+
+static BenchCampaign with_plan(const BenchPlan *plan)
+{
+    BenchCampaign sweep = bench_campaign_create(&bench_sweep_type);
+    *plan_of(&sweep) = *plan;
+    return sweep;
+}
+
+TEST(plans_differ_in_words)
+{
+    static const struct {
+        size_t offset;
+        const char *words;
+    } cases[] = {
+        {offsetof(BenchPlan, mesh_hash), "the mesh has changed"},
+        {offsetof(BenchPlan, frames), "its frames is 261, and here 5"},
+        {offsetof(BenchPlan, build), "and here '0.1'"},
+    };
+    char what[240];
+    BenchPlan plan = make_plan("both");
+    BenchCampaign mine = with_plan(&plan), other = with_plan(&plan);
+    strcpy(plan_of(&other)->mesh, "elsewhere/hand.obj"); /* the same by its hash */
+    assert_true(bench_campaign_same(&mine, &other, sizeof what, what));
+    plan_of(&other)->w[1] = 3;
+    assert_false(bench_campaign_same(&mine, &other, sizeof what, what));
+    assert_string_equal(what, "its w is 2 numbers from 1 to 3, and here 2 from 1 to 2");
+    for (int c = 0; c < 3; c++) {
+        *plan_of(&other) = plan;
+        ((char *)other.plan)[cases[c].offset + 1]++;
+        assert_false(bench_campaign_same(&mine, &other, sizeof what, what));
+        if (!strstr(what, cases[c].words)) fail_msg("%s", what);
+    }
+    bench_campaign_free(&mine);
+    bench_campaign_free(&other);
+}
+
+/* Three of the plan's eight points, one INVALID; the number in `first` is where it differs. */
+static BenchCampaign make_sweep(double first)
+{
+    BenchPlan plan = make_plan("both");
+    BenchCampaign sweep = with_plan(&plan);
     static char *arguments[] = {"shapebench sweep", "-o", "a b.h5"};
     bench_machine_read(3, arguments, 1, &sweep.machine);
     static const int order[] = {6, 1, 4};
     for (int i = 0; i < 3; i++) {
-        BenchPoint point = make_point(&sweep.plan, order[i], order[i] == 4 ? NAN : first, 0.01, 12);
-        bench_sweep_add(&sweep, &point);
+        BenchPoint point = make_point(&plan, order[i], order[i] == 4 ? NAN : first, 0.01, 12);
+        bench_campaign_add(&sweep, &point);
     }
     return sweep;
 }
 
 static void write_sweep(const char *path)
 {
-    BenchSweep sweep = make_sweep(1.5);
+    BenchCampaign sweep = make_sweep(1.5);
     SmError error;
-    if (bench_sweep_store(path, &sweep, &error)) fail_msg("%s", error.text);
-    bench_sweep_free(&sweep);
+    if (bench_campaign_store(path, &sweep, &error)) fail_msg("%s", error.text);
+    bench_campaign_free(&sweep);
 }
 
 TEST(a_sweep_comes_back)
 {
     const char *path = path_in("sweep.h5");
-    BenchSweep expected = make_sweep(1.5), found;
+    BenchCampaign expected = make_sweep(1.5), found;
     SmError error;
     write_sweep(path);
     write_sweep(path); /* replaces */
     assert_int_equal(entries(""), 1);
-    if (bench_sweep_load(path, &found, &error)) fail_msg("%s", error.text);
+    if (bench_campaign_load(path, &bench_sweep_type, &found, &error)) fail_msg("%s", error.text);
     bench_front_mark(expected.point, expected.count);
     assert_int_equal(found.count, 3);
     char what[240];
-    assert_true(bench_plan_same(&found.plan, &expected.plan, sizeof what, what));
-    assert_int_equal(found.plan.scene_hash, ~0ULL);
-    assert_memory_equal(found.point, expected.point, 3 * sizeof *found.point);
+    assert_true(bench_campaign_same(&found, &expected, sizeof what, what));
+    assert_int_equal(plan_of(&found)->scene_hash, ~0ULL);
+    assert_memory_equal(found.point, expected.point, 3 * sizeof(BenchPoint));
     assert_string_equal(found.machine.command, "shapebench sweep -o 'a b.h5'");
-    assert_true(found.point[0].index == 1 && found.point[2].index == 6);
-    assert_true(isnan(found.point[1].total_ms) && !found.point[1].valid);
-    assert_null(bench_sweep_find(&found, 2));
-    bench_sweep_free(&found);
-    bench_sweep_free(&expected);
+    assert_true(at(&found, 0)->index == 1 && at(&found, 2)->index == 6);
+    assert_true(isnan(at(&found, 1)->total_ms) && !at(&found, 1)->valid);
+    assert_null(bench_campaign_find(&found, 2));
+    bench_campaign_free(&found);
+    bench_campaign_free(&expected);
     unlink(path);
 }
 
 TEST(merging_adds_and_refuses)
 {
-    BenchSweep all = make_sweep(1.5), same = make_sweep(1.5), twice = make_sweep(1.6),
-               foreign = make_sweep(1.5), more = {.plan = all.plan};
-    BenchPoint point = make_point(&more.plan, 0, 3, 0, 9);
+    BenchCampaign all = make_sweep(1.5), same = make_sweep(1.5), twice = make_sweep(1.6),
+                  foreign = make_sweep(1.5), more = with_plan(all.plan);
+    BenchPoint point = make_point(more.plan, 0, 3, 0, 9);
     SmError error;
-    bench_sweep_add(&more, &point);
-    assert_int_equal(bench_sweep_merge(&all, &same, "same.h5", &error), SM_OK);
+    bench_campaign_add(&more, &point);
+    assert_int_equal(bench_campaign_merge(&all, &same, "same.h5", &error), SM_OK);
     assert_int_equal(all.count, 3);
-    assert_int_equal(bench_sweep_merge(&all, &more, "more.h5", &error), SM_OK);
+    assert_int_equal(bench_campaign_merge(&all, &more, "more.h5", &error), SM_OK);
     assert_int_equal(all.count, 4);
-    assert_int_equal(all.point[0].index, 0);
-    assert_int_equal(bench_sweep_merge(&all, &twice, "twice.h5", &error), SM_INPUT);
-    assert_non_null(strstr(error.text, "twice.h5: its point 1 (octree, w 1, epsilon 0) was "
+    assert_int_equal(at(&all, 0)->index, 0);
+    assert_int_equal(bench_campaign_merge(&all, &twice, "twice.h5", &error), SM_INPUT);
+    assert_non_null(strstr(error.text, "twice.h5: its point 1 (octree with w 1, epsilon 0) was "
                                        "measured twice"));
-    foreign.plan.scene_hash++;
-    assert_int_equal(bench_sweep_merge(&all, &foreign, "foreign.h5", &error), SM_INPUT);
+    plan_of(&foreign)->scene_hash++;
+    assert_int_equal(bench_campaign_merge(&all, &foreign, "foreign.h5", &error), SM_INPUT);
     assert_non_null(strstr(error.text, "foreign.h5 is of another sweep"));
-    BenchSweep *each[] = {&all, &same, &twice, &foreign, &more};
-    for (int i = 0; i < 5; i++) bench_sweep_free(each[i]);
+    BenchCampaign *each[] = {&all, &same, &twice, &foreign, &more};
+    for (int i = 0; i < 5; i++) bench_campaign_free(each[i]);
 }
 
 static void refuses(const char *path, const char *words)
 {
-    BenchSweep sweep;
+    BenchCampaign sweep;
     SmError error = {0};
-    assert_int_equal(bench_sweep_load(path, &sweep, &error), SM_INPUT);
+    assert_int_equal(bench_campaign_load(path, &bench_sweep_type, &sweep, &error), SM_INPUT);
     assert_null(sweep.point);
     if (!strstr(error.text, words) || !strstr(error.text, path))
         fail_msg("'%s' does not say '%s'", error.text, words);
@@ -279,7 +348,7 @@ static void older(hid_t file)
 }
 static void newer(hid_t file)
 {
-    set_int(file, "schema", BENCH_SWEEP_SCHEMA + 1);
+    set_int(file, "schema", bench_sweep_type.schema + 1);
 }
 static void more_points(hid_t file)
 {
@@ -375,9 +444,9 @@ static void store_on_full_disk(const char *path)
     signal(SIGXFSZ, SIG_IGN);
     struct rlimit bound = {4096, RLIM_INFINITY};
     setrlimit(RLIMIT_FSIZE, &bound);
-    BenchSweep sweep = make_sweep(9);
+    BenchCampaign sweep = make_sweep(9);
     SmError error = {0};
-    if (bench_sweep_store(path, &sweep, &error) != SM_OUTPUT) _exit(2);
+    if (bench_campaign_store(path, &sweep, &error) != SM_OUTPUT) _exit(2);
     _exit(strstr(error.text, "size limit") ? 0 : 3);
 }
 
@@ -390,10 +459,10 @@ TEST(a_full_disk_keeps_what_was)
     int status;
     assert_int_equal(waitpid(child, &status, 0), child);
     assert_int_equal(status, 0);
-    BenchSweep sweep;
+    BenchCampaign sweep;
     assert_int_equal(entries(""), 1); /* no draft */
-    assert_int_equal(bench_sweep_load(path, &sweep, NULL), SM_OK);
-    assert_true(sweep.point[0].total_ms == 1.5);
-    bench_sweep_free(&sweep);
+    assert_int_equal(bench_campaign_load(path, &bench_sweep_type, &sweep, NULL), SM_OK);
+    assert_true(at(&sweep, 0)->total_ms == 1.5);
+    bench_campaign_free(&sweep);
     unlink(path);
 }

@@ -39,10 +39,16 @@ static int set_up(void **state)
     return 0;
 }
 
-static void load(const char *name, BenchSweep *sweep)
+static void load(const char *name, BenchCampaign *sweep)
 {
     SmError error;
-    if (bench_sweep_load(path_in(name), sweep, &error)) fail_msg("%s", error.text);
+    if (bench_campaign_load(path_in(name), &bench_sweep_type, sweep, &error))
+        fail_msg("%s", error.text);
+}
+
+static BenchPoint *point(const BenchCampaign *sweep, long i)
+{
+    return bench_campaign_at(sweep, i);
 }
 
 /* Is the field the same in every run? The state in which goals are checked depends on how many
@@ -52,8 +58,8 @@ static bool repeats(const char *name)
     static const char *const other[] = {"total_ms",   "total_low_ms", "total_high_ms", "stage_ms",
                                         "goal_error", "wall",         "build_seconds", "front",
                                         "rank",       "host",         "utc",           "samples",
-                                        "reason"}; /* none, and why, where others took the
-                                                      processors */
+                                        "reason",     "sample"}; /* none, and why, where others took
+                                                      the processors */
     for (size_t i = 0; i < sizeof other / sizeof other[0]; i++)
         if (!strcmp(name, other[i])) return false;
     return true;
@@ -62,32 +68,31 @@ static bool repeats(const char *name)
 /* The file has all points of whole.h5, and what repeats is the same to the last bit. */
 static void equals_whole(const char *name)
 {
-    BenchSweep whole, other;
-    int count;
-    const BenchField *fields = bench_point_fields(&count);
+    BenchCampaign whole, other;
     load("whole.h5", &whole);
     load(name, &other);
     assert_int_equal(other.count, whole.count);
     for (long i = 0; i < whole.count; i++)
-        for (int f = 0; f < count; f++) {
-            const char *a = (const char *)&whole.point[i] + fields[f].offset,
-                       *b = (const char *)&other.point[i] + fields[f].offset;
-            if (repeats(fields[f].name) && memcmp(a, b, fields[f].size) != 0)
-                fail_msg("%s: %s of point %ld differs", name, fields[f].name, i);
+        for (int f = 0; f < bench_point_field_count; f++) {
+            const BenchField *field = &bench_point_fields[f];
+            const char *a = (const char *)point(&whole, i) + field->offset,
+                       *b = (const char *)point(&other, i) + field->offset;
+            if (field->name && repeats(field->name) && memcmp(a, b, field->size) != 0)
+                fail_msg("%s: %s of point %ld differs", name, field->name, i);
         }
-    bench_sweep_free(&whole);
-    bench_sweep_free(&other);
+    bench_campaign_free(&whole);
+    bench_campaign_free(&other);
 }
 
 TEST(a_point_has_its_figures)
 {
-    BenchSweep sweep;
+    BenchCampaign sweep;
     load("whole.h5", &sweep);
-    assert_int_equal(sweep.plan.points, 3);
+    assert_int_equal(bench_campaign_planned(&sweep), 3);
     assert_int_equal(sweep.count, 3);
-    const BenchPoint *lattice = sweep.point, *exact = lattice + 1, *wide = lattice + 2;
+    const BenchPoint *lattice = point(&sweep, 0), *exact = lattice + 1, *wide = lattice + 2;
     for (int i = 0; i < 3; i++) {
-        const BenchPoint *p = &sweep.point[i];
+        const BenchPoint *p = point(&sweep, i);
         assert_true(p->valid && p->goal_error < 5e-5 && p->bytes > 0);
         if (p->samples > 0) { /* else others took the processors */
             assert_true(p->total_ms > 0 && p->stage_ms[0] > 0 && p->build_seconds > 0);
@@ -105,7 +110,7 @@ TEST(a_point_has_its_figures)
     assert_true(exact->path_rms > 0 && exact->path_rms <= exact->path_most && exact->path_most < 1);
     assert_true(exact->summation_nodes >= 1 && exact->width_cells >= 6);
     assert_true(wide->frequency > exact->frequency); /* wider regions are stiffer */
-    bench_sweep_free(&sweep);
+    bench_campaign_free(&sweep);
 }
 
 /* Interrupted as soon as a point is stored, and again, until nothing is left. */
@@ -116,19 +121,19 @@ TEST(an_interrupted_sweep_goes_on)
     slurp("err", said, sizeof said);
     assert_non_null(strstr(said, "interrupted: part.h5 keeps the points that are finished"));
     assert_int_equal(entries(".tmp"), 0);
-    BenchSweep part;
+    BenchCampaign part;
     load("part.h5", &part);
     assert_in_range(part.count, 1, 2);
-    char utc[sizeof part.point->utc], begun[sizeof part.machine.utc];
-    strcpy(utc, part.point[0].utc);
+    char utc[sizeof(BenchPoint){0}.utc], begun[sizeof part.machine.utc];
+    strcpy(utc, point(&part, 0)->utc);
     strcpy(begun, part.machine.utc);
-    bench_sweep_free(&part);
+    bench_campaign_free(&part);
     runs(SMALL " -o part.h5");
     equals_whole("part.h5");
     load("part.h5", &part);
-    assert_string_equal(part.point[0].utc, utc); /* not measured again */
+    assert_string_equal(point(&part, 0)->utc, utc); /* not measured again */
     assert_string_equal(part.machine.utc, begun);
-    bench_sweep_free(&part);
+    bench_campaign_free(&part);
 }
 
 TEST(shards_merge_to_the_whole)
@@ -214,14 +219,14 @@ TEST(a_point_that_cannot_be_is_invalid)
     assert_non_null(strstr(result->err, "1 of 2 points are INVALID"));
     assert_non_null(strstr(result->out, "INVALID"));
     assert_non_null(strstr(result->out, "handle 1 selects no particle"));
-    BenchSweep sweep;
+    BenchCampaign sweep;
     load("held.h5", &sweep);
-    assert_true(sweep.point[0].valid && sweep.point[0].front);
-    assert_false(sweep.point[1].valid || sweep.point[1].front);
-    assert_true(sweep.point[1].total_ms != sweep.point[1].total_ms); /* NaN */
-    assert_non_null(strstr(sweep.point[1].path_why, "selects no particle"));
-    assert_true(sweep.point[1].frequency > 0); /* the beam's */
-    bench_sweep_free(&sweep);
+    assert_true(point(&sweep, 0)->valid && point(&sweep, 0)->front);
+    assert_false(point(&sweep, 1)->valid || point(&sweep, 1)->front);
+    assert_true(point(&sweep, 1)->total_ms != point(&sweep, 1)->total_ms); /* NaN */
+    assert_non_null(strstr(point(&sweep, 1)->path_why, "selects no particle"));
+    assert_true(point(&sweep, 1)->frequency > 0); /* the beam's */
+    bench_campaign_free(&sweep);
     free(result);
 }
 
@@ -290,10 +295,10 @@ static void a_rank_that_cannot_stops_no_other(Result *result)
              result);
     assert_int_equal(result->code, 3);
     assert_non_null(strstr(result->err, "rank 1: no.cfg: no such file"));
-    BenchSweep sweep;
+    BenchCampaign sweep;
     load("lame.h5", &sweep);
     assert_int_equal(sweep.count, 2);
-    bench_sweep_free(&sweep);
+    bench_campaign_free(&sweep);
 }
 
 /* Two ranks do the same as one. Without MPI a launch of two is refused in a line. */
@@ -315,10 +320,10 @@ TEST(ranks_share_the_work)
     }
     if (result->code) fail_msg("%d: %s", result->code, result->err);
     equals_whole("ranks.h5");
-    BenchSweep sweep;
+    BenchCampaign sweep;
     load("ranks.h5", &sweep);
-    for (int i = 0; i < 3; i++) assert_int_equal(sweep.point[i].rank, i % 2);
-    bench_sweep_free(&sweep);
+    for (int i = 0; i < 3; i++) assert_int_equal(point(&sweep, i)->rank, i % 2);
+    bench_campaign_free(&sweep);
     a_rank_that_cannot_stops_no_other(result);
     free(result);
 }
@@ -327,18 +332,19 @@ TEST(ranks_share_the_work)
 TEST(several_hosts_are_said)
 {
     static char text[8192];
-    BenchSweep sweep = {.plan = {.width = "edges"}};
+    BenchCampaign sweep = bench_campaign_create(&bench_sweep_type);
+    strcpy(((BenchPlan *)sweep.plan)->width, "edges");
     for (int i = 0; i < 2; i++) {
-        BenchPoint point = bench_point_none();
-        point.index = i;
-        strcpy(point.host, i ? "there" : "here");
-        bench_sweep_add(&sweep, &point);
+        BenchPoint next = bench_point_none();
+        next.index = i;
+        strcpy(next.host, i ? "there" : "here");
+        bench_campaign_add(&sweep, &next);
         FILE *file = fmemopen(text, sizeof text, "w");
         bench_sweep_table(file, BENCH_AS_TEXT, &sweep);
         fclose(file);
         assert_int_equal(strstr(text, "Points are of several hosts (here, there)") != NULL, i);
     }
-    bench_sweep_free(&sweep);
+    bench_campaign_free(&sweep);
 }
 
 TEST_GROUP(set_up, remove_folder)

@@ -13,6 +13,12 @@ void bench_grid_column(BenchGrid *grid, const char *heading, bool left)
     grid->left[grid->columns++] = left;
 }
 
+void bench_grid_rename(BenchGrid *grid, int column, const char *heading)
+{
+    grid->heading[column] = heading;
+    grid->width[column] = (int)strlen(heading);
+}
+
 BenchGridLine *bench_grid_add(BenchGrid *grid)
 {
     grid->line = sm_realloc(grid->line, (size_t)grid->lines + 1, sizeof *grid->line);

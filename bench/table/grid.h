@@ -25,6 +25,8 @@ typedef enum { BENCH_GRID_PLAIN, BENCH_GRID_MARKDOWN, BENCH_GRID_LATEX } BenchGr
  * added. */
 void bench_grid_column(BenchGrid *grid, const char *heading, bool left);
 BenchGridLine *bench_grid_add(BenchGrid *grid);
+/* Another heading, which must stand as long as the grid. */
+void bench_grid_rename(BenchGrid *grid, int column, const char *heading);
 void bench_grid_free(BenchGrid *grid);
 
 /* Columns as wide as what is in them. */

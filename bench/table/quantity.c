@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "records.h"
+
 /* ---- what is not a plain member */
 
 static bool changes(const void *record)
@@ -464,14 +466,6 @@ const int bench_quantity_count = sizeof bench_quantities / sizeof bench_quantiti
 
 /* ---- documentation */
 
-static const char *type_name(const BenchField *field)
-{
-    static const char *const names[] = {
-        [BENCH_TEXT] = "text",  [BENCH_INT] = "int32",   [BENCH_LONG] = "int64",
-        [BENCH_BOOL] = "uint8", [BENCH_HASH] = "uint64", [BENCH_DOUBLE] = "float64"};
-    return names[field->kind];
-}
-
 void bench_quantities_document(FILE *file)
 {
     fputs("| attribute | type | in csv, json | of | unit | meaning |\n"
@@ -480,11 +474,11 @@ void bench_quantities_document(FILE *file)
     for (int q = 0; q < bench_quantity_count; q++) {
         const BenchField *field = &bench_quantities[q].field;
         const char *group = bench_quantities[q].elastic ? "elastic/" : "";
-        size_t values = field->kind == BENCH_DOUBLE ? field->size / sizeof(double) : 1;
+        char type[32];
+        bench_field_type(field, sizeof type, type);
         if (!field->name && !field->column) continue;
-        if (field->name) fprintf(file, "| `%s%s` | %s", group, field->name, type_name(field));
+        if (field->name) fprintf(file, "| `%s%s` | %s", group, field->name, type);
         if (!field->name) fputs("| | ", file);
-        if (field->name && values > 1) fprintf(file, " [%zu]", values);
         fprintf(file, field->column ? " | `%s` |" : " |%s |", field->column ? field->column : "");
         const char *of = bench_quantities[q].of, *unit = field->unit;
         fprintf(file, " %s | %s | %s |\n", of ? of : "", unit ? unit : "", field->meaning);

@@ -25,8 +25,6 @@ static void be_silent(void)
 
 #include <mpi.h>
 
-enum { TAG = 1 };
-
 SmCode bench_ranks_start(BenchRanks *ranks, SmError *error)
 {
     *ranks = (BenchRanks){0, 1};
@@ -48,21 +46,28 @@ void bench_ranks_share(const BenchRanks *ranks, void *bytes, int size)
     if (ranks->count > 1) MPI_Bcast(bytes, size, MPI_BYTE, 0, MPI_COMM_WORLD);
 }
 
-void bench_ranks_send(const BenchRanks *ranks, BenchNote *note)
+void bench_ranks_send(const BenchRanks *ranks, BenchNoteKind kind, const void *bytes, size_t size)
 {
-    note->rank = ranks->rank;
-    MPI_Send(note, sizeof *note, MPI_BYTE, 0, TAG, MPI_COMM_WORLD);
+    (void)ranks;
+    MPI_Send(bytes, (int)size, MPI_BYTE, 0, (int)kind, MPI_COMM_WORLD);
 }
 
 bool bench_ranks_receive(const BenchRanks *ranks, bool wait, BenchNote *note)
 {
-    int there = wait;
+    int there = wait, size;
+    MPI_Status status;
     if (ranks->count == 1) return false;
-    if (!wait) MPI_Iprobe(MPI_ANY_SOURCE, TAG, MPI_COMM_WORLD, &there, MPI_STATUS_IGNORE);
-    if (there)
-        MPI_Recv(note, sizeof *note, MPI_BYTE, MPI_ANY_SOURCE, TAG, MPI_COMM_WORLD,
-                 MPI_STATUS_IGNORE);
-    return there;
+    if (wait)
+        MPI_Probe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &status);
+    else
+        MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &status);
+    if (!there) return false;
+    MPI_Get_count(&status, MPI_BYTE, &size);
+    *note = (BenchNote){(BenchNoteKind)status.MPI_TAG, status.MPI_SOURCE, (size_t)size,
+                        sm_alloc((size_t)size + 1, 1)};
+    MPI_Recv(note->bytes, size, MPI_BYTE, note->rank, status.MPI_TAG, MPI_COMM_WORLD,
+             MPI_STATUS_IGNORE);
+    return true;
 }
 
 void bench_ranks_stop(const BenchRanks *ranks)
@@ -99,9 +104,9 @@ void bench_ranks_share(const BenchRanks *ranks, void *bytes, int size)
     (void)ranks, (void)bytes, (void)size;
 }
 
-void bench_ranks_send(const BenchRanks *ranks, BenchNote *note)
+void bench_ranks_send(const BenchRanks *ranks, BenchNoteKind kind, const void *bytes, size_t size)
 {
-    (void)ranks, (void)note;
+    (void)ranks, (void)kind, (void)bytes, (void)size;
 }
 
 bool bench_ranks_receive(const BenchRanks *ranks, bool wait, BenchNote *note)

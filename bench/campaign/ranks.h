@@ -5,21 +5,22 @@
 #define BENCH_RANKS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "../../lib/error.h"
-#include "../sweep/point.h"
 
 typedef struct {
     int rank, count;
 } BenchRanks;
 
-typedef enum { BENCH_NOTE_POINT, BENCH_NOTE_END, BENCH_NOTE_FAILED } BenchNoteKind;
+typedef enum { BENCH_NOTE_POINT = 1, BENCH_NOTE_END, BENCH_NOTE_FAILED } BenchNoteKind;
 
+/* A note as it comes. */
 typedef struct {
     BenchNoteKind kind;
-    int rank;         /* who sends it; filled in */
-    BenchPoint point; /* of a point */
-    char line[512];   /* of a failure */
+    int rank; /* who sends it */
+    size_t size;
+    char *bytes; /* [size] of a point, or the text of a failure; the caller frees them */
 } BenchNote;
 
 /* Finds out; ranks above 0 are silent from then on. Call it before anything is printed. SM_USAGE: a
@@ -30,7 +31,7 @@ SmCode bench_ranks_start(BenchRanks *ranks, SmError *error);
 void bench_ranks_share(const BenchRanks *ranks, void *bytes, int size);
 
 /* A note to rank 0, from another rank. */
-void bench_ranks_send(const BenchRanks *ranks, BenchNote *note);
+void bench_ranks_send(const BenchRanks *ranks, BenchNoteKind kind, const void *bytes, size_t size);
 
 /* On rank 0: the next note; without `wait` only if there is one. */
 bool bench_ranks_receive(const BenchRanks *ranks, bool wait, BenchNote *note);

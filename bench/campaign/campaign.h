@@ -1,0 +1,121 @@
+/* campaign.h - a plan of points, each of which is measured and checked, stored as it ends, and so
+ * can be gone on with, divided among machines and merged. A sweep (sweep.h), a calibration
+ * (calibration.h) and the experiments of claims (experiments.h) are three; each describes itself
+ * by a BenchCampaignType. campaign_run.h measures one. */
+#ifndef BENCH_CAMPAIGN_H
+#define BENCH_CAMPAIGN_H
+
+#include "../store/h5.h"
+#include "../system/machine.h"
+
+enum { BENCH_CAMPAIGN_POINTS = 10000, BENCH_CAMPAIGN_TEXT = 240 };
+
+/* What may be done with it. */
+typedef struct BenchCampaign BenchCampaign;
+typedef struct BenchCampaignRun BenchCampaignRun; /* campaign_run.h */
+
+/* Numbers that a plan is made of: an array of `most`, of which the first `count` are there. */
+typedef struct {
+    const char *name, *option; /* of the dataset; as it is given */
+    size_t value, count;       /* where in the plan: double[most], int */
+    int least, most;
+    double low, high; /* of each */
+} BenchCampaignList;
+
+typedef struct {
+    const char *command, *name, *point; /* "calibrate", "calibration", "specimen" */
+    const char *another;                /* "another calibration" */
+    int schema;                         /* of its file */
+    bool asks; /* goes on with a file that is there only where --resume says so */
+    size_t plan_size, point_size;
+    const BenchField *plan, *points; /* members of a plan, and of a point; its first is `index` */
+    const int *plan_fields, *point_fields;
+    const BenchCampaignList *list;
+    int lists;
+    size_t planned;      /* where in a plan: int, how many points it has */
+    size_t series, used; /* of points that have a series: its length, an int of the plan, and how
+                          * many of it are there, an int of the point */
+
+    /* Counts the plan's points. SM_USAGE: it can have none. */
+    SmCode (*count)(void *plan, SmError *error);
+    /* Settings of the point of this index, which is none yet (bench_record_none()). */
+    void (*plan_point)(const void *plan, int index, void *point);
+    /* "octree with w 1, epsilon 0". */
+    void (*say)(const void *point, size_t size, char *text);
+    /* Why it is not valid, or NULL. */
+    const char *(*fault)(const void *point);
+
+    /* What the points share: completes the plan. The caller frees `work` by `end`, also where it
+     * failed. */
+    SmCode (*begin)(BenchCampaign *campaign, const BenchCampaignRun *run, void **work,
+                    SmError *error);
+    /* Measures a point, in which its settings are. What cannot be had is said in it; an error ends
+     * the campaign. */
+    SmCode (*measure)(void *work, const BenchCampaign *campaign, void *point, SmError *error);
+    void (*end)(void *work);
+
+    /* What follows from all points is marked in them (NULL: nothing); what else the file holds is
+     * written and, after the points, read (NULL). */
+    void (*conclude)(BenchCampaign *campaign);
+    void (*write)(BenchH5 *h5, const BenchCampaign *campaign);
+    void (*read)(BenchH5 *h5, BenchCampaign *campaign);
+
+    /* Of points that hold more than their bytes (NULL: none do): what it is, as bytes that the
+     * caller frees; the same put back; and freed. */
+    char *(*pack)(const void *point, size_t *size);
+    void (*unpack)(const char *bytes, size_t size, void *point);
+    void (*free_point)(void *point);
+    void (*free_plan)(void *plan);
+} BenchCampaignType;
+
+/* All kinds, which `merge` knows. */
+extern const BenchCampaignType *const bench_campaign_types[];
+
+struct BenchCampaign {
+    const BenchCampaignType *type;
+    void *plan;           /* of type->plan_size */
+    BenchMachine machine; /* where and how it was begun, or merged */
+    long count;           /* of points that are finished, by rising index */
+    void *point;          /* [count] of type->point_size */
+};
+
+/* An empty one, whose plan is zero. Free it. */
+BenchCampaign bench_campaign_create(const BenchCampaignType *type);
+void bench_campaign_free(BenchCampaign *campaign);
+
+/* How many points are planned; the i-th finished one; the one of this index, or NULL. */
+int bench_campaign_planned(const BenchCampaign *campaign);
+void *bench_campaign_at(const BenchCampaign *campaign, long i);
+void *bench_campaign_find(const BenchCampaign *campaign, int index);
+
+/* The point of this index as it is planned, not measured yet. */
+void bench_campaign_point(const BenchCampaign *campaign, int index, void *point);
+
+/* Takes over a point of an index that is not there yet. */
+void bench_campaign_add(BenchCampaign *campaign, const void *point);
+
+/* Are the plans the same? If not, `what` says in what they differ first. */
+bool bench_campaign_same(const BenchCampaign *mine, const BenchCampaign *theirs, size_t size,
+                         char *what);
+
+/* Concludes and writes all of it: the file appears whole or not at all (draft.h). */
+SmCode bench_campaign_store(const char *path, BenchCampaign *campaign, SmError *error);
+
+/* Reads a file of this kind, or, where it is NULL, of any; the caller frees the campaign. SM_INPUT:
+ * no such file, not HDF5, cut off, of another kind or schema, something missing, of a wrong size,
+ * or beside the plan. */
+SmCode bench_campaign_load(const char *path, const BenchCampaignType *type, BenchCampaign *campaign,
+                           SmError *error);
+
+/* Moves the points of `from` (read from `path`) to `into`. A point that is in both must be the same
+ * to the last bit. SM_INPUT: it is not, or the plans differ. */
+SmCode bench_campaign_merge(BenchCampaign *into, BenchCampaign *from, const char *path,
+                            SmError *error);
+
+/* SM_INVALID, with how many and the first one, where points are not valid. */
+SmCode bench_campaign_verdict(const BenchCampaign *campaign, SmError *error);
+
+/* This program, for a plan's `build` of `size` bytes. */
+void bench_campaign_build(const BenchMachine *machine, size_t size, char *build);
+
+#endif

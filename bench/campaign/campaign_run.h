@@ -1,0 +1,37 @@
+/* campaign_run.h - runs a campaign: goes on with the file that there is, measures what is missing,
+ * alone, as one of several shards, or with the other ranks of an MPI launch, and stores after every
+ * point. */
+#ifndef BENCH_CAMPAIGN_RUN_H
+#define BENCH_CAMPAIGN_RUN_H
+
+#include "../system/progress.h"
+#include "campaign.h"
+#include "ranks.h"
+
+struct BenchCampaignRun {
+    const char *output;     /* or NULL: nothing is stored */
+    const char *shard;      /* "I/N": of every N points the one number I, from 1; "auto" */
+    bool resume, overwrite; /* of a type that asks: what to do with a file that is there */
+    bool quiet;             /* no progress and no remarks */
+    const BenchRanks *ranks;
+};
+
+/* `campaign` comes with its plan and machine set; it leaves with all points that are finished, on
+ * rank 0. The caller frees it. Of several ranks rank r measures every count-th point, sends each to
+ * rank 0, which alone reads and writes the file; a rank that cannot go on says so, and the others
+ * finish theirs.
+ *
+ * SM_USAGE: the shard is none. SM_INPUT: the points cannot be measured, or the file is of another
+ * campaign. SM_OUTPUT: it cannot be written; what was stored before stays. */
+SmCode bench_campaign_run(const BenchCampaignRun *run, BenchCampaign *campaign, SmError *error);
+
+/* "I/N" with I from 1 to N; "auto": of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN and
+ * _STEP); NULL: 1/1. SM_USAGE: it is neither. */
+SmCode bench_shard_parse(const char *text, int *shard, int *shards, SmError *error);
+
+/* What ends a command that is a campaign on all ranks: says what is wrong on the first, and returns
+ * the exit code. */
+int bench_campaign_end(const char *name, const BenchRanks *ranks, BenchCampaign *campaign,
+                       SmCode code, const SmError *error);
+
+#endif

@@ -1,0 +1,38 @@
+#include "export.h"
+
+#include <stdio.h>
+
+#include "../table/records.h"
+
+void bench_campaign_export(FILE *file, BenchFormat format, const BenchCampaign *campaign,
+                           json_t *more)
+{
+    const BenchCampaignType *type = campaign->type;
+    if (format == BENCH_AS_CSV) {
+        bench_csv_records(file, type->points, *type->point_fields, campaign->point,
+                          type->point_size, campaign->count, NULL);
+        json_decref(more);
+        return;
+    }
+    char name[32];
+    json_t *root = json_object();
+    snprintf(name, sizeof name, "%ss", type->point);
+    json_object_set_new(root, name,
+                        bench_json_records(type->points, *type->point_fields, campaign->point,
+                                           type->point_size, campaign->count));
+    json_object_update(root, more);
+    json_decref(more);
+    json_object_set_new(root, "plan",
+                        bench_json_record(type->plan, *type->plan_fields, campaign->plan));
+    json_object_set_new(root, "environment", bench_json_machine(&campaign->machine));
+    bench_json_write(file, root);
+}
+
+void bench_campaign_document(FILE *file, const BenchCampaignType *type)
+{
+    char place[48];
+    bench_records_document(file, "attribute of `/plan`", type->plan, *type->plan_fields);
+    fputc('\n', file);
+    snprintf(place, sizeof place, "dataset of `/%ss`", type->point);
+    bench_records_document(file, place, type->points, *type->point_fields);
+}

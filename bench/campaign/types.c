@@ -1,0 +1,5 @@
+#include "../calibrate/calibration.h"
+#include "../sweep/sweep.h"
+
+const BenchCampaignType *const bench_campaign_types[] = {&bench_sweep_type, &bench_calibration_type,
+                                                         NULL};

@@ -1,0 +1,75 @@
+#include "records.h"
+
+#include <math.h>
+#include <string.h>
+
+static void number_cell(const BenchField *field, double value, char *text)
+{
+    double shown = field->scale != 0 ? field->scale * value : value;
+    if (isnan(value))
+        strcpy(text, "-");
+    else if (field->format)
+        snprintf(text, BENCH_GRID_TEXT, field->format, shown);
+    else if (value == 0)
+        strcpy(text, "0");
+    else
+        bench_grid_number(shown, text);
+}
+
+static void cell(const BenchField *field, const void *record, char *text)
+{
+    const void *value = (const char *)record + field->offset;
+    if (field->cell)
+        field->cell(record, text);
+    else if (field->kind == BENCH_TEXT)
+        snprintf(text, BENCH_GRID_TEXT, "%s", (const char *)value);
+    else if (field->kind == BENCH_BOOL)
+        strcpy(text, *(const bool *)value ? "*" : "");
+    else if (field->kind == BENCH_INT)
+        snprintf(text, BENCH_GRID_TEXT, "%d", *(const int *)value);
+    else if (field->kind == BENCH_LONG)
+        number_cell(field, (double)*(const long *)value, text);
+    else
+        number_cell(field, *(const double *)value, text);
+}
+
+BenchGrid bench_records_grid(const BenchField *fields, int count, const void *records, size_t size,
+                             long number)
+{
+    BenchGrid grid = {0};
+    for (int f = 0; f < count; f++)
+        if (fields[f].title) bench_grid_column(&grid, fields[f].title, fields[f].left);
+    for (long r = 0; r < number; r++) {
+        BenchGridLine *line = bench_grid_add(&grid);
+        for (int f = 0, c = 0; f < count; f++)
+            if (fields[f].title)
+                cell(&fields[f], (const char *)records + (size_t)r * size, (*line)[c++]);
+    }
+    return grid;
+}
+
+void bench_field_type(const BenchField *field, size_t size, char *text)
+{
+    static const char *const names[] = {
+        [BENCH_TEXT] = "text",  [BENCH_INT] = "int32",   [BENCH_LONG] = "int64",
+        [BENCH_BOOL] = "uint8", [BENCH_HASH] = "uint64", [BENCH_DOUBLE] = "float64"};
+    size_t values = field->kind == BENCH_DOUBLE ? field->size / sizeof(double) : 1;
+    if (field->series)
+        snprintf(text, size, "%s [repeats]", names[field->kind]);
+    else if (values > 1)
+        snprintf(text, size, "%s [%zu]", names[field->kind], values);
+    else
+        snprintf(text, size, "%s", names[field->kind]);
+}
+
+void bench_records_document(FILE *file, const char *place, const BenchField *fields, int count)
+{
+    char type[32];
+    fprintf(file, "| %s | type | unit | meaning |\n| --- | --- | --- | --- |\n", place);
+    for (int f = 0; f < count; f++) {
+        if (!fields[f].name) continue;
+        bench_field_type(&fields[f], sizeof type, type);
+        fprintf(file, "| `%s` | %s | %s | %s |\n", fields[f].name, type,
+                fields[f].unit ? fields[f].unit : "", fields[f].meaning);
+    }
+}
