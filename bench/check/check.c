@@ -454,7 +454,8 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
 void bench_check_text(const BenchDeviation *found, size_t size, char *text)
 {
     size_t used = (size_t)snprintf(
-        text, size, "goals within %.2g cells of brute force (allowed %.0e), momentum %s %.1g",
+        text, size,
+        "goals within %.2g cells of brute force (allowed %.0e), momentum of one step %s %.1g",
         found->goal_error, found->goal_tolerance,
         found->plain ? "not kept by plain weighting, off by" : "kept to", found->momentum_error);
     if (found->drift.steps > 0 && used < size)

@@ -446,12 +446,12 @@ TEST(what_was_left_out_is_said)
                             .blurred = 15,
                             .blurred_error = 3e-4};
     bench_check_text(&found, sizeof text, text);
-    assert_string_equal(text,
-                        "goals within 2e-06 cells of brute force (allowed 5e-05), momentum not "
-                        "kept by plain weighting, off by 0.02; 12 particles of regions whose "
-                        "rotation is not unique left out (within 0.3); 15 left out of damping, "
-                        "of whose regions rounding decides whether they turn (within 0.0003 cells "
-                        "a step)");
+    assert_string_equal(
+        text, "goals within 2e-06 cells of brute force (allowed 5e-05), momentum of one step not "
+              "kept by plain weighting, off by 0.02; 12 particles of regions whose "
+              "rotation is not unique left out (within 0.3); 15 left out of damping, "
+              "of whose regions rounding decides whether they turn (within 0.0003 cells "
+              "a step)");
 }
 
 /* At a strip's ends a third of damping off, of the largest velocity, which is about 1. */

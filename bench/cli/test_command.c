@@ -310,7 +310,7 @@ TEST(an_octree_can_be_run)
                                        ", w local at ",
                                        "regions reach ",
                                        " MB\n",
-                                       "momentum not kept by plain weighting, off by "};
+                                       "momentum of one step not kept by plain weighting, off by "};
     for (size_t i = 0; i < sizeof told / sizeof *told; i++)
         if (!strstr(result.out, told[i])) fail_msg("no '%s' in %s", told[i], result.out);
     run("run block.obj --engine octree --particles 200 --precision double --frames 1 --no-output",

@@ -1,6 +1,7 @@
 #include "drift.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,7 +91,13 @@ BenchDrift bench_drift(const BenchRunner *runner)
     return drift;
 }
 
-double bench_drift_most(const char *precision)
+bool bench_drift_verdict(const BenchDrift *drift, const char *precision, size_t size, char *reason)
 {
-    return strcmp(precision, "single") == 0 ? 5e-9 : 1e-14;
+    double most = strcmp(precision, "single") == 0 ? 5e-9 : 1e-14;
+    if (drift->linear <= most && drift->angular <= most) return true;
+    snprintf(reason, size,
+             "left alone for %ld steps it drifts by %.3g cells and %.3g radians a step in each; at "
+             "most %g allowed",
+             drift->steps, drift->linear, drift->angular, most);
+    return false;
 }

@@ -17,7 +17,8 @@ typedef struct {
  * Infinite if not finite. */
 BenchDrift bench_drift(const BenchRunner *runner);
 
-/* The most that either may be: 5e-9 in "single", 1e-14 in "double" precision. */
-double bench_drift_most(const char *precision);
+/* May it be: at most 5e-9 each in "single", 1e-14 in "double" precision? Else `reason` says why
+ * not. */
+bool bench_drift_verdict(const BenchDrift *drift, const char *precision, size_t size, char *reason);
 
 #endif

@@ -26,19 +26,16 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
 /* Are the momenta of the body, left alone as it is now, kept over many steps? */
 static void check_drift(const BenchRunner *runner, BenchDeviation *worst, BenchRow *row)
 {
-    double most = bench_drift_most(runner->type->precision);
+    char reason[sizeof row->reason];
     BenchDrift drift = bench_drift(runner);
     if (drift.steps > worst->drift.steps) worst->drift.steps = drift.steps;
     row->drift = worst->drift.linear = fmax(worst->drift.linear, drift.linear);
     row->twist = worst->drift.angular = fmax(worst->drift.angular, drift.angular);
     row->drift_steps = worst->drift.steps;
     bench_check_text(worst, sizeof row->found, row->found);
-    if (worst->plain || (drift.linear <= most && drift.angular <= most)) return;
-    bench_row_invalidate(
-        row,
-        "left alone for %ld steps it drifts by %.3g cells and %.3g radians a step in each; at "
-        "most %g allowed",
-        drift.steps, drift.linear, drift.angular, most);
+    if (!worst->plain &&
+        !bench_drift_verdict(&drift, runner->type->precision, sizeof reason, reason))
+        bench_row_invalidate(row, "%s", reason);
 }
 
 /* Of a plastic octree: do its rest shapes flow as they should in the step that follows? */

@@ -220,9 +220,14 @@ static void keep_run(const Momentum *m, const MomentumPiece *piece, const double
 
 /* omega of J omega = L, J the inertia of a spread S. What lies within a tenth of a cell of a line,
  * or nearly, has no such inertia about it, and rounding does not tell how it turns there: that part
- * of L, of a point all of it, goes to `lost`, and omega leaves it as it is. */
-static void angular_velocity(const double S[6], double mass, const double L[3], double omega[3],
-                             double lost[3])
+ * of L, of a point all of it, goes to `lost`, and omega leaves it as it is.
+ *
+ * omega is used `steps` later, when the piece of spin `spin` has turned. Of a long piece that turns
+ * fast J is another one by then: omega about its old axis would change the spin by up to the ratio
+ * of its inertias too much, and the next correction by that ratio once more. L / trace S never is
+ * too much, since no inertia exceeds the trace. False: it is that. */
+static bool angular_velocity(const double S[6], double mass, const double spin[3], double steps,
+                             const double L[3], double omega[3], double lost[3])
 {
     double trace = S[0] + S[1] + S[2], C[3][3], axis[3], det = 0, minors = 0;
     double full[3][3] = {{S[0], S[5], S[4]}, {S[5], S[1], S[3]}, {S[4], S[3], S[2]}}, J[3][3];
@@ -233,12 +238,15 @@ static void angular_velocity(const double S[6], double mass, const double L[3], 
     for (int i = 0; i < 3; i++) det += J[0][i] * C[0][i];
     for (int i = 0; i < 3; i++) minors += C[i][i]; /* det / minors: at most the least inertia */
     bool solid = minors > 0 && det > 0.01 * mass * minors, point = !(trace > 0.01 * mass);
-    double length = point ? 1 : sqrt(sm_dot(full[most], full[most]));
+    double length = point ? 1 : sqrt(sm_dot(full[most], full[most])), now[3];
+    for (int i = 0; i < 3; i++) now[i] = sm_dot(C[i], spin);
+    bool lasts = !solid || 2 * steps * sqrt(sm_dot(now, now)) * trace * minors <= det * det;
     for (int i = 0; i < 3; i++) axis[i] = full[most][i] / length;
     for (int i = 0; i < 3; i++) {
         lost[i] = solid ? 0 : point ? L[i] : sm_dot(axis, L) * axis[i];
-        omega[i] = solid ? sm_dot(C[i], L) / det : point ? 0 : (L[i] - lost[i]) / trace;
+        omega[i] = point ? 0 : solid && lasts ? sm_dot(C[i], L) / det : (L[i] - lost[i]) / trace;
     }
+    return lasts;
 }
 
 /* A piece's momenta: its centre, the velocity of that, and what turns about it. */
@@ -370,9 +378,11 @@ void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, r
             p->about[d] = rint(next);
             off[d] = next - p->about[d];
         }
-        angular_velocity(is.spread, p->mass, over, p->turn, lost);
-        for (int d = 0; d < 3; d++) p->spin[d] += lost[d];
-        for (int d = 0; d < 3 && lost[d] != 0; d++) p->twist[d] = 0;
+        bool lasts = angular_velocity(is.spread, p->mass, is.spin, n, over, p->turn, lost);
+        for (int d = 0; d < 3; d++) {
+            p->spin[d] += lost[d];
+            if (!lasts || lost[d] != 0) p->twist[d] = 0;
+        }
         sm_cross(p->turn, off, aside); /* it turns about the centre */
         for (int d = 0; d < 3; d++) p->push[d] -= aside[d];
     }
