@@ -6,6 +6,8 @@
 #ifndef SM_POLAR_H
 #define SM_POLAR_H
 
+#include "operations.h"
+
 /* One matrix, robustly: the eigenvector of the largest eigenvalue of Horn's 4x4 matrix (Horn 1987)
  * by cyclic Jacobi. Eigenvalues closer than `tie` times the largest stretch count as equal. About
  * 2 microseconds. */
@@ -28,5 +30,29 @@ double sm_jacobi(int n, double *S, double *V, double tolerance);
  * for tests and `shapebench kernels`. `last` may be NULL: the identity. Arrays are [count][9]. */
 void sm_polar_batch_f32(long count, const float *A, const float *last, float *R);
 void sm_polar_batch_f64(long count, const double *A, const double *last, double *R);
+
+/* What a matrix takes by the batch: polar_lanes.h: scale 8 maxima and 9 products; two cofactor
+ * matrices of 9 x 3; |A|^2, |cof|^2 17 each, det 5; the start 8; Newton 14 a step, 3 steps; D 9 x
+ * 2; R 9 x 3; scalars 12. */
+static inline SmOperations sm_polar_batch_operations(void)
+{
+    return (SmOperations){.flops = 17 + 54 + 34 + 5 + 8 + 42 + 18 + 27 + 12, .near_values = 9 + 9};
+}
+
+/* By so many Jacobi sweeps: scale 18; A V twice and its square, 15 flops a column entry of 9 each;
+ * a rotation is 10 flops of angle and 3 x (3 + 3 + 3) x 2 of rows and columns; R another 45 + 12.
+ */
+static inline SmOperations sm_polar_jacobi_operations(double sweeps)
+{
+    return (SmOperations){.flops = 18 + 3 * 45 + sweeps * 3 * (10 + 54) + 57,
+                          .near_bytes = 4 * 9 * 8};
+}
+
+/* Robustly: Horn's 4x4 matrix twice (the matrix and the last rotation), each diagonalised in no
+ * less than two sweeps of 6 rotations: 10 flops of angle, 4 x 9 x 2 of rows and columns. */
+static inline SmOperations sm_polar_robust_operations(void)
+{
+    return (SmOperations){.flops = 2 * (12 + 2 * 6 * (10 + 72)) + 60, .near_bytes = 3 * 9 * 8};
+}
 
 #endif

@@ -123,7 +123,7 @@ static SmCode verdict(const BenchKernel *rows, int count, SmError *error)
 
 static SmCode measure(const Options *options, BenchMachine *machine, SmError *error)
 {
-    BenchCeilings ceilings;
+    BenchPeak peak;
     BenchProgress progress;
     int count;
     int threads = options->common.threads;
@@ -139,12 +139,12 @@ static SmCode measure(const Options *options, BenchMachine *machine, SmError *er
     machine->threads = threads;
     bench_progress_start(&progress, options->common.quiet);
     bench_progress_show(&progress, "ceilings", 0);
-    bench_ceilings_measure(machine, machine->cores > threads ? machine->cores : threads, 0,
-                           &ceilings);
-    SmCode code = bench_kernels_run(&params, &ceilings, rows, &count, error);
+    bench_peak_measure(machine, machine->cores > threads ? machine->cores : threads, 0,
+                           &peak);
+    SmCode code = bench_kernels_run(&params, &peak, rows, &count, error);
     bench_progress_stop(&progress);
     if (!code) {
-        bench_kernels_write(stdout, options->format, rows, count, &ceilings, machine);
+        bench_kernels_write(stdout, options->format, rows, count, &peak, machine);
         code = verdict(rows, count, error);
     }
     free(rows);

@@ -9,7 +9,6 @@
 #include "../../lib/stage.h"
 #include "../../octree/engine.h"
 #include "../measure/spread.h"
-#include "tree_work.h"
 
 enum {
     SPLIT = 20,     /* leaves of a refinement, 5 x 2 x 2 */
@@ -201,7 +200,7 @@ static void note(const BenchKernelRun *run, const Spec *spec, const Cube *cube, 
 {
     SmCounts counts;
     cube->type->count(cube->engine, &counts);
-    BenchWork work = bench_work_regions(0, 0, counts.summation_nodes); /* lists written */
+    SmOperations work = oct_regions_operations(0, 0, counts.summation_nodes); /* lists written */
     work.far_bytes *= (double)cube->regions;
     bench_kernel_floor(run, row, work, (double)counts.bytes);
     snprintf(row->note, sizeof row->note,

@@ -49,11 +49,11 @@ void bench_kernel_times(BenchKernel *row, const double *ns, int samples, const B
     row->high = spread.high;
 }
 
-void bench_kernel_floor(const BenchKernelRun *run, BenchKernel *row, BenchWork work,
+void bench_kernel_floor(const BenchKernelRun *run, BenchKernel *row, SmOperations work,
                         double footprint)
 {
     const char *bound;
     BenchPrecision precision = strcmp(row->precision, "double") ? BENCH_F32 : BENCH_F64;
-    row->floor_ns = bench_floor(run->ceilings, &work, precision, row->threads, footprint, &bound);
+    row->floor_ns = bench_bound(run->peak, &work, precision, row->threads, footprint, &bound);
     snprintf(row->bound, sizeof row->bound, "%s", bound);
 }

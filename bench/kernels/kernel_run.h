@@ -7,7 +7,7 @@
 
 typedef struct {
     const BenchKernelParams *params;
-    const BenchCeilings *ceilings;
+    const BenchPeak *peak;
     BenchKernel *rows;
     int *count;
 } BenchKernelRun;
@@ -27,8 +27,8 @@ void bench_kernel_times(BenchKernel *row, const double *ns, int samples, const B
 /* Marks a row busy, of which others took so much. */
 void bench_kernel_busy(BenchKernel *row, double lost_percent);
 
-/* The row's floor; `footprint` as in bench_floor(). */
-void bench_kernel_floor(const BenchKernelRun *run, BenchKernel *row, BenchWork work,
+/* The row's floor; `footprint` as in bench_bound(). */
+void bench_kernel_floor(const BenchKernelRun *run, BenchKernel *row, SmOperations work,
                         double footprint);
 
 #endif

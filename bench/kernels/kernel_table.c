@@ -117,13 +117,13 @@ static json_t *json_rates(const BenchRates *rates)
     return object;
 }
 
-static void write_json(FILE *file, const BenchKernel *rows, int count,
-                       const BenchCeilings *ceilings, const BenchMachine *machine)
+static void write_json(FILE *file, const BenchKernel *rows, int count, const BenchPeak *peak,
+                       const BenchMachine *machine)
 {
     json_t *root = json_object(), *list = json_array(), *rates = json_array();
     for (int r = 0; r < count; r++) json_array_append_new(list, json_row(&rows[r]));
-    json_array_append_new(rates, json_rates(&ceilings->one));
-    if (ceilings->all.threads > 1) json_array_append_new(rates, json_rates(&ceilings->all));
+    json_array_append_new(rates, json_rates(&peak->one));
+    if (peak->all.threads > 1) json_array_append_new(rates, json_rates(&peak->all));
     json_object_set_new(root, "ceilings", rates);
     json_object_set_new(root, "kernels", list);
     json_object_set_new(root, "environment", bench_json_machine(machine));
@@ -215,11 +215,11 @@ static void print_rates(FILE *file, const BenchRates *rates)
     fprintf(file, " GB/s; update in DRAM %.0f GB/s\n", rates->update / 1e9);
 }
 
-static void print_ceilings(FILE *file, const BenchCeilings *ceilings, const BenchMachine *machine)
+static void print_peak(FILE *file, const BenchPeak *peak, const BenchMachine *machine)
 {
     fprintf(file, "Ceilings measured now, on %s:\n", machine->cpu);
-    print_rates(file, &ceilings->one);
-    if (ceilings->all.threads > 1) print_rates(file, &ceilings->all);
+    print_rates(file, &peak->one);
+    if (peak->all.threads > 1) print_rates(file, &peak->all);
     fputs(
         "\nTimes in ns, medians; those of steps in each step. The floor is the least time that the "
         "ceilings\nallow, with what sets it; the share is floor / time.\n\n",
@@ -228,12 +228,12 @@ static void print_ceilings(FILE *file, const BenchCeilings *ceilings, const Benc
 
 /* As text with an empty line between groups. */
 static void write_people(FILE *file, BenchKernelFormat format, const BenchKernel *rows, int count,
-                         const BenchCeilings *ceilings, const BenchMachine *machine)
+                         const BenchPeak *peak, const BenchMachine *machine)
 {
     bool text = format == BENCH_KERNELS_TEXT;
     BenchGridForm form = text ? BENCH_GRID_PLAIN : BENCH_GRID_MARKDOWN;
     BenchGrid grid = make_grid(rows, count), one = grid;
-    if (text) print_ceilings(file, ceilings, machine);
+    if (text) print_peak(file, peak, machine);
     bench_grid_head(file, &grid, form);
     one.lines = 1;
     for (int r = 0; r < count; r++) {
@@ -245,12 +245,12 @@ static void write_people(FILE *file, BenchKernelFormat format, const BenchKernel
 }
 
 void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernel *rows, int count,
-                         const BenchCeilings *ceilings, const BenchMachine *machine)
+                         const BenchPeak *peak, const BenchMachine *machine)
 {
     if (format == BENCH_KERNELS_CSV)
         bench_csv_records(file, fields, COLUMNS, rows, sizeof *rows, count, mark_text);
     else if (format == BENCH_KERNELS_JSON)
-        write_json(file, rows, count, ceilings, machine);
+        write_json(file, rows, count, peak, machine);
     else
-        write_people(file, format, rows, count, ceilings, machine);
+        write_people(file, format, rows, count, peak, machine);
 }

@@ -24,6 +24,6 @@ extern const char *const bench_kernel_formats[];
  * and what is not given is empty. JSON is {"ceilings": [..], "kernels": [{column: value}],
  * "environment": {..}}. */
 void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernel *rows, int count,
-                         const BenchCeilings *ceilings, const BenchMachine *machine);
+                         const BenchPeak *peak, const BenchMachine *machine);
 
 #endif

@@ -6,6 +6,10 @@
 #include <string.h>
 
 #include "../../fastlsm/fastlsm.h"
+#include "../../fastlsm/operations.h"
+#include "../../lib/mesh/embed.h"
+#include "../../lib/voxel/voxelise.h"
+#include "../../octree/surface/surface.h"
 #include "../measure/measure.h"
 #include "../measure/spread.h"
 #include "change_kernels.h"
@@ -142,17 +146,22 @@ static BenchKernel *add_row(Run *run, const Spec *spec, const char *item, long i
 
 /* ---- steps of cubes */
 
-static BenchWork work_of(const Spec *spec)
+static double state_bytes(BenchPrecision precision)
+{
+    return lsm_state_bytes(precision == BENCH_F32 ? 4 : 8);
+}
+
+static SmOperations work_of(const Spec *spec)
 {
     switch (spec->stage) {
     case SM_FAST_SUM:
-        return bench_work_sums(spec->summation, spec->w, spec->side);
+        return lsm_sum_operations(spec->summation, spec->w, spec->side);
     case SM_DAMPING:
-        return bench_work_damping();
+        return lsm_damping_operations();
     case SM_OTHER:
-        return bench_work_integrate();
+        return lsm_integrate_operations();
     }
-    return bench_work_step(spec->summation, spec->w, spec->side, spec->damping > 0);
+    return lsm_step_operations(spec->summation, spec->w, spec->side, spec->damping > 0);
 }
 
 /* The median over samples of how this cube compares with `base`, timed just before or after. */
@@ -169,10 +178,10 @@ static void set_ratio(const Run *run, const Spec *spec, const BenchCube *cube,
     }
     row->ratio = bench_spread(ratio, cube->repeats).median;
     free(ratio);
-    double bytes = bench_state_bytes(precision_of(run, spec));
+    double bytes = state_bytes(precision_of(run, spec));
     int threads = threads_of(run, spec);
-    bool same = bench_level_of(run->ceilings, bytes * (double)cube->particles, threads) ==
-                bench_level_of(run->ceilings, bytes * (double)base->particles, threads);
+    bool same = bench_level_of(run->peak, bytes * (double)cube->particles, threads) ==
+                bench_level_of(run->peak, bytes * (double)base->particles, threads);
     /* the cost may rise where the state outgrows a cache, and a speed-up is over one thread */
     if (row->wanted_least ? run->params->threads == 1 : same) row->wanted = spec->wanted;
     snprintf(row->ratio_to, sizeof row->ratio_to, "%s",
@@ -205,9 +214,9 @@ static void report_cube(Run *run, const Spec *spec, const BenchCube *cube)
                                           : bench_cube_stage_ns(cube, (SmStage)spec->stage, r);
     bench_kernel_times(row, ns, cube->repeats, &cube->watch);
     free(ns);
-    double state = bench_state_bytes(precision_of(run, spec)) * (double)cube->particles;
+    double state = state_bytes(precision_of(run, spec)) * (double)cube->particles;
     bench_kernel_floor(run, row, work_of(spec), state);
-    BenchLevel level = bench_level_of(run->ceilings, state, row->threads);
+    BenchLevel level = bench_level_of(run->peak, state, row->threads);
     note_cube(cube, bench_level_name(level), state, row);
 }
 
@@ -271,11 +280,11 @@ static SmCode run_cubes(Run *run, int first, int last, SmError *error)
 
 /* ---- the other kernels */
 
-static BenchWork polar_work(BenchPolar method, double sweeps)
+static SmOperations polar_work(BenchPolar method, double sweeps)
 {
-    if (method == BENCH_POLAR_BATCH) return bench_work_polar();
-    if (method == BENCH_POLAR_ROBUST) return bench_work_robust();
-    return bench_work_jacobi(sweeps);
+    if (method == BENCH_POLAR_BATCH) return sm_polar_batch_operations();
+    if (method == BENCH_POLAR_ROBUST) return sm_polar_robust_operations();
+    return sm_polar_jacobi_operations(sweeps);
 }
 
 static void report_polar(Run *run, const Spec *spec, const BenchPolarResult *result)
@@ -317,18 +326,19 @@ static void judge_surface(const Run *run, BenchSurfaceKernel kernel, const Bench
     double nodes = (double)surface->nodes, mesh = 24 * vertices + 12 * (double)surface->triangles;
     switch (kernel) {
     case BENCH_EMBED:
-        bench_kernel_floor(run, row, bench_work_embed(particles / vertices),
+        bench_kernel_floor(run, row, sm_embed_operations(particles / vertices),
                            176 * vertices + 24 * particles);
         strcpy(row->note, "positions and normals");
         break;
     case BENCH_CARRY:
-        bench_kernel_floor(run, row, bench_work_carry(surface->nodes_blended, nodes / vertices),
+        bench_kernel_floor(run, row,
+                           oct_surface_operations(surface->nodes_blended, nodes / vertices),
                            (104 + 8 * surface->nodes_blended) * vertices + 120 * nodes);
         snprintf(row->note, sizeof row->note, "positions and normals, %ld nodes, %.2g a vertex",
                  surface->nodes, surface->nodes_blended);
         break;
     default:
-        bench_kernel_floor(run, row, bench_work_voxelise(vertices / (double)surface->triangles),
+        bench_kernel_floor(run, row, sm_voxelise_operations(vertices / (double)surface->triangles),
                            mesh);
         snprintf(row->note, sizeof row->note, "%.3g million triangles/s", 1e3 / row->ns);
     }
@@ -374,11 +384,11 @@ static void report_scene(Run *run, const Spec *spec, const BenchScene *scene, co
     row->ns = found->ns_per_particle_step;
     row->low = scale * found->total_low_ms;
     row->high = scale * found->total_high_ms;
-    double state = bench_state_bytes(run->params->precision) * (double)found->particles;
+    double state = state_bytes(run->params->precision) * (double)found->particles;
     int side = (int)cbrt((double)found->particles / (double)found->instances) + 1;
-    bench_kernel_floor(run, row,
-                       bench_work_step(scene->params.summation, found->w, side, found->damping > 0),
-                       state);
+    bench_kernel_floor(
+        run, row, lsm_step_operations(scene->params.summation, found->w, side, found->damping > 0),
+        state);
     int used = snprintf(row->note, sizeof row->note, "%svoxelised %.3g ms, built %.3g ms",
                         found->damping > 0 ? "damping; " : "", 1e3 * found->voxelise_seconds,
                         1e3 * found->build_seconds);
@@ -412,10 +422,10 @@ static SmCode run_scene(Run *run, const Spec *spec, SmError *error)
     return code;
 }
 
-SmCode bench_kernels_run(const BenchKernelParams *params, const BenchCeilings *ceilings,
-                         BenchKernel *rows, int *count, SmError *error)
+SmCode bench_kernels_run(const BenchKernelParams *params, const BenchPeak *peak, BenchKernel *rows,
+                         int *count, SmError *error)
 {
-    Run run = {params, ceilings, rows, count};
+    Run run = {params, peak, rows, count};
     SmCode code = SM_OK;
     *count = 0;
     for (int first = 0, last; first < SPECS && !code; first = last) {

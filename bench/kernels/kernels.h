@@ -2,9 +2,9 @@
 #ifndef BENCH_KERNELS_H
 #define BENCH_KERNELS_H
 
+#include "../../lib/engine.h"
 #include "../system/progress.h"
-#include "ceilings.h"
-#include "work.h"
+#include "machine_peak.h"
 
 /* A timed kernel. NaN: not given. */
 typedef struct {
@@ -48,8 +48,8 @@ const char *bench_kernel_name(int index, const char **group);
 /* Checks and times the kernels chosen, at most BENCH_KERNELS_MOST rows. A kernel that fails its
  * check is a row that is not valid. Kernels that are compared run in turn. Errors: a scene that
  * cannot be made. */
-SmCode bench_kernels_run(const BenchKernelParams *params, const BenchCeilings *ceilings,
-                         BenchKernel *rows, int *count, SmError *error);
+SmCode bench_kernels_run(const BenchKernelParams *params, const BenchPeak *peak, BenchKernel *rows,
+                         int *count, SmError *error);
 
 /* Was what the issue wants reached? "met", "missed", or "" where nothing is wanted, or only of
  * times that are not to be told. */

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "../measure/moment.h"
-#include "ceilings.h"
+#include "machine_peak.h"
 
 typedef enum {
     BENCH_POLAR_BATCH,  /* what the engines use, in batches of lanes; packing included */

@@ -6,7 +6,7 @@
 #include "kernel_table.h"
 
 static const BenchMachine machine = {.cpu = "Test CPU", .cores = 2};
-static const BenchCeilings ceilings = {.one = {.threads = 1}, .all = {.threads = 2}};
+static const BenchPeak peak = {.one = {.threads = 1}, .all = {.threads = 2}};
 
 TEST(verdicts_follow_the_limits)
 {
@@ -58,7 +58,7 @@ static void write_rows(BenchKernelFormat format, char **text, size_t *size)
     strcpy(rows[2].kernel, "late");
     strcpy(rows[2].reason, "others took it");
     FILE *file = open_memstream(text, size);
-    bench_kernels_write(file, format, rows, 3, &ceilings, &machine);
+    bench_kernels_write(file, format, rows, 3, &peak, &machine);
     fclose(file);
 }
 
@@ -91,7 +91,7 @@ TEST(a_busy_row_tells_what_others_do_not_touch)
         char *text;
         size_t size;
         FILE *file = open_memstream(&text, &size);
-        bench_kernels_write(file, (BenchKernelFormat)f, &row, 1, &ceilings, &machine);
+        bench_kernels_write(file, (BenchKernelFormat)f, &row, 1, &peak, &machine);
         fclose(file);
         assert_non_null(strstr(text, "1.25"));
         assert_non_null(strstr(text, "met"));

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 
 #include "../../fastlsm/fastlsm.h"
+#include "../../fastlsm/operations.h"
 #include "../../lib/test_fields.h"
 #include "../../lib/test_frame.h"
 #include "../measure/spread.h"
@@ -10,21 +11,21 @@
 #include "matrices.h"
 
 static BenchMachine machine;
-static BenchCeilings ceilings;
+static BenchPeak peak;
 
-static int measure_ceilings(void **state)
+static int measure_peak(void **state)
 {
     (void)state;
     char name[] = "test";
     char *argv[] = {name, NULL};
     bench_machine_read(1, argv, 2, &machine);
-    bench_ceilings_measure(&machine, 2, 0.0005, &ceilings);
+    bench_peak_measure(&machine, 2, 0.0005, &peak);
     return 0;
 }
 
-TEST(ceilings_are_positive)
+TEST(peaks_are_positive)
 {
-    const BenchRates *rates[] = {&ceilings.one, &ceilings.all};
+    const BenchRates *rates[] = {&peak.one, &peak.all};
     for (int i = 0; i < 2; i++) {
         assert_int_equal(rates[i]->threads, i + 1);
         for (int p = 0; p < BENCH_PRECISIONS; p++)
@@ -34,10 +35,10 @@ TEST(ceilings_are_positive)
         assert_true(rates[i]->update > 0 && isfinite(rates[i]->update));
     }
     for (int level = 1; level < BENCH_LEVELS; level++)
-        assert_true(ceilings.bytes[level] > ceilings.bytes[level - 1]);
+        assert_true(peak.bytes[level] > peak.bytes[level - 1]);
     BenchMachine unknown = {.cores = 1};
-    BenchCeilings guessed;
-    bench_ceilings_measure(&unknown, 1, 0.0001, &guessed);
+    BenchPeak guessed;
+    bench_peak_measure(&unknown, 1, 0.0001, &guessed);
     assert_true(guessed.bytes[BENCH_L1] == 32 << 10);
     assert_int_equal(guessed.all.threads, 1);
 }
@@ -45,32 +46,32 @@ TEST(ceilings_are_positive)
 TEST(levels_hold_what_fits)
 {
     for (int level = 0; level < BENCH_DRAM; level++) {
-        assert_int_equal(bench_level_of(&ceilings, ceilings.bytes[level], 1), level);
-        assert_int_equal(bench_level_of(&ceilings, ceilings.bytes[level] + 1, 1), level + 1);
+        assert_int_equal(bench_level_of(&peak, peak.bytes[level], 1), level);
+        assert_int_equal(bench_level_of(&peak, peak.bytes[level] + 1, 1), level + 1);
     }
-    assert_int_equal(bench_level_of(&ceilings, 2 * ceilings.bytes[BENCH_L1], 2), BENCH_L1);
-    assert_true(bench_rates(&ceilings, 4).flops[0] == 2 * ceilings.all.flops[0]);
+    assert_int_equal(bench_level_of(&peak, 2 * peak.bytes[BENCH_L1], 2), BENCH_L1);
+    assert_true(bench_rates(&peak, 4).flops[0] == 2 * peak.all.flops[0]);
 }
 
 TEST(floors_follow_the_work)
 {
     /* one particle is its own region: 21 flops up, 21 down */
-    assert_true(bench_work_sums(SM_SUM_NAIVE, 3, 1).flops == 42);
+    assert_true(lsm_sum_operations(SM_SUM_NAIVE, 3, 1).flops == 42);
     for (int w = 2; w < 9; w++) {
-        double naive = bench_work_sums(SM_SUM_NAIVE, w, 64).flops;
-        double bars = bench_work_sums(SM_SUM_BARS, w, 64).flops;
-        double fast = bench_work_sums(SM_SUM_FAST, w, 64).flops;
+        double naive = lsm_sum_operations(SM_SUM_NAIVE, w, 64).flops;
+        double bars = lsm_sum_operations(SM_SUM_BARS, w, 64).flops;
+        double fast = lsm_sum_operations(SM_SUM_FAST, w, 64).flops;
         assert_true(naive > bars && bars > fast);
-        assert_true(fast == bench_work_sums(SM_SUM_FAST, 2, 64).flops); /* O(1) */
+        assert_true(fast == lsm_sum_operations(SM_SUM_FAST, 2, 64).flops); /* O(1) */
     }
-    BenchWork work = {.flops = 8};
+    SmOperations work = {.flops = 8};
     const char *bound;
-    double floor_ns = bench_floor(&ceilings, &work, BENCH_F32, 1, 1e3, &bound);
-    assert_true(fabs(floor_ns * ceilings.one.flops[BENCH_F32] / 8e9 - 1) < 1e-12);
+    double floor_ns = bench_bound(&peak, &work, BENCH_F32, 1, 1e3, &bound);
+    assert_true(fabs(floor_ns * peak.one.flops[BENCH_F32] / 8e9 - 1) < 1e-12);
     assert_string_equal(bound, "flops");
-    work = (BenchWork){.far_values = 8};
-    floor_ns = bench_floor(&ceilings, &work, BENCH_F64, 1, 1e12, &bound);
-    assert_true(fabs(floor_ns * ceilings.one.update / 64e9 - 1) < 1e-12);
+    work = (SmOperations){.far_values = 8};
+    floor_ns = bench_bound(&peak, &work, BENCH_F64, 1, 1e12, &bound);
+    assert_true(fabs(floor_ns * peak.one.update / 64e9 - 1) < 1e-12);
     assert_string_equal(bound, "DRAM");
 }
 
@@ -133,7 +134,7 @@ static void run_only(const char *const *only, BenchKernel *rows, int *count)
 {
     BenchKernelParams params = {.only = only, .threads = 1, .repeats = 2, .seed = 1};
     SmError error;
-    assert_int_equal(bench_kernels_run(&params, &ceilings, rows, count, &error), SM_OK);
+    assert_int_equal(bench_kernels_run(&params, &peak, rows, count, &error), SM_OK);
 }
 
 TEST(only_what_is_named_runs)
@@ -245,4 +246,4 @@ TEST(the_command_has_exit_codes)
                      0);
 }
 
-TEST_GROUP(measure_ceilings, NULL)
+TEST_GROUP(measure_peak, NULL)

@@ -1,9 +1,9 @@
 /* Steps and set-up of the octree that are timed: wrong ones are found, and what they do is counted.
  */
 #include "../../lib/test_frame.h"
+#include "../../octree/operations.h"
 #include "tree_setup.h"
 #include "tree_steps.h"
-#include "tree_work.h"
 
 /* A cube whose first region has lost a summation node that is not its own. */
 static void lose_member(BenchSampled *body)
@@ -99,16 +99,16 @@ TEST(octree_work_is_counted)
     SmError error;
     assert_int_equal(bench_sampled_cube(16, &body, &error), SM_OK);
     oct_sum_lists_build(&body.tree, &body.regions, &lists);
-    BenchTreeCounts c = bench_tree_counts(&body.tree, &lists, &lists);
+    OctStepCounts c = oct_step_counts(&body.tree, &lists, &lists);
     double leaves = 16 * 16 * 16;
     assert_true(c.leaf_children == 1); /* a full octree of four levels */
     assert_true(c.inner_children == (512 + 64 + 8) / leaves);
     assert_true(c.inners == (512 + 64 + 8 + 1) / leaves);
     assert_true((c.leaf_entries + c.inner_entries) * leaves == (double)lists.entries);
     assert_true((c.goal_entries + c.goal_prefix_entries) * leaves == (double)lists.entries);
-    assert_true(bench_work_depth(&c).flops == 3 + 24 + 33 * c.inner_children);
-    assert_true(bench_work_tree_step(&c).flops >
-                bench_work_tree_goals(&c).flops + bench_work_tree_damping(&c).flops);
+    assert_true(oct_depth_operations(&c).flops == 3 + 24 + 33 * c.inner_children);
+    assert_true(oct_step_operations(&c).flops >
+                oct_goal_operations(&c).flops + oct_damping_operations(&c).flops);
     oct_sum_lists_free(&lists);
     bench_sampled_free(&body);
 }

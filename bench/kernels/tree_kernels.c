@@ -106,13 +106,6 @@ static BenchKernel *add_row(BenchKernelRun *run, const Spec *spec, const char *i
     return row;
 }
 
-/* Work of one node as that of `count`. */
-static BenchWork times(BenchWork work, double count)
-{
-    return (BenchWork){count * work.flops, count * work.near_values, count * work.near_bytes,
-                       count * work.far_values, count * work.far_bytes};
-}
-
 /* ---- steps */
 
 static bool same_engine(const BenchKernelRun *run, const Spec *spec, const BenchTreeStep *step)
@@ -129,29 +122,29 @@ static BenchTreeStep *engine_of(const BenchKernelRun *run, const Spec *spec, Ben
     return NULL;
 }
 
-static BenchWork work_of(BenchTreePart part, const BenchTreeCounts *counts)
+static SmOperations work_of(BenchTreePart part, const OctStepCounts *counts)
 {
     switch (part) {
     case BENCH_TREE_DEPTH:
-        return bench_work_depth(counts);
+        return oct_depth_operations(counts);
     case BENCH_TREE_BREADTH:
-        return bench_work_breadth(counts);
+        return oct_breadth_operations(counts);
     case BENCH_TREE_POLAR:
-        return bench_work_polar();
+        return sm_polar_batch_operations();
     case BENCH_TREE_GOALS:
-        return bench_work_tree_goals(counts);
+        return oct_goal_operations(counts);
     case BENCH_TREE_DAMPING:
-        return bench_work_tree_damping(counts);
+        return oct_damping_operations(counts);
     case BENCH_TREE_WHOLE:
         break;
     }
-    return bench_work_tree_step(counts);
+    return oct_step_operations(counts);
 }
 
 static void note_step(const Spec *spec, const BenchTreeStep *step, double ns_per_node,
                       BenchKernel *row)
 {
-    const BenchTreeCounts *c = &step->counts;
+    const OctStepCounts *c = &step->counts;
     char *note = row->note;
     size_t room = sizeof row->note;
     double entries = c->leaf_entries + c->inner_entries;
@@ -217,8 +210,10 @@ static void report_step(BenchKernelRun *run, const Spec *spec, const BenchTreeSt
     }
     bench_kernel_times(row, ns, repeats, &step->watch);
     free(ns);
-    BenchWork work = work_of(spec->part, &step->counts);
-    bench_kernel_floor(run, row, whole ? times(work, (double)nodes) : work, (double)step->bytes);
+    SmOperations work = work_of(spec->part, &step->counts);
+    bench_kernel_floor(run, row,
+                       whole ? sm_operations_add((SmOperations){0}, (double)nodes, work) : work,
+                       (double)step->bytes);
     note_step(spec, step, whole ? row->ns / (double)nodes : row->ns, row);
 }
 
@@ -335,7 +330,9 @@ static void report_setup(BenchKernelRun *run, const Spec *spec, const BenchSampl
     for (int r = 0; r < setup->samples; r++) setup->ns[r] /= (double)items;
     bench_kernel_times(row, setup->ns, setup->samples, &setup->watch);
     bool structure = spec->kind == BENCH_SETUP_STRUCTURE;
-    bench_kernel_floor(run, row, structure ? times(setup->work, (double)nodes) : setup->work,
+    bench_kernel_floor(run, row,
+                       structure ? sm_operations_add((SmOperations){0}, (double)nodes, setup->work)
+                                 : setup->work,
                        setup->bytes);
     note_setup(spec, body, setup->user_ns, row);
 }

@@ -36,7 +36,7 @@ static void count_searches(const BenchSampled *body, const int *most, long sourc
     oct_reach_free(&reach);
 }
 
-static BenchWork regions_work(const BenchSampled *body)
+static SmOperations regions_work(const BenchSampled *body)
 {
     enum { SEARCHES = 4096 };
     double edges, reached;
@@ -46,13 +46,13 @@ static BenchWork regions_work(const BenchSampled *body)
         most[i] = (int)(body->w[i] + floor(body->epsilon * body->w[i]));
     count_searches(body, most, leaves < SEARCHES ? leaves : SEARCHES, &edges, &reached);
     free(most);
-    return bench_work_regions(edges, reached, body->regions.mean);
+    return oct_regions_operations(edges, reached, body->regions.mean);
 }
 
-static BenchWork graph_work(const BenchSampled *body)
+static SmOperations graph_work(const BenchSampled *body)
 {
-    return bench_work_graph(&body->tree, (double)body->graph.first[body->tree.leaves] /
-                                             (double)body->tree.leaves);
+    return oct_graph_operations(&body->tree, (double)body->graph.first[body->tree.leaves] /
+                                                 (double)body->tree.leaves);
 }
 
 static void set_work(const BenchSampled *body, BenchSetupKind kind, BenchSetup *setup)
@@ -60,12 +60,12 @@ static void set_work(const BenchSampled *body, BenchSetupKind kind, BenchSetup *
     double edges, reached, leaves = (double)body->tree.leaves;
     double tree = (double)oct_tree_bytes(&body->tree);
     double graph = (double)oct_graph_bytes(&body->graph);
-    BenchWork sampling = {.far_bytes = tree / leaves};
+    SmOperations sampling = {.far_bytes = tree / leaves};
     setup->bytes = tree + graph;
     switch (kind) {
     case BENCH_SETUP_DISTANCES:
         count_searches(body, NULL, setup->sources, &edges, &reached);
-        setup->work = bench_work_distances(edges, reached);
+        setup->work = oct_reach_operations(edges, reached);
         return;
     case BENCH_SETUP_GRAPH:
         setup->work = graph_work(body);
@@ -74,14 +74,14 @@ static void set_work(const BenchSampled *body, BenchSetupKind kind, BenchSetup *
         setup->work = regions_work(body);
         break;
     case BENCH_SETUP_STRUCTURE:
-        setup->work = bench_work_together(graph_work(body), regions_work(body));
+        setup->work = sm_operations_add(graph_work(body), 1, regions_work(body));
         break;
     case BENCH_SETUP_SAMPLING:
         setup->work = sampling;
         return;
     case BENCH_SETUP_WHOLE:
-        setup->work = bench_work_together(
-            sampling, bench_work_together(graph_work(body), regions_work(body)));
+        setup->work = sm_operations_add(sampling, 1, graph_work(body));
+        setup->work = sm_operations_add(setup->work, 1, regions_work(body));
         break;
     }
     setup->bytes += (double)oct_regions_bytes(&body->regions);

@@ -4,9 +4,8 @@
 
 #include "../check/tree_check.h"
 #include "../measure/moment.h"
-#include "ceilings.h"
+#include "machine_peak.h"
 #include "sampled.h"
-#include "tree_work.h"
 
 typedef enum {
     BENCH_SETUP_DISTANCES, /* Bucket-Moore: from a source to all that it reaches */
@@ -20,14 +19,14 @@ typedef enum {
 typedef struct {
     bool valid;
     char reason[BENCH_TREE_REASON]; /* why not valid */
-    int samples;      /* timed: as many as asked for, or as take about two seconds, at least one */
-    double *ns;       /* [samples] a source; else the whole body. NULL where not valid */
-    BenchWatch watch; /* of the samples */
-    double user_ns;   /* the same as user CPU time, mean of the samples: without page faults, which
-                       * are the system's, and whatever else runs */
-    long sources;     /* timed in a sample, of distances */
-    BenchWork work;   /* a source; else a node */
-    double bytes;     /* of what is read and written */
+    int samples;       /* timed: as many as asked for, or as take about two seconds, at least one */
+    double *ns;        /* [samples] a source; else the whole body. NULL where not valid */
+    BenchWatch watch;  /* of the samples */
+    double user_ns;    /* the same as user CPU time, mean of the samples: without page faults, which
+                        * are the system's, and whatever else runs */
+    long sources;      /* timed in a sample, of distances */
+    SmOperations work; /* a source; else a node */
+    double bytes;      /* of what is read and written */
     double engine_bytes; /* of these the engine's, where it is built */
 } BenchSetup;
 

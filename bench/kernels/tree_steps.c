@@ -134,7 +134,7 @@ void bench_tree_step_create(BenchTreeStep *step)
     Oct *oct = oct_build(&body->tree, &body->regions, body->mass, &params);
     step->engine = oct;
     step->valid = true;
-    step->counts = bench_tree_counts(&body->tree, &oct->lists, oct_goal_lists(oct));
+    step->counts = oct_step_counts(&body->tree, &oct->lists, oct_goal_lists(oct));
     step->bytes = oct_bytes(oct);
     step->x = sm_alloc((size_t)oct->leaves, sizeof *step->x);
     step->v = sm_alloc((size_t)oct->leaves, sizeof *step->v);

@@ -6,11 +6,11 @@
 #ifndef BENCH_TREE_STEPS_H
 #define BENCH_TREE_STEPS_H
 
+#include "../../octree/operations.h"
 #include "../../octree/region/weights.h"
 #include "../measure/moment.h"
-#include "ceilings.h"
+#include "machine_peak.h"
 #include "sampled.h"
-#include "tree_work.h"
 
 /* What of a step is timed apart. */
 typedef enum {
@@ -32,7 +32,7 @@ typedef struct {
     unsigned long seed;
     bool valid;
     char reason[192];                 /* why not valid */
-    BenchTreeCounts counts;           /* of its lists */
+    OctStepCounts counts;             /* of its lists */
     long bytes;                       /* the engine's memory */
     double *total;                    /* [repeats] ns a step; NULL where not valid */
     double (*part)[BENCH_TREE_PARTS]; /* [repeats] ns a step, less the time of reading clocks */

@@ -2,7 +2,7 @@
 #ifndef OCT_REGION_H
 #define OCT_REGION_H
 
-#include "../graph/graph.h"
+#include "../graph/distance.h"
 
 /* What becomes of an asymmetric pair of leaves i and j, where the intervals of i put j in R_i and
  * those of j do not put i in R_j (one_sided_regions.h), as where w_i > (1 + epsilon) w_j. Of what
@@ -62,5 +62,16 @@ size_t oct_regions_bytes(const OctRegions *regions);
 
 /* The leaves of region i, size[i] of them, in no set order. */
 void oct_regions_leaves(const OctTree *tree, const OctRegions *regions, long i, int *leaf);
+
+/* What a region takes: beyond the search (oct_reach_operations()) the tree's leaf number and parent
+ * of what it reached are read, and its summation nodes written. */
+static inline SmOperations oct_regions_operations(double edges, double reached,
+                                                  double summation_nodes)
+{
+    SmOperations search = oct_reach_operations(edges, reached);
+    search.near_bytes += 8 * reached;
+    search.far_bytes = 4 * summation_nodes + 16;
+    return search;
+}
 
 #endif

@@ -1,4 +1,4 @@
-#include "ceilings.h"
+#include "machine_peak.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -111,7 +111,7 @@ static void make_shares(double bytes, int threads, Share *share)
         for (long i = 0; i < groups * STREAMS; i++) share[t].buffer[i] = (FloatVec){0} + 1;
 }
 
-static void measure_memory(const BenchCeilings *c, double seconds, BenchRates *rates)
+static void measure_memory(const BenchPeak *c, double seconds, BenchRates *rates)
 {
     double n = rates->threads;
     /* Half of a core's own caches; an eighth of the last one, which other programs fill too; and
@@ -131,7 +131,7 @@ static void measure_memory(const BenchCeilings *c, double seconds, BenchRates *r
     free(share);
 }
 
-static void measure_rates(const BenchCeilings *c, int threads, double seconds, BenchRates *rates)
+static void measure_rates(const BenchPeak *c, int threads, double seconds, BenchRates *rates)
 {
     Share *none = sm_alloc((size_t)threads, sizeof *none);
     rates->threads = threads;
@@ -143,32 +143,31 @@ static void measure_rates(const BenchCeilings *c, int threads, double seconds, B
     measure_memory(c, seconds, rates);
 }
 
-void bench_ceilings_measure(const BenchMachine *machine, int threads, double seconds,
-                            BenchCeilings *ceilings)
+void bench_peak_measure(const BenchMachine *machine, int threads, double seconds, BenchPeak *peak)
 {
     const long known[] = {machine->l1_bytes, machine->l2_bytes, machine->l3_bytes};
     const double usual[] = {32 << 10, 1 << 20, 32 << 20};
     if (!(seconds > 0)) seconds = 0.01;
     for (int i = 0; i < BENCH_DRAM; i++)
-        ceilings->bytes[i] = known[i] > 0 ? (double)known[i] : usual[i];
-    ceilings->bytes[BENCH_DRAM] = INFINITY;
-    measure_rates(ceilings, 1, seconds, &ceilings->one);
-    ceilings->all = ceilings->one;
+        peak->bytes[i] = known[i] > 0 ? (double)known[i] : usual[i];
+    peak->bytes[BENCH_DRAM] = INFINITY;
+    measure_rates(peak, 1, seconds, &peak->one);
+    peak->all = peak->one;
     if (threads < 2) return;
     /* several threads reach no less than one; on a busy machine they may seem to */
     BenchRates all;
-    measure_rates(ceilings, threads, seconds, &all);
+    measure_rates(peak, threads, seconds, &all);
     for (int p = 0; p < BENCH_PRECISIONS; p++)
-        all.flops[p] = fmax(all.flops[p], ceilings->one.flops[p]);
+        all.flops[p] = fmax(all.flops[p], peak->one.flops[p]);
     for (int level = 0; level < BENCH_LEVELS; level++)
-        all.read[level] = fmax(all.read[level], ceilings->one.read[level]);
-    all.update = fmax(all.update, ceilings->one.update);
-    ceilings->all = all;
+        all.read[level] = fmax(all.read[level], peak->one.read[level]);
+    all.update = fmax(all.update, peak->one.update);
+    peak->all = all;
 }
 
-BenchRates bench_rates(const BenchCeilings *ceilings, int threads)
+BenchRates bench_rates(const BenchPeak *peak, int threads)
 {
-    BenchRates rates = threads > 1 ? ceilings->all : ceilings->one;
+    BenchRates rates = threads > 1 ? peak->all : peak->one;
     double share = (double)threads / rates.threads;
     for (int p = 0; p < BENCH_PRECISIONS; p++) rates.flops[p] *= share;
     for (int level = 0; level < BENCH_LEVELS; level++)
@@ -178,10 +177,10 @@ BenchRates bench_rates(const BenchCeilings *ceilings, int threads)
     return rates;
 }
 
-BenchLevel bench_level_of(const BenchCeilings *ceilings, double bytes, int threads)
+BenchLevel bench_level_of(const BenchPeak *peak, double bytes, int threads)
 {
     int level = 0;
-    while (bytes > ceilings->bytes[level] * (level < BENCH_L3 ? threads : 1)) level++;
+    while (bytes > peak->bytes[level] * (level < BENCH_L3 ? threads : 1)) level++;
     return (BenchLevel)level;
 }
 
@@ -189,4 +188,18 @@ const char *bench_level_name(BenchLevel level)
 {
     static const char *const names[] = {"L1", "L2", "L3", "DRAM"};
     return names[level];
+}
+
+double bench_bound(const BenchPeak *peak, const SmOperations *least, BenchPrecision precision,
+                   int threads, double footprint, const char **limit)
+{
+    BenchRates rates = bench_rates(peak, threads);
+    BenchLevel level = bench_level_of(peak, footprint, threads);
+    double size = precision == BENCH_F32 ? 4 : 8;
+    double flops = least->flops / rates.flops[precision];
+    double near = (least->near_values * size + least->near_bytes) / rates.read[BENCH_L1];
+    double rate = level == BENCH_DRAM ? rates.update : rates.read[level];
+    double far = (least->far_values * size + least->far_bytes) / rate;
+    *limit = flops >= near && flops >= far ? "flops" : near >= far ? "L1" : bench_level_name(level);
+    return 1e9 * fmax(flops, fmax(near, far));
 }
