@@ -1,5 +1,5 @@
 # What ctest runs: unit tests or fuzz targets and style checks, and the programs of scripts/.
-set(folders lib fastlsm octree public reference bench)
+set(folders lib fastlsm octree reference bench)
 enable_testing()
 
 # A test is test_<noun>.c beside its module, linked with everything. One that speaks of SM_REAL_BITS

@@ -3,8 +3,8 @@
 #ifndef BENCH_CHANGES_H
 #define BENCH_CHANGES_H
 
+#include "../../lib/public/skin.h"
 #include "../../octree/change/refinement.h"
-#include "../../public/skin.h"
 #include "cast.h"
 
 /* What the last frame has changed, and the seconds that it took. */

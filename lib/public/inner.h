@@ -2,9 +2,9 @@
 #ifndef SM_INNER_H
 #define SM_INNER_H
 
-#include "../lib/cut/blade.h"
-#include "../lib/voxel/voxelise.h"
-#include "../octree/change/refinement.h"
+#include "../../octree/change/refinement.h"
+#include "../cut/blade.h"
+#include "../voxel/voxelise.h"
 #include "shapebench.h"
 #include "skin.h"
 

@@ -3,10 +3,10 @@
 #ifndef SM_SKIN_H
 #define SM_SKIN_H
 
-#include "../lib/cut/blade.h"
-#include "../lib/mesh/embed.h"
-#include "../octree/engine.h"
-#include "../octree/surface/surface.h"
+#include "../../octree/engine.h"
+#include "../../octree/surface/surface.h"
+#include "../cut/blade.h"
+#include "../mesh/embed.h"
 
 typedef struct {
     /* the caller's, kept */

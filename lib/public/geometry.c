@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/mesh/import.h"
-#include "../lib/shapes/shape.h"
-#include "../lib/system/printable.h"
-#include "../lib/voxel/voxelise.h"
+#include "../mesh/import.h"
+#include "../shapes/shape.h"
+#include "../system/printable.h"
+#include "../voxel/voxelise.h"
 #include "inner.h"
 
 _Static_assert(sizeof(long) == sizeof(int64_t), "numbers of particles go through as they are");

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "../lib/system/printable.h"
+#include "../system/printable.h"
 
 int sm_refuse(sb_error *error, int code, const char *format, ...)
 {

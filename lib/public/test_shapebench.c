@@ -3,16 +3,16 @@
 
 #include <pthread.h>
 
-#include "../fastlsm/fastlsm.h"
-#include "../lib/mesh/embed.h"
-#include "../lib/mesh/import.h"
-#include "../lib/shapes/shape.h"
-#include "../lib/test_folder.h"
-#include "../lib/test_frame.h"
-#include "../lib/voxel/voxelise.h"
-#include "../octree/change/structure.h"
-#include "../octree/engine.h"
-#include "../octree/surface/surface.h"
+#include "../../fastlsm/fastlsm.h"
+#include "../../octree/change/structure.h"
+#include "../../octree/engine.h"
+#include "../../octree/surface/surface.h"
+#include "../mesh/embed.h"
+#include "../mesh/import.h"
+#include "../shapes/shape.h"
+#include "../test_folder.h"
+#include "../test_frame.h"
+#include "../voxel/voxelise.h"
 
 #define OK(call) assert_int_equal(call, SB_OK)
 

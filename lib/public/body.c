@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../fastlsm/fastlsm.h"
-#include "../lib/boundary.h"
-#include "../lib/system/team.h"
+#include "../../fastlsm/fastlsm.h"
+#include "../boundary.h"
+#include "../system/team.h"
 #include "inner.h"
 
 const char *sb_engine_name(int engine)

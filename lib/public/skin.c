@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/cut/cut_surface.h"
-#include "../lib/cut/embed_cut.h"
-#include "../lib/cut/split_components.h"
-#include "../octree/engine.h"
-#include "../octree/region/fit.h"
+#include "../../octree/engine.h"
+#include "../../octree/region/fit.h"
+#include "../cut/cut_surface.h"
+#include "../cut/embed_cut.h"
+#include "../cut/split_components.h"
 
 void sm_skin_create(const SmEngineType *type, SmEngine *engine, const SmVoxels *voxels,
                     long instances, const double (*x0)[3], SmMesh surface, SmSkin *skin)

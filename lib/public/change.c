@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/system/team.h"
-#include "../octree/engine.h"
+#include "../../octree/engine.h"
+#include "../system/team.h"
 #include "inner.h"
 
 /* ---- an octree's batches: handles follow by leaf */
