@@ -9,7 +9,7 @@
 #include "measure/checker.h"
 #include "measure/elastic_row.h"
 #include "measure/tree_row.h"
-#include "play/changes.h"
+#include "play/carrier.h"
 #include "scene/room.h"
 
 static void set_cells(BenchScene *scene, double w, double epsilon, bool cells)

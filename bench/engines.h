@@ -15,7 +15,7 @@ typedef struct OctStructure OctStructure;             /* octree/change/structure
 typedef struct BenchScene BenchScene;                 /* scene/scene.h */
 typedef struct BenchBody BenchBody;                   /* scene/body.h */
 typedef struct BenchRunner BenchRunner;               /* play/runner.h */
-typedef struct BenchCarrier BenchCarrier;             /* play/changes.h */
+typedef struct BenchCarrier BenchCarrier;             /* play/body_group.h */
 typedef struct BenchTwin BenchTwin;                   /* check/check.h */
 typedef struct BenchChecker BenchChecker;             /* measure/checker.h */
 typedef struct BenchMeasureParams BenchMeasureParams; /* measure/measure.h */

@@ -67,8 +67,8 @@ SmCode bench_cantilever_create(const BenchCantileverOptions *options, const SmEn
                                BenchCantilever *cantilever, SmError *error);
 void bench_cantilever_free(BenchCantilever *cantilever);
 
-/* Puts it at rest in the shape that theory gives a mode (reference/beam_theory.h), its tip `up` high;
- * cross-sections stay straight. */
+/* Puts it at rest in the shape that theory gives a mode (reference/beam_theory.h), its tip `up`
+ * high; cross-sections stay straight. */
 void bench_cantilever_bend(BenchCantilever *cantilever, int mode, double up);
 
 /* How far its end hangs down, of its length: the tip carried on to the end as theory has a beam

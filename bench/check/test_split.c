@@ -16,7 +16,7 @@ enum { FRAMES = 25 };
 typedef struct {
     BenchScene scene;
     BenchBody body;
-    BenchPlay play;
+    BenchPlayback play;
 } Show;
 
 /* The mesh and a copy of it, moved so that they cross in curves. */
@@ -49,7 +49,7 @@ static void open_show(const char *engine, Show *show)
         fail_msg("%s", error.text);
     mesh = twice(&mesh);
     if (bench_body_create(&show->scene, &mesh, &show->body, &error) ||
-        bench_play_create(&show->scene, &show->body, type, 1, 1, &show->play, &error))
+        bench_playback_create(&show->scene, &show->body, type, 1, 1, &show->play, &error))
         fail_msg("%s", error.text);
 }
 
@@ -67,22 +67,22 @@ static void what_is_recorded_is_the_surface_that_is_there(const char *engine)
                              1u << BENCH_SPEED | 1u << BENCH_PIECE, &machine, &recording, &error))
         fail_msg("%s", error.text);
     for (int f = 0; f < FRAMES; f++) {
-        if (bench_play_change(&show.play, &error)) fail_msg("%s", error.text);
-        SmMesh now = bench_play_surface(&show.play);
+        if (bench_playback_change(&show.play, &error)) fail_msg("%s", error.text);
+        SmMesh now = bench_playback_surface(&show.play);
         bool same = now.vertex_count == recording.surface.vertex_count &&
                     now.triangle_count == recording.surface.triangle_count;
-        assert_int_equal(bench_play_split(&show.play), !same);
+        assert_int_equal(bench_playback_split(&show.play), !same);
         changed += !same;
         if (bench_recording_frame(&recording, &error)) fail_msg("%s", error.text);
         assert_int_equal(recording.surface.vertex_count, now.vertex_count);
         sm_mesh_free(&now);
-        bench_play_prepare(&show.play);
-        bench_play_advance(&show.play, NULL);
+        bench_playback_prepare(&show.play);
+        bench_playback_advance(&show.play, NULL);
     }
-    assert_true(show.play.changes[0].skin.left);
+    assert_true(show.play.group[0].skin.left);
     assert_true(changed > 3);
     if (bench_recording_close(&recording, &error)) fail_msg("%s", error.text);
-    bench_play_free(&show.play);
+    bench_playback_free(&show.play);
     bench_body_free(&show.body);
 }
 

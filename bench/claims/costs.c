@@ -14,7 +14,7 @@
 #include "../kernels/cubes.h"
 #include "../kernels/matrices.h"
 #include "../kernels/tree_steps.h"
-#include "../play/play.h"
+#include "../play/playback.h"
 
 static int repeats_of(const BenchLab *lab)
 {
@@ -196,15 +196,15 @@ void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
 }
 
 /* Sweeps of a decomposition, mean over the steps of some frames from the start. */
-static double mean_sweeps(BenchPlay *play, int frames)
+static double mean_sweeps(BenchPlayback *play, int frames)
 {
     double sum = 0;
-    const BenchRunner *runner = bench_play_runner(play);
+    const BenchRunner *runner = bench_playback_runner(play);
     int steps = frames * runner->scene->steps_per_frame;
     for (int s = 0; s < steps; s++) {
         SmCounts counts;
-        bench_play_prepare(play);
-        bench_play_advance(play, NULL);
+        bench_playback_prepare(play);
+        bench_playback_advance(play, NULL);
         runner->type->count(runner->engine, &counts);
         sum += counts.jacobi_sweeps / steps;
     }
@@ -215,22 +215,22 @@ void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *
 {
     BenchScene *scene = sm_alloc(1, sizeof *scene);
     BenchBody body = {0};
-    BenchPlay play;
+    BenchPlayback play;
     SmError error;
     SmCode code = bench_scene_find(measure->scene, scene, &error);
     bench_curve_begin(curve, "-", "sweeps a decomposition");
     scene->params.polar = SM_POLAR_JACOBI;
     if (!code) code = bench_body_of_scene(scene, NULL, &body, &error);
     if (!code)
-        code = bench_play_create(scene, &body, &fastlsm_engine_f32, lab->threads, lab->seed, &play,
-                                 &error);
+        code = bench_playback_create(scene, &body, &fastlsm_engine_f32, lab->threads, lab->seed,
+                                     &play, &error);
     if (code)
         bench_curve_fail(curve, "%.180s", error.text);
     else {
         double sweeps = mean_sweeps(&play, lab->quick ? 5 : 20);
-        bench_curve_check(curve, bench_play_runner(&play));
+        bench_curve_check(curve, bench_playback_runner(&play));
         bench_curve_add(curve, 0, sweeps, sweeps, sweeps);
-        bench_play_free(&play);
+        bench_playback_free(&play);
     }
     bench_body_free(&body);
     free(scene);

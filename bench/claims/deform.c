@@ -10,7 +10,7 @@
 #include "../beam/clamped_beam.h"
 #include "../engines.h"
 #include "../kernels/block.h"
-#include "../play/play.h"
+#include "../play/playback.h"
 
 static double length(const double a[3], const double b[3])
 {
@@ -192,20 +192,20 @@ static void hang(BenchLab *lab, const Hanging *hanging, BenchCurve *curve)
 {
     const BenchScene *scene = &hanging->scene;
     int frames = scene->frames, last = frames < 8 ? 1 : frames / 4;
-    BenchPlay play;
+    BenchPlayback play;
     SmError error;
-    if (bench_play_create(scene, &hanging->body, hanging->type, lab->threads, lab->seed, &play,
-                          &error)) {
+    if (bench_playback_create(scene, &hanging->body, hanging->type, lab->threads, lab->seed, &play,
+                              &error)) {
         bench_curve_fail(curve, "%.180s", error.text);
         return;
     }
     BenchClampedBeam beam;
-    bench_clamped_beam_create(bench_play_runner(&play), &beam);
+    bench_clamped_beam_create(bench_playback_runner(&play), &beam);
     double *depth = sm_alloc((size_t)last, sizeof *depth);
     for (int f = 0; f < frames; f++) {
         for (int s = 0; s < scene->steps_per_frame; s++) {
-            bench_play_prepare(&play);
-            bench_play_advance(&play, NULL);
+            bench_playback_prepare(&play);
+            bench_playback_advance(&play, NULL);
         }
         if (f >= frames - last)
             depth[f - (frames - last)] = bench_clamped_beam_tip(&beam, hanging->down);
@@ -215,7 +215,7 @@ static void hang(BenchLab *lab, const Hanging *hanging, BenchCurve *curve)
                     bench_quantile(depth, last, 0), bench_quantile(depth, last, 1));
     free(depth);
     bench_clamped_beam_free(&beam);
-    bench_play_free(&play);
+    bench_playback_free(&play);
 }
 
 void bench_deform_sag(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)

@@ -384,10 +384,10 @@ static void end_span(BenchOutcome *outcome)
     outcome->open_steps = 0;
 }
 
-static SmCode run_step(BenchPlay *play, BenchRecording *recording, bool record,
+static SmCode run_step(BenchPlayback *play, BenchRecording *recording, bool record,
                        BenchOutcome *outcome, SmError *error)
 {
-    bench_play_prepare(play);
+    bench_playback_prepare(play);
     if (record) {
         SmCode code = bench_recording_step(recording, outcome->steps, true, error);
         if (code) return code;
@@ -395,7 +395,7 @@ static SmCode run_step(BenchPlay *play, BenchRecording *recording, bool record,
     BenchMean *step = &outcome->step;
     if (!outcome->open_steps) bench_watch_start(&step->watch);
     double start = sm_now();
-    bench_play_advance(play, NULL);
+    bench_playback_advance(play, NULL);
     outcome->open_seconds += sm_now() - start;
     outcome->open_steps++;
     outcome->steps++;
@@ -403,11 +403,11 @@ static SmCode run_step(BenchPlay *play, BenchRecording *recording, bool record,
     return SM_OK;
 }
 
-static bool state_finite(const BenchPlay *play)
+static bool state_finite(const BenchPlayback *play)
 {
     double sum = 0;
-    for (int p = 0; p < play->cast.count; p++) {
-        const BenchRunner *runner = &play->cast.part[p].runner;
+    for (int p = 0; p < play->count; p++) {
+        const BenchRunner *runner = &play->group[p].runner;
         double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x);
         runner->type->get(runner->engine, SM_POSITION, x);
         for (long i = 0; i < runner->particles; i++) sum += 0 * (x[i][0] + x[i][1] + x[i][2]);
@@ -417,13 +417,13 @@ static bool state_finite(const BenchPlay *play)
 }
 
 /* What the scene changes before a frame. */
-static SmCode change(BenchPlay *play, BenchOutcome *outcome, SmError *error)
+static SmCode change(BenchPlayback *play, BenchOutcome *outcome, SmError *error)
 {
     bench_watch_start(&outcome->change.watch);
-    SmCode code = bench_play_change(play, error);
+    SmCode code = bench_playback_change(play, error);
     double seconds = bench_watch_stop(&outcome->change.watch);
     bool changed = false;
-    for (int p = 0; p < play->cast.count; p++) changed |= play->changes[p].last.resampled;
+    for (int p = 0; p < play->count; p++) changed |= play->group[p].last.resampled;
     if (!changed) return code;
     outcome->changes++;
     bench_mean_add(&outcome->change, seconds, 1);
@@ -431,10 +431,10 @@ static SmCode change(BenchPlay *play, BenchOutcome *outcome, SmError *error)
 }
 
 /* Runs all frames; stops early when no longer finite. `recording` may be NULL. */
-static SmCode run_frames(BenchPlay *play, BenchRecording *recording, const Options *options,
+static SmCode run_frames(BenchPlayback *play, BenchRecording *recording, const Options *options,
                          BenchOutcome *outcome, SmError *error)
 {
-    const BenchScene *scene = play->cast.scene;
+    const BenchScene *scene = play->scene;
     BenchProgress progress;
     bench_progress_start(&progress, options->common.quiet);
     BenchMean none = {.watch = bench_watch(options->common.threads)};
@@ -500,10 +500,10 @@ static void warn_of_size(const Options *options, const BenchRecording *recording
 }
 
 /* Runs the scene on an engine that is ready, and writes what was asked for. */
-static SmCode record(const Options *options, BenchPlay *play, const BenchMachine *machine,
+static SmCode record(const Options *options, BenchPlayback *play, const BenchMachine *machine,
                      const char *path, SmError *error)
 {
-    const BenchScene *scene = play->cast.scene;
+    const BenchScene *scene = play->scene;
     BenchRecording recording;
     BenchRecording *recorder = options->no_output ? NULL : &recording;
     SmCode code = SM_OK;
@@ -541,7 +541,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     RefMpu given;
     SmMesh mesh;
     BenchBody body;
-    BenchPlay play;
+    BenchPlayback play;
     char room[BENCH_NAME + 8];
     SmCode code = load(options, &scene, &given, &mesh, error);
     if (code) return code;
@@ -560,11 +560,11 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
         return code;
     }
     if (given.count) body.given = &given;
-    code = bench_play_create(&scene, &body, type, options->common.threads, options->common.seed,
-                             &play, error);
+    code = bench_playback_create(&scene, &body, type, options->common.threads, options->common.seed,
+                                 &play, error);
     if (!code) {
         code = record(options, &play, machine, path, error);
-        bench_play_free(&play);
+        bench_playback_free(&play);
     }
     bench_body_free(&body);
     ref_mpu_free(&given);

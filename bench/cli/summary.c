@@ -94,25 +94,25 @@ static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
 }
 
 /* Nodes and surface at the end of a scene that has changed them. */
-static void print_changes(const BenchPlay *play, const BenchOutcome *outcome)
+static void print_changes(const BenchPlayback *play, const BenchOutcome *outcome)
 {
     char each[32] = "BUSY";
     if (!bench_watch_busy(&outcome->change.watch))
         snprintf(each, sizeof each, "%.4g ms each",
                  1e3 * outcome->change.seconds / fmax((double)outcome->change.count, 1));
     long open = 0, pieces = 0, triangles = 0, left = 0;
-    for (int p = 0; p < play->cast.count; p++) {
-        SmMeshInfo info = sm_mesh_info(&play->changes[p].skin.surface);
-        long bodies = play->cast.part[p].body.instances;
+    for (int p = 0; p < play->count; p++) {
+        SmMeshInfo info = sm_mesh_info(&play->group[p].skin.surface);
+        long bodies = play->group[p].body.instances;
         open += bodies * (info.open_edges + info.nonmanifold_edges);
         pieces += bodies * info.components;
         triangles += bodies * info.triangles;
-        left += bodies * play->changes[p].skin.left;
+        left += bodies * play->group[p].skin.left;
     }
     printf("changes: %ld frame%s, %s with the surface; in the end %ld nodes, and surfaces "
            "of %ld triangles in %ld piece%s, ",
-           outcome->changes, outcome->changes == 1 ? "" : "s", each,
-           bench_cast_particles(&play->cast), triangles, pieces, pieces == 1 ? "" : "s");
+           outcome->changes, outcome->changes == 1 ? "" : "s", each, bench_playback_particles(play),
+           triangles, pieces, pieces == 1 ? "" : "s");
     if (open)
         printf("with %ld open or non-manifold edges\n", open);
     else
@@ -120,25 +120,25 @@ static void print_changes(const BenchPlay *play, const BenchOutcome *outcome)
     bench_change_left(stdout, "changes: ", left);
 }
 
-bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome)
+bool bench_summary_print(BenchPlayback *play, const BenchOutcome *outcome)
 {
-    const BenchRunner *runner = bench_play_runner(play);
-    long particles = bench_cast_particles(&play->cast);
+    const BenchRunner *runner = bench_playback_runner(play);
+    long particles = bench_playback_particles(play);
     SmCounts counts;
     runner->type->count(runner->engine, &counts);
-    if (play->cast.count > 1)
+    if (play->count > 1)
         printf("%s: %ld bodies, %ld nodes in all; the last that is touched:\n", runner->scene->name,
-               play->cast.body->instances, particles);
+               play->body->instances, particles);
     const BenchEngine *engine = bench_engine(runner->type->name);
     (engine->describe ? engine->describe : print_lattice)(runner, &counts);
-    if (bench_play_changes(play)) print_changes(play, outcome);
+    if (bench_playback_changes(play)) print_changes(play, outcome);
     bool valid = outcome->finite;
-    for (int p = 0; p < play->cast.count && outcome->finite; p++) {
-        const BenchPart *part = &play->cast.part[p];
-        if (play->cast.count > 1)
-            printf(part->own ? "instance %ld: " : "%ld that share a structure: ",
-                   part->own ? part->instance[0] + 1 : part->body.instances);
-        valid &= print_deviation(&part->runner);
+    for (int p = 0; p < play->count && outcome->finite; p++) {
+        const BenchGroup *group = &play->group[p];
+        if (play->count > 1)
+            printf(group->touched ? "instance %ld: " : "%ld that share a structure: ",
+                   group->touched ? group->instance[0] + 1 : group->body.instances);
+        valid &= print_deviation(&group->runner);
     }
     printf("%ld step%s of %g s: ", outcome->steps, outcome->steps == 1 ? "" : "s",
            runner->scene->params.h);

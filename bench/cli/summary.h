@@ -3,7 +3,7 @@
 #define BENCH_SUMMARY_H
 
 #include "../measure/moment.h"
-#include "../play/play.h"
+#include "../play/playback.h"
 
 /* What the frames came to. */
 typedef struct {
@@ -18,7 +18,7 @@ typedef struct {
 
 /* Says on standard output what was run, how exact it ended and how long it took; false, and no
  * time, when it ended with goals beyond the tolerance or positions that are not finite. */
-bool bench_summary_print(BenchPlay *play, const BenchOutcome *outcome);
+bool bench_summary_print(BenchPlayback *play, const BenchOutcome *outcome);
 
 /* The first lines of it. Of an octree: nodes beside those wanted, regions, and what holds together;
  * of a meshless body: what carries it, and its material. */

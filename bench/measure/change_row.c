@@ -47,18 +47,18 @@ static void keep_least(Times *times, long frame, int part, double seconds)
 }
 
 /* What the frame's changes took, of all parts. */
-static void note_changes(const BenchPlay *play, long frame, Times *times, BenchChangeRow *row)
+static void note_changes(const BenchPlayback *play, long frame, Times *times, BenchChangeRow *row)
 {
     double resample = 0, follow = 0;
     long added = 0;
-    for (int p = 0; p < play->cast.count; p++) {
-        const BenchChanged *last = &play->changes[p].last;
+    for (int p = 0; p < play->count; p++) {
+        const BenchChanged *last = &play->group[p].last;
         resample += last->resample_seconds;
         follow += last->follow_seconds;
         added += last->nodes;
         times->changed[frame] |= last->resampled;
     }
-    long nodes = bench_cast_particles(&play->cast);
+    long nodes = bench_playback_particles(play);
     if (nodes > row->most_nodes) row->most_nodes = nodes;
     if (added > row->most_added) row->most_added = added;
     keep_least(times, frame, CHANGE, resample);
@@ -66,31 +66,30 @@ static void note_changes(const BenchPlay *play, long frame, Times *times, BenchC
 }
 
 /* Moves the surfaces; seconds for one body. */
-static double move_surfaces(BenchPlay *play, BenchWatch *watch)
+static double move_surfaces(BenchPlayback *play, BenchWatch *watch)
 {
-    long vertices = 0;
-    for (int p = 0; p < play->cast.count; p++)
-        vertices += play->cast.part[p].body.instances * play->changes[p].skin.surface.vertex_count;
+    long vertices, triangles;
+    bench_playback_size(play, &vertices, &triangles);
     double(*point)[3] = sm_alloc((size_t)vertices, sizeof *point);
     bench_watch_start(watch);
-    bench_play_points(play, point);
+    bench_playback_points(play, point);
     double seconds = bench_watch_stop(watch);
     free(point);
-    return seconds / (double)play->cast.body->instances;
+    return seconds / (double)play->body->instances;
 }
 
-static SmCode play_frame(BenchPlay *play, long frame, Times *times, BenchChangeRow *row,
+static SmCode play_frame(BenchPlayback *play, long frame, Times *times, BenchChangeRow *row,
                          SmError *error)
 {
     bench_watch_start(&times->watch);
-    SmCode code = bench_play_change(play, error);
+    SmCode code = bench_playback_change(play, error);
     bench_watch_stop(&times->watch);
     if (code) return code;
     note_changes(play, frame, times, row);
     bench_watch_start(&times->watch);
-    for (int s = 0; s < play->cast.scene->steps_per_frame; s++) {
-        bench_play_prepare(play);
-        bench_play_advance(play, NULL);
+    for (int s = 0; s < play->scene->steps_per_frame; s++) {
+        bench_playback_prepare(play);
+        bench_playback_advance(play, NULL);
     }
     keep_least(times, frame, SIMULATION, bench_watch_stop(&times->watch));
     keep_least(times, frame, SURFACE, move_surfaces(play, &times->watch));
@@ -145,49 +144,42 @@ static void find_busy(Times *times, BenchChangeRow *row)
     row->follow_ms = row->surface_ms = NAN;
 }
 
-static long count_triangles(const BenchPlay *play)
-{
-    long triangles = 0;
-    for (int p = 0; p < play->cast.count; p++)
-        triangles +=
-            play->cast.part[p].body.instances * play->changes[p].skin.surface.triangle_count;
-    return triangles;
-}
-
 /* What ties the surfaces to the bodies, over the particles of one instance of each. */
-static double surface_bytes(const BenchPlay *play)
+static double surface_bytes(const BenchPlayback *play)
 {
     double bytes = 0, particles = 0;
-    for (int p = 0; p < play->cast.count; p++) {
-        const BenchPart *part = &play->cast.part[p];
-        bytes += (double)sm_embed_bytes(&play->changes[p].skin.embedding);
-        bytes += (double)oct_surface_bytes(&play->changes[p].skin.carried);
-        particles += (double)(part->runner.particles / part->body.instances);
+    for (int p = 0; p < play->count; p++) {
+        const BenchGroup *group = &play->group[p];
+        bytes += (double)sm_embed_bytes(&group->skin.embedding);
+        bytes += (double)oct_surface_bytes(&group->skin.carried);
+        particles += (double)(group->runner.particles / group->body.instances);
     }
     return bytes / particles;
 }
 
-static void note_end(const BenchPlay *play, BenchChangeRow *row)
+static void note_end(const BenchPlayback *play, BenchChangeRow *row)
 {
-    row->last_nodes = bench_cast_particles(&play->cast);
-    row->last_triangles = count_triangles(play);
+    long vertices;
+    row->last_nodes = bench_playback_particles(play);
+    bench_playback_size(play, &vertices, &row->last_triangles);
     row->surface_bytes = surface_bytes(play);
-    for (int p = 0; p < play->cast.count; p++) {
-        SmMeshInfo info = sm_mesh_info(&play->changes[p].skin.surface);
-        long bodies = play->cast.part[p].body.instances;
+    for (int p = 0; p < play->count; p++) {
+        SmMeshInfo info = sm_mesh_info(&play->group[p].skin.surface);
+        long bodies = play->group[p].body.instances;
         row->pieces += bodies * info.components;
         row->open_edges += bodies * (info.open_edges + info.nonmanifold_edges);
-        row->left += bodies * play->changes[p].skin.left;
+        row->left += bodies * play->group[p].skin.left;
     }
 }
 
-static SmCode play_round(BenchPlay *play, int round, const BenchChangeRowParams *params,
+static SmCode play_round(BenchPlayback *play, int round, const BenchChangeRowParams *params,
                          Times *times, BenchChangeRow *row, SmError *error)
 {
-    const BenchScene *scene = play->cast.scene;
+    const BenchScene *scene = play->scene;
     SmCode code = SM_OK;
-    row->first_nodes = row->most_nodes = bench_cast_particles(&play->cast);
-    row->first_triangles = count_triangles(play);
+    long vertices;
+    row->first_nodes = row->most_nodes = bench_playback_particles(play);
+    bench_playback_size(play, &vertices, &row->first_triangles);
     for (long f = 0; f < times->frames && !code; f++) {
         code = play_frame(play, f, times, row, error);
         if (params->progress)
@@ -200,17 +192,17 @@ static SmCode play_round(BenchPlay *play, int round, const BenchChangeRowParams 
 
 SmCode bench_change_row_measure(const BenchScene *scene, const BenchBody *body,
                                 const SmEngineType *type, const BenchChangeRowParams *params,
-                                BenchChangeRow *row, BenchPlay *play, SmError *error)
+                                BenchChangeRow *row, BenchPlayback *play, SmError *error)
 {
     Times times = make_times(scene->frames > 0 ? scene->frames : 1, params->threads);
     SmCode code = SM_OK;
     *row = (BenchChangeRow){0};
     for (int round = 0; round < params->rounds && !code; round++) {
-        if (round > 0) bench_play_free(play);
-        code = bench_play_create(scene, body, type, params->threads, params->seed, play, error);
+        if (round > 0) bench_playback_free(play);
+        code = bench_playback_create(scene, body, type, params->threads, params->seed, play, error);
         if (code) break;
         code = play_round(play, round, params, &times, row, error);
-        if (code) bench_play_free(play);
+        if (code) bench_playback_free(play);
     }
     if (!code) {
         summarise(&times, row);

@@ -4,7 +4,7 @@
 #ifndef BENCH_CHANGE_ROW_H
 #define BENCH_CHANGE_ROW_H
 
-#include "../play/play.h"
+#include "../play/playback.h"
 #include "../system/progress.h"
 #include "row.h"
 
@@ -19,6 +19,6 @@ typedef struct {
  * playing the scene. */
 SmCode bench_change_row_measure(const BenchScene *scene, const BenchBody *body,
                                 const SmEngineType *type, const BenchChangeRowParams *params,
-                                BenchChangeRow *row, BenchPlay *play, SmError *error);
+                                BenchChangeRow *row, BenchPlayback *play, SmError *error);
 
 #endif

@@ -3,27 +3,27 @@
 #ifndef BENCH_CHECKER_H
 #define BENCH_CHECKER_H
 
-#include "../play/play.h"
+#include "../play/playback.h"
 #include "row.h"
 
 typedef struct BenchChecker {
     size_t size; /* of `worst`: what was found of all states of a row, zeroed to begin with */
 
     /* SM_INPUT: the check would take too much memory. May be NULL. */
-    SmCode (*room)(const BenchPlay *play, SmError *error);
+    SmCode (*room)(const BenchPlayback *play, SmError *error);
 
     /* What the check needs of the bodies as they are now; begun anew when they have changed. */
-    void *(*begin)(BenchPlay *play);
+    void *(*begin)(BenchPlayback *play);
 
     /* Of the bodies at rest: do the engines have what they should? May be NULL. */
-    void (*counts)(void *check, BenchPlay *play, BenchRow *row);
+    void (*counts)(void *check, BenchPlayback *play, BenchRow *row);
 
     /* Of the present state, which stays: row->found says what all states came to, and a row that is
      * wrong is made invalid. */
-    void (*state)(void *check, BenchPlay *play, void *worst, BenchRow *row);
+    void (*state)(void *check, BenchPlayback *play, void *worst, BenchRow *row);
 
     /* What takes steps, in the end. May be NULL. */
-    void (*end)(void *check, BenchPlay *play, void *worst, BenchRow *row);
+    void (*end)(void *check, BenchPlayback *play, void *worst, BenchRow *row);
     void (*free)(void *check);
 } BenchChecker;
 

@@ -79,47 +79,46 @@ typedef struct {
     int count;
 } Checks;
 
-static SmCode room(const BenchPlay *play, SmError *error)
+static SmCode room(const BenchPlayback *play, SmError *error)
 {
     SmCode code = SM_OK;
-    for (int p = 0; p < play->cast.count && !code; p++)
-        code = check_room(&play->cast.part[p].runner, error);
+    for (int p = 0; p < play->count && !code; p++) code = check_room(&play->group[p].runner, error);
     return code;
 }
 
-static void *begin(BenchPlay *play)
+static void *begin(BenchPlayback *play)
 {
     Checks *checks = sm_alloc(1, sizeof *checks);
-    checks->count = play->cast.count;
+    checks->count = play->count;
     checks->part = sm_alloc((size_t)checks->count, sizeof *checks->part);
     for (int p = 0; p < checks->count; p++) {
-        const BenchRunner *runner = &play->cast.part[p].runner;
+        const BenchRunner *runner = &play->group[p].runner;
         bench_check_begin(runner->scene, runner->body, runner->type, runner->engine,
                           &checks->part[p]);
     }
     return checks;
 }
 
-static void counts(void *check, BenchPlay *play, BenchRow *row)
+static void counts(void *check, BenchPlayback *play, BenchRow *row)
 {
     const Checks *checks = check;
     for (int p = 0; p < checks->count; p++)
-        check_counts(&checks->part[p], &play->cast.part[p].runner, row);
+        check_counts(&checks->part[p], &play->group[p].runner, row);
 }
 
-static void state(void *check, BenchPlay *play, void *worst, BenchRow *row)
+static void state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     const Checks *checks = check;
     for (int p = 0; p < checks->count; p++)
-        check_state(&checks->part[p], &play->cast.part[p].runner, worst, row);
+        check_state(&checks->part[p], &play->group[p].runner, worst, row);
 }
 
-static void end(void *check, BenchPlay *play, void *worst, BenchRow *row)
+static void end(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     const Checks *checks = check;
     for (int p = 0; p < checks->count; p++)
-        check_flow(&checks->part[p], &play->cast.part[p].runner, row);
-    for (int p = 0; p < checks->count; p++) check_drift(&play->cast.part[p].runner, worst, row);
+        check_flow(&checks->part[p], &play->group[p].runner, row);
+    for (int p = 0; p < checks->count; p++) check_drift(&play->group[p].runner, worst, row);
 }
 
 static void let_go(void *check)

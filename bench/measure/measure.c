@@ -21,16 +21,16 @@ typedef struct {
 } Saved;
 
 typedef struct {
-    BenchPlay play;
-    Saved *saved; /* [play.cast.count] */
+    BenchPlayback play;
+    Saved *saved; /* [play.count] */
     double time;
 } Trial;
 
 static void save(Trial *trial)
 {
-    trial->saved = sm_alloc((size_t)trial->play.cast.count, sizeof *trial->saved);
-    for (int p = 0; p < trial->play.cast.count; p++) {
-        BenchRunner *runner = &trial->play.cast.part[p].runner;
+    trial->saved = sm_alloc((size_t)trial->play.count, sizeof *trial->saved);
+    for (int p = 0; p < trial->play.count; p++) {
+        BenchRunner *runner = &trial->play.group[p].runner;
         Saved *saved = &trial->saved[p];
         saved->x = sm_alloc((size_t)runner->particles, sizeof *saved->x);
         saved->v = sm_alloc((size_t)runner->particles, sizeof *saved->v);
@@ -47,8 +47,8 @@ static void save(Trial *trial)
 static void restore(void *subject)
 {
     Trial *trial = subject;
-    for (int p = 0; p < trial->play.cast.count; p++) {
-        BenchRunner *runner = &trial->play.cast.part[p].runner;
+    for (int p = 0; p < trial->play.count; p++) {
+        BenchRunner *runner = &trial->play.group[p].runner;
         const Saved *saved = &trial->saved[p];
         runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])saved->x);
         runner->type->set(runner->engine, SM_VELOCITY, (const double(*)[3])saved->v);
@@ -59,21 +59,21 @@ static void restore(void *subject)
 
 static void free_trial(Trial *trial)
 {
-    for (int p = 0; p < trial->play.cast.count && trial->saved; p++) {
+    for (int p = 0; p < trial->play.count && trial->saved; p++) {
         free(trial->saved[p].x);
         free(trial->saved[p].v);
         free(trial->saved[p].S);
     }
     free(trial->saved);
-    bench_play_free(&trial->play);
+    bench_playback_free(&trial->play);
 }
 
 static void step(void *subject, SmLaps *laps)
 {
     Trial *trial = subject;
-    bench_play_prepare(&trial->play);
+    bench_playback_prepare(&trial->play);
     sm_lap(laps, SM_OTHER);
-    bench_play_advance(&trial->play, laps);
+    bench_playback_advance(&trial->play, laps);
 }
 
 void bench_row_name(const BenchScene *scene, BenchRow *row)
@@ -130,13 +130,13 @@ static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const
     const BenchChecker *checker = bench_engine(type->name)->checker;
     enum { ROUNDS = 3 };
     BenchChangeRowParams frames = {params->threads, ROUNDS, params->seed, params->progress};
-    BenchPlay play;
+    BenchPlayback play;
     SmCode code = bench_change_row_measure(scene, body, type, &frames, &row->change, &play, error);
     if (code) return code;
     void *check = checker->begin(&play);
     checker->state(check, &play, worst, row);
     checker->free(check);
-    bench_play_free(&play);
+    bench_playback_free(&play);
     const BenchChangeRow *change = &row->change;
     SmMeshInfo before = sm_mesh_info(&body->mesh);
     bool closed = before.open_edges + before.nonmanifold_edges == 0;
@@ -147,11 +147,11 @@ static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const
 }
 
 /* What the engines hold, of all parts. */
-static void count(const BenchPlay *play, BenchRow *row)
+static void count(const BenchPlayback *play, BenchRow *row)
 {
     row->particles = row->bytes = 0;
-    for (int p = 0; p < play->cast.count; p++) {
-        const BenchRunner *runner = &play->cast.part[p].runner;
+    for (int p = 0; p < play->count; p++) {
+        const BenchRunner *runner = &play->group[p].runner;
         SmCounts counts;
         runner->type->count(runner->engine, &counts);
         row->particles += counts.particles;
@@ -165,11 +165,11 @@ static void measure_start(Trial *trial, const BenchChecker *checker,
                           const BenchMeasureParams *params, void *worst, BenchRow *row)
 {
     void *check = checker->begin(&trial->play);
-    bench_tree_row_fill(bench_play_runner(&trial->play), row);
-    row->instances = trial->play.cast.body->instances;
+    bench_tree_row_fill(bench_playback_runner(&trial->play), row);
+    row->instances = trial->play.body->instances;
     count(&trial->play, row);
     if (checker->counts) checker->counts(check, &trial->play, row);
-    for (int i = 0; i < trial->play.cast.scene->settle; i++) step(trial, NULL);
+    for (int i = 0; i < trial->play.scene->settle; i++) step(trial, NULL);
     checker->state(check, &trial->play, worst, row);
     save(trial);
     bench_time_blocks(&(BenchTimed){trial, restore, step}, params, row);
@@ -189,7 +189,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
     const BenchChecker *checker = engine->checker;
     Trial trial = {0};
     SmCode code =
-        bench_play_create(scene, body, type, params->threads, params->seed, &trial.play, error);
+        bench_playback_create(scene, body, type, params->threads, params->seed, &trial.play, error);
     if (code) return code;
     if (checker->room) code = checker->room(&trial.play, error);
     if (code) {
@@ -200,7 +200,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
     if (params->progress) bench_progress_show(params->progress, row->scene, 0);
     void *worst = sm_alloc(1, checker->size);
     measure_start(&trial, checker, params, worst, row);
-    bool changes = bench_play_changes(&trial.play);
+    bool changes = bench_playback_changes(&trial.play);
     free_trial(&trial);
     if (changes) code = play_changes(scene, body, type, params, worst, row, error);
     free(worst);

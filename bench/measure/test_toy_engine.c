@@ -3,7 +3,7 @@
  * particles hang on springs, each on its own to where it rests. */
 #include "../../lib/test_folder.h"
 #include "../engines.h"
-#include "../play/changes.h"
+#include "../play/carrier.h"
 #include "../scene/room.h"
 #include "../table/row_store.h"
 #include "../table/table.h"
@@ -107,14 +107,14 @@ static const SmEngineType toy_type = {.name = "springs",
 
 /* ---- its check: a step beside the formula */
 
-static void *toy_begin(BenchPlay *play)
+static void *toy_begin(BenchPlayback *play)
 {
     return play;
 }
 
-static void toy_state(void *check, BenchPlay *play, void *worst, BenchRow *row)
+static void toy_state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
-    BenchRunner *runner = bench_play_runner(play);
+    BenchRunner *runner = bench_playback_runner(play);
     size_t count = (size_t)runner->particles;
     double(*x)[3] = sm_alloc(count, sizeof *x), (*v)[3] = sm_alloc(count, sizeof *v);
     double(*to)[3] = sm_alloc(count, sizeof *to), *most = worst, h = runner->scene->params.h;

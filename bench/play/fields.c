@@ -6,14 +6,14 @@
 const char *const bench_field_names[] = {"displacement", "speed", "strain", "piece", "level", NULL};
 const int bench_field_components[] = {3, 1, 1, 1, 1};
 
-SmCode bench_fields_check(const BenchPlay *play, BenchFields fields, SmError *error)
+SmCode bench_fields_check(const BenchPlayback *play, BenchFields fields, SmError *error)
 {
-    const BenchChanges *changes = play->changes;
-    if ((fields & 1u << BENCH_LEVEL) && !changes->carrier->levels)
+    const BenchGroup *group = play->group;
+    if ((fields & 1u << BENCH_LEVEL) && !group->carrier->levels)
         return sm_fail(error, SM_USAGE,
                        "--fields level is of an octree's leaves: leave it out, or give --engine "
                        "octree");
-    if ((fields & ~(1u << BENCH_DISPLACEMENT)) && !changes->skin.surface.triangle_count)
+    if ((fields & ~(1u << BENCH_DISPLACEMENT)) && !group->skin.surface.triangle_count)
         return sm_fail(error, SM_USAGE,
                        "--fields: points without triangles have only a displacement");
     return SM_OK;
@@ -62,14 +62,15 @@ void bench_strain(const SmMesh *rest, const double (*point)[3], float *strain)
 }
 
 /* The last step took the points here from x - h v of what carries them. */
-static void find_speed(BenchPlay *play, const SmMesh *rest, const double (*point)[3], float *speed)
+static void find_speed(BenchPlayback *play, const SmMesh *rest, const double (*point)[3],
+                       float *speed)
 {
-    double h = play->cast.scene->params.h;
+    double h = play->scene->params.h;
     double(*before)[3] = sm_alloc((size_t)rest->vertex_count, sizeof *before), (*at)[3] = before;
-    for (int i = 0; i < play->cast.count; i++) {
-        BenchChanges *changes = &play->changes[i];
-        bench_changes_surface(changes, h, at);
-        at += changes->part->body.instances * changes->skin.surface.vertex_count;
+    for (int i = 0; i < play->count; i++) {
+        BenchGroup *group = &play->group[i];
+        bench_group_surface(group, h, at);
+        at += group->body.instances * group->skin.surface.vertex_count;
     }
     for (long v = 0; v < rest->vertex_count; v++) {
         double square = 0;
@@ -80,25 +81,25 @@ static void find_speed(BenchPlay *play, const SmMesh *rest, const double (*point
 }
 
 /* Levels or pieces of what carries the points. */
-static void find_carriers(BenchPlay *play, BenchPointField field, float *value)
+static void find_carriers(BenchPlayback *play, BenchPointField field, float *value)
 {
     long pieces = 0;
-    for (int i = 0; i < play->cast.count; i++) {
-        BenchChanges *changes = &play->changes[i];
-        long vertices = changes->skin.surface.vertex_count;
+    for (int i = 0; i < play->count; i++) {
+        BenchGroup *group = &play->group[i];
+        long vertices = group->skin.surface.vertex_count;
         int *of = sm_alloc((size_t)vertices, sizeof *of);
         long count = 0;
         if (field == BENCH_PIECE)
-            count = bench_changes_pieces(changes, of);
+            count = bench_group_pieces(group, of);
         else
-            changes->carrier->levels(changes, of);
-        for (long k = 0; k < changes->part->body.instances; k++, pieces += count)
+            group->carrier->levels(group, of);
+        for (long k = 0; k < group->body.instances; k++, pieces += count)
             for (long v = 0; v < vertices; v++) *value++ = (float)(pieces + of[v]);
         free(of);
     }
 }
 
-void bench_fields_find(BenchPlay *play, BenchFields fields, const SmMesh *rest,
+void bench_fields_find(BenchPlayback *play, BenchFields fields, const SmMesh *rest,
                        const double (*point)[3], float *const value[BENCH_POINT_FIELDS])
 {
     float *displacement = value[BENCH_DISPLACEMENT];

@@ -2,7 +2,7 @@
 #ifndef BENCH_FIELDS_H
 #define BENCH_FIELDS_H
 
-#include "play.h"
+#include "playback.h"
 
 typedef enum {
     BENCH_DISPLACEMENT, /* from the place at rest: a vector, mesh units */
@@ -22,11 +22,11 @@ typedef unsigned BenchFields;
 
 /* SM_USAGE where the play has none of them: levels without an octree, and of points without
  * triangles anything but their displacement. */
-SmCode bench_fields_check(const BenchPlay *play, BenchFields fields, SmError *error);
+SmCode bench_fields_check(const BenchPlayback *play, BenchFields fields, SmError *error);
 
 /* The fields in question now, into value[f], [vertices * components]; `rest` is
- * bench_play_surface(), `point` bench_play_points(). */
-void bench_fields_find(BenchPlay *play, BenchFields fields, const SmMesh *rest,
+ * bench_playback_surface(), `point` bench_playback_points(). */
+void bench_fields_find(BenchPlayback *play, BenchFields fields, const SmMesh *rest,
                        const double (*point)[3], float *const value[BENCH_POINT_FIELDS]);
 
 /* The largest share by which a triangle is longer or shorter than at rest, of all directions in its

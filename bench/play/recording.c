@@ -16,10 +16,10 @@ static void release(BenchRecording *recording)
     *recording = (BenchRecording){0};
 }
 
-static SmCode check(const BenchPlay *play, const BenchRunner *runner, BenchRecord record,
+static SmCode check(const BenchPlayback *play, const BenchRunner *runner, BenchRecord record,
                     SmError *error)
 {
-    const BenchBody *body = play->cast.body;
+    const BenchBody *body = play->body;
     if ((double)body->instances * (double)body->mesh.vertex_count > 2e9)
         return sm_fail(error, SM_INPUT, "%s: the surfaces of %ld instances have too many vertices",
                        runner->scene->file, body->instances);
@@ -33,7 +33,7 @@ static SmCode check(const BenchPlay *play, const BenchRunner *runner, BenchRecor
                        "--record nodes stores an octree, and %s has none: give --record particles, "
                        "or --engine octree",
                        runner->type->name);
-    if (record && bench_play_changes(play))
+    if (record && bench_playback_changes(play))
         return sm_fail(error, SM_USAGE,
                        "--record stores bodies that stay as they are, and %s cuts or refines its "
                        "own: leave --record out, and the surface is still written",
@@ -45,7 +45,7 @@ static SmCode check(const BenchPlay *play, const BenchRunner *runner, BenchRecor
 static void take_surface(BenchRecording *recording)
 {
     sm_mesh_free(&recording->surface);
-    recording->surface = bench_play_surface(recording->play);
+    recording->surface = bench_playback_surface(recording->play);
     size_t count = (size_t)recording->surface.vertex_count;
     recording->point = sm_realloc(recording->point, count, sizeof *recording->point);
     for (int f = 0; f < BENCH_POINT_FIELDS; f++)
@@ -54,11 +54,11 @@ static void take_surface(BenchRecording *recording)
                 recording->value[f], count * (size_t)bench_field_components[f], sizeof(float));
 }
 
-SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord record,
+SmCode bench_recording_open(BenchPlayback *play, const char *path, BenchRecord record,
                             BenchFields fields, const BenchMachine *machine,
                             BenchRecording *recording, SmError *error)
 {
-    const BenchRunner *runner = bench_play_runner(play);
+    const BenchRunner *runner = bench_playback_runner(play);
     const BenchBody *body = runner->body;
     SmCode code = check(play, runner, record, error);
     if (!code) code = bench_fields_check(play, fields, error);
@@ -107,13 +107,13 @@ double bench_recording_bytes(const BenchRecording *recording)
 
 SmCode bench_recording_frame(BenchRecording *recording, SmError *error)
 {
-    if (bench_play_split(recording->play)) {
+    if (bench_playback_split(recording->play)) {
         take_surface(recording);
         SmCode code = bench_trajectory_topology(recording->trajectory, &recording->surface, error);
         if (code) return code;
     }
     const double(*point)[3] = (const double(*)[3])recording->point;
-    bench_play_points(recording->play, recording->point);
+    bench_playback_points(recording->play, recording->point);
     bench_fields_find(recording->play, recording->fields, &recording->surface, point,
                       recording->value);
     return bench_trajectory_frame(recording->trajectory, recording->play->time, point,

@@ -5,11 +5,11 @@
 
 #include "../system/machine.h"
 #include "fields.h"
-#include "play.h"
+#include "playback.h"
 #include "trajectory.h"
 
 typedef struct {
-    BenchPlay *play;                  /* the caller's, kept */
+    BenchPlayback *play;              /* the caller's, kept */
     const BenchRunner *runner;        /* whose particles or nodes are recorded */
     SmMesh surface;                   /* of all instances, at rest */
     double (*point)[3];               /* [surface.vertex_count] where it is */
@@ -24,7 +24,7 @@ typedef struct {
 /* Opens the file. Errors: those of bench_trajectory_open(); SM_USAGE for particles of an octree,
  * for nodes of a lattice, and for either of bodies that change, and for fields that there are not.
  */
-SmCode bench_recording_open(BenchPlay *play, const char *path, BenchRecord record,
+SmCode bench_recording_open(BenchPlayback *play, const char *path, BenchRecord record,
                             BenchFields fields, const BenchMachine *machine,
                             BenchRecording *recording, SmError *error);
 

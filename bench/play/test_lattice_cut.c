@@ -3,7 +3,7 @@
 #include "../../lib/test_volumes.h"
 #include "../check/check.h"
 #include "../engines.h"
-#include "play.h"
+#include "playback.h"
 
 #define BEAM                                                                                       \
     "mesh = \"shape:beam\"; particles = 600; w = 2; h = 0.002; damping = 0.2; steps_per_frame = "  \
@@ -18,7 +18,7 @@
 typedef struct {
     BenchScene scene;
     BenchBody body;
-    BenchPlay play;
+    BenchPlayback play;
     SmCounts counts;
     double (*point)[3]; /* of the surface */
 } Run;
@@ -31,13 +31,13 @@ static SmCode start(const char *text, const char *engine, Run *run, SmError *err
     if (code) fail_msg("%s", error->text);
     run->point = NULL;
     code = bench_engine_find(engine, NULL, &type, error);
-    if (!code) code = bench_play_create(&run->scene, &run->body, type, 1, 1, &run->play, error);
+    if (!code) code = bench_playback_create(&run->scene, &run->body, type, 1, 1, &run->play, error);
     return code;
 }
 
 static const SmMesh *surface(const Run *run)
 {
-    return &run->play.changes[0].skin.surface;
+    return &run->play.group[0].skin.surface;
 }
 
 static void play(const char *text, int frames, Run *run)
@@ -45,21 +45,21 @@ static void play(const char *text, int frames, Run *run)
     SmError error;
     if (start(text, "fastlsm", run, &error)) fail_msg("%s", error.text);
     for (int f = 0; f < frames; f++) {
-        if (bench_play_change(&run->play, &error)) fail_msg("%s", error.text);
+        if (bench_playback_change(&run->play, &error)) fail_msg("%s", error.text);
         for (int s = 0; s < run->scene.steps_per_frame; s++) {
-            bench_play_prepare(&run->play);
-            bench_play_advance(&run->play, NULL);
+            bench_playback_prepare(&run->play);
+            bench_playback_advance(&run->play, NULL);
         }
     }
-    const BenchRunner *runner = bench_play_runner(&run->play);
+    const BenchRunner *runner = bench_playback_runner(&run->play);
     runner->type->count(runner->engine, &run->counts);
     run->point = sm_alloc((size_t)surface(run)->vertex_count, sizeof *run->point);
-    bench_play_points(&run->play, run->point);
+    bench_playback_points(&run->play, run->point);
 }
 
 static void end(Run *run)
 {
-    bench_play_free(&run->play);
+    bench_playback_free(&run->play);
     bench_body_free(&run->body);
     free(run->point);
 }
@@ -68,7 +68,7 @@ static void end(Run *run)
  * where some material is. Returns the pieces that the particles are in. */
 static long check(Run *run)
 {
-    BenchRunner *runner = bench_play_runner(&run->play);
+    BenchRunner *runner = bench_playback_runner(&run->play);
     BenchCheck check;
     SmPieces pieces;
     char reason[160];
@@ -79,7 +79,7 @@ static long check(Run *run)
     bench_check_free(&check);
     SmMeshInfo info = sm_mesh_info(surface(run));
     assert_int_equal(info.open_edges + info.nonmanifold_edges, 0);
-    assert_false(run->play.changes[0].skin.left);
+    assert_false(run->play.group[0].skin.left);
     for (long v = 0; v < surface(run)->vertex_count; v++)
         for (int d = 0; d < 3; d++) assert_true(fabs(run->point[v][d]) < 10);
     runner->type->pieces(runner->engine, &pieces);

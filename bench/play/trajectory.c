@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "../store/draft.h"
-#include "particles.h"
+#include "step_record.h"
 #include "xdmf.h"
 
 enum { TRAJECTORY_SCHEMA = 4, VERTEX_CELL = 1, TRIANGLE_CELL = 5 /* as VTK has them */ };
@@ -35,7 +35,7 @@ struct BenchTrajectory {
     hid_t corners, offsets, types;
     BenchFields fields;
     hid_t value[BENCH_POINT_FIELDS]; /* /VTKHDF/PointData/NAME */
-    BenchParticles particles;
+    BenchStepRecord record;
 };
 
 /* Single precision shows a surface to 1e-6 of its size unless it lies far from the origin. */
@@ -184,7 +184,7 @@ static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryPa
     trajectory->types = bench_h5_growing(h5, group, "Types", H5T_STD_U8LE, 1, size);
     begin_fields(trajectory);
     add_topology(trajectory, params->surface);
-    if (params->record) bench_particles_begin(h5, params, &trajectory->particles);
+    if (params->record) bench_step_record_begin(h5, params, &trajectory->record);
 }
 
 static void release(BenchTrajectory *trajectory)
@@ -275,7 +275,7 @@ SmCode bench_trajectory_step(BenchTrajectory *trajectory, long step, const doubl
                              const double (*v)[3], const double (*g)[3], const double (*S)[9],
                              SmError *error)
 {
-    bench_particles_record(&trajectory->h5, &trajectory->particles, step, x, v, g, S);
+    bench_step_record_append(&trajectory->h5, &trajectory->record, step, x, v, g, S);
     return trajectory->h5.failed ? fail(trajectory, error) : SM_OK;
 }
 

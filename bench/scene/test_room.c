@@ -8,7 +8,7 @@
 #include "../engines.h"
 #include "../kernels/cubes.h"
 #include "../kernels/sampled.h"
-#include "../play/play.h"
+#include "../play/playback.h"
 #include "room.h"
 
 static BenchScene scene_of_cube(const char *engine, long particles)
@@ -26,13 +26,13 @@ static void make(const BenchScene *scene)
 {
     SmMesh mesh;
     BenchBody body;
-    BenchPlay play;
+    BenchPlayback play;
     SmError error;
     const SmEngineType *type;
     if (bench_engine_find(scene->engine, NULL, &type, &error) ||
         bench_mesh_load(scene->mesh, &mesh, &error) ||
         bench_body_create(scene, &mesh, &body, &error) ||
-        bench_play_create(scene, &body, type, 1, 1, &play, &error))
+        bench_playback_create(scene, &body, type, 1, 1, &play, &error))
         _exit(1);
 }
 

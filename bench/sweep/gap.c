@@ -8,7 +8,7 @@
 #include "../../octree/engine.h"
 #include "../check/check.h"
 #include "../engines.h"
-#include "../play/play.h"
+#include "../play/playback.h"
 
 static SmCode create(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,
                      SmError *error)
@@ -135,10 +135,11 @@ static void use_push(const BenchPush *push, BenchRunner *runner)
 }
 
 /* Appends the frame's points; false if one is not finite. */
-static bool keep_frame(BenchPlay *play, long vertices, double (*all)[3], int frame, BenchPath *path)
+static bool keep_frame(BenchPlayback *play, long vertices, double (*all)[3], int frame,
+                       BenchPath *path)
 {
     double(*to)[3] = path->point + (size_t)frame * (size_t)path->points, sum = 0;
-    bench_play_points(play, all);
+    bench_playback_points(play, all);
     for (long i = 0; i < path->points; i++) {
         memcpy(to[i], all[i * vertices / path->points], sizeof *to);
         sum += 0 * (to[i][0] + to[i][1] + to[i][2]);
@@ -146,19 +147,19 @@ static bool keep_frame(BenchPlay *play, long vertices, double (*all)[3], int fra
     return sum == 0;
 }
 
-static void play_frames(BenchPlay *play, BenchPath *path)
+static void play_frames(BenchPlayback *play, BenchPath *path)
 {
-    const BenchPart *part = &play->cast.part[0];
-    long vertices = part->body.instances * play->changes[0].skin.surface.vertex_count;
+    const BenchGroup *group = &play->group[0];
+    long vertices = group->body.instances * group->skin.surface.vertex_count;
     path->points = vertices < BENCH_PATH_POINTS ? vertices : BENCH_PATH_POINTS;
     path->point = sm_alloc((size_t)path->frames * (size_t)path->points, sizeof *path->point);
     double(*all)[3] = sm_alloc((size_t)vertices, sizeof *all);
     bool finite = true;
     int frame = 0;
     for (; frame < path->frames && finite; frame++) {
-        for (int s = 0; s < play->cast.scene->steps_per_frame; s++) {
-            bench_play_prepare(play);
-            bench_play_advance(play, NULL);
+        for (int s = 0; s < play->scene->steps_per_frame; s++) {
+            bench_playback_prepare(play);
+            bench_playback_advance(play, NULL);
         }
         finite = keep_frame(play, vertices, all, frame, path);
     }
@@ -173,18 +174,18 @@ void bench_path_record(const BenchScene *scene, const BenchBody *body, const SmE
 {
     *path = (BenchPath){.frames = frames};
     SmError error;
-    BenchPlay play;
-    if (bench_play_create(scene, body, type, 1, seed, &play, &error)) {
+    BenchPlayback play;
+    if (bench_playback_create(scene, body, type, 1, seed, &play, &error)) {
         snprintf(path->why, sizeof path->why, "%.*s", BENCH_WHY - 1, error.text);
         return;
     }
-    use_push(push, &play.cast.part[0].runner);
+    use_push(push, &play.group[0].runner);
     play_frames(&play, path);
-    if (path->points && !right(&play.cast.part[0].runner, "", path->why)) {
+    if (path->points && !right(&play.group[0].runner, "", path->why)) {
         path->points = 0;
         path->invalid = true;
     }
-    bench_play_free(&play);
+    bench_playback_free(&play);
 }
 
 void bench_path_free(BenchPath *path)

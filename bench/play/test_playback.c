@@ -18,7 +18,7 @@
 typedef struct {
     BenchScene scene;
     BenchBody body;
-    BenchPlay play;
+    BenchPlayback play;
     const SmEngineType *type;
 } Show;
 
@@ -31,23 +31,24 @@ static void open_show(const char *text, const char *changes, int threads, Show *
     if (bench_scene_parse(all, strlen(all), "show.cfg", &show->scene, &error) ||
         bench_engine_find(show->scene.engine, "single", &show->type, &error) ||
         bench_body_of_scene(&show->scene, NULL, &show->body, &error) ||
-        bench_play_create(&show->scene, &show->body, show->type, threads, 1, &show->play, &error))
+        bench_playback_create(&show->scene, &show->body, show->type, threads, 1, &show->play,
+                              &error))
         fail_msg("%s", error.text);
 }
 
 static void close_show(Show *show)
 {
-    bench_play_free(&show->play);
+    bench_playback_free(&show->play);
     bench_body_free(&show->body);
 }
 
 static void run_frame(Show *show)
 {
     SmError error;
-    if (bench_play_change(&show->play, &error)) fail_msg("%s", error.text);
+    if (bench_playback_change(&show->play, &error)) fail_msg("%s", error.text);
     for (int s = 0; s < show->scene.steps_per_frame; s++) {
-        bench_play_prepare(&show->play);
-        bench_play_advance(&show->play, NULL);
+        bench_playback_prepare(&show->play);
+        bench_playback_advance(&show->play, NULL);
     }
 }
 
@@ -76,7 +77,7 @@ static void beam_cut(double at, double deep, int level, char text[512])
 /* How far the nodes just behind the middle have sunk, on average. */
 static double sunk(const Show *show)
 {
-    const BenchRunner *runner = &show->play.cast.part[0].runner;
+    const BenchRunner *runner = &show->play.group[0].runner;
     double(*x)[3] = sm_alloc((size_t)runner->particles, sizeof *x), sum = 0;
     double length = show->body.high[0] - show->body.low[0];
     long count = 0;
@@ -93,7 +94,7 @@ static double sunk(const Show *show)
 
 static void check_goals(Show *show)
 {
-    BenchRunner *runner = bench_play_runner(&show->play);
+    BenchRunner *runner = bench_playback_runner(&show->play);
     BenchCheck check;
     char reason[160];
     bench_check_begin(&show->scene, runner->body, runner->type, runner->engine, &check);
@@ -109,17 +110,17 @@ TEST(a_beam_cut_through_is_two_and_one_falls)
     char cut[512];
     beam_cut(0.5, 1.6, 3, cut);
     open_show(BEAM, cut, 1, &show);
-    long first = bench_cast_particles(&show.play.cast);
+    long first = bench_playback_particles(&show.play);
     for (int f = 0; f < 60; f++) {
         run_frame(&show);
-        SmMeshInfo info = sm_mesh_info(&show.play.changes[0].skin.surface);
+        SmMeshInfo info = sm_mesh_info(&show.play.group[0].skin.surface);
         if (info.open_edges) fail_msg("frame %d: %ld open edges", f, info.open_edges);
     }
     SmMeshInfo before = sm_mesh_info(&show.body.mesh),
-               after = sm_mesh_info(&show.play.changes[0].skin.surface);
+               after = sm_mesh_info(&show.play.group[0].skin.surface);
     assert_in_range(after.components, 2, 4); /* perhaps with a shred */
     assert_true(fabs(after.volume - before.volume) < 0.01 * before.volume);
-    assert_true(bench_cast_particles(&show.play.cast) > first + 20);
+    assert_true(bench_playback_particles(&show.play) > first + 20);
     Show whole;
     open_show(BEAM, "", 1, &whole);
     for (int f = 0; f < 60; f++) run_frame(&whole);
@@ -136,10 +137,10 @@ TEST(a_blade_that_misses_changes_nothing)
     char cut[512];
     beam_cut(1.5, 1.6, 3, cut);
     open_show(BEAM, cut, 1, &show);
-    long first = bench_cast_particles(&show.play.cast), triangles = show.body.mesh.triangle_count;
+    long first = bench_playback_particles(&show.play), triangles = show.body.mesh.triangle_count;
     for (int f = 0; f < 60; f++) run_frame(&show);
-    assert_int_equal(bench_cast_particles(&show.play.cast), first);
-    assert_int_equal(show.play.changes[0].skin.surface.triangle_count, triangles);
+    assert_int_equal(bench_playback_particles(&show.play), first);
+    assert_int_equal(show.play.group[0].skin.surface.triangle_count, triangles);
     close_show(&show);
 }
 
@@ -151,7 +152,7 @@ TEST(a_notch_leaves_one_body)
     beam_cut(0.5, 0.4, 3, cut);
     open_show(BEAM, cut, 1, &show);
     for (int f = 0; f < 60; f++) run_frame(&show);
-    SmMeshInfo after = sm_mesh_info(&show.play.changes[0].skin.surface);
+    SmMeshInfo after = sm_mesh_info(&show.play.group[0].skin.surface);
     assert_int_equal(after.components, 1);
     assert_int_equal(after.open_edges, 0);
     assert_true(after.triangles > show.body.mesh.triangle_count);
@@ -169,7 +170,7 @@ TEST(contacts_follow_a_cut_that_changes_no_region)
     char *refines = strstr(cut, "level = 3; reach = 1.0; ");
     memset(refines, ' ', strlen("level = 3; reach = 1.0; "));
     open_show(LOOSE_BEAM, text, 1, &show);
-    BenchRunner *runner = bench_play_runner(&show.play);
+    BenchRunner *runner = bench_playback_runner(&show.play);
     long first = runner->particles;
     for (int f = 0; f < 30; f++) run_frame(&show);
     assert_int_equal(runner->particles, first);
@@ -198,12 +199,12 @@ TEST(threads_do_not_matter)
     for (int i = 0; i < 2; i++) {
         open_show(BEAM, cut, 1 + 2 * i, &show[i]);
         for (int f = 0; f < 45; f++) run_frame(&show[i]);
-        const BenchRunner *runner = &show[i].play.cast.part[0].runner;
+        const BenchRunner *runner = &show[i].play.group[0].runner;
         x[i] = sm_alloc((size_t)runner->particles, sizeof(double[3]));
         runner->type->get(runner->engine, SM_POSITION, x[i]);
     }
-    long count = bench_cast_particles(&show[0].play.cast);
-    assert_int_equal(bench_cast_particles(&show[1].play.cast), count);
+    long count = bench_playback_particles(&show[0].play);
+    assert_int_equal(bench_playback_particles(&show[1].play), count);
     assert_memory_equal(x[0], x[1], (size_t)count * sizeof(double[3]));
     for (int i = 0; i < 2; i++) {
         free(x[i]);
@@ -219,19 +220,19 @@ TEST(a_touch_refines_one_of_three)
               "instances = 3; touches = ( { instance = 2; centre = (0.0, 0.0, 0.0);\n"
               "radius = 10.0; level = 3; start = 0.05; stop = 0.2; hold = 0.1; } );\n",
               1, &show);
-    assert_int_equal(show.play.cast.count, 2);
-    assert_int_equal(show.play.cast.part[0].body.instances, 2);
-    assert_true(show.play.cast.part[1].own);
-    long first = bench_cast_particles(&show.play.cast);
+    assert_int_equal(show.play.count, 2);
+    assert_int_equal(show.play.group[0].body.instances, 2);
+    assert_true(show.play.group[1].touched);
+    long first = bench_playback_particles(&show.play);
     for (int f = 0; f < 60; f++) {
         run_frame(&show);
-        long now = bench_cast_particles(&show.play.cast);
-        long shared = show.play.cast.part[0].runner.particles;
+        long now = bench_playback_particles(&show.play);
+        long shared = show.play.group[0].runner.particles;
         bool touched = show.play.time > 0.06 && show.play.time < 0.19;
         if (touched) assert_true(now > first);
         assert_int_equal(3 * shared, 2 * first);
     }
-    assert_int_equal(bench_cast_particles(&show.play.cast), first);
+    assert_int_equal(bench_playback_particles(&show.play), first);
     check_goals(&show);
     close_show(&show);
 }
@@ -243,11 +244,11 @@ TEST(an_eye_refines_what_is_near)
               "view = { eye_from = (0.0, 0.0, 100.0); eye_to = (0.0, 0.0, 0.1); start = 0.1;\n"
               "stop = 0.3; near = 0.2; slack = 0.1; level = 3; };\n",
               1, &show);
-    long first = bench_cast_particles(&show.play.cast);
+    long first = bench_playback_particles(&show.play);
     run_frame(&show);
-    assert_int_equal(bench_cast_particles(&show.play.cast), first);
+    assert_int_equal(bench_playback_particles(&show.play), first);
     for (int f = 1; f < 60; f++) run_frame(&show);
-    assert_true(bench_cast_particles(&show.play.cast) > first);
+    assert_true(bench_playback_particles(&show.play) > first);
     check_goals(&show);
     close_show(&show);
 }
@@ -257,22 +258,23 @@ TEST(frames_are_timed_and_counted)
     Show show;
     char cut[512];
     BenchChangeRow row;
-    BenchPlay play;
+    BenchPlayback play;
     beam_cut(0.5, 1.6, 3, cut);
     open_show(BEAM, cut, 1, &show);
     BenchChangeRowParams params = {.threads = 1, .rounds = 2, .seed = 1};
     assert_int_equal(
-        bench_change_row_measure(&show.scene, &show.body, show.type, &params, &row, &play, NULL), SM_OK);
+        bench_change_row_measure(&show.scene, &show.body, show.type, &params, &row, &play, NULL),
+        SM_OK);
     assert_int_equal(row.frames, 60);
     assert_in_range(row.changed, 1, 35);
-    assert_int_equal(row.first_nodes, bench_cast_particles(&show.play.cast));
-    assert_int_equal(row.last_nodes, bench_cast_particles(&play.cast));
+    assert_int_equal(row.first_nodes, bench_playback_particles(&show.play));
+    assert_int_equal(row.last_nodes, bench_playback_particles(&play));
     assert_true(row.most_nodes >= row.last_nodes && row.most_added > 0);
     assert_int_equal(row.first_triangles, show.body.mesh.triangle_count);
     assert_true(row.last_triangles > row.first_triangles && row.pieces >= 2);
     assert_int_equal(row.open_edges, 0);
     /* At least place, normal and reach of every vertex, and a node and its weight. */
-    SmMesh surface = bench_play_surface(&play);
+    SmMesh surface = bench_playback_surface(&play);
     double vertices = (double)surface.vertex_count;
     sm_mesh_free(&surface);
     assert_true(row.surface_bytes * (double)row.last_nodes > vertices * (24 + 24 + 4 + 4 + 4));
@@ -283,7 +285,7 @@ TEST(frames_are_timed_and_counted)
     }
     for (long f = 0; f < row.frames; f++) assert_true(row.time[f][0] > 0);
     free(row.time);
-    bench_play_free(&play);
+    bench_playback_free(&play);
     close_show(&show);
 }
 
@@ -293,16 +295,16 @@ static double check_fields(Show *show)
     const BenchFields all = (1u << BENCH_POINT_FIELDS) - 1;
     SmError error;
     float *value[BENCH_POINT_FIELDS];
-    if (bench_play_change(&show->play, &error)) fail_msg("%s", error.text);
-    SmMesh rest = bench_play_surface(&show->play);
+    if (bench_playback_change(&show->play, &error)) fail_msg("%s", error.text);
+    SmMesh rest = bench_playback_surface(&show->play);
     size_t count = (size_t)rest.vertex_count;
     double(*before)[3] = sm_alloc(count, sizeof *before), (*point)[3] = sm_alloc(count, 24);
     for (int f = 0; f < BENCH_POINT_FIELDS; f++)
         value[f] = sm_alloc(count * (size_t)bench_field_components[f], sizeof(float));
-    bench_play_points(&show->play, before);
-    bench_play_prepare(&show->play);
-    bench_play_advance(&show->play, NULL);
-    bench_play_points(&show->play, point);
+    bench_playback_points(&show->play, before);
+    bench_playback_prepare(&show->play);
+    bench_playback_advance(&show->play, NULL);
+    bench_playback_points(&show->play, point);
     bench_fields_find(&show->play, all, &rest, (const double(*)[3])point, value);
     double h = show->scene.params.h, worst = 0, most = 0;
     for (size_t v = 0; v < count; v++) {

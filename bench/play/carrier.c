@@ -1,16 +1,40 @@
-/* What changes an octree's body: blades, touches and an eye; by leaf number. */
+#include "carrier.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../../octree/engine.h"
 #include "../scene/blades.h"
-#include "changes.h"
+
+/* ---- a lattice, by particle number: blades */
+
+static SmCode change_lattice(BenchGroup *group, double from, double to, SmError *error)
+{
+    const BenchRunner *runner = &group->runner;
+    SmCut *cut = &group->skin.cut;
+    double start = sm_now();
+    long first = cut->triangles;
+    if (!bench_blades_move(runner->scene, from, to)) return SM_OK;
+    bench_group_sweep(group, from, to, cut);
+    if (cut->triangles == first) return SM_OK;
+    SmCode code = runner->type->cut(runner->engine, cut, first, error);
+    if (code) return code;
+    double done = sm_now();
+    sm_skin_follow_cut(&group->skin, first);
+    group->last = (BenchChanged){
+        .resampled = true, .resample_seconds = done - start, .follow_seconds = sm_now() - done};
+    return SM_OK;
+}
+
+const BenchCarrier bench_lattice_carrier = {change_lattice, NULL, NULL};
+
+/* ---- an octree, by leaf number: blades, touches and an eye */
 
 /* Splits what is near the cut's triangles from `first` on, as the scene's cuts in use want. */
-static void refine_cut(BenchChanges *changes, double from, double to, OctStructure *s, long first)
+static void refine_cut(BenchGroup *group, double from, double to, OctStructure *s, long first)
 {
-    const BenchScene *scene = changes->part->runner.scene;
+    const BenchScene *scene = group->runner.scene;
     for (int i = 0; i < scene->cut_count; i++) {
         const BenchCut *cut = &scene->cut[i];
         const int *node;
@@ -20,11 +44,6 @@ static void refine_cut(BenchChanges *changes, double from, double to, OctStructu
         while ((count = oct_resample_near_cut(s, first, cut->reach * s->cell, level, &node)) > 0)
             for (long n = 0; n < count; n++) oct_resample_split(s, node[n], NULL);
     }
-}
-
-static bool touches_part(const BenchPart *part, const BenchTouch *touch)
-{
-    return part->own && part->instance[0] + 1 == touch->instance;
 }
 
 /* The criterion of touch number i at a time, or after the last touch that of the view; false: there
@@ -37,13 +56,13 @@ typedef struct {
     double hold;
 } Criterion;
 
-static bool find_criterion(BenchChanges *changes, int i, double time, Criterion *criterion)
+static bool find_criterion(BenchGroup *group, int i, double time, Criterion *criterion)
 {
-    const BenchScene *scene = changes->part->runner.scene;
+    const BenchScene *scene = group->runner.scene;
     *criterion = (Criterion){0};
     if (i < scene->touch_count) {
         const BenchTouch *from = &scene->touch[i];
-        if (!touches_part(changes->part, from)) return false;
+        if (!group->touched || group->instance[0] + 1 != from->instance) return false;
         bool now = time >= from->start && (from->stop <= 0 || time < from->stop);
         memcpy(criterion->ball.centre, from->centre, sizeof from->centre);
         criterion->ball.radius = from->radius;
@@ -66,15 +85,15 @@ static bool find_criterion(BenchChanges *changes, int i, double time, Criterion 
 }
 
 /* Refines by touches and view; with `s` NULL only says whether there is anything to do. */
-static bool refine(BenchChanges *changes, double time, OctStructure *s)
+static bool refine(BenchGroup *group, double time, OctStructure *s)
 {
-    const BenchRunner *runner = &changes->part->runner;
+    const BenchRunner *runner = &group->runner;
     bool any = false;
     for (int i = 0; i <= runner->scene->touch_count; i++) {
         Criterion criterion;
         OctRefinement *refinement =
-            i < runner->scene->touch_count ? &changes->touch[i] : &changes->view;
-        if (!find_criterion(changes, i, time, &criterion)) continue;
+            i < runner->scene->touch_count ? &group->touch[i] : &group->view;
+        if (!find_criterion(group, i, time, &criterion)) continue;
         if (s)
             any |= oct_refinement_update(refinement, s, criterion.asks, criterion.what, time,
                                          criterion.hold) > 0;
@@ -85,38 +104,38 @@ static bool refine(BenchChanges *changes, double time, OctStructure *s)
     return any;
 }
 
-static SmCode change_frame(BenchChanges *changes, double from, double to, SmError *error)
+static SmCode change_octree(BenchGroup *group, double from, double to, SmError *error)
 {
-    BenchRunner *runner = &changes->part->runner;
-    if (!bench_blades_move(runner->scene, from, to) && !refine(changes, to, NULL)) return SM_OK;
+    BenchRunner *runner = &group->runner;
+    if (!bench_blades_move(runner->scene, from, to) && !refine(group, to, NULL)) return SM_OK;
     OctStructure *s;
     double start = sm_now();
     SmCode code = oct_engine_begin(runner->engine, &s, error);
     if (code) return code;
     long first = s->cut.triangles, before = runner->particles;
-    bench_changes_sweep(changes, from, to, &s->cut);
-    if (s->cut.triangles > first) refine_cut(changes, from, to, s, first);
-    refine(changes, to, s);
+    bench_group_sweep(group, from, to, &s->cut);
+    if (s->cut.triangles > first) refine_cut(group, from, to, s, first);
+    refine(group, to, s);
     const OctChange *change = oct_engine_end(runner->engine);
-    changes->last.resample_seconds = sm_now() - start;
-    changes->last.resampled = change->region_count + change->edge_count > 0;
-    if (!changes->last.resampled && s->cut.triangles == first) return SM_OK;
+    group->last.resample_seconds = sm_now() - start;
+    group->last.resampled = change->region_count + change->edge_count > 0;
+    if (!group->last.resampled && s->cut.triangles == first) return SM_OK;
     start = sm_now();
-    sm_skin_follow(&changes->skin, change, first);
-    changes->last.follow_seconds = sm_now() - start;
+    sm_skin_follow(&group->skin, change, first);
+    group->last.follow_seconds = sm_now() - start;
     code = bench_runner_refresh(runner, error);
-    changes->last.nodes = runner->particles - before;
+    group->last.nodes = runner->particles - before;
     return code;
 }
 
-static void find_levels(const BenchChanges *changes, int *level)
+static void find_levels(const BenchGroup *group, int *level)
 {
-    const OctTree *tree = &oct_engine_structure(changes->part->runner.engine)->tree;
-    for (long v = 0; v < changes->skin.surface.vertex_count; v++) {
-        int size = tree->size[tree->node[sm_skin_carrier(&changes->skin, v)]];
+    const OctTree *tree = &oct_engine_structure(group->runner.engine)->tree;
+    for (long v = 0; v < group->skin.surface.vertex_count; v++) {
+        int size = tree->size[tree->node[sm_skin_carrier(&group->skin, v)]];
         level[v] = 0;
         while (size << level[v] < 2 << tree->levels) level[v]++;
     }
 }
 
-const BenchCarrier bench_octree_carrier = {change_frame, find_levels, oct_engine_may_change};
+const BenchCarrier bench_octree_carrier = {change_octree, find_levels, oct_engine_may_change};
