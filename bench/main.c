@@ -8,8 +8,8 @@
 #include "../lib/error.h"
 #include "../lib/system/printable.h"
 #include "cli/command.h"
-#include "cli/option.h"
 #include "scene/scene.h"
+#include "settings/option.h"
 #include "system/interrupt.h"
 #include "system/suggest.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../cli/option.h"
+#include "../settings/option.h"
 #include "../store/draft.h"
 #include "../system/interrupt.h"
 

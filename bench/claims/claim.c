@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../scene/config_file.h"
-#include "../scene/setting.h"
+#include "../settings/config_file.h"
 #include "experiment.h"
 
 enum { CLAIMS_MOST = 500 };
@@ -19,68 +18,56 @@ typedef struct {
     double value;                         /* or given here */
 } Entry;
 
-#define MEMBER(type, name, kind, member, low, high, words, table)                                  \
-    {                                                                                              \
-        name, kind, offsetof(type, member), low, high, words, table, 0, 0                          \
-    }
-#define TEXT(type, name, member)                                                                   \
-    MEMBER(type, name, BENCH_TEXT, member, 0, sizeof((type *)0)->member, NULL, NULL)
-#define WHOLE(type, name, member, low, high)                                                       \
-    MEMBER(type, name, BENCH_INT, member, low, high, NULL, NULL)
-#define REAL(type, name, member, low, high)                                                        \
-    MEMBER(type, name, BENCH_REAL, member, low, high, NULL, NULL)
-#define WORDS(type, name, member, given, words)                                                    \
-    MEMBER(type, name, BENCH_CHOICE, member, given, 0, words, NULL)
-#define GROUP(type, name, member, table) MEMBER(type, name, BENCH_GROUP, member, 0, 0, NULL, table)
+static const char *const kind_names[] = {"method", "machine", "by construction", NULL};
+static const char *const expectation_names[] = {"reproduced", "different", "not comparable", NULL};
 
 static const BenchSetting range_table[] = {
-    WHOLE(BenchRange, "from", from, 1, 1000),
-    WHOLE(BenchRange, "to", to, 1, 1000),
-    WHOLE(BenchRange, "points", points, 1, 24),
+    {"from", BENCH_IN(BenchRange, from), 1, 1000},
+    {"to", BENCH_IN(BenchRange, to), 1, 1000},
+    {"points", BENCH_IN(BenchRange, points), 1, 24},
     {0},
 };
 
 static const BenchSetting measure_table[] = {
-    WORDS(BenchMeasure, "experiment", experiment, 1,
-          "none|scene|sums|size|polar|sweeps|smoothing|blending|sag|resampling|regions|growth|"
-          "placement"),
-    TEXT(BenchMeasure, "scene", scene),
-    TEXT(BenchMeasure, "engine", engine),
-    TEXT(BenchMeasure, "field", field),
-    WORDS(BenchMeasure, "summation", summation, 0, "fast|bars|naive"),
-    WORDS(BenchMeasure, "layout", layout, 0, "auto|lists|blocks"),
-    WORDS(BenchMeasure, "matching", matching, 0, "lattice|rigid|linear|quadratic"),
-    WORDS(BenchMeasure, "masses", masses, 0, BENCH_MASSES),
-    WORDS(BenchMeasure, "symmetry", symmetry, 0, BENCH_SYMMETRIES),
-    WORDS(BenchMeasure, "weighting", weighting, 0, BENCH_WEIGHTINGS),
-    WORDS(BenchMeasure, "without", without, 0, "nothing|nodes|bases|summation_nodes|reach|collide"),
-    GROUP(BenchMeasure, "w", w, range_table),
-    GROUP(BenchMeasure, "n", n, range_table),
+    {"experiment", BENCH_IN(BenchMeasure, experiment), .choices_of = bench_experiment_names,
+     .needed = true},
+    {"scene", BENCH_IN(BenchMeasure, scene)},
+    {"engine", BENCH_IN(BenchMeasure, engine)},
+    {"field", BENCH_IN(BenchMeasure, field)},
+    {"summation", BENCH_IN(BenchMeasure, summation), BENCH_CHOICES(bench_summations)},
+    {"layout", BENCH_IN(BenchMeasure, layout), BENCH_CHOICES(bench_layouts)},
+    {"matching", BENCH_IN(BenchMeasure, matching),
+     BENCH_ONE_OF("lattice", "rigid", "linear", "quadratic")},
+    {"masses", BENCH_IN(BenchMeasure, masses), BENCH_CHOICES(bench_masses)},
+    {"symmetry", BENCH_IN(BenchMeasure, symmetry), BENCH_CHOICES(bench_symmetries)},
+    {"weighting", BENCH_IN(BenchMeasure, weighting), BENCH_CHOICES(bench_weightings)},
+    {"without", BENCH_IN(BenchMeasure, without), BENCH_CHOICES(bench_without_names)},
+    {"w", BENCH_IN(BenchMeasure, w), .table = range_table},
+    {"n", BENCH_IN(BenchMeasure, n), .table = range_table},
     {0},
 };
 
-static const char kind_words[] = "method|machine|by construction";
-static const char test_words[] = "near|within|factor|at_least|at_most|inside|rises|falls";
-
 static const BenchSetting claim_table[] = {
-    WORDS(Entry, "kind", claim.kind, 1, kind_words),
-    TEXT(Entry, "paper", claim.paper),
-    TEXT(Entry, "name", claim.name),
-    TEXT(Entry, "statement", claim.statement),
-    TEXT(Entry, "place", claim.place),
-    TEXT(Entry, "unit", claim.unit),
-    TEXT(Entry, "number", number),
-    TEXT(Entry, "row", row),
-    TEXT(Entry, "column", column),
-    REAL(Entry, "value", value, -1e15, 1e15),
-    GROUP(Entry, "measure", claim.measure, measure_table),
-    GROUP(Entry, "over", claim.over, measure_table),
-    GROUP(Entry, "unset", claim.unset, measure_table),
-    WORDS(Entry, "take", claim.reduction, 0, "values|exponent|largest|gain"),
-    WORDS(Entry, "test", claim.test, 1, test_words),
-    REAL(Entry, "tolerance", claim.tolerance, 0, 1e6),
-    WORDS(Entry, "expect", claim.expect, 0, "reproduced|different|not comparable"),
-    TEXT(Entry, "because", claim.because),
+    {"kind", BENCH_IN(Entry, claim.kind), BENCH_CHOICES(kind_names), .needed = true},
+    {"paper", BENCH_IN(Entry, claim.paper)},
+    {"name", BENCH_IN(Entry, claim.name)},
+    {"statement", BENCH_IN(Entry, claim.statement)},
+    {"place", BENCH_IN(Entry, claim.place)},
+    {"unit", BENCH_IN(Entry, claim.unit)},
+    {"number", BENCH_IN(Entry, number)},
+    {"row", BENCH_IN(Entry, row)},
+    {"column", BENCH_IN(Entry, column)},
+    {"value", BENCH_IN(Entry, value), -1e15, 1e15},
+    {"measure", BENCH_IN(Entry, claim.measure), .table = measure_table},
+    {"over", BENCH_IN(Entry, claim.over), .table = measure_table},
+    {"unset", BENCH_IN(Entry, claim.unset), .table = measure_table},
+    {"take", BENCH_IN(Entry, claim.reduction),
+     BENCH_ONE_OF("values", "exponent", "largest", "gain")},
+    {"test", BENCH_IN(Entry, claim.test), .needed = true,
+     BENCH_ONE_OF("near", "within", "factor", "at_least", "at_most", "inside", "rises", "falls")},
+    {"tolerance", BENCH_IN(Entry, claim.tolerance), 0, 1e6},
+    {"expect", BENCH_IN(Entry, claim.expect), BENCH_CHOICES(expectation_names)},
+    {"because", BENCH_IN(Entry, claim.because)},
     {0},
 };
 
@@ -301,14 +288,12 @@ SmCode bench_claims_read(const char *path, BenchClaims *claims, SmError *error)
 
 const char *bench_claim_kind_name(BenchClaimKind kind)
 {
-    static const char *const names[] = {"method", "machine", "by construction"};
-    return names[kind];
+    return kind_names[kind];
 }
 
 const char *bench_expectation_name(BenchExpectation expect)
 {
-    static const char *const names[] = {"reproduced", "different", "not comparable"};
-    return names[expect];
+    return expectation_names[expect];
 }
 
 void bench_claims_free(BenchClaims *claims)

@@ -221,11 +221,15 @@ const char *bench_experiment_fault(const BenchMeasure *measure)
     return field_fault(measure, kind);
 }
 
-const char *bench_without_name(BenchWithout without)
+const char *const bench_without_names[] = {"nothing", "nodes",   "bases", "summation_nodes",
+                                           "reach",   "collide", NULL};
+
+const char *const *bench_experiment_names(void)
 {
-    static const char *const names[] = {"nothing",         "nodes", "bases",
-                                        "summation_nodes", "reach", "collide"};
-    return names[without];
+    enum { KINDS = sizeof kinds / sizeof *kinds };
+    static const char *names[KINDS + 1];
+    for (int k = 0; k < KINDS; k++) names[k] = kinds[k].name;
+    return names;
 }
 
 int bench_experiment_points(const BenchMeasure *measure)
@@ -253,7 +257,7 @@ static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
     static const char *const layouts[] = {"", ".lists", ".blocks"};
     static const char *const matchers[] = {".lattice", ".rigid", ".linear", ".quadratic"};
     const Kind *kind = &kinds[measure->experiment];
-    const char *without = measure->without ? bench_without_name(measure->without) : "";
+    const char *without = measure->without ? bench_without_names[measure->without] : "";
     char w[24] = "", n[24] = "";
     range_text("w", &measure->w, sizeof w, w);
     range_text("n", &measure->n, sizeof n, n);

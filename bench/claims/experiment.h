@@ -118,8 +118,9 @@ typedef struct {
 /* What is wrong with a measurement's settings, or NULL; the line stands until the next call. */
 const char *bench_experiment_fault(const BenchMeasure *measure);
 
-/* "nodes", "bases", "summation_nodes", "reach". */
-const char *bench_without_name(BenchWithout without);
+/* Names of experiments, and of BenchWithout, in their orders; NULL-terminated. */
+const char *const *bench_experiment_names(void);
+extern const char *const bench_without_names[];
 
 /* How many points its curve has at most. */
 int bench_experiment_points(const BenchMeasure *measure);

@@ -205,7 +205,7 @@ static void take_away(BenchScene *scene, BenchWithout without)
 {
     size_t used = strlen(scene->name);
     snprintf(scene->name + used, sizeof scene->name - used, " without %s",
-             bench_without_name(without));
+             bench_without_names[without]);
     switch (without) {
     case BENCH_WITHOUT_NOTHING:
         break;
@@ -233,7 +233,7 @@ void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, Bench
     char name[sizeof *lab->row_name];
     snprintf(name, sizeof name, "%s %s%s%s", measure->scene, measure->engine,
              measure->without ? " without " : "",
-             measure->without ? bench_without_name(measure->without) : "");
+             measure->without ? bench_without_names[measure->without] : "");
     int number = known_row(lab, name);
     SmCode code = bench_scene_find(measure->scene, scene, &error);
     if (!code && measure->engine[0])

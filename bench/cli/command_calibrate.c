@@ -9,98 +9,71 @@
 #include "../campaign/campaign_run.h"
 #include "../engines.h"
 #include "command.h"
-#include "option.h"
-#include "range.h"
-
-enum {
-    KEY_SCENE = 0x3000,
-    KEY_ENGINE,
-    KEY_W,
-    KEY_EPSILON,
-    KEY_ACROSS,
-    KEY_ASPECT,
-    KEY_STEP,
-    KEY_DAMPING,
-    KEY_POISSON,
-    KEY_FORMAT,
-    KEY_DENSITY,
-    KEY_YOUNG
-};
 
 typedef struct {
     BenchCommon common;
     const char *scene, *file;
     const char *range[BENCH_CALIBRATION_LISTS]; /* in the plan's order */
-    int engines;                                /* in the list below */
+    const char *engines;
     double damping, poisson, density, young;
     BenchCampaignRun run;
     BenchFormat format;
-    bool measuring; /* was an option given that says what to measure? */
 } Options;
 
 static const double standard_density = 1000;
 
-static const struct argp_option option_list[] = {
-    {"scene", KEY_SCENE, "NAME|FILE.cfg", 0,
-     "A beam: its body's box, its cells and its time step are taken (default: beam)", 1},
-    {"engine", KEY_ENGINE, "NAME", 0, "both, fastlsm or octree (default: both)", 1},
-    {"w", KEY_W, "RANGE", 0,
-     "Region half-widths in cells, which in a regular octree are its nodes' edges, 1 to 31, "
-     "FIRST:LAST[:STEP] or a list (default: 1:10)",
-     1},
-    {"epsilon", KEY_EPSILON, "RANGE", 0, "The octree's (default: 0:1:0.25)", 1},
-    {"across", KEY_ACROSS, "RANGE", 0,
-     "Lattice spacings beside the scene's: cells through the beam, or none (default: 3,4,7)", 2},
-    {"aspect", KEY_ASPECT, "RANGE", 0,
-     "Beams beside the scene's: length over thickness, 3 or more, or none (default: 5,12)", 2},
-    {"step", KEY_STEP, "RANGE", 0,
-     "Time steps beside the scene's: times that, or none (default: 0.5,2)", 2},
-    {"damping", KEY_DAMPING, "K", 0, "Share of region damping, 0 to 1 (default: 0)", 2},
-    {"poisson", KEY_POISSON, "NU", 0, "Poisson's ratio of the elastic body (default: 0.3)", 2},
-    {"output", 'o', "FILE.h5", 0,
-     "Store every specimen as it is finished; if the file is there, go on with it (default: "
-     "nothing stored)",
-     3},
-    BENCH_CAMPAIGN_OPTIONS("specimen", 3),
-    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
-    {"density", KEY_DENSITY, "RHO", 0, "kg a cubic unit, of the wish (default: 1000)", 4},
-    {"young", KEY_YOUNG, "E", 0,
-     "Say which w and epsilon have this Young's modulus, in Pa, or what would, and print a scene's "
-     "settings that do",
-     4},
+/* The plan's lists. */
+#define LIST(name, list, place, words)                                                             \
+    BENCH_MEASURE(name, "RANGE", place, words), BENCH_IN(Options, range[list])
+
+static const BenchSetting settings[] = {
+    {BENCH_MEASURE("scene", "NAME|FILE.cfg", 1,
+                   "A beam: its body's box, its cells and its time step are taken (default: beam)"),
+     BENCH_IN(Options, scene)},
+    {BENCH_MEASURE("engine", "NAME", 1, "both, fastlsm or octree (default: both)"),
+     BENCH_IN(Options, engines), .choices_of = bench_engine_choices},
+    {LIST("w", 0, 1,
+          "Region half-widths in cells, which in a regular octree are its nodes' edges, 1 to "
+          "31, FIRST:LAST[:STEP] or a list (default: 1:10)")},
+    {LIST("epsilon", 1, 1, "The octree's (default: 0:1:0.25)")},
+    {LIST("across", 2, 2,
+          "Lattice spacings beside the scene's: cells through the beam, or none (default: "
+          "3,4,7)")},
+    {LIST("aspect", 3, 2,
+          "Beams beside the scene's: length over thickness, 3 or more, or none (default: "
+          "5,12)")},
+    {LIST("step", 4, 2, "Time steps beside the scene's: times that, or none (default: 0.5,2)")},
+    {BENCH_MEASURE("damping", "K", 2, "Share of region damping, 0 to 1 (default: 0)"),
+     BENCH_IN(Options, damping), 0, 1},
+    {BENCH_MEASURE("poisson", "NU", 2, "Poisson's ratio of the elastic body (default: 0.3)"),
+     BENCH_IN(Options, poisson), -0.5, 0.49},
+    {BENCH_MEASURE("output", "FILE.h5", 3,
+                   "Store every specimen as it is finished; if the file is there, go on with it "
+                   "(default: nothing stored)"),
+     BENCH_IN(Options, run.output), .letter = 'o'},
+    BENCH_CAMPAIGN_OPTIONS(Options, 3, "specimen"),
+    BENCH_FORMAT_OPTION(Options, 3),
+    {BENCH_OPTION("density", "RHO", 4, "kg a cubic unit, of the wish (default: 1000)"),
+     BENCH_IN(Options, density), 1e-6, 1e9},
+    {BENCH_OPTION(
+         "young", "E", 4,
+         "Say which w and epsilon have this Young's modulus, in Pa, or what would, and print a "
+         "scene's settings that do"),
+     BENCH_IN(Options, young), 1e-6, 1e18},
     {0},
 };
 
-static const BenchOption options_taken[] = {
-    {KEY_SCENE, BENCH_TO(TEXT, scene), 0, 0, NULL},
-    {KEY_W, BENCH_TO(TEXT, range[0]), 0, 0, NULL},
-    {KEY_EPSILON, BENCH_TO(TEXT, range[1]), 0, 0, NULL},
-    {KEY_ACROSS, BENCH_TO(TEXT, range[2]), 0, 0, NULL},
-    {KEY_ASPECT, BENCH_TO(TEXT, range[3]), 0, 0, NULL},
-    {KEY_STEP, BENCH_TO(TEXT, range[4]), 0, 0, NULL},
-    {KEY_DAMPING, BENCH_TO(REAL, damping), 0, 1, NULL},
-    {KEY_POISSON, BENCH_TO(REAL, poisson), -0.5, 0.49, NULL},
-    {'o', BENCH_TO(TEXT, run.output), 0, 0, NULL},
-    BENCH_CAMPAIGN_TAKEN,
-    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
-    {KEY_DENSITY, BENCH_TO(REAL, density), 1e-6, 1e9, NULL},
-    {KEY_YOUNG, BENCH_TO(REAL, young), 1e-6, 1e18, NULL},
-    {0},
-};
-
-static error_t parse(int key, char *text, struct argp_state *state)
+static void take_file(const struct argp_state *state, void *record, char *text)
 {
-    Options *options = state->input;
-    options->measuring |=
-        (key >= KEY_SCENE && key < KEY_FORMAT) || key == 'o' || bench_option_of_campaign(key);
-    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
-    if (key == KEY_ENGINE) {
-        options->engines = bench_option_choice(state, "--engine", text, bench_engine_choices());
-        return 0;
-    }
-    if (key == ARGP_KEY_END && options->density > 0 && isnan(options->young))
+    bench_option_shown(state, text, &((Options *)record)->file);
+}
+
+static void check(const struct argp_state *state, void *record)
+{
+    const Options *options = record;
+    if (options->density > 0 && isnan(options->young))
         bench_usage(state, "--density is that of --young's body: give both");
-    return bench_option_shown(key, text, state, options->measuring, &options->file);
+    bench_option_shown_alone(state, &options->common, options->file);
 }
 
 static const char help[] =
@@ -117,7 +90,8 @@ static const char help[] =
     "their density: where particles weigh 1 each, as is the default, those at a lattice's surface "
     "weigh too much, and it is 24% stiffer by sag at w 1, 21% at w 2.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {option_list, parse, "[FILE.h5]", help, NULL, NULL, NULL};
+static const BenchCommandLine line = {
+    settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "[FILE.h5]", help, take_file, check};
 
 static SmCode read_lists(const Options *options, BenchCalibrationPlan *plan, SmError *error)
 {
@@ -141,7 +115,7 @@ static SmCode run(Options *options, int argc, char **argv, BenchCampaign *calibr
     if (strlen(options->scene) >= sizeof plan->file)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", options->scene);
     snprintf(plan->file, sizeof plan->file, "%s", options->scene);
-    strcpy(plan->engines, bench_engine_choices()[options->engines]);
+    strcpy(plan->engines, options->engines);
     plan->density = standard_density;
     plan->poisson = options->poisson;
     plan->damping = options->damping;
@@ -163,7 +137,7 @@ static SmCode run(Options *options, int argc, char **argv, BenchCampaign *calibr
 
 static void advise(const Options *options, const BenchCampaign *calibration)
 {
-    char sentence[BENCH_WORDS], settings[BENCH_WORDS];
+    char sentence[BENCH_WORDS], found[BENCH_WORDS];
     const BenchCalibrationPlan *plan = calibration->plan;
     BenchConclusion conclusion = bench_calibration_conclude(calibration);
     double density = options->density > 0 ? options->density : standard_density;
@@ -174,8 +148,8 @@ static void advise(const Options *options, const BenchCampaign *calibration)
     FILE *file = table ? stderr : stdout;
     fprintf(file, "%s%s\n", table ? "" : "\n", sentence);
     if (best < 0) return;
-    bench_advice_settings(bench_campaign_at(calibration, best), &wish, plan->damping, settings);
-    fprintf(file, "The scene's settings that hit it, of which density is one:\n    %s\n", settings);
+    bench_advice_settings(bench_campaign_at(calibration, best), &wish, plan->damping, found);
+    fprintf(file, "The scene's settings that hit it, of which density is one:\n    %s\n", found);
 }
 
 static SmCode show(const Options *options, const BenchCampaign *calibration, SmError *error)
@@ -188,6 +162,7 @@ static SmCode show(const Options *options, const BenchCampaign *calibration, SmE
 int bench_command_calibrate(int argc, char **argv)
 {
     Options options = {.scene = "beam",
+                       .engines = "both",
                        .range = {"1:10", "0:1:0.25", "3,4,7", "5,12", "0.5,2"},
                        .poisson = 0.3,
                        .young = NAN};
@@ -197,8 +172,7 @@ int bench_command_calibrate(int argc, char **argv)
     options.run.ranks = &ranks;
     SmCode code = bench_ranks_start(&ranks, &error);
     if (!code) {
-        bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS,
-                            &options.common);
+        bench_options_parse(&line, argc, argv, &options, &options.common);
         code = options.file ? bench_campaign_load(options.file, &bench_calibration_type,
                                                   &calibration, &error)
                             : run(&options, argc, argv, &calibration, &error);

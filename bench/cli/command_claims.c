@@ -8,9 +8,6 @@
 #include "../system/progress.h"
 #include "../system/suggest.h"
 #include "command.h"
-#include "option.h"
-
-enum { KEY_PAPER = 0x2000, KEY_CLAIM, KEY_CLAIMS, KEY_QUICK, KEY_LIST, KEY_FORMAT };
 
 typedef struct {
     BenchCommon common;
@@ -20,45 +17,41 @@ typedef struct {
     BenchFormat format;
 } Options;
 
-static const struct argp_option option_list[] = {
-    {"paper", KEY_PAPER, "NAME", 0, "The claims of this paper only: fastlsm, octree", 1},
-    {"claim", KEY_CLAIM, "NAME", 0, "This claim only; may be repeated (see --list)", 1},
-    {"claims", KEY_CLAIMS, "FILE", 0,
-     "Add the claims of this file, written as reference/claims.cfg; may be repeated", 1},
-    {"list", KEY_LIST, 0, 0, "Print the claims and what they say, and end", 1},
-    {"quick", KEY_QUICK, 0, 0, "Smaller bodies and fewer repeats: noisier and quicker", 2},
-    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
-    {"output", 'o', "FILE.h5", 0,
-     "Also store verdicts, every curve's points, every row and provenance in HDF5 (default: "
-     "nothing stored)",
-     3},
-    BENCH_OVERWRITE_OPTION(3),
+static const BenchSetting settings[] = {
+    {BENCH_OPTION("paper", "NAME", 1, "The claims of this paper only: fastlsm, octree"),
+     BENCH_IN(Options, paper)},
+    {BENCH_OPTION("claim", "NAME", 1, "This claim only; may be repeated (see --list)"),
+     BENCH_IN(Options, claims)},
+    {BENCH_OPTION("claims", "FILE", 1,
+                  "Add the claims of this file, written as reference/claims.cfg; may be repeated"),
+     BENCH_IN(Options, files)},
+    {BENCH_OPTION("list", NULL, 1, "Print the claims and what they say, and end"),
+     BENCH_IN(Options, list)},
+    {BENCH_OPTION("quick", NULL, 2, "Smaller bodies and fewer repeats: noisier and quicker"),
+     BENCH_IN(Options, quick)},
+    BENCH_FORMAT_OPTION(Options, 3),
+    {BENCH_OUTPUT_OPTION(
+         "FILE.h5", 3,
+         "Also store verdicts, every curve's points, every row and provenance in HDF5 "
+         "(default: nothing stored)"),
+     BENCH_IN(Options, output)},
+    BENCH_OVERWRITE_OPTION(Options, 3),
     {0},
 };
 
-static const BenchOption options_taken[] = {
-    {KEY_PAPER, BENCH_TO(TEXT, paper), 0, 0, NULL},
-    {KEY_CLAIM, BENCH_TO(NAMES, claims), 0, 0, NULL},
-    {KEY_CLAIMS, BENCH_TO(NAMES, files), 0, 0, NULL},
-    {KEY_LIST, BENCH_TO(TRUE, list), 0, 0, NULL},
-    {KEY_QUICK, BENCH_TO(TRUE, quick), 0, 0, NULL},
-    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
-    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
-    BENCH_OVERWRITE_TAKEN,
-    {0},
-};
-
-static error_t parse(int key, char *text, struct argp_state *state)
+static void refuse_word(const struct argp_state *state, void *record, char *text)
 {
-    const Options *options = state->input;
-    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
-    if (key == ARGP_KEY_ARG)
-        bench_usage(state, "what is '%s'? Claims are named with --claim", text);
-    if (key == ARGP_KEY_END && options->list &&
+    (void)record;
+    bench_usage(state, "what is '%s'? Claims are named with --claim", text);
+}
+
+static void check(const struct argp_state *state, void *record)
+{
+    const Options *options = record;
+    if (options->list &&
         (options->output || options->overwrite || options->quick || options->format))
         bench_usage(state, "--list measures nothing: it goes with none of --output, --overwrite, "
                            "--quick and --format");
-    return ARGP_ERR_UNKNOWN;
 }
 
 static const char help[] =
@@ -78,7 +71,7 @@ static const char help[] =
     " Of claims also: 1 what should be reproduced is not, or what is set is not so; 3 a claims "
     "file cannot be used.";
 
-static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
+static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, NULL, help, refuse_word, check};
 
 static bool named(const Options *options, const char *name)
 {
@@ -198,7 +191,7 @@ int bench_command_claims(int argc, char **argv)
     Options options = {0};
     BenchClaims claims = {0};
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
+    bench_options_parse(&line, argc, argv, &options, &options.common);
     SmCode code = choose(&options, &claims, &error);
     if (!code && options.list)
         list_claims(&claims);

@@ -10,19 +10,18 @@
 #include "../scene/slice.h"
 #include "../store/draft.h"
 #include "command.h"
-#include "option.h"
 
-enum { KEY_FORMAT = 0x2000, KEY_PARTICLES, KEY_SLICE, FILES = 256 };
+enum { FILES = 256 };
 
 typedef struct {
     BenchCommon common;
     const char *mesh[FILES];
     int count;
     long particles;
-    const char *format;
-    int json;
-    bool sliced, overwrite;
-    BenchSlice slice;
+    const char *format; /* NULL: not given */
+    bool overwrite;
+    const char *slice; /* NULL: none */
+    BenchSlice plane;
     const char *output; /* of the slice */
 } Options;
 
@@ -37,55 +36,42 @@ typedef struct {
 
 static const char *const formats[] = {"text", "json", NULL};
 
-static const struct argp_option option_list[] = {
-    {"format", KEY_FORMAT, "FORMAT", 0, "text or json (default: text)", 1},
-    {"particles", KEY_PARTICLES, "N", 0,
-     "Particle count of the lattice that is tried (default: 2000)", 1},
-    {"slice", KEY_SLICE, "AXIS=SHARE", 0,
-     "Instead, of one mesh or of points with normals: the signed distance from the surface that "
-     "the "
-     "meshless engine makes of them, on the plane so far through their box (z=0.5), into --output",
-     2},
-    {"output", 'o', "FILE.h5", 0, "HDF5 file of the slice; scripts/plot_slice.py draws it", 2},
-    BENCH_OVERWRITE_OPTION(2),
+static const BenchSetting settings[] = {
+    {BENCH_OPTION("format", "FORMAT", 1, "text or json (default: text)"), BENCH_IN(Options, format),
+     BENCH_CHOICES(formats)},
+    {BENCH_OPTION("particles", "N", 1,
+                  "Particle count of the lattice that is tried (default: 2000)"),
+     BENCH_IN(Options, particles), 8, 1000000000},
+    {BENCH_OPTION(
+         "slice", "AXIS=SHARE", 2,
+         "Instead, of one mesh or of points with normals: the signed distance from the surface "
+         "that the meshless engine makes of them, on the plane so far through their box "
+         "(z=0.5), into --output"),
+     BENCH_IN(Options, slice)},
+    {BENCH_OUTPUT_OPTION("FILE.h5", 2, "HDF5 file of the slice; scripts/plot_slice.py draws it"),
+     BENCH_IN(Options, output)},
+    BENCH_OVERWRITE_OPTION(Options, 2),
     {0},
 };
 
-static error_t parse(int key, char *text, struct argp_state *state)
+static void take_mesh(const struct argp_state *state, void *record, char *text)
 {
-    Options *options = state->input;
-    switch (key) {
-    case KEY_FORMAT:
-        options->format = text;
-        options->json = bench_option_choice(state, "--format", text, formats);
-        return 0;
-    case KEY_PARTICLES:
-        options->particles = bench_option_long(state, "--particles", text, 8, 1000000000);
-        return 0;
-    case KEY_SLICE:
-        options->sliced = true;
-        if (!bench_slice_parse(text, &options->slice))
-            bench_usage(state, "--slice: '%.40s' is not x=SHARE, y=SHARE or z=SHARE, 0 to 1", text);
-        return 0;
-    case 'o':
-        options->output = text;
-        return 0;
-    case BENCH_KEY_OVERWRITE:
-        options->overwrite = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (options->count == FILES) bench_usage(state, "at most %d meshes", FILES);
-        options->mesh[options->count++] = text;
-        return 0;
-    case ARGP_KEY_END:
-        if (!options->count) bench_usage(state, "which MESH?");
-        if (options->sliced != (options->output != NULL) || options->sliced < options->overwrite)
-            bench_usage(state, "--slice and --output go together, and --overwrite with both");
-        if (options->sliced && (options->count > 1 || options->format || options->particles))
-            bench_usage(state, "--slice: of one mesh, without --format and --particles");
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
+    Options *options = record;
+    if (options->count == FILES) bench_usage(state, "at most %d meshes", FILES);
+    options->mesh[options->count++] = text;
+}
+
+static void check(const struct argp_state *state, void *record)
+{
+    Options *options = record;
+    if (options->slice && !bench_slice_parse(options->slice, &options->plane))
+        bench_usage(state, "--slice: '%.40s' is not x=SHARE, y=SHARE or z=SHARE, 0 to 1",
+                    options->slice);
+    if (!options->count) bench_usage(state, "which MESH?");
+    if (!options->slice != !options->output || (options->overwrite && !options->slice))
+        bench_usage(state, "--slice and --output go together, and --overwrite with both");
+    if (options->slice && (options->count > 1 || options->format || options->particles))
+        bench_usage(state, "--slice: of one mesh, without --format and --particles");
 }
 
 static const char help[] =
@@ -96,7 +82,8 @@ static const char help[] =
     "With several meshes each gets its say; the exit code is that of the last one that cannot be "
     "read. --format json prints one array with an object for every mesh.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {option_list, parse, "MESH...", help, NULL, NULL, NULL};
+static const BenchCommandLine line = {
+    settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "MESH...", help, take_mesh, check};
 
 static SmCode look(const char *name, long particles, Facts *facts, SmError *error)
 {
@@ -211,7 +198,7 @@ static SmCode cut_slice(const Options *options, const char *program)
 {
     SmError error;
     SmCode code = bench_draft_reserve(options->output, options->overwrite, &error);
-    if (!code) code = bench_slice_write(options->mesh[0], &options->slice, options->output, &error);
+    if (!code) code = bench_slice_write(options->mesh[0], &options->plane, options->output, &error);
     if (code)
         bench_option_fail(program, &error);
     else if (!options->common.quiet)
@@ -235,11 +222,11 @@ static void warn_of_freedom(const char *program)
 int bench_command_info(int argc, char **argv)
 {
     Options options = {0};
-    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS,
-                        &options.common);
+    bench_options_parse(&line, argc, argv, &options, &options.common);
     if (!options.common.quiet) warn_of_freedom(argv[0]);
-    if (options.sliced) return (int)cut_slice(&options, argv[0]);
+    if (options.slice) return (int)cut_slice(&options, argv[0]);
     if (!options.particles) options.particles = 2000;
+    bool json = options.format && !strcmp(options.format, "json");
     SmCode code = SM_OK;
     json_t *list = json_array();
     for (int i = 0; i < options.count; i++) {
@@ -249,13 +236,13 @@ int bench_command_info(int argc, char **argv)
         if (failed) {
             bench_option_fail(argv[0], &error);
             code = failed;
-        } else if (options.json) {
+        } else if (json) {
             json_array_append_new(list, to_json(options.mesh[i], &facts));
         } else {
             print_text(options.mesh[i], &facts);
         }
     }
-    if (options.json) {
+    if (json) {
         json_dumpf(list, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
         putchar('\n');
     }

@@ -3,45 +3,26 @@
 #include <string.h>
 
 #include "../kernels/kernel_table.h"
+#include "../scene/scene.h"
 #include "../system/suggest.h"
 #include "command.h"
-#include "option.h"
 
-enum {
-    KEY_ONLY = 0x2000,
-    KEY_PRECISION,
-    KEY_LAYOUT,
-    KEY_REPEATS,
-    KEY_FORMAT,
-    KEY_SCALING,
-    KEY_LIST,
-    ONLY_MOST = BENCH_KERNELS_MOST
-};
+enum { ONLY_MOST = BENCH_KERNELS_MOST };
+
+typedef struct {
+    const char *name[ONLY_MOST + 1]; /* NULL-terminated */
+    int count;
+} Only;
 
 typedef struct {
     BenchCommon common;
-    const char *only[ONLY_MOST + 1]; /* NULL-terminated */
-    int only_count, repeats;
+    Only only;
+    int repeats;
     BenchPrecision precision;
     SmLayout layout;
     BenchKernelFormat format;
     bool scaling, list;
 } Options;
-
-static const struct argp_option option_list[] = {
-    {"only", KEY_ONLY, "NAME", 0, "Time this kernel or group only; may be repeated (see --list)",
-     1},
-    {"list", KEY_LIST, 0, 0, "Alone: print the names of all kernels and their groups", 1},
-    {"precision", KEY_PRECISION, "P", 0, "single or double (default: single)", 1},
-    {"layout", KEY_LAYOUT, "L", 0, BENCH_LAYOUT_HELP, 1},
-    {"scaling", KEY_SCALING, 0, 0,
-     "Also the cube of 10^7 particles, which takes about 4 GB, and the octree's set-up and "
-     "resampling of 10^6 nodes",
-     1},
-    {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 9)", 2},
-    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv or json (default: text)", 3},
-    {0},
-};
 
 static const char *suggest(const char *typed, char text[BENCH_SUGGEST_TEXT])
 {
@@ -54,41 +35,50 @@ static const char *suggest(const char *typed, char text[BENCH_SUGGEST_TEXT])
     return bench_suggest_words(&meant, "", text);
 }
 
-static void add_only(const struct argp_state *state, Options *options, const char *name)
+static void add_only(const struct argp_state *state, const char *name, void *member)
 {
+    Only *only = member;
     char near[BENCH_SUGGEST_TEXT];
     if (!bench_kernel_known(name))
         bench_usage(state, "--only: no kernel or group '%.40s'; --list names them%s", name,
                     suggest(name, near));
-    if (options->only_count == ONLY_MOST) bench_usage(state, "--only: at most %d", ONLY_MOST);
-    options->only[options->only_count++] = name;
+    if (only->count == ONLY_MOST) bench_usage(state, "--only: at most %d", ONLY_MOST);
+    only->name[only->count++] = name;
 }
 
-static const BenchOption options_taken[] = {
-    {KEY_LIST, BENCH_TO(TRUE, list), 0, 0, NULL},
-    {KEY_PRECISION, BENCH_TO(CHOICE, precision), 0, 0, bench_precisions},
-    {KEY_LAYOUT, BENCH_TO(CHOICE, layout), 0, 0, bench_layouts},
-    {KEY_SCALING, BENCH_TO(TRUE, scaling), 0, 0, NULL},
-    {KEY_REPEATS, BENCH_TO(INT, repeats), 1, 10000, NULL},
-    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_kernel_formats},
+static const BenchSetting settings[] = {
+    {BENCH_OPTION("only", "NAME", 1,
+                  "Time this kernel or group only; may be repeated (see --list)"),
+     BENCH_IN(Options, only), .take = add_only},
+    {BENCH_OPTION("list", NULL, 1, "Alone: print the names of all kernels and their groups"),
+     BENCH_IN(Options, list)},
+    {BENCH_OPTION("precision", "P", 1, "single or double (default: single)"),
+     BENCH_IN(Options, precision), BENCH_CHOICES(bench_precisions)},
+    {BENCH_OPTION("layout", "L", 1, BENCH_LAYOUT_HELP), BENCH_IN(Options, layout),
+     BENCH_CHOICES(bench_layouts)},
+    {BENCH_OPTION(
+         "scaling", NULL, 1,
+         "Also the cube of 10^7 particles, which takes about 4 GB, and the octree's set-up and "
+         "resampling of 10^6 nodes"),
+     BENCH_IN(Options, scaling)},
+    {BENCH_OPTION("repeats", "N", 2, "Samples of every time (default: 9)"),
+     BENCH_IN(Options, repeats), 1, 10000},
+    {BENCH_OPTION("format", "FORMAT", 3, "text, markdown, csv or json (default: text)"),
+     BENCH_IN(Options, format), BENCH_CHOICES(bench_kernel_formats)},
     {0},
 };
 
-static error_t parse(int key, char *text, struct argp_state *state)
+static void refuse_word(const struct argp_state *state, void *record, char *text)
 {
-    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
-    switch (key) {
-    case KEY_ONLY:
-        add_only(state, state->input, text);
-        return 0;
-    case ARGP_KEY_ARG:
-        bench_usage(state, "what is '%s'? Kernels are named with --only", text);
-    case ARGP_KEY_END:
-        if (((const Options *)state->input)->list && state->argc > 2)
-            bench_usage(state, "--list goes alone: it prints names and measures nothing");
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
+    (void)record;
+    bench_usage(state, "what is '%s'? Kernels are named with --only", text);
+}
+
+static void check(const struct argp_state *state, void *record)
+{
+    const Options *options = record;
+    if (options->list && state->argc > 2)
+        bench_usage(state, "--list goes alone: it prints names and measures nothing");
 }
 
 static const char help[] =
@@ -105,7 +95,7 @@ static const char help[] =
     "in turn, sample by sample. A stage of a step comes from a run with clocks inside, less the "
     "time that reading them takes. One thread unless --threads says otherwise.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
+static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, NULL, help, refuse_word, check};
 
 static void list_kernels(void)
 {
@@ -127,7 +117,7 @@ static SmCode measure(const Options *options, BenchMachine *machine, SmError *er
     BenchProgress progress;
     int count;
     int threads = options->common.threads;
-    BenchKernelParams params = {.only = options->only,
+    BenchKernelParams params = {.only = options->only.name,
                                 .precision = options->precision,
                                 .layout = options->layout,
                                 .threads = threads,
@@ -139,8 +129,7 @@ static SmCode measure(const Options *options, BenchMachine *machine, SmError *er
     machine->threads = threads;
     bench_progress_start(&progress, options->common.quiet);
     bench_progress_show(&progress, "ceilings", 0);
-    bench_peak_measure(machine, machine->cores > threads ? machine->cores : threads, 0,
-                           &peak);
+    bench_peak_measure(machine, machine->cores > threads ? machine->cores : threads, 0, &peak);
     SmCode code = bench_kernels_run(&params, &peak, rows, &count, error);
     bench_progress_stop(&progress);
     if (!code) {
@@ -156,7 +145,7 @@ int bench_command_kernels(int argc, char **argv)
     Options options = {.repeats = 9};
     BenchMachine machine;
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
+    bench_options_parse(&line, argc, argv, &options, &options.common);
     if (options.list) {
         list_kernels();
         return SM_OK;

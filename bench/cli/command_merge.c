@@ -4,7 +4,6 @@
 #include "../campaign/campaign.h"
 #include "../store/draft.h"
 #include "command.h"
-#include "option.h"
 
 typedef struct {
     BenchCommon common;
@@ -14,26 +13,22 @@ typedef struct {
     bool overwrite;
 } Options;
 
-static const struct argp_option option_list[] = {BENCH_OVERWRITE_OPTION(1), {0}};
+static const BenchSetting settings[] = {BENCH_OVERWRITE_OPTION(Options, 1), {0}};
 
-static error_t parse(int key, char *text, struct argp_state *state)
+static void take_file(const struct argp_state *state, void *record, char *text)
 {
-    Options *options = state->input;
-    switch (key) {
-    case BENCH_KEY_OVERWRITE:
-        options->overwrite = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (options->output)
-            options->input[options->inputs++] = text;
-        else
-            options->output = text;
-        return 0;
-    case ARGP_KEY_END:
-        if (!options->inputs) bench_usage(state, "give the file to write, and one or more to read");
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
+    Options *options = record;
+    (void)state;
+    if (options->output)
+        options->input[options->inputs++] = text;
+    else
+        options->output = text;
+}
+
+static void check(const struct argp_state *state, void *record)
+{
+    const Options *options = record;
+    if (!options->inputs) bench_usage(state, "give the file to write, and one or more to read");
 }
 
 static const char help[] =
@@ -44,7 +39,7 @@ static const char help[] =
     "command that made the shards, with the same options and -o OUT.h5 --resume, measures "
     "it.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {option_list, parse, "OUT.h5 IN.h5...", help, NULL, NULL, NULL};
+static const BenchCommandLine line = {settings, 0, "OUT.h5 IN.h5...", help, take_file, check};
 
 static SmCode merge(const Options *options, BenchCampaign *all, SmError *error)
 {
@@ -80,7 +75,7 @@ int bench_command_merge(int argc, char **argv)
     Options options = {.input = sm_alloc((size_t)argc, sizeof *options.input)};
     BenchCampaign all = {0};
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, 0, &options.common);
+    bench_options_parse(&line, argc, argv, &options, &options.common);
     SmCode code = merge(&options, &all, &error);
     if (!code) {
         bench_machine_read(argc, argv, all.machine.threads, &all.machine);

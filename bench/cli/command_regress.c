@@ -19,20 +19,6 @@
 #include "../system/process.h"
 #include "../system/suggest.h"
 #include "command.h"
-#include "option.h"
-
-enum {
-    KEY_BASELINE = 0x2000,
-    KEY_REVISION,
-    KEY_PAPER,
-    KEY_SCENE,
-    KEY_ROUNDS,
-    KEY_REPEATS,
-    KEY_BLOCK,
-    KEY_THRESHOLD,
-    KEY_FORMAT,
-    KEY_COUNTS
-};
 
 typedef struct {
     BenchCommon common;
@@ -44,55 +30,65 @@ typedef struct {
     bool counts, overwrite;
 } Options;
 
-static const struct argp_option option_list[] = {
-    {"baseline", KEY_BASELINE, "FILE.h5", 0,
-     "Compare with times that 'tables --repeats 201 --block 0.5 -o' (or other samples) stored, on "
-     "this machine",
-     1},
-    {"revision", KEY_REVISION, "REV", 0,
-     "Compare with this git revision, built in a temporary worktree and run interleaved", 1},
-    {"paper", KEY_PAPER, "NAME", 0,
-     "With --revision: the scenes of this paper's table: fastlsm (default), octree, meshless", 1},
-    {"scene", KEY_SCENE, "NAME|FILE", 0,
-     "Compare this scene only; may be repeated (default: all of the file, or of the paper)", 1},
-    {"rounds", KEY_ROUNDS, "N", 0,
-     "Rounds of two processes of each build and scene (default: 10 or as many as the test needs, "
-     "or "
-     "3 "
-     "beside a file)",
-     2},
-    {"repeats", KEY_REPEATS, "N", 0,
-     "Samples of every time in a process (default: 201; beside a file as there)", 2},
-    {"block", KEY_BLOCK, "MS", 0,
-     "Least milliseconds in a sample (default: 0.5; beside a file as there)", 2},
-    {"threshold", KEY_THRESHOLD, "auto|X", 0,
-     "Differences up to X (0.05: 5%) are 'same' (default: auto, as the build differs from itself)",
-     2},
-    {"counts", KEY_COUNTS, 0, 0,
-     "With --revision: also count each scene's instructions, which noise does not touch", 2},
-    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, json, junit or gbench (default: text)", 3},
-    {"output", 'o', "FILE", 0, "Write there (default: standard output)", 3},
-    BENCH_OVERWRITE_OPTION(3),
-    {0},
-};
-
-static const BenchOption options_taken[] = {
-    {KEY_BASELINE, BENCH_TO(TEXT, baseline), 0, 0, NULL},
-    {KEY_REVISION, BENCH_TO(TEXT, revision), 0, 0, NULL},
-    {KEY_PAPER, BENCH_TO(TEXT, paper), 0, 0, NULL},
-    {KEY_SCENE, BENCH_TO(NAMES, scenes), 0, 0, NULL},
-    {KEY_ROUNDS, BENCH_TO(INT, rounds), 1, 1000, NULL},
-    {KEY_REPEATS, BENCH_TO(INT, repeats), 1, 10000, NULL},
-    {KEY_BLOCK, BENCH_TO(REAL, block), 0.001, 60000, NULL},
-    {KEY_COUNTS, BENCH_TO(TRUE, counts), 0, 0, NULL},
-    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_regression_formats},
-    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
-    BENCH_OVERWRITE_TAKEN,
-    {0},
-};
-
-static void check_options(const Options *options, const struct argp_state *state)
+static void take_threshold(const struct argp_state *state, const char *text, void *member)
 {
+    const BenchSetting share = {.kind = BENCH_SET_REAL, .low = 0, .high = 10};
+    SmError error;
+    if (!strcmp(text, "auto"))
+        *(double *)member = NAN;
+    else if (bench_setting_text(&share, text, member, &error))
+        bench_usage(state, "--threshold: %s", error.text);
+}
+
+static const BenchSetting settings[] = {
+    {BENCH_OPTION(
+         "baseline", "FILE.h5", 1,
+         "Compare with times that 'tables --repeats 201 --block 0.5 -o' (or other samples) "
+         "stored, on this machine"),
+     BENCH_IN(Options, baseline)},
+    {BENCH_OPTION(
+         "revision", "REV", 1,
+         "Compare with this git revision, built in a temporary worktree and run interleaved"),
+     BENCH_IN(Options, revision)},
+    {BENCH_OPTION("paper", "NAME", 1,
+                  "With --revision: the scenes of this paper's table: fastlsm (default), octree, "
+                  "meshless"),
+     BENCH_IN(Options, paper)},
+    {BENCH_OPTION("scene", "NAME|FILE", 1,
+                  "Compare this scene only; may be repeated (default: all of the file, or of the "
+                  "paper)"),
+     BENCH_IN(Options, scenes)},
+    {BENCH_OPTION(
+         "rounds", "N", 2,
+         "Rounds of two processes of each build and scene (default: 10 or as many as the test "
+         "needs, or 3 beside a file)"),
+     BENCH_IN(Options, rounds), 1, 1000},
+    {BENCH_OPTION("repeats", "N", 2,
+                  "Samples of every time in a process (default: 201; beside a file as there)"),
+     BENCH_IN(Options, repeats), 1, 10000},
+    {BENCH_OPTION("block", "MS", 2,
+                  "Least milliseconds in a sample (default: 0.5; beside a file as there)"),
+     BENCH_IN(Options, block), 0.001, 60000},
+    {BENCH_OPTION(
+         "threshold", "auto|X", 2,
+         "Differences up to X (0.05: 5%) are 'same' (default: auto, as the build differs from "
+         "itself)"),
+     BENCH_IN(Options, threshold), .take = take_threshold},
+    {BENCH_OPTION(
+         "counts", NULL, 2,
+         "With --revision: also count each scene's instructions, which noise does not touch"),
+     BENCH_IN(Options, counts)},
+    {BENCH_OPTION("format", "FORMAT", 3, "text, markdown, json, junit or gbench (default: text)"),
+     BENCH_IN(Options, format), BENCH_CHOICES(bench_regression_formats)},
+    {BENCH_OUTPUT_OPTION("FILE", 3, "Write there (default: standard output)"),
+     BENCH_IN(Options, output)},
+    BENCH_OVERWRITE_OPTION(Options, 3),
+    {0},
+};
+
+static void check(const struct argp_state *state, void *record)
+{
+    const Options *options = record;
     if (!options->baseline == !options->revision)
         bench_usage(state, "compare with what? Say either --baseline FILE.h5 or --revision REV");
     if (options->baseline && options->counts)
@@ -101,22 +97,10 @@ static void check_options(const Options *options, const struct argp_state *state
         bench_usage(state, "--paper: a file has its own scenes; choose of them with --scene");
 }
 
-static error_t parse(int key, char *text, struct argp_state *state)
+static void refuse_word(const struct argp_state *state, void *record, char *text)
 {
-    Options *options = state->input;
-    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
-    switch (key) {
-    case KEY_THRESHOLD:
-        options->threshold =
-            strcmp(text, "auto") != 0 ? bench_option_real(state, "--threshold", text, 0, 10) : NAN;
-        return 0;
-    case ARGP_KEY_ARG:
-        bench_usage(state, "what is '%s'? Say --baseline FILE.h5 or --revision REV", text);
-    case ARGP_KEY_END:
-        check_options(options, state);
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
+    (void)record;
+    bench_usage(state, "what is '%s'? Say --baseline FILE.h5 or --revision REV", text);
 }
 
 static const char help[] =
@@ -134,7 +118,7 @@ static const char help[] =
     " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; "
     "7 nothing could be judged: all too noisy, or too few samples.";
 
-static const struct argp argp = {option_list, parse, NULL, help, NULL, NULL, NULL};
+static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, NULL, help, refuse_word, check};
 
 /* What one comparison holds. */
 typedef struct {
@@ -390,7 +374,7 @@ int bench_command_regress(int argc, char **argv)
     BenchDraft draft = {0};
     SmError error;
     int exit_code = SM_OK;
-    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
+    bench_options_parse(&line, argc, argv, &options, &options.common);
     bench_machine_read(argc, argv, options.common.threads, &here);
     Session *session = sm_alloc(1, sizeof *session);
     session->options = &options;

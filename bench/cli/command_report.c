@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "command.h"
-#include "option.h"
 
 enum { FILES = 256, FIXED = 9 }; /* FIXED: words of the command that starts the script */
 
@@ -20,40 +19,30 @@ typedef struct {
     bool overwrite;
 } Options;
 
-static const struct argp_option option_list[] = {
-    {"output", 'o', "NAME", 0,
-     "NAME.html: one page with everything in it; any other NAME: a folder with index.html, and "
-     "every figure as SVG, PNG and CSV (default: report.html)",
-     1},
-    BENCH_OVERWRITE_OPTION(1),
-    {"title", 't', "TEXT", 0, "The page's heading (default: shapebench report)", 1},
+static const BenchSetting settings[] = {
+    {BENCH_OUTPUT_OPTION(
+         "NAME", 1,
+         "NAME.html: one page with everything in it; any other NAME: a folder with index.html, "
+         "and every figure as SVG, PNG and CSV (default: report.html)"),
+     BENCH_IN(Options, output)},
+    BENCH_OVERWRITE_OPTION(Options, 1),
+    {BENCH_OPTION("title", "TEXT", 1, "The page's heading (default: shapebench report)"),
+     BENCH_IN(Options, title), .letter = 't'},
     {0},
 };
 
-static error_t parse(int key, char *text, struct argp_state *state)
+static void take_file(const struct argp_state *state, void *record, char *text)
 {
-    Options *options = state->input;
-    switch (key) {
-    case 'o':
-        if (!*text) bench_usage(state, "--output wants a name");
-        options->output = text;
-        return 0;
-    case 't':
-        options->title = text;
-        return 0;
-    case BENCH_KEY_OVERWRITE:
-        options->overwrite = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (options->count == FILES) bench_usage(state, "at most %d files", FILES);
-        options->file[options->count++] = text;
-        return 0;
-    case ARGP_KEY_END:
-        if (!options->count)
-            bench_usage(state, "which FILE? 'shapebench tables -o FILE.h5' makes one");
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
+    Options *options = record;
+    if (options->count == FILES) bench_usage(state, "at most %d files", FILES);
+    options->file[options->count++] = text;
+}
+
+static void check(const struct argp_state *state, void *record)
+{
+    const Options *options = record;
+    if (!*options->output) bench_usage(state, "--output wants a name");
+    if (!options->count) bench_usage(state, "which FILE? 'shapebench tables -o FILE.h5' makes one");
 }
 
 static const char help[] =
@@ -63,7 +52,8 @@ static const char help[] =
     "Files of "
     "the same scenes from several commits make a history.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {option_list, parse, "FILE...", help, NULL, NULL, NULL};
+static const BenchCommandLine line = {settings, BENCH_TAKES_QUIET, "FILE...",
+                                      help,     take_file,         check};
 
 /* Where the script is: beside the installed program, or in the sources it was built from. */
 static bool find_script(char path[PATH_MAX])
@@ -84,7 +74,7 @@ static bool find_script(char path[PATH_MAX])
 int bench_command_report(int argc, char **argv)
 {
     Options options = {.output = "report.html", .title = "shapebench report"};
-    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_QUIET, &options.common);
+    bench_options_parse(&line, argc, argv, &options, &options.common);
     char script[PATH_MAX];
     if (!find_script(script)) {
         fprintf(stderr, "%s: %s is missing: install shapebench again, or keep its sources\n",

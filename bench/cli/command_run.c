@@ -6,191 +6,96 @@
 #include "../../reference/meshless/surface/surface_nets.h"
 #include "../engines.h"
 #include "../play/recording.h"
+#include "../scene/override.h"
 #include "../scene/points_file.h"
 #include "../store/draft.h"
 #include "../system/progress.h"
 #include "command.h"
-#include "option.h"
-#include "override.h"
 #include "summary.h"
 
-enum {
-    KEY_W = 0x2000,
-    KEY_WIDTH,
-    KEY_EPSILON,
-    KEY_LEVELS,
-    KEY_NODES,
-    KEY_YOUNG,
-    KEY_POISSON,
-    KEY_DENSITY,
-    KEY_MODES,
-    KEY_POINTS,
-    KEY_PARTICLES,
-    KEY_CELL,
-    KEY_SHELL,
-    KEY_DAMPING,
-    KEY_H,
-    KEY_FRAMES,
-    KEY_STEPS,
-    KEY_GRAVITY,
-    KEY_SUMMATION,
-    KEY_POLAR,
-    KEY_STRAIN,
-    KEY_RECORD,
-    KEY_FIELDS,
-    KEY_NO_OUTPUT
-};
-
-/* Options that were given replace the scene's settings; those that were not are below zero. */
 typedef struct {
     BenchCommon common;
     BenchOverride chosen;
-    const char *scene, *output, *w;
-    bool shell, no_output, has_gravity, overwrite;
-    int frames, steps, summation, polar, levels, record, width;
-    int modes;
+    const char *scene, *output, *w, *width;
+    bool no_output, overwrite;
+    long nodes; /* 0: not given */
+    int record; /* BenchRecord */
     BenchFields fields;
-    long particles, nodes, points;
-    double young, poisson, density; /* density 0: not given; poisson INFINITY */
-    double cell, damping, epsilon, h, strain_limit, gravity[3];
 } Options;
 
-static const char *const summations[] = {"fast", "bars", "naive", NULL};
-static const char *const polars[] = {"fast", "jacobi", NULL};
 static const char *const records[] = {"particles", "nodes", NULL}; /* BenchRecord from 1 */
 
-static const struct argp_option option_list[] = {
-    {0, 0, 0, 0, "What replaces the scene's settings:", 1},
-    {"w", KEY_W, "W", 0,
-     "Region half-width, in edges of each node's own cell (octree default: 1, the least that holds "
-     "together what touches); of a lattice, whose cells are alike, 1 to 31 cells",
-     1},
-    {"width", KEY_WIDTH, "UNIT", 0,
-     "What an octree's --w counts: edges of each node's own cell, or finest cells (default: edges)",
-     1},
-    {"epsilon", KEY_EPSILON, "E", 0,
-     "Octree: regions may be wider by this share (default for a mesh: 0.5)", 1},
-    {"levels", KEY_LEVELS, "N", 0, "Octree: a base cell is 2^N finest cells wide, 1 to 12", 1},
-    {"nodes", KEY_NODES, "N", 0, "Octree, meshless: wanted simulation nodes (meshless: 1000)", 1},
-    {"young", KEY_YOUNG, "E", 0, "Meshless: Young's modulus, Pa (default: 1e5)", 1},
-    {"poisson", KEY_POISSON, "NU", 0, "Meshless: Poisson's ratio, above -1 to 0.49 (default: 0.3)",
-     1},
-    {"density", KEY_DENSITY, "RHO", 0, "Meshless: kg/m^3 (default: 1000)", 1},
-    {"modes", KEY_MODES, "N", 0, "Meshless: natural modes, 7 to 1000 (default: 64)", 1},
-    {"points", KEY_POINTS, "N", 0,
-     "Meshless: points on the mesh, of which its field is made (default: 12000, of thin bodies up "
-     "to 400000)",
-     1},
-    {"particles", KEY_PARTICLES, "N", 0, "Wanted particle count", 1},
-    {"cell", KEY_CELL, "SIZE", 0, "Edge of a cell, in the mesh's units", 1},
-    {"shell", KEY_SHELL, 0, 0, "Surface cells only, not the interior", 1},
-    {"damping", KEY_DAMPING, "K", 0, "Region damping, 0 to 1", 1},
-    {"h", KEY_H, "S", 0, "Time step, seconds", 1},
-    {"gravity", KEY_GRAVITY, "X,Y,Z", 0, "Mesh units per second squared", 1},
-    {"strain-limit", KEY_STRAIN, "S", 0,
-     "Links break beyond this times their length, above 1; 0: never. The surface does not tear: "
-     "its triangles stretch",
-     1},
-    {"summation", KEY_SUMMATION, "HOW", 0, "fast, bars or naive", 1},
-    {"polar", KEY_POLAR, "HOW", 0, "fast or jacobi", 1},
-    {0, 0, 0, 0, "What is written:", 2},
-    {"frames", KEY_FRAMES, "N", 0, "Frames after the first", 2},
-    {"steps", KEY_STEPS, "N", 0, "Steps in a frame", 2},
-    {"output", 'o', "FILE.vtkhdf", 0, "Trajectory (default: SCENE.vtkhdf in this folder)", 2},
-    BENCH_OVERWRITE_OPTION(2),
-    {"no-output", KEY_NO_OUTPUT, 0, 0, "Write no trajectory", 2},
-    {"record", KEY_RECORD, "WHAT", 0,
-     "particles: also store the lattice, and every step's particle positions, velocities and "
-     "goals, 72 bytes a particle and step; nodes: the same of an octree, with its tree, edges and "
-     "regions",
-     2},
-    {"fields", KEY_FIELDS, "LIST", 0,
-     "Also store, for every point of the surface and frame: displacement (12 bytes), speed, strain "
-     "(largest in the surface), piece (of material), level (of the octree's leaf; 4 bytes each); "
-     "several with commas between them",
-     2},
-    {0},
-};
-
-static const BenchOption options_taken[] = {
-    {KEY_W, BENCH_TO(TEXT, w), 0, 0, NULL},
-    {KEY_WIDTH, BENCH_TO(CHOICE, width), 0, 0, bench_widths},
-    {KEY_EPSILON, BENCH_TO(REAL, epsilon), 0, 1e6, NULL},
-    {KEY_LEVELS, BENCH_TO(INT, levels), 1, OCT_MAX_LEVELS, NULL},
-    {KEY_NODES, BENCH_TO(LONG, nodes), 1, 1e9, NULL},
-    {KEY_YOUNG, BENCH_TO(REAL, young), 1e-30, 1e30, NULL},
-    {KEY_POISSON, BENCH_TO(REAL, poisson), -0.99, 0.49, NULL},
-    {KEY_DENSITY, BENCH_TO(REAL, density), 1e-30, 1e30, NULL},
-    {KEY_MODES, BENCH_TO(INT, modes), 7, 1000, NULL},
-    {KEY_POINTS, BENCH_TO(LONG, points), REF_LEAST_POINTS, REF_MOST_POINTS, NULL},
-    {KEY_PARTICLES, BENCH_TO(LONG, particles), 8, 1e9, NULL},
-    {KEY_CELL, BENCH_TO(REAL, cell), 1e-30, 1e30, NULL},
-    {KEY_SHELL, BENCH_TO(TRUE, shell), 0, 0, NULL},
-    {KEY_DAMPING, BENCH_TO(REAL, damping), 0, 1, NULL},
-    {KEY_H, BENCH_TO(REAL, h), 1e-9, 10, NULL},
-    {KEY_STRAIN, BENCH_TO(REAL, strain_limit), 0, 1e6, NULL},
-    {KEY_SUMMATION, BENCH_TO(CHOICE, summation), 0, 0, summations},
-    {KEY_POLAR, BENCH_TO(CHOICE, polar), 0, 0, polars},
-    {KEY_FRAMES, BENCH_TO(INT, frames), 0, 1e7, NULL},
-    {KEY_STEPS, BENCH_TO(INT, steps), 1, 1e6, NULL},
-    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
-    BENCH_OVERWRITE_TAKEN,
-    {KEY_NO_OUTPUT, BENCH_TO(TRUE, no_output), 0, 0, NULL},
-    {0},
-};
-
 /* "speed,strain" */
-static BenchFields parse_fields(const struct argp_state *state, const char *text)
+static void take_fields(const struct argp_state *state, const char *text, void *member)
 {
+    const BenchSetting field = {.kind = BENCH_SET_INT, .choices = bench_field_names};
     char name[64];
-    BenchFields fields = 0;
+    int number;
+    SmError error;
     for (const char *end = text; end; text = end + 1) {
         end = strchr(text, ',');
         int length = end ? (int)(end - text) : (int)strlen(text);
         snprintf(name, sizeof name, "%.*s", length, text);
-        fields |= 1u << bench_option_choice(state, "--fields", name, bench_field_names);
+        if (bench_setting_text(&field, name, &number, &error))
+            bench_usage(state, "--fields: %s", error.text);
+        *(BenchFields *)member |= 1u << number;
         if (!end) break;
     }
-    return fields;
 }
 
-static void check_options(const Options *options, const struct argp_state *state)
+static const BenchSetting settings[] = {
+    {.section = 1, .help = "What replaces the scene's settings:"},
+    {BENCH_OPTION(
+         "w", "W", 1,
+         "Region half-width, in edges of each node's own cell (octree default: 1, the least "
+         "that holds together what touches); of a lattice, whose cells are alike, 1 to 31 "
+         "cells"),
+     BENCH_IN(Options, w)},
+    {BENCH_OPTION("width", "UNIT", 1,
+                  "What an octree's --w counts: edges of each node's own cell, or finest cells "
+                  "(default: edges)"),
+     BENCH_IN(Options, width), BENCH_CHOICES(bench_widths)},
+    {BENCH_IN(Options, chosen), .table = bench_override_settings, .who = BENCH_BY_RUN},
+    {BENCH_OPTION("nodes", "N", 1, "Octree, meshless: wanted simulation nodes (meshless: 1000)"),
+     BENCH_IN(Options, nodes), 1, 1e9, .of = BENCH_OF_SAMPLED | BENCH_OF_ELASTIC},
+    {.section = 2, .help = "What is written:"},
+    {BENCH_OUTPUT_OPTION("FILE.vtkhdf", 2, "Trajectory (default: SCENE.vtkhdf in this folder)"),
+     BENCH_IN(Options, output)},
+    BENCH_OVERWRITE_OPTION(Options, 2),
+    {BENCH_OPTION("no-output", NULL, 2, "Write no trajectory"), BENCH_IN(Options, no_output)},
+    {BENCH_OPTION(
+         "record", "WHAT", 2,
+         "particles: also store the lattice, and every step's particle positions, velocities "
+         "and goals, 72 bytes a particle and step; nodes: the same of an octree, with its "
+         "tree, edges and regions"),
+     BENCH_IN(Options, record), .low = 1, BENCH_CHOICES(records)},
+    {BENCH_OPTION(
+         "fields", "LIST", 2,
+         "Also store, for every point of the surface and frame: displacement (12 bytes), "
+         "speed, strain (largest in the surface), piece (of material), level (of the octree's "
+         "leaf; 4 bytes each); several with commas between them"),
+     BENCH_IN(Options, fields), .take = take_fields},
+    {0},
+};
+
+static void take_scene(const struct argp_state *state, void *record, char *text)
 {
+    Options *options = record;
+    if (options->scene) bench_usage(state, "one scene or mesh only, not also '%s'", text);
+    options->scene = text;
+}
+
+static void check(const struct argp_state *state, void *record)
+{
+    const Options *options = record;
+    const BenchGiven *given = &options->chosen.given;
     if (!options->scene) bench_usage(state, "which scene or mesh?");
-    if (options->particles && options->cell > 0) bench_usage(state, "either --particles or --cell");
+    if (bench_given(given, "particles") && bench_given(given, "cell"))
+        bench_usage(state, "either --particles or --cell");
     if (options->no_output &&
         (options->output || options->record || options->fields || options->overwrite))
         bench_usage(state,
                     "--no-output goes with none of --output, --record, --fields and --overwrite");
-}
-
-static error_t parse(int key, char *text, struct argp_state *state)
-{
-    Options *options = state->input;
-    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &options->chosen;
-        return 0;
-    case KEY_GRAVITY:
-        bench_option_vector(state, "--gravity", text, options->gravity);
-        options->has_gravity = true;
-        return 0;
-    case KEY_RECORD:
-        options->record = 1 + bench_option_choice(state, "--record", text, records);
-        return 0;
-    case KEY_FIELDS:
-        options->fields |= parse_fields(state, text);
-        return 0;
-    case ARGP_KEY_ARG:
-        if (options->scene) bench_usage(state, "one scene or mesh only, not also '%s'", text);
-        options->scene = text;
-        return 0;
-    case ARGP_KEY_END:
-        check_options(options, state);
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
 }
 
 static const char help[] =
@@ -211,51 +116,79 @@ static const char help[] =
     "double-precision brute force in the last state; beyond the tolerance of 'tables' the run is "
     "INVALID (exit code 1), its trajectory kept.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {
-    option_list, parse, "SCENE|FILE.cfg|MESH|POINTS", help, bench_override_children, NULL, NULL};
+static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, "SCENE|FILE.cfg|MESH|POINTS",
+                                      help,     take_scene,      check};
+
+/* What some engines alone have, and how messages name them. */
+static const struct {
+    unsigned of;
+    const char *whose, *engine;
+} owners[] = {{BENCH_OF_SAMPLED, "the octree's", "octree"},
+              {BENCH_OF_ELASTIC, "a meshless body's", "meshless"}};
+enum { OWNERS = sizeof owners / sizeof *owners };
+
+/* Adds the names of a table's options that are first of all this owner's, and that the engine has
+ * not: "--young, --poisson". */
+static void name_options(const BenchSetting *table, unsigned owner, unsigned engine,
+                         BenchNames *names)
+{
+    for (; !bench_setting_ends(table); table++) {
+        if (table->table && table->kind != BENCH_SET_LIST)
+            name_options(table->table, owner, engine, names);
+        bool first = (table->of & -table->of) == owner;
+        if (table->option && first && !(table->of & engine))
+            names->name[names->count++] = table->option;
+    }
+}
+
+static SmCode fail_of_owner(int o, unsigned engine, SmError *error)
+{
+    char list[256] = "";
+    BenchNames names = {.count = 0};
+    name_options(settings, owners[o].of, engine, &names);
+    for (int n = 0; n < names.count; n++) {
+        size_t used = strlen(list);
+        const char *joint = !n ? "" : n + 1 < names.count ? ", " : " and ";
+        snprintf(list + used, sizeof list - used, "%s--%s", joint, names.name[n]);
+    }
+    return sm_fail(error, SM_USAGE, "%s are %s: add --engine %s", list, owners[o].whose,
+                   owners[o].engine);
+}
+
+/* Refuses options that the engine has not. */
+static SmCode check_owners(const Options *options, const BenchEngine *engine, SmError *error)
+{
+    const BenchGiven *given = &options->chosen.given;
+    unsigned has =
+        (engine->sampled ? BENCH_OF_SAMPLED : 0) | (engine->elastic ? BENCH_OF_ELASTIC : 0);
+    for (int o = 0; o < OWNERS; o++) {
+        bool missed = options->nodes && !has && !o;
+        for (int i = 0; i < given->count; i++)
+            missed |= given->item[i].setting->of == owners[o].of && !(owners[o].of & has);
+        if (missed) return fail_of_owner(o, has, error);
+    }
+    if (engine->elastic && options->record)
+        return sm_fail(error, SM_USAGE, "--record is of shape matching; leave it out");
+    return SM_OK;
+}
 
 static void apply_options(const Options *options, BenchScene *scene)
 {
-    SmEngineParams *params = &scene->params;
-    const BenchOverride *chosen = &options->chosen;
-    if (chosen->engine) snprintf(scene->engine, sizeof scene->engine, "%.23s", chosen->engine);
-    if (options->h > 0) params->h = options->h;
-    if (options->damping >= 0) params->damping = options->damping;
-    if (options->strain_limit >= 0) params->strain_limit = options->strain_limit;
-    if (options->summation >= 0) params->summation = (SmSummation)options->summation;
-    if (options->polar >= 0) params->polar = (SmPolarMethod)options->polar;
-    if (chosen->layout >= 0) params->layout = (SmLayout)chosen->layout;
-    if (options->has_gravity) memcpy(params->gravity, options->gravity, sizeof params->gravity);
-    if (options->shell) scene->voxel.fill = SM_SHELL;
-    if (options->particles || options->cell > 0) scene->cells = 0;
-    if (options->particles)
-        scene->voxel = (SmVoxelParams){scene->voxel.fill, 0, options->particles, false};
-    if (options->cell > 0)
-        scene->voxel = (SmVoxelParams){scene->voxel.fill, options->cell, 0, false};
-    if (options->frames >= 0) scene->frames = options->frames;
-    if (options->steps) scene->steps_per_frame = options->steps;
-}
-
-static SmCode apply_elastic(const Options *options, const BenchEngine *engine, BenchScene *scene,
-                            SmError *error)
-{
-    RefMeshlessOptions *meshless = &scene->meshless;
-    bool given = options->young > 0 || isfinite(options->poisson) || options->density > 0 ||
-                 options->modes || options->points;
-    if (!engine->elastic)
-        return given ? sm_fail(error, SM_USAGE,
-                               "--young, --poisson, --density, --modes and --points are a meshless "
-                               "body's: add --engine meshless")
-                     : SM_OK;
-    if (options->record)
-        return sm_fail(error, SM_USAGE, "--record is of shape matching; leave it out");
-    if (options->young > 0) meshless->material.young = options->young;
-    if (isfinite(options->poisson)) meshless->material.poisson = options->poisson;
-    if (options->density > 0) meshless->material.density = options->density;
-    if (options->modes) meshless->modes = options->modes;
-    if (options->nodes) meshless->nodes = options->nodes;
-    if (options->points) meshless->points = options->points;
-    return SM_OK;
+    const BenchGiven *given = &options->chosen.given;
+    OctSampling *sampling = &scene->octree.sampling;
+    bool particles = bench_given(given, "particles"), cell = bench_given(given, "cell");
+    if (particles || cell) {
+        scene->cells = 0;
+        scene->voxel = (SmVoxelParams){.fill = scene->voxel.fill};
+    }
+    bench_override_apply(&options->chosen, scene);
+    for (int i = 0; i < sampling->criteria_count && bench_given(given, "levels"); i++)
+        sampling->criteria[i].level = 0; /* the deepest */
+    if (!options->nodes) return;
+    if (bench_engine(scene->engine)->elastic)
+        scene->meshless.nodes = options->nodes;
+    else
+        sampling->nodes = options->nodes;
 }
 
 /* A lattice's w is a whole number, an octree's is not. */
@@ -263,7 +196,7 @@ static SmCode apply_w(const Options *options, const BenchEngine *engine, BenchSc
                       SmError *error)
 {
     const char *text = options->w;
-    if (options->width >= 0 && !(text && engine->sampled))
+    if (options->width && !(text && engine->sampled))
         return sm_fail(error, SM_USAGE,
                        "--width says what an octree's --w counts: add %s, or leave it out",
                        text ? "--engine octree" : "--w");
@@ -274,7 +207,8 @@ static SmCode apply_w(const Options *options, const BenchEngine *engine, BenchSc
     if (engine->sampled) {
         if (!number || !(w > 0 && w <= 1e6))
             return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a number above 0, to 1e6", text);
-        scene->octree.width = options->width > 0 ? (OctWidth){.cells = w} : (OctWidth){.edges = w};
+        bool cells = options->width && !strcmp(options->width, bench_widths[1]);
+        scene->octree.width = cells ? (OctWidth){.cells = w} : (OctWidth){.edges = w};
         scene->octree.summation_nodes = 0;
         return SM_OK;
     }
@@ -284,28 +218,6 @@ static SmCode apply_w(const Options *options, const BenchEngine *engine, BenchSc
         return sm_fail(error, SM_USAGE, "--w: '%.40s' is not a whole number from 1 to %d", text,
                        SM_MOST_W);
     scene->params.w = (int)w;
-    return SM_OK;
-}
-
-/* The octree's options are its own. */
-static SmCode apply_sampling(const Options *options, const BenchEngine *engine, BenchScene *scene,
-                             SmError *error)
-{
-    OctOptions *octree = &scene->octree;
-    bool nodes = options->nodes && !engine->elastic;
-    if (!engine->sampled && (options->epsilon >= 0 || options->levels || nodes))
-        return sm_fail(error, SM_USAGE,
-                       engine->elastic
-                           ? "--epsilon and --levels are the octree's: add --engine octree"
-                           : "--epsilon, --levels and --nodes are the octree's: add --engine "
-                             "octree");
-    if (options->epsilon >= 0) octree->epsilon = options->epsilon;
-    if (options->levels) {
-        octree->sampling.levels = options->levels;
-        for (int i = 0; i < octree->sampling.criteria_count; i++)
-            octree->sampling.criteria[i].level = 0; /* the deepest */
-    }
-    if (options->nodes) octree->sampling.nodes = options->nodes;
     return SM_OK;
 }
 
@@ -333,7 +245,7 @@ static SmCode load_body(const Options *options, const BenchEngine *engine, RefMp
     if (!engine->elastic) return bench_mesh_load(name, mesh, error);
     SmCode code = bench_points_or_mesh(name, &points, mesh, error);
     if (code || !points.count) return code;
-    if (options->points) {
+    if (bench_given(&options->chosen.given, "points")) {
         ref_points_free(&points);
         return sm_fail(error, SM_USAGE, "--points are taken of a mesh, and %s has its own", name);
     }
@@ -547,8 +459,7 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     if (code) return code;
     apply_options(options, &scene);
     const BenchEngine *engine = bench_engine(scene.engine);
-    code = apply_sampling(options, engine, &scene, error);
-    if (!code) code = apply_elastic(options, engine, &scene, error);
+    code = check_owners(options, engine, error);
     if (!code) code = bench_engine_find(scene.engine, options->chosen.precision, &type, error);
     if (!code) code = apply_w(options, engine, &scene, error);
     const char *path = output_path(options, &scene, room);
@@ -573,17 +484,10 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
 
 int bench_command_run(int argc, char **argv)
 {
-    Options options = {.frames = -1,
-                       .summation = -1,
-                       .polar = -1,
-                       .width = -1,
-                       .damping = -1,
-                       .epsilon = -1,
-                       .poisson = INFINITY,
-                       .strain_limit = -1};
+    Options options = {0};
     SmError error;
     BenchMachine machine;
-    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
+    bench_options_parse(&line, argc, argv, &options, &options.common);
     bench_machine_read(argc, argv, options.common.threads, &machine);
     SmCode code = run(&options, &machine, &error);
     if (code) bench_option_fail(argv[0], &error);

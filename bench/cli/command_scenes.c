@@ -5,9 +5,6 @@
 #include "../scene/body.h"
 #include "../store/draft.h"
 #include "command.h"
-#include "option.h"
-
-enum { KEY_WRITE = 0x2000 };
 
 typedef struct {
     BenchCommon common;
@@ -16,34 +13,27 @@ typedef struct {
     bool overwrite;
 } Options;
 
-static const struct argp_option option_list[] = {
-    {"write-mesh", KEY_WRITE, "FILE.obj", 0,
-     "Write the mesh of the scene or shape NAME instead, as Wavefront OBJ", 1},
-    BENCH_OVERWRITE_OPTION(1),
+static const BenchSetting settings[] = {
+    {BENCH_OPTION("write-mesh", "FILE.obj", 1,
+                  "Write the mesh of the scene or shape NAME instead, as Wavefront OBJ"),
+     BENCH_IN(Options, write)},
+    BENCH_OVERWRITE_OPTION(Options, 1),
     {0},
 };
 
-static error_t parse(int key, char *text, struct argp_state *state)
+static void take_name(const struct argp_state *state, void *record, char *text)
 {
-    Options *options = state->input;
-    switch (key) {
-    case KEY_WRITE:
-        options->write = text;
-        return 0;
-    case BENCH_KEY_OVERWRITE:
-        options->overwrite = true;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (options->name) bench_usage(state, "one NAME only, not also '%s'", text);
-        options->name = text;
-        return 0;
-    case ARGP_KEY_END:
-        if (options->write && !options->name) bench_usage(state, "--write-mesh: which shape?");
-        if (options->overwrite && !options->write)
-            bench_usage(state, "--overwrite goes with --write-mesh");
-        return 0;
-    }
-    return ARGP_ERR_UNKNOWN;
+    Options *options = record;
+    if (options->name) bench_usage(state, "one NAME only, not also '%s'", text);
+    options->name = text;
+}
+
+static void check(const struct argp_state *state, void *record)
+{
+    const Options *options = record;
+    if (options->write && !options->name) bench_usage(state, "--write-mesh: which shape?");
+    if (options->overwrite && !options->write)
+        bench_usage(state, "--overwrite goes with --write-mesh");
 }
 
 static const char help[] =
@@ -52,7 +42,7 @@ static const char help[] =
     "  shapebench scenes penguin > my.cfg\n"
     "  shapebench run my.cfg\v" BENCH_EXIT_CODES;
 
-static const struct argp argp = {option_list, parse, "[NAME]", help, NULL, NULL, NULL};
+static const BenchCommandLine line = {settings, 0, "[NAME]", help, take_name, check};
 
 static SmCode list(SmError *error)
 {
@@ -112,7 +102,7 @@ static SmCode write_mesh(const Options *options, SmError *error)
 int bench_command_scenes(int argc, char **argv)
 {
     Options options = {0};
-    bench_options_parse(&argp, argc, argv, &options, 0, &options.common);
+    bench_options_parse(&line, argc, argv, &options, &options.common);
     SmError error;
     SmCode code;
     if (options.write)

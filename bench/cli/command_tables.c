@@ -7,24 +7,15 @@
 #include "../engines.h"
 #include "../measure/measure.h"
 #include "../play/runner.h"
+#include "../scene/override.h"
 #include "../store/draft.h"
 #include "../system/suggest.h"
 #include "../table/quantity.h"
 #include "../table/row_store.h"
 #include "../table/table.h"
 #include "command.h"
-#include "option.h"
-#include "override.h"
 
-enum {
-    KEY_PAPER = 0x2000,
-    KEY_SCENE,
-    KEY_FORMAT,
-    KEY_REPEATS,
-    KEY_BLOCK,
-    KEY_EXPLAIN,
-    KEY_COLUMNS
-};
+const char *const bench_papers[] = {"fastlsm", "octree", "meshless", NULL};
 
 typedef struct {
     BenchCommon common;
@@ -48,52 +39,42 @@ typedef struct {
     int count;
 } Choices;
 
-static const struct argp_option option_list[] = {
-    {"paper", KEY_PAPER, "NAME", 0,
-     "The paper whose table to measure: fastlsm, octree or meshless (default: fastlsm and "
-     "meshless)",
-     1},
-    {"scene", KEY_SCENE, "NAME|FILE", 0,
-     "Measure this scene only, or the paper's scenes NAME-...; may be repeated", 1},
-    {"repeats", KEY_REPEATS, "N", 0, "Samples of every time (default: 15)", 2},
-    {"block", KEY_BLOCK, "MS", 0, "Least milliseconds in a sample (default: 20)", 2},
-    {"format", KEY_FORMAT, "FORMAT", 0, "text, markdown, csv, latex, json (default: text)", 3},
-    {"explain", KEY_EXPLAIN, NULL, 0,
-     "Say below a text table all that stands behind each row, not only a line each", 3},
-    {"output", 'o', "FILE.h5", 0,
-     "Also store every sample, counts, validity and provenance in HDF5 (default: nothing stored)",
-     3},
-    BENCH_OVERWRITE_OPTION(3),
-    {"columns", KEY_COLUMNS, NULL, 0,
-     "Measure nothing; list the columns of csv, json and FILE.h5 as results/README.md has them", 4},
+static const BenchSetting settings[] = {
+    {BENCH_OPTION(
+         "paper", "NAME", 1,
+         "The paper whose table to measure: fastlsm, octree or meshless (default: fastlsm and "
+         "meshless)"),
+     BENCH_IN(Options, paper)},
+    {BENCH_OPTION("scene", "NAME|FILE", 1,
+                  "Measure this scene only, or the paper's scenes NAME-...; may be repeated"),
+     BENCH_IN(Options, given)},
+    {BENCH_IN(Options, chosen), .table = bench_override_settings, .who = BENCH_BY_TABLES},
+    {BENCH_OPTION("repeats", "N", 2, "Samples of every time (default: 15)"),
+     BENCH_IN(Options, repeats), 1, 10000},
+    {BENCH_OPTION("block", "MS", 2, "Least milliseconds in a sample (default: 20)"),
+     BENCH_IN(Options, block), 0.001, 60000},
+    BENCH_FORMAT_OPTION(Options, 3),
+    {BENCH_OPTION("explain", NULL, 3,
+                  "Say below a text table all that stands behind each row, not only a line each"),
+     BENCH_IN(Options, explain)},
+    {BENCH_OUTPUT_OPTION(
+         "FILE.h5", 3,
+         "Also store every sample, counts, validity and provenance in HDF5 (default: nothing "
+         "stored)"),
+     BENCH_IN(Options, output)},
+    BENCH_OVERWRITE_OPTION(Options, 3),
+    {BENCH_OPTION(
+         "columns", NULL, 4,
+         "Measure nothing; list the columns of csv, json and FILE.h5 as results/README.md has "
+         "them"),
+     BENCH_IN(Options, columns)},
     {0},
 };
 
-static const BenchOption options_taken[] = {
-    {KEY_PAPER, BENCH_TO(TEXT, paper), 0, 0, NULL},
-    {KEY_SCENE, BENCH_TO(NAMES, given), 0, 0, NULL},
-    {KEY_REPEATS, BENCH_TO(INT, repeats), 1, 10000, NULL},
-    {KEY_BLOCK, BENCH_TO(REAL, block), 0.001, 60000, NULL},
-    {KEY_FORMAT, BENCH_TO(CHOICE, format), 0, 0, bench_format_names},
-    {KEY_EXPLAIN, BENCH_TO(TRUE, explain), 0, 0, NULL},
-    {KEY_COLUMNS, BENCH_TO(TRUE, columns), 0, 0, NULL},
-    {'o', BENCH_TO(TEXT, output), 0, 0, NULL},
-    BENCH_OVERWRITE_TAKEN,
-    {0},
-};
-
-static error_t parse(int key, char *text, struct argp_state *state)
+static void refuse_word(const struct argp_state *state, void *record, char *text)
 {
-    Options *options = state->input;
-    if (bench_option_take(option_list, options_taken, key, text, state)) return 0;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &options->chosen;
-        return 0;
-    case ARGP_KEY_ARG:
-        bench_usage(state, "what is '%s'? Scenes are named with --scene", text);
-    }
-    return ARGP_ERR_UNKNOWN;
+    (void)record;
+    bench_usage(state, "what is '%s'? Scenes are named with --scene", text);
 }
 
 static const char help[] =
@@ -111,8 +92,7 @@ static const char help[] =
     "measured one, 'speed-up' the time of the table's first lattice row by the row's; csv and json "
     "call them 'ratio' and 'speedup'.\n" BENCH_EXIT_CODES;
 
-static const struct argp argp = {option_list, parse, NULL, help, bench_override_children,
-                                 NULL,        NULL};
+static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, NULL, help, refuse_word, NULL};
 
 /* Is it a built-in scene of the paper's for `row`, or, with NULL, for none, and does its name begin
  * with `stem` and a dash, unless that is NULL? */
@@ -220,8 +200,7 @@ static SmCode find_scene(const Options *options, const Choice *choice, BenchScen
                          SmError *error)
 {
     SmCode code = bench_scene_find(choice->scene, scene, error);
-    if (!code && options->chosen.engine)
-        snprintf(scene->engine, sizeof scene->engine, "%.23s", options->chosen.engine);
+    if (!code) bench_override_apply(&options->chosen, scene);
     return code;
 }
 
@@ -258,7 +237,6 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
     if (code) return code;
     code = bench_engine_find(scene.engine, chosen->precision, &type, error);
     if (code) return code;
-    if (chosen->layout >= 0) scene.params.layout = (SmLayout)chosen->layout;
     BenchBody body;
     const char *substitute = bench_substitute_find(&chosen->substitutes, scene.name);
     if (!substitute && choice->stem)
@@ -326,7 +304,7 @@ int bench_command_tables(int argc, char **argv)
     Options options = {.repeats = 15, .block = 20};
     Choices chosen = {.options = &options};
     SmError error;
-    bench_options_parse(&argp, argc, argv, &options, BENCH_TAKES_ALL, &options.common);
+    bench_options_parse(&line, argc, argv, &options, &options.common);
     if (options.columns) {
         bench_quantities_document(stdout);
         return SM_OK;

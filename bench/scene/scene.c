@@ -8,221 +8,259 @@
 
 #include "../../lib/system/printable.h"
 #include "../../reference/meshless/surface/points.h"
+#include "../settings/config_file.h"
+#include "../system/suggest.h"
 #include "builtin.h"
-#include "config_file.h"
 #include "scene_check.h"
-#include "setting.h"
 
 enum { BUILTIN_MAX = 64 };
 
 /* What a file says, before the four kinds of obstacle become one array. */
 typedef struct {
-    BenchScene scene;
+    BenchScene scene; /* first: the settings' members are as far from the record's beginning */
     SmObstacle plane[BENCH_MAX], ball[BENCH_MAX], box[BENCH_MAX], capsule[BENCH_MAX];
     int planes, balls, boxes, capsules;
 } SceneFile;
 
 #define FAR 1e12 /* a length, speed or force beyond this is a mistake */
 
-#define ITEM(name, kind, offset, low, high)                                                        \
-    {                                                                                              \
-        name, kind, offset, low, high, NULL, NULL, 0, 0                                            \
-    }
-#define WORDS(name, offset, words)                                                                 \
-    {                                                                                              \
-        name, BENCH_CHOICE, offset, 0, 0, words, NULL, 0, 0                                        \
-    }
+const char *const bench_precisions[] = {"single", "double", NULL};
+const char *const bench_widths[] = {"edges", "cells", NULL};
+const char *const bench_summations[] = {"fast", "bars", "naive", NULL};
+const char *const bench_layouts[] = {"auto", "lists", "blocks", NULL};
+const char *const bench_masses[] = {"material", "volume", NULL};
+const char *const bench_symmetries[] = {"union", "intersection", "none", NULL};
+const char *const bench_weightings[] = {"conserving", "plain", NULL};
+
 #define SELECT(type)                                                                               \
-    ITEM("box_low", BENCH_VECTOR, offsetof(type, select.low), -FAR, FAR),                          \
-        ITEM("box_high", BENCH_VECTOR, offsetof(type, select.high), -FAR, FAR),                    \
-        ITEM("sphere_centre", BENCH_VECTOR, offsetof(type, select.centre), -FAR, FAR),             \
-        ITEM("sphere_radius", BENCH_REAL, offsetof(type, select.radius), 0, FAR)
+    {"box_low", BENCH_IN(type, select.low), -FAR, FAR},                                            \
+        {"box_high", BENCH_IN(type, select.high), -FAR, FAR},                                      \
+        {"sphere_centre", BENCH_IN(type, select.centre), -FAR, FAR},                               \
+    {                                                                                              \
+        "sphere_radius", BENCH_IN(type, select.radius), 0, FAR                                     \
+    }
 
 static const BenchSetting handle_table[] = {
     SELECT(BenchHandle),
-    ITEM("velocity", BENCH_VECTOR, offsetof(BenchHandle, velocity), -FAR, FAR),
-    ITEM("axis", BENCH_VECTOR, offsetof(BenchHandle, axis), -FAR, FAR),
-    ITEM("centre", BENCH_VECTOR, offsetof(BenchHandle, centre), -FAR, FAR),
-    ITEM("rate", BENCH_REAL, offsetof(BenchHandle, rate), -1e4, 1e4),
-    ITEM("amplitude", BENCH_REAL, offsetof(BenchHandle, amplitude), -1e4, 1e4),
-    ITEM("period", BENCH_REAL, offsetof(BenchHandle, period), 0, 1e6),
-    ITEM("start", BENCH_REAL, offsetof(BenchHandle, start), 0, 1e6),
-    ITEM("stop", BENCH_REAL, offsetof(BenchHandle, stop), 0, 1e6),
-    ITEM("release", BENCH_BOOL, offsetof(BenchHandle, release), 0, 0),
+    {"velocity", BENCH_IN(BenchHandle, velocity), -FAR, FAR},
+    {"axis", BENCH_IN(BenchHandle, axis), -FAR, FAR},
+    {"centre", BENCH_IN(BenchHandle, centre), -FAR, FAR},
+    {"rate", BENCH_IN(BenchHandle, rate), -1e4, 1e4},
+    {"amplitude", BENCH_IN(BenchHandle, amplitude), -1e4, 1e4},
+    {"period", BENCH_IN(BenchHandle, period), 0, 1e6},
+    {"start", BENCH_IN(BenchHandle, start), 0, 1e6},
+    {"stop", BENCH_IN(BenchHandle, stop), 0, 1e6},
+    {"release", BENCH_IN(BenchHandle, release)},
     {0},
 };
 
 static const BenchSetting force_table[] = {
     SELECT(BenchForce),
-    ITEM("force", BENCH_VECTOR, offsetof(BenchForce, force), -FAR, FAR),
-    ITEM("start", BENCH_REAL, offsetof(BenchForce, start), 0, 1e6),
-    ITEM("stop", BENCH_REAL, offsetof(BenchForce, stop), 0, 1e6),
+    {"force", BENCH_IN(BenchForce, force), -FAR, FAR},
+    {"start", BENCH_IN(BenchForce, start), 0, 1e6},
+    {"stop", BENCH_IN(BenchForce, stop), 0, 1e6},
     {0},
 };
 
 static const BenchSetting cut_table[] = {
-    ITEM("base_from", BENCH_VECTOR, offsetof(BenchCut, base_from), -FAR, FAR),
-    ITEM("tip_from", BENCH_VECTOR, offsetof(BenchCut, tip_from), -FAR, FAR),
-    ITEM("base_to", BENCH_VECTOR, offsetof(BenchCut, base_to), -FAR, FAR),
-    ITEM("tip_to", BENCH_VECTOR, offsetof(BenchCut, tip_to), -FAR, FAR),
-    ITEM("start", BENCH_REAL, offsetof(BenchCut, start), 0, 1e6),
-    ITEM("stop", BENCH_REAL, offsetof(BenchCut, stop), 0, 1e6),
-    ITEM("level", BENCH_INT, offsetof(BenchCut, level), 1, OCT_MAX_LEVELS),
-    ITEM("reach", BENCH_REAL, offsetof(BenchCut, reach), 0, 1e6),
+    {"base_from", BENCH_IN(BenchCut, base_from), -FAR, FAR},
+    {"tip_from", BENCH_IN(BenchCut, tip_from), -FAR, FAR},
+    {"base_to", BENCH_IN(BenchCut, base_to), -FAR, FAR},
+    {"tip_to", BENCH_IN(BenchCut, tip_to), -FAR, FAR},
+    {"start", BENCH_IN(BenchCut, start), 0, 1e6},
+    {"stop", BENCH_IN(BenchCut, stop), 0, 1e6},
+    {"level", BENCH_IN(BenchCut, level), 1, OCT_MAX_LEVELS},
+    {"reach", BENCH_IN(BenchCut, reach), 0, 1e6},
     {0},
 };
 
 static const BenchSetting touch_table[] = {
-    ITEM("instance", BENCH_LONG, offsetof(BenchTouch, instance), 1, 1000000),
-    ITEM("centre", BENCH_VECTOR, offsetof(BenchTouch, centre), -FAR, FAR),
-    ITEM("radius", BENCH_REAL, offsetof(BenchTouch, radius), 0, FAR),
-    ITEM("level", BENCH_INT, offsetof(BenchTouch, level), 1, OCT_MAX_LEVELS),
-    ITEM("start", BENCH_REAL, offsetof(BenchTouch, start), 0, 1e6),
-    ITEM("stop", BENCH_REAL, offsetof(BenchTouch, stop), 0, 1e6),
-    ITEM("hold", BENCH_REAL, offsetof(BenchTouch, hold), 0, 1e6),
+    {"instance", BENCH_IN(BenchTouch, instance), 1, 1000000},
+    {"centre", BENCH_IN(BenchTouch, centre), -FAR, FAR},
+    {"radius", BENCH_IN(BenchTouch, radius), 0, FAR},
+    {"level", BENCH_IN(BenchTouch, level), 1, OCT_MAX_LEVELS},
+    {"start", BENCH_IN(BenchTouch, start), 0, 1e6},
+    {"stop", BENCH_IN(BenchTouch, stop), 0, 1e6},
+    {"hold", BENCH_IN(BenchTouch, hold), 0, 1e6},
     {0},
 };
 
 static const BenchSetting view_table[] = {
-    ITEM("eye_from", BENCH_VECTOR, offsetof(BenchView, eye_from), -FAR, FAR),
-    ITEM("eye_to", BENCH_VECTOR, offsetof(BenchView, eye_to), -FAR, FAR),
-    ITEM("start", BENCH_REAL, offsetof(BenchView, start), 0, 1e6),
-    ITEM("stop", BENCH_REAL, offsetof(BenchView, stop), 0, 1e6),
-    ITEM("near", BENCH_REAL, offsetof(BenchView, near), 0, FAR),
-    ITEM("slack", BENCH_REAL, offsetof(BenchView, slack), 0, 1e6),
-    ITEM("level", BENCH_INT, offsetof(BenchView, level), 1, OCT_MAX_LEVELS),
+    {"eye_from", BENCH_IN(BenchView, eye_from), -FAR, FAR},
+    {"eye_to", BENCH_IN(BenchView, eye_to), -FAR, FAR},
+    {"start", BENCH_IN(BenchView, start), 0, 1e6},
+    {"stop", BENCH_IN(BenchView, stop), 0, 1e6},
+    {"near", BENCH_IN(BenchView, near), 0, FAR},
+    {"slack", BENCH_IN(BenchView, slack), 0, 1e6},
+    {"level", BENCH_IN(BenchView, level), 1, OCT_MAX_LEVELS},
     {0},
 };
 
-#define CORNER(name, member) ITEM(name, BENCH_VECTOR, offsetof(SmObstacle, member), -FAR, FAR)
-#define RADIUS               ITEM("radius", BENCH_REAL, offsetof(SmObstacle, radius), 0, FAR)
-#define FRICTION             ITEM("friction", BENCH_REAL, offsetof(SmObstacle, friction), 0, 1)
-
-static const BenchSetting plane_table[] = {CORNER("point", a), CORNER("normal", b), FRICTION, {0}};
-static const BenchSetting ball_table[] = {CORNER("centre", a), RADIUS, FRICTION, {0}};
-static const BenchSetting box_table[] = {CORNER("low", a), CORNER("high", b), FRICTION, {0}};
+#define CORNER(name, member)                                                                       \
+    {                                                                                              \
+        name, BENCH_IN(SmObstacle, member), -FAR, FAR                                              \
+    }
+static const BenchSetting plane_table[] = {
+    CORNER("point", a),
+    CORNER("normal", b),
+    {"friction", BENCH_IN(SmObstacle, friction), 0, 1},
+    {0},
+};
+static const BenchSetting ball_table[] = {
+    CORNER("centre", a),
+    {"radius", BENCH_IN(SmObstacle, radius), 0, FAR},
+    {"friction", BENCH_IN(SmObstacle, friction), 0, 1},
+    {0},
+};
+static const BenchSetting box_table[] = {
+    CORNER("low", a),
+    CORNER("high", b),
+    {"friction", BENCH_IN(SmObstacle, friction), 0, 1},
+    {0},
+};
 static const BenchSetting capsule_table[] = {
-    CORNER("from", a), CORNER("to", b), RADIUS, FRICTION, {0}};
-
-static const char criterion_kinds[] = "uniform|features|surface|box|sphere";
+    CORNER("from", a),
+    CORNER("to", b),
+    {"radius", BENCH_IN(SmObstacle, radius), 0, FAR},
+    {"friction", BENCH_IN(SmObstacle, friction), 0, 1},
+    {0},
+};
 
 static const BenchSetting criterion_table[] = {
-    {"kind", BENCH_CHOICE, offsetof(OctCriterion, kind), 1, 0, criterion_kinds, NULL, 0, 0},
-    ITEM("level", BENCH_INT, offsetof(OctCriterion, level), 1, OCT_MAX_LEVELS),
-    ITEM("low", BENCH_VECTOR, offsetof(OctCriterion, low), -FAR, FAR),
-    ITEM("high", BENCH_VECTOR, offsetof(OctCriterion, high), -FAR, FAR),
-    ITEM("centre", BENCH_VECTOR, offsetof(OctCriterion, centre), -FAR, FAR),
-    ITEM("radius", BENCH_REAL, offsetof(OctCriterion, radius), 0, FAR),
+    {"kind", BENCH_IN(OctCriterion, kind), .needed = true,
+     BENCH_ONE_OF("uniform", "features", "surface", "box", "sphere")},
+    {"level", BENCH_IN(OctCriterion, level), 1, OCT_MAX_LEVELS},
+    {"low", BENCH_IN(OctCriterion, low), -FAR, FAR},
+    {"high", BENCH_IN(OctCriterion, high), -FAR, FAR},
+    {"centre", BENCH_IN(OctCriterion, centre), -FAR, FAR},
+    {"radius", BENCH_IN(OctCriterion, radius), 0, FAR},
     {0},
 };
 
 static const BenchSetting width_table[] = {
-    ITEM("w", BENCH_REAL, offsetof(OctLocalWidth, width.cells), 0, 1e6),
-    ITEM("edges", BENCH_REAL, offsetof(OctLocalWidth, width.edges), 0, 1e6),
-    ITEM("low", BENCH_VECTOR, offsetof(OctLocalWidth, low), -FAR, FAR),
-    ITEM("high", BENCH_VECTOR, offsetof(OctLocalWidth, high), -FAR, FAR),
-    ITEM("centre", BENCH_VECTOR, offsetof(OctLocalWidth, centre), -FAR, FAR),
-    ITEM("radius", BENCH_REAL, offsetof(OctLocalWidth, radius), 0, FAR),
+    {"w", BENCH_IN(OctLocalWidth, width.cells), 0, 1e6},
+    {"edges", BENCH_IN(OctLocalWidth, width.edges), 0, 1e6},
+    {"low", BENCH_IN(OctLocalWidth, low), -FAR, FAR},
+    {"high", BENCH_IN(OctLocalWidth, high), -FAR, FAR},
+    {"centre", BENCH_IN(OctLocalWidth, centre), -FAR, FAR},
+    {"radius", BENCH_IN(OctLocalWidth, radius), 0, FAR},
     {0},
 };
 
 static const BenchSetting collide_table[] = {
-    ITEM("self", BENCH_BOOL, offsetof(SmCollideParams, self), 0, 0),
-    ITEM("bodies", BENCH_BOOL, offsetof(SmCollideParams, bodies), 0, 0),
-    ITEM("friction", BENCH_REAL, offsetof(SmCollideParams, friction), 0, 1),
+    {"self", BENCH_IN(SmCollideParams, self)},
+    {"bodies", BENCH_IN(SmCollideParams, bodies)},
+    {"friction", BENCH_IN(SmCollideParams, friction), 0, 1},
     {0},
 };
 
-#define OCT_LIST(name, items, most, count, type, table)                                            \
-    {                                                                                              \
-        name, BENCH_LIST, offsetof(OctOptions, items), 0, most, NULL, table, sizeof(type),         \
-            offsetof(OctOptions, count)                                                            \
-    }
+/* Options of `run`: those of the first section of its --help, and those of one engine alone. */
+#define RUN(name, value, words)      BENCH_OPTION(name, value, 1, words), .who = BENCH_BY_RUN
+#define OCTREE(name, value, words)   RUN(name, value, "Octree: " words), .of = BENCH_OF_SAMPLED
+#define MESHLESS(name, value, words) RUN(name, value, "Meshless: " words), .of = BENCH_OF_ELASTIC
 
 static const BenchSetting octree_table[] = {
-    ITEM("levels", BENCH_INT, offsetof(OctOptions, sampling.levels), 1, OCT_MAX_LEVELS),
-    ITEM("bases", BENCH_LONG, offsetof(OctOptions, sampling.bases), 0, 1e9),
-    ITEM("nodes", BENCH_LONG, offsetof(OctOptions, sampling.nodes), 0, 1e9),
-    ITEM("balance", BENCH_BOOL, offsetof(OctOptions, sampling.balance), 0, 0),
-    OCT_LIST("criteria", sampling.criteria, OCT_MAX_CRITERIA, sampling.criteria_count, OctCriterion,
-             criterion_table),
-    ITEM("w", BENCH_REAL, offsetof(OctOptions, width.cells), 0, 1e6),
-    ITEM("edges", BENCH_REAL, offsetof(OctOptions, width.edges), 0, 1e6),
-    ITEM("summation_nodes", BENCH_REAL, offsetof(OctOptions, summation_nodes), 0, 1e6),
-    OCT_LIST("widths", local, OCT_MAX_WIDTHS, local_count, OctLocalWidth, width_table),
-    WORDS("masses", offsetof(OctOptions, masses), BENCH_MASSES),
-    WORDS("symmetry", offsetof(OctOptions, symmetry), BENCH_SYMMETRIES),
-    WORDS("weighting", offsetof(OctOptions, weighting), BENCH_WEIGHTINGS),
-    WORDS("goals", offsetof(OctOptions, form), "gather|adjoint"),
-    ITEM("yield", BENCH_REAL, offsetof(OctOptions, yield), 0, 1e6),
-    ITEM("creep", BENCH_REAL, offsetof(OctOptions, creep), 0, 1e6),
-    ITEM("most", BENCH_REAL, offsetof(OctOptions, most), 0, 1e6),
+    {"levels", BENCH_IN(OctOptions, sampling.levels), 1, OCT_MAX_LEVELS,
+     OCTREE("levels", "N", "a base cell is 2^N finest cells wide, 1 to 12")},
+    {"bases", BENCH_IN(OctOptions, sampling.bases), 0, 1e9},
+    {"nodes", BENCH_IN(OctOptions, sampling.nodes), 0, 1e9},
+    {"balance", BENCH_IN(OctOptions, sampling.balance)},
+    {"criteria",
+     BENCH_ITEMS(OctOptions, sampling.criteria, sampling.criteria_count, OCT_MAX_CRITERIA),
+     .table = criterion_table},
+    {"w", BENCH_IN(OctOptions, width.cells), 0, 1e6},
+    {"edges", BENCH_IN(OctOptions, width.edges), 0, 1e6},
+    {"summation_nodes", BENCH_IN(OctOptions, summation_nodes), 0, 1e6},
+    {"widths", BENCH_ITEMS(OctOptions, local, local_count, OCT_MAX_WIDTHS), .table = width_table},
+    {"masses", BENCH_IN(OctOptions, masses), BENCH_CHOICES(bench_masses)},
+    {"symmetry", BENCH_IN(OctOptions, symmetry), BENCH_CHOICES(bench_symmetries)},
+    {"weighting", BENCH_IN(OctOptions, weighting), BENCH_CHOICES(bench_weightings)},
+    {"goals", BENCH_IN(OctOptions, form), BENCH_ONE_OF("gather", "adjoint")},
+    {"yield", BENCH_IN(OctOptions, yield), 0, 1e6},
+    {"creep", BENCH_IN(OctOptions, creep), 0, 1e6},
+    {"most", BENCH_IN(OctOptions, most), 0, 1e6},
     {0},
 };
-
-#define AT(member) offsetof(SceneFile, scene.member)
 
 static const BenchSetting meshless_table[] = {
-    ITEM("young", BENCH_REAL, AT(meshless.material.young), 1e-30, 1e30),
-    ITEM("poisson", BENCH_REAL, AT(meshless.material.poisson), -0.99, 0.49),
-    ITEM("density", BENCH_REAL, AT(meshless.material.density), 1e-30, 1e30),
-    ITEM("stiffness_damping", BENCH_REAL, AT(meshless.stiffness_damping), 0, 1e6),
-    ITEM("points", BENCH_LONG, AT(meshless.points), REF_LEAST_POINTS, REF_MOST_POINTS),
-    ITEM("nodes", BENCH_LONG, AT(meshless.nodes), 8, 1e6),
-    ITEM("uniform", BENCH_BOOL, AT(meshless.uniform), 0, 0),
-    ITEM("modes", BENCH_INT, AT(meshless.modes), 7, 1000),
-    ITEM("metre", BENCH_REAL, AT(metre), 1e-30, 1e30),
+    {"young", BENCH_IN(BenchScene, meshless.material.young), 1e-30, 1e30,
+     MESHLESS("young", "E", "Young's modulus, Pa (default: 1e5)")},
+    {"poisson", BENCH_IN(BenchScene, meshless.material.poisson), -0.99, 0.49,
+     MESHLESS("poisson", "NU", "Poisson's ratio, above -1 to 0.49 (default: 0.3)")},
+    {"density", BENCH_IN(BenchScene, meshless.material.density), 1e-30, 1e30,
+     MESHLESS("density", "RHO", "kg/m^3 (default: 1000)")},
+    {"modes", BENCH_IN(BenchScene, meshless.modes), 7, 1000,
+     MESHLESS("modes", "N", "natural modes, 7 to 1000 (default: 64)")},
+    {"points", BENCH_IN(BenchScene, meshless.points), REF_LEAST_POINTS, REF_MOST_POINTS,
+     MESHLESS("points", "N",
+              "points on the mesh, of which its field is made (default: 12000, of thin "
+              "bodies up to 400000)")},
+    {"stiffness_damping", BENCH_IN(BenchScene, meshless.stiffness_damping), 0, 1e6},
+    {"nodes", BENCH_IN(BenchScene, meshless.nodes), 8, 1e6},
+    {"uniform", BENCH_IN(BenchScene, meshless.uniform)},
+    {"metre", BENCH_IN(BenchScene, metre), 1e-30, 1e30},
     {0},
 };
-#define LIST(name, items, count, type, table)                                                      \
-    {                                                                                              \
-        name, BENCH_LIST, offsetof(SceneFile, items), 0, BENCH_MAX, NULL, table, sizeof(type),     \
-            offsetof(SceneFile, count)                                                             \
-    }
 
-static const BenchSetting scene_table[] = {
-    ITEM("title", BENCH_TEXT, AT(title), 0, sizeof((BenchScene *)0)->title),
-    ITEM("paper", BENCH_TEXT, AT(paper), 0, sizeof((BenchScene *)0)->paper),
-    ITEM("row", BENCH_TEXT, AT(row), 0, sizeof((BenchScene *)0)->row),
-    ITEM("mesh", BENCH_TEXT, AT(mesh), 0, BENCH_PATH),
-    WORDS("fill", AT(voxel.fill), "solid|shell"),
-    ITEM("particles", BENCH_LONG, AT(voxel.particles), 8, 1e9),
-    ITEM("cell", BENCH_REAL, AT(voxel.cell), 1e-30, 1e30),
-    ITEM("cells", BENCH_LONG, AT(cells), 1, 1e9),
-    ITEM("engine", BENCH_TEXT, AT(engine), 0, sizeof((BenchScene *)0)->engine),
-    ITEM("w", BENCH_INT, AT(params.w), 1, SM_MOST_W),
-    ITEM("h", BENCH_REAL, AT(params.h), 1e-9, 10),
-    ITEM("damping", BENCH_REAL, AT(params.damping), 0, 1),
-    ITEM("damping_every", BENCH_INT, AT(params.damping_every), 1, 1000000),
-    ITEM("gravity", BENCH_VECTOR, AT(params.gravity), -FAR, FAR),
-    ITEM("strain_limit", BENCH_REAL, AT(params.strain_limit), 0, 1e6),
-    WORDS("summation", AT(params.summation), "fast|bars|naive"),
-    WORDS("polar", AT(params.polar), "fast|jacobi"),
-    WORDS("layout", AT(params.layout), "auto|lists|blocks"),
-    ITEM("epsilon", BENCH_REAL, AT(octree.epsilon), 0, 1e6),
-    {"octree", BENCH_GROUP, AT(octree), 0, 0, NULL, octree_table, 0, 0},
-    {"meshless", BENCH_GROUP, 0, 0, 0, NULL, meshless_table, 0, 0},
-    {"collide", BENCH_GROUP, AT(params.collide), 0, 0, NULL, collide_table, 0, 0},
-    ITEM("density", BENCH_REAL, AT(density), 0, FAR),
-    ITEM("vertex_mass", BENCH_TEXT, AT(vertex_mass), 0, BENCH_PATH),
-    ITEM("instances", BENCH_LONG, AT(instances), 1, 1000000),
-    ITEM("spacing", BENCH_REAL, AT(spacing), 0, 1e6),
-    ITEM("steps_per_frame", BENCH_INT, AT(steps_per_frame), 1, 1000000),
-    ITEM("frames", BENCH_INT, AT(frames), 0, 10000000),
-    ITEM("settle", BENCH_INT, AT(settle), 0, 1000000),
-    ITEM("bend", BENCH_REAL, AT(bend), -100, 100),
-    ITEM("twist", BENCH_REAL, AT(twist), -100, 100),
-    ITEM("squash", BENCH_REAL, AT(squash), -10, 10),
-    ITEM("kick", BENCH_REAL, AT(kick), 0, 100),
-    LIST("handles", scene.handle, scene.handle_count, BenchHandle, handle_table),
-    LIST("forces", scene.force, scene.force_count, BenchForce, force_table),
-    LIST("cuts", scene.cut, scene.cut_count, BenchCut, cut_table),
-    LIST("touches", scene.touch, scene.touch_count, BenchTouch, touch_table),
-    {"view", BENCH_GROUP, AT(view), 0, 0, NULL, view_table, 0, 0},
-    LIST("planes", plane, planes, SmObstacle, plane_table),
-    LIST("spheres", ball, balls, SmObstacle, ball_table),
-    LIST("boxes", box, boxes, SmObstacle, box_table),
-    LIST("capsules", capsule, capsules, SmObstacle, capsule_table),
+#define LIST(items, number) BENCH_ITEMS(SceneFile, items, number, BENCH_MAX)
+
+const BenchSetting bench_scene_settings[] = {
+    {"title", BENCH_IN(BenchScene, title)},
+    {"paper", BENCH_IN(BenchScene, paper)},
+    {"row", BENCH_IN(BenchScene, row)},
+    {"mesh", BENCH_IN(BenchScene, mesh)},
+    {"fill", BENCH_IN(BenchScene, voxel.fill), BENCH_ONE_OF("solid", "shell"),
+     RUN("shell", NULL, "Surface cells only, not the interior")},
+    {"particles", BENCH_IN(BenchScene, voxel.particles), 8, 1e9,
+     RUN("particles", "N", "Wanted particle count")},
+    {"cell", BENCH_IN(BenchScene, voxel.cell), 1e-30, 1e30,
+     RUN("cell", "SIZE", "Edge of a cell, in the mesh's units")},
+    {"cells", BENCH_IN(BenchScene, cells), 1, 1e9},
+    {"engine", BENCH_IN(BenchScene, engine)},
+    {"w", BENCH_IN(BenchScene, params.w), 1, SM_MOST_W},
+    {"h", BENCH_IN(BenchScene, params.h), 1e-9, 10, RUN("h", "S", "Time step, seconds")},
+    {"damping", BENCH_IN(BenchScene, params.damping), 0, 1,
+     RUN("damping", "K", "Region damping, 0 to 1")},
+    {"damping_every", BENCH_IN(BenchScene, params.damping_every), 1, 1000000},
+    {"gravity", BENCH_IN(BenchScene, params.gravity), -FAR, FAR,
+     RUN("gravity", "X,Y,Z", "Mesh units per second squared")},
+    {"strain_limit", BENCH_IN(BenchScene, params.strain_limit), 0, 1e6,
+     RUN("strain-limit", "S",
+         "Links break beyond this times their length, above 1; 0: never. The surface does not "
+         "tear: its triangles stretch")},
+    {"summation", BENCH_IN(BenchScene, params.summation), BENCH_CHOICES(bench_summations),
+     RUN("summation", "HOW", "fast, bars or naive")},
+    {"polar", BENCH_IN(BenchScene, params.polar), BENCH_ONE_OF("fast", "jacobi"),
+     RUN("polar", "HOW", "fast or jacobi")},
+    {"layout", BENCH_IN(BenchScene, params.layout), BENCH_CHOICES(bench_layouts),
+     BENCH_OPTION("layout", "HOW", 1, BENCH_LAYOUT_HELP " (default: as the scene says)")},
+    {"epsilon", BENCH_IN(BenchScene, octree.epsilon), 0, 1e6,
+     OCTREE("epsilon", "E", "regions may be wider by this share (default for a mesh: 0.5)")},
+    {"octree", BENCH_IN(BenchScene, octree), .table = octree_table},
+    {"meshless", .kind = BENCH_SET_GROUP, .table = meshless_table},
+    {"collide", BENCH_IN(BenchScene, params.collide), .table = collide_table},
+    {"density", BENCH_IN(BenchScene, density), 0, FAR},
+    {"vertex_mass", BENCH_IN(BenchScene, vertex_mass)},
+    {"instances", BENCH_IN(BenchScene, instances), 1, 1000000},
+    {"spacing", BENCH_IN(BenchScene, spacing), 0, 1e6},
+    {"steps_per_frame", BENCH_IN(BenchScene, steps_per_frame), 1, 1000000,
+     BENCH_OPTION("steps", "N", 2, "Steps in a frame"), .who = BENCH_BY_RUN},
+    {"frames", BENCH_IN(BenchScene, frames), 0, 10000000,
+     BENCH_OPTION("frames", "N", 2, "Frames after the first"), .who = BENCH_BY_RUN},
+    {"settle", BENCH_IN(BenchScene, settle), 0, 1000000},
+    {"bend", BENCH_IN(BenchScene, bend), -100, 100},
+    {"twist", BENCH_IN(BenchScene, twist), -100, 100},
+    {"squash", BENCH_IN(BenchScene, squash), -10, 10},
+    {"kick", BENCH_IN(BenchScene, kick), 0, 100},
+    {"handles", LIST(scene.handle, scene.handle_count), .table = handle_table},
+    {"forces", LIST(scene.force, scene.force_count), .table = force_table},
+    {"cuts", LIST(scene.cut, scene.cut_count), .table = cut_table},
+    {"touches", LIST(scene.touch, scene.touch_count), .table = touch_table},
+    {"view", BENCH_IN(BenchScene, view), .table = view_table},
+    {"planes", LIST(plane, planes), .table = plane_table},
+    {"spheres", LIST(ball, balls), .table = ball_table},
+    {"boxes", LIST(box, boxes), .table = box_table},
+    {"capsules", LIST(capsule, capsules), .table = capsule_table},
     {0},
 };
 
@@ -293,7 +331,8 @@ SmCode bench_scene_parse(const char *text, size_t size, const char *file, BenchS
     SceneFile *read = sm_alloc(1, sizeof *read);
     bench_scene_init(&read->scene);
     name_scene(&read->scene, file);
-    code = bench_settings_read(config_root_setting(&config), scene_table, read, file, error);
+    code =
+        bench_settings_read(config_root_setting(&config), bench_scene_settings, read, file, error);
     config_destroy(&config);
     if (!code) code = check(read, error);
     if (!code) *scene = read->scene;

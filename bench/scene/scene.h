@@ -8,6 +8,7 @@
 #include "../../lib/voxel/voxelise.h"
 #include "../../octree/engine.h"
 #include "../../reference/meshless/engine.h"
+#include "../settings/setting.h"
 #include "../system/suggest.h"
 
 enum { BENCH_NAME = 64, BENCH_PATH = 1024, BENCH_MAX = 64, BENCH_SETTLE_STEPS = 8 };
@@ -97,10 +98,18 @@ typedef struct BenchScene {
     double kick;                /* random initial velocity, cells per step, from the seed */
 } BenchScene;
 
-/* Words for an octree's choices, in the order of its enumerations. */
-#define BENCH_MASSES     "material|volume"
-#define BENCH_SYMMETRIES "union|intersection|none"
-#define BENCH_WEIGHTINGS "conserving|plain"
+/* Words for choices, in the order of their enumerations; NULL-terminated. */
+extern const char *const bench_precisions[];
+extern const char *const bench_widths[]; /* units of an octree's w: of each node's own, finest */
+extern const char *const bench_summations[], *const bench_layouts[];
+extern const char *const bench_masses[], *const bench_symmetries[], *const bench_weightings[];
+#define BENCH_LAYOUT_HELP "Fastlsm's sums: auto, lists, or blocks where it can"
+
+/* Everything that a scene file can say, and the options that replace some of it: who has them, and
+ * which engines alone. */
+extern const BenchSetting bench_scene_settings[];
+enum { BENCH_BY_RUN = 1, BENCH_BY_TABLES = 2 };
+enum { BENCH_OF_SAMPLED = 1, BENCH_OF_ELASTIC = 2 }; /* as in BenchEngine */
 
 /* The defaults of everything that a scene file may leave out; no mesh. */
 void bench_scene_init(BenchScene *scene);

@@ -8,7 +8,7 @@
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
 #include "../campaign/campaign_run.h"
-#include "../cli/range.h"
+#include "../settings/setting.h"
 #include "front.h"
 #include "sweep.h"
 

@@ -1,12 +1,12 @@
-/* config_file.h - libconfig files from users: read whole, and parsed with one clear line on what is
- * wrong. */
+/* config_file.h - libconfig files from users: read whole, parsed, and put into a struct by a table
+ * of settings, with one clear line on what is wrong. */
 #ifndef BENCH_CONFIG_FILE_H
 #define BENCH_CONFIG_FILE_H
 
 #include <libconfig.h>
 #include <stddef.h>
 
-#include "../../lib/error.h"
+#include "setting.h"
 
 enum { BENCH_CONFIG_BYTES = 1 << 20 };
 
@@ -19,5 +19,11 @@ char *bench_config_load(const char *path, size_t *size, SmError *error);
  * @include, or not libconfig. */
 SmCode bench_config_parse(const char *text, size_t size, const char *file, const char *kind,
                           config_t *config, SmError *error);
+
+/* Reads `group` into the record that the table describes. A setting that is absent leaves its place
+ * as it is; one that the table has not is an error that lists what is known. `file` is for the
+ * messages: "file:line: ...". Errors: SM_INPUT. */
+SmCode bench_settings_read(const config_setting_t *group, const BenchSetting *table, void *record,
+                           const char *file, SmError *error);
 
 #endif

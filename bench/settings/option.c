@@ -1,0 +1,235 @@
+#include "option.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../lib/system/printable.h"
+#include "../../lib/system/team.h"
+#include "../system/suggest.h"
+#include "provenance.h"
+
+const char *argp_program_version = "shapebench " SHAPEBENCH_VERSION;
+
+/* Where the system's BLAS is OpenBLAS, which has threads of its own. */
+void openblas_set_num_threads(int threads) __attribute__((weak));
+
+/* One number for all that takes none of its own (lib/system/team.h). */
+static void set_threads(int threads)
+{
+    omp_set_num_threads(threads);
+    if (openblas_set_num_threads) openblas_set_num_threads(threads);
+}
+
+/* Standard error while getopt's words go elsewhere, or NULL. */
+static FILE *console;
+
+static void restore_console(void)
+{
+    if (!console) return;
+    fclose(stderr);
+    stderr = console;
+    console = NULL;
+}
+
+static void say(const char *name, const char *text, int length, bool usage)
+{
+    const char *join = length && text[length - 1] == '?' ? " See" : "; see";
+    char *line = sm_alloc((size_t)length + 1, 1); /* it may name a file, or what was typed */
+    memcpy(line, text, (size_t)length);
+    sm_printable(line);
+    fprintf(stderr, "%s: %s", name, line);
+    free(line);
+    bool told = strstr(text, " --help'") != NULL; /* by another program, whose line this repeats */
+    if (usage && !told) fprintf(stderr, "%s '%s --help'", join, name);
+    fputc('\n', stderr);
+}
+
+/* Offers all long names. */
+static void suggest_options(const struct argp *argp, BenchSuggestion *meant)
+{
+    const struct argp_option *option = argp->options;
+    for (; option && (option->name || option->key || option->doc); option++)
+        if (option->name) bench_suggest(meant, option->name);
+}
+
+/* Adds to what getopt says of an unknown option which one may be meant. */
+static void say_words(const struct argp *argp, const char *name, const char *words)
+{
+    static const char unknown[] = "unrecognized option '--";
+    char line[512], typed[64], near[BENCH_SUGGEST_TEXT];
+    BenchSuggestion meant = {.typed = typed};
+    int length = (int)strcspn(words, "\n");
+    if (!strncmp(words, unknown, sizeof unknown - 1)) {
+        const char *start = words + sizeof unknown - 1;
+        snprintf(typed, sizeof typed, "%.*s", (int)strcspn(start, "='\n"), start);
+        suggest_options(argp, &meant);
+        bench_suggest(&meant, "help");
+        bench_suggest(&meant, "version");
+    }
+    snprintf(line, sizeof line, "%.*s%s", length, words, bench_suggest_words(&meant, "--", near));
+    say(name, line, (int)strlen(line), true);
+}
+
+void bench_option_words(const struct argp *argp, int argc, char **argv, unsigned flags, int *first,
+                        void *input)
+{
+    char *said = NULL;
+    size_t size;
+    FILE *words = open_memstream(&said, &size);
+    if (words) console = stderr, stderr = words;
+    error_t failed = argp_parse(argp, argc, argv, flags, first, input);
+    restore_console();
+    size_t start = strlen(argv[0]) + 2; /* getopt begins with the name */
+    if (failed && said && strlen(said) > start) say_words(argp, argv[0], said + start);
+    free(said);
+    if (failed) exit(SM_USAGE);
+}
+
+void bench_option_fail(const char *name, const SmError *error)
+{
+    say(name, error->text, (int)strlen(error->text), error->code == SM_USAGE);
+}
+
+void bench_usage(const struct argp_state *state, const char *format, ...)
+{
+    SmError error;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error.text, sizeof error.text, format, arguments);
+    va_end(arguments);
+    for (char *c = error.text; *c; c++)
+        if (*c == '\n' || *c == '\r') *c = ' ';
+    restore_console();
+    say(state->name, error.text, (int)strlen(error.text), true);
+    exit(SM_USAGE);
+}
+
+/* ---- tables of settings as argp's options */
+
+enum { MOST = 48, FIRST_KEY = 0x2000 };
+
+/* An option: the setting, and what it is written to. */
+typedef struct {
+    const BenchSetting *setting;
+    void *record;      /* that its table describes; NULL: `given` takes it, */
+    BenchGiven *given; /* for the struct at `offset` */
+    size_t offset;
+} Option;
+
+typedef struct {
+    const BenchCommandLine *line;
+    void *record;
+    BenchCommon *common;
+    int count;
+    Option option[MOST];
+    struct argp_option list[MOST + 1]; /* in the same order */
+} Options;
+
+static void add_option(Options *options, const Option *option)
+{
+    const BenchSetting *setting = option->setting;
+    if (options->count == MOST) abort();
+    int key = setting->letter ? setting->letter : FIRST_KEY + options->count;
+    options->option[options->count] = *option;
+    options->list[options->count++] =
+        (struct argp_option){setting->option, setting->option ? key : 0, setting->argument, 0,
+                             setting->help,   setting->section};
+}
+
+/* Adds the options of the table that `into` begins with, as `who` has them. */
+static void add_table(Options *options, const Option *into, unsigned who)
+{
+    for (const BenchSetting *s = into->setting; !bench_setting_ends(s); s++) {
+        Option option = *into;
+        option.setting = s;
+        if (s->kind == BENCH_SET_GROUP && s->table) {
+            option.setting = s->table;
+            option.offset += s->offset;
+            if (into->record) option.record = (char *)into->record + s->offset;
+            add_table(options, &option, s->who ? s->who : who);
+        } else if (s->kind == BENCH_SET_GIVEN) {
+            option = (Option){s->table, NULL, (void *)((char *)into->record + s->offset), 0};
+            add_table(options, &option, who);
+        } else if ((s->option || !s->key) && (!s->who || !who || s->who & who)) {
+            add_option(options, &option);
+        }
+    }
+}
+
+static void take(const Options *options, const Option *option, const char *text,
+                 const struct argp_state *state)
+{
+    const BenchSetting *setting = option->setting;
+    SmError error = {.code = SM_OK};
+    options->common->measuring |= setting->measuring;
+    if (setting->take)
+        setting->take(state, text, (char *)option->record + setting->offset);
+    else if (option->given)
+        bench_given_add(option->given, setting, option->offset, text, &error);
+    else
+        bench_setting_text(setting, text, option->record, &error);
+    if (error.code) bench_usage(state, "--%s: %s", setting->option, error.text);
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    const Options *options = state->input;
+    const BenchCommandLine *line = options->line;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->err_stream = NULL; /* getopt's line is enough: no second one, "Try ..." */
+        return 0;
+    case ARGP_KEY_ARG:
+        line->argument(state, options->record, text);
+        return 0;
+    case ARGP_KEY_END:
+        if (line->check) line->check(state, options->record);
+        return 0;
+    }
+    for (int i = 0; i < options->count; i++)
+        if (options->list[i].name && options->list[i].key == key) {
+            take(options, &options->option[i], text, state);
+            return 0;
+        }
+    return ARGP_ERR_UNKNOWN;
+}
+
+static const BenchSetting common_settings[] = {
+    {.help = "Common options:", .section = 90, .who = BENCH_TAKES_ALL},
+    {BENCH_OPTION("quiet", NULL, 90, "No progress and no remarks on standard error"),
+     BENCH_IN(BenchCommon, quiet), .who = BENCH_TAKES_QUIET},
+    {BENCH_OPTION("threads", "N", 90, "Threads; 0: all cores (default: 1)"),
+     BENCH_IN(BenchCommon, threads), 0, SM_MOST_THREADS, .who = BENCH_TAKES_THREADS},
+    {BENCH_OPTION("seed", "N", 90, "Seed of everything random (default: 1)"),
+     BENCH_IN(BenchCommon, seed), 0, 2147483647, .who = BENCH_TAKES_SEED},
+    {0},
+};
+
+void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, void *record,
+                         BenchCommon *common)
+{
+    Options options = {.line = line, .record = record, .common = common};
+    *common = (BenchCommon){.threads = 1, .seed = 1};
+    add_table(&options, &(Option){.setting = line->settings, .record = record}, 0);
+    if (line->takes)
+        add_table(&options, &(Option){.setting = common_settings, .record = common}, line->takes);
+    const struct argp argp = {options.list, parse, line->arguments, line->help, NULL, NULL, NULL};
+    bench_option_words(&argp, argc, argv, 0, NULL, &options);
+    if (!common->threads) common->threads = sm_team(omp_get_num_procs());
+    set_threads(common->threads);
+}
+
+void bench_option_shown(const struct argp_state *state, const char *text, const char **file)
+{
+    if (*file) bench_usage(state, "what is '%s'? One file is shown at a time", text);
+    *file = text;
+}
+
+void bench_option_shown_alone(const struct argp_state *state, const BenchCommon *common,
+                              const char *file)
+{
+    if (file && common->measuring)
+        bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o", file);
+}

@@ -1,0 +1,55 @@
+/* option.h - what a command takes on its command line, from tables of settings (setting.h), by
+ * argp.
+ *
+ * A mistake ends the program with one line on standard error and exit code 2. */
+#ifndef BENCH_OPTION_H
+#define BENCH_OPTION_H
+
+#include "setting.h"
+
+/* Options that several commands have. */
+typedef struct {
+    int threads; /* 1 or more */
+    unsigned long seed;
+    bool quiet;
+    bool measuring; /* was an option given that says what to measure? */
+} BenchCommon;
+
+/* What of BenchCommon a command takes; the rest has its defaults. */
+enum { BENCH_TAKES_QUIET = 1, BENCH_TAKES_THREADS = 2, BENCH_TAKES_SEED = 4, BENCH_TAKES_ALL = 7 };
+
+typedef struct {
+    const BenchSetting *settings; /* of its record */
+    unsigned takes;               /* BENCH_TAKES_... */
+    const char *arguments;        /* "[FILE.h5]"; NULL: it has none */
+    const char *help;             /* as argp's: before the options, \v, behind them */
+    /* Takes an argument that is no option, into the record. */
+    void (*argument)(const struct argp_state *state, void *record, char *text);
+    /* Refuses what does not go together, when all options are read; NULL: everything does. */
+    void (*check)(const struct argp_state *state, void *record);
+} BenchCommandLine;
+
+/* Reads a command's options into its record, whose defaults are set, and the common ones. Usage
+ * errors end the program. argv[0] is the program and command ("shapebench run"). */
+void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, void *record,
+                         BenchCommon *common);
+
+/* argp_parse(), but what getopt finds wrong (an unknown option, a missing value) is one line like
+ * all others, and ends the program with exit code 2. */
+void bench_option_words(const struct argp *argp, int argc, char **argv, unsigned flags, int *first,
+                        void *input);
+
+/* Prints "program command: line", of SM_USAGE with where to look it up. */
+void bench_option_fail(const char *name, const SmError *error);
+
+/* Prints "program command: line; see ... --help" and ends the program with exit code 2. */
+void bench_usage(const struct argp_state *state, const char *format, ...)
+    __attribute__((format(printf, 2, 3), noreturn));
+
+/* Takes the one file that a command shows when it is given alone; and, when all options are read,
+ * refuses those that say what to measure. */
+void bench_option_shown(const struct argp_state *state, const char *text, const char **file);
+void bench_option_shown_alone(const struct argp_state *state, const BenchCommon *common,
+                              const char *file);
+
+#endif
