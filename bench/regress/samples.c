@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../measure/measure.h"
+#include "../table/quantity.h"
 #include "../table/row_store.h"
 
 #define FIELD(kind, member) BENCH_FIELD(BenchRow, kind, member)
@@ -13,19 +14,12 @@
 
 enum { MOST_ROWS = 100000, MOST_REPEATS = 1000000, MOST_STAGES = 64, LEAST_ROW = 256 /* bytes */ };
 
-/* In every schema so far. */
+/* In every schema so far; what else there is of every row is read where it is stored. */
 static const BenchField needed[] = {
     FIELD(BENCH_TEXT, scene),
     FIELD(BENCH_BOOL, valid),
     FIELD(BENCH_INT, repeats),
 };
-static const BenchField wanted[] = {
-    FIELD(BENCH_TEXT, paper),  FIELD(BENCH_TEXT, engine),    FIELD(BENCH_TEXT, precision),
-    FIELD(BENCH_TEXT, reason), FIELD(BENCH_LONG, particles), FIELD(BENCH_LONG, regions),
-    FIELD(BENCH_INT, w),       FIELD(BENCH_INT, steps),      FIELD(BENCH_DOUBLE, epsilon),
-    FIELD(BENCH_DOUBLE, h),    FIELD(BENCH_INT, threads),    FIELD(BENCH_HASH, input_hash),
-};
-
 static void read_where_there(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
                              void *record)
 {
@@ -88,7 +82,12 @@ static void read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
     hid_t group = bench_h5_find_group(h5, parent, name);
     row->epsilon = row->h = NAN;
     bench_h5_read_fields(h5, group, needed, COUNT(needed), row);
-    read_where_there(h5, group, wanted, COUNT(wanted), row);
+    for (int q = 0; q < bench_quantity_count; q++) {
+        const BenchField *field = &bench_quantities[q].field;
+        bool array = field->kind == BENCH_DOUBLE && field->size > sizeof(double);
+        if (field->name && !bench_quantities[q].of && !array)
+            read_where_there(h5, group, field, 1, row);
+    }
     read_times(h5, group, row);
     if (!h5->failed) return;
     snprintf(message, sizeof message, "row %s: %.200s", name, h5->message);

@@ -60,17 +60,6 @@ static void fill_row(BenchRow *row, int seed)
     fill_samples(row, seed);
 }
 
-/* A member of BenchRow that is new is to be a quantity (quantity.c). */
-TEST(every_member_is_stored)
-{
-    enum { PADDING = 17 }; /* between members */
-    const BenchRow *row = NULL;
-    size_t size = sizeof row->total + sizeof row->stage + sizeof row->change.time + PADDING;
-    for (int q = 0; q < bench_quantity_count; q++)
-        if (bench_quantities[q].field.name) size += bench_quantities[q].field.size;
-    assert_int_equal(size, sizeof *row);
-}
-
 static void compare_rows(const BenchRow *a, const BenchRow *b)
 {
     /* All but the two pointers bit for bit: both records were zeroed, padding included. */
