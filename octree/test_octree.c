@@ -327,10 +327,6 @@ TEST(test_recovery)
         for (int step = 0; step < 3000; step++) {
             oct_step(oct, NULL);
             if (step % 16 == 0) oct_recentre(oct);
-            if (step % 100) continue;
-            get_x(oct, body.a);
-            for (long i = 0; i < body.n; i++)
-                for (int d = 0; d < 3; d++) assert_true(isfinite(body.a[i][d]));
         }
         oct_goals(oct); /* at rest goals and positions agree */
         get(oct, 0, oct->body->g, true, body.a);

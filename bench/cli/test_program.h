@@ -52,9 +52,9 @@ static inline int interrupt(const char *arguments, const char *file)
         execl("/bin/sh", "sh", "-c", command, (char *)NULL);
         _exit(98);
     }
-    for (int i = 0; i < 6000 && access(path_in(file), F_OK) != 0; i++)
-        nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
     int status;
+    while (access(path_in(file), F_OK) != 0 && waitpid(child, &status, WNOHANG) == 0)
+        nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
     assert_int_equal(kill(child, SIGINT), 0);
     assert_int_equal(waitpid(child, &status, 0), child);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);

@@ -2,6 +2,7 @@
 #include <malloc.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -368,7 +369,16 @@ static void remove_and_die(int number)
     raise(number);
 }
 
-/* Writes for ever in a child until `number` ends it, which is sent once a draft is there. */
+/* Bytes of the file whose draft is being written. */
+static long long draft_bytes(pid_t writer)
+{
+    char name[64];
+    struct stat status;
+    snprintf(name, sizeof name, "killed.h5.%ld.tmp", (long)writer);
+    return stat(path_in(name), &status) ? -1 : (long long)status.st_size;
+}
+
+/* Writes for ever in a child until `number` ends it, which is sent once frames are there. */
 static void write_until(int number)
 {
     fflush(NULL);
@@ -378,8 +388,7 @@ static void write_until(int number)
         write_sheet(path_in("killed.h5"), 0, 1 << 30, NULL);
         _exit(0);
     }
-    for (int wait = 0; wait < 1000 && entries(".tmp") < 2; wait++) usleep(1000);
-    usleep(20000);
+    while (draft_bytes(child) < 1 << 16 && waitpid(child, NULL, WNOHANG) == 0) usleep(1000);
     kill(child, number);
     int status;
     assert_int_equal(waitpid(child, &status, 0), child);

@@ -1,8 +1,6 @@
 /* Widths of regions: given, local, and found for as many summation nodes as are wanted. */
 #include "width.h"
 
-#include <time.h>
-
 #include "../../lib/test_fields.h"
 #include "../../lib/test_frame.h"
 #include "../test_engine_body.h"
@@ -73,31 +71,6 @@ TEST(a_width_is_found_for_summation_nodes)
         assert_true(fabs(counts.summation_nodes - 8) >= fabs(found - 8));
         octree_engine_f64.destroy(engine);
     }
-    sm_voxels_free(&voxels);
-}
-
-/* The search costs no more than the few region builds that it says. */
-TEST(a_width_is_found_by_few_builds)
-{
-    SmVoxels voxels;
-    OctStructure s;
-    sm_voxels_init(&voxels, 20, 20, 20, 1);
-    for (int n = 0; n < 8000; n++) sm_voxel_set(&voxels, n % 20, n / 20 % 20, n / 400);
-    sm_voxels_count(&voxels);
-    OctOptions options = {
-        .epsilon = 0.5, .summation_nodes = 10, .sampling = {.levels = 3, .nodes = 900}};
-    clock_t start = clock();
-    assert_int_equal(oct_structure_build(&voxels, &options, NULL, &s, NULL), SM_OK);
-    clock_t searched = clock() - start;
-    options.width = s.width;
-    options.summation_nodes = 0;
-    oct_structure_free(&s);
-    start = clock();
-    assert_int_equal(oct_structure_build(&voxels, &options, NULL, &s, NULL), SM_OK);
-    clock_t direct = clock() - start;
-    if (searched > (OCT_WIDTH_TRIES + 2) * direct)
-        fail_msg("%ld against %ld microseconds", (long)searched, (long)direct);
-    oct_structure_free(&s);
     sm_voxels_free(&voxels);
 }
 
