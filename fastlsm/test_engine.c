@@ -3,6 +3,7 @@
 #include "test_body.h"
 
 #include "../lib/test_frame.h"
+#include "../lib/test_piece_sums.h"
 
 /* Both engines from the same state, `steps` steps; the largest difference in cells. */
 static double race(int precision, Body *body, SmEngineParams params, const SmBoundary *boundary,
@@ -312,7 +313,7 @@ TEST(test_cut)
         assert_int_equal(counts.broken, 25 + 4 * 2 * 2 * 5 + 4 * 4 * 4); /* faces, edges, corners */
         double mass[2], *each = sm_alloc((size_t)body.n, sizeof *each);
         type->masses(engine, each);
-        sm_pieces_sum(&pieces, body.n, each, mass);
+        sum_pieces(&pieces, body.n, each, mass);
         for (long p = 0; p < body.n; p++) {
             bool beyond = (body.x0[p][axis] - body.voxels.origin[axis]) / cell > 5.5;
             assert_int_equal(pieces.piece[p], beyond);

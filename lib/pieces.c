@@ -39,13 +39,6 @@ void sm_pieces_finish(SmPieces *pieces, const unsigned char *absent, long nodes)
     }
 }
 
-void sm_pieces_sum(const SmPieces *pieces, long members, const double *value, double *sum)
-{
-    for (long n = 0; n < pieces->count; n++) sum[n] = 0;
-    for (long p = 0; p < members; p++)
-        if (pieces->piece[p] >= 0) sum[pieces->piece[p]] += value[p];
-}
-
 void sm_pieces_free(SmPieces *pieces)
 {
     free(pieces->piece);

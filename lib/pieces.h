@@ -21,9 +21,6 @@ void sm_pieces_finish(SmPieces *pieces, const unsigned char *absent, long nodes)
 /* The first node of p's piece so far, before they are numbered. */
 int sm_pieces_first(SmPieces *pieces, long p);
 
-/* Sums `value` of all members of every piece into sum[count]: with masses, the pieces' masses. */
-void sm_pieces_sum(const SmPieces *pieces, long members, const double *value, double *sum);
-
 void sm_pieces_free(SmPieces *pieces);
 
 #endif

@@ -3,8 +3,8 @@
 
 #include "cut/cut_surface.h"
 #include "test_frame.h"
+#include "test_piece_sums.h"
 #include "test_random.h"
-#include "test_volumes.h"
 
 static unsigned seed = 1;
 
@@ -43,7 +43,7 @@ TEST(random_links_make_the_pieces_that_they_should)
         assert_int_equal(seen, pieces.count);
         double value[NODES], sum[NODES], all = 0;
         for (int p = 0; p < NODES; p++) value[p] = 1;
-        sm_pieces_sum(&pieces, NODES, value, sum);
+        sum_pieces(&pieces, NODES, value, sum);
         for (int n = 0; n < seen; n++) all += sum[n];
         for (int p = 0; p < NODES; p++) all -= !absent[p];
         assert_true(all == 0);
@@ -72,7 +72,7 @@ TEST(a_box_cut_through_has_two_pieces)
     sm_mesh_pieces(&mesh, &pieces);
     assert_int_equal(pieces.count, 2);
     double volume[2];
-    sm_mesh_piece_volumes(&mesh, &pieces, volume);
+    sum_volumes(&mesh, &pieces, volume);
     assert_true(fabs(fmin(volume[0], volume[1]) - 0.5) < 1e-4);
     assert_true(fabs(fmax(volume[0], volume[1]) - 1.5) < 1e-4);
     sm_pieces_free(&pieces);

@@ -1,19 +1,13 @@
 #include "brute.h"
 
-#include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/csr.h"
 #include "../lib/system/team.h"
 #include "../lib/vector.h"
 #include "svd_polar.h"
-
-static int compare_ints(const void *a, const void *b)
-{
-    int p = *(const int *)a, q = *(const int *)b;
-    return (p > q) - (p < q);
-}
 
 /* Breadth-first search from r over w rings. Writes what it reaches in the order found and returns
  * how many; seen[p] == r + 1 marks particles found already. */
@@ -53,7 +47,7 @@ static void reach_all(const RefLinks *links, int w, long *start, int *member)
                 start[r + 1] = n;
                 continue;
             }
-            qsort(found, (size_t)n, sizeof *found, compare_ints);
+            sm_sort_ints(found, n);
             memcpy(member + start[r], found, (size_t)n * sizeof *found);
         }
         free(found);
@@ -119,22 +113,23 @@ long ref_regions_unique(const RefRegions *regions)
     return unique;
 }
 
-/* m~_i = m_i / |R_i| */
-static double modified_mass(const RefRegions *regions, const double *m, int i)
+/* m~_i = m_i / |R_i| of every particle; the caller frees. */
+static double *modified_masses(const RefRegions *regions, const double *m)
 {
-    return m[i] / (double)(regions->start[i + 1] - regions->start[i]);
+    double *modified = sm_alloc((size_t)regions->count, sizeof *modified);
+    for (long i = 0; i < regions->count; i++)
+        modified[i] = m[i] / (double)(regions->start[i + 1] - regions->start[i]);
+    return modified;
 }
 
-/* (1/M_r) sum m~_i y_i over R_r, formed relative to y_r; returns M_r. */
-static double weighted_mean(const RefRegions *regions, const double *m, const double (*y)[3],
-                            long r, double mean[3])
+double ref_region_mean(const RefRegions *regions, const double *weight, const double (*y)[3],
+                       long r, double mean[3])
 {
     double M = 0, sum[3] = {0};
     for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
         int i = regions->member[n];
-        double mi = modified_mass(regions, m, i);
-        M += mi;
-        for (int a = 0; a < 3; a++) sum[a] += mi * (y[i][a] - y[r][a]);
+        M += weight[i];
+        for (int a = 0; a < 3; a++) sum[a] += weight[i] * (y[i][a] - y[r][a]);
     }
     for (int a = 0; a < 3; a++) mean[a] = y[r][a] + sum[a] / M;
     return M;
@@ -143,20 +138,21 @@ static double weighted_mean(const RefRegions *regions, const double *m, const do
 void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const double *m,
                     const double (*x)[3], RefMatch *match)
 {
+    double *modified = modified_masses(regions, m);
 #pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long r = 0; r < regions->count; r++) {
         RefMatch *t = match + r;
-        weighted_mean(regions, m, x0, r, t->c0);
-        t->M = weighted_mean(regions, m, x, r, t->c); /* eq. 9 */
+        ref_region_mean(regions, modified, x0, r, t->c0);
+        t->M = ref_region_mean(regions, modified, x, r, t->c); /* eq. 9 */
         memset(t->A, 0, sizeof t->A);
         for (long n = regions->start[r]; n < regions->start[r + 1]; n++) { /* eq. 10 */
             int i = regions->member[n];
-            double mi = modified_mass(regions, m, i);
             for (int a = 0; a < 3; a++)
                 for (int b = 0; b < 3; b++)
-                    t->A[3 * a + b] += mi * (x[i][a] - t->c[a]) * (x0[i][b] - t->c0[b]);
+                    t->A[3 * a + b] += modified[i] * (x[i][a] - t->c[a]) * (x0[i][b] - t->c0[b]);
         }
     }
+    free(modified);
 }
 
 void ref_match_rotations(const RefRegions *regions, RefMatch *match)
@@ -225,12 +221,7 @@ void ref_solve_inertia(double I[9], const double L[3], const RefSums *sums, long
         return;
     }
     double value[3], vector[9];
-    gsl_matrix_view matrix = gsl_matrix_view_array(I, 3, 3);
-    gsl_matrix_view vectors = gsl_matrix_view_array(vector, 3, 3);
-    gsl_vector_view values = gsl_vector_view_array(value, 3);
-    gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(3);
-    gsl_eigen_symmv(&matrix.matrix, &values.vector, &vectors.matrix, space);
-    gsl_eigen_symmv_free(space);
+    ref_eigen(I, value, vector);
 
     double largest = fmax(value[0], fmax(value[1], value[2]));
     memset(omega, 0, 3 * sizeof *omega);
@@ -256,18 +247,18 @@ static double extent(const RefRegions *regions, const double (*x)[3], long r, co
 
 /* v_r and omega_r of eq. 14 about c_r. X X^T with X = [d]x is |d|^2 1 - d d^T: positive
  * semidefinite, so the signs of eq. 14 stand as printed. */
-static void rigid_motion(const RefRegions *regions, const double *m, const double (*x)[3],
+static void rigid_motion(const RefRegions *regions, const double *modified, const double (*x)[3],
                          const double (*v)[3], const RefSums *sums, long r, Motion *motion)
 {
     double L[3] = {0}, I[9] = {0};
-    weighted_mean(regions, m, x, r, motion->c);
-    double M = weighted_mean(regions, m, v, r, motion->v);
+    ref_region_mean(regions, modified, x, r, motion->c);
+    double M = ref_region_mean(regions, modified, v, r, motion->v);
     double unit = extent(regions, x, r, motion->c);
     memset(motion->omega, 0, sizeof motion->omega);
     if (!(unit > 0 && isfinite(unit))) return; /* all in one point: nothing turns */
     for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
         int i = regions->member[n];
-        double share = modified_mass(regions, m, i) / M, d[3], dv[3], turn[3];
+        double share = modified[i] / M, d[3], dv[3], turn[3];
         for (int a = 0; a < 3; a++) {
             d[a] = (x[i][a] - motion->c[a]) / unit;
             dv[a] = v[i][a] - motion->v[a];
@@ -287,9 +278,11 @@ static void rigid_motion(const RefRegions *regions, const double *m, const doubl
 void ref_rigid_velocity(const RefRegions *regions, const double *m, const double (*x)[3],
                         const double (*v)[3], const RefSums *sums, double (*u)[3])
 {
+    double *modified = modified_masses(regions, m);
     Motion *motion = sm_alloc((size_t)regions->count, sizeof *motion);
 #pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
-    for (long r = 0; r < regions->count; r++) rigid_motion(regions, m, x, v, sums, r, motion + r);
+    for (long r = 0; r < regions->count; r++)
+        rigid_motion(regions, modified, x, v, sums, r, motion + r);
 #pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long i = 0; i < regions->count; i++) {
         double sum[3] = {0};
@@ -303,4 +296,5 @@ void ref_rigid_velocity(const RefRegions *regions, const double *m, const double
         for (int a = 0; a < 3; a++) u[i][a] = sum[a] / size;
     }
     free(motion);
+    free(modified);
 }

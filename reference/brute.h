@@ -27,6 +27,11 @@ void ref_regions_free(RefRegions *regions);
 /* The same over a one-ring graph that the caller has already. */
 void ref_regions_reach(const RefLinks *links, int w, RefRegions *regions);
 
+/* (1/M) sum of weight_i y_i over region r, formed relative to y_r, into `mean`; returns M, the sum
+ * of the weights. O(members). */
+double ref_region_mean(const RefRegions *regions, const double *weight, const double (*y)[3],
+                       long r, double mean[3]);
+
 /* How many different member sets there are ("unique regions"). */
 long ref_regions_unique(const RefRegions *regions);
 

@@ -322,18 +322,6 @@ long ref_collide_node(RefCollide *twin, long number, RefContact **contact, long 
     return count;
 }
 
-long ref_collide_find(const SmCollideRest *rest, const SmCollideParams *params, long bodies,
-                      const double (*x)[3], const double (*frame)[9], RefContact **contact)
-{
-    RefCollide *twin = ref_collide_start(rest, params, bodies, x, frame);
-    long count = 0;
-    *contact = NULL;
-    for (long number = 0; number < bodies * rest->nodes; number++)
-        count = ref_collide_node(twin, number, contact, count);
-    ref_collide_free(twin);
-    return count;
-}
-
 bool ref_collide_near(const SmCollideRest *rest, int node, int cell)
 {
     static const SmCollideParams none;

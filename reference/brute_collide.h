@@ -32,10 +32,6 @@ long ref_collide_node(RefCollide *twin, long number, RefContact **contact, long 
 bool ref_collide_at(RefCollide *twin, long number, const double p[3], long cell,
                     RefContact *contact);
 
-/* All contacts, by rising node, then cell; the caller frees them. O(bodies^2 nodes x cells). */
-long ref_collide_find(const SmCollideRest *rest, const SmCollideParams *params, long bodies,
-                      const double (*x)[3], const double (*frame)[9], RefContact **contact);
-
 /* Whether a node and a cell are so close in the material that they never collide
  * (lib/collide/rest.h). */
 bool ref_collide_near(const SmCollideRest *rest, int node, int cell);

@@ -67,19 +67,6 @@ static void body_free(Body *body)
     free(body->broken);
 }
 
-static double (*rest_positions(const SmVoxels *voxels))[3]
-{
-    size_t count = (size_t)voxels->particle_count;
-    int(*coordinate)[3] = sm_alloc(count, sizeof *coordinate);
-    double(*rest)[3] = sm_alloc(count, sizeof *rest);
-    sm_voxels_particles(voxels, coordinate);
-    for (size_t p = 0; p < count; p++)
-        for (int a = 0; a < 3; a++)
-            rest[p][a] = voxels->origin[a] + voxels->cell * coordinate[p][a];
-    free(coordinate);
-    return rest;
-}
-
 static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **result,
                            SmError *error)
 {
@@ -107,7 +94,8 @@ static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params,
     engine->held = sm_alloc(bodies * (size_t)engine->count, sizeof *engine->held);
     engine->body = sm_alloc(bodies, sizeof *engine->body);
     int team = sm_team_enter(engine->params.threads);
-    double(*rest)[3] = rest_positions(voxels);
+    double(*rest)[3] = sm_alloc((size_t)engine->count, sizeof *rest);
+    sm_voxels_rest(voxels, rest);
     for (size_t b = 0; b < bodies; b++) {
         double pose[3][4];
         sm_engine_pose(params, (long)b, pose);

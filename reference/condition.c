@@ -1,6 +1,5 @@
 #include "condition.h"
 
-#include <gsl/gsl_eigen.h>
 #include <math.h>
 #include <string.h>
 
@@ -12,28 +11,14 @@ typedef struct {
     double A[9], B[9], S[9]; /* of (x, x0), (x0, x0), (x, x) about the means */
 } Moments;
 
-static void mean(const RefRegions *regions, const double *weight, const double (*y)[3], long r,
-                 double out[3])
-{
-    double mass = 0, sum[3] = {0};
-    for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
-        int i = regions->member[n];
-        mass += weight[i];
-        for (int a = 0; a < 3; a++) sum[a] += weight[i] * (y[i][a] - y[r][a]);
-    }
-    for (int a = 0; a < 3; a++) out[a] = y[r][a] + sum[a] / mass;
-}
-
 static void find_moments(const RefRegions *regions, const double *weight, const double (*x0)[3],
                          const double (*x)[3], long r, Moments *m)
 {
-    double mass = 0;
     memset(m, 0, sizeof *m);
-    mean(regions, weight, x0, r, m->c0);
-    mean(regions, weight, x, r, m->c);
+    ref_region_mean(regions, weight, x0, r, m->c0);
+    double mass = ref_region_mean(regions, weight, x, r, m->c);
     for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
         int i = regions->member[n];
-        mass += weight[i];
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++) {
                 double to = weight[i] * (x0[i][b] - m->c0[b]);
@@ -54,12 +39,7 @@ static void principal(const double P[9], double value[3], double vector[9])
 {
     double H[9];
     for (int e = 0; e < 9; e++) H[e] = (e % 4 == 0 ? P[0] + P[4] + P[8] : 0) - P[e];
-    gsl_matrix_view matrix = gsl_matrix_view_array(H, 3, 3);
-    gsl_matrix_view vectors = gsl_matrix_view_array(vector, 3, 3);
-    gsl_vector_view values = gsl_vector_view_array(value, 3);
-    gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(3);
-    gsl_eigen_symmv(&matrix.matrix, &values.vector, &vectors.matrix, space);
-    gsl_eigen_symmv_free(space);
+    ref_eigen(H, value, vector);
 }
 
 /* A turn by a small angle t about the axis n lowers tr(R^T A) by t^2 / 2 n^T (tr U - U) n, U = R^T

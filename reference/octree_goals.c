@@ -82,19 +82,6 @@ void ref_tree_free(RefTreeBody *body)
     free(body->S);
 }
 
-/* The weighted mean of y over region r, formed relative to y_r; returns the weights' sum. */
-static double region_mean(const RefTreeBody *body, const double (*y)[3], long r, double mean[3])
-{
-    double M = 0, sum[3] = {0};
-    for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
-        int i = body->regions.member[n];
-        M += body->weight[i];
-        for (int a = 0; a < 3; a++) sum[a] += body->weight[i] * (y[i][a] - y[r][a]);
-    }
-    for (int a = 0; a < 3; a++) mean[a] = y[r][a] + sum[a] / M;
-    return M;
-}
-
 static void multiply(const double A[9], const double B[9], double C[9])
 {
     double product[9] = {0};
@@ -137,8 +124,8 @@ static void match_region(const RefTreeBody *body, const double (*x)[3], long r, 
 {
     double St[9];
     memset(t, 0, sizeof *t);
-    region_mean(body, (const double(*)[3])body->x0, r, t->c0);
-    region_mean(body, x, r, t->c);
+    ref_region_mean(&body->regions, body->weight, (const double(*)[3])body->x0, r, t->c0);
+    ref_region_mean(&body->regions, body->weight, x, r, t->c);
     for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
         int i = body->regions.member[n];
         for (int a = 0; a < 3; a++)
@@ -206,8 +193,8 @@ void ref_tree_goals(RefTreeBody *body, const double (*x)[3], bool flow, double (
 static void rigid_motion(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
                          const RefSums *sums, long r, double c[3], double mean[3], double omega[3])
 {
-    double L[3] = {0}, I[9] = {0}, M = region_mean(body, x, r, c);
-    region_mean(body, v, r, mean);
+    double L[3] = {0}, I[9] = {0}, M = ref_region_mean(&body->regions, body->weight, x, r, c);
+    ref_region_mean(&body->regions, body->weight, v, r, mean);
     for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
         int i = body->regions.member[n];
         double d[3], dv[3], turn[3], square = 0;

@@ -77,6 +77,16 @@ static void solve_plane(double N[3][3], double P[3][3])
     P[1][2] = -P[2][1];
 }
 
+void ref_eigen(double S[9], double value[3], double vector[9])
+{
+    gsl_matrix_view matrix = gsl_matrix_view_array(S, 3, 3);
+    gsl_matrix_view vectors = gsl_matrix_view_array(vector, 3, 3);
+    gsl_vector_view values = gsl_vector_view_array(value, 3);
+    gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(3);
+    gsl_eigen_symmv(&matrix.matrix, &values.vector, &vectors.matrix, space);
+    gsl_eigen_symmv_free(space);
+}
+
 /* s = (s0, s0, -s0): P = (1 - 2 n n^T) D, D = diag(1, 1, -1), is as good for every unit n. tr(P^T
  * N) is largest where n^T (N D) n is least. */
 static void solve_sphere(double N[3][3], double P[3][3])
@@ -85,12 +95,7 @@ static void solve_sphere(double N[3][3], double P[3][3])
     double symmetric[9], value[3], vector[9];
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) symmetric[3 * a + b] = (N[a][b] * D[b] + N[b][a] * D[a]) / 2;
-    gsl_matrix_view matrix = gsl_matrix_view_array(symmetric, 3, 3);
-    gsl_matrix_view vectors = gsl_matrix_view_array(vector, 3, 3);
-    gsl_vector_view values = gsl_vector_view_array(value, 3);
-    gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(3);
-    gsl_eigen_symmv(&matrix.matrix, &values.vector, &vectors.matrix, space);
-    gsl_eigen_symmv_free(space);
+    ref_eigen(symmetric, value, vector);
     int least = 0;
     for (int e = 1; e < 3; e++)
         if (value[e] < value[least]) least = e;

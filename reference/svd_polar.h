@@ -1,4 +1,4 @@
-/* svd_polar.h - polar decomposition by GSL's singular value decomposition. */
+/* svd_polar.h - polar decomposition and eigenvectors of 3 x 3 matrices by GSL. */
 #ifndef REF_SVD_POLAR_H
 #define REF_SVD_POLAR_H
 
@@ -8,5 +8,9 @@
  * that depends on A only). Any A: at zero, and where an entry is not finite, R is `last`. Row-major
  * 3x3; R may be A or `last`. */
 void ref_polar(const double A[9], const double last[9], double R[9]);
+
+/* Eigenvalues and, in the columns of `vector`, eigenvectors of the symmetric 3 x 3 matrix S, which
+ * is destroyed; in no order. */
+void ref_eigen(double S[9], double value[3], double vector[9]);
 
 #endif

@@ -1,6 +1,6 @@
 /* Scenes that cut lattices: what comes off falls, and no cut does harm. */
 #include "../../lib/test_frame.h"
-#include "../../lib/test_volumes.h"
+#include "../../lib/test_piece_sums.h"
 #include "../check/check.h"
 #include "../engines.h"
 #include "playback.h"
@@ -119,7 +119,7 @@ TEST(cut_through)
     double volume[2], low[2] = {INFINITY, INFINITY}, before = 0.008;
     sm_mesh_pieces(surface(&run), &pieces);
     assert_int_equal(pieces.count, 2);
-    sm_mesh_piece_volumes(surface(&run), &pieces, volume);
+    sum_volumes(surface(&run), &pieces, volume);
     for (int p = 0; p < 2; p++) assert_true(volume[p] > 0.2 * before);
     assert_true(fabs(volume[0] + volume[1] - before) < 1e-3 * before);
     const SmMesh *mesh = surface(&run);

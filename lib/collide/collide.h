@@ -18,7 +18,7 @@
  *
  * The response gains no energy. Without it the step is v+ = v- + f(x), x+ = x + v+, symplectic
  * Euler, which keeps H = sum m |v|^2 / 2 + V(x) - sum m |f|^2 / 8 at v = (v- + v+) / 2 exactly
- * while f is linear in x (fastlsm eqs. 1 and 2: f = g - x, and gravity; reference/energy.h).
+ * while f is linear in x (fastlsm eqs. 1 and 2: f = g - x, and gravity; reference/test_energy.c).
  * Impulses at time x change v and v+ alike and nothing else in H, so H changes as sum m |v|^2 / 2
  * does. Every impulse acts between a node and the nodes that carry the cell, with their weights w
  * (sum 1): the node's velocity relative to the cell is u = v_i - sum w_c v_c, an impulse p on the

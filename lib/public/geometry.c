@@ -301,11 +301,7 @@ int sb_voxels_read_particles(const sb_voxels *voxels, double *position, int64_t 
     const SmVoxels *v = &voxels->voxels;
     code = sm_check_array(position, room, v->particle_count, "position", error);
     if (code) return code;
-    int(*at)[3] = sm_alloc((size_t)v->particle_count, sizeof *at);
-    sm_voxels_particles(v, at);
-    for (long p = 0; p < v->particle_count; p++)
-        for (int d = 0; d < 3; d++) position[3 * p + d] = v->origin[d] + v->cell * at[p][d];
-    free(at);
+    sm_voxels_rest(v, (double(*)[3])position);
     return sm_done(SM_OK, NULL, error);
 }
 

@@ -96,6 +96,15 @@ void sm_voxels_particles(const SmVoxels *voxels, int (*coordinate)[3])
     free(none);
 }
 
+void sm_voxels_rest(const SmVoxels *voxels, double (*position)[3])
+{
+    int(*at)[3] = sm_alloc((size_t)voxels->particle_count, sizeof *at);
+    sm_voxels_particles(voxels, at);
+    for (long p = 0; p < voxels->particle_count; p++)
+        for (int d = 0; d < 3; d++) position[p][d] = voxels->origin[d] + voxels->cell * at[p][d];
+    free(at);
+}
+
 /* Squared distance, in cells, from lattice position q to the cell. */
 static double cell_distance(const double q[3], const int cell[3])
 {

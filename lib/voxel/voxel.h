@@ -33,9 +33,12 @@ void sm_voxels_free(SmVoxels *voxels);
 /* Fills in cell_count and particle_count from bits. O(words). */
 void sm_voxels_count(SmVoxels *voxels);
 
-/* Lattice coordinates of every particle in canonical order; rest position of particle p is
- * origin + cell * coordinate[p]. `coordinate` is [particle_count][3], the caller's. */
+/* Lattice coordinates of every particle in canonical order; `coordinate` is [particle_count][3],
+ * the caller's. */
 void sm_voxels_particles(const SmVoxels *voxels, int (*coordinate)[3]);
+
+/* Rest positions of all particles in canonical order, into position[particle_count]. */
+void sm_voxels_rest(const SmVoxels *voxels, double (*position)[3]);
 
 static inline bool sm_voxel_get(const SmVoxels *v, int i, int j, int k)
 {

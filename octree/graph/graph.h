@@ -49,8 +49,8 @@ void oct_graph_cut(const OctTree *tree, const SmVoxels *voxels, const SmCut *cut
 void oct_graph_joined(const OctTree *tree, const SmVoxels *voxels, SmCsr *joined);
 void oct_graph_free(OctGraph *graph);
 
-/* Pieces of the leaves over the graph's edges; -1 for numbers that no leaf has. sm_pieces_sum() of
- * the leaves' masses are the pieces' masses. The caller frees. O(edges). */
+/* Pieces of the leaves over the graph's edges; -1 for numbers that no leaf has. The
+ * caller frees. O(edges). */
 void oct_graph_pieces(const OctTree *tree, const OctGraph *graph, SmPieces *pieces);
 
 /* Memory of the graph. */

@@ -3,7 +3,7 @@
 #include "../../lib/cut/cut_surface.h"
 #include "../../lib/shapes/shape.h"
 #include "../../lib/test_frame.h"
-#include "../../lib/test_volumes.h"
+#include "../../lib/test_piece_sums.h"
 #include "../change/structure.h"
 #include "../tree/test_trees.h"
 #include "surface.h"
@@ -230,8 +230,8 @@ static void count_pieces(const OctStructure *s, const OctSurface *surface, const
         assert_int_equal(piece[t] == below, height < 0);
         assert_int_equal(parts.piece[t] == parts.piece[0], piece[t] == piece[0]);
     }
-    sm_pieces_sum(&nodes, s->tree.leaves, s->mass, mass);
-    sm_mesh_piece_volumes(mesh, &parts, volume);
+    sum_pieces(&nodes, s->tree.leaves, s->mass, mass);
+    sum_volumes(mesh, &parts, volume);
     assert_true(fabs(mass[0] + mass[1] - 4096) < 1e-9);
     assert_true(fabs(volume[0] + volume[1] - 4096) < 0.05);
     double under = volume[parts.piece[0] == 0 && piece[0] == below ? 0 : 1];

@@ -190,15 +190,10 @@ static SmCode meshless_create(const SmVoxels *voxels, const SmEngineParams *para
     engine->h = params->h;
     sm_engine_pose(params, 0, engine->pose);
     size_t count = (size_t)engine->count;
-    int(*at)[3] = sm_alloc(count, sizeof *at);
     engine->rest = sm_alloc((size_t)engine->all, sizeof *engine->rest);
     if (given)
         memcpy(engine->rest + count, given->as_given, (size_t)given->given * sizeof *engine->rest);
-    sm_voxels_particles(voxels, at);
-    for (size_t p = 0; p < count; p++)
-        for (int d = 0; d < 3; d++)
-            engine->rest[p][d] = voxels->origin[d] + voxels->cell * at[p][d];
-    free(at);
+    sm_voxels_rest(voxels, engine->rest);
     code = make_body(params->meshless, engine, error);
     if (code == SM_OK) code = make_motion(params, engine, error);
     if (code != SM_OK) {

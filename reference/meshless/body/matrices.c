@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../../lib/csr.h"
 #include "../../../lib/vector.h"
 
 /* Walls of a sliver that miss its volume by more than this are no use. */
@@ -55,12 +56,6 @@ void ref_sparse_apply(const RefSparse *sparse, int width, const double *x, doubl
         }
 }
 
-static int by_number(const void *a, const void *b)
-{
-    int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
-}
-
 /* Whether the cover of node n reaches into the box, by more than rounding. */
 static bool reaches(const RefNodes *nodes, int n, const double low[3], const double high[3])
 {
@@ -99,7 +94,7 @@ static void find_nodes(const RefOctants *tree, const RefOctant *octant, const Re
                         local->node[local->count++] = member[n];
                     }
             }
-    qsort(local->node, (size_t)local->count, sizeof *local->node, by_number);
+    sm_sort_ints(local->node, local->count);
     for (int n = 0; n < local->count; n++) local->number[local->node[n]] = n;
 }
 

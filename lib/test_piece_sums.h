@@ -1,13 +1,22 @@
-/* test_volumes.h - what the pieces of a surface hold. */
-#ifndef SM_TEST_VOLUMES_H
-#define SM_TEST_VOLUMES_H
+/* test_piece_sums.h - sums over pieces: values of their members, volumes of surfaces. */
+#ifndef SM_TEST_PIECE_SUMS_H
+#define SM_TEST_PIECE_SUMS_H
 
 #include "mesh/mesh.h"
 #include "vector.h"
 
+/* Sums `value` of all members of every piece into sum[count]: with masses, the pieces' masses. */
+static inline void sum_pieces(const SmPieces *pieces, long members, const double *value,
+                              double *sum)
+{
+    for (long n = 0; n < pieces->count; n++) sum[n] = 0;
+    for (long p = 0; p < members; p++)
+        if (pieces->piece[p] >= 0) sum[pieces->piece[p]] += value[p];
+}
+
 /* Signed volume between every piece of the surface and the origin, into volume[count]: what a
  * closed piece holds. A hollow is a piece of its own, of negative volume. */
-static inline void sm_mesh_piece_volumes(const SmMesh *mesh, const SmPieces *pieces, double *volume)
+static inline void sum_volumes(const SmMesh *mesh, const SmPieces *pieces, double *volume)
 {
     for (long n = 0; n < pieces->count; n++) volume[n] = 0;
     const double *o = mesh->position[0];
