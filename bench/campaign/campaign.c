@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "../../lib/system/hash.h"
 #include "../store/h5.h"
@@ -249,6 +251,7 @@ static void write_file(BenchH5 *h5, void *record)
         bench_h5_dataset(h5, group, type->list[l].name, H5T_IEEE_F64LE, 1, &size,
                          plan_int(campaign, type->list[l].value));
     }
+    if (type->write_plan) type->write_plan(h5, group, campaign->plan);
     write_points(h5, campaign);
     if (type->write) type->write(h5, campaign);
 }
@@ -276,9 +279,15 @@ static void read_list(BenchH5 *h5, hid_t group, const BenchCampaignList *list,
 static void read_plan(BenchH5 *h5, BenchCampaign *campaign)
 {
     const BenchCampaignType *type = campaign->type;
+    if (!h5->failed && H5Lexists(h5->file, "plan", H5P_DEFAULT) <= 0)
+        bench_h5_fail(h5,
+                      "group 'plan' is missing: 'shapebench report' alone shows files of %s "
+                      "from before there was one",
+                      type->name);
     hid_t group = bench_h5_find_group(h5, h5->file, "plan");
     bench_h5_read_fields(h5, group, type->plan, *type->plan_fields, campaign->plan);
     for (int l = 0; l < type->lists; l++) read_list(h5, group, &type->list[l], campaign);
+    if (!h5->failed && type->read_plan) type->read_plan(h5, group, campaign->plan);
     if (h5->failed) return;
     int planned = bench_campaign_planned(campaign);
     SmError error;
@@ -378,6 +387,16 @@ SmCode bench_campaign_load(const char *path, const BenchCampaignType *type, Benc
 }
 
 /* ---- provenance */
+
+void bench_campaign_stamp(char host[64], char utc[32])
+{
+    if (gethostname(host, 64)) strcpy(host, "unknown");
+    host[63] = '\0';
+    time_t now = time(NULL);
+    struct tm parts;
+    gmtime_r(&now, &parts);
+    strftime(utc, 32, "%Y-%m-%dT%H:%M:%SZ", &parts);
+}
 
 /* Of this program's file; 0 if it cannot be read. */
 static unsigned long long hash_program(void)

@@ -54,6 +54,10 @@ typedef struct {
     SmCode (*measure)(void *work, const BenchCampaign *campaign, void *point, SmError *error);
     void (*end)(void *work);
 
+    /* What else the plan has is written, and read before its points are counted (NULL). */
+    void (*write_plan)(BenchH5 *h5, hid_t group, const void *plan);
+    void (*read_plan)(BenchH5 *h5, hid_t group, void *plan);
+
     /* What follows from all points is marked in them (NULL: nothing); what else the file holds is
      * written and, after the points, read (NULL). */
     void (*conclude)(BenchCampaign *campaign);
@@ -111,6 +115,9 @@ SmCode bench_campaign_load(const char *path, const BenchCampaignType *type, Benc
  * to the last bit. SM_INPUT: it is not, or the plans differ. */
 SmCode bench_campaign_merge(BenchCampaign *into, BenchCampaign *from, const char *path,
                             SmError *error);
+
+/* Where and when a point was measured: this host, now (ISO 8601). */
+void bench_campaign_stamp(char host[64], char utc[32]);
 
 /* SM_INVALID, with how many and the first one, where points are not valid. */
 SmCode bench_campaign_verdict(const BenchCampaign *campaign, SmError *error);

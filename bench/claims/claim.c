@@ -276,16 +276,6 @@ SmCode bench_claims_builtin(BenchClaims *claims, SmError *error)
                               claims, error);
 }
 
-SmCode bench_claims_read(const char *path, BenchClaims *claims, SmError *error)
-{
-    size_t size = 0;
-    char *text = bench_config_load(path, &size, error);
-    if (!text) return SM_INPUT;
-    SmCode code = bench_claims_parse(text, size, path, claims, error);
-    free(text);
-    return code;
-}
-
 const char *bench_claim_kind_name(BenchClaimKind kind)
 {
     return kind_names[kind];

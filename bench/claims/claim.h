@@ -71,9 +71,8 @@ typedef struct {
 SmCode bench_claims_parse(const char *text, size_t size, const char *file, BenchClaims *claims,
                           SmError *error);
 
-/* The same of those compiled in, and of a file. */
+/* The same of those compiled in. */
 SmCode bench_claims_builtin(BenchClaims *claims, SmError *error);
-SmCode bench_claims_read(const char *path, BenchClaims *claims, SmError *error);
 
 /* "method", "machine", "by construction". */
 const char *bench_claim_kind_name(BenchClaimKind kind);

@@ -8,8 +8,6 @@
 #include "../table/row_store.h"
 #include "fit.h"
 
-static const char file_kind[] = "shapebench claims";
-
 static const char *const takes[] = {"values", "exponent", "largest", "gain"};
 
 /* A finding as it is stored: words instead of enums. */
@@ -60,6 +58,8 @@ static const BenchField curve_fields[] = {
     CURVE_FIELD(BENCH_BOOL, "valid", curve.valid),
     CURVE_FIELD(BENCH_TEXT, "reason", curve.reason),
     CURVE_FIELD(BENCH_INT, "points", curve.points),
+    CURVE_FIELD(BENCH_BOOL, "busy", curve.busy),
+    CURVE_FIELD(BENCH_INT, "experiment", curve.experiment),
     CURVE_FIELD(BENCH_DOUBLE, "exponent", fit.exponent),
     CURVE_FIELD(BENCH_DOUBLE, "exponent_low", fit.low),
     CURVE_FIELD(BENCH_DOUBLE, "exponent_high", fit.high),
@@ -141,37 +141,52 @@ static void write_claims(BenchH5 *h5, const BenchFinding *findings, int count)
     }
 }
 
-/* What a file is to hold. */
-typedef struct {
-    const BenchFinding *findings;
-    int count;
-    const BenchLab *lab;
-    const BenchMachine *machine;
-} File;
-
-static void write_file(BenchH5 *h5, void *record)
+void bench_claim_write(BenchH5 *h5, const BenchFinding *findings, int count, const BenchLab *lab)
 {
-    const File *file = record;
-    const BenchLab *lab = file->lab;
-    int schema = BENCH_CLAIM_SCHEMA, machine_count;
-    const BenchField *machine_fields = bench_machine_fields(&machine_count);
     const unsigned char quick = lab->quick;
-    bench_h5_text(h5, h5->file, "kind", file_kind);
-    bench_h5_numbers(h5, h5->file, "schema", H5T_STD_I32LE, 0, &schema);
-    bench_h5_numbers(h5, h5->file, "claims", H5T_STD_I32LE, 0, &file->count);
+    bench_h5_numbers(h5, h5->file, "claims", H5T_STD_I32LE, 0, &count);
     bench_h5_numbers(h5, h5->file, "quick", H5T_STD_U8LE, 0, &quick);
-    hid_t group = bench_h5_group(h5, h5->file, "machine");
-    bench_h5_fields(h5, group, machine_fields, machine_count, file->machine);
-    group = bench_h5_group(h5, h5->file, "rows");
+    hid_t group = bench_h5_group(h5, h5->file, "rows");
     for (int r = 0; r < lab->rows; r++) bench_store_row(h5, group, r, &lab->row[r]);
     group = bench_h5_group(h5, h5->file, "curves");
     for (int c = 0; c < lab->curves; c++)
         if (lab->curve[c].row < 0) write_curve(h5, group, &lab->curve[c]);
-    write_claims(h5, file->findings, file->count);
+    write_claims(h5, findings, count);
 }
 
-SmCode bench_claim_store(const char *path, const BenchFinding *findings, int count,
-                         const BenchLab *lab, const BenchMachine *machine, SmError *error)
+static void read_curve(BenchH5 *h5, hid_t parent, const char *name, BenchCurve *curve)
 {
-    return bench_h5_store(path, write_file, &(File){findings, count, lab, machine}, error);
+    StoredCurve stored = {.curve = {.row = -1}};
+    hid_t group = bench_h5_find_group(h5, parent, name);
+    bench_h5_read_fields(h5, group, curve_fields, COUNT(curve_fields), &stored);
+    *curve = stored.curve;
+    snprintf(curve->name, sizeof curve->name, "%s", name);
+    if (!h5->failed && (curve->points < 0 || curve->points > BENCH_CURVE_POINTS))
+        bench_h5_fail(h5, "curve '%s' has %d points", name, curve->points);
+    const struct {
+        const char *name;
+        double *values;
+    } sets[] = {{"x", curve->x}, {"y", curve->y}, {"low", curve->low}, {"high", curve->high}};
+    hsize_t size = (hsize_t)curve->points;
+    for (int s = 0; s < COUNT(sets) && curve->points && !h5->failed; s++)
+        bench_h5_read(h5, bench_h5_find_dataset(h5, group, sets[s].name, 1, &size),
+                      H5T_NATIVE_DOUBLE, sets[s].values);
+    if (group >= 0) H5Gclose(group);
+}
+
+void bench_claim_read_curves(BenchH5 *h5, BenchLab *lab)
+{
+    H5G_info_t info = {.nlinks = 0};
+    hid_t group = bench_h5_find_group(h5, h5->file, "curves");
+    if (!h5->failed && H5Gget_info(group, &info) < 0) bench_h5_fail(h5, "no curves can be read");
+    for (hsize_t c = 0; c < info.nlinks && !h5->failed; c++) {
+        char name[BENCH_CURVE_NAME];
+        BenchCurve curve;
+        if (H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, c, name, sizeof name,
+                               H5P_DEFAULT) < 0)
+            bench_h5_fail(h5, "the curves cannot be listed");
+        else
+            read_curve(h5, group, name, &curve);
+        if (!h5->failed) bench_lab_keep(lab, &curve);
+    }
 }

@@ -3,7 +3,7 @@
 #ifndef BENCH_CLAIM_STORE_H
 #define BENCH_CLAIM_STORE_H
 
-#include "../system/machine.h"
+#include "../store/h5.h"
 #include "verdict.h"
 
 /* The layout written; raised with every change that a reader must know of. */
@@ -12,9 +12,10 @@ enum { BENCH_CLAIM_SCHEMA = 2 };
 /* Where the lab's curve is in the file: its row's group if it is a row's, else its own. */
 void bench_claim_place(const BenchLab *lab, int curve, size_t size, char *place);
 
-/* Writes the findings, and of the lab every row and every curve that is no row's. The file appears
- * whole or not at all. SM_OUTPUT names cause and remedy. */
-SmCode bench_claim_store(const char *path, const BenchFinding *findings, int count,
-                         const BenchLab *lab, const BenchMachine *machine, SmError *error);
+/* Writes the findings, and of the lab every row and every curve that is no row's. */
+void bench_claim_write(BenchH5 *h5, const BenchFinding *findings, int count, const BenchLab *lab);
+
+/* Reads all curves back, into a lab that begins zeroed; the caller frees it. */
+void bench_claim_read_curves(BenchH5 *h5, BenchLab *lab);
 
 #endif

@@ -83,7 +83,7 @@ static const Kind kinds[] = {
 
 void bench_curve_begin(BenchCurve *curve, const char *x_name, const char *y_name)
 {
-    *curve = (BenchCurve){.valid = true, .row = -1};
+    *curve = (BenchCurve){.valid = true, .row = -1, .experiment = -1};
     snprintf(curve->x_name, sizeof curve->x_name, "%s", x_name);
     snprintf(curve->y_name, sizeof curve->y_name, "%s", y_name);
 }
@@ -278,6 +278,32 @@ void bench_lab_keep(BenchLab *lab, const BenchCurve *curve)
     lab->curve[lab->curves++] = *curve;
 }
 
+int bench_lab_row(BenchLab *lab, const BenchRow *row, const char *name, int steps_per_frame)
+{
+    size_t rows = (size_t)lab->rows + 1;
+    lab->row = sm_realloc(lab->row, rows, sizeof *lab->row);
+    lab->origin = sm_realloc(lab->origin, rows, sizeof *lab->origin);
+    lab->row[lab->rows] = *row;
+    snprintf(lab->origin[lab->rows].name, sizeof lab->origin->name, "%s", name);
+    lab->origin[lab->rows].steps_per_frame = steps_per_frame;
+    return lab->rows++;
+}
+
+void bench_lab_fail(BenchLab *lab, const char *name, const char *reason)
+{
+    lab->failure = sm_realloc(lab->failure, (size_t)lab->failures + 1, sizeof *lab->failure);
+    snprintf(lab->failure[lab->failures].name, sizeof lab->failure->name, "%s", name);
+    snprintf(lab->failure[lab->failures++].reason, sizeof lab->failure->reason, "%s", reason);
+}
+
+void bench_experiment_name(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
+{
+    if (measure->experiment == BENCH_TRY_SCENE)
+        bench_scene_field_row(measure, BENCH_CURVE_NAME, name);
+    else
+        name_curve(measure, name);
+}
+
 /* Of times that were taken from `start` on: are they of this program alone? The low end of them
  * stands a quarter of the time lost; that of matrices, whose samples are short, more. */
 static void check_busy(const BenchMeasure *measure, const BenchMoment *start, BenchCurve *curve)
@@ -311,7 +337,8 @@ int bench_experiment(BenchLab *lab, const BenchMeasure *measure)
 void bench_lab_free(BenchLab *lab)
 {
     bench_rows_free(lab->row, lab->rows);
-    free(lab->row_name);
+    free(lab->origin);
     free(lab->curve);
-    lab->rows = lab->curves = 0;
+    free(lab->failure);
+    *lab = (BenchLab){.quick = lab->quick, .threads = lab->threads, .seed = lab->seed};
 }

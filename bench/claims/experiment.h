@@ -102,6 +102,7 @@ typedef struct {
     bool busy;        /* not valid because others took the processors: nothing is wrong */
     char reason[192]; /* why not valid */
     int row;          /* of the lab's rows that it is from; -1: none */
+    int experiment;   /* of a campaign (claim_plan.h), which measured it; -1: it is from a row */
 } BenchCurve;
 
 /* What has been measured so far: nothing is measured twice. Begins zeroed but for the choices. */
@@ -110,9 +111,16 @@ typedef struct {
     int threads; /* of scenes; cubes and kernels are timed on one */
     unsigned long seed;
     int rows, curves;
-    BenchRow *row;         /* [rows] */
-    char (*row_name)[128]; /* [rows] scene, as the claims name it, engine, what is without */
-    BenchCurve *curve;     /* [curves]; some are only evidence, of no claim */
+    BenchRow *row; /* [rows] */
+    struct {
+        char name[128];      /* bench_experiment_name() */
+        int steps_per_frame; /* of its scene */
+    } * origin;              /* [rows] */
+    BenchCurve *curve;       /* [curves]; some are only evidence, of no claim */
+    int failures; /* scenes that could not be measured, by the name of their row, and why */
+    struct {
+        char name[128], reason[192];
+    } * failure; /* [failures] */
 } BenchLab;
 
 /* What is wrong with a measurement's settings, or NULL; the line stands until the next call. */
@@ -151,7 +159,12 @@ BenchInterval bench_curve_interval(const double *value, int count, double share,
 /* Fails where the runner's engine is not right in its present state: bench_check_runner(). */
 void bench_curve_check(BenchCurve *curve, const BenchRunner *runner);
 
-/* Keeps a curve as evidence. */
+/* What is measured: the curve's name, or of a scene its row's, which fields are taken of. */
+void bench_experiment_name(const BenchMeasure *measure, char name[BENCH_CURVE_NAME]);
+
+/* Keeps a curve as evidence; a row, which is the lab's then, returning its number; a failure. */
 void bench_lab_keep(BenchLab *lab, const BenchCurve *curve);
+int bench_lab_row(BenchLab *lab, const BenchRow *row, const char *name, int steps_per_frame);
+void bench_lab_fail(BenchLab *lab, const char *name, const char *reason);
 
 #endif

@@ -185,19 +185,8 @@ static SmCode measure_row(BenchLab *lab, BenchScene *scene, BenchRow *row, SmErr
 static int known_row(const BenchLab *lab, const char *name)
 {
     for (int r = 0; r < lab->rows; r++)
-        if (!strcmp(lab->row_name[r], name)) return r;
+        if (!strcmp(lab->origin[r].name, name)) return r;
     return -1;
-}
-
-/* Takes the row over; returns its number. */
-static int keep_row(BenchLab *lab, const BenchRow *row, const char *name)
-{
-    size_t rows = (size_t)lab->rows + 1;
-    lab->row = sm_realloc(lab->row, rows, sizeof *lab->row);
-    lab->row_name = sm_realloc(lab->row_name, rows, sizeof *lab->row_name);
-    lab->row[lab->rows] = *row;
-    strcpy(lab->row_name[lab->rows], name);
-    return lab->rows++;
 }
 
 /* The setting has its default, and the scene says so in its name. */
@@ -226,32 +215,52 @@ static void take_away(BenchScene *scene, BenchWithout without)
     }
 }
 
-void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+void bench_scene_field_row(const BenchMeasure *measure, size_t size, char *name)
+{
+    snprintf(name, size, "%s%s%s%s%s", measure->scene, measure->engine[0] ? " " : "",
+             measure->engine, measure->without ? " without " : "",
+             measure->without ? bench_without_names[measure->without] : "");
+}
+
+static const char *known_failure(const BenchLab *lab, const char *name)
+{
+    for (int f = 0; f < lab->failures; f++)
+        if (!strcmp(lab->failure[f].name, name)) return lab->failure[f].reason;
+    return NULL;
+}
+
+/* Measures the scene's row, which the lab then has. */
+static SmCode find_row(BenchLab *lab, const BenchMeasure *measure, const char *name, SmError *error)
 {
     BenchScene *scene = sm_alloc(1, sizeof *scene);
-    SmError error;
-    char name[sizeof *lab->row_name];
-    snprintf(name, sizeof name, "%s %s%s%s", measure->scene, measure->engine,
-             measure->without ? " without " : "",
-             measure->without ? bench_without_names[measure->without] : "");
-    int number = known_row(lab, name);
-    SmCode code = bench_scene_find(measure->scene, scene, &error);
+    BenchRow row = {0};
+    SmCode code = bench_scene_find(measure->scene, scene, error);
     if (!code && measure->engine[0])
         snprintf(scene->engine, sizeof scene->engine, "%s", measure->engine);
     if (!code && measure->without) take_away(scene, measure->without);
-    if (!code && number < 0) {
-        BenchRow row = {0};
-        code = measure_row(lab, scene, &row, &error);
-        if (code)
-            bench_row_free(&row);
-        else
-            number = keep_row(lab, &row, name);
-    }
+    if (!code) code = measure_row(lab, scene, &row, error);
     if (code)
-        bench_curve_fail(curve, "%.180s", error.text);
-    else {
-        fill_curve(&lab->row[number], scene->steps_per_frame, measure->field, curve);
-        curve->row = number;
-    }
+        bench_row_free(&row);
+    else
+        bench_lab_row(lab, &row, name, scene->steps_per_frame);
     free(scene);
+    return code;
+}
+
+void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+{
+    char name[sizeof lab->origin->name];
+    bench_scene_field_row(measure, sizeof name, name);
+    SmError error;
+    if (!known_failure(lab, name) && known_row(lab, name) < 0 &&
+        find_row(lab, measure, name, &error))
+        bench_lab_fail(lab, name, error.text);
+    const char *failure = known_failure(lab, name);
+    if (failure) {
+        bench_curve_fail(curve, "%.180s", failure);
+        return;
+    }
+    int number = known_row(lab, name);
+    fill_curve(&lab->row[number], lab->origin[number].steps_per_frame, measure->field, curve);
+    curve->row = number;
 }

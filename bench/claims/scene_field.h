@@ -16,6 +16,9 @@ bool bench_scene_field_known(const char *name);
 /* All names, separated by |. */
 void bench_scene_field_names(size_t size, char *names);
 
+/* "hand octree without nodes": the scene, and its engine and what it is without, where said. */
+void bench_scene_field_row(const BenchMeasure *measure, size_t size, char *name);
+
 /* Measures the scene, unless the lab has its row. */
 void bench_scene_field_measure(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
 

@@ -2,56 +2,62 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../claims/claim_store.h"
+#include "../campaign/campaign_run.h"
+#include "../claims/claim_plan.h"
 #include "../claims/claim_table.h"
-#include "../store/draft.h"
-#include "../system/progress.h"
+#include "../settings/config_file.h"
 #include "../system/suggest.h"
 #include "command.h"
 
 typedef struct {
     BenchCommon common;
-    const char *paper, *output;
+    const char *paper, *file;
     BenchNames claims, files;
     bool quick, list, overwrite;
+    BenchCampaignRun run;
     BenchFormat format;
 } Options;
 
 static const BenchSetting settings[] = {
-    {BENCH_OPTION("paper", "NAME", 1, "The claims of this paper only: fastlsm, octree"),
+    {BENCH_MEASURE("paper", "NAME", 1, "The claims of this paper only: fastlsm, octree"),
      BENCH_IN(Options, paper)},
-    {BENCH_OPTION("claim", "NAME", 1, "This claim only; may be repeated (see --list)"),
+    {BENCH_MEASURE("claim", "NAME", 1, "This claim only; may be repeated (see --list)"),
      BENCH_IN(Options, claims)},
-    {BENCH_OPTION("claims", "FILE", 1,
-                  "Add the claims of this file, written as reference/claims.cfg; may be repeated"),
+    {BENCH_MEASURE("claims", "FILE", 1,
+                   "Add the claims of this file, written as reference/claims.cfg; may be repeated"),
      BENCH_IN(Options, files)},
     {BENCH_OPTION("list", NULL, 1, "Print the claims and what they say, and end"),
      BENCH_IN(Options, list)},
-    {BENCH_OPTION("quick", NULL, 2, "Smaller bodies and fewer repeats: noisier and quicker"),
+    {BENCH_MEASURE("quick", NULL, 2, "Smaller bodies and fewer repeats: noisier and quicker"),
      BENCH_IN(Options, quick)},
     BENCH_FORMAT_OPTION(Options, 3),
-    {BENCH_OUTPUT_OPTION(
-         "FILE.h5", 3,
-         "Also store verdicts, every curve's points, every row and provenance in HDF5 "
-         "(default: nothing stored)"),
-     BENCH_IN(Options, output)},
+    {BENCH_MEASURE("output", "FILE.h5", 3,
+                   "Also store verdicts, every curve's points, every row and provenance in HDF5 "
+                   "(default: nothing stored)"),
+     BENCH_IN(Options, run.output), .letter = 'o'},
     BENCH_OVERWRITE_OPTION(Options, 3),
+    BENCH_CAMPAIGN_OPTIONS(Options, 3, "experiment"),
     {0},
 };
 
-static void refuse_word(const struct argp_state *state, void *record, char *text)
+static void take_file(const struct argp_state *state, void *record, char *text)
 {
-    (void)record;
-    bench_usage(state, "what is '%s'? Claims are named with --claim", text);
+    bench_option_shown(state, text, &((Options *)record)->file);
 }
 
 static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
     if (options->list &&
-        (options->output || options->overwrite || options->quick || options->format))
+        (options->run.output || options->overwrite || options->quick || options->format))
         bench_usage(state, "--list measures nothing: it goes with none of --output, --overwrite, "
                            "--quick and --format");
+    if (options->overwrite && options->run.resume)
+        bench_usage(state, "--overwrite starts anew, and --resume does not: give one of them");
+    if (options->overwrite && options->file)
+        bench_usage(state, "%s alone is shown as it is: --overwrite goes with --output",
+                    options->file);
+    bench_option_shown_alone(state, &options->common, options->file);
 }
 
 static const char help[] =
@@ -65,13 +71,14 @@ static const char help[] =
     "where it does not set it stands beside. INVALID is what failed its check, BUSY "
     "times of which other programs took too much: neither is judged, and BUSY is no failure. "
     "Everything is measured once, and checked: against brute force; the largest cubes for finite "
-    "goals and linear momentum.\v"
+    "goals and linear momentum. With FILE.h5 alone: show stored claims.\v"
     "The claims are data, in reference/claims.cfg; its head says how to write your own for "
     "--claims. Takes about three minutes of one core's time, less with --quick.\n" BENCH_EXIT_CODES
     " Of claims also: 1 what should be reproduced is not, or what is set is not so; 3 a claims "
     "file cannot be used.";
 
-static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, NULL, help, refuse_word, check};
+static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, "[FILE.h5]",
+                                      help,     take_file,       check};
 
 static bool named(const Options *options, const char *name)
 {
@@ -86,12 +93,26 @@ static bool chosen(const Options *options, const BenchClaim *claim)
     return named(options, claim->name);
 }
 
-/* All claims, less those that are not asked for. */
-static SmCode choose(const Options *options, BenchClaims *claims, SmError *error)
+/* A claims file, which becomes a part of the plan. */
+static SmCode read_file(const char *path, BenchClaims *claims, BenchClaimsPlan *plan,
+                        SmError *error)
+{
+    size_t size = 0;
+    char *text = bench_config_load(path, &size, error);
+    if (!text) return SM_INPUT;
+    SmCode code = bench_claims_parse(text, size, path, claims, error);
+    if (!code) bench_claims_plan_file(plan, text, size);
+    free(text);
+    return code;
+}
+
+/* All claims, less those that are not asked for; the plan receives what makes them again. */
+static SmCode choose(const Options *options, BenchClaims *claims, BenchClaimsPlan *plan,
+                     SmError *error)
 {
     SmCode code = bench_claims_builtin(claims, error);
     for (int f = 0; f < options->files.count && !code; f++)
-        code = bench_claims_read(options->files.name[f], claims, error);
+        code = read_file(options->files.name[f], claims, plan, error);
     if (code) return code;
     for (int n = 0; n < options->claims.count; n++) {
         char near[BENCH_SUGGEST_TEXT];
@@ -111,6 +132,7 @@ static SmCode choose(const Options *options, BenchClaims *claims, SmError *error
         bench_suggest(&paper, claims->claim[c].paper);
     for (int c = 0; c < claims->count; c++)
         if (chosen(options, &claims->claim[c])) claims->claim[kept++] = claims->claim[c];
+    for (int c = 0; c < kept; c++) bench_claims_plan_name(plan, &claims->claim[c]);
     char near[BENCH_SUGGEST_TEXT];
     const char *words = bench_suggest_words(&paper, "", near);
     claims->count = kept;
@@ -124,33 +146,6 @@ static void list_claims(const BenchClaims *claims)
     for (int c = 0; c < claims->count; c++)
         printf("%-8s %-24s %-15s %s\n", claims->claim[c].paper, claims->claim[c].name,
                bench_claim_kind_name(claims->claim[c].kind), claims->claim[c].statement);
-}
-
-static void find(BenchLab *lab, const BenchClaim *claim, BenchFinding *finding)
-{
-    bool divided = claim->over.experiment != BENCH_TRY_NOTHING;
-    int curve = bench_experiment(lab, &claim->measure);
-    int over = divided ? bench_experiment(lab, &claim->over) : -1;
-    int unset = claim->unset.experiment ? bench_experiment(lab, &claim->unset) : -1;
-    bench_verdict_find(claim, &lab->curve[curve], divided ? &lab->curve[over] : NULL, finding);
-    bench_claim_place(lab, curve, sizeof finding->evidence[0], finding->evidence[0]);
-    if (divided) bench_claim_place(lab, over, sizeof finding->evidence[1], finding->evidence[1]);
-    if (unset < 0) return;
-    bench_verdict_unset(&lab->curve[unset], finding);
-    bench_claim_place(lab, unset, sizeof finding->evidence[2], finding->evidence[2]);
-}
-
-static BenchFinding *find_all(const Options *options, const BenchClaims *claims, BenchLab *lab)
-{
-    BenchProgress progress;
-    BenchFinding *findings = sm_alloc((size_t)claims->count, sizeof *findings);
-    bench_progress_start(&progress, options->common.quiet);
-    for (int c = 0; c < claims->count; c++) {
-        bench_progress_show(&progress, claims->claim[c].name, (double)c / claims->count);
-        find(lab, &claims->claim[c], &findings[c]);
-    }
-    bench_progress_stop(&progress);
-    return findings;
 }
 
 static SmCode verdict(const BenchFinding *findings, int count, SmError *error)
@@ -168,38 +163,63 @@ static SmCode verdict(const BenchFinding *findings, int count, SmError *error)
                    findings[first].words);
 }
 
-static SmCode report(const Options *options, const BenchClaims *claims, int argc, char **argv,
-                     SmError *error)
+/* A shard alone, and what was interrupted, has not all experiments of all claims. */
+static void remark(const Options *options, const BenchCampaign *campaign, int found)
 {
-    BenchLab lab = {
-        .quick = options->quick, .threads = options->common.threads, .seed = options->common.seed};
-    BenchMachine machine;
-    SmCode code = SM_OK;
-    bench_machine_read(argc, argv, options->common.threads, &machine);
-    BenchFinding *findings = find_all(options, claims, &lab);
-    bench_claim_table_write(stdout, options->format, findings, claims->count, &machine);
-    if (options->output)
-        code = bench_claim_store(options->output, findings, claims->count, &lab, &machine, error);
-    if (!code) code = verdict(findings, claims->count, error);
-    free(findings);
-    bench_lab_free(&lab);
+    const BenchClaimsPlan *plan = campaign->plan;
+    if (found < plan->claims.count && !options->common.quiet)
+        fprintf(stderr,
+                "shapebench claims: %ld of %d experiments are there: %d of %d claims wait for the "
+                "others\n",
+                campaign->count, plan->experiments, plan->claims.count - found, plan->claims.count);
+}
+
+static SmCode show(const Options *options, const BenchCampaign *campaign, SmError *error)
+{
+    BenchLab lab;
+    BenchFinding *findings;
+    int found = bench_claims_find(campaign, &lab, &findings);
+    bench_claim_table_write(stdout, options->format, findings, found, &campaign->machine);
+    remark(options, campaign, found);
+    SmCode code = verdict(findings, found, error);
+    bench_claims_release(&lab, findings);
     return code;
+}
+
+static SmCode run(Options *options, int argc, char **argv, BenchCampaign *campaign, SmError *error)
+{
+    BenchClaims claims = {0};
+    *campaign = bench_campaign_create(&bench_claims_type);
+    BenchClaimsPlan *plan = campaign->plan;
+    SmCode code = choose(options, &claims, plan, error);
+    if (!code && options->list && options->run.ranks->rank == 0) list_claims(&claims);
+    bench_claims_free(&claims);
+    if (code || options->list) return code;
+    plan->quick = options->quick;
+    plan->threads = options->common.threads;
+    plan->seed = (long)options->common.seed;
+    bench_machine_read(argc, argv, options->common.threads, &campaign->machine);
+    bench_campaign_build(&campaign->machine, sizeof plan->build, plan->build);
+    options->run.quiet = options->common.quiet;
+    options->run.overwrite = options->overwrite;
+    code = bench_claims_type.count(plan, error);
+    return code ? code : bench_campaign_run(&options->run, campaign, error);
 }
 
 int bench_command_claims(int argc, char **argv)
 {
     Options options = {0};
-    BenchClaims claims = {0};
+    BenchRanks ranks;
+    BenchCampaign campaign = {0};
     SmError error;
-    bench_options_parse(&line, argc, argv, &options, &options.common);
-    SmCode code = choose(&options, &claims, &error);
-    if (!code && options.list)
-        list_claims(&claims);
-    else {
-        if (!code) code = bench_draft_reserve(options.output, options.overwrite, &error);
-        if (!code) code = report(&options, &claims, argc, argv, &error);
+    options.run.ranks = &ranks;
+    SmCode code = bench_ranks_start(&ranks, &error);
+    if (!code) {
+        bench_options_parse(&line, argc, argv, &options, &options.common);
+        code = options.file
+                   ? bench_campaign_load(options.file, &bench_claims_type, &campaign, &error)
+                   : run(&options, argc, argv, &campaign, &error);
     }
-    bench_claims_free(&claims);
-    if (code) bench_option_fail(argv[0], &error);
-    return (int)code;
+    if (!code && ranks.rank == 0 && !options.list) code = show(&options, &campaign, &error);
+    return bench_campaign_end(argv[0], &ranks, &campaign, code, &error);
 }

@@ -4,8 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "../../lib/system/hash.h"
 #include "../beam/swing.h"
@@ -257,16 +255,6 @@ static void be_exact(BenchPoint *point)
     point->goal_rms = point->goal_most = point->path_rms = point->path_most = 0;
 }
 
-static void stamp(BenchPoint *point)
-{
-    if (gethostname(point->host, sizeof point->host)) strcpy(point->host, "unknown");
-    point->host[sizeof point->host - 1] = '\0';
-    time_t now = time(NULL);
-    struct tm utc;
-    gmtime_r(&now, &utc);
-    strftime(point->utc, sizeof point->utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
-}
-
 static SmCode measure(void *work, const BenchCampaign *campaign, void *record, SmError *error)
 {
     (void)error;
@@ -281,7 +269,7 @@ static SmCode measure(void *work, const BenchCampaign *campaign, void *record, S
         measure_gaps(sweeper, plan, &scene, point);
     else
         be_exact(point);
-    stamp(point);
+    bench_campaign_stamp(point->host, point->utc);
     point->rank = sweeper->rank;
     point->wall = sm_now() - start;
     return SM_OK;

@@ -65,6 +65,41 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
     if (group >= 0) H5Gclose(group);
 }
 
+/* A dataset of `count` lines of so many numbers (0: a list), which the caller frees. */
+static void *read_samples(BenchH5 *h5, hid_t group, const char *name, long count, int each)
+{
+    hsize_t size[] = {(hsize_t)count, (hsize_t)each};
+    hid_t dataset = bench_h5_find_dataset(h5, group, name, each ? 2 : 1, size);
+    if (h5->failed) return NULL;
+    double *values = sm_alloc((size_t)count * (size_t)(each ? each : 1), sizeof *values);
+    bench_h5_read(h5, dataset, H5T_NATIVE_DOUBLE, values);
+    return values;
+}
+
+static void read_quantities(BenchH5 *h5, hid_t group, BenchRow *row, bool elastic)
+{
+    for (int q = 0; q < bench_quantity_count; q++)
+        if (bench_quantities[q].elastic == elastic)
+            bench_h5_read_fields(h5, group, &bench_quantities[q].field, 1, row);
+}
+
+void bench_store_read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
+{
+    char name[16];
+    snprintf(name, sizeof name, "%03d", index);
+    hid_t group = bench_h5_find_group(h5, parent, name);
+    read_quantities(h5, group, row, false);
+    row->total = read_samples(h5, group, "total", row->repeats, 0);
+    row->stage = read_samples(h5, group, "stage", row->repeats, SM_STAGES);
+    if (row->change.frames)
+        row->change.time = read_samples(h5, group, "frames", row->change.frames, BENCH_FRAME_PARTS);
+    if (!h5->failed && H5Lexists(group, "elastic", H5P_DEFAULT) > 0)
+        read_quantities(h5, bench_h5_find_group(h5, group, "elastic"), row, true);
+    if (!h5->failed) return;
+    row->repeats = 0;
+    row->change.frames = 0;
+}
+
 /* What each attribute of a row is, for readers: "median of a step [ms]". */
 static void write_columns(BenchH5 *h5)
 {

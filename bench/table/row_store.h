@@ -20,6 +20,10 @@ void bench_store_stages(size_t size, char *names);
 /* One row, as group `index` of `parent`, in a file that holds other things too. */
 void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row);
 
+/* The same read back, all of it but what is the paper's, into a zeroed row, which the caller frees.
+ */
+void bench_store_read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row);
+
 /* Fails unless the open file says that it is a results file, of a schema from `oldest` to ours. */
 void bench_store_check_kind(BenchH5 *h5, int oldest);
 
