@@ -1,4 +1,5 @@
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../../lib/shapes/shape.h"
@@ -10,7 +11,7 @@ typedef struct {
     BenchCommon common;
     const char *name;  /* scene to print, or shape to write */
     const char *write; /* mesh file to write */
-    bool overwrite;
+    bool overwrite, settings;
 } Options;
 
 static const BenchSetting settings[] = {
@@ -18,6 +19,9 @@ static const BenchSetting settings[] = {
                   "Write the mesh of the scene or shape NAME instead, as Wavefront OBJ"),
      BENCH_IN(Options, write)},
     BENCH_OVERWRITE_OPTION(Options, 1),
+    {BENCH_OPTION("settings", NULL, 1,
+                  "List all settings of a scene file, with ranges and defaults, and end"),
+     BENCH_IN(Options, settings)},
     {0},
 };
 
@@ -34,6 +38,8 @@ static void check(const struct argp_state *state, void *record)
     if (options->write && !options->name) bench_usage(state, "--write-mesh: which shape?");
     if (options->overwrite && !options->write)
         bench_usage(state, "--overwrite goes with --write-mesh");
+    if (options->settings && options->name)
+        bench_usage(state, "--settings goes alone: it lists what every scene file can say");
 }
 
 static const char help[] =
@@ -99,13 +105,26 @@ static SmCode write_mesh(const Options *options, SmError *error)
     return code;
 }
 
+static void list_settings(void)
+{
+    BenchScene *defaults = sm_alloc(1, sizeof *defaults);
+    bench_scene_init(defaults);
+    puts("A scene file (NAME.cfg) has lines NAME = VALUE; in any order. Lengths are in the mesh's\n"
+         "units, times in seconds, angles in radians; y is up. Numbers in [ ] all need a decimal\n"
+         "point. What is left out has its default.\n");
+    bench_settings_document(stdout, bench_scene_settings, defaults, 0);
+    free(defaults);
+}
+
 int bench_command_scenes(int argc, char **argv)
 {
     Options options = {0};
     bench_options_parse(&line, argc, argv, &options, &options.common);
     SmError error;
-    SmCode code;
-    if (options.write)
+    SmCode code = SM_OK;
+    if (options.settings)
+        list_settings();
+    else if (options.write)
         code = write_mesh(&options, &error);
     else if (options.name)
         code = print_scene(options.name, &error);

@@ -163,6 +163,8 @@ TEST(mistakes_of_other_commands_are_too)
         {"claims --claim stabel", 2, "did you mean 'stable'? See"},
         {"tabl\033[31mes", 2, "unknown command 'tabl?[31mes'"},
         {"scenes --write-mesh a.obj", 2, "which shape?"},
+        {"scenes penguin --settings", 2, "--settings goes alone"},
+        {"run penguin --gravity 1e13,0,0", 2, "three numbers x,y,z, each from -1e+12 to 1e+12"},
         {"scenes penguin --write-mesh /no/such/a.obj", 4, "/no/such/a.obj"},
         {"scenes penguin --write-mesh /dev/null", 4, "it is there and not a regular file"},
         {"scenes penguin --write-mesh /tmp", 4, "it is there and not a regular file"},

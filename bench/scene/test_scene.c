@@ -1,3 +1,4 @@
+#include <stdlib.h>
 #include <unistd.h>
 
 #include "../../lib/test_folder.h"
@@ -110,6 +111,40 @@ TEST(changes_while_it_runs)
     assert_int_equal(scene.touch[0].instance, 1);
     assert_true(scene.touch[0].radius == 0.5 && scene.touch[0].hold == 0.25);
     assert_true(scene.view.eye_from[2] == 9 && scene.view.near == 2 && scene.view.level == 2);
+}
+
+static void assert_explained(const BenchSetting *table)
+{
+    for (; !bench_setting_ends(table); table++) {
+        if (!table->key || !table->help || !table->help[0])
+            fail_msg("'%s' has no sentence", table->key ? table->key : table->option);
+        if (table->table) assert_explained(table->table);
+    }
+}
+
+TEST(every_setting_is_explained)
+{
+    assert_explained(bench_scene_settings);
+}
+
+/* Of the list, in groups, too. */
+TEST(defaults_are_listed_as_they_are)
+{
+    char *text;
+    size_t size;
+    FILE *file = open_memstream(&text, &size);
+    BenchScene scene;
+    bench_scene_init(&scene);
+    bench_settings_document(file, bench_scene_settings, &scene, 0);
+    fclose(file);
+    assert_non_null(
+        strstr(text, "\nh: a number from 1e-09 to 10, default 0.01\n    run --h: Time"));
+    assert_non_null(strstr(text, "\nw: a whole number from 1 to 31, default 2\n"));
+    assert_non_null(strstr(text, "\nfill: one of \"solid|shell\", default \"solid\"\n"));
+    assert_non_null(strstr(text, "\n        poisson: a number from -0.99 to 0.49, default 0.3\n"));
+    assert_non_null(
+        strstr(text, "\nhandles: a list of groups: ( { ... }, { ... } ), at most 64\n"));
+    free(text);
 }
 
 /* A mistake in a scene, and what the error line says. */

@@ -162,6 +162,45 @@ SmCode bench_setting_text(const BenchSetting *setting, const char *text, void *r
                           bench_setting_wanted(setting, false, wanted));
 }
 
+/* ---- the documented list */
+
+/* ", default 0.01", where the record holds one that the setting can take. */
+static void print_default(FILE *file, const BenchSetting *setting, const void *record)
+{
+    const void *place = (const char *)record + setting->offset;
+    const char *const *choice = bench_setting_choices(setting);
+    double value = setting->kind == BENCH_SET_REAL   ? *(const double *)place
+                   : setting->kind == BENCH_SET_LONG ? (double)*(const long *)place
+                   : setting->kind == BENCH_SET_INT  ? *(const int *)place
+                                                     : NAN;
+    if (setting->kind == BENCH_SET_CHOICE)
+        fprintf(file, ", default \"%s\"", choice[*(const unsigned *)place]);
+    if (setting->kind == BENCH_SET_BOOL)
+        fprintf(file, ", default %s", *(const bool *)place ? "true" : "false");
+    if (setting->kind == BENCH_SET_TEXT && *(const char *)place)
+        fprintf(file, ", default \"%s\"", (const char *)place);
+    if (value >= setting->low && value <= setting->high) fprintf(file, ", default %g", value);
+}
+
+void bench_settings_document(FILE *file, const BenchSetting *table, const void *defaults,
+                             int indent)
+{
+    for (; !bench_setting_ends(table); table++) {
+        char wanted[BENCH_WANTED];
+        const void *within = defaults ? (const char *)defaults + table->offset : NULL;
+        fprintf(file, "%*s%s: %s", indent, "", table->key,
+                bench_setting_wanted(table, true, wanted));
+        if (table->kind == BENCH_SET_LIST) fprintf(file, ", at most %.0f", table->high);
+        if (defaults) print_default(file, table, defaults);
+        fprintf(file, "\n%*s", indent + 4, "");
+        if (table->option) fprintf(file, "run --%s: ", table->option);
+        fprintf(file, "%s\n", table->help);
+        if (table->table)
+            bench_settings_document(file, table->table,
+                                    table->kind == BENCH_SET_GROUP ? within : NULL, indent + 8);
+    }
+}
+
 /* ---- options for a struct that is still to be made */
 
 const char *bench_given(const BenchGiven *given, const char *option)

@@ -10,6 +10,7 @@
 #include <argp.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include "../../lib/error.h"
 
@@ -122,6 +123,12 @@ void bench_setting_number(const BenchSetting *setting, double value, void *recor
  * what is wrong with it, without the option's name. */
 SmCode bench_setting_text(const BenchSetting *setting, const char *text, void *record,
                           SmError *error);
+
+/* Lists what a file can say: each key, what it takes, its default where `defaults`, a record that
+ * the table describes, has one (NULL: none is said), the option of `run` that replaces it, and its
+ * sentence; the tables within likewise. */
+void bench_settings_document(FILE *file, const BenchSetting *table, const void *defaults,
+                             int indent);
 
 /* The value that was given to this option, or NULL. */
 const char *bench_given(const BenchGiven *given, const char *option);
