@@ -123,13 +123,13 @@ typedef struct {
 } Oct;
 
 /* Parts of a step, in order. */
-typedef enum {
+enum {
     OCT_MOMENTS_DEPTH,      /* tree nodes' moments */
     OCT_MOMENTS_BREADTH,    /* regions' moments; matching */
     OCT_TRANSFORMS_DEPTH,   /* tree nodes' transforms */
     OCT_TRANSFORMS_BREADTH, /* goal positions; motion and damping */
     OCT_STEP_PARTS
-} OctStepPart;
+};
 
 /* One thread's part in a pass over one body. */
 typedef struct {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../lib/simd/rotate_lanes.h"
+#include "region/fit.h"
 
 static void rest_of(const Oct *oct, long leaf, double X[3])
 {

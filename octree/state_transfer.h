@@ -19,7 +19,6 @@
 #ifndef OCT_STATE_TRANSFER_H
 #define OCT_STATE_TRANSFER_H
 
-#include "region/fit.h"
 #include "state.h"
 #include "tree/tree_change.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../octree/engine.h"
+#include "../../octree/change/engine_base.h"
 #include "../scene/blades.h"
 
 /* ---- a lattice, by particle number: blades */

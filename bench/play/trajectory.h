@@ -7,7 +7,6 @@
 #ifndef BENCH_TRAJECTORY_H
 #define BENCH_TRAJECTORY_H
 
-#include "../../octree/engine.h"
 #include "../system/machine.h"
 #include "fields.h"
 

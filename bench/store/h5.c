@@ -127,7 +127,9 @@ void bench_h5_text(BenchH5 *h5, hid_t object, const char *name, const char *text
     H5Tclose(type);
 }
 
-int bench_h5_types(const BenchField *field, hid_t *file, hid_t *memory)
+/* The type of one of a field's values in the file and in memory, of a text its own; returns how
+ * many values it has. The caller closes both. */
+static int types_of(const BenchField *field, hid_t *file, hid_t *memory)
 {
     hid_t stored = H5T_IEEE_F64LE, native = H5T_NATIVE_DOUBLE;
     switch (field->kind) {
@@ -169,7 +171,7 @@ void bench_h5_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int co
             continue;
         }
         hid_t type, memory;
-        int numbers = bench_h5_types(&fields[i], &type, &memory);
+        int numbers = types_of(&fields[i], &type, &memory);
         bench_h5_numbers(h5, object, fields[i].name, type, numbers == 1 ? 0 : numbers, value);
         H5Tclose(type);
         H5Tclose(memory);
@@ -280,7 +282,7 @@ void bench_h5_columns(BenchH5 *h5, hid_t group, const BenchField *fields, int co
         const BenchField *field = &fields[f];
         if (!field->name) continue;
         hid_t file, memory;
-        int values = bench_h5_types(field, &file, &memory);
+        int values = types_of(field, &file, &memory);
         char *column = sm_alloc((size_t)number, field->size);
         for (long r = 0; r < number; r++)
             memcpy(column + (size_t)r * field->size,
@@ -355,7 +357,7 @@ void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size
 static void read_numbers(BenchH5 *h5, hid_t object, const BenchField *field, void *value)
 {
     hid_t file, memory;
-    int count = bench_h5_types(field, &file, &memory);
+    int count = types_of(field, &file, &memory);
     hid_t attribute = open_attribute(h5, object, field->name, field->kind, count);
     if (!h5->failed && H5Aread(attribute, memory, value) < 0)
         bench_h5_fail(h5, "attribute '%s' cannot be read", field->name);
@@ -485,7 +487,7 @@ void bench_h5_read_columns(BenchH5 *h5, hid_t group, const BenchField *fields, i
         const BenchField *field = &fields[f];
         if (!field->name) continue;
         hid_t file, memory;
-        int values = bench_h5_types(field, &file, &memory);
+        int values = types_of(field, &file, &memory);
         hsize_t shape[] = {(hsize_t)number, (hsize_t)values};
         hid_t dataset =
             bench_h5_find_dataset(h5, group, field->name, rank_of(field, values), shape);

@@ -44,9 +44,6 @@ void bench_h5_text(BenchH5 *h5, hid_t object, const char *name, const char *text
  * fixed-length UTF-8; what has no name is left out. */
 void bench_h5_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
                      const void *record);
-/* The type of one of a field's values in the file and in memory, of a text its own; returns how
- * many values it has. The caller closes both. */
-int bench_h5_types(const BenchField *field, hid_t *file, hid_t *memory);
 void bench_h5_dataset(BenchH5 *h5, hid_t parent, const char *name, hid_t type, int rank,
                       const hsize_t *size, const void *values);
 

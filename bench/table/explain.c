@@ -8,7 +8,6 @@
 #include "../measure/elastic_row.h"
 #include "../measure/measure.h"
 #include "grid.h"
-#include "row_grid.h"
 
 static const RefPaperRow *paper_of(const BenchRow *row)
 {

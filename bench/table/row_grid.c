@@ -7,7 +7,8 @@
 #include "../engines.h"
 #include "../measure/elastic_row.h"
 
-bool bench_row_of_octree(const BenchRow *row)
+/* Whether the octree's columns belong to it: it is of that paper or engine. */
+static bool of_octree(const BenchRow *row)
 {
     return bench_engine(row->paper)->sampled || bench_engine(row->engine)->sampled;
 }
@@ -15,7 +16,7 @@ bool bench_row_of_octree(const BenchRow *row)
 BenchTableKind bench_row_steps(const BenchRow *rows, int count)
 {
     for (int r = 0; r < count; r++)
-        if (bench_row_of_octree(&rows[r])) return BENCH_TABLE_STEPS;
+        if (of_octree(&rows[r])) return BENCH_TABLE_STEPS;
     return BENCH_TABLE_LATTICES;
 }
 

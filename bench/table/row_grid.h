@@ -7,9 +7,6 @@
 
 #include "quantity.h"
 
-/* Whether the octree's columns belong to it: it is of that paper or engine. */
-bool bench_row_of_octree(const BenchRow *row);
-
 /* The table of steps for these rows, which need only have their paper and engine yet. */
 BenchTableKind bench_row_steps(const BenchRow *rows, int count);
 

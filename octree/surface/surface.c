@@ -442,13 +442,6 @@ long oct_surface_agree(OctSurface *s, const SmMesh *mesh, const OctCarrier *carr
     return sm_make_sides_consistent(mesh, agree, follow, &(Carriers){s, carrier});
 }
 
-void oct_surface_pieces(const OctSurface *surface, const SmMesh *mesh, const SmPieces *pieces,
-                        int *piece)
-{
-    for (long t = 0; t < mesh->triangle_count; t++)
-        piece[t] = pieces->piece[surface->rows.item[surface->rows.first[mesh->triangle[t][0]]]];
-}
-
 /* ---- moved */
 
 /* x_k + F_k (X - X_k) */

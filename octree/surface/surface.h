@@ -70,11 +70,6 @@ void oct_surface_update(OctSurface *surface, const SmMesh *mesh, const OctCarrie
  * are no neighbours. */
 long oct_surface_agree(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier);
 
-/* The piece of leaves (oct_graph_pieces()) that every triangle follows, by the leaf that its first
- * vertex belongs to, into piece[triangle_count]. */
-void oct_surface_pieces(const OctSurface *surface, const SmMesh *mesh, const SmPieces *pieces,
-                        int *piece);
-
 /* Vertex positions (and unit normals, unless NULL) from node positions x, all in mesh units. A
  * normal of a surface that has collapsed is 0, never NaN (while x is finite and within 1e60).
  * Allocates nothing. OpenMP's number of threads, of which any gives the same bits. */

@@ -220,8 +220,9 @@ static void count_pieces(const OctStructure *s, const OctSurface *surface, const
         if (below < 0) below = up ? 1 - nodes.piece[k] : nodes.piece[k];
         assert_int_equal(nodes.piece[k] == below, !up);
     }
-    oct_surface_pieces(surface, mesh, &nodes, piece);
     for (long t = 0; t < mesh->triangle_count; t++) {
+        int leaf = surface->rows.item[surface->rows.first[mesh->triangle[t][0]]];
+        piece[t] = nodes.piece[leaf];
         double height = 0;
         for (int i = 0; i < 3; i++) {
             const double *X = mesh->position[mesh->triangle[t][i]];
