@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../engines.h"
-#include "../regress/statistic.h"
+#include "../system/statistic.h"
 
 static const double near_enough = 0.1, alike = 0.1; /* of a modulus */
 

@@ -14,7 +14,7 @@
 #include "../../lib/engine.h"
 #include "../measure/row.h"
 #include "../play/runner.h"
-#include "../regress/statistic.h"
+#include "../system/statistic.h"
 
 /* Which settings each takes beside those named here is an error.
  *

@@ -13,10 +13,10 @@
 #include "../regress/regression.h"
 #include "../regress/revision.h"
 #include "../regress/samples.h"
-#include "../regress/statistic.h"
 #include "../scene/scene.h"
 #include "../store/draft.h"
 #include "../system/process.h"
+#include "../system/statistic.h"
 #include "../system/suggest.h"
 #include "command.h"
 

@@ -1,6 +1,6 @@
 #include "spread.h"
 
-#include "../regress/statistic.h"
+#include "../system/statistic.h"
 
 BenchSpread bench_spread(const double *value, int count)
 {

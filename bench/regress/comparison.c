@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../../lib/error.h"
-#include "statistic.h"
+#include "../system/statistic.h"
 
 static const double least_interleaved = 0.02, least_apart = 0.10;
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../../lib/error.h"
-#include "statistic.h"
+#include "../system/statistic.h"
 
 const char *bench_time_name(int time)
 {

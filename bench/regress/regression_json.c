@@ -5,8 +5,8 @@
 #include <gsl/gsl_statistics.h>
 
 #include "../store/export.h"
+#include "../system/statistic.h"
 #include "regression.h"
-#include "statistic.h"
 
 /* One build's part of a comparison. */
 static json_t *side_json(const BenchComparison *one, BenchBuild build)
