@@ -18,7 +18,7 @@ typedef struct {
     void *value; /* [like item] of `size` bytes each; NULL where size is 0 */
     size_t size;
     long live; /* items in all rows */
-    /* its own */
+    /* private */
     int *room;                         /* [rows] places that a row has from first on */
     long row_space, used, space, lost; /* rows and places there are; given out; of those no row's */
 } SmCsr;

@@ -21,12 +21,12 @@ struct SmCollideWork {
     SmCollidePatches patches;
     SmCollidePaths paths;
     SmCollidePairs pairs;
-    SmCollideBox *cell_box, *node_box; /* [bodies * patches] of those in pairs */
-    SmCollideBox *box;                 /* [bodies * cells of the shape] of their cells */
-    Found *found;                      /* [threads] */
-    int *place;                        /* [bodies * nodes] in SmCollide.node, or -1 */
-    unsigned char *fixed;              /* [bodies * nodes] */
-    long *fixed_node;                  /* [fixed_count] */
+    SmBox *cell_box, *node_box; /* [bodies * patches] of those in pairs */
+    SmBox *box;                 /* [bodies * cells of the shape] of their cells */
+    Found *found;               /* [threads] */
+    int *place;                 /* [bodies * nodes] in SmCollide.node, or -1 */
+    unsigned char *fixed;       /* [bodies * nodes] */
+    long *fixed_node;           /* [fixed_count] */
     long fixed_count, contact_room, node_room;
     double *inverse_mass; /* [node_room] of the nodes that contacts change; 0: fixed */
     double (*before)[3];  /* [node_room] */
@@ -136,12 +136,6 @@ static SmCollideContact *next_contact(Found *found)
     return &found->contact[found->count];
 }
 
-static bool holds(const SmCollideBox *box, const double p[3])
-{
-    return p[0] >= box->low[0] && p[0] <= box->high[0] && p[1] >= box->low[1] &&
-           p[1] <= box->high[1] && p[2] >= box->low[2] && p[2] <= box->high[2];
-}
-
 /* Boxes of a patch's cells, with the solid round of nodes, and of its nodes. */
 static void find_boxes(SmCollide *c, const double (*x)[3], const double (*frame)[9], long patch)
 {
@@ -149,21 +143,21 @@ static void find_boxes(SmCollide *c, const double (*x)[3], const double (*frame)
     const SmCollidePatches *patches = &work->patches;
     long b = patch / patches->count, p = patch % patches->count, first = b * c->shape.nodes;
     double middle[3], F[9], half[3];
-    SmCollideBox cells = sm_collide_no_box(), nodes = sm_collide_no_box();
+    SmBox cells = sm_no_box(), nodes = sm_no_box();
     for (long i = patches->cell_first[p]; i < patches->cell_first[p + 1]; i++) {
         const SmCollideCell *cell = &c->shape.cell[patches->cell[i]];
-        SmCollideBox *box = &work->box[b * c->shape.cell_count + patches->cell[i]];
-        *box = sm_collide_no_box();
+        SmBox *box = &work->box[b * c->shape.cell_count + patches->cell[i]];
+        *box = sm_no_box();
         find_frame(cell, x + first, frame ? frame + first : NULL, middle, F);
         if (!extents(c, cell, F, half)) continue;
         for (int d = 0; d < 3; d++) {
             box->low[d] = middle[d] - half[d];
             box->high[d] = middle[d] + half[d];
         }
-        sm_collide_widen(&cells, box->low, box->high);
+        sm_box_join(&cells, box->low, box->high);
     }
     for (long i = patches->node_first[p]; i < patches->node_first[p + 1]; i++)
-        sm_collide_widen(&nodes, x[first + patches->node[i]], x[first + patches->node[i]]);
+        sm_box_join(&nodes, x[first + patches->node[i]], x[first + patches->node[i]]);
     work->cell_box[patch] = cells;
     work->node_box[patch] = nodes;
 }
@@ -192,15 +186,15 @@ static void test_patches(const SmCollide *c, const double (*x)[3], const double 
 {
     const SmCollideWork *work = c->work;
     const SmCollidePatches *patches = &work->patches;
-    const SmCollideBox *nodes = &work->node_box[with_nodes];
+    const SmBox *nodes = &work->node_box[with_nodes];
     long b = with_cells / patches->count, p = with_cells % patches->count;
     long q = with_nodes % patches->count, first = with_nodes / patches->count * c->shape.nodes;
-    if (!sm_collide_overlap(&work->cell_box[with_cells], nodes)) return;
+    if (!sm_boxes_meet(&work->cell_box[with_cells], nodes)) return;
     for (long i = patches->cell_first[p]; i < patches->cell_first[p + 1]; i++) {
-        const SmCollideBox *box = &work->box[b * c->shape.cell_count + patches->cell[i]];
-        if (!sm_collide_overlap(box, nodes)) continue;
+        const SmBox *box = &work->box[b * c->shape.cell_count + patches->cell[i]];
+        if (!sm_boxes_meet(box, nodes)) continue;
         for (long n = patches->node_first[q]; n < patches->node_first[q + 1]; n++)
-            if (holds(box, x[first + patches->node[n]]))
+            if (sm_box_holds(box, x[first + patches->node[n]]))
                 test_node(c, x, frame, (int)(first + patches->node[n]), b, patches->cell[i], found);
     }
 }
@@ -295,7 +289,7 @@ void sm_collide_begin(SmCollide *c)
     for (long i = 0; i < c->contact_count; i++) relative(c, &c->contact[i], c->contact[i].bias);
 }
 
-static void kick(SmCollide *c, int place, double share, const double impulse[3])
+static void add_impulse(SmCollide *c, int place, double share, const double impulse[3])
 {
     double scale = share * c->work->inverse_mass[place];
     for (int d = 0; d < 3; d++) c->v[place][d] += scale * impulse[d];
@@ -303,12 +297,12 @@ static void kick(SmCollide *c, int place, double share, const double impulse[3])
 
 static void push(SmCollide *c, const SmCollideContact *contact, const double impulse[3])
 {
-    kick(c, contact->place, 1, impulse);
+    add_impulse(c, contact->place, 1, impulse);
     for (int i = 0; i < c->shape.carriers; i++)
-        kick(c, contact->carrier[i], -contact->weight[i], impulse);
+        add_impulse(c, contact->carrier[i], -contact->weight[i], impulse);
 }
 
-/* u at the positions; returns its part outwards. */
+/* u at the positions; returns its component outwards. */
 static double outwards(const SmCollide *c, const SmCollideContact *contact, double u[3])
 {
     relative(c, contact, u);
@@ -326,39 +320,39 @@ static void stop(SmCollide *c, const SmCollideContact *contact, double friction)
         impulse[d] = contact->mass * (after[d] - u[d]);
     }
     push(c, contact, impulse);
-    c->bank += 0.5 * contact->mass * (sm_dot(u, u) - sm_dot(after, after));
+    c->reserve += 0.5 * contact->mass * (sm_dot(u, u) - sm_dot(after, after));
 }
 
 /* What it would take to push a contact out as fast as its depth asks for. */
-static double price(const SmCollide *c, const SmCollideContact *contact, double *speed)
+static double cost_of(const SmCollide *c, const SmCollideContact *contact, double *speed)
 {
     double u[3], wanted = SM_COLLIDE_PUSH * contact->depth;
     *speed = fmax(outwards(c, contact, u), 0);
     return wanted > *speed ? 0.5 * contact->mass * (wanted * wanted - *speed * *speed) : 0;
 }
 
-/* Spends the bank on pushing outwards, on each contact the same share of its price. */
-static void spend(SmCollide *c)
+/* Spends the reserve on pushing outwards: each contact gets the same share of its cost. */
+static void push_out(SmCollide *c)
 {
     double total = 0, speed, impulse[3];
-    for (long i = 0; i < c->contact_count; i++) total += price(c, &c->contact[i], &speed);
-    double share = total > c->bank ? c->bank / total : 1;
+    for (long i = 0; i < c->contact_count; i++) total += cost_of(c, &c->contact[i], &speed);
+    double share = total > c->reserve ? c->reserve / total : 1;
     for (long i = 0; i < c->contact_count; i++) {
         const SmCollideContact *contact = &c->contact[i];
         stop(c, contact, 0);
-        double cost = fmin(share * price(c, contact, &speed), c->bank);
+        double cost = fmin(share * cost_of(c, contact, &speed), c->reserve);
         if (!(cost > 0)) continue;
         double more = sqrt(speed * speed + 2 * cost / contact->mass) - speed;
         for (int d = 0; d < 3; d++) impulse[d] = contact->mass * more * contact->out[d];
         push(c, contact, impulse);
-        c->bank -= cost;
+        c->reserve -= cost;
     }
 }
 
 void sm_collide_respond(SmCollide *c)
 {
     double(*before)[3] = c->work->before;
-    c->bank *= SM_COLLIDE_KEPT;
+    c->reserve *= SM_COLLIDE_KEPT;
     if (!c->contact_count) return;
     for (long i = 0; i < c->contact_count; i++) {
         double u[3];
@@ -369,7 +363,7 @@ void sm_collide_respond(SmCollide *c)
     for (int sweep = 0; sweep < SM_COLLIDE_SWEEPS; sweep++)
         for (long i = 0; i < c->contact_count; i++)
             stop(c, &c->contact[i], sweep ? 0 : c->params.friction);
-    spend(c);
+    push_out(c);
     for (long i = 0; i < c->node_count; i++)
         for (int d = 0; d < 3; d++) c->v[i][d] -= before[i][d];
 }
@@ -471,8 +465,8 @@ long sm_collide_bytes(const SmCollide *c)
 {
     const SmCollideWork *work = c->work;
     size_t bytes = (size_t)(c->bodies * c->shape.nodes) * (sizeof(int) + 1) +
-                   (size_t)(c->bodies * work->patches.count) * 2 * sizeof(SmCollideBox) +
-                   (size_t)(c->bodies * c->shape.cell_count) * sizeof(SmCollideBox) +
+                   (size_t)(c->bodies * work->patches.count) * 2 * sizeof(SmBox) +
+                   (size_t)(c->bodies * c->shape.cell_count) * sizeof(SmBox) +
                    (size_t)work->contact_room * 2 * sizeof *c->contact +
                    (size_t)work->node_room * (sizeof(int) + sizeof(double) + 2 * sizeof *c->v);
     return (long)bytes + sm_collide_pairs_bytes(&work->pairs) +

@@ -1,12 +1,12 @@
 /* collide.h - bodies collide with each other and with themselves.
  *
- * Method (octree section on collisions; Teschner et al. 2003): a rest distance field, flooded from
- * the outer faces (rest.h), rides on the cells. Every cell near the surface looks up the
- * surface's nodes in its box; in place of a spatial hash, parts of the surface do that in pairs
- * (pairs.h), which leaves out nearly all that a hash finds: neighbours in the material. A
+ * Method (octree section on collisions; Teschner et al. 2003): every cell near the surface has
+ * distances to the outer faces at rest (rest.h) and finds the surface's nodes in its box. In place
+ * of a spatial hash, patches of the surface are tested in pairs (pairs.h), which leaves out nearly
+ * all that a hash finds: neighbours in the material. A
  * node inside a cell is at a rest position there, which says how deep it is and which way is out.
  * It makes one contact with every cell that holds it. A node and a cell that the material joins by
- * a short way never collide (rest.h).
+ * a short path never collide (rest.h).
  *
  * Engines call, in every step:
  *     sm_collide_find(c, x, frame)                    contacts of the positions before the step
@@ -25,10 +25,10 @@
  * node and -w_c p on the carriers keeps the momentum, changes u by p / mu, 1 / mu = 1 / m_i + sum
  * w_c^2 / m_c, and the kinetic energy by mu (|u'|^2 - |u|^2) / 2. First all contacts, a few times
  * in turn, lose the part of u that leads deeper and the share `friction` of the tangential one:
- * |u'| <= |u|. What they lose goes into a bank, from which all are paid the same share of what it
- * takes to push them out at SM_COLLIDE_PUSH x depth; the bank forgets some of its money in every
- * step and never owes any. So H + bank never grows, and H never exceeds what it was when the bank
- * was empty. What overlaps and rests stays as it is while the bank is empty.
+ * |u'| <= |u|. The energy they lose is added to a reserve, from which each contact gets the same
+ * share of the energy that it takes to push it out at SM_COLLIDE_PUSH x depth; the reserve decays
+ * in every step and is never negative. So H + reserve never grows, and H never exceeds what it was
+ * when the reserve was 0. What overlaps and rests stays as it is while the reserve is 0.
  *
  * Speed limit: a node that moves, relative to the cells that it meets, by less than half the
  * thickness of what they are part of in a step is found before it is nearer to the far side, and
@@ -36,16 +36,16 @@
  * may fly at 0.15 times that thickness a step (SM_COLLIDE_SPEED), so at 0.15 cells against a wall
  * one cell thick. The same holds for obstacles (obstacle.h), but for planes, which have no limit.
  *
- * Only parts of surfaces (patches.h) whose boxes meet, of bodies whose boxes meet or of one
+ * Only patches of surfaces (patches.h) whose boxes meet, of bodies whose boxes meet or of one
  * body where the material does not hold them together, look for contacts. A cell counts as the
  * parallelepiped of its axes; where its corners are so bent that this reaches beyond them by more
  * than a tenth of an edge, contacts in what reaches beyond may be missed.
  *
  * Results do not depend on the number of threads. A step costs O(1) for every particle that is
- * looked at (all, for boxes), O(1) for every pair of parts whose boxes meet or, of one body, soon
+ * looked at (all, for boxes), O(1) for every pair of patches whose boxes meet or, of one body, soon
  * may, for their nodes and cells where the material does not hold them together, and O(carriers)
  * for each contact; once for every node and cell of one body that meet and are neither far apart at
- * rest nor neighbours, what a search of the material between them costs. It allocates nothing once
+ * rest nor neighbours, a search of the material between them. It allocates nothing once
  * its arrays have grown. Twin: reference/brute_collide.c. */
 #ifndef SM_COLLIDE_H
 #define SM_COLLIDE_H
@@ -54,7 +54,7 @@
 #include "rest.h"
 
 #define SM_COLLIDE_PUSH 0.25 /* share of the depth that is pushed out in a step, at most */
-#define SM_COLLIDE_KEPT 0.98 /* share of what is in the bank that lasts to the next step */
+#define SM_COLLIDE_KEPT 0.98 /* share of the reserve that lasts to the next step */
 
 #define SM_COLLIDE_SPEED    0.15 /* of the thickness of a wall, that a body may fly at in a step */
 #define SM_COLLIDE_FLATTEST 0.1  /* a cell with less of its volume has no inside, */
@@ -80,7 +80,8 @@ typedef struct {
     SmCollideParams params;
     long bodies, contact_count, node_count;
     int threads;
-    double bank; /* energy taken and not spent, in the masses' unit x (cells / step)^2 */
+    double reserve; /* energy taken from contacts and not yet returned, in the masses' unit x (cells
+                       / step)^2 */
     SmCollideContact *contact; /* [contact_count] in an order that positions decide */
     int *node;                 /* [node_count] nodes that contacts change, each once */
     double (*v)[3];            /* [node_count] */
@@ -95,7 +96,7 @@ void sm_collide_free(SmCollide *collide);
 
 /* The body has changed (broken links, cut or refined cells): its new description. Node numbers may
  * change; what was fixed is fixed no more. O(description): about 0.5 us a node, most of it for the
- * parts; who is far from whom through the material is not sought before it is asked for. */
+ * patches. Which nodes and cells are far apart in the material is found when it is first needed. */
 void sm_collide_describe(SmCollide *collide, const SmCollideRest *rest);
 
 /* Nodes that impulses do not move (held by handles), in place of those named before. O(count). */

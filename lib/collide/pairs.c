@@ -18,11 +18,6 @@ typedef struct {
     long body, from, to, at;
 } Range;
 
-SmCollideBox sm_collide_no_box(void)
-{
-    return (SmCollideBox){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-}
-
 static void sweep_init(SmCollideSweep *sweep, long bodies)
 {
     size_t n = (size_t)bodies;
@@ -43,13 +38,10 @@ static void sweep_free(SmCollideSweep *sweep)
 static void find_body(SmCollideSweep *sweep, long b, const double (*x)[3], long nodes,
                       double margin)
 {
-    SmCollideBox *box = &sweep->box[b];
-    *box = sm_collide_no_box();
-    for (long i = b * nodes; i < (b + 1) * nodes; i++) sm_collide_widen(box, x[i], x[i]);
-    for (int d = 0; d < 3; d++) {
-        box->low[d] -= margin;
-        box->high[d] += margin;
-    }
+    SmBox *box = &sweep->box[b];
+    *box = sm_no_box();
+    for (long i = b * nodes; i < (b + 1) * nodes; i++) sm_box_add(box, x[i]);
+    sm_box_widen(box, margin);
 }
 
 static void sort_bodies(SmCollideSweep *sweep)
@@ -74,8 +66,8 @@ static void add_bodies(SmCollideSweep *sweep, int a, int b)
     sweep->meets[a] = sweep->meets[b] = true;
 }
 
-/* Boxes of the positions x [bodies * nodes][3], wider by `margin` on every side, and who overlaps
- * whom. O(nodes + bodies + pairs that overlap along x). */
+/* Boxes of the positions x [bodies * nodes][3], wider by `margin` on every side, and which
+ * overlap. O(nodes + bodies + pairs that overlap along x). */
 static void sweep_bodies(SmCollideSweep *sweep, const double (*x)[3], long nodes, double margin)
 {
     for (long b = 0; b < sweep->bodies; b++) find_body(sweep, b, x, nodes, margin);
@@ -87,7 +79,7 @@ static void sweep_bodies(SmCollideSweep *sweep, const double (*x)[3], long nodes
         for (long j = i + 1; j < sweep->bodies; j++) {
             int b = sweep->order[j];
             if (!(sweep->box[b].low[0] <= sweep->box[a].high[0])) break;
-            if (sm_collide_overlap(&sweep->box[a], &sweep->box[b])) add_bodies(sweep, a, b);
+            if (sm_boxes_meet(&sweep->box[a], &sweep->box[b])) add_bodies(sweep, a, b);
         }
     }
 }
@@ -140,9 +132,9 @@ static Range upper(Range r)
 }
 
 /* Boxes of a range of patches of a body, from those of the patches. */
-static void fill_tree(SmCollidePairs *w, const SmCollideBox *patch, Range r)
+static void fill_tree(SmCollidePairs *w, const SmBox *patch, Range r)
 {
-    SmCollideBox *box = &w->tree[r.body * w->boxes + r.at];
+    SmBox *box = &w->tree[r.body * w->boxes + r.at];
     if (r.to - r.from == 1) {
         *box = patch[r.from];
         return;
@@ -150,8 +142,8 @@ static void fill_tree(SmCollidePairs *w, const SmCollideBox *patch, Range r)
     fill_tree(w, patch, lower(r));
     fill_tree(w, patch, upper(r));
     *box = w->tree[r.body * w->boxes + lower(r).at];
-    const SmCollideBox *other = &w->tree[r.body * w->boxes + upper(r).at];
-    sm_collide_widen(box, other->low, other->high);
+    const SmBox *other = &w->tree[r.body * w->boxes + upper(r).at];
+    sm_box_join(box, other->low, other->high);
 }
 
 static void add_patch(SmCollidePairs *w, int patch)
@@ -189,7 +181,7 @@ static void add_near(SmCollidePairs *w, Range a, Range b)
 /* Pairs of a patch of one range and one of another. */
 static void cross(SmCollidePairs *w, Range a, Range b)
 {
-    if (!sm_collide_overlap(&w->tree[a.body * w->boxes + a.at], &w->tree[b.body * w->boxes + b.at]))
+    if (!sm_boxes_meet(&w->tree[a.body * w->boxes + a.at], &w->tree[b.body * w->boxes + b.at]))
         return;
     long wide = a.to - a.from, other = b.to - b.from, patches = w->patches->count;
     if (wide == 1 && other == 1) {
@@ -221,17 +213,17 @@ static void within(SmCollidePairs *w, Range r)
 /* Fills the boxes of the patches of body b, and the middle of them all. */
 static void find_boxes(SmCollidePairs *w, long b, const double (*x)[3], double middle[3])
 {
-    SmCollideBox *box = w->box + b * w->patches->count, all = sm_collide_no_box();
+    SmBox *box = w->box + b * w->patches->count, all = sm_no_box();
     for (long p = 0; p < w->patches->count; p++) {
         sm_collide_patches_box(w->patches, x, p, box[p].low, box[p].high);
-        sm_collide_widen(&all, box[p].low, box[p].high);
+        sm_box_join(&all, box[p].low, box[p].high);
     }
     for (int d = 0; d < 3; d++) middle[d] = 0.5 * (all.low[d] + all.high[d]);
 }
 
 /* Rounding keeps the order of what is subtracted from: if two boxes overlap, so do they less the
  * middle, and the wide ones that hold these. */
-static bool left(const SmCollideBox *box, const SmCollideBox *wide, const double middle[3])
+static bool left(const SmBox *box, const SmBox *wide, const double middle[3])
 {
     bool out = false;
     for (int d = 0; d < 3; d++)
@@ -278,7 +270,7 @@ static void find_own(SmCollidePairs *w, long b, const double middle[3])
     near->steps++;
     for (long i = 0; i < near->count; i++) {
         long p = first + near->pair[i][0], q = first + near->pair[i][1];
-        if (p == q || sm_collide_overlap(&w->box[p], &w->box[q])) add_pair(w, p, q);
+        if (p == q || sm_boxes_meet(&w->box[p], &w->box[q])) add_pair(w, p, q);
     }
 }
 

@@ -1,31 +1,27 @@
-/* pairs.h - pairs of patches of bodies (patches.h) that may touch: those whose boxes
- * overlap.
+/* pairs.h - pairs of patches of bodies (patches.h) that may touch: those whose boxes overlap.
  *
  * Patches follow each other along a curve through space, so halving their range gives a tree of
- * boxes that needs no building; a body's tree is held against itself and against those of the
- * bodies whose boxes its own overlaps. Against itself it is held only now and then, with boxes that
- * are wider than the patches': until a patch leaves its wide box no other pairs can touch than
- * those found. They are kept in the order of the tree, which no position changes, so what is found
- * does not depend on when that was. */
+ * boxes that needs no building. A body's tree is tested against itself and against those of the
+ * bodies whose boxes its own overlaps: against itself only now and then, with boxes that are wider
+ * than the patches'. Until a patch leaves its wide box no other pairs can touch than those found.
+ * They are kept in the order of the tree, which no position changes, so what is found does not
+ * depend on when that was. */
 #ifndef SM_PAIRS_H
 #define SM_PAIRS_H
 
 #include <stdbool.h>
 
+#include "../box.h"
 #include "../engine.h"
 #include "patches.h"
-
-typedef struct {
-    double low[3], high[3];
-} SmCollideBox;
 
 /* Which bodies' boxes overlap: sweep and prune along x. */
 typedef struct {
     long bodies, pairs, room;
-    SmCollideBox *box; /* [bodies] */
-    int *order;        /* [bodies] by rising low x; nearly right from the last time */
-    int (*pair)[2];    /* [pairs] */
-    bool *meets;       /* [bodies] is in a pair */
+    SmBox *box;     /* [bodies] */
+    int *order;     /* [bodies] by rising low x; nearly right from the last time */
+    int (*pair)[2]; /* [pairs] */
+    bool *meets;    /* [bodies] is in a pair */
 } SmCollideSweep;
 
 /* Pairs of patches of a body, without those that are joined, whose wide boxes overlap. Those boxes
@@ -49,12 +45,12 @@ typedef struct {
     long patch_count;
     /* its own */
     SmCollideSweep sweep;
-    SmCollideBox *tree; /* [bodies][boxes] a range of patches, then its lower half's, its upper's */
-    SmCollideBox *box;  /* [bodies * patches] of the patches as they are now */
-    char *known;        /* [bodies * patches] is in `patch` */
+    SmBox *tree; /* [bodies][boxes] a range of patches, then its lower half's, its upper's */
+    SmBox *box;  /* [bodies * patches] of the patches as they are now */
+    char *known; /* [bodies * patches] is in `patch` */
     long room;
     SmCollideNear *near; /* [bodies] pairs of one body that may come to touch */
-    SmCollideBox *wide;  /* [bodies * patches] boxes that these hold for */
+    SmBox *wide;         /* [bodies * patches] boxes that these hold for */
 } SmCollidePairs;
 
 /* The patches must stay where they are. */
@@ -67,23 +63,5 @@ long sm_collide_pairs_bytes(const SmCollidePairs *pairs);
  * that overlap), and where a patch has left its wide box O(pairs of patches that are near each
  * other). */
 void sm_collide_pairs_find(SmCollidePairs *pairs, long nodes, const double (*x)[3]);
-
-static inline bool sm_collide_overlap(const SmCollideBox *a, const SmCollideBox *b)
-{
-    return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] &&
-           b->low[1] <= a->high[1] && a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
-}
-
-/* Makes a box hold another one; nothing of one that is not a number. */
-static inline void sm_collide_widen(SmCollideBox *box, const double low[3], const double high[3])
-{
-    for (int d = 0; d < 3; d++) {
-        box->low[d] = low[d] < box->low[d] ? low[d] : box->low[d];
-        box->high[d] = high[d] > box->high[d] ? high[d] : box->high[d];
-    }
-}
-
-/* A box of nothing. */
-SmCollideBox sm_collide_no_box(void);
 
 #endif

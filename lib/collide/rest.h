@@ -87,7 +87,7 @@ bool sm_collide_beside(const SmCollideShape *shape, int node, const SmCollideCel
 bool sm_collide_depth(const SmCollideShape *shape, const SmCollideCell *cell, const double q[3],
                       double radius, double *depth, double out[3]);
 
-/* Whom the material holds together: a node and a cell that are near each other at
+/* What the material holds together: a node and a cell that are near each other at
  * rest (sm_collide_beside()) collide only if the rest graph does not join them by a path of at most
  * SM_COLLIDE_AROUND times that length through nodes just as near, and they do not touch at rest.
  *
@@ -97,7 +97,7 @@ bool sm_collide_depth(const SmCollideShape *shape, const SmCollideCell *cell, co
 
 typedef enum { SM_COLLIDE_MAY, SM_COLLIDE_MUST_NOT, SM_COLLIDE_UNKNOWN } SmCollideRelation;
 
-/* A node and the place of a cell in SmCollideShape.cell, from 1 (0: nobody). */
+/* A node and the place of a cell in SmCollideShape.cell, from 1 (0: none). */
 typedef struct {
     int node, cell;
     bool may;

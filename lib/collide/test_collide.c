@@ -290,7 +290,7 @@ static double motion(const SmCollide *c, const double (*before)[3], const double
     return sum;
 }
 
-/* Momentum stays; the energy that motion loses is what the bank gains. */
+/* Momentum stays; the energy that motion loses is what the reserve gains. */
 static void check_response(unsigned *seed, const Body *body)
 {
     SmCollide *c = find(body, &everything, 1);
@@ -300,7 +300,7 @@ static void check_response(unsigned *seed, const Body *body)
             before[i][d] = body->v[c->node[i]][d];
             after[i][d] = before[i][d] + 0.2 * (random_unit(seed) - 0.5);
         }
-    c->bank = 0.5;
+    c->reserve = 0.5;
     if (c->node_count) memcpy(c->v, before, (size_t)c->node_count * sizeof *before);
     sm_collide_begin(c);
     if (c->node_count) memcpy(c->v, after, (size_t)c->node_count * sizeof *after);
@@ -317,9 +317,9 @@ static void check_response(unsigned *seed, const Body *body)
         }
     for (int d = 0; d < 3; d++) assert_true(fabs(moved[d]) <= 1e-12 * (1 + size));
     double is = motion(c, (const double(*)[3])before, (const double(*)[3])after);
-    assert_true(c->bank >= 0);
-    double kept = c->contact_count ? was + SM_COLLIDE_KEPT * 0.5 : is + c->bank;
-    assert_float_equal(is + c->bank, kept, 1e-10 * (1 + was));
+    assert_true(c->reserve >= 0);
+    double kept = c->contact_count ? was + SM_COLLIDE_KEPT * 0.5 : is + c->reserve;
+    assert_float_equal(is + c->reserve, kept, 1e-10 * (1 + was));
     free(before);
     free(after);
     sm_collide_free(c);

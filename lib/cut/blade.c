@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../box.h"
 #include "../error.h"
 #include "../polar.h"
 #include "../vector.h"
@@ -39,41 +40,23 @@ void sm_blade_lift(SmBlade *blade)
     blade->down = false;
 }
 
-typedef struct {
-    double low[3], high[3];
-} Box;
-
 /* The box of some points, wider by `margin`. */
-static Box box_of(int count, const double (*point)[3], double margin)
+static SmBox box_of(int count, const double (*point)[3], double margin)
 {
-    Box box;
-    for (int d = 0; d < 3; d++) {
-        box.low[d] = box.high[d] = point[0][d];
-        for (int i = 1; i < count; i++) {
-            box.low[d] = fmin(box.low[d], point[i][d]);
-            box.high[d] = fmax(box.high[d], point[i][d]);
-        }
-        box.low[d] -= margin;
-        box.high[d] += margin;
-    }
+    SmBox box = sm_no_box();
+    for (int i = 0; i < count; i++) sm_box_add(&box, point[i]);
+    sm_box_widen(&box, margin);
     return box;
-}
-
-static bool holds(const Box *box, const double x[3])
-{
-    bool inside = true;
-    for (int d = 0; d < 3; d++) inside &= x[d] >= box->low[d] && x[d] <= box->high[d];
-    return inside;
 }
 
 static void find_nearby(Nearby *n, int count, const double (*point)[3])
 {
     const SmCarriers *c = n->carriers;
-    Box box = box_of(count, point, 2 * c->reach);
+    SmBox box = box_of(count, point, 2 * c->reach);
     for (int round = 0; round < 2; round++) { /* counts, then lists */
         n->count = 0;
         for (long k = 0; k < c->nodes; k++) {
-            if (!holds(&box, c->position[k]) || (c->absent && c->absent[k])) continue;
+            if (!sm_box_holds(&box, c->position[k]) || (c->absent && c->absent[k])) continue;
             if (round > 0) n->node[n->count] = (int)k;
             n->count++;
         }
@@ -85,10 +68,11 @@ static void find_nearby(Nearby *n, int count, const double (*point)[3])
 
 static void find_near(Nearby *n, const double (*line)[3])
 {
-    Box box = box_of(2, line, 2 * n->carriers->reach);
+    SmBox box = box_of(2, line, 2 * n->carriers->reach);
     n->near = 0;
     for (long k = 0; k < n->count; k++)
-        if (holds(&box, n->carriers->position[n->node[k]])) n->near_node[n->near++] = n->node[k];
+        if (sm_box_holds(&box, n->carriers->position[n->node[k]]))
+            n->near_node[n->near++] = n->node[k];
 }
 
 /* F^-1 d; where F is nearly flat or turned inside out, by its rotation; never more than four times

@@ -15,8 +15,8 @@ typedef struct {
     const double (*rest)[3], (*position)[3]; /* [nodes] mesh units */
     const double (*F)[9];                    /* [nodes] by rows */
     const unsigned char *absent;             /* [nodes] not 0: no such node; NULL: all are there */
-    void (*find)(void *of, long node);       /* makes a node's F good, when it is wanted, every */
-    void *of;                                /* time that it is; NULL: they all are */
+    void (*find)(void *of, long node);       /* fills in a node's F, each time that it is needed; */
+    void *of;                                /* NULL: all are filled in */
     double cell;  /* finest cells' size: about the size of the triangles */
     double reach; /* a blade's point has material near it when a node is within this:
                      2 cells more than material is from its nearest node */
@@ -39,11 +39,11 @@ typedef struct {
 
 enum { SM_BLADE_CELLS = 4096 }; /* a blade longer than that is taken to be of so many parts */
 
-/* A blade that is nowhere yet. Free with sm_blade_free(). */
+/* A blade without a place yet. Free with sm_blade_free(). */
 void sm_blade_init(SmBlade *blade);
 void sm_blade_free(SmBlade *blade);
 
-/* Takes it out: the next sweep sets it down elsewhere, without cutting what lies between. */
+/* Takes it out: the next sweep puts it elsewhere, without cutting what lies between. */
 void sm_blade_lift(SmBlade *blade);
 
 /* Moves the blade to the segment from a to b, and adds to the cut what it sweeps over on the way;
@@ -53,7 +53,7 @@ void sm_blade_lift(SmBlade *blade);
  * it has moved, through the material, less than half a cell since it last cut anything,
  * and where there is none near it. A triangle of more than 4 cells' length joins places that are
  * not together in the material, and is left out. The blade's coordinates must be finite; it may be
- * of length 0. Nodes that are nowhere (NaN) carry nothing. O(nodes) for a look at each, and what is
+ * of length 0. Nodes at NaN carry nothing. O(nodes) for a look at each, and what is
  * swept over.
  */
 long sm_blade_sweep(SmBlade *blade, const double a[3], const double b[3],

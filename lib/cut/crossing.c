@@ -5,32 +5,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../box.h"
 #include "../predicates.h"
 
 enum { CHUNK = 16 }; /* triangles of the solid whose common box is looked at first */
 
-typedef struct {
-    double low[3], high[3];
-} Box;
-
-static void grow_box(Box *box, const double p[3])
+static SmBox box_of(const SmMesh *mesh, long from, long to)
 {
-    for (int d = 0; d < 3; d++) {
-        box->low[d] = p[d] < box->low[d] ? p[d] : box->low[d];
-        box->high[d] = p[d] > box->high[d] ? p[d] : box->high[d];
-    }
-}
-
-static Box box_of(const SmMesh *mesh, long from, long to)
-{
-    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    SmBox box = sm_no_box();
     for (long t = from; t < to; t++)
-        for (int i = 0; i < 3; i++) grow_box(&box, mesh->position[mesh->triangle[t][i]]);
+        for (int i = 0; i < 3; i++) sm_box_add(&box, mesh->position[mesh->triangle[t][i]]);
     return box;
 }
 
 /* Are all corners of a triangle beyond the same side of a box? */
-static bool beyond(const SmMesh *mesh, const int triangle[3], const Box *box)
+static bool beyond(const SmMesh *mesh, const int triangle[3], const SmBox *box)
 {
     const double *p = mesh->position[triangle[0]], *q = mesh->position[triangle[1]];
     const double *r = mesh->position[triangle[2]];
@@ -39,13 +28,6 @@ static bool beyond(const SmMesh *mesh, const int triangle[3], const Box *box)
         if (p[d] > box->high[d] && q[d] > box->high[d] && r[d] > box->high[d]) return true;
     }
     return false;
-}
-
-static bool meet(const Box *a, const Box *b)
-{
-    for (int d = 0; d < 3; d++)
-        if (a->low[d] > b->high[d] || a->high[d] < b->low[d]) return false;
-    return true;
 }
 
 void sm_crossing_corners(const SmCrossing *c, long face, int corner[3])
@@ -59,7 +41,7 @@ void sm_crossing_corners(const SmCrossing *c, long face, int corner[3])
     }
 }
 
-static void find_candidates(SmCrossing *c, const Box *whole)
+static void find_candidates(SmCrossing *c, const SmBox *whole)
 {
     long room = 64;
     c->candidate = sm_alloc((size_t)room, sizeof *c->candidate);
@@ -217,19 +199,19 @@ static void take_face(const SmCrossing *c, Pair *pair, int which, long face)
     for (int i = 0; i < 3; i++) pair->at[which][i] = sm_crossing_at(c, pair->corner[which][i]);
 }
 
-static bool meet_all(SmCrossing *c, const Box *chunk, const Box *box)
+static bool meet_all(SmCrossing *c, const SmBox *chunk, const SmBox *box)
 {
     long count = c->solid->triangle_count;
     Pair pair;
     for (long f = 0; f < c->candidates; f++) {
-        Box own = box_of(c->surface, c->candidate[f], c->candidate[f] + 1);
+        SmBox own = box_of(c->surface, c->candidate[f], c->candidate[f] + 1);
         take_face(c, &pair, 0, f);
         for (long t = 0; t < count; t++) {
-            if (t % CHUNK == 0 && !meet(&own, &chunk[t / CHUNK])) {
+            if (t % CHUNK == 0 && !sm_boxes_meet(&own, &chunk[t / CHUNK])) {
                 t += CHUNK - 1;
                 continue;
             }
-            if (!meet(&own, &box[t])) continue;
+            if (!sm_boxes_meet(&own, &box[t])) continue;
             take_face(c, &pair, 1, c->candidates + t);
             if (!meet_faces(c, &pair)) return false;
         }
@@ -242,8 +224,8 @@ bool sm_crossing_find(const SmMesh *surface, bool inside_out, const SmMesh *soli
 {
     long count = solid->triangle_count, chunks = (count + CHUNK - 1) / CHUNK;
     *crossing = (SmCrossing){.surface = surface, .solid = solid, .inside_out = inside_out};
-    Box whole = box_of(solid, 0, count);
-    Box *box = sm_alloc((size_t)(count + chunks), sizeof *box), *chunk = box + count;
+    SmBox whole = box_of(solid, 0, count);
+    SmBox *box = sm_alloc((size_t)(count + chunks), sizeof *box), *chunk = box + count;
     for (long t = 0; t < count; t++) box[t] = box_of(solid, t, t + 1);
     for (long k = 0; k < chunks; k++)
         chunk[k] = box_of(solid, k * CHUNK, (k + 1) * CHUNK < count ? (k + 1) * CHUNK : count);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../box.h"
 #include "../polar.h"
 #include "../vector.h"
 #include "../voxel/voxel.h"
@@ -32,10 +33,6 @@ typedef struct {
     double square, at[3];
     int particle;
 } Candidate;
-
-typedef struct {
-    double low[3], high[3];
-} Box;
 
 static void place_of(const SmSites *sites, int particle, double place[3])
 {
@@ -245,31 +242,19 @@ static void tie(Tying *t, long v)
     weigh(t, v, &chosen);
 }
 
-static void join(Box *box, const double at[3], bool first)
-{
-    for (int d = 0; d < 3; d++) {
-        box->low[d] = first ? at[d] : fmin(box->low[d], at[d]);
-        box->high[d] = first ? at[d] : fmax(box->high[d], at[d]);
-    }
-}
-
 /* Around triangles, wider by what sm_cut_crosses() may move a segment by. */
-static Box box_of(const SmCut *cut, long first, double margin)
+static SmBox box_of(const SmCut *cut, long first, double margin)
 {
-    Box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    SmBox box = sm_no_box();
     for (long t = first; t < cut->triangles; t++)
-        for (int c = 0; c < 3; c++)
-            join(&box, cut->vertex[cut->triangle[t][c]], t == first && c == 0);
-    for (int d = 0; d < 3; d++) {
-        box.low[d] -= margin;
-        box.high[d] += margin;
-    }
+        for (int c = 0; c < 3; c++) sm_box_add(&box, cut->vertex[cut->triangle[t][c]]);
+    sm_box_widen(&box, margin);
     return box;
 }
 
 /* Do triangles from `first` on, all in the box, come between a vertex and what carries it, or has
  * that come apart? */
-static bool is_parted(const Tying *t, long v, long first, const Box *box)
+static bool is_parted(const Tying *t, long v, long first, const SmBox *box)
 {
     const double *X = t->mesh->position[v];
     const int *corner = t->embedding->corner[v];
@@ -327,7 +312,7 @@ void sm_embed_cut(SmEmbedding *embedding, const SmMesh *mesh, const SmSites *sit
 {
     Tying t = {embedding, mesh, sites, cut, piece, .flat_room = embedding->flat_count};
     double margin = 1e-6 * sites->voxels->cell;
-    Box fresh = box_of(cut, first, margin), all = box_of(cut, 0, margin);
+    SmBox fresh = box_of(cut, first, margin), all = box_of(cut, 0, margin);
     long before = embedding->vertex_count;
     t.normal = sm_mesh_normals(mesh, sites->voxels->cell);
     t.flat = sm_alloc((size_t)mesh->vertex_count, sizeof *t.flat);

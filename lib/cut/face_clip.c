@@ -191,7 +191,7 @@ static int trace_back(SmFaceClip *f, int stops, const Stop *stop, int point)
 }
 
 /* The rings that go along the round: from a start round to an end, back over segments to another
- * start, and so on. False where points that coincide on the round have led astray. */
+ * start, and so on. False where points that coincide on the round make that impossible. */
 static bool trace_round(SmFaceClip *f, int stops, const Stop *stop)
 {
     for (int i = 0; i < stops; i++) {

@@ -19,7 +19,7 @@ static inline long sm_triangulate_most(int points, int rings)
 /* Fills the outline with triangles of three of its points, counter-clockwise, without others;
  * `triangle` has room for sm_triangulate_most(). Best shaped ears go first. What rounding has bent
  * by less than `slack` still counts as straight: of that some triangles may have no area, and where
- * rings touch there may be fewer of them. Their number, or -1, with rubbish written, where rings
+ * rings touch there may be fewer of them. Their number, or -1, where rings
  * cross. O(points^2) and more where ears are rare; allocates. */
 long sm_triangulate(const SmOutline *outline, double slack, int (*triangle)[3]);
 

@@ -750,18 +750,35 @@ TEST(parameters_out_of_range_are_refused)
     sb_voxels_free(voxels);
 }
 
-TEST(misuse_of_a_body_is_refused)
+static const double nan3[3] = {NAN, 0, 0};
+static const double far_off[9] = {0, 0, 0, 1e6, 0, 0, 0, 1e6, 0};
+
+/* A body of 27 particles. */
+static sb_body *small_body(int cuttable)
 {
-    static const double nan3[3] = {NAN, 0, 0}, mirror[12] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    static const double far_off[9] = {0, 0, 0, 1e6, 0, 0, 0, 1e6, 0};
-    static const double close_by[9] = {0, 0, 0, 0.1, 0, 0, 0, 0.1, 0};
-    static const int triangle[3] = {0, 1, 2}, beyond[3] = {0, 1, 9};
-    sb_error error;
     sb_voxels *voxels = block_of(2, 2, 2);
     sb_body_params params = params_of(SB_FASTLSM);
+    params.cuttable = cuttable;
     sb_body *body = body_of(voxels, NULL, &params);
-    int number = 0, ints[27];
-    int64_t count, one = 1, wrong[2] = {27, -1}, twice[2] = {4, 4};
+    sb_voxels_free(voxels);
+    return body;
+}
+
+/* What was refused has changed nothing; frees `before`. */
+static void assert_unmoved(sb_body *body, double *before)
+{
+    double *after = read_field(body, SB_POSITION);
+    assert_memory_equal(before, after, 27 * 24);
+    free(before);
+    free(after);
+}
+
+TEST(misuse_of_particles_is_refused)
+{
+    sb_error error;
+    sb_voxels *voxels = block_of(2, 2, 2);
+    sb_body *body = small_body(0);
+    int64_t count, one = 1, wrong[2] = {27, -1};
     double values[243] = {0};
     double *before = read_field(body, SB_POSITION);
     REFUSED(sb_body_step(NULL, 1, &error), "NULL");
@@ -787,6 +804,19 @@ TEST(misuse_of_a_body_is_refused)
     REFUSED(sb_body_read_region(body, 0, wrong, 2, NULL, &error), "count");
     REFUSED(sb_body_select_box(body, nan3, up, NULL, 0, &count, &error), "low");
     REFUSED(sb_body_select_ball(body, up, NAN, NULL, 0, &count, &error), "radius");
+    assert_unmoved(body, before);
+    sb_voxels_free(voxels);
+    sb_body_free(body);
+}
+
+TEST(misuse_of_handles_is_refused)
+{
+    static const double mirror[12] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    sb_error error;
+    sb_body *body = small_body(0);
+    int number = 0;
+    int64_t one = 1, wrong[2] = {27, -1}, twice[2] = {4, 4};
+    double *before = read_field(body, SB_POSITION);
     REFUSED(sb_body_add_handle(body, 0, &one, &number, &error), "no particles");
     REFUSED(sb_body_add_handle(body, 2, twice, &number, &error), "twice");
     REFUSED(sb_body_add_handle(body, 2, wrong, &number, &error), "27");
@@ -798,6 +828,16 @@ TEST(misuse_of_a_body_is_refused)
     REFUSED(sb_body_remove_handle(body, 5, &error), "handle 5");
     OK(sb_body_remove_handle(body, number, &error));
     REFUSED(sb_body_remove_handle(body, number, &error), "handle");
+    assert_unmoved(body, before);
+    sb_body_free(body);
+}
+
+TEST(misuse_of_obstacles_is_refused)
+{
+    sb_error error;
+    sb_body *body = small_body(0);
+    int number = 0;
+    double *before = read_field(body, SB_POSITION);
     REFUSED(sb_body_add_plane(body, nowhere, nowhere, 0, &number, &error), "normal");
     REFUSED(sb_body_add_plane(body, nan3, up, 0, &number, &error), "place");
     REFUSED(sb_body_add_sphere(body, nowhere, -1, 0, &number, &error), "radius");
@@ -805,6 +845,19 @@ TEST(misuse_of_a_body_is_refused)
     REFUSED(sb_body_add_box(body, up, nowhere, 0, &number, &error), "empty");
     REFUSED(sb_body_add_capsule(body, up, NULL, 1, 0, &number, &error), "place");
     REFUSED(sb_body_remove_obstacle(body, 0, &error), "obstacle 0");
+    assert_unmoved(body, before);
+    sb_body_free(body);
+}
+
+TEST(what_a_body_does_not_have_is_refused)
+{
+    static const int triangle[3] = {0, 1, 2};
+    sb_error error;
+    sb_body *body = small_body(0);
+    int number = 0, ints[27];
+    int64_t count;
+    double values[3];
+    double *before = read_field(body, SB_POSITION);
     REFUSED(sb_body_cut(body, 3, far_off, 1, triangle, &error), "cuttable");
     REFUSED(sb_body_add_blade(body, 0, 0, &number, &error), "cuttable");
     REFUSED(sb_body_add_detail(body, &number, &error), "SB_OCTREE");
@@ -817,11 +870,17 @@ TEST(misuse_of_a_body_is_refused)
     REFUSED(sb_body_read_surface_triangles(body, ints, 0, &error), "no surface");
     OK(sb_body_read_contacts(body, NULL, 0, &count, &error));
     assert_int_equal(count, 0);
-    double *after = read_field(body, SB_POSITION);
-    assert_memory_equal(before, after, 27 * 24);
+    assert_unmoved(body, before);
     sb_body_free(body);
-    params.cuttable = 1;
-    body = body_of(voxels, NULL, &params);
+}
+
+TEST(misuse_of_cuts_is_refused)
+{
+    static const double close_by[9] = {0, 0, 0, 0.1, 0, 0, 0, 0.1, 0};
+    static const int triangle[3] = {0, 1, 2}, beyond[3] = {0, 1, 9};
+    sb_error error;
+    sb_body *body = small_body(1);
+    int number = 0;
     REFUSED(sb_body_cut(body, 3, far_off, 1, triangle, &error), "edge");
     REFUSED(sb_body_cut(body, 3, close_by, 1, beyond, &error), "not there");
     REFUSED(sb_body_cut(body, 3, NULL, 1, triangle, &error), "position");
@@ -831,7 +890,4 @@ TEST(misuse_of_a_body_is_refused)
     REFUSED(sb_body_sweep_blade(body, number, nan3, up, NULL, &error), "'a'");
     REFUSED(sb_body_lift_blade(body, 1, &error), "blade 1");
     sb_body_free(body);
-    sb_voxels_free(voxels);
-    free(before);
-    free(after);
 }

@@ -3,7 +3,7 @@
  * A solid is a list of primitives folded in order, each joined to (or cut out of) what came before
  * with a rounding of its own (quadratic smooth minimum). The function is close to the distance and
  * changes by at most SM_IMPLICIT_SLOPE per unit length, so that whole blocks of space can be
- * dismissed from one sample, and the primitives that cannot matter in a block dropped exactly. */
+ * skipped after one sample, and the primitives that cannot matter in a block dropped exactly. */
 #ifndef SM_IMPLICIT_H
 #define SM_IMPLICIT_H
 

@@ -62,7 +62,7 @@ SM_INLINE void polar_invariants(const vec A[9], PolarInvariants *of)
 
 /* tr U by Halley's iteration from above: (s1+s2+s3)^2 = I + 2 (s1 s2 + ..) <= I + 2 sqrt(3 II),
  * with equality where all stretches agree. Convergence is cubic, so a small change is the last one,
- * and rough reciprocals do: the iteration mends them. */
+ * and rough reciprocals do: the iteration corrects them. */
 SM_INLINE void polar_trace(int tiles, const PolarInvariants *of, const unsigned *live, vec *l)
 {
     const real enough = SM_REAL_BITS == 32 ? (real)2e-3 : (real)1e-6;

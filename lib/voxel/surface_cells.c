@@ -15,7 +15,7 @@ typedef struct {
     double point[5][2]; /* x, y of a triangle cut by two planes */
 } Polygon;
 
-/* As fmin() and fmax(), which GCC does not inline for fear of NaN; there is none here. */
+/* As fmin() and fmax(), which GCC does not inline because of NaN; there is none here. */
 static inline double least(double a, double b)
 {
     return a < b ? a : b;

@@ -6,7 +6,6 @@
 #include <limits.h>
 
 #include "../mesh/import.h"
-#include "../stage.h"
 #include "../test_frame.h"
 #include "../test_random.h"
 

@@ -29,7 +29,7 @@ typedef struct {
  * have in every octant the mean that the octant's walls say (octants.h), which passes it to
  * rounding where octants' faces are the body's, and elsewhere as well as its surface is cut.
  * O(points * covers^2). The caller frees. Errors: SM_USAGE, a material out of range; SM_INPUT, a
- * point that too few nodes cover (ref_mls_cover() mends that), or a stiffness of more than 2^31
+ * point that too few nodes cover (ref_mls_cover() corrects that), or a stiffness of more than 2^31
  * entries. */
 SmCode ref_matrices_build(const RefOctants *tree, const RefNodes *nodes, RefBasis basis,
                           const RefMaterial *material, RefMatrices *matrices, SmError *error);
