@@ -30,6 +30,9 @@ typedef struct {
     size_t plan_size, point_size;
     const BenchField *plan, *points; /* members of a plan, and of a point; its first is `index` */
     const int *plan_fields, *point_fields;
+    const BenchField *more; /* of what follows from the points, in the file's group `more_name`; */
+    const int *more_fields; /* NULL: none */
+    const char *more_name;
     const BenchCampaignList *list;
     int lists;
     size_t planned;      /* where in a plan: int, how many points it has */

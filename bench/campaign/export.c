@@ -35,4 +35,8 @@ void bench_campaign_document(FILE *file, const BenchCampaignType *type)
     fputc('\n', file);
     snprintf(place, sizeof place, "dataset of `/%ss`", type->point);
     bench_records_document(file, place, type->points, *type->point_fields);
+    if (!type->more) return;
+    fputc('\n', file);
+    snprintf(place, sizeof place, "dataset of `/%s`", type->more_name);
+    bench_records_document(file, place, type->more, *type->more_fields);
 }

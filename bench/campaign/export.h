@@ -12,7 +12,8 @@
 void bench_campaign_export(FILE *file, BenchFormat format, const BenchCampaign *campaign,
                            json_t *more);
 
-/* The list of its plan's attributes and its points' datasets, as results/README.md has it. */
+/* The lists of its plan's attributes, its points' datasets and what follows from them, as
+ * results/README.md has them. */
 void bench_campaign_document(FILE *file, const BenchCampaignType *type);
 
 #endif

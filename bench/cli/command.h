@@ -33,6 +33,9 @@ extern const char *const bench_papers[]; /* that have tables; NULL-terminated */
                    ", from the I-th on; auto: those of a task of a Slurm job array "               \
                    "(SLURM_ARRAY_TASK_ID and _COUNT); put the files together with 'merge'"),       \
      BENCH_IN(record, run.shard)},                                                                 \
+        {BENCH_OPTION("columns", NULL, place,                                                      \
+                      "Measure nothing; list what FILE.h5 has, as results/README.md does"),        \
+         BENCH_IN(record, run.columns)},                                                           \
     {                                                                                              \
         BENCH_MEASURE("resume", NULL, place, "Go on with FILE.h5 if it is there"),                 \
             BENCH_IN(record, run.resume)                                                           \

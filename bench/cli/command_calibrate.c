@@ -7,6 +7,7 @@
 #include "../calibrate/calibration.h"
 #include "../calibrate/calibration_table.h"
 #include "../campaign/campaign_run.h"
+#include "../campaign/export.h"
 #include "../engines.h"
 #include "command.h"
 
@@ -173,10 +174,14 @@ int bench_command_calibrate(int argc, char **argv)
     SmCode code = bench_ranks_start(&ranks, &error);
     if (!code) {
         bench_options_parse(&line, argc, argv, &options, &options.common);
-        code = options.file ? bench_campaign_load(options.file, &bench_calibration_type,
-                                                  &calibration, &error)
-                            : run(&options, argc, argv, &calibration, &error);
+        code = options.run.columns ? SM_OK
+               : options.file      ? bench_campaign_load(options.file, &bench_calibration_type,
+                                                         &calibration, &error)
+                                   : run(&options, argc, argv, &calibration, &error);
     }
-    if (!code && ranks.rank == 0) code = show(&options, &calibration, &error);
+    if (!code && options.run.columns)
+        bench_campaign_document(stdout, &bench_calibration_type);
+    else if (!code && ranks.rank == 0)
+        code = show(&options, &calibration, &error);
     return bench_campaign_end(argv[0], &ranks, &calibration, code, &error);
 }

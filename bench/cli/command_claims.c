@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../campaign/campaign_run.h"
+#include "../campaign/export.h"
 #include "../claims/claim_plan.h"
 #include "../claims/claim_table.h"
 #include "../settings/config_file.h"
@@ -216,10 +217,14 @@ int bench_command_claims(int argc, char **argv)
     SmCode code = bench_ranks_start(&ranks, &error);
     if (!code) {
         bench_options_parse(&line, argc, argv, &options, &options.common);
-        code = options.file
+        code = options.run.columns ? SM_OK
+               : options.file
                    ? bench_campaign_load(options.file, &bench_claims_type, &campaign, &error)
                    : run(&options, argc, argv, &campaign, &error);
     }
-    if (!code && ranks.rank == 0 && !options.list) code = show(&options, &campaign, &error);
+    if (!code && options.run.columns)
+        bench_campaign_document(stdout, &bench_claims_type);
+    else if (!code && ranks.rank == 0 && !options.list)
+        code = show(&options, &campaign, &error);
     return bench_campaign_end(argv[0], &ranks, &campaign, code, &error);
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../campaign/campaign_run.h"
+#include "../campaign/export.h"
 #include "../engines.h"
 #include "../scene/scene.h"
 #include "../sweep/front.h"
@@ -166,9 +167,13 @@ int bench_command_sweep(int argc, char **argv)
     SmCode code = bench_ranks_start(&ranks, &error);
     if (!code) {
         bench_options_parse(&line, argc, argv, &options, &options.common);
-        code = options.file ? bench_campaign_load(options.file, &bench_sweep_type, &sweep, &error)
-                            : run(&options, argc, argv, &sweep, &error);
+        code = options.run.columns ? SM_OK
+               : options.file ? bench_campaign_load(options.file, &bench_sweep_type, &sweep, &error)
+                              : run(&options, argc, argv, &sweep, &error);
     }
-    if (!code && ranks.rank == 0) code = show(&options, &sweep, &error);
+    if (!code && options.run.columns)
+        bench_campaign_document(stdout, &bench_sweep_type);
+    else if (!code && ranks.rank == 0)
+        code = show(&options, &sweep, &error);
     return bench_campaign_end(argv[0], &ranks, &sweep, code, &error);
 }
