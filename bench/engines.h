@@ -11,15 +11,14 @@
 
 #include "../lib/engine.h"
 
-typedef struct OctStructure OctStructure;             /* octree/change/structure.h */
-typedef struct BenchScene BenchScene;                 /* scene/scene.h */
-typedef struct BenchBody BenchBody;                   /* scene/body.h */
-typedef struct BenchRunner BenchRunner;               /* play/runner.h */
-typedef struct BenchCarrier BenchCarrier;             /* play/body_group.h */
-typedef struct BenchTwin BenchTwin;                   /* check/check.h */
-typedef struct BenchChecker BenchChecker;             /* measure/checker.h */
-typedef struct BenchMeasureParams BenchMeasureParams; /* measure/measure.h */
-typedef struct BenchRow BenchRow;                     /* measure/row.h */
+typedef struct OctStructure OctStructure; /* octree/change/structure.h */
+typedef struct BenchScene BenchScene;     /* scene/scene.h */
+typedef struct BenchBody BenchBody;       /* scene/body.h */
+typedef struct BenchRunner BenchRunner;   /* play/runner.h */
+typedef struct BenchCarrier BenchCarrier; /* play/body_group.h */
+typedef struct BenchTwin BenchTwin;       /* check/check.h */
+typedef struct BenchChecker BenchChecker; /* measure/checker.h */
+typedef struct BenchRow BenchRow;         /* measure/row.h */
 
 enum { BENCH_MOST_PLANNED = 4 };
 
@@ -44,10 +43,12 @@ typedef struct {
 
     const BenchChecker *checker; /* of what bench_measure() measures */
 
-    /* Measures in its place, which has named the row; NULL: it does. */
-    SmCode (*measure)(const BenchScene *scene, const BenchBody *body,
-                      const BenchMeasureParams *params, BenchRow *row, SmError *error);
-    void (*explain)(FILE *file, const BenchRow *row); /* more of a row; NULL: nothing */
+    const SmEngineType *frames; /* what bench_measure() takes in its place, of the same name; NULL:
+                                 * the engine itself */
+
+    /* The row's own columns, of an engine at rest, and more of a row for people. NULL: nothing. */
+    void (*fill)(const BenchRunner *runner, BenchRow *row);
+    void (*explain)(FILE *file, const BenchRow *row);
 
     /* What `run` says of it; NULL: its particles, regions and w. */
     void (*describe)(const BenchRunner *runner, const SmCounts *counts);

@@ -128,7 +128,7 @@ typedef struct {
      * step() may cost a recomputation-free copy only if the last call was goals(). */
     void (*get)(SmEngine *engine, SmField field, double (*values)[3]);
     void (*set)(SmEngine *engine, SmField field,
-                const double (*values)[3]); /* POSITION, VELOCITY */
+                const double (*values)[3]); /* POSITION, VELOCITY; or NULL, see set_state */
 
     /* v += impulse / m on the particles named: external forces over one step. */
     void (*push)(SmEngine *engine, long count, const long *particle, const double (*impulse)[3]);
@@ -142,6 +142,11 @@ typedef struct {
      * read or written, of an elastic body. */
     bool (*get_shapes)(SmEngine *engine, double (*S)[9]);
     bool (*set_shapes)(SmEngine *engine, const double (*S)[9]);
+
+    /* The state of an engine whose particles follow from other numbers, which set() could not put
+     * back: returns how many, and fills `state` unless it is NULL. NULL of others. */
+    long (*get_state)(SmEngine *engine, double *state);
+    void (*set_state)(SmEngine *engine, const double *state);
 
     /* Masses m_i of one body's particles, kg; `mass` is [particles / instances]. */
     void (*masses)(SmEngine *engine, double *mass);

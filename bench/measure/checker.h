@@ -9,14 +9,18 @@
 typedef struct BenchChecker {
     size_t size; /* of `worst`: what was found of all states of a row, zeroed to begin with */
 
-    /* SM_INPUT: the check would take too much memory. May be NULL. */
+    /* SM_INPUT: the scene has what is not measured. Before anything is built. May be NULL. */
+    SmCode (*takes)(const BenchScene *scene, SmError *error);
+
+    /* SM_INPUT: the bodies cannot be checked, by which the check would take too much memory, or
+     * contradict themselves. May be NULL. */
     SmCode (*room)(const BenchPlayback *play, SmError *error);
 
     /* What the check needs of the bodies as they are now; begun anew when they have changed. */
     void *(*begin)(BenchPlayback *play);
 
     /* Of the bodies at rest: do the engines have what they should? May be NULL. */
-    void (*counts)(void *check, BenchPlayback *play, BenchRow *row);
+    void (*rest)(void *check, BenchPlayback *play, void *worst, BenchRow *row);
 
     /* Of the present state, which stays: row->found says what all states came to, and a row that is
      * wrong is made invalid. */

@@ -1,49 +1,19 @@
 #include "elastic_row.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../check/elastic_check.h"
 #include "../engines.h"
-#include "blocks.h"
+#include "measure.h"
 
-/* The state that every timed segment starts from. */
-typedef struct {
-    BenchElastic *elastic;
-    double *z, *speed, time;
-} Trial;
-
-static void restore(void *subject)
+void bench_elastic_row_fill(const BenchRunner *runner, BenchRow *row)
 {
-    Trial *trial = subject;
-    RefMotion *motion = &trial->elastic->motion;
-    memcpy(motion->z, trial->z, (size_t)motion->modes * sizeof(double));
-    memcpy(motion->speed, trial->speed, (size_t)motion->modes * sizeof(double));
-    trial->elastic->time = trial->time;
-    ref_motion_pose(motion);
-}
-
-static void step(void *subject, SmLaps *laps)
-{
-    bench_elastic_step(((Trial *)subject)->elastic, laps);
-}
-
-static void fill_row(const BenchElastic *elastic, BenchRow *row)
-{
-    row->particles = elastic->skin.count;
-    row->regions = elastic->body.nodes.count;
+    const RefElastic *elastic = ref_meshless_elastic(runner->engine);
     row->cell = elastic->body.octants.cell;
-    row->bytes = bench_elastic_bytes(elastic);
-    row->w = 0;
     row->epsilon = 0;
     row->goal_error = row->momentum_error = row->goal_tolerance = NAN;
-    row->summation_nodes = row->width_cells = row->width_edges = NAN;
-    row->reached = row->most_reached = NAN;
     row->voxelise_seconds = 0;
-    row->build_seconds = elastic->field_seconds + elastic->matrix_seconds + elastic->mode_seconds +
-                         elastic->skin_seconds;
     row->elastic = (BenchElasticRow){.nodes = elastic->body.nodes.count,
                                      .modes = elastic->modes.count,
                                      .field_seconds = elastic->field_seconds,
@@ -52,46 +22,96 @@ static void fill_row(const BenchElastic *elastic, BenchRow *row)
                                      .skin_seconds = elastic->skin_seconds};
 }
 
-static void time_frames(BenchElastic *elastic, const BenchMeasureParams *params, BenchRow *row)
+static SmCode takes(const BenchScene *scene, SmError *error)
 {
-    size_t modes = (size_t)elastic->motion.modes;
-    Trial trial = {elastic, sm_alloc(modes, sizeof(double)), sm_alloc(modes, sizeof(double)),
-                   elastic->time};
-    memcpy(trial.z, elastic->motion.z, modes * sizeof(double));
-    memcpy(trial.speed, elastic->motion.speed, modes * sizeof(double));
-    bench_time_blocks(&(BenchTimed){&trial, restore, step}, params, row);
-    free(trial.z);
-    free(trial.speed);
+    bool deformed = scene->bend != 0 || scene->twist != 0 || scene->squash != 0 || scene->kick != 0;
+    const struct {
+        bool there;
+        const char *what;
+    } beyond[] = {
+        {scene->obstacle_count > 0, "obstacles"},
+        {scene->force_count > 0, "'forces'"},
+        {scene->cut_count > 0, "'cuts'"},
+        {scene->touch_count > 0 || scene->view.level > 0, "'touches' or a 'view'"},
+        {scene->params.collide.self || scene->params.collide.bodies, "'collide'"},
+        {scene->instances > 1, "several instances"},
+        {deformed, "'bend', 'twist', 'squash' or 'kick'"},
+    };
+    for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++)
+        if (beyond[i].there)
+            return sm_fail(error, SM_INPUT,
+                           "%s: the frames of a meshless body are measured under handles and "
+                           "gravity, and the scene has %s",
+                           scene->file, beyond[i].what);
+    return SM_OK;
 }
 
-SmCode bench_elastic_measure(const BenchScene *scene, const BenchBody *body,
-                             const BenchMeasureParams *params, BenchRow *row, SmError *error)
+static BenchRunner *runner_of(BenchPlayback *play)
 {
-    BenchElastic elastic;
-    BenchElasticFound found = {{0}};
-    SmCode code = bench_elastic_create(scene, body, &elastic, error);
-    if (code) return code;
-    fill_row(&elastic, row);
-    code = bench_elastic_check_body(&elastic, &found, error);
-    if (!code) {
-        for (int i = 0; i < scene->settle; i++) bench_elastic_step(&elastic, NULL);
-        bench_elastic_check_state(&elastic, &found);
-        time_frames(&elastic, params, row);
-        bench_elastic_check_state(&elastic, &found);
-        memcpy(row->elastic.found, found.found, sizeof found.found);
-        row->valid = bench_elastic_verdict(&found, sizeof row->reason, row->reason);
-        bench_elastic_text(&found, sizeof row->found, row->found);
-    }
-    bench_elastic_free(&elastic);
-    return code;
+    return &play->group[0].runner;
 }
+
+static SmCode room(const BenchPlayback *play, SmError *error)
+{
+    const RefElastic *elastic = ref_meshless_elastic(play->group[0].runner.engine);
+    for (int i = 0; i < elastic->holds; i++)
+        for (int other = 0; other < i; other++)
+            if (!memcmp(elastic->held[other], elastic->held[i], sizeof elastic->held[i]))
+                return sm_fail(error, SM_INPUT,
+                               "%s: handles %d and %d bind the same point of the body: move one's "
+                               "box or sphere",
+                               play->scene->file, other + 1, i + 1);
+    return SM_OK;
+}
+
+static void note(const BenchElasticFound *found, BenchRow *row)
+{
+    char reason[sizeof row->reason];
+    memcpy(row->elastic.found, found->found, sizeof found->found);
+    bench_elastic_text(found, sizeof row->found, row->found);
+    if (!bench_elastic_verdict(found, sizeof reason, reason))
+        bench_row_invalidate(row, "%s", reason);
+}
+
+static void *begin(BenchPlayback *play)
+{
+    (void)play;
+    return NULL;
+}
+
+static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
+{
+    (void)check;
+    bench_elastic_check_body(ref_meshless_elastic(runner_of(play)->engine), worst);
+    note(worst, row);
+}
+
+static void state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
+{
+    (void)check;
+    bench_elastic_check_state(runner_of(play), worst);
+    note(worst, row);
+}
+
+static void end(void *check)
+{
+    (void)check;
+}
+
+const BenchChecker bench_elastic_checker = {.size = sizeof(BenchElasticFound),
+                                            .takes = takes,
+                                            .room = room,
+                                            .begin = begin,
+                                            .rest = rest,
+                                            .state = state,
+                                            .free = end};
 
 bool bench_row_of_elastic(const BenchRow *row)
 {
     return bench_engine(row->engine)->elastic;
 }
 
-void bench_elastic_row_text(FILE *file, const BenchRow *row)
+void bench_elastic_row_explain(FILE *file, const BenchRow *row)
 {
     const BenchElasticRow *e = &row->elastic;
     fprintf(file,

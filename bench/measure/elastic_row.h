@@ -1,18 +1,23 @@
-/* elastic_row.h - a meshless body's row of `tables`: measured, and told to people. */
+/* elastic_row.h - a meshless body's row of `tables`: what is its own, how it is checked, and how it
+ * is told to people. What is timed is a frame as ref_meshless_frames has it. */
 #ifndef BENCH_ELASTIC_ROW_H
 #define BENCH_ELASTIC_ROW_H
 
-#include "measure.h"
+#include <stdio.h>
 
-/* As bench_measure(), whose part it is: what is timed is a frame as elastic.h has it, what is
- * checked is in elastic_check.h. Errors are those of creating the body. */
-SmCode bench_elastic_measure(const BenchScene *scene, const BenchBody *body,
-                             const BenchMeasureParams *params, BenchRow *row, SmError *error);
+#include "checker.h"
+
+/* Nodes, modes and what was built in how long; what only shape matching has is NaN and 0. */
+void bench_elastic_row_fill(const BenchRunner *runner, BenchRow *row);
+
+/* By what must hold (elastic_check.h). Refuses obstacles, collisions, forces, cuts, touches, an
+ * eye, several instances, an initial deformation, and handles that bind the same point. */
+extern const BenchChecker bench_elastic_checker;
 
 /* Whether the row is a meshless body's. */
 bool bench_row_of_elastic(const BenchRow *row);
 
 /* What the body is made of, behind the line of its check. */
-void bench_elastic_row_text(FILE *file, const BenchRow *row);
+void bench_elastic_row_explain(FILE *file, const BenchRow *row);
 
 #endif

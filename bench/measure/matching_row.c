@@ -99,8 +99,9 @@ static void *begin(BenchPlayback *play)
     return checks;
 }
 
-static void counts(void *check, BenchPlayback *play, BenchRow *row)
+static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
+    (void)worst;
     const Checks *checks = check;
     for (int p = 0; p < checks->count; p++)
         check_counts(&checks->part[p], &play->group[p].runner, row);
@@ -130,5 +131,11 @@ static void let_go(void *check)
 }
 
 const BenchChecker bench_matching_checker = {
-    sizeof(BenchDeviation), room, begin, counts, state, end, let_go,
+    .size = sizeof(BenchDeviation),
+    .room = room,
+    .begin = begin,
+    .rest = rest,
+    .state = state,
+    .end = end,
+    .free = let_go,
 };

@@ -12,12 +12,12 @@
 #include "blocks.h"
 #include "change_row.h"
 #include "checker.h"
-#include "tree_row.h"
 
 /* The state of one part that every timed segment starts from. */
 typedef struct {
     double (*x)[3], (*v)[3]; /* [particles] */
     double (*S)[9];          /* of an octree, also plastic; or NULL */
+    double *state;           /* of an engine that has another one; or NULL */
 } Saved;
 
 typedef struct {
@@ -32,6 +32,13 @@ static void save(Trial *trial)
     for (int p = 0; p < trial->play.count; p++) {
         BenchRunner *runner = &trial->play.group[p].runner;
         Saved *saved = &trial->saved[p];
+        trial->time = runner->time;
+        if (runner->type->get_state) {
+            long count = runner->type->get_state(runner->engine, NULL);
+            saved->state = sm_alloc((size_t)count, sizeof *saved->state);
+            runner->type->get_state(runner->engine, saved->state);
+            continue;
+        }
         saved->x = sm_alloc((size_t)runner->particles, sizeof *saved->x);
         saved->v = sm_alloc((size_t)runner->particles, sizeof *saved->v);
         runner->type->get(runner->engine, SM_POSITION, saved->x);
@@ -40,7 +47,6 @@ static void save(Trial *trial)
             saved->S = sm_alloc((size_t)runner->particles, sizeof *saved->S);
             runner->type->get_shapes(runner->engine, saved->S);
         }
-        trial->time = runner->time;
     }
 }
 
@@ -50,10 +56,14 @@ static void restore(void *subject)
     for (int p = 0; p < trial->play.count; p++) {
         BenchRunner *runner = &trial->play.group[p].runner;
         const Saved *saved = &trial->saved[p];
+        runner->time = trial->time;
+        if (saved->state) {
+            runner->type->set_state(runner->engine, saved->state);
+            continue;
+        }
         runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])saved->x);
         runner->type->set(runner->engine, SM_VELOCITY, (const double(*)[3])saved->v);
         if (saved->S) runner->type->set_shapes(runner->engine, (const double(*)[9])saved->S);
-        runner->time = trial->time;
     }
 }
 
@@ -63,6 +73,7 @@ static void free_trial(Trial *trial)
         free(trial->saved[p].x);
         free(trial->saved[p].v);
         free(trial->saved[p].S);
+        free(trial->saved[p].state);
     }
     free(trial->saved);
     bench_playback_free(&trial->play);
@@ -101,6 +112,11 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
                       .input_hash = body->hash,
                       .threads = params->threads,
                       .speedup = NAN,
+                      .summation_nodes = NAN,
+                      .width_cells = NAN,
+                      .width_edges = NAN,
+                      .reached = NAN,
+                      .most_reached = NAN,
                       .valid = true,
                       .goal_tolerance = bench_check_tolerance(type->precision)};
     bench_row_name(scene, row);
@@ -165,10 +181,12 @@ static void measure_start(Trial *trial, const BenchChecker *checker,
                           const BenchMeasureParams *params, void *worst, BenchRow *row)
 {
     void *check = checker->begin(&trial->play);
-    bench_tree_row_fill(bench_playback_runner(&trial->play), row);
+    const BenchRunner *runner = bench_playback_runner(&trial->play);
+    const BenchEngine *engine = bench_engine(runner->type->name);
+    if (engine->fill) engine->fill(runner, row);
     row->instances = trial->play.body->instances;
     count(&trial->play, row);
-    if (checker->counts) checker->counts(check, &trial->play, row);
+    if (checker->rest) checker->rest(check, &trial->play, worst, row);
     for (int i = 0; i < trial->play.scene->settle; i++) step(trial, NULL);
     checker->state(check, &trial->play, worst, row);
     save(trial);
@@ -182,14 +200,13 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
                      const BenchMeasureParams *params, BenchRow *row, SmError *error)
 {
     const BenchEngine *engine = bench_engine(type->name);
-    if (engine->measure) {
-        name_row(scene, body, type, params, row);
-        return engine->measure(scene, body, params, row, error);
-    }
     const BenchChecker *checker = engine->checker;
     Trial trial = {0};
-    SmCode code =
-        bench_playback_create(scene, body, type, params->threads, params->seed, &trial.play, error);
+    if (engine->frames) type = engine->frames;
+    SmCode code = checker->takes ? checker->takes(scene, error) : SM_OK;
+    if (!code)
+        code = bench_playback_create(scene, body, type, params->threads, params->seed, &trial.play,
+                                     error);
     if (code) return code;
     if (checker->room) code = checker->room(&trial.play, error);
     if (code) {

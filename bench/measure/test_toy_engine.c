@@ -143,8 +143,8 @@ static void toy_free(void *check)
     (void)check;
 }
 
-static const BenchChecker toy_checker = {sizeof(double), NULL, toy_begin, NULL,
-                                         toy_state,      NULL, toy_free};
+static const BenchChecker toy_checker = {
+    .size = sizeof(double), .begin = toy_begin, .state = toy_state, .free = toy_free};
 
 static const BenchEngine toy = {.type = {&toy_type},
                                 .carrier = &bench_lattice_carrier,

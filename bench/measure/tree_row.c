@@ -4,13 +4,9 @@
 
 #include "../../octree/engine.h"
 #include "../../reference/paper.h"
-#include "../engines.h"
 
 void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row)
 {
-    row->summation_nodes = row->width_cells = row->width_edges = NAN;
-    row->reached = row->most_reached = NAN;
-    if (!bench_engine(runner->type->name)->structure) return;
     const BenchScene *scene = runner->scene;
     const OctStructure *s = oct_engine_structure(runner->engine);
     SmCounts counts;

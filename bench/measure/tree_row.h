@@ -8,8 +8,8 @@
 #include "../play/runner.h"
 #include "row.h"
 
-/* Counts, widths, regions and memory of the runner's octree, and what was wanted; of a lattice NaN
- * and 0. O(members of all regions). */
+/* Counts, widths, regions and memory of the runner's octree, and what was wanted. O(members of all
+ * regions). */
 void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row);
 
 /* Parts of a sentence, without an end of line. */

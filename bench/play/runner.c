@@ -320,6 +320,7 @@ static double noise(uint64_t n)
 
 void bench_runner_disturb(BenchRunner *runner, unsigned long seed)
 {
+    if (!runner->type->set) return;
     const BenchScene *scene = runner->scene;
     const BenchBody *body = runner->body;
     long count = runner->count;

@@ -20,23 +20,21 @@ struct SmEngine {
     long all;          /* and behind them the points that were given */
     double h, mass;    /* of a particle */
     double pose[3][4]; /* rest to initial position: a translation */
-    RefBody body;
-    RefMotion motion;
-    RefSkin skin;
-    long *place;                         /* [all] where a particle is in the skin */
-    double (*rest)[3], (*x)[3], (*v)[3]; /* [all] particles; x without the pose */
-    double (*carried)[3];                /* [all] in the skin's order */
-    double (*impulse)[3];                /* [nodes] that pushes have left, for the next step */
+    bool points;       /* particles are the field's points, not the lattice's */
+    RefElastic elastic;
+    long *place; /* [all] where a particle is in the skin */
+    double (*rest)[3], (*x)[3],
+        (*v)[3];          /* [all] particles; x and v, without the pose, of lattices */
+    double (*impulse)[3]; /* [nodes] that pushes have left, for the next step */
     bool pushed;
     SmHandles handles;
-    RefModes modes; /* of the body that nothing holds */
-    int grips;      /* of handles that hold any particles */
+    int grips; /* of handles that hold any particles */
     RefGrip *grip;
     double (*grip_pose)[3][4]; /* [grips] */
-    double build_seconds;
 };
 
-#define CONST(array) ((const double(*)[3])(array))
+#define CONST(array)  ((const double(*)[3])(array))
+#define CONST4(array) ((const double(*)[4])(array))
 
 static void release(SmEngine *engine)
 {
@@ -52,16 +50,17 @@ static void meshless_destroy(SmEngine *engine)
 {
     if (!engine) return;
     release(engine);
-    ref_modes_free(&engine->modes);
-    ref_motion_free(&engine->motion);
-    ref_skin_free(&engine->skin);
-    ref_body_free(&engine->body);
+    ref_modes_free(&engine->elastic.modes);
+    ref_motion_free(&engine->elastic.motion);
+    ref_skin_free(&engine->elastic.skin);
+    ref_body_free(&engine->elastic.body);
     sm_handles_free(&engine->handles);
     free(engine->place);
     free(engine->rest);
     free(engine->x);
     free(engine->v);
-    free(engine->carried);
+    free(engine->elastic.carried);
+    free(engine->elastic.held);
     free(engine->impulse);
     free(engine);
 }
@@ -120,18 +119,36 @@ SmCode ref_meshless_field(const RefMeshlessOptions *options, RefMpu *mpu, SmErro
     return sm_fail(error, code, "%s", why.text);
 }
 
-/* The body of the points' field, whose covers reach all particles. */
+/* The particles that the field's points are. */
+static void take_points(const RefPoints *points, SmEngine *engine)
+{
+    size_t count = (size_t)points->count;
+    engine->count = engine->all = points->count;
+    engine->rest = sm_alloc(count, sizeof *engine->rest);
+    memcpy(engine->rest, points->position, count * sizeof *engine->rest);
+}
+
+/* Octants, nodes, covers and matrices of the points' field, whose covers reach all particles. */
 static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmError *error)
 {
+    RefElastic *elastic = &engine->elastic;
+    const RefMpu *given = engine->points ? NULL : options->given;
     RefMpu mpu = {0};
-    SmCode code = options->given ? SM_OK : ref_meshless_field(options, &mpu, error);
+    double start = sm_now();
+    SmCode code = given ? SM_OK : ref_meshless_field(options, &mpu, error);
     if (code != SM_OK) return code;
-    RefField field = ref_mpu_field(options->given ? options->given : &mpu);
+    double built = sm_now();
+    if (engine->points) take_points(&mpu.points, engine);
+    RefField field = ref_mpu_field(given ? given : &mpu);
     RefBodyOptions body = {.nodes = options->nodes > 0 ? options->nodes : REF_MESHLESS_NODES,
+                           .within = engine->points ? 0.01 : 0,
                            .coarser = options->uniform ? 0 : 1,
                            .basis = REF_MLS_LINEAR,
                            .material = options->material};
-    code = ref_body_build(&field, &body, engine->count, CONST(engine->rest), &engine->body, error);
+    code = ref_body_build(&field, &body, engine->count, CONST(engine->rest), &elastic->body, error);
+    elastic->material = options->material;
+    elastic->field_seconds = built - start;
+    elastic->matrix_seconds = sm_now() - built;
     ref_mpu_free(&mpu);
     return code;
 }
@@ -139,27 +156,33 @@ static SmCode make_body(const RefMeshlessOptions *options, SmEngine *engine, SmE
 static SmCode make_motion(const SmEngineParams *params, SmEngine *engine, SmError *error)
 {
     const RefMeshlessOptions *options = params->meshless;
-    long most = 3 * engine->body.nodes.count / 2;
+    double start = sm_now();
+    long most = 3 * engine->elastic.body.nodes.count / 2;
     int wanted = options->modes > 0 ? options->modes : (int)fmin(REF_MESHLESS_MODES, (double)most);
     RefDamping damping = {params->damping / (1 - params->damping) / params->h,
                           options->stiffness_damping};
-    SmCode code = ref_modes_find(&engine->body.matrices, NULL, wanted, &engine->modes, error);
+    SmCode code =
+        ref_modes_find(&engine->elastic.body.matrices, NULL, wanted, &engine->elastic.modes, error);
     if (code != SM_OK) return code;
-    ref_motion_create(&engine->body, &engine->modes, &damping, &engine->motion);
-    ref_motion_gravity(&engine->body, params->gravity, &engine->motion);
-    ref_motion_pose(&engine->motion);
+    engine->elastic.mode_seconds = sm_now() - start;
+    ref_motion_create(&engine->elastic.body, &engine->elastic.modes, &damping,
+                      &engine->elastic.motion);
+    ref_motion_gravity(&engine->elastic.body, params->gravity, &engine->elastic.motion);
+    ref_motion_pose(&engine->elastic.motion);
     return SM_OK;
 }
 
 /* Where the particles are, and how fast they came there. */
 static void place_particles(SmEngine *engine, bool moving)
 {
-    ref_skin_place(&engine->skin, CONST(engine->motion.moved), engine->carried);
+    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved),
+                   engine->elastic.carried);
     for (long s = 0; s < engine->all; s++) {
-        long p = engine->skin.order[s];
+        long p = engine->elastic.skin.order[s];
         for (int d = 0; d < 3; d++) {
-            engine->v[p][d] = moving ? (engine->carried[s][d] - engine->x[p][d]) / engine->h : 0;
-            engine->x[p][d] = engine->carried[s][d];
+            engine->v[p][d] =
+                moving ? (engine->elastic.carried[s][d] - engine->x[p][d]) / engine->h : 0;
+            engine->x[p][d] = engine->elastic.carried[s][d];
         }
     }
 }
@@ -167,33 +190,47 @@ static void place_particles(SmEngine *engine, bool moving)
 static void make_particles(SmEngine *engine)
 {
     size_t count = (size_t)engine->all;
-    ref_skin_create(&engine->body, engine->all, CONST(engine->rest), &engine->skin, NULL);
+    double start = sm_now();
+    ref_skin_create(&engine->elastic.body, engine->all, CONST(engine->rest), &engine->elastic.skin,
+                    NULL);
+    engine->elastic.carried = sm_alloc(count, sizeof *engine->elastic.carried);
+    engine->elastic.skin_seconds = sm_now() - start;
     engine->place = sm_alloc(count, sizeof *engine->place);
+    engine->impulse = sm_alloc((size_t)engine->elastic.body.nodes.count, sizeof *engine->impulse);
+    for (long s = 0; s < engine->all; s++) engine->place[engine->elastic.skin.order[s]] = s;
+    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved),
+                   engine->elastic.carried);
+    if (engine->points) return;
     engine->x = sm_alloc(count, sizeof *engine->x);
     engine->v = sm_alloc(count, sizeof *engine->v);
-    engine->carried = sm_alloc(count, sizeof *engine->carried);
-    engine->impulse = sm_alloc((size_t)engine->body.nodes.count, sizeof *engine->impulse);
-    for (long s = 0; s < engine->all; s++) engine->place[engine->skin.order[s]] = s;
     place_particles(engine, false);
 }
 
-static SmCode meshless_create(const SmVoxels *voxels, const SmEngineParams *params,
-                              SmEngine **result, SmError *error)
+/* The lattice's particles, and behind them the points that were given. */
+static void take_lattice(const SmVoxels *voxels, const RefPoints *given, SmEngine *engine)
 {
-    double start = sm_now();
-    SmCode code = check(voxels, params, error);
-    if (code != SM_OK) return code;
-    SmEngine *engine = sm_alloc(1, sizeof *engine);
-    const RefPoints *given = params->meshless->given ? &params->meshless->given->points : NULL;
     engine->count = voxels->particle_count;
     engine->all = engine->count + (given ? given->given : 0);
-    engine->h = params->h;
-    sm_engine_pose(params, 0, engine->pose);
     size_t count = (size_t)engine->count;
     engine->rest = sm_alloc((size_t)engine->all, sizeof *engine->rest);
     if (given)
         memcpy(engine->rest + count, given->as_given, (size_t)given->given * sizeof *engine->rest);
     sm_voxels_rest(voxels, engine->rest);
+}
+
+/* Of a lattice's particles, or of the field's points. */
+static SmCode create(const SmVoxels *voxels, const SmEngineParams *params, bool points,
+                     SmEngine **result, SmError *error)
+{
+    SmCode code = check(voxels, params, error);
+    if (code != SM_OK) return code;
+    SmEngine *engine = sm_alloc(1, sizeof *engine);
+    engine->points = points;
+    engine->h = params->h;
+    sm_engine_pose(params, 0, engine->pose);
+    if (!points)
+        take_lattice(voxels, params->meshless->given ? &params->meshless->given->points : NULL,
+                     engine);
     code = make_body(params->meshless, engine, error);
     if (code == SM_OK) code = make_motion(params, engine, error);
     if (code != SM_OK) {
@@ -201,26 +238,31 @@ static SmCode meshless_create(const SmVoxels *voxels, const SmEngineParams *para
         return code;
     }
     make_particles(engine);
-    engine->mass = params->meshless->material.density * ref_octants_volume(&engine->body.octants) /
-                   (double)engine->count;
-    engine->build_seconds = sm_now() - start;
+    engine->mass = params->meshless->material.density *
+                   ref_octants_volume(&engine->elastic.body.octants) / (double)engine->count;
     *result = engine;
     return SM_OK;
+}
+
+static SmCode meshless_create(const SmVoxels *voxels, const SmEngineParams *params,
+                              SmEngine **result, SmError *error)
+{
+    return create(voxels, params, false, result, error);
 }
 
 /* What pushes left at the nodes becomes speed of the modes, whose masses are 1. */
 static void take_impulses(SmEngine *engine)
 {
     if (!engine->pushed) return;
-    ref_motion_push(CONST(engine->impulse), &engine->motion);
-    memset(engine->impulse, 0, (size_t)engine->motion.nodes * sizeof *engine->impulse);
+    ref_motion_push(CONST(engine->impulse), &engine->elastic.motion);
+    memset(engine->impulse, 0, (size_t)engine->elastic.motion.nodes * sizeof *engine->impulse);
     engine->pushed = false;
 }
 
 static void meshless_step(SmEngine *engine, SmLaps *laps)
 {
     take_impulses(engine);
-    ref_motion_step(&engine->motion, engine->h);
+    ref_motion_step(&engine->elastic.motion, engine->h);
     sm_lap(laps, SM_SHAPE_MATCHING);
     place_particles(engine, true);
     sm_lap(laps, SM_OTHER);
@@ -244,13 +286,15 @@ static void meshless_get(SmEngine *engine, SmField field, double (*values)[3])
 /* The modes' amplitudes whose motion is nearest to `u` at the particles, as if it were small. */
 static void project(const SmEngine *engine, const double (*u)[3], double *amplitude)
 {
-    const RefMotion *motion = &engine->motion;
+    const RefMotion *motion = &engine->elastic.motion;
     size_t modes = (size_t)motion->modes;
-    RefShape shape = ref_shape_create(&engine->body.nodes);
+    RefShape shape = ref_shape_create(&engine->elastic.body.nodes);
     double *row = sm_alloc(modes, sizeof *row), *N = sm_alloc(modes * modes, sizeof *N);
     memset(amplitude, 0, modes * sizeof *amplitude);
     for (long p = 0; p < engine->count; p++) {
-        if (!ref_mls_at(&engine->body.nodes, engine->body.basis, engine->rest[p], &shape)) continue;
+        if (!ref_mls_at(&engine->elastic.body.nodes, engine->elastic.body.basis, engine->rest[p],
+                        &shape))
+            continue;
         for (size_t d = 0; d < 3; d++) {
             memset(row, 0, modes * sizeof *row);
             for (int n = 0; n < shape.count; n++) {
@@ -273,16 +317,19 @@ static void meshless_set(SmEngine *engine, SmField field, const double (*values)
         for (int d = 0; d < 3; d++)
             u[p][d] = field == SM_VELOCITY ? values[p][d]
                                            : values[p][d] - engine->pose[d][3] - engine->rest[p][d];
-    project(engine, CONST(u), field == SM_VELOCITY ? engine->motion.speed : engine->motion.z);
+    project(engine, CONST(u),
+            field == SM_VELOCITY ? engine->elastic.motion.speed : engine->elastic.motion.z);
     free(u);
     if (field == SM_VELOCITY) {
         memcpy(engine->v, values, (size_t)engine->count * sizeof *values);
         return;
     }
-    ref_motion_pose(&engine->motion);
-    ref_skin_place(&engine->skin, CONST(engine->motion.moved), engine->carried);
+    ref_motion_pose(&engine->elastic.motion);
+    ref_skin_place(&engine->elastic.skin, CONST(engine->elastic.motion.moved),
+                   engine->elastic.carried);
     for (long s = 0; s < engine->all; s++)
-        memcpy(engine->x[engine->skin.order[s]], engine->carried[s], sizeof *engine->x);
+        memcpy(engine->x[engine->elastic.skin.order[s]], engine->elastic.carried[s],
+               sizeof *engine->x);
 }
 
 long ref_meshless_points(const SmEngine *engine, double (*x)[3])
@@ -297,7 +344,8 @@ static void meshless_push(SmEngine *engine, long count, const long *particle,
 {
     for (long n = 0; n < count; n++) {
         assert(particle[n] >= 0 && particle[n] < engine->count);
-        ref_skin_push(&engine->skin, engine->place[particle[n]], impulse[n], engine->impulse);
+        ref_skin_push(&engine->elastic.skin, engine->place[particle[n]], impulse[n],
+                      engine->impulse);
     }
     engine->pushed = engine->pushed || count > 0;
 }
@@ -323,7 +371,7 @@ static long nodes_beside(const RefBody *body, long count, const double (*x)[3])
  * between them. A cantilever's sag says so: -4%, and +4% (test_engine.c). */
 static void choose_grips(SmEngine *engine)
 {
-    const RefBody *body = &engine->body;
+    const RefBody *body = &engine->elastic.body;
     engine->grip = sm_alloc((size_t)engine->handles.count, sizeof *engine->grip);
     engine->grip_pose = sm_alloc((size_t)engine->handles.count, sizeof *engine->grip_pose);
     long room = body->nodes.count / 3 / (engine->handles.count + 1) + 1;
@@ -341,20 +389,59 @@ static void choose_grips(SmEngine *engine)
     }
 }
 
+/* The point that a handle binds: of those that it holds the nearest to their middle. */
+static const double *middle_point(const SmEngine *engine, const SmHandle *handle)
+{
+    double middle[3] = {0}, least = INFINITY;
+    const double *nearest = NULL;
+    for (long k = 0; k < handle->count; k++)
+        for (int d = 0; d < 3; d++) middle[d] += engine->rest[handle->particle[k]][d];
+    for (int d = 0; d < 3; d++) middle[d] /= (double)handle->count;
+    for (long k = 0; k < handle->count; k++) {
+        const double *x = engine->rest[handle->particle[k]];
+        double away[3] = {x[0] - middle[0], x[1] - middle[1], x[2] - middle[2]};
+        double square = sm_dot(away, away);
+        if (square >= least) continue;
+        least = square;
+        nearest = x;
+    }
+    return nearest;
+}
+
+/* Two constraints a handle, position and orientation; covers reach all points. */
+static void bind_points(SmEngine *engine)
+{
+    RefElastic *elastic = &engine->elastic;
+    elastic->holds = 0;
+    elastic->held = sm_realloc(elastic->held, (size_t)engine->handles.count, sizeof *elastic->held);
+    for (int n = 0; n < engine->handles.count; n++) {
+        if (engine->handles.handle[n].count == 0) continue;
+        double *held = elastic->held[elastic->holds++];
+        memcpy(held, middle_point(engine, engine->handles.handle + n), sizeof elastic->held[0]);
+        ref_motion_hold(&elastic->body, REF_HOLD_POSITION, held, &elastic->motion);
+        ref_motion_hold(&elastic->body, REF_HOLD_ROTATION, held, &elastic->motion);
+    }
+}
+
 /* Other modes for other handles; the motion goes on. */
 static void bind(SmEngine *engine)
 {
-    RefMotion before = engine->motion;
+    RefElastic *elastic = &engine->elastic;
+    RefMotion before = elastic->motion;
     RefModes held = {0};
     release(engine);
-    if (engine->handles.count > 0) choose_grips(engine);
-    bool found = engine->grips > 0 && ref_grip_modes(&engine->body, engine->grips, engine->grip,
-                                                     engine->modes.count, &held, NULL) == SM_OK;
-    ref_motion_create(&engine->body, found ? &held : &engine->modes, &before.damping,
-                      &engine->motion);
-    memcpy(engine->motion.force, before.force, (size_t)before.nodes * sizeof *engine->motion.force);
-    ref_grip_bind(&engine->body, engine->grips, engine->grip, &engine->motion);
-    ref_motion_take(&engine->body, &before, engine->h, &engine->motion);
+    if (engine->handles.count > 0 && !engine->points) choose_grips(engine);
+    bool found = engine->grips > 0 && ref_grip_modes(&elastic->body, engine->grips, engine->grip,
+                                                     elastic->modes.count, &held, NULL) == SM_OK;
+    ref_motion_create(&elastic->body, found ? &held : &elastic->modes, &before.damping,
+                      &elastic->motion);
+    memcpy(elastic->motion.force, before.force,
+           (size_t)before.nodes * sizeof *elastic->motion.force);
+    if (engine->points)
+        bind_points(engine);
+    else
+        ref_grip_bind(&elastic->body, engine->grips, engine->grip, &elastic->motion);
+    ref_motion_take(&elastic->body, &before, engine->h, &elastic->motion);
     ref_motion_free(&before);
     ref_modes_free(&held);
 }
@@ -368,7 +455,7 @@ static void meshless_bound(SmEngine *engine, const SmBoundary *boundary)
                    sizeof engine->grip_pose[0]);
     const double shift[3] = {engine->pose[0][3], engine->pose[1][3], engine->pose[2][3]};
     ref_grip_aim(engine->grips, engine->grip, shift, (const double(*)[3][4])engine->grip_pose,
-                 &engine->motion);
+                 &engine->elastic.motion);
 }
 
 static void meshless_masses(SmEngine *engine, double *mass)
@@ -376,18 +463,26 @@ static void meshless_masses(SmEngine *engine, double *mass)
     for (long p = 0; p < engine->count; p++) mass[p] = engine->mass;
 }
 
+static size_t skin_bytes(const RefSkin *skin)
+{
+    size_t bytes = 0;
+    for (long b = 0; b < skin->blocks; b++)
+        bytes += (size_t)skin->block[b].nodes * (size_t)skin->block[b].room * sizeof(float);
+    return bytes;
+}
+
 static void meshless_count(SmEngine *engine, SmCounts *counts)
 {
-    size_t modes = (size_t)engine->motion.modes, nodes = (size_t)engine->motion.nodes;
-    *counts = (SmCounts){.particles = engine->count,
-                         .regions = engine->motion.nodes,
-                         .build_seconds = engine->build_seconds};
+    size_t modes = (size_t)engine->elastic.motion.modes,
+           nodes = (size_t)engine->elastic.motion.nodes;
+    *counts =
+        (SmCounts){.particles = engine->count,
+                   .regions = engine->elastic.motion.nodes,
+                   .build_seconds = engine->elastic.field_seconds + engine->elastic.matrix_seconds +
+                                    engine->elastic.mode_seconds + engine->elastic.skin_seconds};
     size_t bytes = sizeof *engine + nodes * (6 * modes + 15) * sizeof(double) +
                    (size_t)engine->all * 5 * sizeof(double[3]);
-    for (long b = 0; b < engine->skin.blocks; b++)
-        bytes += (size_t)engine->skin.block[b].nodes * (size_t)engine->skin.block[b].room *
-                 sizeof(float);
-    counts->bytes = (long)bytes;
+    counts->bytes = (long)(bytes + skin_bytes(&engine->elastic.skin));
 }
 
 static long meshless_region(SmEngine *engine, long p, long *member, long room)
@@ -411,5 +506,128 @@ const SmEngineType ref_meshless_engine = {
     .bound = meshless_bound,
     .masses = meshless_masses,
     .count = meshless_count,
+    .region = meshless_region,
+};
+
+/* ---- frames, as Table 1 times them: the field's points are carried, each handle binds one */
+
+RefElastic *ref_meshless_elastic(SmEngine *engine)
+{
+    return &engine->elastic;
+}
+
+static SmCode frames_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **result,
+                            SmError *error)
+{
+    return create(voxels, params, true, result, error);
+}
+
+static void frames_step(SmEngine *engine, SmLaps *laps)
+{
+    RefElastic *elastic = &engine->elastic;
+    take_impulses(engine);
+    ref_motion_step(&elastic->motion, engine->h);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+    ref_skin_place(&elastic->skin, CONST(elastic->motion.moved), elastic->carried);
+    sm_lap(laps, SM_OTHER);
+}
+
+/* Velocities are what the last step came by, from z - h z', but for what it corrects afterwards of
+ * constraints. */
+static void frames_get(SmEngine *engine, SmField field, double (*values)[3])
+{
+    RefElastic *elastic = &engine->elastic;
+    RefMotion *motion = &elastic->motion;
+    double(*before)[3] = NULL;
+    if (field == SM_VELOCITY) {
+        size_t modes = (size_t)motion->modes;
+        double *z = sm_alloc(modes, sizeof *z);
+        before = sm_alloc((size_t)engine->count, sizeof *before);
+        memcpy(z, motion->z, modes * sizeof *z);
+        for (size_t k = 0; k < modes; k++) motion->z[k] -= engine->h * motion->speed[k];
+        ref_motion_pose(motion);
+        ref_skin_place(&elastic->skin, CONST(motion->moved), before);
+        memcpy(motion->z, z, modes * sizeof *z);
+        ref_motion_pose(motion);
+        free(z);
+    }
+    for (long p = 0; p < engine->count; p++)
+        for (int d = 0; d < 3; d++) {
+            double x = elastic->carried[engine->place[p]][d];
+            values[p][d] = field == SM_VELOCITY ? (x - before[engine->place[p]][d]) / engine->h
+                           : field == SM_REST   ? engine->rest[p][d] + engine->pose[d][3]
+                                                : x + engine->pose[d][3];
+        }
+    free(before);
+}
+
+/* The rotation vector of a pose, of less than half a turn. */
+static void turn_of(const double pose[3][4], double turn[3])
+{
+    double twice[3] = {pose[2][1] - pose[1][2], pose[0][2] - pose[2][0], pose[1][0] - pose[0][1]};
+    double s = hypot(hypot(twice[0], twice[1]), twice[2]) / 2;
+    double c = (pose[0][0] + pose[1][1] + pose[2][2] - 1) / 2, angle = atan2(s, c);
+    for (int d = 0; d < 3; d++) turn[d] = s > 0 ? twice[d] / 2 / s * angle : 0;
+}
+
+static void frames_bound(SmEngine *engine, const SmBoundary *boundary)
+{
+    if (sm_handles_set(&engine->handles, boundary, engine->count)) bind(engine);
+    for (int n = 0, k = 0; n < engine->handles.count; n++) {
+        const double(*pose)[4] = CONST4(engine->handles.handle[n].pose);
+        if (engine->handles.handle[n].count == 0) continue;
+        const double *held = engine->elastic.held[k];
+        RefHold *bound = engine->elastic.motion.hold + 2 * k++;
+        double from[3];
+        for (int d = 0; d < 3; d++) from[d] = held[d] + engine->pose[d][3];
+        sm_pose_apply(pose, from, bound[0].target);
+        for (int d = 0; d < 3; d++) bound[0].target[d] -= from[d];
+        turn_of(pose, bound[1].target);
+    }
+}
+
+static long frames_get_state(SmEngine *engine, double *state)
+{
+    const RefMotion *motion = &engine->elastic.motion;
+    size_t modes = (size_t)motion->modes;
+    if (state) memcpy(state, motion->z, modes * sizeof *state);
+    if (state) memcpy(state + modes, motion->speed, modes * sizeof *state);
+    return 2 * motion->modes;
+}
+
+static void frames_set_state(SmEngine *engine, const double *state)
+{
+    RefMotion *motion = &engine->elastic.motion;
+    size_t modes = (size_t)motion->modes;
+    memcpy(motion->z, state, modes * sizeof *state);
+    memcpy(motion->speed, state + modes, modes * sizeof *state);
+    ref_motion_pose(motion);
+}
+
+static void frames_count(SmEngine *engine, SmCounts *counts)
+{
+    const RefElastic *elastic = &engine->elastic;
+    meshless_count(engine, counts);
+    size_t bytes =
+        (size_t)elastic->motion.nodes * (6 * (size_t)elastic->motion.modes + 12) * sizeof(double) +
+        (size_t)elastic->skin.count * 2 * sizeof(double[3]);
+    counts->bytes = (long)(bytes + skin_bytes(&elastic->skin));
+}
+
+const SmEngineType ref_meshless_frames = {
+    .name = "meshless",
+    .precision = "double",
+    .unstopped = true,
+    .create = frames_create,
+    .destroy = meshless_destroy,
+    .step = frames_step,
+    .goals = meshless_goals,
+    .get = frames_get,
+    .push = meshless_push,
+    .bound = frames_bound,
+    .get_state = frames_get_state,
+    .set_state = frames_set_state,
+    .masses = meshless_masses,
+    .count = frames_count,
     .region = meshless_region,
 };

@@ -17,7 +17,8 @@
 
 #include "../../lib/engine.h"
 #include "../../lib/mesh/mesh.h"
-#include "body/matrices.h"
+#include "motion/motion.h"
+#include "motion/skin.h"
 #include "surface/mpu.h"
 
 enum {
@@ -49,5 +50,27 @@ SmCode ref_meshless_field(const RefMeshlessOptions *options, RefMpu *mpu, SmErro
 long ref_meshless_points(const SmEngine *engine, double (*x)[3]);
 
 extern const SmEngineType ref_meshless_engine;
+
+/* The same body as Table 1 of Guo and Qin times it. Its particles are the points of the field,
+ * carried as they are; a step is one implicit step and all points' new positions. Each handle binds
+ * position and orientation of one of its points, the nearest to their middle (meshless section
+ * 5.3.3), and the modes are the free body's. The lattice plays no part, nor have its particles any
+ * other state than their modes': set() is NULL. bytes are those that a step reads or writes. */
+extern const SmEngineType ref_meshless_frames;
+
+/* What an engine of either type is made of, for checks of it, and the seconds of its making. */
+typedef struct RefElastic {
+    RefMaterial material; /* in mesh units */
+    RefBody body;
+    RefModes modes; /* of the body that nothing holds */
+    RefMotion motion;
+    RefSkin skin;
+    double (*carried)[3]; /* [skin.count] the points now, in the skin's order */
+    int holds;
+    double (*held)[3]; /* [holds] what each handle binds, at rest; of frames */
+    double field_seconds, matrix_seconds, mode_seconds, skin_seconds;
+} RefElastic;
+
+RefElastic *ref_meshless_elastic(SmEngine *engine);
 
 #endif
