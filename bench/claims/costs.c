@@ -32,15 +32,23 @@ static void create_cubes(const BenchLab *lab, const SmEngineParams *params, cons
         own.w = w[c];
         if (bench_cube_create(side[c], &fastlsm_engine_f32, &own, lab->seed, &cubes[c], &error))
             bench_curve_fail(curve, "%.180s", error.text);
-        else if (!cubes[c].valid)
-            bench_curve_fail(curve, "cube of side %d, w = %d: %s", side[c], w[c], cubes[c].reason);
+        else if (!cubes[c].trial.valid)
+            bench_curve_fail(curve, "cube of side %d, w = %d: %s", side[c], w[c],
+                             cubes[c].trial.reason);
     }
 }
 
-static void check_cubes(const BenchCube *cubes, int count, BenchCurve *curve)
+/* Times them in turn, if all can be, with stages if so wanted, and checks them again. */
+static void time_cubes(BenchCube *cubes, int count, int repeats, bool stages, BenchCurve *curve)
 {
+    BenchTrial *trials[BENCH_RANGE_POINTS];
+    for (int c = 0; c < count; c++) {
+        trials[c] = &cubes[c].trial;
+        trials[c]->lap_sets = stages;
+    }
+    if (curve->valid) bench_trials_time(trials, count, repeats);
     for (int c = 0; c < count; c++)
-        if (!cubes[c].valid) bench_curve_fail(curve, "%s", cubes[c].reason);
+        if (!cubes[c].trial.valid) bench_curve_fail(curve, "%s", cubes[c].trial.reason);
 }
 
 /* Mean over a row of `side` particles of how many are within w. */
@@ -54,16 +62,18 @@ static double mean_side(int side, int w)
  * which other work is in, too. */
 static void add_sums(BenchCurve *curve, double x, const BenchCube *cube, int points)
 {
-    size_t repeats = (size_t)cube->repeats;
-    double *share = sm_alloc(repeats, sizeof *share), *step = sm_alloc(repeats, sizeof *step);
-    for (int r = 0; r < cube->repeats; r++) {
+    const BenchTrial *trial = &cube->trial;
+    int samples = trial->samples;
+    double *share = sm_alloc((size_t)samples, sizeof *share);
+    double *step = sm_alloc((size_t)samples, sizeof *step);
+    for (int r = 0; r < samples; r++) {
         double all = 0;
-        for (int s = 0; s < SM_STAGES; s++) all += bench_cube_stage_ns(cube, (SmStage)s, r);
-        share[r] = bench_cube_stage_ns(cube, SM_FAST_SUM, r) / all;
-        step[r] = bench_cube_cpu_ns(cube, r);
+        for (int s = 0; s < SM_STAGES; s++) all += bench_trial_stage(trial, r, 0, 0, (SmStage)s);
+        share[r] = bench_trial_stage(trial, r, 0, 0, SM_FAST_SUM) / all;
+        step[r] = 1e9 * trial->cpu[r] / (double)cube->particles;
     }
-    BenchInterval part = bench_curve_interval(share, cube->repeats, 0.5, points);
-    BenchInterval whole = bench_curve_interval(step, cube->repeats, BENCH_LOW, points);
+    BenchInterval part = bench_curve_interval(share, samples, 0.5, points);
+    BenchInterval whole = bench_curve_interval(step, samples, BENCH_LOW, points);
     bench_curve_add(curve, x, whole.value * part.value, whole.low * part.low,
                     whole.high * part.high);
     free(share);
@@ -82,8 +92,7 @@ void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *cu
     bench_curve_begin(curve, "mean side of a region, particles",
                       "fast summation, ns/particle/step");
     create_cubes(lab, &params, side, w, count, cubes, curve);
-    if (curve->valid) bench_cubes_time(cubes, count, repeats, true);
-    check_cubes(cubes, count, curve);
+    time_cubes(cubes, count, repeats, true, curve);
     for (int c = 0; c < count && curve->valid; c++)
         add_sums(curve, mean_side(side[c], w[c]), &cubes[c], count);
     for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
@@ -97,13 +106,11 @@ static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve 
     const SmEngineParams params = {.h = 0.01, .damping = 0.1, .threads = 1};
     for (int c = 0; c < count; c++) w[c] = 1;
     create_cubes(lab, &params, side, w, count, cubes, curve);
-    if (curve->valid) bench_cubes_time(cubes, count, repeats, false);
-    check_cubes(cubes, count, curve);
+    time_cubes(cubes, count, repeats, false, curve);
     double *ms = sm_alloc((size_t)repeats, sizeof *ms);
     for (int c = 0; c < count && curve->valid; c++) {
         double particles = (double)cubes[c].particles;
-        for (int r = 0; r < repeats; r++)
-            ms[r] = 1e-6 * bench_cube_cpu_ns(&cubes[c], r) * particles;
+        for (int r = 0; r < repeats; r++) ms[r] = 1e3 * cubes[c].trial.cpu[r];
         bench_curve_sample(curve, particles, ms, repeats, BENCH_LOW, count);
     }
     free(ms);
@@ -116,22 +123,28 @@ static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve 
 /* Of a step, or of its hierarchical sums alone: ms. */
 static double tree_ms(const BenchTreeStep *step, bool sums, int r)
 {
-    if (!sums) return step->total[r] / 1e6;
-    return (step->part[r][BENCH_TREE_DEPTH] + step->part[r][BENCH_TREE_BREADTH] +
-            step->part[r][BENCH_TREE_GOALS]) /
-           1e6;
+    double ns = 0;
+    if (!sums) return bench_tree_step_ns_f32(step, BENCH_TREE_WHOLE, r) / 1e6;
+    ns += bench_tree_step_ns_f32(step, BENCH_TREE_DEPTH, r);
+    ns += bench_tree_step_ns_f32(step, BENCH_TREE_BREADTH, r);
+    ns += bench_tree_step_ns_f32(step, BENCH_TREE_GOALS, r);
+    return ns / 1e6;
 }
 
 static void time_trees(BenchLab *lab, BenchTreeStep *steps, int count, bool sums, BenchCurve *curve)
 {
     int repeats = repeats_of(lab);
     double *ms = sm_alloc((size_t)repeats, sizeof *ms);
-    for (int s = 0; s < count; s++) bench_tree_step_create_f32(&steps[s]);
-    bench_tree_steps_time_f32(steps, count, repeats);
+    BenchTrial *trials[BENCH_RANGE_POINTS];
     for (int s = 0; s < count; s++) {
-        if (!steps[s].valid)
+        bench_tree_step_create_f32(&steps[s]);
+        trials[s] = &steps[s].trial;
+    }
+    bench_trials_time(trials, count, repeats);
+    for (int s = 0; s < count; s++) {
+        if (!steps[s].trial.valid)
             bench_curve_fail(curve, "octree of %ld nodes: %s", steps[s].body->tree.leaves,
-                             steps[s].reason);
+                             steps[s].trial.reason);
         for (int r = 0; r < repeats && curve->valid; r++) ms[r] = tree_ms(&steps[s], sums, r);
         if (curve->valid)
             bench_curve_sample(curve, (double)steps[s].body->tree.leaves, ms, repeats, BENCH_LOW,
@@ -180,19 +193,22 @@ void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *c
     BenchPolar method = !strncmp(measure->field, "cold", 4)   ? BENCH_POLAR_COLD
                         : !strncmp(measure->field, "warm", 4) ? BENCH_POLAR_WARM
                                                               : BENCH_POLAR_BATCH;
-    BenchPolarResult result[BENCH_POLARS] = {0};
-    result[method].wanted = true;
-    bench_matrices_time(BENCH_F32, repeats, lab->seed, result);
+    BenchMotion *motion = bench_motion_create(BENCH_F32, lab->seed);
+    BenchPolarTrial polar;
+    BenchTrial *trial = &polar.trial;
+    bench_polar_prepare(motion, method, &polar);
+    bench_trials_time(&trial, 1, repeats);
     bench_curve_begin(curve, "-", measure->field);
-    const BenchPolarResult *found = &result[method];
-    if (!found->valid)
-        bench_curve_fail(curve, "rotations differ from the SVD's by %.3g; at most %g allowed",
-                         found->error, found->limit);
+    double sweeps = polar.sweeps / (double)polar.decomposed;
+    for (int r = 0; r < trial->samples; r++) trial->seconds[r] *= 1e9 / BENCH_POLAR_RUN;
+    if (!trial->valid)
+        bench_curve_fail(curve, "%s", trial->reason);
     else if (strstr(measure->field, "sweeps"))
-        bench_curve_add(curve, 0, found->sweeps, found->sweeps, found->sweeps);
+        bench_curve_add(curve, 0, sweeps, sweeps, sweeps);
     else
-        bench_curve_sample(curve, 0, found->ns, repeats, BENCH_LOW, 1);
-    free(found->ns);
+        bench_curve_sample(curve, 0, trial->seconds, repeats, BENCH_LOW, 1);
+    bench_trial_free(trial);
+    bench_motion_free(motion);
 }
 
 /* Sweeps of a decomposition, mean over the steps of some frames from the start. */

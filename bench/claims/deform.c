@@ -9,8 +9,8 @@
 #include "../../reference/shape_matching.h"
 #include "../beam/clamped_beam.h"
 #include "../engines.h"
-#include "../kernels/block.h"
 #include "../play/playback.h"
+#include "checked_block.h"
 
 static double length(const double a[3], const double b[3])
 {

@@ -103,7 +103,7 @@ static void list_kernels(void)
     for (int i = 0; (name = bench_kernel_name(i, &group)); i++) printf("%-26s %s\n", name, group);
 }
 
-static SmCode verdict(const BenchKernel *rows, int count, SmError *error)
+static SmCode verdict(const BenchKernelRow *rows, int count, SmError *error)
 {
     for (int i = 0; i < count; i++)
         if (!rows[i].valid)
@@ -125,7 +125,7 @@ static SmCode measure(const Options *options, BenchMachine *machine, SmError *er
                                 .scaling = options->scaling,
                                 .seed = options->common.seed,
                                 .progress = &progress};
-    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    BenchKernelRow *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     machine->threads = threads;
     bench_progress_start(&progress, options->common.quiet);
     bench_progress_show(&progress, "ceilings", 0);

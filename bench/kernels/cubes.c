@@ -3,12 +3,13 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "../../fastlsm/fastlsm.h"
+#include "../../fastlsm/operations.h"
 #include "../check/check.h"
 #include "../scene/room.h"
+#include "kernels.h"
 
-enum { MOST_STEPS = 64 }; /* in a sample */
 static const double brute_members = 5e7;
 static const double particle_bytes = 400; /* measured; brute force takes half as much again */
 
@@ -36,16 +37,42 @@ static void disturb(BenchCube *cube, double h, unsigned seed)
     }
 }
 
-static void restore(BenchCube *cube)
+static void restore(void *subject)
 {
+    BenchCube *cube = subject;
     cube->type->set(cube->engine, SM_POSITION, (const double(*)[3])cube->x);
     cube->type->set(cube->engine, SM_VELOCITY, (const double(*)[3])cube->v);
 }
 
-static void invalidate(BenchCube *cube, const char *what, double value, double limit)
+/* The first step, which fills caches, is not timed. */
+static void start(void *subject)
 {
-    cube->valid = false;
-    snprintf(cube->reason, sizeof cube->reason, "%s %.3g; at most %g allowed", what, value, limit);
+    BenchCube *cube = subject;
+    restore(cube);
+    cube->type->step(cube->engine, NULL);
+}
+
+static void step(void *subject, SmLaps *laps)
+{
+    BenchCube *cube = subject;
+    cube->type->step(cube->engine, laps);
+}
+
+static bool finite_at_end(void *subject)
+{
+    BenchCube *cube = subject;
+    double(*x)[3] = sm_alloc((size_t)cube->particles, sizeof *x), sum = 0;
+    cube->type->get(cube->engine, SM_POSITION, x);
+    for (long p = 0; p < cube->particles; p++) /* 0 times what is not finite is NaN */
+        sum += 0 * x[p][0] + 0 * x[p][1] + 0 * x[p][2];
+    free(x);
+    return sum == 0;
+}
+
+static void require(BenchCube *cube, const char *what, double value, double limit)
+{
+    if (!(value <= limit)) /* NaN is not */
+        bench_trial_fail(&cube->trial, "%s %.3g; at most %g allowed", what, value, limit);
 }
 
 static void check_brute(BenchCube *cube, const BenchBody *body)
@@ -54,12 +81,9 @@ static void check_brute(BenchCube *cube, const BenchBody *body)
     bench_check_create(body, cube->w, &check);
     BenchDeviation found = bench_check_state(&check, cube->type, cube->engine);
     bench_check_free(&check);
-    double limit = bench_check_tolerance(cube->type->precision);
-    if (!(found.goal_error <= limit))
-        invalidate(cube, "goals differ from brute force, in cells, by", found.goal_error, limit);
-    else if (!(found.momentum_error <= BENCH_MOMENTUM_TOLERANCE))
-        invalidate(cube, "linear momentum is off by", found.momentum_error,
-                   BENCH_MOMENTUM_TOLERANCE);
+    require(cube, "goals differ from brute force, in cells, by", found.goal_error,
+            bench_check_tolerance(cube->type->precision));
+    require(cube, "linear momentum is off by", found.momentum_error, BENCH_MOMENTUM_TOLERANCE);
 }
 
 /* Unit masses: sum g = sum x, relative to sum |x - centre|. Not finite: NaN, and so not valid. */
@@ -78,9 +102,8 @@ static void check_momentum(BenchCube *cube)
         spread += hypot(hypot(cube->x[p][0] - centre[0], cube->x[p][1] - centre[1]),
                         cube->x[p][2] - centre[2]);
     free(g);
-    double error = hypot(hypot(drift[0], drift[1]), drift[2]) / spread;
-    if (!(error <= BENCH_MOMENTUM_TOLERANCE))
-        invalidate(cube, "linear momentum is off by", error, BENCH_MOMENTUM_TOLERANCE);
+    require(cube, "linear momentum is off by", hypot(hypot(drift[0], drift[1]), drift[2]) / spread,
+            BENCH_MOMENTUM_TOLERANCE);
 }
 
 SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParams *params,
@@ -89,7 +112,11 @@ SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParam
     BenchBody body = {.instances = 1};
     *cube = (BenchCube){0};
     if (bench_room_cube(side, type->name, particle_bytes, error)) return SM_MEMORY;
-    *cube = (BenchCube){.type = type, .side = side, .w = params->w, .valid = true};
+    *cube = (BenchCube){.type = type, .side = side, .w = params->w};
+    cube->trial = (BenchTrial){.timed = {cube, start, step},
+                               .finite = finite_at_end,
+                               .threads = params->threads,
+                               .valid = true};
     sm_voxels_block(&body.voxels, side - 1, side - 1, side - 1, 1);
     cube->particles = body.voxels.particle_count;
     SmCode code = type->create(&body.voxels, params, &cube->engine, error);
@@ -98,7 +125,6 @@ SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParam
         *cube = (BenchCube){0};
         return code;
     }
-    cube->watch = bench_watch(params->threads);
     cube->x = sm_alloc((size_t)cube->particles, sizeof *cube->x);
     cube->v = sm_alloc((size_t)cube->particles, sizeof *cube->v);
     type->get(cube->engine, SM_REST, cube->x);
@@ -122,102 +148,77 @@ void bench_cube_free(BenchCube *cube)
     if (cube->engine) cube->type->destroy(cube->engine);
     free(cube->x);
     free(cube->v);
-    free(cube->total);
-    free(cube->cpu);
-    free(cube->stage);
+    bench_trial_free(&cube->trial);
     *cube = (BenchCube){0};
 }
 
-static double cpu_now(void)
+/* ---- among the kernels */
+
+static SmCode prepare(BenchJob *job, SmError *error)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    const BenchKernel *kernel = job->kernel;
+    const SmEngineParams params = {.w = kernel->w,
+                                   .h = 0.01,
+                                   .damping = kernel->damping,
+                                   .summation = kernel->summation,
+                                   .polar = kernel->polar,
+                                   .layout = job->params->layout,
+                                   .threads = job->threads};
+    const SmEngineType *type =
+        job->precision == BENCH_F64 ? &fastlsm_engine_f64 : &fastlsm_engine_f32;
+    BenchCube *cube = job->subject = sm_alloc(1, sizeof *cube);
+    SmCode code = bench_cube_create(kernel->side, type, &params, job->params->seed, cube, error);
+    cube->trial.lap_sets = kernel->part != BENCH_CUBE_STEP;
+    job->trial = &cube->trial;
+    job->item = "particle";
+    job->items = cube->particles;
+    job->per_run = (double)cube->particles;
+    return code;
 }
 
-/* Seconds a step, and CPU seconds; with `stage`, instrumented. The first step, which fills caches,
- * is not timed. */
-static double try_sample(BenchCube *cube, int steps, double stage[SM_STAGES], double *cpu)
+static double seconds(const BenchJob *job, int r)
 {
-    SmLaps laps;
-    restore(cube);
-    cube->type->step(cube->engine, NULL);
-    double cpu_start = cpu_now();
-    bench_watch_start(&cube->watch);
-    if (stage) sm_laps_start(&laps);
-    for (int i = 0; i < steps; i++) cube->type->step(cube->engine, stage ? &laps : NULL);
-    double seconds = bench_watch_stop(&cube->watch);
-    *cpu = (cpu_now() - cpu_start) / steps;
-    for (int s = 0; stage && s < SM_STAGES; s++) {
-        stage[s] = laps.seconds[s] / steps;
-        cube->laps[s] = laps.count[s] / steps;
+    int part = job->kernel->part;
+    if (part == BENCH_CUBE_STEP) return job->trial->seconds[r];
+    return bench_trial_stage(job->trial, r, 0, 0, (SmStage)part);
+}
+
+static SmOperations operations(const BenchKernel *kernel)
+{
+    switch (kernel->part) {
+    case SM_FAST_SUM:
+        return lsm_sum_operations(kernel->summation, kernel->w, kernel->side);
+    case SM_DAMPING:
+        return lsm_damping_operations();
+    case SM_OTHER:
+        return lsm_integrate_operations();
     }
-    return seconds / steps;
+    return lsm_step_operations(kernel->summation, kernel->w, kernel->side, kernel->damping > 0);
 }
 
-static double sample(BenchCube *cube, double stage[SM_STAGES], double *cpu)
+static void report(BenchJob *job, BenchKernelRow *row)
 {
-    double seconds;
-    do seconds = try_sample(cube, cube->steps, stage, cpu);
-    while (bench_watch_again(&cube->watch));
-    return seconds;
+    const BenchCube *cube = job->subject;
+    SmCounts counts;
+    size_t room = sizeof row->note;
+    job->least = operations(job->kernel);
+    job->footprint = lsm_state_bytes(job->precision == BENCH_F32 ? 4 : 8) * (double)cube->particles;
+    BenchLevel level = bench_level_of(job->peak, job->footprint, job->threads);
+    cube->type->count(cube->engine, &counts);
+    int used = snprintf(row->note, room, "state %.3g MB, fits %s", job->footprint / 1e6,
+                        bench_level_name(level));
+    if (counts.jacobi_sweeps > 0)
+        used +=
+            snprintf(row->note + used, room - (size_t)used, "; %.2f sweeps", counts.jacobi_sweeps);
+    if (!cube->brute)
+        snprintf(row->note + used, room - (size_t)used, "; checked: finite, momentum only");
 }
 
-static void check_end(BenchCube *cube)
+static void release(BenchJob *job)
 {
-    double(*x)[3] = sm_alloc((size_t)cube->particles, sizeof *x), sum = 0;
-    cube->type->get(cube->engine, SM_POSITION, x);
-    for (long p = 0; p < cube->particles; p++) /* 0 times what is not finite is NaN */
-        sum += 0 * x[p][0] + 0 * x[p][1] + 0 * x[p][2];
-    free(x);
-    if (sum == 0) return;
-    cube->valid = false;
-    snprintf(cube->reason, sizeof cube->reason, "positions are not finite after the steps");
+    bench_cube_free(job->subject);
+    free(job->subject);
 }
 
-void bench_cubes_time(BenchCube *cubes, int count, int repeats, bool stages)
-{
-    double unused;
-    for (BenchCube *c = cubes; c < cubes + count; c++) {
-        if (!c->valid) continue;
-        c->repeats = repeats;
-        c->total = sm_alloc((size_t)repeats, sizeof *c->total);
-        c->cpu = sm_alloc((size_t)repeats, sizeof *c->cpu);
-        if (stages) c->stage = sm_alloc((size_t)repeats, sizeof *c->stage);
-        double first = try_sample(c, 1, NULL, c->cpu); /* also warms up */
-        double step = fmin(first, try_sample(c, 1, NULL, c->cpu));
-        c->clock = stages ? sm_lap_seconds() : 0;
-        c->steps = bench_watch_steps(step, MOST_STEPS);
-        c->watch = bench_watch(c->watch.threads);
-    }
-    for (int r = 0; r < repeats; r++)
-        for (int i = 0; i < count; i++) {
-            BenchCube *c = &cubes[(r + i) % count]; /* no cube is always first */
-            if (!c->valid) continue;
-            c->total[r] = sample(c, NULL, &c->cpu[r]);
-            if (stages) sample(c, c->stage[r], &unused);
-        }
-    for (BenchCube *c = cubes; c < cubes + count; c++) {
-        if (!c->valid) continue;
-        SmCounts counts;
-        c->type->count(c->engine, &counts);
-        c->sweeps = counts.jacobi_sweeps;
-        check_end(c);
-    }
-}
-
-double bench_cube_ns(const BenchCube *cube, int r)
-{
-    return 1e9 * cube->total[r] / (double)cube->particles;
-}
-
-double bench_cube_stage_ns(const BenchCube *cube, SmStage stage, int r)
-{
-    double seconds = cube->stage[r][stage] - cube->clock * (double)cube->laps[stage];
-    return 1e9 * fmax(seconds, 0) / (double)cube->particles;
-}
-
-double bench_cube_cpu_ns(const BenchCube *cube, int r)
-{
-    return 1e9 * cube->cpu[r] / (double)cube->particles;
-}
+const BenchKernelKind bench_cube_kernels = {
+    .prepare = prepare, .seconds = seconds, .report = report, .release = release};

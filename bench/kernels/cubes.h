@@ -6,29 +6,19 @@
 #ifndef BENCH_CUBES_H
 #define BENCH_CUBES_H
 
-#include <stdbool.h>
-
 #include "../../lib/engine.h"
-#include "../measure/moment.h"
+#include "trial.h"
+
+enum { BENCH_CUBE_STEP = SM_STAGES }; /* what of a step is timed: a stage, or all */
 
 typedef struct {
+    BenchTrial trial; /* with a set of laps where stages are wanted */
     const SmEngineType *type;
     SmEngine *engine;
     int side, w;
     long particles;
     double (*x)[3], (*v)[3]; /* [particles] the state that samples start from */
-    int steps;               /* timed in a sample */
-    BenchWatch watch;        /* of the samples */
-    bool valid;
-    bool brute;       /* goals were held to brute force; else finite and momentum only */
-    char reason[192]; /* why not valid */
-    double sweeps;    /* Jacobi sweeps of the last step */
-    int repeats;
-    double *total;              /* [repeats] seconds a step */
-    double *cpu;                /* [repeats] CPU seconds of the process a step, of the same steps */
-    double (*stage)[SM_STAGES]; /* [repeats] seconds a step, instrumented; or NULL */
-    long laps[SM_STAGES];       /* of an instrumented step */
-    double clock;               /* seconds that a lap's clock takes */
+    bool brute;              /* goals were held to brute force; else finite and momentum only */
 } BenchCube;
 
 /* Builds the engine with these parameters, disturbs it and checks its goals: against brute force
@@ -37,15 +27,5 @@ typedef struct {
 SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParams *params,
                          unsigned long seed, BenchCube *cube, SmError *error);
 void bench_cube_free(BenchCube *cube);
-
-/* Times the valid cubes, in turn, `repeats` samples each; `stages`: and as many with laps. */
-void bench_cubes_time(BenchCube *cubes, int count, int repeats, bool stages);
-
-/* ns a particle and step in sample r: of the total, or of one stage, less its laps' clocks. */
-double bench_cube_ns(const BenchCube *cube, int r);
-double bench_cube_stage_ns(const BenchCube *cube, SmStage stage, int r);
-
-/* The total in CPU time, which other work on the machine hardly touches; for one thread. */
-double bench_cube_cpu_ns(const BenchCube *cube, int r);
 
 #endif

@@ -10,12 +10,12 @@
 const char *const bench_kernel_formats[] = {"text", "markdown", "csv", "json", NULL};
 
 /* What stands for the check, and for the times of a row that has none. */
-static const char *mark(const BenchKernel *row)
+static const char *mark(const BenchKernelRow *row)
 {
     return !row->valid ? "INVALID" : row->busy ? "BUSY" : "VALID";
 }
 
-static bool timed(const BenchKernel *row)
+static bool timed(const BenchKernelRow *row)
 {
     return row->valid && !row->busy;
 }
@@ -28,19 +28,19 @@ static bool has_times(const void *record)
 /* One of processor time is told of a busy row, too. */
 static bool has_ratio(const void *record)
 {
-    const BenchKernel *row = record;
+    const BenchKernelRow *row = record;
     return timed(row) || (row->valid && row->own_time);
 }
 
 static double share(const void *record)
 {
-    const BenchKernel *row = record;
-    return 100 * row->floor_ns / row->ns;
+    const BenchKernelRow *row = record;
+    return 100 * row->bound_ns / row->ns;
 }
 
 static bool has_w(const void *record)
 {
-    return ((const BenchKernel *)record)->w > 0;
+    return ((const BenchKernelRow *)record)->w > 0;
 }
 
 static const char *verdict_text(const void *record)
@@ -55,20 +55,20 @@ static const char *mark_text(const void *record)
 
 static const char *note_text(const void *record)
 {
-    const BenchKernel *row = record;
+    const BenchKernelRow *row = record;
     return timed(row) ? row->note : row->reason;
 }
 
 /* ---- for programs */
 
-#define FIELD(kind, member) BENCH_FIELD(BenchKernel, kind, member)
+#define FIELD(kind, member) BENCH_FIELD(BenchKernelRow, kind, member)
 #define FIELD_AS(kind, member, title)                                                              \
     {                                                                                              \
-        BENCH_FIELD_AS(BenchKernel, kind, member, title)                                           \
+        BENCH_FIELD_AS(BenchKernelRow, kind, member, title)                                        \
     }
 #define TIME(member, title)                                                                        \
     {                                                                                              \
-        BENCH_FIELD_AS(BenchKernel, BENCH_DOUBLE, member, title), .timed = has_times               \
+        BENCH_FIELD_AS(BenchKernelRow, BENCH_DOUBLE, member, title), .timed = has_times            \
     }
 
 static const BenchField fields[] = {
@@ -76,26 +76,26 @@ static const BenchField fields[] = {
     FIELD(BENCH_TEXT, group),
     FIELD(BENCH_TEXT, precision),
     FIELD(BENCH_INT, threads),
-    {BENCH_FIELD_AS(BenchKernel, BENCH_INT, w, "w"), .given = has_w},
+    {BENCH_FIELD_AS(BenchKernelRow, BENCH_INT, w, "w"), .given = has_w},
     FIELD(BENCH_TEXT, item),
     FIELD(BENCH_LONG, items),
     TIME(ns, "ns"),
     TIME(low, "ns_low"),
     TIME(high, "ns_high"),
-    TIME(floor_ns, "floor_ns"),
+    TIME(bound_ns, "floor_ns"),
     FIELD(BENCH_TEXT, bound),
     {.kind = BENCH_DOUBLE, .column = "share_percent", .number = share, .timed = has_times},
     FIELD_AS(BENCH_DOUBLE, at_most, "at_most_ns"),
-    {BENCH_FIELD_AS(BenchKernel, BENCH_DOUBLE, ratio, "ratio"), .timed = has_ratio},
+    {BENCH_FIELD_AS(BenchKernelRow, BENCH_DOUBLE, ratio, "ratio"), .timed = has_ratio},
     FIELD(BENCH_TEXT, ratio_to),
     FIELD_AS(BENCH_DOUBLE, wanted, "ratio_wanted"),
     {.kind = BENCH_TEXT, .column = "verdict", .text = verdict_text},
-    {BENCH_FIELD_AS(BenchKernel, BENCH_BOOL, valid, "valid"), .text = mark_text},
+    {BENCH_FIELD_AS(BenchKernelRow, BENCH_BOOL, valid, "valid"), .text = mark_text},
     {.kind = BENCH_TEXT, .column = "note", .text = note_text},
 };
 enum { COLUMNS = sizeof fields / sizeof fields[0] };
 
-static json_t *json_row(const BenchKernel *row)
+static json_t *json_row(const BenchKernelRow *row)
 {
     json_t *object = bench_json_record(fields, COLUMNS, row);
     json_object_set_new(object, "busy", json_boolean(row->busy));
@@ -117,7 +117,7 @@ static json_t *json_rates(const BenchRates *rates)
     return object;
 }
 
-static void write_json(FILE *file, const BenchKernel *rows, int count, const BenchPeak *peak,
+static void write_json(FILE *file, const BenchKernelRow *rows, int count, const BenchPeak *peak,
                        const BenchMachine *machine)
 {
     json_t *root = json_object(), *list = json_array(), *rates = json_array();
@@ -144,7 +144,7 @@ static void number_text(double value, char *text)
     if (!isfinite(value)) text[0] = '\0';
 }
 
-static void ratio_text(const BenchKernel *row, char *text)
+static void ratio_text(const BenchKernelRow *row, char *text)
 {
     char ratio[BENCH_GRID_TEXT], wanted[BENCH_GRID_TEXT];
     if (!isfinite(row->ratio)) return;
@@ -163,19 +163,19 @@ static const char *const headings[] = {"kernel", "precision", "threads", "w",   
                                        "ratio",  "verdict",   "note"};
 
 /* Of a row that has times. */
-static void fill_times(const BenchKernel *row, BenchGridLine *line)
+static void fill_times(const BenchKernelRow *row, BenchGridLine *line)
 {
     char low[BENCH_GRID_TEXT], high[BENCH_GRID_TEXT];
     number_text(row->ns, (*line)[NS]);
     number_text(row->low, low);
     number_text(row->high, high);
     join((*line)[QUARTILES], low, "..", high);
-    number_text(row->floor_ns, low);
+    number_text(row->bound_ns, low);
     join((*line)[FLOOR], low, " ", row->bound);
     if (isfinite(share(row))) snprintf((*line)[SHARE], BENCH_GRID_TEXT, "%.0f%%", share(row));
 }
 
-static void add_line(BenchGrid *grid, const BenchKernel *row)
+static void add_line(BenchGrid *grid, const BenchKernelRow *row)
 {
     BenchGridLine *line = bench_grid_add(grid);
     strcpy((*line)[KERNEL], row->kernel);
@@ -193,7 +193,7 @@ static void add_line(BenchGrid *grid, const BenchKernel *row)
         strcpy((*line)[NS], mark(row));
 }
 
-static BenchGrid make_grid(const BenchKernel *rows, int count)
+static BenchGrid make_grid(const BenchKernelRow *rows, int count)
 {
     BenchGrid grid = {0};
     for (int c = 0; c < (int)(sizeof headings / sizeof headings[0]); c++)
@@ -227,8 +227,8 @@ static void print_peak(FILE *file, const BenchPeak *peak, const BenchMachine *ma
 }
 
 /* As text with an empty line between groups. */
-static void write_people(FILE *file, BenchKernelFormat format, const BenchKernel *rows, int count,
-                         const BenchPeak *peak, const BenchMachine *machine)
+static void write_people(FILE *file, BenchKernelFormat format, const BenchKernelRow *rows,
+                         int count, const BenchPeak *peak, const BenchMachine *machine)
 {
     bool text = format == BENCH_KERNELS_TEXT;
     BenchGridForm form = text ? BENCH_GRID_PLAIN : BENCH_GRID_MARKDOWN;
@@ -244,8 +244,8 @@ static void write_people(FILE *file, BenchKernelFormat format, const BenchKernel
     bench_grid_free(&grid);
 }
 
-void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernel *rows, int count,
-                         const BenchPeak *peak, const BenchMachine *machine)
+void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernelRow *rows,
+                         int count, const BenchPeak *peak, const BenchMachine *machine)
 {
     if (format == BENCH_KERNELS_CSV)
         bench_csv_records(file, fields, COLUMNS, rows, sizeof *rows, count, mark_text);

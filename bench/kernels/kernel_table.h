@@ -1,4 +1,5 @@
-/* kernel_table.h - ceilings and timed kernels as a table, for people and for programs.
+/* kernel_table.h - the machine's peaks ("ceilings") and timed kernels as a table, for people and
+ * for programs.
  *
  * An invalid row has no times in any format: INVALID stands there, null in JSON. */
 #ifndef BENCH_KERNEL_TABLE_H
@@ -23,7 +24,7 @@ extern const char *const bench_kernel_formats[];
  *     share_percent, at_most_ns, ratio, ratio_to, ratio_wanted, verdict, valid, note
  * and what is not given is empty. JSON is {"ceilings": [..], "kernels": [{column: value}],
  * "environment": {..}}. */
-void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernel *rows, int count,
-                         const BenchPeak *peak, const BenchMachine *machine);
+void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernelRow *rows,
+                         int count, const BenchPeak *peak, const BenchMachine *machine);
 
 #endif

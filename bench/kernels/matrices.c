@@ -1,24 +1,24 @@
 #include "matrices.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../../lib/error.h"
 #include "../../lib/polar.h"
-#include "../../lib/stage.h"
 #include "../../reference/svd_polar.h"
+#include "kernels.h"
 
-/* Steps of the motion that a sample runs through. */
-enum { FRAMES = 8, N = BENCH_MATRICES };
+enum { FRAMES = BENCH_FRAMES, N = BENCH_MATRICES };
 
-typedef struct {
+struct BenchMotion {
     double (*A)[N][9];       /* [FRAMES] */
     float (*single)[N][9];   /* [FRAMES] */
     double (*R)[9], (*V)[9]; /* [N] */
     float (*single_R)[9];    /* [N] */
     BenchPrecision precision;
-} Motion;
+};
 
 static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
@@ -39,7 +39,7 @@ static void turn(double M[9], int p, int q, double angle)
 
 /* A = R Q diag(s) Q^T at every frame: R turns by up to 0.05 and Q by up to 0.02 rad a step, the
  * stretches change by up to 1 percent. */
-static void move_matrix(Motion *motion, int m, unsigned *seed)
+static void move_matrix(BenchMotion *motion, int m, unsigned *seed)
 {
     double rest[9], rate[9];
     for (int i = 0; i < 9; i++) {
@@ -67,13 +67,13 @@ static void move_matrix(Motion *motion, int m, unsigned *seed)
     }
 }
 
-static void reset_eigenvectors(Motion *motion)
+static void reset_eigenvectors(BenchMotion *motion)
 {
     for (int m = 0; m < N; m++) memcpy(motion->V[m], identity, sizeof identity);
 }
 
 /* One method on one frame's matrices; returns the Jacobi sweeps of all. */
-static double decompose(Motion *motion, BenchPolar method, int frame)
+static double decompose(BenchMotion *motion, BenchPolar method, int frame)
 {
     double sweeps = 0;
     if (method == BENCH_POLAR_BATCH && motion->precision == BENCH_F32)
@@ -91,7 +91,7 @@ static double decompose(Motion *motion, BenchPolar method, int frame)
     return sweeps;
 }
 
-static double deviation(const Motion *motion, BenchPolar method, int frame)
+static double deviation(const BenchMotion *motion, BenchPolar method, int frame)
 {
     double largest = 0, exact[9];
     bool single = method == BENCH_POLAR_BATCH && motion->precision == BENCH_F32;
@@ -106,62 +106,121 @@ static double deviation(const Motion *motion, BenchPolar method, int frame)
     return largest;
 }
 
-/* Seconds of a sample: every frame once, or so often that the clock does not matter. */
-static double try_sample(Motion *motion, BenchPolar method, BenchPolarResult *result)
+static void restore(void *subject)
 {
-    int rounds = method == BENCH_POLAR_BATCH ? 16 : 1;
-    reset_eigenvectors(motion);
-    if (method == BENCH_POLAR_WARM) decompose(motion, method, 0);
-    double sweeps = 0;
-    bench_watch_start(&result->watch);
-    for (int r = 0; r < rounds; r++)
-        for (int f = 1; f < FRAMES; f++) sweeps += decompose(motion, method, f);
-    double done = (double)rounds * (FRAMES - 1) * N;
-    result->sweeps = sweeps / done;
-    return bench_watch_stop(&result->watch) / done;
+    BenchPolarTrial *polar = subject;
+    reset_eigenvectors(polar->motion);
+    if (polar->method == BENCH_POLAR_WARM) decompose(polar->motion, polar->method, 0);
+    polar->sweeps = 0;
+    polar->decomposed = 0;
 }
 
-static double sample(Motion *motion, BenchPolar method, BenchPolarResult *result)
+static void step(void *subject, SmLaps *laps)
 {
-    double seconds;
-    do seconds = try_sample(motion, method, result);
-    while (bench_watch_again(&result->watch));
-    return seconds;
+    BenchPolarTrial *polar = subject;
+    (void)laps;
+    for (int f = 1; f < FRAMES; f++) polar->sweeps += decompose(polar->motion, polar->method, f);
+    polar->decomposed += BENCH_POLAR_RUN;
 }
 
-static void check_method(Motion *motion, BenchPolar method, int repeats, BenchPolarResult *result)
+void bench_polar_prepare(BenchMotion *motion, BenchPolar method, BenchPolarTrial *polar)
 {
     /* Measured: 3e-7 and 1e-15 for the batch; Jacobi stops at off-diagonals of 1e-6. */
     const double limits[BENCH_POLARS] = {motion->precision == BENCH_F32 ? 1e-5 : 1e-9, 1e-5, 1e-5,
                                          1e-9};
+    *polar = (BenchPolarTrial){.motion = motion, .method = method};
+    polar->trial = (BenchTrial){.timed = {polar, restore, step},
+                                .threads = 1,
+                                /* so often that the clock does not matter */
+                                .runs = method == BENCH_POLAR_BATCH ? 16 : 1,
+                                .valid = true};
     reset_eigenvectors(motion);
-    result->limit = limits[method];
     for (int f = 0; f < 2; f++) decompose(motion, method, f);
-    result->error = deviation(motion, method, 1);
-    result->valid = result->error <= result->limit;
-    if (result->valid) result->ns = sm_alloc((size_t)repeats, sizeof *result->ns);
+    polar->error = deviation(motion, method, 1);
+    if (!(polar->error <= limits[method]))
+        bench_trial_fail(&polar->trial,
+                         "rotations differ from the SVD's by %.3g; at most %g allowed",
+                         polar->error, limits[method]);
 }
 
-void bench_matrices_time(BenchPrecision precision, int repeats, unsigned long seed,
-                         BenchPolarResult result[BENCH_POLARS])
+BenchMotion *bench_motion_create(BenchPrecision precision, unsigned long seed)
 {
-    Motion motion = {.precision = precision};
-    motion.A = sm_alloc(FRAMES, sizeof *motion.A);
-    motion.single = sm_alloc(FRAMES, sizeof *motion.single);
-    motion.R = sm_alloc(N, sizeof *motion.R);
-    motion.V = sm_alloc(N, sizeof *motion.V);
-    motion.single_R = sm_alloc(N, sizeof *motion.single_R);
+    BenchMotion *motion = sm_alloc(1, sizeof *motion);
+    motion->precision = precision;
+    motion->A = sm_alloc(FRAMES, sizeof *motion->A);
+    motion->single = sm_alloc(FRAMES, sizeof *motion->single);
+    motion->R = sm_alloc(N, sizeof *motion->R);
+    motion->V = sm_alloc(N, sizeof *motion->V);
+    motion->single_R = sm_alloc(N, sizeof *motion->single_R);
     unsigned state = (unsigned)seed;
-    for (int m = 0; m < N; m++) move_matrix(&motion, m, &state);
-    for (int p = 0; p < BENCH_POLARS; p++)
-        if (result[p].wanted) check_method(&motion, (BenchPolar)p, repeats, &result[p]);
-    for (int p = 0; p < BENCH_POLARS; p++) result[p].watch = bench_watch(1);
-    for (int r = 0; r < repeats; r++)
-        for (int p = 0; p < BENCH_POLARS; p++)
-            if (result[p].ns) result[p].ns[r] = 1e9 * sample(&motion, (BenchPolar)p, &result[p]);
-    free(motion.A);
-    free(motion.single);
-    free(motion.R);
-    free(motion.V);
-    free(motion.single_R);
+    for (int m = 0; m < N; m++) move_matrix(motion, m, &state);
+    return motion;
 }
+
+void bench_motion_free(BenchMotion *motion)
+{
+    free(motion->A);
+    free(motion->single);
+    free(motion->R);
+    free(motion->V);
+    free(motion->single_R);
+    free(motion);
+}
+
+/* ---- among the kernels */
+
+static SmCode make_body(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
+                        SmError *error)
+{
+    (void)kernel, (void)error;
+    *body = bench_motion_create(params->precision, params->seed);
+    return SM_OK;
+}
+
+static void free_body(void *body)
+{
+    bench_motion_free(body);
+}
+
+static SmCode prepare(BenchJob *job, SmError *error)
+{
+    BenchPolarTrial *polar = job->subject = sm_alloc(1, sizeof *polar);
+    (void)error;
+    bench_polar_prepare(job->body, (BenchPolar)job->kernel->part, polar);
+    if (polar->method != BENCH_POLAR_BATCH) job->arithmetic = "double";
+    job->threads = 1;
+    job->trial = &polar->trial;
+    job->item = "matrix";
+    job->items = N;
+    job->per_run = BENCH_POLAR_RUN;
+    return SM_OK;
+}
+
+static void report(BenchJob *job, BenchKernelRow *row)
+{
+    const BenchPolarTrial *polar = job->subject;
+    double sweeps = polar->sweeps / (double)polar->decomposed;
+    bool batch = polar->method == BENCH_POLAR_BATCH, robust = polar->method == BENCH_POLAR_ROBUST;
+    job->footprint = 1e5;
+    job->least = batch    ? sm_polar_batch_operations()
+                 : robust ? sm_polar_robust_operations()
+                          : sm_polar_jacobi_operations(sweeps);
+    if (batch)
+        strcpy(row->note, "packing into lanes included");
+    else if (!robust)
+        snprintf(row->note, sizeof row->note, "%.2f sweeps a matrix; paper: %s", sweeps,
+                 polar->method == BENCH_POLAR_COLD ? "1.9" : "0.4");
+}
+
+static void release(BenchJob *job)
+{
+    BenchPolarTrial *polar = job->subject;
+    bench_trial_free(&polar->trial);
+    free(polar);
+}
+
+const BenchKernelKind bench_polar_kernels = {.open = make_body,
+                                             .close = free_body,
+                                             .prepare = prepare,
+                                             .report = report,
+                                             .release = release};

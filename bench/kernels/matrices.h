@@ -5,10 +5,8 @@
 #ifndef BENCH_MATRICES_H
 #define BENCH_MATRICES_H
 
-#include <stdbool.h>
-
-#include "../measure/moment.h"
 #include "machine_peak.h"
+#include "trial.h"
 
 typedef enum {
     BENCH_POLAR_BATCH,  /* what the engines use, in batches of lanes; packing included */
@@ -18,21 +16,27 @@ typedef enum {
     BENCH_POLARS
 } BenchPolar;
 
-enum { BENCH_MATRICES = 1024 };
+enum { BENCH_MATRICES = 1024, BENCH_FRAMES = 8 };
 
+/* Their motion over BENCH_FRAMES frames. The caller frees. */
+typedef struct BenchMotion BenchMotion;
+BenchMotion *bench_motion_create(BenchPrecision precision, unsigned long seed);
+void bench_motion_free(BenchMotion *motion);
+
+/* One method: a run decomposes every matrix in every frame but the first. */
 typedef struct {
-    bool wanted; /* set by the caller */
-    bool valid;
-    double error; /* largest deviation of an entry of R from SVD's */
-    double limit; /* allowed */
-    double *ns;   /* [repeats] a matrix; NULL where not wanted or not valid. The caller's to free */
-    BenchWatch watch; /* of the samples */
-    double sweeps;    /* mean of a decomposition, Jacobi only */
-} BenchPolarResult;
+    BenchTrial trial;
+    BenchMotion *motion; /* the caller's; of several methods */
+    BenchPolar method;
+    double error;  /* largest deviation of an entry of R from SVD's */
+    double sweeps; /* of the last sample, Jacobi only, */
+    long decomposed;
+} BenchPolarTrial;
 
-/* Checks each wanted method on every matrix, then times them in turn. The batch is in the precision
- * given, the others compute in double. */
-void bench_matrices_time(BenchPrecision precision, int repeats, unsigned long seed,
-                         BenchPolarResult result[BENCH_POLARS]);
+enum { BENCH_POLAR_RUN = BENCH_MATRICES * (BENCH_FRAMES - 1) }; /* decompositions in a run */
+
+/* Checks the method on every matrix. The batch is in the precision of the motion, the others
+ * compute in double. */
+void bench_polar_prepare(BenchMotion *motion, BenchPolar method, BenchPolarTrial *polar);
 
 #endif

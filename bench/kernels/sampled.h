@@ -21,6 +21,9 @@ typedef struct {
     OctRegions regions;
 } BenchSampled;
 
+/* Bodies that are no cube, in place of a side. */
+enum { BENCH_HAND = 0, BENCH_REGULAR_HAND = -1 };
+
 /* Errors: those of making the shape, its voxels and its tree; of a cube SM_MEMORY (room.h); on
  * which `body` is zeroed. */
 SmCode bench_sampled_hand(bool regular, BenchSampled *body, SmError *error);

@@ -1,5 +1,4 @@
-#include "surfaces.h"
-
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,13 +6,13 @@
 
 #include "../../lib/mesh/embed.h"
 #include "../../lib/shapes/shape.h"
-#include "../../lib/stage.h"
-#include "../../lib/system/team.h"
 #include "../../lib/voxel/voxelise.h"
 #include "../../octree/surface/surface.h"
 #include "../../octree/tree/sampling.h"
+#include "kernels.h"
 
 enum { PARTICLES = 57626, DEFORM_ROUNDS = 2 };
+static const double tolerance = 1e-4; /* of a cell */
 
 typedef struct {
     SmMesh mesh;
@@ -24,6 +23,13 @@ typedef struct {
     double (*node)[3];                   /* [nodes] the octree, turned */
     double (*position)[3], (*normal)[3]; /* [vertex_count] */
 } Statue;
+
+/* One of the kernels. */
+typedef struct {
+    BenchTrial trial;
+    Statue *statue;
+    SmVoxels voxels; /* of the last run */
+} Surface;
 
 static bool in_material(const SmVoxels *v, const double at[3])
 {
@@ -41,7 +47,8 @@ static bool in_material(const SmVoxels *v, const double at[3])
     return false;
 }
 
-static void check_voxels(const Statue *statue, BenchSurface *surface)
+/* Every vertex and triangle centre lies in a material cell. */
+static void check_voxels(const Statue *statue, BenchTrial *trial)
 {
     const SmMesh *mesh = &statue->mesh;
     long outside = 0;
@@ -53,11 +60,8 @@ static void check_voxels(const Statue *statue, BenchSurface *surface)
     }
     for (long v = 0; v < mesh->vertex_count; v++)
         outside += !in_material(&statue->voxels, mesh->position[v]);
-    struct BenchSurfaceTime *kernel = &surface->kernel[BENCH_VOXELISE];
-    kernel->valid = outside == 0;
     if (outside)
-        snprintf(kernel->reason, sizeof kernel->reason,
-                 "%ld points of the surface lie outside the material", outside);
+        bench_trial_fail(trial, "%ld points of the surface lie outside the material", outside);
 }
 
 /* (x, y, z) about the origin: a third of a turn, so (y, z, x), and a shift. */
@@ -66,22 +70,28 @@ static void turn(const double from[3], double to[3])
     for (int d = 0; d < 3; d++) to[d] = from[(d + 1) % 3] + d;
 }
 
-static void deform(Statue *statue, BenchSurfaceKernel kernel)
+static void embed(void *subject, SmLaps *laps)
 {
-    if (kernel == BENCH_EMBED)
-        sm_embed_apply(&statue->embedding, (const double(*)[3])statue->x, statue->position,
-                       statue->normal);
-    else
-        oct_surface_move(&statue->carried, (const double(*)[3])statue->node, statue->position,
-                         statue->normal);
+    const Statue *statue = ((Surface *)subject)->statue;
+    (void)laps;
+    sm_embed_apply(&statue->embedding, (const double(*)[3])statue->x, statue->position,
+                   statue->normal);
+}
+
+static void carry(void *subject, SmLaps *laps)
+{
+    Statue *statue = ((Surface *)subject)->statue;
+    (void)laps;
+    oct_surface_move(&statue->carried, (const double(*)[3])statue->node, statue->position,
+                     statue->normal);
 }
 
 /* Have the vertices turned with what carries them? */
-static void check_turned(Statue *statue, BenchSurfaceKernel which, BenchSurface *surface)
+static void check_turned(Surface *surface)
 {
+    const Statue *statue = surface->statue;
     double largest = 0, cell = statue->voxels.cell;
-    struct BenchSurfaceTime *kernel = &surface->kernel[which];
-    deform(statue, which);
+    surface->trial.timed.step(surface, NULL);
     for (long v = 0; v < statue->mesh.vertex_count; v++) {
         double wanted[3];
         turn(statue->mesh.position[v], wanted);
@@ -90,10 +100,9 @@ static void check_turned(Statue *statue, BenchSurfaceKernel which, BenchSurface 
             largest = off <= largest ? largest : off;
         }
     }
-    kernel->valid = largest <= 1e-4 * cell;
-    if (!kernel->valid)
-        snprintf(kernel->reason, sizeof kernel->reason,
-                 "vertices are off by %.3g cells; at most 1e-4 allowed", largest / cell);
+    if (!(largest <= tolerance * cell))
+        bench_trial_fail(&surface->trial, "vertices are off by %.3g cells; at most 1e-4 allowed",
+                         largest / cell);
 }
 
 static SmCode make_octree(Statue *statue, SmError *error)
@@ -139,8 +148,9 @@ static SmCode make_statue(Statue *statue, SmError *error)
     return make_octree(statue, error);
 }
 
-static void free_statue(Statue *statue)
+static void free_statue(void *body)
 {
+    Statue *statue = body;
     sm_mesh_free(&statue->mesh);
     sm_voxels_free(&statue->voxels);
     sm_embed_free(&statue->embedding);
@@ -149,79 +159,99 @@ static void free_statue(Statue *statue)
     free(statue->x);
     free(statue->position);
     free(statue->normal);
+    free(statue);
 }
 
-/* Seconds of one voxelisation at the statue's cell size. */
-static double voxelise_once(const Statue *statue, BenchSurface *surface)
+/* Voxelised to about PARTICLES; the search for the cell size is not timed. */
+static SmCode open_statue(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
+                          SmError *error)
 {
-    SmVoxelParams params = {.fill = SM_SOLID, .cell = statue->voxels.cell};
-    SmVoxels voxels;
-    SmError error;
-    struct BenchSurfaceTime *kernel = &surface->kernel[BENCH_VOXELISE];
-    bench_watch_start(&kernel->watch);
-    SmCode code = sm_voxelise(&statue->mesh, &params, "statue", &voxels, &error);
-    double seconds = bench_watch_stop(&kernel->watch);
-    if (code) {
-        kernel->valid = false;
-        snprintf(kernel->reason, sizeof kernel->reason, "%.100s", error.text);
-        return 0;
-    }
-    sm_voxels_free(&voxels);
-    return seconds;
+    Statue *statue = *body = sm_alloc(1, sizeof *statue);
+    (void)kernel, (void)params;
+    SmCode code = make_statue(statue, error);
+    if (code) free_statue(statue);
+    return code;
 }
 
-static double deform_once(Statue *statue, BenchSurfaceKernel kernel, BenchWatch *watch)
+static void forget_voxels(void *subject)
 {
-    bench_watch_start(watch);
-    for (int i = 0; i < DEFORM_ROUNDS; i++) deform(statue, kernel);
-    return bench_watch_stop(watch) / DEFORM_ROUNDS;
+    sm_voxels_free(&((Surface *)subject)->voxels);
 }
 
-/* Nanoseconds an item of one run of a kernel. */
-static double time_once(Statue *statue, BenchSurfaceKernel kernel, BenchSurface *surface)
+/* At the statue's cell size. */
+static void voxelise(void *subject, SmLaps *laps)
 {
-    if (kernel == BENCH_VOXELISE)
-        return 1e9 * voxelise_once(statue, surface) / (double)surface->triangles;
-    return 1e9 * deform_once(statue, kernel, &surface->kernel[kernel].watch) /
-           (double)surface->vertices;
+    Surface *surface = subject;
+    SmVoxelParams params = {.fill = SM_SOLID, .cell = surface->statue->voxels.cell};
+    SmCode code = sm_voxelise(&surface->statue->mesh, &params, "statue", &surface->voxels, NULL);
+    assert(!code); /* it has been voxelised before */
+    (void)laps, (void)code;
 }
 
-static double sample(Statue *statue, BenchSurfaceKernel kernel, BenchSurface *surface)
+static SmCode prepare(BenchJob *job, SmError *error)
 {
-    double ns;
-    do ns = time_once(statue, kernel, surface);
-    while (bench_watch_again(&surface->kernel[kernel].watch));
-    return ns;
-}
-
-SmCode bench_surface_time(int threads, int repeats, BenchSurface *surface, SmError *error)
-{
-    Statue statue = {0};
-    SmCode code = make_statue(&statue, error);
-    if (code) {
-        free_statue(&statue);
-        return code;
-    }
-    surface->triangles = statue.mesh.triangle_count;
-    surface->vertices = statue.mesh.vertex_count;
-    surface->particles = statue.voxels.particle_count;
-    surface->nodes = statue.carried.gradients.count;
-    surface->nodes_blended = (double)statue.carried.rows.live / (double)surface->vertices;
-    int before = sm_team_enter(threads);
-    for (int k = 0; k < BENCH_SURFACE_KERNELS; k++) {
-        surface->kernel[k].ns = sm_alloc((size_t)repeats, sizeof(double));
-        if (!surface->kernel[k].wanted) continue;
-        if (k == BENCH_VOXELISE)
-            check_voxels(&statue, surface);
-        else
-            check_turned(&statue, (BenchSurfaceKernel)k, surface);
-        surface->kernel[k].watch = bench_watch(k == BENCH_VOXELISE ? 1 : threads);
-    }
-    for (int r = 0; r < repeats; r++)
-        for (int k = 0; k < BENCH_SURFACE_KERNELS; k++)
-            if (surface->kernel[k].wanted && surface->kernel[k].valid)
-                surface->kernel[k].ns[r] = sample(&statue, (BenchSurfaceKernel)k, surface);
-    sm_team_leave(before);
-    free_statue(&statue);
+    static const BenchTimed timed[] = {
+        {NULL, forget_voxels, voxelise}, {NULL, NULL, embed}, {NULL, NULL, carry}};
+    bool voxels = job->kernel->part == BENCH_VOXELISE;
+    Surface *surface = job->subject = sm_alloc(1, sizeof *surface);
+    (void)error;
+    if (voxels) job->threads = 1;
+    surface->statue = job->body;
+    surface->trial = (BenchTrial){.timed = timed[job->kernel->part],
+                                  .threads = job->threads,
+                                  .runs = voxels ? 1 : DEFORM_ROUNDS,
+                                  .valid = true};
+    surface->trial.timed.subject = surface;
+    if (voxels)
+        check_voxels(surface->statue, &surface->trial);
+    else
+        check_turned(surface);
+    const SmMesh *mesh = &surface->statue->mesh;
+    job->trial = &surface->trial;
+    job->arithmetic = "double";
+    job->item = voxels ? "triangle" : "vertex";
+    job->items = voxels ? mesh->triangle_count : mesh->vertex_count;
+    job->per_run = (double)job->items;
     return SM_OK;
 }
+
+static void report(BenchJob *job, BenchKernelRow *row)
+{
+    const Statue *statue = job->body;
+    double vertices = (double)statue->mesh.vertex_count;
+    double triangles = (double)statue->mesh.triangle_count;
+    double particles = (double)statue->voxels.particle_count;
+    double nodes = (double)statue->carried.gradients.count;
+    double blended = (double)statue->carried.rows.live / vertices;
+    switch (job->kernel->part) {
+    case BENCH_EMBED:
+        job->least = sm_embed_operations(particles / vertices);
+        job->footprint = 176 * vertices + 24 * particles;
+        strcpy(row->note, "positions and normals");
+        break;
+    case BENCH_CARRY:
+        job->least = oct_surface_operations(blended, nodes / vertices);
+        job->footprint = (104 + 8 * blended) * vertices + 120 * nodes;
+        snprintf(row->note, sizeof row->note, "positions and normals, %.0f nodes, %.2g a vertex",
+                 nodes, blended);
+        break;
+    default:
+        job->least = sm_voxelise_operations(vertices / triangles);
+        job->footprint = 24 * vertices + 12 * triangles;
+        snprintf(row->note, sizeof row->note, "%.3g million triangles/s", 1e3 / row->ns);
+    }
+}
+
+static void release(BenchJob *job)
+{
+    Surface *surface = job->subject;
+    forget_voxels(surface);
+    bench_trial_free(&surface->trial);
+    free(surface);
+}
+
+const BenchKernelKind bench_surface_kernels = {.open = open_statue,
+                                               .close = free_statue,
+                                               .prepare = prepare,
+                                               .report = report,
+                                               .release = release};

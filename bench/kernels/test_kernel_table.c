@@ -10,13 +10,13 @@ static const BenchPeak peak = {.one = {.threads = 1}, .all = {.threads = 2}};
 
 TEST(verdicts_follow_the_limits)
 {
-    BenchKernel row = {.valid = true, .ns = 8, .at_most = NAN, .wanted = NAN};
+    BenchKernelRow row = {.valid = true, .ns = 8, .at_most = NAN, .wanted = NAN};
     assert_string_equal(bench_kernel_verdict(&row), "");
     row.at_most = 8;
     assert_string_equal(bench_kernel_verdict(&row), "met");
     row.at_most = 7.9;
     assert_string_equal(bench_kernel_verdict(&row), "missed");
-    row = (BenchKernel){
+    row = (BenchKernelRow){
         .valid = true, .at_most = NAN, .ratio = 1.9, .wanted = 1.85, .wanted_least = true};
     assert_string_equal(bench_kernel_verdict(&row), "met");
     row.wanted_least = false;
@@ -25,32 +25,32 @@ TEST(verdicts_follow_the_limits)
     assert_string_equal(bench_kernel_verdict(&row), "");
     row.own_time = true; /* which others hardly touch */
     assert_string_equal(bench_kernel_verdict(&row), "missed");
-    row = (BenchKernel){.valid = false, .ns = 1, .at_most = 8, .wanted = NAN};
+    row = (BenchKernelRow){.valid = false, .ns = 1, .at_most = 8, .wanted = NAN};
     assert_string_equal(bench_kernel_verdict(&row), "missed");
 }
 
 /* Three rows, the second not valid and the third busy although their times are filled in. */
 static void write_rows(BenchKernelFormat format, char **text, size_t *size)
 {
-    BenchKernel rows[3] = {{.kernel = "good",
-                            .group = "a",
-                            .item = "particle",
-                            .precision = "single",
-                            .threads = 1,
-                            .items = 10,
-                            .valid = true,
-                            .ns = 12.5,
-                            .low = 12,
-                            .high = 13,
-                            .floor_ns = 5,
-                            .bound = "L1",
-                            .at_most = 20,
-                            .ratio = NAN,
-                            .wanted = NAN,
-                            .note = "with, a comma"}};
+    BenchKernelRow rows[3] = {{.kernel = "good",
+                               .group = "a",
+                               .item = "particle",
+                               .precision = "single",
+                               .threads = 1,
+                               .items = 10,
+                               .valid = true,
+                               .ns = 12.5,
+                               .low = 12,
+                               .high = 13,
+                               .bound_ns = 5,
+                               .bound = "L1",
+                               .at_most = 20,
+                               .ratio = NAN,
+                               .wanted = NAN,
+                               .note = "with, a comma"}};
     rows[1] = rows[0];
     rows[1].valid = false;
-    rows[1].ns = rows[1].low = rows[1].high = rows[1].floor_ns = 98765;
+    rows[1].ns = rows[1].low = rows[1].high = rows[1].bound_ns = 98765;
     strcpy(rows[1].kernel, "bad");
     strcpy(rows[1].reason, "it is \"wrong\"");
     rows[2] = rows[1];
@@ -78,15 +78,15 @@ TEST(an_invalid_or_busy_row_has_no_number)
 /* But the ratio, where it is of processor time, and its verdict. */
 TEST(a_busy_row_tells_what_others_do_not_touch)
 {
-    const BenchKernel row = {.kernel = "late",
-                             .valid = true,
-                             .busy = true,
-                             .own_time = true,
-                             .ns = 98765,
-                             .at_most = NAN,
-                             .ratio = 1.25,
-                             .wanted = 2,
-                             .ratio_to = "least's CPU time"};
+    const BenchKernelRow row = {.kernel = "late",
+                                .valid = true,
+                                .busy = true,
+                                .own_time = true,
+                                .ns = 98765,
+                                .at_most = NAN,
+                                .ratio = 1.25,
+                                .wanted = 2,
+                                .ratio_to = "least's CPU time"};
     for (int f = 0; bench_kernel_formats[f]; f++) {
         char *text;
         size_t size;

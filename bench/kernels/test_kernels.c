@@ -66,12 +66,12 @@ TEST(floors_follow_the_work)
     }
     SmOperations work = {.flops = 8};
     const char *bound;
-    double floor_ns = bench_bound(&peak, &work, BENCH_F32, 1, 1e3, &bound);
-    assert_true(fabs(floor_ns * peak.one.flops[BENCH_F32] / 8e9 - 1) < 1e-12);
+    double bound_ns = bench_bound(&peak, &work, BENCH_F32, 1, 1e3, &bound);
+    assert_true(fabs(bound_ns * peak.one.flops[BENCH_F32] / 8e9 - 1) < 1e-12);
     assert_string_equal(bound, "flops");
     work = (SmOperations){.far_values = 8};
-    floor_ns = bench_bound(&peak, &work, BENCH_F64, 1, 1e12, &bound);
-    assert_true(fabs(floor_ns * peak.one.update / 64e9 - 1) < 1e-12);
+    bound_ns = bench_bound(&peak, &work, BENCH_F64, 1, 1e12, &bound);
+    assert_true(fabs(bound_ns * peak.one.update / 64e9 - 1) < 1e-12);
     assert_string_equal(bound, "DRAM");
 }
 
@@ -100,51 +100,106 @@ TEST(a_wrong_engine_is_not_timed)
     assert_int_equal(bench_cube_create(5, &fastlsm_engine_f32, &params, 1, &cube[1], &error),
                      SM_OK);
     assert_int_equal(cube[0].particles, 125);
-    assert_false(cube[0].valid);
-    assert_non_null(strstr(cube[0].reason, "brute force"));
-    assert_true(cube[1].valid && cube[1].brute);
-    bench_cubes_time(cube, 2, 2, true);
-    assert_null(cube[0].total);
-    for (int r = 0; r < 2; r++) {
-        double all = 0;
-        assert_true(bench_cube_ns(&cube[1], r) > 0);
-        for (int s = 0; s < SM_STAGES; s++) all += bench_cube_stage_ns(&cube[1], (SmStage)s, r);
-        assert_true(all > 0);
-    }
+    assert_false(cube[0].trial.valid);
+    assert_non_null(strstr(cube[0].trial.reason, "brute force"));
+    assert_true(cube[1].trial.valid && cube[1].brute);
+    cube[1].trial.lap_sets = 1;
+    bench_trials_time((BenchTrial *[]){&cube[0].trial, &cube[1].trial}, 2, 2);
+    assert_null(cube[0].trial.seconds);
+    assert_int_equal(cube[1].trial.samples, 2);
     for (int i = 0; i < 2; i++) bench_cube_free(&cube[i]);
+}
+
+/* What a trial times: 7 runs a sample that give stage s of set l (l + 1)(s + 1) seconds a run. */
+static int restored, ran;
+
+static void restore_laps(void *subject)
+{
+    (void)subject;
+    restored++;
+}
+
+static void run_laps(void *subject, SmLaps *laps)
+{
+    (void)subject;
+    ran++;
+    for (int l = 0; laps && l < 2; l++)
+        for (int s = 0; s < SM_STAGES; s++) {
+            laps[l].seconds[s] += (l + 1) * (s + 1);
+            laps[l].count[s]++;
+        }
+}
+
+TEST(a_trial_has_the_samples_and_runs_that_are_asked_for)
+{
+    const BenchTimed timed = {NULL, restore_laps, run_laps};
+    BenchTrial trial = {
+        .timed = timed, .threads = 1, .runs = 7, .lap_sets = 2, .once = true, .valid = true};
+    BenchTrial few = trial, wrong = trial;
+    few.most = 1;
+    bench_trial_fail(&wrong, "%d is wrong", 3);
+    bench_trial_fail(&wrong, "so is all else");
+    bench_trials_time((BenchTrial *[]){&trial, &few, &wrong}, 3, 5);
+    assert_int_equal(trial.samples, 5);
+    assert_int_equal(few.samples, 1);
+    assert_null(wrong.seconds);
+    assert_string_equal(wrong.reason, "3 is wrong");
+    assert_int_equal(restored, 2 * (5 + 1)); /* with clocks inside, too */
+    assert_int_equal(ran, 7 * restored);
+    for (int r = 0; r < 5; r++)
+        for (int s = 0; s < SM_STAGES; s++) {
+            double clock = trial.clock;
+            assert_true(fabs(bench_trial_stage(&trial, r, 0, 0, (SmStage)s) - (s + 1) + clock) <
+                        1e-12);
+            assert_true(fabs(bench_trial_stage(&trial, r, 0, 1, (SmStage)s) - 3 * (s + 1) +
+                             2 * clock) < 1e-12);
+        }
+    bench_trial_free(&trial);
+    bench_trial_free(&few);
 }
 
 TEST(every_polar_method_is_checked)
 {
     for (int p = 0; p < BENCH_PRECISIONS; p++) {
-        BenchPolarResult result[BENCH_POLARS] = {{0}};
-        for (int m = 0; m < BENCH_POLARS; m++) result[m].wanted = true;
-        bench_matrices_time((BenchPrecision)p, 1, 3, result);
+        BenchMotion *motion = bench_motion_create((BenchPrecision)p, 3);
+        double sweeps[BENCH_POLARS];
         for (int m = 0; m < BENCH_POLARS; m++) {
-            assert_true(result[m].valid && result[m].error <= result[m].limit);
-            assert_true(result[m].ns[0] > 0);
-            free(result[m].ns);
+            BenchPolarTrial polar;
+            BenchTrial *trial = &polar.trial;
+            bench_polar_prepare(motion, (BenchPolar)m, &polar);
+            assert_true(polar.trial.valid && polar.error <= 1e-5);
+            bench_trials_time(&trial, 1, 1);
+            sweeps[m] = polar.sweeps / (double)polar.decomposed;
+            assert_int_equal(polar.decomposed, trial->runs * BENCH_POLAR_RUN);
+            bench_trial_free(trial);
         }
         /* a warm start saves sweeps where matrices move smoothly */
-        assert_true(result[BENCH_POLAR_WARM].sweeps < result[BENCH_POLAR_COLD].sweeps);
+        assert_true(sweeps[BENCH_POLAR_WARM] < sweeps[BENCH_POLAR_COLD]);
+        assert_true(sweeps[BENCH_POLAR_BATCH] == 0);
+        bench_motion_free(motion);
     }
 }
 
-static void run_only(const char *const *only, BenchKernel *rows, int *count)
+static void run_repeats(int repeats, const char *const *only, BenchKernelRow *rows, int *count)
 {
-    BenchKernelParams params = {.only = only, .threads = 1, .repeats = 2, .seed = 1};
+    BenchKernelParams params = {.only = only, .threads = 1, .repeats = repeats, .seed = 1};
     SmError error;
     assert_int_equal(bench_kernels_run(&params, &peak, rows, count, &error), SM_OK);
 }
 
+static void run_only(const char *const *only, BenchKernelRow *rows, int *count)
+{
+    run_repeats(2, only, rows, count);
+}
+
 TEST(only_what_is_named_runs)
 {
-    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    BenchKernelRow *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count;
     run_only((const char *const[]){"polar-fast", NULL}, rows, &count);
     assert_int_equal(count, 1);
     assert_string_equal(rows[0].kernel, "polar-fast");
-    assert_true(rows[0].valid && rows[0].ns > 0 && rows[0].floor_ns > 0);
+    assert_true(rows[0].valid && rows[0].ns > 0 && rows[0].bound_ns > 0);
     run_only((const char *const[]){"scale-1e5", "penguin", NULL}, rows, &count);
     assert_int_equal(count, 2); /* scale-1e4, to which it is compared, has no row */
     assert_string_equal(rows[0].kernel, "penguin");
@@ -161,7 +216,7 @@ TEST(only_what_is_named_runs)
 
 TEST(octree_kernels_run_by_name)
 {
-    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    BenchKernelRow *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count, listed = 0;
     const char *group;
     run_only((const char *const[]){"oct-setup-1e3", "oct-hand-step", "oct-hand-damping",
@@ -174,7 +229,7 @@ TEST(octree_kernels_run_by_name)
         assert_string_equal(rows[r].kernel, names[r]);
         assert_string_equal(rows[r].group, "octree");
         assert_true(rows[r].valid && rows[r].ns > 0);
-        assert_true(rows[r].floor_ns > 0);
+        assert_true(rows[r].bound_ns > 0);
         assert_true(*rows[r].note);
     }
     assert_true(labs(rows[0].items - 661) <= 1);
@@ -189,9 +244,10 @@ TEST(octree_kernels_run_by_name)
 TEST(octree_setup_is_linear)
 {
     if (!TEST_FIGURES) skip();
-    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    BenchKernelRow *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count;
-    run_only((const char *const[]){"oct-setup-1e4", NULL}, rows, &count);
+    run_repeats(15, (const char *const[]){"oct-setup-1e4", NULL}, rows,
+                &count); /* user time's clock ticks */
     assert_int_equal(count, 1);
     assert_true(rows[0].valid && rows[0].wanted == 2 && !rows[0].wanted_least);
     assert_string_equal(rows[0].ratio_to, "oct-setup-1e3's user time");
@@ -204,7 +260,7 @@ TEST(octree_setup_is_linear)
 /* What a cut and a refinement cost is held to the same in the smallest body. */
 TEST(resampling_is_compared_with_the_smallest_body)
 {
-    BenchKernel *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
+    BenchKernelRow *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count;
     run_only((const char *const[]){"oct-cut-1e4", "oct-refine-1e4", NULL}, rows, &count);
     assert_int_equal(count, 2); /* those of 1e3, which they are compared with, have no rows */
@@ -213,7 +269,7 @@ TEST(resampling_is_compared_with_the_smallest_body)
         if (!rows[r].valid) fail_msg("%s: %s", rows[r].kernel, rows[r].reason);
         assert_string_equal(rows[r].group, "resampling");
         assert_string_equal(rows[r].ratio_to, bases[r]);
-        assert_true(rows[r].ns > 0 && rows[r].floor_ns > 0);
+        assert_true(rows[r].ns > 0 && rows[r].bound_ns > 0);
         assert_true(rows[r].wanted == 2 && rows[r].ratio > 0 && isfinite(rows[r].ratio));
         assert_true(*bench_kernel_verdict(&rows[r]));
         assert_non_null(strstr(rows[r].note, "in 10648 nodes"));

@@ -24,22 +24,25 @@ TEST(a_wrong_octree_step_is_not_timed)
     assert_int_equal(bench_sampled_cube(6, &body, &error), SM_OK);
     BenchTreeStep steps[3] = {{.body = &body, .threads = 1, .seed = 1, .parts = true}};
     bench_tree_step_create_f32(&steps[0]);
-    assert_true(steps[0].valid);
+    assert_true(steps[0].trial.valid);
     lose_member(&body); /* it is not symmetric: only the adjoint is right */
     steps[1] = (BenchTreeStep){.body = &body, .threads = 1, .seed = 1, .parts = true};
     steps[2] = steps[1];
     steps[2].adjoint = true;
     for (int s = 1; s < 3; s++) bench_tree_step_create_f32(&steps[s]);
-    assert_false(steps[1].valid);
-    assert_non_null(strstr(steps[1].reason, "brute force"));
-    assert_true(steps[2].valid);
-    bench_tree_steps_time_f32(steps, 3, 2);
-    assert_null(steps[1].total);
-    for (int s = 0; s < 3; s += 2)
-        for (int r = 0; r < 2; r++) {
-            assert_true(steps[s].total[r] > 0);
-            for (int p = 0; p < BENCH_TREE_PARTS; p++) assert_true(steps[s].part[r][p] >= 0);
-        }
+    assert_false(steps[1].trial.valid);
+    assert_non_null(strstr(steps[1].trial.reason, "brute force"));
+    assert_true(steps[2].trial.valid);
+    BenchTrial *trials[] = {&steps[0].trial, &steps[1].trial, &steps[2].trial};
+    bench_trials_time(trials, 3, 2);
+    assert_null(steps[1].trial.seconds);
+    for (int s = 0; s < 3; s += 2) {
+        double parts = 0, whole = steps[s].trial.laps[0].last; /* seconds of a clock, far more */
+        assert_int_equal(steps[s].trial.samples, 2);
+        for (int p = 0; p < BENCH_TREE_PARTS; p++)
+            parts += bench_tree_step_ns_f32(&steps[s], (BenchTreePart)p, 1);
+        assert_true(parts > 0 && parts < 1e9 * whole);
+    }
     for (int s = 0; s < 3; s++) bench_tree_step_free_f32(&steps[s]);
     bench_sampled_free(&body);
 }
@@ -53,19 +56,24 @@ TEST(a_wrong_octree_setup_is_not_timed)
         SmError error;
         assert_int_equal(bench_sampled_cube(side, &body, &error), SM_OK);
         for (int kind = 0; kind <= BENCH_SETUP_WHOLE; kind++) {
-            bench_setup_time(&body, (BenchSetupKind)kind, BENCH_F64, 2, &setup);
-            assert_true(setup.valid && setup.samples >= 1 && setup.ns[0] > 0);
-            free(setup.ns);
+            bench_setup_create(&body, (BenchSetupKind)kind, BENCH_F64, &setup);
+            BenchTrial *trial = &setup.trial;
+            assert_true(trial->valid);
+            bench_trials_time(&trial, 1, 2);
+            assert_in_range(trial->samples, 1, 2);
+            assert_int_equal(setup.engine_bytes > 0, kind == BENCH_SETUP_WHOLE);
+            bench_setup_free(&setup);
         }
         body.regions.member[0] = body.tree.node[body.tree.leaves - 1];
-        bench_setup_time(&body, BENCH_SETUP_REGIONS, BENCH_F32, 1, &setup);
-        assert_false(setup.valid);
-        assert_null(setup.ns);
-        assert_non_null(strstr(setup.reason, "region"));
+        bench_setup_create(&body, BENCH_SETUP_REGIONS, BENCH_F32, &setup);
+        assert_false(setup.trial.valid);
+        assert_non_null(strstr(setup.trial.reason, "region"));
+        bench_setup_free(&setup);
         body.graph.length[0]++;
-        bench_setup_time(&body, BENCH_SETUP_GRAPH, BENCH_F32, 1, &setup);
-        assert_false(setup.valid);
-        assert_non_null(strstr(setup.reason, "edge"));
+        bench_setup_create(&body, BENCH_SETUP_GRAPH, BENCH_F32, &setup);
+        assert_false(setup.trial.valid);
+        assert_non_null(strstr(setup.trial.reason, "edge"));
+        bench_setup_free(&setup);
         bench_sampled_free(&body);
     }
 }

@@ -3,9 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-#include <sys/resource.h>
 
-#include "../../lib/stage.h"
 #include "../../lib/system/team.h"
 #include "tree_steps.h"
 
@@ -65,23 +63,23 @@ static void set_work(const BenchSampled *body, BenchSetupKind kind, BenchSetup *
     switch (kind) {
     case BENCH_SETUP_DISTANCES:
         count_searches(body, NULL, setup->sources, &edges, &reached);
-        setup->work = oct_reach_operations(edges, reached);
+        setup->least = oct_reach_operations(edges, reached);
         return;
     case BENCH_SETUP_GRAPH:
-        setup->work = graph_work(body);
+        setup->least = graph_work(body);
         return;
     case BENCH_SETUP_REGIONS:
-        setup->work = regions_work(body);
+        setup->least = regions_work(body);
         break;
     case BENCH_SETUP_STRUCTURE:
-        setup->work = sm_operations_add(graph_work(body), 1, regions_work(body));
+        setup->least = sm_operations_add(graph_work(body), 1, regions_work(body));
         break;
     case BENCH_SETUP_SAMPLING:
-        setup->work = sampling;
+        setup->least = sampling;
         return;
     case BENCH_SETUP_WHOLE:
-        setup->work = sm_operations_add(sampling, 1, graph_work(body));
-        setup->work = sm_operations_add(setup->work, 1, regions_work(body));
+        setup->least = sm_operations_add(sampling, 1, graph_work(body));
+        setup->least = sm_operations_add(setup->least, 1, regions_work(body));
         break;
     }
     setup->bytes += (double)oct_regions_bytes(&body->regions);
@@ -160,59 +158,58 @@ static long set_up(const BenchSampled *body, BenchPrecision precision)
     return bytes;
 }
 
-/* Seconds of one sample: of one source, or of the whole body. Where all of it is wanted freeing
- * counts too. */
-static double sample(const BenchSampled *body, BenchSetupKind kind, BenchPrecision precision,
-                     BenchSetup *setup, OctReach *reach)
+/* What the last run has made. */
+static void forget(void *subject)
 {
-    OctTree tree = {0};
-    OctGraph graph = {0};
-    OctRegions regions = {0};
-    long engine = 0;
-    bench_watch_start(&setup->watch);
-    if (kind == BENCH_SETUP_DISTANCES) search(reach, setup->sources);
-    if (kind == BENCH_SETUP_SAMPLING) make_tree(body, &tree);
+    BenchSetup *setup = subject;
+    oct_tree_free(&setup->tree);
+    oct_graph_free(&setup->graph);
+    oct_regions_free(&setup->regions);
+    setup->tree = (OctTree){0};
+    setup->graph = (OctGraph){0};
+    setup->regions = (OctRegions){0};
+}
+
+/* Where all of it is wanted freeing counts too. */
+static void run(void *subject, SmLaps *laps)
+{
+    BenchSetup *setup = subject;
+    const BenchSampled *body = setup->body;
+    BenchSetupKind kind = setup->kind;
+    (void)laps;
+    if (kind == BENCH_SETUP_DISTANCES) search(&setup->reach, setup->sources);
+    if (kind == BENCH_SETUP_SAMPLING) make_tree(body, &setup->tree);
     if (kind == BENCH_SETUP_GRAPH || kind == BENCH_SETUP_STRUCTURE)
-        oct_graph_build(&body->tree, &body->voxels, &graph);
+        oct_graph_build(&body->tree, &body->voxels, &setup->graph);
     if (kind == BENCH_SETUP_REGIONS || kind == BENCH_SETUP_STRUCTURE)
-        make_regions(&body->tree, &body->graph, body->w, body->epsilon, &regions);
-    if (kind == BENCH_SETUP_WHOLE) engine = set_up(body, precision);
-    double seconds = bench_watch_stop(&setup->watch);
-    setup->engine_bytes = (double)engine;
-    oct_tree_free(&tree);
-    oct_graph_free(&graph);
-    oct_regions_free(&regions);
-    return kind == BENCH_SETUP_DISTANCES ? seconds / (double)setup->sources : seconds;
+        make_regions(&body->tree, &body->graph, body->w, body->epsilon, &setup->regions);
+    if (kind == BENCH_SETUP_WHOLE) setup->engine_bytes = (double)set_up(body, setup->precision);
 }
 
-/* Seconds of this process. */
-static double user_seconds(void)
+void bench_setup_create(const BenchSampled *body, BenchSetupKind kind, BenchPrecision precision,
+                        BenchSetup *setup)
 {
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec;
-}
-
-void bench_setup_time(const BenchSampled *body, BenchSetupKind kind, BenchPrecision precision,
-                      int repeats, BenchSetup *setup)
-{
-    OctReach reach;
     long leaves = body->tree.leaves, sources = LEAVES_SEARCHED / leaves;
-    *setup = (BenchSetup){.sources = sources < 1 ? 1 : sources > leaves ? leaves : sources};
-    setup->valid = check(body, kind, setup->reason);
-    if (!setup->valid) return;
-    set_work(body, kind, setup);
-    setup->ns = sm_alloc((size_t)repeats, sizeof *setup->ns);
-    oct_reach_init(&reach, &body->graph);
-    if (leaves <= LEAVES_WARMED) sample(body, kind, precision, setup, &reach);
-    double start = sm_now(), user = user_seconds();
-    setup->watch = bench_watch(sm_team(0));
-    while (setup->samples < repeats && (setup->samples == 0 || sm_now() - start < most_seconds)) {
-        setup->ns[setup->samples++] = 1e9 * sample(body, kind, precision, setup, &reach);
-        bench_watch_count(&setup->watch);
-    }
-    double parts = kind == BENCH_SETUP_DISTANCES ? (double)setup->sources : 1;
-    setup->user_ns = 1e9 * (user_seconds() - user) / (parts * (double)setup->samples);
-    setup->bytes += setup->engine_bytes;
-    oct_reach_free(&reach);
+    char reason[BENCH_TREE_REASON];
+    *setup = (BenchSetup){.body = body, .kind = kind, .precision = precision};
+    setup->sources = sources < 1 ? 1 : sources > leaves ? leaves : sources;
+    setup->trial = (BenchTrial){.timed = {setup, forget, run},
+                                .threads = sm_team(0),
+                                .runs = 1,
+                                .warm_up = leaves <= LEAVES_WARMED,
+                                .once = true,
+                                .most_seconds = most_seconds,
+                                .valid = true};
+    if (check(body, kind, reason)) {
+        set_work(body, kind, setup);
+        oct_reach_init(&setup->reach, &body->graph);
+    } else
+        bench_trial_fail(&setup->trial, "%s", reason);
+}
+
+void bench_setup_free(BenchSetup *setup)
+{
+    forget(setup);
+    oct_reach_free(&setup->reach);
+    bench_trial_free(&setup->trial);
 }

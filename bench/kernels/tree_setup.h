@@ -3,9 +3,9 @@
 #define BENCH_TREE_SETUP_H
 
 #include "../check/tree_check.h"
-#include "../measure/moment.h"
 #include "machine_peak.h"
 #include "sampled.h"
+#include "trial.h"
 
 typedef enum {
     BENCH_SETUP_DISTANCES, /* Bucket-Moore: from a source to all that it reaches */
@@ -17,21 +17,25 @@ typedef enum {
 } BenchSetupKind;
 
 typedef struct {
-    bool valid;
-    char reason[BENCH_TREE_REASON]; /* why not valid */
-    int samples;       /* timed: as many as asked for, or as take about two seconds, at least one */
-    double *ns;        /* [samples] a source; else the whole body. NULL where not valid */
-    BenchWatch watch;  /* of the samples */
-    double user_ns;    /* the same as user CPU time, mean of the samples: without page faults, which
-                        * are the system's, and whatever else runs */
-    long sources;      /* timed in a sample, of distances */
-    SmOperations work; /* a source; else a node */
-    double bytes;      /* of what is read and written */
-    double engine_bytes; /* of these the engine's, where it is built */
+    BenchTrial trial; /* as many samples as asked for, or as take about two seconds */
+    const BenchSampled *body;
+    BenchSetupKind kind;
+    BenchPrecision precision;
+    long sources;        /* that a run searches from, of distances */
+    SmOperations least;  /* of a source; else a node */
+    double bytes;        /* of what is read and written, without the engine, */
+    double engine_bytes; /* and the engine's, where it is built */
+    /* the run's own */
+    OctReach reach;
+    OctTree tree;
+    OctGraph graph;
+    OctRegions regions;
 } BenchSetup;
 
-/* Checks (tree_check.h) and times. OpenMP's number of threads. The caller frees `ns`. */
-void bench_setup_time(const BenchSampled *body, BenchSetupKind kind, BenchPrecision precision,
-                      int repeats, BenchSetup *setup);
+/* Checks (tree_check.h). The trial, on OpenMP's number of threads, keeps the address. The caller
+ * frees. */
+void bench_setup_create(const BenchSampled *body, BenchSetupKind kind, BenchPrecision precision,
+                        BenchSetup *setup);
+void bench_setup_free(BenchSetup *setup);
 
 #endif

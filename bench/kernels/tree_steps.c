@@ -9,11 +9,9 @@
 #include "../../reference/octree_goals.h"
 
 #define bench_tree_step_create SM_NAME(bench_tree_step_create)
-#define bench_tree_steps_time  SM_NAME(bench_tree_steps_time)
+#define bench_tree_step_ns     SM_NAME(bench_tree_step_ns)
 #define bench_tree_step_free   SM_NAME(bench_tree_step_free)
 #define bench_tree_build       SM_NAME(bench_tree_build)
-
-enum { MOST_STEPS = 64 }; /* in a sample */
 
 /* Of goals, in finest cells; and of positions after a step with damping. */
 static const double tolerance = SM_REAL_BITS == 32 ? 5e-5 : 1e-10;
@@ -74,12 +72,10 @@ static double deviation(const Oct *oct, const real *field, const double (*exact)
 
 static void require(BenchTreeStep *step, const char *what, double found, double limit)
 {
-    if (!step->valid || found <= limit) return;
-    step->valid = false;
-    snprintf(step->reason, sizeof step->reason,
-             "%s differ from brute force, in cells, by %.3g; "
-             "at most %g allowed",
-             what, found, limit);
+    if (!(found <= limit))
+        bench_trial_fail(&step->trial,
+                         "%s differ from brute force, in cells, by %.3g; at most %g allowed", what,
+                         found, limit);
 }
 
 /* The twin's step (fastlsm eqs. 1, 14, 2) from its goals: x moves. */
@@ -124,6 +120,33 @@ static void check(BenchTreeStep *step)
     free(g);
 }
 
+/* The first step, which fills caches, is not timed. */
+static void start(void *subject)
+{
+    const BenchTreeStep *step = subject;
+    restore(step);
+    oct_step(step->engine, NULL);
+}
+
+static void run_step(void *subject, SmLaps *laps)
+{
+    Oct *oct = ((BenchTreeStep *)subject)->engine;
+    if (laps) {
+        laps[0].last = sm_now();
+        oct_step_parts(oct, laps);
+    } else
+        oct_step(oct, NULL);
+}
+
+static bool finite_at_end(void *subject)
+{
+    const Oct *oct = ((BenchTreeStep *)subject)->engine;
+    double sum = 0;
+    for (long leaf = 0; leaf < oct->leaves; leaf++) /* 0 times what is not finite is NaN */
+        for (int d = 0; d < 3; d++) sum += 0 * get(oct, oct->body->x, leaf, d, true);
+    return sum == 0;
+}
+
 void bench_tree_step_create(BenchTreeStep *step)
 {
     const BenchSampled *body = step->body;
@@ -133,7 +156,11 @@ void bench_tree_step_create(BenchTreeStep *step)
                         .threads = step->threads};
     Oct *oct = oct_build(&body->tree, &body->regions, body->mass, &params);
     step->engine = oct;
-    step->valid = true;
+    step->trial = (BenchTrial){.timed = {step, start, run_step},
+                               .finite = finite_at_end,
+                               .threads = step->threads,
+                               .lap_sets = step->parts ? OCT_STEP_PARTS : 0,
+                               .valid = true};
     step->counts = oct_step_counts(&body->tree, &oct->lists, oct_goal_lists(oct));
     step->bytes = oct_bytes(oct);
     step->x = sm_alloc((size_t)oct->leaves, sizeof *step->x);
@@ -148,98 +175,22 @@ void bench_tree_step_free(BenchTreeStep *step)
     oct_free(step->engine);
     free(step->x);
     free(step->v);
-    free(step->total);
-    free(step->part);
+    bench_trial_free(&step->trial);
     *step = (BenchTreeStep){0};
 }
 
-/* Seconds a step. The first step, which fills caches, is not timed. */
-static double try_sample(BenchTreeStep *step)
+double bench_tree_step_ns(const BenchTreeStep *step, BenchTreePart part, int r)
 {
-    restore(step);
-    oct_step(step->engine, NULL);
-    bench_watch_start(&step->watch);
-    for (int i = 0; i < step->steps; i++) oct_step(step->engine, NULL);
-    return bench_watch_stop(&step->watch) / step->steps;
-}
-
-static double sample(BenchTreeStep *step)
-{
-    double seconds;
-    do seconds = try_sample(step);
-    while (bench_watch_again(&step->watch));
-    return seconds;
-}
-
-/* Of a stage in these parts of the step, less `clock` seconds a lap. */
-static double stage_ns(const SmLaps *laps, int first, int last, SmStage stage, double clock)
-{
-    double seconds = 0;
-    for (int p = first; p <= last; p++)
-        seconds += laps[p].seconds[stage] - clock * (double)laps[p].count[stage];
-    return 1e9 * fmax(seconds, 0);
-}
-
-static void try_laps(BenchTreeStep *step, SmLaps laps[OCT_STEP_PARTS])
-{
-    restore(step);
-    oct_step(step->engine, NULL);
-    for (int p = 0; p < OCT_STEP_PARTS; p++) sm_laps_start(&laps[p]);
-    bench_watch_start(&step->watch);
-    for (int i = 0; i < step->steps; i++) {
-        laps[0].last = sm_now();
-        oct_step_parts(step->engine, laps);
-    }
-    bench_watch_stop(&step->watch);
-}
-
-static void sample_parts(BenchTreeStep *step, double clock, double part[BENCH_TREE_PARTS])
-{
-    SmLaps laps[OCT_STEP_PARTS];
-    do try_laps(step, laps);
-    while (bench_watch_again(&step->watch));
-    const double ns[BENCH_TREE_PARTS] = {
-        stage_ns(laps, OCT_MOMENTS_DEPTH, OCT_MOMENTS_DEPTH, SM_FAST_SUM, clock),
-        stage_ns(laps, OCT_MOMENTS_BREADTH, OCT_MOMENTS_BREADTH, SM_FAST_SUM, clock),
-        stage_ns(laps, OCT_MOMENTS_BREADTH, OCT_MOMENTS_BREADTH, SM_POLAR, clock),
-        stage_ns(laps, OCT_TRANSFORMS_DEPTH, OCT_TRANSFORMS_BREADTH, SM_FAST_SUM, clock),
-        stage_ns(laps, OCT_TRANSFORMS_BREADTH, OCT_TRANSFORMS_BREADTH, SM_DAMPING, clock)};
-    for (int p = 0; p < BENCH_TREE_PARTS; p++) part[p] = ns[p] / step->steps;
-}
-
-static void check_end(BenchTreeStep *step)
-{
-    const Oct *oct = step->engine;
-    double sum = 0;
-    for (long leaf = 0; leaf < oct->leaves; leaf++) /* 0 times what is not finite is NaN */
-        for (int d = 0; d < 3; d++) sum += 0 * get(oct, oct->body->x, leaf, d, true);
-    if (sum == 0) return;
-    step->valid = false;
-    snprintf(step->reason, sizeof step->reason, "positions are not finite after the steps");
-}
-
-void bench_tree_steps_time(BenchTreeStep *steps, int count, int repeats)
-{
-    double clock = sm_lap_seconds();
-    for (BenchTreeStep *s = steps; s < steps + count; s++) {
-        if (!s->valid) continue;
-        s->steps = 1;
-        s->watch = bench_watch(s->threads);
-        s->total = sm_alloc((size_t)repeats, sizeof *s->total);
-        s->part = sm_alloc((size_t)repeats, sizeof *s->part);
-        double seconds = fmin(try_sample(s), try_sample(s)); /* also warms up */
-        s->steps = bench_watch_steps(seconds, MOST_STEPS);
-        s->watch = bench_watch(s->threads);
-    }
-    for (int r = 0; r < repeats; r++)
-        for (int i = 0; i < count; i++) {
-            BenchTreeStep *s = &steps[(r + i) % count]; /* none is always first */
-            if (!s->valid) continue;
-            s->total[r] = 1e9 * sample(s);
-            if (s->parts) sample_parts(s, clock, s->part[r]);
-        }
-    for (BenchTreeStep *s = steps; s < steps + count; s++)
-        if (s->valid) check_end(s);
+    static const struct {
+        int first, last;
+        SmStage stage;
+    } of[BENCH_TREE_PARTS] = {{OCT_MOMENTS_DEPTH, OCT_MOMENTS_DEPTH, SM_FAST_SUM},
+                              {OCT_MOMENTS_BREADTH, OCT_MOMENTS_BREADTH, SM_FAST_SUM},
+                              {OCT_MOMENTS_BREADTH, OCT_MOMENTS_BREADTH, SM_POLAR},
+                              {OCT_TRANSFORMS_DEPTH, OCT_TRANSFORMS_BREADTH, SM_FAST_SUM},
+                              {OCT_TRANSFORMS_BREADTH, OCT_TRANSFORMS_BREADTH, SM_DAMPING}};
+    if (part == BENCH_TREE_WHOLE) return 1e9 * step->trial.seconds[r];
+    return 1e9 * bench_trial_stage(&step->trial, r, of[part].first, of[part].last, of[part].stage);
 }
 
 long bench_tree_build(const OctTree *tree, const OctRegions *regions, const double *mass)

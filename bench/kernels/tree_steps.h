@@ -8,9 +8,8 @@
 
 #include "../../octree/operations.h"
 #include "../../octree/region/weights.h"
-#include "../measure/moment.h"
-#include "machine_peak.h"
 #include "sampled.h"
+#include "trial.h"
 
 /* What of a step is timed apart. */
 typedef enum {
@@ -24,23 +23,18 @@ typedef enum {
 } BenchTreePart;
 
 typedef struct {
+    BenchTrial trial;         /* with laps of OCT_STEP_PARTS where times of parts are wanted */
     const BenchSampled *body; /* set by the caller, as the next ones */
     OctWeighting weighting;
     bool adjoint; /* goal positions by the transpose of the region sums */
     bool parts;   /* are times of parts wanted? */
     int threads;
     unsigned long seed;
-    bool valid;
-    char reason[192];                 /* why not valid */
-    OctStepCounts counts;             /* of its lists */
-    long bytes;                       /* the engine's memory */
-    double *total;                    /* [repeats] ns a step; NULL where not valid */
-    double (*part)[BENCH_TREE_PARTS]; /* [repeats] ns a step, less the time of reading clocks */
-    /* the timing's own */
+    /* found */
+    OctStepCounts counts; /* of its lists */
+    long bytes;           /* the engine's memory */
     void *engine;
-    double (*x)[3], (*v)[3];
-    int steps;
-    BenchWatch watch; /* of the samples */
+    double (*x)[3], (*v)[3]; /* [leaves] where samples start */
 } BenchTreeStep;
 
 /* For each precision: fills `step` in from the caller's choices and checks the engine's goal
@@ -49,9 +43,9 @@ typedef struct {
 void bench_tree_step_create_f32(BenchTreeStep *step);
 void bench_tree_step_create_f64(BenchTreeStep *step);
 
-/* Times the valid ones in turn, `repeats` samples each. */
-void bench_tree_steps_time_f32(BenchTreeStep *steps, int count, int repeats);
-void bench_tree_steps_time_f64(BenchTreeStep *steps, int count, int repeats);
+/* ns a step in sample r; of parts less the time of reading clocks. */
+double bench_tree_step_ns_f32(const BenchTreeStep *step, BenchTreePart part, int r);
+double bench_tree_step_ns_f64(const BenchTreeStep *step, BenchTreePart part, int r);
 
 void bench_tree_step_free_f32(BenchTreeStep *step);
 void bench_tree_step_free_f64(BenchTreeStep *step);

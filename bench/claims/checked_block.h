@@ -1,6 +1,6 @@
-/* block.h - a solid block in an engine, whose goal positions are checked by brute force. */
-#ifndef BENCH_BLOCK_H
-#define BENCH_BLOCK_H
+/* checked_block.h - a solid block in an engine, whose goal positions are checked by brute force. */
+#ifndef BENCH_CHECKED_BLOCK_H
+#define BENCH_CHECKED_BLOCK_H
 
 #include "../check/check.h"
 

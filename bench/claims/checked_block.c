@@ -1,4 +1,4 @@
-#include "block.h"
+#include "checked_block.h"
 
 #include <stdlib.h>
 #include <string.h>
