@@ -20,6 +20,7 @@ static const BenchField needed[] = {
     FIELD(BENCH_BOOL, valid),
     FIELD(BENCH_INT, repeats),
 };
+
 static void read_where_there(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
                              void *record)
 {

@@ -16,11 +16,13 @@ static void number_cell(const BenchField *field, double value, char *text)
         bench_grid_number(shown, text);
 }
 
-static void cell(const BenchField *field, const void *record, char *text)
+void bench_record_cell(const BenchField *field, const void *record, char *text)
 {
     const void *value = (const char *)record + field->offset;
     if (field->cell)
         field->cell(record, text);
+    else if (field->number)
+        number_cell(field, field->number(record), text);
     else if (field->kind == BENCH_TEXT)
         snprintf(text, BENCH_GRID_TEXT, "%s", (const char *)value);
     else if (field->kind == BENCH_BOOL)
@@ -43,7 +45,8 @@ BenchGrid bench_records_grid(const BenchField *fields, int count, const void *re
         BenchGridLine *line = bench_grid_add(&grid);
         for (int f = 0, c = 0; f < count; f++)
             if (fields[f].title)
-                cell(&fields[f], (const char *)records + (size_t)r * size, (*line)[c++]);
+                bench_record_cell(&fields[f], (const char *)records + (size_t)r * size,
+                                  (*line)[c++]);
     }
     return grid;
 }

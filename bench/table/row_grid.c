@@ -6,6 +6,7 @@
 
 #include "../engines.h"
 #include "../measure/elastic_row.h"
+#include "records.h"
 
 /* Whether the octree's columns belong to it: it is of that paper or engine. */
 static bool of_octree(const BenchRow *row)
@@ -41,20 +42,6 @@ void bench_row_columns(const BenchRow *rows, int count, BenchTableKind table, Be
     }
 }
 
-/* A member as it is. */
-static void plain_cell(const BenchField *field, const BenchRow *row, char *text)
-{
-    const char *value = (const char *)row + field->offset;
-    if (field->kind == BENCH_TEXT)
-        snprintf(text, BENCH_GRID_TEXT, "%s", value);
-    else if (field->kind == BENCH_INT)
-        snprintf(text, BENCH_GRID_TEXT, "%d", *(const int *)value);
-    else if (field->kind == BENCH_LONG)
-        snprintf(text, BENCH_GRID_TEXT, "%ld", *(const long *)value);
-    else
-        bench_grid_number(field->number ? field->number(row) : *(const double *)value, text);
-}
-
 /* What stands for the table's times of a row; NULL: they do. */
 static const char *time_mark(const BenchRow *row, BenchTableKind table)
 {
@@ -75,7 +62,7 @@ static void measured_line(const BenchRow *row, BenchTableKind table, BenchGridFo
         else if (quantity->cell)
             quantity->cell(row, form, text);
         else
-            plain_cell(&quantity->field, row, text);
+            bench_record_cell(&quantity->field, row, text);
     }
 }
 
