@@ -13,7 +13,7 @@
 
 typedef struct {
     BenchCommon common;
-    const char *scene, *file;
+    const char *scene;
     const char *range[BENCH_CALIBRATION_LISTS]; /* in the plan's order */
     const char *engines;
     double damping, poisson, density, young;
@@ -64,17 +64,11 @@ static const BenchSetting settings[] = {
     {0},
 };
 
-static void take_file(const struct argp_state *state, void *record, char *text)
-{
-    bench_option_shown(state, text, &((Options *)record)->file);
-}
-
 static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
     if (options->density > 0 && isnan(options->young))
         bench_usage(state, "--density is that of --young's body: give both");
-    bench_option_shown_alone(state, &options->common, options->file);
 }
 
 static const char help[] =
@@ -83,16 +77,15 @@ static const char help[] =
     "With FILE.h5 alone: show a stored calibration.\v"
     "The elastic body is the meshless reference's beam, and theory's, Euler and Bernoulli's and "
     "Timoshenko's. The grid is of all w and epsilon on the scene's beam; other spacings are "
-    "measured "
-    "for all w, other lengths and time steps for the first, middle and last, at the first epsilon. "
-    "Every specimen is checked against brute force, and that it is at rest; one that fails is "
-    "INVALID. The laws are fitted to all of them. The octree samples the beam regularly.\n"
+    "measured for all w, other lengths and time steps for the first, middle and last, at the first "
+    "epsilon. Every specimen is checked against brute force, and that it is at rest; one that "
+    "fails is INVALID. The laws are fitted to all of them. The octree samples the beam regularly.\n"
     "A modulus goes with the density: --density serves --young alone. It holds for scenes that set "
     "their density: where particles weigh 1 each, as is the default, those at a lattice's surface "
     "weigh too much, and it is 24% stiffer by sag at w 1, 21% at w 2.\n" BENCH_EXIT_CODES;
 
 static const BenchCommandLine line = {
-    settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "[FILE.h5]", help, take_file, check};
+    settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "[FILE.h5]", help, check, NULL, NULL};
 
 static SmCode read_lists(const Options *options, BenchCalibrationPlan *plan, SmError *error)
 {
@@ -175,9 +168,10 @@ int bench_command_calibrate(int argc, char **argv)
     if (!code) {
         bench_options_parse(&line, argc, argv, &options, &options.common);
         code = options.run.columns ? SM_OK
-               : options.file      ? bench_campaign_load(options.file, &bench_calibration_type,
-                                                         &calibration, &error)
-                                   : run(&options, argc, argv, &calibration, &error);
+               : options.common.file
+                   ? bench_campaign_load(options.common.file, &bench_calibration_type, &calibration,
+                                         &error)
+                   : run(&options, argc, argv, &calibration, &error);
     }
     if (!code && options.run.columns)
         bench_campaign_document(stdout, &bench_calibration_type);

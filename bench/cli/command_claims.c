@@ -12,7 +12,7 @@
 
 typedef struct {
     BenchCommon common;
-    const char *paper, *file;
+    const char *paper;
     BenchNames claims, files;
     bool quick, list, overwrite;
     BenchCampaignRun run;
@@ -41,11 +41,6 @@ static const BenchSetting settings[] = {
     {0},
 };
 
-static void take_file(const struct argp_state *state, void *record, char *text)
-{
-    bench_option_shown(state, text, &((Options *)record)->file);
-}
-
 static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
@@ -55,10 +50,9 @@ static void check(const struct argp_state *state, void *record)
                            "--quick and --format");
     if (options->overwrite && options->run.resume)
         bench_usage(state, "--overwrite starts anew, and --resume does not: give one of them");
-    if (options->overwrite && options->file)
+    if (options->overwrite && options->common.file)
         bench_usage(state, "%s alone is shown as it is: --overwrite goes with --output",
-                    options->file);
-    bench_option_shown_alone(state, &options->common, options->file);
+                    options->common.file);
 }
 
 static const char help[] =
@@ -66,10 +60,8 @@ static const char help[] =
     "the measured one with its 95% interval, the test, and the verdict. Claims of the method, what "
     "the paper's idea does anywhere, are reproduced, undecided (the interval reaches into what is "
     "wanted, the value does not), not reproduced, or differ (with the reason). Of a machine's "
-    "speed "
-    "the ratio to the paper's machine is given. What the scene file sets is counted, and what "
-    "comes "
-    "where it does not set it stands beside. INVALID is what failed its check, BUSY "
+    "speed the ratio to the paper's machine is given. What the scene file sets is counted, and "
+    "what comes where it does not set it stands beside. INVALID is what failed its check, BUSY "
     "times of which other programs took too much: neither is judged, and BUSY is no failure. "
     "Everything is measured once, and checked: against brute force; the largest cubes for finite "
     "goals and linear momentum. With FILE.h5 alone: show stored claims.\v"
@@ -78,8 +70,8 @@ static const char help[] =
     " Of claims also: 1 what should be reproduced is not, or what is set is not so; 3 a claims "
     "file cannot be used.";
 
-static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, "[FILE.h5]",
-                                      help,     take_file,       check};
+static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, "[FILE.h5]", help, check, NULL,
+                                      NULL};
 
 static bool named(const Options *options, const char *name)
 {
@@ -218,8 +210,8 @@ int bench_command_claims(int argc, char **argv)
     if (!code) {
         bench_options_parse(&line, argc, argv, &options, &options.common);
         code = options.run.columns ? SM_OK
-               : options.file
-                   ? bench_campaign_load(options.file, &bench_claims_type, &campaign, &error)
+               : options.common.file
+                   ? bench_campaign_load(options.common.file, &bench_claims_type, &campaign, &error)
                    : run(&options, argc, argv, &campaign, &error);
     }
     if (!code && options.run.columns)

@@ -83,7 +83,7 @@ static const char help[] =
     "read. --format json prints one array with an object for every mesh.\n" BENCH_EXIT_CODES;
 
 static const BenchCommandLine line = {
-    settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "MESH...", help, take_mesh, check};
+    settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "MESH...", help, check, take_mesh, NULL};
 
 static SmCode look(const char *name, long particles, Facts *facts, SmError *error)
 {

@@ -68,12 +68,6 @@ static const BenchSetting settings[] = {
     {0},
 };
 
-static void refuse_word(const struct argp_state *state, void *record, char *text)
-{
-    (void)record;
-    bench_usage(state, "what is '%s'? Kernels are named with --only", text);
-}
-
 static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
@@ -84,18 +78,18 @@ static void check(const struct argp_state *state, void *record)
 static const char help[] =
     "Time every kernel alone, and whole steps, against ceilings measured in the same run: the "
     "multiply-add rate and the bandwidth of each cache level. The floor is the time below which "
-    "this machine cannot do a kernel's least work; the share says how near the kernel comes. "
-    "A cube of side N has N^3 particles. Every kernel is checked before it is timed (cubes against "
+    "this machine cannot do a kernel's least work; the share says how near the kernel comes. A "
+    "cube of side N has N^3 particles. Every kernel is checked before it is timed (cubes against "
     "double-precision brute force, or for finite goals and linear momentum where that would take "
     "too long; the octree against its slow twins, resampling against a build from scratch); one "
-    "that "
-    "fails has INVALID in place of its times, one of which other programs on the machine took too "
-    "much BUSY, and no verdict but of ratios of processor time.\v"
+    "that fails has INVALID in place of its times, one of which other programs on the machine took "
+    "too much BUSY, and no verdict but of ratios of processor time.\v"
     "Times are wall-clock medians over the repeats, with quartiles; kernels that are compared run "
     "in turn, sample by sample. A stage of a step comes from a run with clocks inside, less the "
     "time that reading them takes. One thread unless --threads says otherwise.\n" BENCH_EXIT_CODES;
 
-static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, NULL, help, refuse_word, check};
+static const BenchCommandLine line = {
+    settings, BENCH_TAKES_ALL, NULL, help, check, NULL, "Kernels are named with --only"};
 
 static void list_kernels(void)
 {

@@ -39,7 +39,7 @@ static const char help[] =
     "command that made the shards, with the same options and -o OUT.h5 --resume, measures "
     "it.\n" BENCH_EXIT_CODES;
 
-static const BenchCommandLine line = {settings, 0, "OUT.h5 IN.h5...", help, take_file, check};
+static const BenchCommandLine line = {settings, 0, "OUT.h5 IN.h5...", help, check, take_file, NULL};
 
 static SmCode merge(const Options *options, BenchCampaign *all, SmError *error)
 {

@@ -97,28 +97,22 @@ static void check(const struct argp_state *state, void *record)
         bench_usage(state, "--paper: a file has its own scenes; choose of them with --scene");
 }
 
-static void refuse_word(const struct argp_state *state, void *record, char *text)
-{
-    (void)record;
-    bench_usage(state, "what is '%s'? Say --baseline FILE.h5 or --revision REV", text);
-}
-
 static const char help[] =
     "Is this build slower than that one? Every scene is measured in fresh processes, each of which "
     "checks it first: what is INVALID is not compared. The sample is a process, its value the 2% "
     "quantile of its repeats, which other work on the machine hardly touches. A time is slower or "
     "faster where the ratio of lower quartiles is beyond the threshold, its 95% bootstrap interval "
     "does not hold 1, and Mann-Whitney's p, adjusted for all times that are compared, is below "
-    "0.01. The "
-    "threshold is what a build differs from itself by between processes of the same rounds, and at "
-    "least 2%, of a stage also 0.5% of the step; beside a file, which cannot be run interleaved, "
-    "it is wider, and at least 10%. "
-    "Scenes of a file are measured with the engine, precision and threads that it says.\v"
+    "0.01. The threshold is what a build differs from itself by between processes of the same "
+    "rounds, and at least 2%, of a stage also 0.5% of the step; beside a file, which cannot be run "
+    "interleaved, it is wider, and at least 10%. Scenes of a file are measured with the engine, "
+    "precision and threads that it says.\v"
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
-    " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; "
-    "7 nothing could be judged: all too noisy, or too few samples.";
+    " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; 7 "
+    "nothing could be judged: all too noisy, or too few samples.";
 
-static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, NULL, help, refuse_word, check};
+static const BenchCommandLine line = {
+    settings, BENCH_TAKES_ALL, NULL, help, check, NULL, "Say --baseline FILE.h5 or --revision REV"};
 
 /* What one comparison holds. */
 typedef struct {

@@ -49,11 +49,10 @@ static const char help[] =
     "Make a page of result files that can be sent to a colleague: tables beside the papers', "
     "claims with verdicts, figures with their data, and where it was measured.\v"
     "FILE is what tables, claims, sweep and calibrate write with -o. The page needs no network. "
-    "Files of "
-    "the same scenes from several commits make a history.\n" BENCH_EXIT_CODES;
+    "Files of the same scenes from several commits make a history.\n" BENCH_EXIT_CODES;
 
-static const BenchCommandLine line = {settings, BENCH_TAKES_QUIET, "FILE...",
-                                      help,     take_file,         check};
+static const BenchCommandLine line = {settings, BENCH_TAKES_QUIET, "FILE...", help,
+                                      check,    take_file,         NULL};
 
 /* Where the script is: beside the installed program, or in the sources it was built from. */
 static bool find_script(char path[PATH_MAX])

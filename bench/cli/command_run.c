@@ -103,21 +103,19 @@ static const char help[] =
     "scene file NAME.cfg, or a mesh file.\v"
     "A mesh alone becomes a solid of about 2,000 particles, w 2, damping 0.1, that drops from half "
     "its height onto a ground plane; with --engine octree a lattice of about 35,000 (fewer where "
-    "that takes too large a one), sampled by "
-    "features at epsilon 0.5; with --engine meshless an elastic body 1 m high, held at its lowest "
-    "tenth, for which points with normals do, too: a PLY file, or lines of x y z nx ny nz in a "
-    "file "
-    ".xyz, .pts or .txt, which are carried and written in their order. Its units are unknown, so "
-    "gravity is 9.81 heights of the body "
-    "per second squared: a body 70 units tall falls like one of 1 m.\n"
+    "that takes too large a one), sampled by features at epsilon 0.5; with --engine meshless an "
+    "elastic body 1 m high, held at its lowest tenth, for which points with normals do, too: a PLY "
+    "file, or lines of x y z nx ny nz in a file .xyz, .pts or .txt, which are carried and written "
+    "in their order. Its units are unknown, so gravity is 9.81 heights of the body per second "
+    "squared: a body 70 units tall falls like one of 1 m.\n"
     "The trajectory is VTKHDF with an XDMF sidecar (FILE.vtkhdf.xdmf; a script of ParaView's must "
-    "open ./FILE.vtkhdf.xdmf, with a folder) for ParaView; it appears "
-    "whole or not at all. The deviation printed is the largest distance of a goal position from "
-    "double-precision brute force in the last state; beyond the tolerance of 'tables' the run is "
-    "INVALID (exit code 1), its trajectory kept.\n" BENCH_EXIT_CODES;
+    "open ./FILE.vtkhdf.xdmf, with a folder) for ParaView; it appears whole or not at all. The "
+    "deviation printed is the largest distance of a goal position from double-precision brute "
+    "force in the last state; beyond the tolerance of 'tables' the run is INVALID (exit code 1), "
+    "its trajectory kept.\n" BENCH_EXIT_CODES;
 
-static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, "SCENE|FILE.cfg|MESH|POINTS",
-                                      help,     take_scene,      check};
+static const BenchCommandLine line = {
+    settings, BENCH_TAKES_ALL, "SCENE|FILE.cfg|MESH|POINTS", help, check, take_scene, NULL};
 
 /* What some engines alone have, and how messages name them. */
 static const struct {

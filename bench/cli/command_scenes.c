@@ -48,7 +48,7 @@ static const char help[] =
     "  shapebench scenes penguin > my.cfg\n"
     "  shapebench run my.cfg\v" BENCH_EXIT_CODES;
 
-static const BenchCommandLine line = {settings, 0, "[NAME]", help, take_name, check};
+static const BenchCommandLine line = {settings, 0, "[NAME]", help, check, take_name, NULL};
 
 static SmCode list(SmError *error)
 {

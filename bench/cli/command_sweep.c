@@ -15,7 +15,7 @@
 
 typedef struct {
     BenchCommon common;
-    const char *scene, *file, *w, *epsilon;
+    const char *scene, *w, *epsilon;
     BenchPlan plan;
     BenchCampaignRun run;
     BenchFormat format;
@@ -77,17 +77,6 @@ static const BenchSetting settings[] = {
     {0},
 };
 
-static void take_file(const struct argp_state *state, void *record, char *text)
-{
-    bench_option_shown(state, text, &((Options *)record)->file);
-}
-
-static void check(const struct argp_state *state, void *record)
-{
-    const Options *options = record;
-    bench_option_shown_alone(state, &options->common, options->file);
-}
-
 static const char help[] =
     "Measure an engine, or both, over region widths w and the octree's epsilon: what a step costs, "
     "how stiff it makes a body, and how far it is from exact regions and from full resolution. "
@@ -95,15 +84,15 @@ static const char help[] =
     "Every point is checked like a row of 'tables'; one that fails has INVALID in place of its "
     "times. The octree's goals are compared with those of epsilon 0 on the same deformed state; "
     "the surface, over some frames of the same scene, with a lattice of all finest cells whose "
-    "regions hold as much on average (a lattice is its own full resolution). "
-    "Stiffness is that of a regularly sampled beam with the same w and epsilon. The scene's cuts, "
-    "touches, plasticity and further instances are left out.\n"
+    "regions hold as much on average (a lattice is its own full resolution). Stiffness is that of "
+    "a regularly sampled beam with the same w and epsilon. The scene's cuts, touches, plasticity "
+    "and further instances are left out.\n"
     "Started by mpirun, all ranks measure and the first one stores. Points of ranks and shards "
     "that share a machine disturb each other's times; each keeps its host and "
     "rank.\n" BENCH_EXIT_CODES;
 
-static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, "[FILE.h5]",
-                                      help,     take_file,       check};
+static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, "[FILE.h5]", help, NULL, NULL,
+                                      NULL};
 
 static SmCode make_plan(Options *options, BenchPlan *plan, SmError *error)
 {
@@ -168,8 +157,9 @@ int bench_command_sweep(int argc, char **argv)
     if (!code) {
         bench_options_parse(&line, argc, argv, &options, &options.common);
         code = options.run.columns ? SM_OK
-               : options.file ? bench_campaign_load(options.file, &bench_sweep_type, &sweep, &error)
-                              : run(&options, argc, argv, &sweep, &error);
+               : options.common.file
+                   ? bench_campaign_load(options.common.file, &bench_sweep_type, &sweep, &error)
+                   : run(&options, argc, argv, &sweep, &error);
     }
     if (!code && options.run.columns)
         bench_campaign_document(stdout, &bench_sweep_type);

@@ -71,28 +71,22 @@ static const BenchSetting settings[] = {
     {0},
 };
 
-static void refuse_word(const struct argp_state *state, void *record, char *text)
-{
-    (void)record;
-    bench_usage(state, "what is '%s'? Scenes are named with --scene", text);
-}
-
 static const char help[] =
     "Measure the scenes of a paper's table and set the paper's values beside them. Every scene is "
     "first checked on the very state that is timed: goal positions against double-precision brute "
     "force, the octree's against sums over its regions' leaves (at most 5e-5 of a cell off in "
-    "single, 1e-10 in double precision), linear momentum "
-    "(sum m g = sum m x to 1e-6 of sum m |x - centroid|), counts, and that everything is finite. "
-    "Of a meshless body its shape functions, matrices, modes, and the frames that are timed. "
-    "A row that fails has INVALID in place of its times, one that other programs on the machine "
-    "left no undisturbed time has BUSY; what they took of the others is left out.\v"
+    "single, 1e-10 in double precision), linear momentum (sum m g = sum m x to 1e-6 of sum m |x - "
+    "centroid|), counts, and that everything is finite. Of a meshless body its shape functions, "
+    "matrices, modes, and the frames that are timed. A row that fails has INVALID in place of its "
+    "times, one that other programs on the machine left no undisturbed time has BUSY; what they "
+    "took of the others is left out.\v"
     "Times are medians over the repeats; the total is timed without clocks inside the step, stages "
     "are the shares of a run with clocks, interleaved. 'faster' is the paper's total divided by "
-    "the "
-    "measured one, 'speed-up' the time of the table's first lattice row by the row's; csv and json "
-    "call them 'ratio' and 'speedup'.\n" BENCH_EXIT_CODES;
+    "the measured one, 'speed-up' the time of the table's first lattice row by the row's; csv and "
+    "json call them 'ratio' and 'speedup'.\n" BENCH_EXIT_CODES;
 
-static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, NULL, help, refuse_word, NULL};
+static const BenchCommandLine line = {
+    settings, BENCH_TAKES_ALL, NULL, help, NULL, NULL, "Scenes are named with --scene"};
 
 /* Is it a built-in scene of the paper's for `row`, or, with NULL, for none, and does its name begin
  * with `stem` and a dash, unless that is NULL? */

@@ -33,6 +33,18 @@ const char *const bench_symmetries[] = {"union", "intersection", "none", NULL};
 const char *const bench_weightings[] = {"conserving", "plain", NULL};
 
 #define SAYS(words) .help = words
+/* A member of the same name; one that is a place or direction, a length, up to 10^6, a level of the
+ * octree, a share. */
+#define MEMBER(record, member, words) RANGED(record, member, 0, 0, words)
+#define RANGED(record, member, least, most, words)                                                 \
+    {                                                                                              \
+#member, BENCH_IN(record, member), least, most, SAYS(words)                                \
+    }
+#define PLACE(record, member, words)  RANGED(record, member, -FAR, FAR, words)
+#define LENGTH(record, member, words) RANGED(record, member, 0, FAR, words)
+#define UPTO(record, member, words)   RANGED(record, member, 0, 1e6, words)
+#define LEVEL(record, member, words)  RANGED(record, member, 1, OCT_MAX_LEVELS, words)
+#define SHARE(record, member, words)  RANGED(record, member, 0, 1, words)
 #define SELECT(type)                                                                               \
     {"box_low", BENCH_IN(type, select.low), -FAR, FAR,                                             \
      SAYS("Selects particles by their rest position: low corner of a box, in shares of the "       \
@@ -46,66 +58,61 @@ const char *const bench_weightings[] = {"conserving", "plain", NULL};
 
 static const BenchSetting handle_table[] = {
     SELECT(BenchHandle),
-    {"velocity", BENCH_IN(BenchHandle, velocity), -FAR, FAR, SAYS("Steady motion, units a second")},
-    {"axis", BENCH_IN(BenchHandle, axis), -FAR, FAR, SAYS("Axis of its turn")},
-    {"centre", BENCH_IN(BenchHandle, centre), -FAR, FAR, SAYS("A point on the axis")},
-    {"rate", BENCH_IN(BenchHandle, rate), -1e4, 1e4, SAYS("Steady turn, radians a second")},
-    {"amplitude", BENCH_IN(BenchHandle, amplitude), -1e4, 1e4,
-     SAYS("Turn to and fro, radians: amplitude sin(2 pi t / period)")},
-    {"period", BENCH_IN(BenchHandle, period), 0, 1e6, SAYS("Its period, s; 0: none")},
-    {"start", BENCH_IN(BenchHandle, start), 0, 1e6, SAYS("When it begins to move, s")},
-    {"stop", BENCH_IN(BenchHandle, stop), 0, 1e6, SAYS("When it stops, s; 0: never")},
-    {"release", BENCH_IN(BenchHandle, release), SAYS("Let go at `stop`; false: stay there")},
+    PLACE(BenchHandle, velocity, "Steady motion, units a second"),
+    PLACE(BenchHandle, axis, "Axis of its turn"),
+    PLACE(BenchHandle, centre, "A point on the axis"),
+    RANGED(BenchHandle, rate, -1e4, 1e4, "Steady turn, radians a second"),
+    RANGED(BenchHandle, amplitude, -1e4, 1e4,
+           "Turn to and fro, radians: amplitude sin(2 pi t / period)"),
+    UPTO(BenchHandle, period, "Its period, s; 0: none"),
+    UPTO(BenchHandle, start, "When it begins to move, s"),
+    UPTO(BenchHandle, stop, "When it stops, s; 0: never"),
+    MEMBER(BenchHandle, release, "Let go at `stop`; false: stay there"),
     {0},
 };
 
 static const BenchSetting force_table[] = {
     SELECT(BenchForce),
-    {"force", BENCH_IN(BenchForce, force), -FAR, FAR, SAYS("On every selected particle, newtons")},
-    {"start", BENCH_IN(BenchForce, start), 0, 1e6, SAYS("From this time on, s")},
-    {"stop", BENCH_IN(BenchForce, stop), 0, 1e6, SAYS("To this time, s")},
+    PLACE(BenchForce, force, "On every selected particle, newtons"),
+    UPTO(BenchForce, start, "From this time on, s"),
+    UPTO(BenchForce, stop, "To this time, s"),
     {0},
 };
 
 static const BenchSetting cut_table[] = {
-    {"base_from", BENCH_IN(BenchCut, base_from), -FAR, FAR,
-     SAYS("One end of the blade at `start`")},
-    {"tip_from", BENCH_IN(BenchCut, tip_from), -FAR, FAR, SAYS("The other end")},
-    {"base_to", BENCH_IN(BenchCut, base_to), -FAR, FAR, SAYS("The first end at `stop`")},
-    {"tip_to", BENCH_IN(BenchCut, tip_to), -FAR, FAR, SAYS("The other end")},
-    {"start", BENCH_IN(BenchCut, start), 0, 1e6, SAYS("When the blade begins to move, s")},
-    {"stop", BENCH_IN(BenchCut, stop), 0, 1e6, SAYS("When it has arrived, s")},
-    {"level", BENCH_IN(BenchCut, level), 1, OCT_MAX_LEVELS,
-     SAYS("Octree: leaves near the cut are split down to this level; without it they are not")},
-    {"reach", BENCH_IN(BenchCut, reach), 0, 1e6, SAYS("How near, in finest cells; 0: 1")},
+    PLACE(BenchCut, base_from, "One end of the blade at `start`"),
+    PLACE(BenchCut, tip_from, "The other end"),
+    PLACE(BenchCut, base_to, "The first end at `stop`"),
+    PLACE(BenchCut, tip_to, "The other end"),
+    UPTO(BenchCut, start, "When the blade begins to move, s"),
+    UPTO(BenchCut, stop, "When it has arrived, s"),
+    LEVEL(BenchCut, level,
+          "Octree: leaves near the cut are split down to this level; without it they are not"),
+    UPTO(BenchCut, reach, "How near, in finest cells; 0: 1"),
     {0},
 };
 
 static const BenchSetting touch_table[] = {
-    {"instance", BENCH_IN(BenchTouch, instance), 1, 1000000, SAYS("Which one is touched, from 1")},
-    {"centre", BENCH_IN(BenchTouch, centre), -FAR, FAR,
-     SAYS("Centre of a ball, where the body is at rest: leaves that meet it are split")},
-    {"radius", BENCH_IN(BenchTouch, radius), 0, FAR, SAYS("Its radius")},
-    {"level", BENCH_IN(BenchTouch, level), 1, OCT_MAX_LEVELS,
-     SAYS("The level that they are split down to")},
-    {"start", BENCH_IN(BenchTouch, start), 0, 1e6, SAYS("When it begins, s")},
-    {"stop", BENCH_IN(BenchTouch, stop), 0, 1e6, SAYS("When it ends, s; 0: never")},
-    {"hold", BENCH_IN(BenchTouch, hold), 0, 1e6,
-     SAYS("How long after it they are merged again, s")},
+    RANGED(BenchTouch, instance, 1, 1000000, "Which one is touched, from 1"),
+    PLACE(BenchTouch, centre,
+          "Centre of a ball, where the body is at rest: leaves that meet it are split"),
+    LENGTH(BenchTouch, radius, "Its radius"),
+    LEVEL(BenchTouch, level, "The level that they are split down to"),
+    UPTO(BenchTouch, start, "When it begins, s"),
+    UPTO(BenchTouch, stop, "When it ends, s; 0: never"),
+    UPTO(BenchTouch, hold, "How long after it they are merged again, s"),
     {0},
 };
 
 static const BenchSetting view_table[] = {
-    {"eye_from", BENCH_IN(BenchView, eye_from), -FAR, FAR, SAYS("Where the eye is at `start`")},
-    {"eye_to", BENCH_IN(BenchView, eye_to), -FAR, FAR, SAYS("Where it is at `stop`")},
-    {"start", BENCH_IN(BenchView, start), 0, 1e6, SAYS("When it begins to move, s")},
-    {"stop", BENCH_IN(BenchView, stop), 0, 1e6, SAYS("When it stops, s")},
-    {"near", BENCH_IN(BenchView, near), 0, FAR,
-     SAYS("Leaves nearer than this are split down to `level`, to one less with every doubling")},
-    {"slack", BENCH_IN(BenchView, slack), 0, 1e6,
-     SAYS("They are merged where they are farther by this share")},
-    {"level", BENCH_IN(BenchView, level), 1, OCT_MAX_LEVELS,
-     SAYS("The deepest level; without it there is no eye")},
+    PLACE(BenchView, eye_from, "Where the eye is at `start`"),
+    PLACE(BenchView, eye_to, "Where it is at `stop`"),
+    UPTO(BenchView, start, "When it begins to move, s"),
+    UPTO(BenchView, stop, "When it stops, s"),
+    LENGTH(BenchView, near,
+           "Leaves nearer than this are split down to `level`, to one less with every doubling"),
+    UPTO(BenchView, slack, "They are merged where they are farther by this share"),
+    LEVEL(BenchView, level, "The deepest level; without it there is no eye"),
     {0},
 };
 
@@ -116,26 +123,26 @@ static const BenchSetting view_table[] = {
 static const BenchSetting plane_table[] = {
     CORNER("point", a, "A point on it"),
     CORNER("normal", b, "Its normal, to the side that is free"),
-    {"friction", BENCH_IN(SmObstacle, friction), 0, 1, SAYS("Share of tangential velocity lost")},
+    SHARE(SmObstacle, friction, "Share of tangential velocity lost"),
     {0},
 };
 static const BenchSetting ball_table[] = {
     CORNER("centre", a, "Its centre"),
-    {"radius", BENCH_IN(SmObstacle, radius), 0, FAR, SAYS("Its radius")},
-    {"friction", BENCH_IN(SmObstacle, friction), 0, 1, SAYS("Share of tangential velocity lost")},
+    LENGTH(SmObstacle, radius, "Its radius"),
+    SHARE(SmObstacle, friction, "Share of tangential velocity lost"),
     {0},
 };
 static const BenchSetting box_table[] = {
     CORNER("low", a, "Its low corner"),
     CORNER("high", b, "Its high corner"),
-    {"friction", BENCH_IN(SmObstacle, friction), 0, 1, SAYS("Share of tangential velocity lost")},
+    SHARE(SmObstacle, friction, "Share of tangential velocity lost"),
     {0},
 };
 static const BenchSetting capsule_table[] = {
     CORNER("from", a, "One end of the segment"),
     CORNER("to", b, "The other end"),
-    {"radius", BENCH_IN(SmObstacle, radius), 0, FAR, SAYS("Its radius")},
-    {"friction", BENCH_IN(SmObstacle, friction), 0, 1, SAYS("Share of tangential velocity lost")},
+    LENGTH(SmObstacle, radius, "Its radius"),
+    SHARE(SmObstacle, friction, "Share of tangential velocity lost"),
     {0},
 };
 
@@ -144,12 +151,11 @@ static const BenchSetting criterion_table[] = {
      BENCH_ONE_OF("uniform", "features", "surface", "box", "sphere"),
      SAYS("All cells, those that would weld what is not connected, those at the surface, or those "
           "that meet a place")},
-    {"level", BENCH_IN(OctCriterion, level), 1, OCT_MAX_LEVELS,
-     SAYS("The deepest that it splits to; without it the octree's `levels`")},
-    {"low", BENCH_IN(OctCriterion, low), -FAR, FAR, SAYS("Low corner of a box")},
-    {"high", BENCH_IN(OctCriterion, high), -FAR, FAR, SAYS("Its high corner")},
-    {"centre", BENCH_IN(OctCriterion, centre), -FAR, FAR, SAYS("Centre of a sphere")},
-    {"radius", BENCH_IN(OctCriterion, radius), 0, FAR, SAYS("Its radius")},
+    LEVEL(OctCriterion, level, "The deepest that it splits to; without it the octree's `levels`"),
+    PLACE(OctCriterion, low, "Low corner of a box"),
+    PLACE(OctCriterion, high, "Its high corner"),
+    PLACE(OctCriterion, centre, "Centre of a sphere"),
+    LENGTH(OctCriterion, radius, "Its radius"),
     {0},
 };
 
@@ -157,19 +163,17 @@ static const BenchSetting width_table[] = {
     {"w", BENCH_IN(OctLocalWidth, width.cells), 0, 1e6,
      SAYS("Half-width in finest cells, to which is added")},
     {"edges", BENCH_IN(OctLocalWidth, width.edges), 0, 1e6, SAYS("this times the node's own edge")},
-    {"low", BENCH_IN(OctLocalWidth, low), -FAR, FAR,
-     SAYS("Of nodes whose centre is in a box: its low corner")},
-    {"high", BENCH_IN(OctLocalWidth, high), -FAR, FAR, SAYS("Its high corner")},
-    {"centre", BENCH_IN(OctLocalWidth, centre), -FAR, FAR, SAYS("Or in a sphere: its centre")},
-    {"radius", BENCH_IN(OctLocalWidth, radius), 0, FAR, SAYS("Its radius")},
+    PLACE(OctLocalWidth, low, "Of nodes whose centre is in a box: its low corner"),
+    PLACE(OctLocalWidth, high, "Its high corner"),
+    PLACE(OctLocalWidth, centre, "Or in a sphere: its centre"),
+    LENGTH(OctLocalWidth, radius, "Its radius"),
     {0},
 };
 
 static const BenchSetting collide_table[] = {
-    {"self", BENCH_IN(SmCollideParams, self), SAYS("The body with itself, fastlsm and octree")},
-    {"bodies", BENCH_IN(SmCollideParams, bodies), SAYS("Its instances with each other")},
-    {"friction", BENCH_IN(SmCollideParams, friction), 0, 1,
-     SAYS("Share of tangential velocity lost")},
+    MEMBER(SmCollideParams, self, "The body with itself, fastlsm and octree"),
+    MEMBER(SmCollideParams, bodies, "Its instances with each other"),
+    SHARE(SmCollideParams, friction, "Share of tangential velocity lost"),
     {0},
 };
 
@@ -196,8 +200,8 @@ static const BenchSetting octree_table[] = {
      SAYS("Half-width of regions in finest cells, to which is added")},
     {"edges", BENCH_IN(OctOptions, width.edges), 0, 1e6,
      SAYS("this times each node's own edge; where both are 0, one edge")},
-    {"summation_nodes", BENCH_IN(OctOptions, summation_nodes), 0, 1e6,
-     SAYS("Or edges are searched that give as many summation nodes a region on average")},
+    UPTO(OctOptions, summation_nodes,
+         "Or edges are searched that give as many summation nodes a region on average"),
     {"widths", BENCH_ITEMS(OctOptions, local, local_count, OCT_MAX_WIDTHS), .table = width_table,
      SAYS("Other widths at some places; the last one counts")},
     {"masses", BENCH_IN(OctOptions, masses), BENCH_CHOICES(bench_masses),
@@ -210,11 +214,9 @@ static const BenchSetting octree_table[] = {
      SAYS("Goals keep momentum, or are as octree eqs. 6 and 7 print them")},
     {"goals", BENCH_IN(OctOptions, form), BENCH_ONE_OF("gather", "adjoint"),
      SAYS("Averages over regions, or the transpose of their sums; the same where symmetric")},
-    {"yield", BENCH_IN(OctOptions, yield), 0, 1e6,
-     SAYS("A region's stretch beyond this is plastic")},
-    {"creep", BENCH_IN(OctOptions, creep), 0, 1e6,
-     SAYS("at this rate, 1/s, at most 1/h; 0: elastic")},
-    {"most", BENCH_IN(OctOptions, most), 0, 1e6, SAYS("and stays up to this; 0: 1")},
+    UPTO(OctOptions, yield, "A region's stretch beyond this is plastic"),
+    UPTO(OctOptions, creep, "at this rate, 1/s, at most 1/h; 0: elastic"),
+    UPTO(OctOptions, most, "and stays up to this; 0: 1"),
     {0},
 };
 
@@ -229,35 +231,35 @@ static const BenchSetting meshless_table[] = {
      MESHLESS("modes", "N", "natural modes, 7 to 1000 (default: 64)")},
     {"points", BENCH_IN(BenchScene, meshless.points), REF_LEAST_POINTS, REF_MOST_POINTS,
      MESHLESS("points", "N",
-              "points on the mesh, of which its field is made (default: 12000, of thin "
-              "bodies up to 400000)")},
+              "points on the mesh, of which its field is made (default: 12000, of thin bodies up "
+              "to 400000)")},
     {"stiffness_damping", BENCH_IN(BenchScene, meshless.stiffness_damping), 0, 1e6,
      SAYS("Rayleigh's b, s: a mode of angular frequency f has the loss factor b f")},
     {"nodes", BENCH_IN(BenchScene, meshless.nodes), 8, 1e6,
      SAYS("Wanted simulation nodes, met as well as octants can; not given: 1000")},
     {"uniform", BENCH_IN(BenchScene, meshless.uniform),
      SAYS("Octants are all of one size; or those inside may be twice as large")},
-    {"metre", BENCH_IN(BenchScene, metre), 1e-30, 1e30, SAYS("Mesh units in a metre")},
+    RANGED(BenchScene, metre, 1e-30, 1e30, "Mesh units in a metre"),
     {0},
 };
 
 #define LIST(items, number) BENCH_ITEMS(SceneFile, items, number, BENCH_MAX)
 
 const BenchSetting bench_scene_settings[] = {
-    {"title", BENCH_IN(BenchScene, title), SAYS("What the scene is")},
-    {"paper", BENCH_IN(BenchScene, paper), SAYS("The paper beside whose row `tables` sets it")},
-    {"row", BENCH_IN(BenchScene, row), SAYS("That row; empty: none")},
-    {"mesh", BENCH_IN(BenchScene, mesh),
-     SAYS("shape:NAME, or a mesh file's path relative to this file; it must be given")},
+    MEMBER(BenchScene, title, "What the scene is"),
+    MEMBER(BenchScene, paper, "The paper beside whose row `tables` sets it"),
+    MEMBER(BenchScene, row, "That row; empty: none"),
+    MEMBER(BenchScene, mesh,
+           "shape:NAME, or a mesh file's path relative to this file; it must be given"),
     {"fill", BENCH_IN(BenchScene, voxel.fill), BENCH_ONE_OF("solid", "shell"),
      RUN("shell", NULL, "Surface cells only, not the interior")},
     {"particles", BENCH_IN(BenchScene, voxel.particles), 8, 1e9,
      RUN("particles", "N", "Wanted particle count")},
     {"cell", BENCH_IN(BenchScene, voxel.cell), 1e-30, 1e30,
      RUN("cell", "SIZE", "Edge of a cell, in the mesh's units")},
-    {"cells", BENCH_IN(BenchScene, cells), 1, 1e9,
-     SAYS("Wanted cells of material; one of particles, cell and cells must be given")},
-    {"engine", BENCH_IN(BenchScene, engine), SAYS("fastlsm, octree, brute or meshless")},
+    RANGED(BenchScene, cells, 1, 1e9,
+           "Wanted cells of material; one of particles, cell and cells must be given"),
+    MEMBER(BenchScene, engine, "fastlsm, octree, brute or meshless"),
     {"w", BENCH_IN(BenchScene, params.w), 1, SM_MOST_W,
      SAYS("Half-width of a lattice's regions, in cells")},
     {"h", BENCH_IN(BenchScene, params.h), 1e-9, 10, RUN("h", "S", "Time step, seconds")},
@@ -285,28 +287,23 @@ const BenchSetting bench_scene_settings[] = {
      SAYS("The meshless engine's own")},
     {"collide", BENCH_IN(BenchScene, params.collide), .table = collide_table,
      SAYS("Collisions beside those with obstacles")},
-    {"density", BENCH_IN(BenchScene, density), 0, FAR,
-     SAYS("Kg a cubic unit; 0: every particle has mass 1")},
-    {"vertex_mass", BENCH_IN(BenchScene, vertex_mass),
-     SAYS("Text file with a mass in kg for each mesh vertex, one a line; the nearest vertex wins")},
-    {"instances", BENCH_IN(BenchScene, instances), 1, 1000000,
-     SAYS("Copies of the body, in rows on the ground, that share the lattice")},
-    {"spacing", BENCH_IN(BenchScene, spacing), 0, 1e6,
-     SAYS("Distance between them, in widths of the body")},
+    LENGTH(BenchScene, density, "Kg a cubic unit; 0: every particle has mass 1"),
+    MEMBER(BenchScene, vertex_mass,
+           "Text file with a mass in kg for each mesh vertex, one a line; the nearest vertex wins"),
+    RANGED(BenchScene, instances, 1, 1000000,
+           "Copies of the body, in rows on the ground, that share the lattice"),
+    UPTO(BenchScene, spacing, "Distance between them, in widths of the body"),
     {"steps_per_frame", BENCH_IN(BenchScene, steps_per_frame), 1, 1000000,
      BENCH_OPTION("steps", "N", 2, "Steps in a frame"), .who = BENCH_BY_RUN},
     {"frames", BENCH_IN(BenchScene, frames), 0, 10000000,
      BENCH_OPTION("frames", "N", 2, "Frames after the first"), .who = BENCH_BY_RUN},
-    {"settle", BENCH_IN(BenchScene, settle), 0, 1000000,
-     SAYS("Steps before the state that `tables` times")},
-    {"bend", BENCH_IN(BenchScene, bend), -100, 100,
-     SAYS("Initial deformation: bent about z by this angle from foot to head, radians")},
-    {"twist", BENCH_IN(BenchScene, twist), -100, 100,
-     SAYS("Turned about y by this angle, radians")},
-    {"squash", BENCH_IN(BenchScene, squash), -10, 10,
-     SAYS("Shortened by this share of its height")},
-    {"kick", BENCH_IN(BenchScene, kick), 0, 100,
-     SAYS("Random initial velocity of each particle, cells a step, from --seed")},
+    RANGED(BenchScene, settle, 0, 1000000, "Steps before the state that `tables` times"),
+    RANGED(BenchScene, bend, -100, 100,
+           "Initial deformation: bent about z by this angle from foot to head, radians"),
+    RANGED(BenchScene, twist, -100, 100, "Turned about y by this angle, radians"),
+    RANGED(BenchScene, squash, -10, 10, "Shortened by this share of its height"),
+    RANGED(BenchScene, kick, 0, 100,
+           "Random initial velocity of each particle, cells a step, from --seed"),
     {"handles", LIST(scene.handle, scene.handle_count), .table = handle_table,
      SAYS("Particles that follow a rigid motion; without any they are pinned")},
     {"forces", LIST(scene.force, scene.force_count), .table = force_table,

@@ -173,19 +173,41 @@ static void take(const Options *options, const Option *option, const char *text,
     if (error.code) bench_usage(state, "--%s: %s", setting->option, error.text);
 }
 
+static void take_argument(const Options *options, char *text, const struct argp_state *state)
+{
+    const BenchCommandLine *line = options->line;
+    const char **file = &options->common->file;
+    if (line->argument)
+        line->argument(state, options->record, text);
+    else if (line->instead)
+        bench_usage(state, "what is '%s'? %s", text, line->instead);
+    else if (*file)
+        bench_usage(state, "what is '%s'? One file is shown at a time", text);
+    else
+        *file = text;
+}
+
+static void check(const Options *options, const struct argp_state *state)
+{
+    const BenchCommon *common = options->common;
+    if (options->line->check) options->line->check(state, options->record);
+    if (common->file && common->measuring)
+        bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o",
+                    common->file);
+}
+
 static error_t parse(int key, char *text, struct argp_state *state)
 {
     const Options *options = state->input;
-    const BenchCommandLine *line = options->line;
     switch (key) {
     case ARGP_KEY_INIT:
         state->err_stream = NULL; /* getopt's line is enough: no second one, "Try ..." */
         return 0;
     case ARGP_KEY_ARG:
-        line->argument(state, options->record, text);
+        take_argument(options, text, state);
         return 0;
     case ARGP_KEY_END:
-        if (line->check) line->check(state, options->record);
+        check(options, state);
         return 0;
     }
     for (int i = 0; i < options->count; i++)
@@ -219,17 +241,4 @@ void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, vo
     bench_option_words(&argp, argc, argv, 0, NULL, &options);
     if (!common->threads) common->threads = sm_team(omp_get_num_procs());
     set_threads(common->threads);
-}
-
-void bench_option_shown(const struct argp_state *state, const char *text, const char **file)
-{
-    if (*file) bench_usage(state, "what is '%s'? One file is shown at a time", text);
-    *file = text;
-}
-
-void bench_option_shown_alone(const struct argp_state *state, const BenchCommon *common,
-                              const char *file)
-{
-    if (file && common->measuring)
-        bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o", file);
 }

@@ -12,7 +12,8 @@ typedef struct {
     int threads; /* 1 or more */
     unsigned long seed;
     bool quiet;
-    bool measuring; /* was an option given that says what to measure? */
+    bool measuring;   /* was an option given that says what to measure? */
+    const char *file; /* that is shown as it is; NULL: none */
 } BenchCommon;
 
 /* What of BenchCommon a command takes; the rest has its defaults. */
@@ -23,10 +24,13 @@ typedef struct {
     unsigned takes;               /* BENCH_TAKES_... */
     const char *arguments;        /* "[FILE.h5]"; NULL: it has none */
     const char *help;             /* as argp's: before the options, \v, behind them */
-    /* Takes an argument that is no option, into the record. */
-    void (*argument)(const struct argp_state *state, void *record, char *text);
     /* Refuses what does not go together, when all options are read; NULL: everything does. */
     void (*check)(const struct argp_state *state, void *record);
+    /* Takes an argument that is no option, into the record. NULL: BenchCommon.file is the one that
+     * there may be, and goes with nothing that says what to measure; or, with `instead`, there is
+     * none, and this says what to do. */
+    void (*argument)(const struct argp_state *state, void *record, char *text);
+    const char *instead;
 } BenchCommandLine;
 
 /* Reads a command's options into its record, whose defaults are set, and the common ones. Usage
@@ -45,11 +49,5 @@ void bench_option_fail(const char *name, const SmError *error);
 /* Prints "program command: line; see ... --help" and ends the program with exit code 2. */
 void bench_usage(const struct argp_state *state, const char *format, ...)
     __attribute__((format(printf, 2, 3), noreturn));
-
-/* Takes the one file that a command shows when it is given alone; and, when all options are read,
- * refuses those that say what to measure. */
-void bench_option_shown(const struct argp_state *state, const char *text, const char **file);
-void bench_option_shown_alone(const struct argp_state *state, const BenchCommon *common,
-                              const char *file);
 
 #endif
