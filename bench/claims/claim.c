@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../settings/config_file.h"
-#include "experiment.h"
+#include "experiments.h"
 
 enum { CLAIMS_MOST = 500 };
 

@@ -9,6 +9,7 @@
 #include "../measure/measure.h"
 #include "../table/row_store.h"
 #include "claim_store.h"
+#include "experiments.h"
 
 #define PLAN(type, member)   BENCH_FIELD_AS(BenchClaimsPlan, BENCH_##type, member, #member)
 #define POINT(type, member)  BENCH_FIELD_AS(BenchClaimPoint, BENCH_##type, member, #member)

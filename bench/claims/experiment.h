@@ -123,19 +123,8 @@ typedef struct {
     } * failure; /* [failures] */
 } BenchLab;
 
-/* What is wrong with a measurement's settings, or NULL; the line stands until the next call. */
-const char *bench_experiment_fault(const BenchMeasure *measure);
-
-/* Names of experiments, and of BenchWithout, in their orders; NULL-terminated. */
-const char *const *bench_experiment_names(void);
+/* Names of BenchWithout, in its order; NULL-terminated. */
 extern const char *const bench_without_names[];
-
-/* How many points its curve has at most. */
-int bench_experiment_points(const BenchMeasure *measure);
-
-/* The place in lab->curve of the measurement's curve, which is measured if it is not there. What
- * cannot be measured (no such scene) is a curve that is not valid. */
-int bench_experiment(BenchLab *lab, const BenchMeasure *measure);
 
 void bench_lab_free(BenchLab *lab);
 
@@ -158,9 +147,6 @@ BenchInterval bench_curve_interval(const double *value, int count, double share,
 
 /* Fails where the runner's engine is not right in its present state: bench_check_runner(). */
 void bench_curve_check(BenchCurve *curve, const BenchRunner *runner);
-
-/* What is measured: the curve's name, or of a scene its row's, which fields are taken of. */
-void bench_experiment_name(const BenchMeasure *measure, char name[BENCH_CURVE_NAME]);
 
 /* Keeps a curve as evidence; a row, which is the lab's then, returning its number; a failure. */
 void bench_lab_keep(BenchLab *lab, const BenchCurve *curve);

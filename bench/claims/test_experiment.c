@@ -3,6 +3,7 @@
 #include "../../lib/test_frame.h"
 #include "choices.h"
 #include "deform.h"
+#include "experiments.h"
 #include "scene_field.h"
 
 static BenchLab quick_lab(void)
