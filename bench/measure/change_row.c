@@ -11,8 +11,8 @@ enum { SIMULATION, CHANGE, FOLLOW, SURFACE }; /* in the order of BenchChangeRow 
 /* Of every frame. */
 typedef struct {
     long frames;
-    double (*least)[BENCH_FRAME_PARTS]; /* seconds: the least of all rounds that nobody disturbed,
-                                         * or of all */
+    double (*least)[BENCH_FRAME_PARTS]; /* seconds: the least of all rounds that no other program
+                                         * disturbed, or of all */
     bool (*good)[BENCH_FRAME_PARTS];    /* a round was undisturbed */
     bool *changed;
     BenchWatch watch; /* of what is under way */
@@ -130,8 +130,8 @@ static void summarise(const Times *times, BenchChangeRow *row)
     row->surface_ms = median_ms(times, SURFACE, 0, times->frames, false);
 }
 
-/* Busy times are not to be told: of more than a quarter of the frames a part was disturbed in every
- * round. */
+/* Leaves out the times of a busy machine: of more than a quarter of the frames a part was disturbed
+ * in every round. */
 static void find_busy(Times *times, BenchChangeRow *row)
 {
     for (long f = 0; f < times->frames; f++) {
@@ -144,7 +144,7 @@ static void find_busy(Times *times, BenchChangeRow *row)
     row->follow_ms = row->surface_ms = NAN;
 }
 
-/* What ties the surfaces to the bodies, over the particles of one instance of each. */
+/* Bytes of the surfaces' embeddings, over the particles of one instance of each. */
 static double surface_bytes(const BenchPlayback *play)
 {
     double bytes = 0, particles = 0;

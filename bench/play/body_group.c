@@ -21,7 +21,7 @@ static SmCode check(const BenchGroup *group, SmError *error)
     return code ? sm_fail(error, code, "%s: %s", group->runner.scene->file, why.text) : SM_OK;
 }
 
-/* Ties the surface to the bodies, whose handles and forces follow its changes. */
+/* Embeds the surface in the bodies. */
 static void create_skin(BenchGroup *group)
 {
     const SmMesh *mesh = &group->body.mesh;

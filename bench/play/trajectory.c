@@ -59,7 +59,7 @@ static void discard(BenchTrajectory *trajectory)
     bench_draft_discard(&trajectory->sidecar);
 }
 
-/* Ends the writing: the drafts go, the cause is told. */
+/* Ends the writing: removes the drafts and says why. */
 static SmCode fail(BenchTrajectory *trajectory, SmError *error)
 {
     bench_h5_close(&trajectory->h5);

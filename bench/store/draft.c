@@ -101,7 +101,7 @@ static bool follow(char path[BENCH_DRAFT_PATH])
 }
 
 /* Where the bytes go: links at the path's end are followed, so that they stay. stat() comes first:
- * it asks the kernel, which follows no stranger's link in /tmp. */
+ * it asks the kernel, which follows no other user's link in /tmp. */
 static SmCode resolve(const char *path, char target[BENCH_DRAFT_PATH], SmError *error)
 {
     static const char other[] = "it is there and not a regular file; choose another name";

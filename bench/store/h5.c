@@ -12,7 +12,7 @@
 #include "../../lib/system/printable.h"
 #include "checksum.h"
 #include "draft.h"
-#include "sink.h"
+#include "h5_driver.h"
 
 void bench_h5_fail(BenchH5 *h5, const char *format, ...)
 {
@@ -35,7 +35,7 @@ static herr_t keep_cause(unsigned depth, const H5E_error2_t *entry, void *data)
 }
 
 /* Passes an HDF5 identifier or status through; notes the failure that a negative one is, and what
- * the sink has hidden from HDF5. */
+ * the driver has hidden from HDF5. */
 static hid_t check(BenchH5 *h5, hid_t result)
 {
     if (h5->number) h5->failed = true;
@@ -68,7 +68,7 @@ void bench_h5_create(BenchH5 *h5, const char *path)
 {
     start(h5);
     hid_t access = strong_access();
-    bench_sink_use(access, &h5->number);
+    bench_h5_driver_use(access, &h5->number);
     h5->file = check(h5, H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access));
     H5Pclose(access);
     bench_h5_text(h5, h5->file, BENCH_H5_CHECKSUM, "CRC-32, the file's last 64 bytes");

@@ -18,7 +18,7 @@
 typedef struct {
     hid_t file;
     bool failed;
-    int number;        /* errno of a write that failed (sink.h), else 0 */
+    int number;        /* errno of a write that failed (h5_driver.h), else 0 */
     hsize_t size;      /* of a file that is loaded: its datasets hold no more; 0: not known */
     hsize_t found;     /* bytes of datasets so far */
     char message[256]; /* what failed */

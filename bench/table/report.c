@@ -31,7 +31,7 @@ static void begin_table(BenchReport *report, bool elastic)
     bench_grid_head(report->file, &report->grid, report->form);
 }
 
-/* What changes is told of below the table of steps that it belongs to. */
+/* Rows that change have a second table, below the table of steps that they belong to. */
 static void write_changes(const BenchReport *report)
 {
     BenchGrid grid = {0};
