@@ -74,9 +74,9 @@ void bench_calibration_table(FILE *file, BenchFormat format, const BenchCampaign
     }
     BenchGrid grid =
         bench_records_grid(bench_specimen_fields, bench_specimen_field_count, calibration->point,
-                           sizeof(BenchSpecimen), calibration->count);
+                           sizeof(BenchSpecimen), calibration->count, 0);
     BenchGrid laws = bench_records_grid(bench_law_fields, bench_law_field_count, conclusion.law,
-                                        sizeof *conclusion.law, conclusion.laws);
+                                        sizeof *conclusion.law, conclusion.laws, 0);
     if (format == BENCH_AS_TEXT) {
         write_text(file, calibration, &conclusion, &grid, &laws);
     } else {

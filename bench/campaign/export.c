@@ -37,6 +37,6 @@ void bench_campaign_document(FILE *file, const BenchCampaignType *type)
     bench_records_document(file, place, type->points, *type->point_fields);
     if (!type->more) return;
     fputc('\n', file);
-    snprintf(place, sizeof place, "dataset of `/%s`", type->more_name);
+    snprintf(place, sizeof place, "in `/%s`", type->more_name);
     bench_records_document(file, place, type->more, *type->more_fields);
 }

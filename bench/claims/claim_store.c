@@ -5,41 +5,131 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../table/grid.h"
 #include "../table/row_store.h"
 #include "fit.h"
 
 static const char *const takes[] = {"values", "exponent", "largest", "gain"};
 
-/* A finding as it is stored: words instead of enums. */
-typedef struct {
-    char paper[24], name[BENCH_CLAIM_NAME], place[32], unit[32], statement[240], note[200];
-    char status[16], take[16], test[96], expect[16], because[320], verdict[16], words[560];
-    char evidence[208], over[208], kind[20], unset_evidence[208];
-    int values, count, trend;
-    double tolerance, ratio[3], unset;
-    double paper_value[BENCH_CLAIM_VALUES], measured[BENCH_CLAIM_VALUES];
-    double low[BENCH_CLAIM_VALUES], high[BENCH_CLAIM_VALUES];
-} Stored;
+#define FIELD(type, member)  BENCH_FIELD_AS(BenchClaimRecord, BENCH_##type, member, #member)
+#define MEANS(of_what, what) BENCH_MEANS(of_what, what)
+#define STORED(type, member)                                                                       \
+    .name = #member, .kind = BENCH_##type, .offset = offsetof(BenchClaimRecord, member),           \
+    .size = sizeof(((BenchClaimRecord *)0)->member)
+#define ONLY(kind)   .tables = 1U << (kind)
+#define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
-#define FIELD(kind, member) BENCH_FIELD(Stored, kind, member)
-#define COUNT(array)        ((int)(sizeof(array) / sizeof((array)[0])))
+/* ---- cells */
 
-static const BenchField claim_fields[] = {
-    FIELD(BENCH_TEXT, paper),          FIELD(BENCH_TEXT, name),
-    FIELD(BENCH_TEXT, place),          FIELD(BENCH_TEXT, unit),
-    FIELD(BENCH_TEXT, statement),      FIELD(BENCH_TEXT, note),
-    FIELD(BENCH_TEXT, status),         FIELD(BENCH_TEXT, take),
-    FIELD(BENCH_TEXT, test),           FIELD(BENCH_TEXT, expect),
-    FIELD(BENCH_TEXT, because),        FIELD(BENCH_TEXT, verdict),
-    FIELD(BENCH_TEXT, words),          FIELD(BENCH_TEXT, evidence),
-    FIELD(BENCH_TEXT, over),           FIELD(BENCH_INT, values),
-    FIELD(BENCH_INT, count),           FIELD(BENCH_INT, trend),
-    FIELD(BENCH_DOUBLE, tolerance),    FIELD(BENCH_DOUBLE, paper_value),
-    FIELD(BENCH_DOUBLE, measured),     FIELD(BENCH_DOUBLE, low),
-    FIELD(BENCH_DOUBLE, high),         FIELD(BENCH_TEXT, kind),
-    FIELD(BENCH_DOUBLE, ratio),        FIELD(BENCH_DOUBLE, unset),
-    FIELD(BENCH_TEXT, unset_evidence),
+static int paper_values(const void *record)
+{
+    return ((const BenchClaimRecord *)record)->values;
+}
+
+static int measured_values(const void *record)
+{
+    return ((const BenchClaimRecord *)record)->count;
+}
+
+static int ratio_values(const void *record)
+{
+    return isnan(((const BenchClaimRecord *)record)->ratio[0]) ? 0 : 3;
+}
+
+static int unset_values(const void *record)
+{
+    return !isnan(((const BenchClaimRecord *)record)->unset);
+}
+
+static const char *status_text(const void *record)
+{
+    const BenchClaimRecord *r = record;
+    return r->values ? r->status : "";
+}
+
+static void paper_cell(const void *record, char *text)
+{
+    static const char *const marks[] = {"", "", "?", "*"};
+    const BenchClaim *claim = &((const BenchClaimRecord *)record)->finding->claim;
+    char paper[64];
+    bench_verdict_paper(claim, sizeof paper, paper);
+    snprintf(text, BENCH_GRID_TEXT, "%s%s", paper, marks[claim->status]);
+}
+
+static void measured_cell(const void *record, char *text)
+{
+    bench_verdict_measured(((const BenchClaimRecord *)record)->finding, BENCH_GRID_TEXT, text);
+}
+
+static void unset_cell(const void *record, char *text)
+{
+    bench_verdict_unset_text(((const BenchClaimRecord *)record)->finding, BENCH_GRID_TEXT, text);
+}
+
+static void ratio_cell(const void *record, char *text)
+{
+    bench_verdict_ratio(((const BenchClaimRecord *)record)->finding, BENCH_GRID_TEXT, text);
+}
+
+/* ---- all members */
+
+const BenchField bench_claim_fields[] = {
+    {FIELD(TEXT, paper), MEANS(NULL, "whose claim it is"), .title = "paper", .left = true},
+    {FIELD(TEXT, name), MEANS(NULL, "of the claim"), .title = "claim", .left = true},
+    {FIELD(TEXT, place), MEANS(NULL, "where it stands"), .title = "where", .left = true},
+    {FIELD(TEXT, statement), MEANS(NULL, "what is claimed")},
+    {STORED(TEXT, note), MEANS(NULL, "of the paper's number")},
+    {STORED(INT, values),
+     MEANS(NULL, "how many the paper gives; 0: it says only that something rises or falls")},
+    {BENCH_CELL("paper says", paper_cell)},
+    {BENCH_CELL("measured", measured_cell),
+     .tables = 1U << BENCH_OF_METHOD | 1U << BENCH_OF_MACHINE},
+    {BENCH_CELL("counted", measured_cell), ONLY(BENCH_BY_CONSTRUCTION)},
+    {FIELD(TEXT, unit), MEANS(NULL, "of all values"), .title = "unit", .left = true},
+    {FIELD(DOUBLE, paper_value), MEANS(NULL, "the paper's, NaN beyond `values`"),
+     .listed = paper_values},
+    {FIELD(TEXT, status), MEANS(NULL, "of them: quoted, derived, damaged or second-hand"),
+     .text = status_text},
+    {FIELD(DOUBLE, measured), MEANS(NULL, "values, NaN beyond `count`"), .listed = measured_values},
+    {FIELD(DOUBLE, low), MEANS(NULL, "of each the lower end of the 95% confidence interval"),
+     .listed = measured_values},
+    {FIELD(DOUBLE, high), MEANS(NULL, "and the upper one; the same: it has none"),
+     .listed = measured_values},
+    {STORED(INT, count), MEANS(NULL, "how many were measured")},
+    {STORED(INT, trend),
+     MEANS(NULL, "1: the curve rises from every point to the next; -1: falls; 0: neither")},
+    {STORED(TEXT, take), MEANS(NULL, "what was taken of it: values, exponent, largest, gain")},
+    {BENCH_CELL("not set", unset_cell), ONLY(BENCH_BY_CONSTRUCTION)},
+    {BENCH_CELL("times as fast", ratio_cell), ONLY(BENCH_OF_MACHINE)},
+    {FIELD(TEXT, test), MEANS(NULL, "in words"), .title = "test", .left = true,
+     .tables = 1U << BENCH_OF_METHOD | 1U << BENCH_BY_CONSTRUCTION},
+    {STORED(DOUBLE, tolerance), MEANS(NULL, "of the test")},
+    {FIELD(TEXT, expect), MEANS(NULL, "reproduced, different or not comparable")},
+    {STORED(TEXT, because), MEANS(NULL, "why it differs, or cannot be compared")},
+    {FIELD(TEXT, verdict),
+     MEANS(NULL, "of the method reproduced, undecided, not reproduced or differs; of a machine "
+                 "measured or not comparable; by construction as set or not as set; BUSY (others "
+                 "took the processors) or INVALID (`bench/claims/verdict.h`)"),
+     .title = "verdict", .left = true},
+    {FIELD(TEXT, words), MEANS(NULL, "the line that explains it")},
+    {FIELD(TEXT, evidence),
+     MEANS(NULL, "group in the file, /rows/... or /curves/..., that `measured` comes from")},
+    {FIELD(TEXT, over), MEANS(NULL, "what it is divided by, or empty")},
+    {FIELD(TEXT, kind),
+     MEANS(NULL, "method: what the paper's idea should do anywhere; machine: a speed; by "
+                 "construction: what the scene file sets")},
+    {FIELD(DOUBLE, ratio),
+     MEANS(NULL, "of a machine's speed: how many times as fast as the paper's machine, and the "
+                 "ends of the 95% interval; NaN of others"),
+     .listed = ratio_values},
+    {FIELD(DOUBLE, unset),
+     MEANS(NULL, "by construction: what comes where the scene does not set the number; NaN: not "
+                 "measured"),
+     .listed = unset_values},
+    {FIELD(TEXT, unset_evidence), MEANS(NULL, "the group that it is from")},
 };
+
+const int bench_claim_field_count = COUNT(bench_claim_fields);
 
 /* A curve's attributes. */
 typedef struct {
@@ -76,14 +166,15 @@ void bench_claim_place(const BenchLab *lab, int curve, size_t size, char *place)
         snprintf(place, size, "/curves/%s", of->name);
 }
 
-static void pack(const BenchFinding *finding, Stored *stored)
+static void pack(const BenchFinding *finding, BenchClaimRecord *stored)
 {
     const BenchClaim *claim = &finding->claim;
-    *stored = (Stored){.values = claim->values,
-                       .count = finding->count,
-                       .trend = finding->trend,
-                       .tolerance = claim->tolerance,
-                       .unset = finding->unset};
+    *stored = (BenchClaimRecord){.finding = finding,
+                                 .values = claim->values,
+                                 .count = finding->count,
+                                 .trend = finding->trend,
+                                 .tolerance = claim->tolerance,
+                                 .unset = finding->unset};
     memcpy(stored->ratio, finding->ratio, sizeof stored->ratio);
     strcpy(stored->kind, bench_claim_kind_name(claim->kind));
     strcpy(stored->unset_evidence, finding->evidence[2]);
@@ -127,18 +218,25 @@ static void write_curve(BenchH5 *h5, hid_t parent, const BenchCurve *curve)
     if (group >= 0) H5Gclose(group);
 }
 
+BenchClaimRecord *bench_claim_records(const BenchFinding *findings, int count)
+{
+    BenchClaimRecord *records = sm_alloc((size_t)count, sizeof *records);
+    for (int f = 0; f < count; f++) pack(&findings[f], &records[f]);
+    return records;
+}
+
 static void write_claims(BenchH5 *h5, const BenchFinding *findings, int count)
 {
     hid_t group = bench_h5_group(h5, h5->file, "claims");
+    BenchClaimRecord *records = bench_claim_records(findings, count);
     for (int f = 0; f < count; f++) {
-        Stored stored;
         char name[16];
         snprintf(name, sizeof name, "%03d", f);
-        pack(&findings[f], &stored);
         hid_t claim = bench_h5_group(h5, group, name);
-        bench_h5_fields(h5, claim, claim_fields, COUNT(claim_fields), &stored);
+        bench_h5_fields(h5, claim, bench_claim_fields, bench_claim_field_count, &records[f]);
         if (claim >= 0) H5Gclose(claim);
     }
+    free(records);
 }
 
 void bench_claim_write(BenchH5 *h5, const BenchFinding *findings, int count, const BenchLab *lab)

@@ -71,6 +71,12 @@ static int values_of(const BenchField *field)
     return many ? (int)(field->size / sizeof(double)) : 1;
 }
 
+/* How many are there of this record. */
+static int numbers_of(const BenchField *field, const void *record)
+{
+    return field->listed ? field->listed(record) : values_of(field);
+}
+
 void bench_csv_cell(FILE *file, const BenchField *field, const void *record, const char *mark)
 {
     const char *value = (const char *)record + field->offset;
@@ -83,15 +89,15 @@ void bench_csv_cell(FILE *file, const BenchField *field, const void *record, con
     else if (field->number)
         bench_csv_number(file, field->number(record));
     else
-        for (int i = 0; i < values_of(field); i++) {
-            if (i) fputc(',', file);
+        for (int i = 0, count = numbers_of(field, record); i < count; i++) {
+            if (i) fputc(field->listed ? '/' : ',', file);
             csv_value(file, field, value + (size_t)i * sizeof(double));
         }
 }
 
 static void csv_title(FILE *file, const BenchField *field)
 {
-    for (int i = 0, count = values_of(field); i < count; i++) {
+    for (int i = 0, count = field->listed ? 1 : values_of(field); i < count; i++) {
         if (i) fputc(',', file);
         if (field->stages)
             fprintf(file, "%s_ms", sm_stage_name((SmStage)i));
@@ -139,6 +145,13 @@ json_t *bench_json_number(double value)
                                                       : json_real(value);
 }
 
+static json_t *json_numbers(const double *numbers, int count)
+{
+    json_t *list = json_array();
+    for (int i = 0; i < count; i++) json_array_append_new(list, bench_json_number(numbers[i]));
+    return list;
+}
+
 static json_t *json_value(const BenchField *field, const void *value)
 {
     switch (field->kind) {
@@ -160,10 +173,7 @@ static json_t *json_value(const BenchField *field, const void *value)
     }
     const double *numbers = value;
     int many = values_of(field);
-    if (many == 1) return bench_json_number(*numbers);
-    json_t *list = json_array();
-    for (int i = 0; i < many; i++) json_array_append_new(list, bench_json_number(numbers[i]));
-    return list;
+    return many == 1 ? bench_json_number(*numbers) : json_numbers(numbers, many);
 }
 
 json_t *bench_json_cell(const BenchField *field, const void *record)
@@ -172,7 +182,10 @@ json_t *bench_json_cell(const BenchField *field, const void *record)
         return json_null();
     if (field->number) return bench_json_number(field->number(record));
     if (field->text && field->kind == BENCH_TEXT) return bench_json_text(field->text(record));
-    return json_value(field, (const char *)record + field->offset);
+    const char *value = (const char *)record + field->offset;
+    if (field->listed)
+        return json_numbers((const double *)(const void *)value, field->listed(record));
+    return json_value(field, value);
 }
 
 json_t *bench_json_record(const BenchField *fields, int count, const void *record)

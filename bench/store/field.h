@@ -31,7 +31,10 @@ typedef struct {
     double (*number)(const void *record);    /* the value, where it is not in the record */
     const char *(*text)(const void *record); /* the same of a text; of a BENCH_BOOL as CSV has it */
     const char *unit, *meaning;              /* "ms" (NULL: none); what results/README.md says */
+    int (*listed)(const void *record);       /* of an array: how many numbers it has, which CSV has
+                                              * in one column, as "1/2/3" */
     const char *title;                       /* heading in tables for people; NULL: not there */
+    unsigned tables;                         /* in which of several, bits 1 << number; 0: all */
     bool left;                               /* aligned left */
     const char *format; /* of its number there, for printf() with a double; NULL: three digits */
     double scale;       /* times which it is there; 0: 1 */

@@ -73,7 +73,7 @@ void bench_sweep_table(FILE *file, BenchFormat format, const BenchCampaign *swee
         return;
     }
     BenchGrid grid = bench_records_grid(bench_point_fields, bench_point_field_count, sweep->point,
-                                        sizeof(BenchPoint), sweep->count);
+                                        sizeof(BenchPoint), sweep->count, 0);
     char width[32];
     snprintf(width, sizeof width, "w %.20s", ((const BenchPlan *)sweep->plan)->width);
     bench_grid_rename(&grid, 1, width);

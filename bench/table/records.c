@@ -35,16 +35,21 @@ void bench_record_cell(const BenchField *field, const void *record, char *text)
         number_cell(field, *(const double *)value, text);
 }
 
+static bool shown(const BenchField *field, int table)
+{
+    return field->title && (!field->tables || field->tables >> table & 1);
+}
+
 BenchGrid bench_records_grid(const BenchField *fields, int count, const void *records, size_t size,
-                             long number)
+                             long number, int table)
 {
     BenchGrid grid = {0};
     for (int f = 0; f < count; f++)
-        if (fields[f].title) bench_grid_column(&grid, fields[f].title, fields[f].left);
+        if (shown(&fields[f], table)) bench_grid_column(&grid, fields[f].title, fields[f].left);
     for (long r = 0; r < number; r++) {
         BenchGridLine *line = bench_grid_add(&grid);
         for (int f = 0, c = 0; f < count; f++)
-            if (fields[f].title)
+            if (shown(&fields[f], table))
                 bench_record_cell(&fields[f], (const char *)records + (size_t)r * size,
                                   (*line)[c++]);
     }

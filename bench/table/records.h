@@ -9,9 +9,10 @@
 /* A field of a record as a cell: as its `cell` or `format` says, or plainly. */
 void bench_record_cell(const BenchField *field, const void *record, char *text);
 
-/* Columns of the fields with a title, and a line for each of `number` records of `size` bytes. */
+/* Columns of the fields with a title in this table, and a line for each of `number` records of
+ * `size` bytes. */
 BenchGrid bench_records_grid(const BenchField *fields, int count, const void *records, size_t size,
-                             long number);
+                             long number, int table);
 
 /* The Markdown table of the fields that are stored; `place` is what they are in a file:
  * "attribute of `/plan`". */
