@@ -6,9 +6,9 @@
 #include "match.h"
 #include "pipeline.h"
 #include "step.h"
-#include "sums/blocks.h"
-#include "sums/chain_sums.h"
-#include "sums/corrections.h"
+#include "sums/box_sum_fixups.h"
+#include "sums/boxes.h"
+#include "sums/running_sums.h"
 
 enum { SPARE_LISTS = 16 };  /* rows to spare in a layer, in sides: a few broken links' worth */
 enum { LAYER_PLANES = 8 };  /* that a chain along z runs through */
@@ -17,7 +17,7 @@ enum { LAYER_BLOCKS = 24 }; /* of the list form: layers of about this size stay 
 /* Groups planes into layers of at least LAYER_BLOCKS blocks and finds how far a region reaches. */
 static void build_layers(Lsm *lsm)
 {
-    int least = lsm->chained ? LAYER_PLANES : 1;
+    int least = lsm->runs ? LAYER_PLANES : 1;
     int planes = lsm->lattice.size[2];
     long *count = sm_alloc((size_t)planes, sizeof *count);
     for (long p = 0; p < lsm->lattice.count; p++) count[lsm->lattice.coord[p][2]]++;
@@ -133,22 +133,22 @@ static void find_regions(Lsm *lsm, int *original, bool *listed)
     const LsmLattice *l = &lsm->lattice;
     uint64_t rows[LSM_MAX_SIDE * LSM_MAX_SIDE];
     Keys keys = {sm_alloc((size_t)l->count, sizeof *keys.keyed), 0};
-    LsmSetsBuilder *lists = lsm_sets_open(l, lsm->slot, lsm->w);
-    CorrectionsBuilder *corrections = corrected(lsm) ? lsm_corrections_open(lsm) : NULL;
-    if (!corrections) lsm_names_reach(lsm->blocks * SM_LANES + 1);
+    LsmListsBuilder *lists = lsm_lists_open(l, lsm->slot, lsm->w);
+    FixupsBuilder *fixups = corrected(lsm) ? lsm_fixups_open(lsm) : NULL;
+    if (!fixups) lsm_names_reach(lsm->blocks * SM_LANES + 1);
     for (long p = 0; p < l->count; p++) {
         bool whole = lsm_bit(l, lsm->interior.interior, l->coord[p]), simple = true;
         lsm->members[p] = lsm->side * lsm->side * lsm->side;
         if (!whole || !lsm->box)
             lsm->members[p] = lsm_region_find(l, &lsm->interior, p, rows, &simple);
         if (!whole) add_key(lsm, &keys, p, rows);
-        if (corrections && !simple) lsm_corrections_add(corrections, p, rows);
-        listed[p] = !corrections && (!lsm->box || (!simple && !lsm_blocks_regular(lsm, p, rows)));
-        if (listed[p]) lsm_sets_add(lists, p, rows);
+        if (fixups && !simple) lsm_fixups_add(fixups, p, rows);
+        listed[p] = !fixups && (!lsm->box || (!simple && !lsm_blocks_regular(lsm, p, rows)));
+        if (listed[p]) lsm_lists_add(lists, p, rows);
     }
     lsm->unique = collapse(&keys, l->count, original);
-    lsm_sets_close(lists, &lsm->sets);
-    if (corrections) lsm_corrections_close(corrections, lsm);
+    lsm_lists_close(lists, &lsm->lists);
+    if (fixups) lsm_fixups_close(fixups, lsm);
 }
 
 /* Tiles of unique regions, each layer beginning a new tile; copies go to a list of their own. */
@@ -200,8 +200,8 @@ static void place_lists(Lsm *lsm, const bool *listed)
     long n = lsm->lattice.count, region = 0;
     Blocks *box = lsm->box;
     if (lsm->params.strain_limit > 0) {
-        lsm->ledger = sm_alloc(1, sizeof *lsm->ledger);
-        lsm_ledger_open(&lsm->sets, lsm->layers, lsm->layer_plane, lsm->spare, lsm->ledger);
+        lsm->allocator = sm_alloc(1, sizeof *lsm->allocator);
+        lsm_allocator_open(&lsm->lists, lsm->layers, lsm->layer_plane, lsm->spare, lsm->allocator);
     }
     lsm->block_region = lsm->particle;
     if (!box) return;
@@ -214,28 +214,28 @@ static void place_lists(Lsm *lsm, const bool *listed)
         lsm->block_region[lsm->slot[p]] = (int)region++;
         box->mixed[lsm->slot[p] / SM_LANES] = true;
     }
-    for (long i = lsm->side; i < lsm->sets.bar_count * lsm->side; i++)
-        if (lsm->sets.bar[i]) box->listed[(lsm->sets.bar[i] / LSM_NAME - 1) / SM_LANES] = true;
-    if (lsm->corrections) lsm_corrections_mark(lsm);
+    for (long i = lsm->side; i < lsm->lists.bar_count * lsm->side; i++)
+        if (lsm->lists.bar[i]) box->listed[(lsm->lists.bar[i] / LSM_NAME - 1) / SM_LANES] = true;
+    if (lsm->fixups) lsm_fixups_mark(lsm);
 }
 
 /* Slots that have rows. */
 static size_t row_slots(const Lsm *lsm)
 {
-    return lsm->corrections ? 0 : (size_t)lsm->blocks * SM_LANES;
+    return lsm->fixups ? 0 : (size_t)lsm->blocks * SM_LANES;
 }
 
 static void build_rows(Lsm *lsm)
 {
     size_t rows = row_slots(lsm) + 2, real_size = sizeof(real);
-    size_t bars = (size_t)lsm->sets.bar_count + 1, plates = (size_t)lsm->sets.plate_count + 1;
+    size_t bars = (size_t)lsm->lists.bar_count + 1, plates = (size_t)lsm->lists.plate_count + 1;
     lsm->rows = (Rows){
         .p = sm_alloc(rows * ROW_P, real_size),
         .bar = sm_alloc(bars * ROW_BAR, real_size),
         .plate = sm_alloc(plates * ROW_PLATE, real_size),
         .transform = sm_alloc(rows * ROW_T, real_size),
         .plate_down =
-            sm_alloc(plates * (size_t)(lsm->chained ? ROW_PLATE_CHAIN : ROW_PLATE_DOWN), real_size),
+            sm_alloc(plates * (size_t)(lsm->runs ? ROW_PLATE_RUN : ROW_PLATE_DOWN), real_size),
     };
 }
 
@@ -338,7 +338,7 @@ static void build_regions(Lsm *lsm)
     lsm_pipeline_split(lsm);
     if (lsm->box) lsm_blocks_share(lsm);
     build_constants(lsm);
-    if (lsm->chained) lsm_chain_open(lsm);
+    if (lsm->runs) lsm_running_open(lsm);
     if (lsm->params.strain_limit > 0) return;
     free(lsm->members);
     lsm->members = NULL;
@@ -385,7 +385,7 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     if (params->layout == SM_LAYOUT_BLOCKS) {
         lsm_blocks_build(lsm);
     } else {
-        lsm->chained = lsm_chained(lsm);
+        lsm->runs = lsm_runs(lsm);
         build_layers(lsm);
         build_slots(lsm);
     }
@@ -409,13 +409,13 @@ static void free_rows(Rows *rows)
 static void free_regions(Lsm *lsm)
 {
     lsm_interior_free(&lsm->interior);
-    lsm_sets_free(&lsm->sets);
-    if (lsm->ledger) lsm_ledger_free(lsm->ledger);
-    free(lsm->ledger);
-    if (lsm->chains) lsm_chains_free(lsm->chains);
-    free(lsm->chains);
-    free(lsm->chain_factor);
-    lsm_corrections_free(lsm->corrections);
+    lsm_lists_free(&lsm->lists);
+    if (lsm->allocator) lsm_allocator_free(lsm->allocator);
+    free(lsm->allocator);
+    if (lsm->running_lists) lsm_running_lists_free(lsm->running_lists);
+    free(lsm->running_lists);
+    free(lsm->running_factor);
+    lsm_fixups_free(lsm->fixups);
     free_rows(&lsm->rows);
     if (lsm->box) free(lsm->block_region);
     void *all[] = {lsm->tile_slot,    lsm->layer_tile,  lsm->copy,           lsm->layer_copy,
@@ -453,7 +453,7 @@ void lsm_rebuild_regions(Lsm *lsm)
 long lsm_bytes(const Lsm *lsm)
 {
     const LsmLattice *l = &lsm->lattice;
-    const LsmSets *sets = &lsm->sets;
+    const LsmLists *lists = &lsm->lists;
     long words = (long)l->size[1] * l->size[2] * l->words, lanes = lsm->blocks * SM_LANES,
          real_size = sizeof(real);
     long bytes = words * 28 + l->count * (long)(sizeof *l->coord + sizeof *l->link + sizeof(int));
@@ -464,14 +464,14 @@ long lsm_bytes(const Lsm *lsm)
     bytes += (lsm->blocks + lsm->tiles) * (long)sizeof(int) + lsm->copies * (long)sizeof *lsm->copy;
     bytes += lsm->particle_records.room * (long)sizeof(ParticleConst) +
              lsm->region_records.room * (long)sizeof(RegionConst);
-    bytes += lsm->ledger ? lsm->ledger->bytes + l->count : 0;
-    bytes += lsm->chains ? lsm_chains_bytes(lsm->chains)
-                         : (sets->bar_count + sets->plate_count + sets->region_room) * sets->side *
-                               (long)sizeof(int);
-    bytes += ((long)row_slots(lsm) * (ROW_P + ROW_T) + sets->bar_count * ROW_BAR +
-              sets->plate_count * (ROW_PLATE + (lsm->chained ? ROW_PLATE_CHAIN : ROW_PLATE_DOWN))) *
+    bytes += lsm->allocator ? lsm->allocator->bytes + l->count : 0;
+    bytes += lsm->running_lists ? lsm_running_lists_bytes(lsm->running_lists)
+                                : (lists->bar_count + lists->plate_count + lists->region_room) *
+                                      lists->side * (long)sizeof(int);
+    bytes += ((long)row_slots(lsm) * (ROW_P + ROW_T) + lists->bar_count * ROW_BAR +
+              lists->plate_count * (ROW_PLATE + (lsm->runs ? ROW_PLATE_RUN : ROW_PLATE_DOWN))) *
              real_size;
-    return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0) + lsm_corrections_bytes(lsm);
+    return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0) + lsm_fixups_bytes(lsm);
 }
 
 void lsm_free(Lsm *lsm)

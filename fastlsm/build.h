@@ -12,7 +12,7 @@
 #define lsm_free            SM_NAME(lsm_free)
 
 /* Lattice, regions, slots, lists and constants of a body; the state is zero, for the caller to set.
- * Linear in particles at fixed w. params->layout is LISTS or BLOCKS, as lsm_turn_choose() resolved
+ * Linear in particles at fixed w. params->layout is LISTS or BLOCKS, as lsm_axes_choose() resolved
  * it. */
 Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params);
 

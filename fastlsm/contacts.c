@@ -8,7 +8,7 @@
 
 struct LsmContacts {
     Lsm *lsm;
-    Crowd *crowd;
+    Instances *instances;
     SmCollide *collide;
     LsmOutline outline;
     double (*x)[3]; /* [bodies * particles] cells */
@@ -20,7 +20,7 @@ struct LsmContacts {
 static long index_of(const LsmContacts *k, long number)
 {
     long count = k->lsm->lattice.count;
-    if (k->crowd) {
+    if (k->instances) {
         long body = number / count, p = number % count;
         return (body / SM_LANES * count + p) * 3 * SM_LANES + body % SM_LANES;
     }
@@ -28,13 +28,13 @@ static long index_of(const LsmContacts *k, long number)
     return slot / SM_LANES * 3 * SM_LANES + slot % SM_LANES;
 }
 
-LsmContacts *lsm_contacts_build(Lsm *lsm, Crowd *crowd)
+LsmContacts *lsm_contacts_build(Lsm *lsm, Instances *instances)
 {
     const SmCollideParams *params = &lsm->params.collide;
-    long bodies = crowd ? crowd->bodies : 1;
+    long bodies = instances ? instances->bodies : 1;
     if (!params->self && !(params->bodies && bodies > 1)) return NULL;
     LsmContacts *k = sm_alloc(1, sizeof *k);
-    *k = (LsmContacts){.lsm = lsm, .crowd = crowd};
+    *k = (LsmContacts){.lsm = lsm, .instances = instances};
     k->x = sm_alloc((size_t)(bodies * lsm->lattice.count), sizeof *k->x);
     lsm_outline_build(&lsm->lattice, lsm->mass, &k->outline);
     k->collide = sm_collide_build(&k->outline.rest, params, bodies, lsm->params.threads);
@@ -65,15 +65,15 @@ static void describe(LsmContacts *k)
     k->broken = k->lsm->broken;
 }
 
-static void read_crowd(LsmContacts *k)
+static void read_instances(LsmContacts *k)
 {
-    const Crowd *crowd = k->crowd;
+    const Instances *instances = k->instances;
     long count = k->lsm->lattice.count;
-    for (long body = 0; body < crowd->bodies; body++) {
+    for (long body = 0; body < instances->bodies; body++) {
         double shift[3];
         for (int d = 0; d < 3; d++)
-            shift[d] = (crowd->origin[body][d] - k->lsm->home[d]) / k->lsm->cell;
-        const real *from = crowd->x + index_of(k, body * count);
+            shift[d] = (instances->origin[body][d] - k->lsm->home[d]) / k->lsm->cell;
+        const real *from = instances->x + index_of(k, body * count);
         double(*to)[3] = k->x + body * count;
         for (long p = 0; p < count; p++, from += 3 * SM_LANES)
             for (int d = 0; d < 3; d++) to[p][d] = shift[d] + (double)from[d * SM_LANES];
@@ -91,7 +91,7 @@ static void read_body(LsmContacts *k)
 static void read_velocities(LsmContacts *k)
 {
     SmCollide *c = k->collide;
-    const real *v = k->crowd ? k->crowd->v : k->lsm->v;
+    const real *v = k->instances ? k->instances->v : k->lsm->v;
     for (long i = 0; i < c->node_count; i++) {
         const real *from = v + index_of(k, c->node[i]);
         for (int d = 0; d < 3; d++) c->v[i][d] = (double)from[d * SM_LANES];
@@ -101,8 +101,8 @@ static void read_velocities(LsmContacts *k)
 static void find(LsmContacts *k)
 {
     if (k->broken != k->lsm->broken) describe(k);
-    if (k->crowd)
-        read_crowd(k);
+    if (k->instances)
+        read_instances(k);
     else
         read_body(k);
     sm_collide_find(k->collide, (const double(*)[3])k->x, NULL);
@@ -124,7 +124,8 @@ void lsm_contacts_before(LsmContacts *k)
 void lsm_contacts_after(LsmContacts *k)
 {
     SmCollide *c = k->collide;
-    real *v = k->crowd ? k->crowd->v : k->lsm->v, *x = k->crowd ? k->crowd->x : k->lsm->x;
+    real *v = k->instances ? k->instances->v : k->lsm->v,
+         *x = k->instances ? k->instances->x : k->lsm->x;
     read_velocities(k);
     sm_collide_respond(c);
     for (long i = 0; i < c->node_count; i++) {
@@ -152,7 +153,7 @@ long lsm_contacts_count(const LsmContacts *k)
 long lsm_contacts_bytes(const LsmContacts *k)
 {
     const Lsm *lsm = k->lsm;
-    long bodies = k->crowd ? k->crowd->bodies : 1;
+    long bodies = k->instances ? k->instances->bodies : 1;
     return sm_collide_bytes(k->collide) + lsm_outline_bytes(&k->outline) +
            bodies * lsm->lattice.count * (long)sizeof *k->x;
 }

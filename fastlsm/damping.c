@@ -4,14 +4,14 @@
 #include "pipeline.h"
 #include "step.h"
 #include "sums/blocks_down.h"
-#include "sums/chain_sums.h"
-#include "sums/correct.h"
-#include "sums/summation.h"
+#include "sums/box_sum_fixups.h"
+#include "sums/list_sums.h"
+#include "sums/running_sums.h"
 
 static void weigh(Lsm *lsm, int layer)
 {
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
-        if (lsm->box && (lsm->corrections || !lsm->box->listed[block])) continue;
+        if (lsm->box && (lsm->fixups || !lsm->box->listed[block])) continue;
         vec part[4], field[16] = {{0}};
         real *row[SM_LANES];
         for (int d = 0; d < 3; d++) {
@@ -29,8 +29,8 @@ static void sums_up(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     weigh(lsm, layer);
-    if (lsm->chains) {
-        lsm_chain_sets_up(lsm, layer, true);
+    if (lsm->running_lists) {
+        lsm_running_sets_up(lsm, layer, true);
     } else {
         lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
         lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], true);
@@ -64,7 +64,7 @@ static void region_sums(const Lsm *lsm, const int *region, vec field[16])
 static void solve_tile(Lsm *lsm, long tile)
 {
     vec field[16], c[3], out[6];
-    if (lsm->chains) {
+    if (lsm->running_lists) {
         const real *row[SM_LANES];
         tile_rows(lsm, tile, row);
         lanes_from_rows(row, field);
@@ -78,11 +78,11 @@ static void solve_tile(Lsm *lsm, long tile)
     store_velocities(lsm, tile, out);
 }
 
-/* Where lists or corrections make a block's sums exact. */
+/* Where lists or fix-ups make a block's sums exact. */
 static __attribute__((noinline)) void mend_sums(const Lsm *lsm, long block, vec *F)
 {
-    if (lsm->corrections) {
-        correct_products(lsm, block, F);
+    if (lsm->fixups) {
+        lsm_fixup_products(lsm, block, F);
         return;
     }
     const int *region = lsm->block_region + block * SM_LANES;
@@ -92,12 +92,12 @@ static __attribute__((noinline)) void mend_sums(const Lsm *lsm, long block, vec 
     for (int i = 0; i < 12; i++) F[i] = lanes_select(lanes, listed[i], F[i]);
 }
 
-/* Where lists or corrections read a block's rigid velocities. */
+/* Where lists or fix-ups read a block's rigid velocities. */
 static __attribute__((noinline)) void keep_velocities(const Lsm *lsm, long block, const real *from)
 {
     vec out[6];
     for (int i = 0; i < 6; i++) out[i] = lanes_load(from + i * SM_LANES);
-    if (lsm->corrections)
+    if (lsm->fixups)
         keep_solved(lsm, block, 6, out);
     else
         store_velocities(lsm, block, out);
@@ -122,7 +122,7 @@ PLANE_PASSES(true, solve_blocks)
 
 static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    if (lsm->chains) lsm_chain_regions_up(lsm, layer, true);
+    if (lsm->running_lists) lsm_running_regions_up(lsm, layer, true);
     if (lsm->box)
         lsm_blocks_up(lsm, layer, thread, laps);
     else
@@ -131,8 +131,8 @@ static void solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
     for (long i = lsm->layer_copy[layer]; i < lsm->layer_copy[layer + 1]; i++)
         store8(lsm->rows.transform + (lsm->copy[i][0] + 1) * (long)ROW_T,
                load8(lsm->rows.transform + (lsm->copy[i][1] + 1) * (long)ROW_T));
-    if (lsm->chains) {
-        lsm_chain_sets_down(lsm, layer, true);
+    if (lsm->running_lists) {
+        lsm_running_sets_down(lsm, layer, true);
     } else {
         lsm_bars_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
         lsm_plates_plain(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1], false);
@@ -152,16 +152,16 @@ SM_INLINE void slow_down(Lsm *lsm, long block, const vec sum[6])
     store3(lsm->x + block * 3 * SM_LANES, x);
 }
 
-/* What lists or corrections add to a block's sums. */
+/* What lists or fix-ups add to a block's sums. */
 static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec *sum)
 {
-    if (lsm->corrections) {
-        correct_velocities(lsm, block, sum);
+    if (lsm->fixups) {
+        lsm_fixup_velocities(lsm, block, sum);
         return;
     }
     real sums[6][SM_LANES] __attribute__((aligned(64)));
     for (int f = 0; f < 6; f++) lanes_store(sums[f], sum[f]);
-    if (lsm->chains)
+    if (lsm->running_lists)
         slot_values(lsm, block, 6, sums);
     else
         lsm_particles_plain(lsm, lsm->block_region + block * SM_LANES, sums);
@@ -179,7 +179,7 @@ PLANE_DOWNS(true, slow_block)
 
 static void slow(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
-    if (lsm->chains) lsm_chain_particles(lsm, layer, true);
+    if (lsm->running_lists) lsm_running_particles(lsm, layer, true);
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1] && !lsm->box;
          block++) {
         vec sum[6] = {{0}};

@@ -10,17 +10,17 @@
 #include "contacts.h"
 #include "fastlsm.h"
 #include "fracture.h"
-#include "lattice/turn.h"
+#include "lattice/axis_order.h"
 #include "match.h"
 #include "step.h"
-#include "sums/crowd.h"
+#include "sums/instances.h"
 
 struct SmEngine {
     Lsm *lsm;
-    Crowd *crowd; /* NULL: one body */
-    long count;   /* particles of one body */
+    Instances *instances; /* NULL: one body */
+    long count;           /* particles of one body */
     long bodies;
-    int turn;             /* turn.h */
+    int turn;             /* axis_order.h */
     int *inner;           /* [count] particle numbers in the lattice as turned */
     double (*pose)[3][4]; /* [bodies] */
     SmHandles handles;
@@ -45,9 +45,9 @@ static void rest_position(const SmEngine *e, long number, double x0[3])
 /* Where component d of a particle is in x, v or g, and the origin that goes with it. */
 static long index_of(const SmEngine *e, long number, int d, const double **origin)
 {
-    if (e->crowd) {
+    if (e->instances) {
         long body = number / e->count, p = e->inner[number % e->count], group = body / SM_LANES;
-        *origin = e->crowd->origin[body];
+        *origin = e->instances->origin[body];
         return ((group * e->count + p) * 3 + d) * SM_LANES + body % SM_LANES;
     }
     long slot = e->lsm->slot[e->inner[number]];
@@ -57,16 +57,16 @@ static long index_of(const SmEngine *e, long number, int d, const double **origi
 
 static real *field_of(const SmEngine *e, SmField field)
 {
-    real *const x = e->crowd ? e->crowd->x : e->lsm->x,
-                *const v = e->crowd ? e->crowd->v : e->lsm->v,
-                *const g = e->crowd ? e->crowd->g : e->lsm->g;
+    real *const x = e->instances ? e->instances->x : e->lsm->x,
+                *const v = e->instances ? e->instances->v : e->lsm->v,
+                *const g = e->instances ? e->instances->g : e->lsm->g;
     return field == SM_VELOCITY ? v : field == SM_GOAL ? g : x;
 }
 
 static void engine_goals(SmEngine *e)
 {
-    if (e->crowd)
-        crowd_goals(e->crowd);
+    if (e->instances)
+        instances_goals(e->instances);
     else
         lsm_goals(e->lsm);
 }
@@ -95,8 +95,8 @@ static void centre_on(SmEngine *e, const double (*position)[3])
             double sum = 0;
             for (long p = 0; p < e->count; p++) sum += position[body * e->count + p][d];
             double middle = sum / (double)e->count;
-            if (e->crowd)
-                e->crowd->origin[body][d] = middle;
+            if (e->instances)
+                e->instances->origin[body][d] = middle;
             else
                 e->lsm->origin[d] = middle;
         }
@@ -128,28 +128,29 @@ static void engine_set(SmEngine *e, SmField field, const double (*values)[3])
 /* Where an instance's pose turns it, a tie goes to the rotation of the pose. */
 static void turn_last(SmEngine *e, long body)
 {
-    short *last = e->crowd ? e->crowd->last : e->lsm->last;
+    short *last = e->instances ? e->instances->last : e->lsm->last;
     vec R[9];
     for (int i = 0; i < 9; i++) R[i] = lanes_set((real)e->pose[body][i / 3][(i % 3 + e->turn) % 3]);
     short turned[6 * SM_LANES];
     last_store(turned, R);
-    long tiles = e->crowd ? e->count : e->lsm->tiles,
-         first = e->crowd ? body / SM_LANES * e->count : 0;
+    long tiles = e->instances ? e->count : e->lsm->tiles,
+         first = e->instances ? body / SM_LANES * e->count : 0;
     for (long tile = first; tile < first + tiles; tile++)
         for (int i = 0; i < 6 * SM_LANES; i++)
-            if (!e->crowd || i % SM_LANES == body % SM_LANES)
+            if (!e->instances || i % SM_LANES == body % SM_LANES)
                 last[tile * 6 * SM_LANES + i] = turned[i];
 }
 
 /* Lanes without a body copy the first one's rest shape, so that they stay finite and do nothing. */
 static void fill_empty_lanes(SmEngine *e)
 {
-    long lanes = e->crowd->groups * SM_LANES;
+    long lanes = e->instances->groups * SM_LANES;
     for (long body = e->bodies; body < lanes; body++)
         for (long p = 0; p < e->count; p++)
             for (int d = 0; d < 3; d++) {
                 long at = ((body / SM_LANES * e->count + p) * 3 + d) * SM_LANES + body % SM_LANES;
-                e->crowd->x[at] = (real)(e->lsm->lattice.coord[p][d] - e->lsm->lattice.size[d] / 2);
+                e->instances->x[at] =
+                    (real)(e->lsm->lattice.coord[p][d] - e->lsm->lattice.size[d] / 2);
             }
 }
 
@@ -176,9 +177,10 @@ static void divide_momentum(SmEngine *e)
     sm_pieces_again(e->count, &e->pieces);
     link_pieces(&e->lsm->lattice, NULL, &e->pieces);
     sm_pieces_finish(&e->pieces, NULL, e->count);
-    for (long slot = 0; slot < e->lsm->blocks * SM_LANES && !e->crowd; slot++) m->label[slot] = -1;
+    for (long slot = 0; slot < e->lsm->blocks * SM_LANES && !e->instances; slot++)
+        m->label[slot] = -1;
     for (long p = 0; p < e->count; p++) {
-        long slot = e->crowd ? p : e->lsm->slot[p];
+        long slot = e->instances ? p : e->lsm->slot[p];
         m->mass[slot] = (real)mass_of(e->lsm, p);
         m->label[slot] = e->pieces.piece[p];
     }
@@ -207,7 +209,7 @@ static void start_at_rest(SmEngine *e)
     engine_set(e, SM_POSITION, (const double(*)[3])rest);
     free(rest);
     for (long body = 0; body < e->bodies; body++) turn_last(e, body);
-    if (e->crowd) fill_empty_lanes(e);
+    if (e->instances) fill_empty_lanes(e);
 }
 
 /* The body in the turned lattice, with masses in its numbering. */
@@ -216,10 +218,10 @@ static void build_turned(SmEngine *e, const SmVoxels *voxels, const SmEnginePara
     SmEngineParams own = *params;
     SmVoxels turned;
     double *mass = NULL;
-    own.layout = lsm_turn_choose(voxels, params, SM_LANES, &e->turn);
-    lsm_turn_voxels(voxels, e->turn, &turned);
+    own.layout = lsm_axes_choose(voxels, params, SM_LANES, &e->turn);
+    lsm_axes_voxels(voxels, e->turn, &turned);
     e->inner = sm_alloc((size_t)voxels->particle_count, sizeof(int));
-    lsm_turn_numbers(voxels, e->turn, &turned, e->inner);
+    lsm_axes_numbers(voxels, e->turn, &turned, e->inner);
     if (params->mass) {
         own.mass = mass = sm_alloc((size_t)voxels->particle_count, sizeof(double));
         for (long p = 0; p < voxels->particle_count; p++) mass[e->inner[p]] = params->mass[p];
@@ -251,14 +253,14 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     Lsm *lsm = e->lsm;
     e->pose = sm_alloc((size_t)e->bodies, sizeof *e->pose);
     for (long body = 0; body < e->bodies; body++) sm_engine_pose(params, body, e->pose[body]);
-    if (e->bodies > 1) e->crowd = crowd_build(lsm, e->bodies);
+    if (e->bodies > 1) e->instances = instances_build(lsm, e->bodies);
     for (int d = 0; d < 3; d++)
         lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
     start_at_rest(e);
-    e->contacts = lsm_contacts_build(lsm, e->crowd);
-    e->momentum =
-        momentum_build(e->crowd ? e->count : lsm->blocks, e->bodies, e->crowd != NULL,
-                       keep_steps(lsm->blocks), e->crowd ? e->crowd->threads : lsm->threads);
+    e->contacts = lsm_contacts_build(lsm, e->instances);
+    e->momentum = momentum_build(e->instances ? e->count : lsm->blocks, e->bodies,
+                                 e->instances != NULL, keep_steps(lsm->blocks),
+                                 e->instances ? e->instances->threads : lsm->threads);
     e->rounding = rounding_square(longest(&lsm->lattice), lsm->w);
     sm_pieces_init(e->count, &e->pieces);
     divide_momentum(e);
@@ -274,7 +276,7 @@ static void engine_destroy(SmEngine *e)
     lsm_contacts_free(e->contacts);
     momentum_free(e->momentum);
     sm_pieces_free(&e->pieces);
-    crowd_free(e->crowd);
+    instances_free(e->instances);
     lsm_free(e->lsm);
     free(e->inner);
     free(e->pose);
@@ -348,8 +350,8 @@ static void keep_momentum(SmEngine *e)
 /* Origins go to bodies' middles: the next time before one is likely to be some cells off again. */
 static void recentre(SmEngine *e)
 {
-    double far =
-        e->crowd ? crowd_recentre(e->crowd, e->momentum) : lsm_recentre(e->lsm, e->momentum);
+    double far = e->instances ? instances_recentre(e->instances, e->momentum)
+                              : lsm_recentre(e->lsm, e->momentum);
     shift_obstacles(e->lsm);
     long since = e->lsm->steps - e->recentred;
     e->recentred = e->lsm->steps;
@@ -365,10 +367,10 @@ static void engine_step(SmEngine *e, SmLaps *laps)
         lsm_contacts_before(e->contacts);
         sm_lap(laps, SM_OTHER);
     }
-    if (e->crowd) {
+    if (e->instances) {
         int every = lsm->params.damping_every > 0 ? lsm->params.damping_every : 1;
         lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;
-        crowd_step(e->crowd, laps);
+        instances_step(e->instances, laps);
         lsm->steps++;
     } else {
         lsm_step(lsm, laps);
@@ -451,8 +453,8 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
             v[index] += (real)dv[d];
         }
         long p = e->inner[particle[i] % e->count];
-        momentum_pushed(e->momentum, particle[i] / e->count, e->crowd ? p : e->lsm->slot[p], at, dv,
-                        e->lsm->gravity);
+        momentum_pushed(e->momentum, particle[i] / e->count, e->instances ? p : e->lsm->slot[p], at,
+                        dv, e->lsm->gravity);
     }
 }
 
@@ -501,7 +503,7 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .regions = lsm_unique(e->lsm),
         .links = lsm_lattice_links(&lsm->lattice),
         .broken = lsm->broken,
-        .bytes = lsm_bytes(lsm) + (e->crowd ? crowd_bytes(e->crowd) : 0) +
+        .bytes = lsm_bytes(lsm) + (e->instances ? instances_bytes(e->instances) : 0) +
                  (e->contacts ? lsm_contacts_bytes(e->contacts) : 0) + momentum_bytes(e->momentum),
         .contacts = e->contacts ? lsm_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,

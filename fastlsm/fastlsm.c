@@ -15,15 +15,15 @@
 #include "pipeline.h"
 #include "step.h"
 #include "sums/blocks_down.h"
-#include "sums/chain_sums.h"
-#include "sums/correct.h"
-#include "sums/summation.h"
+#include "sums/box_sum_fixups.h"
+#include "sums/list_sums.h"
+#include "sums/running_sums.h"
 
 /* Rows of m~ x, which the bars sum. */
 static void weigh(Lsm *lsm, int layer)
 {
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
-        if (lsm->box && (lsm->corrections || !lsm->box->listed[block])) continue;
+        if (lsm->box && (lsm->fixups || !lsm->box->listed[block])) continue;
         vec weight = lsm->particle_const[lsm->block_const[block]].weight;
         vec p[4] = {lanes_set(1), lanes_set(1), lanes_set(1), lanes_set(0)};
         if (lsm->pass != PASS_CONSTANTS) load3(lsm->x + block * 3 * SM_LANES, p);
@@ -38,8 +38,8 @@ static void bars_and_plates(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     (void)thread;
     weigh(lsm, layer);
-    if (lsm->chains) {
-        lsm_chain_sets_up(lsm, layer, false);
+    if (lsm->running_lists) {
+        lsm_running_sets_up(lsm, layer, false);
     } else if (lsm->params.summation != SM_SUM_NAIVE) {
         lsm_bars_up(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
         lsm_plates_up(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
@@ -159,7 +159,7 @@ static void copy_transforms(Lsm *lsm, int layer)
 /* The sums of a tile, by lists or chains. */
 static void tile_sums(const Lsm *lsm, long tile, vec S[12])
 {
-    if (lsm->chains) {
+    if (lsm->running_lists) {
         const real *row[SM_LANES];
         tile_rows(lsm, tile, row);
         sums_of_rows(row, S);
@@ -189,11 +189,11 @@ static void match_tiles(Lsm *lsm, int layer, long tile, int tiles, SmLaps *laps)
     }
 }
 
-/* Where lists or corrections make a block's sums exact. */
+/* Where lists or fix-ups make a block's sums exact. */
 static __attribute__((noinline)) void mend_sums(const Lsm *lsm, long block, vec *S)
 {
-    if (lsm->corrections) {
-        correct_regions(lsm, block, S);
+    if (lsm->fixups) {
+        lsm_fixup_regions(lsm, block, S);
         return;
     }
     const int *region = lsm->block_region + block * SM_LANES; /* whose lanes replace box sums */
@@ -203,13 +203,13 @@ static __attribute__((noinline)) void mend_sums(const Lsm *lsm, long block, vec 
     for (int i = 0; i < 12; i++) S[i] = lanes_select(lanes, listed[i], S[i]);
 }
 
-/* Where lists or corrections read a block's transforms, which are those of a row (blocks_rows.h).
+/* Where lists or fix-ups read a block's transforms, which are those of a row (blocks_rows.h).
  */
 static __attribute__((noinline)) void keep_transforms(const Lsm *lsm, long block, const real *out)
 {
     vec T[12];
     for (int f = 0; f < 12; f++) T[chain_value(f)] = lanes_load(out + f * SM_LANES);
-    if (lsm->corrections)
+    if (lsm->fixups)
         keep_solved(lsm, block, 12, T);
     else
         store_transforms(lsm, block, T, T + 3);
@@ -256,7 +256,7 @@ static void match_layer(Lsm *lsm, int layer, SmLaps *laps)
 static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     lsm->sweeps[layer] = 0;
-    if (lsm->chains) lsm_chain_regions_up(lsm, layer, false);
+    if (lsm->running_lists) lsm_running_regions_up(lsm, layer, false);
     if (lsm->box)
         lsm_blocks_up(lsm, layer, thread, laps);
     else
@@ -264,8 +264,8 @@ static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
     if (lsm->pass == PASS_CONSTANTS) return;
     if (!lsm->box) copy_transforms(lsm, layer);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    if (lsm->chains) {
-        lsm_chain_sets_down(lsm, layer, false);
+    if (lsm->running_lists) {
+        lsm_running_sets_down(lsm, layer, false);
     } else if (lsm->params.summation != SM_SUM_NAIVE) {
         lsm_bars_down(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
         lsm_plates_down(lsm, lsm->layer_plane[layer], lsm->layer_plane[layer + 1]);
@@ -273,16 +273,16 @@ static void match(Lsm *lsm, int layer, int thread, SmLaps *laps)
     sm_lap(laps, SM_FAST_SUM);
 }
 
-/* What lists or corrections add to a block's |R_i| g_i. */
+/* What lists or fix-ups add to a block's |R_i| g_i. */
 static __attribute__((noinline)) void add_mended(const Lsm *lsm, long block, vec *sum)
 {
-    if (lsm->corrections) {
-        correct_goals(lsm, block, sum);
+    if (lsm->fixups) {
+        lsm_fixup_goals(lsm, block, sum);
         return;
     }
     real sums[3][SM_LANES] __attribute__((aligned(64)));
     store3(sums[0], sum);
-    if (lsm->chains)
+    if (lsm->running_lists)
         slot_values(lsm, block, 3, sums);
     else
         lsm_particles_down(lsm, lsm->block_region + block * SM_LANES, sums);
@@ -325,7 +325,7 @@ PLANE_DOWNS(false, move_block)
 static void move(Lsm *lsm, int layer, int thread, SmLaps *laps)
 {
     if (lsm->pass == PASS_CONSTANTS) return;
-    if (lsm->chains) lsm_chain_particles(lsm, layer, false);
+    if (lsm->running_lists) lsm_running_particles(lsm, layer, false);
     if (lsm->box) {
         lsm_blocks_down(lsm, layer, thread, laps);
         return;

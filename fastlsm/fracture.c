@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "build.h"
-#include "sums/blocks.h"
+#include "sums/boxes.h"
 
 static real component(const Lsm *lsm, long slot, int d)
 {
@@ -100,14 +100,14 @@ static int list_members(const Lsm *lsm, long p, const uint64_t *rows, int *membe
 /* Makes room for one more region that has lists: block form only. */
 static int add_region(Lsm *lsm)
 {
-    LsmSets *sets = &lsm->sets;
-    long region = sets->region_count++;
-    if (sets->region_count > sets->region_room) {
-        sets->region_room = 2 * sets->region_count + 64;
-        sets->region =
-            sm_realloc(sets->region, (size_t)(sets->region_room * sets->side), sizeof(int));
+    LsmLists *lists = &lsm->lists;
+    long region = lists->region_count++;
+    if (lists->region_count > lists->region_room) {
+        lists->region_room = 2 * lists->region_count + 64;
+        lists->region =
+            sm_realloc(lists->region, (size_t)(lists->region_room * lists->side), sizeof(int));
     }
-    memset(sets->region + region * sets->side, 0, (size_t)sets->side * sizeof(int));
+    memset(lists->region + region * lists->side, 0, (size_t)lists->side * sizeof(int));
     return (int)region;
 }
 
@@ -122,7 +122,8 @@ static bool revise_lists(Lsm *lsm, long p, const uint64_t *rows, int count, cons
     }
     for (int i = 0; i < count && lsm->box; i++)
         lsm->box->listed[lsm->slot[member[i]] / SM_LANES] = true;
-    return lsm_ledger_revise(lsm->ledger, &lsm->sets, &lsm->lattice, lsm->slot, p, *region, rows);
+    return lsm_allocator_revise(lsm->allocator, &lsm->lists, &lsm->lattice, lsm->slot, p, *region,
+                                rows);
 }
 
 /* A record of its own for what shared one; returns the records, which may have moved. */

@@ -29,7 +29,7 @@ long lsm_break(Lsm *lsm, long count, const LsmLink *link);
 void lsm_fracture(Lsm *lsm);
 
 /* Breaks every link whose segment at rest crosses one of the cut's triangles from number `first`
- * on. Axis d of the lattice is axis (d + turn) % 3 of the cut (turn.h). Returns how many are
+ * on. Axis d of the lattice is axis (d + turn) % 3 of the cut (axis_order.h). Returns how many are
  * broken. O(lattice sites in the triangles' boxes), and lsm_break()'s work. */
 long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first);
 

@@ -5,17 +5,17 @@
  * a block, and a block's coordinates are stored as x[3][lanes]. Planes of the lattice are grouped
  * into layers, the unit of the pipeline (pipeline.h).
  *
- * Sums come from two kernels. In list form (sets.h) a body's slots follow each other without holes
- * and every region has its lists. In block form a block is SM_LANES lattice sites along x, sums are
- * box sums over blocks, and only regions that a box sum gets wrong have lists. */
+ * Sums come from two kernels. In list form (subsum_lists.h) a body's slots follow each other
+ * without holes and every region has its lists. In block form a block is SM_LANES lattice sites
+ * along x, sums are box sums over blocks, and only regions that a box sum gets wrong have lists. */
 #ifndef LSM_STATE_H
 #define LSM_STATE_H
 
 #include "../lib/engine.h"
 #include "../lib/integrate.h"
 #include "../lib/simd/lanes.h"
-#include "lattice/chain.h"
-#include "lattice/ledger.h"
+#include "lattice/list_allocator.h"
+#include "lattice/running_lists.h"
 
 typedef struct {
     vec inverse_mass, offset[3]; /* 1 / M_r; c0_r - x0_r in cells */
@@ -39,7 +39,7 @@ enum {
     ROW_PLATE = 16,
     ROW_T = 16,
     ROW_PLATE_DOWN = 8,
-    ROW_PLATE_CHAIN = 16
+    ROW_PLATE_RUN = 16
 };
 
 typedef struct {
@@ -48,7 +48,7 @@ typedef struct {
                                                      (Q, R z, R y), as the plates are done with it */
     real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
     real *transform;  /* [slots + 2][ROW_T]          (q_r, R z, R y, R x) */
-    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z); in a chain [ROW_PLATE_CHAIN],
+    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z); in a chain [ROW_PLATE_RUN],
                                                      with R y for the rows made from it */
 } Rows;
 
@@ -60,8 +60,8 @@ typedef struct {
 
 typedef enum { PASS_STEP, PASS_GOALS, PASS_CONSTANTS } Pass;
 
-typedef struct Blocks Blocks;           /* box sums: blocks.h */
-typedef struct Corrections Corrections; /* of box sums: corrections.h */
+typedef struct Blocks Blocks; /* box sums: boxes.h */
+typedef struct Fixups Fixups; /* of box sums: box_sum_fixups.h */
 
 typedef struct Lsm {
     /* the body */
@@ -70,15 +70,15 @@ typedef struct Lsm {
     double origin[3], cell; /* position = origin + cell * x */
     LsmLattice lattice;
     LsmInterior interior;
-    LsmSets sets;
-    LsmLedger *ledger; /* NULL for a body that cannot break */
-    bool chained;      /* sums run over chains once they are there */
-    LsmChains *chains; /* in place of the lists of `sets`, or NULL; a region's base is a row of
-                          rows.transform */
-    real (*chain_factor)[2]; /* [LSM_FACTORS] */
-    long spare;              /* rows that its layers have left at least */
-    char *mark;              /* [particles] zero between breaks, or NULL */
-    double *mass;            /* [particles] in units of mass_unit kg, their mean; NULL: all are 1 */
+    LsmLists lists;
+    LsmListAllocator *allocator;    /* NULL for a body that cannot break */
+    bool runs;                      /* sums run over chains once they are there */
+    LsmRunningLists *running_lists; /* in place of the lists of `lists`, or NULL; a region's base is
+                          a row of rows.transform */
+    real (*running_factor)[2];      /* [LSM_FACTORS] */
+    long spare;                     /* rows that its layers have left at least */
+    char *mark;                     /* [particles] zero between breaks, or NULL */
+    double *mass; /* [particles] in units of mass_unit kg, their mean; NULL: all are 1 */
     double mass_unit;
     int *members;  /* [particles] |R_i|, kept in a body that can break */
     int *slot;     /* [particles] */
@@ -91,7 +91,7 @@ typedef struct Lsm {
     real *g;          /* the same, in the memory of `centre`; NULL when no goals are held */
     int *block_const; /* [blocks] */
     ParticleConst *particle_const;
-    int *block_region; /* [blocks * lanes] row of sets.region that sums over this particle, or -1;
+    int *block_region; /* [blocks * lanes] row of lists.region that sums over this particle, or -1;
                           in list form row p is particle p's, so this is `particle` */
 
     /* regions, SM_LANES to a tile; in block form, and in a body that can break, tile t is block t
@@ -116,8 +116,8 @@ typedef struct Lsm {
     int *thread_layer;              /* [threads + 1] first layer of each thread */
 
     Rows rows;
-    Blocks *box;              /* NULL in list form */
-    Corrections *corrections; /* in block form in place of lists, but for a body that can break */
+    Blocks *box;    /* NULL in list form */
+    Fixups *fixups; /* in block form in place of lists, but for a body that can break */
     Pass pass;
     SmLaps *laps; /* of thread 0, or NULL */
     long steps;
@@ -154,7 +154,7 @@ SM_INLINE unsigned live_lanes(const int slot[SM_LANES])
     return live;
 }
 
-/* List form: the rows of sets.region of a tile. */
+/* List form: the rows of lists.region of a tile. */
 SM_INLINE void tile_regions(const Lsm *lsm, long tile, int region[SM_LANES])
 {
     const int *slot = lsm->tile_slot + tile * SM_LANES;

@@ -190,22 +190,22 @@ static void check_alone(const SmEngineType *type, Body *body, SmEngineParams par
 }
 
 /* Two damped steps of every instance, and of some of them by brute force. */
-static void check_steps(const SmEngineType *type, SmEngine *crowd, Body *body,
+static void check_steps(const SmEngineType *type, SmEngine *instances, Body *body,
                         SmEngineParams params, double allowed)
 {
     long tried[3] = {0, params.instances / 2, params.instances - 1};
     SmEngine *alone[3];
     for (int i = 0; i < 3; i++) {
-        get_instance(type, crowd, SM_POSITION, tried[i], body->n, body->x);
-        get_instance(type, crowd, SM_VELOCITY, tried[i], body->n, body->v);
+        get_instance(type, instances, SM_POSITION, tried[i], body->n, body->x);
+        get_instance(type, instances, SM_VELOCITY, tried[i], body->n, body->v);
         SmEngineParams one = params;
         one.instances = 1;
         alone[i] = create(&ref_brute_engine, body, one);
     }
-    for (int step = 0; step < 2; step++) type->step(crowd, NULL);
+    for (int step = 0; step < 2; step++) type->step(instances, NULL);
     for (int i = 0; i < 3; i++) {
         for (int step = 0; step < 2; step++) ref_brute_engine.step(alone[i], NULL);
-        get_instance(type, crowd, SM_POSITION, tried[i], body->n, body->a);
+        get_instance(type, instances, SM_POSITION, tried[i], body->n, body->a);
         ref_brute_engine.get(alone[i], SM_POSITION, body->b);
         double worst = difference(body, (const double(*)[3])body->a, (const double(*)[3])body->b);
         if (!(worst <= allowed))
@@ -232,17 +232,17 @@ TEST(test_instances_alone)
                                  .instances = 2 + random_int(&seed, 20),
                                  .mass = body.m,
                                  .threads = 1 + trial % 2};
-        SmEngine *crowd;
+        SmEngine *instances;
         SmError error;
-        assert_int_equal(type->create(&body.voxels, &params, &crowd, &error), SM_OK);
-        set_random(type, crowd, &body, params.instances, &seed);
+        assert_int_equal(type->create(&body.voxels, &params, &instances, &error), SM_OK);
+        set_random(type, instances, &body, params.instances, &seed);
         long k = random_int(&seed, (int)params.instances);
-        get_instance(type, crowd, SM_POSITION, k, body.n, body.x);
-        type->goals(crowd);
-        get_instance(type, crowd, SM_GOAL, k, body.n, body.a);
+        get_instance(type, instances, SM_POSITION, k, body.n, body.x);
+        type->goals(instances);
+        get_instance(type, instances, SM_GOAL, k, body.n, body.a);
         check_alone(type, &body, params, precision ? 1e-11 : 5e-5);
-        check_steps(type, crowd, &body, params, precision ? 1e-9 : 1e-3);
-        type->destroy(crowd);
+        check_steps(type, instances, &body, params, precision ? 1e-9 : 1e-3);
+        type->destroy(instances);
         body_free(&body);
     }
 }

@@ -3,7 +3,7 @@
 #include "build.h"
 #include "fracture.h"
 #include "step.h"
-#include "sums/blocks.h"
+#include "sums/boxes.h"
 #include "test_body.h"
 
 enum { TRIALS = 600 };
@@ -153,24 +153,25 @@ static void break_both(Lsm *lsm, Lsm *twin, const Breaks *breaks, long first)
 }
 
 /* Every row counts those that name it; a row that none names lists nothing. */
-static void assert_shelf(const LsmShelf *shelf, long count, const int *named, long names)
+static void assert_store(const LsmRowStore *store, long count, const int *named, long names)
 {
     int *uses = sm_alloc((size_t)count, sizeof(int));
     for (long i = 0; i < names; i++) uses[named[i] / LSM_NAME]++;
     for (long r = 1; r < count; r++) {
-        assert_int_equal(shelf->uses[r], uses[r]);
-        for (int i = 0; i < shelf->side && !uses[r]; i++)
-            assert_int_equal(shelf->row[r * shelf->side + i], 0);
+        assert_int_equal(store->uses[r], uses[r]);
+        for (int i = 0; i < store->side && !uses[r]; i++)
+            assert_int_equal(store->row[r * store->side + i], 0);
     }
     free(uses);
 }
 
-static void assert_ledger(const Lsm *lsm)
+static void assert_allocator(const Lsm *lsm)
 {
-    const LsmSets *sets = &lsm->sets;
-    assert_shelf(&lsm->ledger->bars, sets->bar_count, sets->plate, sets->plate_count * sets->side);
-    assert_shelf(&lsm->ledger->plates, sets->plate_count, sets->region,
-                 sets->region_count * sets->side);
+    const LsmLists *lists = &lsm->lists;
+    assert_store(&lsm->allocator->bars, lists->bar_count, lists->plate,
+                 lists->plate_count * lists->side);
+    assert_store(&lsm->allocator->plates, lists->plate_count, lists->region,
+                 lists->region_count * lists->side);
 }
 
 static void compare(Lsm *lsm, Lsm *twin, Body *body, const Breaks *breaks, int trial)
@@ -179,7 +180,7 @@ static void compare(Lsm *lsm, Lsm *twin, Body *body, const Breaks *breaks, int t
     ref_regions_build(&body->voxels, lsm->w, (const int(*)[2])breaks->pair, breaks->count,
                       &regions);
     assert_regions(lsm, &regions);
-    assert_ledger(lsm);
+    assert_allocator(lsm);
     if (trial % 3) {
         assert_int_equal(lsm_unique(lsm), ref_regions_unique(&regions));
         assert_int_equal(lsm_unique(lsm), lsm_unique(twin));

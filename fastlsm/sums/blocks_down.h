@@ -1,4 +1,4 @@
-/* blocks_down.h - the last stage of a block pass (blocks.h): down along z to the particles. */
+/* blocks_down.h - the last stage of a block pass (boxes.h): down along z to the particles. */
 #ifndef LSM_BLOCKS_DOWN_H
 #define LSM_BLOCKS_DOWN_H
 

@@ -1,4 +1,4 @@
-/* blocks_pass.h - the stages of a block pass (blocks.h), inline, so that the compiler can put a
+/* blocks_pass.h - the stages of a block pass (boxes.h), inline, so that the compiler can put a
  * pass's own work, `solve`, between the stages up and the stages down. */
 #ifndef LSM_BLOCKS_PASS_H
 #define LSM_BLOCKS_PASS_H
@@ -52,7 +52,7 @@ SM_INLINE vec window_y_less(const Around *in, long column, int w, bool moving, i
     return sum;
 }
 
-/* Where sums pass through particles only, those of other sites are dropped (blocks.h). */
+/* Where sums pass through particles only, those of other sites are dropped (boxes.h). */
 SM_INLINE vec through(const Lsm *lsm, long block, int w, vec sum)
 {
     return w > 1 ? sum : lanes_keep(lsm->box->site[block], sum);

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "blocks.h"
+#include "boxes.h"
 
 /* One body serves shape matching and damping. Values are numbered 3 k + d, d = 0..2 for x, y, z:
  * up, k counts (P, Pz, Px, Py) and down (Q, Rz, Rx, Ry) in the order in which the chain's stages

@@ -1,4 +1,4 @@
-#include "sets.h"
+#include "subsum_lists.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@ typedef struct {
     uint64_t mask;
 } Pool;
 
-uint64_t lsm_sets_hash(const int *row, int width)
+uint64_t lsm_lists_hash(const int *row, int width)
 {
     uint64_t h = 1469598103934665603ull;
     for (int i = 0; i < width; i++) {
@@ -29,7 +29,7 @@ static void pool_rehash(Pool *pool, uint64_t mask)
     pool->mask = mask;
     pool->slot = sm_alloc(mask + 1, sizeof *pool->slot);
     for (long r = 1; r < pool->count; r++) {
-        uint64_t at = lsm_sets_hash(pool->row + r * pool->width, pool->width) & mask;
+        uint64_t at = lsm_lists_hash(pool->row + r * pool->width, pool->width) & mask;
         while (pool->slot[at]) at = (at + 1) & mask;
         pool->slot[at] = (uint32_t)r;
     }
@@ -53,7 +53,7 @@ static void pool_free(Pool *pool)
 static int pool_add(Pool *pool, const int *row)
 {
     size_t bytes = (size_t)pool->width * sizeof(int);
-    uint64_t at = lsm_sets_hash(row, pool->width) & pool->mask;
+    uint64_t at = lsm_lists_hash(row, pool->width) & pool->mask;
     for (; pool->slot[at]; at = (at + 1) & pool->mask)
         if (!memcmp(pool->row + (long)pool->slot[at] * pool->width, row, bytes))
             return (int)pool->slot[at];
@@ -68,7 +68,7 @@ static int pool_add(Pool *pool, const int *row)
     return (int)r;
 }
 
-struct LsmSetsBuilder {
+struct LsmListsBuilder {
     const LsmLattice *lattice;
     const int *slot;
     int w, side;
@@ -81,8 +81,8 @@ struct LsmSetsBuilder {
     long region_count, region_room;
 };
 
-void lsm_sets_bar(const LsmLattice *l, const int *slot, int w, int x, int y, int z, uint64_t bits,
-                  int *row)
+void lsm_lists_bar(const LsmLattice *l, const int *slot, int w, int x, int y, int z, uint64_t bits,
+                   int *row)
 {
     memset(row, 0, (size_t)(2 * w + 1) * sizeof *row);
     int last = __builtin_ctzll(bits);
@@ -99,13 +99,13 @@ void lsm_sets_bar(const LsmLattice *l, const int *slot, int w, int x, int y, int
 }
 
 /* The same, stored; 0 when it has no members. */
-static int add_bar(LsmSetsBuilder *b, int x, int y, int z, uint64_t bits)
+static int add_bar(LsmListsBuilder *b, int x, int y, int z, uint64_t bits)
 {
     int row[LSM_MAX_SIDE + 2];
     if (!bits) return 0;
     long centre = lsm_lattice_find(b->lattice, x, y, z);
     if (centre >= 0 && b->recent_bits[centre] == bits) return b->recent_bar[centre];
-    lsm_sets_bar(b->lattice, b->slot, b->w, x, y, z, bits, row);
+    lsm_lists_bar(b->lattice, b->slot, b->w, x, y, z, bits, row);
     row[b->side] = x;
     row[b->side + 1] = z;
     int r = pool_add(&b->bars, row);
@@ -116,7 +116,7 @@ static int add_bar(LsmSetsBuilder *b, int x, int y, int z, uint64_t bits)
 
 /* The plate of centre (x, y) in plane z. Its bars' keys tell centres apart along x; the place of a
  * bar tells them apart along y. */
-static int add_plate(LsmSetsBuilder *b, int x, int y, int z, const uint64_t *rows)
+static int add_plate(LsmListsBuilder *b, int x, int y, int z, const uint64_t *rows)
 {
     int row[LSM_MAX_SIDE + 2] = {0}, *full = NULL;
     uint64_t any = 0, all = b->full;
@@ -136,8 +136,8 @@ static int add_plate(LsmSetsBuilder *b, int x, int y, int z, const uint64_t *row
 }
 
 /* Sorts a pool's rows by plane and, within it, by their other key (0 .. keys - 1): a row comes
- * after those of the neighbour before it (chain.h). Writes the lists without keys, the first row of
- * each plane, and each old row's new number. */
+ * after those of the neighbour before it (running_lists.h). Writes the lists without keys, the
+ * first row of each plane, and each old row's new number. */
 static int *sort_rows(const Pool *pool, int side, int planes, int keys, long **first,
                       int **renumber)
 {
@@ -176,10 +176,10 @@ static long *copy_planes(const long *plane, int planes)
     return memcpy(copy, plane, ((size_t)planes + 1) * sizeof *copy);
 }
 
-LsmSetsBuilder *lsm_sets_open(const LsmLattice *l, const int *slot, int w)
+LsmListsBuilder *lsm_lists_open(const LsmLattice *l, const int *slot, int w)
 {
-    LsmSetsBuilder *b = sm_alloc(1, sizeof *b);
-    *b = (LsmSetsBuilder){.lattice = l, .slot = slot, .w = w, .side = 2 * w + 1};
+    LsmListsBuilder *b = sm_alloc(1, sizeof *b);
+    *b = (LsmListsBuilder){.lattice = l, .slot = slot, .w = w, .side = 2 * w + 1};
     b->full = ((uint64_t)1 << b->side) - 1;
     b->recent_bar = sm_alloc((size_t)l->count, sizeof(int));
     b->recent_bits = sm_alloc((size_t)l->count, sizeof(uint64_t));
@@ -189,7 +189,7 @@ LsmSetsBuilder *lsm_sets_open(const LsmLattice *l, const int *slot, int w)
     return b;
 }
 
-void lsm_sets_add(LsmSetsBuilder *b, long p, const uint64_t *rows)
+void lsm_lists_add(LsmListsBuilder *b, long p, const uint64_t *rows)
 {
     if (b->region_count == b->region_room) {
         b->region_room = 2 * b->region_room + 64;
@@ -206,29 +206,29 @@ void lsm_names_reach(long rows)
     if (rows > INT_MAX / LSM_NAME) free(sm_alloc(SIZE_MAX, LSM_NAME));
 }
 
-void lsm_sets_close(LsmSetsBuilder *b, LsmSets *sets)
+void lsm_lists_close(LsmListsBuilder *b, LsmLists *lists)
 {
     lsm_names_reach(b->bars.count);
     lsm_names_reach(b->plates.count);
     int side = b->side, planes = b->lattice->size[2], *bar_number, *plate_number;
-    *sets = (LsmSets){.w = b->w,
-                      .side = side,
-                      .bar_count = b->bars.count,
-                      .plate_count = b->plates.count,
-                      .region_count = b->region_count,
-                      .region_room = b->region_count,
-                      .planes = planes};
+    *lists = (LsmLists){.w = b->w,
+                        .side = side,
+                        .bar_count = b->bars.count,
+                        .plate_count = b->plates.count,
+                        .region_count = b->region_count,
+                        .region_room = b->region_count,
+                        .planes = planes};
     const int *size = b->lattice->size;
-    sets->bar = sort_rows(&b->bars, side, planes, size[0], &sets->bar_plane, &bar_number);
+    lists->bar = sort_rows(&b->bars, side, planes, size[0], &lists->bar_plane, &bar_number);
     pool_free(&b->bars);
-    sets->plate = sort_rows(&b->plates, side, planes, size[1], &sets->plate_plane, &plate_number);
+    lists->plate = sort_rows(&b->plates, side, planes, size[1], &lists->plate_plane, &plate_number);
     pool_free(&b->plates);
-    sets->bar_end = copy_planes(sets->bar_plane, planes);
-    sets->plate_end = copy_planes(sets->plate_plane, planes);
+    lists->bar_end = copy_planes(lists->bar_plane, planes);
+    lists->plate_end = copy_planes(lists->plate_plane, planes);
     size_t places = (size_t)(b->region_count * side);
-    sets->region = sm_realloc(b->region, places ? places : 1, sizeof(int));
-    name_rows(sets->plate, sets->plate_count * side, bar_number);
-    name_rows(sets->region, sets->region_count * side, plate_number);
+    lists->region = sm_realloc(b->region, places ? places : 1, sizeof(int));
+    name_rows(lists->plate, lists->plate_count * side, bar_number);
+    name_rows(lists->region, lists->region_count * side, plate_number);
     free(bar_number);
     free(plate_number);
     free(b->recent_bar);
@@ -237,14 +237,14 @@ void lsm_sets_close(LsmSetsBuilder *b, LsmSets *sets)
     free(b);
 }
 
-void lsm_sets_free(LsmSets *sets)
+void lsm_lists_free(LsmLists *lists)
 {
-    free(sets->bar);
-    free(sets->plate);
-    free(sets->region);
-    free(sets->bar_plane);
-    free(sets->plate_plane);
-    free(sets->bar_end);
-    free(sets->plate_end);
-    memset(sets, 0, sizeof *sets);
+    free(lists->bar);
+    free(lists->plate);
+    free(lists->region);
+    free(lists->bar_plane);
+    free(lists->plate_plane);
+    free(lists->bar_end);
+    free(lists->plate_end);
+    memset(lists, 0, sizeof *lists);
 }

@@ -1,4 +1,4 @@
-#include "chain.h"
+#include "running_lists.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -8,8 +8,8 @@
 typedef struct {
     const int *list; /* from row `start` on */
     int side, start;
-    char *depth; /* [rows] rows of the chain up to this one; 0: not met yet */
-    LsmChain *chain;
+    char *depth; /* [rows] rows of the running up to this one; 0: not met yet */
+    LsmRunningList *running;
 } Kind;
 
 typedef struct {
@@ -23,7 +23,7 @@ static const int *row_of(const Kind *kind, long r)
     return kind->list + (r - kind->start) * kind->side;
 }
 
-void lsm_chain_factors(int w, double factor[LSM_FACTORS][2])
+void lsm_running_factors(int w, double factor[LSM_FACTORS][2])
 {
     for (int place = 0; place < 2 * w + 2; place++)
         for (int leaves = 0; leaves < 2; leaves++) {
@@ -62,12 +62,12 @@ static int list_terms(int side, const int *row, const int *base, int moved, LsmT
 static void offer(const Kind *kind, long r, long candidate, int *terms)
 {
     long b = candidate / 2;
-    if (b == 0 || b >= r || !kind->depth[b] || kind->depth[b] >= LSM_CHAIN_MOST) return;
+    if (b == 0 || b >= r || !kind->depth[b] || kind->depth[b] >= LSM_RUN_MOST) return;
     int count =
         list_terms(kind->side, row_of(kind, r), row_of(kind, b), (int)(candidate % 2), NULL);
     if (count >= *terms) return;
     *terms = count;
-    kind->chain->base[r] = (int)candidate;
+    kind->running->base[r] = (int)candidate;
     kind->depth[r] = (char)(kind->depth[b] + 1);
 }
 
@@ -123,44 +123,45 @@ static void choose(const Builder *b, long p)
     if (z && b->layer[at[2] - 1] == b->layer[at[2]]) offer(&b->region, p + 1, 2 * z + 1, &terms);
 }
 
-static void open_kind(Kind *kind, const int *list, int side, int start, long rows, LsmChain *chain)
+static void open_kind(Kind *kind, const int *list, int side, int start, long rows,
+                      LsmRunningList *running)
 {
-    *kind = (Kind){.list = list, .side = side, .start = start, .chain = chain};
+    *kind = (Kind){.list = list, .side = side, .start = start, .running = running};
     kind->depth = sm_alloc((size_t)rows, 1);
-    chain->rows = rows;
-    chain->base = sm_alloc((size_t)rows, sizeof(int));
-    chain->first = sm_alloc((size_t)rows + 1, sizeof(int));
+    running->rows = rows;
+    running->base = sm_alloc((size_t)rows, sizeof(int));
+    running->first = sm_alloc((size_t)rows + 1, sizeof(int));
 }
 
 /* Terms of every row beside the base chosen for it: counted, then listed. */
 static void close_kind(Kind *kind)
 {
-    LsmChain *chain = kind->chain;
+    LsmRunningList *running = kind->running;
     for (int pass = 0; pass < 2; pass++) {
         int at = 0;
-        for (long r = 1; r < chain->rows; r++) {
-            long base = chain->base[r] / 2;
-            chain->first[r] = at;
+        for (long r = 1; r < running->rows; r++) {
+            long base = running->base[r] / 2;
+            running->first[r] = at;
             at += list_terms(kind->side, row_of(kind, r), base ? row_of(kind, base) : NULL,
-                             chain->base[r] % 2, pass ? chain->term + at : NULL);
+                             running->base[r] % 2, pass ? running->term + at : NULL);
         }
-        chain->first[chain->rows] = at;
-        if (!pass) chain->term = sm_alloc((size_t)at, sizeof *chain->term);
+        running->first[running->rows] = at;
+        if (!pass) running->term = sm_alloc((size_t)at, sizeof *running->term);
     }
     free(kind->depth);
 }
 
-void lsm_chains_build(const LsmLattice *l, const LsmSets *sets, int layers, const int *layer_plane,
-                      LsmChains *chains)
+void lsm_running_lists_build(const LsmLattice *l, const LsmLists *lists, int layers,
+                             const int *layer_plane, LsmRunningLists *running)
 {
     Builder b = {.lattice = l};
-    int side = sets->side;
+    int side = lists->side;
     b.layer = sm_alloc((size_t)l->size[2], sizeof(int));
     for (int layer = 0; layer < layers; layer++)
         for (int z = layer_plane[layer]; z < layer_plane[layer + 1]; z++) b.layer[z] = layer;
-    open_kind(&b.bar, sets->bar, side, 0, sets->bar_count, &chains->bar);
-    open_kind(&b.plate, sets->plate, side, 0, sets->plate_count, &chains->plate);
-    open_kind(&b.region, sets->region, side, 1, sets->region_count + 1, &chains->region);
+    open_kind(&b.bar, lists->bar, side, 0, lists->bar_count, &running->bar);
+    open_kind(&b.plate, lists->plate, side, 0, lists->plate_count, &running->plate);
+    open_kind(&b.region, lists->region, side, 1, lists->region_count + 1, &running->region);
     for (long p = 0; p < l->count; p++) choose(&b, p);
     close_kind(&b.bar);
     close_kind(&b.plate);
@@ -168,26 +169,27 @@ void lsm_chains_build(const LsmLattice *l, const LsmSets *sets, int layers, cons
     free(b.layer);
 }
 
-static void free_chain(LsmChain *chain)
+static void free_list(LsmRunningList *running)
 {
-    free(chain->base);
-    free(chain->first);
-    free(chain->term);
+    free(running->base);
+    free(running->first);
+    free(running->term);
 }
 
-void lsm_chains_free(LsmChains *chains)
+void lsm_running_lists_free(LsmRunningLists *running)
 {
-    free_chain(&chains->bar);
-    free_chain(&chains->plate);
-    free_chain(&chains->region);
+    free_list(&running->bar);
+    free_list(&running->plate);
+    free_list(&running->region);
 }
 
-static long chain_bytes(const LsmChain *chain)
+static long list_bytes(const LsmRunningList *running)
 {
-    return chain->rows * 2 * (long)sizeof(int) + chain->first[chain->rows] * (long)sizeof(LsmTerm);
+    return running->rows * 2 * (long)sizeof(int) +
+           running->first[running->rows] * (long)sizeof(LsmTerm);
 }
 
-long lsm_chains_bytes(const LsmChains *chains)
+long lsm_running_lists_bytes(const LsmRunningLists *running)
 {
-    return chain_bytes(&chains->bar) + chain_bytes(&chains->plate) + chain_bytes(&chains->region);
+    return list_bytes(&running->bar) + list_bytes(&running->plate) + list_bytes(&running->region);
 }

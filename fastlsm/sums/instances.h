@@ -1,19 +1,19 @@
-/* crowd.h - many bodies that share one lattice: a lane of every vector is a body.
+/* instances.h - many bodies that share one lattice: a lane of every vector is a body.
  *
- * All lists are the same for all bodies, so the list form of the sums (summation.h) runs on
+ * All lists are the same for all bodies, so the list form of the sums (list_sums.h) runs on
  * SM_LANES bodies at once, with no gathering and no empty lanes but in the last group. */
-#ifndef LSM_CROWD_H
-#define LSM_CROWD_H
+#ifndef LSM_INSTANCES_H
+#define LSM_INSTANCES_H
 
 #include "../../lib/simd/momentum.h"
 #include "../state.h"
 
-#define crowd_build    SM_NAME(crowd_build)
-#define crowd_free     SM_NAME(crowd_free)
-#define crowd_step     SM_NAME(crowd_step)
-#define crowd_goals    SM_NAME(crowd_goals)
-#define crowd_recentre SM_NAME(crowd_recentre)
-#define crowd_bytes    SM_NAME(crowd_bytes)
+#define instances_build    SM_NAME(instances_build)
+#define instances_free     SM_NAME(instances_free)
+#define instances_step     SM_NAME(instances_step)
+#define instances_goals    SM_NAME(instances_goals)
+#define instances_recentre SM_NAME(instances_recentre)
+#define instances_bytes    SM_NAME(instances_bytes)
 
 typedef struct {
     const Lsm *lsm; /* lattice, lists and constants of one body, in list form */
@@ -26,20 +26,20 @@ typedef struct {
     int *original;                /* [particles] particle whose region is the same */
     int threads;
     real **scratch; /* [threads] rows of one group */
-} Crowd;
+} Instances;
 
-/* At rest, all at the same place; lsm stays the caller's and must outlive the crowd. */
-Crowd *crowd_build(const Lsm *lsm, long bodies);
-void crowd_free(Crowd *crowd);
+/* At rest, all at the same place; lsm stays the caller's and must outlive the instances. */
+Instances *instances_build(const Lsm *lsm, long bodies);
+void instances_free(Instances *instances);
 
 /* One step of every body, as lsm_step(). Laps are those of thread 0. */
-void crowd_step(Crowd *crowd, SmLaps *laps);
-void crowd_goals(Crowd *crowd);
+void instances_step(Instances *instances, SmLaps *laps);
+void instances_goals(Instances *instances);
 
 /* Moves each body's origin to its middle, by whole cells. Returns the most that one was off along
  * an axis. */
-double crowd_recentre(Crowd *crowd, Momentum *momentum);
+double instances_recentre(Instances *instances, Momentum *momentum);
 
-long crowd_bytes(const Crowd *crowd);
+long instances_bytes(const Instances *instances);
 
 #endif

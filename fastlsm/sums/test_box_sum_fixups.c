@@ -1,11 +1,11 @@
-/* Corrections of box sums (corrections.h): what a box sum takes with what its corrections take away
+/* Fix-ups of box sums (box_sum_fixups.h): what a box sum takes with what its fix-ups take away
  * and add is the region found by brute force, on the way up and on the way down. In both precisions
  * (SM_REAL_BITS). */
-#include "corrections.h"
+#include "box_sum_fixups.h"
 
 #include "../build.h"
 #include "../test_body.h"
-#include "blocks.h"
+#include "boxes.h"
 
 /* Which offsets (a, b, c) from a particle its sum takes: [side^3]. */
 typedef struct {
@@ -27,8 +27,8 @@ static void take_box(Window *window, const uint64_t *rows)
         for (int i = 0; i < side; i++) window->takes[row * side + i] = rows[row] >> i & 1;
 }
 
-/* One correction of the particle in `slot`, if it is one of its lanes; `block` is its source. */
-static bool correct_one(const Lsm *lsm, const Correction *c, long block, long slot, Window *window)
+/* One fix-up of the particle in `slot`, if it is one of its lanes; `block` is its source. */
+static bool fixup_one(const Lsm *lsm, const Fixup *c, long block, long slot, Window *window)
 {
     int lane = (int)(slot % (SM_LANES / 2)), offset[3];
     if (!(c->lanes >> lane & 1)) return false;
@@ -46,17 +46,17 @@ static bool correct_one(const Lsm *lsm, const Correction *c, long block, long sl
 }
 
 /* Whose blocks the sources of `list` are: themselves, or the rows kept of them. */
-static long source_of(const Lsm *lsm, const CorrectionList *list, const Correction *c)
+static long source_of(const Lsm *lsm, const FixupList *list, const Fixup *c)
 {
-    if (list == &lsm->corrections->up) return c->source;
+    if (list == &lsm->fixups->up) return c->source;
     long block = 0;
-    while (block < lsm->blocks && lsm->corrections->row[block] != c->source) block++;
+    while (block < lsm->blocks && lsm->fixups->row[block] != c->source) block++;
     assert_true(block < lsm->blocks);
     return block;
 }
 
-/* Returns how many corrections there were. */
-static long check_particle(const Lsm *lsm, const CorrectionList *list, long p, const uint64_t *box,
+/* Returns how many fix-ups there were. */
+static long check_particle(const Lsm *lsm, const FixupList *list, long p, const uint64_t *box,
                            const RefRegions *regions)
 {
     long slot = lsm->slot[p], half = slot / (SM_LANES / 2), count = 0, members = 0;
@@ -64,7 +64,7 @@ static long check_particle(const Lsm *lsm, const CorrectionList *list, long p, c
     Window window = {lsm->w, lsm->side, sm_alloc(sites, 1)};
     if (!(list->clear[slot / SM_LANES] >> slot % SM_LANES & 1)) take_box(&window, box);
     for (long i = list->first[half]; i < list->first[half + 1]; i++)
-        count += correct_one(lsm, &list->of[i], source_of(lsm, list, &list->of[i]), slot, &window);
+        count += fixup_one(lsm, &list->of[i], source_of(lsm, list, &list->of[i]), slot, &window);
     for (long i = regions->start[p]; i < regions->start[p + 1]; i++) {
         const int *to = lsm->lattice.coord[regions->member[i]], *at = lsm->lattice.coord[p];
         const int offset[3] = {to[0] - at[0], to[1] - at[1], to[2] - at[2]};
@@ -76,16 +76,15 @@ static long check_particle(const Lsm *lsm, const CorrectionList *list, long p, c
     return count;
 }
 
-/* Box sums are not dropped where corrections are fewer than the members. */
-static void check_cost(const Lsm *lsm, long p, long corrections, const RefRegions *regions)
+/* Box sums are not dropped where fix-ups are fewer than the members. */
+static void check_cost(const Lsm *lsm, long p, long fixups, const RefRegions *regions)
 {
     long members = regions->start[p + 1] - regions->start[p];
-    if (corrections > members)
-        fail_msg("particle %ld of %ld members has %ld corrections, w = %d", p, members, corrections,
-                 lsm->w);
+    if (fixups > members)
+        fail_msg("particle %ld of %ld members has %ld fixups, w = %d", p, members, fixups, lsm->w);
 }
 
-static void check_body(const Body *body, int w, long *corrections, long *cleared)
+static void check_body(const Body *body, int w, long *fixups, long *cleared)
 {
     Lsm *lsm = lsm_build(
         &body->voxels,
@@ -94,32 +93,32 @@ static void check_body(const Body *body, int w, long *corrections, long *cleared
     RefRegions regions;
     uint64_t up[LSM_MAX_SIDE * LSM_MAX_SIDE], down[LSM_MAX_SIDE * LSM_MAX_SIDE];
     ref_regions_build(&body->voxels, w, NULL, 0, &regions);
-    assert_non_null(lsm->corrections);
+    assert_non_null(lsm->fixups);
     for (long p = 0; p < body->n; p++) {
         lsm_blocks_taken(lsm, p, up, down);
-        long count = check_particle(lsm, &lsm->corrections->up, p, up, &regions);
+        long count = check_particle(lsm, &lsm->fixups->up, p, up, &regions);
         check_cost(lsm, p, count, &regions);
-        *corrections += count;
-        count = check_particle(lsm, &lsm->corrections->down, p, down, &regions);
+        *fixups += count;
+        count = check_particle(lsm, &lsm->fixups->down, p, down, &regions);
         check_cost(lsm, p, count, &regions);
-        *corrections += count;
+        *fixups += count;
     }
     for (long b = 0; b < lsm->blocks; b++)
-        *cleared += __builtin_popcount(lsm->corrections->up.clear[b]) +
-                    __builtin_popcount(lsm->corrections->down.clear[b]);
+        *cleared += __builtin_popcount(lsm->fixups->up.clear[b]) +
+                    __builtin_popcount(lsm->fixups->down.clear[b]);
     ref_regions_free(&regions);
     lsm_free(lsm);
 }
 
 TEST(corrected_box_sums_are_the_regions)
 {
-    long corrections = 0, cleared = 0;
+    long fixups = 0, cleared = 0;
     for (int trial = 0; trial < (TEST_FIGURES ? 60 : 12); trial++) {
         unsigned seed = 100 + (unsigned)trial;
         Body body;
         body_random(&seed, trial % 6, 14, &body);
-        check_body(&body, 1 + trial % 5, &corrections, &cleared);
+        check_body(&body, 1 + trial % 5, &fixups, &cleared);
         body_free(&body);
     }
-    assert_true(corrections > 1000 && cleared > 50); /* of both kinds */
+    assert_true(fixups > 1000 && cleared > 50); /* of both kinds */
 }

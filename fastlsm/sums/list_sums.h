@@ -1,4 +1,4 @@
-/* summation.h - sums over regions through bars and plates (fastlsm section 3.1), in list form.
+/* list_sums.h - sums over regions through bars and plates (fastlsm section 3.1), in list form.
  *
  * The moment chain: instead of x x0^T against a global origin, sum p = m~ x and its moments about
  * the region's own centre. With lattice offsets (a, b, c) from the centre
@@ -8,8 +8,8 @@
  * The adjoint brings region transforms down to particles: with T = (q, Rx, Ry, Rz)
  *     |R_i| g_i = sum_r q_r + R_r (x0_i - x0_r) = sum q - a Rx - b Ry - c Rz,
  * where (a, b, c) is r's offset from i. All sums run over fixed places in a fixed order. */
-#ifndef LSM_SUMMATION_H
-#define LSM_SUMMATION_H
+#ifndef LSM_LIST_SUMS_H
+#define LSM_LIST_SUMS_H
 
 #include "../state.h"
 

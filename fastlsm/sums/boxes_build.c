@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "../pipeline.h"
-#include "blocks.h"
+#include "boxes.h"
 
 /* Any particle at the lanes of block `column` of row (y, z)? */
 static bool occupied(const LsmLattice *l, int column, int y, int z)

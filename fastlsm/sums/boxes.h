@@ -1,15 +1,15 @@
-/* blocks.h - sums over regions in block form: box sums over SM_LANES lattice sites at a time.
+/* boxes.h - sums over regions in block form: box sums over SM_LANES lattice sites at a time.
  *
- * The moment chain of summation.h, but bars, plates and cubes are taken over every site of the box
+ * The moment chain of list_sums.h, but bars, plates and cubes are taken over every site of the box
  * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
  * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
  * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
  * summed anew at every RESTART-th row and plane, or rounding would add up. Along x lanes slide, and
  * from w = FAR on prefixes are subtracted, O(1) too (blocks_far.h). Empty sites hold zero. A
  * region whose box sum is not its exact sum (a gap, a corner, a broken link within its box) is
- * made so by corrections (corrections.h) or summed by its lists instead, lane by lane. */
-#ifndef LSM_BLOCKS_H
-#define LSM_BLOCKS_H
+ * made so by fix-ups (box_sum_fixups.h) or summed by its lists instead, lane by lane. */
+#ifndef LSM_BOXES_H
+#define LSM_BOXES_H
 
 #include "../state.h"
 
@@ -48,9 +48,9 @@ struct Blocks {
                            empty block (number `blocks`) where there is none */
     uint64_t *passable; /* bitmap of the sites whose sums other sites' sums pass through */
     uint16_t *site;     /* [blocks] the lanes that hold a particle, as bits */
-    bool *listed;       /* [blocks] lists or corrections read what this block brings down, and
+    bool *listed;       /* [blocks] lists or fix-ups read what this block brings down, and
                            lists its particles: rows of them are needed */
-    bool *mixed;        /* [blocks] lists or corrections make the sums of some lanes exact */
+    bool *mixed;        /* [blocks] lists or fix-ups make the sums of some lanes exact */
     real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until part 2 */
     real *down_memory;
     int threads;

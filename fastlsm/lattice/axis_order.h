@@ -1,23 +1,23 @@
-/* turn.h - which axis of a body runs along the lanes.
+/* axis_order.h - which axis of a body runs along the lanes.
  *
  * Blocks hold SM_LANES sites along x, so a body fills them best when its long axis is x; the lists'
  * pipeline runs along z. An engine may therefore keep a body turned: inner axis d is outer axis
  * (d + turn) % 3, a rotation, so that only particle numbers and rest coordinates change, never
  * positions. */
-#ifndef LSM_TURN_H
-#define LSM_TURN_H
+#ifndef LSM_AXIS_ORDER_H
+#define LSM_AXIS_ORDER_H
 
 #include "../../lib/engine.h"
 
 /* The lattice with its axes turned; the caller frees it. */
-void lsm_turn_voxels(const SmVoxels *voxels, int turn, SmVoxels *turned);
+void lsm_axes_voxels(const SmVoxels *voxels, int turn, SmVoxels *turned);
 
 /* inner[p] = number in the turned lattice of particle p, [particle_count]. O(particles). */
-void lsm_turn_numbers(const SmVoxels *voxels, int turn, const SmVoxels *turned, int *inner);
+void lsm_axes_numbers(const SmVoxels *voxels, int turn, const SmVoxels *turned, int *inner);
 
 /* The layout to use for `params` (AUTO resolved) and the turn that suits it. `lanes` is SM_LANES.
  */
-SmLayout lsm_turn_choose(const SmVoxels *voxels, const SmEngineParams *params, int lanes,
+SmLayout lsm_axes_choose(const SmVoxels *voxels, const SmEngineParams *params, int lanes,
                          int *turn);
 
 #endif

@@ -1,11 +1,11 @@
-#include "turn.h"
+#include "axis_order.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "lattice.h"
 
-void lsm_turn_voxels(const SmVoxels *v, int turn, SmVoxels *turned)
+void lsm_axes_voxels(const SmVoxels *v, int turn, SmVoxels *turned)
 {
     int n[3];
     for (int d = 0; d < 3; d++) n[d] = v->size[(d + turn) % 3];
@@ -25,7 +25,7 @@ void lsm_turn_voxels(const SmVoxels *v, int turn, SmVoxels *turned)
     turned->particle_count = v->particle_count;
 }
 
-void lsm_turn_numbers(const SmVoxels *v, int turn, const SmVoxels *turned, int *inner)
+void lsm_axes_numbers(const SmVoxels *v, int turn, const SmVoxels *turned, int *inner)
 {
     LsmLattice lattice;
     int(*coord)[3] = sm_alloc((size_t)v->particle_count, sizeof *coord);
@@ -55,7 +55,7 @@ static double best_fill(const SmVoxels *v, int lanes, int *turn)
     double best = 0;
     for (int t = 0; t < 3; t++) {
         SmVoxels turned;
-        lsm_turn_voxels(v, t, &turned);
+        lsm_axes_voxels(v, t, &turned);
         double fill = (double)v->cell_count / (double)(count_groups(&turned, lanes) * lanes);
         if (fill > best) *turn = t;
         if (fill > best) best = fill;
@@ -65,8 +65,8 @@ static double best_fill(const SmVoxels *v, int lanes, int *turn)
 }
 
 /* The fill from which blocks are faster than lists, as measured (shapebench kernels shows both): in
- * a box no sum needs a correction; a large body's lists are beyond the L2 cache, and at w = 1 block
- * form needs few corrections. */
+ * a box no sum needs a fix-up; a large body's lists are beyond the L2 cache, and at w = 1 block
+ * form needs few fixups. */
 static double fill_worth(const SmVoxels *v, const SmEngineParams *params)
 {
     const long large = 30000;
@@ -75,7 +75,7 @@ static double fill_worth(const SmVoxels *v, const SmEngineParams *params)
     return lists_are_slow && !(params->strain_limit > 0) ? 0.6 : 0.85;
 }
 
-SmLayout lsm_turn_choose(const SmVoxels *v, const SmEngineParams *params, int lanes, int *turn)
+SmLayout lsm_axes_choose(const SmVoxels *v, const SmEngineParams *params, int lanes, int *turn)
 {
     bool may = params->w <= lanes && params->summation != SM_SUM_NAIVE && params->instances <= 1;
     *turn = 0;

@@ -1,5 +1,5 @@
-/* sets.h - region -> plate -> bar -> particle: the paper's region-specific sub-sums (fastlsm
- * section 3.1, "Handling irregular regions").
+/* subsum_lists.h - region -> plate -> bar -> particle: the paper's region-specific sub-sums
+ * (fastlsm section 3.1, "Handling irregular regions").
  *
  * A bar holds the members of one region in one row along x, a plate the bars of one region in one
  * plane z, a region its plates. Identical bars and plates are stored once. Every list has 2w+1
@@ -9,8 +9,8 @@
  *
  * A list names its members: a row's name is its number times LSM_NAME bytes, so that the row's
  * address is base + name * (2, 4 or 8 in single precision), which a load computes by itself. */
-#ifndef LSM_SETS_H
-#define LSM_SETS_H
+#ifndef LSM_SUBSUM_LISTS_H
+#define LSM_SUBSUM_LISTS_H
 
 #include "region.h"
 
@@ -27,31 +27,31 @@ typedef struct {
     long *bar_plane;   /* [planes + 1] first bar of each plane (plane 0 starts at row 1) */
     long *plate_plane; /* [planes + 1] */
     long *bar_end;     /* [planes + 1] bars of plane z end before bar_end[z + 1]; what follows up
-                          to bar_plane[z + 1] is spare (ledger.h) */
+                          to bar_plane[z + 1] is spare (list_allocator.h) */
     long *plate_end;   /* [planes + 1] */
-} LsmSets;
+} LsmLists;
 
-typedef struct LsmSetsBuilder LsmSetsBuilder;
+typedef struct LsmListsBuilder LsmListsBuilder;
 
 /* Ends the program as out of memory where a kind has more rows than names, which are ints, tell
  * apart: from 2^28 on (some 60 GB). */
 void lsm_names_reach(long rows);
 
 /* To build lists of particles, which are numbered by `slot` (slot[p] of particle p): open, add
- * regions in rising order, close, which fills `sets` and frees the builder. What the builder was
+ * regions in rising order, close, which fills `lists` and frees the builder. What the builder was
  * given must stay as it is meanwhile. */
-LsmSetsBuilder *lsm_sets_open(const LsmLattice *lattice, const int *slot, int w);
+LsmListsBuilder *lsm_lists_open(const LsmLattice *lattice, const int *slot, int w);
 
 /* Lists the members `rows` (region.h) of particle p as the next row of the regions. O(w^2) for a
  * whole cube, O(w^2 + members) else. */
-void lsm_sets_add(LsmSetsBuilder *builder, long p, const uint64_t *rows);
-void lsm_sets_close(LsmSetsBuilder *builder, LsmSets *sets);
-void lsm_sets_free(LsmSets *sets);
+void lsm_lists_add(LsmListsBuilder *builder, long p, const uint64_t *rows);
+void lsm_lists_close(LsmListsBuilder *builder, LsmLists *lists);
+void lsm_lists_free(LsmLists *lists);
 
 /* The bar of centre column x in row (y, z) whose members are `bits` (not 0): [2w+1] names. */
-void lsm_sets_bar(const LsmLattice *lattice, const int *slot, int w, int x, int y, int z,
-                  uint64_t bits, int *row);
+void lsm_lists_bar(const LsmLattice *lattice, const int *slot, int w, int x, int y, int z,
+                   uint64_t bits, int *row);
 
-uint64_t lsm_sets_hash(const int *row, int width);
+uint64_t lsm_lists_hash(const int *row, int width);
 
 #endif

@@ -1,4 +1,4 @@
-#include "summation.h"
+#include "list_sums.h"
 
 #include <string.h>
 
@@ -68,7 +68,7 @@ SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
     const real *p = lsm->rows.p;
     for (long bar = first; bar < last; bar++) {
         uint64_t name[LSM_MAX_SIDE];
-        read_names(lsm->sets.bar, bar, side, name);
+        read_names(lsm->lists.bar, bar, side, name);
         const uint64_t *centre = name + side / 2;
         vec4 sum = load4(named(p, *centre, ROW_P)), moment = {0};
         for (int o = 1; o <= side / 2; o++) {
@@ -83,7 +83,7 @@ SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
 }
 
 void lsm_bars_up(const Lsm *lsm, int first, int last){
-#define CALL(side) bars_up(lsm, lsm->sets.bar_plane[first], lsm->sets.bar_end[last], side)
+#define CALL(side) bars_up(lsm, lsm->lists.bar_plane[first], lsm->lists.bar_end[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
@@ -93,7 +93,7 @@ SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
     const real *bar = lsm->rows.bar;
     for (long plate = first; plate < last; plate++) {
         uint64_t name[LSM_MAX_SIDE];
-        read_names(lsm->sets.plate, plate, side, name);
+        read_names(lsm->lists.plate, plate, side, name);
         const uint64_t *centre = name + side / 2;
         vec8 sum = load8(named(bar, *centre, ROW_BAR));
         vec4 moment = {0};
@@ -110,7 +110,7 @@ SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
 }
 
 void lsm_plates_up(const Lsm *lsm, int first, int last){
-#define CALL(side) plates_up(lsm, lsm->sets.plate_plane[first], lsm->sets.plate_end[last], side)
+#define CALL(side) plates_up(lsm, lsm->lists.plate_plane[first], lsm->lists.plate_end[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
@@ -119,7 +119,7 @@ void lsm_plates_up(const Lsm *lsm, int first, int last){
 SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
 {
     uint64_t name[LSM_MAX_SIDE];
-    read_names(lsm->sets.region, region, side, name);
+    read_names(lsm->lists.region, region, side, name);
     const uint64_t *centre = name + side / 2;
     const real *plate = lsm->rows.plate;
     vec16 sum = load16(named(plate, *centre, ROW_PLATE));
@@ -144,12 +144,12 @@ SM_INLINE const int *members(const int *list, int name, int side)
 static vec16 region_up_naive(const Lsm *lsm, int region)
 {
     int side = lsm->side, w = lsm->w;
-    const int *plate = lsm->sets.region + (long)region * side;
+    const int *plate = lsm->lists.region + (long)region * side;
     vec4 C = {0}, X = {0}, Y = {0}, Z = {0};
     for (int c = -w; c <= w; c++)
         for (int b = -w; b <= w; b++) {
-            const int *bar = members(lsm->sets.plate, plate[c + w], side),
-                      *particle = members(lsm->sets.bar, bar[b + w], side);
+            const int *bar = members(lsm->lists.plate, plate[c + w], side),
+                      *particle = members(lsm->lists.bar, bar[b + w], side);
             vec4 sum[4] = {{0}, {0}, {0}, {0}};
             for (int a = -w; a <= w; a++) {
                 vec4 p = load4(named(lsm->rows.p, (uint64_t)particle[a + w], ROW_P));
@@ -192,7 +192,7 @@ SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
 {
     for (long bar = first; bar < last; bar++) {
         uint64_t name[LSM_MAX_SIDE];
-        read_names(lsm->sets.bar, bar, side, name);
+        read_names(lsm->lists.bar, bar, side, name);
         const uint64_t *centre = name + side / 2;
         const real *T = lsm->rows.transform;
         vec16 sum = load16(named(T, *centre, ROW_T));
@@ -207,7 +207,7 @@ SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
 }
 
 void lsm_bars_down(const Lsm *lsm, int first, int last){
-#define CALL(side) bars_down(lsm, lsm->sets.bar_plane[first], lsm->sets.bar_end[last], side)
+#define CALL(side) bars_down(lsm, lsm->lists.bar_plane[first], lsm->lists.bar_end[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
@@ -216,7 +216,7 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
 {
     for (long plate = first; plate < last; plate++) {
         uint64_t name[LSM_MAX_SIDE];
-        read_names(lsm->sets.plate, plate, side, name);
+        read_names(lsm->lists.plate, plate, side, name);
         const uint64_t *centre = name + side / 2;
         const real *bar = lsm->rows.bar;
         vec8 sum = load8(named(bar, *centre, ROW_BAR));
@@ -233,7 +233,7 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
 }
 
 void lsm_plates_down(const Lsm *lsm, int first, int last){
-#define CALL(side) plates_down(lsm, lsm->sets.plate_plane[first], lsm->sets.plate_end[last], side)
+#define CALL(side) plates_down(lsm, lsm->lists.plate_plane[first], lsm->lists.plate_end[last], side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
@@ -241,7 +241,7 @@ void lsm_plates_down(const Lsm *lsm, int first, int last){
 SM_INLINE vec4 particle_down(const Lsm *lsm, int region, int side)
 {
     uint64_t name[LSM_MAX_SIDE];
-    read_names(lsm->sets.region, region, side, name);
+    read_names(lsm->lists.region, region, side, name);
     const uint64_t *centre = name + side / 2;
     const real *plate = lsm->rows.plate_down;
     vec4 sum = load4(named(plate, *centre, ROW_PLATE_DOWN));
@@ -257,12 +257,12 @@ SM_INLINE vec4 particle_down(const Lsm *lsm, int region, int side)
 static vec4 particle_down_naive(const Lsm *lsm, int region)
 {
     int side = lsm->side, w = lsm->w;
-    const int *plate = lsm->sets.region + (long)region * side;
+    const int *plate = lsm->lists.region + (long)region * side;
     vec4 sum = {0};
     for (int c = -w; c <= w; c++)
         for (int b = -w; b <= w; b++) {
-            const int *bar = members(lsm->sets.plate, plate[c + w], side),
-                      *particle = members(lsm->sets.bar, bar[b + w], side);
+            const int *bar = members(lsm->lists.plate, plate[c + w], side),
+                      *particle = members(lsm->lists.bar, bar[b + w], side);
             vec4 row = {0};
             for (int a = -w; a <= w; a++) {
                 const real *T = named(lsm->rows.transform, (uint64_t)particle[a + w], ROW_T);
@@ -326,8 +326,8 @@ SM_INLINE void plain_down(const int *list, long first, long last, int side, cons
 void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up)
 {
     const Rows *rows = &lsm->rows;
-    const int *list = lsm->sets.bar;
-    long from = lsm->sets.bar_plane[first], to = lsm->sets.bar_end[last];
+    const int *list = lsm->lists.bar;
+    long from = lsm->lists.bar_plane[first], to = lsm->lists.bar_end[last];
 #define CALL(side)                                                                                 \
     if (up)                                                                                        \
         plain_up(list, from, to, side, rows->transform, rows->bar);                                \
@@ -341,8 +341,8 @@ void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up)
 void lsm_plates_plain(const Lsm *lsm, int first, int last, bool up)
 {
     const Rows *rows = &lsm->rows;
-    const int *list = lsm->sets.plate;
-    long from = lsm->sets.plate_plane[first], to = lsm->sets.plate_end[last];
+    const int *list = lsm->lists.plate;
+    long from = lsm->lists.plate_plane[first], to = lsm->lists.plate_end[last];
 #define CALL(side)                                                                                 \
     if (up)                                                                                        \
         plain_up(list, from, to, side, rows->bar, rows->plate);                                    \
@@ -357,7 +357,7 @@ SM_INLINE void regions_plain(const Lsm *lsm, const int *region, vec16 *out, int 
     for (int lane = 0; lane < SM_LANES; lane++)
         out[lane] = region[lane] < 0
                         ? (vec16){0}
-                        : plain_row(lsm->sets.region, region[lane], side, lsm->rows.plate);
+                        : plain_row(lsm->lists.region, region[lane], side, lsm->rows.plate);
 }
 
 void lsm_regions_plain(const Lsm *lsm, const int *region, vec16 *out){
@@ -370,7 +370,7 @@ SM_INLINE void particles_plain(const Lsm *lsm, const int *region, real out[6][SM
 {
     for (int lane = 0; lane < SM_LANES; lane++) {
         if (region[lane] < 0) continue;
-        vec8 sum = plain_half_row(lsm->sets.region, region[lane], side, lsm->rows.plate_down,
+        vec8 sum = plain_half_row(lsm->lists.region, region[lane], side, lsm->rows.plate_down,
                                   ROW_PLATE_DOWN);
         for (int i = 0; i < 6; i++) out[i][lane] = sum[i / 3 * 4 + i % 3];
     }

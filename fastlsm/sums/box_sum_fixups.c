@@ -1,0 +1,363 @@
+#include "box_sum_fixups.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "boxes.h"
+
+/* Half a block is worked on at a time; halves are numbered through, two to a block. */
+enum { HALF = SM_LANES / 2 };
+
+/* Sites that a half's regions differ by on one way, by offset: row (c + w) * side + b + w holds
+ * bits, lane by lane, of those to subtract and, from bit 16 on, of those to add. */
+typedef struct {
+    uint32_t *lanes; /* [side^3] */
+    bool *touched;   /* [side^2] rows that are not zero */
+    FixupList list;
+    long count, room;
+    uint32_t clear; /* FixupList */
+} Way;
+
+struct FixupsBuilder {
+    const Lsm *lsm;
+    long half; /* whose regions are being added */
+    bool any;  /* have been */
+    Way up, down;
+};
+
+enum { ADD = 16 };
+
+static void open_way(const Lsm *lsm, Way *way)
+{
+    size_t side = (size_t)lsm->side;
+    way->lanes = sm_alloc(side * side * side, sizeof *way->lanes);
+    way->touched = sm_alloc(side * side, sizeof *way->touched);
+    way->list.first = sm_alloc(2 * (size_t)lsm->blocks + 1, sizeof *way->list.first);
+    way->list.clear = sm_alloc((size_t)lsm->blocks, sizeof *way->list.clear);
+}
+
+FixupsBuilder *lsm_fixups_open(const Lsm *lsm)
+{
+    FixupsBuilder *builder = sm_alloc(1, sizeof *builder);
+    builder->lsm = lsm;
+    open_way(lsm, &builder->up);
+    open_way(lsm, &builder->down);
+    return builder;
+}
+
+static void append(Way *way, Fixup fixup)
+{
+    if (way->count == way->room) {
+        way->room = 2 * way->room + 256;
+        way->list.of = sm_realloc(way->list.of, (size_t)way->room, sizeof(Fixup));
+    }
+    way->list.of[way->count++] = fixup;
+}
+
+/* The fix-ups of lanes at one offset: their sources are in the block `before` columns on and in
+ * the next one. */
+static void append_lanes(const Lsm *lsm, Way *way, const int corner[3], const int offset[3],
+                         uint32_t lanes, real sign)
+{
+    int low = corner[0] + offset[0], column = (low + SM_LANES) / SM_LANES - 1,
+        from = low - column * SM_LANES;
+    uint32_t next = lanes & (~(uint32_t)0 << (SM_LANES - from));
+    Fixup fixup = {.sign = sign};
+    for (int d = 0; d < 3; d++) fixup.offset[d] = (real)offset[d];
+    for (int k = 0; k < 2; k++) {
+        fixup.lanes = (uint16_t)(k ? next : lanes & ~next);
+        if (!fixup.lanes) continue;
+        fixup.from = (int16_t)(from - k * SM_LANES);
+        fixup.source = lsm_blocks_at(lsm, column + k, corner[1] + offset[1], corner[2] + offset[2]);
+        append(way, fixup);
+    }
+}
+
+static void append_half(const Lsm *lsm, Way *way, const int corner[3])
+{
+    int w = lsm->w, side = lsm->side;
+    const uint32_t low = ((uint32_t)1 << ADD) - 1;
+    for (int row = 0; row < side * side; row++) {
+        if (!way->touched[row]) continue;
+        uint32_t *at = way->lanes + (long)row * side;
+        for (int i = 0; i < side; i++) {
+            int offset[3] = {i - w, row % side - w, row / side - w};
+            if (at[i] & low) append_lanes(lsm, way, corner, offset, at[i] & low, -1);
+            if (at[i] >> ADD) append_lanes(lsm, way, corner, offset, at[i] >> ADD, 1);
+            at[i] = 0;
+        }
+        way->touched[row] = false;
+    }
+}
+
+static void finish_half(FixupsBuilder *builder)
+{
+    const Lsm *lsm = builder->lsm;
+    int corner[3] = {0, 0, 0}, lane = 0;
+    const int *particle = lsm->particle + builder->half * HALF;
+    while (builder->any && particle[lane] < 0) lane++;
+    for (int d = 0; d < 3 && builder->any; d++)
+        corner[d] = lsm->lattice.coord[particle[lane]][d] - (d ? 0 : lane);
+    Way *ways[2] = {&builder->up, &builder->down};
+    for (int i = 0; i < 2; i++) {
+        if (builder->any) append_half(lsm, ways[i], corner);
+        ways[i]->list.first[builder->half + 1] = ways[i]->count;
+        ways[i]->list.clear[builder->half / 2] |=
+            (uint16_t)(ways[i]->clear << builder->half % 2 * HALF);
+        ways[i]->clear = 0;
+    }
+    builder->any = false;
+    builder->half++;
+}
+
+/* `taken`: what the box sum takes of a region with `members`. */
+static void add_way(const Lsm *lsm, Way *way, int lane, const uint64_t *taken,
+                    const uint64_t *members)
+{
+    int side = lsm->side, rows = side * side, wrong = 0, count = 0;
+    for (int row = 0; row < rows; row++) {
+        wrong += __builtin_popcountll(taken[row] ^ members[row]);
+        count += __builtin_popcountll(members[row]);
+    }
+    bool clear = wrong > count;
+    way->clear |= (uint32_t)clear << lane;
+    for (int row = 0; row < rows && wrong; row++) {
+        uint64_t rest = (clear ? 0 : taken[row]) ^ members[row];
+        way->touched[row] |= rest != 0;
+        for (; rest; rest &= rest - 1) {
+            int i = __builtin_ctzll(rest);
+            way->lanes[(long)row * side + i] |= (uint32_t)1
+                                                << (lane + (members[row] >> i & 1 ? ADD : 0));
+        }
+    }
+}
+
+void lsm_fixups_add(FixupsBuilder *builder, long p, const uint64_t *rows)
+{
+    const Lsm *lsm = builder->lsm;
+    int lane = lsm->slot[p] % HALF;
+    while (builder->half < lsm->slot[p] / HALF) finish_half(builder);
+    uint64_t up[LSM_MAX_SIDE * LSM_MAX_SIDE], down[LSM_MAX_SIDE * LSM_MAX_SIDE];
+    lsm_blocks_taken(lsm, p, up, down);
+    add_way(lsm, &builder->up, lane, up, rows);
+    add_way(lsm, &builder->down, lane, down, rows);
+    builder->any = true;
+}
+
+static FixupList close_way(Way *way)
+{
+    free(way->lanes);
+    free(way->touched);
+    way->list.of = sm_realloc(way->list.of, (size_t)way->count, sizeof(Fixup));
+    return way->list;
+}
+
+/* Rows for the regions that fix-ups read on the way down. */
+static void number_rows(const Lsm *lsm, Fixups *fixups)
+{
+    FixupList *down = &fixups->down;
+    fixups->row = sm_alloc((size_t)lsm->blocks, sizeof(int));
+    for (long block = 0; block < lsm->blocks; block++) fixups->row[block] = -1;
+    for (long i = 0; i < down->first[2 * lsm->blocks]; i++) fixups->row[down->of[i].source] = 0;
+    for (long block = 0; block < lsm->blocks; block++)
+        if (!fixups->row[block]) fixups->row[block] = (int)fixups->rows++;
+    for (long i = 0; i < down->first[2 * lsm->blocks]; i++)
+        down->of[i].source = fixups->row[down->of[i].source];
+    fixups->kept = sm_alloc((size_t)fixups->rows * 12 * SM_LANES, sizeof(real));
+}
+
+void lsm_fixups_close(FixupsBuilder *builder, Lsm *lsm)
+{
+    while (builder->half < 2 * lsm->blocks) finish_half(builder);
+    Fixups *fixups = lsm->fixups = sm_alloc(1, sizeof *fixups);
+    fixups->up = close_way(&builder->up);
+    fixups->down = close_way(&builder->down);
+    free(builder);
+    number_rows(lsm, fixups);
+}
+
+enum { FIXUP_BATCH = 16 };
+
+/* What one fix-up adds to the sums of half a block. */
+typedef void FixupOne(const Lsm *lsm, const Fixup *at, half_vec *sum);
+
+/* m~ of the source, or less than nothing. */
+SM_INLINE half_vec weight_of(const Lsm *lsm, const Fixup *at)
+{
+    const ParticleConst *k = &lsm->particle_const[lsm->block_const[at->source]];
+    return at->sign * half_load((const real *)&k->weight + at->from, at->lanes);
+}
+
+/* Of the sums up of a block's regions (match.h). */
+SM_INLINE void fixup_region(const Lsm *lsm, const Fixup *at, half_vec sum[12])
+{
+    const real *x = lsm->x + at->source * 3L * SM_LANES + at->from;
+    half_vec weight = weight_of(lsm, at);
+    for (int d = 0; d < 3; d++) {
+        half_vec p = weight * half_load(x + d * SM_LANES, at->lanes);
+        sum[d] += p;
+        for (int k = 0; k < 3; k++) sum[3 + 3 * d + k] += at->offset[k] * p;
+    }
+}
+
+/* The same of m~ in place of m~ x. */
+SM_INLINE void fixup_constant(const Lsm *lsm, const Fixup *at, half_vec sum[12])
+{
+    half_vec p = weight_of(lsm, at);
+    for (int d = 0; d < 3; d++) {
+        sum[d] += p;
+        for (int k = 0; k < 3; k++) sum[3 + 3 * d + k] += at->offset[k] * p;
+    }
+}
+
+/* Of damping's four triples of sums up. */
+SM_INLINE void fixup_product(const Lsm *lsm, const Fixup *at, half_vec sum[12])
+{
+    const real *from_x = lsm->x + at->source * 3L * SM_LANES + at->from,
+               *from_v = lsm->v + at->source * 3L * SM_LANES + at->from;
+    half_vec weight = weight_of(lsm, at), x[3], v[3], p[3];
+    for (int d = 0; d < 3; d++) {
+        x[d] = half_load(from_x + d * SM_LANES, at->lanes);
+        v[d] = half_load(from_v + d * SM_LANES, at->lanes);
+        p[d] = weight * x[d];
+    }
+    for (int d = 0; d < 3; d++) {
+        int e = (d + 1) % 3, f = (d + 2) % 3;
+        sum[d] += weight * v[d];
+        sum[3 + d] += p[e] * v[f] - p[f] * v[e];
+        sum[6 + d] += p[d] * x[d];
+        sum[9 + d] += p[e] * x[f];
+    }
+}
+
+/* Of the sums down of a block's particles: of transforms at the particles. */
+SM_INLINE void fixup_goal(const Lsm *lsm, const Fixup *at, half_vec sum[3])
+{
+    const real *T = lsm->fixups->kept + at->source * 12L * SM_LANES + at->from;
+    for (int f = 0; f < 3; f++) {
+        half_vec value = half_load(T + f * SM_LANES, at->lanes);
+        for (int k = 0; k < 3; k++)
+            value -= at->offset[k] * half_load(T + (3 + 3 * f + k) * SM_LANES, at->lanes);
+        sum[f] += at->sign * value;
+    }
+}
+
+/* Of the sums down of rigid velocities. */
+SM_INLINE void fixup_velocity(const Lsm *lsm, const Fixup *at, half_vec sum[6])
+{
+    const real *kept = lsm->fixups->kept + at->source * 12L * SM_LANES + at->from;
+    for (int f = 0; f < 6; f++) sum[f] += at->sign * half_load(kept + f * SM_LANES, at->lanes);
+}
+
+/* What the fix-ups from `c` up to `end` come to. Loops are unrolled early, or the sums would
+ * not stay in registers. */
+SM_INLINE void fixup_batch(const Lsm *lsm, const Fixup *c, const Fixup *end, int count,
+                           FixupOne *fixup_one, half_vec *sum)
+{
+    half_vec all[12];
+#pragma GCC unroll 12
+    for (int f = 0; f < count; f++) all[f] = (half_vec){0};
+    for (; c < end; c++) fixup_one(lsm, c, all);
+#pragma GCC unroll 12
+    for (int f = 0; f < count; f++) sum[f] = all[f];
+}
+
+/* What all of half a block, number `at`, come to. Of thousands of like numbers, one added after the
+ * other, each would be rounded the same way; batches are summed on their own, and then batches of
+ * batches. */
+SM_INLINE void fixup_half(const Lsm *lsm, const FixupList *list, long at, int count,
+                          FixupOne *fixup_one, half_vec *sum)
+{
+    const Fixup *c = list->of + list->first[at], *end = list->of + list->first[at + 1];
+    if (end - c <= FIXUP_BATCH) {
+        fixup_batch(lsm, c, end, count, fixup_one, sum);
+        return;
+    }
+    half_vec batch[12], batches[12];
+    for (int f = 0; f < count; f++) batches[f] = sum[f] = (half_vec){0};
+    for (int i = 1; c < end; i++) {
+        const Fixup *last = end - c < FIXUP_BATCH ? end : c + FIXUP_BATCH;
+        fixup_batch(lsm, c, last, count, fixup_one, batch);
+        for (int f = 0; f < count; f++) batches[f] += batch[f];
+        c = last;
+        if (i % FIXUP_BATCH && c < end) continue;
+        for (int f = 0; f < count; f++) {
+            sum[f] += batches[f];
+            batches[f] = (half_vec){0};
+        }
+    }
+}
+
+/* Fixes up `count` sums of a block. */
+SM_INLINE void fixup_block(const Lsm *lsm, const FixupList *list, long block, int count,
+                           FixupOne *fixup_one, vec *sums)
+{
+    half_vec low[12], high[12];
+    unsigned keep = ~(unsigned)list->clear[block] & LANES_ALL;
+    fixup_half(lsm, list, 2 * block, count, fixup_one, low);
+    fixup_half(lsm, list, 2 * block + 1, count, fixup_one, high);
+#pragma GCC unroll 12
+    for (int f = 0; f < count; f++)
+        sums[f] = lanes_keep(keep, sums[f]) + lanes_join(low[f], high[f]);
+}
+
+void lsm_fixup_regions(const Lsm *lsm, long block, vec *sums)
+{
+    if (lsm->pass == PASS_CONSTANTS)
+        fixup_block(lsm, &lsm->fixups->up, block, 12, fixup_constant, sums);
+    else
+        fixup_block(lsm, &lsm->fixups->up, block, 12, fixup_region, sums);
+}
+
+void lsm_fixup_products(const Lsm *lsm, long block, vec *sums)
+{
+    fixup_block(lsm, &lsm->fixups->up, block, 12, fixup_product, sums);
+}
+
+void lsm_fixup_goals(const Lsm *lsm, long block, vec *sums)
+{
+    fixup_block(lsm, &lsm->fixups->down, block, 3, fixup_goal, sums);
+}
+
+void lsm_fixup_velocities(const Lsm *lsm, long block, vec *sums)
+{
+    fixup_block(lsm, &lsm->fixups->down, block, 6, fixup_velocity, sums);
+}
+
+static bool mends(const FixupList *list, long block)
+{
+    return list->first[2 * block] < list->first[2 * block + 2] || list->clear[block];
+}
+
+void lsm_fixups_mark(const Lsm *lsm)
+{
+    const Fixups *c = lsm->fixups;
+    for (long block = 0; block < lsm->blocks; block++) {
+        lsm->box->mixed[block] = mends(&c->up, block) || mends(&c->down, block);
+        lsm->box->listed[block] = c->row[block] >= 0;
+    }
+}
+
+void lsm_fixups_free(Fixups *fixups)
+{
+    if (!fixups) return;
+    free(fixups->up.of);
+    free(fixups->up.first);
+    free(fixups->up.clear);
+    free(fixups->down.of);
+    free(fixups->down.first);
+    free(fixups->down.clear);
+    free(fixups->row);
+    free(fixups->kept);
+    free(fixups);
+}
+
+long lsm_fixups_bytes(const Lsm *lsm)
+{
+    const Fixups *c = lsm->fixups;
+    if (!c) return 0;
+    long halves = 2 * lsm->blocks;
+    return (c->up.first[halves] + c->down.first[halves]) * (long)sizeof(Fixup) +
+           lsm->blocks * (long)(4 * sizeof(long) + 2 * sizeof(uint16_t) + sizeof(int)) +
+           c->rows * (long)(12 * SM_LANES * sizeof(real));
+}
