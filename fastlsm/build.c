@@ -4,63 +4,12 @@
 #include <string.h>
 
 #include "match.h"
-#include "pipeline.h"
 #include "step.h"
 #include "sums/box_sum_fixups.h"
 #include "sums/boxes.h"
-#include "sums/running_sums.h"
+#include "sums/sums.h"
 
-enum { SPARE_LISTS = 16 };  /* rows to spare in a layer, in sides: a few broken links' worth */
-enum { LAYER_PLANES = 8 };  /* that a chain along z runs through */
-enum { LAYER_BLOCKS = 24 }; /* of the list form: layers of about this size stay in the L2 cache */
-
-/* Groups planes into layers of at least LAYER_BLOCKS blocks and finds how far a region reaches. */
-static void build_layers(Lsm *lsm)
-{
-    int least = lsm->runs ? LAYER_PLANES : 1;
-    int planes = lsm->lattice.size[2];
-    long *count = sm_alloc((size_t)planes, sizeof *count);
-    for (long p = 0; p < lsm->lattice.count; p++) count[lsm->lattice.coord[p][2]]++;
-    lsm->layer_plane = sm_alloc((size_t)planes + 1, sizeof(int));
-    lsm->layers = 0;
-    long held = 0;
-    for (int z = 0; z < planes; z++) {
-        held += count[z];
-        bool high = z + 1 - lsm->layer_plane[lsm->layers] >= least;
-        if ((held >= LAYER_BLOCKS * SM_LANES && high) || z == planes - 1) {
-            lsm->layer_plane[++lsm->layers] = z + 1;
-            held = 0;
-        }
-    }
-    free(count);
-    lsm->reach = 0;
-    lsm->chapter = 1;
-    for (int l = 0; l < lsm->layers; l++) {
-        int reach = 0; /* layers until w planes below this one's first are covered */
-        while (l - reach > 0 && lsm->layer_plane[l - reach] > lsm->layer_plane[l] - lsm->w) reach++;
-        lsm->reach = reach > lsm->reach ? reach : lsm->reach;
-    }
-    if (lsm->layers > 1 && lsm->reach == 0) lsm->reach = 1;
-}
-
-/* Particles in canonical order, each layer beginning a new block. */
-static void build_slots(Lsm *lsm)
-{
-    long n = lsm->lattice.count, slot = 0, p = 0;
-    lsm->slot = sm_alloc((size_t)n, sizeof(int));
-    lsm->layer_block = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
-    for (int l = 0; l < lsm->layers; l++) {
-        slot = (slot + SM_LANES - 1) / SM_LANES * SM_LANES;
-        lsm->layer_block[l] = slot / SM_LANES;
-        while (p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1])
-            lsm->slot[p++] = (int)slot++;
-    }
-    lsm->blocks = (slot + SM_LANES - 1) / SM_LANES;
-    lsm->layer_block[lsm->layers] = lsm->blocks;
-    lsm->particle = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
-    for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->particle[s] = -1;
-    for (p = 0; p < n; p++) lsm->particle[lsm->slot[p]] = (int)p;
-}
+enum { SPARE_LISTS = 16 }; /* rows to spare in a layer, in sides: a few broken links' worth */
 
 typedef struct {
     LsmKey key;
@@ -208,14 +157,14 @@ static void place_lists(Lsm *lsm, const bool *listed)
     lsm->block_region = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
     for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->block_region[s] = -1;
     memset(box->mixed, 0, (size_t)lsm->blocks * sizeof(bool));
-    memset(box->listed, 0, (size_t)lsm->blocks * sizeof(bool));
+    memset(lsm->listed, 0, (size_t)lsm->blocks * sizeof(bool));
     for (long p = 0; p < n; p++) {
         if (!listed[p]) continue;
         lsm->block_region[lsm->slot[p]] = (int)region++;
         box->mixed[lsm->slot[p] / SM_LANES] = true;
     }
     for (long i = lsm->side; i < lsm->lists.bar_count * lsm->side; i++)
-        if (lsm->lists.bar[i]) box->listed[(lsm->lists.bar[i] / LSM_NAME - 1) / SM_LANES] = true;
+        if (lsm->lists.bar[i]) lsm->listed[(lsm->lists.bar[i] / LSM_NAME - 1) / SM_LANES] = true;
     if (lsm->fixups) lsm_fixups_mark(lsm);
 }
 
@@ -234,8 +183,7 @@ static void build_rows(Lsm *lsm)
         .bar = sm_alloc(bars * ROW_BAR, real_size),
         .plate = sm_alloc(plates * ROW_PLATE, real_size),
         .transform = sm_alloc(rows * ROW_T, real_size),
-        .plate_down =
-            sm_alloc(plates * (size_t)(lsm->runs ? ROW_PLATE_RUN : ROW_PLATE_DOWN), real_size),
+        .plate_down = sm_alloc(plates * (size_t)(lsm->sums->plate_down), real_size),
     };
 }
 
@@ -293,7 +241,10 @@ static void build_constants(Lsm *lsm)
     lsm->tile_const = sm_alloc((size_t)lsm->tiles, sizeof(int));
     lsm->region_const = sm_alloc((size_t)lsm->tiles, sizeof(RegionConst));
     for (long tile = 0; tile < lsm->tiles; tile++) lsm->tile_const[tile] = (int)tile;
+    const LsmSums *sums = lsm->sums;
+    if (sums->open) lsm->sums = &lsm_sums_lists; /* until it is opened */
     lsm_constants(lsm);
+    lsm->sums = sums;
     lsm->particle_const = share_records(lsm->particle_const, sizeof(ParticleConst), lsm->blocks + 1,
                                         lsm->block_const, &lsm->particle_records);
     lsm->region_const = share_records(lsm->region_const, sizeof(RegionConst), lsm->tiles,
@@ -303,6 +254,9 @@ static void build_constants(Lsm *lsm)
 static void build_memory(Lsm *lsm)
 {
     size_t tiles = (size_t)lsm->tiles;
+    lsm->live = sm_alloc(tiles, sizeof *lsm->live);
+    for (size_t s = 0; s < tiles * SM_LANES; s++)
+        lsm->live[s / SM_LANES] |= (uint16_t)((lsm->tile_slot[s] >= 0) << s % SM_LANES);
     lsm->centre = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->g = NULL;
     lsm->last = sm_alloc(tiles * 6 * SM_LANES, sizeof(short));
@@ -338,7 +292,7 @@ static void build_regions(Lsm *lsm)
     lsm_pipeline_split(lsm);
     if (lsm->box) lsm_blocks_share(lsm);
     build_constants(lsm);
-    if (lsm->runs) lsm_running_open(lsm);
+    if (lsm->sums->open) lsm->sums->open(lsm);
     if (lsm->params.strain_limit > 0) return;
     free(lsm->members);
     lsm->members = NULL;
@@ -370,6 +324,16 @@ static void take_masses(Lsm *lsm, const double *mass)
     for (long p = 0; p < n; p++) lsm->mass[p] = mass[p] / lsm->mass_unit;
 }
 
+/* The first form that applies. */
+static void choose_sums(Lsm *lsm)
+{
+    static const LsmSums *const forms[] = {&lsm_sums_naive, &lsm_sums_boxes, &lsm_sums_running,
+                                           &lsm_sums_lists};
+    int i = 0;
+    while (!forms[i]->applies(lsm)) i++;
+    lsm->sums = forms[i];
+}
+
 Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
 {
     Lsm *lsm = sm_alloc(1, sizeof *lsm);
@@ -382,13 +346,8 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     take_masses(lsm, params->mass);
     if (params->strain_limit > 0) lsm->mark = sm_alloc((size_t)n, 1);
     lsm->spare = SPARE_LISTS * lsm->side;
-    if (params->layout == SM_LAYOUT_BLOCKS) {
-        lsm_blocks_build(lsm);
-    } else {
-        lsm->runs = lsm_runs(lsm);
-        build_layers(lsm);
-        build_slots(lsm);
-    }
+    choose_sums(lsm);
+    lsm->sums->lay_out(lsm);
     lsm->x = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->v = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     build_regions(lsm);
@@ -421,7 +380,7 @@ static void free_regions(Lsm *lsm)
     void *all[] = {lsm->tile_slot,    lsm->layer_tile,  lsm->copy,           lsm->layer_copy,
                    lsm->members,      lsm->block_const, lsm->particle_const, lsm->tile_const,
                    lsm->region_const, lsm->centre,      lsm->last,           lsm->sweeps,
-                   lsm->stretch};
+                   lsm->stretch,      lsm->live};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
@@ -469,7 +428,7 @@ long lsm_bytes(const Lsm *lsm)
                                 : (lists->bar_count + lists->plate_count + lists->region_room) *
                                       lists->side * (long)sizeof(int);
     bytes += ((long)row_slots(lsm) * (ROW_P + ROW_T) + lists->bar_count * ROW_BAR +
-              lists->plate_count * (ROW_PLATE + (lsm->runs ? ROW_PLATE_RUN : ROW_PLATE_DOWN))) *
+              lists->plate_count * (ROW_PLATE + (lsm->sums->plate_down))) *
              real_size;
     return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0) + lsm_fixups_bytes(lsm);
 }
@@ -479,8 +438,9 @@ void lsm_free(Lsm *lsm)
     free_regions(lsm);
     lsm_blocks_free(lsm->box);
     lsm_lattice_free(&lsm->lattice);
-    void *all[] = {lsm->mass,        lsm->slot,        lsm->particle,     lsm->x,        lsm->v,
-                   lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->obstacle, lsm->mark};
+    void *all[] = {lsm->mass,     lsm->slot,        lsm->particle,    lsm->x,
+                   lsm->v,        lsm->layer_plane, lsm->layer_block, lsm->thread_layer,
+                   lsm->obstacle, lsm->mark,        lsm->listed};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     free(lsm);
 }

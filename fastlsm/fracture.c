@@ -120,8 +120,7 @@ static bool revise_lists(Lsm *lsm, long p, const uint64_t *rows, int count, cons
         *region = add_region(lsm);
         lsm->box->mixed[slot / SM_LANES] = true;
     }
-    for (int i = 0; i < count && lsm->box; i++)
-        lsm->box->listed[lsm->slot[member[i]] / SM_LANES] = true;
+    for (int i = 0; i < count && lsm->box; i++) lsm->listed[lsm->slot[member[i]] / SM_LANES] = true;
     return lsm_allocator_revise(lsm->allocator, &lsm->lists, &lsm->lattice, lsm->slot, p, *region,
                                 rows);
 }

@@ -58,10 +58,10 @@ typedef struct {
 /* Row 0 of every array is zero (the absent member), slot s is row s + 1, and row slots + 1 takes
  * what empty lanes write. */
 
-typedef enum { PASS_STEP, PASS_GOALS, PASS_CONSTANTS } Pass;
-
-typedef struct Blocks Blocks; /* box sums: boxes.h */
-typedef struct Fixups Fixups; /* of box sums: box_sum_fixups.h */
+typedef struct LsmPass LsmPass; /* what is summed, and what for: sums.h */
+typedef struct LsmSums LsmSums; /* a form of the sums: sums.h */
+typedef struct Blocks Blocks;   /* box sums: boxes.h */
+typedef struct Fixups Fixups;   /* of box sums: box_sum_fixups.h */
 
 typedef struct Lsm {
     /* the body */
@@ -72,7 +72,6 @@ typedef struct Lsm {
     LsmInterior interior;
     LsmLists lists;
     LsmListAllocator *allocator;    /* NULL for a body that cannot break */
-    bool runs;                      /* sums run over chains once they are there */
     LsmRunningLists *running_lists; /* in place of the lists of `lists`, or NULL; a region's base is
                           a row of rows.transform */
     real (*running_factor)[2];      /* [LSM_FACTORS] */
@@ -99,6 +98,7 @@ typedef struct Lsm {
     long tiles;
     int *tile_slot;  /* [tiles * lanes] slot of the region's centre, or -1 */
     int *tile_const; /* [tiles] */
+    uint16_t *live;  /* [tiles] the lanes with a region, as bits */
     RegionConst *region_const;
     real *centre;   /* [tiles][3][lanes] c_r, kept for damping; room for g */
     short *last;    /* [tiles][6][lanes] two columns of the last rotation (rotate_lanes.h) */
@@ -116,9 +116,12 @@ typedef struct Lsm {
     int *thread_layer;              /* [threads + 1] first layer of each thread */
 
     Rows rows;
+    bool *listed;   /* [blocks] lists or fix-ups read what this block brings down, and lists its
+                       particles: rows of them are needed; NULL in list form: all are */
     Blocks *box;    /* NULL in list form */
     Fixups *fixups; /* in block form in place of lists, but for a body that can break */
-    Pass pass;
+    const LsmPass *pass;
+    const LsmSums *sums;
     SmLaps *laps; /* of thread 0, or NULL */
     long steps;
     bool damp_now;
@@ -160,34 +163,6 @@ SM_INLINE void tile_regions(const Lsm *lsm, long tile, int region[SM_LANES])
     const int *slot = lsm->tile_slot + tile * SM_LANES;
     for (int lane = 0; lane < SM_LANES; lane++)
         region[lane] = slot[lane] < 0 ? -1 : lsm->particle[slot[lane]];
-}
-
-/* Chains: the rows of rows.transform that belong to a tile's regions. */
-SM_INLINE void tile_rows(const Lsm *lsm, long tile, const real *row[SM_LANES])
-{
-    const int *slot = lsm->tile_slot + tile * SM_LANES;
-    for (int lane = 0; lane < SM_LANES; lane++)
-        row[lane] = lsm->rows.transform + (slot[lane] + 1) * (long)ROW_T;
-}
-
-/* The first three values of each four in a block's rows of rows.transform, `count` in all. */
-SM_INLINE void slot_values(const Lsm *lsm, long block, int count, real (*out)[SM_LANES])
-{
-    const real *row = lsm->rows.transform + (block * SM_LANES + 1) * ROW_T;
-    for (int lane = 0; lane < SM_LANES; lane++)
-        for (int i = 0; i < count; i++) out[i][lane] = row[lane * ROW_T + i / 3 * 4 + i % 3];
-}
-
-/* Something for only some blocks, which is not inline, on a copy of their vectors: if it took the
- * address of the vectors themselves, those of all blocks would leave the registers. */
-typedef void BlockWork(const Lsm *lsm, long block, vec *values);
-
-SM_INLINE void on_copy(BlockWork *work, const Lsm *lsm, long block, int count, vec *values)
-{
-    vec copy[12];
-    lanes_copy(count, values, copy);
-    work(lsm, block, copy);
-    lanes_copy(count, copy, values);
 }
 
 #endif

@@ -19,6 +19,6 @@ void lsm_goals(Lsm *lsm);
 void lsm_constants(Lsm *lsm);
 
 /* Region damping (fastlsm eq. 14), then x += v. Needs `centre` of this step's shape matching. */
-void lsm_damp(Lsm *lsm);
+void lsm_damp(Lsm *lsm, SmLaps *laps);
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "boxes.h"
+#include "sums.h"
 
 /* Half a block is worked on at a time; halves are numbered through, two to a block. */
 enum { HALF = SM_LANES / 2 };
@@ -237,7 +238,8 @@ SM_INLINE void fixup_goal(const Lsm *lsm, const Fixup *at, half_vec sum[3])
     for (int f = 0; f < 3; f++) {
         half_vec value = half_load(T + f * SM_LANES, at->lanes);
         for (int k = 0; k < 3; k++)
-            value -= at->offset[k] * half_load(T + (3 + 3 * f + k) * SM_LANES, at->lanes);
+            value -=
+                at->offset[k] * half_load(T + (3 + 3 * ((k + 1) % 3) + f) * SM_LANES, at->lanes);
         sum[f] += at->sign * value;
     }
 }
@@ -303,7 +305,7 @@ SM_INLINE void fixup_block(const Lsm *lsm, const FixupList *list, long block, in
 
 void lsm_fixup_regions(const Lsm *lsm, long block, vec *sums)
 {
-    if (lsm->pass == PASS_CONSTANTS)
+    if (lsm->pass->masses)
         fixup_block(lsm, &lsm->fixups->up, block, 12, fixup_constant, sums);
     else
         fixup_block(lsm, &lsm->fixups->up, block, 12, fixup_region, sums);
@@ -324,6 +326,12 @@ void lsm_fixup_velocities(const Lsm *lsm, long block, vec *sums)
     fixup_block(lsm, &lsm->fixups->down, block, 6, fixup_velocity, sums);
 }
 
+void lsm_fixups_keep(const Lsm *lsm, long block, const real *down)
+{
+    memcpy(lsm->fixups->kept + lsm->fixups->row[block] * (long)TILE_DOWN, down,
+           TILE_DOWN * sizeof(real));
+}
+
 static bool mends(const FixupList *list, long block)
 {
     return list->first[2 * block] < list->first[2 * block + 2] || list->clear[block];
@@ -334,7 +342,7 @@ void lsm_fixups_mark(const Lsm *lsm)
     const Fixups *c = lsm->fixups;
     for (long block = 0; block < lsm->blocks; block++) {
         lsm->box->mixed[block] = mends(&c->up, block) || mends(&c->down, block);
-        lsm->box->listed[block] = c->row[block] >= 0;
+        lsm->listed[block] = c->row[block] >= 0;
     }
 }
 

@@ -19,6 +19,7 @@
 #define lsm_fixups_close     SM_NAME(lsm_fixups_close)
 #define lsm_fixups_mark      SM_NAME(lsm_fixups_mark)
 #define lsm_fixups_free      SM_NAME(lsm_fixups_free)
+#define lsm_fixups_keep      SM_NAME(lsm_fixups_keep)
 #define lsm_fixups_bytes     SM_NAME(lsm_fixups_bytes)
 #define lsm_fixup_regions    SM_NAME(lsm_fixup_regions)
 #define lsm_fixup_products   SM_NAME(lsm_fixup_products)
@@ -69,12 +70,7 @@ void lsm_fixup_products(const Lsm *lsm, long block, vec *sums);
 void lsm_fixup_goals(const Lsm *lsm, long block, vec *sums);
 void lsm_fixup_velocities(const Lsm *lsm, long block, vec *sums);
 
-/* Keeps what a block's regions bring down (BlockSolve), for fix-ups that read it. */
-SM_INLINE void keep_solved(const Lsm *lsm, long block, int values, const vec *out)
-{
-    real *kept = lsm->fixups->kept + lsm->fixups->row[block] * 12L * SM_LANES;
-#pragma GCC unroll 12
-    for (int i = 0; i < values; i++) lanes_store(kept + i * SM_LANES, out[i]);
-}
+/* Keeps what a block's regions bring down (LsmPass), for fix-ups that read it. */
+void lsm_fixups_keep(const Lsm *lsm, long block, const real *down);
 
 #endif

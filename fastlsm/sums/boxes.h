@@ -47,9 +47,6 @@ struct Blocks {
     int *along_z;       /* [blocks][side] the block at the same place in planes z - w .. z + w; the
                            empty block (number `blocks`) where there is none */
     uint64_t *passable; /* bitmap of the sites whose sums other sites' sums pass through */
-    uint16_t *site;     /* [blocks] the lanes that hold a particle, as bits */
-    bool *listed;       /* [blocks] lists or fix-ups read what this block brings down, and
-                           lists its particles: rows of them are needed */
     bool *mixed;        /* [blocks] lists or fix-ups make the sums of some lanes exact */
     real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until part 2 */
     real *down_memory;
@@ -60,15 +57,6 @@ struct Blocks {
     real **window;   /* [threads] up, down: the z windows of a plane's places, [12] and [6] blocks
                         each; none unless `running` */
 };
-
-/* What a pass does with the 12 sums of a group of blocks' regions that follow each other (shape
- * matching: match.h); it writes what they bring down to `out`, where blocks are BLOCK values apart:
- * 12 vectors each (q, Rz, Rx, Ry) or 6 (damping: omega, v_r - omega x c_r). */
-typedef void BlockSolve(Lsm *lsm, int layer, long block, int blocks, vec (*sum)[12], real *out,
-                        SmLaps *laps);
-
-/* The most blocks of a group. */
-enum { BLOCK_GROUP = 4 };
 
 /* Blocks, rows and neighbours of the lattice; sets lsm->blocks, slot, particle, layers. */
 void lsm_blocks_build(Lsm *lsm);

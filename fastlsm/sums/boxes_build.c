@@ -12,7 +12,7 @@ static bool occupied(const LsmLattice *l, int column, int y, int z)
     return false;
 }
 
-static void add_block(Lsm *lsm, Blocks *box, int column, int y, int z)
+static void add_block(Lsm *lsm, int column, int y, int z)
 {
     long block = lsm->blocks++;
     for (int lane = 0; lane < SM_LANES; lane++) {
@@ -20,7 +20,6 @@ static void add_block(Lsm *lsm, Blocks *box, int column, int y, int z)
         lsm->particle[block * SM_LANES + lane] = (int)p;
         if (p < 0) continue;
         lsm->slot[p] = (int)(block * SM_LANES + lane);
-        box->site[block] |= (uint16_t)(1 << lane);
     }
 }
 
@@ -47,7 +46,7 @@ static void add_row(Lsm *lsm, Blocks *box, int y, int z, int *runs)
             *run = (BlockRun){.y = y, .column = column, .first = (int)lsm->blocks};
         }
         run->count++;
-        add_block(lsm, box, column, y, z);
+        add_block(lsm, column, y, z);
     }
 }
 
@@ -126,7 +125,7 @@ static void find_places(const Lsm *lsm, Blocks *box)
 }
 
 /* A bitmap of what sums along z and y may pass through: sites whose blocks exist, but at w = 1
- * particles only (`masked` in blocks.c). */
+ * particles only (`masked` in boxes.c). */
 static uint64_t *passable_sites(const Lsm *lsm)
 {
     const LsmLattice *l = &lsm->lattice;
@@ -157,8 +156,7 @@ void lsm_blocks_build(Lsm *lsm)
     box->plane_run = sm_alloc((size_t)planes + 1, sizeof(int));
     box->row_run = sm_alloc((size_t)l->size[1] * (size_t)planes + 1, sizeof(int));
     box->run = sm_alloc((size_t)blocks + 1, sizeof(BlockRun));
-    box->site = sm_alloc((size_t)blocks, sizeof *box->site);
-    box->listed = sm_alloc((size_t)blocks, sizeof(bool));
+    lsm->listed = sm_alloc((size_t)blocks, sizeof(bool));
     box->mixed = sm_alloc((size_t)blocks, sizeof(bool));
     lsm->layers = planes;
     /* a window that moves from plane z - 1 to z also reads what it leaves, plane z - 1 - w */
@@ -209,7 +207,7 @@ bool lsm_blocks_regular(const Lsm *lsm, long p, const uint64_t *rows)
     return !memcmp(up, rows, size) && !memcmp(down, rows, size);
 }
 
-/* Reals of scratch that one thread needs: see blocks.c. */
+/* Reals of scratch that one thread needs: see boxes.c. */
 static size_t scratch_size(const Lsm *lsm)
 {
     size_t width = (size_t)lsm->box->width, side = (size_t)lsm->side;
@@ -282,7 +280,7 @@ void lsm_blocks_share(Lsm *lsm)
 long lsm_blocks_bytes(const Lsm *lsm)
 {
     long a_block =
-        (lsm->side + 1) * (long)sizeof(int) + (long)sizeof *lsm->box->site + 2 * (long)sizeof(bool);
+        (lsm->side + 1) * (long)sizeof(int) + (long)sizeof *lsm->live + 2 * (long)sizeof(bool);
     long rows = lsm->box->plane_run[lsm->layers] * (long)sizeof(BlockRun);
     const LsmLattice *l = &lsm->lattice;
     rows += (long)l->size[1] * l->size[2] * (l->words * (long)sizeof(uint64_t) + (long)sizeof(int));
@@ -298,9 +296,7 @@ void lsm_blocks_free(Blocks *box)
     free(box->run);
     free(box->place);
     free(box->along_z);
-    free(box->site);
     free(box->passable);
-    free(box->listed);
     free(box->mixed);
     free(box);
 }

@@ -1,7 +1,8 @@
-#include "list_sums.h"
-
+/* list_sums.c - sums through bars and plates (fastlsm section 3.1): O(w), any shape. */
 #include <string.h>
 
+#include "list_rows.h"
+#include "lists.h"
 #include "window.h"
 
 /* Each kernel is one body in which `side` is a constant for the usual widths. */
@@ -57,12 +58,6 @@ SM_INLINE void read_names(const int *list, long row, int side, uint64_t *name)
     name[side - 1] = (uint64_t)list[side - 1];
 }
 
-/* The row of this name among `rows`, which are `width` values wide. */
-SM_INLINE const real *named(const real *rows, uint64_t name, int width)
-{
-    return (const real *)((const char *)rows + name * ((size_t)width * sizeof(real) / LSM_NAME));
-}
-
 SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
 {
     const real *p = lsm->rows.p;
@@ -80,12 +75,6 @@ SM_INLINE void bars_up(const Lsm *lsm, long first, long last, int side)
         real *out = lsm->rows.bar + bar * ROW_BAR;
         store8(out, __builtin_shufflevector(sum, moment, 0, 1, 2, 3, 4, 5, 6, 7));
     }
-}
-
-void lsm_bars_up(const Lsm *lsm, int first, int last){
-#define CALL(side) bars_up(lsm, lsm->lists.bar_plane[first], lsm->lists.bar_end[last], side)
-    FOR_SIDE(lsm->side, CALL)
-#undef CALL
 }
 
 SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
@@ -109,12 +98,6 @@ SM_INLINE void plates_up(const Lsm *lsm, long first, long last, int side)
     }
 }
 
-void lsm_plates_up(const Lsm *lsm, int first, int last){
-#define CALL(side) plates_up(lsm, lsm->lists.plate_plane[first], lsm->lists.plate_end[last], side)
-    FOR_SIDE(lsm->side, CALL)
-#undef CALL
-}
-
 /* The last four of a plate's row are never written: they stay zero. */
 SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
 {
@@ -131,59 +114,6 @@ SM_INLINE vec16 region_up(const Lsm *lsm, int region, int side)
         moment = WINDOW_MOMENT(moment, o, FIRST_FOUR(right) - FIRST_FOUR(left));
     }
     return sum + widen_last(moment);
-}
-
-/* The list of the row of this name. */
-SM_INLINE const int *members(const int *list, int name, int side)
-{
-    return list + (long)(name / LSM_NAME) * side;
-}
-
-/* Without reuse, member by member: the O(w^3) form. Rows are summed on their own first, so that
- * single precision adds numbers of like size. */
-static vec16 region_up_naive(const Lsm *lsm, int region)
-{
-    int side = lsm->side, w = lsm->w;
-    const int *plate = lsm->lists.region + (long)region * side;
-    vec4 C = {0}, X = {0}, Y = {0}, Z = {0};
-    for (int c = -w; c <= w; c++)
-        for (int b = -w; b <= w; b++) {
-            const int *bar = members(lsm->lists.plate, plate[c + w], side),
-                      *particle = members(lsm->lists.bar, bar[b + w], side);
-            vec4 sum[4] = {{0}, {0}, {0}, {0}};
-            for (int a = -w; a <= w; a++) {
-                vec4 p = load4(named(lsm->rows.p, (uint64_t)particle[a + w], ROW_P));
-                sum[0] += p;
-                sum[1] += (real)a * p;
-                sum[2] += (real)b * p;
-                sum[3] += (real)c * p;
-            }
-            C += sum[0];
-            X += sum[1];
-            Y += sum[2];
-            Z += sum[3];
-        }
-    vec8 low = __builtin_shufflevector(C, X, 0, 1, 2, 3, 4, 5, 6, 7);
-    vec8 high = __builtin_shufflevector(Y, Z, 0, 1, 2, 3, 4, 5, 6, 7);
-    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-}
-
-SM_INLINE void regions_up(const Lsm *lsm, const int *region, vec16 *out, int side)
-{
-    for (int lane = 0; lane < SM_LANES; lane++)
-        out[lane] = region[lane] < 0 ? (vec16){0} : region_up(lsm, region[lane], side);
-}
-
-void lsm_regions_up(const Lsm *lsm, const int *region, vec16 *out)
-{
-    if (lsm->params.summation == SM_SUM_NAIVE) {
-        for (int lane = 0; lane < SM_LANES; lane++)
-            out[lane] = region[lane] < 0 ? (vec16){0} : region_up_naive(lsm, region[lane]);
-        return;
-    }
-#define CALL(side) regions_up(lsm, region, out, side)
-    FOR_SIDE(lsm->side, CALL)
-#undef CALL
 }
 
 /* A transform's row is (q, Rz, Ry, Rx): each pass uses the last vector up. What a pass leaves in
@@ -206,12 +136,6 @@ SM_INLINE void bars_down(const Lsm *lsm, long first, long last, int side)
     }
 }
 
-void lsm_bars_down(const Lsm *lsm, int first, int last){
-#define CALL(side) bars_down(lsm, lsm->lists.bar_plane[first], lsm->lists.bar_end[last], side)
-    FOR_SIDE(lsm->side, CALL)
-#undef CALL
-}
-
 SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
 {
     for (long plate = first; plate < last; plate++) {
@@ -232,12 +156,6 @@ SM_INLINE void plates_down(const Lsm *lsm, long first, long last, int side)
     }
 }
 
-void lsm_plates_down(const Lsm *lsm, int first, int last){
-#define CALL(side) plates_down(lsm, lsm->lists.plate_plane[first], lsm->lists.plate_end[last], side)
-    FOR_SIDE(lsm->side, CALL)
-#undef CALL
-}
-
 SM_INLINE vec4 particle_down(const Lsm *lsm, int region, int side)
 {
     uint64_t name[LSM_MAX_SIDE];
@@ -252,43 +170,6 @@ SM_INLINE vec4 particle_down(const Lsm *lsm, int region, int side)
         sum -= (real)o * (load4(right + 4) - load4(left + 4));
     }
     return sum;
-}
-
-static vec4 particle_down_naive(const Lsm *lsm, int region)
-{
-    int side = lsm->side, w = lsm->w;
-    const int *plate = lsm->lists.region + (long)region * side;
-    vec4 sum = {0};
-    for (int c = -w; c <= w; c++)
-        for (int b = -w; b <= w; b++) {
-            const int *bar = members(lsm->lists.plate, plate[c + w], side),
-                      *particle = members(lsm->lists.bar, bar[b + w], side);
-            vec4 row = {0};
-            for (int a = -w; a <= w; a++) {
-                const real *T = named(lsm->rows.transform, (uint64_t)particle[a + w], ROW_T);
-                row += load4(T) - (real)a * load4(T + 12) - (real)b * load4(T + 8) -
-                       (real)c * load4(T + 4);
-            }
-            sum += row;
-        }
-    return sum;
-}
-
-SM_INLINE void particles_down(const Lsm *lsm, const int *region, real out[3][SM_LANES], int side)
-{
-    bool naive = lsm->params.summation == SM_SUM_NAIVE;
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        if (region[lane] < 0) continue;
-        vec4 sum =
-            naive ? particle_down_naive(lsm, region[lane]) : particle_down(lsm, region[lane], side);
-        for (int d = 0; d < 3; d++) out[d][lane] = sum[d];
-    }
-}
-
-void lsm_particles_down(const Lsm *lsm, const int *region, real out[3][SM_LANES]){
-#define CALL(side) particles_down(lsm, region, out, side)
-    FOR_SIDE(lsm->side, CALL)
-#undef CALL
 }
 
 /* Sums without moments, of all values of a row or of the first eight. */
@@ -323,62 +204,126 @@ SM_INLINE void plain_down(const int *list, long first, long last, int side, cons
         store8(out + row * out_width, plain_half_row(list, row, side, in, in_width));
 }
 
-void lsm_bars_plain(const Lsm *lsm, int first, int last, bool up)
+SM_INLINE void subsums_up_of(const Lsm *lsm, int layer, bool plain, int side)
 {
+    const LsmLists *lists = &lsm->lists;
     const Rows *rows = &lsm->rows;
-    const int *list = lsm->lists.bar;
-    long from = lsm->lists.bar_plane[first], to = lsm->lists.bar_end[last];
-#define CALL(side)                                                                                 \
-    if (up)                                                                                        \
-        plain_up(list, from, to, side, rows->transform, rows->bar);                                \
-    else                                                                                           \
-        plain_down(list, from, to, side, rows->transform, ROW_T, rows->bar, ROW_BAR)
-    FOR_SIDE(lsm->side, CALL)
-#undef CALL
-}
-
-/* The last four values stay zero on the way up, as region_up() wants to find them. */
-void lsm_plates_plain(const Lsm *lsm, int first, int last, bool up)
-{
-    const Rows *rows = &lsm->rows;
-    const int *list = lsm->lists.plate;
-    long from = lsm->lists.plate_plane[first], to = lsm->lists.plate_end[last];
-#define CALL(side)                                                                                 \
-    if (up)                                                                                        \
-        plain_up(list, from, to, side, rows->bar, rows->plate);                                    \
-    else                                                                                           \
-        plain_down(list, from, to, side, rows->bar, ROW_BAR, rows->plate_down, ROW_PLATE_DOWN)
-    FOR_SIDE(lsm->side, CALL)
-#undef CALL
-}
-
-SM_INLINE void regions_plain(const Lsm *lsm, const int *region, vec16 *out, int side)
-{
-    for (int lane = 0; lane < SM_LANES; lane++)
-        out[lane] = region[lane] < 0
-                        ? (vec16){0}
-                        : plain_row(lsm->lists.region, region[lane], side, lsm->rows.plate);
-}
-
-void lsm_regions_plain(const Lsm *lsm, const int *region, vec16 *out){
-#define CALL(side) regions_plain(lsm, region, out, side)
-    FOR_SIDE(lsm->side, CALL)
-#undef CALL
-}
-
-SM_INLINE void particles_plain(const Lsm *lsm, const int *region, real out[6][SM_LANES], int side)
-{
-    for (int lane = 0; lane < SM_LANES; lane++) {
-        if (region[lane] < 0) continue;
-        vec8 sum = plain_half_row(lsm->lists.region, region[lane], side, lsm->rows.plate_down,
-                                  ROW_PLATE_DOWN);
-        for (int i = 0; i < 6; i++) out[i][lane] = sum[i / 3 * 4 + i % 3];
+    int first = lsm->layer_plane[layer], last = lsm->layer_plane[layer + 1];
+    long bar = lists->bar_plane[first], bars = lists->bar_end[last];
+    long plate = lists->plate_plane[first], plates = lists->plate_end[last];
+    if (plain) { /* the last four values stay zero, as region_up() wants to find them */
+        plain_up(lists->bar, bar, bars, side, rows->transform, rows->bar);
+        plain_up(lists->plate, plate, plates, side, rows->bar, rows->plate);
+    } else {
+        bars_up(lsm, bar, bars, side);
+        plates_up(lsm, plate, plates, side);
     }
 }
 
-void lsm_particles_plain(const Lsm *lsm, const int *region, real out[6][SM_LANES])
-{
-#define CALL(side) particles_plain(lsm, region, out, side)
+static void subsums_up(const Lsm *lsm, int layer, bool plain){
+#define CALL(side) subsums_up_of(lsm, layer, plain, side)
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
 }
+
+SM_INLINE void subsums_down_of(const Lsm *lsm, int layer, bool plain, int side)
+{
+    const LsmLists *lists = &lsm->lists;
+    const Rows *rows = &lsm->rows;
+    int first = lsm->layer_plane[layer], last = lsm->layer_plane[layer + 1];
+    long bar = lists->bar_plane[first], bars = lists->bar_end[last];
+    long plate = lists->plate_plane[first], plates = lists->plate_end[last];
+    if (plain) {
+        plain_down(lists->bar, bar, bars, side, rows->transform, ROW_T, rows->bar, ROW_BAR);
+        plain_down(lists->plate, plate, plates, side, rows->bar, ROW_BAR, rows->plate_down,
+                   ROW_PLATE_DOWN);
+    } else {
+        bars_down(lsm, bar, bars, side);
+        plates_down(lsm, plate, plates, side);
+    }
+}
+
+static void subsums_down(const Lsm *lsm, int layer, bool plain){
+#define CALL(side) subsums_down_of(lsm, layer, plain, side)
+    FOR_SIDE(lsm->side, CALL)
+#undef CALL
+}
+
+SM_INLINE void regions_of(const Lsm *lsm, const int *region, bool plain, vec16 *out, int side)
+{
+    for (int lane = 0; lane < SM_LANES; lane++)
+        out[lane] = region[lane] < 0 ? (vec16){0}
+                    : plain ? plain_row(lsm->lists.region, region[lane], side, lsm->rows.plate)
+                            : region_up(lsm, region[lane], side);
+}
+
+void lsm_list_kernels_regions(const Lsm *lsm, const int *region, bool plain, vec sum[12])
+{
+    vec16 rows[SM_LANES];
+    const real *row[SM_LANES];
+#define CALL(side)                                                                                 \
+    if (plain)                                                                                     \
+        regions_of(lsm, region, true, rows, side);                                                 \
+    else                                                                                           \
+        regions_of(lsm, region, false, rows, side)
+    FOR_SIDE(lsm->side, CALL)
+#undef CALL
+    for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&rows[lane];
+    lsm_lists_sums_of_rows(row, plain, sum);
+}
+
+static void tile_sums(const Lsm *lsm, long tile, bool plain, vec sum[12])
+{
+    int region[SM_LANES];
+    tile_regions(lsm, tile, region);
+    lsm_list_kernels_regions(lsm, region, plain, sum);
+}
+
+/* Scalars go where their lanes are: an insert into a vector would wait for the others. */
+SM_INLINE void particles_of(const Lsm *lsm, const int *region, bool plain, real (*out)[SM_LANES],
+                            int side)
+{
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        if (region[lane] < 0) continue;
+        if (plain) {
+            vec8 sum = plain_half_row(lsm->lists.region, region[lane], side, lsm->rows.plate_down,
+                                      ROW_PLATE_DOWN);
+            for (int i = 0; i < 6; i++) out[i][lane] = sum[i / 3 * 4 + i % 3];
+        } else {
+            vec4 sum = particle_down(lsm, region[lane], side);
+            for (int d = 0; d < 3; d++) out[d][lane] = sum[d];
+        }
+    }
+}
+
+static void block_sums(const Lsm *lsm, long block, bool plain, vec sum[6])
+{
+    const int *region = lsm->block_region + block * SM_LANES;
+    real(*out)[SM_LANES] = (real(*)[SM_LANES])sum;
+#define CALL(side)                                                                                 \
+    if (plain)                                                                                     \
+        particles_of(lsm, region, true, out, side);                                                \
+    else                                                                                           \
+        particles_of(lsm, region, false, out, side)
+    FOR_SIDE(lsm->side, CALL)
+#undef CALL
+}
+
+const LsmListKernels lsm_list_kernels = {
+    .subsums_up = subsums_up, .subsums_down = subsums_down, .tile = tile_sums, .block = block_sums};
+
+static bool applies(const Lsm *lsm)
+{
+    (void)lsm;
+    return true;
+}
+
+const LsmSums lsm_sums_lists = {
+    .name = "lists",
+    .applies = applies,
+    .lay_out = lsm_lists_lay_out,
+    .part = {lsm_lists_subsums, lsm_lists_solve, lsm_lists_end},
+    .lists = &lsm_list_kernels,
+    .layer_planes = 1,
+    .plate_down = ROW_PLATE_DOWN,
+};

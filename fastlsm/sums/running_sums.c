@@ -1,6 +1,10 @@
-#include "running_sums.h"
-
+/* running_sums.c - the sums over running lists (running_lists.h): O(1) a row for any shape.
+ *
+ * A row's sum stays where the rows made from it find it: bars and plates in their own rows, regions
+ * and, on the way down, particles in rows.transform, which holds nothing else meanwhile. */
 #include <stdlib.h>
+
+#include "lists.h"
 
 enum { RUN_LEAST_W = 4, WIDTH = 16 }; /* measured: at w = 3 the lists are as fast */
 
@@ -66,67 +70,83 @@ SM_INLINE void running_slots(const Lsm *lsm, int layer, Level level)
     }
 }
 
-void lsm_running_sets_up(const Lsm *lsm, int layer, bool damping)
+SM_INLINE void subsums(const Lsm *lsm, int layer, Level bar, Level plate)
 {
     const LsmLists *lists = &lsm->lists;
-    const Rows *r = &lsm->rows;
     int first = lsm->layer_plane[layer], last = lsm->layer_plane[layer + 1];
-    long bar = lists->bar_plane[first], bars = lists->bar_end[last];
-    long plate = lists->plate_plane[first], plates = lists->plate_end[last];
-    if (damping) {
-        running_rows(lsm, &lsm->running_lists->bar, bar, bars,
-                     (Level){r->transform, ROW_T, 4, r->bar, NONE, 0, 0});
-        running_rows(lsm, &lsm->running_lists->plate, plate, plates,
-                     (Level){r->bar, ROW_BAR, 4, r->plate, NONE, 0, 0});
-    } else {
-        running_rows(lsm, &lsm->running_lists->bar, bar, bars,
-                     (Level){r->p, ROW_P, 1, r->bar, UP, 0, 1});
-        running_rows(lsm, &lsm->running_lists->plate, plate, plates,
-                     (Level){r->bar, ROW_BAR, 2, r->plate, UP, 0, 2});
-    }
+    running_rows(lsm, &lsm->running_lists->bar, lists->bar_plane[first], lists->bar_end[last], bar);
+    running_rows(lsm, &lsm->running_lists->plate, lists->plate_plane[first], lists->plate_end[last],
+                 plate);
 }
 
-void lsm_running_regions_up(const Lsm *lsm, int layer, bool damping)
+static void subsums_up(const Lsm *lsm, int layer, bool plain)
 {
     const Rows *r = &lsm->rows;
-    if (damping)
+    if (plain)
+        subsums(lsm, layer, (Level){r->transform, ROW_T, 4, r->bar, NONE, 0, 0},
+                (Level){r->bar, ROW_BAR, 4, r->plate, NONE, 0, 0});
+    else
+        subsums(lsm, layer, (Level){r->p, ROW_P, 1, r->bar, UP, 0, 1},
+                (Level){r->bar, ROW_BAR, 2, r->plate, UP, 0, 2});
+}
+
+static void subsums_down(const Lsm *lsm, int layer, bool plain)
+{
+    const Rows *r = &lsm->rows;
+    if (plain)
+        subsums(lsm, layer, (Level){r->transform, ROW_T, 2, r->bar, NONE, 0, 0},
+                (Level){r->bar, ROW_BAR, 2, r->plate_down, NONE, 0, 0});
+    else
+        subsums(lsm, layer, (Level){r->transform, ROW_T, 4, r->bar, DOWN, 3, 0},
+                (Level){r->bar, ROW_BAR, 4, r->plate_down, DOWN, 2, 0});
+}
+
+static void regions(const Lsm *lsm, int layer, bool plain)
+{
+    const Rows *r = &lsm->rows;
+    if (plain)
         running_slots(lsm, layer, (Level){r->plate, ROW_PLATE, 4, r->transform, NONE, 0, 0});
     else
         running_slots(lsm, layer, (Level){r->plate, ROW_PLATE, 4, r->transform, UP, 0, 3});
 }
 
-void lsm_running_sets_down(const Lsm *lsm, int layer, bool damping)
+static void particles(const Lsm *lsm, int layer, bool plain)
 {
-    const LsmLists *lists = &lsm->lists;
     const Rows *r = &lsm->rows;
-    int first = lsm->layer_plane[layer], last = lsm->layer_plane[layer + 1];
-    long bar = lists->bar_plane[first], bars = lists->bar_end[last];
-    long plate = lists->plate_plane[first], plates = lists->plate_end[last];
-    if (damping) {
-        running_rows(lsm, &lsm->running_lists->bar, bar, bars,
-                     (Level){r->transform, ROW_T, 2, r->bar, NONE, 0, 0});
-        running_rows(lsm, &lsm->running_lists->plate, plate, plates,
-                     (Level){r->bar, ROW_BAR, 2, r->plate_down, NONE, 0, 0});
-    } else {
-        running_rows(lsm, &lsm->running_lists->bar, bar, bars,
-                     (Level){r->transform, ROW_T, 4, r->bar, DOWN, 3, 0});
-        running_rows(lsm, &lsm->running_lists->plate, plate, plates,
-                     (Level){r->bar, ROW_BAR, 4, r->plate_down, DOWN, 2, 0});
+    Level level = {r->plate_down, ROW_PLATE_RUN, 2, r->transform, NONE, 0, 0};
+    if (plain) {
+        running_slots(lsm, layer, level);
+        return;
     }
+    level.moments = DOWN;
+    level.from = 1;
+    running_slots(lsm, layer, level);
 }
 
-void lsm_running_particles(const Lsm *lsm, int layer, bool damping)
+static void tile_sums(const Lsm *lsm, long tile, bool plain, vec sum[12])
 {
-    const Rows *r = &lsm->rows;
-    if (damping)
-        running_slots(lsm, layer,
-                      (Level){r->plate_down, ROW_PLATE_RUN, 2, r->transform, NONE, 0, 0});
-    else
-        running_slots(lsm, layer,
-                      (Level){r->plate_down, ROW_PLATE_RUN, 2, r->transform, DOWN, 1, 0});
+    const int *slot = lsm->tile_slot + tile * SM_LANES;
+    const real *row[SM_LANES];
+    for (int lane = 0; lane < SM_LANES; lane++)
+        row[lane] = lsm->rows.transform + (slot[lane] + 1) * (long)ROW_T;
+    lsm_lists_sums_of_rows(row, plain, sum);
 }
 
-bool lsm_runs(const Lsm *lsm)
+static void block_sums(const Lsm *lsm, long block, bool plain, vec sum[6])
+{
+    const real *row = lsm->rows.transform + (block * SM_LANES + 1) * ROW_T;
+    real(*out)[SM_LANES] = (real(*)[SM_LANES])sum;
+    for (int lane = 0; lane < SM_LANES; lane++)
+        for (int i = 0; i < (plain ? 6 : 3); i++)
+            out[i][lane] = row[lane * ROW_T + i / 3 * 4 + i % 3];
+}
+
+static const LsmListKernels kernels = {subsums_up, subsums_down, regions,
+                                       particles,  tile_sums,    block_sums};
+
+/* Where w is small the lists are as short; running sums subtract, so masses must be of like size;
+ * rows that change one by one, and those that many bodies share, stay lists. */
+static bool applies(const Lsm *lsm)
 {
     const double like = 16; /* a heavy particle that leaves a sum leaves its rounding behind */
     double least = 1, most = 1;
@@ -138,7 +158,8 @@ bool lsm_runs(const Lsm *lsm)
            lsm->params.strain_limit == 0 && lsm->params.instances <= 1 && most <= like * least;
 }
 
-void lsm_running_open(Lsm *lsm)
+/* In place of the lists, which go. */
+static void open_running(Lsm *lsm)
 {
     double factor[LSM_FACTORS][2];
     lsm->running_lists = sm_alloc(1, sizeof *lsm->running_lists);
@@ -157,3 +178,14 @@ void lsm_running_open(Lsm *lsm)
         *list[i] = NULL;
     }
 }
+
+const LsmSums lsm_sums_running = {
+    .name = "running",
+    .applies = applies,
+    .lay_out = lsm_lists_lay_out,
+    .open = open_running,
+    .part = {lsm_lists_subsums, lsm_lists_solve, lsm_lists_end},
+    .lists = &kernels,
+    .layer_planes = 8, /* that lists along z run through */
+    .plate_down = ROW_PLATE_RUN,
+};

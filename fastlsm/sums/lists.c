@@ -1,0 +1,202 @@
+#include "lists.h"
+
+#include <stdlib.h>
+
+#include "../../lib/simd/rigid_lanes.h"
+
+enum { LAYER_BLOCKS = 24 }; /* layers of about this size stay in the L2 cache */
+
+/* Groups planes into layers of at least LAYER_BLOCKS blocks and finds how far a region reaches. */
+static void build_layers(Lsm *lsm)
+{
+    int planes = lsm->lattice.size[2];
+    long *count = sm_alloc((size_t)planes, sizeof *count);
+    for (long p = 0; p < lsm->lattice.count; p++) count[lsm->lattice.coord[p][2]]++;
+    lsm->layer_plane = sm_alloc((size_t)planes + 1, sizeof(int));
+    lsm->layers = 0;
+    long held = 0;
+    for (int z = 0; z < planes; z++) {
+        held += count[z];
+        bool high = z + 1 - lsm->layer_plane[lsm->layers] >= lsm->sums->layer_planes;
+        if ((held >= LAYER_BLOCKS * SM_LANES && high) || z == planes - 1) {
+            lsm->layer_plane[++lsm->layers] = z + 1;
+            held = 0;
+        }
+    }
+    free(count);
+    lsm->reach = 0;
+    lsm->chapter = 1;
+    for (int l = 0; l < lsm->layers; l++) {
+        int reach = 0; /* layers until w planes below this one's first are covered */
+        while (l - reach > 0 && lsm->layer_plane[l - reach] > lsm->layer_plane[l] - lsm->w) reach++;
+        lsm->reach = reach > lsm->reach ? reach : lsm->reach;
+    }
+    if (lsm->layers > 1 && lsm->reach == 0) lsm->reach = 1;
+}
+
+void lsm_lists_lay_out(Lsm *lsm)
+{
+    long n = lsm->lattice.count, slot = 0, p = 0;
+    build_layers(lsm);
+    lsm->slot = sm_alloc((size_t)n, sizeof(int));
+    lsm->layer_block = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
+    for (int l = 0; l < lsm->layers; l++) {
+        slot = (slot + SM_LANES - 1) / SM_LANES * SM_LANES;
+        lsm->layer_block[l] = slot / SM_LANES;
+        while (p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1])
+            lsm->slot[p++] = (int)slot++;
+    }
+    lsm->blocks = (slot + SM_LANES - 1) / SM_LANES;
+    lsm->layer_block[lsm->layers] = lsm->blocks;
+    lsm->particle = sm_alloc((size_t)lsm->blocks * SM_LANES, sizeof(int));
+    for (long s = 0; s < lsm->blocks * SM_LANES; s++) lsm->particle[s] = -1;
+    for (p = 0; p < n; p++) lsm->particle[lsm->slot[p]] = (int)p;
+}
+
+/* Rows of m~ x, or of m~. */
+static void weigh(const Lsm *lsm, long block)
+{
+    vec weight = lsm->particle_const[lsm->block_const[block]].weight;
+    vec p[4] = {lanes_set(1), lanes_set(1), lanes_set(1), lanes_set(0)};
+    if (!lsm->pass->masses) load3(lsm->x + block * 3 * SM_LANES, p);
+    for (int d = 0; d < 3; d++) p[d] *= weight;
+    lanes_interleave(p, 4);
+    real *row = lsm->rows.p + (block * SM_LANES + 1) * ROW_P;
+    for (int i = 0; i < 4; i++) lanes_store(row + i * SM_LANES, p[i]);
+}
+
+/* Rows of damping's products. */
+static void weigh_products(const Lsm *lsm, long block)
+{
+    vec part[4], field[16] = {{0}};
+    real *row[SM_LANES];
+    for (int d = 0; d < 3; d++) {
+        damping_products(lsm->particle_const[lsm->block_const[block]].weight,
+                         lsm->x + block * 3 * SM_LANES, lsm->v + block * 3 * SM_LANES, d, part);
+        for (int k = 0; k < 4; k++) field[3 * k + d] = part[k];
+    }
+    for (int lane = 0; lane < SM_LANES; lane++)
+        row[lane] = lsm->rows.transform + (block * SM_LANES + lane + 1) * ROW_T;
+    lanes_to_rows(field, row);
+}
+
+void lsm_lists_subsums(Lsm *lsm, int layer, int thread, SmLaps *laps)
+{
+    (void)thread;
+    bool plain = lsm->pass->plain;
+    for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
+        if (lsm->listed && !lsm->listed[block]) continue;
+        if (plain)
+            weigh_products(lsm, block);
+        else
+            weigh(lsm, block);
+    }
+    lsm->sums->lists->subsums_up(lsm, layer, plain);
+    sm_lap(laps, lsm->pass->stage);
+}
+
+void lsm_lists_sums_of_rows(const real *const row[SM_LANES], bool plain, vec sum[12])
+{
+    vec field[16];
+    lanes_from_rows(row, field);
+    for (int i = 0; i < 12 && plain; i++) sum[i] = field[i];
+    for (int i = 0; i < 3 && !plain; i++) {
+        sum[i] = field[i];
+        for (int d = 0; d < 3; d++) sum[3 + 3 * i + d] = field[4 * (d + 1) + i];
+    }
+}
+
+/* (q, R z, R y, R x), padded to four. */
+static void keep_transforms(const Lsm *lsm, long tile, const real *down)
+{
+    static const int triple[4] = {0, 1, 3, 2};
+    vec field[16];
+    real *row[SM_LANES];
+    for (int i = 0; i < 16; i++)
+        field[i] =
+            i % 4 < 3 ? lanes_load(down + (3 * triple[i / 4] + i % 4) * SM_LANES) : lanes_set(0);
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        int slot = lsm->tile_slot[tile * SM_LANES + lane];
+        row[lane] =
+            lsm->rows.transform + (slot < 0 ? lsm->blocks * SM_LANES + 1 : slot + 1) * ROW_T;
+    }
+    lanes_to_rows(field, row);
+}
+
+/* (omega, v_r - omega x c_r), padded to four. */
+static void keep_velocities(const Lsm *lsm, long tile, const real *down)
+{
+    vec field[8];
+    for (int i = 0; i < 8; i++)
+        field[i] = i % 4 < 3 ? lanes_load(down + (i / 4 * 3 + i % 4) * SM_LANES) : lanes_set(0);
+    lanes_interleave(field, 8);
+    const real *row = (const real *)field;
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        int slot = lsm->tile_slot[tile * SM_LANES + lane];
+        if (slot >= 0)
+            store8(lsm->rows.transform + (slot + 1) * (long)ROW_T, load8(row + lane * 8));
+    }
+}
+
+void lsm_lists_keep_down(const Lsm *lsm, long tile, const real *down)
+{
+    if (lsm->pass->plain)
+        keep_velocities(lsm, tile, down);
+    else
+        keep_transforms(lsm, tile, down);
+}
+
+/* A region identical to another has its rotation, or its rigid velocity; of a transform the centre
+ * differs. */
+static void copy_regions(const Lsm *lsm, int layer, bool plain)
+{
+    for (long i = lsm->layer_copy[layer]; i < lsm->layer_copy[layer + 1]; i++) {
+        int to = lsm->copy[i][0], from = lsm->copy[i][1];
+        const int *a = lsm->lattice.coord[lsm->particle[to]],
+                  *b = lsm->lattice.coord[lsm->particle[from]];
+        real *out = lsm->rows.transform + (to + 1) * (long)ROW_T;
+        const real *in = lsm->rows.transform + (from + 1) * (long)ROW_T;
+        if (plain) {
+            store8(out, load8(in));
+            continue;
+        }
+        store16(out, load16(in));
+        for (int d = 0; d < 3; d++) /* column d of R is vector 3 - d of the row */
+            store4(out, load4(out) + (real)(a[d] - b[d]) * load4(in + 4 * (3 - d)));
+    }
+}
+
+void lsm_lists_solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
+{
+    (void)thread;
+    const LsmListKernels *lists = lsm->sums->lists;
+    const LsmPass *pass = lsm->pass;
+    vec sum[TILE_GROUP][12];
+    real down[TILE_GROUP * TILE_DOWN] __attribute__((aligned(64)));
+    if (lists->regions) lists->regions(lsm, layer, pass->plain);
+    long tile = lsm->layer_tile[layer], end = lsm->layer_tile[layer + 1];
+    for (; tile < end; tile += TILE_GROUP) {
+        int tiles = end - tile < TILE_GROUP ? (int)(end - tile) : TILE_GROUP;
+        for (int t = 0; t < tiles; t++) lists->tile(lsm, tile + t, pass->plain, sum[t]);
+        sm_lap(laps, pass->stage);
+        pass->solve(lsm, layer, tile, tiles, sum, down, laps);
+        for (int t = 0; t < tiles; t++) lsm_lists_keep_down(lsm, tile + t, down + t * TILE_DOWN);
+    }
+    copy_regions(lsm, layer, pass->plain);
+    lists->subsums_down(lsm, layer, pass->plain);
+    sm_lap(laps, pass->stage);
+}
+
+void lsm_lists_end(Lsm *lsm, int layer, int thread, SmLaps *laps)
+{
+    (void)thread;
+    const LsmListKernels *lists = lsm->sums->lists;
+    const LsmPass *pass = lsm->pass;
+    if (lists->particles) lists->particles(lsm, layer, pass->plain);
+    for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
+        vec sum[1][6] = {{{0}}};
+        lists->block(lsm, block, pass->plain, sum[0]);
+        sm_lap(laps, pass->stage);
+        pass->end(lsm, block, 1, sum, laps);
+    }
+}

@@ -1,0 +1,35 @@
+/* lists.h - the parts of a pass over lists (sums.h): of the forms naive, lists and running, and of
+ * boxes for the regions that have lists. */
+#ifndef LSM_LISTS_H
+#define LSM_LISTS_H
+
+#include "sums.h"
+
+#define lsm_lists_lay_out        SM_NAME(lsm_lists_lay_out)
+#define lsm_lists_subsums        SM_NAME(lsm_lists_subsums)
+#define lsm_lists_solve          SM_NAME(lsm_lists_solve)
+#define lsm_lists_end            SM_NAME(lsm_lists_end)
+#define lsm_lists_keep_down      SM_NAME(lsm_lists_keep_down)
+#define lsm_lists_sums_of_rows   SM_NAME(lsm_lists_sums_of_rows)
+#define lsm_list_kernels         SM_NAME(lsm_list_kernels)
+#define lsm_list_kernels_regions SM_NAME(lsm_list_kernels_regions)
+
+/* Particles in canonical order, in slots without holes but at the ends of layers. */
+void lsm_lists_lay_out(Lsm *lsm);
+
+/* The three parts: bars and plates; regions, and bars and plates down; particles. */
+LsmPart lsm_lists_subsums, lsm_lists_solve, lsm_lists_end;
+
+/* Puts what the regions of a tile bring down (LsmPass) into their rows of rows.transform. */
+void lsm_lists_keep_down(const Lsm *lsm, long tile, const real *down);
+
+/* The sums of a tile from a row for each lane: (C, Cx, Cy, Cz), each padded to four, or the twelve
+ * plain ones. */
+void lsm_lists_sums_of_rows(const real *const row[SM_LANES], bool plain, vec sum[12]);
+
+/* Through bars and plates (list_sums.c), and its sums of the regions listed in rows region[lane],
+ * zero where that is negative. */
+extern const LsmListKernels lsm_list_kernels;
+void lsm_list_kernels_regions(const Lsm *lsm, const int *region, bool plain, vec sum[12]);
+
+#endif

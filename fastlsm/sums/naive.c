@@ -1,0 +1,117 @@
+/* naive.c - the sums of shape matching member by member, without reuse: O(w^3). Damping goes
+ * through bars and plates. */
+#include "list_rows.h"
+#include "lists.h"
+
+/* The list of the row of this name. */
+SM_INLINE const int *members(const int *list, int name, int side)
+{
+    return list + (long)(name / LSM_NAME) * side;
+}
+
+/* Rows are summed on their own first, so that single precision adds numbers of like size. */
+static vec16 region_up(const Lsm *lsm, int region)
+{
+    int side = lsm->side, w = lsm->w;
+    const int *plate = lsm->lists.region + (long)region * side;
+    vec4 C = {0}, X = {0}, Y = {0}, Z = {0};
+    for (int c = -w; c <= w; c++)
+        for (int b = -w; b <= w; b++) {
+            const int *bar = members(lsm->lists.plate, plate[c + w], side),
+                      *particle = members(lsm->lists.bar, bar[b + w], side);
+            vec4 sum[4] = {{0}, {0}, {0}, {0}};
+            for (int a = -w; a <= w; a++) {
+                vec4 p = load4(named(lsm->rows.p, (uint64_t)particle[a + w], ROW_P));
+                sum[0] += p;
+                sum[1] += (real)a * p;
+                sum[2] += (real)b * p;
+                sum[3] += (real)c * p;
+            }
+            C += sum[0];
+            X += sum[1];
+            Y += sum[2];
+            Z += sum[3];
+        }
+    vec8 low = __builtin_shufflevector(C, X, 0, 1, 2, 3, 4, 5, 6, 7);
+    vec8 high = __builtin_shufflevector(Y, Z, 0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+static vec4 particle_down(const Lsm *lsm, int region)
+{
+    int side = lsm->side, w = lsm->w;
+    const int *plate = lsm->lists.region + (long)region * side;
+    vec4 sum = {0};
+    for (int c = -w; c <= w; c++)
+        for (int b = -w; b <= w; b++) {
+            const int *bar = members(lsm->lists.plate, plate[c + w], side),
+                      *particle = members(lsm->lists.bar, bar[b + w], side);
+            vec4 row = {0};
+            for (int a = -w; a <= w; a++) {
+                const real *T = named(lsm->rows.transform, (uint64_t)particle[a + w], ROW_T);
+                row += load4(T) - (real)a * load4(T + 12) - (real)b * load4(T + 8) -
+                       (real)c * load4(T + 4);
+            }
+            sum += row;
+        }
+    return sum;
+}
+
+static bool applies(const Lsm *lsm)
+{
+    return lsm->params.summation == SM_SUM_NAIVE;
+}
+
+static void subsums_up(const Lsm *lsm, int layer, bool plain)
+{
+    if (plain) lsm_list_kernels.subsums_up(lsm, layer, plain);
+}
+
+static void subsums_down(const Lsm *lsm, int layer, bool plain)
+{
+    if (plain) lsm_list_kernels.subsums_down(lsm, layer, plain);
+}
+
+static void tile_sums(const Lsm *lsm, long tile, bool plain, vec sum[12])
+{
+    if (plain) {
+        lsm_list_kernels.tile(lsm, tile, plain, sum);
+        return;
+    }
+    vec16 rows[SM_LANES];
+    const real *row[SM_LANES];
+    int region[SM_LANES];
+    tile_regions(lsm, tile, region);
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        rows[lane] = region[lane] < 0 ? (vec16){0} : region_up(lsm, region[lane]);
+        row[lane] = (const real *)&rows[lane];
+    }
+    lsm_lists_sums_of_rows(row, false, sum);
+}
+
+static void block_sums(const Lsm *lsm, long block, bool plain, vec sum[6])
+{
+    if (plain) {
+        lsm_list_kernels.block(lsm, block, plain, sum);
+        return;
+    }
+    const int *region = lsm->block_region + block * SM_LANES;
+    for (int lane = 0; lane < SM_LANES; lane++) {
+        if (region[lane] < 0) continue;
+        vec4 goal = particle_down(lsm, region[lane]);
+        for (int d = 0; d < 3; d++) sum[d][lane] = goal[d];
+    }
+}
+
+static const LsmListKernels kernels = {
+    .subsums_up = subsums_up, .subsums_down = subsums_down, .tile = tile_sums, .block = block_sums};
+
+const LsmSums lsm_sums_naive = {
+    .name = "naive",
+    .applies = applies,
+    .lay_out = lsm_lists_lay_out,
+    .part = {lsm_lists_subsums, lsm_lists_solve, lsm_lists_end},
+    .lists = &kernels,
+    .layer_planes = 1,
+    .plate_down = ROW_PLATE_DOWN,
+};

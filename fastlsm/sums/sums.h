@@ -1,0 +1,105 @@
+/* sums.h - what every form of the fast summation offers (fastlsm section 3.1).
+ *
+ * A pass sums values of particles up to regions, solves something for each region, and sums what
+ * comes of it down to particles again: shape matching (fastlsm.c) and damping (damping.c) are
+ * passes. A form is a way to sum; every form runs every pass, in the three parts of pipeline.h.
+ *
+ *     naive.c          member by member, O(w^3)
+ *     list_sums.c      through bars and plates, O(w), for any shape
+ *     running_sums.c   bars, plates and regions made from their neighbours', O(1), for any shape
+ *     boxes.c          windows over all sites of a box, O(1), for solids; box_sum_fixups.c mends
+ *                      the sums of regions that are no boxes
+ *     instances.c      the lists for SM_LANES bodies at once
+ *
+ * Shape matching sums p = m~ x and its moments about the region's own centre, in place of x x0^T
+ * against a global origin. With lattice offsets (a, b, c) from the centre
+ *     bar    B = sum p,   Bx = sum a p
+ *     plate  P = sum B,   Px = sum Bx,  Py = sum b B
+ *     region C = sum P,   Cx = sum Px,  Cy = sum Py,  Cz = sum c P.
+ * The adjoint brings region transforms down to particles: with T = (q, Rx, Ry, Rz)
+ *     |R_i| g_i = sum_r q_r + R_r (x0_i - x0_r) = sum q - a Rx - b Ry - c Rz,
+ * where (a, b, c) is r's offset from i. Damping's sums are plain, without moments. All sums run
+ * over fixed places in a fixed order. */
+#ifndef LSM_SUMS_H
+#define LSM_SUMS_H
+
+#include "../pipeline.h"
+
+#define lsm_sums_naive   SM_NAME(lsm_sums_naive)
+#define lsm_sums_lists   SM_NAME(lsm_sums_lists)
+#define lsm_sums_running SM_NAME(lsm_sums_running)
+#define lsm_sums_boxes   SM_NAME(lsm_sums_boxes)
+
+/* Values that a region brings down, [values][SM_LANES]; the most tiles that are solved at once. */
+enum { TILE_DOWN = 12 * SM_LANES, TILE_GROUP = 4 };
+
+struct LsmPass {
+    bool plain;    /* sums damping's twelve products and brings six values down, without moments */
+    bool masses;   /* sums m~ in place of m~ x */
+    SmStage stage; /* whose time the sums are */
+
+    /* What comes of the sums of `tiles` tiles of regions from number `tile` on, TILE_GROUP at most:
+     * `sum` are (C, A) of match.h, or damping's four triples; `down` receives, TILE_DOWN values a
+     * tile, (q, Rz, Rx, Ry), or damping's two triples, all zero in lanes without a region. */
+    void (*solve)(Lsm *lsm, int layer, long tile, int tiles, vec (*sum)[12], real *down,
+                  SmLaps *laps);
+
+    /* What is done with the sums over the regions of the particles of `blocks` blocks: three of
+     * them, |R_i| g_i, or damping's six. */
+    void (*end)(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *laps);
+};
+
+/* Sums over lists. Rows are state.h's. */
+typedef struct {
+    /* Bars and plates of a layer, from the particles up and from the regions down. */
+    void (*subsums_up)(const Lsm *lsm, int layer, bool plain);
+    void (*subsums_down)(const Lsm *lsm, int layer, bool plain);
+
+    /* The last stage of a whole layer, or NULL where it is done tile by tile and block by block. */
+    void (*regions)(const Lsm *lsm, int layer, bool plain);
+    void (*particles)(const Lsm *lsm, int layer, bool plain);
+
+    /* The sums (LsmPass) of a tile, and over a block's particles that have lists. */
+    void (*tile)(const Lsm *lsm, long tile, bool plain, vec sum[12]);
+    void (*block)(const Lsm *lsm, long block, bool plain, vec sum[6]);
+} LsmListKernels;
+
+struct LsmSums {
+    const char *name;
+    bool (*applies)(const Lsm *lsm); /* to a body whose lattice and parameters are known */
+    void (*lay_out)(Lsm *lsm);       /* blocks and layers */
+    void (*open)(Lsm *lsm);          /* what is made of lists and constants, or NULL */
+    LsmPart *part[3];                /* of a pass: pipeline.h */
+    const LsmListKernels *lists;     /* of the regions that have lists */
+    int layer_planes;                /* least planes of a layer */
+    int plate_down;                  /* values in a row of rows.plate_down */
+};
+
+extern const LsmSums lsm_sums_naive, lsm_sums_lists, lsm_sums_running, lsm_sums_boxes;
+
+/* A pass over the body. Instrumented by `laps` unless that is NULL. */
+SM_INLINE void lsm_run(Lsm *lsm, const LsmPass *pass, SmLaps *laps)
+{
+    lsm->laps = laps;
+    lsm->pass = pass;
+    lsm_pipeline(lsm, lsm->sums->part);
+}
+
+/* A product that is rounded before it is used, never fused with a sum: what enters a window leaves
+ * it with the same value, and a goal is the same wherever it is computed. */
+SM_INLINE vec rounded(vec product)
+{
+#ifdef __AVX512F__
+    __asm__("" : "+v"(product));
+#endif
+    return product;
+}
+
+/* Number f of the values in the order in which the stages of the sums make and use them, (P, Pz,
+ * Px, Py) and (q, Rz, Rx, Ry), among a region's sums (C, A) and its transform (q, R): match.h. */
+SM_INLINE int stage_value(int f)
+{
+    return f < 3 ? f : 3 + f % 3 * 3 + (f / 3 + 1) % 3;
+}
+
+#endif
