@@ -203,7 +203,7 @@ BenchConclusion bench_calibration_conclude(const BenchCampaign *calibration)
     BenchConclusion c = {0};
     c.laws = bench_law_fit(calibration->point, calibration->count, plan->thickness, plan->density,
                            c.law);
-    bench_advice_found(calibration->point, calibration->count, c.law, c.laws, c.found);
+    bench_recommendation_found(calibration->point, calibration->count, c.law, c.laws, c.found);
     return c;
 }
 

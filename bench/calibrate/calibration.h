@@ -9,7 +9,7 @@
 #define BENCH_CALIBRATION_H
 
 #include "../campaign/campaign.h"
-#include "advice.h"
+#include "recommendation.h"
 #include "specimen.h"
 
 enum { BENCH_CALIBRATION_VALUES = 64, BENCH_CALIBRATION_SPECIMENS = 4096 };

@@ -226,8 +226,8 @@ TEST(nothing_is_concluded_from_nothing)
     assert_true(!made->its.found[0][0] && !made->its.found[2][0]);
     char sentence[BENCH_WORDS];
     BenchYoung wish = {1e6, 1000, 1000, 0.1};
-    assert_int_equal(bench_advice_young(made->specimen, count, made->its.law, 0, &wish, sentence),
-                     -1);
+    assert_int_equal(
+        bench_recommendation_young(made->specimen, count, made->its.law, 0, &wish, sentence), -1);
     assert_non_null(strstr(sentence, "no specimen of the grid is valid"));
     made->count = 0;
     conclude(made);
@@ -238,8 +238,8 @@ TEST(nothing_is_concluded_from_nothing)
 static long advise(const Made *made, double young, double density, char *sentence)
 {
     BenchYoung wish = {young, density, made->plan->density, made->plan->thickness};
-    return bench_advice_young(made->specimen, made->count, made->its.law, made->its.laws, &wish,
-                              sentence);
+    return bench_recommendation_young(made->specimen, made->count, made->its.law, made->its.laws,
+                                      &wish, sentence);
 }
 
 TEST(a_modulus_has_its_w)

@@ -7,8 +7,8 @@
 #include "../engines.h"
 #include "../measure/moment.h"
 #include "choices.h"
-#include "costs.h"
-#include "deform.h"
+#include "cost_experiments.h"
+#include "deformation_experiments.h"
 #include "scene_field.h"
 
 /* What an experiment takes beside its name, and who runs it. */

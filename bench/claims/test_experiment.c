@@ -2,7 +2,7 @@
 
 #include "../../lib/test_frame.h"
 #include "choices.h"
-#include "deform.h"
+#include "deformation_experiments.h"
 #include "experiments.h"
 #include "scene_field.h"
 

@@ -136,13 +136,14 @@ static void advise(const Options *options, const BenchCampaign *calibration)
     BenchConclusion conclusion = bench_calibration_conclude(calibration);
     double density = options->density > 0 ? options->density : standard_density;
     BenchYoung wish = {options->young, density, plan->density, plan->thickness};
-    long best = bench_advice_young(calibration->point, calibration->count, conclusion.law,
-                                   conclusion.laws, &wish, sentence);
+    long best = bench_recommendation_young(calibration->point, calibration->count, conclusion.law,
+                                           conclusion.laws, &wish, sentence);
     bool table = options->format == BENCH_AS_CSV || options->format == BENCH_AS_JSON;
     FILE *file = table ? stderr : stdout;
     fprintf(file, "%s%s\n", table ? "" : "\n", sentence);
     if (best < 0) return;
-    bench_advice_settings(bench_campaign_at(calibration, best), &wish, plan->damping, found);
+    bench_recommendation_settings(bench_campaign_at(calibration, best), &wish, plan->damping,
+                                  found);
     fprintf(file, "The scene's settings that hit it, of which density is one:\n    %s\n", found);
 }
 

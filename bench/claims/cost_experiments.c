@@ -1,4 +1,4 @@
-#include "costs.h"
+#include "cost_experiments.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,8 +1,8 @@
-/* costs.h - the experiments "sums", "size", "polar", "sweeps" and "resampling" (experiment.h): what
- * things cost.
+/* cost_experiments.h - the experiments "sums", "size", "polar", "sweeps" and "resampling"
+ * (experiment.h): what things cost.
  */
-#ifndef BENCH_COSTS_H
-#define BENCH_COSTS_H
+#ifndef BENCH_COST_EXPERIMENTS_H
+#define BENCH_COST_EXPERIMENTS_H
 
 #include "experiment.h"
 

@@ -1,7 +1,8 @@
-/* deform.h - the experiments "smoothing", "blending" and "sag" (experiment.h): how bodies deform.
+/* deformation_experiments.h - the experiments "smoothing", "blending" and "sag" (experiment.h): how
+ * bodies deform.
  */
-#ifndef BENCH_DEFORM_H
-#define BENCH_DEFORM_H
+#ifndef BENCH_DEFORMATION_EXPERIMENTS_H
+#define BENCH_DEFORMATION_EXPERIMENTS_H
 
 #include "experiment.h"
 

@@ -1,4 +1,4 @@
-#include "deform.h"
+#include "deformation_experiments.h"
 
 #include <math.h>
 #include <stdio.h>

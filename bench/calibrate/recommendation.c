@@ -1,4 +1,4 @@
-#include "advice.h"
+#include "recommendation.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -180,8 +180,8 @@ static void say_range(const BenchSpecimen *specimen, long count, char *text)
     say(text, ".");
 }
 
-void bench_advice_found(const BenchSpecimen *specimen, long count, const BenchLaw *law, int laws,
-                        char found[BENCH_FOUND][BENCH_WORDS])
+void bench_recommendation_found(const BenchSpecimen *specimen, long count, const BenchLaw *law,
+                                int laws, char found[BENCH_FOUND][BENCH_WORDS])
 {
     for (int i = 0; i < BENCH_FOUND; i++) found[i][0] = '\0';
     say_alike(specimen, count, found[0]);
@@ -237,8 +237,8 @@ static void say_remedy(const BenchSpecimen *s, const BenchLaw *law, const BenchY
     say(text, ".");
 }
 
-long bench_advice_young(const BenchSpecimen *specimen, long count, const BenchLaw *law, int laws,
-                        const BenchYoung *wish, char sentence[BENCH_WORDS])
+long bench_recommendation_young(const BenchSpecimen *specimen, long count, const BenchLaw *law,
+                                int laws, const BenchYoung *wish, char sentence[BENCH_WORDS])
 {
     long best = -1;
     double low = INFINITY, high = 0;
@@ -271,8 +271,8 @@ long bench_advice_young(const BenchSpecimen *specimen, long count, const BenchLa
     return best;
 }
 
-void bench_advice_settings(const BenchSpecimen *s, const BenchYoung *wish, double damping,
-                           char settings[BENCH_WORDS])
+void bench_recommendation_settings(const BenchSpecimen *s, const BenchYoung *wish, double damping,
+                                   char settings[BENCH_WORDS])
 {
     settings[0] = '\0';
     say(settings, "engine = \"%s\"; ", s->engine);
