@@ -118,7 +118,7 @@ static const BenchCommandLine line = {
 typedef struct {
     const Options *options;
     BenchProgress progress;
-    BenchContests all;
+    BenchAbSamples all;
     BenchTask *task; /* [tasks] */
     int tasks, rounds;
     BenchRow *stored; /* rows of the file */
@@ -262,15 +262,15 @@ static void add_stored(Session *session)
     int measured = session->all.count;
     for (int i = 0; i < session->stored_count; i++)
         for (int c = 0; c < measured; c++)
-            if (!strcmp(session->all.contest[c].scene, session->stored[i].scene))
-                bench_contest_add(&session->all, BENCH_OLD, 0, &session->stored[i]);
+            if (!strcmp(session->all.scenes[c].scene, session->stored[i].scene))
+                bench_ab_add(&session->all, BENCH_OLD, 0, &session->stored[i]);
 }
 
 static SmCode measure(Session *session, SmError *error)
 {
     const Options *options = session->options;
     BenchRegression *found = &session->found;
-    BenchRounds rounds = {
+    BenchAbRunner rounds = {
         .program = {options->revision ? session->revision.program : NULL, session->self},
         .paper = paper_of(options),
         .task = session->task,
@@ -279,7 +279,7 @@ static SmCode measure(Session *session, SmError *error)
         .seed = options->common.seed,
         .folder = session->folder,
         .progress = &session->progress};
-    SmCode code = bench_rounds_run(&rounds, &session->all, found->machine, error);
+    SmCode code = bench_ab_run(&rounds, &session->all, found->machine, error);
     if (code) return code;
     add_stored(session);
     if (!options->counts) return SM_OK;
@@ -383,7 +383,7 @@ int bench_command_regress(int argc, char **argv)
         remove_scratch(session);
     }
     if (options.output && code) bench_draft_discard(&draft);
-    bench_contests_free(&session->all);
+    bench_ab_free(&session->all);
     bench_rows_free(session->stored, session->stored_count);
     free(session->task);
     free(session);

@@ -67,7 +67,7 @@ static bool same_work(const BenchRow *a, const BenchRow *b, size_t size, char *r
 static bool comparable(BenchComparison *result)
 {
     static const char *const names[] = {"the baseline", "this build"};
-    const BenchSide *side = result->contest->side;
+    const BenchSide *side = result->samples->side;
     for (int b = BENCH_BUILDS - 1; b >= 0; b--) {
         if (side[b].valid) continue;
         result->verdict = BENCH_INCORRECT;
@@ -109,7 +109,7 @@ static void compare_interleaved(const BenchTimes *old, const BenchTimes *new,
 static void compare_apart(const BenchTimes *old, const BenchTimes *new, int comparisons,
                           const BenchCompareParams *params, BenchComparison *result)
 {
-    const BenchSide *side = result->contest->side;
+    const BenchSide *side = result->samples->side;
     const BenchSide *left = &side[BENCH_OLD], *right = &side[BENCH_NEW];
     BenchRatio ratio = bench_ratio_apart(old, new, params->seed);
     result->p = bench_mann_whitney(left->block[result->time], left->blocks,
@@ -121,7 +121,7 @@ static void compare_apart(const BenchTimes *old, const BenchTimes *new, int comp
 
 static void measure(BenchComparison *result, int comparisons, const BenchCompareParams *params)
 {
-    const BenchSide *side = result->contest->side;
+    const BenchSide *side = result->samples->side;
     BenchTimes times[BENCH_BUILDS];
     double low = params->interleaved ? BENCH_LOW : 0.5;
     for (int b = 0; b < BENCH_BUILDS; b++) {
@@ -145,7 +145,7 @@ static bool finds_nothing(int rounds, int comparisons)
 static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
                                     const BenchCompareParams *params)
 {
-    const BenchSide *side = result->contest->side;
+    const BenchSide *side = result->samples->side;
     double noise = fmax(result->self[BENCH_OLD], result->self[BENCH_NEW]); /* NaN: the other one */
     double least = params->interleaved ? least_interleaved : least_apart;
     double step = bench_quantile(side[BENCH_OLD].time[0], side[BENCH_OLD].count,
@@ -164,9 +164,9 @@ static BenchComparisonVerdict judge(BenchComparison *result, int comparisons,
 }
 
 /* An entry for each time that both builds have, or a single one that says why there is none. */
-static int list_times(const BenchContest *contest, BenchComparison *list)
+static int list_times(const BenchAbScene *samples, BenchComparison *list)
 {
-    BenchComparison blank = {.contest = contest,
+    BenchComparison blank = {.samples = samples,
                              .ms = {NAN, NAN},
                              .ratio = NAN,
                              .low = NAN,
@@ -182,7 +182,7 @@ static int list_times(const BenchContest *contest, BenchComparison *list)
     int count = 0;
     blank.verdict = BENCH_SAME;
     for (int t = 0; t < BENCH_TIMES; t++) {
-        if (!has_time(&contest->side[BENCH_OLD], t) || !has_time(&contest->side[BENCH_NEW], t))
+        if (!has_time(&samples->side[BENCH_OLD], t) || !has_time(&samples->side[BENCH_NEW], t))
             continue;
         list[count] = blank;
         list[count++].time = t;
@@ -190,12 +190,12 @@ static int list_times(const BenchContest *contest, BenchComparison *list)
     return count;
 }
 
-int bench_compare(const BenchContests *all, const BenchCompareParams *params,
+int bench_compare(const BenchAbSamples *all, const BenchCompareParams *params,
                   BenchComparison **list)
 {
     int count = 0, tested = 0;
     BenchComparison *result = sm_alloc((size_t)(all->count * BENCH_TIMES) + 1, sizeof *result);
-    for (int i = 0; i < all->count; i++) count += list_times(&all->contest[i], result + count);
+    for (int i = 0; i < all->count; i++) count += list_times(&all->scenes[i], result + count);
     double *p = sm_alloc((size_t)count, sizeof *p);
     for (int i = 0; i < count; i++) {
         if (result[i].verdict == BENCH_SAME) measure(&result[i], count, params);

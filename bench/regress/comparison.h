@@ -12,7 +12,7 @@
 #ifndef BENCH_COMPARISON_H
 #define BENCH_COMPARISON_H
 
-#include "contest.h"
+#include "ab_samples.h"
 
 typedef enum {
     BENCH_FASTER,
@@ -44,7 +44,7 @@ enum {
 #define BENCH_NOISE_LEVEL 0.01
 
 typedef struct {
-    const BenchContest *contest;
+    const BenchAbScene *samples;
     int time;                    /* 0 total, else 1 + stage; 0 alone where nothing is compared */
     double ms[BENCH_BUILDS];     /* lower quartiles over processes, or medians */
     double ratio, low, high;     /* new / old, with its interval */
@@ -57,8 +57,8 @@ typedef struct {
     char reason[256]; /* of INVALID and no baseline */
 } BenchComparison;
 
-/* Compares all; the caller frees the list with bench_comparisons_free() before the contests. */
-int bench_compare(const BenchContests *all, const BenchCompareParams *params,
+/* Compares all; the caller frees the list with bench_comparisons_free() before the scenes. */
+int bench_compare(const BenchAbSamples *all, const BenchCompareParams *params,
                   BenchComparison **list);
 void bench_comparisons_free(BenchComparison *list, int count);
 

@@ -54,15 +54,15 @@ static SmCode valgrind_failed(const char *log, int status, SmError *error)
 }
 
 /* Instructions of one whole run. */
-static SmCode count_run(const BenchRounds *rounds, const Tool *tool, const BenchTask *task,
+static SmCode count_run(const BenchAbRunner *runner, const Tool *tool, const BenchTask *task,
                         const char *program, int steps, double *count, SmError *error)
 {
     char log[PATH], number[2][32];
     const char *word[WORDS];
     int words = 0;
-    snprintf(log, sizeof log, "%.4000s/counts.txt", rounds->folder);
+    snprintf(log, sizeof log, "%.4000s/counts.txt", runner->folder);
     snprintf(number[0], 32, "%d", steps);
-    snprintf(number[1], 32, "%lu", rounds->seed);
+    snprintf(number[1], 32, "%lu", runner->seed);
     if (tool == &callgrind) {
         word[words++] = "valgrind";
         word[words++] = "--tool=callgrind";
@@ -96,42 +96,42 @@ static SmCode count_run(const BenchRounds *rounds, const Tool *tool, const Bench
 }
 
 /* Instructions a step; NaN where the tool has no counter here. */
-static SmCode count_step(const BenchRounds *rounds, const Tool *tool, const BenchTask *task,
+static SmCode count_step(const BenchAbRunner *runner, const Tool *tool, const BenchTask *task,
                          const char *program, long particles, double *count, SmError *error)
 {
     double few, more;
     double steps = fmin(particle_steps / (double)(particles > 0 ? particles : 1), most_steps);
     int longer = tool->few + (int)fmax(steps, tool->least);
     *count = NAN;
-    SmCode code = count_run(rounds, tool, task, program, tool->few, &few, error);
+    SmCode code = count_run(runner, tool, task, program, tool->few, &few, error);
     if (code || isnan(few)) return code;
-    code = count_run(rounds, tool, task, program, longer, &more, error);
+    code = count_run(runner, tool, task, program, longer, &more, error);
     if (!code) *count = (more - few) / (longer - tool->few);
     return code;
 }
 
 /* The task to simulate for a scene: one that names it, or stands for it among others. */
-static BenchTask task_of(const BenchRounds *rounds, const BenchContest *contest)
+static BenchTask task_of(const BenchAbRunner *runner, const BenchAbScene *samples)
 {
-    BenchTask task = {.scene = contest->scene};
-    for (int t = 0; t < rounds->tasks; t++) {
+    BenchTask task = {.scene = samples->scene};
+    for (int t = 0; t < runner->tasks; t++) {
         BenchScene scene;
-        if (bench_scene_find(rounds->task[t].scene, &scene, NULL)) continue;
-        if (!strcmp(scene.name, contest->scene)) task = rounds->task[t];
+        if (bench_scene_find(runner->task[t].scene, &scene, NULL)) continue;
+        if (!strcmp(scene.name, samples->scene)) task = runner->task[t];
     }
     return task;
 }
 
 /* Both builds of a scene, with one tool: the chosen one, or callgrind from where that has no
  * counter on. */
-static SmCode count_contest(const BenchRounds *rounds, const Tool **tool, const BenchTask *task,
-                            BenchSide *side, SmError *error)
+static SmCode count_scene(const BenchAbRunner *runner, const Tool **tool, const BenchTask *task,
+                          BenchSide *side, SmError *error)
 {
     for (;;) {
         bool counted = true;
         SmCode code = SM_OK;
         for (int b = 0; b < BENCH_BUILDS && !code && counted; b++) {
-            code = count_step(rounds, *tool, task, rounds->program[b], side[b].row.particles,
+            code = count_step(runner, *tool, task, runner->program[b], side[b].row.particles,
                               &side[b].instructions, error);
             counted = !isnan(side[b].instructions);
         }
@@ -140,19 +140,19 @@ static SmCode count_contest(const BenchRounds *rounds, const Tool **tool, const 
     }
 }
 
-SmCode bench_counts_take(const BenchRounds *rounds, BenchContests *all, const char **tool,
+SmCode bench_counts_take(const BenchAbRunner *runner, BenchAbSamples *all, const char **tool,
                          SmError *error)
 {
     const Tool *chosen = &counter;
     SmCode code = SM_OK;
     for (int i = 0; i < all->count && !code; i++) {
-        BenchSide *side = all->contest[i].side;
-        BenchTask task = task_of(rounds, &all->contest[i]);
-        bench_progress_show(rounds->progress, "counting instructions", (double)i / all->count);
+        BenchSide *side = all->scenes[i].side;
+        BenchTask task = task_of(runner, &all->scenes[i]);
+        bench_progress_show(runner->progress, "counting instructions", (double)i / all->count);
         if (side[BENCH_OLD].count && side[BENCH_NEW].count)
-            code = count_contest(rounds, &chosen, &task, side, error);
+            code = count_scene(runner, &chosen, &task, side, error);
     }
-    bench_progress_stop(rounds->progress);
+    bench_progress_stop(runner->progress);
     *tool = chosen->name;
     return code;
 }

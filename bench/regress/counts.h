@@ -7,12 +7,12 @@
 #ifndef BENCH_COUNTS_H
 #define BENCH_COUNTS_H
 
-#include "rounds.h"
+#include "ab_runner.h"
 
-/* Fills `instructions` of every contest that both builds have. `tool` receives who counted. Where
+/* Fills `instructions` of every scene that both builds have. `tool` receives who counted. Where
  * counting is not possible: SM_INPUT with the reason and a remedy; what was counted until then
  * stands. */
-SmCode bench_counts_take(const BenchRounds *rounds, BenchContests *all, const char **tool,
+SmCode bench_counts_take(const BenchAbRunner *runner, BenchAbSamples *all, const char **tool,
                          SmError *error);
 
 #endif

@@ -51,11 +51,6 @@ void bench_regression_environment(BenchRegression *found);
  * wall time too. */
 void bench_regression_write(FILE *file, BenchRegressionFormat format, const BenchRegression *found);
 
-/* The formats for programs, behind bench_regression_write(). */
-void bench_regression_json(FILE *file, const BenchRegression *found);
-void bench_regression_gbench(FILE *file, const BenchRegression *found);
-void bench_regression_junit(FILE *file, const BenchRegression *found);
-
 /* The verdict on all in a line without an end. */
 void bench_regression_summary(const BenchRegression *found, size_t size, char *line);
 

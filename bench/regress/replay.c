@@ -3,7 +3,7 @@
  * usage: replay COMPARISONS ROUNDS FILE.h5...
  *
  * The repeats of every row, as `tables -o` stored them one after the other, are dealt out: to so
- * many comparisons, and in each to rounds of four turns as bench_rounds_run() takes them, so many
+ * many comparisons, and in each to rounds of four turns as bench_ab_run() takes them, so many
  * consecutive repeats a turn as there are. Then bench_compare() judges. Exit code: 5 where more
  * than 1 in 100 comparisons calls a time slower or faster, 3 where a file cannot be used or is too
  * short. */
@@ -12,8 +12,8 @@
 #include <stdlib.h>
 
 #include "../measure/measure.h"
+#include "ab_runner.h"
 #include "comparison.h"
-#include "rounds.h"
 #include "samples.h"
 
 typedef struct {
@@ -25,7 +25,7 @@ typedef struct {
 static void compare(const BenchRow *row, int rounds, int first, int turn, Tally *tally)
 {
     const BenchCompareParams params = {true, rounds, NAN, 1};
-    BenchContests all = {0};
+    BenchAbSamples all = {0};
     BenchComparison *list;
     bool had[BENCH_COMPARISONS] = {false};
     for (int i = 0; i < BENCH_TURNS * rounds; i++) {
@@ -34,7 +34,7 @@ static void compare(const BenchRow *row, int rounds, int first, int turn, Tally 
         process.total += first + i * turn;
         process.stage += first + i * turn;
         int round = i / BENCH_TURNS;
-        bench_contest_add(&all, bench_rounds_build(round, i % BENCH_TURNS), round, &process);
+        bench_ab_add(&all, bench_ab_turn(round, i % BENCH_TURNS), round, &process);
     }
     int count = bench_compare(&all, &params, &list);
     for (int i = 0; i < count; i++) {
@@ -45,7 +45,7 @@ static void compare(const BenchRow *row, int rounds, int first, int turn, Tally 
     tally->slower += had[BENCH_SLOWER];
     tally->faster += had[BENCH_FASTER];
     bench_comparisons_free(list, count);
-    bench_contests_free(&all);
+    bench_ab_free(&all);
 }
 
 /* Adds the comparisons of a file's rows to `alarms` and `all`. */

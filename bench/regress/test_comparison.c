@@ -25,7 +25,7 @@ static int end(void **state)
 }
 
 /* A process of a build whose damping takes `factor` times as long; `load` is the machine's. */
-static void add(BenchContests *all, BenchBuild build, int round, const char *scene, double factor,
+static void add(BenchAbSamples *all, BenchBuild build, int round, const char *scene, double factor,
                 double load)
 {
     static double total[REPEATS], stage[REPEATS][SM_STAGES];
@@ -51,10 +51,10 @@ static void add(BenchContests *all, BenchBuild build, int round, const char *sce
         }
     }
     stage[REPEATS - 1][SM_POLAR] *= 50; /* a preempted block */
-    bench_contest_add(all, build, round, &row);
+    bench_ab_add(all, build, round, &row);
 }
 
-static void play(BenchContests *all, const char *scene, int rounds, double factor, double drift)
+static void play(BenchAbSamples *all, const char *scene, int rounds, double factor, double drift)
 {
     for (int r = 0; r < rounds; r++) {
         double load = exp(gsl_ran_gaussian(rng, drift));
@@ -69,7 +69,7 @@ static BenchComparisonVerdict verdict_of(const BenchComparison *list, int count,
                                          int time)
 {
     for (int i = 0; i < count; i++)
-        if (!strcmp(list[i].contest->scene, scene) && list[i].time == time) return list[i].verdict;
+        if (!strcmp(list[i].samples->scene, scene) && list[i].time == time) return list[i].verdict;
     fail_msg("no %s %s", scene, bench_time_name(time));
     return BENCH_INCORRECT;
 }
@@ -77,7 +77,7 @@ static BenchComparisonVerdict verdict_of(const BenchComparison *list, int count,
 TEST(a_slower_stage_is_caught_and_no_other_blamed)
 {
     for (int trial = 0; trial < 10; trial++) {
-        BenchContests all = {0};
+        BenchAbSamples all = {0};
         BenchComparison *list;
         play(&all, "slow", 10, 1.08, 0.02);
         play(&all, "same", 10, 1, 0.02);
@@ -91,7 +91,7 @@ TEST(a_slower_stage_is_caught_and_no_other_blamed)
         assert_int_equal(verdict_of(list, count, "fast", 1 + SM_DAMPING), BENCH_FASTER);
         assert_int_equal(bench_comparisons_exit(list, count), BENCH_EXIT_SLOWER);
         bench_comparisons_free(list, count);
-        bench_contests_free(&all);
+        bench_ab_free(&all);
     }
 }
 
@@ -101,7 +101,7 @@ TEST(a_build_against_itself_raises_no_alarm)
 {
     int alarms = 0;
     for (int trial = 0; trial < 60; trial++) {
-        BenchContests all = {0};
+        BenchAbSamples all = {0};
         BenchComparison *list;
         play(&all, "one", 8, 1, trial % 2 ? 0.3 : 0.02);
         play(&all, "two", 8, 1, trial % 2 ? 0.3 : 0.02);
@@ -110,7 +110,7 @@ TEST(a_build_against_itself_raises_no_alarm)
         int code = bench_comparisons_exit(list, count);
         alarms += code != SM_OK && code != BENCH_EXIT_NOT_JUDGED;
         bench_comparisons_free(list, count);
-        bench_contests_free(&all);
+        bench_ab_free(&all);
     }
     assert_in_range(alarms, 0, 1);
 }
@@ -120,7 +120,7 @@ TEST(beside_a_file_the_threshold_is_wider)
     const BenchCompareParams params = {false, 5, NAN, 1};
     int alarms = 0;
     for (int trial = 0; trial < 30; trial++) {
-        BenchContests all = {0};
+        BenchAbSamples all = {0};
         BenchComparison *list;
         bool slow = trial == 0;
         for (int i = 0; i < 10; i++) add(&all, BENCH_NEW, i / 2, "x", slow ? 1.5 : 1, 1);
@@ -133,14 +133,14 @@ TEST(beside_a_file_the_threshold_is_wider)
         else
             alarms += bench_comparisons_exit(list, count) != SM_OK;
         bench_comparisons_free(list, count);
-        bench_contests_free(&all);
+        bench_ab_free(&all);
     }
     assert_in_range(alarms, 0, 1);
 }
 
 TEST(a_threshold_given_rules)
 {
-    BenchContests all = {0};
+    BenchAbSamples all = {0};
     BenchComparison *list;
     play(&all, "slow", 8, 1.2, 0.02);
     BenchCompareParams params = {true, 8, 0.5, 1};
@@ -152,21 +152,21 @@ TEST(a_threshold_given_rules)
     assert_int_equal(verdict_of(list, count, "slow", 1 + SM_DAMPING), BENCH_SLOWER);
     assert_int_equal(verdict_of(list, count, "slow", 1 + SM_POLAR), BENCH_TOO_NOISY);
     bench_comparisons_free(list, count);
-    bench_contests_free(&all);
+    bench_ab_free(&all);
 }
 
 TEST(what_cannot_be_compared_says_why)
 {
-    BenchContests all = {0};
+    BenchAbSamples all = {0};
     BenchComparison *list;
     play(&all, "few", 3, 2, 0.02);
     play(&all, "wrong", 5, 2, 0.02);
     play(&all, "other", 5, 2, 0.02);
     for (int i = 0; i < 10; i++) add(&all, BENCH_NEW, i / 2, "young", 1, 1);
-    BenchSide *wrong = &bench_contest_of(&all, "wrong")->side[BENCH_NEW];
+    BenchSide *wrong = &bench_ab_scene(&all, "wrong")->side[BENCH_NEW];
     wrong->valid = false;
     strcpy(wrong->reason, "goals are off by 1 cell");
-    bench_contest_of(&all, "other")->side[BENCH_OLD].row.particles = 149;
+    bench_ab_scene(&all, "other")->side[BENCH_OLD].row.particles = 149;
     const BenchCompareParams params = {true, 3, NAN, 1};
     int count = bench_compare(&all, &params, &list);
     assert_int_equal(verdict_of(list, count, "few", 0), BENCH_TOO_FEW);
@@ -179,13 +179,13 @@ TEST(what_cannot_be_compared_says_why)
     assert_int_equal(bench_comparisons_exit(list, count), SM_INVALID);
     assert_int_equal(bench_comparisons_exit(list + BENCH_TIMES + 1, 2), BENCH_EXIT_NO_BASELINE);
     bench_comparisons_free(list, count);
-    bench_contests_free(&all);
+    bench_ab_free(&all);
 }
 
 /* Where all is too noisy or too few, nothing is known to be not slower. */
 TEST(what_nobody_could_judge_is_not_ok)
 {
-    BenchContests all = {0};
+    BenchAbSamples all = {0};
     BenchComparison *list;
     char line[256];
     play(&all, "few", 3, 1, 0.02);
@@ -204,13 +204,13 @@ TEST(what_nobody_could_judge_is_not_ok)
     list[2].verdict = BENCH_NO_BASELINE;
     assert_int_equal(bench_comparisons_exit(list, found.count), BENCH_EXIT_NO_BASELINE);
     bench_comparisons_free(list, found.count);
-    bench_contests_free(&all);
+    bench_ab_free(&all);
     play(&all, "noisy", 8, 1, 0.02);
     int count = bench_compare(&all, &noisy, &list);
     assert_int_equal(verdict_of(list, count, "noisy", 0), BENCH_TOO_NOISY);
     assert_int_equal(bench_comparisons_exit(list, count), BENCH_EXIT_NOT_JUDGED);
     bench_comparisons_free(list, count);
-    bench_contests_free(&all);
+    bench_ab_free(&all);
     assert_int_equal(bench_comparisons_exit(NULL, 0), BENCH_EXIT_NOT_JUDGED);
 }
 
@@ -225,10 +225,10 @@ TEST(epsilon_0_is_stated)
                  {0.5, 0, BENCH_NO_BASELINE},
                  {NAN, 0.5, BENCH_SAME}};
     for (int c = 0; c < 4; c++) {
-        BenchContests all = {0};
+        BenchAbSamples all = {0};
         BenchComparison *list;
         play(&all, "x", 8, 1, 0.02);
-        BenchSide *side = bench_contest_of(&all, "x")->side;
+        BenchSide *side = bench_ab_scene(&all, "x")->side;
         side[BENCH_OLD].row.epsilon = cases[c].old;
         side[BENCH_NEW].row.epsilon = cases[c].new;
         const BenchCompareParams params = {true, 8, 9, 1};
@@ -236,14 +236,14 @@ TEST(epsilon_0_is_stated)
         assert_int_equal(verdict_of(list, count, "x", 0), cases[c].verdict);
         if (c == 1) assert_string_equal(list[0].reason, "other work: epsilon 0, now 0.5");
         bench_comparisons_free(list, count);
-        bench_contests_free(&all);
+        bench_ab_free(&all);
     }
 }
 
 /* A stage that takes no time (no damping in the scene) or that an old build has not is left out. */
 TEST(a_stage_without_time_is_left_out)
 {
-    BenchContests all = {0};
+    BenchAbSamples all = {0};
     BenchComparison *list;
     play(&all, "x", 5, 0, 0.02);
     const BenchCompareParams params = {true, 5, NAN, 1};
@@ -251,20 +251,20 @@ TEST(a_stage_without_time_is_left_out)
     assert_int_equal(count, BENCH_TIMES - 1);
     for (int i = 0; i < count; i++) assert_int_not_equal(list[i].time, 1 + SM_DAMPING);
     bench_comparisons_free(list, count);
-    bench_contests_free(&all);
+    bench_ab_free(&all);
 }
 
 /* What one comparison of three scenes looks like in a format, written to a file in the folder. */
 static void write_format(BenchRegressionFormat format, const char *name)
 {
-    BenchContests all = {0};
+    BenchAbSamples all = {0};
     BenchComparison *list;
     play(&all, "slow <&\"> \xc3\xa9", 7, 1.3, 0.02);
     play(&all, "bad", 5, 1, 0.02);
     add(&all, BENCH_NEW, 0, "young", 1, 1);
-    bench_contest_of(&all, "bad")->side[BENCH_NEW].valid = false;
-    strcpy(bench_contest_of(&all, "bad")->side[BENCH_NEW].reason, "1 < 2");
-    BenchSide *slow = bench_contest_of(&all, "slow <&\"> \xc3\xa9")->side;
+    bench_ab_scene(&all, "bad")->side[BENCH_NEW].valid = false;
+    strcpy(bench_ab_scene(&all, "bad")->side[BENCH_NEW].reason, "1 < 2");
+    BenchSide *slow = bench_ab_scene(&all, "slow <&\"> \xc3\xa9")->side;
     slow[BENCH_OLD].instructions = 1000, slow[BENCH_NEW].instructions = 1100;
     const BenchCompareParams params = {true, 7, NAN, 1};
     BenchRegression *found = sm_alloc(1, sizeof *found);
@@ -283,7 +283,7 @@ static void write_format(BenchRegressionFormat format, const char *name)
     bench_regression_write(file, format, found);
     fclose(file);
     bench_comparisons_free(list, found->count);
-    bench_contests_free(&all);
+    bench_ab_free(&all);
     free(found);
 }
 

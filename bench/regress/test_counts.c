@@ -24,32 +24,32 @@ static void compile(const char *name, long work)
     assert_int_equal(system(command), 0);
 }
 
-static void add(BenchContests *all)
+static void add(BenchAbSamples *all)
 {
     double total = 1, stage[1][SM_STAGES] = {{1, 1, 1, 1, 1}};
     BenchRow row = {
         .scene = "penguin", .valid = true, .repeats = 1, .total = &total, .stage = stage};
-    for (int b = 0; b < BENCH_BUILDS; b++) bench_contest_add(all, (BenchBuild)b, 0, &row);
+    for (int b = 0; b < BENCH_BUILDS; b++) bench_ab_add(all, (BenchBuild)b, 0, &row);
 }
 
 static SmCode count(const char *old, const char *new, double counted[BENCH_BUILDS], SmError *error)
 {
     char path[BENCH_BUILDS][256];
     BenchProgress progress = {0};
-    BenchContests all = {0};
+    BenchAbSamples all = {0};
     const char *tool;
     const BenchTask task = {.scene = "penguin"};
     snprintf(path[BENCH_OLD], 256, "%s", path_in(old));
     snprintf(path[BENCH_NEW], 256, "%s", path_in(new));
-    const BenchRounds rounds = {.program = {path[BENCH_OLD], path[BENCH_NEW]},
-                                .task = &task,
-                                .tasks = 1,
-                                .folder = folder,
-                                .progress = &progress};
+    const BenchAbRunner rounds = {.program = {path[BENCH_OLD], path[BENCH_NEW]},
+                                  .task = &task,
+                                  .tasks = 1,
+                                  .folder = folder,
+                                  .progress = &progress};
     add(&all);
     SmCode code = bench_counts_take(&rounds, &all, &tool, error);
-    for (int b = 0; b < BENCH_BUILDS; b++) counted[b] = all.contest[0].side[b].instructions;
-    bench_contests_free(&all);
+    for (int b = 0; b < BENCH_BUILDS; b++) counted[b] = all.scenes[0].side[b].instructions;
+    bench_ab_free(&all);
     return code;
 }
 

@@ -1,12 +1,12 @@
-/* contest.h - one scene measured on two builds, in several processes of each.
+/* ab_samples.h - scenes measured on two builds (A/B), in several processes of each.
  *
  * The unit is a process: its repeats share one memory layout and one moment of the machine, and
  * count as one value for each time, their 2% quantile. Other work on the machine only ever adds
  * time, and to most repeats where it keeps every core busy: the low end is what the code needs, and
  * differs by less than 1% between processes where medians differ by 20%. It is no minimum, which a
  * longer run lowers. */
-#ifndef BENCH_CONTEST_H
-#define BENCH_CONTEST_H
+#ifndef BENCH_AB_SAMPLES_H
+#define BENCH_AB_SAMPLES_H
 
 #include "../measure/row.h"
 
@@ -34,21 +34,21 @@ typedef struct {
 typedef struct {
     char scene[64];
     BenchSide side[BENCH_BUILDS];
-} BenchContest;
+} BenchAbScene;
 
 /* Of all scenes. Begins zeroed. */
 typedef struct {
-    BenchContest *contest;
+    BenchAbScene *scenes; /* [count] */
     int count;
-} BenchContests;
+} BenchAbSamples;
 
-/* The contest of that scene, added where there is none. Pointers to contests from before are then
+/* Those of that scene, added where there are none. Pointers to scenes from before are then
  * no longer valid. */
-BenchContest *bench_contest_of(BenchContests *all, const char *scene);
+BenchAbScene *bench_ab_scene(BenchAbSamples *all, const char *scene);
 
 /* Adds a process's row, of which nothing is kept but copies. */
-void bench_contest_add(BenchContests *all, BenchBuild build, int round, const BenchRow *row);
+void bench_ab_add(BenchAbSamples *all, BenchBuild build, int round, const BenchRow *row);
 
-void bench_contests_free(BenchContests *all);
+void bench_ab_free(BenchAbSamples *all);
 
 #endif

@@ -1,15 +1,15 @@
-/* rounds.h - scenes measured in fresh processes, builds in turn.
+/* ab_runner.h - scenes measured on two builds (A/B), in fresh processes, builds in turn.
  *
  * A round of a scene is four processes, old new new old, and the next one new old old new, so that
  * what drifts slowly hits both builds alike; a round beside a stored file is two of the new one.
  * Each process is `PROGRAM tables --scene NAME ...`, which checks the scene before it times it. */
-#ifndef BENCH_ROUNDS_H
-#define BENCH_ROUNDS_H
+#ifndef BENCH_AB_RUNNER_H
+#define BENCH_AB_RUNNER_H
 
 #include "../store/draft.h"
 #include "../system/machine.h"
 #include "../system/progress.h"
-#include "contest.h"
+#include "ab_samples.h"
 
 /* What to run for one scene; NULL or 0: as the program does of itself. */
 typedef struct {
@@ -27,19 +27,19 @@ typedef struct {
     unsigned long seed;
     const char *folder; /* for scratch files */
     BenchProgress *progress;
-} BenchRounds;
+} BenchAbRunner;
 
 enum { BENCH_TURNS = 4 }; /* of a round */
 
 /* Whose turn it is. */
-BenchBuild bench_rounds_build(int round, int turn);
+BenchBuild bench_ab_turn(int round, int turn);
 
 /* Runs all rounds and adds what they measured. `machine` receives each build's environment, from
  * its first process. A scene that the old build does not have (its exit code says so, in the first
  * round) is left without old times, with the reason. Errors: SM_INPUT, SM_INVALID: a process that
  * fails or crashes, with its line; a file of it that cannot be read; interrupted. SM_OUTPUT: the
  * disk is full. */
-SmCode bench_rounds_run(const BenchRounds *rounds, BenchContests *all,
-                        BenchMachine machine[BENCH_BUILDS], SmError *error);
+SmCode bench_ab_run(const BenchAbRunner *runner, BenchAbSamples *all,
+                    BenchMachine machine[BENCH_BUILDS], SmError *error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "rounds.h"
+#include "ab_runner.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,29 +20,29 @@ typedef struct {
 } State;
 
 typedef struct {
-    const BenchRounds *rounds;
-    BenchContests *all;
+    const BenchAbRunner *runner;
+    BenchAbSamples *all;
     BenchMachine *machine;
     bool measured[BENCH_BUILDS]; /* `machine` is known */
     int done;                    /* processes */
 } Session;
 
 /* The words of a `tables` process; numbers are written into `number`. */
-static void make_words(const BenchRounds *rounds, const BenchTask *task, const char *program,
+static void make_words(const BenchAbRunner *runner, const BenchTask *task, const char *program,
                        const char *output, char number[4][32], const char *word[WORDS])
 {
     int count = 0;
     const struct {
         const char *option, *value;
     } option[] = {
-        {"--paper", rounds->paper},       {"--scene", task->scene}, {"--engine", task->engine},
+        {"--paper", runner->paper},       {"--scene", task->scene}, {"--engine", task->engine},
         {"--precision", task->precision}, {"--threads", number[0]}, {"--repeats", number[1]},
         {"--block", number[2]},           {"--seed", number[3]},    {"-o", output},
     };
     snprintf(number[0], 32, "%d", task->threads > 0 ? task->threads : 1);
     snprintf(number[1], 32, "%d", task->repeats);
     snprintf(number[2], 32, "%.6g", task->block);
-    snprintf(number[3], 32, "%lu", rounds->seed);
+    snprintf(number[3], 32, "%lu", runner->seed);
     word[count++] = program;
     word[count++] = "tables";
     word[count++] = "--quiet";
@@ -76,9 +76,9 @@ static SmCode failed(const BenchTask *task, BenchBuild build, int round, int sta
 
 /* The scenes of a task that the old build has not say why; a task may be a file, whose name is not
  * the scene's, or stand for several. */
-static void say_why(const State *state, BenchContest *contest)
+static void say_why(const State *state, BenchAbScene *samples)
 {
-    BenchSide *old = &contest->side[BENCH_OLD];
+    BenchSide *old = &samples->side[BENCH_OLD];
     if (state->reason[0] && old->count == 0)
         snprintf(old->reason, sizeof old->reason, "%s", state->reason);
 }
@@ -95,8 +95,8 @@ static SmCode keep(Session *session, const State *state, BenchBuild build, int r
         return sm_fail(error, code, "what %s has measured cannot be used: %.300s",
                        build_names[build], why.text);
     for (int i = 0; i < count; i++) {
-        bench_contest_add(session->all, build, round, &rows[i]);
-        say_why(state, bench_contest_of(session->all, rows[i].scene));
+        bench_ab_add(session->all, build, round, &rows[i]);
+        say_why(state, bench_ab_scene(session->all, rows[i].scene));
     }
     bench_rows_free(rows, count);
     if (!session->measured[build]) session->machine[build] = machine;
@@ -107,12 +107,12 @@ static SmCode keep(Session *session, const State *state, BenchBuild build, int r
 static SmCode run_process(Session *session, const BenchTask *task, BenchBuild build, int round,
                           State *state, SmError *error)
 {
-    const BenchRounds *rounds = session->rounds;
+    const BenchAbRunner *runner = session->runner;
     char output[PATH], log[PATH], number[4][32];
     const char *word[WORDS];
-    snprintf(output, sizeof output, "%.4000s/rows.h5", rounds->folder);
-    snprintf(log, sizeof log, "%.4000s/process.txt", rounds->folder);
-    make_words(rounds, task, rounds->program[build], output, number, word);
+    snprintf(output, sizeof output, "%.4000s/rows.h5", runner->folder);
+    snprintf(log, sizeof log, "%.4000s/process.txt", runner->folder);
+    make_words(runner, task, runner->program[build], output, number, word);
     BenchProcess process = {.word = (char *const *)word, .output = log};
     BenchProcessEnd end;
     SmCode code = bench_process_run(&process, &end, error);
@@ -127,7 +127,7 @@ static SmCode run_process(Session *session, const BenchTask *task, BenchBuild bu
     return code;
 }
 
-BenchBuild bench_rounds_build(int round, int turn)
+BenchBuild bench_ab_turn(int round, int turn)
 {
     bool outer = turn == 0 || turn == BENCH_TURNS - 1;
     return outer == (round % 2 == 0) ? BENCH_OLD : BENCH_NEW;
@@ -135,7 +135,7 @@ BenchBuild bench_rounds_build(int round, int turn)
 
 static void show(const Session *session, const BenchTask *task, int all)
 {
-    bench_progress_show(session->rounds->progress, task->scene, (double)session->done / all);
+    bench_progress_show(session->runner->progress, task->scene, (double)session->done / all);
 }
 
 /* One round of one scene, of the builds that have it. */
@@ -144,28 +144,28 @@ static SmCode run_round(Session *session, const BenchTask *task, int round, Stat
 {
     SmCode code = SM_OK;
     for (int i = 0; i < BENCH_TURNS && !code; i++) {
-        BenchBuild build = bench_rounds_build(round, i);
+        BenchBuild build = bench_ab_turn(round, i);
         show(session, task, all);
         session->done++;
-        if (session->rounds->program[build] && state->there[build])
+        if (session->runner->program[build] && state->there[build])
             code = run_process(session, task, build, round, state, error);
     }
     return code;
 }
 
-SmCode bench_rounds_run(const BenchRounds *rounds, BenchContests *all,
-                        BenchMachine machine[BENCH_BUILDS], SmError *error)
+SmCode bench_ab_run(const BenchAbRunner *runner, BenchAbSamples *all,
+                    BenchMachine machine[BENCH_BUILDS], SmError *error)
 {
-    Session session = {.rounds = rounds, .all = all, .machine = machine};
-    State *state = sm_alloc((size_t)rounds->tasks, sizeof *state);
-    for (int t = 0; t < rounds->tasks; t++)
+    Session session = {.runner = runner, .all = all, .machine = machine};
+    State *state = sm_alloc((size_t)runner->tasks, sizeof *state);
+    for (int t = 0; t < runner->tasks; t++)
         state[t].there[BENCH_OLD] = state[t].there[BENCH_NEW] = true;
     SmCode code = SM_OK;
-    for (int r = 0; r < rounds->rounds; r++)
-        for (int t = 0; t < rounds->tasks && !code; t++)
-            code = run_round(&session, &rounds->task[t], r, &state[t],
-                             BENCH_TURNS * rounds->rounds * rounds->tasks, error);
-    bench_progress_stop(rounds->progress);
+    for (int r = 0; r < runner->rounds; r++)
+        for (int t = 0; t < runner->tasks && !code; t++)
+            code = run_round(&session, &runner->task[t], r, &state[t],
+                             BENCH_TURNS * runner->rounds * runner->tasks, error);
+    bench_progress_stop(runner->progress);
     free(state);
     return code;
 }

@@ -1,4 +1,4 @@
-#include "contest.h"
+#include "ab_samples.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,19 +13,19 @@ const char *bench_time_name(int time)
     return time ? sm_stage_name((SmStage)(time - 1)) : "total";
 }
 
-BenchContest *bench_contest_of(BenchContests *all, const char *scene)
+BenchAbScene *bench_ab_scene(BenchAbSamples *all, const char *scene)
 {
     for (int i = 0; i < all->count; i++)
-        if (!strcmp(all->contest[i].scene, scene)) return &all->contest[i];
-    all->contest = sm_realloc(all->contest, (size_t)all->count + 1, sizeof *all->contest);
-    BenchContest *contest = &all->contest[all->count++];
-    memset(contest, 0, sizeof *contest);
-    snprintf(contest->scene, sizeof contest->scene, "%s", scene);
+        if (!strcmp(all->scenes[i].scene, scene)) return &all->scenes[i];
+    all->scenes = sm_realloc(all->scenes, (size_t)all->count + 1, sizeof *all->scenes);
+    BenchAbScene *samples = &all->scenes[all->count++];
+    memset(samples, 0, sizeof *samples);
+    snprintf(samples->scene, sizeof samples->scene, "%s", scene);
     for (int b = 0; b < BENCH_BUILDS; b++) {
-        contest->side[b].valid = true;
-        contest->side[b].instructions = NAN;
+        samples->side[b].valid = true;
+        samples->side[b].instructions = NAN;
     }
-    return contest;
+    return samples;
 }
 
 /* Room for one process more, and its repeats. */
@@ -39,9 +39,9 @@ static void grow(BenchSide *side, int repeats)
     }
 }
 
-void bench_contest_add(BenchContests *all, BenchBuild build, int round, const BenchRow *row)
+void bench_ab_add(BenchAbSamples *all, BenchBuild build, int round, const BenchRow *row)
 {
-    BenchSide *side = &bench_contest_of(all, row->scene)->side[build];
+    BenchSide *side = &bench_ab_scene(all, row->scene)->side[build];
     if (side->count == 0) {
         side->row = *row;
         side->row.total = NULL;
@@ -66,17 +66,17 @@ void bench_contest_add(BenchContests *all, BenchBuild build, int round, const Be
     side->round[side->count++] = round;
 }
 
-void bench_contests_free(BenchContests *all)
+void bench_ab_free(BenchAbSamples *all)
 {
     for (int i = 0; i < all->count; i++)
         for (int b = 0; b < BENCH_BUILDS; b++) {
-            BenchSide *side = &all->contest[i].side[b];
+            BenchSide *side = &all->scenes[i].side[b];
             free(side->round);
             for (int t = 0; t < BENCH_TIMES; t++) {
                 free(side->time[t]);
                 free(side->block[t]);
             }
         }
-    free(all->contest);
-    *all = (BenchContests){0};
+    free(all->scenes);
+    *all = (BenchAbSamples){0};
 }
