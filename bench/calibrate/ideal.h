@@ -1,5 +1,5 @@
 /* ideal.h - what an elastic cantilever does, to which calibrate.h compares engines: by theory
- * (reference/beam.h) and by the meshless reference (reference/meshless). */
+ * (reference/beam_theory.h) and by the meshless reference (reference/meshless). */
 #ifndef BENCH_IDEAL_H
 #define BENCH_IDEAL_H
 

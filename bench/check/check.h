@@ -1,8 +1,8 @@
 /* check.h - are the goals, the damping, the contacts and what obstacles do of an engine's present
  * state right? Held to brute force in double precision: lattice engines to reference/brute.h, the
- * octree to reference/octree_goals.h, both to reference/collide.h and reference/obstacle.h. A
- * plastic body's goals are those of the rest shapes that it has; whether they flow as they should
- * is a check of its own, over a step.
+ * octree to reference/octree_goals.h, both to reference/brute_collide.h and
+ * reference/brute_obstacle.h. A plastic body's goals are those of the rest shapes that it has;
+ * whether they flow as they should is a check of its own, over a step.
  */
 #ifndef BENCH_CHECK_H
 #define BENCH_CHECK_H
@@ -127,8 +127,8 @@ void bench_check_contacts(const BenchCheck *check, const BenchScene *scene,
 
 /* Adds the check of obstacles to `found`, if the scene has any: the state of `engine` is stepped
  * once with them and once without, at no handles and contacts, and the one must be what
- * reference/obstacle.h makes of the other, within the rounding of coordinates, or of a particle
- * that is elsewhere by no more than that. */
+ * reference/brute_obstacle.h makes of the other, within the rounding of coordinates, or of a
+ * particle that is elsewhere by no more than that. */
 void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
                            const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
 
