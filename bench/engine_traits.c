@@ -55,11 +55,15 @@ const BenchEngine bench_brute = {.type = {&ref_brute_engine},
                                  .checker = &bench_matching_checker,
                                  .room = bench_room_brute};
 
+static const BenchStages meshless_stages = {
+    .name = {[SM_SHAPE_MATCHING] = "motion", [SM_OTHER] = "skin"}, .before = SM_SHAPE_MATCHING};
+
 const BenchEngine bench_meshless = {.type = {&ref_meshless_engine},
                                     .elastic = true,
                                     .carrier = &bench_lattice_carrier,
                                     .describe = bench_summary_meshless,
                                     .frames = &ref_meshless_frames,
+                                    .stages = &meshless_stages,
                                     .checker = &bench_elastic_checker,
                                     .fill = bench_elastic_row_fill,
                                     .explain = bench_elastic_row_explain,

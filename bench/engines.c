@@ -38,6 +38,21 @@ SmCode bench_engine_find(const char *name, const char *precision, const SmEngine
                    precision ? " precision" : "", known, bench_suggest_among(name, names, near));
 }
 
+const char *bench_stage_name(const BenchEngine *engine, SmStage stage)
+{
+    return engine->stages ? engine->stages->name[stage] : sm_stage_name(stage);
+}
+
+SmStage bench_stage_find(const char *name)
+{
+    for (int e = 0; bench_engine_list[e]; e++)
+        for (int s = 0; s < SM_STAGES; s++) {
+            const char *stage = bench_stage_name(bench_engine_list[e], (SmStage)s);
+            if (stage && !strcmp(stage, name)) return (SmStage)s;
+        }
+    return SM_STAGES;
+}
+
 const BenchEngine *bench_engine_planned(const char *engines, int i)
 {
     bool all = !strcmp(engines, bench_engine_choices()[0]);

@@ -22,6 +22,12 @@ typedef struct BenchRow BenchRow;         /* measure/row.h */
 
 enum { BENCH_MOST_PLANNED = 4 };
 
+/* What an engine's stages are called where they are not those of shape matching. */
+typedef struct {
+    const char *name[SM_STAGES]; /* NULL: it has none in that place */
+    SmStage before;              /* of what moves handles and pushes before a step */
+} BenchStages;
+
 typedef struct {
     const SmEngineType *type[2]; /* one a precision, the default first; NULL: there is no other */
 
@@ -46,6 +52,8 @@ typedef struct {
     const SmEngineType *frames; /* what bench_measure() takes in its place, of the same name; NULL:
                                  * the engine itself */
 
+    const BenchStages *stages; /* NULL: Table 1's of fastlsm (lib/stage.h) */
+
     /* The row's own columns, of an engine at rest, and more of a row for people. NULL: nothing. */
     void (*fill)(const BenchRunner *runner, BenchRow *row);
     void (*explain)(FILE *file, const BenchRow *row);
@@ -69,6 +77,11 @@ const BenchEngine *bench_engine(const char *name);
  * SM_USAGE lists what there is. */
 SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
                          SmError *error);
+
+/* The engine's name of a stage, NULL if it has no such; and the stage that any engine calls so,
+ * SM_STAGES if none does. */
+const char *bench_stage_name(const BenchEngine *engine, SmStage stage);
+SmStage bench_stage_find(const char *name);
 
 /* Planned engine number i of those that a plan's word stands for, "both" or one's name; NULL behind
  * the last. And the words, NULL-terminated. */

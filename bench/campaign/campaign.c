@@ -225,7 +225,7 @@ static void write_points(BenchH5 *h5, const BenchCampaign *campaign)
     BenchField *fields = point_fields(campaign);
     for (int f = 0; f < *type->point_fields; f++) {
         if (!fields[f].stages) continue;
-        bench_store_stages(sizeof stages, stages);
+        bench_store_stages("", sizeof stages, stages); /* of shape matching */
         bench_h5_text(h5, group, "stages", stages);
     }
     bench_h5_columns(h5, group, fields, *type->point_fields, campaign->point, type->point_size,

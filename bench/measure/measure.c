@@ -24,6 +24,7 @@ typedef struct {
     BenchPlayback play;
     Saved *saved; /* [play.count] */
     double time;
+    SmStage before; /* where what comes before the step is counted */
 } Trial;
 
 static void save(Trial *trial)
@@ -83,7 +84,7 @@ static void step(void *subject, SmLaps *laps)
 {
     Trial *trial = subject;
     bench_playback_prepare(&trial->play);
-    sm_lap(laps, SM_OTHER);
+    sm_lap(laps, trial->before);
     bench_playback_advance(&trial->play, laps);
 }
 
@@ -201,7 +202,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
 {
     const BenchEngine *engine = bench_engine(type->name);
     const BenchChecker *checker = engine->checker;
-    Trial trial = {0};
+    Trial trial = {.before = engine->stages ? engine->stages->before : SM_OTHER};
     if (engine->frames) type = engine->frames;
     SmCode code = checker->takes ? checker->takes(scene, error) : SM_OK;
     if (!code)

@@ -324,8 +324,12 @@ TEST(its_row_is_a_table_of_its_own)
     assert_non_null(strstr(text, "\\begin{tabular}"));
     write_row(&row, BENCH_AS_CSV, text, sizeof text);
     assert_non_null(strstr(text, ",nodes,modes,matrices_s,modes_s,"));
+    assert_non_null(strstr(text, ",motion_ms,skin_ms\n"));
+    assert_non_null(strstr(text, ",,,,,")); /* it has no stages of shape matching */
     write_row(&row, BENCH_AS_JSON, text, sizeof text);
     assert_non_null(strstr(text, "\"matrices_s\""));
+    assert_non_null(strstr(text, "\"shape_matching_ms\": null"));
+    assert_null(strstr(text, "\"motion_ms\": null"));
     row.valid = false;
     snprintf(row.reason, sizeof row.reason, "rigid motions: 1 off");
     write_row(&row, BENCH_AS_TEXT, text, sizeof text);
@@ -352,6 +356,9 @@ TEST(its_row_is_in_the_file)
     assert_int_equal(bench_store_rows(path_in("rows.h5"), &row, 1, &machine, &error), SM_OK);
     bench_h5_open(&h5, path_in("rows.h5"));
     hid_t group = bench_h5_find_group(&h5, bench_h5_find_group(&h5, h5.file, "rows"), "000");
+    char stages[64] = "";
+    bench_h5_read_text(&h5, group, "stages", sizeof stages, stages);
+    assert_string_equal(stages, "- motion - - skin");
     group = bench_h5_find_group(&h5, group, "elastic");
     bench_h5_read_fields(&h5, group, fields, sizeof fields / sizeof *fields, &read);
     if (!bench_h5_close(&h5)) fail_msg("%s", h5.message);

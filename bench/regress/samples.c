@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../engines.h"
 #include "../measure/measure.h"
 #include "../table/quantity.h"
 #include "../table/row_store.h"
@@ -39,8 +40,7 @@ static int find_columns(BenchH5 *h5, hid_t group, int column[SM_STAGES])
     int columns = 0;
     char *rest = names;
     for (char *name; (name = strtok_r(rest, " ", &rest)) && columns < MOST_STAGES; columns++)
-        for (int s = 0; s < SM_STAGES; s++)
-            if (!strcmp(name, sm_stage_name((SmStage)s))) column[s] = columns;
+        if (bench_stage_find(name) < SM_STAGES) column[bench_stage_find(name)] = columns;
     return columns;
 }
 

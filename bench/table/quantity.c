@@ -18,6 +18,11 @@ static bool meshless(const void *record)
     return ((const BenchRow *)record)->elastic.nodes > 0;
 }
 
+static bool matching(const void *record)
+{
+    return !meshless(record);
+}
+
 static bool timed(const void *record)
 {
     return bench_row_timed(record);
@@ -246,11 +251,11 @@ enum { PAGE = 1 << BENCH_GRID_MARKDOWN | LATEX, EVERY = PLAIN | PAGE };
 #define PLACE(type, member)                                                                        \
     .field.kind = BENCH_##type, .field.offset = offsetof(BenchRow, member),                        \
     .field.size = sizeof(((BenchRow *)0)->member)
-#define COLUMN(title)       .field.column = title
-#define TIME(title)         .field.column = title, .field.timed = timed
-#define STAGE(stage, title) PLACE(DOUBLE, stage_ms[stage]), TIME(title)
-#define MEANS(unit_, words) .field.unit = unit_, .field.meaning = words
-#define PAPER(member, how)  .paper = offsetof(RefPaperRow, member), .below = how
+#define COLUMN(title)             .field.column = title
+#define TIME(title)               .field.column = title, .field.timed = timed
+#define STAGE(stage, title, when) PLACE(DOUBLE, stage_ms[stage]), TIME(title), .field.given = when
+#define MEANS(unit_, words)       .field.unit = unit_, .field.meaning = words
+#define PAPER(member, how)        .paper = offsetof(RefPaperRow, member), .below = how
 
 #define STORED(type, member, ...) .field.name = #member, PLACE(type, member), __VA_ARGS__
 #define ROW(type, member, ...)    {STORED(type, member, __VA_ARGS__)},

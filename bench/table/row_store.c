@@ -4,16 +4,19 @@
 #include <string.h>
 
 #include "../../reference/paper.h"
+#include "../engines.h"
 #include "quantity.h"
 
 static const char file_kind[] = "shapebench results";
 
-void bench_store_stages(size_t size, char *names)
+void bench_store_stages(const char *engine, size_t size, char *names)
 {
     size_t used = 0;
-    for (int stage = 0; stage < SM_STAGES; stage++)
+    for (int stage = 0; stage < SM_STAGES; stage++) {
+        const char *name = bench_stage_name(bench_engine(engine), (SmStage)stage);
         used += (size_t)snprintf(names + used, size - used, "%s%s", stage ? " " : "",
-                                 sm_stage_name((SmStage)stage));
+                                 name ? name : "-");
+    }
 }
 
 /* More of the paper's row, where one is set beside this one, and how its values came to us. */
@@ -46,7 +49,7 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
 {
     char name[16], stages[128];
     snprintf(name, sizeof name, "%03d", index);
-    bench_store_stages(sizeof stages, stages);
+    bench_store_stages(row->engine, sizeof stages, stages);
     hid_t group = bench_h5_group(h5, parent, name);
     write_quantities(h5, group, row, false);
     bench_h5_text(h5, group, "stages", stages);

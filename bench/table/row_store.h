@@ -14,8 +14,9 @@ enum { BENCH_STORE_SCHEMA = 4 };
 SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
                         const BenchMachine *machine, SmError *error);
 
-/* "fast_sum shape_matching ...": the columns of stages, in order; the attribute "stages". */
-void bench_store_stages(size_t size, char *names);
+/* "fast_sum shape_matching ...": the engine's columns of stages, in order, "-" where it has none;
+ * the attribute "stages". */
+void bench_store_stages(const char *engine, size_t size, char *names);
 
 /* One row, as group `index` of `parent`, in a file that holds other things too. */
 void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row);

@@ -117,6 +117,9 @@ def read_row(group):
         row["elastic"] = attributes(group["elastic"])
         demand(row["elastic"], ("nodes", "modes", "matrix_seconds", "mode_seconds"), (int, float))
     row["stage_names"] = row["stages"].split()
+    if "elastic" in row:  # files of before give a meshless body's stages the names of shape matching's
+        older = {"shape_matching": "motion", "other": "skin"}
+        row["stage_names"] = [older.get(name, name) for name in row["stage_names"]]
     return row
 
 

@@ -88,7 +88,7 @@ def elastic(source):
     if not rows:
         return None
     table = Table(f"Meshless bodies, time of a frame, {source.name}",
-                  ["scene", "points", "nodes", "modes", "matrices s", "modes s", "motion ms", "points ms", "frame ms",
+                  ["scene", "points", "nodes", "modes", "matrices s", "modes s", "motion ms", "skin ms", "frame ms",
                    "the paper's frame ms", "faster than the paper", "check"],
                   "Medians. The paper's frames are of its own processor and include the drawing of the points.")
     for row in rows:
@@ -99,7 +99,7 @@ def elastic(source):
             continue
         beside = [number(paper), f"{number(paper / total)} times"] if paper == paper else ["–", "–"]
         table.add(counts + [number(body["matrix_seconds"]), number(body["mode_seconds"])]
-                  + measured_times(row, ["shape_matching", "other"]) + [number(total)] + beside + [check(row)])
+                  + measured_times(row, ["motion", "skin"]) + [number(total)] + beside + [check(row)])
     return table
 
 
