@@ -1,5 +1,6 @@
 #include "kernels.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -344,6 +345,7 @@ static SmCode run_set(Run *run, int first, int last, SmError *error)
     int count = 0, together = 0;
     void *body = NULL;
     const BenchKernelKind *kind = kernels[first].kind;
+    assert(last - first <= SET_MOST);
     for (int i = first; i < last; i++) {
         if (!needed(run->params, &kernels[i])) continue;
         jobs[count++] = make_job(run, &kernels[i]);
