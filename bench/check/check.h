@@ -9,8 +9,8 @@
 
 #include "../../reference/brute.h"
 #include "../../reference/octree_goals.h"
-#include "../measure/drift.h"
 #include "../play/runner.h"
+#include "drift.h"
 
 typedef struct {
     const BenchBody *body; /* the caller's, kept */

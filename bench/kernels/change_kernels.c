@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 #include "../../octree/engine.h"
-#include "../measure/spread.h"
+#include "../measure/quartiles.h"
 #include "kernels.h"
 
 enum {
@@ -211,7 +211,7 @@ static void report(BenchJob *job, BenchKernelRow *row)
     bool cuts = job->kernel->part == BENCH_CUT;
     SmCounts counts;
     cube->type->count(cube->engine, &counts);
-    job->own_ns = 1e9 * bench_spread(change->trial.cpu, change->trial.samples).median;
+    job->own_ns = 1e9 * bench_quartiles(change->trial.cpu, change->trial.samples).median;
     job->least = oct_regions_operations(0, 0, counts.summation_nodes); /* lists written */
     job->least.far_bytes *= (double)cube->regions;
     job->footprint = (double)counts.bytes;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../../lib/system/team.h"
-#include "../measure/spread.h"
+#include "../measure/quartiles.h"
 #include "cubes.h"
 #include "matrices.h"
 #include "sampled.h"
@@ -223,7 +223,7 @@ static void set_times(const BenchJob *job, BenchKernelRow *row)
     if (!samples) return;
     double *ns = sm_alloc((size_t)samples, sizeof *ns);
     for (int r = 0; r < samples; r++) ns[r] = ns_of(job, r);
-    BenchSpread spread = bench_spread(ns, samples);
+    BenchQuartiles spread = bench_quartiles(ns, samples);
     free(ns);
     find_busy(job->trial, row);
     row->ns = spread.median;
@@ -253,7 +253,7 @@ static void compare_samples(const BenchJob *job, const BenchJob *base, BenchKern
         ratio[r] = ns_of(job, r) / ns_of(base, r);
         if (row->wanted_least) ratio[r] = 1 / ratio[r]; /* a speed-up */
     }
-    row->ratio = bench_spread(ratio, samples).median;
+    row->ratio = bench_quartiles(ratio, samples).median;
     free(ratio);
     double share = (double)base->items / (double)job->items;
     bool same = bench_level_of(job->peak, job->footprint, job->threads) ==

@@ -5,7 +5,7 @@
 #include "../../fastlsm/operations.h"
 #include "../../lib/test_fields.h"
 #include "../../lib/test_frame.h"
-#include "../measure/spread.h"
+#include "../measure/quartiles.h"
 #include "cubes.h"
 #include "kernel_table.h"
 #include "matrices.h"
@@ -76,7 +76,7 @@ TEST(floors_follow_the_work)
 TEST(the_spread_is_that_of_the_samples)
 {
     const double value[] = {5, 1, 4, 2, 3};
-    BenchSpread spread = bench_spread(value, 5);
+    BenchQuartiles spread = bench_quartiles(value, 5);
     assert_true(spread.low == 2 && spread.median == 3 && spread.high == 4);
 }
 

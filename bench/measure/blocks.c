@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "moment.h"
-#include "spread.h"
+#include "quartiles.h"
 
 typedef struct {
     BenchTimed timed;
@@ -112,15 +112,15 @@ static void summarise(BenchRow *row)
             for (int t = 0; t < SM_STAGES; t++) sum += row->stage[r][t];
             sample[r] = sum > 0 ? row->stage[r][s] / sum : 0;
         }
-        all += share[s] = bench_spread(sample, row->repeats).median;
+        all += share[s] = bench_quartiles(sample, row->repeats).median;
     }
     for (size_t r = 0; r < count; r++) {
         sample[r] = 0;
         for (int s = 0; s < SM_STAGES; s++) sample[r] += row->stage[r][s];
         sample[r] /= row->total[r];
     }
-    BenchSpread total = bench_spread(row->total, row->repeats);
-    row->instruments_percent = 100 * (bench_spread(sample, row->repeats).median - 1);
+    BenchQuartiles total = bench_quartiles(row->total, row->repeats);
+    row->instruments_percent = 100 * (bench_quartiles(sample, row->repeats).median - 1);
     row->total_ms = 1e3 * total.median;
     row->total_low_ms = 1e3 * total.low;
     row->total_high_ms = 1e3 * total.high;

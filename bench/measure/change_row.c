@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "moment.h"
-#include "spread.h"
+#include "quartiles.h"
 
 enum { SIMULATION, CHANGE, FOLLOW, SURFACE }; /* in the order of BenchChangeRow */
 
@@ -104,7 +104,7 @@ static double median_ms(const Times *times, int part, long from, long to, bool c
     double *chosen = sm_alloc((size_t)times->frames, sizeof *chosen), median = NAN;
     for (long f = from; f < to; f++)
         if (!changed || times->changed[f]) chosen[count++] = times->least[f][part];
-    if (count) median = 1e3 * bench_spread(chosen, count).median;
+    if (count) median = 1e3 * bench_quartiles(chosen, count).median;
     free(chosen);
     return median;
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../../lib/vector.h"
-#include "../check/check_copy.h"
+#include "check_copy.h"
 
 /* Momenta of one instance, in cells and steps. */
 typedef struct {
