@@ -5,9 +5,10 @@
  * a block, and a block's coordinates are stored as x[3][lanes]. Planes of the lattice are grouped
  * into layers, the unit of the pipeline (pipeline.h).
  *
- * Sums come from two kernels. In list form (subsum_lists.h) a body's slots follow each other
- * without holes and every region has its lists. In block form a block is SM_LANES lattice sites
- * along x, sums are box sums over blocks, and only regions that a box sum gets wrong have lists. */
+ * Sums have several forms (sums/sums.h). In those over lists (lattice/subsum_lists.h) a body's
+ * slots follow each other without holes and every region has its lists. Where they are box sums a
+ * block is SM_LANES lattice sites along x, and only regions that a box sum gets wrong have lists or
+ * fix-ups. */
 #ifndef LSM_STATE_H
 #define LSM_STATE_H
 
@@ -48,7 +49,7 @@ typedef struct {
                                                      (Q, R z, R y), as the plates are done with it */
     real *plate;      /* [plates][ROW_PLATE]         .. and of b p */
     real *transform;  /* [slots + 2][ROW_T]          (q_r, R z, R y, R x) */
-    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z); in a chain [ROW_PLATE_RUN],
+    real *plate_down; /* [plates][ROW_PLATE_DOWN]    (Q, R z); running [ROW_PLATE_RUN],
                                                      with R y for the rows made from it */
 } Rows;
 
@@ -147,14 +148,6 @@ SM_INLINE ivec listed_lanes(const int *region)
 {
     typedef int narrow __attribute__((vector_size(SM_LANES * sizeof(int)), aligned(sizeof(int))));
     return __builtin_convertvector(*(const narrow *)region, ivec) >= 0;
-}
-
-/* The lanes whose slot is not negative, as bits. */
-SM_INLINE unsigned live_lanes(const int slot[SM_LANES])
-{
-    unsigned live = 0;
-    for (int lane = 0; lane < SM_LANES; lane++) live |= (unsigned)(slot[lane] >= 0) << lane;
-    return live;
 }
 
 /* List form: the rows of lists.region of a tile. */

@@ -48,7 +48,7 @@ TEST(test_goals)
     }
 }
 
-/* Wide regions in list form, whose sums run over chains: random shapes; bodies of several layers; a
+/* Wide regions in list form, whose sums are running: random shapes; bodies of several layers; a
  * particle so heavy that its rounding must not stay behind in a sum. */
 TEST(test_wide_lists)
 {

@@ -8,9 +8,9 @@
  * one that leaves),
  *     S = S_base + sum +-v,   M = M_base - S_base + sum +-o v,
  * without - S_base where the base lies around the same place. That holds for any two lists, so it
- * is exact on any shape. Rounding adds up along a chain: it ends after LSM_RUN_MOST rows, and the
- * next row starts anew, listed in full, as every row does that has no base with fewer terms. A base
- * comes before what is made from it and lies in the same layer. */
+ * is exact on any shape. Rounding adds up from row to row: a run ends after LSM_RUN_MOST rows, and
+ * the next row starts anew, listed in full, as every row does that has no base with fewer terms. A
+ * base comes before what is made from it and lies in the same layer. */
 #ifndef LSM_RUNNING_LISTS_H
 #define LSM_RUNNING_LISTS_H
 
@@ -38,8 +38,8 @@ typedef struct {
 /* What a term's member is multiplied by for the sum and for the moment. */
 void lsm_running_factors(int w, double factor[LSM_FACTORS][2]);
 
-/* Chains for the lists of all particles of a lattice; region p is row p + 1. Layer l has the planes
- * layer_plane[l] .. layer_plane[l + 1] - 1. O(rows w). */
+/* Running lists for the lists of all particles of a lattice; region p is row p + 1. Layer l has the
+ * planes layer_plane[l] .. layer_plane[l + 1] - 1. O(rows w). */
 void lsm_running_lists_build(const LsmLattice *lattice, const LsmLists *lists, int layers,
                              const int *layer_plane, LsmRunningLists *running_lists);
 void lsm_running_lists_free(LsmRunningLists *running_lists);

@@ -9,8 +9,8 @@
 #include "window.h"
 
 /* One body serves shape matching and damping. Values are numbered 3 k + d, d = 0..2 for x, y, z:
- * up, k counts (P, Pz, Px, Py) and down (Q, Rz, Rx, Ry) in the order in which the chain's stages
- * add and use them; damping sums four plain triples up and two down. */
+ * up, k counts (P, Pz, Px, Py) and down (Q, Rz, Rx, Ry) in the order in which the stages of the
+ * sums add and use them; damping sums four plain triples up and two down. */
 enum { BLOCK = TILE_DOWN, BLOCK_DOWN = 6 * SM_LANES };
 
 /* Asks for x or v of the block AHEAD of `block`. */
@@ -623,7 +623,9 @@ SM_INLINE void plane_end(Lsm *lsm, int plane, int thread, int w, bool plain, SmL
             int blocks = run->count - i < TILE_GROUP ? run->count - i : TILE_GROUP;
             for (int k = 0; k < blocks; k++) {
                 if (!plain && box->streams) prefetch_ahead(lsm, lsm->v, block + k);
-                stage_z_down(lsm, &downs, block + k, run->moves_z, thread, w, plain, sum[k]);
+                vec here[6]; /* in registers, which `sum` cannot be */
+                stage_z_down(lsm, &downs, block + k, run->moves_z, thread, w, plain, here);
+                lanes_copy(plain ? 6 : 3, here, sum[k]);
                 if (box->mixed[block + k]) mend_particles(lsm, block + k, plain, sum[k]);
             }
             sm_lap(laps, lsm->pass->stage);

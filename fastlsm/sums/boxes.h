@@ -1,6 +1,6 @@
 /* boxes.h - sums over regions in block form: box sums over SM_LANES lattice sites at a time.
  *
- * The moment chain of list_sums.h, but bars, plates and cubes are taken over every site of the box
+ * As sums.h says, but bars, plates and cubes are taken over every site of the box
  * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
  * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
  * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
@@ -53,7 +53,7 @@ struct Blocks {
     int threads;
     long shared_bytes;
     real **scratch;  /* [threads] rows of one plane, and windows */
-    BlockRow **held; /* [threads] what is in these rows (blocks_pass.h) */
+    BlockRow **held; /* [threads] what is in these rows (boxes.c) */
     real **window;   /* [threads] up, down: the z windows of a plane's places, [12] and [6] blocks
                         each; none unless `running` */
 };

@@ -1,6 +1,6 @@
 /* instances.h - many bodies that share one lattice: a lane of every vector is a body.
  *
- * All lists are the same for all bodies, so the list form of the sums (list_sums.h) runs on
+ * All lists are the same for all bodies, so the list form of the sums (sums.h) runs on
  * SM_LANES bodies at once, with no gathering and no empty lanes but in the last group. */
 #ifndef LSM_INSTANCES_H
 #define LSM_INSTANCES_H

@@ -9,7 +9,8 @@
  *     running_sums.c   bars, plates and regions made from their neighbours', O(1), for any shape
  *     boxes.c          windows over all sites of a box, O(1), for solids; box_sum_fixups.c mends
  *                      the sums of regions that are no boxes
- *     instances.c      the lists for SM_LANES bodies at once
+ *
+ * Of many bodies that share a lattice instances.c steps SM_LANES at once, over the same lists.
  *
  * Shape matching sums p = m~ x and its moments about the region's own centre, in place of x x0^T
  * against a global origin. With lattice offsets (a, b, c) from the centre

@@ -1,4 +1,4 @@
-/* window.h - one stage of the moment chain (list_sums.h) over lanes: a sum over 2w+1 places, and
+/* window.h - one stage of the sums (sums.h) over lanes: a sum over 2w+1 places, and
  * its moment. */
 #ifndef LSM_WINDOW_H
 #define LSM_WINDOW_H
