@@ -17,8 +17,8 @@ static inline double lsm_window_places(int w, int side)
     return sum / side;
 }
 
-/* Sums over regions, up and down, in a cube of `side` particles. The moment chain
- * (sums/summation.h), fields that a stage reads and writes:
+/* Sums over regions, up and down, in a cube of `side` particles. The sums of
+ * sums/sums.h, fields that a stage reads and writes:
  *     up    z 3 -> 6, y 6 -> 9, x 9 -> 12 (stays in registers)
  *     down  x 12 -> 9, y 9 -> 6, z 6 -> 3 (stays in registers)
  * so 3 + 6 + 9 sums and 3 moments at each of three stages up, the same down, where each moment is
