@@ -80,15 +80,15 @@ SmCode bench_recording_open(BenchPlayback *play, const char *path, BenchRecord r
         .surface = &recording->surface,
         .machine = machine,
         .scene = runner->scene->name,
-        .record = record,
         .fields = fields,
-        .voxels = &body->voxels,
-        .structure = engine->structure ? engine->structure(runner->engine) : NULL,
-        .params = &params,
-        .mass = body->mass,
-        .engine = runner->type->name,
-        .precision = runner->type->precision,
-        .boundary = &boundary};
+        .steps = {.record = record,
+                  .voxels = &body->voxels,
+                  .structure = engine->structure ? engine->structure(runner->engine) : NULL,
+                  .params = &params,
+                  .mass = body->mass,
+                  .engine = runner->type->name,
+                  .precision = runner->type->precision,
+                  .boundary = &boundary}};
     code = bench_trajectory_open(&wanted, &recording->trajectory, error);
     if (code) release(recording);
     return code;

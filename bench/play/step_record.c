@@ -43,7 +43,7 @@ static void write_particles(BenchH5 *h5, hid_t group, const SmVoxels *voxels, co
 }
 
 /* The lattice itself, and what is asked of it alone. */
-static void write_lattice(BenchH5 *h5, hid_t group, const BenchTrajectoryParams *all)
+static void write_lattice(BenchH5 *h5, hid_t group, const BenchStepSource *all)
 {
     static const BenchField lattice[] = {
         BENCH_FIELD(SmVoxels, BENCH_INT, size),
@@ -62,7 +62,7 @@ static void write_lattice(BenchH5 *h5, hid_t group, const BenchTrajectoryParams 
 
 /* ---- what is of octrees alone */
 
-static void write_octree_parameters(BenchH5 *h5, hid_t group, const BenchTrajectoryParams *all)
+static void write_octree_parameters(BenchH5 *h5, hid_t group, const BenchStepSource *all)
 {
     static const BenchField options[] = {
         BENCH_FIELD(OctOptions, BENCH_DOUBLE, epsilon),
@@ -139,10 +139,10 @@ static void write_edges(BenchH5 *h5, hid_t group, const OctGraph *graph)
 }
 
 /* An octree: parameters, tree, leaves, visibility edges and regions. */
-static void write_octree(BenchH5 *h5, hid_t group, const BenchTrajectoryParams *params)
+static void write_octree(BenchH5 *h5, hid_t group, const BenchStepSource *source)
 {
-    const OctStructure *s = params->structure;
-    write_octree_parameters(h5, group, params);
+    const OctStructure *s = source->structure;
+    write_octree_parameters(h5, group, source);
     write_tree(h5, group, &s->tree);
     write_leaves(h5, group, s);
     write_edges(h5, group, &s->graph);
@@ -159,7 +159,7 @@ static long instance_count(const SmEngineParams *params)
     return params->instances > 0 ? params->instances : 1;
 }
 
-static void write_parameters(BenchH5 *h5, hid_t group, const BenchTrajectoryParams *all)
+static void write_parameters(BenchH5 *h5, hid_t group, const BenchStepSource *all)
 {
     static const BenchField step[] = {
         BENCH_FIELD(SmEngineParams, BENCH_DOUBLE, h),
@@ -187,26 +187,25 @@ static void write_boundary(BenchH5 *h5, hid_t group, const SmBoundary *boundary,
     free(held);
 }
 
-void bench_step_record_begin(BenchH5 *h5, const BenchTrajectoryParams *params,
-                             BenchStepRecord *record)
+void bench_step_record_begin(BenchH5 *h5, const BenchStepSource *source, BenchStepRecord *record)
 {
-    bool nodes = params->record == BENCH_RECORD_NODES;
-    long count = nodes ? params->structure->tree.leaves : params->voxels->particle_count;
-    record->count = instance_count(params->params) * count;
+    bool nodes = source->record == BENCH_RECORD_NODES;
+    long count = nodes ? source->structure->tree.leaves : source->voxels->particle_count;
+    record->count = instance_count(source->params) * count;
     hid_t group = bench_h5_group(h5, h5->file, nodes ? "nodes" : "particles");
-    write_parameters(h5, group, params);
+    write_parameters(h5, group, source);
     if (nodes)
-        write_octree(h5, group, params);
+        write_octree(h5, group, source);
     else
-        write_lattice(h5, group, params);
-    write_boundary(h5, group, params->boundary, record->count);
+        write_lattice(h5, group, source);
+    write_boundary(h5, group, source->boundary, record->count);
     hsize_t size[] = {0, (hsize_t)record->count, 3};
     record->step = bench_h5_growing(h5, group, "step", H5T_STD_I64LE, 1, size);
     record->x = bench_h5_growing(h5, group, "x", H5T_IEEE_F64LE, 3, size);
     record->v = bench_h5_growing(h5, group, "v", H5T_IEEE_F64LE, 3, size);
     record->g = bench_h5_growing(h5, group, "g", H5T_IEEE_F64LE, 3, size);
     size[2] = 9;
-    record->S = nodes && params->params->octree->creep > 0
+    record->S = nodes && source->params->octree->creep > 0
                     ? bench_h5_growing(h5, group, "S", H5T_IEEE_F64LE, 3, size)
                     : -1;
 }

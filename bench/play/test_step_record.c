@@ -56,19 +56,20 @@ static void record(const SmEngineType *type, BenchTrajectoryParams *params)
     BenchTrajectory *trajectory;
     SmError error = {0};
     SmCounts counts;
-    if (type->create(params->voxels, params->params, &engine, &error) != SM_OK)
+    if (type->create(params->steps.voxels, params->steps.params, &engine, &error) != SM_OK)
         fail_msg("%s", error.text);
-    if (params->record == BENCH_RECORD_NODES) params->structure = oct_engine_structure(engine);
-    params->engine = type->name;
-    params->precision = type->precision;
+    if (params->steps.record == BENCH_RECORD_NODES)
+        params->steps.structure = oct_engine_structure(engine);
+    params->steps.engine = type->name;
+    params->steps.precision = type->precision;
     type->count(engine, &counts);
     long count = counts.particles;
     double(*x)[3] = sm_alloc((size_t)count, sizeof *x),
     (*v)[3] = sm_alloc((size_t)count, sizeof *v);
     double(*g)[3] = sm_alloc((size_t)count, sizeof *g),
     (*S)[9] = sm_alloc((size_t)count, sizeof *S);
-    if (params->boundary) type->bound(engine, params->boundary);
-    disturb(type, engine, count, params->voxels->cell);
+    if (params->steps.boundary) type->bound(engine, params->steps.boundary);
+    disturb(type, engine, count, params->steps.voxels->cell);
     if (bench_trajectory_open(params, &trajectory, &error) != SM_OK) fail_msg("%s", error.text);
     for (long step = 0; step <= STEPS; step++) {
         type->get(engine, SM_POSITION, x);
@@ -106,11 +107,11 @@ static void record_lattice(SmEngineParams *engine, const SmBoundary *boundary, b
                                     .surface = &none,
                                     .machine = &machine,
                                     .scene = "L",
-                                    .record = BENCH_RECORD_PARTICLES,
-                                    .voxels = &voxels,
-                                    .params = engine,
-                                    .mass = engine->mass,
-                                    .boundary = boundary};
+                                    .steps = {.record = BENCH_RECORD_PARTICLES,
+                                              .voxels = &voxels,
+                                              .params = engine,
+                                              .mass = engine->mass,
+                                              .boundary = boundary}};
     record(&ref_brute_engine, &params);
     free(mass);
     sm_voxels_free(&voxels);
@@ -201,10 +202,10 @@ static void record_octree(const SmEngineType *type, int kind, SmEngineParams *en
                                     .surface = &none,
                                     .machine = &machine,
                                     .scene = "octree",
-                                    .record = BENCH_RECORD_NODES,
-                                    .voxels = &voxels,
-                                    .params = engine,
-                                    .boundary = boundary};
+                                    .steps = {.record = BENCH_RECORD_NODES,
+                                              .voxels = &voxels,
+                                              .params = engine,
+                                              .boundary = boundary}};
     record(type, &params);
     sm_voxels_free(&voxels);
 }

@@ -277,7 +277,7 @@ TEST(obstacles_are_stored)
     SmMesh sheet;
     make_sheet(0, &sheet);
     BenchTrajectoryParams params = sheet_params(path_in("met.vtkhdf"), &sheet);
-    params.boundary = &boundary;
+    params.steps.boundary = &boundary;
     BenchTrajectory *trajectory;
     assert_int_equal(bench_trajectory_open(&params, &trajectory, NULL), SM_OK);
     assert_int_equal(write_frames(trajectory, &sheet, 1, NULL), SM_OK);

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "../store/draft.h"
-#include "step_record.h"
 #include "xdmf.h"
 
 enum { TRAJECTORY_SCHEMA = 4, VERTEX_CELL = 1, TRIANGLE_CELL = 5 /* as VTK has them */ };
@@ -172,7 +171,7 @@ static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryPa
     bench_h5_text(h5, h5->file, "scene", params->scene);
     hid_t group = bench_h5_group(h5, h5->file, "machine");
     bench_h5_fields(h5, group, machine_fields, machine_count, params->machine);
-    write_obstacles(h5, params->boundary);
+    write_obstacles(h5, params->steps.boundary);
     group = bench_h5_group(h5, h5->file, "VTKHDF");
     bench_h5_numbers(h5, group, "Version", H5T_STD_I64LE, 2, (long[]){2, 0});
     write_type(h5, group);
@@ -184,7 +183,7 @@ static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryPa
     trajectory->types = bench_h5_growing(h5, group, "Types", H5T_STD_U8LE, 1, size);
     begin_fields(trajectory);
     add_topology(trajectory, params->surface);
-    if (params->record) bench_step_record_begin(h5, params, &trajectory->record);
+    if (params->steps.record) bench_step_record_begin(h5, &params->steps, &trajectory->record);
 }
 
 static void release(BenchTrajectory *trajectory)

@@ -9,27 +9,18 @@
 
 #include "../system/machine.h"
 #include "fields.h"
+#include "step_record.h"
 
 typedef struct BenchTrajectory BenchTrajectory;
-
-/* What is recorded beside the surface: nothing, a lattice's particles or an octree's nodes. */
-typedef enum { BENCH_RECORD_SURFACE, BENCH_RECORD_PARTICLES, BENCH_RECORD_NODES } BenchRecord;
 
 typedef struct {
     const char *path;      /* "out.vtkhdf"; the sidecar is path + ".xdmf" */
     const SmMesh *surface; /* topology of the points written first; rest positions. Without
                             * triangles each point is a cell of its own */
     const BenchMachine *machine;
-    const char *scene;          /* name; any bytes */
-    BenchFields fields;         /* stored of every point */
-    const SmBoundary *boundary; /* its obstacles, which stay where they are; NULL: none */
-    BenchRecord record; /* all below is for particles or nodes, and else unused; so are handles */
-    const SmVoxels *voxels;
-    const OctStructure *structure; /* of nodes only */
-    const SmEngineParams *params;  /* with `octree`, of nodes */
-    const double *mass;            /* [particle_count] kg of a lattice; NULL: 1 each */
-    const char *engine;            /* SmEngineType's name and precision; NULL: "unknown" */
-    const char *precision;
+    const char *scene;     /* name; any bytes */
+    BenchFields fields;    /* stored of every point */
+    BenchStepSource steps; /* what is recorded beside the surface, and what it is made of */
 } BenchTrajectoryParams;
 
 /* `params` and all it points to may go after the call. SM_OUTPUT when the
