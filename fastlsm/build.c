@@ -5,8 +5,8 @@
 
 #include "match.h"
 #include "step.h"
+#include "sums/blocks.h"
 #include "sums/box_sum_fixups.h"
-#include "sums/boxes.h"
 #include "sums/sums.h"
 
 enum { SPARE_LISTS = 16 }; /* rows to spare in a layer, in sides: a few broken links' worth */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "build.h"
-#include "sums/boxes.h"
+#include "sums/blocks.h"
 
 static real component(const Lsm *lsm, long slot, int d)
 {

@@ -61,7 +61,7 @@ typedef struct {
 
 typedef struct LsmPass LsmPass; /* what is summed, and what for: sums.h */
 typedef struct LsmSums LsmSums; /* a form of the sums: sums.h */
-typedef struct Blocks Blocks;   /* box sums: boxes.h */
+typedef struct Blocks Blocks;   /* box sums: blocks.h */
 typedef struct Fixups Fixups;   /* of box sums: box_sum_fixups.h */
 
 typedef struct Lsm {

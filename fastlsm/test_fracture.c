@@ -3,7 +3,7 @@
 #include "build.h"
 #include "fracture.h"
 #include "step.h"
-#include "sums/boxes.h"
+#include "sums/blocks.h"
 #include "test_body.h"
 
 enum { TRIALS = 600 };

@@ -13,7 +13,7 @@
 
 #include "../../octree/engine.h"
 #include "../measure/quartiles.h"
-#include "kernels.h"
+#include "kernel.h"
 
 enum {
     SPLIT = 20,     /* leaves of a refinement, 5 x 2 x 2 */

@@ -8,7 +8,7 @@
 #include "../../fastlsm/operations.h"
 #include "../check/check.h"
 #include "../scene/room.h"
-#include "kernels.h"
+#include "kernel.h"
 
 static const double brute_members = 5e7;
 static const double particle_bytes = 400; /* measured; brute force takes half as much again */

@@ -8,7 +8,7 @@
 #include "../../lib/error.h"
 #include "../../lib/polar.h"
 #include "../../reference/svd_polar.h"
-#include "kernels.h"
+#include "kernel.h"
 
 enum { FRAMES = BENCH_FRAMES, N = BENCH_MATRICES };
 

@@ -9,7 +9,7 @@
 #include "../../lib/voxel/voxelise.h"
 #include "../../octree/surface/surface.h"
 #include "../../octree/tree/sampling.h"
-#include "kernels.h"
+#include "kernel.h"
 
 enum { PARTICLES = 57626, DEFORM_ROUNDS = 2 };
 static const double tolerance = 1e-4; /* of a cell */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "kernels.h"
+#include "kernel.h"
 #include "tree_setup.h"
 #include "tree_steps.h"
 

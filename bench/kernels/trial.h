@@ -3,8 +3,8 @@
 #ifndef BENCH_TRIAL_H
 #define BENCH_TRIAL_H
 
-#include "../measure/blocks.h"
 #include "../measure/moment.h"
+#include "../measure/step_timer.h"
 
 typedef struct {
     /* the caller's */

@@ -9,9 +9,9 @@
 #include "../../reference/paper.h"
 #include "../check/check.h"
 #include "../engines.h"
-#include "blocks.h"
 #include "change_row.h"
 #include "checker.h"
+#include "step_timer.h"
 
 /* The state of one part that every timed segment starts from. */
 typedef struct {
@@ -191,7 +191,7 @@ static void measure_start(Trial *trial, const BenchChecker *checker,
     for (int i = 0; i < trial->play.scene->settle; i++) step(trial, NULL);
     checker->state(check, &trial->play, worst, row);
     save(trial);
-    bench_time_blocks(&(BenchTimed){trial, restore, step}, params, row);
+    bench_time_steps(&(BenchTimed){trial, restore, step}, params, row);
     checker->state(check, &trial->play, worst, row);
     if (checker->end) checker->end(check, &trial->play, worst, row);
     checker->free(check);

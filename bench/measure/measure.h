@@ -2,30 +2,14 @@
  *
  * How. The scene's disturbance is applied and its `settle` steps run; that state is the start of
  * every timed segment, so that all repeats do the same work on a body in motion. The check compares
- * the goal positions there, and again where the last segment ended. Then after a warm-up come
- * `repeats` repeats of two blocks, one plain and one with laps, in turn first. A block is as many
- * segments as fill block_seconds; a segment restores the start state and runs one step untimed,
- * and then times up to BENCH_SEGMENT_STEPS steps, a fraction of a millisecond of them at a time.
- * What other programs took some of (moment.h) is left out, and a block that is less than half
- * undisturbed is run again; a row of which more than a quarter of the samples stay disturbed, or of
- * whose processors the host took a tenth, is BUSY and has no times. The total is that of the plain
- * blocks; stage times are the shares of the blocks with laps, times the total. */
+ * the goal positions there, and again where the last segment ended. Between the two it is timed
+ * (step_timer.h). */
 #ifndef BENCH_MEASURE_H
 #define BENCH_MEASURE_H
 
 #include "../scene/body.h"
-#include "../system/progress.h"
 #include "row.h"
-
-enum { BENCH_SEGMENT_STEPS = 64 };
-
-typedef struct BenchMeasureParams {
-    int repeats;          /* 0: 15 */
-    double block_seconds; /* 0: 0.02 */
-    int threads;
-    unsigned long seed;
-    BenchProgress *progress; /* or NULL */
-} BenchMeasureParams;
+#include "step_timer.h"
 
 /* Measures the scene's body on the engine. A failed check is no error: the row says why it is not
  * valid. Errors are those of creating the engine, and SM_INPUT where regions are too many to

@@ -3,8 +3,8 @@
 #include "../../lib/test_frame.h"
 #include "../../reference/brute.h"
 #include "../play/runner.h"
-#include "blocks.h"
 #include "measure.h"
+#include "step_timer.h"
 
 static const char text[] = "mesh = \"shape:block\"; particles = 64; w = 1; damping = 0.2;\n"
                            "bend = 0.5; twist = 0.5; kick = 0.05;";
@@ -236,7 +236,7 @@ static BenchRow measure_disturbed(int every)
     BenchRow row = {.valid = true, .particles = 1};
     BenchMeasureParams params = {.repeats = 5, .block_seconds = 0.005, .threads = 1};
     Disturbed disturbed = {.every = every};
-    bench_time_blocks(&(BenchTimed){&disturbed, restore_nothing, disturbed_step}, &params, &row);
+    bench_time_steps(&(BenchTimed){&disturbed, restore_nothing, disturbed_step}, &params, &row);
     return row;
 }
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "boxes.h"
+#include "blocks.h"
 #include "sums.h"
 
 /* Half a block is worked on at a time; halves are numbered through, two to a block. */

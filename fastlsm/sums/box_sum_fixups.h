@@ -1,4 +1,4 @@
-/* box_sum_fixups.h - what box sums get wrong (boxes.h), put right.
+/* box_sum_fixups.h - what box sums get wrong (boxes.c), put right.
  *
  * Where a region's members differ from the sites that its box sum takes (a gap, a corner), each
  * particle too many is subtracted again and each one missing is added: on the way up from the
@@ -56,7 +56,7 @@ FixupsBuilder *lsm_fixups_open(const Lsm *lsm);
 void lsm_fixups_add(FixupsBuilder *builder, long p, const uint64_t *rows);
 void lsm_fixups_close(FixupsBuilder *builder, Lsm *lsm);
 
-/* Sets `mixed` and `listed` of the blocks (boxes.h) that fix-ups mend and read. */
+/* Sets `mixed` and `listed` of the blocks (blocks.h) that fix-ups mend and read. */
 void lsm_fixups_mark(const Lsm *lsm);
 
 void lsm_fixups_free(Fixups *fixups);

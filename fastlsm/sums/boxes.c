@@ -1,5 +1,14 @@
-/* boxes.c - box sums (boxes.h). The stages of a pass over the blocks of a plane. */
-#include "boxes.h"
+/* boxes.c - sums over regions in block form: box sums over SM_LANES lattice sites at a time.
+ *
+ * As sums.h says, but bars, plates and cubes are taken over every site of the box
+ * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
+ * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
+ * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
+ * summed anew at every RESTART-th row and plane, or rounding would add up. Along x lanes slide, and
+ * from w = FAR on prefixes are subtracted, O(1) too. Empty sites hold zero. A
+ * region whose box sum is not its exact sum (a gap, a corner, a broken link within its box) is
+ * made so by fix-ups (box_sum_fixups.h) or summed by its lists instead, lane by lane. */
+#include "blocks.h"
 
 #include <string.h>
 
@@ -166,7 +175,7 @@ SM_INLINE vec window_y_less(const Around *in, long column, int w, bool moving, i
     return sum;
 }
 
-/* Where sums pass through particles only, those of other sites are dropped (boxes.h). */
+/* Where sums pass through particles only, those of other sites are dropped. */
 SM_INLINE vec through(const Lsm *lsm, long block, int w, vec sum)
 {
     return w > 1 ? sum : lanes_keep(lsm->live[block], sum);

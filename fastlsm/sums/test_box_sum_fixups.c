@@ -5,7 +5,7 @@
 
 #include "../build.h"
 #include "../test_body.h"
-#include "boxes.h"
+#include "blocks.h"
 
 /* Which offsets (a, b, c) from a particle its sum takes: [side^3]. */
 typedef struct {

@@ -1,15 +1,7 @@
-/* boxes.h - sums over regions in block form: box sums over SM_LANES lattice sites at a time.
- *
- * As sums.h says, but bars, plates and cubes are taken over every site of the box
- * around a region's centre: first along z, then x, then y on the way up, and back in the order y,
- * x, z on the way down, so that all but the last stage happens within a plane, in rows that stay in
- * the L1 cache. From w = RUNNING on, sums along y and z are windows that move: O(1). They are
- * summed anew at every RESTART-th row and plane, or rounding would add up. Along x lanes slide, and
- * from w = FAR on prefixes are subtracted, O(1) too (blocks_far.h). Empty sites hold zero. A
- * region whose box sum is not its exact sum (a gap, a corner, a broken link within its box) is
- * made so by fix-ups (box_sum_fixups.h) or summed by its lists instead, lane by lane. */
-#ifndef LSM_BOXES_H
-#define LSM_BOXES_H
+/* blocks.h - lattice sites in blocks of SM_LANES along x, in rows and planes, and what box sums
+ * over them (boxes.c) need. */
+#ifndef LSM_BLOCKS_H
+#define LSM_BLOCKS_H
 
 #include "../state.h"
 

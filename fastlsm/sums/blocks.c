@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "../pipeline.h"
-#include "boxes.h"
+#include "blocks.h"
 
 /* Any particle at the lanes of block `column` of row (y, z)? */
 static bool occupied(const LsmLattice *l, int column, int y, int z)

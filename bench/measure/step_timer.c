@@ -1,4 +1,4 @@
-#include "blocks.h"
+#include "step_timer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -143,7 +143,7 @@ static void find_busy(const BenchWatch *watch, BenchRow *row)
     for (int s = 0; s < SM_STAGES; s++) row->stage_ms[s] = NAN;
 }
 
-void bench_time_blocks(const BenchTimed *timed, const BenchMeasureParams *params, BenchRow *row)
+void bench_time_steps(const BenchTimed *timed, const BenchMeasureParams *params, BenchRow *row)
 {
     Blocks blocks = {.timed = *timed, .threads = params->threads, .chunk = 1};
     blocks.watch = bench_watch(params->threads);

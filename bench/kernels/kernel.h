@@ -1,0 +1,112 @@
+/* kernel.h - a kernel: a line of the list in kernels.c, with its name, its kind, what of the kind
+ * it is, and the figure wanted; and a kind, which says how such kernels are prepared, checked
+ * against their twins, run and counted. */
+#ifndef BENCH_KERNEL_H
+#define BENCH_KERNEL_H
+
+#include "../../lib/engine.h"
+#include "../../octree/region/weights.h"
+#include "../system/progress.h"
+#include "machine_peak.h"
+#include "trial.h"
+
+/* A timed kernel. NaN: not given. */
+typedef struct {
+    char kernel[32], group[16], item[20]; /* "sum-fast-w3", "sum", "particle" */
+    char precision[12];
+    int w, threads;
+    long items; /* in a sample's unit of work: particles, matrices, ... */
+    bool valid;
+    bool busy;            /* others took the processors (moment.h): its times are not to be told */
+    char reason[192];     /* why not valid, or busy */
+    double ns, low, high; /* an item (and step): median and quartiles over the repeats */
+    double bound_ns;      /* no implementation is faster on this machine; machine_peak.h */
+    char bound[8];        /* what sets it */
+    double at_most;       /* ns wanted */
+    double ratio, wanted; /* to another row, and the ratio wanted */
+    bool wanted_least;    /* `wanted` is a lower bound, else an upper one */
+    bool own_time;        /* the ratio is of processor time, which others hardly touch: it is told
+                           * and judged of a busy row, too */
+    char ratio_to[32];    /* "1 thread", "single" */
+    char note[128];
+} BenchKernelRow;
+
+typedef struct {
+    const char *const *only; /* names of kernels or groups; NULL-terminated, empty: all */
+    BenchPrecision precision;
+    SmLayout layout;
+    int threads, repeats;
+    bool scaling; /* also the largest bodies */
+    unsigned long seed;
+    BenchProgress *progress;
+} BenchKernelParams;
+
+typedef struct BenchKernelKind BenchKernelKind;
+
+typedef struct {
+    const char *name, *group;
+    const BenchKernelKind *kind;
+    int set;        /* neighbours of equal `set` share a body, and are timed in turn */
+    int side;       /* of the body, if that is a cube (sampled.h names others) */
+    int w, part;    /* half width of regions; which of the kind's parts */
+    double at_most; /* ns an item wanted on one core in single precision; 0: no limit */
+    SmSummation summation;
+    SmPolarMethod polar;
+    OctWeighting weighting;
+    bool adjoint; /* goal positions by the transpose of the region sums */
+    double damping;
+    int threads;       /* 0: as asked for */
+    bool doubled;      /* in double precision, beside single */
+    bool large;        /* only by name or with `scaling` */
+    const char *base;  /* the kernel that it is compared with, */
+    double wanted;     /* how many times its time or, on more threads, its speed */
+    const char *paper; /* what the paper says */
+} BenchKernel;
+
+/* A kernel that is being timed. */
+typedef struct {
+    const BenchKernel *kernel;
+    const BenchKernelParams *params;
+    const BenchPeak *peak;
+    void *body; /* what its set shares */
+    /* set by prepare(); precision, threads, w, arithmetic are given as asked for */
+    BenchPrecision precision;
+    int threads, w;
+    const char *arithmetic; /* "single", "double", "integer" */
+    void *subject;          /* the kind's own */
+    BenchTrial *trial;      /* of several kernels where they are parts of one step */
+    const char *item;       /* what times are of, and how many a body has, */
+    long items;
+    double per_run; /* and how many a run of the trial */
+    /* set by report() */
+    SmOperations least; /* of an item */
+    double footprint;   /* bytes of all items' state */
+    double own_ns;      /* an item's processor time, as the kind names it */
+} BenchJob;
+
+struct BenchKernelKind {
+    /* Makes and frees what a set shares; NULL: nothing. */
+    SmCode (*open)(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
+                   SmError *error);
+    void (*close)(void *body);
+    /* Makes what is timed and checks it: one that is wrong has a trial that is not valid. */
+    SmCode (*prepare)(BenchJob *job, SmError *error);
+    /* Seconds a run in a sample; NULL: those of the trial. */
+    double (*seconds)(const BenchJob *job, int r);
+    /* What is counted, and a note, of a valid job whose times are in the row; where the trial has
+     * no samples these, too. */
+    void (*report)(BenchJob *job, BenchKernelRow *row);
+    void (*release)(BenchJob *job); /* NULL: nothing */
+    bool apart; /* prepared and timed one after the other: a run changes the body, or is long */
+    const char *own; /* what the ratio to the base, of another set, is of: "user time" */
+};
+
+/* The voxeliser, the embedding and the octree surface, on the statue of 200,000 triangles. */
+enum { BENCH_VOXELISE, BENCH_EMBED, BENCH_CARRY };
+/* A change of an octree while it runs: leaves split and merged again, edges of the graph cut. */
+enum { BENCH_REFINE, BENCH_CUT };
+
+extern const BenchKernelKind bench_cube_kernels, bench_polar_kernels, bench_surface_kernels,
+    bench_scene_kernels, bench_tree_step_kernels, bench_tree_setup_kernels, bench_change_kernels;
+
+#endif
