@@ -201,8 +201,8 @@ BenchConclusion bench_calibration_conclude(const BenchCampaign *calibration)
 {
     const BenchCalibrationPlan *plan = calibration->plan;
     BenchConclusion c = {0};
-    c.laws = bench_law_fit(calibration->point, calibration->count, plan->thickness, plan->density,
-                           c.law);
+    c.laws = bench_stiffness_fit(calibration->point, calibration->count, plan->thickness,
+                                 plan->density, c.law);
     bench_recommendation_found(calibration->point, calibration->count, c.law, c.laws, c.found);
     return c;
 }
@@ -211,8 +211,8 @@ static void write_laws(BenchH5 *h5, const BenchCampaign *calibration)
 {
     BenchConclusion c = bench_calibration_conclude(calibration);
     hid_t group = bench_h5_group(h5, h5->file, "laws");
-    bench_h5_columns(h5, group, bench_law_fields, bench_law_field_count, c.law, sizeof *c.law,
-                     c.laws);
+    bench_h5_columns(h5, group, bench_stiffness_fit_fields, bench_stiffness_fit_field_count, c.law,
+                     sizeof *c.law, c.laws);
     for (int i = 0; i < BENCH_FOUND; i++) {
         char name[16];
         snprintf(name, sizeof name, "found_%d", i + 1);
@@ -243,7 +243,7 @@ static void measure_beam(BenchCantilever *beam, bool range, BenchSpecimen *speci
 }
 
 void bench_calibration_measure(const BenchCalibrationPlan *plan,
-                               const BenchIdeal ideal[BENCH_MODELS], bool range,
+                               const BenchElasticCantilever ideal[BENCH_MODELS], bool range,
                                BenchSpecimen *specimen)
 {
     BenchCantileverOptions options = {.w = specimen->w,
@@ -276,7 +276,7 @@ void bench_calibration_measure(const BenchCalibrationPlan *plan,
 /* What elastic beams of one aspect do, found when it is first asked for. */
 typedef struct {
     int aspect;
-    BenchIdeal ideal[BENCH_MODELS];
+    BenchElasticCantilever ideal[BENCH_MODELS];
 } Ideals;
 
 static SmCode find_ideals(const BenchCalibrationPlan *plan, int aspect, Ideals *ideals,
@@ -285,7 +285,8 @@ static SmCode find_ideals(const BenchCalibrationPlan *plan, int aspect, Ideals *
     if (ideals->aspect == aspect) return SM_OK;
     SmCode code = SM_OK;
     for (int m = 0; m < BENCH_MODELS && !code; m++)
-        code = bench_ideal_find((BenchModel)m, aspect, plan->poisson, &ideals->ideal[m], error);
+        code = bench_elastic_cantilever((BenchModel)m, aspect, plan->poisson, &ideals->ideal[m],
+                                        error);
     ideals->aspect = code ? 0 : aspect;
     return code;
 }
@@ -355,8 +356,8 @@ const BenchCampaignType bench_calibration_type = {
     .points = bench_specimen_fields,
     .plan_fields = &plan_field_count,
     .point_fields = &bench_specimen_field_count,
-    .more = bench_law_fields,
-    .more_fields = &bench_law_field_count,
+    .more = bench_stiffness_fit_fields,
+    .more_fields = &bench_stiffness_fit_field_count,
     .more_name = "laws",
     .list = bench_calibration_lists,
     .lists = BENCH_CALIBRATION_LISTS,

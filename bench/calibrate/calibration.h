@@ -39,7 +39,7 @@ extern const BenchCampaignList bench_calibration_lists[BENCH_CALIBRATION_LISTS];
 /* What follows from its specimens. */
 typedef struct {
     int laws;
-    BenchLaw law[BENCH_LAWS];
+    BenchStiffnessFit law[BENCH_STIFFNESS_FITS];
     char found[BENCH_FOUND][BENCH_WORDS]; /* in sentences */
 } BenchConclusion;
 
@@ -56,7 +56,7 @@ SmCode bench_calibration_count(BenchCalibrationPlan *plan, SmError *error);
 /* Measures a specimen that has its settings. What cannot be had is said in it. With `range` it also
  * finds how far sags are in proportion. */
 void bench_calibration_measure(const BenchCalibrationPlan *plan,
-                               const BenchIdeal ideal[BENCH_MODELS], bool range,
+                               const BenchElasticCantilever ideal[BENCH_MODELS], bool range,
                                BenchSpecimen *specimen);
 
 #endif

@@ -57,7 +57,8 @@ static json_t *json_conclusion(const BenchConclusion *conclusion)
 {
     json_t *object = json_object(), *found = json_array();
     json_object_set_new(object, "laws",
-                        bench_json_records(bench_law_fields, bench_law_field_count, conclusion->law,
+                        bench_json_records(bench_stiffness_fit_fields,
+                                           bench_stiffness_fit_field_count, conclusion->law,
                                            sizeof *conclusion->law, conclusion->laws));
     for (int i = 0; i < BENCH_FOUND; i++)
         json_array_append_new(found, bench_json_text(conclusion->found[i]));
@@ -75,8 +76,8 @@ void bench_calibration_table(FILE *file, BenchFormat format, const BenchCampaign
     BenchGrid grid =
         bench_records_grid(bench_specimen_fields, bench_specimen_field_count, calibration->point,
                            sizeof(BenchSpecimen), calibration->count, 0);
-    BenchGrid laws = bench_records_grid(bench_law_fields, bench_law_field_count, conclusion.law,
-                                        sizeof *conclusion.law, conclusion.laws, 0);
+    BenchGrid laws = bench_records_grid(bench_stiffness_fit_fields, bench_stiffness_fit_field_count,
+                                        conclusion.law, sizeof *conclusion.law, conclusion.laws, 0);
     if (format == BENCH_AS_TEXT) {
         write_text(file, calibration, &conclusion, &grid, &laws);
     } else {

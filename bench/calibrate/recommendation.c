@@ -22,7 +22,8 @@ static void say(char *text, const char *format, ...)
     va_end(arguments);
 }
 
-static const BenchLaw *find_law(const BenchLaw *law, int laws, const char *engine, const char *kind)
+static const BenchStiffnessFit *find_law(const BenchStiffnessFit *law, int laws, const char *engine,
+                                         const char *kind)
 {
     for (int i = 0; i < laws; i++)
         if (!strcmp(law[i].engine, engine) && !strcmp(law[i].kind, kind)) return &law[i];
@@ -97,10 +98,10 @@ static void say_alike(const BenchSpecimen *specimen, long count, char *text)
     free(value);
 }
 
-static void say_laws(const BenchLaw *law, int laws, char *text)
+static void say_laws(const BenchStiffnessFit *law, int laws, char *text)
 {
     for (int i = 0; i < laws; i++) {
-        const BenchLaw *l = &law[i];
+        const BenchStiffnessFit *l = &law[i];
         if (strcmp(l->kind, "two-term") != 0) continue;
         say(text, "%s%s c = %.3f (%.3f to %.3f) and d = %.3f (%.3f to %.3f), off by %.2g%%",
             text[0] ? "; of the "
@@ -109,7 +110,7 @@ static void say_laws(const BenchLaw *law, int laws, char *text)
             l->engine, l->c[0], l->c[1], l->c[2], l->d[0], l->d[1], l->d[2], 100 * l->scatter);
     }
     for (int i = 0; i < laws; i++) {
-        const BenchLaw *l = &law[i];
+        const BenchStiffnessFit *l = &law[i];
         if (!strcmp(l->kind, "two-term") || isnan(l->spacing[0]) || isnan(l->width[0])) continue;
         say(text, "%s%s %s a^%.2f w^%.2f", strstr(text, "as powers") ? ", " : "; as powers, ",
             l->engine, l->kind, l->spacing[0], l->width[0]);
@@ -180,8 +181,9 @@ static void say_range(const BenchSpecimen *specimen, long count, char *text)
     say(text, ".");
 }
 
-void bench_recommendation_found(const BenchSpecimen *specimen, long count, const BenchLaw *law,
-                                int laws, char found[BENCH_FOUND][BENCH_WORDS])
+void bench_recommendation_found(const BenchSpecimen *specimen, long count,
+                                const BenchStiffnessFit *law, int laws,
+                                char found[BENCH_FOUND][BENCH_WORDS])
 {
     for (int i = 0; i < BENCH_FOUND; i++) found[i][0] = '\0';
     say_alike(specimen, count, found[0]);
@@ -211,7 +213,7 @@ static bool better(const BenchSpecimen *a, const BenchSpecimen *b, const BenchYo
 
 /* The spacing at which the law has `ratio` times the modulus; NaN: no law, or no spacing that the
  * beam can have. With q = a^2 it is a root of d W q^2 / t^2 + c q. */
-static double find_spacing(const BenchSpecimen *s, const BenchLaw *law, double thickness,
+static double find_spacing(const BenchSpecimen *s, const BenchStiffnessFit *law, double thickness,
                            double ratio)
 {
     if (!law || !(law->c[0] > 0) || !(law->d[0] >= 0)) return NAN;
@@ -227,7 +229,7 @@ static double find_step(const BenchSpecimen *s, const BenchYoung *wish)
     return s->h / sqrt(wish->young / young_of(s, wish));
 }
 
-static void say_remedy(const BenchSpecimen *s, const BenchLaw *law, const BenchYoung *wish,
+static void say_remedy(const BenchSpecimen *s, const BenchStiffnessFit *law, const BenchYoung *wish,
                        char *text)
 {
     double spacing = find_spacing(s, law, wish->thickness, wish->young / young_of(s, wish));
@@ -237,8 +239,9 @@ static void say_remedy(const BenchSpecimen *s, const BenchLaw *law, const BenchY
     say(text, ".");
 }
 
-long bench_recommendation_young(const BenchSpecimen *specimen, long count, const BenchLaw *law,
-                                int laws, const BenchYoung *wish, char sentence[BENCH_WORDS])
+long bench_recommendation_young(const BenchSpecimen *specimen, long count,
+                                const BenchStiffnessFit *law, int laws, const BenchYoung *wish,
+                                char sentence[BENCH_WORDS])
 {
     long best = -1;
     double low = INFINITY, high = 0;

@@ -3,14 +3,15 @@
 #ifndef BENCH_RECOMMENDATION_H
 #define BENCH_RECOMMENDATION_H
 
-#include "law.h"
+#include "stiffness_fit.h"
 
 enum { BENCH_FOUND = 3, BENCH_WORDS = 768, BENCH_MOST_ACROSS = 64 };
 
 /* What the specimens and laws say, in BENCH_FOUND sentences: how far an elastic body is like them;
  * what its modulus follows from; how far it is no material's. Empty where nothing is known. */
-void bench_recommendation_found(const BenchSpecimen *specimen, long count, const BenchLaw *law,
-                                int laws, char found[BENCH_FOUND][BENCH_WORDS]);
+void bench_recommendation_found(const BenchSpecimen *specimen, long count,
+                                const BenchStiffnessFit *law, int laws,
+                                char found[BENCH_FOUND][BENCH_WORDS]);
 
 /* What is wished, and what the specimens are of. */
 typedef struct {
@@ -23,8 +24,9 @@ typedef struct {
  * it has, and which time step, or spacing (of 1 to BENCH_MOST_ACROSS cells through the beam), would
  * hit it. Of those within 10% the one with the least
  * spread is taken. -1, and a sentence why, where no specimen is valid. */
-long bench_recommendation_young(const BenchSpecimen *specimen, long count, const BenchLaw *law,
-                                int laws, const BenchYoung *wish, char sentence[BENCH_WORDS]);
+long bench_recommendation_young(const BenchSpecimen *specimen, long count,
+                                const BenchStiffnessFit *law, int laws, const BenchYoung *wish,
+                                char sentence[BENCH_WORDS]);
 
 /* The settings of a scene (scene.h) whose material is that specimen's at the time step that hits
  * the wish, with the specimens' damping. Its density is a part of it: where none is given particles

@@ -144,8 +144,8 @@ static void forget(double young[BENCH_YOUNGS])
     for (int i = 0; i < BENCH_YOUNGS; i++) young[i] = NAN;
 }
 
-void bench_specimen_judge(const BenchIdeal ideal[BENCH_MODELS], double thickness, double density,
-                          BenchSpecimen *specimen)
+void bench_specimen_judge(const BenchElasticCantilever ideal[BENCH_MODELS], double thickness,
+                          double density, BenchSpecimen *specimen)
 {
     double *const young[BENCH_MODELS] = {specimen->young_euler, specimen->young_timoshenko,
                                          specimen->young_meshless};

@@ -8,7 +8,7 @@
 #include "../../lib/error.h"
 #include "../beam/stiffness.h"
 #include "../store/field.h"
-#include "ideal.h"
+#include "elastic_cantilever.h"
 
 enum { BENCH_YOUNGS = 1 + BENCH_TONES }; /* by sag, and by each frequency */
 
@@ -38,7 +38,7 @@ extern const int bench_specimen_field_count;
 const double *bench_specimen_youngs(const BenchSpecimen *specimen);
 
 /* Fills in the moduli from what was measured on a beam `thickness` thick, of that density. */
-void bench_specimen_judge(const BenchIdeal ideal[BENCH_MODELS], double thickness, double density,
-                          BenchSpecimen *specimen);
+void bench_specimen_judge(const BenchElasticCantilever ideal[BENCH_MODELS], double thickness,
+                          double density, BenchSpecimen *specimen);
 
 #endif

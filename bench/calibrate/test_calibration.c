@@ -127,7 +127,7 @@ TEST(a_plan_makes_its_specimens)
     assert_non_null(strstr(error.text, "specimens; 1 to 4096"));
 }
 
-static const BenchLaw *law_of(const Made *made, const char *engine, const char *kind)
+static const BenchStiffnessFit *law_of(const Made *made, const char *engine, const char *kind)
 {
     for (int i = 0; i < made->its.laws; i++)
         if (!strcmp(made->its.law[i].engine, engine) && !strcmp(made->its.law[i].kind, kind))
@@ -147,7 +147,7 @@ TEST(two_terms_are_found_again)
     Made *made = make(0.3, 0.1);
     assert_int_equal(made->its.laws, 6);
     for (int e = 0; e < 2; e++) {
-        const BenchLaw *law = law_of(made, e ? "octree" : "fastlsm", "two-term");
+        const BenchStiffnessFit *law = law_of(made, e ? "octree" : "fastlsm", "two-term");
         near_to(law->c, 0.3);
         near_to(law->d, 0.1);
         assert_true(law->scatter < 1e-9 && isnan(law->spacing[0]));
@@ -196,7 +196,7 @@ TEST(powers_are_found_again)
                        pow(s->h, 2.1) * (1 + noisy * 0.02 * (i % 3 - 1));
         }
         conclude(made);
-        const BenchLaw *law = law_of(made, "fastlsm", "wide");
+        const BenchStiffnessFit *law = law_of(made, "fastlsm", "wide");
         double width = law->step[2] - law->step[1];
         assert_true(noisy ? width > 0.01 && law->step[1] < 2.1 && law->step[2] > 2.1
                           : width < 1e-6);

@@ -167,7 +167,7 @@ static BenchSpecimen judge(const BenchStiffness *found, bool meshless)
 {
     BenchSpecimen s;
     bench_record_none(bench_specimen_fields, bench_specimen_field_count, &s, sizeof s);
-    BenchIdeal ideal[BENCH_MODELS] = {{0}};
+    BenchElasticCantilever ideal[BENCH_MODELS] = {{0}};
     s.aspect = ASPECT;
     s.valid = true;
     memcpy(s.frequency, found->frequency, sizeof s.frequency);
@@ -175,7 +175,8 @@ static BenchSpecimen judge(const BenchStiffness *found, bool meshless)
     s.sag = found->sag;
     for (int m = 0; m < BENCH_MODELS; m++)
         if (m != BENCH_MESHLESS || meshless)
-            assert_int_equal(bench_ideal_find((BenchModel)m, ASPECT, 0.3, &ideal[m], NULL), SM_OK);
+            assert_int_equal(bench_elastic_cantilever((BenchModel)m, ASPECT, 0.3, &ideal[m], NULL),
+                             SM_OK);
     bench_specimen_judge(ideal, thickness, density, &s);
     return s;
 }
@@ -230,9 +231,10 @@ TEST(a_beam_that_does_not_swing_has_no_figures)
 /* Figures of a point that is not valid are nobody's. */
 TEST(an_invalid_specimen_has_no_modulus)
 {
-    BenchIdeal ideal[BENCH_MODELS] = {{0}};
-    assert_int_equal(bench_ideal_find(BENCH_EULER, ASPECT, 0.3, &ideal[0], NULL), SM_OK);
-    assert_int_equal(bench_ideal_find(BENCH_TIMOSHENKO, ASPECT, 0.3, &ideal[1], NULL), SM_OK);
+    BenchElasticCantilever ideal[BENCH_MODELS] = {{0}};
+    assert_int_equal(bench_elastic_cantilever(BENCH_EULER, ASPECT, 0.3, &ideal[0], NULL), SM_OK);
+    assert_int_equal(bench_elastic_cantilever(BENCH_TIMOSHENKO, ASPECT, 0.3, &ideal[1], NULL),
+                     SM_OK);
     BenchSpecimen s;
     bench_record_none(bench_specimen_fields, bench_specimen_field_count, &s, sizeof s);
     bench_specimen_judge(ideal, thickness, density, &s);
@@ -242,9 +244,10 @@ TEST(an_invalid_specimen_has_no_modulus)
 /* The three models of one elastic beam differ by what thin beams leave out, and by octants. */
 TEST(models_agree)
 {
-    BenchIdeal ideal[BENCH_MODELS];
+    BenchElasticCantilever ideal[BENCH_MODELS];
     for (int m = 0; m < BENCH_MODELS; m++)
-        assert_int_equal(bench_ideal_find((BenchModel)m, ASPECT, 0.3, &ideal[m], NULL), SM_OK);
+        assert_int_equal(bench_elastic_cantilever((BenchModel)m, ASPECT, 0.3, &ideal[m], NULL),
+                         SM_OK);
     assert_int_equal(ideal[BENCH_MESHLESS].there, ref_solver_built);
     if (!ref_solver_built) skip();
     near_to(ideal[BENCH_MESHLESS].sag, ideal[BENCH_TIMOSHENKO].sag, 0.03);

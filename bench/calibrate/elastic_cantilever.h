@@ -1,7 +1,7 @@
-/* ideal.h - what an elastic cantilever does, to which calibrate.h compares engines: by theory
- * (reference/beam_theory.h) and by the meshless reference (reference/meshless). */
-#ifndef BENCH_IDEAL_H
-#define BENCH_IDEAL_H
+/* elastic_cantilever.h - what an elastic cantilever does, to which calibration.h compares engines:
+ * by theory (reference/beam_theory.h) and by the meshless reference (reference/meshless). */
+#ifndef BENCH_ELASTIC_CANTILEVER_H
+#define BENCH_ELASTIC_CANTILEVER_H
 
 #include <stdbool.h>
 
@@ -16,13 +16,13 @@ typedef struct {
     bool there;
     double sag;                    /* of the tip, under an acceleration of 1 */
     double square[REF_BEAM_MODES]; /* squares of angular frequencies of bending */
-} BenchIdeal;
+} BenchElasticCantilever;
 
 /* `aspect`: length over thickness, 3 or more. The meshless body is six octants thick, its end is
  * held at as many points as octants end there; it is not `there` where the program was built
  * without its libraries. SM_INPUT: the meshless body cannot be had. About 1 s for a meshless one of
  * aspect 5, 2 s of 8, or it is free. */
-SmCode bench_ideal_find(BenchModel model, double aspect, double poisson, BenchIdeal *ideal,
-                        SmError *error);
+SmCode bench_elastic_cantilever(BenchModel model, double aspect, double poisson,
+                                BenchElasticCantilever *ideal, SmError *error);
 
 #endif

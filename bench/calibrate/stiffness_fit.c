@@ -1,4 +1,4 @@
-#include "law.h"
+#include "stiffness_fit.h"
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_multifit.h>
@@ -10,7 +10,7 @@
 #include "../engines.h"
 #include "../table/grid.h"
 
-#define FIELD(type, member)  BENCH_FIELD_AS(BenchLaw, BENCH_##type, member, #member)
+#define FIELD(type, member)  BENCH_FIELD_AS(BenchStiffnessFit, BENCH_##type, member, #member)
 #define MEANS(of_what, what) BENCH_MEANS(of_what, what)
 
 enum { SETTINGS = 4 }; /* spacing, w, aspect, time step */
@@ -30,7 +30,7 @@ static void estimate(const double value[3], char *text)
 #define ESTIMATE(member)                                                                           \
     static void member##_cell(const void *record, char *text)                                      \
     {                                                                                              \
-        estimate(((const BenchLaw *)record)->member, text);                                        \
+        estimate(((const BenchStiffnessFit *)record)->member, text);                               \
     }
 ESTIMATE(c)
 ESTIMATE(spacing)
@@ -39,7 +39,7 @@ ESTIMATE(aspect)
 ESTIMATE(step)
 ESTIMATE(d)
 
-const BenchField bench_law_fields[] = {
+const BenchField bench_stiffness_fit_fields[] = {
     {FIELD(TEXT, engine), MEANS(NULL, "fastlsm or octree"), .title = "engine", .left = true},
     {FIELD(TEXT, kind), MEANS(NULL, "\"narrow\" and \"wide\" (powers), \"two-term\""),
      .title = "law", .left = true},
@@ -55,19 +55,20 @@ const BenchField bench_law_fields[] = {
     {FIELD(DOUBLE, step), MEANS(NULL, "r"), BENCH_CELL("1/h^r", step_cell)},
     {FIELD(DOUBLE, d), MEANS(NULL, "of the two terms"), BENCH_CELL("d", d_cell)},
     {.kind = BENCH_DOUBLE,
-     .offset = offsetof(BenchLaw, scatter),
+     .offset = offsetof(BenchStiffnessFit, scatter),
      .title = "off by %",
      .format = "%.2g",
      .scale = 100},
 };
 
-const int bench_law_field_count = sizeof bench_law_fields / sizeof bench_law_fields[0];
+const int bench_stiffness_fit_field_count =
+    sizeof bench_stiffness_fit_fields / sizeof bench_stiffness_fit_fields[0];
 
 /* ---- the fit */
 
-static BenchLaw make_law(const char *engine, const char *kind)
+static BenchStiffnessFit make_law(const char *engine, const char *kind)
 {
-    BenchLaw law = {.scatter = NAN};
+    BenchStiffnessFit law = {.scatter = NAN};
     strcpy(law.engine, engine);
     strcpy(law.kind, kind);
     for (int i = 0; i < 3; i++)
@@ -162,7 +163,7 @@ static int find_columns(const BenchSpecimen **s, int count, int column[SETTINGS]
     return columns;
 }
 
-static bool fit_power(const BenchSpecimen **s, int count, double density, BenchLaw *law)
+static bool fit_power(const BenchSpecimen **s, int count, double density, BenchStiffnessFit *law)
 {
     double *const exponent[SETTINGS] = {law->spacing, law->width, law->aspect, law->step};
     int column[SETTINGS], columns = find_columns(s, count, column);
@@ -195,7 +196,7 @@ static double smoothing(const BenchSpecimen *s)
 
 /* Divided by E, so that relative errors count: 1 = c x + d x z. */
 static bool fit_terms(const BenchSpecimen **s, int count, double thickness, double density,
-                      BenchLaw *law)
+                      BenchStiffnessFit *law)
 {
     if (count < 3) return false;
     Fit fit = begin_fit(count, 2);
@@ -215,8 +216,8 @@ static bool fit_terms(const BenchSpecimen **s, int count, double thickness, doub
     return good;
 }
 
-int bench_law_fit(const BenchSpecimen *specimen, long count, double thickness, double density,
-                  BenchLaw law[BENCH_LAWS])
+int bench_stiffness_fit(const BenchSpecimen *specimen, long count, double thickness, double density,
+                        BenchStiffnessFit law[BENCH_STIFFNESS_FITS])
 {
     static const char *const kinds[] = {"narrow", "wide", "two-term"};
     int laws = 0;

@@ -1,4 +1,4 @@
-#include "ideal.h"
+#include "elastic_cantilever.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -93,7 +93,8 @@ static SmCode find_frequencies(const RefBody *body, const RefRows *rows, const R
                    bending, MODES);
 }
 
-static SmCode find_meshless(double aspect, double poisson, BenchIdeal *ideal, SmError *error)
+static SmCode find_meshless(double aspect, double poisson, BenchElasticCantilever *cantilever,
+                            SmError *error)
 {
     Ends ends = find_ends(aspect);
     RefBody body;
@@ -101,25 +102,25 @@ static SmCode find_meshless(double aspect, double poisson, BenchIdeal *ideal, Sm
     if (code) return code;
     RefRows rows = {0}, tip = {0};
     clamp(&body, &ends, &rows, &tip);
-    code = find_sag(&body, &rows, &tip, &ideal->sag, error);
-    if (!code) code = find_frequencies(&body, &rows, &tip, aspect, ideal->square, error);
-    ideal->there = !code;
+    code = find_sag(&body, &rows, &tip, &cantilever->sag, error);
+    if (!code) code = find_frequencies(&body, &rows, &tip, aspect, cantilever->square, error);
+    cantilever->there = !code;
     ref_rows_free(&rows);
     ref_rows_free(&tip);
     ref_body_free(&body);
     return code;
 }
 
-SmCode bench_ideal_find(BenchModel model, double aspect, double poisson, BenchIdeal *ideal,
-                        SmError *error)
+SmCode bench_elastic_cantilever(BenchModel model, double aspect, double poisson,
+                                BenchElasticCantilever *cantilever, SmError *error)
 {
-    *ideal = (BenchIdeal){0};
+    *cantilever = (BenchElasticCantilever){0};
     if (model == BENCH_MESHLESS)
-        return ref_solver_built ? find_meshless(aspect, poisson, ideal, error) : SM_OK;
+        return ref_solver_built ? find_meshless(aspect, poisson, cantilever, error) : SM_OK;
     RefBeam beam = {aspect, 1, poisson};
     RefBeamTheory theory = model == BENCH_EULER ? REF_EULER : REF_TIMOSHENKO;
-    ideal->there = true;
-    ideal->sag = ref_beam_sag(&beam, theory);
-    ref_beam_frequencies(&beam, theory, ideal->square);
+    cantilever->there = true;
+    cantilever->sag = ref_beam_sag(&beam, theory);
+    ref_beam_frequencies(&beam, theory, cantilever->square);
     return SM_OK;
 }

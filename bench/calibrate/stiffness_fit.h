@@ -1,5 +1,5 @@
-/* law.h - what Young's modulus follows from: laws fitted to a calibration's specimens, what they
- * say in words, and which w and epsilon have a given modulus.
+/* stiffness_fit.h - what Young's modulus follows from: laws fitted to a calibration's specimens,
+ * what they say in words, and which w and epsilon have a given modulus.
  *
  * Two kinds of law, by least squares in logarithms (GSL), of the valid specimens of an engine at
  * its first epsilon:
@@ -11,13 +11,13 @@
  *   bulk has, because two smoothings by boxes of 2 w + 1 have half the variance w (w + 1) / 3; d is
  *   what a beam of thickness t gains, because its regions also keep their direction. It is fitted
  *   with E's relative errors. */
-#ifndef BENCH_LAW_H
-#define BENCH_LAW_H
+#ifndef BENCH_STIFFNESS_FIT_H
+#define BENCH_STIFFNESS_FIT_H
 
 #include "../engines.h"
 #include "specimen.h"
 
-enum { BENCH_LAWS = 3 * BENCH_MOST_PLANNED };
+enum { BENCH_STIFFNESS_FITS = 3 * BENCH_MOST_PLANNED };
 
 /* An estimate is three numbers: its value and the ends of its 95% confidence interval (Student's
  * t). NaN: not fitted. */
@@ -29,14 +29,14 @@ typedef struct {
     double c[3];
     double spacing[3], width[3], aspect[3], step[3]; /* exponents p, q, s, r of a power */
     double d[3];                                     /* of the two terms */
-} BenchLaw;
+} BenchStiffnessFit;
 
-extern const BenchField bench_law_fields[];
-extern const int bench_law_field_count;
+extern const BenchField bench_stiffness_fit_fields[];
+extern const int bench_stiffness_fit_field_count;
 
 /* Fits what can be fitted: a kind with too few specimens, or whose settings do not differ, is left
  * out, and a setting that does not differ has its exponent NaN. Returns how many laws. */
-int bench_law_fit(const BenchSpecimen *specimen, long count, double thickness, double density,
-                  BenchLaw law[BENCH_LAWS]);
+int bench_stiffness_fit(const BenchSpecimen *specimen, long count, double thickness, double density,
+                        BenchStiffnessFit law[BENCH_STIFFNESS_FITS]);
 
 #endif
