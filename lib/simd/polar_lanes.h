@@ -103,7 +103,7 @@ SM_INLINE void polar_columns(const vec A[9], const vec D[9], vec first, vec seco
     }
 }
 
-/* tr U of up to POLAR_TILES tiles. */
+/* tr U of 1 to POLAR_TILES tiles. */
 SM_INLINE void polar_traces(int tiles, const PolarInvariants *of, const unsigned *live, vec *l)
 {
     switch (tiles) {
@@ -116,7 +116,7 @@ SM_INLINE void polar_traces(int tiles, const PolarInvariants *of, const unsigned
     case 3:
         polar_trace(3, of, live, l);
         break;
-    default:
+    case 4:
         polar_trace(4, of, live, l);
     }
 }
