@@ -41,7 +41,7 @@ static void create_cubes(const BenchLab *lab, const SmEngineParams *params, cons
 /* Times them in turn, if all can be, with stages if so wanted, and checks them again. */
 static void time_cubes(BenchCube *cubes, int count, int repeats, bool stages, BenchCurve *curve)
 {
-    BenchTrial *trials[BENCH_RANGE_POINTS];
+    BenchTrial *trials[BENCH_RANGE_POINTS] = {0};
     for (int c = 0; c < count; c++) {
         trials[c] = &cubes[c].trial;
         trials[c]->lap_sets = stages;
@@ -135,7 +135,7 @@ static void time_trees(BenchLab *lab, BenchTreeStep *steps, int count, bool sums
 {
     int repeats = repeats_of(lab);
     double *ms = sm_alloc((size_t)repeats, sizeof *ms);
-    BenchTrial *trials[BENCH_RANGE_POINTS];
+    BenchTrial *trials[BENCH_RANGE_POINTS] = {0};
     for (int s = 0; s < count; s++) {
         bench_tree_step_create_f32(&steps[s]);
         trials[s] = &steps[s].trial;
