@@ -48,6 +48,7 @@ SM_INLINE vec16 widen_last(vec4 v)
 SM_INLINE void read_names(const int *list, long row, int side, uint64_t *name)
 {
     const bool big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
+    if (side % 2 == 0) __builtin_unreachable(); /* it is 2 w + 1 */
     list += row * side;
     for (int i = 0; i + 1 < side; i += 2) {
         uint64_t two;
