@@ -92,6 +92,8 @@ SM_INLINE vec rounded(vec product)
 {
 #ifdef __AVX512F__
     __asm__("" : "+v"(product));
+#elif defined(__FMA__) || defined(__ARM_FEATURE_FMA)
+    __asm__("" : "+m"(product)); /* wider than a register */
 #endif
     return product;
 }
