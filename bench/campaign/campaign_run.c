@@ -304,14 +304,3 @@ SmCode bench_campaign_run(const BenchCampaignRun *run, BenchCampaign *campaign, 
     if (job.work) campaign->type->end(job.work);
     return code;
 }
-
-int bench_campaign_end(const char *name, const BenchRanks *ranks, BenchCampaign *campaign,
-                       SmCode code, const SmError *error)
-{
-    if (code && ranks->rank == 0) bench_option_fail(name, error);
-    bench_campaign_free(campaign);
-    if (ranks->rank > 0) code = SM_OK; /* the first rank says it for all */
-    if (code == SM_OUTPUT) bench_ranks_abort(ranks, code);
-    bench_ranks_stop(ranks);
-    return (int)code;
-}

@@ -30,9 +30,4 @@ SmCode bench_campaign_run(const BenchCampaignRun *run, BenchCampaign *campaign, 
  * _STEP); NULL: 1/1. SM_USAGE: it is neither. */
 SmCode bench_shard_parse(const char *text, int *shard, int *shards, SmError *error);
 
-/* What ends a command that is a campaign on all ranks: says what is wrong on the first, and returns
- * the exit code. */
-int bench_campaign_end(const char *name, const BenchRanks *ranks, BenchCampaign *campaign,
-                       SmCode code, const SmError *error);
-
 #endif

@@ -6,10 +6,8 @@
 #include "../../reference/meshless/solve/solver.h"
 #include "../calibrate/calibration.h"
 #include "../calibrate/calibration_table.h"
-#include "../campaign/campaign_run.h"
-#include "../campaign/export.h"
 #include "../engines.h"
-#include "command.h"
+#include "campaign_command.h"
 
 typedef struct {
     BenchCommon common;
@@ -101,9 +99,10 @@ static SmCode read_lists(const Options *options, BenchCalibrationPlan *plan, SmE
     return code;
 }
 
-static SmCode run(Options *options, int argc, char **argv, BenchCampaign *calibration,
-                  SmError *error)
+static SmCode measure(void *record, int argc, char **argv, BenchCampaign *calibration,
+                      SmError *error)
 {
+    Options *options = record;
     *calibration = bench_campaign_create(&bench_calibration_type);
     BenchCalibrationPlan *plan = calibration->plan;
     if (strlen(options->scene) >= sizeof plan->file)
@@ -147,8 +146,9 @@ static void advise(const Options *options, const BenchCampaign *calibration)
     fprintf(file, "The scene's settings that hit it, of which density is one:\n    %s\n", found);
 }
 
-static SmCode show(const Options *options, const BenchCampaign *calibration, SmError *error)
+static SmCode show(void *record, BenchCampaign *calibration, SmError *error)
 {
+    const Options *options = record;
     bench_calibration_table(stdout, options->format, calibration);
     if (!isnan(options->young)) advise(options, calibration);
     return bench_campaign_verdict(calibration, error);
@@ -161,22 +161,6 @@ int bench_command_calibrate(int argc, char **argv)
                        .range = {"1:10", "0:1:0.25", "3,4,7", "5,12", "0.5,2"},
                        .poisson = 0.3,
                        .young = NAN};
-    BenchRanks ranks;
-    BenchCampaign calibration = {0};
-    SmError error;
-    options.run.ranks = &ranks;
-    SmCode code = bench_ranks_start(&ranks, &error);
-    if (!code) {
-        bench_options_parse(&line, argc, argv, &options, &options.common);
-        code = options.run.columns ? SM_OK
-               : options.common.file
-                   ? bench_campaign_load(options.common.file, &bench_calibration_type, &calibration,
-                                         &error)
-                   : run(&options, argc, argv, &calibration, &error);
-    }
-    if (!code && options.run.columns)
-        bench_campaign_document(stdout, &bench_calibration_type);
-    else if (!code && ranks.rank == 0)
-        code = show(&options, &calibration, &error);
-    return bench_campaign_end(argv[0], &ranks, &calibration, code, &error);
+    static const BenchCampaignCommand command = {&bench_calibration_type, &line, measure, show};
+    return bench_campaign_command(&command, argc, argv, &options, &options.common, &options.run);
 }

@@ -2,13 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../campaign/campaign_run.h"
-#include "../campaign/export.h"
 #include "../claims/claim_plan.h"
 #include "../claims/claim_table.h"
 #include "../settings/config_file.h"
 #include "../system/suggest.h"
-#include "command.h"
+#include "campaign_command.h"
 
 typedef struct {
     BenchCommon common;
@@ -167,8 +165,10 @@ static void remark(const Options *options, const BenchCampaign *campaign, int fo
                 campaign->count, plan->experiments, plan->claims.count - found, plan->claims.count);
 }
 
-static SmCode show(const Options *options, const BenchCampaign *campaign, SmError *error)
+static SmCode show(void *record, BenchCampaign *campaign, SmError *error)
 {
+    const Options *options = record;
+    if (options->list) return SM_OK;
     BenchLab lab;
     BenchFinding *findings;
     int found = bench_claims_find(campaign, &lab, &findings);
@@ -179,8 +179,9 @@ static SmCode show(const Options *options, const BenchCampaign *campaign, SmErro
     return code;
 }
 
-static SmCode run(Options *options, int argc, char **argv, BenchCampaign *campaign, SmError *error)
+static SmCode measure(void *record, int argc, char **argv, BenchCampaign *campaign, SmError *error)
 {
+    Options *options = record;
     BenchClaims claims = {0};
     *campaign = bench_campaign_create(&bench_claims_type);
     BenchClaimsPlan *plan = campaign->plan;
@@ -202,21 +203,6 @@ static SmCode run(Options *options, int argc, char **argv, BenchCampaign *campai
 int bench_command_claims(int argc, char **argv)
 {
     Options options = {0};
-    BenchRanks ranks;
-    BenchCampaign campaign = {0};
-    SmError error;
-    options.run.ranks = &ranks;
-    SmCode code = bench_ranks_start(&ranks, &error);
-    if (!code) {
-        bench_options_parse(&line, argc, argv, &options, &options.common);
-        code = options.run.columns ? SM_OK
-               : options.common.file
-                   ? bench_campaign_load(options.common.file, &bench_claims_type, &campaign, &error)
-                   : run(&options, argc, argv, &campaign, &error);
-    }
-    if (!code && options.run.columns)
-        bench_campaign_document(stdout, &bench_claims_type);
-    else if (!code && ranks.rank == 0 && !options.list)
-        code = show(&options, &campaign, &error);
-    return bench_campaign_end(argv[0], &ranks, &campaign, code, &error);
+    static const BenchCampaignCommand command = {&bench_claims_type, &line, measure, show};
+    return bench_campaign_command(&command, argc, argv, &options, &options.common, &options.run);
 }

@@ -3,15 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../campaign/campaign_run.h"
-#include "../campaign/export.h"
 #include "../engines.h"
 #include "../scene/scene.h"
 #include "../sweep/front.h"
 #include "../sweep/recommend.h"
 #include "../sweep/sweep.h"
 #include "../sweep/sweep_table.h"
-#include "command.h"
+#include "campaign_command.h"
 
 typedef struct {
     BenchCommon common;
@@ -111,8 +109,9 @@ static SmCode make_plan(Options *options, BenchPlan *plan, SmError *error)
     return code ? code : bench_plan_count(plan, error);
 }
 
-static SmCode show(const Options *options, BenchCampaign *sweep, SmError *error)
+static SmCode show(void *record, BenchCampaign *sweep, SmError *error)
 {
+    const Options *options = record;
     bench_front_mark(sweep->point, sweep->count);
     bench_sweep_table(stdout, options->format, sweep);
     const BenchWish *wish = &options->wish;
@@ -125,8 +124,9 @@ static SmCode show(const Options *options, BenchCampaign *sweep, SmError *error)
     return bench_campaign_verdict(sweep, error);
 }
 
-static SmCode run(Options *options, int argc, char **argv, BenchCampaign *sweep, SmError *error)
+static SmCode measure(void *record, int argc, char **argv, BenchCampaign *sweep, SmError *error)
 {
+    Options *options = record;
     *sweep = bench_campaign_create(&bench_sweep_type);
     BenchPlan *plan = sweep->plan;
     *plan = options->plan;
@@ -149,21 +149,6 @@ int bench_command_sweep(int argc, char **argv)
                                 .block_ms = 10,
                                 .frames = 50},
                        .wish = {NAN, NAN, NAN}};
-    BenchRanks ranks;
-    BenchCampaign sweep = {0};
-    SmError error;
-    options.run.ranks = &ranks;
-    SmCode code = bench_ranks_start(&ranks, &error);
-    if (!code) {
-        bench_options_parse(&line, argc, argv, &options, &options.common);
-        code = options.run.columns ? SM_OK
-               : options.common.file
-                   ? bench_campaign_load(options.common.file, &bench_sweep_type, &sweep, &error)
-                   : run(&options, argc, argv, &sweep, &error);
-    }
-    if (!code && options.run.columns)
-        bench_campaign_document(stdout, &bench_sweep_type);
-    else if (!code && ranks.rank == 0)
-        code = show(&options, &sweep, &error);
-    return bench_campaign_end(argv[0], &ranks, &sweep, code, &error);
+    static const BenchCampaignCommand command = {&bench_sweep_type, &line, measure, show};
+    return bench_campaign_command(&command, argc, argv, &options, &options.common, &options.run);
 }
