@@ -46,7 +46,7 @@ static bool equal_distances(const OctGraph *graph, const RefOctree *twin, char *
     return right;
 }
 
-static bool twin_graph(const BenchSampled *body, char *reason)
+static bool twin_graph(const OctStructure *body, char *reason)
 {
     RefOctree twin;
     ref_octree_build(&body->tree, &body->voxels, &twin);
@@ -57,21 +57,21 @@ static bool twin_graph(const BenchSampled *body, char *reason)
 }
 
 /* How often each leaf is in region i. */
-static void count_leaves(const BenchSampled *body, long i, int *leaf, int *count)
+static void count_leaves(const OctStructure *body, long i, int *leaf, int *count)
 {
     for (long l = 0; l < body->tree.leaves; l++) count[l] = 0;
     oct_regions_leaves(&body->tree, &body->regions, i, leaf);
     for (long n = 0; n < body->regions.size[i]; n++) count[leaf[n]]++;
 }
 
-static bool twin_regions(const BenchSampled *body, char *reason)
+static bool twin_regions(const OctStructure *body, char *reason)
 {
     RefOctree twin;
     size_t leaves = (size_t)body->tree.leaves;
     bool right = true, *member = sm_alloc(leaves * leaves, sizeof *member);
     int *leaf = sm_alloc(leaves, sizeof *leaf), *count = sm_alloc(leaves, sizeof *count);
     ref_octree_build(&body->tree, &body->voxels, &twin);
-    ref_octree_regions(&body->tree, &twin, body->w, body->epsilon, OCT_UNION, member);
+    ref_octree_regions(&body->tree, &twin, body->w, body->options.epsilon, OCT_UNION, member);
     for (long i = 0; i < body->tree.leaves && right; i++) {
         count_leaves(body, i, leaf, count);
         for (long j = 0; j < body->tree.leaves && right; j++)
@@ -88,7 +88,7 @@ static bool twin_regions(const BenchSampled *body, char *reason)
 /* ---- regular trees of any size */
 
 /* Leaf of a finest cell, or -1. */
-static int leaf_at(const BenchSampled *body, const int cell[3])
+static int leaf_at(const OctStructure *body, const int cell[3])
 {
     if (!sm_voxel_get(&body->voxels, cell[0], cell[1], cell[2])) return -1;
     return body->tree.leaf[oct_tree_find(&body->tree, cell[0], cell[1], cell[2])];
@@ -100,7 +100,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static bool regular_graph(const BenchSampled *body, char *reason)
+static bool regular_graph(const OctStructure *body, char *reason)
 {
     for (long i = 0; i < body->tree.leaves; i++) {
         int near[26], count = 0;
@@ -147,12 +147,12 @@ static bool holds(const OctTree *tree, const OctReach *reach, int w, int most, i
     return false;
 }
 
-static bool regular_region(const BenchSampled *body, OctReach *from_i, OctReach *from_j, long i,
+static bool regular_region(const OctStructure *body, OctReach *from_i, OctReach *from_j, long i,
                            const int *count, char *reason)
 {
     const int *w = body->w;
     long in = 0;
-    int most = (int)(w[i] + floor(body->epsilon * w[i])); /* of all: widths are equal */
+    int most = (int)(w[i] + floor(body->options.epsilon * w[i])); /* of all: widths are equal */
     oct_reach_from(from_i, (int)i, most);
     for (long n = 0; n < from_i->count; n++) {
         int j = from_i->reached[n];
@@ -165,7 +165,7 @@ static bool regular_region(const BenchSampled *body, OctReach *from_i, OctReach 
     return in == body->regions.size[i] || fail(reason, "a region reaches too far", i, i);
 }
 
-static bool regular_regions(const BenchSampled *body, char *reason)
+static bool regular_regions(const OctStructure *body, char *reason)
 {
     OctReach from_i, from_j;
     size_t leaves = (size_t)body->tree.leaves;
@@ -185,13 +185,13 @@ static bool regular_regions(const BenchSampled *body, char *reason)
     return right;
 }
 
-bool bench_tree_check_graph(const BenchSampled *body, char reason[BENCH_TREE_REASON])
+bool bench_tree_check_graph(const OctStructure *body, char reason[BENCH_TREE_REASON])
 {
     return body->tree.leaves <= TWIN_LEAVES ? twin_graph(body, reason)
                                             : regular_graph(body, reason);
 }
 
-bool bench_tree_check_regions(const BenchSampled *body, char reason[BENCH_TREE_REASON])
+bool bench_tree_check_regions(const OctStructure *body, char reason[BENCH_TREE_REASON])
 {
     return body->tree.leaves <= TWIN_LEAVES ? twin_regions(body, reason)
                                             : regular_regions(body, reason);

@@ -2,8 +2,8 @@
 #ifndef BENCH_TREE_CHECK_H
 #define BENCH_TREE_CHECK_H
 
+#include "../../octree/change/structure.h"
 #include "../../octree/graph/distance.h"
-#include "../kernels/sampled.h"
 
 enum { BENCH_TREE_REASON = 160 };
 
@@ -13,8 +13,8 @@ enum { BENCH_TREE_REASON = 160 };
  * twins (reference/octree_regions.h), pair by pair. Larger ones must have a node in every finest
  * cell: then the graph joins the material cells that touch, each to each; and regions are held to
  * their definition at 64 nodes. */
-bool bench_tree_check_graph(const BenchSampled *body, char reason[BENCH_TREE_REASON]);
-bool bench_tree_check_regions(const BenchSampled *body, char reason[BENCH_TREE_REASON]);
+bool bench_tree_check_graph(const OctStructure *body, char reason[BENCH_TREE_REASON]);
+bool bench_tree_check_regions(const OctStructure *body, char reason[BENCH_TREE_REASON]);
 
 /* All distances of a search that went as far as it could, in a graph of any size: the source's is
  * 0, no edge leads to a leaf in less than its distance, and one leads there in just that. With

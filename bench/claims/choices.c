@@ -1,5 +1,3 @@
-#include "choices.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +5,7 @@
 #include "../../octree/engine.h"
 #include "../../octree/graph/distance.h"
 #include "../engines.h"
+#include "experiments.h"
 
 static void choose(const BenchMeasure *measure, OctOptions *options)
 {
@@ -16,16 +15,14 @@ static void choose(const BenchMeasure *measure, OctOptions *options)
     if (options->symmetry == OCT_ASYMMETRIC) options->form = OCT_ADJOINT;
 }
 
-/* Finds the scene, by its choices, and makes its body. */
-static SmCode prepare(const BenchMeasure *measure, BenchScene *scene, BenchBody *body,
-                      SmError *error)
+/* The scene by its choices. */
+static SmCode prepare(const BenchExperiment *of, SmError *error)
 {
-    SmCode code = bench_scene_find(measure->scene, scene, error);
-    if (code) return code;
+    BenchScene *scene = of->scene;
     if (!bench_engine(scene->engine)->sampled || scene->instances != 1)
         return sm_fail(error, SM_INPUT, "%.100s: one body in the octree is wanted", scene->file);
-    choose(measure, &scene->octree);
-    return bench_body_of_scene(scene, NULL, body, error);
+    choose(of->measure, &scene->octree);
+    return SM_OK;
 }
 
 /* ---- regions */
@@ -60,27 +57,20 @@ static double region_field(const OctStructure *s, const char *field)
     return beyond_percent(s);
 }
 
-void bench_choices_regions(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+SmCode bench_choices_regions(const BenchExperiment *of, SmError *error)
 {
-    (void)lab;
-    int quarters[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, quarters);
-    BenchScene *scene = sm_alloc(1, sizeof *scene);
-    BenchBody body = {0};
-    SmError error;
-    bench_curve_begin(curve, "epsilon", measure->field);
-    SmCode code = prepare(measure, scene, &body, &error);
+    int quarters[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->n, quarters);
+    OctOptions *options = &of->scene->octree;
+    SmCode code = prepare(of, error);
     for (int c = 0; c < count && !code; c++) {
         OctStructure s;
-        scene->octree.epsilon = 0.25 * quarters[c];
-        code = oct_structure_build(&body.voxels, &scene->octree, body.mass, &s, &error);
+        options->epsilon = 0.25 * quarters[c];
+        code = oct_structure_build(&of->body->voxels, options, of->body->mass, &s, error);
         if (code) break;
-        double value = region_field(&s, measure->field);
-        bench_curve_add(curve, scene->octree.epsilon, value, value, value);
+        bench_curve_exact(of->curve, options->epsilon, region_field(&s, of->measure->field));
         oct_structure_free(&s);
     }
-    if (code) bench_curve_fail(curve, "%.180s", error.text);
-    bench_body_free(&body);
-    free(scene);
+    return code;
 }
 
 /* ---- growth */
@@ -110,38 +100,33 @@ static double mean_motion(BenchRunner *runner, const double *mass, long steps, d
     return sum / (double)steps;
 }
 
-static void add_growth(BenchRunner *runner, long steps, unsigned long seed, BenchCurve *curve)
+static double growth_of(BenchRunner *runner, long steps)
 {
     double *mass = sm_alloc((size_t)runner->particles, sizeof *mass);
     double(*v)[3] = sm_alloc((size_t)runner->particles, sizeof *v);
     runner->type->masses(runner->engine, mass);
-    bench_runner_disturb(runner, seed);
     double first = mean_motion(runner, mass, steps / 10, v);
     for (long s = 0; s < steps - 2 * (steps / 10); s++) bench_runner_step(runner, NULL);
     double last = mean_motion(runner, mass, steps / 10, v);
-    bench_curve_check(curve, runner);
-    bench_curve_add(curve, 0, last / first, last / first, last / first);
     free(mass);
     free(v);
+    return last / first;
 }
 
-void bench_choices_growth(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+SmCode bench_choices_growth(const BenchExperiment *of, SmError *error)
 {
-    BenchScene *scene = sm_alloc(1, sizeof *scene);
-    BenchBody body = {0};
     BenchRunner runner;
-    SmError error;
-    bench_curve_begin(curve, "none", "kinetic energy, last tenth by first");
-    SmCode code = prepare(measure, scene, &body, &error);
+    SmCode code = prepare(of, error);
+    if (code) return code;
+    set_free(of->scene);
+    code = bench_runner_create(of->scene, of->body, &octree_engine_f64, 1, &runner, error);
     if (!code) {
-        set_free(scene);
-        code = bench_runner_create(scene, &body, &octree_engine_f64, 1, &runner, &error);
-        if (!code) add_growth(&runner, lab->quick ? 2000 : 20000, lab->seed, curve);
-        bench_runner_free(&runner);
+        bench_runner_disturb(&runner, of->lab->seed);
+        bench_curve_exact(of->curve, 0, growth_of(&runner, of->lab->quick ? 2000 : 20000));
+        bench_curve_check(of->curve, &runner);
     }
-    if (code) bench_curve_fail(curve, "%.180s", error.text);
-    bench_body_free(&body);
-    free(scene);
+    bench_runner_free(&runner);
+    return code;
 }
 
 /* ---- placement */
@@ -197,38 +182,35 @@ static double bending(const BenchBody *body, BenchRunner *runner)
     return taken / all;
 }
 
-static double stiffness_at(const BenchMeasure *measure, int shift, BenchCurve *curve)
+static SmCode find_stiffness(const BenchExperiment *of, const BenchScene *scene,
+                             const BenchBody *body, double *stiffness, SmError *error)
 {
-    BenchScene *scene = sm_alloc(1, sizeof *scene);
-    BenchBody body;
     BenchRunner runner;
-    SmError error;
-    double stiffness = NAN;
-    place_beam(measure, shift, scene);
-    SmCode code = bench_body_of_scene(scene, NULL, &body, &error);
+    SmCode code = bench_runner_create(scene, body, &octree_engine_f64, 1, &runner, error);
     if (!code) {
-        code = bench_runner_create(scene, &body, &octree_engine_f64, 1, &runner, &error);
-        if (!code) {
-            stiffness = bending(&body, &runner);
-            bench_curve_check(curve, &runner);
-        }
-        bench_runner_free(&runner);
+        *stiffness = bending(body, &runner);
+        bench_curve_check(of->curve, &runner);
     }
-    if (code) bench_curve_fail(curve, "%.180s", error.text);
-    bench_body_free(&body);
-    free(scene);
-    return stiffness;
+    bench_runner_free(&runner);
+    return code;
 }
 
-void bench_choices_placement(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+SmCode bench_choices_placement(const BenchExperiment *of, SmError *error)
 {
     double least = INFINITY, most = 0;
-    (void)lab;
-    bench_curve_begin(curve, "none", "stiffness, most by least");
-    for (int shift = 0; shift < NODE && curve->valid; shift++) {
-        double stiffness = stiffness_at(measure, shift, curve);
+    BenchScene *scene = sm_alloc(1, sizeof *scene);
+    SmCode code = SM_OK;
+    for (int shift = 0; shift < NODE && !code && of->curve->valid; shift++) {
+        BenchBody body;
+        double stiffness = NAN;
+        place_beam(of->measure, shift, scene);
+        code = bench_body_of_scene(scene, NULL, &body, error);
+        if (!code) code = find_stiffness(of, scene, &body, &stiffness, error);
+        bench_body_free(&body);
         least = fmin(least, stiffness);
         most = fmax(most, stiffness);
     }
-    bench_curve_add(curve, 0, most / least, most / least, most / least);
+    if (!code) bench_curve_exact(of->curve, 0, most / least);
+    free(scene);
+    return code;
 }

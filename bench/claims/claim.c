@@ -18,8 +18,9 @@ typedef struct {
     double value;                         /* or given here */
 } Entry;
 
-static const char *const kind_names[] = {"method", "machine", "by construction", NULL};
-static const char *const expectation_names[] = {"reproduced", "different", "not comparable", NULL};
+const char *const bench_claim_kinds[] = {"method", "machine", "by construction", NULL};
+const char *const bench_reductions[] = {"values", "exponent", "largest", "gain", NULL};
+const char *const bench_expectations[] = {"reproduced", "different", "not comparable", NULL};
 
 static const BenchSetting range_table[] = {
     {"from", BENCH_IN(BenchRange, from), 1, 1000},
@@ -48,7 +49,7 @@ static const BenchSetting measure_table[] = {
 };
 
 static const BenchSetting claim_table[] = {
-    {"kind", BENCH_IN(Entry, claim.kind), BENCH_CHOICES(kind_names), .needed = true},
+    {"kind", BENCH_IN(Entry, claim.kind), BENCH_CHOICES(bench_claim_kinds), .needed = true},
     {"paper", BENCH_IN(Entry, claim.paper)},
     {"name", BENCH_IN(Entry, claim.name)},
     {"statement", BENCH_IN(Entry, claim.statement)},
@@ -61,12 +62,11 @@ static const BenchSetting claim_table[] = {
     {"measure", BENCH_IN(Entry, claim.measure), .table = measure_table},
     {"over", BENCH_IN(Entry, claim.over), .table = measure_table},
     {"unset", BENCH_IN(Entry, claim.unset), .table = measure_table},
-    {"take", BENCH_IN(Entry, claim.reduction),
-     BENCH_ONE_OF("values", "exponent", "largest", "gain")},
+    {"take", BENCH_IN(Entry, claim.reduction), BENCH_CHOICES(bench_reductions)},
     {"test", BENCH_IN(Entry, claim.test), .needed = true,
      BENCH_ONE_OF("near", "within", "factor", "at_least", "at_most", "inside", "rises", "falls")},
     {"tolerance", BENCH_IN(Entry, claim.tolerance), 0, 1e6},
-    {"expect", BENCH_IN(Entry, claim.expect), BENCH_CHOICES(expectation_names)},
+    {"expect", BENCH_IN(Entry, claim.expect), BENCH_CHOICES(bench_expectations)},
     {"because", BENCH_IN(Entry, claim.because)},
     {0},
 };
@@ -196,7 +196,7 @@ static SmCode check_kind(const BenchClaim *claim, const Place *place)
     if ((claim->expect == BENCH_DIFFERS && claim->kind != BENCH_OF_METHOD) ||
         (claim->expect != BENCH_REPRODUCES && built))
         return fail_at(place, "'%s': a claim of the kind \"%s\" is not expected to differ",
-                       claim->name, bench_claim_kind_name(claim->kind));
+                       claim->name, bench_claim_kinds[claim->kind]);
     return SM_OK;
 }
 
@@ -274,16 +274,6 @@ SmCode bench_claims_builtin(BenchClaims *claims, SmError *error)
 {
     return bench_claims_parse(ref_claims_text, strlen(ref_claims_text), "reference/claims.cfg",
                               claims, error);
-}
-
-const char *bench_claim_kind_name(BenchClaimKind kind)
-{
-    return kind_names[kind];
-}
-
-const char *bench_expectation_name(BenchExpectation expect)
-{
-    return expectation_names[expect];
 }
 
 void bench_claims_free(BenchClaims *claims)

@@ -74,11 +74,10 @@ SmCode bench_claims_parse(const char *text, size_t size, const char *file, Bench
 /* The same of those compiled in. */
 SmCode bench_claims_builtin(BenchClaims *claims, SmError *error);
 
-/* "method", "machine", "by construction". */
-const char *bench_claim_kind_name(BenchClaimKind kind);
-
-/* "reproduced", "different", "not comparable". */
-const char *bench_expectation_name(BenchExpectation expect);
+/* Their names in files, in order: "method", "machine", "by construction"; "values", "exponent",
+ * "largest", "gain"; "reproduced", "different", "not comparable". NULL-terminated. */
+extern const char *const bench_claim_kinds[], *const bench_reductions[],
+                                                  *const bench_expectations[];
 
 void bench_claims_free(BenchClaims *claims);
 

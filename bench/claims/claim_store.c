@@ -2,55 +2,57 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "../table/grid.h"
 #include "../table/row_store.h"
 #include "fit.h"
 
-static const char *const takes[] = {"values", "exponent", "largest", "gain"};
-
-#define FIELD(type, member)  BENCH_FIELD_AS(BenchClaimRecord, BENCH_##type, member, #member)
-#define MEANS(of_what, what) BENCH_MEANS(of_what, what)
-#define STORED(type, member)                                                                       \
-    .name = #member, .kind = BENCH_##type, .offset = offsetof(BenchClaimRecord, member),           \
-    .size = sizeof(((BenchClaimRecord *)0)->member)
-#define ONLY(kind)   .tables = 1U << (kind)
-#define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
+#define MEMBER(title, member)                                                                      \
+    .name = (title), .offset = offsetof(BenchFinding, member),                                     \
+    .size = sizeof(((BenchFinding *)0)->member)
+#define STORED(type, title, member) MEMBER(title, member), .kind = BENCH_##type
+#define FIELD(type, title, member)  STORED(type, title, member), .column = (title)
+#define MEANS(of_what, what)        BENCH_MEANS(of_what, what)
+#define ONLY(kind)                  .tables = 1U << (kind)
+#define COUNT(array)                ((int)(sizeof(array) / sizeof((array)[0])))
 
 /* ---- cells */
 
 static int paper_values(const void *record)
 {
-    return ((const BenchClaimRecord *)record)->values;
+    return ((const BenchFinding *)record)->claim.values;
 }
 
 static int measured_values(const void *record)
 {
-    return ((const BenchClaimRecord *)record)->count;
+    return ((const BenchFinding *)record)->count;
 }
 
 static int ratio_values(const void *record)
 {
-    return isnan(((const BenchClaimRecord *)record)->ratio[0]) ? 0 : 3;
+    return isnan(((const BenchFinding *)record)->ratio[0]) ? 0 : 3;
 }
 
 static int unset_values(const void *record)
 {
-    return !isnan(((const BenchClaimRecord *)record)->unset);
+    return !isnan(((const BenchFinding *)record)->unset);
 }
 
 static const char *status_text(const void *record)
 {
-    const BenchClaimRecord *r = record;
-    return r->values ? r->status : "";
+    return ref_status_name(((const BenchFinding *)record)->claim.status);
+}
+
+static const char *status_of_values(const void *record)
+{
+    return paper_values(record) ? status_text(record) : "";
 }
 
 static void paper_cell(const void *record, char *text)
 {
     static const char *const marks[] = {"", "", "?", "*"};
-    const BenchClaim *claim = &((const BenchClaimRecord *)record)->finding->claim;
+    const BenchClaim *claim = &((const BenchFinding *)record)->claim;
     char paper[64];
     bench_verdict_paper(claim, sizeof paper, paper);
     snprintf(text, BENCH_GRID_TEXT, "%s%s", paper, marks[claim->status]);
@@ -58,75 +60,83 @@ static void paper_cell(const void *record, char *text)
 
 static void measured_cell(const void *record, char *text)
 {
-    bench_verdict_measured(((const BenchClaimRecord *)record)->finding, BENCH_GRID_TEXT, text);
+    bench_verdict_measured(record, BENCH_GRID_TEXT, text);
 }
 
 static void unset_cell(const void *record, char *text)
 {
-    bench_verdict_unset_text(((const BenchClaimRecord *)record)->finding, BENCH_GRID_TEXT, text);
+    bench_verdict_unset_text(record, BENCH_GRID_TEXT, text);
 }
 
 static void ratio_cell(const void *record, char *text)
 {
-    bench_verdict_ratio(((const BenchClaimRecord *)record)->finding, BENCH_GRID_TEXT, text);
+    bench_verdict_ratio(record, BENCH_GRID_TEXT, text);
 }
 
 /* ---- all members */
 
 const BenchField bench_claim_fields[] = {
-    {FIELD(TEXT, paper), MEANS(NULL, "whose claim it is"), .title = "paper", .left = true},
-    {FIELD(TEXT, name), MEANS(NULL, "of the claim"), .title = "claim", .left = true},
-    {FIELD(TEXT, place), MEANS(NULL, "where it stands"), .title = "where", .left = true},
-    {FIELD(TEXT, statement), MEANS(NULL, "what is claimed")},
-    {STORED(TEXT, note), MEANS(NULL, "of the paper's number")},
-    {STORED(INT, values),
+    {FIELD(TEXT, "paper", claim.paper), MEANS(NULL, "whose claim it is"), .title = "paper",
+     .left = true},
+    {FIELD(TEXT, "name", claim.name), MEANS(NULL, "of the claim"), .title = "claim", .left = true},
+    {FIELD(TEXT, "place", claim.place), MEANS(NULL, "where it stands"), .title = "where",
+     .left = true},
+    {FIELD(TEXT, "statement", claim.statement), MEANS(NULL, "what is claimed")},
+    {STORED(TEXT, "note", claim.note), MEANS(NULL, "of the paper's number")},
+    {STORED(INT, "values", claim.values),
      MEANS(NULL, "how many the paper gives; 0: it says only that something rises or falls")},
     {BENCH_CELL("paper says", paper_cell)},
     {BENCH_CELL("measured", measured_cell),
      .tables = 1U << BENCH_OF_METHOD | 1U << BENCH_OF_MACHINE},
     {BENCH_CELL("counted", measured_cell), ONLY(BENCH_BY_CONSTRUCTION)},
-    {FIELD(TEXT, unit), MEANS(NULL, "of all values"), .title = "unit", .left = true},
-    {FIELD(DOUBLE, paper_value), MEANS(NULL, "the paper's, NaN beyond `values`"),
+    {FIELD(TEXT, "unit", claim.unit), MEANS(NULL, "of all values"), .title = "unit", .left = true},
+    {FIELD(DOUBLE, "paper_value", claim.value), MEANS(NULL, "the paper's, NaN beyond `values`"),
      .listed = paper_values},
-    {FIELD(TEXT, status), MEANS(NULL, "of them: quoted, derived, damaged or second-hand"),
-     .text = status_text},
-    {FIELD(DOUBLE, measured), MEANS(NULL, "values, NaN beyond `count`"), .listed = measured_values},
-    {FIELD(DOUBLE, low), MEANS(NULL, "of each the lower end of the 95% confidence interval"),
+    {.name = "status",
+     .kind = BENCH_TEXT,
+     .text = status_text,
+     MEANS(NULL, "of them: quoted, derived, damaged or second-hand")},
+    {.column = "status", .kind = BENCH_TEXT, .text = status_of_values},
+    {FIELD(DOUBLE, "measured", value), MEANS(NULL, "values, NaN beyond `count`"),
      .listed = measured_values},
-    {FIELD(DOUBLE, high), MEANS(NULL, "and the upper one; the same: it has none"),
+    {FIELD(DOUBLE, "low", low), MEANS(NULL, "of each the lower end of the 95% confidence interval"),
      .listed = measured_values},
-    {STORED(INT, count), MEANS(NULL, "how many were measured")},
-    {STORED(INT, trend),
+    {FIELD(DOUBLE, "high", high), MEANS(NULL, "and the upper one; the same: it has none"),
+     .listed = measured_values},
+    {STORED(INT, "count", count), MEANS(NULL, "how many were measured")},
+    {STORED(INT, "trend", trend),
      MEANS(NULL, "1: the curve rises from every point to the next; -1: falls; 0: neither")},
-    {STORED(TEXT, take), MEANS(NULL, "what was taken of it: values, exponent, largest, gain")},
+    {STORED(TEXT, "take", claim.reduction), .choices = bench_reductions,
+     MEANS(NULL, "what was taken of it: values, exponent, largest, gain")},
     {BENCH_CELL("not set", unset_cell), ONLY(BENCH_BY_CONSTRUCTION)},
     {BENCH_CELL("times as fast", ratio_cell), ONLY(BENCH_OF_MACHINE)},
-    {FIELD(TEXT, test), MEANS(NULL, "in words"), .title = "test", .left = true,
+    {FIELD(TEXT, "test", test), MEANS(NULL, "in words"), .title = "test", .left = true,
      .tables = 1U << BENCH_OF_METHOD | 1U << BENCH_BY_CONSTRUCTION},
-    {STORED(DOUBLE, tolerance), MEANS(NULL, "of the test")},
-    {FIELD(TEXT, expect), MEANS(NULL, "reproduced, different or not comparable")},
-    {STORED(TEXT, because), MEANS(NULL, "why it differs, or cannot be compared")},
-    {FIELD(TEXT, verdict),
+    {STORED(DOUBLE, "tolerance", claim.tolerance), MEANS(NULL, "of the test")},
+    {FIELD(TEXT, "expect", claim.expect), .choices = bench_expectations,
+     MEANS(NULL, "reproduced, different or not comparable")},
+    {STORED(TEXT, "because", claim.because), MEANS(NULL, "why it differs, or cannot be compared")},
+    {FIELD(TEXT, "verdict", verdict), .choices = bench_verdict_names,
      MEANS(NULL, "of the method reproduced, undecided, not reproduced or differs; of a machine "
                  "measured or not comparable; by construction as set or not as set; BUSY (others "
                  "took the processors) or INVALID (`bench/claims/verdict.h`)"),
      .title = "verdict", .left = true},
-    {FIELD(TEXT, words), MEANS(NULL, "the line that explains it")},
-    {FIELD(TEXT, evidence),
+    {FIELD(TEXT, "words", words), MEANS(NULL, "the line that explains it")},
+    {FIELD(TEXT, "evidence", evidence[0]),
      MEANS(NULL, "group in the file, /rows/... or /curves/..., that `measured` comes from")},
-    {FIELD(TEXT, over), MEANS(NULL, "what it is divided by, or empty")},
-    {FIELD(TEXT, kind),
+    {FIELD(TEXT, "over", evidence[1]), MEANS(NULL, "what it is divided by, or empty")},
+    {FIELD(TEXT, "kind", claim.kind), .choices = bench_claim_kinds,
      MEANS(NULL, "method: what the paper's idea should do anywhere; machine: a speed; by "
                  "construction: what the scene file sets")},
-    {FIELD(DOUBLE, ratio),
+    {FIELD(DOUBLE, "ratio", ratio),
      MEANS(NULL, "of a machine's speed: how many times as fast as the paper's machine, and the "
                  "ends of the 95% interval; NaN of others"),
      .listed = ratio_values},
-    {FIELD(DOUBLE, unset),
+    {FIELD(DOUBLE, "unset", unset),
      MEANS(NULL, "by construction: what comes where the scene does not set the number; NaN: not "
                  "measured"),
      .listed = unset_values},
-    {FIELD(TEXT, unset_evidence), MEANS(NULL, "the group that it is from")},
+    {FIELD(TEXT, "unset_evidence", evidence[2]), MEANS(NULL, "the group that it is from")},
 };
 
 const int bench_claim_field_count = COUNT(bench_claim_fields);
@@ -166,42 +176,6 @@ void bench_claim_place(const BenchLab *lab, int curve, size_t size, char *place)
         snprintf(place, size, "/curves/%s", of->name);
 }
 
-static void pack(const BenchFinding *finding, BenchClaimRecord *stored)
-{
-    const BenchClaim *claim = &finding->claim;
-    *stored = (BenchClaimRecord){.finding = finding,
-                                 .values = claim->values,
-                                 .count = finding->count,
-                                 .trend = finding->trend,
-                                 .tolerance = claim->tolerance,
-                                 .unset = finding->unset};
-    memcpy(stored->ratio, finding->ratio, sizeof stored->ratio);
-    strcpy(stored->kind, bench_claim_kind_name(claim->kind));
-    strcpy(stored->unset_evidence, finding->evidence[2]);
-    strcpy(stored->paper, claim->paper);
-    strcpy(stored->name, claim->name);
-    strcpy(stored->place, claim->place);
-    strcpy(stored->unit, claim->unit);
-    strcpy(stored->statement, claim->statement);
-    strcpy(stored->note, claim->note);
-    strcpy(stored->because, claim->because);
-    strcpy(stored->words, finding->words);
-    strcpy(stored->status, ref_status_name(claim->status));
-    strcpy(stored->take, takes[claim->reduction]);
-    strcpy(stored->expect, bench_expectation_name(claim->expect));
-    strcpy(stored->verdict, bench_verdict_name(finding->verdict));
-    strcpy(stored->evidence, finding->evidence[0]);
-    strcpy(stored->over, finding->evidence[1]);
-    bench_verdict_test(claim, sizeof stored->test, stored->test);
-    for (int v = 0; v < BENCH_CLAIM_VALUES; v++) {
-        bool there = v < finding->count;
-        stored->paper_value[v] = v < claim->values ? claim->value[v] : NAN;
-        stored->measured[v] = there ? finding->value[v] : NAN;
-        stored->low[v] = there ? finding->low[v] : NAN;
-        stored->high[v] = there ? finding->high[v] : NAN;
-    }
-}
-
 static void write_curve(BenchH5 *h5, hid_t parent, const BenchCurve *curve)
 {
     const struct {
@@ -218,25 +192,16 @@ static void write_curve(BenchH5 *h5, hid_t parent, const BenchCurve *curve)
     if (group >= 0) H5Gclose(group);
 }
 
-BenchClaimRecord *bench_claim_records(const BenchFinding *findings, int count)
-{
-    BenchClaimRecord *records = sm_alloc((size_t)count, sizeof *records);
-    for (int f = 0; f < count; f++) pack(&findings[f], &records[f]);
-    return records;
-}
-
 static void write_claims(BenchH5 *h5, const BenchFinding *findings, int count)
 {
     hid_t group = bench_h5_group(h5, h5->file, "claims");
-    BenchClaimRecord *records = bench_claim_records(findings, count);
     for (int f = 0; f < count; f++) {
         char name[16];
         snprintf(name, sizeof name, "%03d", f);
         hid_t claim = bench_h5_group(h5, group, name);
-        bench_h5_fields(h5, claim, bench_claim_fields, bench_claim_field_count, &records[f]);
+        bench_h5_fields(h5, claim, bench_claim_fields, bench_claim_field_count, &findings[f]);
         if (claim >= 0) H5Gclose(claim);
     }
-    free(records);
 }
 
 void bench_claim_write(BenchH5 *h5, const BenchFinding *findings, int count, const BenchLab *lab)

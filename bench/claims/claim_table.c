@@ -30,11 +30,11 @@ static void tally(const BenchFinding *findings, int count, size_t size, char *te
             if (findings[f].claim.kind == (BenchClaimKind)k) number[findings[f].verdict]++, all++;
         if (all && used < size)
             used += (size_t)snprintf(text + used, size - used, "%s%d %s", used ? "; " : "", all,
-                                     bench_claim_kind_name((BenchClaimKind)k));
+                                     bench_claim_kinds[k]);
         for (int v = 0, said = 0; v < BENCH_VERDICTS; v++)
             if (number[v] && used < size)
                 used += (size_t)snprintf(text + used, size - used, "%s %d %s", said++ ? "," : ":",
-                                         number[v], bench_verdict_name((BenchVerdict)v));
+                                         number[v], bench_verdict_names[v]);
     }
 }
 
@@ -62,21 +62,21 @@ static void write_notes(FILE *file, const BenchFinding *findings, int count, boo
 
 static void write_grids(FILE *file, BenchFormat format, const BenchFinding *findings, int count)
 {
+    BenchFinding *those = sm_alloc((size_t)count, sizeof *those);
     for (int k = 0; k < BENCH_CLAIM_KINDS; k++) {
-        BenchClaimRecord *records = bench_claim_records(findings, count);
         int number = 0;
         for (int f = 0; f < count; f++)
-            if (findings[f].claim.kind == (BenchClaimKind)k) records[number++] = records[f];
-        BenchGrid grid = bench_records_grid(bench_claim_fields, bench_claim_field_count, records,
-                                            sizeof *records, number, k);
+            if (findings[f].claim.kind == (BenchClaimKind)k) those[number++] = findings[f];
+        BenchGrid grid = bench_records_grid(bench_claim_fields, bench_claim_field_count, those,
+                                            sizeof *those, number, k);
         if (grid.lines) {
             fprintf(file, format == BENCH_AS_LATEX ? "%% %s\n" : "%s\n\n", titles[k]);
             bench_grid_whole(file, &grid, bench_format_form(format));
             fputc('\n', file);
         }
         bench_grid_free(&grid);
-        free(records);
     }
+    free(those);
 }
 
 static void write_people(FILE *file, BenchFormat format, const BenchFinding *findings, int count,
@@ -100,32 +100,23 @@ static void write_people(FILE *file, BenchFormat format, const BenchFinding *fin
 
 /* ---- for programs */
 
-static void write_csv(FILE *file, const BenchFinding *findings, int count)
-{
-    BenchClaimRecord *records = bench_claim_records(findings, count);
-    bench_csv_records(file, bench_claim_fields, bench_claim_field_count, records, sizeof *records,
-                      count, NULL);
-    free(records);
-}
-
 static void write_json(FILE *file, const BenchFinding *findings, int count,
                        const BenchMachine *machine)
 {
-    BenchClaimRecord *records = bench_claim_records(findings, count);
     json_t *root = json_object();
     json_object_set_new(root, "claims",
-                        bench_json_records(bench_claim_fields, bench_claim_field_count, records,
-                                           sizeof *records, count));
+                        bench_json_records(bench_claim_fields, bench_claim_field_count, findings,
+                                           sizeof *findings, count));
     json_object_set_new(root, "environment", bench_json_machine(machine));
     bench_json_write(file, root);
-    free(records);
 }
 
 void bench_claim_table_write(FILE *file, BenchFormat format, const BenchFinding *findings,
                              int count, const BenchMachine *machine)
 {
     if (format == BENCH_AS_CSV)
-        write_csv(file, findings, count);
+        bench_csv_records(file, bench_claim_fields, bench_claim_field_count, findings,
+                          sizeof *findings, count, NULL);
     else if (format == BENCH_AS_JSON)
         write_json(file, findings, count, machine);
     else

@@ -1,7 +1,4 @@
-#include "cost_experiments.h"
-
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,43 +9,47 @@
 #include "../../octree/region/one_sided_regions.h"
 #include "../engines.h"
 #include "../kernels/cubes.h"
+#include "../kernels/kernel.h"
 #include "../kernels/matrices.h"
 #include "../kernels/tree_steps.h"
 #include "../play/playback.h"
+#include "experiments.h"
 
 static int repeats_of(const BenchLab *lab)
 {
     return lab->quick ? 9 : 31;
 }
 
-/* ---- steps of cubes */
+/* ---- kernels */
 
-static void create_cubes(const BenchLab *lab, const SmEngineParams *params, const int *side,
-                         const int *w, int count, BenchCube *cubes, BenchCurve *curve)
+/* One of them on one thread, in single precision. */
+static BenchKernel kernel_of(const BenchKernelKind *kind, int set, int side, int w, int part)
 {
-    SmError error;
-    for (int c = 0; c < count && curve->valid; c++) {
-        SmEngineParams own = *params;
-        own.w = w[c];
-        if (bench_cube_create(side[c], &fastlsm_engine_f32, &own, lab->seed, &cubes[c], &error))
-            bench_curve_fail(curve, "%.180s", error.text);
-        else if (!cubes[c].trial.valid)
-            bench_curve_fail(curve, "cube of side %d, w = %d: %s", side[c], w[c],
-                             cubes[c].trial.reason);
-    }
+    return (BenchKernel){
+        .kind = kind, .set = set, .side = side, .w = w, .part = part, .threads = 1};
 }
 
-/* Times them in turn, if all can be, with stages if so wanted, and checks them again. */
-static void time_cubes(BenchCube *cubes, int count, int repeats, bool stages, BenchCurve *curve)
+/* Prepares, checks and times so many kernels in turn, `each` of them for a point of the curve,
+ * which `add` adds. */
+static SmCode time_kernels(const BenchExperiment *of, const BenchKernel *kernels, int count,
+                           int each, int repeats,
+                           void (*add)(BenchCurve *curve, const BenchJob *jobs, int points),
+                           SmError *error)
 {
-    BenchTrial *trials[BENCH_RANGE_POINTS] = {0};
-    for (int c = 0; c < count; c++) {
-        trials[c] = &cubes[c].trial;
-        trials[c]->lap_sets = stages;
-    }
-    if (curve->valid) bench_trials_time(trials, count, repeats);
-    for (int c = 0; c < count; c++)
-        if (!cubes[c].trial.valid) bench_curve_fail(curve, "%s", cubes[c].trial.reason);
+    const BenchKernelParams params = {
+        .layout = of->measure->layout, .threads = 1, .repeats = repeats, .seed = of->lab->seed};
+    BenchJob *jobs = sm_alloc((size_t)count, sizeof *jobs);
+    for (int j = 0; j < count; j++) jobs[j] = bench_job(&kernels[j], &params, NULL);
+    SmCode code = bench_jobs_open(jobs, count, error);
+    if (!code) code = bench_jobs_time(jobs, count, error);
+    for (int j = 0; j < count && !code; j++)
+        if (!jobs[j].trial->valid)
+            bench_curve_fail(of->curve, "point %d: %s", j / each + 1, jobs[j].trial->reason);
+    for (int j = 0; j < count && !code && of->curve->valid; j += each)
+        add(of->curve, &jobs[j], count / each);
+    bench_jobs_close(jobs, count);
+    free(jobs);
+    return code;
 }
 
 /* Mean over a row of `side` particles of how many are within w. */
@@ -60,9 +61,9 @@ static double mean_side(int side, int w)
 
 /* The sums' share of the step in CPU time: of a stage alone there is only the time on the wall,
  * which other work is in, too. */
-static void add_sums(BenchCurve *curve, double x, const BenchCube *cube, int points)
+static void add_sums(BenchCurve *curve, const BenchJob *job, int points)
 {
-    const BenchTrial *trial = &cube->trial;
+    const BenchTrial *trial = job->trial;
     int samples = trial->samples;
     double *share = sm_alloc((size_t)samples, sizeof *share);
     double *step = sm_alloc((size_t)samples, sizeof *step);
@@ -70,146 +71,90 @@ static void add_sums(BenchCurve *curve, double x, const BenchCube *cube, int poi
         double all = 0;
         for (int s = 0; s < SM_STAGES; s++) all += bench_trial_stage(trial, r, 0, 0, (SmStage)s);
         share[r] = bench_trial_stage(trial, r, 0, 0, SM_FAST_SUM) / all;
-        step[r] = 1e9 * trial->cpu[r] / (double)cube->particles;
+        step[r] = 1e9 * trial->cpu[r] / (double)job->items;
     }
     BenchInterval part = bench_curve_interval(share, samples, 0.5, points);
     BenchInterval whole = bench_curve_interval(step, samples, BENCH_LOW, points);
-    bench_curve_add(curve, x, whole.value * part.value, whole.low * part.low,
-                    whole.high * part.high);
+    bench_curve_add(curve, mean_side(job->kernel->side, job->w), whole.value * part.value,
+                    whole.low * part.low, whole.high * part.high);
     free(share);
     free(step);
 }
 
-void bench_costs_sums(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+SmCode bench_costs_sums(const BenchExperiment *of, SmError *error)
 {
-    int w[BENCH_RANGE_POINTS], side[BENCH_RANGE_POINTS] = {0};
-    int count = bench_range_numbers(&measure->w, w),
-        repeats = repeats_of(lab) / (measure->summation == SM_SUM_NAIVE ? 6 : 1);
-    BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
-    const SmEngineParams params = {
-        .h = 0.01, .summation = measure->summation, .layout = measure->layout, .threads = 1};
-    for (int c = 0; c < count; c++) side[c] = lab->quick ? 20 : 32;
-    bench_curve_begin(curve, "mean side of a region, particles",
-                      "fast summation, ns/particle/step");
-    create_cubes(lab, &params, side, w, count, cubes, curve);
-    time_cubes(cubes, count, repeats, true, curve);
-    for (int c = 0; c < count && curve->valid; c++)
-        add_sums(curve, mean_side(side[c], w[c]), &cubes[c], count);
-    for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
-    free(cubes);
+    int w[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->w, w);
+    SmSummation summation = of->measure->summation;
+    int repeats = repeats_of(of->lab) / (summation == SM_SUM_NAIVE ? 6 : 1);
+    BenchKernel kernels[BENCH_RANGE_POINTS];
+    for (int c = 0; c < count; c++) {
+        kernels[c] = kernel_of(&bench_cube_kernels, c, of->lab->quick ? 20 : 32, w[c], SM_FAST_SUM);
+        kernels[c].summation = summation;
+    }
+    return time_kernels(of, kernels, count, 1, repeats, add_sums, error);
 }
 
-static void lattice_sizes(BenchLab *lab, const int *side, int count, BenchCurve *curve)
+/* ms a step: of the lattice's CPU time, of the octree the sum of the parts that are timed. */
+static void add_size(BenchCurve *curve, const BenchJob *jobs, int points)
 {
-    int w[BENCH_RANGE_POINTS] = {0}, repeats = repeats_of(lab);
-    BenchCube *cubes = sm_alloc(BENCH_RANGE_POINTS, sizeof *cubes);
-    const SmEngineParams params = {.h = 0.01, .damping = 0.1, .threads = 1};
-    for (int c = 0; c < count; c++) w[c] = 1;
-    create_cubes(lab, &params, side, w, count, cubes, curve);
-    time_cubes(cubes, count, repeats, false, curve);
-    double *ms = sm_alloc((size_t)repeats, sizeof *ms);
-    for (int c = 0; c < count && curve->valid; c++) {
-        double particles = (double)cubes[c].particles;
-        for (int r = 0; r < repeats; r++) ms[r] = 1e3 * cubes[c].trial.cpu[r];
-        bench_curve_sample(curve, particles, ms, repeats, BENCH_LOW, count);
-    }
-    free(ms);
-    for (int c = 0; c < count; c++) bench_cube_free(&cubes[c]);
-    free(cubes);
-}
-
-/* ---- steps of the octree on cubes */
-
-/* Of a step, or of its hierarchical sums alone: ms. */
-static double tree_ms(const BenchTreeStep *step, bool sums, int r)
-{
-    double ns = 0;
-    if (!sums) return bench_tree_step_ns_f32(step, BENCH_TREE_WHOLE, r) / 1e6;
-    ns += bench_tree_step_ns_f32(step, BENCH_TREE_DEPTH, r);
-    ns += bench_tree_step_ns_f32(step, BENCH_TREE_BREADTH, r);
-    ns += bench_tree_step_ns_f32(step, BENCH_TREE_GOALS, r);
-    return ns / 1e6;
-}
-
-static void time_trees(BenchLab *lab, BenchTreeStep *steps, int count, bool sums, BenchCurve *curve)
-{
-    int repeats = repeats_of(lab);
-    double *ms = sm_alloc((size_t)repeats, sizeof *ms);
-    BenchTrial *trials[BENCH_RANGE_POINTS] = {0};
-    for (int s = 0; s < count; s++) {
-        bench_tree_step_create_f32(&steps[s]);
-        trials[s] = &steps[s].trial;
-    }
-    bench_trials_time(trials, count, repeats);
-    for (int s = 0; s < count; s++) {
-        if (!steps[s].trial.valid)
-            bench_curve_fail(curve, "octree of %ld nodes: %s", steps[s].body->tree.leaves,
-                             steps[s].trial.reason);
-        for (int r = 0; r < repeats && curve->valid; r++) ms[r] = tree_ms(&steps[s], sums, r);
-        if (curve->valid)
-            bench_curve_sample(curve, (double)steps[s].body->tree.leaves, ms, repeats, BENCH_LOW,
-                               count);
-    }
-    for (int s = 0; s < count; s++) bench_tree_step_free_f32(&steps[s]);
+    int samples = jobs->trial->samples, parts = jobs->kernel->part == BENCH_TREE_DEPTH ? 3 : 1;
+    double *ms = sm_alloc((size_t)samples, sizeof *ms);
+    for (int r = 0; r < samples; r++)
+        for (int p = 0; p < parts; p++)
+            ms[r] += 1e3 * (jobs->kernel->kind == &bench_cube_kernels
+                                ? jobs->trial->cpu[r]
+                                : jobs[p].kernel->kind->seconds(&jobs[p], r));
+    bench_curve_sample(curve, (double)jobs->items, ms, samples, BENCH_LOW, points);
     free(ms);
 }
 
-static void octree_sizes(BenchLab *lab, const int *side, int count, bool sums, BenchCurve *curve)
+SmCode bench_costs_size(const BenchExperiment *of, SmError *error)
 {
-    BenchSampled *body = sm_alloc((size_t)count, sizeof *body);
-    BenchTreeStep *steps = sm_alloc((size_t)count, sizeof *steps);
-    SmError error;
-    int made = 0;
-    for (; made < count && curve->valid; made++) {
-        if (bench_sampled_cube(side[made], &body[made], &error))
-            bench_curve_fail(curve, "%.180s", error.text);
-        steps[made] =
-            (BenchTreeStep){.body = &body[made], .parts = sums, .threads = 1, .seed = lab->seed};
-    }
-    if (curve->valid) time_trees(lab, steps, count, sums, curve);
-    for (int s = 0; s < made; s++) bench_sampled_free(&body[s]);
-    free(steps);
-    free(body);
-}
-
-void bench_costs_size(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
-{
-    int side[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, side);
-    bool octree = bench_engine(measure->engine)->sampled, sums = !strcmp(measure->field, "sums");
-    for (int c = 0; c < count && lab->quick; c++) side[c] = side[c] > 40 ? 40 : side[c];
+    static const int parts[] = {BENCH_TREE_DEPTH, BENCH_TREE_BREADTH, BENCH_TREE_GOALS};
+    int side[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->n, side);
+    bool octree = bench_engine(of->measure->engine)->sampled;
+    bool sums = !strcmp(of->measure->field, "sums");
+    int each = sums ? 3 : 1;
+    const BenchKernelKind *kind = octree ? &bench_tree_step_kernels : &bench_cube_kernels;
+    BenchKernel kernels[3 * BENCH_RANGE_POINTS];
+    for (int c = 0; c < count && of->lab->quick; c++) side[c] = side[c] > 40 ? 40 : side[c];
     while (count > 1 && side[count - 1] == side[count - 2]) count--;
-    bench_curve_begin(curve, octree ? "nodes" : "particles", sums ? "sums, ms/step" : "ms/step");
-    if (octree)
-        octree_sizes(lab, side, count, sums, curve);
-    else
-        lattice_sizes(lab, side, count, curve);
+    bench_curve_begin(of->curve, octree ? "nodes" : "particles",
+                      sums ? "sums, ms/step" : "ms/step");
+    for (int k = 0; k < count * each; k++) {
+        int whole = octree ? BENCH_TREE_WHOLE : BENCH_CUBE_STEP;
+        kernels[k] = kernel_of(kind, k / each, side[k / each], 1, sums ? parts[k % 3] : whole);
+        kernels[k].damping = 0.1;
+    }
+    return time_kernels(of, kernels, count * each, each, repeats_of(of->lab), add_size, error);
 }
 
-/* ---- single numbers */
-
-void bench_costs_polar(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+static void add_sweeps(BenchCurve *curve, const BenchJob *job, int points)
 {
-    int repeats = repeats_of(lab);
-    BenchPolar method = !strncmp(measure->field, "cold", 4)   ? BENCH_POLAR_COLD
-                        : !strncmp(measure->field, "warm", 4) ? BENCH_POLAR_WARM
-                                                              : BENCH_POLAR_BATCH;
-    BenchMotion *motion = bench_motion_create(BENCH_F32, lab->seed);
-    BenchPolarTrial polar;
-    BenchTrial *trial = &polar.trial;
-    bench_polar_prepare(motion, method, &polar);
-    bench_trials_time(&trial, 1, repeats);
-    bench_curve_begin(curve, "-", measure->field);
-    double sweeps = polar.sweeps / (double)polar.decomposed;
-    for (int r = 0; r < trial->samples; r++) trial->seconds[r] *= 1e9 / BENCH_POLAR_RUN;
-    if (!trial->valid)
-        bench_curve_fail(curve, "%s", trial->reason);
-    else if (strstr(measure->field, "sweeps"))
-        bench_curve_add(curve, 0, sweeps, sweeps, sweeps);
-    else
-        bench_curve_sample(curve, 0, trial->seconds, repeats, BENCH_LOW, 1);
-    bench_trial_free(trial);
-    bench_motion_free(motion);
+    const BenchPolarTrial *polar = job->subject;
+    (void)points;
+    bench_curve_exact(curve, 0, polar->sweeps / (double)polar->decomposed);
 }
+
+static void add_ns(BenchCurve *curve, const BenchJob *job, int points)
+{
+    BenchTrial *trial = job->trial;
+    for (int r = 0; r < trial->samples; r++) trial->seconds[r] *= 1e9 / job->per_run;
+    bench_curve_sample(curve, 0, trial->seconds, trial->samples, BENCH_LOW, points);
+}
+
+SmCode bench_costs_polar(const BenchExperiment *of, SmError *error)
+{
+    const char *field = of->measure->field;
+    BenchPolar method = !strncmp(field, "cold", 4)   ? BENCH_POLAR_COLD
+                        : !strncmp(field, "warm", 4) ? BENCH_POLAR_WARM
+                                                     : BENCH_POLAR_BATCH;
+    const BenchKernel kernel = kernel_of(&bench_polar_kernels, 0, 0, 0, (int)method);
+    return time_kernels(of, &kernel, 1, 1, repeats_of(of->lab),
+                        strstr(field, "sweeps") ? add_sweeps : add_ns, error);
+}
+
+/* ---- sweeps of a scene */
 
 /* Sweeps of a decomposition, mean over the steps of some frames from the start. */
 static double mean_sweeps(BenchPlayback *play, int frames)
@@ -227,29 +172,17 @@ static double mean_sweeps(BenchPlayback *play, int frames)
     return sum;
 }
 
-void bench_costs_sweeps(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+SmCode bench_costs_sweeps(const BenchExperiment *of, SmError *error)
 {
-    BenchScene *scene = sm_alloc(1, sizeof *scene);
-    BenchBody body = {0};
     BenchPlayback play;
-    SmError error;
-    SmCode code = bench_scene_find(measure->scene, scene, &error);
-    bench_curve_begin(curve, "-", "sweeps a decomposition");
-    scene->params.polar = SM_POLAR_JACOBI;
-    if (!code) code = bench_body_of_scene(scene, NULL, &body, &error);
-    if (!code)
-        code = bench_playback_create(scene, &body, &fastlsm_engine_f32, lab->threads, lab->seed,
-                                     &play, &error);
-    if (code)
-        bench_curve_fail(curve, "%.180s", error.text);
-    else {
-        double sweeps = mean_sweeps(&play, lab->quick ? 5 : 20);
-        bench_curve_check(curve, bench_playback_runner(&play));
-        bench_curve_add(curve, 0, sweeps, sweeps, sweeps);
-        bench_playback_free(&play);
-    }
-    bench_body_free(&body);
-    free(scene);
+    of->scene->params.polar = SM_POLAR_JACOBI;
+    SmCode code = bench_playback_create(of->scene, of->body, &fastlsm_engine_f32, of->lab->threads,
+                                        of->lab->seed, &play, error);
+    if (code) return code;
+    bench_curve_exact(of->curve, 0, mean_sweeps(&play, of->lab->quick ? 5 : 20));
+    bench_curve_check(of->curve, bench_playback_runner(&play));
+    bench_playback_free(&play);
+    return SM_OK;
 }
 
 /* ---- resampling */
@@ -262,19 +195,12 @@ typedef struct {
     int *below;
 } Resampled;
 
-static SmCode make_resampled(const BenchMeasure *measure, Resampled *of, SmError *error)
+static SmCode make_resampled(const BenchExperiment *from, Resampled *of, SmError *error)
 {
-    BenchScene *scene = sm_alloc(1, sizeof *scene);
-    BenchBody body;
-    SmCode code = bench_scene_find(measure->scene, scene, error);
-    if (!code && !bench_engine(scene->engine)->sampled)
-        code = sm_fail(error, SM_INPUT, "'%.60s' is no octree: nothing is resampled", scene->name);
-    if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
-    if (!code) {
-        code = oct_structure_build(&body.voxels, &scene->octree, NULL, &of->s, error);
-        bench_body_free(&body);
-    }
-    free(scene);
+    const BenchScene *scene = from->scene;
+    if (!bench_engine(scene->engine)->sampled)
+        return sm_fail(error, SM_INPUT, "'%.60s' is no octree: nothing is resampled", scene->name);
+    SmCode code = oct_structure_build(&from->body->voxels, &scene->octree, NULL, &of->s, error);
     if (code) return code;
     oct_resample_prepare(&of->s);
     of->below = oct_tree_below(&of->s.tree); /* searches do not read it */
@@ -347,27 +273,24 @@ static int parent_of_leaves(const OctTree *tree, int turn, int turns)
     return -1;
 }
 
-void bench_costs_resampling(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+SmCode bench_costs_resampling(const BenchExperiment *of, SmError *error)
 {
-    int repeats = repeats_of(lab);
+    int repeats = repeats_of(of->lab), node = 0;
     double *percent = sm_alloc((size_t)repeats, sizeof *percent);
-    int *node = sm_alloc((size_t)repeats, sizeof *node);
-    SmError error;
-    Resampled *of = sm_alloc(1, sizeof *of);
-    bench_curve_begin(curve, "-", measure->field);
-    if (make_resampled(measure, of, &error))
-        bench_curve_fail(curve, "%.180s", error.text);
-    else {
-        for (int r = 0; r < repeats; r++) node[r] = parent_of_leaves(&of->s.tree, r, repeats);
-        if (node[0] < 0) bench_curve_fail(curve, "no leaf can be split");
-        for (int r = 0; r < repeats && curve->valid; r++) {
-            distance_percent(of, node[r]); /* warms up */
-            percent[r] = distance_percent(of, node[r]);
-        }
-        if (curve->valid) bench_curve_sample(curve, 0, percent, repeats, 0.5, 1);
-        free_resampled(of);
+    Resampled *body = sm_alloc(1, sizeof *body);
+    SmCode code = make_resampled(of, body, error);
+    for (int r = 0; r < repeats && !code && node >= 0; r++) {
+        node = parent_of_leaves(&body->s.tree, r, repeats);
+        if (node < 0) break;
+        distance_percent(body, node); /* warms up */
+        percent[r] = distance_percent(body, node);
     }
-    free(of);
-    free(node);
+    if (!code && node < 0)
+        bench_curve_fail(of->curve, "no leaf can be split");
+    else if (!code)
+        bench_curve_sample(of->curve, 0, percent, repeats, 0.5, 1);
+    if (!code) free_resampled(body);
+    free(body);
     free(percent);
+    return code;
 }

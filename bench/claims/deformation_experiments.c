@@ -1,5 +1,3 @@
-#include "deformation_experiments.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,9 +6,10 @@
 #include "../../fastlsm/fastlsm.h"
 #include "../../reference/shape_matching.h"
 #include "../beam/clamped_beam.h"
+#include "../check/solid_block.h"
 #include "../engines.h"
 #include "../play/playback.h"
-#include "checked_block.h"
+#include "experiments.h"
 
 static double length(const double a[3], const double b[3])
 {
@@ -27,7 +26,7 @@ static double profile_of(const BenchBlock *block, int half, double *share)
     memset(share, 0, ((size_t)half + 1) * sizeof *share);
     for (long p = 0; p < block->particles; p++) {
         int k = (int)(p / ((long)block->size[0] * block->size[1]));
-        double moved = length(block->x[p], block->x0[p]);
+        double moved = length(block->x[p], block->body.x0[p]);
         share[abs(k - half)] += moved;
         all += moved;
     }
@@ -39,15 +38,15 @@ static double profile_of(const BenchBlock *block, int half, double *share)
 }
 
 /* Two steps of smoothing: particles go to their goals. */
-static void smooth(BenchBlock *block, int w, int half, BenchCurve *curve)
+static void smooth(BenchBlock *block, int half, BenchCurve *curve)
 {
     char reason[160];
     long section = (long)block->size[0] * block->size[1];
     for (long p = half * section; p < (half + 1) * section; p++) block->x[p][1] += 1;
     for (int s = 0; s < 2 && curve->valid; s++) {
         if (!bench_block_goals(block, sizeof reason, reason))
-            bench_curve_fail(curve, "w = %d: %s", w, reason);
-        memcpy(block->x, block->g, (size_t)block->particles * sizeof *block->x);
+            bench_curve_fail(curve, "w = %d: %s", block->w, reason);
+        block->type->get(block->engine, SM_GOAL, block->x);
     }
 }
 
@@ -56,7 +55,7 @@ static void keep_profile(BenchLab *lab, int w, const double *share, int half)
     BenchCurve profile;
     bench_curve_begin(&profile, "distance, cells", "share of the displacement");
     snprintf(profile.name, sizeof profile.name, "smoothing.w%d.profile", w);
-    for (int d = 0; d <= half; d++) bench_curve_add(&profile, d, share[d], share[d], share[d]);
+    for (int d = 0; d <= half; d++) bench_curve_exact(&profile, d, share[d]);
     for (int c = 0; c < lab->curves; c++)
         if (!strcmp(lab->curve[c].name, profile.name)) return;
     bench_lab_keep(lab, &profile);
@@ -64,27 +63,24 @@ static void keep_profile(BenchLab *lab, int w, const double *share, int half)
 
 _Static_assert(4 * BENCH_MOST_W + 2 < BENCH_CURVE_POINTS, "a profile is longer than a curve");
 
-void bench_deform_smoothing(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+SmCode bench_deform_smoothing(const BenchExperiment *of, SmError *error)
 {
-    int w[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->w, w);
+    int w[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->w, w);
     int half = 4 * w[count - 1] + 2; /* a step reaches 2 w; there are cells that nothing reaches */
-    int side = lab->quick ? 5 : 9;
+    int side = of->lab->quick ? 5 : 9;
     const int size[3] = {side, side, 2 * half + 1};
     double share[BENCH_CURVE_POINTS];
-    bench_curve_begin(curve, "w", "mean distance of the displacement, cells");
-    for (int c = 0; c < count && curve->valid; c++) {
+    for (int c = 0; c < count && of->curve->valid; c++) {
         BenchBlock block;
-        SmError error;
-        if (bench_block_create(size, &fastlsm_engine_f64, w[c], &block, &error)) {
-            bench_curve_fail(curve, "%.180s", error.text);
-            return;
-        }
-        smooth(&block, w[c], half, curve);
-        double mean = profile_of(&block, half, share);
-        bench_curve_add(curve, w[c], mean, mean, mean);
-        if (curve->valid) keep_profile(lab, w[c], share, half);
+        const SmEngineParams params = {.w = w[c], .h = 0.01, .threads = 1};
+        SmCode code = bench_block_create(size, &fastlsm_engine_f64, &params, &block, error);
+        if (code) return code;
+        smooth(&block, half, of->curve);
+        bench_curve_exact(of->curve, w[c], profile_of(&block, half, share));
+        if (of->curve->valid) keep_profile(of->lab, w[c], share, half);
         bench_block_free(&block);
     }
+    return SM_OK;
 }
 
 /* ---- blending */
@@ -118,87 +114,62 @@ double bench_deform_jump(const int size[3], const double (*g)[3])
     return most;
 }
 
-static void cluster_goals(BenchBlock *block, BenchMatcher matching, int parts)
+static void cluster_goals(const BenchBlock *block, BenchMatcher matching, int parts, double (*g)[3])
 {
     static const RefShapeFit fits[] = {[BENCH_BY_RIGID] = {REF_RIGID, 1, false},
                                        [BENCH_BY_LINEAR] = {REF_LINEAR, 1, true},
                                        [BENCH_BY_QUADRATIC] = {REF_QUADRATIC, 1, false}};
+    const double(*x0)[3] = (const double(*)[3])block->body.x0;
     RefRegions clusters;
     double *mass = sm_alloc((size_t)block->particles, sizeof *mass);
-    for (long p = 0; p < block->particles; p++) mass[p] = 1;
-    ref_shape_slabs(block->particles, (const double(*)[3])block->x0, 2, parts, 0.25, &clusters);
-    ref_shape_goals(&clusters, &fits[matching], (const double(*)[3])block->x0, mass,
-                    (const double(*)[3])block->x, block->g);
+    block->type->masses(block->engine, mass);
+    ref_shape_slabs(block->particles, x0, 2, parts, 0.25, &clusters);
+    ref_shape_goals(&clusters, &fits[matching], x0, mass, (const double(*)[3])block->x, g);
     ref_regions_free(&clusters);
     free(mass);
 }
 
-void bench_deform_blending(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+SmCode bench_deform_blending(const BenchExperiment *of, SmError *error)
 {
-    (void)lab;
-    int parts[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->n, parts);
+    int parts[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->n, parts);
     const int size[3] = {BAR, BAR, BAR_LENGTH};
+    const SmEngineParams params = {.w = BAR_W, .h = 0.01, .threads = 1};
     char reason[160];
     BenchBlock block;
-    SmError error;
-    bench_curve_begin(curve, "clusters", "largest jump of the displacement gradient");
-    if (bench_block_create(size, &fastlsm_engine_f64, BAR_W, &block, &error)) {
-        bench_curve_fail(curve, "%.180s", error.text);
-        return;
-    }
+    SmCode code = bench_block_create(size, &fastlsm_engine_f64, &params, &block, error);
+    if (code) return code;
     for (long p = 0; p < block.particles; p++) {
         double rest[3];
-        for (int d = 0; d < 3; d++) rest[d] = block.x0[p][d] - (size[d] - 1) / 2.0;
+        for (int d = 0; d < 3; d++) rest[d] = block.x[p][d] - (size[d] - 1) / 2.0;
         bench_deform_place(rest, BAR_LENGTH - 1, block.x[p]);
     }
-    if (!bench_block_goals(&block, sizeof reason, reason)) bench_curve_fail(curve, "%s", reason);
+    if (!bench_block_goals(&block, sizeof reason, reason))
+        bench_curve_fail(of->curve, "%s", reason);
+    double(*g)[3] = sm_alloc((size_t)block.particles, sizeof *g);
+    block.type->get(block.engine, SM_GOAL, g);
     for (int c = 0; c < count; c++) {
-        if (measure->matching != BENCH_BY_LATTICE)
-            cluster_goals(&block, measure->matching, parts[c]);
-        double jump = bench_deform_jump(size, (const double(*)[3])block.g);
-        bench_curve_add(curve, parts[c], jump, jump, jump);
+        if (of->measure->matching != BENCH_BY_LATTICE)
+            cluster_goals(&block, of->measure->matching, parts[c], g);
+        bench_curve_exact(of->curve, parts[c], bench_deform_jump(size, (const double(*)[3])g));
     }
+    free(g);
     bench_block_free(&block);
+    return SM_OK;
 }
 
 /* ---- sag */
 
-/* A scene whose body hangs. */
-typedef struct {
-    BenchScene scene;
-    BenchBody body;
-    const SmEngineType *type;
-    double down[3]; /* unit vector along gravity */
-} Hanging;
-
-static SmCode prepare(const char *name, Hanging *hanging, SmError *error)
+/* Plays the scene to its end; the depth, along the unit vector `down`, is the middle of its last
+ * quarter's. */
+static SmCode hang(const BenchExperiment *of, const SmEngineType *type, const double down[3],
+                   SmError *error)
 {
-    BenchScene *scene = &hanging->scene;
-    SmCode code = bench_scene_find(name, scene, error);
-    if (code) return code;
-    const double none[3] = {0}, *gravity = scene->params.gravity;
-    double pull = length(gravity, none);
-    if (!(pull > 0) || scene->handle_count == 0 || scene->instances != 1)
-        return sm_fail(error, SM_INPUT,
-                       "%.100s: nothing sags: one body with a handle and gravity is wanted",
-                       scene->file);
-    for (int d = 0; d < 3; d++) hanging->down[d] = gravity[d] / pull;
-    code = bench_engine_find(scene->engine, NULL, &hanging->type, error);
-    return code ? code : bench_body_of_scene(scene, NULL, &hanging->body, error);
-}
-
-/* Plays the scene to its end; the depth is the middle of its last quarter's. */
-static void hang(BenchLab *lab, const Hanging *hanging, BenchCurve *curve)
-{
-    const BenchScene *scene = &hanging->scene;
+    const BenchScene *scene = of->scene;
     int frames = scene->frames, last = frames < 8 ? 1 : frames / 4;
     BenchPlayback play;
-    SmError error;
-    if (bench_playback_create(scene, &hanging->body, hanging->type, lab->threads, lab->seed, &play,
-                              &error)) {
-        bench_curve_fail(curve, "%.180s", error.text);
-        return;
-    }
+    SmCode code =
+        bench_playback_create(scene, of->body, type, of->lab->threads, of->lab->seed, &play, error);
+    if (code) return code;
     BenchClampedBeam beam;
     bench_clamped_beam_create(bench_playback_runner(&play), &beam);
     double *depth = sm_alloc((size_t)last, sizeof *depth);
@@ -207,31 +178,33 @@ static void hang(BenchLab *lab, const Hanging *hanging, BenchCurve *curve)
             bench_playback_prepare(&play);
             bench_playback_advance(&play, NULL);
         }
-        if (f >= frames - last)
-            depth[f - (frames - last)] = bench_clamped_beam_tip(&beam, hanging->down);
+        if (f >= frames - last) depth[f - (frames - last)] = bench_clamped_beam_tip(&beam, down);
     }
-    bench_curve_check(curve, beam.runner);
-    bench_curve_add(curve, scene->params.w, bench_quantile(depth, last, 0.5),
+    bench_curve_check(of->curve, beam.runner);
+    bench_curve_add(of->curve, scene->params.w, bench_quantile(depth, last, 0.5),
                     bench_quantile(depth, last, 0), bench_quantile(depth, last, 1));
     free(depth);
     bench_clamped_beam_free(&beam);
     bench_playback_free(&play);
+    return SM_OK;
 }
 
-void bench_deform_sag(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve)
+SmCode bench_deform_sag(const BenchExperiment *of, SmError *error)
 {
-    int w[BENCH_RANGE_POINTS], count = bench_range_numbers(&measure->w, w);
-    Hanging *hanging = sm_alloc(1, sizeof *hanging);
-    SmError error;
-    bench_curve_begin(curve, "w", "tip's sag, mesh units");
-    if (prepare(measure->scene, hanging, &error))
-        bench_curve_fail(curve, "%.180s", error.text);
-    else {
-        for (int c = 0; c < count && curve->valid; c++) {
-            hanging->scene.params.w = w[c];
-            hang(lab, hanging, curve);
-        }
-        bench_body_free(&hanging->body);
+    int w[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->w, w);
+    BenchScene *scene = of->scene;
+    const SmEngineType *type;
+    const double none[3] = {0}, *gravity = scene->params.gravity;
+    double pull = length(gravity, none), down[3];
+    if (!(pull > 0) || scene->handle_count == 0 || scene->instances != 1)
+        return sm_fail(error, SM_INPUT,
+                       "%.100s: nothing sags: one body with a handle and gravity is wanted",
+                       scene->file);
+    for (int d = 0; d < 3; d++) down[d] = gravity[d] / pull;
+    SmCode code = bench_engine_find(scene->engine, NULL, &type, error);
+    for (int c = 0; c < count && !code && of->curve->valid; c++) {
+        scene->params.w = w[c];
+        code = hang(of, type, down, error);
     }
-    free(hanging);
+    return code;
 }

@@ -29,6 +29,11 @@ void bench_curve_add(BenchCurve *curve, double x, double y, double low, double h
     curve->high[curve->points++] = high;
 }
 
+void bench_curve_exact(BenchCurve *curve, double x, double y)
+{
+    bench_curve_add(curve, x, y, y, y);
+}
+
 BenchInterval bench_curve_interval(const double *value, int count, double share, int points)
 {
     return bench_quantile_interval(value, count, share, 1 - 0.05 / points);

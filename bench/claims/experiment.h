@@ -123,6 +123,16 @@ typedef struct {
     } * failure; /* [failures] */
 } BenchLab;
 
+/* What an experiment works on, and the curve that it fills: empty and valid. */
+typedef struct {
+    BenchLab *lab;
+    const BenchMeasure *measure;
+    BenchScene *scene; /* the measurement's, its own to change, and the body made of it; NULL: it
+                        * names none, */
+    BenchBody *body;   /* or the experiment is that of the scene's row */
+    BenchCurve *curve;
+} BenchExperiment;
+
 /* Names of BenchWithout, in its order; NULL-terminated. */
 extern const char *const bench_without_names[];
 
@@ -135,6 +145,7 @@ int bench_range_numbers(const BenchRange *range, int *number);
  * counts. */
 void bench_curve_begin(BenchCurve *curve, const char *x_name, const char *y_name);
 void bench_curve_add(BenchCurve *curve, double x, double y, double low, double high);
+void bench_curve_exact(BenchCurve *curve, double x, double y); /* without an interval */
 void bench_curve_fail(BenchCurve *curve, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

@@ -1,78 +1,78 @@
 #include "experiments.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../engines.h"
 #include "../measure/moment.h"
-#include "choices.h"
-#include "cost_experiments.h"
-#include "deformation_experiments.h"
 #include "scene_field.h"
 
-/* What an experiment takes beside its name, and who runs it. */
+/* Settings beside the experiment's name, and which of them one takes, as bits. */
+enum {
+    SCENE = 1,
+    ENGINE = 2,
+    FIELD = 4,
+    WITHOUT = 8,
+    SUMMATION = 16,
+    LAYOUT = 32,
+    MATCHING = 64,
+    MASSES = 128,
+    SYMMETRY = 256,
+    WEIGHTING = 512,
+    W = 1024,
+    N = 2048
+};
+
+#define SETTING(member)                                                                            \
+    {                                                                                              \
+        .name = #member, .offset = offsetof(BenchMeasure, member),                                 \
+        .size = sizeof(((BenchMeasure *)0)->member)                                                \
+    }
+
+static const struct {
+    const char *name;
+    size_t offset, size;
+} settings[] = {SETTING(scene),     SETTING(engine),    SETTING(field),    SETTING(without),
+                SETTING(summation), SETTING(layout),    SETTING(matching), SETTING(masses),
+                SETTING(symmetry),  SETTING(weighting), SETTING(w),        SETTING(n)};
+
+static BenchMeasuring measure_scene;
+
 typedef struct {
     const char *name;
-    bool timed; /* on one thread, in samples of milliseconds */
-    bool scene, engine, field, without, summation, layout, matching, w, n;
-    bool masses, symmetry, weighting;
+    const char *x_name, *y_name; /* of the curve; NULL: the field; or the experiment says so */
+    unsigned takes;
     const char *fields; /* that there are, separated by |; NULL: scene_field.h's */
-    void (*run)(BenchLab *lab, const BenchMeasure *measure, BenchCurve *curve);
+    BenchMeasuring *run;
+    bool timed; /* on one thread, in samples of milliseconds */
 } Kind;
 
 static const Kind kinds[] = {
-    [BENCH_TRY_NOTHING] = {.name = "none"},
-    [BENCH_TRY_SCENE] = {.name = "scene",
-                         .scene = true,
-                         .engine = true,
-                         .field = true,
-                         .without = true,
-                         .run = bench_scene_field_measure},
-    [BENCH_TRY_SUMS] = {.name = "sums",
-                        .timed = true,
-                        .summation = true,
-                        .layout = true,
-                        .w = true,
-                        .run = bench_costs_sums},
-    [BENCH_TRY_SIZE] = {.name = "size",
-                        .timed = true,
-                        .engine = true,
-                        .field = true,
-                        .n = true,
-                        .fields = "|step|sums",
-                        .run = bench_costs_size},
-    [BENCH_TRY_POLAR] = {.name = "polar",
-                         .field = true,
-                         .fields = BENCH_POLAR_FIELDS,
-                         .run = bench_costs_polar},
-    [BENCH_TRY_SWEEPS] = {.name = "sweeps", .scene = true, .run = bench_costs_sweeps},
-    [BENCH_TRY_SMOOTHING] = {.name = "smoothing", .w = true, .run = bench_deform_smoothing},
-    [BENCH_TRY_BLENDING] = {.name = "blending",
-                            .matching = true,
-                            .n = true,
-                            .run = bench_deform_blending},
-    [BENCH_TRY_SAG] = {.name = "sag", .scene = true, .w = true, .run = bench_deform_sag},
-    [BENCH_TRY_RESAMPLING] = {.name = "resampling",
-                              .timed = true,
-                              .scene = true,
-                              .field = true,
-                              .fields = "distance-share",
-                              .run = bench_costs_resampling},
-    [BENCH_TRY_REGIONS] = {.name = "regions",
-                           .scene = true,
-                           .field = true,
-                           .symmetry = true,
-                           .n = true,
-                           .fields = BENCH_REGION_FIELDS,
-                           .run = bench_choices_regions},
-    [BENCH_TRY_GROWTH] = {.name = "growth",
-                          .scene = true,
-                          .masses = true,
-                          .symmetry = true,
-                          .weighting = true,
-                          .run = bench_choices_growth},
-    [BENCH_TRY_PLACEMENT] = {.name = "placement", .masses = true, .run = bench_choices_placement},
+    [BENCH_TRY_NOTHING] = {"none"},
+    [BENCH_TRY_SCENE] = {"scene", "", "", SCENE | ENGINE | FIELD | WITHOUT, NULL, measure_scene},
+    [BENCH_TRY_SUMS] = {"sums", "mean side of a region, particles",
+                        "fast summation, ns/particle/step", SUMMATION | LAYOUT | W, NULL,
+                        bench_costs_sums, .timed = true},
+    [BENCH_TRY_SIZE] = {"size", "", "", ENGINE | FIELD | N, "|step|sums", bench_costs_size,
+                        .timed = true},
+    [BENCH_TRY_POLAR] = {"polar", "-", NULL, FIELD, BENCH_POLAR_FIELDS, bench_costs_polar},
+    [BENCH_TRY_SWEEPS] = {"sweeps", "-", "sweeps a decomposition", SCENE, NULL, bench_costs_sweeps},
+    [BENCH_TRY_SMOOTHING] = {"smoothing", "w", "mean distance of the displacement, cells", W, NULL,
+                             bench_deform_smoothing},
+    [BENCH_TRY_BLENDING] = {"blending", "clusters", "largest jump of the displacement gradient",
+                            MATCHING | N, NULL, bench_deform_blending},
+    [BENCH_TRY_SAG] = {"sag", "w", "tip's sag, mesh units", SCENE | W, NULL, bench_deform_sag},
+    [BENCH_TRY_RESAMPLING] = {"resampling", "-", NULL, SCENE | FIELD, "distance-share",
+                              bench_costs_resampling, .timed = true},
+    [BENCH_TRY_REGIONS] = {"regions", "epsilon", NULL, SCENE | FIELD | SYMMETRY | N,
+                           BENCH_REGION_FIELDS, bench_choices_regions},
+    [BENCH_TRY_GROWTH] = {"growth", "none", "kinetic energy, last tenth by first",
+                          SCENE | MASSES | SYMMETRY | WEIGHTING, NULL, bench_choices_growth},
+    [BENCH_TRY_PLACEMENT] = {"placement", "none", "stiffness, most by least", MASSES, NULL,
+                             bench_choices_placement},
 };
 
 /* ---- settings */
@@ -88,31 +88,19 @@ static bool listed(const char *words, const char *word)
     }
 }
 
-static bool given(const BenchRange *range)
-{
-    return range->from || range->to || range->points;
-}
-
 static bool sound(const BenchRange *range)
 {
     return range->from >= 1 && range->to >= range->from && range->points >= 1;
 }
 
-/* A setting that the experiment does not take; none: NULL. */
+/* A setting that the experiment does not take; none: NULL. What is not given is 0. */
 static const char *needless(const BenchMeasure *measure, const Kind *kind)
 {
-    if (measure->scene[0] && !kind->scene) return "'scene' is not of this experiment";
-    if (measure->engine[0] && !kind->engine) return "'engine' is not of this experiment";
-    if (measure->field[0] && !kind->field) return "'field' is not of this experiment";
-    if (measure->without && !kind->without) return "'without' is not of this experiment";
-    if (measure->summation && !kind->summation) return "'summation' is not of this experiment";
-    if (measure->layout && !kind->layout) return "'layout' is not of this experiment";
-    if (measure->matching && !kind->matching) return "'matching' is not of this experiment";
-    if (measure->masses && !kind->masses) return "'masses' is not of this experiment";
-    if (measure->symmetry && !kind->symmetry) return "'symmetry' is not of this experiment";
-    if (measure->weighting && !kind->weighting) return "'weighting' is not of this experiment";
-    if (given(&measure->w) && !kind->w) return "'w' is not of this experiment";
-    if (given(&measure->n) && !kind->n) return "'n' is not of this experiment";
+    static const char none[sizeof *measure];
+    for (size_t s = 0; s < sizeof settings / sizeof *settings; s++)
+        if (!(kind->takes >> s & 1) &&
+            memcmp((const char *)measure + settings[s].offset, none, settings[s].size) != 0)
+            return settings[s].name;
     return NULL;
 }
 
@@ -141,20 +129,22 @@ static const char *field_fault(const BenchMeasure *measure, const Kind *kind)
 
 const char *bench_experiment_fault(const BenchMeasure *measure)
 {
+    static char fault[64];
     const Kind *kind = &kinds[measure->experiment];
     if (!kind->run) return "no experiment to measure: give measure = { experiment = ...; }";
-    const char *fault = needless(measure, kind);
-    if (fault) return fault;
-    if (kind->scene && !measure->scene[0]) return "the experiment needs a 'scene'";
-    if (kind->w && !sound(&measure->w))
+    const char *setting = needless(measure, kind);
+    snprintf(fault, sizeof fault, "'%s' is not of this experiment", setting ? setting : "");
+    if (setting) return fault;
+    if (kind->takes & SCENE && !measure->scene[0]) return "the experiment needs a 'scene'";
+    if (kind->takes & W && !sound(&measure->w))
         return "the experiment needs w = { from = ...; to = ...; points = ...; }, rising";
-    if (kind->n && !sound(&measure->n))
+    if (kind->takes & N && !sound(&measure->n))
         return "the experiment needs n = { from = ...; to = ...; points = ...; }, rising";
     if (measure->experiment == BENCH_TRY_SIZE && measure->n.from < 4)
         return "cubes have four particles a side or more: n.from is at least 4";
     if (measure->experiment == BENCH_TRY_SIZE && measure->n.to > 128)
         return "cubes have at most 128 particles a side: n.to is at most 128";
-    if (kind->w && measure->w.to > BENCH_MOST_W) return "w.to is at most 16";
+    if (kind->takes & W && measure->w.to > BENCH_MOST_W) return "w.to is at most 16";
     if (measure->experiment == BENCH_TRY_BLENDING && measure->n.to > 16)
         return "few clusters: n.to is at most 16";
     return field_fault(measure, kind);
@@ -172,38 +162,47 @@ int bench_experiment_points(const BenchMeasure *measure)
 {
     int number[BENCH_RANGE_POINTS];
     const Kind *kind = &kinds[measure->experiment];
-    if (!kind->w && !kind->n) return 1;
-    return bench_range_numbers(kind->w ? &measure->w : &measure->n, number);
+    if (!(kind->takes & (W | N))) return 1;
+    return bench_range_numbers(kind->takes & W ? &measure->w : &measure->n, number);
 }
 
 /* ---- measuring */
 
-static void range_text(const char *letter, const BenchRange *range, size_t size, char *text)
+static void append(char name[BENCH_CURVE_NAME], const char *before, const char *text)
 {
-    if (given(range))
-        snprintf(text, size, ".%s%d-%d.%d", letter, range->from, range->to, range->points);
+    size_t used = strlen(name);
+    if (text[0]) snprintf(name + used, BENCH_CURVE_NAME - used, "%s%s", before, text);
+}
+
+static void append_range(char name[BENCH_CURVE_NAME], const char *letter, const BenchRange *range)
+{
+    char text[24];
+    snprintf(text, sizeof text, "%d-%d.%d", range->from, range->to, range->points);
+    append(name, letter, range->points ? text : "");
 }
 
 static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
 {
-    static const char *const summations[] = {".fast", ".bars", ".naive"};
-    static const char *const masses[] = {"", ".volume"};
-    static const char *const symmetries[] = {"", ".intersection", ".asymmetric"};
-    static const char *const weightings[] = {"", ".plain"};
-    static const char *const layouts[] = {"", ".lists", ".blocks"};
-    static const char *const matchers[] = {".lattice", ".rigid", ".linear", ".quadratic"};
+    static const char *const summations[] = {"fast", "bars", "naive"};
+    static const char *const masses[] = {"", "volume"};
+    static const char *const symmetries[] = {"", "intersection", "asymmetric"};
+    static const char *const weightings[] = {"", "plain"};
+    static const char *const layouts[] = {"", "lists", "blocks"};
+    static const char *const matchers[] = {"lattice", "rigid", "linear", "quadratic"};
     const Kind *kind = &kinds[measure->experiment];
-    const char *without = measure->without ? bench_without_names[measure->without] : "";
-    char w[24] = "", n[24] = "";
-    range_text("w", &measure->w, sizeof w, w);
-    range_text("n", &measure->n, sizeof n, n);
-    snprintf(name, BENCH_CURVE_NAME, "%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s%s", kind->name,
-             measure->scene[0] ? "." : "", measure->scene, measure->without ? ".without." : "",
-             without, measure->engine[0] ? "." : "", measure->engine, measure->field[0] ? "." : "",
-             measure->field, kind->summation ? summations[measure->summation] : "",
-             layouts[measure->layout], masses[measure->masses], symmetries[measure->symmetry],
-             weightings[measure->weighting], kind->matching ? matchers[measure->matching] : "", w,
-             n);
+    snprintf(name, BENCH_CURVE_NAME, "%s", kind->name);
+    append(name, ".", measure->scene);
+    append(name, ".without.", measure->without ? bench_without_names[measure->without] : "");
+    append(name, ".", measure->engine);
+    append(name, ".", measure->field);
+    append(name, ".", kind->takes & SUMMATION ? summations[measure->summation] : "");
+    append(name, ".", layouts[measure->layout]);
+    append(name, ".", masses[measure->masses]);
+    append(name, ".", symmetries[measure->symmetry]);
+    append(name, ".", weightings[measure->weighting]);
+    append(name, ".", kind->takes & MATCHING ? matchers[measure->matching] : "");
+    append_range(name, ".w", &measure->w);
+    append_range(name, ".n", &measure->n);
     for (char *c = name; *c; c++)
         if (*c == '/' || *c == ' ') *c = *c == '/' ? '|' : '_';
 }
@@ -228,16 +227,42 @@ static void check_busy(const BenchMeasure *measure, const BenchMoment *start, Be
                      bench_moment_load());
 }
 
+static SmCode measure_scene(const BenchExperiment *of, SmError *error)
+{
+    (void)error;
+    bench_scene_field_measure(of->lab, of->measure, of->curve);
+    return SM_OK;
+}
+
+/* Of a scene that is not measured as it is. */
+static SmCode measure_body(const Kind *kind, BenchExperiment *of, SmError *error)
+{
+    BenchScene *scene = of->scene = sm_alloc(1, sizeof *scene);
+    BenchBody body = {0};
+    of->body = &body;
+    SmCode code = bench_scene_find(of->measure->scene, scene, error);
+    if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
+    if (!code) code = kind->run(of, error);
+    bench_body_free(&body);
+    free(scene);
+    return code;
+}
+
 int bench_experiment(BenchLab *lab, const BenchMeasure *measure)
 {
     char name[BENCH_CURVE_NAME];
+    const Kind *kind = &kinds[measure->experiment];
     name_curve(measure, name);
     for (int c = 0; c < lab->curves; c++)
         if (!strcmp(lab->curve[c].name, name)) return c;
     BenchCurve curve;
-    bench_curve_begin(&curve, "", "");
+    BenchExperiment of = {.lab = lab, .measure = measure, .curve = &curve};
+    SmError error;
+    bool whole = measure->experiment == BENCH_TRY_SCENE;
+    bench_curve_begin(&curve, kind->x_name, kind->y_name ? kind->y_name : measure->field);
     BenchMoment start = bench_moment_start(1);
-    kinds[measure->experiment].run(lab, measure, &curve);
+    if (kind->takes & SCENE && !whole ? measure_body(kind, &of, &error) : kind->run(&of, &error))
+        bench_curve_fail(&curve, "%.180s", error.text);
     check_busy(measure, &start, &curve);
     strcpy(curve.name, name);
     for (int p = 0; p < curve.points; p++)

@@ -21,4 +21,31 @@ int bench_experiment(BenchLab *lab, const BenchMeasure *measure);
 /* What is measured: the curve's name, or of a scene its row's, which fields are taken of. */
 void bench_experiment_name(const BenchMeasure *measure, char name[BENCH_CURVE_NAME]);
 
+/* ---- those who measure; on an error the curve is not valid */
+
+typedef SmCode BenchMeasuring(const BenchExperiment *of, SmError *error);
+
+/* What things cost (cost_experiments.c). */
+BenchMeasuring bench_costs_sums, bench_costs_size, bench_costs_polar, bench_costs_sweeps,
+    bench_costs_resampling;
+#define BENCH_POLAR_FIELDS "cold-sweeps|warm-sweeps|cold-ns|warm-ns|fast-ns"
+
+/* How bodies deform (deformation_experiments.c). The first also keeps, for every w, the profile of
+ * the displacement as evidence: "smoothing.w3.profile". */
+BenchMeasuring bench_deform_smoothing, bench_deform_blending, bench_deform_sag;
+
+/* Where the bar of fastlsm Fig. 3's kind has its particle that is at `rest`: `along` long in z,
+ * its middle in the origin, bent and twisted by half a turn. */
+void bench_deform_place(const double rest[3], double along, double place[3]);
+
+/* The largest jump of the displacement gradient, by a component along one axis, between
+ * neighbouring links of particles at g in a block of this size, unit cells: |g(i + 1) - 2 g(i) +
+ * g(i - 1)|. */
+double bench_deform_jump(const int size[3], const double (*g)[3]);
+
+/* What becomes of a body in the octree where the paper leaves a choice, or another choice than the
+ * paper's is made (choices.c). */
+BenchMeasuring bench_choices_regions, bench_choices_growth, bench_choices_placement;
+#define BENCH_REGION_FIELDS "summation_nodes|most_summation|beyond_percent|parts"
+
 #endif

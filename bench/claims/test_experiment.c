@@ -1,8 +1,6 @@
 #define _GNU_SOURCE
 
 #include "../../lib/test_frame.h"
-#include "choices.h"
-#include "deformation_experiments.h"
 #include "experiments.h"
 #include "scene_field.h"
 

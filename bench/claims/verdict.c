@@ -7,13 +7,9 @@
 
 #include "fit.h"
 
-const char *bench_verdict_name(BenchVerdict verdict)
-{
-    static const char *const names[BENCH_VERDICTS] = {
-        "reproduced", "undecided",  "not reproduced", "differs", "not comparable",
-        "as set",     "not as set", "measured",       "BUSY",    "INVALID"};
-    return names[verdict];
-}
+const char *const bench_verdict_names[BENCH_VERDICTS] = {
+    "reproduced", "undecided",  "not reproduced", "differs", "not comparable",
+    "as set",     "not as set", "measured",       "BUSY",    "INVALID"};
 
 /* ---- from curves to values */
 
@@ -196,10 +192,9 @@ static void say_test(BenchFinding *finding, const char *but)
 {
     const BenchClaim *claim = &finding->claim;
     bool done = finding->verdict == BENCH_REPRODUCED || finding->verdict == BENCH_AS_SET;
-    char test[96];
-    bench_verdict_test(claim, sizeof test, test);
-    snprintf(finding->words, sizeof finding->words, "%s%s%s%s%s", done ? "" : "wanted: ", test, but,
-             claim->because[0] ? "; " : "", claim->because);
+    snprintf(finding->words, sizeof finding->words, "%s%s%s%s%s",
+             done ? "" : "wanted: ", finding->test, but, claim->because[0] ? "; " : "",
+             claim->because);
 }
 
 static void judge(BenchFinding *finding, const BenchCurve *curve)
@@ -237,6 +232,7 @@ void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const 
 {
     BenchCurve *ratio = sm_alloc(1, sizeof *ratio);
     *finding = (BenchFinding){.claim = *claim, .ratio = {NAN, NAN, NAN}, .unset = NAN};
+    bench_verdict_test(claim, sizeof finding->test, finding->test);
     divide(curve, over, ratio);
     if (ratio->valid && !reduce(ratio, finding))
         bench_curve_fail(ratio, "%d points are too few or too many for this test", ratio->points);
@@ -248,7 +244,11 @@ void bench_verdict_find(const BenchClaim *claim, const BenchCurve *curve, const 
         finding->verdict = ratio->busy ? BENCH_TOO_BUSY : BENCH_INVALID;
         finding->count = 0;
         snprintf(finding->words, sizeof finding->words, "%s: %s",
-                 bench_verdict_name(finding->verdict), ratio->reason);
+                 bench_verdict_names[finding->verdict], ratio->reason);
+    }
+    for (int v = 0; v < BENCH_CLAIM_VALUES; v++) {
+        if (v >= claim->values) finding->claim.value[v] = NAN;
+        if (v >= finding->count) finding->value[v] = finding->low[v] = finding->high[v] = NAN;
     }
     free(ratio);
 }
@@ -297,7 +297,7 @@ void bench_verdict_measured(const BenchFinding *finding, size_t size, char *text
     char value[64], low[32], high[32];
     const BenchClaim *claim = &finding->claim;
     if (finding->verdict == BENCH_INVALID || finding->verdict == BENCH_TOO_BUSY) {
-        snprintf(text, size, "%s", bench_verdict_name(finding->verdict));
+        snprintf(text, size, "%s", bench_verdict_names[finding->verdict]);
         return;
     }
     double half = 0;

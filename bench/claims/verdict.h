@@ -40,9 +40,10 @@ typedef enum {
     BENCH_VERDICTS
 } BenchVerdict;
 
-/* A claim and what has become of it. */
+/* A claim and what has become of it. Of both the numbers that are not there are NaN. */
 typedef struct {
     BenchClaim claim;
+    char test[96]; /* in words */
     int count;
     double value[BENCH_CLAIM_VALUES], low[BENCH_CLAIM_VALUES], high[BENCH_CLAIM_VALUES];
     double ratio[3]; /* of a machine's speed: how many times as fast as the paper's, low, high */
@@ -67,7 +68,7 @@ void bench_verdict_unset(const BenchCurve *curve, BenchFinding *finding);
 
 /* "reproduced", "undecided", "not reproduced", "differs", "not comparable", "as set", "not as set",
  * "measured", "BUSY", "INVALID". */
-const char *bench_verdict_name(BenchVerdict verdict);
+extern const char *const bench_verdict_names[];
 
 /* Is nothing INVALID, nothing not reproduced that should be, and all that is set as set? What is
  * undecided is no failure: it would come and go with the noise. */

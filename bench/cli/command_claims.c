@@ -136,7 +136,7 @@ static void list_claims(const BenchClaims *claims)
 {
     for (int c = 0; c < claims->count; c++)
         printf("%-8s %-24s %-15s %s\n", claims->claim[c].paper, claims->claim[c].name,
-               bench_claim_kind_name(claims->claim[c].kind), claims->claim[c].statement);
+               bench_claim_kinds[claims->claim[c].kind], claims->claim[c].statement);
 }
 
 static SmCode verdict(const BenchFinding *findings, int count, SmError *error)

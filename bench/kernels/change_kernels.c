@@ -80,10 +80,7 @@ static SmCode make_cube(const BenchKernel *kernel, const BenchKernelParams *para
     sm_voxels_block(&voxels, 2 * side, 2 * side, 2 * side, 1);
     SmCode code = cube->type->create(&voxels, &own, &cube->engine, error);
     sm_voxels_free(&voxels);
-    if (code) {
-        free_cube(cube);
-        return code;
-    }
+    if (code) return code;
     cube->structure = oct_engine_structure(cube->engine);
     find_leaves(cube);
     begin(cube); /* what is made ready once is not a change's */
@@ -221,17 +218,9 @@ static void report(BenchJob *job, BenchKernelRow *row)
              cube->before.particles, cube->regions);
 }
 
-static void release(BenchJob *job)
-{
-    Change *change = job->subject;
-    bench_trial_free(&change->trial);
-    free(change);
-}
-
 const BenchKernelKind bench_change_kernels = {.open = make_cube,
                                               .close = free_cube,
                                               .prepare = prepare,
                                               .report = report,
-                                              .release = release,
                                               .apart = true,
                                               .own = "CPU time"};

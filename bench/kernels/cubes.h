@@ -6,26 +6,25 @@
 #ifndef BENCH_CUBES_H
 #define BENCH_CUBES_H
 
-#include "../../lib/engine.h"
+#include "../check/solid_block.h"
 #include "trial.h"
 
 enum { BENCH_CUBE_STEP = SM_STAGES }; /* what of a step is timed: a stage, or all */
 
 typedef struct {
     BenchTrial trial; /* with a set of laps where stages are wanted */
-    const SmEngineType *type;
-    SmEngine *engine;
-    int side, w;
-    long particles;
-    double (*x)[3], (*v)[3]; /* [particles] the state that samples start from */
-    bool brute;              /* goals were held to brute force; else finite and momentum only */
+    BenchBlock block; /* in whose x samples start, */
+    double (*v)[3];   /* [particles] and with these velocities */
 } BenchCube;
 
-/* Builds the engine with these parameters, disturbs it and checks its goals: against brute force
- * where that takes at most 5e7 region members, else that they are finite and keep momentum.
+/* Builds the engine with these parameters, disturbs it and checks its goals (solid_block.h).
  * Errors: SM_MEMORY (room.h), those of the engine; on which `cube` is zeroed. */
 SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParams *params,
                          unsigned long seed, BenchCube *cube, SmError *error);
 void bench_cube_free(BenchCube *cube);
+
+/* Where samples start: of a particle at s at rest, in lengths of the body from its middle, its
+ * position and its velocity in cells and steps. */
+void bench_cube_disturb(const double s[3], double length, unsigned *seed, double x[3], double v[3]);
 
 #endif

@@ -68,12 +68,13 @@ typedef struct {
     const BenchKernel *kernel;
     const BenchKernelParams *params;
     const BenchPeak *peak;
-    void *body; /* what its set shares */
+    void *body;  /* what its set shares, */
+    bool shares; /* made for the job before */
     /* set by prepare(); precision, threads, w, arithmetic are given as asked for */
     BenchPrecision precision;
     int threads, w;
     const char *arithmetic; /* "single", "double", "integer" */
-    void *subject;          /* the kind's own */
+    void *subject;          /* the kind's own, freed with its trial; NULL: the body's */
     BenchTrial *trial;      /* of several kernels where they are parts of one step */
     const char *item;       /* what times are of, and how many a body has, */
     long items;
@@ -85,7 +86,7 @@ typedef struct {
 } BenchJob;
 
 struct BenchKernelKind {
-    /* Makes and frees what a set shares; NULL: nothing. */
+    /* Makes and frees what a set shares, also where it could not be made; NULL: nothing. */
     SmCode (*open)(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
                    SmError *error);
     void (*close)(void *body);
@@ -96,10 +97,19 @@ struct BenchKernelKind {
     /* What is counted, and a note, of a valid job whose times are in the row; where the trial has
      * no samples these, too. */
     void (*report)(BenchJob *job, BenchKernelRow *row);
-    void (*release)(BenchJob *job); /* NULL: nothing */
+    void (*release)(void *subject); /* what else it holds; NULL: nothing */
     bool apart; /* prepared and timed one after the other: a run changes the body, or is long */
     const char *own; /* what the ratio to the base, of another set, is of: "user time" */
 };
+
+BenchJob bench_job(const BenchKernel *kernel, const BenchKernelParams *params,
+                   const BenchPeak *peak);
+
+/* Makes the bodies, one for neighbours of equal `set`; prepares jobs and times in turn all trials
+ * that are valid. The caller closes, also after an error. */
+SmCode bench_jobs_open(BenchJob *jobs, int count, SmError *error);
+SmCode bench_jobs_time(BenchJob *jobs, int count, SmError *error);
+void bench_jobs_close(BenchJob *jobs, int count);
 
 /* The voxeliser, the embedding and the octree surface, on the statue of 200,000 triangles. */
 enum { BENCH_VOXELISE, BENCH_EMBED, BENCH_CARRY };

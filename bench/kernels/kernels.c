@@ -299,43 +299,60 @@ static void report(Run *run, BenchJob *job, const BenchJob *jobs, int count)
 
 /* ---- sets */
 
-static BenchJob make_job(const Run *run, const BenchKernel *kernel)
+BenchJob bench_job(const BenchKernel *kernel, const BenchKernelParams *params,
+                   const BenchPeak *peak)
 {
-    bool doubles = kernel->doubled || run->params->precision == BENCH_F64;
+    bool doubles = kernel->doubled || params->precision == BENCH_F64;
     return (BenchJob){.kernel = kernel,
-                      .params = run->params,
-                      .peak = run->peak,
+                      .params = params,
+                      .peak = peak,
                       .w = kernel->w,
                       .precision = doubles ? BENCH_F64 : BENCH_F32,
                       .arithmetic = doubles ? "double" : "single",
-                      .threads = kernel->threads ? kernel->threads : run->params->threads};
+                      .threads = kernel->threads ? kernel->threads : params->threads};
 }
 
-static SmCode run_apart(Run *run, BenchJob *job, SmError *error)
+SmCode bench_jobs_open(BenchJob *jobs, int count, SmError *error)
 {
-    SmCode code = job->kernel->kind->prepare(job, error);
-    if (code) return code;
-    if (job->trial->timed.step) bench_trials_time(&job->trial, 1, run->params->repeats);
-    report(run, job, NULL, 0);
-    return SM_OK;
-}
-
-/* Jobs 0 .. count - 1, sample by sample. */
-static SmCode run_in_turn(Run *run, BenchJob *jobs, int count, SmError *error)
-{
-    BenchTrial *trials[SET_MOST];
-    int different = 0;
-    for (int j = 0; j < count; j++) {
-        SmCode code = jobs[j].kernel->kind->prepare(&jobs[j], error);
-        if (code) return code;
-        int known = 0;
-        while (known < different && trials[known] != jobs[j].trial) known++;
-        trials[known] = jobs[j].trial;
-        if (known == different) different++;
+    SmCode code = SM_OK;
+    for (int j = 0; j < count && !code; j++) {
+        const BenchKernel *kernel = jobs[j].kernel;
+        jobs[j].shares = j > 0 && kernel->set == jobs[j - 1].kernel->set;
+        if (jobs[j].shares)
+            jobs[j].body = jobs[j - 1].body;
+        else if (kernel->kind->open)
+            code = kernel->kind->open(kernel, jobs[j].params, &jobs[j].body, error);
     }
-    bench_trials_time(trials, different, run->params->repeats);
-    for (int j = 0; j < count; j++) report(run, &jobs[j], jobs, count);
-    return SM_OK;
+    return code;
+}
+
+SmCode bench_jobs_time(BenchJob *jobs, int count, SmError *error)
+{
+    BenchTrial **trials = sm_alloc((size_t)count, sizeof *trials);
+    int different = 0;
+    SmCode code = SM_OK;
+    for (int j = 0; j < count && !code; j++) {
+        int known = 0;
+        code = jobs[j].kernel->kind->prepare(&jobs[j], error);
+        while (known < different && trials[known] != jobs[j].trial) known++;
+        if (code || known < different || !jobs[j].trial->timed.step) continue;
+        trials[different++] = jobs[j].trial;
+    }
+    if (!code) bench_trials_time(trials, different, jobs->params->repeats);
+    free(trials);
+    return code;
+}
+
+void bench_jobs_close(BenchJob *jobs, int count)
+{
+    for (int j = 0; j < count; j++) {
+        const BenchKernelKind *kind = jobs[j].kernel->kind;
+        if (jobs[j].subject && kind->release) kind->release(jobs[j].subject);
+        if (jobs[j].subject && jobs[j].trial) bench_trial_free(jobs[j].trial);
+        free(jobs[j].subject);
+    }
+    for (int j = 0; j < count; j++)
+        if (jobs[j].body && !jobs[j].shares) jobs[j].kernel->kind->close(jobs[j].body);
 }
 
 /* Kernels first .. last - 1, of one body; those that are timed in turn come first. */
@@ -343,26 +360,22 @@ static SmCode run_set(Run *run, int first, int last, SmError *error)
 {
     BenchJob jobs[SET_MOST];
     int count = 0, together = 0;
-    void *body = NULL;
-    const BenchKernelKind *kind = kernels[first].kind;
     assert(last - first <= SET_MOST);
     for (int i = first; i < last; i++) {
         if (!needed(run->params, &kernels[i])) continue;
-        jobs[count++] = make_job(run, &kernels[i]);
+        jobs[count++] = bench_job(&kernels[i], run->params, run->peak);
         together += !kernels[i].kind->apart;
     }
     if (!count) return SM_OK;
     if (run->params->progress)
         bench_progress_show(run->params->progress, kernels[first].name, (double)first / KERNELS);
-    SmCode code = kind->open ? kind->open(&kernels[first], run->params, &body, error) : SM_OK;
-    if (code) return code;
-    for (int j = 0; j < count; j++) jobs[j].body = body;
-    if (together) code = run_in_turn(run, jobs, together, error);
-    for (int j = together; j < count && !code; j++) code = run_apart(run, &jobs[j], error);
-    for (int j = 0; j < count; j++)
-        if (jobs[j].subject && jobs[j].kernel->kind->release)
-            jobs[j].kernel->kind->release(&jobs[j]);
-    if (kind->close) kind->close(body);
+    SmCode code = bench_jobs_open(jobs, count, error);
+    for (int j = 0, n; j < count && !code; j += n) {
+        n = j < together ? together : 1;
+        code = bench_jobs_time(&jobs[j], n, error);
+        for (int i = j; i < j + n && !code; i++) report(run, &jobs[i], &jobs[j], n);
+    }
+    bench_jobs_close(jobs, count);
     return code;
 }
 

@@ -13,10 +13,10 @@
 enum { FRAMES = BENCH_FRAMES, N = BENCH_MATRICES };
 
 struct BenchMotion {
-    double (*A)[N][9];       /* [FRAMES] */
-    float (*single)[N][9];   /* [FRAMES] */
-    double (*R)[9], (*V)[9]; /* [N] */
-    float (*single_R)[9];    /* [N] */
+    double A[FRAMES][N][9];
+    float single[FRAMES][N][9];
+    double R[N][9], V[N][9];
+    float single_R[N][9];
     BenchPrecision precision;
 };
 
@@ -146,25 +146,10 @@ void bench_polar_prepare(BenchMotion *motion, BenchPolar method, BenchPolarTrial
 BenchMotion *bench_motion_create(BenchPrecision precision, unsigned long seed)
 {
     BenchMotion *motion = sm_alloc(1, sizeof *motion);
-    motion->precision = precision;
-    motion->A = sm_alloc(FRAMES, sizeof *motion->A);
-    motion->single = sm_alloc(FRAMES, sizeof *motion->single);
-    motion->R = sm_alloc(N, sizeof *motion->R);
-    motion->V = sm_alloc(N, sizeof *motion->V);
-    motion->single_R = sm_alloc(N, sizeof *motion->single_R);
     unsigned state = (unsigned)seed;
+    motion->precision = precision;
     for (int m = 0; m < N; m++) move_matrix(motion, m, &state);
     return motion;
-}
-
-void bench_motion_free(BenchMotion *motion)
-{
-    free(motion->A);
-    free(motion->single);
-    free(motion->R);
-    free(motion->V);
-    free(motion->single_R);
-    free(motion);
 }
 
 /* ---- among the kernels */
@@ -175,11 +160,6 @@ static SmCode make_body(const BenchKernel *kernel, const BenchKernelParams *para
     (void)kernel, (void)error;
     *body = bench_motion_create(params->precision, params->seed);
     return SM_OK;
-}
-
-static void free_body(void *body)
-{
-    bench_motion_free(body);
 }
 
 static SmCode prepare(BenchJob *job, SmError *error)
@@ -212,15 +192,5 @@ static void report(BenchJob *job, BenchKernelRow *row)
                  polar->method == BENCH_POLAR_COLD ? "1.9" : "0.4");
 }
 
-static void release(BenchJob *job)
-{
-    BenchPolarTrial *polar = job->subject;
-    bench_trial_free(&polar->trial);
-    free(polar);
-}
-
-const BenchKernelKind bench_polar_kernels = {.open = make_body,
-                                             .close = free_body,
-                                             .prepare = prepare,
-                                             .report = report,
-                                             .release = release};
+const BenchKernelKind bench_polar_kernels = {
+    .open = make_body, .close = free, .prepare = prepare, .report = report};

@@ -18,10 +18,9 @@ typedef enum {
 
 enum { BENCH_MATRICES = 1024, BENCH_FRAMES = 8 };
 
-/* Their motion over BENCH_FRAMES frames. The caller frees. */
+/* Their motion over BENCH_FRAMES frames, of one piece of memory, which the caller frees. */
 typedef struct BenchMotion BenchMotion;
 BenchMotion *bench_motion_create(BenchPrecision precision, unsigned long seed);
-void bench_motion_free(BenchMotion *motion);
 
 /* One method: a run decomposes every matrix in every frame but the first. */
 typedef struct {

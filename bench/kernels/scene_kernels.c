@@ -62,11 +62,9 @@ static void report(BenchJob *job, BenchKernelRow *row)
                  (double)found->bytes / particles);
 }
 
-static void release(BenchJob *job)
+static void release(void *subject)
 {
-    Measured *measured = job->subject;
-    bench_row_free(&measured->row);
-    free(measured);
+    bench_row_free(&((Measured *)subject)->row);
 }
 
 const BenchKernelKind bench_scene_kernels = {

@@ -166,11 +166,9 @@ static void free_statue(void *body)
 static SmCode open_statue(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
                           SmError *error)
 {
-    Statue *statue = *body = sm_alloc(1, sizeof *statue);
     (void)kernel, (void)params;
-    SmCode code = make_statue(statue, error);
-    if (code) free_statue(statue);
-    return code;
+    *body = sm_alloc(1, sizeof(Statue));
+    return make_statue(*body, error);
 }
 
 static void forget_voxels(void *subject)
@@ -242,16 +240,8 @@ static void report(BenchJob *job, BenchKernelRow *row)
     }
 }
 
-static void release(BenchJob *job)
-{
-    Surface *surface = job->subject;
-    forget_voxels(surface);
-    bench_trial_free(&surface->trial);
-    free(surface);
-}
-
 const BenchKernelKind bench_surface_kernels = {.open = open_statue,
                                                .close = free_statue,
                                                .prepare = prepare,
                                                .report = report,
-                                               .release = release};
+                                               .release = forget_voxels};

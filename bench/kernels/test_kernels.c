@@ -97,10 +97,10 @@ TEST(a_wrong_engine_is_not_timed)
     assert_int_equal(bench_cube_create(5, &wrong, &params, 1, &cube[0], &error), SM_OK);
     assert_int_equal(bench_cube_create(5, &fastlsm_engine_f32, &params, 1, &cube[1], &error),
                      SM_OK);
-    assert_int_equal(cube[0].particles, 125);
+    assert_int_equal(cube[0].block.particles, 125);
     assert_false(cube[0].trial.valid);
     assert_non_null(strstr(cube[0].trial.reason, "brute force"));
-    assert_true(cube[1].trial.valid && cube[1].brute);
+    assert_true(cube[1].trial.valid && cube[1].block.brute);
     cube[1].trial.lap_sets = 1;
     bench_trials_time((BenchTrial *[]){&cube[0].trial, &cube[1].trial}, 2, 2);
     assert_null(cube[0].trial.seconds);
@@ -174,7 +174,7 @@ TEST(every_polar_method_is_checked)
         /* a warm start saves sweeps where matrices move smoothly */
         assert_true(sweeps[BENCH_POLAR_WARM] < sweeps[BENCH_POLAR_COLD]);
         assert_true(sweeps[BENCH_POLAR_BATCH] == 0);
-        bench_motion_free(motion);
+        free(motion);
     }
 }
 

@@ -2,11 +2,13 @@
  */
 #include "../../lib/test_frame.h"
 #include "../../octree/operations.h"
+#include "../check/tree_check.h"
+#include "sampled.h"
 #include "tree_setup.h"
 #include "tree_steps.h"
 
 /* A cube whose first region has lost a summation node that is not its own. */
-static void lose_member(BenchSampled *body)
+static void lose_member(OctStructure *body)
 {
     OctRegions *r = &body->regions;
     long lost = r->first[1] - 1;
@@ -19,9 +21,9 @@ static void lose_member(BenchSampled *body)
 
 TEST(a_wrong_octree_step_is_not_timed)
 {
-    BenchSampled body;
+    OctStructure body;
     SmError error;
-    assert_int_equal(bench_sampled_cube(6, &body, &error), SM_OK);
+    assert_int_equal(bench_sampled(6, &body, &error), SM_OK);
     BenchTreeStep steps[3] = {{.body = &body, .threads = 1, .seed = 1, .parts = true}};
     bench_tree_step_create_f32(&steps[0]);
     assert_true(steps[0].trial.valid);
@@ -44,17 +46,17 @@ TEST(a_wrong_octree_step_is_not_timed)
         assert_true(parts > 0 && parts < 1e9 * whole);
     }
     for (int s = 0; s < 3; s++) bench_tree_step_free_f32(&steps[s]);
-    bench_sampled_free(&body);
+    oct_structure_free(&body);
 }
 
 /* Cubes that are held to the twins, and to what regular trees are. */
 TEST(a_wrong_octree_setup_is_not_timed)
 {
     for (int side = 6; side <= 12; side += 6) {
-        BenchSampled body;
+        OctStructure body;
         BenchSetup setup;
         SmError error;
-        assert_int_equal(bench_sampled_cube(side, &body, &error), SM_OK);
+        assert_int_equal(bench_sampled(side, &body, &error), SM_OK);
         for (int kind = 0; kind <= BENCH_SETUP_WHOLE; kind++) {
             bench_setup_create(&body, (BenchSetupKind)kind, BENCH_F64, &setup);
             BenchTrial *trial = &setup.trial;
@@ -74,17 +76,17 @@ TEST(a_wrong_octree_setup_is_not_timed)
         assert_false(setup.trial.valid);
         assert_non_null(strstr(setup.trial.reason, "edge"));
         bench_setup_free(&setup);
-        bench_sampled_free(&body);
+        oct_structure_free(&body);
     }
 }
 
 TEST(wrong_distances_are_found)
 {
-    BenchSampled body;
+    OctStructure body;
     OctReach reach;
     SmError error;
     char reason[BENCH_TREE_REASON];
-    assert_int_equal(bench_sampled_cube(5, &body, &error), SM_OK);
+    assert_int_equal(bench_sampled(5, &body, &error), SM_OK);
     oct_reach_init(&reach, &body.graph);
     oct_reach_from(&reach, 7, OCT_FAR / 2);
     assert_true(bench_tree_check_distances(&reach, 7, reason));
@@ -96,16 +98,16 @@ TEST(wrong_distances_are_found)
     reach.distance[100] = OCT_FAR;
     assert_false(bench_tree_check_distances(&reach, 7, reason));
     oct_reach_free(&reach);
-    bench_sampled_free(&body);
+    oct_structure_free(&body);
 }
 
 /* One base cell, split down to the finest. */
 TEST(octree_work_is_counted)
 {
-    BenchSampled body;
+    OctStructure body;
     OctSumLists lists;
     SmError error;
-    assert_int_equal(bench_sampled_cube(16, &body, &error), SM_OK);
+    assert_int_equal(bench_sampled(16, &body, &error), SM_OK);
     oct_sum_lists_build(&body.tree, &body.regions, &lists);
     OctStepCounts c = oct_step_counts(&body.tree, &lists, &lists);
     double leaves = 16 * 16 * 16;
@@ -118,5 +120,5 @@ TEST(octree_work_is_counted)
     assert_true(oct_step_operations(&c).flops >
                 oct_goal_operations(&c).flops + oct_damping_operations(&c).flops);
     oct_sum_lists_free(&lists);
-    bench_sampled_free(&body);
+    oct_structure_free(&body);
 }

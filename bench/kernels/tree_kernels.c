@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "kernel.h"
+#include "sampled.h"
 #include "tree_setup.h"
 #include "tree_steps.h"
 
@@ -12,7 +13,7 @@ enum { STEPS_MOST = 16 };
 
 /* What the octree's kernels of a set share. */
 typedef struct {
-    BenchSampled sampled;
+    OctStructure sampled;
     BenchPrecision precision;
     BenchTreeStep step[STEPS_MOST]; /* [count] engines: each weighting, goal form and threads */
     int count;
@@ -21,14 +22,9 @@ typedef struct {
 static SmCode open_body(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
                         SmError *error)
 {
-    Body *made = sm_alloc(1, sizeof *made);
-    int side = kernel->side;
-    SmCode code = side > 0 ? bench_sampled_cube(side, &made->sampled, error)
-                           : bench_sampled_hand(side == BENCH_REGULAR_HAND, &made->sampled, error);
+    Body *made = *body = sm_alloc(1, sizeof *made);
     made->precision = params->precision;
-    *body = made;
-    if (code) free(made);
-    return code;
+    return bench_sampled(kernel->side, &made->sampled, error);
 }
 
 static void close_body(void *of)
@@ -37,7 +33,7 @@ static void close_body(void *of)
     for (int s = 0; s < body->count; s++)
         (body->precision == BENCH_F64 ? bench_tree_step_free_f64
                                       : bench_tree_step_free_f32)(&body->step[s]);
-    bench_sampled_free(&body->sampled);
+    oct_structure_free(&body->sampled);
     free(body);
 }
 
@@ -78,7 +74,6 @@ static SmCode prepare_step(BenchJob *job, SmError *error)
                                       : bench_tree_step_create_f32)(step);
     }
     assert(kernel->part == BENCH_TREE_WHOLE || step->parts); /* those come first in the list */
-    job->subject = step;
     job->trial = &step->trial;
     job->item = is_body(job) ? "step" : "node";
     job->items = is_body(job) ? 1 : body->sampled.tree.leaves;
@@ -89,26 +84,18 @@ static SmCode prepare_step(BenchJob *job, SmError *error)
 static double step_seconds(const BenchJob *job, int r)
 {
     return 1e-9 * (job->precision == BENCH_F64 ? bench_tree_step_ns_f64 : bench_tree_step_ns_f32)(
-                      job->subject, (BenchTreePart)job->kernel->part, r);
+                      job->trial->timed.subject, (BenchTreePart)job->kernel->part, r);
 }
 
 static SmOperations work_of(BenchTreePart part, const OctStepCounts *counts)
 {
-    switch (part) {
-    case BENCH_TREE_DEPTH:
-        return oct_depth_operations(counts);
-    case BENCH_TREE_BREADTH:
-        return oct_breadth_operations(counts);
-    case BENCH_TREE_POLAR:
-        return sm_polar_batch_operations();
-    case BENCH_TREE_GOALS:
-        return oct_goal_operations(counts);
-    case BENCH_TREE_DAMPING:
-        return oct_damping_operations(counts);
-    case BENCH_TREE_WHOLE:
-        break;
-    }
-    return oct_step_operations(counts);
+    static SmOperations (*const of[])(const OctStepCounts *counts) = {
+        [BENCH_TREE_DEPTH] = oct_depth_operations,
+        [BENCH_TREE_BREADTH] = oct_breadth_operations,
+        [BENCH_TREE_GOALS] = oct_goal_operations,
+        [BENCH_TREE_DAMPING] = oct_damping_operations,
+        [BENCH_TREE_WHOLE] = oct_step_operations};
+    return part == BENCH_TREE_POLAR ? sm_polar_batch_operations() : of[part](counts);
 }
 
 static void note_step(const BenchKernel *kernel, const BenchTreeStep *step, double ns_per_node,
@@ -150,7 +137,7 @@ static void note_step(const BenchKernel *kernel, const BenchTreeStep *step, doub
 static void report_step(BenchJob *job, BenchKernelRow *row)
 {
     const Body *body = job->body;
-    const BenchTreeStep *step = job->subject;
+    const BenchTreeStep *step = job->trial->timed.subject;
     double nodes = (double)body->sampled.tree.leaves;
     job->least = work_of((BenchTreePart)job->kernel->part, &step->counts);
     if (is_body(job)) job->least = of_body(job->least, body);
@@ -166,14 +153,6 @@ const BenchKernelKind bench_tree_step_kernels = {.open = open_body,
 
 /* ---- setting up */
 
-/* Of times, in which item; the body's is the structure's and no node's. */
-static const char *item_of(BenchSetupKind kind)
-{
-    return kind == BENCH_SETUP_DISTANCES   ? "source"
-           : kind == BENCH_SETUP_STRUCTURE ? "body"
-                                           : "node";
-}
-
 /* Three or four digits, without an exponent. */
 static int decimals(double ms)
 {
@@ -182,8 +161,9 @@ static int decimals(double ms)
 
 static void note_setup(const BenchSetup *setup, double user_ns, BenchKernelRow *row)
 {
-    const BenchSampled *body = setup->body;
+    const OctStructure *body = setup->body;
     double nodes = (double)body->tree.leaves, edges = (double)body->graph.first[body->tree.leaves];
+    double leaves = 0; /* of all regions */
     char *note = row->note;
     size_t room = sizeof row->note;
     double ms = row->ns * (row->items == body->tree.leaves ? nodes : 1) / 1e6;
@@ -195,8 +175,9 @@ static void note_setup(const BenchSetup *setup, double user_ns, BenchKernelRow *
         snprintf(note, room, "%.*f ms; %.1f edges a node", decimals(ms), ms, edges / nodes);
         break;
     case BENCH_SETUP_REGIONS:
+        for (long i = 0; i < body->regions.leaves; i++) leaves += body->regions.size[i];
         snprintf(note, room, "%.*f ms, distances included; %.1f leaves a region", decimals(ms), ms,
-                 bench_sampled_members(body) / nodes);
+                 leaves / nodes);
         break;
     case BENCH_SETUP_STRUCTURE:
         snprintf(note, room, "%.*f ms: graph, distances, regions of %ld nodes", decimals(ms), ms,
@@ -223,10 +204,10 @@ static SmCode prepare_setup(BenchJob *job, SmError *error)
     bench_setup_create(&body->sampled, kind, job->precision, setup);
     if (kind != BENCH_SETUP_WHOLE) job->arithmetic = "integer";
     job->trial = &setup->trial;
-    job->item = item_of(kind);
-    job->items = kind == BENCH_SETUP_DISTANCES   ? setup->sources
-                 : kind == BENCH_SETUP_STRUCTURE ? 1
-                                                 : body->sampled.tree.leaves;
+    job->item = "node";
+    job->items = body->sampled.tree.leaves;
+    if (kind == BENCH_SETUP_DISTANCES) job->item = "source", job->items = setup->sources;
+    if (kind == BENCH_SETUP_STRUCTURE) job->item = "body", job->items = 1;
     job->per_run = (double)job->items;
     return SM_OK;
 }
@@ -243,10 +224,9 @@ static void report_setup(BenchJob *job, BenchKernelRow *row)
     note_setup(setup, job->own_ns, row);
 }
 
-static void release_setup(BenchJob *job)
+static void release_setup(void *subject)
 {
-    bench_setup_free(job->subject);
-    free(job->subject);
+    bench_setup_free(subject);
 }
 
 const BenchKernelKind bench_tree_setup_kernels = {.open = open_body,

@@ -1,17 +1,30 @@
 #include "tree_setup.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 
 #include "../../lib/system/team.h"
+#include "../../octree/region/one_sided_regions.h"
+#include "../check/tree_check.h"
 #include "tree_steps.h"
 
 static const double most_seconds = 2;
 enum { SOURCES_CHECKED = 16, LEAVES_SEARCHED = 1 << 18, LEAVES_WARMED = 1 << 17 };
 
-/* Edges and leaves that searches up to `most` (by leaf, or NULL: as far as can be) look at. */
-static void count_searches(const BenchSampled *body, const int *most, long sources, double *edges,
+/* What a run does. */
+static const struct {
+    bool search, tree, graph, regions, engine;
+} parts[] = {
+    [BENCH_SETUP_DISTANCES] = {.search = true},
+    [BENCH_SETUP_GRAPH] = {.graph = true},
+    [BENCH_SETUP_REGIONS] = {.regions = true},
+    [BENCH_SETUP_STRUCTURE] = {.graph = true, .regions = true},
+    [BENCH_SETUP_SAMPLING] = {.tree = true},
+    [BENCH_SETUP_WHOLE] = {.tree = true, .graph = true, .regions = true, .engine = true},
+};
+
+/* Edges and leaves that searches for regions, or as far as can be, look at. */
+static void count_searches(const OctStructure *body, bool far, long sources, double *edges,
                            double *reached)
 {
     const OctGraph *graph = &body->graph;
@@ -20,7 +33,7 @@ static void count_searches(const BenchSampled *body, const int *most, long sourc
     *edges = *reached = 0;
     for (long s = 0; s < sources; s++) {
         long source = s * graph->leaves / sources;
-        int limit = most ? most[source] : OCT_FAR / 2;
+        int limit = far ? OCT_FAR / 2 : oct_one_sided_reach(body->w[source], body->options.epsilon);
         oct_reach_from(&reach, (int)source, limit);
         for (long n = 0; n < reach.count; n++) {
             int leaf = reach.reached[n];
@@ -34,58 +47,40 @@ static void count_searches(const BenchSampled *body, const int *most, long sourc
     oct_reach_free(&reach);
 }
 
-static SmOperations regions_work(const BenchSampled *body)
+static SmOperations regions_work(const OctStructure *body)
 {
     enum { SEARCHES = 4096 };
     double edges, reached;
     long leaves = body->tree.leaves;
-    int *most = sm_alloc((size_t)leaves, sizeof *most);
-    for (long i = 0; i < leaves; i++)
-        most[i] = (int)(body->w[i] + floor(body->epsilon * body->w[i]));
-    count_searches(body, most, leaves < SEARCHES ? leaves : SEARCHES, &edges, &reached);
-    free(most);
+    count_searches(body, false, leaves < SEARCHES ? leaves : SEARCHES, &edges, &reached);
     return oct_regions_operations(edges, reached, body->regions.mean);
 }
 
-static SmOperations graph_work(const BenchSampled *body)
+static void set_work(BenchSetup *setup)
 {
-    return oct_graph_operations(&body->tree, (double)body->graph.first[body->tree.leaves] /
-                                                 (double)body->tree.leaves);
-}
-
-static void set_work(const BenchSampled *body, BenchSetupKind kind, BenchSetup *setup)
-{
+    const OctStructure *body = setup->body;
     double edges, reached, leaves = (double)body->tree.leaves;
     double tree = (double)oct_tree_bytes(&body->tree);
-    double graph = (double)oct_graph_bytes(&body->graph);
-    SmOperations sampling = {.far_bytes = tree / leaves};
-    setup->bytes = tree + graph;
-    switch (kind) {
-    case BENCH_SETUP_DISTANCES:
-        count_searches(body, NULL, setup->sources, &edges, &reached);
-        setup->least = oct_reach_operations(edges, reached);
-        return;
-    case BENCH_SETUP_GRAPH:
-        setup->least = graph_work(body);
-        return;
-    case BENCH_SETUP_REGIONS:
-        setup->least = regions_work(body);
-        break;
-    case BENCH_SETUP_STRUCTURE:
-        setup->least = sm_operations_add(graph_work(body), 1, regions_work(body));
-        break;
-    case BENCH_SETUP_SAMPLING:
-        setup->least = sampling;
-        return;
-    case BENCH_SETUP_WHOLE:
-        setup->least = sm_operations_add(sampling, 1, graph_work(body));
-        setup->least = sm_operations_add(setup->least, 1, regions_work(body));
-        break;
+    SmOperations least = {0};
+    setup->bytes = tree + (double)oct_graph_bytes(&body->graph);
+    if (parts[setup->kind].search) {
+        count_searches(body, true, setup->sources, &edges, &reached);
+        least = oct_reach_operations(edges, reached);
     }
-    setup->bytes += (double)oct_regions_bytes(&body->regions);
+    if (parts[setup->kind].tree) least.far_bytes += tree / leaves;
+    if (parts[setup->kind].graph)
+        least = sm_operations_add(
+            least, 1,
+            oct_graph_operations(&body->tree,
+                                 (double)body->graph.first[body->tree.leaves] / leaves));
+    if (parts[setup->kind].regions) {
+        least = sm_operations_add(least, 1, regions_work(body));
+        setup->bytes += (double)oct_regions_bytes(&body->regions);
+    }
+    setup->least = least;
 }
 
-static bool check_distances(const BenchSampled *body, char *reason)
+static bool check_distances(const OctStructure *body, char *reason)
 {
     bool right = true;
     OctReach reach;
@@ -100,20 +95,11 @@ static bool check_distances(const BenchSampled *body, char *reason)
 }
 
 /* A tree is right where its graph is: that is held to the voxels. */
-static bool check(const BenchSampled *body, BenchSetupKind kind, char *reason)
+static bool check(const OctStructure *body, BenchSetupKind kind, char *reason)
 {
-    switch (kind) {
-    case BENCH_SETUP_DISTANCES:
-        return check_distances(body, reason);
-    case BENCH_SETUP_GRAPH:
-    case BENCH_SETUP_SAMPLING:
-        return bench_tree_check_graph(body, reason);
-    case BENCH_SETUP_REGIONS:
-    case BENCH_SETUP_STRUCTURE:
-    case BENCH_SETUP_WHOLE:
-        break;
-    }
-    return bench_tree_check_graph(body, reason) && bench_tree_check_regions(body, reason);
+    if (parts[kind].search) return check_distances(body, reason);
+    return bench_tree_check_graph(body, reason) &&
+           (!parts[kind].regions || bench_tree_check_regions(body, reason));
 }
 
 /* Searches from sources spread over the body. */
@@ -123,70 +109,40 @@ static void search(OctReach *reach, long sources)
         oct_reach_from(reach, (int)(s * reach->graph->leaves / sources), OCT_FAR / 2);
 }
 
-static void make_regions(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,
-                         OctRegions *regions)
-{
-    SmCode code = oct_regions_build(tree, graph, w, epsilon, OCT_UNION, regions, NULL);
-    assert(!code); /* they were built before */
-}
-
-static void make_tree(const BenchSampled *body, OctTree *tree)
-{
-    SmCode code = oct_sampling_tree(&body->sampling, &body->voxels, tree, NULL, NULL);
-    assert(!code);
-}
-
-/* From voxels on, all that a body needs; returns the engine's memory. */
-static long set_up(const BenchSampled *body, BenchPrecision precision)
-{
-    OctTree tree;
-    OctGraph graph;
-    OctRegions regions;
-    int *w;
-    double *mass;
-    make_tree(body, &tree);
-    bench_sampled_widths(&tree, body->edges, &w, &mass);
-    oct_graph_build(&tree, &body->voxels, &graph);
-    make_regions(&tree, &graph, w, body->epsilon, &regions);
-    long bytes = (precision == BENCH_F64 ? bench_tree_build_f64
-                                         : bench_tree_build_f32)(&tree, &regions, mass);
-    oct_graph_free(&graph);
-    oct_regions_free(&regions);
-    oct_tree_free(&tree);
-    free(w);
-    free(mass);
-    return bytes;
-}
-
 /* What the last run has made. */
 static void forget(void *subject)
 {
-    BenchSetup *setup = subject;
-    oct_tree_free(&setup->tree);
-    oct_graph_free(&setup->graph);
-    oct_regions_free(&setup->regions);
-    setup->tree = (OctTree){0};
-    setup->graph = (OctGraph){0};
-    setup->regions = (OctRegions){0};
+    oct_structure_free(&((BenchSetup *)subject)->made);
 }
 
-/* Where all of it is wanted freeing counts too. */
+/* Each of the body's, or of what the run has made before. Where all of it is wanted freeing counts
+ * too. */
 static void run(void *subject, SmLaps *laps)
 {
     BenchSetup *setup = subject;
-    const BenchSampled *body = setup->body;
+    const OctStructure *body = setup->body;
+    OctStructure *made = &setup->made;
     BenchSetupKind kind = setup->kind;
+    const OctTree *tree = parts[kind].tree ? &made->tree : &body->tree;
+    const OctGraph *graph = parts[kind].graph ? &made->graph : &body->graph;
+    SmCode code = SM_OK;
     (void)laps;
-    if (kind == BENCH_SETUP_DISTANCES) search(&setup->reach, setup->sources);
-    if (kind == BENCH_SETUP_SAMPLING) make_tree(body, &setup->tree);
-    if (kind == BENCH_SETUP_GRAPH || kind == BENCH_SETUP_STRUCTURE)
-        oct_graph_build(&body->tree, &body->voxels, &setup->graph);
-    if (kind == BENCH_SETUP_REGIONS || kind == BENCH_SETUP_STRUCTURE)
-        make_regions(&body->tree, &body->graph, body->w, body->epsilon, &setup->regions);
-    if (kind == BENCH_SETUP_WHOLE) setup->engine_bytes = (double)set_up(body, setup->precision);
+    if (parts[kind].search) search(&setup->reach, setup->sources);
+    if (parts[kind].tree)
+        code = oct_sampling_tree(&body->options.sampling, &body->voxels, &made->tree, NULL, NULL);
+    if (parts[kind].graph) oct_graph_build(tree, &body->voxels, &made->graph);
+    if (!code && parts[kind].regions)
+        code = oct_regions_build(tree, graph, body->w, body->options.epsilon, OCT_UNION,
+                                 &made->regions, NULL);
+    assert(!code); /* all of it was built before */
+    if (!parts[kind].engine) return;
+    setup->engine_bytes = (double)(setup->precision == BENCH_F64
+                                       ? bench_tree_build_f64
+                                       : bench_tree_build_f32)(tree, &made->regions, body->mass);
+    forget(setup);
 }
 
-void bench_setup_create(const BenchSampled *body, BenchSetupKind kind, BenchPrecision precision,
+void bench_setup_create(const OctStructure *body, BenchSetupKind kind, BenchPrecision precision,
                         BenchSetup *setup)
 {
     long leaves = body->tree.leaves, sources = LEAVES_SEARCHED / leaves;
@@ -201,7 +157,7 @@ void bench_setup_create(const BenchSampled *body, BenchSetupKind kind, BenchPrec
                                 .most_seconds = most_seconds,
                                 .valid = true};
     if (check(body, kind, reason)) {
-        set_work(body, kind, setup);
+        set_work(setup);
         oct_reach_init(&setup->reach, &body->graph);
     } else
         bench_trial_fail(&setup->trial, "%s", reason);

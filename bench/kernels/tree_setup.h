@@ -2,9 +2,8 @@
 #ifndef BENCH_TREE_SETUP_H
 #define BENCH_TREE_SETUP_H
 
-#include "../check/tree_check.h"
+#include "../../octree/change/structure.h"
 #include "machine_peak.h"
-#include "sampled.h"
 #include "trial.h"
 
 typedef enum {
@@ -18,7 +17,7 @@ typedef enum {
 
 typedef struct {
     BenchTrial trial; /* as many samples as asked for, or as take about two seconds */
-    const BenchSampled *body;
+    const OctStructure *body;
     BenchSetupKind kind;
     BenchPrecision precision;
     long sources;        /* that a run searches from, of distances */
@@ -27,14 +26,12 @@ typedef struct {
     double engine_bytes; /* and the engine's, where it is built */
     /* the run's own */
     OctReach reach;
-    OctTree tree;
-    OctGraph graph;
-    OctRegions regions;
+    OctStructure made; /* of it what is timed */
 } BenchSetup;
 
 /* Checks (tree_check.h). The trial, on OpenMP's number of threads, keeps the address. The caller
  * frees. */
-void bench_setup_create(const BenchSampled *body, BenchSetupKind kind, BenchPrecision precision,
+void bench_setup_create(const OctStructure *body, BenchSetupKind kind, BenchPrecision precision,
                         BenchSetup *setup);
 void bench_setup_free(BenchSetup *setup);
 

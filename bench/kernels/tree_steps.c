@@ -7,6 +7,7 @@
 
 #include "../../octree/octree.h"
 #include "../../reference/octree_goals.h"
+#include "cubes.h"
 
 #define bench_tree_step_create SM_NAME(bench_tree_step_create)
 #define bench_tree_step_ns     SM_NAME(bench_tree_step_ns)
@@ -19,11 +20,6 @@ static const double step_tolerance = SM_REAL_BITS == 32 ? 5e-4 : 1e-9;
 
 static const double damping = 0.1;
 
-static double noise(unsigned *seed)
-{
-    return rand_r(seed) / (double)RAND_MAX - 0.5;
-}
-
 /* Start state, in finest cells. */
 static void disturb(BenchTreeStep *step, unsigned seed)
 {
@@ -31,17 +27,10 @@ static void disturb(BenchTreeStep *step, unsigned seed)
     const int *size = step->body->voxels.size;
     double length = fmax(size[0], fmax(size[1], size[2]));
     for (long leaf = 0; leaf < tree->leaves; leaf++) {
-        double *x = step->x[leaf], s[3];
+        double s[3];
         for (int d = 0; d < 3; d++)
             s[d] = (0.5 * tree->centre[tree->node[leaf]][d] - 0.5 * size[d]) / length;
-        double turn = 0.6 * s[1], swing = 0.08 * sin(5 * s[1]) + 0.05 * s[2] * s[2];
-        x[0] = length * (cos(turn) * s[0] - sin(turn) * s[2] + swing);
-        x[1] = length * s[1] * (0.9 + 0.15 * s[0]);
-        x[2] = length * (sin(turn) * s[0] + cos(turn) * s[2]);
-        for (int d = 0; d < 3; d++) {
-            x[d] += 0.05 * noise(&seed);
-            step->v[leaf][d] = 0.01 * noise(&seed);
-        }
+        bench_cube_disturb(s, length, &seed, step->x[leaf], step->v[leaf]);
     }
 }
 
@@ -149,7 +138,7 @@ static bool finite_at_end(void *subject)
 
 void bench_tree_step_create(BenchTreeStep *step)
 {
-    const BenchSampled *body = step->body;
+    const OctStructure *body = step->body;
     OctParams params = {.weighting = step->weighting,
                         .form = step->adjoint ? OCT_ADJOINT : OCT_HIERARCHICAL,
                         .damping = damping,

@@ -6,9 +6,8 @@
 #ifndef BENCH_TREE_STEPS_H
 #define BENCH_TREE_STEPS_H
 
+#include "../../octree/change/structure.h"
 #include "../../octree/operations.h"
-#include "../../octree/region/weights.h"
-#include "sampled.h"
 #include "trial.h"
 
 /* What of a step is timed apart. */
@@ -24,7 +23,7 @@ typedef enum {
 
 typedef struct {
     BenchTrial trial;         /* with laps of OCT_STEP_PARTS where times of parts are wanted */
-    const BenchSampled *body; /* set by the caller, as the next ones */
+    const OctStructure *body; /* set by the caller, as the next ones */
     OctWeighting weighting;
     bool adjoint; /* goal positions by the transpose of the region sums */
     bool parts;   /* are times of parts wanted? */

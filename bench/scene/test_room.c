@@ -103,13 +103,13 @@ TEST(cubes_that_do_not_fit_are_refused)
     enum { SIDE = 20000 };
     SmError error;
     BenchCube cube;
-    BenchSampled body;
+    OctStructure body;
     const SmEngineParams params = {.w = 1, .h = 0.01, .threads = 1};
     assert_int_equal(bench_cube_create(SIDE, &fastlsm_engine_f32, &params, 1, &cube, &error),
                      SM_MEMORY);
     assert_memory_equal(error.text, "cube of side 20000: 8000000000000 particles on fastlsm", 54);
-    assert_null(cube.engine);
-    assert_int_equal(bench_sampled_cube(SIDE, &body, &error), SM_MEMORY);
+    assert_null(cube.block.engine);
+    assert_int_equal(bench_sampled(SIDE, &body, &error), SM_MEMORY);
     assert_non_null(strstr(error.text, "particles on octree take about"));
     assert_null(body.w);
 }

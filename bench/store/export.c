@@ -84,8 +84,8 @@ void bench_csv_cell(FILE *file, const BenchField *field, const void *record, con
         fputs(mark, file);
     else if (field->given && !field->given(record))
         return;
-    else if (field->text)
-        bench_csv_text(file, field->text(record));
+    else if (field->text || field->choices)
+        bench_csv_text(file, bench_field_text(field, record));
     else if (field->number)
         bench_csv_number(file, field->number(record));
     else
@@ -155,8 +155,6 @@ static json_t *json_numbers(const double *numbers, int count)
 static json_t *json_value(const BenchField *field, const void *value)
 {
     switch (field->kind) {
-    case BENCH_TEXT:
-        return bench_json_text(value);
     case BENCH_INT:
         return json_integer(*(const int *)value);
     case BENCH_LONG:
@@ -168,6 +166,7 @@ static json_t *json_value(const BenchField *field, const void *value)
         snprintf(text, sizeof text, "%016llx", *(const unsigned long long *)value);
         return json_string(text);
     }
+    case BENCH_TEXT:
     case BENCH_DOUBLE:
         break;
     }
@@ -181,7 +180,7 @@ json_t *bench_json_cell(const BenchField *field, const void *record)
     if ((field->timed && !field->timed(record)) || (field->given && !field->given(record)))
         return json_null();
     if (field->number) return bench_json_number(field->number(record));
-    if (field->text && field->kind == BENCH_TEXT) return bench_json_text(field->text(record));
+    if (field->kind == BENCH_TEXT) return bench_json_text(bench_field_text(field, record));
     const char *value = (const char *)record + field->offset;
     if (field->listed)
         return json_numbers((const double *)(const void *)value, field->listed(record));

@@ -3,6 +3,13 @@
 #include <math.h>
 #include <string.h>
 
+const char *bench_field_text(const BenchField *field, const void *record)
+{
+    const void *member = (const char *)record + field->offset;
+    if (field->text) return field->text(record);
+    return field->choices ? field->choices[*(const int *)member] : member;
+}
+
 void bench_record_none(const BenchField *fields, int count, void *record, size_t size)
 {
     memset(record, 0, size);

@@ -30,12 +30,13 @@ typedef struct {
     bool (*given)(const void *record);       /* is there a value? NULL: always */
     double (*number)(const void *record);    /* the value, where it is not in the record */
     const char *(*text)(const void *record); /* the same of a text; of a BENCH_BOOL as CSV has it */
-    const char *unit, *meaning;              /* "ms" (NULL: none); what results/README.md says */
-    int (*listed)(const void *record);       /* of an array: how many numbers it has, which CSV has
-                                              * in one column, as "1/2/3" */
-    const char *title;                       /* heading in tables for people; NULL: not there */
-    unsigned tables;                         /* in which of several, bits 1 << number; 0: all */
-    bool left;                               /* aligned left */
+    const char *const *choices; /* of a text: the member is an enum, and these are its names */
+    const char *unit, *meaning; /* "ms" (NULL: none); what results/README.md says */
+    int (*listed)(const void *record); /* of an array: how many numbers it has, which CSV has
+                                        * in one column, as "1/2/3" */
+    const char *title;                 /* heading in tables for people; NULL: not there */
+    unsigned tables;                   /* in which of several, bits 1 << number; 0: all */
+    bool left;                         /* aligned left */
     const char *format; /* of its number there, for printf() with a double; NULL: three digits */
     double scale;       /* times which it is there; 0: 1 */
     void (*cell)(const void *record, char *text); /* writes what it has there; NULL: its value */
@@ -51,6 +52,9 @@ typedef struct {
     }
 
 #define BENCH_MEANS(of_what, what) .unit = (of_what), .meaning = (what)
+
+/* The text of a BENCH_TEXT. */
+const char *bench_field_text(const BenchField *field, const void *record);
 
 /* A cell of tables for people that is no column of files. */
 #define BENCH_CELL(heading, write) .title = (heading), .cell = (write)

@@ -167,7 +167,7 @@ void bench_h5_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int co
         const char *value = (const char *)record + fields[i].offset;
         if (!fields[i].name) continue;
         if (fields[i].kind == BENCH_TEXT) {
-            bench_h5_text(h5, object, fields[i].name, value);
+            bench_h5_text(h5, object, fields[i].name, bench_field_text(&fields[i], record));
             continue;
         }
         hid_t type, memory;

@@ -24,7 +24,7 @@ void bench_record_cell(const BenchField *field, const void *record, char *text)
     else if (field->number)
         number_cell(field, field->number(record), text);
     else if (field->kind == BENCH_TEXT)
-        snprintf(text, BENCH_GRID_TEXT, "%s", (const char *)value);
+        snprintf(text, BENCH_GRID_TEXT, "%s", bench_field_text(field, record));
     else if (field->kind == BENCH_BOOL)
         strcpy(text, *(const bool *)value ? "*" : "");
     else if (field->kind == BENCH_INT)
