@@ -1,5 +1,7 @@
-/* match.h - from region sums to region transforms, SM_LANES regions at once (fastlsm section 3.2).
- */
+/* match.h - shape matching between its sums (fastlsm sections 3.2 and 4), SM_LANES regions or
+ * particles at once: from region sums to region transforms, and from goal positions to the motion
+ * of particles. Inline, so that the sums (sums/sums.h) compile it in: called, it costs 5% of a step
+ * at w = 1. */
 #ifndef LSM_MATCH_H
 #define LSM_MATCH_H
 
@@ -15,6 +17,16 @@ SM_INLINE bool match_is_centred(const RegionConst *k)
 /* What a region's sums are: S = (C, A), of C = sum m~ x and of its moments about the region's
  * lattice centre, A[3 i + d] along axis d of component i. */
 enum { MOMENT = 3 };
+
+/* Values that a region brings down, [values][SM_LANES]; the most tiles that are solved at once. */
+enum { TILE_DOWN = 12 * SM_LANES, TILE_GROUP = 4 };
+
+/* Number f of the values in the order in which the stages of the sums make and use them, (P, Pz,
+ * Px, Py) and (q, Rz, Rx, Ry), among a region's sums (C, A) and its transform (q, R). */
+SM_INLINE int stage_value(int f)
+{
+    return f < 3 ? f : 3 + f % 3 * 3 + (f / 3 + 1) % 3;
+}
 
 /* c_r (eq. 9) and A_r (eq. 11), in the place of the sums: column d of A less C offset_d is
  * sum m~ x (x0 - c0)^T. */
@@ -33,6 +45,96 @@ SM_INLINE void match_centre(const vec c[3], const vec R[9], const RegionConst *k
     if (match_is_centred(k)) return;
     for (int i = 0; i < 3; i++)
         for (int d = 0; d < 3; d++) q[i] -= R[i * 3 + d] * k->offset[d];
+}
+
+_Static_assert((int)TILE_GROUP <= (int)POLAR_TILES, "a group of tiles is matched at once");
+
+/* c_r and A_r of a tile, in the place of its sums. */
+SM_INLINE void moments(Lsm *lsm, long tile, vec S[12])
+{
+    match_moments(&lsm->region_const[lsm->tile_const[tile]], S);
+    if (lsm->damp_now) store3(lsm->centre + tile * 3 * SM_LANES, S);
+}
+
+/* The paper's way to decompose (section 4). */
+SM_INLINE void rotate_jacobi(Lsm *lsm, int layer, long tile, const vec A[9], vec R[9])
+{
+    vec jacobi[9];
+    lsm->sweeps[layer] += polar_jacobi_lanes(A, lsm->live[tile], lsm->last + tile * 6 * SM_LANES,
+                                             lsm->stretch + tile * 9 * SM_LANES, jacobi);
+    lanes_copy(9, jacobi, R);
+}
+
+/* T_r = (q_r, R_r) of `tiles` tiles from their sums (C, A). */
+SM_INLINE void match_tiles(Lsm *lsm, int layer, long tile, int tiles, vec (*S)[12], real *down,
+                           SmLaps *laps)
+{
+    bool fast = lsm->params.polar == SM_POLAR_FAST;
+    unsigned live[TILE_GROUP];
+    PolarInvariants of[TILE_GROUP];
+    vec trace[TILE_GROUP];
+    for (int t = 0; t < tiles; t++) moments(lsm, tile + t, S[t]);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+    if (fast) {
+        for (int t = 0; t < tiles; t++) {
+            live[t] = lsm->live[tile + t];
+            polar_invariants(S[t] + MOMENT, &of[t]);
+        }
+        polar_traces(tiles, of, live, trace);
+    }
+    sm_lap(laps, SM_POLAR);
+    for (int t = 0; t < tiles; t++, tile++, down += TILE_DOWN) {
+        vec q[3], R[9];
+        const vec *A = S[t] + MOMENT;
+        if (fast)
+            polar_finish(A, &of[t], trace[t], live[t], POLAR_LATTICE,
+                         lsm->last + tile * 6 * SM_LANES, R);
+        else
+            rotate_jacobi(lsm, layer, tile, A, R);
+        sm_lap(laps, SM_POLAR);
+        match_centre(S[t], R, &lsm->region_const[lsm->tile_const[tile]], q);
+        for (int f = 0; f < 12; f++)
+            lanes_store(down + f * SM_LANES, f < 3 ? q[f] : R[stage_value(f) - MOMENT]);
+    }
+    sm_lap(laps, SM_SHAPE_MATCHING);
+}
+
+/* A product that is rounded before it is used, never fused with a sum: what enters a window leaves
+ * it with the same value, and a goal is the same wherever it is computed. */
+SM_INLINE vec rounded(vec product)
+{
+#ifdef __AVX512F__
+    __asm__("" : "+v"(product));
+#elif defined(__FMA__) || defined(__ARM_FEATURE_FMA)
+    __asm__("" : "+m"(product)); /* wider than a register */
+#endif
+    return product;
+}
+
+/* Eqs. 1 and 2 in cells and steps: v += g - x + gravity; x += v, unless damping does that later. */
+SM_INLINE void move_block(Lsm *lsm, long block, const vec sum[3])
+{
+    const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
+    vec x[3], v[3], pull[3];
+    load3(lsm->x + block * 3 * SM_LANES, x);
+    load3(lsm->v + block * 3 * SM_LANES, v);
+    vec live = lanes_select(k->inverse_count > 0, lanes_set(1), lanes_set(0));
+    for (int d = 0; d < 3; d++) {
+        vec g = rounded(sum[d] * k->inverse_count);
+        pull[d] = g - x[d];
+    }
+    integrate_velocity(pull, lsm->gravity, lsm->rounding, live, v);
+    if (!lsm->damp_now) {
+        integrate_position(lsm->obstacle, lsm->obstacle_count, lsm->shift, x, v);
+        store3(lsm->x + block * 3 * SM_LANES, x);
+    }
+    store3(lsm->v + block * 3 * SM_LANES, v);
+}
+
+SM_INLINE void move_blocks(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *laps)
+{
+    for (int k = 0; k < blocks; k++) move_block(lsm, block + k, sum[k]);
+    sm_lap(laps, SM_OTHER);
 }
 
 #endif

@@ -1,5 +1,5 @@
 /* operations.h - what the passes of a step have to do for a particle, counted (lib/operations.h):
- * of the sums in sums/, of match.h, damping.c and fastlsm.c. */
+ * of the sums in sums/, of match.h and damping.h. */
 #ifndef LSM_OPERATIONS_H
 #define LSM_OPERATIONS_H
 

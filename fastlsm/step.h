@@ -5,7 +5,6 @@
 #include "state.h"
 
 #define lsm_constants SM_NAME(lsm_constants)
-#define lsm_damp      SM_NAME(lsm_damp)
 #define lsm_step      SM_NAME(lsm_step)
 #define lsm_goals     SM_NAME(lsm_goals)
 
@@ -17,8 +16,5 @@ void lsm_goals(Lsm *lsm);
 
 /* Fills region_const: M_r and c0_r. */
 void lsm_constants(Lsm *lsm);
-
-/* Region damping (fastlsm eq. 14), then x += v. Needs `centre` of this step's shape matching. */
-void lsm_damp(Lsm *lsm, SmLaps *laps);
 
 #endif

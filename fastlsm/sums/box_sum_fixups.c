@@ -201,16 +201,6 @@ SM_INLINE void fixup_region(const Lsm *lsm, const Fixup *at, half_vec sum[12])
     }
 }
 
-/* The same of m~ in place of m~ x. */
-SM_INLINE void fixup_constant(const Lsm *lsm, const Fixup *at, half_vec sum[12])
-{
-    half_vec p = weight_of(lsm, at);
-    for (int d = 0; d < 3; d++) {
-        sum[d] += p;
-        for (int k = 0; k < 3; k++) sum[3 + 3 * d + k] += at->offset[k] * p;
-    }
-}
-
 /* Of damping's four triples of sums up. */
 SM_INLINE void fixup_product(const Lsm *lsm, const Fixup *at, half_vec sum[12])
 {
@@ -305,10 +295,7 @@ SM_INLINE void fixup_block(const Lsm *lsm, const FixupList *list, long block, in
 
 void lsm_fixup_regions(const Lsm *lsm, long block, vec *sums)
 {
-    if (lsm->pass->masses)
-        fixup_block(lsm, &lsm->fixups->up, block, 12, fixup_constant, sums);
-    else
-        fixup_block(lsm, &lsm->fixups->up, block, 12, fixup_region, sums);
+    fixup_block(lsm, &lsm->fixups->up, block, 12, fixup_region, sums);
 }
 
 void lsm_fixup_products(const Lsm *lsm, long block, vec *sums)

@@ -190,7 +190,7 @@ SM_INLINE void source(const Lsm *lsm, long block, bool plain, int d, vec out[4])
         damping_products(weight, x, lsm->v + block * 3 * SM_LANES, d, out);
         return;
     }
-    out[0] = lsm->pass->masses ? weight : weight * lanes_load(x + d * SM_LANES);
+    out[0] = rounded(weight * lanes_load(x + d * SM_LANES));
 }
 
 /* The window of the z stage up of a block, from the one in `kept` of the block in the plane before.
@@ -378,7 +378,7 @@ SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int 
     for (int k = 0; k < blocks; k++)
         if (lsm->box->mixed[block + k]) mend_regions(lsm, block + k, plain, sums[k]);
     sm_lap(laps, lsm->pass->stage);
-    lsm->pass->solve(lsm, layer, block, blocks, sums, down, laps);
+    lsm_solve(lsm, plain, layer, block, blocks, sums, down, laps);
     for (int k = 0; k < blocks; k++)
         if (lsm->listed[block + k]) keep_down(lsm, block + k, down + k * (long)BLOCK);
 }
@@ -638,7 +638,7 @@ SM_INLINE void plane_end(Lsm *lsm, int plane, int thread, int w, bool plain, SmL
                 if (box->mixed[block + k]) mend_particles(lsm, block + k, plain, sum[k]);
             }
             sm_lap(laps, lsm->pass->stage);
-            lsm->pass->end(lsm, block, blocks, sum, laps);
+            lsm_end(lsm, plain, block, blocks, sum, laps);
         }
     }
 }

@@ -10,4 +10,20 @@ SM_INLINE const real *named(const real *rows, uint64_t name, int width)
     return (const real *)((const char *)rows + name * ((size_t)width * sizeof(real) / LSM_NAME));
 }
 
+/* The sums of a tile from a row for each lane: (C, Cx, Cy, Cz), each padded to four, or the twelve
+ * plain ones. */
+SM_INLINE void sums_of_rows(const real *const row[SM_LANES], bool plain, vec sum[12])
+{
+    vec field[16];
+    lanes_from_rows(row, field);
+    if (plain) {
+        lanes_copy(12, field, sum);
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        sum[i] = field[i];
+        for (int d = 0; d < 3; d++) sum[3 + 3 * i + d] = field[4 * (d + 1) + i];
+    }
+}
+
 #endif

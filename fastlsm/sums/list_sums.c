@@ -270,7 +270,7 @@ void lsm_list_kernels_regions(const Lsm *lsm, const int *region, bool plain, vec
     FOR_SIDE(lsm->side, CALL)
 #undef CALL
     for (int lane = 0; lane < SM_LANES; lane++) row[lane] = (const real *)&rows[lane];
-    lsm_lists_sums_of_rows(row, plain, sum);
+    sums_of_rows(row, plain, sum);
 }
 
 static void tile_sums(const Lsm *lsm, long tile, bool plain, vec sum[12])

@@ -53,12 +53,12 @@ void lsm_lists_lay_out(Lsm *lsm)
     for (p = 0; p < n; p++) lsm->particle[lsm->slot[p]] = (int)p;
 }
 
-/* Rows of m~ x, or of m~. */
+/* Rows of m~ x. */
 static void weigh(const Lsm *lsm, long block)
 {
     vec weight = lsm->particle_const[lsm->block_const[block]].weight;
-    vec p[4] = {lanes_set(1), lanes_set(1), lanes_set(1), lanes_set(0)};
-    if (!lsm->pass->masses) load3(lsm->x + block * 3 * SM_LANES, p);
+    vec p[4] = {[3] = lanes_set(0)};
+    load3(lsm->x + block * 3 * SM_LANES, p);
     for (int d = 0; d < 3; d++) p[d] *= weight;
     lanes_interleave(p, 4);
     real *row = lsm->rows.p + (block * SM_LANES + 1) * ROW_P;
@@ -93,17 +93,6 @@ void lsm_lists_subsums(Lsm *lsm, int layer, int thread, SmLaps *laps)
     }
     lsm->sums->lists->subsums_up(lsm, layer, plain);
     sm_lap(laps, lsm->pass->stage);
-}
-
-void lsm_lists_sums_of_rows(const real *const row[SM_LANES], bool plain, vec sum[12])
-{
-    vec field[16];
-    lanes_from_rows(row, field);
-    for (int i = 0; i < 12 && plain; i++) sum[i] = field[i];
-    for (int i = 0; i < 3 && !plain; i++) {
-        sum[i] = field[i];
-        for (int d = 0; d < 3; d++) sum[3 + 3 * i + d] = field[4 * (d + 1) + i];
-    }
 }
 
 /* (q, R z, R y, R x), padded to four. */
@@ -179,7 +168,7 @@ void lsm_lists_solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
         int tiles = end - tile < TILE_GROUP ? (int)(end - tile) : TILE_GROUP;
         for (int t = 0; t < tiles; t++) lists->tile(lsm, tile + t, pass->plain, sum[t]);
         sm_lap(laps, pass->stage);
-        pass->solve(lsm, layer, tile, tiles, sum, down, laps);
+        lsm_solve(lsm, pass->plain, layer, tile, tiles, sum, down, laps);
         for (int t = 0; t < tiles; t++) lsm_lists_keep_down(lsm, tile + t, down + t * TILE_DOWN);
     }
     copy_regions(lsm, layer, pass->plain);
@@ -197,6 +186,6 @@ void lsm_lists_end(Lsm *lsm, int layer, int thread, SmLaps *laps)
         vec sum[1][6] = {{{0}}};
         lists->block(lsm, block, pass->plain, sum[0]);
         sm_lap(laps, pass->stage);
-        pass->end(lsm, block, 1, sum, laps);
+        lsm_end(lsm, pass->plain, block, 1, sum, laps);
     }
 }

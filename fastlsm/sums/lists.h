@@ -10,7 +10,6 @@
 #define lsm_lists_solve          SM_NAME(lsm_lists_solve)
 #define lsm_lists_end            SM_NAME(lsm_lists_end)
 #define lsm_lists_keep_down      SM_NAME(lsm_lists_keep_down)
-#define lsm_lists_sums_of_rows   SM_NAME(lsm_lists_sums_of_rows)
 #define lsm_list_kernels         SM_NAME(lsm_list_kernels)
 #define lsm_list_kernels_regions SM_NAME(lsm_list_kernels_regions)
 
@@ -22,10 +21,6 @@ LsmPart lsm_lists_subsums, lsm_lists_solve, lsm_lists_end;
 
 /* Puts what the regions of a tile bring down (LsmPass) into their rows of rows.transform. */
 void lsm_lists_keep_down(const Lsm *lsm, long tile, const real *down);
-
-/* The sums of a tile from a row for each lane: (C, Cx, Cy, Cz), each padded to four, or the twelve
- * plain ones. */
-void lsm_lists_sums_of_rows(const real *const row[SM_LANES], bool plain, vec sum[12]);
 
 /* Through bars and plates (list_sums.c), and its sums of the regions listed in rows region[lane],
  * zero where that is negative. */

@@ -86,7 +86,7 @@ static void tile_sums(const Lsm *lsm, long tile, bool plain, vec sum[12])
         rows[lane] = region[lane] < 0 ? (vec16){0} : region_up(lsm, region[lane]);
         row[lane] = (const real *)&rows[lane];
     }
-    lsm_lists_sums_of_rows(row, false, sum);
+    sums_of_rows(row, false, sum);
 }
 
 static void block_sums(const Lsm *lsm, long block, bool plain, vec sum[6])

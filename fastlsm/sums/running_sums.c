@@ -4,6 +4,7 @@
  * and, on the way down, particles in rows.transform, which holds nothing else meanwhile. */
 #include <stdlib.h>
 
+#include "list_rows.h"
 #include "lists.h"
 
 enum { RUN_LEAST_W = 4, WIDTH = 16 }; /* measured: at w = 3 the lists are as fast */
@@ -129,7 +130,7 @@ static void tile_sums(const Lsm *lsm, long tile, bool plain, vec sum[12])
     const real *row[SM_LANES];
     for (int lane = 0; lane < SM_LANES; lane++)
         row[lane] = lsm->rows.transform + (slot[lane] + 1) * (long)ROW_T;
-    lsm_lists_sums_of_rows(row, plain, sum);
+    sums_of_rows(row, plain, sum);
 }
 
 static void block_sums(const Lsm *lsm, long block, bool plain, vec sum[6])

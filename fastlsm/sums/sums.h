@@ -1,7 +1,7 @@
 /* sums.h - what every form of the fast summation offers (fastlsm section 3.1).
  *
  * A pass sums values of particles up to regions, solves something for each region, and sums what
- * comes of it down to particles again: shape matching (fastlsm.c) and damping (damping.c) are
+ * comes of it down to particles again: shape matching (match.h) and damping (damping.h) are
  * passes. A form is a way to sum; every form runs every pass, in the three parts of pipeline.h.
  *
  *     naive.c          member by member, O(w^3)
@@ -24,6 +24,8 @@
 #ifndef LSM_SUMS_H
 #define LSM_SUMS_H
 
+#include "../damping.h"
+#include "../match.h"
 #include "../pipeline.h"
 
 #define lsm_sums_naive   SM_NAME(lsm_sums_naive)
@@ -31,22 +33,19 @@
 #define lsm_sums_running SM_NAME(lsm_sums_running)
 #define lsm_sums_boxes   SM_NAME(lsm_sums_boxes)
 
-/* Values that a region brings down, [values][SM_LANES]; the most tiles that are solved at once. */
-enum { TILE_DOWN = 12 * SM_LANES, TILE_GROUP = 4 };
-
 struct LsmPass {
     bool plain;    /* sums damping's twelve products and brings six values down, without moments */
-    bool masses;   /* sums m~ in place of m~ x */
     SmStage stage; /* whose time the sums are */
 
     /* What comes of the sums of `tiles` tiles of regions from number `tile` on, TILE_GROUP at most:
      * `sum` are (C, A) of match.h, or damping's four triples; `down` receives, TILE_DOWN values a
-     * tile, (q, Rz, Rx, Ry), or damping's two triples, all zero in lanes without a region. */
+     * tile, (q, Rz, Rx, Ry), or damping's two triples, all zero in lanes without a region. NULL:
+     * what match.h or damping.h does with them. */
     void (*solve)(Lsm *lsm, int layer, long tile, int tiles, vec (*sum)[12], real *down,
                   SmLaps *laps);
 
     /* What is done with the sums over the regions of the particles of `blocks` blocks: three of
-     * them, |R_i| g_i, or damping's six. */
+     * them, |R_i| g_i, or damping's six. NULL as above. */
     void (*end)(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *laps);
 };
 
@@ -86,23 +85,25 @@ SM_INLINE void lsm_run(Lsm *lsm, const LsmPass *pass, SmLaps *laps)
     lsm_pipeline(lsm, lsm->sums->part);
 }
 
-/* A product that is rounded before it is used, never fused with a sum: what enters a window leaves
- * it with the same value, and a goal is the same wherever it is computed. */
-SM_INLINE vec rounded(vec product)
+SM_INLINE void lsm_solve(Lsm *lsm, bool plain, int layer, long tile, int tiles, vec (*sum)[12],
+                         real *down, SmLaps *laps)
 {
-#ifdef __AVX512F__
-    __asm__("" : "+v"(product));
-#elif defined(__FMA__) || defined(__ARM_FEATURE_FMA)
-    __asm__("" : "+m"(product)); /* wider than a register */
-#endif
-    return product;
+    if (lsm->pass->solve)
+        lsm->pass->solve(lsm, layer, tile, tiles, sum, down, laps);
+    else if (plain)
+        damp_tiles(lsm, tile, tiles, sum, down);
+    else
+        match_tiles(lsm, layer, tile, tiles, sum, down, laps);
 }
 
-/* Number f of the values in the order in which the stages of the sums make and use them, (P, Pz,
- * Px, Py) and (q, Rz, Rx, Ry), among a region's sums (C, A) and its transform (q, R): match.h. */
-SM_INLINE int stage_value(int f)
+SM_INLINE void lsm_end(Lsm *lsm, bool plain, long block, int blocks, vec (*sum)[6], SmLaps *laps)
 {
-    return f < 3 ? f : 3 + f % 3 * 3 + (f / 3 + 1) % 3;
+    if (lsm->pass->end)
+        lsm->pass->end(lsm, block, blocks, sum, laps);
+    else if (plain)
+        damp_blocks(lsm, block, blocks, sum, laps);
+    else
+        move_blocks(lsm, block, blocks, sum, laps);
 }
 
 #endif

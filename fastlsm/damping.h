@@ -1,14 +1,14 @@
-/* damping.c - region damping (fastlsm eq. 14): each region's rigid velocity, averaged over the
+/* damping.h - region damping (fastlsm eq. 14): each region's rigid velocity, averaged over the
  * regions of a particle, pulls the particle's velocity towards it. */
+#ifndef LSM_DAMPING_H
+#define LSM_DAMPING_H
+
 #include "../lib/simd/rigid_lanes.h"
-#include "step.h"
-#include "sums/sums.h"
+#include "match.h"
 
 /* (omega, v_r - omega x c_r) of `tiles` tiles. */
-static void solve(Lsm *lsm, int layer, long tile, int tiles, vec (*sum)[12], real *down,
-                  SmLaps *laps)
+SM_INLINE void damp_tiles(const Lsm *lsm, long tile, int tiles, vec (*sum)[12], real *down)
 {
-    (void)layer, (void)laps;
     for (int t = 0; t < tiles; t++, tile++, down += TILE_DOWN) {
         vec c[3], out[6];
         load3(lsm->centre + tile * 3 * SM_LANES, c);
@@ -18,7 +18,8 @@ static void solve(Lsm *lsm, int layer, long tile, int tiles, vec (*sum)[12], rea
     }
 }
 
-static void slow_down(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *laps)
+/* v += k (u - v), x += v. */
+SM_INLINE void damp_blocks(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *laps)
 {
     for (int i = 0; i < blocks; i++, block++) {
         const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
@@ -33,9 +34,4 @@ static void slow_down(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *l
     sm_lap(laps, SM_DAMPING);
 }
 
-void lsm_damp(Lsm *lsm, SmLaps *laps)
-{
-    static const LsmPass damping = {
-        .plain = true, .stage = SM_DAMPING, .solve = solve, .end = slow_down};
-    lsm_run(lsm, &damping, laps);
-}
+#endif
