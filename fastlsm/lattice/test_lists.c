@@ -1,0 +1,384 @@
+/* Lists of regions (subsum_lists.h): what they name when they are built, after any changes
+ * (list_allocator.h), and as rows made from their neighbours' (running_lists.h). */
+#include "list_allocator.h"
+#include "running_lists.h"
+
+#include "../../lib/error.h"
+#include "../../lib/test_frame.h"
+#include "../../lib/voxel/test_bodies.h"
+
+enum { WINDOW = LSM_MAX_SIDE * LSM_MAX_SIDE, PLATE = 6 };
+
+/* A body some of whose particles have lists, and what each region is to list. */
+typedef struct {
+    SmVoxels voxels;
+    LsmLattice lattice;
+    LsmInterior interior;
+    int w, side, layers;
+    int *slot, *layer_plane;  /* [particles], [layers + 1] */
+    long regions, *centre;    /* [regions] particle */
+    uint64_t (*rows)[WINDOW]; /* [regions] */
+    LsmLists lists;
+    LsmListAllocator allocator;
+} Listed;
+
+static void build_lists(Listed *b)
+{
+    LsmListsBuilder *builder = lsm_lists_open(&b->lattice, b->slot, b->w);
+    for (long r = 0; r < b->regions; r++) lsm_lists_add(builder, b->centre[r], b->rows[r]);
+    lsm_lists_close(builder, &b->lists);
+    assert_int_equal(b->lists.region_count, b->regions);
+}
+
+/* A body of a kind of test_bodies.h, or a plate on which runs are at their longest; of layers of
+ * one to four planes. About `share` of the regions, at least one, have lists. */
+static void listed_open(unsigned *seed, int kind, int w, double share, Listed *b)
+{
+    *b = (Listed){.w = w, .side = 2 * w + 1};
+    if (kind == PLATE)
+        random_block(seed, (const int[3]){24, 20, 2}, 1, 1, &b->voxels);
+    else
+        random_body(seed, kind, 9, &b->voxels);
+    lsm_lattice_build(&b->voxels, &b->lattice);
+    lsm_interior_build(&b->lattice, w, &b->interior);
+    size_t n = (size_t)b->lattice.count;
+    int planes = b->lattice.size[2];
+    b->slot = sm_alloc(n, sizeof *b->slot);
+    b->layer_plane = sm_alloc((size_t)planes + 1, sizeof *b->layer_plane);
+    b->centre = sm_alloc(n, sizeof *b->centre);
+    b->rows = sm_alloc(n, sizeof *b->rows);
+    for (int z = 0; z < planes; z = b->layer_plane[b->layers]) {
+        z += 1 + random_int(seed, 4);
+        b->layer_plane[++b->layers] = z < planes ? z : planes;
+    }
+    for (long p = 0, slot = 0; p < b->lattice.count; p++, slot++) {
+        slot += random_int(seed, 2);
+        b->slot[p] = (int)slot;
+        if (p && random_unit(seed) >= share) continue;
+        lsm_region_rows(&b->lattice, &b->interior, p, b->rows[b->regions]);
+        b->centre[b->regions++] = p;
+    }
+    build_lists(b);
+}
+
+static void listed_free(Listed *b)
+{
+    lsm_lists_free(&b->lists);
+    lsm_interior_free(&b->interior);
+    lsm_lattice_free(&b->lattice);
+    sm_voxels_free(&b->voxels);
+    free(b->slot);
+    free(b->layer_plane);
+    free(b->centre);
+    free(b->rows);
+}
+
+static int layer_of(const Listed *b, int z)
+{
+    int layer = 0;
+    while (b->layer_plane[layer + 1] <= z) layer++;
+    return layer;
+}
+
+/* The row that place i of a list names, or 0. */
+static int named_at(const int *list, int i)
+{
+    assert_int_equal(list[i] % LSM_NAME, 0);
+    return list[i] / LSM_NAME;
+}
+
+/* The row is one of the layer of plane z, and in use. */
+static void assert_row_of(const Listed *b, int row, const long *plane, const long *end, int z)
+{
+    int layer = layer_of(b, z), behind = b->layer_plane[layer + 1];
+    assert_in_range(row, plane[b->layer_plane[layer]], end[behind] - 1);
+    assert_true(end[behind] <= plane[behind]);
+}
+
+/* The bar of a region at offsets (b, c) holds the particles `bits`, each at its place. */
+static void assert_bar(const Listed *body, const int *bar, const int centre[3], int b, int c,
+                       uint64_t bits)
+{
+    for (int i = 0; i < body->side; i++) {
+        long p =
+            lsm_lattice_find(&body->lattice, centre[0] + i - body->w, centre[1] + b, centre[2] + c);
+        assert_int_equal(named_at(bar, i), bits >> i & 1 ? body->slot[p] + 1 : 0);
+    }
+}
+
+static void assert_region(const Listed *b, long r)
+{
+    const LsmLists *l = &b->lists;
+    const int *at = b->lattice.coord[b->centre[r]];
+    for (int c = 0; c < b->side; c++) {
+        int plate = named_at(l->region + r * b->side, c), z = at[2] + c - b->w;
+        if (plate) assert_row_of(b, plate, l->plate_plane, l->plate_end, z);
+        for (int i = 0; i < b->side; i++) {
+            int bar = named_at(l->plate + (long)plate * b->side, i);
+            if (bar) assert_row_of(b, bar, l->bar_plane, l->bar_end, z);
+            assert_bar(b, l->bar + (long)bar * b->side, at, i - b->w, c - b->w,
+                       b->rows[r][c * b->side + i]);
+        }
+    }
+}
+
+static int row_side; /* of what compare_rows() sorts */
+static int compare_rows(const void *a, const void *b)
+{
+    return memcmp(a, b, (size_t)row_side * sizeof(int));
+}
+
+/* Row 0 names nothing, as does every row that nothing names; the others all differ. Returns how
+ * many these are. */
+static long assert_rows(const int *list, int side, long count, const int *naming, long names)
+{
+    bool *used = sm_alloc((size_t)count, sizeof *used);
+    int *rows = sm_alloc((size_t)(count * side), sizeof *rows);
+    long in_use = 0;
+    for (long i = 0; i < names; i++) used[naming[i] / LSM_NAME] = true;
+    for (long r = 0; r < count; r++) {
+        for (int i = 0; i < side && (r == 0 || !used[r]); i++)
+            assert_int_equal(list[r * side + i], 0);
+        if (r && used[r])
+            memcpy(rows + in_use++ * side, list + r * side, (size_t)side * sizeof *rows);
+    }
+    row_side = side;
+    qsort(rows, (size_t)in_use, (size_t)side * sizeof *rows, compare_rows);
+    for (long r = 1; r < in_use; r++)
+        assert_true(compare_rows(rows + (r - 1) * side, rows + r * side) < 0);
+    free(used);
+    free(rows);
+    return in_use;
+}
+
+/* Returns how many bars and plates are in use. */
+static long assert_lists(const Listed *b)
+{
+    const LsmLists *l = &b->lists;
+    for (long r = 0; r < b->regions; r++) assert_region(b, r);
+    return assert_rows(l->bar, b->side, l->bar_count, l->plate, l->plate_count * b->side) +
+           assert_rows(l->plate, b->side, l->plate_count, l->region, b->regions * b->side);
+}
+
+TEST(lists_name_the_members_of_regions_once)
+{
+    unsigned seed = 1;
+    for (int trial = 0; trial < 48; trial++) {
+        Listed b;
+        listed_open(&seed, trial % 6, 1 + trial / 6 % 4, trial % 5 ? 1 : 0.4, &b);
+        /* built without spare rows: all are in use but row 0 */
+        assert_int_equal(assert_lists(&b), b.lists.bar_count + b.lists.plate_count - 2);
+        listed_free(&b);
+    }
+}
+
+/* What region r is to list from now on: its members, or some of them, or of all that its window
+ * holds; some regions lose them all. */
+static void choose_rows(unsigned *seed, const Listed *b, long r, uint64_t *rows)
+{
+    const int *at = b->lattice.coord[b->centre[r]];
+    int way = random_int(seed, 8), row = random_int(seed, b->side * b->side);
+    if (way < 6) lsm_region_rows(&b->lattice, &b->interior, b->centre[r], rows);
+    for (int i = 0; i < b->side * b->side; i++) {
+        uint64_t any = (uint64_t)rand_r(seed) << 16 ^ (uint64_t)rand_r(seed);
+        if (way == 6)
+            rows[i] =
+                any & lsm_window(&b->lattice, b->lattice.bits, at[0], at[1] + i % b->side - b->w,
+                                 at[2] + i / b->side - b->w, b->w);
+        if ((way < 4 && i == row) || (way == 4 && i > row)) rows[i] &= any;
+        if (way == 7) rows[i] = 0;
+    }
+}
+
+/* Every row counts those that name it, and where there are none waits for the next one of its
+ * layer.
+ */
+static void assert_store(const Listed *b, const LsmRowStore *store, const int *naming, long names)
+{
+    int *uses = sm_alloc((size_t)store->limit[b->lists.planes], sizeof *uses);
+    for (long i = 0; i < names; i++) uses[naming[i] / LSM_NAME]++;
+    for (int l = 0; l < b->layers; l++) {
+        long first = store->limit[b->layer_plane[l]], unused = 0;
+        int behind = b->layer_plane[l + 1];
+        for (long r = first; r < store->end[behind]; r++) {
+            assert_int_equal(store->uses[r], uses[r]);
+            unused += !uses[r];
+        }
+        for (int r = store->free_row[behind]; r; r = store->next[r], unused--)
+            assert_true(r >= first && r < store->end[behind] && !uses[r]);
+        assert_int_equal(unused, 0);
+    }
+    free(uses);
+}
+
+static void assert_allocator(const Listed *b)
+{
+    const LsmLists *l = &b->lists;
+    assert_lists(b);
+    assert_store(b, &b->allocator.bars, l->plate, l->plate_count * b->side);
+    assert_store(b, &b->allocator.plates, l->region, b->regions * b->side);
+}
+
+/* Is some layer out of rows of a kind? */
+static bool some_layer_is_full(const Listed *b, const LsmRowStore *store)
+{
+    for (int l = 0; l < b->layers; l++) {
+        int behind = b->layer_plane[l + 1];
+        if (store->end[behind] == store->limit[behind] && !store->free_row[behind]) return true;
+    }
+    return false;
+}
+
+static void open_allocator(Listed *b, long spare)
+{
+    long bars = b->lists.bar_count, plates = b->lists.plate_count;
+    lsm_allocator_open(&b->lists, b->layers, b->layer_plane, spare, &b->allocator);
+    assert_true(b->lists.bar_count >= bars + b->layers * spare);
+    assert_true(b->lists.plate_count >= plates + b->layers * spare);
+    assert_allocator(b);
+}
+
+/* As many changes one after the other; where a layer is full the lists are built anew. Returns how
+ * often. */
+static int change_lists(unsigned *seed, Listed *b, int changes, long spare)
+{
+    int rebuilt = 0;
+    open_allocator(b, spare);
+    for (int i = 0; i < changes; i++) {
+        long r = random_int(seed, (int)b->regions);
+        choose_rows(seed, b, r, b->rows[r]);
+        if (!lsm_allocator_revise(&b->allocator, &b->lists, &b->lattice, b->slot, b->centre[r], r,
+                                  b->rows[r])) {
+            assert_true(some_layer_is_full(b, &b->allocator.bars) ||
+                        some_layer_is_full(b, &b->allocator.plates));
+            lsm_allocator_free(&b->allocator);
+            lsm_lists_free(&b->lists);
+            build_lists(b);
+            open_allocator(b, spare);
+            rebuilt++;
+        }
+        if (i % 8 == 0) assert_allocator(b);
+    }
+    assert_allocator(b);
+    return rebuilt;
+}
+
+TEST(lists_that_change_name_what_they_should)
+{
+    unsigned seed = 2;
+    int rebuilt = 0;
+    for (int trial = 0; trial < 36; trial++) {
+        Listed b;
+        listed_open(&seed, trial % 6, 1 + trial / 6 % 3, trial % 5 ? 1 : 0.4, &b);
+        rebuilt += change_lists(&seed, &b, 100, trial % 4 * 8);
+        /* when all list what they first did, no more rows are in use than then */
+        for (long r = 0; r < b.regions; r++) {
+            lsm_region_rows(&b.lattice, &b.interior, b.centre[r], b.rows[r]);
+            if (!lsm_allocator_revise(&b.allocator, &b.lists, &b.lattice, b.slot, b.centre[r], r,
+                                      b.rows[r]))
+                break;
+            if (r + 1 < b.regions) continue;
+            long in_use = assert_lists(&b);
+            lsm_lists_free(&b.lists);
+            build_lists(&b);
+            assert_int_equal(in_use, assert_lists(&b));
+        }
+        lsm_allocator_free(&b.allocator);
+        listed_free(&b);
+    }
+    assert_in_range(rebuilt, 20, 1000);
+}
+
+/* The sum of a row's members, and their moment about its centre. */
+static void sum_list(const int *list, int side, const int *value, long *sum, long *moment)
+{
+    *sum = *moment = 0;
+    for (int i = 0; i < side; i++) {
+        *sum += value[list[i] / LSM_NAME];
+        *moment += (i - side / 2) * (long)value[list[i] / LSM_NAME];
+    }
+}
+
+/* A row's base, as running_lists.h says, moved on and with its terms. */
+static void assert_running_row(const LsmRunningList *running, const int *list, int side, long r,
+                               const int *value)
+{
+    double factor[LSM_FACTORS][2];
+    long sum = 0, moment = 0, want, want_moment, base = running->base[r] / 2;
+    lsm_running_factors(side / 2, factor);
+    if (base) sum_list(list + base * side, side, value, &sum, &moment);
+    if (running->base[r] % 2) moment -= sum;
+    assert_true(running->first[r + 1] > running->first[r]);
+    assert_int_equal((running->first[r + 1] - running->first[r]) % 2, 0);
+    for (int t = running->first[r]; t < running->first[r + 1]; t++) {
+        const LsmTerm *term = &running->term[t];
+        sum += (long)factor[term->factor][0] * value[term->row];
+        moment += (long)factor[term->factor][1] * value[term->row];
+    }
+    sum_list(list + r * side, side, value, &want, &want_moment);
+    assert_int_equal(sum, want);
+    assert_int_equal(moment, want_moment);
+}
+
+/* No run is longer than it may be; returns how many rows have a base. `list` counts
+ * from row 0, and its rows name some of `members`. */
+static long assert_running(unsigned *seed, const LsmRunningList *running, const int *list, int side,
+                           long members)
+{
+    long based = 0;
+    int *value = sm_alloc((size_t)members, sizeof *value);
+    int *length = sm_alloc((size_t)running->rows, sizeof *length);
+    for (long i = 1; i < members; i++) value[i] = random_int(seed, 2001) - 1000;
+    for (long r = 1; r < running->rows; r++) {
+        long base = running->base[r] / 2;
+        assert_running_row(running, list, side, r, value);
+        assert_true(base < r);
+        length[r] = length[base] + 1; /* of none: 0 */
+        assert_true(length[r] <= LSM_RUN_MOST);
+        based += base > 0;
+    }
+    free(value);
+    free(length);
+    return based;
+}
+
+static void assert_same_layers(const Listed *b, const LsmRunningList *running, const long *plane)
+{
+    for (int l = 0; l < b->layers; l++)
+        for (long r = plane[b->layer_plane[l]]; r < plane[b->layer_plane[l + 1]]; r++)
+            if (running->base[r]) assert_true(running->base[r] / 2 >= plane[b->layer_plane[l]]);
+}
+
+TEST(running_lists_sum_what_lists_do)
+{
+    unsigned seed = 3;
+    long rows = 0, based = 0;
+    for (int trial = 0; trial < 35; trial++) {
+        Listed b;
+        LsmRunningLists running;
+        listed_open(&seed, trial % 7, 2 + trial / 7, 1, &b);
+        const LsmLists *l = &b.lists;
+        int *region = sm_alloc((size_t)((b.regions + 1) * b.side), sizeof *region);
+        memcpy(region + b.side, l->region, (size_t)(b.regions * b.side) * sizeof *region);
+        lsm_running_lists_build(&b.lattice, l, b.layers, b.layer_plane, &running);
+        assert_int_equal(running.bar.rows, l->bar_count);
+        assert_int_equal(running.plate.rows, l->plate_count);
+        assert_int_equal(running.region.rows, b.regions + 1);
+        based +=
+            assert_running(&seed, &running.bar, l->bar, b.side, b.slot[b.lattice.count - 1] + 2);
+        based += assert_running(&seed, &running.plate, l->plate, b.side, l->bar_count);
+        based += assert_running(&seed, &running.region, region, b.side, l->plate_count);
+        assert_same_layers(&b, &running.bar, l->bar_plane);
+        assert_same_layers(&b, &running.plate, l->plate_plane);
+        for (long p = 0; p < b.regions; p++)
+            if (running.region.base[p + 1])
+                assert_int_equal(
+                    layer_of(&b, b.lattice.coord[running.region.base[p + 1] / 2 - 1][2]),
+                    layer_of(&b, b.lattice.coord[p][2]));
+        rows += running.bar.rows + running.plate.rows + running.region.rows;
+        lsm_running_lists_free(&running);
+        free(region);
+        listed_free(&b);
+    }
+    assert_true(2 * based > rows);
+}
