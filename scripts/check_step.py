@@ -12,7 +12,7 @@ rest shapes of a plastic body begin at 1 with step 0 and flow from record to rec
 the yield to rounding, it may or may not). Prints the largest deviations in (finest) cells, of rest shapes
 in their unit; velocities count as what they move in a step, and are compared after the last step only,
 because the others hold the next step's pushes already. Where a step is damped, particles of regions whose
-inertia the precision does not resolve (unresolved() below, the rule of bench/check/check.h) may end elsewhere by
+inertia the precision does not resolve (unresolved() below, the rule of bench/check/step_check.h) may end elsewhere by
 more than the tolerance, by what rounding does to damping; they are counted and their deviation is given apart.
 Particles that follow a handle or end within a
 thousandth of a cell of an obstacle are compared in their goals only, and so is a record after which the next
@@ -374,7 +374,7 @@ def rigid_velocity(body, x, v, cell, precision):
 def unresolved(body, x, cell, precision):
     """What rounding may make of particles' rigid velocities, relative, of those whose regions' inertia is not
     128 times what rounding of sums about the body's middle may do to it, or that may be as thin as a line; 2
-    where rounding decides whether a region is solid: `known` of bench/check/check.h. An octree's sums may be
+    where rounding decides whether a region is solid: `known` of bench/check/step_check.h. An octree's sums may be
     about nearer places (octree/region/frames.h), and then rounding is less."""
     epsilon, thinnest = rounding(precision)
     at, found = (x - x.mean(0)) / cell, np.zeros(len(x))

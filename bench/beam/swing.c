@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../check/check.h"
+#include "../check/runner_check.h"
 #include "../engines.h"
 #include "clamped_beam.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../campaign/campaign_run.h"
-#include "../check/check.h"
+#include "../check/runner_check.h"
 #include "../engines.h"
 #include "../store/h5.h"
 

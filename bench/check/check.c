@@ -171,7 +171,7 @@ static void find_goal_error(const double (*g)[3], const double (*exact)[3], cons
     }
 }
 
-double bench_check_drift(const double (*x)[3], const double (*g)[3], const double *m, long count)
+double bench_check_momentum(const double (*x)[3], const double (*g)[3], const double *m, long count)
 {
     double mass = 0, centre[3] = {0}, drift[3] = {0}, spread = 0;
     for (long p = 0; p < count; p++) {
@@ -312,7 +312,7 @@ BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *ty
         bench_check_tied(check, type->precision, at, tied);
         find_goal_error(goal, (const double(*)[3])exact, tied, count, check->body->voxels.cell,
                         &result);
-        double drift = bench_check_drift(at, goal, check->mass, count);
+        double drift = bench_check_momentum(at, goal, check->mass, count);
         result.momentum_error = fmax(result.momentum_error, drift);
     }
     free(x);

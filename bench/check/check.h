@@ -1,16 +1,14 @@
-/* check.h - are the goals, the damping, the contacts and what obstacles do of an engine's present
- * state right? Held to brute force in double precision: lattice engines to reference/brute.h, the
- * octree to reference/octree_goals.h, both to reference/brute_collide.h and
- * reference/brute_obstacle.h. A plastic body's goals are those of the rest shapes that it has;
- * whether they flow as they should is a check of its own, over a step.
- */
+/* check.h - are the goals of an engine's present state right? Held to brute force in double
+ * precision: lattice engines to reference/brute.h, the octree to reference/octree_goals.h. A
+ * plastic body's goals are those of the rest shapes that it has; whether they flow as they should
+ * is a check of its own, over a step. And what all checks find (also step_check.h,
+ * contact_check.h), with what of it is allowed. */
 #ifndef BENCH_CHECK_H
 #define BENCH_CHECK_H
 
 #include "../../reference/brute.h"
 #include "../../reference/octree_goals.h"
 #include "../play/runner.h"
-#include "drift.h"
 
 typedef struct {
     const BenchBody *body; /* the caller's, kept */
@@ -24,6 +22,14 @@ typedef struct {
     RefRegions regions;    /* of a lattice */
     RefTreeBody octree;
 } BenchCheck;
+
+/* What rounding makes of the momenta of a body left alone (step_check.h); of the body where it is
+ * largest. */
+typedef struct {
+    long steps;     /* that it was left alone; 0: not tried */
+    double linear;  /* change of its centre's velocity: cells a step, each step */
+    double angular; /* of its angular momentum over sum m r^2: radians a step, each step */
+} BenchDrift;
 
 /* What was found, of all instances. */
 typedef struct {
@@ -96,61 +102,10 @@ void bench_check_free(BenchCheck *check);
 BenchDeviation bench_check_state(const BenchCheck *check, const SmEngineType *type,
                                  SmEngine *engine);
 
-/* Adds the check of damping to `found`, if the scene has any: puts the state of `engine` into
- * others built alike, but at no handles and obstacles, steps one, and compares velocities to eq.
- * 14's in double precision from the same goals, which another one finds. Where a precision does not
- * know a region's inertia, eq. 14 is damped by the rule that engines have (brute.h, RefSums).
- *
- * What is allowed, of the largest velocity, is 16 epsilon + k (known + 8 epsilon f +
- * 4 sqrt(epsilon n f)) of a particle's worst region, and what double precision loses of g - x at
- * large coordinates: the rounding of the inertia, of its inversion, and of omega x x - omega x c.
- * With the rule's noise, n = noise / J and f = tr(S) / J for the least inertia J, and `known` is n;
- * 2 n from 1/128 to 1/32, where it may be left out or not; and n f of what is no solid. Rounding
- * decides alone which of the two a region is where 1 / tr(I^-1) is between half of the rule's bound
- * and four times that. Those regions' particles, and those that the check of goals leaves out, may
- * be as far off as the whole of damping moves them, 2 k; but they are left out, counted, and their
- * error is given only if the step takes them elsewhere by more than bench_check_step().
- * scripts/check_step.py has the same rule for recorded steps. */
-void bench_check_damping(const BenchCheck *check, const BenchScene *scene, const SmEngineType *type,
-                         SmEngine *engine, BenchDeviation *found);
-
-/* Adds the check of contacts, of bodies with each other and with themselves, to `found`, if the
- * scene has any; calls engine->goals(). Cells are described anew, of an octree from the engine's
- * structure; its cells' turns are held to regions' rotations where these are unique. Every contact
- * of a node with a cell that either has must be the other's too, and alike in depth, direction and
- * weights, unless it is so for a node within the tolerance of this one; what lib/collide/collide.h
- * says may be missed may be. Of bodies of more than BENCH_CONTACT_PAIRS pairs of a node and a cell
- * as many nodes are compared as make that: half of those from nodes that the engine has contacts
- * of, the others spread over the surface. */
-void bench_check_contacts(const BenchCheck *check, const BenchScene *scene,
-                          const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
-
-/* Adds the check of obstacles to `found`, if the scene has any: the state of `engine` is stepped
- * once with them and once without, at no handles and contacts, and the one must be what
- * reference/brute_obstacle.h makes of the other, within the rounding of coordinates, or of a
- * particle that is elsewhere by no more than that. */
-void bench_check_obstacles(const BenchCheck *check, const BenchScene *scene,
-                           const SmEngineType *type, SmEngine *engine, BenchDeviation *found);
-
-/* A step without handles, obstacles and contacts: how far, in cells, a particle's end of it is from
- * eqs. 1 (of an undamped body) and 2 of fastlsm in double precision from the engine's goals.
- * Infinite if not finite. */
-double bench_check_motion(const BenchRunner *runner);
-
 /* Momentum's error of one body's goals, and whether it is small enough; says so otherwise. */
-double bench_check_drift(const double (*x)[3], const double (*g)[3], const double *m, long count);
+double bench_check_momentum(const double (*x)[3], const double (*g)[3], const double *m,
+                            long count);
 bool bench_check_keeps(double momentum_error, size_t size, char *reason);
-
-/* Goals, damping, contacts, obstacles and momentum of the runner's present state, and whether all
- * are within their tolerances; `reason` says what is not. */
-bool bench_check_all(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *found,
-                     size_t size, char *reason);
-
-/* The same, motion, and that what handles hold is where they hold it (the runner has stepped, or
- * nothing is held): of what is measured without a row. The state does not change. Where regions
- * have more than BENCH_MOST_MEMBERS, goals are held to momentum alone. False, and `reason` says so.
- */
-bool bench_check_runner(const BenchRunner *runner, size_t size, char *reason);
 
 /* Rotations of the regions of all instances at x (mesh units), an octree's; ties go to the
  * identity. */
@@ -199,8 +154,6 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst);
 /* What was found for people: "goals within 2e-06 cells of brute force, ..." */
 void bench_check_text(const BenchDeviation *found, size_t size, char *text);
 
-#define BENCH_CONTACT_PAIRS      3e7
-#define BENCH_CONTACT_TOLERANCE  1e-6 /* cells; engines find contacts in double precision */
 #define BENCH_TURN_TOLERANCE     5e-4 /* engines keep rotations to 1/16384 */
 #define BENCH_MOMENTUM_TOLERANCE 1e-6
 #define BENCH_LEFT_OUT           0.25

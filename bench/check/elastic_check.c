@@ -306,39 +306,13 @@ void bench_elastic_check_body(const RefElastic *elastic, BenchElasticFound *foun
 
 /* ---- a state of motion */
 
-/* Amplitudes, their velocities, and where the constraints are. */
-typedef struct {
-    double *z, *speed;
-    double (*target)[3]; /* [holds] */
-} State;
-
-static State keep(const RefMotion *motion)
+/* The modes' amplitudes and then their velocities; the caller frees. */
+static double *state_of(const BenchRunner *runner)
 {
-    size_t modes = (size_t)motion->modes;
-    State kept = {sm_alloc(modes, sizeof(double)), sm_alloc(modes, sizeof(double)),
-                  sm_alloc((size_t)motion->holds, sizeof(double[3]))};
-    for (int c = 0; c < motion->holds; c++)
-        memcpy(kept.target[c], motion->hold[c].target, sizeof kept.target[c]);
-    memcpy(kept.z, motion->z, modes * sizeof(double));
-    memcpy(kept.speed, motion->speed, modes * sizeof(double));
-    return kept;
-}
-
-/* The targets only where `targets` says so. */
-static void put_back(const State *kept, bool targets, RefMotion *motion)
-{
-    for (int c = 0; c < motion->holds && targets; c++)
-        memcpy(motion->hold[c].target, kept->target[c], sizeof kept->target[c]);
-    memcpy(motion->z, kept->z, (size_t)motion->modes * sizeof(double));
-    memcpy(motion->speed, kept->speed, (size_t)motion->modes * sizeof(double));
-    ref_motion_pose(motion);
-}
-
-static void let_go(State *kept)
-{
-    free(kept->target);
-    free(kept->z);
-    free(kept->speed);
+    long size = runner->type->get_state(runner->engine, NULL);
+    double *state = sm_alloc((size_t)size, sizeof *state);
+    runner->type->get_state(runner->engine, state);
+    return state;
 }
 
 /* Where the displacements are small, warping turns nothing. */
@@ -495,21 +469,27 @@ void bench_elastic_check_state(BenchRunner *runner, BenchElasticFound *found)
 {
     RefElastic *elastic = ref_meshless_elastic(runner->engine);
     RefMotion *motion = &elastic->motion;
-    State before = keep(motion);
+    double *before = state_of(runner),
+           (*target)[3] = sm_alloc((size_t)motion->holds, sizeof *target);
     double time = runner->time, h = runner->scene->params.h, mass = 0;
+    for (int c = 0; c < motion->holds; c++)
+        memcpy(target[c], motion->hold[c].target, sizeof *target);
     for (int c = 0; c < elastic->body.matrices.mass.columns; c++)
         mass += elastic->body.matrices.mass.value[elastic->body.matrices.mass.start[c]];
     check_pose(elastic, found);
-    put_back(&before, true, motion);
+    runner->type->set_state(runner->engine, before);
     bench_runner_step(runner, NULL);
     check_held(motion, found);
     check_skin(elastic, found);
-    State after = keep(motion);
-    put_back(&before, false, motion);
-    compare_step(elastic, h, 1e-5 * motion->size * sqrt(mass), after.speed, found);
+    double *after = state_of(runner);
+    runner->type->set_state(runner->engine, before); /* with the step's targets */
+    compare_step(elastic, h, 1e-5 * motion->size * sqrt(mass), after + motion->modes, found);
     check_growth(elastic, h, found);
-    put_back(&before, true, motion);
+    for (int c = 0; c < motion->holds; c++)
+        memcpy(motion->hold[c].target, target[c], sizeof *target);
+    runner->type->set_state(runner->engine, before);
     runner->time = time;
-    let_go(&before);
-    let_go(&after);
+    free(before);
+    free(after);
+    free(target);
 }

@@ -4,7 +4,8 @@
 #include "../../lib/test_frame.h"
 #include "../../lib/test_random.h"
 #include "../play/runner.h"
-#include "check.h"
+#include "contact_check.h"
+#include "step_check.h"
 
 enum { LONG = 24, WIDE = 6 };
 

@@ -201,15 +201,15 @@ bool bench_tree_check_distances(const OctReach *reach, int source, char reason[B
 {
     const OctGraph *graph = reach->graph;
     for (long i = 0; i < graph->leaves; i++) {
-        bool reached = reach->distance[i] != OCT_FAR, way = i == source;
+        bool reached = reach->distance[i] != OCT_FAR, path = i == source;
         for (long e = graph->first[i]; e < graph->first[i + 1]; e++) {
             int from = reach->distance[graph->to[e]];
             if (from == OCT_FAR) continue;
             if (!reached || from + graph->length[e] < reach->distance[i])
                 return fail(reason, "a distance is not the shortest", source, i);
-            way = way || from + graph->length[e] == reach->distance[i];
+            path = path || from + graph->length[e] == reach->distance[i];
         }
-        if (reached && !way) return fail(reason, "no way has the distance", source, i);
+        if (reached && !path) return fail(reason, "no path has the distance", source, i);
     }
     return reach->distance[source] == 0 || fail(reason, "a source is not at 0", source, source);
 }

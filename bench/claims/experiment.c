@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../check/check.h"
+#include "../check/runner_check.h"
 #include "../measure/measure.h"
 
 const char *const bench_without_names[] = {"nothing", "nodes",   "bases", "summation_nodes",

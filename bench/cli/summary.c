@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "../check/check.h"
+#include "../check/runner_check.h"
+#include "../check/step_check.h"
 #include "../engines.h"
 #include "../measure/tree_row.h"
 #include "../table/explain.h"
@@ -30,10 +31,7 @@ static bool print_deviation(const BenchRunner *runner)
     BenchCheck check;
     char text[512], reason[160];
     bench_check_begin(scene, runner->body, runner->type, runner->engine, &check);
-    BenchDeviation found = bench_check_state(&check, runner->type, runner->engine);
-    bench_check_damping(&check, scene, runner->type, runner->engine, &found);
-    bench_check_contacts(&check, scene, runner->type, runner->engine, &found);
-    bench_check_obstacles(&check, scene, runner->type, runner->engine, &found);
+    BenchDeviation found = bench_check_find(&check, runner);
     if (found.finite) found.drift = bench_drift(runner);
     bench_check_text(&found, sizeof text, text);
     printf("deviation: %s\n", text);

@@ -3,7 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../check/check.h"
+#include "../check/runner_check.h"
+#include "../check/step_check.h"
 #include "checker.h"
 #include "measure.h"
 

@@ -1,6 +1,7 @@
 /* Scenes that change while they run: cut, touched, looked at. */
 #include "../../lib/test_frame.h"
-#include "../check/check.h"
+#include "../check/contact_check.h"
+#include "../check/step_check.h"
 #include "../engines.h"
 #include "../measure/change_row.h"
 #include "fields.h"

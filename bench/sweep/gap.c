@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../../octree/engine.h"
-#include "../check/check.h"
+#include "../check/runner_check.h"
 #include "../engines.h"
 #include "../play/playback.h"
 

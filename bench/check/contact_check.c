@@ -1,4 +1,5 @@
-/* check_contacts.c - the check of contacts (check.h). */
+#include "contact_check.h"
+
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +10,6 @@
 #include "../../reference/brute_collide.h"
 #include "../../reference/collision_lattice.h"
 #include "../../reference/condition.h"
-#include "check.h"
 
 /* Both sides of the comparison. */
 typedef struct {
@@ -155,18 +155,18 @@ static long compare_node(const Contacts *c, long number, long at, const RefConta
                          long count, BenchDeviation *found)
 {
     for (long next = 0;; found->contacts++) {
-        const SmContact *mine =
+        const SmContact *engine =
             at < c->count && c->contact[at].particle == number ? &c->contact[at] : NULL;
-        const RefContact *right = next < count ? &exact[next] : NULL;
-        if (!mine && !right) return at;
-        long cell = mine ? cell_number(c, mine->cell) : LONG_MAX;
-        bool missing = right && right->cell < cell, extra = !right || cell < right->cell, fine;
+        const RefContact *brute = next < count ? &exact[next] : NULL;
+        if (!engine && !brute) return at;
+        long cell = engine ? cell_number(c, engine->cell) : LONG_MAX;
+        bool missing = brute && brute->cell < cell, extra = !brute || cell < brute->cell, fine;
         if (missing)
-            fine = right->beyond || undecided(c, NULL, number, right->cell);
+            fine = brute->beyond || undecided(c, NULL, number, brute->cell);
         else if (extra)
-            fine = cell >= 0 && undecided(c, mine, number, cell);
+            fine = cell >= 0 && undecided(c, engine, number, cell);
         else
-            fine = alike(c, mine, right) || undecided(c, mine, number, cell);
+            fine = alike(c, engine, brute) || undecided(c, engine, number, cell);
         found->contacts_wrong += !fine;
         at += !missing;
         next += !extra;

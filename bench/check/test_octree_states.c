@@ -3,7 +3,8 @@
 #include "../../lib/test_frame.h"
 #include "../../octree/change/structure.h"
 #include "../../octree/region/frames.h"
-#include "check.h"
+#include "runner_check.h"
+#include "step_check.h"
 
 static const SmEngineType *const octrees[] = {&octree_engine_f32, &octree_engine_f64};
 

@@ -1,25 +1,14 @@
-/* check_motion.c - the check of a step as a whole, and of a runner's state (check.h). */
+#include "runner_check.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "../../lib/boundary.h"
 #include "../../lib/vector.h"
 #include "../engines.h"
-#include "check.h"
-#include "check_copy.h"
-
-double bench_check_motion(const BenchRunner *runner)
-{
-    SmEngineParams params = bench_engine_params(runner->scene, runner->body, 1);
-    BenchStep step;
-    params.collide = (SmCollideParams){0};
-    bench_copy_step(&params, runner->body, runner->type, runner->engine, runner->particles, &step);
-    double most = bench_copy_motion(&step, &params);
-    bench_copy_step_free(&step);
-    return most / runner->body->voxels.cell;
-}
+#include "contact_check.h"
+#include "step_check.h"
 
 /* How far a particle at x is from where the handle takes it from rest. */
 static double distance(const SmHandle *handle, const double rest[3], const double x[3])
@@ -62,13 +51,19 @@ static bool no_more_than(double found, double limit, const char *what, size_t si
     return false;
 }
 
+BenchDeviation bench_check_find(const BenchCheck *check, const BenchRunner *runner)
+{
+    BenchDeviation found = bench_check_state(check, runner->type, runner->engine);
+    bench_check_damping(check, runner->scene, runner->type, runner->engine, &found);
+    bench_check_contacts(check, runner->scene, runner->type, runner->engine, &found);
+    bench_check_obstacles(check, runner->scene, runner->type, runner->engine, &found);
+    return found;
+}
+
 bool bench_check_all(const BenchCheck *check, const BenchRunner *runner, BenchDeviation *found,
                      size_t size, char *reason)
 {
-    *found = bench_check_state(check, runner->type, runner->engine);
-    bench_check_damping(check, runner->scene, runner->type, runner->engine, found);
-    bench_check_contacts(check, runner->scene, runner->type, runner->engine, found);
-    bench_check_obstacles(check, runner->scene, runner->type, runner->engine, found);
+    *found = bench_check_find(check, runner);
     if (!bench_check_verdict(found, size, reason)) return false;
     return check->plain || bench_check_keeps(found->momentum_error, size, reason);
 }
@@ -96,8 +91,8 @@ static double drift(const BenchRunner *runner)
     runner->type->get(runner->engine, SM_GOAL, g);
     runner->type->masses(runner->engine, mass);
     for (long first = 0; first < runner->particles; first += runner->count) {
-        double error = bench_check_drift((const double(*)[3])(x + first),
-                                         (const double(*)[3])(g + first), mass, runner->count);
+        double error = bench_check_momentum((const double(*)[3])(x + first),
+                                            (const double(*)[3])(g + first), mass, runner->count);
         most = isfinite(error) ? fmax(most, error) : INFINITY;
     }
     free(x);

@@ -2,7 +2,7 @@
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
 #include "../engines.h"
-#include "../play/recording.h"
+#include "recording.h"
 
 #define SCENE                                                                                      \
     "mesh = \"shape:beam\"; particles = 600; w = 2; h = 0.01; damping = 0.3; steps_per_frame = "   \
