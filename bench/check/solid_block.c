@@ -55,8 +55,8 @@ static bool keeps_momentum(const BenchBlock *block, size_t room, char *reason)
     block->type->goals(block->engine);
     block->type->get(block->engine, SM_GOAL, g);
     block->type->masses(block->engine, mass);
-    double drift = bench_check_drift((const double(*)[3])block->x, (const double(*)[3])g, mass,
-                                     block->particles);
+    double drift = bench_check_momentum((const double(*)[3])block->x, (const double(*)[3])g, mass,
+                                        block->particles);
     free(g);
     free(mass);
     return bench_check_keeps(drift, room, reason);

@@ -9,69 +9,33 @@
 #include "../engines.h"
 #include "../measure/measure.h"
 #include "../play/runner.h"
+#include "../table/quantity.h"
 
-/* A field that is a member of the row, or one that is made of several. */
-typedef struct {
-    const char *name;
-    enum { WHOLE, NUMBER, MADE } kind;
-    size_t offset;
-} Field;
+/* Fields that are no quantity of the row, or have a confidence interval. */
+static const char *const made[] = {"total_ms",    "ns_per_particle_step", "fps",
+                                   "frame_rate",  "stage_percent",        "thirds_percent",
+                                   "cost_growth", "growth_percent"};
+enum { MADE = sizeof made / sizeof made[0] };
 
-#define WHOLE_FIELD(name, member)                                                                  \
-    {                                                                                              \
-        name, WHOLE, offsetof(BenchRow, member)                                                    \
-    }
-#define NUMBER_FIELD(name, member)                                                                 \
-    {                                                                                              \
-        name, NUMBER, offsetof(BenchRow, member)                                                   \
-    }
-
-static const Field fields[] = {
-    WHOLE_FIELD("particles", particles),
-    WHOLE_FIELD("regions", regions),
-    WHOLE_FIELD("triangles", triangles),
-    WHOLE_FIELD("bases", bases),
-    WHOLE_FIELD("parts", parts),
-    WHOLE_FIELD("splits", splits),
-    WHOLE_FIELD("unasked_splits", unasked_splits),
-    WHOLE_FIELD("bytes", bytes),
-    NUMBER_FIELD("summation_nodes", summation_nodes),
-    WHOLE_FIELD("last_particles", change.last_nodes),
-    WHOLE_FIELD("added", change.most_added),
-    WHOLE_FIELD("pieces", change.pieces),
-    NUMBER_FIELD("first_ms", change.first_ms),
-    NUMBER_FIELD("last_ms", change.last_ms),
-    NUMBER_FIELD("least_ms", change.change_ms),
-    NUMBER_FIELD("most_ms", change.change_most_ms),
-    NUMBER_FIELD("surface_ms", change.surface_ms),
-    {"total_ms", MADE, 0},
-    {"ns_per_particle_step", MADE, 0},
-    {"fps", MADE, 0},
-    {"frame_rate", MADE, 0},
-    {"stage_percent", MADE, 0},
-    {"thirds_percent", MADE, 0},
-    {"growth_percent", MADE, 0},
-    {"cost_growth", MADE, 0},
-};
-enum { FIELDS = sizeof fields / sizeof fields[0] };
-
-static const Field *find(const char *name)
+static bool is_made(const char *name)
 {
-    for (int f = 0; f < FIELDS; f++)
-        if (!strcmp(fields[f].name, name)) return &fields[f];
-    return NULL;
+    for (int f = 0; f < MADE; f++)
+        if (!strcmp(made[f], name)) return true;
+    return false;
 }
 
 bool bench_scene_field_known(const char *name)
 {
-    return find(name) != NULL;
+    return is_made(name) || bench_quantity_number(name);
 }
 
 void bench_scene_field_names(size_t size, char *names)
 {
     size_t used = 0;
-    for (int f = 0; f < FIELDS && used < size; f++)
-        used += (size_t)snprintf(names + used, size - used, "%s%s", f ? "|" : "", fields[f].name);
+    for (int f = 0; f < MADE && used < size; f++)
+        used += (size_t)snprintf(names + used, size - used, "%s%s", f ? "|" : "", made[f]);
+    if (used < size)
+        snprintf(names + used, size - used, ", or a number of a row as results/README.md lists it");
 }
 
 /* The share of some stages, given as bits, one of `points` shares. */
@@ -122,47 +86,44 @@ static void add_made(const BenchRow *row, int steps_per_frame, const char *name,
     }
 }
 
+/* Others took the processors from what the field is of: the frames of a scene that changes, or its
+ * steps. */
+static bool is_busy(const BenchRow *row, const char *name, const BenchField *field,
+                    BenchCurve *curve)
+{
+    bool frames = field ? field->offset >= offsetof(BenchRow, change) &&
+                              field->offset < offsetof(BenchRow, elastic)
+                        : !strcmp(name, "cost_growth");
+    bool time = field ? field->timed != NULL : strcmp(name, "growth_percent") != 0;
+    if (!time || !(frames ? bench_row_frames_busy(row) : row->busy)) return false;
+    curve->busy = true;
+    if (frames)
+        bench_curve_fail(curve, "others took its processors from its frames (load average %.1f)",
+                         row->load);
+    else
+        bench_curve_fail(curve, "others took %.0f%% of its processors (load average %.1f)",
+                         row->lost_percent, row->load);
+    return true;
+}
+
 /* Fills the curve from a row; it has `steps_per_frame` of its scene. */
 static void fill_curve(const BenchRow *row, int steps_per_frame, const char *name,
                        BenchCurve *curve)
 {
-    const Field *field = find(name);
+    const BenchField *field = is_made(name) ? NULL : bench_quantity_number(name);
     char y_name[96];
     snprintf(y_name, sizeof y_name, "%s of %.30s", name, row->scene);
     bench_curve_begin(curve, "place in the list", y_name);
     if (!row->valid) {
         bench_curve_fail(curve, "%s is INVALID: %s", row->scene, row->reason);
+    } else if (is_busy(row, name, field, curve)) {
         return;
-    }
-    size_t length = strlen(name);
-    bool time = field->kind == MADE ? strcmp(name, "growth_percent") != 0
-                                    : length > 3 && !strcmp(name + length - 3, "_ms");
-    bool frames = !strcmp(name, "cost_growth") ||
-                  (field->kind == NUMBER && field->offset >= offsetof(BenchRow, change));
-    if (time && frames && bench_row_frames_busy(row)) {
-        curve->busy = true;
-        bench_curve_fail(curve, "others took its processors from its frames (load average %.1f)",
-                         row->load);
-        return;
-    }
-    if (time && !frames && row->busy) {
-        curve->busy = true;
-        bench_curve_fail(curve, "others took %.0f%% of its processors (load average %.1f)",
-                         row->lost_percent, row->load);
-        return;
-    }
-    if (field->kind == MADE) {
+    } else if (!field) {
         add_made(row, steps_per_frame, name, curve);
-        return;
+    } else {
+        double value = bench_record_number(field, row);
+        bench_curve_add(curve, 0, value, value, value);
     }
-    double value;
-    long whole;
-    if (field->kind == WHOLE) {
-        memcpy(&whole, (const char *)row + field->offset, sizeof whole);
-        value = (double)whole;
-    } else
-        memcpy(&value, (const char *)row + field->offset, sizeof value);
-    bench_curve_add(curve, 0, value, value, value);
 }
 
 static SmCode measure_row(BenchLab *lab, BenchScene *scene, BenchRow *row, SmError *error)

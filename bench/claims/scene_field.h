@@ -1,11 +1,11 @@
 /* scene_field.h - the experiment "scene": one field of a measured row (row.h) as a curve.
  *
- * Fields: particles, regions, triangles, bases, parts, splits, unasked_splits, summation_nodes,
- * bytes; total_ms, fps (steps a second), frame_rate (frames a second, the scene's steps_per_frame
- * steps each), ns_per_particle_step; stage_percent (a point for every stage), thirds_percent
- * (summation with matching, polar, damping); of scenes that change last_particles, added,
- * growth_percent (of particles), pieces, first_ms, last_ms, cost_growth (last_ms / first_ms),
- * least_ms, most_ms (resampling), surface_ms. */
+ * A field is any number of a row: by the name that a results file has for it (of a scene that
+ * changes without "change."), that of its CSV column, or that of papers.cfg ("added", "most_ms").
+ * Further ones: total_ms, fps (steps a second), frame_rate (frames a second, the scene's
+ * steps_per_frame steps each) and ns_per_particle_step, with confidence intervals; stage_percent (a
+ * point for every stage), thirds_percent (summation with matching, polar, damping); of scenes that
+ * change growth_percent (of particles) and cost_growth (last_ms / first_ms). */
 #ifndef BENCH_SCENE_FIELD_H
 #define BENCH_SCENE_FIELD_H
 
@@ -13,7 +13,7 @@
 
 bool bench_scene_field_known(const char *name);
 
-/* All names, separated by |. */
+/* What fields there are, for people: the further ones, and where the others are listed. */
 void bench_scene_field_names(size_t size, char *names);
 
 /* "hand octree without nodes": the scene, and its engine and what it is without, where said. */

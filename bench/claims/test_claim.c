@@ -87,7 +87,7 @@ TEST(mistakes_are_named_with_their_line)
         {"w = {", "scene = \"beam\"; w = {", "my.cfg:2:", "'scene' is not of this"},
         {"experiment = \"sums\"; w = { from = 1; to = 8; points = 4; };",
          "experiment = \"scene\"; scene = \"hand\"; field = \"x\";",
-         "my.cfg:2:", "one of particles|regions|"},
+         "my.cfg:2:", "or a number of a row"},
         {"value = 3.0;", "", "my.cfg:2:", "no value"},
         {"value = 3.0;", "value = 3.0; number = \"x\";", "my.cfg:2:", "give one of them"},
         {"value = 3.0;", "number = \"x\";", "my.cfg:2:", "has no number 'x'"},

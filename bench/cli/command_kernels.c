@@ -20,7 +20,7 @@ typedef struct {
     int repeats;
     BenchPrecision precision;
     SmLayout layout;
-    BenchKernelFormat format;
+    BenchFormat format;
     bool scaling, list;
 } Options;
 
@@ -63,8 +63,7 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, scaling)},
     {BENCH_OPTION("repeats", "N", 2, "Samples of every time (default: 9)"),
      BENCH_IN(Options, repeats), 1, 10000},
-    {BENCH_OPTION("format", "FORMAT", 3, "text, markdown, csv or json (default: text)"),
-     BENCH_IN(Options, format), BENCH_CHOICES(bench_kernel_formats)},
+    BENCH_FORMAT_OPTION(Options, 3),
     {0},
 };
 

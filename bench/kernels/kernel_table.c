@@ -1,28 +1,22 @@
 #include "kernel_table.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "../store/export.h"
-#include "../table/grid.h"
-
-const char *const bench_kernel_formats[] = {"text", "markdown", "csv", "json", NULL};
+#include "../table/records.h"
 
 /* What stands for the check, and for the times of a row that has none. */
-static const char *mark(const BenchKernelRow *row)
+static const char *mark(const void *record)
 {
+    const BenchKernelRow *row = record;
     return !row->valid ? "INVALID" : row->busy ? "BUSY" : "VALID";
 }
 
-static bool timed(const BenchKernelRow *row)
+static bool timed(const void *record)
 {
+    const BenchKernelRow *row = record;
     return row->valid && !row->busy;
-}
-
-static bool has_times(const void *record)
-{
-    return timed(record);
 }
 
 /* One of processor time is told of a busy row, too. */
@@ -38,66 +32,122 @@ static double share(const void *record)
     return 100 * row->bound_ns / row->ns;
 }
 
+static bool has_share(const void *record)
+{
+    return isfinite(share(record));
+}
+
 static bool has_w(const void *record)
 {
     return ((const BenchKernelRow *)record)->w > 0;
 }
 
-static const char *verdict_text(const void *record)
+static bool has_limit(const void *record)
+{
+    return isfinite(((const BenchKernelRow *)record)->at_most);
+}
+
+static const char *verdict(const void *record)
 {
     return bench_kernel_verdict(record);
 }
 
-static const char *mark_text(const void *record)
-{
-    return mark(record);
-}
-
-static const char *note_text(const void *record)
+static const char *note(const void *record)
 {
     const BenchKernelRow *row = record;
     return timed(row) ? row->note : row->reason;
 }
 
-/* ---- for programs */
+/* ---- cells of the table for people */
 
-#define FIELD(kind, member) BENCH_FIELD(BenchKernelRow, kind, member)
-#define FIELD_AS(kind, member, title)                                                              \
-    {                                                                                              \
-        BENCH_FIELD_AS(BenchKernelRow, kind, member, title)                                        \
-    }
-#define TIME(member, title)                                                                        \
-    {                                                                                              \
-        BENCH_FIELD_AS(BenchKernelRow, BENCH_DOUBLE, member, title), .timed = has_times            \
-    }
+/* "" where the number is not given. */
+static void number_text(double value, char text[BENCH_GRID_TEXT])
+{
+    bench_grid_number(value, text);
+    if (!isfinite(value)) text[0] = '\0';
+}
+
+static void ns_cell(const void *record, char *text)
+{
+    if (timed(record))
+        number_text(((const BenchKernelRow *)record)->ns, text);
+    else
+        strcpy(text, mark(record));
+}
+
+static void quartiles_cell(const void *record, char *text)
+{
+    const BenchKernelRow *row = record;
+    char low[BENCH_GRID_TEXT], high[BENCH_GRID_TEXT];
+    number_text(row->low, low);
+    number_text(row->high, high);
+    snprintf(text, BENCH_GRID_TEXT, "%.60s..%.60s", low, high);
+}
+
+static void bound_cell(const void *record, char *text)
+{
+    const BenchKernelRow *row = record;
+    char ns[BENCH_GRID_TEXT];
+    number_text(row->bound_ns, ns);
+    snprintf(text, BENCH_GRID_TEXT, "%.60s %s", ns, row->bound);
+}
+
+/* "1.97x as fast as 1 thread, at least 1.85" */
+static void ratio_cell(const void *record, char *text)
+{
+    const BenchKernelRow *row = record;
+    char ratio[BENCH_GRID_TEXT], wanted[BENCH_GRID_TEXT];
+    if (!isfinite(row->ratio)) return;
+    bench_grid_number(row->ratio, ratio);
+    int used = snprintf(text, BENCH_GRID_TEXT, "%.60s%s%s", ratio,
+                        row->wanted_least ? "x as fast as " : " of ", row->ratio_to);
+    if (!isfinite(row->wanted)) return;
+    bench_grid_number(row->wanted, wanted);
+    snprintf(text + used, BENCH_GRID_TEXT - (size_t)used, ", at %s %.60s",
+             row->wanted_least ? "least" : "most", wanted);
+}
+
+/* ---- all columns, of files and of the table for people */
+
+#define FIELD(type, member, title) BENCH_FIELD_AS(BenchKernelRow, BENCH_##type, member, title)
 
 static const BenchField fields[] = {
-    FIELD(BENCH_TEXT, kernel),
-    FIELD(BENCH_TEXT, group),
-    FIELD(BENCH_TEXT, precision),
-    FIELD(BENCH_INT, threads),
-    {BENCH_FIELD_AS(BenchKernelRow, BENCH_INT, w, "w"), .given = has_w},
-    FIELD(BENCH_TEXT, item),
-    FIELD(BENCH_LONG, items),
-    TIME(ns, "ns"),
-    TIME(low, "ns_low"),
-    TIME(high, "ns_high"),
-    TIME(bound_ns, "floor_ns"),
-    FIELD(BENCH_TEXT, bound),
-    {.kind = BENCH_DOUBLE, .column = "share_percent", .number = share, .timed = has_times},
-    FIELD_AS(BENCH_DOUBLE, at_most, "at_most_ns"),
-    {BENCH_FIELD_AS(BenchKernelRow, BENCH_DOUBLE, ratio, "ratio"), .timed = has_ratio},
-    FIELD(BENCH_TEXT, ratio_to),
-    FIELD_AS(BENCH_DOUBLE, wanted, "ratio_wanted"),
-    {.kind = BENCH_TEXT, .column = "verdict", .text = verdict_text},
-    {BENCH_FIELD_AS(BenchKernelRow, BENCH_BOOL, valid, "valid"), .text = mark_text},
-    {.kind = BENCH_TEXT, .column = "note", .text = note_text},
+    {FIELD(TEXT, kernel, "kernel"), .title = "kernel", .left = true},
+    {FIELD(TEXT, group, "group")},
+    {FIELD(TEXT, precision, "precision"), .title = "precision", .left = true},
+    {FIELD(INT, threads, "threads"), .title = "threads"},
+    {FIELD(INT, w, "w"), .given = has_w, .title = "w"},
+    {FIELD(TEXT, item, "item"), .title = "per", .left = true},
+    {FIELD(LONG, items, "items")},
+    {BENCH_CELL("ns", ns_cell)},
+    {FIELD(DOUBLE, ns, "ns"), .timed = timed},
+    {FIELD(DOUBLE, low, "ns_low"), .timed = timed, BENCH_CELL("quartiles", quartiles_cell)},
+    {FIELD(DOUBLE, high, "ns_high"), .timed = timed},
+    {FIELD(DOUBLE, bound_ns, "floor_ns"), .timed = timed, BENCH_CELL("floor", bound_cell)},
+    {FIELD(TEXT, bound, "bound")},
+    {.kind = BENCH_DOUBLE,
+     .column = "share_percent",
+     .number = share,
+     .timed = timed,
+     .given = has_share,
+     .title = "share",
+     .format = "%.0f%%"},
+    {FIELD(DOUBLE, at_most, "at_most_ns"), .given = has_limit, .title = "at most"},
+    {FIELD(DOUBLE, ratio, "ratio"), .timed = has_ratio, BENCH_CELL("ratio", ratio_cell),
+     .left = true},
+    {FIELD(TEXT, ratio_to, "ratio_to")},
+    {FIELD(DOUBLE, wanted, "ratio_wanted")},
+    {.kind = BENCH_TEXT, .column = "verdict", .text = verdict, .title = "verdict", .left = true},
+    {FIELD(BOOL, valid, "valid"), .text = mark},
+    {.kind = BENCH_TEXT, .column = "note", .text = note, .title = "note", .left = true},
 };
-enum { COLUMNS = sizeof fields / sizeof fields[0] };
+enum { FIELDS = sizeof fields / sizeof fields[0] };
+
+/* ---- for programs */
 
 static json_t *json_row(const BenchKernelRow *row)
 {
-    json_t *object = bench_json_record(fields, COLUMNS, row);
+    json_t *object = bench_json_record(fields, FIELDS, row);
     json_object_set_new(object, "busy", json_boolean(row->busy));
     return object;
 }
@@ -132,78 +182,6 @@ static void write_json(FILE *file, const BenchKernelRow *rows, int count, const 
 
 /* ---- for people */
 
-static void join(char *text, const char *a, const char *between, const char *b)
-{
-    snprintf(text, BENCH_GRID_TEXT, "%.60s%.20s%.120s", a, between, b);
-}
-
-/* "" where the number is not given. */
-static void number_text(double value, char *text)
-{
-    bench_grid_number(value, text);
-    if (!isfinite(value)) text[0] = '\0';
-}
-
-static void ratio_text(const BenchKernelRow *row, char *text)
-{
-    char ratio[BENCH_GRID_TEXT], wanted[BENCH_GRID_TEXT];
-    if (!isfinite(row->ratio)) return;
-    number_text(row->ratio, ratio);
-    join(text, ratio, row->wanted_least ? "x as fast as " : " of ", row->ratio_to);
-    if (!isfinite(row->wanted)) return;
-    number_text(row->wanted, wanted);
-    strcpy(ratio, text);
-    join(text, ratio, row->wanted_least ? ", at least " : ", at most ", wanted);
-}
-
-enum { KERNEL, PRECISION, THREADS, W, PER, NS, QUARTILES, FLOOR, SHARE, AT_MOST, RATIO };
-
-static const char *const headings[] = {"kernel", "precision", "threads", "w",     "per",
-                                       "ns",     "quartiles", "floor",   "share", "at most",
-                                       "ratio",  "verdict",   "note"};
-
-/* Of a row that has times. */
-static void fill_times(const BenchKernelRow *row, BenchGridLine *line)
-{
-    char low[BENCH_GRID_TEXT], high[BENCH_GRID_TEXT];
-    number_text(row->ns, (*line)[NS]);
-    number_text(row->low, low);
-    number_text(row->high, high);
-    join((*line)[QUARTILES], low, "..", high);
-    number_text(row->bound_ns, low);
-    join((*line)[FLOOR], low, " ", row->bound);
-    if (isfinite(share(row))) snprintf((*line)[SHARE], BENCH_GRID_TEXT, "%.0f%%", share(row));
-}
-
-static void add_line(BenchGrid *grid, const BenchKernelRow *row)
-{
-    BenchGridLine *line = bench_grid_add(grid);
-    strcpy((*line)[KERNEL], row->kernel);
-    strcpy((*line)[PRECISION], row->precision);
-    snprintf((*line)[THREADS], BENCH_GRID_TEXT, "%d", row->threads);
-    if (has_w(row)) snprintf((*line)[W], BENCH_GRID_TEXT, "%d", row->w);
-    strcpy((*line)[PER], row->item);
-    number_text(row->at_most, (*line)[AT_MOST]);
-    strcpy((*line)[RATIO + 1], bench_kernel_verdict(row));
-    strcpy((*line)[RATIO + 2], note_text(row));
-    if (has_ratio(row)) ratio_text(row, (*line)[RATIO]);
-    if (timed(row))
-        fill_times(row, line);
-    else
-        strcpy((*line)[NS], mark(row));
-}
-
-static BenchGrid make_grid(const BenchKernelRow *rows, int count)
-{
-    BenchGrid grid = {0};
-    for (int c = 0; c < (int)(sizeof headings / sizeof headings[0]); c++)
-        bench_grid_column(&grid, headings[c],
-                          c == KERNEL || c == PRECISION || c == PER || c >= RATIO);
-    for (int r = 0; r < count; r++) add_line(&grid, &rows[r]);
-    bench_grid_fit(&grid);
-    return grid;
-}
-
 static void print_rates(FILE *file, const BenchRates *rates)
 {
     fprintf(file, "  %d thread%s  multiply-add %.0f GFLOP/s single, %.0f double; read",
@@ -227,12 +205,14 @@ static void print_peak(FILE *file, const BenchPeak *peak, const BenchMachine *ma
 }
 
 /* As text with an empty line between groups. */
-static void write_people(FILE *file, BenchKernelFormat format, const BenchKernelRow *rows,
-                         int count, const BenchPeak *peak, const BenchMachine *machine)
+static void write_people(FILE *file, BenchFormat format, const BenchKernelRow *rows, int count,
+                         const BenchPeak *peak, const BenchMachine *machine)
 {
-    bool text = format == BENCH_KERNELS_TEXT;
-    BenchGridForm form = text ? BENCH_GRID_PLAIN : BENCH_GRID_MARKDOWN;
-    BenchGrid grid = make_grid(rows, count), one = grid;
+    bool text = format == BENCH_AS_TEXT;
+    BenchGridForm form = bench_format_form(format);
+    BenchGrid grid = bench_records_grid(fields, FIELDS, rows, sizeof *rows, count, 0);
+    bench_grid_fit(&grid);
+    BenchGrid one = grid;
     if (text) print_peak(file, peak, machine);
     bench_grid_head(file, &grid, form);
     one.lines = 1;
@@ -241,15 +221,16 @@ static void write_people(FILE *file, BenchKernelFormat format, const BenchKernel
         one.line = &grid.line[r];
         bench_grid_lines(file, &one, form);
     }
+    bench_grid_end(file, form);
     bench_grid_free(&grid);
 }
 
-void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernelRow *rows,
-                         int count, const BenchPeak *peak, const BenchMachine *machine)
+void bench_kernels_write(FILE *file, BenchFormat format, const BenchKernelRow *rows, int count,
+                         const BenchPeak *peak, const BenchMachine *machine)
 {
-    if (format == BENCH_KERNELS_CSV)
-        bench_csv_records(file, fields, COLUMNS, rows, sizeof *rows, count, mark_text);
-    else if (format == BENCH_KERNELS_JSON)
+    if (format == BENCH_AS_CSV)
+        bench_csv_records(file, fields, FIELDS, rows, sizeof *rows, count, mark);
+    else if (format == BENCH_AS_JSON)
         write_json(file, rows, count, peak, machine);
     else
         write_people(file, format, rows, count, peak, machine);

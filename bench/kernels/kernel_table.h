@@ -7,24 +7,15 @@
 
 #include <stdio.h>
 
+#include "../table/table.h"
 #include "kernels.h"
-
-typedef enum {
-    BENCH_KERNELS_TEXT,
-    BENCH_KERNELS_MARKDOWN,
-    BENCH_KERNELS_CSV,
-    BENCH_KERNELS_JSON
-} BenchKernelFormat;
-
-/* "text", "markdown", "csv", "json", NULL: in the order of BenchKernelFormat. */
-extern const char *const bench_kernel_formats[];
 
 /* Stable: CSV has the kernels only, a header line first, columns
  *     kernel, group, precision, threads, w, item, items, ns, ns_low, ns_high, floor_ns, bound,
  *     share_percent, at_most_ns, ratio, ratio_to, ratio_wanted, verdict, valid, note
  * and what is not given is empty. JSON is {"ceilings": [..], "kernels": [{column: value}],
  * "environment": {..}}. */
-void bench_kernels_write(FILE *file, BenchKernelFormat format, const BenchKernelRow *rows,
-                         int count, const BenchPeak *peak, const BenchMachine *machine);
+void bench_kernels_write(FILE *file, BenchFormat format, const BenchKernelRow *rows, int count,
+                         const BenchPeak *peak, const BenchMachine *machine);
 
 #endif

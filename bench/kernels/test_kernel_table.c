@@ -30,7 +30,7 @@ TEST(verdicts_follow_the_limits)
 }
 
 /* Three rows, the second not valid and the third busy although their times are filled in. */
-static void write_rows(BenchKernelFormat format, char **text, size_t *size)
+static void write_rows(BenchFormat format, char **text, size_t *size)
 {
     BenchKernelRow rows[3] = {{.kernel = "good",
                                .group = "a",
@@ -64,10 +64,10 @@ static void write_rows(BenchKernelFormat format, char **text, size_t *size)
 
 TEST(an_invalid_or_busy_row_has_no_number)
 {
-    for (int f = 0; bench_kernel_formats[f]; f++) {
+    for (int f = 0; bench_format_names[f]; f++) {
         char *text;
         size_t size;
-        write_rows((BenchKernelFormat)f, &text, &size);
+        write_rows((BenchFormat)f, &text, &size);
         assert_non_null(strstr(text, "12.5"));
         assert_null(strstr(text, "98765"));
         assert_null(strstr(text, "98.8"));
@@ -87,11 +87,11 @@ TEST(a_busy_row_tells_what_others_do_not_touch)
                                 .ratio = 1.25,
                                 .wanted = 2,
                                 .ratio_to = "least's CPU time"};
-    for (int f = 0; bench_kernel_formats[f]; f++) {
+    for (int f = 0; bench_format_names[f]; f++) {
         char *text;
         size_t size;
         FILE *file = open_memstream(&text, &size);
-        bench_kernels_write(file, (BenchKernelFormat)f, &row, 1, &peak, &machine);
+        bench_kernels_write(file, (BenchFormat)f, &row, 1, &peak, &machine);
         fclose(file);
         assert_non_null(strstr(text, "1.25"));
         assert_non_null(strstr(text, "met"));
@@ -104,7 +104,11 @@ TEST(formats_parse)
 {
     char *text;
     size_t size;
-    write_rows(BENCH_KERNELS_CSV, &text, &size);
+    static const char header[] =
+        "kernel,group,precision,threads,w,item,items,ns,ns_low,ns_high,floor_ns,bound,"
+        "share_percent,at_most_ns,ratio,ratio_to,ratio_wanted,verdict,valid,note\n";
+    write_rows(BENCH_AS_CSV, &text, &size);
+    assert_int_equal(strncmp(text, header, sizeof header - 1), 0);
     assert_non_null(strstr(text,
                            "\ngood,a,single,1,,particle,10,12.5,12,13,5,L1,40,20,,,,met,VALID,"
                            "\"with, a comma\"\n"));
@@ -113,7 +117,7 @@ TEST(formats_parse)
     assert_non_null(strstr(text, "\nlate,a,single,1,,particle,10,BUSY,BUSY,BUSY,BUSY,L1,BUSY,20,"
                                  "BUSY,,,,BUSY,others took it\n"));
     free(text);
-    write_rows(BENCH_KERNELS_JSON, &text, &size);
+    write_rows(BENCH_AS_JSON, &text, &size);
     json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
     assert_non_null(root);
     json_t *good = json_array_get(json_object_get(root, "kernels"), 0);
@@ -133,7 +137,7 @@ TEST(formats_parse)
         machine.cpu);
     json_decref(root);
     free(text);
-    write_rows(BENCH_KERNELS_MARKDOWN, &text, &size);
+    write_rows(BENCH_AS_MARKDOWN, &text, &size);
     int bars = 0, lines = 0; /* every line has as many cells */
     for (const char *c = text; *c; c++) {
         bars += *c == '|';

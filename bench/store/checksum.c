@@ -11,14 +11,24 @@
 
 #include "../../lib/error.h"
 
-/* pread() of all bytes; 0 or errno. */
-static int read_all(int file, void *bytes, size_t size, long long from)
+int bench_read_all(int file, void *bytes, size_t size, long long from)
 {
     for (size_t done = 0; done < size;) {
         ssize_t got = pread(file, (char *)bytes + done, size - done, from + (off_t)done);
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0) return got < 0 ? errno : EIO;
         done += (size_t)got;
+    }
+    return 0;
+}
+
+int bench_write_all(int file, const void *bytes, size_t size, long long to)
+{
+    for (size_t done = 0; done < size;) {
+        ssize_t put = pwrite(file, (const char *)bytes + done, size - done, to + (off_t)done);
+        if (put < 0 && errno == EINTR) continue;
+        if (put <= 0) return put < 0 ? errno : EIO;
+        done += (size_t)put;
     }
     return 0;
 }
@@ -32,7 +42,7 @@ static int make_line(int file, long long size, char line[BENCH_CHECKSUM_LINE + 1
     int number = 0;
     for (long long at = 0; at < size && !number; at += BLOCK) {
         size_t part = size - at < BLOCK ? (size_t)(size - at) : BLOCK;
-        number = read_all(file, block, part, at);
+        number = bench_read_all(file, block, part, at);
         crc = crc32(crc, block, (uInt)part);
     }
     free(block);
@@ -47,14 +57,7 @@ int bench_checksum_append(int file)
     struct stat status;
     if (fstat(file, &status) != 0) return errno;
     int number = make_line(file, status.st_size, line);
-    for (size_t done = 0; done < BENCH_CHECKSUM_LINE && !number;) {
-        ssize_t put =
-            pwrite(file, line + done, BENCH_CHECKSUM_LINE - done, status.st_size + (off_t)done);
-        if (put < 0 && errno == EINTR) continue;
-        if (put <= 0) number = put < 0 ? errno : EIO;
-        done += (size_t)put;
-    }
-    return number;
+    return number ? number : bench_write_all(file, line, BENCH_CHECKSUM_LINE, status.st_size);
 }
 
 static int check(int file, BenchChecksum *found)
@@ -67,7 +70,7 @@ static int check(int file, BenchChecksum *found)
     if (fstat(file, &status) != 0) return errno;
     long long before = status.st_size - BENCH_CHECKSUM_LINE;
     if (before < 0) return 0;
-    int number = read_all(file, line, BENCH_CHECKSUM_LINE, before);
+    int number = bench_read_all(file, line, BENCH_CHECKSUM_LINE, before);
     if (number ||
         sscanf(line, "\nshapebench: CRC-32 %8lx of %18lld bytes before", &crc, &size) != 2)
         return number;

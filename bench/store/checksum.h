@@ -5,6 +5,8 @@
 #ifndef BENCH_CHECKSUM_H
 #define BENCH_CHECKSUM_H
 
+#include <stddef.h>
+
 enum { BENCH_CHECKSUM_LINE = 64 }; /* bytes */
 
 typedef enum {
@@ -12,6 +14,11 @@ typedef enum {
     BENCH_CHECKSUM_RIGHT,
     BENCH_CHECKSUM_WRONG,
 } BenchChecksum;
+
+/* pread() and pwrite() of all bytes, also past signals. 0 or errno; EIO at the file's end: what is
+ * beyond it stays as it is. */
+int bench_read_all(int file, void *bytes, size_t size, long long from);
+int bench_write_all(int file, const void *bytes, size_t size, long long to);
 
 /* Appends the line to a file open for reading and writing. 0 or errno. Reads all of it: about a
  * second a GB. */

@@ -64,19 +64,6 @@ static void csv_value(FILE *file, const BenchField *field, const void *value)
     }
 }
 
-/* How many numbers the field's member has. */
-static int values_of(const BenchField *field)
-{
-    bool many = field->kind == BENCH_DOUBLE && field->size > sizeof(double);
-    return many ? (int)(field->size / sizeof(double)) : 1;
-}
-
-/* How many are there of this record. */
-static int numbers_of(const BenchField *field, const void *record)
-{
-    return field->listed ? field->listed(record) : values_of(field);
-}
-
 void bench_csv_cell(FILE *file, const BenchField *field, const void *record, const char *mark)
 {
     const char *value = (const char *)record + field->offset;
@@ -89,7 +76,8 @@ void bench_csv_cell(FILE *file, const BenchField *field, const void *record, con
     else if (field->number)
         bench_csv_number(file, field->number(record));
     else
-        for (int i = 0, count = numbers_of(field, record); i < count; i++) {
+        for (int i = 0, count = field->listed ? field->listed(record) : bench_field_values(field);
+             i < count; i++) {
             if (i) fputc(field->listed ? '/' : ',', file);
             csv_value(file, field, value + (size_t)i * sizeof(double));
         }
@@ -97,7 +85,7 @@ void bench_csv_cell(FILE *file, const BenchField *field, const void *record, con
 
 static void csv_title(FILE *file, const BenchField *field)
 {
-    for (int i = 0, count = field->listed ? 1 : values_of(field); i < count; i++) {
+    for (int i = 0, count = field->listed ? 1 : bench_field_values(field); i < count; i++) {
         if (i) fputc(',', file);
         if (field->stages)
             fprintf(file, "%s_ms", sm_stage_name((SmStage)i));
@@ -171,14 +159,13 @@ static json_t *json_value(const BenchField *field, const void *value)
         break;
     }
     const double *numbers = value;
-    int many = values_of(field);
+    int many = bench_field_values(field);
     return many == 1 ? bench_json_number(*numbers) : json_numbers(numbers, many);
 }
 
 json_t *bench_json_cell(const BenchField *field, const void *record)
 {
-    if ((field->timed && !field->timed(record)) || (field->given && !field->given(record)))
-        return json_null();
+    if (!bench_record_has(field, record)) return json_null();
     if (field->number) return bench_json_number(field->number(record));
     if (field->kind == BENCH_TEXT) return bench_json_text(bench_field_text(field, record));
     const char *value = (const char *)record + field->offset;

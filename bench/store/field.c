@@ -10,6 +10,38 @@ const char *bench_field_text(const BenchField *field, const void *record)
     return field->choices ? field->choices[*(const int *)member] : member;
 }
 
+int bench_field_values(const BenchField *field)
+{
+    bool many = field->kind == BENCH_DOUBLE && field->size > sizeof(double);
+    return many ? (int)(field->size / sizeof(double)) : 1;
+}
+
+bool bench_record_has(const BenchField *field, const void *record)
+{
+    return (!field->timed || field->timed(record)) && (!field->given || field->given(record));
+}
+
+double bench_record_number(const BenchField *field, const void *record)
+{
+    const void *value = (const char *)record + field->offset;
+    if (field->number) return field->number(record);
+    switch (field->kind) {
+    case BENCH_INT:
+        return *(const int *)value;
+    case BENCH_LONG:
+        return (double)*(const long *)value;
+    case BENCH_BOOL:
+        return *(const bool *)value;
+    case BENCH_HASH:
+        return (double)*(const unsigned long long *)value;
+    case BENCH_DOUBLE:
+        return *(const double *)value;
+    case BENCH_TEXT:
+        break;
+    }
+    return NAN;
+}
+
 void bench_record_none(const BenchField *fields, int count, void *record, size_t size)
 {
     memset(record, 0, size);
@@ -17,7 +49,7 @@ void bench_record_none(const BenchField *fields, int count, void *record, size_t
         const BenchField *field = &fields[f];
         double *value = (double *)(void *)((char *)record + field->offset);
         bool fraction = field->name && field->kind == BENCH_DOUBLE;
-        for (size_t i = 0; fraction && i < field->size / sizeof *value; i++) value[i] = NAN;
+        for (int i = 0; fraction && i < bench_field_values(field); i++) value[i] = NAN;
     }
 }
 

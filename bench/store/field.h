@@ -59,6 +59,15 @@ const char *bench_field_text(const BenchField *field, const void *record);
 /* A cell of tables for people that is no column of files. */
 #define BENCH_CELL(heading, write) .title = (heading), .cell = (write)
 
+/* How many values a field's member is: of an array of numbers several. */
+int bench_field_values(const BenchField *field);
+
+/* Has the record a value there, and if it is a time, that? */
+bool bench_record_has(const BenchField *field, const void *record);
+
+/* The number that a field of a record is; of an array the first, of a text NaN. */
+double bench_record_number(const BenchField *field, const void *record);
+
 /* A record that is not measured yet: all zero, but every number that has a fraction NaN. */
 void bench_record_none(const BenchField *fields, int count, void *record, size_t size);
 

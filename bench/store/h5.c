@@ -127,37 +127,20 @@ void bench_h5_text(BenchH5 *h5, hid_t object, const char *name, const char *text
     H5Tclose(type);
 }
 
-/* The type of one of a field's values in the file and in memory, of a text its own; returns how
- * many values it has. The caller closes both. */
-static int types_of(const BenchField *field, hid_t *file, hid_t *memory)
+/* The type of a field's values in the file; the caller closes it. */
+static hid_t type_of(const BenchField *field)
 {
-    hid_t stored = H5T_IEEE_F64LE, native = H5T_NATIVE_DOUBLE;
-    switch (field->kind) {
-    case BENCH_INT:
-        stored = H5T_STD_I32LE, native = H5T_NATIVE_INT;
-        break;
-    case BENCH_LONG:
-        stored = H5T_STD_I64LE, native = H5T_NATIVE_LONG;
-        break;
-    case BENCH_BOOL:
-        stored = H5T_STD_U8LE, native = H5T_NATIVE_UINT8;
-        break;
-    case BENCH_HASH:
-        stored = H5T_STD_U64LE, native = H5T_NATIVE_ULLONG;
-        break;
-    case BENCH_TEXT:
-        stored = native = H5T_C_S1;
-        break;
-    case BENCH_DOUBLE:
-        break;
+    hid_t type = H5Tcopy(field->kind == BENCH_TEXT   ? H5T_C_S1
+                         : field->kind == BENCH_INT  ? H5T_STD_I32LE
+                         : field->kind == BENCH_LONG ? H5T_STD_I64LE
+                         : field->kind == BENCH_BOOL ? H5T_STD_U8LE
+                         : field->kind == BENCH_HASH ? H5T_STD_U64LE
+                                                     : H5T_IEEE_F64LE);
+    if (field->kind == BENCH_TEXT) {
+        H5Tset_size(type, field->size);
+        H5Tset_cset(type, H5T_CSET_UTF8);
     }
-    *file = H5Tcopy(stored);
-    *memory = H5Tcopy(native);
-    for (int t = 0; t < 2 && field->kind == BENCH_TEXT; t++) {
-        H5Tset_size(t ? *memory : *file, field->size);
-        H5Tset_cset(t ? *memory : *file, H5T_CSET_UTF8);
-    }
-    return (int)(field->size / H5Tget_size(*memory));
+    return type;
 }
 
 void bench_h5_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
@@ -170,11 +153,10 @@ void bench_h5_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int co
             bench_h5_text(h5, object, fields[i].name, bench_field_text(&fields[i], record));
             continue;
         }
-        hid_t type, memory;
-        int numbers = types_of(&fields[i], &type, &memory);
+        hid_t type = type_of(&fields[i]);
+        int numbers = bench_field_values(&fields[i]);
         bench_h5_numbers(h5, object, fields[i].name, type, numbers == 1 ? 0 : numbers, value);
         H5Tclose(type);
-        H5Tclose(memory);
     }
 }
 
@@ -270,9 +252,9 @@ void bench_h5_view(BenchH5 *h5, hid_t parent, const char *name, hid_t source, co
 }
 
 /* Of a column: one number a record, or several. */
-static int rank_of(const BenchField *field, int values)
+static int rank_of(const BenchField *field)
 {
-    return field->series || values > 1 ? 2 : 1;
+    return field->series || bench_field_values(field) > 1 ? 2 : 1;
 }
 
 void bench_h5_columns(BenchH5 *h5, hid_t group, const BenchField *fields, int count,
@@ -281,17 +263,15 @@ void bench_h5_columns(BenchH5 *h5, hid_t group, const BenchField *fields, int co
     for (int f = 0; f < count && !h5->failed; f++) {
         const BenchField *field = &fields[f];
         if (!field->name) continue;
-        hid_t file, memory;
-        int values = types_of(field, &file, &memory);
+        hid_t type = type_of(field);
         char *column = sm_alloc((size_t)number, field->size);
         for (long r = 0; r < number; r++)
             memcpy(column + (size_t)r * field->size,
                    (const char *)records + (size_t)r * size + field->offset, field->size);
-        hsize_t shape[] = {(hsize_t)number, (hsize_t)values};
-        bench_h5_dataset(h5, group, field->name, file, rank_of(field, values), shape, column);
+        hsize_t shape[] = {(hsize_t)number, (hsize_t)bench_field_values(field)};
+        bench_h5_dataset(h5, group, field->name, type, rank_of(field), shape, column);
         free(column);
-        H5Tclose(file);
-        H5Tclose(memory);
+        H5Tclose(type);
     }
 }
 
@@ -318,7 +298,7 @@ static bool same_class(hid_t type, BenchKind kind)
     return class == (kind == BENCH_DOUBLE ? H5T_FLOAT : H5T_INTEGER);
 }
 
-/* Opens an attribute of the right kind and number of elements; its type goes to `type`. */
+/* Opens an attribute of the right kind and number of elements. */
 static hid_t open_attribute(BenchH5 *h5, hid_t object, const char *name, BenchKind kind, int count)
 {
     if (h5->failed) return -1;
@@ -356,9 +336,9 @@ void bench_h5_read_text(BenchH5 *h5, hid_t object, const char *name, size_t size
 
 static void read_numbers(BenchH5 *h5, hid_t object, const BenchField *field, void *value)
 {
-    hid_t file, memory;
-    int count = types_of(field, &file, &memory);
-    hid_t attribute = open_attribute(h5, object, field->name, field->kind, count);
+    hid_t type = type_of(field), memory = native(type);
+    hid_t attribute =
+        open_attribute(h5, object, field->name, field->kind, bench_field_values(field));
     if (!h5->failed && H5Aread(attribute, memory, value) < 0)
         bench_h5_fail(h5, "attribute '%s' cannot be read", field->name);
     if (!h5->failed && field->kind == BENCH_BOOL) {
@@ -366,7 +346,7 @@ static void read_numbers(BenchH5 *h5, hid_t object, const BenchField *field, voi
         *flag = *flag != 0;
     }
     if (attribute >= 0) H5Aclose(attribute);
-    H5Tclose(file);
+    H5Tclose(type);
     H5Tclose(memory);
 }
 
@@ -458,13 +438,12 @@ void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest)
 }
 
 /* A dataset of texts or numbers of another class, or of longer texts, would be converted. */
-static void check_type(BenchH5 *h5, hid_t dataset, const BenchField *field, hid_t file)
+static void check_type(BenchH5 *h5, hid_t dataset, const BenchField *field)
 {
     if (h5->failed) return;
     hid_t stored = H5Dget_type(dataset);
-    bool text = field->kind == BENCH_TEXT;
-    bool same = H5Tget_class(stored) == H5Tget_class(file) &&
-                (!text || (H5Tis_variable_str(stored) <= 0 && H5Tget_size(stored) <= field->size));
+    bool same = same_class(stored, field->kind) &&
+                (field->kind != BENCH_TEXT || H5Tget_size(stored) <= field->size);
     if (!same) bench_h5_fail(h5, "dataset '%s' has the wrong type", field->name);
     H5Tclose(stored);
 }
@@ -486,19 +465,17 @@ void bench_h5_read_columns(BenchH5 *h5, hid_t group, const BenchField *fields, i
     for (int f = 0; f < count && !h5->failed; f++) {
         const BenchField *field = &fields[f];
         if (!field->name) continue;
-        hid_t file, memory;
-        int values = types_of(field, &file, &memory);
-        hsize_t shape[] = {(hsize_t)number, (hsize_t)values};
-        hid_t dataset =
-            bench_h5_find_dataset(h5, group, field->name, rank_of(field, values), shape);
-        check_type(h5, dataset, field, file);
+        hid_t type = type_of(field), memory = native(type);
+        hsize_t shape[] = {(hsize_t)number, (hsize_t)bench_field_values(field)};
+        hid_t dataset = bench_h5_find_dataset(h5, group, field->name, rank_of(field), shape);
+        check_type(h5, dataset, field);
         if (!h5->failed) {
             char *column = sm_alloc((size_t)number, field->size);
             bench_h5_read(h5, dataset, memory, column);
             if (!h5->failed) scatter(field, column, records, size, number);
             free(column);
         }
-        H5Tclose(file);
+        H5Tclose(type);
         H5Tclose(memory);
     }
 }

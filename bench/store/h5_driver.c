@@ -87,16 +87,8 @@ static herr_t driver_read(H5FD_t *common, H5FD_mem_t type, hid_t transfer, haddr
 {
     (void)type;
     (void)transfer;
-    char *to = buffer;
-    while (size > 0) {
-        ssize_t got = pread(((Output *)common)->file, to, size, (off_t)address);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) break;
-        to += got;
-        address += (haddr_t)got;
-        size -= (size_t)got;
-    }
-    memset(to, 0, size);
+    memset(buffer, 0, size);
+    (void)bench_read_all(((Output *)common)->file, buffer, size, (long long)address);
     return 0;
 }
 
@@ -106,19 +98,9 @@ static herr_t driver_write(H5FD_t *common, H5FD_mem_t type, hid_t transfer, hadd
     (void)type;
     (void)transfer;
     Output *output = (Output *)common;
-    const char *from = buffer;
     if (address + size > output->end) output->end = address + size;
-    while (size > 0 && *output->number == 0) {
-        ssize_t put = pwrite(output->file, from, size, (off_t)address);
-        if (put < 0 && errno == EINTR) continue;
-        if (put <= 0) {
-            note_failure(output, errno);
-            break;
-        }
-        from += put;
-        address += (haddr_t)put;
-        size -= (size_t)put;
-    }
+    if (*output->number == 0)
+        *output->number = bench_write_all(output->file, buffer, size, (long long)address);
     return 0;
 }
 

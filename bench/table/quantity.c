@@ -41,62 +41,33 @@ static const char *verdict(const void *record)
 
 /* ---- cells of tables for people */
 
-static void w_cell(const BenchRow *row, BenchGridForm form, char *text)
+static bool always(const void *record)
 {
-    (void)form;
-    snprintf(text, BENCH_GRID_TEXT, row->w ? "%d" : "-", row->w);
+    return record != NULL;
 }
 
-static void verdict_cell(const BenchRow *row, BenchGridForm form, char *text)
+static bool damped(const void *record)
 {
-    (void)form;
-    strcpy(text, bench_row_mark(row));
+    return ((const BenchRow *)record)->damping > 0;
 }
 
-static void faster_cell(const BenchRow *row, BenchGridForm form, char *text)
+static void w_cell(const void *record, char *text)
 {
-    (void)form;
-    if (!isfinite(row->paper_total_ms)) return;
-    bench_grid_number(ratio(row), text);
+    int w = ((const BenchRow *)record)->w;
+    snprintf(text, BENCH_GRID_TEXT, w ? "%d" : "-", w);
+}
+
+static void faster_cell(const void *record, char *text)
+{
+    if (!isfinite(((const BenchRow *)record)->paper_total_ms)) return;
+    bench_grid_number(ratio(record), text);
     strcat(text, "x");
 }
 
-static void quartiles_cell(const BenchRow *row, BenchGridForm form, char *text)
+static void quartiles_cell(const void *record, char *text)
 {
-    (void)form;
+    const BenchRow *row = record;
     bench_grid_range(row->total_low_ms, row->total_high_ms, text);
-}
-
-/* A part of the total: as text only its percent. */
-static void part_text(double ms, double percent, BenchGridForm form, char *text)
-{
-    char number[BENCH_GRID_TEXT];
-    bench_grid_number(ms, number);
-    if (form == BENCH_GRID_PLAIN && isfinite(percent))
-        snprintf(text, BENCH_GRID_TEXT, "%.0f%%", percent);
-    else if (isfinite(percent))
-        snprintf(text, BENCH_GRID_TEXT, "%.40s (%2.0f%%)", number, percent);
-    else
-        snprintf(text, BENCH_GRID_TEXT, "%.40s", number);
-}
-
-#define STAGE_CELL(name, stage)                                                                    \
-    static void name(const BenchRow *row, BenchGridForm form, char *text)                          \
-    {                                                                                              \
-        part_text(row->stage_ms[stage], 100 * row->stage_ms[stage] / row->total_ms, form, text);   \
-    }
-STAGE_CELL(sum_cell, SM_FAST_SUM)
-STAGE_CELL(match_cell, SM_SHAPE_MATCHING)
-STAGE_CELL(polar_cell, SM_POLAR)
-STAGE_CELL(other_cell, SM_OTHER)
-
-static void damping_cell(const BenchRow *row, BenchGridForm form, char *text)
-{
-    double ms = row->stage_ms[SM_DAMPING];
-    if (row->damping > 0)
-        part_text(ms, 100 * ms / row->total_ms, form, text);
-    else
-        strcpy(text, "-");
 }
 
 /* "a -> b", or the one that there is, or "-"; `mark` behind each. */
@@ -120,120 +91,107 @@ static void counts_text(double from, double to, char *text)
         strcpy(text, "-");
 }
 
-static void nodes_cell(const BenchRow *row, BenchGridForm form, char *text)
+static void nodes_cell(const void *record, char *text)
 {
-    (void)form;
-    counts_text((double)row->change.first_nodes, (double)row->change.most_nodes, text);
+    const BenchChangeRow *change = &((const BenchRow *)record)->change;
+    counts_text((double)change->first_nodes, (double)change->most_nodes, text);
 }
 
-static void simulation_cell(const BenchRow *row, BenchGridForm form, char *text)
+static void simulation_cell(const void *record, char *text)
 {
-    (void)form;
-    pair_text(row->change.first_ms, row->change.last_ms, " -> ", "", text);
+    const BenchChangeRow *change = &((const BenchRow *)record)->change;
+    pair_text(change->first_ms, change->last_ms, " -> ", "", text);
 }
 
-static void resampling_cell(const BenchRow *row, BenchGridForm form, char *text)
+static void resampling_cell(const void *record, char *text)
 {
-    (void)form;
-    pair_text(row->change.change_ms, row->change.change_most_ms, " to ", "", text);
+    const BenchChangeRow *change = &((const BenchRow *)record)->change;
+    pair_text(change->change_ms, change->change_most_ms, " to ", "", text);
 }
 
-static void triangles_cell(const BenchRow *row, BenchGridForm form, char *text)
+static void triangles_cell(const void *record, char *text)
 {
-    (void)form;
-    counts_text((double)row->change.first_triangles, (double)row->change.last_triangles, text);
+    const BenchChangeRow *change = &((const BenchRow *)record)->change;
+    counts_text((double)change->first_triangles, (double)change->last_triangles, text);
 }
 
 /* ---- the paper's cells below: "?" behind a damaged or misprinted value, "*" behind a second-hand
  * one */
 
-#define BELOW(name)                                                                                \
-    static void name(const RefPaperRow *paper, const RefValue *value, BenchGridForm form,          \
-                     char *text)
+#define BELOW(name) static void name(const RefPaperRow *paper, const RefValue *value, char *text)
 
-static const char *status_mark(RefStatus status)
+const char *bench_quantity_mark(RefStatus status)
 {
     return status == REF_DAMAGED ? "?" : status == REF_SECOND_HAND ? "*" : "";
 }
 
 BELOW(name_below)
 {
-    (void)paper, (void)value, (void)form;
+    (void)paper, (void)value;
     strcpy(text, "  paper");
 }
 
 BELOW(dash_below)
 {
-    (void)paper, (void)value, (void)form;
+    (void)paper, (void)value;
     strcpy(text, "-");
 }
 
 BELOW(count_below)
 {
-    (void)paper, (void)form;
+    (void)paper;
     if (isfinite(value->value)) snprintf(text, BENCH_GRID_TEXT, "%.0f", value->value);
 }
 
 BELOW(bound_below)
 {
-    (void)paper, (void)form;
+    (void)paper;
     snprintf(text, BENCH_GRID_TEXT, "< %.0f", value->value);
 }
 
 BELOW(number_below)
 {
-    (void)paper, (void)form;
+    (void)paper;
     bench_grid_number(value->value, text);
 }
 
 BELOW(marked_below)
 {
-    (void)paper, (void)form;
+    (void)paper;
     bench_grid_number(value->value, text);
-    if (isfinite(value->value)) strcat(text, status_mark(value->status));
+    if (isfinite(value->value)) strcat(text, bench_quantity_mark(value->status));
 }
 
 /* Times of a step, and the rate, are as sound as each other. */
 static void step_text(const RefPaperRow *paper, double value, char *text)
 {
     bench_grid_number(value, text);
-    if (isfinite(value)) strcat(text, status_mark(ref_paper_step_status(paper)));
+    if (isfinite(value)) strcat(text, bench_quantity_mark(ref_paper_step_status(paper)));
 }
 
 BELOW(step_below)
 {
-    (void)form;
     step_text(paper, value->value, text);
 }
 
 BELOW(particle_below)
 {
-    (void)form;
     step_text(paper, 1e6 * value->value / paper->particles.value, text);
-}
-
-BELOW(stage_below)
-{
-    part_text(value->value, paper->stage_percent[value - paper->stage_ms].value, form, text);
-    strcat(text, status_mark(value->status));
 }
 
 BELOW(nodes_below)
 {
-    (void)form;
     counts_text(value->value, paper->last_particles.value, text);
 }
 
 BELOW(simulation_below)
 {
-    (void)form;
     bool second_hand = ref_paper_step_status(paper) == REF_SECOND_HAND;
     pair_text(value->value, paper->last_ms.value, " -> ", second_hand ? "*" : "", text);
 }
 
 BELOW(resampling_below)
 {
-    (void)form;
     pair_text(value->value, paper->change_most_ms.value, " to ", "", text);
 }
 
@@ -252,10 +210,14 @@ enum { PAGE = 1 << BENCH_GRID_MARKDOWN | LATEX, EVERY = PLAIN | PAGE };
     .field.kind = BENCH_##type, .field.offset = offsetof(BenchRow, member),                        \
     .field.size = sizeof(((BenchRow *)0)->member)
 #define COLUMN(title)             .field.column = title
+#define TITLE(text)               .field.title = text
 #define TIME(title)               .field.column = title, .field.timed = timed
 #define STAGE(stage, title, when) PLACE(DOUBLE, stage_ms[stage]), TIME(title), .field.given = when
 #define MEANS(unit_, words)       .field.unit = unit_, .field.meaning = words
 #define PAPER(member, how)        .paper = offsetof(RefPaperRow, member), .below = how
+
+#define PART(when)        .dash = true, .part = when
+#define PAPER_PART(stage) .paper = offsetof(RefPaperRow, stage_ms[stage])
 
 #define STORED(type, member, ...) .field.name = #member, PLACE(type, member), __VA_ARGS__
 #define ROW(type, member, ...)    {STORED(type, member, __VA_ARGS__)},
@@ -276,6 +238,25 @@ const BenchQuantity bench_quantities[] = {
 };
 
 const int bench_quantity_count = sizeof bench_quantities / sizeof bench_quantities[0];
+
+static bool called(const BenchQuantity *quantity, const char *name)
+{
+    const BenchField *field = &quantity->field;
+    size_t group = strncmp(field->name, "change.", 7) ? 0 : 7;
+    return !strcmp(field->name + group, name) || (field->column && !strcmp(field->column, name)) ||
+           (quantity->alias && !strcmp(quantity->alias, name));
+}
+
+const BenchField *bench_quantity_number(const char *name)
+{
+    for (int q = 0; q < bench_quantity_count; q++) {
+        const BenchField *field = &bench_quantities[q].field;
+        bool whole = field->kind == BENCH_INT || field->kind == BENCH_LONG;
+        bool number = whole || (field->kind == BENCH_DOUBLE && field->size == sizeof(double));
+        if (field->name && number && called(&bench_quantities[q], name)) return field;
+    }
+    return NULL;
+}
 
 /* ---- documentation */
 

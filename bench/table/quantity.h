@@ -24,19 +24,27 @@ typedef struct {
     bool elastic;      /* stored in the row's group "elastic", of meshless bodies */
     bool samples;      /* in CSV and JSON all of `total`, in ms; in files a dataset */
     const char *of;    /* "octree": what alone has it; NULL: every row */
-    const char *title; /* heading in tables for people, */
-    const char *terse; /* and as text, where that is another */
+    const char *alias; /* in claims files, where papers.cfg calls it something else */
+    const char *terse; /* heading as text, where it is another than the field's title */
     unsigned char shown[BENCH_TABLES]; /* forms in which the table has it: bits 1 << form */
-    bool left;                         /* aligned left */
     bool dash;                         /* as text "-" in a row without times */
-    void (*cell)(const BenchRow *row, BenchGridForm form, char *text); /* NULL: its plain value */
-    size_t paper; /* the RefValue in RefPaperRow that stands below, as `below` writes it */
-    void (*below)(const RefPaperRow *paper, const RefValue *value, BenchGridForm form, char *text);
+    bool (*part)(const void *row); /* a part of the total, with its percent (as text that alone),
+                                    * where this says so, otherwise "-"; NULL: no such part */
+    size_t paper; /* the RefValue in RefPaperRow that stands below, as `below` writes it; NULL: of
+                   * a part that, of others nothing */
+    void (*below)(const RefPaperRow *paper, const RefValue *value, char *text);
 } BenchQuantity;
 
 /* All, in the order of columns. */
 extern const BenchQuantity bench_quantities[];
 extern const int bench_quantity_count;
+
+/* The field of this name that is a number: as it is stored, without "change."; as CSV has it; or
+ * its alias. NULL: there is none. */
+const BenchField *bench_quantity_number(const char *name);
+
+/* What stands behind the paper's value: "?" if it is damaged or misprinted, "*" at second hand. */
+const char *bench_quantity_mark(RefStatus status);
 
 /* The Markdown table of all that are stored or columns, as results/README.md has it. */
 void bench_quantities_document(FILE *file);

@@ -21,18 +21,14 @@ void bench_record_cell(const BenchField *field, const void *record, char *text)
     const void *value = (const char *)record + field->offset;
     if (field->cell)
         field->cell(record, text);
-    else if (field->number)
-        number_cell(field, field->number(record), text);
-    else if (field->kind == BENCH_TEXT)
+    else if (field->text || field->kind == BENCH_TEXT)
         snprintf(text, BENCH_GRID_TEXT, "%s", bench_field_text(field, record));
     else if (field->kind == BENCH_BOOL)
         strcpy(text, *(const bool *)value ? "*" : "");
     else if (field->kind == BENCH_INT)
         snprintf(text, BENCH_GRID_TEXT, "%d", *(const int *)value);
-    else if (field->kind == BENCH_LONG)
-        number_cell(field, (double)*(const long *)value, text);
     else
-        number_cell(field, *(const double *)value, text);
+        number_cell(field, bench_record_number(field, record), text);
 }
 
 static bool shown(const BenchField *field, int table)
@@ -49,9 +45,12 @@ BenchGrid bench_records_grid(const BenchField *fields, int count, const void *re
     for (long r = 0; r < number; r++) {
         BenchGridLine *line = bench_grid_add(&grid);
         for (int f = 0, c = 0; f < count; f++)
-            if (shown(&fields[f], table))
-                bench_record_cell(&fields[f], (const char *)records + (size_t)r * size,
-                                  (*line)[c++]);
+            if (shown(&fields[f], table)) {
+                const void *record = (const char *)records + (size_t)r * size;
+                if (bench_record_has(&fields[f], record))
+                    bench_record_cell(&fields[f], record, (*line)[c]);
+                c++;
+            }
     }
     return grid;
 }
@@ -61,11 +60,11 @@ void bench_field_type(const BenchField *field, size_t size, char *text)
     static const char *const names[] = {
         [BENCH_TEXT] = "text",  [BENCH_INT] = "int32",   [BENCH_LONG] = "int64",
         [BENCH_BOOL] = "uint8", [BENCH_HASH] = "uint64", [BENCH_DOUBLE] = "float64"};
-    size_t values = field->kind == BENCH_DOUBLE ? field->size / sizeof(double) : 1;
+    int values = bench_field_values(field);
     if (field->series)
         snprintf(text, size, "%s [repeats]", names[field->kind]);
     else if (values > 1)
-        snprintf(text, size, "%s [%zu]", names[field->kind], values);
+        snprintf(text, size, "%s [%d]", names[field->kind], values);
     else
         snprintf(text, size, "%s", names[field->kind]);
 }

@@ -33,7 +33,8 @@ void bench_row_columns(const BenchRow *rows, int count, BenchTableKind table, Be
         const BenchQuantity *quantity = &bench_quantities[q];
         bool terse = form == BENCH_GRID_PLAIN && quantity->terse;
         if (shown(quantity, table, form))
-            bench_grid_column(grid, terse ? quantity->terse : quantity->title, quantity->left);
+            bench_grid_column(grid, terse ? quantity->terse : quantity->field.title,
+                              quantity->field.left);
     }
     for (int r = 0; r < count; r++) {
         int width = (int)strlen(rows[r].scene);
@@ -49,6 +50,35 @@ static const char *time_mark(const BenchRow *row, BenchTableKind table)
     return !row->valid ? "INVALID" : bench_row_frames_busy(row) ? "BUSY" : NULL;
 }
 
+static void part_text(double ms, double percent, BenchGridForm form, char *text)
+{
+    char number[BENCH_GRID_TEXT];
+    bench_grid_number(ms, number);
+    if (form == BENCH_GRID_PLAIN && isfinite(percent))
+        snprintf(text, BENCH_GRID_TEXT, "%.0f%%", percent);
+    else if (isfinite(percent))
+        snprintf(text, BENCH_GRID_TEXT, "%.40s (%2.0f%%)", number, percent);
+    else
+        snprintf(text, BENCH_GRID_TEXT, "%.40s", number);
+}
+
+static void measured_part(const BenchQuantity *quantity, const BenchRow *row, BenchGridForm form,
+                          char *text)
+{
+    double ms = bench_record_number(&quantity->field, row);
+    if (quantity->part(row))
+        part_text(ms, 100 * ms / row->total_ms, form, text);
+    else
+        strcpy(text, "-");
+}
+
+static void paper_part(const RefPaperRow *paper, const RefValue *value, BenchGridForm form,
+                       char *text)
+{
+    part_text(value->value, paper->stage_percent[value - paper->stage_ms].value, form, text);
+    strcat(text, bench_quantity_mark(value->status));
+}
+
 static void measured_line(const BenchRow *row, BenchTableKind table, BenchGridForm form,
                           BenchGridLine *line)
 {
@@ -59,8 +89,8 @@ static void measured_line(const BenchRow *row, BenchTableKind table, BenchGridFo
         char *text = (*line)[c++];
         if (mark && quantity->field.timed)
             strcpy(text, quantity->dash && form == BENCH_GRID_PLAIN ? "-" : mark);
-        else if (quantity->cell)
-            quantity->cell(row, form, text);
+        else if (quantity->part)
+            measured_part(quantity, row, form, text);
         else
             bench_record_cell(&quantity->field, row, text);
     }
@@ -74,7 +104,10 @@ static void paper_line(const RefPaperRow *paper, BenchTableKind table, BenchGrid
         if (!shown(quantity, table, form)) continue;
         char *text = (*line)[c++];
         const void *value = (const char *)paper + quantity->paper;
-        if (quantity->below) quantity->below(paper, value, form, text);
+        if (quantity->below)
+            quantity->below(paper, value, text);
+        else if (quantity->part)
+            paper_part(paper, value, form, text);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "../../lib/test_frame.h"
 #include "../measure/measure.h"
+#include "quantity.h"
 #include "table.h"
 
 /* Columns keep their places; new ones come behind them. */
@@ -458,4 +459,19 @@ TEST(what_a_surface_could_not_follow_is_said)
                 assert_null(strstr(text, "could not follow"));
             free(text);
         }
+}
+
+/* By the stored name, the column or papers.cfg's name; texts and arrays are no numbers. */
+TEST(numbers_of_a_row_are_found_by_name)
+{
+    static const char *const names[] = {"change_most_ms", "most_resampling_ms", "most_ms"};
+    const BenchRow row = {.bytes = 7, .w = 3, .change.change_most_ms = 1.5};
+    for (int n = 0; n < 3; n++)
+        assert_true(bench_record_number(bench_quantity_number(names[n]), &row) == 1.5);
+    assert_true(bench_record_number(bench_quantity_number("bytes"), &row) == 7);
+    assert_true(bench_record_number(bench_quantity_number("w"), &row) == 3);
+    assert_null(bench_quantity_number("reason"));
+    assert_null(bench_quantity_number("stage_ms"));
+    assert_null(bench_quantity_number("valid"));
+    assert_null(bench_quantity_number(""));
 }
