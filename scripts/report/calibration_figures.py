@@ -23,7 +23,7 @@ def where(specimen, i):
         f", epsilon {specimen['epsilon'][i]:g}" if specimen["engine"][i] == plot_calibration.OCTREE else "")
 
 
-def said(source):
+def summary(source):
     """What the program wrote about the figures of this file, three sentences."""
     return " ".join(source.found)
 

@@ -2,9 +2,9 @@
 import numpy as np
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator
 
-from drawing import COLOURS, DOUBTS, MARKS, PAPER, Figure, canvas, number
+from drawing import COLOURS, STATUS_MARKS, MARKS, PAPER, Figure, canvas, number
 from sources import CLAIM_KINDS
-from tables import Table, doubts_said
+from tables import Table, explain_marks
 
 # Groups of curves by how their names begin: title, caption, and which axes are logarithmic.
 GROUPS = {
@@ -60,14 +60,14 @@ def kind_table(source, kind):
     claims = [claim for claim in source.claims if claim["kind"] == kind]
     for claim in claims:
         paper = value_text(claim["paper_value"][:claim["values"]])
-        paper = paper + DOUBTS.get(claim["status"], "") if paper else "–"
+        paper = paper + STATUS_MARKS.get(claim["status"], "") if paper else "–"
         evidence = " over ".join(claim[name] for name in ("evidence", "over") if claim[name])
         evidence += f", not set {claim['unset_evidence']}" if claim["unset_evidence"] else ""
         why = "" if claim["words"] == claim["test"] else "\n" + claim["words"]
         table.add([f"{claim['paper']} {claim['name']}", claim["verdict"], f"{claim['statement']} ({claim['place']}){why}",
                    paper, measured_text(claim), claim["unit"], text(claim), evidence],
                   CLASSES.get(claim["verdict"], ""))
-    table.note += doubts_said(claim["status"] for claim in claims if claim["values"])
+    table.note += explain_marks(claim["status"] for claim in claims if claim["values"])
     return table
 
 
@@ -75,7 +75,7 @@ def claim_tables(source):
     return [kind_table(source, kind) for kind in CLAIM_KINDS if any(c["kind"] == kind for c in source.claims)]
 
 
-def said(source):
+def summary(source):
     parts = []
     for kind in CLAIM_KINDS:
         verdicts = [claim["verdict"] for claim in source.claims if claim["kind"] == kind]

@@ -17,7 +17,7 @@ sys.path.insert(1, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.p
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#999999"]  # Okabe and Ito
 MARKS = ["o", "s", "^", "D", "v", "P", "X"]
 PAPER = "#777777"
-DOUBTS = {"damaged": "?", "second-hand": "*"}  # how a paper's value came to us (results/README.md)
+STATUS_MARKS = {"damaged": "?", "second-hand": "*"}  # how a paper's value came to us (results/README.md)
 
 matplotlib.rcParams.update({
     "font.size": 10, "axes.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False,

@@ -47,9 +47,9 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 class Part:
     """A section of the page."""
 
-    def __init__(self, id, title, said=(), tables=(), figures=()):
+    def __init__(self, id, title, sentences=(), tables=(), figures=()):
         self.id, self.title = id, title
-        self.said, self.tables, self.figures = list(said), list(tables), list(figures)
+        self.sentences, self.tables, self.figures = list(sentences), list(tables), list(figures)
 
 
 def measured_part(files):
@@ -58,11 +58,11 @@ def measured_part(files):
         return None
     bad = [row["scene"] for row in rows if not row["valid"]]
     busy = [row["scene"] for row in rows if row["valid"] and row["total_ms"] != row["total_ms"]]
-    said = [f"{len(rows)} rows were measured; each was checked on the very scene timed: "
+    sentences = [f"{len(rows)} rows were measured; each was checked on the very scene timed: "
             + ("all are VALID." if not bad else f"{len(bad)} are INVALID and have no times: {', '.join(bad)}.")]
     if busy:
-        said.append(f"Other programs left no undisturbed time to {', '.join(busy)}: they are BUSY.")
-    return Part("measured", "Measured beside the papers", said, tables.all_tables(files),
+        sentences.append(f"Other programs left no undisturbed time to {', '.join(busy)}: they are BUSY.")
+    return Part("measured", "Measured beside the papers", sentences, tables.all_tables(files),
                 row_figures.all_figures(files))
 
 
@@ -70,7 +70,7 @@ def claims_part(files):
     files = [source for source in files if source.claims]
     if not files:
         return None
-    return Part("claims", "What the papers claim", map(claim_figures.said, files),
+    return Part("claims", "What the papers claim", map(claim_figures.summary, files),
                 [table for source in files for table in claim_figures.claim_tables(source)],
                 [figure for source in files for figure in claim_figures.figures(source)])
 
@@ -79,7 +79,7 @@ def sweeps_part(files):
     files = [source for source in files if source.point]
     if not files:
         return None
-    return Part("sweeps", "Which w, which epsilon", map(sweep_figures.said, files),
+    return Part("sweeps", "Which w, which epsilon", map(sweep_figures.summary, files),
                 map(sweep_figures.front_table, files),
                 [figure for source in files for figure in sweep_figures.figures(source)])
 
@@ -88,7 +88,7 @@ def calibrations_part(files):
     files = [source for source in files if source.specimen]
     if not files:
         return None
-    return Part("calibrations", "Which elastic body", map(calibration_figures.said, files),
+    return Part("calibrations", "Which elastic body", map(calibration_figures.summary, files),
                 [table(source) for source in files
                  for table in (calibration_figures.law_table, calibration_figures.grid_table)],
                 [figure for source in files for figure in calibration_figures.figures(source)])

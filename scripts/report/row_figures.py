@@ -2,8 +2,8 @@
 scenes that change, threads, and a scene's history."""
 import numpy as np
 
-from drawing import COLOURS, DOUBTS, MARKS, PAPER, Figure, canvas, number
-from tables import doubts_said
+from drawing import COLOURS, STATUS_MARKS, MARKS, PAPER, Figure, canvas, number
+from tables import explain_marks
 
 STAGE_TITLES = {"fast_sum": "fast sum", "shape_matching": "shape matching", "polar": "polar decomposition",
                 "damping": "damping", "other": "other"}
@@ -19,7 +19,7 @@ def share_bars(axes, y, values, height, alpha, statuses=()):
         axes.barh(y, value, height, left=left, color=COLOURS[s], alpha=alpha)
         left += value
     for s, status in enumerate(statuses):
-        axes.text(sum(values[:s]) + values[s] / 2, y, DOUBTS.get(status, ""), ha="center", va="center", fontsize=7)
+        axes.text(sum(values[:s]) + values[s] / 2, y, STATUS_MARKS.get(status, ""), ha="center", va="center", fontsize=7)
 
 
 def stage_shares(rows):
@@ -29,7 +29,7 @@ def stage_shares(rows):
         return None
     stages = rows[0]["stage_names"]
     figure, axes = canvas(7.2, 0.9 + 0.36 * len(rows))
-    data, shown, doubted = [], [], []
+    data, shown, marked = [], [], []
     for y, row in enumerate(rows):
         shares = 100 * np.array(row["stage_ms"]) / row["total_ms"]
         share_bars(axes, y - 0.13, shares, 0.42, 1)
@@ -41,8 +41,8 @@ def stage_shares(rows):
             data.append([row["scene"], "paper"] + [None if v != v else float(v) for v in paper]
                         + [" ".join(statuses)])
             shown += statuses
-            doubted += [f"the paper's {STAGE_TITLES.get(s)} of {row['scene']} ({DOUBTS[status]})"
-                        for s, status in zip(stages, statuses) if status in DOUBTS]
+            marked += [f"the paper's {STAGE_TITLES.get(s)} of {row['scene']} ({STATUS_MARKS[status]})"
+                        for s, status in zip(stages, statuses) if status in STATUS_MARKS]
     axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlim(0, 100)
@@ -54,8 +54,8 @@ def stage_shares(rows):
     largest = [f"{row['scene']}: {STAGE_TITLES.get(stages[int(np.argmax(row['stage_ms']))])} most" for row in rows]
     return Figure("stage-shares", "Where a step's time goes",
                   "Share of each stage in a step; thin pale bars are the paper's, where it gives them."
-                  + doubts_said(shown),
-                  "Stacked bars, one for each scene. " + "; ".join(largest + doubted) + ".",
+                  + explain_marks(shown),
+                  "Stacked bars, one for each scene. " + "; ".join(largest + marked) + ".",
                   ["scene", "source"] + [s + "_percent" for s in stages] + ["statuses"], data).draw(figure)
 
 
@@ -71,7 +71,7 @@ def beside_paper(rows):
         if paper == paper:
             axes.plot([ns, paper], [y, y], color="#cccccc", linewidth=1.5, zorder=1)
             axes.plot(paper, y, "D", color=PAPER, markersize=5)
-            axes.annotate(DOUBTS.get(row["paper_status"], ""), (paper, y), xytext=(5, 0), textcoords="offset points",
+            axes.annotate(STATUS_MARKS.get(row["paper_status"], ""), (paper, y), xytext=(5, 0), textcoords="offset points",
                           va="center")
         axes.plot(ns, y, "o", color=COLOURS[0])
         data.append([row["scene"], ns, None if paper != paper else paper, row["paper_status"]])
@@ -81,11 +81,11 @@ def beside_paper(rows):
     axes.set_xlabel("nanoseconds per particle and step (logarithmic)")
     axes.legend([axes.plot([], [], "o", color=COLOURS[0])[0], axes.plot([], [], "D", color=PAPER, markersize=5)[0]],
                 ["measured here", "the paper, its machine"], ncols=2, loc="lower center", bbox_to_anchor=(0.45, 1.0))
-    times = [f"{scene} {number(ns)} against {number(paper)}{DOUBTS.get(status, '')}"
+    times = [f"{scene} {number(ns)} against {number(paper)}{STATUS_MARKS.get(status, '')}"
              for scene, ns, paper, status in data if paper]
     return Figure("beside-paper", "Cost of a particle and step",
                   "Median of this run beside what the paper's table gives for its own processor and "
-                  "particles." + doubts_said(line[3] for line in data),
+                  "particles." + explain_marks(line[3] for line in data),
                   "Dots on a logarithmic scale of nanoseconds: " + "; ".join(times) + ".",
                   ["scene", "ns_per_particle_step", "paper_ns_per_particle_step", "paper_status"], data).draw(figure)
 
@@ -140,9 +140,9 @@ def threads(sources):
     axes.set_xlabel("threads")
     axes.set_ylabel("times as fast as with the fewest")
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
-    said = [f"{scene} {number(gain)} times as fast with {t}" for scene, _, t, _, gain in data if t > 1]
+    words = [f"{scene} {number(gain)} times as fast with {t}" for scene, _, t, _, gain in data if t > 1]
     return Figure("threads", "Threads", "Medians of a step, of rows that several files hold with different threads.",
-                  "; ".join(said) + ".", ["scene", "engine", "threads", "total_ms", "gain"], data).draw(figure)
+                  "; ".join(words) + ".", ["scene", "engine", "threads", "total_ms", "gain"], data).draw(figure)
 
 
 def history(sources):
@@ -159,7 +159,7 @@ def history(sources):
     files = sorted({p[:4] for points in lines.values() for p in points})
     place = {file: n for n, file in enumerate(files)}
     figure, axes = canvas(7.2, 3.8)
-    data, said = [], []
+    data, words = [], []
     for n, (name, points) in enumerate(sorted(lines.items())):
         (first, low, high), (last, last_low, last_high) = points[0][4:], points[-1][4:]
         spread = np.array([[(p[4] - p[5]) / first, (p[6] - p[4]) / first] for p in points]).T
@@ -168,13 +168,13 @@ def history(sources):
                       label=f"{name[0]}, {name[3]} thread{'s' * (name[3] > 1)}")
         data += [[name[0], name[1], name[3], *p[:3], *p[4:]] for p in points]
         apart = "overlap" if low <= last_high and last_low <= high else "do not overlap"
-        said.append(f"{name[0]} from {number(first)} to {number(last)} ms ({last / first:.3f} times; quartiles {apart})")
+        words.append(f"{name[0]} from {number(first)} to {number(last)} ms ({last / first:.3f} times; quartiles {apart})")
     axes.set_xticks(range(len(files)), [f"{name}\n{commit}\n{utc[:16]}" for utc, commit, name, _ in files], fontsize=8)
     axes.axhline(1, color=PAPER, linewidth=0.8)
     axes.set_ylabel("time of a step, first file = 1")
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     return Figure("history", "A scene from file to file", "Medians and quartiles, relative to the oldest file; + marks a "
-                  "build from changed sources.", "; ".join(said) + ".",
+                  "build from changed sources.", "; ".join(words) + ".",
                   ["scene", "engine", "threads", "utc", "commit", "file", "total_ms", "low_ms", "high_ms"],
                   data).draw(figure)
 

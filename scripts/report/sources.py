@@ -12,33 +12,8 @@ import numpy as np
 import stored
 from stored import Unusable
 
-SCHEMAS = {"shapebench results": 4, "shapebench claims": 2, "shapebench sweep": 1,
-           "shapebench calibration": 1}
-TEXTS = ("paper", "scene", "engine", "precision", "reason", "stages")
-NUMBERS = ("valid", "particles", "regions", "w", "threads", "total_ms", "total_low_ms", "total_high_ms",
-           "ns_per_particle_step", "summation_nodes", "damping", "paper_total_ms") + tuple(
-    "change." + name for name in ("frames", "changed", "first_nodes", "most_nodes", "most_added", "first_ms", "last_ms",
-                                  "change_ms", "change_most_ms", "follow_ms", "surface_ms", "first_triangles",
-                                  "last_triangles", "pieces", "open_edges", "left"))
-
 CLAIM_KINDS = ("method", "machine", "by construction")
-CLAIM_TEXTS = ("kind", "paper", "name", "place", "unit", "statement", "status", "test", "verdict", "words", "evidence",
-               "over", "unset_evidence")
 
-CLAIM_VALUES = ("paper_value", "measured", "low", "high")
-
-SWEEP_COLUMNS = ("engine", "w", "epsilon", "valid", "total_ms", "build_seconds", "bytes", "summation_nodes", "goal_rms",
-                 "relaxation", "sag", "frequency", "path_rms", "path_most", "front")
-
-TEXT_COLUMNS = ("engine", "set", "reason", "kind")
-
-SPECIMEN_COLUMNS = ("engine", "w", "epsilon", "across", "aspect", "spacing", "h", "set", "wide", "valid", "reason",
-                    "frequency", "young", "spread", "young_euler", "young_timoshenko", "young_meshless")
-SPECIMEN_WIDE = {"frequency": 3, "young_euler": 4, "young_timoshenko": 4, "young_meshless": 4}
-LAW_COLUMNS = ("engine", "kind", "specimens", "scatter", "c", "spacing", "width", "aspect", "step", "d")
-LAW_WIDE = {name: 3 for name in ("c", "spacing", "width", "aspect", "step", "d")}
-
-MACHINE_TEXTS = ("cpu", "git_commit", "utc")
 
 def plain(value):
     """An attribute as Python has it: text, number, or array."""
@@ -71,41 +46,36 @@ class Source:
         return commit + ("+" if self.machine.get("git_dirty") else "")
 
 
-def demand(row, names, kinds):
-    """All of these attributes, each of one of the kinds; arrays are lists of numbers."""
-    for name in names:
-        value = row.get(name)
-        if not isinstance(value, kinds) or kinds is np.ndarray and (value.ndim != 1 or value.dtype.kind not in "iuf"):
-            raise ValueError(f"'{name}'")
-
-
-STATUSES = ("paper_total_status", "paper_rate_status", "paper_stage_status")
-
-
-def read_statuses(row):
-    """How the paper's values came to us; empty where the file does not say, and of a total that follows from a
-    rate, how the rate did."""
-    given = {name: row.get(name, "") for name in STATUSES}
-    demand(given, STATUSES, str)
-    row["paper_status"] = given["paper_total_status"]
-    if row["paper_status"] == "derived":
-        row["paper_status"] = given["paper_rate_status"]
-    row["paper_stage_statuses"] = given["paper_stage_status"].split() or [""] * len(row["stage_ms"])
+def demand(record, texts="", numbers="", lists=""):
+    """The attributes of these names must be there and of their kind; lists are of numbers."""
+    for names, kinds in ((texts, str), (numbers, (int, float)), (lists, np.ndarray)):
+        for name in names.split():
+            value = record.get(name)
+            if not isinstance(value, kinds) or kinds is np.ndarray and (value.ndim != 1 or value.dtype.kind not in "iuf"):
+                raise ValueError(f"'{name}'")
 
 
 def read_paper(row):
-    """The paper's time of a particle and step, and its stages' percents; NaN where the file does not say."""
+    """What the file says of the paper's values, or nothing: how they came to us (of a total that follows from a rate,
+    how the rate did), the time of a particle and step, and the stages' percents."""
+    count = len(row["stage_ms"])
+    for name in ("paper_total_status", "paper_rate_status", "paper_stage_status"):
+        row.setdefault(name, "")
+    row.setdefault("paper_stage_percent", np.full(count, math.nan))
+    demand(row, texts="paper_total_status paper_rate_status paper_stage_status", lists="paper_stage_percent")
+    derived = row["paper_total_status"] == "derived"
+    row["paper_status"] = row["paper_rate_status" if derived else "paper_total_status"]
+    row["paper_stage_statuses"] = row["paper_stage_status"].split() or [""] * count
     row["paper_ns"] = 1e6 * row["paper_total_ms"] / (row.get("paper_particles") or math.nan)
-    row.setdefault("paper_stage_percent", np.full(len(row["stage_ms"]), math.nan))
-    demand(row, ("paper_stage_percent",), np.ndarray)
 
 
 def read_row(group):
     row = attributes(group)
-    demand(row, TEXTS, str)
-    demand(row, NUMBERS, (int, float))
-    demand(row, ("stage_ms", "paper_stage_ms"), np.ndarray)
-    read_statuses(row)
+    change = ("frames changed first_nodes most_nodes most_added first_ms last_ms change_ms change_most_ms follow_ms "
+              "surface_ms first_triangles last_triangles pieces open_edges left")
+    demand(row, texts="paper scene engine precision reason stages", lists="stage_ms paper_stage_ms",
+           numbers="valid particles regions w threads total_ms total_low_ms total_high_ms ns_per_particle_step "
+           "summation_nodes damping paper_total_ms " + " ".join("change." + name for name in change.split()))
     read_paper(row)
     if not (len(row["stages"].split()) == len(row["stage_ms"]) == len(row["paper_stage_ms"])
             == len(row["paper_stage_statuses"]) == len(row["paper_stage_percent"])):
@@ -115,7 +85,7 @@ def read_row(group):
             row[name + "_samples"] = group[name][:]
     if "elastic" in group:
         row["elastic"] = attributes(group["elastic"])
-        demand(row["elastic"], ("nodes", "modes", "matrix_seconds", "mode_seconds"), (int, float))
+        demand(row["elastic"], numbers="nodes modes matrix_seconds mode_seconds")
     row["stage_names"] = row["stages"].split()
     if "elastic" in row:  # files of before give a meshless body's stages the names of shape matching's
         older = {"shape_matching": "motion", "other": "skin"}
@@ -125,11 +95,11 @@ def read_row(group):
 
 def read_meanings(file):
     """What each attribute of a row is, and its unit, as the file says; older files do not."""
-    said = attributes(file["columns"]) if "columns" in file else {}
+    meaning = attributes(file["columns"]) if "columns" in file else {}
     if "columns" in file:
-        said |= {f"elastic/{name}": text for name, text in attributes(file["columns/elastic"]).items()}
-    demand(said, said, str)
-    return {name: re.fullmatch(r"(.*?)(?: \[([^][]*)\])?", text, re.DOTALL).groups("") for name, text in said.items()}
+        meaning |= {f"elastic/{name}": text for name, text in attributes(file["columns/elastic"]).items()}
+    demand(meaning, texts=" ".join(meaning))
+    return {name: re.fullmatch(r"(.*?)(?: \[([^][]*)\])?", text, re.DOTALL).groups("") for name, text in meaning.items()}
 
 
 def read_rows(source, file):
@@ -139,11 +109,11 @@ def read_rows(source, file):
 
 def read_claim(group):
     claim = attributes(group)
-    demand(claim, CLAIM_TEXTS, str)
-    demand(claim, ("values", "count"), int)
-    demand(claim, (*CLAIM_VALUES, "ratio"), np.ndarray)
-    demand(claim, ("unset",), float)
-    if not 0 <= max(claim["values"], claim["count"]) <= min(len(claim[name]) for name in CLAIM_VALUES):
+    values = "paper_value measured low high"
+    demand(claim, numbers="values count unset", lists=values + " ratio",
+           texts="kind paper name place unit statement status test verdict words evidence over unset_evidence")
+    claim["values"], claim["count"] = int(claim["values"]), int(claim["count"])
+    if not 0 <= max(claim["values"], claim["count"]) <= min(len(claim[name]) for name in values.split()):
         raise ValueError("the number of values of a claim")
     if claim["kind"] not in CLAIM_KINDS:
         raise ValueError(f"the kind {claim['kind']!r} of a claim")
@@ -152,11 +122,10 @@ def read_claim(group):
 
 def read_curve(group):
     curve = attributes(group)
-    demand(curve, ("x_name", "y_name"), str)
-    demand(curve, ("valid", "exponent", "exponent_low", "exponent_high"), (int, float))
     for name in ("x", "y", "low", "high"):
         curve[name] = group[name][:] if name in group else np.empty(0)
-        demand(curve, (name,), np.ndarray)
+    demand(curve, "x_name y_name", "valid exponent exponent_low exponent_high", "x y low high")
+    for name in ("y", "low", "high"):
         if curve[name].shape != curve["x"].shape:
             raise ValueError(f"the number of values of '{name}'")
     return curve
@@ -170,21 +139,23 @@ def read_claims(source, file):
 
 def read_sweep(source, file):
     source.plan = attributes(file["plan"])
-    demand(source.plan, ("scene", "width"), str)
-    demand(source.plan, ("points",), int)
-    source.point = read_columns(file["points"], SWEEP_COLUMNS, {})
+    demand(source.plan, "scene width", "points")
+    source.point = read_columns(file["points"], "engine",
+                                "w epsilon valid total_ms build_seconds bytes summation_nodes goal_rms relaxation sag "
+                                "frequency path_rms path_most front")
     if not len(source.point["w"]):
         raise ValueError("not one point is finished")
 
 
-def read_columns(group, columns, wide):
-    """The group's datasets, all of one length; `wide` names those of several numbers a line, and how many."""
+def read_columns(group, texts, numbers):
+    """The group's datasets, all of one length; "young:4" are four numbers a line."""
     column = {name: values[:] for name, values in group.items()}
     count = len(column["engine"])
-    for name in columns:
-        if column[name].shape != ((count, wide[name]) if name in wide else (count,)):
+    for name, kinds in [(name, "S") for name in texts.split()] + [(name, "iuf") for name in numbers.split()]:
+        name, _, wide = name.partition(":")
+        if column[name].shape != ((count, int(wide)) if wide else (count,)):
             raise ValueError(f"the shape of '{name}'")
-        if column[name].dtype.kind not in ("S" if name in TEXT_COLUMNS else "iuf"):
+        if column[name].dtype.kind not in kinds:
             raise ValueError(f"the type of '{name}'")
     return {name: np.array([plain(text) for text in values]) if values.dtype.kind == "S" else values
             for name, values in column.items()}
@@ -192,31 +163,35 @@ def read_columns(group, columns, wide):
 
 def read_calibration(source, file):
     source.plan = attributes(file["plan"])
-    demand(source.plan, ("scene",), str)
-    demand(source.plan, ("across", "aspect", "specimens", "thickness", "h", "density", "meshless"), (int, float))
-    source.specimen = read_columns(file["specimens"], SPECIMEN_COLUMNS, SPECIMEN_WIDE)
-    source.law = read_columns(file["laws"], LAW_COLUMNS, LAW_WIDE)
+    demand(source.plan, "scene", "across aspect specimens thickness h density meshless")
+    source.specimen = read_columns(file["specimens"], "engine set reason",
+                                   "w epsilon across aspect spacing h wide valid spread frequency:3 young young_euler:4 "
+                                   "young_timoshenko:4 young_meshless:4")
+    source.law = read_columns(file["laws"], "engine kind",
+                              "specimens scatter c:3 spacing:3 width:3 aspect:3 step:3 d:3")
     source.found = [plain(file["laws"].attrs[f"found_{n}"]) for n in (1, 2, 3)]
     if not len(source.specimen["w"]):
         raise ValueError("not one specimen is finished")
 
 
-READERS = {"shapebench results": read_rows, "shapebench claims": read_claims,
-           "shapebench sweep": read_sweep, "shapebench calibration": read_calibration}
+# By kind: the schema that is read, and what reads it.
+READERS = {"shapebench results": (4, read_rows), "shapebench claims": (2, read_claims),
+           "shapebench sweep": (1, read_sweep), "shapebench calibration": (1, read_calibration)}
 
 
 def read_file(path, file):
     kind, schema = plain(file.attrs.get("kind", "")), plain(file.attrs.get("schema", 0))
-    if kind not in SCHEMAS:
+    if kind not in READERS:
         raise Unusable(f"{path}: not a file that can be reported (its kind is {kind!r}): give files that "
                        "`shapebench tables`, `claims`, `sweep` or `calibrate` wrote with -o")
-    if schema != SCHEMAS[kind]:
-        newer = isinstance(schema, int) and schema > SCHEMAS[kind]
-        raise Unusable(f"{path}: {kind} of schema {schema}, and this program reads {SCHEMAS[kind]}: "
+    known, fill = READERS[kind]
+    if schema != known:
+        newer = isinstance(schema, int) and schema > known
+        raise Unusable(f"{path}: {kind} of schema {schema}, and this program reads {known}: "
                        + ("use a newer shapebench" if newer else "make it again with this version"))
     source = Source(path, kind, attributes(file["machine"]))
-    demand(source.machine, MACHINE_TEXTS, str)
-    READERS[kind](source, file)
+    demand(source.machine, "cpu git_commit utc")
+    fill(source, file)
     return source
 
 

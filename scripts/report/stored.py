@@ -103,10 +103,10 @@ def why_unreadable(path):
             os._exit(1)
     os.close(ends[1])
     with open(ends[0], "rb") as pipe:
-        said = pipe.read()
+        reply = pipe.read()
     if os.waitpid(child, 0)[1]:
         return "so damaged that it cannot be read"
-    return " ".join(said.decode("utf-8", "replace").split())
+    return " ".join(reply.decode("utf-8", "replace").split())
 
 
 @functools.cache  # a sequence of pictures opens it for each

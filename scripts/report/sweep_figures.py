@@ -84,7 +84,7 @@ def front_table(source):
     return table
 
 
-def said(source):
+def summary(source):
     plan, point = source.plan, source.point
     bad = int((point["valid"] == 0).sum())
     return (f"{plan['scene']} was swept over w and epsilon ({source.name}): {len(point['w'])} of {plan['points']} points, "

@@ -1,7 +1,7 @@
 """Tables of a report: headings and lines of texts, numbers as people read them."""
 import math
 
-from drawing import DOUBTS, number
+from drawing import STATUS_MARKS, number
 
 
 class Table:
@@ -20,11 +20,11 @@ class Table:
         return ["text long" if length > 80 else "text" if length > 24 else "" for length in longest]
 
 
-def doubts_said(statuses):
+def explain_marks(statuses):
     """What the marks of these values mean."""
     words = {"?": "a question mark is behind a value that is damaged in our text of the paper, or misprinted",
              "*": "a star is behind a value that we have only at second hand"}
-    marks = sorted({DOUBTS[status] for status in statuses if status in DOUBTS}, reverse=True)
+    marks = sorted({STATUS_MARKS[status] for status in statuses if status in STATUS_MARKS}, reverse=True)
     text = "; ".join(words[mark] for mark in marks)
     return f" {text[0].upper()}{text[1:]}." if text else ""
 
@@ -32,7 +32,7 @@ def doubts_said(statuses):
 def times(values, percents, statuses=None):
     texts = [number(ms) + (f" ({percent:.0f}%)" if ms == ms and percent == percent else "")
              for ms, percent in zip(values, percents)]
-    return [text + DOUBTS.get(status, "") for text, status in zip(texts, statuses or [""] * len(texts))]
+    return [text + STATUS_MARKS.get(status, "") for text, status in zip(texts, statuses or [""] * len(texts))]
 
 
 def measured_times(row, names):
@@ -69,11 +69,11 @@ def measured(source):
                    number(row["ns_per_particle_step"]), faster, check(row)] + measured_times(row, row["stage_names"])
                   + counts)
         if paper == paper:
-            mark = DOUBTS.get(row["paper_status"], "")
+            mark = STATUS_MARKS.get(row["paper_status"], "")
             table.add(["paper", number(paper) + mark, "", number(row["paper_ns"]) + mark, "", ""]
                       + times(row["paper_stage_ms"], row["paper_stage_percent"], row["paper_stage_statuses"]) + [""] * len(counts), "paper")
             shown += [row["paper_status"]] + row["paper_stage_statuses"]
-    table.note += doubts_said(shown)
+    table.note += explain_marks(shown)
     return table
 
 
@@ -126,7 +126,7 @@ def changing(source):
     return table
 
 
-def told(value):
+def text_of(value):
     """An attribute of a row; nothing of an array, which is another table's."""
     if isinstance(value, int) and value > 1 << 53:  # a hash
         return f"{value:016x}"
@@ -143,7 +143,7 @@ def everything(source):
                   + ["what it is"], folded=True)
     for name, (meaning, unit) in source.meanings.items():
         group, _, own = name.rpartition("/")
-        values = [told((row.get(group, {}) if group else row).get(own)) for row in rows]
+        values = [text_of((row.get(group, {}) if group else row).get(own)) for row in rows]
         if any(values):
             table.add([name, unit] + values + [meaning])
     return table
@@ -168,9 +168,5 @@ def environment(sources):
 
 
 def all_tables(sources):
-    made = []
-    for source in sources:
-        if source.rows:
-            made += [table for table in (measured(source), changing(source), elastic(source),
-                                              everything(source)) if table]
-    return made
+    made = (make(source) for source in sources for make in (measured, changing, elastic, everything))
+    return [table for table in made if table]
