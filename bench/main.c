@@ -13,19 +13,10 @@
 #include "system/interrupt.h"
 #include "system/suggest.h"
 
-static const BenchCommand commands[] = {
-    {"tables", "measure a paper's table, checked, its values beside", bench_command_tables},
-    {"claims", "hold every claim of the papers against what is measured", bench_command_claims},
-    {"sweep", "cost and quality over w and epsilon; recommend some", bench_command_sweep},
-    {"merge", "put the shards of a sweep into one file", bench_command_merge},
-    {"calibrate", "the elastic body that w and epsilon make: its modulus", bench_command_calibrate},
-    {"regress", "is this build slower than another one, or wrong?", bench_command_regress},
-    {"report", "make a page of result files to send to a colleague", bench_command_report},
-    {"kernels", "time every kernel against what this machine can do", bench_command_kernels},
-    {"run", "simulate a scene or a mesh and write its motion", bench_command_run},
-    {"info", "say what is in a mesh, and whether it can be simulated", bench_command_info},
-    {"scenes", "list the built-in scenes, or print one to copy and edit", bench_command_scenes},
-};
+static const BenchCommand *const commands[] = {
+    &bench_command_tables,    &bench_command_claims,  &bench_command_sweep,  &bench_command_merge,
+    &bench_command_calibrate, &bench_command_regress, &bench_command_report, &bench_command_kernels,
+    &bench_command_simulate,  &bench_command_info,    &bench_command_scenes};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static const char help_start[] =
@@ -47,8 +38,8 @@ static void write_help(char *help, size_t room)
 {
     size_t used = (size_t)snprintf(help, room, "%s", help_start);
     for (int i = 0; i < COMMANDS && used < room; i++)
-        used += (size_t)snprintf(help + used, room - used, "  %-9s %s\n", commands[i].name,
-                                 commands[i].summary);
+        used += (size_t)snprintf(help + used, room - used, "  %-9s %s\n", commands[i]->name,
+                                 commands[i]->summary);
     if (used < room) snprintf(help + used, room - used, "%s", help_end);
 }
 
@@ -57,7 +48,7 @@ static int run_command(const BenchCommand *command, int argc, char **argv)
     char name[64];
     snprintf(name, sizeof name, "shapebench %s", command->name);
     argv[0] = name;
-    int code = command->run(argc, argv);
+    int code = bench_command_run(command, argc, argv);
     if (fflush(stdout) || ferror(stdout)) {
         fprintf(stderr, "%s: standard output cannot be written: is the disk full?\n", name);
         return code ? code : SM_OUTPUT;
@@ -68,15 +59,8 @@ static int run_command(const BenchCommand *command, int argc, char **argv)
 static const BenchCommand *find_command(const char *name)
 {
     for (int i = 0; i < COMMANDS; i++)
-        if (!strcmp(commands[i].name, name)) return &commands[i];
+        if (!strcmp(commands[i]->name, name)) return commands[i];
     return NULL;
-}
-
-static bool is_scene(const char *name)
-{
-    for (const char *const *scene = bench_scene_names(); *scene; scene++)
-        if (!strcmp(*scene, name)) return true;
-    return false;
 }
 
 /* Scenes and files are run's arguments. */
@@ -86,8 +70,8 @@ static void unknown_command(const char *name)
     snprintf(shown, sizeof shown, "%s", name);
     sm_printable(shown);
     BenchSuggestion meant = {.typed = shown};
-    for (int i = 0; i < COMMANDS; i++) bench_suggest(&meant, commands[i].name);
-    bool of_run = is_scene(name) || access(name, F_OK) == 0;
+    for (int i = 0; i < COMMANDS; i++) bench_suggest(&meant, commands[i]->name);
+    bool of_run = bench_scene_text(name, NULL) || access(name, F_OK) == 0;
     if (of_run) meant.name = shown;
     char near[BENCH_SUGGEST_TEXT];
     fprintf(stderr, "shapebench: unknown command '%s'%s%s 'shapebench --help'\n", shown,

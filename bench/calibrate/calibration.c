@@ -8,7 +8,7 @@
 #include "../campaign/campaign_run.h"
 #include "../check/runner_check.h"
 #include "../engines.h"
-#include "../store/h5.h"
+#include "../table/records.h"
 
 #define FIELD(type, member)  BENCH_FIELD_AS(BenchCalibrationPlan, BENCH_##type, member, #member)
 #define MEANS(of_what, what) BENCH_MEANS(of_what, what)
@@ -43,7 +43,7 @@ static const BenchField plan_fields[] = {
 
 static const int plan_field_count = sizeof plan_fields / sizeof plan_fields[0];
 
-const BenchCampaignList bench_calibration_lists[BENCH_CALIBRATION_LISTS] = {
+static const BenchCampaignList lists[] = {
     LIST("w", w, ws, 1, 1, SM_MOST_W),
     LIST("epsilon", epsilon, epsilons, 1, 0, 4),
     LIST("across", other_across, acrosses, 0, 1, BENCH_MOST_ACROSS),
@@ -181,8 +181,9 @@ static void list_all(List *list)
     for (int s = 0; s < plan->steps; s++) add_some(list, "step", plan->step[s]);
 }
 
-SmCode bench_calibration_count(BenchCalibrationPlan *plan, SmError *error)
+static SmCode count(void *record, SmError *error)
 {
+    BenchCalibrationPlan *plan = record;
     SmCode code = check_whole("--w", plan->w, plan->ws, error);
     if (!code) code = check_whole("--across", plan->other_across, plan->acrosses, error);
     if (!code) code = check_whole("--aspect", plan->other_aspect, plan->aspects, error);
@@ -242,9 +243,10 @@ static void measure_beam(BenchCantilever *beam, bool range, BenchSpecimen *speci
     specimen->linear_to = found.linear_to;
 }
 
-void bench_calibration_measure(const BenchCalibrationPlan *plan,
-                               const BenchElasticCantilever ideal[BENCH_MODELS], bool range,
-                               BenchSpecimen *specimen)
+/* Measures a specimen that has its settings. What cannot be had is said in it. */
+static void measure_specimen(const BenchCalibrationPlan *plan,
+                             const BenchElasticCantilever elastic[BENCH_MODELS], bool range,
+                             BenchSpecimen *specimen)
 {
     BenchCantileverOptions options = {.w = specimen->w,
                                       .epsilon = specimen->epsilon,
@@ -259,7 +261,6 @@ void bench_calibration_measure(const BenchCalibrationPlan *plan,
     BenchCantilever *beam = sm_alloc(1, sizeof *beam);
     const SmEngineType *type;
     SmError error;
-    double start = sm_now();
     SmCode code = bench_engine_find(options.engine, "double", &type, &error);
     if (!code) code = bench_cantilever_create(&options, type, beam, &error);
     if (code)
@@ -269,25 +270,24 @@ void bench_calibration_measure(const BenchCalibrationPlan *plan,
         measure_beam(beam, range, specimen);
     bench_cantilever_free(beam);
     free(beam);
-    bench_specimen_judge(ideal, plan->thickness, plan->density, specimen);
-    specimen->wall = sm_now() - start;
+    bench_specimen_judge(elastic, plan->thickness, plan->density, specimen);
 }
 
 /* What elastic beams of one aspect do, found when it is first asked for. */
 typedef struct {
     int aspect;
-    BenchElasticCantilever ideal[BENCH_MODELS];
-} Ideals;
+    BenchElasticCantilever beam[BENCH_MODELS];
+} Elastic;
 
-static SmCode find_ideals(const BenchCalibrationPlan *plan, int aspect, Ideals *ideals,
-                          SmError *error)
+static SmCode find_elastic(const BenchCalibrationPlan *plan, int aspect, Elastic *elastic,
+                           SmError *error)
 {
-    if (ideals->aspect == aspect) return SM_OK;
+    if (elastic->aspect == aspect) return SM_OK;
     SmCode code = SM_OK;
     for (int m = 0; m < BENCH_MODELS && !code; m++)
-        code = bench_elastic_cantilever((BenchModel)m, aspect, plan->poisson, &ideals->ideal[m],
+        code = bench_elastic_cantilever((BenchModel)m, aspect, plan->poisson, &elastic->beam[m],
                                         error);
-    ideals->aspect = code ? 0 : aspect;
+    elastic->aspect = code ? 0 : aspect;
     return code;
 }
 
@@ -305,26 +305,102 @@ static SmCode begin(BenchCampaign *campaign, const BenchCampaignRun *run, void *
                     SmError *error)
 {
     (void)campaign, (void)run, (void)error;
-    *work = sm_alloc(1, sizeof(Ideals));
+    *work = sm_alloc(1, sizeof(Elastic));
     return SM_OK;
 }
 
 static SmCode measure(void *work, const BenchCampaign *campaign, void *point, SmError *error)
 {
-    Ideals *ideals = work;
+    Elastic *elastic = work;
     const BenchCalibrationPlan *plan = campaign->plan;
     BenchSpecimen *s = point;
-    SmCode code = find_ideals(plan, s->aspect, ideals, error);
-    if (!code) bench_calibration_measure(plan, ideals->ideal, wants_range(plan, s), s);
+    SmCode code = find_elastic(plan, s->aspect, elastic, error);
+    if (!code) measure_specimen(plan, elastic->beam, wants_range(plan, s), s);
     return code;
 }
 
-/* ---- the campaign */
+/* ---- its table */
 
-static SmCode count(void *plan, SmError *error)
+enum { REASONS = 8 };
+
+static void write_reasons(FILE *file, const BenchCampaign *calibration)
 {
-    return bench_calibration_count(plan, error);
+    int said = 0;
+    for (long i = 0; i < calibration->count && said < REASONS; i++) {
+        const BenchSpecimen *s = bench_campaign_at(calibration, i);
+        if (s->valid) continue;
+        fprintf(file, "  %s w %d epsilon %g is INVALID: %s\n", s->engine, s->w, s->epsilon,
+                s->reason);
+        said++;
+    }
 }
+
+static void print_head(FILE *file, BenchFormat format, const BenchCampaign *calibration,
+                       BenchGrid *grid)
+{
+    (void)grid;
+    if (format != BENCH_AS_TEXT) return;
+    const BenchCalibrationPlan *plan = calibration->plan;
+    fprintf(file,
+            "%s: Young's modulus at %g kg/m^3 of the elastic beam that behaves alike, %ld of %d "
+            "specimens.\n%g thick, %d times as long, %d cells through; damping %g; Poisson's ratio "
+            "taken as %g.\n\n",
+            plan->scene, plan->density, calibration->count, plan->specimens, plan->thickness,
+            plan->aspect, plan->across, plan->damping, plan->poisson);
+}
+
+static void write_legend(FILE *file, const BenchCalibrationPlan *plan)
+{
+    fprintf(
+        file,
+        "\nE: geometric mean of what the static sag and the first natural frequency of a clamped "
+        "beam say, by the %s. by sag, by f1..f3: each alone; apart: the largest over the least.\n"
+        "theory: by the sag, of Timoshenko's beam. regions: wide where 2 w + 1 particles are more "
+        "than the beam is thick. loss factor: logarithmic decrement of the first mode / pi.\n"
+        "linear to: largest of sags of 5, 10, 20, 40%% of the length in proportion to the load "
+        "within 5%%; looked for at some.\n",
+        plan->meshless ? "meshless reference"
+                       : "theory of Timoshenko's beam (no meshless reference: built without its "
+                         "libraries)");
+}
+
+static void print_tail(FILE *file, BenchFormat format, const BenchCampaign *calibration)
+{
+    BenchConclusion conclusion = bench_calibration_conclude(calibration);
+    BenchGrid laws = bench_records_grid(bench_stiffness_fit_fields, bench_stiffness_fit_field_count,
+                                        conclusion.law, sizeof *conclusion.law, conclusion.laws, 0);
+    bool text = format == BENCH_AS_TEXT;
+    if (text) write_legend(file, calibration->plan);
+    if (text && laws.lines)
+        fputs("\nLaws. narrow, wide: E = c rho spacing^p w^q aspect^s / h^r; two-term: E = rho "
+              "(spacing/h)^2 "
+              "w(w+1) (c + d w(w+1) (spacing/thickness)^2); with 95% confidence intervals.\n\n",
+              file);
+    if (!text) fputc('\n', file);
+    if (laws.lines) bench_grid_whole(file, &laws, bench_format_form(format));
+    bench_grid_free(&laws);
+    if (!text) return;
+    fputc('\n', file);
+    for (int i = 0; i < BENCH_FOUND; i++)
+        if (conclusion.found[i][0]) fprintf(file, "%s\n", conclusion.found[i]);
+    write_reasons(file, calibration);
+}
+
+static json_t *json_conclusion(const BenchCampaign *calibration)
+{
+    BenchConclusion conclusion = bench_calibration_conclude(calibration);
+    json_t *object = json_object(), *found = json_array();
+    json_object_set_new(object, "laws",
+                        bench_json_records(bench_stiffness_fit_fields,
+                                           bench_stiffness_fit_field_count, conclusion.law,
+                                           sizeof *conclusion.law, conclusion.laws));
+    for (int i = 0; i < BENCH_FOUND; i++)
+        json_array_append_new(found, bench_json_text(conclusion.found[i]));
+    json_object_set_new(object, "found", found);
+    return object;
+}
+
+/* ---- the campaign */
 
 static void plan_point(const void *plan, int index, void *point)
 {
@@ -359,9 +435,11 @@ const BenchCampaignType bench_calibration_type = {
     .more = bench_stiffness_fit_fields,
     .more_fields = &bench_stiffness_fit_field_count,
     .more_name = "laws",
-    .list = bench_calibration_lists,
-    .lists = BENCH_CALIBRATION_LISTS,
+    .list = lists,
+    .lists = sizeof lists / sizeof *lists,
     .planned = offsetof(BenchCalibrationPlan, specimens),
+    .build = offsetof(BenchCalibrationPlan, build),
+    .stamp = offsetof(BenchSpecimen, stamp),
     .count = count,
     .plan_point = plan_point,
     .say = say,
@@ -370,4 +448,7 @@ const BenchCampaignType bench_calibration_type = {
     .measure = measure,
     .end = free,
     .write = write_laws,
+    .head = print_head,
+    .tail = print_tail,
+    .more_json = json_conclusion,
 };

@@ -17,7 +17,7 @@ enum { BENCH_CALIBRATION_VALUES = 64, BENCH_CALIBRATION_SPECIMENS = 4096 };
 /* What the members are is said in calibration.c. */
 typedef struct {
     char file[1024]; /* the scene's name or file as given; not stored */
-    char scene[64], engines[12], build[768];
+    char scene[64], engines[12], build[BENCH_CAMPAIGN_BUILD];
     int across, aspect; /* of the scene's beam */
     double thickness, h, density, poisson, damping;
     bool meshless;
@@ -29,12 +29,13 @@ typedef struct {
 
 /* The campaign, whose plan is a BenchCalibrationPlan and whose points are BenchSpecimens: each
  * one's beam is built, and checked against brute force as it sags. Some are also looked at for how
- * far sags are in proportion. The file's schema: results/README.md. */
+ * far sags are in proportion. The file's schema: results/README.md. Its lists are w, epsilon,
+ * across, aspect and step.
+ *
+ * In its table a specimen that is not valid is INVALID; its quantities are "-", empty or null. The
+ * text form also has the laws, what was found in sentences, and the reasons; markdown and latex
+ * have the laws as a second table, JSON has the members "laws" and "found". */
 extern const BenchCampaignType bench_calibration_type;
-
-/* The numbers that a plan is made of, in the order w, epsilon, across, aspect, step. */
-enum { BENCH_CALIBRATION_LISTS = 5 };
-extern const BenchCampaignList bench_calibration_lists[BENCH_CALIBRATION_LISTS];
 
 /* What follows from its specimens. */
 typedef struct {
@@ -48,15 +49,5 @@ BenchConclusion bench_calibration_conclude(const BenchCampaign *calibration);
 /* Reads the beam from the scene that the plan's `file` names. SM_INPUT: the scene's body is no
  * beam; SM_USAGE: no such scene. */
 SmCode bench_calibration_beam(BenchCalibrationPlan *plan, SmError *error);
-
-/* Counts the specimens. SM_USAGE: a w that is no whole number or wider than fastlsm's may be, too
- * many of them. */
-SmCode bench_calibration_count(BenchCalibrationPlan *plan, SmError *error);
-
-/* Measures a specimen that has its settings. What cannot be had is said in it. With `range` it also
- * finds how far sags are in proportion. */
-void bench_calibration_measure(const BenchCalibrationPlan *plan,
-                               const BenchElasticCantilever ideal[BENCH_MODELS], bool range,
-                               BenchSpecimen *specimen);
 
 #endif

@@ -23,6 +23,6 @@ typedef struct {
  * without its libraries. SM_INPUT: the meshless body cannot be had. About 1 s for a meshless one of
  * aspect 5, 2 s of 8, or it is free. */
 SmCode bench_elastic_cantilever(BenchModel model, double aspect, double poisson,
-                                BenchElasticCantilever *ideal, SmError *error);
+                                BenchElasticCantilever *cantilever, SmError *error);
 
 #endif

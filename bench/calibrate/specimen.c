@@ -133,7 +133,7 @@ const BenchField bench_specimen_fields[] = {
     {FIELD(DOUBLE, young_euler), MEANS("Pa", "by the sag, and by each frequency")},
     {FIELD(DOUBLE, young_timoshenko), MEANS("Pa", "the same")},
     {FIELD(DOUBLE, young_meshless), MEANS("Pa", "the same")},
-    {FIELD(DOUBLE, wall), MEANS("s", "that it took")},
+    {BENCH_FIELD_AS(BenchSpecimen, BENCH_DOUBLE, stamp.wall, "wall"), MEANS("s", "that it took")},
 };
 
 const int bench_specimen_field_count =
@@ -144,7 +144,7 @@ static void forget(double young[BENCH_YOUNGS])
     for (int i = 0; i < BENCH_YOUNGS; i++) young[i] = NAN;
 }
 
-void bench_specimen_judge(const BenchElasticCantilever ideal[BENCH_MODELS], double thickness,
+void bench_specimen_judge(const BenchElasticCantilever elastic[BENCH_MODELS], double thickness,
                           double density, BenchSpecimen *specimen)
 {
     double *const young[BENCH_MODELS] = {specimen->young_euler, specimen->young_timoshenko,
@@ -152,14 +152,14 @@ void bench_specimen_judge(const BenchElasticCantilever ideal[BENCH_MODELS], doub
     double length = specimen->aspect * thickness, unit = density * thickness * thickness;
     for (int m = 0; m < BENCH_MODELS; m++) {
         forget(young[m]);
-        if (!ideal[m].there || !specimen->valid) continue;
-        young[m][0] = unit * ideal[m].sag * specimen->load / (specimen->sag * length);
+        if (!elastic[m].there || !specimen->valid) continue;
+        young[m][0] = unit * elastic[m].sag * specimen->load / (specimen->sag * length);
         for (int k = 0; k < BENCH_TONES; k++) {
             double omega = 6.283185307179586 * specimen->frequency[k];
-            young[m][1 + k] = unit * omega * omega / ideal[m].square[k];
+            young[m][1 + k] = unit * omega * omega / elastic[m].square[k];
         }
     }
-    const double *by = young[ideal[BENCH_MESHLESS].there ? BENCH_MESHLESS : BENCH_TIMOSHENKO];
+    const double *by = young[elastic[BENCH_MESHLESS].there ? BENCH_MESHLESS : BENCH_TIMOSHENKO];
     double low = INFINITY, high = 0;
     for (int i = 0; i < BENCH_YOUNGS; i++) {
         low = fmin(low, by[i]);

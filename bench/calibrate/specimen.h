@@ -7,7 +7,7 @@
 
 #include "../../lib/error.h"
 #include "../beam/stiffness.h"
-#include "../store/field.h"
+#include "../campaign/campaign.h"
 #include "elastic_cantilever.h"
 
 enum { BENCH_YOUNGS = 1 + BENCH_TONES }; /* by sag, and by each frequency */
@@ -28,7 +28,7 @@ typedef struct {
     double load, sag, unrest, linear_to;
     double young, spread;
     double young_euler[BENCH_YOUNGS], young_timoshenko[BENCH_YOUNGS], young_meshless[BENCH_YOUNGS];
-    double wall;
+    BenchStamp stamp;
 } BenchSpecimen;
 
 extern const BenchField bench_specimen_fields[];
@@ -38,7 +38,7 @@ extern const int bench_specimen_field_count;
 const double *bench_specimen_youngs(const BenchSpecimen *specimen);
 
 /* Fills in the moduli from what was measured on a beam `thickness` thick, of that density. */
-void bench_specimen_judge(const BenchElasticCantilever ideal[BENCH_MODELS], double thickness,
+void bench_specimen_judge(const BenchElasticCantilever elastic[BENCH_MODELS], double thickness,
                           double density, BenchSpecimen *specimen);
 
 #endif

@@ -76,7 +76,7 @@ TEST(a_specimen_has_its_figures)
     assert_int_equal(c.count, 4);
     for (int i = 0; i < 4; i++) {
         const BenchSpecimen *s = &specimen[i];
-        assert_true(s->valid && s->unrest < BENCH_REST && s->particles > 0 && s->wall > 0);
+        assert_true(s->valid && s->unrest < BENCH_REST && s->particles > 0 && s->stamp.wall > 0);
         assert_true(s->sag > 9e-4 && s->sag < 1.1e-3 && s->spread < 0.5);
         assert_true(fabs(s->young_timoshenko[1] / s->young_timoshenko[0] - 1) < 0.03);
         assert_int_equal(isfinite(s->young_meshless[0]), plan->meshless);
@@ -95,7 +95,7 @@ static void equals_whole(const char *name)
     load(name, &other);
     assert_int_equal(other.count, whole.count);
     BenchSpecimen *ours = other.point, *theirs = whole.point;
-    for (int i = 0; i < whole.count; i++) ours[i].wall = theirs[i].wall;
+    for (int i = 0; i < whole.count; i++) ours[i].stamp = theirs[i].stamp;
     assert_memory_equal(ours, theirs, 4 * sizeof *ours);
     bench_campaign_free(&whole);
     bench_campaign_free(&other);
@@ -112,12 +112,12 @@ TEST(an_interrupted_calibration_goes_on)
     BenchCampaign part;
     load("part.h5", &part);
     assert_in_range(part.count, 1, 3);
-    double took = ((BenchSpecimen *)part.point)->wall;
+    double took = ((BenchSpecimen *)part.point)->stamp.wall;
     bench_campaign_free(&part);
     runs(SMALL " --resume -o part.h5");
     equals_whole("part.h5");
     load("part.h5", &part);
-    assert_true(((BenchSpecimen *)part.point)->wall == took);
+    assert_true(((BenchSpecimen *)part.point)->stamp.wall == took);
     bench_campaign_free(&part);
 }
 

@@ -54,7 +54,7 @@ static Made *make(double c, double d)
     made->campaign = bench_campaign_create(&bench_calibration_type);
     made->plan = made->campaign.plan;
     *made->plan = sample_plan;
-    assert_int_equal(bench_calibration_count(made->plan, NULL), SM_OK);
+    assert_int_equal(bench_calibration_type.count(made->plan, NULL), SM_OK);
     made->count = made->plan->specimens;
     made->specimen = sm_alloc((size_t)made->count, sizeof *made->specimen);
     for (int i = 0; i < made->count; i++) {
@@ -115,15 +115,15 @@ TEST(a_plan_makes_its_specimens)
     BenchCalibrationPlan plan = sample_plan;
     SmError error;
     plan.w[1] = 2.5;
-    assert_int_equal(bench_calibration_count(&plan, &error), SM_USAGE);
+    assert_int_equal(bench_calibration_type.count(&plan, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "--w: 2.5 is no whole number"));
     plan = sample_plan;
     strcpy(plan.engines, "octree");
-    assert_int_equal(bench_calibration_count(&plan, &error), SM_OK);
+    assert_int_equal(bench_calibration_type.count(&plan, &error), SM_OK);
     plan.ws = plan.epsilons = BENCH_CALIBRATION_VALUES;
     for (int i = 0; i < BENCH_CALIBRATION_VALUES; i++)
         plan.w[i] = i + 1, plan.epsilon[i] = 0.01 * i;
-    assert_int_equal(bench_calibration_count(&plan, &error), SM_USAGE);
+    assert_int_equal(bench_calibration_type.count(&plan, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "specimens; 1 to 4096"));
 }
 

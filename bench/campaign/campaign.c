@@ -4,11 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "../../lib/system/hash.h"
-#include "../store/h5.h"
+#include "../settings/setting.h"
 #include "../table/row_store.h"
 
 static int *plan_int(const BenchCampaign *campaign, size_t offset)
@@ -91,6 +89,21 @@ void bench_campaign_add(BenchCampaign *campaign, const void *point)
     char *at = bench_campaign_at(campaign, place);
     memmove(at + size, at, (size_t)after * size);
     memcpy(at, point, size);
+}
+
+SmCode bench_campaign_read_lists(const BenchCampaign *campaign, const char *const *text,
+                                 SmError *error)
+{
+    const BenchCampaignType *type = campaign->type;
+    SmCode code = SM_OK;
+    for (int l = 0; l < type->lists && !code; l++) {
+        const BenchCampaignList *list = &type->list[l];
+        if (list->least || strcmp(text[l], "none") != 0)
+            code = bench_range_parse(list->option, text[l], list->low, list->high, list->most,
+                                     (double *)(void *)plan_int(campaign, list->value),
+                                     plan_int(campaign, list->count), error);
+    }
+    return code;
 }
 
 /* ---- two of the same */
@@ -388,16 +401,6 @@ SmCode bench_campaign_load(const char *path, const BenchCampaignType *type, Benc
 
 /* ---- provenance */
 
-void bench_campaign_stamp(char host[64], char utc[32])
-{
-    if (gethostname(host, 64)) strcpy(host, "unknown");
-    host[63] = '\0';
-    time_t now = time(NULL);
-    struct tm parts;
-    gmtime_r(&now, &parts);
-    strftime(utc, 32, "%Y-%m-%dT%H:%M:%SZ", &parts);
-}
-
 /* Of this program's file; 0 if it cannot be read. */
 static unsigned long long hash_program(void)
 {
@@ -412,10 +415,11 @@ static unsigned long long hash_program(void)
     return hash;
 }
 
-void bench_campaign_build(const BenchMachine *machine, size_t size, char *build)
+void bench_campaign_build(BenchCampaign *campaign)
 {
-    char changed[32] = "";
+    const BenchMachine *machine = &campaign->machine;
+    char *build = (char *)campaign->plan + campaign->type->build, changed[32] = "";
     if (machine->git_dirty) snprintf(changed, sizeof changed, " changed %016llx", hash_program());
-    snprintf(build, size, "%s %.16s%s, %s %s", machine->version, machine->git_commit, changed,
-             machine->compiler, machine->flags);
+    snprintf(build, BENCH_CAMPAIGN_BUILD, "%s %.16s%s, %s %s", machine->version,
+             machine->git_commit, changed, machine->compiler, machine->flags);
 }

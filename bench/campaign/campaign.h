@@ -5,10 +5,13 @@
 #ifndef BENCH_CAMPAIGN_H
 #define BENCH_CAMPAIGN_H
 
+#include <stdio.h>
+
 #include "../store/h5.h"
 #include "../system/machine.h"
+#include "../table/table.h"
 
-enum { BENCH_CAMPAIGN_POINTS = 10000, BENCH_CAMPAIGN_TEXT = 240 };
+enum { BENCH_CAMPAIGN_POINTS = 10000, BENCH_CAMPAIGN_TEXT = 240, BENCH_CAMPAIGN_BUILD = 768 };
 
 /* What may be done with it. */
 typedef struct BenchCampaign BenchCampaign;
@@ -21,6 +24,25 @@ typedef struct {
     int least, most;
     double low, high; /* of each */
 } BenchCampaignList;
+
+/* Who measured a point, when it ended (ISO 8601), and how long that took. */
+typedef struct {
+    double wall; /* s */
+    int rank;    /* of an MPI launch; else 0 */
+    char host[64], utc[32];
+} BenchStamp;
+
+/* Its members as fields of a point with a BenchStamp `stamp`. */
+#define BENCH_STAMP_FIELDS(record, took)                                                           \
+    {BENCH_FIELD_AS(record, BENCH_DOUBLE, stamp.wall, "wall"), BENCH_MEANS("s", took)},            \
+        {BENCH_FIELD_AS(record, BENCH_INT, stamp.rank, "rank"),                                    \
+         BENCH_MEANS(NULL, "of an MPI launch; else 0")},                                           \
+        {BENCH_FIELD_AS(record, BENCH_TEXT, stamp.host, "host"),                                   \
+         BENCH_MEANS(NULL, "where it was measured")},                                              \
+    {                                                                                              \
+        BENCH_FIELD_AS(record, BENCH_TEXT, stamp.utc, "utc"),                                      \
+            BENCH_MEANS(NULL, "and when (ISO 8601)")                                               \
+    }
 
 typedef struct {
     const char *command, *name, *point; /* "calibrate", "calibration", "specimen" */
@@ -36,6 +58,7 @@ typedef struct {
     const BenchCampaignList *list;
     int lists;
     size_t planned;      /* where in a plan: int, how many points it has */
+    size_t build, stamp; /* where in a plan: char[BENCH_CAMPAIGN_BUILD]; in a point: BenchStamp */
     size_t series, used; /* of points that have a series: its length, an int of the plan, and how
                           * many of it are there, an int of the point */
 
@@ -48,8 +71,8 @@ typedef struct {
     /* Why it is not valid, or NULL. */
     const char *(*fault)(const void *point);
 
-    /* What the points share: completes the plan. The caller frees `work` by `end`, also where it
-     * failed. */
+    /* What the points share (NULL: nothing): completes the plan. The caller frees `work` by `end`,
+     * also where it failed. */
     SmCode (*begin)(BenchCampaign *campaign, const BenchCampaignRun *run, void **work,
                     SmError *error);
     /* Measures a point, in which its settings are. What cannot be had is said in it; an error ends
@@ -66,6 +89,12 @@ typedef struct {
     void (*conclude)(BenchCampaign *campaign);
     void (*write)(BenchH5 *h5, const BenchCampaign *campaign);
     void (*read)(BenchH5 *h5, BenchCampaign *campaign);
+
+    /* What stands before and behind the table of its points (NULL: nothing), where columns may also
+     * get other headings; and what JSON has beside them, an object that the caller frees. */
+    void (*head)(FILE *file, BenchFormat format, const BenchCampaign *campaign, BenchGrid *grid);
+    void (*tail)(FILE *file, BenchFormat format, const BenchCampaign *campaign);
+    json_t *(*more_json)(const BenchCampaign *campaign);
 
     /* Of points that hold more than their bytes (NULL: none do): what it is, as bytes that the
      * caller frees; the same put back; and freed. */
@@ -89,6 +118,11 @@ struct BenchCampaign {
 /* An empty one, whose plan is zero. Free it. */
 BenchCampaign bench_campaign_create(const BenchCampaignType *type);
 void bench_campaign_free(BenchCampaign *campaign);
+
+/* Reads the lists of its plan from options' values, one for each of the type's ("none": it has no
+ * number, where it may). SM_USAGE. */
+SmCode bench_campaign_read_lists(const BenchCampaign *campaign, const char *const *text,
+                                 SmError *error);
 
 /* How many points are planned; the i-th finished one; the one of this index, or NULL. */
 int bench_campaign_planned(const BenchCampaign *campaign);
@@ -119,13 +153,18 @@ SmCode bench_campaign_load(const char *path, const BenchCampaignType *type, Benc
 SmCode bench_campaign_merge(BenchCampaign *into, BenchCampaign *from, const char *path,
                             SmError *error);
 
-/* Where and when a point was measured: this host, now (ISO 8601). */
-void bench_campaign_stamp(char host[64], char utc[32]);
-
 /* SM_INVALID, with how many and the first one, where points are not valid. */
 SmCode bench_campaign_verdict(const BenchCampaign *campaign, SmError *error);
 
-/* This program, for a plan's `build` of `size` bytes. */
-void bench_campaign_build(const BenchMachine *machine, size_t size, char *build);
+/* Writes down this program as the plan's build, by the campaign's machine. */
+void bench_campaign_build(BenchCampaign *campaign);
+
+/* Prints the table of its points: for people, with its head and tail; or for programs, as CSV, or
+ * as JSON {"points": [...], "plan": {...}, "environment": {...}} and more. */
+void bench_campaign_print(FILE *file, BenchFormat format, const BenchCampaign *campaign);
+
+/* The lists of its plan's attributes, its points' datasets and what follows from them, as
+ * results/README.md has them. */
+void bench_campaign_document(FILE *file, const BenchCampaignType *type);
 
 #endif

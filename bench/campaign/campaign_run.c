@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../settings/option.h"
+#include "../../lib/stage.h"
 #include "../store/draft.h"
 #include "../system/interrupt.h"
 
@@ -135,7 +135,13 @@ static SmCode measure(Job *job, int index, void *point, SmError *error)
     bench_campaign_point(campaign, index, point);
     campaign->type->say(point, sizeof what, what);
     bench_progress_show(&job->progress, what, (double)index / bench_campaign_planned(campaign));
-    return campaign->type->measure(job->work, campaign, point, error);
+    double start = sm_now();
+    SmCode code = campaign->type->measure(job->work, campaign, point, error);
+    BenchStamp *stamp = (void *)((char *)point + campaign->type->stamp);
+    bench_machine_stamp(stamp->host, stamp->utc);
+    stamp->rank = job->run->ranks->rank;
+    stamp->wall = sm_now() - start;
+    return code;
 }
 
 static SmCode take_note(Job *job, const BenchNote *note, SmError *error)
@@ -254,7 +260,7 @@ static SmCode prepare(Job *job, Start *start, SmError *error)
     bool first = run->ranks->rank == 0, replace = run->overwrite;
     if (goes_on(run, type)) replace = run->output != NULL;
     SmCode code = first ? bench_draft_reserve(run->output, replace, error) : SM_OK;
-    if (!code) code = type->begin(campaign, run, &job->work, error);
+    if (!code && type->begin) code = type->begin(campaign, run, &job->work, error);
     if (!first) return code;
     if (!code) code = resume(run, campaign, error);
     start->code = code;

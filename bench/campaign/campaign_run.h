@@ -12,7 +12,7 @@ struct BenchCampaignRun {
     const char *output;     /* or NULL: nothing is stored */
     const char *shard;      /* "I/N": of every N points the one number I, from 1; "auto" */
     bool resume, overwrite; /* of a type that asks: what to do with a file that is there */
-    bool columns;           /* nothing is run: bench_campaign_document() */
+    bool columns, list;     /* nothing is run: the file's columns, or the plan, are listed */
     bool quiet;             /* no progress and no remarks */
     const BenchRanks *ranks;
 };

@@ -70,19 +70,13 @@ bool bench_ranks_receive(const BenchRanks *ranks, bool wait, BenchNote *note)
     return true;
 }
 
-void bench_ranks_stop(const BenchRanks *ranks)
+void bench_ranks_end(const BenchRanks *ranks, SmCode code)
 {
-    (void)ranks;
     int begun = 0, over = 0;
+    if (ranks->count > 1 && code == SM_OUTPUT) MPI_Abort(MPI_COMM_WORLD, (int)code);
     MPI_Initialized(&begun);
     MPI_Finalized(&over);
     if (begun && !over) MPI_Finalize();
-}
-
-void bench_ranks_abort(const BenchRanks *ranks, int code)
-{
-    if (ranks->count > 1) MPI_Abort(MPI_COMM_WORLD, code);
-    bench_ranks_stop(ranks);
 }
 
 #else
@@ -115,12 +109,7 @@ bool bench_ranks_receive(const BenchRanks *ranks, bool wait, BenchNote *note)
     return false;
 }
 
-void bench_ranks_stop(const BenchRanks *ranks)
-{
-    (void)ranks;
-}
-
-void bench_ranks_abort(const BenchRanks *ranks, int code)
+void bench_ranks_end(const BenchRanks *ranks, SmCode code)
 {
     (void)ranks, (void)code;
 }

@@ -36,9 +36,8 @@ void bench_ranks_send(const BenchRanks *ranks, BenchNoteKind kind, const void *b
 /* On rank 0: the next note; without `wait` only if there is one. */
 bool bench_ranks_receive(const BenchRanks *ranks, bool wait, BenchNote *note);
 
-/* All ranks call it in the end; or rank 0 alone when it fails, with the exit code for all: then it
- * does not return where there are others. */
-void bench_ranks_stop(const BenchRanks *ranks);
-void bench_ranks_abort(const BenchRanks *ranks, int code);
+/* All ranks call it in the end, with their exit code; or rank 0 alone when what the others send
+ * cannot be written (SM_OUTPUT): then that is the code of all, and it does not return. */
+void bench_ranks_end(const BenchRanks *ranks, SmCode code);
 
 #endif

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "../../lib/system/hash.h"
-#include "../campaign/campaign_run.h"
 #include "../measure/measure.h"
 #include "../table/row_store.h"
 #include "claim_store.h"
@@ -36,10 +35,7 @@ static const BenchField point_fields[] = {
      .given_by_plan = true},
     {POINT(TEXT, reason), MEANS(NULL, "why the scene could not be measured, and has no row")},
     {POINT(INT, steps_per_frame), MEANS(NULL, "of the scene; 0 of a curve")},
-    {POINT(DOUBLE, wall), MEANS("s", "that it took")},
-    {POINT(INT, rank), MEANS(NULL, "of an MPI launch; else 0")},
-    {POINT(TEXT, host), MEANS(NULL, "where it was measured")},
-    {POINT(TEXT, utc), MEANS(NULL, "and when (ISO 8601)")},
+    BENCH_STAMP_FIELDS(BenchClaimPoint, "that it took"),
 };
 
 static const int point_field_count = sizeof point_fields / sizeof point_fields[0];
@@ -183,23 +179,13 @@ static void read_plan(BenchH5 *h5, hid_t group, void *record)
 
 /* ---- what is measured */
 
-static SmCode begin(BenchCampaign *campaign, const BenchCampaignRun *run, void **work,
-                    SmError *error)
-{
-    (void)campaign, (void)error;
-    int *rank = *work = sm_alloc(1, sizeof *rank);
-    *rank = run->ranks->rank;
-    return SM_OK;
-}
-
 static SmCode measure(void *work, const BenchCampaign *campaign, void *record, SmError *error)
 {
-    (void)error;
+    (void)work, (void)error;
     const BenchClaimsPlan *plan = campaign->plan;
     BenchClaimPoint *point = record;
     const BenchMeasure *of = plan->measure[point->index];
     BenchLab *lab = &point->lab;
-    double start = sm_now();
     *lab = (BenchLab){
         .quick = plan->quick, .threads = plan->threads, .seed = (unsigned long)plan->seed};
     bench_experiment(lab, of);
@@ -207,9 +193,6 @@ static SmCode measure(void *work, const BenchCampaign *campaign, void *record, S
     if (lab->rows) point->steps_per_frame = lab->origin[0].steps_per_frame;
     if (lab->failures) strcpy(point->reason, lab->failure[0].reason);
     for (int c = 0; c < lab->curves; c++) lab->curve[c].experiment = point->index;
-    bench_campaign_stamp(point->host, point->utc);
-    point->rank = *(const int *)work;
-    point->wall = sm_now() - start;
     return SM_OK;
 }
 
@@ -417,12 +400,12 @@ const BenchCampaignType bench_claims_type = {
     .more_fields = &bench_claim_field_count,
     .more_name = "claims/NNN",
     .planned = offsetof(BenchClaimsPlan, experiments),
+    .build = offsetof(BenchClaimsPlan, build),
+    .stamp = offsetof(BenchClaimPoint, stamp),
     .count = count,
     .plan_point = plan_point,
     .say = say,
-    .begin = begin,
     .measure = measure,
-    .end = free,
     .write_plan = write_plan,
     .read_plan = read_plan,
     .write = write_found,

@@ -8,7 +8,7 @@
 #include "verdict.h"
 
 typedef struct {
-    char build[768];
+    char build[BENCH_CAMPAIGN_BUILD];
     bool quick;
     int threads, experiments;
     long seed;
@@ -26,9 +26,7 @@ typedef struct {
     char name[BENCH_CURVE_NAME]; /* bench_experiment_name() */
     char reason[192];
     int steps_per_frame;
-    double wall;
-    int rank;
-    char host[64], utc[32];
+    BenchStamp stamp;
     BenchLab lab; /* what it measured: a row, a failure, or curves */
 } BenchClaimPoint;
 

@@ -110,12 +110,12 @@ TEST(interrupted_claims_go_on)
     BenchCampaign part;
     load("part.h5", &part);
     assert_in_range(part.count, 1, 4);
-    double took = ((BenchClaimPoint *)part.point)->wall;
+    double took = ((BenchClaimPoint *)part.point)->stamp.wall;
     bench_campaign_free(&part);
     runs(OWN " --resume -o part.h5", 1);
     equals_whole("part.h5");
     load("part.h5", &part);
-    assert_true(((BenchClaimPoint *)part.point)->wall == took);
+    assert_true(((BenchClaimPoint *)part.point)->stamp.wall == took);
     bench_campaign_free(&part);
     runs("claims part.h5 --format csv", 1);
     assert_non_null(strstr(result.out, "mine,few,"));

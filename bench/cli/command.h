@@ -1,8 +1,11 @@
-/* command.h - the program's commands. Each parses its own options and returns the exit code. */
+/* command.h - the program's commands: each says what it takes and what it does; how its options are
+ * read, its failure is told and its exit code found is the same for all. */
 #ifndef BENCH_COMMAND_H
 #define BENCH_COMMAND_H
 
+#include "../campaign/campaign_run.h"
 #include "../settings/option.h"
+#include "../table/table.h"
 
 /* Exit codes as every command's help prints them; error.h has them as SmCode. */
 #define BENCH_EXIT_CODES                                                                           \
@@ -10,53 +13,71 @@
     "of range; 3 a mesh, scene or result file cannot be used; 4 a file cannot be written; "        \
     "70 out of memory; 128 + N ended by signal N (Ctrl-C: 130)."
 
-extern const char *const bench_papers[]; /* that have tables; NULL-terminated */
+/* SM_USAGE: no paper of this name has a table; with those that have. */
+SmCode bench_paper_unknown(const char *paper, SmError *error);
 
-/* Options that are the same in several commands, which have a member of the same name. */
-#define BENCH_OVERWRITE_OPTION(record, place)                                                      \
+/* Options that are the same in several commands. */
+#define BENCH_OVERWRITE_OPTION(record, member, place)                                              \
     {                                                                                              \
-        BENCH_IN(record, overwrite),                                                               \
-            BENCH_OPTION("overwrite", NULL, place,                                                 \
-                         "Replace a file that is there (default: refuse)")                         \
+        BENCH_IN(record, member), BENCH_OPTION("overwrite", NULL, place,                           \
+                                               "Replace a file that is there (default: refuse)")   \
     }
-#define BENCH_FORMAT_OPTION(record, place)                                                         \
+#define BENCH_FORMAT_OPTION(record, member, place)                                                 \
     {                                                                                              \
-        BENCH_IN(record, format), BENCH_CHOICES(bench_format_names),                               \
+        BENCH_IN(record, member), BENCH_CHOICES(bench_format_names),                               \
             BENCH_OPTION("format", "FORMAT", place,                                                \
                          "text, markdown, csv, latex, json (default: text)")                       \
     }
 
-/* What every campaign has (campaign_run.h), whose record has a BenchCampaignRun `run`. */
-#define BENCH_CAMPAIGN_OPTIONS(record, place, point)                                               \
-    {BENCH_MEASURE("shard", "I/N|auto", place,                                                     \
-                   "Measure only every N-th " point                                                \
-                   ", from the I-th on; auto: those of a task of a Slurm job array "               \
-                   "(SLURM_ARRAY_TASK_ID and _COUNT); put the files together with 'merge'"),       \
-     BENCH_IN(record, run.shard)},                                                                 \
+/* What every command that is a campaign has: its record begins with a BenchCampaignOptions `its`.
+ */
+typedef struct {
+    BenchCommon common;
+    BenchCampaignRun run;
+    BenchFormat format;
+} BenchCampaignOptions;
+
+#define BENCH_CAMPAIGN_OPTIONS(record, place, point, stored)                                       \
+    {BENCH_MEASURE("output", "FILE.h5", place, stored " (default: nothing stored)"),               \
+     BENCH_IN(record, its.run.output), .letter = 'o'},                                             \
+        {BENCH_MEASURE("shard", "I/N|auto", place,                                                 \
+                       "Measure only every N-th " point                                            \
+                       ", from the I-th on; auto: those of a task of a Slurm job array "           \
+                       "(SLURM_ARRAY_TASK_ID and _COUNT); put the files together with 'merge'"),   \
+         BENCH_IN(record, its.run.shard)},                                                         \
         {BENCH_OPTION("columns", NULL, place,                                                      \
                       "Measure nothing; list what FILE.h5 has, as results/README.md does"),        \
-         BENCH_IN(record, run.columns)},                                                           \
-    {                                                                                              \
-        BENCH_MEASURE("resume", NULL, place, "Go on with FILE.h5 if it is there"),                 \
-            BENCH_IN(record, run.resume)                                                           \
-    }
+         BENCH_IN(record, its.run.columns)},                                                       \
+        {BENCH_MEASURE("resume", NULL, place, "Go on with FILE.h5 if it is there"),                \
+         BENCH_IN(record, its.run.resume)},                                                        \
+        BENCH_FORMAT_OPTION(record, its.format, place)
+#define BENCH_STORES(point)                                                                        \
+    "Store every " point " as it is finished; if the file is there, go on with it"
 
 typedef struct {
     const char *name;
-    const char *summary;               /* one line for the program's help */
-    int (*run)(int argc, char **argv); /* argv[0] is "shapebench NAME" */
+    const char *summary;   /* one line for the program's help */
+    BenchCommandLine line; /* what it takes */
+    size_t size;           /* of its record of options, which begins with a BenchCommon, */
+    const void *defaults;  /* and the record before they are read; NULL: zero */
+
+    /* Does it; argv[0] is "shapebench NAME". Returns the exit code; what `error` says is printed.
+     * NULL of a command that is a campaign (campaign.h): what it shows is measured by its options,
+     * alone, as a shard or by the ranks of an MPI launch, or read from the file that it is given.
+     */
+    SmCode (*perform)(void *options, int argc, char **argv, SmError *error);
+    const BenchCampaignType *campaign;
+    /* Sets the campaign's plan by the options; with run.list also says what it is. */
+    SmCode (*plan)(void *options, BenchCampaign *campaign, SmError *error);
+    /* Prints a campaign, measured or read; on rank 0 only. */
+    SmCode (*show)(const void *options, BenchCampaign *campaign, SmError *error);
 } BenchCommand;
 
-int bench_command_scenes(int argc, char **argv);
-int bench_command_info(int argc, char **argv);
-int bench_command_run(int argc, char **argv);
-int bench_command_tables(int argc, char **argv);
-int bench_command_regress(int argc, char **argv);
-int bench_command_kernels(int argc, char **argv);
-int bench_command_report(int argc, char **argv);
-int bench_command_sweep(int argc, char **argv);
-int bench_command_calibrate(int argc, char **argv);
-int bench_command_merge(int argc, char **argv);
-int bench_command_claims(int argc, char **argv);
+/* Reads the command's options and does it. Returns the program's exit code. */
+int bench_command_run(const BenchCommand *command, int argc, char **argv);
+
+extern const BenchCommand bench_command_scenes, bench_command_info, bench_command_simulate,
+    bench_command_tables, bench_command_regress, bench_command_kernels, bench_command_report,
+    bench_command_sweep, bench_command_calibrate, bench_command_merge, bench_command_claims;
 
 #endif

@@ -6,15 +6,13 @@
 #include "../claims/claim_table.h"
 #include "../settings/config_file.h"
 #include "../system/suggest.h"
-#include "campaign_command.h"
+#include "command.h"
 
 typedef struct {
-    BenchCommon common;
+    BenchCampaignOptions its;
     const char *paper;
     BenchNames claims, files;
-    bool quick, list, overwrite;
-    BenchCampaignRun run;
-    BenchFormat format;
+    bool quick;
 } Options;
 
 static const BenchSetting settings[] = {
@@ -26,31 +24,29 @@ static const BenchSetting settings[] = {
                    "Add the claims of this file, written as reference/claims.cfg; may be repeated"),
      BENCH_IN(Options, files)},
     {BENCH_OPTION("list", NULL, 1, "Print the claims and what they say, and end"),
-     BENCH_IN(Options, list)},
+     BENCH_IN(Options, its.run.list)},
     {BENCH_MEASURE("quick", NULL, 2, "Smaller bodies and fewer repeats: noisier and quicker"),
      BENCH_IN(Options, quick)},
-    BENCH_FORMAT_OPTION(Options, 3),
-    {BENCH_MEASURE("output", "FILE.h5", 3,
-                   "Also store verdicts, every curve's points, every row and provenance in HDF5 "
-                   "(default: nothing stored)"),
-     BENCH_IN(Options, run.output), .letter = 'o'},
-    BENCH_OVERWRITE_OPTION(Options, 3),
-    BENCH_CAMPAIGN_OPTIONS(Options, 3, "experiment"),
+    BENCH_OVERWRITE_OPTION(Options, its.run.overwrite, 3),
+    BENCH_CAMPAIGN_OPTIONS(
+        Options, 3, "experiment",
+        "Also store verdicts, every curve's points, every row and provenance in HDF5"),
     {0},
 };
 
 static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
-    if (options->list &&
-        (options->run.output || options->overwrite || options->quick || options->format))
+    const BenchCampaignRun *run = &options->its.run;
+    const BenchCommon *common = &options->its.common;
+    if (run->list && (run->output || run->overwrite || options->quick || options->its.format))
         bench_usage(state, "--list measures nothing: it goes with none of --output, --overwrite, "
                            "--quick and --format");
-    if (options->overwrite && options->run.resume)
+    if (run->overwrite && run->resume)
         bench_usage(state, "--overwrite starts anew, and --resume does not: give one of them");
-    if (options->overwrite && options->common.file)
+    if (run->overwrite && common->words)
         bench_usage(state, "%s alone is shown as it is: --overwrite goes with --output",
-                    options->common.file);
+                    common->word[0]);
 }
 
 static const char help[] =
@@ -67,9 +63,6 @@ static const char help[] =
     "--claims. Takes about three minutes of one core's time, less with --quick.\n" BENCH_EXIT_CODES
     " Of claims also: 1 what should be reproduced is not, or what is set is not so; 3 a claims "
     "file cannot be used.";
-
-static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, "[FILE.h5]", help, check, NULL,
-                                      NULL};
 
 static bool named(const Options *options, const char *name)
 {
@@ -158,51 +151,48 @@ static SmCode verdict(const BenchFinding *findings, int count, SmError *error)
 static void remark(const Options *options, const BenchCampaign *campaign, int found)
 {
     const BenchClaimsPlan *plan = campaign->plan;
-    if (found < plan->claims.count && !options->common.quiet)
+    if (found < plan->claims.count && !options->its.common.quiet)
         fprintf(stderr,
                 "shapebench claims: %ld of %d experiments are there: %d of %d claims wait for the "
                 "others\n",
                 campaign->count, plan->experiments, plan->claims.count - found, plan->claims.count);
 }
 
-static SmCode show(void *record, BenchCampaign *campaign, SmError *error)
+static SmCode show(const void *record, BenchCampaign *campaign, SmError *error)
 {
     const Options *options = record;
-    if (options->list) return SM_OK;
     BenchLab lab;
     BenchFinding *findings;
     int found = bench_claims_find(campaign, &lab, &findings);
-    bench_claim_table_write(stdout, options->format, findings, found, &campaign->machine);
+    bench_claim_table_write(stdout, options->its.format, findings, found, &campaign->machine);
     remark(options, campaign, found);
     SmCode code = verdict(findings, found, error);
     bench_claims_release(&lab, findings);
     return code;
 }
 
-static SmCode measure(void *record, int argc, char **argv, BenchCampaign *campaign, SmError *error)
+static SmCode make_plan(void *record, BenchCampaign *campaign, SmError *error)
 {
-    Options *options = record;
+    const Options *options = record;
+    const BenchCampaignRun *run = &options->its.run;
     BenchClaims claims = {0};
-    *campaign = bench_campaign_create(&bench_claims_type);
     BenchClaimsPlan *plan = campaign->plan;
-    SmCode code = choose(options, &claims, plan, error);
-    if (!code && options->list && options->run.ranks->rank == 0) list_claims(&claims);
-    bench_claims_free(&claims);
-    if (code || options->list) return code;
     plan->quick = options->quick;
-    plan->threads = options->common.threads;
-    plan->seed = (long)options->common.seed;
-    bench_machine_read(argc, argv, options->common.threads, &campaign->machine);
-    bench_campaign_build(&campaign->machine, sizeof plan->build, plan->build);
-    options->run.quiet = options->common.quiet;
-    options->run.overwrite = options->overwrite;
-    code = bench_claims_type.count(plan, error);
-    return code ? code : bench_campaign_run(&options->run, campaign, error);
+    plan->threads = options->its.common.threads;
+    plan->seed = (long)options->its.common.seed;
+    SmCode code = choose(options, &claims, plan, error);
+    if (!code && run->list && run->ranks->rank == 0) list_claims(&claims);
+    bench_claims_free(&claims);
+    return code;
 }
 
-int bench_command_claims(int argc, char **argv)
-{
-    Options options = {0};
-    static const BenchCampaignCommand command = {&bench_claims_type, &line, measure, show};
-    return bench_campaign_command(&command, argc, argv, &options, &options.common, &options.run);
-}
+const BenchCommand bench_command_claims = {
+    .name = "claims",
+    .summary = "hold every claim of the papers against what is measured",
+    .line = {settings, BENCH_TAKES_ALL, "[FILE.h5]", help, check, .most = 1,
+             .limit = "One file is shown at a time"},
+    .size = sizeof(Options),
+    .campaign = &bench_claims_type,
+    .plan = make_plan,
+    .show = show,
+};

@@ -11,12 +11,8 @@
 #include "../store/draft.h"
 #include "command.h"
 
-enum { FILES = 256 };
-
 typedef struct {
     BenchCommon common;
-    const char *mesh[FILES];
-    int count;
     long particles;
     const char *format; /* NULL: not given */
     bool overwrite;
@@ -50,16 +46,9 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, slice)},
     {BENCH_OUTPUT_OPTION("FILE.h5", 2, "HDF5 file of the slice; scripts/plot_slice.py draws it"),
      BENCH_IN(Options, output)},
-    BENCH_OVERWRITE_OPTION(Options, 2),
+    BENCH_OVERWRITE_OPTION(Options, overwrite, 2),
     {0},
 };
-
-static void take_mesh(const struct argp_state *state, void *record, char *text)
-{
-    Options *options = record;
-    if (options->count == FILES) bench_usage(state, "at most %d meshes", FILES);
-    options->mesh[options->count++] = text;
-}
 
 static void check(const struct argp_state *state, void *record)
 {
@@ -67,10 +56,10 @@ static void check(const struct argp_state *state, void *record)
     if (options->slice && !bench_slice_parse(options->slice, &options->plane))
         bench_usage(state, "--slice: '%.40s' is not x=SHARE, y=SHARE or z=SHARE, 0 to 1",
                     options->slice);
-    if (!options->count) bench_usage(state, "which MESH?");
+    if (!options->common.words) bench_usage(state, "which MESH?");
     if (!options->slice != !options->output || (options->overwrite && !options->slice))
         bench_usage(state, "--slice and --output go together, and --overwrite with both");
-    if (options->slice && (options->count > 1 || options->format || options->particles))
+    if (options->slice && (options->common.words > 1 || options->format || options->particles))
         bench_usage(state, "--slice: of one mesh, without --format and --particles");
 }
 
@@ -81,9 +70,6 @@ static const char help[] =
     "as a solid.\v"
     "With several meshes each gets its say; the exit code is that of the last one that cannot be "
     "read. --format json prints one array with an object for every mesh.\n" BENCH_EXIT_CODES;
-
-static const BenchCommandLine line = {
-    settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "MESH...", help, check, take_mesh, NULL};
 
 static SmCode look(const char *name, long particles, Facts *facts, SmError *error)
 {
@@ -158,51 +144,30 @@ static void print_text(const char *name, const Facts *facts)
                facts->cell);
 }
 
-static json_t *vector(const double v[3])
-{
-    return json_pack("[f,f,f]", v[0], v[1], v[2]);
-}
-
 static json_t *to_json(const char *name, const Facts *facts)
 {
     const SmMeshInfo *m = &facts->mesh;
     json_t *text = json_string(name);
-    json_t *object = json_object();
-    json_object_set_new(object, "mesh", text ? text : json_string("(name is no UTF-8)"));
-    const struct {
-        const char *name;
-        long value;
-    } counts[] = {{"triangles", m->triangles},
-                  {"vertices", m->vertices},
-                  {"components", m->components},
-                  {"open_edges", m->open_edges},
-                  {"nonmanifold_edges", m->nonmanifold_edges},
-                  {"flipped_edges", m->flipped_edges},
-                  {"degenerate", m->degenerate},
-                  {"duplicates", m->duplicates},
-                  {"particles", facts->particles},
-                  {"cells", facts->cells}};
-    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
-        json_object_set_new(object, counts[i].name, json_integer(counts[i].value));
-    json_object_set_new(object, "watertight", json_boolean(m->watertight));
-    json_object_set_new(object, "low", vector(m->low));
-    json_object_set_new(object, "high", vector(m->high));
-    json_object_set_new(object, "volume", isfinite(m->volume) ? json_real(m->volume) : json_null());
-    json_object_set_new(object, "solid", json_boolean(facts->solid));
-    json_object_set_new(object, "verdict", json_string(facts->verdict));
-    json_object_set_new(object, "cell", json_real(facts->cell));
-    return object;
+    return json_pack(
+        "{s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:b, s:[fff], s:[fff], s:o, s:b, "
+        "s:o, s:f}",
+        "mesh", text ? text : json_string("(name is no UTF-8)"), "triangles",
+        (json_int_t)m->triangles, "vertices", (json_int_t)m->vertices, "components",
+        (json_int_t)m->components, "open_edges", (json_int_t)m->open_edges, "nonmanifold_edges",
+        (json_int_t)m->nonmanifold_edges, "flipped_edges", (json_int_t)m->flipped_edges,
+        "degenerate", (json_int_t)m->degenerate, "duplicates", (json_int_t)m->duplicates,
+        "particles", (json_int_t)facts->particles, "cells", (json_int_t)facts->cells, "watertight",
+        (int)m->watertight, "low", m->low[0], m->low[1], m->low[2], "high", m->high[0], m->high[1],
+        m->high[2], "volume", isfinite(m->volume) ? json_real(m->volume) : json_null(), "solid",
+        (int)facts->solid, "verdict", bench_json_text(facts->verdict), "cell", facts->cell);
 }
 
-static SmCode cut_slice(const Options *options, const char *program)
+static SmCode cut_slice(const Options *options, SmError *error)
 {
-    SmError error;
-    SmCode code = bench_draft_reserve(options->output, options->overwrite, &error);
-    if (!code) code = bench_slice_write(options->mesh[0], &options->plane, options->output, &error);
-    if (code)
-        bench_option_fail(program, &error);
-    else if (!options->common.quiet)
-        printf("wrote %s\n", options->output);
+    const char *mesh = options->common.word[0];
+    SmCode code = bench_draft_reserve(options->output, options->overwrite, error);
+    if (!code) code = bench_slice_write(mesh, &options->plane, options->output, error);
+    if (!code && !options->common.quiet) printf("wrote %s\n", options->output);
     return code;
 }
 
@@ -219,27 +184,28 @@ static void warn_of_freedom(const char *program)
             can.calls ? "" : "may make any system call (no seccomp)");
 }
 
-int bench_command_info(int argc, char **argv)
+static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
-    Options options = {0};
-    bench_options_parse(&line, argc, argv, &options, &options.common);
-    if (!options.common.quiet) warn_of_freedom(argv[0]);
-    if (options.slice) return (int)cut_slice(&options, argv[0]);
-    if (!options.particles) options.particles = 2000;
-    bool json = options.format && !strcmp(options.format, "json");
+    const Options *options = record;
+    (void)argc;
+    if (!options->common.quiet) warn_of_freedom(argv[0]);
+    if (options->slice) return cut_slice(options, error);
+    bool json = options->format && !strcmp(options->format, "json");
+    long particles = options->particles ? options->particles : 2000;
     SmCode code = SM_OK;
     json_t *list = json_array();
-    for (int i = 0; i < options.count; i++) {
+    for (int i = 0; i < options->common.words; i++) {
+        const char *name = options->common.word[i];
         Facts facts;
-        SmError error;
-        SmCode failed = look(options.mesh[i], options.particles, &facts, &error);
+        SmError why;
+        SmCode failed = look(name, particles, &facts, &why);
         if (failed) {
-            bench_option_fail(argv[0], &error);
+            bench_option_fail(argv[0], &why);
             code = failed;
         } else if (json) {
-            json_array_append_new(list, to_json(options.mesh[i], &facts));
+            json_array_append_new(list, to_json(name, &facts));
         } else {
-            print_text(options.mesh[i], &facts);
+            print_text(name, &facts);
         }
     }
     if (json) {
@@ -247,5 +213,13 @@ int bench_command_info(int argc, char **argv)
         putchar('\n');
     }
     json_decref(list);
-    return (int)code;
+    return code;
 }
+
+const BenchCommand bench_command_info = {
+    .name = "info",
+    .summary = "say what is in a mesh, and whether it can be simulated",
+    .line = {settings, BENCH_TAKES_QUIET | BENCH_TAKES_THREADS, "MESH...", help, check, .most = -1},
+    .size = sizeof(Options),
+    .perform = perform,
+};

@@ -7,16 +7,9 @@
 #include "../system/suggest.h"
 #include "command.h"
 
-enum { ONLY_MOST = BENCH_KERNELS_MOST };
-
-typedef struct {
-    const char *name[ONLY_MOST + 1]; /* NULL-terminated */
-    int count;
-} Only;
-
 typedef struct {
     BenchCommon common;
-    Only only;
+    BenchNames only;
     int repeats;
     BenchPrecision precision;
     SmLayout layout;
@@ -37,12 +30,12 @@ static const char *suggest(const char *typed, char text[BENCH_SUGGEST_TEXT])
 
 static void add_only(const struct argp_state *state, const char *name, void *member)
 {
-    Only *only = member;
+    BenchNames *only = member;
     char near[BENCH_SUGGEST_TEXT];
     if (!bench_kernel_known(name))
         bench_usage(state, "--only: no kernel or group '%.40s'; --list names them%s", name,
                     suggest(name, near));
-    if (only->count == ONLY_MOST) bench_usage(state, "--only: at most %d", ONLY_MOST);
+    if (only->count == BENCH_NAMES) bench_usage(state, "--only: at most %d", BENCH_NAMES);
     only->name[only->count++] = name;
 }
 
@@ -63,7 +56,7 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, scaling)},
     {BENCH_OPTION("repeats", "N", 2, "Samples of every time (default: 9)"),
      BENCH_IN(Options, repeats), 1, 10000},
-    BENCH_FORMAT_OPTION(Options, 3),
+    BENCH_FORMAT_OPTION(Options, format, 3),
     {0},
 };
 
@@ -86,9 +79,6 @@ static const char help[] =
     "Times are wall-clock medians over the repeats, with quartiles; kernels that are compared run "
     "in turn, sample by sample. A stage of a step comes from a run with clocks inside, less the "
     "time that reading them takes. One thread unless --threads says otherwise.\n" BENCH_EXIT_CODES;
-
-static const BenchCommandLine line = {
-    settings, BENCH_TAKES_ALL, NULL, help, check, NULL, "Kernels are named with --only"};
 
 static void list_kernels(void)
 {
@@ -133,18 +123,26 @@ static SmCode measure(const Options *options, BenchMachine *machine, SmError *er
     return code;
 }
 
-int bench_command_kernels(int argc, char **argv)
+static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
-    Options options = {.repeats = 9};
+    const Options *options = record;
     BenchMachine machine;
-    SmError error;
-    bench_options_parse(&line, argc, argv, &options, &options.common);
-    if (options.list) {
+    if (options->list) {
         list_kernels();
         return SM_OK;
     }
-    bench_machine_read(argc, argv, options.common.threads, &machine);
-    SmCode code = measure(&options, &machine, &error);
-    if (code) bench_option_fail(argv[0], &error);
-    return (int)code;
+    bench_machine_read(argc, argv, options->common.threads, &machine);
+    return measure(options, &machine, error);
 }
+
+static const Options defaults = {.repeats = 9};
+
+const BenchCommand bench_command_kernels = {
+    .name = "kernels",
+    .summary = "time every kernel against what this machine can do",
+    .line = {settings, BENCH_TAKES_ALL, NULL, help, check,
+             .limit = "Kernels are named with --only"},
+    .size = sizeof(Options),
+    .defaults = &defaults,
+    .perform = perform,
+};

@@ -1,34 +1,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../campaign/campaign.h"
 #include "../store/draft.h"
 #include "command.h"
 
 typedef struct {
     BenchCommon common;
-    const char *output;
-    const char **input; /* [inputs] */
-    int inputs;
     bool overwrite;
 } Options;
 
-static const BenchSetting settings[] = {BENCH_OVERWRITE_OPTION(Options, 1), {0}};
-
-static void take_file(const struct argp_state *state, void *record, char *text)
-{
-    Options *options = record;
-    (void)state;
-    if (options->output)
-        options->input[options->inputs++] = text;
-    else
-        options->output = text;
-}
+static const BenchSetting settings[] = {BENCH_OVERWRITE_OPTION(Options, overwrite, 1), {0}};
 
 static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
-    if (!options->inputs) bench_usage(state, "give the file to write, and one or more to read");
+    if (options->common.words < 2)
+        bench_usage(state, "give the file to write, and one or more to read");
 }
 
 static const char help[] =
@@ -39,27 +26,24 @@ static const char help[] =
     "command that made the shards, with the same options and -o OUT.h5 --resume, measures "
     "it.\n" BENCH_EXIT_CODES;
 
-static const BenchCommandLine line = {settings, 0, "OUT.h5 IN.h5...", help, check, take_file, NULL};
-
-static SmCode merge(const Options *options, BenchCampaign *all, SmError *error)
+static SmCode merge(const char *const *input, int inputs, BenchCampaign *all, SmError *error)
 {
-    SmCode code = bench_draft_reserve(options->output, options->overwrite, error);
-    if (!code) code = bench_campaign_load(options->input[0], NULL, all, error);
-    for (int i = 1; i < options->inputs && !code; i++) {
+    SmCode code = bench_campaign_load(input[0], NULL, all, error);
+    for (int i = 1; i < inputs && !code; i++) {
         BenchCampaign next;
-        code = bench_campaign_load(options->input[i], NULL, &next, error);
+        code = bench_campaign_load(input[i], NULL, &next, error);
         if (code) break;
-        code = bench_campaign_merge(all, &next, options->input[i], error);
+        code = bench_campaign_merge(all, &next, input[i], error);
         bench_campaign_free(&next);
     }
     return code;
 }
 
-static void say_missing(const Options *options, const BenchCampaign *all)
+static void say_missing(const char *output, const BenchCampaign *all)
 {
     const BenchCampaignType *type = all->type;
     int planned = bench_campaign_planned(all), first = 0;
-    printf("%s: %ld of %d %ss\n", options->output, all->count, planned, type->point);
+    printf("%s: %ld of %d %ss\n", output, all->count, planned, type->point);
     if (all->count == planned) return;
     while (bench_campaign_find(all, first)) first++;
     void *point = sm_alloc(1, type->point_size);
@@ -70,22 +54,26 @@ static void say_missing(const Options *options, const BenchCampaign *all)
     free(point);
 }
 
-int bench_command_merge(int argc, char **argv)
+static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
-    Options options = {.input = sm_alloc((size_t)argc, sizeof *options.input)};
+    const Options *options = record;
+    const char *const *word = options->common.word, *output = word[0];
     BenchCampaign all = {0};
-    SmError error;
-    bench_options_parse(&line, argc, argv, &options, &options.common);
-    SmCode code = merge(&options, &all, &error);
+    SmCode code = bench_draft_reserve(output, options->overwrite, error);
+    if (!code) code = merge(word + 1, options->common.words - 1, &all, error);
     if (!code) {
         bench_machine_read(argc, argv, all.machine.threads, &all.machine);
-        code = bench_campaign_store(options.output, &all, &error);
+        code = bench_campaign_store(output, &all, error);
     }
-    if (code)
-        bench_option_fail(argv[0], &error);
-    else
-        say_missing(&options, &all);
+    if (!code) say_missing(output, &all);
     bench_campaign_free(&all);
-    free(options.input);
-    return (int)code;
+    return code;
 }
+
+const BenchCommand bench_command_merge = {
+    .name = "merge",
+    .summary = "put the shards of a sweep into one file",
+    .line = {settings, 0, "OUT.h5 IN.h5...", help, check, .most = -1},
+    .size = sizeof(Options),
+    .perform = perform,
+};

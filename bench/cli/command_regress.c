@@ -17,7 +17,6 @@
 #include "../store/draft.h"
 #include "../system/process.h"
 #include "../system/statistic.h"
-#include "../system/suggest.h"
 #include "command.h"
 
 typedef struct {
@@ -82,7 +81,7 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, format), BENCH_CHOICES(bench_regression_formats)},
     {BENCH_OUTPUT_OPTION("FILE", 3, "Write there (default: standard output)"),
      BENCH_IN(Options, output)},
-    BENCH_OVERWRITE_OPTION(Options, 3),
+    BENCH_OVERWRITE_OPTION(Options, overwrite, 3),
     {0},
 };
 
@@ -110,9 +109,6 @@ static const char help[] =
     "A program of another revision is kept in build/regress, for next time.\n" BENCH_EXIT_CODES
     " Of regress alone: 5 slower; 6 no baseline for a scene, or a baseline of another machine; 7 "
     "nothing could be judged: all too noisy, or too few samples.";
-
-static const BenchCommandLine line = {
-    settings, BENCH_TAKES_ALL, NULL, help, check, NULL, "Say --baseline FILE.h5 or --revision REV"};
 
 /* What one comparison holds. */
 typedef struct {
@@ -149,11 +145,7 @@ static SmCode paper_tasks(Session *session, SmError *error)
         if (bench_scene_find(*name, &scene, NULL) || strcmp(scene.paper, paper) != 0) continue;
         if (scene.row[0]) add_task(session, *name);
     }
-    if (session->tasks) return SM_OK;
-    char near[BENCH_SUGGEST_TEXT];
-    return sm_fail(error, SM_USAGE,
-                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless%s", paper,
-                   bench_suggest_among(paper, bench_papers, near));
+    return session->tasks ? SM_OK : bench_paper_unknown(paper, error);
 }
 
 /* As the row of the file was measured: as many repeats, of as many steps. */
@@ -361,33 +353,42 @@ static void remove_scratch(const Session *session)
     rmdir(session->folder);
 }
 
-int bench_command_regress(int argc, char **argv)
+static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
-    Options options = {.threshold = NAN};
+    const Options *options = record;
     BenchMachine here;
     BenchDraft draft = {0};
-    SmError error;
-    int exit_code = SM_OK;
-    bench_options_parse(&line, argc, argv, &options, &options.common);
-    bench_machine_read(argc, argv, options.common.threads, &here);
+    int verdict = SM_OK;
+    bench_machine_read(argc, argv, options->common.threads, &here);
     Session *session = sm_alloc(1, sizeof *session);
-    session->options = &options;
+    session->options = options;
     snprintf(session->self, sizeof session->self, "/proc/%ld/exe", (long)getpid());
     bench_process_catch();
-    bench_progress_start(&session->progress, options.common.quiet);
-    SmCode code = bench_draft_reserve(options.output, options.overwrite, &error);
-    if (!code && options.output) code = bench_draft_begin(options.output, &draft, &error);
-    if (!code) code = make_scratch(session, &error);
+    bench_progress_start(&session->progress, options->common.quiet);
+    SmCode code = bench_draft_reserve(options->output, options->overwrite, error);
+    if (!code && options->output) code = bench_draft_begin(options->output, &draft, error);
+    if (!code) code = make_scratch(session, error);
     if (!code) {
-        code = run(session, &draft, &here, &exit_code, &error);
+        code = run(session, &draft, &here, &verdict, error);
         remove_scratch(session);
     }
-    if (options.output && code) bench_draft_discard(&draft);
+    if (options->output && code) bench_draft_discard(&draft);
     bench_ab_free(&session->all);
     bench_rows_free(session->stored, session->stored_count);
     free(session->task);
     free(session);
-    if (code) bench_option_fail(argv[0], &error);
-    if (bench_process_caught()) return 128 + bench_process_caught();
-    return code ? (int)code : exit_code;
+    int caught = bench_process_caught();
+    return caught ? (SmCode)(128 + caught) : code ? code : (SmCode)verdict;
 }
+
+static const Options defaults = {.threshold = NAN};
+
+const BenchCommand bench_command_regress = {
+    .name = "regress",
+    .summary = "is this build slower than another one, or wrong?",
+    .line = {settings, BENCH_TAKES_ALL, NULL, help, check,
+             .limit = "Say --baseline FILE.h5 or --revision REV"},
+    .size = sizeof(Options),
+    .defaults = &defaults,
+    .perform = perform,
+};

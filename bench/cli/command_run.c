@@ -61,7 +61,7 @@ static const BenchSetting settings[] = {
     {.section = 2, .help = "What is written:"},
     {BENCH_OUTPUT_OPTION("FILE.vtkhdf", 2, "Trajectory (default: SCENE.vtkhdf in this folder)"),
      BENCH_IN(Options, output)},
-    BENCH_OVERWRITE_OPTION(Options, 2),
+    BENCH_OVERWRITE_OPTION(Options, overwrite, 2),
     {BENCH_OPTION("no-output", NULL, 2, "Write no trajectory"), BENCH_IN(Options, no_output)},
     {BENCH_OPTION(
          "record", "WHAT", 2,
@@ -78,18 +78,12 @@ static const BenchSetting settings[] = {
     {0},
 };
 
-static void take_scene(const struct argp_state *state, void *record, char *text)
-{
-    Options *options = record;
-    if (options->scene) bench_usage(state, "one scene or mesh only, not also '%s'", text);
-    options->scene = text;
-}
-
 static void check(const struct argp_state *state, void *record)
 {
-    const Options *options = record;
+    Options *options = record;
     const BenchGiven *given = &options->chosen.given;
-    if (!options->scene) bench_usage(state, "which scene or mesh?");
+    if (!options->common.words) bench_usage(state, "which scene or mesh?");
+    options->scene = options->common.word[0];
     if (bench_given(given, "particles") && bench_given(given, "cell"))
         bench_usage(state, "either --particles or --cell");
     if (options->no_output &&
@@ -113,9 +107,6 @@ static const char help[] =
     "deviation printed is the largest distance of a goal position from double-precision brute "
     "force in the last state; beyond the tolerance of 'tables' the run is INVALID (exit code 1), "
     "its trajectory kept.\n" BENCH_EXIT_CODES;
-
-static const BenchCommandLine line = {
-    settings, BENCH_TAKES_ALL, "SCENE|FILE.cfg|MESH|POINTS", help, check, take_scene, NULL};
 
 /* What some engines alone have, and how messages name them. */
 static const struct {
@@ -480,14 +471,19 @@ static SmCode run(const Options *options, const BenchMachine *machine, SmError *
     return code;
 }
 
-int bench_command_run(int argc, char **argv)
+static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
-    Options options = {0};
-    SmError error;
+    const Options *options = record;
     BenchMachine machine;
-    bench_options_parse(&line, argc, argv, &options, &options.common);
-    bench_machine_read(argc, argv, options.common.threads, &machine);
-    SmCode code = run(&options, &machine, &error);
-    if (code) bench_option_fail(argv[0], &error);
-    return (int)code;
+    bench_machine_read(argc, argv, options->common.threads, &machine);
+    return run(options, &machine, error);
 }
+
+const BenchCommand bench_command_simulate = {
+    .name = "run",
+    .summary = "simulate a scene or a mesh and write its motion",
+    .line = {settings, BENCH_TAKES_ALL, "SCENE|FILE.cfg|MESH|POINTS", help, check, .most = 1,
+             .limit = "One scene or mesh only"},
+    .size = sizeof(Options),
+    .perform = perform,
+};

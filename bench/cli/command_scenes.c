@@ -9,7 +9,6 @@
 
 typedef struct {
     BenchCommon common;
-    const char *name;  /* scene to print, or shape to write */
     const char *write; /* mesh file to write */
     bool overwrite, settings;
 } Options;
@@ -18,27 +17,21 @@ static const BenchSetting settings[] = {
     {BENCH_OPTION("write-mesh", "FILE.obj", 1,
                   "Write the mesh of the scene or shape NAME instead, as Wavefront OBJ"),
      BENCH_IN(Options, write)},
-    BENCH_OVERWRITE_OPTION(Options, 1),
+    BENCH_OVERWRITE_OPTION(Options, overwrite, 1),
     {BENCH_OPTION("settings", NULL, 1,
                   "List all settings of a scene file, with ranges and defaults, and end"),
      BENCH_IN(Options, settings)},
     {0},
 };
 
-static void take_name(const struct argp_state *state, void *record, char *text)
-{
-    Options *options = record;
-    if (options->name) bench_usage(state, "one NAME only, not also '%s'", text);
-    options->name = text;
-}
-
 static void check(const struct argp_state *state, void *record)
 {
     const Options *options = record;
-    if (options->write && !options->name) bench_usage(state, "--write-mesh: which shape?");
+    bool named = options->common.words;
+    if (options->write && !named) bench_usage(state, "--write-mesh: which shape?");
     if (options->overwrite && !options->write)
         bench_usage(state, "--overwrite goes with --write-mesh");
-    if (options->settings && options->name)
+    if (options->settings && named)
         bench_usage(state, "--settings goes alone: it lists what every scene file can say");
 }
 
@@ -47,8 +40,6 @@ static const char help[] =
     "settings and can be copied, edited and run:\n"
     "  shapebench scenes penguin > my.cfg\n"
     "  shapebench run my.cfg\v" BENCH_EXIT_CODES;
-
-static const BenchCommandLine line = {settings, 0, "[NAME]", help, check, take_name, NULL};
 
 static SmCode list(SmError *error)
 {
@@ -88,7 +79,7 @@ static void print_mesh(FILE *file, const void *what)
 
 static SmCode write_mesh(const Options *options, SmError *error)
 {
-    const char *name = options->name, *path = options->write;
+    const char *name = options->common.word[0], *path = options->write;
     SmMesh mesh;
     BenchScene scene;
     SmCode code = bench_draft_reserve(path, options->overwrite, error);
@@ -116,20 +107,21 @@ static void list_settings(void)
     free(defaults);
 }
 
-int bench_command_scenes(int argc, char **argv)
+static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
-    Options options = {0};
-    bench_options_parse(&line, argc, argv, &options, &options.common);
-    SmError error;
-    SmCode code = SM_OK;
-    if (options.settings)
-        list_settings();
-    else if (options.write)
-        code = write_mesh(&options, &error);
-    else if (options.name)
-        code = print_scene(options.name, &error);
-    else
-        code = list(&error);
-    if (code) bench_option_fail(argv[0], &error);
-    return (int)code;
+    const Options *options = record;
+    (void)argc, (void)argv;
+    if (options->write) return write_mesh(options, error);
+    if (options->common.words) return print_scene(options->common.word[0], error);
+    if (!options->settings) return list(error);
+    list_settings();
+    return SM_OK;
 }
+
+const BenchCommand bench_command_scenes = {
+    .name = "scenes",
+    .summary = "list the built-in scenes, or print one to copy and edit",
+    .line = {settings, 0, "[NAME]", help, check, .most = 1, .limit = "One NAME only"},
+    .size = sizeof(Options),
+    .perform = perform,
+};

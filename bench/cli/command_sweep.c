@@ -5,18 +5,13 @@
 
 #include "../engines.h"
 #include "../scene/scene.h"
-#include "../sweep/front.h"
 #include "../sweep/recommend.h"
-#include "../sweep/sweep.h"
-#include "../sweep/sweep_table.h"
-#include "campaign_command.h"
+#include "command.h"
 
 typedef struct {
-    BenchCommon common;
-    const char *scene, *w, *epsilon;
+    BenchCampaignOptions its;
+    const char *scene, *range[2]; /* of w and epsilon */
     BenchPlan plan;
-    BenchCampaignRun run;
-    BenchFormat format;
     bool recommend;
     BenchWish wish;
 } Options;
@@ -36,9 +31,9 @@ static const BenchSetting settings[] = {
          "Region half-widths, FIRST:LAST[:STEP] or a list (default: 1:8), in edges of each "
          "node's own cell as run's --w; of a lattice, whose cells are alike, whole numbers of "
          "cells"),
-     BENCH_IN(Options, w)},
+     BENCH_IN(Options, range[0])},
     {BENCH_MEASURE("epsilon", "RANGE", 1, "The octree's (default: 0:1:0.1)"),
-     BENCH_IN(Options, epsilon)},
+     BENCH_IN(Options, range[1])},
     {BENCH_MEASURE(
          "width", "UNIT", 1,
          "What an octree's w counts: edges of each node's own cell, or finest cells (default: "
@@ -52,13 +47,7 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, plan.block_ms), 0.001, 60000},
     {BENCH_MEASURE("frames", "N", 2, "Frames of motion to compare (default: 50)"),
      BENCH_IN(Options, plan.frames), 1, 10000},
-    {BENCH_MEASURE(
-         "output", "FILE.h5", 3,
-         "Store every point as it is finished; if the file is there, go on with it (default: "
-         "nothing stored)"),
-     BENCH_IN(Options, run.output), .letter = 'o'},
-    BENCH_CAMPAIGN_OPTIONS(Options, 3, "point"),
-    BENCH_FORMAT_OPTION(Options, 3),
+    BENCH_CAMPAIGN_OPTIONS(Options, 3, "point", BENCH_STORES("point")),
     {BENCH_OPTION(
          "recommend", NULL, 4,
          "Say which w and epsilon of each engine to take, for --budget, --deviation and "
@@ -89,66 +78,53 @@ static const char help[] =
     "that share a machine disturb each other's times; each keeps its host and "
     "rank.\n" BENCH_EXIT_CODES;
 
-static const BenchCommandLine line = {settings, BENCH_TAKES_ALL, "[FILE.h5]", help, NULL, NULL,
-                                      NULL};
-
-static SmCode make_plan(Options *options, BenchPlan *plan, SmError *error)
+static SmCode make_plan(void *record, BenchCampaign *sweep, SmError *error)
 {
+    const Options *options = record;
+    BenchPlan *plan = sweep->plan;
+    *plan = options->plan;
     const char *scene = options->scene ? options->scene : plan->mesh[0] ? "" : "hand";
     if (strlen(scene) >= sizeof plan->file)
         return sm_fail(error, SM_INPUT, "%.100s...: the path is too long", scene);
     snprintf(plan->file, sizeof plan->file, "%s", scene);
-    plan->threads = options->common.threads;
-    plan->seed = (long)options->common.seed;
-    SmCode code =
-        bench_range_parse("--w", options->w, bench_engine(plan->engines)->sampled ? 0.01 : 1, 1000,
-                          BENCH_PLAN_VALUES, plan->w, &plan->ws, error);
-    if (!code)
-        code = bench_range_parse("--epsilon", options->epsilon, 0, 1000, BENCH_PLAN_VALUES,
-                                 plan->epsilon, &plan->epsilons, error);
-    return code ? code : bench_plan_count(plan, error);
+    plan->threads = options->its.common.threads;
+    plan->seed = (long)options->its.common.seed;
+    return bench_campaign_read_lists(sweep, options->range, error);
 }
 
-static SmCode show(void *record, BenchCampaign *sweep, SmError *error)
+static SmCode show(const void *record, BenchCampaign *sweep, SmError *error)
 {
     const Options *options = record;
+    BenchFormat format = options->its.format;
     bench_front_mark(sweep->point, sweep->count);
-    bench_sweep_table(stdout, options->format, sweep);
+    bench_campaign_print(stdout, format, sweep);
     const BenchWish *wish = &options->wish;
     bool wished = !isnan(wish->stiffness) || !isnan(wish->deviation) || !isnan(wish->budget);
     if (options->recommend || wished) {
-        bool table = options->format == BENCH_AS_CSV || options->format == BENCH_AS_JSON;
+        bool table = format == BENCH_AS_CSV || format == BENCH_AS_JSON;
         if (!table) putchar('\n');
         bench_recommend(table ? stderr : stdout, sweep->plan, sweep->point, sweep->count, wish);
     }
     return bench_campaign_verdict(sweep, error);
 }
 
-static SmCode measure(void *record, int argc, char **argv, BenchCampaign *sweep, SmError *error)
-{
-    Options *options = record;
-    *sweep = bench_campaign_create(&bench_sweep_type);
-    BenchPlan *plan = sweep->plan;
-    *plan = options->plan;
-    SmCode code = make_plan(options, plan, error);
-    if (code) return code;
-    bench_machine_read(argc, argv, options->common.threads, &sweep->machine);
-    bench_campaign_build(&sweep->machine, sizeof plan->build, plan->build);
-    options->run.quiet = options->common.quiet;
-    return bench_campaign_run(&options->run, sweep, error);
-}
+static const Options defaults = {.range = {"1:8", "0:1:0.1"},
+                                 .plan = {.engines = "both",
+                                          .width = "edges",
+                                          .precision = "single",
+                                          .repeats = 9,
+                                          .block_ms = 10,
+                                          .frames = 50},
+                                 .wish = {NAN, NAN, NAN}};
 
-int bench_command_sweep(int argc, char **argv)
-{
-    Options options = {.w = "1:8",
-                       .epsilon = "0:1:0.1",
-                       .plan = {.engines = "both",
-                                .width = "edges",
-                                .precision = "single",
-                                .repeats = 9,
-                                .block_ms = 10,
-                                .frames = 50},
-                       .wish = {NAN, NAN, NAN}};
-    static const BenchCampaignCommand command = {&bench_sweep_type, &line, measure, show};
-    return bench_campaign_command(&command, argc, argv, &options, &options.common, &options.run);
-}
+const BenchCommand bench_command_sweep = {
+    .name = "sweep",
+    .summary = "cost and quality over w and epsilon; recommend some",
+    .line = {settings, BENCH_TAKES_ALL, "[FILE.h5]", help, .most = 1,
+             .limit = "One file is shown at a time"},
+    .size = sizeof(Options),
+    .defaults = &defaults,
+    .campaign = &bench_sweep_type,
+    .plan = make_plan,
+    .show = show,
+};

@@ -9,13 +9,10 @@
 #include "../play/runner.h"
 #include "../scene/override.h"
 #include "../store/draft.h"
-#include "../system/suggest.h"
 #include "../table/quantity.h"
 #include "../table/row_store.h"
 #include "../table/table.h"
 #include "command.h"
-
-const char *const bench_papers[] = {"fastlsm", "octree", "meshless", NULL};
 
 typedef struct {
     BenchCommon common;
@@ -53,7 +50,7 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, repeats), 1, 10000},
     {BENCH_OPTION("block", "MS", 2, "Least milliseconds in a sample (default: 20)"),
      BENCH_IN(Options, block), 0.001, 60000},
-    BENCH_FORMAT_OPTION(Options, 3),
+    BENCH_FORMAT_OPTION(Options, format, 3),
     {BENCH_OPTION("explain", NULL, 3,
                   "Say below a text table all that stands behind each row, not only a line each"),
      BENCH_IN(Options, explain)},
@@ -62,7 +59,7 @@ static const BenchSetting settings[] = {
          "Also store every sample, counts, validity and provenance in HDF5 (default: nothing "
          "stored)"),
      BENCH_IN(Options, output)},
-    BENCH_OVERWRITE_OPTION(Options, 3),
+    BENCH_OVERWRITE_OPTION(Options, overwrite, 3),
     {BENCH_OPTION(
          "columns", NULL, 4,
          "Measure nothing; list the columns of csv, json and FILE.h5 as results/README.md has "
@@ -84,9 +81,6 @@ static const char help[] =
     "are the shares of a run with clocks, interleaved. 'faster' is the paper's total divided by "
     "the measured one, 'speed-up' the time of the table's first lattice row by the row's; csv and "
     "json call them 'ratio' and 'speedup'.\n" BENCH_EXIT_CODES;
-
-static const BenchCommandLine line = {
-    settings, BENCH_TAKES_ALL, NULL, help, NULL, NULL, "Scenes are named with --scene"};
 
 /* Is it a built-in scene of the paper's for `row`, or, with NULL, for none, and does its name begin
  * with `stem` and a dash, unless that is NULL? */
@@ -126,10 +120,8 @@ static void add_scenes(Choices *chosen, const char *paper, const char *stem)
 static bool of_paper(const char *name, const char *paper)
 {
     BenchScene scene;
-    for (const char *const *known = bench_scene_names(); *known; known++)
-        if (!strcmp(*known, name))
-            return !bench_scene_find(name, &scene, NULL) && !strcmp(scene.paper, paper);
-    return false;
+    return bench_scene_text(name, NULL) && !bench_scene_find(name, &scene, NULL) &&
+           !strcmp(scene.paper, paper);
 }
 
 /* The tables that are regenerated when none is named. */
@@ -159,11 +151,7 @@ static SmCode choose_scenes(Choices *chosen, SmError *error)
     }
     if (!options->given.count && options->paper) add_scenes(chosen, paper, NULL);
     if (!options->given.count && !options->paper) add_default(chosen);
-    if (chosen->count) return SM_OK;
-    char near[BENCH_SUGGEST_TEXT];
-    return sm_fail(error, SM_USAGE,
-                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless%s", paper,
-                   bench_suggest_among(paper, bench_papers, near));
+    return chosen->count ? SM_OK : bench_paper_unknown(paper, error);
 }
 
 /* Fails where no scene is to be measured that `--mesh name=FILE` gives a mesh. */
@@ -201,23 +189,19 @@ static SmCode find_scene(const Options *options, const Choice *choice, BenchScen
 /* Names the rows (report.h), the meshless ones last; fails where a scene is not there. */
 static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
 {
-    Choice *last = sm_alloc((size_t)chosen->count, sizeof *last);
-    int meshless = 0, planned = 0;
+    Choice *ordered = sm_alloc((size_t)chosen->count, sizeof *ordered);
+    int planned = 0;
     SmCode code = SM_OK;
-    for (int i = 0; i < chosen->count && !code; i++) {
-        BenchScene scene;
-        code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
-        if (code) break;
-        bool later = bench_engine(scene.engine)->elastic;
-        *(later ? &last[meshless++] : &chosen->scene[planned++]) = chosen->scene[i];
-    }
-    for (int i = 0; i < meshless && !code; i++) chosen->scene[planned + i] = last[i];
-    for (int i = 0; i < chosen->count && !code; i++) {
-        BenchScene scene;
-        code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
-        bench_row_name(&scene, &rows[i]);
-    }
-    free(last);
+    for (int last = 0; last < 2; last++)
+        for (int i = 0; i < chosen->count && !code; i++) {
+            BenchScene scene;
+            code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
+            if (code || bench_engine(scene.engine)->elastic != last) continue;
+            bench_row_name(&scene, &rows[planned]);
+            ordered[planned++] = chosen->scene[i];
+        }
+    free(chosen->scene);
+    chosen->scene = ordered;
     return code;
 }
 
@@ -293,33 +277,41 @@ static SmCode verdict(const BenchRow *rows, int count, SmError *error)
     return SM_OK;
 }
 
-int bench_command_tables(int argc, char **argv)
+static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
-    Options options = {.repeats = 15, .block = 20};
-    Choices chosen = {.options = &options};
-    SmError error;
-    bench_options_parse(&line, argc, argv, &options, &options.common);
-    if (options.columns) {
+    const Options *options = record;
+    Choices chosen = {.options = options};
+    if (options->columns) {
         bench_quantities_document(stdout);
         return SM_OK;
     }
-    SmCode code = choose_scenes(&chosen, &error);
-    if (!code) code = check_substitutes(&chosen, &error);
+    SmCode code = choose_scenes(&chosen, error);
+    if (!code) code = check_substitutes(&chosen, error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
-    if (!code) code = bench_draft_reserve(options.output, options.overwrite, &error);
-    if (!code) code = plan_rows(&chosen, rows, &error);
+    if (!code) code = bench_draft_reserve(options->output, options->overwrite, error);
+    if (!code) code = plan_rows(&chosen, rows, error);
     BenchMachine machine;
-    bench_machine_read(argc, argv, options.common.threads, &machine);
+    bench_machine_read(argc, argv, options->common.threads, &machine);
     BenchTable table = {
-        .format = options.format,
-        .explain = options.explain,
+        .format = options->format,
+        .explain = options->explain,
         .report = {.file = stdout, .rows = rows, .count = chosen.count, .machine = &machine}};
-    if (!code) code = measure_all(&chosen, rows, &table, &error);
-    if (!code && options.output)
-        code = bench_store_rows(options.output, rows, chosen.count, &machine, &error);
-    if (!code) code = verdict(rows, chosen.count, &error);
+    if (!code) code = measure_all(&chosen, rows, &table, error);
+    if (!code && options->output)
+        code = bench_store_rows(options->output, rows, chosen.count, &machine, error);
+    if (!code) code = verdict(rows, chosen.count, error);
     bench_rows_free(rows, chosen.count);
     free(chosen.scene);
-    if (code) bench_option_fail(argv[0], &error);
-    return (int)code;
+    return code;
 }
+
+static const Options defaults = {.repeats = 15, .block = 20};
+
+const BenchCommand bench_command_tables = {
+    .name = "tables",
+    .summary = "measure a paper's table, checked, its values beside",
+    .line = {settings, BENCH_TAKES_ALL, NULL, help, .limit = "Scenes are named with --scene"},
+    .size = sizeof(Options),
+    .defaults = &defaults,
+    .perform = perform,
+};

@@ -88,7 +88,7 @@ TEST(wrong_values_of_run_are_one_line_and_an_exit_code)
         {"run tiny.cfg --no-output --fields speed", 2, "--no-output goes with none of"},
         {"run tiny.cfg --record film", 2, "--record: 'film' is not one of particles, nodes"},
         {"run tiny.cfg --w", 2, "requires an argument; see 'shapebench run --help'"},
-        {"run tiny.cfg tiny.cfg", 2, "one scene or mesh only"},
+        {"run tiny.cfg tiny.cfg", 2, "One scene or mesh only"},
         {"run tiny.cfg --particles 100 --cell 0.1", 2, "either --particles or --cell"},
     };
     make_mistakes(cases, sizeof cases / sizeof cases[0]);

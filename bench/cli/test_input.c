@@ -172,7 +172,7 @@ TEST(info_says_what_a_kernel_cannot_confine)
         snprintf(file, sizeof file, "%s", path_in("point.obj"));
         take_landlock_away();
         if (!freopen(path_in("said"), "w", stderr) || !freopen("/dev/null", "w", stdout)) _exit(1);
-        int code = bench_command_info(2, words);
+        int code = bench_command_run(&bench_command_info, 2, words);
         fflush(stderr);
         _exit(code);
     }

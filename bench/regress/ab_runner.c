@@ -11,8 +11,6 @@
 
 enum { PATH = BENCH_DRAFT_PATH, WORDS = 32 };
 
-static const char *const build_names[] = {"the baseline", "this build"};
-
 /* What has become of a task. */
 typedef struct {
     bool there[BENCH_BUILDS]; /* which builds have it, as far as is known */
@@ -60,7 +58,7 @@ static SmCode failed(const BenchTask *task, BenchBuild build, int round, int sta
                      const char *log, State *state, SmError *error)
 {
     char line[sizeof state->reason];
-    bench_process_last_line(log, sizeof line, line);
+    bench_process_last_line(log, NULL, sizeof line, line);
     bool crashed = status > 128 || status == 127;
     if (build == BENCH_OLD && round == 0 && !crashed && status != SM_OUTPUT) {
         memcpy(state->reason, line, sizeof line);
@@ -68,9 +66,9 @@ static SmCode failed(const BenchTask *task, BenchBuild build, int round, int sta
     }
     if (crashed)
         return sm_fail(error, SM_INVALID, "%s crashed on scene %.60s (exit code %d): %.200s",
-                       build_names[build], task->scene, status, line);
+                       bench_build_names[build], task->scene, status, line);
     SmCode code = status == SM_USAGE || status == SM_OUTPUT ? (SmCode)status : SM_INPUT;
-    return sm_fail(error, code, "%s cannot measure scene %.60s: %.250s", build_names[build],
+    return sm_fail(error, code, "%s cannot measure scene %.60s: %.250s", bench_build_names[build],
                    task->scene, line);
 }
 
@@ -93,7 +91,7 @@ static SmCode keep(Session *session, const State *state, BenchBuild build, int r
     SmCode code = bench_samples_load(path, &rows, &count, &machine, &why);
     if (code)
         return sm_fail(error, code, "what %s has measured cannot be used: %.300s",
-                       build_names[build], why.text);
+                       bench_build_names[build], why.text);
     for (int i = 0; i < count; i++) {
         bench_ab_add(session->all, build, round, &rows[i]);
         say_why(state, bench_ab_scene(session->all, rows[i].scene));
@@ -113,7 +111,7 @@ static SmCode run_process(Session *session, const BenchTask *task, BenchBuild bu
     snprintf(output, sizeof output, "%.4000s/rows.h5", runner->folder);
     snprintf(log, sizeof log, "%.4000s/process.txt", runner->folder);
     make_words(runner, task, runner->program[build], output, number, word);
-    BenchProcess process = {.word = (char *const *)word, .output = log};
+    BenchProcess process = {.word = word, .output = log};
     BenchProcessEnd end;
     SmCode code = bench_process_run(&process, &end, error);
     if (code) return code;

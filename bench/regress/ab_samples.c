@@ -8,6 +8,8 @@
 #include "../../lib/error.h"
 #include "../system/statistic.h"
 
+const char *const bench_build_names[] = {"the baseline", "this build"};
+
 const char *bench_time_name(int time)
 {
     return time ? sm_stage_name((SmStage)(time - 1)) : "total";

@@ -12,6 +12,8 @@
 
 typedef enum { BENCH_OLD, BENCH_NEW, BENCH_BUILDS } BenchBuild;
 
+extern const char *const bench_build_names[]; /* "the baseline", "this build" */
+
 /* The times of a step: the total, then each stage. */
 enum { BENCH_TIMES = 1 + SM_STAGES };
 

@@ -66,19 +66,20 @@ static bool same_work(const BenchRow *a, const BenchRow *b, size_t size, char *r
 /* Why nothing of this scene can be compared, if so. */
 static bool comparable(BenchComparison *result)
 {
-    static const char *const names[] = {"the baseline", "this build"};
     const BenchSide *side = result->samples->side;
     for (int b = BENCH_BUILDS - 1; b >= 0; b--) {
         if (side[b].valid) continue;
         result->verdict = BENCH_INCORRECT;
-        snprintf(result->reason, sizeof result->reason, "%s: %s", names[b], side[b].reason);
+        snprintf(result->reason, sizeof result->reason, "%s: %s", bench_build_names[b],
+                 side[b].reason);
         return false;
     }
     result->verdict = BENCH_NO_BASELINE;
     if (side[BENCH_OLD].count == 0 || side[BENCH_NEW].count == 0) {
         int missing = side[BENCH_OLD].count ? BENCH_NEW : BENCH_OLD;
-        snprintf(result->reason, sizeof result->reason, "%s has no such scene%s%s", names[missing],
-                 side[missing].reason[0] ? ": " : "", side[missing].reason);
+        snprintf(result->reason, sizeof result->reason, "%s has no such scene%s%s",
+                 bench_build_names[missing], side[missing].reason[0] ? ": " : "",
+                 side[missing].reason);
         return false;
     }
     return same_work(&side[BENCH_OLD].row, &side[BENCH_NEW].row, sizeof result->reason,

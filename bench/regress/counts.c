@@ -24,32 +24,23 @@ static const double particle_steps = 2e6, most_steps = 1e4;
 /* The line "... Collected : 123" of callgrind's; NaN: it has none. */
 static double read_collected(const char *log)
 {
+    static const char words[] = "Collected :";
     char line[512];
-    double count = NAN;
-    FILE *file = fopen(log, "re");
-    while (file && fgets(line, sizeof line, file)) {
-        const char *found = strstr(line, "Collected :");
-        if (found) count = strtod(found + 11, NULL);
-    }
-    if (file) fclose(file);
-    return count;
+    if (!bench_process_last_line(log, words, sizeof line, line)) return NAN;
+    return strtod(strstr(line, words) + strlen(words), NULL);
 }
 
 /* Valgrind's reason why a program has died, in our words. */
 static SmCode valgrind_failed(const char *log, int status, SmError *error)
 {
     char line[256];
-    bool opcode = false;
-    FILE *file = fopen(log, "re");
-    while (file && fgets(line, sizeof line, file)) opcode |= strstr(line, "SIGILL") != NULL;
-    if (file) fclose(file);
-    if (opcode)
+    if (bench_process_last_line(log, "SIGILL", sizeof line, line))
         return sm_fail(
             error, SM_INPUT,
             "this machine has no instruction counter for us, and Valgrind does not know all "
             "of its instructions: build with -DSHAPEBENCH_NATIVE=OFF and start that "
             "shapebench");
-    bench_process_last_line(log, sizeof line, line);
+    bench_process_last_line(log, NULL, sizeof line, line);
     return sm_fail(error, SM_INPUT, "Valgrind ended with exit code %d: %.200s", status, line);
 }
 
@@ -75,7 +66,7 @@ static SmCode count_run(const BenchAbRunner *runner, const Tool *tool, const Ben
     if (task->engine) word[words++] = "--engine", word[words++] = task->engine;
     if (task->precision) word[words++] = "--precision", word[words++] = task->precision;
     word[words] = NULL;
-    BenchProcess process = {.word = (char *const *)word, .output = log, .count = tool == &counter};
+    BenchProcess process = {.word = word, .output = log, .count = tool == &counter};
     BenchProcessEnd end;
     SmError why;
     SmCode code = bench_process_run(&process, &end, &why);
@@ -91,7 +82,7 @@ static SmCode count_run(const BenchAbRunner *runner, const Tool *tool, const Ben
     *count = NAN;
     if (tool == &callgrind) return valgrind_failed(log, end.status, error);
     char line[256];
-    bench_process_last_line(log, sizeof line, line);
+    bench_process_last_line(log, NULL, sizeof line, line);
     return sm_fail(error, SM_INPUT, "%.60s cannot be simulated: %.200s", task->scene, line);
 }
 

@@ -24,11 +24,6 @@ void bench_regression_remark(BenchRegression *found, const char *format, ...)
     va_end(values);
 }
 
-static bool known(const char *text)
-{
-    return text[0] && strcmp(text, "unknown") != 0;
-}
-
 /* Appends the words of `flags` that `other` has not, but -Werror, which changes no program. */
 static void list_flags(const char *flags, const char *other, size_t size, char *list)
 {
@@ -48,7 +43,7 @@ static void compare_flags(BenchRegression *found)
 {
     const char *old = found->machine[BENCH_OLD].flags, *new = found->machine[BENCH_NEW].flags;
     char only_old[128], only_new[128];
-    if (!known(old) || !known(new)) return;
+    if (!bench_machine_known(old) || !bench_machine_known(new)) return;
     list_flags(old, new, sizeof only_old, only_old);
     list_flags(new, old, sizeof only_new, only_new);
     if (only_old[0] || only_new[0])
@@ -68,7 +63,8 @@ void bench_regression_environment(BenchRegression *found)
         {"host", old->hostname, new->hostname},
     };
     for (size_t i = 0; i < sizeof text / sizeof *text; i++)
-        if (known(text[i].old) && known(text[i].new) && strcmp(text[i].old, text[i].new) != 0)
+        if (bench_machine_known(text[i].old) && bench_machine_known(text[i].new) &&
+            strcmp(text[i].old, text[i].new) != 0)
             bench_regression_remark(found, "%s differs: %.120s, now %.120s", text[i].what,
                                     text[i].old, text[i].new);
     compare_flags(found);
@@ -233,74 +229,58 @@ static void write_text(FILE *file, const BenchRegression *found, bool markdown)
 static json_t *side_json(const BenchComparison *one, BenchBuild build)
 {
     const BenchSide *side = &one->samples->side[build];
-    json_t *object = json_object(), *samples = json_array(), *rounds = json_array();
-    json_t *outliers = json_array();
+    json_t *samples = json_array(), *rounds = json_array(), *outliers = json_array();
     for (int i = 0; i < side->count; i++) {
         json_array_append_new(samples, bench_json_number(side->time[one->time][i]));
         json_array_append_new(rounds, json_integer(side->round[i]));
         if (one->outlier[build] && one->outlier[build][i])
             json_array_append_new(outliers, json_integer(i));
     }
-    json_object_set_new(object, "ms", bench_json_number(one->ms[build]));
-    json_object_set_new(object, "samples", samples);
-    json_object_set_new(object, "rounds", rounds);
-    json_object_set_new(object, "outliers", outliers);
-    json_object_set_new(object, "self_difference", bench_json_number(one->self[build]));
-    json_object_set_new(object, "instructions",
-                        bench_json_number(one->time ? NAN : side->instructions));
-    return object;
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "ms", bench_json_number(one->ms[build]),
+                     "samples", samples, "rounds", rounds, "outliers", outliers, "self_difference",
+                     bench_json_number(one->self[build]), "instructions",
+                     bench_json_number(one->time ? NAN : side->instructions));
 }
 
 static json_t *comparison_json(const BenchComparison *one)
 {
-    json_t *object = json_object();
-    json_object_set_new(object, "scene", bench_json_text(one->samples->scene));
-    json_object_set_new(object, "time", json_string(bench_time_name(one->time)));
-    json_object_set_new(object, "verdict", json_string(bench_comparison_name(one->verdict)));
-    json_object_set_new(object, "reason",
-                        one->reason[0] ? bench_json_text(one->reason) : json_null());
-    json_object_set_new(object, "ratio", bench_json_number(one->ratio));
-    json_object_set_new(object, "low", bench_json_number(one->low));
-    json_object_set_new(object, "high", bench_json_number(one->high));
-    json_object_set_new(object, "p", bench_json_number(one->p));
-    json_object_set_new(object, "p_adjusted", bench_json_number(one->adjusted));
-    json_object_set_new(object, "threshold", bench_json_number(one->threshold));
-    json_object_set_new(object, "old", side_json(one, BENCH_OLD));
-    json_object_set_new(object, "new", side_json(one, BENCH_NEW));
-    return object;
+    json_t *reason = one->reason[0] ? bench_json_text(one->reason) : json_null();
+    return json_pack("{s:o, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+                     bench_json_text(one->samples->scene), "time", bench_time_name(one->time),
+                     "verdict", bench_comparison_name(one->verdict), "reason", reason, "ratio",
+                     bench_json_number(one->ratio), "low", bench_json_number(one->low), "high",
+                     bench_json_number(one->high), "p", bench_json_number(one->p), "p_adjusted",
+                     bench_json_number(one->adjusted), "threshold",
+                     bench_json_number(one->threshold), "old", side_json(one, BENCH_OLD), "new",
+                     side_json(one, BENCH_NEW));
 }
 
 static void write_json(FILE *file, const BenchRegression *found)
 {
     char line[512];
-    json_t *root = json_object(), *list = json_array(), *remarks = json_array();
-    json_t *environments = json_object();
+    json_t *list = json_array(), *remarks = json_array();
     bench_regression_summary(found, sizeof line, line);
     for (int i = 0; i < found->count; i++)
         json_array_append_new(list, comparison_json(&found->list[i]));
     for (int i = 0; i < found->remarks; i++)
         json_array_append_new(remarks, bench_json_text(found->remark[i]));
-    json_object_set_new(environments, "old", bench_json_machine(&found->machine[BENCH_OLD]));
-    json_object_set_new(environments, "new", bench_json_machine(&found->machine[BENCH_NEW]));
-    json_object_set_new(root, "schema", json_integer(1));
-    json_object_set_new(root, "verdict", bench_json_text(line));
-    json_object_set_new(root, "exit_code",
-                        json_integer(bench_comparisons_exit(found->list, found->count)));
-    json_object_set_new(root, "baseline", bench_json_text(found->baseline));
-    json_object_set_new(root, "interleaved", json_boolean(found->params->interleaved));
-    json_object_set_new(root, "rounds", json_integer(found->params->rounds));
-    json_object_set_new(root, "seconds", bench_json_number(found->seconds));
-    json_object_set_new(root, "counter",
-                        found->counter ? json_string(found->counter) : json_null());
-    json_object_set_new(root, "comparisons", list);
-    json_object_set_new(root, "remarks", remarks);
-    json_object_set_new(root, "environments", environments);
-    bench_json_write(file, root);
+    bench_json_write(
+        file,
+        json_pack("{s:i, s:o, s:i, s:o, s:b, s:i, s:o, s:s?, s:o, s:o, s:{s:o, s:o}}", "schema", 1,
+                  "verdict", bench_json_text(line), "exit_code",
+                  bench_comparisons_exit(found->list, found->count), "baseline",
+                  bench_json_text(found->baseline), "interleaved", (int)found->params->interleaved,
+                  "rounds", found->params->rounds, "seconds", bench_json_number(found->seconds),
+                  "counter", found->counter, "comparisons", list, "remarks", remarks,
+                  "environments", "old", bench_json_machine(&found->machine[BENCH_OLD]), "new",
+                  bench_json_machine(&found->machine[BENCH_NEW])));
 }
 
 static json_t *context_json(const BenchMachine *machine)
 {
-    json_t *context = json_object(), *caches = json_array();
+    json_t *caches = json_array();
+    bool scaling =
+        bench_machine_known(machine->governor) && strcmp(machine->governor, "performance") != 0;
     const long size[] = {machine->l1_bytes, machine->l2_bytes, machine->l3_bytes};
     for (int level = 0; level < 3; level++)
         if (size[level] > 0)
@@ -308,18 +288,11 @@ static json_t *context_json(const BenchMachine *machine)
                                   json_pack("{s:s, s:i, s:I, s:i}", "type",
                                             level ? "Unified" : "Data", "level", level + 1, "size",
                                             (json_int_t)size[level], "num_sharing", 1));
-    json_object_set_new(context, "date", bench_json_text(machine->utc));
-    json_object_set_new(context, "host_name", bench_json_text(machine->hostname));
-    json_object_set_new(context, "executable", json_string("shapebench"));
-    json_object_set_new(context, "num_cpus", json_integer(machine->cores));
-    json_object_set_new(context, "mhz_per_cpu", json_integer(0));
-    json_object_set_new(context, "cpu_scaling_enabled",
-                        json_boolean(strcmp(machine->governor, "unknown") != 0 &&
-                                     strcmp(machine->governor, "performance") != 0));
-    json_object_set_new(context, "caches", caches);
-    json_object_set_new(context, "load_avg", json_array());
-    json_object_set_new(context, "library_build_type", json_string("release"));
-    return context;
+    return json_pack("{s:o, s:o, s:s, s:i, s:i, s:b, s:o, s:[], s:s}", "date",
+                     bench_json_text(machine->utc), "host_name", bench_json_text(machine->hostname),
+                     "executable", "shapebench", "num_cpus", machine->cores, "mhz_per_cpu", 0,
+                     "cpu_scaling_enabled", (int)scaling, "caches", caches, "load_avg",
+                     "library_build_type", "release");
 }
 
 /* A run or an aggregate; `time` in s. */
@@ -333,23 +306,19 @@ static json_t *benchmark_json(const BenchComparison *one, BenchBuild build, cons
              bench_time_name(one->time));
     snprintf(name, sizeof name, "%s%s%s", run, aggregate ? "_" : "", aggregate ? aggregate : "");
     bool share = aggregate && !strcmp(aggregate, "cv"); /* a percentage; as Google's, unscaled */
-    json_t *object = json_object();
-    json_object_set_new(object, "name", bench_json_text(name));
-    json_object_set_new(object, "run_name", bench_json_text(run));
-    json_object_set_new(object, "run_type", json_string(aggregate ? "aggregate" : "iteration"));
-    json_object_set_new(object, "repetitions", json_integer(side->count));
-    json_object_set_new(object, "threads",
-                        json_integer(side->row.threads > 0 ? side->row.threads : 1));
-    if (aggregate) {
-        json_object_set_new(object, "aggregate_name", json_string(aggregate));
-        json_object_set_new(object, "aggregate_unit", json_string(share ? "percentage" : "time"));
-    }
-    json_object_set_new(
-        object, "iterations",
-        json_integer(aggregate ? side->count : (side->row.steps > 0 ? side->row.steps : 1)));
-    json_object_set_new(object, "real_time", bench_json_number(share ? time : 1e9 * time));
-    json_object_set_new(object, "cpu_time", bench_json_number(share ? time : 1e9 * time));
-    json_object_set_new(object, "time_unit", json_string("ns"));
+    double shown = share ? time : 1e9 * time;
+    int steps = side->row.steps > 0 ? side->row.steps : 1;
+    json_t *object = json_pack("{s:o, s:o, s:s, s:i, s:i}", "name", bench_json_text(name),
+                               "run_name", bench_json_text(run), "run_type",
+                               aggregate ? "aggregate" : "iteration", "repetitions", side->count,
+                               "threads", side->row.threads > 0 ? side->row.threads : 1);
+    if (aggregate)
+        json_object_update_new(object, json_pack("{s:s, s:s}", "aggregate_name", aggregate,
+                                                 "aggregate_unit", share ? "percentage" : "time"));
+    json_object_update_new(object, json_pack("{s:i, s:o, s:o, s:s}", "iterations",
+                                             aggregate ? side->count : steps, "real_time",
+                                             bench_json_number(shown), "cpu_time",
+                                             bench_json_number(shown), "time_unit", "ns"));
     return object;
 }
 
@@ -382,16 +351,15 @@ static void add_benchmarks(json_t *list, const BenchComparison *one, BenchBuild 
 
 static void write_gbench(FILE *file, const BenchRegression *found)
 {
-    json_t *root = json_object(), *list = json_array();
+    json_t *list = json_array();
     for (int b = 0; b < BENCH_BUILDS; b++)
         for (int i = 0; i < found->count; i++) {
             const BenchComparison *one = &found->list[i];
             if (one->verdict != BENCH_INCORRECT && one->verdict != BENCH_NO_BASELINE)
                 add_benchmarks(list, one, (BenchBuild)b, b * found->count + i);
         }
-    json_object_set_new(root, "context", context_json(&found->machine[BENCH_NEW]));
-    json_object_set_new(root, "benchmarks", list);
-    bench_json_write(file, root);
+    bench_json_write(file, json_pack("{s:o, s:o}", "context",
+                                     context_json(&found->machine[BENCH_NEW]), "benchmarks", list));
 }
 
 /* ---- JUnit */

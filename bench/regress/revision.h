@@ -1,9 +1,6 @@
-/* revision.h - another git revision of this program, built.
- *
- * The revision is checked out into a worktree below build/regress of the repository that the
- * current folder is in, built there with the compiler and options of the running program's own
- * build folder, and the worktree is removed, whatever happens. The program is kept:
- * build/regress/COMMIT-OPTIONS. */
+/* revision.h - another git revision of this program, built by scripts/build_revision with the
+ * compiler and options of the running program's own build folder, and kept:
+ * build/regress/COMMIT-OPTIONS of the repository that the current folder is in. */
 #ifndef BENCH_REVISION_H
 #define BENCH_REVISION_H
 
@@ -13,12 +10,11 @@
 typedef struct {
     char commit[64];
     char program[BENCH_DRAFT_PATH]; /* the built one */
-    bool built;                     /* now; else it was there */
 } BenchRevision;
 
-/* `folder` is for scratch files. SM_INPUT: no git, not in a repository, no such revision, it does
- * not configure or build (the line names its log), interrupted. SM_OUTPUT: build/regress cannot be
- * written. */
+/* `folder` is for scratch files. Nothing but the program is left behind, whatever happens.
+ * SM_INPUT: no git, not in a repository, no such revision, it does not configure or build (the line
+ * names its log), interrupted. SM_OUTPUT: build/regress cannot be written. */
 SmCode bench_revision_build(const char *name, const char *folder, BenchProgress *progress,
                             BenchRevision *revision, SmError *error);
 

@@ -120,8 +120,7 @@ typedef struct {
 
 typedef struct {
     const BenchCommandLine *line;
-    void *record;
-    BenchCommon *common;
+    void *record; /* begins with a BenchCommon */
     int count;
     Option option[MOST];
     struct argp_option list[MOST + 1]; /* in the same order */
@@ -163,7 +162,7 @@ static void take(const Options *options, const Option *option, const char *text,
 {
     const BenchSetting *setting = option->setting;
     SmError error = {.code = SM_OK};
-    options->common->measuring |= setting->measuring;
+    ((BenchCommon *)options->record)->measuring |= setting->measuring;
     if (setting->take)
         setting->take(state, text, (char *)option->record + setting->offset);
     else if (option->given)
@@ -176,24 +175,19 @@ static void take(const Options *options, const Option *option, const char *text,
 static void take_argument(const Options *options, char *text, const struct argp_state *state)
 {
     const BenchCommandLine *line = options->line;
-    const char **file = &options->common->file;
-    if (line->argument)
-        line->argument(state, options->record, text);
-    else if (line->instead)
-        bench_usage(state, "what is '%s'? %s", text, line->instead);
-    else if (*file)
-        bench_usage(state, "what is '%s'? One file is shown at a time", text);
-    else
-        *file = text;
+    BenchCommon *common = options->record;
+    if (common->words == line->most) bench_usage(state, "what is '%s'? %s", text, line->limit);
+    common->word = sm_realloc(common->word, (size_t)common->words + 1, sizeof *common->word);
+    common->word[common->words++] = text;
 }
 
 static void check(const Options *options, const struct argp_state *state)
 {
-    const BenchCommon *common = options->common;
+    const BenchCommon *common = options->record;
     if (options->line->check) options->line->check(state, options->record);
-    if (common->file && common->measuring)
+    if (common->words && common->measuring)
         bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o",
-                    common->file);
+                    common->word[0]);
 }
 
 static error_t parse(int key, char *text, struct argp_state *state)
@@ -229,10 +223,10 @@ static const BenchSetting common_settings[] = {
     {0},
 };
 
-void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, void *record,
-                         BenchCommon *common)
+void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, void *record)
 {
-    Options options = {.line = line, .record = record, .common = common};
+    BenchCommon *common = record;
+    Options options = {.line = line, .record = record};
     *common = (BenchCommon){.threads = 1, .seed = 1};
     add_table(&options, &(Option){.setting = line->settings, .record = record}, 0);
     if (line->takes)

@@ -7,13 +7,14 @@
 
 #include "setting.h"
 
-/* Options that several commands have. */
+/* Options that several commands have: the first member of every command's record. */
 typedef struct {
     int threads; /* 1 or more */
     unsigned long seed;
     bool quiet;
-    bool measuring;   /* was an option given that says what to measure? */
-    const char *file; /* that is shown as it is; NULL: none */
+    bool measuring;    /* was an option given that says what to measure? */
+    const char **word; /* [words] arguments that are no options; freed with the record */
+    int words;
 } BenchCommon;
 
 /* What of BenchCommon a command takes; the rest has its defaults. */
@@ -26,17 +27,13 @@ typedef struct {
     const char *help;             /* as argp's: before the options, \v, behind them */
     /* Refuses what does not go together, when all options are read; NULL: everything does. */
     void (*check)(const struct argp_state *state, void *record);
-    /* Takes an argument that is no option, into the record. NULL: BenchCommon.file is the one that
-     * there may be, and goes with nothing that says what to measure; or, with `instead`, there is
-     * none, and this says what to do. */
-    void (*argument)(const struct argp_state *state, void *record, char *text);
-    const char *instead;
+    int most;          /* how many arguments there may be that are no options; -1: any */
+    const char *limit; /* what is said of one more: "One file is shown at a time" */
 } BenchCommandLine;
 
 /* Reads a command's options into its record, whose defaults are set, and the common ones. Usage
  * errors end the program. argv[0] is the program and command ("shapebench run"). */
-void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, void *record,
-                         BenchCommon *common);
+void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, void *record);
 
 /* argp_parse(), but what getopt finds wrong (an unknown option, a missing value) is one line like
  * all others, and ends the program with exit code 2. */

@@ -56,7 +56,7 @@ typedef struct BenchSetting {
 /* Values of an option that may be repeated. */
 enum { BENCH_NAMES = 64 };
 typedef struct {
-    const char *name[BENCH_NAMES];
+    const char *name[BENCH_NAMES + 1]; /* NULL behind the last */
     int count;
 } BenchNames;
 

@@ -39,23 +39,31 @@ static void set_free(BenchScene *scene)
     if (scene->bend == 0 && scene->twist == 0 && scene->squash == 0) scene->bend = 0.7;
 }
 
-static void compare_goals(const BenchRunner *runner, double cell, const double (*goal)[3],
-                          const double (*exact)[3], BenchGap *gap)
+/* Root mean square, by mass where there is one, and largest distance of points, of `unit`. */
+static void compare(const double (*a)[3], const double (*b)[3], size_t count, const double *mass,
+                    double unit, BenchGap *gap)
 {
-    double *mass = sm_alloc((size_t)runner->count, sizeof *mass), sum = 0, all = 0, most = 0;
-    runner->type->masses(runner->engine, mass);
-    for (long i = 0; i < runner->particles; i++) {
-        double square = 0, m = mass[i % runner->count];
-        for (int d = 0; d < 3; d++)
-            square += (goal[i][d] - exact[i][d]) * (goal[i][d] - exact[i][d]);
+    double sum = 0, all = 0, most = 0;
+    for (size_t i = 0; i < count; i++) {
+        double square = 0, m = mass ? mass[i] : 1;
+        for (int d = 0; d < 3; d++) square += (a[i][d] - b[i][d]) * (a[i][d] - b[i][d]);
         sum += m * square;
         all += m;
         most = fmax(most, square);
     }
-    if (isfinite(sum)) {
-        gap->rms = sqrt(sum / all) / cell;
-        gap->most = sqrt(most) / cell;
-    } else {
+    gap->rms = sqrt(sum / all) / unit;
+    gap->most = sqrt(most) / unit;
+}
+
+static void compare_goals(const BenchRunner *runner, double cell, const double (*goal)[3],
+                          const double (*exact)[3], BenchGap *gap)
+{
+    double *mass = sm_alloc((size_t)runner->particles, sizeof *mass);
+    runner->type->masses(runner->engine, mass);
+    for (long i = runner->count; i < runner->particles; i++) mass[i] = mass[i % runner->count];
+    compare(goal, exact, (size_t)runner->particles, mass, cell, gap);
+    if (!isfinite(gap->rms)) {
+        gap->rms = gap->most = NAN;
         snprintf(gap->why, sizeof gap->why, "goals are not finite");
     }
     free(mass);
@@ -202,18 +210,8 @@ void bench_gap_path(const BenchPath *path, const BenchPath *full, double size, B
         gap->invalid = path->invalid || full->invalid;
         return;
     }
-    double sum = 0, most = 0;
-    size_t count = (size_t)path->frames * (size_t)path->points;
-    for (size_t i = 0; i < count; i++) {
-        double square = 0;
-        for (int d = 0; d < 3; d++)
-            square +=
-                (path->point[i][d] - full->point[i][d]) * (path->point[i][d] - full->point[i][d]);
-        sum += square;
-        most = fmax(most, square);
-    }
-    gap->rms = sqrt(sum / (double)count) / size;
-    gap->most = sqrt(most) / size;
+    compare((const double(*)[3])path->point, (const double(*)[3])full->point,
+            (size_t)path->frames * (size_t)path->points, NULL, size, gap);
 }
 
 double bench_body_size(const BenchBody *body)

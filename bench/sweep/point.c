@@ -112,10 +112,7 @@ const BenchField bench_point_fields[] = {
      MEANS(NULL, "1: no other valid point is at most as far off (`path_rms`) and cheaper beyond "
                  "the noise: its `total_high_ms` below this one's `total_low_ms`"),
      .may_differ = true, .title = "front", .left = true},
-    {FIELD(DOUBLE, wall), MEANS("s", "that the point took")},
-    {FIELD(INT, rank), MEANS(NULL, "of an MPI launch; else 0")},
-    {FIELD(TEXT, host), MEANS(NULL, "where it was measured")},
-    {FIELD(TEXT, utc), MEANS(NULL, "and when (ISO 8601)")},
+    BENCH_STAMP_FIELDS(BenchPoint, "that the point took"),
     {FIELD(INT, samples), MEANS(NULL, "repeats; 0 of an invalid point")},
     {.name = "sample",
      PLACE(DOUBLE, sample),

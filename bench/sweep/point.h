@@ -5,7 +5,7 @@
 #define BENCH_POINT_H
 
 #include "../../lib/stage.h"
-#include "../store/field.h"
+#include "../campaign/campaign.h"
 
 enum { BENCH_POINT_SAMPLES = 64, BENCH_WHY = 120 };
 
@@ -33,10 +33,8 @@ typedef struct {
     double path_rms, path_most; /* gap.h */
     char path_why[BENCH_WHY];
 
-    bool front; /* front.h */
-    double wall;
-    int rank;
-    char host[64], utc[32];
+    bool front; /* recommend.h */
+    BenchStamp stamp;
 
     int samples;
     double sample[BENCH_POINT_SAMPLES]; /* NaN beyond `samples` */

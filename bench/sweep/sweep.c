@@ -1,5 +1,6 @@
 #include "sweep.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,8 +12,127 @@
 #include "../check/check.h"
 #include "../engines.h"
 #include "../measure/measure.h"
-#include "front.h"
+#include "../table/records.h"
 #include "gap.h"
+#include "recommend.h"
+
+/* ---- the plan */
+
+#define FIELD(type, member)  BENCH_FIELD_AS(BenchPlan, BENCH_##type, member, #member)
+#define MEANS(of_what, what) BENCH_MEANS(of_what, what)
+
+static const BenchField plan_fields[] = {
+    {FIELD(TEXT, scene), MEANS(NULL, "that is swept")},
+    {FIELD(TEXT, mesh),
+     MEANS(NULL, "the user's mesh file in its place (empty: none); may differ between files of one "
+                 "sweep, `mesh_hash` may not"),
+     .may_differ = true},
+    {FIELD(TEXT, engines), MEANS(NULL, "\"both\", \"fastlsm\" or \"octree\"")},
+    {FIELD(TEXT, precision), MEANS(NULL, "of what is timed")},
+    {FIELD(TEXT, width),
+     MEANS(NULL, "what an octree's w counts: \"edges\" of each node's own cell, or finest "
+                 "\"cells\"")},
+    {FIELD(TEXT, build),
+     MEANS(NULL, "version, commit, compiler, flags; where sources were changed after the commit, "
+                 "the program's hash")},
+    {FIELD(HASH, scene_hash), MEANS(NULL, "FNV-1a of the scene's settings")},
+    {FIELD(HASH, mesh_hash), MEANS(NULL, "FNV-1a of the mesh's coordinates and indices")},
+    {FIELD(INT, repeats), MEANS(NULL, "samples of every time")},
+    {FIELD(DOUBLE, block_ms), MEANS("ms", "least time in a sample")},
+    {FIELD(INT, frames), MEANS(NULL, "of the motion that is compared")},
+    {FIELD(INT, steps), MEANS(NULL, "a frame")},
+    {FIELD(INT, threads), MEANS(NULL, "used")},
+    {FIELD(LONG, seed), MEANS(NULL, "of what is drawn by chance")},
+    {FIELD(DOUBLE, size), MEANS("mesh units", "largest extent of the body")},
+    {FIELD(DOUBLE, cell), MEANS("mesh units", "its finest cell")},
+    {FIELD(INT, points),
+     MEANS(NULL, "planned: of every w comes fastlsm, then the octree's epsilons")},
+    {FIELD(INT, ws), MEANS(NULL, "numbers of w")},
+    {FIELD(INT, epsilons), MEANS(NULL, "numbers of epsilon")},
+};
+
+static const int plan_field_count = sizeof plan_fields / sizeof plan_fields[0];
+
+static const BenchCampaignList lists[] = {
+    {"w", "--w", offsetof(BenchPlan, w), offsetof(BenchPlan, ws), 1, BENCH_PLAN_VALUES, 0.01, 1000},
+    {"epsilon", "--epsilon", offsetof(BenchPlan, epsilon), offsetof(BenchPlan, epsilons), 1,
+     BENCH_PLAN_VALUES, 0, 1000},
+};
+
+/* Points of one w and engine. */
+static int points_of(const BenchPlan *plan, const BenchEngine *engine)
+{
+    return engine->sampled ? plan->epsilons : 1;
+}
+
+/* Points of one w. */
+static int points_of_w(const BenchPlan *plan)
+{
+    const BenchEngine *engine;
+    int points = 0;
+    for (int e = 0; (engine = bench_engine_planned(plan->engines, e)); e++)
+        points += points_of(plan, engine);
+    return points;
+}
+
+static SmCode check_w(const BenchPlan *plan, const SmEngineType *type, SmError *error)
+{
+    for (int i = 0; i < plan->ws && type->by_cells; i++)
+        if (plan->w[i] != floor(plan->w[i]) || plan->w[i] > SM_MOST_W)
+            return sm_fail(error, SM_USAGE,
+                           "--w: %g is no half-width of %s, which are whole numbers from 1 to "
+                           "%d; give --engine octree to sweep that alone",
+                           plan->w[i], type->name, SM_MOST_W);
+    return SM_OK;
+}
+
+static SmCode count(void *record, SmError *error)
+{
+    BenchPlan *plan = record;
+    const BenchEngine *engine;
+    for (int e = 0; (engine = bench_engine_planned(plan->engines, e)); e++) {
+        SmCode code = check_w(plan, engine->type[0], error);
+        if (code) return code;
+    }
+    long points = (long)plan->ws * points_of_w(plan);
+    if (points < 1) return sm_fail(error, SM_USAGE, "no points: no engine '%.11s'", plan->engines);
+    if (points > BENCH_PLAN_POINTS)
+        return sm_fail(error, SM_USAGE,
+                       "--w and --epsilon make %ld points, and a sweep has %d at most: take larger "
+                       "steps, or several files",
+                       points, BENCH_PLAN_POINTS);
+    if (plan->repeats < 1 || plan->repeats > BENCH_POINT_SAMPLES)
+        return sm_fail(error, SM_USAGE, "%d repeats; 1 to %d can be", plan->repeats,
+                       BENCH_POINT_SAMPLES);
+    plan->points = (int)points;
+    return SM_OK;
+}
+
+bool bench_plan_alone(const BenchPlan *plan)
+{
+    char name[BENCH_NAME];
+    bench_mesh_name(plan->mesh, name);
+    return plan->mesh[0] && !plan->file[0] && !strcmp(name, plan->scene);
+}
+
+static void plan_point(const void *record, int index, void *into)
+{
+    const BenchPlan *plan = record;
+    BenchPoint *point = into;
+    int each = points_of_w(plan);
+    assert(each > 0); /* count() has seen to it */
+    int rest = index % each;
+    const BenchEngine *engine = bench_engine_planned(plan->engines, 0);
+    for (int e = 1; rest >= points_of(plan, engine); e++) {
+        rest -= points_of(plan, engine);
+        engine = bench_engine_planned(plan->engines, e);
+    }
+    point->w = plan->w[index / each];
+    point->epsilon = engine->sampled ? plan->epsilon[rest] : 0;
+    snprintf(point->engine, sizeof point->engine, "%s", engine->type[0]->name);
+}
+
+/* ---- what the points share */
 
 /* What the points share. */
 typedef struct {
@@ -22,7 +142,6 @@ typedef struct {
     BenchPath full;     /* of the last full resolution */
     int full_w;         /* its half-width, 0: none yet */
     char left_out[160]; /* of the scene: "cuts, touches"; or empty */
-    int rank;           /* of the points measured here */
 } Sweeper;
 
 /* Of a lattice's regions, where all were cubes: about half a minute of building. */
@@ -89,7 +208,6 @@ static SmCode begin(BenchCampaign *campaign, const BenchCampaignRun *run, void *
     BenchPlan *plan = campaign->plan;
     Sweeper *sweeper = *work = sm_alloc(1, sizeof *sweeper);
     SmMesh mesh;
-    sweeper->rank = run->ranks->rank;
     SmCode code = load(plan, &sweeper->scene, &mesh, error);
     if (code) return code;
     reduce(sweeper);
@@ -261,7 +379,6 @@ static SmCode measure(void *work, const BenchCampaign *campaign, void *record, S
     Sweeper *sweeper = work;
     const BenchPlan *plan = campaign->plan;
     BenchPoint *point = record;
-    double start = sm_now();
     BenchScene scene = make_scene(sweeper, point->engine, point->w, point->epsilon, plan->width);
     measure_cost(sweeper, plan, &scene, point);
     measure_beam(point);
@@ -269,23 +386,79 @@ static SmCode measure(void *work, const BenchCampaign *campaign, void *record, S
         measure_gaps(sweeper, plan, &scene, point);
     else
         be_exact(point);
-    bench_campaign_stamp(point->host, point->utc);
-    point->rank = sweeper->rank;
-    point->wall = sm_now() - start;
     return SM_OK;
 }
 
+/* ---- its table */
+
+enum { REASONS = 8 };
+
+/* Says a reason unless it has been said. */
+static void say_once(FILE *file, const BenchPoint *p, const char *what, const char *reason,
+                     const char *said[REASONS], int *count)
+{
+    if (!reason[0] || *count == REASONS) return;
+    for (int i = 0; i < *count; i++)
+        if (!strcmp(said[i], reason)) return;
+    said[(*count)++] = reason;
+    fprintf(file, "  %s w %g epsilon %g%s: %s\n", p->engine, p->w, p->epsilon, what, reason);
+}
+
+static void write_reasons(FILE *file, const BenchCampaign *sweep)
+{
+    const char *said[REASONS];
+    int count = 0;
+    for (long i = 0; i < sweep->count; i++) {
+        const BenchPoint *p = bench_campaign_at(sweep, i);
+        say_once(file, p, p->valid ? " is BUSY" : " is INVALID", p->reason, said, &count);
+        say_once(file, p, ", goals", p->goal_why, said, &count);
+        say_once(file, p, ", beam", p->beam_why, said, &count);
+        say_once(file, p, ", path", p->path_why, said, &count);
+    }
+}
+
+/* Times of different machines do not compare, nor does a front that is made of them. */
+static void write_hosts(FILE *file, const BenchCampaign *sweep)
+{
+    for (long i = 1; i < sweep->count; i++) {
+        const BenchPoint *point = sweep->point;
+        const char *first = point[0].stamp.host, *other = point[i].stamp.host;
+        if (!strcmp(first, other)) continue;
+        fprintf(file, "Points are of several hosts (%s, %s): times, and the front, mix them.\n",
+                first, other);
+        return;
+    }
+}
+
+static void print_head(FILE *file, BenchFormat format, const BenchCampaign *sweep, BenchGrid *grid)
+{
+    const BenchPlan *plan = sweep->plan;
+    bool other = plan->mesh[0] && !bench_plan_alone(plan), edges = !strcmp(plan->width, "edges");
+    bench_grid_rename(grid, 1, edges ? "w edges" : "w cells");
+    if (format != BENCH_AS_TEXT) return;
+    fprintf(file,
+            "%s%s%s: cost against stiffness and deviation, %ld of %d points, on %s, %d thread%s.\n"
+            "w: half-width of regions, of fastlsm in cells, of the octree in %s.\n\n",
+            plan->scene, other ? " with " : "", other ? plan->mesh : "", sweep->count, plan->points,
+            sweep->machine.cpu, plan->threads, plan->threads == 1 ? "" : "s",
+            edges ? "edges of each node's own cell" : "finest cells");
+}
+
+static void print_tail(FILE *file, BenchFormat format, const BenchCampaign *sweep)
+{
+    if (format != BENCH_AS_TEXT) return;
+    fputs("\nstages %: fast sum/shape matching/polar/damping/other. Stiffness is a regular beam's, "
+          "0.8 m x 0.1 m: relaxation of a bending wave a step, sag\nof its length in the limit of "
+          "small sags (of a soft one above 100%), first natural frequency. goals off: from epsilon "
+          "0, finest cells, rms.\npath off: the surface from a lattice's of equal width (w cells) "
+          "at full resolution, of the body's size, rms and most. "
+          "*: on the front of\ncost (ms/step) against deviation (path off).\n",
+          file);
+    write_hosts(file, sweep);
+    write_reasons(file, sweep);
+}
+
 /* ---- the campaign */
-
-static SmCode count(void *plan, SmError *error)
-{
-    return bench_plan_count(plan, error);
-}
-
-static void plan_point(const void *plan, int index, void *point)
-{
-    bench_plan_point(plan, index, point);
-}
 
 static void say(const void *point, size_t size, char *text)
 {
@@ -312,13 +485,15 @@ const BenchCampaignType bench_sweep_type = {
     .schema = 1,
     .plan_size = sizeof(BenchPlan),
     .point_size = sizeof(BenchPoint),
-    .plan = bench_plan_fields,
+    .plan = plan_fields,
     .points = bench_point_fields,
-    .plan_fields = &bench_plan_field_count,
+    .plan_fields = &plan_field_count,
     .point_fields = &bench_point_field_count,
-    .list = bench_plan_lists,
-    .lists = BENCH_PLAN_LISTS,
+    .list = lists,
+    .lists = sizeof lists / sizeof *lists,
     .planned = offsetof(BenchPlan, points),
+    .build = offsetof(BenchPlan, build),
+    .stamp = offsetof(BenchPoint, stamp),
     .series = offsetof(BenchPlan, repeats),
     .used = offsetof(BenchPoint, samples),
     .count = count,
@@ -329,4 +504,6 @@ const BenchCampaignType bench_sweep_type = {
     .measure = measure,
     .end = end,
     .conclude = conclude,
+    .head = print_head,
+    .tail = print_tail,
 };

@@ -8,7 +8,6 @@
 #include "../../lib/test_frame.h"
 #include "../cli/test_program.h"
 #include "sweep.h"
-#include "sweep_table.h"
 
 /* A small body that a force pushes; three points. */
 #define SMALL                                                                                      \
@@ -103,7 +102,7 @@ TEST(a_point_has_its_figures)
          * 12.36 and 1/8), somewhat less where shear counts. */
         double omega = 6.283185307179586 * p->frequency;
         assert_in_range((long)(1000 * omega * omega * p->sag * 0.8 / 9.81), 1200, 1700);
-        assert_true(p->host[0] && p->utc[0] && p->rank == 0);
+        assert_true(p->stamp.host[0] && p->stamp.utc[0] && p->stamp.rank == 0);
     }
     assert_true(lattice->path_rms == 0 && lattice->goal_rms == 0 && lattice->full_w == 6);
     assert_true(exact->goal_rms == 0 && exact->goal_most == 0); /* epsilon is 0 */
@@ -124,14 +123,14 @@ TEST(an_interrupted_sweep_goes_on)
     BenchCampaign part;
     load("part.h5", &part);
     assert_in_range(part.count, 1, 2);
-    char utc[sizeof(BenchPoint){0}.utc], begun[sizeof part.machine.utc];
-    strcpy(utc, point(&part, 0)->utc);
+    char utc[sizeof(BenchStamp){0}.utc], begun[sizeof part.machine.utc];
+    strcpy(utc, point(&part, 0)->stamp.utc);
     strcpy(begun, part.machine.utc);
     bench_campaign_free(&part);
     runs(SMALL " -o part.h5");
     equals_whole("part.h5");
     load("part.h5", &part);
-    assert_string_equal(point(&part, 0)->utc, utc); /* not measured again */
+    assert_string_equal(point(&part, 0)->stamp.utc, utc); /* not measured again */
     assert_string_equal(part.machine.utc, begun);
     bench_campaign_free(&part);
 }
@@ -185,7 +184,7 @@ TEST(mistakes_are_one_line)
 {
     static const Mistake cases[] = {
         {"sweep --w 8:1", 2, "--w: 8:1 falls"},
-        {"sweep --w 0:8", 2, "--w: 0 is not from 1 to 1000"},
+        {"sweep --w 0:8", 2, "--w: 0 is not from 0.01 to 1000"},
         {"sweep --w 1:8:0.5", 2, "1.5 is no half-width of fastlsm"},
         {"sweep --epsilon 0:1:0", 2, "--epsilon: the step 0 is not above 0"},
         {"sweep --epsilon 0:1000:1e-6", 2, "is more than 256 numbers"},
@@ -322,7 +321,7 @@ TEST(ranks_share_the_work)
     equals_whole("ranks.h5");
     BenchCampaign sweep;
     load("ranks.h5", &sweep);
-    for (int i = 0; i < 3; i++) assert_int_equal(point(&sweep, i)->rank, i % 2);
+    for (int i = 0; i < 3; i++) assert_int_equal(point(&sweep, i)->stamp.rank, i % 2);
     bench_campaign_free(&sweep);
     a_rank_that_cannot_stops_no_other(result);
     free(result);
@@ -337,10 +336,10 @@ TEST(several_hosts_are_said)
     for (int i = 0; i < 2; i++) {
         BenchPoint next = bench_point_none();
         next.index = i;
-        strcpy(next.host, i ? "there" : "here");
+        strcpy(next.stamp.host, i ? "there" : "here");
         bench_campaign_add(&sweep, &next);
         FILE *file = fmemopen(text, sizeof text, "w");
-        bench_sweep_table(file, BENCH_AS_TEXT, &sweep);
+        bench_campaign_print(file, BENCH_AS_TEXT, &sweep);
         fclose(file);
         assert_int_equal(strstr(text, "Points are of several hosts (here, there)") != NULL, i);
     }

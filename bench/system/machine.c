@@ -93,7 +93,7 @@ static void read_cpu(BenchMachine *machine)
         if (!texts[t][0]) strcpy(texts[t], "unknown");
 }
 
-static bool known(const char *text)
+bool bench_machine_known(const char *text)
 {
     return text[0] && strcmp(text, "unknown") != 0;
 }
@@ -112,7 +112,8 @@ bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t siz
                  {2, a->l2_bytes, b->l2_bytes},
                  {3, a->l3_bytes, b->l3_bytes}};
     for (int t = 0; t < 3; t++)
-        if (known(texts[t][1]) && known(texts[t][2]) && strcmp(texts[t][1], texts[t][2]) != 0) {
+        if (bench_machine_known(texts[t][1]) && bench_machine_known(texts[t][2]) &&
+            strcmp(texts[t][1], texts[t][2]) != 0) {
             snprintf(text, size, "%s%.*s; this is %.*s", texts[t][0], (int)size / 2 - 16,
                      texts[t][1], (int)size / 2 - 16, texts[t][2]);
             return false;
@@ -170,6 +171,16 @@ static void quote_command(int argc, char **argv, size_t size, char *text)
     if (used >= size) strcpy(text + size - 4, "...");
 }
 
+void bench_machine_stamp(char host[64], char utc[32])
+{
+    if (gethostname(host, 64)) strcpy(host, "unknown");
+    host[63] = '\0';
+    time_t now = time(NULL);
+    struct tm parts;
+    gmtime_r(&now, &parts);
+    strftime(utc, 32, "%Y-%m-%dT%H:%M:%SZ", &parts);
+}
+
 static void read_system(BenchMachine *machine)
 {
     struct utsname name;
@@ -178,9 +189,7 @@ static void read_system(BenchMachine *machine)
                  name.release, name.machine);
     else
         snprintf(machine->kernel, sizeof machine->kernel, "unknown");
-    if (gethostname(machine->hostname, sizeof machine->hostname) != 0)
-        snprintf(machine->hostname, sizeof machine->hostname, "unknown");
-    machine->hostname[sizeof machine->hostname - 1] = '\0';
+    bench_machine_stamp(machine->hostname, machine->utc);
     cpu_set_t set;
     if (sched_getaffinity(0, sizeof set, &set) == 0)
         machine->cores = CPU_COUNT(&set);
@@ -204,10 +213,6 @@ void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machin
     read_system(machine);
     read_libraries(sizeof machine->libraries, machine->libraries);
     quote_command(argc, argv, sizeof machine->command, machine->command);
-    time_t now = time(NULL);
-    struct tm utc;
-    gmtime_r(&now, &utc);
-    strftime(machine->utc, sizeof machine->utc, "%Y-%m-%dT%H:%M:%SZ", &utc);
 }
 
 json_t *bench_json_machine(const BenchMachine *machine)

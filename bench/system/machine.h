@@ -22,6 +22,12 @@ typedef struct {
  * "...". Time is now. */
 void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machine);
 
+/* This host, and now (ISO 8601). */
+void bench_machine_stamp(char host[64], char utc[32]);
+
+/* Is a text of it known? */
+bool bench_machine_known(const char *text);
+
 /* Are they of the same processor: name, model, caches and instructions? If not, `size` bytes of
  * `text` say what differs. What a record does not hold is not held against it. */
 bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t size, char *text);

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <linux/perf_event.h>
 #include <math.h>
 #include <signal.h>
@@ -61,18 +62,18 @@ static void become(const BenchProcess *process, int start, int failure, pid_t pa
     int out =
         open(process->output ? process->output : "/dev/null", O_WRONLY | O_CREAT | O_TRUNC, 0600);
     bool ready = in >= 0 && out >= 0 && dup2(in, 0) >= 0 && dup2(out, 1) >= 0 && dup2(out, 2) >= 0;
-    if (ready && (!process->folder || chdir(process->folder) == 0))
-        execvp(process->word[0], process->word);
+    if (ready) execvp(process->word[0], (char *const *)process->word);
     int number = errno;
     ssize_t written = write(failure, &number, sizeof number);
     (void)written;
     _exit(127);
 }
 
+/* Ten seconds to tidy up are enough for all but what does not end. */
 static void stop_group(pid_t pid, int *status)
 {
     kill(-pid, SIGTERM);
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 500; i++) {
         if (waitpid(pid, status, WNOHANG) == pid) break;
         nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
     }
@@ -86,7 +87,7 @@ static bool await(const BenchProcess *process, pid_t pid, int *status)
     for (long naps = 0;; naps++) {
         pid_t ended = waitpid(pid, status, WNOHANG);
         if (ended == pid || (ended < 0 && errno != EINTR)) return true;
-        if (caught && !process->tidying) {
+        if (caught) {
             stop_group(pid, status);
             return false;
         }
@@ -113,8 +114,7 @@ static SmCode oversee(const BenchProcess *process, pid_t pid, int counter, Bench
 SmCode bench_process_run(const BenchProcess *process, BenchProcessEnd *end, SmError *error)
 {
     int start[2], failure[2], number = 0;
-    if (caught && !process->tidying)
-        return sm_fail(error, SM_INPUT, "interrupted; nothing is left behind");
+    if (caught) return sm_fail(error, SM_INPUT, "interrupted; nothing is left behind");
     if (pipe2(start, O_CLOEXEC) != 0)
         return sm_fail(error, SM_INPUT, "no pipe can be made: %s", strerror(errno));
     if (pipe2(failure, O_CLOEXEC) != 0) {
@@ -147,14 +147,36 @@ SmCode bench_process_run(const BenchProcess *process, BenchProcessEnd *end, SmEr
     return code;
 }
 
-void bench_process_last_line(const char *path, size_t size, char *line)
+bool bench_process_last_line(const char *path, const char *words, size_t size, char *line)
 {
-    char text[1024];
+    char text[PATH_MAX + 128];
     line[0] = '\0';
     FILE *file = fopen(path, "re");
     while (file && fgets(text, sizeof text, file)) {
+        const char *start = text + strspn(text, " \t");
         text[strcspn(text, "\r\n")] = '\0';
-        if (text[strspn(text, " \t")]) snprintf(line, size, "%s", text + strspn(text, " \t"));
+        if (words ? strstr(text, words) != NULL : *start) snprintf(line, size, "%s", start);
     }
     if (file) fclose(file);
+    return line[0];
+}
+
+void bench_program_folder(char path[PATH_MAX])
+{
+    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 64);
+    path[length > 0 ? length : 0] = '\0';
+    char *name = strrchr(path, '/');
+    if (name) *name = '\0';
+}
+
+SmCode bench_script_find(const char *name, char path[PATH_MAX], SmError *error)
+{
+    char folder[PATH_MAX];
+    bench_program_folder(folder);
+    snprintf(path, PATH_MAX, "%.4000s/../share/shapebench/%.60s", folder, name);
+    if (!access(path, R_OK)) return SM_OK;
+    snprintf(path, PATH_MAX, "%s/%.60s", SHAPEBENCH_SCRIPTS, name);
+    if (!access(path, R_OK)) return SM_OK;
+    return sm_fail(error, SM_INPUT,
+                   "%.300s is missing: install shapebench again, or keep its sources", path);
 }

@@ -5,8 +5,8 @@
 #ifndef BENCH_PROCESS_H
 #define BENCH_PROCESS_H
 
+#include <limits.h>
 #include <stdbool.h>
-#include <sys/types.h>
 
 #include "../../lib/error.h"
 
@@ -19,12 +19,10 @@ int bench_process_caught(void);
 typedef void (*BenchProcessTick)(void *context);
 
 typedef struct {
-    char *const *word;     /* NULL-terminated; word[0] is looked for in PATH */
-    const char *folder;    /* to run in; NULL: this one */
-    const char *output;    /* file for standard output and error together, or NULL: nowhere */
-    bool count;            /* count its instructions, if the kernel allows */
-    bool tidying;          /* also after a signal, and not stopped by one */
-    BenchProcessTick tick; /* with `context` */
+    const char *const *word; /* NULL-terminated; word[0] is looked for in PATH */
+    const char *output;      /* file for standard output and error together, or NULL: nowhere */
+    bool count;              /* count its instructions, if the kernel allows */
+    BenchProcessTick tick;   /* with `context` */
     void *context;
 } BenchProcess;
 
@@ -37,7 +35,15 @@ typedef struct {
  * bench_process_caught(). How it ended is no error. */
 SmCode bench_process_run(const BenchProcess *process, BenchProcessEnd *end, SmError *error);
 
-/* The last line of a file that is neither empty nor blank, cut to `size`; empty: none. */
-void bench_process_last_line(const char *path, size_t size, char *line);
+/* The last line of a file that holds these words, or, where they are NULL, is neither empty nor
+ * blank; cut to `size`. Returns whether there is one; `line` is empty if not. */
+bool bench_process_last_line(const char *path, const char *words, size_t size, char *line);
+
+/* The folder that the running program is in, which leaves room for a name behind it. */
+void bench_program_folder(char path[PATH_MAX]);
+
+/* Where this script is: beside the installed program, or in the sources it was built from.
+ * SM_INPUT: in neither. */
+SmCode bench_script_find(const char *name, char path[PATH_MAX], SmError *error);
 
 #endif

@@ -1,21 +1,11 @@
-#include "export.h"
-
-#include <stdio.h>
-
 #include "../table/records.h"
+#include "campaign.h"
 
-void bench_campaign_export(FILE *file, BenchFormat format, const BenchCampaign *campaign,
-                           json_t *more)
+static void print_json(FILE *file, const BenchCampaign *campaign)
 {
     const BenchCampaignType *type = campaign->type;
-    if (format == BENCH_AS_CSV) {
-        bench_csv_records(file, type->points, *type->point_fields, campaign->point,
-                          type->point_size, campaign->count, NULL);
-        json_decref(more);
-        return;
-    }
     char name[32];
-    json_t *root = json_object();
+    json_t *root = json_object(), *more = type->more_json ? type->more_json(campaign) : NULL;
     snprintf(name, sizeof name, "%ss", type->point);
     json_object_set_new(root, name,
                         bench_json_records(type->points, *type->point_fields, campaign->point,
@@ -26,6 +16,29 @@ void bench_campaign_export(FILE *file, BenchFormat format, const BenchCampaign *
                         bench_json_record(type->plan, *type->plan_fields, campaign->plan));
     json_object_set_new(root, "environment", bench_json_machine(&campaign->machine));
     bench_json_write(file, root);
+}
+
+static void print_grid(FILE *file, BenchFormat format, const BenchCampaign *campaign)
+{
+    const BenchCampaignType *type = campaign->type;
+    BenchGrid grid = bench_records_grid(type->points, *type->point_fields, campaign->point,
+                                        type->point_size, campaign->count, 0);
+    if (type->head) type->head(file, format, campaign, &grid);
+    bench_grid_whole(file, &grid, bench_format_form(format));
+    bench_grid_free(&grid);
+    if (type->tail) type->tail(file, format, campaign);
+}
+
+void bench_campaign_print(FILE *file, BenchFormat format, const BenchCampaign *campaign)
+{
+    const BenchCampaignType *type = campaign->type;
+    if (format == BENCH_AS_CSV)
+        bench_csv_records(file, type->points, *type->point_fields, campaign->point,
+                          type->point_size, campaign->count, NULL);
+    else if (format == BENCH_AS_JSON)
+        print_json(file, campaign);
+    else
+        print_grid(file, format, campaign);
 }
 
 void bench_campaign_document(FILE *file, const BenchCampaignType *type)

@@ -1,6 +1,5 @@
 /* The front of a sweep, and what it recommends. */
 #include "../../lib/test_frame.h"
-#include "front.h"
 #include "recommend.h"
 
 /* Point 0 is the lattice's with w 1, those after it the octree's with epsilon 0, 0.5 and 1, and so

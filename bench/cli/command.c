@@ -1,0 +1,73 @@
+#include "command.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../system/suggest.h"
+
+SmCode bench_paper_unknown(const char *paper, SmError *error)
+{
+    static const char *const papers[] = {"fastlsm", "octree", "meshless", NULL};
+    char near[BENCH_SUGGEST_TEXT];
+    return sm_fail(error, SM_USAGE,
+                   "--paper: no table of '%.40s'; there are: fastlsm, octree, meshless%s", paper,
+                   bench_suggest_among(paper, papers, near));
+}
+
+static SmCode measure(const BenchCommand *command, int argc, char **argv, void *options,
+                      BenchCampaign *campaign, SmError *error)
+{
+    BenchCampaignOptions *its = options;
+    *campaign = bench_campaign_create(command->campaign);
+    SmCode code = command->plan(options, campaign, error);
+    if (code || its->run.list) return code;
+    code = campaign->type->count(campaign->plan, error);
+    if (code) return code;
+    bench_machine_read(argc, argv, its->common.threads, &campaign->machine);
+    bench_campaign_build(campaign);
+    its->run.quiet = its->common.quiet;
+    return bench_campaign_run(&its->run, campaign, error);
+}
+
+static SmCode perform_campaign(const BenchCommand *command, int argc, char **argv, void *options,
+                               SmError *error)
+{
+    const BenchCampaignOptions *its = options;
+    BenchCampaign campaign = {0};
+    SmCode code = SM_OK;
+    if (its->run.columns)
+        bench_campaign_document(stdout, command->campaign);
+    else if (its->common.words)
+        code = bench_campaign_load(its->common.word[0], command->campaign, &campaign, error);
+    else
+        code = measure(command, argc, argv, options, &campaign, error);
+    if (!code && !its->run.columns && !its->run.list && its->run.ranks->rank == 0)
+        code = command->show(options, &campaign, error);
+    bench_campaign_free(&campaign);
+    return code;
+}
+
+int bench_command_run(const BenchCommand *command, int argc, char **argv)
+{
+    BenchRanks ranks = {0, 1};
+    SmError error = {.code = SM_OK};
+    void *options = sm_alloc(1, command->size);
+    if (command->defaults) memcpy(options, command->defaults, command->size);
+    SmCode code = command->campaign ? bench_ranks_start(&ranks, &error) : SM_OK;
+    if (!code) {
+        bench_options_parse(&command->line, argc, argv, options);
+        if (command->campaign) {
+            ((BenchCampaignOptions *)options)->run.ranks = &ranks;
+            code = perform_campaign(command, argc, argv, options, &error);
+        } else {
+            code = command->perform(options, argc, argv, &error);
+        }
+    }
+    if (error.code) bench_option_fail(argv[0], &error); /* of other ranks nobody sees it */
+    free(((BenchCommon *)options)->word);
+    free(options);
+    if (ranks.rank > 0) code = SM_OK; /* the first one says it for all */
+    bench_ranks_end(&ranks, code);
+    return (int)code;
+}
