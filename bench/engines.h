@@ -2,14 +2,15 @@
  * tables: nothing else asks for an engine's name.
  *
  * A new engine is its folder and a line of bench/engine_list.c. What a program that links the
- * library needs to know of an engine stands in its SmEngineType (lib/engine.h), the rest here, in
- * terms of the subjects that use it: each gives its own record, and this header needs none. */
+ * library needs to know of an engine stands in its SmEngineType (lib/engine/engine.h), the rest
+ * here, in terms of the subjects that use it: each gives its own record, and this header needs
+ * none. */
 #ifndef BENCH_ENGINES_H
 #define BENCH_ENGINES_H
 
 #include <stdio.h>
 
-#include "../lib/engine.h"
+#include "../lib/engine/engine.h"
 
 typedef struct OctStructure OctStructure; /* octree/change/structure.h */
 typedef struct BenchScene BenchScene;     /* scene/scene.h */
@@ -52,7 +53,7 @@ typedef struct {
     const SmEngineType *frames; /* what bench_measure() takes in its place, of the same name; NULL:
                                  * the engine itself */
 
-    const BenchStages *stages; /* NULL: Table 1's of fastlsm (lib/stage.h) */
+    const BenchStages *stages; /* NULL: Table 1's of fastlsm (lib/engine/stage.h) */
 
     /* The row's own columns, of an engine at rest, and more of a row for people. NULL: nothing. */
     void (*fill)(const BenchRunner *runner, BenchRow *row);

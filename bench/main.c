@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "../lib/error.h"
-#include "../lib/system/printable.h"
+#include "../lib/printable.h"
 #include "cli/command.h"
 #include "scene/scene.h"
 #include "settings/option.h"

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/boundary.h"
+#include "../lib/engine/boundary.h"
 #include "../lib/simd/momentum.h"
 #include "build.h"
 #include "contacts.h"

@@ -4,7 +4,7 @@
 #ifndef FASTLSM_H
 #define FASTLSM_H
 
-#include "../lib/engine.h"
+#include "../lib/engine/engine.h"
 
 extern const SmEngineType fastlsm_engine_f32; /* single precision */
 extern const SmEngineType fastlsm_engine_f64; /* double precision */

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "../lib/engine.h"
+#include "../lib/engine/engine.h"
 #include "../lib/operations.h"
 #include "../lib/polar.h"
 

@@ -12,8 +12,8 @@
 #ifndef LSM_STATE_H
 #define LSM_STATE_H
 
-#include "../lib/engine.h"
-#include "../lib/integrate.h"
+#include "../lib/engine/engine.h"
+#include "../lib/engine/integrate.h"
 #include "../lib/simd/lanes.h"
 #include "lattice/list_allocator.h"
 #include "lattice/running_lists.h"

@@ -9,7 +9,7 @@ typedef struct {
     double low[3], high[3];
 } SmBox;
 
-/* A box of nothing. */
+/* A box of nothing: INFINITY to -INFINITY. */
 static inline SmBox sm_no_box(void)
 {
     return (SmBox){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -29,12 +29,26 @@ static inline void sm_box_add(SmBox *box, const double point[3])
     sm_box_join(box, point, point);
 }
 
+static inline SmBox sm_box_around(long count, const double (*point)[3])
+{
+    SmBox box = sm_no_box();
+    for (long i = 0; i < count; i++) sm_box_add(&box, point[i]);
+    return box;
+}
+
 static inline void sm_box_widen(SmBox *box, double margin)
 {
     for (int d = 0; d < 3; d++) {
         box->low[d] -= margin;
         box->high[d] += margin;
     }
+}
+
+/* The length of its longest side. */
+static inline double sm_box_longest(const SmBox *box)
+{
+    return fmax(box->high[0] - box->low[0],
+                fmax(box->high[1] - box->low[1], box->high[2] - box->low[2]));
 }
 
 static inline bool sm_box_holds(const SmBox *box, const double p[3])

@@ -1,12 +1,17 @@
 #include "error.h"
-#include "system/printable.h"
+#include "printable.h"
 
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+
+void sm_write_line(char *text, size_t size, const char *format, va_list arguments)
+{
+    vsnprintf(text, size, format, arguments);
+    sm_printable(text);
+}
 
 SmCode sm_fail(SmError *error, SmCode code, const char *format, ...)
 {
@@ -14,9 +19,8 @@ SmCode sm_fail(SmError *error, SmCode code, const char *format, ...)
     error->code = code;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(error->text, sizeof error->text, format, arguments);
+    sm_write_line(error->text, sizeof error->text, format, arguments);
     va_end(arguments);
-    sm_printable(error->text);
     return code;
 }
 
@@ -56,4 +60,9 @@ void *sm_realloc_at(void *pointer, size_t count, size_t size, const char *file, 
     void *memory = realloc(pointer, count && size ? count * size : 1);
     if (!memory) out_of_memory(count, size, file, line);
     return memory;
+}
+
+void sm_free_each(size_t count, void *const *pointer)
+{
+    for (size_t i = 0; i < count; i++) free(pointer[i]);
 }

@@ -6,6 +6,7 @@
 #ifndef SM_ERROR_H
 #define SM_ERROR_H
 
+#include <stdarg.h>
 #include <stddef.h>
 
 /* The values are the program's exit codes. */
@@ -27,6 +28,9 @@ typedef struct {
 SmCode sm_fail(SmError *error, SmCode code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Writes such a line into `size` bytes. */
+void sm_write_line(char *text, size_t size, const char *format, va_list arguments);
+
 /* Zeroed memory, aligned to 64 bytes; ends the program with file and line when there is none.
  * Free with free(). A size of 0 gives a valid pointer. */
 #define sm_alloc(count, size) sm_alloc_at((count), (size), __FILE__, __LINE__)
@@ -36,5 +40,18 @@ void *sm_alloc_at(size_t count, size_t size, const char *file, int line);
 #define sm_realloc(pointer, count, size)                                                           \
     sm_realloc_at((pointer), (count), (size), __FILE__, __LINE__)
 void *sm_realloc_at(void *pointer, size_t count, size_t size, const char *file, int line);
+
+/* Makes an array that has room for `room` entries, a variable, hold `need` of them: where it does
+ * not, twice as many and some more, so that adding one after another costs O(1) on average. */
+#define sm_make_room(array, room, need)                                                            \
+    do {                                                                                           \
+        if ((need) > (room))                                                                       \
+            (array) = sm_realloc((array), (size_t)((room) = 2 * (need) + 62), sizeof *(array));    \
+    } while (0)
+
+/* Frees all of these pointers. */
+#define sm_free_all(...)                                                                           \
+    sm_free_each(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *), (void *[]){__VA_ARGS__})
+void sm_free_each(size_t count, void *const *pointer);
 
 #endif

@@ -2,8 +2,8 @@
 #include "pieces.h"
 
 #include "cut/cut_surface.h"
+#include "mesh/test_piece_sums.h"
 #include "test_frame.h"
-#include "test_piece_sums.h"
 #include "test_random.h"
 
 static unsigned seed = 1;

@@ -18,6 +18,41 @@ static inline double sm_dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+static inline void sm_subtract(const double a[3], const double b[3], double result[3])
+{
+    for (int d = 0; d < 3; d++) result[d] = a[d] - b[d];
+}
+
+/* The squared distance between two points. */
+static inline double sm_square_between(const double a[3], const double b[3])
+{
+    double way[3];
+    sm_subtract(b, a, way);
+    return sm_dot(way, way);
+}
+
+/* Normal to a triangle whose corners turn counter-clockwise about it, as long as twice its area. */
+static inline void sm_area_vector(const double p[3], const double q[3], const double r[3],
+                                  double normal[3])
+{
+    double u[3], v[3];
+    sm_subtract(q, p, u);
+    sm_subtract(r, p, v);
+    sm_cross(u, v, normal);
+}
+
+/* Six times the volume between a triangle and the point o, which is positive below it. */
+static inline double sm_six_volumes(const double o[3], const double p[3], const double q[3],
+                                    const double r[3])
+{
+    double u[3], v[3], w[3], cross[3];
+    sm_subtract(p, o, u);
+    sm_subtract(q, o, v);
+    sm_subtract(r, o, w);
+    sm_cross(v, w, cross);
+    return sm_dot(u, cross);
+}
+
 /* Makes a vector one of unit length and returns true; zero and false where it has no length, or
  * one that is not finite. */
 static inline bool sm_normalize(double vector[3])

@@ -1,4 +1,4 @@
-/* engine.c - the octree behind lib/engine.h: one body, or many that share its structure. */
+/* engine.c - the octree behind lib/engine/engine.h: one body, or many that share its structure. */
 #include "engine.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-/* engine.h - octree shape matching (Steinemann, Otaduy and Gross 2008) behind lib/engine.h.
+/* engine.h - octree shape matching (Steinemann, Otaduy and Gross 2008) behind lib/engine/engine.h.
  *
  * A particle is a simulation node: leaf i of the tree, at rest in its cell's centre. There is no
  * fracture, and sums are found in one way only: create() refuses strain_limit, summation and layout
@@ -9,7 +9,7 @@
 #ifndef OCT_ENGINE_H
 #define OCT_ENGINE_H
 
-#include "../lib/engine.h"
+#include "../lib/engine/engine.h"
 #include "change/engine_base.h"
 #include "change/options.h"
 

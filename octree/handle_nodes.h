@@ -2,7 +2,7 @@
 #ifndef OCT_HANDLE_NODES_H
 #define OCT_HANDLE_NODES_H
 
-#include "../lib/boundary.h"
+#include "../lib/engine/boundary.h"
 #include "change/structure.h"
 #include "state.h"
 

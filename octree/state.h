@@ -10,8 +10,8 @@
 #ifndef OCT_STATE_H
 #define OCT_STATE_H
 
-#include "../lib/engine.h"
-#include "../lib/integrate.h"
+#include "../lib/engine/engine.h"
+#include "../lib/engine/integrate.h"
 #include "../lib/simd/lanes.h"
 #include "region/sum_lists.h"
 #include "region/weights.h"

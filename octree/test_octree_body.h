@@ -2,7 +2,7 @@
 #ifndef OCT_TEST_OCTREE_BODY_H
 #define OCT_TEST_OCTREE_BODY_H
 
-#include "../lib/engine.h"
+#include "../lib/engine/engine.h"
 #include "../lib/test_fields.h"
 #include "../lib/test_frame.h"
 #include "../reference/octree_goals.h"

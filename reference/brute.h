@@ -7,7 +7,7 @@
 #ifndef REF_BRUTE_H
 #define REF_BRUTE_H
 
-#include "../lib/engine.h"
+#include "../lib/engine/engine.h"
 #include "link.h"
 
 /* Regions in CSR form: members of region r are member[start[r]] .. member[start[r + 1]], rising. */

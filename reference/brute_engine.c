@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/boundary.h"
+#include "../lib/engine/boundary.h"
 #include "../lib/system/team.h"
 #include "brute.h"
 #include "brute_obstacle.h"

@@ -3,7 +3,7 @@
 #ifndef REF_BRUTE_OBSTACLE_H
 #define REF_BRUTE_OBSTACLE_H
 
-#include "../lib/boundary.h"
+#include "../lib/engine/boundary.h"
 
 /* A particle at x inside the obstacle moves to the nearest point of its surface; its velocity loses
  * what points inwards and `friction` of what is tangential. Where every direction is as near (the

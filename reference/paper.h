@@ -4,7 +4,7 @@
 #ifndef REF_PAPER_H
 #define REF_PAPER_H
 
-#include "../lib/stage.h"
+#include "../lib/engine/stage.h"
 
 typedef enum { REF_QUOTED, REF_DERIVED, REF_DAMAGED, REF_SECOND_HAND } RefStatus;
 

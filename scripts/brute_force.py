@@ -146,7 +146,7 @@ class Body:
 
 
 def outside(obstacles, x):
-    """Smallest distance of each position to an obstacle's surface, negative inside (kinds as in lib/boundary.h)."""
+    """Smallest distance of each position to an obstacle's surface, negative inside (kinds as in lib/engine/boundary.h)."""
     least = np.full(len(x), np.inf)
     for kind, *numbers in obstacles:
         a, b, radius = np.array(numbers[:3]), np.array(numbers[3:6]), numbers[6]

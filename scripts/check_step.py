@@ -400,7 +400,7 @@ def unresolved(body, x, cell, precision):
 
 
 def free(x, held, obstacles, margin):
-    """Which particles no handle and no obstacle (lib/boundary.h) has moved."""
+    """Which particles no handle and no obstacle (lib/engine/boundary.h) has moved."""
     touched = held.astype(bool)
     for kind, *o in obstacles:
         a, b, radius = np.array(o[:3]), np.array(o[3:6]), o[6]

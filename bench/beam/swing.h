@@ -23,7 +23,7 @@
 #ifndef BENCH_SWING_H
 #define BENCH_SWING_H
 
-#include "../../lib/engine.h"
+#include "../../lib/engine/engine.h"
 
 typedef struct {
     double relaxation, sag, frequency; /* NaN: `why` */

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../lib/stage.h"
+#include "../../lib/engine/stage.h"
 #include "../store/draft.h"
 #include "../system/interrupt.h"
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../../lib/boundary.h"
+#include "../../lib/engine/boundary.h"
 #include "../../lib/vector.h"
 #include "../engines.h"
 #include "contact_check.h"

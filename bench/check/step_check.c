@@ -308,8 +308,8 @@ static void compare(const BenchCheck *check, const BenchScene *scene, const SmEn
 }
 
 /* Does nothing move, and is no particle pulled by more than goals may be off? A body at rest in
- * empty space is held there (lib/integrate.h), while its goals are off by rounding, which is all
- * that there is to its velocities. */
+ * empty space is held there (lib/engine/integrate.h), while its goals are off by rounding, which is
+ * all that there is to its velocities. */
 static bool is_held_at_rest(const BenchCheck *check, const char *precision, double h,
                             const Step *step)
 {

@@ -11,7 +11,7 @@
 #ifndef BENCH_EXPERIMENT_H
 #define BENCH_EXPERIMENT_H
 
-#include "../../lib/engine.h"
+#include "../../lib/engine/engine.h"
 #include "../measure/row.h"
 #include "../play/runner.h"
 #include "../system/statistic.h"

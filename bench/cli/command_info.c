@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../../lib/system/confine.h"
-#include "../../lib/system/printable.h"
 #include "../../lib/voxel/voxelise.h"
 #include "../scene/body.h"
 #include "../scene/slice.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../lib/stage.h"
+#include "../../lib/system/clock.h"
 #include "../measure/measure.h"
 #include "../regress/counts.h"
 #include "../regress/regression.h"

@@ -4,7 +4,7 @@
 #ifndef BENCH_KERNEL_H
 #define BENCH_KERNEL_H
 
-#include "../../lib/engine.h"
+#include "../../lib/engine/engine.h"
 #include "../../octree/region/weights.h"
 #include "../system/progress.h"
 #include "machine_peak.h"

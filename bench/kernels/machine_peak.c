@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "../../lib/error.h"
-#include "../../lib/stage.h"
+#include "../../lib/system/clock.h"
 
 #ifdef __AVX512F__
 enum { REGISTER = 64 };

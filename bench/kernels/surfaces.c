@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/mesh/embed.h"
 #include "../../lib/shapes/shape.h"
+#include "../../lib/voxel/embed.h"
 #include "../../lib/voxel/voxelise.h"
 #include "../../octree/surface/surface.h"
 #include "../../octree/tree/sampling.h"

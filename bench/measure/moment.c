@@ -6,7 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "../../lib/stage.h"
+#include "../../lib/system/clock.h"
 
 /* Seconds for which all threads of this process have waited for a processor. */
 static double waited(void)

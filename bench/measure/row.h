@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "../../lib/engine.h"
+#include "../../lib/engine/engine.h"
 #include "../check/elastic_check.h"
 
 enum { BENCH_FRAME_PARTS = 4 };

@@ -10,7 +10,7 @@
 #ifndef BENCH_STEP_TIMER_H
 #define BENCH_STEP_TIMER_H
 
-#include "../../lib/stage.h"
+#include "../../lib/engine/stage.h"
 #include "../system/progress.h"
 #include "row.h"
 

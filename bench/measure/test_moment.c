@@ -1,7 +1,6 @@
 /* What others take of a time: samples are taken again, and what cannot be measured is busy. */
 #include <time.h>
 
-#include "../../lib/stage.h"
 #include "../../lib/test_frame.h"
 #include "moment.h"
 

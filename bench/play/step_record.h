@@ -3,8 +3,8 @@
 #ifndef BENCH_STEP_RECORD_H
 #define BENCH_STEP_RECORD_H
 
-#include "../../lib/boundary.h"
-#include "../../lib/engine.h"
+#include "../../lib/engine/boundary.h"
+#include "../../lib/engine/engine.h"
 #include "../../octree/change/structure.h"
 #include "../store/h5.h"
 

@@ -1,6 +1,6 @@
 /* Scenes that cut lattices: what comes off falls, and no cut does harm. */
+#include "../../lib/mesh/test_piece_sums.h"
 #include "../../lib/test_frame.h"
-#include "../../lib/test_piece_sums.h"
 #include "../check/step_check.h"
 #include "../engines.h"
 #include "playback.h"

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "../../lib/mesh/import.h"
+#include "../../lib/printable.h"
 #include "../../lib/shapes/shape.h"
 #include "../../lib/system/file.h"
-#include "../../lib/system/printable.h"
 #include "../../lib/voxel/voxelise.h"
 #include "nearest.h"
 #include "room.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../lib/system/printable.h"
+#include "../../lib/printable.h"
 #include "../../reference/meshless/surface/points.h"
 #include "../engines.h"
 #include "../settings/config_file.h"

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../../lib/system/file.h"
-#include "../../lib/system/printable.h"
 
 char *bench_config_load(const char *path, size_t *size, SmError *error)
 {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/system/printable.h"
+#include "../../lib/printable.h"
 #include "../../lib/system/team.h"
 #include "../system/suggest.h"
 #include "provenance.h"

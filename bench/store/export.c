@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/engine/stage.h"
 #include "../../lib/error.h"
-#include "../../lib/stage.h"
-#include "../../lib/system/printable.h"
+#include "../../lib/printable.h"
 
 /* Whether a spreadsheet would take the text for a formula. */
 static bool is_formula(const char *text)

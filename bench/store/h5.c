@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "../../lib/printable.h"
 #include "../../lib/system/child.h"
-#include "../../lib/system/printable.h"
 #include "checksum.h"
 #include "draft.h"
 #include "h5_driver.h"

@@ -4,7 +4,7 @@
 #ifndef BENCH_POINT_H
 #define BENCH_POINT_H
 
-#include "../../lib/stage.h"
+#include "../../lib/engine/stage.h"
 #include "../campaign/campaign.h"
 
 enum { BENCH_POINT_SAMPLES = 64, BENCH_WHY = 120 };

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "../../lib/stage.h"
+#include "../../lib/system/clock.h"
 
 void bench_progress_start(BenchProgress *progress, bool quiet)
 {

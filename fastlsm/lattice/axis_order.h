@@ -7,7 +7,7 @@
 #ifndef LSM_AXIS_ORDER_H
 #define LSM_AXIS_ORDER_H
 
-#include "../../lib/engine.h"
+#include "../../lib/engine/engine.h"
 
 /* The lattice with its axes turned; the caller frees it. */
 void lsm_axes_voxels(const SmVoxels *voxels, int turn, SmVoxels *turned);

@@ -6,7 +6,7 @@
 #ifndef LSM_REGION_H
 #define LSM_REGION_H
 
-#include "../../lib/engine.h"
+#include "../../lib/engine/engine.h"
 #include "lattice.h"
 
 enum { LSM_MAX_W = SM_MOST_W, LSM_MAX_SIDE = 2 * LSM_MAX_W + 1 };

@@ -94,7 +94,7 @@ static bool meet(const SmCollideShape *shape, const SmCollideCell *cell, int nod
 {
     double inverse[9], off[3], q[3], out[3], radius = shape->radius[node];
     if (!invert(F, inverse)) return false;
-    for (int d = 0; d < 3; d++) off[d] = p[d] - middle[d];
+    sm_subtract(p, middle, off);
     for (int d = 0; d < 3; d++) q[d] = cell->centre[d] + sm_dot(inverse + 3 * d, off);
     if (!sm_collide_depth(shape, cell, q, radius, &contact->depth, out)) return false;
     for (int i = 0; i < 3; i++) { /* normals turn by the inverse transposed */
@@ -129,10 +129,7 @@ static SmCollideRelation relation(const SmCollide *c, int number, long b, long k
 
 static SmCollideContact *next_contact(Found *found)
 {
-    if (found->count == found->room) {
-        found->room = 2 * found->room + 64;
-        found->contact = sm_realloc(found->contact, (size_t)found->room, sizeof *found->contact);
-    }
+    sm_make_room(found->contact, found->room, found->count + 1);
     return &found->contact[found->count];
 }
 
@@ -157,7 +154,7 @@ static void find_boxes(SmCollide *c, const double (*x)[3], const double (*frame)
         sm_box_join(&cells, box->low, box->high);
     }
     for (long i = patches->node_first[p]; i < patches->node_first[p + 1]; i++)
-        sm_box_join(&nodes, x[first + patches->node[i]], x[first + patches->node[i]]);
+        sm_box_add(&nodes, x[first + patches->node[i]]);
     work->cell_box[patch] = cells;
     work->node_box[patch] = nodes;
 }
@@ -368,9 +365,11 @@ void sm_collide_respond(SmCollide *c)
         for (int d = 0; d < 3; d++) c->v[i][d] -= before[i][d];
 }
 
-static void work_build(SmCollide *c)
+static void build(SmCollide *c, const SmCollideRest *rest)
 {
     SmCollideWork *work = c->work = sm_alloc(1, sizeof *work);
+    sm_collide_shape_build(rest, &c->shape);
+    work->cells = rest->cells;
     size_t all = (size_t)(c->bodies * c->shape.nodes);
     work->found = sm_alloc((size_t)c->threads, sizeof *work->found);
     work->place = sm_alloc(all, sizeof *work->place);
@@ -385,16 +384,18 @@ static void work_build(SmCollide *c)
     sm_collide_pairs_init(&work->pairs, &work->patches, &c->params, c->bodies);
 }
 
-static void work_free(SmCollide *c)
+/* All but what sm_collide_build() is told. */
+static void clear(SmCollide *c)
 {
     SmCollideWork *work = c->work;
     for (int t = 0; t < c->threads; t++) free(work->found[t].contact);
-    void *all[] = {work->found,  work->place,        work->fixed,    work->fixed_node, work->box,
-                   work->before, work->inverse_mass, work->cell_box, work->node_box,   work};
     sm_collide_pairs_free(&work->pairs);
     sm_collide_patches_free(&work->patches);
     sm_collide_paths_free(&work->paths);
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(work->found, work->place, work->fixed, work->fixed_node, work->box, work->before,
+                work->inverse_mass, work->cell_box, work->node_box, work);
+    sm_collide_shape_free(&c->shape);
+    sm_free_all(c->contact, c->node, c->v);
 }
 
 SmCollide *sm_collide_build(const SmCollideRest *rest, const SmCollideParams *params, long bodies,
@@ -404,37 +405,25 @@ SmCollide *sm_collide_build(const SmCollideRest *rest, const SmCollideParams *pa
     c->params = *params;
     c->bodies = bodies;
     c->threads = sm_team(threads);
-    sm_collide_shape_build(rest, &c->shape);
-    work_build(c);
-    c->work->cells = rest->cells;
+    build(c, rest);
     return c;
 }
 
 void sm_collide_free(SmCollide *c)
 {
     if (!c) return;
-    work_free(c);
-    sm_collide_shape_free(&c->shape);
-    free(c->contact);
-    free(c->node);
-    free(c->v);
+    clear(c);
     free(c);
 }
 
 void sm_collide_describe(SmCollide *c, const SmCollideRest *rest)
 {
-    work_free(c);
-    sm_collide_shape_free(&c->shape);
-    sm_collide_shape_build(rest, &c->shape);
+    clear(c);
     c->node_count = c->contact_count = 0;
-    free(c->node);
-    free(c->v);
-    free(c->contact);
     c->node = NULL;
     c->v = NULL;
     c->contact = NULL;
-    work_build(c);
-    c->work->cells = rest->cells;
+    build(c, rest);
 }
 
 void sm_collide_fix(SmCollide *c, long count, const long *node)

@@ -50,7 +50,7 @@
 #ifndef SM_COLLIDE_H
 #define SM_COLLIDE_H
 
-#include "../engine.h"
+#include "../engine/engine.h"
 #include "rest.h"
 
 #define SM_COLLIDE_PUSH 0.25 /* share of the depth that is pushed out in a step, at most */

@@ -30,18 +30,15 @@ static void sweep_init(SmCollideSweep *sweep, long bodies)
 
 static void sweep_free(SmCollideSweep *sweep)
 {
-    void *all[] = {sweep->box, sweep->order, sweep->pair, sweep->meets};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(sweep->box, sweep->order, sweep->pair, sweep->meets);
     *sweep = (SmCollideSweep){0};
 }
 
 static void find_body(SmCollideSweep *sweep, long b, const double (*x)[3], long nodes,
                       double margin)
 {
-    SmBox *box = &sweep->box[b];
-    *box = sm_no_box();
-    for (long i = b * nodes; i < (b + 1) * nodes; i++) sm_box_add(box, x[i]);
-    sm_box_widen(box, margin);
+    sweep->box[b] = sm_box_around(nodes, x + b * nodes);
+    sm_box_widen(&sweep->box[b], margin);
 }
 
 static void sort_bodies(SmCollideSweep *sweep)
@@ -57,10 +54,7 @@ static void sort_bodies(SmCollideSweep *sweep)
 
 static void add_bodies(SmCollideSweep *sweep, int a, int b)
 {
-    if (sweep->pairs == sweep->room) {
-        sweep->room = 2 * sweep->room + 64;
-        sweep->pair = sm_realloc(sweep->pair, (size_t)sweep->room, sizeof *sweep->pair);
-    }
+    sm_make_room(sweep->pair, sweep->room, sweep->pairs + 1);
     sweep->pair[sweep->pairs][0] = a;
     sweep->pair[sweep->pairs++][1] = b;
     sweep->meets[a] = sweep->meets[b] = true;
@@ -105,8 +99,7 @@ void sm_collide_pairs_free(SmCollidePairs *w)
 {
     sweep_free(&w->sweep);
     for (long b = 0; b < w->bodies; b++) free(w->near[b].pair);
-    void *all[] = {w->pair, w->tree, w->box, w->known, w->patch, w->near, w->wide};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(w->pair, w->tree, w->box, w->known, w->patch, w->near, w->wide);
     *w = (SmCollidePairs){0};
 }
 
@@ -154,10 +147,7 @@ static void add_patch(SmCollidePairs *w, int patch)
 
 static void add_pair(SmCollidePairs *w, long a, long b)
 {
-    if (w->count == w->room) {
-        w->room = 2 * w->room + 64;
-        w->pair = sm_realloc(w->pair, (size_t)w->room, sizeof *w->pair);
-    }
+    sm_make_room(w->pair, w->room, w->count + 1);
     int *pair = w->pair[w->count++];
     pair[0] = (int)a;
     pair[1] = (int)b;
@@ -169,10 +159,7 @@ static void add_near(SmCollidePairs *w, Range a, Range b)
 {
     SmCollideNear *near = &w->near[a.body];
     if (sm_collide_patches_joined(w->patches, a.from, b.from)) return;
-    if (near->count == near->room) {
-        near->room = 2 * near->room + 64;
-        near->pair = sm_realloc(near->pair, (size_t)near->room, sizeof *near->pair);
-    }
+    sm_make_room(near->pair, near->room, near->count + 1);
     int *pair = near->pair[near->count++];
     pair[0] = (int)a.from;
     pair[1] = (int)b.from;
@@ -215,7 +202,7 @@ static void find_boxes(SmCollidePairs *w, long b, const double (*x)[3], double m
 {
     SmBox *box = w->box + b * w->patches->count, all = sm_no_box();
     for (long p = 0; p < w->patches->count; p++) {
-        sm_collide_patches_box(w->patches, x, p, box[p].low, box[p].high);
+        box[p] = sm_collide_patches_box(w->patches, x, p);
         sm_box_join(&all, box[p].low, box[p].high);
     }
     for (int d = 0; d < 3; d++) middle[d] = 0.5 * (all.low[d] + all.high[d]);

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 
 #include "../box.h"
-#include "../engine.h"
+#include "../engine/engine.h"
 #include "patches.h"
 
 /* Which bodies' boxes overlap: sweep and prune along x. */

@@ -15,15 +15,15 @@
 /* Ways are in half cells. A cluster's node `root` is its first. */
 typedef struct {
     long count;
-    int *of;                      /* [nodes] a node's cluster */
-    int *path;                    /* [nodes] to it from the root, within the cluster */
-    long *first;                  /* [count + 1] */
-    int *node;                    /* [first[count]] */
-    int *radius;                  /* [count] longest path */
-    double (*low)[3], (*high)[3]; /* [count] box of the nodes */
-    long *arc_first;              /* [count + 1] */
-    int *arc;                     /* clusters that the graph joins a cluster to */
-    int *length;                  /* from root to root */
+    int *of;         /* [nodes] a node's cluster */
+    int *path;       /* [nodes] to it from the root, within the cluster */
+    long *first;     /* [count + 1] */
+    int *node;       /* [first[count]] */
+    int *radius;     /* [count] longest path */
+    SmBox *box;      /* [count] of the nodes */
+    long *arc_first; /* [count + 1] */
+    int *arc;        /* clusters that the graph joins a cluster to */
+    int *length;     /* from root to root */
 } Clusters;
 
 enum {
@@ -136,9 +136,7 @@ static void split(const SmCollideRest *rest, double width, Clusters *c)
         for (long k = i; k < end; k++)
             if (c->of[place[k].node] < 0) spread(place + i, end - i, link, links, place[k].node, c);
     }
-    free(link);
-    free(cube);
-    free(place);
+    sm_free_all(link, cube, place);
 }
 
 static void list_nodes(const SmCollideRest *rest, Clusters *c)
@@ -147,22 +145,13 @@ static void list_nodes(const SmCollideRest *rest, Clusters *c)
     c->first = sm_alloc(count + 1, sizeof *c->first);
     c->node = sm_alloc((size_t)rest->nodes, sizeof *c->node);
     c->radius = sm_alloc(count, sizeof *c->radius);
-    c->low = sm_alloc(count, sizeof *c->low);
-    c->high = sm_alloc(count, sizeof *c->high);
-    for (long p = 0; p < c->count; p++)
-        for (int d = 0; d < 3; d++) {
-            c->low[p][d] = INFINITY;
-            c->high[p][d] = -INFINITY;
-        }
+    c->box = sm_alloc(count, sizeof *c->box);
+    for (long p = 0; p < c->count; p++) c->box[p] = sm_no_box();
     for (long i = 0; i < rest->nodes; i++) {
         int p = c->of[i];
         c->first[p + 1]++;
         if (c->path[i] > c->radius[p]) c->radius[p] = c->path[i];
-        for (int d = 0; d < 3; d++) {
-            double at = rest->x0[i][d];
-            c->low[p][d] = at < c->low[p][d] ? at : c->low[p][d];
-            c->high[p][d] = at > c->high[p][d] ? at : c->high[p][d];
-        }
+        sm_box_add(&c->box[p], rest->x0[i]);
     }
     for (size_t p = 0; p < count; p++) c->first[p + 1] += c->first[p];
     for (long i = rest->nodes; i-- > 0;) c->node[--c->first[c->of[i] + 1]] = (int)i;
@@ -228,9 +217,8 @@ static void clusters_build(const SmCollideRest *rest, double width, Clusters *c)
 
 static void clusters_free(Clusters *c)
 {
-    void *all[] = {c->of,  c->path, c->first,     c->node, c->radius,
-                   c->low, c->high, c->arc_first, c->arc,  c->length};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(c->of, c->path, c->first, c->node, c->radius, c->box, c->arc_first, c->arc,
+                c->length);
     *c = (Clusters){0};
 }
 
@@ -354,24 +342,13 @@ static void list_carriers(Build *b)
     free(seen);
 }
 
-void sm_collide_patches_box(const SmCollidePatches *patches, const double (*x)[3], long p,
-                            double low[3], double high[3])
+SmBox sm_collide_patches_box(const SmCollidePatches *patches, const double (*x)[3], long p)
 {
-    for (int d = 0; d < 3; d++) {
-        low[d] = INFINITY;
-        high[d] = -INFINITY;
-    }
-    for (long i = patches->carrier_first[p]; i < patches->carrier_first[p + 1]; i++) {
-        const double *at = x[patches->carrier[i]];
-        for (int d = 0; d < 3; d++) {
-            low[d] = at[d] < low[d] ? at[d] : low[d];
-            high[d] = at[d] > high[d] ? at[d] : high[d];
-        }
-    }
-    for (int d = 0; d < 3; d++) {
-        low[d] -= patches->margin[p];
-        high[d] += patches->margin[p];
-    }
+    SmBox box = sm_no_box();
+    for (long i = patches->carrier_first[p]; i < patches->carrier_first[p + 1]; i++)
+        sm_box_add(&box, x[patches->carrier[i]]);
+    sm_box_widen(&box, patches->margin[p]);
+    return box;
 }
 
 bool sm_collide_patches_joined(const SmCollidePatches *patches, long a, long b)
@@ -429,10 +406,10 @@ static int held(const Reach *a, const Reach *b, double path)
 /* Whether the nodes of two clusters are in the window around each other's nodes. */
 static int in_window(const Build *b, long p, long q)
 {
-    const Clusters *c = &b->clusters;
+    const SmBox *own = &b->clusters.box[p], *other = &b->clusters.box[q];
     bool out = false;
     for (int d = 0; d < 3; d++)
-        out |= c->high[q][d] - c->low[p][d] > b->window || c->high[p][d] - c->low[q][d] > b->window;
+        out |= other->high[d] - own->low[d] > b->window || own->high[d] - other->low[d] > b->window;
     return !out;
 }
 
@@ -491,10 +468,7 @@ static void find_joined(Build *b, int p)
         double path = 0.5 * ((double)b->path[other] + c->radius[own] + c->radius[other]);
         /* '&': all three are cheap, and which fails cannot be foreseen */
         if (!(held(a, z, path) & held(z, a, path) & in_window(b, own, other))) continue;
-        if (b->pair_count == b->pair_room) {
-            b->pair_room = 2 * b->pair_room + 1024;
-            b->pair = sm_realloc(b->pair, (size_t)b->pair_room, sizeof *b->pair);
-        }
+        sm_make_room(b->pair, b->pair_room, b->pair_count + 1);
         b->pair[b->pair_count][0] = p;
         b->pair[b->pair_count++][1] = q;
     }
@@ -552,20 +526,14 @@ void sm_collide_patches_build(const SmCollideShape *shape, SmCollidePatches *pat
     list_carriers(&b);
     list_joined(&b);
     clusters_free(&b.clusters);
-    free(b.patch);
-    free(b.cluster);
-    free(b.reach);
-    free(b.path);
-    free(b.met);
-    free(b.pair);
+    sm_free_all(b.patch, b.cluster, b.reach, b.path, b.met, b.pair);
 }
 
 void sm_collide_patches_free(SmCollidePatches *patches)
 {
-    void *all[] = {patches->cell_first,   patches->node_first, patches->carrier_first,
-                   patches->joined_first, patches->cell,       patches->node,
-                   patches->carrier,      patches->joined,     patches->margin};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(patches->cell_first, patches->node_first, patches->carrier_first,
+                patches->joined_first, patches->cell, patches->node, patches->carrier,
+                patches->joined, patches->margin);
     *patches = (SmCollidePatches){0};
 }
 

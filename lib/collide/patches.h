@@ -3,6 +3,7 @@
 #ifndef SM_PATCHES_H
 #define SM_PATCHES_H
 
+#include "../box.h"
 #include "rest.h"
 
 /* Lists of patch p: from first[p] to first[p + 1] - 1. Cells are places in SmCollideShape.cell. A
@@ -28,8 +29,7 @@ void sm_collide_patches_free(SmCollidePatches *patches);
 long sm_collide_patches_bytes(const SmCollidePatches *patches);
 
 /* The box of all that may touch anything, of patch p of a body whose nodes are at x. */
-void sm_collide_patches_box(const SmCollidePatches *patches, const double (*x)[3], long p,
-                            double low[3], double high[3]);
+SmBox sm_collide_patches_box(const SmCollidePatches *patches, const double (*x)[3], long p);
 
 bool sm_collide_patches_joined(const SmCollidePatches *patches, long a, long b);
 

@@ -198,18 +198,15 @@ void sm_collide_shape_build(const SmCollideRest *rest, SmCollideShape *shape)
     *shape = (SmCollideShape){.rest = *rest, .nodes = rest->nodes, .carriers = rest->carriers};
     flood(rest, &depths);
     keep_cells(&depths, shape);
-    free(depths.level);
-    free(depths.count);
-    free(depths.face);
+    sm_free_all(depths.level, depths.count, depths.face);
     keep_nodes(rest, shape);
     keep_surface(shape);
 }
 
 void sm_collide_shape_free(SmCollideShape *shape)
 {
-    void *all[] = {shape->cell, shape->face,   shape->surface,     shape->x0,
-                   shape->size, shape->radius, shape->inverse_mass};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(shape->cell, shape->face, shape->surface, shape->x0, shape->size, shape->radius,
+                shape->inverse_mass);
     *shape = (SmCollideShape){0};
 }
 
@@ -225,8 +222,7 @@ long sm_collide_shape_bytes(const SmCollideShape *shape)
 void sm_collide_paths_start(SmCollidePaths *paths, const SmCollideShape *shape)
 {
     if (shape->nodes > paths->node_room) {
-        void *all[] = {paths->distance, paths->queue, paths->queued, paths->reached};
-        for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+        sm_free_all(paths->distance, paths->queue, paths->queued, paths->reached);
         paths->node_room = shape->nodes + shape->nodes / 4;
         size_t room = (size_t)paths->node_room;
         paths->distance = sm_alloc(room, sizeof(int));
@@ -241,8 +237,7 @@ void sm_collide_paths_start(SmCollidePaths *paths, const SmCollideShape *shape)
 
 void sm_collide_paths_free(SmCollidePaths *paths)
 {
-    void *all[] = {paths->answer, paths->distance, paths->queue, paths->queued, paths->reached};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(paths->answer, paths->distance, paths->queue, paths->queued, paths->reached);
     *paths = (SmCollidePaths){0};
 }
 

@@ -40,19 +40,11 @@ void sm_blade_lift(SmBlade *blade)
     blade->down = false;
 }
 
-/* The box of some points, wider by `margin`. */
-static SmBox box_of(int count, const double (*point)[3], double margin)
-{
-    SmBox box = sm_no_box();
-    for (int i = 0; i < count; i++) sm_box_add(&box, point[i]);
-    sm_box_widen(&box, margin);
-    return box;
-}
-
 static void find_nearby(Nearby *n, int count, const double (*point)[3])
 {
     const SmCarriers *c = n->carriers;
-    SmBox box = box_of(count, point, 2 * c->reach);
+    SmBox box = sm_box_around(count, point);
+    sm_box_widen(&box, 2 * c->reach);
     for (int round = 0; round < 2; round++) { /* counts, then lists */
         n->count = 0;
         for (long k = 0; k < c->nodes; k++) {
@@ -68,7 +60,8 @@ static void find_nearby(Nearby *n, int count, const double (*point)[3])
 
 static void find_near(Nearby *n, const double (*line)[3])
 {
-    SmBox box = box_of(2, line, 2 * n->carriers->reach);
+    SmBox box = sm_box_around(2, line);
+    sm_box_widen(&box, 2 * n->carriers->reach);
     n->near = 0;
     for (long k = 0; k < n->count; k++)
         if (sm_box_holds(&box, n->carriers->position[n->node[k]]))
@@ -100,17 +93,14 @@ static bool find_rest(const Nearby *n, const double x[3], double rest[3])
 {
     const SmCarriers *c = n->carriers;
     double nearest = INFINITY, sum = 0, mean[3] = {0};
-    for (long i = 0; i < n->near; i++) {
-        const double *p = c->position[n->near_node[i]];
-        double d[3] = {x[0] - p[0], x[1] - p[1], x[2] - p[2]};
-        nearest = fmin(nearest, sm_dot(d, d));
-    }
+    for (long i = 0; i < n->near; i++)
+        nearest = fmin(nearest, sm_square_between(x, c->position[n->near_node[i]]));
     if (!(nearest <= c->reach * c->reach)) return false;
     double radius = 2 * sqrt(nearest) + 0.5 * c->cell;
     for (long i = 0; i < n->near; i++) {
         int k = n->near_node[i];
-        const double *p = c->position[k];
-        double d[3] = {x[0] - p[0], x[1] - p[1], x[2] - p[2]}, back[3];
+        double d[3], back[3];
+        sm_subtract(x, c->position[k], d);
         double weight = 1 - sm_dot(d, d) / (radius * radius);
         if (!(weight > 0)) continue;
         weight *= weight;
@@ -130,8 +120,7 @@ static void between(const double a[3], const double b[3], double t, double resul
 
 static double length_between(const double a[3], const double b[3])
 {
-    double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    return sqrt(sm_dot(d, d));
+    return sqrt(sm_square_between(a, b));
 }
 
 /* The points of a blade at a .. b, new to the cut. */
@@ -251,7 +240,7 @@ static void go_ahead(const SmBladePoint *point, double cell, SmBladePoint *next)
 {
     double way[3], square = 0;
     if (!point->known || !next->known) return;
-    for (int d = 0; d < 3; d++) way[d] = next->rest[d] - point->rest[d];
+    sm_subtract(next->rest, point->rest, way);
     double along = sm_dot(way, point->ahead);
     for (int d = 0; d < 3; d++) {
         double aside = way[d] - along * point->ahead[d];
@@ -322,8 +311,6 @@ long sm_blade_sweep(SmBlade *blade, const double a[3], const double b[3],
     else
         sweep(blade, a, b, &n, points, last, far, cut);
     keep_ends(blade, a, b);
-    free(last);
-    free(n.node);
-    free(n.near_node);
+    sm_free_all(last, n.node, n.near_node);
     return cut->triangles - before;
 }

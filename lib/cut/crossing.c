@@ -43,14 +43,10 @@ void sm_crossing_corners(const SmCrossing *c, long face, int corner[3])
 
 static void find_candidates(SmCrossing *c, const SmBox *whole)
 {
-    long room = 64;
-    c->candidate = sm_alloc((size_t)room, sizeof *c->candidate);
+    long room = 0;
     for (long t = 0; t < c->surface->triangle_count; t++) {
         if (beyond(c->surface, c->surface->triangle[t], whole)) continue;
-        if (c->candidates == room) {
-            room *= 2;
-            c->candidate = sm_realloc(c->candidate, (size_t)room, sizeof *c->candidate);
-        }
+        sm_make_room(c->candidate, room, c->candidates + 1);
         c->candidate[c->candidates++] = (int)t;
     }
     c->faces = c->candidates + c->solid->triangle_count;
@@ -184,10 +180,7 @@ static bool meet_faces(SmCrossing *c, Pair *pair)
     }
     if ((end[0] < 0) != (end[1] < 0)) return false;
     if (end[0] < 0) return true;
-    if (c->segments == c->segment_room) {
-        c->segment_room = 2 * c->segment_room + 64;
-        c->segment = sm_realloc(c->segment, (size_t)c->segment_room, sizeof *c->segment);
-    }
+    sm_make_room(c->segment, c->segment_room, c->segments + 1);
     c->segment[c->segments++] = (SmCrossingSegment){{pair->face[0], pair->face[1]}, end[0], end[1]};
     return true;
 }
@@ -238,9 +231,6 @@ bool sm_crossing_find(const SmMesh *surface, bool inside_out, const SmMesh *soli
 
 void sm_crossing_free(SmCrossing *crossing)
 {
-    free(crossing->candidate);
-    free(crossing->point);
-    free(crossing->segment);
-    free(crossing->slot);
+    sm_free_all(crossing->candidate, crossing->point, crossing->segment, crossing->slot);
     *crossing = (SmCrossing){0};
 }

@@ -23,11 +23,7 @@ void sm_cut_init(SmCut *cut, double cube)
 
 void sm_cut_free(SmCut *cut)
 {
-    free(cut->vertex);
-    free(cut->triangle);
-    free(cut->plane);
-    free(cut->bucket);
-    free(cut->entry);
+    sm_free_all(cut->vertex, cut->triangle, cut->plane, cut->bucket, cut->entry);
     *cut = (SmCut){0};
 }
 
@@ -73,10 +69,7 @@ static void add_entry(SmCut *cut, const int cube[3], long triangle)
 long sm_cut_vertex(SmCut *cut, const double position[3])
 {
     for (int d = 0; d < 3; d++) assert(fabs(position[d]) <= 1e9 * cut->cube);
-    if (cut->vertices == cut->vertex_room) {
-        cut->vertex_room = 2 * cut->vertex_room + 64;
-        cut->vertex = sm_realloc(cut->vertex, (size_t)cut->vertex_room, sizeof *cut->vertex);
-    }
+    sm_make_room(cut->vertex, cut->vertex_room, cut->vertices + 1);
     memcpy(cut->vertex[cut->vertices], position, sizeof *cut->vertex);
     return cut->vertices++;
 }
@@ -116,23 +109,15 @@ static bool plane_meets(const SmCut *cut, const double normal[3], const double p
 long sm_cut_triangle(SmCut *cut, const int vertex[3])
 {
     const double *p[3];
-    double u[3], v[3], normal[3];
+    double normal[3];
     int low[3], high[3], cube[3];
     for (int i = 0; i < 3; i++) {
         assert(vertex[i] >= 0 && vertex[i] < cut->vertices);
         p[i] = cut->vertex[vertex[i]];
     }
-    for (int d = 0; d < 3; d++) {
-        u[d] = p[1][d] - p[0][d];
-        v[d] = p[2][d] - p[0][d];
-    }
-    sm_cross(u, v, normal);
-    if (cut->triangles == cut->triangle_room) {
-        cut->triangle_room = 2 * cut->triangle_room + 64;
-        cut->triangle =
-            sm_realloc(cut->triangle, (size_t)cut->triangle_room, sizeof *cut->triangle);
-        cut->plane = sm_realloc(cut->plane, (size_t)cut->triangle_room, sizeof *cut->plane);
-    }
+    sm_area_vector(p[0], p[1], p[2], normal);
+    sm_make_room(cut->triangle, cut->triangle_room, cut->triangles + 1);
+    sm_make_room(cut->plane, cut->plane_room, cut->triangles + 1);
     memcpy(cut->triangle[cut->triangles], vertex, sizeof *cut->triangle);
     double *plane = cut->plane[cut->triangles];
     bool flat = !sm_normalize(normal);
@@ -158,19 +143,12 @@ static bool positive(double determinant, const double slope[3])
     return slope[2] > 0;
 }
 
-static void difference(const double to[3], const double from[3], double result[3])
-{
-    for (int d = 0; d < 3; d++) result[d] = to[d] - from[d];
-}
-
 /* Is x above the plane through p, q and r? */
 static bool above(const double p[3], const double q[3], const double r[3], const double x[3])
 {
-    double u[3], v[3], w[3], normal[3];
-    difference(q, p, u);
-    difference(r, p, v);
-    difference(x, p, w);
-    sm_cross(u, v, normal);
+    double w[3], normal[3];
+    sm_area_vector(p, q, r, normal);
+    sm_subtract(x, p, w);
     return positive(sm_dot(normal, w), normal);
 }
 
@@ -178,10 +156,10 @@ static bool above(const double p[3], const double q[3], const double r[3], const
 static bool left(const double a[3], const double b[3], const double p[3], const double q[3])
 {
     double along[3], u[3], v[3], normal[3], edge[3], slope[3];
-    difference(b, a, along);
-    difference(p, a, u);
-    difference(q, a, v);
-    difference(p, q, edge);
+    sm_subtract(b, a, along);
+    sm_subtract(p, a, u);
+    sm_subtract(q, a, v);
+    sm_subtract(p, q, edge);
     sm_cross(u, v, normal);
     sm_cross(edge, along, slope);
     return positive(sm_dot(along, normal), slope);

@@ -9,6 +9,8 @@
 
 #include <stdbool.h>
 
+#include "../vector.h"
+
 typedef struct SmCutEntry SmCutEntry;
 
 typedef struct {
@@ -19,7 +21,7 @@ typedef struct {
     /* to find them: cubes of space of edge `cube`, hashed */
     double cube;
     int low[3], high[3]; /* cubes with entries */
-    long vertex_room, triangle_room;
+    long vertex_room, triangle_room, plane_room;
     long buckets, entries, entry_room;
     long *bucket;      /* [buckets] last entry, or -1 */
     SmCutEntry *entry; /* [entries] */
@@ -33,6 +35,13 @@ void sm_cut_free(SmCut *cut);
  * must be finite and within 1e9 cubes of 0. O(cubes that the triangle's plane meets in its box). */
 long sm_cut_vertex(SmCut *cut, const double position[3]);
 long sm_cut_triangle(SmCut *cut, const int vertex[3]);
+
+/* Normal to a triangle, as long as twice its area. */
+static inline void sm_cut_area_vector(const SmCut *cut, long triangle, double normal[3])
+{
+    const int *corner = cut->triangle[triangle];
+    sm_area_vector(cut->vertex[corner[0]], cut->vertex[corner[1]], cut->vertex[corner[2]], normal);
+}
 
 /* Does the segment from a to b cross a triangle from number `first` on? The same for b, a. A
  * segment that touches an edge, a corner or a triangle's plane counts as moved by next to nothing

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../system/hash.h"
 #include "../vector.h"
 
 enum { INNER, FREE, OLD }; /* what an edge borders on: another triangle, nothing, earlier ones */
@@ -37,13 +38,9 @@ typedef struct {
 
 static void triangle_normal(const Sheet *s, long t, double normal[3])
 {
-    double u[3], v[3];
-    const double *p = s->cut->vertex[s->triangle[t][0]];
-    for (int d = 0; d < 3; d++) {
-        u[d] = s->cut->vertex[s->triangle[t][1]][d] - p[d];
-        v[d] = s->cut->vertex[s->triangle[t][2]][d] - p[d];
-    }
-    sm_cross(u, v, normal);
+    const double(*at)[3] = (const double(*)[3])s->cut->vertex;
+    const int *corner = s->triangle[t];
+    sm_area_vector(at[corner[0]], at[corner[1]], at[corner[2]], normal);
 }
 
 /* Triangles whose height is a thickness or more: thinner ones would be all border. */
@@ -57,8 +54,7 @@ static void take_triangles(Sheet *s, long first, long last)
         for (int i = 0; i < 3; i++) {
             const double *p = s->cut->vertex[s->cut->triangle[t][i]];
             const double *q = s->cut->vertex[s->cut->triangle[t][(i + 1) % 3]];
-            double u[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-            longest = fmax(longest, sm_dot(u, u));
+            longest = fmax(longest, sm_square_between(p, q));
         }
         if (sqrt(sm_dot(normal, normal)) > s->thickness * sqrt(longest)) s->triangles++;
     }
@@ -151,7 +147,8 @@ static void add_to_fans(Sheet *s, long t)
         if (border == INNER) continue;
         const double *p = s->cut->vertex[s->triangle[t][i]];
         const double *q = s->cut->vertex[s->triangle[t][(i + 1) % 3]];
-        double along[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+        double along[3];
+        sm_subtract(q, p, along);
         sm_cross(along, unit, out);
         sm_normalize(out);
         for (int d = 0; d < 3; d++) {
@@ -188,13 +185,12 @@ static bool make_fans(Sheet *s)
     return usable;
 }
 
-/* From -1 to 1: splitmix64 (Steele et al. 2014). */
+/* From -1 to 1. */
 static double draw(Sheet *s)
 {
-    uint64_t z = s->seed += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return (double)((z ^ z >> 31) >> 11) / 4503599627370496.0 - 1;
+    uint64_t z = sm_mix(s->seed);
+    s->seed += SM_MIX_STEP;
+    return (double)(z >> 11) / 4503599627370496.0 - 1;
 }
 
 /* Vertices 2 f above fan f and 2 f + 1 below it. */
@@ -251,10 +247,6 @@ bool sm_cut_solid_make(const SmCut *cut, long first, long last, const SmCutSolid
         place_vertices(&s, solid);
         place_triangles(&s, solid);
     }
-    free(s.triangle);
-    free(s.fan);
-    free(s.border);
-    free(s.edge);
-    free(s.at);
+    sm_free_all(s.triangle, s.fan, s.border, s.edge, s.at);
     return made;
 }

@@ -14,17 +14,8 @@ enum { TRIES = 5 };
 static bool is_inside_out(const SmMesh *mesh)
 {
     double volume = 0;
-    for (long t = 0; t < mesh->triangle_count; t++) {
-        double u[3], v[3], w[3], cross[3];
-        const double *o = mesh->position[0];
-        for (int d = 0; d < 3; d++) {
-            u[d] = mesh->position[mesh->triangle[t][0]][d] - o[d];
-            v[d] = mesh->position[mesh->triangle[t][1]][d] - o[d];
-            w[d] = mesh->position[mesh->triangle[t][2]][d] - o[d];
-        }
-        sm_cross(v, w, cross);
-        volume += sm_dot(u, cross);
-    }
+    for (long t = 0; t < mesh->triangle_count; t++)
+        volume += sm_mesh_six_volumes(mesh, t, mesh->position[0]);
     return volume < 0;
 }
 
@@ -73,12 +64,8 @@ static SmCutResult carve(const Slit *s, long first, long last)
 
 static bool has_area(const SmCut *cut, long t, double least)
 {
-    double u[3], v[3], normal[3];
-    for (int d = 0; d < 3; d++) {
-        u[d] = cut->vertex[cut->triangle[t][1]][d] - cut->vertex[cut->triangle[t][0]][d];
-        v[d] = cut->vertex[cut->triangle[t][2]][d] - cut->vertex[cut->triangle[t][0]][d];
-    }
-    sm_cross(u, v, normal);
+    double normal[3];
+    sm_cut_area_vector(cut, t, normal);
     return sqrt(sm_dot(normal, normal)) > least;
 }
 

@@ -178,10 +178,7 @@ static void multiply(const double M[9], const double v[3], double result[3])
 static SmFlat *add_flat(Tying *t, long v)
 {
     SmEmbedding *e = t->embedding;
-    if (e->flat_count == t->flat_room) {
-        t->flat_room = 2 * t->flat_room + 16;
-        e->flat = sm_realloc(e->flat, (size_t)t->flat_room, sizeof *e->flat);
-    }
+    sm_make_room(e->flat, t->flat_room, e->flat_count + 1);
     t->flat[v] = (int)e->flat_count;
     e->flat[e->flat_count] = (SmFlat){.vertex = v};
     return &e->flat[e->flat_count++];

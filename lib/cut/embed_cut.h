@@ -2,7 +2,7 @@
 #ifndef SM_EMBED_CUT_H
 #define SM_EMBED_CUT_H
 
-#include "../mesh/embed.h"
+#include "../voxel/embed.h"
 #include "cut.h"
 
 /* Brings an embedding up to date with a cut's triangles from number `first` on, and with the mesh

@@ -42,15 +42,8 @@ void sm_face_clip_init(const SmCrossing *c, double slack, SmFaceClip *f)
 
 void sm_face_clip_free(SmFaceClip *f)
 {
-    free(f->first);
-    free(f->segment);
-    free(f->next);
-    free(f->visited);
-    free(f->ring_first);
-    free(f->ring_point);
-    free(f->at);
-    free(f->hole);
-    free(f->triangle);
+    sm_free_all(f->first, f->segment, f->next, f->visited, f->ring_first, f->ring_point, f->at,
+                f->hole, f->triangle);
     *f = (SmFaceClip){0};
 }
 
@@ -235,21 +228,16 @@ static bool trace_loops(SmFaceClip *f, long face)
 /* Sees all rings' points in the plane, along the axis that is nearest to the face's normal. */
 static void project(SmFaceClip *f, const int corner[3], int from)
 {
-    double u[3], v[3], normal[3];
-    const double *p = sm_crossing_at(f->crossing, corner[0]);
-    const double *q = sm_crossing_at(f->crossing, corner[1]);
-    const double *r = sm_crossing_at(f->crossing, corner[2]);
-    for (int d = 0; d < 3; d++) {
-        u[d] = q[d] - p[d];
-        v[d] = r[d] - p[d];
-    }
-    sm_cross(u, v, normal);
+    const SmCrossing *c = f->crossing;
+    double normal[3];
+    sm_area_vector(sm_crossing_at(c, corner[0]), sm_crossing_at(c, corner[1]),
+                   sm_crossing_at(c, corner[2]), normal);
     int axis = 0;
     for (int d = 1; d < 3; d++)
         if (fabs(normal[d]) > fabs(normal[axis])) axis = d;
     int x = (axis + 1) % 3, y = (axis + 2) % 3;
     for (int i = from; i < f->ring_points; i++) {
-        const double *at = sm_crossing_at(f->crossing, f->ring_point[i]);
+        const double *at = sm_crossing_at(c, f->ring_point[i]);
         f->at[i][0] = normal[axis] < 0 ? at[y] : at[x];
         f->at[i][1] = normal[axis] < 0 ? at[x] : at[y];
     }
@@ -314,10 +302,7 @@ static int ring_around(const SmFaceClip *f, int hole)
 
 static int (*add_triangles(SmFaceClip *f, long count))[3]
 {
-    if (f->triangles + count > f->triangle_room) {
-        f->triangle_room = 2 * (f->triangles + count) + 64;
-        f->triangle = sm_realloc(f->triangle, (size_t)f->triangle_room, sizeof *f->triangle);
-    }
+    sm_make_room(f->triangle, f->triangle_room, f->triangles + count);
     f->triangles += count;
     return f->triangle + f->triangles - count;
 }
@@ -347,9 +332,7 @@ static bool fill_ring(SmFaceClip *f, int ring, const int *around)
         for (long n = 0; n < 3 * count; n++) number[n] = vertex[number[n]];
         f->triangles -= count < 0 ? most : most - count;
     }
-    free(at);
-    free(vertex);
-    free(first);
+    sm_free_all(at, vertex, first);
     return count >= 0;
 }
 

@@ -56,10 +56,7 @@ static void find_sides(Hole *hole, const int *piece, long gone)
 
 static void add_triangle(Hole *hole, int a, int b, int c)
 {
-    if (hole->made == hole->room) {
-        hole->room = 2 * hole->room + 64;
-        hole->triangle = sm_realloc(hole->triangle, (size_t)hole->room, sizeof *hole->triangle);
-    }
+    sm_make_room(hole->triangle, hole->room, hole->made + 1);
     hole->triangle[hole->made][0] = a;
     hole->triangle[hole->made][1] = b;
     hole->triangle[hole->made++][2] = c;
@@ -150,9 +147,6 @@ long sm_split_components(SmMesh *mesh, const int *piece)
             if (!hole.side[n].shared && !hole.side[n].used) fill(&hole, &hole.side[n]);
         replace(&hole, goes);
     }
-    free(goes);
-    free(hole.side);
-    free(hole.path);
-    free(hole.triangle);
+    sm_free_all(goes, hole.side, hole.path, hole.triangle);
     return gone;
 }

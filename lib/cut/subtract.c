@@ -121,10 +121,7 @@ static SmFaceClipResult fill_solid(Carving *c)
         int corner[3];
         sm_crossing_corners(&c->crossing, face, corner);
         if (sm_face_clip_crossed(f, face) || c->state[corner[0]] != STAYS) continue;
-        if (f->triangles == f->triangle_room) {
-            f->triangle_room = 2 * f->triangle_room + 64;
-            f->triangle = sm_realloc(f->triangle, (size_t)f->triangle_room, sizeof *f->triangle);
-        }
+        sm_make_room(f->triangle, f->triangle_room, f->triangles + 1);
         memcpy(f->triangle[f->triangles++], corner, sizeof corner);
     }
     return SM_FACE_FILLED;
@@ -184,15 +181,10 @@ static void list_edges(const int triangle[3], int sign, Edge *edge)
     }
 }
 
-/* Signed volume under a triangle, times 6, from `from`. */
-static double volume_under(const Carving *c, const int triangle[3], const double from[3])
+static double volumes_under(const SmCrossing *c, const int triangle[3], const double from[3])
 {
-    double p[3][3], cross[3];
-    for (int i = 0; i < 3; i++)
-        for (int d = 0; d < 3; d++)
-            p[i][d] = sm_crossing_at(&c->crossing, triangle[i])[d] - from[d];
-    sm_cross(p[1], p[2], cross);
-    return sm_dot(p[0], cross);
+    return sm_six_volumes(from, sm_crossing_at(c, triangle[0]), sm_crossing_at(c, triangle[1]),
+                          sm_crossing_at(c, triangle[2]));
 }
 
 /* Do the triangles that come have the same border as those that go, and is what lies between them
@@ -209,17 +201,14 @@ static bool sound(const Carving *c)
         int sign = n < candidates ? -1 : 1;
         const int *triangle = n < candidates ? c->mesh->triangle[c->crossing.candidate[n]]
                                              : f->triangle[n - candidates];
-        double under = volume_under(c, triangle, from);
+        double under = volumes_under(&c->crossing, triangle, from);
         change += sign * under;
         all += fabs(under);
         list_edges(triangle, sign, edge + count);
         count += 3;
     }
-    for (long t = 0; t < c->solid->triangle_count; t++) {
-        int corner[3];
-        sm_crossing_corners(&c->crossing, candidates + t, corner);
-        size += volume_under(c, corner, from);
-    }
+    for (long t = 0; t < c->solid->triangle_count; t++)
+        size += sm_mesh_six_volumes(c->solid, t, from);
     if (c->options->inside_out) change = -change;
     double rounding = 1e-3 * size + 1e-14 * all;
     bool good = change <= rounding && change >= -size - rounding;

@@ -40,7 +40,7 @@ static SmMesh blob(void)
         SmPrimitive ball = sm_primitive(SM_ELLIPSOID, 0.5, centre, size);
         sm_implicit_add(&solid, &ball);
     }
-    sm_polygonise(&solid, (double[3]){-2, -2, -2}, (double[3]){12, 12, 12}, 1, &mesh);
+    sm_polygonise(&solid, &(SmBox){{-2, -2, -2}, {12, 12, 12}}, 1, &mesh);
     sm_implicit_free(&solid);
     return mesh;
 }

@@ -24,13 +24,16 @@ static double most_elements(double bytes)
     return 2e6 + bytes;
 }
 
+/* The parts with triangles, or the points of those without. */
 typedef struct {
     const struct aiScene *scene;
-    double most; /* triangles, and vertices a third of them has */
+    bool of_points;
+    double most; /* points; triangles, and vertices a third of them has */
     SmReplyHeader header;
-    double (*position)[3];
+    double (*position)[3], (*normal)[3]; /* NULL while all is counted */
     int (*triangle)[3];
     double offset[3];
+    bool bare; /* some points have no normals */
 } Import;
 
 typedef struct {
@@ -62,14 +65,26 @@ static bool mirrors(const Transform *t)
            0;
 }
 
-static void count_mesh(const struct aiMesh *mesh, SmReplyHeader *header)
+static long triangles_of(const struct aiMesh *mesh)
 {
     long triangles = 0;
     for (unsigned f = 0; f < mesh->mNumFaces; f++)
         if (mesh->mFaces[f].mNumIndices > 2) triangles += mesh->mFaces[f].mNumIndices - 2L;
+    return triangles;
+}
+
+/* False: too many. */
+static bool count_mesh(const struct aiMesh *mesh, Import *import)
+{
+    SmReplyHeader *header = &import->header;
+    long triangles = triangles_of(mesh);
     header->triangle_count += triangles;
     header->vertex_count += triangles ? mesh->mNumVertices : 0;
     header->points += triangles ? 0 : mesh->mNumVertices;
+    import->bare |= !triangles && mesh->mNumVertices && !mesh->mNormals;
+    if (import->of_points) return (double)header->points <= import->most;
+    return (double)header->triangle_count <= import->most &&
+           (double)(header->vertex_count + header->points) <= 3 * import->most;
 }
 
 /* Cuts `face` into triangles with the mesh's own vertex numbers. */
@@ -115,19 +130,26 @@ static void copy_vertices(Import *import, const struct aiMesh *mesh, const Trans
 {
     for (unsigned v = 0; v < mesh->mNumVertices; v++) {
         const struct aiVector3D *p = &mesh->mVertices[v];
-        double *position = import->position[import->header.vertex_count++];
+        long vertex = import->header.vertex_count++;
         for (int a = 0; a < 3; a++) {
             const double *r = transform->row[a];
-            position[a] = r[0] * (double)p->x + r[1] * (double)p->y + r[2] * (double)p->z + r[3] +
-                          import->offset[a];
+            import->position[vertex][a] = r[0] * (double)p->x + r[1] * (double)p->y +
+                                          r[2] * (double)p->z + r[3] + import->offset[a];
+            if (!import->of_points) continue;
+            const struct aiVector3D *n = &mesh->mNormals[v];
+            import->normal[vertex][a] =
+                r[0] * (double)n->x + r[1] * (double)n->y + r[2] * (double)n->z;
         }
     }
 }
 
-static bool too_many(const Import *import)
+static bool copy_mesh(Import *import, const struct aiMesh *mesh, const Transform *transform)
 {
-    double vertices = (double)(import->header.vertex_count + import->header.points);
-    return (double)import->header.triangle_count > import->most || vertices > 3 * import->most;
+    bool solid = triangles_of(mesh) > 0;
+    if (solid == import->of_points) return true;
+    if (solid && !copy_triangles(import, mesh, mirrors(transform))) return false;
+    copy_vertices(import, mesh, transform);
+    return true;
 }
 
 /* Walks the node tree; counts while import->position is NULL, then copies. False: too many while it
@@ -137,14 +159,8 @@ static bool walk(Import *import, const struct aiNode *node, const Transform *out
     Transform transform = compose(outer, &node->mTransformation);
     for (unsigned m = 0; m < node->mNumMeshes; m++) {
         const struct aiMesh *mesh = import->scene->mMeshes[node->mMeshes[m]];
-        long triangles = import->header.triangle_count;
-        if (!import->position) {
-            count_mesh(mesh, &import->header);
-            if (too_many(import)) return false;
-        } else if (!copy_triangles(import, mesh, mirrors(&transform)))
+        if (!(import->position ? copy_mesh(import, mesh, &transform) : count_mesh(mesh, import)))
             return false;
-        else if (import->header.triangle_count > triangles)
-            copy_vertices(import, mesh, &transform);
     }
     for (unsigned c = 0; c < node->mNumChildren; c++)
         if (!walk(import, node->mChildren[c], &transform)) return false;
@@ -153,7 +169,8 @@ static bool walk(Import *import, const struct aiNode *node, const Transform *out
 
 static int reply_text(int reply, const char *text)
 {
-    size_t length = strnlen(text, SM_REPLY_TEXT);
+    size_t length = strlen(text);
+    if (length > SM_REPLY_TEXT) length = SM_REPLY_TEXT;
     SmReplyHeader header = {.magic = SM_REPLY_MAGIC, .text_length = (uint32_t)length};
     return !(sm_child_write(reply, &header, sizeof header) && sm_child_write(reply, text, length));
 }
@@ -169,23 +186,44 @@ static int reply_many(int reply, double most)
     return reply_text(reply, text);
 }
 
-static int reply_mesh(int reply, Import *import)
+/* What is wrong with the parts that were counted, or NULL. */
+static const char *refusal(const Import *import)
+{
+    const SmReplyHeader *header = &import->header;
+    if (import->of_points) {
+        if (import->bare) return "its points have no normals";
+        if (!header->points) return "it holds no points";
+        return header->points > INT_MAX ? "more than 2147483647 points" : NULL;
+    }
+    return header->vertex_count > INT_MAX || header->triangle_count > INT_MAX
+               ? "more than 2147483647 vertices or triangles"
+               : NULL;
+}
+
+static int reply_parts(int reply, Import *import)
 {
     static const Transform identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     if (!walk(import, import->scene->mRootNode, &identity)) return reply_many(reply, import->most);
+    if (refusal(import)) return reply_text(reply, refusal(import));
     SmReplyHeader header = import->header;
-    if (header.vertex_count > INT_MAX || header.triangle_count > INT_MAX)
-        return reply_text(reply, "more than 2147483647 vertices or triangles");
-    size_t vertices = (size_t)header.vertex_count, triangles = (size_t)header.triangle_count;
-    import->position = malloc((vertices + 1) * sizeof *import->position);
-    import->triangle = malloc((triangles + 1) * sizeof *import->triangle);
-    if (!import->position || !import->triangle) return SM_CHILD_NO_MEMORY;
+    if (import->of_points) header = (SmReplyHeader){.vertex_count = import->header.points};
+    size_t vertices = (size_t)header.vertex_count * sizeof *import->position;
+    size_t others =
+        import->of_points ? vertices : (size_t)header.triangle_count * sizeof *import->triangle;
+    void *other = malloc(others + 1);
+    import->position = malloc(vertices + 1);
+    import->normal = import->of_points ? other : NULL;
+    import->triangle = import->of_points ? NULL : other;
     import->header = (SmReplyHeader){0};
-    if (!walk(import, import->scene->mRootNode, &identity)) return SM_CHILD_NO_MEMORY;
+    bool copied = import->position && other && walk(import, import->scene->mRootNode, &identity);
     header.magic = SM_REPLY_MAGIC;
-    return !(sm_child_write(reply, &header, sizeof header) &&
-             sm_child_write(reply, import->position, vertices * sizeof *import->position) &&
-             sm_child_write(reply, import->triangle, triangles * sizeof *import->triangle));
+    int status = copied ? !(sm_child_write(reply, &header, sizeof header) &&
+                            sm_child_write(reply, import->position, vertices) &&
+                            sm_child_write(reply, other, others))
+                        : SM_CHILD_NO_MEMORY;
+    free(import->position);
+    free(other);
+    return status;
 }
 
 /* The whole file and a NUL, or NULL. */
@@ -281,96 +319,22 @@ static int reply_reason(int reply, const SmMeshFiles *files)
     return reply_text(reply, text);
 }
 
-int sm_importer(void *path, int reply)
+static int import_file(void *path, int reply, bool of_points)
 {
-    Import import = {0};
+    Import import = {.of_points = of_points};
     SmMeshFiles files;
     import.scene = read_scene(path, &files, import.offset);
-    if (import.scene) {
-        import.most = most_elements(files.bytes);
-        int status = reply_mesh(reply, &import);
-        free(import.position);
-        free(import.triangle);
-        return status;
-    }
-    return reply_reason(reply, &files);
+    if (!import.scene) return reply_reason(reply, &files);
+    import.most = most_elements(files.bytes);
+    return reply_parts(reply, &import);
 }
 
-/* Points, and their normals behind them; walks as walk() does. `room` 0: counts only. */
-typedef struct {
-    const struct aiScene *scene;
-    int64_t count, room;
-    double most; /* of them */
-    double (*position)[3], (*normal)[3];
-    double offset[3];
-    bool bare; /* some have no normals */
-} Points;
-
-static void copy_points(Points *points, const struct aiMesh *mesh, const Transform *transform)
+int sm_importer(void *path, int reply)
 {
-    if (points->room == 0) { /* counted only */
-        points->count += mesh->mNumVertices;
-        return;
-    }
-    for (unsigned v = 0; v < mesh->mNumVertices; v++, points->count++) {
-        const struct aiVector3D *p = &mesh->mVertices[v], *n = &mesh->mNormals[v];
-        for (int a = 0; a < 3 && points->count < points->room; a++) {
-            const double *r = transform->row[a];
-            points->position[points->count][a] = r[0] * (double)p->x + r[1] * (double)p->y +
-                                                 r[2] * (double)p->z + r[3] + points->offset[a];
-            points->normal[points->count][a] =
-                r[0] * (double)n->x + r[1] * (double)n->y + r[2] * (double)n->z;
-        }
-    }
-}
-
-static void walk_points(Points *points, const struct aiNode *node, const Transform *outer)
-{
-    Transform transform = compose(outer, &node->mTransformation);
-    for (unsigned m = 0; m < node->mNumMeshes; m++) {
-        const struct aiMesh *mesh = points->scene->mMeshes[node->mMeshes[m]];
-        SmReplyHeader header = {0};
-        count_mesh(mesh, &header);
-        if (!header.points) continue;
-        points->bare |= !mesh->mNormals;
-        if (mesh->mNormals) copy_points(points, mesh, &transform);
-    }
-    for (unsigned c = 0; c < node->mNumChildren; c++)
-        walk_points(points, node->mChildren[c], &transform);
-}
-
-static int reply_points(int reply, Points *points)
-{
-    static const Transform identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    walk_points(points, points->scene->mRootNode, &identity);
-    if (points->bare) return reply_text(reply, "its points have no normals");
-    if (!points->count) return reply_text(reply, "it holds no points");
-    if ((double)points->count > points->most) return reply_many(reply, points->most);
-    if (points->count > INT_MAX) return reply_text(reply, "more than 2147483647 points");
-    SmReplyHeader header = {.magic = SM_REPLY_MAGIC, .vertex_count = points->count};
-    size_t size = (size_t)points->count * sizeof *points->position;
-    points->room = points->count;
-    points->count = 0;
-    points->position = malloc(size);
-    points->normal = malloc(size);
-    int status = SM_CHILD_NO_MEMORY;
-    if (points->position && points->normal) {
-        walk_points(points, points->scene->mRootNode, &identity);
-        status = !(sm_child_write(reply, &header, sizeof header) &&
-                   sm_child_write(reply, points->position, size) &&
-                   sm_child_write(reply, points->normal, size));
-    }
-    free(points->position);
-    free(points->normal);
-    return status;
+    return import_file(path, reply, false);
 }
 
 int sm_importer_points(void *path, int reply)
 {
-    Points points = {0};
-    SmMeshFiles files;
-    points.scene = read_scene(path, &files, points.offset);
-    if (!points.scene) return reply_reason(reply, &files);
-    points.most = most_elements(files.bytes);
-    return reply_points(reply, &points);
+    return import_file(path, reply, true);
 }

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../box.h"
 #include "../system/hash.h"
-#include "../vector.h"
 
 static const double rounding_gap = 1e-7; /* of the box's longest side */
 static const double no_height = 1e-14;   /* of a triangle's longest edge */
@@ -27,22 +27,12 @@ void sm_mesh_free(SmMesh *mesh)
     *mesh = (SmMesh){0};
 }
 
-static void bounding_box(const SmMesh *mesh, double low[3], double high[3])
+static SmBox bounding_box(const SmMesh *mesh)
 {
-    for (int a = 0; a < 3; a++) {
-        low[a] = high[a] = mesh->vertex_count ? mesh->position[0][a] : 0;
-        for (long v = 1; v < mesh->vertex_count; v++) {
-            low[a] = fmin(low[a], mesh->position[v][a]);
-            high[a] = fmax(high[a], mesh->position[v][a]);
-        }
-    }
-}
-
-static double longest_side(const SmMesh *mesh, double low[3])
-{
-    double high[3];
-    bounding_box(mesh, low, high);
-    return fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
+    const SmBox none = {{0}, {0}};
+    return mesh->vertex_count
+               ? sm_box_around(mesh->vertex_count, (const double(*)[3])mesh->position)
+               : none;
 }
 
 /* ---- how triangles meet along edges */
@@ -285,8 +275,7 @@ static void unite_near(const Grid *grid, int v, SmPieces *same)
         int other = grid->head[grid_slot(grid, p, step)];
         for (int k = 0; other && k < LONGEST_CHAIN; k++, other = grid->next[other - 1]) {
             const double *q = grid->mesh->position[other - 1];
-            double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-            if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= grid->side * grid->side)
+            if (sm_square_between(p, q) <= grid->side * grid->side)
                 sm_pieces_link(same, v, other - 1);
         }
     }
@@ -296,8 +285,10 @@ static SmPieces near_positions(const SmMesh *mesh, const bool *boundary)
 {
     SmPieces same;
     sm_pieces_init(mesh->vertex_count, &same);
+    SmBox box = bounding_box(mesh);
     Grid grid = {.mesh = mesh, .mask = table_mask(mesh->vertex_count)};
-    grid.side = rounding_gap * longest_side(mesh, grid.low);
+    memcpy(grid.low, box.low, sizeof grid.low);
+    grid.side = rounding_gap * sm_box_longest(&box);
     grid.head = sm_alloc(grid.mask + 1, sizeof *grid.head);
     grid.next = sm_alloc((size_t)mesh->vertex_count, sizeof *grid.next);
     for (int v = 0; v < mesh->vertex_count; v++) {
@@ -386,15 +377,12 @@ static bool is_degenerate(double edge[3][3])
 /* Volume about the box's centre, where a mesh far from the origin loses no digits. */
 static void measure_triangles(const SmMesh *mesh, SmMeshInfo *info)
 {
-    double six_volumes = 0;
+    double six_volumes = 0, middle[3];
+    for (int a = 0; a < 3; a++) middle[a] = 0.5 * info->low[a] + 0.5 * info->high[a];
     for (long t = 0; t < mesh->triangle_count; t++) {
         double p[3][3], edge[3][3], normal[3];
-        for (int c = 0; c < 3; c++)
-            for (int a = 0; a < 3; a++)
-                p[c][a] = mesh->position[mesh->triangle[t][c]][a] -
-                          (0.5 * info->low[a] + 0.5 * info->high[a]);
-        for (int c = 0; c < 3; c++)
-            for (int a = 0; a < 3; a++) edge[c][a] = p[(c + 1) % 3][a] - p[c][a];
+        for (int c = 0; c < 3; c++) sm_subtract(mesh->position[mesh->triangle[t][c]], middle, p[c]);
+        for (int c = 0; c < 3; c++) sm_subtract(p[(c + 1) % 3], p[c], edge[c]);
         info->degenerate += is_degenerate(edge);
         sm_cross(p[1], p[2], normal);
         six_volumes += sm_dot(p[0], normal);
@@ -412,7 +400,9 @@ SmMeshInfo sm_mesh_info(const SmMesh *mesh)
     info.watertight = mesh->triangle_count && !edges.open && !edges.nonmanifold;
     info.components = count_components(mesh);
     info.duplicates = count_duplicates(mesh);
-    bounding_box(mesh, info.low, info.high);
+    SmBox box = bounding_box(mesh);
+    memcpy(info.low, box.low, sizeof info.low);
+    memcpy(info.high, box.high, sizeof info.high);
     measure_triangles(mesh, &info);
     if (edges.unbalanced) info.volume = NAN;
     return info;
@@ -438,12 +428,27 @@ SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error)
                                "%s: a triangle names a vertex that is not there; export the mesh "
                                "again",
                                name);
-    double low[3], side = longest_side(mesh, low);
+    SmBox box = bounding_box(mesh);
+    double side = sm_box_longest(&box);
     if (side == 0) return sm_fail(error, SM_INPUT, "%s: all vertices are at one point", name);
     if (side < 1e-30 || side > 1e30)
         return sm_fail(error, SM_INPUT, "%s: its size of %g is outside 1e-30 to 1e30; scale it",
                        name, side);
     return SM_OK;
+}
+
+SmCode sm_mesh_prepare(SmMesh *mesh, const char *name, SmError *error)
+{
+    SmCode code = sm_mesh_check(mesh, name, error);
+    if (!code) {
+        sm_mesh_merge(mesh);
+        code =
+            mesh->triangle_count > 0
+                ? sm_mesh_check(mesh, name, error)
+                : sm_fail(error, SM_INPUT, "%s: every triangle has two corners in one place", name);
+    }
+    if (code) sm_mesh_free(mesh);
+    return code;
 }
 
 unsigned long long sm_mesh_hash(const SmMesh *mesh)

@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "../pieces.h"
+#include "../vector.h"
 
 typedef struct {
     long vertex_count, triangle_count;
@@ -56,9 +57,22 @@ SmMeshInfo sm_mesh_info(const SmMesh *mesh);
  * message. SM_INPUT. */
 SmCode sm_mesh_check(const SmMesh *mesh, const char *name, SmError *error);
 
+/* What becomes of a mesh that comes from outside: it is checked and merged. Freed where that fails:
+ * the errors of sm_mesh_check(), or SM_INPUT where no triangle is left. */
+SmCode sm_mesh_prepare(SmMesh *mesh, const char *name, SmError *error);
+
 /* Area-weighted vertex normals, not of unit length, [vertex_count][3]; the caller frees them. Areas
  * are in `unit` squared: give a length of the mesh's scale, so that nothing overflows. */
 double (*sm_mesh_normals(const SmMesh *mesh, double unit))[3];
+
+/* Six times the volume between a triangle and a point: over all triangles of a closed mesh that of
+ * the mesh, and negative where it is inside out. */
+static inline double sm_mesh_six_volumes(const SmMesh *mesh, long triangle, const double from[3])
+{
+    const int *corner = mesh->triangle[triangle];
+    return sm_six_volumes(from, mesh->position[corner[0]], mesh->position[corner[1]],
+                          mesh->position[corner[2]]);
+}
 
 /* A name for the mesh: FNV-1a of its coordinates and its indices, bit for bit. */
 unsigned long long sm_mesh_hash(const SmMesh *mesh);

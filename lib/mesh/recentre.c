@@ -8,6 +8,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../box.h"
+
 static const double far_away = 8; /* times the longest side of the box */
 
 typedef enum { OBJ, STL, PLY, OFF } Format;
@@ -117,23 +119,20 @@ static Lines start_lines(const char *text, Format format)
 static bool find_offset(const char *text, size_t size, Format format, double offset[3])
 {
     Lines lines = start_lines(text, format);
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    SmBox box = sm_no_box();
     while (next_line(&lines, text + size)) {
         double position[3];
         const char *place = vertex_of(&lines);
         if (lines.bad || (place && !read_position(&lines, place, position))) return false;
-        for (int a = 0; place && a < 3; a++) {
-            low[a] = fmin(low[a], position[a]);
-            high[a] = fmax(high[a], position[a]);
-        }
+        if (place) sm_box_add(&box, position);
     }
-    double side = 0, distance = 0;
+    double distance = 0;
     for (int a = 0; a < 3; a++) {
-        side = fmax(side, high[a] - low[a]);
-        offset[a] = 0.5 * low[a] + 0.5 * high[a];
+        offset[a] = 0.5 * box.low[a] + 0.5 * box.high[a];
         distance = fmax(distance, fabs(offset[a]));
     }
-    return low[0] <= high[0] && distance > far_away * side && isfinite(distance);
+    return box.low[0] <= box.high[0] && distance > far_away * sm_box_longest(&box) &&
+           isfinite(distance);
 }
 
 static bool known_format(const char *text, const char *suffix, Format *format)

@@ -1,4 +1,3 @@
-#include "../stage.h"
 #include "../system/child.h"
 #include "../system/confine.h"
 #include "../test_frame.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../../fastlsm/fastlsm.h"
-#include "../boundary.h"
+#include "../engine/boundary.h"
 #include "../system/team.h"
 #include "inner.h"
 
@@ -198,18 +198,10 @@ static SmEngineParams engine_params(const sb_body_params *p, const OctOptions *o
     return to;
 }
 
-static void copy_voxels(const SmVoxels *from, SmVoxels *to)
-{
-    size_t words = (size_t)from->words * (size_t)from->size[1] * (size_t)from->size[2];
-    *to = *from;
-    to->bits = sm_alloc(words, sizeof *to->bits);
-    memcpy(to->bits, from->bits, words * sizeof *to->bits);
-}
-
 /* Everything beside the engine, which is there. */
 static void complete(sb_body *body, const sb_voxels *voxels, const sb_mesh *surface, bool lattice)
 {
-    copy_voxels(&voxels->voxels, &body->voxels);
+    sm_voxels_copy(&voxels->voxels, &body->voxels);
     sm_count_particles(body);
     if (lattice) {
         body->x0 = sm_alloc((size_t)body->particles, sizeof *body->x0);
@@ -265,11 +257,7 @@ void sb_body_free(sb_body *body)
     for (int i = 0; i < body->handle_count; i++) free((void *)(uintptr_t)body->handle[i].particle);
     for (int i = 0; i < body->blade_count; i++) sm_blade_free(&body->blade[i].blade);
     for (int i = 0; i < body->detail_count; i++) oct_refinement_free(&body->detail[i]);
-    free(body->handle);
-    free(body->obstacle);
-    free(body->blade);
-    free(body->detail);
-    free(body->x0);
+    sm_free_all(body->handle, body->obstacle, body->blade, body->detail, body->x0);
     body->kind = 0;
     free(body);
 }

@@ -437,11 +437,8 @@ int sb_body_read_surface_triangles(const sb_body *body, int *triangle, int64_t r
     int code = check_surface(body, error);
     if (code) return code;
     const SmMesh *surface = &body->skin.surface;
-    code = sm_check_array(triangle, room, surface->triangle_count, "triangle", error);
-    if (code) return code;
-    memcpy(triangle, surface->triangle,
-           (size_t)surface->triangle_count * sizeof *surface->triangle);
-    return sm_done(SM_OK, NULL, error);
+    return sm_give_array(surface->triangle, surface->triangle_count, sizeof *surface->triangle,
+                         triangle, room, "triangle", error);
 }
 
 int sb_body_read_surface_rest(const sb_body *body, double *position, int64_t room, sb_error *error)
@@ -449,8 +446,6 @@ int sb_body_read_surface_rest(const sb_body *body, double *position, int64_t roo
     int code = check_surface(body, error);
     if (code) return code;
     const SmMesh *surface = &body->skin.surface;
-    code = sm_check_array(position, room, surface->vertex_count, "position", error);
-    if (code) return code;
-    memcpy(position, surface->position, (size_t)surface->vertex_count * sizeof *surface->position);
-    return sm_done(SM_OK, NULL, error);
+    return sm_give_array(surface->position, surface->vertex_count, sizeof *surface->position,
+                         position, room, "position", error);
 }

@@ -1,14 +1,11 @@
 /* geometry.c - the library's own functions, meshes and voxels of shapebench.h. */
 #include <limits.h>
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../mesh/import.h"
 #include "../shapes/shape.h"
-#include "../system/printable.h"
 #include "../voxel/voxelise.h"
 #include "inner.h"
 
@@ -74,18 +71,6 @@ int sb_mesh_load(const char *path, const sb_load_params *params, sb_mesh **mesh,
     return finish_mesh(inner, &why, &made, mesh, error);
 }
 
-static SmCode merge(SmMesh *mesh, SmError *why)
-{
-    SmCode code = sm_mesh_check(mesh, "mesh", why);
-    if (!code) {
-        sm_mesh_merge(mesh);
-        if (mesh->triangle_count < 1)
-            code = sm_fail(why, SM_INPUT, "mesh: every triangle has two corners in one place");
-    }
-    if (code) sm_mesh_free(mesh);
-    return code;
-}
-
 int sb_mesh_make(int64_t vertices, const double *position, int64_t triangles, const int *triangle,
                  sb_mesh **mesh, sb_error *error)
 {
@@ -99,7 +84,7 @@ int sb_mesh_make(int64_t vertices, const double *position, int64_t triangles, co
     SmMesh made = sm_mesh_new(vertices, triangles);
     memcpy(made.position, position, (size_t)vertices * sizeof *made.position);
     memcpy(made.triangle, triangle, (size_t)triangles * sizeof *made.triangle);
-    SmCode inner = merge(&made, &why);
+    SmCode inner = sm_mesh_prepare(&made, "mesh", &why);
     return finish_mesh(inner, &why, &made, mesh, error);
 }
 
@@ -146,21 +131,17 @@ int sb_mesh_measure(const sb_mesh *mesh, sb_mesh_facts *facts, size_t size, sb_e
 int sb_mesh_read_vertices(const sb_mesh *mesh, double *position, int64_t room, sb_error *error)
 {
     int code = sm_check_handle(mesh, SB_IS_MESH, error);
-    if (!code) code = sm_check_array(position, room, mesh->mesh.vertex_count, "position", error);
     if (code) return code;
-    memcpy(position, mesh->mesh.position,
-           (size_t)mesh->mesh.vertex_count * sizeof *mesh->mesh.position);
-    return sm_done(SM_OK, NULL, error);
+    return sm_give_array(mesh->mesh.position, mesh->mesh.vertex_count, sizeof *mesh->mesh.position,
+                         position, room, "position", error);
 }
 
 int sb_mesh_read_triangles(const sb_mesh *mesh, int *triangle, int64_t room, sb_error *error)
 {
     int code = sm_check_handle(mesh, SB_IS_MESH, error);
-    if (!code) code = sm_check_array(triangle, room, mesh->mesh.triangle_count, "triangle", error);
     if (code) return code;
-    memcpy(triangle, mesh->mesh.triangle,
-           (size_t)mesh->mesh.triangle_count * sizeof *mesh->mesh.triangle);
-    return sm_done(SM_OK, NULL, error);
+    return sm_give_array(mesh->mesh.triangle, mesh->mesh.triangle_count,
+                         sizeof *mesh->mesh.triangle, triangle, room, "triangle", error);
 }
 
 void sb_mesh_free(sb_mesh *mesh)

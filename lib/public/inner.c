@@ -1,11 +1,7 @@
 #include "inner.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
-
-#include "../system/printable.h"
 
 int sm_refuse(sb_error *error, int code, const char *format, ...)
 {
@@ -13,9 +9,8 @@ int sm_refuse(sb_error *error, int code, const char *format, ...)
     error->code = code;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(error->text, sizeof error->text, format, arguments);
+    sm_write_line(error->text, sizeof error->text, format, arguments);
     va_end(arguments);
-    sm_printable(error->text);
     return code;
 }
 
@@ -103,6 +98,15 @@ void sm_give_defaults(const void *from, size_t size, void *to, size_t room)
     if (!to || room < sizeof room) return;
     sm_give(from, size, to, room);
     memcpy(to, &room, sizeof room);
+}
+
+int sm_give_array(const void *from, int64_t count, size_t size, void *to, int64_t room,
+                  const char *name, sb_error *error)
+{
+    int code = sm_check_array(to, room, count, name, error);
+    if (code) return code;
+    if (count > 0) memcpy(to, from, (size_t)count * size);
+    return sm_done(SM_OK, NULL, error);
 }
 
 int sm_check_list(const void *list, int64_t room, const int64_t *count, const char *name,

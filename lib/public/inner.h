@@ -83,6 +83,10 @@ int sm_refuse(sb_error *error, int code, const char *format, ...)
  * a struct of `size`. */
 int sm_take_params(const void *from, void *to, size_t size, const char *name, sb_error *error);
 
+/* Ends a call that gives `count` entries of `size` bytes in an array with room for `room`. */
+int sm_give_array(const void *from, int64_t count, size_t size, void *to, int64_t room,
+                  const char *name, sb_error *error);
+
 /* Fills the first `room` bytes of a caller's struct; with defaults its first member is `room`. */
 void sm_give(const void *from, size_t size, void *to, size_t room);
 void sm_give_defaults(const void *from, size_t size, void *to, size_t room);

@@ -39,12 +39,7 @@ void sm_skin_free(SmSkin *skin)
     sm_embed_free(&skin->embedding);
     sm_sites_free(&skin->sites);
     oct_surface_free(&skin->carried);
-    free(skin->node);
-    free(skin->rest);
-    free(skin->x);
-    free(skin->F);
-    free(skin->found);
-    free(skin->absent);
+    sm_free_all(skin->node, skin->rest, skin->x, skin->F, skin->found, skin->absent);
     *skin = (SmSkin){0};
 }
 
@@ -87,13 +82,10 @@ static void place_leaves(SmSkin *skin, const double (*node)[3], long count)
 /* How far a place is from the segment from a to b, squared. */
 static double square_from(const double place[3], const double a[3], const double b[3])
 {
-    double along[3], to[3], length = 0, dot = 0, square = 0;
-    for (int d = 0; d < 3; d++) {
-        along[d] = b[d] - a[d];
-        to[d] = place[d] - a[d];
-        length += along[d] * along[d];
-        dot += along[d] * to[d];
-    }
+    double along[3], to[3], square = 0;
+    sm_subtract(b, a, along);
+    sm_subtract(place, a, to);
+    double length = sm_dot(along, along), dot = sm_dot(along, to);
     double share = length > 0 ? fmin(fmax(dot / length, 0), 1) : 0;
     for (int d = 0; d < 3; d++) square += (to[d] - share * along[d]) * (to[d] - share * along[d]);
     return square;
@@ -104,7 +96,7 @@ static double stroke_of(const double blade[4][3])
 {
     double square = 0;
     for (int end = 0; end < 2; end++)
-        square = fmax(square, square_from(blade[end], blade[end + 2], blade[end + 2]));
+        square = fmax(square, sm_square_between(blade[end], blade[end + 2]));
     return sqrt(square);
 }
 
@@ -158,10 +150,8 @@ static void find_particle_gradient(const SmSkin *skin, long p, double F[9])
         int q = neighbour[n];
         if (sm_cut_crosses(&skin->cut, 0, skin->x0[p], skin->x0[q])) continue;
         double X[3], at[3];
-        for (int d = 0; d < 3; d++) {
-            X[d] = skin->x0[q][d] - skin->x0[p][d];
-            at[d] = skin->node[q][d] - skin->node[p][d];
-        }
+        sm_subtract(skin->x0[q], skin->x0[p], X);
+        sm_subtract(skin->node[q], skin->node[p], at);
         oct_fit_add(&fit, 1, X, at, still);
     }
     oct_fit_solve(&fit, least, identity, F, L);

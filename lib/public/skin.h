@@ -6,7 +6,7 @@
 #include "../../octree/engine.h"
 #include "../../octree/surface/surface.h"
 #include "../cut/blade.h"
-#include "../mesh/embed.h"
+#include "../voxel/embed.h"
 
 typedef struct {
     /* the caller's, kept */

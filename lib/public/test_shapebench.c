@@ -7,11 +7,11 @@
 #include "../../octree/change/structure.h"
 #include "../../octree/engine.h"
 #include "../../octree/surface/surface.h"
-#include "../mesh/embed.h"
 #include "../mesh/import.h"
 #include "../shapes/shape.h"
 #include "../test_folder.h"
 #include "../test_frame.h"
+#include "../voxel/embed.h"
 #include "../voxel/voxelise.h"
 
 #define OK(call) assert_int_equal(call, SB_OK)

@@ -30,21 +30,6 @@ typedef struct {
     long heap_count, heap_room;
 } Collapse;
 
-static void subtract(const double a[3], const double b[3], double result[3])
-{
-    for (int i = 0; i < 3; i++) result[i] = a[i] - b[i];
-}
-
-/* Twice the area vector of a triangle. */
-static void area_vector(const double p[3], const double q[3], const double r[3], double n[3])
-{
-    double u[3], v[3];
-    subtract(q, p, u);
-    subtract(r, p, v);
-    for (int i = 0; i < 3; i++)
-        n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-}
-
 static void quadric_add(Quadric *q, const Quadric *other)
 {
     for (int i = 0; i < 6; i++) q->a[i] += other->a[i];
@@ -150,10 +135,7 @@ static Candidate candidate(const Collapse *c, int u, int v)
 
 static void heap_append(Collapse *c, Candidate added)
 {
-    if (c->heap_count == c->heap_room) {
-        c->heap_room = 2 * c->heap_room + 64;
-        c->heap = sm_realloc(c->heap, (size_t)c->heap_room, sizeof *c->heap);
-    }
+    sm_make_room(c->heap, c->heap_room, c->heap_count + 1);
     c->heap[c->heap_count++] = added;
 }
 
@@ -186,7 +168,8 @@ static void add_normal(const Collapse *c, int v, double sum[3])
     for (int corner = c->head[v]; corner >= 0; corner = c->next[corner]) {
         const int *t = c->mesh->triangle[corner / 3];
         double n[3];
-        area_vector(c->mesh->position[t[0]], c->mesh->position[t[1]], c->mesh->position[t[2]], n);
+        sm_area_vector(c->mesh->position[t[0]], c->mesh->position[t[1]], c->mesh->position[t[2]],
+                       n);
         for (int i = 0; i < 3; i++) sum[i] += n[i];
     }
 }
@@ -201,9 +184,9 @@ static bool moves_well(const Collapse *c, int u, int v, const double x[3], const
         int a = t[(corner % 3 + 1) % 3], b = t[(corner % 3 + 2) % 3];
         if (a == v || b == v) continue;
         double before[3], after[3], side[3];
-        area_vector(m->position[u], m->position[a], m->position[b], before);
-        area_vector(x, m->position[a], m->position[b], after);
-        subtract(m->position[a], m->position[b], side);
+        sm_area_vector(m->position[u], m->position[a], m->position[b], before);
+        sm_area_vector(x, m->position[a], m->position[b], after);
+        sm_subtract(m->position[a], m->position[b], side);
         double old = sqrt(sm_dot(before, before)), new = sqrt(sm_dot(after, after));
         double flat = 0.05 * sm_dot(side, side);
         const double *reference = old > flat ? before : normal;
@@ -293,7 +276,7 @@ static void prepare(Collapse *c)
     for (long t = 0; t < m->triangle_count; t++) {
         const int *corner = m->triangle[t];
         double n[3];
-        area_vector(m->position[corner[0]], m->position[corner[1]], m->position[corner[2]], n);
+        sm_area_vector(m->position[corner[0]], m->position[corner[1]], m->position[corner[2]], n);
         double area = sqrt(sm_dot(n, n));
         for (int i = 0; i < 3 && area > 0; i++) n[i] /= area;
         for (int k = 0; k < 3; k++) {
@@ -343,5 +326,5 @@ void sm_decimate(SmMesh *mesh, long triangles)
     prepare(&c);
     collapse_until(&c, mesh->triangle_count, triangles);
     compact(&c);
-    free(c.quadric), free(c.version), free(c.head), free(c.next), free(c.heap);
+    sm_free_all(c.quadric, c.version, c.head, c.next, c.heap);
 }

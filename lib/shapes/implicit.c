@@ -31,11 +31,7 @@ void sm_primitive_turn(SmPrimitive *primitive, int axis, double angle)
 
 void sm_implicit_add(SmImplicit *implicit, const SmPrimitive *primitive)
 {
-    if (implicit->count == implicit->room) {
-        implicit->room = implicit->room ? 2 * implicit->room : 64;
-        implicit->primitive =
-            sm_realloc(implicit->primitive, (size_t)implicit->room, sizeof *implicit->primitive);
-    }
+    sm_make_room(implicit->primitive, implicit->room, implicit->count + 1);
     implicit->primitive[implicit->count++] = *primitive;
 }
 
@@ -226,23 +222,25 @@ static void local_extent(const SmPrimitive *f, double half[3])
     if (f->kind == SM_PETAL) half[1] = 1.5 * r[1] + lift;
 }
 
-void sm_implicit_bounds(const SmImplicit *implicit, double low[3], double high[3])
+SmBox sm_implicit_bounds(const SmImplicit *implicit)
 {
-    for (int i = 0; i < 3; i++) low[i] = nowhere, high[i] = -nowhere;
+    SmBox box = sm_no_box();
     for (int n = 0; n < implicit->count; n++) {
         const SmPrimitive *f = &implicit->primitive[n];
+        SmBox own = {{0}, {0}};
         double half[3];
         if (f->cut) continue;
         local_extent(f, half);
         for (int i = 0; i < 3; i++) {
-            double reach = 0;
+            double reach = 0, first = f->size[0], second = f->size[1];
             for (int j = 0; j < 3; j++) reach += fabs(f->axis[j][i]) * half[j];
-            if (f->kind == SM_CONE) reach = f->size[0];
-            low[i] = fmin(low[i], f->centre[i] - reach);
-            high[i] = fmax(high[i], f->centre[i] + reach);
-            if (f->kind != SM_CONE) continue;
-            low[i] = fmin(low[i], f->tip[i] - f->size[1]);
-            high[i] = fmax(high[i], f->tip[i] + f->size[1]);
+            bool cone = f->kind == SM_CONE;
+            own.low[i] =
+                cone ? fmin(f->centre[i] - first, f->tip[i] - second) : f->centre[i] - reach;
+            own.high[i] =
+                cone ? fmax(f->centre[i] + first, f->tip[i] + second) : f->centre[i] + reach;
         }
+        sm_box_join(&box, own.low, own.high);
     }
+    return box;
 }

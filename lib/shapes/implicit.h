@@ -7,6 +7,8 @@
 #ifndef SM_IMPLICIT_H
 #define SM_IMPLICIT_H
 
+#include "../box.h"
+
 #define SM_IMPLICIT_SLOPE 1.02
 
 typedef enum {
@@ -59,6 +61,6 @@ double sm_implicit_prune(const SmImplicit *implicit, const int *active, int coun
                          const double centre[3], double radius, int *kept, int *kept_count);
 
 /* A box that holds the solid (cuts ignored; blends may bulge beyond it by a quarter of theirs). */
-void sm_implicit_bounds(const SmImplicit *implicit, double low[3], double high[3]);
+SmBox sm_implicit_bounds(const SmImplicit *implicit);
 
 #endif

@@ -2,6 +2,7 @@
 #include "../system/team.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,6 +27,7 @@ typedef struct {
     Leaf *leaf;
     int leaf_count, leaf_room;
     int *pool, pool_count, pool_room;
+    SmMesh *mesh;
 } Lattice;
 
 static long node_at(const Lattice *g, int i, int j, int k, int s)
@@ -40,14 +42,8 @@ static void node_position(const Lattice *g, const int at[3], int s, double p[3])
 
 static void keep_leaf(Lattice *g, const int at[3], const int *active, int count)
 {
-    if (g->leaf_count == g->leaf_room) {
-        g->leaf_room = g->leaf_room ? 2 * g->leaf_room : 1024;
-        g->leaf = sm_realloc(g->leaf, (size_t)g->leaf_room, sizeof *g->leaf);
-    }
-    while (g->pool_count + count > g->pool_room) {
-        g->pool_room = g->pool_room ? 2 * g->pool_room : 65536;
-        g->pool = sm_realloc(g->pool, (size_t)g->pool_room, sizeof *g->pool);
-    }
+    sm_make_room(g->leaf, g->leaf_room, g->leaf_count + 1);
+    sm_make_room(g->pool, g->pool_room, g->pool_count + count);
     Leaf *leaf = &g->leaf[g->leaf_count++];
     *leaf = (Leaf){{at[0], at[1], at[2]}, g->pool_count, count};
     memcpy(g->pool + g->pool_count, active, (size_t)count * sizeof *active);
@@ -86,6 +82,16 @@ static void find_leaves(Lattice *g)
     free(all);
 }
 
+/* Place c among the nodes of a leaf; false where that is outside the lattice. */
+static bool leaf_node(const Lattice *g, const Leaf *leaf, int c, int at[3])
+{
+    for (int i = 0; i < 3; i++, c /= LEAF) {
+        at[i] = leaf->at[i] + c % LEAF;
+        if (at[i] >= g->n[i]) return false;
+    }
+    return true;
+}
+
 typedef void (*NodeVisit)(Lattice *g, const Leaf *leaf, const int at[3], int s);
 
 static void visit_nodes(Lattice *g, NodeVisit visit)
@@ -94,9 +100,8 @@ static void visit_nodes(Lattice *g, NodeVisit visit)
     for (int l = 0; l < g->leaf_count; l++) {
         const Leaf *leaf = &g->leaf[l];
         for (int c = 0; c < LEAF * LEAF * LEAF; c++) {
-            int at[3] = {leaf->at[0] + c % LEAF, leaf->at[1] + c / LEAF % LEAF,
-                         leaf->at[2] + c / LEAF / LEAF};
-            if (at[0] >= g->n[0] || at[1] >= g->n[1] || at[2] >= g->n[2]) continue;
+            int at[3];
+            if (!leaf_node(g, leaf, c, at)) continue;
             visit(g, leaf, at, 0);
             visit(g, leaf, at, 1);
         }
@@ -168,27 +173,18 @@ static int count_vertices(Lattice *g)
     return count;
 }
 
-static void place_vertices(const Lattice *g, SmMesh *mesh)
+static void place_vertices(Lattice *g, const Leaf *leaf, const int at[3], int s)
 {
-#pragma omp parallel for schedule(dynamic, 16) num_threads(sm_team(0))
-    for (int l = 0; l < g->leaf_count; l++) {
-        const Leaf *leaf = &g->leaf[l];
-        for (int c = 0; c < 2 * LEAF * LEAF * LEAF; c++) {
-            int s = c % 2, at[3] = {leaf->at[0] + c / 2 % LEAF, leaf->at[1] + c / 2 / LEAF % LEAF,
-                                    leaf->at[2] + c / 2 / LEAF / LEAF};
-            if (at[0] >= g->n[0] || at[1] >= g->n[1] || at[2] >= g->n[2]) continue;
-            long node = node_at(g, at[0], at[1], at[2], s);
-            int vertex = g->vertex[node];
-            for (int e = 0; e < EDGES; e++) {
-                if (!(g->mask[node] >> e & 1)) continue;
-                int to[3], to_s = 0;
-                far_end(g, at, s, e, to, &to_s);
-                double p[3], q[3], b = g->value[node_at(g, to[0], to[1], to[2], to_s)];
-                node_position(g, at, s, p);
-                node_position(g, to, to_s, q);
-                find_root(g, leaf, p, g->value[node], q, b, mesh->position[vertex++]);
-            }
-        }
+    long node = node_at(g, at[0], at[1], at[2], s);
+    int vertex = g->vertex[node];
+    for (int e = 0; e < EDGES; e++) {
+        if (!(g->mask[node] >> e & 1)) continue;
+        int to[3] = {0}, to_s = 0;
+        far_end(g, at, s, e, to, &to_s);
+        double p[3], q[3], b = g->value[node_at(g, to[0], to[1], to[2], to_s)];
+        node_position(g, at, s, p);
+        node_position(g, to, to_s, q);
+        find_root(g, leaf, p, g->value[node], q, b, g->mesh->position[vertex++]);
     }
 }
 
@@ -222,9 +218,7 @@ static void emit(SmMesh *mesh, int a, int b, int c)
 
 static double gap(const SmMesh *mesh, int a, int b)
 {
-    const double *p = mesh->position[a], *q = mesh->position[b];
-    double d[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-    return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    return sm_square_between(mesh->position[a], mesh->position[b]);
 }
 
 /* Even orders of a tetrahedron's nodes with the inside ones (bits of the index) first. */
@@ -285,13 +279,12 @@ static void march_around(const Lattice *g, const int at[3], int axis, SmMesh *me
     }
 }
 
-void sm_polygonise(const SmImplicit *implicit, const double low[3], const double high[3],
-                   double cell, SmMesh *mesh)
+void sm_polygonise(const SmImplicit *implicit, const SmBox *box, double cell, SmMesh *mesh)
 {
-    Lattice g = {.implicit = implicit, .cell = cell};
+    Lattice g = {.implicit = implicit, .cell = cell, .mesh = mesh};
     for (int i = 0; i < 3; i++) {
-        g.low[i] = low[i];
-        g.n[i] = (int)ceil((high[i] - low[i]) / cell) + 2;
+        g.low[i] = box->low[i];
+        g.n[i] = (int)ceil((box->high[i] - box->low[i]) / cell) + 2;
     }
     size_t nodes = 2 * (size_t)g.n[0] * (size_t)g.n[1] * (size_t)g.n[2];
     g.value = sm_alloc(nodes, sizeof *g.value);
@@ -302,15 +295,14 @@ void sm_polygonise(const SmImplicit *implicit, const double low[3], const double
     visit_nodes(&g, mark_crossings);
     mesh->vertex_count = count_vertices(&g);
     mesh->position = sm_alloc((size_t)mesh->vertex_count, sizeof *mesh->position);
-    place_vertices(&g, mesh);
+    visit_nodes(&g, place_vertices);
     mesh->triangle_count = 0; /* closed: triangles = 2 vertices - 4 + 4 genus; room for any genus */
     mesh->triangle = sm_alloc(6 * (size_t)mesh->vertex_count, sizeof *mesh->triangle);
     for (int l = 0; l < g.leaf_count; l++)
         for (int c = 0; c < LEAF * LEAF * LEAF; c++) {
-            int at[3] = {g.leaf[l].at[0] + c % LEAF, g.leaf[l].at[1] + c / LEAF % LEAF,
-                         g.leaf[l].at[2] + c / LEAF / LEAF};
-            if (at[0] >= g.n[0] || at[1] >= g.n[1] || at[2] >= g.n[2]) continue;
+            int at[3];
+            if (!leaf_node(&g, &g.leaf[l], c, at)) continue;
             for (int axis = 0; axis < 3; axis++) march_around(&g, at, axis, mesh);
         }
-    free(g.value), free(g.vertex), free(g.mask), free(g.leaf), free(g.pool);
+    sm_free_all(g.value, g.vertex, g.mask, g.leaf, g.pool);
 }

@@ -9,11 +9,10 @@
 #include "../mesh/mesh.h"
 #include "implicit.h"
 
-/* Makes the surface of `implicit` within the box low..high, which must hold it with a cell to
- * spare. `cell` is the lattice's cube edge. Vertices lie on the surface to about 1e-4 cell.
- * Takes about 20 bytes per cell of the box; time goes with the surface only. Same bits for any
- * number of threads. The caller frees the mesh. */
-void sm_polygonise(const SmImplicit *implicit, const double low[3], const double high[3],
-                   double cell, SmMesh *mesh);
+/* Makes the surface of `implicit` within the box, which must hold it with a cell to spare. `cell`
+ * is the lattice's cube edge. Vertices lie on the surface to about 1e-4 cell. Takes about 20 bytes
+ * per cell of the box; time goes with the surface only. Same bits for any number of threads. The
+ * caller frees the mesh. */
+void sm_polygonise(const SmImplicit *implicit, const SmBox *box, double cell, SmMesh *mesh);
 
 #endif

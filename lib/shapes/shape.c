@@ -89,32 +89,25 @@ static void make_box(const Recipe *recipe, SmMesh *mesh)
 static void make_sculpture(const Recipe *recipe, long triangles, SmMesh *mesh)
 {
     SmImplicit solid = {0};
-    double low[3], high[3];
     recipe->sculpt(&solid);
-    sm_implicit_bounds(&solid, low, high);
+    SmBox box = sm_implicit_bounds(&solid);
     /* Odd margins keep flat faces and the plane of symmetry off the lattice's planes. */
     for (int i = 0; i < 3; i++) {
-        low[i] -= (2.137 + 0.071 * i) * recipe->cell;
-        high[i] += 2 * recipe->cell;
+        box.low[i] -= (2.137 + 0.071 * i) * recipe->cell;
+        box.high[i] += 2 * recipe->cell;
     }
-    sm_polygonise(&solid, low, high, recipe->cell, mesh);
+    sm_polygonise(&solid, &box, recipe->cell, mesh);
     sm_decimate(mesh, triangles);
     sm_implicit_free(&solid);
 }
 
 static void set_in_place(const Recipe *recipe, SmMesh *mesh)
 {
-    double low[3], high[3];
-    for (int i = 0; i < 3; i++) low[i] = HUGE_VAL, high[i] = -HUGE_VAL;
+    SmBox box = sm_box_around(mesh->vertex_count, (const double(*)[3])mesh->position);
+    double scale = recipe->length / (box.high[recipe->axis] - box.low[recipe->axis]);
     for (long v = 0; v < mesh->vertex_count; v++)
         for (int i = 0; i < 3; i++) {
-            low[i] = fmin(low[i], mesh->position[v][i]);
-            high[i] = fmax(high[i], mesh->position[v][i]);
-        }
-    double scale = recipe->length / (high[recipe->axis] - low[recipe->axis]);
-    for (long v = 0; v < mesh->vertex_count; v++)
-        for (int i = 0; i < 3; i++) {
-            double foot = i == 1 ? low[i] : 0.5 * (low[i] + high[i]);
+            double foot = i == 1 ? box.low[i] : 0.5 * (box.low[i] + box.high[i]);
             mesh->position[v][i] = scale * (mesh->position[v][i] - foot) + 0.0; /* no -0 */
         }
 }

@@ -192,7 +192,7 @@ static SmMesh ball_mesh(double cell)
     SmPrimitive ball =
         sm_primitive(SM_ELLIPSOID, 0, (double[]){0.1, 0.2, 0.3}, (double[]){1, 1, 1});
     sm_implicit_add(&solid, &ball);
-    sm_polygonise(&solid, (double[]){-1, -0.9, -0.8}, (double[]){1.2, 1.3, 1.4}, cell, &mesh);
+    sm_polygonise(&solid, &(SmBox){{-1, -0.9, -0.8}, {1.2, 1.3, 1.4}}, cell, &mesh);
     sm_implicit_free(&solid);
     return mesh;
 }

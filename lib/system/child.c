@@ -1,7 +1,7 @@
 #define _GNU_SOURCE
 #include "child.h"
 #include "../error.h"
-#include "../stage.h"
+#include "clock.h"
 
 #include <errno.h>
 #include <fcntl.h>

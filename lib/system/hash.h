@@ -1,10 +1,24 @@
-/* hash.h - FNV-1a, 64 bits: a short name for bytes. No protection against intent. */
+/* hash.h - FNV-1a, 64 bits: a short name for bytes; and one for a number. No protection against
+ * intent. */
 #ifndef SM_HASH_H
 #define SM_HASH_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #define SM_HASH_START 0xcbf29ce484222325ULL
+
+/* A number that says nothing of how near another one is to its neighbours; different numbers have
+ * different ones. Of SM_MIX_STEP after SM_MIX_STEP they are those of the generator splitmix64
+ * (Steele et al. 2014). */
+#define SM_MIX_STEP 0x9e3779b97f4a7c15u
+static inline uint64_t sm_mix(uint64_t number)
+{
+    uint64_t z = number + SM_MIX_STEP;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
 
 /* `hash` of what came before, and then these bytes. */
 static inline unsigned long long sm_hash_bytes(unsigned long long hash, const void *data,

@@ -35,7 +35,7 @@ static inline uint64_t flood_down(uint64_t open, uint64_t seed)
 static bool grow(const Flood *f, int j, int k)
 {
     const int *size = f->solid->size, words = f->solid->words;
-    size_t row = ((size_t)k * (size_t)size[1] + (size_t)j) * (size_t)words;
+    size_t row = sm_voxels_row(f->solid, j, k);
     size_t layer = (size_t)size[1] * (size_t)words;
     const uint64_t *solid = f->solid->bits + row, *beyond = f->beyond;
     uint64_t *out = f->outside + row;
@@ -106,7 +106,5 @@ void sm_flood_inside(SmVoxels *voxels)
             uint64_t cells = w == words - 1 ? flood.last_mask : ~(uint64_t)0;
             voxels->bits[r * words + w] = ~flood.outside[r * words + w] & cells;
         }
-    free(flood.outside);
-    free(flood.beyond);
-    free(flood.stale);
+    sm_free_all(flood.outside, flood.beyond, flood.stale);
 }

@@ -37,9 +37,8 @@ static void cross(Rays *r, int iu, int iv, double depth)
     at[r->v] = iv;
     at[r->axis] = beyond(depth, r->lattice->size[r->axis]);
     if (at[r->axis] == r->lattice->size[r->axis]) return;
-    size_t row = (size_t)at[2] * (size_t)r->lattice->size[1] + (size_t)at[1];
-    r->toggle[row * (size_t)r->lattice->words + (size_t)(at[0] >> 6)] ^= (uint64_t)1
-                                                                         << (at[0] & 63);
+    size_t row = sm_voxels_row(r->lattice, at[1], at[2]);
+    r->toggle[row + (size_t)(at[0] >> 6)] ^= (uint64_t)1 << (at[0] & 63);
 }
 
 /* Where the edge a-b meets the line v = c; the same bits whichever way round the edge is given, so
@@ -118,8 +117,7 @@ static uint64_t parity(uint64_t word, uint64_t *carry)
 static void read_row(Rays *r, int j, int k)
 {
     const int *size = r->lattice->size;
-    size_t words = (size_t)r->lattice->words,
-           row = ((size_t)k * (size_t)size[1] + (size_t)j) * words;
+    size_t words = (size_t)r->lattice->words, row = sm_voxels_row(r->lattice, j, k);
     uint64_t *toggle = r->toggle + row, carry = 0;
     if (r->axis == 0) {
         for (size_t w = 0; w < words; w++) toggle[w] = parity(toggle[w], &carry);
@@ -158,10 +156,9 @@ static bool poll_axis(const SmMesh *mesh, const double (*point)[3], Rays *r, uin
     r->v = r->axis == 2 ? 1 : 2;
     r->words = (size[r->u] - 1) / 64 + 1;
     size_t rays = (size_t)size[r->v] * (size_t)r->words;
-    size_t cells = (size_t)size[1] * (size_t)size[2] * (size_t)r->lattice->words;
     r->odd = sm_alloc(rays, sizeof(uint64_t));
     r->hit = sm_alloc(rays, sizeof(uint64_t));
-    memset(r->toggle, 0, cells * sizeof(uint64_t));
+    memset(r->toggle, 0, sm_voxels_words(r->lattice) * sizeof *r->toggle);
     cast(r, mesh, point);
     bool counts = trusted(r);
     if (counts) count_votes(r, one, two);
@@ -172,14 +169,12 @@ static bool poll_axis(const SmMesh *mesh, const double (*point)[3], Rays *r, uin
 
 int sm_ray_vote(const SmMesh *mesh, const double (*point)[3], SmVoxels *voxels)
 {
-    size_t cells = (size_t)voxels->size[1] * (size_t)voxels->size[2] * (size_t)voxels->words;
-    uint64_t *one = sm_alloc(cells, sizeof(uint64_t)), *two = sm_alloc(cells, sizeof(uint64_t));
-    Rays rays = {.lattice = voxels, .toggle = sm_alloc(cells, sizeof(uint64_t))};
+    size_t words = sm_voxels_words(voxels);
+    uint64_t *one = sm_alloc(words, sizeof(uint64_t)), *two = sm_alloc(words, sizeof(uint64_t));
+    Rays rays = {.lattice = voxels, .toggle = sm_alloc(words, sizeof(uint64_t))};
     int axes = 0;
     for (rays.axis = 0; rays.axis < 3; rays.axis++) axes += poll_axis(mesh, point, &rays, one, two);
-    for (size_t w = 0; w < cells; w++) voxels->bits[w] |= two[w];
-    free(rays.toggle);
-    free(one);
-    free(two);
+    for (size_t w = 0; w < words; w++) voxels->bits[w] |= two[w];
+    sm_free_all(rays.toggle, one, two);
     return axes;
 }

@@ -41,7 +41,7 @@ static inline void touched(double a, double b, double c, int n, int *first, int 
 
 static inline void set_cells(SmVoxels *v, int first, int last, int j, int k)
 {
-    uint64_t *row = v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+    uint64_t *row = v->bits + sm_voxels_row(v, j, k);
     uint64_t head = ~(uint64_t)0 << (first & 63), tail = ~(uint64_t)0 >> (63 - (last & 63));
     int from = first >> 6, to = last >> 6;
     if (from == to) {

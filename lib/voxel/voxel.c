@@ -11,7 +11,7 @@ void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell)
     assert(nx > 0 && ny > 0 && nz > 0 && cell > 0);
     int words = (nx - 1) / 64 + 1;
     *voxels = (SmVoxels){.size = {nx, ny, nz}, .cell = cell, .words = words};
-    voxels->bits = sm_alloc((size_t)ny * (size_t)nz, (size_t)words * sizeof(uint64_t));
+    voxels->bits = sm_alloc(sm_voxels_words(voxels), sizeof *voxels->bits);
 }
 
 void sm_voxels_block(SmVoxels *voxels, int nx, int ny, int nz, double cell)
@@ -23,17 +23,32 @@ void sm_voxels_block(SmVoxels *voxels, int nx, int ny, int nz, double cell)
     sm_voxels_count(voxels);
 }
 
+void sm_voxels_copy(const SmVoxels *from, SmVoxels *to)
+{
+    *to = *from;
+    to->bits = sm_alloc(sm_voxels_words(from), sizeof *to->bits);
+    memcpy(to->bits, from->bits, sm_voxels_words(from) * sizeof *to->bits);
+}
+
 void sm_voxels_free(SmVoxels *voxels)
 {
     free(voxels->bits);
-    memset(voxels, 0, sizeof *voxels);
+    *voxels = (SmVoxels){0};
+}
+
+long sm_voxels_cells(const SmVoxels *voxels)
+{
+    long cells = 0;
+    for (size_t w = 0; w < sm_voxels_words(voxels); w++)
+        cells += __builtin_popcountll(voxels->bits[w]);
+    return cells;
 }
 
 /* The row of cells (j, k), or the row of no material outside the box. */
 static const uint64_t *row_of(const SmVoxels *v, int j, int k, const uint64_t *none)
 {
     if (j < 0 || k < 0 || j >= v->size[1] || k >= v->size[2]) return none;
-    return v->bits + ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+    return v->bits + sm_voxels_row(v, j, k);
 }
 
 /* The four rows of cells that touch the row of lattice vertices (j, k). */
@@ -63,9 +78,7 @@ static inline uint64_t vertex_word(VertexRow *r, int w, int words)
 void sm_voxels_count(SmVoxels *voxels)
 {
     uint64_t *none = sm_alloc((size_t)voxels->words, sizeof *none);
-    long cells = 0, particles = 0;
-    size_t words = (size_t)voxels->size[1] * (size_t)voxels->size[2] * (size_t)voxels->words;
-    for (size_t w = 0; w < words; w++) cells += __builtin_popcountll(voxels->bits[w]);
+    long particles = 0;
     for (int k = 0; k <= voxels->size[2]; k++)
         for (int j = 0; j <= voxels->size[1]; j++) {
             VertexRow row = vertex_row(voxels, j, k, none);
@@ -73,7 +86,7 @@ void sm_voxels_count(SmVoxels *voxels)
                 particles += __builtin_popcountll(vertex_word(&row, w, voxels->words));
         }
     free(none);
-    voxels->cell_count = cells;
+    voxels->cell_count = sm_voxels_cells(voxels);
     voxels->particle_count = particles;
 }
 

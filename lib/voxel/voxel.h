@@ -28,7 +28,11 @@ void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell);
 /* The same with material in every cell, counted. */
 void sm_voxels_block(SmVoxels *voxels, int nx, int ny, int nz, double cell);
 
+void sm_voxels_copy(const SmVoxels *from, SmVoxels *to);
 void sm_voxels_free(SmVoxels *voxels);
+
+/* How many cells of the bits have material. O(words). */
+long sm_voxels_cells(const SmVoxels *voxels);
 
 /* Fills in cell_count and particle_count from bits. O(words). */
 void sm_voxels_count(SmVoxels *voxels);
@@ -40,18 +44,28 @@ void sm_voxels_particles(const SmVoxels *voxels, int (*coordinate)[3]);
 /* Rest positions of all particles in canonical order, into position[particle_count]. */
 void sm_voxels_rest(const SmVoxels *voxels, double (*position)[3]);
 
+/* First word of the row of cells (j, k), which is in the box. */
+static inline size_t sm_voxels_row(const SmVoxels *v, int j, int k)
+{
+    return ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
+}
+
+/* Words of all rows. */
+static inline size_t sm_voxels_words(const SmVoxels *v)
+{
+    return sm_voxels_row(v, 0, v->size[2]);
+}
+
 static inline bool sm_voxel_get(const SmVoxels *v, int i, int j, int k)
 {
     if (i < 0 || j < 0 || k < 0 || i >= v->size[0] || j >= v->size[1] || k >= v->size[2])
         return false;
-    size_t row = ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
-    return v->bits[row + (size_t)(i >> 6)] >> (i & 63) & 1;
+    return v->bits[sm_voxels_row(v, j, k) + (size_t)(i >> 6)] >> (i & 63) & 1;
 }
 
 static inline void sm_voxel_set(SmVoxels *v, int i, int j, int k)
 {
-    size_t row = ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
-    v->bits[row + (size_t)(i >> 6)] |= (uint64_t)1 << (i & 63);
+    v->bits[sm_voxels_row(v, j, k) + (size_t)(i >> 6)] |= (uint64_t)1 << (i & 63);
 }
 
 /* The material cell that holds lattice position q (cells from the corner of voxel (0,0,0)), or the

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../box.h"
+#include "../system/hash.h"
 #include "flood.h"
 #include "ray_vote.h"
 #include "surface_cells.h"
@@ -31,33 +33,20 @@ typedef struct {
 
 static void measure(Voxeliser *v)
 {
-    double high[3];
-    for (int d = 0; d < 3; d++) {
-        v->low[d] = INFINITY;
-        high[d] = -INFINITY;
-    }
+    SmBox box = sm_no_box();
     for (long t = 0; t < v->mesh->triangle_count; t++)
-        for (int c = 0; c < 3; c++) {
-            const double *p = v->mesh->position[v->mesh->triangle[t][c]];
-            for (int d = 0; d < 3; d++) {
-                v->low[d] = p[d] < v->low[d] ? p[d] : v->low[d];
-                high[d] = p[d] > high[d] ? p[d] : high[d];
-            }
-        }
+        for (int c = 0; c < 3; c++) sm_box_add(&box, v->mesh->position[v->mesh->triangle[t][c]]);
     for (int d = 0; d < 3; d++) {
-        v->extent[d] = high[d] - v->low[d];
+        v->low[d] = box.low[d];
+        v->extent[d] = box.high[d] - box.low[d];
         v->longest = fmax(v->longest, v->extent[d]);
     }
 }
 
-/* A 64-bit name of an edge (the finaliser of splitmix64). */
+/* A 64-bit name of an edge. */
 static uint64_t edge_name(int a, int b)
 {
-    uint64_t x = a < b ? (uint64_t)a << 32 | (uint64_t)b : (uint64_t)b << 32 | (uint64_t)a;
-    x += 0x9e3779b97f4a7c15u;
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-    return x ^ x >> 31;
+    return sm_mix(a < b ? (uint64_t)a << 32 | (uint64_t)b : (uint64_t)b << 32 | (uint64_t)a);
 }
 
 /* Edges used an even number of times cancel out; by chance others do once in 2^64 meshes. */
@@ -118,20 +107,12 @@ static double words_of(const Voxeliser *v, double cell)
     return ceil(at.size[0] / 64.0) * at.size[1] * at.size[2];
 }
 
-static long cells_of(const SmVoxels *voxels)
-{
-    long cells = 0;
-    size_t words = (size_t)voxels->size[1] * (size_t)voxels->size[2] * (size_t)voxels->words;
-    for (size_t w = 0; w < words; w++) cells += __builtin_popcountll(voxels->bits[w]);
-    return cells;
-}
-
 /* Fills the inside. Returns false when there cannot be one: no axis has rays that leave again, and
  * most triangles share no edge with another. */
 static bool fill_inside(Voxeliser *v, SmVoxels *voxels, SmVoxelReport *report)
 {
     sm_flood_inside(voxels);
-    long flooded = cells_of(voxels);
+    long flooded = sm_voxels_cells(voxels);
     report->flood_cells = flooded - report->shell_cells;
     report->inside = SM_INSIDE_CLOSED;
     if (v->closed) return true;
@@ -139,7 +120,7 @@ static bool fill_inside(Voxeliser *v, SmVoxels *voxels, SmVoxelReport *report)
     if (axes == 0 && sm_mesh_info(v->mesh).open_edges * 2 > v->mesh->triangle_count * 5)
         return false;
     sm_flood_inside(voxels);
-    report->vote_cells = cells_of(voxels) - flooded;
+    report->vote_cells = sm_voxels_cells(voxels) - flooded;
     report->inside = report->vote_cells    ? SM_INSIDE_VOTED
                      : report->flood_cells ? SM_INSIDE_TIGHT
                                            : SM_INSIDE_NONE;
@@ -165,7 +146,7 @@ static SmCode build(Voxeliser *v, double cell, const double shift[3], SmVoxels *
         for (int d = 0; d < 3; d++)
             v->point[i][d] = (v->mesh->position[i][d] - v->low[d]) / cell + at.pad[d];
     sm_surface_cells(v->mesh, (const double(*)[3])v->point, voxels);
-    report->shell_cells = cells_of(voxels);
+    report->shell_cells = sm_voxels_cells(voxels);
     if (v->fill == SM_SOLID && !fill_inside(v, voxels, report)) {
         sm_voxels_free(voxels);
         return sm_fail(error, SM_INPUT,

@@ -1,9 +1,9 @@
 /* engine_base.h - how an octree engine begins, in either precision, and what it offers beyond
- * lib/engine.h: its structure, and resampling while it runs. */
+ * lib/engine/engine.h: its structure, and resampling while it runs. */
 #ifndef OCT_ENGINE_BASE_H
 #define OCT_ENGINE_BASE_H
 
-#include "../../lib/engine.h"
+#include "../../lib/engine/engine.h"
 #include "structure.h"
 
 /* What an octree engine's bodies share (structure.h); it lives as long as the engine. */

@@ -1,4 +1,4 @@
-/* options.h - what an octree engine is made by, beside lib/engine.h's parameters. */
+/* options.h - what an octree engine is made by, beside lib/engine/engine.h's parameters. */
 #ifndef OCT_OPTIONS_H
 #define OCT_OPTIONS_H
 

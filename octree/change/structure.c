@@ -104,19 +104,11 @@ static SmCode complete(const double *mass, const SmCut *cut, OctStructure *s, Sm
     return SM_OK;
 }
 
-static void copy_voxels(const SmVoxels *from, SmVoxels *to)
-{
-    size_t words = (size_t)from->words * (size_t)from->size[1] * (size_t)from->size[2];
-    *to = *from;
-    to->bits = sm_alloc(words, sizeof *to->bits);
-    memcpy(to->bits, from->bits, words * sizeof *to->bits);
-}
-
 static void start(const SmVoxels *voxels, const OctOptions *options, OctStructure *s)
 {
     *s = (OctStructure){.cell = voxels->cell, .options = *options};
     for (int d = 0; d < 3; d++) s->origin[d] = voxels->origin[d];
-    copy_voxels(voxels, &s->voxels);
+    sm_voxels_copy(voxels, &s->voxels);
 }
 
 SmCode oct_structure_build(const SmVoxels *voxels, const OctOptions *options, const double *mass,

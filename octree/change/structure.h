@@ -45,10 +45,10 @@ typedef struct OctStructure {
     struct OctResample *resample; /* what changing it needs, or NULL */
 } OctStructure;
 
-/* `mass` is that of the lattice's vertices (lib/engine.h): each gives equal parts of it to the
- * material cells around it, and a leaf weighs what its cells do; NULL: 1 a cell. Errors (SM_INPUT),
- * on which `structure` is zeroed: those of oct_sampling_tree(), and options out of range. The
- * caller frees. */
+/* `mass` is that of the lattice's vertices (lib/engine/engine.h): each gives equal parts of it to
+ * the material cells around it, and a leaf weighs what its cells do; NULL: 1 a cell. Errors
+ * (SM_INPUT), on which `structure` is zeroed: those of oct_sampling_tree(), and options out of
+ * range. The caller frees. */
 SmCode oct_structure_build(const SmVoxels *voxels, const OctOptions *options, const double *mass,
                            OctStructure *structure, SmError *error);
 

@@ -2,7 +2,7 @@
 #ifndef OCT_TEST_CHANGE_BODY_H
 #define OCT_TEST_CHANGE_BODY_H
 
-#include "../../lib/engine.h"
+#include "../../lib/engine/engine.h"
 #include "../../lib/test_fields.h"
 #include "../body_arrays.h"
 #include "../dynamic_body.h"

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/boundary.h"
+#include "../../lib/engine/boundary.h"
 #include "../../lib/vector.h"
 #include "motion/grip.h"
 #include "motion/skin.h"

@@ -1,4 +1,4 @@
-/* engine.h - meshless elastic bodies (Guo and Qin 2009) behind lib/engine.h.
+/* engine.h - meshless elastic bodies (Guo and Qin 2009) behind lib/engine/engine.h.
  *
  * Its particles are the lattice's vertices, carried by the body as its surface would be (skin.h),
  * so that scenes, handles and surfaces are those of lattice engines; w, summation, polar and layout
@@ -15,7 +15,7 @@
 #ifndef REF_MESHLESS_ENGINE_H
 #define REF_MESHLESS_ENGINE_H
 
-#include "../../lib/engine.h"
+#include "../../lib/engine/engine.h"
 #include "../../lib/mesh/mesh.h"
 #include "motion/motion.h"
 #include "motion/skin.h"

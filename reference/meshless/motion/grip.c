@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../../lib/boundary.h"
+#include "../../../lib/engine/boundary.h"
 #include "../../../lib/vector.h"
 #include "../solve/least_squares.h"
 #include "rotation.h"

@@ -8,7 +8,7 @@
 #include "../shapes/shape.h"
 #include "../test_frame.h"
 #include "../vector.h"
-#include "../voxel/voxelise.h"
+#include "voxelise.h"
 
 enum { N = 4, RINGS = 12, SPOKES = 16 };
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "error.h"
+#include "../error.h"
 
 void sm_pose_apply(const double pose[3][4], const double from[3], double to[3])
 {

@@ -7,8 +7,8 @@
 #ifndef SM_OBSTACLE_H
 #define SM_OBSTACLE_H
 
+#include "../simd/lanes.h"
 #include "boundary.h"
-#include "simd/lanes.h"
 
 /* A static obstacle in an engine's own units: lattice cells from its home origin. */
 typedef struct {

@@ -2,8 +2,8 @@
 #ifndef SM_TEST_PIECE_SUMS_H
 #define SM_TEST_PIECE_SUMS_H
 
-#include "mesh/mesh.h"
-#include "vector.h"
+#include "../vector.h"
+#include "mesh.h"
 
 /* Sums `value` of all members of every piece into sum[count]: with masses, the pieces' masses. */
 static inline void sum_pieces(const SmPieces *pieces, long members, const double *value,
@@ -19,14 +19,8 @@ static inline void sum_pieces(const SmPieces *pieces, long members, const double
 static inline void sum_volumes(const SmMesh *mesh, const SmPieces *pieces, double *volume)
 {
     for (long n = 0; n < pieces->count; n++) volume[n] = 0;
-    const double *o = mesh->position[0];
-    for (long t = 0; t < mesh->triangle_count; t++) {
-        double p[3][3], cross[3];
-        for (int i = 0; i < 3; i++)
-            for (int d = 0; d < 3; d++) p[i][d] = mesh->position[mesh->triangle[t][i]][d] - o[d];
-        sm_cross(p[1], p[2], cross);
-        volume[pieces->piece[t]] += sm_dot(p[0], cross) / 6;
-    }
+    for (long t = 0; t < mesh->triangle_count; t++)
+        volume[pieces->piece[t]] += sm_mesh_six_volumes(mesh, t, mesh->position[0]) / 6;
 }
 
 #endif

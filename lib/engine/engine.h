@@ -11,12 +11,12 @@
 
 #include <stdbool.h>
 
+#include "../cut/cut.h"
+#include "../error.h"
+#include "../pieces.h"
+#include "../voxel/voxel.h"
 #include "boundary.h"
-#include "cut/cut.h"
-#include "error.h"
-#include "pieces.h"
 #include "stage.h"
-#include "voxel/voxel.h"
 
 typedef enum { SM_SUM_FAST, SM_SUM_BARS, SM_SUM_NAIVE } SmSummation;
 typedef enum { SM_POLAR_FAST, SM_POLAR_JACOBI } SmPolarMethod;

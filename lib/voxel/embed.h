@@ -2,9 +2,9 @@
 #ifndef SM_EMBED_H
 #define SM_EMBED_H
 
+#include "../mesh/mesh.h"
 #include "../operations.h"
-#include "../voxel/sites.h"
-#include "mesh.h"
+#include "sites.h"
 
 /* A vertex carried by particles that span less than space, beside a cut (embed_cut.h): it stands
  * off what its weights make of it, by what turns with them: rigidly where they span a plane, about

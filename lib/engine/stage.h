@@ -6,6 +6,8 @@
 
 #include <stddef.h>
 
+#include "../system/clock.h"
+
 typedef enum {
     SM_FAST_SUM,       /* summation over regions, both directions */
     SM_SHAPE_MATCHING, /* c_r, A_r, T_r, goal positions */
@@ -23,9 +25,6 @@ typedef struct {
 
 /* "fast_sum", "shape_matching", "polar", "damping", "other". */
 const char *sm_stage_name(SmStage stage);
-
-/* Monotonic seconds (clock_gettime, served without a system call). */
-double sm_now(void);
 
 /* Seconds that reading the clock takes at best: what a lap adds to its stage, at least. */
 double sm_lap_seconds(void);

@@ -8,7 +8,7 @@
 #include "../polar.h"
 #include "../system/team.h"
 #include "../vector.h"
-#include "../voxel/voxel.h"
+#include "voxel.h"
 
 /* U and V with U x V = N, orthonormal; zero when N is. */
 void sm_embed_tangents(const double sum[3], double u[3], double v[3])
@@ -89,11 +89,8 @@ void sm_embed_create(const SmMesh *mesh, const SmVoxels *voxels, SmEmbedding *em
 
 void sm_embed_free(SmEmbedding *embedding)
 {
-    free(embedding->corner);
-    free(embedding->weight);
-    free(embedding->tangent_u);
-    free(embedding->tangent_v);
-    free(embedding->flat);
+    sm_free_all(embedding->corner, embedding->weight, embedding->tangent_u, embedding->tangent_v,
+                embedding->flat);
     *embedding = (SmEmbedding){0};
 }
 
