@@ -10,7 +10,7 @@
 #include "measure/elastic_row.h"
 #include "measure/tree_row.h"
 #include "play/carrier.h"
-#include "scene/room.h"
+#include "scene/memory.h"
 
 static void set_cells(BenchScene *scene, double w, double epsilon, bool cells)
 {
@@ -34,7 +34,7 @@ const BenchEngine bench_fastlsm = {.type = {&fastlsm_engine_f32, &fastlsm_engine
                                    .carrier = &bench_lattice_carrier,
                                    .twin = &bench_lattice_twin,
                                    .checker = &bench_matching_checker,
-                                   .room = bench_room_lattice};
+                                   .memory = bench_memory_lattice};
 
 const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f64},
                                   .sampled = true,
@@ -47,13 +47,13 @@ const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f6
                                   .explain = bench_tree_row_explain,
                                   .describe = bench_summary_octree,
                                   .structure = oct_engine_structure,
-                                  .room = bench_room_octree};
+                                  .memory = bench_memory_octree};
 
 const BenchEngine bench_brute = {.type = {&ref_brute_engine},
                                  .carrier = &bench_lattice_carrier,
                                  .twin = &bench_lattice_twin,
                                  .checker = &bench_matching_checker,
-                                 .room = bench_room_brute};
+                                 .memory = bench_memory_brute};
 
 static const BenchStages meshless_stages = {
     .name = {[SM_SHAPE_MATCHING] = "motion", [SM_OTHER] = "skin"}, .before = SM_SHAPE_MATCHING};
@@ -67,4 +67,4 @@ const BenchEngine bench_meshless = {.type = {&ref_meshless_engine},
                                     .checker = &bench_elastic_checker,
                                     .fill = bench_elastic_row_fill,
                                     .explain = bench_elastic_row_explain,
-                                    .room = bench_room_lattice};
+                                    .memory = bench_memory_lattice};

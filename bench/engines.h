@@ -63,7 +63,7 @@ typedef struct {
     void (*describe)(const BenchRunner *runner, const SmCounts *counts);
 
     /* Bytes that the engine takes for so many particles of the scene, about. */
-    double (*room)(const BenchScene *scene, double particles);
+    double (*memory)(const BenchScene *scene, double particles);
 } BenchEngine;
 
 extern const BenchEngine bench_fastlsm, bench_octree, bench_brute, bench_meshless;

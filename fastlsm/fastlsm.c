@@ -45,7 +45,7 @@ static void keep_goals(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *
 void lsm_goals(Lsm *lsm)
 {
     static const LsmPass goals = {.end = keep_goals};
-    lsm->damp_now = false; /* keep no centres: goals take their room */
+    lsm->damp_now = false; /* keep no centres: goals take their place */
     lsm->g = lsm->centre;
     for (int l = 0; l < lsm->layers; l++) lsm->sweeps[l] = 0;
     lsm_run(lsm, &goals, NULL);

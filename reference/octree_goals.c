@@ -7,19 +7,21 @@
 #include "../lib/vector.h"
 #include "svd_polar.h"
 
-/* Appends the leaves below a tree node, by rank; returns how many there are then. */
-static long append_leaves(const OctTree *tree, const int *rank, long node, int *member, long count)
+/* Appends the leaves below a tree node, numbered among those that live; returns how many there are
+ * then. */
+static long append_leaves(const OctTree *tree, const int *number, long node, int *member,
+                          long count)
 {
     if (tree->child[node] < 0) {
-        if (member) member[count] = rank[tree->leaf[node]];
+        if (member) member[count] = number[tree->leaf[node]];
         return count + 1;
     }
     for (int i = 0; i < tree->children[node]; i++)
-        count = append_leaves(tree, rank, tree->child[node] + i, member, count);
+        count = append_leaves(tree, number, tree->child[node] + i, member, count);
     return count;
 }
 
-static long explicit_leaves(const OctTree *tree, const OctRegions *regions, const int *rank,
+static long explicit_leaves(const OctTree *tree, const OctRegions *regions, const int *number,
                             long *start, int *member)
 {
     long count = 0, live = 0;
@@ -27,7 +29,7 @@ static long explicit_leaves(const OctTree *tree, const OctRegions *regions, cons
         if (tree->node[r] < 0) continue;
         start[live++] = count;
         for (long n = regions->first[r]; n < oct_regions_end(regions, r); n++)
-            count = append_leaves(tree, rank, regions->member[n], member, count);
+            count = append_leaves(tree, number, regions->member[n], member, count);
     }
     start[live] = count;
     return count;
@@ -47,14 +49,15 @@ void ref_tree_init(const OctTree *tree, const OctRegions *regions, const double 
                    RefTreeBody *body)
 {
     size_t n = (size_t)tree->leaves;
-    int *rank = sm_alloc(n, sizeof *rank), live = 0;
+    int *number = sm_alloc(n, sizeof *number), live = 0;
     for (long leaf = 0; leaf < tree->leaves; leaf++)
-        if (tree->node[leaf] >= 0) rank[leaf] = live++;
+        if (tree->node[leaf] >= 0) number[leaf] = live++;
     memset(body, 0, sizeof *body);
     RefRegions *r = &body->regions;
     r->start = sm_alloc(n + 1, sizeof *r->start);
-    r->member = sm_alloc((size_t)explicit_leaves(tree, regions, rank, r->start, NULL), sizeof(int));
-    explicit_leaves(tree, regions, rank, r->start, r->member);
+    r->member =
+        sm_alloc((size_t)explicit_leaves(tree, regions, number, r->start, NULL), sizeof(int));
+    explicit_leaves(tree, regions, number, r->start, r->member);
     body->x0 = sm_alloc(n, sizeof *body->x0);
     body->m = sm_alloc(n, sizeof *body->m);
     body->weight = sm_alloc(n, sizeof *body->weight);
@@ -68,7 +71,7 @@ void ref_tree_init(const OctTree *tree, const OctRegions *regions, const double 
             body->reach[r->member[k]] += body->m[i];
     for (long i = 0; i < r->count; i++)
         body->weight[i] = plain ? body->m[i] : body->m[i] / body->reach[i];
-    free(rank);
+    free(number);
 }
 
 void ref_tree_free(RefTreeBody *body)

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../../lib/engine/stage.h"
+#include "../../lib/system/clock.h"
 #include "../store/draft.h"
 #include "../system/interrupt.h"
 

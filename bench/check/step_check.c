@@ -175,8 +175,8 @@ static double length(const double v[3])
     return sqrt(sm_dot(v, v));
 }
 
-/* The frame of every leaf that lives, by rank, in an engine made for the structure of this one;
- * returns how many there are. */
+/* The frame of every leaf that lives, in their order, in an engine made for the structure of this
+ * one; returns how many there are. */
 static long tree_frames(const SmEngine *engine, int *frame)
 {
     const OctStructure *s = oct_engine_structure(engine);

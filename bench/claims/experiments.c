@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../engines.h"
-#include "../measure/moment.h"
+#include "../measure/disturbance.h"
 #include "scene_field.h"
 
 /* Settings beside the experiment's name, and which of them one takes, as bits. */
@@ -217,14 +217,14 @@ void bench_experiment_name(const BenchMeasure *measure, char name[BENCH_CURVE_NA
 
 /* Of times that were taken from `start` on: are they of this program alone? The low end of them
  * stands a quarter of the time lost; that of matrices, whose samples are short, more. */
-static void check_busy(const BenchMeasure *measure, const BenchMoment *start, BenchCurve *curve)
+static void check_busy(const BenchMeasure *measure, const BenchInstant *start, BenchCurve *curve)
 {
-    BenchMoment end = bench_moment_end(1);
-    double lost = bench_moment_lost(start, &end);
+    BenchInstant end = bench_instant_end(1);
+    double lost = bench_instant_lost(start, &end);
     if (!kinds[measure->experiment].timed || lost <= 0.25) return;
     curve->busy = curve->valid;
     bench_curve_fail(curve, "others took %.0f%% of its processor (load average %.1f)", 100 * lost,
-                     bench_moment_load());
+                     bench_load_average());
 }
 
 static SmCode measure_scene(const BenchExperiment *of, SmError *error)
@@ -260,7 +260,7 @@ int bench_experiment(BenchLab *lab, const BenchMeasure *measure)
     SmError error;
     bool whole = measure->experiment == BENCH_TRY_SCENE;
     bench_curve_begin(&curve, kind->x_name, kind->y_name ? kind->y_name : measure->field);
-    BenchMoment start = bench_moment_start(1);
+    BenchInstant start = bench_instant_start(1);
     if (kind->takes & SCENE && !whole ? measure_body(kind, &of, &error) : kind->run(&of, &error))
         bench_curve_fail(&curve, "%.180s", error.text);
     check_busy(measure, &start, &curve);

@@ -18,7 +18,7 @@
  * point: the estimates must, and a step whose intervals are apart the wrong way contradicts it.
  * That is of claims of the method. What the scene file sets is counted by the same tests and is as
  * set or not; of a machine's speed the ratio is given, and no band is held against it (claim.h).
- * Times that other programs took too much of (moment.h) are BUSY and judge nothing.
+ * Times that other programs took too much of (disturbance.h) are BUSY and judge nothing.
  * What has no interval (counts) is either in the band or outside. Measured are the repeats of one
  * run: a machine that does other work throughout shifts all of them. */
 #ifndef BENCH_VERDICT_H

@@ -148,7 +148,7 @@ bool bench_summary_print(BenchPlayback *play, const BenchOutcome *outcome)
         printf("nothing timed\n");
     else if (bench_watch_busy(&step->watch))
         printf("BUSY: other programs took %.0f%% of its processors (load average %.1f)\n",
-               bench_watch_lost(&step->watch), bench_moment_load());
+               bench_watch_lost(&step->watch), bench_load_average());
     else
         printf("%.4g ms a step, %.4g ns per particle and step\n", 1e3 * seconds,
                1e9 * seconds / (double)particles);

@@ -2,7 +2,7 @@
 #ifndef BENCH_SUMMARY_H
 #define BENCH_SUMMARY_H
 
-#include "../measure/moment.h"
+#include "../measure/disturbance.h"
 #include "../play/playback.h"
 
 /* What the frames came to. */

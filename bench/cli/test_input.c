@@ -55,7 +55,7 @@ TEST(pipes_and_devices_are_refused_at_once)
         assert_refused(commands[i], "pipe or device");
 }
 
-/* Points without an end of line, in a file that takes no room on disk. */
+/* Points without an end of line, in a file that takes nothing of the disk. */
 TEST(lines_have_an_end)
 {
     write_text("sparse.xyz", "0 0 0 0 0 1\n");

@@ -105,7 +105,7 @@ TEST(an_engine_of_one_thread_starts_no_other)
 }
 
 /* OpenMP's runtime ends the program where it is asked for so many anywhere: beyond SM_MOST_THREADS
- * in any case, and here, where stacks find no room, from some hundreds on. */
+ * in any case, and here, where there is no memory for stacks, from some hundreds on. */
 TEST(the_program_runs_on_the_number_it_is_given)
 {
     static const char *const numbers[] = {"", "--threads 2"};

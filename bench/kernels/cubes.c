@@ -6,7 +6,7 @@
 
 #include "../../fastlsm/fastlsm.h"
 #include "../../fastlsm/operations.h"
-#include "../scene/room.h"
+#include "../scene/memory.h"
 #include "kernel.h"
 
 static const double particle_bytes = 400; /* measured; brute force takes half as much again */
@@ -74,7 +74,7 @@ SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParam
     char reason[160];
     BenchBlock *block = &cube->block;
     *cube = (BenchCube){0};
-    SmCode code = bench_room_cube(side, type->name, particle_bytes, error);
+    SmCode code = bench_memory_cube(side, type->name, particle_bytes, error);
     if (!code) code = bench_block_create((int[3]){side, side, side}, type, params, block, error);
     if (code) return code;
     cube->trial = (BenchTrial){.timed = {cube, start, step},

@@ -18,7 +18,7 @@ typedef struct {
 } BenchCube;
 
 /* Builds the engine with these parameters, disturbs it and checks its goals (solid_block.h).
- * Errors: SM_MEMORY (room.h), those of the engine; on which `cube` is zeroed. */
+ * Errors: SM_MEMORY (memory.h), those of the engine; on which `cube` is zeroed. */
 SmCode bench_cube_create(int side, const SmEngineType *type, const SmEngineParams *params,
                          unsigned long seed, BenchCube *cube, SmError *error);
 void bench_cube_free(BenchCube *cube);

@@ -202,7 +202,7 @@ void bench_kernel_busy(BenchKernelRow *row, double lost_percent)
     row->busy = true;
     snprintf(row->reason, sizeof row->reason,
              "other programs took %.0f%% of its processors (load average %.1f)", lost_percent,
-             bench_moment_load());
+             bench_load_average());
 }
 
 static void find_busy(const BenchTrial *trial, BenchKernelRow *row)

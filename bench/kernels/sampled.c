@@ -1,7 +1,7 @@
 #include "sampled.h"
 
 #include "../../lib/shapes/shape.h"
-#include "../scene/room.h"
+#include "../scene/memory.h"
 
 /* Of the hand's solid lattice; the second has 35,000 material cells. */
 enum { PARTICLES = 35000, REGULAR_PARTICLES = 41400, BASES = 28, NODES = 661, LEVELS = 4 };
@@ -14,7 +14,7 @@ static SmCode make_voxels(int side, SmVoxels *voxels, SmError *error)
     const SmVoxelParams params = {.fill = SM_SOLID,
                                   .particles = side == BENCH_HAND ? PARTICLES : REGULAR_PARTICLES};
     SmMesh mesh = {0};
-    SmCode code = side > 0 ? bench_room_cube(side, "octree", node_bytes, error)
+    SmCode code = side > 0 ? bench_memory_cube(side, "octree", node_bytes, error)
                            : sm_shape_mesh("hand", &mesh, error);
     if (!code && side > 0)
         sm_voxels_block(voxels, side, side, side, 1);

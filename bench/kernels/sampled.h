@@ -13,7 +13,7 @@
 enum { BENCH_HAND = 0, BENCH_REGULAR_HAND = -1 };
 
 /* A cube of side^3 nodes, or a hand. Errors: those of making the shape, its voxels and its
- * structure; of a cube SM_MEMORY (room.h); on which `body` is zeroed. The caller frees. */
+ * structure; of a cube SM_MEMORY (memory.h); on which `body` is zeroed. The caller frees. */
 SmCode bench_sampled(int side, OctStructure *body, SmError *error);
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef BENCH_TRIAL_H
 #define BENCH_TRIAL_H
 
-#include "../measure/moment.h"
+#include "../measure/disturbance.h"
 #include "../measure/step_timer.h"
 
 typedef struct {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "moment.h"
+#include "disturbance.h"
 #include "quartiles.h"
 
 enum { SIMULATION, CHANGE, FOLLOW, SURFACE }; /* in the order of BenchChangeRow */

@@ -14,7 +14,7 @@ typedef struct BenchChecker {
 
     /* SM_INPUT: the bodies cannot be checked, by which the check would take too much memory, or
      * contradict themselves. May be NULL. */
-    SmCode (*room)(const BenchPlayback *play, SmError *error);
+    SmCode (*accepts)(const BenchPlayback *play, SmError *error);
 
     /* What the check needs of the bodies as they are now; begun anew when they have changed. */
     void *(*begin)(BenchPlayback *play);

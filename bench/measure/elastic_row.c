@@ -51,7 +51,7 @@ static BenchRunner *runner_of(BenchPlayback *play)
     return &play->group[0].runner;
 }
 
-static SmCode room(const BenchPlayback *play, SmError *error)
+static SmCode accepts(const BenchPlayback *play, SmError *error)
 {
     const RefElastic *elastic = ref_meshless_elastic(play->group[0].runner.engine);
     for (int i = 0; i < elastic->holds; i++)
@@ -100,7 +100,7 @@ static void end(void *check)
 
 const BenchChecker bench_elastic_checker = {.size = sizeof(BenchElasticFound),
                                             .takes = takes,
-                                            .room = room,
+                                            .accepts = accepts,
                                             .begin = begin,
                                             .rest = rest,
                                             .state = state,

@@ -80,7 +80,7 @@ typedef struct {
     int count;
 } Checks;
 
-static SmCode room(const BenchPlayback *play, SmError *error)
+static SmCode accepts(const BenchPlayback *play, SmError *error)
 {
     SmCode code = SM_OK;
     for (int p = 0; p < play->count && !code; p++) code = check_room(&play->group[p].runner, error);
@@ -133,7 +133,7 @@ static void let_go(void *check)
 
 const BenchChecker bench_matching_checker = {
     .size = sizeof(BenchDeviation),
-    .room = room,
+    .accepts = accepts,
     .begin = begin,
     .rest = rest,
     .state = state,

@@ -209,7 +209,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
         code = bench_playback_create(scene, body, type, params->threads, params->seed, &trial.play,
                                      error);
     if (code) return code;
-    if (checker->room) code = checker->room(&trial.play, error);
+    if (checker->accepts) code = checker->accepts(&trial.play, error);
     if (code) {
         free_trial(&trial);
         return code;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "moment.h"
+#include "disturbance.h"
 #include "quartiles.h"
 
 typedef struct {
@@ -135,7 +135,7 @@ static void summarise(BenchRow *row)
 static void find_busy(const BenchWatch *watch, BenchRow *row)
 {
     row->lost_percent = bench_watch_lost(watch);
-    row->load = bench_moment_load();
+    row->load = bench_load_average();
     row->busy = bench_watch_busy(watch);
     if (!row->busy) return;
     row->total_ms = row->total_low_ms = row->total_high_ms = NAN;

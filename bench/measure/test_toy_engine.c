@@ -4,7 +4,7 @@
 #include "../../lib/test_folder.h"
 #include "../engines.h"
 #include "../play/carrier.h"
-#include "../scene/room.h"
+#include "../scene/memory.h"
 #include "../table/row_store.h"
 #include "../table/table.h"
 #include "checker.h"
@@ -149,7 +149,7 @@ static const BenchChecker toy_checker = {
 static const BenchEngine toy = {.type = {&toy_type},
                                 .carrier = &bench_lattice_carrier,
                                 .checker = &toy_checker,
-                                .room = bench_room_lattice};
+                                .memory = bench_memory_lattice};
 
 /* ---- the registry */
 

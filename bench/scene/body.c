@@ -10,8 +10,8 @@
 #include "../../lib/shapes/shape.h"
 #include "../../lib/system/file.h"
 #include "../../lib/voxel/voxelise.h"
+#include "memory.h"
 #include "nearest.h"
-#include "room.h"
 
 SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
 {
@@ -217,12 +217,12 @@ SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body,
     bounds(m, body->low, body->high);
     double start = sm_now(),
            wishes = (double)(scene->cells ? scene->cells : scene->voxel.particles);
-    SmCode code = bench_room_check(scene, wishes, error); /* before minutes of voxelising */
+    SmCode code = bench_memory_check(scene, wishes, error); /* before minutes of voxelising */
     if (!code)
         code = scene->cells > 0 ? voxelise_cells(scene, m, &body->voxels, error)
                                 : sm_voxelise(m, &scene->voxel, scene->mesh, &body->voxels, error);
     body->voxelise_seconds = sm_now() - start;
-    if (!code) code = bench_room_check(scene, (double)body->voxels.particle_count, error);
+    if (!code) code = bench_memory_check(scene, (double)body->voxels.particle_count, error);
     if (!code) {
         stand_instances(scene, body);
         code = place_particles(scene, body, error);

@@ -46,7 +46,7 @@ void bench_scene_sample(BenchScene *scene);
 void bench_scene_hold(const SmMesh *mesh, BenchScene *scene);
 
 /* Voxelises, and fills in the rest. Takes `mesh` over, also when it fails. Errors as sm_voxelise(),
- * and SM_MEMORY when the scene's engine would not fit (room.h). */
+ * and SM_MEMORY when the scene's engine would not fit (memory.h). */
 SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body, SmError *error);
 
 /* The same of bench_mesh_of_scene(). When it fails the body is zeroed. */

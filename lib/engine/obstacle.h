@@ -122,7 +122,7 @@ SM_INLINE vec obstacle_depth(const Obstacle *o, const vec x[3], vec normal[3])
     }
 }
 
-/* Nearly always: every particle is outside, with some room to spare for rounding. */
+/* Nearly always: every particle is outside, farther than rounding. */
 SM_INLINE bool obstacle_missed(const Obstacle *o, const vec x[3])
 {
     vec d[3], along = lanes_set(0);

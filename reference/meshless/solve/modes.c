@@ -95,12 +95,12 @@ static int extract(Lanczos *l, double shift, RefModes *modes)
              l->residual, l->vectors, l->basis, l->size, l->param, l->pointer, l->work, l->far_work,
              l->work_size, &info);
     for (int k = 0; info == 0 && k < count; k++) {
-        int rank = 0;
+        int place = 0;
         for (int j = 0; j < count; j++)
-            rank += value[j] < value[k] || (value[j] == value[k] && j < k);
-        modes->lambda[rank] = value[k];
+            place += value[j] < value[k] || (value[j] == value[k] && j < k);
+        modes->lambda[place] = value[k];
         for (int n = 0; n < l->size; n++)
-            modes->shape[(size_t)n * (size_t)count + (size_t)rank] =
+            modes->shape[(size_t)n * (size_t)count + (size_t)place] =
                 l->basis[(size_t)k * (size_t)l->size + (size_t)n];
     }
     free(select);

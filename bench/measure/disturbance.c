@@ -1,4 +1,4 @@
-#include "moment.h"
+#include "disturbance.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -32,22 +32,22 @@ static double processor_time(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-BenchMoment bench_moment_start(int threads)
+BenchInstant bench_instant_start(int threads)
 {
-    BenchMoment now = {.threads = threads};
+    BenchInstant now = {.threads = threads};
     now.used = threads == 1 ? processor_time() : -waited();
     now.wall = sm_now();
     return now;
 }
 
-BenchMoment bench_moment_end(int threads)
+BenchInstant bench_instant_end(int threads)
 {
-    BenchMoment now = {.threads = threads, .wall = sm_now()};
+    BenchInstant now = {.threads = threads, .wall = sm_now()};
     now.used = threads == 1 ? processor_time() : -waited();
     return now;
 }
 
-double bench_moment_lost(const BenchMoment *from, const BenchMoment *to)
+double bench_instant_lost(const BenchInstant *from, const BenchInstant *to)
 {
     double wall = to->wall - from->wall, used = to->used - from->used;
     if (!(wall > 0)) return 0;
@@ -55,7 +55,7 @@ double bench_moment_lost(const BenchMoment *from, const BenchMoment *to)
     return fmin(fmax(lost, 0), 1);
 }
 
-double bench_moment_load(void)
+double bench_load_average(void)
 {
     double load[1] = {NAN};
     FILE *file = fopen("/proc/loadavg", "re");
@@ -64,7 +64,7 @@ double bench_moment_load(void)
     return load[0];
 }
 
-double bench_moment_stolen(void)
+double bench_stolen_seconds(void)
 {
     double ticks = 0;
     FILE *file = fopen("/proc/stat", "re");
@@ -75,18 +75,18 @@ double bench_moment_stolen(void)
 
 BenchWatch bench_watch(int threads)
 {
-    return (BenchWatch){.threads = threads, .began = sm_now(), .stolen = bench_moment_stolen()};
+    return (BenchWatch){.threads = threads, .began = sm_now(), .stolen = bench_stolen_seconds()};
 }
 
 void bench_watch_start(BenchWatch *watch)
 {
-    watch->start = bench_moment_start(watch->threads);
+    watch->start = bench_instant_start(watch->threads);
 }
 
 double bench_watch_stop(BenchWatch *watch)
 {
-    BenchMoment end = bench_moment_end(watch->threads);
-    double seconds = end.wall - watch->start.wall, lost = bench_moment_lost(&watch->start, &end);
+    BenchInstant end = bench_instant_end(watch->threads);
+    double seconds = end.wall - watch->start.wall, lost = bench_instant_lost(&watch->start, &end);
     watch->good = lost <= BENCH_LOST_LIMIT;
     watch->seconds += seconds;
     watch->lost += lost * seconds;
@@ -111,7 +111,7 @@ bool bench_watch_again(BenchWatch *watch)
 /* Seconds that the host took since the watch began. */
 static double taken(const BenchWatch *watch)
 {
-    return bench_moment_stolen() - watch->stolen;
+    return bench_stolen_seconds() - watch->stolen;
 }
 
 bool bench_watch_busy(const BenchWatch *watch)

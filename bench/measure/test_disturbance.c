@@ -2,7 +2,7 @@
 #include <time.h>
 
 #include "../../lib/test_frame.h"
-#include "moment.h"
+#include "disturbance.h"
 
 /* The processor is somebody else's. */
 static void sleep_a_while(void)

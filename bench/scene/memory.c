@@ -1,4 +1,4 @@
-#include "room.h"
+#include "memory.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,25 +20,25 @@ static double members(const BenchScene *scene, double particles)
     return particles * (shell ? along * along : along * along * along);
 }
 
-double bench_room_lattice(const BenchScene *scene, double particles)
+double bench_memory_lattice(const BenchScene *scene, double particles)
 {
     return (200 + 130 * ((double)scene->instances - 1)) * particles;
 }
 
-double bench_room_octree(const BenchScene *scene, double particles)
+double bench_memory_octree(const BenchScene *scene, double particles)
 {
     (void)scene;
     return 90 * particles;
 }
 
-double bench_room_brute(const BenchScene *scene, double particles)
+double bench_memory_brute(const BenchScene *scene, double particles)
 {
     return (double)scene->instances * (450 * particles + sizeof(int) * members(scene, particles));
 }
 
-double bench_room_wanted(const BenchScene *scene, double particles)
+double bench_memory_wanted(const BenchScene *scene, double particles)
 {
-    return bench_engine(scene->engine)->room(scene, particles);
+    return bench_engine(scene->engine)->memory(scene, particles);
 }
 
 /* The number behind `name` in the file, or, with an empty name, at its start; else INFINITY. */
@@ -78,7 +78,7 @@ static double group_leaves(void)
     return leaves;
 }
 
-double bench_room_available(void)
+double bench_memory_available(void)
 {
     return fmin(1024 * read_number("/proc/meminfo", "MemAvailable:"), group_leaves());
 }
@@ -86,7 +86,7 @@ double bench_room_available(void)
 static SmCode check(const char *what, const char *engine, double particles, double wanted,
                     SmError *error)
 {
-    double available = bench_room_available();
+    double available = bench_memory_available();
     if (wanted <= SHARE * available) return SM_OK;
     return sm_fail(
         error, SM_MEMORY,
@@ -95,12 +95,13 @@ static SmCode check(const char *what, const char *engine, double particles, doub
         what, particles, engine, wanted / 1e9, available / 1e9);
 }
 
-SmCode bench_room_check(const BenchScene *scene, double particles, SmError *error)
+SmCode bench_memory_check(const BenchScene *scene, double particles, SmError *error)
 {
-    return check(scene->file, scene->engine, particles, bench_room_wanted(scene, particles), error);
+    return check(scene->file, scene->engine, particles, bench_memory_wanted(scene, particles),
+                 error);
 }
 
-SmCode bench_room_cube(int side, const char *engine, double each, SmError *error)
+SmCode bench_memory_cube(int side, const char *engine, double each, SmError *error)
 {
     char what[32];
     double particles = pow(side, 3);

@@ -9,7 +9,7 @@
 #include "../kernels/cubes.h"
 #include "../kernels/sampled.h"
 #include "../play/playback.h"
-#include "room.h"
+#include "memory.h"
 
 static BenchScene scene_of_cube(const char *engine, long particles)
 {
@@ -57,7 +57,7 @@ TEST(the_estimate_is_near_what_is_taken)
     double before = held(NULL);
     for (int i = 0; i < 3; i++) {
         BenchScene scene = scene_of_cube(engine[i], 60000);
-        double bytes = held(&scene) - before, wanted = bench_room_wanted(&scene, 60000);
+        double bytes = held(&scene) - before, wanted = bench_memory_wanted(&scene, 60000);
         if (wanted > 1.3 * bytes || wanted < 0.2 * bytes)
             fail_msg("%s: %.3g bytes were estimated, %.3g were taken", engine[i], wanted, bytes);
     }
@@ -66,29 +66,29 @@ TEST(the_estimate_is_near_what_is_taken)
 TEST(instances_and_wider_regions_take_more)
 {
     BenchScene scene = scene_of_cube("fastlsm", 0);
-    double one = bench_room_wanted(&scene, 1000);
+    double one = bench_memory_wanted(&scene, 1000);
     scene.instances = 100;
-    assert_true(bench_room_wanted(&scene, 1000) > 10 * one);
+    assert_true(bench_memory_wanted(&scene, 1000) > 10 * one);
     scene = scene_of_cube("brute", 0);
     scene.params.w = 1;
-    one = bench_room_wanted(&scene, 1e6);
+    one = bench_memory_wanted(&scene, 1e6);
     scene.params.w = 10;
-    assert_true(bench_room_wanted(&scene, 1e6) > 10 * one);
-    double solid = bench_room_wanted(&scene, 1e6);
+    assert_true(bench_memory_wanted(&scene, 1e6) > 10 * one);
+    double solid = bench_memory_wanted(&scene, 1e6);
     scene.voxel.fill = SM_SHELL;
-    assert_true(bench_room_wanted(&scene, 1e6) < solid / 2);
+    assert_true(bench_memory_wanted(&scene, 1e6) < solid / 2);
     scene.params.w = 64; /* no region has more members than there are particles */
-    assert_true(bench_room_wanted(&scene, 8) <= 8 * (450 + 8 * sizeof(int)));
+    assert_true(bench_memory_wanted(&scene, 8) <= 8 * (450 + 8 * sizeof(int)));
 }
 
 TEST(what_does_not_fit_is_refused)
 {
     SmError error;
-    double available = bench_room_available();
+    double available = bench_memory_available();
     assert_true(available > 1e6 && isfinite(available)); /* on Linux */
     BenchScene scene = scene_of_cube("fastlsm", 0);
-    assert_int_equal(bench_room_check(&scene, 1000, &error), SM_OK);
-    assert_int_equal(bench_room_check(&scene, available, &error), SM_MEMORY);
+    assert_int_equal(bench_memory_check(&scene, 1000, &error), SM_OK);
+    assert_int_equal(bench_memory_check(&scene, available, &error), SM_MEMORY);
     assert_non_null(strstr(error.text, "cube.cfg: "));
     assert_non_null(strstr(error.text, " GB available: ask for fewer particles"));
     SmMesh mesh;
