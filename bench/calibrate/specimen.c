@@ -10,20 +10,13 @@
 #define FIELD(type, member)  BENCH_FIELD_AS(BenchSpecimen, BENCH_##type, member, #member)
 #define MEANS(of_what, what) BENCH_MEANS(of_what, what)
 #define GIVEN                .given_by_plan = true
+#define MODULUS              "%.3e"
 
 /* ---- cells of the table for people */
 
 const double *bench_specimen_youngs(const BenchSpecimen *s)
 {
     return isfinite(s->young_meshless[0]) ? s->young_meshless : s->young_timoshenko;
-}
-
-static void modulus(double value, char *text)
-{
-    if (isfinite(value))
-        snprintf(text, BENCH_GRID_TEXT, "%.3e", value);
-    else
-        strcpy(text, "-");
 }
 
 static void epsilon_cell(const void *record, char *text)
@@ -44,39 +37,20 @@ static void young_cell(const void *record, char *text)
 {
     const BenchSpecimen *s = record;
     if (s->valid)
-        modulus(s->young, text);
+        snprintf(text, BENCH_GRID_TEXT, isfinite(s->young) ? MODULUS : "-", s->young);
     else
         strcpy(text, "INVALID");
 }
 
-#define BY_CELL(name, number)                                                                      \
-    static void name(const void *record, char *text)                                               \
+#define BY(name, number)                                                                           \
+    static double name(const void *record)                                                         \
     {                                                                                              \
-        modulus(bench_specimen_youngs(record)[number], text);                                      \
+        return bench_specimen_youngs(record)[number];                                              \
     }
-BY_CELL(sag_cell, 0)
-BY_CELL(first_cell, 1)
-BY_CELL(second_cell, 2)
-BY_CELL(third_cell, 3)
-
-static void theory_cell(const void *record, char *text)
-{
-    modulus(((const BenchSpecimen *)record)->young_timoshenko[0], text);
-}
-
-static void frequency_cell(const void *record, char *text)
-{
-    bench_grid_number(((const BenchSpecimen *)record)->frequency[0], text);
-}
-
-static void loss_cell(const void *record, char *text)
-{
-    double loss = ((const BenchSpecimen *)record)->loss[0];
-    if (isnan(loss))
-        strcpy(text, "-");
-    else
-        snprintf(text, BENCH_GRID_TEXT, "%.0e", loss);
-}
+BY(by_sag, 0)
+BY(by_first, 1)
+BY(by_second, 2)
+BY(by_third, 3)
 
 /* ---- all members */
 
@@ -104,20 +78,23 @@ const BenchField bench_specimen_fields[] = {
                  "rest; quantities of an invalid one are NaN")},
     {FIELD(TEXT, reason), MEANS(NULL, "why it is not valid")},
     {BENCH_CELL("E Pa", young_cell)},
-    {BENCH_CELL("by sag", sag_cell)},
-    {BENCH_CELL("by f1", first_cell)},
-    {BENCH_CELL("by f2", second_cell)},
-    {BENCH_CELL("by f3", third_cell)},
+    {.kind = BENCH_DOUBLE, .number = by_sag, .title = "by sag", .format = MODULUS},
+    {.kind = BENCH_DOUBLE, .number = by_first, .title = "by f1", .format = MODULUS},
+    {.kind = BENCH_DOUBLE, .number = by_second, .title = "by f2", .format = MODULUS},
+    {.kind = BENCH_DOUBLE, .number = by_third, .title = "by f3", .format = MODULUS},
     {.kind = BENCH_DOUBLE,
      .offset = offsetof(BenchSpecimen, spread),
      .title = "apart %",
      .format = "%.1f",
      .scale = 100},
-    {BENCH_CELL("theory", theory_cell)},
+    {.kind = BENCH_DOUBLE,
+     .offset = offsetof(BenchSpecimen, young_timoshenko),
+     .title = "theory",
+     .format = MODULUS},
     {FIELD(LONG, particles), MEANS(NULL, "with those that are held")},
-    {FIELD(DOUBLE, frequency), MEANS("Hz", "of the first modes of bending"),
-     BENCH_CELL("f1 Hz", frequency_cell)},
-    {FIELD(DOUBLE, loss), MEANS(NULL, "loss factor of each"), BENCH_CELL("loss factor", loss_cell)},
+    {FIELD(DOUBLE, frequency), MEANS("Hz", "of the first modes of bending"), .title = "f1 Hz"},
+    {FIELD(DOUBLE, loss), MEANS(NULL, "loss factor of each"), .title = "loss factor",
+     .format = "%.0e"},
     {FIELD(DOUBLE, load), MEANS("m/s^2", "under which it sags")},
     {FIELD(DOUBLE, sag), MEANS("of the length", "of the tip")},
     {FIELD(DOUBLE, unrest),

@@ -42,8 +42,10 @@ static SmCode perform_campaign(const BenchCommand *command, int argc, char **arg
         code = bench_campaign_load(its->common.word[0], command->campaign, &campaign, error);
     else
         code = measure(command, argc, argv, options, &campaign, error);
-    if (!code && !its->run.columns && !its->run.list && its->run.ranks->rank == 0)
+    if (!code && !its->run.columns && !its->run.list && its->run.ranks->rank == 0) {
+        if (command->campaign->conclude) command->campaign->conclude(&campaign);
         code = command->show(options, &campaign, error);
+    }
     bench_campaign_free(&campaign);
     return code;
 }

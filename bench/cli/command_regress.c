@@ -12,11 +12,11 @@
 #include "../regress/counts.h"
 #include "../regress/regression.h"
 #include "../regress/revision.h"
-#include "../regress/samples.h"
 #include "../scene/scene.h"
 #include "../store/draft.h"
 #include "../system/process.h"
 #include "../system/statistic.h"
+#include "../table/row_store.h"
 #include "command.h"
 
 typedef struct {
@@ -227,7 +227,7 @@ static SmCode load_baseline(Session *session, const BenchMachine *here, SmError 
     if (access(path, F_OK) != 0 && errno == ENOENT)
         return sm_fail(error, (SmCode)BENCH_EXIT_NO_BASELINE,
                        "no baseline: there is no %.200s; store one with " STORE, path);
-    SmCode code = bench_samples_load(path, &session->stored, &session->stored_count, there, error);
+    SmCode code = bench_store_load(path, &session->stored, &session->stored_count, there, error);
     if (code) return code;
     snprintf(session->found.baseline, sizeof session->found.baseline, "%.200s", path);
     char differs[160];

@@ -96,7 +96,6 @@ static SmCode show(const void *record, BenchCampaign *sweep, SmError *error)
 {
     const Options *options = record;
     BenchFormat format = options->its.format;
-    bench_front_mark(sweep->point, sweep->count);
     bench_campaign_print(stdout, format, sweep);
     const BenchWish *wish = &options->wish;
     bool wished = !isnan(wish->stiffness) || !isnan(wish->deviation) || !isnan(wish->budget);

@@ -7,7 +7,7 @@
 
 #include "../measure/measure.h"
 #include "../system/process.h"
-#include "samples.h"
+#include "../table/row_store.h"
 
 enum { PATH = BENCH_DRAFT_PATH, WORDS = 32 };
 
@@ -88,7 +88,7 @@ static SmCode keep(Session *session, const State *state, BenchBuild build, int r
     BenchMachine machine;
     int count;
     SmError why;
-    SmCode code = bench_samples_load(path, &rows, &count, &machine, &why);
+    SmCode code = bench_store_load(path, &rows, &count, &machine, &why);
     if (code)
         return sm_fail(error, code, "what %s has measured cannot be used: %.300s",
                        bench_build_names[build], why.text);

@@ -29,7 +29,7 @@ static bool has_time(const BenchSide *side, int time)
     return side->count > 0;
 }
 
-/* Where the builds did other work: what, and both. What an old file does not state (samples.h) is
+/* Where the builds did other work: what, and both. What an old file does not state (row_store.h) is
  * not judged. */
 static bool same_work(const BenchRow *a, const BenchRow *b, size_t size, char *reason)
 {

@@ -12,9 +12,9 @@
 #include <stdlib.h>
 
 #include "../measure/measure.h"
+#include "../table/row_store.h"
 #include "ab_runner.h"
 #include "comparison.h"
-#include "samples.h"
 
 typedef struct {
     int slower, faster; /* comparisons with such a time */
@@ -55,7 +55,7 @@ static SmCode replay(const char *path, int comparisons, int rounds, int *alarms,
     BenchMachine machine;
     SmError error;
     int count = 0, turns = comparisons * rounds * BENCH_TURNS;
-    SmCode code = bench_samples_load(path, &rows, &count, &machine, &error);
+    SmCode code = bench_store_load(path, &rows, &count, &machine, &error);
     if (code) fprintf(stderr, "replay: %s\n", error.text);
     for (int i = 0; i < count && !code; i++) {
         Tally tally = {0};

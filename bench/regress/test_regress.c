@@ -9,7 +9,6 @@
 #include "../../lib/test_frame.h"
 #include "../measure/measure.h"
 #include "../table/row_store.h"
-#include "samples.h"
 
 #define TINY "--scene tiny.cfg --repeats 5 --block 0.1 "
 
@@ -61,7 +60,7 @@ static void row_of_tiny(BenchRow *row, BenchMachine *machine)
     SmError error;
     char path[256];
     snprintf(path, sizeof path, "%s", path_in("tiny.h5"));
-    assert_int_equal(bench_samples_load(path, &rows, &count, machine, &error), SM_OK);
+    assert_int_equal(bench_store_load(path, &rows, &count, machine, &error), SM_OK);
     assert_int_equal(count, 1);
     *row = rows[0];
     free(rows); /* its samples are the row's now */
@@ -162,7 +161,7 @@ TEST(files_of_other_schemas)
     BenchMachine machine;
     SmError error;
     int count;
-    assert_int_equal(bench_samples_load(path_in("old.h5"), &rows, &count, &machine, &error), SM_OK);
+    assert_int_equal(bench_store_load(path_in("old.h5"), &rows, &count, &machine, &error), SM_OK);
     assert_int_equal(count, 1);
     assert_string_equal(rows[0].scene, "tiny");
     assert_true(rows[0].total[0] > 0 && rows[0].particles == 0 && machine.cpu[0] == '\0');

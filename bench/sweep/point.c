@@ -128,3 +128,25 @@ BenchPoint bench_point_none(void)
     bench_record_none(bench_point_fields, bench_point_field_count, &point, sizeof point);
     return point;
 }
+
+/* ---- the front */
+
+bool bench_point_judged(const BenchPoint *p)
+{
+    return p->valid && isfinite(p->total_ms) && isfinite(p->path_rms);
+}
+
+/* Quartiles that are not known overlap with all. */
+static bool beats(const BenchPoint *a, const BenchPoint *b)
+{
+    return a->total_high_ms < b->total_low_ms && a->path_rms <= b->path_rms;
+}
+
+void bench_front_mark(BenchPoint *point, long count)
+{
+    for (long i = 0; i < count; i++) {
+        point[i].front = bench_point_judged(&point[i]);
+        for (long j = 0; j < count && point[i].front; j++)
+            point[i].front = !(bench_point_judged(&point[j]) && beats(&point[j], &point[i]));
+    }
+}

@@ -33,7 +33,7 @@ typedef struct {
     double path_rms, path_most; /* gap.h */
     char path_why[BENCH_WHY];
 
-    bool front; /* recommend.h */
+    bool front; /* bench_front_mark() */
     BenchStamp stamp;
 
     int samples;
@@ -45,5 +45,15 @@ extern const int bench_point_field_count;
 
 /* A point not measured yet: zero, with every quantity NaN. */
 BenchPoint bench_point_none(void);
+
+/* Is it valid, with a time and a deviation? */
+bool bench_point_judged(const BenchPoint *point);
+
+/* Sets `front`: no other valid point is cheaper a step beyond the noise and at most as far from
+ * full resolution (path_rms, which has no noise). Cheaper beyond the noise is what ends below where
+ * the other one begins, of the quartiles of their times (total_low_ms..total_high_ms): points whose
+ * times overlap do not displace each other, even where one of them deviates less, or the front
+ * would change from run to run. Points without both figures are not on it. O(points^2). */
+void bench_front_mark(BenchPoint *point, long count);
 
 #endif

@@ -13,29 +13,6 @@ static const double some_more = 0.01;  /* of the body's size: deviation where no
 static const double noise = 0.1; /* points minutes apart differ by more than their quartiles say */
 enum { MOST_BOUGHT = 6, WORD = 4200 /* a path, every character quoted */ };
 
-/* Is it valid, with a time and a deviation? */
-static bool judged(const BenchPoint *p)
-{
-    return p->valid && isfinite(p->total_ms) && isfinite(p->path_rms);
-}
-
-/* Quartiles that are not known overlap with all. */
-static bool beats(const BenchPoint *a, const BenchPoint *b)
-{
-    return a->total_high_ms < b->total_low_ms && a->path_rms <= b->path_rms;
-}
-
-void bench_front_mark(BenchPoint *point, long count)
-{
-    for (long i = 0; i < count; i++) {
-        point[i].front = judged(&point[i]);
-        for (long j = 0; j < count && point[i].front; j++)
-            point[i].front = !(judged(&point[j]) && beats(&point[j], &point[i]));
-    }
-}
-
-/* ---- the point to take */
-
 /* An engine's points, and what they are held against. */
 typedef struct {
     const BenchPoint *point;
@@ -50,7 +27,7 @@ typedef struct {
 
 static bool of_engine(const Choice *c, const BenchPoint *p)
 {
-    return judged(p) && !strcmp(p->engine, c->engine);
+    return bench_point_judged(p) && !strcmp(p->engine, c->engine);
 }
 
 static bool whole(const Choice *c, const BenchPoint *p)

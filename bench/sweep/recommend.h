@@ -1,4 +1,4 @@
-/* recommend.h - which points of a sweep are worth taking, and which one to take, engine by engine:
+/* recommend.h - which points of a sweep to take, engine by engine:
  * a lattice is its own full resolution, so engines' deviations do not compare. */
 #ifndef BENCH_RECOMMEND_H
 #define BENCH_RECOMMEND_H
@@ -6,13 +6,6 @@
 #include <stdio.h>
 
 #include "sweep.h"
-
-/* Sets `front`: no other valid point is cheaper a step beyond the noise and at most as far from
- * full resolution (path_rms, which has no noise). Cheaper beyond the noise is what ends below where
- * the other one begins, of the quartiles of their times (total_low_ms..total_high_ms): points whose
- * times overlap do not displace each other, even where one of them deviates less, or the front
- * would change from run to run. Points without both figures are not on it. O(points^2). */
-void bench_front_mark(BenchPoint *point, long count);
 
 /* What is wished; NaN: nothing of the kind. */
 typedef struct {

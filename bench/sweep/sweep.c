@@ -14,7 +14,6 @@
 #include "../measure/measure.h"
 #include "../table/records.h"
 #include "gap.h"
-#include "recommend.h"
 
 /* ---- the plan */
 

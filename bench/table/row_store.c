@@ -1,13 +1,18 @@
 #include "row_store.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../../reference/paper.h"
 #include "../engines.h"
+#include "../measure/measure.h"
 #include "quantity.h"
 
 static const char file_kind[] = "shapebench results";
+
+enum { MOST_ROWS = 100000, MOST_REPEATS = 1000000, MOST_STAGES = 64, LEAST_ROW = 256 /* bytes */ };
 
 void bench_store_stages(const char *engine, size_t size, char *names)
 {
@@ -145,7 +150,118 @@ SmCode bench_store_rows(const char *path, const BenchRow *rows, int count,
     return bench_h5_store(path, write_file, &(File){rows, count, machine}, error);
 }
 
-void bench_store_check_kind(BenchH5 *h5, int oldest)
+/* ---- files of any schema */
+
+/* In every schema so far; what else there is of every row is read where it is stored. */
+static const BenchField needed[] = {
+    BENCH_FIELD(BenchRow, BENCH_TEXT, scene),
+    BENCH_FIELD(BenchRow, BENCH_BOOL, valid),
+    BENCH_FIELD(BenchRow, BENCH_INT, repeats),
+};
+
+static void read_where_there(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
+                             void *record)
 {
-    bench_h5_check_kind(h5, file_kind, oldest, BENCH_STORE_SCHEMA);
+    for (int i = 0; i < count && !h5->failed; i++)
+        if (H5Aexists(object, fields[i].name) > 0)
+            bench_h5_read_fields(h5, object, &fields[i], 1, record);
+}
+
+/* Which of the file's columns holds each of our stages, or -1; returns how many columns there are.
+ */
+static int find_columns(BenchH5 *h5, hid_t group, int column[SM_STAGES])
+{
+    char names[512] = "";
+    bench_h5_read_text(h5, group, "stages", sizeof names, names);
+    for (int s = 0; s < SM_STAGES; s++) column[s] = -1;
+    int columns = 0;
+    char *rest = names;
+    for (char *name; (name = strtok_r(rest, " ", &rest)) && columns < MOST_STAGES; columns++)
+        if (bench_stage_find(name) < SM_STAGES) column[bench_stage_find(name)] = columns;
+    return columns;
+}
+
+static void read_stages(BenchH5 *h5, hid_t group, BenchRow *row)
+{
+    int column[SM_STAGES], columns = find_columns(h5, group, column);
+    if (!columns) bench_h5_fail(h5, "attribute 'stages' names none");
+    double *all = read_samples(h5, group, "stage", row->repeats, columns);
+    if (!all) return;
+    row->stage = sm_alloc((size_t)row->repeats, sizeof *row->stage);
+    for (int r = 0; r < row->repeats; r++)
+        for (int s = 0; s < SM_STAGES; s++)
+            row->stage[r][s] = column[s] < 0 ? NAN : all[r * columns + column[s]];
+    free(all);
+}
+
+static void read_times(BenchH5 *h5, hid_t group, BenchRow *row)
+{
+    if (!h5->failed && (row->repeats < 1 || row->repeats > MOST_REPEATS))
+        bench_h5_fail(h5, "repeats is %d", row->repeats);
+    row->total = read_samples(h5, group, "total", row->repeats, 0);
+    for (int r = 0; r < row->repeats && row->valid && !h5->failed; r++)
+        if (!isfinite(row->total[r]) || row->total[r] <= 0)
+            bench_h5_fail(h5, "dataset 'total' holds %g s", row->total[r]);
+    if (!h5->failed) read_stages(h5, group, row);
+}
+
+/* A failure's message is preceded by the row. */
+static void read_what_is_there(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
+{
+    char name[16], message[sizeof h5->message];
+    snprintf(name, sizeof name, "%03d", index);
+    hid_t group = bench_h5_find_group(h5, parent, name);
+    row->epsilon = row->h = NAN;
+    bench_h5_read_fields(h5, group, needed, sizeof needed / sizeof *needed, row);
+    for (int q = 0; q < bench_quantity_count; q++) {
+        const BenchField *field = &bench_quantities[q].field;
+        bool array = field->kind == BENCH_DOUBLE && field->size > sizeof(double);
+        if (field->name && !bench_quantities[q].of && !array)
+            read_where_there(h5, group, field, 1, row);
+    }
+    read_times(h5, group, row);
+    if (!h5->failed) return;
+    snprintf(message, sizeof message, "row %s: %.200s", name, h5->message);
+    memcpy(h5->message, message, sizeof message);
+}
+
+/* Where what is read goes. */
+typedef struct {
+    BenchRow **rows;
+    int *count;
+    BenchMachine *machine;
+} Load;
+
+static void read_file(BenchH5 *h5, void *record)
+{
+    Load *load = record;
+    int stored = 0, fields;
+    const BenchField field = BENCH_VARIABLE("rows", BENCH_INT, stored);
+    const BenchField *machine_fields = bench_machine_fields(&fields);
+    bench_h5_check_kind(h5, file_kind, 1, BENCH_STORE_SCHEMA);
+    bench_h5_read_fields(h5, h5->file, &field, 1, &stored);
+    hid_t group = bench_h5_find_group(h5, h5->file, "machine");
+    if (!h5->failed) read_where_there(h5, group, machine_fields, fields, load->machine);
+    group = bench_h5_find_group(h5, h5->file, "rows");
+    if (!h5->failed && (stored < 1 || stored > MOST_ROWS || (hsize_t)stored > h5->size / LEAST_ROW))
+        bench_h5_fail(h5, "it states %d rows", stored);
+    if (h5->failed) return;
+    *load->rows = sm_alloc((size_t)stored, sizeof **load->rows);
+    *load->count = stored;
+    for (int i = 0; i < stored && !h5->failed; i++)
+        read_what_is_there(h5, group, i, &(*load->rows)[i]);
+}
+
+SmCode bench_store_load(const char *path, BenchRow **rows, int *count, BenchMachine *machine,
+                        SmError *error)
+{
+    *rows = NULL;
+    *count = 0;
+    memset(machine, 0, sizeof *machine);
+    SmCode code = bench_h5_load(path, read_file, &(Load){rows, count, machine}, error);
+    if (!code) return SM_OK;
+    bench_rows_free(*rows, *count);
+    *rows = NULL;
+    *count = 0;
+    return code;
 }

@@ -6,8 +6,7 @@
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
 #include "../measure/measure.h"
-#include "../table/row_store.h"
-#include "samples.h"
+#include "row_store.h"
 
 enum { ROWS = 2, REPEATS = 7 };
 
@@ -36,7 +35,7 @@ TEST(a_whole_file_is_read)
     int count;
     const char *path = path_in("whole.h5");
     write_file(path);
-    if (bench_samples_load(path, &rows, &count, &machine, &error)) fail_msg("%s", error.text);
+    if (bench_store_load(path, &rows, &count, &machine, &error)) fail_msg("%s", error.text);
     assert_int_equal(count, ROWS);
     assert_string_equal(rows[1].scene, "penguin");
     assert_true(rows[1].valid && rows[1].w == 2 && rows[1].repeats == REPEATS);
@@ -52,7 +51,7 @@ static void refuses(const char *path, const char *words)
     BenchMachine machine;
     SmError error = {0};
     int count;
-    assert_int_equal(bench_samples_load(path, &rows, &count, &machine, &error), SM_INPUT);
+    assert_int_equal(bench_store_load(path, &rows, &count, &machine, &error), SM_INPUT);
     assert_null(rows);
     assert_non_null(strstr(error.text, path));
     if (!strstr(error.text, words)) fail_msg("'%s' does not say '%s'", error.text, words);
