@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../lib/printable.h"
 #include "system/suggest.h"
 
 enum { TYPES = 2, MOST = 16 };
@@ -29,9 +30,7 @@ SmCode bench_engine_find(const char *name, const char *precision, const SmEngine
             *type = t;
             return SM_OK;
         }
-        size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, "%s%s (%s)", used ? ", " : "", t->name,
-                 t->precision);
+        sm_append(known, sizeof known, "%s%s (%s)", *known ? ", " : "", t->name, t->precision);
     }
     return sm_fail(error, SM_USAGE, "no engine '%.32s'%s%s%s; there are: %s%s", name,
                    precision ? " in " : "", precision ? precision : "",

@@ -1,6 +1,14 @@
-/* printable.h - text from files, names among them, that goes to a terminal. */
+/* printable.h - texts for people, and what in text from files, names among it, may go to a
+ * terminal.
+ */
 #ifndef SM_PRINTABLE_H
 #define SM_PRINTABLE_H
+
+#include <stddef.h>
+
+/* Appends to a text that has room for `size` bytes in all; what does not fit is cut. */
+void sm_append(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* Bytes of the UTF-8 character at `text`; 0 for what a terminal may take for an order (control
  * characters, C1's among them), what is no UTF-8, and what XML may not hold. */

@@ -1,26 +1,18 @@
 #include "recommendation.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../engines.h"
 #include "../system/statistic.h"
 
 static const double near_enough = 0.1, alike = 0.1; /* of a modulus */
 
-/* Appends to a sentence; what does not fit is cut. */
-static void say(char *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void say(char *text, const char *format, ...)
-{
-    size_t used = strlen(text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text + used, BENCH_WORDS - used, format, arguments);
-    va_end(arguments);
-}
+/* Appends to a sentence. */
+#define SAY(text, ...) sm_append(text, BENCH_WORDS, __VA_ARGS__)
 
 static const BenchStiffnessFit *find_law(const BenchStiffnessFit *law, int laws, const char *engine,
                                          const char *kind)
@@ -64,7 +56,7 @@ static double loss_of(const BenchSpecimen *s)
 /* "6.8% (at most 14%)" */
 static void say_percent(double *value, int count, char *text)
 {
-    say(text, "%.2g%% (at most %.2g%%)", bench_quantile(value, count, 0.5),
+    SAY(text, "%.2g%% (at most %.2g%%)", bench_quantile(value, count, 0.5),
         bench_quantile(value, count, 1));
 }
 
@@ -76,23 +68,23 @@ static void say_alike(const BenchSpecimen *specimen, long count, char *text)
     double *value = sm_alloc((size_t)count, sizeof *value);
     int all = gather(specimen, count, 2, first_gap, value), number;
     if (all) {
-        say(text,
+        SAY(text,
             "An elastic beam behaves alike: in %d valid specimens of %ld Young's moduli by the "
             "static sag and by the first frequency differ by ",
             all, count);
         say_percent(value, all, text);
         for (int wide = 0; wide < 2; wide++) {
             if (!(number = gather(specimen, count, wide, spread_of, value))) continue;
-            say(text, ", those by the sag and three frequencies by ");
+            SAY(text, ", those by the sag and three frequencies by ");
             say_percent(value, number, text);
-            say(text, " %s", where[wide]);
+            SAY(text, " %s", where[wide]);
         }
         number = gather(specimen, count, 2, theory_gap, value);
         double theory = bench_quantile(value, number, 0.5); /* NaN without the reference */
         if (isfinite(theory))
-            say(text, "; Timoshenko's theory says %+.2g%% by the sag (median)", theory);
+            SAY(text, "; Timoshenko's theory says %+.2g%% by the sag (median)", theory);
         number = gather(specimen, count, 2, loss_of, value);
-        say(text, "; the first mode loses at most %.2g (loss factor).",
+        SAY(text, "; the first mode loses at most %.2g (loss factor).",
             bench_quantile(value, number, 1));
     }
     free(value);
@@ -103,7 +95,7 @@ static void say_laws(const BenchStiffnessFit *law, int laws, char *text)
     for (int i = 0; i < laws; i++) {
         const BenchStiffnessFit *l = &law[i];
         if (strcmp(l->kind, "two-term") != 0) continue;
-        say(text, "%s%s c = %.3f (%.3f to %.3f) and d = %.3f (%.3f to %.3f), off by %.2g%%",
+        SAY(text, "%s%s c = %.3f (%.3f to %.3f) and d = %.3f (%.3f to %.3f), off by %.2g%%",
             text[0] ? "; of the "
                     : "With spacing a, time step h and thickness t it follows E = rho (a/h)^2 "
                       "w(w+1) (c + d w(w+1) (a/t)^2), with of the ",
@@ -112,11 +104,11 @@ static void say_laws(const BenchStiffnessFit *law, int laws, char *text)
     for (int i = 0; i < laws; i++) {
         const BenchStiffnessFit *l = &law[i];
         if (!strcmp(l->kind, "two-term") || isnan(l->spacing[0]) || isnan(l->width[0])) continue;
-        say(text, "%s%s %s a^%.2f w^%.2f", strstr(text, "as powers") ? ", " : "; as powers, ",
+        SAY(text, "%s%s %s a^%.2f w^%.2f", strstr(text, "as powers") ? ", " : "; as powers, ",
             l->engine, l->kind, l->spacing[0], l->width[0]);
-        if (isfinite(l->step[0])) say(text, " / h^%.3f", l->step[0]);
+        if (isfinite(l->step[0])) SAY(text, " / h^%.3f", l->step[0]);
     }
-    if (text[0]) say(text, ".");
+    if (text[0]) SAY(text, ".");
 }
 
 /* Largest and least of a modulus over what differs from `of` in one thing alone. */
@@ -160,25 +152,25 @@ static void say_range(const BenchSpecimen *specimen, long count, char *text)
         least = fmin(least, wide_as), most = fmax(most, wide_as), apart++;
     }
     const BenchSpecimen *wide = find_wide(specimen, count);
-    say(text, "It is no material's constant:");
+    SAY(text, "It is no material's constant:");
     if (wide)
-        say(text,
+        SAY(text,
             " from w %d on regions are wider than this beam of %d cells, and resist its bending by "
             "their length;",
             wide->w, wide->across);
     if (aspect > 1)
-        say(text, " one setting is up to %.2g%% stiffer on one length than on another;",
+        SAY(text, " one setting is up to %.2g%% stiffer on one length than on another;",
             100 * (aspect - 1));
-    if (epsilon > 1) say(text, " epsilon makes the octree up to %.2g times as stiff;", epsilon);
+    if (epsilon > 1) SAY(text, " epsilon makes the octree up to %.2g times as stiff;", epsilon);
     if (looked)
-        say(text, " sags are in proportion to the load to %g%% of the length (%d looked at);",
+        SAY(text, " sags are in proportion to the load to %g%% of the length (%d looked at);",
             100 * linear, looked);
-    say(text, " sag and three frequencies are more than %g%% apart in %d specimens", 100 * alike,
+    SAY(text, " sag and three frequencies are more than %g%% apart in %d specimens", 100 * alike,
         apart);
     if (apart)
-        say(text, ", whose regions are %.2g to %.2g times as wide as the beam is thick", least,
+        SAY(text, ", whose regions are %.2g to %.2g times as wide as the beam is thick", least,
             most);
-    say(text, ".");
+    SAY(text, ".");
 }
 
 void bench_recommendation_found(const BenchSpecimen *specimen, long count,
@@ -233,10 +225,10 @@ static void say_remedy(const BenchSpecimen *s, const BenchStiffnessFit *law, con
                        char *text)
 {
     double spacing = find_spacing(s, law, wish->thickness, wish->young / young_of(s, wish));
-    say(text, " A time step of %.4g s in place of %.4g s would hit it", find_step(s, wish), s->h);
+    SAY(text, " A time step of %.4g s in place of %.4g s would hit it", find_step(s, wish), s->h);
     if (isfinite(spacing))
-        say(text, ", or about a spacing of %.3g m in place of %.3g m", spacing, s->spacing);
-    say(text, ".");
+        SAY(text, ", or about a spacing of %.3g m in place of %.3g m", spacing, s->spacing);
+    SAY(text, ".");
 }
 
 long bench_recommendation_young(const BenchSpecimen *specimen, long count,
@@ -253,19 +245,19 @@ long bench_recommendation_young(const BenchSpecimen *specimen, long count,
         if (best < 0 || better(s, &specimen[best], wish)) best = i;
     }
     if (best < 0) {
-        say(sentence, "No recommendation: no specimen of the grid is valid.");
+        SAY(sentence, "No recommendation: no specimen of the grid is valid.");
         return best;
     }
     const BenchSpecimen *s = &specimen[best];
     double unit = wish->density / wish->measured;
     bool hit = off(s, wish) <= log(1 + near_enough);
     if (!hit)
-        say(sentence, "No w and epsilon is within %g%% of %.4g Pa (%.3g to %.3g Pa there are). ",
+        SAY(sentence, "No w and epsilon is within %g%% of %.4g Pa (%.3g to %.3g Pa there are). ",
             100 * near_enough, wish->young, low * unit, high * unit);
-    say(sentence, "For %.4g Pa at %.4g kg/m^3 %s %s with w %d", wish->young, wish->density,
+    SAY(sentence, "For %.4g Pa at %.4g kg/m^3 %s %s with w %d", wish->young, wish->density,
         hit ? "take" : "the nearest is", s->engine, s->w);
-    if (bench_engine(s->engine)->sampled) say(sentence, " and epsilon %g", s->epsilon);
-    say(sentence,
+    if (bench_engine(s->engine)->sampled) SAY(sentence, " and epsilon %g", s->epsilon);
+    SAY(sentence,
         ", spacing %.3g m and time step %.3g s: %.3g Pa, sag and frequencies %.2g%% apart, loss "
         "factor "
         "%.1g.",
@@ -278,14 +270,14 @@ void bench_recommendation_settings(const BenchSpecimen *s, const BenchYoung *wis
                                    char settings[BENCH_WORDS])
 {
     settings[0] = '\0';
-    say(settings, "engine = \"%s\"; ", s->engine);
+    SAY(settings, "engine = \"%s\"; ", s->engine);
     if (bench_engine(s->engine)->sampled)
-        say(settings,
+        SAY(settings,
             "epsilon = %.6g; octree = { edges = %d.0; criteria = ( { kind = \"uniform\"; } ); }; ",
             s->epsilon, s->w);
     else
-        say(settings, "w = %d; ", s->w);
-    say(settings, "cell = %.6g; h = %.6g; ", s->spacing, find_step(s, wish));
-    if (damping > 0) say(settings, "damping = %.6g; ", damping);
-    say(settings, "density = %.6g;", wish->density);
+        SAY(settings, "w = %d; ", s->w);
+    SAY(settings, "cell = %.6g; h = %.6g; ", s->spacing, find_step(s, wish));
+    if (damping > 0) SAY(settings, "damping = %.6g; ", damping);
+    SAY(settings, "density = %.6g;", wish->density);
 }

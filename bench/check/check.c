@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../../lib/system/team.h"
 #include "../../octree/engine.h"
 #include "../../reference/condition.h"
@@ -432,9 +433,9 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
     worst->plain = found->plain;
     worst->particles = found->particles;
     if (found->tied > worst->tied) worst->tied = found->tied;
-    if (found->blurred > worst->blurred) worst->blurred = found->blurred;
+    if (found->unresolved > worst->unresolved) worst->unresolved = found->unresolved;
     worst->tied_error = fmax(worst->tied_error, found->tied_error);
-    worst->blurred_error = fmax(worst->blurred_error, found->blurred_error);
+    worst->unresolved_error = fmax(worst->unresolved_error, found->unresolved_error);
     if (found->contact_nodes > worst->contact_nodes) worst->contact_nodes = found->contact_nodes;
     if (found->contact_all > worst->contact_all) worst->contact_all = found->contact_all;
     worst->obstacles |= found->obstacles;
@@ -453,38 +454,32 @@ void bench_check_merge(const BenchDeviation *found, BenchDeviation *worst)
 
 void bench_check_text(const BenchDeviation *found, size_t size, char *text)
 {
-    size_t used = (size_t)snprintf(
-        text, size,
-        "goals within %.2g cells of brute force (allowed %.0e), momentum of one step %s %.1g",
-        found->goal_error, found->goal_tolerance,
-        found->plain ? "not kept by plain weighting, off by" : "kept to", found->momentum_error);
-    if (found->drift.steps > 0 && used < size)
-        used +=
-            (size_t)snprintf(text + used, size - used,
-                             ", left alone for %ld steps it drifts by %.1g cells and %.1g radians "
-                             "a step in each",
-                             found->drift.steps, found->drift.linear, found->drift.angular);
-    if (found->damping_tolerance > 0 && used < size)
-        used += (size_t)snprintf(text + used, size - used,
-                                 ", damping within %.1g of the largest velocity (allowed %.0e)",
-                                 found->damping_error, found->damping_tolerance);
-    if (found->contact_nodes > 0 && used < size)
-        used += (size_t)snprintf(text + used, size - used,
-                                 ", contacts of %ld of %ld surface nodes right (%ld of %ld)",
-                                 found->contact_nodes, found->contact_all,
-                                 found->contacts - found->contacts_wrong, found->contacts);
-    if (found->obstacles && used < size)
-        used +=
-            (size_t)snprintf(text + used, size - used,
-                             ", %ld pushed out of obstacles as brute force has it", found->pushed);
-    if (found->tied && used < size)
-        used += (size_t)snprintf(text + used, size - used,
-                                 "; %ld particle%s of regions whose rotation is not unique "
-                                 "left out (within %.1g)",
-                                 found->tied, found->tied > 1 ? "s" : "", found->tied_error);
-    if (found->blurred > 0 && used < size)
-        snprintf(text + used, size - used,
-                 "; %ld left out of damping, of whose regions rounding decides whether they turn "
-                 "(within %.1g cells a step)",
-                 found->blurred, found->blurred_error);
+    snprintf(text, size,
+             "goals within %.2g cells of brute force (allowed %.0e), momentum of one step %s %.1g",
+             found->goal_error, found->goal_tolerance,
+             found->plain ? "not kept by plain weighting, off by" : "kept to",
+             found->momentum_error);
+    if (found->drift.steps > 0)
+        sm_append(
+            text, size,
+            ", left alone for %ld steps it drifts by %.1g cells and %.1g radians a step in each",
+            found->drift.steps, found->drift.linear, found->drift.angular);
+    if (found->damping_tolerance > 0)
+        sm_append(text, size, ", damping within %.1g of the largest velocity (allowed %.0e)",
+                  found->damping_error, found->damping_tolerance);
+    if (found->contact_nodes > 0)
+        sm_append(text, size, ", contacts of %ld of %ld surface nodes right (%ld of %ld)",
+                  found->contact_nodes, found->contact_all, found->contacts - found->contacts_wrong,
+                  found->contacts);
+    if (found->obstacles)
+        sm_append(text, size, ", %ld pushed out of obstacles as brute force has it", found->pushed);
+    if (found->tied)
+        sm_append(text, size,
+                  "; %ld particle%s of regions whose rotation is not unique left out (within %.1g)",
+                  found->tied, found->tied > 1 ? "s" : "", found->tied_error);
+    if (found->unresolved > 0)
+        sm_append(text, size,
+                  "; %ld left out of damping, of whose regions rounding decides whether they turn "
+                  "(within %.1g cells a step)",
+                  found->unresolved, found->unresolved_error);
 }

@@ -48,17 +48,17 @@ typedef struct {
     long tied;                /* left out: beyond goal_tolerance, in a region whose rotation is not
                                * unique */
     double tied_error;        /* of those; what they would add to goal_error */
-    long blurred;         /* left out of damping's check: off by more than bench_check_step(), and
-                           * tied or in a region of which rounding decides whether it is solid */
-    double blurred_error; /* of those, how far the step takes them elsewhere, in cells */
-    long contact_nodes;   /* whose contacts were compared; 0: nothing collides */
-    long contact_all;     /* nodes at the surface of all bodies, which alone have any */
-    long contacts;        /* of those compared, the engine's or brute force's */
-    long contacts_wrong;  /* in one of the two only, or otherwise */
-    double turn_error;    /* of an octree's colliding cells, largest |R - brute force| */
-    bool obstacles;       /* a step against obstacles was compared: */
-    long pushed;          /* particles that brute force pushes out of them, */
-    long pushed_wrong;    /* and all that end it otherwise */
+    long unresolved; /* left out of damping's check: off by more than bench_check_step(), and
+                      * tied or in a region of which rounding decides whether it is solid */
+    double unresolved_error; /* of those, how far the step takes them elsewhere, in cells */
+    long contact_nodes;      /* whose contacts were compared; 0: nothing collides */
+    long contact_all;        /* nodes at the surface of all bodies, which alone have any */
+    long contacts;           /* of those compared, the engine's or brute force's */
+    long contacts_wrong;     /* in one of the two only, or otherwise */
+    double turn_error;       /* of an octree's colliding cells, largest |R - brute force| */
+    bool obstacles;          /* a step against obstacles was compared: */
+    long pushed;             /* particles that brute force pushes out of them, */
+    long pushed_wrong;       /* and all that end it otherwise */
 } BenchDeviation;
 
 /* Region members that a check of this body would hold in memory, at most; 4 bytes each. Beyond

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../../reference/meshless/engine.h"
 #include "../../reference/meshless/solve/solver.h"
 #include "../play/runner.h"
@@ -58,10 +59,9 @@ bool bench_elastic_verdict(const BenchElasticFound *found, size_t size, char *re
 
 void bench_elastic_text(const BenchElasticFound *found, size_t size, char *text)
 {
-    size_t used = 0;
-    for (int c = 0; c < BENCH_ELASTIC_CHECKS && used < size; c++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s %.1e",
-                                 c ? ", " : "off by: ", checks[c].name, found->found[c]);
+    text[0] = '\0';
+    for (int c = 0; c < BENCH_ELASTIC_CHECKS; c++)
+        sm_append(text, size, "%s%s %.1e", c ? ", " : "off by: ", checks[c].name, found->found[c]);
 }
 
 /* ---- the body */

@@ -293,8 +293,8 @@ static void compare(const BenchCheck *check, const BenchScene *scene, const SmEn
             double cells = error * largest * h / check->body->voxels.cell;
             allowed = known + 2 * k;
             if (cells > bench_check_step(precision) && error <= allowed) {
-                found->blurred++;
-                found->blurred_error = fmax(found->blurred_error, cells);
+                found->unresolved++;
+                found->unresolved_error = fmax(found->unresolved_error, cells);
             }
             if (error <= allowed) continue;
         }

@@ -160,7 +160,7 @@ TEST(wrong_damping_is_invalid)
         if (!bench_check_verdict(&found, sizeof reason, reason))
             fail_msg("%s, %s: %s", types[t]->name, types[t]->precision, reason);
         assert_true(found.damping_tolerance > 0 && found.damping_tolerance < 1e-4);
-        assert_int_equal(found.blurred, 0);
+        assert_int_equal(found.unresolved, 0);
         bench_check_text(&found, sizeof text, text);
         assert_non_null(strstr(text, ", damping within "));
         SmEngineType slack = *types[t];
@@ -444,8 +444,8 @@ TEST(what_was_left_out_is_said)
                             .particles = 100,
                             .tied = 12,
                             .tied_error = 0.3,
-                            .blurred = 15,
-                            .blurred_error = 3e-4};
+                            .unresolved = 15,
+                            .unresolved_error = 3e-4};
     bench_check_text(&found, sizeof text, text);
     assert_string_equal(
         text, "goals within 2e-06 cells of brute force (allowed 5e-05), momentum of one step not "
@@ -485,7 +485,7 @@ TEST(what_is_not_resolved_is_compared)
         BenchDeviation found = check_plate(&strip);
         if (!bench_check_verdict(&found, sizeof reason, reason))
             fail_msg("%s, %s: %s", types[t]->name, types[t]->precision, reason);
-        assert_int_equal(found.blurred, 0);
+        assert_int_equal(found.unresolved, 0);
         SmEngineType wrong = *types[t];
         wrong.get = get_other_ends;
         honest = types[t];

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../store/export.h"
 #include "../table/records.h"
 #include "claim_store.h"
@@ -22,19 +23,16 @@ static const char *const titles[BENCH_CLAIM_KINDS] = {
 /* "18 method: 9 reproduced, 9 differs; 2 machine: 2 measured". */
 static void tally(const BenchFinding *findings, int count, size_t size, char *text)
 {
-    size_t used = 0;
     text[0] = '\0';
     for (int k = 0; k < BENCH_CLAIM_KINDS; k++) {
         int number[BENCH_VERDICTS] = {0}, all = 0;
         for (int f = 0; f < count; f++)
             if (findings[f].claim.kind == (BenchClaimKind)k) number[findings[f].verdict]++, all++;
-        if (all && used < size)
-            used += (size_t)snprintf(text + used, size - used, "%s%d %s", used ? "; " : "", all,
-                                     bench_claim_kinds[k]);
+        if (all) sm_append(text, size, "%s%d %s", *text ? "; " : "", all, bench_claim_kinds[k]);
         for (int v = 0, said = 0; v < BENCH_VERDICTS; v++)
-            if (number[v] && used < size)
-                used += (size_t)snprintf(text + used, size - used, "%s %d %s", said++ ? "," : ":",
-                                         number[v], bench_verdict_names[v]);
+            if (number[v])
+                sm_append(text, size, "%s %d %s", said++ ? "," : ":", number[v],
+                          bench_verdict_names[v]);
     }
 }
 

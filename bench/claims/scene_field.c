@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../engines.h"
 #include "../measure/measure.h"
 #include "../play/runner.h"
@@ -31,11 +32,9 @@ bool bench_scene_field_known(const char *name)
 
 void bench_scene_field_names(size_t size, char *names)
 {
-    size_t used = 0;
-    for (int f = 0; f < MADE && used < size; f++)
-        used += (size_t)snprintf(names + used, size - used, "%s%s", f ? "|" : "", made[f]);
-    if (used < size)
-        snprintf(names + used, size - used, ", or a number of a row as results/README.md lists it");
+    names[0] = '\0';
+    for (int f = 0; f < MADE; f++) sm_append(names, size, "%s%s", f ? "|" : "", made[f]);
+    sm_append(names, size, ", or a number of a row as results/README.md lists it");
 }
 
 /* The share of some stages, given as bits, one of `points` shares. */
@@ -153,9 +152,7 @@ static int known_row(const BenchLab *lab, const char *name)
 /* The setting has its default, and the scene says so in its name. */
 static void take_away(BenchScene *scene, BenchWithout without)
 {
-    size_t used = strlen(scene->name);
-    snprintf(scene->name + used, sizeof scene->name - used, " without %s",
-             bench_without_names[without]);
+    sm_append(scene->name, sizeof scene->name, " without %s", bench_without_names[without]);
     switch (without) {
     case BENCH_WITHOUT_NOTHING:
         break;

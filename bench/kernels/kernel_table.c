@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../store/export.h"
 #include "../table/records.h"
 
@@ -99,12 +100,11 @@ static void ratio_cell(const void *record, char *text)
     char ratio[BENCH_GRID_TEXT], wanted[BENCH_GRID_TEXT];
     if (!isfinite(row->ratio)) return;
     bench_grid_number(row->ratio, ratio);
-    int used = snprintf(text, BENCH_GRID_TEXT, "%.60s%s%s", ratio,
-                        row->wanted_least ? "x as fast as " : " of ", row->ratio_to);
+    snprintf(text, BENCH_GRID_TEXT, "%.60s%s%s", ratio,
+             row->wanted_least ? "x as fast as " : " of ", row->ratio_to);
     if (!isfinite(row->wanted)) return;
     bench_grid_number(row->wanted, wanted);
-    snprintf(text + used, BENCH_GRID_TEXT - (size_t)used, ", at %s %.60s",
-             row->wanted_least ? "least" : "most", wanted);
+    sm_append(text, BENCH_GRID_TEXT, ", at %s %.60s", row->wanted_least ? "least" : "most", wanted);
 }
 
 /* ---- all columns, of files and of the table for people */

@@ -20,7 +20,7 @@ static void check_state(const BenchCheck *check, const BenchRunner *runner, Benc
     bench_check_merge(&found, worst);
     row->goal_error = worst->goal_error;
     row->momentum_error = worst->momentum_error;
-    row->left_out = worst->blurred > worst->tied ? worst->blurred : worst->tied;
+    row->left_out = worst->unresolved > worst->tied ? worst->unresolved : worst->tied;
     bench_check_text(worst, sizeof row->found, row->found);
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "../../lib/error.h"
+#include "../../lib/printable.h"
 #include "../store/export.h"
 #include "../system/statistic.h"
 #include "../table/grid.h"
@@ -28,14 +29,13 @@ void bench_regression_remark(BenchRegression *found, const char *format, ...)
 static void list_flags(const char *flags, const char *other, size_t size, char *list)
 {
     char copy[512], padded[520], word[520], *rest = copy;
-    size_t used = 0;
     list[0] = '\0';
     snprintf(copy, sizeof copy, "%s", flags);
     snprintf(padded, sizeof padded, " %s ", other);
-    for (char *flag; (flag = strtok_r(rest, " ", &rest)) && used < size;) {
+    for (char *flag; (flag = strtok_r(rest, " ", &rest));) {
         snprintf(word, sizeof word, " %s ", flag);
         if (strcmp(flag, "-Werror") != 0 && !strstr(padded, word))
-            used += (size_t)snprintf(list + used, size - used, " %s", flag);
+            sm_append(list, size, " %s", flag);
     }
 }
 

@@ -39,48 +39,31 @@ void bench_csv_number(FILE *file, double value)
     if (isfinite(value)) fprintf(file, "%.9g", value);
 }
 
-/* A number of an array, or the value alone. */
-static void csv_value(FILE *file, const BenchField *field, const void *value)
+/* The numbers of an array. */
+static void csv_numbers(FILE *file, const BenchField *field, const void *record)
 {
-    switch (field->kind) {
-    case BENCH_TEXT:
-        bench_csv_text(file, value);
-        return;
-    case BENCH_INT:
-        fprintf(file, "%d", *(const int *)value);
-        return;
-    case BENCH_LONG:
-        fprintf(file, "%ld", *(const long *)value);
-        return;
-    case BENCH_BOOL:
-        fprintf(file, "%d", *(const bool *)value);
-        return;
-    case BENCH_HASH:
-        fprintf(file, "%llu", *(const unsigned long long *)value);
-        return;
-    case BENCH_DOUBLE:
-        bench_csv_number(file, *(const double *)value);
-        return;
+    const double *number = (const double *)(const void *)((const char *)record + field->offset);
+    int count = field->listed ? field->listed(record) : bench_field_values(field);
+    for (int i = 0; i < count; i++) {
+        if (i) fputc(field->listed ? '/' : ',', file);
+        bench_csv_number(file, number[i]);
     }
 }
 
 void bench_csv_cell(FILE *file, const BenchField *field, const void *record, const char *mark)
 {
-    const char *value = (const char *)record + field->offset;
     if (field->timed && !field->timed(record))
         fputs(mark, file);
     else if (field->given && !field->given(record))
         return;
-    else if (field->text || field->choices)
+    else if (field->text || field->kind == BENCH_TEXT)
         bench_csv_text(file, bench_field_text(field, record));
     else if (field->number)
         bench_csv_number(file, field->number(record));
+    else if (field->kind == BENCH_DOUBLE)
+        csv_numbers(file, field, record);
     else
-        for (int i = 0, count = field->listed ? field->listed(record) : bench_field_values(field);
-             i < count; i++) {
-            if (i) fputc(field->listed ? '/' : ',', file);
-            csv_value(file, field, value + (size_t)i * sizeof(double));
-        }
+        fprintf(file, "%lld", bench_record_whole(field, record));
 }
 
 static void csv_title(FILE *file, const BenchField *field)
@@ -140,38 +123,19 @@ static json_t *json_numbers(const double *numbers, int count)
     return list;
 }
 
-static json_t *json_value(const BenchField *field, const void *value)
-{
-    switch (field->kind) {
-    case BENCH_INT:
-        return json_integer(*(const int *)value);
-    case BENCH_LONG:
-        return json_integer(*(const long *)value);
-    case BENCH_BOOL:
-        return json_boolean(*(const bool *)value);
-    case BENCH_HASH: {
-        char text[24]; /* beyond what a JSON number holds exactly */
-        snprintf(text, sizeof text, "%016llx", *(const unsigned long long *)value);
-        return json_string(text);
-    }
-    case BENCH_TEXT:
-    case BENCH_DOUBLE:
-        break;
-    }
-    const double *numbers = value;
-    int many = bench_field_values(field);
-    return many == 1 ? bench_json_number(*numbers) : json_numbers(numbers, many);
-}
-
 json_t *bench_json_cell(const BenchField *field, const void *record)
 {
     if (!bench_record_has(field, record)) return json_null();
-    if (field->number) return bench_json_number(field->number(record));
     if (field->kind == BENCH_TEXT) return bench_json_text(bench_field_text(field, record));
-    const char *value = (const char *)record + field->offset;
-    if (field->listed)
-        return json_numbers((const double *)(const void *)value, field->listed(record));
-    return json_value(field, value);
+    if (field->number) return bench_json_number(field->number(record));
+    long long whole = bench_record_whole(field, record);
+    if (field->kind == BENCH_BOOL) return json_boolean(whole);
+    if (field->kind == BENCH_HASH) return json_sprintf("%016llx", (unsigned long long)whole);
+    if (field->kind != BENCH_DOUBLE) return json_integer(whole);
+    const double *numbers = (const double *)(const void *)((const char *)record + field->offset);
+    int many = bench_field_values(field);
+    if (field->listed) return json_numbers(numbers, field->listed(record));
+    return many == 1 ? bench_json_number(*numbers) : json_numbers(numbers, many);
 }
 
 json_t *bench_json_record(const BenchField *fields, int count, const void *record)

@@ -21,25 +21,22 @@ bool bench_record_has(const BenchField *field, const void *record)
     return (!field->timed || field->timed(record)) && (!field->given || field->given(record));
 }
 
-double bench_record_number(const BenchField *field, const void *record)
+long long bench_record_whole(const BenchField *field, const void *record)
 {
     const void *value = (const char *)record + field->offset;
+    return field->kind == BENCH_INT    ? *(const int *)value
+           : field->kind == BENCH_LONG ? *(const long *)value
+           : field->kind == BENCH_BOOL ? *(const bool *)value
+           : field->kind == BENCH_HASH ? (long long)*(const unsigned long long *)value
+                                       : 0;
+}
+
+double bench_record_number(const BenchField *field, const void *record)
+{
+    const double *number = (const double *)(const void *)((const char *)record + field->offset);
     if (field->number) return field->number(record);
-    switch (field->kind) {
-    case BENCH_INT:
-        return *(const int *)value;
-    case BENCH_LONG:
-        return (double)*(const long *)value;
-    case BENCH_BOOL:
-        return *(const bool *)value;
-    case BENCH_HASH:
-        return (double)*(const unsigned long long *)value;
-    case BENCH_DOUBLE:
-        return *(const double *)value;
-    case BENCH_TEXT:
-        break;
-    }
-    return NAN;
+    if (field->kind == BENCH_TEXT) return NAN;
+    return field->kind == BENCH_DOUBLE ? *number : (double)bench_record_whole(field, record);
 }
 
 void bench_record_none(const BenchField *fields, int count, void *record, size_t size)

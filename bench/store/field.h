@@ -65,6 +65,9 @@ int bench_field_values(const BenchField *field);
 /* Has the record a value there, and if it is a time, that? */
 bool bench_record_has(const BenchField *field, const void *record);
 
+/* The whole number that a field of a record is, a hash's bits; of others 0. */
+long long bench_record_whole(const BenchField *field, const void *record);
+
 /* The number that a field of a record is; of an array the first, of a text NaN. */
 double bench_record_number(const BenchField *field, const void *record);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../../lib/error.h"
+#include "../../lib/printable.h"
 
 void bench_grid_column(BenchGrid *grid, const char *heading, bool left)
 {
@@ -58,11 +59,10 @@ static const char *cell(const BenchGrid *grid, int line, int column)
 static void text_line(FILE *file, const BenchGrid *grid, int line)
 {
     char text[BENCH_GRID_COLUMNS * (BENCH_GRID_TEXT + 2) + 1] = "";
-    int used = 0;
     for (int c = 0; c < grid->columns; c++)
-        used += snprintf(text + used, sizeof text - (size_t)used, "%s%*s", c ? "  " : "",
-                         grid->left[c] ? -grid->width[c] : grid->width[c], cell(grid, line, c));
-    while (used > 0 && text[used - 1] == ' ') text[--used] = '\0';
+        sm_append(text, sizeof text, "%s%*s", c ? "  " : "",
+                  grid->left[c] ? -grid->width[c] : grid->width[c], cell(grid, line, c));
+    for (size_t end = strlen(text); end && text[end - 1] == ' ';) text[--end] = '\0';
     fprintf(file, "%s\n", text);
 }
 

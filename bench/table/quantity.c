@@ -41,16 +41,6 @@ static const char *verdict(const void *record)
 
 /* ---- cells of tables for people */
 
-static bool always(const void *record)
-{
-    return record != NULL;
-}
-
-static bool damped(const void *record)
-{
-    return ((const BenchRow *)record)->damping > 0;
-}
-
 static void w_cell(const void *record, char *text)
 {
     int w = ((const BenchRow *)record)->w;
@@ -216,7 +206,7 @@ enum { PAGE = 1 << BENCH_GRID_MARKDOWN | LATEX, EVERY = PLAIN | PAGE };
 #define MEANS(unit_, words)       .field.unit = unit_, .field.meaning = words
 #define PAPER(member, how)        .paper = offsetof(RefPaperRow, member), .below = how
 
-#define PART(when)        .dash = true, .part = when
+#define PART              .dash = true, .part = true
 #define PAPER_PART(stage) .paper = offsetof(RefPaperRow, stage_ms[stage])
 
 #define STORED(type, member, ...) .field.name = #member, PLACE(type, member), __VA_ARGS__
@@ -239,21 +229,17 @@ const BenchQuantity bench_quantities[] = {
 
 const int bench_quantity_count = sizeof bench_quantities / sizeof bench_quantities[0];
 
-static bool called(const BenchQuantity *quantity, const char *name)
-{
-    const BenchField *field = &quantity->field;
-    size_t group = strncmp(field->name, "change.", 7) ? 0 : 7;
-    return !strcmp(field->name + group, name) || (field->column && !strcmp(field->column, name)) ||
-           (quantity->alias && !strcmp(quantity->alias, name));
-}
-
 const BenchField *bench_quantity_number(const char *name)
 {
     for (int q = 0; q < bench_quantity_count; q++) {
         const BenchField *field = &bench_quantities[q].field;
         bool whole = field->kind == BENCH_INT || field->kind == BENCH_LONG;
-        bool number = whole || (field->kind == BENCH_DOUBLE && field->size == sizeof(double));
-        if (field->name && number && called(&bench_quantities[q], name)) return field;
+        bool number = whole || (field->kind == BENCH_DOUBLE && bench_field_values(field) == 1);
+        if (!field->name || !number) continue;
+        size_t group = strncmp(field->name, "change.", 7) ? 0 : 7;
+        const char *const names[] = {field->name + group, field->column, bench_quantities[q].alias};
+        for (int n = 0; n < 3; n++)
+            if (names[n] && !strcmp(names[n], name)) return field;
     }
     return NULL;
 }

@@ -28,8 +28,7 @@ typedef struct {
     const char *terse; /* heading as text, where it is another than the field's title */
     unsigned char shown[BENCH_TABLES]; /* forms in which the table has it: bits 1 << form */
     bool dash;                         /* as text "-" in a row without times */
-    bool (*part)(const void *row); /* a part of the total, with its percent (as text that alone),
-                                    * where this says so, otherwise "-"; NULL: no such part */
+    bool part;                         /* of the total: with its percent, as text that alone */
     size_t paper; /* the RefValue in RefPaperRow that stands below, as `below` writes it; NULL: of
                    * a part that, of others nothing */
     void (*below)(const RefPaperRow *paper, const RefValue *value, char *text);

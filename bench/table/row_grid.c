@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../engines.h"
 #include "../measure/elastic_row.h"
 #include "records.h"
@@ -52,24 +53,22 @@ static const char *time_mark(const BenchRow *row, BenchTableKind table)
 
 static void part_text(double ms, double percent, BenchGridForm form, char *text)
 {
-    char number[BENCH_GRID_TEXT];
-    bench_grid_number(ms, number);
+    bench_grid_number(ms, text);
     if (form == BENCH_GRID_PLAIN && isfinite(percent))
         snprintf(text, BENCH_GRID_TEXT, "%.0f%%", percent);
     else if (isfinite(percent))
-        snprintf(text, BENCH_GRID_TEXT, "%.40s (%2.0f%%)", number, percent);
-    else
-        snprintf(text, BENCH_GRID_TEXT, "%.40s", number);
+        sm_append(text, BENCH_GRID_TEXT, " (%2.0f%%)", percent);
 }
 
 static void measured_part(const BenchQuantity *quantity, const BenchRow *row, BenchGridForm form,
                           char *text)
 {
     double ms = bench_record_number(&quantity->field, row);
-    if (quantity->part(row))
-        part_text(ms, 100 * ms / row->total_ms, form, text);
-    else
+    bool damping = quantity->field.offset == offsetof(BenchRow, stage_ms[SM_DAMPING]);
+    if (damping && !(row->damping > 0))
         strcpy(text, "-");
+    else
+        part_text(ms, 100 * ms / row->total_ms, form, text);
 }
 
 static void paper_part(const RefPaperRow *paper, const RefValue *value, BenchGridForm form,

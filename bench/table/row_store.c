@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../../reference/paper.h"
 #include "../engines.h"
 #include "../measure/measure.h"
@@ -16,11 +17,10 @@ enum { MOST_ROWS = 100000, MOST_REPEATS = 1000000, MOST_STAGES = 64, LEAST_ROW =
 
 void bench_store_stages(const char *engine, size_t size, char *names)
 {
-    size_t used = 0;
+    names[0] = '\0';
     for (int stage = 0; stage < SM_STAGES; stage++) {
         const char *name = bench_stage_name(bench_engine(engine), (SmStage)stage);
-        used += (size_t)snprintf(names + used, size - used, "%s%s", stage ? " " : "",
-                                 name ? name : "-");
+        sm_append(names, size, "%s%s", stage ? " " : "", name ? name : "-");
     }
 }
 
