@@ -7,7 +7,6 @@
 #ifndef BENCH_CLAMPED_BEAM_H
 #define BENCH_CLAMPED_BEAM_H
 
-#include "../../reference/beam_theory.h"
 #include "../play/runner.h"
 
 typedef struct {
@@ -39,44 +38,5 @@ double bench_clamped_beam_rise(BenchClampedBeam *beam, const double *share);
 /* A step under an acceleration along y beside the scene's gravity, and with a drag -rate v; rate h
  * at most 1/2. */
 void bench_clamped_beam_step(BenchClampedBeam *beam, double acceleration, double rate);
-
-/* A cantilever that comes out of a wall of its own material: it lies along x, and behind x = 0 it
- * goes on for `root` cells, all of which are held: as far as regions reach in, so that the clamp is
- * as stiff as an elastic body's is. Particles have the body's mass, a lattice's an eighth of every
- * cell around them. No gravity. */
-typedef struct {
-    char engine[12];
-    double w, epsilon;
-    double damping;          /* k of eq. 14 */
-    int across, along, root; /* cells: thick and wide, free, held */
-    double cell, h, density; /* mesh units, s, kg a cubic unit */
-} BenchCantileverOptions;
-
-typedef struct {
-    BenchScene scene;
-    BenchBody body;
-    BenchRunner runner;
-    BenchClampedBeam beam;         /* what is free of it */
-    double *share[REF_BEAM_MODES]; /* [particles] what a rise of each adds to a mode's height */
-} BenchCantilever;
-
-/* `type` is the engine's; or, in tests, another one. The beam is then at rest, without load; it
- * must not move in memory. Errors: the body's and the engine's. The caller frees it, also when it
- * failed. */
-SmCode bench_cantilever_create(const BenchCantileverOptions *options, const SmEngineType *type,
-                               BenchCantilever *cantilever, SmError *error);
-void bench_cantilever_free(BenchCantilever *cantilever);
-
-/* Puts it at rest in the shape that theory gives a mode (reference/beam_theory.h), its tip `up`
- * high; cross-sections stay straight. */
-void bench_cantilever_bend(BenchCantilever *cantilever, int mode, double up);
-
-/* How far its end hangs down, of its length: the tip carried on to the end as theory has a beam
- * sag, since an octree's nodes are in cells. */
-double bench_cantilever_sag(BenchCantilever *cantilever);
-
-/* How far from rest under the acceleration: the rms acceleration of what is free, by mass, as a
- * share of it. The beam stops, and takes a step. */
-double bench_cantilever_unrest(BenchCantilever *cantilever, double acceleration);
 
 #endif

@@ -3,7 +3,35 @@
 #ifndef BENCH_STIFFNESS_H
 #define BENCH_STIFFNESS_H
 
+#include "../../reference/beam_theory.h"
 #include "clamped_beam.h"
+
+/* A cantilever that comes out of a wall of its own material: it lies along x, and behind x = 0 it
+ * goes on for `root` cells, all of which are held: as far as regions reach in, so that the clamp is
+ * as stiff as an elastic body's is. Particles have the body's mass, a lattice's an eighth of every
+ * cell around them. No gravity. */
+typedef struct {
+    char engine[12];
+    double w, epsilon;
+    double damping;          /* k of eq. 14 */
+    int across, along, root; /* cells: thick and wide, free, held */
+    double cell, h, density; /* mesh units, s, kg a cubic unit */
+} BenchCantileverOptions;
+
+typedef struct {
+    BenchScene scene;
+    BenchBody body;
+    BenchRunner runner;
+    BenchClampedBeam beam;         /* what is free of it */
+    double *share[REF_BEAM_MODES]; /* [particles] what a rise of each adds to a mode's height */
+} BenchCantilever;
+
+/* `type` is the engine's; or, in tests, another one. The beam is then at rest, without load; it
+ * must not move in memory. Errors: the body's and the engine's. The caller frees it, also when it
+ * failed. */
+SmCode bench_cantilever_create(const BenchCantileverOptions *options, const SmEngineType *type,
+                               BenchCantilever *cantilever, SmError *error);
+void bench_cantilever_free(BenchCantilever *cantilever);
 
 enum { BENCH_TONES = 3 };
 

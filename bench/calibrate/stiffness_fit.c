@@ -97,9 +97,10 @@ static int choose(const BenchSpecimen *specimen, long count, const char *engine,
 /* y = X times coefficients, by least squares. */
 typedef struct {
     size_t rows, columns;
-    gsl_matrix *X, *both; /* both: covariances */
-    gsl_vector *y, *coefficient;
-    double scatter; /* rms of what is left of y */
+    double *X, *y;                                /* [rows * columns], [rows] */
+    double coefficient[1 + SETTINGS];             /* [columns] */
+    double both[(1 + SETTINGS) * (1 + SETTINGS)]; /* [columns * columns] covariances */
+    double scatter;                               /* rms of what is left of y */
 } Fit;
 
 static Fit begin_fit(int rows, int columns)
@@ -107,38 +108,35 @@ static Fit begin_fit(int rows, int columns)
     size_t n = (size_t)rows, p = (size_t)columns;
     return (Fit){.rows = n,
                  .columns = p,
-                 .X = gsl_matrix_alloc(n, p),
-                 .both = gsl_matrix_alloc(p, p),
-                 .y = gsl_vector_alloc(n),
-                 .coefficient = gsl_vector_alloc(p)};
+                 .X = sm_alloc(n * p, sizeof(double)),
+                 .y = sm_alloc(n, sizeof(double))};
 }
 
 /* False where the columns say the same. */
 static bool find_fit(Fit *fit)
 {
-    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(fit->rows, fit->columns);
+    size_t n = fit->rows, p = fit->columns;
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, p);
+    gsl_matrix_view X = gsl_matrix_view_array(fit->X, n, p),
+                    both = gsl_matrix_view_array(fit->both, p, p);
+    gsl_vector_view y = gsl_vector_view_array(fit->y, n),
+                    coefficient = gsl_vector_view_array(fit->coefficient, p);
     double squares;
-    gsl_multifit_linear(fit->X, fit->y, fit->coefficient, fit->both, &squares, work);
-    bool good = gsl_multifit_linear_rank(1e-6, work) == fit->columns;
+    gsl_multifit_linear(&X.matrix, &y.vector, &coefficient.vector, &both.matrix, &squares, work);
+    bool good = gsl_multifit_linear_rank(1e-6, work) == p;
     gsl_multifit_linear_free(work);
-    fit->scatter = sqrt(squares / (double)fit->rows);
+    free(fit->X);
+    free(fit->y);
+    fit->scatter = sqrt(squares / (double)n);
     return good;
 }
 
-static void free_fit(Fit *fit)
-{
-    gsl_matrix_free(fit->X);
-    gsl_matrix_free(fit->both);
-    gsl_vector_free(fit->y);
-    gsl_vector_free(fit->coefficient);
-}
-
 /* A coefficient, with its 95% interval. */
-static void read_fit(const Fit *fit, size_t column, double found[3])
+static void read_fit(const Fit *fit, int column, double found[3])
 {
-    double value = gsl_vector_get(fit->coefficient, column);
+    double value = fit->coefficient[column];
     double half = gsl_cdf_tdist_Pinv(0.975, (double)(fit->rows - fit->columns)) *
-                  sqrt(fmax(gsl_matrix_get(fit->both, column, column), 0));
+                  sqrt(fmax(fit->both[(size_t)column * (fit->columns + 1)], 0));
     found[0] = value, found[1] = value - half, found[2] = value + half;
 }
 
@@ -170,10 +168,11 @@ static bool fit_power(const BenchSpecimen **s, int count, double density, BenchS
     if (columns < 2 || count <= columns) return false;
     Fit fit = begin_fit(count, columns);
     for (int i = 0; i < count; i++) {
-        gsl_matrix_set(fit.X, (size_t)i, 0, 1);
+        double *row = fit.X + i * columns;
+        row[0] = 1;
         for (int k = 0; k < SETTINGS; k++)
-            if (column[k]) gsl_matrix_set(fit.X, (size_t)i, (size_t)column[k], setting(s[i], k));
-        gsl_vector_set(fit.y, (size_t)i, log(s[i]->young / density));
+            if (column[k]) row[column[k]] = setting(s[i], k);
+        fit.y[i] = log(s[i]->young / density);
     }
     bool good = find_fit(&fit);
     law->specimens = count;
@@ -181,10 +180,9 @@ static bool fit_power(const BenchSpecimen **s, int count, double density, BenchS
     read_fit(&fit, 0, law->c);
     for (int i = 0; i < 3; i++) law->c[i] = exp(law->c[i]);
     for (int k = 0; k < SETTINGS; k++)
-        if (column[k]) read_fit(&fit, (size_t)column[k], exponent[k]);
+        if (column[k]) read_fit(&fit, column[k], exponent[k]);
     double *step = law->step, low = -step[2]; /* the law divides by it */
     step[2] = -step[1], step[1] = low, step[0] = -step[0];
-    free_fit(&fit);
     return good;
 }
 
@@ -203,16 +201,15 @@ static bool fit_terms(const BenchSpecimen **s, int count, double thickness, doub
     for (int i = 0; i < count; i++) {
         double speed = s[i]->spacing / s[i]->h, across = s[i]->spacing / thickness;
         double x = density * speed * speed * smoothing(s[i]) / s[i]->young;
-        gsl_matrix_set(fit.X, (size_t)i, 0, x);
-        gsl_matrix_set(fit.X, (size_t)i, 1, x * smoothing(s[i]) * across * across);
-        gsl_vector_set(fit.y, (size_t)i, 1);
+        fit.X[2 * i] = x;
+        fit.X[2 * i + 1] = x * smoothing(s[i]) * across * across;
+        fit.y[i] = 1;
     }
     bool good = find_fit(&fit);
     law->specimens = count;
     law->scatter = fit.scatter;
     read_fit(&fit, 0, law->c);
     read_fit(&fit, 1, law->d);
-    free_fit(&fit);
     return good;
 }
 

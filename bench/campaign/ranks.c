@@ -21,16 +21,23 @@ static void be_silent(void)
     if (!freopen("/dev/null", "w", stdout) || !freopen("/dev/null", "w", stderr)) exit(SM_OUTPUT);
 }
 
-#ifdef SHAPEBENCH_MPI
-
-#include <mpi.h>
+static SmCode join(BenchRanks *ranks, long count, SmError *error);
 
 SmCode bench_ranks_start(BenchRanks *ranks, SmError *error)
 {
     *ranks = (BenchRanks){0, 1};
-    long count = launcher_says(counts, 1);
-    if (launcher_says(numbers, -1) < 0 && count == 1) return SM_OK;
-    if (launcher_says(numbers, 0) > 0) be_silent();
+    long count = launcher_says(counts, 1), number = launcher_says(numbers, -1);
+    if (number < 0 && count <= 1) return SM_OK;
+    if (number > 0) be_silent();
+    return join(ranks, count, error);
+}
+
+#ifdef SHAPEBENCH_MPI
+
+#include <mpi.h>
+
+static SmCode join(BenchRanks *ranks, long count, SmError *error)
+{
     MPI_Init(NULL, NULL);
     MPI_Comm_rank(MPI_COMM_WORLD, &ranks->rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks->count);
@@ -81,12 +88,10 @@ void bench_ranks_end(const BenchRanks *ranks, SmCode code)
 
 #else
 
-SmCode bench_ranks_start(BenchRanks *ranks, SmError *error)
+static SmCode join(BenchRanks *ranks, long count, SmError *error)
 {
-    *ranks = (BenchRanks){0, 1};
-    long count = launcher_says(counts, 1);
+    (void)ranks;
     if (count <= 1) return SM_OK;
-    if (launcher_says(numbers, 0) > 0) be_silent();
     return sm_fail(error, SM_USAGE,
                    "started as one of %ld processes, but built without MPI: install libopenmpi-dev "
                    "and build again, or use --shard",
