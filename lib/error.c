@@ -31,8 +31,8 @@ static void out_of_memory(size_t count, size_t size, const char *file, int line)
     exit(SM_MEMORY);
 }
 
-/* Large arrays in huge pages, where the system has them: a step streams through more of them than
- * the processor remembers small pages. Only pages that the array fills are asked for. */
+/* Large arrays in huge pages, where the system has them: a step streams through more small pages
+ * than the processor's translation buffer holds. Only pages that the array fills are asked for. */
 static void *allocate(size_t bytes)
 {
     const size_t huge = (size_t)2 << 20;

@@ -10,7 +10,7 @@
 void sm_append(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Bytes of the UTF-8 character at `text`; 0 for what a terminal may take for an order (control
+/* Bytes of the UTF-8 character at `text`; 0 for what a terminal may take for a command (control
  * characters, C1's among them), what is no UTF-8, and what XML may not hold. */
 int sm_character(const char *text);
 

@@ -105,7 +105,7 @@ static void print_changes(const BenchPlayback *play, const BenchOutcome *outcome
         open += bodies * (info.open_edges + info.nonmanifold_edges);
         pieces += bodies * info.components;
         triangles += bodies * info.triangles;
-        left += bodies * play->group[p].skin.left;
+        left += bodies * play->group[p].skin.incomplete;
     }
     printf("changes: %ld frame%s, %s with the surface; in the end %ld nodes, and surfaces "
            "of %ld triangles in %ld piece%s, ",

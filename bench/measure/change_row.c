@@ -168,7 +168,7 @@ static void note_end(const BenchPlayback *play, BenchChangeRow *row)
         long bodies = play->group[p].body.instances;
         row->pieces += bodies * info.components;
         row->open_edges += bodies * (info.open_edges + info.nonmanifold_edges);
-        row->left += bodies * play->group[p].skin.left;
+        row->left += bodies * play->group[p].skin.incomplete;
     }
 }
 

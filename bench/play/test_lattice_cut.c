@@ -79,7 +79,7 @@ static long check(Run *run)
     bench_check_free(&check);
     SmMeshInfo info = sm_mesh_info(surface(run));
     assert_int_equal(info.open_edges + info.nonmanifold_edges, 0);
-    assert_false(run->play.group[0].skin.left);
+    assert_false(run->play.group[0].skin.incomplete);
     for (long v = 0; v < surface(run)->vertex_count; v++)
         for (int d = 0; d < 3; d++) assert_true(fabs(run->point[v][d]) < 10);
     runner->type->pieces(runner->engine, &pieces);

@@ -79,7 +79,7 @@ static void what_is_recorded_is_the_surface_that_is_there(const char *engine)
         bench_playback_prepare(&show.play);
         bench_playback_advance(&show.play, NULL);
     }
-    assert_true(show.play.group[0].skin.left);
+    assert_true(show.play.group[0].skin.incomplete);
     assert_true(changed > 3);
     if (bench_recording_close(&recording, &error)) fail_msg("%s", error.text);
     bench_playback_free(&show.play);

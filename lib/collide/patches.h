@@ -1,5 +1,5 @@
 /* patches.h - a body in patches of a few nodes, and the boxes around them: most patches are near
- * nothing that they could collide with, and are then done with. */
+ * nothing that they could collide with, and need no further look. */
 #ifndef SM_PATCHES_H
 #define SM_PATCHES_H
 

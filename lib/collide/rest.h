@@ -1,5 +1,5 @@
 /* rest.h - what collisions know of a body at rest: its cells, their outer faces, the depth
- * below them, and who is too near in the material to collide.
+ * below them, and which nodes and cells are too near in the material to collide.
  *
  * Nodes carry cells: a lattice cell hangs on its eight corner nodes, an octree leaf on its own.
  * Lengths are cells (of the octree: finest cells), lengths in the graph half cells. */

@@ -165,7 +165,7 @@ static bool left(const double a[3], const double b[3], const double p[3], const 
     return positive(sm_dot(along, normal), slope);
 }
 
-/* Are a and b on one side of a triangle's plane, without a doubt? */
+/* Are a and b on one side of a triangle's plane, by more than rounding? */
 static bool beside(const SmCut *cut, long triangle, const double a[3], const double b[3])
 {
     const double *plane = cut->plane[triangle];

@@ -57,7 +57,7 @@ long sm_cut_crossed(const SmCut *cut, long first, const double a[3], const doubl
 bool sm_cut_crosses_one(const SmCut *cut, long triangle, const double a[3], const double b[3]);
 
 /* Does every segment from x to a place in the box, which reaches `half` to all sides of its centre,
- * cross the triangle, beyond any doubt of rounding? Then sm_cut_crosses() says so of each. O(1). */
+ * cross the triangle, whatever rounding does? Then sm_cut_crosses() says so of each. O(1). */
 bool sm_cut_hides(const SmCut *cut, long triangle, const double x[3], const double centre[3],
                   double half);
 

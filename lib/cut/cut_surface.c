@@ -25,15 +25,15 @@ typedef struct {
     double cell;
     bool inside_out;
     bool tear; /* it is open already, and may come to be more so */
-} Slit;
+} SurfaceCut;
 
 /* Takes the solid for triangles first .. last - 1 away. What tears undoes itself, unless it may. */
-static SmSubtractResult carve_once(const Slit *s, long first, long last, unsigned seed,
-                                   const SmSubtractOptions *options)
+static SmSubtractResult try_once(const SurfaceCut *s, long first, long last, unsigned seed,
+                                 const SmSubtractOptions *options)
 {
     SmMesh solid;
-    SmCutSolidOptions wedge = {thickness * s->cell, seed};
-    if (!sm_cut_solid_make(s->cut, first, last, &wedge, &solid)) return SM_SUBTRACT_FAILED;
+    SmCutSolidOptions thin = {thickness * s->cell, seed};
+    if (!sm_cut_solid_make(s->cut, first, last, &thin, &solid)) return SM_SUBTRACT_FAILED;
     SmMesh before = s->tear ? (SmMesh){0} : sm_mesh_copy(s->mesh);
     SmSubtractResult result = sm_mesh_subtract(s->mesh, &solid, options);
     if (result == SM_SUBTRACT_TORN && !s->tear) {
@@ -49,14 +49,14 @@ static SmSubtractResult carve_once(const Slit *s, long first, long last, unsigne
 
 /* One solid for triangles first .. last - 1, with other random moves where it fails; and where the
  * surface may tear at last without closing. */
-static SmCutResult carve(const Slit *s, long first, long last)
+static SmCutResult split_by(const SurfaceCut *s, long first, long last)
 {
     static const SmCutResult meaning[] = {SM_CUT_MISSED, SM_CUT_CLOSED, SM_CUT_OPEN};
     SmSubtractOptions options = {s->inside_out, true, slack * s->cell};
     for (int try = 0; try < (s->tear ? 2 : 1) * TRIES; try++) {
         options.close = try < TRIES;
         SmSubtractResult result =
-            carve_once(s, first, last, (unsigned)(first * 2 * TRIES + try), &options);
+            try_once(s, first, last, (unsigned)(first * 2 * TRIES + try), &options);
         if (result != SM_SUBTRACT_FAILED) return meaning[result];
     }
     return SM_CUT_INCOMPLETE;
@@ -70,12 +70,12 @@ static bool has_area(const SmCut *cut, long t, double least)
 }
 
 /* A solid for every triangle: they overlap, and each is simple. */
-static SmCutResult carve_each(const Slit *s, long first)
+static SmCutResult split_by_each(const SurfaceCut *s, long first)
 {
     SmCutResult worst = SM_CUT_MISSED;
     bool left = false;
     for (long t = first; t < s->cut->triangles; t++) {
-        SmCutResult result = carve(s, t, t + 1);
+        SmCutResult result = split_by(s, t, t + 1);
         if (result == SM_CUT_INCOMPLETE)
             left |= has_area(s->cut, t, 0.01 * s->cell * s->cell);
         else if (result > worst)
@@ -92,12 +92,12 @@ static bool is_closed(const SmMesh *mesh)
 
 SmCutResult sm_cut_surface(SmMesh *mesh, const SmCut *cut, long first, double cell)
 {
-    Slit s = {mesh, cut, cell, is_inside_out(mesh), false};
-    SmCutResult result = carve(&s, first, cut->triangles);
+    SurfaceCut s = {mesh, cut, cell, is_inside_out(mesh), false};
+    SmCutResult result = split_by(&s, first, cut->triangles);
     if (result == SM_CUT_INCOMPLETE && cut->triangles > first && !is_closed(mesh)) {
         s.tear = true;
-        result = carve(&s, first, cut->triangles);
+        result = split_by(&s, first, cut->triangles);
     }
-    if (result == SM_CUT_INCOMPLETE) result = carve_each(&s, first);
+    if (result == SM_CUT_INCOMPLETE) result = split_by_each(&s, first);
     return result;
 }

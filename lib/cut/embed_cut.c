@@ -21,7 +21,7 @@ typedef struct {
     double (*normal)[3]; /* [vertices] of any length */
     int *flat;           /* [vertices] its number in embedding->flat, or -1 */
     long flat_room;
-} Tying;
+} EmbedCut;
 
 /* Lengths are cells, places relative to the vertex. */
 typedef struct {
@@ -91,9 +91,9 @@ static bool widens(double basis[3][3], int rank, const double at[3])
     return sm_normalize(basis[rank]);
 }
 
-/* Does a candidate see the eye, and what is chosen already? A look from where cuts meet takes in
- * more than hangs together. */
-static bool may_carry(const Tying *t, const double eye[3], const Carriers *chosen,
+/* Is a candidate seen from the eye, and from what is chosen already, and of one piece with it? From
+ * where cuts meet, particles of several pieces are seen. */
+static bool may_carry(const EmbedCut *t, const double eye[3], const Carriers *chosen,
                       const Candidate *c)
 {
     double place[3], first[3];
@@ -107,7 +107,7 @@ static bool may_carry(const Tying *t, const double eye[3], const Carriers *chose
 
 /* The nearest particles that are seen from `eye`, so many of them far enough away that they span
  * what all that are seen do. Returns how many dimensions. */
-static int choose(const Tying *t, const double X[3], const double eye[3], int reach,
+static int choose(const EmbedCut *t, const double X[3], const double eye[3], int reach,
                   Carriers *chosen)
 {
     Candidate candidate[MOST_SIDE * MOST_SIDE * MOST_SIDE];
@@ -132,7 +132,7 @@ static int choose(const Tying *t, const double X[3], const double eye[3], int re
 }
 
 /* The same with a wider reach where the near ones span less than space. */
-static int choose_any(const Tying *t, const double X[3], const double eye[3], Carriers *chosen)
+static int choose_any(const EmbedCut *t, const double X[3], const double eye[3], Carriers *chosen)
 {
     int rank = 0;
     for (int reach = 1; reach <= MOST_REACH && rank < 3; reach++)
@@ -175,7 +175,7 @@ static void multiply(const double M[9], const double v[3], double result[3])
     for (int a = 0; a < 3; a++) result[a] = sm_dot(M + 3 * a, v);
 }
 
-static SmFlat *add_flat(Tying *t, long v)
+static SmFlat *add_flat(EmbedCut *t, long v)
 {
     SmEmbedding *e = t->embedding;
     sm_make_room(e->flat, t->flat_room, e->flat_count + 1);
@@ -184,7 +184,7 @@ static SmFlat *add_flat(Tying *t, long v)
     return &e->flat[e->flat_count++];
 }
 
-static void drop_flat(Tying *t, long v)
+static void drop_flat(EmbedCut *t, long v)
 {
     SmEmbedding *e = t->embedding;
     int number = t->flat[v];
@@ -195,7 +195,7 @@ static void drop_flat(Tying *t, long v)
 }
 
 /* Vertex v is carried by these: the fit's value and slopes where it is, eqs. 15 and 17. */
-static void weigh(Tying *t, long v, const Carriers *c)
+static void weigh(EmbedCut *t, long v, const Carriers *c)
 {
     SmEmbedding *e = t->embedding;
     double share[CARRIERS], middle[3], inverse[9], beyond[9], tangent[2][3];
@@ -223,8 +223,8 @@ static void weigh(Tying *t, long v, const Carriers *c)
     sm_normalize(off->normal);
 }
 
-/* By what it sees; where it sees nothing, by what the particle nearest to it does. */
-static void tie(Tying *t, long v)
+/* By particles that it sees; where it sees none, by those that the nearest particle sees. */
+static void carry(EmbedCut *t, long v)
 {
     const double *X = t->mesh->position[v];
     Carriers chosen;
@@ -251,7 +251,7 @@ static SmBox box_of(const SmCut *cut, long first, double margin)
 
 /* Do triangles from `first` on, all in the box, come between a vertex and what carries it, or has
  * that come apart? */
-static bool is_parted(const Tying *t, long v, long first, const SmBox *box)
+static bool is_parted(const EmbedCut *t, long v, long first, const SmBox *box)
 {
     const double *X = t->mesh->position[v];
     const int *corner = t->embedding->corner[v];
@@ -269,7 +269,7 @@ static bool is_parted(const Tying *t, long v, long first, const SmBox *box)
 
 static bool agree(void *carriers, long u, long v)
 {
-    const Tying *t = carriers;
+    const EmbedCut *t = carriers;
     const int *a = t->embedding->corner[u], *b = t->embedding->corner[v];
     double from[3], to[3];
     if (t->piece[a[0]] != t->piece[b[0]]) return false;
@@ -285,7 +285,7 @@ static bool agree(void *carriers, long u, long v)
 /* Vertex v is carried by what the first particle of u sees near it, or else by all that carry u. */
 static void follow(void *carriers, long v, long u)
 {
-    Tying *t = carriers;
+    EmbedCut *t = carriers;
     const SmVoxels *voxels = t->sites->voxels;
     const double *X = t->mesh->position[v];
     const int *corner = t->embedding->corner[u];
@@ -307,7 +307,7 @@ static void follow(void *carriers, long v, long u)
 void sm_embed_cut(SmEmbedding *embedding, const SmMesh *mesh, const SmSites *sites,
                   const SmCut *cut, long first, const int *piece)
 {
-    Tying t = {embedding, mesh, sites, cut, piece, .flat_room = embedding->flat_count};
+    EmbedCut t = {embedding, mesh, sites, cut, piece, .flat_room = embedding->flat_count};
     double margin = 1e-6 * sites->voxels->cell;
     SmBox fresh = box_of(cut, first, margin), all = box_of(cut, 0, margin);
     long before = embedding->vertex_count;
@@ -317,7 +317,7 @@ void sm_embed_cut(SmEmbedding *embedding, const SmMesh *mesh, const SmSites *sit
     for (long n = 0; n < embedding->flat_count; n++) t.flat[embedding->flat[n].vertex] = (int)n;
     sm_embed_grow(embedding, mesh, sites, (const double(*)[3])t.normal);
     for (long v = 0; v < mesh->vertex_count; v++)
-        if (is_parted(&t, v, v < before ? first : 0, v < before ? &fresh : &all)) tie(&t, v);
+        if (is_parted(&t, v, v < before ? first : 0, v < before ? &fresh : &all)) carry(&t, v);
     sm_make_sides_consistent(mesh, agree, follow, &t);
     free(t.normal);
     free(t.flat);

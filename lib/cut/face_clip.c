@@ -368,12 +368,12 @@ static SmFaceClipResult fill(SmFaceClip *f, long face, Stop *stop, bool kept[3])
     return fill_rings(f, loops_from) ? SM_FACE_FILLED : SM_FACE_FAILED;
 }
 
-SmFaceClipResult sm_face_clip_fill(SmFaceClip *facets, long face, bool kept[3])
+SmFaceClipResult sm_face_clip_fill(SmFaceClip *clip, long face, bool kept[3])
 {
-    long segments = facets->first[face + 1] - facets->first[face];
+    long segments = clip->first[face + 1] - clip->first[face];
     Stop *stop = sm_alloc(3 + 4 * (size_t)segments, sizeof *stop);
-    SmFaceClipResult result = fill(facets, face, stop, kept);
-    unlink_segments(facets, face);
+    SmFaceClipResult result = fill(clip, face, stop, kept);
+    unlink_segments(clip, face);
     free(stop);
     return result;
 }

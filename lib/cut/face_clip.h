@@ -27,16 +27,16 @@ typedef enum {
     SM_FACE_FAILED, /* they cross, or rounding mixed up their order */
 } SmFaceClipResult;
 
-void sm_face_clip_init(const SmCrossing *crossing, double slack, SmFaceClip *facets);
-void sm_face_clip_free(SmFaceClip *facets);
+void sm_face_clip_init(const SmCrossing *crossing, double slack, SmFaceClip *clip);
+void sm_face_clip_free(SmFaceClip *clip);
 
-static inline bool sm_face_clip_crossed(const SmFaceClip *facets, long face)
+static inline bool sm_face_clip_crossed(const SmFaceClip *clip, long face)
 {
-    return facets->first[face] < facets->first[face + 1];
+    return clip->first[face] < clip->first[face + 1];
 }
 
 /* Appends the triangles that fill what is left of a crossed face, and says which of its corners
  * are left: kept[i]. */
-SmFaceClipResult sm_face_clip_fill(SmFaceClip *facets, long face, bool kept[3]);
+SmFaceClipResult sm_face_clip_fill(SmFaceClip *clip, long face, bool kept[3]);
 
 #endif

@@ -16,21 +16,21 @@ typedef struct {
     const SmMesh *solid;
     const SmSubtractOptions *options;
     SmCrossing crossing;
-    SmFaceClip facets;
+    SmFaceClip clip;
     unsigned char *state; /* [vertices of mesh and solid] */
     unsigned char *gone;  /* [candidates] surface triangles that go or are cut */
-    long of_solid;        /* triangle of `facets` from which they are the solid's */
+    long of_solid;        /* triangle of `clip` from which they are the solid's */
     bool torn;
-} Carving;
+} Subtraction;
 
 /* Fills cut faces from `first` on and notes which corners stay. */
-static SmFaceClipResult fill_faces(Carving *c, long first, long last)
+static SmFaceClipResult fill_faces(Subtraction *c, long first, long last)
 {
     for (long f = first; f < last; f++) {
-        if (!sm_face_clip_crossed(&c->facets, f)) continue;
+        if (!sm_face_clip_crossed(&c->clip, f)) continue;
         bool kept[3];
         int corner[3];
-        SmFaceClipResult result = sm_face_clip_fill(&c->facets, f, kept);
+        SmFaceClipResult result = sm_face_clip_fill(&c->clip, f, kept);
         if (result != SM_FACE_FILLED) return result;
         sm_crossing_corners(&c->crossing, f, corner);
         for (int i = 0; i < 3; i++) {
@@ -43,12 +43,12 @@ static SmFaceClipResult fill_faces(Carving *c, long first, long last)
 }
 
 /* Spreads what is known over the uncut faces from `first` on; false where it contradicts itself. */
-static bool spread(Carving *c, long first, long last)
+static bool spread(Subtraction *c, long first, long last)
 {
     for (bool changed = true; changed;) {
         changed = false;
         for (long f = first; f < last; f++) {
-            if (sm_face_clip_crossed(&c->facets, f)) continue;
+            if (sm_face_clip_crossed(&c->clip, f)) continue;
             int corner[3], known = UNKNOWN;
             sm_crossing_corners(&c->crossing, f, corner);
             for (int i = 0; i < 3; i++) {
@@ -68,7 +68,7 @@ static bool spread(Carving *c, long first, long last)
 
 /* Which way a triangle passes the ray along x from a point: 1 going out of a solid, -1 into it, 0
  * not at all. */
-static int passes(const Carving *c, const int triangle[3], const double at[3])
+static int passes(const Subtraction *c, const int triangle[3], const double at[3])
 {
     const double *p[3];
     int below = 0, left = 0, behind = 0;
@@ -86,7 +86,7 @@ static int passes(const Carving *c, const int triangle[3], const double at[3])
 }
 
 /* How often the surface goes round a point. */
-static int winding(const Carving *c, const double at[3])
+static int winding(const Subtraction *c, const double at[3])
 {
     int sum = 0;
     for (long t = 0; t < c->mesh->triangle_count; t++) sum += passes(c, c->mesh->triangle[t], at);
@@ -94,7 +94,7 @@ static int winding(const Carving *c, const double at[3])
 }
 
 /* Decides the parts of the solid that meet no face. */
-static bool judge_rest(Carving *c)
+static bool judge_rest(Subtraction *c)
 {
     long first = c->crossing.candidates, last = c->crossing.faces;
     if (!spread(c, first, last)) return false;
@@ -110,13 +110,13 @@ static bool judge_rest(Carving *c)
 }
 
 /* The solid's triangles that lie in the material, whole ones too. */
-static SmFaceClipResult fill_solid(Carving *c)
+static SmFaceClipResult fill_solid(Subtraction *c)
 {
     long first = c->crossing.candidates, last = c->crossing.faces;
     SmFaceClipResult result = fill_faces(c, first, last);
     if (result != SM_FACE_FILLED) return result;
     if (!judge_rest(c)) return SM_FACE_TORN;
-    SmFaceClip *f = &c->facets;
+    SmFaceClip *f = &c->clip;
     for (long face = first; face < last; face++) {
         int corner[3];
         sm_crossing_corners(&c->crossing, face, corner);
@@ -135,7 +135,7 @@ static void turn_over(int triangle[3])
 }
 
 /* What goes and what comes, without touching the mesh. */
-static SmSubtractResult plan(Carving *c)
+static SmSubtractResult plan(Subtraction *c)
 {
     long candidates = c->crossing.candidates;
     if (fill_faces(c, 0, candidates) != SM_FACE_FILLED || !spread(c, 0, candidates))
@@ -144,19 +144,19 @@ static SmSubtractResult plan(Carving *c)
     for (long f = 0; f < candidates; f++) {
         int corner[3];
         sm_crossing_corners(&c->crossing, f, corner);
-        c->gone[f] = sm_face_clip_crossed(&c->facets, f) || c->state[corner[0]] == GOES;
+        c->gone[f] = sm_face_clip_crossed(&c->clip, f) || c->state[corner[0]] == GOES;
         gone += c->gone[f];
     }
-    c->of_solid = c->facets.triangles;
+    c->of_solid = c->clip.triangles;
     if (c->options->close) {
         SmFaceClipResult result = fill_solid(c);
         if (result == SM_FACE_FAILED) return SM_SUBTRACT_FAILED;
         c->torn = result == SM_FACE_TORN;
-        if (c->torn) c->facets.triangles = c->of_solid;
+        if (c->torn) c->clip.triangles = c->of_solid;
     }
-    if (gone == 0 && c->facets.triangles == 0) return SM_SUBTRACT_MISSED;
-    for (long t = 0; t < c->facets.triangles; t++)
-        if ((t >= c->of_solid) != c->options->inside_out) turn_over(c->facets.triangle[t]);
+    if (gone == 0 && c->clip.triangles == 0) return SM_SUBTRACT_MISSED;
+    for (long t = 0; t < c->clip.triangles; t++)
+        if ((t >= c->of_solid) != c->options->inside_out) turn_over(c->clip.triangle[t]);
     return c->torn || !c->options->close ? SM_SUBTRACT_TORN : SM_SUBTRACT_CLOSED;
 }
 
@@ -189,9 +189,9 @@ static double volumes_under(const SmCrossing *c, const int triangle[3], const do
 
 /* Do the triangles that come have the same border as those that go, and is what lies between them
  * no more than the solid? */
-static bool sound(const Carving *c)
+static bool sound(const Subtraction *c)
 {
-    const SmFaceClip *f = &c->facets;
+    const SmFaceClip *f = &c->clip;
     long candidates = c->crossing.candidates, count = 0;
     Edge *edge = sm_alloc(3 * (size_t)(candidates + f->triangles), sizeof *edge);
     const double *from = c->solid->position[0];
@@ -224,16 +224,16 @@ static bool sound(const Carving *c)
 }
 
 /* Gives the new triangles' vertices numbers that follow the mesh's, and the mesh their places. */
-static void number_vertices(Carving *c)
+static void number_vertices(Subtraction *c)
 {
     SmMesh *mesh = c->mesh;
     long own = mesh->vertex_count, count = own;
     size_t others = (size_t)(c->solid->vertex_count + c->crossing.points);
     int *number = sm_alloc(others, sizeof *number);
     double(*at)[3] = sm_alloc(others, sizeof *at);
-    for (long t = 0; t < c->facets.triangles; t++)
+    for (long t = 0; t < c->clip.triangles; t++)
         for (int i = 0; i < 3; i++) {
-            int *vertex = &c->facets.triangle[t][i];
+            int *vertex = &c->clip.triangle[t][i];
             if (*vertex < own) continue;
             if (number[*vertex - own] == 0) {
                 memcpy(at[count - own], sm_crossing_at(&c->crossing, *vertex), sizeof *at);
@@ -249,10 +249,10 @@ static void number_vertices(Carving *c)
 }
 
 /* Candidates rise, so the last gaps are filled first, from the end. */
-static void place_triangles(Carving *c)
+static void place_triangles(Subtraction *c)
 {
     SmMesh *mesh = c->mesh;
-    long placed = 0, coming = c->facets.triangles, gaps = 0;
+    long placed = 0, coming = c->clip.triangles, gaps = 0;
     for (long f = 0; f < c->crossing.candidates; f++) {
         if (!c->gone[f]) continue;
         int gap = c->crossing.candidate[f];
@@ -260,7 +260,7 @@ static void place_triangles(Carving *c)
             c->crossing.candidate[gaps++] = gap;
             continue;
         }
-        memcpy(mesh->triangle[gap], c->facets.triangle[placed++], sizeof *mesh->triangle);
+        memcpy(mesh->triangle[gap], c->clip.triangle[placed++], sizeof *mesh->triangle);
     }
     while (gaps > 0) {
         int gap = c->crossing.candidate[--gaps];
@@ -271,16 +271,16 @@ static void place_triangles(Carving *c)
     long count = mesh->triangle_count + coming - placed;
     mesh->triangle = sm_realloc(mesh->triangle, (size_t)count, sizeof *mesh->triangle);
     for (; placed < coming; placed++)
-        memcpy(mesh->triangle[mesh->triangle_count++], c->facets.triangle[placed],
+        memcpy(mesh->triangle[mesh->triangle_count++], c->clip.triangle[placed],
                sizeof *mesh->triangle);
 }
 
 SmSubtractResult sm_mesh_subtract(SmMesh *mesh, const SmMesh *solid,
                                   const SmSubtractOptions *options)
 {
-    Carving c = {.mesh = mesh, .solid = solid, .options = options};
+    Subtraction c = {.mesh = mesh, .solid = solid, .options = options};
     if (!sm_crossing_find(mesh, options->inside_out, solid, &c.crossing)) return SM_SUBTRACT_FAILED;
-    sm_face_clip_init(&c.crossing, options->slack, &c.facets);
+    sm_face_clip_init(&c.crossing, options->slack, &c.clip);
     c.state = sm_alloc((size_t)(mesh->vertex_count + solid->vertex_count), 1);
     c.gone = sm_alloc((size_t)c.crossing.candidates, 1);
     SmSubtractResult result = plan(&c);
@@ -289,7 +289,7 @@ SmSubtractResult sm_mesh_subtract(SmMesh *mesh, const SmMesh *solid,
         number_vertices(&c);
         place_triangles(&c);
     }
-    sm_face_clip_free(&c.facets);
+    sm_face_clip_free(&c.clip);
     sm_crossing_free(&c.crossing);
     free(c.state);
     free(c.gone);

@@ -4,7 +4,7 @@
  * The result is put together from numbers, not places (crossing.h): every new vertex is known by
  * the edge and the triangle that meet there, so no rounding opens the surface. What is left to
  * places is the order of points along edges and the filling of cut faces; where rounding has mixed
- * that up, the carving fails and changes nothing. */
+ * that up, the subtraction fails and changes nothing. */
 #ifndef SM_SUBTRACT_H
 #define SM_SUBTRACT_H
 

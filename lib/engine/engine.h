@@ -36,10 +36,10 @@ typedef struct {
 
 /* Damping sums moments about the body's middle, so the inertia of a region at distance D from it is
  * known to about 8 epsilon D^2. Single precision resolves it to a 64th for D up to about 130 times
- * the region's radius of gyration (w = 1: 150 cells in a solid, 90 in a stick of one cell). Farther
- * out regions turn less than eq. 14 says, and past ten times that hardly: the body's turning is
- * damped there, and its relative motions less (lib/simd/rigid_lanes.h). In double precision that
- * begins at some 10^6 cells. */
+ * the region's radius of gyration (w = 1: 150 cells in a solid, 90 in a stick of one cell). Regions
+ * farther out get less angular velocity than eq. 14 says, and from ten times that distance on
+ * hardly any: there damping also slows the body's own rotation, and its deformation less
+ * (lib/simd/rigid_lanes.h). In double precision that begins at some 10^6 cells. */
 typedef struct {
     int w;               /* region half-width in cells, 1 or more; not the octree's */
     double h;            /* time step, s */

@@ -9,8 +9,8 @@
 
 #include "obstacle.h"
 
-/* How far a goal may be from its particle by rounding alone, squared: four times what was found of
- * bodies at rest in their usual layout. `extent` is the body's, `reach` that of its regions, in
+/* How far a goal may be from its particle by rounding alone, squared: four times what was measured
+ * of bodies at rest in their usual layout. `extent` is the body's, `reach` that of its regions, in
  * cells. No more than a tenth of what a goal is checked to. */
 static inline real rounding_square(double extent, double reach)
 {
@@ -19,8 +19,8 @@ static inline real rounding_square(double extent, double reach)
     return (real)((way < most ? way : most) * (way < most ? way : most));
 }
 
-/* Of a body at rest rounding sets nothing in motion: what does not move is pulled only where its
- * goal is farther off than the square root of `rounding`. */
+/* Keeps rounding from setting a body at rest in motion: a particle that does not move is pulled
+ * only where its goal is farther off than the square root of `rounding`. */
 SM_INLINE void hold_at_rest(real rounding, const vec v[3], vec pull[3])
 {
     const real much = (real)1e30;

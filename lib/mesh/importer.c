@@ -17,7 +17,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* What a file of so many bytes may hold without wondering: more comes of parts that are used again
+/* What a file of so many bytes is expected to hold at most: more comes of parts that are used again
  * and again, by which a small file would take minutes and all memory. */
 static double most_elements(double bytes)
 {

@@ -314,7 +314,7 @@ int sb_body_count(const sb_body *body, sb_body_counts *counts, size_t size, sb_e
                           .cut_triangles = sm_skin_cut_triangles(&body->skin),
                           .surface_vertices = body->skin.surface.vertex_count,
                           .surface_triangles = body->skin.surface.triangle_count,
-                          .surface_incomplete = body->skin.left};
+                          .surface_incomplete = body->skin.incomplete};
     sm_give(&all, sizeof all, counts, size);
     return sm_done(SM_OK, NULL, error);
 }

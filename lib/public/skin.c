@@ -212,16 +212,16 @@ int sm_skin_carrier(const SmSkin *skin, long vertex)
 }
 
 /* Where material has come apart the surface does too. Returns whether it has changed. */
-static bool sever(SmSkin *skin, const SmPieces *pieces, long vertices)
+static bool split_apart(SmSkin *skin, const SmPieces *pieces, long vertices)
 {
     if (pieces->count < 2) return false;
     int *piece = sm_alloc((size_t)vertices, sizeof *piece);
     for (long v = 0; v < vertices; v++)
         piece[v] =
             pieces->piece[skin->octree ? sm_skin_carrier(skin, v) : skin->embedding.corner[v][0]];
-    bool severed = sm_split_components(&skin->surface, piece) > 0;
+    bool split = sm_split_components(&skin->surface, piece) > 0;
     free(piece);
-    return severed;
+    return split;
 }
 
 void sm_skin_follow(SmSkin *skin, const OctChange *change, long first)
@@ -229,7 +229,8 @@ void sm_skin_follow(SmSkin *skin, const OctChange *change, long first)
     const OctStructure *s = oct_engine_structure(skin->engine);
     if (skin->surface.vertex_count == 0) return;
     if (s->cut.triangles > first)
-        skin->left |= sm_cut_surface(&skin->surface, &s->cut, first, s->cell) == SM_CUT_INCOMPLETE;
+        skin->incomplete |=
+            sm_cut_surface(&skin->surface, &s->cut, first, s->cell) == SM_CUT_INCOMPLETE;
     long count = 0;
     int *node = sm_alloc((size_t)(change->removed_count + change->added_count), sizeof *node);
     for (long i = 0; i < change->removed_count; i++) node[count++] = change->removed[i].node;
@@ -238,7 +239,7 @@ void sm_skin_follow(SmSkin *skin, const OctChange *change, long first)
     free(node);
     SmPieces pieces;
     oct_graph_pieces(&s->tree, &s->graph, &pieces);
-    if (sever(skin, &pieces, skin->carried.vertices)) update(skin, 0, NULL, s->cut.triangles);
+    if (split_apart(skin, &pieces, skin->carried.vertices)) update(skin, 0, NULL, s->cut.triangles);
     sm_pieces_free(&pieces);
 }
 
@@ -248,10 +249,10 @@ void sm_skin_follow_cut(SmSkin *skin, long first)
     if (skin->surface.vertex_count == 0) return;
     SmPieces pieces;
     skin->type->pieces(skin->engine, &pieces);
-    skin->left |=
+    skin->incomplete |=
         sm_cut_surface(&skin->surface, cut, first, skin->voxels->cell) == SM_CUT_INCOMPLETE;
     sm_embed_cut(&skin->embedding, &skin->surface, &skin->sites, cut, first, pieces.piece);
-    if (sever(skin, &pieces, skin->embedding.vertex_count))
+    if (split_apart(skin, &pieces, skin->embedding.vertex_count))
         sm_embed_cut(&skin->embedding, &skin->surface, &skin->sites, cut, cut->triangles,
                      pieces.piece);
     sm_pieces_free(&pieces);

@@ -22,7 +22,7 @@ typedef struct {
     SmEmbedding embedding; /* or a lattice's particles */
     SmCut cut;             /* of a lattice; an octree's structure has its own */
     SmSites sites;         /* of a lattice that can be cut */
-    bool left;             /* a cut did not split the surface: it could not be done cleanly */
+    bool incomplete;       /* a cut did not split the surface: it could not be done cleanly */
     /* scratch: nodes as the engine counts them; by leaf or particle number */
     double (*node)[3];
     double (*rest)[3], (*x)[3], (*F)[9];

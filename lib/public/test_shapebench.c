@@ -146,8 +146,7 @@ static void compare_meshes(const sb_mesh *mesh, const SmMesh *inner)
     OK(sb_mesh_read_triangles(mesh, triangle, facts.triangles, NULL));
     assert_memory_equal(position, inner->position, (size_t)facts.vertices * 24);
     assert_memory_equal(triangle, inner->triangle, (size_t)facts.triangles * 12);
-    free(position);
-    free(triangle);
+    sm_free_all(position, triangle);
 }
 
 TEST(meshes_are_those_inside)
@@ -210,11 +209,7 @@ TEST(voxels_are_those_inside)
     sb_voxels_free(voxels);
     sb_voxels_free(copy);
     sb_mesh_free(outer);
-    free(x);
-    free(mass);
-    free(wanted);
-    free(at);
-    free(filled);
+    sm_free_all(x, mass, wanted, at, filled);
 }
 
 /* ---- bodies against their engines */
@@ -224,10 +219,38 @@ static const SmEngineType *const types[2][2] = {{&fastlsm_engine_f32, &fastlsm_e
 
 enum { STEPS = 12 };
 
-/* The same motion by the engine itself. Fills [particles][3] of every field. */
-static void move_inside(const SmEngineType *type, const SmVoxels *voxels, const int64_t *held,
-                        int64_t count, double *x, double *v, double *g, double *surface,
-                        const SmMesh *mesh)
+/* [particles][3], and of the surface [vertices][3]. */
+typedef struct {
+    double *x, *v, *g, *surface;
+} Motion;
+
+static Motion motion_of(const sb_body_counts *counts)
+{
+    return (Motion){room_for(counts->particles, 24), room_for(counts->particles, 24),
+                    room_for(counts->particles, 24), room_for(counts->surface_vertices, 24)};
+}
+
+static void carry_inside(const SmEngineType *type, const SmEngine *engine, const SmVoxels *voxels,
+                         const SmMesh *mesh, const double (*x)[3], double (*surface)[3])
+{
+    if (!type->refines) {
+        SmEmbedding embedding;
+        sm_embed_create(mesh, voxels, &embedding);
+        sm_embed_apply(&embedding, x, surface, NULL);
+        sm_embed_free(&embedding);
+    } else {
+        OctSurface carried;
+        const OctStructure *s = oct_engine_structure(engine);
+        OctCarrier carrier = {voxels, &s->tree, &s->graph, NULL};
+        oct_surface_build(mesh, &carrier, &carried);
+        oct_surface_move(&carried, x, surface, NULL);
+        oct_surface_free(&carried);
+    }
+}
+
+/* The same motion by the engine itself. */
+static void move_inside(const SmEngineType *type, const SmVoxels *voxels, const SmMesh *mesh,
+                        const int64_t *held, int64_t count, Motion *to)
 {
     SmEngine *engine;
     SmEngineParams params = {
@@ -245,23 +268,11 @@ static void move_inside(const SmEngineType *type, const SmVoxels *voxels, const 
         type->push(engine, 1, &pushed, (const double[1][3]){{0.01, 0.02, 0}});
         type->step(engine, NULL);
     }
-    type->get(engine, SM_POSITION, (double(*)[3])x);
-    type->get(engine, SM_VELOCITY, (double(*)[3])v);
+    type->get(engine, SM_POSITION, (double(*)[3])to->x);
+    type->get(engine, SM_VELOCITY, (double(*)[3])to->v);
     type->goals(engine);
-    type->get(engine, SM_GOAL, (double(*)[3])g);
-    if (type == types[0][0] || type == types[0][1]) {
-        SmEmbedding embedding;
-        sm_embed_create(mesh, voxels, &embedding);
-        sm_embed_apply(&embedding, (const double(*)[3])x, (double(*)[3])surface, NULL);
-        sm_embed_free(&embedding);
-    } else {
-        OctSurface carried;
-        const OctStructure *s = oct_engine_structure(engine);
-        OctCarrier carrier = {voxels, &s->tree, &s->graph, NULL};
-        oct_surface_build(mesh, &carrier, &carried);
-        oct_surface_move(&carried, (const double(*)[3])x, (double(*)[3])surface, NULL);
-        oct_surface_free(&carried);
-    }
+    type->get(engine, SM_GOAL, (double(*)[3])to->g);
+    carry_inside(type, engine, voxels, mesh, (const double(*)[3])to->x, (double(*)[3])to->surface);
     type->destroy(engine);
 }
 
@@ -272,26 +283,24 @@ static void compare_field(sb_body *body, int field, const double *wanted)
     free(found);
 }
 
-static void compare_motion(int engine, int precision)
+/* Particles in the uppermost tenth; there is nothing outside of a large ball. */
+static int64_t select_top(sb_body *body, int64_t *held)
 {
-    sb_mesh *mesh = shape("penguin");
-    sb_voxels *voxels = voxels_of(mesh, 500);
-    SmMesh inner_mesh;
-    SmVoxels inner;
-    sm_shape_mesh("penguin", &inner_mesh, NULL);
-    sm_voxelise(&inner_mesh, &(SmVoxelParams){SM_SOLID, 0, 500, false}, "", &inner, NULL);
-    sb_body_params params = params_of(engine);
-    params.precision = precision;
-    sb_body *body = body_of(voxels, mesh, &params);
-    sb_body_counts counts = counts_of(body);
-    int64_t *held = room_for(counts.particles, sizeof *held), count, again;
+    int64_t all = counts_of(body).particles, count, again;
     double *rest = read_field(body, SB_REST), top = -1;
-    for (int64_t p = 0; p < counts.particles; p++) top = fmax(top, rest[3 * p + 1]);
-    OK(sb_body_select_box(body, (double[3]){-9, top - 0.1, -9}, (double[3]){9, 9, 9}, held,
-                          counts.particles, &count, NULL));
-    assert_true(count > 0 && count < counts.particles);
+    for (int64_t p = 0; p < all; p++) top = fmax(top, rest[3 * p + 1]);
+    free(rest);
+    OK(sb_body_select_box(body, (double[3]){-9, top - 0.1, -9}, (double[3]){9, 9, 9}, held, all,
+                          &count, NULL));
+    assert_in_range(count, 1, all - 1);
     OK(sb_body_select_ball(body, nowhere, 100, NULL, 0, &again, NULL));
-    assert_int_equal(again, counts.particles);
+    assert_int_equal(again, all);
+    return count;
+}
+
+/* A handle and obstacles, others of which come and go. */
+static void bound_outside(sb_body *body, const int64_t *held, int64_t count)
+{
     int handle, gone, obstacle;
     OK(sb_body_add_handle(body, 1, (int64_t[1]){held[0]}, &gone, NULL));
     OK(sb_body_remove_handle(body, gone, NULL));
@@ -306,22 +315,43 @@ static void compare_motion(int engine, int precision)
     OK(sb_body_add_box(body, (double[3]){1, 0, 0}, (double[3]){2, 1, 1}, 0.5, &obstacle, NULL));
     OK(sb_body_add_capsule(body, (double[3]){-1, 0, 0}, (double[3]){-1, 1, 0}, 0.2, 1, &obstacle,
                            NULL));
+}
+
+static void compare_surface(sb_body *body, const double *wanted)
+{
+    int64_t vertices = counts_of(body).surface_vertices;
+    double *found = room_for(vertices, 24), *normal = room_for(vertices, 24);
+    OK(sb_body_read_surface(body, found, normal, vertices, NULL));
+    assert_memory_equal(found, wanted, (size_t)vertices * 24);
+    for (int64_t n = 0; n < 3 * vertices; n += 3)
+        assert_float_equal(hypot(hypot(normal[n], normal[n + 1]), normal[n + 2]), 1, 1e-6);
+    sm_free_all(found, normal);
+}
+
+static void compare_motion(int engine, int precision)
+{
+    sb_mesh *mesh = shape("penguin");
+    sb_voxels *voxels = voxels_of(mesh, 500);
+    SmMesh inner_mesh;
+    SmVoxels inner;
+    sm_shape_mesh("penguin", &inner_mesh, NULL);
+    sm_voxelise(&inner_mesh, &(SmVoxelParams){SM_SOLID, 0, 500, false}, "", &inner, NULL);
+    sb_body_params params = params_of(engine);
+    params.precision = precision;
+    sb_body *body = body_of(voxels, mesh, &params);
+    sb_body_counts counts = counts_of(body);
+    int64_t *held = room_for(counts.particles, sizeof *held), count = select_top(body, held);
+    bound_outside(body, held, count);
     for (int step = 0; step < STEPS; step++) {
         OK(sb_body_push(body, 1, (int64_t[1]){3}, (double[3]){0.01, 0.02, 0}, NULL));
         OK(sb_body_step(body, 1, NULL));
     }
-    size_t field = 3 * (size_t)counts.particles, points = 3 * (size_t)counts.surface_vertices;
-    double *x = sm_alloc(field, 8), *v = sm_alloc(field, 8), *g = sm_alloc(field, 8),
-           *surface = sm_alloc(points, 8), *found = sm_alloc(points, 8),
-           *normal = sm_alloc(points, 8);
-    move_inside(types[engine][precision], &inner, held, count, x, v, g, surface, &inner_mesh);
-    compare_field(body, SB_POSITION, x);
-    compare_field(body, SB_VELOCITY, v);
-    compare_field(body, SB_GOAL, g);
-    OK(sb_body_read_surface(body, found, normal, counts.surface_vertices, NULL));
-    assert_memory_equal(found, surface, points * 8);
-    for (size_t n = 0; n < points; n += 3)
-        assert_float_equal(hypot(hypot(normal[n], normal[n + 1]), normal[n + 2]), 1, 1e-6);
+    Motion wanted = motion_of(&counts);
+    move_inside(types[engine][precision], &inner, &inner_mesh, held, count, &wanted);
+    compare_field(body, SB_POSITION, wanted.x);
+    compare_field(body, SB_VELOCITY, wanted.v);
+    compare_field(body, SB_GOAL, wanted.g);
+    compare_surface(body, wanted.surface);
     counts = counts_of(body);
     assert_int_equal(counts.steps, STEPS);
     assert_float_equal(counts.time, STEPS * 0.01, 1e-12);
@@ -330,14 +360,7 @@ static void compare_motion(int engine, int precision)
     sb_mesh_free(mesh);
     sm_mesh_free(&inner_mesh);
     sm_voxels_free(&inner);
-    free(held);
-    free(rest);
-    free(x);
-    free(v);
-    free(g);
-    free(surface);
-    free(found);
-    free(normal);
+    sm_free_all(held, wanted.x, wanted.v, wanted.g, wanted.surface);
 }
 
 TEST(bodies_move_as_their_engines_do)
@@ -386,10 +409,7 @@ TEST(what_is_written_is_read)
     OK(sb_body_read_region(body, 30, member, 200, &count, NULL));
     assert_true(count > 8 && count <= n);
     for (int64_t i = 1; i < count; i++) assert_true(member[i] > member[i - 1]);
-    free(x);
-    free(v);
-    free(again);
-    free(speed);
+    sm_free_all(x, v, again, speed);
     sb_body_free(body);
     sb_voxels_free(voxels);
 }
@@ -419,8 +439,7 @@ static double volume_of(sb_body *body)
     OK(sb_mesh_make(counts.surface_vertices, x, counts.surface_triangles, triangle, &mesh, NULL));
     OK(sb_mesh_measure(mesh, &facts, sizeof facts, NULL));
     sb_mesh_free(mesh);
-    free(x);
-    free(triangle);
+    sm_free_all(x, triangle);
     return facts.volume;
 }
 
@@ -473,8 +492,9 @@ TEST(a_cut_takes_a_body_apart)
 
 /* ---- details */
 
-/* Held particles are where the handle says, as many of them as rest in its box. */
-static void check_held(sb_body *body, double y)
+/* Particles that rest as high as those that were held are where the handle says. Returns how many
+ * there are. */
+static int64_t check_held(sb_body *body, double y)
 {
     double *rest = read_field(body, SB_REST), *x = read_field(body, SB_POSITION);
     int64_t n = counts_of(body).particles, held = 0;
@@ -484,9 +504,8 @@ static void check_held(sb_body *body, double y)
         assert_float_equal(x[3 * p], rest[3 * p] + 0.01, 1e-5);
         assert_float_equal(x[3 * p + 1], rest[3 * p + 1], 1e-5);
     }
-    assert_true(held > 0);
-    free(rest);
-    free(x);
+    sm_free_all(rest, x);
+    return held;
 }
 
 TEST(details_come_and_go_and_handles_follow)
@@ -498,7 +517,7 @@ TEST(details_come_and_go_and_handles_follow)
     octree.levels = 2;
     params.octree = &octree;
     sb_body *body = body_of(voxels, NULL, &params);
-    int64_t n = counts_of(body).particles, count, held[8], changed;
+    int64_t n = counts_of(body).particles, count, held[8], changed, split;
     int handle, ball, eye, level[512];
     assert_int_equal(n, 8);
     OK(sb_body_select_box(body, (double[3]){0, 0.4, 0}, (double[3]){1, 1, 1}, held, 8, &count,
@@ -507,20 +526,21 @@ TEST(details_come_and_go_and_handles_follow)
     OK(sb_body_move_handle(body, handle, (double[12]){1, 0, 0, 0.01, 0, 1, 0, 0, 0, 0, 1, 0},
                            NULL));
     OK(sb_body_step(body, 2, NULL));
-    check_held(body, 0.4);
+    assert_int_equal(count, 4);
+    assert_int_equal(check_held(body, 0.4), count);
     OK(sb_body_add_detail(body, &ball, NULL));
     OK(sb_body_add_detail(body, &eye, NULL));
     OK(sb_body_detail_ball(body, ball, (double[3]){0.1, 0.7, 0.1}, 0.05, 12, 0.02, &changed, NULL));
-    assert_true(changed > 0);
-    assert_true(counts_of(body).particles > n);
+    assert_int_equal(counts_of(body).particles, n + 7 * changed); /* eight in place of one */
+    split = changed;
     OK(sb_body_read_levels(body, level, counts_of(body).particles, NULL));
     for (int64_t p = 0; p < counts_of(body).particles; p++) assert_in_range(level[p], 0, 2);
     OK(sb_body_step(body, 3, NULL));
-    check_held(body, 0.4);
+    assert_in_range(check_held(body, 0.4), 4 + 7, 4 + 7 * split);
     OK(sb_body_detail_eye(body, eye, (double[3]){0.8, 0.8, 0.8}, 0.3, 0.1, 2, 0, &changed, NULL));
-    assert_true(changed > 0);
+    assert_int_equal(counts_of(body).particles, n + 7 * (split + changed));
     OK(sb_body_step(body, 3, NULL));
-    check_held(body, 0.4);
+    assert_in_range(check_held(body, 0.4), 4 + 7, 4 + 7 * (split + changed));
     OK(sb_body_detail_eye(body, eye, (double[3]){90, 0, 0}, 0.3, 0.1, 2, 0, NULL, NULL));
     for (int k = 0; k < 3; k++) {
         OK(sb_body_detail_ball(body, ball, nowhere, 0, 2, 0, &changed, NULL));
@@ -528,7 +548,7 @@ TEST(details_come_and_go_and_handles_follow)
         OK(sb_body_step(body, 1, NULL));
     }
     assert_int_equal(counts_of(body).particles, n);
-    check_held(body, 0.4);
+    assert_int_equal(check_held(body, 0.4), count);
     sb_error error;
     REFUSED(sb_body_add_handle(body, 1, held, &handle, &error), "held");
     OK(sb_body_remove_handle(body, handle, NULL));
@@ -582,10 +602,7 @@ TEST(instances_collide_as_in_their_engine)
         assert_memory_equal(x, same, (size_t)counts_of(body).particles * 24);
         pieces_of(body);
         type->destroy(e);
-        free(wanted);
-        free(contact);
-        free(x);
-        free(same);
+        sm_free_all(wanted, contact, x, same);
         sb_body_free(body);
     }
     sb_voxels_free(voxels);
@@ -769,8 +786,7 @@ static void assert_unmoved(sb_body *body, double *before)
 {
     double *after = read_field(body, SB_POSITION);
     assert_memory_equal(before, after, 27 * 24);
-    free(before);
-    free(after);
+    sm_free_all(before, after);
 }
 
 TEST(misuse_of_particles_is_refused)

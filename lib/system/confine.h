@@ -1,4 +1,4 @@
-/* confine.h - a process that has read what it trusts gives up what it will not need. */
+/* confine.h - a process that is about to read a file of unknown origin limits what it may do. */
 #ifndef SM_CONFINE_H
 #define SM_CONFINE_H
 

@@ -6,9 +6,9 @@
 #include "../operations.h"
 #include "sites.h"
 
-/* A vertex carried by particles that span less than space, beside a cut (embed_cut.h): it stands
- * off what its weights make of it, by what turns with them: rigidly where they span a plane, about
- * a line as little as can be, and not at all with one particle. */
+/* A vertex beside a cut whose particles lie in a plane, on a line or in one place (embed_cut.h): to
+ * where its weights put it comes an offset that turns with these particles: rigidly about a plane,
+ * by the smallest rotation about a line, and not at all with one particle. */
 typedef struct {
     long vertex;
     double share[8][3]; /* sum of (x_i - x_0) share_i^T has the rotation that it turns by */
@@ -28,12 +28,12 @@ typedef struct {
     SmFlat *flat; /* [flat_count] */
 } SmEmbedding;
 
-/* Ties every vertex of `mesh` to the material cell that holds it (the nearest one for a vertex
+/* Embeds every vertex of `mesh` in the material cell that holds it (the nearest one for a vertex
  * outside: by rounding, usually; its weights then extrapolate). Normals of the rest surface are
  * area weighted. `voxels` must have a material cell. Frees nothing and keeps neither argument.
  * O(vertices log cells-in-a-row), but O(box) for a vertex more than a cell away from material. */
 void sm_embed_create(const SmMesh *mesh, const SmVoxels *voxels, SmEmbedding *embedding);
-/* Ties the vertices that the mesh has more than the embedding, alike. `normal` is [vertex_count],
+/* Embeds the vertices that the mesh has more than the embedding. `normal` is [vertex_count],
  * of any length. */
 void sm_embed_grow(SmEmbedding *embedding, const SmMesh *mesh, const SmSites *sites,
                    const double (*normal)[3]);

@@ -10,7 +10,7 @@
  * the surface an odd number of times. A ray that has not left again at its far end went through a
  * hole and has no vote; when that happens to more than a quarter of an axis's rays that meet the
  * surface, none of that axis has. Two votes decide, so that the rays that miss an open tube or
- * leave through its mouth are outvoted, and a sheet or a soup of triangles has no inside.
+ * leave through its mouth are outvoted, and a sheet, or triangles that do not join, have no inside.
  *
  * `point` as for sm_surface_cells(). Takes another 3 bits/8 bytes. O(triangles + rays crossed +
  * words). */

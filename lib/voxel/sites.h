@@ -1,10 +1,11 @@
-/* sites.h - a lattice's particles by their places. */
+/* sites.h - finds a lattice's particle by its place. */
 #ifndef SM_SITES_H
 #define SM_SITES_H
 
 #include "voxel.h"
 
-/* Particles by lattice row (y, z), in which they rise with x: numbers without a box-sized table. */
+/* Particles by lattice row (y, z), in which they rise with x: no table of the whole box is needed.
+ */
 typedef struct {
     const SmVoxels *voxels; /* the caller's, kept */
     int (*coordinate)[3];   /* [particle_count] */
