@@ -71,10 +71,11 @@ static const BenchSetting claim_table[] = {
     {0},
 };
 
-/* Where in a file a claim stands, for messages. */
+/* Where in a file a claim stands, for messages; and its name. */
 typedef struct {
     const char *file;
     unsigned line;
+    const char *name; /* "" before it is known */
     SmError *error;
 } Place;
 
@@ -84,22 +85,12 @@ static __attribute__((format(printf, 2, 3))) SmCode fail_at(const Place *place, 
     char text[440];
     va_list values;
     va_start(values, format);
-    vsnprintf(text, sizeof text, format, values);
+    int used = place->name[0] ? snprintf(text, sizeof text, "'%s': ", place->name) : 0;
+    vsnprintf(text + used, sizeof text - (size_t)used, format, values);
     va_end(values);
     for (char *c = text; *c; c++)
         if (*c == '\n' || *c == '\r') *c = ' '; /* of a name in the file */
     return sm_fail(place->error, SM_INPUT, "%s:%u: %s", place->file, place->line, text);
-}
-
-static bool curved(const BenchClaim *claim)
-{
-    return claim->reduction == BENCH_AS_EXPONENT || claim->reduction == BENCH_AS_GAIN ||
-           claim->test == BENCH_RISES || claim->test == BENCH_FALLS;
-}
-
-static bool wordy(BenchTest test)
-{
-    return test == BENCH_RISES || test == BENCH_FALLS;
 }
 
 /* A number that papers.cfg has outside its rows, with where and in what unit. */
@@ -107,10 +98,10 @@ static SmCode take_number(const Entry *entry, BenchClaim *claim, const Place *pl
 {
     const RefPaperClaim *said = ref_paper_claim(claim->paper, entry->number);
     if (!said)
-        return fail_at(place, "'%s': the paper '%s' has no number '%s' in reference/papers.cfg",
-                       claim->name, claim->paper, entry->number);
+        return fail_at(place, "the paper '%s' has no number '%s' in reference/papers.cfg",
+                       claim->paper, entry->number);
     if (!isfinite(said->value.value))
-        return fail_at(place, "'%s': the paper's '%s' cannot be read", claim->name, entry->number);
+        return fail_at(place, "the paper's '%s' cannot be read", entry->number);
     claim->values = 1;
     claim->value[0] = said->value.value;
     claim->status = said->value.status;
@@ -124,8 +115,8 @@ static SmCode take_column(const Entry *entry, BenchClaim *claim, const Place *pl
 {
     const RefPaperRow *row = ref_paper_find(claim->paper, entry->row);
     if (!row)
-        return fail_at(place, "'%s': the paper '%s' has no row '%s' in reference/papers.cfg",
-                       claim->name, claim->paper, entry->row);
+        return fail_at(place, "the paper '%s' has no row '%s' in reference/papers.cfg",
+                       claim->paper, entry->row);
     RefValue value[SM_STAGES];
     claim->values = ref_paper_column(row, entry->column, value);
     bool given = false;
@@ -135,8 +126,7 @@ static SmCode take_column(const Entry *entry, BenchClaim *claim, const Place *pl
         given = given || isfinite(value[v].value);
     }
     if (!given)
-        return fail_at(place, "'%s': row '%s' has nothing in a column '%s'", claim->name,
-                       entry->row, entry->column);
+        return fail_at(place, "row '%s' has nothing in a column '%s'", entry->row, entry->column);
     strcpy(claim->note, row->note);
     return SM_OK;
 }
@@ -145,16 +135,12 @@ static SmCode take_column(const Entry *entry, BenchClaim *claim, const Place *pl
 static SmCode take_value(const Entry *entry, BenchClaim *claim, const Place *place)
 {
     int given = (entry->number[0] != 0) + (entry->row[0] != 0) + isfinite(entry->value);
+    bool trend = claim->test == BENCH_RISES || claim->test == BENCH_FALLS;
     if (given > 1)
-        return fail_at(place,
-                       "'%s': the paper's value is 'number', 'row' and 'column', or 'value': "
-                       "give one of them",
-                       claim->name);
-    if (given == 0 && !wordy(claim->test))
-        return fail_at(place,
-                       "'%s': no value to test: give 'number', 'row' and 'column', or "
-                       "'value'",
-                       claim->name);
+        return fail_at(place, "the paper's value is 'number', 'row' and 'column', or 'value': "
+                              "give one of them");
+    if (given == 0 && !trend)
+        return fail_at(place, "no value to test: give 'number', 'row' and 'column', or 'value'");
     if (entry->number[0]) return take_number(entry, claim, place);
     if (entry->row[0]) return take_column(entry, claim, place);
     claim->values = given;
@@ -165,13 +151,13 @@ static SmCode take_value(const Entry *entry, BenchClaim *claim, const Place *pla
 static SmCode check_measure(const BenchClaim *claim, const BenchMeasure *measure,
                             const Place *place)
 {
+    bool curved = claim->reduction == BENCH_AS_EXPONENT || claim->reduction == BENCH_AS_GAIN ||
+                  claim->test == BENCH_RISES || claim->test == BENCH_FALLS;
     const char *fault = bench_experiment_fault(measure);
-    if (fault) return fail_at(place, "'%s': %s", claim->name, fault);
-    if (curved(claim) && bench_experiment_points(measure) < 3)
-        return fail_at(place,
-                       "'%s': an exponent, a gain, or what rises or falls is of a curve of "
-                       "three points or more: give the experiment a range of them",
-                       claim->name);
+    if (fault) return fail_at(place, "%s", fault);
+    if (curved && bench_experiment_points(measure) < 3)
+        return fail_at(place, "an exponent, a gain, or what rises or falls is of a curve of three "
+                              "points or more: give the experiment a range of them");
     return SM_OK;
 }
 
@@ -180,63 +166,61 @@ static SmCode check_kind(const BenchClaim *claim, const Place *place)
 {
     bool speed = claim->test == BENCH_IS_AT_LEAST || claim->test == BENCH_IS_AT_MOST;
     bool built = claim->kind == BENCH_BY_CONSTRUCTION, timed = claim->kind == BENCH_OF_MACHINE;
-    if (claim->unset.experiment && !built)
-        return fail_at(place, "'%s': 'unset' is of a claim of the kind \"by construction\"",
-                       claim->name);
-    if (built && !claim->unset.experiment && !claim->because[0])
-        return fail_at(place,
-                       "'%s': measure what comes where the scene does not set it, 'unset', or say "
-                       "'because' why there is no such thing",
-                       claim->name);
+    bool unset = claim->unset.experiment != BENCH_TRY_NOTHING;
+    if (unset && !built)
+        return fail_at(place, "'unset' is of a claim of the kind \"by construction\"");
+    if (built && !unset && !claim->because[0])
+        return fail_at(place, "measure what comes where the scene does not set it, 'unset', or say "
+                              "'because' why there is no such thing");
     if (timed && (!speed || claim->values != 1 || claim->reduction != BENCH_AS_VALUES))
-        return fail_at(place,
-                       "'%s': a claim of the kind \"machine\" is of one value: of a rate with the "
-                       "test \"at_least\", of a time with \"at_most\"",
-                       claim->name);
+        return fail_at(place, "a claim of the kind \"machine\" is of one value: of a rate with the "
+                              "test \"at_least\", of a time with \"at_most\"");
     if ((claim->expect == BENCH_DIFFERS && claim->kind != BENCH_OF_METHOD) ||
         (claim->expect != BENCH_REPRODUCES && built))
-        return fail_at(place, "'%s': a claim of the kind \"%s\" is not expected to differ",
-                       claim->name, bench_claim_kinds[claim->kind]);
+        return fail_at(place, "a claim of the kind \"%s\" is not expected to differ",
+                       bench_claim_kinds[claim->kind]);
     return SM_OK;
 }
 
-static SmCode check_claim(const Entry *entry, BenchClaim *claim, const Place *place)
+static SmCode check_claim(const Entry *entry, BenchClaim *claim, Place *place)
 {
     if (!claim->paper[0] || !claim->name[0] || !claim->statement[0])
         return fail_at(place, "a claim needs 'paper', 'name' and 'statement'");
     if (strpbrk(claim->name, "/ ") || strpbrk(claim->paper, "/ "))
         return fail_at(place, "'%s' of '%s': no blank and no '/' in a name", claim->name,
                        claim->paper);
+    place->name = claim->name;
     if (claim->expect != BENCH_REPRODUCES && !claim->because[0])
-        return fail_at(place, "'%s': say 'because' why it is not expected to reproduce",
-                       claim->name);
+        return fail_at(place, "say 'because' why it is not expected to reproduce");
     if (claim->test == BENCH_IS_FACTOR && claim->tolerance < 1)
-        return fail_at(place, "'%s': a factor's 'tolerance' is 1 or more", claim->name);
+        return fail_at(place, "a factor's 'tolerance' is 1 or more");
+    const BenchMeasure *measures[] = {&claim->measure, &claim->over, &claim->unset};
     SmCode code = take_value(entry, claim, place);
     if (!code) code = check_kind(claim, place);
-    if (!code) code = check_measure(claim, &claim->measure, place);
-    if (!code && claim->over.experiment) code = check_measure(claim, &claim->over, place);
-    if (!code && claim->unset.experiment) code = check_measure(claim, &claim->unset, place);
+    for (int m = 0; m < 3 && !code; m++)
+        if (m == 0 || measures[m]->experiment) code = check_measure(claim, measures[m], place);
     return code;
 }
 
 static SmCode add_claim(const config_setting_t *group, const char *file, BenchClaims *claims,
                         SmError *error)
 {
-    const Place place = {file, config_setting_source_line(group), error};
+    Place place = {file, config_setting_source_line(group), "", error};
     Entry entry = {.value = NAN};
+    const BenchClaim *claim = &entry.claim;
     if (!config_setting_is_group(group))
         return fail_at(&place, "'claims' is a list of groups: ( { ... }, { ... } )");
     SmCode code = bench_settings_read(group, claim_table, &entry, file, error);
     if (!code) code = check_claim(&entry, &entry.claim, &place);
     if (code) return code;
+    place.name = "";
     for (int c = 0; c < claims->count; c++)
-        if (!strcmp(claims->claim[c].paper, entry.claim.paper) &&
-            !strcmp(claims->claim[c].name, entry.claim.name))
-            return fail_at(&place, "'%s' of '%s' is there already: take another name",
-                           entry.claim.name, entry.claim.paper);
+        if (!strcmp(claims->claim[c].paper, claim->paper) &&
+            !strcmp(claims->claim[c].name, claim->name))
+            return fail_at(&place, "'%s' of '%s' is there already: take another name", claim->name,
+                           claim->paper);
     claims->claim = sm_realloc(claims->claim, (size_t)claims->count + 1, sizeof *claims->claim);
-    claims->claim[claims->count++] = entry.claim;
+    claims->claim[claims->count++] = *claim;
     return SM_OK;
 }
 

@@ -201,36 +201,26 @@ static void free_point(void *point)
     bench_lab_free(&((BenchClaimPoint *)point)->lab);
 }
 
-/* Rows, their samples, and curves, one after another; 0 bytes to find out how many there are. */
-static size_t put(char *to, size_t used, const void *bytes, size_t size)
+/* Rows, their samples, and curves, one after another. */
+static char *pack(const void *point, size_t *size)
 {
-    if (to && size) memcpy(to + used, bytes, size);
-    return used + size;
-}
-
-static size_t pack_lab(const BenchLab *lab, char *to)
-{
+    const BenchLab *lab = &((const BenchClaimPoint *)point)->lab;
     const int counts[] = {lab->rows, lab->curves};
-    size_t used = put(to, 0, counts, sizeof counts);
+    char *bytes;
+    FILE *file = open_memstream(&bytes, size);
+    if (!file) abort(); /* no memory, as sm_alloc() */
+    fwrite(counts, sizeof counts, 1, file);
     for (int r = 0; r < lab->rows; r++) {
         BenchRow row = lab->row[r];
         size_t repeats = (size_t)row.repeats;
         row.total = NULL, row.stage = NULL, row.change.time = NULL;
-        used = put(to, used, &row, sizeof row);
-        used = put(to, used, lab->row[r].total, repeats * sizeof *row.total);
-        used = put(to, used, lab->row[r].stage, repeats * sizeof *row.stage);
-        used = put(to, used, lab->row[r].change.time,
-                   (size_t)row.change.frames * sizeof *row.change.time);
+        fwrite(&row, sizeof row, 1, file);
+        fwrite(lab->row[r].total, sizeof *row.total, repeats, file);
+        fwrite(lab->row[r].stage, sizeof *row.stage, repeats, file);
+        fwrite(lab->row[r].change.time, sizeof *row.change.time, (size_t)row.change.frames, file);
     }
-    return put(to, used, lab->curve, (size_t)lab->curves * sizeof *lab->curve);
-}
-
-static char *pack(const void *point, size_t *size)
-{
-    const BenchLab *lab = &((const BenchClaimPoint *)point)->lab;
-    *size = pack_lab(lab, NULL);
-    char *bytes = sm_alloc(*size, 1);
-    pack_lab(lab, bytes);
+    fwrite(lab->curve, sizeof *lab->curve, (size_t)lab->curves, file);
+    fclose(file);
     return bytes;
 }
 

@@ -176,19 +176,25 @@ void bench_claim_place(const BenchLab *lab, int curve, size_t size, char *place)
         snprintf(place, size, "/curves/%s", of->name);
 }
 
+/* Its datasets. */
+static const struct {
+    const char *name;
+    size_t offset;
+} curve_sets[] = {{"x", offsetof(BenchCurve, x)},
+                  {"y", offsetof(BenchCurve, y)},
+                  {"low", offsetof(BenchCurve, low)},
+                  {"high", offsetof(BenchCurve, high)}};
+
 static void write_curve(BenchH5 *h5, hid_t parent, const BenchCurve *curve)
 {
-    const struct {
-        const char *name;
-        const double *values;
-    } sets[] = {{"x", curve->x}, {"y", curve->y}, {"low", curve->low}, {"high", curve->high}};
     StoredCurve stored = {.curve = *curve};
     hsize_t size[] = {(hsize_t)curve->points};
     hid_t group = bench_h5_group(h5, parent, curve->name);
     bench_fit_power(curve->x, curve->y, curve->points, &stored.fit);
     bench_h5_fields(h5, group, curve_fields, COUNT(curve_fields), &stored);
-    for (int s = 0; s < COUNT(sets) && curve->points; s++)
-        bench_h5_dataset(h5, group, sets[s].name, H5T_IEEE_F64LE, 1, size, sets[s].values);
+    for (int s = 0; s < COUNT(curve_sets) && curve->points; s++)
+        bench_h5_dataset(h5, group, curve_sets[s].name, H5T_IEEE_F64LE, 1, size,
+                         (const char *)curve + curve_sets[s].offset);
     if (group >= 0) H5Gclose(group);
 }
 
@@ -226,14 +232,10 @@ static void read_curve(BenchH5 *h5, hid_t parent, const char *name, BenchCurve *
     snprintf(curve->name, sizeof curve->name, "%s", name);
     if (!h5->failed && (curve->points < 0 || curve->points > BENCH_CURVE_POINTS))
         bench_h5_fail(h5, "curve '%s' has %d points", name, curve->points);
-    const struct {
-        const char *name;
-        double *values;
-    } sets[] = {{"x", curve->x}, {"y", curve->y}, {"low", curve->low}, {"high", curve->high}};
     hsize_t size = (hsize_t)curve->points;
-    for (int s = 0; s < COUNT(sets) && curve->points && !h5->failed; s++)
-        bench_h5_read(h5, bench_h5_find_dataset(h5, group, sets[s].name, 1, &size),
-                      H5T_NATIVE_DOUBLE, sets[s].values);
+    for (int s = 0; s < COUNT(curve_sets) && curve->points && !h5->failed; s++)
+        bench_h5_read(h5, bench_h5_find_dataset(h5, group, curve_sets[s].name, 1, &size),
+                      H5T_NATIVE_DOUBLE, (char *)curve + curve_sets[s].offset);
     if (group >= 0) H5Gclose(group);
 }
 

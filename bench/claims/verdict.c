@@ -51,6 +51,11 @@ static void set_value(BenchFinding *finding, double value, double low, double hi
     finding->high[v] = high;
 }
 
+static void set_point(BenchFinding *finding, const BenchCurve *curve, int p)
+{
+    set_value(finding, curve->y[p], curve->low[p], curve->high[p]);
+}
+
 /* False where the curve has nothing to take. */
 static bool reduce(const BenchCurve *curve, BenchFinding *finding)
 {
@@ -60,12 +65,11 @@ static bool reduce(const BenchCurve *curve, BenchFinding *finding)
     switch (finding->claim.reduction) {
     case BENCH_AS_VALUES:
         if (finding->claim.test == BENCH_RISES || finding->claim.test == BENCH_FALLS) {
-            set_value(finding, curve->y[0], curve->low[0], curve->high[0]);
-            set_value(finding, curve->y[last], curve->low[last], curve->high[last]);
+            set_point(finding, curve, 0);
+            set_point(finding, curve, last);
             return last > 0;
         }
-        for (int p = 0; p <= last && p < BENCH_CLAIM_VALUES; p++)
-            set_value(finding, curve->y[p], curve->low[p], curve->high[p]);
+        for (int p = 0; p <= last && p < BENCH_CLAIM_VALUES; p++) set_point(finding, curve, p);
         return last >= 0 && last < BENCH_CLAIM_VALUES;
     case BENCH_AS_EXPONENT:
         if (!bench_fit_power(curve->x, curve->y, curve->points, &fit)) return false;
@@ -292,43 +296,40 @@ void bench_verdict_paper(const BenchClaim *claim, size_t size, char *text)
         snprintf(text, size, "%s", claim->test == BENCH_FALLS ? "falls" : "rises");
 }
 
+/* "2.94 (2.90 to 2.98)". */
+static void interval_text(double value, double low, double high, size_t size, char *text)
+{
+    char end[3][24];
+    number_text(value, sizeof end[0], end[0]);
+    number_text(low, sizeof end[1], end[1]);
+    number_text(high, sizeof end[2], end[2]);
+    snprintf(text, size, high > low ? "%s (%s to %s)" : "%s", end[0], end[1], end[2]);
+}
+
 void bench_verdict_measured(const BenchFinding *finding, size_t size, char *text)
 {
-    char value[64], low[32], high[32];
+    char value[64], half[32];
     const BenchClaim *claim = &finding->claim;
-    if (finding->verdict == BENCH_INVALID || finding->verdict == BENCH_TOO_BUSY) {
-        snprintf(text, size, "%s", bench_verdict_names[finding->verdict]);
-        return;
-    }
-    double half = 0;
+    double widest = 0;
     for (int v = 0; v < finding->count; v++)
-        half = fmax(half, (finding->high[v] - finding->low[v]) / 2);
+        widest = fmax(widest, finding->high[v] - finding->low[v]);
     join(finding->value, finding->count, sizeof value, value);
-    if (claim->test == BENCH_RISES || claim->test == BENCH_FALLS) {
+    number_text(widest / 2, sizeof half, half);
+    if (finding->verdict == BENCH_INVALID || finding->verdict == BENCH_TOO_BUSY)
+        snprintf(text, size, "%s", bench_verdict_names[finding->verdict]);
+    else if (claim->test == BENCH_RISES || claim->test == BENCH_FALLS) {
         char *slash = strchr(value, '/');
         if (slash) *slash = '\0';
         snprintf(text, size, "%s to %s", value, slash ? slash + 1 : "-");
-    } else if (finding->count == 1 && finding->high[0] > finding->low[0]) {
-        number_text(finding->low[0], sizeof low, low);
-        number_text(finding->high[0], sizeof high, high);
-        snprintf(text, size, "%s (%s to %s)", value, low, high);
-    } else if (half > 0) {
-        number_text(half, sizeof high, high);
-        snprintf(text, size, "%s (+-%s)", value, high);
-    } else
-        snprintf(text, size, "%s", value);
+    } else if (finding->count == 1)
+        interval_text(finding->value[0], finding->low[0], finding->high[0], size, text);
+    else
+        snprintf(text, size, widest > 0 ? "%s (+-%s)" : "%s", value, half);
 }
 
 void bench_verdict_ratio(const BenchFinding *finding, size_t size, char *text)
 {
-    char value[24], low[24], high[24];
-    number_text(finding->ratio[0], sizeof value, value);
-    number_text(finding->ratio[1], sizeof low, low);
-    number_text(finding->ratio[2], sizeof high, high);
-    if (finding->ratio[2] > finding->ratio[1])
-        snprintf(text, size, "%s (%s to %s)", value, low, high);
-    else
-        snprintf(text, size, "%s", value);
+    interval_text(finding->ratio[0], finding->ratio[1], finding->ratio[2], size, text);
 }
 
 void bench_verdict_unset_text(const BenchFinding *finding, size_t size, char *text)
