@@ -113,6 +113,15 @@ void bench_jobs_close(BenchJob *jobs, int count);
 
 /* The voxeliser, the embedding and the octree surface, on the statue of 200,000 triangles. */
 enum { BENCH_VOXELISE, BENCH_EMBED, BENCH_CARRY };
+/* What comes before the octree's first step. */
+typedef enum {
+    BENCH_SETUP_DISTANCES, /* Bucket-Moore: from a source to all that it reaches */
+    BENCH_SETUP_GRAPH,
+    BENCH_SETUP_REGIONS,   /* their distances included */
+    BENCH_SETUP_STRUCTURE, /* graph, distances and regions */
+    BENCH_SETUP_SAMPLING,  /* the tree from voxels; finding the lattice's place included */
+    BENCH_SETUP_WHOLE,     /* tree, graph, regions and engine from voxels */
+} BenchSetupKind;
 /* A change of an octree while it runs: leaves split and merged again, edges of the graph cut. */
 enum { BENCH_REFINE, BENCH_CUT };
 

@@ -10,9 +10,7 @@
 #include "../measure/quartiles.h"
 #include "cubes.h"
 #include "matrices.h"
-#include "sampled.h"
-#include "tree_setup.h"
-#include "tree_steps.h"
+#include "tree_body.h"
 
 /* Trailing arguments: further members. */
 #define SUM(method, sums, width)                                                                   \

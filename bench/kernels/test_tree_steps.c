@@ -3,9 +3,7 @@
 #include "../../lib/test_frame.h"
 #include "../../octree/operations.h"
 #include "../check/tree_check.h"
-#include "sampled.h"
-#include "tree_setup.h"
-#include "tree_steps.h"
+#include "tree_body.h"
 
 /* A cube whose first region has lost a summation node that is not its own. */
 static void lose_member(OctStructure *body)
@@ -49,34 +47,53 @@ TEST(a_wrong_octree_step_is_not_timed)
     oct_structure_free(&body);
 }
 
+/* Prepared anew on the body of another job, which has been damaged: it is not valid. */
+static void is_found_wrong(const BenchJob *other, BenchSetupKind kind, const char *says)
+{
+    BenchKernel kernel = *other->kernel;
+    BenchJob job = *other;
+    SmError error;
+    kernel.part = kind;
+    job.kernel = &kernel;
+    job.shares = true;
+    assert_int_equal(bench_jobs_time(&job, 1, &error), SM_OK);
+    assert_false(job.trial->valid);
+    assert_non_null(strstr(job.trial->reason, says));
+    assert_null(job.trial->seconds);
+    bench_jobs_close(&job, 1);
+}
+
 /* Cubes that are held to the twins, and to what regular trees are. */
 TEST(a_wrong_octree_setup_is_not_timed)
 {
+    const BenchKernelParams params = {.precision = BENCH_F64, .threads = 1, .repeats = 2};
     for (int side = 6; side <= 12; side += 6) {
-        OctStructure body;
-        BenchSetup setup;
+        enum { KINDS = BENCH_SETUP_WHOLE + 1 };
+        BenchKernel kernel[KINDS];
+        BenchJob job[KINDS];
         SmError error;
-        assert_int_equal(bench_sampled(side, &body, &error), SM_OK);
-        for (int kind = 0; kind <= BENCH_SETUP_WHOLE; kind++) {
-            bench_setup_create(&body, (BenchSetupKind)kind, BENCH_F64, &setup);
-            BenchTrial *trial = &setup.trial;
-            assert_true(trial->valid);
-            bench_trials_time(&trial, 1, 2);
-            assert_in_range(trial->samples, 1, 2);
-            assert_int_equal(setup.engine_bytes > 0, kind == BENCH_SETUP_WHOLE);
-            bench_setup_free(&setup);
+        for (int k = 0; k < KINDS; k++) {
+            kernel[k] = (BenchKernel){.kind = &bench_tree_setup_kernels, .side = side, .part = k};
+            job[k] = bench_job(&kernel[k], &params, NULL);
         }
-        body.regions.member[0] = body.tree.node[body.tree.leaves - 1];
-        bench_setup_create(&body, BENCH_SETUP_REGIONS, BENCH_F32, &setup);
-        assert_false(setup.trial.valid);
-        assert_non_null(strstr(setup.trial.reason, "region"));
-        bench_setup_free(&setup);
-        body.graph.length[0]++;
-        bench_setup_create(&body, BENCH_SETUP_GRAPH, BENCH_F32, &setup);
-        assert_false(setup.trial.valid);
-        assert_non_null(strstr(setup.trial.reason, "edge"));
-        bench_setup_free(&setup);
-        oct_structure_free(&body);
+        assert_int_equal(bench_jobs_open(job, KINDS, &error), SM_OK);
+        for (int k = 0; k < KINDS; k++) {
+            BenchKernelRow row = {.ns = 1};
+            assert_int_equal(bench_jobs_time(&job[k], 1, &error), SM_OK);
+            assert_true(job[k].trial->valid);
+            assert_in_range(job[k].trial->samples, 1, 2);
+            kernel[k].kind->report(&job[k], &row);
+            /* only what builds an engine holds more than the tree, its graph and its regions */
+            assert_int_equal(job[k].footprint > job[BENCH_SETUP_STRUCTURE].footprint &&
+                                 k > BENCH_SETUP_STRUCTURE,
+                             k == BENCH_SETUP_WHOLE);
+        }
+        OctStructure *body = &((BenchTreeBody *)job->body)->structure;
+        body->regions.member[0] = body->tree.node[body->tree.leaves - 1];
+        is_found_wrong(job, BENCH_SETUP_REGIONS, "region");
+        body->graph.length[0]++;
+        is_found_wrong(job, BENCH_SETUP_GRAPH, "edge");
+        bench_jobs_close(job, KINDS);
     }
 }
 

@@ -1,12 +1,12 @@
-#include "tree_setup.h"
-
+/* What comes before the octree's first step: checked, then timed. */
 #include <assert.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "../../lib/system/team.h"
 #include "../../octree/region/one_sided_regions.h"
 #include "../check/tree_check.h"
-#include "tree_steps.h"
+#include "tree_body.h"
 
 static const double most_seconds = 2;
 enum { SOURCES_CHECKED = 16, LEAVES_SEARCHED = 1 << 18, LEAVES_WARMED = 1 << 17 };
@@ -22,6 +22,17 @@ static const struct {
     [BENCH_SETUP_SAMPLING] = {.tree = true},
     [BENCH_SETUP_WHOLE] = {.tree = true, .graph = true, .regions = true, .engine = true},
 };
+
+typedef struct {
+    BenchTrial trial; /* as many samples as asked for, or as take about two seconds */
+    const BenchJob *job;
+    const OctStructure *body;
+    long sources;        /* that a run searches from, of distances */
+    double engine_bytes; /* of the engine that is built */
+    /* the run's own */
+    OctReach reach;
+    OctStructure made; /* of it what is timed */
+} Setup;
 
 /* Edges and leaves that searches for regions, or as far as can be, look at. */
 static void count_searches(const OctStructure *body, bool far, long sources, double *edges,
@@ -56,28 +67,27 @@ static SmOperations regions_work(const OctStructure *body)
     return oct_regions_operations(edges, reached, body->regions.mean);
 }
 
-static void set_work(BenchSetup *setup)
+/* Of a source, or a node; and the bytes of what is read and written. */
+static SmOperations work_of(const OctStructure *body, BenchSetupKind kind, long sources,
+                            double *bytes)
 {
-    const OctStructure *body = setup->body;
     double edges, reached, leaves = (double)body->tree.leaves;
     double tree = (double)oct_tree_bytes(&body->tree);
     SmOperations least = {0};
-    setup->bytes = tree + (double)oct_graph_bytes(&body->graph);
-    if (parts[setup->kind].search) {
-        count_searches(body, true, setup->sources, &edges, &reached);
+    *bytes = tree + (double)oct_graph_bytes(&body->graph);
+    if (parts[kind].search) {
+        count_searches(body, true, sources, &edges, &reached);
         least = oct_reach_operations(edges, reached);
     }
-    if (parts[setup->kind].tree) least.far_bytes += tree / leaves;
-    if (parts[setup->kind].graph)
-        least = sm_operations_add(
-            least, 1,
-            oct_graph_operations(&body->tree,
-                                 (double)body->graph.first[body->tree.leaves] / leaves));
-    if (parts[setup->kind].regions) {
+    if (parts[kind].tree) least.far_bytes += tree / leaves;
+    edges = (double)body->graph.first[body->tree.leaves] / leaves;
+    if (parts[kind].graph)
+        least = sm_operations_add(least, 1, oct_graph_operations(&body->tree, edges));
+    if (parts[kind].regions) {
         least = sm_operations_add(least, 1, regions_work(body));
-        setup->bytes += (double)oct_regions_bytes(&body->regions);
+        *bytes += (double)oct_regions_bytes(&body->regions);
     }
-    setup->least = least;
+    return least;
 }
 
 static bool check_distances(const OctStructure *body, char *reason)
@@ -112,17 +122,17 @@ static void search(OctReach *reach, long sources)
 /* What the last run has made. */
 static void forget(void *subject)
 {
-    oct_structure_free(&((BenchSetup *)subject)->made);
+    oct_structure_free(&((Setup *)subject)->made);
 }
 
 /* Each of the body's, or of what the run has made before. Where all of it is wanted freeing counts
  * too. */
 static void run(void *subject, SmLaps *laps)
 {
-    BenchSetup *setup = subject;
+    Setup *setup = subject;
     const OctStructure *body = setup->body;
     OctStructure *made = &setup->made;
-    BenchSetupKind kind = setup->kind;
+    int kind = setup->job->kernel->part;
     const OctTree *tree = parts[kind].tree ? &made->tree : &body->tree;
     const OctGraph *graph = parts[kind].graph ? &made->graph : &body->graph;
     SmCode code = SM_OK;
@@ -136,18 +146,64 @@ static void run(void *subject, SmLaps *laps)
                                  &made->regions, NULL);
     assert(!code); /* all of it was built before */
     if (!parts[kind].engine) return;
-    setup->engine_bytes = (double)(setup->precision == BENCH_F64
+    setup->engine_bytes = (double)(setup->job->precision == BENCH_F64
                                        ? bench_tree_build_f64
                                        : bench_tree_build_f32)(tree, &made->regions, body->mass);
     forget(setup);
 }
 
-void bench_setup_create(const OctStructure *body, BenchSetupKind kind, BenchPrecision precision,
-                        BenchSetup *setup)
+/* Three or four digits, without an exponent. */
+static int decimals(double ms)
 {
+    return ms < 10 ? 2 : ms < 100 ? 1 : 0;
+}
+
+static void write_note(BenchSetupKind kind, const OctStructure *body, double user_ns,
+                       BenchKernelRow *row)
+{
+    double nodes = (double)body->tree.leaves, edges = (double)body->graph.first[body->tree.leaves];
+    double leaves = 0; /* of all regions */
+    char *note = row->note;
+    size_t room = sizeof row->note;
+    double ms = row->ns * (row->items == body->tree.leaves ? nodes : 1) / 1e6;
+    switch (kind) {
+    case BENCH_SETUP_DISTANCES:
+        snprintf(note, room, "Bucket-Moore; %.1f ns a node", row->ns / nodes);
+        break;
+    case BENCH_SETUP_GRAPH:
+        snprintf(note, room, "%.*f ms; %.1f edges a node", decimals(ms), ms, edges / nodes);
+        break;
+    case BENCH_SETUP_REGIONS:
+        for (long i = 0; i < body->regions.leaves; i++) leaves += body->regions.size[i];
+        snprintf(note, room, "%.*f ms, distances included; %.1f leaves a region", decimals(ms), ms,
+                 leaves / nodes);
+        break;
+    case BENCH_SETUP_STRUCTURE:
+        snprintf(note, room, "%.*f ms: graph, distances, regions of %ld nodes", decimals(ms), ms,
+                 body->tree.leaves);
+        break;
+    case BENCH_SETUP_SAMPLING:
+        snprintf(note, room, "%.*f ms: %ld nodes, %ld base cells from %ld cells, lattice placed",
+                 decimals(ms), ms, body->tree.leaves, body->tree.roots, body->voxels.cell_count);
+        break;
+    case BENCH_SETUP_WHOLE:
+        snprintf(note, room,
+                 "%.*f ms: tree, graph, regions, engine of %ld nodes; %.0f ns of user time",
+                 decimals(ms), ms, body->tree.leaves, user_ns);
+        break;
+    }
+}
+
+static SmCode prepare(BenchJob *job, SmError *error)
+{
+    const OctStructure *body = &((const BenchTreeBody *)job->body)->structure;
+    Setup *setup = job->subject = sm_alloc(1, sizeof *setup);
+    BenchSetupKind kind = (BenchSetupKind)job->kernel->part;
     long leaves = body->tree.leaves, sources = LEAVES_SEARCHED / leaves;
     char reason[BENCH_TREE_REASON];
-    *setup = (BenchSetup){.body = body, .kind = kind, .precision = precision};
+    (void)error;
+    setup->job = job;
+    setup->body = body;
     setup->sources = sources < 1 ? 1 : sources > leaves ? leaves : sources;
     setup->trial = (BenchTrial){.timed = {setup, forget, run},
                                 .threads = sm_team(0),
@@ -156,16 +212,44 @@ void bench_setup_create(const OctStructure *body, BenchSetupKind kind, BenchPrec
                                 .once = true,
                                 .most_seconds = most_seconds,
                                 .valid = true};
-    if (check(body, kind, reason)) {
-        set_work(setup);
+    if (check(body, kind, reason))
         oct_reach_init(&setup->reach, &body->graph);
-    } else
+    else
         bench_trial_fail(&setup->trial, "%s", reason);
+    if (kind != BENCH_SETUP_WHOLE) job->arithmetic = "integer";
+    job->trial = &setup->trial;
+    job->item = "node";
+    job->items = leaves;
+    if (kind == BENCH_SETUP_DISTANCES) job->item = "source", job->items = setup->sources;
+    if (kind == BENCH_SETUP_STRUCTURE) job->item = "body", job->items = 1;
+    job->per_run = (double)job->items;
+    return SM_OK;
 }
 
-void bench_setup_free(BenchSetup *setup)
+static void report(BenchJob *job, BenchKernelRow *row)
 {
-    forget(setup);
-    oct_reach_free(&setup->reach);
-    bench_trial_free(&setup->trial);
+    const Setup *setup = job->subject;
+    BenchSetupKind kind = (BenchSetupKind)job->kernel->part;
+    double user = 0;
+    for (int r = 0; r < setup->trial.samples; r++) user += setup->trial.user[r];
+    job->own_ns = 1e9 * user / (setup->trial.samples * job->per_run);
+    job->least = work_of(setup->body, kind, setup->sources, &job->footprint);
+    if (kind == BENCH_SETUP_STRUCTURE)
+        job->least = bench_tree_body_operations(job->body, job->least);
+    job->footprint += setup->engine_bytes;
+    write_note(kind, setup->body, job->own_ns, row);
 }
+
+static void release(void *subject)
+{
+    forget(subject);
+    oct_reach_free(&((Setup *)subject)->reach);
+}
+
+const BenchKernelKind bench_tree_setup_kernels = {.open = bench_tree_body_open,
+                                                  .close = bench_tree_body_close,
+                                                  .prepare = prepare,
+                                                  .report = report,
+                                                  .release = release,
+                                                  .apart = true,
+                                                  .own = "user time"};

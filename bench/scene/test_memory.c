@@ -7,7 +7,7 @@
 #include "../../lib/test_frame.h"
 #include "../engines.h"
 #include "../kernels/cubes.h"
-#include "../kernels/sampled.h"
+#include "../kernels/tree_body.h"
 #include "../play/playback.h"
 #include "memory.h"
 

@@ -1,0 +1,36 @@
+/* tree_body.h - the bodies that the octree's kernels are timed on: sampled, with graph and regions.
+ *
+ * The hand is that of the octree paper's table: 661 nodes from 28 base cells over the finest cells
+ * of a lattice of 35,000 particles, regions of 0.75 of each node's edge, which gives about 6
+ * summation nodes a region; or regular, 35,000 finest cells, regions of one edge. Cubes are
+ * regular, a node in every cell, with regions of one edge. epsilon is 0.5 throughout. */
+#ifndef BENCH_TREE_BODY_H
+#define BENCH_TREE_BODY_H
+
+#include "kernel.h"
+#include "tree_steps.h"
+
+/* Bodies that are no cube, in place of a side. */
+enum { BENCH_HAND = 0, BENCH_REGULAR_HAND = -1 };
+
+/* A cube of side^3 nodes, or a hand. Errors: those of making the shape, its voxels and its
+ * structure; of a cube SM_MEMORY (memory.h); on which `body` is zeroed. The caller frees. */
+SmCode bench_sampled(int side, OctStructure *body, SmError *error);
+
+/* What the octree's kernels of a set share. */
+typedef struct {
+    OctStructure structure;
+    BenchPrecision precision;
+    BenchTreeStep step[16]; /* [count] engines: each weighting, goal form and threads */
+    int count;
+} BenchTreeBody;
+
+/* A kind's open() and close(). */
+SmCode bench_tree_body_open(const BenchKernel *kernel, const BenchKernelParams *params, void **body,
+                            SmError *error);
+void bench_tree_body_close(void *body);
+
+/* What so much for a node is for the body. */
+SmOperations bench_tree_body_operations(const BenchTreeBody *body, SmOperations node);
+
+#endif
