@@ -22,32 +22,6 @@ const char *const bench_claim_kinds[] = {"method", "machine", "by construction",
 const char *const bench_reductions[] = {"values", "exponent", "largest", "gain", NULL};
 const char *const bench_expectations[] = {"reproduced", "different", "not comparable", NULL};
 
-static const BenchSetting range_table[] = {
-    {"from", BENCH_IN(BenchRange, from), 1, 1000},
-    {"to", BENCH_IN(BenchRange, to), 1, 1000},
-    {"points", BENCH_IN(BenchRange, points), 1, 24},
-    {0},
-};
-
-static const BenchSetting measure_table[] = {
-    {"experiment", BENCH_IN(BenchMeasure, experiment), .choices_of = bench_experiment_names,
-     .needed = true},
-    {"scene", BENCH_IN(BenchMeasure, scene)},
-    {"engine", BENCH_IN(BenchMeasure, engine)},
-    {"field", BENCH_IN(BenchMeasure, field)},
-    {"summation", BENCH_IN(BenchMeasure, summation), BENCH_CHOICES(bench_summations)},
-    {"layout", BENCH_IN(BenchMeasure, layout), BENCH_CHOICES(bench_layouts)},
-    {"matching", BENCH_IN(BenchMeasure, matching),
-     BENCH_ONE_OF("lattice", "rigid", "linear", "quadratic")},
-    {"masses", BENCH_IN(BenchMeasure, masses), BENCH_CHOICES(bench_masses)},
-    {"symmetry", BENCH_IN(BenchMeasure, symmetry), BENCH_CHOICES(bench_symmetries)},
-    {"weighting", BENCH_IN(BenchMeasure, weighting), BENCH_CHOICES(bench_weightings)},
-    {"without", BENCH_IN(BenchMeasure, without), BENCH_CHOICES(bench_without_names)},
-    {"w", BENCH_IN(BenchMeasure, w), .table = range_table},
-    {"n", BENCH_IN(BenchMeasure, n), .table = range_table},
-    {0},
-};
-
 static const BenchSetting claim_table[] = {
     {"kind", BENCH_IN(Entry, claim.kind), BENCH_CHOICES(bench_claim_kinds), .needed = true},
     {"paper", BENCH_IN(Entry, claim.paper)},
@@ -59,9 +33,9 @@ static const BenchSetting claim_table[] = {
     {"row", BENCH_IN(Entry, row)},
     {"column", BENCH_IN(Entry, column)},
     {"value", BENCH_IN(Entry, value), -1e15, 1e15},
-    {"measure", BENCH_IN(Entry, claim.measure), .table = measure_table},
-    {"over", BENCH_IN(Entry, claim.over), .table = measure_table},
-    {"unset", BENCH_IN(Entry, claim.unset), .table = measure_table},
+    {"measure", BENCH_IN(Entry, claim.measure), .table = bench_measure_settings},
+    {"over", BENCH_IN(Entry, claim.over), .table = bench_measure_settings},
+    {"unset", BENCH_IN(Entry, claim.unset), .table = bench_measure_settings},
     {"take", BENCH_IN(Entry, claim.reduction), BENCH_CHOICES(bench_reductions)},
     {"test", BENCH_IN(Entry, claim.test), .needed = true,
      BENCH_ONE_OF("near", "within", "factor", "at_least", "at_most", "inside", "rises", "falls")},

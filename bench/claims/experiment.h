@@ -39,7 +39,14 @@
  * - sag: how deep the tip of a clamped beam hangs, in mesh units, against w; `scene`, range `w`.
  * - resampling: `field` "distance-share": percent of the time of resampling `scene`'s octree, where
  *   the leaves of one parent are split, which the distances of the leaves searched take when they
- *   are found alone (octree section 5.3); median over places spread over the body. */
+ *   are found alone (octree section 5.3); median over places spread over the body.
+ * - regions: `field` of the regions of `scene`'s octree, by `symmetry`, against epsilon, which is
+ *   range `n` in quarters: "summation_nodes" a region, mean; "most_summation"; "beyond_percent" of
+ *   members farther than (1 + epsilon) w; "parts" that the body falls into.
+ * - growth: one point: sum m v^2 of `scene`'s free, bent octree over its last tenth of 20,000
+ * steps, by that over the first; by `masses`, `symmetry`, `weighting`.
+ * - placement: one point, by `masses`: bending stiffness of a beam in the octree whose cells its
+ *   sides cut, the most by the least of four places. */
 typedef enum {
     BENCH_TRY_NOTHING,
     BENCH_TRY_SCENE,

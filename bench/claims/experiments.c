@@ -1,7 +1,6 @@
 #include "experiments.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,68 +9,67 @@
 #include "../measure/disturbance.h"
 #include "scene_field.h"
 
-/* Settings beside the experiment's name, and which of them one takes, as bits. */
-enum {
-    SCENE = 1,
-    ENGINE = 2,
-    FIELD = 4,
-    WITHOUT = 8,
-    SUMMATION = 16,
-    LAYOUT = 32,
-    MATCHING = 64,
-    MASSES = 128,
-    SYMMETRY = 256,
-    WEIGHTING = 512,
-    W = 1024,
-    N = 2048
+static const BenchSetting range_settings[] = {
+    {"from", BENCH_IN(BenchRange, from), 1, 1000},
+    {"to", BENCH_IN(BenchRange, to), 1, 1000},
+    {"points", BENCH_IN(BenchRange, points), 1, BENCH_RANGE_POINTS},
+    {0},
 };
 
-#define SETTING(member)                                                                            \
-    {                                                                                              \
-        .name = #member, .offset = offsetof(BenchMeasure, member),                                 \
-        .size = sizeof(((BenchMeasure *)0)->member)                                                \
-    }
-
-static const struct {
-    const char *name;
-    size_t offset, size;
-} settings[] = {SETTING(scene),     SETTING(engine),    SETTING(field),    SETTING(without),
-                SETTING(summation), SETTING(layout),    SETTING(matching), SETTING(masses),
-                SETTING(symmetry),  SETTING(weighting), SETTING(w),        SETTING(n)};
+const BenchSetting bench_measure_settings[] = {
+    {"experiment", BENCH_IN(BenchMeasure, experiment), .choices_of = bench_experiment_names,
+     .needed = true},
+    {"scene", BENCH_IN(BenchMeasure, scene)},
+    {"without", BENCH_IN(BenchMeasure, without), BENCH_CHOICES(bench_without_names)},
+    {"engine", BENCH_IN(BenchMeasure, engine)},
+    {"field", BENCH_IN(BenchMeasure, field)},
+    {"summation", BENCH_IN(BenchMeasure, summation), BENCH_CHOICES(bench_summations)},
+    {"layout", BENCH_IN(BenchMeasure, layout), BENCH_CHOICES(bench_layouts)},
+    {"masses", BENCH_IN(BenchMeasure, masses), BENCH_CHOICES(bench_masses)},
+    {"symmetry", BENCH_IN(BenchMeasure, symmetry), BENCH_CHOICES(bench_symmetries)},
+    {"weighting", BENCH_IN(BenchMeasure, weighting), BENCH_CHOICES(bench_weightings)},
+    {"matching", BENCH_IN(BenchMeasure, matching),
+     BENCH_ONE_OF("lattice", "rigid", "linear", "quadratic")},
+    {"w", BENCH_IN(BenchMeasure, w), .table = range_settings},
+    {"n", BENCH_IN(BenchMeasure, n), .table = range_settings},
+    {0},
+};
 
 static BenchMeasuring measure_scene;
 
+/* Lists of words are separated by |. */
 typedef struct {
     const char *name;
     const char *x_name, *y_name; /* of the curve; NULL: the field; or the experiment says so */
-    unsigned takes;
-    const char *fields; /* that there are, separated by |; NULL: scene_field.h's */
+    const char *takes;           /* settings beside the experiment itself */
+    const char *fields;          /* values of `field`; NULL: scene_field.h's */
     BenchMeasuring *run;
     bool timed; /* on one thread, in samples of milliseconds */
 } Kind;
 
 static const Kind kinds[] = {
     [BENCH_TRY_NOTHING] = {"none"},
-    [BENCH_TRY_SCENE] = {"scene", "", "", SCENE | ENGINE | FIELD | WITHOUT, NULL, measure_scene},
+    [BENCH_TRY_SCENE] = {"scene", "", "", "scene|engine|field|without", NULL, measure_scene},
     [BENCH_TRY_SUMS] = {"sums", "mean side of a region, particles",
-                        "fast summation, ns/particle/step", SUMMATION | LAYOUT | W, NULL,
+                        "fast summation, ns/particle/step", "summation|layout|w", NULL,
                         bench_costs_sums, .timed = true},
-    [BENCH_TRY_SIZE] = {"size", "", "", ENGINE | FIELD | N, "|step|sums", bench_costs_size,
+    [BENCH_TRY_SIZE] = {"size", "", "", "engine|field|n", "|step|sums", bench_costs_size,
                         .timed = true},
-    [BENCH_TRY_POLAR] = {"polar", "-", NULL, FIELD, BENCH_POLAR_FIELDS, bench_costs_polar},
-    [BENCH_TRY_SWEEPS] = {"sweeps", "-", "sweeps a decomposition", SCENE, NULL, bench_costs_sweeps},
-    [BENCH_TRY_SMOOTHING] = {"smoothing", "w", "mean distance of the displacement, cells", W, NULL,
-                             bench_deform_smoothing},
+    [BENCH_TRY_POLAR] = {"polar", "-", NULL, "field", BENCH_POLAR_FIELDS, bench_costs_polar},
+    [BENCH_TRY_SWEEPS] = {"sweeps", "-", "sweeps a decomposition", "scene", NULL,
+                          bench_costs_sweeps},
+    [BENCH_TRY_SMOOTHING] = {"smoothing", "w", "mean distance of the displacement, cells", "w",
+                             NULL, bench_deform_smoothing},
     [BENCH_TRY_BLENDING] = {"blending", "clusters", "largest jump of the displacement gradient",
-                            MATCHING | N, NULL, bench_deform_blending},
-    [BENCH_TRY_SAG] = {"sag", "w", "tip's sag, mesh units", SCENE | W, NULL, bench_deform_sag},
-    [BENCH_TRY_RESAMPLING] = {"resampling", "-", NULL, SCENE | FIELD, "distance-share",
+                            "matching|n", NULL, bench_deform_blending},
+    [BENCH_TRY_SAG] = {"sag", "w", "tip's sag, mesh units", "scene|w", NULL, bench_deform_sag},
+    [BENCH_TRY_RESAMPLING] = {"resampling", "-", NULL, "scene|field", "distance-share",
                               bench_costs_resampling, .timed = true},
-    [BENCH_TRY_REGIONS] = {"regions", "epsilon", NULL, SCENE | FIELD | SYMMETRY | N,
+    [BENCH_TRY_REGIONS] = {"regions", "epsilon", NULL, "scene|field|symmetry|n",
                            BENCH_REGION_FIELDS, bench_choices_regions},
     [BENCH_TRY_GROWTH] = {"growth", "none", "kinetic energy, last tenth by first",
-                          SCENE | MASSES | SYMMETRY | WEIGHTING, NULL, bench_choices_growth},
-    [BENCH_TRY_PLACEMENT] = {"placement", "none", "stiffness, most by least", MASSES, NULL,
+                          "scene|masses|symmetry|weighting", NULL, bench_choices_growth},
+    [BENCH_TRY_PLACEMENT] = {"placement", "none", "stiffness, most by least", "masses", NULL,
                              bench_choices_placement},
 };
 
@@ -88,6 +86,11 @@ static bool listed(const char *words, const char *word)
     }
 }
 
+static bool takes(const Kind *kind, const char *setting)
+{
+    return kind->takes && listed(kind->takes, setting);
+}
+
 static bool sound(const BenchRange *range)
 {
     return range->from >= 1 && range->to >= range->from && range->points >= 1;
@@ -97,10 +100,9 @@ static bool sound(const BenchRange *range)
 static const char *needless(const BenchMeasure *measure, const Kind *kind)
 {
     static const char none[sizeof *measure];
-    for (size_t s = 0; s < sizeof settings / sizeof *settings; s++)
-        if (!(kind->takes >> s & 1) &&
-            memcmp((const char *)measure + settings[s].offset, none, settings[s].size) != 0)
-            return settings[s].name;
+    for (const BenchSetting *s = bench_measure_settings + 1; s->key; s++)
+        if (!takes(kind, s->key) && memcmp((const char *)measure + s->offset, none, s->size) != 0)
+            return s->key;
     return NULL;
 }
 
@@ -135,16 +137,16 @@ const char *bench_experiment_fault(const BenchMeasure *measure)
     const char *setting = needless(measure, kind);
     snprintf(fault, sizeof fault, "'%s' is not of this experiment", setting ? setting : "");
     if (setting) return fault;
-    if (kind->takes & SCENE && !measure->scene[0]) return "the experiment needs a 'scene'";
-    if (kind->takes & W && !sound(&measure->w))
+    if (takes(kind, "scene") && !measure->scene[0]) return "the experiment needs a 'scene'";
+    if (takes(kind, "w") && !sound(&measure->w))
         return "the experiment needs w = { from = ...; to = ...; points = ...; }, rising";
-    if (kind->takes & N && !sound(&measure->n))
+    if (takes(kind, "n") && !sound(&measure->n))
         return "the experiment needs n = { from = ...; to = ...; points = ...; }, rising";
     if (measure->experiment == BENCH_TRY_SIZE && measure->n.from < 4)
         return "cubes have four particles a side or more: n.from is at least 4";
     if (measure->experiment == BENCH_TRY_SIZE && measure->n.to > 128)
         return "cubes have at most 128 particles a side: n.to is at most 128";
-    if (kind->takes & W && measure->w.to > BENCH_MOST_W) return "w.to is at most 16";
+    if (takes(kind, "w") && measure->w.to > BENCH_MOST_W) return "w.to is at most 16";
     if (measure->experiment == BENCH_TRY_BLENDING && measure->n.to > 16)
         return "few clusters: n.to is at most 16";
     return field_fault(measure, kind);
@@ -162,8 +164,8 @@ int bench_experiment_points(const BenchMeasure *measure)
 {
     int number[BENCH_RANGE_POINTS];
     const Kind *kind = &kinds[measure->experiment];
-    if (!(kind->takes & (W | N))) return 1;
-    return bench_range_numbers(kind->takes & W ? &measure->w : &measure->n, number);
+    if (!takes(kind, "w") && !takes(kind, "n")) return 1;
+    return bench_range_numbers(takes(kind, "w") ? &measure->w : &measure->n, number);
 }
 
 /* ---- measuring */
@@ -176,33 +178,36 @@ static void append(char name[BENCH_CURVE_NAME], const char *before, const char *
 
 static void append_range(char name[BENCH_CURVE_NAME], const char *letter, const BenchRange *range)
 {
-    char text[24];
-    snprintf(text, sizeof text, "%d-%d.%d", range->from, range->to, range->points);
-    append(name, letter, range->points ? text : "");
+    char text[24] = "";
+    if (range->points)
+        snprintf(text, sizeof text, "%s%d-%d.%d", letter, range->from, range->to, range->points);
+    append(name, ".", text);
+}
+
+/* The first choice is said only where there is no usual one. */
+static void append_choice(char name[BENCH_CURVE_NAME], const Kind *kind,
+                          const BenchSetting *setting, int choice)
+{
+    bool usual = strcmp(setting->key, "summation") != 0 && strcmp(setting->key, "matching") != 0;
+    bool none = !strcmp(setting->key, "symmetry") && choice == OCT_ASYMMETRIC;
+    if (choice == 0 && (usual || !takes(kind, setting->key))) return;
+    append(name, strcmp(setting->key, "without") != 0 ? "." : ".without.",
+           none ? "asymmetric" : setting->choices[choice]);
 }
 
 static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
 {
-    static const char *const summations[] = {"fast", "bars", "naive"};
-    static const char *const masses[] = {"", "volume"};
-    static const char *const symmetries[] = {"", "intersection", "asymmetric"};
-    static const char *const weightings[] = {"", "plain"};
-    static const char *const layouts[] = {"", "lists", "blocks"};
-    static const char *const matchers[] = {"lattice", "rigid", "linear", "quadratic"};
     const Kind *kind = &kinds[measure->experiment];
     snprintf(name, BENCH_CURVE_NAME, "%s", kind->name);
-    append(name, ".", measure->scene);
-    append(name, ".without.", measure->without ? bench_without_names[measure->without] : "");
-    append(name, ".", measure->engine);
-    append(name, ".", measure->field);
-    append(name, ".", kind->takes & SUMMATION ? summations[measure->summation] : "");
-    append(name, ".", layouts[measure->layout]);
-    append(name, ".", masses[measure->masses]);
-    append(name, ".", symmetries[measure->symmetry]);
-    append(name, ".", weightings[measure->weighting]);
-    append(name, ".", kind->takes & MATCHING ? matchers[measure->matching] : "");
-    append_range(name, ".w", &measure->w);
-    append_range(name, ".n", &measure->n);
+    for (const BenchSetting *s = bench_measure_settings + 1; s->key; s++) {
+        const void *member = (const char *)measure + s->offset;
+        if (s->kind == BENCH_SET_TEXT)
+            append(name, ".", member);
+        else if (s->kind == BENCH_SET_CHOICE)
+            append_choice(name, kind, s, *(const int *)member);
+        else
+            append_range(name, s->key, member);
+    }
     for (char *c = name; *c; c++)
         if (*c == '/' || *c == ' ') *c = *c == '/' ? '|' : '_';
 }
@@ -235,14 +240,14 @@ static SmCode measure_scene(const BenchExperiment *of, SmError *error)
 }
 
 /* Of a scene that is not measured as it is. */
-static SmCode measure_body(const Kind *kind, BenchExperiment *of, SmError *error)
+static SmCode measure_body(const Kind *kind, BenchExperiment of, SmError *error)
 {
-    BenchScene *scene = of->scene = sm_alloc(1, sizeof *scene);
+    BenchScene *scene = of.scene = sm_alloc(1, sizeof *scene);
     BenchBody body = {0};
-    of->body = &body;
-    SmCode code = bench_scene_find(of->measure->scene, scene, error);
+    of.body = &body;
+    SmCode code = bench_scene_find(of.measure->scene, scene, error);
     if (!code) code = bench_body_of_scene(scene, NULL, &body, error);
-    if (!code) code = kind->run(of, error);
+    if (!code) code = kind->run(&of, error);
     bench_body_free(&body);
     free(scene);
     return code;
@@ -261,7 +266,7 @@ int bench_experiment(BenchLab *lab, const BenchMeasure *measure)
     bool whole = measure->experiment == BENCH_TRY_SCENE;
     bench_curve_begin(&curve, kind->x_name, kind->y_name ? kind->y_name : measure->field);
     BenchInstant start = bench_instant_start(1);
-    if (kind->takes & SCENE && !whole ? measure_body(kind, &of, &error) : kind->run(&of, &error))
+    if (takes(kind, "scene") && !whole ? measure_body(kind, of, &error) : kind->run(&of, &error))
         bench_curve_fail(&curve, "%.180s", error.text);
     check_busy(measure, &start, &curve);
     strcpy(curve.name, name);

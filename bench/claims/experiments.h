@@ -3,7 +3,11 @@
 #ifndef BENCH_EXPERIMENTS_H
 #define BENCH_EXPERIMENTS_H
 
+#include "../settings/setting.h"
 #include "experiment.h"
+
+/* What a claims file says of a BenchMeasure, in the order in which names of curves say it. */
+extern const BenchSetting bench_measure_settings[];
 
 /* What is wrong with a measurement's settings, or NULL; the line stands until the next call. */
 const char *bench_experiment_fault(const BenchMeasure *measure);
