@@ -295,7 +295,7 @@ static int exit_code(const char *arguments)
 TEST(the_command_has_exit_codes)
 {
     assert_int_equal(exit_code("--only no-such-kernel"), 2);
-    assert_int_equal(exit_code("--format latex"), 2);
+    assert_int_equal(exit_code("--format xml"), 2);
     assert_int_equal(exit_code("polar"), 2);
     assert_int_equal(exit_code("--list"), 0);
     assert_int_equal(exit_code("--help"), 0);
