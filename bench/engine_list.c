@@ -1,11 +1,6 @@
-/* The registry: a line for each engine. */
 #include "engines.h"
 
-/* clang-format off */
+#define ENGINE(name) &bench_##name,
 const BenchEngine *const bench_engine_list[] = {
-    &bench_fastlsm,
-    &bench_octree,
-    &bench_brute,
-    &bench_meshless,
-    NULL,
-};
+#include "engine_list.inc"
+    NULL};

@@ -10,6 +10,7 @@
 #include "measure/elastic_row.h"
 #include "measure/tree_row.h"
 #include "play/carrier.h"
+#include "scene/body.h"
 #include "scene/memory.h"
 
 static void set_cells(BenchScene *scene, double w, double epsilon, bool cells)
@@ -27,6 +28,16 @@ static void set_octree(BenchScene *scene, double w, double epsilon, bool cells)
     scene->octree.epsilon = epsilon;
 }
 
+static long *octree_nodes(BenchScene *scene)
+{
+    return &scene->octree.sampling.nodes;
+}
+
+static long *meshless_nodes(BenchScene *scene)
+{
+    return &scene->meshless.nodes;
+}
+
 const BenchEngine bench_fastlsm = {.type = {&fastlsm_engine_f32, &fastlsm_engine_f64},
                                    .planned = true,
                                    .yardstick = true,
@@ -39,7 +50,11 @@ const BenchEngine bench_fastlsm = {.type = {&fastlsm_engine_f32, &fastlsm_engine
 const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f64},
                                   .sampled = true,
                                   .planned = true,
+                                  .own = BENCH_OF_SAMPLED,
+                                  .whose = "the octree's",
                                   .set_width = set_octree,
+                                  .nodes = octree_nodes,
+                                  .adapt = bench_scene_sample,
                                   .carrier = &bench_octree_carrier,
                                   .twin = &bench_octree_twin,
                                   .checker = &bench_matching_checker,
@@ -55,15 +70,15 @@ const BenchEngine bench_brute = {.type = {&ref_brute_engine},
                                  .checker = &bench_matching_checker,
                                  .memory = bench_memory_brute};
 
-static const BenchStages meshless_stages = {
-    .name = {[SM_SHAPE_MATCHING] = "motion", [SM_OTHER] = "skin"}, .before = SM_SHAPE_MATCHING};
-
 const BenchEngine bench_meshless = {.type = {&ref_meshless_engine},
                                     .elastic = true,
+                                    .own = BENCH_OF_ELASTIC,
+                                    .whose = "a meshless body's",
+                                    .nodes = meshless_nodes,
+                                    .adapt = bench_scene_hold,
                                     .carrier = &bench_lattice_carrier,
                                     .describe = bench_summary_meshless,
                                     .frames = &ref_meshless_frames,
-                                    .stages = &meshless_stages,
                                     .checker = &bench_elastic_checker,
                                     .fill = bench_elastic_row_fill,
                                     .explain = bench_elastic_row_explain,

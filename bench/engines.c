@@ -4,9 +4,10 @@
 #include <string.h>
 
 #include "../lib/printable.h"
+#include "system/quote.h"
 #include "system/suggest.h"
 
-enum { TYPES = 2, MOST = 16 };
+enum { TYPES = 2 };
 
 const BenchEngine *bench_engine(const char *name)
 {
@@ -21,11 +22,9 @@ SmCode bench_engine_find(const char *name, const char *precision, const SmEngine
                          SmError *error)
 {
     char known[256] = "", near[BENCH_SUGGEST_TEXT];
-    const char *names[MOST + 1] = {NULL};
     for (int i = 0; bench_engine_list[i / TYPES]; i++) {
         const SmEngineType *t = bench_engine_list[i / TYPES]->type[i % TYPES];
         if (!t) continue;
-        if (i / TYPES < MOST) names[i / TYPES] = t->name;
         if (!strcmp(t->name, name) && (!precision || !strcmp(t->precision, precision))) {
             *type = t;
             return SM_OK;
@@ -34,22 +33,42 @@ SmCode bench_engine_find(const char *name, const char *precision, const SmEngine
     }
     return sm_fail(error, SM_USAGE, "no engine '%.32s'%s%s%s; there are: %s%s", name,
                    precision ? " in " : "", precision ? precision : "",
-                   precision ? " precision" : "", known, bench_suggest_among(name, names, near));
-}
-
-const char *bench_stage_name(const BenchEngine *engine, SmStage stage)
-{
-    return engine->stages ? engine->stages->name[stage] : sm_stage_name(stage);
+                   precision ? " precision" : "", known,
+                   bench_suggest_among(name, bench_engine_names(), near));
 }
 
 SmStage bench_stage_find(const char *name)
 {
     for (int e = 0; bench_engine_list[e]; e++)
         for (int s = 0; s < SM_STAGES; s++) {
-            const char *stage = bench_stage_name(bench_engine_list[e], (SmStage)s);
+            const char *stage = sm_engine_stage(bench_engine_list[e]->type[0], (SmStage)s);
             if (stage && !strcmp(stage, name)) return (SmStage)s;
         }
     return SM_STAGES;
+}
+
+const BenchEngine *bench_engine_yardstick(void)
+{
+    int e = 0;
+    while (!bench_engine_list[e]->yardstick) e++;
+    return bench_engine_list[e];
+}
+
+const char *const *bench_engine_names(void)
+{
+    static const char *names[BENCH_MOST_ENGINES + 1];
+    for (int e = 0; bench_engine_list[e] && e < BENCH_MOST_ENGINES; e++)
+        names[e] = bench_engine_list[e]->type[0]->name;
+    return names;
+}
+
+const char *bench_engines_that(bool (*are)(const BenchEngine *engine),
+                               char text[BENCH_ENGINES_TEXT])
+{
+    const char *names[BENCH_MOST_ENGINES + 1] = {NULL};
+    for (int e = 0, count = 0; bench_engine_list[e] && e < BENCH_MOST_ENGINES; e++)
+        if (are(bench_engine_list[e])) names[count++] = bench_engine_list[e]->type[0]->name;
+    return bench_enumerate(names, "", " or ", BENCH_ENGINES_TEXT, text);
 }
 
 const BenchEngine *bench_engine_planned(const char *engines, int i)

@@ -1,7 +1,7 @@
 /* engines.h - the engines that there are, and what each says of itself to commands, checks and
  * tables: nothing else asks for an engine's name.
  *
- * A new engine is its folder and a line of bench/engine_list.c. What a program that links the
+ * A new engine is its folder and a line of bench/engine_list.inc. What a program that links the
  * library needs to know of an engine stands in its SmEngineType (lib/engine/engine.h), the rest
  * here, in terms of the subjects that use it: each gives its own record, and this header needs
  * none. */
@@ -11,6 +11,7 @@
 #include <stdio.h>
 
 #include "../lib/engine/engine.h"
+#include "../lib/mesh/mesh.h"
 
 typedef struct OctStructure OctStructure; /* octree/change/structure.h */
 typedef struct BenchScene BenchScene;     /* scene/scene.h */
@@ -21,13 +22,7 @@ typedef struct BenchTwin BenchTwin;       /* check/check.h */
 typedef struct BenchChecker BenchChecker; /* measure/checker.h */
 typedef struct BenchRow BenchRow;         /* measure/row.h */
 
-enum { BENCH_MOST_PLANNED = 4 };
-
-/* What an engine's stages are called where they are not those of shape matching. */
-typedef struct {
-    const char *name[SM_STAGES]; /* NULL: it has none in that place */
-    SmStage before;              /* of what moves handles and pushes before a step */
-} BenchStages;
+enum { BENCH_MOST_ENGINES = 16, BENCH_MOST_PLANNED = 4, BENCH_ENGINES_TEXT = 128 };
 
 typedef struct {
     const SmEngineType *type[2]; /* one a precision, the default first; NULL: there is no other */
@@ -39,9 +34,17 @@ typedef struct {
     bool planned;   /* sweep and calibrate plan points of it, by set_width() */
     bool yardstick; /* what others' speed is set beside (bench_row_measures()) */
 
+    unsigned own;      /* BENCH_OF_...: of the scene's settings, which no other engine takes, */
+    const char *whose; /* and how messages name them: "the octree's" */
+
     /* The scene's w and epsilon; `cells`: of a sampled engine w is in finest cells, else in edges.
      * Only of planned engines. */
     void (*set_width)(BenchScene *scene, double w, double epsilon, bool cells);
+
+    long *(*nodes)(BenchScene *scene); /* how many are wanted; NULL: that cannot be chosen */
+
+    /* Makes the scene of a mesh alone (bench_scene_drop()) its own. NULL: it is good as it is. */
+    void (*adapt)(const SmMesh *mesh, BenchScene *scene);
 
     const BenchCarrier *carrier;                              /* of the surface */
     const OctStructure *(*structure)(const SmEngine *engine); /* its tree, to record; NULL: none */
@@ -52,8 +55,6 @@ typedef struct {
 
     const SmEngineType *frames; /* what bench_measure() takes in its place, of the same name; NULL:
                                  * the engine itself */
-
-    const BenchStages *stages; /* NULL: Table 1's of fastlsm (lib/engine/stage.h) */
 
     /* The row's own columns, of an engine at rest, and more of a row for people. NULL: nothing. */
     void (*fill)(const BenchRunner *runner, BenchRow *row);
@@ -66,9 +67,11 @@ typedef struct {
     double (*memory)(const BenchScene *scene, double particles);
 } BenchEngine;
 
-extern const BenchEngine bench_fastlsm, bench_octree, bench_brute, bench_meshless;
+#define ENGINE(name) extern const BenchEngine bench_##name;
+#include "engine_list.inc"
+#undef ENGINE
 
-/* All engines, NULL at the end, in the order in which they are named and planned. */
+/* All engines, NULL at the end. */
 extern const BenchEngine *const bench_engine_list[];
 
 /* The engine of this name; one without a name, of which nothing is true, if there is none. */
@@ -79,10 +82,18 @@ const BenchEngine *bench_engine(const char *name);
 SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
                          SmError *error);
 
-/* The engine's name of a stage, NULL if it has no such; and the stage that any engine calls so,
- * SM_STAGES if none does. */
-const char *bench_stage_name(const BenchEngine *engine, SmStage stage);
+/* The stage that any engine calls so; SM_STAGES if none does. */
 SmStage bench_stage_find(const char *name);
+
+/* The one with `yardstick`. */
+const BenchEngine *bench_engine_yardstick(void);
+
+/* Their names, NULL-terminated. */
+const char *const *bench_engine_names(void);
+
+/* The names of those that are such, "fastlsm or octree". Returns `text`. */
+const char *bench_engines_that(bool (*are)(const BenchEngine *engine),
+                               char text[BENCH_ENGINES_TEXT]);
 
 /* Planned engine number i of those that a plan's word stands for, "both" or one's name; NULL behind
  * the last. And the words, NULL-terminated. */

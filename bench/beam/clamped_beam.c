@@ -98,5 +98,5 @@ void bench_clamped_beam_step(BenchClampedBeam *beam, double acceleration, double
         }
         runner->type->push(runner->engine, runner->particles, beam->number, CONST(beam->impulse));
     }
-    bench_runner_step(runner, NULL);
+    bench_runner_step(runner);
 }

@@ -205,7 +205,7 @@ static double sag_of(const char *name)
     }
     double(*v)[3] = sm_alloc((size_t)runner.particles, sizeof *v), end = 0, sag = 0;
     for (int step = 0; step < (TEST_FIGURES ? 1500 : 15); step++) {
-        bench_runner_step(&runner, NULL);
+        bench_runner_step(&runner);
         type->get(runner.engine, SM_VELOCITY, v);
         for (long p = 0; p < runner.particles; p++)
             for (int d = 0; d < 3; d++) v[p][d] *= 0.9;

@@ -348,7 +348,7 @@ double bench_check_flow(const BenchCheck *check, BenchRunner *runner)
     double(*before)[9] = rest_shapes(check, type, runner->engine), worst = 0;
     double slack = bench_check_tolerance(type->precision), yield = check->octree.yield;
     type->get(runner->engine, SM_POSITION, x);
-    bench_runner_step(runner, NULL);
+    bench_runner_step(runner);
     double(*after)[9] = rest_shapes(check, type, runner->engine);
     for (size_t first = 0; first < all; first += count) {
         const double(*at)[3] = (const double(*)[3])(x + first);

@@ -478,7 +478,7 @@ void bench_elastic_check_state(BenchRunner *runner, BenchElasticFound *found)
         mass += elastic->body.matrices.mass.value[elastic->body.matrices.mass.start[c]];
     check_pose(elastic, found);
     runner->type->set_state(runner->engine, before);
-    bench_runner_step(runner, NULL);
+    bench_runner_step(runner);
     check_held(motion, found);
     check_skin(elastic, found);
     double *after = state_of(runner);

@@ -28,7 +28,7 @@ TEST(parts_are_damped_right)
         bench_runner_disturb(&runner, 1);
         bench_check_begin(&scene, &body, octrees[t], runner.engine, &check);
         for (int step = 0; step < 100; step++) {
-            bench_runner_step(&runner, NULL);
+            bench_runner_step(&runner);
             BenchDeviation found = bench_check_state(&check, octrees[t], runner.engine);
             bench_check_damping(&check, &scene, octrees[t], runner.engine, &found);
             if (!bench_check_verdict(&found, sizeof reason, reason))
@@ -66,7 +66,7 @@ static void trial_steps(Trial *t, int steps)
     char reason[160];
     BenchDeviation found;
     for (int step = 0; step < steps; step++) {
-        bench_runner_step(&t->runner, NULL);
+        bench_runner_step(&t->runner);
         if (!bench_check_all(&t->check, &t->runner, &found, sizeof reason, reason))
             fail_msg("%s, %s precision, step %d: %s", t->scene.name, t->runner.type->precision,
                      step, reason);

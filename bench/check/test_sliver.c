@@ -95,14 +95,14 @@ static void drop(SmMesh mesh, const char *name)
     SmError error = {0};
     char reason[160];
     bench_scene_drop(&mesh, name, &scene);
-    bench_scene_sample(&scene);
+    bench_scene_sample(&mesh, &scene);
     scene.voxel = (SmVoxelParams){.fill = SM_SHELL, .particles = 20000};
     if (bench_body_create(&scene, &mesh, &body, &error) ||
         bench_runner_create(&scene, &body, &octree_engine_f32, 1, &runner, &error))
         fail_msg("%s: %s", name, error.text);
     bench_check_begin(&scene, &body, &octree_engine_f32, runner.engine, &check);
     for (int step = 0; step < 60; step++) {
-        bench_runner_step(&runner, NULL);
+        bench_runner_step(&runner);
         if (step % 12) continue;
         BenchDeviation found = bench_check_state(&check, runner.type, runner.engine);
         if (!bench_check_verdict(&found, sizeof reason, reason))

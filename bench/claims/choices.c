@@ -92,7 +92,7 @@ static double mean_motion(BenchRunner *runner, const double *mass, long steps, d
 {
     double sum = 0;
     for (long s = 0; s < steps; s++) {
-        bench_runner_step(runner, NULL);
+        bench_runner_step(runner);
         runner->type->get(runner->engine, SM_VELOCITY, v);
         for (long p = 0; p < runner->particles; p++)
             for (int d = 0; d < 3; d++) sum += mass[p] * v[p][d] * v[p][d];
@@ -106,7 +106,7 @@ static double growth_of(BenchRunner *runner, long steps)
     double(*v)[3] = sm_alloc((size_t)runner->particles, sizeof *v);
     runner->type->masses(runner->engine, mass);
     double first = mean_motion(runner, mass, steps / 10, v);
-    for (long s = 0; s < steps - 2 * (steps / 10); s++) bench_runner_step(runner, NULL);
+    for (long s = 0; s < steps - 2 * (steps / 10); s++) bench_runner_step(runner);
     double last = mean_motion(runner, mass, steps / 10, v);
     free(mass);
     free(v);

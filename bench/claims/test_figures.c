@@ -46,7 +46,7 @@ static void end(Run *run)
 
 static void steps(Run *run, int count)
 {
-    for (int step = 0; step < count; step++) bench_runner_step(&run->runner, NULL);
+    for (int step = 0; step < count; step++) bench_runner_step(&run->runner);
     run->runner.type->get(run->runner.engine, SM_POSITION, run->x);
 }
 
@@ -57,7 +57,7 @@ static void settle(Run *run)
     SmEngine *engine = run->runner.engine;
     double fastest = INFINITY;
     for (int step = 0; step < 6000 && !(step > 300 && fastest < 1e-5); step++) {
-        bench_runner_step(&run->runner, NULL);
+        bench_runner_step(&run->runner);
         type->get(engine, SM_VELOCITY, run->x);
         fastest = 0;
         for (long p = 0; p < run->runner.particles; p++)

@@ -25,8 +25,7 @@ SmCode bench_paper_unknown(const char *paper, SmError *error);
 #define BENCH_FORMAT_OPTION(record, member, place)                                                 \
     {                                                                                              \
         BENCH_IN(record, member), BENCH_CHOICES(bench_format_names),                               \
-            BENCH_OPTION("format", "FORMAT", place,                                                \
-                         "text, markdown, csv, latex, json (default: text)")                       \
+            BENCH_OPTION("format", "FORMAT", place, "As %s (default: text)")                       \
     }
 
 /* What every command that is a campaign has: its record begins with a BenchCampaignOptions `its`.

@@ -25,8 +25,8 @@ static const BenchSetting settings[] = {
     {BENCH_MEASURE("scene", "NAME|FILE.cfg", 1,
                    "A beam: its body's box, its cells and its time step are taken (default: beam)"),
      BENCH_IN(Options, plan.file)},
-    {BENCH_MEASURE("engine", "NAME", 1, "both, fastlsm or octree (default: both)"),
-     BENCH_IN(Options, plan.engines), .choices_of = bench_engine_choices},
+    {BENCH_MEASURE("engine", "NAME", 1, "%s (default: both)"), BENCH_IN(Options, plan.engines),
+     .choices_of = bench_engine_choices},
     {LIST("w", 0, 1,
           "Region half-widths in cells, which in a regular octree are its nodes' edges, 1 to "
           "31, FIRST:LAST[:STEP] or a list (default: 1:10)")},

@@ -10,6 +10,7 @@
 #include "../scene/points_file.h"
 #include "../store/draft.h"
 #include "../system/progress.h"
+#include "../system/quote.h"
 #include "command.h"
 #include "summary.h"
 
@@ -108,16 +109,8 @@ static const char help[] =
     "force in the last state; beyond the tolerance of 'tables' the run is INVALID (exit code 1), "
     "its trajectory kept.\n" BENCH_EXIT_CODES;
 
-/* What some engines alone have, and how messages name them. */
-static const struct {
-    unsigned of;
-    const char *whose, *engine;
-} owners[] = {{BENCH_OF_SAMPLED, "the octree's", "octree"},
-              {BENCH_OF_ELASTIC, "a meshless body's", "meshless"}};
-enum { OWNERS = sizeof owners / sizeof *owners };
-
 /* Adds the names of a table's options that are first of all this owner's, and that the engine has
- * not: "--young, --poisson". */
+ * not. */
 static void name_options(const BenchSetting *table, unsigned owner, unsigned engine,
                          BenchNames *names)
 {
@@ -130,33 +123,28 @@ static void name_options(const BenchSetting *table, unsigned owner, unsigned eng
     }
 }
 
-static SmCode fail_of_owner(int o, unsigned engine, SmError *error)
+static SmCode fail_of_owner(const BenchEngine *owner, unsigned engine, SmError *error)
 {
-    char list[256] = "";
+    char list[256];
     BenchNames names = {.count = 0};
-    name_options(settings, owners[o].of, engine, &names);
-    for (int n = 0; n < names.count; n++) {
-        size_t used = strlen(list);
-        const char *joint = !n ? "" : n + 1 < names.count ? ", " : " and ";
-        snprintf(list + used, sizeof list - used, "%s--%s", joint, names.name[n]);
-    }
-    return sm_fail(error, SM_USAGE, "%s are %s: add --engine %s", list, owners[o].whose,
-                   owners[o].engine);
+    name_options(settings, owner->own, engine, &names);
+    return sm_fail(error, SM_USAGE, "%s are %s: add --engine %s",
+                   bench_enumerate(names.name, "--", " and ", sizeof list, list), owner->whose,
+                   owner->type[0]->name);
 }
 
 /* Refuses options that the engine has not. */
 static SmCode check_owners(const Options *options, const BenchEngine *engine, SmError *error)
 {
     const BenchGiven *given = &options->chosen.given;
-    unsigned has =
-        (engine->sampled ? BENCH_OF_SAMPLED : 0) | (engine->elastic ? BENCH_OF_ELASTIC : 0);
-    for (int o = 0; o < OWNERS; o++) {
-        bool missed = options->nodes && !has && !o;
-        for (int i = 0; i < given->count; i++)
-            missed |= given->item[i].setting->of == owners[o].of && !(owners[o].of & has);
-        if (missed) return fail_of_owner(o, has, error);
+    for (const BenchEngine *const *owner = bench_engine_list; *owner; owner++) {
+        unsigned others = (*owner)->own & ~engine->own;
+        bool missed = others && options->nodes && !engine->nodes;
+        for (int i = 0; i < given->count && others; i++)
+            missed |= given->item[i].setting->of == others;
+        if (missed) return fail_of_owner(*owner, engine->own, error);
     }
-    if (engine->elastic && options->record)
+    if (!engine->twin && options->record)
         return sm_fail(error, SM_USAGE, "--record is of shape matching; leave it out");
     return SM_OK;
 }
@@ -173,11 +161,13 @@ static void apply_options(const Options *options, BenchScene *scene)
     bench_override_apply(&options->chosen, scene);
     for (int i = 0; i < sampling->criteria_count && bench_given(given, "levels"); i++)
         sampling->criteria[i].level = 0; /* the deepest */
-    if (!options->nodes) return;
-    if (bench_engine(scene->engine)->elastic)
-        scene->meshless.nodes = options->nodes;
-    else
-        sampling->nodes = options->nodes;
+    const BenchEngine *engine = bench_engine(scene->engine);
+    if (options->nodes && engine->nodes) *engine->nodes(scene) = options->nodes;
+}
+
+static bool sampled(const BenchEngine *engine)
+{
+    return engine->sampled;
 }
 
 /* A lattice's w is a whole number, an octree's is not. */
@@ -185,10 +175,11 @@ static SmCode apply_w(const Options *options, const BenchEngine *engine, BenchSc
                       SmError *error)
 {
     const char *text = options->w;
+    char names[BENCH_ENGINES_TEXT];
     if (options->width && !(text && engine->sampled))
         return sm_fail(error, SM_USAGE,
-                       "--width says what an octree's --w counts: add %s, or leave it out",
-                       text ? "--engine octree" : "--w");
+                       "--width says what an octree's --w counts: add --%s%s, or leave it out",
+                       text ? "engine " : "w", text ? bench_engines_that(sampled, names) : "");
     if (!text) return SM_OK;
     char *end;
     double w = strtod(text, &end);
@@ -270,8 +261,7 @@ static SmCode load(const Options *options, BenchScene *scene, RefMpu *given, SmM
     SmCode code = load_body(options, engine, given, mesh, error);
     if (code) return code;
     bench_scene_drop(mesh, name, scene);
-    if (engine->sampled) bench_scene_sample(scene);
-    if (engine->elastic) bench_scene_hold(mesh, scene);
+    if (engine->adapt) engine->adapt(mesh, scene);
     return SM_OK;
 }
 

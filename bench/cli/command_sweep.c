@@ -24,8 +24,8 @@ static const BenchSetting settings[] = {
          "Your mesh in the scene's place, scaled to it; without --scene dropped on the ground "
          "as 'run' does"),
      BENCH_IN(Options, plan.mesh)},
-    {BENCH_MEASURE("engine", "NAME", 1, "both, fastlsm or octree (default: both)"),
-     BENCH_IN(Options, plan.engines), .choices_of = bench_engine_choices},
+    {BENCH_MEASURE("engine", "NAME", 1, "%s (default: both)"), BENCH_IN(Options, plan.engines),
+     .choices_of = bench_engine_choices},
     {BENCH_MEASURE(
          "w", "RANGE", 1,
          "Region half-widths, FIRST:LAST[:STEP] or a list (default: 1:8), in edges of each "

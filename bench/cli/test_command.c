@@ -97,7 +97,7 @@ TEST(wrong_values_of_run_are_one_line_and_an_exit_code)
 TEST(options_that_an_engine_has_not_are_refused)
 {
     static const Mistake cases[] = {
-        {"run tiny.cfg --engine warp", 2, "no engine 'warp'; there are: "},
+        {"run tiny.cfg --engine warp", 2, "'warp' is not one of fastlsm, octree, brute, meshless"},
         {"run tiny.cfg --engine octre", 2, "did you mean 'octree'? See 'shapebench run --help'"},
         {"run tiny.cfg --epsilon 0.5", 2, "are the octree's: add --engine octree"},
         {"run tiny.cfg --levels 2 --nodes 9", 2,
@@ -118,7 +118,8 @@ TEST(options_that_an_engine_has_not_are_refused)
         {"run tiny.cfg --engine octree --record particles", 2, "stores a lattice"},
         {"run tiny.cfg --record nodes", 2, "--record nodes stores an octree"},
         {"run tiny.cfg --engine octree --layout lists", 3, "tiny.cfg: summation and layout:"},
-        {"run plastic.cfg --engine fastlsm", 3, "plastic.cfg: a plastic body (octree.creep) needs"},
+        {"run plastic.cfg --engine fastlsm", 3,
+         "plastic.cfg: plastic bodies ('creep') need the engine octree, not fastlsm"},
         {"run far.cfg", 3, "far.cfg: octree: no node's centre lies in the box or sphere"},
         {"run tiny.cfg --particles 1000000000 --w 31 --no-output", 70,
          "tiny.cfg: 1000000000 particles on brute take "},

@@ -46,7 +46,7 @@ static void keep_least(Times *times, long frame, int part, double seconds)
     *good = times->watch.good;
 }
 
-/* What the frame's changes took, of all parts. */
+/* What the frame's changes took, of all groups. */
 static void note_changes(const BenchPlayback *play, long frame, Times *times, BenchChangeRow *row)
 {
     double resample = 0, follow = 0;

@@ -1,6 +1,5 @@
-/* change_row.h - a scene that changes while it runs, played from its first frame to its last and
- * timed.
- */
+/* change_row.h - a scene that changes while it runs, played from its first frame to its last
+ * and timed. */
 #ifndef BENCH_CHANGE_ROW_H
 #define BENCH_CHANGE_ROW_H
 
@@ -9,8 +8,9 @@
 #include "row.h"
 
 typedef struct {
-    int threads, rounds; /* played so often: of every time the least
-                          * counts, of the undisturbed where there are any */
+    int threads;
+    int rounds; /* how often it is played; of every time the least counts, of undisturbed ones if
+                 * there are any */
     unsigned long seed;
     BenchProgress *progress; /* or NULL */
 } BenchChangeRowParams;

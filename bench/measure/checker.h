@@ -1,5 +1,4 @@
-/* checker.h - what holds a row to be right: an engine's check of what is measured, before and after
- * the clock runs. */
+/* checker.h - an engine's check of a measured row: of its states before and after it is timed. */
 #ifndef BENCH_CHECKER_H
 #define BENCH_CHECKER_H
 

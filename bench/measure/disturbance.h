@@ -1,4 +1,4 @@
-/* disturbance.h - how much of a time on the wall other programs took.
+/* disturbance.h - how much of a wall-clock time other programs took.
  *
  * One thread's processor time says so of itself. A team's does not, because its threads sleep where
  * others work: of them the kernel says how long they waited for a processor (schedstat). What
@@ -9,7 +9,7 @@
 #include <stdbool.h>
 
 typedef struct {
-    double wall, used; /* s: on the wall; processor time of the calling thread, or of a team's
+    double wall, used; /* s: by the wall clock; processor time of the calling thread, or of a team's
                         * threads together the time for which they did not wait for one */
     int threads;
 } BenchInstant;
@@ -17,8 +17,7 @@ typedef struct {
 /* More than a disturbed sample may have lost: what interrupts take is less. */
 #define BENCH_LOST_LIMIT 0.02
 
-/* The wall's clock is read last at the start and first at the end: in between is nothing of this.
- */
+/* The wall clock is read last at the start and first at the end: what this costs is not between. */
 BenchInstant bench_instant_start(int threads);
 BenchInstant bench_instant_end(int threads);
 
@@ -40,14 +39,14 @@ double bench_instant_lost(const BenchInstant *from, const BenchInstant *to);
 typedef struct {
     int threads, samples, disturbed, tries;
     bool good;            /* the last try: the caller may judge it otherwise */
-    double seconds, lost; /* on the wall, of all tries; what others took of it */
+    double seconds, lost; /* wall clock, of all tries; what others took of it */
     double began, stolen; /* when the watch began, and what the host had taken until then */
     BenchInstant start;
 } BenchWatch;
 
 BenchWatch bench_watch(int threads);
 
-/* Around a try. Returns its seconds on the wall. */
+/* Around a try. Returns its wall-clock seconds. */
 void bench_watch_start(BenchWatch *watch);
 double bench_watch_stop(BenchWatch *watch);
 

@@ -74,16 +74,16 @@ static SmCode check_room(const BenchRunner *runner, SmError *error)
         scene->file, members, BENCH_MOST_MEMBERS);
 }
 
-/* A check of every part as it is now. */
+/* A check of every group of bodies as it is now. */
 typedef struct {
-    BenchCheck *part; /* [count] */
+    BenchCheck *group; /* [count] */
     int count;
 } Checks;
 
 static SmCode accepts(const BenchPlayback *play, SmError *error)
 {
     SmCode code = SM_OK;
-    for (int p = 0; p < play->count && !code; p++) code = check_room(&play->group[p].runner, error);
+    for (int g = 0; g < play->count && !code; g++) code = check_room(&play->group[g].runner, error);
     return code;
 }
 
@@ -91,11 +91,11 @@ static void *begin(BenchPlayback *play)
 {
     Checks *checks = sm_alloc(1, sizeof *checks);
     checks->count = play->count;
-    checks->part = sm_alloc((size_t)checks->count, sizeof *checks->part);
-    for (int p = 0; p < checks->count; p++) {
-        const BenchRunner *runner = &play->group[p].runner;
+    checks->group = sm_alloc((size_t)checks->count, sizeof *checks->group);
+    for (int g = 0; g < checks->count; g++) {
+        const BenchRunner *runner = &play->group[g].runner;
         bench_check_begin(runner->scene, runner->body, runner->type, runner->engine,
-                          &checks->part[p]);
+                          &checks->group[g]);
     }
     return checks;
 }
@@ -104,30 +104,30 @@ static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     (void)worst;
     const Checks *checks = check;
-    for (int p = 0; p < checks->count; p++)
-        check_counts(&checks->part[p], &play->group[p].runner, row);
+    for (int g = 0; g < checks->count; g++)
+        check_counts(&checks->group[g], &play->group[g].runner, row);
 }
 
 static void state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     const Checks *checks = check;
-    for (int p = 0; p < checks->count; p++)
-        check_state(&checks->part[p], &play->group[p].runner, worst, row);
+    for (int g = 0; g < checks->count; g++)
+        check_state(&checks->group[g], &play->group[g].runner, worst, row);
 }
 
 static void end(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     const Checks *checks = check;
-    for (int p = 0; p < checks->count; p++)
-        check_flow(&checks->part[p], &play->group[p].runner, row);
-    for (int p = 0; p < checks->count; p++) check_drift(&play->group[p].runner, worst, row);
+    for (int g = 0; g < checks->count; g++)
+        check_flow(&checks->group[g], &play->group[g].runner, row);
+    for (int g = 0; g < checks->count; g++) check_drift(&play->group[g].runner, worst, row);
 }
 
 static void let_go(void *check)
 {
     Checks *checks = check;
-    for (int p = 0; p < checks->count; p++) bench_check_free(&checks->part[p]);
-    free(checks->part);
+    for (int g = 0; g < checks->count; g++) bench_check_free(&checks->group[g]);
+    free(checks->group);
     free(checks);
 }
 

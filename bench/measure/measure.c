@@ -13,7 +13,7 @@
 #include "checker.h"
 #include "step_timer.h"
 
-/* The state of one part that every timed segment starts from. */
+/* The state of a group of bodies that every timed segment starts from. */
 typedef struct {
     double (*x)[3], (*v)[3]; /* [particles] */
     double (*S)[9];          /* of an octree, also plastic; or NULL */
@@ -30,9 +30,9 @@ typedef struct {
 static void save(Trial *trial)
 {
     trial->saved = sm_alloc((size_t)trial->play.count, sizeof *trial->saved);
-    for (int p = 0; p < trial->play.count; p++) {
-        BenchRunner *runner = &trial->play.group[p].runner;
-        Saved *saved = &trial->saved[p];
+    for (int g = 0; g < trial->play.count; g++) {
+        BenchRunner *runner = &trial->play.group[g].runner;
+        Saved *saved = &trial->saved[g];
         trial->time = runner->time;
         if (runner->type->get_state) {
             long count = runner->type->get_state(runner->engine, NULL);
@@ -54,9 +54,9 @@ static void save(Trial *trial)
 static void restore(void *subject)
 {
     Trial *trial = subject;
-    for (int p = 0; p < trial->play.count; p++) {
-        BenchRunner *runner = &trial->play.group[p].runner;
-        const Saved *saved = &trial->saved[p];
+    for (int g = 0; g < trial->play.count; g++) {
+        BenchRunner *runner = &trial->play.group[g].runner;
+        const Saved *saved = &trial->saved[g];
         runner->time = trial->time;
         if (saved->state) {
             runner->type->set_state(runner->engine, saved->state);
@@ -70,11 +70,11 @@ static void restore(void *subject)
 
 static void free_trial(Trial *trial)
 {
-    for (int p = 0; p < trial->play.count && trial->saved; p++) {
-        free(trial->saved[p].x);
-        free(trial->saved[p].v);
-        free(trial->saved[p].S);
-        free(trial->saved[p].state);
+    for (int g = 0; g < trial->play.count && trial->saved; g++) {
+        free(trial->saved[g].x);
+        free(trial->saved[g].v);
+        free(trial->saved[g].S);
+        free(trial->saved[g].state);
     }
     free(trial->saved);
     bench_playback_free(&trial->play);
@@ -90,14 +90,12 @@ static void step(void *subject, SmLaps *laps)
 
 void bench_row_name(const BenchScene *scene, BenchRow *row)
 {
-    static const char *const polars[] = {"fast", "jacobi"};
-    static const char *const summations[] = {"fast", "bars", "naive"};
     snprintf(row->paper, sizeof row->paper, "%s", scene->paper);
     snprintf(row->paper_row, sizeof row->paper_row, "%s", scene->row);
     snprintf(row->scene, sizeof row->scene, "%s", scene->name);
     snprintf(row->engine, sizeof row->engine, "%s", scene->engine);
-    strcpy(row->polar, polars[scene->params.polar]);
-    strcpy(row->summation, summations[scene->params.summation]);
+    strcpy(row->polar, bench_polars[scene->params.polar]);
+    strcpy(row->summation, bench_summations[scene->params.summation]);
 }
 
 static void name_row(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
@@ -163,12 +161,12 @@ static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const
     return SM_OK;
 }
 
-/* What the engines hold, of all parts. */
+/* What the engines of all groups hold. */
 static void count(const BenchPlayback *play, BenchRow *row)
 {
     row->particles = row->bytes = 0;
-    for (int p = 0; p < play->count; p++) {
-        const BenchRunner *runner = &play->group[p].runner;
+    for (int g = 0; g < play->count; g++) {
+        const BenchRunner *runner = &play->group[g].runner;
         SmCounts counts;
         runner->type->count(runner->engine, &counts);
         row->particles += counts.particles;
@@ -202,7 +200,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
 {
     const BenchEngine *engine = bench_engine(type->name);
     const BenchChecker *checker = engine->checker;
-    Trial trial = {.before = engine->stages ? engine->stages->before : SM_OTHER};
+    Trial trial = {.before = sm_engine_before(type)};
     if (engine->frames) type = engine->frames;
     SmCode code = checker->takes ? checker->takes(scene, error) : SM_OK;
     if (!code)

@@ -1,6 +1,7 @@
 /* step_timer.h - what a step takes, timed with and without clocks inside.
  *
- * After a warm-up come `repeats` repeats of two blocks, one plain and one with laps, in turn first.
+ * After a warm-up come `repeats` repeats of two blocks, one plain and one with laps, each first in
+ * every other repeat.
  * A block is as many segments as fill block_seconds; a segment restores the start state and runs
  * one step untimed, and then times up to BENCH_SEGMENT_STEPS steps, a fraction of a millisecond of
  * them at a time. What other programs took some of (disturbance.h) is left out, and a block that is

@@ -54,7 +54,7 @@ static int create(void **state)
         print_error("%s\n", error.text);
         return 1;
     }
-    for (int n = 0; n < 5; n++) bench_runner_step(runner, NULL);
+    for (int n = 0; n < 5; n++) bench_runner_step(runner);
     return 0;
 }
 
@@ -234,9 +234,9 @@ TEST(a_state_is_put_back)
     double(*again)[3] = sm_alloc(count, sizeof *again), *kept = sm_alloc(size, sizeof *kept);
     double most = 0, off = 0, time = runner->time, h = scene.params.h;
     type->get_state(runner->engine, kept);
-    bench_runner_step(runner, NULL);
+    bench_runner_step(runner);
     type->get(runner->engine, SM_POSITION, x);
-    bench_runner_step(runner, NULL);
+    bench_runner_step(runner);
     type->get(runner->engine, SM_POSITION, again);
     type->get(runner->engine, SM_VELOCITY, v);
     for (size_t p = 0; p < count; p++)
@@ -247,7 +247,7 @@ TEST(a_state_is_put_back)
     if (!(most > 0.01 && off < 0.02 * most)) fail_msg("%g of %g", off, most);
     type->set_state(runner->engine, kept);
     runner->time = time;
-    bench_runner_step(runner, NULL);
+    bench_runner_step(runner);
     type->get(runner->engine, SM_POSITION, again);
     assert_memory_equal(x, again, count * sizeof *x);
     free(x), free(v), free(again), free(kept);
@@ -263,7 +263,7 @@ TEST(a_stiff_body_at_rest_passes)
     scene.meshless.material.young = 2e11;
     assert_int_equal(bench_runner_create(&scene, &body, &ref_meshless_frames, 1, &runner, &error),
                      SM_OK);
-    for (int n = 0; n < 5; n++) bench_runner_step(&runner, NULL);
+    for (int n = 0; n < 5; n++) bench_runner_step(&runner);
     BenchElasticFound found = check(&runner);
     if (!bench_elastic_verdict(&found, sizeof reason, reason)) fail_msg("%s", reason);
     bench_runner_free(&runner);

@@ -1,6 +1,6 @@
 /* What a new engine touches: it says what it is in an SmEngineType and a BenchEngine, stands in a
- * line of the list of engines, and runs, is checked and has its row in every format. This one's
- * particles hang on springs, each on its own to where it rests. */
+ * line of the registry, and runs, is checked and has its row in every format. This one's particles
+ * hang on springs, each on its own to where it rests. */
 #include "../../lib/test_folder.h"
 #include "../engines.h"
 #include "../play/carrier.h"
@@ -93,9 +93,12 @@ static void toy_count(SmEngine *e, SmCounts *counts)
     *counts = (SmCounts){.particles = e->count, .regions = e->count, .bytes = 72 * e->count};
 }
 
+static const SmStageNames toy_stages = {.name = {[SM_OTHER] = "pull"}, .before = SM_OTHER};
+
 static const SmEngineType toy_type = {.name = "springs",
                                       .precision = "double",
                                       .unstopped = true,
+                                      .stages = &toy_stages,
                                       .create = toy_create,
                                       .destroy = toy_destroy,
                                       .step = toy_step,
@@ -146,15 +149,17 @@ static void toy_free(void *check)
 static const BenchChecker toy_checker = {
     .size = sizeof(double), .begin = toy_begin, .state = toy_state, .free = toy_free};
 
-static const BenchEngine toy = {.type = {&toy_type},
-                                .carrier = &bench_lattice_carrier,
-                                .checker = &toy_checker,
-                                .memory = bench_memory_lattice};
+static const BenchEngine bench_toy = {.type = {&toy_type},
+                                      .carrier = &bench_lattice_carrier,
+                                      .checker = &toy_checker,
+                                      .memory = bench_memory_lattice};
 
 /* ---- the registry */
 
-const BenchEngine *const bench_engine_list[] = {&bench_fastlsm,  &bench_octree, &bench_brute,
-                                                &bench_meshless, &toy,          NULL};
+#define ENGINE(name) &bench_##name,
+const BenchEngine *const bench_engine_list[] = {
+#include "../engine_list.inc"
+    ENGINE(toy) NULL};
 
 /* ---- tests */
 
@@ -175,6 +180,7 @@ static BenchRow measure(void)
         fail_msg("%s", error.text);
     bench_body_free(&body);
     row.busy = false; /* whatever else runs: what its times are is not looked at */
+    row.lost_percent = 0;
     return row;
 }
 
@@ -198,11 +204,12 @@ TEST(its_row_is_in_every_format)
     BenchMachine machine = {.threads = 1};
     SmError error;
     BenchH5 h5;
-    char engine[24] = "";
+    char engine[24] = "", stages[64] = "";
     if (!row.valid) fail_msg("%s", row.reason);
     assert_string_equal(row.engine, "springs");
     assert_int_equal(row.w, 0);
     assert_written(&row, BENCH_AS_TEXT, "VALID: a step within");
+    assert_written(&row, BENCH_AS_TEXT, "    ms: pull ");
     assert_written(&row, BENCH_AS_MARKDOWN, "| toy |");
     assert_written(&row, BENCH_AS_LATEX, "toy &");
     assert_written(&row, BENCH_AS_CSV, ",toy,springs,");
@@ -211,8 +218,26 @@ TEST(its_row_is_in_every_format)
     bench_h5_open(&h5, path_in("rows.h5"));
     hid_t group = bench_h5_find_group(&h5, bench_h5_find_group(&h5, h5.file, "rows"), "000");
     bench_h5_read_text(&h5, group, "engine", sizeof engine, engine);
+    bench_h5_read_text(&h5, group, "stages", sizeof stages, stages);
     if (!bench_h5_close(&h5)) fail_msg("%s", h5.message);
     assert_string_equal(engine, "springs");
+    assert_string_equal(stages, "- - - - pull");
+    bench_row_free(&row);
+}
+
+TEST(its_row_is_on_the_report_page)
+{
+    BenchMachine machine;
+    BenchRow row = measure();
+    SmError error;
+    char command[1024], *words[] = {"shapebench"};
+    if (system("/usr/bin/python3 -c 'import h5py, matplotlib' 2>/dev/null")) skip();
+    bench_machine_read(1, words, 1, &machine);
+    assert_int_equal(bench_store_rows(path_in("rows.h5"), &row, 1, &machine, &error), SM_OK);
+    snprintf(command, sizeof command,
+             "cd %s && '%s/shapebench' report --quiet rows.h5 && grep -q springs report.html",
+             folder, BINARY_DIR);
+    assert_int_equal(system(command), 0);
     bench_row_free(&row);
 }
 

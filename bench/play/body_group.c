@@ -100,8 +100,8 @@ SmCode bench_group_frame(BenchGroup *group, double from, double to, SmError *err
     SmCode code = group->carrier->frame(group, from, to, error);
     /* what has been split has vertices more, what lay in a gap triangles less; this may be so too
      * where sm_cut_surface() has left some of it */
-    group->last.slit = group->skin.surface.vertex_count != vertices ||
-                       group->skin.surface.triangle_count != triangles;
+    group->last.split = group->skin.surface.vertex_count != vertices ||
+                        group->skin.surface.triangle_count != triangles;
     return code;
 }
 

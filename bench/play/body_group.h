@@ -12,7 +12,7 @@
 /* What the last frame has changed, and the seconds that it took. */
 typedef struct {
     bool resampled; /* cells were split or merged, or material cut */
-    bool slit;      /* the surface has other vertices or triangles */
+    bool split;     /* the surface has other vertices or triangles */
     long nodes;     /* more than before */
     double resample_seconds, follow_seconds;
 } BenchChanged;

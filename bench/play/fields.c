@@ -3,16 +3,24 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../engines.h"
+
 const char *const bench_field_names[] = {"displacement", "speed", "strain", "piece", "level", NULL};
 const int bench_field_components[] = {3, 1, 1, 1, 1};
+
+static bool has_levels(const BenchEngine *engine)
+{
+    return engine->carrier->levels;
+}
 
 SmCode bench_fields_check(const BenchPlayback *play, BenchFields fields, SmError *error)
 {
     const BenchGroup *group = play->group;
+    char names[BENCH_ENGINES_TEXT];
     if ((fields & 1u << BENCH_LEVEL) && !group->carrier->levels)
         return sm_fail(error, SM_USAGE,
-                       "--fields level is of an octree's leaves: leave it out, or give --engine "
-                       "octree");
+                       "--fields level is of an octree's leaves: leave it out, or give --engine %s",
+                       bench_engines_that(has_levels, names));
     if ((fields & ~(1u << BENCH_DISPLACEMENT)) && !group->skin.surface.triangle_count)
         return sm_fail(error, SM_USAGE,
                        "--fields: points without triangles have only a displacement");

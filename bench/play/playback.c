@@ -132,7 +132,7 @@ void bench_playback_points(BenchPlayback *play, double (*point)[3])
 bool bench_playback_split(const BenchPlayback *play)
 {
     for (int i = 0; i < play->count; i++)
-        if (play->group[i].last.slit) return true;
+        if (play->group[i].last.split) return true;
     return false;
 }
 

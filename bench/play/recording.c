@@ -16,6 +16,11 @@ static void release(BenchRecording *recording)
     *recording = (BenchRecording){0};
 }
 
+static bool has_tree(const BenchEngine *engine)
+{
+    return engine->structure;
+}
+
 static SmCode check(const BenchPlayback *play, const BenchRunner *runner, BenchRecord record,
                     SmError *error)
 {
@@ -23,16 +28,17 @@ static SmCode check(const BenchPlayback *play, const BenchRunner *runner, BenchR
     if ((double)body->instances * (double)body->mesh.vertex_count > 2e9)
         return sm_fail(error, SM_INPUT, "%s: the surfaces of %ld instances have too many vertices",
                        runner->scene->file, body->instances);
-    bool tree = bench_engine(runner->type->name)->structure;
+    bool tree = has_tree(bench_engine(runner->type->name));
+    char names[BENCH_ENGINES_TEXT];
     if (record == BENCH_RECORD_PARTICLES && tree)
         return sm_fail(error, SM_USAGE,
-                       "--record particles stores a lattice, and the octree has none: give "
-                       "--record nodes");
+                       "--record particles stores a lattice, and %s has none: give --record nodes",
+                       runner->type->name);
     if (record == BENCH_RECORD_NODES && !tree)
         return sm_fail(error, SM_USAGE,
                        "--record nodes stores an octree, and %s has none: give --record particles, "
-                       "or --engine octree",
-                       runner->type->name);
+                       "or --engine %s",
+                       runner->type->name, bench_engines_that(has_tree, names));
     if (record && bench_playback_changes(play))
         return sm_fail(error, SM_USAGE,
                        "--record stores bodies that stay as they are, and %s cuts or refines its "

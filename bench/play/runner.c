@@ -213,34 +213,59 @@ RefMeshlessOptions bench_meshless_options(const BenchScene *scene, const BenchBo
     return options;
 }
 
+static bool flows(const BenchEngine *engine)
+{
+    return engine->type[0]->get_shapes;
+}
+
+static bool refines(const BenchEngine *engine)
+{
+    return engine->type[0]->refines;
+}
+
+static bool cuts(const BenchEngine *engine)
+{
+    return engine->type[0]->refines || engine->type[0]->cut;
+}
+
+static bool stops(const BenchEngine *engine)
+{
+    return !engine->type[0]->unstopped;
+}
+
+/* Refuses what the engine does not do, and names those that do. */
+static SmCode check_engine(const BenchScene *scene, const SmEngineType *type, SmError *error)
+{
+    const struct {
+        bool wanted, (*does)(const BenchEngine *engine);
+        const char *what;
+    } needs[] = {
+        {scene->octree.creep > 0, flows, "plastic bodies ('creep')"},
+        {scene->touch_count > 0 || scene->view.level > 0, refines, "'touches' and 'view'"},
+        {scene->cut_count > 0, cuts, "'cuts'"},
+        {scene->obstacle_count > 0, stops, "planes, spheres, boxes and capsules"},
+    };
+    char names[BENCH_ENGINES_TEXT];
+    for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
+        if (needs[i].wanted && !needs[i].does(bench_engine(type->name)))
+            return sm_fail(error, SM_INPUT,
+                           "%s: %s need the engine %s, not %s: leave them out, or use --engine",
+                           scene->file, needs[i].what, bench_engines_that(needs[i].does, names),
+                           type->name);
+    return SM_OK;
+}
+
 SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
                            int threads, BenchRunner *runner, SmError *error)
 {
     *runner = (BenchRunner){.type = type, .scene = scene, .body = body};
     SmEngineParams params = bench_engine_params(scene, body, threads);
-    if (scene->octree.creep > 0 && !type->get_shapes)
-        return sm_fail(error, SM_INPUT,
-                       "%s: a plastic body (octree.creep) needs the engine octree, and %s has none",
-                       scene->file, type->name);
-    if ((scene->touch_count > 0 || scene->view.level > 0) && !type->refines)
-        return sm_fail(error, SM_INPUT,
-                       "%s: 'touches' and 'view' refine octrees, and %s has none: use the engine "
-                       "octree",
-                       scene->file, type->name);
-    if (scene->cut_count > 0 && !type->refines && !type->cut)
-        return sm_fail(error, SM_INPUT,
-                       "%s: 'cuts' need the engine fastlsm or octree, and %s has none", scene->file,
-                       type->name);
-    if (scene->obstacle_count > 0 && type->unstopped)
-        return sm_fail(
-            error, SM_INPUT,
-            "%s: bodies of the engine %s do not stop at obstacles: leave planes, spheres, "
-            "boxes and capsules out, or use the engine fastlsm or octree",
-            scene->file, type->name);
     RefMeshlessOptions meshless = bench_meshless_options(scene, body);
     params.meshless = &meshless;
     SmError why;
-    SmCode code = type->create(&body->voxels, &params, &runner->engine, &why);
+    SmCode code = check_engine(scene, type, error);
+    if (code) return code;
+    code = type->create(&body->voxels, &params, &runner->engine, &why);
     if (code) {
         runner->engine = NULL;
         return sm_fail(error, code, "%s: %s", scene->file, why.text);
@@ -361,9 +386,8 @@ void bench_runner_advance(BenchRunner *runner, SmLaps *laps)
     runner->time += runner->scene->params.h;
 }
 
-void bench_runner_step(BenchRunner *runner, SmLaps *laps)
+void bench_runner_step(BenchRunner *runner)
 {
     bench_runner_prepare(runner);
-    sm_lap(laps, SM_OTHER);
-    bench_runner_advance(runner, laps);
+    bench_runner_advance(runner, NULL);
 }

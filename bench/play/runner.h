@@ -62,7 +62,7 @@ void bench_runner_prepare(BenchRunner *runner);
 /* The step itself, after bench_runner_prepare(). */
 void bench_runner_advance(BenchRunner *runner, SmLaps *laps);
 
-/* Both. */
-void bench_runner_step(BenchRunner *runner, SmLaps *laps);
+/* Both, without laps. */
+void bench_runner_step(BenchRunner *runner);
 
 #endif

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../scene/scene.h"
+
 /* ---- what is of lattices alone */
 
 static void write_cells(BenchH5 *h5, hid_t group, const SmVoxels *voxels)
@@ -79,11 +81,10 @@ static void write_octree_parameters(BenchH5 *h5, hid_t group, const BenchStepSou
     const OctTree *tree = &all->structure->tree;
     bench_h5_fields(h5, group, options, 4, &o);
     bench_h5_fields(h5, group, body, 2, all->structure);
-    static const char *const symmetries[] = {"union", "intersection", "none"};
-    bench_h5_text(h5, group, "masses", o.masses == OCT_VOLUME ? "volume" : "material");
-    bench_h5_text(h5, group, "symmetry", symmetries[o.symmetry]);
-    bench_h5_text(h5, group, "weighting", o.weighting == OCT_PLAIN ? "plain" : "conserving");
-    bench_h5_text(h5, group, "goals", o.form == OCT_ADJOINT ? "adjoint" : "gather");
+    bench_h5_text(h5, group, "masses", bench_masses[o.masses]);
+    bench_h5_text(h5, group, "symmetry", bench_symmetries[o.symmetry]);
+    bench_h5_text(h5, group, "weighting", bench_weightings[o.weighting]);
+    bench_h5_text(h5, group, "goals", bench_goal_forms[o.form]);
     bench_h5_numbers(h5, group, "levels", H5T_STD_I32LE, 0, &tree->levels);
     bench_h5_numbers(h5, group, "corner", H5T_STD_I32LE, 3, tree->corner);
 }

@@ -27,7 +27,7 @@ static void start(const char *text, Run *run)
 
 static void steps(Run *run, int count)
 {
-    for (int i = 0; i < count; i++) bench_runner_step(&run->runner, NULL);
+    for (int i = 0; i < count; i++) bench_runner_step(&run->runner);
     ref_brute_engine.get(run->runner.engine, SM_POSITION, run->x);
 }
 

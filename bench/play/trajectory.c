@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/box.h"
 #include "../store/draft.h"
 #include "xdmf.h"
 
@@ -40,16 +41,10 @@ struct BenchTrajectory {
 /* Single precision shows a surface to 1e-6 of its size unless it lies far from the origin. */
 static bool single_is_enough(const SmMesh *mesh)
 {
-    double low[3] = {DBL_MAX, DBL_MAX, DBL_MAX}, high[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
-    double far = 0, extent = 0;
-    for (long i = 0; i < mesh->vertex_count; i++)
-        for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], mesh->position[i][a]);
-            high[a] = fmax(high[a], mesh->position[i][a]);
-            far = fmax(far, fabs(mesh->position[i][a]));
-        }
-    for (int a = 0; a < 3; a++) extent = fmax(extent, high[a] - low[a]);
-    return far * FLT_EPSILON / 2 <= 1e-6 * extent;
+    SmBox box = sm_box_around(mesh->vertex_count, (const double(*)[3])mesh->position);
+    double far = 0;
+    for (int a = 0; a < 3; a++) far = fmax(far, fmax(fabs(box.low[a]), fabs(box.high[a])));
+    return far * FLT_EPSILON / 2 <= 1e-6 * sm_box_longest(&box);
 }
 
 static void discard(BenchTrajectory *trajectory)

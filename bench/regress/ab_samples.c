@@ -6,13 +6,16 @@
 #include <string.h>
 
 #include "../../lib/error.h"
+#include "../engines.h"
 #include "../system/statistic.h"
 
 const char *const bench_build_names[] = {"the baseline", "this build"};
 
-const char *bench_time_name(int time)
+const char *bench_time_name(const BenchAbScene *samples, int time)
 {
-    return time ? sm_stage_name((SmStage)(time - 1)) : "total";
+    if (!time) return "total";
+    return sm_engine_stage(bench_engine(samples->side[BENCH_NEW].row.engine)->type[0],
+                           (SmStage)(time - 1));
 }
 
 BenchAbScene *bench_ab_scene(BenchAbSamples *all, const char *scene)

@@ -17,9 +17,6 @@ extern const char *const bench_build_names[]; /* "the baseline", "this build" */
 /* The times of a step: the total, then each stage. */
 enum { BENCH_TIMES = 1 + SM_STAGES };
 
-/* "total", "fast_sum", "shape_matching", ... */
-const char *bench_time_name(int time);
-
 /* A scene on one build. */
 typedef struct {
     BenchRow row;               /* of the first process, without samples */
@@ -37,6 +34,9 @@ typedef struct {
     char scene[64];
     BenchSide side[BENCH_BUILDS];
 } BenchAbScene;
+
+/* "total", or what the scene's engine calls the stage: "fast_sum", ... */
+const char *bench_time_name(const BenchAbScene *samples, int time);
 
 /* Of all scenes. Begins zeroed. */
 typedef struct {

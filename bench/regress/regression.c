@@ -96,10 +96,10 @@ void bench_regression_summary(const BenchRegression *found, size_t size, char *l
     if (worst && worst->verdict == BENCH_INCORRECT)
         used = snprintf(line, size, "INVALID: %s: %s", worst->samples->scene, worst->reason);
     else if (worst)
-        used = snprintf(line, size,
-                        "SLOWER in %d of %d times, most in %s %s: %.3f times (%.3f to %.3f)",
-                        had[BENCH_SLOWER], found->count, worst->samples->scene,
-                        bench_time_name(worst->time), worst->ratio, worst->low, worst->high);
+        used = snprintf(
+            line, size, "SLOWER in %d of %d times, most in %s %s: %.3f times (%.3f to %.3f)",
+            had[BENCH_SLOWER], found->count, worst->samples->scene,
+            bench_time_name(worst->samples, worst->time), worst->ratio, worst->low, worst->high);
     else if (found->count == had[BENCH_NO_BASELINE])
         used = snprintf(line, size, "no baseline: nothing could be compared");
     else if (had[BENCH_SAME] + had[BENCH_FASTER] == 0)
@@ -143,7 +143,8 @@ static void add_line(BenchGrid *grid, const BenchComparison *one, bool counted)
     int c = 0;
     bool compared = one->verdict != BENCH_INCORRECT && one->verdict != BENCH_NO_BASELINE;
     snprintf((*line)[c++], BENCH_GRID_TEXT, "%s", one->samples->scene);
-    snprintf((*line)[c++], BENCH_GRID_TEXT, "%s", compared ? bench_time_name(one->time) : "-");
+    snprintf((*line)[c++], BENCH_GRID_TEXT, "%s",
+             compared ? bench_time_name(one->samples, one->time) : "-");
     for (int b = 0; b < BENCH_BUILDS; b++) bench_grid_number(one->ms[b], (*line)[c++]);
     char(*text)[BENCH_GRID_TEXT] = &(*line)[c];
     for (int i = 0; i < 4; i++) strcpy(text[i], "-");
@@ -192,7 +193,8 @@ static void write_outliers(FILE *file, const BenchRegression *found, int first, 
         if (!any)
             fprintf(file, "%s%s: outliers, kept, old+new of %d+%d:", bullet, samples->scene,
                     samples->side[BENCH_OLD].count, samples->side[BENCH_NEW].count);
-        fprintf(file, "%s %s %d+%d", any ? "," : "", bench_time_name(one->time), old, new);
+        fprintf(file, "%s %s %d+%d", any ? "," : "", bench_time_name(one->samples, one->time), old,
+                new);
         any = true;
     }
     if (any) fputc('\n', file);
@@ -245,14 +247,14 @@ static json_t *side_json(const BenchComparison *one, BenchBuild build)
 static json_t *comparison_json(const BenchComparison *one)
 {
     json_t *reason = one->reason[0] ? bench_json_text(one->reason) : json_null();
-    return json_pack("{s:o, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
-                     bench_json_text(one->samples->scene), "time", bench_time_name(one->time),
-                     "verdict", bench_comparison_name(one->verdict), "reason", reason, "ratio",
-                     bench_json_number(one->ratio), "low", bench_json_number(one->low), "high",
-                     bench_json_number(one->high), "p", bench_json_number(one->p), "p_adjusted",
-                     bench_json_number(one->adjusted), "threshold",
-                     bench_json_number(one->threshold), "old", side_json(one, BENCH_OLD), "new",
-                     side_json(one, BENCH_NEW));
+    return json_pack(
+        "{s:o, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+        bench_json_text(one->samples->scene), "time", bench_time_name(one->samples, one->time),
+        "verdict", bench_comparison_name(one->verdict), "reason", reason, "ratio",
+        bench_json_number(one->ratio), "low", bench_json_number(one->low), "high",
+        bench_json_number(one->high), "p", bench_json_number(one->p), "p_adjusted",
+        bench_json_number(one->adjusted), "threshold", bench_json_number(one->threshold), "old",
+        side_json(one, BENCH_OLD), "new", side_json(one, BENCH_NEW));
 }
 
 static void write_json(FILE *file, const BenchRegression *found)
@@ -303,7 +305,7 @@ static json_t *benchmark_json(const BenchComparison *one, BenchBuild build, cons
     const BenchSide *side = &one->samples->side[build];
     char run[160], name[192];
     snprintf(run, sizeof run, "%s/%s/%s", prefix[build], one->samples->scene,
-             bench_time_name(one->time));
+             bench_time_name(one->samples, one->time));
     snprintf(name, sizeof name, "%s%s%s", run, aggregate ? "_" : "", aggregate ? aggregate : "");
     bool share = aggregate && !strcmp(aggregate, "cv"); /* a percentage; as Google's, unscaled */
     double shown = share ? time : 1e9 * time;
@@ -386,7 +388,8 @@ static void write_case(FILE *file, const BenchComparison *one)
                  100 * one->threshold, one->adjusted);
     fputs("    <testcase classname=\"", file);
     bench_xml_text(file, one->samples->scene);
-    fprintf(file, "\" name=\"%s\" time=\"%.9f\">\n", bench_time_name(one->time), seconds);
+    fprintf(file, "\" name=\"%s\" time=\"%.9f\">\n", bench_time_name(one->samples, one->time),
+            seconds);
     fprintf(file, name ? "      <%s message=\"" : "      <system-out>", name);
     bench_xml_text(file, line);
     fputs(name ? "\"/>\n" : "</system-out>\n", file);

@@ -70,8 +70,18 @@ static BenchComparisonVerdict verdict_of(const BenchComparison *list, int count,
 {
     for (int i = 0; i < count; i++)
         if (!strcmp(list[i].samples->scene, scene) && list[i].time == time) return list[i].verdict;
-    fail_msg("no %s %s", scene, bench_time_name(time));
+    fail_msg("no %s %s", scene, time ? sm_stage_name((SmStage)(time - 1)) : "total");
     return BENCH_INCORRECT;
+}
+
+TEST(times_are_called_as_the_engine_calls_its_stages)
+{
+    BenchAbScene lattice = {.side[BENCH_NEW].row.engine = "fastlsm"};
+    BenchAbScene meshless = {.side[BENCH_NEW].row.engine = "meshless"};
+    assert_string_equal(bench_time_name(&lattice, 0), "total");
+    assert_string_equal(bench_time_name(&lattice, 1 + SM_SHAPE_MATCHING), "shape_matching");
+    assert_string_equal(bench_time_name(&meshless, 1 + SM_SHAPE_MATCHING), "motion");
+    assert_string_equal(bench_time_name(&meshless, 1 + SM_OTHER), "skin");
 }
 
 TEST(a_slower_stage_is_caught_and_no_other_blamed)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/box.h"
 #include "../../lib/mesh/import.h"
 #include "../../lib/printable.h"
 #include "../../lib/shapes/shape.h"
@@ -19,31 +20,20 @@ SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
     return sm_import(mesh, NULL, result, error);
 }
 
-/* Largest extent of the mesh's bounding box; above zero for a mesh that passed sm_mesh_check(). */
-static double bounds(const SmMesh *mesh, double low[3], double high[3])
+static SmBox box_of(const SmMesh *mesh)
 {
-    double extent = 0;
-    for (int d = 0; d < 3; d++) {
-        low[d] = INFINITY, high[d] = -INFINITY;
-        for (long i = 0; i < mesh->vertex_count; i++) {
-            low[d] = fmin(low[d], mesh->position[i][d]);
-            high[d] = fmax(high[d], mesh->position[i][d]);
-        }
-        extent = fmax(extent, high[d] - low[d]);
-    }
-    return extent;
+    return sm_box_around(mesh->vertex_count, (const double(*)[3])mesh->position);
 }
 
 /* Moves `mesh` to where `model` is. */
 static void fit(SmMesh *mesh, const SmMesh *model)
 {
-    double low[3], high[3], model_low[3], model_high[3];
-    double extent = bounds(mesh, low, high);
-    double scale = bounds(model, model_low, model_high) / extent;
+    SmBox is = box_of(mesh), wanted = box_of(model);
+    double scale = sm_box_longest(&wanted) / sm_box_longest(&is);
     for (long i = 0; i < mesh->vertex_count; i++)
         for (int d = 0; d < 3; d++) {
-            double from = d == 1 ? low[d] : low[d] / 2 + high[d] / 2;
-            double to = d == 1 ? model_low[d] : (model_low[d] + model_high[d]) / 2;
+            double from = d == 1 ? is.low[d] : is.low[d] / 2 + is.high[d] / 2;
+            double to = d == 1 ? wanted.low[d] : (wanted.low[d] + wanted.high[d]) / 2;
             mesh->position[i][d] = (mesh->position[i][d] - from) * scale + to;
         }
 }
@@ -64,9 +54,9 @@ SmCode bench_mesh_of_scene(const BenchScene *scene, const char *substitute, SmMe
 }
 
 /* What stands for a body's height: of one that lies flat, its length. */
-static double height_of(const SmMesh *mesh, double low[3], double high[3])
+static double height_of(const SmBox *box)
 {
-    double extent = bounds(mesh, low, high), height = high[1] - low[1];
+    double extent = sm_box_longest(box), height = box->high[1] - box->low[1];
     return height > 0.01 * extent ? height : extent;
 }
 
@@ -87,28 +77,29 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene)
     scene->voxel.fill = SM_SOLID;
     scene->voxel.particles = 2000;
     scene->voxel.fewer = true;
-    double low[3], high[3];
-    double height = height_of(mesh, low, high);
+    SmBox box = box_of(mesh);
+    double height = height_of(&box);
     scene->params.gravity[1] = -9.81 * height;
     scene->params.damping = 0.1;
     scene->obstacle_count = 1;
     scene->obstacle[0] = (SmObstacle){.kind = SM_PLANE, .b = {0, 1, 0}, .friction = 0.2};
-    for (int d = 0; d < 3; d++) scene->obstacle[0].a[d] = (low[d] + high[d]) / 2;
-    scene->obstacle[0].a[1] = low[1] - height / 2;
+    for (int d = 0; d < 3; d++) scene->obstacle[0].a[d] = (box.low[d] + box.high[d]) / 2;
+    scene->obstacle[0].a[1] = box.low[1] - height / 2;
 }
 
 void bench_scene_hold(const SmMesh *mesh, BenchScene *scene)
 {
-    double low[3], high[3];
-    scene->metre = height_of(mesh, low, high);
+    SmBox box = box_of(mesh);
+    scene->metre = height_of(&box);
     snprintf(scene->title, sizeof scene->title, "%s held at its foot", scene->name);
     scene->obstacle_count = 0;
     scene->handle_count = 1;
     scene->handle[0] = (BenchHandle){.select = {.high = {1, 0.1, 1}}};
 }
 
-void bench_scene_sample(BenchScene *scene)
+void bench_scene_sample(const SmMesh *mesh, BenchScene *scene)
 {
+    (void)mesh;
     scene->voxel.particles = 35000;
     scene->octree.epsilon = 0.5;
 }
@@ -214,7 +205,9 @@ SmCode bench_body_create(const BenchScene *scene, SmMesh *mesh, BenchBody *body,
     *body = (BenchBody){.mesh = *mesh, .hash = sm_mesh_hash(mesh)};
     *mesh = (SmMesh){0};
     const SmMesh *m = &body->mesh;
-    bounds(m, body->low, body->high);
+    SmBox box = box_of(m);
+    memcpy(body->low, box.low, sizeof box.low);
+    memcpy(body->high, box.high, sizeof box.high);
     double start = sm_now(),
            wishes = (double)(scene->cells ? scene->cells : scene->voxel.particles);
     SmCode code = bench_memory_check(scene, wishes, error); /* before minutes of voxelising */

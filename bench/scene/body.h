@@ -39,7 +39,7 @@ void bench_scene_drop(const SmMesh *mesh, const char *path, BenchScene *scene);
 
 /* Makes it the octree's: a finer lattice, of 35,000 particles, epsilon 0.5; the rest is the
  * octree's own defaults. */
-void bench_scene_sample(BenchScene *scene);
+void bench_scene_sample(const SmMesh *mesh, BenchScene *scene);
 
 /* Makes it the meshless engine's: held at its lowest tenth, gravity as before, no ground; the mesh
  * is taken to be 1 m high. */

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../engines.h"
 #include "../settings/option.h"
 
 /* "NAME=FILE" */
@@ -24,10 +25,9 @@ static void add_substitute(const struct argp_state *state, const char *text, voi
 }
 
 const BenchSetting bench_override_settings[] = {
-    {BENCH_OPTION("engine", "NAME", 1,
-                  "fastlsm, octree, brute or meshless (default: as the scene says)"),
-     BENCH_IN(BenchOverride, engine)},
-    {BENCH_OPTION("precision", "P", 1, "single or double (default: the engine's first)"),
+    {BENCH_OPTION("engine", "NAME", 1, "%s (default: as the scene says)"),
+     BENCH_IN(BenchOverride, engine), .choices_of = bench_engine_names},
+    {BENCH_OPTION("precision", "P", 1, "%s (default: the engine's first)"),
      BENCH_IN(BenchOverride, precision), BENCH_CHOICES(bench_precisions)},
     {BENCH_OPTION(
          "mesh", "NAME=FILE", 1,

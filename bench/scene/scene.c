@@ -27,10 +27,12 @@ typedef struct {
 const char *const bench_precisions[] = {"single", "double", NULL};
 const char *const bench_widths[] = {"edges", "cells", NULL};
 const char *const bench_summations[] = {"fast", "bars", "naive", NULL};
+const char *const bench_polars[] = {"fast", "jacobi", NULL};
 const char *const bench_layouts[] = {"auto", "lists", "blocks", NULL};
 const char *const bench_masses[] = {"material", "volume", NULL};
 const char *const bench_symmetries[] = {"union", "intersection", "none", NULL};
 const char *const bench_weightings[] = {"conserving", "plain", NULL};
+const char *const bench_goal_forms[] = {"gather", "adjoint", NULL};
 
 #define SAYS(words) .help = words
 /* A member of the same name; one that is a place or direction, a length, up to 10^6, a level of the
@@ -184,7 +186,9 @@ static const BenchSetting collide_table[] = {
 
 static const BenchSetting octree_table[] = {
     {"levels", BENCH_IN(OctOptions, sampling.levels), 1, OCT_MAX_LEVELS,
-     OCTREE("levels", "N", "a base cell is 2^N finest cells wide, 1 to 12")},
+     OCTREE("levels", "N",
+            "a base cell is 2^N finest cells wide, 1 to 12 (default: up to 4, with at least eight "
+            "base cells along the body)")},
     {"bases", BENCH_IN(OctOptions, sampling.bases), 0, 1e9,
      SAYS("Wanted base cells: the base lattice is put where there are nearest to as many; 0: "
           "anywhere")},
@@ -203,16 +207,20 @@ static const BenchSetting octree_table[] = {
     UPTO(OctOptions, summation_nodes,
          "Or edges are searched that give as many summation nodes a region on average"),
     {"widths", BENCH_ITEMS(OctOptions, local, local_count, OCT_MAX_WIDTHS), .table = width_table,
-     SAYS("Other widths at some places; the last one counts")},
+     SAYS("Other widths at some places, where wide is stiff and narrow soft; the last one counts")},
     {"masses", BENCH_IN(OctOptions, masses), BENCH_CHOICES(bench_masses),
      SAYS("A node weighs as much as its material, or as its cell were it full (octree section "
-          "4.1)")},
+          "4.1): then mass changes where cells are split, and stiffness with the place of the base "
+          "lattice (1.56 times from the softest to the stiffest of a beam of four nodes across, by "
+          "material 1.18)")},
     {"symmetry", BENCH_IN(OctOptions, symmetry), BENCH_CHOICES(bench_symmetries),
-     SAYS("Of two nodes of which one alone reaches the other: both are taken in, neither, or just "
-          "the one (needs goals = adjoint)")},
+     SAYS(
+         "Of two nodes of which one alone reaches the other both are taken in (some are then "
+         "beyond (1 + epsilon) w), neither (bodies can fall apart), or just the one (the fewest "
+         "summation nodes; needs goals = adjoint). Only a union can be cut, touched or looked at")},
     {"weighting", BENCH_IN(OctOptions, weighting), BENCH_CHOICES(bench_weightings),
      SAYS("Goals keep momentum, or are as octree eqs. 6 and 7 print them")},
-    {"goals", BENCH_IN(OctOptions, form), BENCH_ONE_OF("gather", "adjoint"),
+    {"goals", BENCH_IN(OctOptions, form), BENCH_CHOICES(bench_goal_forms),
      SAYS("Averages over regions, or the transpose of their sums; the same where symmetric")},
     UPTO(OctOptions, yield, "A region's stretch beyond this is plastic"),
     UPTO(OctOptions, creep, "at this rate, 1/s, at most 1/h; 0: elastic"),
@@ -231,8 +239,8 @@ static const BenchSetting meshless_table[] = {
      MESHLESS("modes", "N", "natural modes, 7 to 1000 (default: 64)")},
     {"points", BENCH_IN(BenchScene, meshless.points), REF_LEAST_POINTS, REF_MOST_POINTS,
      MESHLESS("points", "N",
-              "points on the mesh, of which its field is made (default: 12000, of thin bodies up "
-              "to 400000)")},
+              "points on the mesh, of which its field is made and which `tables` carries (default: "
+              "12000, of thin bodies up to 400000)")},
     {"stiffness_damping", BENCH_IN(BenchScene, meshless.stiffness_damping), 0, 1e6,
      SAYS("Rayleigh's b, s: a mode of angular frequency f has the loss factor b f")},
     {"nodes", BENCH_IN(BenchScene, meshless.nodes), 8, 1e6,
@@ -254,17 +262,22 @@ const BenchSetting bench_scene_settings[] = {
     {"fill", BENCH_IN(BenchScene, voxel.fill), BENCH_ONE_OF("solid", "shell"),
      RUN("shell", NULL, "Surface cells only, not the interior")},
     {"particles", BENCH_IN(BenchScene, voxel.particles), 8, 1e9,
-     RUN("particles", "N", "Wanted particle count")},
+     RUN("particles", "N",
+         "Wanted particle count; of an octree, vertices of its finest cells; of a meshless body, "
+         "of the lattice that carries its surface")},
     {"cell", BENCH_IN(BenchScene, voxel.cell), 1e-30, 1e30,
      RUN("cell", "SIZE", "Edge of a cell, in the mesh's units")},
     RANGED(BenchScene, cells, 1, 1e9,
            "Wanted cells of material; one of particles, cell and cells must be given"),
-    MEMBER(BenchScene, engine, "fastlsm, octree, brute or meshless"),
+    {"engine", BENCH_IN(BenchScene, engine), .choices_of = bench_engine_names,
+     SAYS("What simulates the body")},
     {"w", BENCH_IN(BenchScene, params.w), 1, SM_MOST_W,
      SAYS("Half-width of a lattice's regions, in cells")},
     {"h", BENCH_IN(BenchScene, params.h), 1e-9, 10, RUN("h", "S", "Time step, seconds")},
     {"damping", BENCH_IN(BenchScene, params.damping), 0, 1,
-     RUN("damping", "K", "Region damping, 0 to 1")},
+     RUN("damping", "K",
+         "Region damping, 0 to 1 (fastlsm eq. 14); of a meshless body the share of its speed that "
+         "a step takes, below 1")},
     {"damping_every", BENCH_IN(BenchScene, params.damping_every), 1, 1000000,
      SAYS("Damp in every n-th step only")},
     {"gravity", BENCH_IN(BenchScene, params.gravity), -FAR, FAR,
@@ -274,20 +287,25 @@ const BenchSetting bench_scene_settings[] = {
          "Links break beyond this times their length, above 1; 0: never. The surface does not "
          "tear: its triangles stretch")},
     {"summation", BENCH_IN(BenchScene, params.summation), BENCH_CHOICES(bench_summations),
-     RUN("summation", "HOW", "fast, bars or naive")},
-    {"polar", BENCH_IN(BenchScene, params.polar), BENCH_ONE_OF("fast", "jacobi"),
-     RUN("polar", "HOW", "fast or jacobi")},
+     RUN("summation", "HOW", "Sums over regions: %s")},
+    {"polar", BENCH_IN(BenchScene, params.polar), BENCH_CHOICES(bench_polars),
+     RUN("polar", "HOW", "Rotations of regions: %s")},
     {"layout", BENCH_IN(BenchScene, params.layout), BENCH_CHOICES(bench_layouts),
      BENCH_OPTION("layout", "HOW", 1, BENCH_LAYOUT_HELP " (default: as the scene says)")},
     {"epsilon", BENCH_IN(BenchScene, octree.epsilon), 0, 1e6,
-     OCTREE("epsilon", "E", "regions may be wider by this share (default for a mesh: 0.5)")},
+     OCTREE("epsilon", "E",
+            "regions hold all that is within w of their node, and none beyond (1 + E) w (default "
+            "for a mesh: 0.5)")},
     {"octree", BENCH_IN(BenchScene, octree), .table = octree_table,
-     SAYS("The octree's own settings")},
+     SAYS("The octree's own settings. Finest cells are those that particles, cell or cells ask "
+          "for")},
     {"meshless", .kind = BENCH_SET_GROUP, .table = meshless_table,
      SAYS("The meshless engine's own")},
     {"collide", BENCH_IN(BenchScene, params.collide), .table = collide_table,
      SAYS("Collisions beside those with obstacles")},
-    LENGTH(BenchScene, density, "Kg a cubic unit; 0: every particle has mass 1"),
+    LENGTH(BenchScene, density,
+           "Kg a cubic unit; 0: every particle has mass 1, those at a lattice's surface, too, "
+           "which makes it stiffer than with a density (`calibrate --help`)"),
     MEMBER(BenchScene, vertex_mass,
            "Text file with a mass in kg for each mesh vertex, one a line; the nearest vertex wins"),
     RANGED(BenchScene, instances, 1, 1000000,
@@ -305,7 +323,8 @@ const BenchSetting bench_scene_settings[] = {
     RANGED(BenchScene, kick, 0, 100,
            "Random initial velocity of each particle, cells a step, from --seed"),
     {"handles", LIST(scene.handle, scene.handle_count), .table = handle_table,
-     SAYS("Particles that follow a rigid motion; without any they are pinned")},
+     SAYS("Particles that follow a rigid motion; without any they are pinned. Of a meshless body, "
+          "`tables` binds position and orientation of the point in their middle")},
     {"forces", LIST(scene.force, scene.force_count), .table = force_table,
      SAYS("Forces on particles")},
     {"cuts", LIST(scene.cut, scene.cut_count), .table = cut_table,
@@ -326,7 +345,7 @@ const BenchSetting bench_scene_settings[] = {
 void bench_scene_init(BenchScene *scene)
 {
     memset(scene, 0, sizeof *scene);
-    strcpy(scene->engine, "fastlsm");
+    strcpy(scene->engine, bench_engine_names()[0]);
     scene->meshless.material = (RefMaterial){.young = 1e5, .poisson = 0.3, .density = 1000};
     scene->metre = 1;
     scene->params.w = 2;
@@ -422,12 +441,6 @@ static SmCode check_changes(BenchScene *scene, SmError *error)
     }
     if (scene->view.level > 0 && !(scene->view.near > 0))
         return sm_fail(error, SM_INPUT, "%s: 'view' needs 'near', a distance above 0", scene->file);
-    if ((scene->touch_count > 0 || scene->view.level > 0) &&
-        !bench_engine(scene->engine)->type[0]->refines)
-        return sm_fail(error, SM_INPUT,
-                       "%s: 'touches' and 'view' refine octrees: give engine = \"octree\", not "
-                       "\"%s\"",
-                       scene->file, scene->engine);
     return SM_OK;
 }
 

@@ -1,7 +1,7 @@
 /* scene.h - a scene as data: what to simulate, how, and what disturbs it.
  *
- * Scene files are libconfig; bench/scenes/ holds those that come with the program, and
- * bench/scenes/penguin.cfg explains every setting. Lengths are in the mesh's units. */
+ * Scene files are libconfig; bench/scenes/ holds those that come with the program. What they can
+ * say is the table bench_scene_settings. Lengths are in the mesh's units. */
 #ifndef BENCH_SCENE_H
 #define BENCH_SCENE_H
 
@@ -101,8 +101,9 @@ typedef struct BenchScene {
 /* Words for choices, in the order of their enumerations; NULL-terminated. */
 extern const char *const bench_precisions[];
 extern const char *const bench_widths[]; /* units of an octree's w: of each node's own, finest */
-extern const char *const bench_summations[], *const bench_layouts[];
+extern const char *const bench_summations[], *const bench_polars[], *const bench_layouts[];
 extern const char *const bench_masses[], *const bench_symmetries[], *const bench_weightings[];
+extern const char *const bench_goal_forms[];
 #define BENCH_LAYOUT_HELP "Fastlsm's sums: auto, lists, or blocks where it can"
 
 /* Everything that a scene file can say, and the options that replace some of it: who has them, and

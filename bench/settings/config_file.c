@@ -143,11 +143,22 @@ static SmCode read_vector(const Entry *entry)
     return SM_OK;
 }
 
+/* Which of the setting's choices the text is; -1: none. */
+static int choice_of(const Entry *entry)
+{
+    const char *text = config_setting_get_string(entry->item);
+    const char *const *choice = bench_setting_choices(entry->setting);
+    for (int i = 0; text && choice[i]; i++)
+        if (!strcmp(choice[i], text)) return i;
+    return -1;
+}
+
 static SmCode read_text(const Entry *entry)
 {
     char *place = (char *)entry->record + entry->setting->offset;
     const char *text = config_setting_get_string(entry->item);
-    if (!text) return misses(entry);
+    if (!text || (bench_setting_choices(entry->setting) && choice_of(entry) < 0))
+        return misses(entry);
     if (strlen(text) >= entry->setting->size) {
         char wanted[64];
         snprintf(wanted, sizeof wanted, "shorter than %zu characters", entry->setting->size);
@@ -160,14 +171,10 @@ static SmCode read_text(const Entry *entry)
 
 static SmCode read_choice(const Entry *entry)
 {
-    const char *text = config_setting_get_string(entry->item);
-    const char *const *choice = bench_setting_choices(entry->setting);
-    for (int i = 0; text && choice[i]; i++)
-        if (!strcmp(choice[i], text)) {
-            bench_setting_number(entry->setting, i, entry->record);
-            return SM_OK;
-        }
-    return misses(entry);
+    int choice = choice_of(entry);
+    if (choice < 0) return misses(entry);
+    bench_setting_number(entry->setting, choice, entry->record);
+    return SM_OK;
 }
 
 static SmCode read_list(const Entry *entry)

@@ -212,6 +212,18 @@ static error_t parse(int key, char *text, struct argp_state *state)
     return ARGP_ERR_UNKNOWN;
 }
 
+/* argp's: what is printed in the place of an option's sentence. */
+static char *filter_help(int key, const char *text, void *input)
+{
+    const Options *options = input;
+    char sentence[BENCH_SENTENCE];
+    const char *said = text;
+    for (int i = 0; i < options->count; i++)
+        if (options->list[i].name && options->list[i].key == key)
+            said = bench_setting_sentence(options->option[i].setting, sentence);
+    return said == sentence ? strdup(said) : (char *)text;
+}
+
 static const BenchSetting common_settings[] = {
     {.help = "Common options:", .section = 90, .who = BENCH_TAKES_ALL},
     {BENCH_OPTION("quiet", NULL, 90, "No progress and no remarks on standard error"),
@@ -231,7 +243,8 @@ void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, vo
     add_table(&options, &(Option){.setting = line->settings, .record = record}, 0);
     if (line->takes)
         add_table(&options, &(Option){.setting = common_settings, .record = common}, line->takes);
-    const struct argp argp = {options.list, parse, line->arguments, line->help, NULL, NULL, NULL};
+    const struct argp argp = {options.list, parse, line->arguments, line->help, NULL,
+                              filter_help,  NULL};
     bench_option_words(&argp, argc, argv, 0, NULL, &options);
     if (!common->threads) common->threads = sm_team(omp_get_num_procs());
     set_threads(common->threads);

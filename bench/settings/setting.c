@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../system/quote.h"
 #include "../system/suggest.h"
 
 bool bench_setting_ends(const BenchSetting *setting)
@@ -63,6 +64,17 @@ const char *bench_setting_wanted(const BenchSetting *setting, bool file, char te
     default:
         strcpy(text, "text in double quotes");
     }
+    return text;
+}
+
+const char *bench_setting_sentence(const BenchSetting *setting, char text[BENCH_SENTENCE])
+{
+    char choices[BENCH_WANTED];
+    const char *const *choice = bench_setting_choices(setting);
+    const char *place = strstr(setting->help, "%s");
+    if (!place || !choice) return setting->help;
+    snprintf(text, BENCH_SENTENCE, "%.*s%s%s", (int)(place - setting->help), setting->help,
+             bench_enumerate(choice, "", " or ", sizeof choices, choices), place + 2);
     return text;
 }
 
@@ -182,19 +194,30 @@ static void print_default(FILE *file, const BenchSetting *setting, const void *r
     if (value >= setting->low && value <= setting->high) fprintf(file, ", default %g", value);
 }
 
+/* In lines of up to 100 characters, indented; what stands before has been printed. */
+static void print_wrapped(FILE *file, const char *text, int indent, int used)
+{
+    for (int length; *text; text += length + (text[length] == ' ')) {
+        length = (int)strcspn(text, " ");
+        if (used + 1 + length > 100) used = fprintf(file, "\n%*s", indent, "") - 1;
+        used += fprintf(file, used > indent ? " %.*s" : "%.*s", length, text);
+    }
+    fputc('\n', file);
+}
+
 void bench_settings_document(FILE *file, const BenchSetting *table, const void *defaults,
                              int indent)
 {
     for (; !bench_setting_ends(table); table++) {
-        char wanted[BENCH_WANTED];
+        char wanted[BENCH_WANTED], sentence[BENCH_SENTENCE];
         const void *within = defaults ? (const char *)defaults + table->offset : NULL;
         fprintf(file, "%*s%s: %s", indent, "", table->key,
                 bench_setting_wanted(table, true, wanted));
         if (table->kind == BENCH_SET_LIST) fprintf(file, ", at most %.0f", table->high);
         if (defaults) print_default(file, table, defaults);
-        fprintf(file, "\n%*s", indent + 4, "");
-        if (table->option) fprintf(file, "run --%s: ", table->option);
-        fprintf(file, "%s\n", table->help);
+        int used = fprintf(file, "\n%*s", indent + 4, "") - 1;
+        if (table->option) used += fprintf(file, "run --%s:", table->option);
+        print_wrapped(file, bench_setting_sentence(table, sentence), indent + 4, used);
         if (table->table)
             bench_settings_document(file, table->table,
                                     table->kind == BENCH_SET_GROUP ? within : NULL, indent + 8);

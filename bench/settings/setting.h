@@ -116,6 +116,10 @@ const char *bench_setting_wanted(const BenchSetting *setting, bool file, char te
 
 const char *const *bench_setting_choices(const BenchSetting *setting);
 
+/* Its sentence in --help; "%s" in it stands for the choices: "fast, bars or naive". */
+enum { BENCH_SENTENCE = 512 };
+const char *bench_setting_sentence(const BenchSetting *setting, char text[BENCH_SENTENCE]);
+
 /* A number of low..high; of kinds that are not real, a whole one. */
 void bench_setting_number(const BenchSetting *setting, double value, void *record);
 

@@ -332,8 +332,9 @@ static void find_full(Sweeper *sweeper, const BenchPlan *plan, int w)
                  members);
         return;
     }
-    BenchScene scene = make_scene(sweeper, "fastlsm", w, 0, plan->width);
-    bench_path_record(&scene, &sweeper->body, exact_type("fastlsm"), &sweeper->push, plan->frames,
+    const char *lattice = bench_engine_yardstick()->type[0]->name;
+    BenchScene scene = make_scene(sweeper, lattice, w, 0, plan->width);
+    bench_path_record(&scene, &sweeper->body, exact_type(lattice), &sweeper->push, plan->frames,
                       (unsigned long)plan->seed, &sweeper->full);
 }
 

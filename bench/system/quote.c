@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
+
 size_t bench_quote(const char *word, size_t size, char *text)
 {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
@@ -17,4 +19,13 @@ size_t bench_quote(const char *word, size_t size, char *text)
                                  "%s%s", c == word ? "'" : "", piece);
     }
     return used;
+}
+
+const char *bench_enumerate(const char *const *words, const char *prefix, const char *last,
+                            size_t size, char *text)
+{
+    text[0] = '\0';
+    for (int i = 0; words[i]; i++)
+        sm_append(text, size, "%s%s%s", !i ? "" : words[i + 1] ? ", " : last, prefix, words[i]);
+    return text;
 }

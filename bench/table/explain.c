@@ -95,13 +95,17 @@ static void print_counts(FILE *file, const BenchRow *row)
 
 static void print_stages(FILE *file, const BenchRow *row)
 {
-    static const char *const stages[SM_STAGES] = {"fast sum", "shape matching", "polar", "damping",
-                                                  "other"};
     const RefPaperRow *paper = paper_of(row);
+    const char *joint = "    ms: ", *stage;
     char number[BENCH_GRID_TEXT];
     for (int s = 0; s < SM_STAGES; s++) {
+        stage = sm_engine_stage(bench_engine(row->engine)->type[0], (SmStage)s);
+        if (!stage) continue;
+        fputs(joint, file);
+        joint = ", ";
+        for (; *stage; stage++) fputc(*stage == '_' ? ' ' : *stage, file);
         bench_grid_number(row->stage_ms[s], number);
-        fprintf(file, "%s%s %s", s ? ", " : "    ms: ", stages[s], number);
+        fprintf(file, " %s", number);
         if (!paper || !isfinite(paper->stage_ms[s].value)) continue;
         bench_grid_number(paper->stage_ms[s].value, number);
         fprintf(file, " (paper %s)", number);
@@ -131,8 +135,8 @@ static void print_check(FILE *file, const BenchRow *row)
         row->found, row->total_low_ms, row->total_high_ms, row->repeats, row->steps,
         row->steps == 1 ? "" : "s", row->instruments_percent);
     print_counts(file, row);
-    if (bench_row_of_elastic(row)) return;
     print_stages(file, row);
+    if (bench_row_of_elastic(row)) return;
     fprintf(file, "    voxelised in %.3g ms, built in %.3g ms, %.4g bytes a particle\n",
             1e3 * row->voxelise_seconds, 1e3 * row->build_seconds,
             (double)row->bytes / (double)row->particles);

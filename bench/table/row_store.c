@@ -19,7 +19,7 @@ void bench_store_stages(const char *engine, size_t size, char *names)
 {
     names[0] = '\0';
     for (int stage = 0; stage < SM_STAGES; stage++) {
-        const char *name = bench_stage_name(bench_engine(engine), (SmStage)stage);
+        const char *name = sm_engine_stage(bench_engine(engine)->type[0], (SmStage)stage);
         sm_append(names, size, "%s%s", stage ? " " : "", name ? name : "-");
     }
 }

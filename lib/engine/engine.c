@@ -37,3 +37,13 @@ void sm_engine_pose(const SmEngineParams *params, long instance, double pose[3][
     memcpy(pose, params->instance_pose ? params->instance_pose[instance] : identity,
            sizeof identity);
 }
+
+const char *sm_engine_stage(const SmEngineType *type, SmStage stage)
+{
+    return type->stages ? type->stages->name[stage] : sm_stage_name(stage);
+}
+
+SmStage sm_engine_before(const SmEngineType *type)
+{
+    return type->stages ? type->stages->before : SM_OTHER;
+}

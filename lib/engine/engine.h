@@ -102,6 +102,12 @@ typedef struct SmEngine SmEngine;
 /* The largest half-width of regions that are counted in cells. */
 enum { SM_MOST_W = 31 };
 
+/* What an engine calls its stages. */
+typedef struct {
+    const char *name[SM_STAGES]; /* NULL: it has none in that place */
+    SmStage before;              /* that of setting handles and pushes before a step */
+} SmStageNames;
+
 /* One engine in one precision. */
 typedef struct {
     const char *name;      /* "fastlsm", "octree", "brute" */
@@ -110,6 +116,7 @@ typedef struct {
     bool unstopped;        /* obstacles do not stop its bodies: callers refuse them */
     bool refines;          /* particles are split, merged and cut while it runs (octree/engine.h) */
     bool weighs_regions;   /* a region's misfit counts by its own particle's mass, not by 1 */
+    const SmStageNames *stages; /* NULL: those of shape matching (stage.h) */
 
     /* Builds an engine at rest on `voxels` (copied; may be freed after). SM_INPUT when the body
      * or the parameters are beyond what the engine does. */
@@ -178,5 +185,10 @@ typedef struct {
     /* Members of particle p's region in rising order. Returns how many; writes at most `room`. */
     long (*region)(SmEngine *engine, long p, long *member, long room);
 } SmEngineType;
+
+/* The engine's name of a stage; NULL if it has no such. And the stage of what comes before a step.
+ */
+const char *sm_engine_stage(const SmEngineType *type, SmStage stage);
+SmStage sm_engine_before(const SmEngineType *type);
 
 #endif

@@ -1,6 +1,7 @@
 /* stage.h - laps without gaps, so that a step's stages add up to the step.
  *
- * The stage names are Table 1's (fastlsm). */
+ * The stages are those of fastlsm Table 1; an engine that has others says what it books in the
+ * place of which (SmStageNames of engine.h). */
 #ifndef SM_STAGE_H
 #define SM_STAGE_H
 

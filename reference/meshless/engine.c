@@ -492,10 +492,14 @@ static long meshless_region(SmEngine *engine, long p, long *member, long room)
     return 1;
 }
 
+static const SmStageNames stages = {.name = {[SM_SHAPE_MATCHING] = "motion", [SM_OTHER] = "skin"},
+                                    .before = SM_SHAPE_MATCHING};
+
 const SmEngineType ref_meshless_engine = {
     .name = "meshless",
     .precision = "double",
     .unstopped = true,
+    .stages = &stages,
     .create = meshless_create,
     .destroy = meshless_destroy,
     .step = meshless_step,
@@ -618,6 +622,7 @@ const SmEngineType ref_meshless_frames = {
     .name = "meshless",
     .precision = "double",
     .unstopped = true,
+    .stages = &stages,
     .create = frames_create,
     .destroy = meshless_destroy,
     .step = frames_step,
