@@ -36,8 +36,8 @@ static void check(const struct argp_state *state, void *record)
 }
 
 static const char help[] =
-    "List the built-in scenes and shapes; with NAME, print that scene's file, which explains its "
-    "settings and can be copied, edited and run:\n"
+    "List the built-in scenes and shapes; with NAME, print that scene's file, which can be copied, "
+    "edited (--settings explains what it says) and run:\n"
     "  shapebench scenes penguin > my.cfg\n"
     "  shapebench run my.cfg\v" BENCH_EXIT_CODES;
 
@@ -102,7 +102,9 @@ static void list_settings(void)
     bench_scene_init(defaults);
     puts("A scene file (NAME.cfg) has lines NAME = VALUE; in any order. Lengths are in the mesh's\n"
          "units, times in seconds, angles in radians; y is up. Numbers in [ ] all need a decimal\n"
-         "point. What is left out has its default.\n");
+         "point. What is left out has its default. The scene hand has handles, flower forces,\n"
+         "penguins obstacles, beam-cut a cut, flowers a touch, hand-stiffness criteria and "
+         "widths.\n");
     bench_settings_document(stdout, bench_scene_settings, defaults, 0);
     free(defaults);
 }
