@@ -70,6 +70,6 @@ int bench_command_run(const BenchCommand *command, int argc, char **argv)
     free(((BenchCommon *)options)->word);
     free(options);
     if (ranks.rank > 0) code = SM_OK; /* the first one says it for all */
-    bench_ranks_end(&ranks, code);
+    if (command->campaign) bench_ranks_end(&ranks, code);
     return (int)code;
 }

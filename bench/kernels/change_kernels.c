@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 #include "../../octree/engine.h"
-#include "../measure/quartiles.h"
+#include "../system/statistic.h"
 #include "kernel.h"
 
 enum {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "../../lib/system/team.h"
-#include "../measure/quartiles.h"
+#include "../system/statistic.h"
 #include "cubes.h"
 #include "matrices.h"
 #include "tree_body.h"

@@ -5,7 +5,7 @@
 #include "../../fastlsm/operations.h"
 #include "../../lib/test_fields.h"
 #include "../../lib/test_frame.h"
-#include "../measure/quartiles.h"
+#include "../system/statistic.h"
 #include "cubes.h"
 #include "kernel_table.h"
 #include "matrices.h"

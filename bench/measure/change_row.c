@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../system/statistic.h"
 #include "disturbance.h"
-#include "quartiles.h"
 
 enum { SIMULATION, CHANGE, FOLLOW, SURFACE }; /* in the order of BenchChangeRow */
 

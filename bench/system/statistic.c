@@ -30,6 +30,13 @@ double bench_quantile(const double *value, int count, double share)
     return quantile;
 }
 
+BenchQuartiles bench_quartiles(const double *value, int count)
+{
+    return (BenchQuartiles){.median = bench_quantile(value, count, 0.5),
+                            .low = bench_quantile(value, count, 0.25),
+                            .high = bench_quantile(value, count, 0.75)};
+}
+
 BenchInterval bench_quantile_interval(const double *value, int count, double share, double level)
 {
     unsigned n = (unsigned)count, first = 0, last = n - 1;

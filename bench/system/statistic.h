@@ -11,6 +11,13 @@
 double bench_quantile(const double *value, int count, double share);
 
 typedef struct {
+    double median, low, high;
+} BenchQuartiles;
+
+/* The middle and the quartiles. */
+BenchQuartiles bench_quartiles(const double *value, int count);
+
+typedef struct {
     double value, low, high;
 } BenchInterval;
 
