@@ -9,7 +9,7 @@
 #include "measure/checker.h"
 #include "measure/elastic_row.h"
 #include "measure/tree_row.h"
-#include "play/carrier.h"
+#include "play/body_group.h"
 #include "scene/body.h"
 #include "scene/memory.h"
 

@@ -7,7 +7,6 @@
 #include "../engines.h"
 #include "../play/recording.h"
 #include "../scene/override.h"
-#include "../scene/points_file.h"
 #include "../store/draft.h"
 #include "../system/progress.h"
 #include "../system/quote.h"

@@ -15,7 +15,8 @@ typedef struct BenchChecker {
      * contradict themselves. May be NULL. */
     SmCode (*accepts)(const BenchPlayback *play, SmError *error);
 
-    /* What the check needs of the bodies as they are now; begun anew when they have changed. */
+    /* What the check needs of the bodies as they are now; begun anew when they have changed. NULL,
+     * like free(): nothing. */
     void *(*begin)(BenchPlayback *play);
 
     /* Of the bodies at rest: do the engines have what they should? May be NULL. */

@@ -73,12 +73,6 @@ static void note(const BenchElasticFound *found, BenchRow *row)
         bench_row_invalidate(row, "%s", reason);
 }
 
-static void *begin(BenchPlayback *play)
-{
-    (void)play;
-    return NULL;
-}
-
 static void rest(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     (void)check;
@@ -93,18 +87,11 @@ static void state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
     note(worst, row);
 }
 
-static void end(void *check)
-{
-    (void)check;
-}
-
 const BenchChecker bench_elastic_checker = {.size = sizeof(BenchElasticFound),
                                             .takes = takes,
                                             .accepts = accepts,
-                                            .begin = begin,
                                             .rest = rest,
-                                            .state = state,
-                                            .free = end};
+                                            .state = state};
 
 bool bench_row_of_elastic(const BenchRow *row)
 {

@@ -148,9 +148,9 @@ static SmCode play_changes(const BenchScene *scene, const BenchBody *body, const
     BenchPlayback play;
     SmCode code = bench_change_row_measure(scene, body, type, &frames, &row->change, &play, error);
     if (code) return code;
-    void *check = checker->begin(&play);
+    void *check = checker->begin ? checker->begin(&play) : NULL;
     checker->state(check, &play, worst, row);
-    checker->free(check);
+    if (checker->free) checker->free(check);
     bench_playback_free(&play);
     const BenchChangeRow *change = &row->change;
     SmMeshInfo before = sm_mesh_info(&body->mesh);
@@ -179,7 +179,7 @@ static void count(const BenchPlayback *play, BenchRow *row)
 static void measure_start(Trial *trial, const BenchChecker *checker,
                           const BenchMeasureParams *params, void *worst, BenchRow *row)
 {
-    void *check = checker->begin(&trial->play);
+    void *check = checker->begin ? checker->begin(&trial->play) : NULL;
     const BenchRunner *runner = bench_playback_runner(&trial->play);
     const BenchEngine *engine = bench_engine(runner->type->name);
     if (engine->fill) engine->fill(runner, row);
@@ -192,7 +192,7 @@ static void measure_start(Trial *trial, const BenchChecker *checker,
     bench_time_steps(&(BenchTimed){trial, restore, step}, params, row);
     checker->state(check, &trial->play, worst, row);
     if (checker->end) checker->end(check, &trial->play, worst, row);
-    checker->free(check);
+    if (checker->free) checker->free(check);
 }
 
 SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,

@@ -316,6 +316,7 @@ TEST(its_row_is_a_table_of_its_own)
     write_row(&row, BENCH_AS_MARKDOWN, text, sizeof text);
     assert_null(strstr(text, "regions"));
     assert_non_null(strstr(text, "| scene | points | nodes | modes | matrices s |"));
+    assert_non_null(strstr(text, "| 24 |")); /* modes */
     assert_non_null(strstr(text, "| paper | 5634 | 1008 | 64 | < 600 | < 60 |"));
     write_row(&row, BENCH_AS_TEXT, text, sizeof text);
     assert_non_null(strstr(text, "off by: shape functions"));

@@ -3,7 +3,6 @@
  * hang on springs, each on its own to where it rests. */
 #include "../../lib/test_folder.h"
 #include "../engines.h"
-#include "../play/carrier.h"
 #include "../scene/memory.h"
 #include "../table/row_store.h"
 #include "../table/table.h"
@@ -110,11 +109,6 @@ static const SmEngineType toy_type = {.name = "springs",
 
 /* ---- its check: a step beside the formula */
 
-static void *toy_begin(BenchPlayback *play)
-{
-    return play;
-}
-
 static void toy_state(void *check, BenchPlayback *play, void *worst, BenchRow *row)
 {
     BenchRunner *runner = bench_playback_runner(play);
@@ -141,13 +135,7 @@ static void toy_state(void *check, BenchPlayback *play, void *worst, BenchRow *r
     (void)check;
 }
 
-static void toy_free(void *check)
-{
-    (void)check;
-}
-
-static const BenchChecker toy_checker = {
-    .size = sizeof(double), .begin = toy_begin, .state = toy_state, .free = toy_free};
+static const BenchChecker toy_checker = {.size = sizeof(double), .state = toy_state};
 
 static const BenchEngine bench_toy = {.type = {&toy_type},
                                       .carrier = &bench_lattice_carrier,

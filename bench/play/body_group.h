@@ -31,7 +31,7 @@ typedef struct {
 } BenchGroup;
 
 /* What carries a body's surface, and how it is changed: an octree's leaves, or a lattice's
- * particles (carrier.h). */
+ * particles (carrier.c). */
 typedef struct BenchCarrier {
     /* All that is due between two times; fills group->last. */
     SmCode (*frame)(BenchGroup *group, double from, double to, SmError *error);
@@ -43,6 +43,8 @@ typedef struct BenchCarrier {
     /* What keeps the body from being changed, before anything runs; NULL: nothing. */
     SmCode (*may_change)(SmEngine *engine, SmError *error);
 } BenchCarrier;
+
+extern const BenchCarrier bench_octree_carrier, bench_lattice_carrier;
 
 /* These `count` instances of the body at rest, as bench_runner_create(); and SM_INPUT where the
  * scene would change what its engine cannot. The group may not move. After an error nothing is to

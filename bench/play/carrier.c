@@ -1,4 +1,4 @@
-#include "carrier.h"
+/* What carries surfaces and how it is changed, of each kind of engine. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,6 +6,7 @@
 
 #include "../../octree/change/engine_base.h"
 #include "../scene/blades.h"
+#include "body_group.h"
 
 /* ---- a lattice, by particle number: blades */
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "../../lib/box.h"
 #include "../../lib/mesh/import.h"
@@ -18,6 +19,19 @@ SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error)
 {
     if (!strncmp(mesh, "shape:", 6)) return sm_shape_mesh(mesh + 6, result, error);
     return sm_import(mesh, NULL, result, error);
+}
+
+SmCode bench_points_or_mesh(const char *path, RefPoints *points, SmMesh *mesh, SmError *error)
+{
+    const char *dot = strrchr(path, '.');
+    bool ply = dot && !strcasecmp(dot, ".ply");
+    *points = (RefPoints){0};
+    *mesh = (SmMesh){0};
+    if (ref_points_text(path)) return ref_points_read(path, points, error);
+    if (!ply) return bench_mesh_load(path, mesh, error);
+    if (!bench_mesh_load(path, mesh, NULL)) return SM_OK;
+    *mesh = (SmMesh){0};
+    return ref_points_read(path, points, error);
 }
 
 static SmBox box_of(const SmMesh *mesh)

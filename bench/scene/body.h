@@ -22,6 +22,11 @@ typedef struct BenchBody {
 /* Reads a mesh: "shape:NAME" or a mesh file. */
 SmCode bench_mesh_load(const char *mesh, SmMesh *result, SmError *error);
 
+/* Reads points from text (x y z nx ny nz) or a PLY file without faces, into `points`; from anything
+ * else a mesh, as bench_mesh_load(), into `mesh`. The other one is zeroed, so that both can be
+ * freed. Errors: those of reading either. */
+SmCode bench_points_or_mesh(const char *path, RefPoints *points, SmMesh *mesh, SmError *error);
+
 /* Reads the scene's mesh; or, unless NULL, the mesh file `substitute` in its place: scaled evenly
  * to the same largest extent, standing on the same height, centred on the same vertical axis, so
  * that the scene's handles, obstacles and forces fit it. */

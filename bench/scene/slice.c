@@ -7,7 +7,6 @@
 #include "../../reference/meshless/surface/mpu.h"
 #include "../store/h5.h"
 #include "body.h"
-#include "points_file.h"
 
 enum { LONGEST = 400, SCHEMA = 1 }; /* samples along the picture's longer side */
 static const double margin = 0.1;   /* of the longer side, around the body */

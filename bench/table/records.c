@@ -27,6 +27,8 @@ void bench_record_cell(const BenchField *field, const void *record, char *text)
         strcpy(text, *(const bool *)value ? "*" : "");
     else if (field->kind == BENCH_INT)
         snprintf(text, BENCH_GRID_TEXT, "%d", *(const int *)value);
+    else if (field->kind == BENCH_LONG && !field->number && !field->format && field->scale == 0)
+        snprintf(text, BENCH_GRID_TEXT, "%ld", *(const long *)value);
     else
         number_cell(field, bench_record_number(field, record), text);
 }
