@@ -12,20 +12,16 @@ void *sm_widen(void *array, long from, long to, size_t size, int byte)
 
 void sm_csr_adopt(SmCsr *csr, long count, long *first, int *item, void *value, size_t size)
 {
-    *csr = (SmCsr){.rows = count, .row_space = count, .first = first, .item = item};
+    *csr = (SmCsr){.rows = count, .first = first, .end = first + 1, .item = item};
     csr->value = value;
     csr->size = size;
-    csr->end = sm_alloc((size_t)count, sizeof *csr->end);
-    csr->room = sm_alloc((size_t)count, sizeof *csr->room);
-    memcpy(csr->end, first + 1, (size_t)count * sizeof *first);
-    for (long r = 0; r < count; r++) csr->room[r] = (int)(csr->end[r] - first[r]);
     csr->live = csr->used = csr->space = first[count];
 }
 
 void sm_csr_free(SmCsr *csr)
 {
+    if (csr->room) free(csr->end);
     free(csr->first);
-    free(csr->end);
     free(csr->room);
     free(csr->item);
     free(csr->value);
@@ -34,8 +30,26 @@ void sm_csr_free(SmCsr *csr)
 
 size_t sm_csr_bytes(const SmCsr *csr)
 {
-    size_t row = sizeof *csr->first + sizeof *csr->end + sizeof *csr->room;
-    return (size_t)csr->row_space * row + (size_t)csr->space * (sizeof *csr->item + csr->size);
+    size_t row = sizeof *csr->first, rows = (size_t)csr->row_space;
+    if (csr->room)
+        row += sizeof *csr->end + sizeof *csr->room;
+    else if (csr->first)
+        rows = (size_t)csr->rows + 1;
+    return rows * row + (size_t)csr->space * (sizeof *csr->item + csr->size);
+}
+
+/* Before the first change: where every row ends, and what room it has. */
+static void unpack(SmCsr *csr)
+{
+    if (csr->room) return;
+    long *end = sm_alloc((size_t)csr->rows, sizeof *end);
+    csr->room = sm_alloc((size_t)csr->rows, sizeof *csr->room);
+    for (long r = 0; r < csr->rows; r++) {
+        end[r] = csr->first[r + 1];
+        csr->room[r] = (int)(end[r] - csr->first[r]);
+    }
+    csr->end = end;
+    csr->row_space = csr->rows;
 }
 
 /* The value beside the item at a place; only where there are values. */
@@ -63,12 +77,15 @@ static void make_items(SmCsr *csr, long space)
 
 void sm_csr_reserve(SmCsr *csr)
 {
+    unpack(csr);
     make_rows(csr, sm_room_for(csr->rows));
     make_items(csr, sm_room_for(csr->used));
 }
 
 void sm_csr_grow(SmCsr *csr, long count)
 {
+    if (count <= csr->rows) return;
+    unpack(csr);
     if (count > csr->row_space) make_rows(csr, sm_room_for(count));
     for (; csr->rows < count; csr->rows++) {
         csr->first[csr->rows] = csr->end[csr->rows] = 0;
@@ -117,6 +134,7 @@ static void make_space(SmCsr *csr, long need)
 
 void sm_csr_resize(SmCsr *csr, long row, long count)
 {
+    unpack(csr);
     long had = csr->end[row] - csr->first[row];
     if (count > csr->room[row]) {
         long room = count + count / 4 + 4;
@@ -142,6 +160,7 @@ void sm_csr_set(SmCsr *csr, long row, long count, const int *item)
 
 void sm_csr_add(SmCsr *csr, long row, int item, const void *value)
 {
+    unpack(csr);
     long count = csr->end[row] - csr->first[row];
     if (count < csr->room[row]) {
         csr->end[row]++;
@@ -169,6 +188,7 @@ bool sm_csr_remove(SmCsr *csr, long row, int item)
 {
     long at = sm_csr_find(csr, row, item), last = csr->end[row] - 1;
     if (at < 0) return false;
+    unpack(csr);
     csr->item[at] = csr->item[last];
     if (csr->size && at != last) memcpy(value_at(csr, at), value_at(csr, last), csr->size);
     csr->end[row] = last;
@@ -187,28 +207,27 @@ void sm_csr_parts_init(SmCsrParts *parts, long rows)
 void sm_csr_parts_add(SmCsrParts *parts, long row, const int *item, long count)
 {
     struct SmCsrBlock *block = parts->block + row / SM_CSR_BLOCK;
-    if (block->used + count > block->room) {
-        block->room = 2 * (block->used + count) + 256;
-        block->item = sm_realloc(block->item, (size_t)block->room, sizeof *block->item);
-    }
+    sm_make_room(block->item, block->room, block->used + count);
     if (parts->count[row] == 0) parts->start[row] = block->used;
     if (count > 0) memcpy(block->item + block->used, item, (size_t)count * sizeof *item);
     block->used += count;
     parts->count[row] += (int)count;
 }
 
-void sm_csr_parts_join(SmCsrParts *parts, long **first, int **item)
+void sm_csr_parts_join(SmCsrParts *parts, SmCsr *csr, size_t size)
 {
-    *first = sm_alloc((size_t)parts->rows + 1, sizeof **first);
-    for (long r = 0; r < parts->rows; r++) (*first)[r + 1] = (*first)[r] + parts->count[r];
-    *item = sm_alloc((size_t)(*first)[parts->rows], sizeof **item);
+    long *first = sm_alloc((size_t)parts->rows + 1, sizeof *first);
+    for (long r = 0; r < parts->rows; r++) first[r + 1] = first[r] + parts->count[r];
+    size_t items = (size_t)first[parts->rows];
+    int *item = sm_alloc(items, sizeof *item);
     for (long b = 0; b < parts->blocks; b++) {
         for (long r = sm_csr_parts_from(b); r < sm_csr_parts_to(parts, b); r++)
             if (parts->count[r] > 0)
-                memcpy(*item + (*first)[r], parts->block[b].item + parts->start[r],
-                       (size_t)parts->count[r] * sizeof **item);
+                memcpy(item + first[r], parts->block[b].item + parts->start[r],
+                       (size_t)parts->count[r] * sizeof *item);
         free(parts->block[b].item);
     }
+    sm_csr_adopt(csr, parts->rows, first, item, size ? sm_alloc(items, size) : NULL, size);
     free(parts->count);
     free(parts->start);
     free(parts->block);

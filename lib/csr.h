@@ -1,9 +1,10 @@
 /* csr.h - lists of whole numbers in compressed rows: one for every row, all in one array, with a
  * value beside each number where wanted.
  *
- * Rows can change one at a time. A row that outgrows its place moves to the array's end, where it
- * gets some room to grow. An array that is full grows by a quarter, or loses its gaps where these
- * are more than half of it. So a change costs what it writes, on average. */
+ * At first rows follow each other, and nothing is kept but where each begins. They can then change
+ * one at a time; the first change takes O(rows). A row that outgrows its place moves to the array's
+ * end, where it gets some room to grow. An array that is full grows by a quarter, or loses its gaps
+ * where these are more than half of it. So a change costs what it writes, on average. */
 #ifndef SM_CSR_H
 #define SM_CSR_H
 
@@ -13,18 +14,19 @@
 
 typedef struct {
     long rows;
-    long *first, *end; /* [rows] of a row in `item` */
+    long *first; /* [rows] where a row begins in `item`; while rows follow each other [rows + 1] */
+    long *end;   /* [rows] and where it ends; while rows follow each other first + 1 */
     int *item;
     void *value; /* [like item] of `size` bytes each; NULL where size is 0 */
     size_t size;
     long live; /* items in all rows */
     /* private */
-    int *room;                         /* [rows] places that a row has from first on */
+    int *room; /* [rows] places that a row has from first on; NULL while rows follow each other */
     long row_space, used, space, lost; /* rows and places there are; given out; of those no row's */
 } SmCsr;
 
 /* Takes over rows that follow each other: `first` is [count + 1]; `value` is NULL where size is 0.
- * The caller frees. */
+ * The caller frees. O(1). */
 void sm_csr_adopt(SmCsr *csr, long count, long *first, int *item, void *value, size_t size);
 void sm_csr_free(SmCsr *csr);
 size_t sm_csr_bytes(const SmCsr *csr);
@@ -48,7 +50,7 @@ long sm_csr_find(const SmCsr *csr, long row, int item);
 /* Takes an item out of a row, whose last takes its place; false if it is not there. */
 bool sm_csr_remove(SmCsr *csr, long row, int item);
 
-/* Makes room ahead, so that the next changes do not have to. O(items). */
+/* Makes room ahead, so that the next changes do not have to. O(rows + items). */
 void sm_csr_reserve(SmCsr *csr);
 
 /* Rows that several threads write. They come in blocks, each of which belongs to one thread at a
@@ -83,9 +85,9 @@ static inline long sm_csr_parts_to(const SmCsrParts *parts, long block)
 /* Appends to a row, which must be the last of its block that was appended to. */
 void sm_csr_parts_add(SmCsrParts *parts, long row, const int *item, long count);
 
-/* Moves all rows into one array `item`, row r from first[r] to first[r + 1] - 1, and frees `parts`.
- * The caller frees both arrays. */
-void sm_csr_parts_join(SmCsrParts *parts, long **first, int **item);
+/* Makes rows of them that follow each other, with zeroed values of `size` bytes, and frees `parts`.
+ * The caller frees the rows. */
+void sm_csr_parts_join(SmCsrParts *parts, SmCsr *csr, size_t size);
 
 /* Rising order of ints, for qsort(). */
 int sm_compare_ints(const void *a, const void *b);

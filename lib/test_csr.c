@@ -79,6 +79,35 @@ TEST(lists_stay_what_they_are_while_others_change)
     }
 }
 
+/* Made of parts in blocks, rows follow each other until one is changed, and take no more memory
+ * than where each begins. */
+TEST(rows_of_parts_follow_each_other)
+{
+    enum { LONG = 200 };
+    SmCsr csr;
+    SmCsrParts parts;
+    static Twin twin[LONG];
+    unsigned seed = 4;
+    sm_csr_parts_init(&parts, LONG);
+    for (long b = parts.blocks - 1; b >= 0; b--)
+        for (long r = sm_csr_parts_from(b); r < sm_csr_parts_to(&parts, b); r++) {
+            twin[r] = (Twin){.count = random_int(&seed, 20)};
+            for (int n = 0; n < twin[r].count; n++) twin[r].item[n] = random_int(&seed, 1000);
+            int half = twin[r].count / 2; /* in two goes */
+            sm_csr_parts_add(&parts, r, twin[r].item, half);
+            sm_csr_parts_add(&parts, r, twin[r].item + half, twin[r].count - half);
+        }
+    sm_csr_parts_join(&parts, &csr, sizeof(int));
+    check(&csr, twin);
+    for (long r = 0; r < LONG; r++) assert_int_equal(csr.end[r], csr.first[r + 1]);
+    assert_int_equal(sm_csr_bytes(&csr),
+                     (LONG + 1) * sizeof(long) + (size_t)csr.live * 2 * sizeof(int));
+    sm_csr_grow(&csr, LONG); /* there are as many */
+    for (int step = 0; step < 2000; step++) change(&seed, &csr, twin);
+    check(&csr, twin);
+    sm_csr_free(&csr);
+}
+
 /* Lists that take turns in growing leave gaps behind, which are closed in time. */
 TEST(gaps_do_not_pile_up)
 {

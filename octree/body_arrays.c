@@ -184,7 +184,7 @@ void oct_slot_fill(Oct *oct, const OctTree *tree, const OctWeights *w, long leaf
         k->centre[d][lane] = (real)centre_of(tree, tree->node[leaf], d);
     }
     for (int i = 0; i < 6 && oct->spread; i++)
-        oct->spread[(block * 6 + i) * SM_LANES + lane] = (real)rest->spread[i];
+        oct->spread[oct_field(leaf, 6, i)] = (real)rest->spread[i];
     set_collinear(oct, leaf, rest);
 }
 
@@ -196,7 +196,7 @@ void oct_slot_clear(Oct *oct, long leaf)
                         &k->offset[0], &k->offset[1],     &k->offset[2], &k->centre[0],
                         &k->centre[1], &k->centre[2]};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) (*all[i])[lane] = 0;
-    for (int i = 0; i < 6 && oct->spread; i++) oct->spread[(block * 6 + i) * SM_LANES + lane] = 0;
+    for (int i = 0; i < 6 && oct->spread; i++) oct->spread[oct_field(leaf, 6, i)] = 0;
     for (long i = 0; i < oct->instances; i++)
         for (int d = 0; d < 3; d++)
             oct->body[i].x[oct_index(leaf, d)] = oct->body[i].v[oct_index(leaf, d)] = 0;

@@ -41,7 +41,7 @@ void oct_slot_clear(Oct *oct, long leaf);
 /* Aqq_r of a block of a plastic body, from its rest shapes and moments. */
 void oct_block_inverse(Oct *oct, long body, long block);
 
-/* Empties the row of a tree node that is new, or of a number that another one bore. */
+/* Empties the row of a tree node that is new, whose number another one may have had. */
 void oct_row_open(Oct *oct, const OctTree *tree, long node);
 
 /* Where the row of a tree node has its centre: in the middle of its leaves, to half finest cells,

@@ -49,16 +49,12 @@ static void share_blocks(Oct *oct, long blocks)
     oct->threads = threads;
     if (oct->instances == 1) oct->workers = 1;
     oct->share = sm_alloc((size_t)threads + 1, sizeof(long));
-    const OctSpan *span = oct->lists.span + oct->lists.prefixes;
-    long all = 0, block = 0, before = 0, per_block = 20 * SM_LANES;
-    for (long slot = 0; slot < blocks * SM_LANES; slot++) all += span[slot].count;
-    all += per_block * blocks;
+    const long *first = oct->lists.rows.first + oct->lists.prefixes; /* they follow each other */
+    long block = 0, before = 0, per_block = 20 * SM_LANES;
+    long all = first[blocks * SM_LANES] - first[0] + per_block * blocks;
     for (int t = 1; t < threads; t++) {
-        for (; block < blocks && before * threads < all * t; block++) {
-            before += per_block;
-            for (int lane = 0; lane < SM_LANES; lane++)
-                before += span[block * SM_LANES + lane].count;
-        }
+        for (; block < blocks && before * threads < all * t; block++)
+            before += per_block + first[(block + 1) * SM_LANES] - first[block * SM_LANES];
         oct->share[t] = block;
     }
     oct->share[threads] = blocks;
@@ -80,24 +76,8 @@ void oct_shape(Oct *oct, long body, const double (*S)[9])
     real *plastic = oct->body[body].plastic;
     for (long leaf = 0; leaf < oct->leaves; leaf++)
         for (int i = 0; i < 9 && oct_alive(oct, leaf); i++)
-            plastic[(leaf / SM_LANES * 9 + i) * SM_LANES + leaf % SM_LANES] = (real)S[leaf][i];
+            plastic[oct_field(leaf, 9, i)] = (real)S[leaf][i];
     for (long block = 0; block < oct->blocks; block++) oct_block_inverse(oct, body, block);
-}
-
-/* The longest edge of the box around all cells' centres, finest cells. */
-static double extent_of(const OctTree *tree)
-{
-    int most = 0;
-    for (int d = 0; d < 3; d++) {
-        int low = tree->centre[tree->node[0]][d], high = low;
-        for (long leaf = 0; leaf < tree->leaves; leaf++) {
-            int at = tree->centre[tree->node[leaf]][d];
-            low = at < low ? at : low;
-            high = at > high ? at : high;
-        }
-        if (high - low > most) most = high - low;
-    }
-    return 0.5 * most;
 }
 
 /* All bodies start at rest in one place. */
@@ -123,7 +103,7 @@ static void build_lists(const OctTree *tree, const OctRegions *regions, Oct *oct
 Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mass,
                const OctParams *params)
 {
-    assert(tree->leaves > 0 && tree->leaves == regions->leaves);
+    assert(tree->leaves > 0 && tree->leaves == regions->members.rows);
     Oct *oct = sm_alloc(1, sizeof *oct);
     oct->params = *params;
     oct->levels = tree->levels;
@@ -139,7 +119,7 @@ Oct *oct_build(const OctTree *tree, const OctRegions *regions, const double *mas
     fill_slots(tree, regions, mass, oct);
     for (int i = 0; i < oct->workers; i++) fill_rows(tree, oct, &oct->rows[i]);
     for (int d = 0; d < 3; d++) oct->gravity[d] = (real)params->gravity[d];
-    oct->at_rest = rounding_square(extent_of(tree), 0.5 * regions->most_width);
+    oct->at_rest = rounding_square(0.5 * oct_tree_extent(tree), 0.5 * regions->most_width);
     start_at_rest(tree, oct);
     return oct;
 }
@@ -149,23 +129,19 @@ void oct_free(Oct *oct)
     if (!oct) return;
     for (int i = 0; i < oct->workers; i++) {
         OctRows *r = &oct->rows[i];
-        void *all[] = {r->moment, r->transform, r->velocity, r->centre};
-        for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
+        sm_free_all(r->moment, r->transform, r->velocity, r->centre);
     }
     for (long i = 0; i < oct->instances; i++) {
         OctState *b = &oct->body[i];
-        void *all[] = {b->origin, b->x, b->v, b->g, b->last, b->stretch, b->plastic, b->inverse};
-        for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
+        sm_free_all(b->origin, b->x, b->v, b->g, b->last, b->stretch, b->plastic, b->inverse);
     }
     oct_sum_lists_free(&oct->lists);
     oct_sum_lists_free(&oct->goal_lists);
     oct_levels_free(&oct->inner);
     oct_dynamic_body_free(oct->dynamic);
     oct_ghosts_free(oct);
-    void *all[] = {oct->collinear, oct->collinear_of, oct->child, oct->children,
-                   oct->row,       oct->live,         oct->block, oct->share,
-                   oct->spread,    oct->rows,         oct->body,  oct->obstacle};
-    for (size_t n = 0; n < sizeof all / sizeof *all; n++) free(all[n]);
+    sm_free_all(oct->collinear, oct->collinear_of, oct->child, oct->children, oct->row, oct->live,
+                oct->block, oct->share, oct->spread, oct->rows, oct->body, oct->obstacle);
     free(oct);
 }
 
@@ -177,7 +153,7 @@ long oct_bytes(const Oct *oct)
                        (size_t)oct->node_room * (sizeof(int) + 1) + oct_levels_bytes(&oct->inner) +
                        lanes * sizeof(int) + blocks * (sizeof(OctConst) + sizeof(int) + 1) +
                        (size_t)oct->collinear_room * sizeof(OctCollinear);
-    if (oct->goal_lists.span) structure += oct_sum_lists_bytes(&oct->goal_lists);
+    if (oct->goal_lists.rows.first) structure += oct_sum_lists_bytes(&oct->goal_lists);
     size_t rows = (row_count * (2 * OCT_ROW + OCT_ROW_VELOCITY) + lanes * 3) * sizeof(real);
     size_t state = lanes * (9 * sizeof(real) + 6 * sizeof(short));
     if (oct->params.polar == SM_POLAR_JACOBI) state += lanes * 9 * sizeof(real);

@@ -53,9 +53,7 @@ void oct_contacts_free(OctContacts *k)
     if (!k) return;
     sm_collide_free(k->collide);
     oct_outline_free(&k->outline);
-    free(k->x);
-    free(k->frame);
-    free(k);
+    sm_free_all(k->x, k->frame, k);
 }
 
 static void read_body(const OctContacts *k, const OctState *body, double (*x)[3],

@@ -43,7 +43,8 @@ static void sums_up(OctTask *task, long first, long last)
 SM_INLINE Row list_sum(const OctTask *task, long t)
 {
     const OctSumLists *lists = &task->oct->lists;
-    const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
+    const int *row = lists->rows.item + lists->rows.first[t];
+    const int *end = lists->rows.item + lists->rows.end[t];
     Row sum[OCT_GROUP] = {{{{0}}}};
     for (; row < end; row += OCT_GROUP)
         for (int i = 0; i < OCT_GROUP; i++)
@@ -101,7 +102,8 @@ static void velocities_up(OctTask *task, long first, long last)
 
 SM_INLINE vec8 list_velocity(const OctSumLists *lists, const real *velocity, long t)
 {
-    const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
+    const int *row = lists->rows.item + lists->rows.first[t];
+    const int *end = lists->rows.item + lists->rows.end[t];
     vec8 sum[OCT_GROUP] = {{0}};
     for (; row < end; row += OCT_GROUP)
         for (int i = 0; i < OCT_GROUP; i++)

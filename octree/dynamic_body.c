@@ -49,8 +49,7 @@ static void make_room(Oct *oct, const OctTree *tree, OctDynamicBody *c)
     oct_slots_room(oct, tree->leaves);
     oct_sum_lists_room(&oct->lists, tree->leaves);
     if (oct->blocks > c->blocks) {
-        c->dirty = sm_realloc(c->dirty, (size_t)oct->block_room, sizeof *c->dirty);
-        memset(c->dirty + c->blocks, 0, (size_t)(oct->block_room - c->blocks) * sizeof *c->dirty);
+        c->dirty = sm_widen(c->dirty, c->blocks, oct->block_room, sizeof *c->dirty, 0);
         c->blocks = oct->block_room;
     }
     for (int t = 1; t <= oct->threads; t++) oct->share[t] = oct->blocks * t / oct->threads;
@@ -115,8 +114,8 @@ static void change_leaves(Oct *oct, const OctStructure *structure, const OctChan
     }
     for (long n = 0; n < change->region_count; n++) {
         int leaf = change->region[n];
-        oct_sum_lists_set(&oct->lists, leaf, regions->member + regions->first[leaf],
-                          oct_regions_end(regions, leaf) - regions->first[leaf]);
+        oct_sum_lists_set(&oct->lists, leaf, regions->members.item + regions->members.first[leaf],
+                          regions->members.end[leaf] - regions->members.first[leaf]);
     }
 }
 
@@ -170,10 +169,7 @@ void oct_dynamic_body_free(OctDynamicBody *c)
     oct_weights_free(&c->weights);
     oct_weights_change_free(&c->weights_change);
     oct_transfer_free(&c->transfer);
-    free(c->slot);
-    free(c->place);
-    free(c->dirty);
-    free(c);
+    sm_free_all(c->slot, c->place, c->dirty, c);
 }
 
 size_t oct_dynamic_body_bytes(const OctDynamicBody *c)

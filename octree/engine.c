@@ -2,7 +2,6 @@
 #include "engine.h"
 
 #include <assert.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -110,8 +109,8 @@ static bool engine_get_shapes(SmEngine *e, double (*S)[9])
     renumber(e);
     for (long number = 0; number < e->oct->instances * e->count; number++) {
         long leaf = leaf_of(e, number);
-        const real *from = body_of(e, number)->plastic + leaf / SM_LANES * 9 * SM_LANES;
-        for (int i = 0; i < 9; i++) S[number][i] = (double)from[i * SM_LANES + leaf % SM_LANES];
+        const real *from = body_of(e, number)->plastic;
+        for (int i = 0; i < 9; i++) S[number][i] = (double)from[oct_field(leaf, 9, i)];
     }
     return true;
 }
@@ -218,15 +217,7 @@ static SmCode check_reach(const OctStructure *s, SmError *error)
 /* The same of a whole body, which has one origin once it changes (ghosts.h). */
 static SmCode check_width(const OctStructure *s, SmError *error)
 {
-    const OctTree *tree = &s->tree;
-    int low[3] = {INT_MAX, INT_MAX, INT_MAX}, high[3] = {INT_MIN, INT_MIN, INT_MIN}, wide = 0;
-    for (long leaf = 0; leaf < tree->leaves; leaf++)
-        for (int d = 0; d < 3 && tree->node[leaf] >= 0; d++) {
-            int at = tree->centre[tree->node[leaf]][d]; /* half finest cells */
-            if (at < low[d]) low[d] = at;
-            if (at > high[d]) high[d] = at;
-            if (high[d] - low[d] > wide) wide = high[d] - low[d];
-        }
+    int wide = oct_tree_extent(&s->tree);
     if (SM_REAL_BITS == 64 || wide <= 4 * MOST_REACH) return SM_OK;
     return sm_fail(error, SM_INPUT,
                    "octree: the body is %d finest cells wide, and of a body that is cut or refined "
@@ -264,7 +255,7 @@ static SmCode engine_begin(SmEngine *e, SmError *error)
     return SM_OK;
 }
 
-/* Contacts do not move what is handle_nodes. */
+/* Contacts do not move what handles hold. */
 static void fix_held(SmEngine *e)
 {
     long *fixed = sm_alloc((size_t)e->handle_nodes.count, sizeof *fixed);
@@ -303,7 +294,7 @@ static const int *engine_leaves(SmEngine *e)
 static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
 {
     SmEngineParams common = *params;
-    common.w = 1; /* not ours */
+    common.w = 1; /* which an octree has not */
     SmCode code = sm_engine_check(voxels, &common, error);
     if (code) return code;
     if (params->strain_limit > 0)
@@ -415,10 +406,7 @@ static void engine_destroy(SmEngine *e)
     momentum_free(e->momentum);
     oct_free(e->oct);
     oct_structure_free(&e->base.structure);
-    free(e->pose);
-    free(e->leaf);
-    free(e->number);
-    free(e);
+    sm_free_all(e->pose, e->leaf, e->number, e);
 }
 
 /* Does nothing but gravity act on the bodies? */
@@ -430,7 +418,8 @@ static bool is_free(const SmEngine *e)
 
 static void begin_momentum(SmEngine *e)
 {
-    bool begins = e->divided && is_free(e); /* a change's kick was over before it was divided */
+    /* after a change it is divided once the kick has been added (state.h) */
+    bool begins = e->divided && is_free(e);
     for (OctState *b = e->oct->body; begins && b < e->oct->body + e->oct->instances; b++)
         momentum_begin(e->momentum, b - e->oct->body, (const double(*)[3])b->origin, b->x, b->v);
     const real *fall = e->oct->gravity;
@@ -532,7 +521,7 @@ static void engine_count(SmEngine *e, SmCounts *counts)
     *counts = (SmCounts){
         .particles = e->oct->instances * e->count,
         .regions = e->count,
-        .links = s->graph.edges / 2,
+        .links = s->graph.edges.live / 2,
         .bytes = oct_bytes(e->oct) + (long)oct_structure_bytes(s) +
                  (e->contacts ? oct_contacts_bytes(e->contacts) : 0) + momentum_bytes(e->momentum),
         .contacts = e->contacts ? oct_contacts_count(e->contacts) : 0,

@@ -28,16 +28,12 @@ static int frame_of(const Search *s, int node)
     return s->frame[s->tree->leaf[node]];
 }
 
-static void search_list(Search *s, const OctSumLists *lists, const OctSpan *span, int frame)
+static void search_list(Search *s, const OctSumLists *lists, long t, int frame)
 {
-    for (int *entry = lists->row + span->first; entry < lists->row + span->first + span->count;
-         entry++) {
-        int node = (int)(*entry - lists->base);
+    for (long at = lists->rows.first[t]; at < lists->rows.end[t]; at++) {
+        int *entry = &lists->rows.item[at], node = (int)(*entry - lists->base);
         if (node < 0 || frame_of(s, node) == frame) continue;
-        if (s->count == s->room) {
-            s->room = 2 * s->room + 64;
-            s->found = sm_realloc(s->found, (size_t)s->room, sizeof *s->found);
-        }
+        sm_make_room(s->found, s->room, s->count + 1);
         s->found[s->count++] = (Foreign){node, frame, entry};
     }
 }
@@ -45,9 +41,9 @@ static void search_list(Search *s, const OctSumLists *lists, const OctSpan *span
 static void search_lists(Search *s, const OctSumLists *lists)
 {
     for (long k = 0; k < lists->prefixes; k++)
-        search_list(s, lists, &lists->span[k], frame_of(s, lists->prefix[k]));
+        search_list(s, lists, k, frame_of(s, lists->prefix[k]));
     for (long leaf = 0; leaf < lists->leaves; leaf++)
-        search_list(s, lists, &lists->span[lists->prefixes + leaf], s->frame[leaf]);
+        search_list(s, lists, lists->prefixes + leaf, s->frame[leaf]);
 }
 
 static int compare(const void *a, const void *b)
@@ -70,7 +66,7 @@ static void add_ghosts(Oct *oct, Search *s)
     }
     oct->ghost_row = oct->lists.base;
     oct_sum_lists_rebase(&oct->lists, oct->ghost_row + oct->ghosts);
-    if (oct->goal_lists.span) oct_sum_lists_rebase(&oct->goal_lists, oct->lists.base);
+    if (oct->goal_lists.rows.first) oct_sum_lists_rebase(&oct->goal_lists, oct->lists.base);
     long ghost = -1;
     for (long i = 0; i < s->count; i++) {
         if (i == 0 || compare(&s->found[i], &s->found[i - 1]) != 0) ghost++;
@@ -93,7 +89,7 @@ void oct_ghosts_build(Oct *oct, const OctTree *tree, const OctRegions *regions)
     }
     oct->frame = frame;
     search_lists(&search, &oct->lists);
-    if (oct->goal_lists.span) search_lists(&search, &oct->goal_lists);
+    if (oct->goal_lists.rows.first) search_lists(&search, &oct->goal_lists);
     if (search.count) add_ghosts(oct, &search);
     free(search.found);
 }
@@ -114,10 +110,10 @@ void oct_ghosts_fill(Oct *oct, const OctTree *tree, const OctWeights *w)
 
 static void forget_ghosts(Oct *oct, OctSumLists *lists)
 {
-    for (long at = 0; at < lists->used; at++) {
-        long ghost = lists->row[at] - oct->ghost_row;
+    for (long at = 0; at < lists->rows.live; at++) { /* they still follow each other */
+        long ghost = lists->rows.item[at] - oct->ghost_row;
         if (ghost >= 0 && ghost < oct->ghosts)
-            lists->row[at] = (int)(lists->base + oct->ghost[ghost].node);
+            lists->rows.item[at] = (int)(lists->base + oct->ghost[ghost].node);
     }
 }
 
@@ -125,7 +121,7 @@ void oct_ghosts_merge(Oct *oct)
 {
     if (!oct->frame) return;
     forget_ghosts(oct, &oct->lists);
-    if (oct->goal_lists.span) forget_ghosts(oct, &oct->goal_lists);
+    if (oct->goal_lists.rows.first) forget_ghosts(oct, &oct->goal_lists);
     for (long i = 0; i < oct->instances; i++) {
         OctState *body = &oct->body[i];
         for (long leaf = 0; leaf < oct->leaves; leaf++)
@@ -144,9 +140,7 @@ void oct_ghosts_merge(Oct *oct)
 
 void oct_ghosts_free(Oct *oct)
 {
-    free(oct->frame);
-    free(oct->ghost);
-    free(oct->middle);
+    sm_free_all(oct->frame, oct->ghost, oct->middle);
 }
 
 size_t oct_ghosts_bytes(const Oct *oct)

@@ -13,10 +13,7 @@ void oct_handle_nodes_free(OctHandleNodes *nodes)
 
 void oct_handle_nodes_add(OctHandleNodes *nodes, long body, int leaf, int handle)
 {
-    if (nodes->count == nodes->room) {
-        nodes->room = nodes->room ? 2 * nodes->room : 64;
-        nodes->node = sm_realloc(nodes->node, (size_t)nodes->room, sizeof *nodes->node);
-    }
+    sm_make_room(nodes->node, nodes->room, nodes->count + 1);
     nodes->node[nodes->count++] =
         (struct OctHandleNode){.body = body, .leaf = leaf, .handle = handle};
 }

@@ -59,7 +59,8 @@ SM_INLINE Row list_moments(const OctTask *task, long t, long to)
 {
     const OctSumLists *lists = &task->oct->lists;
     const real *moment = task->rows->moment;
-    const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
+    const int *row = lists->rows.item + lists->rows.first[t];
+    const int *end = lists->rows.item + lists->rows.end[t];
     Row centre = row_pads(row_load(moment + to * OCT_ROW));
     Row sum[OCT_GROUP] = {{{{0}}}}, moved[OCT_GROUP] = {{{{0}}}};
     for (; row < end; row += OCT_GROUP)
@@ -194,9 +195,8 @@ static void transforms_down(OctTask *task, long first, long last)
     for (long k = first; k < last; k++) {
         real *to = task->rows->transform + oct_prefix_row(k) * OCT_ROW;
         Row from = row_from(row_pads(row_load(to))), linear = {0}, value = {0};
-        const int *entry = lists->row + lists->span[k].first;
-        for (int i = 0; i < lists->span[k].count; i++) {
-            Row row = row_load(transform + (long)entry[i] * OCT_ROW);
+        for (long at = lists->rows.first[k]; at < lists->rows.end[k]; at++) {
+            Row row = row_load(transform + (long)lists->rows.item[at] * OCT_ROW);
             row_add_values(row, &from, &value);
             linear = row_add(linear, row);
         }
@@ -216,8 +216,8 @@ SM_INLINE void goal_sums(const OctTask *task, long block, vec sum[3])
     vec field[16];
     for (int lane = 0; lane < SM_LANES; lane++) {
         long slot = block * SM_LANES + lane;
-        const OctSpan *span = &lists->span[lists->prefixes + slot];
-        const int *entry = lists->row + span->first, *end = entry + span->count;
+        const int *entry = lists->rows.item + lists->rows.first[lists->prefixes + slot];
+        const int *end = lists->rows.item + lists->rows.end[lists->prefixes + slot];
         Row from = row_from(row_pads(row_load(transform + (long)oct->row[slot] * OCT_ROW)));
         Row value[OCT_GROUP] = {{{{0}}}};
         for (; entry < end; entry += OCT_GROUP)

@@ -21,8 +21,8 @@ static inline void oct_count_rows(const OctTree *tree, const OctSumLists *lists,
                                   long last, double *leaf, double *inner)
 {
     for (long t = first; t < last; t++)
-        for (int i = 0; i < lists->span[t].count; i++) {
-            long row = lists->row[lists->span[t].first + i], node = row - lists->base;
+        for (long at = lists->rows.first[t]; at < lists->rows.end[t]; at++) {
+            long row = lists->rows.item[at], node = row - lists->base;
             if (row == OCT_ZERO_ROW) continue; /* fills up groups */
             if (node >= 0 && tree->child[node] < 0)
                 *leaf += 1;

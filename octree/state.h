@@ -87,7 +87,7 @@ typedef struct {
     long block_room, node_room; /* there is place for as many */
     int levels, threads;
     double mass_unit;
-    OctSumLists lists, goal_lists; /* goal_lists.span is NULL where the same lists serve */
+    OctSumLists lists, goal_lists; /* goal_lists is zeroed where the same lists serve */
     OctLevels inner;               /* tree nodes with children; of a fixed body rising */
     int *child;                    /* [nodes] */
     unsigned char *children;       /* [nodes] */
@@ -159,16 +159,22 @@ SM_INLINE void oct_shift(const Oct *oct, const OctState *body, long block, vec s
             shift[d][lane] = (real)oct_origin(oct, body, block * SM_LANES + lane)[d];
 }
 
-/* Where component d of simulation node `leaf` is in x, v and g of a body. */
+/* Where number `field` of a simulation node's `fields` is in an array [blocks][fields][lanes]. */
+static inline long oct_field(long leaf, int fields, int field)
+{
+    return (leaf / SM_LANES * fields + field) * SM_LANES + leaf % SM_LANES;
+}
+
+/* Where component d of a simulation node is in x, v and g of a body. */
 static inline long oct_index(long leaf, int d)
 {
-    return (leaf / SM_LANES * 3 + d) * SM_LANES + leaf % SM_LANES;
+    return oct_field(leaf, 3, d);
 }
 
 /* The lists that goal positions and damping sum over. */
 static inline const OctSumLists *oct_goal_lists(const Oct *oct)
 {
-    return oct->goal_lists.span ? &oct->goal_lists : &oct->lists;
+    return oct->goal_lists.rows.first ? &oct->goal_lists : &oct->lists;
 }
 
 #endif

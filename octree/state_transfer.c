@@ -43,15 +43,14 @@ static void add_leaf(Walk *w, long leaf)
     oct_fit_add(&w->fit, mass, X, x, v);
 }
 
-/* A node has at most 8 children, and those of one node of every level are on the stack. */
 static void add_node(Walk *w, int node)
 {
-    int stack[8 * (OCT_MAX_LEVELS + 1)], count = 0;
-    stack[count++] = node;
-    while (count) {
-        node = stack[--count];
+    OctStack stack;
+    oct_stack_begin(&stack, node);
+    while (stack.count > 0) {
+        node = oct_stack_take(&stack);
         if (w->slot[node] >= 0) add_leaf(w, w->slot[node]);
-        for (int i = 0; i < w->oct->children[node]; i++) stack[count++] = w->oct->child[node] + i;
+        oct_stack_put(&stack, w->oct->child[node], w->oct->children[node]);
     }
 }
 
@@ -60,13 +59,14 @@ static void add_list(Walk *w, long t)
 {
     const OctSumLists *lists = &w->oct->lists;
     while (t >= 0) {
-        const int *row = lists->row + lists->span[t].first, *end = row + lists->span[t].count;
-        t = -1;
-        for (; row < end; row++)
-            if (*row >= lists->base)
-                add_node(w, (int)(*row - lists->base));
-            else if (*row >= OCT_PREFIX_ROW)
-                t = *row - OCT_PREFIX_ROW;
+        long at = lists->rows.first[t], end = lists->rows.end[t];
+        for (t = -1; at < end; at++) {
+            int row = lists->rows.item[at];
+            if (row >= lists->base)
+                add_node(w, (int)(row - lists->base));
+            else if (row >= OCT_PREFIX_ROW)
+                t = row - OCT_PREFIX_ROW;
+        }
     }
 }
 
@@ -92,7 +92,7 @@ static void unpack(const short last[6], double R[9])
 }
 
 /* Of merged leaves that span space the motion is their own, so that a merge takes back a split. */
-static void fit(const Oct *oct, const OctTree *tree, const int *slot, const OctTransfer *h,
+static void fit(const Oct *oct, const OctTree *tree, const int *slot, const OctTransfer *t,
                 OctDonor *donor)
 {
     /* of the cell that is split or merged; middles of its parts are a quarter of its edge away */
@@ -101,73 +101,64 @@ static void fit(const Oct *oct, const OctTree *tree, const int *slot, const OctT
     Walk own = {.oct = oct, .donor = donor}, region = {.oct = oct, .slot = slot, .donor = donor};
     double last[9];
     unpack(donor->last, last);
-    for (int n = donor->next; n >= 0; n = h->donor[n].next) add_leaf(&own, h->donor[n].leaf);
+    for (int n = donor->next; n >= 0; n = t->donor[n].next) add_leaf(&own, t->donor[n].leaf);
     if (donor->next >= 0) add_leaf(&own, donor->leaf);
     if (donor->next >= 0 && oct_fit_solve(&own.fit, least, last, donor->F, donor->L) == 3) return;
     add_list(&region, oct->lists.prefixes + donor->leaf);
     oct_fit_solve(&region.fit, least, last, donor->F, donor->L);
 }
 
-/* Lane `leaf` of a row of `fields` of blocks. */
-static long field_at(long leaf, int fields, int field)
+static void make_room(const Oct *oct, const OctChange *change, OctTransfer *t)
 {
-    return (leaf / SM_LANES * fields + field) * SM_LANES + leaf % SM_LANES;
-}
-
-static void make_room(const Oct *oct, const OctChange *change, OctTransfer *h)
-{
-    if (change->removed_count > h->room) {
-        h->room = 2 * change->removed_count;
-        h->donor = sm_realloc(h->donor, (size_t)h->room, sizeof *h->donor);
-    }
+    sm_make_room(t->donor, t->room, change->removed_count);
     long leaves = oct->leaves;
     for (long n = 0; n < change->added_count; n++)
         if (change->added[n].leaf >= leaves) leaves = change->added[n].leaf + 1L;
-    if (leaves > h->leaves) {
-        h->leaves = 2 * leaves;
-        h->of = sm_realloc(h->of, (size_t)h->leaves, sizeof *h->of);
+    if (leaves > t->leaves) {
+        t->leaves = 2 * leaves;
+        t->of = sm_realloc(t->of, (size_t)t->leaves, sizeof *t->of);
     }
 }
 
 void oct_transfer_keep(const Oct *oct, const OctTree *tree, const OctChange *change,
-                       const int *slot, const double *below, OctTransfer *h)
+                       const int *slot, const double *below, OctTransfer *t)
 {
-    make_room(oct, change, h);
-    h->count = change->removed_count;
-    for (long n = 0; n < change->added_count; n++) h->of[change->added[n].leaf] = -1;
-    for (long n = 0; n < h->count; n++) {
+    make_room(oct, change, t);
+    t->count = change->removed_count;
+    for (long n = 0; n < change->added_count; n++) t->of[change->added[n].leaf] = -1;
+    for (long n = 0; n < t->count; n++) {
         const OctRemoved *removed = &change->removed[n];
-        OctDonor *donor = &h->donor[n];
+        OctDonor *donor = &t->donor[n];
         *donor = (OctDonor){.leaf = removed->leaf,
                             .node = removed->node,
                             .into = removed->into,
                             .fitted = (int)n,
                             .next = -1};
-        h->of[donor->leaf] = (int)n;
+        t->of[donor->leaf] = (int)n;
         donor->mass = below[removed->node];
         rest_of(oct, donor->leaf, donor->X);
         state_of(oct->body, donor->leaf, donor->x, donor->v);
-        for (int i = 0; i < 6; i++) donor->last[i] = oct->body->last[field_at(donor->leaf, 6, i)];
+        for (int i = 0; i < 6; i++) donor->last[i] = oct->body->last[oct_field(donor->leaf, 6, i)];
         for (int i = 0; i < 9 && oct->spread; i++)
-            donor->S[i] = (double)oct->body->plastic[field_at(donor->leaf, 9, i)];
-        int *first = donor->into >= 0 ? &h->of[donor->into] : NULL;
+            donor->S[i] = (double)oct->body->plastic[oct_field(donor->leaf, 9, i)];
+        int *first = donor->into >= 0 ? &t->of[donor->into] : NULL;
         if (first && *first >= 0) {
             donor->fitted = *first;
-            donor->next = h->donor[*first].next;
-            h->donor[*first].next = (int)n;
+            donor->next = t->donor[*first].next;
+            t->donor[*first].next = (int)n;
             continue;
         }
         if (first) *first = (int)n;
     }
-    for (long n = 0; n < h->count; n++)
-        if (h->donor[n].fitted == n) fit(oct, tree, slot, h, &h->donor[n]);
+    for (long n = 0; n < t->count; n++)
+        if (t->donor[n].fitted == n) fit(oct, tree, slot, t, &t->donor[n]);
 }
 
 /* Where a donor's motion takes what is at rest in X, and how fast. */
-static void carry(const OctTransfer *h, const OctDonor *donor, const double X[3], double x[3],
+static void carry(const OctTransfer *t, const OctDonor *donor, const double X[3], double x[3],
                   double v[3])
 {
-    const OctDonor *by = &h->donor[donor->fitted];
+    const OctDonor *by = &t->donor[donor->fitted];
     for (int i = 0; i < 3; i++) {
         x[i] = donor->x[i];
         v[i] = donor->v[i];
@@ -186,20 +177,20 @@ static void put(Oct *oct, long leaf, const OctDonor *sum)
         body->x[oct_index(leaf, d)] = (real)(sum->x[d] / sum->mass);
         body->v[oct_index(leaf, d)] = (real)(sum->v[d] / sum->mass);
     }
-    for (int i = 0; i < 6; i++) body->last[field_at(leaf, 6, i)] = sum->last[i];
+    for (int i = 0; i < 6; i++) body->last[oct_field(leaf, 6, i)] = sum->last[i];
     if (!oct->spread) return;
     const double *S = sum->S;
     double det = S[0] * (S[4] * S[8] - S[5] * S[7]) - S[1] * (S[3] * S[8] - S[5] * S[6]) +
                  S[2] * (S[3] * S[7] - S[4] * S[6]);
     double root = cbrt(det); /* volume is kept (plastic.h) */
     for (int i = 0; i < 9; i++)
-        body->plastic[field_at(leaf, 9, i)] = (real)(det > 0 ? S[i] / root : i % 4 == 0);
+        body->plastic[oct_field(leaf, 9, i)] = (real)(det > 0 ? S[i] / root : i % 4 == 0);
 }
 
-static void add_kin(const OctTransfer *h, const OctDonor *donor, const double X[3], OctDonor *sum)
+static void add_donor(const OctTransfer *t, const OctDonor *donor, const double X[3], OctDonor *sum)
 {
     double x[3], v[3];
-    carry(h, donor, X, x, v);
+    carry(t, donor, X, x, v);
     sum->mass += donor->mass;
     for (int d = 0; d < 3; d++) {
         sum->x[d] += donor->mass * x[d];
@@ -209,24 +200,24 @@ static void add_kin(const OctTransfer *h, const OctDonor *donor, const double X[
 }
 
 /* A new leaf takes the mean of what goes into it. */
-static void start(Oct *oct, const OctTransfer *h, const OctAdded *added)
+static void start(Oct *oct, const OctTransfer *t, const OctAdded *added)
 {
     double X[3];
     OctDonor sum = {0};
-    int n = h->of[added->from >= 0 ? added->from : added->leaf];
+    int n = t->of[added->from >= 0 ? added->from : added->leaf];
     rest_of(oct, added->leaf, X);
-    memcpy(sum.last, h->donor[n].last, sizeof sum.last);
-    for (; n >= 0; n = h->donor[n].next) add_kin(h, &h->donor[n], X, &sum);
+    memcpy(sum.last, t->donor[n].last, sizeof sum.last);
+    for (; n >= 0; n = t->donor[n].next) add_donor(t, &t->donor[n], X, &sum);
     put(oct, added->leaf, &sum);
 }
 
 void oct_transfer_start(Oct *oct, const OctChange *change, const double *below, double mass,
-                        bool free, const OctTransfer *h)
+                        bool free, const OctTransfer *t)
 {
     double place[3] = {0}, momentum[3] = {0}, x[3], v[3];
     for (long n = 0; n < change->added_count; n++) {
         const OctAdded *added = &change->added[n];
-        start(oct, h, added);
+        start(oct, t, added);
         state_of(oct->body, added->leaf, x, v);
         for (int d = 0; d < 3; d++) {
             place[d] += below[added->node] * x[d];
@@ -234,10 +225,10 @@ void oct_transfer_start(Oct *oct, const OctChange *change, const double *below, 
         }
     }
     if (!free) return;
-    for (long n = 0; n < h->count; n++)
+    for (long n = 0; n < t->count; n++)
         for (int d = 0; d < 3; d++) {
-            place[d] -= h->donor[n].mass * h->donor[n].x[d];
-            momentum[d] -= h->donor[n].mass * h->donor[n].v[d];
+            place[d] -= t->donor[n].mass * t->donor[n].x[d];
+            momentum[d] -= t->donor[n].mass * t->donor[n].v[d];
         }
     for (int d = 0; d < 3; d++) {
         oct->body->origin[0][d] -= place[d] / mass;
@@ -245,14 +236,14 @@ void oct_transfer_start(Oct *oct, const OctChange *change, const double *below, 
     }
 }
 
-void oct_transfer_free(OctTransfer *h)
+void oct_transfer_free(OctTransfer *t)
 {
-    free(h->donor);
-    free(h->of);
-    *h = (OctTransfer){0};
+    free(t->donor);
+    free(t->of);
+    *t = (OctTransfer){0};
 }
 
-size_t oct_transfer_bytes(const OctTransfer *h)
+size_t oct_transfer_bytes(const OctTransfer *t)
 {
-    return (size_t)h->room * sizeof *h->donor + (size_t)h->leaves * sizeof *h->of;
+    return (size_t)t->room * sizeof *t->donor + (size_t)t->leaves * sizeof *t->of;
 }

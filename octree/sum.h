@@ -14,16 +14,15 @@
 #define oct_each_ghost SM_NAME(oct_each_ghost)
 
 /* What a pass does with the blocks, inner nodes, prefixes or ghosts first .. last - 1. */
-typedef void OctComponent(OctTask *task, long first, long last);
+typedef void OctPass(OctTask *task, long first, long last);
 
-/* Each runs its part over this thread's shares and waits for the others. Which thread does what
+/* Each runs its pass over this thread's shares and waits for the others. Which thread does what
  * changes no bits: every row is summed by one thread, in the order of its list. */
-void oct_each_block(OctTask *task, OctComponent *part);
-void oct_climb(OctTask *task,
-               OctComponent *part); /* inner nodes, level by level from the deepest */
+void oct_each_block(OctTask *task, OctPass *pass);
+void oct_climb(OctTask *task, OctPass *pass); /* inner nodes, level by level from the deepest */
 void oct_descend(OctTask *task, const OctSumLists *lists,
-                 OctComponent *part); /* prefixes, from the top */
-void oct_each_ghost(OctTask *task, OctComponent *part);
+                 OctPass *pass); /* prefixes, from the top */
+void oct_each_ghost(OctTask *task, OctPass *pass);
 
 enum { ROW_VECS = OCT_ROW / SM_LANES };
 

@@ -56,8 +56,8 @@ TEST(test_asymmetric)
 /* How often list t, with its prefixes' lists, holds each leaf. */
 static void count_leaves(const OctTree *tree, const OctSumLists *lists, long t, int *count)
 {
-    for (int i = 0; i < lists->span[t].count; i++) {
-        long row = lists->row[lists->span[t].first + i], node = row - lists->base;
+    for (long at = lists->rows.first[t]; at < lists->rows.end[t]; at++) {
+        long row = lists->rows.item[at], node = row - lists->base;
         if (node < 0 && row >= OCT_PREFIX_ROW)
             count_leaves(tree, lists, row - OCT_PREFIX_ROW, count);
         if (node < 0) continue;
@@ -96,7 +96,7 @@ TEST(test_lists)
                 assert_int_equal(got[n + i], in[i * n + r]);
             }
         }
-        assert_true(lists.entries <= body.regions.first[n]);
+        assert_true(lists.entries <= body.regions.members.live);
         free(in);
         free(got);
         oct_sum_lists_free(&lists);
@@ -464,8 +464,8 @@ TEST(test_fastlsm)
         random_deformation(&seed, 1, 0.3, cells.particle_count, (const double(*)[3])x0, x);
         type->set(engine, SM_POSITION, (const double(*)[3])x);
         lattice_body(&seed, &cells, lattice.w, engine, type, &body);
-        for (long m = 0; m < body.regions.first[body.n]; m++)
-            inner += body.tree.child[body.regions.member[m]] >= 0;
+        for (long m = 0; m < body.regions.members.live; m++)
+            inner += body.tree.child[body.regions.members.item[m]] >= 0;
         Oct *oct = create(&body, (OctParams){.form = (OctGoalForm)(trial % 2), .threads = 1});
         oct_goals(oct);
         get(oct, 0, oct->body->g, true, body.a);

@@ -40,16 +40,16 @@ static inline void explicit_regions(unsigned *seed, const OctTree *tree, bool as
             in[i * n + j] = in[j * n + i] = (char)near;
             if (asymmetric && i != j && random_int(seed, 20) == 0) in[i * n + j] = !near;
         }
-    *regions = (OctRegions){.leaves = n,
-                            .first = sm_alloc((size_t)n + 1, sizeof(long)),
-                            .member = sm_alloc((size_t)(n * n), sizeof(int))};
-    long at = 0;
+    *regions = (OctRegions){0};
+    long *first = sm_alloc((size_t)n + 1, sizeof *first), at = 0;
+    int *member = sm_alloc((size_t)(n * n), sizeof *member);
     for (long i = 0; i < n; i++) {
         for (long j = 0; j < n; j++)
-            if (in[i * n + j]) regions->member[at++] = tree->node[j];
-        regions->first[i + 1] = at;
-        if (at - regions->first[i] > regions->most) regions->most = at - regions->first[i];
+            if (in[i * n + j]) member[at++] = tree->node[j];
+        first[i + 1] = at;
+        if (at - first[i] > regions->most) regions->most = at - first[i];
     }
+    sm_csr_adopt(&regions->members, n, first, member, NULL, 0);
     regions->mean = (double)at / (double)n;
     free(w);
     free(in);
@@ -158,22 +158,20 @@ static inline void adopt(const Oct *oct, Body *body)
 static inline void lattice_graph(const SmEngineType *type, SmEngine *ring, long n,
                                  const long *particle, const int *leaf, OctGraph *graph)
 {
-    long *member = sm_alloc((size_t)n, sizeof *member), at = 0;
-    *graph = (OctGraph){.leaves = n,
-                        .first = sm_alloc((size_t)n + 1, sizeof(long)),
-                        .to = sm_alloc(27 * (size_t)n, sizeof(int)),
-                        .length = sm_alloc(27 * (size_t)n, sizeof(int)),
-                        .longest = 2};
+    long *member = sm_alloc((size_t)n, sizeof *member),
+         *first = sm_alloc((size_t)n + 1, sizeof *first);
+    int *to = sm_alloc(27 * (size_t)n, sizeof *to),
+        *length = sm_alloc(27 * (size_t)n, sizeof *length);
     for (long i = 0; i < n; i++) {
-        long count = type->region(ring, particle[i], member, n);
-        for (long k = 0; k < count; k++) {
-            if (member[k] == particle[i]) continue;
-            graph->to[at] = leaf[member[k]];
-            graph->length[at++] = 2;
-        }
-        qsort(graph->to + graph->first[i], (size_t)(count - 1), sizeof(int), compare_members);
-        graph->first[i + 1] = at;
+        long count = type->region(ring, particle[i], member, n), at = first[i];
+        for (long k = 0; k < count; k++)
+            if (member[k] != particle[i]) to[at++] = leaf[member[k]];
+        sm_sort_ints(to + first[i], count - 1);
+        first[i + 1] = at;
     }
+    for (long e = 0; e < first[n]; e++) length[e] = 2;
+    *graph = (OctGraph){.longest = 2};
+    sm_csr_adopt(&graph->edges, n, first, to, length, sizeof *length);
     free(member);
 }
 

@@ -33,37 +33,27 @@ static long reach(const RefLinks *links, int w, long r, long *seen, int *found)
     return end;
 }
 
-/* Counts every region's members into start[r + 1] where `member` is NULL, else writes them. */
-static void reach_all(const RefLinks *links, int w, long *start, int *member)
+void ref_regions_reach(const RefLinks *links, int w, RefRegions *regions)
 {
+    SmCsr rows;
+    SmCsrParts members;
+    sm_csr_parts_init(&members, links->count);
 #pragma omp parallel num_threads(sm_team(0)) if (links->count > REF_SERIAL)
     {
         long *seen = sm_alloc((size_t)links->count, sizeof *seen);
         int *found = sm_alloc((size_t)links->count, sizeof *found);
-#pragma omp for schedule(dynamic, 64)
-        for (long r = 0; r < links->count; r++) {
-            long n = reach(links, w, r, seen, found);
-            if (!member) {
-                start[r + 1] = n;
-                continue;
+#pragma omp for schedule(dynamic)
+        for (long block = 0; block < members.blocks; block++)
+            for (long r = sm_csr_parts_from(block); r < sm_csr_parts_to(&members, block); r++) {
+                long count = reach(links, w, r, seen, found);
+                sm_sort_ints(found, count);
+                sm_csr_parts_add(&members, r, found, count);
             }
-            sm_sort_ints(found, n);
-            memcpy(member + start[r], found, (size_t)n * sizeof *found);
-        }
         free(found);
         free(seen);
     }
-}
-
-void ref_regions_reach(const RefLinks *links, int w, RefRegions *regions)
-{
-    long count = links->count;
-    regions->count = count;
-    regions->start = sm_alloc((size_t)count + 1, sizeof *regions->start);
-    reach_all(links, w, regions->start, NULL);
-    for (long r = 0; r < count; r++) regions->start[r + 1] += regions->start[r];
-    regions->member = sm_alloc((size_t)regions->start[count], sizeof *regions->member);
-    reach_all(links, w, regions->start, regions->member);
+    sm_csr_parts_join(&members, &rows, 0);
+    *regions = (RefRegions){.count = links->count, .start = rows.first, .member = rows.item};
 }
 
 void ref_regions_build(const SmVoxels *voxels, int w, const int (*broken)[2], long broken_count,
@@ -135,6 +125,19 @@ double ref_region_mean(const RefRegions *regions, const double *weight, const do
     return M;
 }
 
+void ref_region_moments(const RefRegions *regions, const double *weight, const double (*y)[3],
+                        const double mean[3], const double (*x0)[3], const double c0[3], long r,
+                        double A[9])
+{
+    memset(A, 0, 9 * sizeof *A);
+    for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
+        int i = regions->member[n];
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++)
+                A[3 * a + b] += weight[i] * (y[i][a] - mean[a]) * (x0[i][b] - c0[b]);
+    }
+}
+
 void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const double *m,
                     const double (*x)[3], RefMatch *match)
 {
@@ -143,14 +146,8 @@ void ref_match_sums(const RefRegions *regions, const double (*x0)[3], const doub
     for (long r = 0; r < regions->count; r++) {
         RefMatch *t = match + r;
         ref_region_mean(regions, modified, x0, r, t->c0);
-        t->M = ref_region_mean(regions, modified, x, r, t->c); /* eq. 9 */
-        memset(t->A, 0, sizeof t->A);
-        for (long n = regions->start[r]; n < regions->start[r + 1]; n++) { /* eq. 10 */
-            int i = regions->member[n];
-            for (int a = 0; a < 3; a++)
-                for (int b = 0; b < 3; b++)
-                    t->A[3 * a + b] += modified[i] * (x[i][a] - t->c[a]) * (x0[i][b] - t->c0[b]);
-        }
+        t->M = ref_region_mean(regions, modified, x, r, t->c);              /* eq. 9 */
+        ref_region_moments(regions, modified, x, t->c, x0, t->c0, r, t->A); /* eq. 10 */
     }
     free(modified);
 }
@@ -211,8 +208,10 @@ static void solve_known(const double I[9], const double L[3], double noise, doub
     for (int a = 0; a < 3; a++) omega[a] = over > 0 ? (solid ? sm_dot(C[a], L) : L[a]) / over : 0;
 }
 
-void ref_solve_inertia(double I[9], const double L[3], const RefSums *sums, long r,
-                       const double c[3], double units, double omega[3])
+/* omega of region r by the rule of RefSums, from its I (destroyed) and L about c, which are `units`
+ * times what they are over M_r. */
+static void solve_inertia(double I[9], const double L[3], const RefSums *sums, long r,
+                          const double c[3], double units, double omega[3])
 {
     if (sums) {
         double square = 0;
@@ -232,10 +231,6 @@ void ref_solve_inertia(double I[9], const double L[3], const RefSums *sums, long
     }
 }
 
-typedef struct {
-    double c[3], v[3], omega[3];
-} Motion;
-
 /* Largest distance along an axis from c in R_r: the unit that keeps I_r in range. */
 static double extent(const RefRegions *regions, const double (*x)[3], long r, const double c[3])
 {
@@ -245,20 +240,20 @@ static double extent(const RefRegions *regions, const double (*x)[3], long r, co
     return largest;
 }
 
-/* v_r and omega_r of eq. 14 about c_r. X X^T with X = [d]x is |d|^2 1 - d d^T: positive
- * semidefinite, so the signs of eq. 14 stand as printed. */
-static void rigid_motion(const RefRegions *regions, const double *modified, const double (*x)[3],
-                         const double (*v)[3], const RefSums *sums, long r, Motion *motion)
+/* X X^T with X = [d]x is |d|^2 1 - d d^T: positive semidefinite, so the signs of eq. 14 stand as
+ * printed. */
+void ref_rigid_motion(const RefRegions *regions, const double *weight, const double (*x)[3],
+                      const double (*v)[3], const RefSums *sums, long r, RefRigidMotion *motion)
 {
     double L[3] = {0}, I[9] = {0};
-    ref_region_mean(regions, modified, x, r, motion->c);
-    double M = ref_region_mean(regions, modified, v, r, motion->v);
+    ref_region_mean(regions, weight, x, r, motion->c);
+    double M = ref_region_mean(regions, weight, v, r, motion->v);
     double unit = extent(regions, x, r, motion->c);
     memset(motion->omega, 0, sizeof motion->omega);
     if (!(unit > 0 && isfinite(unit))) return; /* all in one point: nothing turns */
     for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
         int i = regions->member[n];
-        double share = modified[i] / M, d[3], dv[3], turn[3];
+        double share = weight[i] / M, d[3], dv[3], turn[3];
         for (int a = 0; a < 3; a++) {
             d[a] = (x[i][a] - motion->c[a]) / unit;
             dv[a] = v[i][a] - motion->v[a];
@@ -271,26 +266,32 @@ static void rigid_motion(const RefRegions *regions, const double *modified, cons
                 I[3 * a + b] += share * ((a == b ? square : 0) - d[a] * d[b]);
         }
     }
-    ref_solve_inertia(I, L, sums, r, motion->c, 1 / (unit * unit), motion->omega);
+    solve_inertia(I, L, sums, r, motion->c, 1 / (unit * unit), motion->omega);
     for (int a = 0; a < 3; a++) motion->omega[a] /= unit;
+}
+
+void ref_motion_at(const RefRigidMotion *motion, const double x[3], double v[3])
+{
+    double d[3] = {x[0] - motion->c[0], x[1] - motion->c[1], x[2] - motion->c[2]}, turn[3];
+    sm_cross(motion->omega, d, turn);
+    for (int a = 0; a < 3; a++) v[a] = motion->v[a] + turn[a];
 }
 
 void ref_rigid_velocity(const RefRegions *regions, const double *m, const double (*x)[3],
                         const double (*v)[3], const RefSums *sums, double (*u)[3])
 {
     double *modified = modified_masses(regions, m);
-    Motion *motion = sm_alloc((size_t)regions->count, sizeof *motion);
+    RefRigidMotion *motion = sm_alloc((size_t)regions->count, sizeof *motion);
 #pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long r = 0; r < regions->count; r++)
-        rigid_motion(regions, modified, x, v, sums, r, motion + r);
+        ref_rigid_motion(regions, modified, x, v, sums, r, motion + r);
 #pragma omp parallel for num_threads(sm_team(0)) if (regions->count > REF_SERIAL)
     for (long i = 0; i < regions->count; i++) {
         double sum[3] = {0};
         for (long n = regions->start[i]; n < regions->start[i + 1]; n++) {
-            const Motion *t = motion + regions->member[n];
-            double d[3] = {x[i][0] - t->c[0], x[i][1] - t->c[1], x[i][2] - t->c[2]}, turn[3];
-            sm_cross(t->omega, d, turn);
-            for (int a = 0; a < 3; a++) sum[a] += t->v[a] + turn[a];
+            double here[3];
+            ref_motion_at(motion + regions->member[n], x[i], here);
+            for (int a = 0; a < 3; a++) sum[a] += here[a];
         }
         double size = (double)(regions->start[i + 1] - regions->start[i]);
         for (int a = 0; a < 3; a++) u[i][a] = sum[a] / size;

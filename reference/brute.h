@@ -32,6 +32,11 @@ void ref_regions_reach(const RefLinks *links, int w, RefRegions *regions);
 double ref_region_mean(const RefRegions *regions, const double *weight, const double (*y)[3],
                        long r, double mean[3]);
 
+/* A = sum of weight_i (y_i - mean) (x0_i - c0)^T over region r, row-major. O(members). */
+void ref_region_moments(const RefRegions *regions, const double *weight, const double (*y)[3],
+                        const double mean[3], const double (*x0)[3], const double c0[3], long r,
+                        double A[9]);
+
 /* How many different member sets there are ("unique regions"). */
 long ref_regions_unique(const RefRegions *regions);
 
@@ -76,10 +81,15 @@ typedef struct {
 void ref_rigid_velocity(const RefRegions *regions, const double *m, const double (*x)[3],
                         const double (*v)[3], const RefSums *sums, double (*u)[3]);
 
-/* omega of region r by the same rule, from its I (destroyed) and L about c, which are `units` times
- * what they are over M_r. */
-void ref_solve_inertia(double I[9], const double L[3], const RefSums *sums, long r,
-                       const double c[3], double units, double omega[3]);
+/* v_r and omega_r of eq. 14 about c_r, of region r whose particles count `weight`. O(members). */
+typedef struct {
+    double c[3], v[3], omega[3];
+} RefRigidMotion;
+void ref_rigid_motion(const RefRegions *regions, const double *weight, const double (*x)[3],
+                      const double (*v)[3], const RefSums *sums, long r, RefRigidMotion *motion);
+
+/* Velocity of a rigid motion at x. */
+void ref_motion_at(const RefRigidMotion *motion, const double x[3], double v[3]);
 
 /* The whole as an engine named "brute" behind the common interface. The first step is damped, then
  * every damping_every-th. A posed instance is matched to its posed rest shape. */

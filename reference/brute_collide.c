@@ -282,12 +282,7 @@ RefCollide *ref_collide_start(const SmCollideRest *rest, const SmCollideParams *
 
 void ref_collide_free(RefCollide *twin)
 {
-    free(twin->level);
-    free(twin->surface);
-    free(twin->place);
-    free(twin->way);
-    free(twin->around);
-    free(twin);
+    sm_free_all(twin->level, twin->surface, twin->place, twin->way, twin->around, twin);
 }
 
 bool ref_collide_outer(const RefCollide *twin, long number)

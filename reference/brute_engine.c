@@ -58,13 +58,7 @@ static void body_free(Body *body)
 {
     ref_links_free(&body->links);
     ref_regions_free(&body->regions);
-    free(body->match);
-    free(body->x0);
-    free(body->x);
-    free(body->v);
-    free(body->g);
-    free(body->u);
-    free(body->broken);
+    sm_free_all(body->match, body->x0, body->x, body->v, body->g, body->u, body->broken);
 }
 
 static SmCode brute_create(const SmVoxels *voxels, const SmEngineParams *params, SmEngine **result,
@@ -120,10 +114,7 @@ static void brute_destroy(SmEngine *engine)
     for (long b = 0; b < engine->params.instances; b++) body_free(engine->body + b);
     boundary_free(engine);
     sm_voxels_free(&engine->voxels);
-    free(engine->mass);
-    free(engine->held);
-    free(engine->body);
-    free(engine);
+    sm_free_all(engine->mass, engine->held, engine->body, engine);
 }
 
 static void match_body(const SmEngine *engine, Body *body, SmLaps *laps)

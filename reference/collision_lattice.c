@@ -90,7 +90,6 @@ void ref_collision_lattice_build(const SmVoxels *voxels, const int (*broken)[2],
 
 void ref_collision_lattice_free(RefCollisionLattice *o)
 {
-    void *all[] = {o->carrier, o->across, o->to, o->length, o->x0, o->centre, o->edge, o->first};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(o->carrier, o->across, o->to, o->length, o->x0, o->centre, o->edge, o->first);
     *o = (RefCollisionLattice){0};
 }

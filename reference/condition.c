@@ -14,19 +14,11 @@ typedef struct {
 static void find_moments(const RefRegions *regions, const double *weight, const double (*x0)[3],
                          const double (*x)[3], long r, Moments *m)
 {
-    memset(m, 0, sizeof *m);
     ref_region_mean(regions, weight, x0, r, m->c0);
     double mass = ref_region_mean(regions, weight, x, r, m->c);
-    for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
-        int i = regions->member[n];
-        for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++) {
-                double to = weight[i] * (x0[i][b] - m->c0[b]);
-                m->A[3 * a + b] += (x[i][a] - m->c[a]) * to;
-                m->B[3 * a + b] += (x0[i][a] - m->c0[a]) * to;
-                m->S[3 * a + b] += weight[i] * (x[i][a] - m->c[a]) * (x[i][b] - m->c[b]);
-            }
-    }
+    ref_region_moments(regions, weight, x, m->c, x0, m->c0, r, m->A);
+    ref_region_moments(regions, weight, x0, m->c0, x0, m->c0, r, m->B);
+    ref_region_moments(regions, weight, x, m->c, x, m->c, r, m->S);
     for (int e = 0; e < 9; e++) {
         m->A[e] /= mass;
         m->B[e] /= mass;

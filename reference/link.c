@@ -1,8 +1,10 @@
 #include "link.h"
-#include "../lib/system/team.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+#include "../lib/csr.h"
+#include "../lib/system/team.h"
 
 enum { RING = 26 };
 
@@ -95,21 +97,17 @@ void ref_links_build(const SmVoxels *voxels, const int (*broken)[2], long broken
     int(*sorted)[2] = sort_pairs(broken, broken_count);
     Lattice lattice = {voxels, (const int(*)[3])coordinate, (const int(*)[2])sorted, broken_count};
 
-    links->count = count;
-    links->start = sm_alloc((size_t)count + 1, sizeof *links->start);
+    SmCsr rows;
+    SmCsrParts neighbours;
+    sm_csr_parts_init(&neighbours, count);
 #pragma omp parallel for num_threads(sm_team(0)) if (count > REF_SERIAL)
-    for (long p = 0; p < count; p++) {
-        int neighbour[RING];
-        links->start[p + 1] = one_ring(&lattice, p, neighbour);
-    }
-    for (long p = 0; p < count; p++) links->start[p + 1] += links->start[p];
-    links->neighbour = sm_alloc((size_t)links->start[count], sizeof *links->neighbour);
-#pragma omp parallel for num_threads(sm_team(0)) if (count > REF_SERIAL)
-    for (long p = 0; p < count; p++) {
-        int neighbour[RING];
-        int found = one_ring(&lattice, p, neighbour);
-        memcpy(links->neighbour + links->start[p], neighbour, (size_t)found * sizeof *neighbour);
-    }
+    for (long block = 0; block < neighbours.blocks; block++)
+        for (long p = sm_csr_parts_from(block); p < sm_csr_parts_to(&neighbours, block); p++) {
+            int neighbour[RING];
+            sm_csr_parts_add(&neighbours, p, neighbour, one_ring(&lattice, p, neighbour));
+        }
+    sm_csr_parts_join(&neighbours, &rows, 0);
+    *links = (RefLinks){.count = count, .start = rows.first, .neighbour = rows.item};
     free(sorted);
     free(coordinate);
 }

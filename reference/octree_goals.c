@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/vector.h"
 #include "svd_polar.h"
 
 /* Appends the leaves below a tree node, numbered among those that live; returns how many there are
@@ -28,8 +27,8 @@ static long explicit_leaves(const OctTree *tree, const OctRegions *regions, cons
     for (long r = 0; r < tree->leaves; r++) {
         if (tree->node[r] < 0) continue;
         start[live++] = count;
-        for (long n = regions->first[r]; n < oct_regions_end(regions, r); n++)
-            count = append_leaves(tree, number, regions->member[n], member, count);
+        for (long n = regions->members.first[r]; n < regions->members.end[r]; n++)
+            count = append_leaves(tree, number, regions->members.item[n], member, count);
     }
     start[live] = count;
     return count;
@@ -77,12 +76,7 @@ void ref_tree_init(const OctTree *tree, const OctRegions *regions, const double 
 void ref_tree_free(RefTreeBody *body)
 {
     ref_regions_free(&body->regions);
-    free(body->x0);
-    free(body->m);
-    free(body->weight);
-    free(body->reach);
-    free(body->R);
-    free(body->S);
+    sm_free_all(body->x0, body->m, body->weight, body->reach, body->R, body->S);
 }
 
 static void multiply(const double A[9], const double B[9], double C[9])
@@ -126,18 +120,11 @@ typedef struct {
 static void match_region(const RefTreeBody *body, const double (*x)[3], long r, Match *t)
 {
     double St[9];
-    memset(t, 0, sizeof *t);
-    ref_region_mean(&body->regions, body->weight, (const double(*)[3])body->x0, r, t->c0);
+    const double(*x0)[3] = (const double(*)[3])body->x0;
+    ref_region_mean(&body->regions, body->weight, x0, r, t->c0);
     ref_region_mean(&body->regions, body->weight, x, r, t->c);
-    for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
-        int i = body->regions.member[n];
-        for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++) {
-                double to = body->weight[i] * (body->x0[i][b] - t->c0[b]);
-                t->A[3 * a + b] += (x[i][a] - t->c[a]) * to;
-                t->B[3 * a + b] += (body->x0[i][a] - t->c0[a]) * to;
-            }
-    }
+    ref_region_moments(&body->regions, body->weight, x, t->c, x0, t->c0, r, t->A);
+    ref_region_moments(&body->regions, body->weight, x0, t->c0, x0, t->c0, r, t->B);
     transpose(body->S[r], St);
     multiply(t->A, St, t->A);
     ref_polar(t->A, body->R[r], body->R[r]);
@@ -192,43 +179,19 @@ void ref_tree_goals(RefTreeBody *body, const double (*x)[3], bool flow, double (
         for (int a = 0; a < 3; a++) g[i][a] = x[i][a] + g[i][a] / body->reach[i];
 }
 
-/* v_r and omega_r about c_r (fastlsm eq. 14). */
-static void rigid_motion(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
-                         const RefSums *sums, long r, double c[3], double mean[3], double omega[3])
-{
-    double L[3] = {0}, I[9] = {0}, M = ref_region_mean(&body->regions, body->weight, x, r, c);
-    ref_region_mean(&body->regions, body->weight, v, r, mean);
-    for (long n = body->regions.start[r]; n < body->regions.start[r + 1]; n++) {
-        int i = body->regions.member[n];
-        double d[3], dv[3], turn[3], square = 0;
-        for (int a = 0; a < 3; a++) {
-            d[a] = x[i][a] - c[a];
-            dv[a] = v[i][a] - mean[a];
-            square += d[a] * d[a];
-        }
-        sm_cross(d, dv, turn);
-        for (int a = 0; a < 3; a++) {
-            L[a] += body->weight[i] * turn[a];
-            for (int b = 0; b < 3; b++)
-                I[3 * a + b] += body->weight[i] * ((a == b ? square : 0) - d[a] * d[b]);
-        }
-    }
-    ref_solve_inertia(I, L, sums, r, c, M, omega);
-}
-
 void ref_tree_rigid_velocity(const RefTreeBody *body, const double (*x)[3], const double (*v)[3],
                              const RefSums *sums, double (*u)[3])
 {
     const RefRegions *regions = &body->regions;
     memset(u, 0, (size_t)regions->count * sizeof *u);
     for (long r = 0; r < regions->count; r++) {
-        double c[3], mean[3], omega[3];
-        rigid_motion(body, x, v, sums, r, c, mean, omega);
+        RefRigidMotion motion;
+        ref_rigid_motion(regions, body->weight, x, v, sums, r, &motion);
         for (long n = regions->start[r]; n < regions->start[r + 1]; n++) {
+            double here[3];
             int i = regions->member[n];
-            double d[3] = {x[i][0] - c[0], x[i][1] - c[1], x[i][2] - c[2]}, turn[3];
-            sm_cross(omega, d, turn);
-            for (int a = 0; a < 3; a++) u[i][a] += body->m[r] * (mean[a] + turn[a]);
+            ref_motion_at(&motion, x[i], here);
+            for (int a = 0; a < 3; a++) u[i][a] += body->m[r] * here[a];
         }
     }
     for (long i = 0; i < regions->count; i++)

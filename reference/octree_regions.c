@@ -83,9 +83,7 @@ void ref_octree_build(const OctTree *tree, const SmVoxels *voxels, RefOctree *re
 
 void ref_octree_free(RefOctree *ref)
 {
-    free(ref->joined);
-    free(ref->length);
-    free(ref->distance);
+    sm_free_all(ref->joined, ref->length, ref->distance);
     memset(ref, 0, sizeof *ref);
 }
 

@@ -27,8 +27,7 @@ static void complete_basis(double basis[3][3])
         for (int k = 0; k < 3; k++) b[k] -= along * a[k];
         normalise(b);
     }
-    for (int k = 0; k < 3; k++)
-        c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+    sm_cross(a, b, c);
 }
 
 /* A = U diag(s) V^T with proper rotations whose columns are the rows of u and v: the sign of

@@ -18,11 +18,12 @@ static bool fail(char reason[BENCH_TREE_REASON], const char *what, long i, long 
 
 static bool equal_edges(const OctGraph *graph, const RefOctree *twin, char *reason)
 {
-    for (long i = 0; i < graph->leaves; i++) {
-        long at = graph->first[i];
-        for (long j = 0; j < graph->leaves; j++) {
-            int wanted = twin->length[i * graph->leaves + j], found = 0;
-            if (at < graph->first[i + 1] && graph->to[at] == j) found = graph->length[at++];
+    for (long i = 0; i < graph->edges.rows; i++) {
+        long at = graph->edges.first[i];
+        for (long j = 0; j < graph->edges.rows; j++) {
+            int wanted = twin->length[i * graph->edges.rows + j], found = 0;
+            if (at < graph->edges.end[i] && graph->edges.item[at] == j)
+                found = oct_graph_length(graph)[at++];
             if (found != wanted) return fail(reason, "an edge is not the twin's", i, j);
         }
     }
@@ -34,11 +35,11 @@ static bool equal_distances(const OctGraph *graph, const RefOctree *twin, char *
     bool right = true;
     OctReach reach;
     oct_reach_init(&reach, graph);
-    for (long i = 0; i < graph->leaves && right; i++) {
+    for (long i = 0; i < graph->edges.rows && right; i++) {
         oct_reach_from(&reach, (int)i, OCT_FAR / 2);
-        for (long j = 0; j < graph->leaves && right; j++) {
+        for (long j = 0; j < graph->edges.rows && right; j++) {
             long found = reach.distance[j] == OCT_FAR ? -1 : reach.distance[j];
-            if (found != twin->distance[i * graph->leaves + j])
+            if (found != twin->distance[i * graph->edges.rows + j])
                 right = fail(reason, "a distance is not Dijkstra's", i, j);
         }
     }
@@ -111,11 +112,12 @@ static bool regular_graph(const OctStructure *body, char *reason)
             if (leaf >= 0) near[count++] = leaf;
         }
         qsort(near, (size_t)count, sizeof *near, compare);
-        long first = body->graph.first[i];
-        if (body->graph.first[i + 1] - first != count)
+        long first = body->graph.edges.first[i];
+        if (body->graph.edges.end[i] - first != count)
             return fail(reason, "edges are too few or too many", i, i);
         for (int n = 0; n < count; n++)
-            if (body->graph.to[first + n] != near[n] || body->graph.length[first + n] != 2)
+            if (body->graph.edges.item[first + n] != near[n] ||
+                oct_graph_length(&body->graph)[first + n] != 2)
                 return fail(reason, "an edge is not that of touching cells", i, near[n]);
     }
     return true;
@@ -200,14 +202,14 @@ bool bench_tree_check_regions(const OctStructure *body, char reason[BENCH_TREE_R
 bool bench_tree_check_distances(const OctReach *reach, int source, char reason[BENCH_TREE_REASON])
 {
     const OctGraph *graph = reach->graph;
-    for (long i = 0; i < graph->leaves; i++) {
+    for (long i = 0; i < graph->edges.rows; i++) {
         bool reached = reach->distance[i] != OCT_FAR, path = i == source;
-        for (long e = graph->first[i]; e < graph->first[i + 1]; e++) {
-            int from = reach->distance[graph->to[e]];
+        for (long e = graph->edges.first[i]; e < graph->edges.end[i]; e++) {
+            int from = reach->distance[graph->edges.item[e]];
             if (from == OCT_FAR) continue;
-            if (!reached || from + graph->length[e] < reach->distance[i])
+            if (!reached || from + oct_graph_length(graph)[e] < reach->distance[i])
                 return fail(reason, "a distance is not the shortest", source, i);
-            path = path || from + graph->length[e] == reach->distance[i];
+            path = path || from + oct_graph_length(graph)[e] == reach->distance[i];
         }
         if (reached && !path) return fail(reason, "no path has the distance", source, i);
     }

@@ -147,8 +147,8 @@ static void compare_rebuilt(const Cube *cube, BenchTrial *trial)
     }
     for (long i = 0; i < fresh.tree.leaves; i++) {
         int at = leaf[i];
-        long edges = oct_graph_end(&fresh.graph, i) - fresh.graph.first[i];
-        wrong += edges != oct_graph_end(&s->graph, at) - s->graph.first[at] ||
+        long edges = fresh.graph.edges.end[i] - fresh.graph.edges.first[i];
+        wrong += edges != s->graph.edges.end[at] - s->graph.edges.first[at] ||
                  fresh.regions.size[i] != s->regions.size[at] || fresh.w[i] != s->w[at] ||
                  fabs(fresh.mass[i] - s->mass[at]) > 1e-12 * fresh.mass[i];
     }

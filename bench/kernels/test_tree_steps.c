@@ -9,11 +9,9 @@
 static void lose_member(OctStructure *body)
 {
     OctRegions *r = &body->regions;
-    long lost = r->first[1] - 1;
-    assert_int_not_equal(r->member[lost], body->tree.node[0]);
-    memmove(r->member + lost, r->member + lost + 1,
-            (size_t)(r->first[r->leaves] - lost - 1) * sizeof *r->member);
-    for (long i = 1; i <= r->leaves; i++) r->first[i]--;
+    int lost = r->members.item[r->members.end[0] - 1];
+    assert_int_not_equal(lost, body->tree.node[0]);
+    sm_csr_remove(&r->members, 0, lost);
     r->size[0]--;
 }
 
@@ -89,9 +87,9 @@ TEST(a_wrong_octree_setup_is_not_timed)
                              k == BENCH_SETUP_WHOLE);
         }
         OctStructure *body = &((BenchTreeBody *)job->body)->structure;
-        body->regions.member[0] = body->tree.node[body->tree.leaves - 1];
+        body->regions.members.item[0] = body->tree.node[body->tree.leaves - 1];
         is_found_wrong(job, BENCH_SETUP_REGIONS, "region");
-        body->graph.length[0]++;
+        oct_graph_length(&body->graph)[0]++;
         is_found_wrong(job, BENCH_SETUP_GRAPH, "edge");
         bench_jobs_close(job, KINDS);
     }

@@ -43,13 +43,13 @@ static void count_searches(const OctStructure *body, bool far, long sources, dou
     oct_reach_init(&reach, graph);
     *edges = *reached = 0;
     for (long s = 0; s < sources; s++) {
-        long source = s * graph->leaves / sources;
+        long source = s * graph->edges.rows / sources;
         int limit = far ? OCT_FAR / 2 : oct_one_sided_reach(body->w[source], body->options.epsilon);
         oct_reach_from(&reach, (int)source, limit);
         for (long n = 0; n < reach.count; n++) {
             int leaf = reach.reached[n];
             if (reach.nearest[leaf] <= limit - reach.distance[leaf])
-                *edges += (double)(graph->first[leaf + 1] - graph->first[leaf]);
+                *edges += (double)(graph->edges.end[leaf] - graph->edges.first[leaf]);
         }
         *reached += (double)reach.count;
     }
@@ -80,7 +80,7 @@ static SmOperations work_of(const OctStructure *body, BenchSetupKind kind, long 
         least = oct_reach_operations(edges, reached);
     }
     if (parts[kind].tree) least.far_bytes += tree / leaves;
-    edges = (double)body->graph.first[body->tree.leaves] / leaves;
+    edges = (double)body->graph.edges.live / leaves;
     if (parts[kind].graph)
         least = sm_operations_add(least, 1, oct_graph_operations(&body->tree, edges));
     if (parts[kind].regions) {
@@ -116,7 +116,7 @@ static bool check(const OctStructure *body, BenchSetupKind kind, char *reason)
 static void search(OctReach *reach, long sources)
 {
     for (long s = 0; s < sources; s++)
-        oct_reach_from(reach, (int)(s * reach->graph->leaves / sources), OCT_FAR / 2);
+        oct_reach_from(reach, (int)(s * reach->graph->edges.rows / sources), OCT_FAR / 2);
 }
 
 /* What the last run has made. */
@@ -161,7 +161,7 @@ static int decimals(double ms)
 static void write_note(BenchSetupKind kind, const OctStructure *body, double user_ns,
                        BenchKernelRow *row)
 {
-    double nodes = (double)body->tree.leaves, edges = (double)body->graph.first[body->tree.leaves];
+    double nodes = (double)body->tree.leaves, edges = (double)body->graph.edges.live;
     double leaves = 0; /* of all regions */
     char *note = row->note;
     size_t room = sizeof row->note;
@@ -174,7 +174,7 @@ static void write_note(BenchSetupKind kind, const OctStructure *body, double use
         snprintf(note, room, "%.*f ms; %.1f edges a node", decimals(ms), ms, edges / nodes);
         break;
     case BENCH_SETUP_REGIONS:
-        for (long i = 0; i < body->regions.leaves; i++) leaves += body->regions.size[i];
+        for (long i = 0; i < body->regions.members.rows; i++) leaves += body->regions.size[i];
         snprintf(note, room, "%.*f ms, distances included; %.1f leaves a region", decimals(ms), ms,
                  leaves / nodes);
         break;

@@ -122,15 +122,15 @@ static void write_leaves(BenchH5 *h5, hid_t group, const OctStructure *s)
 /* Every edge once, from the lower leaf. */
 static void write_edges(BenchH5 *h5, hid_t group, const OctGraph *graph)
 {
-    size_t count = (size_t)graph->first[graph->leaves] / 2;
+    size_t count = (size_t)graph->edges.live / 2;
     int(*edge)[2] = sm_alloc(count, sizeof *edge), *length = sm_alloc(count, sizeof *length);
     size_t at = 0;
-    for (long i = 0; i < graph->leaves; i++)
-        for (long e = graph->first[i]; e < graph->first[i + 1]; e++) {
-            if (graph->to[e] < i) continue;
+    for (long i = 0; i < graph->edges.rows; i++)
+        for (long e = graph->edges.first[i]; e < graph->edges.end[i]; e++) {
+            if (graph->edges.item[e] < i) continue;
             edge[at][0] = (int)i;
-            edge[at][1] = graph->to[e];
-            length[at++] = graph->length[e];
+            edge[at][1] = graph->edges.item[e];
+            length[at++] = oct_graph_length(graph)[e];
         }
     hsize_t size[] = {count, 2};
     bench_h5_dataset(h5, group, "edge", H5T_STD_I32LE, 2, size, edge);
@@ -147,10 +147,10 @@ static void write_octree(BenchH5 *h5, hid_t group, const BenchStepSource *source
     write_tree(h5, group, &s->tree);
     write_leaves(h5, group, s);
     write_edges(h5, group, &s->graph);
-    hsize_t ends = (hsize_t)s->regions.leaves + 1;
-    hsize_t members = (hsize_t)s->regions.first[s->regions.leaves];
-    bench_h5_dataset(h5, group, "region_first", H5T_STD_I64LE, 1, &ends, s->regions.first);
-    bench_h5_dataset(h5, group, "summation", H5T_STD_I32LE, 1, &members, s->regions.member);
+    hsize_t ends = (hsize_t)s->regions.members.rows + 1;
+    hsize_t members = (hsize_t)s->regions.members.live;
+    bench_h5_dataset(h5, group, "region_first", H5T_STD_I64LE, 1, &ends, s->regions.members.first);
+    bench_h5_dataset(h5, group, "summation", H5T_STD_I32LE, 1, &members, s->regions.members.item);
 }
 
 /* ---- both */

@@ -4,32 +4,32 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Is any of the cell within `reach` of a place? */
+static bool is_within(const double centre[3], double half, const double place[3], double reach)
+{
+    double square = 0;
+    for (int d = 0; d < 3; d++) {
+        double beyond = fmax(fabs(place[d] - centre[d]) - half, 0);
+        square += beyond * beyond;
+    }
+    return square <= reach * reach;
+}
+
 bool oct_ball_criterion(const void *what, const double centre[3], double half, int level,
                         bool split)
 {
     const OctBallRefinement *ball = what;
-    double square = 0;
     (void)split;
-    if (level >= ball->level) return false;
-    for (int d = 0; d < 3; d++) {
-        double beyond = fmax(fabs(ball->centre[d] - centre[d]) - half, 0);
-        square += beyond * beyond;
-    }
-    return square <= ball->radius * ball->radius;
+    return level < ball->level && is_within(centre, half, ball->centre, ball->radius);
 }
 
 bool oct_view_criterion(const void *what, const double centre[3], double half, int level,
                         bool split)
 {
     const OctViewRefinement *view = what;
-    double square = 0, reach = ldexp(view->near, view->level - 1 - level);
-    if (level >= view->level) return false;
+    double reach = ldexp(view->near, view->level - 1 - level);
     if (split) reach *= 1 + view->slack;
-    for (int d = 0; d < 3; d++) {
-        double beyond = fmax(fabs(view->eye[d] - centre[d]) - half, 0);
-        square += beyond * beyond;
-    }
-    return square <= reach * reach;
+    return level < view->level && is_within(centre, half, view->eye, reach);
 }
 
 /* One look at a structure. */
@@ -46,21 +46,16 @@ typedef struct {
 static bool wanted(const Look *look, int node)
 {
     const OctTree *tree = &look->structure->tree;
-    double cell = look->structure->cell, centre[3];
+    double centre[3];
     if (!look->criterion) return false;
-    for (int d = 0; d < 3; d++)
-        centre[d] = look->structure->origin[d] + 0.5 * cell * tree->centre[node][d];
-    return look->criterion(look->what, centre, 0.25 * cell * tree->size[node],
+    oct_tree_centre(tree, &look->structure->voxels, node, centre);
+    return look->criterion(look->what, centre, 0.25 * look->structure->cell * tree->size[node],
                            oct_tree_level(tree, node), tree->children[node] > 0);
 }
 
 static void remember(OctRefinement *refinement, int node, double time)
 {
-    if (refinement->count == refinement->room) {
-        refinement->room = 2 * refinement->room + 64;
-        refinement->cell =
-            sm_realloc(refinement->cell, (size_t)refinement->room, sizeof *refinement->cell);
-    }
+    sm_make_room(refinement->cell, refinement->room, refinement->count + 1);
     refinement->cell[refinement->count++] = (struct OctRefinedCell){node, time};
 }
 

@@ -284,14 +284,14 @@ const OctChange *oct_resample_update(OctStructure *s)
     weigh(s, change);
     oct_graph_change_find(graph, change);
     oct_region_change_grow(&r->region, s->w, r->tree.below);
-    oct_region_change_note(&r->region, graph->gone, graph->gone_count);
+    oct_region_change_note(&r->region, &graph->gone);
     oct_region_change_mark(&r->region);
     oct_graph_change_apply(graph, reach);
-    oct_region_change_note(&r->region, graph->come, graph->come_count);
-    change->edge_count = graph->gone_count + graph->come_count;
+    oct_region_change_note(&r->region, &graph->come);
+    change->edge_count = graph->gone.count + graph->come.count;
     oct_graph_change_cut(graph, s->cut_known);
-    change->edge_count += graph->gone_count;
-    oct_region_change_note(&r->region, graph->gone, graph->gone_count);
+    change->edge_count += graph->gone.count;
+    oct_region_change_note(&r->region, &graph->gone);
     oct_region_change_mark(&r->region);
     oct_graph_change_apply(graph, reach);
     s->cut_known = s->cut.triangles;
@@ -320,10 +320,7 @@ long oct_resample_near_cut(OctStructure *s, long first, double distance, int lev
         oct_graph_change_corners(&s->voxels, &s->cut, t, corner);
         oct_leaf_query_triangle(&r->query, (const double(*)[3])corner, 2 * distance / s->cell,
                                 level, OCT_CELLS);
-        if (r->coarse_count + r->query.count > r->coarse_room) {
-            r->coarse_room = 2 * (r->coarse_count + r->query.count);
-            r->coarse = sm_realloc(r->coarse, (size_t)r->coarse_room, sizeof *r->coarse);
-        }
+        sm_make_room(r->coarse, r->coarse_room, r->coarse_count + r->query.count);
         if (r->query.count > 0)
             memcpy(r->coarse + r->coarse_count, r->query.node,
                    (size_t)r->query.count * sizeof *r->coarse);

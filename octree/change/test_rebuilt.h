@@ -27,21 +27,21 @@ static inline int compare_pairs(const void *a, const void *b)
 static inline void check_edges(const OctStructure *s, long leaf, const OctStructure *want,
                                long twin)
 {
-    long count = s->graph.end[leaf] - s->graph.first[leaf];
-    assert_int_equal(count, want->graph.first[twin + 1] - want->graph.first[twin]);
+    long count = s->graph.edges.end[leaf] - s->graph.edges.first[leaf];
+    assert_int_equal(count, want->graph.edges.end[twin] - want->graph.edges.first[twin]);
     int(*edge)[2] = sm_alloc((size_t)count, sizeof *edge);
     for (long n = 0; n < count; n++) {
-        long e = s->graph.first[leaf] + n;
+        long e = s->graph.edges.first[leaf] + n;
         edge[n][0] =
-            want->tree.leaf[same_node(&s->tree, s->tree.node[s->graph.to[e]], &want->tree)];
-        edge[n][1] = s->graph.length[e];
+            want->tree.leaf[same_node(&s->tree, s->tree.node[s->graph.edges.item[e]], &want->tree)];
+        edge[n][1] = oct_graph_length(&s->graph)[e];
         assert_true(edge[n][1] <= s->graph.longest);
     }
     qsort(edge, (size_t)count, sizeof *edge, compare_pairs);
     for (long n = 0; n < count; n++) {
-        long e = want->graph.first[twin] + n;
-        assert_int_equal(edge[n][0], want->graph.to[e]);
-        assert_int_equal(edge[n][1], want->graph.length[e]);
+        long e = want->graph.edges.first[twin] + n;
+        assert_int_equal(edge[n][0], want->graph.edges.item[e]);
+        assert_int_equal(edge[n][1], oct_graph_length(&want->graph)[e]);
     }
     free(edge);
 }
@@ -50,15 +50,17 @@ static inline void check_region(const OctStructure *s, long leaf, const OctStruc
                                 long twin)
 {
     const OctRegions *r = &s->regions;
-    long count = r->end[leaf] - r->first[leaf], first = want->regions.first[twin];
-    assert_int_equal(count, want->regions.first[twin + 1] - first);
+    long count = r->members.end[leaf] - r->members.first[leaf],
+         first = want->regions.members.first[twin];
+    assert_int_equal(count, want->regions.members.end[twin] - first);
     int *member = sm_alloc((size_t)count, sizeof *member);
     for (long n = 0; n < count; n++) {
-        assert_true(n == 0 || r->member[r->first[leaf] + n] > r->member[r->first[leaf] + n - 1]);
-        member[n] = same_node(&s->tree, r->member[r->first[leaf] + n], &want->tree);
+        assert_true(n == 0 || r->members.item[r->members.first[leaf] + n] >
+                                  r->members.item[r->members.first[leaf] + n - 1]);
+        member[n] = same_node(&s->tree, r->members.item[r->members.first[leaf] + n], &want->tree);
     }
     qsort(member, (size_t)count, sizeof *member, sm_compare_ints);
-    assert_memory_equal(member, want->regions.member + first, (size_t)count * sizeof *member);
+    assert_memory_equal(member, want->regions.members.item + first, (size_t)count * sizeof *member);
     assert_int_equal(r->width[leaf], want->regions.width[twin]);
     assert_int_equal(r->size[leaf], want->regions.size[twin]);
     free(member);
@@ -88,8 +90,8 @@ static inline void check_equal(const OctStructure *s, const OctStructure *want)
 {
     check_numbers(&s->tree);
     assert_int_equal(s->tree.live, want->tree.leaves);
-    assert_int_equal(s->graph.edges, want->graph.first[want->tree.leaves]);
-    assert_int_equal(s->regions.members, want->regions.first[want->tree.leaves]);
+    assert_int_equal(s->graph.edges.live, want->graph.edges.live);
+    assert_int_equal(s->regions.members.live, want->regions.members.live);
     assert_int_equal(s->local_leaves, want->local_leaves);
     for (long twin = 0; twin < want->tree.leaves; twin++) {
         long leaf = s->tree.leaf[same_node(&want->tree, want->tree.node[twin], &s->tree)];
@@ -120,7 +122,7 @@ static inline void check(const OctStructure *s, const double *mass)
     assert_int_equal(oct_structure_parts(s), oct_structure_parts(&want));
     OctRegions measured = s->regions;
     oct_regions_measure(&measured);
-    assert_int_equal(measured.members, want.regions.members);
+    assert_int_equal(measured.members.live, want.regions.members.live);
     assert_int_equal(measured.most, want.regions.most);
     assert_int_equal(measured.most_width, want.regions.most_width);
     assert_true(fabs(measured.mean - want.regions.mean) < 1e-9);

@@ -3,13 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The 27 cells of one size in and around a cell, x fastest; MIDDLE is the cell itself. A cell is
- * given as its tree node, as the larger leaf it lies in, or as -1 if there is no material. */
-enum { AROUND = 27, MIDDLE = 13 };
+#include "../tree/neighbours.h"
 
 typedef struct {
     const OctTree *tree;
     const SmVoxels *voxels;
+    unsigned char *octants; /* oct_tree_octants() */
     OctAdjacency *adjacency;
     long room; /* for pairs */
 } Walk;
@@ -93,20 +92,17 @@ bool oct_adjacency_material(const OctTree *tree, const SmVoxels *voxels, int nod
 static void add_pair(Walk *walk, int leaf, int other)
 {
     OctAdjacency *adjacency = walk->adjacency;
-    if (adjacency->count == walk->room) {
-        walk->room = walk->room ? 2 * walk->room : 1024;
-        adjacency->pair = sm_realloc(adjacency->pair, (size_t)walk->room, sizeof *adjacency->pair);
-    }
+    sm_make_room(adjacency->pair, walk->room, adjacency->count + 1);
     adjacency->pair[adjacency->count][0] = leaf;
     adjacency->pair[adjacency->count++][1] = other;
 }
 
-static void join_leaf(Walk *walk, int node, const int around[AROUND])
+static void join_leaf(Walk *walk, int node, const int around[OCT_DIRECTIONS])
 {
     const OctTree *t = walk->tree;
-    for (int d = 0; d < AROUND; d++) {
+    for (int d = 0; d < OCT_DIRECTIONS; d++) {
         int other = around[d];
-        if (d == MIDDLE || other < 0) continue;
+        if (d == OCT_HERE || other < 0) continue;
         if (t->children[other]) {
             walk->adjacency->open[t->leaf[node]] = 1;
             continue;
@@ -121,68 +117,29 @@ static void join_leaf(Walk *walk, int node, const int around[AROUND])
     }
 }
 
-/* Places on a line of four half cells, the second and third in the cell itself, that the half
- * `half` of its neighbour `side` (0 below, 1 itself, 2 above) takes; -1 if it is off the line. */
-static int place(int side, int half)
-{
-    int at = 2 * side + half - 1;
-    return at <= 3 ? at : -1;
-}
-
-/* The 4^3 cells of half the size in and around an inner cell, x fastest. */
-static void halves(const OctTree *t, const int around[AROUND], int half[64])
-{
-    memset(half, -1, 64 * sizeof *half);
-    for (int d = 0; d < AROUND; d++) {
-        int cell = around[d];
-        if (cell < 0) continue;
-        int child = t->children[cell] ? t->child[cell] : cell;
-        for (int octant = 0; octant < 8; octant++) {
-            int found = cell;
-            if (t->children[cell]) {
-                if (child == t->child[cell] + t->children[cell]) break;
-                const int *c = t->centre[child], *p = t->centre[cell];
-                if (octant != ((c[0] > p[0]) | (c[1] > p[1]) << 1 | (c[2] > p[2]) << 2)) continue;
-                found = child++;
-            }
-            int x = place(d % 3, octant & 1), y = place(d / 3 % 3, octant >> 1 & 1),
-                z = place(d / 9, octant >> 2);
-            if (x >= 0 && y >= 0 && z >= 0) half[16 * z + 4 * y + x] = found;
-        }
-    }
-}
-
 /* Depth first, so that what is around a cell comes from what is around its parent. */
-static void visit(Walk *walk, int node, const int around[AROUND])
+static void visit(Walk *walk, int node, const int around[OCT_DIRECTIONS])
 {
     const OctTree *t = walk->tree;
-    if (!t->children[node]) {
-        join_leaf(walk, node, around);
-        return;
-    }
-    int half[64], here[AROUND];
-    halves(t, around, half);
-    for (int at = 0; at < 8; at++) {
-        int x = at & 1, y = at >> 1 & 1, z = at >> 2;
-        for (int d = 0; d < AROUND; d++)
-            here[d] = half[16 * (z + d / 9) + 4 * (y + d / 3 % 3) + x + d % 3];
-        if (here[MIDDLE] >= 0) visit(walk, here[MIDDLE], here);
+    int here[OCT_DIRECTIONS];
+    if (!t->children[node]) join_leaf(walk, node, around);
+    for (int c = t->child[node]; c < t->child[node] + t->children[node]; c++) {
+        oct_neighbours_of_child(t, walk->octants, around, c, here);
+        visit(walk, c, here);
     }
 }
 
 void oct_adjacency_find(const OctTree *tree, const SmVoxels *voxels, OctAdjacency *adjacency)
 {
     *adjacency = (OctAdjacency){.open = sm_alloc((size_t)tree->leaves, 1)};
-    Walk walk = {tree, voxels, adjacency, 0};
-    int cells = 1 << tree->levels;
+    Walk walk = {
+        .tree = tree, .voxels = voxels, .octants = oct_tree_octants(tree), .adjacency = adjacency};
     for (int root = 0; root < tree->roots; root++) {
-        int around[AROUND], low[3];
-        for (int d = 0; d < 3; d++) low[d] = oct_tree_low(tree, root, d);
-        for (int d = 0; d < AROUND; d++)
-            around[d] = oct_tree_at(tree, 0, low[0] + (d % 3 - 1) * cells,
-                                    low[1] + (d / 3 % 3 - 1) * cells, low[2] + (d / 9 - 1) * cells);
+        int around[OCT_DIRECTIONS];
+        oct_neighbours_of_root(tree, root, around);
         visit(&walk, root, around);
     }
+    free(walk.octants);
     for (long l = 0; l < tree->leaves; l++) adjacency->any_open |= adjacency->open[l];
 }
 

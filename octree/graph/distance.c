@@ -6,27 +6,28 @@
 
 void oct_reach_init(OctReach *reach, const OctGraph *graph)
 {
-    size_t leaves = (size_t)graph->leaves;
-    *reach = (OctReach){.graph = graph, .leaves = graph->leaves, .room = 1024};
+    size_t leaves = (size_t)graph->edges.rows;
+    *reach = (OctReach){.graph = graph, .leaves = graph->edges.rows, .room = 1024};
     reach->distance = sm_alloc(leaves, sizeof *reach->distance);
     reach->reached = sm_alloc(leaves, sizeof *reach->reached);
     reach->nearest = sm_alloc(leaves, sizeof *reach->nearest);
     reach->longest = -1;
     reach->entry = sm_alloc((size_t)reach->room, sizeof *reach->entry);
-    for (long l = 0; l < graph->leaves; l++) {
+    for (long l = 0; l < graph->edges.rows; l++) {
         reach->distance[l] = OCT_FAR;
         oct_reach_update(reach, l);
     }
-    oct_reach_grow(reach, graph->leaves);
+    oct_reach_grow(reach, graph->edges.rows);
 }
 
 void oct_reach_update(OctReach *reach, long leaf)
 {
     const OctGraph *g = reach->graph;
     reach->nearest[leaf] = OCT_FAR;
-    for (long e = g->first[leaf]; e < oct_graph_end(g, leaf); e++) {
-        assert(g->length[e] > 0 && g->length[e] <= g->longest);
-        if (g->length[e] < reach->nearest[leaf]) reach->nearest[leaf] = g->length[e];
+    for (long e = g->edges.first[leaf]; e < g->edges.end[leaf]; e++) {
+        assert(oct_graph_length(g)[e] > 0 && oct_graph_length(g)[e] <= g->longest);
+        if (oct_graph_length(g)[e] < reach->nearest[leaf])
+            reach->nearest[leaf] = oct_graph_length(g)[e];
     }
 }
 
@@ -47,11 +48,7 @@ void oct_reach_grow(OctReach *reach, long leaves)
 
 void oct_reach_free(OctReach *reach)
 {
-    free(reach->distance);
-    free(reach->reached);
-    free(reach->nearest);
-    free(reach->bucket);
-    free(reach->entry);
+    sm_free_all(reach->distance, reach->reached, reach->nearest, reach->bucket, reach->entry);
     memset(reach, 0, sizeof *reach);
 }
 
@@ -60,14 +57,13 @@ void oct_reach_free(OctReach *reach)
 static long spread(OctReach *reach, int leaf, int k, int most, int place, long entries)
 {
     const OctGraph *g = reach->graph;
-    long before = entries, end = oct_graph_end(g, leaf), need = entries + end - g->first[leaf];
-    if (need > reach->room) {
-        reach->room = 2 * need;
-        reach->entry = sm_realloc(reach->entry, (size_t)reach->room, sizeof *reach->entry);
-    }
+    long before = entries, end = g->edges.end[leaf], need = entries + end - g->edges.first[leaf];
+    sm_make_room(reach->entry, reach->room, need);
     struct OctEntry *nearer = reach->entry + entries; /* the lengths in the place of `before` */
-    const int *restrict to = g->to, *restrict length = g->length, *restrict known = reach->distance;
-    for (long e = g->first[leaf]; e < end; e++) { /* it cannot be predicted which: no branch */
+    const int *restrict to = g->edges.item, *restrict length = oct_graph_length(g),
+                        *restrict known = reach->distance;
+    for (long e = g->edges.first[leaf]; e < end;
+         e++) { /* it cannot be predicted which: no branch */
         int d = k + length[e];
         *nearer = (struct OctEntry){to[e], length[e]};
         nearer += (d < known[to[e]]) & (d <= most);
@@ -115,7 +111,7 @@ static void search(OctReach *reach, long entries, int most)
 
 void oct_reach_from(OctReach *reach, int source, int most)
 {
-    assert(source >= 0 && source < reach->graph->leaves && most >= 0 && most <= OCT_FAR / 2);
+    assert(source >= 0 && source < reach->graph->edges.rows && most >= 0 && most <= OCT_FAR / 2);
     clear(reach);
     reach->distance[source] = 0;
     reach->entry[0] = (struct OctEntry){source, -1};
@@ -128,10 +124,7 @@ void oct_reach_from_all(OctReach *reach, long count, const struct OctSource *sou
     long entries = 0;
     assert(most >= 0 && most <= OCT_FAR / 2);
     clear(reach);
-    if (count > reach->room) {
-        reach->room = 2 * count;
-        reach->entry = sm_realloc(reach->entry, (size_t)reach->room, sizeof *reach->entry);
-    }
+    sm_make_room(reach->entry, reach->room, count);
     for (long s = 0; s < count; s++) {
         int leaf = source[s].leaf, d = source[s].distance;
         assert(d >= 0 && d <= reach->longest);

@@ -7,8 +7,6 @@
 #include "adjacency.h"
 #include "visibility.h"
 
-enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
-
 /* Pairs of neighbours that are not joined, of one thread. */
 typedef struct {
     int (*pair)[2];
@@ -17,10 +15,7 @@ typedef struct {
 
 static void add_pair(Pairs *pairs, int i, int j)
 {
-    if (pairs->count == pairs->room) {
-        pairs->room = pairs->room ? 2 * pairs->room : 256;
-        pairs->pair = sm_realloc(pairs->pair, (size_t)pairs->room, sizeof *pairs->pair);
-    }
+    sm_make_room(pairs->pair, pairs->room, pairs->count + 1);
     pairs->pair[pairs->count][0] = i;
     pairs->pair[pairs->count++][1] = j;
 }
@@ -36,10 +31,11 @@ static void search_around(const OctTree *tree, OctVisibility *search, Pairs *pai
     }
 }
 
-/* Rows from pairs, `first` [leaves + 1]. Each pair is put into the rows of both; walking the rows
- * in order and turning them round once more sorts them. */
-static void build_rows(long leaves, int (*pair)[2], long pairs, long **rows, int **item)
+/* Rows from pairs. Each pair is put into the rows of both; walking the rows in order and turning
+ * them round once more sorts them. */
+static void build_rows(long leaves, int (*pair)[2], long pairs, SmCsr *rows)
 {
+    int *item = sm_alloc(2 * (size_t)pairs, sizeof *item);
     long *first = sm_alloc((size_t)leaves + 1, sizeof *first);
     long *next = sm_alloc((size_t)leaves, sizeof *next);
     int *unsorted = sm_alloc(2 * (size_t)pairs, sizeof *unsorted);
@@ -52,28 +48,19 @@ static void build_rows(long leaves, int (*pair)[2], long pairs, long **rows, int
         unsorted[next[pair[p][0]]++] = pair[p][1];
         unsorted[next[pair[p][1]]++] = pair[p][0];
     }
-    *rows = first;
-    *item = sm_alloc(2 * (size_t)pairs, sizeof **item);
     memcpy(next, first, (size_t)leaves * sizeof *next);
     for (long l = 0; l < leaves; l++)
-        for (long e = first[l]; e < first[l + 1]; e++) (*item)[next[unsorted[e]]++] = (int)l;
+        for (long e = first[l]; e < first[l + 1]; e++) item[next[unsorted[e]]++] = (int)l;
+    sm_csr_adopt(rows, leaves, first, item, NULL, 0);
     free(unsorted);
     free(next);
-}
-
-static void join(const OctTree *tree, const OctAdjacency *adjacency, SmCsr *joined)
-{
-    long *first;
-    int *item;
-    build_rows(tree->leaves, adjacency->pair, adjacency->count, &first, &item);
-    sm_csr_adopt(joined, tree->leaves, first, item, NULL, 0);
 }
 
 void oct_graph_joined(const OctTree *tree, const SmVoxels *voxels, SmCsr *joined)
 {
     OctAdjacency adjacency;
     oct_adjacency_find(tree, voxels, &adjacency);
-    join(tree, &adjacency, joined);
+    build_rows(tree->leaves, adjacency.pair, adjacency.count, joined);
     oct_adjacency_free(&adjacency);
 }
 
@@ -81,8 +68,8 @@ void oct_graph_joined(const OctTree *tree, const SmVoxels *voxels, SmCsr *joined
 static void add_unjoined(const OctTree *tree, OctAdjacency *adjacency)
 {
     SmCsr joined;
-    join(tree, adjacency, &joined);
-#pragma omp parallel num_threads(sm_team(0)) if (tree->leaves > SERIAL)
+    build_rows(tree->leaves, adjacency->pair, adjacency->count, &joined);
+#pragma omp parallel num_threads(sm_team(0)) if (tree->leaves > OCT_SERIAL)
     {
         OctVisibility search;
         Pairs own = {0};
@@ -106,12 +93,14 @@ static void add_unjoined(const OctTree *tree, OctAdjacency *adjacency)
 
 static void measure_edges(const OctTree *tree, OctGraph *graph)
 {
-    graph->edges = graph->first[graph->leaves];
-    graph->length = sm_alloc((size_t)graph->edges, sizeof *graph->length);
-    for (long l = 0; l < graph->leaves; l++)
-        for (long e = graph->first[l]; e < graph->first[l + 1]; e++) {
-            graph->length[e] = oct_tree_between(tree, tree->node[l], tree->node[graph->to[e]]);
-            if (graph->length[e] > graph->longest) graph->longest = graph->length[e];
+    SmCsr *edges = &graph->edges;
+    int *length = sm_alloc((size_t)edges->live, sizeof *length);
+    edges->value = length;
+    edges->size = sizeof *length;
+    for (long l = 0; l < edges->rows; l++)
+        for (long e = edges->first[l]; e < edges->end[l]; e++) {
+            length[e] = oct_tree_between(tree, tree->node[l], tree->node[edges->item[e]]);
+            if (length[e] > graph->longest) graph->longest = length[e];
         }
 }
 
@@ -120,49 +109,43 @@ void oct_graph_build(const OctTree *tree, const SmVoxels *voxels, OctGraph *grap
     OctAdjacency adjacency;
     oct_adjacency_find(tree, voxels, &adjacency);
     if (adjacency.any_open) add_unjoined(tree, &adjacency);
-    *graph = (OctGraph){.leaves = tree->leaves};
-    build_rows(tree->leaves, adjacency.pair, adjacency.count, &graph->first, &graph->to);
+    *graph = (OctGraph){0};
+    build_rows(tree->leaves, adjacency.pair, adjacency.count, &graph->edges);
     oct_adjacency_free(&adjacency);
     measure_edges(tree, graph);
 }
 
 void oct_graph_cut(const OctTree *tree, const SmVoxels *voxels, const SmCut *cut, OctGraph *graph)
 {
-    long kept = 0, from = 0;
+    SmCsr *edges = &graph->edges;
+    int *length = oct_graph_length(graph);
     if (cut->triangles == 0) return;
     graph->longest = 0;
-    for (long l = 0; l < graph->leaves; l++) {
+    for (long l = 0; l < edges->rows; l++) {
         double here[3], there[3];
-        long to = graph->first[l + 1];
+        long kept = edges->first[l];
         oct_tree_centre(tree, voxels, tree->node[l], here);
-        for (long e = from; e < to; e++) {
-            oct_tree_centre(tree, voxels, tree->node[graph->to[e]], there);
+        for (long e = kept; e < edges->end[l]; e++) {
+            oct_tree_centre(tree, voxels, tree->node[edges->item[e]], there);
             if (sm_cut_crosses(cut, 0, here, there)) continue;
-            graph->to[kept] = graph->to[e];
-            graph->length[kept] = graph->length[e];
-            if (graph->length[kept] > graph->longest) graph->longest = graph->length[kept];
+            edges->item[kept] = edges->item[e];
+            length[kept] = length[e];
+            if (length[kept] > graph->longest) graph->longest = length[kept];
             kept++;
         }
-        from = to;
-        graph->first[l + 1] = kept;
+        sm_csr_resize(edges, l, kept - edges->first[l]);
     }
-    graph->edges = kept;
 }
 
 size_t oct_graph_bytes(const OctGraph *graph)
 {
-    size_t edge = sizeof *graph->to + sizeof *graph->length;
-    return sizeof *graph + ((size_t)graph->leaves + 1) * sizeof *graph->first +
-           (size_t)graph->edges * edge;
+    return sizeof *graph + sm_csr_bytes(&graph->edges);
 }
 
 void oct_graph_free(OctGraph *graph)
 {
-    free(graph->first);
-    free(graph->end);
-    free(graph->to);
-    free(graph->length);
-    memset(graph, 0, sizeof *graph);
+    sm_csr_free(&graph->edges);
+    *graph = (OctGraph){0};
 }
 
 void oct_graph_pieces(const OctTree *tree, const OctGraph *graph, SmPieces *pieces)
@@ -171,8 +154,8 @@ void oct_graph_pieces(const OctTree *tree, const OctGraph *graph, SmPieces *piec
     sm_pieces_init(tree->leaves, pieces);
     for (long k = 0; k < tree->leaves; k++) {
         absent[k] = tree->node[k] < 0;
-        for (long e = graph->first[k]; !absent[k] && e < oct_graph_end(graph, k); e++)
-            if (graph->to[e] > k) sm_pieces_link(pieces, k, graph->to[e]);
+        for (long e = graph->edges.first[k]; !absent[k] && e < graph->edges.end[k]; e++)
+            if (graph->edges.item[e] > k) sm_pieces_link(pieces, k, graph->edges.item[e]);
     }
     sm_pieces_finish(pieces, absent, tree->leaves);
     free(absent);

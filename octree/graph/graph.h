@@ -10,19 +10,15 @@
 
 /* Undirected; every edge is stored at both ends. Numbers are leaf numbers (tree.h). */
 typedef struct {
-    long leaves;
-    long edges;  /* both ends counted */
-    long *first; /* [leaves + 1] */
-    long *end;   /* [leaves] of a graph that has been changed; NULL: lists follow each other */
-    int *to;     /* rising within a leaf, until the graph is changed */
-    int *length; /* max-norm length between the centres, half finest cells, 1 or more */
+    SmCsr edges; /* of every leaf: its neighbours, rising until the graph is changed, with lengths;
+                  * both ends counted */
     int longest; /* no edge is longer; 0 without any edge */
 } OctGraph;
 
-/* The edges of a leaf are first[leaf] to oct_graph_end() - 1. */
-static inline long oct_graph_end(const OctGraph *graph, long leaf)
+/* Lengths of the edges: in the max norm between the centres, half finest cells, 1 or more. */
+static inline int *oct_graph_length(const OctGraph *graph)
 {
-    return graph->end ? graph->end[leaf] : graph->first[leaf + 1];
+    return graph->edges.value;
 }
 
 /* Two leaves that touch (face, edge or corner) are joined where a material finest cell of one
@@ -42,7 +38,7 @@ static inline long oct_graph_end(const OctGraph *graph, long leaf)
 void oct_graph_build(const OctTree *tree, const SmVoxels *voxels, OctGraph *graph);
 
 /* Takes the edges out whose segment between the leaves' centres crosses the cut, which is in mesh
- * units. Of a graph whose lists follow each other. O(edges). */
+ * units. O(edges). */
 void oct_graph_cut(const OctTree *tree, const SmVoxels *voxels, const SmCut *cut, OctGraph *graph);
 
 /* The joined leaves of every leaf. The caller frees. O(leaves). */

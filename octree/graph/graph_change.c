@@ -5,28 +5,14 @@
 
 #include "adjacency.h"
 
-/* The graph's arrays are those of the rows that change. */
-static void publish(OctGraphChange *c)
-{
-    OctGraph *graph = c->graph;
-    graph->leaves = c->edges.rows;
-    graph->edges = c->edges.live;
-    graph->first = c->edges.first;
-    graph->end = c->edges.end;
-    graph->to = c->edges.item;
-    graph->length = c->edges.value;
-}
-
 void oct_graph_change_init(OctGraphChange *c, const OctTree *tree, const SmVoxels *voxels,
                            const SmCut *cut, OctGraph *graph)
 {
     *c = (OctGraphChange){.tree = tree, .voxels = voxels, .cut = cut, .graph = graph};
     c->leaf_space = sm_room_for(tree->leaves);
     oct_graph_joined(tree, voxels, &c->joined);
-    sm_csr_adopt(&c->edges, tree->leaves, graph->first, graph->to, graph->length, sizeof(int));
     sm_csr_reserve(&c->joined);
-    sm_csr_reserve(&c->edges);
-    publish(c);
+    sm_csr_reserve(&graph->edges);
     oct_visibility_init(&c->visibility, tree, &c->joined, c->leaf_space);
     oct_leaf_query_init(&c->query, tree, voxels);
     c->mark = sm_alloc((size_t)c->leaf_space, sizeof *c->mark);
@@ -34,22 +20,18 @@ void oct_graph_change_init(OctGraphChange *c, const OctTree *tree, const SmVoxel
 
 void oct_graph_change_free(OctGraphChange *c)
 {
-    free(c->edges.room);
     sm_csr_free(&c->joined);
     oct_visibility_free(&c->visibility);
     oct_leaf_query_free(&c->query);
-    free(c->gone);
-    free(c->come);
-    free(c->mark);
-    free(c->around);
+    sm_free_all(c->gone.edge, c->come.edge, c->mark, c->around);
     *c = (OctGraphChange){0};
 }
 
 size_t oct_graph_change_bytes(const OctGraphChange *c)
 {
-    return sm_csr_bytes(&c->joined) + sm_csr_bytes(&c->edges) +
+    return sm_csr_bytes(&c->joined) +
            (size_t)c->leaf_space * (sizeof *c->mark + sizeof *c->visibility.mark) +
-           (size_t)(c->gone_room + c->come_room) * sizeof *c->gone +
+           (size_t)(c->gone.room + c->come.room) * sizeof(OctEdge) +
            (size_t)c->around_room * sizeof *c->around;
 }
 
@@ -57,23 +39,25 @@ static void grow(OctGraphChange *c)
 {
     const OctTree *tree = c->tree;
     sm_csr_grow(&c->joined, tree->leaves);
-    sm_csr_grow(&c->edges, tree->leaves);
+    sm_csr_grow(&c->graph->edges, tree->leaves);
     if (tree->leaves > c->leaf_space) {
         long from = c->leaf_space, to = sm_room_for(tree->leaves);
         c->mark = sm_widen(c->mark, from, to, sizeof *c->mark, 0);
         c->visibility.mark = sm_widen(c->visibility.mark, from, to, 1, 0);
         c->leaf_space = to;
     }
-    publish(c);
 }
 
-static void note(OctEdge **list, long *count, long *room, OctEdge edge)
+static void note(OctEdges *edges, OctEdge edge)
 {
-    if (*count == *room) {
-        *room = 2 * *room + 256;
-        *list = sm_realloc(*list, (size_t)*room, sizeof **list);
-    }
-    (*list)[(*count)++] = edge;
+    sm_make_room(edges->edge, edges->room, edges->count + 1);
+    edges->edge[edges->count++] = edge;
+}
+
+/* Edge number e of the graph, one of that leaf's, is to go. */
+static void note_gone(OctGraphChange *c, int leaf, long e)
+{
+    note(&c->gone, (OctEdge){leaf, c->graph->edges.item[e], oct_graph_length(c->graph)[e]});
 }
 
 /* A number that no leaf is marked with. */
@@ -99,12 +83,8 @@ static void update_joined(OctGraphChange *c, const OctChange *batch)
     }
     for (long a = 0; a < batch->added_count; a++) c->mark[batch->added[a].leaf] = added;
     for (long a = 0; a < batch->added_count; a++) {
-        int leaf = batch->added[a].leaf, node = batch->added[a].node, low[3], high[3];
-        for (int d = 0; d < 3; d++) {
-            low[d] = t->centre[node][d] - t->size[node] / 2;
-            high[d] = low[d] + t->size[node];
-        }
-        oct_leaf_query_box(&c->query, low, high, OCT_CELLS);
+        int leaf = batch->added[a].leaf, node = batch->added[a].node;
+        oct_leaf_query_cell(&c->query, node, OCT_CELLS);
         for (long n = 0; n < c->query.count; n++) {
             int other = c->query.node[n];
             if (other == node || !oct_adjacency_material(t, c->voxels, node, other)) continue;
@@ -122,10 +102,7 @@ static void list_found(OctGraphChange *c, int mark)
         int leaf = c->tree->leaf[c->query.node[n]];
         if (c->mark[leaf] == mark) continue;
         c->mark[leaf] = mark;
-        if (c->around_count == c->around_room) {
-            c->around_room = 2 * c->around_room + 256;
-            c->around = sm_realloc(c->around, (size_t)c->around_room, sizeof *c->around);
-        }
+        sm_make_room(c->around, c->around_room, c->around_count + 1);
         c->around[c->around_count++] = leaf;
     }
 }
@@ -133,26 +110,16 @@ static void list_found(OctGraphChange *c, int mark)
 /* Lists the leaves that have a cell that was split or merged within their reach. */
 static void list_around(OctGraphChange *c, const OctChange *batch)
 {
-    const OctTree *t = c->tree;
     int mark = fresh_mark(c);
     c->around_count = 0;
     for (long n = 0; n < batch->removed_count + batch->added_count; n++) {
         bool removed = n < batch->removed_count;
         long a = n - batch->removed_count;
         if (removed ? batch->removed[n].into >= 0 : batch->added[a].from >= 0) continue;
-        int node = removed ? batch->removed[n].node : batch->added[a].node, low[3], high[3];
-        for (int d = 0; d < 3; d++) {
-            low[d] = t->centre[node][d] - t->size[node] / 2;
-            high[d] = low[d] + t->size[node];
-        }
-        oct_leaf_query_box(&c->query, low, high, OCT_REACHES);
+        int node = removed ? batch->removed[n].node : batch->added[a].node;
+        oct_leaf_query_cell(&c->query, node, OCT_REACHES);
         list_found(c, mark);
     }
-}
-
-static int edge_length(const SmCsr *edges, long e)
-{
-    return ((const int *)edges->value)[e];
 }
 
 static int size_of(const OctGraphChange *c, int leaf)
@@ -181,7 +148,7 @@ static bool is_cut(const OctGraphChange *c, long first, int leaf, int other)
  * it had is not across the old cut; across the new one it is sought later. */
 static void compare(OctGraphChange *c, int i)
 {
-    const SmCsr *edges = &c->edges;
+    const SmCsr *edges = &c->graph->edges;
     const OctVisibility *visibility = &c->visibility;
     int had = fresh_mark(c), stays = fresh_mark(c);
     oct_visibility_find(&c->visibility, i);
@@ -192,13 +159,12 @@ static void compare(OctGraphChange *c, int i)
             c->mark[j] = stays;
         } else if (is_sought(c, i, j) && !is_cut(c, 0, i, j)) {
             int length = oct_tree_between(c->tree, c->tree->node[i], c->tree->node[j]);
-            note(&c->come, &c->come_count, &c->come_room, (OctEdge){i, j, length});
+            note(&c->come, (OctEdge){i, j, length});
         }
     }
     for (long e = edges->first[i]; e < edges->end[i]; e++) {
         int j = edges->item[e];
-        if (c->mark[j] == had && c->tree->node[j] >= 0 && is_sought(c, i, j))
-            note(&c->gone, &c->gone_count, &c->gone_room, (OctEdge){i, j, edge_length(edges, e)});
+        if (c->mark[j] == had && c->tree->node[j] >= 0 && is_sought(c, i, j)) note_gone(c, i, e);
     }
 }
 
@@ -206,17 +172,15 @@ void oct_graph_change_find(OctGraphChange *c, const OctChange *batch)
 {
     const OctTree *t = c->tree;
     grow(c);
-    c->gone_count = c->come_count = 0;
+    c->gone.count = c->come.count = 0;
     update_joined(c, batch);
     list_around(c, batch);
     for (long n = 0; n < c->around_count; n++) compare(c, c->around[n]);
     for (long r = 0; r < batch->removed_count; r++) {
         int leaf = batch->removed[r].leaf;
-        for (long e = c->edges.first[leaf]; e < c->edges.end[leaf]; e++) {
-            int other = c->edges.item[e];
-            if (t->node[other] >= 0 || other > leaf)
-                note(&c->gone, &c->gone_count, &c->gone_room,
-                     (OctEdge){leaf, other, edge_length(&c->edges, e)});
+        for (long e = c->graph->edges.first[leaf]; e < c->graph->edges.end[leaf]; e++) {
+            int other = c->graph->edges.item[e];
+            if (t->node[other] >= 0 || other > leaf) note_gone(c, leaf, e);
         }
     }
 }
@@ -234,7 +198,7 @@ void oct_graph_change_cut(OctGraphChange *c, long first)
 {
     static const double margin = 1e-3; /* half finest cells: against rounding */
     int mark = fresh_mark(c);
-    c->around_count = c->gone_count = c->come_count = 0;
+    c->around_count = c->gone.count = c->come.count = 0;
     for (long t = first; t < c->cut->triangles; t++) {
         double corner[3][3];
         oct_graph_change_corners(c->voxels, c->cut, t, corner);
@@ -244,20 +208,19 @@ void oct_graph_change_cut(OctGraphChange *c, long first)
     }
     for (long n = 0; n < c->around_count; n++) {
         int i = c->around[n];
-        for (long e = c->edges.first[i]; e < c->edges.end[i]; e++) {
-            int j = c->edges.item[e];
-            if (is_sought(c, i, j) && is_cut(c, first, i, j))
-                note(&c->gone, &c->gone_count, &c->gone_room,
-                     (OctEdge){i, j, edge_length(&c->edges, e)});
+        for (long e = c->graph->edges.first[i]; e < c->graph->edges.end[i]; e++) {
+            int j = c->graph->edges.item[e];
+            if (is_sought(c, i, j) && is_cut(c, first, i, j)) note_gone(c, i, e);
         }
     }
 }
 
 /* Notes the rows of leaves that are not marked so yet. */
-static void note_rows(OctGraphChange *c, const OctEdge *edge, long count, int mark, OctReach *reach)
+static void note_rows(OctGraphChange *c, const OctEdges *edges, int mark, OctReach *reach)
 {
-    for (long n = 0; n < 2 * count; n++) {
-        int leaf = n % 2 ? edge[n / 2].leaf : edge[n / 2].other;
+    for (long n = 0; n < 2 * edges->count; n++) {
+        const OctEdge *edge = &edges->edge[n / 2];
+        int leaf = n % 2 ? edge->leaf : edge->other;
         if (c->mark[leaf] != mark) oct_reach_update(reach, leaf);
         c->mark[leaf] = mark;
     }
@@ -266,19 +229,18 @@ static void note_rows(OctGraphChange *c, const OctEdge *edge, long count, int ma
 void oct_graph_change_apply(OctGraphChange *c, OctReach *reach)
 {
     OctGraph *graph = c->graph;
-    for (long n = 0; n < c->gone_count; n++) {
-        sm_csr_remove(&c->edges, c->gone[n].leaf, c->gone[n].other);
-        sm_csr_remove(&c->edges, c->gone[n].other, c->gone[n].leaf);
+    for (long n = 0; n < c->gone.count; n++) {
+        sm_csr_remove(&graph->edges, c->gone.edge[n].leaf, c->gone.edge[n].other);
+        sm_csr_remove(&graph->edges, c->gone.edge[n].other, c->gone.edge[n].leaf);
     }
-    for (long n = 0; n < c->come_count; n++) {
-        OctEdge edge = c->come[n];
-        sm_csr_add(&c->edges, edge.leaf, edge.other, &edge.length);
-        sm_csr_add(&c->edges, edge.other, edge.leaf, &edge.length);
+    for (long n = 0; n < c->come.count; n++) {
+        OctEdge edge = c->come.edge[n];
+        sm_csr_add(&graph->edges, edge.leaf, edge.other, &edge.length);
+        sm_csr_add(&graph->edges, edge.other, edge.leaf, &edge.length);
         if (edge.length > graph->longest) graph->longest = edge.length;
     }
-    publish(c);
-    oct_reach_grow(reach, graph->leaves);
+    oct_reach_grow(reach, graph->edges.rows);
     int noted = fresh_mark(c);
-    note_rows(c, c->gone, c->gone_count, noted, reach);
-    note_rows(c, c->come, c->come_count, noted, reach);
+    note_rows(c, &c->gone, noted, reach);
+    note_rows(c, &c->come, noted, reach);
 }

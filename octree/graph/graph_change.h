@@ -17,28 +17,31 @@ typedef struct {
 } OctEdge;
 
 typedef struct {
+    OctEdge *edge; /* [count] */
+    long count, room;
+} OctEdges;
+
+typedef struct {
     const OctTree *tree;
     const SmVoxels *voxels;
     const SmCut *cut;
     OctGraph *graph;
     SmCsr joined; /* leaves that every leaf is joined to, cut or not */
-    SmCsr edges;  /* of the graph, whose arrays these are */
     OctVisibility visibility;
     OctLeafQuery query;
-    OctEdge *gone, *come; /* edges that are to be taken out and put in, each once */
-    long gone_count, come_count;
+    OctEdges gone, come; /* to be taken out and put in, each edge once */
     /* its own */
     long leaf_space;
     int *mark; /* [leaf_space] numbers that rise from one use to the next */
     int last;
     int *around; /* leaves that are searched again */
-    long around_count, around_room, gone_room, come_room;
+    long around_count, around_room;
 } OctGraphChange;
 
-/* Takes the arrays of the graph over. All arguments must stay where they are. O(nodes). */
+/* All arguments must stay where they are. O(nodes). */
 void oct_graph_change_init(OctGraphChange *change, const OctTree *tree, const SmVoxels *voxels,
                            const SmCut *cut, OctGraph *graph);
-void oct_graph_change_free(OctGraphChange *change); /* the graph stays whole */
+void oct_graph_change_free(OctGraphChange *change); /* the graph stays */
 size_t oct_graph_change_bytes(const OctGraphChange *change);
 
 /* Finds what edges go and come with the leaves that a batch has removed and added; the graph has

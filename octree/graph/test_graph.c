@@ -13,19 +13,19 @@ enum { TRIALS = 600, LEAVES = 160 };
 static void check_graph(const OctGraph *g, const RefOctree *ref)
 {
     int longest = 0;
-    assert_int_equal(g->leaves, ref->leaves);
-    for (long i = 0; i < g->leaves; i++) {
-        long e = g->first[i];
-        for (int j = 0; j < g->leaves; j++) {
+    assert_int_equal(g->edges.rows, ref->leaves);
+    for (long i = 0; i < g->edges.rows; i++) {
+        long e = g->edges.first[i];
+        for (int j = 0; j < g->edges.rows; j++) {
             int length = ref->length[i * ref->leaves + j];
             if (length == 0) continue;
             if (length > longest) longest = length;
-            assert_true(e < g->first[i + 1]);
-            assert_int_equal(g->to[e], j);
-            assert_int_equal(g->length[e], length);
+            assert_true(e < g->edges.end[i]);
+            assert_int_equal(g->edges.item[e], j);
+            assert_int_equal(oct_graph_length(g)[e], length);
             e++;
         }
-        assert_int_equal(e, g->first[i + 1]);
+        assert_int_equal(e, g->edges.end[i]);
     }
     assert_int_equal(g->longest, longest);
 }
@@ -35,12 +35,12 @@ static void check_distances(unsigned *seed, const OctGraph *g, const RefOctree *
 {
     OctReach reach;
     oct_reach_init(&reach, g);
-    for (long n = 0; n < g->leaves; n++) {
-        int source = random_int(seed, (int)g->leaves), most = random_int(seed, 60), last = 0;
+    for (long n = 0; n < g->edges.rows; n++) {
+        int source = random_int(seed, (int)g->edges.rows), most = random_int(seed, 60), last = 0;
         const long *distance = ref->distance + source * ref->leaves;
         long within = 0;
         oct_reach_from(&reach, source, most);
-        for (long l = 0; l < g->leaves; l++) {
+        for (long l = 0; l < g->edges.rows; l++) {
             bool in = distance[l] >= 0 && distance[l] <= most;
             within += in;
             assert_int_equal(reach.distance[l], in ? distance[l] : OCT_FAR);
@@ -96,7 +96,8 @@ TEST(bucket_moore_is_dijkstra_on_any_graph)
                 }
             first[i + 1] = count;
         }
-        OctGraph g = {.leaves = n, .first = first, .to = to, .length = edge, .longest = longest};
+        OctGraph g = {.longest = longest};
+        sm_csr_adopt(&g.edges, n, first, to, edge, sizeof *edge);
         OctReach reach;
         oct_reach_init(&reach, &g);
         for (int source = 0; source < n; source++) {
@@ -210,8 +211,8 @@ TEST(bodies_apart_are_never_joined)
         if (find_sides(&v, &t, at, side)) {
             apart++;
             for (long l = 0; l < t.leaves; l++)
-                for (long e = g.first[l]; e < g.first[l + 1]; e++)
-                    assert_int_equal(side[l], side[g.to[e]]);
+                for (long e = g.edges.first[l]; e < g.edges.end[l]; e++)
+                    assert_int_equal(side[l], side[g.edges.item[e]]);
         }
         free(side);
         oct_graph_free(&g);
@@ -224,17 +225,17 @@ TEST(bodies_apart_are_never_joined)
 /* All distances from one leaf of a tree of thousands. */
 static void check_far_distances(const OctGraph *g)
 {
-    size_t n = (size_t)g->leaves;
+    size_t n = (size_t)g->edges.rows;
     int *length = sm_alloc(n * n, sizeof *length);
     long *distance = sm_alloc(n, sizeof *distance);
     OctReach reach;
-    for (long l = 0; l < g->leaves; l++)
-        for (long e = g->first[l]; e < g->first[l + 1]; e++)
-            length[l * g->leaves + g->to[e]] = g->length[e];
-    ref_octree_dijkstra(length, g->leaves, 0, distance);
+    for (long l = 0; l < g->edges.rows; l++)
+        for (long e = g->edges.first[l]; e < g->edges.end[l]; e++)
+            length[l * g->edges.rows + g->edges.item[e]] = oct_graph_length(g)[e];
+    ref_octree_dijkstra(length, g->edges.rows, 0, distance);
     oct_reach_init(&reach, g);
     oct_reach_from(&reach, 0, OCT_FAR / 2);
-    for (long l = 0; l < g->leaves; l++)
+    for (long l = 0; l < g->edges.rows; l++)
         assert_int_equal(reach.distance[l], distance[l] < 0 ? OCT_FAR : distance[l]);
     oct_reach_free(&reach);
     free(length);
@@ -256,12 +257,13 @@ TEST(graphs_are_equal_for_any_number_of_threads)
     omp_set_num_threads(5);
     oct_graph_build(&t, &v, &many);
     omp_set_num_threads(before);
-    size_t edges = (size_t)one.first[one.leaves];
-    assert_memory_equal(one.first, many.first, ((size_t)one.leaves + 1) * sizeof *one.first);
-    assert_memory_equal(one.to, many.to, edges * sizeof *one.to);
-    assert_memory_equal(one.length, many.length, edges * sizeof *one.length);
+    const SmCsr *rows = &one.edges, *other = &many.edges;
+    size_t leaves = (size_t)rows->rows, edges = (size_t)rows->live;
+    assert_memory_equal(rows->first, other->first, (leaves + 1) * sizeof *rows->first);
+    assert_memory_equal(rows->item, other->item, edges * sizeof *rows->item);
+    assert_memory_equal(rows->value, other->value, edges * sizeof(int));
     check_far_distances(&one);
-    assert_int_equal(oct_graph_bytes(&one) - sizeof one, 8 * (one.leaves + 1) + 8 * (long)edges);
+    assert_int_equal(oct_graph_bytes(&one) - sizeof one, 8 * (leaves + 1) + 8 * edges);
     oct_graph_free(&one);
     oct_graph_free(&many);
     oct_tree_free(&t);

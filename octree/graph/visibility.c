@@ -21,12 +21,8 @@ void oct_visibility_init(OctVisibility *search, const OctTree *tree, const SmCsr
 
 void oct_visibility_free(OctVisibility *search)
 {
-    free(search->mark);
-    free(search->leaf);
-    free(search->found);
-    free(search->outside);
-    free(search->tried);
-    free(search->candidate);
+    sm_free_all(search->mark, search->leaf, search->found, search->outside, search->tried,
+                search->candidate);
     *search = (OctVisibility){0};
 }
 

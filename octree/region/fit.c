@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../../lib/polar.h"
+#include "../../lib/vector.h"
 
 void oct_fit_add(OctFit *fit, double mass, const double X[3], const double x[3], const double v[3])
 {
@@ -17,12 +18,6 @@ void oct_fit_add(OctFit *fit, double mass, const double X[3], const double x[3],
             fit->vX[3 * i + j] += mass * v[i] * X[j];
         }
     }
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int i = 0; i < 3; i++)
-        c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
 static void apply(const double M[9], const double a[3], double b[3])
@@ -92,7 +87,7 @@ int oct_fit_solve(const OctFit *fit, double least, const double last[9], double 
     angular_velocity(value, V, R, B, most / 256, w);
     for (int a = 0; a < left; a++) {
         apply(R, beyond[a], f);
-        cross(w, f, l);
+        sm_cross(w, f, l);
         add_outer(F, f, beyond[a]);
         add_outer(L, l, beyond[a]);
     }

@@ -23,10 +23,10 @@ long oct_frames_groups(const OctTree *tree, const OctRegions *regions, int *grou
     long groups = 0;
     sm_pieces_init(tree->nodes, &pieces);
     for (long leaf = 0; leaf < tree->leaves; leaf++)
-        for (long at = regions->first[leaf];
-             tree->node[leaf] >= 0 && at < oct_regions_end(regions, leaf); at++) {
-            sm_pieces_link(&pieces, tree->node[leaf], regions->member[at]);
-            join_below(tree, &pieces, whole, regions->member[at]);
+        for (long at = regions->members.first[leaf];
+             tree->node[leaf] >= 0 && at < regions->members.end[leaf]; at++) {
+            sm_pieces_link(&pieces, tree->node[leaf], regions->members.item[at]);
+            join_below(tree, &pieces, whole, regions->members.item[at]);
         }
     sm_pieces_finish(&pieces, NULL, tree->nodes);
     int *number = sm_alloc((size_t)pieces.count, sizeof *number);

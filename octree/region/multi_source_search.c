@@ -79,9 +79,8 @@ void oct_search_init(OctSearch *s, const OctTree *tree, const OctReach *reach)
 
 void oct_search_free(OctSearch *s)
 {
-    void *all[] = {s->leaf,    s->distance, s->held,  s->member,  s->leaf_at,
-                   s->waiting, s->queue,    s->inner, s->inner_at};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(s->leaf, s->distance, s->held, s->member, s->leaf_at, s->waiting, s->queue,
+                s->inner, s->inner_at);
     *s = (OctSearch){0};
 }
 
@@ -134,16 +133,15 @@ static long spread(OctSearch *s, long place, long end)
 {
     const OctGraph *g = s->reach->graph;
     int leaf = s->leaf[place];
-    long edges = oct_graph_end(g, leaf) - g->first[leaf];
+    long edges = g->edges.end[leaf] - g->edges.first[leaf];
     OctLanes here = s->distance[place];
     s->waiting[place] = false;
     if (!below(here, s->beyond - s->reach->nearest[leaf])) return end;
     make_leaves(s, s->leaves + edges);
-    if (end + edges > s->queue_room) {
-        s->queue_room = 2 * (end + edges);
-        s->queue = sm_realloc(s->queue, (size_t)s->queue_room, sizeof *s->queue);
-    }
-    const int *restrict to = g->to + g->first[leaf], *restrict length = g->length + g->first[leaf];
+    sm_make_room(s->queue, s->queue_room, end + edges);
+    const int *restrict to = g->edges.item + g->edges.first[leaf], *restrict length =
+                                                                       oct_graph_length(g) +
+                                                                       g->edges.first[leaf];
     OctLanes *restrict distance = s->distance, beyond = s->beyond;
     int *restrict queue = s->queue;
     bool *restrict waiting = s->waiting;
@@ -194,10 +192,7 @@ void oct_search_distances(OctSearch *s, int count, const int *leaf, const int *r
 static void widen(OctSearch *s, int node, int level, OctLanes least, OctLanes most, int seen)
 {
     if (s->inner_at[node] < 0) {
-        if (s->inners == s->inner_room) {
-            s->inner_room = 2 * s->inner_room + 64;
-            s->inner = sm_realloc(s->inner, (size_t)s->inner_room, sizeof *s->inner);
-        }
+        sm_make_room(s->inner, s->inner_room, s->inners + 1);
         s->inner[s->inners] = (struct OctSearchNode){
             .least = least, .most = most, .node = node, .next = s->touched[level]};
         s->inner_at[node] = s->touched[level] = (int)s->inners++;

@@ -2,13 +2,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "../../lib/csr.h"
 #include "../../lib/system/team.h"
-#include "../tree/cover.h"
-
-enum { SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
 
 void oct_pairs_free(OctPairs *pairs)
 {
@@ -25,14 +20,8 @@ size_t oct_pairs_bytes(const OctPairs *pairs)
 
 static void grow(OctPairs *p)
 {
-    if (p->count == p->room) {
-        p->room = 2 * p->room + OCT_SOURCES;
-        p->item = sm_realloc(p->item, (size_t)p->room, sizeof *p->item);
-    }
-    if (p->distances + OCT_SOURCES > p->distance_room) {
-        p->distance_room = 2 * (p->distances + OCT_SOURCES);
-        p->distance = sm_realloc(p->distance, (size_t)p->distance_room, sizeof *p->distance);
-    }
+    sm_make_room(p->item, p->room, p->count + 1);
+    sm_make_room(p->distance, p->distance_room, p->distances + OCT_SOURCES);
 }
 
 void oct_pairs_add(OctPairs *p, const OctSearch *s, int first, const int *w)
@@ -93,7 +82,7 @@ static void search_all(const Build *b, SmCsrParts *member, OctPairs *pairs)
 {
     OctReach reach;
     oct_reach_init(&reach, b->graph);
-#pragma omp parallel num_threads(sm_team(0)) if (b->tree->leaves > SERIAL)
+#pragma omp parallel num_threads(sm_team(0)) if (b->tree->leaves > OCT_SERIAL)
     {
         OctSearch s;
         oct_search_init(&s, b->tree, &reach);
@@ -106,20 +95,45 @@ static void search_all(const Build *b, SmCsrParts *member, OctPairs *pairs)
     oct_reach_free(&reach);
 }
 
+bool oct_one_sided_holds(const OctOneSided *o, const OctTree *tree, long i, int leaf)
+{
+    const SmCsr *members = &o->members;
+    long first = members->first[i], count = members->end[i] - first;
+    return oct_cover_holds(tree, members->item + first, count, leaf);
+}
+
+long oct_one_sided_union(const OctOneSided *o, long i, OctCover *cover, const int **member,
+                         int *width)
+{
+    const SmCsr *members = &o->members, *reverse = &o->reverse;
+    const int *distance = reverse->value;
+    *member = members->item + members->first[i];
+    *width = o->width[i];
+    if (reverse->first[i] == reverse->end[i]) return members->end[i] - members->first[i];
+    cover->count = 0;
+    for (long n = members->first[i]; n < members->end[i]; n++)
+        oct_cover_put(cover, members->item[n]);
+    for (long n = reverse->first[i]; n < reverse->end[i]; n++) {
+        oct_cover_put(cover, cover->tree->node[reverse->item[n]]);
+        if (distance[n] > *width) *width = distance[n];
+    }
+    oct_cover_finish(cover);
+    *member = cover->list;
+    return cover->count;
+}
+
 /* Keeps, in place, the pairs that are asymmetric: those whose leaf does not hold the source. */
 static void keep_asymmetric(const Build *b, OctPairs *pairs)
 {
-    const OctOneSided *o = b->one_sided;
     const int *distance = pairs->distance;
     long count = pairs->count;
     pairs->count = pairs->distances = 0;
     for (long n = 0; n < count; n++) {
         struct OctPair p = pairs->item[n];
-        long first = o->first[p.leaf], members = o->first[p.leaf + 1] - first;
         unsigned kept = 0;
         for (; p.lanes; p.lanes &= p.lanes - 1, distance++) {
             int lane = __builtin_ctz(p.lanes);
-            if (oct_cover_holds(b->tree, o->member + first, members, p.first + lane)) continue;
+            if (oct_one_sided_holds(b->one_sided, b->tree, p.leaf, p.first + lane)) continue;
             kept |= 1u << lane;
             pairs->distance[pairs->distances++] = *distance;
         }
@@ -128,25 +142,27 @@ static void keep_asymmetric(const Build *b, OctPairs *pairs)
 }
 
 /* Lists the asymmetric pairs, which were found by their sources, by the leaves that are held. */
-static void list_reverse(const OctPairs *pairs, long blocks, OctOneSided *o)
+static void list_reverse(const OctPairs *pairs, long blocks, long leaves, SmCsr *reverse)
 {
-    long *next = sm_alloc((size_t)o->leaves, sizeof *next), *first = o->reverse_first;
+    long *first = sm_alloc((size_t)leaves + 1, sizeof *first);
+    long *next = sm_alloc((size_t)leaves, sizeof *next);
     for (long b = 0; b < blocks; b++)
         for (long n = 0; n < pairs[b].count; n++)
             first[pairs[b].item[n].leaf + 1] += __builtin_popcount(pairs[b].item[n].lanes);
-    for (long j = 0; j < o->leaves; j++) first[j + 1] += next[j] = first[j];
-    o->reverse = sm_alloc((size_t)first[o->leaves], sizeof *o->reverse);
-    o->distance = sm_alloc((size_t)first[o->leaves], sizeof *o->distance);
+    for (long j = 0; j < leaves; j++) first[j + 1] += next[j] = first[j];
+    int *item = sm_alloc((size_t)first[leaves], sizeof *item);
+    int *away = sm_alloc((size_t)first[leaves], sizeof *away);
     for (long b = 0; b < blocks; b++) {
         const int *distance = pairs[b].distance;
         for (long n = 0; n < pairs[b].count; n++) {
             struct OctPair p = pairs[b].item[n];
             for (; p.lanes; p.lanes &= p.lanes - 1) {
-                o->distance[next[p.leaf]] = *distance++;
-                o->reverse[next[p.leaf]++] = p.first + __builtin_ctz(p.lanes);
+                away[next[p.leaf]] = *distance++;
+                item[next[p.leaf]++] = p.first + __builtin_ctz(p.lanes);
             }
         }
     }
+    sm_csr_adopt(reverse, leaves, first, item, away, sizeof *away);
     free(next);
 }
 
@@ -155,29 +171,23 @@ void oct_one_sided_build(const OctTree *tree, const OctGraph *graph, const int *
 {
     Build b = {tree, graph, w, epsilon, below, one_sided};
     SmCsrParts member;
-    size_t leaves = (size_t)tree->leaves;
-    *one_sided = (OctOneSided){.leaves = tree->leaves};
-    one_sided->width = sm_alloc(leaves, sizeof *one_sided->width);
-    one_sided->reverse_first = sm_alloc(leaves + 1, sizeof *one_sided->reverse_first);
+    *one_sided = (OctOneSided){.width = sm_alloc((size_t)tree->leaves, sizeof(int))};
     sm_csr_parts_init(&member, tree->leaves);
     long blocks = member.blocks;
     OctPairs *pairs = sm_alloc((size_t)blocks, sizeof *pairs);
     search_all(&b, &member, pairs);
-    sm_csr_parts_join(&member, &one_sided->first, &one_sided->member);
-#pragma omp parallel for schedule(dynamic) num_threads(sm_team(0)) if (tree->leaves > SERIAL)
+    sm_csr_parts_join(&member, &one_sided->members, 0);
+#pragma omp parallel for schedule(dynamic) num_threads(sm_team(0)) if (tree->leaves > OCT_SERIAL)
     for (long block = 0; block < blocks; block++) keep_asymmetric(&b, pairs + block);
-    list_reverse(pairs, blocks, one_sided);
+    list_reverse(pairs, blocks, tree->leaves, &one_sided->reverse);
     for (long block = 0; block < blocks; block++) oct_pairs_free(pairs + block);
     free(pairs);
 }
 
 void oct_one_sided_free(OctOneSided *one_sided)
 {
-    free(one_sided->first);
-    free(one_sided->member);
+    sm_csr_free(&one_sided->members);
+    sm_csr_free(&one_sided->reverse);
     free(one_sided->width);
-    free(one_sided->reverse_first);
-    free(one_sided->reverse);
-    free(one_sided->distance);
-    memset(one_sided, 0, sizeof *one_sided);
+    *one_sided = (OctOneSided){0};
 }

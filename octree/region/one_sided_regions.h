@@ -10,16 +10,14 @@
 #define OCT_ONE_SIDED_REGIONS_H
 
 #include "../graph/graph.h"
+#include "../tree/cover.h"
 #include "multi_source_search.h"
 
 typedef struct {
-    long leaves;
-    long *first;         /* [leaves + 1] */
-    int *member;         /* summation nodes: tree nodes, rising */
-    int *width;          /* [leaves] largest distance of a leaf in the region */
-    long *reverse_first; /* [leaves + 1] */
-    int *reverse;        /* of leaf i: leaves j that hold i though i does not hold them */
-    int *distance;       /* of these from i */
+    SmCsr members; /* of every leaf's region: summation nodes, rising */
+    int *width;    /* [leaves] largest distance of a leaf in the region */
+    SmCsr reverse; /* of leaf i: leaves j that hold i though i does not hold them, and their
+                    * distances */
 } OctOneSided;
 
 /* `below` is oct_tree_below(). Widths and epsilon are in range (region.h). O(edges within reach
@@ -27,6 +25,14 @@ typedef struct {
 void oct_one_sided_build(const OctTree *tree, const OctGraph *graph, const int *w, double epsilon,
                          const int *below, OctOneSided *one_sided);
 void oct_one_sided_free(OctOneSided *one_sided);
+
+/* Does the one-sided region of leaf i hold a leaf? O(levels log members). */
+bool oct_one_sided_holds(const OctOneSided *one_sided, const OctTree *tree, long i, int leaf);
+
+/* The union of the one-sided region of leaf i and its reverse list: returns how many members it
+ * has, which are *member, and how far it reaches. `cover` is scratch, in which they may be. */
+long oct_one_sided_union(const OctOneSided *one_sided, long i, OctCover *cover, const int **member,
+                         int *width);
 
 /* How far the search of a leaf of width w goes: w + floor(epsilon w). */
 int oct_one_sided_reach(int w, double epsilon);

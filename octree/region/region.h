@@ -16,24 +16,14 @@ typedef enum {
 /* Summation nodes of every simulation node's region. Memory: 16 bytes a region and 4 a summation
  * node. */
 typedef struct {
-    long leaves;
-    long members; /* of all regions */
-    long *first;  /* [leaves + 1] */
-    long *end;    /* [leaves] of regions that have been changed; NULL: lists follow each other */
-    int *member;  /* tree nodes, rising within a region; no leaf is below two of them */
-    int *width;   /* [leaves] largest distance of a leaf in the region, half finest cells */
-    int *size;    /* [leaves] leaves in the region */
-    double mean;  /* summation nodes per region */
+    SmCsr members; /* of every leaf's region: tree nodes, rising; no leaf is below two of them */
+    int *width;    /* [leaves] largest distance of a leaf in the region, half finest cells */
+    int *size;     /* [leaves] leaves in the region */
+    double mean;   /* summation nodes per region */
     long most;
     double mean_width; /* of `width`: how far regions reach on average, and at most */
     int most_width;
 } OctRegions;
-
-/* The members of a region are first[leaf] to oct_regions_end() - 1. */
-static inline long oct_regions_end(const OctRegions *regions, long leaf)
-{
-    return regions->end ? regions->end[leaf] : regions->first[leaf + 1];
-}
 
 /* Regions of widths w[leaf] (half finest cells, 0 or more). Before symmetry every leaf within w_i
  * of i is in R_i, and none beyond w_i + floor(epsilon w_i).
@@ -53,7 +43,7 @@ SmCode oct_regions_build(const OctTree *tree, const OctGraph *graph, const int *
                          OctSymmetry symmetry, OctRegions *regions, SmError *error);
 void oct_regions_free(OctRegions *regions);
 
-/* Brings members, mean, most and the mean and largest width up to date, after the regions have been
+/* Brings mean, most and the mean and largest width up to date, after the regions have been
  * changed. O(leaves). */
 void oct_regions_measure(OctRegions *regions);
 

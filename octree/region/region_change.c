@@ -12,26 +12,6 @@ enum {
     REGION = 2, /* its reverse list may change */
 };
 
-/* `list` with room for so many more entries. */
-#define ROOM(list, count, more, room)                                                              \
-    do {                                                                                           \
-        if ((count) + (more) > (room)) {                                                           \
-            (room) = 2 * ((count) + (more)) + 64;                                                  \
-            (list) = sm_realloc((list), (size_t)(room), sizeof *(list));                           \
-        }                                                                                          \
-    } while (0)
-
-/* The regions' arrays are those of the rows that change. */
-static void publish(OctRegionChange *c)
-{
-    OctRegions *regions = c->regions;
-    regions->leaves = c->region.rows;
-    regions->members = c->region.live;
-    regions->first = c->region.first;
-    regions->end = c->region.end;
-    regions->member = c->region.item;
-}
-
 static int reach_of(const OctRegionChange *c, long leaf)
 {
     return oct_one_sided_reach(c->w[leaf], c->epsilon);
@@ -41,7 +21,7 @@ static void make_leaves(OctRegionChange *c, long to)
 {
     OctRegions *regions = c->regions;
     long from = c->leaf_space;
-    c->one_sided_width = sm_widen(c->one_sided_width, from, to, sizeof *c->one_sided_width, 0);
+    c->one_sided.width = sm_widen(c->one_sided.width, from, to, sizeof(int), 0);
     c->state = sm_widen(c->state, from, to, 1, 0);
     regions->width = sm_widen(regions->width, from, to, sizeof *regions->width, 0);
     regions->size = sm_widen(regions->size, from, to, sizeof *regions->size, 0);
@@ -65,52 +45,42 @@ static void grow_scratch(OctRegionChange *c, const int *below)
 void oct_region_change_init(OctRegionChange *c, const OctTree *tree, const OctGraph *graph,
                             const int *w, double epsilon, const int *below, OctRegions *regions)
 {
-    OctOneSided o;
     *c = (OctRegionChange){.tree = tree, .graph = graph, .regions = regions, .w = w};
     c->epsilon = epsilon;
     c->leaf_space = tree->leaves;
     c->node_space = tree->nodes;
     oct_reach_init(&c->reach, graph);
     oct_search_init(&c->search, tree, &c->reach);
-    oct_one_sided_build(tree, graph, w, epsilon, below, &o);
-    sm_csr_adopt(&c->one_sided, tree->leaves, o.first, o.member, NULL, 0);
-    sm_csr_adopt(&c->reverse, tree->leaves, o.reverse_first, o.reverse, o.distance, sizeof(int));
-    sm_csr_adopt(&c->region, tree->leaves, regions->first, regions->member, NULL, 0);
-    c->one_sided_width = o.width;
+    oct_one_sided_build(tree, graph, w, epsilon, below, &c->one_sided);
     oct_cover_init(&c->cover, tree, tree->nodes);
     c->state = sm_alloc((size_t)tree->leaves, 1);
     c->altered = sm_alloc((size_t)tree->nodes, 1);
     for (long leaf = 0; leaf < tree->leaves; leaf++)
         if (reach_of(c, leaf) > c->widest) c->widest = reach_of(c, leaf);
-    sm_csr_reserve(&c->one_sided);
-    sm_csr_reserve(&c->reverse);
-    sm_csr_reserve(&c->region);
+    sm_csr_reserve(&c->one_sided.members);
+    sm_csr_reserve(&c->one_sided.reverse);
+    sm_csr_reserve(&regions->members);
     make_leaves(c, sm_room_for(tree->leaves));
     make_nodes(c, sm_room_for(tree->nodes));
     grow_scratch(c, below);
-    publish(c);
 }
 
 void oct_region_change_free(OctRegionChange *c)
 {
     oct_reach_free(&c->reach);
     oct_search_free(&c->search);
-    sm_csr_free(&c->one_sided);
-    sm_csr_free(&c->reverse);
-    free(c->region.room);
+    oct_one_sided_free(&c->one_sided);
     oct_cover_free(&c->cover);
     oct_pairs_free(&c->pairs);
-    void *all[] = {c->one_sided_width, c->state,     c->altered, c->list,
-                   c->fresh,           c->fresh_end, c->source,  c->order};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(c->state, c->altered, c->list, c->fresh, c->fresh_end, c->source, c->order);
     *c = (OctRegionChange){0};
 }
 
 size_t oct_region_change_bytes(const OctRegionChange *c)
 {
     const OctReach *reach = &c->reach;
-    return sm_csr_bytes(&c->one_sided) + sm_csr_bytes(&c->reverse) + sm_csr_bytes(&c->region) +
-           oct_search_bytes(&c->search) + (size_t)c->leaf_space * (sizeof *c->one_sided_width + 1) +
+    return sm_csr_bytes(&c->one_sided.members) + sm_csr_bytes(&c->one_sided.reverse) +
+           oct_search_bytes(&c->search) + (size_t)c->leaf_space * (sizeof(int) + 1) +
            (size_t)reach->leaves *
                (sizeof *reach->distance + sizeof *reach->reached + sizeof *reach->nearest) +
            (size_t)c->node_space * 2 + (size_t)c->order_room * sizeof *c->order +
@@ -119,21 +89,14 @@ size_t oct_region_change_bytes(const OctRegionChange *c)
            (size_t)c->source_room * sizeof *c->source;
 }
 
-static void grow_leaves(OctRegionChange *c)
-{
-    long leaves = c->tree->leaves;
-    sm_csr_grow(&c->one_sided, leaves);
-    sm_csr_grow(&c->reverse, leaves);
-    sm_csr_grow(&c->region, leaves);
-    if (leaves > c->leaf_space) make_leaves(c, sm_room_for(leaves));
-}
-
 void oct_region_change_grow(OctRegionChange *c, const int *w, const int *below)
 {
-    long nodes = c->tree->nodes;
+    long nodes = c->tree->nodes, leaves = c->tree->leaves;
     c->w = w;
-    grow_leaves(c);
-    publish(c);
+    sm_csr_grow(&c->one_sided.members, leaves);
+    sm_csr_grow(&c->one_sided.reverse, leaves);
+    sm_csr_grow(&c->regions->members, leaves);
+    if (leaves > c->leaf_space) make_leaves(c, sm_room_for(leaves));
     if (nodes > c->node_space) make_nodes(c, sm_room_for(nodes));
     grow_scratch(c, below);
 }
@@ -143,16 +106,16 @@ static void list_leaf(OctRegionChange *c, int leaf, unsigned char what)
 {
     if (c->state[leaf]) return;
     c->state[leaf] = what;
-    ROOM(c->list, c->list_count, 1, c->list_room);
+    sm_make_room(c->list, c->list_room, c->list_count + 1);
     c->list[c->list_count++] = leaf;
 }
 
-void oct_region_change_note(OctRegionChange *c, const OctEdge *edge, long count)
+void oct_region_change_note(OctRegionChange *c, const OctEdges *edges)
 {
-    ROOM(c->source, c->source_count, 2 * count, c->source_room);
-    for (long e = 0; e < count; e++) {
-        c->source[c->source_count++] = (struct OctSource){edge[e].leaf, edge[e].length};
-        c->source[c->source_count++] = (struct OctSource){edge[e].other, edge[e].length};
+    sm_make_room(c->source, c->source_room, c->source_count + 2 * edges->count);
+    for (const OctEdge *edge = edges->edge; edge < edges->edge + edges->count; edge++) {
+        c->source[c->source_count++] = (struct OctSource){edge->leaf, edge->length};
+        c->source[c->source_count++] = (struct OctSource){edge->other, edge->length};
     }
 }
 
@@ -171,8 +134,7 @@ void oct_region_change_mark(OctRegionChange *c)
 
 static bool holds(const OctRegionChange *c, int i, int leaf)
 {
-    long first = c->one_sided.first[i];
-    return oct_cover_holds(c->tree, c->one_sided.item + first, c->one_sided.end[i] - first, leaf);
+    return oct_one_sided_holds(&c->one_sided, c->tree, i, leaf);
 }
 
 /* Where leaf i held leaf k, which is not searched, and does not any more: i leaves the reverse list
@@ -181,27 +143,28 @@ static bool holds(const OctRegionChange *c, int i, int leaf)
 static void lose(OctRegionChange *c, int i, int k, int lane)
 {
     if (c->state[k] == SEARCH || (lane >= 0 && oct_search_holds(&c->search, lane, k))) return;
-    if (sm_csr_remove(&c->reverse, k, i)) list_leaf(c, k, REGION);
+    if (sm_csr_remove(&c->one_sided.reverse, k, i)) list_leaf(c, k, REGION);
     if (lane < 0 || !holds(c, k, i)) return;
     int at = c->search.leaf_at[k];
     /* the distances within the reach of k, which is not searched, are as they were (mark): so it is
      * as far from i, which it holds, as when i held it, which was within i's reach */
     assert(at >= 0 && c->search.distance[at][lane] <= reach_of(c, i));
     int distance = c->search.distance[at][lane];
-    sm_csr_add(&c->reverse, i, k, &distance);
+    sm_csr_add(&c->one_sided.reverse, i, k, &distance);
 }
 
 /* The same of all leaves that leaf i held before and that are still there. */
 static void lose_all(OctRegionChange *c, int i, int lane)
 {
     const OctTree *t = c->tree;
-    for (long m = c->one_sided.first[i]; m < c->one_sided.end[i]; m++) {
-        int stack[8 * (OCT_MAX_LEVELS + 1)], count = 1;
-        stack[0] = c->one_sided.item[m];
-        while (count > 0) {
-            int node = stack[--count];
+    const SmCsr *members = &c->one_sided.members;
+    for (long m = members->first[i]; m < members->end[i]; m++) {
+        OctStack stack;
+        oct_stack_begin(&stack, members->item[m]);
+        while (stack.count > 0) {
+            int node = oct_stack_take(&stack);
             if (t->size[node] > 0 && !t->children[node]) lose(c, i, t->leaf[node], lane);
-            for (int n = 0; n < t->children[node]; n++) stack[count++] = t->child[node] + n;
+            oct_stack_put(&stack, t->child[node], t->children[node]);
         }
     }
 }
@@ -210,16 +173,17 @@ static void lose_all(OctRegionChange *c, int i, int lane)
  * are searched too, or deleted, or i holds them now. */
 static void keep_reverse(OctRegionChange *c, int i, int lane)
 {
-    long first = c->reverse.first[i], end = c->reverse.end[i], kept = first;
-    int *distance = c->reverse.value;
+    SmCsr *reverse = &c->one_sided.reverse;
+    long first = reverse->first[i], end = reverse->end[i], kept = first;
+    int *distance = reverse->value;
     for (long e = first; e < end; e++) {
-        int k = c->reverse.item[e];
+        int k = reverse->item[e];
         if (c->tree->node[k] < 0 || c->state[k] == SEARCH || oct_search_holds(&c->search, lane, k))
             continue;
-        c->reverse.item[kept] = k;
+        reverse->item[kept] = k;
         distance[kept++] = distance[e];
     }
-    sm_csr_resize(&c->reverse, i, kept - first);
+    sm_csr_resize(reverse, i, kept - first);
 }
 
 /* Searches leaves number n of the list and some more: their one-sided regions go to `fresh`, what
@@ -236,8 +200,8 @@ static void search(OctRegionChange *c, long n, int count)
     for (int lane = 0; lane < count; lane++) {
         int i = c->list[n + lane], members = c->search.members[lane];
         long from = n + lane ? c->fresh_end[n + lane - 1] : 0;
-        c->one_sided_width[i] = c->search.width[lane];
-        ROOM(c->fresh, from, members, c->fresh_room);
+        c->one_sided.width[i] = c->search.width[lane];
+        sm_make_room(c->fresh, c->fresh_room, from + members);
         if (members > 0)
             memcpy(c->fresh + from, oct_search_member(&c->search, lane),
                    (size_t)members * sizeof *c->fresh);
@@ -274,28 +238,13 @@ static bool replace(OctRegionChange *c, SmCsr *rows, int row, const int *item, l
 /* The region of leaf i: its one-sided region and its reverse list. */
 static void unite(OctRegionChange *c, int i, OctChange *batch)
 {
-    const OctTree *t = c->tree;
     OctRegions *regions = c->regions;
-    const int *item = c->one_sided.item + c->one_sided.first[i];
-    long count = c->one_sided.end[i] - c->one_sided.first[i];
-    int width = c->one_sided_width[i];
-    if (c->reverse.end[i] > c->reverse.first[i]) {
-        const int *distance = c->reverse.value;
-        c->cover.count = 0;
-        for (long n = 0; n < count; n++) oct_cover_put(&c->cover, item[n]);
-        for (long e = c->reverse.first[i]; e < c->reverse.end[i]; e++) {
-            oct_cover_put(&c->cover, t->node[c->reverse.item[e]]);
-            if (distance[e] > width) width = distance[e];
-        }
-        oct_cover_finish(&c->cover);
-        item = c->cover.list;
-        count = c->cover.count;
-    }
-    regions->width[i] = width;
+    const int *member;
+    long count = oct_one_sided_union(&c->one_sided, i, &c->cover, &member, &regions->width[i]);
     regions->size[i] = 0;
-    for (long n = 0; n < count; n++) regions->size[i] += c->search.below[item[n]];
-    if (!replace(c, &c->region, i, item, count)) return;
-    ROOM(batch->region, batch->region_count, 1, c->region_room);
+    for (long n = 0; n < count; n++) regions->size[i] += c->search.below[member[n]];
+    if (!replace(c, &regions->members, i, member, count)) return;
+    sm_make_room(batch->region, c->region_room, batch->region_count + 1);
     batch->region[batch->region_count++] = i;
 }
 
@@ -303,17 +252,17 @@ static void unite(OctRegionChange *c, int i, OctChange *batch)
 static void remove_leaf(OctRegionChange *c, int leaf)
 {
     lose_all(c, leaf, -1);
-    sm_csr_resize(&c->one_sided, leaf, 0);
-    sm_csr_resize(&c->reverse, leaf, 0);
-    sm_csr_resize(&c->region, leaf, 0);
-    c->regions->width[leaf] = c->regions->size[leaf] = c->one_sided_width[leaf] = 0;
+    sm_csr_resize(&c->one_sided.members, leaf, 0);
+    sm_csr_resize(&c->one_sided.reverse, leaf, 0);
+    sm_csr_resize(&c->regions->members, leaf, 0);
+    c->regions->width[leaf] = c->regions->size[leaf] = c->one_sided.width[leaf] = 0;
 }
 
 /* Leaf i holds the leaf: it comes to that leaf's reverse list, if the leaf does not hold it. The
  * list of one that is not searched may have it already, perhaps at another distance. */
 static void add_reverse(OctRegionChange *c, int leaf, int i, int distance)
 {
-    SmCsr *reverse = &c->reverse;
+    SmCsr *reverse = &c->one_sided.reverse;
     long at = c->state[leaf] == SEARCH ? -1 : sm_csr_find(reverse, leaf, i);
     if (at >= 0) {
         int *known = (int *)reverse->value + at;
@@ -337,7 +286,7 @@ static int compare_order(const void *a, const void *b)
 static void order_list(OctRegionChange *c)
 {
     const OctTree *t = c->tree;
-    ROOM(c->order, 0, c->search_count, c->order_room);
+    sm_make_room(c->order, c->order_room, c->search_count);
     for (long n = 0; n < c->search_count; n++) {
         const int *centre = t->centre[t->node[c->list[n]]];
         c->order[n].leaf = c->list[n];
@@ -353,13 +302,13 @@ static void search_all(OctRegionChange *c)
 {
     long count = c->search_count;
     c->pairs.count = c->pairs.distances = 0;
-    ROOM(c->fresh_end, 0, count, c->fresh_end_room);
+    sm_make_room(c->fresh_end, c->fresh_end_room, count);
     order_list(c);
     for (long n = 0; n < count; n += OCT_SOURCES)
         search(c, n, (int)(count - n < OCT_SOURCES ? count - n : OCT_SOURCES));
     for (long n = 0; n < count; n++) {
         long from = n ? c->fresh_end[n - 1] : 0;
-        replace(c, &c->one_sided, c->list[n], c->fresh + from, c->fresh_end[n] - from);
+        replace(c, &c->one_sided.members, c->list[n], c->fresh + from, c->fresh_end[n] - from);
     }
     const int *distance = c->pairs.distance;
     for (long n = 0; n < c->pairs.count; n++) {
@@ -387,5 +336,4 @@ void oct_region_change_update(OctRegionChange *c, OctChange *batch)
     batch->searched = c->list;
     c->list_count = 0;
     mark_altered(c, batch, 0);
-    publish(c);
 }

@@ -10,7 +10,6 @@
 #include <stdint.h>
 
 #include "../graph/graph_change.h"
-#include "../tree/cover.h"
 #include "one_sided_regions.h"
 #include "region.h"
 
@@ -22,12 +21,9 @@ typedef struct {
     double epsilon;
     OctReach reach;
     OctSearch search;
-    SmCsr one_sided; /* summation nodes of the one-sided regions, rising */
-    SmCsr reverse;   /* of every leaf: those that hold it though it does not hold them; distances */
-    SmCsr region;    /* of the regions, whose arrays these are */
+    OctOneSided one_sided;
     /* its own */
     OctCover cover;
-    int *one_sided_width;   /* [leaf_space] largest distance of a leaf in the one-sided region */
     unsigned char *state;   /* [leaf_space] 0 between batches */
     unsigned char *altered; /* [node_space] leaves below it are others than before; 0 between */
     int *list;              /* [list_count] leaves to be searched again, then */
@@ -46,13 +42,11 @@ typedef struct {
     long list_room, fresh_room, fresh_end_room, source_room, region_room, order_room;
 } OctRegionChange;
 
-/* Takes the arrays of the regions over; they, tree and graph must stay where they are. `w` and
- * `epsilon` are what they were built of (oct_regions_build()), `below` is oct_tree_below().
- * O(body).
- */
+/* Regions, tree and graph must stay where they are. `w` and `epsilon` are what the regions were
+ * built of (oct_regions_build()), `below` is oct_tree_below(). O(body). */
 void oct_region_change_init(OctRegionChange *change, const OctTree *tree, const OctGraph *graph,
                             const int *w, double epsilon, const int *below, OctRegions *regions);
-void oct_region_change_free(OctRegionChange *change); /* the regions stay whole */
+void oct_region_change_free(OctRegionChange *change); /* the regions stay */
 size_t oct_region_change_bytes(const OctRegionChange *change);
 
 /* Begins an update: makes room for the leaves and nodes there are, whose widths are `w`. */
@@ -60,7 +54,7 @@ void oct_region_change_grow(OctRegionChange *change, const int *w, const int *be
 
 /* Notes edges that are to go, or that have come; then marks the leaves whose own distances those
  * noted can change, by the graph as it is, which has all of them. */
-void oct_region_change_note(OctRegionChange *change, const OctEdge *edge, long count);
+void oct_region_change_note(OctRegionChange *change, const OctEdges *edges);
 void oct_region_change_mark(OctRegionChange *change);
 
 /* Makes the regions what they should be, of the graph as it is, and lists in `batch` which hold

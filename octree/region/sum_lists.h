@@ -27,24 +27,16 @@ enum {
 };
 
 typedef struct {
-    long first;      /* in `row` */
-    int count, room; /* entries, and as many as there is place for */
-} OctSpan;
-
-typedef struct {
     long base;   /* row of tree node 0 */
     long leaves; /* as built */
-    long prefixes, slots;
+    long prefixes;
     long entries; /* of the leaves' and prefixes' lists as built, zero rows not counted */
     int levels;
     int *prefix;       /* [prefixes] tree node, rising: its prefixes come before it */
     long *level_first; /* [levels + 2] first prefix of every tree level */
     int *needed;       /* [prefixes] lists that begin with its row */
-    OctSpan *span;     /* [prefixes + slots] of lists: the prefixes', then the leaves' */
-    int *row;          /* the prefix above first, if there is one, then tree nodes */
-    long used, room;   /* of `row` */
-    long idle;         /* of `used`: given up by lists that have moved */
-    long slot_room;
+    SmCsr rows;        /* of the prefixes' lists, then of the leaves' slots': what they add up,
+                        * first the prefix above, if there is one, then tree nodes */
 } OctSumLists;
 
 /* Leaves rounded up to whole OCT_SLOTS. */

@@ -23,10 +23,10 @@ typedef struct {
 
 static int *edge_matrix(const OctGraph *g)
 {
-    int *length = sm_alloc((size_t)g->leaves * (size_t)g->leaves, sizeof *length);
-    for (long l = 0; l < g->leaves; l++)
-        for (long e = g->first[l]; e < g->first[l + 1]; e++)
-            length[l * g->leaves + g->to[e]] = g->length[e];
+    int *length = sm_alloc((size_t)g->edges.rows * (size_t)g->edges.rows, sizeof *length);
+    for (long l = 0; l < g->edges.rows; l++)
+        for (long e = g->edges.first[l]; e < g->edges.end[l]; e++)
+            length[l * g->edges.rows + g->edges.item[e]] = oct_graph_length(g)[e];
     return length;
 }
 

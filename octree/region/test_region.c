@@ -50,10 +50,10 @@ static void check_members(const OctTree *t, const OctRegions *r, long i)
 {
     int *children = sm_alloc((size_t)t->nodes, sizeof *children);
     bool *in = sm_alloc((size_t)t->nodes, sizeof *in);
-    for (long n = r->first[i]; n < r->first[i + 1]; n++) {
-        assert_true(n == r->first[i] || r->member[n] > r->member[n - 1]);
-        in[r->member[n]] = true;
-        int parent = t->parent[r->member[n]];
+    for (long n = r->members.first[i]; n < r->members.end[i]; n++) {
+        assert_true(n == r->members.first[i] || r->members.item[n] > r->members.item[n - 1]);
+        in[r->members.item[n]] = true;
+        int parent = t->parent[r->members.item[n]];
         if (parent < 0) continue;
         assert_true(++children[parent] < t->children[parent]);
         for (; parent >= 0; parent = t->parent[parent]) assert_false(in[parent]);
@@ -100,14 +100,15 @@ static void check_trial(unsigned *seed, int trial, const SmVoxels *v, const OctT
     for (long i = 0; i < t->leaves; i++) {
         check_leaves(t, &r, i, member + i * t->leaves, ref.distance + i * t->leaves);
         check_members(t, &r, i);
-        if (r.first[i + 1] - r.first[i] > most) most = r.first[i + 1] - r.first[i];
+        if (r.members.end[i] - r.members.first[i] > most)
+            most = r.members.end[i] - r.members.first[i];
         if (r.width[i] > widest) widest = r.width[i];
         widths += r.width[i];
     }
     assert_int_equal(r.most_width, widest);
     assert_true(fabs(r.mean_width * (double)t->leaves - widths) < 1e-6);
     assert_int_equal(r.most, most);
-    assert_true(fabs(r.mean * (double)t->leaves - (double)r.first[t->leaves]) < 1e-6);
+    assert_true(fabs(r.mean * (double)t->leaves - (double)r.members.live) < 1e-6);
     free(member);
     free(w);
     ref_octree_free(&ref);
@@ -140,8 +141,8 @@ static void row_of_eight(SmVoxels *v, OctTree *t, OctGraph *g)
 static void assert_region(const OctTree *t, const OctRegions *r, int i, int width, const char *want)
 {
     char text[200] = "";
-    for (long n = r->first[i]; n < r->first[i + 1]; n++) {
-        int node = r->member[n];
+    for (long n = r->members.first[i]; n < r->members.end[i]; n++) {
+        int node = r->members.item[n];
         snprintf(text + strlen(text), sizeof text - strlen(text), "%s%d-%d", *text ? " " : "",
                  oct_tree_low(t, node, 0), t->size[node] / 2);
     }
@@ -176,7 +177,7 @@ TEST(a_row_has_the_regions_found_by_hand)
     assert_region(&t, &r, 1, 2, "0-2");
     assert_region(&t, &r, 5, 10, "0-1 5-1");
     assert_int_equal(r.size[0], 8);
-    assert_int_equal(oct_regions_bytes(&r) - sizeof r, 8 * 9 + 8 * 8 + 4 * r.first[8]);
+    assert_int_equal(oct_regions_bytes(&r) - sizeof r, 8 * 9 + 8 * 8 + 4 * r.members.live);
     oct_regions_free(&r);
     /* or loses its leaf to them, or has them without their having it */
     assert_int_equal(oct_regions_build(&t, &g, one, 0, OCT_INTERSECTION, &r, NULL), SM_OK);
@@ -205,7 +206,7 @@ TEST(widths_and_epsilon_out_of_range_are_refused)
     for (int n = 0; n < 4; n++) {
         assert_int_equal(oct_regions_build(&t, &g, w, bad[n], OCT_UNION, &r, &error), SM_USAGE);
         assert_non_null(strstr(error.text, "epsilon"));
-        assert_null(r.first);
+        assert_null(r.members.first);
     }
     w[5] = -1;
     assert_int_equal(oct_regions_build(&t, &g, w, 0, OCT_UNION, &r, &error), SM_USAGE);
@@ -240,9 +241,10 @@ TEST(regions_are_equal_for_any_number_of_threads)
         omp_set_num_threads(2 + trial % 4);
         oct_regions_build(&t, &g, w, 0.5, OCT_UNION, &many, NULL);
         omp_set_num_threads(before);
-        size_t members = (size_t)one.first[t.leaves], leaves = (size_t)t.leaves;
-        assert_memory_equal(one.first, many.first, (leaves + 1) * sizeof *one.first);
-        assert_memory_equal(one.member, many.member, members * sizeof *one.member);
+        const SmCsr *rows = &one.members, *other = &many.members;
+        size_t leaves = (size_t)t.leaves;
+        assert_memory_equal(rows->first, other->first, (leaves + 1) * sizeof *rows->first);
+        assert_memory_equal(rows->item, other->item, (size_t)rows->live * sizeof *rows->item);
         assert_memory_equal(one.width, many.width, leaves * sizeof *one.width);
         assert_memory_equal(one.size, many.size, leaves * sizeof *one.size);
         free(w);

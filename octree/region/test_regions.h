@@ -3,7 +3,6 @@
 #define OCT_TEST_REGIONS_H
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "region.h"
 
@@ -11,8 +10,7 @@ typedef struct {
     const OctTree *tree;
     int (*low)[3], (*high)[3]; /* [nodes] box of the leaves' centres */
     double w, most;
-    long *count;         /* of every leaf */
-    OctRegions *regions; /* to fill, or NULL: count only */
+    OctRegions *regions;
 } MaxNorm;
 
 static inline void max_norm_add(MaxNorm *m, long below, int member)
@@ -20,8 +18,7 @@ static inline void max_norm_add(MaxNorm *m, long below, int member)
     const OctTree *tree = m->tree;
     for (int i = 0; i < tree->children[below]; i++) max_norm_add(m, tree->child[below] + i, member);
     if (tree->leaf[below] < 0) return;
-    long at = m->count[tree->leaf[below]]++;
-    if (m->regions) m->regions->member[m->regions->first[tree->leaf[below]] + at] = member;
+    sm_csr_add(&m->regions->members, tree->leaf[below], member, NULL);
 }
 
 /* Nodes a and b see each other as one where all their leaves are near enough; cut in two else. */
@@ -54,31 +51,18 @@ static inline void max_norm_pair(MaxNorm *m, int a, int b)
     for (int i = 0; i < tree->children[cut]; i++) max_norm_pair(m, tree->child[cut] + i, other);
 }
 
-static inline void max_norm_pairs(MaxNorm *m)
-{
-    memset(m->count, 0, (size_t)m->tree->leaves * sizeof(long));
-    for (int a = 0; a < m->tree->roots; a++)
-        for (int b = 0; b <= a; b++) max_norm_pair(m, a, b);
-}
-
-static inline int compare_members(const void *a, const void *b)
-{
-    int p = *(const int *)a, q = *(const int *)b;
-    return (p > q) - (p < q);
-}
-
 /* Regions of half finest cells w at least and (1 + epsilon) w at most, by the max norm between
  * centres whatever lies between. The caller frees. */
 static inline void max_norm_regions(const OctTree *tree, double w, double epsilon,
                                     OctRegions *regions)
 {
-    size_t nodes = (size_t)tree->nodes, leaves = (size_t)tree->leaves;
+    size_t nodes = (size_t)tree->nodes;
     MaxNorm m = {.tree = tree,
                  .low = sm_alloc(nodes, sizeof *m.low),
                  .high = sm_alloc(nodes, sizeof *m.high),
                  .w = w,
                  .most = w * (1 + epsilon),
-                 .count = sm_alloc(leaves, sizeof(long))};
+                 .regions = regions};
     for (long n = tree->nodes - 1; n >= 0; n--)
         for (int d = 0; d < 3; d++) {
             m.low[n][d] = m.high[n][d] = tree->centre[n][d];
@@ -88,22 +72,19 @@ static inline void max_norm_regions(const OctTree *tree, double w, double epsilo
                 if (i == 0 || m.high[c][d] > m.high[n][d]) m.high[n][d] = m.high[c][d];
             }
         }
-    *regions = (OctRegions){.leaves = tree->leaves, .first = sm_alloc(leaves + 1, sizeof(long))};
-    max_norm_pairs(&m);
-    for (size_t i = 0; i < leaves; i++) {
-        regions->first[i + 1] = regions->first[i] + m.count[i];
-        if (m.count[i] > regions->most) regions->most = m.count[i];
+    SmCsr *members = &regions->members;
+    *regions = (OctRegions){0};
+    sm_csr_grow(members, tree->leaves);
+    for (int a = 0; a < tree->roots; a++)
+        for (int b = 0; b <= a; b++) max_norm_pair(&m, a, b);
+    for (long i = 0; i < tree->leaves; i++) {
+        long count = members->end[i] - members->first[i];
+        sm_sort_ints(members->item + members->first[i], count);
+        if (count > regions->most) regions->most = count;
     }
-    regions->mean = (double)regions->first[leaves] / (double)leaves;
-    regions->member = sm_alloc((size_t)regions->first[leaves], sizeof(int));
-    m.regions = regions;
-    max_norm_pairs(&m);
-    for (size_t i = 0; i < leaves; i++)
-        qsort(regions->member + regions->first[i], (size_t)m.count[i], sizeof(int),
-              compare_members);
+    regions->mean = (double)members->live / (double)tree->leaves;
     free(m.low);
     free(m.high);
-    free(m.count);
 }
 
 #endif

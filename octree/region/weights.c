@@ -29,8 +29,8 @@ static void sum_reach(const OctTree *tree, const OctRegions *regions, OctWeights
 {
     double *sum = sm_alloc((size_t)tree->nodes, sizeof(double));
     for (long r = 0; r < tree->leaves; r++)
-        for (long at = regions->first[r]; at < oct_regions_end(regions, r); at++)
-            sum[regions->member[at]] += oct_weights_mass(w, tree, r);
+        for (long at = regions->members.first[r]; at < regions->members.end[r]; at++)
+            sum[regions->members.item[at]] += oct_weights_mass(w, tree, r);
     for (long n = 0; n < tree->nodes; n++) {
         if (tree->parent[n] >= 0) sum[n] += sum[tree->parent[n]];
         if (tree->leaf[n] >= 0) w->reach[tree->leaf[n]] = sum[n];
@@ -78,9 +78,9 @@ void oct_weights_region(const OctWeights *w, const OctTree *tree, const OctRegio
                         long leaf, OctRegionRest *rest)
 {
     double sum[OCT_MOMENTS] = {0}, shift[3];
-    for (long at = regions->first[leaf]; at < oct_regions_end(regions, leaf); at++) {
-        shift_between(tree, regions->member[at], tree->node[leaf], shift);
-        add_moments(w->sum[regions->member[at]], shift, sum);
+    for (long at = regions->members.first[leaf]; at < regions->members.end[leaf]; at++) {
+        shift_between(tree, regions->members.item[at], tree->node[leaf], shift);
+        add_moments(w->sum[regions->members.item[at]], shift, sum);
     }
     *rest = (OctRegionRest){.mass = sum[0]};
     for (int d = 0; d < 3; d++) rest->offset[d] = sum[1 + d] / sum[0];
@@ -115,9 +115,7 @@ void oct_weights_build(const OctTree *tree, const OctRegions *regions, const dou
 
 void oct_weights_free(OctWeights *w)
 {
-    free(w->below);
-    free(w->reach);
-    free(w->sum);
+    sm_free_all(w->below, w->reach, w->sum);
     memset(w, 0, sizeof *w);
 }
 

@@ -4,32 +4,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An array that grows, zeroed beyond what it held. */
-static void *grown(void *old, long *room, long wanted, size_t size)
-{
-    long more = 2 * wanted;
-    char *array = sm_realloc(old, (size_t)more, size);
-    memset(array + (size_t)*room * size, 0, (size_t)(more - *room) * size);
-    *room = more;
-    return array;
-}
-
 static void make_room(const OctTree *tree, OctWeights *w, OctWeightsChange *s)
 {
+    long nodes = 2 * tree->nodes, leaves = 2 * tree->leaves;
     if (tree->nodes > w->nodes) {
-        long nodes = w->nodes;
-        w->below = grown(w->below, &nodes, tree->nodes, sizeof *w->below);
-        w->sum = grown(w->sum, &w->nodes, tree->nodes, sizeof *w->sum);
+        w->below = sm_widen(w->below, w->nodes, nodes, sizeof *w->below, 0);
+        w->sum = sm_widen(w->sum, w->nodes, nodes, sizeof *w->sum, 0);
+        w->nodes = nodes;
     }
-    if (tree->leaves > w->leaves)
-        w->reach = grown(w->reach, &w->leaves, tree->leaves, sizeof *w->reach);
+    if (tree->leaves > w->leaves) {
+        w->reach = sm_widen(w->reach, w->leaves, leaves, sizeof *w->reach, 0);
+        w->leaves = leaves;
+    }
     if (tree->nodes > s->nodes) {
-        long nodes = s->nodes;
-        s->on_path = grown(s->on_path, &nodes, tree->nodes, sizeof *s->on_path);
-        s->below = grown(s->below, &s->nodes, tree->nodes, sizeof *s->below);
+        s->on_path = sm_widen(s->on_path, s->nodes, nodes, sizeof *s->on_path, 0);
+        s->below = sm_widen(s->below, s->nodes, nodes, sizeof *s->below, 0);
+        s->nodes = nodes;
     }
-    if (tree->leaves > s->leaves)
-        s->listed = grown(s->listed, &s->leaves, tree->leaves, sizeof *s->listed);
+    if (tree->leaves > s->leaves) {
+        s->listed = sm_widen(s->listed, s->leaves, leaves, sizeof *s->listed, 0);
+        s->leaves = leaves;
+    }
 }
 
 /* A mark that no node or leaf has. */
@@ -75,39 +70,35 @@ static void list(OctWeightsChange *s, int leaf)
 {
     if (s->listed[leaf] == s->mark) return;
     s->listed[leaf] = s->mark;
-    if (s->count == s->room) {
-        s->room = s->room ? 2 * s->room : 256;
-        s->leaf = sm_realloc(s->leaf, (size_t)s->room, sizeof *s->leaf);
-    }
+    sm_make_room(s->leaf, s->room, s->count + 1);
     s->leaf[s->count++] = leaf;
 }
 
-/* A node has at most 8 children, and those of one node of every level are on the stack. */
 static void list_below(const OctTree *tree, int node, OctWeightsChange *s)
 {
-    int stack[8 * (OCT_MAX_LEVELS + 1)], count = 0;
-    stack[count++] = node;
-    while (count) {
-        node = stack[--count];
+    OctStack stack;
+    oct_stack_begin(&stack, node);
+    while (stack.count > 0) {
+        node = oct_stack_take(&stack);
         if (s->below[node] == s->mark) continue;
         s->below[node] = s->mark;
         if (tree->leaf[node] >= 0) list(s, tree->leaf[node]);
-        for (int i = 0; i < tree->children[node]; i++) stack[count++] = tree->child[node] + i;
+        oct_stack_put(&stack, tree->child[node], tree->children[node]);
     }
 }
 
 /* By symmetry the regions that contain a leaf are those of its own region's leaves. */
 static void list_region(const OctTree *tree, const OctRegions *r, long leaf, OctWeightsChange *s)
 {
-    for (long at = r->first[leaf]; at < oct_regions_end(r, leaf); at++)
-        list_below(tree, r->member[at], s);
+    for (long at = r->members.first[leaf]; at < r->members.end[leaf]; at++)
+        list_below(tree, r->members.item[at], s);
 }
 
 static double find_reach(const OctRegions *r, const OctWeights *w, long leaf)
 {
     double reach = 0;
-    for (long at = r->first[leaf]; at < oct_regions_end(r, leaf); at++)
-        reach += w->below[r->member[at]];
+    for (long at = r->members.first[leaf]; at < r->members.end[leaf]; at++)
+        reach += w->below[r->members.item[at]];
     return reach;
 }
 
@@ -151,10 +142,7 @@ void oct_weights_change(const OctTree *tree, const OctRegions *regions, const do
 void oct_weights_change_free(OctWeightsChange *s)
 {
     oct_levels_free(&s->path);
-    free(s->on_path);
-    free(s->below);
-    free(s->listed);
-    free(s->leaf);
+    sm_free_all(s->on_path, s->below, s->listed, s->leaf);
     *s = (OctWeightsChange){0};
 }
 

@@ -63,8 +63,8 @@ static int *reach_out(const OctTree *tree, const OctGraph *graph, OctReach *reac
 static const int *choose(const OctTree *tree, const OctGraph *graph, OctReach *reach, long k,
                          long *count, int *most, Moments *m)
 {
-    const int *leaf = graph->to + graph->first[k];
-    *count = oct_graph_end(graph, k) - graph->first[k];
+    const int *leaf = graph->edges.item + graph->edges.first[k];
+    *count = graph->edges.end[k] - graph->edges.first[k];
     find_moments(tree, k, leaf, *count, m);
     *most = 0;
     if (m->span == 3) return leaf;
@@ -87,8 +87,6 @@ static const int *choose(const OctTree *tree, const OctGraph *graph, OctReach *r
 static void choose_all(const OctTree *tree, const OctGraph *graph, const unsigned char *wanted,
                        OctGradients *g)
 {
-    long *first;
-    int *neighbour;
     SmCsrParts lists;
     sm_csr_parts_init(&lists, g->leaves);
 #pragma omp parallel num_threads(sm_team(0))
@@ -105,10 +103,7 @@ static void choose_all(const OctTree *tree, const OctGraph *graph, const unsigne
             }
         oct_reach_free(&reach);
     }
-    sm_csr_parts_join(&lists, &first, &neighbour);
-    size_t size = 3 * sizeof(double);
-    sm_csr_adopt(&g->rows, g->leaves, first, neighbour, sm_alloc((size_t)first[g->leaves], size),
-                 size);
+    sm_csr_parts_join(&lists, &g->rows, 3 * sizeof(double));
 }
 
 /* sum over the directions, spanned or not, of value^power v v^T. */
@@ -197,9 +192,8 @@ static void make_room(OctGradients *g, long leaves)
 }
 
 void oct_gradients_build(const OctTree *tree, const OctGraph *graph, const unsigned char *wanted,
-                         double cell, OctGradients *gradients)
+                         double cell, OctGradients *g)
 {
-    OctGradients *g = gradients;
     *g = (OctGradients){.cell = cell};
     make_room(g, tree->leaves);
     choose_all(tree, graph, wanted, g);
@@ -233,12 +227,8 @@ size_t oct_gradients_bytes(const OctGradients *gradients)
 void oct_gradients_free(OctGradients *gradients)
 {
     sm_csr_free(&gradients->rows);
-    free(gradients->leaf);
-    free(gradients->place);
-    free(gradients->span);
-    free(gradients->reach);
-    free(gradients->flat);
-    free(gradients->flat_place);
+    sm_free_all(gradients->leaf, gradients->place, gradients->span, gradients->reach,
+                gradients->flat, gradients->flat_place);
     *gradients = (OctGradients){0};
 }
 
@@ -248,10 +238,9 @@ void oct_gradients_grow(OctGradients *gradients, const OctTree *tree)
     sm_csr_grow(&gradients->rows, tree->leaves);
 }
 
-void oct_gradients_renew(OctGradients *gradients, const OctTree *tree, const OctGraph *graph,
+void oct_gradients_renew(OctGradients *g, const OctTree *tree, const OctGraph *graph,
                          OctReach *search, int leaf)
 {
-    OctGradients *g = gradients;
     long count;
     Moments m;
     const int *neighbour = choose(tree, graph, search, leaf, &count, &g->reach[leaf], &m);
@@ -267,9 +256,8 @@ void oct_gradients_renew(OctGradients *gradients, const OctTree *tree, const Oct
         drop_flat(g, leaf);
 }
 
-void oct_gradients_drop(OctGradients *gradients, int leaf)
+void oct_gradients_drop(OctGradients *g, int leaf)
 {
-    OctGradients *g = gradients;
     int place = g->place[leaf];
     if (place < 0) return;
     g->leaf[place] = g->leaf[--g->count];
@@ -335,9 +323,8 @@ void oct_gradient_of(const OctTree *tree, const OctGraph *graph, double cell, Oc
     finish_flat(&flat, A, R, F);
 }
 
-void oct_gradients_find(const OctGradients *gradients, const double (*x)[3], double (*F)[9])
+void oct_gradients_find(const OctGradients *g, const double (*x)[3], double (*F)[9])
 {
-    const OctGradients *g = gradients;
     const double(*share)[3] = g->rows.value;
 #pragma omp parallel num_threads(sm_team(0))
     {

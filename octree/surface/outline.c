@@ -5,7 +5,7 @@
 
 /* Whether the finest cell across the middle of a face is in a leaf that is off by that much along
  * an axis, in half finest cells; `beyond`: across this axis. */
-static inline int level(int off, bool beyond, int own, int half)
+static inline int spans(int off, bool beyond, int own, int half)
 {
     return beyond ? abs(off) - (own + 1) < half : abs((own > 1) - off) < half;
 }
@@ -19,7 +19,7 @@ static int side_of(const struct OctOutlined *a, const struct OctOutlined *b)
                   b->centre[2] - a->centre[2]};
     bool x = abs(off[0]) >= touch, y = abs(off[1]) >= touch, z = abs(off[2]) >= touch;
     if (x + y + z != 1 ||
-        !(level(off[0], x, own, half) & level(off[1], y, own, half) & level(off[2], z, own, half)))
+        !(spans(off[0], x, own, half) & spans(off[1], y, own, half) & spans(off[2], z, own, half)))
         return SM_COLLIDE_FACES;
     int axis = y + 2 * z;
     return 2 * axis + (off[axis] > 0);
@@ -46,11 +46,11 @@ static void describe_edges(const OctGraph *graph, OctOutline *o, long n)
 {
     int across[SM_COLLIDE_FACES + 1] = {-1, -1, -1, -1, -1, -1};
     const struct OctOutlined own = o->of[o->leaf[n]];
-    long at = o->first[n], end = oct_graph_end(graph, o->leaf[n]);
-    for (long e = graph->first[o->leaf[n]]; e < end; e++, at++) {
-        const struct OctOutlined *to = &o->of[graph->to[e]];
+    long at = o->first[n], end = graph->edges.end[o->leaf[n]];
+    for (long e = graph->edges.first[o->leaf[n]]; e < end; e++, at++) {
+        const struct OctOutlined *to = &o->of[graph->edges.item[e]];
         o->to[at] = to->number;
-        o->length[at] = graph->length[e];
+        o->length[at] = oct_graph_length(graph)[e];
         across[side_of(&own, to)] = to->number;
     }
     memcpy(o->across[n], across, sizeof o->across[n]);
@@ -74,8 +74,8 @@ void oct_outline_build(const OctStructure *s, OctOutline *o)
     number_nodes(&s->tree, o);
     size_t n = (size_t)o->rest.nodes;
     o->first = sm_alloc(n + 1, sizeof *o->first);
-    o->to = sm_alloc((size_t)s->graph.edges, sizeof *o->to);
-    o->length = sm_alloc((size_t)s->graph.edges, sizeof *o->length);
+    o->to = sm_alloc((size_t)s->graph.edges.live, sizeof *o->to);
+    o->length = sm_alloc((size_t)s->graph.edges.live, sizeof *o->length);
     o->carrier = sm_alloc(n, sizeof(int));
     o->across = sm_alloc(n, sizeof *o->across);
     o->x0 = sm_alloc(n, sizeof *o->x0);
@@ -101,9 +101,8 @@ void oct_outline_build(const OctStructure *s, OctOutline *o)
 
 void oct_outline_free(OctOutline *o)
 {
-    void *all[] = {o->leaf,   o->of, o->first, o->to,     o->length, o->carrier,
-                   o->across, o->x0, o->size,  o->radius, o->mass};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(o->leaf, o->of, o->first, o->to, o->length, o->carrier, o->across, o->x0, o->size,
+                o->radius, o->mass);
     *o = (OctOutline){0};
 }
 

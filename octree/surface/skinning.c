@@ -7,15 +7,15 @@
 #include "../../lib/cut/cut.h"
 #include "../../lib/voxel/voxel.h"
 
-enum { SHADES = 16 };
+enum { HIDERS = 16 };
 
 /* What a vertex at X sees. Triangles of the cut that have hidden something hide what is beyond it
  * as a rule: they are asked first, the last of them before all others. */
 typedef struct {
     const OctCarrier *carrier;
     const double *X;
-    long shade[SHADES];
-    int shades;
+    long hider[HIDERS];
+    int hiders;
 } View;
 
 /* The search for the nearest leaf that a vertex sees. */
@@ -27,18 +27,12 @@ typedef struct {
                         use */
 } Search;
 
-static void centre_of(const OctCarrier *c, int node, double centre[3])
-{
-    for (int d = 0; d < 3; d++)
-        centre[d] = c->voxels->origin[d] + 0.5 * c->voxels->cell * c->tree->centre[node][d];
-}
-
-/* Moves shade number `at` to the front. */
+/* Moves hider number `at` to the front. */
 static void to_front(View *view, int at)
 {
-    long triangle = view->shade[at];
-    memmove(view->shade + 1, view->shade, (size_t)at * sizeof *view->shade);
-    view->shade[0] = triangle;
+    long triangle = view->hider[at];
+    memmove(view->hider + 1, view->hider, (size_t)at * sizeof *view->hider);
+    view->hider[0] = triangle;
 }
 
 static bool sees(View *view, int node)
@@ -46,17 +40,17 @@ static bool sees(View *view, int node)
     const SmCut *cut = view->carrier->cut;
     double centre[3];
     if (!cut) return true;
-    centre_of(view->carrier, node, centre);
-    for (int n = 0; n < view->shades; n++)
-        if (sm_cut_crosses_one(cut, view->shade[n], view->X, centre)) {
+    oct_tree_centre(view->carrier->tree, view->carrier->voxels, node, centre);
+    for (int n = 0; n < view->hiders; n++)
+        if (sm_cut_crosses_one(cut, view->hider[n], view->X, centre)) {
             to_front(view, n);
             return false;
         }
     long triangle = sm_cut_crossed(cut, 0, view->X, centre);
     if (triangle < 0) return true;
-    if (view->shades < SHADES) view->shades++;
-    view->shade[view->shades - 1] = triangle;
-    to_front(view, view->shades - 1);
+    if (view->hiders < HIDERS) view->hiders++;
+    view->hider[view->hiders - 1] = triangle;
+    to_front(view, view->hiders - 1);
     return false;
 }
 
@@ -65,9 +59,9 @@ static bool is_hidden(View *view, int node)
 {
     const OctCarrier *c = view->carrier;
     double centre[3], half = 0.25 * c->voxels->cell * c->tree->size[node];
-    centre_of(c, node, centre);
-    for (int n = 0; n < view->shades; n++)
-        if (sm_cut_hides(c->cut, view->shade[n], view->X, centre, half)) {
+    oct_tree_centre(c->tree, c->voxels, node, centre);
+    for (int n = 0; n < view->hiders; n++)
+        if (sm_cut_hides(c->cut, view->hider[n], view->X, centre, half)) {
             to_front(view, n);
             return true;
         }
@@ -223,8 +217,8 @@ static void add(OctSkin *skin, int leaf, double weight)
 uint64_t oct_skin_edges(const OctGraph *graph, int leaf)
 {
     uint64_t sum = 0;
-    for (long e = graph->first[leaf]; e < oct_graph_end(graph, leaf); e++) {
-        uint64_t z = ((uint64_t)graph->to[e] + 1) * 0x9e3779b97f4a7c15u;
+    for (long e = graph->edges.first[leaf]; e < graph->edges.end[leaf]; e++) {
+        uint64_t z = ((uint64_t)graph->edges.item[e] + 1) * 0x9e3779b97f4a7c15u;
         z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
         z = (z ^ z >> 27) * 0x94d049bb133111ebu;
         sum += z ^ z >> 31;
@@ -239,8 +233,8 @@ static void find_others(View *view, OctSkin *skin)
     double own = weigh(c->tree, skin->own, skin->q), sum = own;
     skin->count = 0;
     add(skin, skin->own, 0);
-    for (long e = c->graph->first[skin->own]; e < oct_graph_end(c->graph, skin->own); e++) {
-        int leaf = c->graph->to[e];
+    for (long e = c->graph->edges.first[skin->own]; e < c->graph->edges.end[skin->own]; e++) {
+        int leaf = c->graph->edges.item[e];
         double weight = weigh(c->tree, leaf, skin->q);
         if (!(weight > 1e-9 * own) || !sees(view, c->tree->node[leaf])) continue;
         add(skin, leaf, weight);

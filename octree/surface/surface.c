@@ -12,9 +12,7 @@
 
 static void find_centre(const OctCarrier *c, int leaf, OctSurface *s)
 {
-    for (int d = 0; d < 3; d++)
-        s->centre[leaf][d] =
-            c->voxels->origin[d] + 0.5 * c->voxels->cell * c->tree->centre[c->tree->node[leaf]][d];
+    oct_tree_centre(c->tree, c->voxels, c->tree->node[leaf], s->centre[leaf]);
 }
 
 static void find_normals(const SmMesh *mesh, const OctCarrier *c, OctSurface *s)
@@ -48,11 +46,9 @@ static void make_room(OctSurface *s, long leaves, const SmMesh *mesh)
 }
 
 /* Which leaves move every vertex; the weights come when the lists lie still. */
-static void tie_all(const OctCarrier *c, OctSurface *s)
+static void skin_all(const OctCarrier *c, OctSurface *s)
 {
     SmCsrParts lists;
-    long *first;
-    int *leaf;
     sm_csr_parts_init(&lists, s->vertices);
 #pragma omp parallel num_threads(sm_team(0))
     {
@@ -66,9 +62,7 @@ static void tie_all(const OctCarrier *c, OctSurface *s)
             }
         oct_skin_free(&skin);
     }
-    sm_csr_parts_join(&lists, &first, &leaf);
-    sm_csr_adopt(&s->rows, s->vertices, first, leaf,
-                 sm_alloc((size_t)first[s->vertices], sizeof(float)), sizeof(float));
+    sm_csr_parts_join(&lists, &s->rows, sizeof(float));
     float *weight = s->rows.value;
 #pragma omp parallel num_threads(sm_team(0))
     {
@@ -82,16 +76,15 @@ static void tie_all(const OctCarrier *c, OctSurface *s)
     }
 }
 
-void oct_surface_build(const SmMesh *mesh, const OctCarrier *carrier, OctSurface *surface)
+void oct_surface_build(const SmMesh *mesh, const OctCarrier *carrier, OctSurface *s)
 {
-    OctSurface *s = surface;
     long leaves = carrier->tree->leaves;
     *s = (OctSurface){0};
     make_room(s, leaves, mesh);
     find_normals(mesh, carrier, s);
     for (int k = 0; k < leaves; k++)
         if (carrier->tree->node[k] >= 0) find_centre(carrier, k, s);
-    tie_all(carrier, s);
+    skin_all(carrier, s);
     unsigned char *wanted = sm_alloc((size_t)leaves, 1);
     for (long v = 0; v < s->vertices; v++)
         for (long n = s->rows.first[v]; n < s->rows.end[v]; n++) s->users[s->rows.item[n]]++;
@@ -132,13 +125,8 @@ void oct_surface_free(OctSurface *surface)
 {
     oct_gradients_free(&surface->gradients);
     sm_csr_free(&surface->rows);
-    free(surface->centre);
-    free(surface->rest);
-    free(surface->normal);
-    free(surface->F);
-    free(surface->reach);
-    free(surface->users);
-    free(surface->edges);
+    sm_free_all(surface->centre, surface->rest, surface->normal, surface->F, surface->reach,
+                surface->users, surface->edges);
     *surface = (OctSurface){0};
 }
 
@@ -321,15 +309,11 @@ static void count_user(Change *change, int leaf)
 {
     OctSurface *s = change->s;
     if (s->users[leaf]++ > 0 || s->gradients.place[leaf] >= 0) return;
-    if (change->fresh_count == change->fresh_room) {
-        change->fresh_room = 2 * change->fresh_room + 64;
-        change->fresh =
-            sm_realloc(change->fresh, (size_t)change->fresh_room, sizeof *change->fresh);
-    }
+    sm_make_room(change->fresh, change->fresh_room, change->fresh_count + 1);
     change->fresh[change->fresh_count++] = leaf;
 }
 
-static void tie_vertex(Change *change, long v, Need need, OctSkin *skin)
+static void skin_vertex(Change *change, long v, Need need, OctSkin *skin)
 {
     OctSurface *s = change->s;
     for (long n = s->rows.first[v]; n < s->rows.end[v]; n++) s->users[s->rows.item[n]]--;
@@ -388,7 +372,7 @@ void oct_surface_update(OctSurface *surface, const SmMesh *mesh, const OctCarrie
     grow(surface, mesh, carrier, count, node);
     for (long v = 0; v < surface->vertices; v++) {
         Need need = v >= before ? ALL : find_need(&change, v);
-        if (need != NOTHING) tie_vertex(&change, v, need, &skin);
+        if (need != NOTHING) skin_vertex(&change, v, need, &skin);
     }
     renew_gradients(&change);
     oct_skin_free(&skin);
@@ -416,8 +400,8 @@ static bool agree(void *carriers, long u, long v)
     const OctCarrier *c = ((Carriers *)carriers)->carrier;
     int a = own(s, u), b = own(s, v);
     if (a == b) return true;
-    for (long e = c->graph->first[a]; e < oct_graph_end(c->graph, a); e++)
-        if (c->graph->to[e] == b) return true;
+    for (long e = c->graph->edges.first[a]; e < c->graph->edges.end[a]; e++)
+        if (c->graph->edges.item[e] == b) return true;
     return !sm_cut_crosses(c->cut, 0, s->centre[a], s->centre[b]);
 }
 

@@ -45,10 +45,10 @@ typedef struct {
     long leaves, leaf_room, vertex_room;
 } OctSurface;
 
-/* Ties every vertex of `mesh` to the leaf that holds it, or to the nearest material if none does
- * (then the weights are those of the nearest place of the material). Keeps no argument. O(edges +
- * vertices * edges of a leaf); O(box) more for a vertex more than a finest cell away from material.
- * The caller frees. */
+/* Every vertex of `mesh` belongs to the leaf that holds it, or to that of the nearest material if
+ * none does (then the weights are those of the nearest place of the material). Keeps no argument.
+ * O(edges + vertices * edges of a leaf); O(box) more for a vertex more than a finest cell away from
+ * material. The caller frees. */
 void oct_surface_build(const SmMesh *mesh, const OctCarrier *carrier, OctSurface *surface);
 void oct_surface_free(OctSurface *surface);
 size_t oct_surface_bytes(const OctSurface *surface); /* of what it holds; 0 of a zeroed one */

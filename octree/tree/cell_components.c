@@ -3,49 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int octant(const OctTree *tree, int node)
-{
-    const int *here = tree->centre[node], *above = tree->centre[tree->parent[node]];
-    return (here[0] > above[0]) | (here[1] > above[1]) << 1 | (here[2] > above[2]) << 2;
-}
-
 static int step_along(int direction, int axis)
 {
     static const int power[3] = {1, 3, 9};
     return direction / power[axis] % 3 - 1;
-}
-
-static int child_at(const OctCellComponents *p, int node, int which)
-{
-    int below = (1 << which) - 1;
-    if (node < 0 || !(p->octants[node] >> which & 1)) return -1;
-    return p->tree->child[node] + __builtin_popcount(p->octants[node] & below);
-}
-
-static void find_root_neighbours(OctCellComponents *p, int node)
-{
-    const OctTree *t = p->tree;
-    int wide = 1 << t->levels;
-    for (int d = 0; d < OCT_DIRECTIONS; d++) {
-        int at[3];
-        for (int a = 0; a < 3; a++) at[a] = oct_tree_low(t, node, a) + wide * step_along(d, a);
-        p->beside[node][d] = oct_tree_at(t, 0, at[0], at[1], at[2]);
-    }
-}
-
-/* A cell's neighbours are children of its parent or of the parent's neighbours. */
-static void find_neighbours(OctCellComponents *p, int node)
-{
-    int parent = p->tree->parent[node], mine = octant(p->tree, node);
-    for (int d = 0; d < OCT_DIRECTIONS; d++) {
-        int above = OCT_HERE, which = 0, power = 1;
-        for (int a = 0; a < 3; a++, power *= 3) {
-            int to = (mine >> a & 1) + step_along(d, a);
-            above += to < 0 ? -power : to > 1 ? power : 0;
-            which |= (to & 1) << a;
-        }
-        p->beside[node][d] = child_at(p, p->beside[parent][above], which);
-    }
 }
 
 /* Children of a cell that lie at its border in a direction. */
@@ -69,28 +30,28 @@ static void build_lowest(OctCellComponents *p, int level)
 {
     const OctTree *t = p->tree;
     OctLayer *layer = &p->layer[level];
-    long from = t->level_first[level], n = t->level_first[level + 1] - from, contacts = 0;
+    long from = t->level_first[level], n = t->level_first[level + 1] - from;
+    int face[OCT_DIRECTIONS];
+    SmCsrParts contacts;
     layer->parts = n;
     layer->first = sm_alloc((size_t)n + 1, sizeof *layer->first);
     layer->node = sm_alloc((size_t)n, sizeof *layer->node);
-    layer->contact_first = sm_alloc((size_t)n + 1, sizeof *layer->contact_first);
-    layer->contact = sm_alloc((size_t)n * (OCT_DIRECTIONS - 1), sizeof *layer->contact);
-    int face[OCT_DIRECTIONS];
+    sm_csr_parts_init(&contacts, n);
     for (int d = 0; d < OCT_DIRECTIONS; d++) face[d] = facing(d);
     for (long c = 0; c < n; c++) {
+        int touching[OCT_DIRECTIONS], count = 0;
         layer->first[c] = (int)c;
         layer->node[c] = (int)(from + c);
-        layer->contact_first[c] = contacts;
         for (int d = 0; d < OCT_DIRECTIONS; d++) {
             int other = p->beside[from + c][d];
             if (d == OCT_HERE || other < 0) continue;
             if (p->octants[from + c] & face[d] && p->octants[other] & face[OCT_DIRECTIONS - 1 - d])
-                layer->contact[contacts++] = (int)(other - from);
+                touching[count++] = (int)(other - from);
         }
+        sm_csr_parts_add(&contacts, c, touching, count);
     }
     layer->first[n] = (int)n;
-    layer->contact_first[n] = contacts;
-    layer->contact = sm_realloc(layer->contact, (size_t)contacts + 1, sizeof *layer->contact);
+    sm_csr_parts_join(&contacts, &layer->contacts, 0);
 }
 
 static int root_of(int *up, int i)
@@ -115,9 +76,9 @@ static int *join_parts(const OctTree *t, int level, const OctLayer *below, OctLa
     int *up = sm_alloc((size_t)below->parts, sizeof *up);
     for (int i = 0; i < below->parts; i++) up[i] = i;
     for (int i = 0; i < below->parts; i++)
-        for (long c = below->contact_first[i]; c < below->contact_first[i + 1]; c++)
-            if (t->parent[below->node[below->contact[c]]] == t->parent[below->node[i]])
-                unite(up, i, below->contact[c]);
+        for (long c = below->contacts.first[i]; c < below->contacts.end[i]; c++)
+            if (t->parent[below->node[below->contacts.item[c]]] == t->parent[below->node[i]])
+                unite(up, i, below->contacts.item[c]);
     layer->first = sm_alloc((size_t)n + 1, sizeof *layer->first);
     int *part = sm_alloc((size_t)below->parts, sizeof *part);
     for (int i = 0; i < below->parts; i++) {
@@ -146,43 +107,38 @@ static int *members_of(const int *part, const OctLayer *below, long parts, long 
 static void join_contacts(const int *part, const OctLayer *below, OctLayer *layer)
 {
     size_t parts = (size_t)layer->parts;
-    long contacts = 0, *first = sm_alloc(parts + 1, sizeof *first);
+    long *first = sm_alloc(parts + 1, sizeof *first);
     int *member = members_of(part, below, layer->parts, first);
     int *seen = sm_alloc(parts, sizeof *seen); /* by which part, from 1 */
-    layer->contact_first = sm_alloc(parts + 1, sizeof *layer->contact_first);
-    layer->contact =
-        sm_alloc((size_t)below->contact_first[below->parts] + 1, sizeof *layer->contact);
+    SmCsrParts contacts;
+    sm_csr_parts_init(&contacts, layer->parts);
     for (int q = 0; q < layer->parts; q++) {
         seen[q] = q + 1;
         for (long m = first[q]; m < first[q + 1]; m++)
-            for (long c = below->contact_first[member[m]]; c < below->contact_first[member[m] + 1];
+            for (long c = below->contacts.first[member[m]]; c < below->contacts.end[member[m]];
                  c++) {
-                int other = part[below->contact[c]];
+                int other = part[below->contacts.item[c]];
                 if (seen[other] == q + 1) continue;
                 seen[other] = q + 1;
-                layer->contact[contacts++] = other;
+                sm_csr_parts_add(&contacts, q, &other, 1);
             }
-        layer->contact_first[q + 1] = contacts;
     }
-    layer->contact = sm_realloc(layer->contact, (size_t)contacts + 1, sizeof *layer->contact);
-    free(first);
-    free(member);
-    free(seen);
+    sm_csr_parts_join(&contacts, &layer->contacts, 0);
+    sm_free_all(first, member, seen);
 }
 
 void oct_components_build(const OctTree *whole, OctCellComponents *parts)
 {
     size_t inner = (size_t)whole->level_first[whole->levels];
     *parts = (OctCellComponents){.tree = whole};
-    parts->octants = sm_alloc(inner, sizeof *parts->octants);
+    parts->octants = oct_tree_octants(whole);
     parts->beside = sm_alloc(inner, sizeof *parts->beside);
-    for (int n = (int)whole->roots; n < whole->nodes; n++)
-        parts->octants[whole->parent[n]] |= (unsigned char)(1 << octant(whole, n));
     for (int n = 0; n < (int)inner; n++)
         if (n < whole->roots)
-            find_root_neighbours(parts, n);
+            oct_neighbours_of_root(whole, n, parts->beside[n]);
         else
-            find_neighbours(parts, n);
+            oct_neighbours_of_child(whole, parts->octants, parts->beside[whole->parent[n]], n,
+                                    parts->beside[n]);
     build_lowest(parts, whole->levels - 1);
     for (int l = whole->levels - 2; l >= 0; l--) {
         int *part = join_parts(whole, l, &parts->layer[l + 1], &parts->layer[l]);
@@ -196,8 +152,7 @@ void oct_components_free(OctCellComponents *parts)
     for (int l = 0; l < OCT_MAX_LEVELS; l++) {
         free(parts->layer[l].first);
         free(parts->layer[l].node);
-        free(parts->layer[l].contact_first);
-        free(parts->layer[l].contact);
+        sm_csr_free(&parts->layer[l].contacts);
     }
     free(parts->octants);
     free(parts->beside);
@@ -239,8 +194,8 @@ static void unite_box(const OctLayer *layer, const Box *box, int *up)
         int end = b + 1 < box->cells ? box->offset[b + 1] : box->parts;
         for (int i = box->offset[b]; i < end; i++) {
             int part = box->first[b] + i - box->offset[b];
-            for (long c = layer->contact_first[part]; c < layer->contact_first[part + 1]; c++) {
-                int other = layer->contact[c];
+            for (long c = layer->contacts.first[part]; c < layer->contacts.end[part]; c++) {
+                int other = layer->contacts.item[c];
                 for (int o = 0; o < b; o++)
                     if (box->node[o] == layer->node[other])
                         unite(up, i, box->offset[o] + other - box->first[o]);
@@ -251,8 +206,8 @@ static void unite_box(const OctLayer *layer, const Box *box, int *up)
 
 static bool touch(const OctLayer *layer, int part, int other)
 {
-    for (long c = layer->contact_first[part]; c < layer->contact_first[part + 1]; c++)
-        if (layer->contact[c] == other) return true;
+    for (long c = layer->contacts.first[part]; c < layer->contacts.end[part]; c++)
+        if (layer->contacts.item[c] == other) return true;
     return false;
 }
 

@@ -6,23 +6,21 @@
 #ifndef OCT_CELL_COMPONENTS_H
 #define OCT_CELL_COMPONENTS_H
 
-#include "tree.h"
-
-enum { OCT_DIRECTIONS = 27, OCT_HERE = 13 }; /* (dx + 1) + 3 (dy + 1) + 9 (dz + 1) */
+#include "../../lib/csr.h"
+#include "neighbours.h"
 
 /* The parts of one level's cells and which of them touch across the cells' borders. */
 typedef struct {
     long parts;
-    int *first; /* [cells of the level + 1] first part of every cell */
-    int *node;  /* [parts] tree node */
-    long *contact_first;
-    int *contact; /* parts of other cells that touch this one */
+    int *first;     /* [cells of the level + 1] first part of every cell */
+    int *node;      /* [parts] tree node */
+    SmCsr contacts; /* of every part: those of other cells that touch it */
 } OctLayer;
 
 typedef struct {
     const OctTree *tree;
-    unsigned char *octants;        /* which children there are, bit x + 2 y + 4 z */
-    int (*beside)[OCT_DIRECTIONS]; /* the node of the same level there, or -1 */
+    unsigned char *octants;        /* oct_tree_octants() */
+    int (*beside)[OCT_DIRECTIONS]; /* the nodes of the same level around those not of the finest */
     OctLayer layer[OCT_MAX_LEVELS];
 } OctCellComponents;
 

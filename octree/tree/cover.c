@@ -20,10 +20,7 @@ void oct_cover_put(OctCover *cover, int node)
 {
     const OctTree *t = cover->tree;
     for (bool complete = true; complete; node = t->parent[node]) {
-        if (cover->count == cover->room) {
-            cover->room = cover->room ? 2 * cover->room : 256;
-            cover->list = sm_realloc(cover->list, (size_t)cover->room, sizeof *cover->list);
-        }
+        sm_make_room(cover->list, cover->room, cover->count + 1);
         cover->list[cover->count++] = node;
         int parent = t->parent[node];
         complete = parent >= 0 && ++cover->in[parent] == t->children[parent];

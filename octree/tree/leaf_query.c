@@ -48,25 +48,21 @@ static bool node_meets(const OctTree *tree, const Place *place, int node)
 
 static void add(OctLeafQuery *query, int node)
 {
-    if (query->count == query->room) {
-        query->room = 2 * query->room + 256;
-        query->node = sm_realloc(query->node, (size_t)query->room, sizeof *query->node);
-    }
+    sm_make_room(query->node, query->room, query->count + 1);
     query->node[query->count++] = node;
 }
 
-/* A level has at most 8 siblings on the stack, so the stack is as deep as the levels. */
 static void visit(OctLeafQuery *query, const Place *place, int root)
 {
     const OctTree *t = query->tree;
-    int stack[8 * (OCT_MAX_LEVELS + 1)], count = 1;
-    stack[0] = root;
-    while (count > 0) {
-        int node = stack[--count];
+    OctStack stack;
+    oct_stack_begin(&stack, root);
+    while (stack.count > 0) {
+        int node = oct_stack_take(&stack);
         if (t->size[node] < (t->children[node] ? 2 : 1) * place->least) continue;
         if (!node_meets(t, place, node)) continue;
         if (!t->children[node]) add(query, node);
-        for (int c = 0; c < t->children[node]; c++) stack[count++] = t->child[node] + c;
+        oct_stack_put(&stack, t->child[node], t->children[node]);
     }
 }
 
@@ -104,13 +100,13 @@ static void search(OctLeafQuery *query, const Place *place)
             }
 }
 
-void oct_leaf_query_box(OctLeafQuery *query, const int low[3], const int high[3],
-                        OctLeafQueryKind kind)
+void oct_leaf_query_cell(OctLeafQuery *query, int node, OctLeafQueryKind kind)
 {
+    const OctTree *t = query->tree;
     Place place = {.kind = kind};
     for (int d = 0; d < 3; d++) {
-        place.low[d] = low[d];
-        place.high[d] = high[d];
+        place.low[d] = t->centre[node][d] - t->size[node] / 2;
+        place.high[d] = place.low[d] + t->size[node];
     }
     search(query, &place);
 }

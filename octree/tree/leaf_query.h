@@ -19,9 +19,8 @@ typedef struct {
 void oct_leaf_query_init(OctLeafQuery *query, const OctTree *tree, const SmVoxels *voxels);
 void oct_leaf_query_free(OctLeafQuery *query);
 
-/* Leaves at a box, half finest cells. O(those found, levels, and base cells met * log roots). */
-void oct_leaf_query_box(OctLeafQuery *query, const int low[3], const int high[3],
-                        OctLeafQueryKind kind);
+/* Leaves at the cell of a tree node. O(those found, levels, and base cells met * log roots). */
+void oct_leaf_query_cell(OctLeafQuery *query, int node, OctLeafQueryKind kind);
 
 /* Leaves of a level below `level` at a triangle, in half finest cells, thickened by `margin` in the
  * max norm. O(those found and base cells of its box). */

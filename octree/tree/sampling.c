@@ -139,10 +139,8 @@ static long *count_surface(const OctTree *whole, const SmVoxels *v)
 }
 
 /* Does the cell meet the criterion's box or ball? */
-static bool meets(const Splitter *splitter, const OctCriterion *criterion, int node)
+static bool meets(const Splitter *s, const OctCriterion *c, int node)
 {
-    const Splitter *s = splitter;
-    const OctCriterion *c = criterion;
     double cell = s->voxels->cell, side = s->whole->size[node] * 0.5 * cell, distance2 = 0;
     for (int d = 0; d < 3; d++) {
         double low = s->voxels->origin[d] + cell * oct_tree_low(s->whole, node, d);
@@ -266,9 +264,8 @@ static bool split_needed(Splitter *splitter)
 }
 
 /* Makes the next of the splits that no criterion asks for. False if all cells are split. */
-static bool split_other(Splitter *splitter)
+static bool split_other(Splitter *s)
 {
-    Splitter *s = splitter;
     if (!s->wants_others) /* parents come before their children */
         for (int n = 0; n < s->whole->level_first[s->whole->levels]; n++)
             if (!s->split[n]) push(&s->others, n);
@@ -288,11 +285,10 @@ static void undo(Splitter *splitter, long splits)
 
 /* Splits nothing yet, and asks the criteria about the base cells. `whole` and the others must stay.
  */
-static void splitter_init(Splitter *splitter, const OctSampling *sampling, const SmVoxels *voxels,
+static void splitter_init(Splitter *s, const OctSampling *sampling, const SmVoxels *voxels,
                           const OctTree *whole)
 {
     size_t nodes = (size_t)whole->nodes, inner = (size_t)whole->level_first[whole->levels];
-    Splitter *s = splitter;
     *s = (Splitter){.sampling = sampling, .voxels = voxels, .whole = whole};
     oct_components_build(whole, &s->parts);
     s->surface = count_surface(whole, voxels);
@@ -308,12 +304,8 @@ static void splitter_init(Splitter *splitter, const OctSampling *sampling, const
 static void splitter_free(Splitter *splitter)
 {
     oct_components_free(&splitter->parts);
-    free(splitter->surface);
-    free(splitter->split);
-    free(splitter->asked);
-    free(splitter->order);
-    free(splitter->needed.cell);
-    free(splitter->others.cell);
+    sm_free_all(splitter->surface, splitter->split, splitter->asked, splitter->order,
+                splitter->needed.cell, splitter->others.cell);
     memset(splitter, 0, sizeof *splitter);
 }
 

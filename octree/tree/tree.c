@@ -1,23 +1,16 @@
 #include "tree.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "../../lib/voxel/morton.h"
 
 typedef uint64_t Key; /* Morton code of a cell, x in the lowest bit; one bit spare at the top */
 
 enum { DIGIT = 11, BINS = 1 << DIGIT, KEY_BITS = 63 };
 
-/* Bits of v moved to every third place; v has 21 bits. */
-static Key spread(int v)
-{
-    Key x = (Key)v;
-    x = (x | x << 32) & 0x1f00000000ffffULL;
-    x = (x | x << 16) & 0x1f0000ff0000ffULL;
-    x = (x | x << 8) & 0x100f00f00f00f00fULL;
-    x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
-    return (x | x << 2) & 0x1249249249249249ULL;
-}
-
+/* Every third bit of x, from the lowest on: the reverse of sm_morton_apart(). */
 static int gather(Key x)
 {
     x &= 0x1249249249249249ULL;
@@ -35,10 +28,11 @@ static Key *cell_keys(const SmVoxels *v, const int corner[3], long cells)
     const uint64_t *row = v->bits;
     for (int k = 0; k < v->size[2]; k++)
         for (int j = 0; j < v->size[1]; j++, row += v->words) {
-            Key across = spread(j - corner[1]) << 1 | spread(k - corner[2]) << 2;
+            Key across = sm_morton(0, (Key)(j - corner[1]), (Key)(k - corner[2]));
             for (int w = 0; w < v->words; w++)
                 for (uint64_t bits = row[w]; bits; bits &= bits - 1)
-                    *to++ = across | spread(w * 64 + __builtin_ctzll(bits) - corner[0]);
+                    *to++ =
+                        across | sm_morton_apart((Key)(w * 64 + __builtin_ctzll(bits) - corner[0]));
         }
     return keys;
 }
@@ -95,15 +89,8 @@ size_t oct_tree_bytes(const OctTree *tree)
 
 void oct_tree_free(OctTree *tree)
 {
-    free(tree->level_first);
-    free(tree->centre);
-    free(tree->size);
-    free(tree->parent);
-    free(tree->child);
-    free(tree->children);
-    free(tree->material);
-    free(tree->leaf);
-    free(tree->node);
+    sm_free_all(tree->level_first, tree->centre, tree->size, tree->parent, tree->child,
+                tree->children, tree->material, tree->leaf, tree->node);
     memset(tree, 0, sizeof *tree);
 }
 
@@ -263,15 +250,15 @@ void oct_tree_prune(const OctTree *whole, const unsigned char *split, OctTree *t
 /* The root that holds finest cell `at`, counted from the corner, or -1. */
 static int root_at(const OctTree *tree, const int at[3])
 {
-    Key key = spread(at[0] >> tree->levels) | spread(at[1] >> tree->levels) << 1 |
-              spread(at[2] >> tree->levels) << 2;
+    Key key = sm_morton((Key)at[0] >> tree->levels, (Key)at[1] >> tree->levels,
+                        (Key)at[2] >> tree->levels);
     long low = 0, high = tree->roots;
     while (low < high) {
         long middle = low + (high - low) / 2;
         Key here = 0;
         for (int d = 0; d < 3; d++) {
             int cells = oct_tree_low(tree, (int)middle, d) - tree->corner[d];
-            here |= spread(cells >> tree->levels) << d;
+            here |= sm_morton_apart((Key)cells >> tree->levels) << d;
         }
         if (here == key) return (int)middle;
         if (here < key)
@@ -315,6 +302,19 @@ int *oct_tree_below(const OctTree *tree)
     return below;
 }
 
+int oct_tree_extent(const OctTree *tree)
+{
+    int low[3] = {INT_MAX, INT_MAX, INT_MAX}, high[3] = {INT_MIN, INT_MIN, INT_MIN}, most = 0;
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        for (int d = 0; d < 3 && tree->node[leaf] >= 0; d++) {
+            int at = tree->centre[tree->node[leaf]][d];
+            if (at < low[d]) low[d] = at;
+            if (at > high[d]) high[d] = at;
+            if (high[d] - low[d] > most) most = high[d] - low[d];
+        }
+    return most;
+}
+
 /* Not inline: the compiler rounds it in the same way wherever it is asked for. */
 void oct_tree_centre(const OctTree *tree, const SmVoxels *voxels, int node, double centre[3])
 {
@@ -325,10 +325,7 @@ void oct_tree_centre(const OctTree *tree, const SmVoxels *voxels, int node, doub
 void oct_levels_add(OctLevels *levels, int level, int node)
 {
     OctLevel *to = &levels->level[level];
-    if (to->count == to->room) {
-        to->room = to->room ? 2 * to->room : 64;
-        to->node = sm_realloc(to->node, (size_t)to->room, sizeof *to->node);
-    }
+    sm_make_room(to->node, to->room, to->count + 1);
     to->node[to->count++] = node;
 }
 

@@ -15,6 +15,7 @@
 #include "../../lib/voxel/voxel.h"
 
 enum { OCT_MAX_LEVELS = 12, OCT_MAX_WIDE = 1 << 20, OCT_MAX_CELLS = 1 << 25 };
+enum { OCT_SERIAL = 2000 }; /* trees of fewer leaves are not worth waking threads for */
 
 typedef struct {
     int levels;    /* of splitting there can be; a finest cell has level `levels` */
@@ -97,6 +98,39 @@ static inline int oct_tree_between(const OctTree *tree, int node, int other)
 static inline int oct_tree_low(const OctTree *tree, int node, int d)
 {
     return (tree->centre[node][d] - tree->size[node] / 2) / 2;
+}
+
+/* Which octant of its parent's cell a node that has a parent is: x + 2 y + 4 z. */
+static inline int oct_tree_octant(const OctTree *tree, int node)
+{
+    const int *here = tree->centre[node], *above = tree->centre[tree->parent[node]];
+    return (here[0] > above[0]) | (here[1] > above[1]) << 1 | (here[2] > above[2]) << 2;
+}
+
+/* The longest edge of the box around all leaves' centres, half finest cells. O(leaves). */
+int oct_tree_extent(const OctTree *tree);
+
+/* Tree nodes that a walk down is still to visit. A node has at most 8 children, and those of one
+ * node of every level wait at once. */
+typedef struct {
+    int node[8 * (OCT_MAX_LEVELS + 1)], count;
+} OctStack;
+
+/* Nodes first .. first + count - 1. */
+static inline void oct_stack_put(OctStack *stack, int first, int count)
+{
+    for (int c = 0; c < count; c++) stack->node[stack->count++] = first + c;
+}
+
+static inline void oct_stack_begin(OctStack *stack, int root)
+{
+    stack->count = 0;
+    oct_stack_put(stack, root, 1);
+}
+
+static inline int oct_stack_take(OctStack *stack)
+{
+    return stack->node[--stack->count];
 }
 
 /* Lists of tree nodes, one for every level of the tree, that grow. */

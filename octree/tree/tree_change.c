@@ -6,15 +6,6 @@
 #include "../../lib/csr.h"
 #include "mass.h"
 
-/* `list` with room for one more entry. */
-#define ROOM(list, count, room)                                                                    \
-    do {                                                                                           \
-        if ((count) == (room)) {                                                                   \
-            (room) = 2 * (room) + 64;                                                              \
-            (list) = sm_realloc((list), (size_t)(room), sizeof *(list));                           \
-        }                                                                                          \
-    } while (0)
-
 static void grow_nodes(OctTreeChange *c, long nodes)
 {
     OctTree *t = c->tree;
@@ -52,10 +43,9 @@ void oct_tree_change_init(OctTreeChange *c, OctTree *tree, const SmVoxels *voxel
 void oct_tree_change_free(OctTreeChange *c)
 {
     OctChange *change = &c->change;
-    void *all[] = {c->below,        c->touched,      c->place,      c->waiting,
-                   c->number,       change->removed, change->added, change->created,
-                   change->deleted, change->inner,   change->outer, change->region};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(c->below, c->touched, c->place, c->waiting, c->number, change->removed,
+                change->added, change->created, change->deleted, change->inner, change->outer,
+                change->region);
     *c = (OctTreeChange){0};
 }
 
@@ -82,7 +72,7 @@ static void begin_batch(OctTreeChange *c)
         c->group[count] = first;
     }
     for (long r = 0; r < change->removed_count; r++) {
-        ROOM(c->number, c->number_count, c->number_room);
+        sm_make_room(c->number, c->number_room, c->number_count + 1);
         c->number[c->number_count++] = change->removed[r].leaf;
     }
     c->waiting_count = c->touched_count = 0;
@@ -97,7 +87,7 @@ static OctTouched *touch(OctTreeChange *c, int node, bool there)
     if (c->place[node]) return c->touched + c->place[node] - 1;
     const OctTree *t = c->tree;
     bool inner = there && t->children[node] > 0;
-    ROOM(c->touched, c->touched_count, c->touched_room);
+    sm_make_room(c->touched, c->touched_room, c->touched_count + 1);
     c->touched[c->touched_count++] = (OctTouched){.node = node,
                                                   .level = oct_tree_level(t, node),
                                                   .there = there,
@@ -248,33 +238,33 @@ static void settle_node(OctTreeChange *c, const OctTouched *was)
     bool leaf = there && !inner;
     c->place[was->node] = 0;
     if (was->children) {
-        ROOM(c->waiting, c->waiting_count, c->waiting_room);
+        sm_make_room(c->waiting, c->waiting_room, c->waiting_count + 1);
         c->waiting[c->waiting_count][0] = was->child;
         c->waiting[c->waiting_count++][1] = was->children;
     }
     if (leaf && was->leaf >= 0) t->leaf[was->node] = was->leaf;
     if (!leaf && was->leaf >= 0) {
-        ROOM(to->removed, to->removed_count, c->removed_room);
+        sm_make_room(to->removed, c->removed_room, to->removed_count + 1);
         to->removed[to->removed_count++] = (OctRemoved){was->leaf, was->node, -1};
         t->node[was->leaf] = -1;
         t->leaf[was->node] = -1;
         t->live--;
     }
     if (leaf && was->leaf < 0) {
-        ROOM(to->added, to->added_count, c->added_room);
+        sm_make_room(to->added, c->added_room, to->added_count + 1);
         to->added[to->added_count++] = (OctAdded){-1, was->node, -1};
     }
     if (there != was->there) {
-        ROOM(to->created, to->created_count, c->created_room);
-        ROOM(to->deleted, to->deleted_count, c->deleted_room);
+        sm_make_room(to->created, c->created_room, to->created_count + 1);
+        sm_make_room(to->deleted, c->deleted_room, to->deleted_count + 1);
         if (there)
             to->created[to->created_count++] = here;
         else
             to->deleted[to->deleted_count++] = here;
     }
     if (inner != was->inner) {
-        ROOM(to->inner, to->inner_count, c->inner_room);
-        ROOM(to->outer, to->outer_count, c->outer_room);
+        sm_make_room(to->inner, c->inner_room, to->inner_count + 1);
+        sm_make_room(to->outer, c->outer_room, to->outer_count + 1);
         if (inner)
             to->inner[to->inner_count++] = here;
         else

@@ -55,14 +55,8 @@ static void meshless_destroy(SmEngine *engine)
     ref_skin_free(&engine->elastic.skin);
     ref_body_free(&engine->elastic.body);
     sm_handles_free(&engine->handles);
-    free(engine->place);
-    free(engine->rest);
-    free(engine->x);
-    free(engine->v);
-    free(engine->elastic.carried);
-    free(engine->elastic.held);
-    free(engine->impulse);
-    free(engine);
+    sm_free_all(engine->place, engine->rest, engine->x, engine->v, engine->elastic.carried,
+                engine->elastic.held, engine->impulse, engine);
 }
 
 static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)

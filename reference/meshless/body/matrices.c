@@ -36,9 +36,7 @@ void ref_matrices_free(RefMatrices *matrices)
 {
     RefSparse *both[] = {&matrices->mass, &matrices->stiffness};
     for (int n = 0; n < 2; n++) {
-        free(both[n]->start);
-        free(both[n]->row);
-        free(both[n]->value);
+        sm_free_all(both[n]->start, both[n]->row, both[n]->value);
         *both[n] = (RefSparse){0};
     }
 }
@@ -387,20 +385,12 @@ static void local_create(const RefNodes *nodes, Local *local)
 
 static void local_free(Local *local)
 {
-    free(local->node);
-    free(local->number);
-    free(local->weight);
-    free(local->value);
-    free(local->mean);
-    free(local->wall);
+    sm_free_all(local->node, local->number, local->weight, local->value, local->mean, local->wall);
 }
 
 static void pairs_free(Pairs *pairs)
 {
-    free(pairs->start);
-    free(pairs->partner);
-    free(pairs->mass);
-    free(pairs->gradient);
+    sm_free_all(pairs->start, pairs->partner, pairs->mass, pairs->gradient);
 }
 
 /* Every octant's share of the pairs' products. */

@@ -16,10 +16,7 @@ RefShape ref_shape_create(const RefNodes *nodes)
 
 void ref_shape_free(RefShape *shape)
 {
-    free(shape->node);
-    free(shape->value);
-    free(shape->gradient);
-    free(shape->scratch);
+    sm_free_all(shape->node, shape->value, shape->gradient, shape->scratch);
     *shape = (RefShape){0};
 }
 
@@ -191,9 +188,7 @@ long ref_mls_cover(RefNodes *nodes, RefBasis basis, long count, const double (*x
 
 void ref_rows_free(RefRows *rows)
 {
-    free(rows->start);
-    free(rows->column);
-    free(rows->value);
+    sm_free_all(rows->start, rows->column, rows->value);
     *rows = (RefRows){0};
 }
 

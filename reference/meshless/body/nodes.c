@@ -9,10 +9,7 @@ enum { MOST_BINS = 1 << 21 };
 
 void ref_nodes_free(RefNodes *nodes)
 {
-    free(nodes->position);
-    free(nodes->reach);
-    free(nodes->start);
-    free(nodes->member);
+    sm_free_all(nodes->position, nodes->reach, nodes->start, nodes->member);
     *nodes = (RefNodes){0};
 }
 

@@ -9,9 +9,7 @@
 
 void ref_octants_free(RefOctants *tree)
 {
-    free(tree->octant);
-    free(tree->point);
-    free(tree->wall);
+    sm_free_all(tree->octant, tree->point, tree->wall);
     *tree = (RefOctants){0};
 }
 
@@ -81,10 +79,7 @@ static int side_of(const RefField *field, const double centre[3], double edge)
 static void append_point(Clip *clip, const double x[3], double weight)
 {
     RefOctants *tree = clip->tree;
-    if (tree->points == tree->point_room) {
-        tree->point_room = 2 * tree->point_room + 64;
-        tree->point = sm_realloc(tree->point, (size_t)tree->point_room, sizeof *tree->point);
-    }
+    sm_make_room(tree->point, tree->point_room, tree->points + 1);
     tree->point[tree->points++] = (RefPoint){{x[0], x[1], x[2]}, weight};
     clip->volume += weight;
 }
@@ -106,10 +101,7 @@ static void gauss_cube(Clip *clip, const double centre[3], double edge)
 
 static void append_wall(RefOctants *tree, const RefWall *wall)
 {
-    if (tree->walls == tree->wall_room) {
-        tree->wall_room = 2 * tree->wall_room + 64;
-        tree->wall = sm_realloc(tree->wall, (size_t)tree->wall_room, sizeof *tree->wall);
-    }
+    sm_make_room(tree->wall, tree->wall_room, tree->walls + 1);
     tree->wall[tree->walls++] = *wall;
 }
 
@@ -409,10 +401,7 @@ static void wall_faces(const RefField *field, const RefOctantOptions *options, l
 
 static void split(RefOctants *tree, long at)
 {
-    if (tree->count + 8 > tree->room) {
-        tree->room = 2 * tree->room + 8;
-        tree->octant = sm_realloc(tree->octant, (size_t)tree->room, sizeof *tree->octant);
-    }
+    sm_make_room(tree->octant, tree->room, tree->count + 8);
     RefOctant *parent = tree->octant + at;
     parent->child = (int)tree->count;
     int half = parent->size / 2;

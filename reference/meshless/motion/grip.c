@@ -154,9 +154,7 @@ static void add_static(const RefBody *body, RefSolver *solver, int grips, const 
         ref_solver_solve(solver, load, NULL, u);
         add(space, u);
     }
-    free(u);
-    free(load);
-    free(target);
+    sm_free_all(u, load, target);
 }
 
 /* K is made diagonal over the space: its modes. */

@@ -14,26 +14,15 @@ static const double met = 1e-10; /* constraints that miss by less need no correc
 
 static void hold_free(RefHold *hold)
 {
-    free(hold->node);
-    free(hold->value);
-    free(hold->row);
+    sm_free_all(hold->node, hold->value, hold->row);
 }
 
 void ref_motion_free(RefMotion *motion)
 {
     for (int k = 0; k < motion->holds; k++) hold_free(motion->hold + k);
-    free(motion->hold);
-    free(motion->lambda);
-    free(motion->row);
-    free(motion->anchor);
-    free(motion->drift);
-    free(motion->z);
-    free(motion->speed);
-    free(motion->load);
-    free(motion->rotation);
-    free(motion->local);
-    free(motion->moved);
-    free(motion->force);
+    sm_free_all(motion->hold, motion->lambda, motion->row, motion->anchor, motion->drift, motion->z,
+                motion->speed, motion->load, motion->rotation, motion->local, motion->moved,
+                motion->force);
     *motion = (RefMotion){0};
 }
 
@@ -355,9 +344,7 @@ static void bordered(const RefMotion *motion, const double *A, const double *J, 
     memset(change, 0, (size_t)modes * sizeof *change);
     for (size_t r = 0; solved && r < rows; r++)
         for (int k = 0; k < modes; k++) change[k] += y[r] * J[r * (size_t)modes + (size_t)k] / A[k];
-    free(S);
-    free(y);
-    free(scaled);
+    sm_free_all(S, y, scaled);
 }
 
 /* All constraints' misses; returns the largest, lengths as shares of the body's. */
@@ -403,9 +390,7 @@ static void step_held(RefMotion *motion, double h, const double *A)
         bordered(motion, A, J, off, change);
         for (size_t k = 0; k < modes; k++) motion->z[k] += change[k];
     }
-    free(J);
-    free(off);
-    free(change);
+    sm_free_all(J, off, change);
 }
 
 void ref_motion_step(RefMotion *motion, double h)

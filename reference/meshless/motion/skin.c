@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
 enum { BLOCK = 64, LANES = 16 };
 
 typedef struct {
@@ -77,10 +76,7 @@ static void list_nodes(Builder *builder, RefSkin *skin, RefSkinBlock *block)
         for (int n = 0; n < builder->shape.count; n++) {
             int node = builder->shape.node[n];
             if (builder->number[node] >= 0) continue;
-            if (builder->nodes == builder->node_room) {
-                builder->node_room = 2 * builder->node_room + 256;
-                skin->node = sm_realloc(skin->node, (size_t)builder->node_room, sizeof(int));
-            }
+            sm_make_room(skin->node, builder->node_room, builder->nodes + 1);
             builder->number[node] = block->nodes++;
             skin->node[builder->nodes++] = node;
         }
@@ -90,10 +86,7 @@ static void list_nodes(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 static void fill_weights(Builder *builder, RefSkin *skin, RefSkinBlock *block)
 {
     long size = (long)block->nodes * block->room, loose = builder->loose;
-    if (builder->weights + size > builder->weight_room) {
-        builder->weight_room = 2 * builder->weight_room + size;
-        skin->weight = sm_realloc(skin->weight, (size_t)builder->weight_room, sizeof(float));
-    }
+    sm_make_room(skin->weight, builder->weight_room, builder->weights + size);
     float *weight = skin->weight + builder->weights;
     memset(weight, 0, (size_t)size * sizeof *weight);
     builder->weights += size;
@@ -151,12 +144,7 @@ void ref_skin_create(const RefBody *body, long count, const double (*x)[3], RefS
 
 void ref_skin_free(RefSkin *skin)
 {
-    free(skin->order);
-    free(skin->rest);
-    free(skin->block);
-    free(skin->node);
-    free(skin->weight);
-    free(skin->near);
+    sm_free_all(skin->order, skin->rest, skin->block, skin->node, skin->weight, skin->near);
     *skin = (RefSkin){0};
 }
 

@@ -54,10 +54,7 @@ static Lanczos lanczos_create(int size, int wanted, int free)
 
 static void lanczos_free(Lanczos *l)
 {
-    free(l->residual);
-    free(l->basis);
-    free(l->work);
-    free(l->far_work);
+    sm_free_all(l->residual, l->basis, l->work, l->far_work);
 }
 
 /* Answers ARPACK's requests until it is done; returns its info. */

@@ -185,10 +185,7 @@ void ref_solver_destroy(RefSolver *solver)
     cholmod_free_factor(&solver->factor, &solver->common);
     cholmod_finish(&solver->common);
     ref_rows_free(&solver->A);
-    free(solver->response);
-    free(solver->S);
-    free(solver->order);
-    free(solver);
+    sm_free_all(solver->response, solver->S, solver->order, solver);
 }
 
 /* y = S^-1 y over the rows that count, in their order. */

@@ -11,10 +11,7 @@ static const double far_enough = 2; /* radii from which a node is a dipole */
 
 void ref_cloud_free(RefCloud *cloud)
 {
-    free(cloud->order);
-    free(cloud->area);
-    free(cloud->spacing);
-    free(cloud->node);
+    sm_free_all(cloud->order, cloud->area, cloud->spacing, cloud->node);
     *cloud = (RefCloud){0};
 }
 

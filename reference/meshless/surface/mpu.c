@@ -255,10 +255,7 @@ static bool settle(const RefMpu *mpu, int level, long *near, RefMpuCell *cell)
 
 static void split(RefMpu *mpu, int at)
 {
-    if (mpu->count + 8 > mpu->room) {
-        mpu->room = 2 * mpu->room + 64;
-        mpu->cell = sm_realloc(mpu->cell, (size_t)mpu->room, sizeof *mpu->cell);
-    }
+    sm_make_room(mpu->cell, mpu->room, mpu->count + 8);
     RefMpuCell *parent = mpu->cell + at;
     parent->child = mpu->count;
     for (int which = 0; which < 8; which++) {

@@ -15,9 +15,7 @@ enum { LINE = 1 << 20 };
 
 void ref_points_free(RefPoints *points)
 {
-    free(points->position);
-    free(points->normal);
-    free(points->as_given);
+    sm_free_all(points->position, points->normal, points->as_given);
     *points = (RefPoints){0};
 }
 
