@@ -2,8 +2,8 @@
  * beside the brute-force engine. */
 #include "test_body.h"
 
-#include "../lib/mesh/test_piece_sums.h"
 #include "../lib/test_frame.h"
+#include "../lib/test_piece_sums.h"
 
 /* Both engines from the same state, `steps` steps; the largest difference in cells. */
 static double race(int precision, Body *body, SmEngineParams params, const SmBoundary *boundary,

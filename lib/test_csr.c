@@ -2,7 +2,7 @@
 #include "csr.h"
 
 #include "test_frame.h"
-#include "voxel/test_bodies.h"
+#include "test_random.h"
 
 enum { MOST = 64, ROWS = 40 };
 

@@ -1,5 +1,5 @@
 /* Scenes that cut lattices: what comes off falls, and no cut does harm. */
-#include "../../lib/mesh/test_piece_sums.h"
+#include "../../lib/mesh/test_volumes.h"
 #include "../../lib/test_frame.h"
 #include "../check/step_check.h"
 #include "../engines.h"

@@ -5,17 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../mesh/edge.h"
 #include "../system/hash.h"
 #include "../vector.h"
 
 enum { INNER, FREE, OLD }; /* what an edge borders on: another triangle, nothing, earlier ones */
-
-/* A triangle's edge, from a corner to the next. */
-typedef struct {
-    int low, high; /* cut vertices */
-    int corner;    /* 3 * triangle + i, from which it goes; -1: of an earlier triangle */
-    bool forth;    /* from low to high */
-} Edge;
 
 /* A vertex of the sheet: a fan of corners. */
 typedef struct {
@@ -32,7 +26,7 @@ typedef struct {
     int (*triangle)[3];    /* [triangles] cut vertices */
     int *fan;              /* [3 * triangles] of every corner; first a forest */
     unsigned char *border; /* [3 * triangles] of the edge from every corner */
-    Edge *edge;
+    SmEdge *edge;          /* [3 * triangles], of the corner from which it goes */
     Fan *at;
 } Sheet;
 
@@ -60,20 +54,6 @@ static void take_triangles(Sheet *s, long first, long last)
     }
 }
 
-static Edge make_edge(const int triangle[3], int i, int corner)
-{
-    int u = triangle[i], v = triangle[(i + 1) % 3];
-    return u < v ? (Edge){u, v, corner, true} : (Edge){v, u, corner, false};
-}
-
-static int compare_edges(const void *a, const void *b)
-{
-    const Edge *p = a, *q = b;
-    if (p->low != q->low) return p->low < q->low ? -1 : 1;
-    if (p->high != q->high) return p->high < q->high ? -1 : 1;
-    return (p->corner > q->corner) - (p->corner < q->corner);
-}
-
 static int root(int *fan, int corner)
 {
     while (fan[corner] != corner) corner = fan[corner] = fan[fan[corner]];
@@ -91,14 +71,13 @@ static bool join_edges(Sheet *s)
     s->edges = 3 * s->triangles;
     s->edge = sm_alloc((size_t)s->edges, sizeof *s->edge);
     for (long e = 0; e < s->edges; e++) {
-        s->edge[e] = make_edge(s->triangle[e / 3], (int)(e % 3), (int)e);
+        s->edge[e] = sm_edge(s->triangle[e / 3], (int)(e % 3), (int)e);
         s->fan[e] = (int)e;
     }
-    qsort(s->edge, (size_t)s->edges, sizeof *s->edge, compare_edges);
+    qsort(s->edge, (size_t)s->edges, sizeof *s->edge, sm_compare_edges);
     for (long e = 0, next; e < s->edges; e = next) {
-        const Edge *a = &s->edge[e], *b = a + 1;
-        for (next = e + 1; next < s->edges && s->edge[next].low == a->low; next++)
-            if (s->edge[next].high != a->high) break;
+        const SmEdge *a = &s->edge[e], *b = a + 1;
+        for (next = e + 1; next < s->edges && sm_edges_same(a, &s->edge[next]);) next++;
         if (next - e == 1) {
             s->border[a->corner] = FREE;
             continue;
@@ -116,20 +95,20 @@ static void find_old(Sheet *s, long first)
     int lowest = s->edge[0].low;
     for (long t = 0; t < first; t++)
         for (int i = 0; i < 3; i++) {
-            Edge key = make_edge(s->cut->triangle[t], i, -1);
+            SmEdge key =
+                sm_edge(s->cut->triangle[t], i, -1); /* before all others of its vertices */
             if (key.low < lowest) continue;
             long low = 0, high = s->edges;
             while (low < high) {
                 long middle = (low + high) / 2;
-                if (compare_edges(&s->edge[middle], &key) < 0)
+                if (sm_compare_edges(&s->edge[middle], &key) < 0)
                     low = middle + 1;
                 else
                     high = middle;
             }
             if (low == s->edges) continue;
-            const Edge *e = &s->edge[low];
-            if (e->low == key.low && e->high == key.high && s->border[e->corner] == FREE)
-                s->border[e->corner] = OLD;
+            const SmEdge *e = &s->edge[low];
+            if (sm_edges_same(e, &key) && s->border[e->corner] == FREE) s->border[e->corner] = OLD;
         }
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../mesh/edge.h"
 #include "../predicates.h"
 #include "../vector.h"
 #include "face_clip.h"
@@ -160,27 +161,6 @@ static SmSubtractResult plan(Subtraction *c)
     return c->torn || !c->options->close ? SM_SUBTRACT_TORN : SM_SUBTRACT_CLOSED;
 }
 
-/* An edge between two vertices, and how often triangles that come, less those that go, run along it
- * from low to high, less from high to low. */
-typedef struct {
-    int low, high, count;
-} Edge;
-
-static int compare_edges(const void *a, const void *b)
-{
-    const Edge *p = a, *q = b;
-    if (p->low != q->low) return p->low < q->low ? -1 : 1;
-    return (p->high > q->high) - (p->high < q->high);
-}
-
-static void list_edges(const int triangle[3], int sign, Edge *edge)
-{
-    for (int i = 0; i < 3; i++) {
-        int u = triangle[i], v = triangle[(i + 1) % 3];
-        edge[i] = u < v ? (Edge){u, v, sign} : (Edge){v, u, -sign};
-    }
-}
-
 static double volumes_under(const SmCrossing *c, const int triangle[3], const double from[3])
 {
     return sm_six_volumes(from, sm_crossing_at(c, triangle[0]), sm_crossing_at(c, triangle[1]),
@@ -188,12 +168,13 @@ static double volumes_under(const SmCrossing *c, const int triangle[3], const do
 }
 
 /* Do the triangles that come have the same border as those that go, and is what lies between them
- * no more than the solid? */
+ * no more than the solid? Turned over, the ones that go close the surface of the others: along each
+ * edge as many triangles run one way as the other. */
 static bool sound(const Subtraction *c)
 {
     const SmFaceClip *f = &c->clip;
     long candidates = c->crossing.candidates, count = 0;
-    Edge *edge = sm_alloc(3 * (size_t)(candidates + f->triangles), sizeof *edge);
+    SmEdge *edge = sm_alloc(3 * (size_t)(candidates + f->triangles), sizeof *edge);
     const double *from = c->solid->position[0];
     double change = 0, size = 0, all = 0;
     for (long n = 0; n < candidates + f->triangles; n++) {
@@ -204,18 +185,20 @@ static bool sound(const Subtraction *c)
         double under = volumes_under(&c->crossing, triangle, from);
         change += sign * under;
         all += fabs(under);
-        list_edges(triangle, sign, edge + count);
-        count += 3;
+        for (int i = 0; i < 3; i++) {
+            edge[count] = sm_edge(triangle, i, 0);
+            edge[count++].forth ^= sign < 0;
+        }
     }
     for (long t = 0; t < c->solid->triangle_count; t++)
         size += sm_mesh_six_volumes(c->solid, t, from);
     if (c->options->inside_out) change = -change;
     double rounding = 1e-3 * size + 1e-14 * all;
     bool good = change <= rounding && change >= -size - rounding;
-    qsort(edge, (size_t)count, sizeof *edge, compare_edges);
+    qsort(edge, (size_t)count, sizeof *edge, sm_compare_edges);
     for (long i = 0, sum = 0; i < count && good; i++) {
-        sum += edge[i].count;
-        if (i + 1 < count && compare_edges(&edge[i], &edge[i + 1]) == 0) continue;
+        sum += edge[i].forth ? 1 : -1;
+        if (i + 1 < count && sm_edges_same(&edge[i], &edge[i + 1])) continue;
         good = sum == 0;
         sum = 0;
     }

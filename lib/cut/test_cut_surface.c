@@ -1,6 +1,7 @@
 /* Surfaces split by cuts: random ones through random solids, and the awkward ones. */
 #include "cut_surface.h"
 
+#include "../mesh/test_volumes.h"
 #include "../predicates.h"
 #include "../shapes/polygonise.h"
 #include "../test_frame.h"
@@ -257,6 +258,25 @@ TEST(cuts_right_through_leave_the_pieces_that_they_should)
             assert_int_equal(count_pieces(&mesh), expected);
         }
     assert_int_equal(expected, 64);
+    sm_cut_free(&cut);
+    sm_mesh_free(&mesh);
+}
+
+TEST(pieces_have_the_volumes_that_a_cut_leaves_them)
+{
+    SmMesh mesh = cube();
+    SmCut cut;
+    SmPieces pieces;
+    double volume[2];
+    sm_cut_init(&cut, 2);
+    const double c[3] = {2.5, 5, 5}, u[3] = {0, 12, 0}, v[3] = {0, 0, 12};
+    assert_int_equal(split(&mesh, &cut, sheet(&cut, 1, 1, c, u, v, 0)), SM_CUT_CLOSED);
+    sm_mesh_pieces(&mesh, &pieces);
+    assert_int_equal(pieces.count, 2);
+    sum_volumes(&mesh, &pieces, volume);
+    assert_float_equal(fmin(volume[0], volume[1]), 250, 0.02);
+    assert_float_equal(fmax(volume[0], volume[1]), 750, 0.02);
+    sm_pieces_free(&pieces);
     sm_cut_free(&cut);
     sm_mesh_free(&mesh);
 }

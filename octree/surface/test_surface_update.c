@@ -1,9 +1,10 @@
 /* A surface brought up to date after every change against one built from scratch; and which side of
  * a cut vertices follow. */
 #include "../../lib/cut/cut_surface.h"
-#include "../../lib/mesh/test_piece_sums.h"
+#include "../../lib/mesh/test_volumes.h"
 #include "../../lib/shapes/shape.h"
 #include "../../lib/test_frame.h"
+#include "../../lib/test_piece_sums.h"
 #include "../change/structure.h"
 #include "../tree/test_trees.h"
 #include "surface.h"

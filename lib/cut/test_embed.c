@@ -1,14 +1,14 @@
-#include "embed.h"
+#include "../voxel/embed.h"
 
 #include <omp.h>
 
-#include "../cut/cut_surface.h"
-#include "../cut/embed_cut.h"
 #include "../pieces.h"
 #include "../shapes/shape.h"
 #include "../test_frame.h"
 #include "../vector.h"
-#include "voxelise.h"
+#include "../voxel/voxelise.h"
+#include "cut_surface.h"
+#include "embed_cut.h"
 
 enum { N = 4, RINGS = 12, SPOKES = 16 };
 
