@@ -53,14 +53,20 @@ typedef struct {
 
 #define BENCH_MEANS(of_what, what) .unit = (of_what), .meaning = (what)
 
-/* The text of a BENCH_TEXT. */
-const char *bench_field_text(const BenchField *field, const void *record);
-
 /* A cell of tables for people that is no column of files. */
 #define BENCH_CELL(heading, write) .title = (heading), .cell = (write)
 
+/* A variable alone: its address is the record. */
+#define BENCH_VARIABLE(title, type, variable)                                                      \
+    {                                                                                              \
+        .name = title, .kind = type, .size = sizeof(variable)                                      \
+    }
+
 /* How many values a field's member is: of an array of numbers several. */
 int bench_field_values(const BenchField *field);
+
+/* The text that a BENCH_TEXT of a record is. */
+const char *bench_field_text(const BenchField *field, const void *record);
 
 /* Has the record a value there, and if it is a time, that? */
 bool bench_record_has(const BenchField *field, const void *record);
@@ -78,11 +84,5 @@ void bench_record_none(const BenchField *fields, int count, void *record, size_t
  * may differ are left out; with `given` also those that are not given by the plan. */
 const BenchField *bench_record_differs(const BenchField *fields, int count, const void *a,
                                        const void *b, bool given);
-
-/* A variable alone: its address is the record. */
-#define BENCH_VARIABLE(title, type, variable)                                                      \
-    {                                                                                              \
-        .name = title, .kind = type, .size = sizeof(variable)                                      \
-    }
 
 #endif

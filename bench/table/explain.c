@@ -9,11 +9,6 @@
 #include "../measure/measure.h"
 #include "grid.h"
 
-static const RefPaperRow *paper_of(const BenchRow *row)
-{
-    return row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
-}
-
 void bench_change_left(FILE *file, const char *before, long left)
 {
     if (left)
@@ -82,7 +77,7 @@ static void print_difference(FILE *file, double count, double paper)
 
 static void print_counts(FILE *file, const BenchRow *row)
 {
-    const RefPaperRow *paper = paper_of(row);
+    const RefPaperRow *paper = ref_paper_find(row->paper, row->paper_row);
     bool elastic = bench_row_of_elastic(row);
     fprintf(file, "    %ld %s", row->particles, elastic ? "points" : "particles");
     if (paper) print_difference(file, (double)row->particles, paper->particles.value);
@@ -95,7 +90,7 @@ static void print_counts(FILE *file, const BenchRow *row)
 
 static void print_stages(FILE *file, const BenchRow *row)
 {
-    const RefPaperRow *paper = paper_of(row);
+    const RefPaperRow *paper = ref_paper_find(row->paper, row->paper_row);
     const char *joint = "    ms: ", *stage;
     char number[BENCH_GRID_TEXT];
     for (int s = 0; s < SM_STAGES; s++) {
@@ -161,7 +156,7 @@ static void print_speedups(FILE *file, const BenchRow *rows, int count)
 static void print_notes(FILE *file, const BenchRow *rows, int count)
 {
     for (int r = 0; r < count; r++) {
-        const RefPaperRow *paper = paper_of(&rows[r]);
+        const RefPaperRow *paper = ref_paper_find(rows[r].paper, rows[r].paper_row);
         if (paper && paper->note[0]) fprintf(file, "  %s, paper: %s\n", rows[r].scene, paper->note);
     }
 }

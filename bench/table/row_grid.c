@@ -112,7 +112,7 @@ static void paper_line(const RefPaperRow *paper, BenchTableKind table, BenchGrid
 
 void bench_row_lines(const BenchRow *row, BenchTableKind table, BenchGridForm form, BenchGrid *grid)
 {
-    const RefPaperRow *paper = row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
+    const RefPaperRow *paper = ref_paper_find(row->paper, row->paper_row);
     measured_line(row, table, form, bench_grid_add(grid));
     if (paper && (table != BENCH_TABLE_FRAMES || isfinite(paper->nodes.value)))
         paper_line(paper, table, form, bench_grid_add(grid));

@@ -33,8 +33,8 @@ static void write_paper(BenchH5 *h5, hid_t group, const BenchRow *row)
     if (!paper) return;
     for (int s = 0; s < SM_STAGES; s++) {
         percent[s] = paper->stage_percent[s].value;
-        if (s) strcat(stages, " ");
-        strcat(stages, ref_status_name(paper->stage_ms[s].status));
+        sm_append(stages, sizeof stages, "%s%s", s ? " " : "",
+                  ref_status_name(paper->stage_ms[s].status));
     }
     bench_h5_text(h5, group, "paper_total_status", ref_status_name(paper->total_ms.status));
     bench_h5_text(h5, group, "paper_rate_status", ref_status_name(paper->fps.status));
@@ -215,8 +215,7 @@ static void read_what_is_there(BenchH5 *h5, hid_t parent, int index, BenchRow *r
     bench_h5_read_fields(h5, group, needed, sizeof needed / sizeof *needed, row);
     for (int q = 0; q < bench_quantity_count; q++) {
         const BenchField *field = &bench_quantities[q].field;
-        bool array = field->kind == BENCH_DOUBLE && field->size > sizeof(double);
-        if (field->name && !bench_quantities[q].of && !array)
+        if (field->name && !bench_quantities[q].of && bench_field_values(field) == 1)
             read_where_there(h5, group, field, 1, row);
     }
     read_times(h5, group, row);

@@ -3,7 +3,7 @@ agreement and law. How they are drawn is scripts/plot_calibration.py's matter.""
 import numpy as np
 
 from drawing import Figure, canvas, number
-from tables import Table
+from tables import Table, where
 
 import plot_calibration
 
@@ -16,11 +16,6 @@ def name_of(source, what):
 
 def pascals(value):
     return "–" if value != value else f"{value:.3g}"
-
-
-def where(specimen, i):
-    return f"{specimen['engine'][i]} w {specimen['w'][i]:g}" + (
-        f", epsilon {specimen['epsilon'][i]:g}" if specimen["engine"][i] == plot_calibration.OCTREE else "")
 
 
 def summary(source):

@@ -3,7 +3,7 @@ How they are drawn is scripts/plot_sweep.py's matter."""
 import numpy as np
 
 from drawing import Figure, canvas, number
-from tables import Table
+from tables import Table, where
 
 import plot_sweep
 
@@ -22,11 +22,6 @@ MAPS = [
     ("bytes", 1e-6, "memory", "Memory, megabytes", True, "Held by the engine."),
     ("build_seconds", 1e3, "build", "Set-up, milliseconds", True, "Engine built from voxels."),
 ]
-
-
-def where(point, i):
-    return f"{point['engine'][i]} w {point['w'][i]:g}" + (
-        f", epsilon {point['epsilon'][i]:g}" if point["engine"][i] == plot_sweep.OCTREE else "")
 
 
 def listed(point, values):

@@ -2,6 +2,7 @@
 import math
 
 from drawing import STATUS_MARKS, number
+from plots import OCTREE
 
 
 class Table:
@@ -61,8 +62,7 @@ def measured(source):
         counts = [number(row["particles"]), number(row["regions"]), row["w"] or "–", number(row["summation_nodes"]),
                   row["engine"], row["precision"], row["threads"]]
         if not row["valid"]:
-            table.add([row["scene"]] + ["–"] * 4 + ["INVALID: " + row["reason"]] + ["–"] * len(names) + counts,
-                      "invalid")
+            table.add([row["scene"]] + ["–"] * 4 + [check(row)] + ["–"] * len(names) + counts, "invalid")
             continue
         faster = f"{number(paper / total)} times" if paper == paper and total > 0 else "–"
         table.add([row["scene"], number(total), f"{number(row['total_low_ms'])} to {number(row['total_high_ms'])}",
@@ -77,8 +77,16 @@ def measured(source):
     return table
 
 
+def where(point, i):
+    """A point of a sweep or calibration: "octree w 2, epsilon 0.5"."""
+    epsilon = f", epsilon {point['epsilon'][i]:g}" if point["engine"][i] == OCTREE else ""
+    return f"{point['engine'][i]} w {point['w'][i]:g}{epsilon}"
+
+
 def check(row):
-    """Of a valid row: one without a time was left none by other programs."""
+    """A valid row without a time was left none by other programs."""
+    if not row["valid"]:
+        return "INVALID: " + row["reason"]
     return "VALID" if row["total_ms"] == row["total_ms"] else "BUSY: other programs took the processors"
 
 
@@ -95,7 +103,7 @@ def elastic(source):
         body, total, paper = row["elastic"], row["total_ms"], row["paper_total_ms"]
         counts = [row["scene"], number(row["particles"]), number(body["nodes"]), number(body["modes"])]
         if not row["valid"]:
-            table.add(counts + ["–"] * 7 + ["INVALID: " + row["reason"]], "invalid")
+            table.add(counts + ["–"] * 7 + [check(row)], "invalid")
             continue
         beside = [number(paper), f"{number(paper / total)} times"] if paper == paper else ["–", "–"]
         table.add(counts + [number(body["matrix_seconds"]), number(body["mode_seconds"])]
@@ -114,15 +122,14 @@ def changing(source):
                   "the most of frames that change.")
     for row in rows:
         c = {name[7:]: value for name, value in row.items() if name.startswith("change.")}
-        bad = "" if row["valid"] else "INVALID: " + row["reason"]
         table.add([row["scene"], c["frames"], c["changed"], f"{number(c['first_nodes'])} to {number(c['most_nodes'])}",
                    number(c["most_added"])]
-                  + (["–"] * 4 if bad else
+                  + (["–"] * 4 if not row["valid"] else
                      [f"{number(c['first_ms'])} to {number(c['last_ms'])}",
                       f"{number(c['change_ms'])}, {number(c['change_most_ms'])}", number(c["follow_ms"]),
                       number(c["surface_ms"])])
                   + [f"{number(c['first_triangles'])} to {number(c['last_triangles'])}", c["pieces"], c["open_edges"],
-                     bad or check(row)], "invalid" if bad else "")
+                     check(row)], "" if row["valid"] else "invalid")
     return table
 
 
