@@ -47,7 +47,7 @@ typedef struct {
     const char *name, *group;
     const BenchKernelKind *kind;
     int set;        /* neighbours of equal `set` share a body, and are timed in turn */
-    int side;       /* of the body, if that is a cube (sampled.h names others) */
+    int side;       /* of the body, if that is a cube (tree_body.h names others) */
     int w, part;    /* half width of regions; which of the kind's parts */
     double at_most; /* ns an item wanted on one core in single precision; 0: no limit */
     SmSummation summation;
@@ -102,6 +102,7 @@ struct BenchKernelKind {
     const char *own; /* what the ratio to the base, of another set, is of: "user time" */
 };
 
+/* The kernel as the parameters ask for it, which are kept. `peak` is for report(): NULL without. */
 BenchJob bench_job(const BenchKernel *kernel, const BenchKernelParams *params,
                    const BenchPeak *peak);
 
@@ -113,6 +114,7 @@ void bench_jobs_close(BenchJob *jobs, int count);
 
 /* The voxeliser, the embedding and the octree surface, on the statue of 200,000 triangles. */
 enum { BENCH_VOXELISE, BENCH_EMBED, BENCH_CARRY };
+
 /* What comes before the octree's first step. */
 typedef enum {
     BENCH_SETUP_DISTANCES, /* Bucket-Moore: from a source to all that it reaches */
@@ -122,6 +124,7 @@ typedef enum {
     BENCH_SETUP_SAMPLING,  /* the tree from voxels; finding the lattice's place included */
     BENCH_SETUP_WHOLE,     /* tree, graph, regions and engine from voxels */
 } BenchSetupKind;
+
 /* A change of an octree while it runs: leaves split and merged again, edges of the graph cut. */
 enum { BENCH_REFINE, BENCH_CUT };
 
