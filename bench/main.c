@@ -36,11 +36,10 @@ static error_t parse(int key, char *text, struct argp_state *state)
 /* Help text with the commands' list in it, for argp. */
 static void write_help(char *help, size_t room)
 {
-    size_t used = (size_t)snprintf(help, room, "%s", help_start);
-    for (int i = 0; i < COMMANDS && used < room; i++)
-        used += (size_t)snprintf(help + used, room - used, "  %-9s %s\n", commands[i]->name,
-                                 commands[i]->summary);
-    if (used < room) snprintf(help + used, room - used, "%s", help_end);
+    snprintf(help, room, "%s", help_start);
+    for (int i = 0; i < COMMANDS; i++)
+        sm_append(help, room, "  %-9s %s\n", commands[i]->name, commands[i]->summary);
+    sm_append(help, room, "%s", help_end);
 }
 
 static int run_command(const BenchCommand *command, int argc, char **argv)

@@ -72,7 +72,7 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
 
 const BenchCommand bench_command_merge = {
     .name = "merge",
-    .summary = "put the shards of a sweep into one file",
+    .summary = "put shards of sweep, calibrate or claims into one file",
     .line = {settings, 0, "OUT.h5 IN.h5...", help, check, .most = -1},
     .size = sizeof(Options),
     .perform = perform,

@@ -90,33 +90,32 @@ static const BenchComparison *find_worst(const BenchRegression *found)
 
 void bench_regression_summary(const BenchRegression *found, size_t size, char *line)
 {
-    int had[BENCH_COMPARISONS] = {0}, used;
+    int had[BENCH_COMPARISONS] = {0};
     for (int i = 0; i < found->count; i++) had[found->list[i].verdict]++;
     const BenchComparison *worst = find_worst(found);
     if (worst && worst->verdict == BENCH_INCORRECT)
-        used = snprintf(line, size, "INVALID: %s: %s", worst->samples->scene, worst->reason);
+        snprintf(line, size, "INVALID: %s: %s", worst->samples->scene, worst->reason);
     else if (worst)
-        used = snprintf(
-            line, size, "SLOWER in %d of %d times, most in %s %s: %.3f times (%.3f to %.3f)",
-            had[BENCH_SLOWER], found->count, worst->samples->scene,
-            bench_time_name(worst->samples, worst->time), worst->ratio, worst->low, worst->high);
+        snprintf(line, size, "SLOWER in %d of %d times, most in %s %s: %.3f times (%.3f to %.3f)",
+                 had[BENCH_SLOWER], found->count, worst->samples->scene,
+                 bench_time_name(worst->samples, worst->time), worst->ratio, worst->low,
+                 worst->high);
     else if (found->count == had[BENCH_NO_BASELINE])
-        used = snprintf(line, size, "no baseline: nothing could be compared");
+        snprintf(line, size, "no baseline: nothing could be compared");
     else if (had[BENCH_SAME] + had[BENCH_FASTER] == 0)
-        used = snprintf(line, size, "nothing could be judged, of %d times", found->count);
+        snprintf(line, size, "nothing could be judged, of %d times", found->count);
     else
-        used = snprintf(line, size, "not slower in %d of %d times",
-                        had[BENCH_SAME] + had[BENCH_FASTER], found->count);
+        snprintf(line, size, "not slower in %d of %d times", had[BENCH_SAME] + had[BENCH_FASTER],
+                 found->count);
     int unsure = had[BENCH_TOO_NOISY] + had[BENCH_TOO_FEW];
-    if (!unsure || used < 0 || (size_t)used >= size) return;
+    if (!unsure) return;
     char remedy[64] = "more --rounds";
     if (had[BENCH_TOO_FEW])
         snprintf(remedy, sizeof remedy, "at least --rounds %d",
                  bench_comparisons_rounds(found->list, found->count, found->params));
-    snprintf(line + used, size - (size_t)used,
-             "; %d could not be judged (%d too noisy, %d too few samples): %s%s", unsure,
-             had[BENCH_TOO_NOISY], had[BENCH_TOO_FEW], remedy,
-             had[BENCH_TOO_NOISY] ? ", or a quieter machine" : "");
+    sm_append(line, size, "; %d could not be judged (%d too noisy, %d too few samples): %s%s",
+              unsure, had[BENCH_TOO_NOISY], had[BENCH_TOO_FEW], remedy,
+              had[BENCH_TOO_NOISY] ? ", or a quieter machine" : "");
 }
 
 /* ---- for people */

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../engines.h"
 #include "../table/grid.h"
 
@@ -27,8 +28,8 @@ static void epsilon_cell(const void *record, char *text)
 static void nodes_cell(const void *record, char *text)
 {
     const BenchPoint *p = record;
-    int used = snprintf(text, BENCH_GRID_TEXT, "%ld", p->particles);
-    if (p->parts > 1) snprintf(text + used, 64, " in %ld parts", p->parts);
+    snprintf(text, BENCH_GRID_TEXT, "%ld", p->particles);
+    if (p->parts > 1) sm_append(text, BENCH_GRID_TEXT, " in %ld parts", p->parts);
 }
 
 static void total_cell(const void *record, char *text)
@@ -44,11 +45,10 @@ static void total_cell(const void *record, char *text)
 static void stages_cell(const void *record, char *text)
 {
     const BenchPoint *p = record;
-    size_t used = 0;
+    strcpy(text, p->valid ? "" : "-");
     for (int s = 0; s < SM_STAGES && p->valid; s++)
-        used += (size_t)snprintf(text + used, BENCH_GRID_TEXT - used, "%s%.0f", s ? "/" : "",
-                                 100 * p->stage_ms[s] / p->total_ms);
-    if (!p->valid) strcpy(text, "-");
+        sm_append(text, BENCH_GRID_TEXT, "%s%.0f", s ? "/" : "",
+                  100 * p->stage_ms[s] / p->total_ms);
 }
 
 /* ---- all members */

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../../lib/system/hash.h"
 #include "../beam/swing.h"
 #include "../campaign/campaign_run.h"
@@ -148,10 +149,8 @@ static const double most_members = 5e9;
 
 static void leave_out(Sweeper *sweeper, bool there, const char *what)
 {
-    if (!there) return;
-    size_t used = strlen(sweeper->left_out);
-    snprintf(sweeper->left_out + used, sizeof sweeper->left_out - used, "%s%s", used ? ", " : "",
-             what);
+    char *text = sweeper->left_out;
+    if (there) sm_append(text, sizeof sweeper->left_out, "%s%s", *text ? ", " : "", what);
 }
 
 /* Keeps of the scene what is swept. */

@@ -14,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "../../lib/printable.h"
 #include "provenance.h"
 #include "quote.h"
 
@@ -51,11 +52,10 @@ static void add_instructions(char *words, size_t size, char *text)
 {
     static const char *const sets[] = {"sse", "ssse", "avx", "fma",  "f16c",
                                        "bmi", "amx",  "sve", "asimd"};
-    size_t used = 0;
-    for (char *word; (word = strtok_r(words, " \t\n", &words)) && used < size;)
+    for (char *word; (word = strtok_r(words, " \t\n", &words));)
         for (size_t s = 0; s < sizeof sets / sizeof *sets; s++)
             if (!strncmp(word, sets[s], strlen(sets[s]))) {
-                used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", word);
+                sm_append(text, size, "%s%s", *text ? " " : "", word);
                 break;
             }
 }
@@ -70,7 +70,6 @@ static void read_cpu(BenchMachine *machine)
         {"stepping", "stepping"}, {"CPU implementer", "implementer"}, {"CPU variant", "variant"},
         {"CPU part", "part"},     {"CPU revision", "revision"}};
     char line[8192], *model = machine->cpu_model;
-    size_t used = 0, room = sizeof machine->cpu_model;
     FILE *file = fopen("/proc/cpuinfo", "re");
     while (file && fgets(line, sizeof line, file) && line[0] != '\n') {
         char *value = strchr(line, ':');
@@ -81,11 +80,10 @@ static void read_cpu(BenchMachine *machine)
             snprintf(machine->cpu, sizeof machine->cpu, "%.127s", value);
         if (!strncmp(line, "flags", 5) || !strncmp(line, "Features", 8))
             add_instructions(value, sizeof machine->cpu_instructions, machine->cpu_instructions);
-        for (size_t p = 0; p < sizeof parts / sizeof *parts && used < room; p++)
+        for (size_t p = 0; p < sizeof parts / sizeof *parts; p++)
             if (!strncmp(line, parts[p].key, strlen(parts[p].key)))
-                used += (size_t)snprintf(model + used, room - used, "%s%s%s%s", used ? " " : "",
-                                         parts[p].word ? parts[p].word : "",
-                                         parts[p].word ? " " : "", value);
+                sm_append(model, sizeof machine->cpu_model, "%s%s%s%s", *model ? " " : "",
+                          parts[p].word ? parts[p].word : "", parts[p].word ? " " : "", value);
     }
     if (file) fclose(file);
     char *texts[] = {machine->cpu, machine->cpu_model, machine->cpu_instructions};
