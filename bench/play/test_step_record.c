@@ -245,6 +245,22 @@ TEST(octree_held_in_single_precision)
     assert_int_equal(check_file(), 0);
 }
 
+TEST(a_lattice_has_its_cells_along_every_axis)
+{
+    int size[3] = {0};
+    SmEngineParams params = {.w = 2, .h = 0.01, .threads = 1};
+    record_lattice(&params, NULL, false);
+    hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    hid_t size_of = H5Aopen_by_name(file, "particles", "size", H5P_DEFAULT, H5P_DEFAULT);
+    hid_t space = H5Aget_space(size_of);
+    assert_int_equal(H5Sget_simple_extent_npoints(space), 3);
+    assert_true(H5Aread(size_of, H5T_NATIVE_INT, size) >= 0);
+    assert_true(size[0] > 0 && size[1] > 0 && size[2] > 0);
+    H5Sclose(space);
+    H5Aclose(size_of);
+    H5Fclose(file);
+}
+
 /* Its checksum goes, or it would be refused before anything is compared. */
 static hid_t open_for_damage(void)
 {

@@ -12,8 +12,10 @@ const char *bench_field_text(const BenchField *field, const void *record)
 
 int bench_field_values(const BenchField *field)
 {
-    bool many = field->kind == BENCH_DOUBLE && field->size > sizeof(double);
-    return many ? (int)(field->size / sizeof(double)) : 1;
+    size_t one = field->kind == BENCH_DOUBLE ? sizeof(double)
+                 : field->kind == BENCH_INT  ? sizeof(int)
+                                             : field->size;
+    return field->size > one ? (int)(field->size / one) : 1;
 }
 
 bool bench_record_has(const BenchField *field, const void *record)

@@ -75,14 +75,21 @@ static int points_of_w(const BenchPlan *plan)
     return points;
 }
 
+static bool takes_any_w(const BenchEngine *engine)
+{
+    return engine->planned && !engine->type[0]->by_cells;
+}
+
 static SmCode check_w(const BenchPlan *plan, const SmEngineType *type, SmError *error)
 {
+    char names[BENCH_ENGINES_TEXT];
     for (int i = 0; i < plan->ws && type->by_cells; i++)
         if (plan->w[i] != floor(plan->w[i]) || plan->w[i] > SM_MOST_W)
             return sm_fail(error, SM_USAGE,
                            "--w: %g is no half-width of %s, which are whole numbers from 1 to "
-                           "%d; give --engine octree to sweep that alone",
-                           plan->w[i], type->name, SM_MOST_W);
+                           "%d; give --engine %s to sweep that alone",
+                           plan->w[i], type->name, SM_MOST_W,
+                           bench_engines_that(takes_any_w, names));
     return SM_OK;
 }
 
