@@ -122,6 +122,7 @@ typedef struct {
     BenchRevision revision;
     char folder[BENCH_DRAFT_PATH], self[64];
     BenchRegression found;
+    int verdict; /* exit code */
 } Session;
 
 static BenchTask *add_task(Session *session, const char *scene)
@@ -288,19 +289,8 @@ static void print_found(FILE *file, const void *what)
     bench_regression_write(file, session->options->format, &session->found);
 }
 
-/* A draft that is not committed is discarded at the end. */
-static SmCode write_found(const Session *session, BenchDraft *draft, SmError *error)
-{
-    if (!session->options->output) {
-        print_found(stdout, session);
-        return SM_OK;
-    }
-    SmCode code = bench_draft_fill(draft, print_found, session, error);
-    return code ? code : bench_draft_commit(draft, error);
-}
-
-/* Measures, compares and writes; `exit_code` is the verdict's. */
-static SmCode compare(Session *session, BenchDraft *draft, int *exit_code, SmError *error)
+/* Measures, compares and writes. */
+static SmCode compare(Session *session, SmError *error)
 {
     const Options *options = session->options;
     BenchCompareParams params = {options->revision != NULL, session->rounds, options->threshold,
@@ -315,21 +305,23 @@ static SmCode compare(Session *session, BenchDraft *draft, int *exit_code, SmErr
     found->params = &params;
     found->seconds = sm_now() - start;
     bench_regression_environment(found);
-    *exit_code = bench_comparisons_exit(list, found->count);
-    code = write_found(session, draft, error);
+    session->verdict = bench_comparisons_exit(list, found->count);
+    if (options->output)
+        code = bench_draft_write(options->output, print_found, session, error);
+    else
+        print_found(stdout, session);
     bench_comparisons_free(list, found->count);
     return code;
 }
 
-static SmCode run(Session *session, BenchDraft *draft, const BenchMachine *here, int *exit_code,
-                  SmError *error)
+static SmCode run(Session *session, const BenchMachine *here, SmError *error)
 {
     const Options *options = session->options;
     SmCode code = options->baseline ? load_baseline(session, here, error) : SM_OK;
     if (!code) code = choose_tasks(session, error);
     if (!code) code = choose_rounds(session, error);
     if (!code && options->revision) code = build_revision(session, error);
-    return code ? code : compare(session, draft, exit_code, error);
+    return code ? code : compare(session, error);
 }
 
 static SmCode make_scratch(Session *session, SmError *error)
@@ -357,8 +349,6 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
 {
     const Options *options = record;
     BenchMachine here;
-    BenchDraft draft = {0};
-    int verdict = SM_OK;
     bench_machine_read(argc, argv, options->common.threads, &here);
     Session *session = sm_alloc(1, sizeof *session);
     session->options = options;
@@ -366,19 +356,18 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
     bench_process_catch();
     bench_progress_start(&session->progress, options->common.quiet);
     SmCode code = bench_draft_reserve(options->output, options->overwrite, error);
-    if (!code && options->output) code = bench_draft_begin(options->output, &draft, error);
     if (!code) code = make_scratch(session, error);
     if (!code) {
-        code = run(session, &draft, &here, &verdict, error);
+        code = run(session, &here, error);
         remove_scratch(session);
     }
-    if (options->output && code) bench_draft_discard(&draft);
     bench_ab_free(&session->all);
     bench_rows_free(session->stored, session->stored_count);
     free(session->task);
+    if (!code) code = (SmCode)session->verdict;
     free(session);
     int caught = bench_process_caught();
-    return caught ? (SmCode)(128 + caught) : code ? code : (SmCode)verdict;
+    return caught ? (SmCode)(128 + caught) : code;
 }
 
 static const Options defaults = {.threshold = NAN};
