@@ -130,6 +130,27 @@ static void build_tiles(Lsm *lsm, const int *original)
     lsm->layer_tile[lsm->layers] = lsm->tiles;
 }
 
+/* Of instances: of one layer, which all are like. */
+static void build_instance_tiles(Lsm *lsm, const int *original)
+{
+    long at = 0;
+    lsm->tile_slot = sm_alloc((size_t)lsm->lattice.count, sizeof(int));
+    lsm->copy = sm_alloc((size_t)(lsm->lattice.count - lsm->unique), sizeof *lsm->copy);
+    lsm->copies = 0;
+    for (int p = 0, layer = 0; p < lsm->lattice.count; p++) {
+        while (lsm->lattice.coord[p][2] >= lsm->layer_plane[layer + 1]) layer++;
+        if (original[p] == p || lsm->lattice.coord[original[p]][2] < lsm->layer_plane[layer]) {
+            lsm->tile_slot[at++] = p;
+            continue;
+        }
+        lsm->copy[lsm->copies][0] = p;
+        lsm->copy[lsm->copies++][1] = original[p];
+    }
+    lsm->tiles = lsm->layers * at;
+    lsm->layer_tile = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
+    for (int l = 0; l <= lsm->layers; l++) lsm->layer_tile[l] = l * at;
+}
+
 /* Block form: tiles are blocks. */
 static void tile_blocks(Lsm *lsm)
 {
@@ -232,7 +253,8 @@ static void build_constants(Lsm *lsm)
         ParticleConst *k = &lsm->particle_const[block];
         lsm->block_const[block] = (int)block;
         for (int lane = 0; lane < SM_LANES; lane++) {
-            int p = lsm->particle[block * SM_LANES + lane];
+            long p = lsm->bodies > 1 ? block % lsm->lattice.count
+                                     : lsm->particle[block * SM_LANES + lane];
             if (p < 0) continue;
             k->weight[lane] = (real)(mass_of(lsm, p) / lsm->members[p]);
             k->inverse_count[lane] = (real)(1.0 / lsm->members[p]);
@@ -256,7 +278,8 @@ static void build_memory(Lsm *lsm)
     size_t tiles = (size_t)lsm->tiles;
     lsm->live = sm_alloc(tiles, sizeof *lsm->live);
     for (size_t s = 0; s < tiles * SM_LANES; s++)
-        lsm->live[s / SM_LANES] |= (uint16_t)((lsm->tile_slot[s] >= 0) << s % SM_LANES);
+        lsm->live[s / SM_LANES] |=
+            (uint16_t)((lsm->bodies > 1 || lsm->tile_slot[s] >= 0) << s % SM_LANES);
     lsm->centre = sm_alloc((size_t)(lsm->blocks + 1) * 3 * SM_LANES, sizeof(real));
     lsm->g = NULL;
     lsm->last = sm_alloc(tiles * 6 * SM_LANES, sizeof(short));
@@ -282,15 +305,17 @@ static void build_regions(Lsm *lsm)
         original[p] = (int)p; /* equal regions may part: each has its own tile lane */
     if (lsm->box)
         tile_blocks(lsm);
+    else if (lsm->bodies > 1)
+        build_instance_tiles(lsm, original);
     else
         build_tiles(lsm, original);
     place_lists(lsm, listed);
     free(original);
     free(listed);
-    build_rows(lsm);
+    if (lsm->bodies == 1) build_rows(lsm);
     build_memory(lsm);
     lsm_pipeline_split(lsm);
-    if (lsm->box) lsm_blocks_share(lsm);
+    if (lsm->sums->share) lsm->sums->share(lsm);
     build_constants(lsm);
     if (lsm->sums->open) lsm->sums->open(lsm);
     if (lsm->params.strain_limit > 0) return;
@@ -327,8 +352,8 @@ static void take_masses(Lsm *lsm, const double *mass)
 /* The first form that applies. */
 static void choose_sums(Lsm *lsm)
 {
-    static const LsmSums *const forms[] = {&lsm_sums_naive, &lsm_sums_boxes, &lsm_sums_running,
-                                           &lsm_sums_lists};
+    static const LsmSums *const forms[] = {&lsm_sums_instances, &lsm_sums_naive, &lsm_sums_boxes,
+                                           &lsm_sums_running, &lsm_sums_lists};
     int i = 0;
     while (!forms[i]->applies(lsm)) i++;
     lsm->sums = forms[i];
@@ -341,6 +366,10 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     lsm->w = params->w;
     lsm->side = 2 * params->w + 1;
     lsm->cell = voxels->cell;
+    lsm->bodies = params->instances > 1 ? params->instances : 1;
+    size_t groups = (size_t)(lsm->bodies + SM_LANES - 1) / SM_LANES;
+    lsm->origin = sm_alloc(groups * SM_LANES, sizeof *lsm->origin);
+    lsm->shift = sm_alloc(groups, sizeof *lsm->shift);
     lsm_lattice_build(voxels, &lsm->lattice);
     long n = lsm->lattice.count;
     take_masses(lsm, params->mass);
@@ -376,11 +405,12 @@ static void free_regions(Lsm *lsm)
     free(lsm->running_factor);
     lsm_fixups_free(lsm->fixups);
     free_rows(&lsm->rows);
+    for (int t = 0; lsm->group_rows && t < lsm->threads; t++) free(lsm->group_rows[t]);
     if (lsm->box) free(lsm->block_region);
     void *all[] = {lsm->tile_slot,    lsm->layer_tile,  lsm->copy,           lsm->layer_copy,
                    lsm->members,      lsm->block_const, lsm->particle_const, lsm->tile_const,
                    lsm->region_const, lsm->centre,      lsm->last,           lsm->sweeps,
-                   lsm->stretch,      lsm->live};
+                   lsm->stretch,      lsm->live,        lsm->group_rows};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
 }
 
@@ -409,6 +439,17 @@ void lsm_rebuild_regions(Lsm *lsm)
     free(last);
 }
 
+/* Of the rows that lists name. */
+static long row_bytes(const Lsm *lsm)
+{
+    const LsmLists *lists = &lsm->lists;
+    long values = lsm->threads * (long)lsm->group_size;
+    if (lsm->bodies == 1)
+        values = (long)row_slots(lsm) * (ROW_P + ROW_T) + lists->bar_count * ROW_BAR +
+                 lists->plate_count * (ROW_PLATE + lsm->sums->plate_down);
+    return values * (long)sizeof(real);
+}
+
 long lsm_bytes(const Lsm *lsm)
 {
     const LsmLattice *l = &lsm->lattice;
@@ -417,8 +458,10 @@ long lsm_bytes(const Lsm *lsm)
          real_size = sizeof(real);
     long bytes = words * 28 + l->count * (long)(sizeof *l->coord + sizeof *l->link + sizeof(int));
     bytes += l->count * (long)((lsm->mass ? sizeof(double) : 0) + (lsm->members ? sizeof(int) : 0));
-    bytes += lanes * (9 * real_size + (lsm->box ? 2 : 1) * (long)sizeof(int)); /* x, v, centre */
-    bytes += lsm->tiles * SM_LANES * (long)(6 * sizeof(short) + sizeof(int));
+    bytes += lanes * 9 * real_size; /* x, v, centre */
+    bytes += lsm->tiles * SM_LANES * 6 * (long)sizeof(short);
+    if (lsm->bodies == 1) /* what is in a slot */
+        bytes += (lanes * (lsm->box ? 2 : 1) + lsm->tiles * SM_LANES) * (long)sizeof(int);
     bytes += lsm->stretch ? lsm->tiles * SM_LANES * 9 * real_size : 0;
     bytes += (lsm->blocks + lsm->tiles) * (long)sizeof(int) + lsm->copies * (long)sizeof *lsm->copy;
     bytes += lsm->particle_records.room * (long)sizeof(ParticleConst) +
@@ -427,10 +470,7 @@ long lsm_bytes(const Lsm *lsm)
     bytes += lsm->running_lists ? lsm_running_lists_bytes(lsm->running_lists)
                                 : (lists->bar_count + lists->plate_count + lists->region_room) *
                                       lists->side * (long)sizeof(int);
-    bytes += ((long)row_slots(lsm) * (ROW_P + ROW_T) + lists->bar_count * ROW_BAR +
-              lists->plate_count * (ROW_PLATE + (lsm->sums->plate_down))) *
-             real_size;
-    return bytes + (lsm->box ? lsm_blocks_bytes(lsm) : 0) + lsm_fixups_bytes(lsm);
+    return bytes + row_bytes(lsm) + (lsm->box ? lsm_blocks_bytes(lsm) : 0) + lsm_fixups_bytes(lsm);
 }
 
 void lsm_free(Lsm *lsm)
@@ -438,9 +478,9 @@ void lsm_free(Lsm *lsm)
     free_regions(lsm);
     lsm_blocks_free(lsm->box);
     lsm_lattice_free(&lsm->lattice);
-    void *all[] = {lsm->mass,     lsm->slot,        lsm->particle,    lsm->x,
-                   lsm->v,        lsm->layer_plane, lsm->layer_block, lsm->thread_layer,
-                   lsm->obstacle, lsm->mark,        lsm->listed};
+    void *all[] = {lsm->mass,        lsm->slot,        lsm->particle,     lsm->x,        lsm->v,
+                   lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->obstacle, lsm->mark,
+                   lsm->listed,      lsm->origin,      lsm->shift};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
     free(lsm);
 }

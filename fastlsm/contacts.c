@@ -8,7 +8,6 @@
 
 struct LsmContacts {
     Lsm *lsm;
-    Instances *instances;
     SmCollide *collide;
     LsmOutline outline;
     double (*x)[3]; /* [bodies * particles] cells */
@@ -19,22 +18,16 @@ struct LsmContacts {
 /* Where coordinate 0 of a particle is in x and v; the others follow at SM_LANES. */
 static long index_of(const LsmContacts *k, long number)
 {
-    long count = k->lsm->lattice.count;
-    if (k->instances) {
-        long body = number / count, p = number % count;
-        return (body / SM_LANES * count + p) * 3 * SM_LANES + body % SM_LANES;
-    }
-    long slot = k->lsm->slot[number];
-    return slot / SM_LANES * 3 * SM_LANES + slot % SM_LANES;
+    return place_of(k->lsm, number / k->lsm->lattice.count, number % k->lsm->lattice.count);
 }
 
-LsmContacts *lsm_contacts_build(Lsm *lsm, Instances *instances)
+LsmContacts *lsm_contacts_build(Lsm *lsm)
 {
     const SmCollideParams *params = &lsm->params.collide;
-    long bodies = instances ? instances->bodies : 1;
+    long bodies = lsm->bodies;
     if (!params->self && !(params->bodies && bodies > 1)) return NULL;
     LsmContacts *k = sm_alloc(1, sizeof *k);
-    *k = (LsmContacts){.lsm = lsm, .instances = instances};
+    *k = (LsmContacts){.lsm = lsm};
     k->x = sm_alloc((size_t)(bodies * lsm->lattice.count), sizeof *k->x);
     lsm_outline_build(&lsm->lattice, lsm->mass, &k->outline);
     k->collide = sm_collide_build(&k->outline.rest, params, bodies, lsm->params.threads);
@@ -65,33 +58,27 @@ static void describe(LsmContacts *k)
     k->broken = k->lsm->broken;
 }
 
-static void read_instances(LsmContacts *k)
+/* Of one body from its own origin, of instances from where all are at home. */
+static void read_positions(LsmContacts *k)
 {
-    const Instances *instances = k->instances;
-    long count = k->lsm->lattice.count;
-    for (long body = 0; body < instances->bodies; body++) {
-        double shift[3];
-        for (int d = 0; d < 3; d++)
-            shift[d] = (instances->origin[body][d] - k->lsm->home[d]) / k->lsm->cell;
-        const real *from = instances->x + index_of(k, body * count);
-        double(*to)[3] = k->x + body * count;
-        for (long p = 0; p < count; p++, from += 3 * SM_LANES)
-            for (int d = 0; d < 3; d++) to[p][d] = shift[d] + (double)from[d * SM_LANES];
-    }
-}
-
-static void read_body(LsmContacts *k)
-{
-    for (long p = 0; p < k->lsm->lattice.count; p++) {
-        const real *from = k->lsm->x + index_of(k, p);
-        for (int d = 0; d < 3; d++) k->x[p][d] = (double)from[d * SM_LANES];
+    const Lsm *lsm = k->lsm;
+    long count = lsm->lattice.count;
+    for (long body = 0; body < lsm->bodies; body++) {
+        double shift[3] = {0};
+        for (int d = 0; d < 3 && lsm->bodies > 1; d++)
+            shift[d] = (lsm->origin[body][d] - lsm->home[d]) / lsm->cell;
+        for (long p = 0; p < count; p++) {
+            const real *from = lsm->x + place_of(lsm, body, p);
+            for (int d = 0; d < 3; d++)
+                k->x[body * count + p][d] = shift[d] + (double)from[d * SM_LANES];
+        }
     }
 }
 
 static void read_velocities(LsmContacts *k)
 {
     SmCollide *c = k->collide;
-    const real *v = k->instances ? k->instances->v : k->lsm->v;
+    const real *v = k->lsm->v;
     for (long i = 0; i < c->node_count; i++) {
         const real *from = v + index_of(k, c->node[i]);
         for (int d = 0; d < 3; d++) c->v[i][d] = (double)from[d * SM_LANES];
@@ -101,10 +88,7 @@ static void read_velocities(LsmContacts *k)
 static void find(LsmContacts *k)
 {
     if (k->broken != k->lsm->broken) describe(k);
-    if (k->instances)
-        read_instances(k);
-    else
-        read_body(k);
+    read_positions(k);
     sm_collide_find(k->collide, (const double(*)[3])k->x, NULL);
 }
 
@@ -124,8 +108,7 @@ void lsm_contacts_before(LsmContacts *k)
 void lsm_contacts_after(LsmContacts *k)
 {
     SmCollide *c = k->collide;
-    real *v = k->instances ? k->instances->v : k->lsm->v,
-         *x = k->instances ? k->instances->x : k->lsm->x;
+    real *v = k->lsm->v, *x = k->lsm->x;
     read_velocities(k);
     sm_collide_respond(c);
     for (long i = 0; i < c->node_count; i++) {
@@ -153,7 +136,6 @@ long lsm_contacts_count(const LsmContacts *k)
 long lsm_contacts_bytes(const LsmContacts *k)
 {
     const Lsm *lsm = k->lsm;
-    long bodies = k->instances ? k->instances->bodies : 1;
     return sm_collide_bytes(k->collide) + lsm_outline_bytes(&k->outline) +
-           bodies * lsm->lattice.count * (long)sizeof *k->x;
+           lsm->bodies * lsm->lattice.count * (long)sizeof *k->x;
 }

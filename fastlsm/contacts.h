@@ -3,7 +3,7 @@
 #ifndef LSM_CONTACTS_H
 #define LSM_CONTACTS_H
 
-#include "sums/instances.h"
+#include "state.h"
 
 #define LsmContacts         SM_NAME(LsmContacts)
 #define lsm_contacts_build  SM_NAME(lsm_contacts_build)
@@ -17,9 +17,8 @@
 
 typedef struct LsmContacts LsmContacts;
 
-/* Of a body, or of `instances` if it is not NULL; both must outlive it. NULL where nothing is to
- * collide. */
-LsmContacts *lsm_contacts_build(Lsm *lsm, Instances *instances);
+/* Of a body, or of instances, which must outlive it. NULL where nothing is to collide. */
+LsmContacts *lsm_contacts_build(Lsm *lsm);
 void lsm_contacts_free(LsmContacts *contacts);
 
 /* Contacts of the present positions, numbered as the lattice counts; the caller frees. */

@@ -13,12 +13,10 @@
 #include "lattice/axis_order.h"
 #include "match.h"
 #include "step.h"
-#include "sums/instances.h"
 
 struct SmEngine {
     Lsm *lsm;
-    Instances *instances; /* NULL: one body */
-    long count;           /* particles of one body */
+    long count; /* particles of one body */
     long bodies;
     int turn;             /* axis_order.h */
     int *inner;           /* [count] particle numbers in the lattice as turned */
@@ -45,35 +43,24 @@ static void rest_position(const SmEngine *e, long number, double x0[3])
 /* Where component d of a particle is in x, v or g, and the origin that goes with it. */
 static long index_of(const SmEngine *e, long number, int d, const double **origin)
 {
-    if (e->instances) {
-        long body = number / e->count, p = e->inner[number % e->count], group = body / SM_LANES;
-        *origin = e->instances->origin[body];
-        return ((group * e->count + p) * 3 + d) * SM_LANES + body % SM_LANES;
-    }
-    long slot = e->lsm->slot[e->inner[number]];
-    *origin = e->lsm->origin;
-    return (slot / SM_LANES * 3 + d) * SM_LANES + slot % SM_LANES;
+    long body = number / e->count;
+    *origin = e->lsm->origin[body];
+    return place_of(e->lsm, body, e->inner[number % e->count]) + d * SM_LANES;
 }
 
 static real *field_of(const SmEngine *e, SmField field)
 {
-    real *const x = e->instances ? e->instances->x : e->lsm->x,
-                *const v = e->instances ? e->instances->v : e->lsm->v,
-                *const g = e->instances ? e->instances->g : e->lsm->g;
-    return field == SM_VELOCITY ? v : field == SM_GOAL ? g : x;
+    return field == SM_VELOCITY ? e->lsm->v : field == SM_GOAL ? e->lsm->g : e->lsm->x;
 }
 
 static void engine_goals(SmEngine *e)
 {
-    if (e->instances)
-        instances_goals(e->instances);
-    else
-        lsm_goals(e->lsm);
+    lsm_goals(e->lsm);
 }
 
 static void engine_get(SmEngine *e, SmField field, double (*values)[3])
 {
-    if (field == SM_GOAL && !field_of(e, field)) engine_goals(e);
+    if (field == SM_GOAL && !e->lsm->g) engine_goals(e);
     const real *from = field_of(e, field);
     double to_velocity = e->lsm->cell / e->lsm->params.h;
     for (long number = 0; number < e->bodies * e->count; number++) {
@@ -94,18 +81,19 @@ static void centre_on(SmEngine *e, const double (*position)[3])
         for (int d = 0; d < 3; d++) {
             double sum = 0;
             for (long p = 0; p < e->count; p++) sum += position[body * e->count + p][d];
-            double middle = sum / (double)e->count;
-            if (e->instances)
-                e->instances->origin[body][d] = middle;
-            else
-                e->lsm->origin[d] = middle;
+            e->lsm->origin[body][d] = sum / (double)e->count;
         }
 }
 
 static void shift_obstacles(Lsm *lsm)
 {
-    for (int d = 0; d < 3; d++)
-        lsm->shift[d] = lanes_set((real)((lsm->origin[d] - lsm->home[d]) / lsm->cell));
+    long lanes = (lsm->bodies + SM_LANES - 1) / SM_LANES * SM_LANES;
+    for (long body = 0; body < lanes; body++)
+        for (int d = 0; d < 3; d++) {
+            const double *origin = lsm->origin[lsm->bodies > 1 ? body : 0];
+            lsm->shift[body / SM_LANES][d][body % SM_LANES] =
+                (real)((origin[d] - lsm->home[d]) / lsm->cell);
+        }
 }
 
 static void engine_set(SmEngine *e, SmField field, const double (*values)[3])
@@ -128,30 +116,29 @@ static void engine_set(SmEngine *e, SmField field, const double (*values)[3])
 /* Where an instance's pose turns it, a tie goes to the rotation of the pose. */
 static void turn_last(SmEngine *e, long body)
 {
-    short *last = e->instances ? e->instances->last : e->lsm->last;
+    const Lsm *lsm = e->lsm;
+    bool one = e->bodies == 1;
     vec R[9];
     for (int i = 0; i < 9; i++) R[i] = lanes_set((real)e->pose[body][i / 3][(i % 3 + e->turn) % 3]);
     short turned[6 * SM_LANES];
     last_store(turned, R);
-    long tiles = e->instances ? e->count : e->lsm->tiles,
-         first = e->instances ? body / SM_LANES * e->count : 0;
-    for (long tile = first; tile < first + tiles; tile++)
+    long first = one ? 0 : lsm->layer_tile[body / SM_LANES],
+         end = one ? lsm->tiles : lsm->layer_tile[body / SM_LANES + 1];
+    for (long tile = first; tile < end; tile++)
         for (int i = 0; i < 6 * SM_LANES; i++)
-            if (!e->instances || i % SM_LANES == body % SM_LANES)
-                last[tile * 6 * SM_LANES + i] = turned[i];
+            if (one || i % SM_LANES == body % SM_LANES)
+                lsm->last[tile * 6 * SM_LANES + i] = turned[i];
 }
 
 /* Lanes without a body copy the first one's rest shape, so that they stay finite and do nothing. */
 static void fill_empty_lanes(SmEngine *e)
 {
-    long lanes = e->instances->groups * SM_LANES;
-    for (long body = e->bodies; body < lanes; body++)
+    const LsmLattice *l = &e->lsm->lattice;
+    for (long body = e->bodies; e->bodies > 1 && body % SM_LANES; body++)
         for (long p = 0; p < e->count; p++)
-            for (int d = 0; d < 3; d++) {
-                long at = ((body / SM_LANES * e->count + p) * 3 + d) * SM_LANES + body % SM_LANES;
-                e->instances->x[at] =
-                    (real)(e->lsm->lattice.coord[p][d] - e->lsm->lattice.size[d] / 2);
-            }
+            for (int d = 0; d < 3; d++)
+                e->lsm->x[place_of(e->lsm, body, p) + d * SM_LANES] =
+                    (real)(l->coord[p][d] - l->size[d] / 2);
 }
 
 /* Links of the lattice make pieces of `pieces`, whose members are the particles by the numbers
@@ -177,10 +164,10 @@ static void divide_momentum(SmEngine *e)
     sm_pieces_again(e->count, &e->pieces);
     link_pieces(&e->lsm->lattice, NULL, &e->pieces);
     sm_pieces_finish(&e->pieces, NULL, e->count);
-    for (long slot = 0; slot < e->lsm->blocks * SM_LANES && !e->instances; slot++)
+    for (long slot = 0; slot < (m->abreast ? e->count : m->blocks * SM_LANES); slot++)
         m->label[slot] = -1;
     for (long p = 0; p < e->count; p++) {
-        long slot = e->instances ? p : e->lsm->slot[p];
+        long slot = e->lsm->slot[p];
         m->mass[slot] = (real)mass_of(e->lsm, p);
         m->label[slot] = e->pieces.piece[p];
     }
@@ -209,7 +196,7 @@ static void start_at_rest(SmEngine *e)
     engine_set(e, SM_POSITION, (const double(*)[3])rest);
     free(rest);
     for (long body = 0; body < e->bodies; body++) turn_last(e, body);
-    if (e->instances) fill_empty_lanes(e);
+    fill_empty_lanes(e);
 }
 
 /* The body in the turned lattice, with masses in its numbering. */
@@ -253,14 +240,14 @@ static SmCode engine_create(const SmVoxels *voxels, const SmEngineParams *params
     Lsm *lsm = e->lsm;
     e->pose = sm_alloc((size_t)e->bodies, sizeof *e->pose);
     for (long body = 0; body < e->bodies; body++) sm_engine_pose(params, body, e->pose[body]);
-    if (e->bodies > 1) e->instances = instances_build(lsm, e->bodies);
     for (int d = 0; d < 3; d++)
         lsm->gravity[d] = (real)(params->gravity[d] * params->h * params->h / lsm->cell);
     start_at_rest(e);
-    e->contacts = lsm_contacts_build(lsm, e->instances);
-    e->momentum = momentum_build(e->instances ? e->count : lsm->blocks, e->bodies,
-                                 e->instances != NULL, keep_steps(lsm->blocks),
-                                 e->instances ? e->instances->threads : lsm->threads);
+    e->contacts = lsm_contacts_build(lsm);
+    bool abreast = e->bodies > 1;
+    long blocks = abreast ? (e->count + SM_LANES - 1) / SM_LANES : lsm->blocks; /* of one body */
+    e->momentum = momentum_build(abreast ? e->count : blocks, e->bodies, abreast,
+                                 keep_steps(blocks), lsm->threads);
     e->rounding = rounding_square(longest(&lsm->lattice), lsm->w);
     sm_pieces_init(e->count, &e->pieces);
     divide_momentum(e);
@@ -276,7 +263,6 @@ static void engine_destroy(SmEngine *e)
     lsm_contacts_free(e->contacts);
     momentum_free(e->momentum);
     sm_pieces_free(&e->pieces);
-    instances_free(e->instances);
     lsm_free(e->lsm);
     free(e->inner);
     free(e->pose);
@@ -347,11 +333,55 @@ static void keep_momentum(SmEngine *e)
     momentum_kept(e->momentum);
 }
 
-/* Origins go to bodies' middles: the next time before one is likely to be some cells off again. */
+/* The middle of each lane's body in whole cells, from blocks `first` to before `end`. */
+static void find_middles(const SmEngine *e, long first, long end, double middle[SM_LANES][3])
+{
+    vec sum[3] = {{0}};
+    for (long block = first; block < end; block++)
+        for (int d = 0; d < 3; d++) sum[d] += lanes_load(e->lsm->x + (block * 3 + d) * SM_LANES);
+    for (int d = 0; d < 3; d++) {
+        double all = 0;
+        for (int lane = 0; lane < SM_LANES; lane++) all += (double)sum[d][lane];
+        for (int lane = 0; lane < SM_LANES; lane++)
+            middle[lane][d] = rint((e->bodies > 1 ? (double)sum[d][lane] : all) / (double)e->count);
+    }
+}
+
+/* Moves x of blocks `first` to before `end`, and the origins of their bodies, from `body` on. */
+static void move_origins(SmEngine *e, long body, long first, long end, double middle[SM_LANES][3])
+{
+    Lsm *lsm = e->lsm;
+    vec by[3];
+    for (int lane = 0; lane < SM_LANES; lane++)
+        for (int d = 0; d < 3; d++) by[d][lane] = (real)middle[lane][d];
+    for (int lane = 0; lane < (e->bodies > 1 ? SM_LANES : 1); lane++) {
+        for (int d = 0; d < 3; d++) lsm->origin[body + lane][d] += middle[lane][d] * lsm->cell;
+        if (body + lane < e->bodies) momentum_shift(e->momentum, body + lane, middle[lane]);
+    }
+    for (long block = first; block < end; block++) {
+        const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
+        for (int d = 0; d < 3; d++) {
+            real *x = lsm->x + (block * 3 + d) * SM_LANES;
+            lanes_store(x, lanes_load(x) - lanes_and(by[d], k->inverse_count > 0));
+        }
+    }
+}
+
+/* Origins go to bodies' middles, by whole cells, because single precision resolves positions best
+ * near zero: the next time before one is likely to be some cells off again. One body does not move
+ * by one cell. */
 static void recentre(SmEngine *e)
 {
-    double far = e->instances ? instances_recentre(e->instances, e->momentum)
-                              : lsm_recentre(e->lsm, e->momentum);
+    double far = 0, least = e->bodies > 1 ? 0 : 1;
+    long groups = e->bodies > 1 ? e->lsm->layers : 1, blocks = e->lsm->blocks / groups;
+    for (long group = 0; group < groups; group++) {
+        double middle[SM_LANES][3], off = 0;
+        find_middles(e, group * blocks, (group + 1) * blocks, middle);
+        for (int i = 0; i < 3 * SM_LANES; i++) off = fmax(off, fabs(middle[i / 3][i % 3]));
+        if (off > least)
+            move_origins(e, group * SM_LANES, group * blocks, (group + 1) * blocks, middle);
+        far = fmax(far, off);
+    }
     shift_obstacles(e->lsm);
     long since = e->lsm->steps - e->recentred;
     e->recentred = e->lsm->steps;
@@ -367,14 +397,7 @@ static void engine_step(SmEngine *e, SmLaps *laps)
         lsm_contacts_before(e->contacts);
         sm_lap(laps, SM_OTHER);
     }
-    if (e->instances) {
-        int every = lsm->params.damping_every > 0 ? lsm->params.damping_every : 1;
-        lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;
-        instances_step(e->instances, laps);
-        lsm->steps++;
-    } else {
-        lsm_step(lsm, laps);
-    }
+    lsm_step(lsm, laps);
     move_held(e);
     if (e->contacts) lsm_contacts_after(e->contacts);
     if (lsm->params.strain_limit > 0 && isfinite(lsm->params.strain_limit)) lsm_fracture(lsm);
@@ -453,8 +476,8 @@ static void engine_push(SmEngine *e, long count, const long *particle, const dou
             v[index] += (real)dv[d];
         }
         long p = e->inner[particle[i] % e->count];
-        momentum_pushed(e->momentum, particle[i] / e->count, e->instances ? p : e->lsm->slot[p], at,
-                        dv, e->lsm->gravity);
+        momentum_pushed(e->momentum, particle[i] / e->count, e->lsm->slot[p], at, dv,
+                        e->lsm->gravity);
     }
 }
 
@@ -503,8 +526,8 @@ static void engine_count(SmEngine *e, SmCounts *counts)
         .regions = lsm_unique(e->lsm),
         .links = lsm_lattice_links(&lsm->lattice),
         .broken = lsm->broken,
-        .bytes = lsm_bytes(lsm) + (e->instances ? instances_bytes(e->instances) : 0) +
-                 (e->contacts ? lsm_contacts_bytes(e->contacts) : 0) + momentum_bytes(e->momentum),
+        .bytes = lsm_bytes(lsm) + (e->contacts ? lsm_contacts_bytes(e->contacts) : 0) +
+                 momentum_bytes(e->momentum),
         .contacts = e->contacts ? lsm_contacts_count(e->contacts) : 0,
         .build_seconds = e->build_seconds,
         .jacobi_sweeps = sweeps / (double)(e->count - lsm->copies),

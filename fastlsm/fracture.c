@@ -345,28 +345,3 @@ long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first)
     free(links.link);
     return lsm->broken - before;
 }
-
-double lsm_recentre(Lsm *lsm, Momentum *momentum)
-{
-    vec sum[3] = {{0}}, by[3];
-    double middle[3] = {0}, far = 0;
-    for (long block = 0; block < lsm->blocks; block++)
-        for (int d = 0; d < 3; d++) sum[d] += lanes_load(lsm->x + (block * 3 + d) * SM_LANES);
-    for (int d = 0; d < 3; d++) {
-        for (int lane = 0; lane < SM_LANES; lane++) middle[d] += (double)sum[d][lane];
-        middle[d] = rint(middle[d] / (double)lsm->lattice.count);
-        by[d] = lanes_set((real)middle[d]);
-        far = fmax(far, fabs(middle[d]));
-    }
-    if (!(far > 1)) return far;
-    momentum_shift(momentum, 0, middle);
-    for (int d = 0; d < 3; d++) lsm->origin[d] += middle[d] * lsm->cell;
-    for (long block = 0; block < lsm->blocks; block++) {
-        const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
-        for (int d = 0; d < 3; d++) {
-            real *x = lsm->x + (block * 3 + d) * SM_LANES;
-            lanes_store(x, lanes_load(x) - lanes_and(by[d], k->inverse_count > 0));
-        }
-    }
-    return far;
-}

@@ -9,7 +9,6 @@
 #define lsm_break    SM_NAME(lsm_break)
 #define lsm_fracture SM_NAME(lsm_fracture)
 #define lsm_cut      SM_NAME(lsm_cut)
-#define lsm_recentre SM_NAME(lsm_recentre)
 
 /* The link of a particle to its neighbour at ring offset `bit` (lattice.h). */
 typedef struct {
@@ -32,9 +31,5 @@ void lsm_fracture(Lsm *lsm);
  * on. Axis d of the lattice is axis (d + turn) % 3 of the cut (axis_order.h). Returns how many are
  * broken. O(lattice sites in the triangles' boxes), and lsm_break()'s work. */
 long lsm_cut(Lsm *lsm, int turn, const SmCut *cut, long first);
-
-/* Moves the origin to the body's middle, by whole cells, once it has drifted: single precision
- * resolves positions best near zero. Returns how many cells it was off along an axis, at most. */
-double lsm_recentre(Lsm *lsm, Momentum *momentum);
 
 #endif

@@ -56,45 +56,59 @@ SM_INLINE void moments(Lsm *lsm, long tile, vec S[12])
     if (lsm->damp_now) store3(lsm->centre + tile * 3 * SM_LANES, S);
 }
 
-/* The paper's way to decompose (section 4). */
-SM_INLINE void rotate_jacobi(Lsm *lsm, int layer, long tile, const vec A[9], vec R[9])
+/* T_r = (q_r, R_r) of a tile from its c_r. */
+SM_INLINE void transforms(const Lsm *lsm, long tile, const vec c[3], const vec R[9], real *down)
 {
-    vec jacobi[9];
-    lsm->sweeps[layer] += polar_jacobi_lanes(A, lsm->live[tile], lsm->last + tile * 6 * SM_LANES,
-                                             lsm->stretch + tile * 9 * SM_LANES, jacobi);
-    lanes_copy(9, jacobi, R);
+    vec q[3];
+    match_centre(c, R, &lsm->region_const[lsm->tile_const[tile]], q);
+    for (int f = 0; f < 12; f++)
+        lanes_store(down + f * SM_LANES, f < 3 ? q[f] : R[stage_value(f) - MOMENT]);
 }
 
-/* T_r = (q_r, R_r) of `tiles` tiles from their sums (C, A). */
+/* By the paper's way to decompose (section 4). */
+static __attribute__((noinline, unused)) void match_tile_jacobi(Lsm *lsm, int layer, long tile,
+                                                                vec *S, real *down, SmLaps *laps)
+{
+    vec R[9];
+    moments(lsm, tile, S);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+    lsm->sweeps[layer] +=
+        polar_jacobi_lanes(S + MOMENT, lsm->live[tile], lsm->last + tile * 6 * SM_LANES,
+                           lsm->stretch + tile * 9 * SM_LANES, R);
+    sm_lap(laps, SM_POLAR);
+    transforms(lsm, tile, S, R, down);
+    sm_lap(laps, SM_SHAPE_MATCHING);
+}
+
+/* The transforms of `tiles` tiles from their sums (C, A). */
 SM_INLINE void match_tiles(Lsm *lsm, int layer, long tile, int tiles, vec (*S)[12], real *down,
                            SmLaps *laps)
 {
-    bool fast = lsm->params.polar == SM_POLAR_FAST;
     unsigned live[TILE_GROUP];
     PolarInvariants of[TILE_GROUP];
     vec trace[TILE_GROUP];
+    if (lsm->params.polar == SM_POLAR_JACOBI) {
+        for (int t = 0; t < tiles; t++) {
+            vec sum[12];
+            lanes_copy(12, S[t], sum);
+            match_tile_jacobi(lsm, layer, tile + t, sum, down + t * TILE_DOWN, laps);
+        }
+        return;
+    }
     for (int t = 0; t < tiles; t++) moments(lsm, tile + t, S[t]);
     sm_lap(laps, SM_SHAPE_MATCHING);
-    if (fast) {
-        for (int t = 0; t < tiles; t++) {
-            live[t] = lsm->live[tile + t];
-            polar_invariants(S[t] + MOMENT, &of[t]);
-        }
-        polar_traces(tiles, of, live, trace);
+    for (int t = 0; t < tiles; t++) {
+        live[t] = lsm->live[tile + t];
+        polar_invariants(S[t] + MOMENT, &of[t]);
     }
+    polar_traces(tiles, of, live, trace);
     sm_lap(laps, SM_POLAR);
     for (int t = 0; t < tiles; t++, tile++, down += TILE_DOWN) {
-        vec q[3], R[9];
-        const vec *A = S[t] + MOMENT;
-        if (fast)
-            polar_finish(A, &of[t], trace[t], live[t], POLAR_LATTICE,
-                         lsm->last + tile * 6 * SM_LANES, R);
-        else
-            rotate_jacobi(lsm, layer, tile, A, R);
+        vec R[9];
+        polar_finish(S[t] + MOMENT, &of[t], trace[t], live[t], POLAR_LATTICE,
+                     lsm->last + tile * 6 * SM_LANES, R);
         sm_lap(laps, SM_POLAR);
-        match_centre(S[t], R, &lsm->region_const[lsm->tile_const[tile]], q);
-        for (int f = 0; f < 12; f++)
-            lanes_store(down + f * SM_LANES, f < 3 ? q[f] : R[stage_value(f) - MOMENT]);
+        transforms(lsm, tile, S[t], R, down);
     }
     sm_lap(laps, SM_SHAPE_MATCHING);
 }
@@ -125,7 +139,7 @@ SM_INLINE void move_block(Lsm *lsm, long block, const vec sum[3])
     }
     integrate_velocity(pull, lsm->gravity, lsm->rounding, live, v);
     if (!lsm->damp_now) {
-        integrate_position(lsm->obstacle, lsm->obstacle_count, lsm->shift, x, v);
+        integrate_position(lsm->obstacle, lsm->obstacle_count, shift_of(lsm, block), x, v);
         store3(lsm->x + block * 3 * SM_LANES, x);
     }
     store3(lsm->v + block * 3 * SM_LANES, v);

@@ -16,7 +16,8 @@ void lsm_pipeline_split(Lsm *lsm)
 {
     int threads = sm_team(lsm->params.threads);
     long worth = lsm->blocks / BLOCKS_WORTH_A_THREAD;
-    if (threads > worth) threads = worth > 1 ? (int)worth : 1;
+    if (threads > worth && lsm->bodies == 1) /* layers of instances wait for no other */
+        threads = worth > 1 ? (int)worth : 1;
     if (threads > lsm->layers) threads = lsm->layers > 0 ? lsm->layers : 1;
     lsm->threads = threads;
     free(lsm->thread_layer);

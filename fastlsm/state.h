@@ -5,6 +5,10 @@
  * a block, and a block's coordinates are stored as x[3][lanes]. Planes of the lattice are grouped
  * into layers, the unit of the pipeline (pipeline.h).
  *
+ * Many bodies may share a lattice and its lists: a lane is a body then, a block one particle of
+ * SM_LANES bodies, a layer all particles of these. A tile is one of their regions, and one body's
+ * particle numbers stand for slots (sums/instances.c).
+ *
  * Sums have several forms (sums/sums.h). In those over lists (lattice/subsum_lists.h) a body's
  * slots follow each other without holes and every region has its lists. Where they are box sums a
  * block is SM_LANES lattice sites along x, and only regions that a box sum gets wrong have lists or
@@ -68,7 +72,9 @@ typedef struct Lsm {
     /* the body */
     int w, side, threads;
     SmEngineParams params;
-    double origin[3], cell; /* position = origin + cell * x */
+    long bodies;         /* above 1: instances */
+    double (*origin)[3]; /* [bodies, in whole groups of lanes] */
+    double cell;         /* position = origin + cell * x */
     LsmLattice lattice;
     LsmInterior interior;
     LsmLists lists;
@@ -82,7 +88,7 @@ typedef struct Lsm {
     double mass_unit;
     int *members;  /* [particles] |R_i|, kept in a body that can break */
     int *slot;     /* [particles] */
-    int *particle; /* [blocks * lanes], -1 for an empty slot */
+    int *particle; /* [blocks * lanes], -1 for an empty slot; NULL of instances */
     long unique;   /* different regions, or -1: ask lsm_unique() */
 
     /* the state */
@@ -97,7 +103,8 @@ typedef struct Lsm {
     /* regions, SM_LANES to a tile; in block form, and in a body that can break, tile t is block t
      */
     long tiles;
-    int *tile_slot;  /* [tiles * lanes] slot of the region's centre, or -1 */
+    int *tile_slot;  /* [tiles * lanes] slot of the region's centre, or -1; [tiles of a layer] of
+                        instances, all of whose layers have the same */
     int *tile_const; /* [tiles] */
     uint16_t *live;  /* [tiles] the lanes with a region, as bits */
     RegionConst *region_const;
@@ -106,7 +113,8 @@ typedef struct Lsm {
     real *stretch;  /* [tiles][9][lanes] eigenvectors for the warm-started Jacobi method, or NULL */
     double *sweeps; /* [layers] Jacobi sweeps of the last step */
     long copies;    /* regions identical to another */
-    int (*copy)[2]; /* [copies] (slot of the copy, slot of the original) in list form */
+    int (*copy)[2]; /* [copies] (slot of the copy, slot of the original) in list form; of instances
+                       those of every layer */
     long *layer_copy; /* [layers + 1] */
 
     /* layers */
@@ -117,6 +125,8 @@ typedef struct Lsm {
     int *thread_layer;              /* [threads + 1] first layer of each thread */
 
     Rows rows;
+    real **group_rows; /* [threads][group_size] of instances */
+    size_t group_size;
     bool *listed;   /* [blocks] lists or fix-ups read what this block brings down, and lists its
                        particles: rows of them are needed; NULL in list form: all are */
     Blocks *box;    /* NULL in list form */
@@ -131,11 +141,27 @@ typedef struct Lsm {
     real rounding;   /* of a body at rest, square of what goals are off (integrate.h); else 0 */
     int obstacle_count;
     Obstacle *obstacle;
-    vec shift[3]; /* (origin - home) / cell: from x to obstacle coordinates */
+    vec (*shift)[3]; /* (origin - home) / cell: from x to obstacle coordinates; [layers] of
+                        instances */
     double home[3];
     long broken;
     Records particle_records, region_records;
 } Lsm;
+
+/* Where component 0 of a particle of a body is in x, v and g; the others follow at SM_LANES. */
+static inline long place_of(const Lsm *lsm, long body, long p)
+{
+    bool one = lsm->bodies == 1;
+    long block = one ? lsm->slot[p] / SM_LANES : body / SM_LANES * lsm->lattice.count + p;
+    return block * 3 * SM_LANES + (one ? lsm->slot[p] : body) % SM_LANES;
+}
+
+/* Of a block; only where there are obstacles: a division takes longer than it looks. */
+SM_INLINE const vec *shift_of(const Lsm *lsm, long block)
+{
+    bool one = lsm->bodies == 1 || lsm->obstacle_count == 0;
+    return lsm->shift[one ? 0 : block / lsm->lattice.count];
+}
 
 /* In units of mass_unit. */
 static inline double mass_of(const Lsm *lsm, long p)

@@ -711,6 +711,7 @@ const LsmSums lsm_sums_boxes = {
     .name = "boxes",
     .applies = applies,
     .lay_out = lsm_blocks_build,
+    .share = lsm_blocks_share,
     .part = {subsums, solve, end},
     .lists = &lsm_list_kernels,
     .plate_down = ROW_PLATE_DOWN,

@@ -1,8 +1,25 @@
-/* list_rows.h - rows that lists (subsum_lists.h) name. */
+/* list_rows.h - rows that lists (subsum_lists.h) name, for the forms that sum them. */
 #ifndef LSM_LIST_ROWS_H
 #define LSM_LIST_ROWS_H
 
 #include "../state.h"
+
+/* Each kernel is one body in which `side` is a constant for the usual widths. */
+#define FOR_SIDE(side, call)                                                                       \
+    switch (side) {                                                                                \
+    case 3:                                                                                        \
+        call(3);                                                                                   \
+        break;                                                                                     \
+    case 5:                                                                                        \
+        call(5);                                                                                   \
+        break;                                                                                     \
+    case 7:                                                                                        \
+        call(7);                                                                                   \
+        break;                                                                                     \
+    default:                                                                                       \
+        call(side);                                                                                \
+        break;                                                                                     \
+    }
 
 /* The row of this name among `rows`, which are `width` values wide. */
 SM_INLINE const real *named(const real *rows, uint64_t name, int width)

@@ -5,23 +5,6 @@
 #include "lists.h"
 #include "window.h"
 
-/* Each kernel is one body in which `side` is a constant for the usual widths. */
-#define FOR_SIDE(side, call)                                                                       \
-    switch (side) {                                                                                \
-    case 3:                                                                                        \
-        call(3);                                                                                   \
-        break;                                                                                     \
-    case 5:                                                                                        \
-        call(5);                                                                                   \
-        break;                                                                                     \
-    case 7:                                                                                        \
-        call(7);                                                                                   \
-        break;                                                                                     \
-    default:                                                                                       \
-        call(side);                                                                                \
-        break;                                                                                     \
-    }
-
 /* `v` in the first or last four lanes of sixteen, zero elsewhere; the compiler would go through
  * memory, and stall there. */
 SM_INLINE vec16 widen_first(vec4 v)

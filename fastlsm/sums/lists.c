@@ -6,8 +6,7 @@
 
 enum { LAYER_BLOCKS = 24 }; /* layers of about this size stay in the L2 cache */
 
-/* Groups planes into layers of at least LAYER_BLOCKS blocks and finds how far a region reaches. */
-static void build_layers(Lsm *lsm)
+void lsm_lists_build_layers(Lsm *lsm)
 {
     int planes = lsm->lattice.size[2];
     long *count = sm_alloc((size_t)planes, sizeof *count);
@@ -37,7 +36,7 @@ static void build_layers(Lsm *lsm)
 void lsm_lists_lay_out(Lsm *lsm)
 {
     long n = lsm->lattice.count, slot = 0, p = 0;
-    build_layers(lsm);
+    lsm_lists_build_layers(lsm);
     lsm->slot = sm_alloc((size_t)n, sizeof(int));
     lsm->layer_block = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
     for (int l = 0; l < lsm->layers; l++) {

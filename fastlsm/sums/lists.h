@@ -5,6 +5,7 @@
 
 #include "sums.h"
 
+#define lsm_lists_build_layers   SM_NAME(lsm_lists_build_layers)
 #define lsm_lists_lay_out        SM_NAME(lsm_lists_lay_out)
 #define lsm_lists_subsums        SM_NAME(lsm_lists_subsums)
 #define lsm_lists_solve          SM_NAME(lsm_lists_solve)
@@ -12,6 +13,10 @@
 #define lsm_lists_keep_down      SM_NAME(lsm_lists_keep_down)
 #define lsm_list_kernels         SM_NAME(lsm_list_kernels)
 #define lsm_list_kernels_regions SM_NAME(lsm_list_kernels_regions)
+
+/* Groups planes into layers of some hundred particles at least and finds how far a region reaches.
+ */
+void lsm_lists_build_layers(Lsm *lsm);
 
 /* Particles in canonical order, in slots without holes but at the ends of layers. */
 void lsm_lists_lay_out(Lsm *lsm);

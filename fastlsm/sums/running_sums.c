@@ -146,7 +146,7 @@ static const LsmListKernels kernels = {subsums_up, subsums_down, regions,
                                        particles,  tile_sums,    block_sums};
 
 /* Where w is small the lists are as short; running sums subtract, so masses must be of like size;
- * rows that change one by one, and those that many bodies share, stay lists. */
+ * rows that change one by one stay lists. */
 static bool applies(const Lsm *lsm)
 {
     const double like = 16; /* a heavy particle that leaves a sum leaves its rounding behind */
@@ -156,7 +156,7 @@ static bool applies(const Lsm *lsm)
         most = lsm->mass[p] > most ? lsm->mass[p] : most;
     }
     return lsm->w >= RUN_LEAST_W && lsm->params.summation == SM_SUM_FAST &&
-           lsm->params.strain_limit == 0 && lsm->params.instances <= 1 && most <= like * least;
+           lsm->params.strain_limit == 0 && most <= like * least;
 }
 
 /* In place of the lists, which go. */

@@ -9,8 +9,7 @@
  *     running_sums.c   bars, plates and regions made from their neighbours', O(1), for any shape
  *     boxes.c          windows over all sites of a box, O(1), for solids; box_sum_fixups.c mends
  *                      the sums of regions that are no boxes
- *
- * Of many bodies that share a lattice instances.c steps SM_LANES at once, over the same lists.
+ *     instances.c      through bars and plates of SM_LANES bodies at once that share a lattice
  *
  * Shape matching sums p = m~ x and its moments about the region's own centre, in place of x x0^T
  * against a global origin. With lattice offsets (a, b, c) from the centre
@@ -28,10 +27,11 @@
 #include "../match.h"
 #include "../pipeline.h"
 
-#define lsm_sums_naive   SM_NAME(lsm_sums_naive)
-#define lsm_sums_lists   SM_NAME(lsm_sums_lists)
-#define lsm_sums_running SM_NAME(lsm_sums_running)
-#define lsm_sums_boxes   SM_NAME(lsm_sums_boxes)
+#define lsm_sums_naive     SM_NAME(lsm_sums_naive)
+#define lsm_sums_lists     SM_NAME(lsm_sums_lists)
+#define lsm_sums_running   SM_NAME(lsm_sums_running)
+#define lsm_sums_boxes     SM_NAME(lsm_sums_boxes)
+#define lsm_sums_instances SM_NAME(lsm_sums_instances)
 
 struct LsmPass {
     bool plain;    /* sums damping's twelve products and brings six values down, without moments */
@@ -68,6 +68,7 @@ struct LsmSums {
     const char *name;
     bool (*applies)(const Lsm *lsm); /* to a body whose lattice and parameters are known */
     void (*lay_out)(Lsm *lsm);       /* blocks and layers */
+    void (*share)(Lsm *lsm);         /* memory for lsm->threads threads, or NULL */
     void (*open)(Lsm *lsm);          /* what is made of lists and constants, or NULL */
     LsmPart *part[3];                /* of a pass: pipeline.h */
     const LsmListKernels *lists;     /* of the regions that have lists */
@@ -75,7 +76,8 @@ struct LsmSums {
     int plate_down;                  /* values in a row of rows.plate_down */
 };
 
-extern const LsmSums lsm_sums_naive, lsm_sums_lists, lsm_sums_running, lsm_sums_boxes;
+extern const LsmSums lsm_sums_naive, lsm_sums_lists, lsm_sums_running, lsm_sums_boxes,
+    lsm_sums_instances;
 
 /* A pass over the body. Instrumented by `laps` unless that is NULL. */
 SM_INLINE void lsm_run(Lsm *lsm, const LsmPass *pass, SmLaps *laps)
@@ -85,25 +87,32 @@ SM_INLINE void lsm_run(Lsm *lsm, const LsmPass *pass, SmLaps *laps)
     lsm_pipeline(lsm, lsm->sums->part);
 }
 
+/* `sum` is copied for functions, so that it may stay in registers for what is compiled in. */
 SM_INLINE void lsm_solve(Lsm *lsm, bool plain, int layer, long tile, int tiles, vec (*sum)[12],
                          real *down, SmLaps *laps)
 {
-    if (lsm->pass->solve)
-        lsm->pass->solve(lsm, layer, tile, tiles, sum, down, laps);
-    else if (plain)
+    if (lsm->pass->solve) {
+        vec copy[TILE_GROUP][12];
+        for (int t = 0; t < tiles; t++) lanes_copy(12, sum[t], copy[t]);
+        lsm->pass->solve(lsm, layer, tile, tiles, copy, down, laps);
+    } else if (plain) {
         damp_tiles(lsm, tile, tiles, sum, down);
-    else
+    } else {
         match_tiles(lsm, layer, tile, tiles, sum, down, laps);
+    }
 }
 
 SM_INLINE void lsm_end(Lsm *lsm, bool plain, long block, int blocks, vec (*sum)[6], SmLaps *laps)
 {
-    if (lsm->pass->end)
-        lsm->pass->end(lsm, block, blocks, sum, laps);
-    else if (plain)
+    if (lsm->pass->end) {
+        vec copy[TILE_GROUP][6];
+        for (int k = 0; k < blocks; k++) lanes_copy(plain ? 6 : 3, sum[k], copy[k]);
+        lsm->pass->end(lsm, block, blocks, copy, laps);
+    } else if (plain) {
         damp_blocks(lsm, block, blocks, sum, laps);
-    else
+    } else {
         move_blocks(lsm, block, blocks, sum, laps);
+    }
 }
 
 #endif
