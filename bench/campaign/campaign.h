@@ -9,7 +9,7 @@
 
 #include "../store/h5.h"
 #include "../system/machine.h"
-#include "../table/table.h"
+#include "../table/row_table.h"
 
 enum { BENCH_CAMPAIGN_POINTS = 10000, BENCH_CAMPAIGN_TEXT = 240, BENCH_CAMPAIGN_BUILD = 768 };
 

@@ -3,7 +3,7 @@
 #ifndef BENCH_CLAIM_TABLE_H
 #define BENCH_CLAIM_TABLE_H
 
-#include "../table/table.h"
+#include "../table/row_table.h"
 #include "verdict.h"
 
 /* CSV: a header line, then a line for every claim (RFC 4180), columns

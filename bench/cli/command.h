@@ -5,7 +5,7 @@
 
 #include "../campaign/campaign_run.h"
 #include "../settings/option.h"
-#include "../table/table.h"
+#include "../table/row_table.h"
 
 /* Exit codes as every command's help prints them; error.h has them as SmCode. */
 #define BENCH_EXIT_CODES                                                                           \

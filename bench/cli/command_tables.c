@@ -11,7 +11,7 @@
 #include "../store/draft.h"
 #include "../table/quantity.h"
 #include "../table/row_store.h"
-#include "../table/table.h"
+#include "../table/row_table.h"
 #include "command.h"
 
 typedef struct {
@@ -186,7 +186,7 @@ static SmCode find_scene(const Options *options, const Choice *choice, BenchScen
     return code;
 }
 
-/* Names the rows (report.h), the meshless ones last; fails where a scene is not there. */
+/* Names the rows (row_report.h), the meshless ones last; fails where a scene is not there. */
 static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
 {
     Choice *ordered = sm_alloc((size_t)chosen->count, sizeof *ordered);

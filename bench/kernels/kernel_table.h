@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-#include "../table/table.h"
+#include "../table/row_table.h"
 #include "kernels.h"
 
 /* Stable: CSV has the kernels only, a header line first, columns

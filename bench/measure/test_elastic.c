@@ -8,7 +8,7 @@
 #include "../engines.h"
 #include "../play/runner.h"
 #include "../table/row_store.h"
-#include "../table/table.h"
+#include "../table/row_table.h"
 #include "elastic_row.h"
 #include "measure.h"
 

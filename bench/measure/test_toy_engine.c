@@ -5,7 +5,7 @@
 #include "../engines.h"
 #include "../scene/memory.h"
 #include "../table/row_store.h"
-#include "../table/table.h"
+#include "../table/row_table.h"
 #include "checker.h"
 #include "measure.h"
 

@@ -1,7 +1,7 @@
 /* quantity.h - the quantities of a measured row, each described once, in a line of
  * bench/measure/row_quantities.inc: from these come the members of BenchRow, what is stored in HDF5
- * (row_store.h), CSV and JSON (table.h), the tables for people (row_grid.h), the report page and
- * the list of columns in results/README.md. */
+ * (row_store.h), CSV and JSON (row_table.h), the tables for people (row_grid.h), the report page
+ * and the list of columns in results/README.md. */
 #ifndef BENCH_QUANTITY_H
 #define BENCH_QUANTITY_H
 

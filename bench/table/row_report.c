@@ -1,4 +1,4 @@
-#include "report.h"
+#include "row_report.h"
 
 #include "../measure/elastic_row.h"
 #include "explain.h"

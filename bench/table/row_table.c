@@ -1,4 +1,4 @@
-#include "table.h"
+#include "row_table.h"
 
 #include "../store/export.h"
 #include "quantity.h"

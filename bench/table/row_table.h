@@ -1,12 +1,12 @@
-/* table.h - measured rows as a table: for people (text, markdown, latex; report.h) and for
+/* row_table.h - measured rows as a table: for people (text, markdown, latex; row_report.h) and for
  * programs (csv, json), whose columns are a stable interface.
  *
  * A row that others left no time has none: BUSY, null in JSON, whose "busy" is then 1.
  * An invalid row has no times in any format: INVALID stands there, null in JSON. */
-#ifndef BENCH_TABLE_H
-#define BENCH_TABLE_H
+#ifndef BENCH_ROW_TABLE_H
+#define BENCH_ROW_TABLE_H
 
-#include "report.h"
+#include "row_report.h"
 
 typedef enum {
     BENCH_AS_TEXT,

@@ -5,7 +5,7 @@
 #include "../../lib/test_frame.h"
 #include "../measure/measure.h"
 #include "quantity.h"
-#include "table.h"
+#include "row_table.h"
 
 /* Columns keep their places; new ones come behind them. */
 static const char header[] =

@@ -1,7 +1,7 @@
-/* report.h - measured rows for people: tables of steps, of scenes that change, and of meshless
+/* row_report.h - measured rows for people: tables of steps, of scenes that change, and of meshless
  * bodies, each row with the paper's values below; written row by row, as they are measured. */
-#ifndef BENCH_REPORT_H
-#define BENCH_REPORT_H
+#ifndef BENCH_ROW_REPORT_H
+#define BENCH_ROW_REPORT_H
 
 #include "../measure/row.h"
 #include "../system/machine.h"
