@@ -235,7 +235,7 @@ static void find_drift(const SmBlade *blade, Nearby *n, long points, const SmBla
     free(before);
 }
 
-/* Where `next` goes back the way that the point came, it stays; else it remembers which way. */
+/* Where `next` goes back the way that the point came, it stays; else which way it went is kept. */
 static void go_ahead(const SmBladePoint *point, double cell, SmBladePoint *next)
 {
     double way[3], square = 0;

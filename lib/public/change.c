@@ -34,7 +34,7 @@ static void hold_leaves(sb_body *body)
 
 /* Into by[leaf]: 1 + the handle that holds a leaf of now, as the engine does it
  * (octree/handle_nodes.h). */
-static void inherit_handles(const sb_body *body, const OctChange *change, int *by)
+static void transfer_handles(const sb_body *body, const OctChange *change, int *by)
 {
     for (int i = 0; i < body->handle_count; i++)
         for (long k = 0; k < body->handle[i].count; k++) by[body->handle[i].particle[k]] = 1 + i;
@@ -54,7 +54,7 @@ static void hold_particles(sb_body *body, const OctChange *change)
     const int *leaf = oct_engine_leaves(body->engine);
     int *by = sm_alloc((size_t)tree->leaves, sizeof *by);
     long *next = sm_alloc((size_t)body->handle_count, sizeof *next);
-    inherit_handles(body, change, by);
+    transfer_handles(body, change, by);
     for (long p = 0; p < body->particles; p++)
         if (by[leaf[p]]) next[by[leaf[p]] - 1]++;
     for (int i = 0; i < body->handle_count; i++) {
@@ -317,25 +317,26 @@ static int check_detail(const sb_body *body, int detail, int level, double hold,
 /* A detail and what it is to be now. */
 typedef struct {
     OctRefinement *detail;
-    OctRefineCriterion *wish;
+    OctRefineCriterion *criterion;
     const void *what;
     double time, hold;
-} Wanted;
+} Detail;
 
 static void update_detail(Batch *batch, void *of)
 {
-    const Wanted *w = of;
+    const Detail *w = of;
     batch->count =
-        oct_refinement_update(w->detail, batch->structure, w->wish, w->what, w->time, w->hold);
+        oct_refinement_update(w->detail, batch->structure, w->criterion, w->what, w->time, w->hold);
 }
 
-static int want(sb_body *body, int detail, OctRefineCriterion *wish, const void *what, double hold,
-                int64_t *changed, sb_error *error)
+static int set_detail(sb_body *body, int detail, OctRefineCriterion *criterion, const void *what,
+                      double hold, int64_t *changed, sb_error *error)
 {
-    Wanted w = {&body->detail[detail], wish, what, (double)body->steps * body->h, hold};
+    Detail w = {&body->detail[detail], criterion, what, (double)body->steps * body->h, hold};
     Batch batch = {0};
     int code = SB_OK;
-    if (oct_refinement_due(w.detail, oct_engine_structure(body->engine), wish, what, w.time, hold))
+    if (oct_refinement_due(w.detail, oct_engine_structure(body->engine), criterion, what, w.time,
+                           hold))
         code = change_octree(body, update_detail, &w, &batch, error);
     else
         sm_done(SM_OK, NULL, error);
@@ -358,7 +359,8 @@ int sb_body_detail_ball(sb_body *body, int detail, const double centre[3], doubl
     if (code) return code;
     OctBallRefinement ball = {.radius = radius, .level = level_of(body, level)};
     memcpy(ball.centre, centre, sizeof ball.centre);
-    return want(body, detail, radius > 0 ? oct_ball_criterion : NULL, &ball, hold, changed, error);
+    return set_detail(body, detail, radius > 0 ? oct_ball_criterion : NULL, &ball, hold, changed,
+                      error);
 }
 
 int sb_body_detail_eye(sb_body *body, int detail, const double eye[3], double near_distance,
@@ -372,7 +374,7 @@ int sb_body_detail_eye(sb_body *body, int detail, const double eye[3], double ne
     OctViewRefinement what = {
         .near = near_distance, .slack = slack, .level = level_of(body, level)};
     memcpy(what.eye, eye, sizeof what.eye);
-    return want(body, detail, oct_view_criterion, &what, hold, changed, error);
+    return set_detail(body, detail, oct_view_criterion, &what, hold, changed, error);
 }
 
 int sb_body_read_levels(sb_body *body, int *level, int64_t room, sb_error *error)

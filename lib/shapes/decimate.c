@@ -175,7 +175,8 @@ static void add_normal(const Collapse *c, int v, double sum[3])
 }
 
 /* Whether the triangles of u that stay (those without v) keep their sides when u moves to x. A
- * sliver's own normal says nothing: it has to fall in with `normal`, that of the neighbourhood. */
+ * sliver's own normal is mostly rounding: it is compared with `normal`, that of the neighbourhood.
+ */
 static bool moves_well(const Collapse *c, int u, int v, const double x[3], const double normal[3])
 {
     const SmMesh *m = c->mesh;

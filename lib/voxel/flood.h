@@ -6,7 +6,7 @@
 
 /* Sets every cell that no path through faces of empty cells joins with the outside of the lattice.
  * A cavity is filled too. Rows are filled a word at a time; takes another bits/8 bytes. O(words)
- * times the number of sweeps, which is how often the outside's paths turn back. */
+ * times the number of sweeps: one for each time that the outside's paths turn back. */
 void sm_flood_inside(SmVoxels *voxels);
 
 #endif
