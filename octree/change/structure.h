@@ -12,8 +12,8 @@
  * `leaves` count the numbers in use and those to be used again, `live` the leaves that there are;
  * of a deleted leaf node[] is -1, of a deleted node size[] is 0 (its centre stays until the number
  * is used again). Roots are never deleted. In a changed tree nodes are in no order and
- * level_first[] is not valid; the lists of graph and regions have ends of their own
- * (oct_graph_end(), oct_regions_end()).
+ * level_first[] is not valid; the rows of graph and regions no longer follow each other
+ * (lib/csr.h).
  *
  * A batch is any number of splits, merges and triangles added to the structure's cut, then one
  * oct_resample_update(). Between the first of them and the update only tree nodes, their sizes,
