@@ -225,9 +225,13 @@ static void keep_run(const Momentum *m, const MomentumPiece *piece, const double
  * omega is used `steps` later, when the piece of spin `spin` has turned. Of a long piece that turns
  * fast J is another one by then: omega about its old axis would change the spin by up to the ratio
  * of its inertias too much, and the next correction by that ratio once more. L / trace S never is
- * too much, since no inertia exceeds the trace. False: it is that. */
+ * too much, since no inertia exceeds the trace. False: it is that.
+ *
+ * Nor is what a piece that swells and shrinks has when it is small: a body squashed so far that it
+ * springs back within a step has many times that inertia one step later, and would be corrected as
+ * many times too much, in every swing again. So its widest trace lately counts. */
 static bool angular_velocity(const double S[6], double mass, const double spin[3], double steps,
-                             const double L[3], double omega[3], double lost[3])
+                             double widest, const double L[3], double omega[3], double lost[3])
 {
     double trace = S[0] + S[1] + S[2], C[3][3], axis[3], det = 0, minors = 0;
     double full[3][3] = {{S[0], S[5], S[4]}, {S[5], S[1], S[3]}, {S[4], S[3], S[2]}}, J[3][3];
@@ -240,11 +244,14 @@ static bool angular_velocity(const double S[6], double mass, const double spin[3
     bool solid = minors > 0 && det > 0.01 * mass * minors, point = !(trace > 0.01 * mass);
     double length = point ? 1 : sqrt(sm_dot(full[most], full[most])), now[3];
     for (int i = 0; i < 3; i++) now[i] = sm_dot(C[i], spin);
-    bool lasts = !solid || 2 * steps * sqrt(sm_dot(now, now)) * trace * minors <= det * det;
+    bool swells = widest > 2 * trace;
+    bool lasts =
+        !swells && (!solid || 2 * steps * sqrt(sm_dot(now, now)) * trace * minors <= det * det);
+    double bound = swells ? widest : trace;
     for (int i = 0; i < 3; i++) axis[i] = full[most][i] / length;
     for (int i = 0; i < 3; i++) {
         lost[i] = solid ? 0 : point ? L[i] : sm_dot(axis, L) * axis[i];
-        omega[i] = point ? 0 : solid && lasts ? sm_dot(C[i], L) / det : (L[i] - lost[i]) / trace;
+        omega[i] = point ? 0 : solid && lasts ? sm_dot(C[i], L) / det : (L[i] - lost[i]) / bound;
     }
     return lasts;
 }
@@ -328,6 +335,7 @@ void momentum_begin(Momentum *m, long body, const double (*origin)[3], real *x, 
                 p->spin[d] = is.spin[d];
                 p->shift[d] = p->push[d] = p->turn[d] = p->drift[d] = p->twist[d] = 0;
             }
+            p->widest = 0;
             p->since = time > 0 ? m->age : 0;
             if (!(p->sum[ENERGY] == 0)) m->moving = true;
         }
@@ -378,7 +386,9 @@ void momentum_keep(Momentum *m, long body, const double (*origin)[3], real *x, r
             p->about[d] = rint(next);
             off[d] = next - p->about[d];
         }
-        bool lasts = angular_velocity(is.spread, p->mass, is.spin, n, over, p->turn, lost);
+        p->widest = fmax(LASTING * p->widest, is.spread[0] + is.spread[1] + is.spread[2]);
+        bool lasts =
+            angular_velocity(is.spread, p->mass, is.spin, n, p->widest, over, p->turn, lost);
         for (int d = 0; d < 3; d++) {
             p->spin[d] += lost[d];
             if (!lasts || lost[d] != 0) p->twist[d] = 0;

@@ -41,6 +41,7 @@ typedef struct {
     double place[3], velocity[3], spin[3]; /* where its centre should be, and its momenta */
     double shift[3], push[3], turn[3];     /* too far, too fast, turning about `about` */
     double drift[3], twist[3];             /* what rounding adds from one time to the next */
+    double widest;                         /* largest trace of its spread lately */
     double sum[MOMENTUM_SUMS];             /* of its particles, while they are measured */
     long since;                            /* the `age` in which these were measured */
 } MomentumPiece;
