@@ -22,6 +22,7 @@ SmCode bench_engine_find(const char *name, const char *precision, const SmEngine
                          SmError *error)
 {
     char known[256] = "", near[BENCH_SUGGEST_TEXT];
+    const char *const *names = bench_engine_names();
     for (int i = 0; bench_engine_list[i / TYPES]; i++) {
         const SmEngineType *t = bench_engine_list[i / TYPES]->type[i % TYPES];
         if (!t) continue;
@@ -33,8 +34,7 @@ SmCode bench_engine_find(const char *name, const char *precision, const SmEngine
     }
     return sm_fail(error, SM_USAGE, "no engine '%.32s'%s%s%s; there are: %s%s", name,
                    precision ? " in " : "", precision ? precision : "",
-                   precision ? " precision" : "", known,
-                   bench_suggest_among(name, bench_engine_names(), near));
+                   precision ? " precision" : "", known, bench_suggest_among(name, names, near));
 }
 
 SmStage bench_stage_find(const char *name)
