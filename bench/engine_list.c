@@ -2,5 +2,5 @@
 
 #define ENGINE(name) &bench_##name,
 const BenchEngine *const bench_engine_list[] = {
-#include "engine_list.inc"
+#include "registry.inc"
     NULL};

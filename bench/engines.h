@@ -1,7 +1,7 @@
 /* engines.h - the engines that there are, and what each says of itself to commands, checks and
  * tables: nothing else asks for an engine's name.
  *
- * A new engine is its folder and a line of bench/engine_list.inc. What a program that links the
+ * A new engine is its folder and a line of bench/registry.inc. What a program that links the
  * library needs to know of an engine stands in its SmEngineType (lib/engine/engine.h), the rest
  * here, in terms of the subjects that use it: each gives its own record, and this header needs
  * none. */
@@ -68,7 +68,7 @@ typedef struct {
 } BenchEngine;
 
 #define ENGINE(name) extern const BenchEngine bench_##name;
-#include "engine_list.inc"
+#include "registry.inc"
 #undef ENGINE
 
 /* All engines, NULL at the end. */

@@ -146,7 +146,7 @@ static const BenchEngine bench_toy = {.type = {&toy_type},
 
 #define ENGINE(name) &bench_##name,
 const BenchEngine *const bench_engine_list[] = {
-#include "../engine_list.inc"
+#include "../registry.inc"
     ENGINE(toy) NULL};
 
 /* ---- tests */
