@@ -7,7 +7,8 @@
 #include "../test_body.h"
 
 /* What the pass that runs is given, by particles: x and v; (q, R) of match.h, or damping's two
- * triples; whose region is solved for, and how many particles have come to their end. */
+ * triples; how many regions have been solved for, and how many particles have come to their end.
+ * Particle p of body k is number k * n + p. */
 static struct {
     RefRegions regions;
     double (*state)[6], (*down)[12];
@@ -16,11 +17,12 @@ static struct {
 
 static double offset(const Lsm *lsm, long from, long to, int d)
 {
-    return lsm->lattice.coord[to][d] - lsm->lattice.coord[from][d];
+    long n = lsm->lattice.count;
+    return lsm->lattice.coord[to % n][d] - lsm->lattice.coord[from % n][d];
 }
 
 /* What a member adds to the sums of region r. */
-static void add_member(const Lsm *lsm, long r, long member, double sum[12])
+static void add_member(const Lsm *lsm, long r, long member, double *sum)
 {
     const double *x = given.state[member], *v = x + 3;
     for (int d = 0; d < 3; d++) {
@@ -35,7 +37,7 @@ static void add_member(const Lsm *lsm, long r, long member, double sum[12])
 }
 
 /* What region r brings down to a particle. */
-static void add_region(const Lsm *lsm, long p, long r, double sum[6])
+static void add_region(const Lsm *lsm, long p, long r, double *sum)
 {
     const double *down = given.down[r];
     for (int i = 0; i < (lsm->pass->plain ? 6 : 3); i++) {
@@ -45,29 +47,44 @@ static void add_region(const Lsm *lsm, long p, long r, double sum[6])
     }
 }
 
-static void compare(const Lsm *lsm, long p, const char *what, int values, const vec *sum, int lane,
-                    const double *want)
+/* A lane's sums are what its particle's members, or regions, add up to. */
+static void compare(const Lsm *lsm, long number, void (*add)(const Lsm *, long, long, double *),
+                    int values, const vec *sum, int lane)
 {
+    double want[12] = {0};
+    long p = number % lsm->lattice.count;
+    for (long i = given.regions.start[p]; i < given.regions.start[p + 1]; i++)
+        add(lsm, number, number - p + given.regions.member[i], want);
     for (int i = 0; i < values; i++)
         if ((double)sum[i][lane] != want[i])
             fail_msg("%s, w %d, %ld particles, %s%s of %ld: value %d is %g, not %g",
                      lsm->sums->name, lsm->w, lsm->lattice.count, lsm->pass->plain ? "plain " : "",
-                     what, p, i, (double)sum[i][lane], want[i]);
+                     add == add_member ? "region" : "particle", number, i, (double)sum[i][lane],
+                     want[i]);
 }
 
-static void solve_lane(const Lsm *lsm, long tile, int lane, const vec sum[12], real *down)
+/* The number of a lane's body's particle, or -1 where there is no such body. */
+static long instance_at(const Lsm *lsm, long layer, int lane, long p)
 {
-    const RefRegions *regions = &given.regions;
+    long body = layer * SM_LANES + lane;
+    return body < lsm->bodies ? body * lsm->lattice.count + p : -1;
+}
+
+static long region_at(const Lsm *lsm, int layer, long tile, int lane)
+{
+    if (lsm->bodies > 1)
+        return instance_at(lsm, layer, lane, lsm->tile_slot[tile - lsm->layer_tile[layer]]);
     int slot = lsm->tile_slot[tile * SM_LANES + lane];
-    double want[12] = {0};
+    return slot < 0 ? -1 : lsm->particle[slot];
+}
+
+static void solve_lane(const Lsm *lsm, long r, int lane, const vec sum[12], real *down)
+{
     for (int f = 0; f < 12; f++) down[f * SM_LANES + lane] = 0;
-    if (slot < 0) return;
-    long p = lsm->particle[slot];
-    for (long i = regions->start[p]; i < regions->start[p + 1]; i++)
-        add_member(lsm, p, regions->member[i], want);
-    compare(lsm, p, "region", 12, sum, lane, want);
+    if (r < 0) return;
+    compare(lsm, r, add_member, 12, sum, lane);
     for (int f = 0; f < (lsm->pass->plain ? 6 : 12); f++)
-        down[f * SM_LANES + lane] = (real)given.down[p][lsm->pass->plain ? f : stage_value(f)];
+        down[f * SM_LANES + lane] = (real)given.down[r][lsm->pass->plain ? f : stage_value(f)];
     given.solved++;
 }
 
@@ -79,32 +96,32 @@ static void solve(Lsm *lsm, int layer, long tile, int tiles, vec (*sum)[12], rea
     assert_in_range(tile, lsm->layer_tile[layer], lsm->layer_tile[layer + 1] - tiles);
     for (int t = 0; t < tiles; t++)
         for (int lane = 0; lane < SM_LANES; lane++)
-            solve_lane(lsm, tile + t, lane, sum[t], down + t * TILE_DOWN);
+            solve_lane(lsm, region_at(lsm, layer, tile + t, lane), lane, sum[t],
+                       down + t * TILE_DOWN);
 }
 
 static void end(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *laps)
 {
     (void)laps;
-    const RefRegions *regions = &given.regions;
-    for (long slot = block * SM_LANES; slot < (block + blocks) * SM_LANES; slot++) {
-        long p = lsm->particle[slot];
-        double want[6] = {0};
-        if (p < 0) continue;
-        for (long i = regions->start[p]; i < regions->start[p + 1]; i++)
-            add_region(lsm, p, regions->member[i], want);
-        compare(lsm, p, "particle", lsm->pass->plain ? 6 : 3, sum[slot / SM_LANES - block],
-                (int)(slot % SM_LANES), want);
-        given.ended++;
-    }
+    long n = lsm->lattice.count;
+    for (int k = 0; k < blocks; k++, block++)
+        for (int lane = 0; lane < SM_LANES; lane++) {
+            long number = lsm->bodies > 1 ? instance_at(lsm, block / n, lane, block % n)
+                                          : lsm->particle[block * SM_LANES + lane];
+            if (number < 0) continue;
+            compare(lsm, number, add_region, lsm->pass->plain ? 6 : 3, sum[k], lane);
+            given.ended++;
+        }
 }
 
 static void set_state(Lsm *lsm, unsigned *seed)
 {
-    for (long p = 0; p < lsm->lattice.count; p++)
+    long n = lsm->lattice.count;
+    for (long number = 0; number < lsm->bodies * n; number++)
         for (int i = 0; i < 6; i++) {
-            long at = (lsm->slot[p] / SM_LANES * 3 + i % 3) * SM_LANES + lsm->slot[p] % SM_LANES;
-            given.state[p][i] = random_int(seed, 7) - 3;
-            (i < 3 ? lsm->x : lsm->v)[at] = (real)given.state[p][i];
+            long at = place_of(lsm, number / n, number % n) + i % 3 * SM_LANES;
+            given.state[number][i] = random_int(seed, 7) - 3;
+            (i < 3 ? lsm->x : lsm->v)[at] = (real)given.state[number][i];
         }
     for (long i = 0; i < lsm->particle_records.count; i++) {
         ParticleConst *k = &lsm->particle_const[i];
@@ -115,10 +132,14 @@ static void set_state(Lsm *lsm, unsigned *seed)
 /* A region that equals another is not solved for: it turns, or moves, as that one does. */
 static void set_down(const Lsm *lsm, unsigned *seed)
 {
-    for (long p = 0; p < lsm->lattice.count; p++)
-        for (int i = 0; i < 12; i++) given.down[p][i] = random_int(seed, 7) - 3;
-    for (long i = 0; i < lsm->copies; i++) {
-        long p = lsm->particle[lsm->copy[i][0]], from = lsm->particle[lsm->copy[i][1]];
+    long n = lsm->lattice.count;
+    for (long number = 0; number < lsm->bodies * n; number++)
+        for (int i = 0; i < 12; i++) given.down[number][i] = random_int(seed, 7) - 3;
+    for (long i = 0; i < lsm->copies * lsm->bodies; i++) {
+        const int *copy = lsm->copy[i % lsm->copies];
+        long first = i / lsm->copies * n;
+        long p = first + (lsm->particle ? lsm->particle[copy[0]] : copy[0]);
+        long from = first + (lsm->particle ? lsm->particle[copy[1]] : copy[1]);
         memcpy(given.down[p], given.down[from], sizeof *given.down);
         for (int k = 0; k < 9 && !lsm->pass->plain; k++)
             given.down[p][k / 3] += offset(lsm, from, p, k % 3) * given.down[p][3 + k];
@@ -134,16 +155,16 @@ static void check_body(const Body *body, SmEngineParams params, const LsmSums *f
     Lsm *lsm = lsm_build(&body->voxels, &params);
     assert_ptr_equal(lsm->sums, form);
     ref_regions_build(&body->voxels, params.w, NULL, 0, &given.regions);
-    given.state = sm_alloc((size_t)body->n, sizeof *given.state);
-    given.down = sm_alloc((size_t)body->n, sizeof *given.down);
+    given.state = sm_alloc((size_t)(lsm->bodies * body->n), sizeof *given.state);
+    given.down = sm_alloc((size_t)(lsm->bodies * body->n), sizeof *given.down);
     set_state(lsm, seed);
     for (int i = 0; i < 2; i++) {
         given.solved = given.ended = 0;
         lsm->pass = &passes[i];
         set_down(lsm, seed);
         lsm_run(lsm, &passes[i], NULL);
-        assert_int_equal(given.solved, body->n - lsm->copies);
-        assert_int_equal(given.ended, body->n);
+        assert_int_equal(given.solved, lsm->bodies * (body->n - lsm->copies));
+        assert_int_equal(given.ended, lsm->bodies * body->n);
     }
     free(given.state);
     free(given.down);
@@ -151,17 +172,24 @@ static void check_body(const Body *body, SmEngineParams params, const LsmSums *f
     lsm_free(lsm);
 }
 
-/* Bodies of every kind, and one whose regions reach over several layers. */
-static void check(SmEngineParams params, const LsmSums *form, int first_w)
+/* Bodies of every kind. */
+static void check(SmEngineParams params, const LsmSums *form, int first_w, int most)
 {
     unsigned seed = 7;
     for (int trial = 0; trial < (TEST_FIGURES ? 18 : 6); trial++) {
         Body body;
         params.w = first_w + trial / 6;
-        body_random(&seed, trial % 6, trial % 4 ? 8 : 14, &body);
+        body_random(&seed, trial % 6, trial % 4 ? most / 2 : most, &body);
         check_body(&body, params, form, &seed);
         body_free(&body);
     }
+}
+
+/* The same, and one whose regions reach over several layers. */
+static void check_layers(SmEngineParams params, const LsmSums *form, int first_w)
+{
+    unsigned seed = 8;
+    check(params, form, first_w, 14);
     Body body;
     params.w = first_w > 2 ? first_w : 2;
     random_block(&seed, (const int[3]){21, 19, 8}, 1, 0.95, &body.voxels);
@@ -172,33 +200,41 @@ static void check(SmEngineParams params, const LsmSums *form, int first_w)
 
 TEST(member_by_member)
 {
-    check((SmEngineParams){.summation = SM_SUM_NAIVE, .layout = SM_LAYOUT_LISTS}, &lsm_sums_naive,
-          1);
+    check_layers((SmEngineParams){.summation = SM_SUM_NAIVE, .layout = SM_LAYOUT_LISTS},
+                 &lsm_sums_naive, 1);
 }
 
 TEST(through_bars_and_plates)
 {
-    check((SmEngineParams){.summation = SM_SUM_BARS, .layout = SM_LAYOUT_LISTS}, &lsm_sums_lists,
-          1);
+    check_layers((SmEngineParams){.summation = SM_SUM_BARS, .layout = SM_LAYOUT_LISTS},
+                 &lsm_sums_lists, 1);
 }
 
 TEST(through_lists_that_can_change)
 {
-    check((SmEngineParams){.strain_limit = 2, .layout = SM_LAYOUT_LISTS}, &lsm_sums_lists, 3);
+    check_layers((SmEngineParams){.strain_limit = 2, .layout = SM_LAYOUT_LISTS}, &lsm_sums_lists,
+                 3);
 }
 
 TEST(from_neighbours)
 {
-    check((SmEngineParams){.layout = SM_LAYOUT_LISTS}, &lsm_sums_running, 4);
+    check_layers((SmEngineParams){.layout = SM_LAYOUT_LISTS}, &lsm_sums_running, 4);
 }
 
 TEST(over_boxes)
 {
-    check((SmEngineParams){.layout = SM_LAYOUT_BLOCKS}, &lsm_sums_boxes, 1);
-    check((SmEngineParams){.layout = SM_LAYOUT_BLOCKS}, &lsm_sums_boxes, 5);
+    check_layers((SmEngineParams){.layout = SM_LAYOUT_BLOCKS}, &lsm_sums_boxes, 1);
+    check_layers((SmEngineParams){.layout = SM_LAYOUT_BLOCKS}, &lsm_sums_boxes, 5);
 }
 
 TEST(over_boxes_whose_regions_can_change)
 {
-    check((SmEngineParams){.strain_limit = 2, .layout = SM_LAYOUT_BLOCKS}, &lsm_sums_boxes, 1);
+    check_layers((SmEngineParams){.strain_limit = 2, .layout = SM_LAYOUT_BLOCKS}, &lsm_sums_boxes,
+                 1);
+}
+
+TEST(of_many_bodies)
+{
+    check((SmEngineParams){.instances = SM_LANES + 2, .layout = SM_LAYOUT_LISTS},
+          &lsm_sums_instances, 1, 8);
 }
