@@ -20,14 +20,32 @@
 static const LsmPass matching = {.stage = SM_FAST_SUM};
 static const LsmPass damping = {.plain = true, .stage = SM_DAMPING};
 
+/* Instances are matched and damped some groups at a time, which stay in the L2 cache. */
+static void run_groups(Lsm *lsm, SmLaps *laps)
+{
+    const long blocks_in_cache = 512;
+    long groups = blocks_in_cache / lsm->lattice.count;
+    int step = lsm->threads * (int)(groups > 1 ? groups : 1);
+    for (int l = 0; l < lsm->layers; l += step) {
+        lsm_pipeline_share(lsm, l, l + step < lsm->layers ? l + step : lsm->layers);
+        lsm_run(lsm, &matching, laps);
+        lsm_run(lsm, &damping, laps);
+    }
+    lsm_pipeline_share(lsm, 0, lsm->layers);
+}
+
 void lsm_step(Lsm *lsm, SmLaps *laps)
 {
     int every = lsm->params.damping_every > 0 ? lsm->params.damping_every : 1;
     lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;
     if (lsm->damp_now) lsm->g = NULL;
     for (int l = 0; l < lsm->layers; l++) lsm->sweeps[l] = 0;
-    lsm_run(lsm, &matching, laps);
-    if (lsm->damp_now) lsm_run(lsm, &damping, laps);
+    if (lsm->damp_now && lsm->bodies > 1) {
+        run_groups(lsm, laps);
+    } else {
+        lsm_run(lsm, &matching, laps);
+        if (lsm->damp_now) lsm_run(lsm, &damping, laps);
+    }
     lsm->steps++;
     sm_lap(laps, SM_OTHER);
 }

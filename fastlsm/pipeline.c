@@ -31,6 +31,12 @@ void lsm_pipeline_split(Lsm *lsm)
     lsm->thread_layer[threads] = lsm->layers;
 }
 
+void lsm_pipeline_share(Lsm *lsm, int first, int end)
+{
+    for (int t = 0; t <= lsm->threads; t++)
+        lsm->thread_layer[t] = first + (end - first) * t / lsm->threads;
+}
+
 void lsm_pipeline_own(const Lsm *lsm, int part, int thread, int *begin, int *end)
 {
     *begin = lsm->thread_layer[thread];
@@ -75,11 +81,10 @@ void lsm_pipeline(Lsm *lsm, LsmPart *const part[3])
     {
         int me = omp_get_thread_num(), team = omp_get_num_threads();
         for (int t = me; t < lsm->threads; t += team) run_own(lsm, part, t, t ? NULL : lsm->laps);
+        for (int i = 1; i < 3 && lsm->reach > 0; i++) {
 #pragma omp barrier
-        for (int t = me; t < lsm->threads; t += team)
-            run_shared(lsm, part, 1, t, t ? NULL : lsm->laps);
-#pragma omp barrier
-        for (int t = me; t < lsm->threads; t += team)
-            run_shared(lsm, part, 2, t, t ? NULL : lsm->laps);
+            for (int t = me; t < lsm->threads; t += team)
+                run_shared(lsm, part, i, t, t ? NULL : lsm->laps);
+        }
     }
 }

@@ -18,6 +18,7 @@
 #define lsm_pipeline       SM_NAME(lsm_pipeline)
 #define lsm_pipeline_own   SM_NAME(lsm_pipeline_own)
 #define lsm_pipeline_split SM_NAME(lsm_pipeline_split)
+#define lsm_pipeline_share SM_NAME(lsm_pipeline_share)
 
 /* `laps` is NULL but for the first thread of an instrumented run. */
 typedef void LsmPart(Lsm *lsm, int layer, int thread, SmLaps *laps);
@@ -30,5 +31,8 @@ void lsm_pipeline_own(const Lsm *lsm, int part, int thread, int *begin, int *end
 
 /* Shares the layers among threads by their blocks: fills thread_layer, may lower `threads`. */
 void lsm_pipeline_split(Lsm *lsm);
+
+/* Of a body whose layers wait for no other: shares layers first .. end - 1, which alone are run. */
+void lsm_pipeline_share(Lsm *lsm, int first, int end);
 
 #endif
