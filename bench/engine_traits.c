@@ -7,7 +7,7 @@
 #include "cli/summary.h"
 #include "engines.h"
 #include "measure/checker.h"
-#include "measure/elastic_row.h"
+#include "measure/elastic_checker.h"
 #include "measure/tree_row.h"
 #include "play/body_group.h"
 #include "scene/body.h"

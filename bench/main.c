@@ -9,7 +9,7 @@
 #include "../lib/printable.h"
 #include "cli/command.h"
 #include "scene/scene.h"
-#include "settings/option.h"
+#include "settings/command_line.h"
 #include "system/interrupt.h"
 #include "system/suggest.h"
 

@@ -4,7 +4,7 @@
 #define BENCH_COMMAND_H
 
 #include "../campaign/campaign_run.h"
-#include "../settings/option.h"
+#include "../settings/command_line.h"
 #include "../table/row_table.h"
 
 /* Exit codes as every command's help prints them; error.h has them as SmCode. */

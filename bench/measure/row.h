@@ -25,7 +25,7 @@ typedef struct {
                                         * body's surface; the least of all rounds */
 } BenchChangeRow;
 
-/* A meshless body (elastic_row.h); all 0 of others. */
+/* A meshless body (elastic_checker.h); all 0 of others. */
 typedef struct {
 #define ELASTIC(type, member, ...)        BENCH_MEMBER_##type member;
 #define ELASTIC_ARRAY(member, count, ...) double member[count];

@@ -9,7 +9,7 @@
 #include "../play/runner.h"
 #include "../table/row_store.h"
 #include "../table/row_table.h"
-#include "elastic_row.h"
+#include "elastic_checker.h"
 #include "measure.h"
 
 static BenchScene scene;

@@ -4,7 +4,8 @@
 #include <string.h>
 
 #include "../engines.h"
-#include "../settings/option.h"
+#include "../settings/command_line.h"
+#include "scene_settings.h"
 
 /* "NAME=FILE" */
 static void add_substitute(const struct argp_state *state, const char *text, void *member)

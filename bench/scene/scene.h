@@ -1,7 +1,7 @@
 /* scene.h - a scene as data: what to simulate, how, and what disturbs it.
  *
  * Scene files are libconfig; bench/scenes/ holds those that come with the program. What they can
- * say is the table bench_scene_settings. Lengths are in the mesh's units. */
+ * say is the table of scene_settings.h. Lengths are in the mesh's units. */
 #ifndef BENCH_SCENE_H
 #define BENCH_SCENE_H
 
@@ -106,9 +106,7 @@ extern const char *const bench_masses[], *const bench_symmetries[], *const bench
 extern const char *const bench_goal_forms[];
 #define BENCH_LAYOUT_HELP "Fastlsm's sums: auto, lists, or blocks where it can"
 
-/* Everything that a scene file can say, and the options that replace some of it: who has them, and
- * which engines alone. */
-extern const BenchSetting bench_scene_settings[];
+/* Who takes an option of the settings (scene_settings.h), and which engines alone. */
 enum { BENCH_BY_RUN = 1, BENCH_BY_TABLES = 2 };
 enum { BENCH_OF_SAMPLED = 1, BENCH_OF_ELASTIC = 2 }; /* as in BenchEngine */
 

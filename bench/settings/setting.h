@@ -1,6 +1,6 @@
 /* setting.h - one description of a setting: from it come a command's option and its line in --help
- * (option.h), the key of a scene or claims file (config_file.h), the range and the messages of
- * both, and the documented list of what a scene file may say.
+ * (command_line.h), the key of a scene or claims file (config_file.h), the range and the messages
+ * of both, and the documented list of what a scene file may say.
  *
  * A table of settings describes a struct and ends with {0}; what kind a setting is follows from its
  * member's type (BENCH_IN). A new setting is a line in its table, and the code that acts on it. */

@@ -5,7 +5,7 @@
 
 #include "../../reference/paper.h"
 #include "../engines.h"
-#include "../measure/elastic_row.h"
+#include "../measure/elastic_checker.h"
 #include "../measure/measure.h"
 #include "grid.h"
 

@@ -6,7 +6,7 @@
 
 #include "../../lib/printable.h"
 #include "../engines.h"
-#include "../measure/elastic_row.h"
+#include "../measure/elastic_checker.h"
 #include "records.h"
 
 /* Whether the octree's columns belong to it: it is of that paper or engine. */

@@ -1,6 +1,6 @@
 #include "row_report.h"
 
-#include "../measure/elastic_row.h"
+#include "../measure/elastic_checker.h"
 #include "explain.h"
 #include "row_grid.h"
 

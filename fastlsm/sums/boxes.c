@@ -15,6 +15,7 @@
 #include "../../lib/simd/rigid_lanes.h"
 #include "box_sum_fixups.h"
 #include "lists.h"
+#include "prefix_sums.h"
 #include "window.h"
 
 /* One body serves shape matching and damping. Values are numbered 3 k + d, d = 0..2 for x, y, z:

@@ -1,5 +1,6 @@
 /* Windows against their sums term by term, in both precisions (SM_REAL_BITS). Values are small
  * whole numbers, so every order of summation gives the same bits. */
+#include "prefix_sums.h"
 #include "window.h"
 
 #include "../../lib/test_frame.h"

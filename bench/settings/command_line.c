@@ -1,4 +1,4 @@
-#include "option.h"
+#include "command_line.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
-/* option.h - what a command takes on its command line, from tables of settings (setting.h), by
- * argp.
+/* command_line.h - what a command takes on its command line, from tables of settings (setting.h),
+ * by argp.
  *
  * A mistake ends the program with one line on standard error and exit code 2. */
-#ifndef BENCH_OPTION_H
-#define BENCH_OPTION_H
+#ifndef BENCH_COMMAND_LINE_H
+#define BENCH_COMMAND_LINE_H
 
 #include "setting.h"
 

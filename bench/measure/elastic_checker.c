@@ -1,4 +1,4 @@
-#include "elastic_row.h"
+#include "elastic_checker.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
-/* elastic_row.h - a meshless body's row of `tables`: what is its own, how it is checked, and how it
- * is told to people. What is timed is a frame as ref_meshless_frames has it. */
-#ifndef BENCH_ELASTIC_ROW_H
-#define BENCH_ELASTIC_ROW_H
+/* elastic_checker.h - a meshless body's row of `tables`: what is its own, how it is checked, and
+ * how it is told to people. What is timed is a frame as ref_meshless_frames has it. */
+#ifndef BENCH_ELASTIC_CHECKER_H
+#define BENCH_ELASTIC_CHECKER_H
 
 #include <stdio.h>
 
