@@ -201,6 +201,11 @@ static void free_point(void *point)
     bench_lab_free(&((BenchClaimPoint *)point)->lab);
 }
 
+static void put(FILE *file, const void *bytes, size_t size, int count)
+{
+    if (count > 0) fwrite(bytes, size, (size_t)count, file); /* of none `bytes` may be NULL */
+}
+
 /* Rows, their samples, and curves, one after another. */
 static char *pack(const void *point, size_t *size)
 {
@@ -209,17 +214,16 @@ static char *pack(const void *point, size_t *size)
     char *bytes;
     FILE *file = open_memstream(&bytes, size);
     if (!file) abort(); /* no memory, as sm_alloc() */
-    fwrite(counts, sizeof counts, 1, file);
+    put(file, counts, sizeof counts, 1);
     for (int r = 0; r < lab->rows; r++) {
         BenchRow row = lab->row[r];
-        size_t repeats = (size_t)row.repeats;
         row.total = NULL, row.stage = NULL, row.change.time = NULL;
-        fwrite(&row, sizeof row, 1, file);
-        fwrite(lab->row[r].total, sizeof *row.total, repeats, file);
-        fwrite(lab->row[r].stage, sizeof *row.stage, repeats, file);
-        fwrite(lab->row[r].change.time, sizeof *row.change.time, (size_t)row.change.frames, file);
+        put(file, &row, sizeof row, 1);
+        put(file, lab->row[r].total, sizeof *row.total, row.repeats);
+        put(file, lab->row[r].stage, sizeof *row.stage, row.repeats);
+        put(file, lab->row[r].change.time, sizeof *row.change.time, row.change.frames);
     }
-    fwrite(lab->curve, sizeof *lab->curve, (size_t)lab->curves, file);
+    put(file, lab->curve, sizeof *lab->curve, lab->curves);
     fclose(file);
     return bytes;
 }

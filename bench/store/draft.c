@@ -130,7 +130,13 @@ static SmCode check_rights(const char *path, const char *target, const struct st
     return number ? bench_draft_fail(path, number, "", error) : SM_OK;
 }
 
-/* Makes a file that was not there, under a name of this process, and opens it; -1 and errno. */
+static void unlist(int slot)
+{
+    if (slot >= 0) in_use[slot] = 0;
+}
+
+/* Makes a file that was not there, under a name of this process, and opens it; -1 and errno. It is
+ * listed before it is there: no signal comes between. */
 static int create(BenchDraft *draft)
 {
     for (int n = 0; n < 100; n++) { /* an older process of this number may have left some */
@@ -139,10 +145,13 @@ static int create(BenchDraft *draft)
         int length = snprintf(draft->tmp, sizeof draft->tmp, "%s.%ld%s.tmp", draft->target,
                               (long)getpid(), more);
         errno = ENAMETOOLONG;
-        int file = length >= (int)sizeof draft->tmp
-                       ? -1
-                       : open(draft->tmp, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-        if (file >= 0 || errno != EEXIST) return file;
+        if (length >= (int)sizeof draft->tmp) return -1;
+        draft->slot = list_draft(draft->tmp);
+        int file = open(draft->tmp, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+        if (file >= 0) return file;
+        unlist(draft->slot);
+        draft->slot = -1;
+        if (errno != EEXIST) return -1;
     }
     return -1;
 }
@@ -163,7 +172,6 @@ SmCode bench_draft_begin(const char *path, BenchDraft *draft, SmError *error)
         draft->tmp[0] = '\0';
         return bench_draft_fail(path, errno, "", error);
     }
-    draft->slot = list_draft(draft->tmp);
     if (there) { /* who may read it, and whose it is: as before, where that can be */
         if (fchown(file, status.st_uid, status.st_gid) != 0) status.st_mode &= 0777;
         (void)fchmod(file, status.st_mode & 07777);
@@ -206,14 +214,9 @@ static void sign(int file)
     if (ftruncate(file, 0) == 0) (void)!pwrite(file, holder, (size_t)length, 0);
 }
 
-/* Locks TARGET.lock. The kernel lets a lock go when its holder ends, however it does; a file system
- * without locks is trusted. */
-static SmCode take_lock(const BenchDraft *draft, SmError *error)
+static SmCode lock(const BenchDraft *draft, const char *path, SmError *error)
 {
-    char path[BENCH_DRAFT_PATH];
     struct stat mine, there;
-    if (snprintf(path, sizeof path, "%s.lock", draft->target) >= (int)sizeof path)
-        return bench_draft_fail(draft->path, ENAMETOOLONG, "", error);
     for (;;) {
         int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
         if (file < 0) return bench_draft_fail(path, errno, "", error);
@@ -229,6 +232,21 @@ static SmCode take_lock(const BenchDraft *draft, SmError *error)
         }
         close(file); /* its last holder has just removed it */
     }
+}
+
+/* Locks TARGET.lock. The kernel lets a lock go when its holder ends, however it does; a file system
+ * without locks is trusted. Signals wait until it is listed. */
+static SmCode take_lock(const BenchDraft *draft, SmError *error)
+{
+    char path[BENCH_DRAFT_PATH];
+    if (snprintf(path, sizeof path, "%s.lock", draft->target) >= (int)sizeof path)
+        return bench_draft_fail(draft->path, ENAMETOOLONG, "", error);
+    sigset_t all, before;
+    sigfillset(&all);
+    sigprocmask(SIG_BLOCK, &all, &before);
+    SmCode code = lock(draft, path, error);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    return code;
 }
 
 SmCode bench_draft_reserve(const char *path, bool overwrite, SmError *error)
@@ -254,7 +272,7 @@ SmCode bench_draft_commit(BenchDraft *draft, SmError *error)
         bench_draft_discard(draft);
         return bench_draft_fail(draft->path, number, "", error);
     }
-    if (draft->slot >= 0) in_use[draft->slot] = 0;
+    unlist(draft->slot);
     char folder[BENCH_DRAFT_PATH];
     strcpy(folder, draft->target);
     /* Some file systems cannot sync a folder; the file itself is safe by now. */
@@ -290,7 +308,7 @@ SmCode bench_draft_write(const char *path, BenchDraftPrint *print, const void *w
 void bench_draft_discard(BenchDraft *draft)
 {
     if (draft->tmp[0]) unlink(draft->tmp);
-    if (draft->slot >= 0) in_use[draft->slot] = 0;
+    unlist(draft->slot);
     draft->slot = -1;
     draft->tmp[0] = '\0';
 }
