@@ -19,7 +19,7 @@ SM_INLINE void damp_tiles(const Lsm *lsm, long tile, int tiles, vec (*sum)[12], 
 }
 
 /* v += k (u - v), x += v. */
-SM_INLINE void damp_blocks(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *laps)
+SM_INLINE void damp_blocks(Lsm *lsm, long block, int blocks, vec (*sum)[6])
 {
     for (int i = 0; i < blocks; i++, block++) {
         const ParticleConst *k = &lsm->particle_const[lsm->block_const[block]];
@@ -31,7 +31,6 @@ SM_INLINE void damp_blocks(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLa
         store3(lsm->v + block * 3 * SM_LANES, v);
         store3(lsm->x + block * 3 * SM_LANES, x);
     }
-    sm_lap(laps, SM_DAMPING);
 }
 
 #endif

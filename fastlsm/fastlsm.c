@@ -20,18 +20,14 @@
 static const LsmPass matching = {.stage = SM_FAST_SUM};
 static const LsmPass damping = {.plain = true, .stage = SM_DAMPING};
 
-/* Instances are matched and damped some groups at a time, which stay in the L2 cache. */
-static void run_groups(Lsm *lsm, SmLaps *laps)
+/* Layers that wait for no other are matched and damped some at a time, which stay in the L2 cache.
+ */
+static int layers_at_once(const Lsm *lsm)
 {
     const long blocks_in_cache = 512;
-    long groups = blocks_in_cache / lsm->lattice.count;
-    int step = lsm->threads * (int)(groups > 1 ? groups : 1);
-    for (int l = 0; l < lsm->layers; l += step) {
-        lsm_pipeline_share(lsm, l, l + step < lsm->layers ? l + step : lsm->layers);
-        lsm_run(lsm, &matching, laps);
-        lsm_run(lsm, &damping, laps);
-    }
-    lsm_pipeline_share(lsm, 0, lsm->layers);
+    if (lsm->reach > 0 || !lsm->damp_now) return lsm->layers;
+    long fit = blocks_in_cache * lsm->layers / lsm->blocks;
+    return lsm->threads * (int)(fit > 1 ? fit : 1);
 }
 
 void lsm_step(Lsm *lsm, SmLaps *laps)
@@ -40,12 +36,14 @@ void lsm_step(Lsm *lsm, SmLaps *laps)
     lsm->damp_now = lsm->params.damping > 0 && lsm->steps % every == 0;
     if (lsm->damp_now) lsm->g = NULL;
     for (int l = 0; l < lsm->layers; l++) lsm->sweeps[l] = 0;
-    if (lsm->damp_now && lsm->bodies > 1) {
-        run_groups(lsm, laps);
-    } else {
+    int at_once = layers_at_once(lsm);
+    for (int first = 0, end; first < lsm->layers; first = end) {
+        end = first + at_once < lsm->layers ? first + at_once : lsm->layers;
+        if (at_once < lsm->layers) lsm_pipeline_share(lsm, first, end);
         lsm_run(lsm, &matching, laps);
         if (lsm->damp_now) lsm_run(lsm, &damping, laps);
     }
+    if (at_once < lsm->layers) lsm_pipeline_share(lsm, 0, lsm->layers);
     lsm->steps++;
     sm_lap(laps, SM_OTHER);
 }

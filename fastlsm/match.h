@@ -77,16 +77,17 @@ static __attribute__((noinline, unused)) void match_tile_jacobi(Lsm *lsm, int la
                            lsm->stretch + tile * 9 * SM_LANES, R);
     sm_lap(laps, SM_POLAR);
     transforms(lsm, tile, S, R, down);
-    sm_lap(laps, SM_SHAPE_MATCHING);
 }
 
-/* The transforms of `tiles` tiles from their sums (C, A). */
+/* The transforms of `tiles` tiles from their sums (C, A), whose time ends here; the caller ends
+ * that of shape matching when it has put them where it wants them. */
 SM_INLINE void match_tiles(Lsm *lsm, int layer, long tile, int tiles, vec (*S)[12], real *down,
                            SmLaps *laps)
 {
     unsigned live[TILE_GROUP];
     PolarInvariants of[TILE_GROUP];
     vec trace[TILE_GROUP];
+    sm_lap(laps, SM_FAST_SUM);
     if (lsm->params.polar == SM_POLAR_JACOBI) {
         for (int t = 0; t < tiles; t++) {
             vec sum[12];
@@ -110,7 +111,6 @@ SM_INLINE void match_tiles(Lsm *lsm, int layer, long tile, int tiles, vec (*S)[1
         sm_lap(laps, SM_POLAR);
         transforms(lsm, tile, S[t], R, down);
     }
-    sm_lap(laps, SM_SHAPE_MATCHING);
 }
 
 /* A product that is rounded before it is used, never fused with a sum: what enters a window leaves
@@ -147,6 +147,7 @@ SM_INLINE void move_block(Lsm *lsm, long block, const vec sum[3])
 
 SM_INLINE void move_blocks(Lsm *lsm, long block, int blocks, vec (*sum)[6], SmLaps *laps)
 {
+    sm_lap(laps, SM_FAST_SUM);
     for (int k = 0; k < blocks; k++) move_block(lsm, block + k, sum[k]);
     sm_lap(laps, SM_OTHER);
 }

@@ -16,7 +16,7 @@ void lsm_pipeline_split(Lsm *lsm)
 {
     int threads = sm_team(lsm->params.threads);
     long worth = lsm->blocks / BLOCKS_WORTH_A_THREAD;
-    if (threads > worth && lsm->bodies == 1) /* layers of instances wait for no other */
+    if (threads > worth && lsm->reach > 0) /* who waits for no other is worth one sooner */
         threads = worth > 1 ? (int)worth : 1;
     if (threads > lsm->layers) threads = lsm->layers > 0 ? lsm->layers : 1;
     lsm->threads = threads;

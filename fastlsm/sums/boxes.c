@@ -378,10 +378,10 @@ SM_INLINE void solve_group(Lsm *lsm, const Around *in, const BlockRun *run, int 
     real *down = row + (run->column + i) * (long)BLOCK;
     for (int k = 0; k < blocks; k++)
         if (lsm->box->mixed[block + k]) mend_regions(lsm, block + k, plain, sums[k]);
-    sm_lap(laps, lsm->pass->stage);
     lsm_solve(lsm, plain, layer, block, blocks, sums, down, laps);
     for (int k = 0; k < blocks; k++)
         if (lsm->listed[block + k]) keep_down(lsm, block + k, down + k * (long)BLOCK);
+    lsm_solved(plain, laps);
 }
 
 SM_INLINE void run_solve(Lsm *lsm, const Around *in, const BlockRun *run, int layer, int w,
@@ -638,7 +638,6 @@ SM_INLINE void plane_end(Lsm *lsm, int plane, int thread, int w, bool plain, SmL
                 lanes_copy(plain ? 6 : 3, here, sum[k]);
                 if (box->mixed[block + k]) mend_particles(lsm, block + k, plain, sum[k]);
             }
-            sm_lap(laps, lsm->pass->stage);
             lsm_end(lsm, plain, block, blocks, sum, laps);
         }
     }
@@ -701,6 +700,7 @@ static void end(Lsm *lsm, int plane, int thread, SmLaps *laps)
     static LsmPart *const by_width[2][3] = {{end_moments_any, end_moments_1, end_moments_2},
                                             {end_plain_any, end_plain_1, end_plain_2}};
     by_width[lsm->pass->plain][lsm->w < 3 ? lsm->w : 0](lsm, plane, thread, laps);
+    sm_lap(laps, lsm->pass->stage);
 }
 
 static bool applies(const Lsm *lsm)

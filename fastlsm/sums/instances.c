@@ -132,11 +132,12 @@ SM_INLINE void solve_of(Lsm *lsm, int layer, int thread, bool plain, int side, S
         row_sums(lists->region + p * side, side, g.plate, PLATE, up, row);
         for (int f = 0; f < 12; f++) /* of (C, Cx, Cy, Cz) */
             sum[0][f] = row[plain || f < 3 ? f : 3 * (f % 3 + 1) + f / 3 - 1];
-        sm_lap(laps, lsm->pass->stage);
         real *down = g.transform + (p + 1) * TILE_DOWN;
         lsm_solve(lsm, plain, layer, tile, 1, sum, down, laps);
+        lsm_solved(plain, laps);
     }
     copy_regions(lsm, &g, plain);
+    lsm_solved(plain, laps);
     all_rows(lists->bar, lists->bar_count, side, g.transform, TRANSFORM, bar, g.bar, BAR);
     all_rows(lists->plate, lists->plate_count, side, g.bar, BAR, plate, g.plate, PLATE);
     sm_lap(laps, lsm->pass->stage);

@@ -166,11 +166,12 @@ void lsm_lists_solve(Lsm *lsm, int layer, int thread, SmLaps *laps)
     for (; tile < end; tile += TILE_GROUP) {
         int tiles = end - tile < TILE_GROUP ? (int)(end - tile) : TILE_GROUP;
         for (int t = 0; t < tiles; t++) lists->tile(lsm, tile + t, pass->plain, sum[t]);
-        sm_lap(laps, pass->stage);
         lsm_solve(lsm, pass->plain, layer, tile, tiles, sum, down, laps);
         for (int t = 0; t < tiles; t++) lsm_lists_keep_down(lsm, tile + t, down + t * TILE_DOWN);
+        lsm_solved(pass->plain, laps);
     }
     copy_regions(lsm, layer, pass->plain);
+    lsm_solved(pass->plain, laps);
     lists->subsums_down(lsm, layer, pass->plain);
     sm_lap(laps, pass->stage);
 }
@@ -184,7 +185,7 @@ void lsm_lists_end(Lsm *lsm, int layer, int thread, SmLaps *laps)
     for (long block = lsm->layer_block[layer]; block < lsm->layer_block[layer + 1]; block++) {
         vec sum[1][6] = {{{0}}};
         lists->block(lsm, block, pass->plain, sum[0]);
-        sm_lap(laps, pass->stage);
         lsm_end(lsm, pass->plain, block, 1, sum, laps);
     }
+    sm_lap(laps, pass->stage);
 }

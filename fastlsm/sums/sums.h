@@ -102,6 +102,13 @@ SM_INLINE void lsm_solve(Lsm *lsm, bool plain, int layer, long tile, int tiles, 
     }
 }
 
+/* What lsm_solve() has brought down, or copies of it, are in their place. Damping's time is not
+ * told apart from its sums'. */
+SM_INLINE void lsm_solved(bool plain, SmLaps *laps)
+{
+    if (!plain) sm_lap(laps, SM_SHAPE_MATCHING);
+}
+
 SM_INLINE void lsm_end(Lsm *lsm, bool plain, long block, int blocks, vec (*sum)[6], SmLaps *laps)
 {
     if (lsm->pass->end) {
@@ -109,7 +116,7 @@ SM_INLINE void lsm_end(Lsm *lsm, bool plain, long block, int blocks, vec (*sum)[
         for (int k = 0; k < blocks; k++) lanes_copy(plain ? 6 : 3, sum[k], copy[k]);
         lsm->pass->end(lsm, block, blocks, copy, laps);
     } else if (plain) {
-        damp_blocks(lsm, block, blocks, sum, laps);
+        damp_blocks(lsm, block, blocks, sum);
     } else {
         move_blocks(lsm, block, blocks, sum, laps);
     }
