@@ -1,14 +1,13 @@
 /* A sweep's parts: ranges, plans, and the file. */
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
 #include "../campaign/campaign_run.h"
 #include "../settings/setting.h"
+#include "../store/test_damage.h"
 #include "recommend.h"
 
 enum { POINT_BYTES = 1400 };
@@ -301,66 +300,32 @@ TEST(merging_adds_and_refuses)
     for (int i = 0; i < 5; i++) bench_campaign_free(each[i]);
 }
 
-static void refuses(const char *path, const char *words)
+static SmCode load(const char *path, SmError *error)
 {
     BenchCampaign sweep;
-    SmError error = {0};
-    assert_int_equal(bench_campaign_load(path, &bench_sweep_type, &sweep, &error), SM_INPUT);
+    SmCode code = bench_campaign_load(path, &bench_sweep_type, &sweep, error);
     assert_null(sweep.point);
-    if (!strstr(error.text, words) || !strstr(error.text, path))
-        fail_msg("'%s' does not say '%s'", error.text, words);
+    return code;
 }
+
+static const TestStored sweeps = {"shapebench sweep", write_sweep, load};
 
 TEST(foreign_and_cut_files)
 {
-    const char *path = path_in("bad.h5");
-    refuses(path, "No such file");
-    write_text("bad.h5", "this is no HDF5\n");
-    refuses(path, "not an HDF5 file");
-    hid_t other = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    H5Fclose(other);
-    refuses(path, "not a shapebench sweep file");
-    struct stat status;
-    for (int eighth = 7; eighth >= 0; eighth--) {
-        write_sweep(path);
-        assert_int_equal(stat(path, &status), 0);
-        assert_int_equal(truncate(path, status.st_size * eighth / 8), 0);
-        refuses(path, "not an HDF5 file, or cut off");
-    }
-    unlink(path);
+    refuses_foreign(&sweeps);
 }
 
-static void set_int(hid_t object, const char *name, int value)
-{
-    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
-    assert_true(H5Awrite(attribute, H5T_NATIVE_INT, &value) >= 0);
-    H5Aclose(attribute);
-}
-static void set_plan(hid_t file, const char *name, int value)
-{
-    hid_t plan = H5Gopen2(file, "plan", H5P_DEFAULT);
-    set_int(plan, name, value);
-    H5Gclose(plan);
-}
-static void older(hid_t file)
-{
-    set_int(file, "schema", 0);
-}
-static void newer(hid_t file)
-{
-    set_int(file, "schema", bench_sweep_type.schema + 1);
-}
 static void more_points(hid_t file)
 {
-    set_plan(file, "points", 9);
+    set_int(file, "plan", "points", 9);
 }
 static void many_values(hid_t file)
 {
-    set_plan(file, "ws", 1 << 30);
+    set_int(file, "plan", "ws", 1 << 30);
 }
 static void no_repeats(hid_t file)
 {
-    set_plan(file, "repeats", 0);
+    set_int(file, "plan", "repeats", 0);
 }
 static void lose_column(hid_t file)
 {
@@ -409,10 +374,7 @@ static void negative_samples(hid_t file)
 
 TEST(changed_files)
 {
-    static const struct {
-        void (*change)(hid_t file);
-        const char *words;
-    } cases[] = {
+    static const TestChange changes[] = {
         {older, "measure again"},
         {newer, "use a newer shapebench"},
         {more_points, "does not make 9 points"},
@@ -426,16 +388,7 @@ TEST(changed_files)
         {many_samples, "point 2 has 1073741824 samples"},
         {negative_samples, "point 0 has -1 samples"},
     };
-    const char *path = path_in("changed.h5");
-    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-        write_sweep(path);
-        hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
-        H5Adelete(file, BENCH_H5_CHECKSUM); /* as of a file from before there were any */
-        cases[c].change(file);
-        H5Fclose(file);
-        refuses(path, cases[c].words);
-    }
-    unlink(path);
+    refuses_changed(&sweeps, changes, sizeof changes / sizeof *changes);
 }
 
 /* In a child, whose limit on file sizes stands in for a full disk. */
