@@ -2,7 +2,7 @@
 import numpy as np
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator
 
-from drawing import COLOURS, STATUS_MARKS, MARKS, PAPER, Figure, canvas, number
+from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, number
 from sources import CLAIM_KINDS
 from tables import Table, explain_marks
 

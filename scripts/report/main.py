@@ -59,7 +59,7 @@ def measured_part(files):
     bad = [row["scene"] for row in rows if not row["valid"]]
     busy = [row["scene"] for row in rows if row["valid"] and row["total_ms"] != row["total_ms"]]
     sentences = [f"{len(rows)} rows were measured; each was checked on the very scene timed: "
-            + ("all are VALID." if not bad else f"{len(bad)} are INVALID and have no times: {', '.join(bad)}.")]
+                 + ("all are VALID." if not bad else f"{len(bad)} are INVALID and have no times: {', '.join(bad)}.")]
     if busy:
         sentences.append(f"Other programs left no undisturbed time to {', '.join(busy)}: they are BUSY.")
     return Part("measured", "Measured beside the papers", sentences, tables.all_tables(files),

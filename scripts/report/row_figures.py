@@ -2,7 +2,7 @@
 scenes that change, threads, and a scene's history."""
 import numpy as np
 
-from drawing import COLOURS, STATUS_MARKS, MARKS, PAPER, Figure, canvas, number
+from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, number
 from tables import explain_marks
 
 STAGE_TITLES = {"fast_sum": "fast sum", "shape_matching": "shape matching", "polar": "polar decomposition",
@@ -42,7 +42,7 @@ def stage_shares(rows):
                         + [" ".join(statuses)])
             shown += statuses
             marked += [f"the paper's {STAGE_TITLES.get(s)} of {row['scene']} ({STATUS_MARKS[status]})"
-                        for s, status in zip(stages, statuses) if status in STATUS_MARKS]
+                       for s, status in zip(stages, statuses) if status in STATUS_MARKS]
     axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlim(0, 100)

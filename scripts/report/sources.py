@@ -46,9 +46,9 @@ class Source:
         return commit + ("+" if self.machine.get("git_dirty") else "")
 
 
-def demand(record, texts="", numbers="", lists=""):
+def demand(record, texts="", numbers="", lists="", wholes=""):
     """The attributes of these names must be there and of their kind; lists are of numbers."""
-    for names, kinds in ((texts, str), (numbers, (int, float)), (lists, np.ndarray)):
+    for names, kinds in ((texts, str), (numbers, (int, float)), (lists, np.ndarray), (wholes, int)):
         for name in names.split():
             value = record.get(name)
             if not isinstance(value, kinds) or kinds is np.ndarray and (value.ndim != 1 or value.dtype.kind not in "iuf"):
@@ -98,7 +98,9 @@ def read_meanings(file):
     meaning = attributes(file["columns"]) if "columns" in file else {}
     if "columns" in file:
         meaning |= {f"elastic/{name}": text for name, text in attributes(file["columns/elastic"]).items()}
-    demand(meaning, texts=" ".join(meaning))
+    for name, text in meaning.items():
+        if not isinstance(text, str):
+            raise ValueError(f"'{name}'")
     return {name: re.fullmatch(r"(.*?)(?: \[([^][]*)\])?", text, re.DOTALL).groups("") for name, text in meaning.items()}
 
 
@@ -110,9 +112,8 @@ def read_rows(source, file):
 def read_claim(group):
     claim = attributes(group)
     values = "paper_value measured low high"
-    demand(claim, numbers="values count unset", lists=values + " ratio",
+    demand(claim, wholes="values count", numbers="unset", lists=values + " ratio",
            texts="kind paper name place unit statement status test verdict words evidence over unset_evidence")
-    claim["values"], claim["count"] = int(claim["values"]), int(claim["count"])
     if not 0 <= max(claim["values"], claim["count"]) <= min(len(claim[name]) for name in values.split()):
         raise ValueError("the number of values of a claim")
     if claim["kind"] not in CLAIM_KINDS:
@@ -139,7 +140,7 @@ def read_claims(source, file):
 
 def read_sweep(source, file):
     source.plan = attributes(file["plan"])
-    demand(source.plan, "scene width", "points")
+    demand(source.plan, "scene width", wholes="points")
     source.point = read_columns(file["points"], "engine",
                                 "w epsilon valid total_ms build_seconds bytes summation_nodes goal_rms relaxation sag "
                                 "frequency path_rms path_most front")

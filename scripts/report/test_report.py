@@ -134,10 +134,9 @@ class Report(unittest.TestCase):
         self.assertNotIn("All that was stored", self.page(self.copy("older.h5", change)).text)
 
     def test_a_meaning_that_is_no_text_is_refused(self):
-        def change(file):
-            file["columns"].attrs["total_ms"] = 5
-
-        self.refused(self.copy("meaning.h5", change), "'total_ms'")
+        for name in ("total_ms", "of two words"):
+            path = self.copy("meaning.h5", lambda file, name=name: file["columns"].attrs.__setitem__(name, 5))
+            self.refused(path, f"'{name}'")
 
     def test_an_invalid_row_has_no_times(self):
         def spoil(file):
@@ -238,6 +237,10 @@ class Report(unittest.TestCase):
                       "By construction: claims, k.h5", "not set /curves/polar.warm-sweeps"):
             self.assertIn(words, page.text)
         self.assertNotIn("Method: claims", page.text)
+        with h5py.File(self.at("k.h5"), "r+") as file:
+            del file.attrs["checksum"]
+            next(iter(file["claims"].values())).attrs["count"] = 0.5
+        self.refused(self.at("k.h5"), "'count'")
 
     def test_texts_are_escaped(self):
         def name(file):
