@@ -39,7 +39,6 @@ static long *meshless_nodes(BenchScene *scene)
 }
 
 const BenchEngine bench_fastlsm = {.type = {&fastlsm_engine_f32, &fastlsm_engine_f64},
-                                   .planned = true,
                                    .yardstick = true,
                                    .set_width = set_cells,
                                    .carrier = &bench_lattice_carrier,
@@ -49,7 +48,6 @@ const BenchEngine bench_fastlsm = {.type = {&fastlsm_engine_f32, &fastlsm_engine
 
 const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f64},
                                   .sampled = true,
-                                  .planned = true,
                                   .own = BENCH_OF_SAMPLED,
                                   .whose = "the octree's",
                                   .set_width = set_octree,
@@ -71,7 +69,6 @@ const BenchEngine bench_brute = {.type = {&ref_brute_engine},
                                  .memory = bench_memory_brute};
 
 const BenchEngine bench_meshless = {.type = {&ref_meshless_engine},
-                                    .elastic = true,
                                     .own = BENCH_OF_ELASTIC,
                                     .whose = "a meshless body's",
                                     .nodes = meshless_nodes,

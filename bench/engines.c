@@ -54,38 +54,49 @@ const BenchEngine *bench_engine_yardstick(void)
     return bench_engine_list[e];
 }
 
+/* The names of the first `most` that are such, or of all, for NULL; NULL behind the last. */
+static void list_names(bool (*are)(const BenchEngine *engine), int most, const char **names)
+{
+    for (const BenchEngine *const *engine = bench_engine_list; *engine && most; engine++)
+        if (!are || are(*engine)) {
+            *names++ = (*engine)->type[0]->name;
+            most--;
+        }
+    *names = NULL;
+}
+
 const char *const *bench_engine_names(void)
 {
     static const char *names[BENCH_MOST_ENGINES + 1];
-    for (int e = 0; bench_engine_list[e] && e < BENCH_MOST_ENGINES; e++)
-        names[e] = bench_engine_list[e]->type[0]->name;
+    list_names(NULL, BENCH_MOST_ENGINES, names);
     return names;
 }
 
 const char *bench_engines_that(bool (*are)(const BenchEngine *engine),
                                char text[BENCH_ENGINES_TEXT])
 {
-    const char *names[BENCH_MOST_ENGINES + 1] = {NULL};
-    for (int e = 0, count = 0; bench_engine_list[e] && e < BENCH_MOST_ENGINES; e++)
-        if (are(bench_engine_list[e])) names[count++] = bench_engine_list[e]->type[0]->name;
+    const char *names[BENCH_MOST_ENGINES + 1];
+    list_names(are, BENCH_MOST_ENGINES, names);
     return bench_enumerate(names, "", " or ", BENCH_ENGINES_TEXT, text);
+}
+
+bool bench_engine_is_planned(const BenchEngine *engine)
+{
+    return engine->set_width;
 }
 
 const BenchEngine *bench_engine_planned(const char *engines, int i)
 {
-    bool all = !strcmp(engines, bench_engine_choices()[0]);
-    for (const BenchEngine *const *engine = bench_engine_list; *engine; engine++)
-        if ((*engine)->planned && (all || !strcmp((*engine)->type[0]->name, engines)) && i-- == 0)
-            return *engine;
+    const char *const *choice = bench_engine_choices();
+    bool all = !strcmp(engines, *choice);
+    while (*++choice)
+        if ((all || !strcmp(*choice, engines)) && i-- == 0) return bench_engine(*choice);
     return NULL;
 }
 
 const char *const *bench_engine_choices(void)
 {
     static const char *choices[BENCH_MOST_PLANNED + 2] = {"both"};
-    int count = 1;
-    for (const BenchEngine *const *engine = bench_engine_list; *engine; engine++)
-        if ((*engine)->planned && count <= BENCH_MOST_PLANNED)
-            choices[count++] = (*engine)->type[0]->name;
+    list_names(bench_engine_is_planned, BENCH_MOST_PLANNED, choices + 1);
     return choices;
 }

@@ -30,15 +30,13 @@ typedef struct {
     /* Its regions are as wide as w edges of each node's own cell, or w finest cells, and may be
      * wider by the share epsilon (octree section 4). Otherwise w is a whole number of cells. */
     bool sampled;
-    bool elastic;   /* its parameters are the scene's group meshless */
-    bool planned;   /* sweep and calibrate plan points of it, by set_width() */
     bool yardstick; /* what others' speed is set beside (bench_row_measures()) */
 
     unsigned own;      /* BENCH_OF_...: of the scene's settings, which no other engine takes, */
     const char *whose; /* and how messages name them: "the octree's" */
 
     /* The scene's w and epsilon; `cells`: of a sampled engine w is in finest cells, else in edges.
-     * Only of planned engines. */
+     * Sweep and calibrate plan points of the engines that have it. */
     void (*set_width)(BenchScene *scene, double w, double epsilon, bool cells);
 
     long *(*nodes)(BenchScene *scene); /* how many are wanted; NULL: that cannot be chosen */
@@ -94,6 +92,9 @@ const char *const *bench_engine_names(void);
 /* The names of those that are such, "fastlsm or octree". Returns `text`. */
 const char *bench_engines_that(bool (*are)(const BenchEngine *engine),
                                char text[BENCH_ENGINES_TEXT]);
+
+/* Do sweep and calibrate plan points of it? */
+bool bench_engine_is_planned(const BenchEngine *engine);
 
 /* Planned engine number i of those that a plan's word stands for, "both" or one's name; NULL behind
  * the last. And the words, NULL-terminated. */

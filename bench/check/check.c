@@ -82,11 +82,10 @@ static void begin_tree(const BenchScene *scene, const BenchBody *body, const SmE
 const BenchTwin bench_lattice_twin = {lattice_members, begin_lattice};
 const BenchTwin bench_octree_twin = {tree_members, begin_tree};
 
-double bench_check_room(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                        const SmEngine *engine)
+double bench_twin_members(const BenchRunner *runner)
 {
-    const BenchTwin *twin = bench_engine(type->name)->twin;
-    return twin ? twin->members(scene, body, engine) : INFINITY;
+    const BenchTwin *twin = bench_engine(runner->type->name)->twin;
+    return twin ? twin->members(runner->scene, runner->body, runner->engine) : INFINITY;
 }
 
 void bench_check_begin(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,

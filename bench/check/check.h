@@ -78,8 +78,7 @@ typedef struct BenchTwin {
 extern const BenchTwin bench_lattice_twin, bench_octree_twin;
 
 /* The members of the engine's twin; INFINITY of an engine that has none. */
-double bench_check_room(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
-                        const SmEngine *engine);
+double bench_twin_members(const BenchRunner *runner);
 
 /* Builds the reference's regions for a lattice engine: O(particles (2w+1)^3) time and memory. */
 void bench_check_create(const BenchBody *body, int w, BenchCheck *check);

@@ -108,7 +108,7 @@ bool bench_check_runner(const BenchRunner *runner, size_t size, char *reason)
         snprintf(reason, size, "the engine %s has no twin to be held to", runner->type->name);
         return false;
     }
-    double members = bench_check_room(runner->scene, runner->body, runner->type, runner->engine);
+    double members = bench_twin_members(runner);
     bool plain = runner->scene->octree.weighting == OCT_PLAIN;
     if (members <= BENCH_MOST_MEMBERS) {
         if (!held_to_brute(runner, &motion, size, reason)) return false;

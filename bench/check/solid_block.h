@@ -14,8 +14,9 @@ typedef struct {
     long particles;
     bool brute;     /* goals are held to brute force; else they are to be finite and to keep
                      * momentum: where that would take more than 5e7 region members */
-    double (*x)[3]; /* [particles] the caller's; at first at rest, */
-} BenchBlock;       /* as body.x0 is where goals are held to brute force */
+    double (*x)[3]; /* [particles] for the caller to move; at first where they rest, as body.x0 is
+                     * if `brute` */
+} BenchBlock;
 
 /* An engine with these parameters. The caller frees; on an error `block` is zeroed. */
 SmCode bench_block_create(const int size[3], const SmEngineType *type, const SmEngineParams *params,

@@ -106,11 +106,6 @@ static const char *needless(const BenchMeasure *measure, const Kind *kind)
     return NULL;
 }
 
-static bool planned(const BenchEngine *engine)
-{
-    return engine->planned;
-}
-
 /* NULL, or the line that names what there is; it stands until the next one. */
 static const char *field_fault(const BenchMeasure *measure, const Kind *kind)
 {
@@ -128,8 +123,9 @@ static const char *field_fault(const BenchMeasure *measure, const Kind *kind)
     snprintf(fault, sizeof fault, "'field' is one of %s", names);
     if (!known) return fault;
     if (measure->experiment != BENCH_TRY_SIZE) return NULL;
-    snprintf(fault, sizeof fault, "'engine' is %s", bench_engines_that(planned, names));
-    if (!engine->planned) return fault;
+    snprintf(fault, sizeof fault, "'engine' is %s",
+             bench_engines_that(bench_engine_is_planned, names));
+    if (!bench_engine_is_planned(engine)) return fault;
     return !engine->sampled && !strcmp(measure->field, "sums")
                ? "the field \"sums\" is the octree's"
                : NULL;

@@ -221,7 +221,7 @@ static SmCode load_body(const Options *options, const BenchEngine *engine, RefMp
 {
     const char *name = options->scene;
     RefPoints points;
-    if (!engine->elastic) return bench_mesh_load(name, mesh, error);
+    if (!(engine->own & BENCH_OF_ELASTIC)) return bench_mesh_load(name, mesh, error);
     SmCode code = bench_points_or_mesh(name, &points, mesh, error);
     if (code || !points.count) return code;
     if (bench_given(&options->chosen.given, "points")) {

@@ -196,7 +196,7 @@ static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
         for (int i = 0; i < chosen->count && !code; i++) {
             BenchScene scene;
             code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
-            if (code || bench_engine(scene.engine)->elastic != last) continue;
+            if (code || !!(bench_engine(scene.engine)->own & BENCH_OF_ELASTIC) != last) continue;
             bench_row_name(&scene, &rows[planned]);
             ordered[planned++] = chosen->scene[i];
         }

@@ -24,7 +24,7 @@ static bool print_deviation(const BenchRunner *runner)
         printf("deviation: not checked: %ld links are broken\n", counts.broken);
         return true;
     }
-    if (bench_check_room(scene, runner->body, runner->type, runner->engine) > BENCH_MOST_MEMBERS) {
+    if (bench_twin_members(runner) > BENCH_MOST_MEMBERS) {
         printf("deviation: not checked: brute force would take too much memory\n");
         return true;
     }

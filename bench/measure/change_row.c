@@ -51,8 +51,8 @@ static void note_changes(const BenchPlayback *play, long frame, Times *times, Be
 {
     double resample = 0, follow = 0;
     long added = 0;
-    for (int p = 0; p < play->count; p++) {
-        const BenchChanged *last = &play->group[p].last;
+    for (int g = 0; g < play->count; g++) {
+        const BenchChanged *last = &play->group[g].last;
         resample += last->resample_seconds;
         follow += last->follow_seconds;
         added += last->nodes;
@@ -148,8 +148,8 @@ static void find_busy(Times *times, BenchChangeRow *row)
 static double surface_bytes(const BenchPlayback *play)
 {
     double bytes = 0, particles = 0;
-    for (int p = 0; p < play->count; p++) {
-        const BenchGroup *group = &play->group[p];
+    for (int g = 0; g < play->count; g++) {
+        const BenchGroup *group = &play->group[g];
         bytes += (double)sm_embed_bytes(&group->skin.embedding);
         bytes += (double)oct_surface_bytes(&group->skin.carried);
         particles += (double)(group->runner.particles / group->body.instances);
@@ -163,12 +163,12 @@ static void note_end(const BenchPlayback *play, BenchChangeRow *row)
     row->last_nodes = bench_playback_particles(play);
     bench_playback_size(play, &vertices, &row->last_triangles);
     row->surface_bytes = surface_bytes(play);
-    for (int p = 0; p < play->count; p++) {
-        SmMeshInfo info = sm_mesh_info(&play->group[p].skin.surface);
-        long bodies = play->group[p].body.instances;
+    for (int g = 0; g < play->count; g++) {
+        SmMeshInfo info = sm_mesh_info(&play->group[g].skin.surface);
+        long bodies = play->group[g].body.instances;
         row->pieces += bodies * info.components;
         row->open_edges += bodies * (info.open_edges + info.nonmanifold_edges);
-        row->left += bodies * play->group[p].skin.incomplete;
+        row->left += bodies * play->group[g].skin.incomplete;
     }
 }
 

@@ -11,8 +11,8 @@ typedef struct BenchChecker {
     /* SM_INPUT: the scene has what is not measured. Before anything is built. May be NULL. */
     SmCode (*takes)(const BenchScene *scene, SmError *error);
 
-    /* SM_INPUT: the bodies cannot be checked, by which the check would take too much memory, or
-     * contradict themselves. May be NULL. */
+    /* SM_INPUT: the bodies contradict themselves, or their check would take too much memory. May be
+     * NULL. */
     SmCode (*accepts)(const BenchPlayback *play, SmError *error);
 
     /* What the check needs of the bodies as they are now; begun anew when they have changed. NULL,

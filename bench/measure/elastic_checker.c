@@ -95,7 +95,7 @@ const BenchChecker bench_elastic_checker = {.size = sizeof(BenchElasticFound),
 
 bool bench_row_of_elastic(const BenchRow *row)
 {
-    return bench_engine(row->engine)->elastic;
+    return bench_engine(row->engine)->own & BENCH_OF_ELASTIC;
 }
 
 void bench_elastic_row_explain(FILE *file, const BenchRow *row)

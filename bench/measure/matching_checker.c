@@ -62,16 +62,15 @@ static void check_counts(const BenchCheck *check, const BenchRunner *runner, Ben
                              (double)counts.regions, (double)check->unique);
 }
 
-static SmCode check_room(const BenchRunner *runner, SmError *error)
+static SmCode check_members(const BenchRunner *runner, SmError *error)
 {
-    const BenchScene *scene = runner->scene;
-    double members = bench_check_room(scene, runner->body, runner->type, runner->engine);
+    double members = bench_twin_members(runner);
     if (members <= BENCH_MOST_MEMBERS) return SM_OK;
     return sm_fail(
         error, SM_INPUT,
         "%s: regions with %.3g members take too much memory to be checked by brute force "
         "(at most %g): take narrower ones",
-        scene->file, members, BENCH_MOST_MEMBERS);
+        runner->scene->file, members, BENCH_MOST_MEMBERS);
 }
 
 /* A check of every group of bodies as it is now. */
@@ -83,7 +82,8 @@ typedef struct {
 static SmCode accepts(const BenchPlayback *play, SmError *error)
 {
     SmCode code = SM_OK;
-    for (int g = 0; g < play->count && !code; g++) code = check_room(&play->group[g].runner, error);
+    for (int g = 0; g < play->count && !code; g++)
+        code = check_members(&play->group[g].runner, error);
     return code;
 }
 

@@ -1,13 +1,13 @@
 /* step_timer.h - what a step takes, timed with and without clocks inside.
  *
  * After a warm-up come `repeats` repeats of two blocks, one plain and one with laps, each first in
- * every other repeat.
- * A block is as many segments as fill block_seconds; a segment restores the start state and runs
- * one step untimed, and then times up to BENCH_SEGMENT_STEPS steps, a fraction of a millisecond of
- * them at a time. What other programs took some of (disturbance.h) is left out, and a block that is
- * less than half undisturbed is run again; a row of which more than a quarter of the samples stay
- * disturbed, or of whose processors the host took a tenth, is BUSY and has no times. The total is
- * that of the plain blocks; stage times are the shares of the blocks with laps, times the total. */
+ * every other repeat. A block is as many segments as fill block_seconds; a segment restores the
+ * start state and runs one step untimed, and then times up to BENCH_SEGMENT_STEPS steps, a fraction
+ * of a millisecond of them at a time. What other programs took some of (disturbance.h) is left out,
+ * and a block that is less than half undisturbed is run again; a row of which more than a quarter
+ * of the samples stay disturbed, or of whose processors the host took a tenth, is BUSY and has no
+ * times. The total is that of the plain blocks; stage times are the shares of the blocks with laps,
+ * times the total. */
 #ifndef BENCH_STEP_TIMER_H
 #define BENCH_STEP_TIMER_H
 

@@ -108,7 +108,7 @@ extern const char *const bench_goal_forms[];
 
 /* Who takes an option of the settings (scene_settings.h), and which engines alone. */
 enum { BENCH_BY_RUN = 1, BENCH_BY_TABLES = 2 };
-enum { BENCH_OF_SAMPLED = 1, BENCH_OF_ELASTIC = 2 }; /* as in BenchEngine */
+enum { BENCH_OF_SAMPLED = 1, BENCH_OF_ELASTIC = 2 }; /* `own` of a BenchEngine */
 
 /* The defaults of everything that a scene file may leave out; no mesh. */
 void bench_scene_init(BenchScene *scene);

@@ -77,7 +77,7 @@ static int points_of_w(const BenchPlan *plan)
 
 static bool takes_any_w(const BenchEngine *engine)
 {
-    return engine->planned && !engine->type[0]->by_cells;
+    return bench_engine_is_planned(engine) && !engine->type[0]->by_cells;
 }
 
 static SmCode check_w(const BenchPlan *plan, const SmEngineType *type, SmError *error)
