@@ -147,13 +147,7 @@ TEST(shards_merge_to_the_whole)
 /* Two ranks do the same as one. */
 TEST(ranks_share_the_work)
 {
-    if (system("command -v mpirun >/dev/null 2>&1") != 0) {
-        print_message("no mpirun here: not tested\n");
-        skip();
-    }
-    run_with("ASAN_OPTIONS=detect_leaks=0 mpirun --allow-run-as-root --oversubscribe -n 2",
-             SMALL " -o ranks.h5", &result);
-    if (strstr(result.err, "built without MPI")) return;
+    run_ranks(SMALL " -o ranks.h5", &result);
     if (result.code) fail_msg("%d: %s", result.code, result.err);
     equals_whole("ranks.h5");
 }

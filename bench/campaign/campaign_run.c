@@ -21,7 +21,7 @@ typedef struct {
     void *work;
     BenchProgress progress;
     int left;       /* ranks that have not ended */
-    SmError failed; /* of a rank; code SM_OK: none */
+    SmError failed; /* of another rank; code SM_OK: none */
 } Job;
 
 /* ---- shards */
@@ -177,25 +177,24 @@ static SmCode listen(Job *job, bool wait, SmError *error)
     return code;
 }
 
-/* Rank 0: measures its points, and takes those of the others. */
+/* Rank 0: measures its points, and takes those of the others. One that cannot stops no other. */
 static SmCode lead(Job *job, const int *pending, int count, SmError *error)
 {
     const BenchCampaignRun *run = job->run;
     void *point = sm_alloc(1, job->campaign->type->point_size);
+    SmError own = {.code = SM_OK};
     SmCode code = SM_OK;
     bench_progress_start(&job->progress, run->quiet);
-    for (int i = 0; i < count && !code && !job->failed.code; i += run->ranks->count) {
-        if (!measure(job, pending[i], point, &job->failed)) code = take(job, point, error);
+    for (int i = 0; i < count && !code && !own.code; i += run->ranks->count) {
+        if (!measure(job, pending[i], point, &own)) code = take(job, point, error);
         if (!code) code = listen(job, false, error);
     }
     if (!code) code = listen(job, true, error);
     bench_progress_stop(&job->progress);
     free(point);
-    if (!code && job->failed.code) {
-        *error = job->failed;
-        code = job->failed.code;
-    }
-    return code;
+    if (code || (!own.code && !job->failed.code)) return code;
+    *error = own.code ? own : job->failed;
+    return error->code;
 }
 
 static void send_point(const Job *job, const void *point)

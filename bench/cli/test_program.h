@@ -40,6 +40,22 @@ static inline void run(const char *arguments, Result *result)
     run_with("", arguments, result);
 }
 
+/* The same by two processes of mpirun. Where there is none, or the program was built without MPI
+ * and says so, the test ends as skipped. */
+static inline void run_ranks(const char *arguments, Result *result)
+{
+    if (system("command -v mpirun >/dev/null 2>&1") != 0) {
+        print_message("no mpirun here (openmpi-bin)\n");
+        skip();
+    }
+    run_with("ASAN_OPTIONS=detect_leaks=0 mpirun --allow-run-as-root --oversubscribe -n 2",
+             arguments, result);
+    if (!strstr(result->err, "built without MPI")) return;
+    assert_int_equal(result->code, 2);
+    print_message("built without MPI (libopenmpi-dev): only its refusal is tested\n");
+    skip();
+}
+
 /* Starts "shapebench ARGUMENTS", interrupts it (SIGINT) as soon as the file is there, and returns
  * its exit code, or 1000 + signal. */
 static inline int interrupt(const char *arguments, const char *file)

@@ -303,28 +303,15 @@ static void a_rank_that_cannot_stops_no_other(Result *result)
 /* Two ranks do the same as one. Without MPI a launch of two is refused in a line. */
 TEST(ranks_share_the_work)
 {
-    Result *result = malloc(sizeof *result);
-    if (system("command -v mpirun >/dev/null 2>&1") != 0) {
-        free(result);
-        print_message("no mpirun here: not tested\n");
-        skip();
-    }
-    run_with("ASAN_OPTIONS=detect_leaks=0 mpirun --allow-run-as-root --oversubscribe -n 2",
-             SMALL " -o ranks.h5", result);
-    if (strstr(result->err, "built without MPI")) {
-        assert_int_equal(result->code, 2);
-        free(result);
-        print_message("built without MPI: only its refusal is tested\n");
-        return;
-    }
-    if (result->code) fail_msg("%d: %s", result->code, result->err);
+    static Result result;
+    run_ranks(SMALL " -o ranks.h5", &result);
+    if (result.code) fail_msg("%d: %s", result.code, result.err);
     equals_whole("ranks.h5");
     BenchCampaign sweep;
     load("ranks.h5", &sweep);
     for (int i = 0; i < 3; i++) assert_int_equal(point(&sweep, i)->stamp.rank, i % 2);
     bench_campaign_free(&sweep);
-    a_rank_that_cannot_stops_no_other(result);
-    free(result);
+    a_rank_that_cannot_stops_no_other(&result);
 }
 
 /* Points of two machines cannot be set beside each other without a word. */
