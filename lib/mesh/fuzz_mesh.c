@@ -104,8 +104,9 @@ static void cut(const unsigned char *data, size_t size)
 static SmCode import_bytes(const unsigned char *data, size_t size, const char *suffix, SmMesh *mesh)
 {
     char path[64];
-    snprintf(path, sizeof path, "/tmp/fuzz_mesh_%ld%s", (long)getpid(), suffix);
-    FILE *file = fopen(path, "wb");
+    snprintf(path, sizeof path, "/tmp/fuzz_mesh_XXXXXX%s", suffix);
+    int descriptor = mkstemps(path, (int)strlen(suffix));
+    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
     expect(file && fwrite(data, 1, size, file) == size && fclose(file) == 0, "cannot write /tmp");
     SmCode code = sm_import(path, &(SmImportLimits){.seconds = 0.5, .megabytes = 1024}, mesh, NULL);
     unlink(path);
