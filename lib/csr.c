@@ -13,6 +13,7 @@ void *sm_widen(void *array, long from, long to, size_t size, int byte)
 void sm_csr_adopt(SmCsr *csr, long count, long *first, int *item, void *value, size_t size)
 {
     *csr = (SmCsr){.rows = count, .first = first, .end = first + 1, .item = item};
+    csr->row_space = count + 1;
     csr->value = value;
     csr->size = size;
     csr->live = csr->used = csr->space = first[count];
@@ -30,12 +31,8 @@ void sm_csr_free(SmCsr *csr)
 
 size_t sm_csr_bytes(const SmCsr *csr)
 {
-    size_t row = sizeof *csr->first, rows = (size_t)csr->row_space;
-    if (csr->room)
-        row += sizeof *csr->end + sizeof *csr->room;
-    else if (csr->first)
-        rows = (size_t)csr->rows + 1;
-    return rows * row + (size_t)csr->space * (sizeof *csr->item + csr->size);
+    size_t row = sizeof *csr->first + (csr->room ? sizeof *csr->end + sizeof *csr->room : 0);
+    return (size_t)csr->row_space * row + (size_t)csr->space * (sizeof *csr->item + csr->size);
 }
 
 /* Before the first change: where every row ends, and what room it has. */
