@@ -67,10 +67,7 @@ static void listed_free(Listed *b)
     lsm_interior_free(&b->interior);
     lsm_lattice_free(&b->lattice);
     sm_voxels_free(&b->voxels);
-    free(b->slot);
-    free(b->layer_plane);
-    free(b->centre);
-    free(b->rows);
+    sm_free_all(b->slot, b->layer_plane, b->centre, b->rows);
 }
 
 static int layer_of(const Listed *b, int z)
@@ -146,8 +143,7 @@ static long assert_rows(const int *list, int side, long count, const int *naming
     qsort(rows, (size_t)in_use, (size_t)side * sizeof *rows, compare_rows);
     for (long r = 1; r < in_use; r++)
         assert_true(compare_rows(rows + (r - 1) * side, rows + r * side) < 0);
-    free(used);
-    free(rows);
+    sm_free_all(used, rows);
     return in_use;
 }
 
@@ -190,9 +186,7 @@ static void choose_rows(unsigned *seed, const Listed *b, long r, uint64_t *rows)
     }
 }
 
-/* Every row counts those that name it, and where there are none waits for the next one of its
- * layer.
- */
+/* Every row counts the names of it, and a row without any is in its layer's list of free ones. */
 static void assert_store(const Listed *b, const LsmRowStore *store, const int *naming, long names)
 {
     int *uses = sm_alloc((size_t)store->limit[b->lists.planes], sizeof *uses);
@@ -320,8 +314,8 @@ static void assert_running_row(const LsmRunningList *running, const int *list, i
     assert_int_equal(moment, want_moment);
 }
 
-/* No run is longer than it may be; returns how many rows have a base. `list` counts
- * from row 0, and its rows name some of `members`. */
+/* Every row is what its base makes of it, and no run is longer than it may be; returns how many
+ * rows have a base. `list` counts from row 0, and its rows name some of `members`. */
 static long assert_running(unsigned *seed, const LsmRunningList *running, const int *list, int side,
                            long members)
 {
@@ -337,8 +331,7 @@ static long assert_running(unsigned *seed, const LsmRunningList *running, const 
         assert_true(length[r] <= LSM_RUN_MOST);
         based += base > 0;
     }
-    free(value);
-    free(length);
+    sm_free_all(value, length);
     return based;
 }
 

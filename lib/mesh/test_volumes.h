@@ -4,8 +4,8 @@
 
 #include "mesh.h"
 
-/* Signed volume between every piece of the surface and the origin, into volume[count]: what a
- * closed piece holds. A hollow is a piece of its own, of negative volume. */
+/* Signed volume between every piece of the surface and the mesh's first vertex, into volume[count]:
+ * what a closed piece holds. A hollow is a piece of its own, of negative volume. */
 static inline void sum_volumes(const SmMesh *mesh, const SmPieces *pieces, double *volume)
 {
     for (long n = 0; n < pieces->count; n++) volume[n] = 0;

@@ -1,5 +1,5 @@
-/* hash.h - FNV-1a, 64 bits: a short name for bytes; and one for a number. No protection against
- * intent. */
+/* hash.h - short names for bytes (FNV-1a, 64 bits) and for numbers. Whoever means to can find two
+ * that are alike. */
 #ifndef SM_HASH_H
 #define SM_HASH_H
 
@@ -8,9 +8,9 @@
 
 #define SM_HASH_START 0xcbf29ce484222325ULL
 
-/* A number that says nothing of how near another one is to its neighbours; different numbers have
- * different ones. Of SM_MIX_STEP after SM_MIX_STEP they are those of the generator splitmix64
- * (Steele et al. 2014). */
+/* Different numbers get different names, and numbers that are near each other names that are not.
+ * Of the multiples of SM_MIX_STEP they are the random numbers of splitmix64 (Steele et al.
+ * 2014). */
 #define SM_MIX_STEP 0x9e3779b97f4a7c15u
 static inline uint64_t sm_mix(uint64_t number)
 {

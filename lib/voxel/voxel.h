@@ -28,6 +28,7 @@ void sm_voxels_init(SmVoxels *voxels, int nx, int ny, int nz, double cell);
 /* The same with material in every cell, counted. */
 void sm_voxels_block(SmVoxels *voxels, int nx, int ny, int nz, double cell);
 
+/* The caller frees the copy. */
 void sm_voxels_copy(const SmVoxels *from, SmVoxels *to);
 void sm_voxels_free(SmVoxels *voxels);
 
@@ -44,7 +45,7 @@ void sm_voxels_particles(const SmVoxels *voxels, int (*coordinate)[3]);
 /* Rest positions of all particles in canonical order, into position[particle_count]. */
 void sm_voxels_rest(const SmVoxels *voxels, double (*position)[3]);
 
-/* First word of the row of cells (j, k), which is in the box. */
+/* First word of the row of cells (j, k). */
 static inline size_t sm_voxels_row(const SmVoxels *v, int j, int k)
 {
     return ((size_t)k * (size_t)v->size[1] + (size_t)j) * (size_t)v->words;
