@@ -1,4 +1,4 @@
-/* damping.h - damping of regions, a part of the step. */
+/* damping.h - damping of regions, the end of a step. */
 #ifndef OCT_DAMPING_H
 #define OCT_DAMPING_H
 
@@ -6,7 +6,8 @@
 
 #define oct_damp SM_NAME(oct_damp)
 
-/* Region damping of one body (fastlsm eq. 14 by HF), then x += v; part of the step. */
+/* Region damping of one body (fastlsm eq. 14 by HF), then x += v. All threads of the step call
+ * it. */
 void oct_damp(OctTask *task);
 
 #endif

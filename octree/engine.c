@@ -294,7 +294,7 @@ static const int *engine_leaves(SmEngine *e)
 static SmCode check(const SmVoxels *voxels, const SmEngineParams *params, SmError *error)
 {
     SmEngineParams common = *params;
-    common.w = 1; /* which an octree has not */
+    common.w = 1; /* an octree has none */
     SmCode code = sm_engine_check(voxels, &common, error);
     if (code) return code;
     if (params->strain_limit > 0)
@@ -418,7 +418,7 @@ static bool is_free(const SmEngine *e)
 
 static void begin_momentum(SmEngine *e)
 {
-    /* after a change it is divided once the kick has been added (state.h) */
+    /* after a change it is divided into its pieces once the kick has been added (state.h) */
     bool begins = e->divided && is_free(e);
     for (OctState *b = e->oct->body; begins && b < e->oct->body + e->oct->instances; b++)
         momentum_begin(e->momentum, b - e->oct->body, (const double(*)[3])b->origin, b->x, b->v);

@@ -31,7 +31,7 @@ void oct_ghosts_merge(Oct *oct);
 void oct_ghosts_free(Oct *oct);
 size_t oct_ghosts_bytes(const Oct *oct);
 
-/* Parts of a step: ghosts from the rows that they stand for. The damping's products need the
+/* Passes of a step: ghosts from the rows that they stand for. The damping's products need the
  * moments of the same step. */
 void oct_ghosts_moments(OctTask *task, long first, long last);
 void oct_ghosts_transforms(OctTask *task, long first, long last);

@@ -263,8 +263,8 @@ static void move(OctTask *task, long first, long last)
     }
 }
 
-/* Laps go on in those of the next part. */
-static void next_part(OctTask *task)
+/* Laps go on in those of the next phase. */
+static void next_phase(OctTask *task)
 {
     if (!task->laps || !task->apart) return;
     task->laps[1].last = task->laps->last;
@@ -276,13 +276,13 @@ static void step_body(OctTask *task)
     oct_each_block(task, weigh);
     oct_climb(task, moments_up);
     oct_each_ghost(task, oct_ghosts_moments);
-    next_part(task);
+    next_phase(task);
     oct_descend(task, &task->oct->lists, moments_down);
     oct_each_block(task, match);
-    next_part(task);
+    next_phase(task);
     oct_climb(task, transforms_up);
     oct_each_ghost(task, oct_ghosts_transforms);
-    next_part(task);
+    next_phase(task);
     oct_descend(task, oct_goal_lists(task->oct), transforms_down);
     oct_each_block(task, move);
     if (task->oct->damp_now && !task->goals) oct_damp(task);
@@ -344,7 +344,7 @@ static void step(Oct *oct, SmLaps *laps, bool apart)
     step_all(oct, false, laps, apart);
     for (long i = 0; i < oct->instances; i++) memset(oct->body[i].kick, 0, sizeof oct->body->kick);
     oct->steps++;
-    sm_lap(apart ? laps + OCT_STEP_PARTS - 1 : laps, SM_OTHER);
+    sm_lap(apart ? laps + OCT_PHASES - 1 : laps, SM_OTHER);
 }
 
 void oct_step(Oct *oct, SmLaps *laps)
@@ -352,7 +352,7 @@ void oct_step(Oct *oct, SmLaps *laps)
     step(oct, laps, false);
 }
 
-void oct_step_parts(Oct *oct, SmLaps laps[OCT_STEP_PARTS])
+void oct_step_phases(Oct *oct, SmLaps laps[OCT_PHASES])
 {
     assert(oct->instances == 1);
     step(oct, laps, true);

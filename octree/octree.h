@@ -6,17 +6,17 @@
 #include "positions.h"
 #include "state.h"
 
-#define oct_step       SM_NAME(oct_step)
-#define oct_step_parts SM_NAME(oct_step_parts)
-#define oct_goals      SM_NAME(oct_goals)
+#define oct_step        SM_NAME(oct_step)
+#define oct_step_phases SM_NAME(oct_step_phases)
+#define oct_goals       SM_NAME(oct_goals)
 
 /* One time step of every body: matching, eq. 1, damping, eq. 2, obstacles. Laps are those of the
  * first thread. */
 void oct_step(Oct *oct, SmLaps *laps);
 
-/* The same with laps of each part of the step apart, for one body alone; the caller starts those of
- * the first. */
-void oct_step_parts(Oct *oct, SmLaps laps[OCT_STEP_PARTS]);
+/* The same with laps of each phase apart, for one body alone; the caller starts those of the
+ * first. */
+void oct_step_phases(Oct *oct, SmLaps laps[OCT_PHASES]);
 
 /* Goal positions of the present state into `g`, nothing else changes. */
 void oct_goals(Oct *oct);

@@ -122,16 +122,16 @@ typedef struct {
     Obstacle *obstacle; /* in finest cells from where origins count */
 } Oct;
 
-/* Parts of a step, in order. */
+/* Phases of a step, in order. */
 enum {
     OCT_MOMENTS_DEPTH,      /* tree nodes' moments */
     OCT_MOMENTS_BREADTH,    /* regions' moments; matching */
     OCT_TRANSFORMS_DEPTH,   /* tree nodes' transforms */
     OCT_TRANSFORMS_BREADTH, /* goal positions; motion and damping */
-    OCT_STEP_PARTS
+    OCT_PHASES
 };
 
-/* One thread's part in a pass over one body. */
+/* What one thread steps one body with. */
 typedef struct {
     Oct *oct;
     OctState *body;
@@ -141,7 +141,7 @@ typedef struct {
     bool goals;   /* goal positions only */
     bool alone;   /* the first thread has worked alone since all have met */
     SmLaps *laps; /* of the first thread of an instrumented step, or NULL */
-    bool apart;   /* there are laps for every part of the step, those of the next one follow */
+    bool apart;   /* there are laps for every phase, those of the next one follow */
 } OctTask;
 
 /* Where the coordinates of a leaf count from. */

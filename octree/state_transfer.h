@@ -13,8 +13,8 @@
  * mass another one and with it, where the body turns, the momentum. What is missing is given to the
  * whole body as one translation and one velocity: its linear momentum and its centre of mass stay,
  * to the rounding of double precision. Its angular momentum becomes that of the new sampling
- * turning as fast: parts of a full cell of edge s have s^2 / 8 of their mass about its middle,
- * where one node had none, and the inertia of cells that are not full comes nearer to the
+ * turning as fast: the eighths of a full cell of edge s have s^2 / 8 of their mass about its
+ * middle, where one node had none, and the inertia of cells that are not full comes nearer to the
  * material's. */
 #ifndef OCT_STATE_TRANSFER_H
 #define OCT_STATE_TRANSFER_H
@@ -41,9 +41,8 @@ typedef struct {
 typedef struct {
     OctDonor *donor; /* [count] */
     long count, room;
-    int *
-        of; /* [leaves] of a removed leaf, or of a new leaf that was merged: the first such donor */
-    long leaves;
+    int *of;     /* [leaves] of a removed leaf, or of a new leaf that was merged: the first donor */
+    long leaves; /* that there is place for */
 } OctTransfer;
 
 /* Keeps what the removed leaves hand on; `tree` has changed, the body must still be as it was.

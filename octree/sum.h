@@ -27,19 +27,19 @@ void oct_each_ghost(OctTask *task, OctPass *pass);
 enum { ROW_VECS = OCT_ROW / SM_LANES };
 
 typedef struct {
-    vec part[ROW_VECS];
+    vec vector[ROW_VECS];
 } Row;
 
 SM_INLINE Row row_load(const real *p)
 {
     Row row;
-    for (int i = 0; i < ROW_VECS; i++) row.part[i] = lanes_load(p + i * SM_LANES);
+    for (int i = 0; i < ROW_VECS; i++) row.vector[i] = lanes_load(p + i * SM_LANES);
     return row;
 }
 
 SM_INLINE void row_store(real *p, Row row)
 {
-    for (int i = 0; i < ROW_VECS; i++) lanes_store(p + i * SM_LANES, row.part[i]);
+    for (int i = 0; i < ROW_VECS; i++) lanes_store(p + i * SM_LANES, row.vector[i]);
 }
 
 #if SM_LANES == 16
@@ -56,7 +56,7 @@ SM_INLINE void row_store(real *p, Row row)
 SM_INLINE Row row_pads(Row row)
 {
     for (int i = 0; i < ROW_VECS; i++)
-        row.part[i] = __builtin_shufflevector(row.part[i], row.part[i], ROW_PADS);
+        row.vector[i] = __builtin_shufflevector(row.vector[i], row.vector[i], ROW_PADS);
     return row;
 }
 
@@ -79,8 +79,8 @@ SM_INLINE void row_add_moments(const real *p, const Row *centre, Row *sum, Row *
     Row row = row_load(p), pads = row_pads(row);
     vec x = row_spread(p);
     for (int i = 0; i < ROW_VECS; i++) {
-        sum->part[i] += row.part[i];
-        moved->part[i] += x * (pads.part[i] - centre->part[i]);
+        sum->vector[i] += row.vector[i];
+        moved->vector[i] += x * (pads.vector[i] - centre->vector[i]);
     }
 }
 
@@ -89,7 +89,7 @@ SM_INLINE void row_add_moments(const real *p, const Row *centre, Row *sum, Row *
 SM_INLINE Row row_from(Row pads)
 {
     const vec one = {1, 1, 1, 1};
-    pads.part[0] += one; /* the pad of quarter 0 is 0 */
+    pads.vector[0] += one; /* the pad of quarter 0 is 0 */
     return pads;
 }
 
@@ -99,21 +99,21 @@ SM_INLINE void row_add_values(Row row, const Row *from, Row *value)
 {
     Row pads = row_pads(row);
     for (int i = 0; i < ROW_VECS; i++)
-        value->part[i] += row.part[i] * (from->part[i] - pads.part[i]);
+        value->vector[i] += row.vector[i] * (from->vector[i] - pads.vector[i]);
 }
 
 SM_INLINE Row row_add(Row a, Row b)
 {
-    for (int i = 0; i < ROW_VECS; i++) a.part[i] += b.part[i];
+    for (int i = 0; i < ROW_VECS; i++) a.vector[i] += b.vector[i];
     return a;
 }
 
 /* The sum of what a loop over a list kept apart, so that its additions need not wait for each
  * other. */
-SM_INLINE Row row_total(const Row part[OCT_GROUP])
+SM_INLINE Row row_total(const Row partial[OCT_GROUP])
 {
-    Row sum = part[0];
-    for (int i = 1; i < OCT_GROUP; i++) sum = row_add(sum, part[i]);
+    Row sum = partial[0];
+    for (int i = 1; i < OCT_GROUP; i++) sum = row_add(sum, partial[i]);
     return sum;
 }
 
@@ -122,7 +122,8 @@ SM_INLINE void row_keep(real *p, Row sum)
 {
     const ivec pad = {ROW_PAD_MASK};
     Row old = row_load(p);
-    for (int i = 0; i < ROW_VECS; i++) sum.part[i] = lanes_select(pad, old.part[i], sum.part[i]);
+    for (int i = 0; i < ROW_VECS; i++)
+        sum.vector[i] = lanes_select(pad, old.vector[i], sum.vector[i]);
     row_store(p, sum);
 }
 

@@ -122,7 +122,7 @@ static void run_step(void *subject, SmLaps *laps)
     Oct *oct = ((BenchTreeStep *)subject)->engine;
     if (laps) {
         laps[0].last = sm_now();
-        oct_step_parts(oct, laps);
+        oct_step_phases(oct, laps);
     } else
         oct_step(oct, NULL);
 }
@@ -148,7 +148,7 @@ void bench_tree_step_create(BenchTreeStep *step)
     step->trial = (BenchTrial){.timed = {step, start, run_step},
                                .finite = finite_at_end,
                                .threads = step->threads,
-                               .lap_sets = step->parts ? OCT_STEP_PARTS : 0,
+                               .lap_sets = step->parts ? OCT_PHASES : 0,
                                .valid = true};
     step->counts = oct_step_counts(&body->tree, &oct->lists, oct_goal_lists(oct));
     step->bytes = oct_bytes(oct);

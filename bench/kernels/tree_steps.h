@@ -22,7 +22,7 @@ typedef enum {
 } BenchTreePart;
 
 typedef struct {
-    BenchTrial trial;         /* with laps of OCT_STEP_PARTS where times of parts are wanted */
+    BenchTrial trial;         /* with laps of OCT_PHASES where times of parts are wanted */
     const OctStructure *body; /* set by the caller, as the next ones */
     OctWeighting weighting;
     bool adjoint; /* goal positions by the transpose of the region sums */

@@ -28,8 +28,8 @@ const OctStructure *oct_engine_structure(const SmEngine *engine);
  * momentum and centre of mass are left to what new nodes start with.
  *
  * A body that changes counts all of its coordinates from one origin, no longer from one for every
- * part or 64 cells of it (frames.h). In single precision goals are so right up to 512 finest cells
- * across; parts that a cut leaves to drift further apart than that lose digits, and the check of
+ * group or 64 cells of it (frames.h). In single precision goals are so right up to 512 finest cells
+ * across; groups that a cut leaves to drift further apart than that lose digits, and the check of
  * goals says so.
  *
  * Errors: several bodies share the engine; goal positions are summed by OCT_ADJOINT; regions are

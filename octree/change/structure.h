@@ -45,7 +45,7 @@ typedef struct OctStructure {
     struct OctResample *resample; /* what changing it needs, or NULL */
 } OctStructure;
 
-/* `mass` is that of the lattice's vertices (lib/engine/engine.h): each gives equal parts of it to
+/* `mass` is that of the lattice's vertices (lib/engine/engine.h): each gives equal shares of it to
  * the material cells around it, and a leaf weighs what its cells do; NULL: 1 a cell. Errors
  * (SM_INPUT), on which `structure` is zeroed: those of oct_sampling_tree(), and options out of
  * range. The caller frees. */

@@ -13,17 +13,17 @@ enum { ALL = (1 << OCT_SOURCES) - 1 };
 
 /* Vectors as wide as the processor's: gcc compares wider ones number by number. */
 #if defined(OCT_MASKS)
-enum { PARTS = 1 };
+enum { VECTORS = 1 };
 #elif defined(__AVX2__)
-enum { PARTS = 2 };
+enum { VECTORS = 2 };
 #else
-enum { PARTS = 4 };
+enum { VECTORS = 4 };
 #endif
-typedef int Part __attribute__((vector_size(OCT_SOURCES / PARTS * sizeof(int))));
+typedef int Vector __attribute__((vector_size(OCT_SOURCES / VECTORS * sizeof(int))));
 typedef union {
     OctLanes all;
-    Part part[PARTS];
-} Parts;
+    Vector vector[VECTORS];
+} Vectors;
 
 /* The lanes in which a is less than b. */
 static inline unsigned below(OctLanes a, OctLanes b)
@@ -33,31 +33,31 @@ static inline unsigned below(OctLanes a, OctLanes b)
 #else
     const OctLanes bit = {1,   2,   4,       8,       16,      32,      64,      128,
                           256, 512, 1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15};
-    Parts p = {a}, q = {b}, r = {bit};
-    Part mask = {0};
+    Vectors p = {a}, q = {b}, r = {bit};
+    Vector mask = {0};
     int sum = 0;
-    for (int i = 0; i < PARTS; i++) mask |= (p.part[i] < q.part[i]) & r.part[i];
-    for (int l = 0; l < OCT_SOURCES / PARTS; l++) sum |= mask[l];
+    for (int i = 0; i < VECTORS; i++) mask |= (p.vector[i] < q.vector[i]) & r.vector[i];
+    for (int l = 0; l < OCT_SOURCES / VECTORS; l++) sum |= mask[l];
     return (unsigned)sum;
 #endif
 }
 
 static inline OctLanes least_of(OctLanes a, OctLanes b)
 {
-    Parts p = {a}, q = {b};
-    for (int i = 0; i < PARTS; i++) {
-        Part is = p.part[i] < q.part[i];
-        p.part[i] = (p.part[i] & is) | (q.part[i] & ~is);
+    Vectors p = {a}, q = {b};
+    for (int i = 0; i < VECTORS; i++) {
+        Vector is = p.vector[i] < q.vector[i];
+        p.vector[i] = (p.vector[i] & is) | (q.vector[i] & ~is);
     }
     return p.all;
 }
 
 static inline OctLanes most_of(OctLanes a, OctLanes b)
 {
-    Parts p = {a}, q = {b};
-    for (int i = 0; i < PARTS; i++) {
-        Part is = p.part[i] > q.part[i];
-        p.part[i] = (p.part[i] & is) | (q.part[i] & ~is);
+    Vectors p = {a}, q = {b};
+    for (int i = 0; i < VECTORS; i++) {
+        Vector is = p.vector[i] > q.vector[i];
+        p.vector[i] = (p.vector[i] & is) | (q.vector[i] & ~is);
     }
     return p.all;
 }
@@ -133,15 +133,13 @@ static long spread(OctSearch *s, long place, long end)
 {
     const OctGraph *g = s->reach->graph;
     int leaf = s->leaf[place];
-    long edges = g->edges.end[leaf] - g->edges.first[leaf];
+    long first = g->edges.first[leaf], edges = g->edges.end[leaf] - first;
     OctLanes here = s->distance[place];
     s->waiting[place] = false;
     if (!below(here, s->beyond - s->reach->nearest[leaf])) return end;
     make_leaves(s, s->leaves + edges);
     sm_make_room(s->queue, s->queue_room, end + edges);
-    const int *restrict to = g->edges.item + g->edges.first[leaf], *restrict length =
-                                                                       oct_graph_length(g) +
-                                                                       g->edges.first[leaf];
+    const int *restrict to = g->edges.item + first, *restrict length = oct_graph_length(g) + first;
     OctLanes *restrict distance = s->distance, beyond = s->beyond;
     int *restrict queue = s->queue;
     bool *restrict waiting = s->waiting;
@@ -172,10 +170,7 @@ void oct_search_distances(OctSearch *s, int count, const int *leaf, const int *r
     s->beyond = same(0);
     for (int l = 0; l < count; l++) s->beyond[l] = reaches[l] + 1;
     make_leaves(s, OCT_SOURCES);
-    if (s->queue_room < OCT_SOURCES) {
-        s->queue_room = OCT_SOURCES;
-        s->queue = sm_realloc(s->queue, (size_t)s->queue_room, sizeof *s->queue);
-    }
+    sm_make_room(s->queue, s->queue_room, OCT_SOURCES);
     for (int l = 0; l < count; l++) {
         s->leaf_at[leaf[l]] = l;
         s->leaf[l] = leaf[l];

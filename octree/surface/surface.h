@@ -64,10 +64,10 @@ void oct_surface_update(OctSurface *surface, const SmMesh *mesh, const OctCarrie
                         long count, const int *node, long first);
 
 /* Moves vertices that follow the wrong side of a cut to the leaves of a neighbour on the surface
- * (lib/cut/side_consistency.h): neighbours on a surface should belong to leaves that no cut parts.
- * `carrier` has a cut. To be called again after every oct_surface_update(). Returns how many.
- * O(vertices + triangles), and a look at the cut for every edge of the surface between leaves that
- * are no neighbours. */
+ * (lib/cut/side_consistency.h): neighbours on a surface should belong to leaves that no cut
+ * separates. `carrier` has a cut. To be called again after every oct_surface_update(). Returns how
+ * many. O(vertices + triangles), and a look at the cut for every edge of the surface between leaves
+ * that are no neighbours. */
 long oct_surface_agree(OctSurface *surface, const SmMesh *mesh, const OctCarrier *carrier);
 
 /* Vertex positions (and unit normals, unless NULL) from node positions x, all in mesh units. A

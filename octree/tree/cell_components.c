@@ -25,7 +25,7 @@ static int facing(int direction)
 }
 
 /* The finest cells of a 2 x 2 x 2 cell all touch, and so do those that face each other across its
- * border: one part each, and contacts by masks. */
+ * border: one component each, and contacts by masks. */
 static void build_lowest(OctCellComponents *p, int level)
 {
     const OctTree *t = p->tree;
@@ -33,7 +33,7 @@ static void build_lowest(OctCellComponents *p, int level)
     long from = t->level_first[level], n = t->level_first[level + 1] - from;
     int face[OCT_DIRECTIONS];
     SmCsrParts contacts;
-    layer->parts = n;
+    layer->components = n;
     layer->first = sm_alloc((size_t)n + 1, sizeof *layer->first);
     layer->node = sm_alloc((size_t)n, sizeof *layer->node);
     sm_csr_parts_init(&contacts, n);
@@ -68,56 +68,56 @@ static void unite(int *up, int i, int j)
     up[i > j ? i : j] = i < j ? i : j;
 }
 
-/* Joins the parts below that touch within one cell; numbers the cells' parts. Returns for each part
- * below the part it belongs to. */
-static int *join_parts(const OctTree *t, int level, const OctLayer *below, OctLayer *layer)
+/* Joins the components below that touch within one cell; numbers the cells' components. Returns the
+ * owner of each one below: the component that it belongs to. */
+static int *join_components(const OctTree *t, int level, const OctLayer *below, OctLayer *layer)
 {
     long from = t->level_first[level], n = t->level_first[level + 1] - from;
-    int *up = sm_alloc((size_t)below->parts, sizeof *up);
-    for (int i = 0; i < below->parts; i++) up[i] = i;
-    for (int i = 0; i < below->parts; i++)
+    int *up = sm_alloc((size_t)below->components, sizeof *up);
+    for (int i = 0; i < below->components; i++) up[i] = i;
+    for (int i = 0; i < below->components; i++)
         for (long c = below->contacts.first[i]; c < below->contacts.end[i]; c++)
             if (t->parent[below->node[below->contacts.item[c]]] == t->parent[below->node[i]])
                 unite(up, i, below->contacts.item[c]);
     layer->first = sm_alloc((size_t)n + 1, sizeof *layer->first);
-    int *part = sm_alloc((size_t)below->parts, sizeof *part);
-    for (int i = 0; i < below->parts; i++) {
+    int *owner = sm_alloc((size_t)below->components, sizeof *owner);
+    for (int i = 0; i < below->components; i++) {
         int root = root_of(up, i);
-        part[i] = root == i ? (int)layer->parts++ : part[root];
-        layer->first[t->parent[below->node[i]] - from + 1] = (int)layer->parts;
+        owner[i] = root == i ? (int)layer->components++ : owner[root];
+        layer->first[t->parent[below->node[i]] - from + 1] = (int)layer->components;
     }
-    layer->node = sm_alloc((size_t)layer->parts, sizeof *layer->node);
-    for (int i = 0; i < below->parts; i++) layer->node[part[i]] = t->parent[below->node[i]];
+    layer->node = sm_alloc((size_t)layer->components, sizeof *layer->node);
+    for (int i = 0; i < below->components; i++) layer->node[owner[i]] = t->parent[below->node[i]];
     free(up);
-    return part;
+    return owner;
 }
 
-/* Parts below in the order of the parts they belong to. */
-static int *members_of(const int *part, const OctLayer *below, long parts, long *first)
+/* Components below in the order of their owners. */
+static int *members_of(const int *owner, const OctLayer *below, long owners, long *first)
 {
-    int *member = sm_alloc((size_t)below->parts, sizeof *member);
-    for (long i = 0; i < below->parts; i++) first[part[i] + 1]++;
-    for (long q = 0; q < parts; q++) first[q + 1] += first[q];
-    for (int i = 0; i < below->parts; i++) member[first[part[i]]++] = i;
-    memmove(first + 1, first, (size_t)parts * sizeof *first);
+    int *member = sm_alloc((size_t)below->components, sizeof *member);
+    for (long i = 0; i < below->components; i++) first[owner[i] + 1]++;
+    for (long q = 0; q < owners; q++) first[q + 1] += first[q];
+    for (int i = 0; i < below->components; i++) member[first[owner[i]]++] = i;
+    memmove(first + 1, first, (size_t)owners * sizeof *first);
     first[0] = 0;
     return member;
 }
 
-static void join_contacts(const int *part, const OctLayer *below, OctLayer *layer)
+static void join_contacts(const int *owner, const OctLayer *below, OctLayer *layer)
 {
-    size_t parts = (size_t)layer->parts;
-    long *first = sm_alloc(parts + 1, sizeof *first);
-    int *member = members_of(part, below, layer->parts, first);
-    int *seen = sm_alloc(parts, sizeof *seen); /* by which part, from 1 */
+    size_t components = (size_t)layer->components;
+    long *first = sm_alloc(components + 1, sizeof *first);
+    int *member = members_of(owner, below, layer->components, first);
+    int *seen = sm_alloc(components, sizeof *seen); /* by which one, from 1 */
     SmCsrParts contacts;
-    sm_csr_parts_init(&contacts, layer->parts);
-    for (int q = 0; q < layer->parts; q++) {
+    sm_csr_parts_init(&contacts, layer->components);
+    for (int q = 0; q < layer->components; q++) {
         seen[q] = q + 1;
         for (long m = first[q]; m < first[q + 1]; m++)
             for (long c = below->contacts.first[member[m]]; c < below->contacts.end[member[m]];
                  c++) {
-                int other = part[below->contacts.item[c]];
+                int other = owner[below->contacts.item[c]];
                 if (seen[other] == q + 1) continue;
                 seen[other] = q + 1;
                 sm_csr_parts_add(&contacts, q, &other, 1);
@@ -127,42 +127,43 @@ static void join_contacts(const int *part, const OctLayer *below, OctLayer *laye
     sm_free_all(first, member, seen);
 }
 
-void oct_components_build(const OctTree *whole, OctCellComponents *parts)
+void oct_components_build(const OctTree *whole, OctCellComponents *components)
 {
     size_t inner = (size_t)whole->level_first[whole->levels];
-    *parts = (OctCellComponents){.tree = whole};
-    parts->octants = oct_tree_octants(whole);
-    parts->beside = sm_alloc(inner, sizeof *parts->beside);
+    *components = (OctCellComponents){.tree = whole};
+    components->octants = oct_tree_octants(whole);
+    components->beside = sm_alloc(inner, sizeof *components->beside);
     for (int n = 0; n < (int)inner; n++)
         if (n < whole->roots)
-            oct_neighbours_of_root(whole, n, parts->beside[n]);
+            oct_neighbours_of_root(whole, n, components->beside[n]);
         else
-            oct_neighbours_of_child(whole, parts->octants, parts->beside[whole->parent[n]], n,
-                                    parts->beside[n]);
-    build_lowest(parts, whole->levels - 1);
+            oct_neighbours_of_child(whole, components->octants,
+                                    components->beside[whole->parent[n]], n, components->beside[n]);
+    build_lowest(components, whole->levels - 1);
     for (int l = whole->levels - 2; l >= 0; l--) {
-        int *part = join_parts(whole, l, &parts->layer[l + 1], &parts->layer[l]);
-        join_contacts(part, &parts->layer[l + 1], &parts->layer[l]);
-        free(part);
+        int *owner = join_components(whole, l, &components->layer[l + 1], &components->layer[l]);
+        join_contacts(owner, &components->layer[l + 1], &components->layer[l]);
+        free(owner);
     }
 }
 
-void oct_components_free(OctCellComponents *parts)
+void oct_components_free(OctCellComponents *components)
 {
     for (int l = 0; l < OCT_MAX_LEVELS; l++) {
-        free(parts->layer[l].first);
-        free(parts->layer[l].node);
-        sm_csr_free(&parts->layer[l].contacts);
+        free(components->layer[l].first);
+        free(components->layer[l].node);
+        sm_csr_free(&components->layer[l].contacts);
     }
-    free(parts->octants);
-    free(parts->beside);
-    memset(parts, 0, sizeof *parts);
+    free(components->octants);
+    free(components->beside);
+    memset(components, 0, sizeof *components);
 }
 
-/* The cells of a box of up to 2 x 2 x 2 cells, and where their parts are in a list of them all. */
+/* The cells of a box of up to 2 x 2 x 2 cells, and where their components are in a list of them
+ * all. */
 typedef struct {
     int cells, node[8], first[8], offset[8];
-    int parts;
+    int components;
 } Box;
 
 static Box box_around(const OctCellComponents *p, const OctLayer *layer, long from, int node,
@@ -181,20 +182,21 @@ static Box box_around(const OctCellComponents *p, const OctLayer *layer, long fr
         if (twice || cell < 0) continue;
         box.node[box.cells] = cell;
         box.first[box.cells] = layer->first[cell - from];
-        box.offset[box.cells++] = box.parts;
-        box.parts += layer->first[cell - from + 1] - layer->first[cell - from];
+        box.offset[box.cells++] = box.components;
+        box.components += layer->first[cell - from + 1] - layer->first[cell - from];
     }
     return box;
 }
 
 static void unite_box(const OctLayer *layer, const Box *box, int *up)
 {
-    for (int i = 0; i < box->parts; i++) up[i] = i;
+    for (int i = 0; i < box->components; i++) up[i] = i;
     for (int b = 0; b < box->cells; b++) {
-        int end = b + 1 < box->cells ? box->offset[b + 1] : box->parts;
+        int end = b + 1 < box->cells ? box->offset[b + 1] : box->components;
         for (int i = box->offset[b]; i < end; i++) {
-            int part = box->first[b] + i - box->offset[b];
-            for (long c = layer->contacts.first[part]; c < layer->contacts.end[part]; c++) {
+            int component = box->first[b] + i - box->offset[b];
+            for (long c = layer->contacts.first[component]; c < layer->contacts.end[component];
+                 c++) {
                 int other = layer->contacts.item[c];
                 for (int o = 0; o < b; o++)
                     if (box->node[o] == layer->node[other])
@@ -204,9 +206,9 @@ static void unite_box(const OctLayer *layer, const Box *box, int *up)
     }
 }
 
-static bool touch(const OctLayer *layer, int part, int other)
+static bool touch(const OctLayer *layer, int component, int other)
 {
-    for (long c = layer->contacts.first[part]; c < layer->contacts.end[part]; c++)
+    for (long c = layer->contacts.first[component]; c < layer->contacts.end[component]; c++)
         if (layer->contacts.item[c] == other) return true;
     return false;
 }
@@ -222,12 +224,12 @@ bool oct_components_weld(const OctCellComponents *p, int node, int direction)
     bool single = mine[1] - mine[0] == 1 && theirs[1] - theirs[0] == 1;
     if (single && touch(layer, mine[0], theirs[0])) return false;
     Box box = box_around(p, layer, from, node, direction);
-    int *up = sm_alloc((size_t)box.parts, sizeof *up), one = -1;
+    int *up = sm_alloc((size_t)box.components, sizeof *up), one = -1;
     unite_box(layer, &box, up);
     bool weld = false;
     for (int b = 0; b < box.cells; b++) {
         if (box.node[b] != node && box.node[b] != other) continue;
-        int end = b + 1 < box.cells ? box.offset[b + 1] : box.parts;
+        int end = b + 1 < box.cells ? box.offset[b + 1] : box.components;
         for (int i = box.offset[b]; i < end; i++) {
             int root = root_of(up, i);
             weld = weld || (one >= 0 && root != one);

@@ -2,19 +2,19 @@
  * weld it.
  *
  * Finest cells connect where they share a face, an edge or a corner (FastLSM's rule: they share a
- * particle). A part is a component of a cell's material that connects within the cell. */
+ * particle). A component is as much of a cell's material as connects within the cell. */
 #ifndef OCT_CELL_COMPONENTS_H
 #define OCT_CELL_COMPONENTS_H
 
 #include "../../lib/csr.h"
 #include "neighbours.h"
 
-/* The parts of one level's cells and which of them touch across the cells' borders. */
+/* The components of one level's cells and which of them touch across the cells' borders. */
 typedef struct {
-    long parts;
-    int *first;     /* [cells of the level + 1] first part of every cell */
-    int *node;      /* [parts] tree node */
-    SmCsr contacts; /* of every part: those of other cells that touch it */
+    long components;
+    int *first;     /* [cells of the level + 1] first component of every cell */
+    int *node;      /* [components] tree node */
+    SmCsr contacts; /* of every component: those of other cells that touch it */
 } OctLayer;
 
 typedef struct {
@@ -26,13 +26,13 @@ typedef struct {
 
 /* For the cells of all levels but the finest of a whole tree (oct_tree_build()), which must stay.
  * O(nodes + contacts). The caller frees. */
-void oct_components_build(const OctTree *whole, OctCellComponents *parts);
-void oct_components_free(OctCellComponents *parts);
+void oct_components_build(const OctTree *whole, OctCellComponents *components);
+void oct_components_free(OctCellComponents *components);
 
 /* Whether a cell as a leaf welds what does not connect there: for OCT_HERE, whether the cell has
- * several parts; else whether the material of the cell and of the cell of its size in that
+ * several components; else whether the material of the cell and of the cell of its size in that
  * direction does not connect within the box around both. A convex body is never welded. False
- * where there is no cell in that direction. O(parts and contacts of the cells in the box). */
-bool oct_components_weld(const OctCellComponents *parts, int node, int direction);
+ * where there is no cell in that direction. O(components and contacts of the cells in the box). */
+bool oct_components_weld(const OctCellComponents *components, int node, int direction);
 
 #endif

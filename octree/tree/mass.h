@@ -15,7 +15,7 @@ typedef struct {
     long *row_first; /* [rows along x] cells before a row; NULL with `cell` */
 } OctMass;
 
-/* `vertex` is [voxels->particle_count], what the lattice's vertices weigh: each gives equal parts
+/* `vertex` is [voxels->particle_count], what the lattice's vertices weigh: each gives equal shares
  * of it to the material cells around it. NULL: every cell weighs 1. O(cells + words). The caller
  * frees. */
 void oct_mass_init(OctMass *mass, const SmVoxels *voxels, const double *vertex, OctMassRule rule);

@@ -73,7 +73,7 @@ typedef struct {
     const OctSampling *sampling;
     const SmVoxels *voxels;
     const OctTree *whole;
-    OctCellComponents parts;
+    OctCellComponents components;
     long *surface;                /* [whole nodes] finest cells with an empty face in it */
     unsigned char *split, *asked; /* [whole nodes] is it split; has a criterion asked for it */
     int *order;                   /* the splits in the order made */
@@ -160,7 +160,7 @@ static bool asks(const Splitter *s, const OctCriterion *c, int node)
     case OCT_UNIFORM:
         return true;
     case OCT_FEATURES:
-        return oct_components_weld(&s->parts, node, OCT_HERE);
+        return oct_components_weld(&s->components, node, OCT_HERE);
     case OCT_SURFACE:
         return s->surface[node] > 0;
     case OCT_BOX:
@@ -198,10 +198,10 @@ static void consider(Splitter *s, int node)
             ask(s, node);
     if (level >= feature_level(sampling)) return;
     for (int d = 0; d < OCT_DIRECTIONS; d++) {
-        int other = s->parts.beside[node][d];
+        int other = s->components.beside[node][d];
         if (d == OCT_HERE || other < 0 || !exists(s, other)) continue;
         bool known = s->asked[node] && (s->asked[other] || s->split[other]);
-        if (known || !oct_components_weld(&s->parts, node, d)) continue;
+        if (known || !oct_components_weld(&s->components, node, d)) continue;
         ask(s, node);
         ask(s, other);
     }
@@ -290,7 +290,7 @@ static void splitter_init(Splitter *s, const OctSampling *sampling, const SmVoxe
 {
     size_t nodes = (size_t)whole->nodes, inner = (size_t)whole->level_first[whole->levels];
     *s = (Splitter){.sampling = sampling, .voxels = voxels, .whole = whole};
-    oct_components_build(whole, &s->parts);
+    oct_components_build(whole, &s->components);
     s->surface = count_surface(whole, voxels);
     s->split = sm_alloc(nodes, 1);
     s->asked = sm_alloc(nodes, 1);
@@ -303,7 +303,7 @@ static void splitter_init(Splitter *s, const OctSampling *sampling, const SmVoxe
 
 static void splitter_free(Splitter *splitter)
 {
-    oct_components_free(&splitter->parts);
+    oct_components_free(&splitter->components);
     sm_free_all(splitter->surface, splitter->split, splitter->asked, splitter->order,
                 splitter->needed.cell, splitter->others.cell);
     memset(splitter, 0, sizeof *splitter);
@@ -359,12 +359,12 @@ static void count_welds(const Splitter *s, OctSampleReport *report)
 {
     for (int n = 0; n < s->whole->level_first[s->whole->levels]; n++) {
         if (!is_leaf(s, n)) continue;
-        report->welded_cells += oct_components_weld(&s->parts, n, OCT_HERE);
+        report->welded_cells += oct_components_weld(&s->components, n, OCT_HERE);
         for (int d = 0; d < OCT_DIRECTIONS; d++) {
-            int other = s->parts.beside[n][d];
+            int other = s->components.beside[n][d];
             if (d == OCT_HERE || other < 0 || !exists(s, other)) continue;
             if (other < n && !s->split[other]) continue; /* counted from the other side */
-            report->welded_pairs += oct_components_weld(&s->parts, n, d);
+            report->welded_pairs += oct_components_weld(&s->components, n, d);
         }
     }
 }

@@ -1,11 +1,11 @@
 /* sampling.h - which cells of the octrees are split (octree section 4.1).
  *
  * The whole tree has every cell with material split down to the finest cells; a sampling chooses
- * the part of it whose leaves become simulation nodes. Splits are made in one order, which depends
- * on nothing but the voxels and the sampling: those that a criterion asks for, coarse cells first,
- * among cells of a size those with most material, then along the tree; and if more nodes are wanted
- * than that gives, every other cell, coarse cells first, among cells of a size those with most
- * surface. A wanted number of nodes stops where the number is nearest. */
+ * the tree within it whose leaves become simulation nodes. Splits are made in one order, which
+ * depends on nothing but the voxels and the sampling: those that a criterion asks for, coarse cells
+ * first, among cells of a size those with most material, then along the tree; and if more nodes are
+ * wanted than that gives, every other cell, coarse cells first, among cells of a size those with
+ * most surface. A wanted number of nodes stops where the number is nearest. */
 #ifndef OCT_SAMPLING_H
 #define OCT_SAMPLING_H
 
@@ -49,7 +49,7 @@ typedef struct {
     long bases, nodes;   /* base cells and simulation nodes there are */
     long wanted_bases;   /* as the sampling says, or 0 */
     long wanted_nodes;   /* as the sampling says, or 0 */
-    long welded_cells;   /* leaves above the finest level whose material falls into parts */
+    long welded_cells;   /* leaves above the finest level whose material has several components */
     long welded_pairs;   /* leaves above the finest level and touching tree nodes of the same size
                           * that do not connect within the box around both */
     long splits;         /* in all */
