@@ -6,37 +6,35 @@
 
 #include "svd_polar.h"
 
-/* Appends the leaves below a tree node, numbered among those that live; returns how many there are
- * then. */
-static long append_leaves(const OctTree *tree, const int *number, long node, int *member,
-                          long count)
+/* Appends the leaves below a tree node to a region, numbered among those that live. */
+static void append_leaves(const OctTree *tree, const int *number, long node, long region,
+                          SmCsrParts *members)
 {
-    if (tree->child[node] < 0) {
-        if (member) member[count] = number[tree->leaf[node]];
-        return count + 1;
-    }
+    if (tree->child[node] < 0) sm_csr_parts_add(members, region, &number[tree->leaf[node]], 1);
     for (int i = 0; i < tree->children[node]; i++)
-        count = append_leaves(tree, number, tree->child[node] + i, member, count);
-    return count;
+        append_leaves(tree, number, tree->child[node] + i, region, members);
 }
 
-static long explicit_leaves(const OctTree *tree, const OctRegions *regions, const int *number,
-                            long *start, int *member)
+/* The leaves of every region, in the order of its summation nodes. */
+static void explicit_regions(const OctTree *tree, const OctRegions *regions, RefRegions *explicit)
 {
-    long count = 0, live = 0;
-    for (long r = 0; r < tree->leaves; r++) {
-        if (tree->node[r] < 0) continue;
-        start[live++] = count;
-        for (long n = regions->members.first[r]; n < regions->members.end[r]; n++)
-            count = append_leaves(tree, number, regions->members.item[n], member, count);
-    }
-    start[live] = count;
-    return count;
+    int *number = sm_alloc((size_t)tree->leaves, sizeof *number), live = 0;
+    SmCsr rows;
+    SmCsrParts members;
+    for (long leaf = 0; leaf < tree->leaves; leaf++)
+        if (tree->node[leaf] >= 0) number[leaf] = live++;
+    sm_csr_parts_init(&members, live);
+    for (long r = 0; r < tree->leaves; r++)
+        for (long n = regions->members.first[r]; tree->node[r] >= 0 && n < regions->members.end[r];
+             n++)
+            append_leaves(tree, number, regions->members.item[n], number[r], &members);
+    sm_csr_parts_join(&members, &rows, 0);
+    *explicit = (RefRegions){.count = live, .start = rows.first, .member = rows.item};
+    free(number);
 }
 
-static void start_leaf(RefTreeBody *body, const OctTree *tree, long leaf, double m)
+static void start_leaf(RefTreeBody *body, long i, const OctTree *tree, long leaf, double m)
 {
-    long i = body->regions.count++;
     body->m[i] = m;
     for (int a = 0; a < 3; a++) {
         body->x0[i][a] = 0.5 * tree->centre[tree->node[leaf]][a];
@@ -48,15 +46,10 @@ void ref_tree_init(const OctTree *tree, const OctRegions *regions, const double 
                    RefTreeBody *body)
 {
     size_t n = (size_t)tree->leaves;
-    int *number = sm_alloc(n, sizeof *number), live = 0;
-    for (long leaf = 0; leaf < tree->leaves; leaf++)
-        if (tree->node[leaf] >= 0) number[leaf] = live++;
+    long live = 0;
     memset(body, 0, sizeof *body);
-    RefRegions *r = &body->regions;
-    r->start = sm_alloc(n + 1, sizeof *r->start);
-    r->member =
-        sm_alloc((size_t)explicit_leaves(tree, regions, number, r->start, NULL), sizeof(int));
-    explicit_leaves(tree, regions, number, r->start, r->member);
+    const RefRegions *r = &body->regions;
+    explicit_regions(tree, regions, &body->regions);
     body->x0 = sm_alloc(n, sizeof *body->x0);
     body->m = sm_alloc(n, sizeof *body->m);
     body->weight = sm_alloc(n, sizeof *body->weight);
@@ -64,13 +57,12 @@ void ref_tree_init(const OctTree *tree, const OctRegions *regions, const double 
     body->R = sm_alloc(n, sizeof *body->R);
     body->S = sm_alloc(n, sizeof *body->S);
     for (long leaf = 0; leaf < tree->leaves; leaf++)
-        if (tree->node[leaf] >= 0) start_leaf(body, tree, leaf, m[leaf]);
+        if (tree->node[leaf] >= 0) start_leaf(body, live++, tree, leaf, m[leaf]);
     for (long i = 0; i < r->count; i++)
         for (long k = r->start[i]; k < r->start[i + 1]; k++)
             body->reach[r->member[k]] += body->m[i];
     for (long i = 0; i < r->count; i++)
         body->weight[i] = plain ? body->m[i] : body->m[i] / body->reach[i];
-    free(number);
 }
 
 void ref_tree_free(RefTreeBody *body)
