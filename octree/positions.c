@@ -51,7 +51,7 @@ void oct_recentre(Oct *oct)
         for (long f = 0; f < oct->frames; f++)
             for (int d = 0; d < 3; d++) {
                 double middle = rint(oct->middle[f][d] / oct->middle[f][3]);
-                middle = fabs(middle) > 4 ? middle : 0; /* 0 of a NaN, too */
+                middle = fabs(middle) > 4 ? middle : 0; /* a NaN gives 0, too */
                 oct->middle[f][d] = middle;
                 b->origin[f][d] += middle;
                 moves |= middle != 0;

@@ -95,7 +95,7 @@ static void unpack(const short last[6], double R[9])
 static void fit(const Oct *oct, const OctTree *tree, const int *slot, const OctTransfer *t,
                 OctDonor *donor)
 {
-    /* of the cell that is split or merged; middles of its parts are a quarter of its edge away */
+    /* of the cell that is split or merged; middles of its eighths are a quarter of its edge away */
     int cell = donor->into < 0 ? donor->node : tree->node[donor->into];
     double least = 0.5 * tree->size[cell] / 8;
     Walk own = {.oct = oct, .donor = donor}, region = {.oct = oct, .slot = slot, .donor = donor};
@@ -114,10 +114,7 @@ static void make_room(const Oct *oct, const OctChange *change, OctTransfer *t)
     long leaves = oct->leaves;
     for (long n = 0; n < change->added_count; n++)
         if (change->added[n].leaf >= leaves) leaves = change->added[n].leaf + 1L;
-    if (leaves > t->leaves) {
-        t->leaves = 2 * leaves;
-        t->of = sm_realloc(t->of, (size_t)t->leaves, sizeof *t->of);
-    }
+    sm_make_room(t->of, t->leaves, leaves);
 }
 
 void oct_transfer_keep(const Oct *oct, const OctTree *tree, const OctChange *change,

@@ -62,8 +62,8 @@ static long spread(OctReach *reach, int leaf, int k, int most, int place, long e
     struct OctEntry *nearer = reach->entry + entries; /* the lengths in the place of `before` */
     const int *restrict to = g->edges.item, *restrict length = oct_graph_length(g),
                         *restrict known = reach->distance;
-    for (long e = g->edges.first[leaf]; e < end;
-         e++) { /* it cannot be predicted which: no branch */
+    /* no branch: it cannot be predicted which are nearer */
+    for (long e = g->edges.first[leaf]; e < end; e++) {
         int d = k + length[e];
         *nearer = (struct OctEntry){to[e], length[e]};
         nearer += (d < known[to[e]]) & (d <= most);

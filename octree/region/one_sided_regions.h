@@ -30,7 +30,9 @@ void oct_one_sided_free(OctOneSided *one_sided);
 bool oct_one_sided_holds(const OctOneSided *one_sided, const OctTree *tree, long i, int leaf);
 
 /* The union of the one-sided region of leaf i and its reverse list: returns how many members it
- * has, which are *member, and how far it reaches. `cover` is scratch, in which they may be. */
+ * has. *member are these, rising, in `one_sided` or in the scratch `cover`, until it is used again;
+ * *width is the largest distance of a leaf in it. O(members, and levels for each in the reverse
+ * list). */
 long oct_one_sided_union(const OctOneSided *one_sided, long i, OctCover *cover, const int **member,
                          int *width);
 

@@ -47,8 +47,8 @@ static void common_members(const OctTree *tree, const SmCsr *members, SmCsr *com
 }
 
 /* What every node adds itself: an inner node what its children have in common, where that spares
- * additions: each entry one for every child but the first, less the prefix's own row and its
- * inheritance. */
+ * additions: each entry one for every child but the first, less one a child for the prefix's row
+ * and one for that of the prefix above. */
 static void share_members(const OctTree *tree, const SmCsr *common, SmCsr *own)
 {
     int *base = sm_alloc((size_t)tree->nodes, sizeof(int)); /* 1 + nearest prefix above, or 0 */
@@ -124,8 +124,6 @@ static void pack(const OctTree *tree, const SmCsr *own, OctSumLists *lists)
     int *above = sm_alloc((size_t)tree->nodes, sizeof(int)); /* prefix above a node, or -1 */
     long next = 0, slots = oct_slots(tree->leaves), count = lists->prefixes + slots;
     Writer w = {.lists = lists, .first = sm_alloc((size_t)count + 1, sizeof *w.first)};
-    w.room = own->live + OCT_GROUP * count;
-    w.row = sm_alloc((size_t)w.room, sizeof *w.row);
     for (long n = 0; n < tree->nodes; n++) {
         if (tree->parent[n] < 0) above[n] = -1;
         int below = above[n];

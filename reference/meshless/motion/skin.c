@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
 enum { BLOCK = 64, LANES = 16 };
 
 typedef struct {
