@@ -91,8 +91,7 @@ static void free_free(Free *f)
     f->type->destroy(f->engine);
     sm_voxels_free(&f->voxels);
     sm_pieces_free(&f->pieces);
-    void *all[] = {f->pose, f->rest, f->x, f->v, f->m};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(f->pose, f->rest, f->x, f->v, f->m);
 }
 
 /* Momenta of a piece, and the sums of the amounts that they are made of. */
@@ -271,12 +270,12 @@ TEST(a_needle_that_turns_end_over_end_keeps_its_momenta_and_gains_no_energy)
 
 /* A cube of one region that turns slowly and springs between an eighth and twice its size for ever,
  * as 1 + 0.9 cos(60 degrees step + 15 degrees): from a step to the next its inertia grows up to 34
- * times. */
+ * times. In the later trials its momenta are forgotten now and then, at any size. */
 TEST(a_body_that_swells_and_shrinks_keeps_its_momenta)
 {
     unsigned seed = 9;
-    for (int trial = 0; trial < 4; trial++) {
-        Free f = {.type = types[trial], .params = {.w = 3, .h = 0.01, .instances = 1}, .n = 0};
+    for (int trial = 0; trial < 8; trial++) {
+        Free f = {.type = types[trial % 4], .params = {.w = 3, .h = 0.01, .instances = 1}, .n = 0};
         const OctOptions whole = {.width.cells = 9};
         SmError error = {0};
         f.params.octree = &whole;
@@ -299,6 +298,8 @@ TEST(a_body_that_swells_and_shrinks_keeps_its_momenta)
         get_state(&f);
         Sums before = sums_of(&f, 0);
         for (int step = 0; step < 600; step++) { /* 100 times there and back */
+            if (trial > 3 && step % 11 == 0)
+                f.type->set(f.engine, SM_VELOCITY, (const double(*)[3])f.v);
             f.type->step(f.engine, NULL);
             get_state(&f);
             Sums now = sums_of(&f, 0); /* what rounding has to do with */
@@ -306,7 +307,7 @@ TEST(a_body_that_swells_and_shrinks_keeps_its_momenta)
             before.lever = fmax(before.lever, now.lever);
         }
         fall(&f, 600, &before);
-        check_piece(&f, &before, 0, 1, trial);
+        check_piece(&f, &before, 0, trial > 3 ? 3 : 1, trial);
         free_free(&f);
     }
 }
