@@ -100,6 +100,17 @@ static void find_regions(Lsm *lsm, int *original, bool *listed)
     if (fixups) lsm_fixups_close(fixups, lsm);
 }
 
+/* Lists p among the copies if its region equals an earlier one of its layer, which begins with
+ * `plane`. */
+static bool add_copy(Lsm *lsm, const int *original, long p, int plane)
+{
+    int from = original[p];
+    if (from == p || lsm->lattice.coord[from][2] < plane) return false;
+    lsm->copy[lsm->copies][0] = lsm->slot[p];
+    lsm->copy[lsm->copies++][1] = lsm->slot[from];
+    return true;
+}
+
 /* Tiles of unique regions, each layer beginning a new tile; copies go to a list of their own. */
 static void build_tiles(Lsm *lsm, const int *original)
 {
@@ -115,22 +126,16 @@ static void build_tiles(Lsm *lsm, const int *original)
         at = (at + SM_LANES - 1) / SM_LANES * SM_LANES;
         lsm->layer_tile[l] = at / SM_LANES;
         lsm->layer_copy[l] = lsm->copies;
-        for (; p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1]; p++) {
-            bool same_layer = lsm->lattice.coord[original[p]][2] >= lsm->layer_plane[l];
-            if (original[p] != p && same_layer) {
-                lsm->copy[lsm->copies][0] = lsm->slot[p];
-                lsm->copy[lsm->copies++][1] = lsm->slot[original[p]];
-                continue;
-            }
-            lsm->tile_slot[at++] = lsm->slot[p];
-        }
+        for (; p < n && lsm->lattice.coord[p][2] < lsm->layer_plane[l + 1]; p++)
+            if (!add_copy(lsm, original, p, lsm->layer_plane[l]))
+                lsm->tile_slot[at++] = lsm->slot[p];
     }
     lsm->layer_copy[lsm->layers] = lsm->copies;
     lsm->tiles = (at + SM_LANES - 1) / SM_LANES;
     lsm->layer_tile[lsm->layers] = lsm->tiles;
 }
 
-/* Of instances: of one layer, which all are like. */
+/* Of instances: those of one group, which all are like; copies stay within layers of planes. */
 static void build_instance_tiles(Lsm *lsm, const int *original)
 {
     long at = 0;
@@ -139,12 +144,7 @@ static void build_instance_tiles(Lsm *lsm, const int *original)
     lsm->copies = 0;
     for (int p = 0, layer = 0; p < lsm->lattice.count; p++) {
         while (lsm->lattice.coord[p][2] >= lsm->layer_plane[layer + 1]) layer++;
-        if (original[p] == p || lsm->lattice.coord[original[p]][2] < lsm->layer_plane[layer]) {
-            lsm->tile_slot[at++] = p;
-            continue;
-        }
-        lsm->copy[lsm->copies][0] = p;
-        lsm->copy[lsm->copies++][1] = original[p];
+        if (!add_copy(lsm, original, p, lsm->layer_plane[layer])) lsm->tile_slot[at++] = p;
     }
     lsm->tiles = lsm->layers * at;
     lsm->layer_tile = sm_alloc((size_t)lsm->layers + 1, sizeof(long));
@@ -385,33 +385,21 @@ Lsm *lsm_build(const SmVoxels *voxels, const SmEngineParams *params)
     return lsm;
 }
 
-static void free_rows(Rows *rows)
-{
-    free(rows->p);
-    free(rows->bar);
-    free(rows->plate);
-    free(rows->transform);
-    free(rows->plate_down);
-}
-
 static void free_regions(Lsm *lsm)
 {
     lsm_interior_free(&lsm->interior);
     lsm_lists_free(&lsm->lists);
     if (lsm->allocator) lsm_allocator_free(lsm->allocator);
-    free(lsm->allocator);
     if (lsm->running_lists) lsm_running_lists_free(lsm->running_lists);
-    free(lsm->running_lists);
-    free(lsm->running_factor);
     lsm_fixups_free(lsm->fixups);
-    free_rows(&lsm->rows);
-    for (int t = 0; lsm->group_rows && t < lsm->threads; t++) free(lsm->group_rows[t]);
     if (lsm->box) free(lsm->block_region);
-    void *all[] = {lsm->tile_slot,    lsm->layer_tile,  lsm->copy,           lsm->layer_copy,
-                   lsm->members,      lsm->block_const, lsm->particle_const, lsm->tile_const,
-                   lsm->region_const, lsm->centre,      lsm->last,           lsm->sweeps,
-                   lsm->stretch,      lsm->live,        lsm->group_rows};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    for (int t = 0; lsm->group_rows && t < lsm->threads; t++) free(lsm->group_rows[t]);
+    const Rows *rows = &lsm->rows;
+    sm_free_all(rows->p, rows->bar, rows->plate, rows->transform, rows->plate_down);
+    sm_free_all(lsm->allocator, lsm->running_lists, lsm->running_factor, lsm->tile_slot,
+                lsm->layer_tile, lsm->copy, lsm->layer_copy, lsm->members, lsm->block_const,
+                lsm->particle_const, lsm->tile_const, lsm->region_const, lsm->centre, lsm->last,
+                lsm->sweeps, lsm->stretch, lsm->live, lsm->group_rows);
 }
 
 /* The last rotation of every region, by the slot of its centre. */
@@ -478,9 +466,7 @@ void lsm_free(Lsm *lsm)
     free_regions(lsm);
     lsm_blocks_free(lsm->box);
     lsm_lattice_free(&lsm->lattice);
-    void *all[] = {lsm->mass,        lsm->slot,        lsm->particle,     lsm->x,        lsm->v,
-                   lsm->layer_plane, lsm->layer_block, lsm->thread_layer, lsm->obstacle, lsm->mark,
-                   lsm->listed,      lsm->origin,      lsm->shift};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
-    free(lsm);
+    sm_free_all(lsm->mass, lsm->slot, lsm->particle, lsm->x, lsm->v, lsm->layer_plane,
+                lsm->layer_block, lsm->thread_layer, lsm->obstacle, lsm->mark, lsm->listed,
+                lsm->origin, lsm->shift, lsm);
 }

@@ -104,8 +104,7 @@ void lsm_outline_build(const LsmLattice *l, const double *mass, LsmOutline *o)
 
 void lsm_outline_free(LsmOutline *o)
 {
-    void *all[] = {o->carrier, o->across, o->to, o->length, o->x0, o->centre, o->edge, o->first};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(o->carrier, o->across, o->to, o->length, o->x0, o->centre, o->edge, o->first);
     *o = (LsmOutline){0};
 }
 

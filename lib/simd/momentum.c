@@ -417,6 +417,5 @@ long momentum_bytes(const Momentum *m)
 void momentum_free(Momentum *m)
 {
     if (!m) return;
-    void *all[] = {m->mass, m->label, m->frame, m->piece, m->run, m->sum, m};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+    sm_free_all(m->mass, m->label, m->frame, m->piece, m->run, m->sum, m);
 }
