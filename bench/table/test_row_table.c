@@ -20,7 +20,6 @@ static double seconds[] = {13e-6, 14e-6, 15e-6};
 /* A valid row of the paper's penguin and an invalid one without a paper. */
 static void make_rows(BenchRow rows[2])
 {
-    memset(rows, 0, 2 * sizeof *rows);
     rows[0] = (BenchRow){.particles = 150,
                          .regions = 130,
                          .w = 2,
@@ -37,11 +36,12 @@ static void make_rows(BenchRow rows[2])
                          .summation_nodes = NAN,
                          .paper_total_ms = 0.28,
                          .stage_ms = {0.002, 0.003, 0.004, 0.0, 0.005},
-                         .goal_tolerance = 5e-5};
-    strcpy(rows[0].paper, "fastlsm");
-    strcpy(rows[0].paper_row, "penguin");
-    strcpy(rows[0].scene, "penguin");
-    strcpy(rows[0].found, "goals within 2e-06 cells of brute force");
+                         .goal_tolerance = 5e-5,
+                         .engine = "fastlsm",
+                         .paper = "fastlsm",
+                         .paper_row = "penguin",
+                         .scene = "penguin",
+                         .found = "goals within 2e-06 cells of brute force"};
     rows[1] = rows[0];
     rows[1].valid = false;
     rows[1].total_ms = 777.125; /* must not be seen anywhere */
@@ -51,7 +51,6 @@ static void make_rows(BenchRow rows[2])
     rows[1].paper[0] = rows[1].paper_row[0] = '\0';
     strcpy(rows[1].scene, "a_b,\"c\"&50%|x");
     strcpy(rows[1].reason, "goals are off");
-    for (int r = 0; r < 2; r++) strcpy(rows[r].engine, "fastlsm");
 }
 
 static void fill_octree_row(BenchRow *row)
@@ -81,12 +80,12 @@ static void fill_octree_row(BenchRow *row)
                       .fps = 20000,
                       .speedup = 99.5,
                       .paper_total_ms = 4.505,
-                      .damping = 0.1};
-    strcpy(row->found, "goals as the check has found them");
-    strcpy(row->paper, "octree");
-    strcpy(row->paper_row, "hand-sampled");
-    strcpy(row->scene, "hand-sampled");
-    strcpy(row->engine, "octree");
+                      .damping = 0.1,
+                      .engine = "octree",
+                      .paper = "octree",
+                      .paper_row = "hand-sampled",
+                      .scene = "hand-sampled",
+                      .found = "goals as the check has found them"};
 }
 
 /* All rows at once, or one at a time; the caller frees the text. */
