@@ -143,6 +143,7 @@ TEST(cubes_of_both_engines_are_timed)
 {
     BenchLab lab = quick_lab();
     BenchMeasure measure = {.experiment = BENCH_TRY_SIZE, .n = {6, 10, 3}};
+    int timed = 0;
     for (int engine = 0; engine < 2; engine++) {
         strcpy(measure.engine, engine ? "octree" : "fastlsm");
         strcpy(measure.field, engine ? "sums" : "");
@@ -151,8 +152,13 @@ TEST(cubes_of_both_engines_are_timed)
         if (curve->busy) continue;
         if (!curve->valid) fail_msg("%s", curve->reason);
         assert_true(curve->points == 3 && curve->x[2] == 1000 && curve->y[0] > 0);
+        timed++;
     }
     bench_lab_free(&lab);
+    if (timed < 2) {
+        print_message("others took the processors: %d engines of 2 were timed\n", timed);
+        skip();
+    }
 }
 
 /* The searches alone are a part of a change. */

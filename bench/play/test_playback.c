@@ -254,8 +254,9 @@ TEST(an_eye_refines_what_is_near)
     close_show(&show);
 }
 
-/* The row's times are of its frames', in ms: those with a change are where resampling took time. */
-static void check_summary(const BenchChangeRow *row)
+/* The row's times are of its frames', in ms: those with a change are where resampling took time.
+ * False: others took the processors, and it has none. */
+static bool check_summary(const BenchChangeRow *row)
 {
     double low[BENCH_FRAME_PARTS], high[BENCH_FRAME_PARTS] = {0};
     long changed = 0;
@@ -268,13 +269,14 @@ static void check_summary(const BenchChangeRow *row)
         }
     }
     assert_true(low[0] > 0 && changed >= row->changed);
-    if (isnan(row->first_ms)) return; /* BUSY */
+    if (isnan(row->first_ms)) return false;
     assert_true(row->first_ms >= low[0] && row->first_ms <= high[0]);
     assert_true(row->last_ms >= low[0] && row->last_ms <= high[0]);
     assert_true(fabs(row->change_most_ms - high[1]) <= 1e-12 * high[1]);
     assert_true(row->change_ms > 0 && row->change_ms <= high[1]);
     assert_true(row->follow_ms > 0 && row->follow_ms <= high[2]);
     assert_true(row->surface_ms >= low[3] && row->surface_ms <= high[3]);
+    return true;
 }
 
 TEST(frames_are_timed_and_counted)
@@ -302,10 +304,14 @@ TEST(frames_are_timed_and_counted)
     double vertices = (double)surface.vertex_count;
     sm_mesh_free(&surface);
     assert_true(row.surface_bytes * (double)row.last_nodes > vertices * (24 + 24 + 4 + 4 + 4));
-    check_summary(&row);
+    bool timed = check_summary(&row);
     free(row.time);
     bench_playback_free(&play);
     close_show(&show);
+    if (!timed) {
+        print_message("others took the processors: no frame's time counts\n");
+        skip();
+    }
 }
 
 /* Runs a frame. The speed is how far its one step takes the points; returns the largest piece. */
