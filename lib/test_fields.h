@@ -20,15 +20,19 @@ static inline double (*triples(long n))[3]
     return sm_alloc((size_t)n, sizeof(double[3]));
 }
 
+/* The larger of the worst error so far and another, where fmax() would pass over a NaN; infinite
+ * where it is not finite. */
+static inline double at_worst(double worst, double error)
+{
+    return error <= worst ? worst : isfinite(error) ? error : INFINITY;
+}
+
 /* Largest difference of a component; infinite where one is not finite. */
 static inline double field_difference(long n, const double (*a)[3], const double (*b)[3])
 {
     double worst = 0;
     for (long p = 0; p < n; p++)
-        for (int d = 0; d < 3; d++) {
-            double e = fabs(a[p][d] - b[p][d]);
-            if (!(e <= worst)) worst = isfinite(e) ? e : INFINITY;
-        }
+        for (int d = 0; d < 3; d++) worst = at_worst(worst, fabs(a[p][d] - b[p][d]));
     return worst;
 }
 

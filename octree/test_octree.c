@@ -428,7 +428,7 @@ static double dent(double creep, double *volume)
             S[e] = (double)oct->body->plastic[(i / SM_LANES * 9 + e) * SM_LANES + i % SM_LANES];
         double det = S[0] * (S[4] * S[8] - S[5] * S[7]) - S[1] * (S[3] * S[8] - S[5] * S[6]) +
                      S[2] * (S[3] * S[7] - S[4] * S[6]);
-        *volume = fmax(*volume, fabs(det - 1));
+        *volume = at_worst(*volume, fabs(det - 1));
     }
     oct_free(oct);
     body_free(&body);

@@ -10,7 +10,8 @@
 #include "../lib/engine/engine.h"
 #include "link.h"
 
-/* Regions in CSR form: members of region r are member[start[r]] .. member[start[r + 1]], rising. */
+/* Regions in CSR form: members of region r are member[start[r]] ..
+ * member[start[r + 1] - 1], rising. */
 typedef struct {
     long count;
     long *start; /* [count + 1] */

@@ -402,7 +402,7 @@ static double centre_moves(const Body *body, const double (*a)[3], const double 
             moves[d] += body->m[p] * (b[p][d] - a[p][d]);
         }
     }
-    return fmax(fmax(fabs(moves[0]), fabs(moves[1])), fabs(moves[2])) / mass / fmax(largest, 1);
+    return (fabs(moves[0]) + fabs(moves[1]) + fabs(moves[2])) / mass / fmax(largest, 1);
 }
 
 /* Crushed to a plane, a line, a point, or turned inside out; far away; huge. */

@@ -1,5 +1,6 @@
-
-
+/* Shape matching of clusters: each kind of fit meets the motions that it can, and turns with the
+ * body. */
+#include "../lib/test_fields.h"
 #include "../lib/test_frame.h"
 #include "shape_matching.h"
 #include "svd_polar.h"
@@ -29,14 +30,6 @@ static void move(double bent)
     }
 }
 
-static double largest(const double (*a)[3], const double (*b)[3])
-{
-    double most = 0;
-    for (int p = 0; p < COUNT; p++)
-        for (int d = 0; d < 3; d++) most = fmax(most, fabs(a[p][d] - b[p][d]));
-    return most;
-}
-
 static void goals(RefShapeFit fit, int parts, double overlap)
 {
     RefRegions clusters;
@@ -48,7 +41,7 @@ static void goals(RefShapeFit fit, int parts, double overlap)
 static double miss(RefShapeFit fit, int parts)
 {
     goals(fit, parts, 0.25);
-    return largest((const double(*)[3])g, (const double(*)[3])x);
+    return field_difference(COUNT, (const double(*)[3])g, (const double(*)[3])x);
 }
 
 TEST(linear_matching_meets_affine_motions)
@@ -98,7 +91,8 @@ TEST(every_matching_turns_with_the_body)
         apply(expected);
         apply(x);
         goals(fits[f], 2, 0.25);
-        assert_true(largest((const double(*)[3])g, (const double(*)[3])expected) < 1e-11);
+        assert_true(field_difference(COUNT, (const double(*)[3])g, (const double(*)[3])expected) <
+                    1e-11);
     }
 }
 

@@ -181,7 +181,7 @@ static void check_held(const SmEngineType *type, SmEngine *engine, double up, do
     free(x);
 }
 
-TEST(heirs_are_held)
+TEST(new_nodes_of_held_ones_are_held)
 {
     for (int precision = 0; precision < 2; precision++) {
         const SmEngineType *type = engines[precision];
@@ -207,7 +207,7 @@ TEST(heirs_are_held)
 }
 
 /* A plane through the bar: what is pushed on one side moves, the other stays. */
-TEST(a_cut_parts)
+TEST(a_cut_separates)
 {
     for (int precision = 0; precision < 2; precision++) {
         const SmEngineType *type = engines[precision];

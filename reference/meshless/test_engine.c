@@ -155,7 +155,7 @@ TEST(handles)
         for (int d = 0; d < 3; d++) {
             double wanted = handle.pose[d][3];
             for (int e = 0; e < 3; e++) wanted += handle.pose[d][e] * rest[p][e];
-            off = fmax(off, fabs(x[p][d] - wanted));
+            off = at_worst(off, fabs(x[p][d] - wanted));
         }
     assert_true(off < 0.02); /* of a body 1 high: it still swings a little */
     free(rest);
@@ -235,7 +235,7 @@ TEST(cantilever)
     double(*rest)[3] = field(engine, SM_REST), (*x)[3] = field(engine, SM_POSITION), held = 0;
     for (long n = 0; n < handle.count; n++)
         for (int d = 0; d < 3; d++)
-            held = fmax(held, fabs(x[particle[n]][d] - rest[particle[n]][d]));
+            held = at_worst(held, fabs(x[particle[n]][d] - rest[particle[n]][d]));
     double L = rest[tip][0] - root, q = 1000 * g, EI = 1e5 / 12, kGA = 5.0 / 6 * 1e5 / 2.6;
     double wanted = q * pow(L, 4) / (8 * EI) + q * L * L / (2 * kGA);
     double sag = rest[tip][1] - x[tip][1];

@@ -1,4 +1,5 @@
 /* Bodies that handles grip at many points: their modes, and where moved handles take the points. */
+#include "../../../lib/test_fields.h"
 #include "../../../lib/test_frame.h"
 #include "../../../lib/vector.h"
 #include "../test_beam.h"
@@ -86,7 +87,7 @@ static double miss(const Held *held, int grips, const double (*pose)[3][4])
                 double off = x[d] - sm_dot(pose[k][d], x) - pose[k][d][3];
                 for (int n = 0; n < shape.count; n++)
                     off += shape.value[n] * held->motion.moved[shape.node[n]][d];
-                most = fmax(most, fabs(off));
+                most = at_worst(most, fabs(off));
             }
         }
     ref_shape_free(&shape);
@@ -157,7 +158,7 @@ TEST(taken_over)
     ref_motion_take(&held.body, &held.motion, h, &after);
     for (long n = 0; n < after.nodes; n++)
         for (int d = 0; d < 3; d++) {
-            off = fmax(off, fabs(after.moved[n][d] - held.motion.moved[n][d]));
+            off = at_worst(off, fabs(after.moved[n][d] - held.motion.moved[n][d]));
             fast = fmax(fast, fabs(after.moved[n][d]));
         }
     print_message("off by %.1e of %.1f\n", off, fast);

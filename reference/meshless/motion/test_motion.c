@@ -1,4 +1,5 @@
 /* Warping, energy, sag and constraints of beams that move. */
+#include "../../../lib/test_fields.h"
 #include "../../../lib/test_frame.h"
 #include "../../../lib/vector.h"
 #include "../test_beam.h"
@@ -335,11 +336,11 @@ TEST(constraints_hold)
         ref_motion_step(&beam.motion, 0.01);
         for (int k = 0; k < 4; k++) {
             ref_motion_off(&beam.motion, k, off);
-            for (int d = 0; d < 3; d++) most = fmax(most, fabs(off[d]));
+            for (int d = 0; d < 3; d++) most = at_worst(most, fabs(off[d]));
         }
         place(&beam, ends[1], now);
         for (int d = 0; d < 3; d++)
-            most = fmax(most, fabs(now[d] - ends[1][d] - beam.motion.hold[2].target[d]));
+            most = at_worst(most, fabs(now[d] - ends[1][d] - beam.motion.hold[2].target[d]));
     }
     print_message("constraints off by %.1e at most\n", most);
     assert_true(most < 1e-6);

@@ -72,7 +72,7 @@ static void check_ball(const RefMpu *mpu, double near)
             assert_true(fabs(value - wanted) < near);
             check_slope(&field, x, gradient);
         }
-        if (fabs(wanted) > near) assert_true((value < 0) == (wanted < 0));
+        if (fabs(wanted) > near) assert_true(wanted < 0 ? value < 0 : value > 0);
     }
 }
 
