@@ -275,7 +275,8 @@ TEST(a_body_that_swells_and_shrinks_keeps_its_momenta)
 {
     unsigned seed = 9;
     for (int trial = 0; trial < 8; trial++) {
-        Free f = {.type = types[trial % 4], .params = {.w = 3, .h = 0.01, .instances = 1}, .n = 0};
+        Free f = {.type = types[trial % 4],
+                  .params = {.w = 3, .h = 0.01, .instances = 1, .threads = 1}};
         const OctOptions whole = {.width.cells = 9};
         SmError error = {0};
         f.params.octree = &whole;
