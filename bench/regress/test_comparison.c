@@ -6,6 +6,7 @@
 #include "../../lib/error.h"
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
+#include "../system/statistic.h"
 #include "regression.h"
 
 enum { REPEATS = 20 };
@@ -339,9 +340,17 @@ TEST(json_holds_every_sample)
     json_t *damping = json_array_get(list, 1 + SM_DAMPING);
     assert_string_equal(json_string_value(json_object_get(damping, "time")), "damping");
     assert_string_equal(json_string_value(json_object_get(damping, "verdict")), "slower");
-    json_t *old = json_object_get(damping, "old");
-    assert_int_equal(json_array_size(json_object_get(old, "samples")), 14);
-    assert_true(json_number_value(json_object_get(old, "self_difference")) > 0);
+    json_t *old = json_object_get(damping, "old"), *samples = json_object_get(old, "samples");
+    assert_int_equal(json_array_size(samples), 14);
+    double value[14];
+    int round[14];
+    for (size_t i = 0; i < 14; i++) {
+        value[i] = json_number_value(json_array_get(samples, i));
+        round[i] = (int)json_integer_value(json_array_get(json_object_get(old, "rounds"), i));
+    }
+    double noise = bench_self_noise(&(BenchTimes){value, round, 14}, 7, 1);
+    double written = json_number_value(json_object_get(old, "self_difference"));
+    assert_true(fabs(written / noise - 1) < 1e-6); /* of samples with 9 digits */
     json_t *total = json_object_get(json_array_get(list, 0), "new");
     assert_true(json_number_value(json_object_get(total, "instructions")) == 1100);
     json_t *bad = json_array_get(list, BENCH_TIMES);

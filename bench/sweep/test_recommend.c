@@ -1,29 +1,7 @@
 /* The front of a sweep, and what it recommends. */
 #include "../../lib/test_frame.h"
 #include "recommend.h"
-
-/* Point 0 is the lattice's with w 1, those after it the octree's with epsilon 0, 0.5 and 1, and so
- * on with w 2; times' quartiles are 5% to each side. */
-static BenchPoint make_point(int index, double ms, double path, double hz)
-{
-    BenchPoint point = bench_point_none();
-    bool tree = index % 4 > 0;
-    point.index = index;
-    strcpy(point.engine, tree ? "octree" : "fastlsm");
-    point.w = 1 + index / 4;
-    point.epsilon = tree ? 0.5 * (index % 4 - 1) : 0;
-    point.valid = isfinite(ms);
-    point.particles = 295;
-    point.total_ms = ms;
-    point.total_low_ms = 0.95 * ms;
-    point.total_high_ms = 1.05 * ms;
-    point.path_rms = path;
-    point.path_most = 2 * path;
-    point.goal_rms = 0.02;
-    point.frequency = hz;
-    point.sag = 0.1;
-    return point;
-}
+#include "test_point.h"
 
 TEST(the_front_is_marked)
 {
@@ -110,13 +88,14 @@ TEST(what_is_recommended_can_be_run)
     BenchPoint point[] = {make_point(0, 4, 0, 10), make_point(1, 1, 0.08, 20),
                           make_point(2, 2, 0.04, 21)};
     const BenchWish any = {NAN, NAN, NAN};
+    static const char best[] =
+        "octree: for a deviation of at most 5%, 1% more than its least take w 1 "
+        "(edges of each node's own cell) and epsilon 0.5: 2.00 ms";
     static const char *const wanted[] = {
         "fastlsm: whatever is cheapest take w 1 (cells)",
         "itself full resolution",
         "  shapebench run hand --engine fastlsm --w 1\n",
-        "octree: for a deviation of at most 5%, 1% more than its least take w 1 (edges of each "
-        "node's "
-        "own cell) and epsilon 0.5: 2.00 ms",
+        best,
         "  shapebench run hand --engine octree --w 1 --epsilon 0.5\n",
         "A deviation of 4%: 2 ms (w 1, epsilon 0.5); 8%: 1 ms (w 1, epsilon 0)."};
     char *text, command[256];

@@ -8,9 +8,10 @@
 #include "../campaign/campaign_run.h"
 #include "../settings/setting.h"
 #include "../store/test_damage.h"
-#include "recommend.h"
+#include "sweep.h"
+#include "test_point.h"
 
-enum { POINT_BYTES = 1400 };
+enum { POINT_BYTES = 1400, REPEATS = 3 };
 
 /* A member new in point.h is to be stored (point.c), described (results/README.md), and filled
  * here. */
@@ -117,7 +118,7 @@ static BenchPlan make_plan(const char *engines)
                       .epsilons = 3,
                       .w = {1, 2},
                       .epsilon = {0, 0.5, 1},
-                      .repeats = 3,
+                      .repeats = REPEATS,
                       .frames = 5,
                       .block_ms = 1,
                       .threads = 1,
@@ -164,22 +165,11 @@ TEST(a_plan_makes_its_points)
     assert_non_null(strstr(error.text, "65536 points"));
 }
 
-static BenchPoint make_point(const BenchPlan *plan, int index, double ms, double path, double hz)
+/* With its samples. */
+static BenchPoint make_measured(int index, double ms, double path, double hz)
 {
-    BenchPoint point = bench_point_none();
-    point.index = index;
-    bench_sweep_type.plan_point(plan, index, &point);
-    point.valid = isfinite(ms);
-    point.particles = 295;
-    point.total_ms = ms;
-    point.total_low_ms = 0.95 * ms;
-    point.total_high_ms = 1.05 * ms;
-    point.path_rms = path;
-    point.path_most = 2 * path;
-    point.goal_rms = 0.02;
-    point.frequency = hz;
-    point.sag = 0.1;
-    point.samples = point.valid ? plan->repeats : 0;
+    BenchPoint point = make_point(index, ms, path, hz);
+    point.samples = point.valid ? REPEATS : 0;
     for (int i = 0; i < point.samples; i++) point.sample[i] = 1e-3 * ms;
     if (!point.valid) strcpy(point.reason, "goals are off");
     strcpy(point.stamp.host, "here");
@@ -240,7 +230,7 @@ static BenchCampaign make_sweep(double first)
     bench_machine_read(3, arguments, 1, &sweep.machine);
     static const int order[] = {6, 1, 4};
     for (int i = 0; i < 3; i++) {
-        BenchPoint point = make_point(&plan, order[i], order[i] == 4 ? NAN : first, 0.01, 12);
+        BenchPoint point = make_measured(order[i], order[i] == 4 ? NAN : first, 0.01, 12);
         bench_campaign_add(&sweep, &point);
     }
     return sweep;
@@ -282,7 +272,7 @@ TEST(merging_adds_and_refuses)
 {
     BenchCampaign all = make_sweep(1.5), same = make_sweep(1.5), twice = make_sweep(1.6),
                   foreign = make_sweep(1.5), more = with_plan(all.plan);
-    BenchPoint point = make_point(more.plan, 0, 3, 0, 9);
+    BenchPoint point = make_measured(0, 3, 0, 9);
     SmError error;
     bench_campaign_add(&more, &point);
     assert_int_equal(bench_campaign_merge(&all, &same, "same.h5", &error), SM_OK);
