@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../octree/engine.h"
+#include "../../octree/change/structure.h"
 #include "../../octree/graph/distance.h"
 #include "../engines.h"
 #include "experiments.h"
@@ -23,6 +23,16 @@ static SmCode prepare(const BenchExperiment *of, SmError *error)
         return sm_fail(error, SM_INPUT, "%.100s: one body in the octree is wanted", scene->file);
     choose(of->measure, &scene->octree);
     return SM_OK;
+}
+
+/* The scene's engine in double precision. */
+static SmCode create(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,
+                     SmError *error)
+{
+    const SmEngineType *type;
+    *runner = (BenchRunner){0};
+    SmCode code = bench_engine_find(scene->engine, "double", &type, error);
+    return code ? code : bench_runner_create(scene, body, type, 1, runner, error);
 }
 
 /* ---- regions */
@@ -119,7 +129,7 @@ SmCode bench_choices_growth(const BenchExperiment *of, SmError *error)
     SmCode code = prepare(of, error);
     if (code) return code;
     set_free(of->scene);
-    code = bench_runner_create(of->scene, of->body, &octree_engine_f64, 1, &runner, error);
+    code = create(of->scene, of->body, &runner, error);
     if (!code) {
         bench_runner_disturb(&runner, of->lab->seed);
         bench_curve_exact(of->curve, 0, growth_of(&runner, of->lab->quick ? 2000 : 20000));
@@ -186,7 +196,7 @@ static SmCode find_stiffness(const BenchExperiment *of, const BenchScene *scene,
                              const BenchBody *body, double *stiffness, SmError *error)
 {
     BenchRunner runner;
-    SmCode code = bench_runner_create(scene, body, &octree_engine_f64, 1, &runner, error);
+    SmCode code = create(scene, body, &runner, error);
     if (!code) {
         *stiffness = bending(body, &runner);
         bench_curve_check(of->curve, &runner);

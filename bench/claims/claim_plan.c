@@ -201,9 +201,10 @@ static void free_point(void *point)
     bench_lab_free(&((BenchClaimPoint *)point)->lab);
 }
 
+/* Into memory; aborts where there is none left. Of none `bytes` may be NULL. */
 static void put(FILE *file, const void *bytes, size_t size, int count)
 {
-    if (count > 0) fwrite(bytes, size, (size_t)count, file); /* of none `bytes` may be NULL */
+    if (count > 0 && fwrite(bytes, size, (size_t)count, file) < (size_t)count) abort();
 }
 
 /* Rows, their samples, and curves, one after another. */
@@ -213,7 +214,7 @@ static char *pack(const void *point, size_t *size)
     const int counts[] = {lab->rows, lab->curves};
     char *bytes;
     FILE *file = open_memstream(&bytes, size);
-    if (!file) abort(); /* no memory, as sm_alloc() */
+    if (!file) abort();
     put(file, counts, sizeof counts, 1);
     for (int r = 0; r < lab->rows; r++) {
         BenchRow row = lab->row[r];
@@ -224,7 +225,7 @@ static char *pack(const void *point, size_t *size)
         put(file, lab->row[r].change.time, sizeof *row.change.time, row.change.frames);
     }
     put(file, lab->curve, sizeof *lab->curve, lab->curves);
-    fclose(file);
+    if (fclose(file)) abort();
     return bytes;
 }
 

@@ -44,7 +44,7 @@
  *   range `n` in quarters: "summation_nodes" a region, mean; "most_summation"; "beyond_percent" of
  *   members farther than (1 + epsilon) w; "parts" that the body falls into.
  * - growth: one point: sum m v^2 of `scene`'s free, bent octree over its last tenth of 20,000
- * steps, by that over the first; by `masses`, `symmetry`, `weighting`.
+ *   steps, by that over the first; by `masses`, `symmetry`, `weighting`.
  * - placement: one point, by `masses`: bending stiffness of a beam in the octree whose cells its
  *   sides cut, the most by the least of four places. */
 typedef enum {
@@ -130,14 +130,14 @@ typedef struct {
     } * failure; /* [failures] */
 } BenchLab;
 
-/* What an experiment works on, and the curve that it fills: empty and valid. */
+/* What an experiment works on. A measurement that names no scene has none and no body, and so has
+ * the experiment "scene". */
 typedef struct {
     BenchLab *lab;
     const BenchMeasure *measure;
-    BenchScene *scene; /* the measurement's, its own to change, and the body made of it; NULL: it
-                        * names none, */
-    BenchBody *body;   /* or the experiment is that of the scene's row */
-    BenchCurve *curve;
+    BenchScene *scene; /* the experiment's own to change, */
+    BenchBody *body;   /* and what is made of it; or NULL */
+    BenchCurve *curve; /* that it fills: empty and valid */
 } BenchExperiment;
 
 /* Names of BenchWithout, in its order; NULL-terminated. */

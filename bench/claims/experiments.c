@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../engines.h"
 #include "../measure/disturbance.h"
 #include "scene_field.h"
@@ -172,20 +173,6 @@ int bench_experiment_points(const BenchMeasure *measure)
 
 /* ---- measuring */
 
-static void append(char name[BENCH_CURVE_NAME], const char *before, const char *text)
-{
-    size_t used = strlen(name);
-    if (text[0]) snprintf(name + used, BENCH_CURVE_NAME - used, "%s%s", before, text);
-}
-
-static void append_range(char name[BENCH_CURVE_NAME], const char *letter, const BenchRange *range)
-{
-    char text[24] = "";
-    if (range->points)
-        snprintf(text, sizeof text, "%s%d-%d.%d", letter, range->from, range->to, range->points);
-    append(name, ".", text);
-}
-
 /* The first choice is said only where there is no usual one. */
 static void append_choice(char name[BENCH_CURVE_NAME], const Kind *kind,
                           const BenchSetting *setting, int choice)
@@ -193,8 +180,8 @@ static void append_choice(char name[BENCH_CURVE_NAME], const Kind *kind,
     bool usual = strcmp(setting->key, "summation") != 0 && strcmp(setting->key, "matching") != 0;
     bool none = !strcmp(setting->key, "symmetry") && choice == OCT_ASYMMETRIC;
     if (choice == 0 && (usual || !takes(kind, setting->key))) return;
-    append(name, strcmp(setting->key, "without") != 0 ? "." : ".without.",
-           none ? "asymmetric" : setting->choices[choice]);
+    sm_append(name, BENCH_CURVE_NAME, ".%s%s", strcmp(setting->key, "without") ? "" : "without.",
+              none ? "asymmetric" : setting->choices[choice]);
 }
 
 static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
@@ -203,12 +190,14 @@ static void name_curve(const BenchMeasure *measure, char name[BENCH_CURVE_NAME])
     snprintf(name, BENCH_CURVE_NAME, "%s", kind->name);
     for (const BenchSetting *s = bench_measure_settings + 1; s->key; s++) {
         const void *member = (const char *)measure + s->offset;
-        if (s->kind == BENCH_SET_TEXT)
-            append(name, ".", member);
-        else if (s->kind == BENCH_SET_CHOICE)
+        const BenchRange *range = member;
+        if (s->kind == BENCH_SET_CHOICE)
             append_choice(name, kind, s, *(const int *)member);
-        else
-            append_range(name, s->key, member);
+        else if (s->kind == BENCH_SET_TEXT && *(const char *)member)
+            sm_append(name, BENCH_CURVE_NAME, ".%s", (const char *)member);
+        else if (s->kind == BENCH_SET_GROUP && range->points)
+            sm_append(name, BENCH_CURVE_NAME, ".%s%d-%d.%d", s->key, range->from, range->to,
+                      range->points);
     }
     for (char *c = name; *c; c++)
         if (*c == '/' || *c == ' ') *c = *c == '/' ? '|' : '_';
