@@ -1,5 +1,4 @@
-/* stiffness_fit.h - what Young's modulus follows from: laws fitted to a calibration's specimens,
- * what they say in words, and which w and epsilon have a given modulus.
+/* stiffness_fit.h - what Young's modulus follows from: laws fitted to a calibration's specimens.
  *
  * Two kinds of law, by least squares in logarithms (GSL), of the valid specimens of an engine at
  * its first epsilon:

@@ -1,5 +1,5 @@
-/* recommend.h - which points of a sweep to take, engine by engine:
- * a lattice is its own full resolution, so engines' deviations do not compare. */
+/* recommend.h - which points of a sweep to take, engine by engine: a lattice is its own full
+ * resolution, so engines' deviations do not compare. */
 #ifndef BENCH_RECOMMEND_H
 #define BENCH_RECOMMEND_H
 

@@ -6,10 +6,9 @@
  * One body is swept, elastic and whole: what cuts, breaks, touches or looks at it, plasticity,
  * further instances and widths of places are left out of the scene, and a remark names them.
  *
- * In its table times of a point that is not valid are
- * INVALID, empty or null; other quantities that could not be had are "-", empty or null. The
- * reasons follow the text form, each once, and a line where points were measured on several hosts.
- */
+ * In its table times of a point that is not valid are INVALID, empty or null; other quantities that
+ * could not be had are "-", empty or null. The reasons follow the text form, each once, and a line
+ * where points were measured on several hosts. */
 #ifndef BENCH_SWEEP_H
 #define BENCH_SWEEP_H
 
