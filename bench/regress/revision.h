@@ -12,9 +12,9 @@ typedef struct {
     char program[BENCH_DRAFT_PATH]; /* the built one */
 } BenchRevision;
 
-/* `folder` is for scratch files. Nothing but the program is left behind, whatever happens.
- * SM_INPUT: no git, not in a repository, no such revision, it does not configure or build (the line
- * names its log), interrupted. SM_OUTPUT: build/regress cannot be written. */
+/* `folder` is for scratch files. Nothing is left behind but the program, or the log of a build that
+ * failed. SM_INPUT: no git, not in a repository, no such revision, it does not configure or build
+ * (the line names its log), interrupted. SM_OUTPUT: build/regress cannot be written. */
 SmCode bench_revision_build(const char *name, const char *folder, BenchProgress *progress,
                             BenchRevision *revision, SmError *error);
 

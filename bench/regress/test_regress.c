@@ -271,10 +271,12 @@ TEST(another_revision_is_built_and_measured)
 TEST(revisions_that_cannot_be_had)
 {
     expect("cd / && shapebench regress --revision HEAD", 3, "is in no git repository");
-    make_repository("message(FATAL_ERROR \"broken on purpose\")\n");
+    make_repository("execute_process(COMMAND sh -c \"setsid -f sleep 20 >/dev/null 2>&1\")\n"
+                    "message(FATAL_ERROR \"broken on purpose\")\n");
     expect("cd repo && shapebench regress --revision no-such", 3, "has no revision 'no-such'");
     expect("cd repo && shapebench regress --revision --help", 3, "has no revision '--help'");
     expect("cd repo && shapebench regress --revision HEAD", 3, "HEAD does not build: ");
+    expect("flock -n repo/build/regress/lock true", 0, ""); /* what it started keeps no lock */
     nothing_is_left_in_the_repository();
     make_repository("cmake_minimum_required(VERSION 3.22)\nproject(p C)\n"
                     "add_custom_target(shapebench)\n");
@@ -323,6 +325,7 @@ TEST(an_interrupt_leaves_nothing)
     expect("ls repo/build/regress/*.source/CMakeLists.txt", 0, "CMakeLists.txt");
     interrupt(first);
     assert_int_not_equal(system("pgrep -fx 'sleep 47.11' >/dev/null"), 0);
+    expect("ls repo/build/regress | grep -vc lock", 1, "0\n");
     nothing_is_left_in_the_repository();
 }
 
