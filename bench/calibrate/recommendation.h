@@ -22,8 +22,8 @@ typedef struct {
 
 /* The specimen of the grid that comes nearest to the wished modulus, and a sentence about it: what
  * it has, and which time step, or spacing (of 1 to BENCH_MOST_ACROSS cells through the beam), would
- * hit it. Of those within 10% the one with the least
- * spread is taken. -1, and a sentence why, where no specimen is valid. */
+ * hit it. Of those within 10% the one with the least spread is taken. -1, and a sentence why, where
+ * no specimen is valid. */
 long bench_recommendation_young(const BenchSpecimen *specimen, long count,
                                 const BenchStiffnessFit *law, int laws, const BenchYoung *wish,
                                 char sentence[BENCH_WORDS]);

@@ -25,16 +25,6 @@ static SmCode prepare(const BenchExperiment *of, SmError *error)
     return SM_OK;
 }
 
-/* The scene's engine in double precision. */
-static SmCode create(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,
-                     SmError *error)
-{
-    const SmEngineType *type;
-    *runner = (BenchRunner){0};
-    SmCode code = bench_engine_find(scene->engine, "double", &type, error);
-    return code ? code : bench_runner_create(scene, body, type, 1, runner, error);
-}
-
 /* ---- regions */
 
 /* Percent of all memberships of leaves in regions that are farther than (1 + epsilon) w from the
@@ -129,7 +119,7 @@ SmCode bench_choices_growth(const BenchExperiment *of, SmError *error)
     SmCode code = prepare(of, error);
     if (code) return code;
     set_free(of->scene);
-    code = create(of->scene, of->body, &runner, error);
+    code = bench_runner_exact(of->scene, of->body, &runner, error);
     if (!code) {
         bench_runner_disturb(&runner, of->lab->seed);
         bench_curve_exact(of->curve, 0, growth_of(&runner, of->lab->quick ? 2000 : 20000));
@@ -196,7 +186,7 @@ static SmCode find_stiffness(const BenchExperiment *of, const BenchScene *scene,
                              const BenchBody *body, double *stiffness, SmError *error)
 {
     BenchRunner runner;
-    SmCode code = create(scene, body, &runner, error);
+    SmCode code = bench_runner_exact(scene, body, &runner, error);
     if (!code) {
         *stiffness = bending(body, &runner);
         bench_curve_check(of->curve, &runner);

@@ -85,13 +85,18 @@ static void add_made(const BenchRow *row, int steps_per_frame, const char *name,
     }
 }
 
-/* Others took the processors from what the field is of: the frames of a scene that changes (its
- * place is in row->change, and not before it: offsets are unsigned), or its steps. */
+static bool is_of_change(const BenchField *field)
+{
+    size_t change = offsetof(BenchRow, change);
+    return field->offset >= change && field->offset < change + sizeof(BenchChangeRow);
+}
+
+/* Others took the processors from what the field is of: the frames of a scene that changes, or its
+ * steps. */
 static bool is_busy(const BenchRow *row, const char *name, const BenchField *field,
                     BenchCurve *curve)
 {
-    bool frames = field ? field->offset - offsetof(BenchRow, change) < sizeof row->change
-                        : !strcmp(name, "cost_growth");
+    bool frames = field ? is_of_change(field) : !strcmp(name, "cost_growth");
     bool time = field ? field->timed != NULL : strcmp(name, "growth_percent") != 0;
     if (!time || !(frames ? bench_row_frames_busy(row) : row->busy)) return false;
     curve->busy = true;

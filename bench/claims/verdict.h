@@ -7,7 +7,7 @@
  *
  * - reproduced: the estimate is in the band. Either the whole interval is, too: that the value is
  *   in the band has been shown (an equivalence test, Schuirmann 1987, at 2.5% a side). Or it
- * reaches beyond: nothing contradicts the claim, and the words say that it is not shown.
+ *   reaches beyond: nothing contradicts the claim, and the words say that it is not shown.
  * - not reproduced: the whole interval is outside: a difference has been shown (at 2.5%).
  * - undecided: the estimate is outside, but the interval reaches into the band.
  * - differs, of what is expected to: the interval is not wholly in the band. Such a claim is
@@ -84,7 +84,7 @@ void bench_verdict_measured(const BenchFinding *finding, size_t size, char *text
 void bench_verdict_ratio(const BenchFinding *finding, size_t size, char *text);
 void bench_verdict_unset_text(const BenchFinding *finding, size_t size, char *text);
 
-/* The test in words: "within 2%", "95% interval inside 3 +- 0.25". */
+/* The test in words: "within 2% of 3", "95% interval within 0.25 of 3". */
 void bench_verdict_test(const BenchClaim *claim, size_t size, char *text);
 
 #endif

@@ -280,6 +280,15 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
     return code;
 }
 
+SmCode bench_runner_exact(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,
+                          SmError *error)
+{
+    const SmEngineType *type;
+    *runner = (BenchRunner){0};
+    SmCode code = bench_engine_find(scene->engine, "double", &type, error);
+    return code ? code : bench_runner_create(scene, body, type, 1, runner, error);
+}
+
 /* What depends on the engine's particles. */
 static void free_particles(BenchRunner *runner)
 {

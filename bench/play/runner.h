@@ -44,6 +44,10 @@ SmCode bench_runner_create(const BenchScene *scene, const BenchBody *body, const
                            int threads, BenchRunner *runner, SmError *error);
 void bench_runner_free(BenchRunner *runner);
 
+/* The same with the engine that the scene names, in double precision and on one thread. */
+SmCode bench_runner_exact(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,
+                          SmError *error);
+
 /* Sets the scene's initial deformation and velocities (bend, twist, squash, kick). */
 void bench_runner_disturb(BenchRunner *runner, unsigned long seed);
 

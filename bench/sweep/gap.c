@@ -7,16 +7,7 @@
 
 #include "../../octree/engine.h"
 #include "../check/runner_check.h"
-#include "../engines.h"
 #include "../play/playback.h"
-
-static SmCode create(const BenchScene *scene, const BenchBody *body, BenchRunner *runner,
-                     SmError *error)
-{
-    const SmEngineType *type;
-    SmCode code = bench_engine_find(scene->engine, "double", &type, error);
-    return code ? code : bench_runner_create(scene, body, type, 1, runner, error);
-}
 
 /* Goal positions of the deformed body; the caller frees them, and the runner. */
 static SmCode find_goals(const BenchScene *scene, const BenchBody *body, const SmEngineType *type,
@@ -120,7 +111,7 @@ SmCode bench_push_find(const BenchScene *scene, const BenchBody *body, BenchPush
 {
     *push = (BenchPush){.count = scene->force_count};
     BenchRunner runner;
-    SmCode code = create(scene, body, &runner, error);
+    SmCode code = bench_runner_exact(scene, body, &runner, error);
     if (code) return code;
     for (int k = 0; k < push->count; k++) {
         double share = (double)runner.push_count[k] / pushed_mass(&runner, k);
@@ -225,7 +216,7 @@ SmCode bench_width_mean(const BenchScene *scene, const BenchBody *body, double *
                         SmError *error)
 {
     BenchRunner runner;
-    SmCode code = create(scene, body, &runner, error);
+    SmCode code = bench_runner_exact(scene, body, &runner, error);
     if (code) return code;
     const OctStructure *s = oct_engine_structure(runner.engine);
     double sum = 0, all = 0;
