@@ -240,7 +240,7 @@ def read_mesh(path):
 
     vtk.vtkObject.GlobalWarningDisplayOff()
     if not os.path.isfile(path):
-        fail(f"{path}: no such file", 3)
+        fail(f"{path}: {'is a folder' if os.path.isdir(path) else 'no such file'}", 3)
     ending = os.path.splitext(path)[1].lower()
     readers = {".obj": vtk.vtkOBJReader, ".ply": vtk.vtkPLYReader, ".stl": vtk.vtkSTLReader}
     if ending not in readers:
