@@ -251,12 +251,10 @@ static void write_file(BenchH5 *h5, void *record)
     const BenchCampaign *campaign = record;
     const BenchCampaignType *type = campaign->type;
     char kind[64];
-    int count;
-    const BenchField *fields = bench_machine_fields(&count);
     snprintf(kind, sizeof kind, "shapebench %s", type->name);
     bench_h5_text(h5, h5->file, "kind", kind);
     bench_h5_numbers(h5, h5->file, "schema", H5T_STD_I32LE, 0, &type->schema);
-    bench_h5_fields(h5, bench_h5_group(h5, h5->file, "machine"), fields, count, &campaign->machine);
+    bench_machine_store(h5, &campaign->machine);
     hid_t group = bench_h5_group(h5, h5->file, "plan");
     bench_h5_fields(h5, group, type->plan, *type->plan_fields, campaign->plan);
     for (int l = 0; l < type->lists; l++) {
@@ -377,14 +375,11 @@ static void read_file(BenchH5 *h5, void *record)
     const BenchCampaignType *type = load->type ? load->type : type_of(h5);
     BenchCampaign *campaign = load->campaign;
     char kind[64];
-    int count;
-    const BenchField *fields = bench_machine_fields(&count);
     *campaign = bench_campaign_create(type);
     if (h5->failed) return;
     snprintf(kind, sizeof kind, "shapebench %s", type->name);
     bench_h5_check_kind(h5, kind, type->schema, type->schema);
-    hid_t group = bench_h5_find_group(h5, h5->file, "machine");
-    bench_h5_read_fields(h5, group, fields, count, &campaign->machine);
+    bench_machine_load(h5, &campaign->machine);
     read_plan(h5, campaign);
     if (!h5->failed) read_points(h5, campaign);
     if (!h5->failed && type->read) type->read(h5, campaign);

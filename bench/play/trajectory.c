@@ -159,15 +159,13 @@ static void begin_fields(BenchTrajectory *trajectory)
 static void write_beginning(BenchTrajectory *trajectory, const BenchTrajectoryParams *params)
 {
     BenchH5 *h5 = &trajectory->h5;
-    int schema = TRAJECTORY_SCHEMA, machine_count;
-    const BenchField *machine_fields = bench_machine_fields(&machine_count);
+    int schema = TRAJECTORY_SCHEMA;
     bench_h5_text(h5, h5->file, "kind", "shapebench trajectory");
     bench_h5_numbers(h5, h5->file, "schema", H5T_STD_I32LE, 0, &schema);
     bench_h5_text(h5, h5->file, "scene", params->scene);
-    hid_t group = bench_h5_group(h5, h5->file, "machine");
-    bench_h5_fields(h5, group, machine_fields, machine_count, params->machine);
+    bench_machine_store(h5, params->machine);
     write_obstacles(h5, params->steps.boundary);
-    group = bench_h5_group(h5, h5->file, "VTKHDF");
+    hid_t group = bench_h5_group(h5, h5->file, "VTKHDF");
     bench_h5_numbers(h5, group, "Version", H5T_STD_I64LE, 2, (long[]){2, 0});
     write_type(h5, group);
     hsize_t size[] = {0, 3};

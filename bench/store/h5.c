@@ -363,6 +363,14 @@ void bench_h5_read_fields(BenchH5 *h5, hid_t object, const BenchField *fields, i
     }
 }
 
+void bench_h5_read_what_is_there(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
+                                 void *record)
+{
+    for (int i = 0; i < count && !h5->failed; i++)
+        if (H5Aexists(object, fields[i].name) > 0)
+            bench_h5_read_fields(h5, object, &fields[i], 1, record);
+}
+
 /* Not a link to another name or file: those that we write have none. */
 static bool is_own(hid_t parent, const char *name)
 {

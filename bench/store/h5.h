@@ -73,6 +73,9 @@ hid_t bench_h5_find_dataset(BenchH5 *h5, hid_t parent, const char *name, int ran
 void bench_h5_read(BenchH5 *h5, hid_t dataset, hid_t type, void *values);
 void bench_h5_read_fields(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
                           void *record);
+/* The same of those that are there: of the others the record stays as it is. */
+void bench_h5_read_what_is_there(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
+                                 void *record);
 /* Fails unless the file's attributes are this `kind` ("shapebench results") and a `schema` from
  * `oldest` to `newest`, this program's. */
 void bench_h5_check_kind(BenchH5 *h5, const char *kind, int oldest, int newest);

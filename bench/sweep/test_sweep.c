@@ -381,6 +381,28 @@ TEST(changed_files)
     refuses_changed(&sweeps, changes, sizeof changes / sizeof *changes);
 }
 
+/* As of a file from before processors were told apart by more than their names. */
+TEST(what_an_older_file_does_not_say_of_its_machine_is_unknown)
+{
+    const char *path = path_in("old.h5");
+    BenchCampaign sweep;
+    SmError error;
+    write_sweep(path);
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Adelete(file, BENCH_H5_CHECKSUM);
+    for (int i = 0; i < 2; i++)
+        assert_true(H5Adelete_by_name(file, "machine", i ? "l1_bytes" : "cpu_model", H5P_DEFAULT) >=
+                    0);
+    H5Fclose(file);
+    if (bench_campaign_load(path, &bench_sweep_type, &sweep, &error)) fail_msg("%s", error.text);
+    assert_string_equal(sweep.machine.cpu_model, "unknown");
+    assert_int_equal(sweep.machine.l1_bytes, 0);
+    assert_string_equal(sweep.machine.command, "shapebench sweep -o 'a b.h5'");
+    assert_int_equal(sweep.count, 3);
+    bench_campaign_free(&sweep);
+    unlink(path);
+}
+
 /* In a child, whose limit on file sizes stands in for a full disk. */
 static void store_on_full_disk(const char *path)
 {

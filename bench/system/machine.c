@@ -3,7 +3,6 @@
 
 #include <assimp/version.h>
 #include <gsl/gsl_version.h>
-#include <hdf5.h>
 #include <jansson.h>
 #include <libconfig.h>
 #include <sched.h>
@@ -20,23 +19,19 @@
 
 #define FIELD(kind, member) BENCH_FIELD(BenchMachine, kind, member)
 
-const BenchField *bench_machine_fields(int *count)
-{
-    static const BenchField fields[] = {
-        FIELD(BENCH_TEXT, git_commit), FIELD(BENCH_BOOL, git_dirty),
-        FIELD(BENCH_TEXT, version),    FIELD(BENCH_TEXT, compiler),
-        FIELD(BENCH_TEXT, flags),      FIELD(BENCH_TEXT, cpu),
-        FIELD(BENCH_TEXT, cpu_model),  FIELD(BENCH_TEXT, cpu_instructions),
-        FIELD(BENCH_LONG, l1_bytes),   FIELD(BENCH_LONG, l2_bytes),
-        FIELD(BENCH_LONG, l3_bytes),   FIELD(BENCH_INT, cores),
-        FIELD(BENCH_INT, threads),     FIELD(BENCH_TEXT, governor),
-        FIELD(BENCH_TEXT, kernel),     FIELD(BENCH_TEXT, libraries),
-        FIELD(BENCH_TEXT, hostname),   FIELD(BENCH_TEXT, utc),
-        FIELD(BENCH_TEXT, command),
-    };
-    *count = (int)(sizeof fields / sizeof fields[0]);
-    return fields;
-}
+static const BenchField fields[] = {
+    FIELD(BENCH_TEXT, git_commit), FIELD(BENCH_BOOL, git_dirty),
+    FIELD(BENCH_TEXT, version),    FIELD(BENCH_TEXT, compiler),
+    FIELD(BENCH_TEXT, flags),      FIELD(BENCH_TEXT, cpu),
+    FIELD(BENCH_TEXT, cpu_model),  FIELD(BENCH_TEXT, cpu_instructions),
+    FIELD(BENCH_LONG, l1_bytes),   FIELD(BENCH_LONG, l2_bytes),
+    FIELD(BENCH_LONG, l3_bytes),   FIELD(BENCH_INT, cores),
+    FIELD(BENCH_INT, threads),     FIELD(BENCH_TEXT, governor),
+    FIELD(BENCH_TEXT, kernel),     FIELD(BENCH_TEXT, libraries),
+    FIELD(BENCH_TEXT, hostname),   FIELD(BENCH_TEXT, utc),
+    FIELD(BENCH_TEXT, command),
+};
+enum { FIELDS = sizeof fields / sizeof fields[0] };
 
 /* The first line of a file without its newline, or "unknown". */
 static void read_line(const char *path, size_t size, char *line)
@@ -215,7 +210,19 @@ void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machin
 
 json_t *bench_json_machine(const BenchMachine *machine)
 {
-    int count;
-    const BenchField *fields = bench_machine_fields(&count);
-    return bench_json_record(fields, count, machine);
+    return bench_json_record(fields, FIELDS, machine);
+}
+
+void bench_machine_store(BenchH5 *h5, const BenchMachine *machine)
+{
+    bench_h5_fields(h5, bench_h5_group(h5, h5->file, "machine"), fields, FIELDS, machine);
+}
+
+void bench_machine_load(BenchH5 *h5, BenchMachine *machine)
+{
+    hid_t group = bench_h5_find_group(h5, h5->file, "machine");
+    memset(machine, 0, sizeof *machine);
+    for (int f = 0; f < FIELDS; f++)
+        if (fields[f].kind == BENCH_TEXT) strcpy((char *)machine + fields[f].offset, "unknown");
+    bench_h5_read_what_is_there(h5, group, fields, FIELDS, machine);
 }

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "../store/export.h"
+#include "../store/h5.h"
 
 /* Strings are "unknown" and numbers 0 where unknown. */
 typedef struct {
@@ -32,10 +33,12 @@ bool bench_machine_known(const char *text);
  * `text` say what differs. What a record does not hold is not held against it. */
 bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t size, char *text);
 
-/* The record's fields by name; `count` receives how many. */
-const BenchField *bench_machine_fields(int *count);
+/* All of them: the group "machine" of a file that is written, or read. Files lack what was first
+ * written down later: it is unknown. */
+void bench_machine_store(BenchH5 *h5, const BenchMachine *machine);
+void bench_machine_load(BenchH5 *h5, BenchMachine *machine);
 
-/* All of them: the object "environment" of JSON. */
+/* And the object "environment" of JSON. */
 json_t *bench_json_machine(const BenchMachine *machine);
 
 #endif

@@ -132,15 +132,13 @@ typedef struct {
 static void write_file(BenchH5 *h5, void *record)
 {
     const File *file = record;
-    int schema = BENCH_STORE_SCHEMA, machine_count;
-    const BenchField *machine_fields = bench_machine_fields(&machine_count);
+    int schema = BENCH_STORE_SCHEMA;
     bench_h5_text(h5, h5->file, "kind", file_kind);
     bench_h5_numbers(h5, h5->file, "schema", H5T_STD_I32LE, 0, &schema);
     bench_h5_numbers(h5, h5->file, "rows", H5T_STD_I32LE, 0, &file->count);
-    hid_t group = bench_h5_group(h5, h5->file, "machine");
-    bench_h5_fields(h5, group, machine_fields, machine_count, file->machine);
+    bench_machine_store(h5, file->machine);
     write_columns(h5);
-    group = bench_h5_group(h5, h5->file, "rows");
+    hid_t group = bench_h5_group(h5, h5->file, "rows");
     for (int i = 0; i < file->count; i++) bench_store_row(h5, group, i, &file->rows[i]);
 }
 
@@ -158,14 +156,6 @@ static const BenchField needed[] = {
     BENCH_FIELD(BenchRow, BENCH_BOOL, valid),
     BENCH_FIELD(BenchRow, BENCH_INT, repeats),
 };
-
-static void read_where_there(BenchH5 *h5, hid_t object, const BenchField *fields, int count,
-                             void *record)
-{
-    for (int i = 0; i < count && !h5->failed; i++)
-        if (H5Aexists(object, fields[i].name) > 0)
-            bench_h5_read_fields(h5, object, &fields[i], 1, record);
-}
 
 /* Which of the file's columns holds each of our stages, or -1; returns how many columns there are.
  */
@@ -216,7 +206,7 @@ static void read_what_is_there(BenchH5 *h5, hid_t parent, int index, BenchRow *r
     for (int q = 0; q < bench_quantity_count; q++) {
         const BenchField *field = &bench_quantities[q].field;
         if (field->name && !bench_quantities[q].of && bench_field_values(field) == 1)
-            read_where_there(h5, group, field, 1, row);
+            bench_h5_read_what_is_there(h5, group, field, 1, row);
     }
     read_times(h5, group, row);
     if (!h5->failed) return;
@@ -234,14 +224,12 @@ typedef struct {
 static void read_file(BenchH5 *h5, void *record)
 {
     Load *load = record;
-    int stored = 0, fields;
+    int stored = 0;
     const BenchField field = BENCH_VARIABLE("rows", BENCH_INT, stored);
-    const BenchField *machine_fields = bench_machine_fields(&fields);
     bench_h5_check_kind(h5, file_kind, 1, BENCH_STORE_SCHEMA);
     bench_h5_read_fields(h5, h5->file, &field, 1, &stored);
-    hid_t group = bench_h5_find_group(h5, h5->file, "machine");
-    if (!h5->failed) read_where_there(h5, group, machine_fields, fields, load->machine);
-    group = bench_h5_find_group(h5, h5->file, "rows");
+    bench_machine_load(h5, load->machine);
+    hid_t group = bench_h5_find_group(h5, h5->file, "rows");
     if (!h5->failed && (stored < 1 || stored > MOST_ROWS || (hsize_t)stored > h5->size / LEAST_ROW))
         bench_h5_fail(h5, "it states %d rows", stored);
     if (h5->failed) return;

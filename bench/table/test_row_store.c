@@ -117,13 +117,10 @@ static void read_samples(BenchH5 *h5, hid_t group, BenchRow *row)
 /* All that the file holds. */
 static void read_file(BenchH5 *h5, BenchRow *rows, int *count, BenchMachine *machine)
 {
-    int machine_fields;
-    const BenchField *machine_field = bench_machine_fields(&machine_fields);
     const BenchField stored = BENCH_VARIABLE("rows", BENCH_INT, *count);
     bench_h5_check_kind(h5, "shapebench results", BENCH_STORE_SCHEMA, BENCH_STORE_SCHEMA);
     bench_h5_read_fields(h5, h5->file, &stored, 1, count);
-    bench_h5_read_fields(h5, bench_h5_find_group(h5, h5->file, "machine"), machine_field,
-                         machine_fields, machine);
+    bench_machine_load(h5, machine);
     for (int i = 0; i < *count; i++) {
         char name[32];
         snprintf(name, sizeof name, "rows/%03d", i);
