@@ -10,15 +10,24 @@
 #include "../system/team.h"
 #include "inner.h"
 
+/* Those that are in the library have types, by precision. */
+static const struct {
+    const char *name;
+    const SmEngineType *type[2];
+} engines[] = {[SB_FASTLSM] = {"fastlsm", {&fastlsm_engine_f32, &fastlsm_engine_f64}},
+               [SB_OCTREE] = {"octree", {&octree_engine_f32, &octree_engine_f64}},
+               [SB_BRUTE] = {"brute", {NULL}},
+               [SB_MESHLESS] = {"meshless", {NULL}}};
+
 const char *sb_engine_name(int engine)
 {
-    static const char *const name[] = {"fastlsm", "octree", "brute", "meshless"};
-    return engine >= SB_FASTLSM && engine <= SB_MESHLESS ? name[engine] : NULL;
+    return engine >= 0 && engine < (int)(sizeof engines / sizeof *engines) ? engines[engine].name
+                                                                           : NULL;
 }
 
 int sb_engine_available(int engine)
 {
-    return engine == SB_FASTLSM || engine == SB_OCTREE;
+    return sb_engine_name(engine) && engines[engine].type[0];
 }
 
 /* ---- creation */
@@ -167,14 +176,8 @@ static int take_octree(const sb_octree_params *from, OctOptions *to, sb_error *e
     return code ? code : take_widths(&p, to, error);
 }
 
-static const SmEngineType *type_of(const sb_body_params *p)
-{
-    if (p->engine == SB_OCTREE)
-        return p->precision == SB_SINGLE ? &octree_engine_f32 : &octree_engine_f64;
-    return p->precision == SB_SINGLE ? &fastlsm_engine_f32 : &fastlsm_engine_f64;
-}
-
-static SmEngineParams engine_params(const sb_body_params *p, const OctOptions *octree)
+static SmEngineParams engine_params(const sb_body_params *p, const SmEngineType *type,
+                                    const OctOptions *octree)
 {
     SmEngineParams to = {.w = p->w,
                          .h = p->h,
@@ -193,7 +196,7 @@ static SmEngineParams engine_params(const sb_body_params *p, const OctOptions *o
                                      .bodies = p->collide_instances != 0,
                                      .friction = p->collide_friction}};
     memcpy(to.gravity, p->gravity, sizeof to.gravity);
-    if (p->cuttable && p->engine == SB_FASTLSM && to.strain_limit == 0)
+    if (p->cuttable && type->cut && to.strain_limit == 0)
         to.strain_limit = INFINITY; /* it breaks where it is cut */
     return to;
 }
@@ -231,19 +234,20 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
     if (!code) code = check_sizes(&p, &voxels->voxels, error);
     if (!code) code = take_octree(p.octree, &octree, error);
     if (code) return code;
-    SmEngineParams inner = engine_params(&p, &octree);
+    const SmEngineType *type = engines[p.engine].type[p.precision];
+    SmEngineParams inner = engine_params(&p, type, &octree);
     sb_body *made = sm_alloc(1, sizeof *made);
     *made = (sb_body){.kind = SB_IS_BODY,
-                      .type = type_of(&p),
+                      .type = type,
                       .h = p.h,
                       .threads = p.threads,
                       .instances = inner.instances};
-    SmCode failed = made->type->create(&voxels->voxels, &inner, &made->engine, &why);
+    SmCode failed = type->create(&voxels->voxels, &inner, &made->engine, &why);
     if (failed) {
         free(made);
         return sm_done(failed, &why, error);
     }
-    complete(made, voxels, surface, inner.strain_limit > 0 && !made->type->refines);
+    complete(made, voxels, surface, inner.strain_limit > 0 && type->cut);
     *body = made;
     return sm_done(SM_OK, NULL, error);
 }
