@@ -4,7 +4,6 @@
 #include "../reference/brute.h"
 #include "../reference/meshless/engine.h"
 #include "check/check.h"
-#include "cli/summary.h"
 #include "engines.h"
 #include "measure/checker.h"
 #include "measure/elastic_checker.h"
@@ -58,7 +57,7 @@ const BenchEngine bench_octree = {.type = {&octree_engine_f32, &octree_engine_f6
                                   .checker = &bench_matching_checker,
                                   .fill = bench_tree_row_fill,
                                   .explain = bench_tree_row_explain,
-                                  .describe = bench_summary_octree,
+                                  .describe = bench_tree_row_describe,
                                   .structure = oct_engine_structure,
                                   .memory = bench_memory_octree};
 
@@ -74,7 +73,7 @@ const BenchEngine bench_meshless = {.type = {&ref_meshless_engine},
                                     .nodes = meshless_nodes,
                                     .adapt = bench_scene_hold,
                                     .carrier = &bench_lattice_carrier,
-                                    .describe = bench_summary_meshless,
+                                    .describe = bench_elastic_row_describe,
                                     .frames = &ref_meshless_frames,
                                     .checker = &bench_elastic_checker,
                                     .fill = bench_elastic_row_fill,

@@ -352,27 +352,28 @@ static void read_points(BenchH5 *h5, BenchCampaign *campaign)
 
 /* What is to be loaded, and where to. */
 typedef struct {
-    const BenchCampaignType *type; /* NULL: any */
+    const BenchCampaignType *const *types; /* that it may be of */
     BenchCampaign *campaign;
 } Load;
 
 /* The type of the file; or, where it is of none, the first. */
-static const BenchCampaignType *type_of(BenchH5 *h5)
+static const BenchCampaignType *type_of(BenchH5 *h5, const BenchCampaignType *const *types)
 {
     char found[64] = "", kind[64];
+    if (!types[1]) return types[0];
     bench_h5_read_text(h5, h5->file, "kind", sizeof found, found);
-    for (const BenchCampaignType *const *type = bench_campaign_types; *type; type++) {
+    for (const BenchCampaignType *const *type = types; *type; type++) {
         snprintf(kind, sizeof kind, "shapebench %s", (*type)->name);
         if (!strcmp(found, kind)) return *type;
     }
     bench_h5_fail(h5, "it is HDF5, but no file of a sweep, a calibration or claims");
-    return bench_campaign_types[0];
+    return types[0];
 }
 
 static void read_file(BenchH5 *h5, void *record)
 {
     const Load *load = record;
-    const BenchCampaignType *type = load->type ? load->type : type_of(h5);
+    const BenchCampaignType *type = type_of(h5, load->types);
     BenchCampaign *campaign = load->campaign;
     char kind[64];
     *campaign = bench_campaign_create(type);
@@ -385,13 +386,20 @@ static void read_file(BenchH5 *h5, void *record)
     if (!h5->failed && type->read) type->read(h5, campaign);
 }
 
+SmCode bench_campaign_load_any(const char *path, const BenchCampaignType *const *types,
+                               BenchCampaign *campaign, SmError *error)
+{
+    *campaign = (BenchCampaign){0};
+    SmCode code = bench_h5_load(path, read_file, &(Load){types, campaign}, error);
+    if (code) bench_campaign_free(campaign);
+    return code;
+}
+
 SmCode bench_campaign_load(const char *path, const BenchCampaignType *type, BenchCampaign *campaign,
                            SmError *error)
 {
-    *campaign = (BenchCampaign){0};
-    SmCode code = bench_h5_load(path, read_file, &(Load){type, campaign}, error);
-    if (code) bench_campaign_free(campaign);
-    return code;
+    const BenchCampaignType *const types[] = {type, NULL};
+    return bench_campaign_load_any(path, types, campaign, error);
 }
 
 /* ---- provenance */

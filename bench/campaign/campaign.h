@@ -104,9 +104,6 @@ typedef struct {
     void (*free_plan)(void *plan);
 } BenchCampaignType;
 
-/* All kinds, which `merge` knows. */
-extern const BenchCampaignType *const bench_campaign_types[];
-
 struct BenchCampaign {
     const BenchCampaignType *type;
     void *plan;           /* of type->plan_size */
@@ -142,11 +139,13 @@ bool bench_campaign_same(const BenchCampaign *mine, const BenchCampaign *theirs,
 /* Concludes and writes all of it: the file appears whole or not at all (draft.h). */
 SmCode bench_campaign_store(const char *path, BenchCampaign *campaign, SmError *error);
 
-/* Reads a file of this kind, or, where it is NULL, of any; the caller frees the campaign. SM_INPUT:
- * no such file, not HDF5, cut off, of another kind or schema, something missing, of a wrong size,
- * or beside the plan. */
+/* Reads a file of this kind, or of any of several, NULL at the end; the caller frees the campaign.
+ * SM_INPUT: no such file, not HDF5, cut off, of another kind or schema, something missing, of a
+ * wrong size, or beside the plan. */
 SmCode bench_campaign_load(const char *path, const BenchCampaignType *type, BenchCampaign *campaign,
                            SmError *error);
+SmCode bench_campaign_load_any(const char *path, const BenchCampaignType *const *types,
+                               BenchCampaign *campaign, SmError *error);
 
 /* Moves the points of `from` (read from `path`) to `into`. A point that is in both must be the same
  * to the last bit. SM_INPUT: it is not, or the plans differ. */

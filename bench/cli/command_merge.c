@@ -1,7 +1,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "../calibrate/calibration.h"
+#include "../claims/claim_plan.h"
 #include "../store/draft.h"
+#include "../sweep/sweep.h"
 #include "command.h"
 
 typedef struct {
@@ -26,12 +29,15 @@ static const char help[] =
     "command that made the shards, with the same options and -o OUT.h5 --resume, measures "
     "it.\n" BENCH_EXIT_CODES;
 
+static const BenchCampaignType *const types[] = {&bench_sweep_type, &bench_calibration_type,
+                                                 &bench_claims_type, NULL};
+
 static SmCode merge(const char *const *input, int inputs, BenchCampaign *all, SmError *error)
 {
-    SmCode code = bench_campaign_load(input[0], NULL, all, error);
+    SmCode code = bench_campaign_load_any(input[0], types, all, error);
     for (int i = 1; i < inputs && !code; i++) {
         BenchCampaign next;
-        code = bench_campaign_load(input[i], NULL, &next, error);
+        code = bench_campaign_load_any(input[i], types, &next, error);
         if (code) break;
         code = bench_campaign_merge(all, &next, input[i], error);
         bench_campaign_free(&next);

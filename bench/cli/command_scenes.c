@@ -4,7 +4,6 @@
 
 #include "../../lib/shapes/shape.h"
 #include "../scene/body.h"
-#include "../scene/scene_settings.h"
 #include "../store/draft.h"
 #include "command.h"
 

@@ -7,7 +7,6 @@
 #include "../check/runner_check.h"
 #include "../check/step_check.h"
 #include "../engines.h"
-#include "../measure/tree_row.h"
 #include "../table/explain.h"
 
 /* Prints the last state's deviation from brute force; false: beyond the tolerance. */
@@ -45,34 +44,6 @@ static bool print_deviation(const BenchRunner *runner)
         return true;
     printf("deviation: %s\n", reason);
     return false;
-}
-
-void bench_summary_octree(const BenchRunner *runner, const SmCounts *counts)
-{
-    (void)counts;
-    BenchRow row = {0};
-    bench_tree_row_fill(runner, &row);
-    printf("%s: octree, %s precision: ", runner->scene->name, runner->type->precision);
-    bench_tree_row_nodes(stdout, &row);
-    printf(" of %.6g\nregions: ", runner->body->voxels.cell);
-    bench_tree_row_widths(stdout, &row);
-    fputs(": ", stdout);
-    bench_tree_row_regions(stdout, &row);
-    fputs("\nthe body ", stdout);
-    bench_tree_row_body(stdout, &row);
-    putchar('\n');
-}
-
-void bench_summary_meshless(const BenchRunner *runner, const SmCounts *counts)
-{
-    const RefMeshlessOptions *options = &runner->scene->meshless;
-    long points = ref_meshless_points(runner->engine, NULL);
-    printf("%s: meshless, %s precision: ", runner->scene->name, runner->type->precision);
-    if (points) printf("%ld given points and ", points);
-    printf("%ld particles carried by %ld nodes; Young's modulus %g, "
-           "Poisson's ratio %g, density %g, %.4g mesh units in a metre; built in %.3g s\n",
-           counts->particles, counts->regions, options->material.young, options->material.poisson,
-           options->material.density, runner->scene->metre, counts->build_seconds);
 }
 
 static void print_lattice(const BenchRunner *runner, const SmCounts *counts)

@@ -20,9 +20,4 @@ typedef struct {
  * time, when it ended with goals beyond the tolerance or positions that are not finite. */
 bool bench_summary_print(BenchPlayback *play, const BenchOutcome *outcome);
 
-/* The first lines of it. Of an octree: nodes beside those wanted, regions, and what holds together;
- * of a meshless body: what carries it, and its material. */
-void bench_summary_octree(const BenchRunner *runner, const SmCounts *counts);
-void bench_summary_meshless(const BenchRunner *runner, const SmCounts *counts);
-
 #endif

@@ -18,9 +18,6 @@ const char *bench_kernel_name(int index, const char **group);
 SmCode bench_kernels_run(const BenchKernelParams *params, const BenchPeak *peak,
                          BenchKernelRow *rows, int *count, SmError *error);
 
-/* Marks a row busy, of which others took so much. */
-void bench_kernel_busy(BenchKernelRow *row, double lost_percent);
-
 /* Was what is wanted reached? "met", "missed", or "" where nothing is wanted, or only of times that
  * are not to be told. */
 const char *bench_kernel_verdict(const BenchKernelRow *row);

@@ -5,7 +5,7 @@
 #include "../../fastlsm/fastlsm.h"
 #include "../../fastlsm/operations.h"
 #include "../measure/measure.h"
-#include "kernels.h"
+#include "kernel.h"
 
 typedef struct {
     BenchTrial trial; /* without samples: they are in the row */
@@ -48,7 +48,8 @@ static void report(BenchJob *job, BenchKernelRow *row)
     const BenchRow *found = &measured->row;
     double particles = (double)found->particles, scale = 1e6 / particles;
     int side = (int)cbrt(particles / (double)found->instances) + 1;
-    if (found->busy) bench_kernel_busy(row, found->lost_percent);
+    row->busy = found->busy;
+    row->lost_percent = found->lost_percent;
     row->ns = found->ns_per_particle_step;
     row->low = scale * found->total_low_ms;
     row->high = scale * found->total_high_ms;

@@ -1,6 +1,7 @@
 #include "elastic_checker.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -96,6 +97,18 @@ const BenchChecker bench_elastic_checker = {.size = sizeof(BenchElasticFound),
 bool bench_row_of_elastic(const BenchRow *row)
 {
     return bench_engine(row->engine)->own & BENCH_OF_ELASTIC;
+}
+
+void bench_elastic_row_describe(const BenchRunner *runner, const SmCounts *counts)
+{
+    const RefMeshlessOptions *options = &runner->scene->meshless;
+    long points = ref_meshless_points(runner->engine, NULL);
+    printf("%s: meshless, %s precision: ", runner->scene->name, runner->type->precision);
+    if (points) printf("%ld given points and ", points);
+    printf("%ld particles carried by %ld nodes; Young's modulus %g, "
+           "Poisson's ratio %g, density %g, %.4g mesh units in a metre; built in %.3g s\n",
+           counts->particles, counts->regions, options->material.young, options->material.poisson,
+           options->material.density, runner->scene->metre, counts->build_seconds);
 }
 
 void bench_elastic_row_explain(FILE *file, const BenchRow *row)

@@ -17,6 +17,9 @@ extern const BenchChecker bench_elastic_checker;
 /* Whether the row is a meshless body's. */
 bool bench_row_of_elastic(const BenchRow *row);
 
+/* On standard output: what carries it, and its material. */
+void bench_elastic_row_describe(const BenchRunner *runner, const SmCounts *counts);
+
 /* What the body is made of, behind the line of its check. */
 void bench_elastic_row_explain(FILE *file, const BenchRow *row);
 

@@ -43,7 +43,8 @@ static void tell_wanted(FILE *file, long wanted, long count)
     if (wanted && wanted != count) fprintf(file, " (nearest to the %ld wanted)", wanted);
 }
 
-void bench_tree_row_nodes(FILE *file, const BenchRow *row)
+/* Parts of a sentence, without an end of line: bodies, nodes, base cells, cells. */
+static void tell_nodes(FILE *file, const BenchRow *row)
 {
     long nodes = row->instances > 1 ? row->particles / row->instances : row->particles;
     if (row->instances > 1) fprintf(file, "%ld bodies of ", row->instances);
@@ -58,7 +59,7 @@ void bench_tree_row_nodes(FILE *file, const BenchRow *row)
     fprintf(file, ", %ld finest cells", row->cells);
 }
 
-void bench_tree_row_widths(FILE *file, const BenchRow *row)
+static void tell_widths(FILE *file, const BenchRow *row)
 {
     char width[BENCH_WIDTH_TEXT];
     long nodes = row->instances > 1 ? row->particles / row->instances : row->particles;
@@ -76,7 +77,7 @@ void bench_tree_row_widths(FILE *file, const BenchRow *row)
     if (row->masses == OCT_VOLUME) fputs(", masses by volume", file);
 }
 
-void bench_tree_row_regions(FILE *file, const BenchRow *row)
+static void tell_regions(FILE *file, const BenchRow *row)
 {
     fprintf(file, "%.3g summation nodes a region on average", row->summation_nodes);
     if (row->wanted_summation > 0 && fabs(row->summation_nodes / row->wanted_summation - 1) > 0.005)
@@ -85,7 +86,9 @@ void bench_tree_row_regions(FILE *file, const BenchRow *row)
             row->most_summation, row->reached, row->most_reached);
 }
 
-void bench_tree_row_body(FILE *file, const BenchRow *row)
+/* Whether the body holds together, where its nodes weld it, and its memory: "the body" precedes
+ * it. */
+static void tell_body(FILE *file, const BenchRow *row)
 {
     if (row->parts == 1)
         fputs("is held together by its regions", file);
@@ -100,6 +103,22 @@ void bench_tree_row_body(FILE *file, const BenchRow *row)
         fprintf(file, "; coarse nodes weld what does not touch: %ld inside, %ld pairs",
                 row->welded_cells, row->welded_pairs);
     fprintf(file, "; %.3g MB", 1e-6 * (double)row->bytes);
+}
+
+void bench_tree_row_describe(const BenchRunner *runner, const SmCounts *counts)
+{
+    (void)counts;
+    BenchRow row = {0};
+    bench_tree_row_fill(runner, &row);
+    printf("%s: octree, %s precision: ", runner->scene->name, runner->type->precision);
+    tell_nodes(stdout, &row);
+    printf(" of %.6g\nregions: ", runner->body->voxels.cell);
+    tell_widths(stdout, &row);
+    fputs(": ", stdout);
+    tell_regions(stdout, &row);
+    fputs("\nthe body ", stdout);
+    tell_body(stdout, &row);
+    putchar('\n');
 }
 
 /* The step's time as the octree paper groups it. */
@@ -120,15 +139,15 @@ void bench_tree_row_explain(FILE *file, const BenchRow *row)
 {
     const RefPaperRow *paper = row->paper[0] ? ref_paper_find(row->paper, row->paper_row) : NULL;
     fputs("    ", file);
-    bench_tree_row_nodes(file, row);
+    tell_nodes(file, row);
     if (paper && isfinite(paper->bases.value))
         fprintf(file, "; paper: %.0f from %.0f", paper->particles.value, paper->bases.value);
     fputs(";\n    ", file);
-    bench_tree_row_widths(file, row);
+    tell_widths(file, row);
     fputs(";\n    ", file);
-    bench_tree_row_regions(file, row);
+    tell_regions(file, row);
     fputs(";\n    the body ", file);
-    bench_tree_row_body(file, row);
+    tell_body(file, row);
     fputc('\n', file);
     if (bench_row_timed(row)) print_groups(file, row);
 }

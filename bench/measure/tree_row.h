@@ -12,16 +12,10 @@
  * regions). */
 void bench_tree_row_fill(const BenchRunner *runner, BenchRow *row);
 
-/* Parts of a sentence, without an end of line. */
-void bench_tree_row_nodes(FILE *file, const BenchRow *row);   /* bodies, nodes, base cells, cells */
-void bench_tree_row_widths(FILE *file, const BenchRow *row);  /* w, epsilon */
-void bench_tree_row_regions(FILE *file, const BenchRow *row); /* summation nodes, reach */
+/* On standard output: nodes beside those wanted, regions, and what holds together. */
+void bench_tree_row_describe(const BenchRunner *runner, const SmCounts *counts);
 
-/* Whether the body holds together, where its nodes weld it, and its memory: "the body" precedes
- * it. */
-void bench_tree_row_body(FILE *file, const BenchRow *row);
-
-/* All of that, beside the paper's, and the step's time as the octree paper groups it. */
+/* The same of a row, beside the paper's, and the step's time as the octree paper groups it. */
 void bench_tree_row_explain(FILE *file, const BenchRow *row);
 
 #endif

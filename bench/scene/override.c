@@ -5,7 +5,6 @@
 
 #include "../engines.h"
 #include "../settings/command_line.h"
-#include "scene_settings.h"
 
 /* "NAME=FILE" */
 static void add_substitute(const struct argp_state *state, const char *text, void *member)

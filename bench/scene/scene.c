@@ -12,7 +12,6 @@
 #include "../settings/config_file.h"
 #include "../system/suggest.h"
 #include "builtin.h"
-#include "scene_settings.h"
 
 enum { BUILTIN_MAX = 64 };
 

@@ -1,7 +1,7 @@
 /* scene.h - a scene as data: what to simulate, how, and what disturbs it.
  *
  * Scene files are libconfig; bench/scenes/ holds those that come with the program. What they can
- * say is the table of scene_settings.h. Lengths are in the mesh's units. */
+ * say is the table of scene_settings.c. Lengths are in the mesh's units. */
 #ifndef BENCH_SCENE_H
 #define BENCH_SCENE_H
 
@@ -106,9 +106,21 @@ extern const char *const bench_masses[], *const bench_symmetries[], *const bench
 extern const char *const bench_goal_forms[];
 #define BENCH_LAYOUT_HELP "Fastlsm's sums: auto, lists, or blocks where it can"
 
-/* Who takes an option of the settings (scene_settings.h), and which engines alone. */
+/* Who takes an option of the settings, and which engines alone. */
 enum { BENCH_BY_RUN = 1, BENCH_BY_TABLES = 2 };
 enum { BENCH_OF_SAMPLED = 1, BENCH_OF_ELASTIC = 2 }; /* `own` of a BenchEngine */
+
+/* What a file says, before the four kinds of obstacle become one array. */
+typedef struct {
+    BenchScene scene; /* first: the settings' members are as far from the record's beginning */
+    SmObstacle plane[BENCH_MAX], ball[BENCH_MAX], box[BENCH_MAX], capsule[BENCH_MAX];
+    int planes, balls, boxes, capsules;
+} BenchSceneFile;
+
+/* Everything that a scene file can say, and the options that replace some of it: the key in the
+ * file, the option, the range and the help, one line each (settings/setting.h). Of a
+ * BenchSceneFile, and of a scene, which is its first member. */
+extern const BenchSetting bench_scene_settings[];
 
 /* The defaults of everything that a scene file may leave out; no mesh. */
 void bench_scene_init(BenchScene *scene);

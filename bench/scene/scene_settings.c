@@ -1,6 +1,6 @@
-#include "scene_settings.h"
-
+/* scene_settings.c - the table of a scene's settings. */
 #include "../engines.h"
+#include "scene.h"
 
 #define FAR 1e12 /* a length, speed or force beyond this is a mistake */
 

@@ -4,7 +4,6 @@
 #include "../../lib/test_folder.h"
 #include "../../lib/test_frame.h"
 #include "scene.h"
-#include "scene_settings.h"
 
 #define BODY "mesh = \"shape:block\";\nparticles = 100;\n"
 

@@ -1,4 +1,4 @@
-/* geometry.c - the library's own functions, meshes and voxels of shapebench.h. */
+/* geometry.c - meshes and voxels of shapebench.h. */
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,22 +13,6 @@ _Static_assert(sizeof(long) == sizeof(int64_t), "numbers of particles go through
 _Static_assert((int)SB_USAGE == SM_USAGE && (int)SB_INPUT == SM_INPUT &&
                    (int)SB_MEMORY == SM_MEMORY,
                "codes go through as they are");
-
-/* ---- the library */
-
-int sb_version(void)
-{
-    return SHAPEBENCH_VERSION;
-}
-
-#define TEXT(number)   #number
-#define DIGITS(number) TEXT(number)
-
-const char *sb_version_text(void)
-{
-    return DIGITS(SHAPEBENCH_VERSION_MAJOR) "." DIGITS(SHAPEBENCH_VERSION_MINOR) "." DIGITS(
-        SHAPEBENCH_VERSION_PATCH);
-}
 
 /* ---- meshes */
 

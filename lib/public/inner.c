@@ -3,6 +3,20 @@
 #include <math.h>
 #include <string.h>
 
+int sb_version(void)
+{
+    return SHAPEBENCH_VERSION;
+}
+
+#define TEXT(number)   #number
+#define DIGITS(number) TEXT(number)
+
+const char *sb_version_text(void)
+{
+    return DIGITS(SHAPEBENCH_VERSION_MAJOR) "." DIGITS(SHAPEBENCH_VERSION_MINOR) "." DIGITS(
+        SHAPEBENCH_VERSION_PATCH);
+}
+
 int sm_refuse(sb_error *error, int code, const char *format, ...)
 {
     if (!error) return code;
