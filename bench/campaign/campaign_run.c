@@ -47,7 +47,8 @@ static SmCode slurm_shard(int *shard, int *shards, SmError *error)
     long id = 0, count = 0, least = 0, step = 1;
     SmCode code = slurm_number("SLURM_ARRAY_TASK_ID", 0, &id, error);
     if (!code) code = slurm_number("SLURM_ARRAY_TASK_COUNT", 1, &count, error);
-    if (!code) code = slurm_number("SLURM_ARRAY_TASK_MIN", 0, &least, error);
+    if (!code && getenv("SLURM_ARRAY_TASK_MIN"))
+        code = slurm_number("SLURM_ARRAY_TASK_MIN", 0, &least, error);
     if (!code && getenv("SLURM_ARRAY_TASK_STEP"))
         code = slurm_number("SLURM_ARRAY_TASK_STEP", 1, &step, error);
     if (code) return code;
@@ -55,8 +56,12 @@ static SmCode slurm_shard(int *shard, int *shards, SmError *error)
     if (id < least || (id - least) % step || number > count || count > BENCH_CAMPAIGN_POINTS)
         return sm_fail(error, SM_USAGE,
                        "--shard auto: task %ld is none of %ld in even steps of %ld from %ld on, at "
-                       "most %d: give the array as --array=1-N",
-                       id, count, step, least, BENCH_CAMPAIGN_POINTS);
+                       "most %d: give the array as --array=1-N%s",
+                       id, count, step, least, BENCH_CAMPAIGN_POINTS,
+                       getenv("SLURM_ARRAY_TASK_MIN")
+                           ? ""
+                           : ", and the first task's number in SLURM_ARRAY_TASK_MIN, without which "
+                             "it is 0");
     *shard = (int)number;
     *shards = (int)count;
     return SM_OK;

@@ -26,8 +26,9 @@ struct BenchCampaignRun {
  * campaign. SM_OUTPUT: it cannot be written; what was stored before stays. */
 SmCode bench_campaign_run(const BenchCampaignRun *run, BenchCampaign *campaign, SmError *error);
 
-/* "I/N" with I from 1 to N; "auto": of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN and
- * _STEP); NULL: 1/1. SM_USAGE: it is neither. */
+/* "I/N" with I from 1 to N; "auto": of a Slurm job array (SLURM_ARRAY_TASK_ID and _COUNT; without
+ * _MIN, which Slurm sets, the first task is 0, without _STEP the next one 1); NULL: 1/1. SM_USAGE:
+ * it is neither. */
 SmCode bench_shard_parse(const char *text, int *shard, int *shards, SmError *error);
 
 #endif

@@ -42,7 +42,8 @@ typedef struct {
         {BENCH_MEASURE("shard", "I/N|auto", place,                                                 \
                        "Measure only every N-th " point                                            \
                        ", from the I-th on; auto: those of a task of a Slurm job array "           \
-                       "(SLURM_ARRAY_TASK_ID and _COUNT); put the files together with 'merge'"),   \
+                       "(SLURM_ARRAY_TASK_ID and _COUNT, counted from _MIN, or 0 without it); "    \
+                       "put the files together with 'merge'"),                                     \
          BENCH_IN(record, its.run.shard)},                                                         \
         {BENCH_OPTION("columns", NULL, place,                                                      \
                       "Measure nothing; list what FILE.h5 has, as results/README.md does"),        \

@@ -86,7 +86,10 @@ TEST(shards_are_those_of_a_job_array)
         {"7", "3", "5", "1", 3, NULL},
         {NULL, "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is not set"},
         {"1", NULL, "1", NULL, 0, "SLURM_ARRAY_TASK_COUNT is not set"},
-        {"1", "4", NULL, NULL, 0, "SLURM_ARRAY_TASK_MIN is not set"},
+        {"0", "4", NULL, NULL, 1, NULL},
+        {"3", "4", NULL, NULL, 4, NULL},
+        {"4", "4", NULL, NULL, 0, "the first task's number in SLURM_ARRAY_TASK_MIN"},
+        {"1", "4", "", NULL, 0, "SLURM_ARRAY_TASK_MIN is ''"},
         {"1", "0", "1", NULL, 0, "SLURM_ARRAY_TASK_COUNT is '0'"},
         {"one", "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is 'one'"},
         {"", "4", "1", NULL, 0, "SLURM_ARRAY_TASK_ID is ''"},
@@ -107,7 +110,9 @@ TEST(shards_are_those_of_a_job_array)
         SmCode code = bench_shard_parse("auto", &shard, &shards, &error);
         assert_int_equal(code, cases[c].shard ? SM_OK : SM_USAGE);
         if (code && !strstr(error.text, cases[c].words)) fail_msg("%zu: %s", c, error.text);
-        if (!code) assert_int_equal(shard, cases[c].shard);
+        if (code) continue;
+        assert_int_equal(shard, cases[c].shard);
+        assert_int_equal(shards, atoi(cases[c].count));
     }
 }
 
