@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "error.h"
+#include "test_frame.h"
 
 /* 0 under sanitizers, which look at memory, not at figures, and take long: tests that only add
  * figures to what others run already are skipped or smaller there. */
@@ -13,6 +14,11 @@ enum { TEST_FIGURES = 0 };
 #else
 enum { TEST_FIGURES = 1 };
 #endif
+
+static inline void needs_figures(void)
+{
+    needs(TEST_FIGURES, "sanitizers take too long for its figures");
+}
 
 /* The caller frees the array, which is zero. */
 static inline double (*triples(long n))[3]

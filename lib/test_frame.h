@@ -50,6 +50,29 @@ static inline void test_enlist(struct CMUnitTest test)
         test_tear_down = tear_down;                                                                \
     }
 
+/* Ends the test as skipped, and says why. */
+static inline void skip_because(const char *why)
+{
+    print_message("[  NOTE    ] skipped: %s\n", why);
+    skip();
+}
+
+/* Goes on where the test has what it needs. */
+static inline void needs(bool have, const char *why)
+{
+    if (!have) skip_because(why);
+}
+
+/* The same of Debian's Python and these modules of it, "h5py, numpy". */
+static inline void needs_python(const char *modules)
+{
+    char text[128];
+    snprintf(text, sizeof text, "/usr/bin/python3 -c 'import %s' 2>/dev/null", modules);
+    bool have = system(text) == 0;
+    snprintf(text, sizeof text, "no /usr/bin/python3 with %s", modules);
+    needs(have, text);
+}
+
 int main(void)
 {
     return cmocka_run_group_tests_name("tests", test_list, test_set_up, test_tear_down);

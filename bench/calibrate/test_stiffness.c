@@ -2,7 +2,7 @@
  * theory's own modes behind the engines' interface, and the meshless reference. */
 #include "../../lib/test_fields.h"
 #include "../../lib/test_frame.h"
-#include "../../reference/meshless/solve/solver.h"
+#include "../../reference/meshless/test_solver.h"
 #include "../engines.h"
 #include "specimen.h"
 
@@ -249,7 +249,7 @@ TEST(models_agree)
         assert_int_equal(bench_elastic_cantilever((BenchModel)m, ASPECT, 0.3, &ideal[m], NULL),
                          SM_OK);
     assert_int_equal(ideal[BENCH_MESHLESS].there, ref_solver_built);
-    if (!ref_solver_built) skip();
+    needs_solver();
     near_to(ideal[BENCH_MESHLESS].sag, ideal[BENCH_TIMOSHENKO].sag, 0.03);
     for (int k = 0; k < BENCH_TONES; k++)
         near_to(ideal[BENCH_MESHLESS].square[k], ideal[BENCH_TIMOSHENKO].square[k], 0.03);
@@ -260,7 +260,8 @@ TEST(models_agree)
  * modulus to a tenth; its implicit step loses something. */
 TEST(the_reference_gives_its_modulus_back)
 {
-    if (!ref_solver_built || !TEST_FIGURES) skip();
+    needs_solver();
+    needs_figures();
     BenchCantileverOptions options = options_of(2e-2);
     strcpy(options.engine, "meshless");
     BenchStiffness found = measure(&options, &ref_meshless_engine, false);

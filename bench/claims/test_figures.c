@@ -217,7 +217,7 @@ static double neighbours_bend_welded(int axis, double welded[FINGERS][FINGERS])
  * them; where cells of one size weld fingers, here index to middle and ring to pinky, they bend. */
 TEST(fingers_move_independently)
 {
-    if (!TEST_FIGURES) skip();
+    needs_figures();
     static const char *const names[2] = {"hand-sampled-whole", "hand-sampled"};
     for (int i = 0; i < 4; i++) {
         Run run;
@@ -270,7 +270,7 @@ static double pinky_over_thumb(Run *run)
 /* Under forces that move both alike while their widths are equal. */
 TEST(a_pinky_is_soft_and_a_thumb_stiff)
 {
-    if (!TEST_FIGURES) skip();
+    needs_figures();
     Run run;
     find_scene("hand-stiffness", &run);
     double differing = pinky_over_thumb(&run);

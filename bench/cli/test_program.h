@@ -44,16 +44,12 @@ static inline void run(const char *arguments, Result *result)
  * and says so, the test ends as skipped. */
 static inline void run_ranks(const char *arguments, Result *result)
 {
-    if (system("command -v mpirun >/dev/null 2>&1") != 0) {
-        print_message("no mpirun here (openmpi-bin)\n");
-        skip();
-    }
+    needs(system("command -v mpirun >/dev/null 2>&1") == 0, "no mpirun here (openmpi-bin)");
     run_with("ASAN_OPTIONS=detect_leaks=0 mpirun --allow-run-as-root --oversubscribe -n 2",
              arguments, result);
     if (!strstr(result->err, "built without MPI")) return;
     assert_int_equal(result->code, 2);
-    print_message("built without MPI (libopenmpi-dev): only its refusal is tested\n");
-    skip();
+    skip_because("built without MPI (libopenmpi-dev): only its refusal is tested");
 }
 
 /* Starts "shapebench ARGUMENTS", interrupts it (SIGINT) as soon as the file is there, and returns

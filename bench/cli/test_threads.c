@@ -81,7 +81,7 @@ TEST(an_engine_of_one_thread_starts_no_other)
     const OctOptions fine = {.sampling = {.levels = 1, .nodes = 2500}};
     const SmCollideParams collide = {.self = true, .bodies = true};
     int number = omp_get_max_threads();
-    if (!tasks()) skip();
+    needs(tasks() > 0, "this system does not say how many threads a process has");
     omp_set_num_threads(1);
     assert_int_equal(sm_shape_mesh("penguin", &penguin, NULL), SM_OK);
     assert_int_equal(sm_voxelise(&penguin, &few, "penguin", &sites, NULL), SM_OK);

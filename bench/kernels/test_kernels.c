@@ -244,7 +244,7 @@ TEST(octree_kernels_run_by_name)
 /* Set-up is asserted to be linear, whatever caches hold. */
 TEST(octree_setup_is_linear)
 {
-    if (!TEST_FIGURES) skip();
+    needs_figures();
     BenchKernelRow *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     int count;
     run_repeats(15, (const char *const[]){"oct-setup-1e4", NULL}, rows,

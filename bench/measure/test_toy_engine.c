@@ -219,7 +219,7 @@ TEST(its_row_is_on_the_report_page)
     BenchRow row = measure();
     SmError error;
     char command[1024], *words[] = {"shapebench"};
-    if (system("/usr/bin/python3 -c 'import h5py, matplotlib' 2>/dev/null")) skip();
+    needs_python("h5py, matplotlib");
     bench_machine_read(1, words, 1, &machine);
     assert_int_equal(bench_store_rows(path_in("rows.h5"), &row, 1, &machine, &error), SM_OK);
     snprintf(command, sizeof command,

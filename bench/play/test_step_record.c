@@ -120,13 +120,10 @@ static void record_lattice(SmEngineParams *engine, const SmBoundary *boundary, b
 /* The script's exit code on the file; skips the test where Python or h5py is missing. */
 static int check_file(void)
 {
-    static int missing = -1; /* asked once */
+    static bool found; /* asked once */
     char command[256];
-    if (missing < 0) missing = system("/usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null");
-    if (missing) {
-        print_message("[  NOTE    ] no /usr/bin/python3 with h5py and numpy: not recomputed\n");
-        skip();
-    }
+    if (!found) needs_python("h5py, numpy");
+    found = true;
     fflush(NULL);
     snprintf(command, sizeof command, "/usr/bin/python3 '%s/scripts/check_step.py' %s", SOURCE_DIR,
              path);

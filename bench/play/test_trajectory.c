@@ -77,13 +77,6 @@ static SmCode write_sheet(const char *path, double offset, int frames, SmError *
     return code;
 }
 
-static bool have_python(const char *module)
-{
-    char command[128];
-    snprintf(command, sizeof command, "/usr/bin/python3 -c 'import %s' 2>/dev/null", module);
-    return system(command) == 0;
-}
-
 static void read_longs(hid_t file, const char *name, int count, long *values)
 {
     BenchH5 h5 = {.file = file};
@@ -295,10 +288,7 @@ TEST(obstacles_are_stored)
 /* The sidecar is well-formed with a scene's name and a file's name of odd characters. */
 TEST(sidecar_is_xml)
 {
-    if (!have_python("xml.etree.ElementTree")) {
-        print_message("[  NOTE    ] no /usr/bin/python3: sidecar not parsed\n");
-        skip();
-    }
+    needs_python("xml.etree.ElementTree");
     char path[256], command[1024];
     snprintf(path, sizeof path, "%s", path_in("odd & <name> \xc3\xa9 \".vtkhdf"));
     SmError error = {0};

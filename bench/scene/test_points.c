@@ -5,7 +5,7 @@
 
 #include "../../lib/test_frame.h"
 #include "../../lib/test_random.h"
-#include "../../reference/meshless/solve/solver.h"
+#include "../../reference/meshless/test_solver.h"
 #include "../cli/test_program.h"
 
 /* What is written of a ball's `count` points. */
@@ -50,11 +50,6 @@ static void write_ply_ball(const char *name, const Ball *ball)
     fputs("end_header\n", file);
     write_points(file, ball);
     fclose(file);
-}
-
-static void needs_solver(void)
-{
-    if (!ref_solver_built) skip();
 }
 
 /* Runs the file as a small body under its weight; fails unless it does so well. */
@@ -264,9 +259,7 @@ TEST(slices_are_written)
         "    assert abs(middle + 0.5) < 0.1, middle\n";
     write_text("look.py", script);
     char command[512];
-    snprintf(command, sizeof command, "cd %s && /usr/bin/python3 -c 'import h5py' 2>/dev/null",
-             folder);
-    if (system(command)) skip();
+    needs_python("h5py");
     snprintf(command, sizeof command, "cd %s && /usr/bin/python3 look.py", folder);
     assert_int_equal(system(command), 0);
 }
@@ -278,10 +271,7 @@ TEST(real_clouds)
     const char *meshes = getenv("SHAPEBENCH_MESHES");
     char command[1024];
     Result result;
-    if (!meshes) {
-        print_message("SHAPEBENCH_MESHES names no folder of meshes: skipped\n");
-        skip();
-    }
+    needs(meshes, "SHAPEBENCH_MESHES names no folder of meshes");
     snprintf(command, sizeof command, "ln -sf '%.200s'/*.xyz '%.200s'/*.pts '%.200s'/*.ply %s/",
              meshes, meshes, meshes, folder);
     assert_int_equal(system(command), 0);

@@ -172,10 +172,7 @@ TEST(damage_ends_a_child_only)
 TEST(a_child_takes_no_more_memory_than_it_may)
 {
     size_t size;
-    if (!SM_CHILD_LIMITS_MEMORY) {
-        print_message("sanitizers leave a child's memory without a limit\n");
-        skip();
-    }
+    needs(SM_CHILD_LIMITS_MEMORY, "sanitizers leave a child's memory without a limit");
     free(store("whole.h5", &size));
     refuses("whole.h5", take_memory, "takes more memory");
 }

@@ -47,7 +47,7 @@ TEST(test_the_papers_triangle_counts)
 
 TEST(test_sizes)
 {
-    if (!TEST_FIGURES) skip();
+    needs_figures();
     static const struct {
         const char *name;
         int axis;

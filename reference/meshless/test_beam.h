@@ -2,9 +2,8 @@
 #ifndef REF_TEST_BEAM_H
 #define REF_TEST_BEAM_H
 
-#include "../../lib/test_frame.h"
 #include "body/body.h"
-#include "solve/solver.h"
+#include "test_solver.h"
 
 static const RefMaterial steel = {.young = 1e7, .poisson = 0.3, .density = 1000};
 

@@ -4,7 +4,7 @@
 #include "../../lib/test_frame.h"
 #include "../../lib/voxel/voxelise.h"
 #include "engine.h"
-#include "solve/solver.h"
+#include "test_solver.h"
 
 static const SmEngineType *const type = &ref_meshless_engine;
 
@@ -77,7 +77,7 @@ static double (*field(SmEngine *engine, SmField which))[3]
 /* A body at rest stays; one that falls is where h^2 g n (n + 1) / 2 says, undeformed. */
 TEST(rest_and_fall)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     for (int falls = 0; falls < 2; falls++) {
         Scene scene = scene_create();
         SmEngine *engine;
@@ -102,7 +102,7 @@ TEST(rest_and_fall)
  * swings; and a little turning, for vertices are not spread as the mass is. */
 TEST(pushes)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     Scene scene = scene_create();
     SmEngine *engine;
     scene.options.stiffness_damping = 0.05;
@@ -133,7 +133,7 @@ TEST(pushes)
 /* A handle on everything that turns by 60 degrees takes the body with it. */
 TEST(handles)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     Scene scene = scene_create();
     SmEngine *engine;
     scene.params.damping = 0.1;
@@ -170,7 +170,7 @@ TEST(handles)
 TEST(handles_that_change)
 {
     enum { HELD = 30 };
-    if (!ref_solver_built) skip();
+    needs_solver();
     Scene scene = scene_create();
     SmEngine *engine;
     assert_int_equal(create(&scene, &engine, NULL), SM_OK);
@@ -219,7 +219,8 @@ static long slab(SmEngine *engine, double to, double x, long *particle, long *ti
  */
 TEST(cantilever)
 {
-    if (!ref_solver_built || !TEST_FIGURES) skip();
+    needs_solver();
+    needs_figures();
     static const double root = 1, length = 9, g = 1e-3;
     Scene scene = beam_create(length, 1000);
     SmEngine *engine;
@@ -253,7 +254,7 @@ TEST(cantilever)
 /* A small squash comes back as it was set; so does a speed. */
 TEST(set_and_get)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     Scene scene = scene_create();
     SmEngine *engine;
     assert_int_equal(create(&scene, &engine, NULL), SM_OK);
@@ -276,7 +277,7 @@ TEST(set_and_get)
 
 TEST(what_is_refused)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     Scene scene = scene_create();
     SmEngine *engine;
     SmError error = {0};

@@ -175,7 +175,7 @@ static double patch_error(const Patch *patch)
  * do not fit are as good as their edges are cut. */
 TEST(patch_test)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const struct {
         Patch patch;
         double most;

@@ -53,7 +53,7 @@ static void held_free(Held *held)
 /* M-orthonormal, rising, six of them rigid. */
 TEST(modes_of_a_held_body)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     Held held = held_create(2, 24);
     const RefModes *modes = &held.modes;
     size_t unknowns = 3 * (size_t)modes->nodes, count = (size_t)modes->count;
@@ -98,7 +98,7 @@ static double miss(const Held *held, int grips, const double (*pose)[3][4])
  * little and led away: under gravity all points are where they should be, at every step. */
 TEST(moved_handles_are_met)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     Held held = held_create(2, 24);
     static const double g[3] = {0, -9.81, 0}, nowhere[3] = {0};
     double most = 0;
@@ -120,7 +120,7 @@ TEST(moved_handles_are_met)
 /* Points of a handle that do not say how it is turned are bound one by one; the body hangs. */
 TEST(a_handle_of_one_point)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const double g[3] = {0, -1, 0}, nowhere[3] = {0};
     static const double still[1][3][4] = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     Held held = held_create(1, 1);
@@ -140,7 +140,7 @@ TEST(a_handle_of_one_point)
 /* A motion taken over by other modes is where it was, and as fast. */
 TEST(taken_over)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const double nowhere[3] = {0}, h = 0.01;
     Held held = held_create(1, 24);
     RefModes modes;

@@ -110,7 +110,7 @@ TEST(rotations)
  * 86%. */
 TEST(a_turned_beam_keeps_its_length)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const RefDamping none = {0};
     Beam beam = beam_create(false, &none);
     size_t unknowns = 3 * (size_t)beam.body.nodes.count;
@@ -139,7 +139,7 @@ TEST(a_turned_beam_keeps_its_length)
  * by a sixth and by more than a half. */
 TEST(a_bent_beam)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const RefDamping none = {0};
     static const double most[2] = {0.05, 0.13}, linear[2] = {0.15, 0.5};
     Beam beam = beam_create(true, &none);
@@ -164,7 +164,7 @@ TEST(a_bent_beam)
  * length. */
 TEST(an_orientation_turns_a_beam)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const RefDamping some = {0.5, 1e-2};
     Beam beam = beam_create(false, &some);
     double rest = middle_line(&beam), first[3], last[3];
@@ -240,7 +240,7 @@ TEST(an_arc_is_shorter)
 /* Thrown while it spins and swings, a free body's centre of mass follows its parabola. */
 TEST(a_thrown_body_follows_its_parabola)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const RefDamping some = {0, 1e-3};
     static const double g[3] = {0, -9.81, 0}, h = 0.01;
     Beam beam = beam_create(false, &some);
@@ -277,7 +277,7 @@ TEST(a_thrown_body_follows_its_parabola)
 
 TEST(energy_never_grows)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const RefDamping dampings[2] = {{0, 0}, {0.5, 1e-3}};
     for (int n = 0; n < 2; n++) {
         Beam beam = beam_create(true, dampings + n);
@@ -297,7 +297,7 @@ TEST(energy_never_grows)
 /* A little gravity bends it as the static solve of all nodes does. */
 TEST(sag)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const RefDamping strong = {2, 0};
     static const double g[3] = {0, -0.01, 0}, end[3] = {7.9, 0.5, 0.5};
     Beam beam = beam_create(true, &strong);
@@ -316,7 +316,7 @@ TEST(sag)
  * step. */
 TEST(constraints_hold)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const RefDamping some = {1, 1e-3};
     static const double ends[2][3] = {{0, 0.5, 0.5}, {8, 0.5, 0.5}};
     Beam beam = beam_create(false, &some);
@@ -351,7 +351,7 @@ TEST(constraints_hold)
 /* One point in two places, and more constraints than modes: nothing blows up. */
 TEST(constraints_that_cannot_hold)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const RefDamping some = {1, 1e-3};
     Beam beam = beam_create(false, &some);
     for (int n = 0; n < 20; n++) {

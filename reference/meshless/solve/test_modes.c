@@ -114,7 +114,7 @@ static void check_modes(const RefBody *body, const RefModes *modes)
 
 TEST(six_zeros_and_orthonormal)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     for (int quadratic = 0; quadratic < 2; quadratic++) {
         RefBodyOptions options = {.cell = 0.23,
                                   .basis = quadratic ? REF_MLS_QUADRATIC : REF_MLS_LINEAR,
@@ -152,7 +152,7 @@ static void errors(double cell, bool clamped, double error[2])
  * octants' size. The theory's own error is 0.05%. */
 TEST(beams_converge)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     static const double cell[3] = {1.0 / 2, 1.0 / 3, 1.0 / 4};
     for (int clamped = 0; clamped < 2; clamped++) {
         double error[3][2];
@@ -212,7 +212,7 @@ static void hold_root(const RefBody *body, double P, RefRows *rows, double *targ
 /* The tip moves by 0.0089 in theory. */
 TEST(cantilever)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     const double P = 1000 * WIDTH, size[3] = {L, D, WIDTH};
     RefBodyOptions options = {.cell = 1.5, .basis = REF_MLS_LINEAR, .material = {E, NU, 1}};
     FacePoints face = face_points(size, options.cell);
@@ -246,7 +246,7 @@ TEST(cantilever)
  */
 TEST(what_has_no_solution)
 {
-    if (!ref_solver_built) skip();
+    needs_solver();
     RefBody body = beam(0.5);
     RefSolver *solver;
     RefModes modes;
