@@ -310,21 +310,32 @@ static void interrupt(pid_t child)
     assert_non_null(strstr(said, "interrupted; nothing is left behind"));
 }
 
+/* Waits until the command line finds something. */
+static void wait_for(const char *command)
+{
+    for (int i = 0; i < 600 && system(command) != 0; i++) usleep(100000);
+    if (system(command) != 0) fail_msg("nothing found: %s", command);
+}
+
 /* Ctrl-C in mid-build: what runs is stopped, the worktree goes, exit code 130. Of one that waits
  * for it to end, before: the build goes on. */
 TEST(an_interrupt_leaves_nothing)
 {
-    make_repository("execute_process(COMMAND sleep 47.11)\n");
+    char project[64], builds[64], waits[96]; /* the number tells it from those of other tests */
+    snprintf(project, sizeof project, "execute_process(COMMAND sleep 47.%d)\n", getpid());
+    snprintf(builds, sizeof builds, "pgrep -fx 'sleep 47.%d' >/dev/null", getpid());
+    make_repository(project);
     pid_t first = start_building();
-    for (int i = 0; i < 100 && system("pgrep -fx 'sleep 47.11' >/dev/null") != 0; i++)
-        usleep(100000);
+    wait_for(builds);
     pid_t second = start_building();
-    usleep(500000);
+    snprintf(waits, sizeof waits, "pgrep -x flock -P \"$(pgrep -d , -P %d)\" >/dev/null 2>&1",
+             second);
+    wait_for(waits);
     interrupt(second);
     expect("cd repo && git worktree list | wc -l", 0, "2\n");
     expect("ls repo/build/regress/*.source/CMakeLists.txt", 0, "CMakeLists.txt");
     interrupt(first);
-    assert_int_not_equal(system("pgrep -fx 'sleep 47.11' >/dev/null"), 0);
+    assert_int_not_equal(system(builds), 0);
     expect("ls repo/build/regress | grep -vc lock", 1, "0\n");
     nothing_is_left_in_the_repository();
 }

@@ -83,6 +83,11 @@ static void equals_whole(const char *name)
     bench_campaign_free(&other);
 }
 
+static void near_to(double value, double wanted)
+{
+    if (!(fabs(value - wanted) <= 1e-9 * wanted)) fail_msg("%.17g is not %.17g", value, wanted);
+}
+
 TEST(a_point_has_its_figures)
 {
     BenchCampaign sweep;
@@ -94,8 +99,12 @@ TEST(a_point_has_its_figures)
         const BenchPoint *p = point(&sweep, i);
         assert_true(p->valid && p->goal_error < 5e-5 && p->bytes > 0);
         if (p->samples > 0) { /* else others took the processors */
-            assert_true(p->total_ms > 0 && p->stage_ms[0] > 0 && p->build_seconds > 0);
-            assert_true(p->samples == 2 && p->sample[1] > 0);
+            double stages = 0;
+            for (int s = 0; s < SM_STAGES; s++) stages += p->stage_ms[s];
+            assert_int_equal(p->samples, 2);
+            near_to(p->total_ms, 1e3 * (p->sample[0] + p->sample[1]) / 2);
+            near_to(stages, p->total_ms);
+            assert_true(p->build_seconds + p->sample[0] + p->sample[1] <= p->stamp.wall);
         }
         assert_true(p->relaxation > 0 && p->relaxation < 1 && p->sag > 0 && p->frequency > 0);
         /* A beam under a constant load: omega^2 sag is 1.53 g / length (Euler and Bernoulli's
