@@ -9,6 +9,8 @@
 
 enum { TYPES = 2 };
 
+const BenchEngine *const *bench_engine_list;
+
 const BenchEngine *bench_engine(const char *name)
 {
     static const SmEngineType none_type = {.name = "", .precision = ""};

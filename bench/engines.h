@@ -69,8 +69,8 @@ typedef struct {
 #include "registry.inc"
 #undef ENGINE
 
-/* All engines, NULL at the end. */
-extern const BenchEngine *const bench_engine_list[];
+/* All engines, NULL at the end: the program's (engine_list.c), there before its main(). */
+extern const BenchEngine *const *bench_engine_list;
 
 /* The engine of this name; one without a name, of which nothing is true, if there is none. */
 const BenchEngine *bench_engine(const char *name);

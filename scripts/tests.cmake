@@ -2,9 +2,18 @@
 set(folders lib fastlsm octree reference bench)
 enable_testing()
 
+# Sets `engines` to what a test of bench/ is also linked with.
+macro(engines_of source)
+  set(engines "")
+  if(${source} MATCHES "/bench/[a-z]+/(test|fuzz)_[a-z0-9_]*\\.c$")
+    set(engines shapebench_engines)
+  endif()
+endmacro()
+
 # A test is test_<noun>.c beside its module, linked with everything. One that speaks of SM_REAL_BITS
 # is compiled in both precisions: <name> and <name>_f64.
 function(add_unit_test source)
+  engines_of(${source})
   get_filename_component(noun ${source} NAME_WE)
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${source})
   string(REGEX REPLACE "^(reference/)?([a-z]+)/.*" "\\2" folder ${folder})
@@ -19,7 +28,7 @@ function(add_unit_test source)
       continue()
     endif()
     add_executable(test_${name} ${source})
-    target_link_libraries(test_${name} PRIVATE shapebench_flags cmocka shapebench_bench)
+    target_link_libraries(test_${name} PRIVATE shapebench_flags cmocka ${engines} shapebench_bench)
     target_compile_definitions(test_${name} PRIVATE
       SOURCE_DIR="${CMAKE_SOURCE_DIR}" BINARY_DIR="${CMAKE_BINARY_DIR}")
     if(in_both_precisions)
@@ -34,11 +43,12 @@ endfunction()
 # whole files then, and is run again for each of these formats. The seeds, if any, are in
 # <test>.seeds/ in the build folder, where what it finds is added.
 function(add_fuzz_test source)
+  engines_of(${source})
   get_filename_component(target ${source} NAME_WE)
   add_executable(${target} ${source})
   target_compile_definitions(${target} PRIVATE SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   target_link_options(${target} PRIVATE -fsanitize=fuzzer)
-  target_link_libraries(${target} PRIVATE shapebench_flags shapebench_bench)
+  target_link_libraries(${target} PRIVATE shapebench_flags ${engines} shapebench_bench)
   file(STRINGS ${source} takes_files REGEX SHAPEBENCH_FUZZ_SUFFIX)
   set(formats "")
   if(takes_files)

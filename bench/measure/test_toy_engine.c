@@ -145,9 +145,17 @@ static const BenchEngine bench_toy = {.type = {&toy_type},
 /* ---- the registry */
 
 #define ENGINE(name) &bench_##name,
-const BenchEngine *const bench_engine_list[] = {
+static const BenchEngine *const with_toy[] = {
 #include "../registry.inc"
     ENGINE(toy) NULL};
+
+static int set_up(void **state)
+{
+    bench_engine_list = with_toy;
+    return make_folder(state);
+}
+
+TEST_GROUP(set_up, remove_folder)
 
 /* ---- tests */
 
