@@ -5,11 +5,11 @@ frequencies say is from what the sag says.
 Needs Debian's python3-h5py and python3-matplotlib, which scripts/setup installs. Exit codes: 0 drawn; 2 wrong
 usage; 3 not a calibration file, or nothing in it to draw, or a package is missing; 4 cannot be written."""
 
-from plots import LATTICE, OCTREE, drawing, fail, parse, read, write
+from plots import drawing, engines, fail, parse, read, write
 
 import numpy  # after plots, which says what is missing
 
-COLOURS = {LATTICE: "#0072b2", OCTREE: "#d55e00"}
+COLOURS = {False: "#0072b2", True: "#d55e00"}  # has the engine an epsilon?
 TONES = ("first", "second", "third")
 
 
@@ -29,8 +29,9 @@ def best(plan, specimen):
 
 
 def first_epsilon(specimen):
-    tree = specimen["engine"] == OCTREE
-    return (specimen["epsilon"] == specimen["epsilon"][tree].min()) & tree if tree.any() else tree
+    """Which specimens have no epsilon, or the least."""
+    tree = specimen["sampled"]
+    return ~tree | (specimen["epsilon"] == specimen["epsilon"][tree].min()) if tree.any() else ~tree
 
 
 def two_terms(plan, law, engine, w):
@@ -49,21 +50,20 @@ def modulus(axes, plan, specimen, law):
     from matplotlib.ticker import LogFormatterSciNotation, LogLocator
 
     grid = valid_grid(specimen)
-    epsilons = numpy.unique(specimen["epsilon"][grid & (specimen["engine"] == OCTREE)])
-    lines = [(LATTICE, 0.0)] + [(OCTREE, epsilon) for epsilon in epsilons]
-    for engine, epsilon in lines:
-        some = grid & (specimen["engine"] == engine) & (specimen["epsilon"] == epsilon)
-        if not some.any():
-            continue
-        share = 0.35 + 0.65 * (epsilon - epsilons[0]) / max(numpy.ptp(epsilons), 1e-9) if engine == OCTREE else 1
-        axes.plot(specimen["w"][some], specimen["young"][some], color=COLOURS[engine], alpha=share, markersize=4,
-                  marker="s" if engine == LATTICE else "o", linewidth=1.2,
-                  label=engine if engine == LATTICE else f"{engine}, epsilon {epsilon:g}")
+    for sampled, engine in engines(specimen):
+        its = grid & (specimen["engine"] == engine)
+        epsilons = numpy.unique(specimen["epsilon"][its])
+        for epsilon in epsilons:
+            some = its & (specimen["epsilon"] == epsilon)
+            share = 0.35 + 0.65 * (epsilon - epsilons[0]) / max(numpy.ptp(epsilons), 1e-9) if sampled else 1
+            axes.plot(specimen["w"][some], specimen["young"][some], color=COLOURS[sampled], alpha=share, markersize=4,
+                      marker="o" if sampled else "s", linewidth=1.2,
+                      label=f"{engine}, epsilon {epsilon:g}" if sampled else engine)
     w = numpy.geomspace(specimen["w"][grid].min(), specimen["w"][grid].max(), 50)
-    for engine in (LATTICE, OCTREE):
+    for sampled, engine in engines(specimen):
         curve = two_terms(plan, law, engine, w)
         if curve is not None:
-            axes.plot(w, curve, color=COLOURS[engine], linestyle=":", linewidth=1.5, zorder=0,
+            axes.plot(w, curve, color=COLOURS[sampled], linestyle=":", linewidth=1.5, zorder=0,
                       label=f"law of {engine}")
     wide = grid & (specimen["wide"] != 0)
     if wide.any() and not (specimen["wide"][grid] != 0).all():
@@ -87,16 +87,16 @@ def modulus(axes, plan, specimen, law):
 
 def agreement(axes, plan, specimen):
     """What each frequency says over what the sag says, against how wide regions are."""
-    valid = (specimen["valid"] != 0) & ((specimen["engine"] == LATTICE) | first_epsilon(specimen))
+    valid = (specimen["valid"] != 0) & first_epsilon(specimen)
     young = best(plan, specimen)
     width = (2 * specimen["w"] + 1) * specimen["spacing"] / plan["thickness"]
     marks = ("o", "^", "D")
     for k, tone in enumerate(TONES):
-        for engine in (LATTICE, OCTREE):
+        for sampled, engine in engines(specimen):
             some = valid & (specimen["engine"] == engine)
             if some.any():
                 axes.scatter(width[some], 100 * (young[some, k + 1] / young[some, 0] - 1), s=16, marker=marks[k],
-                             color=COLOURS[engine], alpha=0.75, linewidths=0,
+                             color=COLOURS[sampled], alpha=0.75, linewidths=0,
                              label=f"{engine}, {tone} frequency")
     axes.axhline(0, color="0.4", linewidth=0.8, zorder=0)
     axes.axvline(1, color="0.4", linewidth=0.8, linestyle="--", zorder=0)
@@ -112,21 +112,21 @@ def agreement(axes, plan, specimen):
 
 def collapse(axes, plan, specimen, law):
     """All specimens of the law: what is left of the modulus without rho (a / h)^2 w (w + 1)."""
-    valid = (specimen["valid"] != 0) & ((specimen["engine"] == LATTICE) | first_epsilon(specimen))
+    valid = (specimen["valid"] != 0) & first_epsilon(specimen)
     steps = specimen["w"] * (specimen["w"] + 1.0)
     x = steps * (specimen["spacing"] / plan["thickness"]) ** 2
     y = specimen["young"] / (plan["density"] * (specimen["spacing"] / specimen["h"]) ** 2 * steps)
     marks = {"grid": "o", "spacing": "s", "aspect": "D", "step": "x"}
-    for engine in (LATTICE, OCTREE):
+    for sampled, engine in engines(specimen):
         for kind, mark in marks.items():
             some = valid & (specimen["engine"] == engine) & (specimen["set"] == kind)
             if some.any():
-                axes.scatter(x[some], y[some], s=18, marker=mark, color=COLOURS[engine], alpha=0.8,
+                axes.scatter(x[some], y[some], s=18, marker=mark, color=COLOURS[sampled], alpha=0.8,
                              label=f"{engine}, " + ("the scene's beam" if kind == "grid" else f"another {kind}"))
         rows = numpy.flatnonzero((law["engine"] == engine) & (law["kind"] == "two-term"))
         if len(rows):
             at = numpy.geomspace(x[valid].min(), x[valid].max(), 60)
-            axes.plot(at, law["c"][rows[0]][0] + law["d"][rows[0]][0] * at, color=COLOURS[engine], linewidth=1)
+            axes.plot(at, law["c"][rows[0]][0] + law["d"][rows[0]][0] * at, color=COLOURS[sampled], linewidth=1)
     axes.set_xscale("log")
     axes.set_yscale("log")
     low, high = axes.get_ylim()

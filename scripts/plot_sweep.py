@@ -5,7 +5,7 @@ the front of cost against deviation.
 Needs Debian's python3-h5py and python3-matplotlib, which scripts/setup installs. Exit codes: 0 drawn; 2 wrong
 usage; 3 not a sweep file, or nothing in it to draw, or a package is missing; 4 cannot be written."""
 
-from plots import LATTICE, OCTREE, drawing, parse, read, write
+from plots import drawing, engines, parse, read, write
 
 import itertools
 
@@ -15,8 +15,8 @@ import numpy  # after plots, which says what is missing
 def table(point, values, ws, epsilons):
     """[w][lattice, epsilons...]; NaN where there is none."""
     cells = numpy.full((len(ws), 1 + len(epsilons)), numpy.nan)
-    for i, engine in enumerate(point["engine"]):
-        column = 0 if engine == LATTICE else 1 + numpy.searchsorted(epsilons, point["epsilon"][i])
+    for i, sampled in enumerate(point["sampled"]):
+        column = 1 + numpy.searchsorted(epsilons, point["epsilon"][i]) if sampled else 0
         cells[numpy.searchsorted(ws, point["w"][i]), column] = values[i]
     return cells
 
@@ -32,7 +32,7 @@ def unit_of_w(plan):
 
 
 def heat_map(axes, plan, point, values, title, logarithmic):
-    tree = point["engine"] == OCTREE
+    tree = point["sampled"]
     ws, epsilons = numpy.unique(point["w"]), numpy.unique(point["epsilon"][tree])
     has_lattice = not tree.all()
     cells = table(point, values, ws, epsilons)
@@ -97,11 +97,11 @@ def front(axes, plan, point):
     if not shown.any():
         axes.text(0.5, 0.5, "no valid point has both", ha="center", transform=axes.transAxes)
         return
-    for engine, marker in ((LATTICE, "s"), (OCTREE, "o")):
+    for sampled, engine in engines(point):
         some = shown & (point["engine"] == engine)
         if some.any():
-            dots = axes.scatter(cost[some], off[some], c=point["w"][some], marker=marker, s=18, cmap="plasma",
-                                vmin=point["w"].min(), vmax=point["w"].max(), label=engine)
+            dots = axes.scatter(cost[some], off[some], c=point["w"][some], marker="o" if sampled else "s", s=18,
+                                cmap="plasma", vmin=point["w"].min(), vmax=point["w"].max(), label=engine)
     best = numpy.flatnonzero(shown & (point["front"] != 0))
     best = best[numpy.lexsort((off[best], cost[best]))]
     axes.scatter(cost[best], off[best], marker="o", s=46, facecolors="none", edgecolors="0.3", linewidth=0.7)
@@ -112,7 +112,7 @@ def front(axes, plan, point):
     axes.legend(fontsize=7)
     axes.figure.colorbar(dots, ax=axes, pad=0.02, label=unit_of_w(plan))
     some = best[:: max(1, len(best) // 5)]
-    name_some(axes, [f"w {point['w'][i]:g}" + (f", {point['epsilon'][i]:g}" if point["engine"][i] == OCTREE else "")
+    name_some(axes, [f"w {point['w'][i]:g}" + (f", {point['epsilon'][i]:g}" if point["sampled"][i] else "")
                      for i in some], numpy.c_[cost, off][some], numpy.c_[cost, off][shown])
 
 

@@ -25,8 +25,6 @@ try:
 except ImportError as missing:
     fail(f"{missing}: scripts/setup installs it (python3-h5py)", 3)
 
-LATTICE, OCTREE = "fastlsm", "octree"
-
 
 def parse(says, what, form):
     """The command line of a script: `says` is its docstring, `what` its file is, `form` ("svg") the usual output's."""
@@ -48,6 +46,11 @@ def read(path, what):
     if source.kind != f"shapebench {what}":
         fail(f"{path}: not the file of a {what}", 3)
     return source
+
+
+def engines(column):
+    """Of points: whether it has an epsilon, and the name, of each engine; those without come first."""
+    return sorted(set(zip(column["sampled"].tolist(), column["engine"].tolist())))
 
 
 def drawing():

@@ -442,6 +442,7 @@ const BenchCampaignType bench_calibration_type = {
     .stamp = offsetof(BenchSpecimen, stamp),
     .count = count,
     .plan_point = plan_point,
+    .write_plan = bench_campaign_write_sampled,
     .say = say,
     .fault = fault,
     .begin = begin,

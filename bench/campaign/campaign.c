@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/printable.h"
 #include "../../lib/system/hash.h"
+#include "../engines.h"
 #include "../settings/setting.h"
 #include "../table/row_store.h"
 
@@ -227,6 +229,16 @@ static BenchField *point_fields(const BenchCampaign *campaign)
         if (fields[f].series)
             fields[f].size = (size_t)*plan_int(campaign, type->series) * sizeof(double);
     return fields;
+}
+
+void bench_campaign_write_sampled(BenchH5 *h5, hid_t group, const void *plan)
+{
+    char names[BENCH_ENGINES_TEXT] = "";
+    (void)plan;
+    for (const BenchEngine *const *engine = bench_engine_list; *engine; engine++)
+        if ((*engine)->sampled)
+            sm_append(names, sizeof names, "%s%s", *names ? " " : "", (*engine)->type[0]->name);
+    bench_h5_text(h5, group, "sampled", names);
 }
 
 static void write_points(BenchH5 *h5, const BenchCampaign *campaign)

@@ -116,6 +116,10 @@ struct BenchCampaign {
 BenchCampaign bench_campaign_create(const BenchCampaignType *type);
 void bench_campaign_free(BenchCampaign *campaign);
 
+/* The attribute `sampled` of a plan whose points are of engines: the names of those that have an
+ * epsilon, with spaces between. For `write_plan`. */
+void bench_campaign_write_sampled(BenchH5 *h5, hid_t group, const void *plan);
+
 /* Reads the lists of its plan from options' values, one for each of the type's ("none": it has no
  * number, where it may). SM_USAGE. */
 SmCode bench_campaign_read_lists(const BenchCampaign *campaign, const char *const *text,

@@ -504,6 +504,7 @@ const BenchCampaignType bench_sweep_type = {
     .used = offsetof(BenchPoint, samples),
     .count = count,
     .plan_point = plan_point,
+    .write_plan = bench_campaign_write_sampled,
     .say = say,
     .fault = fault,
     .begin = begin,

@@ -138,12 +138,20 @@ def read_claims(source, file):
     source.curves = {name: read_curve(file["curves"][name]) for name in file["curves"]}
 
 
+def add_sampled(plan, column):
+    """A column `sampled`: has the point's engine an epsilon? The plan names those engines; where it is of an older
+    file, they are those with an epsilon that is not 0."""
+    names = plan["sampled"].split() if "sampled" in plan else column["engine"][column["epsilon"] != 0]
+    column["sampled"] = np.isin(column["engine"], names)
+
+
 def read_sweep(source, file):
     source.plan = attributes(file["plan"])
     demand(source.plan, "scene width", wholes="points")
     source.point = read_columns(file["points"], "engine",
                                 "w epsilon valid total_ms build_seconds bytes summation_nodes goal_rms relaxation sag "
                                 "frequency path_rms path_most front")
+    add_sampled(source.plan, source.point)
     if not len(source.point["w"]):
         raise ValueError("not one point is finished")
 
@@ -168,6 +176,7 @@ def read_calibration(source, file):
     source.specimen = read_columns(file["specimens"], "engine set reason",
                                    "w epsilon across aspect spacing h wide valid spread frequency:3 young young_euler:4 "
                                    "young_timoshenko:4 young_meshless:4")
+    add_sampled(source.plan, source.specimen)
     source.law = read_columns(file["laws"], "engine kind",
                               "specimens scatter c:3 spacing:3 width:3 aspect:3 step:3 d:3")
     source.found = [plain(file["laws"].attrs[f"found_{n}"]) for n in (1, 2, 3)]

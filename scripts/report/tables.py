@@ -2,7 +2,6 @@
 import math
 
 from drawing import STATUS_MARKS, number
-from plots import OCTREE
 
 
 class Table:
@@ -79,7 +78,7 @@ def measured(source):
 
 def where(point, i):
     """A point of a sweep or calibration: "octree w 2, epsilon 0.5"."""
-    epsilon = f", epsilon {point['epsilon'][i]:g}" if point["engine"][i] == OCTREE else ""
+    epsilon = f", epsilon {point['epsilon'][i]:g}" if point["sampled"][i] else ""
     return f"{point['engine'][i]} w {point['w'][i]:g}{epsilon}"
 
 
