@@ -68,7 +68,7 @@ static void check(const struct argp_state *state, void *record)
 }
 
 static const char help[] =
-    "Time every kernel alone, and whole steps, against ceilings measured in the same run: the "
+    "Time every kernel alone, and whole steps, against peaks measured in the same run: the "
     "multiply-add rate and the bandwidth of each cache level. The floor is the time below which "
     "this machine cannot do a kernel's least work; the share says how near the kernel comes. A "
     "cube of side N has N^3 particles. Every kernel is checked before it is timed (cubes against "
@@ -111,7 +111,7 @@ static SmCode measure(const Options *options, BenchMachine *machine, SmError *er
     BenchKernelRow *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
     machine->threads = threads;
     bench_progress_start(&progress, options->common.quiet);
-    bench_progress_show(&progress, "ceilings", 0);
+    bench_progress_show(&progress, "peaks", 0);
     bench_peak_measure(machine, machine->cores > threads ? machine->cores : threads, 0, &peak);
     SmCode code = bench_kernels_run(&params, &peak, rows, &count, error);
     bench_progress_stop(&progress);

@@ -195,12 +195,12 @@ static void print_rates(FILE *file, const BenchRates *rates)
 
 static void print_peak(FILE *file, const BenchPeak *peak, const BenchMachine *machine)
 {
-    fprintf(file, "Ceilings measured now, on %s:\n", machine->cpu);
+    fprintf(file, "Peaks measured now, on %s:\n", machine->cpu);
     print_rates(file, &peak->one);
     if (peak->all.threads > 1) print_rates(file, &peak->all);
     fputs(
         "\nTimes in ns, medians; those of steps in each step. The floor is the least time that the "
-        "ceilings\nallow, with what sets it; the share is floor / time.\n\n",
+        "peaks\nallow, with what sets it; the share is floor / time.\n\n",
         file);
 }
 

@@ -1,5 +1,4 @@
-/* kernel_table.h - the machine's peaks ("ceilings") and timed kernels as a table, for people and
- * for programs.
+/* kernel_table.h - the machine's peaks and timed kernels as a table, for people and for programs.
  *
  * An invalid row has no times in any format: INVALID stands there, null in JSON. */
 #ifndef BENCH_KERNEL_TABLE_H
@@ -13,7 +12,7 @@
 /* Stable: CSV has the kernels only, a header line first, columns
  *     kernel, group, precision, threads, w, item, items, ns, ns_low, ns_high, floor_ns, bound,
  *     share_percent, at_most_ns, ratio, ratio_to, ratio_wanted, verdict, valid, note
- * and what is not given is empty. JSON is {"ceilings": [..], "kernels": [{column: value}],
+ * and what is not given is empty. JSON is {"ceilings": [peaks], "kernels": [{column: value}],
  * "environment": {..}}. */
 void bench_kernels_write(FILE *file, BenchFormat format, const BenchKernelRow *rows, int count,
                          const BenchPeak *peak, const BenchMachine *machine);

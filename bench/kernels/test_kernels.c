@@ -1,4 +1,4 @@
-/* Kernels against ceilings: figures are sane, checks can fail. */
+/* Kernels against the machine's peaks: figures are sane, checks can fail. */
 #include <sys/wait.h>
 
 #include "../../fastlsm/fastlsm.h"
