@@ -26,12 +26,13 @@ void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row);
 void bench_store_read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row);
 
 /* Reads what a comparison needs of a results file, also of one that another schema wrote. Rows have
- * scene, valid, repeats, total and stage (s; NaN of a stage that the file has not). The machine,
- * and every other quantity of a single value that all engines have, are what the file holds; else
- * empty or 0, of epsilon (0 is one) and of h NaN. On SM_OK the caller frees *rows with
- * bench_rows_free(); else there are none. SM_INPUT, with the file and what is wrong: no such file,
- * not HDF5, cut off, damaged, not a results file, no rows, a newer schema, something missing, no
- * time at all, a total that is no positive number (of a valid row). */
+ * scene, valid, repeats, total and stage (s; NaN of a stage that the file has not). The machine is
+ * what bench_machine_load() makes of it, and every other quantity of a single value that all
+ * engines have what the file holds; else empty or 0, of epsilon (0 is one) and of h NaN. On SM_OK
+ * the caller frees *rows with bench_rows_free(); else there are none. SM_INPUT, with the file and
+ * what is wrong: no such file, not HDF5, cut off, damaged, not a results file, no rows, a newer
+ * schema, something missing, no time at all, a total that is no positive number (of a valid row).
+ */
 SmCode bench_store_load(const char *path, BenchRow **rows, int *count, BenchMachine *machine,
                         SmError *error);
 
