@@ -4,17 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../system/quote.h"
-#include "../system/suggest.h"
-
-SmCode bench_paper_unknown(const char *paper, SmError *error)
-{
-    static const char *const papers[] = {"fastlsm", "octree", "meshless", NULL};
-    char near[BENCH_SUGGEST_TEXT], list[64];
-    return sm_fail(error, SM_USAGE, "--paper: no table of '%.40s'; there are: %s%s", paper,
-                   bench_enumerate(papers, "", ", ", sizeof list, list),
-                   bench_suggest_among(paper, papers, near));
-}
+const char *const bench_papers[] = {"fastlsm", "octree", "meshless", NULL};
 
 static SmCode measure(const BenchCommand *command, int argc, char **argv, void *options,
                       BenchCampaign *campaign, SmError *error)

@@ -13,8 +13,8 @@
     "of range; 3 a mesh, scene or result file cannot be used; 4 a file cannot be written; "        \
     "70 out of memory; 128 + N ended by signal N (Ctrl-C: 130)."
 
-/* SM_USAGE: no paper of this name has a table; with those that have. */
-SmCode bench_paper_unknown(const char *paper, SmError *error);
+/* The papers whose tables are regenerated: the first is taken where none is named. */
+extern const char *const bench_papers[];
 
 /* Options that are the same in several commands. */
 #define BENCH_OVERWRITE_OPTION(record, member, place)                                              \
@@ -27,6 +27,16 @@ SmCode bench_paper_unknown(const char *paper, SmError *error);
         BENCH_IN(record, member), BENCH_CHOICES(bench_format_names),                               \
             BENCH_OPTION("format", "FORMAT", place, "As %s (default: text)")                       \
     }
+/* The members of a setting; `more` goes on in the sentence. */
+#define BENCH_REPEATS_OPTION(record, member, most, more)                                           \
+    BENCH_OPTION("repeats", "N", 2, "Samples of every time" more), BENCH_IN(record, member), 1,    \
+        (most)
+#define BENCH_BLOCK_OPTION(record, member, more)                                                   \
+    BENCH_OPTION("block", "MS", 2, "Least milliseconds in a sample" more),                         \
+        BENCH_IN(record, member), 0.001, 60000
+#define BENCH_PAPER_OPTION(record, member, before, default)                                        \
+    BENCH_OPTION("paper", "NAME", 1, before ": %s (default: " default ")"),                        \
+        BENCH_IN(record, member), BENCH_CHOICES(bench_papers)
 
 /* What every command that is a campaign has: its record begins with a BenchCampaignOptions `its`.
  */

@@ -45,8 +45,8 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, only), .take = add_only},
     {BENCH_OPTION("list", NULL, 1, "Alone: print the names of all kernels and their groups"),
      BENCH_IN(Options, list)},
-    {BENCH_OPTION("precision", "P", 1, "single or double (default: single)"),
-     BENCH_IN(Options, precision), BENCH_CHOICES(bench_precisions)},
+    {BENCH_OPTION("precision", "P", 1, "%s (default: single)"), BENCH_IN(Options, precision),
+     BENCH_CHOICES(bench_precisions)},
     {BENCH_OPTION("layout", "L", 1, BENCH_LAYOUT_HELP), BENCH_IN(Options, layout),
      BENCH_CHOICES(bench_layouts)},
     {BENCH_OPTION(
@@ -54,8 +54,7 @@ static const BenchSetting settings[] = {
          "Also the cube of 10^7 particles, which takes about 4 GB, and the octree's set-up and "
          "resampling of 10^6 nodes"),
      BENCH_IN(Options, scaling)},
-    {BENCH_OPTION("repeats", "N", 2, "Samples of every time (default: 9)"),
-     BENCH_IN(Options, repeats), 1, 10000},
+    {BENCH_REPEATS_OPTION(Options, repeats, 10000, " (default: 9)")},
     BENCH_FORMAT_OPTION(Options, format, 3),
     {0},
 };

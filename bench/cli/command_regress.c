@@ -49,10 +49,8 @@ static const BenchSetting settings[] = {
          "revision", "REV", 1,
          "Compare with this git revision, built in a temporary worktree and run interleaved"),
      BENCH_IN(Options, revision)},
-    {BENCH_OPTION("paper", "NAME", 1,
-                  "With --revision: the scenes of this paper's table: fastlsm (default), octree, "
-                  "meshless"),
-     BENCH_IN(Options, paper)},
+    {BENCH_PAPER_OPTION(Options, paper, "With --revision: the scenes of this paper's table",
+                        "fastlsm")},
     {BENCH_OPTION("scene", "NAME|FILE", 1,
                   "Compare this scene only; may be repeated (default: all of the file, or of the "
                   "paper)"),
@@ -62,12 +60,9 @@ static const BenchSetting settings[] = {
          "Rounds of two processes of each build and scene (default: 10 or as many as the test "
          "needs, or 3 beside a file)"),
      BENCH_IN(Options, rounds), 1, 1000},
-    {BENCH_OPTION("repeats", "N", 2,
-                  "Samples of every time in a process (default: 201; beside a file as there)"),
-     BENCH_IN(Options, repeats), 1, 10000},
-    {BENCH_OPTION("block", "MS", 2,
-                  "Least milliseconds in a sample (default: 0.5; beside a file as there)"),
-     BENCH_IN(Options, block), 0.001, 60000},
+    {BENCH_REPEATS_OPTION(Options, repeats, 10000,
+                          " in a process (default: 201; beside a file as there)")},
+    {BENCH_BLOCK_OPTION(Options, block, " (default: 0.5; beside a file as there)")},
     {BENCH_OPTION(
          "threshold", "auto|X", 2,
          "Differences up to X (0.05: 5%) are 'same' (default: auto, as the build differs from "
@@ -134,11 +129,11 @@ static BenchTask *add_task(Session *session, const char *scene)
 
 static const char *paper_of(const Options *options)
 {
-    return options->paper ? options->paper : "fastlsm";
+    return options->paper ? options->paper : bench_papers[0];
 }
 
 /* The built-in scenes that are set beside rows of the paper's table. */
-static SmCode paper_tasks(Session *session, SmError *error)
+static void paper_tasks(Session *session)
 {
     const char *paper = paper_of(session->options);
     for (const char *const *name = bench_scene_names(); *name; name++) {
@@ -146,7 +141,6 @@ static SmCode paper_tasks(Session *session, SmError *error)
         if (bench_scene_find(*name, &scene, NULL) || strcmp(scene.paper, paper) != 0) continue;
         if (scene.row[0]) add_task(session, *name);
     }
-    return session->tasks ? SM_OK : bench_paper_unknown(paper, error);
 }
 
 /* As the row of the file was measured: as many repeats, of as many steps. */
@@ -181,14 +175,14 @@ static void file_tasks(Session *session)
 }
 
 /* Which scenes, and how long. */
-static SmCode choose_tasks(Session *session, SmError *error)
+static void choose_tasks(Session *session)
 {
     const Options *options = session->options;
     for (int i = 0; i < options->scenes.count; i++) add_task(session, options->scenes.name[i]);
     if (options->baseline)
         file_tasks(session);
-    else if (!options->scenes.count && paper_tasks(session, error))
-        return error->code;
+    else if (!options->scenes.count)
+        paper_tasks(session);
     for (int t = 0; t < session->tasks; t++) {
         BenchTask *task = &session->task[t];
         if (!task->threads) task->threads = options->common.threads;
@@ -198,7 +192,6 @@ static SmCode choose_tasks(Session *session, SmError *error)
             task->block = options->block > 0 ? options->block : 0.5;
         task->block = fmin(fmax(task->block, 0.001), 60000);
     }
-    return SM_OK;
 }
 
 /* Refuses, before anything is built, what could find nothing. */
@@ -318,7 +311,7 @@ static SmCode run(Session *session, const BenchMachine *here, SmError *error)
 {
     const Options *options = session->options;
     SmCode code = options->baseline ? load_baseline(session, here, error) : SM_OK;
-    if (!code) code = choose_tasks(session, error);
+    if (!code) choose_tasks(session);
     if (!code) code = choose_rounds(session, error);
     if (!code && options->revision) code = build_revision(session, error);
     return code ? code : compare(session, error);

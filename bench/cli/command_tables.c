@@ -37,19 +37,14 @@ typedef struct {
 } Choices;
 
 static const BenchSetting settings[] = {
-    {BENCH_OPTION(
-         "paper", "NAME", 1,
-         "The paper whose table to measure: fastlsm, octree or meshless (default: fastlsm and "
-         "meshless)"),
-     BENCH_IN(Options, paper)},
+    {BENCH_PAPER_OPTION(Options, paper, "The paper whose table to measure",
+                        "fastlsm and meshless")},
     {BENCH_OPTION("scene", "NAME|FILE", 1,
                   "Measure this scene only, or the paper's scenes NAME-...; may be repeated"),
      BENCH_IN(Options, given)},
     {BENCH_IN(Options, chosen), .table = bench_override_settings, .who = BENCH_BY_TABLES},
-    {BENCH_OPTION("repeats", "N", 2, "Samples of every time (default: 15)"),
-     BENCH_IN(Options, repeats), 1, 10000},
-    {BENCH_OPTION("block", "MS", 2, "Least milliseconds in a sample (default: 20)"),
-     BENCH_IN(Options, block), 0.001, 60000},
+    {BENCH_REPEATS_OPTION(Options, repeats, 10000, " (default: 15)")},
+    {BENCH_BLOCK_OPTION(Options, block, " (default: 20)")},
     BENCH_FORMAT_OPTION(Options, format, 3),
     {BENCH_OPTION("explain", NULL, 3,
                   "Say below a text table all that stands behind each row, not only a line each"),
@@ -127,7 +122,7 @@ static bool of_paper(const char *name, const char *paper)
 /* The tables that are regenerated when none is named. */
 static void add_default(Choices *chosen)
 {
-    add_scenes(chosen, "fastlsm", NULL);
+    add_scenes(chosen, bench_papers[0], NULL);
     if (ref_solver_built)
         add_scenes(chosen, "meshless", NULL);
     else if (!chosen->options->common.quiet)
@@ -137,10 +132,10 @@ static void add_default(Choices *chosen)
 }
 
 /* The scenes of the paper's table, or those that the names given stand for. */
-static SmCode choose_scenes(Choices *chosen, SmError *error)
+static void choose_scenes(Choices *chosen)
 {
     const Options *options = chosen->options;
-    const char *paper = options->paper ? options->paper : "fastlsm";
+    const char *paper = options->paper ? options->paper : bench_papers[0];
     for (int i = 0; i < options->given.count; i++) {
         const char *name = options->given.name[i];
         int before = chosen->count;
@@ -151,7 +146,6 @@ static SmCode choose_scenes(Choices *chosen, SmError *error)
     }
     if (!options->given.count && options->paper) add_scenes(chosen, paper, NULL);
     if (!options->given.count && !options->paper) add_default(chosen);
-    return chosen->count ? SM_OK : bench_paper_unknown(paper, error);
 }
 
 /* Fails where no scene is to be measured that `--mesh name=FILE` gives a mesh. */
@@ -285,8 +279,8 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
         bench_quantities_document(stdout);
         return SM_OK;
     }
-    SmCode code = choose_scenes(&chosen, error);
-    if (!code) code = check_substitutes(&chosen, error);
+    choose_scenes(&chosen);
+    SmCode code = check_substitutes(&chosen, error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
     if (!code) code = bench_draft_reserve(options->output, options->overwrite, error);
     if (!code) code = plan_rows(&chosen, rows, error);

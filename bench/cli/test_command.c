@@ -172,7 +172,7 @@ TEST(mistakes_of_other_commands_are_too)
         {"tables --scene wide.cfg", 3, "wide.cfg: regions with 1.13e+08 members take too much"},
         {"tables --repeats 0", 2, "--repeats: '0'"},
         {"info shape:block --slice z=0.5 -o a.h5 --particles 9", 2, "without --format and --part"},
-        {"tables --paper unknown", 2, "no table of 'unknown'"},
+        {"tables --paper unknown", 2, "'unknown' is not one of fastlsm, octree, meshless"},
         {"tables --paper octre", 2, "did you mean 'octree'? See"},
         {"claims --paper fastlms", 2, "did you mean 'fastlsm'? See"},
         {"regress --revision HEAD --paper meshles", 2, "did you mean 'meshless'? See"},
