@@ -9,6 +9,7 @@
 #include "../check/runner_check.h"
 #include "../engines.h"
 #include "../table/records.h"
+#include "cantilever.h"
 
 #define FIELD(type, member)  BENCH_FIELD_AS(BenchCalibrationPlan, BENCH_##type, member, #member)
 #define MEANS(of_what, what) BENCH_MEANS(of_what, what)
@@ -223,11 +224,11 @@ static void write_laws(BenchH5 *h5, const BenchCampaign *calibration)
 
 /* ---- how they are measured */
 
-static void measure_beam(BenchCantilever *beam, bool range, BenchSpecimen *specimen)
+static void measure_beam(BenchClampedBeam *beam, bool range, BenchSpecimen *specimen)
 {
     BenchStiffness found;
     specimen->particles = beam->runner.particles;
-    bench_stiffness_measure(beam, &found);
+    bench_stiffness_measure(beam, &(BenchBeamTrial){BENCH_TONES, 5, 0}, &found);
     if (found.why[0]) {
         snprintf(specimen->reason, sizeof specimen->reason, "%s", found.why);
         return;
@@ -267,7 +268,7 @@ static void measure_specimen(const BenchCalibrationPlan *plan,
         snprintf(specimen->reason, sizeof specimen->reason, "%.*s",
                  (int)sizeof specimen->reason - 1, error.text);
     else
-        measure_beam(beam, range, specimen);
+        measure_beam(&beam->beam, range, specimen);
     bench_cantilever_free(beam);
     free(beam);
     bench_specimen_judge(elastic, plan->thickness, plan->density, specimen);

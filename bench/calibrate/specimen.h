@@ -6,7 +6,7 @@
 #define BENCH_SPECIMEN_H
 
 #include "../../lib/error.h"
-#include "../beam/stiffness.h"
+#include "../beam/clamped_beam.h"
 #include "../campaign/campaign.h"
 #include "elastic_cantilever.h"
 

@@ -4,6 +4,7 @@
 #include "../../lib/test_frame.h"
 #include "../../reference/meshless/test_solver.h"
 #include "../engines.h"
+#include "cantilever.h"
 #include "specimen.h"
 
 enum { ASPECT = 6, ACROSS = 3 };
@@ -157,8 +158,8 @@ static BenchStiffness measure(const BenchCantileverOptions *options, const SmEng
     BenchStiffness found;
     SmError error;
     if (bench_cantilever_create(options, type, &beam, &error)) fail_msg("%s", error.text);
-    bench_stiffness_measure(&beam, &found);
-    if (range) bench_stiffness_range(&beam, &found);
+    bench_stiffness_measure(&beam.beam, &(BenchBeamTrial){BENCH_TONES, 5, 0}, &found);
+    if (range) bench_stiffness_range(&beam.beam, &found);
     bench_cantilever_free(&beam);
     return found;
 }
@@ -204,6 +205,26 @@ TEST(a_beam_gives_its_modulus_back)
         near_to(s.young, sqrt(s.young_timoshenko[0] * s.young_timoshenko[1]), 1e-12);
     }
     wire.loss = 0;
+}
+
+/* So many tones as are wanted, in fewer periods just as well; twice the load bends it twice as
+ * far. */
+TEST(a_trial_measures_what_it_is_asked_for)
+{
+    BenchCantileverOptions options = options_of(5e-4);
+    BenchCantilever beam;
+    BenchStiffness all, one;
+    SmError error;
+    wire.young = 2e6;
+    if (bench_cantilever_create(&options, &wire_type, &beam, &error)) fail_msg("%s", error.text);
+    bench_stiffness_measure(&beam.beam, &(BenchBeamTrial){BENCH_TONES, 5, 0}, &all);
+    bench_stiffness_measure(&beam.beam, &(BenchBeamTrial){1, 2, 2 * all.load}, &one);
+    bench_cantilever_free(&beam);
+    assert_string_equal(one.why, "");
+    assert_true(isnan(one.frequency[1]) && isnan(one.loss[1]) && isfinite(all.loss[1]));
+    near_to(one.frequency[0], all.frequency[0], 1e-5);
+    assert_true(one.load == 2 * all.load);
+    near_to(one.sag, 2 * all.sag, 2e-3);
 }
 
 TEST(what_is_not_in_proportion_is_seen)

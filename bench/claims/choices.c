@@ -4,6 +4,7 @@
 
 #include "../../octree/change/structure.h"
 #include "../../octree/graph/distance.h"
+#include "../beam/bending_wave.h"
 #include "../engines.h"
 #include "experiments.h"
 
@@ -150,45 +151,13 @@ static void place_beam(const BenchMeasure *measure, int shift, BenchScene *scene
     choose(measure, &scene->octree);
 }
 
-/* Of a small wave of bending, one period along the beam, cross-sections straight and upright to it,
- * the share that the goal positions of one step take back: sum m u (x - g) / sum m u^2. */
-static double bending(const BenchBody *body, BenchRunner *runner)
-{
-    size_t count = (size_t)runner->particles;
-    double(*x)[3] = sm_alloc(count, sizeof *x), (*g)[3] = sm_alloc(count, sizeof *g);
-    double *mass = sm_alloc(count, sizeof *mass), taken = 0, all = 0;
-    double wave = 2 * M_PI / (body->high[0] - body->low[0]), size = 1e-3 * body->voxels.cell;
-    for (size_t i = 0; i < count; i++) {
-        const double *at = runner->x0[i];
-        double phase = wave * (at[0] - body->low[0]),
-               up = at[1] - (body->low[1] + body->high[1]) / 2;
-        x[i][0] = at[0] + size * wave * sin(phase) * up;
-        x[i][1] = at[1] + size * cos(phase);
-        x[i][2] = at[2];
-    }
-    runner->type->masses(runner->engine, mass);
-    runner->type->set(runner->engine, SM_POSITION, (const double(*)[3])x);
-    runner->type->goals(runner->engine);
-    runner->type->get(runner->engine, SM_GOAL, g);
-    for (size_t i = 0; i < count; i++)
-        for (int d = 0; d < 3; d++) {
-            double moved = x[i][d] - runner->x0[i][d];
-            taken += mass[i] * moved * (x[i][d] - g[i][d]);
-            all += mass[i] * moved * moved;
-        }
-    free(x);
-    free(g);
-    free(mass);
-    return taken / all;
-}
-
 static SmCode find_stiffness(const BenchExperiment *of, const BenchScene *scene,
                              const BenchBody *body, double *stiffness, SmError *error)
 {
     BenchRunner runner;
     SmCode code = bench_runner_exact(scene, body, &runner, error);
     if (!code) {
-        *stiffness = bending(body, &runner);
+        *stiffness = bench_bending_wave(&runner, false);
         bench_curve_check(of->curve, &runner);
     }
     bench_runner_free(&runner);

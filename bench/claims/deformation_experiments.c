@@ -8,7 +8,6 @@
 #include "../beam/clamped_beam.h"
 #include "../check/solid_block.h"
 #include "../engines.h"
-#include "../play/playback.h"
 #include "experiments.h"
 
 static double length(const double a[3], const double b[3])
@@ -159,34 +158,20 @@ SmCode bench_deform_blending(const BenchExperiment *of, SmError *error)
 
 /* ---- sag */
 
-/* Plays the scene to its end; the depth, along the unit vector `down`, is the middle of its last
- * quarter's. */
-static SmCode hang(const BenchExperiment *of, const SmEngineType *type, const double down[3],
-                   SmError *error)
+/* At rest under the scene's gravity: how far the tip is then along it. */
+static SmCode hang(const BenchExperiment *of, const SmEngineType *type, SmError *error)
 {
-    const BenchScene *scene = of->scene;
-    int frames = scene->frames, last = frames < 8 ? 1 : frames / 4;
-    BenchPlayback play;
-    SmCode code =
-        bench_playback_create(scene, of->body, type, of->lab->threads, of->lab->seed, &play, error);
-    if (code) return code;
     BenchClampedBeam beam;
-    bench_clamped_beam_create(bench_playback_runner(&play), &beam);
-    double *depth = sm_alloc((size_t)last, sizeof *depth);
-    for (int f = 0; f < frames; f++) {
-        for (int s = 0; s < scene->steps_per_frame; s++) {
-            bench_playback_prepare(&play);
-            bench_playback_advance(&play, NULL);
-        }
-        if (f >= frames - last) depth[f - (frames - last)] = bench_clamped_beam_tip(&beam, down);
+    BenchStiffness found;
+    SmCode code = bench_clamped_beam_create(of->scene, of->body, type, &beam, error);
+    if (!code) {
+        bench_stiffness_measure(&beam, &(BenchBeamTrial){1, 2, beam.gravity}, &found);
+        if (found.why[0]) bench_curve_fail(of->curve, "w = %d: %s", of->scene->params.w, found.why);
+        bench_curve_check(of->curve, &beam.runner);
+        bench_curve_exact(of->curve, of->scene->params.w, found.sag * beam.length);
     }
-    bench_curve_check(of->curve, beam.runner);
-    bench_curve_add(of->curve, scene->params.w, bench_quantile(depth, last, 0.5),
-                    bench_quantile(depth, last, 0), bench_quantile(depth, last, 1));
-    free(depth);
     bench_clamped_beam_free(&beam);
-    bench_playback_free(&play);
-    return SM_OK;
+    return code;
 }
 
 SmCode bench_deform_sag(const BenchExperiment *of, SmError *error)
@@ -194,17 +179,17 @@ SmCode bench_deform_sag(const BenchExperiment *of, SmError *error)
     int w[BENCH_RANGE_POINTS], count = bench_range_numbers(&of->measure->w, w);
     BenchScene *scene = of->scene;
     const SmEngineType *type;
-    const double none[3] = {0}, *gravity = scene->params.gravity;
-    double pull = length(gravity, none), down[3];
-    if (!(pull > 0) || scene->handle_count == 0 || scene->instances != 1)
+    const double none[3] = {0};
+    if (!(length(scene->params.gravity, none) > 0) || scene->handle_count == 0 ||
+        scene->instances != 1)
         return sm_fail(error, SM_INPUT,
                        "%.100s: nothing sags: one body with a handle and gravity is wanted",
                        scene->file);
-    for (int d = 0; d < 3; d++) down[d] = gravity[d] / pull;
-    SmCode code = bench_engine_find(scene->engine, NULL, &type, error);
+    scene->params.damping = 0; /* it does not change where the beam comes to rest */
+    SmCode code = bench_engine_find(scene->engine, "double", &type, error);
     for (int c = 0; c < count && !code && of->curve->valid; c++) {
         scene->params.w = w[c];
-        code = hang(of, type, down, error);
+        code = hang(of, type, error);
     }
     return code;
 }

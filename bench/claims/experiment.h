@@ -7,7 +7,7 @@
  * with 95% (Bonferroni): what is taken of a curve may be any of them. It knows of the repeats, not
  * of what would change from run to run. Where there are too few repeats for that level it is the
  * extremes. Without repeats it is y alone: counts, what is deterministic, and times of scenes that
- * change; of "sag" it is the extremes of the swing that is left. */
+ * change. */
 #ifndef BENCH_EXPERIMENT_H
 #define BENCH_EXPERIMENT_H
 
@@ -36,7 +36,8 @@
  * - blending: largest jump of the displacement gradient between neighbouring particles' goals, in a
  *   bar that is bent and twisted by half a turn (fastlsm Fig. 3), against the number of clusters,
  *   range `n`; `matching` lattice has a region for every particle instead.
- * - sag: how deep the tip of a clamped beam hangs, in mesh units, against w; `scene`, range `w`.
+ * - sag: how deep the tip of a clamped beam hangs at rest under its weight (beam/clamped_beam.h),
+ *   in mesh units, against w; `scene`, range `w`.
  * - resampling: `field` "distance-share": percent of the time of resampling `scene`'s octree, where
  *   the leaves of one parent are split, which the distances of the leaves searched take when they
  *   are found alone (octree section 5.3); median over places spread over the body.

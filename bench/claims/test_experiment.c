@@ -1,6 +1,8 @@
 #define _GNU_SOURCE
 
+#include "../../fastlsm/fastlsm.h"
 #include "../../lib/test_frame.h"
+#include "../sweep/bending.h"
 #include "experiments.h"
 #include "scene_field.h"
 
@@ -136,6 +138,25 @@ TEST(what_cannot_be_measured_is_not_valid)
     strcpy(measure.scene, "penguin");
     curve = bench_experiment(&lab, &measure);
     assert_false(lab.curve[curve].valid);
+    bench_lab_free(&lab);
+}
+
+/* At rest, about as far as the limit of small sags says of the same beam: it sags by 4 to 8%. */
+TEST(a_beam_hangs_where_it_comes_to_rest)
+{
+    BenchLab lab = quick_lab();
+    BenchMeasure measure = {.experiment = BENCH_TRY_SAG, .w = {5, 8, 2}};
+    strcpy(measure.scene, "beam");
+    int number = bench_experiment(&lab, &measure);
+    const BenchCurve *curve = &lab.curve[number];
+    assert_true(curve->valid && curve->points == 2);
+    for (int p = 0; p < 2; p++) {
+        BenchBending small;
+        bench_bending_measure(&fastlsm_engine_f64, curve->x[p], 0, &small);
+        double share = curve->y[p] / (0.8 * small.sag);
+        if (!(share > 0.9 && share < 1.1)) fail_msg("w %g: %g", curve->x[p], share);
+        assert_true(curve->low[p] == curve->y[p] && curve->high[p] == curve->y[p]);
+    }
     bench_lab_free(&lab);
 }
 

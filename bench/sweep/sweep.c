@@ -8,12 +8,12 @@
 
 #include "../../lib/printable.h"
 #include "../../lib/system/hash.h"
-#include "../beam/swing.h"
 #include "../campaign/campaign_run.h"
 #include "../check/check.h"
 #include "../engines.h"
 #include "../measure/measure.h"
 #include "../table/records.h"
+#include "bending.h"
 #include "gap.h"
 
 /* ---- the plan */
@@ -316,8 +316,8 @@ static const SmEngineType *exact_type(const char *engine)
 
 static void measure_beam(BenchPoint *point)
 {
-    BenchSwing beam;
-    bench_swing_measure(exact_type(point->engine), point->w, point->epsilon, &beam);
+    BenchBending beam;
+    bench_bending_measure(exact_type(point->engine), point->w, point->epsilon, &beam);
     if (beam.invalid) invalidate(point, "beam", beam.why);
     point->relaxation = beam.relaxation;
     point->sag = beam.sag;

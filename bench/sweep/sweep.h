@@ -1,6 +1,6 @@
 /* sweep.h - a sweep: a campaign (campaign.h) whose plan is a BenchPlan and whose points are
  * BenchPoints: of every w in turn all engines, of sampled ones all epsilons. Each is measured in
- * the scene and body that they share: its cost (measure.h), its stiffness (swing.h) and its gaps
+ * the scene and body that they share: its cost (measure.h), its stiffness (bending.h) and its gaps
  * (gap.h). The file's schema: results/README.md.
  *
  * One body is swept, elastic and whole: what cuts, breaks, touches or looks at it, plasticity,

@@ -2,7 +2,7 @@
 #include "../../fastlsm/fastlsm.h"
 #include "../../lib/test_frame.h"
 #include "../../reference/brute.h"
-#include "../beam/swing.h"
+#include "bending.h"
 #include "gap.h"
 
 static BenchScene make_scene(const char *text)
@@ -112,18 +112,18 @@ TEST(goals_deviate_with_epsilon)
  * a larger epsilon are stiffer. */
 TEST(beams_get_stiffer)
 {
-    BenchSwing lattice, exact, wide, wider;
-    bench_swing_measure(&fastlsm_engine_f64, 4, 0, &lattice);
-    bench_swing_measure(&octree_engine_f64, 4, 0, &exact);
-    bench_swing_measure(&octree_engine_f64, 4, 0.5, &wide);
-    bench_swing_measure(&octree_engine_f64, 6, 0, &wider);
+    BenchBending lattice, exact, wide, wider;
+    bench_bending_measure(&fastlsm_engine_f64, 4, 0, &lattice);
+    bench_bending_measure(&octree_engine_f64, 4, 0, &exact);
+    bench_bending_measure(&octree_engine_f64, 4, 0.5, &wide);
+    bench_bending_measure(&octree_engine_f64, 6, 0, &wider);
     assert_true(fabs(lattice.relaxation / exact.relaxation - 1) < 0.25);
     assert_true(fabs(lattice.frequency / exact.frequency - 1) < 0.25);
     assert_true(wide.frequency > exact.frequency && wide.sag < exact.sag);
     assert_true(wide.relaxation > exact.relaxation);
     assert_true(wider.frequency > exact.frequency && wider.relaxation > exact.relaxation);
-    BenchSwing again;
-    bench_swing_measure(&octree_engine_f64, 4, 0.5, &again);
+    BenchBending again;
+    bench_bending_measure(&octree_engine_f64, 4, 0.5, &again);
     assert_true(again.sag == wide.sag && again.frequency == wide.frequency);
     assert_string_equal(again.why, "");
 }
@@ -185,8 +185,8 @@ TEST(wrong_kernels_make_no_beams)
     static const SmEngineType *const types[] = {&fastlsm_engine_f64, &octree_engine_f64};
     for (int f = 0; f < FAULTS; f++) {
         SmEngineType wrong = wrong_type(types[f % 2], (Fault)f);
-        BenchSwing beam;
-        bench_swing_measure(&wrong, 2, 0, &beam);
+        BenchBending beam;
+        bench_bending_measure(&wrong, 2, 0, &beam);
         if (!beam.invalid || strncmp(beam.why, "INVALID: ", 9) != 0)
             fail_msg("fault %d: %g Hz, '%s'", f, beam.frequency, beam.why);
         assert_true(isnan(beam.frequency) && isnan(beam.sag) && isnan(beam.relaxation));

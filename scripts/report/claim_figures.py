@@ -16,8 +16,7 @@ GROUPS = {
                  "neighbouring particles of a bar bent and twisted by half a turn; one region a particle (lattice) against "
                  "few overlapping clusters.", "y"),
     "size": ("Cost against size", "Milliseconds a step against the number of particles or nodes.", "xy"),
-    "sag": ("Stiffness against w", "How deep the tip of a clamped beam hangs; bars are the extremes of the swing that is "
-            "left.", ""),
+    "sag": ("Stiffness against w", "How deep the tip of a clamped beam hangs at rest.", ""),
 }
 CLASSES = {"reproduced": "good", "not reproduced": "bad", "not as set": "bad", "undecided": "open", "BUSY": "open",
            "INVALID": "invalid"}
