@@ -37,18 +37,18 @@ void lsm_pipeline_share(Lsm *lsm, int first, int end)
         lsm->thread_layer[t] = first + (end - first) * t / lsm->threads;
 }
 
-void lsm_pipeline_own(const Lsm *lsm, int part, int thread, int *begin, int *end)
+void lsm_pipeline_own(const Lsm *lsm, int phase, int thread, int *begin, int *end)
 {
     *begin = lsm->thread_layer[thread];
     *end = lsm->thread_layer[thread + 1];
     bool before = *begin > 0, after = *end < lsm->layers;
-    for (int i = 0; i < part; i++) {
+    for (int i = 0; i < phase; i++) {
         if (before) *begin = chapter_from(lsm, *begin + lsm->reach);
         if (after) *end -= lsm->reach;
     }
 }
 
-static void run_own(Lsm *lsm, LsmPart *const part[3], int thread, SmLaps *laps)
+static void run_own(Lsm *lsm, LsmPhase *const phase[3], int thread, SmLaps *laps)
 {
     int first = lsm->thread_layer[thread], last = lsm->thread_layer[thread + 1];
     int begin[3], end[3];
@@ -56,35 +56,35 @@ static void run_own(Lsm *lsm, LsmPart *const part[3], int thread, SmLaps *laps)
     for (int l = first; l < last + 2 * lsm->reach; l++)
         for (int i = 0; i < 3; i++) {
             int layer = l - i * lsm->reach;
-            if (layer >= begin[i] && layer < end[i]) part[i](lsm, layer, thread, laps);
+            if (layer >= begin[i] && layer < end[i]) phase[i](lsm, layer, thread, laps);
         }
 }
 
 /* What is left: first the layers at the end of the share, which go on from its own. */
-static void run_shared(Lsm *lsm, LsmPart *const part[3], int i, int thread, SmLaps *laps)
+static void run_shared(Lsm *lsm, LsmPhase *const phase[3], int i, int thread, SmLaps *laps)
 {
     int first = lsm->thread_layer[thread], last = lsm->thread_layer[thread + 1], begin, end;
     lsm_pipeline_own(lsm, i, thread, &begin, &end);
     if (end <= begin) begin = end = last;
-    for (int l = end; l < last; l++) part[i](lsm, l, thread, laps);
-    for (int l = first; l < begin; l++) part[i](lsm, l, thread, laps);
+    for (int l = end; l < last; l++) phase[i](lsm, l, thread, laps);
+    for (int l = first; l < begin; l++) phase[i](lsm, l, thread, laps);
 }
 
-void lsm_pipeline(Lsm *lsm, LsmPart *const part[3])
+void lsm_pipeline(Lsm *lsm, LsmPhase *const phase[3])
 {
     if (lsm->threads == 1) {
-        run_own(lsm, part, 0, lsm->laps);
+        run_own(lsm, phase, 0, lsm->laps);
         return;
     }
     /* loops, in case the runtime grants fewer threads than there are shares */
 #pragma omp parallel num_threads(lsm->threads)
     {
         int me = omp_get_thread_num(), team = omp_get_num_threads();
-        for (int t = me; t < lsm->threads; t += team) run_own(lsm, part, t, t ? NULL : lsm->laps);
+        for (int t = me; t < lsm->threads; t += team) run_own(lsm, phase, t, t ? NULL : lsm->laps);
         for (int i = 1; i < 3 && lsm->reach > 0; i++) {
 #pragma omp barrier
             for (int t = me; t < lsm->threads; t += team)
-                run_shared(lsm, part, i, t, t ? NULL : lsm->laps);
+                run_shared(lsm, phase, i, t, t ? NULL : lsm->laps);
         }
     }
 }

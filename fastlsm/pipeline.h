@@ -1,14 +1,14 @@
-/* pipeline.h - runs the three parts of a pass over the layers of a body, in cache and in parallel.
+/* pipeline.h - runs the three phases of a pass over the layers of a body, in cache and in parallel.
  *
- * Part 0 of layer l needs only layer l; part 1 needs part 0 of layers l - reach .. l + reach; part
- * 2 needs part 1 of the same span, and may overwrite what part 0 and 1 read of layer l. A thread
- * owns consecutive layers and runs the parts as a software pipeline, so that what one part wrote is
- * still in cache when the next reads it; what depends on another thread's layers waits behind a
- * barrier.
+ * Phase 0 of layer l needs only layer l; phase 1 needs phase 0 of layers l - reach .. l + reach;
+ * phase 2 needs phase 1 of the same span, and may overwrite what phase 0 and 1 read of layer l. A
+ * thread owns consecutive layers and runs the phases as a software pipeline, so that what one phase
+ * wrote is still in cache when the next reads it; what depends on another thread's layers waits
+ * behind a barrier.
  *
- * A part may go on from what the same thread left at the layer before, except at layers that are
+ * A phase may go on from what the same thread left at the layer before, except at layers that are
  * multiples of lsm->chapter: the layers from one of these to the next are run in turn by one
- * thread. So no part's result depends on who runs it or when, and any thread count gives the same
+ * thread. So no phase's result depends on who runs it or when, and any thread count gives the same
  * bits. */
 #ifndef LSM_PIPELINE_H
 #define LSM_PIPELINE_H
@@ -21,13 +21,13 @@
 #define lsm_pipeline_share SM_NAME(lsm_pipeline_share)
 
 /* `laps` is NULL but for the first thread of an instrumented run. */
-typedef void LsmPart(Lsm *lsm, int layer, int thread, SmLaps *laps);
+typedef void LsmPhase(Lsm *lsm, int layer, int thread, SmLaps *laps);
 
-void lsm_pipeline(Lsm *lsm, LsmPart *const part[3]);
+void lsm_pipeline(Lsm *lsm, LsmPhase *const phase[3]);
 
-/* The layers begin .. end - 1 of a thread's share whose part `part` waits for no other thread; none
- * if end <= begin. */
-void lsm_pipeline_own(const Lsm *lsm, int part, int thread, int *begin, int *end);
+/* The layers begin .. end - 1 of a thread's share whose phase `phase` waits for no other thread;
+ * none if end <= begin. */
+void lsm_pipeline_own(const Lsm *lsm, int phase, int thread, int *begin, int *end);
 
 /* Shares the layers among threads by their blocks: fills thread_layer, may lower `threads`. */
 void lsm_pipeline_split(Lsm *lsm);

@@ -235,9 +235,9 @@ static void free_shared(Blocks *box)
     free(box->down_memory);
 }
 
-/* A plane's store is free for another plane once part 2 has passed `reach` planes on: in the middle
- * of a thread's share planes take turns; near its ends, where part 2 waits for the other thread,
- * each has its own. */
+/* A plane's store is free for another plane once phase 2 has passed `reach` planes on: in the
+ * middle of a thread's share planes take turns; near its ends, where phase 2 waits for the other
+ * thread, each has its own. */
 void lsm_blocks_share(Lsm *lsm)
 {
     Blocks *box = lsm->box;

@@ -40,7 +40,7 @@ struct Blocks {
                            empty block (number `blocks`) where there is none */
     uint64_t *passable; /* bitmap of the sites whose sums other sites' sums pass through */
     bool *mixed;        /* [blocks] lists or fix-ups make the sums of some lanes exact */
-    real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until part 2 */
+    real **down;        /* [planes] where a plane's (Q, Rz) sums are kept until phase 2 */
     real *down_memory;
     int threads;
     long shared_bytes;

@@ -43,7 +43,7 @@ typedef struct {
 struct Fixups {
     FixupList up, down;
     int *row;   /* [blocks] row of `kept`, or -1: fix-ups down read this block's regions */
-    real *kept; /* [rows][12][SM_LANES] what they bring down, until part 2 */
+    real *kept; /* [rows][12][SM_LANES] what they bring down, until phase 2 */
     long rows;
 };
 

@@ -240,22 +240,22 @@ SM_INLINE void stage_z_up(const Lsm *lsm, long block, int w, bool plain, bool mo
     for (int k = 0; k < n; k++) sum[k] = through(lsm, block, w, sum[k]);
 }
 
-/* The stages up along z and x for values 3 k + d of a run, d = first .. first + parts - 1, into a
+/* The stages up along z and x for values 3 k + d of a run, d = first .. first + count - 1, into a
  * row of the ring `above`: 1 -> 2 -> 3 values of each d. `kept` are the windows of its row. */
 SM_INLINE void run_up(const Lsm *lsm, const BlockRun *run, int w, bool plain, bool moving,
-                      int first, int parts, real *kept, real *row)
+                      int first, int count, real *kept, real *row)
 {
     int n = plain ? 4 : 2, last = run->first + run->count - 1;
     real *out = row + run->column * (long)BLOCK + first * SM_LANES;
     kept += run->column * (long)BLOCK;
     vec before[3][4], here[3][4], after[3][4], moment = lanes_set(0);
-    for (int d = 0; d < parts; d++) {
+    for (int d = 0; d < count; d++) {
         stage_z_up(lsm, run->first, w, plain, moving, first + d, kept, here[d]);
         for (int k = 0; k < n; k++) before[d][k] = after[d][k] = lanes_set(0);
     }
     for (int block = run->first; block <= last; block++, out += BLOCK) {
         kept += BLOCK;
-        for (int d = 0; d < parts; d++) {
+        for (int d = 0; d < count; d++) {
             if (block < last)
                 stage_z_up(lsm, block + 1, w, plain, moving, first + d, kept, after[d]);
             else
@@ -423,19 +423,19 @@ SM_INLINE void stage_y_down(const Lsm *lsm, const Around *in, const BlockRun *ru
     for (int k = 0; k < n; k++) out[k] = through(lsm, run->first + i, w, out[k]);
 }
 
-/* The stages down along y and x for values 3 k + d of a run, d = first .. first + parts - 1: 4 -> 3
+/* The stages down along y and x for values 3 k + d of a run, d = first .. first + count - 1: 4 -> 3
  * -> 2 of them, into the plane's store. */
 SM_INLINE void run_down(const Lsm *lsm, const Around *in, const BlockRun *run, int w, bool plain,
-                        bool moving, int first, int parts, real *out)
+                        bool moving, int first, int count, real *out)
 {
     int n = plain ? 2 : 3;
     vec before[3][3], here[3][3], after[3][3], sum[3], moment = lanes_set(0);
-    for (int d = 0; d < parts; d++) {
+    for (int d = 0; d < count; d++) {
         for (int k = 0; k < n; k++) before[d][k] = lanes_set(0);
         stage_y_down(lsm, in, run, 0, w, plain, moving, first + d, here[d]);
     }
     for (int i = 0; i < run->count; i++, out += BLOCK_DOWN)
-        for (int d = 0; d < parts; d++) {
+        for (int d = 0; d < count; d++) {
             if (i + 1 < run->count)
                 stage_y_down(lsm, in, run, i + 1, w, plain, moving, first + d, after[d]);
             else
@@ -525,8 +525,8 @@ SM_INLINE void plane_pass(Lsm *lsm, int plane, int thread, int w, bool plain, Sm
     }
 }
 
-/* Where part 1 has left the sums down along y and x of planes plane - w - 1 .. plane + w, and their
- * first blocks. */
+/* Where phase 1 has left the sums down along y and x of planes plane - w - 1 .. plane + w, and
+ * their first blocks. */
 typedef struct {
     const real *plane[LSM_MAX_SIDE + 1];
     long first[LSM_MAX_SIDE + 1];
@@ -689,7 +689,7 @@ static void subsums(Lsm *lsm, int plane, int thread, SmLaps *laps)
 
 static void solve(Lsm *lsm, int plane, int thread, SmLaps *laps)
 {
-    static LsmPart *const by_width[2][WIDTHS] = {SOLVE(solve_moments), SOLVE(solve_plain)};
+    static LsmPhase *const by_width[2][WIDTHS] = {SOLVE(solve_moments), SOLVE(solve_plain)};
     by_width[lsm->pass->plain][lsm->w < WIDTHS ? lsm->w : 0](lsm, plane, thread, laps);
     lsm_list_kernels.subsums_down(lsm, plane, lsm->pass->plain);
     sm_lap(laps, lsm->pass->stage);
@@ -697,8 +697,8 @@ static void solve(Lsm *lsm, int plane, int thread, SmLaps *laps)
 
 static void end(Lsm *lsm, int plane, int thread, SmLaps *laps)
 {
-    static LsmPart *const by_width[2][3] = {{end_moments_any, end_moments_1, end_moments_2},
-                                            {end_plain_any, end_plain_1, end_plain_2}};
+    static LsmPhase *const by_width[2][3] = {{end_moments_any, end_moments_1, end_moments_2},
+                                             {end_plain_any, end_plain_1, end_plain_2}};
     by_width[lsm->pass->plain][lsm->w < 3 ? lsm->w : 0](lsm, plane, thread, laps);
     sm_lap(laps, lsm->pass->stage);
 }
@@ -713,7 +713,7 @@ const LsmSums lsm_sums_boxes = {
     .applies = applies,
     .lay_out = lsm_blocks_build,
     .share = lsm_blocks_share,
-    .part = {subsums, solve, end},
+    .phase = {subsums, solve, end},
     .lists = &lsm_list_kernels,
     .plate_down = ROW_PLATE_DOWN,
 };

@@ -158,23 +158,23 @@ SM_INLINE void end_of(Lsm *lsm, int layer, int thread, bool plain, int side, SmL
     sm_lap(laps, lsm->pass->stage);
 }
 
-/* A part of a pass, for each of the usual widths. */
-#define PART(name)                                                                                 \
+/* A phase of a pass, for each of the usual widths. */
+#define PHASE(name)                                                                                \
     static void name(Lsm *lsm, int layer, int thread, SmLaps *laps)                                \
     {                                                                                              \
         FOR_SIDE(lsm->side, name##_at)                                                             \
     }
-#define CALL(part, side)                                                                           \
+#define CALL(phase, side)                                                                          \
     if (lsm->pass->plain)                                                                          \
-        part(lsm, layer, thread, true, side, laps);                                                \
+        phase(lsm, layer, thread, true, side, laps);                                               \
     else                                                                                           \
-        part(lsm, layer, thread, false, side, laps)
+        phase(lsm, layer, thread, false, side, laps)
 #define subsums_at(side) CALL(subsums_of, side)
 #define solve_at(side)   CALL(solve_of, side)
 #define end_at(side)     CALL(end_of, side)
-PART(subsums)
-PART(solve)
-PART(end)
+PHASE(subsums)
+PHASE(solve)
+PHASE(end)
 
 static bool applies(const Lsm *lsm)
 {
@@ -211,6 +211,6 @@ const LsmSums lsm_sums_instances = {
     .applies = applies,
     .lay_out = lay_out,
     .share = share,
-    .part = {subsums, solve, end},
+    .phase = {subsums, solve, end},
     .layer_planes = 1,
 };

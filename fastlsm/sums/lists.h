@@ -1,4 +1,4 @@
-/* lists.h - the parts of a pass over lists (sums.h): of the forms naive, lists and running, and of
+/* lists.h - the phases of a pass over lists (sums.h): of the forms naive, lists and running, and of
  * boxes for the regions that have lists. */
 #ifndef LSM_LISTS_H
 #define LSM_LISTS_H
@@ -21,8 +21,8 @@ void lsm_lists_build_layers(Lsm *lsm);
 /* Particles in canonical order, in slots without holes but at the ends of layers. */
 void lsm_lists_lay_out(Lsm *lsm);
 
-/* The three parts: bars and plates; regions, and bars and plates down; particles. */
-LsmPart lsm_lists_subsums, lsm_lists_solve, lsm_lists_end;
+/* The three phases: bars and plates; regions, and bars and plates down; particles. */
+LsmPhase lsm_lists_subsums, lsm_lists_solve, lsm_lists_end;
 
 /* Puts what the regions of a tile bring down (LsmPass) into their rows of rows.transform. */
 void lsm_lists_keep_down(const Lsm *lsm, long tile, const real *down);

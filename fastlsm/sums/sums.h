@@ -2,7 +2,7 @@
  *
  * A pass sums values of particles up to regions, solves something for each region, and sums what
  * comes of it down to particles again: shape matching (match.h) and damping (damping.h) are
- * passes. A form is a way to sum; every form runs every pass, in the three parts of pipeline.h.
+ * passes. A form is a way to sum; every form runs every pass, in the three phases of pipeline.h.
  *
  *     naive.c          member by member, O(w^3)
  *     list_sums.c      through bars and plates, O(w), for any shape
@@ -70,7 +70,7 @@ struct LsmSums {
     void (*lay_out)(Lsm *lsm);       /* blocks and layers */
     void (*share)(Lsm *lsm);         /* memory for lsm->threads threads, or NULL */
     void (*open)(Lsm *lsm);          /* what is made of lists and constants, or NULL */
-    LsmPart *part[3];                /* of a pass: pipeline.h */
+    LsmPhase *phase[3];              /* of a pass: pipeline.h */
     const LsmListKernels *lists;     /* of the regions that have lists */
     int layer_planes;                /* least planes of a layer */
     int plate_down;                  /* values in a row of rows.plate_down */
@@ -84,7 +84,7 @@ SM_INLINE void lsm_run(Lsm *lsm, const LsmPass *pass, SmLaps *laps)
 {
     lsm->laps = laps;
     lsm->pass = pass;
-    lsm_pipeline(lsm, lsm->sums->part);
+    lsm_pipeline(lsm, lsm->sums->phase);
 }
 
 /* `sum` is copied for functions, so that it may stay in registers for what is compiled in. */
