@@ -48,6 +48,7 @@ typedef struct {
     const OctStructure *(*structure)(const SmEngine *engine); /* its tree, to record; NULL: none */
 
     const BenchTwin *twin; /* of its goals; NULL: they are not those of shape matching */
+    bool reference;        /* then: it is one itself, with nothing to compare it with */
 
     const BenchChecker *checker; /* of what bench_measure() measures */
 
@@ -58,7 +59,7 @@ typedef struct {
     void (*fill)(const BenchRunner *runner, BenchRow *row);
     void (*explain)(FILE *file, const BenchRow *row);
 
-    /* What `run` says of it; NULL: its particles, regions and w. */
+    /* What `run` says of it; NULL: its particles, regions and w, where it has such. */
     void (*describe)(const BenchRunner *runner, const SmCounts *counts);
 
     /* Bytes that the engine takes for so many particles of the scene, about. */
@@ -79,6 +80,11 @@ const BenchEngine *bench_engine(const char *name);
  * SM_USAGE lists what there is. */
 SmCode bench_engine_find(const char *name, const char *precision, const SmEngineType **type,
                          SmError *error);
+
+/* The first member of an engine, or of one of its types, that must be there and is not; NULL: it is
+ * whole. carrier, checker and memory must; set, goals, push, bound, masses and region of the types
+ * of engines that have a twin or are planned, which are moved, held and weighed by it. */
+const char *bench_engine_lacks(const BenchEngine *engine);
 
 /* The stage that any engine calls so; SM_STAGES if none does. */
 SmStage bench_stage_find(const char *name);

@@ -144,7 +144,9 @@ static SmCode check_owners(const Options *options, const BenchEngine *engine, Sm
         if (missed) return fail_of_owner(*owner, engine->own, error);
     }
     if (!engine->twin && options->record)
-        return sm_fail(error, SM_USAGE, "--record is of shape matching; leave it out");
+        return sm_fail(error, SM_USAGE,
+                       "--record stores goals of shape matching, and %s has none: leave it out",
+                       engine->type[0]->name);
     return SM_OK;
 }
 

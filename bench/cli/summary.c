@@ -15,8 +15,10 @@ static bool print_deviation(const BenchRunner *runner)
     const BenchScene *scene = runner->scene;
     SmCounts counts;
     runner->type->count(runner->engine, &counts);
-    if (!bench_engine(runner->type->name)->twin) {
-        printf("deviation: not checked: the %s body is a reference itself\n", runner->type->name);
+    const BenchEngine *engine = bench_engine(runner->type->name);
+    if (!engine->twin) {
+        printf("deviation: not checked: the %s body %s\n", runner->type->name,
+               engine->reference ? "is a reference itself" : "has no goals of shape matching");
         return true;
     }
     if (counts.broken && scene->params.strain_limit > 0) {
@@ -48,10 +50,12 @@ static bool print_deviation(const BenchRunner *runner)
 
 static void print_lattice(const BenchRunner *runner, const SmCounts *counts)
 {
-    printf("%s: %s, %s precision: %ld particle%s, %ld unique region%s, w %d, cell %.6g\n",
-           runner->scene->name, runner->type->name, runner->type->precision, counts->particles,
-           counts->particles == 1 ? "" : "s", counts->regions, counts->regions == 1 ? "" : "s",
-           runner->scene->params.w, runner->body->voxels.cell);
+    printf("%s: %s, %s precision: %ld particle%s", runner->scene->name, runner->type->name,
+           runner->type->precision, counts->particles, counts->particles == 1 ? "" : "s");
+    if (counts->regions)
+        printf(", %ld unique region%s", counts->regions, counts->regions == 1 ? "" : "s");
+    if (runner->type->by_cells) printf(", w %d", runner->scene->params.w);
+    printf(", cell %.6g\n", runner->body->voxels.cell);
     if (!counts->broken || !runner->type->pieces) return;
     SmPieces pieces;
     runner->type->pieces(runner->engine, &pieces);

@@ -200,7 +200,7 @@ SmCode bench_measure(const BenchScene *scene, const BenchBody *body, const SmEng
 {
     const BenchEngine *engine = bench_engine(type->name);
     const BenchChecker *checker = engine->checker;
-    Trial trial = {.before = sm_engine_before(type)};
+    Trial trial = {.before = sm_engine_stages(type)->before};
     if (engine->frames) type = engine->frames;
     SmCode code = checker->takes ? checker->takes(scene, error) : SM_OK;
     if (!code)

@@ -2,6 +2,7 @@
  * line of the registry, and runs, is checked and has its row in every format. This one's particles
  * hang on springs, each on its own to where it rests. */
 #include "../../lib/test_folder.h"
+#include "../check/check.h"
 #include "../engines.h"
 #include "../scene/memory.h"
 #include "../table/row_store.h"
@@ -62,11 +63,6 @@ static void toy_step(SmEngine *e, SmLaps *laps)
     sm_lap(laps, SM_OTHER);
 }
 
-static void toy_goals(SmEngine *e)
-{
-    (void)e;
-}
-
 static double (*field_of(SmEngine *e, SmField field))[3]
 {
     return field == SM_POSITION ? e->x : field == SM_VELOCITY ? e->v : e->rest;
@@ -82,17 +78,13 @@ static void toy_set(SmEngine *e, SmField field, const double (*values)[3])
     memcpy(field_of(e, field), values, (size_t)e->count * sizeof *values);
 }
 
-static void toy_bound(SmEngine *e, const SmBoundary *boundary)
-{
-    (void)e, (void)boundary;
-}
-
 static void toy_count(SmEngine *e, SmCounts *counts)
 {
-    *counts = (SmCounts){.particles = e->count, .regions = e->count, .bytes = 72 * e->count};
+    *counts = (SmCounts){.particles = e->count, .bytes = 72 * e->count};
 }
 
-static const SmStageNames toy_stages = {.name = {[SM_OTHER] = "pull"}, .before = SM_OTHER};
+static const SmStages toy_stages = {.of = {[SM_OTHER] = {"pull", "pull", "pull", "the springs"}},
+                                    .before = SM_OTHER};
 
 static const SmEngineType toy_type = {.name = "springs",
                                       .precision = "double",
@@ -101,10 +93,8 @@ static const SmEngineType toy_type = {.name = "springs",
                                       .create = toy_create,
                                       .destroy = toy_destroy,
                                       .step = toy_step,
-                                      .goals = toy_goals,
                                       .get = toy_get,
                                       .set = toy_set,
-                                      .bound = toy_bound,
                                       .count = toy_count};
 
 /* ---- its check: a step beside the formula */
@@ -159,39 +149,88 @@ TEST_GROUP(set_up, remove_folder)
 
 /* ---- tests */
 
-static BenchRow measure(void)
+/* A bar of this engine, with more of what a scene has. */
+static SmCode measure_bar(const char *engine, const char *more, BenchRow *row, SmError *error)
 {
-    static const char text[] = "mesh = \"shape:bar\"; particles = 200; engine = \"springs\";\n"
-                               "gravity = [0.0, -9.81, 0.0]; twist = 0.5;\n";
+    char text[512];
     BenchScene scene;
     BenchBody body;
+    const SmEngineType *type = NULL;
+    BenchMeasureParams params = {.repeats = 2, .block_seconds = 1e-4, .threads = 1};
+    snprintf(text, sizeof text,
+             "mesh = \"shape:bar\"; particles = 200; engine = \"%s\";\n"
+             "gravity = [0.0, -9.81, 0.0]; twist = 0.5; %s\n",
+             engine, more);
+    SmCode code = bench_scene_parse(text, strlen(text), "toy.cfg", &scene, error);
+    if (!code) code = bench_engine_find(scene.engine, NULL, &type, error);
+    if (!code) code = bench_body_of_scene(&scene, NULL, &body, error);
+    if (code) fail_msg("%s", error->text);
+    code = bench_measure(&scene, &body, type, &params, row, error);
+    bench_body_free(&body);
+    return code;
+}
+
+static BenchRow measure(void)
+{
     BenchRow row;
     SmError error;
-    const SmEngineType *type;
-    BenchMeasureParams params = {.repeats = 2, .block_seconds = 1e-4, .threads = 1};
-    if (bench_scene_parse(text, strlen(text), "toy.cfg", &scene, &error) ||
-        bench_engine_find(scene.engine, NULL, &type, &error) ||
-        bench_body_of_scene(&scene, NULL, &body, &error) ||
-        bench_measure(&scene, &body, type, &params, &row, &error))
-        fail_msg("%s", error.text);
-    bench_body_free(&body);
+    if (measure_bar("springs", "", &row, &error)) fail_msg("%s", error.text);
     row.busy = false; /* whatever else runs: what its times are is not looked at */
     row.lost_percent = 0;
     return row;
 }
 
-static void assert_written(const BenchRow *row, BenchFormat format, const char *wanted)
+static const char *write(const BenchRow *rows, int count, BenchFormat format)
 {
-    char text[8192] = "";
+    static char text[16384];
     BenchMachine machine = {.threads = 1};
     FILE *file = fmemopen(text, sizeof text, "w");
-    BenchTable table = {.format = format,
-                        .explain = true,
-                        .report = {.file = file, .rows = row, .count = 1, .machine = &machine}};
-    bench_table_rows(&table, 1);
+    BenchTable table = {
+        .format = format,
+        .explain = true,
+        .report = {.file = file, .rows = rows, .count = count, .machine = &machine}};
+    bench_table_rows(&table, count);
     bench_table_end(&table);
     fclose(file);
+    return text;
+}
+
+static void assert_written(const BenchRow *rows, int count, BenchFormat format, const char *wanted)
+{
+    const char *text = write(rows, count, format);
     if (!strstr(text, wanted)) fail_msg("no '%s' in:\n%s", wanted, text);
+}
+
+TEST(its_stage_is_a_column_beside_those_of_others)
+{
+    BenchRow rows[2];
+    SmError error;
+    if (measure_bar("fastlsm", "", &rows[0], &error)) fail_msg("%s", error.text);
+    rows[1] = measure();
+    for (int r = 0; r < 2; r++) {
+        rows[r].busy = false;
+        rows[r].total_ms = 8;
+        for (int s = 0; s < SM_STAGES; s++) rows[r].stage_ms[s] = s + 1;
+    }
+    assert_written(rows + 1, 1, BENCH_AS_TEXT, "  regions  w  pull  total ms");
+    assert_written(rows, 2, BENCH_AS_TEXT, "  w  sum  match  polar  damp  other  pull  total ms");
+    assert_written(rows, 2, BENCH_AS_TEXT, "  12%    25%    38%     -    62%     -      8.00");
+    assert_written(rows, 2, BENCH_AS_TEXT, "    -      -      -     -      -   62%      8.00");
+    assert_written(rows, 2, BENCH_AS_TEXT, "    ms: pull 5.00;");
+    assert_written(rows, 2, BENCH_AS_MARKDOWN, "| other | pull | total ms |");
+    assert_written(rows, 2, BENCH_AS_MARKDOWN, "| 5.00 (62%) | - | 8.00 |");
+    assert_written(rows, 2, BENCH_AS_MARKDOWN, "| - | - | - | - | - | 5.00 (62%) | 8.00 |");
+    assert_written(rows, 2, BENCH_AS_LATEX, "& other & pull & total ms &");
+    assert_written(rows, 2, BENCH_AS_LATEX, "& - & - & - & - & - & 5.00 (62\\%) & 8.00 &");
+    assert_written(rows, 2, BENCH_AS_CSV, ",motion_ms,skin_ms,pull_ms\n");
+    assert_written(rows, 2, BENCH_AS_CSV, ",117,2,0,1,2,3,4,5,8,");
+    assert_written(rows, 2, BENCH_AS_CSV, ",toy,springs,208,0,0,0,,,,,,8,");
+    assert_written(rows, 2, BENCH_AS_CSV, ",,,5\n");
+    assert_written(rows, 2, BENCH_AS_JSON, "\"other_ms\": null");
+    assert_written(rows, 2, BENCH_AS_JSON, "\"pull_ms\": null");
+    assert_written(rows, 2, BENCH_AS_JSON, "\"pull_ms\": 5.0");
+    bench_row_free(&rows[0]);
+    bench_row_free(&rows[1]);
 }
 
 TEST(its_row_is_in_every_format)
@@ -204,12 +243,12 @@ TEST(its_row_is_in_every_format)
     if (!row.valid) fail_msg("%s", row.reason);
     assert_string_equal(row.engine, "springs");
     assert_int_equal(row.w, 0);
-    assert_written(&row, BENCH_AS_TEXT, "VALID: a step within");
-    assert_written(&row, BENCH_AS_TEXT, "    ms: pull ");
-    assert_written(&row, BENCH_AS_MARKDOWN, "| toy |");
-    assert_written(&row, BENCH_AS_LATEX, "toy &");
-    assert_written(&row, BENCH_AS_CSV, ",toy,springs,");
-    assert_written(&row, BENCH_AS_JSON, "\"engine\": \"springs\"");
+    assert_written(&row, 1, BENCH_AS_TEXT, "VALID: a step within");
+    assert_written(&row, 1, BENCH_AS_TEXT, "    ms: pull ");
+    assert_written(&row, 1, BENCH_AS_MARKDOWN, "| toy |");
+    assert_written(&row, 1, BENCH_AS_LATEX, "toy &");
+    assert_written(&row, 1, BENCH_AS_CSV, ",toy,springs,");
+    assert_written(&row, 1, BENCH_AS_JSON, "\"engine\": \"springs\"");
     assert_int_equal(bench_store_rows(path_in("rows.h5"), &row, 1, &machine, &error), SM_OK);
     bench_h5_open(&h5, path_in("rows.h5"));
     hid_t group = bench_h5_find_group(&h5, bench_h5_find_group(&h5, h5.file, "rows"), "000");
@@ -231,7 +270,8 @@ TEST(its_row_is_on_the_report_page)
     bench_machine_read(1, words, 1, &machine);
     assert_int_equal(bench_store_rows(path_in("rows.h5"), &row, 1, &machine, &error), SM_OK);
     snprintf(command, sizeof command,
-             "cd %s && '%s/shapebench' report --quiet rows.h5 && grep -q springs report.html",
+             "cd %s && '%s/shapebench' report --quiet rows.h5 && grep -q springs report.html && "
+             "grep -q '>pull ms<' report.html && grep -q 'toy: pull most' report.html",
              folder, BINARY_DIR);
     assert_int_equal(system(command), 0);
     bench_row_free(&row);
@@ -244,7 +284,7 @@ TEST(its_check_finds_what_is_wrong)
     fault = 0;
     assert_false(row.valid);
     assert_non_null(strstr(row.reason, "from the formula"));
-    assert_written(&row, BENCH_AS_TEXT, "INVALID: a step is");
+    assert_written(&row, 1, BENCH_AS_TEXT, "INVALID: a step is");
     bench_row_free(&row);
 }
 
@@ -254,4 +294,48 @@ TEST(it_is_named_with_the_others)
     SmError error;
     assert_int_equal(bench_engine_find("spring", NULL, &type, &error), SM_USAGE);
     assert_non_null(strstr(error.text, "meshless (double), springs (double)"));
+}
+
+static void assert_refused(const char *more, const char *what)
+{
+    BenchRow row;
+    SmError error;
+    assert_int_equal(measure_bar("springs", more, &row, &error), SM_INPUT);
+    if (!strstr(error.text, what) || !strstr(error.text, ", not springs: leave them out"))
+        fail_msg("no '%s' in: %s", what, error.text);
+}
+
+TEST(what_it_has_no_function_for_is_refused)
+{
+    assert_refused("forces = ({ box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 1.0, 1.0]; force = "
+                   "[0.0, 1.0, 0.0]; } );",
+                   "'forces' need the engine fastlsm, octree");
+    assert_refused("handles = ({ box_low = [0.0, 0.0, 0.0]; box_high = [1.0, 1.0, 1.0]; });",
+                   "'handles' need the engine");
+    assert_refused("planes = ({ point = [0.0, 0.0, 0.0]; normal = [0.0, 1.0, 0.0]; });",
+                   "planes, spheres, boxes and capsules need the engine");
+}
+
+TEST(what_an_engine_must_have_is_named)
+{
+    for (const BenchEngine *const *engine = bench_engine_list; *engine; engine++)
+        if (bench_engine_lacks(*engine))
+            fail_msg("%s has no %s", (*engine)->type[0]->name, bench_engine_lacks(*engine));
+    SmEngineType type = toy_type;
+    BenchEngine engine = bench_toy;
+    engine.type[0] = &type;
+    type.step = NULL;
+    assert_string_equal(bench_engine_lacks(&engine), "step");
+    type = toy_type;
+    type.set = NULL;
+    assert_string_equal(bench_engine_lacks(&engine), "set");
+    type = toy_type;
+    type.refines = true;
+    assert_string_equal(bench_engine_lacks(&engine), "masses");
+    type = toy_type;
+    engine.twin = &bench_lattice_twin;
+    assert_string_equal(bench_engine_lacks(&engine), "goals");
+    engine.twin = NULL;
+    engine.memory = NULL;
+    assert_string_equal(bench_engine_lacks(&engine), "memory");
 }

@@ -108,7 +108,7 @@ static void bind(BenchRunner *runner, double t)
     }
     runner->bound_count = count;
     SmBoundary boundary = bench_runner_boundary(runner);
-    runner->type->bound(runner->engine, &boundary);
+    if (runner->type->bound) runner->type->bound(runner->engine, &boundary);
 }
 
 static SmCode nothing_selected(const BenchScene *scene, const char *what, int i, SmError *error)
@@ -230,7 +230,17 @@ static bool cuts(const BenchEngine *engine)
 
 static bool stops(const BenchEngine *engine)
 {
-    return !engine->type[0]->unstopped;
+    return engine->type[0]->bound && !engine->type[0]->unstopped;
+}
+
+static bool is_held(const BenchEngine *engine)
+{
+    return engine->type[0]->bound;
+}
+
+static bool is_pushed(const BenchEngine *engine)
+{
+    return engine->type[0]->push;
 }
 
 /* Refuses what the engine does not do, and names those that do. */
@@ -243,6 +253,8 @@ static SmCode check_engine(const BenchScene *scene, const SmEngineType *type, Sm
         {scene->octree.creep > 0, flows, "plastic bodies ('creep')"},
         {scene->touch_count > 0 || scene->view.level > 0, refines, "'touches' and 'view'"},
         {scene->cut_count > 0, cuts, "'cuts'"},
+        {scene->handle_count > 0, is_held, "'handles'"},
+        {scene->force_count > 0, is_pushed, "'forces'"},
         {scene->obstacle_count > 0, stops, "planes, spheres, boxes and capsules"},
     };
     char names[BENCH_ENGINES_TEXT];

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { BENCH_GRID_COLUMNS = 20, BENCH_GRID_TEXT = 224 };
+enum { BENCH_GRID_COLUMNS = 100, BENCH_GRID_TEXT = 224 };
 
 /* Cells of a line, by column. */
 typedef char BenchGridLine[BENCH_GRID_COLUMNS][BENCH_GRID_TEXT];
@@ -14,9 +14,10 @@ typedef char BenchGridLine[BENCH_GRID_COLUMNS][BENCH_GRID_TEXT];
 typedef struct {
     int columns, lines;
     const char *heading[BENCH_GRID_COLUMNS];
-    bool left[BENCH_GRID_COLUMNS]; /* aligned left; the others right */
-    int width[BENCH_GRID_COLUMNS]; /* characters of the column as text, at least */
-    BenchGridLine *line;           /* [lines] */
+    bool left[BENCH_GRID_COLUMNS];         /* aligned left; the others right */
+    const void *shows[BENCH_GRID_COLUMNS]; /* its user's: of what each is */
+    int width[BENCH_GRID_COLUMNS];         /* characters of the column as text, at least */
+    BenchGridLine *line;                   /* [lines] */
 } BenchGrid;
 
 typedef enum { BENCH_GRID_PLAIN, BENCH_GRID_MARKDOWN, BENCH_GRID_LATEX } BenchGridForm;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../engines.h"
 #include "records.h"
 
 /* ---- what is not a plain member */
@@ -16,11 +17,6 @@ static bool changes(const void *record)
 static bool meshless(const void *record)
 {
     return ((const BenchRow *)record)->elastic.nodes > 0;
-}
-
-static bool matching(const void *record)
-{
-    return !meshless(record);
 }
 
 static bool timed(const void *record)
@@ -199,15 +195,11 @@ enum { PAGE = 1 << BENCH_GRID_MARKDOWN | LATEX, EVERY = PLAIN | PAGE };
 #define PLACE(type, member)                                                                        \
     .field.kind = BENCH_##type, .field.offset = offsetof(BenchRow, member),                        \
     .field.size = sizeof(((BenchRow *)0)->member)
-#define COLUMN(title)             .field.column = title
-#define TITLE(text)               .field.title = text
-#define TIME(title)               .field.column = title, .field.timed = timed
-#define STAGE(stage, title, when) PLACE(DOUBLE, stage_ms[stage]), TIME(title), .field.given = when
-#define MEANS(unit_, words)       .field.unit = unit_, .field.meaning = words
-#define PAPER(member, how)        .paper = offsetof(RefPaperRow, member), .below = how
-
-#define PART              .dash = true, .part = true
-#define PAPER_PART(stage) .paper = offsetof(RefPaperRow, stage_ms[stage])
+#define COLUMN(title)       .field.column = title
+#define TITLE(text)         .field.title = text
+#define TIME(title)         .field.column = title, .field.timed = timed
+#define MEANS(unit_, words) .field.unit = unit_, .field.meaning = words
+#define PAPER(member, how)  .paper = offsetof(RefPaperRow, member), .below = how
 
 #define STORED(type, member, ...) .field.name = #member, PLACE(type, member), __VA_ARGS__
 #define ROW(type, member, ...)    {STORED(type, member, __VA_ARGS__)},
@@ -222,22 +214,110 @@ enum { PAGE = 1 << BENCH_GRID_MARKDOWN | LATEX, EVERY = PLAIN | PAGE };
     OF("meshless", meshless, type, #member, elastic.member, .elastic = true, __VA_ARGS__)
 #define ELASTIC_ARRAY(member, count, ...) ELASTIC(DOUBLE, member, __VA_ARGS__)
 #define VIEW(...)                         {__VA_ARGS__},
+#define STAGES(...)                       {.stage = in_tables, __VA_ARGS__},
+#define MORE_STAGES(...)                  {.stage = behind},
 
-const BenchQuantity bench_quantities[] = {
+static const char in_tables[] = "", behind[] = "";
+
+static const BenchQuantity lines[] = {
 #include "../measure/row_quantities.inc"
 };
 
-const int bench_quantity_count = sizeof bench_quantities / sizeof bench_quantities[0];
+enum { LINES = sizeof lines / sizeof *lines, MOST_STAGES = SM_STAGES * BENCH_MOST_ENGINES };
+
+/* A stage of an engine: shape matching's are columns of files in their place, others behind. */
+typedef struct {
+    const SmEngineType *type;
+    int place;
+    bool matching;
+    char column[32];
+} Stage;
+
+static const SmStageName *name_of(const Stage *stage)
+{
+    return &sm_engine_stages(stage->type)->of[stage->place];
+}
+
+/* Those of all engines, each name once. Returns how many. */
+static int find_stages(Stage *stage)
+{
+    int count = 0;
+    for (int i = 0; bench_engine_list[i / SM_STAGES]; i++) {
+        const SmEngineType *type = bench_engine_list[i / SM_STAGES]->type[0];
+        bool matching = sm_engine_stages(type) == &sm_matching_stages;
+        Stage *next = &stage[count];
+        *next = (Stage){type, i % SM_STAGES, matching, ""};
+        const char *name = name_of(next)->name;
+        int same = 0;
+        while (name && same < count && strcmp(name_of(&stage[same])->name, name)) same++;
+        if (!name || same < count) continue;
+        snprintf(next->column, sizeof next->column, "%s_ms", name);
+        count++;
+    }
+    return count;
+}
+
+/* A stage as a column: of tables as `here` says, of files if it is one of theirs here. */
+static BenchQuantity stage_column(const BenchQuantity *here, const Stage *stage)
+{
+    const SmStageName *name = name_of(stage);
+    bool in_files = stage->matching == (here->stage == in_tables);
+    BenchQuantity to = *here;
+    to.stage = name->name;
+    to.terse = name->terse;
+    to.field = (BenchField){.kind = BENCH_DOUBLE,
+                            .offset = offsetof(BenchRow, stage_ms[stage->place]),
+                            .size = sizeof(double),
+                            .column = in_files ? stage->column : NULL,
+                            .timed = timed,
+                            .title = name->title,
+                            .unit = "ms",
+                            .meaning = name->meaning};
+    to.paper = offsetof(RefPaperRow, stage_ms[stage->place]);
+    to.below = stage->matching ? NULL : dash_below;
+    to.of = stage->matching ? NULL : stage->type->name;
+    return to;
+}
+
+const BenchQuantity *bench_quantities(int *count)
+{
+    static Stage stage[MOST_STAGES];
+    static BenchQuantity list[LINES + 2 * MOST_STAGES];
+    static int made;
+    *count = made;
+    if (made) return list;
+    int stages = find_stages(stage);
+    for (int l = 0; l < LINES; l++) {
+        if (!lines[l].stage) list[made++] = lines[l];
+        for (int s = 0; s < stages && lines[l].stage; s++)
+            if (lines[l].stage == in_tables || !stage[s].matching)
+                list[made++] = stage_column(&lines[l], &stage[s]);
+    }
+    *count = made;
+    return list;
+}
+
+const double *bench_quantity_stage(const BenchQuantity *quantity, const BenchRow *row)
+{
+    const SmEngineType *type = bench_engine(row->engine)->type[0];
+    for (int s = 0; s < SM_STAGES; s++) {
+        const char *name = sm_engine_stage(type, (SmStage)s);
+        if (name && !strcmp(name, quantity->stage)) return &row->stage_ms[s];
+    }
+    return NULL;
+}
 
 const BenchField *bench_quantity_number(const char *name)
 {
-    for (int q = 0; q < bench_quantity_count; q++) {
-        const BenchField *field = &bench_quantities[q].field;
+    int count;
+    const BenchQuantity *quantity = bench_quantities(&count);
+    for (int q = 0; q < count; q++) {
+        const BenchField *field = &quantity[q].field;
         bool whole = field->kind == BENCH_INT || field->kind == BENCH_LONG;
         bool number = whole || (field->kind == BENCH_DOUBLE && bench_field_values(field) == 1);
         if (!field->name || !number) continue;
         size_t group = strncmp(field->name, "change.", 7) ? 0 : 7;
-        const char *const names[] = {field->name + group, field->column, bench_quantities[q].alias};
+        const char *const names[] = {field->name + group, field->column, quantity[q].alias};
         for (int n = 0; n < 3; n++)
             if (names[n] && !strcmp(names[n], name)) return field;
     }
@@ -251,16 +331,18 @@ void bench_quantities_document(FILE *file)
     fputs("| attribute | type | in csv, json | of | unit | meaning |\n"
           "| --- | --- | --- | --- | --- | --- |\n",
           file);
-    for (int q = 0; q < bench_quantity_count; q++) {
-        const BenchField *field = &bench_quantities[q].field;
-        const char *group = bench_quantities[q].elastic ? "elastic/" : "";
+    int count;
+    const BenchQuantity *quantity = bench_quantities(&count);
+    for (int q = 0; q < count; q++) {
+        const BenchField *field = &quantity[q].field;
+        const char *group = quantity[q].elastic ? "elastic/" : "";
         char type[32];
         bench_field_type(field, sizeof type, type);
         if (!field->name && !field->column) continue;
         if (field->name) fprintf(file, "| `%s%s` | %s", group, field->name, type);
         if (!field->name) fputs("| | ", file);
         fprintf(file, field->column ? " | `%s` |" : " |%s |", field->column ? field->column : "");
-        const char *of = bench_quantities[q].of, *unit = field->unit;
+        const char *of = quantity[q].of, *unit = field->unit;
         fprintf(file, " %s | %s | %s |\n", of ? of : "", unit ? unit : "", field->meaning);
     }
 }

@@ -22,21 +22,24 @@ typedef enum {
 typedef struct {
     BenchField field;  /* of BenchRow */
     bool elastic;      /* stored in the row's group "elastic", of meshless bodies */
+    const char *stage; /* it is the time of this (bench_quantity_stage()); NULL: of none */
     bool samples;      /* in CSV and JSON all of `total`, in ms; in files a dataset */
     const char *of;    /* "octree": what alone has it; NULL: every row */
     const char *alias; /* in claims files, where papers.cfg calls it something else */
     const char *terse; /* heading as text, where it is another than the field's title */
     unsigned char shown[BENCH_TABLES]; /* forms in which the table has it: bits 1 << form */
     bool dash;                         /* as text "-" in a row without times */
-    bool part;                         /* of the total: with its percent, as text that alone */
     size_t paper; /* the RefValue in RefPaperRow that stands below, as `below` writes it; NULL: of
-                   * a part that, of others nothing */
+                   * a stage that, of others nothing */
     void (*below)(const RefPaperRow *paper, const RefValue *value, char *text);
 } BenchQuantity;
 
-/* All, in the order of columns. */
-extern const BenchQuantity bench_quantities[];
-extern const int bench_quantity_count;
+/* All, in the order of columns, and how many; made at the first call. In the place of stages there
+ * is one for each that an engine of the registry has, by its name. */
+const BenchQuantity *bench_quantities(int *count);
+
+/* The time of a stage in a row, ms; NULL if its engine has none of that name. */
+const double *bench_quantity_stage(const BenchQuantity *quantity, const BenchRow *row);
 
 /* The field of this name that is a number: as it is stored, without "change."; as CSV has it; or
  * its alias. NULL: there is none. */

@@ -27,19 +27,38 @@ static bool shown(const BenchQuantity *quantity, BenchTableKind table, BenchGrid
     return quantity->shown[table] >> form & 1;
 }
 
+/* Is the row one of a table of frames, or of another? */
+static bool is_in(const BenchRow *row, BenchTableKind table)
+{
+    return bench_row_of_elastic(row) == (table == BENCH_TABLE_FRAMES);
+}
+
+/* A stage is a column where the engine of one of the table's rows has it. */
+static bool has_column(const BenchQuantity *quantity, const BenchRow *rows, int count,
+                       BenchTableKind table)
+{
+    if (!quantity->stage) return true;
+    int r = 0;
+    while (r < count && !(is_in(&rows[r], table) && bench_quantity_stage(quantity, &rows[r]))) r++;
+    return r < count;
+}
+
 void bench_row_columns(const BenchRow *rows, int count, BenchTableKind table, BenchGridForm form,
                        BenchGrid *grid)
 {
-    for (int q = 0; q < bench_quantity_count; q++) {
-        const BenchQuantity *quantity = &bench_quantities[q];
-        bool terse = form == BENCH_GRID_PLAIN && quantity->terse;
-        if (shown(quantity, table, form))
-            bench_grid_column(grid, terse ? quantity->terse : quantity->field.title,
-                              quantity->field.left);
+    int quantities;
+    const BenchQuantity *quantity = bench_quantities(&quantities);
+    for (int q = 0; q < quantities; q++) {
+        bool terse = form == BENCH_GRID_PLAIN && quantity[q].terse;
+        if (!shown(&quantity[q], table, form) || !has_column(&quantity[q], rows, count, table))
+            continue;
+        grid->shows[grid->columns] = &quantity[q];
+        bench_grid_column(grid, terse ? quantity[q].terse : quantity[q].field.title,
+                          quantity[q].field.left);
     }
     for (int r = 0; r < count; r++) {
         int width = (int)strlen(rows[r].scene);
-        bool here = table != BENCH_TABLE_FRAMES || bench_row_of_elastic(&rows[r]);
+        bool here = table != BENCH_TABLE_FRAMES || is_in(&rows[r], table);
         if (here && width > grid->width[0]) grid->width[0] = width;
     }
 }
@@ -63,12 +82,12 @@ static void part_text(double ms, double percent, BenchGridForm form, char *text)
 static void measured_part(const BenchQuantity *quantity, const BenchRow *row, BenchGridForm form,
                           char *text)
 {
-    double ms = bench_record_number(&quantity->field, row);
-    bool damping = quantity->field.offset == offsetof(BenchRow, stage_ms[SM_DAMPING]);
-    if (damping && !(row->damping > 0))
+    const double *ms = bench_quantity_stage(quantity, row);
+    bool damping = !strcmp(quantity->stage, sm_stage_name(SM_DAMPING));
+    if (!ms || (damping && !(row->damping > 0)))
         strcpy(text, "-");
     else
-        part_text(ms, 100 * ms / row->total_ms, form, text);
+        part_text(*ms, 100 * *ms / row->total_ms, form, text);
 }
 
 static void paper_part(const RefPaperRow *paper, const RefValue *value, BenchGridForm form,
@@ -79,33 +98,32 @@ static void paper_part(const RefPaperRow *paper, const RefValue *value, BenchGri
 }
 
 static void measured_line(const BenchRow *row, BenchTableKind table, BenchGridForm form,
-                          BenchGridLine *line)
+                          BenchGrid *grid)
 {
+    BenchGridLine *line = bench_grid_add(grid);
     const char *mark = time_mark(row, table);
-    for (int q = 0, c = 0; q < bench_quantity_count; q++) {
-        const BenchQuantity *quantity = &bench_quantities[q];
-        if (!shown(quantity, table, form)) continue;
-        char *text = (*line)[c++];
+    for (int c = 0; c < grid->columns; c++) {
+        const BenchQuantity *quantity = grid->shows[c];
+        char *text = (*line)[c];
         if (mark && quantity->field.timed)
             strcpy(text, quantity->dash && form == BENCH_GRID_PLAIN ? "-" : mark);
-        else if (quantity->part)
+        else if (quantity->stage)
             measured_part(quantity, row, form, text);
         else
             bench_record_cell(&quantity->field, row, text);
     }
 }
 
-static void paper_line(const RefPaperRow *paper, BenchTableKind table, BenchGridForm form,
-                       BenchGridLine *line)
+static void paper_line(const RefPaperRow *paper, BenchGridForm form, BenchGrid *grid)
 {
-    for (int q = 0, c = 0; q < bench_quantity_count; q++) {
-        const BenchQuantity *quantity = &bench_quantities[q];
-        if (!shown(quantity, table, form)) continue;
-        char *text = (*line)[c++];
+    BenchGridLine *line = bench_grid_add(grid);
+    for (int c = 0; c < grid->columns; c++) {
+        const BenchQuantity *quantity = grid->shows[c];
+        char *text = (*line)[c];
         const void *value = (const char *)paper + quantity->paper;
         if (quantity->below)
             quantity->below(paper, value, text);
-        else if (quantity->part)
+        else if (quantity->stage)
             paper_part(paper, value, form, text);
     }
 }
@@ -113,7 +131,7 @@ static void paper_line(const RefPaperRow *paper, BenchTableKind table, BenchGrid
 void bench_row_lines(const BenchRow *row, BenchTableKind table, BenchGridForm form, BenchGrid *grid)
 {
     const RefPaperRow *paper = ref_paper_find(row->paper, row->paper_row);
-    measured_line(row, table, form, bench_grid_add(grid));
+    measured_line(row, table, form, grid);
     if (paper && (table != BENCH_TABLE_FRAMES || isfinite(paper->nodes.value)))
-        paper_line(paper, table, form, bench_grid_add(grid));
+        paper_line(paper, form, grid);
 }

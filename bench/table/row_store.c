@@ -45,9 +45,10 @@ static void write_paper(BenchH5 *h5, hid_t group, const BenchRow *row)
 
 static void write_quantities(BenchH5 *h5, hid_t group, const BenchRow *row, bool elastic)
 {
-    for (int q = 0; q < bench_quantity_count; q++)
-        if (bench_quantities[q].elastic == elastic)
-            bench_h5_fields(h5, group, &bench_quantities[q].field, 1, row);
+    int count;
+    const BenchQuantity *quantity = bench_quantities(&count);
+    for (int q = 0; q < count; q++)
+        if (quantity[q].elastic == elastic) bench_h5_fields(h5, group, &quantity[q].field, 1, row);
 }
 
 void bench_store_row(BenchH5 *h5, hid_t parent, int index, const BenchRow *row)
@@ -86,9 +87,11 @@ static void *read_samples(BenchH5 *h5, hid_t group, const char *name, long count
 
 static void read_quantities(BenchH5 *h5, hid_t group, BenchRow *row, bool elastic)
 {
-    for (int q = 0; q < bench_quantity_count; q++)
-        if (bench_quantities[q].elastic == elastic)
-            bench_h5_read_fields(h5, group, &bench_quantities[q].field, 1, row);
+    int count;
+    const BenchQuantity *quantity = bench_quantities(&count);
+    for (int q = 0; q < count; q++)
+        if (quantity[q].elastic == elastic)
+            bench_h5_read_fields(h5, group, &quantity[q].field, 1, row);
 }
 
 void bench_store_read_row(BenchH5 *h5, hid_t parent, int index, BenchRow *row)
@@ -113,12 +116,14 @@ static void write_columns(BenchH5 *h5)
 {
     hid_t columns = bench_h5_group(h5, h5->file, "columns");
     hid_t elastic = bench_h5_group(h5, columns, "elastic");
-    for (int q = 0; q < bench_quantity_count; q++) {
-        const BenchField *field = &bench_quantities[q].field;
+    int count;
+    const BenchQuantity *quantity = bench_quantities(&count);
+    for (int q = 0; q < count; q++) {
+        const BenchField *field = &quantity[q].field;
         char text[512];
         if (!field->name) continue;
         snprintf(text, sizeof text, field->unit ? "%s [%s]" : "%s", field->meaning, field->unit);
-        bench_h5_text(h5, bench_quantities[q].elastic ? elastic : columns, field->name, text);
+        bench_h5_text(h5, quantity[q].elastic ? elastic : columns, field->name, text);
     }
 }
 
@@ -203,9 +208,11 @@ static void read_what_is_there(BenchH5 *h5, hid_t parent, int index, BenchRow *r
     hid_t group = bench_h5_find_group(h5, parent, name);
     row->epsilon = row->h = NAN;
     bench_h5_read_fields(h5, group, needed, sizeof needed / sizeof *needed, row);
-    for (int q = 0; q < bench_quantity_count; q++) {
-        const BenchField *field = &bench_quantities[q].field;
-        if (field->name && !bench_quantities[q].of && bench_field_values(field) == 1)
+    int count;
+    const BenchQuantity *quantity = bench_quantities(&count);
+    for (int q = 0; q < count; q++) {
+        const BenchField *field = &quantity[q].field;
+        if (field->name && !quantity[q].of && bench_field_values(field) == 1)
             bench_h5_read_what_is_there(h5, group, field, 1, row);
     }
     read_times(h5, group, row);

@@ -1,5 +1,7 @@
 #include "row_table.h"
 
+#include <math.h>
+
 #include "../store/export.h"
 #include "quantity.h"
 
@@ -13,18 +15,29 @@ static void csv_samples(FILE *file, const BenchRow *row)
     }
 }
 
+/* NaN of another engine's. */
+static double stage_ms(const BenchQuantity *quantity, const BenchRow *row)
+{
+    const double *ms = bench_quantity_stage(quantity, row);
+    return ms ? *ms : NAN;
+}
+
 static void write_csv(BenchReport *report, int measured)
 {
+    int quantities;
+    const BenchQuantity *first = bench_quantities(&quantities);
     for (int r = report->written ? report->written : -1; r < measured; r++) {
         const BenchRow *row = r < 0 ? NULL : &report->rows[r];
-        for (int q = 0, columns = 0; q < bench_quantity_count; q++) {
-            const BenchQuantity *quantity = &bench_quantities[q];
+        int columns = 0;
+        for (const BenchQuantity *quantity = first; quantity < first + quantities; quantity++) {
             if (!quantity->field.column) continue;
             if (columns++) fputc(',', report->file);
             if (!row)
                 fputs(quantity->field.column, report->file);
             else if (quantity->samples && bench_row_timed(row))
                 csv_samples(report->file, row);
+            else if (quantity->stage && bench_row_timed(row))
+                bench_csv_number(report->file, stage_ms(quantity, row));
             else
                 bench_csv_cell(report->file, &quantity->field, row, bench_row_mark(row));
         }
@@ -48,7 +61,10 @@ static json_t *json_cell(const BenchQuantity *quantity, const BenchRow *row)
 {
     const BenchField *field = &quantity->field;
     if (quantity->samples && bench_row_timed(row)) return json_samples(row);
-    json_t *value = bench_json_cell(field, row), *as = NULL;
+    bool staged = quantity->stage && bench_row_timed(row);
+    json_t *value =
+        staged ? bench_json_number(stage_ms(quantity, row)) : bench_json_cell(field, row);
+    json_t *as = NULL;
     if (json_is_integer(value) && (field->kind == BENCH_DOUBLE || field->given))
         as = json_real((double)json_integer_value(value));
     if (json_is_boolean(value) && !field->text) as = json_integer(json_is_true(value));
@@ -59,12 +75,14 @@ static json_t *json_cell(const BenchQuantity *quantity, const BenchRow *row)
 static void write_json(const BenchReport *report)
 {
     json_t *root = json_object(), *list = json_array();
+    int quantities;
+    const BenchQuantity *quantity = bench_quantities(&quantities);
     for (int r = 0; r < report->written; r++) {
         json_t *object = json_object();
-        for (int q = 0; q < bench_quantity_count; q++)
-            if (bench_quantities[q].field.column)
-                json_object_set_new(object, bench_quantities[q].field.column,
-                                    json_cell(&bench_quantities[q], &report->rows[r]));
+        for (int q = 0; q < quantities; q++)
+            if (quantity[q].field.column)
+                json_object_set_new(object, quantity[q].field.column,
+                                    json_cell(&quantity[q], &report->rows[r]));
         json_array_append_new(list, object);
     }
     json_object_set_new(root, "rows", list);

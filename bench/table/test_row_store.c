@@ -48,10 +48,12 @@ static void fill_samples(BenchRow *row, int seed)
 static void fill_row(BenchRow *row, int seed)
 {
     memset(row, 0, sizeof *row); /* its padding, too */
-    for (int q = 0; q < bench_quantity_count; q++) {
-        const BenchField *field = &bench_quantities[q].field;
-        if (field->name && !bench_quantities[q].elastic)
-            fill_field(field, 1 + q + seed * bench_quantity_count, (char *)row + field->offset);
+    int count;
+    const BenchQuantity *quantity = bench_quantities(&count);
+    for (int q = 0; q < count; q++) {
+        const BenchField *field = &quantity[q].field;
+        if (field->name && !quantity[q].elastic)
+            fill_field(field, 1 + q + seed * count, (char *)row + field->offset);
     }
     row->repeats = REPEATS;
     row->change.frames = seed % 2 ? FRAMES : 0;
@@ -117,6 +119,8 @@ static void read_samples(BenchH5 *h5, hid_t group, BenchRow *row)
 /* All that the file holds. */
 static void read_file(BenchH5 *h5, BenchRow *rows, int *count, BenchMachine *machine)
 {
+    int quantities;
+    const BenchQuantity *quantity = bench_quantities(&quantities);
     const BenchField stored = BENCH_VARIABLE("rows", BENCH_INT, *count);
     bench_h5_check_kind(h5, "shapebench results", BENCH_STORE_SCHEMA, BENCH_STORE_SCHEMA);
     bench_h5_read_fields(h5, h5->file, &stored, 1, count);
@@ -125,9 +129,9 @@ static void read_file(BenchH5 *h5, BenchRow *rows, int *count, BenchMachine *mac
         char name[32];
         snprintf(name, sizeof name, "rows/%03d", i);
         hid_t group = bench_h5_find_group(h5, h5->file, name);
-        for (int q = 0; q < bench_quantity_count; q++)
-            if (!bench_quantities[q].elastic)
-                bench_h5_read_fields(h5, group, &bench_quantities[q].field, 1, &rows[i]);
+        for (int q = 0; q < quantities; q++)
+            if (!quantity[q].elastic)
+                bench_h5_read_fields(h5, group, &quantity[q].field, 1, &rows[i]);
         read_samples(h5, group, &rows[i]);
     }
 }

@@ -102,13 +102,10 @@ typedef struct SmEngine SmEngine;
 /* The largest half-width of regions that are counted in cells. */
 enum { SM_MOST_W = 31 };
 
-/* What an engine calls its stages. */
-typedef struct {
-    const char *name[SM_STAGES]; /* NULL: it has none in that place */
-    SmStage before;              /* that of setting handles and pushes before a step */
-} SmStageNames;
-
-/* One engine in one precision. */
+/* One engine in one precision. name, precision, create, destroy, step, get, count and either set or
+ * get_state and set_state must be there (sm_engine_lacks()). Any other member may be NULL, of an
+ * engine that has nothing of the kind: callers refuse what needs it, or leave it out, as is said
+ * there. */
 typedef struct {
     const char *name;      /* "fastlsm", "octree", "brute" */
     const char *precision; /* "single" or "double" */
@@ -116,7 +113,7 @@ typedef struct {
     bool unstopped;        /* obstacles do not stop its bodies: callers refuse them */
     bool refines;          /* particles are split, merged and cut while it runs (octree/engine.h) */
     bool weighs_regions;   /* a region's misfit counts by its own particle's mass, not by 1 */
-    const SmStageNames *stages; /* NULL: those of shape matching (stage.h) */
+    const SmStages *stages; /* NULL: those of shape matching (stage.h) */
 
     /* Builds an engine at rest on `voxels` (copied; may be freed after). SM_INPUT when the body
      * or the parameters are beyond what the engine does. */
@@ -128,7 +125,8 @@ typedef struct {
      * the step without gaps (the caller starts them), at some cost. */
     void (*step)(SmEngine *engine, SmLaps *laps);
 
-    /* Goal positions of the present state only: no velocity or position changes. Fills SM_GOAL. */
+    /* Goal positions of the present state only: no velocity or position changes. Fills SM_GOAL.
+     * NULL of engines without goals, which are neither recorded nor compared. */
     void (*goals)(SmEngine *engine);
 
     /* The field of every particle; `values` is [particles][3]. SM_GOAL after
@@ -137,11 +135,13 @@ typedef struct {
     void (*set)(SmEngine *engine, SmField field,
                 const double (*values)[3]); /* POSITION, VELOCITY; or NULL, see set_state */
 
-    /* v += impulse / m on the particles named: external forces over one step. */
+    /* v += impulse / m on the particles named: external forces over one step. NULL of engines that
+     * cannot be pushed: callers refuse forces. */
     void (*push)(SmEngine *engine, long count, const long *particle, const double (*impulse)[3]);
 
     /* Handles and obstacles, copied. Poses may change every step by calling it again with the same
-     * handles (cheap then). */
+     * handles (cheap then). NULL of engines that cannot be held: callers refuse handles, and
+     * obstacles as of those that are `unstopped`. */
     void (*bound)(SmEngine *engine, const SmBoundary *boundary);
 
     /* Rest shapes S of all particles' regions, by rows: what a plastic body has kept (octree eq.
@@ -155,7 +155,8 @@ typedef struct {
     long (*get_state)(SmEngine *engine, double *state);
     void (*set_state)(SmEngine *engine, const double *state);
 
-    /* Masses m_i of one body's particles, kg; `mass` is [particles / instances]. */
+    /* Masses m_i of one body's particles, kg; `mass` is [particles / instances]. NULL only of
+     * engines that do not refine, have no goals to compare and are not swept. */
     void (*masses)(SmEngine *engine, double *mass);
 
     void (*count)(SmEngine *engine, SmCounts *counts);
@@ -182,13 +183,17 @@ typedef struct {
      * engines whose bodies stay in one piece. */
     void (*pieces)(SmEngine *engine, SmPieces *pieces);
 
-    /* Members of particle p's region in rising order. Returns how many; writes at most `room`. */
+    /* Members of particle p's region in rising order. Returns how many; writes at most `room`. NULL
+     * of engines without regions, which have no goals to compare. */
     long (*region)(SmEngine *engine, long p, long *member, long room);
 } SmEngineType;
 
-/* The engine's name of a stage; NULL if it has no such. And the stage of what comes before a step.
+/* The first member that must be there and is not, "step" or "set_state"; NULL: the type is whole.
  */
+const char *sm_engine_lacks(const SmEngineType *type);
+
+/* Its stages; and its name of one, NULL if it has no such. */
+const SmStages *sm_engine_stages(const SmEngineType *type);
 const char *sm_engine_stage(const SmEngineType *type, SmStage stage);
-SmStage sm_engine_before(const SmEngineType *type);
 
 #endif

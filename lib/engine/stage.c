@@ -3,11 +3,19 @@
 #include <math.h>
 #include <string.h>
 
+const SmStages sm_matching_stages = {
+    .of = {[SM_FAST_SUM] = {"fast_sum", "fast sum", "sum", "sums over regions"},
+           [SM_SHAPE_MATCHING] = {"shape_matching", "shape matching", "match",
+                                  "fits of regions and goals"},
+           [SM_POLAR] = {"polar", "polar", "polar", "rotations"},
+           [SM_DAMPING] = {"damping", "damping", "damp", "damping"},
+           [SM_OTHER] = {"other", "other", "other",
+                         "integration, boundaries, collisions and what is left"}},
+    .before = SM_OTHER};
+
 const char *sm_stage_name(SmStage stage)
 {
-    static const char *const names[SM_STAGES] = {"fast_sum", "shape_matching", "polar", "damping",
-                                                 "other"};
-    return names[stage];
+    return sm_matching_stages.of[stage].name;
 }
 
 double sm_lap_seconds(void)

@@ -1,7 +1,7 @@
 /* stage.h - laps without gaps, so that a step's stages add up to the step.
  *
  * The stages are those of fastlsm Table 1; an engine that has others says what it books in the
- * place of which (SmStageNames of engine.h). */
+ * place of which (SmStages). */
 #ifndef SM_STAGE_H
 #define SM_STAGE_H
 
@@ -24,7 +24,22 @@ typedef struct {
     double last;           /* time of the last lap, seconds */
 } SmLaps;
 
-/* "fast_sum", "shape_matching", "polar", "damping", "other". */
+/* What an engine calls a stage: in files, where "_ms" may follow; as the heading of a table's
+ * column; the same where there is little room; and what it is, in a few words. */
+typedef struct {
+    const char *name, *title, *terse, *meaning;
+} SmStageName;
+
+/* The stages of an engine. */
+typedef struct {
+    SmStageName of[SM_STAGES]; /* name NULL: it has none in that place */
+    SmStage before;            /* that of setting handles and pushes before a step */
+} SmStages;
+
+/* Those of shape matching: "fast_sum", "shape_matching", "polar", "damping", "other". */
+extern const SmStages sm_matching_stages;
+
+/* Their names. */
 const char *sm_stage_name(SmStage stage);
 
 /* Seconds that reading the clock takes at best: what a lap adds to its stage, at least. */

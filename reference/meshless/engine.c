@@ -486,8 +486,10 @@ static long meshless_region(SmEngine *engine, long p, long *member, long room)
     return 1;
 }
 
-static const SmStageNames stages = {.name = {[SM_SHAPE_MATCHING] = "motion", [SM_OTHER] = "skin"},
-                                    .before = SM_SHAPE_MATCHING};
+static const SmStages stages = {
+    .of = {[SM_SHAPE_MATCHING] = {"motion", "motion ms", "motion", "the motion of its modes"},
+           [SM_OTHER] = {"skin", "skin ms", "skin", "the points that they carry"}},
+    .before = SM_SHAPE_MATCHING};
 
 const SmEngineType ref_meshless_engine = {
     .name = "meshless",

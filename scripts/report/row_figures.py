@@ -3,7 +3,7 @@ scenes that change, threads, and a scene's history."""
 import numpy as np
 
 from drawing import COLOURS, MARKS, PAPER, STATUS_MARKS, Figure, canvas, number
-from tables import explain_marks
+from tables import explain_marks, of_stages, stage_names
 
 STAGE_TITLES = {"fast_sum": "fast sum", "shape_matching": "shape matching", "polar": "polar decomposition",
                 "damping": "damping", "other": "other"}
@@ -16,7 +16,7 @@ def valid(rows):
 def share_bars(axes, y, values, height, alpha, statuses=()):
     left = 0.0
     for s, value in enumerate(values):
-        axes.barh(y, value, height, left=left, color=COLOURS[s], alpha=alpha)
+        axes.barh(y, value, height, left=left, color=COLOURS[s % len(COLOURS)], alpha=alpha)
         left += value
     for s, status in enumerate(statuses):
         axes.text(sum(values[:s]) + values[s] / 2, y, STATUS_MARKS.get(status, ""), ha="center", va="center", fontsize=7)
@@ -27,31 +27,32 @@ def stage_shares(rows):
     rows = valid(rows)
     if not rows:
         return None
-    stages = rows[0]["stage_names"]
+    stages = stage_names(rows)
     figure, axes = canvas(7.2, 0.9 + 0.36 * len(rows))
     data, shown, marked = [], [], []
     for y, row in enumerate(rows):
-        shares = 100 * np.array(row["stage_ms"]) / row["total_ms"]
+        shares = 100 * np.array(of_stages(row, "stage_ms", stages, 0.0)) / row["total_ms"]
         share_bars(axes, y - 0.13, shares, 0.42, 1)
         data.append([row["scene"], "measured"] + [float(v) for v in shares] + [""])
-        paper = row["paper_stage_percent"]
+        paper = np.array(of_stages(row, "paper_stage_percent", stages))
         if np.isfinite(paper).any():
-            share_bars(axes, y + 0.25, np.nan_to_num(paper), 0.2, 0.45, row["paper_stage_statuses"])
-            statuses = row["paper_stage_statuses"]
+            statuses = of_stages(row, "paper_stage_statuses", stages, "")
+            share_bars(axes, y + 0.25, np.nan_to_num(paper), 0.2, 0.45, statuses)
             data.append([row["scene"], "paper"] + [None if v != v else float(v) for v in paper]
                         + [" ".join(statuses)])
             shown += statuses
-            marked += [f"the paper's {STAGE_TITLES.get(s)} of {row['scene']} ({STATUS_MARKS[status]})"
+            marked += [f"the paper's {STAGE_TITLES.get(s, s)} of {row['scene']} ({STATUS_MARKS[status]})"
                        for s, status in zip(stages, statuses) if status in STATUS_MARKS]
     axes.set_yticks(range(len(rows)), [row["scene"] for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlim(0, 100)
     axes.grid(axis="y", visible=False)
     axes.set_xlabel("percent of a step")
-    axes.legend([axes.barh(0, 0, color=COLOURS[s]) for s in range(len(stages))],
+    axes.legend([axes.barh(0, 0, color=COLOURS[s % len(COLOURS)]) for s in range(len(stages))],
                 [STAGE_TITLES.get(s, s) for s in stages], ncols=5, loc="lower center", bbox_to_anchor=(0.45, 1.0),
                 columnspacing=1, handlelength=1)
-    largest = [f"{row['scene']}: {STAGE_TITLES.get(stages[int(np.argmax(row['stage_ms']))])} most" for row in rows]
+    most = [row["stage_names"][int(np.argmax(row["stage_ms"]))] for row in rows]
+    largest = [f"{row['scene']}: {STAGE_TITLES.get(name, name)} most" for row, name in zip(rows, most)]
     return Figure("stage-shares", "Where a step's time goes",
                   "Share of each stage in a step; thin pale bars are the paper's, where it gives them."
                   + explain_marks(shown),

@@ -35,9 +35,20 @@ def times(values, percents, statuses=None):
     return [text + STATUS_MARKS.get(status, "") for text, status in zip(texts, statuses or [""] * len(texts))]
 
 
+def stage_names(rows):
+    """Of all stages that the rows' engines have, each once."""
+    return list(dict.fromkeys(name for row in rows for name in row["stage_names"] if name != "-"))
+
+
+def of_stages(row, key, names, missing=math.nan):
+    """A list that a row has of its stages, in the order of these; `missing` of those of other engines."""
+    values = dict(zip(row["stage_names"], row[key]))
+    return [values.get(name, missing) for name in names]
+
+
 def measured_times(row, names):
     """Of these stages; of damping only where there is any."""
-    stages = dict(zip(row["stage_names"], row["stage_ms"]))
+    stages = dict(zip(names, of_stages(row, "stage_ms", names)))
     if not row["damping"] > 0:
         stages["damping"] = math.nan
     values = [stages[name] for name in names]
@@ -49,10 +60,10 @@ def measured(source):
     rows = [row for row in source.rows if "elastic" not in row]
     if not rows:
         return None
-    names = [name.replace("_", " ") for name in rows[0]["stage_names"]]
+    names = stage_names(rows)
     table = Table(f"Time of a step, {source.name}",
                   ["scene", "total ms", "quartiles", "ns / particle / step", "faster than the paper", "check"]
-                  + [name + " ms" for name in names]
+                  + [name.replace("_", " ") + " ms" for name in names]
                   + ["particles", "regions", "w", "sums / region", "engine", "precision", "threads"],
                   "Medians. The paper's values are those of its own processor.")
     shown = []
@@ -65,12 +76,13 @@ def measured(source):
             continue
         faster = f"{number(paper / total)} times" if paper == paper and total > 0 else "–"
         table.add([row["scene"], number(total), f"{number(row['total_low_ms'])} to {number(row['total_high_ms'])}",
-                   number(row["ns_per_particle_step"]), faster, check(row)] + measured_times(row, row["stage_names"])
+                   number(row["ns_per_particle_step"]), faster, check(row)] + measured_times(row, names)
                   + counts)
         if paper == paper:
             mark = STATUS_MARKS.get(row["paper_status"], "")
             table.add(["paper", number(paper) + mark, "", number(row["paper_ns"]) + mark, "", ""]
-                      + times(row["paper_stage_ms"], row["paper_stage_percent"], row["paper_stage_statuses"]) + [""] * len(counts), "paper")
+                      + times(of_stages(row, "paper_stage_ms", names), of_stages(row, "paper_stage_percent", names),
+                              of_stages(row, "paper_stage_statuses", names, "")) + [""] * len(counts), "paper")
             shown += [row["paper_status"]] + row["paper_stage_statuses"]
     table.note += explain_marks(shown)
     return table
