@@ -109,6 +109,10 @@ TEST(scenes_give_their_fields)
     strcpy(measure.field, "stage_percent");
     int shares = bench_experiment(&lab, &measure);
     double sum = 0;
+    if (lab.curve[shares].busy) {
+        bench_lab_free(&lab);
+        skip_because("other programs take the processors");
+    }
     assert_int_equal(lab.curve[shares].points, SM_STAGES);
     for (int s = 0; s < SM_STAGES; s++) sum += lab.curve[shares].y[s];
     assert_true(fabs(sum - 100) < 1e-6);

@@ -258,8 +258,9 @@ static SmCode check_engine(const BenchScene *scene, const SmEngineType *type, Sm
         {scene->obstacle_count > 0, stops, "planes, spheres, boxes and capsules"},
     };
     char names[BENCH_ENGINES_TEXT];
+    const BenchEngine engine = {.type = {type, type}}; /* also of types that are not registered */
     for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
-        if (needs[i].wanted && !needs[i].does(bench_engine(type->name)))
+        if (needs[i].wanted && !needs[i].does(&engine))
             return sm_fail(error, SM_INPUT,
                            "%s: %s need the engine %s, not %s: leave them out, or use --engine",
                            scene->file, needs[i].what, bench_engines_that(needs[i].does, names),

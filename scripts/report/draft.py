@@ -3,6 +3,8 @@ import contextlib
 import os
 import stat
 
+import interrupt
+
 
 class Refused(Exception):
     """What may not be written; says why, and what helps."""
@@ -61,6 +63,7 @@ def begun(path, overwrite):
             os.fsync(file.fileno())
             if mode is not None:
                 os.fchmod(file.fileno(), mode)
+            interrupt.check()
             os.replace(file.name, target)
         except BaseException:
             os.remove(file.name)

@@ -7,11 +7,21 @@ NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.
            signal.SIGUSR2, signal.SIGXCPU)
 
 
+caught = []  # the signal
+
+
 def stop(number, _):
+    caught.append(number)
     for other in NUMBERS:
         signal.signal(other, signal.SIG_IGN)  # drafts are being removed
     print(f"{os.path.basename(sys.argv[0])}: interrupted: nothing was written", file=sys.stderr)
     sys.exit(128 + number)
+
+
+def check():
+    """Ends the script once more: Python drops what a handler raises while it frees things."""
+    if caught:
+        sys.exit(128 + caught[0])
 
 
 def watch():
