@@ -29,14 +29,19 @@ static void limit(int resource, double value)
     setrlimit((__rlimit_resource_t)resource, &new);
 }
 
-/* Address space that the parent has already mapped and the child inherits, in bytes. */
-static double address_space(void)
+/* What the parent has already and the child inherits, in bytes. */
+typedef struct {
+    double mapped, resident;
+} Memory;
+
+static Memory own_memory(void)
 {
-    long pages = 0;
+    long mapped = 0, resident = 0;
     FILE *file = fopen("/proc/self/statm", "r");
-    if (file && fscanf(file, "%ld", &pages) != 1) pages = 0;
+    if (file && fscanf(file, "%ld %ld", &mapped, &resident) != 2) mapped = resident = 0;
     if (file) fclose(file);
-    return (double)pages * (double)sysconf(_SC_PAGESIZE);
+    double page = (double)sysconf(_SC_PAGESIZE);
+    return (Memory){(double)mapped * page, (double)resident * page};
 }
 
 /* The parent's signal handlers would tidy up the parent's files. */
@@ -131,7 +136,7 @@ static void kill_child(pid_t pid)
 }
 
 /* A C++ library without memory aborts or dies of a null pointer: most of the limit having been in
- * use tells that from other crashes. */
+ * use, beside what was inherited, tells that from other crashes. */
 static SmChildEnd judge(int status, double peak_bytes, const SmChildLimits *limits,
                         SmChildResult *result)
 {
@@ -143,8 +148,8 @@ static SmChildEnd judge(int status, double peak_bytes, const SmChildLimits *limi
     return peak_bytes > 0.75 * limits->megabytes * megabyte ? SM_CHILD_TOO_LARGE : SM_CHILD_CRASHED;
 }
 
-static void oversee(pid_t pid, int pipe_end, const SmChildLimits *limits, double deadline,
-                    SmChildResult *result)
+static void oversee(pid_t pid, int pipe_end, const SmChildLimits *limits, double inherited,
+                    double deadline, SmChildResult *result)
 {
     int status;
     struct rusage usage = {0};
@@ -155,7 +160,7 @@ static void oversee(pid_t pid, int pipe_end, const SmChildLimits *limits, double
         kill_child(pid);
         result->end = SM_CHILD_TOO_LONG;
     } else {
-        result->end = judge(status, (double)usage.ru_maxrss * 1024, limits, result);
+        result->end = judge(status, (double)usage.ru_maxrss * 1024 - inherited, limits, result);
     }
 }
 
@@ -167,12 +172,13 @@ SmChildResult sm_child_run(SmChildBody body, void *argument, const SmChildLimits
         result.status = errno;
         return result;
     }
-    double inherited = address_space(), deadline = sm_now() + limits->seconds;
+    Memory inherited = own_memory();
+    double deadline = sm_now() + limits->seconds;
     pid_t parent = getpid(), pid = fork();
-    if (pid == 0) child(body, argument, limits, ends[1], inherited, parent);
+    if (pid == 0) child(body, argument, limits, ends[1], inherited.mapped, parent);
     result.status = pid < 0 ? errno : 0;
     close(ends[1]);
-    if (pid > 0) oversee(pid, ends[0], limits, deadline, &result);
+    if (pid > 0) oversee(pid, ends[0], limits, inherited.resident, deadline, &result);
     close(ends[0]);
     return result;
 }
