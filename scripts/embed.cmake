@@ -16,7 +16,7 @@ foreach(data papers claims)
 extern const char ref_${data}_text[];
 const char ref_${data}_text[] = @bytes@;
 ")
-  list(APPEND reference_sources ${CMAKE_BINARY_DIR}/${data}.c)
+  list(APPEND bench_sources ${CMAKE_BINARY_DIR}/${data}.c)
 endforeach()
 
 file(GLOB scenes CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/bench/scenes/*.cfg)

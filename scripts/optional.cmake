@@ -61,6 +61,8 @@ int main(void) { dpstrf_(); return dsaupd_c != 0 && cholmod_start(0); }]]
   LIBRARIES ${ARPACK_LINK_LIBRARIES} ${CHOLMOD_LIBRARY} ${LAPACK_LIBRARY})
 if(has_modes) # sources that are not compiled
   set(sources_left_out modes_absent)
+  set(pc_modes ", arpack") # shapebench.pc.in
+  set(pc_modes_libraries " -lcholmod -llapack")
 else()
   set(sources_left_out modes|solver)
 endif()

@@ -6,18 +6,21 @@
 #include <string.h>
 
 #include "../../fastlsm/fastlsm.h"
+#include "../../reference/brute.h"
+#include "../../reference/meshless/engine.h"
+#include "../../reference/meshless/solve/solver.h"
 #include "../engine/boundary.h"
 #include "../system/team.h"
 #include "inner.h"
 
-/* Those that are in the library have types, by precision. */
 static const struct {
     const char *name;
-    const SmEngineType *type[2];
-} engines[] = {[SB_FASTLSM] = {"fastlsm", {&fastlsm_engine_f32, &fastlsm_engine_f64}},
-               [SB_OCTREE] = {"octree", {&octree_engine_f32, &octree_engine_f64}},
-               [SB_BRUTE] = {"brute", {NULL}},
-               [SB_MESHLESS] = {"meshless", {NULL}}};
+    const SmEngineType *type[2]; /* by precision; NULL: it has none such */
+    const bool *built;           /* was there what it needs? NULL: it needs nothing */
+} engines[] = {[SB_FASTLSM] = {"fastlsm", {&fastlsm_engine_f32, &fastlsm_engine_f64}, NULL},
+               [SB_OCTREE] = {"octree", {&octree_engine_f32, &octree_engine_f64}, NULL},
+               [SB_BRUTE] = {"brute", {NULL, &ref_brute_engine}, NULL},
+               [SB_MESHLESS] = {"meshless", {NULL, &ref_meshless_engine}, &ref_solver_built}};
 
 const char *sb_engine_name(int engine)
 {
@@ -27,7 +30,7 @@ const char *sb_engine_name(int engine)
 
 int sb_engine_available(int engine)
 {
-    return sb_engine_name(engine) && engines[engine].type[0];
+    return sb_engine_name(engine) && (!engines[engine].built || *engines[engine].built);
 }
 
 /* ---- creation */
@@ -44,17 +47,37 @@ void sb_octree_params_init(sb_octree_params *params, size_t size)
     sm_give_defaults(&defaults, sizeof defaults, params, size);
 }
 
-static int check_choices(const sb_body_params *p, sb_error *error)
+void sb_meshless_params_init(sb_meshless_params *params, size_t size)
 {
-    int code = SB_OK;
-    if (!sb_engine_name(p->engine))
+    static const sb_meshless_params defaults = {.young = 1e5, .poisson = 0.3, .density = 1000};
+    sm_give_defaults(&defaults, sizeof defaults, params, size);
+}
+
+/* `type` receives the engine's. */
+static int find_type(const sb_body_params *p, const SmEngineType **type, sb_error *error)
+{
+    const char *name = sb_engine_name(p->engine);
+    if (!name)
         return sm_refuse(error, SB_USAGE, "'engine' is %d: there is no such engine", p->engine);
     if (!sb_engine_available(p->engine))
         return sm_refuse(error, SB_INPUT,
-                         "the engine %s is not in this library, but in the program shapebench: use "
-                         "SB_FASTLSM or SB_OCTREE",
-                         sb_engine_name(p->engine));
-    if (!code) code = sm_check_range(p->precision, SB_SINGLE, SB_DOUBLE, "precision", error);
+                         "the engine %s is not in this library, which was built without CHOLMOD "
+                         "and ARPACK",
+                         name);
+    int code = sm_check_range(p->precision, SB_SINGLE, SB_DOUBLE, "precision", error);
+    if (code) return code;
+    *type = engines[p->engine].type[p->precision];
+    if (!*type)
+        return sm_refuse(error, SB_INPUT, "the engine %s has double precision only: 'precision'",
+                         name);
+    if (p->cuttable && !(*type)->cut && !(*type)->refines)
+        return sm_refuse(error, SB_INPUT, "'cuttable': the engine %s cuts no bodies", name);
+    return SB_OK;
+}
+
+static int check_choices(const sb_body_params *p, sb_error *error)
+{
+    int code = SB_OK;
     if (!code) code = sm_check_range(p->summation, SB_SUM_FAST, SB_SUM_NAIVE, "summation", error);
     if (!code) code = sm_check_range(p->polar, SB_POLAR_FAST, SB_POLAR_JACOBI, "polar", error);
     if (!code) code = sm_check_range(p->layout, SB_LAYOUT_AUTO, SB_LAYOUT_BLOCKS, "layout", error);
@@ -176,8 +199,35 @@ static int take_octree(const sb_octree_params *from, OctOptions *to, sb_error *e
     return code ? code : take_widths(&p, to, error);
 }
 
+/* Of bodies that are made of their surface. */
+static int take_meshless(const sb_meshless_params *from, const sb_mesh *surface,
+                         RefMeshlessOptions *to, sb_error *error)
+{
+    sb_meshless_params p;
+    sb_meshless_params_init(&p, sizeof p);
+    int code = from ? sm_take_params(from, &p, sizeof p, "sb_meshless_params", error) : SB_OK;
+    if (!code && !surface)
+        code = sm_refuse(error, SB_USAGE, "'surface' is NULL: a meshless body is made of it");
+    if (!code) code = sm_check_range(p.young, 1e-30, 1e30, "young", error);
+    if (!code) code = sm_check_range(p.poisson, -0.99, 0.49, "poisson", error);
+    if (!code) code = sm_check_range(p.density, 1e-30, 1e30, "density", error);
+    if (!code) code = sm_check_range(p.stiffness_damping, 0, 1e6, "stiffness_damping", error);
+    if (!code && p.modes) code = sm_check_range(p.modes, 7, 1000, "modes", error);
+    if (!code && p.nodes) code = sm_check_range((double)p.nodes, 8, 1e6, "nodes", error);
+    if (!code && p.points)
+        code = sm_check_range((double)p.points, REF_LEAST_POINTS, REF_MOST_POINTS, "points", error);
+    if (code) return code;
+    *to = (RefMeshlessOptions){.mesh = &surface->mesh,
+                               .points = p.points,
+                               .nodes = p.nodes,
+                               .modes = p.modes,
+                               .material = {p.young, p.poisson, p.density},
+                               .stiffness_damping = p.stiffness_damping};
+    return SB_OK;
+}
+
 static SmEngineParams engine_params(const sb_body_params *p, const SmEngineType *type,
-                                    const OctOptions *octree)
+                                    const OctOptions *octree, const RefMeshlessOptions *meshless)
 {
     SmEngineParams to = {.w = p->w,
                          .h = p->h,
@@ -192,6 +242,7 @@ static SmEngineParams engine_params(const sb_body_params *p, const SmEngineType 
                          .instances = p->instances > 1 ? p->instances : 1,
                          .instance_pose = (const double(*)[3][4])p->pose,
                          .octree = octree,
+                         .meshless = meshless,
                          .collide = {.self = p->collide_self != 0,
                                      .bodies = p->collide_instances != 0,
                                      .friction = p->collide_friction}};
@@ -222,6 +273,8 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
 {
     sb_body_params p;
     OctOptions octree;
+    RefMeshlessOptions meshless;
+    const SmEngineType *type = NULL;
     SmError why;
     int code = sm_check_given(body, "body", error);
     if (code) return code;
@@ -230,12 +283,14 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
     code = sm_check_handle(voxels, SB_IS_VOXELS, error);
     if (!code && surface) code = sm_check_handle(surface, SB_IS_MESH, error);
     if (!code) code = sm_take_params(params, &p, sizeof p, "sb_body_params", error);
+    if (!code) code = find_type(&p, &type, error);
     if (!code) code = check_choices(&p, error);
     if (!code) code = check_sizes(&p, &voxels->voxels, error);
     if (!code) code = take_octree(p.octree, &octree, error);
+    if (!code && p.engine == SB_MESHLESS)
+        code = take_meshless(p.meshless, surface, &meshless, error);
     if (code) return code;
-    const SmEngineType *type = engines[p.engine].type[p.precision];
-    SmEngineParams inner = engine_params(&p, type, &octree);
+    SmEngineParams inner = engine_params(&p, type, &octree, &meshless);
     sb_body *made = sm_alloc(1, sizeof *made);
     *made = (sb_body){.kind = SB_IS_BODY,
                       .type = type,
@@ -561,6 +616,9 @@ static int add_obstacle(sb_body *body, const SmObstacle *o, int *obstacle, sb_er
 {
     double far = SB_FAR * body->voxels.cell;
     int code = sm_check_given(obstacle, "obstacle", error);
+    if (!code && body->type->unstopped)
+        code = sm_refuse(error, SB_USAGE, "obstacles do not stop the engine %s's bodies",
+                         body->type->name);
     if (!code) code = sm_check_finite(o->a, 3, far, "place", error);
     if (!code) code = sm_check_finite(o->b, 3, fmax(far, 2), "place", error);
     if (!code) code = sm_check_range(o->radius, 0, far, "radius", error);

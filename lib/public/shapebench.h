@@ -37,15 +37,18 @@
  *
  * Versions. A struct that is passed in begins with its size, which its ..._init() sets together
  * with the defaults; one that is filled is passed with its size. So members can be added at the
- * ends of structs, and a program that was compiled with an older header still runs; one that was
+ * ends of structs, and a program that was compiled with an older header still runs (what arrays
+ * hold, sb_contact, sb_criterion and sb_local_width, stays as it is); one that was
  * compiled with a newer header and asks for what the library does not know gets an error. The major
  * version changes when something is taken away.
  *
  * Costs are given where they are more than O(what is copied).
  *
- * Engines that are not here. The program shapebench also has "brute" (double precision, to check
- * others by) and "meshless" (Guo and Qin 2009), which need libraries that this one does without;
- * they are named so that a program may ask, and sb_body_create() refuses them. */
+ * Engines. Two are fast, in single and double precision: "fastlsm" (Rivers and James 2007) and
+ * "octree" (Steinemann, Otaduy and Gross 2008). Two are references, in double precision: "brute",
+ * shape matching without fast sums, to check others by, and "meshless", an elastic solid (Guo and
+ * Qin 2009), which a library that was built without CHOLMOD and ARPACK has not. What an engine does
+ * not do is refused with a line. */
 #ifndef SHAPEBENCH_H
 #define SHAPEBENCH_H
 
@@ -268,9 +271,21 @@ typedef struct {
     double most;         /* largest plastic strain; 0: 1 */
 } sb_octree_params;
 
+/* What the meshless engine asks beyond what all do. All zero but for `size`: the defaults. Units
+ * are the mesh's, kg and s: pascals where it is in metres. */
 typedef struct {
     size_t size;
-    int engine;    /* SB_FASTLSM or SB_OCTREE */
+    double young, poisson, density; /* Young's modulus, Poisson's ratio, -0.99 to 0.49 */
+    double stiffness_damping;       /* Rayleigh's b, s */
+    int64_t points;                 /* on the surface, of which the body is made; 0: 12000, of thin
+                                     * bodies more */
+    int64_t nodes;                  /* wanted; 0: 1000 */
+    int modes;                      /* natural ones, 7 to 1000; 0: 64 */
+} sb_meshless_params;
+
+typedef struct {
+    size_t size;
+    int engine;    /* SB_FASTLSM, SB_OCTREE, SB_BRUTE, SB_MESHLESS */
     int precision; /* SB_SINGLE (twice as fast) or SB_DOUBLE */
     int w;         /* half-width of FastLSM's regions in cells, 1 to 31: larger is stiffer */
     int threads;   /* 0: OpenMP's number */
@@ -288,15 +303,18 @@ typedef struct {
     int64_t instances;  /* bodies of the same voxels, which share memory; 0 means 1 */
     const double *pose; /* [instances][12], from rest to where each starts; NULL: at rest */
     const double *mass; /* [particles of the voxels] kg; NULL: 1 each; of the octree, 1 a cell */
-    const sb_octree_params *octree; /* SB_OCTREE; NULL: the defaults */
+    const sb_octree_params *octree;     /* SB_OCTREE; NULL: the defaults */
+    const sb_meshless_params *meshless; /* SB_MESHLESS; NULL: the defaults */
 } sb_body_params;
 
 /* FastLSM in single precision, w 2, h 0.01 s, no gravity, one instance, all cores. */
 void sb_body_params_init(sb_body_params *params, size_t size);
 void sb_octree_params_init(sb_octree_params *params, size_t size);
+void sb_meshless_params_init(sb_meshless_params *params, size_t size);
 
 /* Creates a body, at rest. `surface` is a mesh that it carries, usually that of the voxels, or
- * NULL. SB_INPUT: an engine that is not here, or parameters that it refuses; the line says which.
+ * NULL; a meshless body is made of it, closed. SB_INPUT: an engine that is not here, or parameters
+ * that it refuses; the line says which.
  * O(particles), up to a few microseconds each. */
 int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_body_params *params,
                    sb_body **body, sb_error *error);

@@ -7,6 +7,9 @@
 #include "../../octree/change/structure.h"
 #include "../../octree/engine.h"
 #include "../../octree/surface/surface.h"
+#include "../../reference/brute.h"
+#include "../../reference/meshless/engine.h"
+#include "../../reference/meshless/solve/solver.h"
 #include "../mesh/import.h"
 #include "../shapes/shape.h"
 #include "../test_folder.h"
@@ -120,7 +123,8 @@ TEST(the_library_says_what_it_is)
     assert_null(sb_engine_name(-1));
     assert_null(sb_engine_name(4));
     assert_true(sb_engine_available(SB_FASTLSM) && sb_engine_available(SB_OCTREE));
-    assert_false(sb_engine_available(SB_BRUTE) || sb_engine_available(SB_MESHLESS));
+    assert_true(sb_engine_available(SB_BRUTE));
+    assert_int_equal(sb_engine_available(SB_MESHLESS), ref_solver_built);
     int shapes, named = 0;
     sm_shapes(&shapes);
     while (sb_shape_name(named)) named++;
@@ -214,8 +218,10 @@ TEST(voxels_are_those_inside)
 
 /* ---- bodies against their engines */
 
-static const SmEngineType *const types[2][2] = {{&fastlsm_engine_f32, &fastlsm_engine_f64},
-                                                {&octree_engine_f32, &octree_engine_f64}};
+static const SmEngineType *const types[4][2] = {{&fastlsm_engine_f32, &fastlsm_engine_f64},
+                                                {&octree_engine_f32, &octree_engine_f64},
+                                                {NULL, &ref_brute_engine},
+                                                {NULL, &ref_meshless_engine}};
 
 enum { STEPS = 12 };
 
@@ -253,15 +259,21 @@ static void move_inside(const SmEngineType *type, const SmVoxels *voxels, const 
                         const int64_t *held, int64_t count, Motion *to)
 {
     SmEngine *engine;
-    SmEngineParams params = {
-        .w = 2, .h = 0.01, .damping = 0.1, .damping_every = 1, .gravity = {0, -9.81, 0}};
+    const RefMeshlessOptions meshless = {
+        .mesh = mesh, .nodes = 60, .modes = 12, .material = {2e5, 0.3, 1000}};
+    SmEngineParams params = {.w = 2,
+                             .h = 0.01,
+                             .damping = 0.1,
+                             .damping_every = 1,
+                             .gravity = {0, -9.81, 0},
+                             .meshless = &meshless};
     assert_int_equal(type->create(voxels, &params, &engine, NULL), SM_OK);
     SmHandle handle = {count, (const long *)held, {{1, 0, 0, 0.02}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     SmObstacle obstacles[] = {{SM_PLANE, {0, -0.01, 0}, {0, 1, 0}, 0, 0.2},
                               {SM_SPHERE, {0, 1, 0}, {0}, 0.3, 0},
                               {SM_BOX, {1, 0, 0}, {2, 1, 1}, 0, 0.5},
                               {SM_CAPSULE, {-1, 0, 0}, {-1, 1, 0}, 0.2, 1}};
-    SmBoundary boundary = {1, &handle, 4, obstacles};
+    SmBoundary boundary = {1, &handle, type->unstopped ? 0 : 4, obstacles};
     type->bound(engine, &boundary);
     for (int step = 0; step < STEPS; step++) {
         long pushed = 3;
@@ -298,15 +310,9 @@ static int64_t select_top(sb_body *body, int64_t *held)
     return count;
 }
 
-/* A handle and obstacles, others of which come and go. */
-static void bound_outside(sb_body *body, const int64_t *held, int64_t count)
+static void obstacles_outside(sb_body *body)
 {
-    int handle, gone, obstacle;
-    OK(sb_body_add_handle(body, 1, (int64_t[1]){held[0]}, &gone, NULL));
-    OK(sb_body_remove_handle(body, gone, NULL));
-    OK(sb_body_add_handle(body, count, held, &handle, NULL));
-    OK(sb_body_move_handle(body, handle, (double[12]){1, 0, 0, 0.02, 0, 1, 0, 0, 0, 0, 1, 0},
-                           NULL));
+    int obstacle;
     OK(sb_body_add_plane(body, (double[3]){0, -0.01, 0}, (double[3]){0, 3, 0}, 0.2, &obstacle,
                          NULL));
     OK(sb_body_add_sphere(body, nowhere, 9, 0, &obstacle, NULL));
@@ -315,6 +321,18 @@ static void bound_outside(sb_body *body, const int64_t *held, int64_t count)
     OK(sb_body_add_box(body, (double[3]){1, 0, 0}, (double[3]){2, 1, 1}, 0.5, &obstacle, NULL));
     OK(sb_body_add_capsule(body, (double[3]){-1, 0, 0}, (double[3]){-1, 1, 0}, 0.2, 1, &obstacle,
                            NULL));
+}
+
+/* A handle and obstacles, others of which come and go. */
+static void bound_outside(sb_body *body, const int64_t *held, int64_t count, bool stopped)
+{
+    int handle, gone;
+    OK(sb_body_add_handle(body, 1, (int64_t[1]){held[0]}, &gone, NULL));
+    OK(sb_body_remove_handle(body, gone, NULL));
+    OK(sb_body_add_handle(body, count, held, &handle, NULL));
+    OK(sb_body_move_handle(body, handle, (double[12]){1, 0, 0, 0.02, 0, 1, 0, 0, 0, 0, 1, 0},
+                           NULL));
+    if (stopped) obstacles_outside(body);
 }
 
 static void compare_surface(sb_body *body, const double *wanted)
@@ -336,18 +354,25 @@ static void compare_motion(int engine, int precision)
     SmVoxels inner;
     sm_shape_mesh("penguin", &inner_mesh, NULL);
     sm_voxelise(&inner_mesh, &(SmVoxelParams){SM_SOLID, 0, 500, false}, "", &inner, NULL);
+    const SmEngineType *type = types[engine][precision];
+    sb_meshless_params meshless;
+    sb_meshless_params_init(&meshless, sizeof meshless);
+    meshless.young = 2e5;
+    meshless.nodes = 60;
+    meshless.modes = 12;
     sb_body_params params = params_of(engine);
     params.precision = precision;
+    params.meshless = &meshless;
     sb_body *body = body_of(voxels, mesh, &params);
     sb_body_counts counts = counts_of(body);
     int64_t *held = room_for(counts.particles, sizeof *held), count = select_top(body, held);
-    bound_outside(body, held, count);
+    bound_outside(body, held, count, !type->unstopped);
     for (int step = 0; step < STEPS; step++) {
         OK(sb_body_push(body, 1, (int64_t[1]){3}, (double[3]){0.01, 0.02, 0}, NULL));
         OK(sb_body_step(body, 1, NULL));
     }
     Motion wanted = motion_of(&counts);
-    move_inside(types[engine][precision], &inner, &inner_mesh, held, count, &wanted);
+    move_inside(type, &inner, &inner_mesh, held, count, &wanted);
     compare_field(body, SB_POSITION, wanted.x);
     compare_field(body, SB_VELOCITY, wanted.v);
     compare_field(body, SB_GOAL, wanted.g);
@@ -365,9 +390,47 @@ static void compare_motion(int engine, int precision)
 
 TEST(bodies_move_as_their_engines_do)
 {
-    for (int engine = SB_FASTLSM; engine <= SB_OCTREE; engine++)
+    for (int engine = SB_FASTLSM; engine <= SB_MESHLESS; engine++)
         for (int precision = SB_SINGLE; precision <= SB_DOUBLE; precision++)
-            compare_motion(engine, precision);
+            if (types[engine][precision] && sb_engine_available(engine))
+                compare_motion(engine, precision);
+}
+
+/* What a reference does not do is refused. */
+static void refuses_what_it_has_not(int engine)
+{
+    sb_mesh *mesh = shape("penguin");
+    sb_voxels *voxels = voxels_of(mesh, 100);
+    sb_body *body;
+    sb_error error;
+    sb_body_params params = params_of(engine);
+    int64_t count;
+    int obstacle;
+    refused(sb_body_create(voxels, mesh, &params, &body, &error), SB_INPUT, &error,
+            "double precision only");
+    params.precision = SB_DOUBLE;
+    params.cuttable = 1;
+    refused(sb_body_create(voxels, mesh, &params, &body, &error), SB_INPUT, &error,
+            "cuts no bodies");
+    params.cuttable = 0;
+    body = body_of(voxels, mesh, &params);
+    refused(sb_body_read_contacts(body, NULL, 0, &count, &error), SB_USAGE, &error,
+            "does not list contacts");
+    const double triangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    refused(sb_body_cut(body, 3, triangle, 1, (int[3]){0, 1, 2}, &error), SB_USAGE, &error,
+            "not made to be cut");
+    if (engine == SB_MESHLESS)
+        refused(sb_body_add_sphere(body, nowhere, 9, 0, &obstacle, &error), SB_USAGE, &error,
+                "obstacles do not stop");
+    sb_body_free(body);
+    sb_voxels_free(voxels);
+    sb_mesh_free(mesh);
+}
+
+TEST(references_refuse_what_they_do_not_do)
+{
+    for (int engine = SB_BRUTE; engine <= SB_MESHLESS; engine++)
+        if (sb_engine_available(engine)) refuses_what_it_has_not(engine);
 }
 
 TEST(what_is_written_is_read)
@@ -735,7 +798,8 @@ TEST(parameters_out_of_range_are_refused)
     double mass[27] = {NAN}, pose[12] = {2};
     BAD(SB_USAGE, "engine", p.engine = 9);
     BAD(SB_INPUT, "brute", p.engine = SB_BRUTE);
-    BAD(SB_INPUT, "meshless", p.engine = SB_MESHLESS);
+    if (sb_engine_available(SB_MESHLESS))
+        BAD(SB_USAGE, "'surface'", p.engine = SB_MESHLESS, p.precision = SB_DOUBLE);
     BAD(SB_USAGE, "precision", p.precision = 2);
     BAD(SB_INPUT, "w", p.w = 0);
     BAD(SB_INPUT, "w", p.w = 1000);
