@@ -29,8 +29,6 @@ double bench_bending_wave(BenchRunner *runner, bool upright)
             taken += mass[i] * moved * (x[i][d] - g[i][d]);
             all += mass[i] * moved * moved;
         }
-    free(x);
-    free(g);
-    free(mass);
+    sm_free_all(x, g, mass);
     return taken / all;
 }

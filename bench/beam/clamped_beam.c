@@ -10,12 +10,12 @@
 #define CONST(array) ((const double(*)[3])(array))
 
 enum {
-    MOST_STEPS = 400000,
-    MOST_QUARTER = 20000,
-    LOADS = 4,
-    MOST_PERIODS = 30,
-    PERIODS = 10,
-    LOOKS = 20
+    MOST_STEPS = 400000,  /* of a record, */
+    MOST_QUARTER = 20000, /* and before a mode has passed through zero */
+    PERIODS = 10,         /* recorded of modes above the first */
+    MOST_PERIODS = 30,    /* of relaxing, */
+    LOOKS = 20,           /* in each of which so often it may be at rest */
+    LOADS = 4
 };
 
 static const double height = 1e-4, small_sag = 1e-3, proportional = 0.05; /* of the length */
@@ -81,12 +81,7 @@ SmCode bench_clamped_beam_create(const BenchScene *scene, const BenchBody *body,
 void bench_clamped_beam_free(BenchClampedBeam *beam)
 {
     bench_runner_free(&beam->runner);
-    free(beam->mass);
-    free(beam->tip);
-    free(beam->number);
-    free(beam->x);
-    free(beam->v);
-    free(beam->impulse);
+    sm_free_all(beam->mass, beam->tip, beam->number, beam->x, beam->v, beam->impulse);
     *beam = (BenchClampedBeam){0};
 }
 
@@ -217,10 +212,7 @@ static BenchStiffness have_none(void)
 
 static void keep(Record *record, double value)
 {
-    if (record->count == record->room) {
-        record->room = 2 * record->room + 1024;
-        record->value = sm_realloc(record->value, (size_t)record->room, sizeof *record->value);
-    }
+    sm_make_room(record->value, record->room, record->count + 1);
     record->value[record->count++] = value;
 }
 

@@ -30,7 +30,6 @@ static void make_scene(const BenchCantileverOptions *options, BenchScene *scene)
     scene->params.h = options->h;
     scene->params.damping = options->damping;
     scene->params.w = (int)options->w;
-    memset(scene->params.gravity, 0, sizeof scene->params.gravity);
     scene->octree.width = (OctWidth){.edges = options->w};
     scene->octree.epsilon = options->epsilon;
     scene->octree.sampling.criteria[0] = (OctCriterion){.kind = OCT_UNIFORM};

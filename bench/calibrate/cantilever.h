@@ -6,7 +6,7 @@
 
 /* It lies along x, and behind x = 0 it goes on for `root` cells, all of which are held: as far as
  * regions reach in, so that the clamp is as stiff as an elastic body's is. Particles have the
- * body's mass, a lattice's an eighth of every cell around them. No gravity. */
+ * body's mass, a lattice's an eighth of every cell around them. */
 typedef struct {
     char engine[12];
     double w, epsilon;
