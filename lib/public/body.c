@@ -53,8 +53,8 @@ void sb_meshless_params_init(sb_meshless_params *params, size_t size)
     sm_give_defaults(&defaults, sizeof defaults, params, size);
 }
 
-/* `type` receives the engine's. */
-static int find_type(const sb_body_params *p, const SmEngineType **type, sb_error *error)
+/* Refuses an engine that is not there, or that does not do what is asked. */
+static int check_engine(const sb_body_params *p, sb_error *error)
 {
     const char *name = sb_engine_name(p->engine);
     if (!name)
@@ -66,11 +66,11 @@ static int find_type(const sb_body_params *p, const SmEngineType **type, sb_erro
                          name);
     int code = sm_check_range(p->precision, SB_SINGLE, SB_DOUBLE, "precision", error);
     if (code) return code;
-    *type = engines[p->engine].type[p->precision];
-    if (!*type)
+    const SmEngineType *type = engines[p->engine].type[p->precision];
+    if (!type)
         return sm_refuse(error, SB_INPUT, "the engine %s has double precision only: 'precision'",
                          name);
-    if (p->cuttable && !(*type)->cut && !(*type)->refines)
+    if (p->cuttable && !type->cut && !type->refines)
         return sm_refuse(error, SB_INPUT, "'cuttable': the engine %s cuts no bodies", name);
     return SB_OK;
 }
@@ -274,7 +274,6 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
     sb_body_params p;
     OctOptions octree;
     RefMeshlessOptions meshless;
-    const SmEngineType *type = NULL;
     SmError why;
     int code = sm_check_given(body, "body", error);
     if (code) return code;
@@ -283,13 +282,14 @@ int sb_body_create(const sb_voxels *voxels, const sb_mesh *surface, const sb_bod
     code = sm_check_handle(voxels, SB_IS_VOXELS, error);
     if (!code && surface) code = sm_check_handle(surface, SB_IS_MESH, error);
     if (!code) code = sm_take_params(params, &p, sizeof p, "sb_body_params", error);
-    if (!code) code = find_type(&p, &type, error);
+    if (!code) code = check_engine(&p, error);
     if (!code) code = check_choices(&p, error);
     if (!code) code = check_sizes(&p, &voxels->voxels, error);
     if (!code) code = take_octree(p.octree, &octree, error);
     if (!code && p.engine == SB_MESHLESS)
         code = take_meshless(p.meshless, surface, &meshless, error);
     if (code) return code;
+    const SmEngineType *type = engines[p.engine].type[p.precision];
     SmEngineParams inner = engine_params(&p, type, &octree, &meshless);
     sb_body *made = sm_alloc(1, sizeof *made);
     *made = (sb_body){.kind = SB_IS_BODY,

@@ -397,9 +397,9 @@ int sb_body_read_contacts(sb_body *body, sb_contact *contact, int64_t room, int6
 {
     int code = sm_check_handle(body, SB_IS_BODY, error);
     if (!code) code = sm_check_list(contact, room, count, "contact", error);
-    if (!code && !body->type->contacts)
-        code = sm_refuse(error, SB_USAGE, "the engine %s does not list contacts", body->type->name);
     if (code) return code;
+    if (!body->type->contacts)
+        return sm_refuse(error, SB_USAGE, "the engine %s does not list contacts", body->type->name);
     SmContact *found;
     *count = body->type->contacts(body->engine, NULL, &found);
     for (int64_t i = 0; i < *count && i < room; i++) {
