@@ -77,8 +77,7 @@ static int check_engine(const sb_body_params *p, sb_error *error)
 
 static int check_choices(const sb_body_params *p, sb_error *error)
 {
-    int code = SB_OK;
-    if (!code) code = sm_check_range(p->summation, SB_SUM_FAST, SB_SUM_NAIVE, "summation", error);
+    int code = sm_check_range(p->summation, SB_SUM_FAST, SB_SUM_NAIVE, "summation", error);
     if (!code) code = sm_check_range(p->polar, SB_POLAR_FAST, SB_POLAR_JACOBI, "polar", error);
     if (!code) code = sm_check_range(p->layout, SB_LAYOUT_AUTO, SB_LAYOUT_BLOCKS, "layout", error);
     if (!code) code = sm_check_range(p->threads, 0, SM_MOST_THREADS, "threads", error);

@@ -271,11 +271,11 @@ typedef struct {
     double most;         /* largest plastic strain; 0: 1 */
 } sb_octree_params;
 
-/* What the meshless engine asks beyond what all do. All zero but for `size`: the defaults. Units
- * are the mesh's, kg and s: pascals where it is in metres. */
+/* What the meshless engine asks beyond what all do. Units are the mesh's, kg and s: pascals where
+ * it is in metres. Defaults: 1e5, 0.3 and 1000, and else 0. */
 typedef struct {
     size_t size;
-    double young, poisson, density; /* Young's modulus, Poisson's ratio, -0.99 to 0.49 */
+    double young, poisson, density; /* Young's modulus; Poisson's ratio, -0.99 to 0.49 */
     double stiffness_damping;       /* Rayleigh's b, s */
     int64_t points;                 /* on the surface, of which the body is made; 0: 12000, of thin
                                      * bodies more */
