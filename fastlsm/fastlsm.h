@@ -6,7 +6,7 @@
 
 #include "../lib/engine/engine.h"
 
-extern const SmEngineType fastlsm_engine_f32; /* single precision */
-extern const SmEngineType fastlsm_engine_f64; /* double precision */
+/* In single and double precision, those of the instruction set in use (lib/isa.h). */
+extern SmEngineType fastlsm_engine_f32, fastlsm_engine_f64;
 
 #endif

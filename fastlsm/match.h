@@ -113,18 +113,6 @@ SM_INLINE void match_tiles(Lsm *lsm, int layer, long tile, int tiles, vec (*S)[1
     }
 }
 
-/* A product that is rounded before it is used, never fused with a sum: what enters a window leaves
- * it with the same value, and a goal is the same wherever it is computed. */
-SM_INLINE vec rounded(vec product)
-{
-#ifdef __AVX512F__
-    __asm__("" : "+v"(product));
-#elif defined(__FMA__) || defined(__ARM_FEATURE_FMA)
-    __asm__("" : "+m"(product)); /* wider than a register */
-#endif
-    return product;
-}
-
 /* Eqs. 1 and 2 in cells and steps: v += g - x + gravity; x += v, unless damping does that later. */
 SM_INLINE void move_block(Lsm *lsm, long block, const vec sum[3])
 {
@@ -134,7 +122,7 @@ SM_INLINE void move_block(Lsm *lsm, long block, const vec sum[3])
     load3(lsm->v + block * 3 * SM_LANES, v);
     vec live = lanes_select(k->inverse_count > 0, lanes_set(1), lanes_set(0));
     for (int d = 0; d < 3; d++) {
-        vec g = rounded(sum[d] * k->inverse_count);
+        vec g = lanes_rounded(sum[d] * k->inverse_count);
         pull[d] = g - x[d];
     }
     integrate_velocity(pull, lsm->gravity, lsm->rounding, live, v);

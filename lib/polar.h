@@ -27,9 +27,12 @@ double sm_polar_jacobi(const double A[9], double V[9], const double last[9], dou
 double sm_jacobi(int n, double *S, double *V, double tolerance);
 
 /* `count` matrices by the batched, vectorised kernel that the engines use (lib/simd/polar_lanes.h),
- * for tests and `shapebench kernels`. `last` may be NULL: the identity. Arrays are [count][9]. */
-void sm_polar_batch_f32(long count, const float *A, const float *last, float *R);
-void sm_polar_batch_f64(long count, const double *A, const double *last, double *R);
+ * of the instruction set in use (lib/isa.h), for tests and `shapebench kernels`. `last` may be
+ * NULL: the identity. Arrays are [count][9]. */
+typedef void (*SmPolarBatch32)(long count, const float *A, const float *last, float *R);
+typedef void (*SmPolarBatch64)(long count, const double *A, const double *last, double *R);
+extern SmPolarBatch32 sm_polar_batch_f32;
+extern SmPolarBatch64 sm_polar_batch_f64;
 
 /* What a matrix takes by the batch: polar_lanes.h: scale 8 maxima and 9 products; two cofactor
  * matrices of 9 x 3; |A|^2, |cof|^2 17 each, det 5; the start 8; Newton 14 a step, 3 steps; D 9 x

@@ -13,7 +13,7 @@
 #include "change/engine_base.h"
 #include "change/options.h"
 
-extern const SmEngineType octree_engine_f32; /* single precision */
-extern const SmEngineType octree_engine_f64; /* double precision */
+/* In single and double precision, those of the instruction set in use (lib/isa.h). */
+extern SmEngineType octree_engine_f32, octree_engine_f64;
 
 #endif

@@ -46,10 +46,14 @@ SM_INLINE void row_store(real *p, Row row)
 #define ROW_PADS     3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15
 #define ROW_QUARTERS 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3
 #define ROW_PAD_MASK 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1
-#else
+#elif SM_LANES == 8
 #define ROW_PADS     3, 3, 3, 3, 7, 7, 7, 7
 #define ROW_QUARTERS 0, 1, 2, 3, 0, 1, 2, 3
 #define ROW_PAD_MASK 0, 0, 0, -1, 0, 0, 0, -1
+#else
+#define ROW_PADS     3, 3, 3, 3
+#define ROW_QUARTERS 0, 1, 2, 3
+#define ROW_PAD_MASK 0, 0, 0, -1
 #endif
 
 /* Every quarter full of its pad. */
@@ -65,7 +69,7 @@ SM_INLINE vec row_spread(const real *p)
 {
 #if defined(__AVX512F__) && SM_LANES == 16
     return (vec)_mm512_broadcast_f32x4(_mm_loadu_ps(p));
-#elif defined(__AVX512F__)
+#elif defined(__AVX512F__) && SM_LANES == 8
     return (vec)_mm512_broadcast_f64x4(_mm256_loadu_pd(p));
 #else
     vec4 quarter = load4(p);

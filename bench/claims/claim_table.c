@@ -80,11 +80,11 @@ static void write_grids(FILE *file, BenchFormat format, const BenchFinding *find
 static void write_people(FILE *file, BenchFormat format, const BenchFinding *findings, int count,
                          const BenchMachine *machine)
 {
-    char text[400];
+    char text[400], where[BENCH_WHERE_TEXT];
     tally(findings, count, sizeof text, text);
     if (format == BENCH_AS_TEXT)
-        fprintf(file, "The papers' claims, measured on %s, %d thread%s.\n\n", machine->cpu,
-                machine->threads, machine->threads == 1 ? "" : "s");
+        fprintf(file, "The papers' claims, measured on %s.\n\n",
+                bench_machine_where(machine, where));
     write_grids(file, format, findings, count);
     if (format == BENCH_AS_LATEX) return;
     fprintf(

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/system/hash.h"
 #include "../../reference/meshless/surface/surface_nets.h"
 #include "../engines.h"
 #include "../play/recording.h"
@@ -17,7 +18,7 @@ typedef struct {
     BenchCommon common;
     BenchOverride chosen;
     const char *scene, *output, *w, *width;
-    bool no_output, overwrite;
+    bool no_output, overwrite, hash;
     long nodes; /* 0: not given */
     int record; /* BenchRecord */
     BenchFields fields;
@@ -63,6 +64,10 @@ static const BenchSetting settings[] = {
      BENCH_IN(Options, output)},
     BENCH_OVERWRITE_OPTION(Options, overwrite, 2),
     {BENCH_OPTION("no-output", NULL, 2, "Write no trajectory"), BENCH_IN(Options, no_output)},
+    {BENCH_OPTION("hash", NULL, 2,
+                  "Print a hash of the last positions and velocities: the same for any number of "
+                  "threads"),
+     BENCH_IN(Options, hash)},
     {BENCH_OPTION(
          "record", "WHAT", 2,
          "particles: also store the lattice, and every step's particle positions, velocities "
@@ -308,6 +313,23 @@ static bool state_finite(const BenchPlayback *play)
     return sum == 0;
 }
 
+/* Of all bodies' positions and velocities, in the order of their particles. */
+static unsigned long long state_hash(const BenchPlayback *play)
+{
+    unsigned long long hash = SM_HASH_START;
+    for (int p = 0; p < play->count; p++) {
+        const BenchRunner *runner = &play->group[p].runner;
+        size_t count = (size_t)runner->particles;
+        double(*value)[3] = sm_alloc(count, sizeof *value);
+        for (int field = SM_POSITION; field <= SM_VELOCITY; field++) {
+            runner->type->get(runner->engine, (SmField)field, value);
+            hash = sm_hash_bytes(hash, value, count * sizeof *value);
+        }
+        free(value);
+    }
+    return hash;
+}
+
 /* What the scene changes before a frame. */
 static SmCode change(BenchPlayback *play, BenchOutcome *outcome, SmError *error)
 {
@@ -416,6 +438,9 @@ static SmCode record(const Options *options, BenchPlayback *play, const BenchMac
     if (recorder) code = bench_recording_close(recorder, error);
     if (code) return code;
     bool valid = bench_summary_print(play, &outcome);
+    if (options->hash)
+        printf("state after %ld steps: %016llx (%s, %s precision)\n", outcome.steps,
+               state_hash(play), machine->isa, play->group[0].runner.type->precision);
     if (recorder && !options->common.quiet)
         printf("wrote %s and %s.xdmf: %d frame%s\n", path, path, scene->frames + 1,
                scene->frames ? "s" : "");

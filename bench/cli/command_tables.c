@@ -2,6 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/isa.h"
+#include "../../lib/printable.h"
 #include "../../reference/meshless/solve/solver.h"
 #include "../../reference/paper.h"
 #include "../engines.h"
@@ -25,9 +27,10 @@ typedef struct {
     bool overwrite, explain, columns;
 } Options;
 
-/* A scene to measure, and the name that stood for it and others, or NULL. */
+/* A scene to measure, and the name that stood for it and others, or NULL; and the instruction set
+ * to measure it with, or NULL: the one in use. */
 typedef struct {
-    const char *scene, *stem;
+    const char *scene, *stem, *isa;
 } Choice;
 
 typedef struct {
@@ -91,7 +94,7 @@ static bool belongs(const char *name, const char *paper, const char *row, const 
 static void add_scene(Choices *chosen, const char *name, const char *stem)
 {
     chosen->scene = sm_realloc(chosen->scene, (size_t)chosen->count + 1, sizeof *chosen->scene);
-    chosen->scene[chosen->count++] = (Choice){name, stem};
+    chosen->scene[chosen->count++] = (Choice){name, stem, NULL};
 }
 
 /* The scenes of a paper's table whose names begin with `stem` and a dash, or all: in the order of
@@ -148,6 +151,21 @@ static void choose_scenes(Choices *chosen)
     if (!options->given.count && !options->paper) add_default(chosen);
 }
 
+/* Each scene with every instruction set that is there, one after the other. */
+static void choose_sets(Choices *chosen)
+{
+    const Choice *once = chosen->scene;
+    int scenes = chosen->count;
+    *chosen = (Choices){.options = chosen->options};
+    for (int i = 0; i < scenes; i++)
+        for (int isa = 0; isa < sm_isa_count(); isa++) {
+            if (!sm_isa_there(isa)) continue;
+            add_scene(chosen, once[i].scene, once[i].stem);
+            chosen->scene[chosen->count - 1].isa = sm_isa_name(isa);
+        }
+    free((void *)once);
+}
+
 /* Fails where no scene is to be measured that `--mesh name=FILE` gives a mesh. */
 static SmCode check_substitute(const Choices *chosen, const char *name, SmError *error)
 {
@@ -180,6 +198,12 @@ static SmCode find_scene(const Options *options, const Choice *choice, BenchScen
     return code;
 }
 
+/* Rows of several instruction sets have names of their own. */
+static void name_set(const Choice *choice, BenchScene *scene)
+{
+    if (choice->isa) sm_append(scene->name, sizeof scene->name, "-%s", choice->isa);
+}
+
 /* Names the rows (row_report.h), the meshless ones last; fails where a scene is not there. */
 static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
 {
@@ -191,6 +215,7 @@ static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
             BenchScene scene;
             code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
             if (code || !!(bench_engine(scene.engine)->own & BENCH_OF_ELASTIC) != last) continue;
+            name_set(&chosen->scene[i], &scene);
             bench_row_name(&scene, &rows[planned]);
             ordered[planned++] = chosen->scene[i];
         }
@@ -206,6 +231,7 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
     BenchScene scene;
     const SmEngineType *type;
     SmCode code = find_scene(options, choice, &scene, error);
+    if (!code && choice->isa) code = sm_isa_use(choice->isa, error);
     if (code) return code;
     code = bench_engine_find(scene.engine, chosen->precision, &type, error);
     if (code) return code;
@@ -213,6 +239,7 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
     const char *substitute = bench_substitute_find(&chosen->substitutes, scene.name);
     if (!substitute && choice->stem)
         substitute = bench_substitute_find(&chosen->substitutes, choice->stem);
+    name_set(choice, &scene);
     bench_progress_show(progress, scene.name, 0);
     code = bench_body_of_scene(&scene, substitute, &body, error);
     if (code) return code;
@@ -280,6 +307,7 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
         return SM_OK;
     }
     choose_scenes(&chosen);
+    if (options->common.every_isa) choose_sets(&chosen);
     SmCode code = check_substitutes(&chosen, error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
     if (!code) code = bench_draft_reserve(options->output, options->overwrite, error);
@@ -304,7 +332,8 @@ static const Options defaults = {.repeats = 15, .block = 20};
 const BenchCommand bench_command_tables = {
     .name = "tables",
     .summary = "measure a paper's table, checked, its values beside",
-    .line = {settings, BENCH_TAKES_ALL, NULL, help, .limit = "Scenes are named with --scene"},
+    .line = {settings, BENCH_TAKES_ALL | BENCH_TAKES_SETS, NULL, help,
+             .limit = "Scenes are named with --scene"},
     .size = sizeof(Options),
     .defaults = &defaults,
     .perform = perform,

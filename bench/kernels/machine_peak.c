@@ -5,81 +5,11 @@
 
 #include "../../lib/error.h"
 #include "../../lib/system/clock.h"
+#include "peak_loops.h"
 
-#ifdef __AVX512F__
-enum { REGISTER = 64 };
-#elif defined __AVX__
-enum { REGISTER = 32 };
-#else
-enum { REGISTER = 16 };
-#endif
+enum { TRIES = 5 };
 
-/* CHAINS independent sums hide the latency of an operation: 4 to 5 cycles, two a cycle. */
-enum { CHAINS = 12, STREAMS = 8, FLOATS = REGISTER / 4, DOUBLES = REGISTER / 8, TRIES = 5 };
-
-typedef float FloatVec __attribute__((vector_size(REGISTER)));
-typedef double DoubleVec __attribute__((vector_size(REGISTER)));
-
-/* One thread's share: a buffer in whole groups of STREAMS registers. */
-typedef struct {
-    FloatVec *buffer;
-    long groups;
-} Share;
-
-typedef void Work(const Share *share, long rounds);
-
-/* Keeps a result, and what memory holds, alive. */
-#define KEEP(value) __asm__ volatile("" ::"m"(value) : "memory")
-
-static void multiply_add_single(const Share *share, long rounds)
-{
-    (void)share;
-    FloatVec sum[CHAINS], factor = (FloatVec){0} + 0.999f, term = (FloatVec){0} + 0.001f;
-    for (int i = 0; i < CHAINS; i++) sum[i] = factor + (float)i;
-    for (long r = 0; r < rounds; r++)
-        for (int i = 0; i < CHAINS; i++) sum[i] = sum[i] * factor + term;
-    KEEP(sum);
-}
-
-static void multiply_add_double(const Share *share, long rounds)
-{
-    (void)share;
-    DoubleVec sum[CHAINS], factor = (DoubleVec){0} + 0.999, term = (DoubleVec){0} + 0.001;
-    for (int i = 0; i < CHAINS; i++) sum[i] = factor + (double)i;
-    for (long r = 0; r < rounds; r++)
-        for (int i = 0; i < CHAINS; i++) sum[i] = sum[i] * factor + term;
-    KEEP(sum);
-}
-
-/* A function of its own: sums whose address is taken would be stored at every addition. */
-static __attribute__((noinline)) FloatVec read_once(const FloatVec *at, long groups)
-{
-    FloatVec sum[STREAMS] = {{0}};
-    for (long g = 0; g < groups; g++, at += STREAMS)
-        for (int i = 0; i < STREAMS; i++) sum[i] += at[i];
-    for (int i = 1; i < STREAMS; i++) sum[0] += sum[i];
-    return sum[0];
-}
-
-static void read_buffer(const Share *share, long rounds)
-{
-    for (long r = 0; r < rounds; r++) {
-        FloatVec sum = read_once(share->buffer, share->groups);
-        KEEP(sum);
-    }
-}
-
-static void update_buffer(const Share *share, long rounds)
-{
-    for (long r = 0; r < rounds; r++) {
-        FloatVec *at = share->buffer;
-        for (long g = 0; g < share->groups; g++, at += STREAMS)
-            for (int i = 0; i < STREAMS; i++) at[i] = at[i] * 0.999f + 0.001f;
-        KEEP(*share->buffer);
-    }
-}
-
-static double run(Work *work, const Share *share, int threads, long rounds)
+static double run(BenchPeakLoop *work, const BenchPeakShare *share, int threads, long rounds)
 {
     double start = sm_now();
 #pragma omp parallel for num_threads(threads) schedule(static, 1)
@@ -89,7 +19,8 @@ static double run(Work *work, const Share *share, int threads, long rounds)
 
 /* Rounds of all threads in a second, the best of TRIES runs that take `seconds` / 2 or more even at
  * best: one that was interrupted says nothing about the length of a round. */
-static double best_rate(Work *work, const Share *share, int threads, double seconds)
+static double best_rate(BenchPeakLoop *work, const BenchPeakShare *share, int threads,
+                        double seconds)
 {
     for (long rounds = 1;; rounds *= 2) {
         double best = INFINITY;
@@ -100,32 +31,34 @@ static double best_rate(Work *work, const Share *share, int threads, double seco
 }
 
 /* Buffers of `bytes` a thread; written, because fresh pages all show the same zeros. */
-static void make_shares(double bytes, int threads, Share *share)
+static void make_shares(double bytes, int threads, BenchPeakShare *share)
 {
-    const long group = STREAMS * REGISTER;
+    const long group = bench_peak_loops_f32.group;
     long groups = (long)(bytes / (double)group) + 1;
     for (int t = 0; t < threads; t++)
-        share[t] = (Share){sm_alloc((size_t)groups, (size_t)group), groups};
+        share[t] = (BenchPeakShare){sm_alloc((size_t)groups, (size_t)group), groups};
 #pragma omp parallel for num_threads(threads) schedule(static, 1)
     for (int t = 0; t < threads; t++)
-        for (long i = 0; i < groups * STREAMS; i++) share[t].buffer[i] = (FloatVec){0} + 1;
+        for (long i = 0; i < groups * group / (long)sizeof(float); i++)
+            ((float *)share[t].buffer)[i] = 1;
 }
 
 static void measure_memory(const BenchPeak *c, double seconds, BenchRates *rates)
 {
+    const BenchPeakLoops *loops = &bench_peak_loops_f32;
     double n = rates->threads;
     /* Half of a core's own caches; an eighth of the last one, which other programs fill too; and
      * main memory by four times what that holds. */
     const double bytes[BENCH_LEVELS] = {c->bytes[BENCH_L1] / 2, c->bytes[BENCH_L2] / 2,
                                         c->bytes[BENCH_L3] / 8 / n, c->bytes[BENCH_L3] * 4 / n};
-    Share *share = sm_alloc((size_t)rates->threads, sizeof *share);
+    BenchPeakShare *share = sm_alloc((size_t)rates->threads, sizeof *share);
     for (int level = 0; level < BENCH_LEVELS; level++) {
         double size = fmax(bytes[level], level == BENCH_L3 ? 1.5 * c->bytes[BENCH_L2] : 0);
         make_shares(size, rates->threads, share);
-        double whole = (double)share[0].groups * STREAMS * REGISTER;
-        rates->read[level] = whole * best_rate(read_buffer, share, rates->threads, seconds);
+        double whole = (double)(share[0].groups * bench_peak_loops_f32.group);
+        rates->read[level] = whole * best_rate(loops->read, share, rates->threads, seconds);
         if (level == BENCH_DRAM)
-            rates->update = 2 * whole * best_rate(update_buffer, share, rates->threads, seconds);
+            rates->update = 2 * whole * best_rate(loops->update, share, rates->threads, seconds);
         for (int t = 0; t < rates->threads; t++) free(share[t].buffer);
     }
     free(share);
@@ -133,12 +66,12 @@ static void measure_memory(const BenchPeak *c, double seconds, BenchRates *rates
 
 static void measure_rates(const BenchPeak *c, int threads, double seconds, BenchRates *rates)
 {
-    Share *none = sm_alloc((size_t)threads, sizeof *none);
+    BenchPeakShare *none = sm_alloc((size_t)threads, sizeof *none);
     rates->threads = threads;
-    rates->flops[BENCH_F32] =
-        2.0 * CHAINS * FLOATS * best_rate(multiply_add_single, none, threads, seconds);
-    rates->flops[BENCH_F64] =
-        2.0 * CHAINS * DOUBLES * best_rate(multiply_add_double, none, threads, seconds);
+    const BenchPeakLoops *loops[BENCH_PRECISIONS] = {&bench_peak_loops_f32, &bench_peak_loops_f64};
+    for (int p = 0; p < BENCH_PRECISIONS; p++)
+        rates->flops[p] =
+            loops[p]->flops * best_rate(loops[p]->multiply_add, none, threads, seconds);
     free(none);
     measure_memory(c, seconds, rates);
 }

@@ -21,13 +21,13 @@ TEST(a_wrong_octree_step_is_not_timed)
     SmError error;
     assert_int_equal(bench_sampled(6, &body, &error), SM_OK);
     BenchTreeStep steps[3] = {{.body = &body, .threads = 1, .seed = 1, .parts = true}};
-    bench_tree_step_create_f32(&steps[0]);
+    bench_tree_steps_f32.create(&steps[0]);
     assert_true(steps[0].trial.valid);
     lose_member(&body); /* it is not symmetric: only the adjoint is right */
     steps[1] = (BenchTreeStep){.body = &body, .threads = 1, .seed = 1, .parts = true};
     steps[2] = steps[1];
     steps[2].adjoint = true;
-    for (int s = 1; s < 3; s++) bench_tree_step_create_f32(&steps[s]);
+    for (int s = 1; s < 3; s++) bench_tree_steps_f32.create(&steps[s]);
     assert_false(steps[1].trial.valid);
     assert_non_null(strstr(steps[1].trial.reason, "brute force"));
     assert_true(steps[2].trial.valid);
@@ -38,10 +38,10 @@ TEST(a_wrong_octree_step_is_not_timed)
         double parts = 0, whole = steps[s].trial.laps[0].last; /* seconds of a clock, far more */
         assert_int_equal(steps[s].trial.samples, 2);
         for (int p = 0; p < BENCH_TREE_PARTS; p++)
-            parts += bench_tree_step_ns_f32(&steps[s], (BenchTreePart)p, 1);
+            parts += bench_tree_steps_f32.ns(&steps[s], (BenchTreePart)p, 1);
         assert_true(parts > 0 && parts < 1e9 * whole);
     }
-    for (int s = 0; s < 3; s++) bench_tree_step_free_f32(&steps[s]);
+    for (int s = 0; s < 3; s++) bench_tree_steps_f32.free(&steps[s]);
     oct_structure_free(&body);
 }
 

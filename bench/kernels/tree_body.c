@@ -57,9 +57,7 @@ SmCode bench_tree_body_open(const BenchKernel *kernel, const BenchKernelParams *
 void bench_tree_body_close(void *of)
 {
     BenchTreeBody *body = of;
-    for (int s = 0; s < body->count; s++)
-        (body->precision == BENCH_F64 ? bench_tree_step_free_f64
-                                      : bench_tree_step_free_f32)(&body->step[s]);
+    for (int s = 0; s < body->count; s++) bench_tree_steps(body->precision)->free(&body->step[s]);
     oct_structure_free(&body->structure);
     free(body);
 }

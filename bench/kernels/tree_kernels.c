@@ -29,8 +29,7 @@ static SmCode prepare_step(BenchJob *job, SmError *error)
                                 .parts = kernel->part != BENCH_TREE_WHOLE,
                                 .threads = job->threads,
                                 .seed = job->params->seed};
-        (body->precision == BENCH_F64 ? bench_tree_step_create_f64
-                                      : bench_tree_step_create_f32)(step);
+        bench_tree_steps(body->precision)->create(step);
     }
     assert(kernel->part == BENCH_TREE_WHOLE || step->parts); /* those come first in the list */
     job->trial = &step->trial;
@@ -42,8 +41,8 @@ static SmCode prepare_step(BenchJob *job, SmError *error)
 
 static double step_seconds(const BenchJob *job, int r)
 {
-    return 1e-9 * (job->precision == BENCH_F64 ? bench_tree_step_ns_f64 : bench_tree_step_ns_f32)(
-                      job->trial->timed.subject, (BenchTreePart)job->kernel->part, r);
+    return 1e-9 * bench_tree_steps(job->precision)
+                      ->ns(job->trial->timed.subject, (BenchTreePart)job->kernel->part, r);
 }
 
 static SmOperations work_of(BenchTreePart part, const OctStepCounts *counts)

@@ -146,9 +146,8 @@ static void run(void *subject, SmLaps *laps)
                                  &made->regions, NULL);
     assert(!code); /* all of it was built before */
     if (!parts[kind].engine) return;
-    setup->engine_bytes = (double)(setup->job->precision == BENCH_F64
-                                       ? bench_tree_build_f64
-                                       : bench_tree_build_f32)(tree, &made->regions, body->mass);
+    setup->engine_bytes =
+        (double)bench_tree_steps(setup->job->precision)->build(tree, &made->regions, body->mass);
     forget(setup);
 }
 

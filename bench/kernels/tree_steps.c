@@ -1,4 +1,4 @@
-/* tree_steps.c - compiled for both precisions (CMakeLists.txt). */
+/* tree_steps.c - compiled as the kernels are, which it steps. */
 #include "tree_steps.h"
 
 #include <math.h>
@@ -8,11 +8,6 @@
 #include "../../octree/octree.h"
 #include "../../reference/octree_goals.h"
 #include "cubes.h"
-
-#define bench_tree_step_create SM_NAME(bench_tree_step_create)
-#define bench_tree_step_ns     SM_NAME(bench_tree_step_ns)
-#define bench_tree_step_free   SM_NAME(bench_tree_step_free)
-#define bench_tree_build       SM_NAME(bench_tree_build)
 
 /* Of goals, in finest cells; and of positions after a step with damping. */
 static const double tolerance = SM_REAL_BITS == 32 ? 5e-5 : 1e-10;
@@ -136,7 +131,7 @@ static bool finite_at_end(void *subject)
     return sum == 0;
 }
 
-void bench_tree_step_create(BenchTreeStep *step)
+static void create(BenchTreeStep *step)
 {
     const OctStructure *body = step->body;
     OctParams params = {.weighting = step->weighting,
@@ -159,7 +154,7 @@ void bench_tree_step_create(BenchTreeStep *step)
     check(step);
 }
 
-void bench_tree_step_free(BenchTreeStep *step)
+static void destroy(BenchTreeStep *step)
 {
     oct_free(step->engine);
     free(step->x);
@@ -168,7 +163,7 @@ void bench_tree_step_free(BenchTreeStep *step)
     *step = (BenchTreeStep){0};
 }
 
-double bench_tree_step_ns(const BenchTreeStep *step, BenchTreePart part, int r)
+static double ns(const BenchTreeStep *step, BenchTreePart part, int r)
 {
     static const struct {
         int first, last;
@@ -182,7 +177,7 @@ double bench_tree_step_ns(const BenchTreeStep *step, BenchTreePart part, int r)
     return 1e9 * bench_trial_stage(&step->trial, r, of[part].first, of[part].last, of[part].stage);
 }
 
-long bench_tree_build(const OctTree *tree, const OctRegions *regions, const double *mass)
+static long build(const OctTree *tree, const OctRegions *regions, const double *mass)
 {
     OctParams params = {.damping = damping, .threads = 1};
     Oct *oct = oct_build(tree, regions, mass, &params);
@@ -190,3 +185,5 @@ long bench_tree_build(const OctTree *tree, const OctRegions *regions, const doub
     oct_free(oct);
     return bytes;
 }
+
+const BenchTreeSteps SM_NAME(bench_tree_steps) = {create, ns, destroy, build};

@@ -8,6 +8,7 @@
 
 #include "../../octree/change/structure.h"
 #include "../../octree/operations.h"
+#include "machine_peak.h"
 #include "trial.h"
 
 /* What of a step is timed apart. */
@@ -36,21 +37,27 @@ typedef struct {
     double (*x)[3], (*v)[3]; /* [leaves] where samples start */
 } BenchTreeStep;
 
-/* For each precision: fills `step` in from the caller's choices and checks the engine's goal
- * positions, and a step with damping, against the slow twin (reference/octree_goals.h). The caller
- * frees it. */
-void bench_tree_step_create_f32(BenchTreeStep *step);
-void bench_tree_step_create_f64(BenchTreeStep *step);
+/* In one precision. */
+typedef struct {
+    /* Fills `step` in from the caller's choices and checks the engine's goal positions, and a step
+     * with damping, against the slow twin (reference/octree_goals.h). The caller frees it. */
+    void (*create)(BenchTreeStep *step);
 
-/* ns a step in sample r; of parts less the time of reading clocks. */
-double bench_tree_step_ns_f32(const BenchTreeStep *step, BenchTreePart part, int r);
-double bench_tree_step_ns_f64(const BenchTreeStep *step, BenchTreePart part, int r);
+    /* ns a step in sample r; of parts less the time of reading clocks. */
+    double (*ns)(const BenchTreeStep *step, BenchTreePart part, int r);
 
-void bench_tree_step_free_f32(BenchTreeStep *step);
-void bench_tree_step_free_f64(BenchTreeStep *step);
+    void (*free)(BenchTreeStep *step);
 
-/* Builds and frees an engine, the last part of setting a body up; returns its memory. */
-long bench_tree_build_f32(const OctTree *tree, const OctRegions *regions, const double *mass);
-long bench_tree_build_f64(const OctTree *tree, const OctRegions *regions, const double *mass);
+    /* Builds and frees an engine, the last part of setting a body up; returns its memory. */
+    long (*build)(const OctTree *tree, const OctRegions *regions, const double *mass);
+} BenchTreeSteps;
+
+/* Of the instruction set in use (lib/isa.h). */
+extern BenchTreeSteps bench_tree_steps_f32, bench_tree_steps_f64;
+
+static inline const BenchTreeSteps *bench_tree_steps(BenchPrecision precision)
+{
+    return precision == BENCH_F64 ? &bench_tree_steps_f64 : &bench_tree_steps_f32;
+}
 
 #endif

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/isa.h"
 #include "../../reference/paper.h"
 #include "../check/check.h"
 #include "../engines.h"
@@ -121,6 +122,7 @@ static void name_row(const BenchScene *scene, const BenchBody *body, const SmEng
     bench_row_name(scene, row);
     snprintf(row->engine, sizeof row->engine, "%s", type->name);
     snprintf(row->precision, sizeof row->precision, "%s", type->precision);
+    snprintf(row->isa, sizeof row->isa, "%s", sm_isa_name(sm_isa()));
     if (type->by_cells) row->w = scene->params.w;
     const RefPaperRow *paper = scene->row[0] ? ref_paper_find(scene->paper, scene->row) : NULL;
     row->paper_total_ms = paper ? paper->total_ms.value : NAN;

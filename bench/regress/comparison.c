@@ -52,6 +52,10 @@ static bool same_work(const BenchRow *a, const BenchRow *b, size_t size, char *r
         snprintf(reason, size, "other work: precision %s, now %s", a->precision, b->precision);
         return false;
     }
+    if (a->isa[0] && b->isa[0] && strcmp(a->isa, b->isa) != 0) {
+        snprintf(reason, size, "other work: kernels of %s, now %s (--isa)", a->isa, b->isa);
+        return false;
+    }
     for (size_t i = 0; i < sizeof number / sizeof *number; i++)
         if (number[i].stated && number[i].old != number[i].new) {
             snprintf(reason, size, "other work: %s %.9g, now %.9g", number[i].what, number[i].old,

@@ -5,12 +5,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/isa.h"
 #include "../../lib/printable.h"
 #include "../../lib/system/team.h"
 #include "../system/suggest.h"
 #include "provenance.h"
 
-const char *argp_program_version = "shapebench " SHAPEBENCH_VERSION;
+static void print_version(FILE *file, struct argp_state *state)
+{
+    (void)state;
+    fputs("shapebench " SHAPEBENCH_VERSION "\ninstruction sets:", file);
+    for (int isa = 0; isa < sm_isa_count(); isa++)
+        fprintf(file, " %s%s", sm_isa_name(isa),
+                isa == sm_isa()     ? " (in use)"
+                : sm_isa_there(isa) ? ""
+                                    : " (not of this processor)");
+    fputc('\n', file);
+}
+
+void (*argp_program_version_hook)(FILE *, struct argp_state *) = print_version;
 
 /* Where the system's BLAS is OpenBLAS, which has threads of its own. */
 void openblas_set_num_threads(int threads) __attribute__((weak));
@@ -184,6 +197,8 @@ static void take_argument(const Options *options, char *text, const struct argp_
 static void check(const Options *options, const struct argp_state *state)
 {
     const BenchCommon *common = options->record;
+    if (common->every_isa && !(options->line->takes & BENCH_TAKES_SETS))
+        bench_usage(state, "--isa: 'all' is of tables");
     if (options->line->check) options->line->check(state, options->record);
     if (common->words && common->measuring)
         bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o",
@@ -224,12 +239,26 @@ static char *filter_help(int key, const char *text, void *input)
     return said == sentence ? strdup(said) : (char *)text;
 }
 
+/* For processes that it starts, too. */
+static void take_isa(const struct argp_state *state, const char *text, void *every)
+{
+    SmError error;
+    *(bool *)every = !strcmp(text, "all");
+    if (*(bool *)every) return;
+    if (sm_isa_use(text, &error)) bench_usage(state, "--isa: %s", error.text);
+    setenv("SHAPEBENCH_ISA", text, 1);
+}
+
 static const BenchSetting common_settings[] = {
     {.help = "Common options:", .section = 90, .who = BENCH_TAKES_ALL},
     {BENCH_OPTION("quiet", NULL, 90, "No progress and no remarks on standard error"),
      BENCH_IN(BenchCommon, quiet), .who = BENCH_TAKES_QUIET},
     {BENCH_OPTION("threads", "N", 90, "Threads; 0: all cores (default: 1)"),
      BENCH_IN(BenchCommon, threads), 0, SM_MOST_THREADS, .who = BENCH_TAKES_THREADS},
+    {BENCH_OPTION("isa", "NAME", 90,
+                  "Instruction set of the engines: sse2, avx2, avx512, as SHAPEBENCH_ISA (default: "
+                  "the best of this processor); tables: all, one after the other"),
+     BENCH_IN(BenchCommon, every_isa), .take = take_isa, .who = BENCH_TAKES_THREADS},
     {BENCH_OPTION("seed", "N", 90, "Seed of everything random (default: 1)"),
      BENCH_IN(BenchCommon, seed), 0, 2147483647, .who = BENCH_TAKES_SEED},
     {0},
@@ -239,6 +268,7 @@ void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, vo
 {
     BenchCommon *common = record;
     Options options = {.line = line, .record = record};
+    SmError error;
     *common = (BenchCommon){.threads = 1, .seed = 1};
     add_table(&options, &(Option){.setting = line->settings, .record = record}, 0);
     if (line->takes)
@@ -246,6 +276,10 @@ void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, vo
     const struct argp argp = {options.list, parse, line->arguments, line->help, NULL,
                               filter_help,  NULL};
     bench_option_words(&argp, argc, argv, 0, NULL, &options);
+    if (line->takes & BENCH_TAKES_THREADS && sm_isa_wanted(&error)) {
+        bench_option_fail(argv[0], &error);
+        exit(SM_USAGE);
+    }
     if (!common->threads) common->threads = sm_team(omp_get_num_procs());
     set_threads(common->threads);
 }

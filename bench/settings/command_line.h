@@ -12,6 +12,7 @@ typedef struct {
     int threads; /* 1 or more */
     unsigned long seed;
     bool quiet;
+    bool every_isa;    /* `--isa all` */
     bool measuring;    /* was an option given that says what to measure? */
     const char **word; /* [words] arguments that are no options; freed with the record */
     int words;
@@ -19,6 +20,7 @@ typedef struct {
 
 /* What of BenchCommon a command takes; the rest has its defaults. */
 enum { BENCH_TAKES_QUIET = 1, BENCH_TAKES_THREADS = 2, BENCH_TAKES_SEED = 4, BENCH_TAKES_ALL = 7 };
+enum { BENCH_TAKES_SETS = 8 }; /* `--isa all` */
 
 typedef struct {
     const BenchSetting *settings; /* of its record */

@@ -441,12 +441,13 @@ static void print_head(FILE *file, BenchFormat format, const BenchCampaign *swee
     const BenchPlan *plan = sweep->plan;
     bool other = plan->mesh[0] && !bench_plan_alone(plan), edges = !strcmp(plan->width, "edges");
     bench_grid_rename(grid, 1, edges ? "w edges" : "w cells");
+    char where[BENCH_WHERE_TEXT];
     if (format != BENCH_AS_TEXT) return;
     fprintf(file,
-            "%s%s%s: cost against stiffness and deviation, %ld of %d points, on %s, %d thread%s.\n"
+            "%s%s%s: cost against stiffness and deviation, %ld of %d points, on %s.\n"
             "w: half-width of regions, of fastlsm in cells, of the octree in %s.\n\n",
             plan->scene, other ? " with " : "", other ? plan->mesh : "", sweep->count, plan->points,
-            sweep->machine.cpu, plan->threads, plan->threads == 1 ? "" : "s",
+            bench_machine_where(&sweep->machine, where),
             edges ? "edges of each node's own cell" : "finest cells");
 }
 

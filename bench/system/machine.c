@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "../../lib/isa.h"
 #include "../../lib/printable.h"
 #include "provenance.h"
 #include "quote.h"
@@ -26,10 +27,10 @@ static const BenchField fields[] = {
     FIELD(BENCH_TEXT, cpu_model),  FIELD(BENCH_TEXT, cpu_instructions),
     FIELD(BENCH_LONG, l1_bytes),   FIELD(BENCH_LONG, l2_bytes),
     FIELD(BENCH_LONG, l3_bytes),   FIELD(BENCH_INT, cores),
-    FIELD(BENCH_INT, threads),     FIELD(BENCH_TEXT, governor),
-    FIELD(BENCH_TEXT, kernel),     FIELD(BENCH_TEXT, libraries),
-    FIELD(BENCH_TEXT, hostname),   FIELD(BENCH_TEXT, utc),
-    FIELD(BENCH_TEXT, command),
+    FIELD(BENCH_INT, threads),     FIELD(BENCH_TEXT, isa),
+    FIELD(BENCH_TEXT, governor),   FIELD(BENCH_TEXT, kernel),
+    FIELD(BENCH_TEXT, libraries),  FIELD(BENCH_TEXT, hostname),
+    FIELD(BENCH_TEXT, utc),        FIELD(BENCH_TEXT, command),
 };
 enum { FIELDS = sizeof fields / sizeof fields[0] };
 
@@ -91,12 +92,22 @@ bool bench_machine_known(const char *text)
     return text[0] && strcmp(text, "unknown") != 0;
 }
 
+const char *bench_machine_where(const BenchMachine *machine, char text[BENCH_WHERE_TEXT])
+{
+    bool known = bench_machine_known(machine->isa);
+    snprintf(text, BENCH_WHERE_TEXT, "%s%s%s%s, %d thread%s", machine->cpu, known ? " (" : "",
+             known ? machine->isa : "", known ? ")" : "", machine->threads,
+             machine->threads == 1 ? "" : "s");
+    return text;
+}
+
 bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t size, char *text)
 {
     const char *const texts[][3] = {
         {"", a->cpu, b->cpu},
         {"", a->cpu_model, b->cpu_model},
         {"instructions ", a->cpu_instructions, b->cpu_instructions},
+        {"kernels of ", a->isa, b->isa},
     };
     const struct {
         int level;
@@ -104,7 +115,7 @@ bool bench_machine_same(const BenchMachine *a, const BenchMachine *b, size_t siz
     } cache[] = {{1, a->l1_bytes, b->l1_bytes},
                  {2, a->l2_bytes, b->l2_bytes},
                  {3, a->l3_bytes, b->l3_bytes}};
-    for (int t = 0; t < 3; t++)
+    for (int t = 0; t < 4; t++)
         if (bench_machine_known(texts[t][1]) && bench_machine_known(texts[t][2]) &&
             strcmp(texts[t][1], texts[t][2]) != 0) {
             snprintf(text, size, "%s%.*s; this is %.*s", texts[t][0], (int)size / 2 - 16,
@@ -201,6 +212,7 @@ void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machin
     snprintf(machine->compiler, sizeof machine->compiler, "%s", SHAPEBENCH_COMPILER);
     snprintf(machine->flags, sizeof machine->flags, "%s", SHAPEBENCH_FLAGS);
     machine->threads = threads;
+    snprintf(machine->isa, sizeof machine->isa, "%s", sm_isa_name(sm_isa()));
     read_cpu(machine);
     read_caches(machine);
     read_system(machine);

@@ -16,6 +16,7 @@ typedef struct {
     long l1_bytes, l2_bytes, l3_bytes; /* data caches of processor 0; L3 shared by several */
     int cores;                         /* processors that this process may run on */
     int threads;                       /* used */
+    char isa[16];                      /* instruction set of the kernels: lib/isa.h */
     bool git_dirty; /* sources were changed after the commit when the program was built */
 } BenchMachine;
 
@@ -25,6 +26,10 @@ void bench_machine_read(int argc, char **argv, int threads, BenchMachine *machin
 
 /* This host, and now (ISO 8601). */
 void bench_machine_stamp(char host[64], char utc[32]);
+
+/* "AMD EPYC (avx512), 2 threads": where tables were measured, with what. Returns `text`. */
+enum { BENCH_WHERE_TEXT = 192 };
+const char *bench_machine_where(const BenchMachine *machine, char text[BENCH_WHERE_TEXT]);
 
 /* Is a text of it known? */
 bool bench_machine_known(const char *text);

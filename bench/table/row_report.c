@@ -6,16 +6,15 @@
 
 static void print_heading(const BenchReport *report, bool elastic)
 {
-    const BenchMachine *machine = report->machine;
+    char where[BENCH_WHERE_TEXT];
     if (elastic)
         fprintf(report->file,
                 "Meshless bodies: times of one frame, median, on %s, one thread:\n"
                 "the modes' motion, and the points that it carries (skin).\n\n",
-                machine->cpu);
+                report->machine->cpu);
     else
-        fprintf(report->file,
-                "Times of one step, median, stages in percent, on %s, %d thread%s.\n\n",
-                machine->cpu, machine->threads, machine->threads == 1 ? "" : "s");
+        fprintf(report->file, "Times of one step, median, stages in percent, on %s.\n\n",
+                bench_machine_where(report->machine, where));
 }
 
 static BenchTableKind table_of(const BenchReport *report, bool elastic)

@@ -77,7 +77,9 @@ static double fill_worth(const SmVoxels *v, const SmEngineParams *params)
 
 SmLayout lsm_axes_choose(const SmVoxels *v, const SmEngineParams *params, int lanes, int *turn)
 {
-    bool may = params->w <= lanes && params->summation != SM_SUM_NAIVE && params->instances <= 1;
+    bool sums = params->summation == SM_SUM_FAST ||
+                (params->summation == SM_SUM_BARS && params->w <= lanes);
+    bool may = sums && params->instances <= 1;
     *turn = 0;
     double fill = may && params->layout != SM_LAYOUT_LISTS ? best_fill(v, lanes, turn) : 0;
     if (may && (params->layout == SM_LAYOUT_BLOCKS || fill > fill_worth(v, params)))

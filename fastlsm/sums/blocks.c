@@ -23,30 +23,50 @@ static void add_block(Lsm *lsm, int column, int y, int z)
     }
 }
 
-/* How many blocks the lattice has: every word of the bitmap is a few. */
-static long count_blocks(const LsmLattice *l)
+/* The next occupied column of a row from `column` on, or that behind the last. */
+static int next_occupied(const Lsm *lsm, int column, int y, int z)
 {
-    const uint64_t lanes = ((uint64_t)1 << SM_LANES) - 1;
+    int width = lsm->box->width;
+    while (column < width && !occupied(&lsm->lattice, column, y, z)) column++;
+    return column;
+}
+
+/* The end of the run of blocks of a row that begins at `column`. Empty blocks are part of it where
+ * a window reaches across them. */
+static int run_end(const Lsm *lsm, int column, int y, int z)
+{
+    for (;;) {
+        while (column < lsm->box->width && occupied(&lsm->lattice, column, y, z)) column++;
+        int next = next_occupied(lsm, column, y, z);
+        if (next == lsm->box->width || (next - column) * SM_LANES >= lsm->w) return column;
+        column = next;
+    }
+}
+
+/* How many blocks the lattice has. */
+static long count_blocks(const Lsm *lsm)
+{
+    const int *size = lsm->lattice.size, width = lsm->box->width;
     long blocks = 0;
-    for (long word = 0; word < (long)l->size[1] * l->size[2] * l->words; word++)
-        for (uint64_t bits = l->bits[word]; bits; bits >>= SM_LANES) blocks += (bits & lanes) != 0;
+    for (long row = 0; row < (long)size[1] * size[2]; row++) {
+        int y = (int)(row % size[1]), z = (int)(row / size[1]);
+        for (int column = next_occupied(lsm, 0, y, z), end; column < width;
+             column = next_occupied(lsm, end, y, z)) {
+            end = run_end(lsm, column, y, z);
+            blocks += end - column;
+        }
+    }
     return blocks;
 }
 
 static void add_row(Lsm *lsm, Blocks *box, int y, int z, int *runs)
 {
-    BlockRun *run = NULL;
-    for (int column = 0; column < box->width; column++) {
-        if (!occupied(&lsm->lattice, column, y, z)) {
-            run = NULL;
-            continue;
-        }
-        if (!run) {
-            run = &box->run[(*runs)++];
-            *run = (BlockRun){.y = y, .column = column, .first = (int)lsm->blocks};
-        }
-        run->count++;
-        add_block(lsm, column, y, z);
+    for (int column = next_occupied(lsm, 0, y, z); column < box->width;
+         column = next_occupied(lsm, column, y, z)) {
+        int end = run_end(lsm, column, y, z);
+        box->run[(*runs)++] =
+            (BlockRun){.y = y, .column = column, .first = (int)lsm->blocks, .count = end - column};
+        while (column < end) add_block(lsm, column++, y, z);
     }
 }
 
@@ -149,10 +169,10 @@ void lsm_blocks_build(Lsm *lsm)
     const LsmLattice *l = &lsm->lattice;
     Blocks *box = lsm->box = sm_alloc(1, sizeof *box);
     int planes = l->size[2];
-    long blocks = count_blocks(l);
     const long cache = 2 << 20;
-    box->streams = blocks * SM_LANES * (long)(6 * sizeof(real) + 6 * sizeof(short)) > cache;
     box->width = (l->size[0] + SM_LANES - 1) / SM_LANES;
+    long blocks = count_blocks(lsm);
+    box->streams = blocks * SM_LANES * (long)(6 * sizeof(real) + 6 * sizeof(short)) > cache;
     box->plane_run = sm_alloc((size_t)planes + 1, sizeof(int));
     box->row_run = sm_alloc((size_t)l->size[1] * (size_t)planes + 1, sizeof(int));
     box->run = sm_alloc((size_t)blocks + 1, sizeof(BlockRun));

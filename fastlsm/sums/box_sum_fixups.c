@@ -6,10 +6,10 @@
 #include "blocks.h"
 #include "sums.h"
 
-/* Half a block is worked on at a time; halves are numbered through, two to a block. */
-enum { HALF = SM_LANES / 2 };
+/* Part of a block is worked on at a time; parts are numbered through. */
+enum { PARTS = SM_LANES / SM_PART };
 
-/* Sites that a half's regions differ by on one way, by offset: row (c + w) * side + b + w holds
+/* Sites that a part's regions differ by on one way, by offset: row (c + w) * side + b + w holds
  * bits, lane by lane, of those to subtract and, from bit 16 on, of those to add. */
 typedef struct {
     uint32_t *lanes; /* [side^3] */
@@ -21,7 +21,7 @@ typedef struct {
 
 struct FixupsBuilder {
     const Lsm *lsm;
-    long half; /* whose regions are being added */
+    long part; /* whose regions are being added */
     bool any;  /* have been */
     Way up, down;
 };
@@ -33,7 +33,7 @@ static void open_way(const Lsm *lsm, Way *way)
     size_t side = (size_t)lsm->side;
     way->lanes = sm_alloc(side * side * side, sizeof *way->lanes);
     way->touched = sm_alloc(side * side, sizeof *way->touched);
-    way->list.first = sm_alloc(2 * (size_t)lsm->blocks + 1, sizeof *way->list.first);
+    way->list.first = sm_alloc(PARTS * (size_t)lsm->blocks + 1, sizeof *way->list.first);
     way->list.clear = sm_alloc((size_t)lsm->blocks, sizeof *way->list.clear);
 }
 
@@ -60,7 +60,7 @@ static void append(Way *way, Fixup fixup)
 static void append_lanes(const Lsm *lsm, Way *way, const int corner[3], const int offset[3],
                          uint32_t lanes, real sign)
 {
-    int low = corner[0] + offset[0], column = (low + SM_LANES) / SM_LANES - 1,
+    int low = corner[0] + offset[0], column = (low < 0 ? low - SM_LANES + 1 : low) / SM_LANES,
         from = low - column * SM_LANES;
     uint32_t next = lanes & (~(uint32_t)0 << (SM_LANES - from));
     Fixup fixup = {.sign = sign};
@@ -74,7 +74,7 @@ static void append_lanes(const Lsm *lsm, Way *way, const int corner[3], const in
     }
 }
 
-static void append_half(const Lsm *lsm, Way *way, const int corner[3])
+static void append_part(const Lsm *lsm, Way *way, const int corner[3])
 {
     int w = lsm->w, side = lsm->side;
     const uint32_t low = ((uint32_t)1 << ADD) - 1;
@@ -91,24 +91,24 @@ static void append_half(const Lsm *lsm, Way *way, const int corner[3])
     }
 }
 
-static void finish_half(FixupsBuilder *builder)
+static void finish_part(FixupsBuilder *builder)
 {
     const Lsm *lsm = builder->lsm;
     int corner[3] = {0, 0, 0}, lane = 0;
-    const int *particle = lsm->particle + builder->half * HALF;
+    const int *particle = lsm->particle + builder->part * SM_PART;
     while (builder->any && particle[lane] < 0) lane++;
     for (int d = 0; d < 3 && builder->any; d++)
         corner[d] = lsm->lattice.coord[particle[lane]][d] - (d ? 0 : lane);
     Way *ways[2] = {&builder->up, &builder->down};
     for (int i = 0; i < 2; i++) {
-        if (builder->any) append_half(lsm, ways[i], corner);
-        ways[i]->list.first[builder->half + 1] = ways[i]->count;
-        ways[i]->list.clear[builder->half / 2] |=
-            (uint16_t)(ways[i]->clear << builder->half % 2 * HALF);
+        if (builder->any) append_part(lsm, ways[i], corner);
+        ways[i]->list.first[builder->part + 1] = ways[i]->count;
+        ways[i]->list.clear[builder->part / PARTS] |=
+            (uint16_t)(ways[i]->clear << builder->part % PARTS * SM_PART);
         ways[i]->clear = 0;
     }
     builder->any = false;
-    builder->half++;
+    builder->part++;
 }
 
 /* `taken`: what the box sum takes of a region with `members`. */
@@ -136,8 +136,8 @@ static void add_way(const Lsm *lsm, Way *way, int lane, const uint64_t *taken,
 void lsm_fixups_add(FixupsBuilder *builder, long p, const uint64_t *rows)
 {
     const Lsm *lsm = builder->lsm;
-    int lane = lsm->slot[p] % HALF;
-    while (builder->half < lsm->slot[p] / HALF) finish_half(builder);
+    int lane = lsm->slot[p] % SM_PART;
+    while (builder->part < lsm->slot[p] / SM_PART) finish_part(builder);
     uint64_t up[LSM_MAX_SIDE * LSM_MAX_SIDE], down[LSM_MAX_SIDE * LSM_MAX_SIDE];
     lsm_blocks_taken(lsm, p, up, down);
     add_way(lsm, &builder->up, lane, up, rows);
@@ -159,17 +159,17 @@ static void number_rows(const Lsm *lsm, Fixups *fixups)
     FixupList *down = &fixups->down;
     fixups->row = sm_alloc((size_t)lsm->blocks, sizeof(int));
     for (long block = 0; block < lsm->blocks; block++) fixups->row[block] = -1;
-    for (long i = 0; i < down->first[2 * lsm->blocks]; i++) fixups->row[down->of[i].source] = 0;
+    for (long i = 0; i < down->first[PARTS * lsm->blocks]; i++) fixups->row[down->of[i].source] = 0;
     for (long block = 0; block < lsm->blocks; block++)
         if (!fixups->row[block]) fixups->row[block] = (int)fixups->rows++;
-    for (long i = 0; i < down->first[2 * lsm->blocks]; i++)
+    for (long i = 0; i < down->first[PARTS * lsm->blocks]; i++)
         down->of[i].source = fixups->row[down->of[i].source];
     fixups->kept = sm_alloc((size_t)fixups->rows * 12 * SM_LANES, sizeof(real));
 }
 
 void lsm_fixups_close(FixupsBuilder *builder, Lsm *lsm)
 {
-    while (builder->half < 2 * lsm->blocks) finish_half(builder);
+    while (builder->part < PARTS * lsm->blocks) finish_part(builder);
     Fixups *fixups = lsm->fixups = sm_alloc(1, sizeof *fixups);
     fixups->up = close_way(&builder->up);
     fixups->down = close_way(&builder->down);
@@ -179,37 +179,37 @@ void lsm_fixups_close(FixupsBuilder *builder, Lsm *lsm)
 
 enum { FIXUP_BATCH = 16 };
 
-/* What one fix-up adds to the sums of half a block. */
-typedef void FixupOne(const Lsm *lsm, const Fixup *at, half_vec *sum);
+/* What one fix-up adds to the sums of part of a block. */
+typedef void FixupOne(const Lsm *lsm, const Fixup *at, part_vec *sum);
 
 /* m~ of the source, or less than nothing. */
-SM_INLINE half_vec weight_of(const Lsm *lsm, const Fixup *at)
+SM_INLINE part_vec weight_of(const Lsm *lsm, const Fixup *at)
 {
     const ParticleConst *k = &lsm->particle_const[lsm->block_const[at->source]];
-    return at->sign * half_load((const real *)&k->weight + at->from, at->lanes);
+    return at->sign * part_load((const real *)&k->weight + at->from, at->lanes);
 }
 
 /* Of the sums up of a block's regions (match.h). */
-SM_INLINE void fixup_region(const Lsm *lsm, const Fixup *at, half_vec sum[12])
+SM_INLINE void fixup_region(const Lsm *lsm, const Fixup *at, part_vec sum[12])
 {
     const real *x = lsm->x + at->source * 3L * SM_LANES + at->from;
-    half_vec weight = weight_of(lsm, at);
+    part_vec weight = weight_of(lsm, at);
     for (int d = 0; d < 3; d++) {
-        half_vec p = weight * half_load(x + d * SM_LANES, at->lanes);
+        part_vec p = weight * part_load(x + d * SM_LANES, at->lanes);
         sum[d] += p;
         for (int k = 0; k < 3; k++) sum[3 + 3 * d + k] += at->offset[k] * p;
     }
 }
 
 /* Of damping's four triples of sums up. */
-SM_INLINE void fixup_product(const Lsm *lsm, const Fixup *at, half_vec sum[12])
+SM_INLINE void fixup_product(const Lsm *lsm, const Fixup *at, part_vec sum[12])
 {
     const real *from_x = lsm->x + at->source * 3L * SM_LANES + at->from,
                *from_v = lsm->v + at->source * 3L * SM_LANES + at->from;
-    half_vec weight = weight_of(lsm, at), x[3], v[3], p[3];
+    part_vec weight = weight_of(lsm, at), x[3], v[3], p[3];
     for (int d = 0; d < 3; d++) {
-        x[d] = half_load(from_x + d * SM_LANES, at->lanes);
-        v[d] = half_load(from_v + d * SM_LANES, at->lanes);
+        x[d] = part_load(from_x + d * SM_LANES, at->lanes);
+        v[d] = part_load(from_v + d * SM_LANES, at->lanes);
         p[d] = weight * x[d];
     }
     for (int d = 0; d < 3; d++) {
@@ -222,51 +222,51 @@ SM_INLINE void fixup_product(const Lsm *lsm, const Fixup *at, half_vec sum[12])
 }
 
 /* Of the sums down of a block's particles: of transforms at the particles. */
-SM_INLINE void fixup_goal(const Lsm *lsm, const Fixup *at, half_vec sum[3])
+SM_INLINE void fixup_goal(const Lsm *lsm, const Fixup *at, part_vec sum[3])
 {
     const real *T = lsm->fixups->kept + at->source * 12L * SM_LANES + at->from;
     for (int f = 0; f < 3; f++) {
-        half_vec value = half_load(T + f * SM_LANES, at->lanes);
+        part_vec value = part_load(T + f * SM_LANES, at->lanes);
         for (int k = 0; k < 3; k++)
             value -=
-                at->offset[k] * half_load(T + (3 + 3 * ((k + 1) % 3) + f) * SM_LANES, at->lanes);
+                at->offset[k] * part_load(T + (3 + 3 * ((k + 1) % 3) + f) * SM_LANES, at->lanes);
         sum[f] += at->sign * value;
     }
 }
 
 /* Of the sums down of rigid velocities. */
-SM_INLINE void fixup_velocity(const Lsm *lsm, const Fixup *at, half_vec sum[6])
+SM_INLINE void fixup_velocity(const Lsm *lsm, const Fixup *at, part_vec sum[6])
 {
     const real *kept = lsm->fixups->kept + at->source * 12L * SM_LANES + at->from;
-    for (int f = 0; f < 6; f++) sum[f] += at->sign * half_load(kept + f * SM_LANES, at->lanes);
+    for (int f = 0; f < 6; f++) sum[f] += at->sign * part_load(kept + f * SM_LANES, at->lanes);
 }
 
 /* What the fix-ups from `c` up to `end` come to. Loops are unrolled early, or the sums would
  * not stay in registers. */
 SM_INLINE void fixup_batch(const Lsm *lsm, const Fixup *c, const Fixup *end, int count,
-                           FixupOne *fixup_one, half_vec *sum)
+                           FixupOne *fixup_one, part_vec *sum)
 {
-    half_vec all[12];
+    part_vec all[12];
 #pragma GCC unroll 12
-    for (int f = 0; f < count; f++) all[f] = (half_vec){0};
+    for (int f = 0; f < count; f++) all[f] = (part_vec){0};
     for (; c < end; c++) fixup_one(lsm, c, all);
 #pragma GCC unroll 12
     for (int f = 0; f < count; f++) sum[f] = all[f];
 }
 
-/* What all of half a block, number `at`, come to. Of thousands of like numbers, one added after the
+/* What all of part `at` come to. Of thousands of like numbers, one added after the
  * other, each would be rounded the same way; batches are summed on their own, and then batches of
  * batches. */
-SM_INLINE void fixup_half(const Lsm *lsm, const FixupList *list, long at, int count,
-                          FixupOne *fixup_one, half_vec *sum)
+SM_INLINE void fixup_part(const Lsm *lsm, const FixupList *list, long at, int count,
+                          FixupOne *fixup_one, part_vec *sum)
 {
     const Fixup *c = list->of + list->first[at], *end = list->of + list->first[at + 1];
     if (end - c <= FIXUP_BATCH) {
         fixup_batch(lsm, c, end, count, fixup_one, sum);
         return;
     }
-    half_vec batch[12], batches[12];
-    for (int f = 0; f < count; f++) batches[f] = sum[f] = (half_vec){0};
+    part_vec batch[12], batches[12];
+    for (int f = 0; f < count; f++) batches[f] = sum[f] = (part_vec){0};
     for (int i = 1; c < end; i++) {
         const Fixup *last = end - c < FIXUP_BATCH ? end : c + FIXUP_BATCH;
         fixup_batch(lsm, c, last, count, fixup_one, batch);
@@ -275,7 +275,7 @@ SM_INLINE void fixup_half(const Lsm *lsm, const FixupList *list, long at, int co
         if (i % FIXUP_BATCH && c < end) continue;
         for (int f = 0; f < count; f++) {
             sum[f] += batches[f];
-            batches[f] = (half_vec){0};
+            batches[f] = (part_vec){0};
         }
     }
 }
@@ -284,13 +284,16 @@ SM_INLINE void fixup_half(const Lsm *lsm, const FixupList *list, long at, int co
 SM_INLINE void fixup_block(const Lsm *lsm, const FixupList *list, long block, int count,
                            FixupOne *fixup_one, vec *sums)
 {
-    half_vec low[12], high[12];
+    part_vec sum[PARTS][12];
     unsigned keep = ~(unsigned)list->clear[block] & LANES_ALL;
-    fixup_half(lsm, list, 2 * block, count, fixup_one, low);
-    fixup_half(lsm, list, 2 * block + 1, count, fixup_one, high);
+    for (int part = 0; part < PARTS; part++)
+        fixup_part(lsm, list, PARTS * block + part, count, fixup_one, sum[part]);
 #pragma GCC unroll 12
-    for (int f = 0; f < count; f++)
-        sums[f] = lanes_keep(keep, sums[f]) + lanes_join(low[f], high[f]);
+    for (int f = 0; f < count; f++) {
+        part_vec one[PARTS];
+        for (int part = 0; part < PARTS; part++) one[part] = sum[part][f];
+        sums[f] = lanes_keep(keep, sums[f]) + lanes_join(one);
+    }
 }
 
 void lsm_fixup_regions(const Lsm *lsm, long block, vec *sums)
@@ -321,7 +324,7 @@ void lsm_fixups_keep(const Lsm *lsm, long block, const real *down)
 
 static bool mends(const FixupList *list, long block)
 {
-    return list->first[2 * block] < list->first[2 * block + 2] || list->clear[block];
+    return list->first[PARTS * block] < list->first[PARTS * (block + 1)] || list->clear[block];
 }
 
 void lsm_fixups_mark(const Lsm *lsm)
@@ -351,8 +354,8 @@ long lsm_fixups_bytes(const Lsm *lsm)
 {
     const Fixups *c = lsm->fixups;
     if (!c) return 0;
-    long halves = 2 * lsm->blocks;
-    return (c->up.first[halves] + c->down.first[halves]) * (long)sizeof(Fixup) +
-           lsm->blocks * (long)(4 * sizeof(long) + 2 * sizeof(uint16_t) + sizeof(int)) +
+    long parts = PARTS * lsm->blocks;
+    return (c->up.first[parts] + c->down.first[parts]) * (long)sizeof(Fixup) +
+           lsm->blocks * (long)(2 * PARTS * sizeof(long) + 2 * sizeof(uint16_t) + sizeof(int)) +
            c->rows * (long)(12 * SM_LANES * sizeof(real));
 }

@@ -2,13 +2,13 @@
  *
  * Where a region's members differ from the sites that its box sum takes (a gap, a corner), each
  * particle too many is subtracted again and each one missing is added: on the way up from the
- * region's sum, on the way down the region from the particle's. Lanes of half a block that differ
- * at the same offset by lanes of the same block are one fix-up, so half vectors are read from
- * where their lanes begin, and masked: fix-ups have few lanes, seldom more than two, and a
- * whole vector takes twice the time. Where that takes more than the members themselves, the box sum
- * is dropped and they are all added: what is left of a sum is then never small beside what was
- * taken from it. The fix-ups of half a block follow each other in the order of their offsets
- * (c, b, a). */
+ * region's sum, on the way down the region from the particle's. Lanes of part of a block
+ * (SM_PART) that differ at the same offset by lanes of the same block are one fix-up, so parts of
+ * vectors are read from where their lanes begin, and masked: fix-ups have few lanes, seldom more
+ * than two, and 64 bytes take twice the time of 32. Where that takes more than the members
+ * themselves, the box sum is dropped and they are all added: what is left of a sum is then never
+ * small beside what was taken from it. The fix-ups of a part follow each other in the order of
+ * their offsets (c, b, a). */
 #ifndef LSM_BOX_SUM_FIXUPS_H
 #define LSM_BOX_SUM_FIXUPS_H
 
@@ -28,15 +28,15 @@
 
 typedef struct {
     int source;           /* up: block of the members; down: row of `kept` */
-    uint16_t lanes;       /* bit i: lane i of the half is corrected .. */
+    uint16_t lanes;       /* bit i: lane i of the part is corrected .. */
     int16_t from;         /* .. by lane i + from of the source */
     real sign, offset[3]; /* 1 or -1; from the corrected lane to its source, in cells */
 } Fixup;
 
 /* One way, up or down. */
 typedef struct {
-    Fixup *of;       /* [first[2 * blocks]] */
-    long *first;     /* [2 * blocks + 1] of each half */
+    Fixup *of;       /* [first[parts]] */
+    long *first;     /* [parts + 1] */
     uint16_t *clear; /* [blocks] lanes whose box sum is dropped first */
 } FixupList;
 

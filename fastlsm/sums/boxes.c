@@ -117,20 +117,31 @@ SM_INLINE BlockRow row_at(const Lsm *lsm, int plane, int y)
 /* From this width on. */
 enum { FAR = SM_LANES == 16 ? 8 : 5 };
 
+SM_INLINE void far_sum_of(real *value, int count, long stride, int w, int whole, long moment)
+{
+    const int ahead = whole + 1, blocks = 2 * ahead + 1;
+    Prefixes none = prefixes_of(lanes_set(0), false), at[PREFIX_MOST];
+    for (int k = 0; k < blocks; k++) at[k] = none;
+    for (int i = 0; i < count + ahead; i++) {
+        for (int k = 0; k + 1 < blocks; k++) at[k] = at[k + 1];
+        at[blocks - 1] =
+            i < count ? prefixes_of(lanes_load(value + i * stride), moment != 0) : none;
+        if (i < ahead) continue;
+        vec weighed = lanes_set(0);
+        real *to = value + (i - ahead) * stride;
+        lanes_store(to, window_prefixes_x(at, w, whole, moment ? &weighed : NULL));
+        if (moment) lanes_store(to + moment, weighed);
+    }
+}
+
 /* Sums one value along x over `count` blocks that lie `stride` apart, in place; and its moments,
  * `moment` values further on, unless that is 0. */
 SM_INLINE void far_sum(real *value, int count, long stride, int w, long moment)
 {
-    Prefixes none = prefixes_of(lanes_set(0), false), before = none, here, after;
-    here = prefixes_of(lanes_load(value), moment != 0);
-    for (int i = 0; i < count; i++, value += stride) {
-        vec weighed = lanes_set(0);
-        after = i + 1 < count ? prefixes_of(lanes_load(value + stride), moment != 0) : none;
-        lanes_store(value, window_prefixes_x(before, here, after, w, moment ? &weighed : NULL));
-        if (moment) lanes_store(value + moment, weighed);
-        before = here;
-        here = after;
-    }
+    if (w <= SM_LANES)
+        far_sum_of(value, count, stride, w, 0, moment);
+    else
+        far_sum_of(value, count, stride, w, PREFIX_BLOCKS(w), moment);
 }
 
 /* Value f of the y stage at a column, and its moment, number m, unless that is NULL. */
@@ -191,7 +202,7 @@ SM_INLINE void source(const Lsm *lsm, long block, bool plain, int d, vec out[4])
         damping_products(weight, x, lsm->v + block * 3 * SM_LANES, d, out);
         return;
     }
-    out[0] = rounded(weight * lanes_load(x + d * SM_LANES));
+    out[0] = lanes_rounded(weight * lanes_load(x + d * SM_LANES));
 }
 
 /* The window of the z stage up of a block, from the one in `kept` of the block in the plane before.
@@ -657,7 +668,6 @@ SM_INLINE void plane_end(Lsm *lsm, int plane, int thread, int w, bool plain, SmL
 
 FROM_WIDTH_1(end_moments, false, plane_end)
 FROM_WIDTH_1(end_plain, true, plane_end)
-#ifdef __AVX512F__
 #define TO_WIDTH_7(name, plain, stages)                                                            \
     FROM_WIDTH_1(name, plain, stages)                                                              \
     AT_WIDTH(name##_3, 3, plain, stages)                                                           \
@@ -672,15 +682,6 @@ TO_WIDTH_7(solve_plain, true, plane_pass)
         name##_any, name##_1, name##_2, name##_3, name##_4, name##_5, name##_6, name##_7           \
     }
 enum { WIDTHS = 8 };
-#else /* a vector is many instructions, and compiling them for each width takes too long */
-AT_WIDTH(solve_moments_any, lsm->w, false, plane_pass)
-AT_WIDTH(solve_plain_any, lsm->w, true, plane_pass)
-#define SOLVE(name)                                                                                \
-    {                                                                                              \
-        name##_any                                                                                 \
-    }
-enum { WIDTHS = 1 };
-#endif
 
 static void subsums(Lsm *lsm, int plane, int thread, SmLaps *laps)
 {

@@ -30,8 +30,6 @@ SM_INLINE Group group_of(const Lsm *lsm, int thread)
     return g;
 }
 
-_Static_assert(L % LSM_NAME == 0, "a name is a whole part of a vector's address");
-
 /* Where a stage takes its moments: of the triple from value `weighed` on, unless that is -1. */
 typedef struct {
     int values, weighed;
@@ -44,7 +42,7 @@ SM_INLINE void row_sums(const int *name, int side, const real *in, int pitch, St
 {
     const real *at[LSM_MAX_SIDE];
     int n = stage.values;
-    for (int i = 0; i < side; i++) at[i] = in + (long)name[i] * pitch * (L / LSM_NAME);
+    for (int i = 0; i < side; i++) at[i] = named(in, (uint64_t)name[i], pitch * L);
     for (int f = 0; f < n; f++) {
         int d = f - stage.weighed;
         bool weighed = stage.weighed >= 0 && d >= 0 && d < 3;

@@ -24,23 +24,54 @@ SM_INLINE Prefixes prefixes_of(vec value, bool weighed)
     return p;
 }
 
-/* From the first lane of `here` to w lanes on, less what is more than w lanes back. */
-SM_INLINE vec window_between(vec before, vec here, vec after, int w)
+/* A block's prefixes with its lanes numbered from the first of the block that is `blocks` before.
+ */
+SM_INLINE Prefixes prefixes_from(Prefixes p, int blocks)
 {
-    const vec zero = lanes_set(0);
-    vec until = lanes_slide(here, after + lanes_set(here[SM_LANES - 1]), w);
-    vec back = lanes_slide(zero, before, SM_LANES - 1) - lanes_set(before[SM_LANES - 1]);
-    return until - lanes_slide(back, lanes_slide(zero, here, SM_LANES - 1), SM_LANES - w);
+    p.weighed += (real)(blocks * SM_LANES) * p.sum;
+    return p;
 }
 
-/* As window_sum_x() of window.h, w <= SM_LANES. Lanes are numbered from the first of `here`. */
-SM_INLINE vec window_prefixes_x(Prefixes before, Prefixes here, Prefixes after, int w, vec *moment)
+/* Whole blocks that a window reaches to either side, and then it ends within the next one. */
+#define PREFIX_BLOCKS(w) (((w)-1) / SM_LANES)
+enum { PREFIX_MOST = 2 * PREFIX_BLOCKS(SM_MOST_W) + 3 };
+
+SM_INLINE vec prefix_without_own(vec prefix)
 {
-    vec sum = window_between(before.sum, here.sum, after.sum, w);
-    if (moment)
-        *moment = window_between(before.weighed - SM_LANES * before.sum, here.weighed,
-                                 after.weighed + SM_LANES * after.sum, w) -
-                  lanes_number() * sum;
+    return lanes_slide(lanes_set(0), prefix, SM_LANES - 1);
+}
+
+/* From the first lane of block `here` to w lanes on, less what is more than w lanes back. `whole`
+ * is PREFIX_BLOCKS(w), which compilers are to know; at[k] are the prefixes of block here - whole -
+ * 1 + k.
+ */
+SM_INLINE vec window_between(const vec *at, int w, int whole)
+{
+    const int rest = w - whole * SM_LANES, here = whole + 1;
+    vec ahead = lanes_set(0), behind = lanes_set(0);
+    for (int k = 0; k < whole; k++) {
+        ahead += lanes_set(at[here + k][SM_LANES - 1]);
+        behind += lanes_set(at[here - 1 - k][SM_LANES - 1]);
+    }
+    vec last = lanes_set(at[here + whole][SM_LANES - 1]), first = lanes_set(at[0][SM_LANES - 1]);
+    vec until = lanes_slide(at[here + whole], at[here + whole + 1] + last, rest) + ahead;
+    vec back =
+        lanes_slide(prefix_without_own(at[0]) - first, prefix_without_own(at[1]), SM_LANES - rest) -
+        behind;
+    return until - back;
+}
+
+/* As window_sum_x() of window.h, for any w. Lanes are numbered from the first of `here`. */
+SM_INLINE vec window_prefixes_x(const Prefixes *at, int w, int whole, vec *moment)
+{
+    const int blocks = 2 * whole + 3;
+    vec part[PREFIX_MOST] = {{0}};
+    for (int k = 0; k < blocks; k++) part[k] = at[k].sum;
+    vec sum = window_between(part, w, whole);
+    if (moment) {
+        for (int k = 0; k < blocks; k++) part[k] = prefixes_from(at[k], k - whole - 1).weighed;
+        *moment = window_between(part, w, whole) - lanes_number() * sum;
+    }
     return sum;
 }
 

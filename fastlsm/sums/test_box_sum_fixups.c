@@ -30,7 +30,7 @@ static void take_box(Window *window, const uint64_t *rows)
 /* One fix-up of the particle in `slot`, if it is one of its lanes; `block` is its source. */
 static bool fixup_one(const Lsm *lsm, const Fixup *c, long block, long slot, Window *window)
 {
-    int lane = (int)(slot % (SM_LANES / 2)), offset[3];
+    int lane = (int)(slot % SM_PART), offset[3];
     if (!(c->lanes >> lane & 1)) return false;
     assert_in_range(lane + c->from, 0, SM_LANES - 1);
     int source = lsm->particle[block * SM_LANES + lane + c->from];
@@ -59,11 +59,11 @@ static long source_of(const Lsm *lsm, const FixupList *list, const Fixup *c)
 static long check_particle(const Lsm *lsm, const FixupList *list, long p, const uint64_t *box,
                            const RefRegions *regions)
 {
-    long slot = lsm->slot[p], half = slot / (SM_LANES / 2), count = 0, members = 0;
+    long slot = lsm->slot[p], part = slot / SM_PART, count = 0, members = 0;
     size_t sites = (size_t)(lsm->side * lsm->side * lsm->side);
     Window window = {lsm->w, lsm->side, sm_alloc(sites, 1)};
     if (!(list->clear[slot / SM_LANES] >> slot % SM_LANES & 1)) take_box(&window, box);
-    for (long i = list->first[half]; i < list->first[half + 1]; i++)
+    for (long i = list->first[part]; i < list->first[part + 1]; i++)
         count += fixup_one(lsm, &list->of[i], source_of(lsm, list, &list->of[i]), slot, &window);
     for (long i = regions->start[p]; i < regions->start[p + 1]; i++) {
         const int *to = lsm->lattice.coord[regions->member[i]], *at = lsm->lattice.coord[p];

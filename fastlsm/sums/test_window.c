@@ -93,29 +93,34 @@ TEST(adjoints_of_windows_are_summed_anew_and_by_moving)
     }
 }
 
-/* Along x, a block between its neighbours: by sliding and by prefixes. */
+/* Along x, the middle one of blocks: by sliding, which takes one to either side, and by prefixes.
+ */
 TEST(windows_along_x_slide_or_subtract_prefixes)
 {
     unsigned seed = 3;
     for (int trial = 0; trial < 20; trial++)
-        for (int w = 1; w <= SM_LANES; w++) {
-            real value[3 * SM_LANES];
-            for (int i = 0; i < 3 * SM_LANES; i++) value[i] = (real)(random_int(&seed, 31) - 15);
-            vec block[3], moment = lanes_set(0), prefix_moment = lanes_set(0);
-            Prefixes prefix[3];
-            for (int b = 0; b < 3; b++) {
+        for (int w = 1; w <= SM_MOST_W; w++) {
+            enum { BLOCKS = PREFIX_MOST, LANES = BLOCKS * SM_LANES };
+            real value[LANES];
+            for (int i = 0; i < LANES; i++) value[i] = (real)(random_int(&seed, 31) - 15);
+            vec block[BLOCKS], sum = {0}, moment = {0}, prefix_moment = {0};
+            Prefixes prefix[BLOCKS];
+            for (int b = 0; b < BLOCKS; b++) {
                 block[b] = lanes_load(value + b * SM_LANES);
                 prefix[b] = prefixes_of(block[b], true);
             }
-            vec sum = window_sum_x(block[0], block[1], block[2], w, &moment);
-            vec prefix_sum = window_prefixes_x(prefix[0], prefix[1], prefix[2], w, &prefix_moment);
+            const int here = BLOCKS / 2, first = here * SM_LANES;
+            if (w <= SM_LANES)
+                sum = window_sum_x(block[here - 1], block[here], block[here + 1], w, &moment);
+            vec prefix_sum = window_prefixes_x(prefix + here - PREFIX_BLOCKS(w) - 1, w,
+                                               PREFIX_BLOCKS(w), &prefix_moment);
             for (int i = 0; i < SM_LANES; i++) {
                 real want = 0, want_moment = 0;
                 for (int a = -w; a <= w; a++) {
-                    want += value[SM_LANES + i + a];
-                    want_moment += (real)a * value[SM_LANES + i + a];
+                    want += value[first + i + a];
+                    want_moment += (real)a * value[first + i + a];
                 }
-                assert_true(sum[i] == want && moment[i] == want_moment);
+                assert_true(w > SM_LANES || (sum[i] == want && moment[i] == want_moment));
                 assert_true(prefix_sum[i] == want && prefix_moment[i] == want_moment);
             }
         }

@@ -1,6 +1,6 @@
 #include "polar_lanes.h"
 
-void SM_NAME(sm_polar_batch)(long count, const real *A, const real *last, real *R)
+static void batch(long count, const real *A, const real *last, real *R)
 {
     for (long first = 0; first < count; first += SM_LANES) {
         long lanes = count - first < SM_LANES ? count - first : SM_LANES;
@@ -18,3 +18,5 @@ void SM_NAME(sm_polar_batch)(long count, const real *A, const real *last, real *
             for (long lane = 0; lane < lanes; lane++) R[(first + lane) * 9 + i] = r[i][lane];
     }
 }
+
+void (*const SM_NAME(sm_polar_batch))(long, const real *, const real *, real *) = batch;

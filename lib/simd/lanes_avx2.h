@@ -1,0 +1,87 @@
+/* lanes_avx2.h - operations on lanes (lanes.h, lanes_portable.h) of vectors of 32 bytes. */
+#ifndef SM_LANES_AVX2_H
+#define SM_LANES_AVX2_H
+
+#include <immintrin.h>
+
+#if SM_REAL_BITS == 32
+typedef __m256 native_vec;
+#define AVX2(name) _mm256_##name##_ps
+#else
+typedef __m256d native_vec;
+#define AVX2(name) _mm256_##name##_pd
+#endif
+
+SM_INLINE vec lanes_select(ivec mask, vec yes, vec no)
+{
+    return (vec)AVX2(blendv)((native_vec)no, (native_vec)yes, (native_vec)mask);
+}
+
+SM_INLINE bool lanes_any(ivec mask)
+{
+    return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
+}
+
+SM_INLINE ivec lanes_of_bits(unsigned lanes)
+{
+#if SM_REAL_BITS == 32
+    const ivec bit = {1, 2, 4, 8, 16, 32, 64, 128};
+#else
+    const ivec bit = {1, 2, 4, 8};
+#endif
+    return ((lane_int)lanes & bit) == bit;
+}
+
+SM_INLINE unsigned lanes_below(vec a, vec b)
+{
+    return (unsigned)AVX2(movemask)((native_vec)(a < b));
+}
+
+SM_INLINE vec lanes_choose(unsigned lanes, vec yes, vec no)
+{
+    return lanes_select(lanes_of_bits(lanes), yes, no);
+}
+
+SM_INLINE vec lanes_keep(unsigned lanes, vec v)
+{
+    return (vec)((ivec)v & lanes_of_bits(lanes));
+}
+
+SM_INLINE vec lanes_max(vec a, vec b)
+{
+    return (vec)AVX2(max)((native_vec)a, (native_vec)b);
+}
+
+SM_INLINE vec lanes_sqrt(vec v)
+{
+    return (vec)AVX2(sqrt)((native_vec)v);
+}
+
+/* The approximate ones have other bits on every maker's processors. */
+SM_INLINE vec lanes_rough_inverse(vec v)
+{
+    return 1 / v;
+}
+
+SM_INLINE vec lanes_rough_root(vec v)
+{
+    return lanes_sqrt(v);
+}
+
+SM_INLINE vec lanes_inverse(vec v)
+{
+    return 1 / v;
+}
+
+SM_INLINE vec lanes_rounded(vec product)
+{
+    __asm__("" : "+x"(product));
+    return product;
+}
+
+SM_INLINE part_vec part_load(const real *p, unsigned lanes)
+{
+    return (part_vec)AVX2(maskload)(p, (__m256i)lanes_of_bits(lanes));
+}
+
+#endif
