@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../lib/system/hash.h"
 #include "../../reference/meshless/surface/surface_nets.h"
 #include "../engines.h"
 #include "../play/recording.h"
@@ -65,8 +64,8 @@ static const BenchSetting settings[] = {
     BENCH_OVERWRITE_OPTION(Options, overwrite, 2),
     {BENCH_OPTION("no-output", NULL, 2, "Write no trajectory"), BENCH_IN(Options, no_output)},
     {BENCH_OPTION("hash", NULL, 2,
-                  "Print a hash of the last positions and velocities: the same for any number of "
-                  "threads"),
+                  "Print a hash of the last positions and velocities, as the trajectory holds it: "
+                  "the same for any number of threads"),
      BENCH_IN(Options, hash)},
     {BENCH_OPTION(
          "record", "WHAT", 2,
@@ -313,23 +312,6 @@ static bool state_finite(const BenchPlayback *play)
     return sum == 0;
 }
 
-/* Of all bodies' positions and velocities, in the order of their particles. */
-static unsigned long long state_hash(const BenchPlayback *play)
-{
-    unsigned long long hash = SM_HASH_START;
-    for (int p = 0; p < play->count; p++) {
-        const BenchRunner *runner = &play->group[p].runner;
-        size_t count = (size_t)runner->particles;
-        double(*value)[3] = sm_alloc(count, sizeof *value);
-        for (int field = SM_POSITION; field <= SM_VELOCITY; field++) {
-            runner->type->get(runner->engine, (SmField)field, value);
-            hash = sm_hash_bytes(hash, value, count * sizeof *value);
-        }
-        free(value);
-    }
-    return hash;
-}
-
 /* What the scene changes before a frame. */
 static SmCode change(BenchPlayback *play, BenchOutcome *outcome, SmError *error)
 {
@@ -435,12 +417,15 @@ static SmCode record(const Options *options, BenchPlayback *play, const BenchMac
         return sm_fail(error, SM_INVALID, "%s is INVALID: positions are not finite after step %ld",
                        scene->name, outcome.steps);
     }
+    char hash[BENCH_HASH_TEXT] = "";
+    if (options->hash) bench_playback_hash(play, hash);
     if (recorder) code = bench_recording_close(recorder, error);
     if (code) return code;
     bool valid = bench_summary_print(play, &outcome);
     if (options->hash)
-        printf("state after %ld steps: %016llx (%s, %s precision)\n", outcome.steps,
-               state_hash(play), machine->isa, play->group[0].runner.type->precision);
+        printf("state after %ld step%s: %s (%s, %s precision)\n", outcome.steps,
+               outcome.steps == 1 ? "" : "s", hash, machine->isa,
+               play->group[0].runner.type->precision);
     if (recorder && !options->common.quiet)
         printf("wrote %s and %s.xdmf: %d frame%s\n", path, path, scene->frames + 1,
                scene->frames ? "s" : "");

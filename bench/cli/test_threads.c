@@ -11,6 +11,7 @@
 #include "../../reference/brute.h"
 #include "../../reference/meshless/engine.h"
 #include "../../reference/meshless/solve/solver.h"
+#include "../store/h5.h"
 #include "test_program.h"
 
 /* Threads that the process has, and so the largest team of late: those of a team wait for the
@@ -122,5 +123,85 @@ TEST(the_program_runs_on_the_number_it_is_given)
                  numbers[i]);
         run_with(prefix, arguments, &result);
         if (result.code) fail_msg("%s: exit code %d: %s", numbers[i], result.code, result.err);
+    }
+}
+
+/* Bodies of every engine, the crowd one that collides. */
+static void write_bodies(void)
+{
+    write_text("lattice.cfg", "mesh = \"shape:block\"; particles = 1200; w = 2; damping = 0.1; "
+                              "bend = 0.5; kick = 0.02; frames = 4; steps_per_frame = 5;");
+    write_text("crowd.cfg", "mesh = \"shape:block\"; particles = 100; w = 2; instances = 10; "
+                            "spacing = 0.19; kick = 0.05; collide = { bodies = true; }; "
+                            "frames = 4; steps_per_frame = 5;");
+    write_text("tree.cfg", "mesh = \"shape:block\"; particles = 2500; engine = \"octree\"; "
+                           "damping = 0.1; bend = 0.5; kick = 0.02; frames = 4; "
+                           "steps_per_frame = 5; octree = { levels = 2; nodes = 800; };");
+    write_text("elastic.cfg", "mesh = \"shape:bar\"; particles = 500; engine = \"meshless\"; "
+                              "gravity = (0.0, -9.81, 0.0); frames = 4; steps_per_frame = 5; "
+                              "handles = ( { box_high = (0.1, 1.0, 1.0); } ); "
+                              "meshless = { points = 400; nodes = 150; modes = 12; };");
+}
+
+/* The hash that "run NAME.cfg OPTIONS" prints of its last state. */
+static void run_hash(const char *name, const char *options, char hash[17])
+{
+    Result result;
+    char arguments[256];
+    snprintf(arguments, sizeof arguments, "run %s.cfg --hash --quiet %s", name, options);
+    run_with("OMP_WAIT_POLICY=passive", arguments, &result);
+    if (result.code) fail_msg("%s: exit code %d: %s", arguments, result.code, result.err);
+    const char *line = strstr(result.out, "\nstate after ");
+    if (!line || sscanf(line, "%*[^:]: %16[0-9a-f] (", hash) != 1 || strlen(hash) != 16)
+        fail_msg("%s: no hash in %s", arguments, result.out);
+}
+
+/* On 1, 2 and 3 threads. */
+static void compare_threads(const char *name, const char *isa)
+{
+    char first[17] = "", hash[17], options[64];
+    for (int threads = 1; threads <= 3; threads++) {
+        snprintf(options, sizeof options, "--no-output --isa %s --threads %d", isa, threads);
+        run_hash(name, options, hash);
+        if (threads == 1) strcpy(first, hash);
+        if (strcmp(hash, first) != 0)
+            fail_msg("%s, %s: %s on 1 thread, %s on %d", name, isa, first, hash, threads);
+    }
+}
+
+/* The meshless body has no kernels of several sets. */
+TEST(threads_change_no_bit_in_any_instruction_set)
+{
+    write_bodies();
+    for (int isa = 0; isa < sm_isa_count(); isa++) {
+        if (!sm_isa_there(isa)) continue;
+        compare_threads("lattice", sm_isa_name(isa));
+        compare_threads("crowd", sm_isa_name(isa));
+        compare_threads("tree", sm_isa_name(isa));
+    }
+    if (ref_solver_built) compare_threads("elastic", sm_isa_name(sm_isa()));
+}
+
+/* A row's is of the state after the scene's `settle` steps, here 8, a trajectory's of its last. */
+TEST(a_states_hash_is_the_same_wherever_it_is_held)
+{
+    write_bodies();
+    for (int b = 0; b < 2; b++) {
+        const char *name = b ? "tree" : "lattice";
+        Result result;
+        char hash[17], later[17], held[17], arguments[128];
+        BenchH5 h5;
+        run_hash(name, "--frames 1 --steps 8 -o a.vtkhdf --overwrite", hash);
+        run_hash(name, "--frames 1 --steps 9 --no-output", later);
+        assert_string_not_equal(hash, later);
+        bench_h5_open(&h5, path_in("a.vtkhdf"));
+        bench_h5_read_text(&h5, h5.file, "state_hash", sizeof held, held);
+        assert_true(bench_h5_close(&h5));
+        assert_string_equal(held, hash);
+        snprintf(arguments, sizeof arguments,
+                 "tables --scene %s.cfg --repeats %d --block 1 --threads 2 --format csv", name,
+                 1 + b);
+        run(arguments, &result);
+        if (!strstr(result.out, hash)) fail_msg("no %s in %s", hash, result.out);
     }
 }

@@ -189,6 +189,7 @@ static void measure_start(Trial *trial, const BenchChecker *checker,
     count(&trial->play, row);
     if (checker->rest) checker->rest(check, &trial->play, worst, row);
     for (int i = 0; i < trial->play.scene->settle; i++) step(trial, NULL);
+    bench_playback_hash(&trial->play, row->state_hash);
     checker->state(check, &trial->play, worst, row);
     save(trial);
     bench_time_steps(&(BenchTimed){trial, restore, step}, params, row);

@@ -1,6 +1,9 @@
 #include "playback.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+
+#include "../../lib/system/hash.h"
 
 static bool touched(const BenchScene *scene, long instance)
 {
@@ -127,6 +130,22 @@ void bench_playback_points(BenchPlayback *play, double (*point)[3])
         bench_group_surface(&play->group[i], 0, point);
         point += play->group[i].body.instances * play->group[i].skin.surface.vertex_count;
     }
+}
+
+void bench_playback_hash(const BenchPlayback *play, char text[BENCH_HASH_TEXT])
+{
+    unsigned long long hash = SM_HASH_START;
+    for (int g = 0; g < play->count; g++) {
+        const BenchRunner *runner = &play->group[g].runner;
+        size_t count = (size_t)runner->particles;
+        double(*value)[3] = sm_alloc(count, sizeof *value);
+        for (int field = SM_POSITION; field <= SM_VELOCITY; field++) {
+            runner->type->get(runner->engine, (SmField)field, value);
+            hash = sm_hash_bytes(hash, value, count * sizeof *value);
+        }
+        free(value);
+    }
+    snprintf(text, BENCH_HASH_TEXT, "%016llx", hash);
 }
 
 bool bench_playback_split(const BenchPlayback *play)

@@ -41,6 +41,12 @@ void bench_playback_size(const BenchPlayback *play, long *vertices, long *triang
 SmMesh bench_playback_surface(const BenchPlayback *play);
 void bench_playback_points(BenchPlayback *play, double (*point)[3]);
 
+/* FNV-1a of all bodies' positions and velocities, as sixteen hexadecimal digits: in the order of
+ * groups and particles, as doubles, which hold every engine's numbers whole. The same for any
+ * number of threads; another instruction set (lib/isa.h) or precision rounds otherwise. */
+enum { BENCH_HASH_TEXT = 17 };
+void bench_playback_hash(const BenchPlayback *play, char text[BENCH_HASH_TEXT]);
+
 /* Has the last change given a surface new vertices or triangles? */
 bool bench_playback_split(const BenchPlayback *play);
 

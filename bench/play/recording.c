@@ -145,7 +145,9 @@ SmCode bench_recording_step(BenchRecording *recording, long step, bool before, S
 
 SmCode bench_recording_close(BenchRecording *recording, SmError *error)
 {
-    SmCode code = bench_trajectory_close(recording->trajectory, error);
+    char hash[BENCH_HASH_TEXT];
+    bench_playback_hash(recording->play, hash);
+    SmCode code = bench_trajectory_close(recording->trajectory, hash, error);
     release(recording);
     return code;
 }

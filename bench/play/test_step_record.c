@@ -84,7 +84,8 @@ static void record(const SmEngineType *type, BenchTrajectoryParams *params)
                                                (const double(*)[9])S, &error),
                          SM_OK);
     }
-    if (bench_trajectory_close(trajectory, &error) != SM_OK) fail_msg("%s", error.text);
+    if (bench_trajectory_close(trajectory, "0123456789abcdef", &error) != SM_OK)
+        fail_msg("%s", error.text);
     type->destroy(engine);
     free(x);
     free(v);

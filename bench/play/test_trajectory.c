@@ -69,7 +69,7 @@ static SmCode write_sheet(const char *path, double offset, int frames, SmError *
     if (code == SM_OK) {
         code = write_frames(trajectory, &sheet, frames, error);
         if (code == SM_OK)
-            code = bench_trajectory_close(trajectory, error);
+            code = bench_trajectory_close(trajectory, "0123456789abcdef", error);
         else
             bench_trajectory_abandon(trajectory);
     }
@@ -154,7 +154,7 @@ TEST(topology_may_change)
     sheet.vertex_count += SIDE, sheet.triangle_count += ROW;
     assert_int_equal(bench_trajectory_topology(trajectory, &sheet, NULL), SM_OK);
     assert_int_equal(write_frames(trajectory, &sheet, 2, NULL), SM_OK);
-    assert_int_equal(bench_trajectory_close(trajectory, NULL), SM_OK);
+    assert_int_equal(bench_trajectory_close(trajectory, "0123456789abcdef", NULL), SM_OK);
     hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     const long part[5] = {0, 0, 1, 2, 2}, less = TRIANGLES - ROW, fewer = POINTS - SIDE;
     const long points[3] = {POINTS, fewer, POINTS}, cells[3] = {TRIANGLES, less, TRIANGLES};
@@ -234,7 +234,7 @@ TEST(fields_are_stored)
             bench_trajectory_frame(trajectory, f, (const double(*)[3])sheet.position, value, NULL),
             SM_OK);
     }
-    assert_int_equal(bench_trajectory_close(trajectory, NULL), SM_OK);
+    assert_int_equal(bench_trajectory_close(trajectory, "0123456789abcdef", NULL), SM_OK);
     BenchH5 h5 = {.file = H5Fopen(params.path, H5F_ACC_RDONLY, H5P_DEFAULT)};
     hsize_t all[] = {2 * POINTS}, one[] = {POINTS, 3};
     hid_t whole = bench_h5_find_dataset(&h5, h5.file, "VTKHDF/PointData/speed", 1, all);
@@ -274,7 +274,7 @@ TEST(obstacles_are_stored)
     BenchTrajectory *trajectory;
     assert_int_equal(bench_trajectory_open(&params, &trajectory, NULL), SM_OK);
     assert_int_equal(write_frames(trajectory, &sheet, 1, NULL), SM_OK);
-    assert_int_equal(bench_trajectory_close(trajectory, NULL), SM_OK);
+    assert_int_equal(bench_trajectory_close(trajectory, "0123456789abcdef", NULL), SM_OK);
     BenchH5 h5 = {.file = H5Fopen(params.path, H5F_ACC_RDONLY, H5P_DEFAULT)};
     hid_t dataset = bench_h5_find_dataset(&h5, h5.file, "obstacles", 2, (hsize_t[]){2, 9});
     bench_h5_read(&h5, dataset, H5T_NATIVE_DOUBLE, got);

@@ -384,9 +384,10 @@ static SmCode write_sidecar(const BenchTrajectory *trajectory, SmError *error)
     return code;
 }
 
-SmCode bench_trajectory_close(BenchTrajectory *trajectory, SmError *error)
+SmCode bench_trajectory_close(BenchTrajectory *trajectory, const char *hash, SmError *error)
 {
     SmCode code;
+    bench_h5_text(&trajectory->h5, trajectory->h5.file, "state_hash", hash);
     write_parts(trajectory);
     write_steps(trajectory);
     write_views(trajectory);

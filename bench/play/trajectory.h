@@ -51,8 +51,8 @@ SmCode bench_trajectory_step(BenchTrajectory *trajectory, long step, const doubl
                              SmError *error);
 
 /* Completes, syncs and renames file and sidecar, and frees `trajectory`, also on failure; then no
- * draft is left. */
-SmCode bench_trajectory_close(BenchTrajectory *trajectory, SmError *error);
+ * draft is left. `hash`: of the state at the end (bench_playback_hash()). */
+SmCode bench_trajectory_close(BenchTrajectory *trajectory, const char *hash, SmError *error);
 
 /* Throws the unfinished file away and frees `trajectory`, which may be NULL. */
 void bench_trajectory_abandon(BenchTrajectory *trajectory);
