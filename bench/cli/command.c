@@ -6,6 +6,15 @@
 
 const char *const bench_papers[] = {"fastlsm", "octree", "meshless", NULL};
 
+void bench_command_machine(const BenchCommon *common, int argc, char **argv, BenchMachine *machine)
+{
+    const BenchNames *isas = &common->isas;
+    bench_machine_read(argc, argv, common->threads, machine);
+    if (isas->count > 1)
+        snprintf(machine->isa, sizeof machine->isa, "%s to %s", isas->name[0],
+                 isas->name[isas->count - 1]);
+}
+
 static SmCode measure(const BenchCommand *command, int argc, char **argv, void *options,
                       BenchCampaign *campaign, SmError *error)
 {

@@ -83,6 +83,9 @@ typedef struct {
     SmCode (*show)(const void *options, BenchCampaign *campaign, SmError *error);
 } BenchCommand;
 
+/* The machine as a command measures on it, with one instruction set or with several. */
+void bench_command_machine(const BenchCommon *common, int argc, char **argv, BenchMachine *machine);
+
 /* Reads the command's options and does it. Returns the program's exit code. */
 int bench_command_run(const BenchCommand *command, int argc, char **argv);
 

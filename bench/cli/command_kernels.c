@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../../lib/isa.h"
 #include "../kernels/kernel_table.h"
 #include "../scene/scene.h"
 #include "../system/suggest.h"
@@ -75,7 +76,10 @@ static const char help[] =
     "too long; the octree against its slow twins, resampling against a build from scratch); one "
     "that fails has INVALID in place of its times, one of which other programs on the machine took "
     "too much BUSY, and no verdict but of ratios of processor time.\v"
-    "Times are wall-clock medians over the repeats, with quartiles; kernels that are compared run "
+    "With --isa all every kernel is timed with each instruction set that the processor has, "
+    "against "
+    "that set's own peaks. Times are wall-clock medians over the repeats, with quartiles; kernels "
+    "that are compared run "
     "in turn, sample by sample. A stage of a step comes from a run with clocks inside, less the "
     "time that reading them takes. One thread unless --threads says otherwise.\n" BENCH_EXIT_CODES;
 
@@ -93,32 +97,54 @@ static SmCode verdict(const BenchKernelRow *rows, int count, SmError *error)
     return SM_OK;
 }
 
+/* With every instruction set, one after the other, against the peaks that it reaches; its rows
+ * beside those of the others. */
+static SmCode measure_sets(const BenchNames *isas, const BenchKernelParams *params,
+                           const BenchMachine *machine, BenchPeak *peak, BenchKernelRow *rows,
+                           int *count, SmError *error)
+{
+    BenchKernelRow *one = sm_alloc(BENCH_KERNELS_MOST, sizeof *one);
+    int cores = machine->cores, made = 0;
+    SmCode code = SM_OK;
+    for (int s = 0; s < isas->count && !code; s++) {
+        code = sm_isa_use(isas->name[s], error);
+        if (code) break;
+        bench_progress_show(params->progress, "peaks", 0);
+        bench_peak_measure(machine, cores > params->threads ? cores : params->threads, 0, &peak[s]);
+        code = bench_kernels_run(params, &peak[s], one, &made, error);
+        for (int r = 0; r < made; r++) rows[r * isas->count + s] = one[r];
+    }
+    *count = made * isas->count;
+    free(one);
+    return code;
+}
+
 static SmCode measure(const Options *options, BenchMachine *machine, SmError *error)
 {
-    BenchPeak peak;
     BenchProgress progress;
     int count;
-    int threads = options->common.threads;
+    const BenchNames *isas = &options->common.isas;
     BenchKernelParams params = {.only = options->only.name,
                                 .precision = options->precision,
                                 .layout = options->layout,
-                                .threads = threads,
+                                .threads = options->common.threads,
                                 .repeats = options->repeats,
                                 .scaling = options->scaling,
                                 .seed = options->common.seed,
                                 .progress = &progress};
-    BenchKernelRow *rows = sm_alloc(BENCH_KERNELS_MOST, sizeof *rows);
-    machine->threads = threads;
+    size_t sets = (size_t)isas->count;
+    BenchPeak *peak = sm_alloc(sets, sizeof *peak);
+    BenchKernelRow *rows = sm_alloc(sets * BENCH_KERNELS_MOST, sizeof *rows);
+    machine->threads = params.threads;
     bench_progress_start(&progress, options->common.quiet);
-    bench_progress_show(&progress, "peaks", 0);
-    bench_peak_measure(machine, machine->cores > threads ? machine->cores : threads, 0, &peak);
-    SmCode code = bench_kernels_run(&params, &peak, rows, &count, error);
+    SmCode code = measure_sets(isas, &params, machine, peak, rows, &count, error);
     bench_progress_stop(&progress);
     if (!code) {
-        bench_kernels_write(stdout, options->format, rows, count, &peak, machine);
+        bench_kernels_write(stdout, options->format, rows, count, peak, isas->count, machine);
         code = verdict(rows, count, error);
     }
     free(rows);
+    free(peak);
     return code;
 }
 
@@ -130,7 +156,7 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
         list_kernels();
         return SM_OK;
     }
-    bench_machine_read(argc, argv, options->common.threads, &machine);
+    bench_command_machine(&options->common, argc, argv, &machine);
     return measure(options, &machine, error);
 }
 
@@ -139,7 +165,7 @@ static const Options defaults = {.repeats = 9};
 const BenchCommand bench_command_kernels = {
     .name = "kernels",
     .summary = "time every kernel against what this machine can do",
-    .line = {settings, BENCH_TAKES_ALL, NULL, help, check,
+    .line = {settings, BENCH_TAKES_ALL | BENCH_TAKES_SETS, NULL, help, check,
              .limit = "Kernels are named with --only"},
     .size = sizeof(Options),
     .defaults = &defaults,

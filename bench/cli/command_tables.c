@@ -28,7 +28,7 @@ typedef struct {
 } Options;
 
 /* A scene to measure, and the name that stood for it and others, or NULL; and the instruction set
- * to measure it with, or NULL: the one in use. */
+ * to measure it with. */
 typedef struct {
     const char *scene, *stem, *isa;
 } Choice;
@@ -151,17 +151,17 @@ static void choose_scenes(Choices *chosen)
     if (!options->given.count && !options->paper) add_default(chosen);
 }
 
-/* Each scene with every instruction set that is there, one after the other. */
+/* Each scene with every instruction set, one after the other. */
 static void choose_sets(Choices *chosen)
 {
     const Choice *once = chosen->scene;
+    const BenchNames *isas = &chosen->options->common.isas;
     int scenes = chosen->count;
     *chosen = (Choices){.options = chosen->options};
     for (int i = 0; i < scenes; i++)
-        for (int isa = 0; isa < sm_isa_count(); isa++) {
-            if (!sm_isa_there(isa)) continue;
+        for (int isa = 0; isa < isas->count; isa++) {
             add_scene(chosen, once[i].scene, once[i].stem);
-            chosen->scene[chosen->count - 1].isa = sm_isa_name(isa);
+            chosen->scene[chosen->count - 1].isa = isas->name[isa];
         }
     free((void *)once);
 }
@@ -199,9 +199,10 @@ static SmCode find_scene(const Options *options, const Choice *choice, BenchScen
 }
 
 /* Rows of several instruction sets have names of their own. */
-static void name_set(const Choice *choice, BenchScene *scene)
+static void name_set(const Options *options, const Choice *choice, BenchScene *scene)
 {
-    if (choice->isa) sm_append(scene->name, sizeof scene->name, "-%s", choice->isa);
+    if (options->common.isas.count > 1)
+        sm_append(scene->name, sizeof scene->name, "-%s", choice->isa);
 }
 
 /* Names the rows (row_report.h), the meshless ones last; fails where a scene is not there. */
@@ -215,7 +216,7 @@ static SmCode plan_rows(Choices *chosen, BenchRow *rows, SmError *error)
             BenchScene scene;
             code = find_scene(chosen->options, &chosen->scene[i], &scene, error);
             if (code || !!(bench_engine(scene.engine)->own & BENCH_OF_ELASTIC) != last) continue;
-            name_set(&chosen->scene[i], &scene);
+            name_set(chosen->options, &chosen->scene[i], &scene);
             bench_row_name(&scene, &rows[planned]);
             ordered[planned++] = chosen->scene[i];
         }
@@ -231,7 +232,7 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
     BenchScene scene;
     const SmEngineType *type;
     SmCode code = find_scene(options, choice, &scene, error);
-    if (!code && choice->isa) code = sm_isa_use(choice->isa, error);
+    if (!code) code = sm_isa_use(choice->isa, error);
     if (code) return code;
     code = bench_engine_find(scene.engine, chosen->precision, &type, error);
     if (code) return code;
@@ -239,7 +240,7 @@ static SmCode measure_scene(const Options *options, const Choice *choice, BenchP
     const char *substitute = bench_substitute_find(&chosen->substitutes, scene.name);
     if (!substitute && choice->stem)
         substitute = bench_substitute_find(&chosen->substitutes, choice->stem);
-    name_set(choice, &scene);
+    name_set(options, choice, &scene);
     bench_progress_show(progress, scene.name, 0);
     code = bench_body_of_scene(&scene, substitute, &body, error);
     if (code) return code;
@@ -307,13 +308,13 @@ static SmCode perform(void *record, int argc, char **argv, SmError *error)
         return SM_OK;
     }
     choose_scenes(&chosen);
-    if (options->common.every_isa) choose_sets(&chosen);
+    choose_sets(&chosen);
     SmCode code = check_substitutes(&chosen, error);
     BenchRow *rows = sm_alloc((size_t)chosen.count, sizeof *rows);
     if (!code) code = bench_draft_reserve(options->output, options->overwrite, error);
     if (!code) code = plan_rows(&chosen, rows, error);
     BenchMachine machine;
-    bench_machine_read(argc, argv, options->common.threads, &machine);
+    bench_command_machine(&options->common, argc, argv, &machine);
     BenchTable table = {
         .format = options->format,
         .explain = options->explain,

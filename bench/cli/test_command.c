@@ -302,6 +302,39 @@ TEST(tables_measure_a_scene)
     json_decref(root);
 }
 
+/* Row by row, those of one scene or kernel side by side, in the order of the sets. */
+TEST(every_instruction_set_is_measured_in_one_run)
+{
+    Result result;
+    char wanted[64];
+    run("tables --scene tiny.cfg --isa all --repeats 1 --block 1 --format csv", &result);
+    if (result.code) fail_msg("%s", result.err);
+    const char *at = result.out;
+    int sets = 0;
+    for (int isa = 0; isa < sm_isa_count(); isa++) sets += sm_isa_there(isa);
+    for (int isa = 0; isa < sm_isa_count(); isa++) {
+        if (!sm_isa_there(isa)) continue;
+        snprintf(wanted, sizeof wanted, "\n,tiny%s%s,", sets > 1 ? "-" : "",
+                 sets > 1 ? sm_isa_name(isa) : "");
+        at = strstr(at, wanted);
+        if (!at) fail_msg("no %s in %s", wanted, result.out);
+    }
+    run("kernels --only polar --isa all --repeats 1 --format csv", &result);
+    if (result.code) fail_msg("%s", result.err);
+    at = result.out;
+    for (int row = 0; row < 4; row++)
+        for (int isa = 0; isa < sm_isa_count(); isa++) {
+            if (!sm_isa_there(isa)) continue;
+            snprintf(wanted, sizeof wanted, ",%s\n", sm_isa_name(isa));
+            at = strstr(at, wanted);
+            if (!at) fail_msg("no %s in %s", wanted, result.out);
+            at += strlen(wanted);
+        }
+    assert_string_equal(at, "");
+    run("run tiny.cfg --isa all", &result);
+    assert_int_equal(result.code, 2);
+}
+
 /* An octree's options, and its mesh alone: what was made is said. */
 TEST(an_octree_can_be_run)
 {

@@ -13,7 +13,7 @@
 /* A timed kernel. NaN: not given. */
 typedef struct {
     char kernel[32], group[16], item[20]; /* "sum-fast-w3", "sum", "particle" */
-    char precision[12];
+    char precision[12], isa[12];          /* isa: instruction set */
     int w, threads;
     long items; /* in a sample's unit of work: particles, matrices, ... */
     bool valid;

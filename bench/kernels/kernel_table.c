@@ -114,6 +114,7 @@ static void ratio_cell(const void *record, char *text)
 static const BenchField fields[] = {
     {FIELD(TEXT, kernel, "kernel"), .title = "kernel", .left = true},
     {FIELD(TEXT, group, "group")},
+    {.kind = BENCH_TEXT, .offset = offsetof(BenchKernelRow, isa), .title = "isa", .left = true},
     {FIELD(TEXT, precision, "precision"), .title = "precision", .left = true},
     {FIELD(INT, threads, "threads"), .title = "threads"},
     {FIELD(INT, w, "w"), .given = has_w, .title = "w"},
@@ -140,6 +141,7 @@ static const BenchField fields[] = {
     {.kind = BENCH_TEXT, .column = "verdict", .text = verdict, .title = "verdict", .left = true},
     {FIELD(BOOL, valid, "valid"), .text = mark},
     {.kind = BENCH_TEXT, .column = "note", .text = note, .title = "note", .left = true},
+    {FIELD(TEXT, isa, "isa")},
 };
 enum { FIELDS = sizeof fields / sizeof fields[0] };
 
@@ -152,9 +154,10 @@ static json_t *json_row(const BenchKernelRow *row)
     return object;
 }
 
-static json_t *json_rates(const BenchRates *rates)
+static json_t *json_rates(const char *isa, const BenchRates *rates)
 {
     json_t *object = json_object();
+    json_object_set_new(object, "isa", json_string(isa));
     json_object_set_new(object, "threads", json_integer(rates->threads));
     json_object_set_new(object, "single_gflops", json_real(rates->flops[BENCH_F32] / 1e9));
     json_object_set_new(object, "double_gflops", json_real(rates->flops[BENCH_F64] / 1e9));
@@ -168,12 +171,14 @@ static json_t *json_rates(const BenchRates *rates)
 }
 
 static void write_json(FILE *file, const BenchKernelRow *rows, int count, const BenchPeak *peak,
-                       const BenchMachine *machine)
+                       int sets, const BenchMachine *machine)
 {
     json_t *root = json_object(), *list = json_array(), *rates = json_array();
     for (int r = 0; r < count; r++) json_array_append_new(list, json_row(&rows[r]));
-    json_array_append_new(rates, json_rates(&peak->one));
-    if (peak->all.threads > 1) json_array_append_new(rates, json_rates(&peak->all));
+    for (const BenchPeak *of = peak; of < peak + sets; of++) {
+        json_array_append_new(rates, json_rates(of->isa, &of->one));
+        if (of->all.threads > 1) json_array_append_new(rates, json_rates(of->isa, &of->all));
+    }
     json_object_set_new(root, "ceilings", rates);
     json_object_set_new(root, "kernels", list);
     json_object_set_new(root, "environment", bench_json_machine(machine));
@@ -182,9 +187,9 @@ static void write_json(FILE *file, const BenchKernelRow *rows, int count, const 
 
 /* ---- for people */
 
-static void print_rates(FILE *file, const BenchRates *rates)
+static void print_rates(FILE *file, const char *isa, const BenchRates *rates)
 {
-    fprintf(file, "  %d thread%s  multiply-add %.0f GFLOP/s single, %.0f double; read",
+    fprintf(file, "  %-7s %d thread%s  multiply-add %.0f GFLOP/s single, %.0f double; read", isa,
             rates->threads, rates->threads > 1 ? "s:" : ": ", rates->flops[0] / 1e9,
             rates->flops[1] / 1e9);
     for (int level = 0; level < BENCH_LEVELS; level++)
@@ -193,11 +198,13 @@ static void print_rates(FILE *file, const BenchRates *rates)
     fprintf(file, " GB/s; update in DRAM %.0f GB/s\n", rates->update / 1e9);
 }
 
-static void print_peak(FILE *file, const BenchPeak *peak, const BenchMachine *machine)
+static void print_peaks(FILE *file, const BenchPeak *peak, int sets, const BenchMachine *machine)
 {
     fprintf(file, "Peaks measured now, on %s:\n", machine->cpu);
-    print_rates(file, &peak->one);
-    if (peak->all.threads > 1) print_rates(file, &peak->all);
+    for (const BenchPeak *of = peak; of < peak + sets; of++) {
+        print_rates(file, of->isa, &of->one);
+        if (of->all.threads > 1) print_rates(file, of->isa, &of->all);
+    }
     fputs(
         "\nTimes in ns, medians; those of steps in each step. The floor is the least time that the "
         "peaks\nallow, with what sets it; the share is floor / time.\n\n",
@@ -206,14 +213,14 @@ static void print_peak(FILE *file, const BenchPeak *peak, const BenchMachine *ma
 
 /* As text with an empty line between groups. */
 static void write_people(FILE *file, BenchFormat format, const BenchKernelRow *rows, int count,
-                         const BenchPeak *peak, const BenchMachine *machine)
+                         const BenchPeak *peak, int sets, const BenchMachine *machine)
 {
     bool text = format == BENCH_AS_TEXT;
     BenchGridForm form = bench_format_form(format);
     BenchGrid grid = bench_records_grid(fields, FIELDS, rows, sizeof *rows, count, 0);
     bench_grid_fit(&grid);
     BenchGrid one = grid;
-    if (text) print_peak(file, peak, machine);
+    if (text) print_peaks(file, peak, sets, machine);
     bench_grid_head(file, &grid, form);
     one.lines = 1;
     for (int r = 0; r < count; r++) {
@@ -226,12 +233,12 @@ static void write_people(FILE *file, BenchFormat format, const BenchKernelRow *r
 }
 
 void bench_kernels_write(FILE *file, BenchFormat format, const BenchKernelRow *rows, int count,
-                         const BenchPeak *peak, const BenchMachine *machine)
+                         const BenchPeak *peak, int sets, const BenchMachine *machine)
 {
     if (format == BENCH_AS_CSV)
         bench_csv_records(file, fields, FIELDS, rows, sizeof *rows, count, mark);
     else if (format == BENCH_AS_JSON)
-        write_json(file, rows, count, peak, machine);
+        write_json(file, rows, count, peak, sets, machine);
     else
-        write_people(file, format, rows, count, peak, machine);
+        write_people(file, format, rows, count, peak, sets, machine);
 }

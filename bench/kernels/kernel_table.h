@@ -9,12 +9,14 @@
 #include "../table/row_table.h"
 #include "kernels.h"
 
-/* Stable: CSV has the kernels only, a header line first, columns
+/* All rows, which were measured with `sets` instruction sets, each with its own peaks.
+ *
+ * Stable: CSV has the kernels only, a header line first, columns
  *     kernel, group, precision, threads, w, item, items, ns, ns_low, ns_high, floor_ns, bound,
- *     share_percent, at_most_ns, ratio, ratio_to, ratio_wanted, verdict, valid, note
+ *     share_percent, at_most_ns, ratio, ratio_to, ratio_wanted, verdict, valid, note, isa
  * and what is not given is empty. JSON is {"ceilings": [peaks], "kernels": [{column: value}],
  * "environment": {..}}. */
 void bench_kernels_write(FILE *file, BenchFormat format, const BenchKernelRow *rows, int count,
-                         const BenchPeak *peak, const BenchMachine *machine);
+                         const BenchPeak *peak, int sets, const BenchMachine *machine);
 
 #endif

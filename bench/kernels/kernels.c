@@ -191,6 +191,7 @@ static void start_row(const BenchJob *job, BenchKernelRow *row)
     snprintf(row->group, sizeof row->group, "%s", kernel->group);
     snprintf(row->item, sizeof row->item, "%s", job->item);
     snprintf(row->precision, sizeof row->precision, "%s", job->arithmetic);
+    snprintf(row->isa, sizeof row->isa, "%s", job->peak->isa);
     if (kernel->at_most > 0 && job->threads == 1 && job->precision == BENCH_F32)
         row->at_most = kernel->at_most;
 }

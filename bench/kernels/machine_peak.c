@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "../../lib/error.h"
+#include "../../lib/isa.h"
 #include "../../lib/system/clock.h"
 #include "peak_loops.h"
 
@@ -81,6 +82,7 @@ void bench_peak_measure(const BenchMachine *machine, int threads, double seconds
     const long known[] = {machine->l1_bytes, machine->l2_bytes, machine->l3_bytes};
     const double usual[] = {32 << 10, 1 << 20, 32 << 20};
     if (!(seconds > 0)) seconds = 0.01;
+    peak->isa = sm_isa_name(sm_isa());
     for (int i = 0; i < BENCH_DRAM; i++)
         peak->bytes[i] = known[i] > 0 ? (double)known[i] : usual[i];
     peak->bytes[BENCH_DRAM] = INFINITY;

@@ -22,12 +22,13 @@ typedef struct {
 } BenchRates;
 
 typedef struct {
+    const char *isa;            /* instruction set of the loops that measured it */
     double bytes[BENCH_LEVELS]; /* capacity: L1 and L2 of a core, L3 of all; infinite for DRAM */
     BenchRates one, all;        /* one thread; as many as were asked for */
 } BenchPeak;
 
-/* Measures with 1 and with `threads` threads, each figure for about 5 `seconds`; 0: 0.01. Caches of
- * unknown size count as 32 KiB, 1 MiB and 32 MiB. */
+/* Measures the instruction set in use (lib/isa.h) with 1 and with `threads` threads, each figure
+ * for about 5 `seconds`; 0: 0.01. Caches of unknown size count as 32 KiB, 1 MiB and 32 MiB. */
 void bench_peak_measure(const BenchMachine *machine, int threads, double seconds, BenchPeak *peak);
 
 /* The rates of so many threads: in proportion to those of all. */

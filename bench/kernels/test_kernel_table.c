@@ -6,7 +6,7 @@
 #include "kernel_table.h"
 
 static const BenchMachine machine = {.cpu = "Test CPU", .cores = 2};
-static const BenchPeak peak = {.one = {.threads = 1}, .all = {.threads = 2}};
+static const BenchPeak peak = {.isa = "wide", .one = {.threads = 1}, .all = {.threads = 2}};
 
 TEST(verdicts_follow_the_limits)
 {
@@ -36,6 +36,7 @@ static void write_rows(BenchFormat format, char **text, size_t *size)
                                .group = "a",
                                .item = "particle",
                                .precision = "single",
+                               .isa = "wide",
                                .threads = 1,
                                .items = 10,
                                .valid = true,
@@ -58,7 +59,7 @@ static void write_rows(BenchFormat format, char **text, size_t *size)
     strcpy(rows[2].kernel, "late");
     strcpy(rows[2].reason, "others took it");
     FILE *file = open_memstream(text, size);
-    bench_kernels_write(file, format, rows, 3, &peak, &machine);
+    bench_kernels_write(file, format, rows, 3, &peak, 1, &machine);
     fclose(file);
 }
 
@@ -91,7 +92,7 @@ TEST(a_busy_row_tells_what_others_do_not_touch)
         char *text;
         size_t size;
         FILE *file = open_memstream(&text, &size);
-        bench_kernels_write(file, (BenchFormat)f, &row, 1, &peak, &machine);
+        bench_kernels_write(file, (BenchFormat)f, &row, 1, &peak, 1, &machine);
         fclose(file);
         assert_non_null(strstr(text, "1.25"));
         assert_non_null(strstr(text, "met"));
@@ -106,16 +107,17 @@ TEST(formats_parse)
     size_t size;
     static const char header[] =
         "kernel,group,precision,threads,w,item,items,ns,ns_low,ns_high,floor_ns,bound,"
-        "share_percent,at_most_ns,ratio,ratio_to,ratio_wanted,verdict,valid,note\n";
+        "share_percent,at_most_ns,ratio,ratio_to,ratio_wanted,verdict,valid,note,isa\n";
     write_rows(BENCH_AS_CSV, &text, &size);
     assert_int_equal(strncmp(text, header, sizeof header - 1), 0);
     assert_non_null(strstr(text,
                            "\ngood,a,single,1,,particle,10,12.5,12,13,5,L1,40,20,,,,met,VALID,"
-                           "\"with, a comma\"\n"));
-    assert_non_null(strstr(text, "\nbad,a,single,1,,particle,10,INVALID,INVALID,INVALID,INVALID,L1,"
-                                 "INVALID,20,INVALID,,,missed,INVALID,\"it is \"\"wrong\"\"\"\n"));
+                           "\"with, a comma\",wide\n"));
+    assert_non_null(strstr(text,
+                           "\nbad,a,single,1,,particle,10,INVALID,INVALID,INVALID,INVALID,L1,"
+                           "INVALID,20,INVALID,,,missed,INVALID,\"it is \"\"wrong\"\"\",wide\n"));
     assert_non_null(strstr(text, "\nlate,a,single,1,,particle,10,BUSY,BUSY,BUSY,BUSY,L1,BUSY,20,"
-                                 "BUSY,,,,BUSY,others took it\n"));
+                                 "BUSY,,,,BUSY,others took it,wide\n"));
     free(text);
     write_rows(BENCH_AS_JSON, &text, &size);
     json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
@@ -144,6 +146,6 @@ TEST(formats_parse)
         lines += *c == '\n';
     }
     assert_int_equal(lines, 5);
-    assert_int_equal(bars, 5 * 14);
+    assert_int_equal(bars, 5 * 15);
     free(text);
 }

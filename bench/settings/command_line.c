@@ -197,8 +197,6 @@ static void take_argument(const Options *options, char *text, const struct argp_
 static void check(const Options *options, const struct argp_state *state)
 {
     const BenchCommon *common = options->record;
-    if (common->every_isa && !(options->line->takes & BENCH_TAKES_SETS))
-        bench_usage(state, "--isa: 'all' is of tables");
     if (options->line->check) options->line->check(state, options->record);
     if (common->words && common->measuring)
         bench_usage(state, "%s alone is shown as it is; to measure into it, name it with -o",
@@ -239,12 +237,20 @@ static char *filter_help(int key, const char *text, void *input)
     return said == sentence ? strdup(said) : (char *)text;
 }
 
-/* For processes that it starts, too. */
-static void take_isa(const struct argp_state *state, const char *text, void *every)
+/* One is for processes that it starts, too. */
+static void take_isa(const struct argp_state *state, const char *text, void *member)
 {
+    const Options *options = state->input;
+    BenchNames *isas = member;
     SmError error;
-    *(bool *)every = !strcmp(text, "all");
-    if (*(bool *)every) return;
+    isas->count = 0;
+    if (!strcmp(text, "all")) {
+        if (!(options->line->takes & BENCH_TAKES_SETS))
+            bench_usage(state, "--isa: 'all' is of tables and kernels");
+        for (int isa = 0; isa < sm_isa_count(); isa++)
+            if (sm_isa_there(isa)) isas->name[isas->count++] = sm_isa_name(isa);
+        return;
+    }
     if (sm_isa_use(text, &error)) bench_usage(state, "--isa: %s", error.text);
     setenv("SHAPEBENCH_ISA", text, 1);
 }
@@ -257,8 +263,8 @@ static const BenchSetting common_settings[] = {
      BENCH_IN(BenchCommon, threads), 0, SM_MOST_THREADS, .who = BENCH_TAKES_THREADS},
     {BENCH_OPTION("isa", "NAME", 90,
                   "Instruction set of the engines: sse2, avx2, avx512, as SHAPEBENCH_ISA (default: "
-                  "the best of this processor); tables: all, one after the other"),
-     BENCH_IN(BenchCommon, every_isa), .take = take_isa, .who = BENCH_TAKES_THREADS},
+                  "the best of this processor); tables, kernels: all, one after the other"),
+     BENCH_IN(BenchCommon, isas), .take = take_isa, .who = BENCH_TAKES_THREADS},
     {BENCH_OPTION("seed", "N", 90, "Seed of everything random (default: 1)"),
      BENCH_IN(BenchCommon, seed), 0, 2147483647, .who = BENCH_TAKES_SEED},
     {0},
@@ -280,6 +286,7 @@ void bench_options_parse(const BenchCommandLine *line, int argc, char **argv, vo
         bench_option_fail(argv[0], &error);
         exit(SM_USAGE);
     }
+    if (!common->isas.count) common->isas.name[common->isas.count++] = sm_isa_name(sm_isa());
     if (!common->threads) common->threads = sm_team(omp_get_num_procs());
     set_threads(common->threads);
 }

@@ -12,7 +12,8 @@ typedef struct {
     int threads; /* 1 or more */
     unsigned long seed;
     bool quiet;
-    bool every_isa;    /* `--isa all` */
+    BenchNames isas;   /* instruction sets to measure with, one after the other: with `--isa all`
+                        * all that this processor has, else the one in use */
     bool measuring;    /* was an option given that says what to measure? */
     const char **word; /* [words] arguments that are no options; freed with the record */
     int words;
